@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hires::base {
+
+/// A ground action, as the planner writes it: `move_base_param area1 slow`. Names compare without
+/// regard to case, and a leading `!` (the planner's mark of a primitive) is no part of the name.
+struct ActionCall {
+  std::string name;
+  std::vector<std::string> arguments;
+
+  bool operator==(const ActionCall& other) const {
+    return name == other.name && arguments == other.arguments;
+  }
+};
+
+/// An action with a list of alternatives for each argument.
+struct ActionTemplate {
+  std::string name;
+  std::vector<std::vector<std::string>> alternatives;  ///< one list per argument, none empty
+};
+
+/// "move_base_param(area1, slow)", for people.
+std::string ToString(const ActionCall& call);
+
+/// Every combination of the alternatives, the last argument varying fastest, names lower-cased and
+/// without `!`, repeated alternatives of one argument once.
+/// @throws ConfigError if a list is empty or there are more than `at_most` combinations.
+std::vector<ActionCall> Combinations(const ActionTemplate& action, std::size_t at_most = 4096);
+
+}  // namespace hires::base

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace hires::base {
+
+/// What a value must satisfy, with the words for the error message.
+template <typename T>
+struct Bound {
+  std::function<bool(const T&)> holds;
+  std::string wanted;  ///< "between 0.1 and 600"
+};
+
+Bound<double> Between(double lower, double upper);  ///< both ends included; NaN never fits
+Bound<double> Positive();
+Bound<int> Between(int lower, int upper);
+Bound<std::string> OneOf(std::vector<std::string> choices);
+
+/// Reads one YAML map into parameter structs. Every key must be read and every key that is read
+/// must be there, so that a typo stops the program at start-up.
+/// All errors are base::ConfigError: "file: path.to.key is 7, wanted ...; line 12".
+class ParamReader {
+ public:
+  static ParamReader FromFile(const std::string& path);
+  /// `where` stands for the file name in messages.
+  static ParamReader FromString(const std::string& yaml, const std::string& where);
+
+  double Get(const std::string& key, const Bound<double>& bound);
+  int Get(const std::string& key, const Bound<int>& bound);
+  std::string Get(const std::string& key, const Bound<std::string>& bound);
+  bool GetBool(const std::string& key);
+  std::string GetString(const std::string& key);  ///< any text, also empty
+  std::vector<double> GetNumbers(const std::string& key, std::size_t size);  ///< finite numbers
+  std::vector<std::string> GetStrings(const std::string& key);
+
+  bool Has(const std::string& key) const;
+  ParamReader Sub(const std::string& key);                   ///< a nested map
+  std::vector<ParamReader> SubList(const std::string& key);  ///< a list of maps
+  std::vector<std::string> Keys() const;                     ///< in the order of the file
+
+  /// @throws ConfigError naming the first key that nobody asked for, here or in any Sub().
+  void RejectUnknownKeys() const;
+
+  /// An error about `key` in the words of this reader, for checks across keys.
+  [[noreturn]] void Fail(const std::string& key, const std::string& what) const;
+
+ private:
+  ParamReader(YAML::Node node, std::string where, std::string prefix);
+  YAML::Node Require(const std::string& key);
+  template <typename T>
+  T Parse(const std::string& key, const char* type_name);
+  template <typename T>
+  T GetBounded(const std::string& key, const Bound<T>& bound, const char* type_name);
+
+  struct Read {
+    std::set<std::string> keys;
+    std::vector<ParamReader> subs;
+  };
+  YAML::Node node_;
+  std::string where_;   // file
+  std::string prefix_;  // "" or "path.to."
+  std::shared_ptr<Read> read_;
+};
+
+}  // namespace hires::base

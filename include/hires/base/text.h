@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hires::base {
+
+std::string ToLower(std::string_view text);
+std::vector<std::string> Split(std::string_view text, char separator);  ///< "" gives {""}
+std::string Join(const std::vector<std::string>& parts, std::string_view separator);
+
+/// The `known` names most like `name` by edit distance (case ignored), best first, for messages.
+std::vector<std::string> NearestNames(const std::string& name,
+                                      const std::vector<std::string>& known,
+                                      std::size_t at_most = 3);
+
+/// "'x' is unknown; did you mean 'y' or 'z'?" with `kind` in front: "area 'x' is unknown; ...".
+std::string UnknownName(std::string_view kind, const std::string& name,
+                        const std::vector<std::string>& known);
+
+/// A whole file as text.  @throws ConfigError naming the path when it is missing, no regular file,
+/// unreadable or larger than `max_bytes`.
+std::string ReadTextFile(const std::string& path, std::size_t max_bytes = 64u << 20);
+
+}  // namespace hires::base

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "hires/geometry/polygon.h"
+#include "hires/geometry/pose.h"
+
+namespace hires::geometry {
+
+struct Box {
+  Eigen::Vector3d size{1.0, 1.0, 1.0};  ///< full edge lengths [m]
+};
+struct Cylinder {  ///< axis along z, centred
+  double radius{0.5};
+  double length{1.0};
+};
+struct Sphere {
+  double radius{0.5};
+};
+struct TriangleMesh {
+  std::vector<Eigen::Vector3d> vertices;     ///< [m], scaled
+  std::vector<std::array<int, 3>> triangles;  ///< counter-clockwise seen from outside
+};
+/// Meshes are constant after loading and shared between worlds.
+using Shape = std::variant<Box, Cylinder, Sphere, std::shared_ptr<const TriangleMesh>>;
+
+/// A collision shape S fixed to a body B.
+struct Collision {
+  std::string name;
+  Shape shape;
+  Pose3 X_BS;
+  double friction{1.0};     ///< Coulomb coefficient; a contact takes the smaller of its two
+  double restitution{0.0};  ///< a contact takes the larger of its two
+};
+
+struct Aabb {
+  Eigen::Vector3d lower{Eigen::Vector3d::Constant(1e300)};
+  Eigen::Vector3d upper{Eigen::Vector3d::Constant(-1e300)};
+  void Include(const Eigen::Vector3d& point);
+  void Include(const Aabb& other);
+  bool Overlaps(const Aabb& other) const;
+};
+Aabb BoundsOf(const Shape& shape, const Pose3& X_WS);
+
+/// Convex outline, seen from above, of the part of the shape within z_min..z_max of frame W; nothing
+/// if no part lies there. Round shapes become polygons of 24 corners around them (circumscribed).
+/// A mesh gives the outline of its convex hull's part in the band.
+std::optional<Polygon> OutlineInBand(const Shape& shape, const Pose3& X_WS, double z_min,
+                                     double z_max);
+
+}  // namespace hires::geometry

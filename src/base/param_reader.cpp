@@ -1,0 +1,208 @@
+#include "hires/base/param_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+
+namespace hires::base {
+namespace {
+
+std::string LineOf(const YAML::Node& node) {
+  const YAML::Mark mark = node.Mark();
+  return mark.is_null() ? "" : fmt::format("; line {}", mark.line + 1);
+}
+
+std::string Written(const YAML::Node& node) {
+  switch (node.Type()) {
+    case YAML::NodeType::Scalar:
+      return "'" + node.Scalar() + "'";
+    case YAML::NodeType::Sequence:
+      return "a list";
+    case YAML::NodeType::Map:
+      return "a map";
+    default:
+      return "empty";
+  }
+}
+
+}  // namespace
+
+Bound<double> Between(double lower, double upper) {
+  return {[=](double x) { return x >= lower && x <= upper; },
+          fmt::format("between {} and {}", lower, upper)};
+}
+
+Bound<double> Positive() {
+  return {[](double x) { return x > 0.0 && std::isfinite(x); }, "a finite number above 0"};
+}
+
+Bound<int> Between(int lower, int upper) {
+  return {[=](int x) { return x >= lower && x <= upper; },
+          fmt::format("a whole number between {} and {}", lower, upper)};
+}
+
+Bound<std::string> OneOf(std::vector<std::string> choices) {
+  const std::string wanted = "one of '" + Join(choices, "', '") + "'";
+  return {[choices = std::move(choices)](const std::string& x) {
+            return std::find(choices.begin(), choices.end(), x) != choices.end();
+          },
+          wanted};
+}
+
+ParamReader::ParamReader(YAML::Node node, std::string where, std::string prefix)
+    : node_(std::move(node)),
+      where_(std::move(where)),
+      prefix_(std::move(prefix)),
+      read_(std::make_shared<Read>()) {
+  if (!node_.IsMap() && !node_.IsNull()) {
+    throw ConfigError(fmt::format("{}: {} is {}, wanted a map of keys{}", where_,
+                                  prefix_.empty() ? "the document" : prefix_, Written(node_),
+                                  LineOf(node_)));
+  }
+  std::set<std::string> seen;
+  for (const auto& entry : node_) {
+    if (!seen.insert(entry.first.Scalar()).second) {
+      throw ConfigError(fmt::format("{}: {}{} stands twice{}; keep one", where_, prefix_,
+                                    entry.first.Scalar(), LineOf(entry.first)));
+    }
+  }
+}
+
+ParamReader ParamReader::FromFile(const std::string& path) {
+  return FromString(ReadTextFile(path, 1u << 20), path);
+}
+
+ParamReader ParamReader::FromString(const std::string& yaml, const std::string& where) {
+  try {
+    return ParamReader(YAML::Load(yaml), where, "");
+  } catch (const YAML::Exception& error) {
+    throw ConfigError(fmt::format("{}: no valid YAML: {}; line {}", where, error.msg,
+                                  error.mark.line + 1));
+  }
+}
+
+YAML::Node ParamReader::Require(const std::string& key) {
+  read_->keys.insert(key);
+  const YAML::Node& map = node_;
+  if (!Has(key)) {
+    throw ConfigError(fmt::format("{}: {}{} is missing{}; add it", where_, prefix_, key,
+                                  LineOf(map)));
+  }
+  return map[key];
+}
+
+template <typename T>
+T ParamReader::Parse(const std::string& key, const char* type_name) {
+  const YAML::Node value = Require(key);
+  try {
+    if (value.IsScalar()) return value.as<T>();
+  } catch (const YAML::Exception&) {
+  }
+  throw ConfigError(fmt::format("{}: {}{} is {}, wanted {}{}", where_, prefix_, key,
+                                Written(value), type_name, LineOf(value)));
+}
+
+template <typename T>
+T ParamReader::GetBounded(const std::string& key, const Bound<T>& bound, const char* type_name) {
+  const T value = Parse<T>(key, type_name);
+  if (!bound.holds(value)) Fail(key, "wanted " + bound.wanted);
+  return value;
+}
+
+double ParamReader::Get(const std::string& key, const Bound<double>& bound) {
+  return GetBounded<double>(key, bound, "a number");
+}
+int ParamReader::Get(const std::string& key, const Bound<int>& bound) {
+  return GetBounded<int>(key, bound, "a whole number");
+}
+std::string ParamReader::Get(const std::string& key, const Bound<std::string>& bound) {
+  return GetBounded<std::string>(key, bound, "text");
+}
+bool ParamReader::GetBool(const std::string& key) { return Parse<bool>(key, "true or false"); }
+std::string ParamReader::GetString(const std::string& key) {
+  return Parse<std::string>(key, "text");
+}
+
+std::vector<double> ParamReader::GetNumbers(const std::string& key, std::size_t size) {
+  const YAML::Node list = Require(key);
+  std::vector<double> numbers;
+  if (list.IsSequence()) {
+    for (const YAML::Node& item : list) {
+      try {
+        numbers.push_back(item.as<double>());
+        if (std::isfinite(numbers.back())) continue;
+      } catch (const YAML::Exception&) {
+      }
+      Fail(key, fmt::format("item {} is {}, wanted a finite number", numbers.size(),
+                            Written(item)));
+    }
+  }
+  if (!list.IsSequence() || numbers.size() != size) {
+    Fail(key, fmt::format("wanted a list of {} numbers", size));
+  }
+  return numbers;
+}
+
+std::vector<std::string> ParamReader::GetStrings(const std::string& key) {
+  const YAML::Node list = Require(key);
+  if (!list.IsSequence()) Fail(key, "wanted a list of text");
+  std::vector<std::string> strings;
+  for (const YAML::Node& item : list) {
+    if (!item.IsScalar()) Fail(key, "wanted a list of text");
+    strings.push_back(item.Scalar());
+  }
+  return strings;
+}
+
+bool ParamReader::Has(const std::string& key) const {
+  const YAML::Node& map = node_;
+  return map.IsMap() && map[key].IsDefined();
+}
+
+ParamReader ParamReader::Sub(const std::string& key) {
+  read_->subs.push_back(ParamReader(Require(key), where_, prefix_ + key + "."));
+  return read_->subs.back();
+}
+
+std::vector<ParamReader> ParamReader::SubList(const std::string& key) {
+  const YAML::Node list = Require(key);
+  if (!list.IsSequence()) Fail(key, "wanted a list of maps");
+  std::vector<ParamReader> readers;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    readers.push_back(ParamReader(list[i], where_, fmt::format("{}{}[{}].", prefix_, key, i)));
+  }
+  read_->subs.insert(read_->subs.end(), readers.begin(), readers.end());
+  return readers;
+}
+
+std::vector<std::string> ParamReader::Keys() const {
+  std::vector<std::string> keys;
+  for (const auto& entry : node_) keys.push_back(entry.first.Scalar());
+  return keys;
+}
+
+void ParamReader::RejectUnknownKeys() const {
+  const std::vector<std::string> wanted(read_->keys.begin(), read_->keys.end());
+  for (const auto& entry : node_) {
+    const std::string key = entry.first.Scalar();
+    if (read_->keys.count(key) == 0) {
+      throw ConfigError(fmt::format("{}: {}{}", where_, UnknownName("key", prefix_ + key, wanted),
+                                    LineOf(entry.first)));
+    }
+  }
+  for (const ParamReader& sub : read_->subs) sub.RejectUnknownKeys();
+}
+
+void ParamReader::Fail(const std::string& key, const std::string& what) const {
+  const YAML::Node& map = node_;
+  const YAML::Node value = map.IsMap() ? map[key] : YAML::Node();
+  throw ConfigError(fmt::format("{}: {}{} is {}, {}{}", where_, prefix_, key,
+                                value.IsDefined() ? Written(value) : "missing", what,
+                                value.IsDefined() ? LineOf(value) : ""));
+}
+
+}  // namespace hires::base

@@ -1,0 +1,102 @@
+#include "hires/base/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+
+#include "hires/base/error.h"
+
+namespace hires::base {
+namespace {
+
+/// Levenshtein's distance, one row at a time.
+std::size_t EditDistance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::string ToLower(std::string_view text) {
+  std::string lower(text);
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+std::vector<std::string> Split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  for (std::size_t end = text.find(separator); end != std::string_view::npos;
+       end = text.find(separator, begin)) {
+    parts.emplace_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  parts.emplace_back(text.substr(begin));
+  return parts;
+}
+
+std::string Join(const std::vector<std::string>& parts, std::string_view separator) {
+  return fmt::format("{}", fmt::join(parts, separator));
+}
+
+std::vector<std::string> NearestNames(const std::string& name,
+                                      const std::vector<std::string>& known,
+                                      std::size_t at_most) {
+  std::vector<std::pair<std::size_t, std::string>> ranked;
+  const std::string lower = ToLower(name);
+  for (const std::string& candidate : known) {
+    ranked.emplace_back(EditDistance(lower, ToLower(candidate)), candidate);
+  }
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<std::string> nearest;
+  for (std::size_t i = 0; i < std::min(at_most, ranked.size()); ++i) {
+    nearest.push_back(ranked[i].second);
+  }
+  return nearest;
+}
+
+std::string UnknownName(std::string_view kind, const std::string& name,
+                        const std::vector<std::string>& known) {
+  if (known.empty()) return fmt::format("{} '{}' is unknown; none is defined", kind, name);
+  return fmt::format("{} '{}' is unknown; did you mean '{}'?", kind, name,
+                     Join(NearestNames(name, known), "' or '"));
+}
+
+std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    throw ConfigError(fmt::format("{}: no such file; check the path", path));
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw ConfigError(fmt::format("{}: is no regular file; name a file", path));
+  }
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error && size > max_bytes) {
+    throw ConfigError(
+        fmt::format("{}: has {} bytes, at most {} are read; split the file", path, size, max_bytes));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw ConfigError(fmt::format("{}: cannot be read; check its permissions", path));
+  return text.str();
+}
+
+}  // namespace hires::base

@@ -1,0 +1,111 @@
+#include "hires/geometry/polygon.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hires/base/check.h"
+
+namespace hires::geometry {
+namespace {
+
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+double DistanceToSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
+                         const Eigen::Vector2d& b) {
+  const Eigen::Vector2d along = b - a;
+  const double length_squared = along.squaredNorm();
+  const double t =
+      length_squared > 0.0 ? std::clamp((p - a).dot(along) / length_squared, 0.0, 1.0) : 0.0;
+  return (p - a - t * along).norm();
+}
+
+/// Is there a line along an edge of `a` with all of `b` on its far side?
+bool SomeEdgeSeparates(const Polygon& a, const Polygon& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Eigen::Vector2d& from = a[i];
+    const Eigen::Vector2d along = a[(i + 1) % a.size()] - from;
+    if (std::all_of(b.begin(), b.end(),
+                    [&](const Eigen::Vector2d& p) { return Cross(along, p - from) < 0.0; })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+double CornersToEdges(const Polygon& corners, const Polygon& edges) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& p : corners) {
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      nearest = std::min(nearest, DistanceToSegment(p, edges[i], edges[(i + 1) % edges.size()]));
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
+
+Polygon ConvexHull(std::vector<Eigen::Vector2d> points) {
+  HIRES_CHECK(points.size() >= 3, "a hull needs at least three points");
+  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
+    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
+  });
+  Polygon hull;
+  const auto extend = [&hull](const Eigen::Vector2d& p, std::size_t keep) {
+    while (hull.size() >= keep + 2 &&
+           Cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0.0) {
+      hull.pop_back();
+    }
+    hull.push_back(p);
+  };
+  for (const Eigen::Vector2d& p : points) extend(p, 0);
+  const std::size_t lower = hull.size() - 1;
+  for (auto p = points.rbegin() + 1; p != points.rend(); ++p) extend(*p, lower);
+  hull.pop_back();
+  HIRES_CHECK(hull.size() >= 3, "the points of a hull lie on one line");
+  return hull;
+}
+
+Polygon Transformed(const Pose2& X_AB, const Polygon& polygon_B) {
+  Polygon polygon_A;
+  polygon_A.reserve(polygon_B.size());
+  for (const Eigen::Vector2d& p : polygon_B) polygon_A.push_back(X_AB * p);
+  return polygon_A;
+}
+
+Polygon Padded(const Polygon& polygon, double padding) {
+  Polygon padded = polygon;
+  for (Eigen::Vector2d& p : padded) {
+    for (int axis = 0; axis < 2; ++axis) {
+      if (p[axis] != 0.0) p[axis] += std::copysign(padding, p[axis]);
+    }
+  }
+  return padded;
+}
+
+bool Contains(const Polygon& polygon, const Eigen::Vector2d& point) {
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d& from = polygon[i];
+    if (Cross(polygon[(i + 1) % polygon.size()] - from, point - from) < 0.0) return false;
+  }
+  return true;
+}
+
+double Distance(const Polygon& a, const Polygon& b) {
+  if (!SomeEdgeSeparates(a, b) && !SomeEdgeSeparates(b, a)) return 0.0;
+  return std::min(CornersToEdges(a, b), CornersToEdges(b, a));
+}
+
+double InscribedRadius(const Polygon& polygon) {
+  return CornersToEdges({Eigen::Vector2d::Zero()}, polygon);
+}
+
+double CircumscribedRadius(const Polygon& polygon) {
+  double farthest = 0.0;
+  for (const Eigen::Vector2d& p : polygon) farthest = std::max(farthest, p.norm());
+  return farthest;
+}
+
+}  // namespace hires::geometry
