@@ -1,0 +1,55 @@
+# What only the ROS build needs: messages, nodes, rostests, installation.
+
+find_package(catkin REQUIRED COMPONENTS
+  actionlib actionlib_msgs diagnostic_msgs diagnostic_updater genmsg geometry_msgs
+  message_generation nav_msgs rosbag roscpp roslib rosgraph_msgs sensor_msgs std_msgs std_srvs tf2
+  tf2_msgs tf2_ros topic_tools visualization_msgs xmlrpcpp)
+
+file(GLOB HIRES_MSG RELATIVE ${PROJECT_SOURCE_DIR}/msg CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/msg/*.msg)
+file(GLOB HIRES_SRV RELATIVE ${PROJECT_SOURCE_DIR}/srv CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/srv/*.srv)
+file(GLOB HIRES_ACTION RELATIVE ${PROJECT_SOURCE_DIR}/action CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/action/*.action)
+add_message_files(DIRECTORY msg FILES ${HIRES_MSG})
+if(HIRES_SRV)
+  add_service_files(DIRECTORY srv FILES ${HIRES_SRV})
+endif()
+add_action_files(DIRECTORY action FILES ${HIRES_ACTION})
+generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs sensor_msgs std_msgs)
+
+catkin_package(
+  CATKIN_DEPENDS actionlib actionlib_msgs geometry_msgs message_runtime roscpp sensor_msgs std_msgs)
+
+# hires_node(<name> [LINK libraries ...]): an executable that rosrun and roslaunch find as <name>,
+# from <name>_main.cpp. The target is hires_<name>_node, so that it cannot clash with a layer's.
+function(hires_node name)
+  cmake_parse_arguments(NODE "" "" "LINK" ${ARGN})
+  set(target hires_${name}_node)
+  add_executable(${target} ${name}_main.cpp)
+  set_target_properties(${target} PROPERTIES
+    OUTPUT_NAME ${name}
+    RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION})
+  target_compile_options(${target} PRIVATE ${HIRES_WARNINGS})
+  target_link_libraries(${target} PRIVATE hires_ros ${NODE_LINK})
+  install(TARGETS ${target} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+endfunction()
+
+# hires_rostest(<file.test> [TIMEOUT seconds]): a rostest that ctest runs and a user can run alone.
+# One at a time: each brings masters and worker processes of its own.
+function(hires_rostest file)
+  if(NOT HIRES_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(ROSTEST "" "TIMEOUT" "ARGS" ${ARGN})
+  if(NOT ROSTEST_TIMEOUT)
+    set(ROSTEST_TIMEOUT 120)
+  endif()
+  get_filename_component(name ${file} NAME_WE)
+  add_test(NAME ros.${name}
+    COMMAND ${CATKIN_ENV} rostest ${CMAKE_CURRENT_SOURCE_DIR}/${file} ${ROSTEST_ARGS}
+    WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
+  set_tests_properties(ros.${name} PROPERTIES
+    TIMEOUT ${ROSTEST_TIMEOUT} RUN_SERIAL ON
+    ENVIRONMENT "ROS_HOSTNAME=localhost;ROS_IP=")
+endfunction()
+
+install(DIRECTORY launch config worlds urdf
+  DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION} USE_SOURCE_PERMISSIONS)

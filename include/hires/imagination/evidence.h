@@ -1,0 +1,57 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "hires/imagination/rollout_result.h"
+
+namespace hires::imagination {
+
+/// Weights of Eq. 6.1.
+struct ConfidenceCoefficients {
+  double topple{100.0};
+  double shaking{10.0};
+  double notopple{1.0};
+};
+
+/// Dissertation, Eq. 6.1: (a_t + a_s + a_n) / (100 a_t + 10 a_s + a_n), in (0, 1]; 0 when there is
+/// no sample.
+double Confidence(const OutcomeCounts& counts, const ConfidenceCoefficients& coefficients = {});
+
+/// How often an action succeeds, as far as counted rollouts tell. All shares lie in [0, 1].
+struct SuccessInterval {
+  double share{0.0};    ///< successful rollouts / all rollouts
+  double lower{0.0};    ///< lower end of the 95 % interval
+  double upper{1.0};    ///< upper end of the 95 % interval
+  int num_rollouts{0};  ///< what the numbers rest on; 0 means "we know nothing yet"
+};
+
+/// Wilson's score interval [Wilson 1927, J. Am. Stat. Assoc. 22:209-212].
+/// @pre 0 <= num_success <= num_rollouts.  @throws std::logic_error if broken.
+SuccessInterval EstimateSuccess(int num_success, int num_rollouts);
+
+/// All that is known about one parametrisation of an action from its first n rollouts.
+struct Evidence {
+  double confidence_pooled{0.0};  ///< Eq. 6.1 on the summed counts; 0 when most rollouts failed to act
+  double confidence_mean{0.0};    ///< mean of Eq. 6.1 per rollout, 0 for one whose action failed
+  SuccessInterval success;        ///< goal reached and nothing fell; timed out counts as failed
+  double fall_share{0.0};         ///< rollouts in which something fell
+  double action_failed_share{0.0};  ///< rollouts whose action did not reach its goal
+  OutcomeCounts counts;
+  int falls{0};
+  struct {
+    double mean{0.0}, sd{0.0}, p50{0.0}, p95{0.0};
+  } duration;  ///< [s], of rollouts whose action finished
+  struct {
+    double p50{0.0}, p95{0.0};
+  } max_tilt;  ///< [rad]
+  int num_rollouts{0};
+  std::map<std::string, int> failures;  ///< reason -> rollouts
+  int median_rollout{-1};               ///< index of the finished rollout with the median duration
+};
+
+/// @param results  the first n rollouts of one alternative, in index order.
+Evidence SumUp(const std::vector<RolloutResult>& results);
+
+}  // namespace hires::imagination

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "hires/robot/observation.h"
+#include "hires/world/world.h"
+
+namespace hires::imagination {
+
+/// 20 Hz samples of the carried object by its tilt alpha (dissertation, Eq. 5.1): notopple
+/// alpha <= 0.01 rad, topple alpha >= 0.5 rad, shaking between.
+struct OutcomeCounts {
+  int notopple{0};
+  int shaking{0};
+  int topple{0};
+
+  int total() const { return notopple + shaking + topple; }
+  OutcomeCounts& operator+=(const OutcomeCounts& other);
+  bool operator==(const OutcomeCounts& other) const;
+};
+
+enum class Outcome { kSucceeded, kFailed, kTimedOut };
+
+/// What one simulated play of an action from one start with one seed gave.
+struct RolloutResult {
+  Outcome outcome{Outcome::kFailed};
+  std::string reason;       ///< why it did not succeed, one word ("object_fell", "no_path"); else empty
+  double duration{0.0};     ///< [s] simulated, of the action alone
+  OutcomeCounts counts;
+  int falls{0};             ///< events, not samples
+  double max_tilt{0.0};     ///< [rad]
+  std::string first_cause;  ///< what happened just before the object first left its rest; or empty
+  bool action_finished{false};  ///< the action itself reached its goal, whatever fell
+  world::WorldState final_world;
+  robot::RobotState final_robot;
+  double simulated{0.0};    ///< [s] of physics, settling included
+};
+
+}  // namespace hires::imagination

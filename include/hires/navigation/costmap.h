@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "hires/geometry/polygon.h"
+#include "hires/geometry/pose.h"
+#include "hires/world/occupancy_grid.h"
+
+namespace hires::navigation {
+
+constexpr std::uint8_t kFreeCost = 0;
+constexpr std::uint8_t kInscribedCost = 253;  ///< a robot centred here certainly collides
+constexpr std::uint8_t kLethalCost = 254;     ///< an obstacle lies here
+constexpr std::uint8_t kUnknownCost = 255;
+
+struct CostmapParams {
+  double inflation_radius{0.55};    ///< [m]
+  double cost_scaling_factor{10.0};  ///< [1/m], decay beyond the inscribed radius
+  bool unknown_is_lethal{true};
+};
+
+/// A grid of traversal costs 0..255 as costmap_2d defines them: 254 at obstacles, 253 within the
+/// footprint's inscribed radius, then 252 exp(-k (d - inscribed)) up to the inflation radius.
+class Costmap {
+ public:
+  Costmap(const world::OccupancyGrid& grid, double inscribed_radius, const CostmapParams& params);
+
+  double resolution() const { return resolution_; }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  Eigen::Vector2d origin() const { return origin_; }
+  std::uint8_t cost(int column, int row) const {
+    return costs_[static_cast<std::size_t>(row) * width_ + column];
+  }
+  bool Inside(int column, int row) const {
+    return column >= 0 && row >= 0 && column < width_ && row < height_;
+  }
+  void CellOf(const Eigen::Vector2d& point, int* column, int* row) const;
+  Eigen::Vector2d CentreOf(int column, int row) const;
+
+  /// Highest cost below the footprint's outline and interior at a pose; kLethalCost outside the map.
+  std::uint8_t FootprintCost(const geometry::Polygon& footprint, const geometry::Pose2& X_MB) const;
+
+  /// The same map with more obstacles in it (outlines in the map frame), inflated.
+  Costmap WithObstacles(const std::vector<geometry::Polygon>& outlines_M) const;
+
+ private:
+  double resolution_;
+  int width_, height_;
+  Eigen::Vector2d origin_;
+  double inscribed_radius_;
+  CostmapParams params_;
+  std::vector<std::uint8_t> costs_;
+};
+
+}  // namespace hires::navigation

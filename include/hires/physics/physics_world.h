@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hires/geometry/inertia.h"
+#include "hires/geometry/pose.h"
+#include "hires/geometry/shape.h"
+
+namespace hires::physics {
+
+/// How the solver is set; the defaults are measured on the pepper mill on its tray at 1 kHz.
+struct PhysicsParams {
+  double time_step{0.001};              ///< [s]
+  double gravity{9.81};                 ///< [m/s^2], along -z
+  double erp{0.2};                      ///< share of a penetration that a step repairs
+  double cfm{1e-8};                     ///< softness of constraints
+  double surface_layer{0.001};          ///< [m] penetration that is left alone
+  double max_correcting_velocity{100};  ///< [m/s]
+  double restitution_threshold{0.01};   ///< [m/s] slower impacts do not bounce
+};
+
+using BodyId = int;
+
+struct BodyState {
+  geometry::Pose3 X_WB;
+  geometry::Twist3 V_WB;  ///< of the body origin B, in world axes
+};
+
+/// All that changes about a PhysicsWorld, in the order in which bodies were added.
+struct PhysicsState {
+  std::vector<BodyState> bodies;
+};
+
+/// Rigid bodies in contact, simulated by ODE at a fixed step. One instance belongs to one thread at
+/// a time; several instances may run in several threads. The same calls give the same bits.
+class PhysicsWorld {
+ public:
+  explicit PhysicsWorld(const PhysicsParams& params);
+  ~PhysicsWorld();
+  PhysicsWorld(const PhysicsWorld&) = delete;
+  PhysicsWorld& operator=(const PhysicsWorld&) = delete;
+
+  /// Never moves.
+  BodyId AddStatic(const std::vector<geometry::Collision>& collisions,
+                   const geometry::Pose3& X_WB);
+  /// The half space z <= 0.
+  BodyId AddFloor(double friction);
+  /// Moves as SetMotion says, whatever it hits. Static and driven bodies do not collide with each
+  /// other here.
+  BodyId AddDriven(const std::vector<geometry::Collision>& collisions,
+                   const geometry::Pose3& X_WB);
+  BodyId AddLoose(const geometry::MassProperties& mass_properties,
+                  const std::vector<geometry::Collision>& collisions, const BodyState& state);
+
+  /// Pose of a driven body now and its velocity during the next step(s). @pre body is driven.
+  void SetMotion(BodyId driven, const BodyState& state);
+  /// Puts a loose body somewhere else. @pre body is loose.
+  void SetState(BodyId loose, const BodyState& state);
+  BodyState GetState(BodyId body) const;
+
+  /// Acceleration added to every loose body's own weight during the next step(s), in world axes
+  /// [m/s^2]; the non-inertial force of tests and of shaken ground. Zero at first.
+  void SetExtraAcceleration(const Eigen::Vector3d& acceleration);
+
+  void Step();                 ///< advances by params().time_step
+  std::uint64_t num_steps() const;
+  int num_contacts() const;    ///< contact points of the last step
+
+  /// Saving canonicalises the state (unit quaternions): after Save() the world goes on with exactly
+  /// what was saved, so that a restored world and the saved one stay equal bit by bit.
+  PhysicsState Save();
+  void Restore(const PhysicsState& state);  ///< @pre same bodies in the same order
+
+  /// Messages that ODE itself raised in this thread since the last call (caught, never printed).
+  static std::vector<std::string> TakeSolverMessages();
+
+  const PhysicsParams& params() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hires::physics

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/geometry/inertia.h"
+#include "hires/geometry/polygon.h"
+#include "hires/geometry/pose.h"
+#include "hires/geometry/shape.h"
+
+namespace hires::robot {
+
+enum class JointType { kFixed, kRevolute, kContinuous, kPrismatic };
+
+struct JointLimits {
+  double lower{0.0};     ///< [rad] or [m]; not used by continuous joints
+  double upper{0.0};
+  double velocity{0.0};  ///< [rad/s] or [m/s]
+  double effort{0.0};    ///< [N m] or [N]
+};
+
+/// The joint that carries a link; the root link has none.
+struct Joint {
+  std::string name;
+  JointType type{JointType::kFixed};
+  int parent{-1};           ///< index of the parent link
+  geometry::Pose3 X_PJ;     ///< joint frame in the parent link at position 0
+  Eigen::Vector3d axis{Eigen::Vector3d::UnitX()};  ///< unit vector in the joint frame
+  std::optional<JointLimits> limits;
+  std::string mimics;       ///< name of the joint that this one follows, or empty
+  double mimic_multiplier{1.0};
+  double mimic_offset{0.0};
+};
+
+struct Link {
+  std::string name;
+  std::optional<Joint> joint;  ///< empty for the root link
+  std::optional<geometry::MassProperties> inertial;
+  std::vector<geometry::Collision> collisions;
+};
+
+/// Joint name -> position [rad] or [m]; joints that are not named stand at 0, or at the nearest
+/// limit to 0.
+using JointPositions = std::map<std::string, double>;
+
+/// What a URDF file says about a robot; constant after loading. Links are sorted so that parents
+/// come before children, link 0 is the root.
+struct RobotModel {
+  std::string name;
+  std::vector<Link> links;
+  std::uint64_t hash{0};  ///< of everything above, independent of the file's layout
+
+  std::optional<int> FindLink(const std::string& name) const;
+  std::vector<std::string> LinkNames() const;
+  std::vector<std::string> JointNames() const;  ///< movable ones that mimic no other
+};
+
+/// @throws base::ConfigError naming file, element and remedy. Meshes (package://, file://, relative
+/// to the file) are loaded; a missing one is an error.
+RobotModel LoadRobotModel(const std::string& urdf_path);
+RobotModel ParseRobotModel(const std::string& urdf_xml, const std::string& where);
+
+/// Pose of every link in the root link's frame, in the order of `model.links`.
+/// @throws base::ConfigError for an unknown joint or a position outside its limits (slack 1e-6).
+std::vector<geometry::Pose3> ForwardKinematics(const RobotModel& model,
+                                               const JointPositions& positions);
+
+/// All collision shapes of the robot as one rigid body in the root frame, its joints frozen.
+/// A collision is named "link" or "link/collision".
+std::vector<geometry::Collision> FrozenCollisions(const RobotModel& model,
+                                                  const JointPositions& positions);
+
+}  // namespace hires::robot

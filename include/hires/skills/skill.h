@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hires/base/action.h"
+#include "hires/robot/observation.h"
+#include "hires/robot/robot_profile.h"
+
+namespace hires::skills {
+
+enum class Progress { kRunning, kSucceeded, kFailed };
+
+struct Status {
+  Progress progress{Progress::kRunning};
+  std::string reason;  ///< why it failed, one word: "no_path", "goal_blocked", "stuck"; else empty
+};
+
+/// Something the robot can do, as a state machine that is the same in reality and in a rollout.
+class Skill {
+ public:
+  virtual ~Skill() = default;
+
+  /// One control cycle: looks, decides, and fills `command` (empty on entry).
+  virtual Status Update(const robot::Observation& observation, robot::Command* command) = 0;
+
+  virtual double period() const = 0;  ///< [s] between two calls of Update
+};
+
+}  // namespace hires::skills

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hires/world/world.h"
+
+namespace hires::world {
+
+enum class Cell : std::uint8_t { kFree, kOccupied, kUnknown };
+
+/// A grid in the plane of the map. Cell (0, 0) is the lower left one; its lower left corner is
+/// `origin`. Row by row, x fastest.
+struct OccupancyGrid {
+  double resolution{0.05};  ///< [m] edge of a cell
+  int width{0};
+  int height{0};
+  Eigen::Vector2d origin{Eigen::Vector2d::Zero()};  ///< [m] in map
+  std::vector<Cell> cells;
+
+  Cell at(int column, int row) const { return cells[static_cast<std::size_t>(row) * width + column]; }
+  Eigen::Vector2d CentreOf(int column, int row) const;
+};
+
+/// Outlines of all static bodies (and of `objects`, where given) that reach into z_min..z_max.
+std::vector<geometry::Polygon> OutlinesInBand(const World& world, const WorldState* objects,
+                                              double z_min, double z_max);
+
+/// Occupied are the cells that a static body touches within z_min..z_max (equal: a slice, as the
+/// laser sees it); all others are free. Covers all static bodies plus `margin` [m].
+OccupancyGrid SliceWorld(const World& world, double z_min, double z_max, double resolution = 0.05,
+                         double margin = 0.5);
+
+/// Reads a map_server YAML and its PGM (P2 or P5). Thresholds as map_server's trinary mode.
+/// @throws base::ConfigError naming file, key and remedy (a missing origin included, as map_server
+/// does; rotated origins are refused).
+OccupancyGrid LoadMap(const std::string& yaml_path);
+void SaveMap(const OccupancyGrid& grid, const std::string& yaml_path);
+
+/// A world whose walls are the grid's occupied cells extruded to `height` [m] (runs of cells of a
+/// row merged into boxes, equal runs of rows merged as well).
+World ExtrudeMap(const OccupancyGrid& grid, double height);
+
+}  // namespace hires::world

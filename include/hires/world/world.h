@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/geometry/inertia.h"
+#include "hires/geometry/pose.h"
+#include "hires/geometry/shape.h"
+
+namespace hires::world {
+
+/// One kind of loose object: a single rigid body. Origin B lies where its model file puts it (ours:
+/// centre of the supporting face).
+struct ObjectModel {
+  std::string name;
+  geometry::MassProperties mass_properties;
+  std::vector<geometry::Collision> collisions;
+};
+
+/// A body that never moves: wall, table, chair.
+struct StaticBody {
+  std::string name;
+  geometry::Pose3 X_MB;
+  std::vector<geometry::Collision> collisions;
+};
+
+struct ObjectState {
+  std::string name;       ///< instance, "peppermill1"
+  std::string model;      ///< key of World::models
+  geometry::Pose3 X_MO;   ///< object in map
+  geometry::Twist3 V_MO;  ///< in map axes
+  std::string attached_to;  ///< robot link that holds it rigidly, or empty
+};
+
+/// What changes about a world: small, copyable.
+struct WorldState {
+  std::vector<ObjectState> objects;
+
+  const ObjectState* Find(const std::string& name) const;  ///< case ignored; nullptr if absent
+  ObjectState* Find(const std::string& name);
+};
+
+/// What does not change about a world, shared by all that use it. Names keep the case of the file
+/// and compare without regard to it.
+struct World {
+  std::string name;
+  double gravity{9.81};  ///< [m/s^2], along -z
+  double floor_friction{1.0};
+  std::vector<StaticBody> statics;                       ///< the floor z = 0 is implied
+  std::map<std::string, geometry::Pose3> frames;         ///< areas, X_MF; lower-case keys
+  std::map<std::string, std::string> frame_names;        ///< lower case -> as in the file
+  std::map<std::string, std::shared_ptr<const ObjectModel>> models;  ///< by name
+  WorldState initial;
+  std::uint64_t hash{0};  ///< of everything but `initial`; independent of the file's layout
+
+  std::optional<geometry::Pose3> FindFrame(const std::string& name) const;
+  std::vector<std::string> FrameNames() const;
+  std::uint64_t ComputeHash() const;
+};
+
+/// Reads an SDF world. Models with <static>true</static> (or one link that is fixed to the world)
+/// become StaticBody, single-link models become loose objects (one ObjectModel per distinct
+/// description), <frame> elements become areas. `model://name` is looked for in `models/name/` next
+/// to the world file, in `model_path` and in GAZEBO_MODEL_PATH / SDF_PATH.
+/// @throws base::ConfigError naming file, element and remedy: malformed SDF, two models of one
+/// name, missing mesh or model, loose objects with joints, unphysical inertia, shapes that are not
+/// supported, poses that are not finite or lie more than 1 km away.
+World LoadWorld(const std::string& sdf_path, const std::vector<std::string>& model_path = {});
+
+/// Reads a single-link object from an SDF model (.sdf, model.sdf) or a URDF (.urdf).
+/// @throws base::ConfigError as LoadWorld.
+ObjectModel LoadObjectModel(const std::string& path);
+
+/// The same world with one more kind of object; replaces a model of the same name.
+World WithModel(World world, ObjectModel model);
+
+}  // namespace hires::world
