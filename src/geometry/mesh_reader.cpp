@@ -1,0 +1,119 @@
+#include "hires/geometry/mesh_reader.h"
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <filesystem>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+
+namespace hires::geometry {
+namespace {
+
+constexpr std::size_t kMaxBytes = 64u << 20;
+constexpr std::size_t kMaxTriangles = 2000000;
+constexpr double kMaxCoordinate = 1e4;  // [m]
+
+/// Stands for an empty disk, so that a mesh cannot pull in other files.
+class NoFiles : public Assimp::IOSystem {
+ public:
+  bool Exists(const char*) const override { return false; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char*, const char*) override { return nullptr; }
+  void Close(Assimp::IOStream*) override {}
+};
+
+[[noreturn]] void Fail(const std::string& path, const std::string& what) {
+  throw base::ConfigError(fmt::format("{}: {}", path, what));
+}
+
+/// "stl", "dae" or "obj".
+std::string FormatOf(const std::string& path) {
+  std::string ending = base::ToLower(std::filesystem::path(path).extension().string());
+  if (ending != ".stl" && ending != ".dae" && ending != ".obj") {
+    Fail(path,
+         fmt::format("a mesh of type '{}' is not read; convert it to .stl, .dae or .obj", ending));
+  }
+  return ending.substr(1);
+}
+
+void CheckScale(const std::string& path, const Eigen::Vector3d& scale) {
+  if (scale.allFinite() && (scale.array() != 0.0).all()) return;
+  Fail(path, fmt::format("its scale is ({}, {}, {}), wanted finite factors other than 0; 1 leaves "
+                         "the mesh as it is",
+                         scale.x(), scale.y(), scale.z()));
+}
+
+const aiScene& Import(Assimp::Importer* importer, const std::string& path,
+                      const std::string& format, const std::string& bytes) {
+  importer->SetIOHandler(new NoFiles);  // the importer owns it
+  importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  importer->SetPropertyBool(AI_CONFIG_PP_FD_REMOVE, true);
+  importer->SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
+                               aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  // Normals and colours would keep corners at one place from being joined.
+  importer->SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
+                               aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
+                                   aiComponent_COLORS | aiComponent_TEXCOORDS |
+                                   aiComponent_MATERIALS | aiComponent_TEXTURES);
+  const aiScene* scene = importer->ReadFileFromMemory(
+      bytes.data(), bytes.size(),
+      aiProcess_Triangulate | aiProcess_RemoveComponent | aiProcess_PreTransformVertices |
+          aiProcess_JoinIdenticalVertices | aiProcess_FindDegenerates | aiProcess_SortByPType,
+      format.c_str());
+  if (scene == nullptr) {
+    Fail(path, fmt::format("no valid mesh: {}; export it again", importer->GetErrorString()));
+  }
+  return *scene;
+}
+
+void Append(const aiMesh& part, const Eigen::Vector3d& scale, TriangleMesh* mesh) {
+  const int first = static_cast<int>(mesh->vertices.size());
+  for (unsigned i = 0; i < part.mNumVertices; ++i) {
+    const aiVector3D& p = part.mVertices[i];
+    mesh->vertices.push_back(scale.cwiseProduct(Eigen::Vector3d(p.x, p.y, p.z)));
+  }
+  const bool mirrored = scale.prod() < 0.0;
+  for (unsigned i = 0; i < part.mNumFaces; ++i) {
+    const aiFace& face = part.mFaces[i];
+    if (face.mNumIndices != 3) continue;
+    std::array<int, 3> corners;
+    for (int k = 0; k < 3; ++k) corners[k] = first + static_cast<int>(face.mIndices[k]);
+    if (mirrored) std::swap(corners[1], corners[2]);
+    mesh->triangles.push_back(corners);
+  }
+}
+
+void CheckMesh(const std::string& path, const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) Fail(path, "holds no triangles; export the solid, not its outline");
+  if (mesh.triangles.size() > kMaxTriangles) {
+    Fail(path, fmt::format("has {} triangles, at most {} are read; decimate it",
+                           mesh.triangles.size(), kMaxTriangles));
+  }
+  for (const Eigen::Vector3d& p : mesh.vertices) {
+    if (p.allFinite() && p.cwiseAbs().maxCoeff() <= kMaxCoordinate) continue;
+    Fail(path, fmt::format("corner ({}, {}, {}) is not finite or beyond {} m; is the scale right "
+                           "(meshes in mm want 0.001)?",
+                           p.x(), p.y(), p.z(), kMaxCoordinate));
+  }
+}
+
+}  // namespace
+
+TriangleMesh ReadMesh(const std::string& path, const Eigen::Vector3d& scale) {
+  const std::string format = FormatOf(path);
+  CheckScale(path, scale);
+  const std::string bytes = base::ReadTextFile(path, kMaxBytes);
+  Assimp::Importer importer;
+  const aiScene& scene = Import(&importer, path, format, bytes);
+  TriangleMesh mesh;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) Append(*scene.mMeshes[i], scale, &mesh);
+  CheckMesh(path, mesh);
+  return mesh;
+}
+
+}  // namespace hires::geometry
