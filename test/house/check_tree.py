@@ -1,0 +1,281 @@
+#!/usr/bin/env python3
+"""Holds the source tree against the house rules that no compiler knows.
+
+    test/house/check_tree.py [ROOT]
+
+Prints one line for each broken rule, "file:line: what is wrong; what to do", and exits with 1 if
+there is any. The rules themselves are explained in CONTRIBUTING.md and docs/architecture.md.
+"""
+
+import os
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+
+# From the bottom up. An include points to a lower line, never sideways, never up.
+LAYERS = [
+    ["base"],
+    ["geometry", "temporal", "relay"],
+    ["robot", "knowledge"],
+    ["world", "planning"],
+    ["physics", "navigation", "manipulation", "perception", "execution", "translation"],
+    ["simulation", "skills"],
+    ["imagination"],
+    ["evaluation"],
+    ["ros"],
+    ["nodes"],
+]
+RANK = {layer: rank for rank, line in enumerate(LAYERS) for layer in line}
+FIRST_LAYER_WITH_ROS = RANK["ros"]
+
+CODE_FOLDERS = ["include/hires", "src", "test", "benchmark"]
+TEXT_FOLDERS = [".ci", "action", "benchmark", "cmake", "config", "docs", "include", "launch", "msg",
+                "scripts", "src", "srv", "test", "urdf", "worlds"]
+# Given as they are: meshes, maps, and data that tests read.
+NOT_OUR_TEXT = re.compile(r"(^|/)test/data/|\.(pgm|png|jpg|stl|dae|obj|bag|db|svg)$", re.IGNORECASE)
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
+ROS_HEADER = re.compile(
+    r"^(ros|tf2?|tf2_[a-z_]+|actionlib|rosbag|rosgraph_msgs|roslib|topic_tools|message_filters|"
+    r"diagnostic_updater|dynamic_reconfigure|[a-z_0-9]+_msgs|[a-z_]+_srvs)/")
+GENERATED_MESSAGE = re.compile(r"^hires/[^/]+\.h$")
+
+
+def read(root, path):
+    with open(os.path.join(root, path), encoding="utf-8", errors="surrogateescape",
+              newline="") as file:
+        return file.read()
+
+
+def files_below(root, folder):
+    """Paths relative to root, sorted, so that complaints come in one order everywhere."""
+    found = []
+    for where, folders, names in os.walk(os.path.join(root, folder)):
+        folders[:] = sorted(name for name in folders if name != "__pycache__")
+        found += [os.path.relpath(os.path.join(where, name), root) for name in names]
+    return sorted(found)
+
+
+def layer_of(path):
+    """The layer a file of code belongs to, and None for what stands outside of the layers."""
+    parts = path.split("/")
+    if parts[:2] == ["include", "hires"]:
+        parts = parts[1:]
+    return parts[1] if len(parts) > 2 and parts[1] in RANK else None
+
+
+def includes_of(root, path):
+    """(line number, header) for each include."""
+    for number, line in enumerate(read(root, path).splitlines(), start=1):
+        match = INCLUDE.match(line)
+        if match:
+            yield number, match.group(1)
+
+
+def included_layer(header):
+    parts = header.split("/")
+    return parts[1] if parts[0] == "hires" and len(parts) > 2 else None
+
+
+def may_include(path, layer, other):
+    if RANK[other] < RANK[layer] or other == layer:
+        return True
+    # Tests and benchmarks may join layers of one line, which programs join further up.
+    return path.split("/")[0] in ("test", "benchmark") and RANK[other] == RANK[layer]
+
+
+def code_files(root):
+    for folder in CODE_FOLDERS:
+        for path in files_below(root, folder):
+            if path.endswith((".h", ".cpp")):
+                yield path
+
+
+def check_includes(root):
+    for path in code_files(root):
+        layer = layer_of(path)
+        if layer is None:
+            continue
+        for number, header in includes_of(root, path):
+            yield from check_include(path, number, layer, header)
+
+
+def check_include(path, number, layer, header):
+    place = f"{path}:{number}"
+    other = included_layer(header)
+    if other is not None and other not in RANK:
+        yield f"{place}: layer '{other}' of {header} is unknown; add it to LAYERS in test/house"
+    elif other is not None and not may_include(path, layer, other):
+        way = "sideways" if RANK[other] == RANK[layer] else "up"
+        yield (f"{place}: layer '{layer}' includes {header}, an arrow {way}; move what both need "
+               "to a lower layer, or hand it in from above")
+    if RANK[layer] < FIRST_LAYER_WITH_ROS and (
+            ROS_HEADER.match(header) or GENERATED_MESSAGE.match(header)):
+        yield (f"{place}: layer '{layer}' includes {header}, but layers below 'ros' know no ROS; "
+               "convert in the layer 'ros'")
+
+
+def declared_dependencies(root):
+    """{layer: layers that its hires_layer(... DEPENDS ...) names}"""
+    declared = {}
+    for layer in RANK:
+        path = f"src/{layer}/CMakeLists.txt"
+        if not os.path.exists(os.path.join(root, path)):
+            continue
+        text = re.sub(r"#.*", "", read(root, path))
+        call = re.search(r"hires_layer\(\s*" + layer + r"\b([^)]*)\)", text)
+        if call:
+            match = re.search(r"\bDEPENDS\s+(.*?)(?=\b[A-Z]{3,}\b|$)", call.group(1), re.DOTALL)
+            declared[layer] = match.group(1).split() if match else []
+    return declared
+
+
+def reachable(declared, layer):
+    seen, todo = set(), [layer]
+    while todo:
+        for lower in declared.get(todo.pop(), []):
+            if lower not in seen:
+                seen.add(lower)
+                todo.append(lower)
+    return seen
+
+
+def check_dependencies(root):
+    """CMake must say what the includes say, and nothing that points up."""
+    declared = declared_dependencies(root)
+    for layer, lower_layers in declared.items():
+        for lower in lower_layers:
+            if lower not in RANK or RANK[lower] >= RANK[layer]:
+                yield (f"src/{layer}/CMakeLists.txt: layer '{layer}' DEPENDS on '{lower}', which is "
+                       "no lower layer; move what both need down")
+    for path in code_files(root):
+        layer = layer_of(path)
+        if layer not in declared or path.startswith(("test/", "benchmark/")):
+            continue
+        known = reachable(declared, layer) | {layer}
+        for number, header in includes_of(root, path):
+            other = included_layer(header)
+            if other in RANK and RANK[other] < RANK[layer] and other not in known:
+                yield (f"{path}:{number}: layer '{layer}' includes {header} without depending on "
+                       f"'{other}'; add it to DEPENDS in src/{layer}/CMakeLists.txt")
+
+
+def check_headers(root):
+    """Every source has its header (programs excepted), every header guards itself."""
+    for path in code_files(root):
+        parts = path.split("/")
+        if parts[0] == "src" and path.endswith(".cpp") and parts[1] != "nodes":
+            beside = path[:-len(".cpp")] + ".h"
+            public = "include/hires/" + "/".join(parts[1:])[:-len(".cpp")] + ".h"
+            if not any(os.path.exists(os.path.join(root, header)) for header in (beside, public)):
+                yield f"{path}:1: has no header; write {public}"
+        if path.endswith(".h") and "#pragma once" not in read(root, path):
+            yield f"{path}:1: has no '#pragma once'; add it"
+
+
+def check_whitespace(root):
+    paths = [path for folder in TEXT_FOLDERS for path in files_below(root, folder)]
+    paths += [name for name in sorted(os.listdir(root)) if os.path.isfile(os.path.join(root, name))]
+    for path in paths:
+        if NOT_OUR_TEXT.search(path):
+            continue
+        text = read(root, path)
+        if "\0" not in text:
+            yield from check_whitespace_of(path, text)
+
+
+def check_whitespace_of(path, text):
+    for number, line in enumerate(text.split("\n"), start=1):
+        if "\t" in line:
+            yield f"{path}:{number}: has a tab; use spaces"
+        if line != line.rstrip():
+            yield f"{path}:{number}: ends in white space; remove it"
+    if text and not text.endswith("\n"):
+        yield f"{path}:{text.count(chr(10)) + 1}: does not end with a line break; add one"
+
+
+def rosdep_keys_of_packages(root):
+    """{rosdep key: line number} from the brackets in packages.txt, and complaints about the file."""
+    keys, packages, complaints = {}, {}, []
+    for number, line in enumerate(read(root, "scripts/packages.txt").splitlines(), start=1):
+        package, _, comment = line.partition("#")
+        package, place = package.strip(), f"scripts/packages.txt:{number}"
+        if not package:
+            continue
+        if not re.fullmatch(r"[a-z0-9][a-z0-9.+-]+", package):
+            complaints.append(f"{place}: '{package}' is no package name; write one package a line")
+        if not comment.strip():
+            complaints.append(f"{place}: {package} comes without a reason; say why behind a '#'")
+        if package in packages:
+            complaints.append(f"{place}: {package} stands in line {packages[package]} already")
+        packages[package] = number
+        for brackets in re.findall(r"\[([^\]]*)\]", comment):
+            keys.update({key: number for key in brackets.split()})
+    return keys, complaints
+
+
+def check_packages(root):
+    keys, complaints = rosdep_keys_of_packages(root)
+    yield from complaints
+    package = ElementTree.parse(os.path.join(root, "package.xml")).getroot()
+    wanted = {element.text.strip() for element in package if element.tag.endswith("depend")}
+    for key in sorted(wanted - keys.keys()):
+        yield (f"package.xml: {key} has no Debian package; name it in brackets behind its package "
+               "in scripts/packages.txt")
+    for key in sorted(keys.keys() - wanted):
+        yield (f"scripts/packages.txt:{keys[key]}: package.xml does not name [{key}]; add a "
+               "<depend> or drop it here")
+
+
+def check_catkin_components(root):
+    """What CMake asks catkin for must stand in package.xml."""
+    path = "cmake/HiresRos.cmake"
+    if not os.path.exists(os.path.join(root, path)):
+        return
+    match = re.search(r"find_package\(catkin REQUIRED COMPONENTS([^)]*)\)", read(root, path))
+    named = {element.text.strip()
+             for element in ElementTree.parse(os.path.join(root, "package.xml")).getroot()
+             if element.tag.endswith("depend")}
+    for component in match.group(1).split() if match else []:
+        if component not in named:
+            yield f"{path}: asks catkin for {component}, which package.xml does not name; add it"
+
+
+def check_scripts(root):
+    for path in files_below(root, "scripts") + files_below(root, ".ci"):
+        first = read(root, path).split("\n", 1)[0]
+        if first.startswith("#!") and not os.access(os.path.join(root, path), os.X_OK):
+            yield f"{path}:1: has '{first}' but cannot be executed; chmod +x"
+        if "bash" in first or path.endswith(".sh"):
+            syntax = subprocess.run(["bash", "-n", os.path.join(root, path)],
+                                    stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                                    check=False)
+            if syntax.returncode != 0:
+                yield f"{path}: bash cannot read it: {syntax.stderr.strip()}"
+        elif "python3" in first:
+            try:
+                compile(read(root, path), path, "exec")
+            except SyntaxError as error:
+                yield f"{path}:{error.lineno}: python cannot read it: {error.msg}"
+
+
+CHECKS = [check_includes, check_dependencies, check_headers, check_whitespace, check_packages,
+          check_catkin_components, check_scripts]
+
+
+def complaints_about(root):
+    return [complaint for check in CHECKS for complaint in check(root)]
+
+
+def main():
+    root = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(__file__), "../..")
+    if not os.path.isdir(os.path.join(root, "src")):
+        sys.exit(f"check_tree: {root} has no folder src; name the root of the checkout")
+    complaints = complaints_about(root)
+    print("\n".join(complaints) if complaints else "check_tree: every house rule is kept")
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

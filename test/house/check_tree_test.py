@@ -1,0 +1,136 @@
+#!/usr/bin/env python3
+"""Does check_tree.py notice what it should? Every rule is broken once, in a tree made for it."""
+
+import os
+import tempfile
+import unittest
+
+import check_tree
+
+GOOD_TREE = {
+    "package.xml": "<package><depend>roscpp</depend><depend>opende</depend></package>\n",
+    "scripts/packages.txt": "ros-base-dev  # ROS [roscpp]\nlibode-dev  # physics [opende]\n",
+    "scripts/build": "#!/bin/bash\necho built\n",
+    "cmake/HiresRos.cmake": "find_package(catkin REQUIRED COMPONENTS\n  roscpp)\n",
+    "include/hires/base/rng.h": "#pragma once\n#include <cstdint>\n",
+    "src/base/rng.cpp": '#include "hires/base/rng.h"\n',
+    "src/base/CMakeLists.txt": "hires_layer(base\n  SOURCES rng.cpp\n  LINK fmt::fmt)\n",
+    "include/hires/geometry/pose.h": '#pragma once\n#include "hires/base/rng.h"\n',
+    "src/geometry/CMakeLists.txt": "hires_layer(geometry DEPENDS base LINK Eigen3::Eigen)\n",
+    "include/hires/robot/model.h": '#pragma once\n#include "hires/geometry/pose.h"\n',
+    "src/robot/CMakeLists.txt": "hires_layer(robot\n  DEPENDS geometry)  # and what it needs\n",
+    "include/hires/simulation/simulator.h": '#pragma once\n#include "hires/robot/model.h"\n',
+    "include/hires/skills/skill.h": '#pragma once\n#include "hires/robot/model.h"\n',
+    "include/hires/ros/conversions.h":
+        '#pragma once\n#include <ros/time.h>\n#include "hires/Fluent.h"\n',
+    "src/nodes/planner_main.cpp": '#include "hires/ros/conversions.h"\n',
+    "test/skills/skill_test.cpp":
+        '#include "hires/simulation/simulator.h"\n#include "support/fakes.h"\n',
+    "test/data/given.txt": "tabs\tof others stay \n",
+}
+
+
+class CheckTreeTest(unittest.TestCase):
+    def complaints(self, changes):
+        """What check_tree says about the good tree with some files changed, added or removed."""
+        with tempfile.TemporaryDirectory() as root:
+            for path, text in {**GOOD_TREE, **changes}.items():
+                if text is None:
+                    continue
+                os.makedirs(os.path.dirname(os.path.join(root, path)), exist_ok=True)
+                with open(os.path.join(root, path), "w", encoding="utf-8") as file:
+                    file.write(text)
+                if text.startswith("#!"):
+                    os.chmod(os.path.join(root, path), 0o755)
+            return check_tree.complaints_about(root)
+
+    def expect_one(self, changes, *words):
+        complaints = self.complaints(changes)
+        self.assertEqual(len(complaints), 1, complaints)
+        for word in words:
+            self.assertIn(word, complaints[0])
+
+    def test_a_good_tree_is_left_in_peace(self):
+        self.assertEqual(self.complaints({}), [])
+
+    def test_an_include_that_points_up_is_found(self):
+        self.expect_one({"src/base/rng.cpp": '\n#include "hires/geometry/pose.h"\n'},
+                        "src/base/rng.cpp:2", "an arrow up", "lower layer")
+
+    def test_an_include_that_points_sideways_is_found(self):
+        self.expect_one(
+            {"include/hires/skills/skill.h":
+                 '#pragma once\n#include "hires/simulation/simulator.h"\n'},
+            "include/hires/skills/skill.h:2", "an arrow sideways")
+
+    def test_a_test_that_includes_a_higher_layer_is_found(self):
+        self.expect_one({"test/robot/model_test.cpp": '#include "hires/skills/skill.h"\n'},
+                        "test/robot/model_test.cpp:1", "an arrow up")
+
+    def test_an_unknown_layer_is_found(self):
+        self.expect_one({"src/nodes/planner_main.cpp": '#include "hires/magic/wand.h"\n'},
+                        "'magic'", "LAYERS")
+
+    def test_ros_below_its_layer_is_found(self):
+        for header in ("ros/ros.h", "tf2/buffer_core.h", "tf2_ros/buffer.h", "geometry_msgs/Pose.h",
+                       "actionlib/server/simple_action_server.h", "std_srvs/Empty.h",
+                       "hires/Fluent.h"):
+            self.expect_one({"src/base/rng.cpp": f"#include <{header}>\n"},
+                            "src/base/rng.cpp:1", header, "know no ROS")
+
+    def test_names_that_only_look_like_ros_are_left_in_peace(self):
+        self.assertEqual(self.complaints(
+            {"src/base/rng.cpp": "#include <rosy.h>\n#include <XmlRpcClient.h>\n"
+                                 "// #include <ros/ros.h> would be wrong here\n"}), [])
+
+    def test_a_dependency_that_cmake_does_not_know_is_found(self):
+        self.expect_one({"src/geometry/CMakeLists.txt": "hires_layer(geometry LINK base)\n",
+                         "src/robot/CMakeLists.txt": "hires_layer(robot DEPENDS geometry base)\n"},
+                        "include/hires/geometry/pose.h:2", "DEPENDS", "'base'")
+
+    def test_a_dependency_of_cmake_that_points_up_is_found(self):
+        self.expect_one({"src/base/CMakeLists.txt": "hires_layer(base DEPENDS robot)\n"},
+                        "src/base/CMakeLists.txt", "no lower layer")
+
+    def test_a_source_without_its_header_is_found(self):
+        self.expect_one({"src/base/lost.cpp": "\n"}, "src/base/lost.cpp",
+                        "include/hires/base/lost.h")
+
+    def test_a_header_beside_its_source_is_enough(self):
+        self.assertEqual(self.complaints({"src/base/inner.cpp": "\n",
+                                          "src/base/inner.h": "#pragma once\n"}), [])
+
+    def test_a_header_without_guard_is_found(self):
+        self.expect_one({"include/hires/base/rng.h": "#include <cstdint>\n"}, "#pragma once")
+
+    def test_tabs_and_trailing_white_space_are_found(self):
+        self.expect_one({"docs/a.md": "one\ntwo\t2\n"}, "docs/a.md:2", "tab")
+        self.expect_one({"docs/a.md": "one \ntwo\n"}, "docs/a.md:1", "white space")
+        self.expect_one({"README.md": "one\r\n"}, "README.md:1", "white space")
+        self.expect_one({"docs/a.md": "one"}, "docs/a.md:1", "line break")
+
+    def test_packages_that_disagree_are_found(self):
+        self.expect_one({"scripts/packages.txt": "ros-base-dev  # ROS [roscpp]\n"},
+                        "package.xml", "opende")
+        self.expect_one({"package.xml": "<package><depend>roscpp</depend></package>\n"},
+                        "scripts/packages.txt:2", "[opende]")
+
+    def test_bad_lines_of_the_package_list_are_found(self):
+        good = GOOD_TREE["scripts/packages.txt"]
+        self.expect_one({"scripts/packages.txt": good + "libfmt-dev\n"}, ":3", "reason")
+        self.expect_one({"scripts/packages.txt": good + "a-dev b-dev  # both\n"}, ":3", "a line")
+        self.expect_one({"scripts/packages.txt": good + "libode-dev  # again\n"}, ":3", "line 2")
+
+    def test_a_catkin_component_that_package_xml_lacks_is_found(self):
+        self.expect_one(
+            {"cmake/HiresRos.cmake": "find_package(catkin REQUIRED COMPONENTS roscpp tf2)\n"},
+            "tf2", "package.xml")
+
+    def test_scripts_that_cannot_be_read_are_found(self):
+        self.expect_one({"scripts/build": "#!/bin/bash\nif true; then\n"}, "scripts/build", "bash")
+        self.expect_one({"scripts/table": "#!/usr/bin/env python3\nprint(\n"},
+                        "scripts/table", "python")
+
+
+if __name__ == "__main__":
+    unittest.main()

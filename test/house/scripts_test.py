@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""What the scripts say and refuse, as far as it can be seen without building or installing."""
+
+import os
+import subprocess
+import tempfile
+import unittest
+
+ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), "../.."))
+
+
+def run(script, *arguments, **environment):
+    return subprocess.run([os.path.join(ROOT, script), *arguments], capture_output=True, text=True,
+                          stdin=subprocess.DEVNULL, check=False,
+                          env={**os.environ, **environment})
+
+
+class ScriptsTest(unittest.TestCase):
+    def test_every_script_explains_itself(self):
+        for script in ("benchmark", "build", "demo", "format", "run", "setup", "test", "tidy"):
+            with self.subTest(script):
+                answer = run(f"scripts/{script}", "--help")
+                self.assertEqual(answer.returncode, 0, answer.stderr)
+                self.assertIn(f"scripts/{script}", answer.stdout)
+
+    def setup_on(self, release):
+        with tempfile.NamedTemporaryFile("w", suffix=".os-release") as file:
+            file.write(release)
+            file.flush()
+            return run("scripts/setup", HIRES_OS_RELEASE=file.name)
+
+    def test_setup_refuses_another_system_and_names_what_to_install(self):
+        answer = self.setup_on('ID=fedora\nVERSION_ID=39\nPRETTY_NAME="Fedora Linux 39"\n')
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("this is Fedora Linux 39", answer.stderr)
+        self.assertIn("libode-dev", answer.stderr)
+
+    def test_setup_tells_ubuntu_20_04_its_own_names(self):
+        answer = self.setup_on('ID=ubuntu\nVERSION_ID="20.04"\nPRETTY_NAME="Ubuntu 20.04.6 LTS"\n')
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("ros-noetic-ros-base", answer.stderr)
+        self.assertIn("libsdformat9-dev", answer.stderr)
+        self.assertNotIn("ros-base-dev\n", answer.stderr)
+
+    def test_setup_refuses_a_system_that_does_not_say_what_it_is(self):
+        answer = self.setup_on("")
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("unknown system", answer.stderr)
+
+    def test_the_build_folder_lies_outside_of_the_sources(self):
+        folder = run("scripts/build", "--where", HIRES_BUILD="", XDG_CACHE_HOME="/cache").stdout
+        self.assertRegex(folder, r"^/cache/hires/[0-9a-f]{12}\n$")
+
+    def test_the_build_folder_can_be_chosen(self):
+        answer = run("scripts/build", "--where", HIRES_BUILD="/elsewhere")
+        self.assertEqual(answer.stdout, "/elsewhere\n")
+
+    def test_unknown_options_end_with_the_help_text(self):
+        for script in ("build", "run", "setup"):
+            with self.subTest(script):
+                answer = run(f"scripts/{script}", "--nonsense")
+                self.assertEqual(answer.returncode, 2)
+                self.assertIn(f"scripts/{script}", answer.stderr)
+
+    def test_run_wants_a_command(self):
+        self.assertEqual(run("scripts/run").returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()
