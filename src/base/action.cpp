@@ -25,7 +25,17 @@ std::vector<std::string> Distinct(const std::vector<std::string>& names) {
   return distinct;
 }
 
+bool EqualIgnoringCase(const std::string& a, const std::string& b) {
+  return ToLower(a) == ToLower(b);
+}
+
 }  // namespace
+
+bool ActionCall::operator==(const ActionCall& other) const {
+  return CanonicalName(name) == CanonicalName(other.name) &&
+         std::equal(arguments.begin(), arguments.end(), other.arguments.begin(),
+                    other.arguments.end(), EqualIgnoringCase);
+}
 
 std::string ToString(const ActionCall& call) {
   return fmt::format("{}({})", call.name, Join(call.arguments, ", "));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -27,6 +28,12 @@ std::string Written(const YAML::Node& node) {
     default:
       return "empty";
   }
+}
+
+bool HasLeadingZero(const YAML::Node& node) {
+  if (!node.IsScalar()) return false;
+  const std::string digits = node.Scalar().substr(node.Scalar().find_first_not_of("+-") == 1);
+  return digits.size() > 1 && digits[0] == '0';
 }
 
 }  // namespace
@@ -59,9 +66,10 @@ ParamReader::ParamReader(YAML::Node node, std::string where, std::string prefix)
       prefix_(std::move(prefix)),
       read_(std::make_shared<Read>()) {
   if (!node_.IsMap() && !node_.IsNull()) {
-    throw ConfigError(fmt::format("{}: {} is {}, wanted a map of keys{}", where_,
-                                  prefix_.empty() ? "the document" : prefix_, Written(node_),
-                                  LineOf(node_)));
+    throw ConfigError(
+        fmt::format("{}: {} is {}, wanted a map of keys{}", where_,
+                    prefix_.empty() ? "the document" : prefix_.substr(0, prefix_.size() - 1),
+                    Written(node_), LineOf(node_)));
   }
   std::set<std::string> seen;
   for (const auto& entry : node_) {
@@ -78,10 +86,15 @@ ParamReader ParamReader::FromFile(const std::string& path) {
 
 ParamReader ParamReader::FromString(const std::string& yaml, const std::string& where) {
   try {
-    return ParamReader(YAML::Load(yaml), where, "");
+    const std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
+    if (documents.size() > 1) {
+      throw ConfigError(fmt::format("{}: holds {} YAML documents, wanted one; remove the '---'{}",
+                                    where, documents.size(), LineOf(documents[1])));
+    }
+    return ParamReader(documents.empty() ? YAML::Node() : documents[0], where, "");
   } catch (const YAML::Exception& error) {
-    throw ConfigError(fmt::format("{}: no valid YAML: {}; line {}", where, error.msg,
-                                  error.mark.line + 1));
+    throw ConfigError(
+        fmt::format("{}: no valid YAML: {}; line {}", where, error.msg, error.mark.line + 1));
   }
 }
 
@@ -89,8 +102,8 @@ YAML::Node ParamReader::Require(const std::string& key) {
   read_->keys.insert(key);
   const YAML::Node& map = node_;
   if (!Has(key)) {
-    throw ConfigError(fmt::format("{}: {}{} is missing{}; add it", where_, prefix_, key,
-                                  LineOf(map)));
+    throw ConfigError(
+        fmt::format("{}: {}{} is missing{}; add it", where_, prefix_, key, LineOf(map)));
   }
   return map[key];
 }
@@ -102,8 +115,8 @@ T ParamReader::Parse(const std::string& key, const char* type_name) {
     if (value.IsScalar()) return value.as<T>();
   } catch (const YAML::Exception&) {
   }
-  throw ConfigError(fmt::format("{}: {}{} is {}, wanted {}{}", where_, prefix_, key,
-                                Written(value), type_name, LineOf(value)));
+  throw ConfigError(fmt::format("{}: {}{} is {}, wanted {}{}", where_, prefix_, key, Written(value),
+                                type_name, LineOf(value)));
 }
 
 template <typename T>
@@ -117,6 +130,8 @@ double ParamReader::Get(const std::string& key, const Bound<double>& bound) {
   return GetBounded<double>(key, bound, "a number");
 }
 int ParamReader::Get(const std::string& key, const Bound<int>& bound) {
+  // The YAML library would take 010 for the octal 8.
+  if (HasLeadingZero(Require(key))) Fail(key, "wanted a whole number without a leading 0");
   return GetBounded<int>(key, bound, "a whole number");
 }
 std::string ParamReader::Get(const std::string& key, const Bound<std::string>& bound) {
@@ -132,13 +147,12 @@ std::vector<double> ParamReader::GetNumbers(const std::string& key, std::size_t 
   std::vector<double> numbers;
   if (list.IsSequence()) {
     for (const YAML::Node& item : list) {
-      try {
-        numbers.push_back(item.as<double>());
-        if (std::isfinite(numbers.back())) continue;
-      } catch (const YAML::Exception&) {
+      double number = std::numeric_limits<double>::quiet_NaN();
+      if (!YAML::convert<double>::decode(item, number) || !std::isfinite(number)) {
+        Fail(key, fmt::format("item {} is {}, wanted a finite number", numbers.size() + 1,
+                              Written(item)));
       }
-      Fail(key, fmt::format("item {} is {}, wanted a finite number", numbers.size(),
-                            Written(item)));
+      numbers.push_back(number);
     }
   }
   if (!list.IsSequence() || numbers.size() != size) {
@@ -186,7 +200,8 @@ std::vector<std::string> ParamReader::Keys() const {
 }
 
 void ParamReader::RejectUnknownKeys() const {
-  const std::vector<std::string> wanted(read_->keys.begin(), read_->keys.end());
+  std::vector<std::string> wanted;
+  for (const std::string& key : read_->keys) wanted.push_back(prefix_ + key);
   for (const auto& entry : node_) {
     const std::string key = entry.first.Scalar();
     if (read_->keys.count(key) == 0) {

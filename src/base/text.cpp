@@ -56,8 +56,7 @@ std::string Join(const std::vector<std::string>& parts, std::string_view separat
 }
 
 std::vector<std::string> NearestNames(const std::string& name,
-                                      const std::vector<std::string>& known,
-                                      std::size_t at_most) {
+                                      const std::vector<std::string>& known, std::size_t at_most) {
   std::vector<std::pair<std::size_t, std::string>> ranked;
   const std::string lower = ToLower(name);
   for (const std::string& candidate : known) {
@@ -89,8 +88,8 @@ std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
   }
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error && size > max_bytes) {
-    throw ConfigError(
-        fmt::format("{}: has {} bytes, at most {} are read; split the file", path, size, max_bytes));
+    throw ConfigError(fmt::format("{}: has {} bytes, at most {} are read; split the file", path,
+                                  size, max_bytes));
   }
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;

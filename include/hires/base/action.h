@@ -1,19 +1,19 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace hires::base {
 
-/// A ground action, as the planner writes it: `move_base_param area1 slow`. Names compare without
-/// regard to case, and a leading `!` (the planner's mark of a primitive) is no part of the name.
+/// A ground action, as the planner writes it: `move_base_param area1 slow`. Names and arguments
+/// compare without regard to case, and a leading `!` (the planner's mark of a primitive) is no part
+/// of the name.
 struct ActionCall {
   std::string name;
   std::vector<std::string> arguments;
 
-  bool operator==(const ActionCall& other) const {
-    return name == other.name && arguments == other.arguments;
-  }
+  bool operator==(const ActionCall& other) const;
 };
 
 /// An action with a list of alternatives for each argument.
@@ -25,8 +25,8 @@ struct ActionTemplate {
 /// "move_base_param(area1, slow)", for people.
 std::string ToString(const ActionCall& call);
 
-/// Every combination of the alternatives, the last argument varying fastest, names lower-cased and
-/// without `!`, repeated alternatives of one argument once.
+/// Every combination of the alternatives, the last argument varying fastest, names and arguments
+/// lower-cased and without `!`, repeated alternatives of one argument once.
 /// @throws ConfigError if a list is empty or there are more than `at_most` combinations.
 std::vector<ActionCall> Combinations(const ActionTemplate& action, std::size_t at_most = 4096);
 

@@ -1,0 +1,128 @@
+#include "hires/base/text.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "hires/base/error.h"
+#include "hires/base/rng.h"
+
+namespace hires::base {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
+
+TEST(ToLowerTest, ChangesLettersOnly) {
+  EXPECT_EQ(ToLower("preManipulationAreaEastCounter1"), "premanipulationareaeastcounter1");
+  EXPECT_EQ(ToLower(""), "");
+  EXPECT_EQ(ToLower("A_1-\xC3\x84"), "a_1-\xC3\x84");  // bytes beyond ASCII stay
+}
+
+TEST(SplitTest, KeepsEmptyParts) {
+  EXPECT_THAT(Split("a,b,c", ','), ElementsAre("a", "b", "c"));
+  EXPECT_THAT(Split(",a,,b,", ','), ElementsAre("", "a", "", "b", ""));
+  EXPECT_THAT(Split("abc", ','), ElementsAre("abc"));
+  EXPECT_THAT(Split("", ','), ElementsAre(""));
+}
+
+TEST(JoinTest, PutsTheSeparatorBetween) {
+  EXPECT_EQ(Join({"a", "b", "c"}, ", "), "a, b, c");
+  EXPECT_EQ(Join({"a"}, ", "), "a");
+  EXPECT_EQ(Join({}, ", "), "");
+}
+
+TEST(SplitTest, JoinTakesItBack) {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    Rng rng = Rng(3).Fork(seed);
+    std::string text;
+    for (int i = rng.Index(20); i > 0; --i) text += "ab;"[rng.Index(3)];
+    EXPECT_EQ(Join(Split(text, ';'), ";"), text);
+  }
+}
+
+TEST(NearestNamesTest, RanksByEditDistanceThenByName) {
+  const std::vector<std::string> known{"table10", "counter1", "table2", "table1"};
+  EXPECT_THAT(NearestNames("tabel1", known), ElementsAre("table1", "table10", "table2"));
+  EXPECT_THAT(NearestNames("TABLE2", known, 1), ElementsAre("table2"));
+}
+
+TEST(NearestNamesTest, CountsInsertionDeletionAndReplacementAsOne) {
+  EXPECT_THAT(NearestNames("kitten", {"sitting", "kit", "kittens"}),
+              ElementsAre("kittens", "kit", "sitting"));  // distances 1, 3, 3
+}
+
+TEST(NearestNamesTest, GivesNoMoreThanThereIs) {
+  EXPECT_THAT(NearestNames("a", {}), IsEmpty());
+  EXPECT_THAT(NearestNames("a", {"b"}, 5), ElementsAre("b"));
+  EXPECT_THAT(NearestNames("a", {"b"}, 0), IsEmpty());
+}
+
+TEST(UnknownNameTest, ProposesWhatWasMeant) {
+  EXPECT_EQ(UnknownName("area", "x", {"y"}), "area 'x' is unknown; did you mean 'y'?");
+  EXPECT_EQ(UnknownName("area", "ab", {"ac", "b"}),
+            "area 'ab' is unknown; did you mean 'ac' or 'b'?");
+  EXPECT_EQ(UnknownName("area", "x", {}), "area 'x' is unknown; none is defined");
+}
+
+/// A folder of its own that goes away with the test.
+class ReadTextFileTest : public ::testing::Test {
+ protected:
+  ReadTextFileTest()
+      : folder_(std::filesystem::temp_directory_path() /
+                ("hires_text_test_" + std::to_string(::getpid()))) {
+    std::filesystem::create_directories(folder_);
+  }
+  ~ReadTextFileTest() override { std::filesystem::remove_all(folder_); }
+  std::string Write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return (folder_ / name).string();
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(ReadTextFileTest, GivesEveryByte) {
+  const std::string text("a\r\n\0b\xFF", 6);
+  EXPECT_EQ(ReadTextFile(Write("a.txt", text)), text);
+}
+
+TEST_F(ReadTextFileTest, AnEmptyFileIsAnEmptyText) {
+  EXPECT_EQ(ReadTextFile(Write("empty.txt", "")), "");
+}
+
+TEST_F(ReadTextFileTest, TheLimitItselfIsAllowedAndOneMoreIsNot) {
+  const std::string path = Write("a.txt", "12345");
+  EXPECT_EQ(ReadTextFile(path, 5), "12345");
+  EXPECT_THAT([&] { ReadTextFile(path, 4); },
+              ThrowsMessage<ConfigError>(
+                  AllOf(HasSubstr(path), HasSubstr("5 bytes"), HasSubstr("at most 4"))));
+}
+
+TEST_F(ReadTextFileTest, AMissingFileIsNamed) {
+  const std::string path = (folder_ / "nowhere.txt").string();
+  EXPECT_THAT([&] { ReadTextFile(path); },
+              ThrowsMessage<ConfigError>(AllOf(HasSubstr(path), HasSubstr("no such file"))));
+}
+
+TEST_F(ReadTextFileTest, FoldersAndDevicesAreNoFiles) {
+  EXPECT_THAT([&] { ReadTextFile(folder_.string()); },
+              ThrowsMessage<ConfigError>(HasSubstr("no regular file")));
+  EXPECT_THAT([] { ReadTextFile("/dev/zero"); },
+              ThrowsMessage<ConfigError>(HasSubstr("no regular file")));
+}
+
+TEST_F(ReadTextFileTest, AForbiddenFileIsNamed) {
+  const std::string path = Write("secret.txt", "a");
+  std::filesystem::permissions(path, std::filesystem::perms::none);
+  if (::access(path.c_str(), R_OK) == 0) GTEST_SKIP() << "root may read everything";
+  EXPECT_THAT([&] { ReadTextFile(path); },
+              ThrowsMessage<ConfigError>(AllOf(HasSubstr(path), HasSubstr("permissions"))));
+}
+
+}  // namespace
+}  // namespace hires::base
