@@ -19,6 +19,9 @@ struct ConfidenceCoefficients {
 /// no sample.
 double Confidence(const OutcomeCounts& counts, const ConfidenceCoefficients& coefficients = {});
 
+/// Eq. 6.1 of one rollout; 0 when its action failed (see ActionFailed).
+double RolloutConfidence(const RolloutResult& result);
+
 /// How often an action succeeds, as far as counted rollouts tell. All shares lie in [0, 1].
 struct SuccessInterval {
   double share{0.0};    ///< successful rollouts / all rollouts
@@ -32,26 +35,35 @@ struct SuccessInterval {
 SuccessInterval EstimateSuccess(int num_success, int num_rollouts);
 
 /// All that is known about one parametrisation of an action from its first n rollouts.
+/// Quantiles are definition 1 of [Hyndman, Fan 1996, Am. Stat. 50:361-365]: the smallest value with
+/// at least that share of the values at or below it. So each one is a rollout that was really
+/// played, and duration.p50 is the duration of median_rollout.
 struct Evidence {
-  double confidence_pooled{0.0};  ///< Eq. 6.1 on the summed counts; 0 when most rollouts failed to act
-  double confidence_mean{0.0};    ///< mean of Eq. 6.1 per rollout, 0 for one whose action failed
-  SuccessInterval success;        ///< goal reached and nothing fell; timed out counts as failed
-  double fall_share{0.0};         ///< rollouts in which something fell
-  double action_failed_share{0.0};  ///< rollouts whose action did not reach its goal
-  OutcomeCounts counts;
+  double confidence_pooled{0.0};    ///< Eq. 6.1 on the summed counts; 0 when more than half of the
+                                    ///< rollouts failed to act
+  double confidence_mean{0.0};      ///< mean of Eq. 6.1 per rollout, 0 for one whose action failed
+  SuccessInterval success;          ///< goal reached and nothing fell; timed out counts as failed
+  double fall_share{0.0};           ///< rollouts in which something fell
+  double action_failed_share{0.0};  ///< rollouts whose action failed (see ActionFailed)
+  OutcomeCounts counts;             ///< of all rollouts
   int falls{0};
   struct {
     double mean{0.0}, sd{0.0}, p50{0.0}, p95{0.0};
-  } duration;  ///< [s], of rollouts whose action finished
+  } duration;  ///< [s], of rollouts whose action did not fail; sd divides by their number
   struct {
     double p50{0.0}, p95{0.0};
-  } max_tilt;  ///< [rad]
+  } max_tilt;  ///< [rad], of rollouts with samples
   int num_rollouts{0};
   std::map<std::string, int> failures;  ///< reason -> rollouts
-  int median_rollout{-1};               ///< index of the finished rollout with the median duration
+  int median_rollout{-1};  ///< index of the finished rollout with the median duration, the first
+                           ///< of equals; -1 when there is none
 };
 
 /// @param results  the first n rollouts of one alternative, in index order.
 Evidence SumUp(const std::vector<RolloutResult>& results);
+
+/// The same of the first `num_rollouts` of `results` alone.
+/// @pre 0 <= num_rollouts <= results.size().
+Evidence SumUp(const std::vector<RolloutResult>& results, int num_rollouts);
 
 }  // namespace hires::imagination

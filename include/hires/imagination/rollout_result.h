@@ -25,8 +25,8 @@ enum class Outcome { kSucceeded, kFailed, kTimedOut };
 /// What one simulated play of an action from one start with one seed gave.
 struct RolloutResult {
   Outcome outcome{Outcome::kFailed};
-  std::string reason;       ///< why it did not succeed, one word ("object_fell", "no_path"); else empty
-  double duration{0.0};     ///< [s] simulated, of the action alone
+  std::string reason;  ///< why it did not succeed, one word ("object_fell", "no_path"); else empty
+  double duration{0.0};  ///< [s] simulated, of the action alone
   OutcomeCounts counts;
   int falls{0};             ///< events, not samples
   double max_tilt{0.0};     ///< [rad]
@@ -34,7 +34,24 @@ struct RolloutResult {
   bool action_finished{false};  ///< the action itself reached its goal, whatever fell
   world::WorldState final_world;
   robot::RobotState final_robot;
-  double simulated{0.0};    ///< [s] of physics, settling included
+  double simulated{0.0};  ///< [s] of physics, settling included
 };
+
+/// Whether the action counts as failed: it did not reach its goal, or nothing was sampled while it
+/// ran (the object was missing), so that Eq. 6.1 has nothing to speak about.
+bool ActionFailed(const RolloutResult& result);
+
+/// Why a rollout is no success; empty if it is one. A result that calls itself succeeded although
+/// its action is unfinished ("unfinished"), something fell ("object_fell") or nothing was sampled
+/// ("no_samples") is none; a failure without a reason of its own is "timed_out" or "unknown".
+std::string FailureReason(const RolloutResult& result);
+
+/// What makes a result unusable as evidence (a number that is not finite or negative), in words for
+/// people; empty if it is sound. Results come from other computers: look before counting.
+std::string Defect(const RolloutResult& result);
+
+/// Whether two plays of one rollout gave the same to the last bit: everything that is counted; the
+/// final states are left out.
+bool SameOutcome(const RolloutResult& a, const RolloutResult& b);
 
 }  // namespace hires::imagination

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/imagination/evidence.h"
+
+namespace hires::imagination {
+
+/// By what alternatives are ordered; a later criterion decides where the earlier ones are equal.
+enum class RankingRule {
+  kRisk,   ///< lower bound of success, then mean Eq. 6.1, then mean duration
+  kThesis  ///< action failed in most rollouts: out; then mean Eq. 6.1, then mean duration
+};
+
+/// "risk" or "thesis".  @throws base::ConfigError naming what came and what is known.
+RankingRule ParseRankingRule(const std::string& name);
+std::string ToString(RankingRule rule);
+
+/// Indices of the alternatives, best first. Full equals keep their order, an alternative without
+/// any finished rollout is slower than every other. Under kThesis the ones that are out come last.
+/// @pre all rest on the same number of rollouts (paired by index).  @throws std::logic_error
+std::vector<int> Rank(const std::vector<Evidence>& alternatives, RankingRule rule);
+
+/// The best alternative; none if there is no rollout yet or all fail: under kRisk if no rollout of
+/// any alternative succeeded, under kThesis if every alternative is out.  @pre as Rank.
+std::optional<int> Recommended(const std::vector<Evidence>& alternatives, RankingRule rule);
+
+/// One sentence for people with the numbers that decided, also where nothing is recommended.
+/// @param names  one per alternative, as people call them ("slow").
+/// @pre names.size() == alternatives.size(), and as Rank.
+std::string WhyRecommended(const std::vector<Evidence>& alternatives, RankingRule rule,
+                           const std::vector<std::string>& names);
+
+struct SettleParams {
+  double alpha{0.05};         ///< chance that any claim made at any look is wrong; in (0, 1)
+  double indifference{0.05};  ///< a difference in success, confidence or share of quicker rollouts
+                              ///< below this counts as none; in (0, 1)
+  bool only_best{false};      ///< true: who is first is enough, the order behind may stay open
+};
+
+/// Whether more rollouts may still change the order that Rank gives after the first `num_rollouts`
+/// rollouts of each alternative; true means no, as far as these rollouts can tell.
+///
+/// Each pair is judged by its paired differences, criterion by criterion in the order of the rule.
+/// A criterion settles the pair if a confidence sequence of the mean difference excludes 0 on the
+/// side of the present order; it is passed over if the sequence lies within the indifference; in
+/// all other cases the pair stays open. Judged are the neighbours in the present order (or the
+/// first against each other one). A pair whose criteria were all passed over is settled: either
+/// order costs less than the indifference. Durations have no bound, so the difference is taken of
+/// their signs: who was quicker, 1 or -1, 0 for equal or both failed; the one that failed is
+/// slower. Under kThesis being in or out must be certain for both (share of failed actions against
+/// 1/2).
+///
+/// The error probability alpha is divided by the number of all sequences there are (every pair
+/// with every criterion), so it covers all alternatives and all looks together, however often this
+/// is called with growing prefixes of the same rollouts. One alternative alone is always settled.
+/// @param results  per alternative its rollouts in index order, each at least num_rollouts long.
+/// @pre num_rollouts >= 1; params within their ranges.  @throws std::logic_error if broken.
+bool Settled(const std::vector<std::vector<RolloutResult>>& results, int num_rollouts,
+             RankingRule rule, const SettleParams& params);
+
+/// The same for rollouts that are kept apart.  @pre as above, and no nullptr.
+bool Settled(const std::vector<const std::vector<RolloutResult>*>& results, int num_rollouts,
+             RankingRule rule, const SettleParams& params);
+
+}  // namespace hires::imagination

@@ -1,0 +1,146 @@
+#include "hires/imagination/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hires/base/check.h"
+
+namespace hires::imagination {
+namespace {
+
+constexpr double kNormalQuantile975 = 1.959963984540054;
+
+/// Position of the `percent` quantile among `size` sorted values, definition 1 of Hyndman and Fan.
+/// Whole numbers keep 95 of 100 from becoming 96 by rounding.
+int QuantileRank(int size, int percent) {
+  const long long wanted = (static_cast<long long>(size) * percent + 99) / 100;
+  return static_cast<int>(std::max(wanted, 1LL)) - 1;
+}
+
+/// Values that know which rollout they came from; sorting keeps equals in index order.
+using IndexedValues = std::vector<std::pair<double, int>>;
+
+double Mean(const IndexedValues& values) {
+  double sum = 0.0;
+  for (const auto& [value, index] : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double Deviation(const IndexedValues& values, double mean) {
+  double sum = 0.0;
+  for (const auto& [value, index] : values) sum += (value - mean) * (value - mean);
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+void SumUpDurations(IndexedValues durations, Evidence* evidence) {
+  if (durations.empty()) return;
+  std::sort(durations.begin(), durations.end());
+  const int size = static_cast<int>(durations.size());
+  auto& duration = evidence->duration;
+  duration.mean = Mean(durations);
+  duration.sd = Deviation(durations, duration.mean);
+  duration.p50 = durations[QuantileRank(size, 50)].first;
+  duration.p95 = durations[QuantileRank(size, 95)].first;
+  const auto first_median =
+      std::lower_bound(durations.begin(), durations.end(), std::make_pair(duration.p50, -1));
+  evidence->median_rollout = first_median->second;
+}
+
+void SumUpTilts(std::vector<double> tilts, Evidence* evidence) {
+  if (tilts.empty()) return;
+  std::sort(tilts.begin(), tilts.end());
+  const int size = static_cast<int>(tilts.size());
+  evidence->max_tilt.p50 = tilts[QuantileRank(size, 50)];
+  evidence->max_tilt.p95 = tilts[QuantileRank(size, 95)];
+}
+
+/// Sums while walking over the rollouts; Finish() turns sums into shares.
+class Tally {
+ public:
+  void Add(const RolloutResult& result, int index) {
+    AddFailure(result);
+    evidence_.counts += result.counts;
+    evidence_.falls += result.falls;
+    num_fallen_ += result.falls > 0;
+    confidence_sum_ += RolloutConfidence(result);
+    if (!ActionFailed(result)) durations_.emplace_back(result.duration, index);
+    if (result.counts.total() > 0) tilts_.push_back(result.max_tilt);
+    ++evidence_.num_rollouts;
+  }
+
+  Evidence Finish() {
+    if (evidence_.num_rollouts == 0) return evidence_;
+    const double n = evidence_.num_rollouts;
+    const int num_action_failed = evidence_.num_rollouts - static_cast<int>(durations_.size());
+    evidence_.success = EstimateSuccess(num_success_, evidence_.num_rollouts);
+    evidence_.fall_share = num_fallen_ / n;
+    evidence_.action_failed_share = num_action_failed / n;
+    evidence_.confidence_mean = confidence_sum_ / n;
+    const bool mostly_failed = 2 * num_action_failed > evidence_.num_rollouts;
+    evidence_.confidence_pooled = mostly_failed ? 0.0 : Confidence(evidence_.counts);
+    SumUpDurations(std::move(durations_), &evidence_);
+    SumUpTilts(std::move(tilts_), &evidence_);
+    return evidence_;
+  }
+
+ private:
+  void AddFailure(const RolloutResult& result) {
+    const std::string reason = FailureReason(result);
+    if (reason.empty()) {
+      ++num_success_;
+    } else {
+      ++evidence_.failures[reason];
+    }
+  }
+
+  Evidence evidence_;
+  int num_success_{0};
+  int num_fallen_{0};
+  double confidence_sum_{0.0};
+  IndexedValues durations_;
+  std::vector<double> tilts_;
+};
+
+}  // namespace
+
+double Confidence(const OutcomeCounts& counts, const ConfidenceCoefficients& coefficients) {
+  if (counts.total() == 0) return 0.0;
+  return counts.total() /
+         (coefficients.topple * counts.topple + coefficients.shaking * counts.shaking +
+          coefficients.notopple * counts.notopple);
+}
+
+double RolloutConfidence(const RolloutResult& result) {
+  return ActionFailed(result) ? 0.0 : Confidence(result.counts);
+}
+
+SuccessInterval EstimateSuccess(int num_success, int num_rollouts) {
+  HIRES_CHECK(num_success >= 0 && num_success <= num_rollouts,
+              "there are more successes than rollouts, or fewer than none");
+  if (num_rollouts == 0) return {};
+  const double n = num_rollouts;
+  const double share = num_success / n;
+  const double z2 = kNormalQuantile975 * kNormalQuantile975;
+  const double centre = (share + z2 / (2.0 * n)) / (1.0 + z2 / n);
+  const double half = kNormalQuantile975 / (1.0 + z2 / n) *
+                      std::sqrt(share * (1.0 - share) / n + z2 / (4.0 * n * n));
+  SuccessInterval interval{share, centre - half, centre + half, num_rollouts};
+  // At the ends the bound is exact in theory and off by a rounding in practice.
+  if (num_success == 0) interval.lower = 0.0;
+  if (num_success == num_rollouts) interval.upper = 1.0;
+  return interval;
+}
+
+Evidence SumUp(const std::vector<RolloutResult>& results) {
+  return SumUp(results, static_cast<int>(results.size()));
+}
+
+Evidence SumUp(const std::vector<RolloutResult>& results, int num_rollouts) {
+  HIRES_CHECK(num_rollouts >= 0 && num_rollouts <= static_cast<int>(results.size()),
+              "there are not that many rollouts to sum up");
+  Tally tally;
+  for (int index = 0; index < num_rollouts; ++index) tally.Add(results[index], index);
+  return tally.Finish();
+}
+
+}  // namespace hires::imagination

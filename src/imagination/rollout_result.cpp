@@ -1,0 +1,67 @@
+#include "hires/imagination/rollout_result.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <tuple>
+
+namespace hires::imagination {
+namespace {
+
+auto Counted(const RolloutResult& result) {
+  return std::tie(result.outcome, result.reason, result.duration, result.counts, result.falls,
+                  result.max_tilt, result.first_cause, result.action_finished);
+}
+
+std::string NumberDefect(const char* name, double value, const char* unit) {
+  if (std::isfinite(value) && value >= 0.0) return {};
+  return fmt::format("{} is {} {}, wanted a finite number >= 0", name, value, unit);
+}
+
+std::string CountDefect(const RolloutResult& result) {
+  const OutcomeCounts& counts = result.counts;
+  if (counts.notopple >= 0 && counts.shaking >= 0 && counts.topple >= 0 && result.falls >= 0) {
+    return {};
+  }
+  return fmt::format("a count is negative (notopple {}, shaking {}, topple {}, falls {})",
+                     counts.notopple, counts.shaking, counts.topple, result.falls);
+}
+
+}  // namespace
+
+OutcomeCounts& OutcomeCounts::operator+=(const OutcomeCounts& other) {
+  notopple += other.notopple;
+  shaking += other.shaking;
+  topple += other.topple;
+  return *this;
+}
+
+bool OutcomeCounts::operator==(const OutcomeCounts& other) const {
+  return notopple == other.notopple && shaking == other.shaking && topple == other.topple;
+}
+
+bool ActionFailed(const RolloutResult& result) {
+  return !result.action_finished || result.counts.total() == 0;
+}
+
+std::string FailureReason(const RolloutResult& result) {
+  if (result.outcome != Outcome::kSucceeded && !result.reason.empty()) return result.reason;
+  if (result.outcome == Outcome::kTimedOut) return "timed_out";
+  if (!result.action_finished) return "unfinished";
+  if (result.falls > 0) return "object_fell";
+  if (result.counts.total() == 0) return "no_samples";
+  return result.outcome == Outcome::kSucceeded ? "" : "unknown";
+}
+
+std::string Defect(const RolloutResult& result) {
+  std::string defect = CountDefect(result);
+  if (defect.empty()) defect = NumberDefect("duration", result.duration, "s");
+  if (defect.empty()) defect = NumberDefect("max_tilt", result.max_tilt, "rad");
+  return defect;
+}
+
+bool SameOutcome(const RolloutResult& a, const RolloutResult& b) {
+  return Counted(a) == Counted(b);
+}
+
+}  // namespace hires::imagination

@@ -1,0 +1,231 @@
+#include "hires/imagination/evidence.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "imagination/rollout_examples.h"
+
+namespace hires::imagination {
+namespace {
+
+using test_support::Fall;
+using test_support::NoPath;
+using test_support::Success;
+using test_support::Times;
+using test_support::operator+;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Pair;
+
+TEST(ConfidenceTest, EquationGivesTheWorkedExamples) {
+  EXPECT_DOUBLE_EQ(Confidence({640, 0, 0}), 1.0);
+  EXPECT_DOUBLE_EQ(Confidence({628, 12, 0}), 640.0 / 748.0);
+  EXPECT_NEAR(Confidence({628, 12, 0}), 0.856, 5e-4);
+  EXPECT_NEAR(Confidence({639, 0, 1}), 0.866, 5e-4);
+  EXPECT_NEAR(Confidence({711, 12, 0}), 0.87, 5e-3);
+  EXPECT_DOUBLE_EQ(Confidence({0, 0, 7}), 0.01);
+}
+
+TEST(ConfidenceTest, TotalsOfTheToppleExperimentGiveThePrintedValues) {  // table 6.5
+  EXPECT_NEAR(Confidence({165906, 12735, 413}), 0.535, 5e-4);
+  EXPECT_NEAR(Confidence({165596, 6031, 90}), 0.731, 5e-4);
+}
+
+TEST(ConfidenceTest, NoSampleIsNoConfidence) { EXPECT_EQ(Confidence({}), 0.0); }
+
+TEST(ConfidenceTest, CoefficientsAreTaken) {
+  EXPECT_DOUBLE_EQ(Confidence({1, 1, 1}, {4.0, 2.0, 1.0}), 3.0 / 7.0);
+}
+
+TEST(EstimateSuccessTest, EightOfTenGivesWilsonInterval) {
+  const SuccessInterval success = EstimateSuccess(8, 10);
+  EXPECT_NEAR(success.lower, 0.4902, 1e-4);
+  EXPECT_NEAR(success.upper, 0.9433, 1e-4);
+  EXPECT_DOUBLE_EQ(success.share, 0.8);
+  EXPECT_EQ(success.num_rollouts, 10);
+}
+
+TEST(EstimateSuccessTest, AllOfSixtyFourMeansAtLeastNinetyFourPercent) {
+  EXPECT_NEAR(EstimateSuccess(64, 64).lower, 64.0 / (64.0 + 3.841459), 1e-6);
+  EXPECT_EQ(EstimateSuccess(64, 64).upper, 1.0);
+}
+
+TEST(EstimateSuccessTest, NoRolloutSaysNothing) {
+  const SuccessInterval success = EstimateSuccess(0, 0);
+  EXPECT_EQ(success.lower, 0.0);
+  EXPECT_EQ(success.upper, 1.0);
+  EXPECT_EQ(success.num_rollouts, 0);
+}
+
+TEST(EstimateSuccessTest, IntervalHoldsTheShareAndMirrorsWithFailures) {
+  for (int n = 1; n <= 200; n += 7) {
+    for (int k = 0; k <= n; ++k) {
+      const SuccessInterval success = EstimateSuccess(k, n);
+      const SuccessInterval failure = EstimateSuccess(n - k, n);
+      EXPECT_LE(0.0, success.lower);
+      EXPECT_LE(success.lower, success.share);
+      EXPECT_LE(success.share, success.upper);
+      EXPECT_LE(success.upper, 1.0);
+      EXPECT_NEAR(success.lower, 1.0 - failure.upper, 1e-12) << k << " of " << n;
+    }
+  }
+}
+
+TEST(EstimateSuccessTest, MoreFlawlessRolloutsRaiseTheLowerEnd) {
+  for (int n = 1; n <= 512; n *= 2) {
+    EXPECT_GT(EstimateSuccess(2 * n, 2 * n).lower, EstimateSuccess(n, n).lower) << "n = " << n;
+  }
+}
+
+TEST(EstimateSuccessTest, ImpossibleCountsAreRefused) {
+  EXPECT_THROW(EstimateSuccess(-1, 3), std::logic_error);
+  EXPECT_THROW(EstimateSuccess(4, 3), std::logic_error);
+}
+
+TEST(FailureReasonTest, SuccessHasNone) { EXPECT_EQ(FailureReason(Success()), ""); }
+
+TEST(FailureReasonTest, OwnReasonIsKept) { EXPECT_EQ(FailureReason(NoPath()), "no_path"); }
+
+TEST(FailureReasonTest, ASuccessThatIsNoneGetsAReason) {
+  RolloutResult unfinished = Success();
+  unfinished.action_finished = false;
+  EXPECT_EQ(FailureReason(unfinished), "unfinished");
+  RolloutResult fallen = Success();
+  fallen.falls = 1;
+  EXPECT_EQ(FailureReason(fallen), "object_fell");
+  RolloutResult unseen = Success();
+  unseen.counts = {};
+  EXPECT_EQ(FailureReason(unseen), "no_samples");
+}
+
+TEST(FailureReasonTest, AFailureWithoutAReasonIsNamed) {
+  RolloutResult late;
+  late.outcome = Outcome::kTimedOut;
+  EXPECT_EQ(FailureReason(late), "timed_out");
+  RolloutResult silent = Success();
+  silent.outcome = Outcome::kFailed;
+  EXPECT_EQ(FailureReason(silent), "unknown");
+}
+
+TEST(DefectTest, SoundResultHasNone) {
+  EXPECT_EQ(Defect(Success()), "");
+  EXPECT_EQ(Defect(NoPath()), "");
+}
+
+TEST(DefectTest, NumbersThatAreNoneAreNamed) {
+  RolloutResult result = Success();
+  result.duration = std::nan("");
+  EXPECT_THAT(Defect(result), HasSubstr("duration is nan s, wanted"));
+  result = Success();
+  result.max_tilt = -0.1;
+  EXPECT_THAT(Defect(result), HasSubstr("max_tilt is -0.1 rad"));
+  result = Success();
+  result.duration = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(Defect(result), HasSubstr("duration is inf"));
+  result = Success();
+  result.counts.shaking = -3;
+  EXPECT_THAT(Defect(result), HasSubstr("shaking -3"));
+}
+
+TEST(SumUpTest, NothingGivesNothing) {
+  const Evidence evidence = SumUp({});
+  EXPECT_EQ(evidence.num_rollouts, 0);
+  EXPECT_EQ(evidence.confidence_mean, 0.0);
+  EXPECT_EQ(evidence.success.upper, 1.0);
+  EXPECT_EQ(evidence.median_rollout, -1);
+}
+
+TEST(SumUpTest, MixedRolloutsAreCountedByHand) {
+  const Evidence evidence = SumUp({Success(30.0, 12), Fall(20.0, 1), NoPath(), Success(40.0)});
+  EXPECT_EQ(evidence.num_rollouts, 4);
+  EXPECT_DOUBLE_EQ(evidence.success.share, 0.5);
+  EXPECT_DOUBLE_EQ(evidence.fall_share, 0.25);
+  EXPECT_DOUBLE_EQ(evidence.action_failed_share, 0.25);
+  EXPECT_EQ(evidence.falls, 1);
+  EXPECT_EQ(evidence.counts, (OutcomeCounts{628 + 639 + 20 + 640, 12, 1}));
+  EXPECT_DOUBLE_EQ(evidence.confidence_mean, (640.0 / 748.0 + 640.0 / 739.0 + 0.0 + 1.0) / 4.0);
+  EXPECT_DOUBLE_EQ(evidence.confidence_pooled, 1940.0 / (1927.0 + 120.0 + 100.0));
+  EXPECT_THAT(evidence.failures, ElementsAre(Pair("no_path", 1), Pair("object_fell", 1)));
+}
+
+TEST(SumUpTest, DurationsAreThoseOfFinishedActionsOnly) {
+  const Evidence evidence = SumUp({Success(30.0), NoPath(), Fall(20.0), Success(40.0)});
+  EXPECT_DOUBLE_EQ(evidence.duration.mean, 30.0);
+  EXPECT_DOUBLE_EQ(evidence.duration.sd, std::sqrt(200.0 / 3.0));
+  EXPECT_EQ(evidence.duration.p50, 30.0);
+  EXPECT_EQ(evidence.duration.p95, 40.0);
+  EXPECT_EQ(evidence.median_rollout, 0);
+}
+
+TEST(SumUpTest, QuantilesAreValuesThatOccurred) {
+  std::vector<RolloutResult> results;
+  for (int i = 100; i >= 1; --i) results.push_back(Success(i));
+  const Evidence evidence = SumUp(results);
+  EXPECT_EQ(evidence.duration.p50, 50.0);  // the lower one of 50 and 51
+  EXPECT_EQ(evidence.duration.p95, 95.0);
+  EXPECT_EQ(results[evidence.median_rollout].duration, 50.0);
+}
+
+TEST(SumUpTest, MedianRolloutIsTheFirstOfEquals) {
+  const Evidence evidence = SumUp({NoPath(), Success(7.0), Success(7.0), Success(7.0)});
+  EXPECT_EQ(evidence.median_rollout, 1);
+}
+
+TEST(SumUpTest, TiltQuantilesLeaveOutRolloutsWithoutSamples) {
+  RolloutResult missing;
+  missing.reason = "object_missing";
+  const Evidence evidence = SumUp({missing, Fall(), missing});
+  EXPECT_EQ(evidence.max_tilt.p50, 1.57);
+  EXPECT_EQ(evidence.max_tilt.p95, 1.57);
+}
+
+TEST(SumUpTest, MissingObjectIsAFailureAndNeverAConfidence) {
+  RolloutResult missing = Success();
+  missing.counts = {};
+  const Evidence evidence = SumUp(Times(16, missing));
+  EXPECT_EQ(evidence.confidence_mean, 0.0);
+  EXPECT_EQ(evidence.confidence_pooled, 0.0);
+  EXPECT_EQ(evidence.success.share, 0.0);
+  EXPECT_EQ(evidence.action_failed_share, 1.0);
+  EXPECT_EQ(evidence.median_rollout, -1);
+  EXPECT_THAT(evidence.failures, ElementsAre(Pair("no_samples", 16)));
+}
+
+TEST(SumUpTest, PooledConfidenceVanishesWhenMostActionsFailed) {
+  EXPECT_GT(SumUp(Times(2, Success()) + Times(2, NoPath())).confidence_pooled, 0.99);
+  EXPECT_EQ(SumUp(Times(2, Success()) + Times(3, NoPath())).confidence_pooled, 0.0);
+}
+
+TEST(SumUpTest, PrefixIsTheSameAsAShorterList) {
+  const auto results = Times(3, Success(20.0, 4)) + Times(2, Fall(25.0));
+  const Evidence of_prefix = SumUp(results, 4);
+  const Evidence of_list = SumUp(Times(3, Success(20.0, 4)) + Times(1, Fall(25.0)));
+  EXPECT_EQ(of_prefix.num_rollouts, 4);
+  EXPECT_EQ(of_prefix.confidence_mean, of_list.confidence_mean);
+  EXPECT_EQ(of_prefix.duration.sd, of_list.duration.sd);
+  EXPECT_EQ(of_prefix.failures, of_list.failures);
+  EXPECT_THROW(SumUp(results, 6), std::logic_error);
+  EXPECT_THROW(SumUp(results, -1), std::logic_error);
+}
+
+TEST(SumUpTest, OrderOfRolloutsChangesNoCountAndNoQuantile) {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    base::Rng rng = base::Rng(11).Fork(seed);
+    auto results = test_support::InventAll({0.3, 0.1, 30.0, 20}, rng, 1 + rng.Index(40));
+    const Evidence forward = SumUp(results);
+    std::reverse(results.begin(), results.end());
+    const Evidence backward = SumUp(results);
+    EXPECT_EQ(forward.counts, backward.counts);
+    EXPECT_EQ(forward.failures, backward.failures);
+    EXPECT_EQ(forward.success.lower, backward.success.lower);
+    EXPECT_EQ(forward.duration.p50, backward.duration.p50);
+    EXPECT_EQ(forward.max_tilt.p95, backward.max_tilt.p95);
+    EXPECT_NEAR(forward.confidence_mean, backward.confidence_mean, 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace hires::imagination
