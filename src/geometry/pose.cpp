@@ -27,9 +27,7 @@ Pose3 Pose3::Inverse() const {
   return {-(inverse * translation), inverse};
 }
 
-bool Pose3::IsFinite() const {
-  return translation.allFinite() && rotation.coeffs().allFinite();
-}
+bool Pose3::IsFinite() const { return translation.allFinite() && rotation.coeffs().allFinite(); }
 
 Pose3 operator*(const Pose3& X_AB, const Pose3& X_BC) {
   return {X_AB.translation + X_AB.rotation * X_BC.translation,

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hires/base/check.h"
 #include "hires/geometry/angles.h"
 
 namespace hires::geometry {
 namespace {
 
 constexpr int kRoundCorners = 24;
+constexpr double kTinyCorner = 1e-9;  // [m]
 
 template <typename... Fs>
 struct Overloaded : Fs... {
@@ -17,37 +19,33 @@ struct Overloaded : Fs... {
 template <typename... Fs>
 Overloaded(Fs...) -> Overloaded<Fs...>;
 
-/// Corners of a convex polytope around the shape, in the shape's frame.
-std::vector<Eigen::Vector3d> Corners(const Shape& shape) {
+/// Corners of a regular polygon around the circle.
+void AddCircumscribed(double radius, double z, std::vector<Eigen::Vector3d>* corners) {
+  const double around = radius / std::cos(kPi / kRoundCorners);
+  for (int i = 0; i < kRoundCorners; ++i) {
+    const double angle = 2.0 * kPi * i / kRoundCorners;
+    corners->emplace_back(around * std::cos(angle), around * std::sin(angle), z);
+  }
+}
+
+std::vector<Eigen::Vector3d> CornersOf(const Box& box) {
   std::vector<Eigen::Vector3d> corners;
-  const auto add_prism = [&corners](double radius, double z_min, double z_max) {
-    const double around = radius / std::cos(kPi / kRoundCorners);
-    for (int i = 0; i < kRoundCorners; ++i) {
-      const double angle = 2.0 * kPi * i / kRoundCorners;
-      for (const double z : {z_min, z_max}) {
-        corners.emplace_back(around * std::cos(angle), around * std::sin(angle), z);
+  for (const double x : {-0.5, 0.5}) {
+    for (const double y : {-0.5, 0.5}) {
+      for (const double z : {-0.5, 0.5}) {
+        corners.push_back(box.size.cwiseProduct(Eigen::Vector3d(x, y, z)));
       }
     }
-  };
-  std::visit(Overloaded{[&](const Box& box) {
-                          for (const double x : {-0.5, 0.5}) {
-                            for (const double y : {-0.5, 0.5}) {
-                              for (const double z : {-0.5, 0.5}) {
-                                corners.push_back(box.size.cwiseProduct(Eigen::Vector3d(x, y, z)));
-                              }
-                            }
-                          }
-                        },
-                        [&](const Cylinder& cylinder) {
-                          add_prism(cylinder.radius, -cylinder.length / 2, cylinder.length / 2);
-                        },
-                        [&](const Sphere& sphere) {
-                          add_prism(sphere.radius, -sphere.radius, sphere.radius);
-                        },
-                        [&](const std::shared_ptr<const TriangleMesh>& mesh) {
-                          corners = mesh->vertices;
-                        }},
-             shape);
+  }
+  return corners;
+}
+
+/// Corners of a prism around the cylinder.
+std::vector<Eigen::Vector3d> CornersOf(const Cylinder& cylinder) {
+  std::vector<Eigen::Vector3d> corners;
+  for (const double z : {-cylinder.length / 2, cylinder.length / 2}) {
+    AddCircumscribed(cylinder.radius, z, &corners);
+  }
   return corners;
 }
 
@@ -86,6 +84,24 @@ std::vector<Eigen::Vector2d> CutMeshToBand(const TriangleMesh& mesh, const Pose3
   return points;
 }
 
+std::vector<Eigen::Vector2d> CutPolytopeToBand(std::vector<Eigen::Vector3d> corners,
+                                               const Pose3& X_WS, double z_min, double z_max) {
+  for (Eigen::Vector3d& corner : corners) corner = X_WS * corner;
+  return CutToBand(corners, z_min, z_max);
+}
+
+/// The widest circle that the band cuts from the sphere, as corners around it.
+std::vector<Eigen::Vector2d> CutSphereToBand(const Sphere& sphere, const Eigen::Vector3d& p_WS,
+                                             double z_min, double z_max) {
+  const double off = std::clamp(p_WS.z(), z_min, z_max) - p_WS.z();
+  if (std::abs(off) >= sphere.radius) return {};
+  std::vector<Eigen::Vector3d> corners;
+  AddCircumscribed(std::sqrt((sphere.radius - off) * (sphere.radius + off)), 0.0, &corners);
+  std::vector<Eigen::Vector2d> points;
+  for (const Eigen::Vector3d& corner : corners) points.push_back((p_WS + corner).head<2>());
+  return points;
+}
+
 bool SpansAnArea(const std::vector<Eigen::Vector2d>& points) {
   for (std::size_t i = 2; i < points.size(); ++i) {
     for (std::size_t j = 1; j < i; ++j) {
@@ -94,6 +110,19 @@ bool SpansAnArea(const std::vector<Eigen::Vector2d>& points) {
     }
   }
   return false;
+}
+
+/// Cut points that should fall together, or on one line, miss each other by a rounding; without
+/// this the hull of 24 corners would have some forty.
+Polygon WithoutTinyCorners(const Polygon& hull) {
+  Polygon kept;
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const Eigen::Vector2d& previous = kept.empty() ? hull.back() : kept.back();
+    const Eigen::Vector2d chord = hull[(i + 1) % hull.size()] - previous;
+    const Eigen::Vector2d p = hull[i] - previous;
+    if (p.x() * chord.y() - p.y() * chord.x() > kTinyCorner * chord.norm()) kept.push_back(hull[i]);
+  }
+  return kept.size() >= 3 ? kept : hull;
 }
 
 }  // namespace
@@ -114,28 +143,45 @@ bool Aabb::Overlaps(const Aabb& other) const {
 }
 
 Aabb BoundsOf(const Shape& shape, const Pose3& X_WS) {
-  Aabb bounds;
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    bounds.lower = X_WS.translation.array() - sphere->radius;
-    bounds.upper = X_WS.translation.array() + sphere->radius;
-    return bounds;
-  }
-  for (const Eigen::Vector3d& corner : Corners(shape)) bounds.Include(X_WS * corner);
-  return bounds;
+  const auto around = [&X_WS](const Eigen::Vector3d& half) {
+    return Aabb{X_WS.translation - half, X_WS.translation + half};
+  };
+  return std::visit(
+      Overloaded{
+          [&](const Box& box) {
+            const Eigen::Matrix3d R_WS = X_WS.rotation.toRotationMatrix();
+            return around(R_WS.cwiseAbs() * box.size / 2.0);
+          },
+          [&](const Cylinder& cylinder) {
+            const Eigen::Array3d axis = X_WS.rotation * Eigen::Vector3d::UnitZ();
+            const Eigen::Array3d across = (1.0 - axis.square()).cwiseMax(0.0).sqrt();
+            return around(cylinder.length / 2 * axis.abs() + cylinder.radius * across);
+          },
+          [&](const Sphere& sphere) { return around(Eigen::Vector3d::Constant(sphere.radius)); },
+          [&](const std::shared_ptr<const TriangleMesh>& mesh) {
+            Aabb bounds;
+            for (const Eigen::Vector3d& p : mesh->vertices) bounds.Include(X_WS * p);
+            return bounds;
+          }},
+      shape);
 }
 
 std::optional<Polygon> OutlineInBand(const Shape& shape, const Pose3& X_WS, double z_min,
                                      double z_max) {
-  std::vector<Eigen::Vector2d> points;
-  if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape)) {
-    points = CutMeshToBand(**mesh, X_WS, z_min, z_max);
-  } else {
-    std::vector<Eigen::Vector3d> corners = Corners(shape);
-    for (Eigen::Vector3d& corner : corners) corner = X_WS * corner;
-    points = CutToBand(corners, z_min, z_max);
-  }
+  HIRES_CHECK(z_min <= z_max, "a band ends below its beginning");
+  std::vector<Eigen::Vector2d> points = std::visit(
+      Overloaded{[&](const Sphere& sphere) {
+                   return CutSphereToBand(sphere, X_WS.translation, z_min, z_max);
+                 },
+                 [&](const std::shared_ptr<const TriangleMesh>& mesh) {
+                   return CutMeshToBand(*mesh, X_WS, z_min, z_max);
+                 },
+                 [&](const auto& box_or_cylinder) {
+                   return CutPolytopeToBand(CornersOf(box_or_cylinder), X_WS, z_min, z_max);
+                 }},
+      shape);
   if (!SpansAnArea(points)) return std::nullopt;
-  return ConvexHull(std::move(points));
+  return WithoutTinyCorners(ConvexHull(std::move(points)));
 }
 
 }  // namespace hires::geometry

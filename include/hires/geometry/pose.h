@@ -25,7 +25,7 @@ struct Twist2 {
 
 /// Where B stands in A: `X_AB`. The quaternion is of unit length.
 struct Pose3 {
-  Eigen::Vector3d translation{Eigen::Vector3d::Zero()};        ///< [m]
+  Eigen::Vector3d translation{Eigen::Vector3d::Zero()};         ///< [m]
   Eigen::Quaterniond rotation{Eigen::Quaterniond::Identity()};  ///< turns B's axes into A's
 
   Pose3 Inverse() const;

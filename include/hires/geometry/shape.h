@@ -24,7 +24,7 @@ struct Sphere {
   double radius{0.5};
 };
 struct TriangleMesh {
-  std::vector<Eigen::Vector3d> vertices;     ///< [m], scaled
+  std::vector<Eigen::Vector3d> vertices;      ///< [m], scaled
   std::vector<std::array<int, 3>> triangles;  ///< counter-clockwise seen from outside
 };
 /// Meshes are constant after loading and shared between worlds.
@@ -46,11 +46,14 @@ struct Aabb {
   void Include(const Aabb& other);
   bool Overlaps(const Aabb& other) const;
 };
+/// The smallest box along W's axes around the shape; round shapes count as round.
 Aabb BoundsOf(const Shape& shape, const Pose3& X_WS);
 
-/// Convex outline, seen from above, of the part of the shape within z_min..z_max of frame W; nothing
-/// if no part lies there. Round shapes become polygons of 24 corners around them (circumscribed).
-/// A mesh gives the outline of its convex hull's part in the band.
+/// Convex outline, seen from above, of the part of the shape within z_min..z_max of frame W;
+/// nothing if no part lies there. Round shapes become polygons of 24 corners around them
+/// (circumscribed). A mesh gives the hull of its surface's part in the band.
+/// Corners that stand out by less than 1e-9 m are left out.
+/// @pre z_min <= z_max
 std::optional<Polygon> OutlineInBand(const Shape& shape, const Pose3& X_WS, double z_min,
                                      double z_max);
 
