@@ -13,17 +13,17 @@ namespace hires::robot {
 
 /// The robot as a request or a saved state names it.
 struct RobotState {
-  geometry::Pose2 X_MB;   ///< base in map
-  geometry::Twist2 V_B;   ///< base velocity, in the base frame
+  geometry::Pose2 X_MB;  ///< base in map
+  geometry::Twist2 V_B;  ///< base velocity, in the base frame
   JointPositions joints;
   bool operator==(const RobotState& other) const;
 };
 
 /// What a skill gets to see at each of its control cycles.
 struct Observation {
-  double time{0.0};                 ///< [s] since the action began
-  geometry::Pose2 X_MB;             ///< where the robot believes to stand
-  geometry::Twist2 V_B;             ///< odometry, in the base frame
+  double time{0.0};                            ///< [s] since the action began
+  geometry::Pose2 X_MB;                        ///< where the robot believes to stand
+  geometry::Twist2 V_B;                        ///< odometry, in the base frame
   std::vector<geometry::Polygon> obstacles_M;  ///< outlines seen now that are not in the map
 };
 

@@ -16,7 +16,7 @@ namespace hires::robot {
 enum class JointType { kFixed, kRevolute, kContinuous, kPrismatic };
 
 struct JointLimits {
-  double lower{0.0};     ///< [rad] or [m]; not used by continuous joints
+  double lower{0.0};  ///< [rad] or [m]; not used by continuous joints
   double upper{0.0};
   double velocity{0.0};  ///< [rad/s] or [m/s]
   double effort{0.0};    ///< [N m] or [N]
@@ -26,11 +26,11 @@ struct JointLimits {
 struct Joint {
   std::string name;
   JointType type{JointType::kFixed};
-  int parent{-1};           ///< index of the parent link
-  geometry::Pose3 X_PJ;     ///< joint frame in the parent link at position 0
+  int parent{-1};                                  ///< index of the parent link
+  geometry::Pose3 X_PJ;                            ///< joint frame in the parent link at position 0
   Eigen::Vector3d axis{Eigen::Vector3d::UnitX()};  ///< unit vector in the joint frame
   std::optional<JointLimits> limits;
-  std::string mimics;       ///< name of the joint that this one follows, or empty
+  std::string mimics;  ///< name of the joint that this one follows, or empty
   double mimic_multiplier{1.0};
   double mimic_offset{0.0};
 };
@@ -58,18 +58,25 @@ struct RobotModel {
   std::vector<std::string> JointNames() const;  ///< movable ones that mimic no other
 };
 
-/// @throws base::ConfigError naming file, element and remedy. Meshes (package://, file://, relative
-/// to the file) are loaded; a missing one is an error.
+/// Reads a URDF. Collision meshes (package:// by ROS_PACKAGE_PATH or a folder above the file,
+/// file://, or relative to the file) are loaded; a missing one is an error. Friction comes from
+/// <gazebo reference="link"> mu1 and mu2, the smaller of both; 1 where there is none.
+/// Masses must be positive and inertias positive definite; principal moments that break the
+/// triangle inequality, as invented ones of tiny frames do, are logged as one warning and kept.
+/// @throws base::ConfigError naming file, element, line and remedy.
 RobotModel LoadRobotModel(const std::string& urdf_path);
+/// The same for text; `where` is the file's path in messages and for relative meshes.
 RobotModel ParseRobotModel(const std::string& urdf_xml, const std::string& where);
 
 /// Pose of every link in the root link's frame, in the order of `model.links`.
-/// @throws base::ConfigError for an unknown joint or a position outside its limits (slack 1e-6).
+/// @throws base::ConfigError for a joint that is unknown, fixed or mimics another (set the one that
+/// leads), or for a position outside the limits of a joint or of one that follows it (slack 1e-6).
 std::vector<geometry::Pose3> ForwardKinematics(const RobotModel& model,
                                                const JointPositions& positions);
 
 /// All collision shapes of the robot as one rigid body in the root frame, its joints frozen.
-/// A collision is named "link" or "link/collision".
+/// A collision is named "link" or "link/collision"; "link/1", "link/2" where several have no name.
+/// @throws base::ConfigError as ForwardKinematics.
 std::vector<geometry::Collision> FrozenCollisions(const RobotModel& model,
                                                   const JointPositions& positions);
 

@@ -12,38 +12,42 @@ namespace hires::robot {
 
 /// Limits of one way to drive. All >= 0.
 struct MotionSet {
-  double max_linear_velocity{0.55};       ///< [m/s]
-  double max_angular_velocity{1.0};       ///< [rad/s]
-  double max_linear_acceleration{2.5};    ///< [m/s^2]
-  double max_angular_acceleration{3.2};   ///< [rad/s^2]
+  double max_linear_velocity{0.55};      ///< [m/s]
+  double max_angular_velocity{1.0};      ///< [rad/s]
+  double max_linear_acceleration{2.5};   ///< [m/s^2]
+  double max_angular_acceleration{3.2};  ///< [rad/s^2]
 };
 
 /// What the base's own controller does with velocity commands (PR2: pr2_base_controller at 1 kHz).
 struct BaseControllerParams {
   MotionSet limits{1.0, 2.0, 2.0, 2.0};  ///< clips commands; ramps at these accelerations
-  double max_linear_jerk{0.0};      ///< [m/s^3]; 0 means that acceleration may jump
-  double command_timeout{0.2};      ///< [s] without a command after which it brakes to a stop
-  double command_lag{0.0};          ///< [s] from a command's sending to its effect
-  double loop_frequency{0.0};       ///< [rad/s] natural frequency of the velocity loop; 0: ideal
-  double loop_damping{1.0};         ///< damping ratio of the velocity loop
-  double pitch_compliance{0.0};     ///< [rad s^2/m] how far the base leans per acceleration
+  double max_linear_jerk{0.0};           ///< [m/s^3]; 0 means that acceleration may jump
+  double command_timeout{0.2};           ///< [s] without a command after which it brakes to a stop
+  double command_lag{0.0};               ///< [s] from a command's sending to its effect
+  double loop_frequency{0.0};   ///< [rad/s] natural frequency of the velocity loop; 0: ideal
+  double loop_damping{1.0};     ///< damping ratio of the velocity loop
+  double sway_compliance{0.0};  ///< [rad s^2/m] how far the base leans per acceleration
+  double sway_frequency{17.0};  ///< [rad/s] natural frequency of that leaning
+  double sway_damping{0.2};     ///< its damping ratio
 };
 
 /// What cannot be read from a URDF: which link is what, how the base behaves, named motion sets and
 /// postures. One YAML per robot, config/robots/<name>.yaml.
 struct RobotProfile {
-  std::string urdf;                ///< path, relative to the profile's folder
-  std::string base_link;           ///< link whose pose in the plane the robot drives (base_footprint)
-  std::string tray_link;           ///< link that carries loose objects
-  geometry::Pose3 X_TO;            ///< where an object is put, in the tray link's frame
-  std::string laser_link;          ///< planar laser for navigation, or empty
-  geometry::Polygon footprint;     ///< in base_link [m]; from the collision shapes where not given
+  std::string urdf;             ///< path, relative to the profile's folder
+  std::string base_link;        ///< link whose pose in the plane the robot drives (base_footprint)
+  std::string tray_link;        ///< link that carries loose objects, or empty
+  geometry::Pose3 X_TO;         ///< where an object is put, in the tray link's frame
+  std::string laser_link;       ///< planar laser for navigation, or empty
+  geometry::Polygon footprint;  ///< in base_link [m]; from the collision shapes if empty in YAML
   double footprint_padding{0.015};  ///< [m]
-  std::map<std::string, MotionSet> motion_sets;  ///< "slow", "fast"; lower-case names
-  std::string default_motion_set;
+  /// Lower-case names; at first the two sets of the dissertation's Table 5.1.
+  std::map<std::string, MotionSet> motion_sets{{"fast", {0.55, 1.0, 2.5, 3.2}},
+                                               {"slow", {0.30, 1.0, 1.4, 2.0}}};
+  std::string default_motion_set{"fast"};
   BaseControllerParams base_controller;
-  JointPositions joints;           ///< posture while driving
-  std::uint64_t hash{0};           ///< of all fields but `urdf`
+  JointPositions joints;  ///< posture while driving
+  std::uint64_t hash{0};  ///< of all fields but `urdf`
 };
 
 /// A robot ready for use: model and profile that agree (links exist, joints within limits).
@@ -53,14 +57,18 @@ struct Robot {
   std::uint64_t hash() const;  ///< of both
 };
 
-/// Reads the profile and the URDF that it names.
+/// Reads the profile and the URDF that it names. Every key must be there; an empty `footprint` list
+/// asks for the hull of the collision shapes from above, joints in the driving posture.
 /// @throws base::ConfigError naming file and key.
 Robot LoadRobot(const std::string& profile_path);
 
 /// A robot from a bare URDF, with what can be derived: base_link is the root; the tray is the link
-/// whose name contains "tray" and has a collision shape, else the robot carries nothing; the
-/// footprint is the convex hull of the collision shapes seen from above (0 .. 2 m).
+/// whose name contains "tray" (case ignored) and has a collision shape, the largest one seen from
+/// above where several do, and objects stand on the middle of its top; without such a link the
+/// robot carries nothing. The footprint is the convex hull of the collision shapes seen from above
+/// (0 .. 2 m over the root), joints at rest, padded as RobotProfile's default.
 /// Motion sets and base controller are those of RobotProfile's defaults (PR2).
+/// @throws base::ConfigError as LoadRobotModel, and if there is no collision shape in that band.
 Robot LoadRobotFromUrdf(const std::string& urdf_path);
 
 }  // namespace hires::robot

@@ -1,0 +1,154 @@
+#include "hires/robot/robot_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+
+namespace hires::robot {
+namespace {
+
+using geometry::Pose3;
+
+constexpr double kLimitSlack = 1e-6;  // [rad] or [m]
+
+[[noreturn]] void Fail(const RobotModel& model, const std::string& what) {
+  throw base::ConfigError(fmt::format("robot '{}': {}", model.name, what));
+}
+
+bool IsLimited(const Joint& joint) { return joint.limits && joint.type != JointType::kContinuous; }
+
+double RestPosition(const Joint& joint) {
+  return IsLimited(joint) ? std::clamp(0.0, joint.limits->lower, joint.limits->upper) : 0.0;
+}
+
+void CheckWithinLimits(const RobotModel& model, const Joint& joint, double position) {
+  if (!std::isfinite(position)) {
+    Fail(model, fmt::format("joint '{}' is at {}, wanted a finite position", joint.name, position));
+  }
+  if (!IsLimited(joint)) return;
+  const double lower = joint.limits->lower, upper = joint.limits->upper;
+  if (position >= lower - kLimitSlack && position <= upper + kLimitSlack) return;
+  Fail(model, fmt::format("joint '{}'{} is at {}, wanted between {} and {}", joint.name,
+                          joint.mimics.empty() ? "" : " (follows '" + joint.mimics + "')", position,
+                          lower, upper));
+}
+
+const Joint* FindJoint(const RobotModel& model, const std::string& name) {
+  for (const Link& link : model.links) {
+    if (link.joint && link.joint->name == name) return &*link.joint;
+  }
+  return nullptr;
+}
+
+void CheckNames(const RobotModel& model, const JointPositions& positions) {
+  for (const auto& [name, position] : positions) {
+    const Joint* joint = FindJoint(model, name);
+    if (joint == nullptr) Fail(model, base::UnknownName("joint", name, model.JointNames()));
+    if (joint->type == JointType::kFixed) {
+      Fail(model, fmt::format("joint '{}' is fixed; leave it out", name));
+    }
+    if (!joint->mimics.empty()) {
+      Fail(model, fmt::format("joint '{}' follows '{}'; set that one", name, joint->mimics));
+    }
+  }
+}
+
+/// Positions of all joints that lead, given or at rest.
+JointPositions LeadingPositions(const RobotModel& model, const JointPositions& given) {
+  JointPositions all;
+  for (const Link& link : model.links) {
+    if (!link.joint || link.joint->type == JointType::kFixed || !link.joint->mimics.empty())
+      continue;
+    const auto found = given.find(link.joint->name);
+    all[link.joint->name] = found == given.end() ? RestPosition(*link.joint) : found->second;
+  }
+  return all;
+}
+
+double PositionOf(const Joint& joint, const JointPositions& leading) {
+  if (joint.type == JointType::kFixed) return 0.0;
+  if (joint.mimics.empty()) return leading.at(joint.name);
+  return joint.mimic_multiplier * leading.at(joint.mimics) + joint.mimic_offset;
+}
+
+/// The child's frame C in the joint's frame J.
+Pose3 Displacement(const Joint& joint, double position) {
+  switch (joint.type) {
+    case JointType::kRevolute:
+    case JointType::kContinuous:
+      return {Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(position, joint.axis))};
+    case JointType::kPrismatic:
+      return {position * joint.axis, Eigen::Quaterniond::Identity()};
+    default:
+      return {};
+  }
+}
+
+std::string FrozenName(const Link& link, std::size_t index) {
+  const std::string& own = link.collisions[index].name;
+  if (!own.empty()) return link.name + "/" + own;
+  return link.collisions.size() == 1 ? link.name : fmt::format("{}/{}", link.name, index + 1);
+}
+
+}  // namespace
+
+std::optional<int> RobotModel::FindLink(const std::string& wanted) const {
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (links[i].name == wanted) return static_cast<int>(i);
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> RobotModel::LinkNames() const {
+  std::vector<std::string> names;
+  for (const Link& link : links) names.push_back(link.name);
+  return names;
+}
+
+std::vector<std::string> RobotModel::JointNames() const {
+  std::vector<std::string> names;
+  for (const Link& link : links) {
+    if (link.joint && link.joint->type != JointType::kFixed && link.joint->mimics.empty()) {
+      names.push_back(link.joint->name);
+    }
+  }
+  return names;
+}
+
+std::vector<Pose3> ForwardKinematics(const RobotModel& model, const JointPositions& positions) {
+  CheckNames(model, positions);
+  const JointPositions leading = LeadingPositions(model, positions);
+  std::vector<Pose3> X_R;  // of each link in the root's frame
+  X_R.reserve(model.links.size());
+  for (const Link& link : model.links) {
+    if (!link.joint) {
+      X_R.emplace_back();
+      continue;
+    }
+    const double position = PositionOf(*link.joint, leading);
+    CheckWithinLimits(model, *link.joint, position);
+    X_R.push_back(X_R[link.joint->parent] * link.joint->X_PJ * Displacement(*link.joint, position));
+  }
+  return X_R;
+}
+
+std::vector<geometry::Collision> FrozenCollisions(const RobotModel& model,
+                                                  const JointPositions& positions) {
+  const std::vector<Pose3> X_R = ForwardKinematics(model, positions);
+  std::vector<geometry::Collision> frozen;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const Link& link = model.links[i];
+    for (std::size_t k = 0; k < link.collisions.size(); ++k) {
+      frozen.push_back(link.collisions[k]);
+      frozen.back().name = FrozenName(link, k);
+      frozen.back().X_BS = X_R[i] * link.collisions[k].X_BS;
+    }
+  }
+  return frozen;
+}
+
+}  // namespace hires::robot

@@ -1,0 +1,269 @@
+#include "hires/robot/robot_profile.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "hires/base/error.h"
+#include "hires/base/hash.h"
+#include "hires/base/param_reader.h"
+#include "hires/base/text.h"
+
+namespace hires::robot {
+namespace {
+
+using base::Between;
+using base::ParamReader;
+using geometry::Pose3;
+
+constexpr double kFootprintTop = 2.0;  // [m] above the base frame: what is higher passes over all
+
+MotionSet ReadMotionSet(ParamReader in) {
+  MotionSet set;
+  set.max_linear_velocity = in.Get("max_linear_velocity", Between(0.0, 100.0));
+  set.max_angular_velocity = in.Get("max_angular_velocity", Between(0.0, 100.0));
+  set.max_linear_acceleration = in.Get("max_linear_acceleration", Between(0.0, 1000.0));
+  set.max_angular_acceleration = in.Get("max_angular_acceleration", Between(0.0, 1000.0));
+  return set;
+}
+
+std::map<std::string, MotionSet> ReadMotionSets(ParamReader in) {
+  std::map<std::string, MotionSet> sets;
+  for (const std::string& key : in.Keys()) {
+    if (!sets.emplace(base::ToLower(key), ReadMotionSet(in.Sub(key))).second) {
+      in.Fail(key, "wanted names that differ in more than case; rename one");
+    }
+  }
+  return sets;
+}
+
+BaseControllerParams ReadBaseController(ParamReader in) {
+  BaseControllerParams params;
+  params.limits = ReadMotionSet(in.Sub("limits"));
+  params.max_linear_jerk = in.Get("max_linear_jerk", Between(0.0, 1e6));
+  params.command_timeout = in.Get("command_timeout", Between(0.001, 60.0));
+  params.command_lag = in.Get("command_lag", Between(0.0, 10.0));
+  params.loop_frequency = in.Get("loop_frequency", Between(0.0, 1e4));
+  params.loop_damping = in.Get("loop_damping", Between(0.0, 100.0));
+  params.sway_compliance = in.Get("sway_compliance", Between(0.0, 0.1));
+  params.sway_frequency = in.Get("sway_frequency", Between(0.1, 200.0));
+  params.sway_damping = in.Get("sway_damping", Between(0.0, 10.0));
+  return params;
+}
+
+Pose3 ReadPose(ParamReader in) {
+  const std::vector<double> xyz = in.GetNumbers("xyz", 3);
+  const std::vector<double> rpy = in.GetNumbers("rpy", 3);
+  return {{xyz[0], xyz[1], xyz[2]}, geometry::RotationFromRpy(rpy[0], rpy[1], rpy[2])};
+}
+
+double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+bool SpanAnArea(const geometry::Polygon& corners) {
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    for (std::size_t j = 1; j < i; ++j) {
+      if (std::abs(Cross(corners[i] - corners[0], corners[j] - corners[0])) > 1e-9) return true;
+    }
+  }
+  return false;
+}
+
+/// Corners in either direction of turning; an empty list stands for "from the shapes".
+geometry::Polygon ReadFootprint(ParamReader* in) {
+  geometry::Polygon corners;
+  for (ParamReader& corner : in->SubList("footprint")) {
+    const double x = corner.Get("x", Between(-100.0, 100.0));
+    corners.emplace_back(x, corner.Get("y", Between(-100.0, 100.0)));
+  }
+  if (corners.empty()) return corners;
+  if (!SpanAnArea(corners)) {
+    in->Fail("footprint", "wanted at least three corners that do not lie on one line");
+  }
+  const geometry::Polygon hull = geometry::ConvexHull(corners);
+  if (hull.size() != corners.size()) {
+    in->Fail("footprint", fmt::format("wanted a convex outline; only {} of its {} corners are "
+                                      "corners of its hull, leave out the others",
+                                      hull.size(), corners.size()));
+  }
+  return hull;
+}
+
+JointPositions ReadJoints(ParamReader in) {
+  JointPositions joints;
+  for (const std::string& name : in.Keys()) joints[name] = in.Get(name, Between(-1e3, 1e3));
+  return joints;
+}
+
+RobotProfile ReadProfile(ParamReader* in) {
+  RobotProfile profile;
+  profile.urdf = in->GetString("urdf");
+  profile.base_link = in->GetString("base_link");
+  profile.tray_link = in->GetString("tray_link");
+  profile.X_TO = ReadPose(in->Sub("object_on_tray"));
+  profile.laser_link = in->GetString("laser_link");
+  profile.footprint = ReadFootprint(in);
+  profile.footprint_padding = in->Get("footprint_padding", Between(0.0, 1.0));
+  profile.motion_sets = ReadMotionSets(in->Sub("motion_sets"));
+  profile.default_motion_set = base::ToLower(in->GetString("default_motion_set"));
+  profile.base_controller = ReadBaseController(in->Sub("base_controller"));
+  profile.joints = ReadJoints(in->Sub("joints"));
+  in->RejectUnknownKeys();
+  return profile;
+}
+
+void CheckLink(const ParamReader& in, const std::string& key, const RobotModel& model,
+               const std::string& link) {
+  if (model.FindLink(link)) return;
+  in.Fail(key, base::UnknownName("link", link, model.LinkNames()) + " (links of the URDF)");
+}
+
+void CheckProfile(const ParamReader& in, const RobotProfile& profile, const RobotModel& model) {
+  CheckLink(in, "base_link", model, profile.base_link);
+  if (!profile.laser_link.empty()) CheckLink(in, "laser_link", model, profile.laser_link);
+  if (!profile.tray_link.empty()) {
+    CheckLink(in, "tray_link", model, profile.tray_link);
+    if (model.links[*model.FindLink(profile.tray_link)].collisions.empty()) {
+      in.Fail("tray_link",
+              "which has no collision shape, so that nothing can stand on it; add one "
+              "to the URDF or name another link");
+    }
+  }
+  if (profile.motion_sets.count(profile.default_motion_set) == 0) {
+    std::vector<std::string> names;
+    for (const auto& [name, set] : profile.motion_sets) names.push_back(name);
+    in.Fail("default_motion_set",
+            base::UnknownName("motion set", profile.default_motion_set, names));
+  }
+  try {
+    ForwardKinematics(model, profile.joints);
+  } catch (const base::ConfigError& error) {
+    in.Fail("joints", error.what());
+  }
+}
+
+/// Hull of the collision shapes from above, in the frame of link `base_link`.
+geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_link,
+                            const JointPositions& joints) {
+  const Pose3 X_RB = ForwardKinematics(model, joints)[*model.FindLink(base_link)];
+  std::vector<Eigen::Vector2d> points;
+  for (const geometry::Collision& collision : FrozenCollisions(model, joints)) {
+    const auto outline = geometry::OutlineInBand(collision.shape, X_RB.Inverse() * collision.X_BS,
+                                                 0.0, kFootprintTop);
+    if (outline) points.insert(points.end(), outline->begin(), outline->end());
+  }
+  if (points.size() >= 3) return geometry::ConvexHull(std::move(points));
+  throw base::ConfigError(
+      fmt::format("robot '{}': no collision shape lies 0 to {} m above link '{}', so there is no "
+                  "footprint; add "
+                  "<collision> shapes, or give 'footprint' in a profile",
+                  model.name, kFootprintTop, base_link));
+}
+
+void AddTo(base::Hasher* hash, const MotionSet& set) {
+  hash->Add(set.max_linear_velocity);
+  hash->Add(set.max_angular_velocity);
+  hash->Add(set.max_linear_acceleration);
+  hash->Add(set.max_angular_acceleration);
+}
+
+void AddTo(base::Hasher* hash, const BaseControllerParams& params) {
+  AddTo(hash, params.limits);
+  for (const double value :
+       {params.max_linear_jerk, params.command_timeout, params.command_lag, params.loop_frequency,
+        params.loop_damping, params.sway_compliance, params.sway_frequency, params.sway_damping}) {
+    hash->Add(value);
+  }
+}
+
+std::uint64_t HashOf(const RobotProfile& profile) {
+  base::Hasher hash;
+  hash.Add(profile.base_link);
+  hash.Add(profile.tray_link);
+  for (int i = 0; i < 3; ++i) hash.Add(profile.X_TO.translation[i]);
+  for (int i = 0; i < 4; ++i) hash.Add(profile.X_TO.rotation.coeffs()[i]);
+  hash.Add(profile.laser_link);
+  hash.Add(static_cast<std::uint64_t>(profile.footprint.size()));
+  for (const Eigen::Vector2d& corner : profile.footprint) {
+    hash.Add(corner.x());
+    hash.Add(corner.y());
+  }
+  hash.Add(profile.footprint_padding);
+  for (const auto& [name, set] : profile.motion_sets) {
+    hash.Add(name);
+    AddTo(&hash, set);
+  }
+  hash.Add(profile.default_motion_set);
+  AddTo(&hash, profile.base_controller);
+  for (const auto& [name, position] : profile.joints) {
+    hash.Add(name);
+    hash.Add(position);
+  }
+  return hash.value();
+}
+
+/// A collision shape that may be the tray: the largest from above wins.
+struct TrayCandidate {
+  int link{-1};
+  double area{0.0};  ///< [m^2] of its bounding box from above
+  Pose3 X_TO;        ///< upright on the middle of its top, in the link's frame
+};
+
+TrayCandidate FindTray(const RobotModel& model) {
+  const std::vector<Pose3> X_R = ForwardKinematics(model, {});
+  TrayCandidate best;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    if (base::ToLower(model.links[i].name).find("tray") == std::string::npos) continue;
+    for (const geometry::Collision& collision : model.links[i].collisions) {
+      const geometry::Aabb bounds = geometry::BoundsOf(collision.shape, X_R[i] * collision.X_BS);
+      const Eigen::Vector3d size = bounds.upper - bounds.lower;
+      if (size.x() * size.y() <= best.area) continue;
+      const Eigen::Vector3d middle = 0.5 * (bounds.upper + bounds.lower);
+      const Pose3 X_RO{{middle.x(), middle.y(), bounds.upper.z()}, Eigen::Quaterniond::Identity()};
+      best = {static_cast<int>(i), size.x() * size.y(), X_R[i].Inverse() * X_RO};
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::uint64_t Robot::hash() const {
+  base::Hasher hash;
+  hash.Add(model.hash);
+  hash.Add(profile.hash);
+  return hash.value();
+}
+
+Robot LoadRobot(const std::string& profile_path) {
+  ParamReader in = ParamReader::FromFile(profile_path);
+  Robot robot;
+  robot.profile = ReadProfile(&in);
+  const std::filesystem::path folder = std::filesystem::path(profile_path).parent_path();
+  robot.model = LoadRobotModel((folder / robot.profile.urdf).lexically_normal().string());
+  CheckProfile(in, robot.profile, robot.model);
+  if (robot.profile.footprint.empty()) {
+    robot.profile.footprint = OutlineOf(robot.model, robot.profile.base_link, robot.profile.joints);
+  }
+  robot.profile.hash = HashOf(robot.profile);
+  return robot;
+}
+
+Robot LoadRobotFromUrdf(const std::string& urdf_path) {
+  Robot robot;
+  robot.model = LoadRobotModel(urdf_path);
+  RobotProfile& profile = robot.profile;
+  profile.urdf = std::filesystem::path(urdf_path).filename().string();
+  profile.base_link = robot.model.links.front().name;
+  const TrayCandidate tray = FindTray(robot.model);
+  if (tray.link >= 0) {
+    profile.tray_link = robot.model.links[tray.link].name;
+    profile.X_TO = tray.X_TO;
+  }
+  profile.footprint = OutlineOf(robot.model, profile.base_link, {});
+  profile.hash = HashOf(profile);
+  return robot;
+}
+
+}  // namespace hires::robot

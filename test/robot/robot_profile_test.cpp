@@ -1,0 +1,322 @@
+#include "hires/robot/robot_profile.h"
+
+#include <gmock/gmock.h>
+
+#include "hires/base/error.h"
+#include "temporary_folder.h"
+
+namespace hires::robot {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+/// A stranger's robot: a box on three wheels with a tray that stands on a post.
+constexpr char kTricycle[] = R"(<?xml version="1.0"?>
+<robot name="tricycle">
+  <link name="chassis">
+    <inertial><origin xyz="0 0 0.2"/><mass value="12"/>
+      <inertia ixx="0.3" ixy="0" ixz="0" iyy="0.4" iyz="0" izz="0.5"/></inertial>
+    <collision name="box"><origin xyz="0.1 0 0.2"/>
+      <geometry><box size="0.6 0.4 0.3"/></geometry></collision>
+  </link>
+  <joint name="post" type="prismatic"><origin xyz="0.1 0 0.35"/>
+    <parent link="chassis"/><child link="Serving_Tray"/><axis xyz="0 0 1"/>
+    <limit lower="0.2" upper="0.6" velocity="0.05" effort="100"/></joint>
+  <link name="Serving_Tray">
+    <collision><origin xyz="0 0 0.01"/><geometry><box size="0.3 0.3 0.02"/></geometry></collision>
+    <collision><origin xyz="0 0 -0.1"/>
+      <geometry><cylinder radius="0.02" length="0.2"/></geometry></collision>
+  </link>
+  <joint name="camera" type="fixed"><origin xyz="0.1 0 0.1"/>
+    <parent link="Serving_Tray"/><child link="tray_camera"/></joint>
+  <link name="tray_camera">
+    <collision><geometry><box size="0.05 0.05 0.05"/></geometry></collision>
+  </link>
+  <joint name="front" type="continuous"><origin xyz="0.3 0 0.1" rpy="1.57079632679 0 0"/>
+    <parent link="chassis"/><child link="front_wheel"/><axis xyz="0 0 1"/></joint>
+  <link name="front_wheel">
+    <collision><geometry><cylinder radius="0.1" length="0.04"/></geometry></collision></link>
+  <joint name="left" type="continuous"><origin xyz="-0.1 0.25 0.1" rpy="1.57079632679 0 0"/>
+    <parent link="chassis"/><child link="left_wheel"/><axis xyz="0 0 1"/></joint>
+  <link name="left_wheel">
+    <collision><geometry><cylinder radius="0.1" length="0.04"/></geometry></collision></link>
+  <joint name="right" type="continuous"><origin xyz="-0.1 -0.25 0.1" rpy="1.57079632679 0 0"/>
+    <parent link="chassis"/><child link="right_wheel"/><axis xyz="0 0 1"/></joint>
+  <link name="right_wheel">
+    <collision><geometry><cylinder radius="0.1" length="0.04"/></geometry></collision></link>
+</robot>)";
+
+constexpr char kProfile[] = R"(urdf: robots/tricycle.urdf
+base_link: chassis
+tray_link: Serving_Tray
+object_on_tray: {xyz: [0.05, 0.0, 0.02], rpy: [0.0, 0.0, 0.1]}
+laser_link: ""
+footprint: [{x: 0.4, y: 0.3}, {x: 0.4, y: -0.3}, {x: -0.2, y: -0.3}, {x: -0.2, y: 0.3}]
+footprint_padding: 0.02
+motion_sets:
+  Brisk: {max_linear_velocity: 0.9, max_angular_velocity: 1.1, max_linear_acceleration: 1.2, max_angular_acceleration: 1.3}
+default_motion_set: brisk
+base_controller:
+  limits: {max_linear_velocity: 1.5, max_angular_velocity: 2.5, max_linear_acceleration: 3.5, max_angular_acceleration: 4.5}
+  max_linear_jerk: 9.0
+  command_timeout: 0.3
+  command_lag: 0.04
+  loop_frequency: 20.0
+  loop_damping: 0.7
+  sway_compliance: 0.002
+  sway_frequency: 11.0
+  sway_damping: 0.3
+joints: {post: 0.4}
+)";
+
+class RobotProfileFile : public ::testing::Test {
+ protected:
+  RobotProfileFile() { folder_.Write("robots/tricycle.urdf", kTricycle); }
+
+  std::string Write(const std::string& yaml) const { return folder_.Write("robot.yaml", yaml); }
+
+  /// The profile with the first `from` replaced.
+  std::string WriteWith(const std::string& from, const std::string& to) const {
+    std::string yaml = kProfile;
+    const std::size_t at = yaml.find(from);
+    if (at == std::string::npos) throw std::logic_error("not in the profile: " + from);
+    return Write(yaml.replace(at, from.size(), to));
+  }
+
+  void ExpectRefused(const std::string& from, const std::string& to,
+                     const std::vector<std::string>& says) const {
+    const std::string path = WriteWith(from, to);
+    try {
+      LoadRobot(path);
+      ADD_FAILURE() << to << " was accepted";
+    } catch (const base::ConfigError& error) {
+      for (const std::string& words : says) EXPECT_THAT(error.what(), HasSubstr(words));
+      EXPECT_THAT(error.what(), HasSubstr(folder_.path().string()));
+    }
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(RobotProfileFile, EveryFieldIsRead) {
+  const Robot robot = LoadRobot(Write(kProfile));
+  const RobotProfile& profile = robot.profile;
+  EXPECT_EQ(robot.model.name, "tricycle");
+  EXPECT_EQ(profile.urdf, "robots/tricycle.urdf");
+  EXPECT_EQ(profile.base_link, "chassis");
+  EXPECT_EQ(profile.tray_link, "Serving_Tray");
+  EXPECT_EQ(profile.X_TO.translation, Eigen::Vector3d(0.05, 0.0, 0.02));
+  EXPECT_NEAR(geometry::YawOf(profile.X_TO.rotation), 0.1, 1e-12);
+  EXPECT_EQ(profile.laser_link, "");
+  EXPECT_EQ(profile.footprint.size(), 4u);
+  EXPECT_TRUE(geometry::Contains(profile.footprint, {0.39, 0.29}));
+  EXPECT_FALSE(geometry::Contains(profile.footprint, {-0.21, 0.0}));
+  EXPECT_EQ(profile.footprint_padding, 0.02);
+  const MotionSet& brisk = profile.motion_sets.at("brisk");
+  EXPECT_EQ(brisk.max_linear_velocity, 0.9);
+  EXPECT_EQ(brisk.max_angular_velocity, 1.1);
+  EXPECT_EQ(brisk.max_linear_acceleration, 1.2);
+  EXPECT_EQ(brisk.max_angular_acceleration, 1.3);
+  EXPECT_EQ(profile.default_motion_set, "brisk");
+  const BaseControllerParams& base = profile.base_controller;
+  EXPECT_EQ(base.limits.max_angular_acceleration, 4.5);
+  EXPECT_EQ(base.max_linear_jerk, 9.0);
+  EXPECT_EQ(base.command_timeout, 0.3);
+  EXPECT_EQ(base.command_lag, 0.04);
+  EXPECT_EQ(base.loop_frequency, 20.0);
+  EXPECT_EQ(base.loop_damping, 0.7);
+  EXPECT_EQ(base.sway_compliance, 0.002);
+  EXPECT_EQ(base.sway_frequency, 11.0);
+  EXPECT_EQ(base.sway_damping, 0.3);
+  EXPECT_EQ(profile.joints.at("post"), 0.4);
+}
+
+TEST_F(RobotProfileFile, EmptyFootprintComesFromTheShapes) {
+  const Robot robot =
+      LoadRobot(WriteWith("footprint: [{x: 0.4, y: 0.3}, {x: 0.4, y: -0.3}, {x: -0.2, y: -0.3}, "
+                          "{x: -0.2, y: 0.3}]",
+                          "footprint: []"));
+  EXPECT_TRUE(geometry::Contains(robot.profile.footprint, {0.399, 0.199}));
+  EXPECT_TRUE(geometry::Contains(robot.profile.footprint, {-0.1, 0.269}));
+  EXPECT_FALSE(geometry::Contains(robot.profile.footprint, {0.41, 0.0}));
+}
+
+TEST_F(RobotProfileFile, HashIgnoresLayoutAndPlace) {
+  const Robot robot = LoadRobot(Write(kProfile));
+  const std::string moved = folder_.Write(
+      "elsewhere/my.yaml", "# a comment\n" + [] {
+        std::string yaml = kProfile;
+        return yaml.replace(yaml.find("robots/"), 7, "../robots/");
+      }());
+  EXPECT_EQ(LoadRobot(moved).hash(), robot.hash());
+}
+
+TEST_F(RobotProfileFile, HashTellsApartEveryField) {
+  const std::uint64_t hash = LoadRobot(Write(kProfile)).hash();
+  const std::vector<std::pair<std::string, std::string>> changes{
+      {"base_link: chassis", "base_link: Serving_Tray"},
+      {"tray_link: Serving_Tray", "tray_link: \"\""},
+      {"[0.05, 0.0, 0.02]", "[0.05, 0.0, 0.03]"},
+      {"[0.0, 0.0, 0.1]", "[0.0, 0.0, 0.2]"},
+      {"laser_link: \"\"", "laser_link: tray_camera"},
+      {"{x: 0.4, y: 0.3}", "{x: 0.5, y: 0.3}"},
+      {"footprint_padding: 0.02", "footprint_padding: 0.03"},
+      {"max_linear_velocity: 0.9", "max_linear_velocity: 0.8"},
+      {"max_angular_acceleration: 4.5", "max_angular_acceleration: 4.6"},
+      {"max_linear_jerk: 9.0", "max_linear_jerk: 9.1"},
+      {"command_timeout: 0.3", "command_timeout: 0.4"},
+      {"command_lag: 0.04", "command_lag: 0.05"},
+      {"loop_frequency: 20.0", "loop_frequency: 21.0"},
+      {"loop_damping: 0.7", "loop_damping: 0.8"},
+      {"sway_compliance: 0.002", "sway_compliance: 0.003"},
+      {"sway_frequency: 11.0", "sway_frequency: 12.0"},
+      {"sway_damping: 0.3", "sway_damping: 0.4"},
+      {"post: 0.4", "post: 0.5"}};
+  for (const auto& [from, to] : changes) {
+    EXPECT_NE(LoadRobot(WriteWith(from, to)).hash(), hash) << to;
+  }
+}
+
+TEST_F(RobotProfileFile, RefusesMissingAndUnknownKeys) {
+  ExpectRefused("laser_link: \"\"\n", "", {"laser_link is missing"});
+  ExpectRefused("  command_lag: 0.04\n", "", {"base_controller.command_lag is missing"});
+  ExpectRefused("joints: {", "jonts: {}\njoints: {", {"'jonts' is unknown", "'joints'"});
+  ExpectRefused("  loop_damping", "  loop_dampening: 1\n  loop_damping",
+                {"loop_dampening' is unknown"});
+}
+
+TEST_F(RobotProfileFile, RefusesLinksThatAreNotThere) {
+  ExpectRefused("base_link: chassis", "base_link: chasis",
+                {"base_link is 'chasis'", "did you mean 'chassis'", "line 2"});
+  ExpectRefused("tray_link: Serving_Tray", "tray_link: tray", {"tray_link is 'tray'", "unknown"});
+  ExpectRefused("laser_link: \"\"", "laser_link: laser", {"laser_link is 'laser'"});
+}
+
+TEST_F(RobotProfileFile, RefusesATrayWithoutShape) {
+  std::string urdf = kTricycle;
+  const std::size_t begin = urdf.find("<collision><geometry><box size=\"0.05");
+  urdf.erase(begin, urdf.find("</collision>", begin) + 12 - begin);
+  folder_.Write("robots/tricycle.urdf", urdf);
+  ExpectRefused("tray_link: Serving_Tray", "tray_link: tray_camera",
+                {"tray_link is 'tray_camera'", "no collision shape"});
+}
+
+TEST_F(RobotProfileFile, RefusesBadFootprints) {
+  ExpectRefused("{x: 0.4, y: 0.3}, {x: 0.4, y: -0.3}, ", "", {"footprint", "three corners"});
+  ExpectRefused("{x: -0.2, y: 0.3}", "{x: 0.4, y: 0.0}", {"footprint", "convex"});
+  ExpectRefused("{x: -0.2, y: 0.3}", "{x: -0.2}", {"footprint[3].y is missing"});
+  ExpectRefused("{x: 0.4, y: 0.3}", "{x: far, y: 0.3}", {"footprint[0].x is 'far'"});
+}
+
+TEST_F(RobotProfileFile, RefusesBadMotionSets) {
+  ExpectRefused("default_motion_set: brisk", "default_motion_set: brusque",
+                {"default_motion_set is 'brusque'", "did you mean 'brisk'"});
+  ExpectRefused("max_linear_velocity: 0.9", "max_linear_velocity: -0.9",
+                {"motion_sets.Brisk.max_linear_velocity is '-0.9'", "between 0"});
+  ExpectRefused("default_motion_set",
+                "  brisk: {max_linear_velocity: 1, max_angular_velocity: 1, "
+                "max_linear_acceleration: 1, max_angular_acceleration: 1}\ndefault_motion_set",
+                {"motion_sets.brisk", "differ in more than case"});
+}
+
+TEST_F(RobotProfileFile, RefusesBadPosture) {
+  ExpectRefused("post: 0.4", "post: 0.7", {"joints", "'post' is at 0.7", "0.2 and 0.6"});
+  ExpectRefused("post: 0.4", "pst: 0.4", {"joints", "'pst' is unknown", "'post'"});
+  ExpectRefused("post: 0.4", "post: high", {"joints.post is 'high'"});
+}
+
+TEST_F(RobotProfileFile, RefusesBadPose) {
+  ExpectRefused("[0.05, 0.0, 0.02]", "[0.05, 0.0]", {"object_on_tray.xyz", "3 numbers"});
+  ExpectRefused("[0.05, 0.0, 0.02]", "[0.05, .nan, 0.02]", {"object_on_tray.xyz", "finite"});
+}
+
+TEST_F(RobotProfileFile, RefusesMissingFiles) {
+  ExpectRefused("tricycle.urdf", "bicycle.urdf", {"bicycle.urdf: no such file"});
+  EXPECT_THAT([] { LoadRobot("no/such.yaml"); },
+              ThrowsMessage<base::ConfigError>(HasSubstr("no/such.yaml")));
+}
+
+TEST_F(RobotProfileFile, BareUrdfIsEnough) {
+  const Robot robot = LoadRobotFromUrdf((folder_.path() / "robots/tricycle.urdf").string());
+  EXPECT_EQ(robot.profile.base_link, "chassis");
+  EXPECT_EQ(robot.profile.tray_link, "Serving_Tray");  // wider than tray_camera
+  EXPECT_TRUE(robot.profile.X_TO.translation.isApprox(Eigen::Vector3d(0.0, 0.0, 0.02), 1e-12));
+  EXPECT_EQ(robot.profile.default_motion_set, "fast");
+  EXPECT_EQ(robot.profile.motion_sets.at("slow").max_linear_velocity, 0.30);
+  EXPECT_TRUE(geometry::Contains(robot.profile.footprint, {0.399, 0.199}));
+  EXPECT_TRUE(geometry::Contains(robot.profile.footprint, {-0.199, 0.199}));
+  EXPECT_TRUE(geometry::Contains(robot.profile.footprint, {-0.1, -0.269}));
+  EXPECT_FALSE(geometry::Contains(robot.profile.footprint, {0.0, 0.29}));
+  EXPECT_NE(robot.hash(), 0u);
+}
+
+TEST_F(RobotProfileFile, BareUrdfWithoutTrayCarriesNothing) {
+  std::string urdf = kTricycle;
+  for (const char* name : {"Serving_Tray", "tray_camera"}) {
+    for (std::size_t at = urdf.find(name); at != std::string::npos; at = urdf.find(name)) {
+      urdf.replace(at, std::string(name).size(), name[0] == 'S' ? "shelf" : "camera");
+    }
+  }
+  const Robot robot = LoadRobotFromUrdf(folder_.Write("shelf.urdf", urdf));
+  EXPECT_EQ(robot.profile.tray_link, "");
+}
+
+TEST_F(RobotProfileFile, BareUrdfWithoutShapesIsRefused) {
+  const std::string path =
+      folder_.Write("ghost.urdf", "<robot name=\"ghost\"><link name=\"a\"/></robot>");
+  EXPECT_THAT(
+      [&] { LoadRobotFromUrdf(path); },
+      ThrowsMessage<base::ConfigError>(AllOf(HasSubstr("'ghost'"), HasSubstr("no footprint"))));
+}
+
+TEST_F(RobotProfileFile, BareUrdfTurnedTrayStillHasItsTopUp) {
+  std::string urdf = kTricycle;
+  const std::string origin = "<origin xyz=\"0.1 0 0.35\"/>";
+  urdf.replace(urdf.find(origin), origin.size(),
+               "<origin xyz=\"0.1 0 0.35\" rpy=\"3.14159265358979312 0 0\"/>");
+  urdf.replace(urdf.find("<axis xyz=\"0 0 1\"/>"), 19, "<axis xyz=\"0 0 -1\"/>");
+  const Robot robot = LoadRobotFromUrdf(folder_.Write("turned.urdf", urdf));
+  const auto X_R = ForwardKinematics(robot.model, {});
+  const geometry::Pose3 X_RO = X_R[*robot.model.FindLink("Serving_Tray")] * robot.profile.X_TO;
+  // The plate lies 0 .. 0.02 along the turned frame's z: its top is now the frame's origin.
+  EXPECT_TRUE(X_RO.translation.isApprox(Eigen::Vector3d(0.1, 0.0, 0.55), 1e-9));
+  EXPECT_NEAR(geometry::TiltOf(X_RO.rotation), 0.0, 1e-9);
+}
+
+TEST(ConfiguredRobots, AllLoad) {
+  int num_robots = 0;
+  const std::filesystem::path folder = std::filesystem::path(HIRES_SOURCE_DIR) / "config/robots";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".yaml") continue;
+    EXPECT_NO_THROW(LoadRobot(entry.path().string())) << entry.path();
+    ++num_robots;
+  }
+  EXPECT_GE(num_robots, 2);
+}
+
+TEST(ConfiguredRobots, CartCarriesItsTrayHigh) {
+  const Robot cart = LoadRobot(std::string(HIRES_SOURCE_DIR) + "/config/robots/cart.yaml");
+  const auto X_R = ForwardKinematics(cart.model, cart.profile.joints);
+  const geometry::Pose3 X_RO = X_R[*cart.model.FindLink("tray_link")] * cart.profile.X_TO;
+  EXPECT_TRUE(X_RO.translation.isApprox(Eigen::Vector3d(-0.05, 0.0, 0.78), 1e-12));
+  geometry::Aabb box;
+  for (const auto& collision : FrozenCollisions(cart.model, {})) {
+    box.Include(geometry::BoundsOf(collision.shape, collision.X_BS));
+  }
+  EXPECT_NEAR(box.lower.z(), 0.0, 1e-3);  // wheels and ball touch the floor
+  EXPECT_NEAR(box.upper.z(), 0.78, 1e-12);
+}
+
+TEST(ConfiguredRobots, CartFromItsBareUrdfIsTheSameCart) {
+  const Robot cart = LoadRobot(std::string(HIRES_SOURCE_DIR) + "/config/robots/cart.yaml");
+  const Robot bare = LoadRobotFromUrdf(std::string(HIRES_SOURCE_DIR) + "/urdf/cart.urdf");
+  EXPECT_EQ(bare.model.hash, cart.model.hash);
+  EXPECT_EQ(bare.profile.tray_link, cart.profile.tray_link);
+  EXPECT_LT((bare.profile.X_TO.translation - cart.profile.X_TO.translation).norm(), 1e-12);
+  EXPECT_EQ(bare.profile.footprint, cart.profile.footprint);
+}
+
+}  // namespace
+}  // namespace hires::robot
