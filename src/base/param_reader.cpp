@@ -199,6 +199,8 @@ std::vector<std::string> ParamReader::Keys() const {
   return keys;
 }
 
+std::string ParamReader::Canonical() const { return YAML::Dump(node_); }
+
 void ParamReader::RejectUnknownKeys() const {
   std::vector<std::string> wanted;
   for (const std::string& key : read_->keys) wanted.push_back(prefix_ + key);

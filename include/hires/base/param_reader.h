@@ -45,6 +45,8 @@ class ParamReader {
   std::vector<ParamReader> SubList(const std::string& key);  ///< a list of maps
   std::vector<std::string> Keys() const;                     ///< in the order of the file
 
+  std::string Canonical() const;  ///< as YAML text without comments, for hashes
+
   /// @throws ConfigError naming the first key that nobody asked for, here or in any Sub().
   void RejectUnknownKeys() const;
 

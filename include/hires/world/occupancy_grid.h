@@ -20,7 +20,9 @@ struct OccupancyGrid {
   Eigen::Vector2d origin{Eigen::Vector2d::Zero()};  ///< [m] in map
   std::vector<Cell> cells;
 
-  Cell at(int column, int row) const { return cells[static_cast<std::size_t>(row) * width + column]; }
+  Cell at(int column, int row) const {
+    return cells[static_cast<std::size_t>(row) * width + column];
+  }
   Eigen::Vector2d CentreOf(int column, int row) const;
 };
 

@@ -29,10 +29,10 @@ struct StaticBody {
 };
 
 struct ObjectState {
-  std::string name;       ///< instance, "peppermill1"
-  std::string model;      ///< key of World::models
-  geometry::Pose3 X_MO;   ///< object in map
-  geometry::Twist3 V_MO;  ///< in map axes
+  std::string name;         ///< instance, "peppermill1"
+  std::string model;        ///< key of World::models
+  geometry::Pose3 X_MO;     ///< object in map
+  geometry::Twist3 V_MO;    ///< in map axes
   std::string attached_to;  ///< robot link that holds it rigidly, or empty
 };
 
@@ -50,9 +50,9 @@ struct World {
   std::string name;
   double gravity{9.81};  ///< [m/s^2], along -z
   double floor_friction{1.0};
-  std::vector<StaticBody> statics;                       ///< the floor z = 0 is implied
-  std::map<std::string, geometry::Pose3> frames;         ///< areas, X_MF; lower-case keys
-  std::map<std::string, std::string> frame_names;        ///< lower case -> as in the file
+  std::vector<StaticBody> statics;                 ///< the floor z = 0 is implied
+  std::map<std::string, geometry::Pose3> frames;   ///< areas, X_MF; lower-case keys
+  std::map<std::string, std::string> frame_names;  ///< lower case -> as in the file
   std::map<std::string, std::shared_ptr<const ObjectModel>> models;  ///< by name
   WorldState initial;
   std::uint64_t hash{0};  ///< of everything but `initial`; independent of the file's layout

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hires/base/action.h"
+#include "hires/imagination/imagination_setup.h"
+#include "hires/imagination/report.h"
+#include "hires/imagination/scheduler.h"
+
+namespace hires::evaluation {
+
+/// What `hires imagine` was asked.
+struct ImagineQuery {
+  base::ActionTemplate action;
+  std::string from;                  ///< area where the robot stands
+  std::vector<std::string> objects;  ///< on its tray
+  std::uint64_t seed{1};
+  imagination::SchedulerParams scheduler;
+  imagination::SetupConfig setup;
+  bool own_uncertainty{false};  ///< an uncertainty was named that the workers may not have
+  int threads{1};
+};
+
+/// Answers a query through running nodes instead of in this process.
+using ImagineRemotely = std::function<imagination::Report(
+    const ImagineQuery&, const imagination::OnInterim&, const std::function<bool()>& cancelled)>;
+
+/// A verb that another layer adds: name, one line of help, and what to do with its arguments.
+struct Verb {
+  std::string name;
+  std::string help;
+  std::function<int(const std::vector<std::string>& arguments)> run;
+};
+
+/// A check of `hires doctor` that another layer adds: prints its lines, false if something is
+/// wrong.
+using Check = std::function<bool()>;
+
+/// What the program can do beyond this process; all may be empty.
+struct Backends {
+  std::string package_folder;  ///< where config/, worlds/, urdf/ lie
+  ImagineRemotely imagine_remotely;
+  std::vector<Verb> more_verbs;
+  std::vector<Check> more_checks;
+};
+
+/// Exit codes of `hires`.
+enum ExitCode {
+  kExitRecommended = 0,  ///< done; for imagine: there is a recommendation
+  kExitBadInput = 1,     ///< the message says what is wrong
+  kExitAllFailed = 2,    ///< every alternative fails
+  kExitNoWorker = 3,     ///< nobody could be asked
+  kExitDeadline = 4,     ///< nothing finished by the deadline
+  kExitCancelled = 130   ///< interrupted
+};
+int ExitCodeOf(const imagination::Report& report);
+
+/// The program `hires`: parses, runs one verb, prints. Never throws.
+int RunCommandLine(int argc, char** argv, const Backends& backends);
+
+/// Imagines in this process, as `hires imagine --local`.
+imagination::Report ImagineInThisProcess(const ImagineQuery& query,
+                                         const imagination::OnInterim& on_interim,
+                                         const std::function<bool()>& cancelled);
+
+}  // namespace hires::evaluation

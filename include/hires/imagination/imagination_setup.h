@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hires/base/param_reader.h"
+#include "hires/imagination/rollout.h"
+#include "hires/imagination/uncertainty.h"
+#include "hires/physics/physics_world.h"
+#include "hires/simulation/scene.h"
+#include "hires/skills/skill_factory.h"
+
+namespace hires::imagination {
+
+/// Which files and numbers a world to imagine in is made of: one YAML, config/scene.yaml. Relative
+/// paths count from that file's folder.
+struct SetupConfig {
+  std::string world;                       ///< SDF world
+  std::string robot;                       ///< robot profile (.yaml) or bare URDF (.urdf)
+  std::string objects;                     ///< catalogue of object instances (YAML)
+  std::string uncertainty;                 ///< YAML, or "none"
+  std::vector<std::string> extra_objects;  ///< object models (.sdf, .urdf) beside the catalogue's
+  skills::MoveBaseParams driving;
+  skills::MoveBaseBlindParams blind;
+  physics::PhysicsParams physics;
+  RolloutParams rollout;
+  std::uint64_t params_hash{0};  ///< of all numbers above
+};
+
+/// @throws base::ConfigError naming file and key.
+SetupConfig ReadSetupConfig(const std::string& path);
+
+/// Everything constant that imagining needs, loaded once and shared by all requests.
+struct ImaginationSetup {
+  std::shared_ptr<const simulation::Scene> scene;
+  std::shared_ptr<const skills::SkillSet> skills;
+  std::shared_ptr<const Uncertainty> uncertainty;
+  RolloutParams rollout;
+  physics::PhysicsParams physics;
+  std::map<std::string, std::string> object_models;  ///< instance (lower case) -> model
+  std::uint64_t world_hash{0};  ///< world, object models and all parameters of physics and skills
+  std::uint64_t robot_hash{0};
+
+  /// The model of an instance of the catalogue, or of an object model by its own name.
+  /// @throws base::ConfigError with names like it.
+  std::string ModelOf(const std::string& instance_or_model) const;
+};
+
+/// @throws base::ConfigError naming file, element and remedy.
+ImaginationSetup LoadImaginationSetup(const SetupConfig& config);
+
+/// Where a rollout begins.
+struct StartState {
+  world::WorldState world;
+  robot::RobotState robot;
+};
+
+/// The robot at an area with objects on its tray: the first in the middle, the next ones to its
+/// right and left, 0.13 m apart (the slots of the tray pick and place action).
+/// @throws base::ConfigError for an unknown area or object, or more than three objects.
+StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
+                          const std::vector<std::string>& objects);
+
+/// What the rollouts of a request share.
+RolloutSetup MakeRolloutSetup(const ImaginationSetup& setup, const StartState& start,
+                              std::uint64_t seed);
+
+}  // namespace hires::imagination

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hires/base/action.h"
+#include "hires/imagination/scheduler.h"
+
+namespace hires::imagination {
+
+/// What imagination found about one parametrisation.
+struct Prediction {
+  base::ActionCall action;
+  Evidence evidence;
+  world::WorldState
+      final_world;  ///< of the rollout with the median duration; empty if none finished
+  robot::RobotState final_robot;
+};
+
+/// The answer to one request.
+struct Report {
+  ImaginationOutcome outcome{ImaginationOutcome::kNothingFinished};
+  bool complete{false};             ///< settled or all played; false: cut short by deadline or loss
+  std::vector<Prediction> ranking;  ///< best first
+  int recommended{-1};              ///< index into `ranking`, or -1
+  std::string why;                  ///< one sentence for people
+  std::uint64_t seed{0};
+  double wall_seconds{0.0};
+  double simulated_seconds{0.0};  ///< of the rollouts behind the ranking
+};
+
+/// What is known while the work goes on.
+struct Interim {
+  Progress progress;
+  std::vector<Prediction> ranking;  ///< best first, without final states
+  int num_workers{0};
+};
+using OnInterim = std::function<void(const Interim&)>;
+
+/// The predictions of a ranking in its order. Final states are filled in where `with_final_states`.
+std::vector<Prediction> PredictionsOf(const Scheduler& scheduler, const Ranking& ranking,
+                                      const std::vector<base::ActionCall>& actions,
+                                      bool with_final_states);
+
+/// @pre scheduler.finished(); `actions` are its alternatives.
+Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall>& actions,
+                  RankingRule rule, std::uint64_t seed, double wall_seconds);
+
+}  // namespace hires::imagination

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "hires/base/action.h"
+#include "hires/base/param_reader.h"
+#include "hires/imagination/rollout_result.h"
+#include "hires/imagination/uncertainty.h"
+#include "hires/physics/physics_world.h"
+#include "hires/simulation/scene.h"
+#include "hires/skills/skill_factory.h"
+
+namespace hires::imagination {
+
+/// How a rollout is played and counted. Defaults from the dissertation (sections 5.2, 5.6).
+struct RolloutParams {
+  double settling_time{0.5};   ///< [s] before the action begins; not counted
+  double time_limit{300.0};    ///< [s] simulated, for the action
+  double sample_period{0.05};  ///< [s] 20 Hz
+  double shaking_tilt{0.01};   ///< [rad] alpha_n of Eq. 5.1
+  double topple_tilt{0.5};     ///< [rad] alpha_t of Eq. 5.1
+  double lost_distance{0.10};  ///< [m] on the tray, from where it stood: counts as fallen
+  double aftermath{2.0};       ///< [s] at most, to see whether what still shakes will fall
+  bool put_back{false};        ///< a fallen object is put back, as in the original's experiments
+  double put_back_tilt{1.56};  ///< [rad] from which it is put back
+};
+RolloutParams ReadRolloutParams(base::ParamReader in);
+
+/// Everything that the rollouts of one ground action have in common; constant, shared by threads.
+struct RolloutSetup {
+  std::shared_ptr<const simulation::Scene> scene;
+  std::shared_ptr<const skills::SkillSet> skills;
+  std::shared_ptr<const Uncertainty> uncertainty;
+  world::WorldState world_state;
+  robot::RobotState robot_state;
+  std::uint64_t seed{0};
+  RolloutParams params;
+  physics::PhysicsParams physics;
+};
+
+/// Refuses what could not be played: unknown action, area, motion set, model; poses that make no
+/// sense; a nominal start in collision.  @throws base::ConfigError saying what.
+void CheckSetup(const RolloutSetup& setup, const base::ActionCall& action);
+
+/// Plays rollout `index` of an action: samples a truth (the same for every action that is played
+/// with this seed and index), lets the load settle, runs the skill in lockstep with physics,
+/// counts. Gives up early, with nothing, when `cancelled` (may be empty) says so.
+std::optional<RolloutResult> PlayRollout(const RolloutSetup& setup, const base::ActionCall& action,
+                                         int index, const std::function<bool()>& cancelled = {});
+
+}  // namespace hires::imagination

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "hires/base/rng.h"
+#include "hires/simulation/variation.h"
+
+namespace hires::imagination {
+
+/// How one uncertain quantity is spread.
+struct Distribution {
+  enum class Kind { kFixed, kUniform, kNormal };
+  Kind kind{Kind::kFixed};
+  double first{0.0};   ///< fixed: the value; uniform: lower end; normal: mean
+  double second{0.0};  ///< uniform: upper end; normal: standard deviation
+
+  double Sample(base::Rng* rng) const;  ///< a normal one is drawn again beyond 3 deviations
+};
+
+/// What is uncertain about world, robot and control. One quantity for each number of
+/// simulation::Variation; a quantity that is not named keeps its nominal value.
+struct Uncertainty {
+  std::map<std::string, Distribution> quantities;
+  std::string yaml;       ///< the text it was read from; "none" if nothing is uncertain
+  std::uint64_t hash{0};  ///< of names and distributions
+};
+
+/// Reads `config/uncertainty.yaml` or a file like it. Each quantity is a map with `distribution`
+/// (fixed, uniform, normal), its numbers (`value`; `lower`, `upper`; `mean`, `sd`), `unit` (must be
+/// the quantity's own) and `source` (why these numbers).
+/// @throws base::ConfigError naming file, key and line.
+Uncertainty LoadUncertainty(const std::string& path);
+Uncertainty ParseUncertainty(const std::string& yaml, const std::string& where);
+Uncertainty NoUncertainty();  ///< everything exactly nominal
+
+/// `text` is "none", or YAML as above.
+Uncertainty UncertaintyFromText(const std::string& text, const std::string& where);
+
+/// Draws one truth. Each quantity has a stream of its own, so that one more or less uncertain
+/// quantity leaves the draws of the others alone (common random numbers).
+simulation::Variation SampleVariation(const Uncertainty& uncertainty, const base::Rng& rng);
+
+}  // namespace hires::imagination

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/geometry/polygon.h"
+#include "hires/geometry/pose.h"
+#include "hires/geometry/shape.h"
+#include "hires/world/world.h"
+
+namespace hires::simulation {
+
+/// Two things that touch.
+struct RobotContact {
+  std::string robot_part;  ///< collision of the robot, "l_forearm_link"
+  std::string obstacle;    ///< static body of the world, "table1"
+};
+
+/// Tells whether the robot, moving in the plane with its joints frozen, touches a static body. Each
+/// shape counts as the upright prism over its outline between its lowest and its highest point:
+/// exact for upright boxes and cylinders, never too small for anything else.
+class RobotClearance {
+ public:
+  /// @param robot_B  collision shapes in the base frame.
+  RobotClearance(const std::vector<geometry::Collision>& robot_B, const world::World& world);
+
+  /// The first contact in the order of the shapes, or nothing.
+  std::optional<RobotContact> FindContact(const geometry::Pose2& X_MB) const;
+
+  /// Horizontal distance from the robot's nearest part to the nearest body at its height [m], at
+  /// most `limit`; 0 on contact.
+  double Clearance(const geometry::Pose2& X_MB, double limit) const;
+
+ private:
+  struct Prism {
+    std::string name;
+    geometry::Polygon outline;
+    double z_min{0.0}, z_max{0.0};
+    Eigen::Vector2d centre{0.0, 0.0};  // of a circle around the outline
+    double radius{0.0};
+  };
+  static std::optional<Prism> MakePrism(const std::string& name, const geometry::Collision& shape,
+                                        const geometry::Pose3& X_WB);
+  /// Calls visit(part, obstacle, distance) for all pairs of one height that may lie within `limit`.
+  template <typename Visit>
+  void ForNearPairs(const geometry::Pose2& X_MB, double limit, Visit visit) const;
+
+  std::vector<Prism> robot_;      // in the base frame
+  std::vector<Prism> obstacles_;  // in the map
+  double robot_radius_{0.0};      // around the base's origin
+};
+
+}  // namespace hires::simulation

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "hires/navigation/a_star.h"
+#include "hires/navigation/costmap.h"
+#include "hires/navigation/dwa.h"
+#include "hires/robot/robot_profile.h"
+#include "hires/skills/skill.h"
+
+namespace hires::skills {
+
+struct MoveBaseParams {
+  navigation::CostmapParams costmap;
+  navigation::AStarParams planner;
+  navigation::DwaParams local;
+  double min_obstacle_height{0.08};  ///< [m] what is lower is driven over
+  double map_resolution{0.05};       ///< [m] cell of the costmap made from a world
+  double replanning_period{1.0};     ///< [s] between two attempts when there is no valid trajectory
+  double controller_patience{15.0};  ///< [s] without a valid trajectory before giving up
+  double oscillation_timeout{10.0};  ///< [s] without ...
+  double oscillation_distance{0.5};  ///< [m] ... this much motion (or its half in rad) before
+                                     ///< planning anew; twice in a row: giving up
+};
+
+/// What a driving skill knows about where it drives; constant, shared by all skills of a scene.
+struct DrivingContext {
+  std::shared_ptr<const navigation::Costmap> costmap;
+  geometry::Polygon footprint;  ///< padded
+  MoveBaseParams params;
+};
+
+/// A costmap of everything that stands between the lowest obstacle that matters and the robot's
+/// top.
+DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot& robot,
+                                  const MoveBaseParams& params);
+/// ... from a map that somebody recorded.
+DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::Robot& robot,
+                                  const MoveBaseParams& params);
+
+/// Drives to a pose in the map round all known obstacles: A* on the inflated costmap, dynamic
+/// window approach for control, as move_base does. Fails with "start_blocked", "goal_blocked",
+/// "no_path", "no_valid_trajectory" or "oscillating".
+class MoveBase : public Skill {
+ public:
+  MoveBase(std::shared_ptr<const DrivingContext> context, const geometry::Pose2& X_MGoal,
+           const robot::MotionSet& motion_set);
+
+  Status Update(const robot::Observation& observation, robot::Command* command) override;
+  double period() const override { return context_->params.local.control_period; }
+
+ private:
+  std::optional<Status> Plan(const navigation::Costmap& costmap, const geometry::Pose2& X_MB);
+  bool NoteMotion(const robot::Observation& observation);
+  Status Recover(const navigation::Costmap& costmap, const robot::Observation& observation);
+
+  std::shared_ptr<const DrivingContext> context_;
+  geometry::Pose2 X_MGoal_;
+  robot::MotionSet motion_set_;
+  navigation::DwaPlanner local_;
+  bool has_path_{false};
+  double last_valid_{0.0};    // [s] when a valid trajectory was last found
+  double last_plan_{0.0};     // [s]
+  geometry::Pose2 X_MMoved_;  // where it last counted as having moved
+  double last_moved_{0.0};    // [s]
+  int oscillations_{0};
+};
+
+struct MoveBaseBlindParams {
+  double period{0.05};               ///< [s] control cycle
+  double max_velocity{0.3};          ///< [m/s]; the motion set may be slower
+  double max_angular_velocity{0.5};  ///< [rad/s]
+  double deceleration{0.5};          ///< [m/s^2] with which it comes to its goal
+  double xy_tolerance{0.03};         ///< [m]
+  double yaw_tolerance{0.03};        ///< [rad]
+  double stuck_timeout{5.0};         ///< [s] without coming 0.01 m or rad nearer
+};
+
+/// Drives straight to a pose, turning on the way, without looking at obstacles: for the last
+/// stretch to furniture, under whose top the base fits. Fails with "stuck".
+class MoveBaseBlind : public Skill {
+ public:
+  MoveBaseBlind(const MoveBaseBlindParams& params, const geometry::Pose2& X_MGoal,
+                const robot::MotionSet& motion_set);
+
+  Status Update(const robot::Observation& observation, robot::Command* command) override;
+  double period() const override { return params_.period; }
+
+ private:
+  MoveBaseBlindParams params_;
+  geometry::Pose2 X_MGoal_;
+  robot::MotionSet motion_set_;
+  double nearest_{1e9};        // [m] + [rad] least distance so far
+  double last_progress_{0.0};  // [s]
+};
+
+}  // namespace hires::skills

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "hires/geometry/shape.h"
+
+namespace hires::world {
+
+/// The parts of a mesh that hang together (share corners), each a mesh of its own, in the order of
+/// their first triangle.
+std::vector<geometry::TriangleMesh> ConnectedParts(const geometry::TriangleMesh& mesh);
+
+/// Does every corner lie on or behind the plane of every triangle? Corners may stand out by `slack`
+/// [m]. Parts too large to be tested cheaply count as not convex.
+bool IsConvex(const geometry::TriangleMesh& mesh, double slack = 1e-6);
+
+/// Outlines of a mesh within z_min..z_max that keep its hollows open: a convex part gives its
+/// outline; of other parts each triangle gives one, thickened to 1 mm.
+std::vector<geometry::Polygon> MeshOutlinesInBand(const geometry::TriangleMesh& mesh,
+                                                  const geometry::Pose3& X_WS, double z_min,
+                                                  double z_max);
+
+}  // namespace hires::world

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "hires/world/world.h"
+
+namespace hires::world {
+
+/// Reads which model folder each instance name stands for ("peppermill1: peppermill_thesis").
+/// Keys are as in the file; they compare without regard to case.
+/// @throws base::ConfigError: no map of text to text, two names that differ in case only, a value
+/// that is no plain folder name.
+std::map<std::string, std::string> LoadObjectCatalogue(const std::string& path);
+
+/// The object that a user means: an instance name of the catalogue (case ignored), a folder of
+/// models/ beside the catalogue, or a path to an .sdf or .urdf file.
+/// @throws base::ConfigError naming what is known that comes near; as LoadObjectModel.
+ObjectModel FindObjectModel(const std::string& name_or_path, const std::string& catalogue_path);
+
+}  // namespace hires::world

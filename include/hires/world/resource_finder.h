@@ -1,0 +1,44 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hires::world {
+
+/// Turns the URIs of world and object files into paths: model://name/..., package://name/...,
+/// file:///..., and, for meshes, paths relative to the file that names them.
+class ResourceFinder {
+ public:
+  /// @param folders  Where model:// and package:// names are looked for, in this order; folders
+  /// that do not exist are left out. package:// is looked for in ROS_PACKAGE_PATH as well.
+  explicit ResourceFinder(const std::vector<std::string>& folders);
+
+  /// The SDF file that an <include> names: a file, or a model folder with its model.config.
+  /// @param where  Opens the error message, "a.world:12".
+  /// @throws base::ConfigError naming the URI, where it was looked for, and the remedy.
+  std::string FindModel(const std::string& uri, const std::string& where) const;
+
+  /// The file of a mesh. A path without a scheme is relative to `from_file`, and must end below the
+  /// folder of that file or below a model folder.
+  /// @throws base::ConfigError as FindModel.
+  std::string FindMesh(const std::string& uri, const std::string& from_file,
+                       const std::string& where) const;
+
+  const std::vector<std::string>& model_folders() const { return model_folders_; }
+  const std::vector<std::string>& package_folders() const { return package_folders_; }
+
+ private:
+  std::string FindIn(const std::vector<std::string>& folders, const std::string& uri,
+                     const std::string& where) const;
+  std::string FindByScheme(const std::string& uri, const std::string& where) const;
+
+  std::vector<std::string> model_folders_;
+  std::vector<std::string> package_folders_;
+};
+
+/// Folders for a world file: models/ and the folder beside it, `model_path`, then what the
+/// environment names in GAZEBO_MODEL_PATH and SDF_PATH.
+std::vector<std::string> ModelFoldersFor(const std::string& file,
+                                         const std::vector<std::string>& model_path);
+
+}  // namespace hires::world

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "hires/world/resource_finder.h"
+#include "hires/world/world.h"
+
+namespace hires::world {
+
+/// Reads a single-link object from a URDF. Friction is <mu1> of the link's <gazebo> element, 1
+/// where there is none; URDF knows no restitution. Origin B is the link's frame.
+/// @throws base::ConfigError naming file, element and remedy.
+ObjectModel LoadUrdfObject(const std::string& path, const ResourceFinder& finder);
+
+}  // namespace hires::world

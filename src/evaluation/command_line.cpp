@@ -1,0 +1,203 @@
+#include "hires/evaluation/command_line.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+#include <thread>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/evaluation/doctor.h"
+#include "hires/evaluation/report_json.h"
+#include "hires/evaluation/report_table.h"
+#include "hires/imagination/client_config.h"
+#include "hires/imagination/local_imagination.h"
+
+namespace hires::evaluation {
+namespace {
+
+std::atomic<bool> interrupted{false};
+
+void OnInterrupt(int) { interrupted = true; }
+
+/// What was typed, before it is checked against files.
+struct ImagineOptions {
+  std::string action, from, config, scene, world, robot, objects, uncertainty, ranking, json;
+  std::vector<std::string> arguments, carried;
+  int rollouts{0}, threads{0};
+  std::uint64_t seed{1};
+  double deadline{-1.0};
+  bool play_all{false}, local{false}, quiet{false};
+};
+
+void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
+  app->add_option("--action", o->action, "move_base, move_base_param or move_base_blind")
+      ->required();
+  app->add_option("--from", o->from, "area where the robot stands")->required();
+  app->add_option("--object", o->carried,
+                  "what stands on its tray: instance, model, or .sdf/.urdf file; up to three times")
+      ->allow_extra_args(false);
+  app->add_option("--arg", o->arguments,
+                  "alternatives of one argument, separated by commas; once per argument, in order")
+      ->allow_extra_args(false);
+  app->add_option("--rollouts", o->rollouts, "at most so many per combination")
+      ->check(CLI::Range(1, 100000));
+  app->add_option("--seed", o->seed, "of all chance; equal seeds give equal answers");
+  app->add_option("--deadline", o->deadline, "[s] after which the best answer so far is taken")
+      ->check(CLI::Range(0.0, 1e6));
+  app->add_option("--ranking", o->ranking, "risk or thesis");
+  app->add_option("--uncertainty", o->uncertainty, "YAML file, or none");
+  app->add_flag("--no-early-stop", o->play_all, "play all rollouts even if the ranking is settled");
+  app->add_flag("--local", o->local, "in this process, without any ROS master");
+  app->add_option("--threads", o->threads, "workers of --local; default: one per core")
+      ->check(CLI::Range(1, 256));
+  app->add_option("--world", o->world, "another SDF world");
+  app->add_option("--robot", o->robot, "another robot: profile (.yaml) or URDF (.urdf)");
+  app->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
+  app->add_option("--scene", o->scene, "another scene file instead of config/scene.yaml");
+  app->add_option("--config", o->config, "another file instead of config/imagination_client.yaml");
+  app->add_option("--json", o->json, "write the answer to this file as well");
+  app->add_flag("--quiet", o->quiet, "no progress bar");
+}
+
+bool IsFile(const std::string& text) {
+  return text.find('/') != std::string::npos || text.find('.') != std::string::npos;
+}
+
+/// An object that is given as a file is loaded beside the catalogue's, and called by its model.
+void SetObjects(const ImagineOptions& o, ImagineQuery* query) {
+  for (const std::string& object : o.carried) {
+    if (!IsFile(object)) {
+      query->objects.push_back(object);
+      continue;
+    }
+    query->setup.extra_objects.push_back(object);
+    query->objects.push_back(world::LoadObjectModel(object).name);
+  }
+}
+
+ImagineQuery MakeQuery(const ImagineOptions& o, const Backends& backends) {
+  const std::string config_path =
+      o.config.empty() ? backends.package_folder + "/config/imagination_client.yaml" : o.config;
+  const imagination::ClientConfig config = imagination::ReadClientConfig(config_path);
+  ImagineQuery query;
+  query.setup = imagination::ReadSetupConfig(o.scene.empty() ? config.scene : o.scene);
+  if (!o.world.empty()) query.setup.world = o.world;
+  if (!o.robot.empty()) query.setup.robot = o.robot;
+  if (!o.objects.empty()) query.setup.objects = o.objects;
+  if (!o.uncertainty.empty()) query.setup.uncertainty = o.uncertainty;
+  query.own_uncertainty = !o.uncertainty.empty();
+  query.action.name = o.action;
+  for (const std::string& list : o.arguments) {
+    query.action.alternatives.push_back(base::Split(list, ','));
+  }
+  query.from = o.from;
+  SetObjects(o, &query);
+  query.seed = o.seed;
+  query.scheduler = config.scheduler;
+  if (o.rollouts > 0) query.scheduler.rollouts = o.rollouts;
+  if (o.deadline >= 0.0) query.scheduler.deadline = o.deadline;
+  if (!o.ranking.empty()) query.scheduler.rule = imagination::ParseRankingRule(o.ranking);
+  if (o.play_all) query.scheduler.early_stop = false;
+  query.threads = o.threads > 0 ? o.threads : std::max(1u, std::thread::hardware_concurrency());
+  return query;
+}
+
+void ShowProgress(const imagination::Interim& interim) {
+  std::cerr << '\r' << ProgressLine(interim.progress) << "\033[K" << std::flush;
+}
+
+void PrintReport(const imagination::Report& report) {
+  if (!report.ranking.empty())
+    std::cout << RankingTable(report.ranking, report.recommended) << '\n';
+  std::cout << fmt::format("{}: {}\n", OutcomeName(report), report.why);
+  if (report.wall_seconds > 0.0 && report.simulated_seconds > 0.0) {
+    std::cout << fmt::format("{:.0f} s imagined in {:.1f} s, {:.0f} times as fast as real time\n",
+                             report.simulated_seconds, report.wall_seconds,
+                             report.simulated_seconds / report.wall_seconds);
+  }
+}
+
+int Imagine(const ImagineOptions& options, const Backends& backends) {
+  const ImagineQuery query = MakeQuery(options, backends);
+  const bool show = !options.quiet && isatty(STDERR_FILENO) != 0;
+  const imagination::OnInterim on_interim =
+      show ? imagination::OnInterim(ShowProgress) : imagination::OnInterim();
+  const auto cancelled = [] { return interrupted.load(); };
+  if (!options.local && !backends.imagine_remotely) {
+    throw base::ConfigError("this build has no ROS nodes to ask; add --local");
+  }
+  const imagination::Report report = options.local
+                                         ? ImagineInThisProcess(query, on_interim, cancelled)
+                                         : backends.imagine_remotely(query, on_interim, cancelled);
+  if (show) std::cerr << "\r\033[K";
+  PrintReport(report);
+  if (!options.json.empty()) WriteJson(ToJson(report), options.json);
+  return ExitCodeOf(report);
+}
+
+}  // namespace
+
+int ExitCodeOf(const imagination::Report& report) {
+  switch (report.outcome) {
+    case imagination::ImaginationOutcome::kRanked:
+      return kExitRecommended;
+    case imagination::ImaginationOutcome::kAllFailed:
+      return kExitAllFailed;
+    case imagination::ImaginationOutcome::kNoWorker:
+      return kExitNoWorker;
+    case imagination::ImaginationOutcome::kNothingFinished:
+      return kExitDeadline;
+    case imagination::ImaginationOutcome::kCancelled:
+      return kExitCancelled;
+  }
+  return kExitBadInput;
+}
+
+imagination::Report ImagineInThisProcess(const ImagineQuery& query,
+                                         const imagination::OnInterim& on_interim,
+                                         const std::function<bool()>& cancelled) {
+  const imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(query.setup);
+  const imagination::StartState start =
+      imagination::MakeStartState(setup, query.from, query.objects);
+  return imagination::ImagineLocally(imagination::MakeRolloutSetup(setup, start, query.seed),
+                                     base::Combinations(query.action), query.scheduler,
+                                     query.threads, on_interim, cancelled);
+}
+
+int RunCommandLine(int argc, char** argv, const Backends& backends) {
+  CLI::App app("HIRES: imagine an action in physics before doing it", "hires");
+  app.require_subcommand(1);
+  ImagineOptions imagine_options;
+  CLI::App* imagine =
+      app.add_subcommand("imagine", "play alternatives of an action many times and rank them");
+  AddImagineOptions(imagine, &imagine_options);
+  CLI::App* doctor =
+      app.add_subcommand("doctor", "check this machine and compare the physics with closed forms");
+  std::vector<CLI::App*> others;
+  for (const Verb& verb : backends.more_verbs) {
+    others.push_back(app.add_subcommand(verb.name, verb.help)->prefix_command());
+  }
+  try {
+    app.parse(argc, argv);
+    std::signal(SIGINT, OnInterrupt);
+    if (*imagine) return Imagine(imagine_options, backends);
+    if (*doctor) return RunDoctor(backends);
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      if (*others[i]) return backends.more_verbs[i].run(others[i]->remaining());
+    }
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "hires: " << error.what() << '\n';
+    return kExitBadInput;
+  }
+  return kExitBadInput;
+}
+
+}  // namespace hires::evaluation

@@ -1,0 +1,75 @@
+#include "hires/evaluation/doctor.h"
+
+#include <fmt/format.h>
+
+#include <iostream>
+#include <thread>
+#include <vector>
+
+#include "hires/evaluation/command_line.h"
+#include "hires/evaluation/report_table.h"
+#include "hires/imagination/client_config.h"
+#include "hires/physics/physics_checks.h"
+
+namespace hires::evaluation {
+namespace {
+
+bool CheckFiles(const Backends& backends) {
+  try {
+    const auto client =
+        imagination::ReadClientConfig(backends.package_folder + "/config/imagination_client.yaml");
+    const auto setup =
+        imagination::LoadImaginationSetup(imagination::ReadSetupConfig(client.scene));
+    std::cout << fmt::format(
+        "ok      world '{}' with {} bodies and {} areas, robot '{}' with {} links\n",
+        setup.scene->world.name, setup.scene->world.statics.size(),
+        setup.scene->world.frames.size(), setup.scene->robot.model.name,
+        setup.scene->robot.model.links.size());
+    return true;
+  } catch (const std::exception& error) {
+    std::cout << "FAILED  " << error.what() << '\n';
+    return false;
+  }
+}
+
+bool CheckMachine() {
+  const unsigned cores = std::thread::hardware_concurrency();
+  std::cout << fmt::format("ok      {} cores: start at most so many workers here\n", cores);
+  return cores > 0;
+}
+
+bool CheckPhysics() {
+  const struct {
+    const char* name;
+    physics::UprightCylinder body;
+  } mills[] = {{"pepper mill, thesis text", {0.037, 0.274, 0.140}},
+               {"pepper mill, appendix", {0.035, 0.300, 0.500}},
+               {"pepper mill, repository", {0.037, 0.274, 0.350}}};
+  bool passed = true;
+  for (const auto& mill : mills) {
+    std::vector<std::vector<std::string>> rows{
+        {"", "check", "closed form", "measured", "unit", "error", "allowed", "remark"}};
+    for (const physics::PhysicsCheck& check : physics::RunPhysicsChecks(mill.body, mill.name)) {
+      passed = passed && check.passed();
+      rows.push_back({check.passed() ? "ok" : "FAILED", check.name,
+                      fmt::format("{:.5g}", check.expected), fmt::format("{:.5g}", check.measured),
+                      check.unit, fmt::format("{:.2g}", check.error),
+                      fmt::format("{:.2g}", check.tolerance), check.remark});
+    }
+    std::cout << '\n' << FormatTable(rows) << std::flush;
+  }
+  return passed;
+}
+
+}  // namespace
+
+int RunDoctor(const Backends& backends) {
+  bool passed = CheckMachine();
+  passed = CheckFiles(backends) && passed;
+  for (const Check& check : backends.more_checks) passed = check() && passed;
+  passed = CheckPhysics() && passed;
+  std::cout << (passed ? "\nall is well\n" : "\nsomething needs attention, see FAILED above\n");
+  return passed ? kExitRecommended : kExitBadInput;
+}
+
+}  // namespace hires::evaluation

@@ -1,0 +1,215 @@
+#include "hires/imagination/imagination_setup.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "hires/base/error.h"
+#include "hires/base/hash.h"
+#include "hires/base/text.h"
+#include "hires/world/object_catalogue.h"
+
+namespace hires::imagination {
+namespace {
+
+namespace fs = std::filesystem;
+using base::Between;
+using base::ParamReader;
+
+constexpr double kSlotDistance = 0.13;  // [m] pr2.md, section 9
+
+std::string Resolve(const std::string& path, const std::string& config_path) {
+  if (path.empty() || path == "none" || fs::path(path).is_absolute()) return path;
+  return (fs::path(config_path).parent_path() / path).lexically_normal().string();
+}
+
+navigation::DwaParams ReadDwa(ParamReader in) {
+  navigation::DwaParams p;
+  p.control_period = in.Get("control_period", Between(0.01, 1.0));
+  p.min_linear_velocity = in.Get("min_linear_velocity", Between(0.0, 5.0));
+  p.max_lateral_velocity = in.Get("max_lateral_velocity", Between(0.0, 5.0));
+  p.min_angular_velocity = in.Get("min_angular_velocity", Between(0.0, 10.0));
+  p.sim_time = in.Get("sim_time", Between(0.1, 10.0));
+  p.sim_granularity = in.Get("sim_granularity", Between(0.001, 1.0));
+  p.angular_sim_granularity = in.Get("angular_sim_granularity", Between(0.001, 1.0));
+  p.path_distance_bias = in.Get("path_distance_bias", Between(0.0, 1000.0));
+  p.goal_distance_bias = in.Get("goal_distance_bias", Between(0.0, 1000.0));
+  p.obstacle_scale = in.Get("obstacle_scale", Between(0.0, 1000.0));
+  p.stop_time_buffer = in.Get("stop_time_buffer", Between(0.0, 10.0));
+  p.forward_point_distance = in.Get("forward_point_distance", Between(0.0, 5.0));
+  p.scaling_speed = in.Get("scaling_speed", Between(0.0, 10.0));
+  p.max_scaling_factor = in.Get("max_scaling_factor", Between(0.0, 5.0));
+  p.oscillation_reset_distance = in.Get("oscillation_reset_distance", Between(0.0, 5.0));
+  p.oscillation_reset_angle = in.Get("oscillation_reset_angle", Between(0.0, 3.2));
+  p.xy_goal_tolerance = in.Get("xy_goal_tolerance", Between(0.001, 5.0));
+  p.yaw_goal_tolerance = in.Get("yaw_goal_tolerance", Between(0.001, 3.2));
+  p.stopped_linear_velocity = in.Get("stopped_linear_velocity", Between(0.0001, 1.0));
+  p.stopped_angular_velocity = in.Get("stopped_angular_velocity", Between(0.0001, 1.0));
+  p.vx_samples = in.Get("vx_samples", Between(1, 1000));
+  p.vy_samples = in.Get("vy_samples", Between(1, 1000));
+  p.vtheta_samples = in.Get("vtheta_samples", Between(1, 1000));
+  return p;
+}
+
+skills::MoveBaseParams ReadDriving(ParamReader in) {
+  skills::MoveBaseParams p;
+  ParamReader costmap = in.Sub("costmap");
+  p.costmap.inflation_radius = costmap.Get("inflation_radius", Between(0.0, 5.0));
+  p.costmap.cost_scaling_factor = costmap.Get("cost_scaling_factor", Between(0.0, 1000.0));
+  p.costmap.unknown_is_lethal = costmap.GetBool("unknown_is_lethal");
+  ParamReader planner = in.Sub("planner");
+  p.planner.neutral_cost = planner.Get("neutral_cost", Between(1.0, 252.0));
+  p.planner.cost_factor = planner.Get("cost_factor", Between(0.0, 10.0));
+  p.local = ReadDwa(in.Sub("local"));
+  p.min_obstacle_height = in.Get("min_obstacle_height", Between(0.0, 1.0));
+  p.map_resolution = in.Get("map_resolution", Between(0.01, 0.5));
+  p.replanning_period = in.Get("replanning_period", Between(0.0, 60.0));
+  p.controller_patience = in.Get("controller_patience", Between(0.1, 300.0));
+  p.oscillation_timeout = in.Get("oscillation_timeout", Between(0.1, 300.0));
+  p.oscillation_distance = in.Get("oscillation_distance", Between(0.001, 10.0));
+  return p;
+}
+
+skills::MoveBaseBlindParams ReadBlind(ParamReader in) {
+  skills::MoveBaseBlindParams p;
+  p.period = in.Get("period", Between(0.005, 1.0));
+  p.max_velocity = in.Get("max_velocity", Between(0.01, 2.0));
+  p.max_angular_velocity = in.Get("max_angular_velocity", Between(0.01, 4.0));
+  p.deceleration = in.Get("deceleration", Between(0.01, 5.0));
+  p.xy_tolerance = in.Get("xy_tolerance", Between(0.001, 1.0));
+  p.yaw_tolerance = in.Get("yaw_tolerance", Between(0.001, 1.0));
+  p.stuck_timeout = in.Get("stuck_timeout", Between(0.1, 100.0));
+  return p;
+}
+
+physics::PhysicsParams ReadPhysics(ParamReader in) {
+  physics::PhysicsParams p;
+  p.time_step = in.Get("time_step", Between(0.0001, 0.005));
+  p.erp = in.Get("erp", Between(0.01, 1.0));
+  p.cfm = in.Get("cfm", Between(0.0, 1.0));
+  p.surface_layer = in.Get("surface_layer", Between(0.0, 0.01));
+  p.max_correcting_velocity = in.Get("max_correcting_velocity", Between(0.001, 1e6));
+  p.restitution_threshold = in.Get("restitution_threshold", Between(0.0, 10.0));
+  return p;
+}
+
+bool EndsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+robot::Robot LoadAnyRobot(const std::string& path) {
+  return EndsWith(base::ToLower(path), ".urdf") ? robot::LoadRobotFromUrdf(path)
+                                                : robot::LoadRobot(path);
+}
+
+/// The world with every object model that a request may name.
+world::World LoadWorldWithObjects(const SetupConfig& config,
+                                  std::map<std::string, std::string>* object_models) {
+  world::World world = world::LoadWorld(config.world);
+  const auto add = [&](const std::string& instance, world::ObjectModel model) {
+    const std::string name = model.name;
+    (*object_models)[base::ToLower(instance)] = name;
+    world.models[name] = std::make_shared<const world::ObjectModel>(std::move(model));
+  };
+  for (const auto& [instance, folder] : world::LoadObjectCatalogue(config.objects)) {
+    add(instance, world::FindObjectModel(folder, config.objects));
+  }
+  for (const std::string& path : config.extra_objects) {
+    world::ObjectModel model = world::FindObjectModel(path, config.objects);
+    const std::string instance = model.name;
+    add(instance, std::move(model));
+  }
+  world.hash = world.ComputeHash();
+  return world;
+}
+
+}  // namespace
+
+SetupConfig ReadSetupConfig(const std::string& path) {
+  ParamReader in = ParamReader::FromFile(path);
+  SetupConfig config;
+  config.world = Resolve(in.GetString("world"), path);
+  config.robot = Resolve(in.GetString("robot"), path);
+  config.objects = Resolve(in.GetString("objects"), path);
+  config.uncertainty = Resolve(in.GetString("uncertainty"), path);
+  config.driving = ReadDriving(in.Sub("driving"));
+  config.blind = ReadBlind(in.Sub("blind_driving"));
+  config.physics = ReadPhysics(in.Sub("physics"));
+  config.rollout = ReadRolloutParams(in.Sub("rollout"));
+  in.RejectUnknownKeys();
+  base::Hasher hasher;
+  for (const char* section : {"driving", "blind_driving", "physics", "rollout"}) {
+    hasher.Add(in.Sub(section).Canonical());
+  }
+  config.params_hash = hasher.value();
+  return config;
+}
+
+ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
+  ImaginationSetup setup;
+  world::World world = LoadWorldWithObjects(config, &setup.object_models);
+  robot::Robot robot = LoadAnyRobot(config.robot);
+  setup.skills = std::make_shared<const skills::SkillSet>(
+      skills::MakeSkillSet(world, robot, config.driving, config.blind));
+  base::Hasher hasher;
+  hasher.Add(world.hash);
+  hasher.Add(config.params_hash);
+  setup.world_hash = hasher.value();
+  setup.robot_hash = robot.hash();
+  setup.scene = simulation::MakeScene(std::move(world), std::move(robot));
+  setup.uncertainty = std::make_shared<const Uncertainty>(
+      config.uncertainty == "none" ? NoUncertainty() : LoadUncertainty(config.uncertainty));
+  setup.rollout = config.rollout;
+  setup.physics = config.physics;
+  return setup;
+}
+
+std::string ImaginationSetup::ModelOf(const std::string& instance_or_model) const {
+  const auto instance = object_models.find(base::ToLower(instance_or_model));
+  if (instance != object_models.end()) return instance->second;
+  std::vector<std::string> known;
+  for (const auto& [name, model] : object_models) known.push_back(name);
+  for (const auto& [name, model] : scene->world.models) {
+    if (base::ToLower(name) == base::ToLower(instance_or_model)) return name;
+    known.push_back(name);
+  }
+  throw base::ConfigError(base::UnknownName("object", instance_or_model, known));
+}
+
+StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
+                          const std::vector<std::string>& objects) {
+  const auto X_MArea = setup.scene->world.FindFrame(area);
+  if (!X_MArea) {
+    throw base::ConfigError(base::UnknownName("area", area, setup.scene->world.FrameNames()));
+  }
+  if (objects.size() > 3) {
+    throw base::ConfigError(fmt::format(
+        "{} objects are wanted on the tray, it has 3 places; name at most 3", objects.size()));
+  }
+  if (!objects.empty() && setup.scene->robot.profile.tray_link.empty()) {
+    throw base::ConfigError(
+        fmt::format("robot '{}' has no tray to carry '{}'; name a tray_link in its profile",
+                    setup.scene->robot.model.name, objects.front()));
+  }
+  StartState start;
+  start.robot.X_MB = geometry::Flatten(*X_MArea);
+  start.robot.joints = setup.scene->robot.profile.joints;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const double y = i == 0 ? 0.0 : (i == 1 ? -kSlotDistance : kSlotDistance);
+    world::ObjectState object;
+    object.name = base::ToLower(objects[i]);
+    object.model = setup.ModelOf(objects[i]);
+    object.X_MO =
+        geometry::Lift(start.robot.X_MB) * setup.scene->X_BO * geometry::Lift({0.0, y, 0.0});
+    start.world.objects.push_back(std::move(object));
+  }
+  return start;
+}
+
+RolloutSetup MakeRolloutSetup(const ImaginationSetup& setup, const StartState& start,
+                              std::uint64_t seed) {
+  return {setup.scene, setup.skills, setup.uncertainty, start.world,
+          start.robot, seed,         setup.rollout,     setup.physics};
+}
+
+}  // namespace hires::imagination

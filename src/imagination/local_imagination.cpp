@@ -1,0 +1,101 @@
+#include "hires/imagination/local_imagination.h"
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "hires/base/mailbox.h"
+
+namespace hires::imagination {
+namespace {
+
+constexpr double kInterimPeriod = 0.2;  // [s] between two reports of progress
+
+double SteadySeconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// One thread that plays what it is assigned and posts what comes out.
+class LocalWorker {
+ public:
+  LocalWorker(int id, const RolloutSetup& setup, const std::vector<base::ActionCall>& actions,
+              base::Mailbox<Event>* events)
+      : id_(id), setup_(setup), actions_(actions), events_(*events), thread_([this] { Run(); }) {}
+
+  ~LocalWorker() {
+    stop_ = true;
+    thread_.join();
+  }
+
+  void Post(const Assign& assign) { inbox_.Post(assign); }
+  void Cancel(int assignment) { cancelled_up_to_ = assignment; }
+
+ private:
+  void Run() {
+    while (!stop_) {
+      if (const auto assign = inbox_.WaitAndTake(std::chrono::milliseconds(20))) Play(*assign);
+    }
+  }
+
+  void Play(const Assign& assign) {
+    // Assignment numbers grow, so that "cancelled up to" needs no list.
+    const auto unwanted = [&] { return stop_ || cancelled_up_to_ >= assign.assignment; };
+    for (int i = assign.first_index; i < assign.first_index + assign.count; ++i) {
+      auto result = PlayRollout(setup_, actions_[assign.alternative], i, unwanted);
+      if (!result) return;
+      events_.Post(
+          RolloutFinished{id_, assign.assignment, assign.alternative, i, *std::move(result)});
+    }
+    events_.Post(AssignmentFinished{id_, assign.assignment});
+  }
+
+  const int id_;
+  const RolloutSetup& setup_;
+  const std::vector<base::ActionCall>& actions_;
+  base::Mailbox<Event>& events_;
+  base::Mailbox<Assign> inbox_;
+  std::atomic<bool> stop_{false};
+  std::atomic<int> cancelled_up_to_{-1};
+  std::thread thread_;  // last: starts when all else is ready
+};
+
+}  // namespace
+
+Report ImagineLocally(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions,
+                      const SchedulerParams& params, int num_threads, const OnInterim& on_interim,
+                      const std::function<bool()>& cancelled) {
+  for (const base::ActionCall& action : actions) CheckSetup(setup, action);
+  const double start = SteadySeconds();
+  Scheduler scheduler(params, static_cast<int>(actions.size()), start);
+  base::Mailbox<Event> events;
+  std::vector<std::unique_ptr<LocalWorker>> workers;
+  const auto carry_out = [&](const std::vector<Command>& commands) {
+    for (const Command& command : commands) {
+      if (const auto* assign = std::get_if<Assign>(&command)) {
+        workers[assign->worker]->Post(*assign);
+      } else if (const auto* cancel = std::get_if<CancelAssignment>(&command)) {
+        workers[cancel->worker]->Cancel(cancel->assignment);
+      }
+    }
+  };
+  for (int id = 0; id < num_threads; ++id) {
+    workers.push_back(std::make_unique<LocalWorker>(id, setup, actions, &events));
+    events.Post(WorkerJoined{id});
+  }
+  double next_interim = start + kInterimPeriod;
+  while (!scheduler.finished()) {
+    const auto event = events.WaitAndTake(std::chrono::milliseconds(50));
+    const double now = SteadySeconds();
+    carry_out(event ? scheduler.Handle(*event, now) : scheduler.Tick(now));
+    if (cancelled && cancelled()) carry_out(scheduler.Cancel(now));
+    if (on_interim && (now >= next_interim || scheduler.finished())) {
+      next_interim = now + kInterimPeriod;
+      on_interim({scheduler.ProgressAt(now),
+                  PredictionsOf(scheduler, scheduler.RankingSoFar(), actions, false), num_threads});
+    }
+  }
+  return MakeReport(scheduler, actions, params.rule, setup.seed, SteadySeconds() - start);
+}
+
+}  // namespace hires::imagination

@@ -1,0 +1,75 @@
+#include "hires/imagination/report.h"
+
+#include <fmt/format.h>
+
+#include "hires/base/check.h"
+#include "hires/base/text.h"
+
+namespace hires::imagination {
+namespace {
+
+std::string WhyNothing(const Scheduler& scheduler, ImaginationOutcome outcome) {
+  const auto& problems = scheduler.worker_problems();
+  const std::string suffix = problems.empty() ? "" : " (" + base::Join(problems, "; ") + ")";
+  switch (outcome) {
+    case ImaginationOutcome::kNoWorker:
+      return "nobody is there to imagine it" + suffix;
+    case ImaginationOutcome::kNothingFinished:
+      return "the deadline came before every alternative was played once" + suffix;
+    case ImaginationOutcome::kCancelled:
+      return "cancelled";
+    default:
+      return suffix;
+  }
+}
+
+std::vector<std::string> NamesOf(const std::vector<base::ActionCall>& actions) {
+  std::vector<std::string> names;
+  for (const base::ActionCall& action : actions) names.push_back(base::ToString(action));
+  return names;
+}
+
+}  // namespace
+
+std::vector<Prediction> PredictionsOf(const Scheduler& scheduler, const Ranking& ranking,
+                                      const std::vector<base::ActionCall>& actions,
+                                      bool with_final_states) {
+  std::vector<Prediction> predictions;
+  if (ranking.num_rollouts == 0) return predictions;
+  for (const int alternative : ranking.order) {
+    Prediction prediction{actions[alternative], ranking.evidence[alternative], {}, {}};
+    const int median = prediction.evidence.median_rollout;
+    if (with_final_states && median >= 0) {
+      const RolloutResult& result = scheduler.Prefix(alternative)[median];
+      prediction.final_world = result.final_world;
+      prediction.final_robot = result.final_robot;
+    }
+    predictions.push_back(std::move(prediction));
+  }
+  return predictions;
+}
+
+Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall>& actions,
+                  RankingRule rule, std::uint64_t seed, double wall_seconds) {
+  HIRES_CHECK(scheduler.finished(), "there is no result yet");
+  const SchedulerResult& result = *scheduler.result();
+  const Ranking& ranking = result.ranking;
+  Report report;
+  report.outcome = result.outcome;
+  report.complete = result.complete;
+  report.seed = seed;
+  report.wall_seconds = wall_seconds;
+  report.ranking = PredictionsOf(scheduler, ranking, actions, true);
+  for (std::size_t alternative = 0; alternative < actions.size(); ++alternative) {
+    const auto& prefix = scheduler.Prefix(static_cast<int>(alternative));
+    for (int i = 0; i < ranking.num_rollouts; ++i) report.simulated_seconds += prefix[i].simulated;
+  }
+  for (std::size_t place = 0; place < ranking.order.size(); ++place) {
+    if (ranking.recommended == ranking.order[place]) report.recommended = static_cast<int>(place);
+  }
+  report.why = ranking.num_rollouts == 0 ? WhyNothing(scheduler, result.outcome)
+                                         : WhyRecommended(ranking.evidence, rule, NamesOf(actions));
+  return report;
+}
+
+}  // namespace hires::imagination

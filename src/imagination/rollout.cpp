@@ -1,0 +1,170 @@
+#include "hires/imagination/rollout.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "hires/base/error.h"
+#include "hires/base/log.h"
+#include "hires/imagination/load_monitor.h"
+#include "hires/simulation/tray_simulator.h"
+
+namespace hires::imagination {
+namespace {
+
+using simulation::TraySimulator;
+
+constexpr int kLookSteps = 5;  // the load is looked at every fifth step
+enum Streams : std::uint64_t { kVariation, kSimulator, kControl };
+
+/// A start pose that collides cannot be one where the robot stands: its offset is drawn in.
+simulation::Variation WithFreeStart(simulation::Variation variation, const RolloutSetup& setup) {
+  for (int halving = 0; halving < 8; ++halving) {
+    if (!setup.scene->clearance.FindContact(setup.robot_state.X_MB * variation.start_offset)) {
+      return variation;
+    }
+    variation.start_offset.x /= 2;
+    variation.start_offset.y /= 2;
+    variation.start_offset.yaw /= 2;
+  }
+  variation.start_offset = {};
+  return variation;
+}
+
+/// One play, from settling to the end.
+class Player {
+ public:
+  Player(const RolloutSetup& setup, std::unique_ptr<skills::Skill> skill,
+         const simulation::Variation& variation, const base::Rng& rng)
+      : params_(setup.params),
+        variation_(variation),
+        skill_(std::move(skill)),
+        control_rng_(rng.Fork(kControl)),
+        simulator_(setup.scene, variation, setup.world_state, setup.robot_state,
+                   rng.Fork(kSimulator), setup.physics) {}
+
+  std::optional<RolloutResult> Play(const std::function<bool()>& cancelled) {
+    StepFor(params_.settling_time);
+    LoadMonitor monitor(&simulator_, params_);
+    const double start = simulator_.time();
+    skills::Status status;
+    next_cycle_ = start;
+    long samples = 0;
+    for (long step = 0; status.progress == skills::Progress::kRunning; ++step) {
+      if (simulator_.time() >= next_cycle_) status = Control(start);
+      if (status.progress != skills::Progress::kRunning) break;
+      simulator_.Step();
+      if (step % kLookSteps == 0) monitor.Look();
+      const double elapsed = simulator_.time() - start;
+      if (elapsed >= (samples + 1) * params_.sample_period - 0.5 * simulator_.time_step()) {
+        ++samples;
+        monitor.Look();
+        result_.counts += monitor.Sample();
+        if (cancelled && cancelled()) return std::nullopt;
+      }
+      if (simulator_.contact()) status = {skills::Progress::kFailed, "robot_collision"};
+      if (monitor.is_lost()) status = {skills::Progress::kFailed, "object_lost"};
+      if (elapsed >= params_.time_limit) status = {skills::Progress::kFailed, "timed_out"};
+    }
+    result_.duration = simulator_.time() - start;
+    WatchAftermath(&monitor);
+    Conclude(status, monitor);
+    return result_;
+  }
+
+ private:
+  void StepFor(double duration) {
+    const long steps = std::lround(duration / simulator_.time_step());
+    for (long i = 0; i < steps; ++i) simulator_.Step();
+  }
+
+  skills::Status Control(double start) {
+    robot::Command command;
+    const skills::Status status = skill_->Update(simulator_.Observe(start), &command);
+    simulator_.Send(command);
+    next_cycle_ += skill_->period();
+    if (control_rng_.Bernoulli(variation_.late_cycle_probability)) {
+      next_cycle_ += variation_.late_cycle_delay;
+    }
+    return status;
+  }
+
+  void WatchAftermath(LoadMonitor* monitor) {
+    const double end = simulator_.time() + params_.aftermath;
+    while (simulator_.time() < end && monitor->tilt() > params_.shaking_tilt &&
+           monitor->tilt() < params_.topple_tilt) {
+      for (int i = 0; i < kLookSteps; ++i) simulator_.Step();
+      monitor->Look();
+    }
+  }
+
+  void Conclude(const skills::Status& status, const LoadMonitor& monitor) {
+    result_.action_finished = status.progress == skills::Progress::kSucceeded;
+    result_.reason = result_.action_finished ? monitor.first_fall() : status.reason;
+    result_.outcome = result_.reason.empty()          ? Outcome::kSucceeded
+                      : result_.reason == "timed_out" ? Outcome::kTimedOut
+                                                      : Outcome::kFailed;
+    if (result_.action_finished && result_.counts.total() == 0) {
+      result_.outcome = Outcome::kFailed;
+      result_.reason = "no_samples";
+    }
+    result_.falls = monitor.falls();
+    result_.max_tilt = monitor.max_tilt();
+    result_.first_cause = monitor.first_cause();
+    result_.final_world = simulator_.GetWorldState();
+    result_.final_robot = simulator_.GetRobotState();
+    result_.simulated = simulator_.time();
+  }
+
+  const RolloutParams& params_;
+  const simulation::Variation variation_;
+  std::unique_ptr<skills::Skill> skill_;
+  base::Rng control_rng_;
+  TraySimulator simulator_;
+  double next_cycle_{0.0};
+  RolloutResult result_;
+};
+
+}  // namespace
+
+RolloutParams ReadRolloutParams(base::ParamReader in) {
+  RolloutParams params;
+  params.settling_time = in.Get("settling_time", base::Between(0.0, 10.0));
+  params.time_limit = in.Get("time_limit", base::Between(0.1, 3600.0));
+  params.sample_period = in.Get("sample_period", base::Between(0.001, 1.0));
+  params.shaking_tilt = in.Get("shaking_tilt", base::Between(0.0, 1.0));
+  params.topple_tilt = in.Get("topple_tilt", base::Between(0.01, 3.2));
+  params.lost_distance = in.Get("lost_distance", base::Between(0.01, 10.0));
+  params.aftermath = in.Get("aftermath", base::Between(0.0, 10.0));
+  params.put_back = in.GetBool("put_back");
+  params.put_back_tilt = in.Get("put_back_tilt", base::Between(0.01, 3.2));
+  return params;
+}
+
+void CheckSetup(const RolloutSetup& setup, const base::ActionCall& action) {
+  skills::MakeSkill(*setup.skills, action);
+  TraySimulator(setup.scene, {}, setup.world_state, setup.robot_state, base::Rng(setup.seed),
+                setup.physics);
+}
+
+std::optional<RolloutResult> PlayRollout(const RolloutSetup& setup, const base::ActionCall& action,
+                                         int index, const std::function<bool()>& cancelled) {
+  const base::Rng rng = base::Rng(setup.seed).Fork(static_cast<std::uint64_t>(index));
+  const simulation::Variation variation =
+      WithFreeStart(SampleVariation(*setup.uncertainty, rng.Fork(kVariation)), setup);
+  std::unique_ptr<skills::Skill> skill = skills::MakeSkill(*setup.skills, action);
+  try {
+    return Player(setup, std::move(skill), variation, rng).Play(cancelled);
+  } catch (const base::ConfigError& error) {
+    // The nominal start is sound (CheckSetup), the sampled one is not: a truth that cannot be.
+    base::Log(base::LogLevel::kDebug,
+              fmt::format("rollout={} reason=bad_start {}", index, error.what()));
+    RolloutResult result;
+    result.reason = "bad_start";
+    result.final_world = setup.world_state;
+    result.final_robot = setup.robot_state;
+    return result;
+  }
+}
+
+}  // namespace hires::imagination

@@ -1,0 +1,148 @@
+#include "hires/imagination/uncertainty.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "hires/base/error.h"
+#include "hires/base/hash.h"
+#include "hires/base/param_reader.h"
+#include "hires/base/text.h"
+
+namespace hires::imagination {
+namespace {
+
+using simulation::Variation;
+
+struct Quantity {
+  std::string name;
+  std::string unit;
+  double lower, upper;  // what makes sense at all
+  std::function<double&(Variation&)> slot;
+};
+
+const std::vector<Quantity>& Quantities() {
+  static const std::vector<Quantity> quantities{
+      {"object_mass", "factor", 0.1, 10, [](Variation& v) -> double& { return v.mass_factor; }},
+      {"object_radius", "factor", 0.2, 2, [](Variation& v) -> double& { return v.radius_factor; }},
+      {"object_com_height", "factor", 0.2, 1.8,
+       [](Variation& v) -> double& { return v.com_height_factor; }},
+      {"object_com_x", "m", -0.05, 0.05, [](Variation& v) -> double& { return v.com_offset.x(); }},
+      {"object_com_y", "m", -0.05, 0.05, [](Variation& v) -> double& { return v.com_offset.y(); }},
+      {"object_friction", "factor", 0.0, 10,
+       [](Variation& v) -> double& { return v.friction_factor; }},
+      {"object_x", "m", -0.2, 0.2, [](Variation& v) -> double& { return v.object_offset.x(); }},
+      {"object_y", "m", -0.5, 0.5, [](Variation& v) -> double& { return v.object_offset.y(); }},
+      {"start_x", "m", -1, 1, [](Variation& v) -> double& { return v.start_offset.x; }},
+      {"start_y", "m", -1, 1, [](Variation& v) -> double& { return v.start_offset.y; }},
+      {"start_yaw", "rad", -3.2, 3.2, [](Variation& v) -> double& { return v.start_offset.yaw; }},
+      {"localisation_x", "m", -1, 1, [](Variation& v) -> double& { return v.localisation_bias.x; }},
+      {"localisation_y", "m", -1, 1, [](Variation& v) -> double& { return v.localisation_bias.y; }},
+      {"localisation_yaw", "rad", -1, 1,
+       [](Variation& v) -> double& { return v.localisation_bias.yaw; }},
+      {"localisation_noise", "m", 0, 0.5,
+       [](Variation& v) -> double& { return v.localisation_noise; }},
+      {"localisation_noise_yaw", "rad", 0, 0.5,
+       [](Variation& v) -> double& { return v.localisation_noise_yaw; }},
+      {"ghost_rate", "1/s", 0, 10, [](Variation& v) -> double& { return v.ghost_rate; }},
+      {"wheel_slip", "share", 0, 0.5, [](Variation& v) -> double& { return v.wheel_slip; }},
+      {"floor_roughness", "m", 0, 0.02, [](Variation& v) -> double& { return v.floor_roughness; }},
+      {"command_delay", "s", 0, 1, [](Variation& v) -> double& { return v.command_delay; }},
+      {"late_cycle_probability", "share", 0, 1,
+       [](Variation& v) -> double& { return v.late_cycle_probability; }},
+      {"late_cycle_delay", "s", 0, 5, [](Variation& v) -> double& { return v.late_cycle_delay; }},
+      {"loop_damping", "factor", 0.1, 10,
+       [](Variation& v) -> double& { return v.loop_damping_factor; }},
+      {"sway", "factor", 0, 10, [](Variation& v) -> double& { return v.sway_factor; }},
+  };
+  return quantities;
+}
+
+const Quantity& FindQuantity(const std::string& name, const std::string& where) {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : Quantities()) {
+    if (quantity.name == name) return quantity;
+    names.push_back(quantity.name);
+  }
+  throw base::ConfigError(where + ": " + base::UnknownName("quantity", name, names));
+}
+
+Distribution ReadDistribution(base::ParamReader in, const Quantity& quantity) {
+  const auto bound = base::Between(quantity.lower, quantity.upper);
+  const std::string kind = in.Get("distribution", base::OneOf({"fixed", "uniform", "normal"}));
+  in.Get("unit", base::OneOf({quantity.unit}));
+  in.GetString("source");
+  if (kind == "fixed") return {Distribution::Kind::kFixed, in.Get("value", bound), 0.0};
+  if (kind == "normal") {
+    const double mean = in.Get("mean", bound);
+    const double sd = in.Get("sd", base::Between(0.0, quantity.upper - quantity.lower));
+    return {Distribution::Kind::kNormal, mean, sd};
+  }
+  const double lower = in.Get("lower", bound), upper = in.Get("upper", bound);
+  if (lower > upper) in.Fail("upper", "wanted at least the lower end");
+  return {Distribution::Kind::kUniform, lower, upper};
+}
+
+std::uint64_t HashOf(const std::map<std::string, Distribution>& quantities) {
+  base::Hasher hasher;
+  for (const auto& [name, distribution] : quantities) {
+    hasher.Add(name);
+    hasher.Add(static_cast<std::uint64_t>(distribution.kind));
+    hasher.Add(distribution.first);
+    hasher.Add(distribution.second);
+  }
+  return hasher.value();
+}
+
+}  // namespace
+
+double Distribution::Sample(base::Rng* rng) const {
+  if (kind == Kind::kFixed) return first;
+  if (kind == Kind::kUniform) return rng->Uniform(first, second);
+  for (;;) {
+    const double value = rng->Normal(first, second);
+    if (std::abs(value - first) <= 3.0 * second) return value;
+  }
+}
+
+Uncertainty ParseUncertainty(const std::string& yaml, const std::string& where) {
+  base::ParamReader in = base::ParamReader::FromString(yaml, where);
+  Uncertainty uncertainty;
+  for (const std::string& name : in.Keys()) {
+    const Quantity& quantity = FindQuantity(name, where);
+    uncertainty.quantities[name] = ReadDistribution(in.Sub(name), quantity);
+  }
+  in.RejectUnknownKeys();
+  uncertainty.yaml = yaml;
+  uncertainty.hash = HashOf(uncertainty.quantities);
+  return uncertainty;
+}
+
+Uncertainty LoadUncertainty(const std::string& path) {
+  return ParseUncertainty(base::ReadTextFile(path, 1u << 20), path);
+}
+
+Uncertainty NoUncertainty() { return {{}, "none", HashOf({})}; }
+
+Uncertainty UncertaintyFromText(const std::string& text, const std::string& where) {
+  return text == "none" ? NoUncertainty() : ParseUncertainty(text, where);
+}
+
+simulation::Variation SampleVariation(const Uncertainty& uncertainty, const base::Rng& rng) {
+  Variation variation;
+  for (const Quantity& quantity : Quantities()) {
+    const auto found = uncertainty.quantities.find(quantity.name);
+    if (found == uncertainty.quantities.end()) continue;
+    base::Hasher stream;
+    stream.Add(quantity.name);
+    base::Rng own = rng.Fork(stream.value());
+    double& slot = quantity.slot(variation);
+    // A normal distribution may reach beyond what makes sense at all (a negative noise, say).
+    slot = std::min(quantity.upper, std::max(quantity.lower, found->second.Sample(&own)));
+  }
+  return variation;
+}
+
+}  // namespace hires::imagination

@@ -1,0 +1,109 @@
+#include "hires/simulation/base_drive.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hires/base/check.h"
+#include "hires/geometry/angles.h"
+
+namespace hires::simulation {
+namespace {
+
+/// The velocity clipped to the controller's limits, its direction kept.
+geometry::Twist2 Clipped(geometry::Twist2 v, const robot::MotionSet& limits) {
+  const double linear = std::hypot(v.vx, v.vy);
+  const double scale = std::min({1.0, linear > 0.0 ? limits.max_linear_velocity / linear : 1.0,
+                                 v.wz != 0.0 ? limits.max_angular_velocity / std::abs(v.wz) : 1.0});
+  return {scale * v.vx, scale * v.vy, scale * v.wz};
+}
+
+/// Rate of change of a ramp with limited jerk: never faster than what still lets the acceleration
+/// come down to 0 when the target is met.
+double JerkLimitedRate(double rate, double wanted_rate, double distance, double jerk, double dt) {
+  const double bound = std::sqrt(2.0 * jerk * std::abs(distance));
+  const double reachable = std::clamp(wanted_rate, -bound, bound);
+  return std::clamp(reachable, rate - jerk * dt, rate + jerk * dt);
+}
+
+}  // namespace
+
+BaseDrive::BaseDrive(const robot::BaseControllerParams& params, const geometry::Pose2& X_MB)
+    : params_(params) {
+  motion_.X_MB = X_MB;
+}
+
+void BaseDrive::Send(const geometry::Twist2& velocity, double time) {
+  HIRES_CHECK(sent_.empty() || time + params_.command_lag >= sent_.back().effective,
+              "a command was sent before an earlier one");
+  sent_.push_back({time + params_.command_lag, Clipped(velocity, params_.limits)});
+}
+
+geometry::Twist2 BaseDrive::Target(double time) {
+  while (!sent_.empty() && sent_.front().effective <= time) {
+    target_ = sent_.front().velocity;
+    last_command_ = sent_.front().effective;
+    sent_.pop_front();
+  }
+  const bool late = time - last_command_ > params_.command_timeout;
+  const bool moving = target_.vx != 0.0 || target_.vy != 0.0 || target_.wz != 0.0;
+  motion_.timed_out = late && moving;
+  return late ? geometry::Twist2{} : target_;
+}
+
+void BaseDrive::StepRamp(const geometry::Twist2& target, double dt) {
+  const double dx = target.vx - x_.ramp, dy = target.vy - y_.ramp, dw = target.wz - yaw_.ramp;
+  const robot::MotionSet& limits = params_.limits;
+  const double steps_needed =
+      std::max({std::abs(dx) / (limits.max_linear_acceleration * dt),
+                std::abs(dy) / (limits.max_linear_acceleration * dt),
+                std::abs(dw) / (limits.max_angular_acceleration * dt), 1.0});
+  const auto advance = [&](Axis* axis, double distance, double jerk) {
+    double rate = distance / (steps_needed * dt);
+    if (jerk > 0.0) rate = JerkLimitedRate(axis->ramp_rate, rate, distance, jerk, dt);
+    axis->ramp_rate = rate;
+    axis->ramp += rate * dt;
+  };
+  advance(&x_, dx, params_.max_linear_jerk);
+  advance(&y_, dy, params_.max_linear_jerk);
+  advance(&yaw_, dw, 0.0);
+}
+
+void BaseDrive::StepAxis(Axis* axis, double grip, double dt) const {
+  const double wanted = grip * axis->ramp;
+  if (params_.loop_frequency == 0.0) {
+    axis->acceleration = (wanted - axis->velocity) / dt;
+    axis->velocity = wanted;
+    return;
+  }
+  const double w = params_.loop_frequency;
+  axis->acceleration += dt * (w * w * (wanted - axis->velocity) -
+                              2.0 * params_.loop_damping * w * axis->acceleration);
+  axis->velocity += dt * axis->acceleration;
+}
+
+double BaseDrive::StepLean(Lean* lean, double acceleration, double dt) const {
+  const double w = params_.sway_frequency;
+  const double rest = params_.sway_compliance * acceleration;
+  lean->rate += dt * (w * w * (rest - lean->angle) - 2.0 * params_.sway_damping * w * lean->rate);
+  lean->angle += dt * lean->rate;
+  return lean->angle;
+}
+
+void BaseDrive::Step(double time, double dt, double slip) {
+  StepRamp(Target(time), dt);
+  for (Axis* axis : {&x_, &y_, &yaw_}) StepAxis(axis, 1.0 - slip, dt);
+  motion_.V_B = {x_.velocity, y_.velocity, yaw_.velocity};
+  motion_.A_B = {x_.acceleration, y_.acceleration, yaw_.acceleration};
+  // Braking (negative acceleration) leans the nose down; accelerating to the left leans the body
+  // to the right.
+  motion_.pitch = StepLean(&pitch_, -motion_.A_B.vx, dt);
+  motion_.roll = StepLean(&roll_, motion_.A_B.vy, dt);
+
+  const double yaw = motion_.X_MB.yaw + 0.5 * dt * motion_.V_B.wz;
+  const double c = std::cos(yaw), s = std::sin(yaw);
+  motion_.X_MB.x += dt * (c * motion_.V_B.vx - s * motion_.V_B.vy);
+  motion_.X_MB.y += dt * (s * motion_.V_B.vx + c * motion_.V_B.vy);
+  motion_.X_MB.yaw = geometry::WrapToPi(motion_.X_MB.yaw + dt * motion_.V_B.wz);
+}
+
+}  // namespace hires::simulation

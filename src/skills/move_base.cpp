@@ -1,0 +1,151 @@
+#include "hires/skills/move_base.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hires/geometry/angles.h"
+
+namespace hires::skills {
+namespace {
+
+using geometry::Pose2;
+
+Status Failed(const std::string& reason) { return {Progress::kFailed, reason}; }
+
+double RobotHeight(const robot::Robot& robot) {
+  geometry::Aabb bounds;
+  for (const geometry::Collision& shape :
+       robot::FrozenCollisions(robot.model, robot.profile.joints)) {
+    bounds.Include(geometry::BoundsOf(shape.shape, shape.X_BS));
+  }
+  return bounds.upper.z();
+}
+
+}  // namespace
+
+DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::Robot& robot,
+                                  const MoveBaseParams& params) {
+  const geometry::Polygon footprint =
+      geometry::Padded(robot.profile.footprint, robot.profile.footprint_padding);
+  return {std::make_shared<const navigation::Costmap>(map, geometry::InscribedRadius(footprint),
+                                                      params.costmap),
+          footprint, params};
+}
+
+DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot& robot,
+                                  const MoveBaseParams& params) {
+  return MakeDrivingContext(world::SliceWorld(world, params.min_obstacle_height, RobotHeight(robot),
+                                              params.map_resolution, 2.0),
+                            robot, params);
+}
+
+MoveBase::MoveBase(std::shared_ptr<const DrivingContext> context, const Pose2& X_MGoal,
+                   const robot::MotionSet& motion_set)
+    : context_(std::move(context)),
+      X_MGoal_(X_MGoal),
+      motion_set_(motion_set),
+      local_(context_->params.local, context_->footprint) {
+  local_.SetMotionSet(motion_set);
+}
+
+std::optional<Status> MoveBase::Plan(const navigation::Costmap& costmap, const Pose2& X_MB) {
+  navigation::PathResult result =
+      navigation::PlanPath(costmap, X_MB, X_MGoal_, context_->params.planner);
+  switch (result.status) {
+    case navigation::PathStatus::kStartBlocked:
+      return Failed("start_blocked");
+    case navigation::PathStatus::kGoalBlocked:
+      return Failed("goal_blocked");
+    case navigation::PathStatus::kNoPath:
+      return Failed("no_path");
+    case navigation::PathStatus::kFound:
+      break;
+  }
+  local_.SetPath(std::move(result.path));
+  has_path_ = true;
+  return std::nullopt;
+}
+
+/// False when the robot has been going to and fro for too long.
+bool MoveBase::NoteMotion(const robot::Observation& observation) {
+  const Pose2 moved = X_MMoved_.Inverse() * observation.X_MB;
+  const double enough = context_->params.oscillation_distance;
+  if (std::hypot(moved.x, moved.y) > enough || std::abs(moved.yaw) > enough) {
+    X_MMoved_ = observation.X_MB;
+    last_moved_ = observation.time;
+    oscillations_ = 0;
+  }
+  return observation.time - last_moved_ <= context_->params.oscillation_timeout;
+}
+
+Status MoveBase::Recover(const navigation::Costmap& costmap,
+                         const robot::Observation& observation) {
+  if (observation.time - last_valid_ > context_->params.controller_patience) {
+    return Failed("no_valid_trajectory");
+  }
+  if (observation.time - last_plan_ >= context_->params.replanning_period) {
+    last_plan_ = observation.time;
+    Plan(costmap, observation.X_MB);  // what blocks the way may go: patience decides, not one plan
+  }
+  return {};
+}
+
+Status MoveBase::Update(const robot::Observation& observation, robot::Command* command) {
+  command->motion_set = motion_set_;
+  std::optional<navigation::Costmap> with_obstacles;
+  if (!observation.obstacles_M.empty()) {
+    with_obstacles = context_->costmap->WithObstacles(observation.obstacles_M);
+  }
+  const navigation::Costmap& costmap = with_obstacles ? *with_obstacles : *context_->costmap;
+  if (!has_path_) {
+    if (const auto failed = Plan(costmap, observation.X_MB)) return *failed;
+    X_MMoved_ = observation.X_MB;
+    last_valid_ = last_plan_ = last_moved_ = observation.time;
+  }
+  const navigation::DwaResult result = local_.Update(costmap, observation.X_MB, observation.V_B);
+  command->base_velocity = result.velocity;
+  if (result.status == navigation::DwaStatus::kGoalReached) return {Progress::kSucceeded, ""};
+  if (result.status == navigation::DwaStatus::kNoValidTrajectory) {
+    return Recover(costmap, observation);
+  }
+  last_valid_ = observation.time;
+  if (!NoteMotion(observation)) {
+    if (++oscillations_ > 1) return Failed("oscillating");
+    last_moved_ = observation.time;
+    if (const auto failed = Plan(costmap, observation.X_MB)) return *failed;
+  }
+  return {};
+}
+
+MoveBaseBlind::MoveBaseBlind(const MoveBaseBlindParams& params, const Pose2& X_MGoal,
+                             const robot::MotionSet& motion_set)
+    : params_(params), X_MGoal_(X_MGoal), motion_set_(motion_set) {}
+
+Status MoveBaseBlind::Update(const robot::Observation& observation, robot::Command* command) {
+  command->motion_set = motion_set_;
+  const Pose2 X_BGoal = observation.X_MB.Inverse() * X_MGoal_;
+  const double distance = std::hypot(X_BGoal.x, X_BGoal.y), turn = std::abs(X_BGoal.yaw);
+  if (distance <= params_.xy_tolerance && turn <= params_.yaw_tolerance) {
+    command->base_velocity = geometry::Twist2{};
+    const bool stopped = std::hypot(observation.V_B.vx, observation.V_B.vy) < 0.01 &&
+                         std::abs(observation.V_B.wz) < 0.01;
+    return {stopped ? Progress::kSucceeded : Progress::kRunning, ""};
+  }
+  if (distance + turn < nearest_ - 0.01) {
+    nearest_ = distance + turn;
+    last_progress_ = observation.time;
+  }
+  if (observation.time - last_progress_ > params_.stuck_timeout) return Failed("stuck");
+  // The speed from which the deceleration still stops it at the goal.
+  const double deceleration = std::min(params_.deceleration, motion_set_.max_linear_acceleration);
+  const double v = std::min({std::sqrt(2.0 * deceleration * distance), params_.max_velocity,
+                             motion_set_.max_linear_velocity});
+  const double w = std::min({std::sqrt(2.0 * deceleration * turn), params_.max_angular_velocity,
+                             motion_set_.max_angular_velocity});
+  const double scale = distance > 0.0 ? v / distance : 0.0;
+  command->base_velocity =
+      geometry::Twist2{scale * X_BGoal.x, scale * X_BGoal.y, std::copysign(w, X_BGoal.yaw)};
+  return {};
+}
+
+}  // namespace hires::skills

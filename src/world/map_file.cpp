@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "hires/base/check.h"
+#include "hires/base/error.h"
+#include "hires/base/param_reader.h"
+#include "hires/base/text.h"
+#include "hires/world/occupancy_grid.h"
+#include "hires/world/pgm.h"
+
+namespace hires::world {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMaxOrigin = 1e5;  // [m]
+constexpr std::uint8_t kFreeGrey = 254, kOccupiedGrey = 0, kUnknownGrey = 205;
+
+/// The keys of a map_server YAML.
+struct MapParams {
+  std::string image;
+  double resolution{0.05};       ///< [m] per pixel
+  Eigen::Vector2d origin{0, 0};  ///< [m] lower left corner of the lower left pixel
+  bool negate{false};            ///< white is occupied
+  double occupied_thresh{0.65};  ///< occupied above this share of black
+  double free_thresh{0.196};     ///< free below this share of black
+};
+
+Eigen::Vector2d ReadOrigin(base::ParamReader* in) {
+  if (!in->Has("origin")) {
+    in->Fail("origin",
+             "wanted [x, y, yaw] of the lower left corner; add origin: [0.0, 0.0, 0.0] "
+             "if the map begins at its frame");
+  }
+  const std::vector<double> origin = in->GetNumbers("origin", 3);
+  if (origin[2] != 0.0) {
+    in->Fail("origin", "wanted a yaw of 0; rotated maps are not read: rotate the image");
+  }
+  if (std::max(std::abs(origin[0]), std::abs(origin[1])) > kMaxOrigin) {
+    in->Fail("origin", fmt::format("wanted coordinates within {} m", kMaxOrigin));
+  }
+  return {origin[0], origin[1]};
+}
+
+MapParams ReadMapParams(const std::string& yaml_path) {
+  base::ParamReader in = base::ParamReader::FromFile(yaml_path);
+  MapParams params;
+  params.image = in.GetString("image");
+  params.resolution = in.Get("resolution", base::Between(1e-4, 100.0));
+  params.origin = ReadOrigin(&in);
+  params.negate = in.Get("negate", base::Between(0, 1)) == 1;
+  params.occupied_thresh = in.Get("occupied_thresh", base::Between(0.0, 1.0));
+  params.free_thresh = in.Get("free_thresh", base::Between(0.0, 1.0));
+  if (params.free_thresh > params.occupied_thresh) {
+    in.Fail("free_thresh", "wanted at most occupied_thresh");
+  }
+  if (in.Has("mode")) in.Get("mode", base::OneOf({"trinary"}));
+  in.RejectUnknownKeys();
+  return params;
+}
+
+/// map_server's trinary mode.
+Cell CellOf(std::uint8_t grey, const MapParams& params) {
+  const double black = (params.negate ? grey : 255 - grey) / 255.0;
+  if (black > params.occupied_thresh) return Cell::kOccupied;
+  return black < params.free_thresh ? Cell::kFree : Cell::kUnknown;
+}
+
+std::uint8_t GreyOf(Cell cell) {
+  switch (cell) {
+    case Cell::kFree:
+      return kFreeGrey;
+    case Cell::kOccupied:
+      return kOccupiedGrey;
+    default:
+      return kUnknownGrey;
+  }
+}
+
+void WriteFile(const fs::path& path, const std::string& text) {
+  std::ofstream stream(path, std::ios::binary);
+  stream << text;
+  stream.close();
+  if (!stream) {
+    throw base::ConfigError(fmt::format(
+        "{}: cannot be written; check that the folder exists and lets you write", path.string()));
+  }
+}
+
+}  // namespace
+
+OccupancyGrid LoadMap(const std::string& yaml_path) {
+  const MapParams params = ReadMapParams(yaml_path);
+  const std::string image_path = (fs::path(yaml_path).parent_path() / params.image).string();
+  const GreyImage image = ParsePgm(base::ReadTextFile(image_path, 512u << 20), image_path);
+  OccupancyGrid grid{params.resolution, image.width, image.height, params.origin, {}};
+  grid.cells.reserve(image.pixels.size());
+  for (int row = image.height - 1; row >= 0; --row) {  // images begin at the top, grids below
+    for (int column = 0; column < image.width; ++column) {
+      const std::size_t pixel = static_cast<std::size_t>(row) * image.width + column;
+      grid.cells.push_back(CellOf(image.pixels[pixel], params));
+    }
+  }
+  return grid;
+}
+
+void SaveMap(const OccupancyGrid& grid, const std::string& yaml_path) {
+  HIRES_CHECK(grid.width >= 1 && grid.height >= 1, "a map has cells");
+  GreyImage image{grid.width, grid.height, {}};
+  for (int row = grid.height - 1; row >= 0; --row) {
+    for (int column = 0; column < grid.width; ++column) {
+      image.pixels.push_back(GreyOf(grid.at(column, row)));
+    }
+  }
+  const fs::path image_path = fs::path(yaml_path).replace_extension(".pgm");
+  WriteFile(image_path, FormatPgm(image));
+  // {} writes the shortest text that reads back as the same number.
+  WriteFile(yaml_path, fmt::format("image: \"{}\"\nresolution: {}\norigin: [{}, {}, 0.0]\n"
+                                   "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n",
+                                   image_path.filename().string(), grid.resolution, grid.origin.x(),
+                                   grid.origin.y()));
+}
+
+}  // namespace hires::world

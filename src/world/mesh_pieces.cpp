@@ -1,0 +1,125 @@
+#include "hires/world/mesh_pieces.h"
+
+#include <Eigen/Geometry>
+#include <map>
+#include <memory>
+#include <numeric>
+
+namespace hires::world {
+namespace {
+
+constexpr double kThickness = 1e-3;                    // [m] of a lone triangle
+constexpr std::size_t kMaxConvexityTests = 4'000'000;  // triangles times corners
+
+/// Which corners hang together: union-find with path halving.
+class Groups {
+ public:
+  explicit Groups(std::size_t size) : parent_(size) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  int Find(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void Join(int a, int b) { parent_[Find(a)] = Find(b); }
+
+ private:
+  std::vector<int> parent_;
+};
+
+Eigen::Vector3d NormalOf(const geometry::TriangleMesh& mesh, const std::array<int, 3>& triangle) {
+  const Eigen::Vector3d& a = mesh.vertices[triangle[0]];
+  return (mesh.vertices[triangle[1]] - a).cross(mesh.vertices[triangle[2]] - a).normalized();
+}
+
+/// Collects triangles and renumbers their corners.
+class PartBuilder {
+ public:
+  void Add(const geometry::TriangleMesh& from, const std::array<int, 3>& triangle) {
+    std::array<int, 3> renumbered;
+    for (int k = 0; k < 3; ++k) renumbered[k] = NumberOf(from, triangle[k]);
+    part_.triangles.push_back(renumbered);
+  }
+  geometry::TriangleMesh Take() { return std::move(part_); }
+
+ private:
+  int NumberOf(const geometry::TriangleMesh& from, int corner) {
+    const auto [entry, is_new] = numbers_.emplace(corner, static_cast<int>(part_.vertices.size()));
+    if (is_new) part_.vertices.push_back(from.vertices[corner]);
+    return entry->second;
+  }
+
+  geometry::TriangleMesh part_;
+  std::map<int, int> numbers_;
+};
+
+/// A triangle as a flat prism, so that it has an outline also when it stands upright.
+geometry::Shape Thickened(const geometry::TriangleMesh& mesh, const std::array<int, 3>& triangle) {
+  const Eigen::Vector3d half = NormalOf(mesh, triangle) * kThickness / 2.0;
+  auto prism = std::make_shared<geometry::TriangleMesh>();
+  for (const double side : {-1.0, 1.0}) {
+    for (const int corner : triangle) {
+      prism->vertices.push_back(mesh.vertices[corner] + side * half);
+    }
+  }
+  prism->triangles = {{2, 1, 0}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
+                      {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  return std::shared_ptr<const geometry::TriangleMesh>(std::move(prism));
+}
+
+void AppendOutline(const geometry::Shape& shape, const geometry::Pose3& X_WS, double z_min,
+                   double z_max, std::vector<geometry::Polygon>* outlines) {
+  auto outline = geometry::OutlineInBand(shape, X_WS, z_min, z_max);
+  if (outline) outlines->push_back(std::move(*outline));
+}
+
+}  // namespace
+
+std::vector<geometry::TriangleMesh> ConnectedParts(const geometry::TriangleMesh& mesh) {
+  Groups groups(mesh.vertices.size());
+  for (const auto& triangle : mesh.triangles) {
+    groups.Join(triangle[0], triangle[1]);
+    groups.Join(triangle[1], triangle[2]);
+  }
+  std::map<int, std::size_t> index_of_group;
+  std::vector<PartBuilder> builders;
+  for (const auto& triangle : mesh.triangles) {
+    const auto [entry, is_new] = index_of_group.emplace(groups.Find(triangle[0]), builders.size());
+    if (is_new) builders.emplace_back();
+    builders[entry->second].Add(mesh, triangle);
+  }
+  std::vector<geometry::TriangleMesh> parts;
+  for (PartBuilder& builder : builders) parts.push_back(builder.Take());
+  return parts;
+}
+
+bool IsConvex(const geometry::TriangleMesh& mesh, double slack) {
+  if (mesh.triangles.size() * mesh.vertices.size() > kMaxConvexityTests) return false;
+  for (const auto& triangle : mesh.triangles) {
+    const Eigen::Vector3d normal = NormalOf(mesh, triangle);
+    const double height = normal.dot(mesh.vertices[triangle[0]]);
+    for (const Eigen::Vector3d& corner : mesh.vertices) {
+      if (normal.dot(corner) > height + slack) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<geometry::Polygon> MeshOutlinesInBand(const geometry::TriangleMesh& mesh,
+                                                  const geometry::Pose3& X_WS, double z_min,
+                                                  double z_max) {
+  std::vector<geometry::Polygon> outlines;
+  for (geometry::TriangleMesh& part : ConnectedParts(mesh)) {
+    if (IsConvex(part)) {
+      const auto shared = std::make_shared<const geometry::TriangleMesh>(std::move(part));
+      AppendOutline(shared, X_WS, z_min, z_max, &outlines);
+      continue;
+    }
+    for (const auto& triangle : part.triangles) {
+      AppendOutline(Thickened(part, triangle), X_WS, z_min, z_max, &outlines);
+    }
+  }
+  return outlines;
+}
+
+}  // namespace hires::world

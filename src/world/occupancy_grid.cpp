@@ -1,0 +1,229 @@
+#include "hires/world/occupancy_grid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hires/base/check.h"
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/world/mesh_pieces.h"
+
+namespace hires::world {
+namespace {
+
+/// Bodies that reach less than this [m] into a cell only lie against it: rounding must not make a
+/// wall that ends on a cell's edge one cell thicker.
+constexpr double kTouch = 1e-6;
+constexpr double kMaxCells = 5e7;
+
+void AppendOutlines(const geometry::Collision& collision, const geometry::Pose3& X_MB, double z_min,
+                    double z_max, std::vector<geometry::Polygon>* outlines) {
+  auto outline = geometry::OutlineInBand(collision.shape, X_MB * collision.X_BS, z_min, z_max);
+  if (outline) outlines->push_back(std::move(*outline));
+}
+
+void AppendStatic(const StaticBody& body, double z_min, double z_max,
+                  std::vector<geometry::Polygon>* outlines) {
+  for (const geometry::Collision& collision : body.collisions) {
+    const auto* mesh = std::get_if<std::shared_ptr<const geometry::TriangleMesh>>(&collision.shape);
+    if (mesh == nullptr) {
+      AppendOutlines(collision, body.X_MB, z_min, z_max, outlines);
+      continue;
+    }
+    // A whole building can be one mesh: its hull would fill the rooms.
+    auto more = MeshOutlinesInBand(**mesh, body.X_MB * collision.X_BS, z_min, z_max);
+    std::move(more.begin(), more.end(), std::back_inserter(*outlines));
+  }
+}
+
+const ObjectModel& ModelOf(const World& world, const ObjectState& object) {
+  const auto found = world.models.find(object.model);
+  if (found != world.models.end()) return *found->second;
+  std::vector<std::string> known;
+  for (const auto& [name, model] : world.models) known.push_back(name);
+  throw base::ConfigError(fmt::format("world '{}', object '{}': {}", world.name, object.name,
+                                      base::UnknownName("model", object.model, known)));
+}
+
+/// Where the convex polygon lies within the strip y_min..y_max: x from .. to; from > to if nowhere.
+struct Span {
+  double from{std::numeric_limits<double>::infinity()};
+  double to{-std::numeric_limits<double>::infinity()};
+  void Include(double x) {
+    from = std::min(from, x);
+    to = std::max(to, x);
+  }
+};
+
+Span SpanInStrip(const geometry::Polygon& polygon, double y_min, double y_max) {
+  Span span;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d& a = polygon[i];
+    const Eigen::Vector2d& b = polygon[(i + 1) % polygon.size()];
+    if (a.y() >= y_min && a.y() <= y_max) span.Include(a.x());
+    for (const double y : {y_min, y_max}) {
+      if ((a.y() < y) == (b.y() < y)) continue;
+      span.Include(a.x() + (b.x() - a.x()) * (y - a.y()) / (b.y() - a.y()));
+    }
+  }
+  return span;
+}
+
+geometry::Aabb BoundsOf(const World& world) {
+  geometry::Aabb bounds;
+  for (const StaticBody& body : world.statics) {
+    for (const geometry::Collision& collision : body.collisions) {
+      bounds.Include(geometry::BoundsOf(collision.shape, body.X_MB * collision.X_BS));
+    }
+  }
+  if (world.statics.empty()) bounds.Include(Eigen::Vector3d::Zero());
+  return bounds;
+}
+
+/// A free grid around x, y of `bounds`, its cell edges on whole multiples of the resolution.
+OccupancyGrid GridAround(const geometry::Aabb& bounds, double resolution, double margin) {
+  const Eigen::Array2d lower =
+      ((bounds.lower.head<2>().array() - margin) / resolution + kTouch).floor();
+  const Eigen::Array2d upper =
+      ((bounds.upper.head<2>().array() + margin) / resolution - kTouch).ceil();
+  const Eigen::Array2d size = (upper - lower).max(1.0);
+  if (!(size.prod() <= kMaxCells)) {
+    throw base::ConfigError(fmt::format(
+        "a grid of {:g} x {:g} cells of {} m is too large, at most {:g} cells; take a coarser "
+        "resolution",
+        size.x(), size.y(), resolution, kMaxCells));
+  }
+  OccupancyGrid grid;
+  grid.resolution = resolution;
+  grid.width = static_cast<int>(size.x());
+  grid.height = static_cast<int>(size.y());
+  grid.origin = lower * resolution;
+  grid.cells.assign(static_cast<std::size_t>(grid.width) * grid.height, Cell::kFree);
+  return grid;
+}
+
+int ClampedIndex(double cell, int size) {
+  return static_cast<int>(std::clamp(std::floor(cell), 0.0, size - 1.0));
+}
+
+void Occupy(const geometry::Polygon& outline, OccupancyGrid* grid) {
+  const auto [low, high] = std::minmax_element(
+      outline.begin(), outline.end(), [](const auto& a, const auto& b) { return a.y() < b.y(); });
+  const double res = grid->resolution;
+  const int first = ClampedIndex((low->y() - grid->origin.y()) / res - kTouch, grid->height);
+  const int last = ClampedIndex((high->y() - grid->origin.y()) / res + kTouch, grid->height);
+  for (int row = first; row <= last; ++row) {
+    const double y = grid->origin.y() + row * res;
+    const Span span = SpanInStrip(outline, y + kTouch, y + res - kTouch);
+    const double from = (span.from + kTouch - grid->origin.x()) / res;
+    const double to = (span.to - kTouch - grid->origin.x()) / res;
+    if (!(span.to - span.from > 2.0 * kTouch)) continue;
+    for (int column = ClampedIndex(from, grid->width); column <= ClampedIndex(to, grid->width);
+         ++column) {
+      grid->cells[static_cast<std::size_t>(row) * grid->width + column] = Cell::kOccupied;
+    }
+  }
+}
+
+/// Cells column_begin .. column_end - 1 of the rows row_begin .. row_end - 1.
+struct Block {
+  int column_begin, column_end, row_begin, row_end;
+};
+
+std::vector<Block> RunsOfRow(const OccupancyGrid& grid, int row) {
+  std::vector<Block> runs;
+  for (int column = 0; column < grid.width; ++column) {
+    if (grid.at(column, row) != Cell::kOccupied) continue;
+    if (!runs.empty() && runs.back().column_end == column) {
+      ++runs.back().column_end;
+    } else {
+      runs.push_back({column, column + 1, row, row + 1});
+    }
+  }
+  return runs;
+}
+
+/// Runs of occupied cells; a run just like one of the row below is joined to it.
+std::vector<Block> Blocks(const OccupancyGrid& grid) {
+  std::vector<Block> done;
+  std::vector<Block> open;  // reach up to the row before
+  for (int row = 0; row < grid.height; ++row) {
+    std::vector<Block> runs = RunsOfRow(grid, row);
+    for (const Block& below : open) {
+      const auto same = std::find_if(runs.begin(), runs.end(), [&](const Block& run) {
+        return run.column_begin == below.column_begin && run.column_end == below.column_end;
+      });
+      if (same == runs.end()) {
+        done.push_back(below);
+      } else {
+        same->row_begin = below.row_begin;
+      }
+    }
+    open = std::move(runs);
+  }
+  done.insert(done.end(), open.begin(), open.end());
+  return done;
+}
+
+geometry::Collision BoxOf(const Block& block, const OccupancyGrid& grid, double height,
+                          std::size_t index) {
+  const Eigen::Vector2d lower =
+      grid.origin + grid.resolution * Eigen::Vector2d(block.column_begin, block.row_begin);
+  const Eigen::Vector2d upper =
+      grid.origin + grid.resolution * Eigen::Vector2d(block.column_end, block.row_end);
+  const Eigen::Vector2d middle = (lower + upper) / 2.0;
+  geometry::Collision collision;
+  collision.name = fmt::format("block_{:06}", index);
+  collision.shape = geometry::Box{{upper.x() - lower.x(), upper.y() - lower.y(), height}};
+  collision.X_BS.translation = {middle.x(), middle.y(), height / 2.0};
+  return collision;
+}
+
+}  // namespace
+
+Eigen::Vector2d OccupancyGrid::CentreOf(int column, int row) const {
+  return origin + resolution * Eigen::Vector2d(column + 0.5, row + 0.5);
+}
+
+std::vector<geometry::Polygon> OutlinesInBand(const World& world, const WorldState* objects,
+                                              double z_min, double z_max) {
+  HIRES_CHECK(z_min <= z_max, "a band of heights ends above its begin");
+  std::vector<geometry::Polygon> outlines;
+  for (const StaticBody& body : world.statics) AppendStatic(body, z_min, z_max, &outlines);
+  if (objects == nullptr) return outlines;
+  for (const ObjectState& object : objects->objects) {
+    for (const geometry::Collision& collision : ModelOf(world, object).collisions) {
+      AppendOutlines(collision, object.X_MO, z_min, z_max, &outlines);
+    }
+  }
+  return outlines;
+}
+
+OccupancyGrid SliceWorld(const World& world, double z_min, double z_max, double resolution,
+                         double margin) {
+  HIRES_CHECK(resolution > 0.0 && std::isfinite(resolution), "a cell has an edge above 0 m");
+  HIRES_CHECK(margin >= 0.0 && std::isfinite(margin), "a margin is not negative");
+  OccupancyGrid grid = GridAround(BoundsOf(world), resolution, margin);
+  for (const geometry::Polygon& outline : OutlinesInBand(world, nullptr, z_min, z_max)) {
+    Occupy(outline, &grid);
+  }
+  return grid;
+}
+
+World ExtrudeMap(const OccupancyGrid& grid, double height) {
+  HIRES_CHECK(height > 0.0 && std::isfinite(height), "walls have a height above 0 m");
+  World world;
+  world.name = "extruded_map";
+  StaticBody walls{"map_walls", {}, {}};
+  for (const Block& block : Blocks(grid)) {
+    walls.collisions.push_back(BoxOf(block, grid, height, walls.collisions.size()));
+  }
+  if (!walls.collisions.empty()) world.statics.push_back(std::move(walls));
+  world.hash = world.ComputeHash();
+  return world;
+}
+
+}  // namespace hires::world

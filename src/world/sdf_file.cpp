@@ -1,0 +1,205 @@
+#include "hires/world/sdf_file.h"
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <mutex>
+#include <regex>
+#include <sdf/Console.hh>
+#include <sdf/ParserConfig.hh>
+#include <sstream>
+
+#include "hires/base/error.h"
+#include "hires/base/log.h"
+#include "hires/base/text.h"
+
+namespace hires::world {
+namespace {
+
+/// Walks a file and all it includes before libsdformat does, which trusts its input.
+class XmlWalk {
+ public:
+  XmlWalk(const ResourceFinder* finder, const XmlLimits& limits)
+      : finder_(finder), limits_(limits) {}
+
+  void VisitFile(const std::string& path) {
+    CheckIncludes(path);
+    open_files_.push_back(path);
+    VisitText(base::ReadTextFile(path, limits_.max_file_bytes), path);
+    open_files_.pop_back();
+  }
+
+  void VisitText(const std::string& text, const std::string& path) {
+    tinyxml2::XMLDocument document;
+    if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+      throw base::ConfigError(fmt::format("{}:{}: no well-formed XML ({}); correct it there", path,
+                                          document.ErrorLineNum(), document.ErrorName()));
+    }
+    if (document.RootElement() != nullptr) VisitElement(*document.RootElement(), path, 1);
+  }
+
+ private:
+  void CheckIncludes(const std::string& path) const {
+    if (std::find(open_files_.begin(), open_files_.end(), path) != open_files_.end()) {
+      throw base::ConfigError(fmt::format("{}: includes itself ({} -> {}); break the circle",
+                                          open_files_.front(), base::Join(open_files_, " -> "),
+                                          path));
+    }
+    if (static_cast<int>(open_files_.size()) > limits_.max_include_depth) {
+      throw base::ConfigError(fmt::format("{}: files include files more than {} deep; flatten them",
+                                          open_files_.front(), limits_.max_include_depth));
+    }
+  }
+
+  void VisitElement(const tinyxml2::XMLElement& element, const std::string& path, int depth) {
+    const std::string place = fmt::format("{}:{}", path, element.GetLineNum());
+    if (depth > limits_.max_element_depth) {
+      throw base::ConfigError(fmt::format("{}: elements nest more than {} deep; flatten them",
+                                          place, limits_.max_element_depth));
+    }
+    if (++num_elements_ > limits_.max_elements) {
+      throw base::ConfigError(
+          fmt::format("{}: more than {} elements, includes counted; split the world or replace "
+                      "many bodies by a mesh",
+                      place, limits_.max_elements));
+    }
+    if (finder_ != nullptr && element.Name() == std::string("include")) Include(element, place);
+    for (const auto* child = element.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
+      VisitElement(*child, path, depth + 1);
+    }
+  }
+
+  void Include(const tinyxml2::XMLElement& include, const std::string& place) {
+    const auto* uri = include.FirstChildElement("uri");
+    if (uri == nullptr || uri->GetText() == nullptr) {
+      throw base::ConfigError(
+          fmt::format("{}: <include> has no <uri>; add <uri>model://name</uri>", place));
+    }
+    VisitFile(finder_->FindModel(uri->GetText(), place));
+  }
+
+  const ResourceFinder* finder_;  // null: includes are not followed
+  XmlLimits limits_;
+  int num_elements_{0};
+  std::vector<std::string> open_files_;
+};
+
+/// libsdformat reports part of its findings only on a console that all threads share. This takes
+/// the console for itself, one thread at a time, and keeps what is said.
+class ConsoleCapture {
+ public:
+  ConsoleCapture() : lock_(mutex()), console_(sdf::Console::Instance()) {
+    console_->SetQuiet(false);
+    console_->GetMsgStream().SetStream(&text_);
+    console_->GetLogStream().SetStream(nullptr);  // else each load grows a file in the home folder
+  }
+  ~ConsoleCapture() {
+    console_->GetMsgStream().SetStream(nullptr);  // silent also after us
+  }
+  ConsoleCapture(const ConsoleCapture&) = delete;
+  ConsoleCapture& operator=(const ConsoleCapture&) = delete;
+
+  /// What was said, an item per message, colours dropped.
+  std::vector<std::string> Messages() const {
+    static const std::regex kColour("\x1b\\[[0-9;]*m");
+    static const std::regex kBreak("\n(?=(Error|Warning|Msg) \\[)");
+    const std::string plain = std::regex_replace(text_.str(), kColour, "");
+    std::vector<std::string> messages(
+        std::sregex_token_iterator(plain.begin(), plain.end(), kBreak, -1),
+        std::sregex_token_iterator());
+    for (std::string& message : messages) {
+      std::replace(message.begin(), message.end(), '\n', ' ');
+      while (!message.empty() && message.back() == ' ') message.pop_back();
+    }
+    return messages;
+  }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+  std::lock_guard<std::mutex> lock_;
+  sdf::ConsolePtr console_;
+  std::ostringstream text_;
+};
+
+/// "Error [parser.cc:12] text" -> "text"; empty if the message has another label.
+std::string TextAfter(const std::string& label, const std::string& message) {
+  if (message.compare(0, label.size() + 2, label + " [") != 0) return "";
+  const std::size_t end = message.find(']');
+  const std::size_t begin =
+      end == std::string::npos ? std::string::npos : message.find_first_not_of(": ", end + 1);
+  return begin == std::string::npos ? "" : message.substr(begin);
+}
+
+void ReportConsole(const ConsoleCapture& console, const std::string& path) {
+  std::string objections;
+  for (const std::string& message : console.Messages()) {
+    const std::string error = TextAfter("Error", message);
+    const std::string warning = TextAfter("Warning", message);
+    if (!error.empty()) objections += "\n  " + error;
+    if (!warning.empty()) {
+      base::Log(base::LogLevel::kWarn, fmt::format("world={} sdformat=\"{}\"", path, warning));
+    }
+  }
+  if (!objections.empty()) {
+    throw base::ConfigError(fmt::format("{}: no valid SDF:{}", path, objections));
+  }
+}
+
+sdf::ParserConfig ConfigFor(const ResourceFinder& finder) {
+  sdf::ParserConfig config;
+  // With these, libsdformat looks where the walk looked, before any place of its own.
+  config.AddURIPath("model://", base::Join(finder.model_folders(), ":"));
+  config.AddURIPath("package://", base::Join(finder.package_folders(), ":"));
+  config.AddURIPath("file://", "/");
+  config.SetFindCallback([&finder](const std::string& uri) { return finder.FindModel(uri, uri); });
+  return config;
+}
+
+}  // namespace
+
+void CheckXml(const std::string& text, const std::string& path, const XmlLimits& limits) {
+  XmlWalk(nullptr, limits).VisitText(text, path);
+}
+
+std::string PlaceOf(const sdf::ElementPtr& element) {
+  if (element == nullptr) return "";
+  const auto line = element->LineNumber();
+  return line ? fmt::format("{}:{}", element->FilePath(), *line) : element->FilePath();
+}
+
+void ThrowIfAny(const sdf::Errors& errors, const std::string& path) {
+  if (errors.empty()) return;
+  std::vector<std::string> lines;
+  for (const sdf::Error& error : errors) {
+    std::string line = error.FilePath().value_or(path);
+    if (error.LineNumber()) line += fmt::format(":{}", *error.LineNumber());
+    line += ": " + error.Message();
+    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+  }
+  throw base::ConfigError(fmt::format("{}: no valid SDF:\n  {}", path, base::Join(lines, "\n  ")));
+}
+
+sdf::Root ReadSdf(const std::string& path, const ResourceFinder& finder, const XmlLimits& limits) {
+  const ConsoleCapture console;
+  XmlWalk(&finder, limits).VisitFile(path);
+  const sdf::ParserConfig config = ConfigFor(finder);
+  sdf::Root root;
+  sdf::Errors errors;
+  try {
+    errors = root.Load(path, config);
+  } catch (const base::ConfigError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw base::ConfigError(fmt::format("{}: no valid SDF: {}", path, error.what()));
+  }
+  ThrowIfAny(errors, path);
+  ReportConsole(console, path);
+  return root;
+}
+
+}  // namespace hires::world

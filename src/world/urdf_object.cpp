@@ -1,0 +1,159 @@
+#include "hires/world/urdf_object.h"
+
+#include <console_bridge/console.h>
+#include <fmt/format.h>
+#include <tinyxml2.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <mutex>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/world/sdf_file.h"
+#include "hires/world/sdf_model.h"
+
+namespace hires::world {
+namespace {
+
+/// urdfdom says what is wrong only on a console that all threads share. This keeps what is said.
+class ConsoleCapture : public console_bridge::OutputHandler {
+ public:
+  ConsoleCapture() : lock_(mutex()), before_(console_bridge::getOutputHandler()) {
+    console_bridge::useOutputHandler(this);
+  }
+  ~ConsoleCapture() override { console_bridge::useOutputHandler(before_); }
+  ConsoleCapture(const ConsoleCapture&) = delete;
+  ConsoleCapture& operator=(const ConsoleCapture&) = delete;
+
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) errors.push_back(text);
+  }
+
+  std::vector<std::string> errors;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+  std::lock_guard<std::mutex> lock_;
+  console_bridge::OutputHandler* before_;
+};
+
+urdf::ModelInterfaceSharedPtr Parse(const std::string& text, const std::string& path) {
+  ConsoleCapture console;
+  urdf::ModelInterfaceSharedPtr model;
+  try {
+    model = urdf::parseURDF(text);
+  } catch (const std::exception& error) {
+    console.errors.push_back(error.what());
+  }
+  if (model == nullptr || !console.errors.empty()) {
+    throw base::ConfigError(
+        fmt::format("{}: no valid URDF: {}", path, base::Join(console.errors, "; ")));
+  }
+  return model;
+}
+
+geometry::Pose3 ToPose(const urdf::Pose& pose, const std::string& where) {
+  const urdf::Rotation& q = pose.rotation;
+  const geometry::Pose3 result{{pose.position.x, pose.position.y, pose.position.z},
+                               Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized()};
+  CheckPose(result, where);
+  return result;
+}
+
+geometry::Shape ShapeOf(const urdf::Geometry& shape, const std::string& path,
+                        const ResourceFinder& finder, const std::string& where) {
+  if (const auto* box = dynamic_cast<const urdf::Box*>(&shape)) {
+    return geometry::Box{{box->dim.x, box->dim.y, box->dim.z}};
+  }
+  if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(&shape)) {
+    return geometry::Cylinder{cylinder->radius, cylinder->length};
+  }
+  if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(&shape)) {
+    return geometry::Sphere{sphere->radius};
+  }
+  const auto* mesh = dynamic_cast<const urdf::Mesh*>(&shape);
+  if (mesh == nullptr) {
+    throw base::ConfigError(where +
+                            ": its shape is not supported; use box, cylinder, sphere, mesh");
+  }
+  return MeshCache().Read(finder.FindMesh(mesh->filename, path, where),
+                          {mesh->scale.x, mesh->scale.y, mesh->scale.z}, where);
+}
+
+geometry::MassProperties MassPropertiesOf(const urdf::Link& link, const std::string& where) {
+  if (link.inertial == nullptr) {
+    throw base::ConfigError(where + ": has no <inertial>; add mass and inertia");
+  }
+  const urdf::Inertial& in = *link.inertial;
+  const geometry::Pose3 X_BI = ToPose(in.origin, where + ": <inertial>");
+  Eigen::Matrix3d I_I;
+  I_I << in.ixx, in.ixy, in.ixz, in.ixy, in.iyy, in.iyz, in.ixz, in.iyz, in.izz;
+  const Eigen::Matrix3d R_BI = X_BI.rotation.toRotationMatrix();
+  const geometry::MassProperties result{in.mass, X_BI.translation, R_BI * I_I * R_BI.transpose()};
+  const std::string wrong = geometry::WhyUnphysical(result);
+  if (wrong.empty()) return result;
+  throw base::ConfigError(fmt::format("{}: {}; correct its <inertial>", where, wrong));
+}
+
+/// <gazebo reference="link"><mu1>0.5</mu1></gazebo>, which urdfdom skips.
+double FrictionOf(const std::string& text, const std::string& link, const std::string& path) {
+  tinyxml2::XMLDocument document;
+  document.Parse(text.data(), text.size());
+  for (const auto* gazebo = document.RootElement()->FirstChildElement("gazebo"); gazebo != nullptr;
+       gazebo = gazebo->NextSiblingElement("gazebo")) {
+    const auto* mu = gazebo->FirstChildElement("mu1");
+    if (mu == nullptr || !gazebo->Attribute("reference", link.c_str())) continue;
+    double value = 0.0;
+    if (mu->QueryDoubleText(&value) == tinyxml2::XML_SUCCESS) return value;
+    throw base::ConfigError(fmt::format("{}:{}: <mu1> is no number; write a friction coefficient",
+                                        path, mu->GetLineNum()));
+  }
+  return 1.0;
+}
+
+std::vector<geometry::Collision> CollisionsOf(const urdf::Link& link, double friction,
+                                              const std::string& path,
+                                              const ResourceFinder& finder) {
+  std::vector<geometry::Collision> collisions;
+  for (const urdf::CollisionSharedPtr& in : link.collision_array) {
+    const std::string name =
+        in->name.empty() ? fmt::format("collision_{}", collisions.size() + 1) : in->name;
+    const std::string where = fmt::format("{}: link '{}', collision '{}'", path, link.name, name);
+    if (in->geometry == nullptr) throw base::ConfigError(where + ": has no <geometry>; add one");
+    collisions.push_back({name, ShapeOf(*in->geometry, path, finder, where),
+                          ToPose(in->origin, where), friction, 0.0});
+    CheckCollision(collisions.back(), where);
+  }
+  std::sort(collisions.begin(), collisions.end(),
+            [](const auto& a, const auto& b) { return a.name < b.name; });
+  return collisions;
+}
+
+}  // namespace
+
+ObjectModel LoadUrdfObject(const std::string& path, const ResourceFinder& finder) {
+  const XmlLimits limits;
+  const std::string text = base::ReadTextFile(path, limits.max_file_bytes);
+  CheckXml(text, path, limits);
+  const urdf::ModelInterfaceSharedPtr model = Parse(text, path);
+  if (model->links_.size() != 1) {
+    throw base::ConfigError(
+        fmt::format("{}: robot '{}' has {} links; an object is one link without joints: merge them",
+                    path, model->getName(), model->links_.size()));
+  }
+  const urdf::Link& link = *model->links_.begin()->second;
+  const std::string where = fmt::format("{}: link '{}'", path, link.name);
+  ObjectModel object{model->getName(), MassPropertiesOf(link, where), {}};
+  object.collisions = CollisionsOf(link, FrictionOf(text, link.name, path), path, finder);
+  if (object.collisions.empty()) {
+    throw base::ConfigError(where +
+                            ": has no <collision>, so it would fall through the floor; add one");
+  }
+  return object;
+}
+
+}  // namespace hires::world

@@ -1,0 +1,84 @@
+#include "hires/world/world.h"
+
+#include <algorithm>
+
+#include "hires/base/check.h"
+#include "hires/base/hash.h"
+#include "hires/base/text.h"
+#include "hires/world/content_hash.h"
+
+namespace hires::world {
+namespace {
+
+std::vector<const StaticBody*> InOrderOfNames(const std::vector<StaticBody>& bodies) {
+  std::vector<const StaticBody*> ordered;
+  for (const StaticBody& body : bodies) ordered.push_back(&body);
+  std::stable_sort(ordered.begin(), ordered.end(), [](const auto* a, const auto* b) {
+    return base::ToLower(a->name) < base::ToLower(b->name);
+  });
+  return ordered;
+}
+
+}  // namespace
+
+const ObjectState* WorldState::Find(const std::string& name) const {
+  const std::string lower = base::ToLower(name);
+  const auto found = std::find_if(objects.begin(), objects.end(), [&](const ObjectState& object) {
+    return base::ToLower(object.name) == lower;
+  });
+  return found == objects.end() ? nullptr : &*found;
+}
+
+ObjectState* WorldState::Find(const std::string& name) {
+  return const_cast<ObjectState*>(static_cast<const WorldState*>(this)->Find(name));
+}
+
+std::optional<geometry::Pose3> World::FindFrame(const std::string& name) const {
+  const auto found = frames.find(base::ToLower(name));
+  if (found == frames.end()) return std::nullopt;
+  return found->second;
+}
+
+std::vector<std::string> World::FrameNames() const {
+  std::vector<std::string> names;
+  for (const auto& [lower, pose] : frames) {
+    const auto as_in_file = frame_names.find(lower);
+    names.push_back(as_in_file == frame_names.end() ? lower : as_in_file->second);
+  }
+  return names;
+}
+
+std::uint64_t World::ComputeHash() const {
+  base::Hasher hasher;
+  hasher.Add(base::ToLower(name));
+  hasher.Add(gravity);
+  hasher.Add(floor_friction);
+  hasher.Add(static_cast<std::uint64_t>(statics.size()));
+  for (const StaticBody* body : InOrderOfNames(statics)) AddTo(&hasher, *body);
+  hasher.Add(static_cast<std::uint64_t>(frames.size()));
+  for (const auto& [lower, X_MF] : frames) {
+    hasher.Add(lower);
+    AddTo(&hasher, X_MF);
+  }
+  hasher.Add(static_cast<std::uint64_t>(models.size()));
+  for (const auto& [model_name, model] : models) {
+    hasher.Add(model_name);
+    AddTo(&hasher, *model);
+  }
+  return hasher.value();
+}
+
+World WithModel(World world, ObjectModel model) {
+  HIRES_CHECK(!model.name.empty(), "an object model needs a name");
+  const std::string lower = base::ToLower(model.name);
+  const auto same = std::find_if(world.models.begin(), world.models.end(), [&](const auto& entry) {
+    return base::ToLower(entry.first) == lower;
+  });
+  // The key of the model that is replaced stays, for the objects that name it.
+  const std::string key = same == world.models.end() ? model.name : same->first;
+  world.models[key] = std::make_shared<const ObjectModel>(std::move(model));
+  world.hash = world.ComputeHash();
+  return world;
+}
+
+}  // namespace hires::world
