@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <memory>
+#include <utility>
 #include <vector>
 
 #include "hires/geometry/polygon.h"
@@ -17,15 +17,19 @@ constexpr std::uint8_t kLethalCost = 254;     ///< an obstacle lies here
 constexpr std::uint8_t kUnknownCost = 255;
 
 struct CostmapParams {
-  double inflation_radius{0.55};    ///< [m]
+  double inflation_radius{0.55};     ///< [m]
   double cost_scaling_factor{10.0};  ///< [1/m], decay beyond the inscribed radius
   bool unknown_is_lethal{true};
 };
 
 /// A grid of traversal costs 0..255 as costmap_2d defines them: 254 at obstacles, 253 within the
 /// footprint's inscribed radius, then 252 exp(-k (d - inscribed)) up to the inflation radius.
+/// Distances run between cell centres.
 class Costmap {
  public:
+  /// @param inscribed_radius  [m] of the footprint, >= 0.
+  /// @pre resolution > 0, width and height >= 1, width * height cells; radii finite and >= 0.
+  /// Unknown cells are kUnknownCost and inflated like obstacles if unknown_is_lethal, else free.
   Costmap(const world::OccupancyGrid& grid, double inscribed_radius, const CostmapParams& params);
 
   double resolution() const { return resolution_; }
@@ -41,13 +45,24 @@ class Costmap {
   void CellOf(const Eigen::Vector2d& point, int* column, int* row) const;
   Eigen::Vector2d CentreOf(int column, int row) const;
 
-  /// Highest cost below the footprint's outline and interior at a pose; kLethalCost outside the map.
+  /// Highest cost of all cells that share area with a convex outline in the map frame (touching
+  /// an edge of a cell is not enough); kLethalCost if a part of it lies outside the map.
+  std::uint8_t CostBelow(const geometry::Polygon& outline_M) const;
+
+  /// Highest cost below the footprint's outline and interior at a pose; kLethalCost outside the
+  /// map.
   std::uint8_t FootprintCost(const geometry::Polygon& footprint, const geometry::Pose2& X_MB) const;
 
-  /// The same map with more obstacles in it (outlines in the map frame), inflated.
+  /// The same map with more obstacles in it (convex outlines in the map frame; all cells that share
+  /// area with them), inflated. Costs a copy of the map and work around the outlines only.
   Costmap WithObstacles(const std::vector<geometry::Polygon>& outlines_M) const;
 
  private:
+  bool Covers(const geometry::Polygon& outline_M) const;
+  void SetCostsFrom(const world::OccupancyGrid& grid);
+  void Inflate(const std::vector<std::pair<int, int>>& cells);
+  std::uint8_t CostAt(double distance) const;  ///< cells to the nearest obstacle, in [m]
+
   double resolution_;
   int width_, height_;
   Eigen::Vector2d origin_;

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "hires/geometry/pose.h"
+#include "hires/navigation/dwa.h"
+
+namespace hires::navigation {
+
+/// Where a base ends up that keeps its velocity V_B (expressed in the moving base) for `duration`
+/// [s]: an exact arc, no matter into how many steps it is cut.
+geometry::Pose2 PoseAfter(const geometry::Pose2& X_MB, const geometry::Twist2& V_B,
+                          double duration);
+
+/// `count` evenly spaced values from lower to upper, both included (at least these two), and 0
+/// where two neighbours lie on either side of it. One value if the ends are equal.
+/// @pre lower <= upper.
+std::vector<double> SampleAxis(double lower, double upper, int count);
+
+/// The velocities that the base can reach within one control period and may drive: forward,
+/// sideways and turning within the limits. Velocities too small for the base to follow smoothly are
+/// left out (slower than min_linear_velocity and turning slower than min_angular_velocity, both at
+/// once), unless the limits are so low that nothing else could be reached. A velocity that is out
+/// of the limits already, and cannot be brought back within one period, is asked to come back at
+/// once: the base's own controller ramps it down.
+std::vector<geometry::Twist2> ReachableVelocities(const DwaParams& params,
+                                                  const robot::MotionSet& limits,
+                                                  const geometry::Twist2& V_B);
+
+/// The velocity one control period later when braking as hard as the limits allow.
+geometry::Twist2 Braked(const geometry::Twist2& V_B, const robot::MotionSet& limits, double period);
+
+}  // namespace hires::navigation

@@ -1,0 +1,232 @@
+#include "hires/navigation/costmap.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hires/base/check.h"
+
+namespace hires::navigation {
+namespace {
+
+struct Interval {
+  double lower{std::numeric_limits<double>::infinity()};
+  double upper{-std::numeric_limits<double>::infinity()};
+  void Include(double value) {
+    lower = std::min(lower, value);
+    upper = std::max(upper, value);
+  }
+};
+
+/// First and last cell that an interval of positions [cells] shares more than a point with.
+std::pair<int, int> CellsOf(const Interval& interval) {
+  const double bound = 1e9;  // keeps far-away outlines within int
+  const int first = static_cast<int>(std::floor(std::clamp(interval.lower, -bound, bound)));
+  const int last = static_cast<int>(std::ceil(std::clamp(interval.upper, -bound, bound))) - 1;
+  return {first, std::max(first, last)};
+}
+
+/// The x-range of the part of a segment that lies within y_lower..y_upper.
+void IncludeClipped(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double y_lower,
+                    double y_upper, Interval* range) {
+  const Eigen::Vector2d& low = a.y() <= b.y() ? a : b;
+  const Eigen::Vector2d& high = a.y() <= b.y() ? b : a;
+  if (high.y() < y_lower || low.y() > y_upper) return;
+  const bool cut_below = low.y() < y_lower;
+  const bool cut_above = high.y() > y_upper;
+  const double slope = cut_below || cut_above ? (high.x() - low.x()) / (high.y() - low.y()) : 0.0;
+  range->Include(cut_below ? low.x() + slope * (y_lower - low.y()) : low.x());
+  range->Include(cut_above ? low.x() + slope * (y_upper - low.y()) : high.x());
+}
+
+/// Calls visit(row, first column, last column) for all of the map's rows that a convex outline
+/// reaches. Columns may lie outside the map.
+template <typename Visit>
+void ForEachSpan(const geometry::Polygon& outline_M, const Costmap& costmap, const Visit& visit) {
+  const double resolution = costmap.resolution();
+  const Eigen::Vector2d origin = costmap.origin();
+  Interval y_range;
+  for (const Eigen::Vector2d& p : outline_M) y_range.Include((p.y() - origin.y()) / resolution);
+  const auto [lowest, highest] = CellsOf(y_range);
+  for (int row = std::max(lowest, 0); row <= std::min(highest, costmap.height() - 1); ++row) {
+    const double y = origin.y() + row * resolution;
+    Interval x_range;
+    for (std::size_t i = 0; i < outline_M.size(); ++i) {
+      IncludeClipped(outline_M[i], outline_M[i + 1 == outline_M.size() ? 0 : i + 1], y,
+                     y + resolution, &x_range);
+    }
+    if (x_range.lower > x_range.upper) continue;  // rounding at the outline's very end
+    x_range.lower = (x_range.lower - origin.x()) / resolution;
+    x_range.upper = (x_range.upper - origin.x()) / resolution;
+    const auto [first, last] = CellsOf(x_range);
+    visit(row, first, last);
+  }
+}
+
+// Far enough to stand for "no obstacle", small enough for sums in 64 bits to stay exact.
+constexpr std::int64_t kFar = std::int64_t{1} << 40;
+
+/// Squared distances to the nearest zero of a line of squared distances: the lower envelope of
+/// parabolas [Felzenszwalb, Huttenlocher 2012, Theory of Computing 8:415-428], in integers.
+class LineTransform {
+ public:
+  explicit LineTransform(int longest) : apex_(longest), start_(longest), height_(longest) {}
+
+  /// Transforms the `count` values at line[0], line[stride], ... in place.
+  void operator()(std::int64_t* line, int count, std::ptrdiff_t stride) {
+    int last = -1;
+    for (int q = 0; q < count; ++q) {
+      height_[q] = line[q * stride];
+      if (height_[q] >= kFar) continue;
+      while (last >= 0 && FirstBelow(apex_[last], q) <= start_[last]) --last;
+      const std::int64_t start = last < 0 ? 0 : FirstBelow(apex_[last], q);
+      if (start >= count) continue;
+      apex_[++last] = q;
+      start_[last] = start;
+    }
+    for (int q = 0, k = 0; q < count && last >= 0; ++q) {
+      while (k < last && start_[k + 1] <= q) ++k;
+      const std::int64_t offset = q - apex_[k];
+      line[q * stride] = offset * offset + height_[apex_[k]];
+    }
+  }
+
+ private:
+  /// The first place where the parabola of `right` lies below that of `left` (left < right).
+  std::int64_t FirstBelow(std::int64_t left, std::int64_t right) const {
+    const std::int64_t numerator = right * right + height_[right] - left * left - height_[left];
+    const std::int64_t denominator = 2 * (right - left);
+    return numerator < 0 ? 0 : numerator / denominator + 1;
+  }
+
+  std::vector<std::int64_t> apex_, start_, height_;
+};
+
+}  // namespace
+
+Costmap::Costmap(const world::OccupancyGrid& grid, double inscribed_radius,
+                 const CostmapParams& params)
+    : resolution_(grid.resolution),
+      width_(grid.width),
+      height_(grid.height),
+      origin_(grid.origin),
+      inscribed_radius_(inscribed_radius),
+      params_(params) {
+  HIRES_CHECK(resolution_ > 0.0 && width_ > 0 && height_ > 0, "a costmap needs cells");
+  HIRES_CHECK(grid.cells.size() == static_cast<std::size_t>(width_) * height_,
+              "a grid has width * height cells");
+  HIRES_CHECK(inscribed_radius >= 0.0 && params.inflation_radius >= 0.0 &&
+                  params.cost_scaling_factor >= 0.0 && std::isfinite(inscribed_radius) &&
+                  std::isfinite(params.inflation_radius),
+              "radii and scaling factor of a costmap are finite and not negative");
+  SetCostsFrom(grid);
+}
+
+void Costmap::SetCostsFrom(const world::OccupancyGrid& grid) {
+  std::vector<std::int64_t> squared(grid.cells.size(), kFar);
+  const auto blocks = [this](world::Cell cell) {
+    return cell == world::Cell::kOccupied ||
+           (cell == world::Cell::kUnknown && params_.unknown_is_lethal);
+  };
+  for (std::size_t i = 0; i < squared.size(); ++i) {
+    if (blocks(grid.cells[i])) squared[i] = 0;
+  }
+  LineTransform transform(std::max(width_, height_));
+  for (int column = 0; column < width_; ++column) transform(&squared[column], height_, width_);
+  costs_.resize(squared.size());
+  for (int row = 0; row < height_; ++row) {
+    std::int64_t* line = &squared[static_cast<std::size_t>(row) * width_];
+    transform(line, width_, 1);
+  }
+  for (std::size_t i = 0; i < squared.size(); ++i) {
+    costs_[i] = squared[i] >= kFar
+                    ? kFreeCost
+                    : CostAt(std::sqrt(static_cast<double>(squared[i])) * resolution_);
+    if (squared[i] == 0 && grid.cells[i] == world::Cell::kUnknown) costs_[i] = kUnknownCost;
+  }
+}
+
+std::uint8_t Costmap::CostAt(double distance) const {
+  if (distance == 0.0) return kLethalCost;
+  if (distance <= inscribed_radius_) return kInscribedCost;
+  if (distance > params_.inflation_radius) return kFreeCost;
+  const double decay = std::exp(-params_.cost_scaling_factor * (distance - inscribed_radius_));
+  return static_cast<std::uint8_t>((kInscribedCost - 1) * decay);
+}
+
+void Costmap::CellOf(const Eigen::Vector2d& point, int* column, int* row) const {
+  const double bound = 1e9;  // a point far off the map still gives a valid int
+  *column = static_cast<int>(
+      std::floor(std::clamp((point.x() - origin_.x()) / resolution_, -bound, bound)));
+  *row = static_cast<int>(
+      std::floor(std::clamp((point.y() - origin_.y()) / resolution_, -bound, bound)));
+}
+
+Eigen::Vector2d Costmap::CentreOf(int column, int row) const {
+  return origin_ + resolution_ * Eigen::Vector2d(column + 0.5, row + 0.5);
+}
+
+bool Costmap::Covers(const geometry::Polygon& outline_M) const {
+  const Eigen::Vector2d far_corner = origin_ + resolution_ * Eigen::Vector2d(width_, height_);
+  return std::all_of(outline_M.begin(), outline_M.end(), [&](const Eigen::Vector2d& p) {
+    return p.x() >= origin_.x() && p.y() >= origin_.y() && p.x() <= far_corner.x() &&
+           p.y() <= far_corner.y();
+  });
+}
+
+std::uint8_t Costmap::CostBelow(const geometry::Polygon& outline_M) const {
+  if (!Covers(outline_M)) return kLethalCost;
+  std::uint8_t highest = kFreeCost;
+  ForEachSpan(outline_M, *this, [&](int row, int first, int last) {
+    const std::uint8_t* costs = &costs_[static_cast<std::size_t>(row) * width_];
+    first = std::max(first, 0);  // rounding at the map's edge
+    last = std::min(last, width_ - 1);
+    for (int column = first; column <= last; ++column) highest = std::max(highest, costs[column]);
+  });
+  return highest;
+}
+
+std::uint8_t Costmap::FootprintCost(const geometry::Polygon& footprint,
+                                    const geometry::Pose2& X_MB) const {
+  return CostBelow(geometry::Transformed(X_MB, footprint));
+}
+
+Costmap Costmap::WithObstacles(const std::vector<geometry::Polygon>& outlines_M) const {
+  Costmap extended = *this;
+  std::vector<std::pair<int, int>> added;
+  for (const geometry::Polygon& outline : outlines_M) {
+    ForEachSpan(outline, *this, [&](int row, int first, int last) {
+      for (int column = std::max(first, 0); column <= std::min(last, width_ - 1); ++column) {
+        if (extended.cost(column, row) >= kLethalCost) continue;
+        extended.costs_[static_cast<std::size_t>(row) * width_ + column] = kLethalCost;
+        added.emplace_back(column, row);
+      }
+    });
+  }
+  extended.Inflate(added);
+  return extended;
+}
+
+void Costmap::Inflate(const std::vector<std::pair<int, int>>& cells) {
+  const double radius = std::max(params_.inflation_radius, inscribed_radius_);
+  const int reach = static_cast<int>(std::min(radius / resolution_, 1e4));
+  const int edge = 2 * reach + 1;
+  std::vector<std::uint8_t> stamp(static_cast<std::size_t>(edge) * edge);
+  for (int dy = -reach; dy <= reach; ++dy) {
+    for (int dx = -reach; dx <= reach; ++dx) {
+      stamp[static_cast<std::size_t>(dy + reach) * edge + dx + reach] =
+          CostAt(std::sqrt(static_cast<double>(dx * dx + dy * dy)) * resolution_);
+    }
+  }
+  for (const auto& [column, row] : cells) {
+    const int first = std::max(column - reach, 0), last = std::min(column + reach, width_ - 1);
+    for (int y = std::max(row - reach, 0); y <= std::min(row + reach, height_ - 1); ++y) {
+      const std::uint8_t* from =
+          &stamp[static_cast<std::size_t>(y - row + reach) * edge + (first - column + reach)];
+      std::uint8_t* to = &costs_[static_cast<std::size_t>(y) * width_ + first];
+      for (int i = 0; i <= last - first; ++i) to[i] = std::max(to[i], from[i]);
+    }
+  }
+}
+
+}  // namespace hires::navigation

@@ -1,0 +1,55 @@
+#include "hires/navigation/distance_grid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hires::navigation {
+
+void LocalWindow::Centre(const Costmap& costmap, const Eigen::Vector2d& p_MB, double half_width) {
+  resolution_ = costmap.resolution();
+  const int reach = static_cast<int>(std::floor(half_width / resolution_));
+  width_ = 2 * reach + 3;
+  int column, row;
+  costmap.CellOf(p_MB, &column, &row);
+  column -= reach + 1;
+  row -= reach + 1;
+  corner_ = costmap.CentreOf(column, row) - Eigen::Vector2d::Constant(0.5 * resolution_);
+  passable_.assign(static_cast<std::size_t>(width_) * width_, 0);
+  for (int y = 1; y + 1 < width_; ++y) {
+    for (int x = 1; x + 1 < width_; ++x) {
+      if (!costmap.Inside(column + x, row + y)) continue;
+      passable_[y * width_ + x] = costmap.cost(column + x, row + y) < kInscribedCost;
+    }
+  }
+}
+
+int LocalWindow::CellBelow(const Eigen::Vector2d& point_M) const {
+  const double x = (point_M.x() - corner_.x()) / resolution_;
+  const double y = (point_M.y() - corner_.y()) / resolution_;
+  if (!(x >= 1.0 && y >= 1.0 && x < width_ - 1 && y < width_ - 1)) return -1;
+  return static_cast<int>(y) * width_ + static_cast<int>(x);
+}
+
+void DistanceGrid::Compute(const LocalWindow& window, const std::vector<int>& seeds) {
+  const std::vector<std::uint8_t>& passable = window.passable();
+  distance_.assign(passable.size(), kUnreachable);
+  queue_.resize(passable.size());
+  std::size_t end = 0;
+  for (int seed : seeds) {
+    if (seed < 0 || distance_[seed] == 0) continue;
+    distance_[seed] = 0;
+    queue_[end++] = seed;
+  }
+  const int neighbours[] = {1, -1, window.width(), -window.width()};
+  for (std::size_t next = 0; next < end; ++next) {
+    const int cell = queue_[next], farther = distance_[cell] + 1;
+    for (int step : neighbours) {
+      const int to = cell + step;
+      if (!passable[to] || distance_[to] <= farther) continue;
+      distance_[to] = farther;
+      queue_[end++] = to;
+    }
+  }
+}
+
+}  // namespace hires::navigation

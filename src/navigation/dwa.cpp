@@ -1,0 +1,442 @@
+#include "hires/navigation/dwa.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "hires/base/check.h"
+#include "hires/geometry/angles.h"
+#include "hires/navigation/distance_grid.h"
+#include "hires/navigation/oscillation_guard.h"
+#include "hires/navigation/swept_footprint.h"
+#include "hires/navigation/velocity_window.h"
+
+namespace hires::navigation {
+namespace {
+
+constexpr double kWindowHalfWidth = 3.0;  // [m] the original's local costmap is 6 m x 6 m
+constexpr double kKeptBehind = 1.0;       // [m] of the path already driven
+constexpr double kRoomSpacing = 0.025;    // [m] between places tried for turning
+constexpr double kRoomReached = 0.01;     // [m]
+constexpr double kRoomShare = 0.9;        // of the goal's tolerance, so that stopping keeps within
+
+// [m] Kept free around the footprint where possible: poses between two checked ones may lie a
+// quarter of a cell nearer to things, and a base does not follow to the millimetre.
+constexpr double kMargin = 0.02;
+
+/// A velocity with its score so far. Of equal scores the one that turns least wins, then the one
+/// that moves least sideways, then the fastest: distances come in whole cells and tie often.
+struct Candidate {
+  double score;
+  geometry::Twist2 V_B;
+
+  auto Key() const {
+    return std::make_tuple(score, std::abs(V_B.wz), std::abs(V_B.vy), -V_B.vx, V_B.wz, V_B.vy);
+  }
+};
+bool Worse(const Candidate& a, const Candidate& b) { return b.Key() < a.Key(); }
+
+double TimeToStop(double velocity, double acceleration) {
+  return acceleration > 0.0 ? std::abs(velocity) / acceleration : 0.0;
+}
+
+double Speed(const geometry::Twist2& V) { return std::hypot(V.vx, V.vy); }
+
+double Approach(double now, double wanted, double change) {
+  return std::clamp(wanted, now - change, now + change);
+}
+
+bool IsUsable(double limit) { return std::isfinite(limit) && limit >= 0.0; }
+
+void Check(const DwaParams& p) {
+  HIRES_CHECK(p.control_period > 0.0 && p.sim_time > 0.0 && p.sim_granularity > 0.0 &&
+                  p.angular_sim_granularity > 0.0 && p.xy_goal_tolerance > 0.0 &&
+                  p.yaw_goal_tolerance > 0.0,
+              "periods, granularities and tolerances of the local planner are positive");
+  for (double value :
+       {p.min_linear_velocity, p.max_lateral_velocity, p.min_angular_velocity, p.path_distance_bias,
+        p.goal_distance_bias, p.obstacle_scale, p.stop_time_buffer, p.forward_point_distance,
+        p.scaling_speed, p.max_scaling_factor, p.oscillation_reset_distance,
+        p.oscillation_reset_angle, p.stopped_linear_velocity, p.stopped_angular_velocity}) {
+    HIRES_CHECK(IsUsable(value), "parameters of the local planner are finite and not negative");
+  }
+}
+
+/// The same path with no two points farther apart than `spacing`.
+std::vector<Eigen::Vector2d> PointsAlong(const std::vector<geometry::Pose2>& path, double spacing) {
+  std::vector<Eigen::Vector2d> points{path.front().position()};
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Eigen::Vector2d from = path[i - 1].position(), along = path[i].position() - from;
+    const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / spacing)));
+    for (int k = 1; k <= pieces; ++k) points.push_back(from + along * k / pieces);
+  }
+  return points;
+}
+
+}  // namespace
+
+struct DwaPlanner::Impl {
+  Impl(const DwaParams& params, const geometry::Polygon& footprint)
+      : params_(params),
+        sweep_(footprint, params.sim_granularity, params.angular_sim_granularity),
+        wide_sweep_(geometry::Padded(footprint, kMargin), params.sim_granularity,
+                    params.angular_sim_granularity),
+        guard_(params.oscillation_reset_distance, params.oscillation_reset_angle,
+               params.min_linear_velocity) {}
+
+  void SetPath(const std::vector<geometry::Pose2>& path);
+  DwaResult Update(const Costmap& costmap, const geometry::Pose2& X_MB,
+                   const geometry::Twist2& V_B);
+
+  // On the way.
+  DwaResult Drive(const Costmap& costmap, const geometry::Pose2& X_MB, const geometry::Twist2& V_B);
+  bool PrepareGrids(const Costmap& costmap, const geometry::Pose2& X_MB);
+  void DropDrivenPath(const Eigen::Vector2d& p_MB);
+  std::vector<Candidate> ScoreDistances(const std::vector<geometry::Twist2>& velocities,
+                                        const geometry::Pose2& X_MB, double resolution) const;
+  std::optional<double> DistanceScore(const geometry::Twist2& V_B, const geometry::Pose2& X_MB,
+                                      double resolution) const;
+  std::optional<Candidate> BestWithObstacles(std::vector<Candidate> candidates,
+                                             const Costmap& costmap, const geometry::Pose2& X_MB,
+                                             SweptFootprint* sweep) const;
+  double FootprintScale(const geometry::Twist2& V_B) const;
+  double Duration() const;
+
+  // At the goal.
+  DwaResult AtGoal(const Costmap& costmap, const geometry::Pose2& X_MB,
+                   const geometry::Twist2& V_B);
+  DwaResult Brake(const Costmap& costmap, const geometry::Pose2& X_MB, const geometry::Twist2& V_B);
+  DwaResult Turn(const Costmap& costmap, const geometry::Pose2& X_MB, const geometry::Twist2& V_B);
+  std::optional<double> FreeTurn(const Costmap& costmap, const geometry::Pose2& X_MB,
+                                 SweptFootprint* sweep) const;
+  DwaResult MakeRoom(const Costmap& costmap, const geometry::Pose2& X_MB,
+                     const geometry::Twist2& V_B);
+  std::optional<Eigen::Vector2d> FindRoom(const Costmap& costmap, const geometry::Pose2& X_MB);
+  bool IsWayFree(const Costmap& costmap, const geometry::Pose2& X_MB, const Eigen::Vector2d& p_MTo);
+  double YawError(const geometry::Pose2& X_MB) const {
+    return geometry::WrapToPi(X_MGoal_.yaw - X_MB.yaw);
+  }
+  double GoalDistance(const geometry::Pose2& X_MB) const {
+    return (X_MGoal_.position() - X_MB.position()).norm();
+  }
+  bool IsStopped(const geometry::Twist2& V_B) const {
+    return Speed(V_B) <= params_.stopped_linear_velocity &&
+           std::abs(V_B.wz) <= params_.stopped_angular_velocity;
+  }
+  void LeaveGoal();
+
+  DwaParams params_;
+  robot::MotionSet limits_;
+  SweptFootprint sweep_;
+  SweptFootprint wide_sweep_;  // with margin
+  OscillationGuard guard_;
+
+  std::vector<Eigen::Vector2d> path_;  // dense
+  std::size_t first_{0};               // of path_ that is not yet well behind the robot
+  geometry::Pose2 X_MGoal_;
+
+  LocalWindow window_;
+  DistanceGrid path_grid_, goal_grid_, front_grid_;
+  bool align_{false};  // does the forward point have to follow the path?
+
+  bool position_reached_{false};
+  bool turning_{false};
+  int turn_sign_{0};
+  std::optional<Eigen::Vector2d> room_;  // where to turn, if not here
+};
+
+void DwaPlanner::Impl::SetPath(const std::vector<geometry::Pose2>& path) {
+  path_ = PointsAlong(path, params_.sim_granularity);
+  first_ = 0;
+  X_MGoal_ = path.back();
+  guard_.Reset();
+  LeaveGoal();
+}
+
+void DwaPlanner::Impl::LeaveGoal() {
+  position_reached_ = turning_ = false;
+  turn_sign_ = 0;
+  room_.reset();
+}
+
+DwaResult DwaPlanner::Impl::Update(const Costmap& costmap, const geometry::Pose2& X_MB,
+                                   const geometry::Twist2& V_B) {
+  DropDrivenPath(X_MB.position());
+  if (GoalDistance(X_MB) <= params_.xy_goal_tolerance) position_reached_ = true;
+  return position_reached_ ? AtGoal(costmap, X_MB, V_B) : Drive(costmap, X_MB, V_B);
+}
+
+void DwaPlanner::Impl::DropDrivenPath(const Eigen::Vector2d& p_MB) {
+  const auto near = std::find_if(path_.begin() + first_, path_.end(), [&](const auto& point) {
+    return (point - p_MB).norm() < kKeptBehind;
+  });
+  if (near != path_.end()) first_ = near - path_.begin();
+}
+
+// ---- on the way -------------------------------------------------------------------------------
+
+DwaResult DwaPlanner::Impl::Drive(const Costmap& costmap, const geometry::Pose2& X_MB,
+                                  const geometry::Twist2& V_B) {
+  DwaResult result;
+  if (!sweep_.IsFree(costmap, X_MB, {}, 0.0) || !PrepareGrids(costmap, X_MB)) return result;
+  const auto velocities = ReachableVelocities(params_, limits_, V_B);
+  result.num_samples = static_cast<int>(velocities.size());
+  const auto candidates = ScoreDistances(velocities, X_MB, costmap.resolution());
+  auto best = BestWithObstacles(candidates, costmap, X_MB, &wide_sweep_);
+  if (!best) best = BestWithObstacles(candidates, costmap, X_MB, &sweep_);
+  if (!best) {  // come to rest as gently as the limits say; from there other ways may open
+    return IsStopped(V_B) ? result : Brake(costmap, X_MB, V_B);
+  }
+  guard_.Chosen(best->V_B, X_MB);
+  result.status = DwaStatus::kDriving;
+  result.velocity = best->V_B;
+  return result;
+}
+
+bool DwaPlanner::Impl::PrepareGrids(const Costmap& costmap, const geometry::Pose2& X_MB) {
+  window_.Centre(costmap, X_MB.position(), kWindowHalfWidth);
+  std::vector<int> on_path;
+  Eigen::Vector2d local_goal = X_MGoal_.position();
+  for (std::size_t i = first_; i < path_.size(); ++i) {
+    const int cell = window_.CellBelow(path_[i]);
+    if (cell < 0 && !on_path.empty()) break;  // the path leaves the window
+    if (cell < 0) continue;
+    on_path.push_back(cell);
+    local_goal = path_[i];
+  }
+  if (on_path.empty()) return false;
+  const Eigen::Vector2d to_goal = local_goal - X_MB.position();
+  const Eigen::Vector2d ahead =
+      params_.forward_point_distance *
+      (to_goal.norm() > 0.0 ? to_goal.normalized() : Eigen::Vector2d::UnitX());
+  const int front = window_.CellBelow(local_goal + ahead);
+  align_ = to_goal.norm() > params_.forward_point_distance;
+  path_grid_.Compute(window_, on_path);
+  goal_grid_.Compute(window_, {on_path.back()});
+  front_grid_.Compute(window_, {front < 0 ? on_path.back() : front});
+  return true;
+}
+
+double DwaPlanner::Impl::Duration() const {
+  const double speed = limits_.max_linear_velocity;
+  const double stopping = params_.control_period + params_.stop_time_buffer +
+                          TimeToStop(speed, limits_.max_linear_acceleration);
+  const double in_window = 0.8 * (kWindowHalfWidth - params_.forward_point_distance);
+  const double longest = speed > 0.0 ? in_window / speed : params_.sim_time;
+  return std::max(params_.sim_time, std::min(stopping, longest));
+}
+
+std::vector<Candidate> DwaPlanner::Impl::ScoreDistances(
+    const std::vector<geometry::Twist2>& velocities, const geometry::Pose2& X_MB,
+    double resolution) const {
+  std::vector<Candidate> candidates;
+  candidates.reserve(velocities.size());
+  for (const geometry::Twist2& V_B : velocities) {
+    if (!guard_.Allows(V_B)) continue;
+    const auto score = DistanceScore(V_B, X_MB, resolution);
+    if (score) candidates.push_back({*score, V_B});
+  }
+  return candidates;
+}
+
+std::optional<double> DwaPlanner::Impl::DistanceScore(const geometry::Twist2& V_B,
+                                                      const geometry::Pose2& X_MB,
+                                                      double resolution) const {
+  const geometry::Pose2 X_MEnd = PoseAfter(X_MB, V_B, Duration());
+  const int base = window_.CellBelow(X_MEnd.position());
+  const int nose = window_.CellBelow(X_MEnd * Eigen::Vector2d(params_.forward_point_distance, 0.0));
+  if (base < 0 || nose < 0) return std::nullopt;
+  const int from_path = path_grid_.At(base), from_goal = goal_grid_.At(base);
+  if (from_path == DistanceGrid::kUnreachable || from_goal == DistanceGrid::kUnreachable) {
+    return std::nullopt;
+  }
+  const double path_cells = from_path + (align_ ? path_grid_.At(nose) : 0);
+  const double goal_cells = from_goal + front_grid_.At(nose);
+  return 0.5 * resolution *
+         (params_.path_distance_bias * path_cells + params_.goal_distance_bias * goal_cells);
+}
+
+/// Obstacles only ever add to a score, so looking in the order of the scores without them finds the
+/// best after a few looks: the same one as looking at all.
+std::optional<Candidate> DwaPlanner::Impl::BestWithObstacles(std::vector<Candidate> candidates,
+                                                             const Costmap& costmap,
+                                                             const geometry::Pose2& X_MB,
+                                                             SweptFootprint* sweep) const {
+  std::optional<Candidate> best;
+  const double weight = costmap.resolution() * params_.obstacle_scale;
+  std::make_heap(candidates.begin(), candidates.end(), Worse);
+  while (!candidates.empty() && (!best || candidates.front().score <= best->score)) {
+    std::pop_heap(candidates.begin(), candidates.end(), Worse);
+    Candidate candidate = candidates.back();
+    candidates.pop_back();
+    const std::uint8_t cost =
+        sweep->HighestCost(costmap, X_MB, candidate.V_B, Duration(), FootprintScale(candidate.V_B));
+    if (cost >= kLethalCost) continue;
+    candidate.score += weight * cost;
+    if (!best || Worse(*best, candidate)) best = candidate;
+  }
+  return best;
+}
+
+double DwaPlanner::Impl::FootprintScale(const geometry::Twist2& V_B) const {
+  const double speed = Speed(V_B), fastest = limits_.max_linear_velocity;
+  if (speed <= params_.scaling_speed || fastest <= params_.scaling_speed) return 1.0;
+  const double share = (speed - params_.scaling_speed) / (fastest - params_.scaling_speed);
+  return 1.0 + params_.max_scaling_factor * std::min(share, 1.0);
+}
+
+// ---- at the goal ------------------------------------------------------------------------------
+
+DwaResult DwaPlanner::Impl::AtGoal(const Costmap& costmap, const geometry::Pose2& X_MB,
+                                   const geometry::Twist2& V_B) {
+  guard_.Reset();
+  if (std::abs(YawError(X_MB)) > params_.yaw_goal_tolerance) {
+    turning_ = turning_ || IsStopped(V_B);
+    return turning_ ? Turn(costmap, X_MB, V_B) : Brake(costmap, X_MB, V_B);
+  }
+  turning_ = false;
+  if (!IsStopped(V_B)) return Brake(costmap, X_MB, V_B);
+  if (GoalDistance(X_MB) <= params_.xy_goal_tolerance) return {DwaStatus::kGoalReached, {}, 0};
+  LeaveGoal();  // it came to rest too far off after all
+  return Drive(costmap, X_MB, V_B);
+}
+
+DwaResult DwaPlanner::Impl::Brake(const Costmap& costmap, const geometry::Pose2& X_MB,
+                                  const geometry::Twist2& V_B) {
+  const geometry::Twist2 braked = Braked(V_B, limits_, params_.control_period);
+  const double to_stop = std::max(TimeToStop(Speed(braked), limits_.max_linear_acceleration),
+                                  TimeToStop(braked.wz, limits_.max_angular_acceleration));
+  // Slowing down evenly covers half the way of driving on.
+  if (!sweep_.IsFree(costmap, X_MB, braked, params_.control_period + 0.5 * to_stop)) {
+    return {DwaStatus::kNoValidTrajectory, {}, 1};
+  }
+  return {DwaStatus::kDriving, braked, 1};
+}
+
+DwaResult DwaPlanner::Impl::Turn(const Costmap& costmap, const geometry::Pose2& X_MB,
+                                 const geometry::Twist2& V_B) {
+  if (room_) return MakeRoom(costmap, X_MB, V_B);
+  std::optional<double> turn = FreeTurn(costmap, X_MB, turn_sign_ == 0 ? &wide_sweep_ : &sweep_);
+  if (!turn) {
+    turn_sign_ = 0;
+    const DwaResult aside = MakeRoom(costmap, X_MB, V_B);
+    if (aside.status == DwaStatus::kDriving) return aside;
+    turn = FreeTurn(costmap, X_MB, &sweep_);
+    if (!turn) return aside;
+  }
+  turn_sign_ = *turn < 0.0 ? -1 : 1;
+  const double angle = std::abs(*turn);
+  const double slowest = std::min(params_.min_angular_velocity, limits_.max_angular_velocity);
+  const double stoppable = std::sqrt(2.0 * limits_.max_angular_acceleration * angle);
+  const double speed =
+      std::min({std::max(angle, slowest), stoppable, limits_.max_angular_velocity});
+  geometry::Twist2 velocity = Braked(V_B, limits_, params_.control_period);
+  velocity.wz = Approach(V_B.wz, turn_sign_ * speed,
+                         limits_.max_angular_acceleration * params_.control_period);
+  return {DwaStatus::kDriving, velocity, 1};
+}
+
+/// The signed angle to the goal's heading through which the robot can turn here without contact:
+/// the shorter way, else the longer one. A turn begun is kept while it is far from done.
+std::optional<double> DwaPlanner::Impl::FreeTurn(const Costmap& costmap,
+                                                 const geometry::Pose2& X_MB,
+                                                 SweptFootprint* sweep) const {
+  double turn = YawError(X_MB);
+  double other = turn - std::copysign(2.0 * geometry::kPi, turn);
+  if (std::abs(turn) > 0.5 * geometry::kPi && turn * turn_sign_ < 0.0) std::swap(turn, other);
+  for (double angle : {turn, other}) {
+    if (sweep->IsFree(costmap, X_MB, {0.0, 0.0, std::copysign(1.0, angle)}, std::abs(angle))) {
+      return angle;
+    }
+  }
+  return std::nullopt;
+}
+
+DwaResult DwaPlanner::Impl::MakeRoom(const Costmap& costmap, const geometry::Pose2& X_MB,
+                                     const geometry::Twist2& V_B) {
+  if (!room_ || !IsWayFree(costmap, X_MB, *room_)) room_ = FindRoom(costmap, X_MB);
+  if (!room_) return {DwaStatus::kNoValidTrajectory, {}, 1};
+  const Eigen::Vector2d to_room = X_MB.Inverse() * *room_;
+  const double distance = to_room.norm();
+  if (distance < kRoomReached) {
+    room_.reset();
+    turning_ = false;  // stand still first
+    return Brake(costmap, X_MB, V_B);
+  }
+  const double change = limits_.max_linear_acceleration * params_.control_period;
+  const double speed = std::min({params_.max_lateral_velocity, limits_.max_linear_velocity,
+                                 distance / params_.control_period,
+                                 std::sqrt(2.0 * limits_.max_linear_acceleration * distance)});
+  const Eigen::Vector2d now(V_B.vx, V_B.vy), wanted = to_room / distance * speed;
+  const Eigen::Vector2d difference = wanted - now;
+  const Eigen::Vector2d next =
+      difference.norm() > change ? Eigen::Vector2d(now + difference.normalized() * change) : wanted;
+  const double turning = Braked(V_B, limits_, params_.control_period).wz;
+  return {DwaStatus::kDriving, {next.x(), next.y(), turning}, 1};
+}
+
+/// The nearest place within the goal's tolerance that can be reached in a straight line, as the
+/// robot is headed now, and where it can turn.
+std::optional<Eigen::Vector2d> DwaPlanner::Impl::FindRoom(const Costmap& costmap,
+                                                          const geometry::Pose2& X_MB) {
+  const double radius = kRoomShare * params_.xy_goal_tolerance;
+  const int reach = static_cast<int>(radius / kRoomSpacing);
+  std::vector<std::tuple<double, int, int>> places;  // nearest first
+  for (int i = -reach; i <= reach; ++i) {
+    for (int j = -reach; j <= reach; ++j) {
+      const Eigen::Vector2d offset = kRoomSpacing * Eigen::Vector2d(i, j);
+      const double distance = (X_MGoal_.position() + offset - X_MB.position()).norm();
+      if (offset.norm() <= radius && distance > kRoomReached) places.emplace_back(distance, i, j);
+    }
+  }
+  std::sort(places.begin(), places.end());
+  for (const auto& [distance, i, j] : places) {
+    const Eigen::Vector2d place = X_MGoal_.position() + kRoomSpacing * Eigen::Vector2d(i, j);
+    if (!IsWayFree(costmap, X_MB, place)) continue;
+    if (FreeTurn(costmap, {place.x(), place.y(), X_MB.yaw}, &wide_sweep_)) return place;
+  }
+  return std::nullopt;
+}
+
+bool DwaPlanner::Impl::IsWayFree(const Costmap& costmap, const geometry::Pose2& X_MB,
+                                 const Eigen::Vector2d& p_MTo) {
+  const Eigen::Vector2d way = X_MB.Inverse() * p_MTo;  // driven in one unit of time
+  return sweep_.IsFree(costmap, X_MB, {way.x(), way.y(), 0.0}, 1.0);
+}
+
+// ---- the planner ------------------------------------------------------------------------------
+
+DwaPlanner::DwaPlanner(const DwaParams& params, const geometry::Polygon& footprint) {
+  Check(params);
+  HIRES_CHECK(footprint.size() >= 3, "a footprint has at least three corners");
+  impl_ = std::make_unique<Impl>(params, footprint);
+}
+DwaPlanner::DwaPlanner(const DwaPlanner& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
+DwaPlanner& DwaPlanner::operator=(const DwaPlanner& other) {
+  *impl_ = *other.impl_;
+  return *this;
+}
+DwaPlanner::~DwaPlanner() = default;
+
+void DwaPlanner::SetPath(std::vector<geometry::Pose2> path) {
+  HIRES_CHECK(!path.empty(), "a path has at least its goal");
+  impl_->SetPath(path);
+}
+
+void DwaPlanner::SetMotionSet(const robot::MotionSet& limits) {
+  HIRES_CHECK(IsUsable(limits.max_linear_velocity) && IsUsable(limits.max_angular_velocity) &&
+                  IsUsable(limits.max_linear_acceleration) &&
+                  IsUsable(limits.max_angular_acceleration),
+              "limits of motion are finite and not negative");
+  impl_->limits_ = limits;
+}
+
+DwaResult DwaPlanner::Update(const Costmap& costmap, const geometry::Pose2& X_MB,
+                             const geometry::Twist2& V_B) {
+  HIRES_CHECK(!impl_->path_.empty(), "SetPath comes before Update");
+  return impl_->Update(costmap, X_MB, V_B);
+}
+
+}  // namespace hires::navigation

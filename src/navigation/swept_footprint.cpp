@@ -1,0 +1,62 @@
+#include "hires/navigation/swept_footprint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "hires/navigation/velocity_window.h"
+
+namespace hires::navigation {
+namespace {
+
+constexpr int kStride = 8;  // poses skipped in the first, coarse look
+
+}  // namespace
+
+SweptFootprint::SweptFootprint(geometry::Polygon footprint, double linear_step, double angular_step)
+    : footprint_(std::move(footprint)),
+      placed_(footprint_),
+      radius_(geometry::CircumscribedRadius(footprint_)),
+      linear_step_(linear_step),
+      angular_step_(angular_step) {}
+
+int SweptFootprint::NumSteps(const Costmap& costmap, const geometry::Twist2& V_B, double duration,
+                             double scale) const {
+  const double driven = std::hypot(V_B.vx, V_B.vy) * duration;
+  const double turned = std::abs(V_B.wz) * duration;
+  const double corner_steps = (driven + turned * radius_ * scale) / (0.5 * costmap.resolution());
+  const double steps = std::max({driven / linear_step_, turned / angular_step_, corner_steps});
+  return std::max(1, static_cast<int>(std::ceil(steps)));
+}
+
+std::uint8_t SweptFootprint::HighestCost(const Costmap& costmap, const geometry::Pose2& X_MB,
+                                         const geometry::Twist2& V_B, double duration,
+                                         double scale) {
+  const int steps = NumSteps(costmap, V_B, duration, scale);
+  std::uint8_t highest = kFreeCost;
+  const auto look = [&](int step) {
+    const geometry::Pose2 X_MStep = PoseAfter(X_MB, V_B, duration * step / steps);
+    highest = std::max(highest, CostAt(costmap, X_MStep, scale));
+    return highest < kLethalCost;
+  };
+  // The far end collides first, if anything does: look there first.
+  for (int step = steps; step >= 0; step -= kStride) {
+    if (!look(step)) return highest;
+  }
+  for (int step = steps; step >= 0; --step) {
+    if ((steps - step) % kStride != 0 && !look(step)) return highest;
+  }
+  return highest;
+}
+
+std::uint8_t SweptFootprint::CostAt(const Costmap& costmap, const geometry::Pose2& X_MB,
+                                    double scale) {
+  const double c = scale * std::cos(X_MB.yaw), s = scale * std::sin(X_MB.yaw);
+  for (std::size_t i = 0; i < footprint_.size(); ++i) {
+    const Eigen::Vector2d& p = footprint_[i];
+    placed_[i] = {X_MB.x + c * p.x() - s * p.y(), X_MB.y + s * p.x() + c * p.y()};
+  }
+  return costmap.CostBelow(placed_);
+}
+
+}  // namespace hires::navigation

@@ -1,0 +1,103 @@
+#include "hires/navigation/velocity_window.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hires/base/check.h"
+
+namespace hires::navigation {
+namespace {
+
+constexpr double kSlack = 1e-4;  // [m/s, rad/s] so that a limit itself is never rounded away
+
+/// Samples of one axis: reachable from `now` by `change` at most, within lower..upper.
+std::vector<double> Axis(double now, double change, double lower, double upper, int count) {
+  const double from = std::clamp(now - change, lower, upper);
+  const double to = std::clamp(now + change, lower, upper);
+  return SampleAxis(from, to, count);
+}
+
+/// What counts as fast enough to be worth driving.
+struct SmallestUseful {
+  double linear, angular;
+
+  SmallestUseful(const DwaParams& params, const robot::MotionSet& limits,
+                 const geometry::Twist2& V_B)
+      : linear(std::min(params.min_linear_velocity, limits.max_linear_velocity)),
+        angular(std::min(params.min_angular_velocity, limits.max_angular_velocity)) {
+    const double reachable_linear = std::min(
+        std::hypot(V_B.vx, V_B.vy) + limits.max_linear_acceleration * params.control_period,
+        limits.max_linear_velocity);
+    const double reachable_angular =
+        std::min(std::abs(V_B.wz) + limits.max_angular_acceleration * params.control_period,
+                 limits.max_angular_velocity);
+    if (reachable_linear >= linear || reachable_angular >= angular) return;
+    linear = reachable_linear;
+    angular = reachable_angular;
+  }
+
+  bool Allows(const geometry::Twist2& V) const {
+    return std::hypot(V.vx, V.vy) + kSlack >= linear || std::abs(V.wz) + kSlack >= angular;
+  }
+};
+
+}  // namespace
+
+geometry::Pose2 PoseAfter(const geometry::Pose2& X_MB, const geometry::Twist2& V_B,
+                          double duration) {
+  const double angle = V_B.wz * duration;
+  double along = duration, across = 0.0;  // integrals of cos and sin of the heading
+  if (std::abs(angle) > 1e-9) {
+    along = std::sin(angle) / V_B.wz;
+    across = (1.0 - std::cos(angle)) / V_B.wz;
+  }
+  return X_MB *
+         geometry::Pose2{V_B.vx * along - V_B.vy * across, V_B.vx * across + V_B.vy * along, angle};
+}
+
+std::vector<double> SampleAxis(double lower, double upper, int count) {
+  HIRES_CHECK(lower <= upper, "a range of velocities begins with the lower one");
+  if (lower == upper) return {lower};
+  const int steps = std::max(count, 2) - 1;
+  std::vector<double> samples;
+  for (int i = 0; i <= steps; ++i) {
+    const double value = i == steps ? upper : lower + (upper - lower) * i / steps;
+    if (value > 0.0 && !samples.empty() && samples.back() < 0.0) samples.push_back(0.0);
+    samples.push_back(value);
+  }
+  return samples;
+}
+
+std::vector<geometry::Twist2> ReachableVelocities(const DwaParams& params,
+                                                  const robot::MotionSet& limits,
+                                                  const geometry::Twist2& V_B) {
+  const double linear_change = limits.max_linear_acceleration * params.control_period;
+  const double angular_change = limits.max_angular_acceleration * params.control_period;
+  const double lateral = std::min(params.max_lateral_velocity, limits.max_linear_velocity);
+  const double turning = limits.max_angular_velocity;
+  const SmallestUseful smallest(params, limits, V_B);
+  std::vector<geometry::Twist2> velocities;
+  const auto ys = Axis(V_B.vy, linear_change, -lateral, lateral, params.vy_samples);
+  const auto turns = Axis(V_B.wz, angular_change, -turning, turning, params.vtheta_samples);
+  for (double vx :
+       Axis(V_B.vx, linear_change, 0.0, limits.max_linear_velocity, params.vx_samples)) {
+    for (double vy : ys) {
+      if (std::hypot(vx, vy) > limits.max_linear_velocity + kSlack) continue;
+      for (double wz : turns) {
+        if (smallest.Allows({vx, vy, wz})) velocities.push_back({vx, vy, wz});
+      }
+    }
+  }
+  return velocities;
+}
+
+geometry::Twist2 Braked(const geometry::Twist2& V_B, const robot::MotionSet& limits,
+                        double period) {
+  const double speed = std::hypot(V_B.vx, V_B.vy);
+  const double slower = std::max(0.0, speed - limits.max_linear_acceleration * period);
+  const double scale = speed > 0.0 ? slower / speed : 0.0;
+  const double turning = std::max(0.0, std::abs(V_B.wz) - limits.max_angular_acceleration * period);
+  return {V_B.vx * scale, V_B.vy * scale, std::copysign(turning, V_B.wz)};
+}
+
+}  // namespace hires::navigation

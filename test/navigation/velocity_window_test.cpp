@@ -1,0 +1,130 @@
+#include "hires/navigation/velocity_window.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hires/base/rng.h"
+#include "hires/geometry/angles.h"
+
+namespace hires::navigation {
+namespace {
+
+using ::testing::DoubleEq;
+using ::testing::ElementsAre;
+
+const robot::MotionSet kFast{0.55, 1.0, 2.5, 3.2};
+const robot::MotionSet kSlow{0.30, 1.0, 1.4, 2.0};
+
+TEST(SampleAxisTest, SamplesIncludeBothEnds) {
+  EXPECT_THAT(SampleAxis(1.0, 2.0, 3), ElementsAre(1.0, 1.5, 2.0));
+  EXPECT_THAT(SampleAxis(-2.0, -1.0, 1), ElementsAre(-2.0, -1.0));
+}
+
+TEST(SampleAxisTest, ZeroIsPutBetweenSamplesOfEitherSign) {
+  EXPECT_THAT(SampleAxis(-1.0, 2.0, 2), ElementsAre(-1.0, 0.0, 2.0));
+  EXPECT_THAT(SampleAxis(-1.0, 1.0, 3), ElementsAre(-1.0, 0.0, 1.0));
+}
+
+TEST(SampleAxisTest, ARangeWithoutLengthIsOneSample) {
+  EXPECT_THAT(SampleAxis(0.5, 0.5, 20), ElementsAre(0.5));
+  EXPECT_THROW(SampleAxis(1.0, 0.5, 3), std::logic_error);
+}
+
+// Standing still, fast: forward {0, 0.125, 0.25}, sideways 10 values within 0.1 and 0, turning 20
+// values within 0.32 and 0. Of forward 0 remain the two outer sideways values with every turn, and
+// of the nine others only the two turns of 0.32.
+TEST(ReachableVelocitiesTest, FromStandstillTooSlowOnesAreLeftOut) {
+  const auto velocities = ReachableVelocities({}, kFast, {});
+  EXPECT_EQ(velocities.size(), 2u * 11 * 21 + 2 * 21 + 9 * 2);
+}
+
+// At 0.55 m/s forward {0.3, 0.425, 0.55}; of the last only straight ahead is within the limit.
+TEST(ReachableVelocitiesTest, AtFullSpeedDiagonalsBeyondTheLimitAreLeftOut) {
+  const auto velocities = ReachableVelocities({}, kFast, {0.55, 0.0, 0.0});
+  EXPECT_EQ(velocities.size(), 2u * 11 * 21 + 21);
+}
+
+TEST(ReachableVelocitiesTest, EachIsWithinTheLimitsAndWithinReach) {
+  const base::Rng root(31);
+  const DwaParams params;
+  for (int seed = 0; seed < 100; ++seed) {
+    base::Rng rng = root.Fork(seed);
+    const robot::MotionSet limits = seed % 2 == 0 ? kFast : kSlow;
+    const geometry::Twist2 V{rng.Uniform(0.0, limits.max_linear_velocity), rng.Uniform(-0.1, 0.1),
+                             rng.Uniform(-1.0, 1.0)};
+    const double linear = limits.max_linear_acceleration * params.control_period + 1e-9;
+    const double angular = limits.max_angular_acceleration * params.control_period + 1e-9;
+    const auto velocities = ReachableVelocities(params, limits, V);
+    EXPECT_FALSE(velocities.empty());
+    for (const geometry::Twist2& sample : velocities) {
+      EXPECT_GE(sample.vx, 0.0);
+      EXPECT_LE(std::hypot(sample.vx, sample.vy), limits.max_linear_velocity + 1e-3);
+      EXPECT_LE(std::abs(sample.vy), params.max_lateral_velocity);
+      EXPECT_LE(std::abs(sample.wz), limits.max_angular_velocity);
+      EXPECT_LE(std::abs(sample.vx - V.vx), linear);
+      EXPECT_LE(std::abs(sample.vy - V.vy), linear);
+      EXPECT_LE(std::abs(sample.wz - V.wz), angular);
+    }
+  }
+}
+
+TEST(ReachableVelocitiesTest, TooFastABaseIsAskedBackWithinTheLimits) {
+  for (const auto& sample : ReachableVelocities({}, kSlow, {0.55, 0.0, 0.0})) {
+    EXPECT_LE(sample.vx, 0.30);
+  }
+  for (const auto& sample : ReachableVelocities({}, kSlow, {-0.5, 0.0, 0.0})) {
+    EXPECT_EQ(sample.vx, 0.0);
+  }
+}
+
+TEST(ReachableVelocitiesTest, AnInertRobotCanStartAllTheSame) {
+  const robot::MotionSet inert{0.5, 1.0, 0.2, 0.5};  // reaches 0.02 m/s and 0.05 rad/s at first
+  EXPECT_FALSE(ReachableVelocities({}, inert, {}).empty());
+}
+
+TEST(PoseAfterTest, AQuarterCircleEndsBesideItsCentre) {
+  const geometry::Pose2 X = PoseAfter({1.0, 2.0, 0.0}, {0.5, 0.0, 0.5}, geometry::kPi);
+  EXPECT_NEAR(X.x, 2.0, 1e-12);  // radius 1, centre at (1, 3)
+  EXPECT_NEAR(X.y, 3.0, 1e-12);
+  EXPECT_NEAR(X.yaw, geometry::kPi / 2, 1e-12);
+}
+
+TEST(PoseAfterTest, AgreesWithManySmallSteps) {
+  const base::Rng root(32);
+  for (int seed = 0; seed < 100; ++seed) {
+    base::Rng rng = root.Fork(seed);
+    const geometry::Twist2 V{rng.Uniform(-1, 1), rng.Uniform(-1, 1), rng.Uniform(-2, 2)};
+    geometry::Pose2 X{rng.Uniform(-5, 5), rng.Uniform(-5, 5), rng.Uniform(-3, 3)};
+    const geometry::Pose2 X_End = PoseAfter(X, V, 1.7);
+    const int steps = 20000;
+    const double dt = 1.7 / steps;
+    for (int i = 0; i < steps; ++i) {
+      const double c = std::cos(X.yaw + 0.5 * V.wz * dt), s = std::sin(X.yaw + 0.5 * V.wz * dt);
+      X.x += (V.vx * c - V.vy * s) * dt;
+      X.y += (V.vx * s + V.vy * c) * dt;
+      X.yaw += V.wz * dt;
+    }
+    EXPECT_NEAR(X_End.x, X.x, 1e-7) << "seed " << seed;
+    EXPECT_NEAR(X_End.y, X.y, 1e-7) << "seed " << seed;
+    EXPECT_NEAR(geometry::WrapToPi(X_End.yaw - X.yaw), 0.0, 1e-7) << "seed " << seed;
+  }
+}
+
+TEST(BrakedTest, SpeedFallsByTheAccelerationAndKeepsItsDirection) {
+  const geometry::Twist2 V = Braked({0.3, 0.4, -1.0}, kFast, 0.1);
+  EXPECT_NEAR(V.vx, 0.15, 1e-12);
+  EXPECT_NEAR(V.vy, 0.20, 1e-12);
+  EXPECT_NEAR(V.wz, -0.68, 1e-12);
+}
+
+TEST(BrakedTest, ItEndsAtStandstill) {
+  const geometry::Twist2 V = Braked({0.1, 0.1, 0.1}, kFast, 0.1);
+  EXPECT_EQ(V.vx, 0.0);
+  EXPECT_EQ(V.vy, 0.0);
+  EXPECT_EQ(V.wz, 0.0);
+}
+
+}  // namespace
+}  // namespace hires::navigation
