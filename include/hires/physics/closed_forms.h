@@ -4,9 +4,9 @@ namespace hires::physics {
 
 /// A solid upright cylinder on a flat ground, for comparison with theory.
 struct UprightCylinder {
-  double radius{0.037};   ///< r [m]
-  double height{0.274};   ///< h [m]; the centre of mass is at c = h / 2
-  double mass{0.140};     ///< m [kg]
+  double radius{0.037};  ///< r [m]
+  double height{0.274};  ///< h [m]; the centre of mass is at c = h / 2
+  double mass{0.140};    ///< m [kg]
 };
 
 /// Horizontal acceleration of the ground at which it starts to tip: a = g r / c [m/s^2].

@@ -9,18 +9,19 @@ namespace hires::physics {
 
 /// One comparison of the simulator with a closed form.
 struct PhysicsCheck {
-  std::string name;        ///< "onset of tipping, 36 headings, mill of the thesis text"
+  std::string name;  ///< "onset of tipping, 36 headings, mill of the thesis text"
   std::string unit;
   double expected{0.0};
-  double measured{0.0};    ///< the worst case over headings
-  double error{0.0};       ///< |measured - expected| / expected, or absolute where expected is 0
+  double measured{0.0};  ///< the worst case over headings
+  double error{0.0};     ///< |measured - expected| / expected, or absolute where expected is 0
   double tolerance{0.0};
-  std::string remark;      ///< e.g. Housner's linearised value beside the nonlinear one
+  std::string remark;  ///< e.g. Housner's linearised value beside the nonlinear one
   bool passed() const { return error <= tolerance; }
 };
 
 /// Runs all closed-form comparisons of the design (tipping, sliding, sudden stop, pulse, free fall,
 /// stopping distance, restitution, rest) for one cylinder. Takes seconds.
-std::vector<PhysicsCheck> RunPhysicsChecks(const UprightCylinder& body, const std::string& body_name);
+std::vector<PhysicsCheck> RunPhysicsChecks(const UprightCylinder& body,
+                                           const std::string& body_name);
 
 }  // namespace hires::physics

@@ -36,6 +36,8 @@ struct PhysicsState {
 
 /// Rigid bodies in contact, simulated by ODE at a fixed step. One instance belongs to one thread at
 /// a time; several instances may run in several threads. The same calls give the same bits.
+/// Shapes, masses and parameters that no body can have are refused with base::ConfigError; a wrong
+/// BodyId or a state that is not finite breaks a precondition (std::logic_error).
 class PhysicsWorld {
  public:
   explicit PhysicsWorld(const PhysicsParams& params);
@@ -44,14 +46,12 @@ class PhysicsWorld {
   PhysicsWorld& operator=(const PhysicsWorld&) = delete;
 
   /// Never moves.
-  BodyId AddStatic(const std::vector<geometry::Collision>& collisions,
-                   const geometry::Pose3& X_WB);
+  BodyId AddStatic(const std::vector<geometry::Collision>& collisions, const geometry::Pose3& X_WB);
   /// The half space z <= 0.
   BodyId AddFloor(double friction);
   /// Moves as SetMotion says, whatever it hits. Static and driven bodies do not collide with each
   /// other here.
-  BodyId AddDriven(const std::vector<geometry::Collision>& collisions,
-                   const geometry::Pose3& X_WB);
+  BodyId AddDriven(const std::vector<geometry::Collision>& collisions, const geometry::Pose3& X_WB);
   BodyId AddLoose(const geometry::MassProperties& mass_properties,
                   const std::vector<geometry::Collision>& collisions, const BodyState& state);
 
@@ -62,12 +62,13 @@ class PhysicsWorld {
   BodyState GetState(BodyId body) const;
 
   /// Acceleration added to every loose body's own weight during the next step(s), in world axes
-  /// [m/s^2]; the non-inertial force of tests and of shaken ground. Zero at first.
+  /// [m/s^2]; the non-inertial force of tests and of shaken ground. Zero at first. A setting, like
+  /// params(): no part of what Save() returns.
   void SetExtraAcceleration(const Eigen::Vector3d& acceleration);
 
-  void Step();                 ///< advances by params().time_step
+  void Step();  ///< advances by params().time_step
   std::uint64_t num_steps() const;
-  int num_contacts() const;    ///< contact points of the last step
+  int num_contacts() const;  ///< contact points of the last step
 
   /// Saving canonicalises the state (unit quaternions): after Save() the world goes on with exactly
   /// what was saved, so that a restored world and the saved one stay equal bit by bit.

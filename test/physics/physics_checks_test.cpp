@@ -1,0 +1,48 @@
+#include "hires/physics/physics_checks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "hires/physics/physics_world.h"
+
+namespace hires::physics {
+namespace {
+
+void ExpectAllPass(const UprightCylinder& body, const char* name) {
+  PhysicsWorld::TakeSolverMessages();
+  const std::vector<PhysicsCheck> checks = RunPhysicsChecks(body, name);
+  EXPECT_EQ(checks.size(), 14u);
+  for (const PhysicsCheck& check : checks) {
+    EXPECT_TRUE(check.passed()) << check.name << ": expected " << check.expected << " "
+                                << check.unit << ", measured " << check.measured << ", error "
+                                << check.error << ", tolerance " << check.tolerance;
+    EXPECT_NE(check.name.find(name), std::string::npos);
+  }
+  EXPECT_TRUE(PhysicsWorld::TakeSolverMessages().empty());
+}
+
+TEST(PhysicsChecksTest, MillOfTheThesisTextObeysTheory) {
+  ExpectAllPass({0.037, 0.274, 0.140}, "mill of the text");
+}
+
+TEST(PhysicsChecksTest, MillOfTheAppendixObeysTheory) {
+  ExpectAllPass({0.035, 0.300, 0.500}, "mill of the appendix");
+}
+
+TEST(PhysicsChecksTest, MillOfTheRepositoryObeysTheory) {
+  ExpectAllPass({0.037, 0.274, 0.350}, "mill of the repository");
+}
+
+TEST(PhysicsChecksTest, ErrorBeyondToleranceFails) {
+  PhysicsCheck check;
+  check.tolerance = 0.01;
+  check.error = 0.0101;
+  EXPECT_FALSE(check.passed());
+  check.error = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(check.passed());
+}
+
+}  // namespace
+}  // namespace hires::physics
