@@ -239,9 +239,9 @@ void Scheduler::On(const AssignmentFinished& event) {
 void Scheduler::On(const AssignmentFailed& event) {
   const auto found = assignments_.find(event.assignment);
   if (found == assignments_.end() || found->second.worker != event.worker) return;
+  Close(event.assignment, !event.is_worker_unusable);
   if (event.is_worker_unusable) return SetAside(event.worker, event.reason);
   CountFailure(event.worker, event.reason);
-  Close(event.assignment, true);
 }
 
 void Scheduler::DropWorker(int worker) {
