@@ -206,6 +206,7 @@ OccupancyGrid SliceWorld(const World& world, double z_min, double z_max, double 
                          double margin) {
   HIRES_CHECK(resolution > 0.0 && std::isfinite(resolution), "a cell has an edge above 0 m");
   HIRES_CHECK(margin >= 0.0 && std::isfinite(margin), "a margin is not negative");
+  HIRES_CHECK(z_min <= z_max, "a band of heights ends above its begin");
   OccupancyGrid grid = GridAround(BoundsOf(world), resolution, margin);
   for (const geometry::Polygon& outline : OutlinesInBand(world, nullptr, z_min, z_max)) {
     Occupy(outline, &grid);

@@ -8,11 +8,15 @@
 #include <regex>
 #include <sdf/Console.hh>
 #include <sdf/ParserConfig.hh>
+#include <sdf/parser.hh>
+#include <set>
 #include <sstream>
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
+#include "hires/geometry/inertia.h"
+#include "hires/world/console_bridge_capture.h"
 
 namespace hires::world {
 namespace {
@@ -135,18 +139,81 @@ std::string TextAfter(const std::string& label, const std::string& message) {
   return begin == std::string::npos ? "" : message.substr(begin);
 }
 
-void ReportConsole(const ConsoleCapture& console, const std::string& path) {
-  std::string objections;
-  for (const std::string& message : console.Messages()) {
+/// What libsdformat objected to, in the order of discovery, each once.
+class Objections {
+ public:
+  explicit Objections(const std::string& path) : path_(path) {}
+
+  void Add(const sdf::Errors& errors) {
+    for (const sdf::Error& error : errors) {
+      std::string line = error.FilePath().value_or(path_);
+      if (error.LineNumber()) line += fmt::format(":{}", *error.LineNumber());
+      AddLine(line + ": " + error.Message(), IsEcho(error.Message()));
+    }
+  }
+  void AddLine(const std::string& line, bool is_echo = false) {
+    std::vector<std::string>& lines = is_echo ? echoes_ : lines_;
+    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
+  }
+  void ThrowIfAny() const {
+    // The innermost echo comes first and has the line.
+    std::vector<std::string> lines(echoes_.begin(), echoes_.begin() + (echoes_.empty() ? 0 : 1));
+    lines.insert(lines.end(), lines_.begin(), lines_.end());
+    if (lines.empty()) return;
+    throw base::ConfigError(
+        fmt::format("{}: no valid SDF; correct:\n  {}", path_, base::Join(lines, "\n  ")));
+  }
+
+ private:
+  /// Each element around a wrong one reports it again.
+  static bool IsEcho(const std::string& message) {
+    return message.find("Error reading element") == 0 || message.find("Unable to read file") == 0 ||
+           message.find("Failed to load a world") == 0;
+  }
+
+  std::string path_;
+  std::vector<std::string> lines_, echoes_;
+};
+
+void AddConsole(const ConsoleCapture& console, const std::string& path, Objections* objections) {
+  const std::vector<std::string> messages = console.Messages();
+  for (const std::string& message : std::set<std::string>(messages.begin(), messages.end())) {
     const std::string error = TextAfter("Error", message);
     const std::string warning = TextAfter("Warning", message);
-    if (!error.empty()) objections += "\n  " + error;
+    if (!error.empty()) objections->AddLine(error);
     if (!warning.empty()) {
       base::Log(base::LogLevel::kWarn, fmt::format("world={} sdformat=\"{}\"", path, warning));
     }
   }
-  if (!objections.empty()) {
-    throw base::ConfigError(fmt::format("{}: no valid SDF:{}", path, objections));
+}
+
+double NumberOr(const sdf::ElementPtr& parent, const std::string& name, double otherwise) {
+  return parent->HasElement(name) ? parent->GetElement(name)->Get<double>() : otherwise;
+}
+
+/// libsdformat refuses an impossible inertia as well, but does not say where and why.
+void CheckInertial(const sdf::ElementPtr& inertial) {
+  if (!inertial->HasElement("inertia")) return;
+  const sdf::ElementPtr inertia = inertial->GetElement("inertia");
+  geometry::MassProperties properties;
+  properties.mass = NumberOr(inertial, "mass", 1.0);
+  const char* names[3][3] = {{"ixx", "ixy", "ixz"}, {"ixy", "iyy", "iyz"}, {"ixz", "iyz", "izz"}};
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      properties.I_BBcm(i, k) = NumberOr(inertia, names[i][k], i == k ? 1.0 : 0.0);
+    }
+  }
+  const std::string wrong = geometry::WhyUnphysical(properties);
+  if (wrong.empty()) return;
+  throw base::ConfigError(fmt::format("{}: link '{}': {}; correct its <inertial>",
+                                      PlaceOf(inertial),
+                                      inertial->GetParent()->Get<std::string>("name"), wrong));
+}
+
+void CheckInertials(const sdf::ElementPtr& element) {
+  if (element->GetName() == "inertial") CheckInertial(element);
+  for (auto child = element->GetFirstElement(); child != nullptr; child = child->GetNextElement()) {
+    CheckInertials(child);
   }
 }
 
@@ -173,32 +240,34 @@ std::string PlaceOf(const sdf::ElementPtr& element) {
 }
 
 void ThrowIfAny(const sdf::Errors& errors, const std::string& path) {
-  if (errors.empty()) return;
-  std::vector<std::string> lines;
-  for (const sdf::Error& error : errors) {
-    std::string line = error.FilePath().value_or(path);
-    if (error.LineNumber()) line += fmt::format(":{}", *error.LineNumber());
-    line += ": " + error.Message();
-    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
-  }
-  throw base::ConfigError(fmt::format("{}: no valid SDF:\n  {}", path, base::Join(lines, "\n  ")));
+  Objections objections(path);
+  objections.Add(errors);
+  objections.ThrowIfAny();
 }
 
 sdf::Root ReadSdf(const std::string& path, const ResourceFinder& finder, const XmlLimits& limits) {
   const ConsoleCapture console;
+  const ConsoleBridgeCapture urdf_console;  // libsdformat tries what it cannot read as URDF
   XmlWalk(&finder, limits).VisitFile(path);
   const sdf::ParserConfig config = ConfigFor(finder);
+  Objections objections(path);
   sdf::Root root;
-  sdf::Errors errors;
   try {
-    errors = root.Load(path, config);
+    sdf::Errors errors;
+    const sdf::SDFPtr document = sdf::readFile(path, config, errors);
+    if (document != nullptr && errors.empty()) {
+      CheckInertials(document->Root());
+      errors = root.Load(document, config);
+    }
+    objections.Add(errors);
+    if (document == nullptr) objections.AddLine(path + ": is no SDF document", true);
   } catch (const base::ConfigError&) {
     throw;
   } catch (const std::exception& error) {
-    throw base::ConfigError(fmt::format("{}: no valid SDF: {}", path, error.what()));
+    objections.AddLine(error.what());
   }
-  ThrowIfAny(errors, path);
-  ReportConsole(console, path);
+  AddConsole(console, path, &objections);
+  objections.ThrowIfAny();
   return root;
 }
 

@@ -168,7 +168,10 @@ class StaticCollector {
 void RequireInertial(const sdf::Link& link, const std::string& where) {
   const sdf::ElementPtr element = link.Element();
   const auto require = [&](const sdf::ElementPtr& parent, const char* name) {
-    if (parent->HasElement(name)) return parent->GetElement(name);
+    if (parent->HasElement(name)) {
+      const sdf::ElementPtr child = parent->GetElement(name);
+      if (child->GetExplicitlySetInFile()) return child;  // else libsdformat filled it in
+    }
     throw base::ConfigError(
         fmt::format("{}: link '{}' has no <{}>; an object that can move needs mass and inertia, or "
                     "make the model <static>",

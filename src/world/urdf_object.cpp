@@ -1,59 +1,31 @@
 #include "hires/world/urdf_object.h"
 
-#include <console_bridge/console.h>
 #include <fmt/format.h>
 #include <tinyxml2.h>
 #include <urdf_parser/urdf_parser.h>
 
 #include <algorithm>
-#include <mutex>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/world/console_bridge_capture.h"
 #include "hires/world/sdf_file.h"
 #include "hires/world/sdf_model.h"
 
 namespace hires::world {
 namespace {
 
-/// urdfdom says what is wrong only on a console that all threads share. This keeps what is said.
-class ConsoleCapture : public console_bridge::OutputHandler {
- public:
-  ConsoleCapture() : lock_(mutex()), before_(console_bridge::getOutputHandler()) {
-    console_bridge::useOutputHandler(this);
-  }
-  ~ConsoleCapture() override { console_bridge::useOutputHandler(before_); }
-  ConsoleCapture(const ConsoleCapture&) = delete;
-  ConsoleCapture& operator=(const ConsoleCapture&) = delete;
-
-  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) errors.push_back(text);
-  }
-
-  std::vector<std::string> errors;
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex mutex;
-    return mutex;
-  }
-  std::lock_guard<std::mutex> lock_;
-  console_bridge::OutputHandler* before_;
-};
-
 urdf::ModelInterfaceSharedPtr Parse(const std::string& text, const std::string& path) {
-  ConsoleCapture console;
-  urdf::ModelInterfaceSharedPtr model;
+  const ConsoleBridgeCapture console;
+  std::string thrown;
   try {
-    model = urdf::parseURDF(text);
+    urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(text);
+    if (model != nullptr && console.errors().empty()) return model;
   } catch (const std::exception& error) {
-    console.errors.push_back(error.what());
+    thrown = error.what();
   }
-  if (model == nullptr || !console.errors.empty()) {
-    throw base::ConfigError(
-        fmt::format("{}: no valid URDF: {}", path, base::Join(console.errors, "; ")));
-  }
-  return model;
+  throw base::ConfigError(
+      fmt::format("{}: no valid URDF: {} {}", path, base::Join(console.errors(), "; "), thrown));
 }
 
 geometry::Pose3 ToPose(const urdf::Pose& pose, const std::string& where) {

@@ -1,0 +1,97 @@
+#include "hires/world/mesh_pieces.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace hires::world {
+namespace {
+
+using geometry::TriangleMesh;
+
+/// Adds the box between two corners, its triangles counter-clockwise from outside.
+void AddBox(const Eigen::Vector3d& lower, const Eigen::Vector3d& upper, TriangleMesh* mesh) {
+  const int first = static_cast<int>(mesh->vertices.size());
+  for (int i = 0; i < 8; ++i) {
+    mesh->vertices.emplace_back(i & 1 ? upper.x() : lower.x(), i & 2 ? upper.y() : lower.y(),
+                                i & 4 ? upper.z() : lower.z());
+  }
+  for (const std::array<int, 4>& face : {std::array<int, 4>{0, 2, 3, 1},
+                                         {4, 5, 7, 6},
+                                         {0, 1, 5, 4},
+                                         {2, 6, 7, 3},
+                                         {0, 4, 6, 2},
+                                         {1, 3, 7, 5}}) {
+    mesh->triangles.push_back({first + face[0], first + face[1], first + face[2]});
+    mesh->triangles.push_back({first + face[0], first + face[2], first + face[3]});
+  }
+}
+
+/// An L seen from above, 2 m long each way and 1 m thick and high, as one closed surface.
+TriangleMesh LShape() {
+  const double outline[6][2] = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
+  TriangleMesh mesh;
+  for (const double z : {0.0, 1.0}) {
+    for (const auto& p : outline) mesh.vertices.emplace_back(p[0], p[1], z);
+  }
+  for (int i = 0; i < 6; ++i) {
+    const int next = (i + 1) % 6;
+    mesh.triangles.push_back({i, next, next + 6});
+    mesh.triangles.push_back({i, next + 6, i + 6});
+  }
+  for (const std::array<int, 3>& t :
+       {std::array<int, 3>{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}}) {
+    mesh.triangles.push_back({t[0] + 6, t[1] + 6, t[2] + 6});
+    mesh.triangles.push_back({t[2], t[1], t[0]});
+  }
+  return mesh;
+}
+
+bool AnyContains(const std::vector<geometry::Polygon>& outlines, double x, double y) {
+  return std::any_of(outlines.begin(), outlines.end(), [&](const geometry::Polygon& outline) {
+    return geometry::Contains(outline, {x, y});
+  });
+}
+
+TEST(MeshPiecesTest, SeparateBoxesAreSeparateConvexParts) {
+  TriangleMesh mesh;
+  AddBox({0, 0, 0}, {1, 1, 1}, &mesh);
+  AddBox({5, 0, 0}, {6, 1, 1}, &mesh);
+  const auto parts = ConnectedParts(mesh);
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_EQ(parts[0].vertices.size(), 8u);
+  EXPECT_EQ(parts[1].triangles.size(), 12u);
+  EXPECT_TRUE(IsConvex(parts[0]));
+  EXPECT_FALSE(IsConvex(mesh));
+}
+
+TEST(MeshPiecesTest, RoomBetweenTheWallsOfOneMeshStaysOpen) {
+  TriangleMesh mesh;
+  AddBox({0, 0, 0}, {10, 0.2, 2}, &mesh);
+  AddBox({0, 5, 0}, {10, 5.2, 2}, &mesh);
+  const auto outlines = MeshOutlinesInBand(mesh, {}, 0.3, 0.3);
+  EXPECT_EQ(outlines.size(), 2u);
+  EXPECT_TRUE(AnyContains(outlines, 5, 0.1));
+  EXPECT_FALSE(AnyContains(outlines, 5, 2.5));
+}
+
+TEST(MeshPiecesTest, HollowCornerOfAnLStaysOpenAndItsSidesClosed) {
+  const TriangleMesh mesh = LShape();
+  EXPECT_EQ(ConnectedParts(mesh).size(), 1u);
+  EXPECT_FALSE(IsConvex(mesh));
+  const auto outlines = MeshOutlinesInBand(mesh, {}, 0.5, 0.5);
+  EXPECT_FALSE(AnyContains(outlines, 1.5, 1.5));
+  for (double t = 0.05; t < 1.0; t += 0.1) {
+    EXPECT_TRUE(AnyContains(outlines, 1.0 + t, 1.0)) << t;
+    EXPECT_TRUE(AnyContains(outlines, 1.0, 1.0 + t)) << t;
+    EXPECT_TRUE(AnyContains(outlines, 2.0 * t, 0.0)) << t;
+  }
+}
+
+TEST(MeshPiecesTest, NothingLiesAboveTheMesh) {
+  EXPECT_TRUE(MeshOutlinesInBand(LShape(), {}, 1.5, 2.0).empty());
+  EXPECT_TRUE(ConnectedParts(TriangleMesh{}).empty());
+}
+
+}  // namespace
+}  // namespace hires::world

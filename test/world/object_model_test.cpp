@@ -1,0 +1,216 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "hires/base/error.h"
+#include "hires/world/object_catalogue.h"
+#include "hires/world/world.h"
+#include "world/sdf_texts.h"
+#include "world/temp_folder.h"
+
+namespace hires::world {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using MeshPtr = std::shared_ptr<const geometry::TriangleMesh>;
+
+const char kCubeObj[] =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+std::string WithShape(const std::string& shape) {
+  std::string text = LooseCube("thing");
+  const std::string box = "<box><size>0.1 0.1 0.1</size></box>";
+  return ModelFile(text.replace(text.find(box), box.size(), shape));
+}
+
+std::string MeshShape(const std::string& uri, const std::string& scale = "0.1 0.2 0.3") {
+  return "<mesh><uri>" + uri + "</uri><scale>" + scale + "</scale></mesh>";
+}
+
+/// A URDF of one link, the middle of a can that is 0.2 m high.
+std::string CanUrdf(const std::string& inside_link, const std::string& after = "") {
+  return "<robot name='can'>\n<link name='body'>\n<inertial><origin xyz='0 0 0.1'/><mass "
+         "value='0.3'/><inertia ixx='0.002' ixy='0' ixz='0' iyy='0.002' iyz='0' izz='0.001'/>"
+         "</inertial>\n" +
+         inside_link + "</link>\n" + after + "</robot>\n";
+}
+const char kCanShape[] =
+    "<collision><origin xyz='0 0 0.1' rpy='0 0 1'/><geometry><cylinder radius='0.03' "
+    "length='0.2'/></geometry></collision>\n";
+
+class ObjectModelTest : public testing::Test {
+ protected:
+  std::string ErrorOf(const std::string& name, const std::string& text) const {
+    const std::string path = folder_.Write(name, text);
+    return MessageOf<base::ConfigError>([&] { LoadObjectModel(path); });
+  }
+  TempFolder folder_;
+};
+
+TEST_F(ObjectModelTest, MeshIsReadScaledFromBesideTheFile) {
+  folder_.Write("thing/meshes/cube.obj", kCubeObj);
+  const ObjectModel thing =
+      LoadObjectModel(folder_.Write("thing/model.sdf", WithShape(MeshShape("meshes/cube.obj"))));
+  const auto mesh = std::get<MeshPtr>(thing.collisions.at(0).shape);
+  EXPECT_EQ(mesh->triangles.size(), 12u);
+  EXPECT_EQ(mesh->vertices.size(), 8u);
+  const geometry::Aabb bounds = geometry::BoundsOf(mesh, {});
+  EXPECT_LT((bounds.lower - Eigen::Vector3d::Zero()).norm(), 1e-9);
+  EXPECT_LT((bounds.upper - Eigen::Vector3d(0.1, 0.2, 0.3)).norm(), 1e-7);
+}
+
+TEST_F(ObjectModelTest, MeshIsFoundByEveryScheme) {
+  const std::string mesh = folder_.Write("thing/meshes/cube.obj", kCubeObj);
+  for (const std::string& uri :
+       {std::string("model://thing/meshes/cube.obj"),
+        std::string("package://thing/meshes/cube.obj"), "file://" + mesh}) {
+    const ObjectModel thing =
+        LoadObjectModel(folder_.Write("thing/model.sdf", WithShape(MeshShape(uri))));
+    EXPECT_EQ(std::get<MeshPtr>(thing.collisions.at(0).shape)->triangles.size(), 12u) << uri;
+  }
+}
+
+TEST_F(ObjectModelTest, MeshesOfEqualObjectsAreShared) {
+  folder_.Write("models/thing/cube.obj", kCubeObj);
+  folder_.Write("models/thing/model.sdf", WithShape(MeshShape("cube.obj")));
+  folder_.Write("models/thing/model.config", ModelConfig("thing"));
+  const World world = LoadWorld(folder_.Write(
+      "a.world", WorldText("<include><uri>model://thing</uri><name>a</name></include>"
+                           "<include><uri>model://thing</uri><name>b</name></include>")));
+  EXPECT_EQ(world.models.size(), 1u);
+  EXPECT_EQ(world.initial.objects.size(), 2u);
+}
+
+TEST_F(ObjectModelTest, RefusesMeshesItCannotRead) {
+  folder_.Write("cube.obj", kCubeObj);
+  folder_.Write("bad.stl", "solid nonsense");
+  folder_.Write("cube.blend", "x");
+  const auto error_of = [&](const std::string& shape) {
+    return ErrorOf("thing.sdf", WithShape(shape));
+  };
+  EXPECT_THAT(error_of(MeshShape("none.obj")),
+              AllOf(HasSubstr("thing.sdf:2: collision 'c'"), HasSubstr("none.obj")));
+  EXPECT_THAT(error_of(MeshShape("bad.stl")), HasSubstr("bad.stl"));
+  EXPECT_THAT(error_of(MeshShape("cube.blend")), HasSubstr(".stl, .dae or .obj"));
+  EXPECT_THAT(error_of(MeshShape("cube.obj", "0 1 1")), HasSubstr("scale"));
+  EXPECT_THAT(error_of(MeshShape("../../outside.obj")), HasSubstr("outside the folder"));
+  EXPECT_THAT(error_of(MeshShape("model://none/cube.obj")), HasSubstr("not there"));
+  EXPECT_THAT(error_of("<mesh><uri>cube.obj</uri><submesh><name>lid</name></submesh></mesh>"),
+              HasSubstr("<submesh> 'lid'"));
+}
+
+TEST_F(ObjectModelTest, RefusesSdfThatIsNoObject) {
+  EXPECT_THAT(ErrorOf("a.sdf", WorldText("")), HasSubstr("no <model>"));
+  EXPECT_THAT(ErrorOf("a.sdf", ModelFile(StaticModel("wall", LinkWithShape(kUnitBox)))),
+              AllOf(HasSubstr("model 'wall'"), HasSubstr("<static>")));
+  EXPECT_THAT(ErrorOf("a.txt", "hello"), HasSubstr("ends in .sdf or .urdf"));
+  EXPECT_THAT(MessageOf<base::ConfigError>([&] { LoadObjectModel(folder_.path("none.sdf")); }),
+              HasSubstr("no such file"));
+}
+
+TEST_F(ObjectModelTest, UrdfGivesMassShapeAndFriction) {
+  const ObjectModel can = LoadObjectModel(folder_.Write(
+      "can.urdf",
+      CanUrdf(kCanShape, "<gazebo reference='body'><mu1>0.6</mu1><mu2>0.6</mu2></gazebo>")));
+  EXPECT_EQ(can.name, "can");
+  EXPECT_EQ(can.mass_properties.mass, 0.3);
+  EXPECT_EQ(can.mass_properties.p_BBcm, Eigen::Vector3d(0, 0, 0.1));
+  EXPECT_EQ(can.mass_properties.I_BBcm(2, 2), 0.001);
+  ASSERT_EQ(can.collisions.size(), 1u);
+  EXPECT_EQ(std::get<geometry::Cylinder>(can.collisions[0].shape).length, 0.2);
+  EXPECT_NEAR(geometry::YawOf(can.collisions[0].X_BS.rotation), 1.0, 1e-12);
+  EXPECT_EQ(can.collisions[0].friction, 0.6);
+}
+
+TEST_F(ObjectModelTest, UrdfAndSdfOfOneObjectAgree) {
+  const ObjectModel urdf = LoadObjectModel(folder_.Write(
+      "cube.urdf",
+      "<robot name='cube'><link name='body'><inertial><origin xyz='0 0 0.05'/><mass value='1'/>"
+      "<inertia ixx='0.002' ixy='0' ixz='0' iyy='0.002' iyz='0' izz='0.002'/></inertial>"
+      "<collision name='c'><origin xyz='0 0 0.05'/><geometry><box size='0.1 0.1 0.1'/></geometry>"
+      "</collision></link></robot>"));
+  const ObjectModel sdf = LoadObjectModel(folder_.Write("cube.sdf", ModelFile(LooseCube("cube"))));
+  EXPECT_EQ(WithModel({}, urdf).hash, WithModel({}, sdf).hash);
+}
+
+TEST_F(ObjectModelTest, UrdfMeshIsFound) {
+  folder_.Write("cube.obj", kCubeObj);
+  const ObjectModel thing = LoadObjectModel(folder_.Write(
+      "thing.urdf", CanUrdf("<collision><geometry><mesh filename='cube.obj' scale='0.1 0.1 0.1'/>"
+                            "</geometry></collision>")));
+  EXPECT_EQ(std::get<MeshPtr>(thing.collisions.at(0).shape)->triangles.size(), 12u);
+}
+
+TEST_F(ObjectModelTest, RefusesUrdfThatIsNoObject) {
+  const auto error_of = [&](const std::string& text) { return ErrorOf("a.urdf", text); };
+  EXPECT_THAT(error_of("<robot name='a'><link name='b'>"), HasSubstr("a.urdf:1"));
+  EXPECT_THAT(error_of("<sdf/>"), HasSubstr("no valid URDF"));
+  EXPECT_THAT(error_of(CanUrdf("")), AllOf(HasSubstr("link 'body'"), HasSubstr("no <collision>")));
+  EXPECT_THAT(error_of("<robot name='a'><link name='b'/></robot>"), HasSubstr("no <inertial>"));
+  EXPECT_THAT(error_of(CanUrdf(kCanShape,
+                               "<link name='lid'/><joint name='j' type='fixed'><parent "
+                               "link='body'/><child link='lid'/></joint>")),
+              AllOf(HasSubstr("2 links"), HasSubstr("merge")));
+  EXPECT_THAT(
+      error_of(CanUrdf("<collision><geometry><sphere radius='-1'/></geometry></collision>")),
+      HasSubstr("size of -1 m"));
+  EXPECT_THAT(error_of(CanUrdf("<collision><origin xyz='5000 0 0'/><geometry><sphere radius='1'/>"
+                               "</geometry></collision>")),
+              HasSubstr("farther than 1000 m"));
+  EXPECT_THAT(error_of(CanUrdf(kCanShape, "<gazebo reference='body'><mu1>x</mu1></gazebo>")),
+              AllOf(HasSubstr("a.urdf:6"), HasSubstr("<mu1>")));
+  std::string heavy = CanUrdf(kCanShape);
+  heavy.replace(heavy.find("izz='0.001'"), 11, "izz='0.100'");
+  EXPECT_THAT(error_of(heavy), HasSubstr("triangle inequality"));
+}
+
+TEST_F(ObjectModelTest, UrdfErrorsAreNotPrinted) {
+  testing::internal::CaptureStderr();
+  ErrorOf("a.urdf", "<robot name='a'/>");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// --- the catalogue -----------------------------------------------------------------------------
+
+class CatalogueTest : public ObjectModelTest {
+ protected:
+  CatalogueTest() {
+    folder_.Write("models/coffee_cup/model.sdf", ModelFile(LooseCube("coffee_cup")));
+    Catalogue("mug1: coffee_cup\nlost1: gone\n");
+  }
+  void Catalogue(const std::string& text) { path_ = folder_.Write("objects.yaml", text); }
+  std::string CatalogueError(const std::string& text) {
+    Catalogue(text);
+    return MessageOf<base::ConfigError>([&] { LoadObjectCatalogue(path_); });
+  }
+  std::string path_;
+};
+
+TEST_F(CatalogueTest, NamesFoldersAndPathsLeadToTheSameModel) {
+  for (const std::string& name :
+       {std::string("mug1"), std::string("MUG1"), std::string("coffee_cup"),
+        folder_.path("models/coffee_cup/model.sdf")}) {
+    EXPECT_EQ(FindObjectModel(name, path_).name, "coffee_cup") << name;
+  }
+}
+
+TEST_F(CatalogueTest, UnknownNamesGetTheNearestOnes) {
+  const auto error_of = [&](const std::string& name) {
+    return MessageOf<base::ConfigError>([&] { FindObjectModel(name, path_); });
+  };
+  EXPECT_THAT(error_of("mug"), AllOf(HasSubstr("object 'mug' is unknown"), HasSubstr("'mug1'")));
+  EXPECT_THAT(error_of("lost1"), AllOf(HasSubstr("lost1"), HasSubstr("'gone'")));
+}
+
+TEST_F(CatalogueTest, RefusesWhatIsNoMapOfNamesToFolders) {
+  EXPECT_THAT(CatalogueError("- mug1\n"), HasSubstr("wanted a map"));
+  EXPECT_THAT(CatalogueError("mug1: [a, b]\n"), HasSubstr("mug1"));
+  EXPECT_THAT(CatalogueError("mug1: ../secret\n"), HasSubstr("folder in models/"));
+  EXPECT_THAT(CatalogueError("mug1: a\nMug1: b\n"), AllOf(HasSubstr("Mug1"), HasSubstr("mug1")));
+  EXPECT_THAT(CatalogueError("mug1: a\nmug1: b\n"), HasSubstr("twice"));
+  EXPECT_THAT(CatalogueError("mug1: {\n"), HasSubstr("objects.yaml"));
+}
+
+}  // namespace
+}  // namespace hires::world
