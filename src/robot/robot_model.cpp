@@ -1,18 +1,24 @@
 #include "hires/robot/robot_model.h"
 
 #include <fmt/format.h>
+#include <urdf_model/model.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "model_hash.h"
+#include "quiet_urdf_parser.h"
+#include "urdf_conversion.h"
+#include "urdf_outline.h"
 
 namespace hires::robot {
 namespace {
 
 using geometry::Pose3;
 
+constexpr std::size_t kMaxUrdfBytes = 16u << 20;
 constexpr double kLimitSlack = 1e-6;  // [rad] or [m]
 
 [[noreturn]] void Fail(const RobotModel& model, const std::string& what) {
@@ -117,6 +123,18 @@ std::vector<std::string> RobotModel::JointNames() const {
     }
   }
   return names;
+}
+
+RobotModel LoadRobotModel(const std::string& urdf_path) {
+  return ParseRobotModel(base::ReadTextFile(urdf_path, kMaxUrdfBytes), urdf_path);
+}
+
+RobotModel ParseRobotModel(const std::string& urdf_xml, const std::string& where) {
+  // The outline first: it names lines, and it refuses nesting so deep that urdfdom would crash.
+  const UrdfOutline outline = ReadUrdfOutline(urdf_xml, where);
+  RobotModel model = ConvertUrdf(*ParseUrdfQuietly(urdf_xml, where), outline, where);
+  model.hash = HashOf(model);
+  return model;
 }
 
 std::vector<Pose3> ForwardKinematics(const RobotModel& model, const JointPositions& positions) {

@@ -1,76 +1,28 @@
-#include <console_bridge/console.h>
+#include "urdf_conversion.h"
+
 #include <fmt/format.h>
-#include <urdf_model/model.h>
-#include <urdf_parser/urdf_parser.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
-#include <mutex>
+#include <map>
+#include <memory>
 #include <queue>
 
 #include "hires/base/error.h"
-#include "hires/base/hash.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/geometry/mesh_reader.h"
-#include "hires/robot/robot_model.h"
 #include "mesh_path.h"
-#include "urdf_outline.h"
 
 namespace hires::robot {
 namespace {
 
 using geometry::Pose3;
 
-constexpr std::size_t kMaxUrdfBytes = 16u << 20;
 constexpr double kMaxLength = 1e3;  // [m] of any offset or shape: beyond lies a slip of units
-
-/// While it lives, what the URDF parser prints to the console comes here instead. One at a time in
-/// the process, because the console's handler is.
-class ConsoleCatcher : public console_bridge::OutputHandler {
- public:
-  ConsoleCatcher() : lock_(mutex()) { console_bridge::useOutputHandler(this); }
-  ~ConsoleCatcher() override { console_bridge::restorePreviousOutputHandler(); }
-
-  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR ? errors_ : warnings_).push_back(text);
-  }
-
-  const std::vector<std::string>& errors() const { return errors_; }
-  const std::vector<std::string>& warnings() const { return warnings_; }
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex the_mutex;
-    return the_mutex;
-  }
-
-  std::lock_guard<std::mutex> lock_;
-  std::vector<std::string> errors_;
-  std::vector<std::string> warnings_;
-};
-
-urdf::ModelInterfaceSharedPtr ParseUrdf(const std::string& xml, const std::string& where) {
-  ConsoleCatcher console;
-  urdf::ModelInterfaceSharedPtr model;
-  std::string thrown;
-  try {
-    model = urdf::parseURDF(xml);
-  } catch (const std::exception& error) {
-    thrown = error.what();
-  }
-  if (!model || !console.errors().empty()) {
-    std::vector<std::string> reasons = console.errors();
-    if (!thrown.empty()) reasons.push_back(thrown);
-    throw base::ConfigError(fmt::format("{}: no valid URDF: {}; correct that element", where,
-                                        base::Join(reasons, "; ")));
-  }
-  for (const std::string& warning : console.warnings()) {
-    base::Log(base::LogLevel::kWarn, fmt::format("urdf={} warning=\"{}\"", where, warning));
-  }
-  return model;
-}
 
 Eigen::Vector3d ToVector(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
@@ -83,8 +35,9 @@ Pose3 ToPose(const urdf::Pose& pose) {
 /// Turns the parser's model into ours, checking what the parser lets pass.
 class ModelBuilder {
  public:
-  ModelBuilder(const urdf::ModelInterface& urdf, UrdfOutline outline, const std::string& where)
-      : urdf_(urdf), outline_(std::move(outline)), where_(where) {}
+  ModelBuilder(const urdf::ModelInterface& urdf, const UrdfOutline& outline,
+               const std::string& where)
+      : urdf_(urdf), outline_(outline), where_(where) {}
 
   RobotModel Build() {
     model_.name = urdf_.getName();
@@ -312,7 +265,7 @@ class ModelBuilder {
   }
 
   const urdf::ModelInterface& urdf_;
-  UrdfOutline outline_;
+  const UrdfOutline& outline_;
   std::string where_;
   RobotModel model_;
   std::map<std::pair<std::string, std::array<double, 3>>,
@@ -320,90 +273,11 @@ class ModelBuilder {
       meshes_;
 };
 
-void AddTo(base::Hasher* hash, const Eigen::Vector3d& v) {
-  for (int i = 0; i < 3; ++i) hash->Add(v[i]);
-}
-
-void AddTo(base::Hasher* hash, const Pose3& pose) {
-  AddTo(hash, pose.translation);
-  for (int i = 0; i < 4; ++i) hash->Add(pose.rotation.coeffs()[i]);
-}
-
-void AddTo(base::Hasher* hash, const geometry::TriangleMesh& mesh) {
-  hash->Add(static_cast<std::uint64_t>(mesh.vertices.size()));
-  for (const Eigen::Vector3d& vertex : mesh.vertices) AddTo(hash, vertex);
-  for (const auto& triangle : mesh.triangles) {
-    for (const int corner : triangle) hash->Add(static_cast<std::uint64_t>(corner));
-  }
-}
-
-void AddTo(base::Hasher* hash, const geometry::Collision& collision) {
-  hash->Add(collision.name);
-  AddTo(hash, collision.X_BS);
-  hash->Add(collision.friction);
-  hash->Add(collision.restitution);
-  hash->Add(static_cast<std::uint64_t>(collision.shape.index()));
-  if (const auto* box = std::get_if<geometry::Box>(&collision.shape)) AddTo(hash, box->size);
-  if (const auto* cylinder = std::get_if<geometry::Cylinder>(&collision.shape)) {
-    hash->Add(cylinder->radius);
-    hash->Add(cylinder->length);
-  }
-  if (const auto* sphere = std::get_if<geometry::Sphere>(&collision.shape)) {
-    hash->Add(sphere->radius);
-  }
-  using MeshPtr = std::shared_ptr<const geometry::TriangleMesh>;
-  if (const auto* mesh = std::get_if<MeshPtr>(&collision.shape)) AddTo(hash, **mesh);
-}
-
-void AddTo(base::Hasher* hash, const Joint& joint) {
-  hash->Add(joint.name);
-  hash->Add(static_cast<std::uint64_t>(joint.type));
-  hash->Add(static_cast<std::uint64_t>(joint.parent));
-  AddTo(hash, joint.X_PJ);
-  AddTo(hash, joint.axis);
-  hash->Add(static_cast<std::uint64_t>(joint.limits.has_value()));
-  const JointLimits limits = joint.limits.value_or(JointLimits{});
-  for (const double value : {limits.lower, limits.upper, limits.velocity, limits.effort,
-                             joint.mimic_multiplier, joint.mimic_offset}) {
-    hash->Add(value);
-  }
-  hash->Add(joint.mimics);
-}
-
-void AddTo(base::Hasher* hash, const geometry::MassProperties& mass) {
-  hash->Add(mass.mass);
-  AddTo(hash, mass.p_BBcm);
-  for (int column = 0; column < 3; ++column) {
-    AddTo(hash, Eigen::Vector3d(mass.I_BBcm.col(column)));
-  }
-}
-
-std::uint64_t HashOf(const RobotModel& model) {
-  base::Hasher hash;
-  hash.Add(model.name);
-  for (const Link& link : model.links) {
-    hash.Add(link.name);
-    if (link.joint) AddTo(&hash, *link.joint);
-    hash.Add(static_cast<std::uint64_t>(link.inertial.has_value()));
-    if (link.inertial) AddTo(&hash, *link.inertial);
-    hash.Add(static_cast<std::uint64_t>(link.collisions.size()));
-    for (const geometry::Collision& collision : link.collisions) AddTo(&hash, collision);
-  }
-  return hash.value();
-}
-
 }  // namespace
 
-RobotModel LoadRobotModel(const std::string& urdf_path) {
-  return ParseRobotModel(base::ReadTextFile(urdf_path, kMaxUrdfBytes), urdf_path);
-}
-
-RobotModel ParseRobotModel(const std::string& urdf_xml, const std::string& where) {
-  UrdfOutline outline = ReadUrdfOutline(urdf_xml, where);
-  const urdf::ModelInterfaceSharedPtr urdf = ParseUrdf(urdf_xml, where);
-  RobotModel model = ModelBuilder(*urdf, std::move(outline), where).Build();
-  model.hash = HashOf(model);
-  return model;
+RobotModel ConvertUrdf(const urdf::ModelInterface& urdf, const UrdfOutline& outline,
+                       const std::string& where) {
+  return ModelBuilder(urdf, outline, where).Build();
 }
 
 }  // namespace hires::robot
