@@ -65,12 +65,13 @@ std::vector<Command> Complete(const Assign& work, const Play& play, double now,
   return scheduler->Handle(AssignmentFinished{work.worker, work.assignment}, now);
 }
 
-/// One worker plays until the scheduler has finished; each assignment takes a second.
+/// One worker plays until the scheduler has finished (or 1000 rollouts); each assignment takes a
+/// second.
 /// @return how many rollouts it played.
 int PlayAlone(const Play& play, Scheduler* scheduler, double now = 0.0) {
   int played = 0;
   auto work = Only<Assign>(scheduler->Handle(WorkerJoined{1}, now));
-  while (!scheduler->finished() && !work.empty()) {
+  while (!scheduler->finished() && !work.empty() && played < 1000) {
     played += work.front().count;
     work = Only<Assign>(Complete(work.front(), play, now += 1.0, scheduler));
   }
