@@ -161,15 +161,27 @@ def check_dependencies(root):
                        f"'{other}'; add it to DEPENDS in src/{layer}/CMakeLists.txt")
 
 
+def check_own_header(root, path):
+    """A source includes its header first, which proves that the header needs nothing else. One
+    without a header of its name implements a part of another of its layer, so it includes that."""
+    own = "/".join(path.split("/")[1:])[:-len(".cpp")] + ".h"
+    includes = list(includes_of(root, path))
+    number, first = includes[0] if includes else (1, "nothing")
+    layers = [included_layer(header) for _, header in includes]
+    exists = any(os.path.exists(os.path.join(root, folder, own))
+                 for folder in ("src", "include/hires"))
+    if exists and first not in (f"hires/{own}", own, os.path.basename(own)):
+        yield f"{path}:{number}: includes {first} first; start with its own header {own}"
+    if not exists and layer_of(path) not in layers:
+        yield (f"{path}:1: has no header; write include/hires/{own}, or include the header of its "
+               "layer that it implements")
+
+
 def check_headers(root):
     """Every source has its header (programs excepted), every header guards itself."""
     for path in code_files(root):
-        parts = path.split("/")
-        if parts[0] == "src" and path.endswith(".cpp") and parts[1] != "nodes":
-            beside = path[:-len(".cpp")] + ".h"
-            public = "include/hires/" + "/".join(parts[1:])[:-len(".cpp")] + ".h"
-            if not any(os.path.exists(os.path.join(root, header)) for header in (beside, public)):
-                yield f"{path}:1: has no header; write {public}"
+        if path.startswith("src/") and path.endswith(".cpp") and layer_of(path) != "nodes":
+            yield from check_own_header(root, path)
         if path.endswith(".h") and "#pragma once" not in read(root, path):
             yield f"{path}:1: has no '#pragma once'; add it"
 

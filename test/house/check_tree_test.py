@@ -54,7 +54,7 @@ class CheckTreeTest(unittest.TestCase):
         self.assertEqual(self.complaints({}), [])
 
     def test_an_include_that_points_up_is_found(self):
-        self.expect_one({"src/base/rng.cpp": '\n#include "hires/geometry/pose.h"\n'},
+        self.expect_one({"src/base/rng.cpp": '#include "hires/base/rng.h"\n#include "hires/geometry/pose.h"\n'},
                         "src/base/rng.cpp:2", "an arrow up", "lower layer")
 
     def test_an_include_that_points_sideways_is_found(self):
@@ -75,12 +75,13 @@ class CheckTreeTest(unittest.TestCase):
         for header in ("ros/ros.h", "tf2/buffer_core.h", "tf2_ros/buffer.h", "geometry_msgs/Pose.h",
                        "actionlib/server/simple_action_server.h", "std_srvs/Empty.h",
                        "hires/Fluent.h"):
-            self.expect_one({"src/base/rng.cpp": f"#include <{header}>\n"},
-                            "src/base/rng.cpp:1", header, "know no ROS")
+            self.expect_one({"src/base/rng.cpp": f'#include "hires/base/rng.h"\n#include <{header}>\n'},
+                            "src/base/rng.cpp:2", header, "know no ROS")
 
     def test_names_that_only_look_like_ros_are_left_in_peace(self):
         self.assertEqual(self.complaints(
-            {"src/base/rng.cpp": "#include <rosy.h>\n#include <XmlRpcClient.h>\n"
+            {"src/base/rng.cpp": '#include "hires/base/rng.h"\n'
+                                 "#include <rosy.h>\n#include <XmlRpcClient.h>\n"
                                  "// #include <ros/ros.h> would be wrong here\n"}), [])
 
     def test_a_dependency_that_cmake_does_not_know_is_found(self):
@@ -96,8 +97,18 @@ class CheckTreeTest(unittest.TestCase):
         self.expect_one({"src/base/lost.cpp": "\n"}, "src/base/lost.cpp",
                         "include/hires/base/lost.h")
 
+    def test_a_source_may_implement_another_header_of_its_layer(self):
+        self.assertEqual(self.complaints(
+            {"src/base/rng_more.cpp": '#include "hires/base/rng.h"\n'}), [])
+        self.expect_one({"src/geometry/more.cpp": '#include "hires/base/rng.h"\n'},
+                        "src/geometry/more.cpp:1", "has no header")
+
+    def test_a_source_that_does_not_begin_with_its_header_is_found(self):
+        self.expect_one({"src/base/rng.cpp": '#include <vector>\n#include "hires/base/rng.h"\n'},
+                        "src/base/rng.cpp:1", "start with its own header")
+
     def test_a_header_beside_its_source_is_enough(self):
-        self.assertEqual(self.complaints({"src/base/inner.cpp": "\n",
+        self.assertEqual(self.complaints({"src/base/inner.cpp": '#include "inner.h"\n',
                                           "src/base/inner.h": "#pragma once\n"}), [])
 
     def test_a_header_without_guard_is_found(self):
