@@ -30,8 +30,17 @@ int LocalWindow::CellBelow(const Eigen::Vector2d& point_M) const {
   return static_cast<int>(y) * width_ + static_cast<int>(x);
 }
 
+std::optional<LocalWindow::Place> LocalWindow::Around(const Eigen::Vector2d& point_M) const {
+  const int cell = CellBelow(point_M);
+  if (cell < 0) return std::nullopt;
+  const Eigen::Vector2d p = (point_M - corner_) / resolution_ - Eigen::Vector2d::Constant(0.5);
+  const double x = std::floor(p.x()), y = std::floor(p.y());
+  return Place{cell, static_cast<int>(y) * width_ + static_cast<int>(x), p.x() - x, p.y() - y};
+}
+
 void DistanceGrid::Compute(const LocalWindow& window, const std::vector<int>& seeds) {
   const std::vector<std::uint8_t>& passable = window.passable();
+  width_ = window.width();
   distance_.assign(passable.size(), kUnreachable);
   queue_.resize(passable.size());
   std::size_t end = 0;
@@ -50,6 +59,15 @@ void DistanceGrid::Compute(const LocalWindow& window, const std::vector<int>& se
       queue_[end++] = to;
     }
   }
+}
+
+double DistanceGrid::At(const LocalWindow::Place& place) const {
+  const int* below = &distance_[place.lower_left];
+  const int* above = below + width_;
+  if (std::max({below[0], below[1], above[0], above[1]}) >= kUnreachable) return At(place.cell);
+  const double lower = below[0] + place.right * (below[1] - below[0]);
+  const double upper = above[0] + place.right * (above[1] - above[0]);
+  return lower + place.up * (upper - lower);
 }
 
 }  // namespace hires::navigation

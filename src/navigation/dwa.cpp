@@ -27,7 +27,7 @@ constexpr double kRoomShare = 0.9;        // of the goal's tolerance, so that st
 constexpr double kMargin = 0.02;
 
 /// A velocity with its score so far. Of equal scores the one that turns least wins, then the one
-/// that moves least sideways, then the fastest: distances come in whole cells and tie often.
+/// that moves least sideways, then the fastest.
 struct Candidate {
   double score;
   geometry::Twist2 V_B;
@@ -245,15 +245,15 @@ std::optional<double> DwaPlanner::Impl::DistanceScore(const geometry::Twist2& V_
                                                       const geometry::Pose2& X_MB,
                                                       double resolution) const {
   const geometry::Pose2 X_MEnd = PoseAfter(X_MB, V_B, Duration());
-  const int base = window_.CellBelow(X_MEnd.position());
-  const int nose = window_.CellBelow(X_MEnd * Eigen::Vector2d(params_.forward_point_distance, 0.0));
-  if (base < 0 || nose < 0) return std::nullopt;
-  const int from_path = path_grid_.At(base), from_goal = goal_grid_.At(base);
-  if (from_path == DistanceGrid::kUnreachable || from_goal == DistanceGrid::kUnreachable) {
+  const auto base = window_.Around(X_MEnd.position());
+  const auto nose = window_.Around(X_MEnd * Eigen::Vector2d(params_.forward_point_distance, 0.0));
+  if (!base || !nose) return std::nullopt;
+  const double from_path = path_grid_.At(*base), from_goal = goal_grid_.At(*base);
+  if (from_path >= DistanceGrid::kUnreachable || from_goal >= DistanceGrid::kUnreachable) {
     return std::nullopt;
   }
-  const double path_cells = from_path + (align_ ? path_grid_.At(nose) : 0);
-  const double goal_cells = from_goal + front_grid_.At(nose);
+  const double path_cells = from_path + (align_ ? path_grid_.At(*nose) : 0.0);
+  const double goal_cells = from_goal + front_grid_.At(*nose);
   return 0.5 * resolution *
          (params_.path_distance_bias * path_cells + params_.goal_distance_bias * goal_cells);
 }

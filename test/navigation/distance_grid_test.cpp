@@ -58,6 +58,19 @@ TEST(DistanceGridTest, TheNearestSeedCountsAndSeedsOutsideDoNot) {
   EXPECT_EQ(grid.At(window.CellBelow({6.5, 1.5})), DistanceGrid::kUnreachable);
 }
 
+TEST(DistanceGridTest, BetweenCentresDistancesAreInterpolated) {
+  LocalWindow window;
+  window.Centre(WalledMap(), {4.5, 4.5}, 4.0);
+  DistanceGrid grid;
+  grid.Compute(window, {window.CellBelow({1.5, 1.5})});
+  const auto at = [&](double x, double y) { return grid.At(*window.Around({x, y})); };
+  EXPECT_DOUBLE_EQ(at(2.5, 3.5), 3.0);
+  EXPECT_DOUBLE_EQ(at(2.75, 3.5), 3.25);
+  EXPECT_DOUBLE_EQ(at(2.75, 4.0), 3.75);
+  EXPECT_DOUBLE_EQ(at(3.75, 3.5), 4.0);  // the wall beside it has no distance
+  EXPECT_FALSE(window.Around({-0.1, 4.0}).has_value());
+}
+
 TEST(DistanceGridTest, NeighboursDifferByOneAtMost) {
   const base::Rng root(41);
   for (int seed = 0; seed < 100; ++seed) {

@@ -6,6 +6,8 @@
 #include <cstdio>
 
 #include "hires/geometry/angles.h"
+#include "hires/navigation/distance_grid.h"
+#include "hires/navigation/swept_footprint.h"
 #include "navigation/closed_loop.h"
 
 namespace hires::navigation {
@@ -181,6 +183,74 @@ TEST_P(DwaMotionSetTest, FiveMetresTakeAboutAsLongAsInTheOriginal) {
               ahead.duration, turned.duration);
   EXPECT_GT(ahead.duration, 4.97 / GetParam().limits.max_linear_velocity);
   EXPECT_GT(turned.duration, ahead.duration + 3.0);  // two half turns at 1 rad/s overlap partly
+}
+
+/// The obvious road: every velocity scored with all critics, for a straight path that ends within
+/// sight and a planner that has just begun.
+struct PlainScores {
+  PlainScores(const Costmap& costmap, const geometry::Pose2& X_MB, const Eigen::Vector2d& p_MGoal)
+      : costmap(costmap), X_MB(X_MB) {
+    window.Centre(costmap, X_MB.position(), 3.0);
+    const Eigen::Vector2d way = p_MGoal - X_MB.position();
+    const int pieces = std::ceil(way.norm() / params.sim_granularity);
+    std::vector<int> cells;
+    for (int k = 0; k <= pieces; ++k) {
+      cells.push_back(window.CellBelow(X_MB.position() + way * k / pieces));
+    }
+    path.Compute(window, cells);
+    goal.Compute(window, {cells.back()});
+    front.Compute(window, {window.CellBelow(p_MGoal + 0.325 * way.normalized())});
+  }
+
+  /// Negative if the velocity must not be driven.
+  double Score(const geometry::Twist2& V) {
+    const double speed = std::hypot(V.vx, V.vy);
+    const double scale = speed > 0.25 ? 1.0 + 0.2 * std::min(1.0, (speed - 0.25) / 0.30) : 1.0;
+    const int cost = sweep.HighestCost(costmap, X_MB, V, params.sim_time, scale);
+    const geometry::Pose2 X_MEnd = PoseAfter(X_MB, V, params.sim_time);
+    const auto base = window.Around(X_MEnd.position());
+    const auto nose = window.Around(X_MEnd * Eigen::Vector2d(0.325, 0.0));
+    if (cost >= kLethalCost || path.At(*base) >= DistanceGrid::kUnreachable ||
+        goal.At(*base) >= DistanceGrid::kUnreachable) {
+      return -1.0;
+    }
+    return 0.05 * (12.0 * (path.At(*base) + path.At(*nose)) +
+                   16.0 * (goal.At(*base) + front.At(*nose)) + 0.01 * cost);
+  }
+
+  DwaParams params;
+  const Costmap& costmap;
+  geometry::Pose2 X_MB;
+  LocalWindow window;
+  DistanceGrid path, goal, front;
+  SweptFootprint sweep{geometry::Padded(PaddedFootprint(), 0.02), 0.025, 0.1};
+};
+
+TEST(DwaTest, NoVelocityScoresBetterThanTheOneChosen) {
+  const base::Rng root(63);
+  int compared = 0;
+  for (int seed = 0; seed < 100; ++seed) {
+    base::Rng rng = root.Fork(seed);
+    const Costmap costmap(RandomGrid(140, 140, 0.002, &rng), Scene::kInscribedRadius, {});
+    const geometry::Pose2 X_MB{3.5, 3.5, rng.Uniform(-kPi, kPi)};
+    const geometry::Twist2 V_B{rng.Uniform(0, 0.5), rng.Uniform(-0.1, 0.1), rng.Uniform(-1, 1)};
+    const Eigen::Vector2d p_MGoal(rng.Uniform(5.0, 6.0), rng.Uniform(2.0, 5.0));
+    DwaPlanner planner({}, PaddedFootprint());
+    planner.SetMotionSet(kFast);
+    planner.SetPath({X_MB, {p_MGoal.x(), p_MGoal.y(), 0.0}});
+    const DwaResult result = planner.Update(costmap, X_MB, V_B);
+    PlainScores plain(costmap, X_MB, p_MGoal);
+    double best = std::numeric_limits<double>::infinity();
+    for (const geometry::Twist2& V : ReachableVelocities({}, kFast, V_B)) {
+      const double score = plain.Score(V);
+      if (score >= 0.0) best = std::min(best, score);
+    }
+    if (std::isinf(best)) continue;  // nothing passes with the margin
+    ++compared;
+    ASSERT_EQ(result.status, DwaStatus::kDriving) << "seed " << seed;
+    EXPECT_NEAR(plain.Score(result.velocity), best, 1e-9) << "seed " << seed;
+  }
+  EXPECT_GT(compared, 30);
 }
 
 TEST(DwaTest, AnotherRunGivesTheSameBits) {

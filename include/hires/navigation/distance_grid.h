@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "hires/geometry/pose.h"
@@ -17,6 +18,13 @@ class LocalWindow {
   int width() const { return width_; }
   /// Index of the window's cell below a point, or -1 outside.
   int CellBelow(const Eigen::Vector2d& point_M) const;
+  /// Where to interpolate at a point, or nothing outside.
+  struct Place {
+    int cell;          ///< that the point lies in
+    int lower_left;    ///< of the four cells whose centres surround the point
+    double right, up;  ///< from the lower left one's centre [cells], 0..1
+  };
+  std::optional<Place> Around(const Eigen::Vector2d& point_M) const;
   const std::vector<std::uint8_t>& passable() const { return passable_; }  ///< row by row; border 0
 
  private:
@@ -37,9 +45,14 @@ class DistanceGrid {
 
   int At(int cell) const { return distance_[cell]; }  ///< [cells]
 
+  /// [cells] Interpolated between the four centres around the place, so that a motion of less than
+  /// a cell counts too; the distance of the cell below where one of the four is unreachable.
+  double At(const LocalWindow::Place& place) const;
+
  private:
   std::vector<int> distance_;
   std::vector<int> queue_;
+  int width_{0};
 };
 
 }  // namespace hires::navigation
