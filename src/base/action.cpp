@@ -41,6 +41,10 @@ std::string ToString(const ActionCall& call) {
   return fmt::format("{}({})", call.name, Join(call.arguments, ", "));
 }
 
+std::string ToString(const Atom& atom) {
+  return fmt::format("{}({})", atom.predicate, Join(atom.arguments, ", "));
+}
+
 std::vector<ActionCall> Combinations(const ActionTemplate& action, std::size_t at_most) {
   std::vector<ActionCall> calls{{CanonicalName(action.name), {}}};
   for (std::size_t i = 0; i < action.alternatives.size(); ++i) {

@@ -87,17 +87,16 @@ ImagineQuery MakeQuery(const ImagineOptions& o, const Backends& backends) {
   const imagination::ClientConfig config = imagination::ReadClientConfig(config_path);
   ImagineQuery query;
   query.setup = imagination::ReadSetupConfig(o.scene.empty() ? config.scene : o.scene);
-  if (!o.world.empty()) query.setup.world = o.world;
-  if (!o.robot.empty()) query.setup.robot = o.robot;
-  if (!o.objects.empty()) query.setup.objects = o.objects;
-  if (!o.uncertainty.empty()) query.setup.uncertainty = o.uncertainty;
+  imagination::OverridePaths(o.world, o.robot, o.objects, o.uncertainty, &query.setup);
+  SetObjects(o, &query);
+  query.own_scene =
+      !(o.world + o.robot + o.objects + o.scene).empty() || !query.setup.extra_objects.empty();
   query.own_uncertainty = !o.uncertainty.empty();
   query.action.name = o.action;
   for (const std::string& list : o.arguments) {
     query.action.alternatives.push_back(base::Split(list, ','));
   }
   query.from = o.from;
-  SetObjects(o, &query);
   query.seed = o.seed;
   query.scheduler = config.scheduler;
   if (o.rollouts > 0) query.scheduler.rollouts = o.rollouts;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <set>
 
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
@@ -17,11 +18,6 @@ using base::Between;
 using base::ParamReader;
 
 constexpr double kSlotDistance = 0.13;  // [m] pr2.md, section 9
-
-std::string Resolve(const std::string& path, const std::string& config_path) {
-  if (path.empty() || path == "none" || fs::path(path).is_absolute()) return path;
-  return (fs::path(config_path).parent_path() / path).lexically_normal().string();
-}
 
 navigation::DwaParams ReadDwa(ParamReader in) {
   navigation::DwaParams p;
@@ -125,13 +121,30 @@ world::World LoadWorldWithObjects(const SetupConfig& config,
 
 }  // namespace
 
+std::string ResolvePath(const std::string& path, const std::string& config_path) {
+  if (path.empty() || path == "none" || fs::path(path).is_absolute()) return path;
+  return (fs::path(config_path).parent_path() / path).lexically_normal().string();
+}
+
+void OverridePaths(const std::optional<std::string>& world, const std::optional<std::string>& robot,
+                   const std::optional<std::string>& objects,
+                   const std::optional<std::string>& uncertainty, SetupConfig* config) {
+  const auto override_one = [](const std::optional<std::string>& given, std::string* path) {
+    if (given && !given->empty()) *path = *given;
+  };
+  override_one(world, &config->world);
+  override_one(robot, &config->robot);
+  override_one(objects, &config->objects);
+  override_one(uncertainty, &config->uncertainty);
+}
+
 SetupConfig ReadSetupConfig(const std::string& path) {
   ParamReader in = ParamReader::FromFile(path);
   SetupConfig config;
-  config.world = Resolve(in.GetString("world"), path);
-  config.robot = Resolve(in.GetString("robot"), path);
-  config.objects = Resolve(in.GetString("objects"), path);
-  config.uncertainty = Resolve(in.GetString("uncertainty"), path);
+  config.world = ResolvePath(in.GetString("world"), path);
+  config.robot = ResolvePath(in.GetString("robot"), path);
+  config.objects = ResolvePath(in.GetString("objects"), path);
+  config.uncertainty = ResolvePath(in.GetString("uncertainty"), path);
   config.driving = ReadDriving(in.Sub("driving"));
   config.blind = ReadBlind(in.Sub("blind_driving"));
   config.physics = ReadPhysics(in.Sub("physics"));
@@ -176,12 +189,45 @@ std::string ImaginationSetup::ModelOf(const std::string& instance_or_model) cons
   throw base::ConfigError(base::UnknownName("object", instance_or_model, known));
 }
 
+namespace {
+
+geometry::Pose3 AreaPose(const ImaginationSetup& setup, const std::string& area) {
+  if (const auto X_MArea = setup.scene->world.FindFrame(area)) return *X_MArea;
+  throw base::ConfigError(base::UnknownName("area", area, setup.scene->world.FrameNames()));
+}
+
+world::ObjectState MakeObject(const ImaginationSetup& setup, const std::string& name,
+                              const geometry::Pose3& X_MO) {
+  world::ObjectState object;
+  object.name = base::ToLower(name);
+  object.model = setup.ModelOf(name);
+  object.X_MO = X_MO;
+  return object;
+}
+
+const base::Atom& RobotAtom(const std::vector<base::Atom>& atoms) {
+  const base::Atom* found = nullptr;
+  for (const base::Atom& atom : atoms) {
+    if (base::ToLower(atom.predicate) != "robotat") continue;
+    if (found != nullptr || atom.arguments.size() != 1) {
+      throw base::ConfigError("updated_fluents: RobotAt(area) is wanted once, with one area");
+    }
+    found = &atom;
+  }
+  if (found == nullptr) {
+    throw base::ConfigError(
+        "updated_fluents: RobotAt(area) is missing; say where the robot stands");
+  }
+  return *found;
+}
+
+}  // namespace
+
 StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
                           const std::vector<std::string>& objects) {
-  const auto X_MArea = setup.scene->world.FindFrame(area);
-  if (!X_MArea) {
-    throw base::ConfigError(base::UnknownName("area", area, setup.scene->world.FrameNames()));
-  }
+  StartState start;
+  start.robot.X_MB = geometry::Flatten(AreaPose(setup, area));
+  start.robot.joints = setup.scene->robot.profile.joints;
   if (objects.size() > 3) {
     throw base::ConfigError(fmt::format(
         "{} objects are wanted on the tray, it has 3 places; name at most 3", objects.size()));
@@ -191,18 +237,36 @@ StartState MakeStartState(const ImaginationSetup& setup, const std::string& area
         fmt::format("robot '{}' has no tray to carry '{}'; name a tray_link in its profile",
                     setup.scene->robot.model.name, objects.front()));
   }
-  StartState start;
-  start.robot.X_MB = geometry::Flatten(*X_MArea);
-  start.robot.joints = setup.scene->robot.profile.joints;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const double y = i == 0 ? 0.0 : (i == 1 ? -kSlotDistance : kSlotDistance);
-    world::ObjectState object;
-    object.name = base::ToLower(objects[i]);
-    object.model = setup.ModelOf(objects[i]);
-    object.X_MO =
-        geometry::Lift(start.robot.X_MB) * setup.scene->X_BO * geometry::Lift({0.0, y, 0.0});
-    start.world.objects.push_back(std::move(object));
+    start.world.objects.push_back(MakeObject(
+        setup, objects[i],
+        geometry::Lift(start.robot.X_MB) * setup.scene->X_BO * geometry::Lift({0.0, y, 0.0})));
   }
+  return start;
+}
+
+StartState MakeStartState(const ImaginationSetup& setup, const std::vector<base::Atom>& atoms) {
+  static const std::set<std::string> kWithoutEffect{"robotat", "hasarmposture", "hastorsoposture",
+                                                    "instance", "holding"};
+  std::vector<std::string> on_tray;
+  std::vector<world::ObjectState> elsewhere;
+  for (const base::Atom& atom : atoms) {
+    const std::string predicate = base::ToLower(atom.predicate);
+    if (kWithoutEffect.count(predicate) > 0) continue;
+    if (predicate != "on" || atom.arguments.size() != 2) {
+      throw base::ConfigError(fmt::format(
+          "updated_fluents: {} is not understood; RobotAt(area) and On(object, area) are",
+          base::ToString(atom)));
+    }
+    if (base::ToLower(atom.arguments[1]) == "trayarea1") {
+      on_tray.push_back(atom.arguments[0]);
+    } else {
+      elsewhere.push_back(MakeObject(setup, atom.arguments[0], AreaPose(setup, atom.arguments[1])));
+    }
+  }
+  StartState start = MakeStartState(setup, RobotAtom(atoms).arguments[0], on_tray);
+  start.world.objects.insert(start.world.objects.end(), elsewhere.begin(), elsewhere.end());
   return start;
 }
 

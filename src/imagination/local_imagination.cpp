@@ -42,7 +42,7 @@ class LocalWorker {
     // Assignment numbers grow, so that "cancelled up to" needs no list.
     const auto unwanted = [&] { return stop_ || cancelled_up_to_ >= assign.assignment; };
     for (int i = assign.first_index; i < assign.first_index + assign.count; ++i) {
-      auto result = PlayRollout(setup_, actions_[assign.alternative], i, unwanted);
+      auto result = PlayRollout(setup_, actions_[assign.alternative], i, {unwanted, {}});
       if (!result) return;
       events_.Post(
           RolloutFinished{id_, assign.assignment, assign.alternative, i, *std::move(result)});

@@ -43,7 +43,7 @@ class Player {
         simulator_(setup.scene, variation, setup.world_state, setup.robot_state,
                    rng.Fork(kSimulator), setup.physics) {}
 
-  std::optional<RolloutResult> Play(const std::function<bool()>& cancelled) {
+  std::optional<RolloutResult> Play(const RolloutHooks& hooks) {
     StepFor(params_.settling_time);
     LoadMonitor monitor(&simulator_, params_);
     const double start = simulator_.time();
@@ -60,7 +60,8 @@ class Player {
         ++samples;
         monitor.Look();
         result_.counts += monitor.Sample();
-        if (cancelled && cancelled()) return std::nullopt;
+        if (hooks.on_sample) hooks.on_sample(simulator_, monitor.tilt());
+        if (hooks.cancelled && hooks.cancelled()) return std::nullopt;
       }
       if (simulator_.contact()) status = {skills::Progress::kFailed, "robot_collision"};
       if (monitor.is_lost()) status = {skills::Progress::kFailed, "object_lost"};
@@ -148,13 +149,13 @@ void CheckSetup(const RolloutSetup& setup, const base::ActionCall& action) {
 }
 
 std::optional<RolloutResult> PlayRollout(const RolloutSetup& setup, const base::ActionCall& action,
-                                         int index, const std::function<bool()>& cancelled) {
+                                         int index, const RolloutHooks& hooks) {
   const base::Rng rng = base::Rng(setup.seed).Fork(static_cast<std::uint64_t>(index));
   const simulation::Variation variation =
       WithFreeStart(SampleVariation(*setup.uncertainty, rng.Fork(kVariation)), setup);
   std::unique_ptr<skills::Skill> skill = skills::MakeSkill(*setup.skills, action);
   try {
-    return Player(setup, std::move(skill), variation, rng).Play(cancelled);
+    return Player(setup, std::move(skill), variation, rng).Play(hooks);
   } catch (const base::ConfigError& error) {
     // The nominal start is sound (CheckSetup), the sampled one is not: a truth that cannot be.
     base::Log(base::LogLevel::kDebug,

@@ -9,18 +9,17 @@ int main(int argc, char** argv) {
   hires_ros::StopSignals signals;  // before any thread is made
   hires_ros::QuietXmlRpc();
   ros::init(argc, argv, "worker_host", ros::init_options::NoSigintHandler);
-  int code = EXIT_FAILURE;
+  if (!hires_ros::WaitForMainMaster(&signals)) return EXIT_SUCCESS;
+  ros::NodeHandle nh;
+  const hires_ros::ScopedLogSink log_sink;
+  hires_ros::MasterWatch master_watch;
   try {
-    if (!hires_ros::WaitForMainMaster(&signals)) return EXIT_SUCCESS;
-    ros::NodeHandle nh;
-    const hires_ros::ScopedLogSink log_sink;
-    hires_ros::MasterWatch master_watch;
     hires_ros::WorkerHostNode node(hires_ros::LoadWorkerHostParams(), &nh);
-    code = node.Run(&signals, master_watch);
+    const int code = node.Run(&signals, master_watch);
     if (master_watch.silent_for() > 0.0) std::_Exit(code);  // or roscpp waits for it
     return master_watch.Finish(code);
   } catch (const hires::base::ConfigError& error) {
     ROS_FATAL("worker_host: %s", error.what());
+    return EXIT_FAILURE;
   }
-  return code;
 }

@@ -16,6 +16,13 @@ struct ActionCall {
   bool operator==(const ActionCall& other) const;
 };
 
+/// A symbolic statement: `RobotAt(area1)`. Predicates and names compare without regard to case.
+struct Atom {
+  std::string predicate;
+  std::vector<std::string> arguments;
+};
+std::string ToString(const Atom& atom);
+
 /// An action with a list of alternatives for each argument.
 struct ActionTemplate {
   std::string name;

@@ -19,6 +19,7 @@ struct ImagineQuery {
   std::uint64_t seed{1};
   imagination::SchedulerParams scheduler;
   imagination::SetupConfig setup;
+  bool own_scene{false};        ///< files were named that the workers may not have
   bool own_uncertainty{false};  ///< an uncertainty was named that the workers may not have
   int threads{1};
 };

@@ -33,6 +33,14 @@ struct SetupConfig {
 /// @throws base::ConfigError naming file and key.
 SetupConfig ReadSetupConfig(const std::string& path);
 
+/// A path that stands in the file `config_path`: relative ones count from that file's folder.
+std::string ResolvePath(const std::string& path, const std::string& config_path);
+
+/// Puts other files in place of the configured ones; what is not given or empty stays.
+void OverridePaths(const std::optional<std::string>& world, const std::optional<std::string>& robot,
+                   const std::optional<std::string>& objects,
+                   const std::optional<std::string>& uncertainty, SetupConfig* config);
+
 /// Everything constant that imagining needs, loaded once and shared by all requests.
 struct ImaginationSetup {
   std::shared_ptr<const simulation::Scene> scene;
@@ -63,6 +71,12 @@ struct StartState {
 /// @throws base::ConfigError for an unknown area or object, or more than three objects.
 StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
                           const std::vector<std::string>& objects);
+
+/// The same from a projected symbolic state. RobotAt(area) is needed once; On(object, trayArea1)
+/// puts an object on the tray, On(object, area) on that area. Postures (HasArmPosture,
+/// HasTorsoPosture, Instance, Holding) are accepted: at the level of detail `tray` the joints are
+/// frozen in the driving posture.  @throws base::ConfigError for anything else, and as above.
+StartState MakeStartState(const ImaginationSetup& setup, const std::vector<base::Atom>& atoms);
 
 /// What the rollouts of a request share.
 RolloutSetup MakeRolloutSetup(const ImaginationSetup& setup, const StartState& start,

@@ -9,6 +9,7 @@
 #include "hires/imagination/uncertainty.h"
 #include "hires/physics/physics_world.h"
 #include "hires/simulation/scene.h"
+#include "hires/simulation/tray_simulator.h"
 #include "hires/skills/skill_factory.h"
 
 namespace hires::imagination {
@@ -43,10 +44,17 @@ struct RolloutSetup {
 /// sense; a nominal start in collision.  @throws base::ConfigError saying what.
 void CheckSetup(const RolloutSetup& setup, const base::ActionCall& action);
 
+/// What a caller may want to know while a rollout is played; both may be empty.
+struct RolloutHooks {
+  std::function<bool()> cancelled;  ///< asked 20 times per simulated second
+  /// Called with every 20 Hz sample; must not change anything.
+  std::function<void(const simulation::TraySimulator&, double tilt)> on_sample;
+};
+
 /// Plays rollout `index` of an action: samples a truth (the same for every action that is played
 /// with this seed and index), lets the load settle, runs the skill in lockstep with physics,
-/// counts. Gives up early, with nothing, when `cancelled` (may be empty) says so.
+/// counts. Gives up early, with nothing, when it is cancelled.
 std::optional<RolloutResult> PlayRollout(const RolloutSetup& setup, const base::ActionCall& action,
-                                         int index, const std::function<bool()>& cancelled = {});
+                                         int index, const RolloutHooks& hooks = {});
 
 }  // namespace hires::imagination

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <hires/ActionCall.h>
+#include <hires/ActionTemplate.h>
+#include <hires/Atom.h>
+#include <hires/ImagineFeedback.h>
+#include <hires/ImagineResult.h>
+#include <hires/OutcomeCounts.h>
+#include <hires/Prediction.h>
+#include <hires/RobotState.h>
+#include <hires/RolloutRecord.h>
+#include <hires/WorldState.h>
+
+#include "hires/base/action.h"
+#include "hires/geometry/pose.h"
+#include "hires/imagination/report.h"
+#include "hires/imagination/rollout_result.h"
+#include "hires/robot/observation.h"
+#include "hires/world/world.h"
+
+/// Messages to core values and back. Every float64 survives both ways bit for bit.
+namespace hires_ros {
+
+namespace msg = ::hires;
+
+geometry_msgs::Pose ToMsg(const hires::geometry::Pose3& pose);
+hires::geometry::Pose3 FromMsg(const geometry_msgs::Pose& pose);  ///< a quaternion of 0 is identity
+
+msg::ActionCall ToMsg(const hires::base::ActionCall& call);
+hires::base::ActionCall FromMsg(const msg::ActionCall& call);
+msg::ActionTemplate ToMsg(const hires::base::ActionTemplate& action);
+hires::base::ActionTemplate FromMsg(const msg::ActionTemplate& action);
+
+msg::WorldState ToMsg(const hires::world::WorldState& state);
+hires::world::WorldState FromMsg(const msg::WorldState& state);
+/// The heading travels beside the quaternion, which would round it.
+msg::RobotState ToMsg(const hires::robot::RobotState& state);
+hires::robot::RobotState FromMsg(const msg::RobotState& state);
+
+msg::RolloutRecord ToMsg(const hires::imagination::RolloutResult& result, int index);
+hires::imagination::RolloutResult FromMsg(const msg::RolloutRecord& record);
+
+msg::Prediction ToMsg(const hires::imagination::Prediction& prediction);
+hires::imagination::Prediction FromMsg(const msg::Prediction& prediction);
+msg::ImagineResult ToMsg(const hires::imagination::Report& report);
+hires::imagination::Report FromMsg(const msg::ImagineResult& result);
+msg::ImagineFeedback ToMsg(const hires::imagination::Interim& interim);
+hires::imagination::Interim FromMsg(const msg::ImagineFeedback& feedback);
+
+}  // namespace hires_ros

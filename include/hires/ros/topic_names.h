@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+/// Names of topics and actions; all relative but those that cross between masters.
+namespace hires_ros {
+
+constexpr char kImagineAction[] = "imagine";
+constexpr char kImaginationMarkers[] = "imagination_markers";  ///< ranking, latched
+constexpr char kWorldMarkers[] = "world_markers";              ///< furniture, areas, latched
+
+/// What a worker owns under its master and what crosses to the main one: "/worker_3/rollout".
+inline std::string WorkerName(int index, const std::string& what) {
+  return "/worker_" + std::to_string(index) + "/" + what;
+}
+constexpr char kRollout[] = "rollout";
+constexpr char kWorkerMarkers[] = "markers";
+
+}  // namespace hires_ros

@@ -1,0 +1,309 @@
+#include "hires/ros/imagination_client_node.h"
+
+#include <fmt/format.h>
+#include <ros/package.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include "hires/base/error.h"
+#include "hires/base/log.h"
+#include "hires/imagination/report.h"
+#include "hires/imagination/rollout.h"
+#include "hires/ros/conversions.h"
+#include "hires/ros/private_params.h"
+#include "hires/ros/process.h"
+#include "hires/ros/topic_names.h"
+#include "hires/ros/trace_markers.h"
+
+namespace hires_ros {
+namespace {
+
+namespace imagination = hires::imagination;
+
+constexpr double kTickPeriod = 0.02;  // [s]
+
+template <typename... Fs>
+struct Overloaded : Fs... {
+  using Fs::operator()...;
+};
+template <typename... Fs>
+Overloaded(Fs...) -> Overloaded<Fs...>;
+
+/// The scheduler's clock: the deadline is in ROS time where that is simulated; the wall's ROS time
+/// may jump, so there the steady clock counts.
+double SchedulerNow() { return ros::Time::isSimTime() ? ros::Time::now().toSec() : SteadyNow(); }
+
+std::vector<hires::base::Atom> AtomsOf(const std::vector<hires::Atom>& atoms) {
+  std::vector<hires::base::Atom> out;
+  for (const hires::Atom& atom : atoms) out.push_back({atom.predicate, atom.arguments});
+  return out;
+}
+
+}  // namespace
+
+ImaginationClientParams LoadImaginationClientParams() {
+  RejectUnknownPrivate({"config", "workers", "world", "robot", "objects", "uncertainty"});
+  ImaginationClientParams params;
+  params.config = imagination::ReadClientConfig(PrivateText("config").value_or(
+      ros::package::getPath("hires") + "/config/imagination_client.yaml"));
+  params.setup = imagination::ReadSetupConfig(params.config.scene);
+  Override("workers", PrivateInt("workers"), hires::base::Between(1, 256), &params.num_workers);
+  imagination::OverridePaths(PrivateText("world"), PrivateText("robot"), PrivateText("objects"),
+                             PrivateText("uncertainty"), &params.setup);
+  return params;
+}
+
+ImaginationClientNode::ImaginationClientNode(const ImaginationClientParams& params,
+                                             imagination::ImaginationSetup setup,
+                                             ros::NodeHandle* nh)
+    : params_(params),
+      setup_(std::move(setup)),
+      server_(
+          *nh, kImagineAction, [this](GoalHandle goal) { OnGoal(goal); },
+          [this](GoalHandle goal) { OnCancel(goal); }, false),
+      ranking_markers_(
+          nh->advertise<visualization_msgs::MarkerArray>(kImaginationMarkers, 1, true)),
+      world_markers_(nh->advertise<visualization_msgs::MarkerArray>(kWorldMarkers, 1, true)) {
+  for (int k = 1; k <= params_.num_workers; ++k) {
+    workers_[k] = std::make_unique<WorkerLink>(
+        k, params_.config.worker_timeout, nh,
+        [this, k](const WorkerLink::Event& event) { OnWorkerEvent(k, event); });
+  }
+  world_markers_.publish(WorldMarkers(setup_.scene->world));
+  updater_.setHardwareID("imagination");
+  updater_.add("workers", this, &ImaginationClientNode::Diagnose);
+  timer_ = nh->createWallTimer(ros::WallDuration(kTickPeriod),
+                               boost::function<void(const ros::WallTimerEvent&)>(
+                                   [this](const ros::WallTimerEvent&) { OnTick(); }));
+  server_.start();
+}
+
+ImaginationClientNode::~ImaginationClientNode() {
+  for (auto& session : sessions_) {
+    hires::ImagineResult result;
+    result.outcome = hires::ImagineResult::CANCELLED;
+    result.why = "the imagination client is going down";
+    session->goal.setAborted(result, result.why);
+  }
+}
+
+void ImaginationClientNode::Refuse(GoalHandle goal, const std::string& why) {
+  hires::base::Log(hires::base::LogLevel::kWarn,
+                   fmt::format("request={} outcome=invalid {}", goal.getGoal()->request_id, why));
+  hires::ImagineResult result;
+  result.outcome = hires::ImagineResult::INVALID;
+  result.recommended = -1;
+  result.why = why;
+  result.seed = goal.getGoal()->seed;
+  goal.setAborted(result, why);
+}
+
+void ImaginationClientNode::OnGoal(GoalHandle goal) {
+  goal.setAccepted();
+  try {
+    sessions_.push_back(MakeSession(goal));
+  } catch (const hires::base::ConfigError& error) {
+    Refuse(goal, error.what());
+    return;
+  }
+  Session* session = sessions_.back().get();
+  hires::base::Log(
+      hires::base::LogLevel::kInfo,
+      fmt::format("request={} session={} action={} alternatives={} rollouts={} seed={}",
+                  goal.getGoal()->request_id, session->id, session->actions[0].name,
+                  session->actions.size(), session->params.rollouts, goal.getGoal()->seed));
+  for (const auto& [k, worker] : workers_) {
+    if (worker->is_alive()) Feed(session, imagination::WorkerJoined{k});
+  }
+}
+
+std::unique_ptr<ImaginationClientNode::Session> ImaginationClientNode::MakeSession(
+    GoalHandle goal) {
+  const hires::ImagineGoal& wanted = *goal.getGoal();
+  auto session = std::make_unique<Session>();
+  session->id = next_session_++;
+  session->goal = goal;
+  session->actions = hires::base::Combinations(FromMsg(wanted.action));
+  session->start =
+      wanted.updated_fluents.empty()
+          ? imagination::StartState{FromMsg(wanted.world_state), FromMsg(wanted.robot_state)}
+          : imagination::MakeStartState(setup_, AtomsOf(wanted.updated_fluents));
+  const auto uncertainty =
+      wanted.uncertainty.empty()
+          ? setup_.uncertainty
+          : std::make_shared<const imagination::Uncertainty>(
+                imagination::UncertaintyFromText(wanted.uncertainty, "uncertainty of the request"));
+  session->uncertainty = wanted.uncertainty;
+  session->uncertainty_hash = uncertainty->hash;
+  session->params = params_.config.scheduler;
+  session->params.rollouts = static_cast<int>(std::min<std::uint32_t>(wanted.rollouts, 1u << 30));
+  session->params.deadline = wanted.deadline.toSec();
+  session->params.early_stop = !wanted.play_all && session->params.early_stop;
+  if (!wanted.ranking.empty()) {
+    session->params.rule = imagination::ParseRankingRule(wanted.ranking);
+  }
+  const imagination::RolloutSetup setup =
+      imagination::MakeRolloutSetup(setup_, session->start, wanted.seed);
+  for (const auto& action : session->actions) imagination::CheckSetup(setup, action);
+  session->scheduler = std::make_unique<imagination::Scheduler>(
+      session->params, static_cast<int>(session->actions.size()), SchedulerNow());
+  session->begun = session->next_feedback = SteadyNow();
+  return session;
+}
+
+void ImaginationClientNode::OnCancel(GoalHandle goal) {
+  for (auto& session : sessions_) {
+    if (session->goal == goal) {
+      CarryOut(session.get(), session->scheduler->Cancel(SchedulerNow()));
+    }
+  }
+}
+
+void ImaginationClientNode::Feed(Session* session, const imagination::Event& event) {
+  CarryOut(session, session->scheduler->Handle(event, SchedulerNow()));
+}
+
+void ImaginationClientNode::OnWorkerEvent(int worker, const WorkerLink::Event& event) {
+  const auto with_session = [&](int id, const imagination::Event& what) {
+    for (auto& session : sessions_) {
+      if (session->id == id) Feed(session.get(), what);
+    }
+  };
+  const auto log = [&](const std::string& what) {
+    hires::base::Log(hires::base::LogLevel::kInfo, fmt::format("worker={} {}", worker, what));
+  };
+  std::visit(
+      Overloaded{[&](const WorkerLink::Joined&) {
+                   log("joined");
+                   for (auto& s : sessions_) Feed(s.get(), imagination::WorkerJoined{worker});
+                 },
+                 [&](const WorkerLink::Lost&) {
+                   log("lost");
+                   for (auto& s : sessions_) Feed(s.get(), imagination::WorkerLost{worker});
+                 },
+                 [&](const WorkerLink::Played& e) {
+                   for (auto& s : sessions_) {
+                     if (s->id != e.session) continue;
+                     const auto alternative = s->alternative_of.find(e.assignment);
+                     if (alternative == s->alternative_of.end()) continue;
+                     Feed(s.get(), imagination::RolloutFinished{
+                                       worker, e.assignment, alternative->second,
+                                       static_cast<int>(e.record.index), FromMsg(e.record)});
+                   }
+                 },
+                 [&](const WorkerLink::Finished& e) {
+                   // Feedback may have been lost on the way: the result has all rollouts once more.
+                   for (const auto& record : e.records) {
+                     OnWorkerEvent(worker, WorkerLink::Played{e.session, e.assignment, record});
+                   }
+                   with_session(e.session, imagination::AssignmentFinished{worker, e.assignment});
+                 },
+                 [&](const WorkerLink::Failed& e) {
+                   log("failed " + e.reason);
+                   with_session(e.session, imagination::AssignmentFailed{worker, e.assignment,
+                                                                         e.reason, e.is_unusable});
+                 }},
+      event);
+}
+
+hires::RolloutGoal ImaginationClientNode::RolloutGoalFor(const Session& session,
+                                                         const imagination::Assign& assign) const {
+  hires::RolloutGoal goal;
+  goal.action = ToMsg(session.actions[assign.alternative]);
+  goal.world_state = ToMsg(session.start.world);
+  goal.world_state.world_hash = setup_.world_hash;
+  goal.robot_state = ToMsg(session.start.robot);
+  goal.world_hash = setup_.world_hash;
+  goal.robot_hash = setup_.robot_hash;
+  goal.uncertainty_hash = session.uncertainty_hash;
+  goal.uncertainty = session.uncertainty;
+  goal.seed = session.goal.getGoal()->seed;
+  goal.first = assign.first_index;
+  goal.count = assign.count;
+  return goal;
+}
+
+void ImaginationClientNode::CarryOut(Session* session,
+                                     const std::vector<imagination::Command>& commands) {
+  for (const auto& command : commands) {
+    if (const auto* assign = std::get_if<imagination::Assign>(&command)) {
+      session->alternative_of[assign->assignment] = assign->alternative;
+      workers_.at(assign->worker)
+          ->Send(session->id, assign->assignment, RolloutGoalFor(*session, *assign));
+    } else if (const auto* cancel = std::get_if<imagination::CancelAssignment>(&command)) {
+      workers_.at(cancel->worker)->Cancel(session->id, cancel->assignment);
+    }
+  }
+}
+
+void ImaginationClientNode::OnTick() {
+  for (auto& [k, worker] : workers_) worker->Look();
+  const double now = SteadyNow();
+  for (auto& session : sessions_) {
+    CarryOut(session.get(), session->scheduler->Tick(SchedulerNow()));
+    if (now >= session->next_feedback) PublishFeedback(session.get(), now);
+  }
+  FinishSessions();
+  updater_.update();
+}
+
+void ImaginationClientNode::PublishFeedback(Session* session, double now) {
+  session->next_feedback = now + params_.config.feedback_period;
+  session->goal.publishFeedback(ToMsg(
+      imagination::Interim{session->scheduler->ProgressAt(SchedulerNow()),
+                           PredictionsOf(*session->scheduler, session->scheduler->RankingSoFar(),
+                                         session->actions, false),
+                           NumWorkers()}));
+}
+
+void ImaginationClientNode::FinishSessions() {
+  for (auto it = sessions_.begin(); it != sessions_.end();) {
+    if (!(*it)->scheduler->finished()) {
+      ++it;
+      continue;
+    }
+    Finish(it->get());
+    it = sessions_.erase(it);
+  }
+}
+
+void ImaginationClientNode::Finish(Session* session) {
+  for (auto& [k, worker] : workers_) worker->CancelSession(session->id);
+  const auto report =
+      imagination::MakeReport(*session->scheduler, session->actions, session->params.rule,
+                              session->goal.getGoal()->seed, SteadyNow() - session->begun);
+  hires::ImagineResult result = ToMsg(report);
+  result.depends_on = session->goal.getGoal()->updated_fluents;
+  hires::base::Log(hires::base::LogLevel::kInfo,
+                   fmt::format("session={} outcome={} {}", session->id,
+                               imagination::ToString(report.outcome), report.why));
+  ranking_markers_.publish(
+      RankingMarkers(report.ranking, report.recommended, session->start.robot.X_MB));
+  if (report.outcome == imagination::ImaginationOutcome::kCancelled) {
+    session->goal.setCanceled(result, report.why);
+  } else if (report.outcome == imagination::ImaginationOutcome::kRanked) {
+    session->goal.setSucceeded(result, report.why);
+  } else {
+    session->goal.setAborted(result, report.why);
+  }
+}
+
+int ImaginationClientNode::NumWorkers() const {
+  int alive = 0;
+  for (const auto& [k, worker] : workers_) alive += worker->is_alive() ? 1 : 0;
+  return alive;
+}
+
+void ImaginationClientNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const int alive = NumWorkers();
+  using Level = diagnostic_msgs::DiagnosticStatus;
+  status.summary(alive == 0                    ? Level::ERROR
+                 : alive < params_.num_workers ? Level::WARN
+                                               : Level::OK,
+                 fmt::format("{} of {} workers", alive, params_.num_workers));
+  for (const auto& [k, worker] : workers_) {
+    status.add(worker->name(), worker->is_alive() ? "alive" : "lost");
+  }
+  status.add("requests", sessions_.size());
+}
+
+}  // namespace hires_ros
