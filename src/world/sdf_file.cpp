@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <mutex>
-#include <regex>
 #include <sdf/Console.hh>
 #include <sdf/ParserConfig.hh>
 #include <sdf/parser.hh>
@@ -90,6 +89,23 @@ class XmlWalk {
   std::vector<std::string> open_files_;
 };
 
+/// Drops "\x1b[1;31m" and the like.
+std::string WithoutColours(const std::string& text) {
+  std::string plain;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t escape = std::min(text.find("\x1b[", at), text.size());
+    plain += text.substr(at, escape - at);
+    const std::size_t end = text.find('m', escape);
+    at = end == std::string::npos ? text.size() : end + 1;
+  }
+  return plain;
+}
+
+bool BeginsMessage(const std::string& line) {
+  const auto begins_with = [&line](const char* label) { return line.rfind(label, 0) == 0; };
+  return begins_with("Error [") || begins_with("Warning [") || begins_with("Msg [");
+}
+
 /// libsdformat reports part of its findings only on a console that all threads share. This takes
 /// the console for itself, one thread at a time, and keeps what is said.
 class ConsoleCapture {
@@ -107,15 +123,13 @@ class ConsoleCapture {
 
   /// What was said, an item per message, colours dropped.
   std::vector<std::string> Messages() const {
-    static const std::regex kColour("\x1b\\[[0-9;]*m");
-    static const std::regex kBreak("\n(?=(Error|Warning|Msg) \\[)");
-    const std::string plain = std::regex_replace(text_.str(), kColour, "");
-    std::vector<std::string> messages(
-        std::sregex_token_iterator(plain.begin(), plain.end(), kBreak, -1),
-        std::sregex_token_iterator());
-    for (std::string& message : messages) {
-      std::replace(message.begin(), message.end(), '\n', ' ');
-      while (!message.empty() && message.back() == ' ') message.pop_back();
+    std::vector<std::string> messages;
+    for (const std::string& line : base::Split(WithoutColours(text_.str()), '\n')) {
+      if (messages.empty() || BeginsMessage(line)) {
+        messages.push_back(line);
+      } else if (!line.empty()) {
+        messages.back() += " " + line;
+      }
     }
     return messages;
   }
