@@ -60,8 +60,8 @@ Bound<std::string> OneOf(std::vector<std::string> choices) {
           wanted};
 }
 
-ParamReader::ParamReader(YAML::Node node, std::string where, std::string prefix)
-    : node_(std::move(node)),
+ParamReader::ParamReader(const YAML::Node& node, std::string where, std::string prefix)
+    : node_(node),
       where_(std::move(where)),
       prefix_(std::move(prefix)),
       read_(std::make_shared<Read>()) {
@@ -121,7 +121,7 @@ T ParamReader::Parse(const std::string& key, const char* type_name) {
 
 template <typename T>
 T ParamReader::GetBounded(const std::string& key, const Bound<T>& bound, const char* type_name) {
-  const T value = Parse<T>(key, type_name);
+  T value = Parse<T>(key, type_name);
   if (!bound.holds(value)) Fail(key, "wanted " + bound.wanted);
   return value;
 }

@@ -58,6 +58,7 @@ std::string Join(const std::vector<std::string>& parts, std::string_view separat
 std::vector<std::string> NearestNames(const std::string& name,
                                       const std::vector<std::string>& known, std::size_t at_most) {
   std::vector<std::pair<std::size_t, std::string>> ranked;
+  ranked.reserve(known.size());
   const std::string lower = ToLower(name);
   for (const std::string& candidate : known) {
     ranked.emplace_back(EditDistance(lower, ToLower(candidate)), candidate);

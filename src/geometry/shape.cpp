@@ -98,6 +98,7 @@ std::vector<Eigen::Vector2d> CutSphereToBand(const Sphere& sphere, const Eigen::
   std::vector<Eigen::Vector3d> corners;
   AddCircumscribed(std::sqrt((sphere.radius - off) * (sphere.radius + off)), 0.0, &corners);
   std::vector<Eigen::Vector2d> points;
+  points.reserve(corners.size());
   for (const Eigen::Vector3d& corner : corners) points.push_back((p_WS + corner).head<2>());
   return points;
 }

@@ -26,8 +26,14 @@ TEST(ActionCallTest, TheMarkCountsOnlyAtTheBeginning) {
 }
 
 TEST(ToStringTest, ReadsLikeACall) {
-  EXPECT_EQ(ToString({"move_base_param", {"area1", "slow"}}), "move_base_param(area1, slow)");
-  EXPECT_EQ(ToString({"tuck_arms", {}}), "tuck_arms()");
+  EXPECT_EQ(ToString(ActionCall{"move_base_param", {"area1", "slow"}}),
+            "move_base_param(area1, slow)");
+  EXPECT_EQ(ToString(ActionCall{"tuck_arms", {}}), "tuck_arms()");
+}
+
+TEST(ToStringTest, ReadsLikeAStatement) {
+  EXPECT_EQ(ToString(Atom{"RobotAt", {"area1"}}), "RobotAt(area1)");
+  EXPECT_EQ(ToString(Atom{"HandEmpty", {}}), "HandEmpty()");
 }
 
 TEST(CombinationsTest, TheLastArgumentVariesFastest) {

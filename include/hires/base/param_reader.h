@@ -54,7 +54,7 @@ class ParamReader {
   [[noreturn]] void Fail(const std::string& key, const std::string& what) const;
 
  private:
-  ParamReader(YAML::Node node, std::string where, std::string prefix);
+  ParamReader(const YAML::Node& node, std::string where, std::string prefix);
   YAML::Node Require(const std::string& key);
   template <typename T>
   T Parse(const std::string& key, const char* type_name);
