@@ -1,0 +1,165 @@
+// Private to this layer: what physics_world.cpp and physics_world_contacts.cpp share.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "hires/physics/physics_world.h"
+#include "hires/physics/placed_shape.h"
+
+namespace hires::physics {
+namespace detail {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// A shape of a static or driven body in its group's frame G.
+struct Fixture {
+  PlacedShape shape;
+  Vector3d p_GS;
+  Matrix3d R_GS;
+  geometry::Aabb bounds_G;
+  std::uint64_t placed_at{0};  // the group's num_moves for which shape stands in the world
+};
+
+/// Shapes that move together: all static ones (G is the world), or those of one driven body.
+struct Group {
+  bool is_static{true};
+  BodyState motion;
+  Matrix3d R_WG{Matrix3d::Identity()};
+  std::uint64_t num_moves{1};
+  std::vector<Fixture> fixtures;  // by body, then by place in the body
+
+  /// Velocity of the group's material point at p_W [m/s].
+  Vector3d VelocityAt(const Vector3d& p_W) const {
+    return motion.V_WB.linear + motion.V_WB.angular.cross(p_W - motion.X_WB.translation);
+  }
+
+  /// What to add for a body that rides at p_W, so that a step takes it along the chord of its arc:
+  /// the tangent would let it creep outwards. The same for all contacts of the body, which cannot
+  /// shrink as the chords of its points would have it.
+  Vector3d ChordCorrection(const Vector3d& p_W, double time_step) const {
+    const Vector3d& w = motion.V_WB.angular;
+    return 0.5 * time_step * w.cross(w.cross(p_W - motion.X_WB.translation));
+  }
+};
+
+/// The shapes of one group that a loose body can reach while its centre of mass C stays within
+/// kNearMargin of p_GC: a superset, so that how it came about never shows in the contacts.
+struct NearList {
+  bool is_valid{false};
+  Vector3d p_GC{Vector3d::Zero()};
+  std::vector<int> fixtures;
+};
+
+struct LooseShape {
+  PlacedShape shape;
+  Vector3d p_CS;
+  Matrix3d R_BS;
+};
+
+struct LooseBody {
+  dBodyID ode;
+  Vector3d p_BC;
+  std::vector<LooseShape> shapes;
+  double reach{0.0};           // no point is farther from C [m]
+  double inside{0.0};          // radius of a ball within the thickest shape [m]
+  std::vector<NearList> near;  // by group
+  bool is_canonical{false};    // `state` is what ODE's numbers were made of
+  BodyState state;
+
+  Vector3d p_WC, v, w;  // at the start of the step
+};
+
+/// ODE's own numbers of a body.
+struct RawState {
+  dVector3 position, linear, angular;
+  dQuaternion rotation;
+};
+
+enum class BodyKind { kStatic, kDriven, kLoose };
+struct BodyEntry {
+  BodyKind kind;
+  int index;  // of the group or of the loose body
+};
+
+inline Vector3d ToEigen(const dReal* v) { return {v[0], v[1], v[2]}; }
+
+/// How ODE's things are given back.
+struct Deleters {
+  void operator()(dxWorld* world) const { dWorldDestroy(world); }
+  void operator()(dxJointGroup* group) const { dJointGroupDestroy(group); }
+  void operator()(dxThreadingImplementation* threading) const {
+    dThreadingFreeImplementation(threading);
+  }
+};
+
+}  // namespace detail
+
+struct PhysicsWorld::Impl {
+  using Vector3d = Eigen::Vector3d;
+  using BodyEntry = detail::BodyEntry;
+  using BodyKind = detail::BodyKind;
+  using Deleters = detail::Deleters;
+  using Fixture = detail::Fixture;
+  using Group = detail::Group;
+  using LooseBody = detail::LooseBody;
+  using NearList = detail::NearList;
+  using RawState = detail::RawState;
+
+  explicit Impl(const PhysicsParams& params_in);
+
+  BodyId AddEntry(BodyKind kind, int index);
+  void AddFixtures(const std::vector<geometry::Collision>& collisions, const geometry::Pose3& X_GB,
+                   Group* group);
+  LooseBody MakeLoose(const geometry::MassProperties& properties,
+                      const std::vector<geometry::Collision>& collisions);
+  void ForgetNear();
+  Group& DrivenAt(BodyId id);
+  LooseBody& LooseAt(BodyId id);
+  const BodyEntry& At(BodyId id) const;
+
+  void SetLoose(const BodyState& state, LooseBody* body);
+  void SetDriven(const BodyState& state, Group* group);
+  BodyState LooseState(const LooseBody& body) const;
+
+  void PlaceLoose(LooseBody* body);
+  void TouchGroup(int group, LooseBody* body);
+  /// True if they touch.
+  bool TouchFixture(const Group& group, const Vector3d& lean, Fixture* fixture, LooseBody* body);
+  void TouchLoose(LooseBody* a, LooseBody* b);
+  void MakeNearList(const Group& group, const Vector3d& p_GC, const LooseBody& body,
+                    NearList* near) const;
+  /// Lets a body that would pass through a shape within this step come up to it and no farther.
+  void CatchFast(const Group& group, const Vector3d& v_rel, Fixture* fixture, LooseBody* body);
+  dContact ContactOf(const PlacedShape& shape, const PlacedShape& other, bool is_other_loose) const;
+  /// `closing_speed` is what the normal velocity may be at most towards the other body [m/s].
+  void AddContact(const ContactPoint& point, const Vector3d& v_other, double closing_speed,
+                  LooseBody* body, LooseBody* other_body, dContact* contact);
+  template <typename SurfaceVelocity>
+  void AddContacts(const PlacedShape& shape, const PlacedShape& other, LooseBody* body,
+                   LooseBody* other_body, const SurfaceVelocity& other_velocity);
+  void MoveLoose();
+  void KeepRaw();
+  void PutRawBack();
+  void MoveDriven();
+
+  PhysicsParams params;
+  Vector3d acceleration{Vector3d::Zero()};  // extra, of loose bodies
+  std::uint64_t num_steps{0};
+  int num_contacts{0};
+  std::unique_ptr<dxThreadingImplementation, Deleters> threading;  // outlives the world
+  std::unique_ptr<dxWorld, Deleters> world;
+  std::unique_ptr<dxJointGroup, Deleters> joints;
+  std::vector<BodyEntry> entries;  // by BodyId
+  std::vector<Group> groups;       // 0 is the static one
+  std::vector<LooseBody> loose;
+  std::vector<RawState> raw;  // of the loose bodies, at the start of the step
+  std::vector<geometry::Pose3> static_poses;
+  ContactList found;
+};
+
+}  // namespace hires::physics
