@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <iostream>
@@ -107,9 +108,28 @@ ImagineQuery MakeQuery(const ImagineOptions& o, const Backends& backends) {
   return query;
 }
 
-void ShowProgress(const imagination::Interim& interim) {
-  std::cerr << '\r' << ProgressLine(interim.progress) << "\033[K" << std::flush;
-}
+/// A bar that is drawn over itself on a terminal, a line now and then in a log.
+class ProgressDisplay {
+ public:
+  ProgressDisplay() : is_terminal_(isatty(STDERR_FILENO) != 0) {}
+
+  void Show(const imagination::Interim& interim) {
+    const auto now = std::chrono::steady_clock::now();
+    if (is_terminal_) {
+      std::cerr << '\r' << ProgressLine(interim.progress) << "\033[K" << std::flush;
+    } else if (now >= next_line_) {
+      next_line_ = now + std::chrono::seconds(5);
+      std::cerr << ProgressLine(interim.progress) << std::endl;
+    }
+  }
+  void Clear() const {
+    if (is_terminal_) std::cerr << "\r\033[K";
+  }
+
+ private:
+  bool is_terminal_;
+  std::chrono::steady_clock::time_point next_line_{};
+};
 
 void PrintReport(const imagination::Report& report) {
   if (!report.ranking.empty())
@@ -124,9 +144,9 @@ void PrintReport(const imagination::Report& report) {
 
 int Imagine(const ImagineOptions& options, const Backends& backends) {
   const ImagineQuery query = MakeQuery(options, backends);
-  const bool show = !options.quiet && isatty(STDERR_FILENO) != 0;
-  const imagination::OnInterim on_interim =
-      show ? imagination::OnInterim(ShowProgress) : imagination::OnInterim();
+  ProgressDisplay display;
+  imagination::OnInterim on_interim;
+  if (!options.quiet) on_interim = [&](const auto& interim) { display.Show(interim); };
   const auto cancelled = [] { return interrupted.load(); };
   if (!options.local && !backends.imagine_remotely) {
     throw base::ConfigError("this build has no ROS nodes to ask; add --local");
@@ -134,7 +154,7 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
   const imagination::Report report = options.local
                                          ? ImagineInThisProcess(query, on_interim, cancelled)
                                          : backends.imagine_remotely(query, on_interim, cancelled);
-  if (show) std::cerr << "\r\033[K";
+  if (!options.quiet) display.Clear();
   PrintReport(report);
   if (!options.json.empty()) WriteJson(ToJson(report), options.json);
   return ExitCodeOf(report);
@@ -169,7 +189,7 @@ imagination::Report ImagineInThisProcess(const ImagineQuery& query,
                                      query.threads, on_interim, cancelled);
 }
 
-int RunCommandLine(int argc, char** argv, const Backends& backends) {
+int RunCommandLine(const std::vector<std::string>& arguments, const Backends& backends) {
   CLI::App app("HIRES: imagine an action in physics before doing it", "hires");
   app.require_subcommand(1);
   ImagineOptions imagine_options;
@@ -183,7 +203,8 @@ int RunCommandLine(int argc, char** argv, const Backends& backends) {
     others.push_back(app.add_subcommand(verb.name, verb.help)->prefix_command());
   }
   try {
-    app.parse(argc, argv);
+    // CLI11 takes its arguments from the back.
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
     std::signal(SIGINT, OnInterrupt);
     if (*imagine) return Imagine(imagine_options, backends);
     if (*doctor) return RunDoctor(backends);

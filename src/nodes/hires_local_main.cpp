@@ -7,5 +7,5 @@ int main(int argc, char** argv) {
   hires::evaluation::Backends backends;
   const char* folder = std::getenv("HIRES_PACKAGE_FOLDER");
   backends.package_folder = folder != nullptr ? folder : HIRES_SOURCE_DIR;
-  return hires::evaluation::RunCommandLine(argc, argv, backends);
+  return hires::evaluation::RunCommandLine({argv, argv + argc}, backends);
 }

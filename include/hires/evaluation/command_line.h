@@ -59,7 +59,8 @@ enum ExitCode {
 int ExitCodeOf(const imagination::Report& report);
 
 /// The program `hires`: parses, runs one verb, prints. Never throws.
-int RunCommandLine(int argc, char** argv, const Backends& backends);
+/// @param arguments  the program's name first, as in argv.
+int RunCommandLine(const std::vector<std::string>& arguments, const Backends& backends);
 
 /// Imagines in this process, as `hires imagine --local`.
 imagination::Report ImagineInThisProcess(const ImagineQuery& query,
