@@ -167,12 +167,14 @@ def check_own_header(root, path):
     own = "/".join(path.split("/")[1:])[:-len(".cpp")] + ".h"
     includes = list(includes_of(root, path))
     number, first = includes[0] if includes else (1, "nothing")
-    layers = [included_layer(header) for _, header in includes]
+    beside = os.path.dirname(path)
+    has_part = any(included_layer(header) == layer_of(path) or
+                   os.path.exists(os.path.join(root, beside, header)) for _, header in includes)
     exists = any(os.path.exists(os.path.join(root, folder, own))
                  for folder in ("src", "include/hires"))
     if exists and first not in (f"hires/{own}", own, os.path.basename(own)):
         yield f"{path}:{number}: includes {first} first; start with its own header {own}"
-    if not exists and layer_of(path) not in layers:
+    if not exists and not has_part:
         yield (f"{path}:1: has no header; write include/hires/{own}, or include the header of its "
                "layer that it implements")
 

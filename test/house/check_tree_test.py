@@ -100,6 +100,9 @@ class CheckTreeTest(unittest.TestCase):
     def test_a_source_may_implement_another_header_of_its_layer(self):
         self.assertEqual(self.complaints(
             {"src/base/rng_more.cpp": '#include "hires/base/rng.h"\n'}), [])
+        self.assertEqual(self.complaints(
+            {"src/base/inner.h": "#pragma once\n",
+             "src/base/inner_more.cpp": '#include <vector>\n#include "inner.h"\n'}), [])
         self.expect_one({"src/geometry/more.cpp": '#include "hires/base/rng.h"\n'},
                         "src/geometry/more.cpp:1", "has no header")
 
