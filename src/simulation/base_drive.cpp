@@ -18,11 +18,18 @@ geometry::Twist2 Clipped(geometry::Twist2 v, const robot::MotionSet& limits) {
 }
 
 /// Rate of change of a ramp with limited jerk: never faster than what still lets the acceleration
-/// come down to 0 when the target is met.
+/// come down to 0 when the target is met, step by step: r dt + (r - jerk dt) dt + ... = distance.
 double JerkLimitedRate(double rate, double wanted_rate, double distance, double jerk, double dt) {
-  const double bound = std::sqrt(2.0 * jerk * std::abs(distance));
+  const double half_step = 0.5 * jerk * dt;
+  const double bound =
+      std::sqrt(half_step * half_step + 2.0 * jerk * std::abs(distance)) - half_step;
   const double reachable = std::clamp(wanted_rate, -bound, bound);
   return std::clamp(reachable, rate - jerk * dt, rate + jerk * dt);
+}
+
+/// Steps of at most `step` that a change takes; no change takes none, even if `step` is 0.
+double StepsFor(double change, double step) {
+  return change == 0.0 ? 0.0 : std::abs(change) / step;
 }
 
 }  // namespace
@@ -53,10 +60,9 @@ geometry::Twist2 BaseDrive::Target(double time) {
 void BaseDrive::StepRamp(const geometry::Twist2& target, double dt) {
   const double dx = target.vx - x_.ramp, dy = target.vy - y_.ramp, dw = target.wz - yaw_.ramp;
   const robot::MotionSet& limits = params_.limits;
-  const double steps_needed =
-      std::max({std::abs(dx) / (limits.max_linear_acceleration * dt),
-                std::abs(dy) / (limits.max_linear_acceleration * dt),
-                std::abs(dw) / (limits.max_angular_acceleration * dt), 1.0});
+  const double steps_needed = std::max({StepsFor(dx, limits.max_linear_acceleration * dt),
+                                        StepsFor(dy, limits.max_linear_acceleration * dt),
+                                        StepsFor(dw, limits.max_angular_acceleration * dt), 1.0});
   const auto advance = [&](Axis* axis, double distance, double jerk) {
     double rate = distance / (steps_needed * dt);
     if (jerk > 0.0) rate = JerkLimitedRate(axis->ramp_rate, rate, distance, jerk, dt);

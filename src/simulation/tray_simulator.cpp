@@ -22,6 +22,7 @@ constexpr double kGhostSize = 0.10;       // [m] edge: a voxel of the obstacle f
 constexpr double kStartSlack = 0.005;     // [m] bodies may overlap this much at the start
 constexpr double kRestingGap = 0.06;      // [m] an object this far above the tray falls onto it
 constexpr double kFarAway = 1000.0;       // [m]
+constexpr double kUnitSlack = 1e-6;       // how far a quaternion's length may be from 1
 
 robot::BaseControllerParams Varied(robot::BaseControllerParams params, const Variation& variation) {
   params.command_lag += variation.command_delay;
@@ -97,6 +98,21 @@ void RefusePose(const std::string& what, const Pose3& X) {
   }
 }
 
+void RefuseObject(const world::ObjectState& object) {
+  const std::string what = fmt::format("object '{}'", object.name);
+  RefusePose(what, object.X_MO);
+  if (std::abs(object.X_MO.rotation.norm() - 1.0) > kUnitSlack) {
+    throw base::ConfigError(
+        fmt::format("{}: its quaternion has length {:.6g}, wanted unit length; no turn is (x, y, "
+                    "z, w) = (0, 0, 0, 1)",
+                    what, object.X_MO.rotation.norm()));
+  }
+  if (!object.V_MO.linear.allFinite() || !object.V_MO.angular.allFinite()) {
+    throw base::ConfigError(
+        fmt::format("{}: its velocity is not finite; give numbers, 0 at rest", what));
+  }
+}
+
 }  // namespace
 
 struct TraySimulator::Snapshot {
@@ -136,7 +152,7 @@ TraySimulator::TraySimulator(std::shared_ptr<const Scene> scene, const Variation
   }
   world::WorldState placed = world_state;
   for (world::ObjectState& object : placed.objects) {
-    RefusePose("object '" + object.name + "'", object.X_MO);
+    RefuseObject(object);
     X_BO_start_.push_back(geometry::Lift(robot_state.X_MB).Inverse() * object.X_MO);
   }
   AddObjects(placed);

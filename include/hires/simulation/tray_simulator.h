@@ -31,7 +31,7 @@ struct Disturbances {
 class TraySimulator {
  public:
   /// @throws base::ConfigError if an object's model is unknown to the world, or the robot or an
-  /// object starts inside a static body or has a pose that is not finite.
+  /// object starts inside a static body or has a pose or velocity that is not finite.
   TraySimulator(std::shared_ptr<const Scene> scene, const Variation& variation,
                 const world::WorldState& world_state, const robot::RobotState& robot_state,
                 base::Rng rng, const physics::PhysicsParams& params = {});

@@ -1,0 +1,495 @@
+#include "hires/simulation/tray_simulator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <thread>
+#include <vector>
+
+#include "hires/physics/closed_forms.h"
+#include "support/messages.h"
+#include "support/scenes.h"
+
+namespace hires::simulation {
+namespace {
+
+using geometry::Pose2;
+using test_support::AddModel;
+using test_support::Block;
+using test_support::ConfigErrorOf;
+using test_support::Mill;
+using test_support::OnTray;
+using test_support::Room;
+using test_support::RoomScene;
+using test_support::StandingAt;
+using test_support::TrayRobot;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const Pose2 kMiddle{3.0, 2.0, 0.4};
+
+world::WorldState With(std::vector<world::ObjectState> objects) { return {std::move(objects)}; }
+
+robot::Command Drive(double vx, double vy = 0.0, double wz = 0.0) {
+  robot::Command command;
+  command.base_velocity = geometry::Twist2{vx, vy, wz};
+  return command;
+}
+
+void StepFor(TraySimulator* simulator, double duration) {
+  for (long i = std::lround(duration / simulator->time_step()); i > 0; --i) simulator->Step();
+}
+
+/// Sends the same command every 50 ms for a while.
+void DriveFor(TraySimulator* simulator, const robot::Command& command, double duration) {
+  for (long i = std::lround(duration / 0.05); i > 0; --i) {
+    simulator->Send(command);
+    StepFor(simulator, 0.05);
+  }
+}
+
+// ---------------------------------------------------------------------------------- same bits
+
+/// Everything that can be seen of a simulator, as numbers.
+std::vector<double> Bits(TraySimulator* simulator) {
+  std::vector<double> bits{simulator->time()};
+  const auto add_pose = [&](const geometry::Pose3& X) {
+    for (int i = 0; i < 3; ++i) bits.push_back(X.translation[i]);
+    for (int i = 0; i < 4; ++i) bits.push_back(X.rotation.coeffs()[i]);
+  };
+  add_pose(simulator->X_MB());
+  for (const world::ObjectState& object : simulator->GetWorldState().objects) {
+    add_pose(object.X_MO);
+    for (int i = 0; i < 3; ++i) bits.push_back(object.V_MO.linear[i]);
+    for (int i = 0; i < 3; ++i) bits.push_back(object.V_MO.angular[i]);
+  }
+  const robot::Observation seen = simulator->Observe(0.0);
+  bits.insert(bits.end(), {seen.X_MB.x, seen.X_MB.y, seen.X_MB.yaw, seen.V_B.vx, seen.V_B.wz});
+  for (const auto& outline : seen.obstacles_M) bits.push_back(outline.front().x());
+  return bits;
+}
+
+/// A truth in which everything that draws chance does so.
+Variation Lively() {
+  Variation variation;
+  variation.wheel_slip = 0.05;
+  variation.floor_roughness = 0.0005;
+  variation.localisation_noise = 0.01;
+  variation.localisation_noise_yaw = 0.01;
+  variation.ghost_rate = 2.0;
+  variation.object_offset = {0.005, -0.004};
+  return variation;
+}
+
+std::unique_ptr<TraySimulator> LivelySimulator(const std::shared_ptr<const Scene>& scene) {
+  return std::make_unique<TraySimulator>(
+      scene, Lively(),
+      With({OnTray("a", "mill", kMiddle), OnTray("b", "tower", kMiddle, {0.0, 0.13})}),
+      StandingAt(kMiddle), base::Rng(9));
+}
+
+/// Drives about; whatever falls rolls on the floor.
+std::vector<std::vector<double>> Play(TraySimulator* simulator, int cycles, std::uint64_t seed) {
+  base::Rng rng(seed);
+  std::vector<std::vector<double>> seen;
+  for (int i = 0; i < cycles; ++i) {
+    simulator->Send(Drive(rng.Uniform(-0.8, 0.8), rng.Uniform(-0.3, 0.3), rng.Uniform(-1.0, 1.0)));
+    StepFor(simulator, 0.1);
+    seen.push_back(Bits(simulator));
+  }
+  return seen;
+}
+
+TEST(TraySimulatorTest, TheSameCallsGiveTheSameBits) {
+  const auto scene = RoomScene();
+  const auto first = LivelySimulator(scene), second = LivelySimulator(scene);
+  EXPECT_EQ(Play(first.get(), 50, 1), Play(second.get(), 50, 1));
+}
+
+TEST(TraySimulatorTest, RestoredItGoesOnWithTheSameBitsHereAndElsewhere) {
+  const auto scene = RoomScene();
+  const auto original = LivelySimulator(scene);
+  Play(original.get(), 40, 1);
+  const auto snapshot = original->Save();
+  const auto expected = Play(original.get(), 40, 2);
+
+  const auto other = LivelySimulator(scene);
+  Play(other.get(), 7, 3);
+  other->Restore(*snapshot);
+  EXPECT_EQ(Play(other.get(), 40, 2), expected);
+
+  original->Restore(*snapshot);
+  EXPECT_EQ(Play(original.get(), 40, 2), expected);
+
+  std::vector<std::vector<double>> in_thread;
+  std::thread thread([&] {
+    const auto far = LivelySimulator(scene);
+    far->Restore(*snapshot);
+    in_thread = Play(far.get(), 40, 2);
+  });
+  thread.join();
+  EXPECT_EQ(in_thread, expected);
+}
+
+TEST(TraySimulatorTest, TwoInTwoThreadsDoNotDisturbEachOther) {
+  const auto scene = RoomScene();
+  const auto expected = Play(LivelySimulator(scene).get(), 30, 1);
+  std::vector<std::vector<double>> seen[2];
+  std::vector<std::thread> threads;
+  for (auto& mine : seen) {
+    threads.emplace_back([&] { mine = Play(LivelySimulator(scene).get(), 30, 1); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(seen[0], expected);
+  EXPECT_EQ(seen[1], expected);
+}
+
+TEST(TraySimulatorTest, AnotherSeedGivesOtherBits) {
+  const auto scene = RoomScene();
+  const auto start = With({OnTray("a", "mill", kMiddle)});
+  TraySimulator first(scene, Lively(), start, StandingAt(kMiddle), base::Rng(1));
+  TraySimulator second(scene, Lively(), start, StandingAt(kMiddle), base::Rng(2));
+  EXPECT_NE(Play(&first, 5, 1), Play(&second, 5, 1));
+}
+
+// ------------------------------------------------------------------------------------ physics
+
+TEST(TraySimulatorTest, AMillOnAStandingRobotStays) {
+  TraySimulator simulator(RoomScene(), {}, With({OnTray("mill1", "mill", kMiddle)}),
+                          StandingAt(kMiddle), base::Rng(1));
+  const Eigen::Vector3d start = simulator.PoseOf(0).translation;
+  for (int i = 0; i < 100; ++i) {
+    StepFor(&simulator, 0.1);
+    const geometry::Pose3 X_MO = simulator.PoseOf(0);
+    ASSERT_LT((X_MO.translation - start).head<2>().norm(), 1e-4) << simulator.time() << " s";
+    ASSERT_LT(geometry::TiltOf(X_MO.rotation), 1e-3) << simulator.time() << " s";
+  }
+  EXPECT_NEAR(simulator.PoseOf(0).translation.z(), test_support::kTrayTop, 2e-3);
+}
+
+/// Largest tilt [rad] of a model while the base accelerates at `acceleration` [m/s^2] for 2 s on an
+/// endless floor, heading `yaw`. What falls backward comes to lean against the torso.
+double TiltUnder(double acceleration, const Variation& variation = {}, double yaw = 0.0,
+                 const std::string& model = "mill") {
+  world::World plain = Room();
+  plain.statics.clear();
+  robot::Robot robot = TrayRobot();
+  robot.profile.base_controller.limits = {100.0, 2.0, acceleration, 2.0};
+  const Pose2 X_MB{0.0, 0.0, yaw};
+  TraySimulator simulator(simulation::MakeScene(plain, robot), variation,
+                          With({OnTray("mill1", model, X_MB)}), StandingAt(X_MB), base::Rng(1));
+  StepFor(&simulator, 0.2);
+  double tilt = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    simulator.Send(Drive(90.0));
+    StepFor(&simulator, 0.01);
+    tilt = std::max(tilt, geometry::TiltOf(simulator.PoseOf(0).rotation));
+  }
+  return tilt;
+}
+
+TEST(TraySimulatorTest, TipsAboveItsTippingAccelerationAndStandsBelow) {
+  const double tipping = physics::TippingAcceleration({}, 9.81);
+  for (const double yaw : {0.0, 0.6, 1.9, -2.5}) {
+    EXPECT_LT(TiltUnder(0.95 * tipping, {}, yaw), 0.01) << "yaw " << yaw;
+    EXPECT_GT(TiltUnder(1.05 * tipping, {}, yaw), 0.8) << "yaw " << yaw;
+  }
+}
+
+TEST(TraySimulatorTest, VariationMovesTheTippingPoint) {
+  const double tipping = physics::TippingAcceleration({}, 9.81);
+  Variation narrow;
+  narrow.radius_factor = 0.8;
+  EXPECT_LT(TiltUnder(0.95 * 0.8 * tipping, narrow), 0.01);
+  EXPECT_GT(TiltUnder(1.05 * 0.8 * tipping, narrow), 0.8);
+  Variation top_heavy;
+  top_heavy.com_height_factor = 1.25;
+  EXPECT_LT(TiltUnder(0.95 / 1.25 * tipping, top_heavy), 0.01);
+  EXPECT_GT(TiltUnder(1.05 / 1.25 * tipping, top_heavy), 0.8);
+  Variation heavy;
+  heavy.mass_factor = 3.0;
+  EXPECT_LT(TiltUnder(0.95 * tipping, heavy), 0.01);
+  EXPECT_GT(TiltUnder(1.05 * tipping, heavy), 0.8);
+}
+
+TEST(TraySimulatorTest, OnASlipperyTrayItSlidesInsteadOfTipping) {
+  Variation slippery;  // 0.8 * 0.25 = 0.2: slides above 1.96 m/s^2, tips at 2.65
+  slippery.friction_factor = 0.25;
+  world::World plain = Room();
+  plain.statics.clear();
+  robot::Robot robot = TrayRobot();
+  robot.profile.base_controller.limits = {100.0, 2.0, 2.3, 2.0};
+  TraySimulator simulator(simulation::MakeScene(plain, robot), slippery,
+                          With({OnTray("mill1", "mill", {}, {0.05, 0.0})}), StandingAt({}),
+                          base::Rng(1));
+  StepFor(&simulator, 0.2);
+  DriveFor(&simulator, Drive(90.0), 0.5);
+  const double slid = test_support::kTrayX + 0.05 -
+                      (simulator.X_MB().Inverse() * simulator.PoseOf(0)).translation.x();
+  EXPECT_NEAR(slid, 0.5 * (2.3 - 0.2 * 9.81) * 0.5 * 0.5, 0.005);
+}
+
+TEST(TraySimulatorTest, StartOffsetMovesTheRobotAndItsLoad) {
+  Variation variation;
+  variation.start_offset = {0.1, -0.05, 0.2};
+  TraySimulator simulator(RoomScene(), variation, With({OnTray("mill1", "mill", kMiddle)}),
+                          StandingAt(kMiddle), base::Rng(1));
+  const Pose2 X_MB = kMiddle * variation.start_offset;
+  EXPECT_NEAR(simulator.base().X_MB.x, X_MB.x, 1e-12);
+  EXPECT_NEAR(simulator.base().X_MB.yaw, X_MB.yaw, 1e-12);
+  const Eigen::Vector2d p_MO = X_MB * Eigen::Vector2d(test_support::kTrayX, 0.0);
+  EXPECT_NEAR((simulator.PoseOf(0).translation.head<2>() - p_MO).norm(), 0.0, 1e-9);
+}
+
+TEST(TraySimulatorTest, ObjectOffsetMovesWhatStandsOnTheTrayAlone) {
+  Variation variation;
+  variation.object_offset = {0.02, -0.01};
+  world::ObjectState beside = OnTray("beside", "mill", {1.0, 1.0, 0.0});
+  beside.X_MO.translation.z() = 0.0002;
+  TraySimulator simulator(RoomScene(), variation,
+                          With({OnTray("mill1", "mill", {3.0, 2.0, 0.0}), beside}),
+                          StandingAt({3.0, 2.0, 0.0}), base::Rng(1));
+  EXPECT_NEAR(simulator.PoseOf(0).translation.x(), 3.0 + test_support::kTrayX + 0.02, 1e-9);
+  EXPECT_NEAR(simulator.PoseOf(0).translation.y(), 2.0 - 0.01, 1e-9);
+  EXPECT_NEAR(simulator.PoseOf(1).translation.x(), beside.X_MO.translation.x(), 1e-9);
+}
+
+// ------------------------------------------------------------------------- what is carried
+
+TEST(TraySimulatorTest, CarriedIsWhatStandsOnTheRobot) {
+  world::ObjectState on_floor = OnTray("on_floor", "mill", {1.5, 1.0, 0.0});
+  on_floor.X_MO.translation.z() = 0.0002;
+  world::ObjectState in_the_air = OnTray("in_the_air", "mill", kMiddle, {0.05, -0.15});
+  in_the_air.X_MO.translation.z() += 0.2;
+  world::ObjectState held = OnTray("held", "mill", kMiddle, {0.0, -0.1});
+  held.attached_to = "tray";
+  TraySimulator simulator(RoomScene(), {},
+                          With({on_floor, OnTray("first", "mill", kMiddle), in_the_air, held,
+                                OnTray("second", "tower", kMiddle, {0.0, 0.15})}),
+                          StandingAt(kMiddle), base::Rng(1));
+  EXPECT_THAT(simulator.carried(), ElementsAre(1, 4));
+}
+
+TEST(TraySimulatorTest, AttachedObjectsRideAlongRigidly) {
+  robot::Robot robot = TrayRobot();
+  robot.profile.base_controller.sway_compliance = 0.005;
+  world::ObjectState held = OnTray("held", "tower", {1.5, 2.0, 0.0});
+  held.attached_to = "tray";
+  TraySimulator simulator(simulation::MakeScene(Room(), robot), {}, With({held}),
+                          StandingAt({1.5, 2.0, 0.0}), base::Rng(1));
+  const geometry::Pose3 X_BO = simulator.X_MB().Inverse() * simulator.PoseOf(0);
+  EXPECT_THAT(simulator.carried(), IsEmpty());
+  for (int i = 0; i < 20; ++i) {
+    DriveFor(&simulator, Drive(0.8, 0.0, 0.4), 0.05);
+    const geometry::Pose3 X_BO_now = simulator.X_MB().Inverse() * simulator.PoseOf(0);
+    EXPECT_LT((X_BO_now.translation - X_BO.translation).norm(), 1e-12);
+    EXPECT_LT(X_BO_now.rotation.angularDistance(X_BO.rotation), 1e-9);
+  }
+  EXPECT_GT(simulator.base().X_MB.x, 1.9);
+  EXPECT_THROW(simulator.PutBack(0), std::logic_error);
+}
+
+TEST(TraySimulatorTest, AnAttachedObjectPushesWhatStandsInItsWay) {
+  world::ObjectState held = OnTray("held", "tower", {1.5, 2.0, 0.0}, {0.0, 0.1});
+  held.attached_to = "tray";
+  world::ObjectState on_floor = OnTray("on_floor", "tower", {1.5, 2.0, 0.0}, {0.4, 0.1});
+  on_floor.X_MO.translation.z() = 0.0002;
+  TraySimulator simulator(RoomScene(), {}, With({held, on_floor}), StandingAt({1.5, 2.0, 0.0}),
+                          base::Rng(1));
+  DriveFor(&simulator, Drive(0.8), 1.5);
+  EXPECT_GT(geometry::TiltOf(simulator.PoseOf(1).rotation), 0.5);
+}
+
+TEST(TraySimulatorTest, PutBackStandsItUprightAndMovingWithTheRobot) {
+  TraySimulator simulator(RoomScene(), {}, With({OnTray("tower1", "tower", {1.5, 2.0, 0.0})}),
+                          StandingAt({1.5, 2.0, 0.0}), base::Rng(1));
+  const geometry::Pose3 X_BO = simulator.X_MB().Inverse() * simulator.PoseOf(0);
+  StepFor(&simulator, 0.2);
+  DriveFor(&simulator, Drive(0.0, 0.9), 0.6);  // sideways: ahead stands the torso
+  DriveFor(&simulator, Drive(0.0), 1.0);
+  ASSERT_GT(geometry::TiltOf(simulator.PoseOf(0).rotation), 0.5) << "it ought to have fallen";
+  DriveFor(&simulator, Drive(0.4, 0.0, 0.5), 0.8);
+  simulator.PutBack(0);
+  const geometry::Pose3 X_BO_now = simulator.X_MB().Inverse() * simulator.PoseOf(0);
+  EXPECT_LT((X_BO_now.translation - X_BO.translation).norm(), 1e-12);
+  EXPECT_LT(geometry::TiltOf(simulator.PoseOf(0).rotation), 1e-9);
+  DriveFor(&simulator, Drive(0.4, 0.0, 0.5), 1.0);
+  EXPECT_LT(geometry::TiltOf(simulator.PoseOf(0).rotation), 0.02) << "it fell when put back";
+}
+
+// --------------------------------------------------------------------------- contact, causes
+
+TEST(TraySimulatorTest, DrivingIntoTheWallIsAContact) {
+  TraySimulator simulator(RoomScene(), {}, {}, StandingAt({5.0, 2.0, 0.0}), base::Rng(1));
+  DriveFor(&simulator, Drive(0.5), 1.0);
+  EXPECT_FALSE(simulator.contact());
+  DriveFor(&simulator, Drive(0.5), 1.0);
+  ASSERT_TRUE(simulator.contact());
+  EXPECT_EQ(simulator.contact()->obstacle, "east_wall");
+  EXPECT_EQ(simulator.contact()->robot_part, "tray/plate");
+}
+
+TEST(TraySimulatorTest, NotesWhatMayDisturbTheLoad) {
+  robot::Robot robot = TrayRobot();
+  robot.profile.base_controller.command_timeout = 0.2;
+  TraySimulator simulator(simulation::MakeScene(Room(), robot), {}, {}, StandingAt({2.0, 2.0, 0.0}),
+                          base::Rng(1));
+  StepFor(&simulator, 0.5);
+  EXPECT_LT(simulator.disturbances().accelerating, 0.0);
+  DriveFor(&simulator, Drive(0.5), 1.0);  // 0.25 s of ramp
+  EXPECT_NEAR(simulator.disturbances().accelerating, 0.75, 0.002);
+  EXPECT_LT(simulator.disturbances().braking, 0.0);
+  DriveFor(&simulator, Drive(0.0), 1.0);
+  EXPECT_NEAR(simulator.disturbances().braking, 1.75, 0.002);
+  DriveFor(&simulator, Drive(0.0, 0.0, 1.0), 1.0);  // 0.5 s of ramp
+  EXPECT_NEAR(simulator.disturbances().turning, 3.0, 0.002);
+  EXPECT_LT(simulator.disturbances().late_command, 0.0);
+  StepFor(&simulator, 0.5);
+  EXPECT_GT(simulator.disturbances().late_command, 3.5);
+}
+
+// ------------------------------------------------------------------------------------ senses
+
+TEST(TraySimulatorTest, BelievedPosesHaveTheirBiasAndNoise) {
+  Variation variation;
+  variation.localisation_bias = {0.05, -0.02, 0.01};
+  variation.localisation_noise = 0.004;
+  variation.localisation_noise_yaw = 0.003;
+  TraySimulator simulator(RoomScene(), variation, {}, StandingAt({3.0, 2.0, 0.0}), base::Rng(5));
+  const int count = 10000;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
+  for (int i = 0; i < count; ++i) {
+    const Pose2 X_MB = simulator.Observe(0.0).X_MB;
+    const Eigen::Vector3d off(X_MB.x - 3.0, X_MB.y - 2.0, X_MB.yaw);
+    sum += off;
+    squares += off.cwiseProduct(off);
+  }
+  const Eigen::Vector3d mean = sum / count;
+  const Eigen::Vector3d sd = (squares / count - mean.cwiseProduct(mean)).cwiseSqrt();
+  EXPECT_NEAR(mean.x(), 0.05, 4.0 * 0.004 / std::sqrt(count));
+  EXPECT_NEAR(mean.y(), -0.02, 4.0 * 0.004 / std::sqrt(count));
+  EXPECT_NEAR(mean.z(), 0.01, 4.0 * 0.003 / std::sqrt(count));
+  EXPECT_NEAR(sd.x(), 0.004, 0.03 * 0.004);
+  EXPECT_NEAR(sd.y(), 0.004, 0.03 * 0.004);
+  EXPECT_NEAR(sd.z(), 0.003, 0.03 * 0.003);
+}
+
+TEST(TraySimulatorTest, WithoutVariationItSeesTheTruth) {
+  TraySimulator simulator(RoomScene(), {}, {}, StandingAt({3.0, 2.0, 0.5}), base::Rng(5));
+  DriveFor(&simulator, Drive(0.3, 0.1, 0.2), 1.0);
+  const robot::Observation seen = simulator.Observe(0.4);
+  EXPECT_NEAR(seen.time, 0.6, 1e-12);
+  EXPECT_EQ(seen.X_MB.x, simulator.base().X_MB.x);
+  EXPECT_NEAR(seen.X_MB.yaw, simulator.base().X_MB.yaw, 1e-12);
+  EXPECT_EQ(seen.V_B.vx, simulator.base().V_B.vx);
+  EXPECT_THAT(seen.obstacles_M, IsEmpty());
+}
+
+TEST(TraySimulatorTest, GhostsComeAtTheirRateBeforeTheRobotAndGo) {
+  Variation variation;
+  variation.ghost_rate = 0.5;
+  TraySimulator simulator(RoomScene(), variation, {}, StandingAt(kMiddle), base::Rng(5));
+  int appeared = 0;
+  double seen_for = 0.0;  // [s] summed over all ghosts
+  Eigen::Vector2d last_corner(0.0, 0.0);
+  for (int i = 0; i < 2000; ++i) {
+    StepFor(&simulator, 0.1);
+    const auto ghosts = simulator.Observe(0.0).obstacles_M;
+    seen_for += 0.1 * static_cast<double>(ghosts.size());
+    if (ghosts.empty() || ghosts.back().front() == last_corner) continue;
+    last_corner = ghosts.back().front();
+    ++appeared;
+    const Eigen::Vector2d p_BG =
+        kMiddle.Inverse() * Eigen::Vector2d(0.5 * (ghosts.back()[0] + ghosts.back()[2]));
+    EXPECT_GT(p_BG.norm(), 0.79);
+    EXPECT_LT(p_BG.norm(), 2.51);
+    EXPECT_GT(p_BG.x(), 0.0);
+  }
+  EXPECT_NEAR(appeared, 100, 40);  // 200 s: four standard deviations
+  EXPECT_NEAR(seen_for / appeared, 4.6, 0.25);
+}
+
+// -------------------------------------------------------------------------------- bad starts
+
+std::string WhyRefused(const world::WorldState& world_state, const Pose2& X_MB,
+                       world::World world = Room()) {
+  const auto scene = simulation::MakeScene(std::move(world), TrayRobot());
+  return ConfigErrorOf(
+      [&] { TraySimulator(scene, {}, world_state, StandingAt(X_MB), base::Rng(1)); });
+}
+
+TEST(TraySimulatorTest, RefusesARobotThatIsNowhere) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(WhyRefused({}, {nan, 0.0, 0.0}),
+              AllOf(HasSubstr("the robot"), HasSubstr("not finite")));
+  EXPECT_THAT(WhyRefused({}, {3.0, 2.0, nan}), HasSubstr("not finite"));
+  EXPECT_THAT(WhyRefused({}, {std::numeric_limits<double>::infinity(), 0.0, 0.0}),
+              HasSubstr("not finite"));
+  EXPECT_THAT(WhyRefused({}, {2e6, 0.0, 0.0}),
+              AllOf(HasSubstr("the robot"), HasSubstr("2000000 m"), HasSubstr("1000 m")));
+}
+
+TEST(TraySimulatorTest, RefusesARobotInAWall) {
+  EXPECT_THAT(WhyRefused({}, {5.9, 2.0, 0.0}),
+              AllOf(HasSubstr("robot starts in collision"), HasSubstr("'east_wall'"),
+                    HasSubstr("x 5.900 m"), HasSubstr("move the start")));
+}
+
+TEST(TraySimulatorTest, RefusesObjectsWithoutAPlace) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  world::ObjectState object = OnTray("mill1", "mill", kMiddle);
+  object.X_MO.translation.y() = nan;
+  EXPECT_THAT(WhyRefused(With({object}), kMiddle),
+              AllOf(HasSubstr("object 'mill1'"), HasSubstr("not finite")));
+  object = OnTray("mill1", "mill", kMiddle);
+  object.X_MO.translation.x() = -5000.0;
+  EXPECT_THAT(WhyRefused(With({object}), kMiddle),
+              AllOf(HasSubstr("object 'mill1'"), HasSubstr("5000 m")));
+}
+
+TEST(TraySimulatorTest, RefusesObjectsWithoutARotationOrVelocity) {
+  world::ObjectState object = OnTray("mill1", "mill", kMiddle);
+  object.X_MO.rotation.coeffs().setZero();
+  EXPECT_THAT(WhyRefused(With({object}), kMiddle),
+              AllOf(HasSubstr("object 'mill1'"), HasSubstr("unit length")));
+  object = OnTray("mill1", "mill", kMiddle);
+  object.V_MO.linear.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(WhyRefused(With({object}), kMiddle),
+              AllOf(HasSubstr("object 'mill1'"), HasSubstr("velocity"), HasSubstr("not finite")));
+}
+
+TEST(TraySimulatorTest, RefusesObjectsOfUnknownModels) {
+  EXPECT_THAT(WhyRefused(With({OnTray("mill1", "mil", kMiddle)}), kMiddle),
+              AllOf(HasSubstr("object 'mill1'"), HasSubstr("model 'mil' is unknown"),
+                    HasSubstr("did you mean 'mill'")));
+}
+
+TEST(TraySimulatorTest, RefusesObjectsInsideOtherThings) {
+  world::ObjectState in_wall = OnTray("mill1", "mill", kMiddle);
+  in_wall.X_MO.translation = {6.03, 2.0, 0.0};
+  EXPECT_THAT(WhyRefused(With({in_wall}), kMiddle),
+              AllOf(HasSubstr("object 'mill1' starts inside 'east_wall'"), HasSubstr("free")));
+  world::ObjectState in_robot = OnTray("mill1", "mill", kMiddle);
+  in_robot.X_MO.translation.z() -= 0.1;
+  EXPECT_THAT(WhyRefused(With({in_robot}), kMiddle),
+              HasSubstr("object 'mill1' starts inside the robot"));
+}
+
+TEST(TraySimulatorTest, AcceptsAnObjectThatStandsOnATable) {
+  world::World room = Room();
+  room.statics.push_back(Block("table", {0.8, 0.8, 0.7}, {1.0, 1.0, 0.35}));
+  world::ObjectState on_table = OnTray("mill1", "mill", kMiddle);
+  on_table.X_MO.translation = {1.0, 1.0, 0.7};
+  const auto scene = simulation::MakeScene(room, TrayRobot());
+  TraySimulator simulator(scene, {}, With({on_table}), StandingAt(kMiddle), base::Rng(1));
+  StepFor(&simulator, 0.5);
+  EXPECT_NEAR(simulator.PoseOf(0).translation.z(), 0.7, 2e-3);
+  EXPECT_THAT(simulator.carried(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace hires::simulation
