@@ -70,7 +70,7 @@ std::optional<Status> MoveBase::Plan(const navigation::Costmap& costmap, const P
 bool MoveBase::NoteMotion(const robot::Observation& observation) {
   const Pose2 moved = X_MMoved_.Inverse() * observation.X_MB;
   const double enough = context_->params.oscillation_distance;
-  if (std::hypot(moved.x, moved.y) > enough || std::abs(moved.yaw) > enough) {
+  if (std::hypot(moved.x, moved.y) > enough || std::abs(moved.yaw) > enough / 2) {
     X_MMoved_ = observation.X_MB;
     last_moved_ = observation.time;
     oscillations_ = 0;

@@ -1,0 +1,271 @@
+#include "hires/skills/move_base.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "hires/geometry/angles.h"
+#include "skills/point_robot.h"
+#include "support/scenes.h"
+
+namespace hires::skills {
+namespace {
+
+using geometry::Pose2;
+using hires::test_support::Block;
+using hires::test_support::Room;
+using hires::test_support::TrayRobot;
+using test_support::PointRobot;
+using test_support::RunSkill;
+using test_support::SkillRun;
+
+const robot::MotionSet kFast{0.55, 1.0, 2.5, 3.2};
+const robot::MotionSet kSlow{0.30, 1.0, 1.4, 2.0};
+const Pose2 kWest{1.0, 2.0, 0.0};
+const Pose2 kEast{4.5, 2.0, 0.0};
+
+std::shared_ptr<const DrivingContext> ContextOf(const world::World& world,
+                                                const MoveBaseParams& params = {}) {
+  return std::make_shared<const DrivingContext>(MakeDrivingContext(world, TrayRobot(), params));
+}
+
+SkillRun DriveIn(const world::World& world, const Pose2& from, const Pose2& to,
+                 const robot::MotionSet& motion_set = kFast) {
+  MoveBase skill(ContextOf(world), to, motion_set);
+  return RunSkill(&skill, {from, {}, false});
+}
+
+double DistanceBetween(const Pose2& a, const Pose2& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+void ExpectArrivedAt(const Pose2& goal, const SkillRun& run) {
+  const navigation::DwaParams defaults;
+  EXPECT_EQ(run.status.progress, Progress::kSucceeded) << run.status.reason;
+  EXPECT_EQ(run.status.reason, "");
+  EXPECT_LE(DistanceBetween(run.robot.X_MB, goal), defaults.xy_goal_tolerance);
+  EXPECT_LE(std::abs(geometry::WrapToPi(run.robot.X_MB.yaw - goal.yaw)),
+            defaults.yaw_goal_tolerance);
+}
+
+void ExpectFailed(const std::string& reason, const SkillRun& run) {
+  EXPECT_EQ(run.status.progress, Progress::kFailed);
+  EXPECT_EQ(run.status.reason, reason);
+}
+
+TEST(MoveBaseTest, ArrivesAtItsGoal) {
+  for (const double yaw : {0.0, 1.5, -3.0}) {
+    const Pose2 goal{4.5, 2.4, yaw};
+    ExpectArrivedAt(goal, DriveIn(Room(), kWest, goal));
+  }
+}
+
+TEST(MoveBaseTest, KeepsToItsMotionSet) {
+  const SkillRun fast = DriveIn(Room(), kWest, kEast, kFast);
+  const SkillRun slow = DriveIn(Room(), kWest, kEast, kSlow);
+  EXPECT_LE(fast.fastest, 0.55 + 1e-9);
+  EXPECT_GT(fast.fastest, 0.50);
+  EXPECT_LE(slow.fastest, 0.30 + 1e-9);
+  EXPECT_GT(slow.fastest, 0.27);
+  EXPECT_GT(slow.duration, fast.duration + 2.0);
+}
+
+TEST(MoveBaseTest, TellsItsMotionSetAndPeriod) {
+  MoveBase skill(ContextOf(Room()), kEast, kSlow);
+  robot::Observation seen;
+  seen.X_MB = kWest;
+  robot::Command command;
+  skill.Update(seen, &command);
+  ASSERT_TRUE(command.motion_set);
+  EXPECT_EQ(command.motion_set->max_linear_velocity, 0.30);
+  EXPECT_EQ(skill.period(), navigation::DwaParams{}.control_period);
+}
+
+TEST(MoveBaseTest, DrivesRoundWhatStandsInItsWay) {
+  world::World room = Room();
+  room.statics.push_back(Block("crate", {0.5, 1.0, 0.8}, {2.75, 2.0, 0.4}));
+  const SkillRun free = DriveIn(Room(), kWest, kEast);
+  const SkillRun round = DriveIn(room, kWest, kEast);
+  ExpectArrivedAt(kEast, round);
+  EXPECT_GT(round.duration, free.duration + 0.5);
+}
+
+TEST(MoveBaseTest, DrivesOverWhatIsLowAndUnderWhatIsHigh) {
+  world::World room = Room();
+  room.statics.push_back(Block("carpet", {1.0, 4.0, 0.04}, {2.75, 2.0, 0.02}));
+  room.statics.push_back(Block("beam", {0.3, 4.0, 0.3}, {2.0, 2.0, 1.4}));  // robot's top: 1.2 m
+  ExpectArrivedAt(kEast, DriveIn(room, kWest, kEast));
+  room.statics.push_back(Block("barrier", {0.1, 4.0, 0.3}, {2.75, 2.0, 1.0}));
+  ExpectFailed("no_path", DriveIn(room, kWest, kEast));
+}
+
+TEST(MoveBaseTest, SaysWhyThereIsNoWay) {
+  world::World room = Room();
+  room.statics.push_back(Block("crate", {1.0, 1.0, 0.8}, {4.5, 2.0, 0.4}));
+  ExpectFailed("goal_blocked", DriveIn(room, kWest, kEast));
+  ExpectFailed("start_blocked", DriveIn(room, kEast, kWest));
+  world::World divided = Room();
+  divided.statics.push_back(Block("fence", {0.1, 4.0, 0.8}, {2.75, 2.0, 0.4}));
+  ExpectFailed("no_path", DriveIn(divided, kWest, kEast));
+}
+
+TEST(MoveBaseTest, AGoalOutsideOfTheMapIsBlocked) {
+  ExpectFailed("goal_blocked", DriveIn(Room(), kWest, {40.0, 2.0, 0.0}));
+}
+
+TEST(MoveBaseTest, SeesObstaclesThatAreNotInTheMap) {
+  MoveBase skill(ContextOf(Room()), kEast, kFast);
+  const geometry::Polygon crate{{2.5, 1.5}, {3.0, 1.5}, {3.0, 2.5}, {2.5, 2.5}};
+  double nearest = 1e9;
+  const SkillRun run = RunSkill(&skill, {kWest, {}, false}, [&](auto* seen, auto* robot) {
+    seen->obstacles_M = {crate};
+    nearest = std::min(
+        nearest, geometry::Distance(
+                     geometry::Transformed(robot->X_MB, TrayRobot().profile.footprint), crate));
+  });
+  ExpectArrivedAt(kEast, run);
+  EXPECT_GT(nearest, 0.0);
+}
+
+/// Four bars round the robot, close enough that it can neither drive nor turn.
+std::vector<geometry::Polygon> CageRound(const Pose2& X_MB) {
+  const auto bar = [&](double x_min, double y_min, double x_max, double y_max) {
+    return geometry::Transformed(X_MB,
+                                 {{x_min, y_min}, {x_max, y_min}, {x_max, y_max}, {x_min, y_max}});
+  };
+  return {bar(0.4, -0.5, 0.5, 0.5), bar(-0.5, -0.5, -0.4, 0.5), bar(-0.4, 0.35, 0.4, 0.45),
+          bar(-0.4, -0.45, 0.4, -0.35)};
+}
+
+TEST(MoveBaseTest, GivesUpInACageAfterItsPatience) {
+  MoveBase skill(ContextOf(Room()), kEast, kFast);
+  const SkillRun run = RunSkill(&skill, {kWest, {}, false}, [&](auto* seen, auto* robot) {
+    if (seen->time > 2.0) seen->obstacles_M = CageRound(robot->X_MB);
+  });
+  ExpectFailed("no_valid_trajectory", run);
+  EXPECT_NEAR(run.duration, 2.0 + MoveBaseParams{}.controller_patience, 1.0);
+  EXPECT_EQ(run.last_command.vx, 0.0);
+}
+
+TEST(MoveBaseTest, DrivesOnWhenTheCageOpens) {
+  MoveBase skill(ContextOf(Room()), kEast, kFast);
+  ExpectArrivedAt(kEast, RunSkill(&skill, {kWest, {}, false}, [&](auto* seen, auto* robot) {
+                    if (seen->time > 2.0 && seen->time < 10.0) {
+                      seen->obstacles_M = CageRound(robot->X_MB);
+                    }
+                  }));
+}
+
+TEST(MoveBaseTest, AHeldRobotOscillates) {
+  MoveBaseParams params;
+  params.oscillation_timeout = 4.0;
+  MoveBase skill(ContextOf(Room(), params), kEast, kFast);
+  const SkillRun run = RunSkill(&skill, {kWest, {}, true});
+  ExpectFailed("oscillating", run);
+  EXPECT_NEAR(run.duration, 8.0, 0.5);  // once it plans anew
+}
+
+TEST(MoveBaseTest, HalfTheDistanceCountsAsMotionInRadians) {
+  MoveBaseParams params;
+  params.oscillation_timeout = 4.0;
+  params.oscillation_distance = 0.5;
+  const auto turn_to_and_fro = [&](double by) {
+    MoveBase skill(ContextOf(Room(), params), kEast, kFast);
+    return RunSkill(
+        &skill, {kWest, {}, true},
+        [&](auto* seen, auto* robot) {
+          robot->X_MB.yaw = std::fmod(seen->time, 4.0) < 2.0 ? 0.0 : by;
+        },
+        15.0);
+  };
+  ExpectFailed("oscillating", turn_to_and_fro(0.2));
+  EXPECT_EQ(turn_to_and_fro(0.3).status.progress, Progress::kRunning);
+}
+
+TEST(MoveBaseTest, TheSameSeenGivesTheSameBits) {
+  world::World room = Room();
+  room.statics.push_back(Block("crate", {0.5, 1.0, 0.8}, {2.75, 2.0, 0.4}));
+  const SkillRun first = DriveIn(room, kWest, kEast), second = DriveIn(room, kWest, kEast);
+  EXPECT_EQ(first.robot.X_MB.x, second.robot.X_MB.x);
+  EXPECT_EQ(first.robot.X_MB.y, second.robot.X_MB.y);
+  EXPECT_EQ(first.robot.X_MB.yaw, second.robot.X_MB.yaw);
+  EXPECT_EQ(first.duration, second.duration);
+}
+
+TEST(DrivingContextTest, PadsTheFootprint) {
+  const auto context = ContextOf(Room());
+  EXPECT_NEAR(context->footprint.front().x(), -0.3 - 0.015, 1e-12);
+  EXPECT_NEAR(context->footprint.front().y(), -0.25 - 0.015, 1e-12);
+}
+
+TEST(DrivingContextTest, ARecordedMapWillDo) {
+  world::OccupancyGrid grid;
+  grid.width = 120;
+  grid.height = 80;
+  grid.cells.assign(120 * 80, world::Cell::kFree);
+  const auto context = std::make_shared<const DrivingContext>(
+      MakeDrivingContext(grid, TrayRobot(), MoveBaseParams()));
+  MoveBase skill(context, kEast, kFast);
+  ExpectArrivedAt(kEast, RunSkill(&skill, {kWest, {}, false}));
+}
+
+// ------------------------------------------------------------------------------------- blind
+
+TEST(MoveBaseBlindTest, ArrivesWithinItsTolerances) {
+  const MoveBaseBlindParams params;
+  for (const Pose2& goal : {Pose2{1.8, 2.0, 0.0}, Pose2{0.6, 2.3, 1.2}, Pose2{1.0, 2.0, 3.1}}) {
+    MoveBaseBlind skill(params, goal, kFast);
+    const SkillRun run = RunSkill(&skill, {kWest, {}, false});
+    EXPECT_EQ(run.status.progress, Progress::kSucceeded) << run.status.reason;
+    EXPECT_LE(DistanceBetween(run.robot.X_MB, goal), params.xy_tolerance);
+    EXPECT_LE(std::abs(geometry::WrapToPi(run.robot.X_MB.yaw - goal.yaw)), params.yaw_tolerance);
+    EXPECT_LE(run.fastest, params.max_velocity + 1e-9);
+    EXPECT_LE(run.fastest_turn, params.max_angular_velocity + 1e-9);
+  }
+}
+
+TEST(MoveBaseBlindTest, TakesTheShorterTurn) {
+  MoveBaseBlind skill({}, {1.0, 2.0, -3.0}, kFast);
+  const SkillRun run = RunSkill(&skill, {{1.0, 2.0, 3.0}, {}, false});
+  EXPECT_EQ(run.status.progress, Progress::kSucceeded);
+  EXPECT_LT(run.duration, 2.0);
+}
+
+TEST(MoveBaseBlindTest, ASlowerMotionSetWins) {
+  MoveBaseBlind skill({}, {1.8, 2.0, 1.0}, {0.1, 0.2, 1.4, 2.0});
+  const SkillRun run = RunSkill(&skill, {kWest, {}, false});
+  EXPECT_EQ(run.status.progress, Progress::kSucceeded);
+  EXPECT_LE(run.fastest, 0.1 + 1e-9);
+  EXPECT_LE(run.fastest_turn, 0.2 + 1e-9);
+}
+
+TEST(MoveBaseBlindTest, SucceedsOnlyWhenItStands) {
+  MoveBaseBlind skill({}, kWest, kFast);
+  robot::Observation seen;
+  seen.X_MB = kWest;
+  seen.V_B = {0.2, 0.0, 0.0};
+  robot::Command command;
+  EXPECT_EQ(skill.Update(seen, &command).progress, Progress::kRunning);
+  ASSERT_TRUE(command.base_velocity);
+  EXPECT_EQ(command.base_velocity->vx, 0.0);
+  seen.V_B = {};
+  EXPECT_EQ(skill.Update(seen, &command).progress, Progress::kSucceeded);
+}
+
+TEST(MoveBaseBlindTest, IsStuckWhenItComesNoNearer) {
+  const MoveBaseBlindParams params;
+  MoveBaseBlind held(params, {1.8, 2.0, 0.0}, kFast);
+  const SkillRun run = RunSkill(&held, {kWest, {}, true});
+  ExpectFailed("stuck", run);
+  EXPECT_NEAR(run.duration, params.stuck_timeout, 2.0 * params.period);
+
+  MoveBaseBlind later(params, {4.5, 2.0, 0.0}, kFast);
+  const SkillRun stopped = RunSkill(&later, {kWest, {}, false}, [](auto* seen, auto* robot) {
+    robot->is_held = seen->time > 4.0;
+  });
+  ExpectFailed("stuck", stopped);
+  EXPECT_NEAR(stopped.duration, 4.0 + params.stuck_timeout, 0.2);
+}
+
+}  // namespace
+}  // namespace hires::skills
