@@ -18,6 +18,8 @@ using visualization_msgs::MarkerArray;
 constexpr std::size_t kMostPoints = 2000;
 constexpr double kArrowLength = 0.35;       // [m]
 constexpr double kSmallestTurn = 0.02;      // [rad/s] below it the path counts as straight
+constexpr double kFallen = 0.5;             // [rad] alpha_t of Eq. 5.1
+constexpr double kSeeThroughHeight = 1.7;   // [m]
 constexpr double kShownAcceleration = 2.0;  // [m/s^2] full colour
 
 geometry_msgs::Point PointMsg(const Eigen::Vector3d& p) {
@@ -137,7 +139,7 @@ void TraceMarkers::DrawLoad(const hires::simulation::TraySimulator& simulator, d
     };
     arrow("up", Eigen::Vector3d::UnitZ(), Colour(0.1, 0.8, 0.1));
     arrow("tilt", X_MO.rotation * Eigen::Vector3d::UnitZ(),
-          tilt < 0.5 ? Colour(1.0, 0.7, 0.0) : Colour(1.0, 0.0, 0.0));
+          tilt < kFallen ? Colour(1.0, 0.7, 0.0) : Colour(1.0, 0.0, 0.0));
     Marker text = Blank("alpha", object, Marker::TEXT_VIEW_FACING);
     text.pose.position = PointMsg(X_MO.translation + Eigen::Vector3d(0.0, 0.0, 0.45));
     text.scale.z = 0.08;
@@ -168,12 +170,35 @@ void TraceMarkers::DrawCircle(const hires::simulation::TraySimulator& simulator,
   markers->markers.push_back(circle);
 }
 
+void TraceMarkers::DrawBodies(const hires::simulation::TraySimulator& simulator,
+                              MarkerArray* markers) const {
+  int id = 0;
+  const auto draw = [&](const hires::geometry::Collision& part, const Pose3& X_MB,
+                        const std_msgs::ColorRGBA& colour) {
+    Marker marker = ShapeMarker(part.shape, X_MB * part.X_BS);
+    Label(&marker, name_space_ + "/bodies", id++);
+    marker.lifetime = ros::Duration(2.0);
+    marker.color = colour;
+    markers->markers.push_back(marker);
+  };
+  const auto& scene = simulator.scene();
+  for (const auto& part : scene.robot_shapes_B) {
+    draw(part, simulator.X_MB(), Colour(0.55, 0.6, 0.7, 0.8));
+  }
+  for (const auto& object : simulator.GetWorldState().objects) {
+    for (const auto& part : scene.world.models.at(object.model)->collisions) {
+      draw(part, object.X_MO, Colour(0.8, 0.45, 0.15));
+    }
+  }
+}
+
 MarkerArray TraceMarkers::Draw(const hires::simulation::TraySimulator& simulator,
                                double tilt) const {
   MarkerArray markers;
+  DrawBodies(simulator, &markers);
   DrawTrace(&markers);
   DrawLoad(simulator, tilt, &markers);
-  DrawCircle(simulator, &markers);
+  if (tilt < kFallen) DrawCircle(simulator, &markers);
   return markers;
 }
 
@@ -208,7 +233,11 @@ MarkerArray WorldMarkers(const hires::world::World& world) {
     for (const auto& collision : body.collisions) {
       Marker marker = ShapeMarker(collision.shape, body.X_MB * collision.X_BS);
       Label(&marker, "world", id++);
-      marker.color = Colour(0.75, 0.7, 0.6, 0.9);
+      // One looks through what is higher than the robot.
+      const bool is_wall =
+          hires::geometry::BoundsOf(collision.shape, body.X_MB * collision.X_BS).upper.z() >
+          kSeeThroughHeight;
+      marker.color = Colour(0.75, 0.7, 0.6, is_wall ? 0.2 : 0.95);
       markers.markers.push_back(marker);
     }
   }

@@ -10,9 +10,9 @@
 
 namespace hires_ros {
 
-/// Markers of one worker's rollout in the map frame, lifetime 2 s: the trace of the base (thickness
-/// = speed, green = speeding up, red = braking), the load's axis and the world's up as arrows, and
-/// the circle on which the load turns (dissertation, Figures 5.7 and 5.16).
+/// Markers of one worker's rollout in the map frame, lifetime 2 s: robot and load, the trace of the
+/// base (thickness = speed, green = speeding up, red = braking), the load's axis and the world's up
+/// as arrows, and the circle on which the load turns (dissertation, Figures 5.7 and 5.16).
 class TraceMarkers {
  public:
   explicit TraceMarkers(int worker_index);
@@ -29,6 +29,8 @@ class TraceMarkers {
     double acceleration;  // [m/s^2], positive: along the motion
   };
   visualization_msgs::Marker Blank(const std::string& name, int id, int type) const;
+  void DrawBodies(const hires::simulation::TraySimulator& simulator,
+                  visualization_msgs::MarkerArray* markers) const;
   void DrawTrace(visualization_msgs::MarkerArray* markers) const;
   void DrawLoad(const hires::simulation::TraySimulator& simulator, double tilt,
                 visualization_msgs::MarkerArray* markers) const;
