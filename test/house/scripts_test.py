@@ -62,6 +62,29 @@ class ScriptsTest(unittest.TestCase):
                 self.assertEqual(answer.returncode, 2)
                 self.assertIn(f"scripts/{script}", answer.stderr)
 
+    def run_in_fake_build(self, *command, **environment):
+        """scripts/run in a build folder whose setup.bash notes its arguments and nothing else."""
+        with tempfile.TemporaryDirectory() as folder:
+            os.mkdir(os.path.join(folder, "devel"))
+            open(os.path.join(folder, ".built"), "w", encoding="utf-8").close()
+            with open(os.path.join(folder, "devel", "setup.bash"), "w", encoding="utf-8") as file:
+                file.write('export SEEN_BY_SETUP="$*" UNSET="$NEVER_SET"\n')
+            return run("scripts/run", *command, HIRES_BUILD=folder, **environment)
+
+    def test_run_keeps_the_arguments_of_the_command_for_the_command(self):
+        answer = self.run_in_fake_build("bash", "-c", 'echo "$SEEN_BY_SETUP|$0|$1"', "--help", "a b")
+        self.assertEqual(answer.stdout, "|--help|a b\n", answer.stderr)
+
+    def test_run_binds_to_loopback_unless_told_otherwise(self):
+        show = ("bash", "-c", 'echo "$ROS_HOSTNAME|$ROS_IP"')
+        answer = self.run_in_fake_build(*show, ROS_HOSTNAME="", ROS_IP="")
+        self.assertEqual(answer.stdout, "localhost|\n")
+        answer = self.run_in_fake_build(*show, ROS_HOSTNAME="", ROS_IP="10.0.0.7")
+        self.assertEqual(answer.stdout, "|10.0.0.7\n")
+
+    def test_run_ends_as_the_command_ended(self):
+        self.assertEqual(self.run_in_fake_build("bash", "-c", "exit 7").returncode, 7)
+
     def test_run_wants_a_command(self):
         self.assertEqual(run("scripts/run").returncode, 2)
 
