@@ -102,18 +102,18 @@ robot::Robot LoadAnyRobot(const std::string& path) {
 world::World LoadWorldWithObjects(const SetupConfig& config,
                                   std::map<std::string, std::string>* object_models) {
   world::World world = world::LoadWorld(config.world);
-  const auto add = [&](const std::string& instance, world::ObjectModel model) {
-    const std::string name = model.name;
-    (*object_models)[base::ToLower(instance)] = name;
-    world.models[name] = std::make_shared<const world::ObjectModel>(std::move(model));
+  const auto add = [&](const std::string& instance,
+                       const std::shared_ptr<const world::ObjectModel>& model) {
+    (*object_models)[base::ToLower(instance)] = model->name;
+    world.models[model->name] = model;
   };
-  for (const auto& [instance, folder] : world::LoadObjectCatalogue(config.objects)) {
-    add(instance, world::FindObjectModel(folder, config.objects));
+  for (const auto& [instance, model] : world::LoadCatalogueModels(config.objects)) {
+    add(instance, model);
   }
   for (const std::string& path : config.extra_objects) {
-    world::ObjectModel model = world::FindObjectModel(path, config.objects);
-    const std::string instance = model.name;
-    add(instance, std::move(model));
+    const auto model =
+        std::make_shared<const world::ObjectModel>(world::FindObjectModel(path, config.objects));
+    add(model->name, model);
   }
   world.hash = world.ComputeHash();
   return world;

@@ -34,6 +34,37 @@ std::map<std::string, std::string> FoldersByLowerName(const fs::path& models) {
   return folders;
 }
 
+std::string ModelFile(const fs::path& models, const std::string& folder) {
+  return (models / folder / "model.sdf").string();
+}
+
+fs::path ModelsBeside(const std::string& catalogue_path) {
+  return fs::absolute(catalogue_path).parent_path() / "models";
+}
+
+/// The model.sdf that an instance of `catalogue` or one of the `folders` stands for.
+std::string FindModelFile(const std::string& name, const std::string& catalogue_path,
+                          const std::map<std::string, std::string>& catalogue,
+                          const std::map<std::string, std::string>& folders) {
+  const std::string lower = base::ToLower(name);
+  std::string wanted = lower;
+  std::vector<std::string> known;
+  for (const auto& [instance, folder] : catalogue) {
+    known.push_back(instance);
+    if (base::ToLower(instance) == lower) wanted = base::ToLower(folder);
+  }
+  for (const auto& [lower_folder, folder] : folders) known.push_back(folder);
+  const auto found = folders.find(wanted);
+  if (found != folders.end()) return ModelFile(ModelsBeside(catalogue_path), found->second);
+  if (wanted == lower) {
+    throw base::ConfigError(
+        fmt::format("{}: {}", catalogue_path, base::UnknownName("object", name, known)));
+  }
+  throw base::ConfigError(fmt::format("{}: {} stands for a model that is not there: {}",
+                                      catalogue_path, name,
+                                      base::UnknownName("folder", wanted, known)));
+}
+
 }  // namespace
 
 std::map<std::string, std::string> LoadObjectCatalogue(const std::string& path) {
@@ -55,26 +86,24 @@ std::map<std::string, std::string> LoadObjectCatalogue(const std::string& path) 
 
 ObjectModel FindObjectModel(const std::string& name_or_path, const std::string& catalogue_path) {
   if (IsPath(name_or_path)) return LoadObjectModel(name_or_path);
-  const fs::path models = fs::absolute(catalogue_path).parent_path() / "models";
-  const std::map<std::string, std::string> folders = FoldersByLowerName(models);
-  const std::string lower = base::ToLower(name_or_path);
-  std::string wanted = lower;
-  std::vector<std::string> known;
-  for (const auto& [instance, folder] : LoadObjectCatalogue(catalogue_path)) {
-    known.push_back(instance);
-    if (base::ToLower(instance) == lower) wanted = base::ToLower(folder);
+  return LoadObjectModel(FindModelFile(name_or_path, catalogue_path,
+                                       LoadObjectCatalogue(catalogue_path),
+                                       FoldersByLowerName(ModelsBeside(catalogue_path))));
+}
+
+std::map<std::string, std::shared_ptr<const ObjectModel>> LoadCatalogueModels(
+    const std::string& catalogue_path) {
+  const std::map<std::string, std::string> catalogue = LoadObjectCatalogue(catalogue_path);
+  const std::map<std::string, std::string> folders =
+      FoldersByLowerName(ModelsBeside(catalogue_path));
+  std::map<std::string, std::shared_ptr<const ObjectModel>> by_file, by_instance;
+  for (const auto& [instance, folder] : catalogue) {
+    const std::string file = FindModelFile(instance, catalogue_path, catalogue, folders);
+    std::shared_ptr<const ObjectModel>& model = by_file[file];
+    if (model == nullptr) model = std::make_shared<const ObjectModel>(LoadObjectModel(file));
+    by_instance[instance] = model;
   }
-  for (const auto& [lower_folder, folder] : folders) known.push_back(folder);
-  const auto found = folders.find(wanted);
-  if (found != folders.end())
-    return LoadObjectModel((models / found->second / "model.sdf").string());
-  if (wanted == lower) {
-    throw base::ConfigError(
-        fmt::format("{}: {}", catalogue_path, base::UnknownName("object", name_or_path, known)));
-  }
-  throw base::ConfigError(fmt::format("{}: {} stands for a model that is not there: {}",
-                                      catalogue_path, name_or_path,
-                                      base::UnknownName("folder", wanted, known)));
+  return by_instance;
 }
 
 }  // namespace hires::world

@@ -1,10 +1,10 @@
 #include "hires/world/sdf_file.h"
 
 #include <fmt/format.h>
-#include <tinyxml2.h>
 
 #include <algorithm>
 #include <mutex>
+#include <optional>
 #include <sdf/Console.hh>
 #include <sdf/ParserConfig.hh>
 #include <sdf/parser.hh>
@@ -16,78 +16,10 @@
 #include "hires/base/text.h"
 #include "hires/geometry/inertia.h"
 #include "hires/world/console_bridge_capture.h"
+#include "hires/world/quick_sdf.h"
 
 namespace hires::world {
 namespace {
-
-/// Walks a file and all it includes before libsdformat does, which trusts its input.
-class XmlWalk {
- public:
-  XmlWalk(const ResourceFinder* finder, const XmlLimits& limits)
-      : finder_(finder), limits_(limits) {}
-
-  void VisitFile(const std::string& path) {
-    CheckIncludes(path);
-    open_files_.push_back(path);
-    VisitText(base::ReadTextFile(path, limits_.max_file_bytes), path);
-    open_files_.pop_back();
-  }
-
-  void VisitText(const std::string& text, const std::string& path) {
-    tinyxml2::XMLDocument document;
-    if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-      throw base::ConfigError(fmt::format("{}:{}: no well-formed XML ({}); correct it there", path,
-                                          document.ErrorLineNum(), document.ErrorName()));
-    }
-    if (document.RootElement() != nullptr) VisitElement(*document.RootElement(), path, 1);
-  }
-
- private:
-  void CheckIncludes(const std::string& path) const {
-    if (std::find(open_files_.begin(), open_files_.end(), path) != open_files_.end()) {
-      throw base::ConfigError(fmt::format("{}: includes itself ({} -> {}); break the circle",
-                                          open_files_.front(), base::Join(open_files_, " -> "),
-                                          path));
-    }
-    if (static_cast<int>(open_files_.size()) > limits_.max_include_depth) {
-      throw base::ConfigError(fmt::format("{}: files include files more than {} deep; flatten them",
-                                          open_files_.front(), limits_.max_include_depth));
-    }
-  }
-
-  void VisitElement(const tinyxml2::XMLElement& element, const std::string& path, int depth) {
-    const std::string place = fmt::format("{}:{}", path, element.GetLineNum());
-    if (depth > limits_.max_element_depth) {
-      throw base::ConfigError(fmt::format("{}: elements nest more than {} deep; flatten them",
-                                          place, limits_.max_element_depth));
-    }
-    if (++num_elements_ > limits_.max_elements) {
-      throw base::ConfigError(
-          fmt::format("{}: more than {} elements, includes counted; split the world or replace "
-                      "many bodies by a mesh",
-                      place, limits_.max_elements));
-    }
-    if (finder_ != nullptr && element.Name() == std::string("include")) Include(element, place);
-    for (const auto* child = element.FirstChildElement(); child != nullptr;
-         child = child->NextSiblingElement()) {
-      VisitElement(*child, path, depth + 1);
-    }
-  }
-
-  void Include(const tinyxml2::XMLElement& include, const std::string& place) {
-    const auto* uri = include.FirstChildElement("uri");
-    if (uri == nullptr || uri->GetText() == nullptr) {
-      throw base::ConfigError(
-          fmt::format("{}: <include> has no <uri>; add <uri>model://name</uri>", place));
-    }
-    VisitFile(finder_->FindModel(uri->GetText(), place));
-  }
-
-  const ResourceFinder* finder_;  // null: includes are not followed
-  XmlLimits limits_;
-  int num_elements_{0};
-  std::vector<std::string> open_files_;
-};
 
 /// Drops "\x1b[1;31m" and the like.
 std::string WithoutColours(const std::string& text) {
@@ -120,6 +52,9 @@ class ConsoleCapture {
   }
   ConsoleCapture(const ConsoleCapture&) = delete;
   ConsoleCapture& operator=(const ConsoleCapture&) = delete;
+
+  bool IsSilent() const { return text_.str().empty(); }
+  void Forget() { text_.str(""); }
 
   /// What was said, an item per message, colours dropped.
   std::vector<std::string> Messages() const {
@@ -241,28 +176,19 @@ sdf::ParserConfig ConfigFor(const ResourceFinder& finder) {
   return config;
 }
 
-}  // namespace
-
-void CheckXml(const std::string& text, const std::string& path, const XmlLimits& limits) {
-  XmlWalk(nullptr, limits).VisitText(text, path);
+/// The quick way. Nothing if libsdformat had anything to say: the straight way repeats it in full.
+std::optional<sdf::Root> ReadQuickly(const std::string& path, const ResourceFinder& finder,
+                                     const XmlInventory& inventory, const ConsoleCapture& console) {
+  const sdf::SDFPtr document = ReadDocumentQuickly(path, finder, inventory);
+  if (document == nullptr || !console.IsSilent()) return std::nullopt;
+  CheckInertials(document->Root());
+  sdf::Root root;
+  if (!root.Load(document, ConfigFor(finder)).empty() || !console.IsSilent()) return std::nullopt;
+  return root;
 }
 
-std::string PlaceOf(const sdf::ElementPtr& element) {
-  if (element == nullptr) return "";
-  const auto line = element->LineNumber();
-  return line ? fmt::format("{}:{}", element->FilePath(), *line) : element->FilePath();
-}
-
-void ThrowIfAny(const sdf::Errors& errors, const std::string& path) {
-  Objections objections(path);
-  objections.Add(errors);
-  objections.ThrowIfAny();
-}
-
-sdf::Root ReadSdf(const std::string& path, const ResourceFinder& finder, const XmlLimits& limits) {
-  const ConsoleCapture console;
-  const ConsoleBridgeCapture urdf_console;  // libsdformat tries what it cannot read as URDF
-  XmlWalk(&finder, limits).VisitFile(path);
+sdf::Root ReadStraight(const std::string& path, const ResourceFinder& finder,
+                       const ConsoleCapture& console) {
   const sdf::ParserConfig config = ConfigFor(finder);
   Objections objections(path);
   sdf::Root root;
@@ -283,6 +209,32 @@ sdf::Root ReadSdf(const std::string& path, const ResourceFinder& finder, const X
   AddConsole(console, path, &objections);
   objections.ThrowIfAny();
   return root;
+}
+
+}  // namespace
+
+std::string PlaceOf(const sdf::ElementPtr& element) {
+  if (element == nullptr) return "";
+  const auto line = element->LineNumber();
+  return line ? fmt::format("{}:{}", element->FilePath(), *line) : element->FilePath();
+}
+
+void ThrowIfAny(const sdf::Errors& errors, const std::string& path) {
+  Objections objections(path);
+  objections.Add(errors);
+  objections.ThrowIfAny();
+}
+
+sdf::Root ReadSdf(const std::string& path, const ResourceFinder& finder, const XmlLimits& limits,
+                  ReadingWay way) {
+  ConsoleCapture console;
+  const ConsoleBridgeCapture urdf_console;  // libsdformat tries what it cannot read as URDF
+  const XmlInventory inventory = CheckXmlFile(path, finder, limits);
+  if (way == ReadingWay::kQuick) {
+    if (auto root = ReadQuickly(path, finder, inventory, console)) return std::move(*root);
+    console.Forget();
+  }
+  return ReadStraight(path, finder, console);
 }
 
 }  // namespace hires::world

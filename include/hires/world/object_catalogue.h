@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 
 #include "hires/world/world.h"
@@ -12,6 +13,12 @@ namespace hires::world {
 /// @throws base::ConfigError: no map of text to text, two names that differ in case only, a value
 /// that is no plain folder name.
 std::map<std::string, std::string> LoadObjectCatalogue(const std::string& path);
+
+/// The model of each instance of the catalogue. A model that several instances name is read once
+/// and shared.
+/// @throws base::ConfigError as LoadObjectCatalogue and FindObjectModel.
+std::map<std::string, std::shared_ptr<const ObjectModel>> LoadCatalogueModels(
+    const std::string& catalogue_path);
 
 /// The object that a user means: an instance name of the catalogue (case ignored), a folder of
 /// models/ beside the catalogue, or a path to an .sdf or .urdf file.
