@@ -135,6 +135,9 @@ RolloutParams ReadRolloutParams(base::ParamReader in) {
   params.sample_period = in.Get("sample_period", base::Between(0.001, 1.0));
   params.shaking_tilt = in.Get("shaking_tilt", base::Between(0.0, 1.0));
   params.topple_tilt = in.Get("topple_tilt", base::Between(0.01, 3.2));
+  if (params.shaking_tilt >= params.topple_tilt) {
+    in.Fail("shaking_tilt", "wanted less than topple_tilt");
+  }
   params.lost_distance = in.Get("lost_distance", base::Between(0.01, 10.0));
   params.aftermath = in.Get("aftermath", base::Between(0.0, 10.0));
   params.put_back = in.GetBool("put_back");

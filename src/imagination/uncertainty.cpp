@@ -60,13 +60,13 @@ const std::vector<Quantity>& Quantities() {
   return quantities;
 }
 
-const Quantity& FindQuantity(const std::string& name, const std::string& where) {
+const Quantity& FindQuantity(const base::ParamReader& in, const std::string& name) {
   std::vector<std::string> names;
   for (const Quantity& quantity : Quantities()) {
     if (quantity.name == name) return quantity;
     names.push_back(quantity.name);
   }
-  throw base::ConfigError(where + ": " + base::UnknownName("quantity", name, names));
+  in.Fail(name, base::UnknownName("quantity", name, names));
 }
 
 Distribution ReadDistribution(base::ParamReader in, const Quantity& quantity) {
@@ -111,7 +111,7 @@ Uncertainty ParseUncertainty(const std::string& yaml, const std::string& where) 
   base::ParamReader in = base::ParamReader::FromString(yaml, where);
   Uncertainty uncertainty;
   for (const std::string& name : in.Keys()) {
-    const Quantity& quantity = FindQuantity(name, where);
+    const Quantity& quantity = FindQuantity(in, name);
     uncertainty.quantities[name] = ReadDistribution(in.Sub(name), quantity);
   }
   in.RejectUnknownKeys();

@@ -1,0 +1,75 @@
+#include "hires/imagination/client_config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <fstream>
+
+#include "support/messages.h"
+#include "support/temporary_folder.h"
+
+namespace hires::imagination {
+namespace {
+
+using hires::test_support::ConfigErrorOf;
+using hires::test_support::TemporaryFolder;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+YAML::Node Configured() {
+  return YAML::LoadFile(std::string(HIRES_SOURCE_DIR) + "/config/imagination_client.yaml");
+}
+
+std::string WhyRefused(const YAML::Node& root) {
+  const TemporaryFolder folder;
+  const std::string path = folder.Write("client.yaml", YAML::Dump(root));
+  return ConfigErrorOf([&] { ReadClientConfig(path); });
+}
+
+TEST(ClientConfigTest, ReadsTheConfiguredFile) {
+  const TemporaryFolder folder;
+  YAML::Node root = Configured();
+  root["scene"] = "other/scene.yaml";
+  root["feedback_period"] = 0.7;
+  root["worker_timeout"] = 3.5;
+  root["scheduler"]["rollouts"] = 24;
+  const ClientConfig config = ReadClientConfig(folder.Write("client.yaml", YAML::Dump(root)));
+  EXPECT_EQ(config.scene, (folder.path() / "other/scene.yaml").string());
+  EXPECT_EQ(config.feedback_period, 0.7);
+  EXPECT_EQ(config.worker_timeout, 3.5);
+  EXPECT_EQ(config.scheduler.rollouts, 24);
+}
+
+TEST(ClientConfigTest, EveryKeyIsNeeded) {
+  for (const char* key : {"scene", "scheduler", "feedback_period", "worker_timeout"}) {
+    YAML::Node root = Configured();
+    root.remove(key);
+    EXPECT_THAT(WhyRefused(root),
+                AllOf(HasSubstr("client.yaml"), HasSubstr(std::string(key) + " is missing")));
+  }
+}
+
+TEST(ClientConfigTest, RefusesTyposAndWhatMakesNoSense) {
+  YAML::Node typo = Configured();
+  typo["feedback_perod"] = 0.2;
+  EXPECT_THAT(WhyRefused(typo), AllOf(HasSubstr("key 'feedback_perod' is unknown"),
+                                      HasSubstr("did you mean 'feedback_period'")));
+  YAML::Node never = Configured();
+  never["worker_timeout"] = -1;
+  EXPECT_THAT(WhyRefused(never), HasSubstr("worker_timeout is '-1'"));
+  YAML::Node none = Configured();
+  none["scheduler"]["rollouts"] = 0;
+  EXPECT_THAT(WhyRefused(none), HasSubstr("scheduler.rollouts is '0'"));
+  YAML::Node rule = Configured();
+  rule["scheduler"]["ranking"] = "hope";
+  EXPECT_THAT(WhyRefused(rule), HasSubstr("hope"));
+}
+
+TEST(ClientConfigTest, NamesAMissingFile) {
+  EXPECT_THAT(ConfigErrorOf([] { ReadClientConfig("/nowhere/client.yaml"); }),
+              HasSubstr("/nowhere/client.yaml: no such file"));
+}
+
+}  // namespace
+}  // namespace hires::imagination

@@ -1,0 +1,383 @@
+#include "hires/imagination/imagination_setup.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <functional>
+
+#include "support/messages.h"
+#include "support/temporary_folder.h"
+
+namespace hires::imagination {
+namespace {
+
+using hires::test_support::ConfigErrorOf;
+using hires::test_support::TemporaryFolder;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+const std::string& Root() {
+  static const std::string root = HIRES_SOURCE_DIR;
+  return root;
+}
+
+/// A hall with two areas and a table.
+std::string HallSdf(double table_x = 3.0) {
+  return R"(<?xml version="1.0"?>
+<sdf version="1.7"><world name="hall">
+  <gravity>0 0 -9.81</gravity>
+  <frame name="Door" attached_to="world"><pose>0 0 0 0 0 0.5</pose></frame>
+  <frame name="Window" attached_to="world"><pose>2 1 0 0 0 0</pose></frame>
+  <frame name="TableTop" attached_to="world"><pose>)" +
+         std::to_string(table_x) + R"( 0 0.7 0 0 0</pose></frame>
+  <model name="table"><static>true</static><pose>)" +
+         std::to_string(table_x) + R"( 0 0.35 0 0 0</pose>
+    <link name="link"><collision name="slab">
+      <geometry><box><size>0.8 0.8 0.7</size></box></geometry>
+    </collision></link>
+  </model>
+</world></sdf>)";
+}
+
+/// The configured scene with absolute paths, its world replaced by the hall and its robot by the
+/// cart, so that it loads quickly; ready to be spoilt.
+struct SceneFile {
+  SceneFile() : root(YAML::LoadFile(Root() + "/config/scene.yaml")) {
+    root["world"] = folder.Write("hall.world", HallSdf());
+    root["robot"] = Root() + "/config/robots/cart.yaml";
+    root["objects"] = folder.Write("objects.yaml", "mill1: mill\nMill2: mill\n");
+    root["uncertainty"] = "none";
+    folder.Write("models/mill/model.config",
+                 "<?xml version=\"1.0\"?><model><name>mill</name><sdf version=\"1.7\">model.sdf"
+                 "</sdf></model>");
+    folder.Write("models/mill/model.sdf", MillSdf("mill", 0.14));
+  }
+
+  static std::string MillSdf(const std::string& name, double mass) {
+    return "<?xml version=\"1.0\"?><sdf version=\"1.7\"><model name=\"" + name +
+           "\"><link name=\"body\"><pose>0 0 0.137 0 0 0</pose><inertial><mass>" +
+           std::to_string(mass) +
+           "</mass><inertia><ixx>0.000924</ixx><iyy>0.000924</iyy><izz>0.0000958</izz></inertia>"
+           "</inertial><collision name=\"body\"><geometry><cylinder><radius>0.037</radius>"
+           "<length>0.274</length></cylinder></geometry></collision></link></model></sdf>";
+  }
+
+  SetupConfig Read(const std::string& comment = "") const {
+    return ReadSetupConfig(folder.Write("scene.yaml", comment + YAML::Dump(root)));
+  }
+  ImaginationSetup Load() const { return LoadImaginationSetup(Read()); }
+  std::string WhyRefused() const {
+    return ConfigErrorOf([&] { Load(); });
+  }
+
+  TemporaryFolder folder;
+  YAML::Node root;
+};
+
+/// Calls visit(path, node) for every number, truth value or text below the four sections.
+void ForEveryParameter(const YAML::Node& root,
+                       const std::function<void(const std::string&, YAML::Node)>& visit) {
+  const std::function<void(const std::string&, YAML::Node)> descend = [&](const std::string& path,
+                                                                          YAML::Node node) {
+    if (!node.IsMap()) return visit(path, node);
+    for (auto entry : node) descend(path + "." + entry.first.Scalar(), entry.second);
+  };
+  for (const char* section : {"driving", "blind_driving", "physics", "rollout"}) {
+    descend(section, root[section]);
+  }
+}
+
+// ------------------------------------------------------------------------------- scene files
+
+TEST(SetupConfigTest, PathsCountFromTheFilesFolder) {
+  SceneFile file;
+  file.root["world"] = "worlds/my.world";
+  file.root["uncertainty"] = "../u.yaml";
+  const SetupConfig config = file.Read();
+  EXPECT_EQ(config.world, (file.folder.path() / "worlds/my.world").string());
+  EXPECT_EQ(config.uncertainty, (file.folder.path().parent_path() / "u.yaml").string());
+  EXPECT_EQ(config.robot, Root() + "/config/robots/cart.yaml");
+  EXPECT_EQ(SceneFile().Read().uncertainty, "none");
+}
+
+TEST(SetupConfigTest, EveryParameterIsReadAndNamedWhenItIsBad) {
+  int count = 0;
+  SceneFile file;
+  ForEveryParameter(file.root, [&](const std::string& path, YAML::Node node) {
+    const std::string before = node.Scalar();
+    node = "nonsense";
+    EXPECT_THAT(
+        ConfigErrorOf([&] { file.Read(); }),
+        AllOf(HasSubstr("scene.yaml"), HasSubstr(path + " is 'nonsense'"), HasSubstr("line ")));
+    node = before;
+    ++count;
+  });
+  EXPECT_GT(count, 40);
+  EXPECT_NO_THROW(file.Read());
+}
+
+TEST(SetupConfigTest, NumbersMustMakeSense) {
+  ForEveryParameter(SceneFile().root, [&](const std::string& path, const YAML::Node& original) {
+    if (original.Scalar() == "true" || original.Scalar() == "false") return;
+    SceneFile file;
+    ForEveryParameter(file.root, [&](const std::string& other, YAML::Node node) {
+      if (other == path) node = "-1.5";
+    });
+    EXPECT_THAT(ConfigErrorOf([&] { file.Read(); }), HasSubstr(path + " is '-1.5'"));
+    ForEveryParameter(file.root, [&](const std::string& other, YAML::Node node) {
+      if (other == path) node = ".nan";
+    });
+    EXPECT_THAT(ConfigErrorOf([&] { file.Read(); }), HasSubstr(path + " is '.nan'"));
+  });
+}
+
+TEST(SetupConfigTest, EverySectionIsNeeded) {
+  for (const char* key : {"world", "robot", "objects", "uncertainty", "driving", "blind_driving",
+                          "physics", "rollout"}) {
+    SceneFile file;
+    file.root.remove(key);
+    EXPECT_THAT(file.WhyRefused(),
+                AllOf(HasSubstr("scene.yaml"), HasSubstr(std::string(key) + " is missing")));
+  }
+  SceneFile file;
+  file.root["driving"]["costmap"].remove("inflation_radius");
+  EXPECT_THAT(file.WhyRefused(), HasSubstr("driving.costmap.inflation_radius is missing"));
+}
+
+TEST(SetupConfigTest, RefusesTypos) {
+  SceneFile file;
+  file.root["rollout"]["setling_time"] = 0.5;
+  EXPECT_THAT(file.WhyRefused(), AllOf(HasSubstr("key 'rollout.setling_time' is unknown"),
+                                       HasSubstr("did you mean 'rollout.settling_time'")));
+  SceneFile section;
+  section.root["drivign"] = 1;
+  EXPECT_THAT(section.WhyRefused(), HasSubstr("key 'drivign' is unknown"));
+}
+
+TEST(SetupConfigTest, RefusesWhatIsNoMap) {
+  SceneFile file;
+  file.root["physics"] = 7;
+  EXPECT_THAT(file.WhyRefused(), AllOf(HasSubstr("physics is '7'"), HasSubstr("a map")));
+  EXPECT_THAT(ConfigErrorOf([&] { ReadSetupConfig(file.folder.Write("list.yaml", "[1, 2]")); }),
+              AllOf(HasSubstr("list.yaml"), HasSubstr("a map")));
+  EXPECT_THAT(ConfigErrorOf([&] { ReadSetupConfig(file.folder.Write("no.yaml", "world: [")); }),
+              HasSubstr("no.yaml: no valid YAML"));
+  EXPECT_THAT(ConfigErrorOf([&] { ReadSetupConfig(file.folder.Write("empty.yaml", "")); }),
+              HasSubstr("world is missing"));
+  EXPECT_THAT(ConfigErrorOf([] { ReadSetupConfig("/nowhere/scene.yaml"); }),
+              HasSubstr("/nowhere/scene.yaml: no such file"));
+}
+
+TEST(SetupConfigTest, NamesFilesThatAreMissing) {
+  for (const char* key : {"world", "robot", "objects", "uncertainty"}) {
+    SceneFile file;
+    file.root[key] = std::string("missing_") + key + ".yaml";
+    EXPECT_THAT(file.WhyRefused(), HasSubstr(std::string("missing_") + key)) << key;
+  }
+}
+
+TEST(SetupConfigTest, OverridesReplaceWhatIsGiven) {
+  SetupConfig config;
+  config.world = "a";
+  config.robot = "b";
+  config.objects = "c";
+  config.uncertainty = "d";
+  OverridePaths("w", std::nullopt, "", "none", &config);
+  EXPECT_EQ(config.world, "w");
+  EXPECT_EQ(config.robot, "b");
+  EXPECT_EQ(config.objects, "c");
+  EXPECT_EQ(config.uncertainty, "none");
+}
+
+TEST(SetupConfigTest, ResolvesPaths) {
+  EXPECT_EQ(ResolvePath("../worlds/a.world", "/pkg/config/scene.yaml"), "/pkg/worlds/a.world");
+  EXPECT_EQ(ResolvePath("/abs/a.world", "/pkg/config/scene.yaml"), "/abs/a.world");
+  EXPECT_EQ(ResolvePath("none", "/pkg/config/scene.yaml"), "none");
+  EXPECT_EQ(ResolvePath("a.world", "scene.yaml"), "a.world");
+}
+
+// ------------------------------------------------------------------------------------ hashes
+
+TEST(SetupHashTest, EveryParameterMattersCommentsDoNot) {
+  const std::uint64_t hash = SceneFile().Read().params_hash;
+  EXPECT_EQ(SceneFile().Read("# a remark\n").params_hash, hash);
+  ForEveryParameter(SceneFile().root, [&](const std::string& path, const YAML::Node& original) {
+    SceneFile file;
+    ForEveryParameter(file.root, [&](const std::string& other, YAML::Node node) {
+      if (other != path) return;
+      const std::string before = original.Scalar();
+      if (before == "true" || before == "false") {
+        node = before == "true" ? "false" : "true";
+      } else if (before.find_first_of(".e") == std::string::npos) {
+        node = std::to_string(std::stoi(before) + 1);
+      } else {
+        node = std::to_string(0.99 * std::stod(before) + 1e-6);
+      }
+    });
+    EXPECT_NE(file.Read().params_hash, hash) << path;
+  });
+}
+
+TEST(SetupHashTest, TheConfiguredFilesCommentsDoNotMatter) {
+  const std::string path = Root() + "/config/scene.yaml";
+  const TemporaryFolder folder;
+  const std::string bare = folder.Write("scene.yaml", YAML::Dump(YAML::LoadFile(path)));
+  EXPECT_EQ(ReadSetupConfig(bare).params_hash, ReadSetupConfig(path).params_hash);
+}
+
+TEST(SetupHashTest, WorldObjectsAndParametersMatter) {
+  const SceneFile file;
+  const ImaginationSetup setup = file.Load();
+  EXPECT_EQ(file.Load().world_hash, setup.world_hash);
+  EXPECT_EQ(file.Load().robot_hash, setup.robot_hash);
+
+  SceneFile moved;
+  moved.root["world"] = moved.folder.Write("hall.world", HallSdf(3.01));
+  EXPECT_NE(moved.Load().world_hash, setup.world_hash);
+  EXPECT_EQ(moved.Load().robot_hash, setup.robot_hash);
+
+  SceneFile heavier;
+  heavier.folder.Write("models/mill/model.sdf", SceneFile::MillSdf("mill", 0.15));
+  EXPECT_NE(heavier.Load().world_hash, setup.world_hash);
+
+  SceneFile coarser;
+  coarser.root["driving"]["map_resolution"] = 0.07;
+  EXPECT_NE(coarser.Load().world_hash, setup.world_hash);
+
+  SetupConfig with_more = file.Read();
+  with_more.extra_objects = {file.folder.Write("extra/jug.sdf", SceneFile::MillSdf("jug", 0.2))};
+  EXPECT_NE(LoadImaginationSetup(with_more).world_hash, setup.world_hash);
+}
+
+TEST(SetupHashTest, TheRobotMattersForItsOwnHash) {
+  const SceneFile file;
+  YAML::Node robot = YAML::LoadFile(Root() + "/config/robots/cart.yaml");
+  robot["urdf"] = Root() + "/urdf/cart.urdf";
+  SceneFile same, lively;
+  same.root["robot"] = same.folder.Write("robot.yaml", YAML::Dump(robot));
+  robot["base_controller"]["sway_compliance"] = 0.007;
+  lively.root["robot"] = lively.folder.Write("robot.yaml", YAML::Dump(robot));
+  EXPECT_EQ(same.Load().robot_hash, file.Load().robot_hash);
+  EXPECT_NE(lively.Load().robot_hash, file.Load().robot_hash);
+  EXPECT_EQ(lively.Load().world_hash, file.Load().world_hash);
+}
+
+TEST(SetupHashTest, CommentsInTheWorldDoNotMatter) {
+  SceneFile remarked;
+  std::string sdf = HallSdf();
+  sdf.insert(sdf.find("<frame"), "<!-- a remark -->\n\n");
+  remarked.root["world"] = remarked.folder.Write("hall.world", sdf);
+  EXPECT_EQ(remarked.Load().world_hash, SceneFile().Load().world_hash);
+}
+
+// -------------------------------------------------------------------------------- start states
+
+const ImaginationSetup& Hall() {
+  static const ImaginationSetup setup = SceneFile().Load();
+  return setup;
+}
+
+TEST(ImaginationSetupTest, FindsModelsByInstanceOrName) {
+  EXPECT_EQ(Hall().ModelOf("MILL1"), "mill");
+  EXPECT_EQ(Hall().ModelOf("mill2"), "mill");
+  EXPECT_EQ(Hall().ModelOf("Mill"), "mill");
+  EXPECT_THAT(ConfigErrorOf([] { Hall().ModelOf("mil1"); }),
+              AllOf(HasSubstr("object 'mil1' is unknown"), HasSubstr("'mill1'")));
+}
+
+TEST(ImaginationSetupTest, ABareUrdfWillDo) {
+  SceneFile file;
+  file.root["robot"] = Root() + "/urdf/cart.urdf";
+  const ImaginationSetup setup = file.Load();
+  EXPECT_EQ(setup.scene->robot.model.name, "cart");
+  EXPECT_EQ(setup.scene->robot.profile.tray_link, "tray_link");
+}
+
+TEST(StartStateTest, PutsTheRobotAtTheAreaAndItsLoadInSlots) {
+  const StartState start = MakeStartState(Hall(), "door", {"mill1", "Mill2", "mill"});
+  EXPECT_EQ(start.robot.X_MB.x, 0.0);
+  EXPECT_NEAR(start.robot.X_MB.yaw, 0.5, 1e-12);
+  EXPECT_EQ(start.robot.joints, Hall().scene->robot.profile.joints);
+  ASSERT_THAT(start.world.objects, SizeIs(3));
+  EXPECT_EQ(start.world.objects[1].name, "mill2");
+  EXPECT_EQ(start.world.objects[1].model, "mill");
+  const geometry::Pose3 X_OM = (geometry::Lift(start.robot.X_MB) * Hall().scene->X_BO).Inverse();
+  const double y[] = {0.0, -0.13, 0.13};
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d p_O = (X_OM * start.world.objects[i].X_MO).translation;
+    EXPECT_LT((p_O - Eigen::Vector3d(0.0, y[i], 0.0)).norm(), 1e-9) << "object " << i;
+  }
+}
+
+TEST(StartStateTest, RefusesWhatItCannotPlace) {
+  const auto why_not = [](const std::string& area, const std::vector<std::string>& objects) {
+    return ConfigErrorOf([&] { MakeStartState(Hall(), area, objects); });
+  };
+  EXPECT_THAT(why_not("dor", {}), AllOf(HasSubstr("area 'dor' is unknown"), HasSubstr("'Door'")));
+  EXPECT_THAT(why_not("door", {"vase"}), HasSubstr("object 'vase' is unknown"));
+  EXPECT_THAT(why_not("door", {"mill", "mill", "mill", "mill"}),
+              AllOf(HasSubstr("4 objects"), HasSubstr("at most 3")));
+}
+
+TEST(StartStateTest, RefusesALoadWithoutATray) {
+  YAML::Node robot = YAML::LoadFile(Root() + "/config/robots/cart.yaml");
+  robot["urdf"] = Root() + "/urdf/cart.urdf";
+  robot["tray_link"] = "";
+  SceneFile file;
+  file.root["robot"] = file.folder.Write("robot.yaml", YAML::Dump(robot));
+  const ImaginationSetup setup = file.Load();
+  EXPECT_NO_THROW(MakeStartState(setup, "door", {}));
+  EXPECT_THAT(ConfigErrorOf([&] { MakeStartState(setup, "door", {"mill1"}); }),
+              AllOf(HasSubstr("robot 'cart' has no tray"), HasSubstr("tray_link")));
+}
+
+TEST(StartStateTest, ReadsAtoms) {
+  const StartState start = MakeStartState(Hall(), {{"HasArmPosture", {"leftArm1", "tucked"}},
+                                                   {"On", {"mill1", "trayArea1"}},
+                                                   {"on", {"Mill2", "tabletop"}},
+                                                   {"RobotAt", {"window"}},
+                                                   {"HasTorsoPosture", {"torso1", "up"}},
+                                                   {"Instance", {"mill1", "PepperMill"}},
+                                                   {"Holding", {"nothing", "leftArm1"}}});
+  EXPECT_EQ(start.robot.X_MB.x, 2.0);
+  ASSERT_THAT(start.world.objects, SizeIs(2));
+  EXPECT_EQ(start.world.objects[0].name, "mill1");
+  const geometry::Pose3 X_MTray = geometry::Lift(start.robot.X_MB) * Hall().scene->X_BO;
+  EXPECT_LT((start.world.objects[0].X_MO.translation - X_MTray.translation).norm(), 1e-9);
+  EXPECT_EQ(start.world.objects[1].name, "mill2");
+  EXPECT_NEAR(start.world.objects[1].X_MO.translation.x(), 3.0, 1e-9);
+  EXPECT_NEAR(start.world.objects[1].X_MO.translation.z(), 0.7, 1e-9);
+}
+
+TEST(StartStateTest, RefusesAtomsItDoesNotUnderstand) {
+  const auto why_not = [](const std::vector<base::Atom>& atoms) {
+    return ConfigErrorOf([&] { MakeStartState(Hall(), atoms); });
+  };
+  const base::Atom here{"RobotAt", {"door"}};
+  EXPECT_THAT(why_not({}), HasSubstr("RobotAt(area) is missing"));
+  EXPECT_THAT(why_not({here, here}), HasSubstr("RobotAt(area) is wanted once"));
+  EXPECT_THAT(why_not({{"RobotAt", {}}}), HasSubstr("with one area"));
+  EXPECT_THAT(why_not({{"RobotAt", {"door", "window"}}}), HasSubstr("with one area"));
+  EXPECT_THAT(why_not({{"RobotAt", {"moon"}}}), HasSubstr("area 'moon' is unknown"));
+  EXPECT_THAT(why_not({here, {"Under", {"mill1", "door"}}}),
+              AllOf(HasSubstr("Under(mill1, door)"), HasSubstr("not understood")));
+  EXPECT_THAT(why_not({here, {"On", {"mill1"}}}), HasSubstr("On(mill1)"));
+  EXPECT_THAT(why_not({here, {"On", {"mill1", "moon"}}}), HasSubstr("area 'moon' is unknown"));
+  EXPECT_THAT(why_not({here, {"On", {"vase", "trayArea1"}}}),
+              HasSubstr("object 'vase' is unknown"));
+}
+
+TEST(StartStateTest, RolloutsGetTheWholeSetup) {
+  const StartState start = MakeStartState(Hall(), "door", {"mill1"});
+  const RolloutSetup rollouts = MakeRolloutSetup(Hall(), start, 42);
+  EXPECT_EQ(rollouts.seed, 42u);
+  EXPECT_EQ(rollouts.scene, Hall().scene);
+  EXPECT_EQ(rollouts.skills, Hall().skills);
+  EXPECT_EQ(rollouts.params.time_limit, Hall().rollout.time_limit);
+  EXPECT_NO_THROW(CheckSetup(rollouts, {"move_base", {"window"}}));
+}
+
+}  // namespace
+}  // namespace hires::imagination

@@ -1,0 +1,149 @@
+#include "hires/imagination/load_monitor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hires/imagination/rollout.h"
+#include "support/scenes.h"
+
+namespace hires::imagination {
+namespace {
+
+using hires::test_support::OnTray;
+using hires::test_support::RoomScene;
+using hires::test_support::StandingAt;
+using simulation::TraySimulator;
+
+const geometry::Pose2 kStart{2.0, 2.0, 0.0};
+
+/// A simulator with a load, and its monitor.
+struct Watched {
+  explicit Watched(const std::vector<std::string>& models, const RolloutParams& rollout = {},
+                   const simulation::Variation& variation = {})
+      : params(rollout),
+        simulator(RoomScene(), variation, LoadOf(models), StandingAt(kStart), base::Rng(1)),
+        monitor(&simulator, params) {}
+
+  static world::WorldState LoadOf(const std::vector<std::string>& models) {
+    world::WorldState load;
+    for (const std::string& model : models) {
+      const double y = 0.13 * static_cast<double>(load.objects.size());
+      load.objects.push_back(
+          OnTray("load" + std::to_string(load.objects.size()), model, kStart, {0.0, y}));
+    }
+    return load;
+  }
+
+  void Drive(double vx, double vy, double duration) {
+    for (long i = std::lround(duration / 0.01); i > 0; --i) {
+      robot::Command command;
+      command.base_velocity = geometry::Twist2{vx, vy, 0.0};
+      simulator.Send(command);
+      for (int step = 0; step < 10; ++step) simulator.Step();
+      monitor.Look();
+      counts += monitor.Sample();
+    }
+  }
+
+  RolloutParams params;
+  TraySimulator simulator;
+  LoadMonitor monitor;
+  OutcomeCounts counts;
+};
+
+TEST(LoadMonitorTest, ALoadAtRestDoesNotShake) {
+  Watched watched({"mill"});
+  watched.Drive(0.0, 0.0, 1.0);
+  EXPECT_EQ(watched.counts.notopple, 100);
+  EXPECT_LT(watched.monitor.max_tilt(), 0.001);
+  EXPECT_EQ(watched.monitor.falls(), 0);
+  EXPECT_EQ(watched.monitor.first_fall(), "");
+  EXPECT_EQ(watched.monitor.first_cause(), "");
+  EXPECT_FALSE(watched.monitor.is_lost());
+}
+
+TEST(LoadMonitorTest, WithoutALoadNothingShakes) {
+  Watched watched({});
+  watched.Drive(0.8, 0.0, 0.5);
+  EXPECT_EQ(watched.counts.notopple, 50);
+  EXPECT_EQ(watched.monitor.tilt(), 0.0);
+}
+
+TEST(LoadMonitorTest, AFallIsCountedOnceWithItsCause) {
+  Watched watched({"tower"});
+  watched.Drive(0.0, 0.9, 0.6);
+  watched.Drive(0.0, 0.0, 1.5);
+  EXPECT_EQ(watched.monitor.falls(), 1);
+  EXPECT_EQ(watched.monitor.first_cause(), "accelerating");
+  EXPECT_GT(watched.counts.notopple, 0);
+  EXPECT_GT(watched.counts.shaking, 0);
+  EXPECT_GT(watched.counts.topple, 10);
+  EXPECT_GT(watched.monitor.max_tilt(), 1.0);
+  EXPECT_EQ(watched.monitor.first_fall(), "object_fell");
+}
+
+TEST(LoadMonitorTest, BrakingIsTheCauseWhenItShakesFirstThen) {
+  Watched watched({"tower"});
+  // Up slowly, by 0.09 m/s every 0.1 s: 0.9 m/s^2 on average, then at once down.
+  for (int i = 1; i <= 8; ++i) {
+    for (int part = 0; part < 10; ++part) watched.Drive(0.0, 0.08 * i - 0.08 + 0.008 * part, 0.01);
+  }
+  watched.Drive(0.0, 0.64, 0.5);
+  ASSERT_EQ(watched.monitor.first_cause(), "") << "the start was to be gentle";
+  watched.Drive(0.0, 0.0, 1.0);
+  EXPECT_EQ(watched.monitor.first_cause(), "braking");
+}
+
+TEST(LoadMonitorTest, TheObjectThatLeansMostCounts) {
+  Watched watched({"tower", "mill"});  // 2 m/s^2: the tower falls, the mill stands
+  watched.Drive(0.0, 0.9, 0.6);
+  watched.Drive(0.0, 0.0, 1.5);
+  EXPECT_EQ(watched.monitor.falls(), 1);
+  EXPECT_GT(watched.counts.topple, 0);
+}
+
+TEST(LoadMonitorTest, WhatSlidesFarEnoughHasFallen) {
+  RolloutParams params;
+  params.lost_distance = 0.02;
+  simulation::Variation slippery;
+  slippery.friction_factor = 0.1;
+  Watched watched({"mill"}, params, slippery);
+  watched.Drive(0.0, 0.9, 0.4);
+  EXPECT_EQ(watched.monitor.falls(), 1);
+  EXPECT_EQ(watched.monitor.first_fall(), "object_slid");
+  EXPECT_LT(watched.monitor.max_tilt(), 0.1);
+}
+
+TEST(LoadMonitorTest, PutBackItStandsAndCountsAgain) {
+  RolloutParams params;
+  params.put_back = true;
+  params.put_back_tilt = 0.6;
+  Watched watched({"tower"}, params);
+  for (int i = 0; i < 3; ++i) {
+    watched.Drive(0.0, 0.8, 0.8);
+    watched.Drive(0.0, -0.8, 0.8);
+  }
+  EXPECT_GT(watched.monitor.falls(), 2);
+  watched.Drive(0.0, 0.0, 2.0);
+  const int falls = watched.monitor.falls();
+  watched.Drive(0.0, 0.0, 1.0);
+  EXPECT_EQ(watched.monitor.falls(), falls);
+  EXPECT_LT(watched.monitor.tilt(), 0.05) << "it stands again";
+}
+
+TEST(LoadMonitorTest, SamplesAreCutAtTheirThresholds) {
+  RolloutParams strict;
+  strict.shaking_tilt = 0.0;
+  Watched wobbling({"mill"}, strict);
+  wobbling.Drive(0.3, 0.0, 0.2);
+  EXPECT_GT(wobbling.counts.shaking, 0);
+  RolloutParams lax;
+  lax.shaking_tilt = 0.4;
+  Watched calm({"mill"}, lax);
+  calm.Drive(0.3, 0.0, 0.2);
+  EXPECT_EQ(calm.counts.notopple, 20);
+}
+
+}  // namespace
+}  // namespace hires::imagination
