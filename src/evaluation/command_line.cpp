@@ -14,6 +14,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/doctor.h"
+#include "hires/evaluation/experiment_command.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/imagination/client_config.h"
@@ -196,6 +197,8 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
   CLI::App* imagine =
       app.add_subcommand("imagine", "play alternatives of an action many times and rank them");
   AddImagineOptions(imagine, &imagine_options);
+  ExperimentOptions experiment_options;
+  AddExperimentVerb(&app, &experiment_options);
   CLI::App* doctor =
       app.add_subcommand("doctor", "check this machine and compare the physics with closed forms");
   std::vector<CLI::App*> others;
@@ -207,6 +210,9 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
     std::signal(SIGINT, OnInterrupt);
     if (*imagine) return Imagine(imagine_options, backends);
+    if (*experiment_options.verb) {
+      return RunExperimentVerb(experiment_options, [] { return interrupted.load(); });
+    }
     if (*doctor) return RunDoctor(backends);
     for (std::size_t i = 0; i < others.size(); ++i) {
       if (*others[i]) return backends.more_verbs[i].run(others[i]->remaining());

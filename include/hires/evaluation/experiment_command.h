@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace hires::evaluation {
+
+/// What was typed behind `hires experiment`.
+struct ExperimentOptions {
+  std::string file, map, csv, json;
+  std::uint64_t seed{0};
+  int threads{0}, runs{0};
+  bool quiet{false};
+  CLI::App* verb{nullptr};  ///< tells what was given
+};
+
+/// Adds the verb to the program.  @pre `options` outlives `app`.
+void AddExperimentVerb(CLI::App* app, ExperimentOptions* options);
+
+/// Reads, plays, prints, writes.
+/// @return kExitRecommended when all that the file expects holds, kExitAllFailed when not,
+/// kExitCancelled.  @throws base::ConfigError for bad input, before anything is played.
+int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool()>& cancelled);
+
+/// " 52 %, 12 s left", for terminals.
+std::string ProgressText(double fraction, double elapsed);
+
+}  // namespace hires::evaluation

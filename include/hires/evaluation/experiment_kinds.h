@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/base/rng.h"
+#include "hires/evaluation/experiment.h"
+#include "hires/evaluation/experiment_chain.h"
+#include "hires/evaluation/experiment_stage.h"
+#include "hires/imagination/rollout_result.h"
+
+// The kinds of experiments: each has a function that plays and one that sums up what was played.
+// Summing up nothing gives the names of the measures.
+namespace hires::evaluation {
+
+using Chains = std::vector<std::vector<Leg>>;
+using Rollouts = std::vector<imagination::RolloutResult>;
+
+/// Goals in rounds: each once a round, shuffled, never one directly after itself; the robot stands
+/// at goals.front() before the first.  @pre at least two goals.
+std::vector<std::string> ShuffledGoals(const std::vector<Goal>& goals, int num_legs, base::Rng rng);
+
+/// @return nothing when cancelled, here and below.
+std::optional<Chains> PlayLegs(const LegsConfig& legs, const ExperimentConfig& config,
+                               const std::shared_ptr<const Stage>& stage, const Crew& crew);
+Findings SumUpLegs(const ExperimentConfig& config, const Stage& stage, const Chains& chains);
+
+/// Per motion set, equally many; rollouts of one index make a pair.
+std::optional<std::vector<Rollouts>> PlayPaired(const PairedConfig& paired,
+                                                const ExperimentConfig& config, const Stage& stage,
+                                                const Crew& crew);
+Findings SumUpPaired(const PairedConfig& paired, const std::vector<Rollouts>& rollouts);
+
+/// Per motion set, in order.
+std::optional<std::vector<Chains>> PlayToppleLoop(const ToppleLoopConfig& loop,
+                                                  const ExperimentConfig& config,
+                                                  const std::shared_ptr<const Stage>& stage,
+                                                  const Crew& crew);
+Findings SumUpToppleLoop(const ToppleLoopConfig& loop, const std::vector<Chains>& by_set);
+
+/// Per row, in order.
+std::optional<std::vector<Rollouts>> PlayDurations(const DurationsConfig& durations,
+                                                   const ExperimentConfig& config,
+                                                   const Stage& stage, const Crew& crew);
+Findings SumUpDurations(const DurationsConfig& durations, const std::vector<Rollouts>& rollouts);
+
+}  // namespace hires::evaluation

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+namespace hires::evaluation {
+
+double Mean(const std::vector<double>& values);       ///< 0 for no values
+double Deviation(const std::vector<double>& values);  ///< divides by n, as the dissertation does
+
+/// An estimate with its 95 % interval.
+struct Interval {
+  double estimate{0.0};
+  double lower{0.0};
+  double upper{0.0};
+  bool ExcludesZero() const { return lower > 0.0 || upper < 0.0; }
+};
+
+/// Mean of paired differences with Student's t interval: n - 1 degrees of freedom, sample
+/// deviation. Without differences everything is 0; a single one has an unbounded interval.
+Interval MeanInterval(const std::vector<double>& differences);
+
+/// Exact interval of a share [Clopper, Pearson 1934, Biometrika 26:404-413].
+/// @pre 0 <= num_hits <= num_all.  @throws std::logic_error if broken. (0 of 0 gives 0 .. 1.)
+Interval ShareInterval(int num_hits, int num_all);
+
+/// What happened to the two members of each pair.
+struct PairedCounts {
+  int only_first{0};   ///< it happened to the first member alone
+  int only_second{0};  ///< ... to the second alone
+  int num_pairs{0};    ///< all pairs, also those in which it happened to both or to none
+};
+
+/// Difference of two paired shares (first - second). Given the number of discordant pairs, the
+/// share among them that speaks for the first member has an exact interval (ShareInterval), which
+/// is carried over to the difference: it excludes 0 exactly when McNemar's exact test (two-sided,
+/// doubled tail) rejects at 5 %. Where no pair is discordant, the difference is bounded by the
+/// largest share of discordant pairs that n concordant ones allow (97.5 %).
+/// @pre counts are not negative and fit into num_pairs.  @throws std::logic_error if broken.
+Interval PairedShareDifference(const PairedCounts& counts);
+
+/// P-value of McNemar's exact test: two-sided, doubled tail, at most 1; 1 without discordant pairs.
+double McNemarPValue(const PairedCounts& counts);
+
+}  // namespace hires::evaluation

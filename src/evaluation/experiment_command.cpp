@@ -1,0 +1,110 @@
+#include "hires/evaluation/experiment_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <thread>
+
+#include "hires/base/error.h"
+#include "hires/evaluation/command_line.h"
+#include "hires/evaluation/experiment.h"
+#include "hires/evaluation/report_json.h"
+
+namespace hires::evaluation {
+namespace {
+
+[[noreturn]] void FailToWrite(const std::string& path) {
+  throw base::ConfigError(
+      fmt::format("{}: cannot be written; check that its folder exists and may be written", path));
+}
+
+/// An hour of work must not end at a folder that is missing.
+void CheckWritable(const std::string& path) {
+  if (!path.empty() && !std::ofstream(path, std::ios::app)) FailToWrite(path);
+}
+
+void WriteText(const std::string& text, const std::string& path) {
+  std::ofstream file(path);
+  file << text;
+  if (!file.flush()) FailToWrite(path);
+}
+
+ExperimentOverrides OverridesOf(const ExperimentOptions& options) {
+  ExperimentOverrides overrides;
+  if (options.verb->count("--seed") > 0) overrides.seed = options.seed;
+  if (options.verb->count("--runs") > 0) overrides.runs = options.runs;
+  overrides.map = options.map;
+  return overrides;
+}
+
+Crew MakeCrew(const ExperimentOptions& options, const std::function<bool()>& cancelled) {
+  Crew crew;
+  crew.threads = options.threads > 0
+                     ? options.threads
+                     : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  crew.cancelled = cancelled;
+  if (!options.quiet && isatty(STDERR_FILENO) != 0) {
+    crew.on_progress = [](double fraction, double elapsed) {
+      std::cerr << '\r' << ProgressText(fraction, elapsed) << "\033[K" << std::flush;
+    };
+  }
+  return crew;
+}
+
+void Print(const ExperimentReport& report) {
+  std::cout << ReportText(report) << '\n';
+  if (report.wall_seconds > 0.0) {
+    std::cout << fmt::format("{:.0f} s simulated in {:.1f} s\n", report.findings.simulated_seconds,
+                             report.wall_seconds);
+  }
+}
+
+}  // namespace
+
+std::string ProgressText(double fraction, double elapsed) {
+  constexpr int kBar = 24;
+  const int filled = std::clamp(static_cast<int>(fraction * kBar + 0.5), 0, kBar);
+  std::string text = fmt::format("[{}{}] {:3.0f} %", std::string(filled, '#'),
+                                 std::string(kBar - filled, '.'), 100.0 * fraction);
+  if (fraction > 0.0) {
+    text += fmt::format(", {:.0f} s left", elapsed * (1.0 - fraction) / fraction);
+  }
+  return text;
+}
+
+void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
+  CLI::App* verb = app->add_subcommand(
+      "experiment", "play an experiment of config/experiments and check what it expects");
+  verb->add_option("file", options->file, "YAML file of the experiment")->required();
+  verb->add_option("--threads", options->threads, "default: one per core; changes no number")
+      ->check(CLI::Range(1, 256));
+  verb->add_option("--seed", options->seed, "instead of the file's");
+  verb->add_option("--runs", options->runs,
+                   "instead of the file's number of legs, pairs, chains or runs")
+      ->check(CLI::Range(1, 1000000));
+  verb->add_option("--map", options->map, "map_server YAML: its walls instead of the world's");
+  verb->add_option("--csv", options->csv, "write one line per leg, rollout or run to this file");
+  verb->add_option("--json", options->json, "write everything to this file");
+  verb->add_flag("--quiet", options->quiet, "no progress bar");
+  options->verb = verb;
+}
+
+int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool()>& cancelled) {
+  const ExperimentConfig config = ReadExperiment(options.file, OverridesOf(options));
+  CheckWritable(options.csv);
+  CheckWritable(options.json);
+  const Crew crew = MakeCrew(options, cancelled);
+  const std::optional<ExperimentReport> report = RunExperiment(config, crew);
+  if (crew.on_progress) std::cerr << "\r\033[K";
+  if (!report) return kExitCancelled;
+  Print(*report);
+  if (!options.csv.empty()) WriteText(ReportCsv(*report), options.csv);
+  if (!options.json.empty()) WriteJson(ToJson(*report), options.json);
+  return report->passed() ? kExitRecommended : kExitAllFailed;
+}
+
+}  // namespace hires::evaluation

@@ -1,0 +1,87 @@
+#include "hires/evaluation/statistics.h"
+
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+
+#include "hires/base/check.h"
+
+namespace hires::evaluation {
+namespace {
+
+constexpr double kTail = 0.025;
+
+double SquaredDeviations(const std::vector<double>& values) {
+  const double mean = Mean(values);
+  double sum = 0.0;
+  for (const double value : values) sum += (value - mean) * (value - mean);
+  return sum;
+}
+
+void CheckCounts(const PairedCounts& counts) {
+  HIRES_CHECK(counts.only_first >= 0 && counts.only_second >= 0 &&
+                  counts.only_first + counts.only_second <= counts.num_pairs,
+              "there are more discordant pairs than pairs, or fewer than none");
+}
+
+}  // namespace
+
+double Mean(const std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double Deviation(const std::vector<double>& values) {
+  if (values.empty()) return 0.0;
+  return std::sqrt(SquaredDeviations(values) / static_cast<double>(values.size()));
+}
+
+Interval MeanInterval(const std::vector<double>& differences) {
+  const double n = static_cast<double>(differences.size());
+  if (differences.empty()) return {};
+  const double mean = Mean(differences);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (differences.size() == 1) return {mean, -kInfinity, kInfinity};
+  const double error = std::sqrt(SquaredDeviations(differences) / (n - 1.0) / n);
+  const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 1.0 - kTail);
+  return {mean, mean - t * error, mean + t * error};
+}
+
+Interval ShareInterval(int num_hits, int num_all) {
+  HIRES_CHECK(num_hits >= 0 && num_hits <= num_all, "there are more hits than all, or fewer");
+  if (num_all == 0) return {0.0, 0.0, 1.0};
+  using Binomial = boost::math::binomial;
+  const double n = num_all, k = num_hits;
+  const double lower = num_hits == 0 ? 0.0 : Binomial::find_lower_bound_on_p(n, k, kTail);
+  const double upper = num_hits == num_all ? 1.0 : Binomial::find_upper_bound_on_p(n, k, kTail);
+  return {k / n, lower, upper};
+}
+
+Interval PairedShareDifference(const PairedCounts& counts) {
+  CheckCounts(counts);
+  const int discordant = counts.only_first + counts.only_second;
+  if (counts.num_pairs == 0) return {0.0, -1.0, 1.0};
+  if (discordant == 0) {
+    const double most = ShareInterval(0, counts.num_pairs).upper;
+    return {0.0, -most, most};
+  }
+  const Interval first = ShareInterval(counts.only_first, discordant);
+  const double share = static_cast<double>(discordant) / counts.num_pairs;
+  const auto difference = [share](double p) { return (2.0 * p - 1.0) * share; };
+  return {difference(first.estimate), difference(first.lower), difference(first.upper)};
+}
+
+double McNemarPValue(const PairedCounts& counts) {
+  CheckCounts(counts);
+  const int discordant = counts.only_first + counts.only_second;
+  if (discordant == 0) return 1.0;
+  const boost::math::binomial even(discordant, 0.5);
+  const double tail = boost::math::cdf(even, std::min(counts.only_first, counts.only_second));
+  return std::min(1.0, 2.0 * tail);
+}
+
+}  // namespace hires::evaluation
