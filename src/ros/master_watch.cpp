@@ -184,8 +184,7 @@ void RestartProgram() {
 void ShutDownRosOnSignals() {
   struct sigaction action {};
   action.sa_handler = OnStopSignal;
-  sigaction(SIGTERM, &action, nullptr);
-  sigaction(SIGHUP, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
 }
 
 }  // namespace hires_ros

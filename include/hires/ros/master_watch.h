@@ -67,7 +67,7 @@ class MasterWatch {
 /// but the standard ones are closed, blocked signals are unblocked. Returns only if that fails.
 void RestartProgram();
 
-/// Makes SIGTERM and SIGHUP shut ROS down in good order, as roscpp does with SIGINT.
+/// Makes SIGINT, SIGTERM and SIGHUP shut ROS down in good order (roscpp by itself: SIGINT only).
 void ShutDownRosOnSignals();
 
 }  // namespace hires_ros

@@ -106,9 +106,8 @@ int Echo(ros::NodeHandle& nh, const Arguments& arguments) {
   ros::Publisher publisher = nh.advertise<std_msgs::String>(arguments.at(1), kQueue);
   const boost::function<void(const std_msgs::StringConstPtr&)> send_back =
       [&](const std_msgs::StringConstPtr& text) { publisher.publish(text); };
-  const ros::Subscriber subscriber =
-      nh.subscribe<std_msgs::String>(arguments.at(0), kQueue, send_back, nullptr,
-                                     ros::TransportHints().tcpNoDelay());
+  const ros::Subscriber subscriber = nh.subscribe<std_msgs::String>(
+      arguments.at(0), kQueue, send_back, nullptr, ros::TransportHints().tcpNoDelay());
   ros::spin();
   return 0;
 }
@@ -211,9 +210,9 @@ int SendGoal(ros::NodeHandle&, const Arguments& arguments) {
 }
 
 const std::map<std::string, std::function<int(ros::NodeHandle&, const Arguments&)>> kParts{
-    {"stream", Stream},     {"latch", Latch}, {"clock", Clock}, {"count", Count}, {"hear", Hear},
-    {"echo", Echo},         {"serve", Serve}, {"call", Call},   {"worker", Work},
-    {"pingpong", PingPong}, {"goal", SendGoal}};
+    {"stream", Stream}, {"latch", Latch},       {"clock", Clock},  {"count", Count},
+    {"hear", Hear},     {"echo", Echo},         {"serve", Serve},  {"call", Call},
+    {"worker", Work},   {"pingpong", PingPong}, {"goal", SendGoal}};
 
 }  // namespace
 
