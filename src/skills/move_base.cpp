@@ -10,7 +10,27 @@ namespace {
 
 using geometry::Pose2;
 
+constexpr double kMapMargin = 2.0;  // [m] free floor around the outermost body or area
+
 Status Failed(const std::string& reason) { return {Progress::kFailed, reason}; }
+
+/// [m] The map covers all bodies and this much more: far enough that all areas lie well inside.
+double MapMargin(const world::World& world) {
+  geometry::Aabb bodies;
+  for (const world::StaticBody& body : world.statics) {
+    for (const geometry::Collision& shape : body.collisions) {
+      bodies.Include(geometry::BoundsOf(shape.shape, body.X_MB * shape.X_BS));
+    }
+  }
+  if (world.statics.empty()) bodies.Include(Eigen::Vector3d::Zero());
+  double outside = 0.0;
+  for (const auto& [name, X_MF] : world.frames) {
+    const Eigen::Vector3d& p = X_MF.translation;
+    const Eigen::Vector3d beyond = (bodies.lower - p).cwiseMax(p - bodies.upper);
+    outside = std::max({outside, beyond.x(), beyond.y()});
+  }
+  return outside + kMapMargin;
+}
 
 double RobotHeight(const robot::Robot& robot) {
   geometry::Aabb bounds;
@@ -35,7 +55,7 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
 DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot& robot,
                                   const MoveBaseParams& params) {
   return MakeDrivingContext(world::SliceWorld(world, params.min_obstacle_height, RobotHeight(robot),
-                                              params.map_resolution, 2.0),
+                                              params.map_resolution, MapMargin(world)),
                             robot, params);
 }
 
@@ -90,13 +110,31 @@ Status MoveBase::Recover(const navigation::Costmap& costmap,
   return {};
 }
 
+/// The map as it must be now, if it is not the one that is known: with what is seen, and free where
+/// the robot stands. A localisation that errs by a hand's breadth would else let it stand in a wall
+/// for good; move_base's costmaps clear the footprint for the same reason. A robot whose centre
+/// lies in an obstacle is lost instead.
+std::optional<navigation::Costmap> MoveBase::CostmapNow(
+    const robot::Observation& observation) const {
+  std::optional<navigation::Costmap> now;
+  if (!observation.obstacles_M.empty()) {
+    now = context_->costmap->WithObstacles(observation.obstacles_M);
+  }
+  const geometry::Polygon outline_M = geometry::Transformed(observation.X_MB, context_->footprint);
+  const navigation::Costmap& known = now ? *now : *context_->costmap;
+  int column = 0, row = 0;
+  known.CellOf(observation.X_MB.position(), &column, &row);
+  if (known.Inside(column, row) && known.cost(column, row) < navigation::kLethalCost &&
+      known.CostBelow(outline_M) >= navigation::kLethalCost) {
+    now = known.WithRoomFor(outline_M);
+  }
+  return now;
+}
+
 Status MoveBase::Update(const robot::Observation& observation, robot::Command* command) {
   command->motion_set = motion_set_;
-  std::optional<navigation::Costmap> with_obstacles;
-  if (!observation.obstacles_M.empty()) {
-    with_obstacles = context_->costmap->WithObstacles(observation.obstacles_M);
-  }
-  const navigation::Costmap& costmap = with_obstacles ? *with_obstacles : *context_->costmap;
+  const std::optional<navigation::Costmap> now = CostmapNow(observation);
+  const navigation::Costmap& costmap = now ? *now : *context_->costmap;
   if (!has_path_) {
     if (const auto failed = Plan(costmap, observation.X_MB)) return *failed;
     X_MMoved_ = observation.X_MB;

@@ -109,6 +109,22 @@ TEST(MoveBaseTest, SaysWhyThereIsNoWay) {
   ExpectFailed("no_path", DriveIn(divided, kWest, kEast));
 }
 
+TEST(MoveBaseTest, LeavesAnObstacleThatItsLocalisationLetsItTouch) {
+  world::World room = Room();
+  room.statics.push_back(Block("pillar", {0.3, 0.3, 0.8}, {1.0, 2.0 + 0.25 + 0.15 - 0.04, 0.4}));
+  const auto context = ContextOf(room);
+  ASSERT_GE(context->costmap->FootprintCost(context->footprint, kWest), navigation::kLethalCost);
+  MoveBase skill(context, kEast, kFast);
+  bool is_out = false;
+  const SkillRun run = RunSkill(&skill, {kWest, {}, false}, [&](auto*, auto* robot) {
+    const bool touches =
+        context->costmap->FootprintCost(context->footprint, robot->X_MB) >= navigation::kLethalCost;
+    EXPECT_FALSE(touches && is_out) << "it came back to x " << robot->X_MB.x;
+    is_out = is_out || !touches;
+  });
+  ExpectArrivedAt(kEast, run);
+}
+
 TEST(MoveBaseTest, AGoalOutsideOfTheMapIsBlocked) {
   ExpectFailed("goal_blocked", DriveIn(Room(), kWest, {40.0, 2.0, 0.0}));
 }
@@ -196,6 +212,14 @@ TEST(DrivingContextTest, PadsTheFootprint) {
   const auto context = ContextOf(Room());
   EXPECT_NEAR(context->footprint.front().x(), -0.3 - 0.015, 1e-12);
   EXPECT_NEAR(context->footprint.front().y(), -0.25 - 0.015, 1e-12);
+}
+
+TEST(DrivingContextTest, TheMapCoversAreasFarFromAnyBody) {
+  world::World plain = Room();
+  plain.statics = {Block("pillar", {0.5, 0.5, 1.0}, {20.0, 2.0, 0.5})};
+  ExpectArrivedAt(kEast, DriveIn(plain, kWest, kEast));
+  plain.statics.clear();
+  ExpectArrivedAt(kEast, DriveIn(plain, kWest, kEast));
 }
 
 TEST(DrivingContextTest, ARecordedMapWillDo) {
