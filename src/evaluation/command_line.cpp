@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -49,7 +50,8 @@ void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
       ->allow_extra_args(false);
   app->add_option("--rollouts", o->rollouts, "at most so many per combination")
       ->check(CLI::Range(1, 100000));
-  app->add_option("--seed", o->seed, "of all chance; equal seeds give equal answers");
+  app->add_option("--seed", o->seed, "of all chance; equal seeds give equal answers")
+      ->check(CLI::NonNegativeNumber);
   app->add_option("--deadline", o->deadline, "[s] after which the best answer so far is taken")
       ->check(CLI::Range(0.0, 1e6));
   app->add_option("--ranking", o->ranking, "risk or thesis");
@@ -69,6 +71,15 @@ void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
 
 bool IsFile(const std::string& text) {
   return text.find('/') != std::string::npos || text.find('.') != std::string::npos;
+}
+
+std::vector<std::string> AlternativesOf(const std::string& list) {
+  std::vector<std::string> alternatives = base::Split(list, ',');
+  if (std::count(alternatives.begin(), alternatives.end(), "") > 0) {
+    throw base::ConfigError(fmt::format(
+        "--arg '{}': an alternative is empty; wanted names with one comma between two", list));
+  }
+  return alternatives;
 }
 
 /// An object that is given as a file is loaded beside the catalogue's, and called by its model.
@@ -96,7 +107,7 @@ ImagineQuery MakeQuery(const ImagineOptions& o, const Backends& backends) {
   query.own_uncertainty = !o.uncertainty.empty();
   query.action.name = o.action;
   for (const std::string& list : o.arguments) {
-    query.action.alternatives.push_back(base::Split(list, ','));
+    query.action.alternatives.push_back(AlternativesOf(list));
   }
   query.from = o.from;
   query.seed = o.seed;
@@ -145,6 +156,7 @@ void PrintReport(const imagination::Report& report) {
 
 int Imagine(const ImagineOptions& options, const Backends& backends) {
   const ImagineQuery query = MakeQuery(options, backends);
+  if (!options.json.empty()) RequireFolderOf(options.json);
   ProgressDisplay display;
   imagination::OnInterim on_interim;
   if (!options.quiet) on_interim = [&](const auto& interim) { display.Show(interim); };
@@ -159,6 +171,15 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
   PrintReport(report);
   if (!options.json.empty()) WriteJson(ToJson(report), options.json);
   return ExitCodeOf(report);
+}
+
+/// CLI11 itself would only say that a verb is missing.
+void RefuseUnknownVerb(const CLI::App& app, const std::vector<std::string>& arguments) {
+  if (arguments.size() < 2 || arguments[1].empty() || arguments[1].front() == '-') return;
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
+  if (std::count(verbs.begin(), verbs.end(), arguments[1]) > 0) return;
+  throw base::ConfigError(base::UnknownName("verb", arguments[1], verbs));
 }
 
 }  // namespace
@@ -206,6 +227,7 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
     others.push_back(app.add_subcommand(verb.name, verb.help)->prefix_command());
   }
   try {
+    RefuseUnknownVerb(app, arguments);
     // CLI11 takes its arguments from the back.
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
     std::signal(SIGINT, OnInterrupt);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "hires/base/error.h"
@@ -9,6 +10,7 @@
 namespace hires::evaluation {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 ordered_json ToJson(const imagination::Prediction& prediction) {
@@ -34,6 +36,25 @@ ordered_json ToJson(const imagination::Prediction& prediction) {
           {"max_tilt", {{"p50", e.max_tilt.p50}, {"p95", e.max_tilt.p95}}},
           {"rollouts", e.num_rollouts},
           {"failures", failures}};
+}
+
+bool WriteText(const std::string& text, const fs::path& path) {
+  std::ofstream file(path);
+  file << text << std::flush;
+  return file.good();
+}
+
+/// Writes beside the file first, so that an earlier one stays whole until the new one is.
+bool ReplaceText(const std::string& text, const fs::path& path) {
+  fs::path part = path;
+  part += ".part";
+  std::error_code error;
+  if (WriteText(text, part)) {
+    fs::rename(part, path, error);
+    if (!error) return true;
+  }
+  fs::remove(part, error);
+  return false;
 }
 
 }  // namespace
@@ -71,12 +92,20 @@ nlohmann::ordered_json ToJson(const imagination::Report& report) {
        report.wall_seconds > 0.0 ? report.simulated_seconds / report.wall_seconds : 0.0}};
 }
 
+void RequireFolderOf(const std::string& path) {
+  const fs::path folder = fs::absolute(path).parent_path();
+  if (fs::is_directory(folder)) return;
+  throw base::ConfigError(fmt::format("{}: cannot be written, folder '{}' does not exist; make it",
+                                      path, folder.string()));
+}
+
 void WriteJson(const nlohmann::ordered_json& json, const std::string& path) {
-  std::ofstream file(path);
-  file << json.dump(2) << '\n';
-  if (!file.flush()) {
+  RequireFolderOf(path);
+  const std::string text = json.dump(2) + '\n';
+  const bool is_device = fs::exists(path) && !fs::is_regular_file(path);  // /dev/stdout, say
+  if (!(is_device ? WriteText(text, path) : ReplaceText(text, fs::weakly_canonical(path)))) {
     throw base::ConfigError(fmt::format(
-        "{}: cannot be written; check that its folder exists and may be written", path));
+        "{}: cannot be written; check that its folder may be written and has room", path));
   }
 }
 

@@ -15,6 +15,11 @@ std::string OutcomeName(const imagination::Report& report);
 /// `wall_seconds` and `real_time_factor`.
 nlohmann::ordered_json ToJson(const imagination::Report& report);
 
+/// For those who work long before they write.
+/// @throws base::ConfigError if the folder in which `path` lies does not exist.
+void RequireFolderOf(const std::string& path);
+
+/// All or nothing: a file of that name is replaced only when the new one is whole.
 /// @throws base::ConfigError if the file cannot be written.
 void WriteJson(const nlohmann::ordered_json& json, const std::string& path);
 

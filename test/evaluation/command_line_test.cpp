@@ -1,0 +1,350 @@
+#include "hires/evaluation/command_line.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "evaluation/report_examples.h"
+#include "hires/base/text.h"
+#include "support/temporary_folder.h"
+
+namespace hires::evaluation {
+namespace {
+
+using hires::test_support::TemporaryFolder;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+/// What the program printed, and how it ended.
+struct Ended {
+  int code{0};
+  std::string out, err;
+};
+
+Ended RunWith(const std::vector<std::string>& arguments, Backends backends = {}) {
+  backends.package_folder = HIRES_SOURCE_DIR;
+  std::vector<std::string> words{"hires"};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  Ended ended;
+  ended.code = RunCommandLine(words, backends);
+  ended.out = ::testing::internal::GetCapturedStdout();
+  ended.err = ::testing::internal::GetCapturedStderr();
+  return ended;
+}
+
+/// A small scene that loads and plays quickly: the cart in a hall.
+class SmallScene {
+ public:
+  SmallScene() {
+    const std::string root = HIRES_SOURCE_DIR;
+    folder_.Write("hall.world", R"(<?xml version="1.0"?><sdf version="1.7"><world name="hall">
+      <frame name="Door" attached_to="world"><pose>0 0 0 0 0 0</pose></frame>
+      <frame name="Window" attached_to="world"><pose>1.5 0 0 0 0 0</pose></frame>
+      <frame name="Inside" attached_to="world"><pose>4 0 0 0 0 0</pose></frame>
+      <model name="pillar"><static>true</static><pose>4 0 0.5 0 0 0</pose><link name="l">
+        <collision name="c"><geometry><box><size>0.5 0.5 1</size></box></geometry></collision>
+      </link></model></world></sdf>)");
+    YAML::Node scene = YAML::LoadFile(root + "/config/scene.yaml");
+    scene["world"] = "hall.world";
+    scene["robot"] = root + "/config/robots/cart.yaml";
+    scene["objects"] = root + "/worlds/objects.yaml";
+    scene["uncertainty"] = "none";
+    path_ = folder_.Write("scene.yaml", YAML::Dump(scene));
+  }
+
+  /// `hires imagine --local` in this scene, with more arguments behind.
+  Ended Imagine(const std::vector<std::string>& more) const {
+    std::vector<std::string> words{"imagine", "--local", "--quiet", "--scene", path_};
+    words.insert(words.end(), more.begin(), more.end());
+    return RunWith(words);
+  }
+
+  const std::filesystem::path& folder() const { return folder_.path(); }
+
+ private:
+  TemporaryFolder folder_;
+  std::string path_;
+};
+
+const SmallScene& Small() {
+  static const SmallScene scene;
+  return scene;
+}
+
+const std::vector<std::string> kDrive{"--action", "move_base", "--from",      "Door",       "--arg",
+                                      "Window",   "--object",  "peppermill1", "--rollouts", "2"};
+
+std::vector<std::string> operator+(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+void ExpectRefused(const Ended& ended, const std::vector<std::string>& words) {
+  EXPECT_EQ(ended.code, kExitBadInput);
+  EXPECT_EQ(ended.out, "");
+  for (const std::string& word : words) EXPECT_THAT(ended.err, HasSubstr(word));
+}
+
+// -------------------------------------------------------------------------------- good input
+
+TEST(CommandLineTest, ImaginesAndWritesWhatItFound) {
+  const TemporaryFolder folder;
+  const std::string json = (folder.path() / "answer.json").string();
+  const Ended ended = Small().Imagine(kDrive + std::vector<std::string>{"--json", json});
+  EXPECT_EQ(ended.code, kExitRecommended) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("> "), HasSubstr("move_base(window)"),
+                               HasSubstr("ranked: "), HasSubstr("times as fast as real time")));
+  const auto answer = nlohmann::json::parse(base::ReadTextFile(json));
+  EXPECT_EQ(answer.at("outcome"), "ranked");
+  EXPECT_EQ(answer.at("ranking").at(0).at("rollouts"), 2);
+  EXPECT_EQ(answer.at("seed"), 1);
+}
+
+TEST(CommandLineTest, EqualSeedsGiveEqualAnswers) {
+  const TemporaryFolder folder;
+  const auto answer = [&](const std::string& threads) {
+    const std::string path = (folder.path() / "answer.json").string();
+    const Ended ended = Small().Imagine(std::vector<std::string>{
+        "--action",      "move_base_param",
+        "--from",        "Door",
+        "--arg",         "Window",
+        "--arg",         "fast,slow",
+        "--object",      "peppermill1",
+        "--rollouts",    "2",
+        "--seed",        "7",
+        "--json",        path,
+        "--threads",     threads,
+        "--uncertainty", std::string(HIRES_SOURCE_DIR) + "/config/uncertainty.yaml"});
+    EXPECT_NE(ended.code, kExitBadInput) << ended.err;
+    auto json = nlohmann::json::parse(base::ReadTextFile(path));
+    json.erase("wall_seconds");
+    json.erase("real_time_factor");
+    return json.dump();
+  };
+  EXPECT_EQ(answer("1"), answer("2"));
+}
+
+TEST(CommandLineTest, AllFailingHasItsOwnCode) {
+  const Ended ended = Small().Imagine(
+      {"--action", "move_base", "--from", "Door", "--arg", "Inside", "--rollouts", "2"});
+  EXPECT_EQ(ended.code, kExitAllFailed) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("all_failed"), HasSubstr("goal_blocked 2")));
+}
+
+TEST(CommandLineTest, ExitCodesTellOutcomesApart) {
+  imagination::Report report;
+  const auto code = [&](imagination::ImaginationOutcome outcome) {
+    report.outcome = outcome;
+    return ExitCodeOf(report);
+  };
+  EXPECT_EQ(code(imagination::ImaginationOutcome::kRanked), 0);
+  EXPECT_EQ(code(imagination::ImaginationOutcome::kAllFailed), 2);
+  EXPECT_EQ(code(imagination::ImaginationOutcome::kNoWorker), 3);
+  EXPECT_EQ(code(imagination::ImaginationOutcome::kNothingFinished), 4);
+  EXPECT_EQ(code(imagination::ImaginationOutcome::kCancelled), 130);
+}
+
+TEST(CommandLineTest, HelpIsNoError) {
+  const Ended ended = RunWith({"--help"});
+  EXPECT_EQ(ended.code, 0);
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("imagine"), HasSubstr("doctor")));
+  EXPECT_THAT(RunWith({"imagine", "--help"}).out, HasSubstr("--rollouts"));
+}
+
+TEST(CommandLineTest, RemoteQueriesCarryWhatWasAsked) {
+  ImagineQuery seen;
+  Backends backends;
+  backends.imagine_remotely = [&](const ImagineQuery& query, const imagination::OnInterim&,
+                                  const std::function<bool()>&) {
+    seen = query;
+    return test_support::TwoAlternatives();
+  };
+  const Ended ended = RunWith({"imagine",
+                               "--action",
+                               "move_base_param",
+                               "--from",
+                               "home",
+                               "--arg",
+                               "a,b",
+                               "--arg",
+                               "slow",
+                               "--object",
+                               "peppermill1",
+                               "--object",
+                               "mug1",
+                               "--rollouts",
+                               "9",
+                               "--seed",
+                               "5",
+                               "--deadline",
+                               "3.5",
+                               "--ranking",
+                               "thesis",
+                               "--no-early-stop",
+                               "--threads",
+                               "2"},
+                              backends);
+  EXPECT_EQ(ended.code, kExitRecommended) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("ranked: slow: it says so"));
+  EXPECT_EQ(seen.action.name, "move_base_param");
+  EXPECT_THAT(seen.action.alternatives, ElementsAre(ElementsAre("a", "b"), ElementsAre("slow")));
+  EXPECT_EQ(seen.from, "home");
+  EXPECT_THAT(seen.objects, ElementsAre("peppermill1", "mug1"));
+  EXPECT_EQ(seen.scheduler.rollouts, 9);
+  EXPECT_EQ(seen.scheduler.deadline, 3.5);
+  EXPECT_EQ(seen.scheduler.rule, imagination::RankingRule::kThesis);
+  EXPECT_FALSE(seen.scheduler.early_stop);
+  EXPECT_EQ(seen.seed, 5u);
+  EXPECT_EQ(seen.threads, 2);
+  EXPECT_FALSE(seen.own_scene);
+  EXPECT_FALSE(seen.own_uncertainty);
+}
+
+TEST(CommandLineTest, FilesOfOnesOwnAreSaid) {
+  ImagineQuery seen;
+  Backends backends;
+  backends.imagine_remotely = [&](const ImagineQuery& query, const imagination::OnInterim&,
+                                  const std::function<bool()>&) {
+    seen = query;
+    return imagination::Report();
+  };
+  const std::string root = HIRES_SOURCE_DIR;
+  const std::vector<std::string> start{"imagine", "--action", "move_base", "--from", "home"};
+  EXPECT_EQ(RunWith(start + std::vector<std::string>{"--world", root + "/worlds/restaurant.world"},
+                    backends)
+                .code,
+            kExitDeadline);
+  EXPECT_TRUE(seen.own_scene);
+  EXPECT_FALSE(seen.own_uncertainty);
+  RunWith(start + std::vector<std::string>{"--uncertainty", "none"}, backends);
+  EXPECT_FALSE(seen.own_scene);
+  EXPECT_TRUE(seen.own_uncertainty);
+  EXPECT_EQ(seen.setup.uncertainty, "none");
+  const std::string file = root + "/worlds/models/vase/model.sdf";
+  RunWith(start + std::vector<std::string>{"--object", file}, backends);
+  EXPECT_TRUE(seen.own_scene);
+  EXPECT_THAT(seen.setup.extra_objects, ElementsAre(file));
+  EXPECT_THAT(seen.objects, ElementsAre("vase"));
+}
+
+TEST(CommandLineTest, MoreVerbsGetTheirOwnArguments) {
+  std::vector<std::string> seen;
+  Backends backends;
+  backends.more_verbs.push_back({"dance", "does so", [&](const std::vector<std::string>& words) {
+                                   seen = words;
+                                   return 7;
+                                 }});
+  EXPECT_EQ(RunWith({"dance", "--long", "waltz"}, backends).code, 7);
+  EXPECT_THAT(seen, ElementsAre("--long", "waltz"));
+  EXPECT_THAT(RunWith({"--help"}, backends).out, HasSubstr("does so"));
+}
+
+// --------------------------------------------------------------------------------- bad input
+
+TEST(CommandLineTest, RefusesUnknownVerbsAndOptions) {
+  ExpectRefused(RunWith({}), {"subcommand"});
+  ExpectRefused(RunWith({"imagin"}), {"verb 'imagin' is unknown", "'imagine'"});
+  ExpectRefused(RunWith({"imagine", "--actoin", "move_base"}), {"--action"});
+  ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{"--rolouts", "3"}),
+                {"--rolouts"});
+  ExpectRefused(RunWith({"imagine", "--action", "move_base"}), {"--from", "required"});
+}
+
+TEST(CommandLineTest, RefusesNumbersOutOfRange) {
+  const auto with = [](const std::string& option, const std::string& value) {
+    return Small().Imagine(
+        {"--action", "move_base", "--from", "Door", "--arg", "Window", option, value});
+  };
+  for (const char* rollouts : {"0", "-3", "1000000", "many", "2.5"}) {
+    ExpectRefused(with("--rollouts", rollouts), {"--rollouts", rollouts});
+  }
+  ExpectRefused(with("--deadline", "-1"), {"--deadline"});
+  ExpectRefused(with("--threads", "0"), {"--threads"});
+  ExpectRefused(with("--seed", "-1"), {"--seed"});
+  ExpectRefused(with("--ranking", "luck"), {"luck", "risk", "thesis"});
+}
+
+TEST(CommandLineTest, RefusesWhatTheWorldDoesNotKnow) {
+  ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Dor", "--arg", "Window"}),
+                {"area 'Dor' is unknown", "'Door'"});
+  ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Door", "--arg", "Windw"}),
+                {"area 'windw' is unknown", "'window'"});
+  ExpectRefused(Small().Imagine({"--action", "move_bas", "--from", "Door", "--arg", "Window"}),
+                {"action 'move_bas' is unknown", "'move_base'"});
+  ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Door"}),
+                {"0 arguments, wanted 1 (area)"});
+  ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Door", "--arg", "Window",
+                                 "--object", "pepermill1"}),
+                {"object 'pepermill1' is unknown", "'peppermill1'"});
+  ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Inside", "--arg", "Window"}),
+                {"robot starts in collision", "'pillar'"});
+}
+
+TEST(CommandLineTest, RefusesEmptyAlternatives) {
+  const auto with = [](const std::vector<std::string>& arg) {
+    return Small().Imagine(std::vector<std::string>{"--action", "move_base", "--from", "Door"} +
+                           arg);
+  };
+  ExpectRefused(with({"--arg", "Window,,Door"}), {"empty", "Window,,Door"});
+  ExpectRefused(with({"--arg", "Window,"}), {"empty"});
+  ExpectRefused(with({"--arg", ""}), {"empty"});
+  ExpectRefused(with({"--arg="}), {"--arg"});
+}
+
+TEST(CommandLineTest, NamesMissingFiles) {
+  for (const char* option : {"--world", "--robot", "--objects", "--uncertainty"}) {
+    ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{option, "/nowhere/file.yaml"}),
+                  {"/nowhere/file.yaml"});
+  }
+  ExpectRefused(RunWith({"imagine", "--local", "--action", "move_base", "--from", "home",
+                         "--config", "/nowhere/client.yaml"}),
+                {"/nowhere/client.yaml: no such file"});
+  ExpectRefused(RunWith({"imagine", "--local", "--action", "move_base", "--from", "home", "--scene",
+                         "/nowhere/scene.yaml"}),
+                {"/nowhere/scene.yaml: no such file"});
+  ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Door", "--arg", "Window",
+                                 "--object", "/nowhere/mill.sdf"}),
+                {"/nowhere/mill.sdf"});
+}
+
+TEST(CommandLineTest, AMissingFolderForTheAnswerIsSaidBeforeAnythingIsPlayed) {
+  const TemporaryFolder folder;
+  const std::string json = (folder.path() / "missing" / "answer.json").string();
+  ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{"--json", json}),
+                {json, "cannot be written"});
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "missing"));
+}
+
+TEST(CommandLineTest, ARefusedRequestLeavesAnEarlierAnswerAlone) {
+  const TemporaryFolder folder;
+  const std::string json = folder.Write("answer.json", "{\"earlier\": true}\n");
+  ExpectRefused(Small().Imagine(
+                    {"--action", "move_base", "--from", "Dor", "--arg", "Window", "--json", json}),
+                {"'Dor'"});
+  EXPECT_EQ(base::ReadTextFile(json), "{\"earlier\": true}\n");
+}
+
+TEST(CommandLineTest, WithoutNodesToAskItSaysSo) {
+  ExpectRefused(RunWith({"imagine", "--action", "move_base", "--from", "home"}), {"--local"});
+}
+
+TEST(CommandLineTest, NothingEscapes) {
+  Backends backends;
+  backends.imagine_remotely = [](const ImagineQuery&, const imagination::OnInterim&,
+                                 const std::function<bool()>&) -> imagination::Report {
+    throw std::runtime_error("the wire is cut");
+  };
+  ExpectRefused(RunWith({"imagine", "--action", "move_base", "--from", "home"}, backends),
+                {"hires: the wire is cut"});
+}
+
+}  // namespace
+}  // namespace hires::evaluation

@@ -1,0 +1,86 @@
+// Every file in config/ is read by the reader that a program uses for it.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+#include <map>
+
+#include "hires/imagination/client_config.h"
+#include "hires/imagination/imagination_setup.h"
+#include "hires/relay/relay_params.h"
+#include "hires/robot/robot_profile.h"
+#include "hires/world/object_catalogue.h"
+
+namespace hires {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path& Root() {
+  static const fs::path root = HIRES_SOURCE_DIR;
+  return root;
+}
+
+using Reader = std::function<void(const std::string&)>;
+
+/// By path below config/; folders stand for all files in them.
+const std::map<std::string, Reader>& Readers() {
+  static const std::map<std::string, Reader> readers{
+      {"imagination_client.yaml",
+       [](const std::string& path) { imagination::ReadClientConfig(path); }},
+      {"scene.yaml", [](const std::string& path) { imagination::ReadSetupConfig(path); }},
+      {"uncertainty.yaml", [](const std::string& path) { imagination::LoadUncertainty(path); }},
+      {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
+      {"relay.yaml",
+       [](const std::string& path) {
+         relay::ReadRelayParams(base::ParamReader::FromFile(path),
+                                {"http://127.0.0.1:11412/", "/worker_1"});
+       }},
+  };
+  return readers;
+}
+
+/// The key of Readers() for a file.
+std::string KindOf(const fs::path& file) {
+  const fs::path relative = file.lexically_relative(Root() / "config");
+  return relative.begin()->string();
+}
+
+TEST(ConfigurationFilesTest, EachOneLoads) {
+  int count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(Root() / "config")) {
+    const auto reader = Readers().find(KindOf(entry.path()));
+    if (!entry.is_regular_file() || reader == Readers().end()) continue;
+    EXPECT_NO_THROW(reader->second(entry.path().string())) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 6);
+}
+
+TEST(ConfigurationFilesTest, TheClientsSceneIsComplete) {
+  const auto client =
+      imagination::ReadClientConfig((Root() / "config/imagination_client.yaml").string());
+  const auto setup = imagination::LoadImaginationSetup(imagination::ReadSetupConfig(client.scene));
+  EXPECT_FALSE(setup.scene->world.frames.empty());
+  EXPECT_FALSE(setup.object_models.empty());
+  EXPECT_FALSE(setup.scene->robot.profile.tray_link.empty());
+}
+
+TEST(ConfigurationFilesTest, NothingTouchesAtTheAreasWhereTheRobotWaits) {
+  const auto setup = imagination::LoadImaginationSetup(
+      imagination::ReadSetupConfig((Root() / "config/scene.yaml").string()));
+  int count = 0;
+  for (const auto& [name, X_MF] : setup.scene->world.frames) {
+    if (name.rfind("premanipulationarea", 0) != 0 && name != "home") continue;
+    const auto start = imagination::MakeStartState(setup, name, {"peppermill1"});
+    EXPECT_NO_THROW(imagination::CheckSetup(imagination::MakeRolloutSetup(setup, start, 1),
+                                            {"move_base", {name}}))
+        << name;
+    ++count;
+  }
+  EXPECT_GE(count, 6);
+}
+
+}  // namespace
+}  // namespace hires
