@@ -207,6 +207,17 @@ Costmap Costmap::WithObstacles(const std::vector<geometry::Polygon>& outlines_M)
   return extended;
 }
 
+Costmap Costmap::WithRoomFor(const geometry::Polygon& outline_M) const {
+  Costmap roomier = *this;
+  ForEachSpan(outline_M, *this, [&](int row, int first, int last) {
+    std::uint8_t* costs = &roomier.costs_[static_cast<std::size_t>(row) * width_];
+    for (int column = std::max(first, 0); column <= std::min(last, width_ - 1); ++column) {
+      costs[column] = std::min<std::uint8_t>(costs[column], kInscribedCost - 1);
+    }
+  });
+  return roomier;
+}
+
 void Costmap::Inflate(const std::vector<std::pair<int, int>>& cells) {
   const double radius = std::max(params_.inflation_radius, inscribed_radius_);
   const int reach = static_cast<int>(std::min(radius / resolution_, 1e4));

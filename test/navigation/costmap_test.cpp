@@ -66,6 +66,25 @@ TEST(CostmapTest, CellsAndCentresAgreeWithTheOrigin) {
   EXPECT_FALSE(costmap.Inside(-1, 5));
 }
 
+TEST(CostmapTest, RoomIsMadeBelowTheOutlineAndNowhereElse) {
+  world::OccupancyGrid grid = FreeGrid(10, 10, 0.1);
+  for (int row = 0; row < 10; ++row) Set(&grid, 4, row);
+  const Costmap before(grid, kInscribed, Params(0.31));
+  // Columns 3 to 5, rows 2 to 6.
+  const Costmap after =
+      before.WithRoomFor({{0.31, 0.21}, {0.59, 0.21}, {0.59, 0.69}, {0.31, 0.69}});
+  for (int row = 0; row < 10; ++row) {
+    for (int column = 0; column < 10; ++column) {
+      const bool is_below = column >= 3 && column <= 5 && row >= 2 && row <= 6;
+      const int was = before.cost(column, row);
+      EXPECT_EQ(after.cost(column, row), is_below ? std::min(was, kInscribedCost - 1) : was)
+          << column << ", " << row;
+    }
+  }
+  EXPECT_LT(after.CostBelow({{0.31, 0.21}, {0.59, 0.21}, {0.59, 0.69}}), kInscribedCost);
+  EXPECT_NO_THROW(before.WithRoomFor({{-5.0, -5.0}, {0.2, 0.1}, {-5.0, 20.0}}));
+}
+
 TEST(CostmapTest, BrokenGridsAreRefused) {
   world::OccupancyGrid grid = FreeGrid(3, 3);
   grid.cells.pop_back();
