@@ -22,6 +22,7 @@ constexpr double kGhostSize = 0.10;       // [m] edge: a voxel of the obstacle f
 constexpr double kStartSlack = 0.005;     // [m] bodies may overlap this much at the start
 constexpr double kRestingGap = 0.06;      // [m] an object this far above the tray falls onto it
 constexpr double kFarAway = 1000.0;       // [m]
+constexpr double kStiffest = 2.0;         // half of what diverges
 constexpr double kUnitSlack = 1e-6;       // how far a quaternion's length may be from 1
 
 robot::BaseControllerParams Varied(robot::BaseControllerParams params, const Variation& variation) {
@@ -113,6 +114,30 @@ void RefuseObject(const world::ObjectState& object) {
   }
 }
 
+void RefuseUnknownHolder(const world::ObjectState& object, const robot::RobotModel& robot) {
+  if (object.attached_to.empty() || robot.FindLink(object.attached_to)) return;
+  throw base::ConfigError(
+      fmt::format("object '{}' is attached to the robot: {}", object.name,
+                  base::UnknownName("link", object.attached_to, robot.LinkNames())));
+}
+
+/// Loop and leaning are integrated by the semi-implicit Euler method: x'' = -w^2 x - 2 zeta w x'
+/// grows without bounds from (w dt)^2 + 4 zeta w dt = 4 on.
+void RefuseStiff(const char* what, double frequency, double damping, double time_step) {
+  const double h = frequency * time_step;
+  if (h * h + 4.0 * damping * h < kStiffest) return;
+  throw base::ConfigError(fmt::format(
+      "base controller: {0}_frequency {1:g} rad/s with {0}_damping {2:g} is too stiff for a time "
+      "step of {3:g} s; (w dt)^2 + 4 zeta w dt is {4:.3g}, wanted below {5:g}: lower one of the "
+      "three",
+      what, frequency, damping, time_step, h * h + 4.0 * damping * h, kStiffest));
+}
+
+void RefuseStiff(const robot::BaseControllerParams& params, double time_step) {
+  RefuseStiff("loop", params.loop_frequency, params.loop_damping, time_step);
+  RefuseStiff("sway", params.sway_frequency, params.sway_damping, time_step);
+}
+
 }  // namespace
 
 struct TraySimulator::Snapshot {
@@ -144,6 +169,7 @@ TraySimulator::TraySimulator(std::shared_ptr<const Scene> scene, const Variation
   physics::PhysicsParams physics_params = params;
   physics_params.gravity = scene_->world.gravity;
   physics_ = std::make_unique<physics::PhysicsWorld>(physics_params);
+  RefuseStiff(Varied(scene_->robot.profile.base_controller, variation), time_step());
   RefusePose("the robot", geometry::Lift(robot_state.X_MB));
   X_MB_ = LeaningPose(drive_.motion());
   physics_->AddFloor(scene_->world.floor_friction);
@@ -170,6 +196,7 @@ void TraySimulator::AddObjects(const world::WorldState& state) {
       throw base::ConfigError(fmt::format("object '{}': {}", object.name,
                                           base::UnknownName("model", object.model, known)));
     }
+    RefuseUnknownHolder(object, scene_->robot.model);
     const bool is_carried =
         StandsOn(scene_->robot_shapes_B, model->second->collisions, X_BO_start_[i]);
     if (is_carried && object.attached_to.empty()) {

@@ -468,6 +468,48 @@ TEST(TraySimulatorTest, RefusesObjectsOfUnknownModels) {
                     HasSubstr("did you mean 'mill'")));
 }
 
+TEST(TraySimulatorTest, RefusesObjectsHeldByUnknownLinks) {
+  world::ObjectState held = OnTray("mill1", "mill", kMiddle);
+  held.attached_to = "tary";
+  EXPECT_THAT(WhyRefused(With({held}), kMiddle),
+              AllOf(HasSubstr("object 'mill1'"), HasSubstr("link 'tary' is unknown"),
+                    HasSubstr("did you mean 'tray'")));
+}
+
+/// Whether a base with these numbers can be simulated at 1 kHz, and if so, comes near its velocity.
+std::string WhyTooStiff(const robot::BaseControllerParams& base, const Variation& variation = {}) {
+  robot::Robot robot = TrayRobot();
+  robot.profile.base_controller = base;
+  return ConfigErrorOf([&] {
+    TraySimulator simulator(simulation::MakeScene(Room(), robot), variation, {},
+                            StandingAt({2.0, 2.0, 0.0}), base::Rng(1));
+    DriveFor(&simulator, Drive(0.5), 2.0);
+    EXPECT_GT(simulator.base().V_B.vx, 0.3);
+    EXPECT_LT(simulator.base().V_B.vx, 0.51);
+    EXPECT_LT(std::abs(simulator.base().pitch), 0.1);
+  });
+}
+
+TEST(TraySimulatorTest, RefusesABaseThatIsTooStiffForItsTimeStep) {
+  robot::BaseControllerParams base = TrayRobot().profile.base_controller;
+  base.loop_frequency = 3000.0;
+  EXPECT_THAT(WhyTooStiff(base),
+              AllOf(HasSubstr("loop_frequency 3000 rad/s"), HasSubstr("time step of 0.001 s")));
+  base.loop_frequency = 20.0;
+  base.loop_damping = 10.0;
+  EXPECT_THAT(WhyTooStiff(base), HasSubstr("no ConfigError"));
+  Variation sluggish;
+  sluggish.loop_damping_factor = 10.0;
+  EXPECT_THAT(WhyTooStiff(base, sluggish), HasSubstr("loop_damping 100"));
+  base.loop_damping = 1.0;
+  base.sway_compliance = 0.005;
+  base.sway_frequency = 200.0;
+  base.sway_damping = 2.0;
+  EXPECT_THAT(WhyTooStiff(base), HasSubstr("no ConfigError"));
+  base.sway_damping = 10.0;
+  EXPECT_THAT(WhyTooStiff(base), HasSubstr("sway_damping 10"));
+}
+
 TEST(TraySimulatorTest, RefusesObjectsInsideOtherThings) {
   world::ObjectState in_wall = OnTray("mill1", "mill", kMiddle);
   in_wall.X_MO.translation = {6.03, 2.0, 0.0};

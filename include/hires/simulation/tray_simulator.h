@@ -30,8 +30,9 @@ struct Disturbances {
 /// One instance belongs to one thread at a time. The same calls give the same bits.
 class TraySimulator {
  public:
-  /// @throws base::ConfigError if an object's model is unknown to the world, or the robot or an
-  /// object starts inside a static body or has a pose or velocity that is not finite.
+  /// @throws base::ConfigError if an object's model is unknown to the world or the link that holds
+  /// it to the robot, the robot or an object starts inside a static body or has a pose or velocity
+  /// that is not finite, or the base's loop or leaning is too stiff for the time step.
   TraySimulator(std::shared_ptr<const Scene> scene, const Variation& variation,
                 const world::WorldState& world_state, const robot::RobotState& robot_state,
                 base::Rng rng, const physics::PhysicsParams& params = {});
