@@ -53,6 +53,7 @@ class MoveBase : public Skill {
  private:
   std::optional<Status> Plan(const navigation::Costmap& costmap, const geometry::Pose2& X_MB);
   bool NoteMotion(const robot::Observation& observation);
+  std::optional<navigation::Costmap> CostmapNow(const robot::Observation& observation) const;
   Status Recover(const navigation::Costmap& costmap, const robot::Observation& observation);
 
   std::shared_ptr<const DrivingContext> context_;
