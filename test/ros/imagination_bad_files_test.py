@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+"""Files and parameters that make no sense, or do not fit together: nodes stop and say why, workers
+that differ are named. Run alone, or by `rostest hires imagination_bad_files.test`."""
+
+import os
+import sys
+import unittest
+
+import rosunit
+import yaml
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
+
+from imagination_system import (ACTION, CONFIG_FOLDER, ImaginationSystem,  # noqa: E402
+                                read_yaml)
+from ros_processes import executable  # noqa: E402
+
+
+class ImaginationBadFilesTest(unittest.TestCase):
+    def setUp(self):
+        self.system = ImaginationSystem(workers=2)
+        self.addCleanup(self.system.destroy)
+        self.num_nodes = 0
+
+    # Workers that do not fit.
+
+    def test_workers_with_another_world_or_robot_are_named(self):
+        system = self.system
+        world = os.path.join(CONFIG_FOLDER, '..', 'worlds', 'restaurant.world')
+        with open(world) as file:
+            text = file.read()
+        # The same but for one number.
+        changed = text.replace('<pose>13 11.3 0', '<pose>13 11.4 0')
+        self.assertNotEqual(text, changed)
+        other = self.copy_of_world(changed)
+        system.start_client(worker_wait=0.5)
+        system.start_host(1, '_world:=' + other)
+        system.start_host(2, '_robot:=' + os.path.join(CONFIG_FOLDER, 'robots', 'cart.yaml'))
+        for k in (1, 2):
+            system.wait_until_joined(k)
+        answer = system.ask().answer()
+        self.assertEqual(answer.code, 3, answer.output)
+        self.assertEqual(answer.report['ranking'], [])
+        self.assertIn('worker 1: world differs: the client has', answer.report['why'])
+        self.assertIn('worker 2: robot differs: the client has', answer.report['why'])
+        self.assertIn('start both with the same files', answer.report['why'])
+        for k in (1, 2):
+            self.assertEqual(system.times_joined(k), 1)
+
+    def copy_of_world(self, text):
+        folder = os.path.join(CONFIG_FOLDER, '..', 'worlds')
+        copies = os.path.join(self.system.processes.folder.name, 'worlds')
+        os.mkdir(copies)
+        for name in os.listdir(folder):
+            os.symlink(os.path.join(folder, name), os.path.join(copies, name))
+        path = os.path.join(copies, 'other.world')
+        with open(path, 'w') as file:
+            file.write(text)
+        return path
+
+    # Each node stops with exit code 1 and says why, before it does anything.
+
+    def config(self, node):
+        """What the node needs to come up, as parameters."""
+        return ['_config:=' + os.path.join(CONFIG_FOLDER, node + '.yaml')]
+
+    def require_refusal(self, node, arguments, *texts):
+        # Parameters stay at the master: each node has a name of its own.
+        self.num_nodes += 1
+        process = self.system.run(
+            [executable(node), '__name:=%s_%d' % (node, self.num_nodes), *arguments])
+        self.assertEqual(process.wait(), 1, process.output())
+        for text in texts:
+            self.assertIn(text, process.output())
+
+    def test_an_unknown_private_parameter_is_named_with_one_like_it(self):
+        for node, typo, wanted in (('imagination_client', 'wrokers', 'workers'),
+                                   ('sim_worker', 'uncertanty', 'uncertainty'),
+                                   ('relay', 'namspace', 'namespace'),
+                                   ('worker_host', 'base_prot', 'base_port')):
+            with self.subTest(node=node):
+                self.require_refusal(node, [*self.config(node), '_%s:=3' % typo],
+                                     "private parameter '%s' is unknown" % typo, "'%s'" % wanted)
+
+    def test_a_private_parameter_out_of_range_or_of_the_wrong_kind(self):
+        for node, argument, text in (
+                ('imagination_client', '_workers:=0',
+                 '~workers is 0, wanted a whole number between 1 and 256'),
+                ('imagination_client', '_workers:=many', '~workers is many, wanted a whole number'),
+                ('sim_worker', '_index:=257',
+                 '~index is 257, wanted a whole number between 1 and 256'),
+                ('sim_worker', '_world:=3', '~world is 3, wanted text')):
+            with self.subTest(argument=argument):
+                self.require_refusal(node, [argument], text)
+
+    def test_files_that_are_not_there(self):
+        for node in ('imagination_client', 'sim_worker', 'relay', 'worker_host'):
+            with self.subTest(node=node):
+                self.require_refusal(node, ['_config:=/nowhere/x.yaml'], '/nowhere/x.yaml')
+        for key in ('world', 'robot', 'objects', 'uncertainty'):
+            for node in ('imagination_client', 'sim_worker'):
+                with self.subTest(node=node, key=key):
+                    self.require_refusal(node, ['_%s:=/nowhere/%s.yaml' % (key, key)],
+                                         '/nowhere/%s.yaml' % key)
+
+    def test_malformed_yaml_is_named_with_its_line(self):
+        for node in ('imagination_client', 'sim_worker', 'relay', 'worker_host'):
+            with self.subTest(node=node):
+                path = self.system.write('bad.yaml', 'scene: scene.yaml\n  index: [1\n')
+                self.require_refusal(node, ['_config:=' + path], 'bad.yaml', 'line ')
+
+    def test_a_missing_an_unknown_and_an_unfit_key_are_named(self):
+        for node, key, bad in (('imagination_client', 'feedback_period', -1.0),
+                               ('sim_worker', 'display_rate', 0.0),
+                               ('relay', 'poll_period', 'often'),
+                               ('worker_host', 'nice', 77)):
+            good = read_yaml(node + '.yaml')
+            for path in {'scene', 'relay_config'} & set(good):
+                good[path] = os.path.join(CONFIG_FOLDER, good[path])
+            without = {k: v for k, v in good.items() if k != key}
+            for change, text in (({key: bad}, '%s is' % key), ({}, key),
+                                 ({key: good[key], 'colour': 'red'}, "'colour'")):
+                with self.subTest(node=node, change=change):
+                    path = self.system.write(node + '.yaml',
+                                             yaml.safe_dump({**without, **change}))
+                    self.require_refusal(node, ['_config:=' + path], node + '.yaml', text)
+
+    def test_the_command_line_says_what_is_wrong(self):
+        for arguments, text in (
+                (['imagine'], '--action is required'),
+                (['imagine', *ACTION, '--rollouts', '0'], '--rollouts'),
+                (['imagine', *ACTION, '--seed', 'x'], '--seed'),
+                (['imagine', *ACTION, '--ranking', 'best'], 'best'),
+                (['imagine', *ACTION, '--world', '/nowhere.world'],
+                 'the running workers have their own; add --local'),
+                (['imagine', *ACTION, '--uncertainty', '/nowhere.yaml'], '/nowhere.yaml'),
+                (['imagin'], 'imagin')):
+            with self.subTest(arguments=arguments):
+                process = self.system.run([executable('hires'), *arguments])
+                self.assertEqual(process.wait(), 1, process.output())
+                self.assertIn(text, process.output())
+
+
+if __name__ == '__main__':
+    rosunit.unitrun('hires', 'imagination_bad_files', ImaginationBadFilesTest)

@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""The same request and seed give the same answer, bit for bit, whoever plays the rollouts: run
+alone, or by `rostest hires imagination_identity.test`."""
+
+import os
+import signal
+import sys
+import unittest
+
+import rosunit
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
+
+from imagination_system import ImaginationSystem  # noqa: E402
+
+ROLLOUTS = 48
+SLOW_AND_FAST = ['--action', 'move_base_param', '--from', 'preManipulationAreaEastCounter1',
+                 '--object', 'peppermill1', '--arg', 'preManipulationAreaNorthTable1', '--arg',
+                 'slow,fast']
+
+
+class ImaginationIdentityTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        local = ImaginationSystem(workers=1)
+        cls.addClassCleanup(local.destroy)
+        cls.local = local
+        cls.expected = local.ask('--local', '--threads', '1', rollouts=ROLLOUTS).answer()
+
+    def start(self, workers):
+        system = ImaginationSystem(workers)
+        self.addCleanup(system.destroy)
+        return system.start()
+
+    def require_expected(self, answer):
+        self.assertEqual(answer.code, 0, answer.output)
+        self.assertEqual(answer.rollouts(), [ROLLOUTS, ROLLOUTS])
+        self.assertEqual(answer.content(), self.expected.content())
+
+    def test_the_alternatives_differ_so_that_equality_says_something(self):
+        first, second = self.expected.report['ranking']
+        self.assertNotEqual(first['duration'], second['duration'])
+        self.assertNotEqual(first['counts'], second['counts'])
+
+    def test_two_threads_answer_as_one(self):
+        self.require_expected(
+            self.local.ask('--local', '--threads', '2', rollouts=ROLLOUTS).answer())
+
+    def test_another_seed_gives_another_answer(self):
+        other = self.local.ask('--local', rollouts=ROLLOUTS, seed=8).answer()
+        self.assertNotEqual(other.content(), self.expected.content())
+
+    def test_one_two_and_four_workers_answer_as_one_thread(self):
+        for workers in (1, 2, 4):
+            with self.subTest(workers=workers):
+                system = self.start(workers)
+                self.require_expected(system.ask(rollouts=ROLLOUTS).answer())
+                system.shut_down()
+
+    def test_a_worker_that_is_killed_half_way_changes_nothing(self):
+        system = self.start(2)
+        watcher = system.watch()
+        question = system.ask(rollouts=ROLLOUTS)
+        watcher.wait_for(r'feedback done=(4[89]|[5-9]\d) ')
+        os.kill(system.pids_of_worker(1)['sim_worker'], signal.SIGKILL)
+        self.require_expected(question.answer())
+        self.assertIn('worker=1 lost', system.client.output())
+
+    def test_planned_driving_with_early_stop_is_identical_too(self):
+        system = self.start(2)
+        arguments = {'action': SLOW_AND_FAST, 'rollouts': 32, 'early_stop': True}
+        remote = system.ask(**arguments).answer()
+        local = self.local.ask('--local', **arguments).answer()
+        self.assertEqual(remote.code, local.code, remote.output)
+        self.assertEqual(remote.content(), local.content())
+
+
+if __name__ == '__main__':
+    rosunit.unitrun('hires', 'imagination_identity', ImaginationIdentityTest)
