@@ -47,8 +47,14 @@ std::vector<std::string> TableRow(const DurationsConfig::Row& row, const Timed& 
 
 /// Errors of the means against one of the references.
 struct Errors {
+  const char* title;
+  const char* measure;
   std::vector<double> absolute;
   double worst{0.0};
+
+  double mean() const {
+    return absolute.empty() ? std::numeric_limits<double>::quiet_NaN() : Mean(absolute);
+  }
 
   void Add(double mean, double reference) {
     absolute.push_back(std::abs(mean - reference));
@@ -56,6 +62,17 @@ struct Errors {
     worst = std::isnan(absolute.back()) || absolute.back() > worst ? absolute.back() : worst;
   }
 };
+
+/// The row of the way back with the same motion set, or nothing.
+const DurationsConfig::Row* WayBack(const DurationsConfig& durations,
+                                    const DurationsConfig::Row& row) {
+  for (const DurationsConfig::Row& other : durations.rows) {
+    if (other.motion_set == row.motion_set && other.from == row.to && other.to == row.from) {
+      return &other;
+    }
+  }
+  return nullptr;
+}
 
 /// Routes on which the second motion set of the file takes longer than the first.
 int NumSlowerRoutes(const DurationsConfig& durations, const std::vector<Timed>& timed) {
@@ -108,7 +125,9 @@ Findings SumUpDurations(const DurationsConfig& durations, const std::vector<Roll
                   {{"motion set", "route", "reached", "found", "simulated, 6.1", "difference",
                     "real, 6.2", "difference"}}};
   std::vector<Timed> timed;
-  Errors simulated, real;
+  Errors simulated{"simulated, 6.1", "_simulated", {}}, real{"real, 6.2", "_real", {}},
+      simulated_back{"simulated, of the way back", "_simulated_way_back", {}},
+      real_back{"real, of the way back", "_real_way_back", {}};
   double failed = 0.0;
   std::vector<double> sigmas;
   for (std::size_t r = 0; r < durations.rows.size(); ++r) {
@@ -117,6 +136,10 @@ Findings SumUpDurations(const DurationsConfig& durations, const std::vector<Roll
     table.rows.push_back(TableRow(row, timed[r]));
     simulated.Add(timed[r].mean(), row.simulated.mean);
     real.Add(timed[r].mean(), row.real.mean);
+    if (const DurationsConfig::Row* back = WayBack(durations, row)) {
+      simulated_back.Add(timed[r].mean(), back->simulated.mean);
+      real_back.Add(timed[r].mean(), back->real.mean);
+    }
     sigmas.push_back(Deviation(timed[r].durations));
     failed += timed[r].runs - static_cast<double>(timed[r].durations.size());
     for (std::size_t i = 0; i < rollouts[r].size(); ++i) {
@@ -124,19 +147,17 @@ Findings SumUpDurations(const DurationsConfig& durations, const std::vector<Roll
       findings.simulated_seconds += rollouts[r][i].simulated;
     }
   }
-  TextTable errors{"Absolute errors of the means [s]", {{"against", "mean", "largest"}}};
-  errors.rows.push_back({"simulated, 6.1", fmt::format("{:.2f}", Mean(simulated.absolute)),
-                         fmt::format("{:.2f}", simulated.worst)});
-  errors.rows.push_back(
-      {"real, 6.2", fmt::format("{:.2f}", Mean(real.absolute)), fmt::format("{:.2f}", real.worst)});
+  TextTable table_of_errors{"Absolute errors of the means [s]", {{"against", "mean", "largest"}}};
   findings.measures = {{"failed", failed},
-                       {"mean_error_simulated", Mean(simulated.absolute)},
-                       {"max_error_simulated", simulated.worst},
-                       {"mean_error_real", Mean(real.absolute)},
-                       {"max_error_real", real.worst},
                        {"mean_sigma", Mean(sigmas)},
                        {"slower_routes", static_cast<double>(NumSlowerRoutes(durations, timed))}};
-  findings.tables = {std::move(table), std::move(errors)};
+  for (const Errors* errors : {&simulated, &real, &simulated_back, &real_back}) {
+    table_of_errors.rows.push_back({errors->title, fmt::format("{:.2f}", errors->mean()),
+                                    fmt::format("{:.2f}", errors->worst)});
+    findings.measures.push_back({std::string("mean_error") + errors->measure, errors->mean()});
+    findings.measures.push_back({std::string("max_error") + errors->measure, errors->worst});
+  }
+  findings.tables = {std::move(table), std::move(table_of_errors)};
   return findings;
 }
 

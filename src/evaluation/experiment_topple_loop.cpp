@@ -128,7 +128,8 @@ std::vector<Measure> MeasuresOf(const ToppleLoopConfig& loop,
     const std::string& set = loop.motion_sets[s];
     measures.push_back({"confidence_" + set, imagination::Confidence(totals[s].counts)});
     measures.push_back({"falls_" + set, static_cast<double>(totals[s].falls)});
-    measures.push_back({"failed_" + set, static_cast<double>(totals[s].failed)});
+    measures.push_back(
+        {"failed_share_" + set, static_cast<double>(totals[s].failed) / totals[s].legs});
     measures.push_back({"duration_" + set, totals[s].duration});
     for (const Event& event : kEvents) {
       measures.push_back(

@@ -148,6 +148,7 @@ TEST(ToppleLoopTest, RatiosAreThoseOfTheShares) {
   EXPECT_TRUE(std::isinf(ValueOf(findings, "topple_ratio_10hz")));
   EXPECT_EQ(ValueOf(findings, "falls_fast"), 4.0);
   EXPECT_EQ(ValueOf(findings, "duration_fast"), 20.0);
+  EXPECT_EQ(ValueOf(findings, "failed_share_fast"), 0.0);
   EXPECT_NEAR(ValueOf(findings, "confidence_fast"), 1000.0 / (1000.0 + 900.0 + 900.0), 1e-12);
 }
 
@@ -173,6 +174,19 @@ TEST(DurationsTest, MeansStandBesideTheirReferences) {
   EXPECT_DOUBLE_EQ(ValueOf(findings, "mean_sigma"), 0.5);
   EXPECT_EQ(ValueOf(findings, "slower_routes"), 1.0);
   EXPECT_EQ(ValueOf(findings, "failed"), 0.0);
+}
+
+TEST(DurationsTest, RoutesAreComparedWithTheirWayBackToo) {
+  DurationsConfig durations;
+  durations.rows = {{"fast", "a", "b", {10.0, 0.1}, {12.0, 0.2}},
+                    {"fast", "b", "a", {20.0, 0.1}, {23.0, 0.2}},
+                    {"slow", "b", "a", {99.0, 0.1}, {99.0, 0.2}}};
+  const Findings findings = SumUpDurations(
+      durations,
+      {{Result(1, 0, 0, 0, 19.0)}, {Result(1, 0, 0, 0, 13.0)}, {Result(1, 0, 0, 0, 50.0)}});
+  EXPECT_DOUBLE_EQ(ValueOf(findings, "mean_error_simulated_way_back"), 2.0);
+  EXPECT_DOUBLE_EQ(ValueOf(findings, "max_error_simulated_way_back"), 3.0);
+  EXPECT_DOUBLE_EQ(ValueOf(findings, "mean_error_real_way_back"), 2.5);
 }
 
 TEST(DurationsTest, AnActionThatNeverSucceedsIsNoNumberAndStaysOne) {
