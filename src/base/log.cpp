@@ -8,7 +8,7 @@ namespace hires::base {
 namespace {
 
 struct Sink {
-  std::mutex mutex;
+  std::recursive_mutex mutex;  // a sink may log itself
   LogSink function;
 };
 
@@ -21,7 +21,7 @@ Sink& TheSink() {
 
 void Log(LogLevel level, const std::string& line) {
   Sink& sink = TheSink();
-  const std::lock_guard<std::mutex> lock(sink.mutex);
+  const std::lock_guard<std::recursive_mutex> lock(sink.mutex);
   if (sink.function) {
     sink.function(level, line);
   } else if (level >= LogLevel::kWarn) {
@@ -31,7 +31,7 @@ void Log(LogLevel level, const std::string& line) {
 
 void SetLogSink(LogSink function) {
   Sink& sink = TheSink();
-  const std::lock_guard<std::mutex> lock(sink.mutex);
+  const std::lock_guard<std::recursive_mutex> lock(sink.mutex);
   sink.function = std::move(function);
 }
 

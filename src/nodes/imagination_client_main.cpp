@@ -6,8 +6,10 @@
 #include "hires/ros/imagination_client_node.h"
 #include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
+#include "hires/ros/xmlrpc_master_api.h"
 
 int main(int argc, char** argv) {
+  hires_ros::QuietXmlRpc();
   ros::init(argc, argv, "imagination_client", ros::init_options::NoSigintHandler);
   hires_ros::ShutDownRosOnSignals();
   ros::NodeHandle nh;

@@ -6,8 +6,10 @@
 #include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
 #include "hires/ros/sim_worker_node.h"
+#include "hires/ros/xmlrpc_master_api.h"
 
 int main(int argc, char** argv) {
+  hires_ros::QuietXmlRpc();
   ros::init(argc, argv, "sim_worker", ros::init_options::NoSigintHandler);
   hires_ros::ShutDownRosOnSignals();
   ros::NodeHandle nh;

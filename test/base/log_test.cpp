@@ -58,6 +58,19 @@ TEST_F(LogTest, ASinkThatThrowsLeavesTheLogUsable) {
   EXPECT_THAT(lines_, ElementsAre(Pair(LogLevel::kInfo, "b")));
 }
 
+TEST_F(LogTest, ASinkMayLogItself) {
+  SetLogSink([this](LogLevel level, const std::string& line) {
+    if (lines_.empty()) {
+      lines_.emplace_back(level, line);
+      Log(LogLevel::kWarn, "from within");
+    } else {
+      lines_.emplace_back(level, line);
+    }
+  });
+  Log(LogLevel::kInfo, "a");
+  EXPECT_THAT(lines_, ElementsAre(Pair(LogLevel::kInfo, "a"), Pair(LogLevel::kWarn, "from within")));
+}
+
 TEST_F(LogTest, NoLineOfManyThreadsIsLost) {
   CollectLines();  // the sink needs no lock of its own
   std::vector<std::thread> threads;

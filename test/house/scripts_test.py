@@ -39,7 +39,7 @@ class ScriptsTest(unittest.TestCase):
         answer = self.setup_on('ID=ubuntu\nVERSION_ID="20.04"\nPRETTY_NAME="Ubuntu 20.04.6 LTS"\n')
         self.assertEqual(answer.returncode, 1)
         self.assertIn("ros-noetic-ros-base", answer.stderr)
-        self.assertIn("libsdformat9-dev", answer.stderr)
+        self.assertIn("libsdformat12-dev", answer.stderr)
         self.assertNotIn("ros-base-dev\n", answer.stderr)
 
     def test_setup_refuses_a_system_that_does_not_say_what_it_is(self):
