@@ -5,6 +5,8 @@
 
 #include "hires/evaluation/command_line.h"
 #include "hires/ros/remote_imagination.h"
+#include "hires/ros/replay.h"
+#include "hires/ros/ros_doctor.h"
 
 int main(int argc, char** argv) {
   std::vector<std::string> arguments;  // roslaunch adds names and remappings that are not ours
@@ -12,5 +14,11 @@ int main(int argc, char** argv) {
   hires::evaluation::Backends backends;
   backends.package_folder = ros::package::getPath("hires");
   backends.imagine_remotely = hires_ros::ImagineRemotely;
+  backends.more_verbs.push_back({"replay",
+                                 "imagine again what a bag recorded, and compare the answers",
+                                 [&](const std::vector<std::string>& words) {
+                                   return hires_ros::RunReplay(words, backends.package_folder);
+                                 }});
+  backends.more_checks.push_back(hires_ros::CheckRos);
   return hires::evaluation::RunCommandLine(arguments, backends);
 }

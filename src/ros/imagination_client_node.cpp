@@ -32,12 +32,6 @@ Overloaded(Fs...) -> Overloaded<Fs...>;
 /// may jump, so there the steady clock counts.
 double SchedulerNow() { return ros::Time::isSimTime() ? ros::Time::now().toSec() : SteadyNow(); }
 
-std::vector<hires::base::Atom> AtomsOf(const std::vector<hires::Atom>& atoms) {
-  std::vector<hires::base::Atom> out;
-  for (const hires::Atom& atom : atoms) out.push_back({atom.predicate, atom.arguments});
-  return out;
-}
-
 }  // namespace
 
 ImaginationClientParams LoadImaginationClientParams() {
@@ -89,12 +83,7 @@ ImaginationClientNode::~ImaginationClientNode() {
 void ImaginationClientNode::Refuse(GoalHandle goal, const std::string& why) {
   hires::base::Log(hires::base::LogLevel::kWarn,
                    fmt::format("request={} outcome=invalid {}", goal.getGoal()->request_id, why));
-  hires::ImagineResult result;
-  result.outcome = hires::ImagineResult::INVALID;
-  result.recommended = -1;
-  result.why = why;
-  result.seed = goal.getGoal()->seed;
-  goal.setAborted(result, why);
+  goal.setAborted(RefusalOf(*goal.getGoal(), why), why);
 }
 
 void ImaginationClientNode::OnGoal(GoalHandle goal) {
@@ -109,8 +98,9 @@ void ImaginationClientNode::OnGoal(GoalHandle goal) {
   hires::base::Log(
       hires::base::LogLevel::kInfo,
       fmt::format("request={} session={} action={} alternatives={} rollouts={} seed={}",
-                  goal.getGoal()->request_id, session->id, session->actions[0].name,
-                  session->actions.size(), session->params.rollouts, goal.getGoal()->seed));
+                  goal.getGoal()->request_id, session->id, session->request.actions[0].name,
+                  session->request.actions.size(), session->request.params.rollouts,
+                  goal.getGoal()->seed));
   for (const auto& [k, worker] : workers_) {
     if (worker->is_alive()) Feed(session, imagination::WorkerJoined{k});
   }
@@ -118,34 +108,12 @@ void ImaginationClientNode::OnGoal(GoalHandle goal) {
 
 std::unique_ptr<ImaginationClientNode::Session> ImaginationClientNode::MakeSession(
     GoalHandle goal) {
-  const hires::ImagineGoal& wanted = *goal.getGoal();
   auto session = std::make_unique<Session>();
   session->id = next_session_++;
   session->goal = goal;
-  session->actions = hires::base::Combinations(FromMsg(wanted.action));
-  session->start =
-      wanted.updated_fluents.empty()
-          ? imagination::StartState{FromMsg(wanted.world_state), FromMsg(wanted.robot_state)}
-          : imagination::MakeStartState(setup_, AtomsOf(wanted.updated_fluents));
-  const auto uncertainty =
-      wanted.uncertainty.empty()
-          ? setup_.uncertainty
-          : std::make_shared<const imagination::Uncertainty>(
-                imagination::UncertaintyFromText(wanted.uncertainty, "uncertainty of the request"));
-  session->uncertainty = wanted.uncertainty;
-  session->uncertainty_hash = uncertainty->hash;
-  session->params = params_.config.scheduler;
-  session->params.rollouts = static_cast<int>(std::min<std::uint32_t>(wanted.rollouts, 1u << 30));
-  session->params.deadline = wanted.deadline.toSec();
-  session->params.early_stop = !wanted.play_all && session->params.early_stop;
-  if (!wanted.ranking.empty()) {
-    session->params.rule = imagination::ParseRankingRule(wanted.ranking);
-  }
-  const imagination::RolloutSetup setup =
-      imagination::MakeRolloutSetup(setup_, session->start, wanted.seed);
-  for (const auto& action : session->actions) imagination::CheckSetup(setup, action);
+  session->request = RequestOf(*goal.getGoal(), setup_, params_.config.scheduler);
   session->scheduler = std::make_unique<imagination::Scheduler>(
-      session->params, static_cast<int>(session->actions.size()), SchedulerNow());
+      session->request.params, static_cast<int>(session->request.actions.size()), SchedulerNow());
   session->begun = session->next_feedback = SteadyNow();
   return session;
 }
@@ -208,15 +176,16 @@ void ImaginationClientNode::OnWorkerEvent(int worker, const WorkerLink::Event& e
 hires::RolloutGoal ImaginationClientNode::RolloutGoalFor(const Session& session,
                                                          const imagination::Assign& assign) const {
   hires::RolloutGoal goal;
-  goal.action = ToMsg(session.actions[assign.alternative]);
-  goal.world_state = ToMsg(session.start.world);
+  const imagination::RolloutSetup& setup = session.request.setup;
+  goal.action = ToMsg(session.request.actions[assign.alternative]);
+  goal.world_state = ToMsg(setup.world_state);
   goal.world_state.world_hash = setup_.world_hash;
-  goal.robot_state = ToMsg(session.start.robot);
+  goal.robot_state = ToMsg(setup.robot_state);
   goal.world_hash = setup_.world_hash;
   goal.robot_hash = setup_.robot_hash;
-  goal.uncertainty_hash = session.uncertainty_hash;
-  goal.uncertainty = session.uncertainty;
-  goal.seed = session.goal.getGoal()->seed;
+  goal.uncertainty_hash = setup.uncertainty->hash;
+  goal.uncertainty = session.goal.getGoal()->uncertainty;
+  goal.seed = setup.seed;
   goal.first = assign.first_index;
   goal.count = assign.count;
   return goal;
@@ -251,7 +220,7 @@ void ImaginationClientNode::PublishFeedback(Session* session, double now) {
   session->goal.publishFeedback(ToMsg(
       imagination::Interim{session->scheduler->ProgressAt(SchedulerNow()),
                            PredictionsOf(*session->scheduler, session->scheduler->RankingSoFar(),
-                                         session->actions, false),
+                                         session->request.actions, false),
                            NumWorkers()}));
 }
 
@@ -268,16 +237,16 @@ void ImaginationClientNode::FinishSessions() {
 
 void ImaginationClientNode::Finish(Session* session) {
   for (auto& [k, worker] : workers_) worker->CancelSession(session->id);
+  const ImagineRequest& request = session->request;
   const auto report =
-      imagination::MakeReport(*session->scheduler, session->actions, session->params.rule,
-                              session->goal.getGoal()->seed, SteadyNow() - session->begun);
-  hires::ImagineResult result = ToMsg(report);
-  result.depends_on = session->goal.getGoal()->updated_fluents;
+      imagination::MakeReport(*session->scheduler, request.actions, request.params.rule,
+                              request.setup.seed, SteadyNow() - session->begun);
+  const hires::ImagineResult result = AnswerTo(*session->goal.getGoal(), report);
   hires::base::Log(hires::base::LogLevel::kInfo,
                    fmt::format("session={} outcome={} {}", session->id,
                                imagination::ToString(report.outcome), report.why));
   ranking_markers_.publish(
-      RankingMarkers(report.ranking, report.recommended, session->start.robot.X_MB));
+      RankingMarkers(report.ranking, report.recommended, request.setup.robot_state.X_MB));
   if (report.outcome == imagination::ImaginationOutcome::kCancelled) {
     session->goal.setCanceled(result, report.why);
   } else if (report.outcome == imagination::ImaginationOutcome::kRanked) {

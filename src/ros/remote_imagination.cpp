@@ -5,9 +5,12 @@
 #include <hires/ImagineAction.h>
 #include <ros/ros.h>
 
+#include <optional>
+
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/ros/conversions.h"
+#include "hires/ros/process.h"
 #include "hires/ros/topic_names.h"
 
 namespace hires_ros {
@@ -16,6 +19,8 @@ namespace {
 using Client = actionlib::SimpleActionClient<hires::ImagineAction>;
 
 constexpr double kClientWait = 10.0;  // [s] to find the imagination client
+constexpr double kCancelWait = 3.0;   // [s] for it to confirm that it cancelled
+constexpr double kPollPeriod = 0.02;  // [s]
 
 hires::Atom MakeAtom(const std::string& predicate, const std::vector<std::string>& arguments) {
   hires::Atom atom;
@@ -53,6 +58,57 @@ void RequireMaster() {
       ros::master::getURI()));
 }
 
+[[noreturn]] void FailAsClientIsGone() {
+  throw hires::base::ConfigError(
+      "the imagination client went away during the request; see its log, then ask again");
+}
+
+/// @throws ConfigError if nobody serves the action in time.
+void RequireServer(const Client& client, const std::function<bool()>& cancelled) {
+  const double give_up = SteadyNow() + kClientWait;
+  while (!client.isServerConnected()) {
+    if (cancelled() || SteadyNow() > give_up) {
+      throw hires::base::ConfigError(fmt::format(
+          "no imagination client serves the action '{}' at {}; start imagination.launch, or add "
+          "--local",
+          kImagineAction, ros::master::getURI()));
+    }
+    ros::WallDuration(kPollPeriod).sleep();
+  }
+}
+
+hires::ImagineResult Unconfirmed(const hires::ImagineGoal& goal) {
+  hires::ImagineResult result;
+  result.outcome = hires::ImagineResult::CANCELLED;
+  result.recommended = -1;
+  result.seed = goal.seed;
+  result.why = fmt::format(
+      "cancelled; the imagination client did not confirm it within {} s, see whether it hangs",
+      kCancelWait);
+  return result;
+}
+
+/// Waits by the wall's clock: ROS time stands still while the robot's clock does.
+hires::ImagineResult AwaitResult(const hires::ImagineGoal& goal,
+                                 const std::function<bool()>& cancelled, Client* client) {
+  std::optional<double> give_up;
+  while (!client->getState().isDone()) {
+    const bool is_gone = !ros::ok() || !client->isServerConnected();
+    // The answer may have come just before.
+    if (is_gone && !client->getState().isDone()) FailAsClientIsGone();
+    if (cancelled() && !give_up) {
+      client->cancelGoal();
+      give_up = SteadyNow() + kCancelWait;
+    }
+    if (give_up && SteadyNow() > *give_up) return Unconfirmed(goal);
+    ros::WallDuration(kPollPeriod).sleep();
+  }
+  // A client that died and came back knows nothing of the goal: there is no result then, and an
+  // empty one would read as a ranking.
+  if (client->getState() == actionlib::SimpleClientGoalState::LOST) FailAsClientIsGone();
+  return *client->getResult();
+}
+
 }  // namespace
 
 hires::imagination::Report ImagineRemotely(const hires::evaluation::ImagineQuery& query,
@@ -63,32 +119,22 @@ hires::imagination::Report ImagineRemotely(const hires::evaluation::ImagineQuery
         "another world, robot, catalogue or object file is named, but the running workers have "
         "their own; add --local, or start imagination.launch with these files");
   }
+  return FromMsg(AskImaginationClient(GoalOf(query), on_interim, cancelled));
+}
+
+hires::ImagineResult AskImaginationClient(const hires::ImagineGoal& goal,
+                                          const hires::imagination::OnInterim& on_interim,
+                                          const std::function<bool()>& cancelled) {
   int no_arguments = 0;
   ros::init(no_arguments, nullptr, "hires_imagine",
             ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
   RequireMaster();
   Client client(kImagineAction, true);
-  for (double waited = 0.0; !client.waitForServer(ros::Duration(0.1)); waited += 0.1) {
-    if (cancelled() || waited > kClientWait) {
-      throw hires::base::ConfigError(fmt::format(
-          "no imagination client serves the action '{}' at {}; start imagination.launch, or add "
-          "--local",
-          kImagineAction, ros::master::getURI()));
-    }
-  }
-  client.sendGoal(GoalOf(query), {}, {}, [&](const hires::ImagineFeedbackConstPtr& feedback) {
+  RequireServer(client, cancelled);
+  client.sendGoal(goal, {}, {}, [&](const hires::ImagineFeedbackConstPtr& feedback) {
     if (on_interim) on_interim(FromMsg(*feedback));
   });
-  bool asked_to_stop = false;
-  while (!client.waitForResult(ros::Duration(0.1))) {
-    if (!ros::ok() || !client.isServerConnected()) {
-      throw hires::base::ConfigError(
-          "the imagination client went away during the request; see its log, then ask again");
-    }
-    if (cancelled() && !asked_to_stop) client.cancelGoal();
-    asked_to_stop = asked_to_stop || cancelled();
-  }
-  return FromMsg(*client.getResult());
+  return AwaitResult(goal, cancelled, &client);
 }
 
 }  // namespace hires_ros

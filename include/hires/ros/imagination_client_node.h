@@ -14,6 +14,7 @@
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/scheduler.h"
+#include "hires/ros/imagine_request.h"
 #include "hires/ros/worker_link.h"
 
 namespace hires_ros {
@@ -44,11 +45,7 @@ class ImaginationClientNode {
   struct Session {
     int id;
     GoalHandle goal;
-    std::vector<hires::base::ActionCall> actions;
-    hires::imagination::StartState start;
-    std::string uncertainty;  ///< as text, where the workers' own is not wanted
-    std::uint64_t uncertainty_hash;
-    hires::imagination::SchedulerParams params;
+    ImagineRequest request;
     std::unique_ptr<hires::imagination::Scheduler> scheduler;
     std::map<int, int> alternative_of;  ///< assignment -> alternative
     double begun;                       ///< [s] steady

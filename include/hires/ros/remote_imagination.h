@@ -1,5 +1,8 @@
 #pragma once
 
+#include <hires/ImagineGoal.h>
+#include <hires/ImagineResult.h>
+
 #include <functional>
 
 #include "hires/evaluation/command_line.h"
@@ -13,5 +16,11 @@ namespace hires_ros {
 hires::imagination::Report ImagineRemotely(const hires::evaluation::ImagineQuery& query,
                                            const hires::imagination::OnInterim& on_interim,
                                            const std::function<bool()>& cancelled);
+
+/// The same with a goal as it is, answered by a result as it comes, INVALID included.
+/// @throws hires::base::ConfigError if there is no master or no client, or the client goes away.
+hires::ImagineResult AskImaginationClient(const hires::ImagineGoal& goal,
+                                          const hires::imagination::OnInterim& on_interim,
+                                          const std::function<bool()>& cancelled);
 
 }  // namespace hires_ros

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <hires/ImagineGoal.h>
+#include <hires/ImagineResult.h>
+
+#include <string>
+#include <vector>
+
+namespace hires_ros {
+
+/// One request that somebody recorded, with the answer it got then.
+struct RecordedRequest {
+  std::string action;   ///< whose topics were recorded: "/imagine"
+  std::string goal_id;  ///< never empty
+  hires::ImagineGoal goal;
+  hires::ImagineResult result;
+};
+
+struct ImagineRecording {
+  std::vector<RecordedRequest> requests;  ///< in the order of their goals, never empty
+  int results_without_goal{0};            ///< of requests that were sent before the recording began
+};
+
+/// Reads a bag in which topics of `imagine` actions were recorded, in any namespace. Goals and
+/// results belong together by action and goal id. A bag is data from outside: one that asks for
+/// more than 2 GB of memory is refused.
+/// @param action  "/imagine", or one of its topics ("/imagine/goal"); empty: all in the bag.
+/// @throws hires::base::ConfigError naming the bag and what to do: no such bag, unindexed or broken
+/// bag, no such action in it (with a list of what is there), messages of another version, a goal
+/// without an id or without a result.
+ImagineRecording ReadImagineRecording(const std::string& path, const std::string& action);
+
+}  // namespace hires_ros

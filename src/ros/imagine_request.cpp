@@ -1,0 +1,94 @@
+#include "hires/ros/imagine_request.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "hires/base/error.h"
+#include "hires/base/hash.h"
+#include "hires/imagination/uncertainty.h"
+#include "hires/ros/conversions.h"
+
+namespace hires_ros {
+namespace {
+
+namespace imagination = hires::imagination;
+
+constexpr std::size_t kLongestWhy = 2000;  // [bytes]
+
+/// Messages repeat what came, however long that was. Never cuts a UTF-8 character in two.
+std::string Shortened(const std::string& text) {
+  if (text.size() <= kLongestWhy) return text;
+  std::size_t end = kLongestWhy;
+  while (end > 0 && (text[end] & 0xC0) == 0x80) --end;
+  return text.substr(0, end) + " ...";
+}
+
+std::vector<hires::base::Atom> AtomsOf(const std::vector<hires::Atom>& atoms) {
+  std::vector<hires::base::Atom> out;
+  for (const hires::Atom& atom : atoms) out.push_back({atom.predicate, atom.arguments});
+  return out;
+}
+
+void RequireSameWorld(const hires::ImagineGoal& goal, const imagination::ImaginationSetup& setup) {
+  const std::uint64_t stated = goal.world_state.world_hash;
+  if (stated == 0 || stated == setup.world_hash) return;
+  throw hires::base::ConfigError(fmt::format(
+      "world_state.world_hash is {}, but the world that is loaded has {}; ask with a state of this "
+      "world, or start with the files of the other one",
+      hires::base::HexOf(stated), hires::base::HexOf(setup.world_hash)));
+}
+
+imagination::StartState StartOf(const hires::ImagineGoal& goal,
+                                const imagination::ImaginationSetup& setup) {
+  if (!goal.updated_fluents.empty()) {
+    return imagination::MakeStartState(setup, AtomsOf(goal.updated_fluents));
+  }
+  RequireSameWorld(goal, setup);
+  return {FromMsg(goal.world_state), FromMsg(goal.robot_state)};
+}
+
+imagination::SchedulerParams ParamsOf(const hires::ImagineGoal& goal,
+                                      const imagination::SchedulerParams& defaults) {
+  imagination::SchedulerParams params = defaults;
+  params.rollouts = static_cast<int>(std::min<std::uint32_t>(goal.rollouts, 1u << 30));
+  params.deadline = goal.deadline.toSec();
+  params.early_stop = !goal.play_all && defaults.early_stop;
+  if (!goal.ranking.empty()) params.rule = imagination::ParseRankingRule(goal.ranking);
+  imagination::CheckParams(params);
+  return params;
+}
+
+}  // namespace
+
+ImagineRequest RequestOf(const hires::ImagineGoal& goal, const imagination::ImaginationSetup& setup,
+                         const imagination::SchedulerParams& defaults) {
+  ImagineRequest request;
+  request.actions = hires::base::Combinations(FromMsg(goal.action));
+  request.setup = imagination::MakeRolloutSetup(setup, StartOf(goal, setup), goal.seed);
+  if (!goal.uncertainty.empty()) {
+    request.setup.uncertainty = std::make_shared<const imagination::Uncertainty>(
+        imagination::UncertaintyFromText(goal.uncertainty, "uncertainty of the request"));
+  }
+  request.params = ParamsOf(goal, defaults);
+  for (const auto& action : request.actions) imagination::CheckSetup(request.setup, action);
+  return request;
+}
+
+hires::ImagineResult AnswerTo(const hires::ImagineGoal& goal, const imagination::Report& report) {
+  hires::ImagineResult result = ToMsg(report);
+  result.depends_on = goal.updated_fluents;
+  return result;
+}
+
+hires::ImagineResult RefusalOf(const hires::ImagineGoal& goal, const std::string& why) {
+  hires::ImagineResult result;
+  result.outcome = hires::ImagineResult::INVALID;
+  result.recommended = -1;
+  result.why = Shortened(why);
+  result.seed = goal.seed;
+  return result;
+}
+
+}  // namespace hires_ros

@@ -1,0 +1,156 @@
+#include "hires/ros/imagine_request.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "hires/ros/conversions.h"
+#include "support/messages.h"
+
+namespace hires_ros {
+namespace {
+
+namespace imagination = hires::imagination;
+using hires::test_support::ConfigErrorOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const imagination::ImaginationSetup& Restaurant() {
+  static const auto setup = imagination::LoadImaginationSetup(
+      imagination::ReadSetupConfig(std::string(HIRES_SOURCE_DIR) + "/config/scene.yaml"));
+  return setup;
+}
+
+hires::Atom MakeAtom(const std::string& predicate, const std::vector<std::string>& arguments) {
+  hires::Atom atom;
+  atom.predicate = predicate;
+  atom.arguments = arguments;
+  return atom;
+}
+
+/// Drive blindly with the mill to one of two tables.
+hires::ImagineGoal Goal() {
+  hires::ImagineGoal goal;
+  goal.action.name = "move_base_blind";
+  goal.action.alternatives.resize(1);
+  goal.action.alternatives[0].values = {"preManipulationAreaSouthTable1",
+                                        "preManipulationAreaNorthTable1"};
+  goal.updated_fluents = {MakeAtom("RobotAt", {"preManipulationAreaEastCounter1"}),
+                          MakeAtom("On", {"peppermill1", "trayArea1"})};
+  goal.rollouts = 8;
+  goal.seed = 7;
+  return goal;
+}
+
+ImagineRequest Request(const hires::ImagineGoal& goal) { return RequestOf(goal, Restaurant(), {}); }
+
+std::string ErrorOf(const hires::ImagineGoal& goal) {
+  return ConfigErrorOf([&] { Request(goal); });
+}
+
+TEST(ImagineRequestTest, AGoalInSymbolsStartsWhereItSays) {
+  const ImagineRequest request = Request(Goal());
+  const auto wanted =
+      imagination::MakeStartState(Restaurant(), "preManipulationAreaEastCounter1", {"peppermill1"});
+  EXPECT_EQ(request.actions.size(), 2u);
+  EXPECT_EQ(request.actions[0].arguments[0], "premanipulationareasouthtable1");
+  EXPECT_EQ(request.setup.seed, 7u);
+  EXPECT_EQ(request.setup.robot_state.X_MB.x, wanted.robot.X_MB.x);
+  ASSERT_EQ(request.setup.world_state.objects.size(), 1u);
+  EXPECT_EQ(request.setup.world_state.objects[0].X_MO.translation,
+            wanted.world.objects[0].X_MO.translation);
+  EXPECT_EQ(request.setup.uncertainty, Restaurant().uncertainty);
+}
+
+TEST(ImagineRequestTest, AGoalWithStatesStartsInThem) {
+  hires::ImagineGoal goal = Goal();
+  imagination::StartState start =
+      imagination::MakeStartState(Restaurant(), "preManipulationAreaEastCounter1", {"peppermill1"});
+  start.robot.X_MB.x += 0.01;
+  goal.updated_fluents.clear();
+  goal.world_state = ToMsg(start.world);
+  goal.robot_state = ToMsg(start.robot);
+  EXPECT_EQ(Request(goal).setup.robot_state.X_MB.x, start.robot.X_MB.x);
+  goal.world_state.world_hash = Restaurant().world_hash;
+  EXPECT_EQ(Request(goal).setup.world_state.objects.size(), 1u);
+}
+
+TEST(ImagineRequestTest, AStateOfAnotherWorldIsRefused) {
+  hires::ImagineGoal goal = Goal();
+  goal.updated_fluents.clear();
+  goal.world_state.world_hash = Restaurant().world_hash + 1;
+  EXPECT_THAT(ErrorOf(goal), HasSubstr("world_state.world_hash is "));
+}
+
+TEST(ImagineRequestTest, WhatAGoalSaysWinsOverTheDefaults) {
+  imagination::SchedulerParams defaults;
+  defaults.batch = 3;
+  defaults.rule = imagination::RankingRule::kThesis;
+  hires::ImagineGoal goal = Goal();
+  imagination::SchedulerParams params = RequestOf(goal, Restaurant(), defaults).params;
+  EXPECT_EQ(params.rollouts, 8);
+  EXPECT_EQ(params.deadline, 0.0);
+  EXPECT_EQ(params.batch, 3);
+  EXPECT_EQ(params.rule, imagination::RankingRule::kThesis);
+  EXPECT_TRUE(params.early_stop);
+  goal.ranking = "risk";
+  goal.play_all = true;
+  goal.deadline = ros::Duration(2.5);
+  params = RequestOf(goal, Restaurant(), defaults).params;
+  EXPECT_EQ(params.rule, imagination::RankingRule::kRisk);
+  EXPECT_FALSE(params.early_stop);
+  EXPECT_EQ(params.deadline, 2.5);
+  defaults.early_stop = false;
+  goal.play_all = false;
+  EXPECT_FALSE(RequestOf(goal, Restaurant(), defaults).params.early_stop);
+}
+
+TEST(ImagineRequestTest, TheRequestsOwnUncertaintyCounts) {
+  hires::ImagineGoal goal = Goal();
+  goal.uncertainty = "none";
+  EXPECT_EQ(Request(goal).setup.uncertainty->hash, imagination::NoUncertainty().hash);
+  EXPECT_NE(Request(goal).setup.uncertainty->hash, Restaurant().uncertainty->hash);
+}
+
+TEST(ImagineRequestTest, WhatCannotBePlayedIsRefusedByName) {
+  hires::ImagineGoal goal = Goal();
+  goal.rollouts = 0;
+  EXPECT_THAT(ErrorOf(goal), HasSubstr("rollouts"));
+  goal.rollouts = 4294967295u;
+  EXPECT_THAT(ErrorOf(goal), HasSubstr("rollouts"));
+  goal = Goal();
+  goal.deadline = ros::Duration(-1.0);
+  EXPECT_THAT(ErrorOf(goal), HasSubstr("deadline"));
+  goal = Goal();
+  goal.ranking = "luck";
+  EXPECT_THAT(ErrorOf(goal), HasSubstr("luck"));
+  goal = Goal();
+  goal.uncertainty = "objct_mass: 1";
+  EXPECT_THAT(ErrorOf(goal), HasSubstr("uncertainty of the request"));
+  goal = Goal();
+  goal.action.alternatives[0].values = {"preManipulationAreaSouthTabel1"};
+  EXPECT_THAT(ErrorOf(goal), HasSubstr("did you mean 'premanipulationareasouthtable1'"));
+  goal = Goal();
+  goal.updated_fluents.pop_back();
+  goal.updated_fluents[0].arguments = {"nowhere"};
+  EXPECT_THAT(ErrorOf(goal), HasSubstr("nowhere"));
+}
+
+TEST(ImagineRequestTest, ARefusalHasNoRecommendation) {
+  const hires::ImagineResult result = RefusalOf(Goal(), "because");
+  EXPECT_EQ(result.outcome, hires::ImagineResult::INVALID);
+  EXPECT_EQ(result.recommended, -1);
+  EXPECT_EQ(result.why, "because");
+  EXPECT_EQ(result.seed, 7u);
+}
+
+TEST(ImagineRequestTest, AnAnswerRestsOnTheFluentsOfItsGoal) {
+  const hires::ImagineResult result = AnswerTo(Goal(), {});
+  EXPECT_EQ(result.outcome, hires::ImagineResult::NOTHING_FINISHED);
+  EXPECT_EQ(result.depends_on, Goal().updated_fluents);
+}
+
+}  // namespace
+}  // namespace hires_ros
