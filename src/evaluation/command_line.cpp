@@ -12,6 +12,7 @@
 #include <iostream>
 #include <thread>
 
+#include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/doctor.h"
@@ -212,6 +213,7 @@ imagination::Report ImagineInThisProcess(const ImagineQuery& query,
 }
 
 int RunCommandLine(const std::vector<std::string>& arguments, const Backends& backends) {
+  HIRES_CHECK(!arguments.empty(), "the program's name is missing");
   CLI::App app("HIRES: imagine an action in physics before doing it", "hires");
   app.require_subcommand(1);
   ImagineOptions imagine_options;

@@ -221,29 +221,48 @@ const base::Atom& RobotAtom(const std::vector<base::Atom>& atoms) {
   return *found;
 }
 
+void RefuseLoad(const ImaginationSetup& setup, const std::vector<std::string>& on_tray) {
+  if (on_tray.size() > 3) {
+    throw base::ConfigError(fmt::format(
+        "{} objects are wanted on the tray, it has 3 places; name at most 3", on_tray.size()));
+  }
+  if (!on_tray.empty() && setup.scene->robot.profile.tray_link.empty()) {
+    throw base::ConfigError(
+        fmt::format("robot '{}' has no tray to carry '{}'; name a tray_link in its profile",
+                    setup.scene->robot.model.name, on_tray.front()));
+  }
+}
+
+/// The robot at an area, objects on its tray and in other places, and what else the world's file
+/// has.
+StartState Arrange(const ImaginationSetup& setup, const std::string& area,
+                   const std::vector<std::string>& on_tray,
+                   const std::vector<world::ObjectState>& elsewhere) {
+  RefuseLoad(setup, on_tray);
+  StartState start;
+  start.robot.X_MB = geometry::Flatten(AreaPose(setup, area));
+  start.robot.joints = setup.scene->robot.profile.joints;
+  world::WorldState named;
+  for (std::size_t i = 0; i < on_tray.size(); ++i) {
+    const double y = i == 0 ? 0.0 : (i == 1 ? -kSlotDistance : kSlotDistance);
+    named.objects.push_back(MakeObject(
+        setup, on_tray[i],
+        geometry::Lift(start.robot.X_MB) * setup.scene->X_BO * geometry::Lift({0.0, y, 0.0})));
+  }
+  named.objects.insert(named.objects.end(), elsewhere.begin(), elsewhere.end());
+  // Who asks knows better than the world's file where an object is.
+  for (const world::ObjectState& object : setup.scene->world.initial.objects) {
+    if (named.Find(object.name) == nullptr) start.world.objects.push_back(object);
+  }
+  start.world.objects.insert(start.world.objects.end(), named.objects.begin(), named.objects.end());
+  return start;
+}
+
 }  // namespace
 
 StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
                           const std::vector<std::string>& objects) {
-  StartState start;
-  start.robot.X_MB = geometry::Flatten(AreaPose(setup, area));
-  start.robot.joints = setup.scene->robot.profile.joints;
-  if (objects.size() > 3) {
-    throw base::ConfigError(fmt::format(
-        "{} objects are wanted on the tray, it has 3 places; name at most 3", objects.size()));
-  }
-  if (!objects.empty() && setup.scene->robot.profile.tray_link.empty()) {
-    throw base::ConfigError(
-        fmt::format("robot '{}' has no tray to carry '{}'; name a tray_link in its profile",
-                    setup.scene->robot.model.name, objects.front()));
-  }
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    const double y = i == 0 ? 0.0 : (i == 1 ? -kSlotDistance : kSlotDistance);
-    start.world.objects.push_back(MakeObject(
-        setup, objects[i],
-        geometry::Lift(start.robot.X_MB) * setup.scene->X_BO * geometry::Lift({0.0, y, 0.0})));
-  }
-  return start;
+  return Arrange(setup, area, objects, {});
 }
 
 StartState MakeStartState(const ImaginationSetup& setup, const std::vector<base::Atom>& atoms) {
@@ -265,9 +284,7 @@ StartState MakeStartState(const ImaginationSetup& setup, const std::vector<base:
       elsewhere.push_back(MakeObject(setup, atom.arguments[0], AreaPose(setup, atom.arguments[1])));
     }
   }
-  StartState start = MakeStartState(setup, RobotAtom(atoms).arguments[0], on_tray);
-  start.world.objects.insert(start.world.objects.end(), elsewhere.begin(), elsewhere.end());
-  return start;
+  return Arrange(setup, RobotAtom(atoms).arguments[0], on_tray, elsewhere);
 }
 
 RolloutSetup MakeRolloutSetup(const ImaginationSetup& setup, const StartState& start,

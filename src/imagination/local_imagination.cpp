@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <exception>
 #include <memory>
 #include <thread>
 
@@ -34,7 +35,13 @@ class LocalWorker {
  private:
   void Run() {
     while (!stop_) {
-      if (const auto assign = inbox_.WaitAndTake(std::chrono::milliseconds(20))) Play(*assign);
+      const auto assign = inbox_.WaitAndTake(std::chrono::milliseconds(20));
+      if (!assign) continue;
+      try {
+        Play(*assign);
+      } catch (const std::exception& error) {
+        events_.Post(AssignmentFailed{id_, assign->assignment, error.what(), false});
+      }
     }
   }
 

@@ -52,7 +52,8 @@ geometry::Twist2 BaseDrive::Target(double time) {
     sent_.pop_front();
   }
   const bool late = time - last_command_ > params_.command_timeout;
-  const bool moving = target_.vx != 0.0 || target_.vy != 0.0 || target_.wz != 0.0;
+  // Once it stands there is nothing left to brake.
+  const bool moving = x_.ramp != 0.0 || y_.ramp != 0.0 || yaw_.ramp != 0.0;
   motion_.timed_out = late && moving;
   return late ? geometry::Twist2{} : target_;
 }

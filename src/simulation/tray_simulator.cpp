@@ -235,9 +235,11 @@ void TraySimulator::RefuseBadStart(const world::WorldState& state) const {
         contact->robot_part, contact->obstacle, drive_.motion().X_MB.x, drive_.motion().X_MB.y,
         drive_.motion().X_MB.yaw));
   }
-  for (const world::ObjectState& object : state.objects) {
-    if (!object.attached_to.empty()) continue;
+  for (std::size_t i = 0; i < state.objects.size(); ++i) {
+    const world::ObjectState& object = state.objects[i];
     const auto& shapes = scene_->world.models.at(object.model)->collisions;
+    for (std::size_t j = 0; j < i; ++j) RefuseTogether(object, shapes, state.objects[j]);
+    if (!object.attached_to.empty()) continue;
     if (Overlap(shapes, object.X_MO, scene_->robot_shapes_B, X_MB_)) {
       throw base::ConfigError(
           fmt::format("object '{}' starts inside the robot; put it on a free place", object.name));
@@ -248,6 +250,20 @@ void TraySimulator::RefuseBadStart(const world::WorldState& state) const {
             "object '{}' starts inside '{}'; put it on a free place", object.name, body.name));
       }
     }
+  }
+}
+
+void TraySimulator::RefuseTogether(const world::ObjectState& object,
+                                   const std::vector<geometry::Collision>& shapes,
+                                   const world::ObjectState& earlier) const {
+  if (base::ToLower(object.name) == base::ToLower(earlier.name)) {
+    throw base::ConfigError(
+        fmt::format("object '{}' is there twice; name each instance once", object.name));
+  }
+  const auto& others = scene_->world.models.at(earlier.model)->collisions;
+  if (Overlap(shapes, object.X_MO, others, earlier.X_MO)) {
+    throw base::ConfigError(fmt::format("object '{}' starts inside '{}'; put it on a free place",
+                                        object.name, earlier.name));
   }
 }
 

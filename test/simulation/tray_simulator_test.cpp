@@ -263,7 +263,7 @@ TEST(TraySimulatorTest, ObjectOffsetMovesWhatStandsOnTheTrayAlone) {
 TEST(TraySimulatorTest, CarriedIsWhatStandsOnTheRobot) {
   world::ObjectState on_floor = OnTray("on_floor", "mill", {1.5, 1.0, 0.0});
   on_floor.X_MO.translation.z() = 0.0002;
-  world::ObjectState in_the_air = OnTray("in_the_air", "mill", kMiddle, {0.05, -0.15});
+  world::ObjectState in_the_air = OnTray("in_the_air", "mill", kMiddle, {0.1, -0.19});
   in_the_air.X_MO.translation.z() += 0.2;
   world::ObjectState held = OnTray("held", "mill", kMiddle, {0.0, -0.1});
   held.attached_to = "tray";
@@ -272,6 +272,23 @@ TEST(TraySimulatorTest, CarriedIsWhatStandsOnTheRobot) {
                                 OnTray("second", "tower", kMiddle, {0.0, 0.15})}),
                           StandingAt(kMiddle), base::Rng(1));
   EXPECT_THAT(simulator.carried(), ElementsAre(1, 4));
+}
+
+TEST(TraySimulatorTest, RefusesObjectsInEachOtherAndOneNamedTwice) {
+  const auto refusal = [](const world::WorldState& state) -> std::string {
+    try {
+      TraySimulator(RoomScene(), {}, state, StandingAt(kMiddle), base::Rng(1));
+    } catch (const base::ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const world::ObjectState first = OnTray("first", "mill", kMiddle);
+  EXPECT_THAT(refusal(With({first, OnTray("second", "mill", kMiddle, {0.0, 0.05})})),
+              ::testing::HasSubstr("'second' starts inside 'first'"));
+  EXPECT_THAT(refusal(With({first, OnTray("FIRST", "mill", kMiddle, {0.0, 0.15})})),
+              ::testing::HasSubstr("'FIRST' is there twice"));
+  EXPECT_EQ(refusal(With({first, OnTray("second", "mill", kMiddle, {0.0, 0.15})})), "");
 }
 
 TEST(TraySimulatorTest, AttachedObjectsRideAlongRigidly) {

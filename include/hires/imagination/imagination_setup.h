@@ -67,7 +67,8 @@ struct StartState {
 };
 
 /// The robot at an area with objects on its tray: the first in the middle, the next ones to its
-/// right and left, 0.13 m apart (the slots of the tray pick and place action).
+/// right and left, 0.13 m apart (the slots of the tray pick and place action). Loose objects of the
+/// world file stand where it says, unless they are named.
 /// @throws base::ConfigError for an unknown area or object, or more than three objects.
 StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
                           const std::vector<std::string>& objects);

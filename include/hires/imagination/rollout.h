@@ -34,7 +34,7 @@ struct RolloutSetup {
   std::shared_ptr<const skills::SkillSet> skills;
   std::shared_ptr<const Uncertainty> uncertainty;
   world::WorldState world_state;
-  robot::RobotState robot_state;
+  robot::RobotState robot_state;  ///< rollouts begin at rest: its velocity is not used
   std::uint64_t seed{0};
   RolloutParams params;
   physics::PhysicsParams physics;

@@ -82,6 +82,9 @@ class TraySimulator {
   void MoveSlip();
   void UpdateGhosts(const geometry::Pose2& X_MB, double elapsed);
   void RefuseBadStart(const world::WorldState& state) const;
+  void RefuseTogether(const world::ObjectState& object,
+                      const std::vector<geometry::Collision>& shapes,
+                      const world::ObjectState& earlier) const;
 
   std::shared_ptr<const Scene> scene_;
   Variation variation_;
