@@ -146,6 +146,7 @@ nlohmann::ordered_json RowOf(const std::string& motion_set, int chain, int numbe
           {"from", leg.from},
           {"to", leg.to},
           {"reason", leg.result.reason},
+          {"touched", leg.touched},
           {"action_finished", leg.result.action_finished},
           {"duration", leg.result.duration},
           {"notopple", leg.result.counts.notopple},
