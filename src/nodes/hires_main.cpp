@@ -15,7 +15,8 @@ int main(int argc, char** argv) {
   backends.package_folder = ros::package::getPath("hires");
   backends.imagine_remotely = hires_ros::ImagineRemotely;
   backends.more_verbs.push_back({"replay",
-                                 "imagine again what a bag recorded, and compare the answers",
+                                 "imagine again what a bag recorded, and compare the answers: BAG "
+                                 "[--local [--threads N]] [--json FILE] [--topic NAME]",
                                  [&](const std::vector<std::string>& words) {
                                    return hires_ros::RunReplay(words, backends.package_folder);
                                  }});

@@ -146,6 +146,13 @@ TEST(ImagineRequestTest, ARefusalHasNoRecommendation) {
   EXPECT_EQ(result.seed, 7u);
 }
 
+TEST(ImagineRequestTest, ALongReasonIsCutBetweenCharacters) {
+  std::string why(1999, 'x');
+  EXPECT_EQ(RefusalOf(Goal(), why).why, why);
+  why += "\u00e4" + why;  // two bytes, of which one would fit
+  EXPECT_EQ(RefusalOf(Goal(), why).why, std::string(1999, 'x') + " ...");
+}
+
 TEST(ImagineRequestTest, AnAnswerRestsOnTheFluentsOfItsGoal) {
   const hires::ImagineResult result = AnswerTo(Goal(), {});
   EXPECT_EQ(result.outcome, hires::ImagineResult::NOTHING_FINISHED);

@@ -54,7 +54,7 @@ class Recording:
         self.results = {}
         self._system = system
         self._goals = rospy.Publisher('/imagine/goal', ImagineActionGoal, queue_size=10)
-        rospy.Subscriber('/imagine/result', ImagineActionResult, self._take)
+        self._answers = rospy.Subscriber('/imagine/result', ImagineActionResult, self._take)
         # It ends by itself when it has them all: stopped by a signal, it could miss the last one.
         self._recorder = system.run(['rosbag', 'record', '--output-name=' + self.path,
                                      '--limit=%d' % num_goals, '/imagine/goal', '/imagine/result'])
@@ -74,6 +74,7 @@ class Recording:
 
     def finish(self):
         self._recorder.wait()
+        self._answers.unregister()  # what comes later is not of the recording
         return self.path
 
 
@@ -148,7 +149,7 @@ class ReplayBagTest(unittest.TestCase):
 
     def test_another_seed_differs(self):
         def change(message):
-            if isinstance(message, ImagineActionGoal) and message.goal.request_id == 'one_way':
+            if message._type.endswith('Goal') and message.goal.request_id == 'one_way':
                 message.goal.seed = 8
         path = self.rewrite(change)
         for way in ((), ('--local',)):
@@ -233,7 +234,7 @@ class ReplayBagTest(unittest.TestCase):
             lambda message: results.setdefault(message.status.goal_id.id, message.result))
         self.addCleanup(subscriber.unregister)
         wait_until(lambda: subscriber.get_num_connections() == 1, 'the client')
-        # Kept alive, because a player that ends takes along what it has not sent yet.
+        # Kept alive, so that its end cannot overtake what it still has queued.
         player = self.system.run(['rosbag', 'play', '--quiet', '--immediate', '--keep-alive',
                                   '--wait-for-subscribers', self.path, *arguments])
         wait_until(lambda: set(results) >= set(self.results), 'results', 3 * LIMIT)
