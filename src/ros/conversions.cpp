@@ -1,5 +1,7 @@
 #include "hires/ros/conversions.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "hires/base/error.h"
@@ -56,6 +58,20 @@ ImaginationOutcome OutcomeOf(std::uint8_t code) {
       return ImaginationOutcome::kNothingFinished;
     default:
       return ImaginationOutcome::kCancelled;
+  }
+}
+
+hires::imagination::Outcome OutcomeOfRollout(std::uint8_t code) {
+  switch (code) {
+    case msg::RolloutRecord::SUCCEEDED:
+      return hires::imagination::Outcome::kSucceeded;
+    case msg::RolloutRecord::FAILED:
+      return hires::imagination::Outcome::kFailed;
+    case msg::RolloutRecord::TIMED_OUT:
+      return hires::imagination::Outcome::kTimedOut;
+    default:
+      throw hires::base::ConfigError(
+          fmt::format("outcome of a rollout is {}, wanted 0, 1 or 2", code));
   }
 }
 
@@ -166,6 +182,28 @@ hires::robot::RobotState FromMsg(const msg::RobotState& state) {
   return out;
 }
 
+void RequireSoundState(const msg::WorldState& world, const msg::RobotState& robot) {
+  if (world.header.frame_id != "map") {
+    throw hires::base::ConfigError(
+        fmt::format("world_state.header.frame_id is '{}', wanted 'map'; give poses in map, or name "
+                    "updated_fluents instead of a state",
+                    world.header.frame_id));
+  }
+  const hires::geometry::Twist3 twist = FromTwistMsg(robot.twist);
+  if (!twist.linear.allFinite() || !twist.angular.allFinite()) {
+    throw hires::base::ConfigError("robot_state.twist is not finite; give numbers, 0 at rest");
+  }
+  if (!std::isfinite(robot.yaw)) {
+    throw hires::base::ConfigError(
+        "robot_state.yaw is not finite; leave it at 0 to let the pose say the heading");
+  }
+  for (std::size_t i = 0; i < robot.joints.position.size(); ++i) {
+    if (std::isfinite(robot.joints.position[i])) continue;
+    throw hires::base::ConfigError(
+        fmt::format("robot_state.joints: position {} is not finite; give numbers", i));
+  }
+}
+
 msg::RolloutRecord ToMsg(const hires::imagination::RolloutResult& result, int index) {
   msg::RolloutRecord out;
   out.index = index;
@@ -187,10 +225,7 @@ msg::RolloutRecord ToMsg(const hires::imagination::RolloutResult& result, int in
 
 hires::imagination::RolloutResult FromMsg(const msg::RolloutRecord& record) {
   hires::imagination::RolloutResult out;
-  out.outcome =
-      record.outcome == msg::RolloutRecord::SUCCEEDED   ? hires::imagination::Outcome::kSucceeded
-      : record.outcome == msg::RolloutRecord::TIMED_OUT ? hires::imagination::Outcome::kTimedOut
-                                                        : hires::imagination::Outcome::kFailed;
+  out.outcome = OutcomeOfRollout(record.outcome);
   out.reason = record.reason;
   out.duration = record.duration;
   out.counts.notopple = record.counts.notopple;

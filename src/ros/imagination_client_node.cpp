@@ -19,7 +19,8 @@ namespace {
 
 namespace imagination = hires::imagination;
 
-constexpr double kTickPeriod = 0.02;  // [s]
+constexpr double kTickPeriod = 0.02;       // [s]
+constexpr std::size_t kLongestWhy = 2000;  // bytes
 
 template <typename... Fs>
 struct Overloaded : Fs... {
@@ -31,6 +32,25 @@ Overloaded(Fs...) -> Overloaded<Fs...>;
 /// The scheduler's clock: the deadline is in ROS time where that is simulated; the wall's ROS time
 /// may jump, so there the steady clock counts.
 double SchedulerNow() { return ros::Time::isSimTime() ? ros::Time::now().toSec() : SteadyNow(); }
+
+/// Messages repeat what came, however long that was. Never cuts a UTF-8 character in two.
+std::string Shortened(const std::string& text) {
+  if (text.size() <= kLongestWhy) return text;
+  std::size_t end = kLongestWhy;
+  while (end > 0 && (text[end] & 0xC0) == 0x80) --end;
+  return text.substr(0, end) + " ...";
+}
+
+/// A record that cannot be read is the worker's failure: it gets no more work of this request.
+imagination::Event EventOf(int worker, int alternative, const WorkerLink::Played& played) {
+  try {
+    return imagination::RolloutFinished{worker, played.assignment, alternative,
+                                        static_cast<int>(played.record.index),
+                                        FromMsg(played.record)};
+  } catch (const hires::base::ConfigError& error) {
+    return imagination::AssignmentFailed{worker, played.assignment, error.what(), true};
+  }
+}
 
 }  // namespace
 
@@ -90,8 +110,8 @@ void ImaginationClientNode::OnGoal(GoalHandle goal) {
   goal.setAccepted();
   try {
     sessions_.push_back(MakeSession(goal));
-  } catch (const hires::base::ConfigError& error) {
-    Refuse(goal, error.what());
+  } catch (const std::exception& error) {  // one bad request must not end the others
+    Refuse(goal, Shortened(error.what()));
     return;
   }
   Session* session = sessions_.back().get();
@@ -111,7 +131,9 @@ std::unique_ptr<ImaginationClientNode::Session> ImaginationClientNode::MakeSessi
   auto session = std::make_unique<Session>();
   session->id = next_session_++;
   session->goal = goal;
-  session->request = RequestOf(*goal.getGoal(), setup_, params_.config.scheduler);
+  const hires::ImagineGoal& wanted = *goal.getGoal();
+  if (wanted.updated_fluents.empty()) RequireSoundState(wanted.world_state, wanted.robot_state);
+  session->request = RequestOf(wanted, setup_, params_.config.scheduler);
   session->scheduler = std::make_unique<imagination::Scheduler>(
       session->request.params, static_cast<int>(session->request.actions.size()), SchedulerNow());
   session->begun = session->next_feedback = SteadyNow();
@@ -153,9 +175,7 @@ void ImaginationClientNode::OnWorkerEvent(int worker, const WorkerLink::Event& e
                      if (s->id != e.session) continue;
                      const auto alternative = s->alternative_of.find(e.assignment);
                      if (alternative == s->alternative_of.end()) continue;
-                     Feed(s.get(), imagination::RolloutFinished{
-                                       worker, e.assignment, alternative->second,
-                                       static_cast<int>(e.record.index), FromMsg(e.record)});
+                     Feed(s.get(), EventOf(worker, alternative->second, e));
                    }
                  },
                  [&](const WorkerLink::Finished& e) {

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 #include <ros/package.h>
 
+#include <filesystem>
+
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/log.h"
+#include "hires/base/text.h"
 #include "hires/imagination/rollout.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/private_params.h"
@@ -31,6 +34,12 @@ void RequireHash(const char* what, std::uint64_t wanted, std::uint64_t own) {
   throw HashDiffers(
       fmt::format("{} differs: the client has {}, this worker {}; start both with the same files",
                   what, hires::base::HexOf(wanted), hires::base::HexOf(own)));
+}
+
+/// The URDF behind a robot's profile, or the URDF that was given in place of one.
+std::string ReadUrdf(const std::string& robot_path, const hires::robot::RobotProfile& profile) {
+  const auto folder = std::filesystem::path(robot_path).parent_path();
+  return hires::base::ReadTextFile((folder / profile.urdf).lexically_normal().string());
 }
 
 }  // namespace
@@ -60,6 +69,7 @@ SimWorkerNode::SimWorkerNode(const SimWorkerParams& params, imagination::Imagina
       server_(
           *nh, WorkerName(params.index, kRollout), [this](GoalHandle goal) { OnGoal(goal); },
           [this](GoalHandle goal) { OnCancel(goal); }, false) {
+  nh->setParam("robot_description", ReadUrdf(params.setup.robot, setup_.scene->robot.profile));
   updater_.setHardwareID(fmt::format("worker_{}", params.index));
   updater_.add("rollouts", this, &SimWorkerNode::Diagnose);
   heartbeat_ = nh->createTimer(ros::Duration(1.0),
@@ -117,7 +127,7 @@ void SimWorkerNode::Play(GoalHandle goal) {
     result.code = RolloutResult::HASH_DIFFERS;
     result.reason = error.what();
     goal.setAborted(result, result.reason);
-  } catch (const hires::base::ConfigError& error) {
+  } catch (const std::exception& error) {  // the next goal may be a better one
     result.code = RolloutResult::INVALID;
     result.reason = error.what();
     goal.setAborted(result, result.reason);

@@ -36,8 +36,12 @@ hires::world::WorldState FromMsg(const msg::WorldState& state);
 /// The heading travels beside the quaternion, which would round it.
 msg::RobotState ToMsg(const hires::robot::RobotState& state);
 hires::robot::RobotState FromMsg(const msg::RobotState& state);
+/// What FromMsg would drop or read as something else: poses in another frame than map, a velocity,
+/// heading or joint that is no number. @throws hires::base::ConfigError naming the field.
+void RequireSoundState(const msg::WorldState& world, const msg::RobotState& robot);
 
 msg::RolloutRecord ToMsg(const hires::imagination::RolloutResult& result, int index);
+/// @throws hires::base::ConfigError for an unknown outcome, or joints that do not pair up.
 hires::imagination::RolloutResult FromMsg(const msg::RolloutRecord& record);
 
 msg::Prediction ToMsg(const hires::imagination::Prediction& prediction);

@@ -1,0 +1,280 @@
+#!/usr/bin/env python3
+"""Requests that make no sense: each is answered with what is wrong, and the next good request as if
+nothing had been. Run alone, or by `rostest hires imagination_bad_input.test`."""
+
+import math
+import os
+import sys
+import unittest
+
+import rosunit
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
+
+from imagination_system import ImaginationSystem  # noqa: E402
+from ros_processes import LIMIT  # noqa: E402
+
+EAST_COUNTER = 'preManipulationAreaEastCounter1'
+SOUTH_TABLE = 'preManipulationAreaSouthTable1'
+NAN = float('nan')
+
+
+class ImaginationBadInputTest(unittest.TestCase):
+    """One client and one worker answer all of them, one after the other."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.system = ImaginationSystem(workers=1)
+        cls.addClassCleanup(cls.system.destroy)
+        cls.system.start()
+        os.environ.update(ROS_MASTER_URI=cls.system.main.uri, ROS_IP='127.0.0.1',
+                          ROS_LOG_DIR=cls.system.processes.folder.name)
+        os.environ.pop('ROS_HOSTNAME', None)
+        import actionlib
+        import rospy
+        from hires import msg
+        cls.rospy, cls.msg = rospy, msg
+        rospy.init_node('imagination_bad_input_test', disable_signals=True)
+        cls.action = actionlib.SimpleActionClient('imagine', msg.ImagineAction)
+        assert cls.action.wait_for_server(rospy.Duration(LIMIT))
+        cls.good = cls.ask(cls.goal())
+        assert cls.good.outcome == msg.ImagineResult.RANKED, cls.good.why
+
+    @classmethod
+    def goal(cls, name='move_base_blind', alternatives=((SOUTH_TABLE,),), **fields):
+        msg = cls.msg
+        goal = msg.ImagineGoal()
+        goal.action.name = name
+        goal.action.alternatives = [msg.StringList(values=list(a)) for a in alternatives]
+        goal.updated_fluents = [msg.Atom('RobotAt', [EAST_COUNTER]),
+                                msg.Atom('On', ['peppermill1', 'trayArea1'])]
+        goal.rollouts = 4
+        goal.seed = 7
+        for field, value in fields.items():
+            setattr(goal, field, value)
+        return goal
+
+    @classmethod
+    def ask(cls, goal):
+        cls.action.send_goal(goal)
+        assert cls.action.wait_for_result(cls.rospy.Duration(LIMIT)), 'no answer'
+        return cls.action.get_result()
+
+    def tearDown(self):
+        """The client lives, and answers as it did in the beginning."""
+        self.assertTrue(self.system.client.is_running(), self.system.client.output())
+        result = self.ask(self.goal())
+        for field in ('outcome', 'recommended', 'predictions', 'why', 'simulated_seconds'):
+            self.assertEqual(getattr(result, field), getattr(self.good, field), field)
+        self.assertEqual(self.system.times_joined(1), 1)  # the worker never went away
+
+    def require_invalid(self, goal, *texts):
+        result = self.ask(goal)
+        self.assertEqual(result.outcome, self.msg.ImagineResult.INVALID, result.why)
+        self.assertEqual(self.action.get_state(), 4)  # aborted
+        self.assertEqual((result.recommended, result.predictions), (-1, []))
+        self.assertEqual(self.action.get_goal_status_text(), result.why)
+        for text in texts:
+            self.assertIn(text, result.why)
+
+    def require_failure(self, goal, reason, rollouts=4):
+        result = self.ask(goal)
+        self.assertEqual(result.outcome, self.msg.ImagineResult.ALL_FAILED, result.why)
+        self.assertEqual(result.recommended, -1)
+        self.assertEqual([(f.reason, f.count) for f in result.predictions[0].failures],
+                         [(reason, rollouts)])
+        self.assertIn(reason, result.why)
+
+    # The action.
+
+    def test_an_unknown_action_is_named_with_one_like_it(self):
+        self.require_invalid(self.goal('move_bse_blind'), 'move_bse_blind', "'move_base_blind'")
+
+    def test_no_action_at_all(self):
+        self.require_invalid(self.goal('', []), "action")
+
+    def test_an_unknown_area_is_named_with_one_like_it(self):
+        self.require_invalid(self.goal(alternatives=[['preManipulationAreaSouthTabel1']]),
+                             'premanipulationareasouthtabel1', "'premanipulationareasouthtable1'")
+
+    def test_one_bad_alternative_among_good_ones_is_named(self):
+        self.require_invalid(self.goal(alternatives=[[SOUTH_TABLE, 'moon']]), "'moon'")
+
+    def test_a_wrong_number_of_arguments(self):
+        for alternatives, number in (([], '0'), ([[SOUTH_TABLE], ['slow']], '2')):
+            self.require_invalid(self.goal(alternatives=alternatives),
+                                 'has %s arguments, wanted 1 (area)' % number)
+
+    def test_an_argument_without_alternatives(self):
+        self.require_invalid(self.goal('move_base_param', [[SOUTH_TABLE], []]),
+                             'argument 2 has no alternatives')
+
+    def test_too_many_combinations(self):
+        many = ['area%d' % i for i in range(5000)]
+        self.require_invalid(self.goal(alternatives=[many]), 'more than 4096 combinations')
+
+    def test_an_unknown_motion_set(self):
+        self.require_invalid(self.goal('move_base_param', [[SOUTH_TABLE], ['fsat']]),
+                             'fsat', "'fast'")
+
+    # The state.
+
+    def fluents(self, *atoms):
+        return [self.msg.Atom(predicate, list(arguments)) for predicate, *arguments in atoms]
+
+    def test_a_start_area_that_is_unknown_missing_or_there_twice(self):
+        at = self.fluents
+        for atoms, text in (
+                (at(('RobotAt', 'nowhere')), "'nowhere'"),
+                (at(('On', 'peppermill1', 'trayArea1')), 'RobotAt(area) is missing'),
+                (at(('RobotAt', EAST_COUNTER), ('RobotAt', SOUTH_TABLE)), 'wanted once'),
+                (at(('RobotAt',)), 'with one area')):
+            self.require_invalid(self.goal(updated_fluents=atoms), text)
+
+    def test_an_object_that_is_unknown(self):
+        self.require_invalid(
+            self.goal(updated_fluents=self.fluents(('RobotAt', EAST_COUNTER),
+                                                   ('On', 'pepermill1', 'trayArea1'))),
+            'pepermill1', "'peppermill1'")
+
+    def test_more_objects_than_the_tray_holds(self):
+        on = [('On', name, 'trayArea1') for name in ('peppermill1', 'mug1', 'vase1', 'bowl1')]
+        self.require_invalid(
+            self.goal(updated_fluents=self.fluents(('RobotAt', EAST_COUNTER), *on)), '3 places')
+
+    def test_an_atom_that_is_not_understood(self):
+        self.require_invalid(
+            self.goal(updated_fluents=self.fluents(('RobotAt', EAST_COUNTER), ('Flies', 'mug1'))),
+            'Flies(mug1) is not understood')
+
+    def state_goal(self, x=10.0, y=9.0, yaw=0.0, objects=()):
+        goal = self.goal(updated_fluents=[])
+        goal.world_state.header.frame_id = 'map'
+        goal.robot_state.pose.position.x = x
+        goal.robot_state.pose.position.y = y
+        goal.robot_state.pose.orientation.w = 1.0
+        goal.robot_state.yaw = yaw
+        goal.world_state.objects = list(objects)
+        return goal
+
+    def mill(self, x, y, z, w=1.0, model='peppermill_thesis'):
+        mill = self.msg.ObjectState(name='peppermill1', model=model)
+        mill.pose.position.x, mill.pose.position.y, mill.pose.position.z = x, y, z
+        mill.pose.orientation.w = w
+        return mill
+
+    def test_a_robot_pose_that_is_not_finite_or_far_away(self):
+        for x, text in ((NAN, 'not finite'), (float('inf'), 'not finite'), (1e6, '1000000 m'),
+                        (1e300, 'at most 1000 m')):
+            self.require_invalid(self.state_goal(x=x), 'the robot', text)
+
+    def test_an_object_pose_that_is_not_finite_or_far_away(self):
+        for x, text in ((NAN, 'not finite'), (-1e7, '10000000 m')):
+            self.require_invalid(self.state_goal(objects=[self.mill(x, 0.0, 0.0)]),
+                                 "object 'peppermill1'", text)
+
+    def test_an_object_rotation_that_is_not_finite(self):
+        self.require_invalid(self.state_goal(objects=[self.mill(0.0, 0.0, 0.0, w=NAN)]),
+                             "object 'peppermill1'", 'not finite')
+
+    def test_an_object_velocity_that_is_not_finite(self):
+        mill = self.mill(0.0, 0.0, 0.0)
+        mill.twist.angular.z = NAN
+        self.require_invalid(self.state_goal(objects=[mill]), 'velocity is not finite')
+
+    def test_an_object_of_an_unknown_model(self):
+        self.require_invalid(
+            self.state_goal(objects=[self.mill(0.0, 0.0, 0.0, model='peppermil_thesis')]),
+            'peppermil_thesis', "'peppermill_thesis'")
+
+    def test_joints_that_do_not_pair_up(self):
+        goal = self.state_goal()
+        goal.robot_state.joints.name = ['torso_lift_joint']
+        self.require_invalid(goal, 'robot_state.joints', 'differ in number')
+
+    def test_numbers_of_the_robots_state_that_are_none(self):
+        for field, text in (('yaw', 'robot_state.yaw'), ('twist', 'robot_state.twist'),
+                            ('joint', 'robot_state.joints: position 0')):
+            goal = self.state_goal()
+            if field == 'yaw':
+                goal.robot_state.yaw = NAN
+            elif field == 'twist':
+                goal.robot_state.twist.linear.x = NAN
+            else:
+                goal.robot_state.joints.name = ['torso_lift_joint']
+                goal.robot_state.joints.position = [NAN]
+            self.require_invalid(goal, text, 'not finite')
+
+    def test_a_state_in_another_frame_and_no_state_at_all(self):
+        goal = self.state_goal()
+        goal.world_state.header.frame_id = 'odom_combined'
+        self.require_invalid(goal, "world_state.header.frame_id is 'odom_combined', wanted 'map'")
+        self.require_invalid(self.goal(updated_fluents=[]), "is '', wanted 'map'",
+                             'updated_fluents')
+
+    def test_a_good_state_is_played_as_the_atoms_are(self):
+        goal = self.state_goal(x=6.8, y=10.1, yaw=3.14)
+        goal.robot_state.pose.orientation.z = math.sin(3.14 / 2)
+        goal.robot_state.pose.orientation.w = math.cos(3.14 / 2)
+        with_mill = self.good.predictions[0]
+        without = self.ask(goal).predictions[0]
+        self.assertEqual(without.success_share, with_mill.success_share)
+        self.assertEqual(without.duration_mean, with_mill.duration_mean)
+        self.assertEqual(without.max_tilt_p95, 0.0)
+
+    # The numbers.
+
+    def test_no_rollouts_and_a_million(self):
+        for rollouts in (0, 1000000, 4294967295):
+            self.require_invalid(self.goal(rollouts=rollouts), 'rollouts is',
+                                 'wanted between 1 and 100000')
+
+    def test_a_deadline_in_the_past(self):
+        self.require_invalid(self.goal(deadline=self.rospy.Duration(-1)), 'deadline is -1')
+
+    def test_an_unknown_ranking(self):
+        self.require_invalid(self.goal(ranking='tehsis'), 'tehsis', 'thesis')
+
+    def test_uncertainty_that_cannot_be_read(self):
+        for text, wanted in (
+                ('{', 'uncertainty of the request'),
+                ('object_mas: {distribution: fixed, value: 1, unit: factor, source: x}',
+                 "'object_mass'"),
+                ('object_mass: {distribution: fixed, value: 1, unit: kg, source: x}', 'unit'),
+                ('object_mass: {distribution: fixed, value: .nan, unit: factor, source: x}',
+                 'value'),
+                ('object_mass: 3', 'object_mass'),
+                ('[1, 2]', 'uncertainty of the request'),
+                ('a: &a [*a, *a]', 'uncertainty of the request'),
+                ('[' * 10000, 'uncertainty of the request')):
+            with self.subTest(text=text[:40]):
+                self.require_invalid(self.goal(uncertainty=text), wanted)
+
+    def test_text_of_any_length_and_kind_is_only_text(self):
+        for name in ('x' * 1000000, '{0} %s %n', '\u00e4\u2603', 'a\nb'):
+            result = self.ask(self.goal(name))
+            self.assertEqual(result.outcome, self.msg.ImagineResult.INVALID)
+            self.assertLess(len(result.why), 3000)
+
+    # The world says no.
+
+    def test_a_robot_that_starts_in_collision(self):
+        self.require_invalid(
+            self.goal(updated_fluents=self.fluents(('RobotAt', 'placingAreaWestLeftTable1'))),
+            'robot starts in collision', 'move the start')
+
+    def test_an_object_that_starts_inside_a_table(self):
+        self.require_invalid(self.state_goal(x=6.8, y=10.1, objects=[self.mill(7.48, 11.62, 0.7)]),
+                             "object 'peppermill1' starts inside", 'put it on a free place')
+
+    def test_a_goal_inside_a_table_fails_as_blocked(self):
+        self.require_failure(self.goal('move_base', [['placingAreaWestLeftTable1']]),
+                             'goal_blocked')
+
+    def test_driving_blindly_into_a_table_fails_as_collision(self):
+        self.require_failure(self.goal(alternatives=[['placingAreaWestLeftTable1']]),
+                             'robot_collision')
+
+
+if __name__ == '__main__':
+    rosunit.unitrun('hires', 'imagination_bad_input', ImaginationBadInputTest)
