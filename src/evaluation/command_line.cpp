@@ -226,7 +226,9 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
       app.add_subcommand("doctor", "check this machine and compare the physics with closed forms");
   std::vector<CLI::App*> others;
   for (const Verb& verb : backends.more_verbs) {
-    others.push_back(app.add_subcommand(verb.name, verb.help)->prefix_command());
+    CLI::App* other = app.add_subcommand(verb.name, verb.help)->prefix_command();
+    other->set_help_flag();  // its own parser explains it
+    others.push_back(other);
   }
   try {
     RefuseUnknownVerb(app, arguments);
