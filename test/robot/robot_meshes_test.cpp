@@ -4,7 +4,7 @@
 
 #include "hires/base/error.h"
 #include "hires/robot/robot_model.h"
-#include "temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace hires::robot {
 namespace {
@@ -35,7 +35,7 @@ class RobotMeshes : public ::testing::Test {
     ::setenv("ROS_PACKAGE_PATH", path.c_str(), 1);
   }
 
-  TemporaryFolder folder_;
+  test_support::TemporaryFolder folder_;
 };
 
 TEST_F(RobotMeshes, RelativeToTheUrdf) {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "hires/base/error.h"
-#include "temporary_folder.h"
+#include "support/temporary_folder.h"
 
 namespace hires::robot {
 namespace {
@@ -97,7 +97,7 @@ class RobotProfileFile : public ::testing::Test {
     }
   }
 
-  TemporaryFolder folder_;
+  test_support::TemporaryFolder folder_;
 };
 
 TEST_F(RobotProfileFile, EveryFieldIsRead) {

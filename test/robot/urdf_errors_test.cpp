@@ -3,7 +3,6 @@
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/robot/robot_model.h"
-#include "temporary_folder.h"
 
 namespace hires::robot {
 namespace {
