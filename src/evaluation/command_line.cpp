@@ -234,7 +234,7 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
     RefuseUnknownVerb(app, arguments);
     // CLI11 takes its arguments from the back.
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
-    std::signal(SIGINT, OnInterrupt);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, OnInterrupt);
     if (*imagine) return Imagine(imagine_options, backends);
     if (*experiment_options.verb) {
       return RunExperimentVerb(experiment_options, [] { return interrupted.load(); });

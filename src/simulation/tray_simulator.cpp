@@ -121,6 +121,21 @@ void RefuseUnknownHolder(const world::ObjectState& object, const robot::RobotMod
                   base::UnknownName("link", object.attached_to, robot.LinkNames())));
 }
 
+/// The joints are frozen in the driving posture, but a name that is not the robot's means that
+/// another robot is spoken of.
+void RefuseUnknownJoints(const robot::JointPositions& joints, const robot::RobotModel& robot) {
+  std::vector<std::string> known;
+  for (const robot::Link& link : robot.links) {
+    if (link.joint) known.push_back(link.joint->name);
+  }
+  for (const auto& [name, position] : joints) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw base::ConfigError(
+          fmt::format("robot '{}': {}", robot.name, base::UnknownName("joint", name, known)));
+    }
+  }
+}
+
 /// Loop and leaning are integrated by the semi-implicit Euler method: x'' = -w^2 x - 2 zeta w x'
 /// grows without bounds from (w dt)^2 + 4 zeta w dt = 4 on.
 void RefuseStiff(const char* what, double frequency, double damping, double time_step) {
@@ -171,6 +186,7 @@ TraySimulator::TraySimulator(std::shared_ptr<const Scene> scene, const Variation
   physics_ = std::make_unique<physics::PhysicsWorld>(physics_params);
   RefuseStiff(Varied(scene_->robot.profile.base_controller, variation), time_step());
   RefusePose("the robot", geometry::Lift(robot_state.X_MB));
+  RefuseUnknownJoints(robot_state.joints, scene_->robot.model);
   X_MB_ = LeaningPose(drive_.motion());
   physics_->AddFloor(scene_->world.floor_friction);
   for (const world::StaticBody& body : scene_->world.statics) {

@@ -274,6 +274,17 @@ TEST(TraySimulatorTest, CarriedIsWhatStandsOnTheRobot) {
   EXPECT_THAT(simulator.carried(), ElementsAre(1, 4));
 }
 
+TEST(TraySimulatorTest, RefusesJointsOfAnotherRobot) {
+  robot::RobotState state = StandingAt(kMiddle);
+  state.joints["l_shoulder_pan_joynt"] = 0.1;
+  try {
+    TraySimulator(RoomScene(), {}, {}, state, base::Rng(1));
+    FAIL() << "accepted";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("joint 'l_shoulder_pan_joynt' is unknown"));
+  }
+}
+
 TEST(TraySimulatorTest, RefusesObjectsInEachOtherAndOneNamedTwice) {
   const auto refusal = [](const world::WorldState& state) -> std::string {
     try {
