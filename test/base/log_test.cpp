@@ -68,7 +68,8 @@ TEST_F(LogTest, ASinkMayLogItself) {
     }
   });
   Log(LogLevel::kInfo, "a");
-  EXPECT_THAT(lines_, ElementsAre(Pair(LogLevel::kInfo, "a"), Pair(LogLevel::kWarn, "from within")));
+  EXPECT_THAT(lines_,
+              ElementsAre(Pair(LogLevel::kInfo, "a"), Pair(LogLevel::kWarn, "from within")));
 }
 
 TEST_F(LogTest, NoLineOfManyThreadsIsLost) {
