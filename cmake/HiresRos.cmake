@@ -33,7 +33,8 @@ function(hires_node name)
 endfunction()
 
 # hires_rostest(<file.test> [TIMEOUT seconds]): a rostest that ctest runs and a user can run alone.
-# One at a time: each brings masters and worker processes of its own.
+# One at a time: each brings masters and worker processes of its own. Not in ${CATKIN_ENV}: that is a
+# snapshot taken while configuring, and in a fresh folder it misses the Python messages built later.
 function(hires_rostest file)
   if(NOT HIRES_TESTS)
     return()
@@ -44,7 +45,7 @@ function(hires_rostest file)
   endif()
   get_filename_component(name ${file} NAME_WE)
   add_test(NAME ros.${name}
-    COMMAND ${CATKIN_ENV} rostest ${CMAKE_CURRENT_SOURCE_DIR}/${file} ${ROSTEST_ARGS}
+    COMMAND ${CATKIN_DEVEL_PREFIX}/env.sh rostest ${CMAKE_CURRENT_SOURCE_DIR}/${file} ${ROSTEST_ARGS}
     WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
   set_tests_properties(ros.${name} PROPERTIES
     TIMEOUT ${ROSTEST_TIMEOUT} RUN_SERIAL ON
