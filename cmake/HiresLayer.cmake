@@ -38,6 +38,9 @@ function(hires_test layer name)
   if(NOT TEST_TIMEOUT)
     set(TEST_TIMEOUT 120)
   endif()
+  if(HIRES_SANITIZE)  # up to ten times slower, and nothing to do with hanging
+    math(EXPR TEST_TIMEOUT "10 * ${TEST_TIMEOUT}")
+  endif()
   set_tests_properties(${layer}.${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT} SKIP_RETURN_CODE 77)
 endfunction()
 
