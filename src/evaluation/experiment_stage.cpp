@@ -44,12 +44,7 @@ std::uint64_t HashOf(const ImaginationSetup& setup) {
   hasher.Add(setup.world_hash);
   hasher.Add(setup.scene->world.hash);  // differs from that of the scene file where there is a map
   hasher.Add(setup.robot_hash);
-  for (const auto& [name, distribution] : setup.uncertainty->quantities) {
-    hasher.Add(name);
-    hasher.Add(static_cast<std::uint64_t>(distribution.kind));
-    hasher.Add(distribution.first);
-    hasher.Add(distribution.second);
-  }
+  imagination::AddTo(&hasher, setup.uncertainty->quantities);
   return hasher.value();
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hires/base/check.h"
+#include "hires/base/overloaded.h"
 #include "hires/geometry/angles.h"
 
 namespace hires::geometry {
@@ -11,13 +12,6 @@ namespace {
 
 constexpr int kRoundCorners = 24;
 constexpr double kTinyCorner = 1e-9;  // [m]
-
-template <typename... Fs>
-struct Overloaded : Fs... {
-  using Fs::operator()...;
-};
-template <typename... Fs>
-Overloaded(Fs...) -> Overloaded<Fs...>;
 
 /// Corners of a regular polygon around the circle.
 void AddCircumscribed(double radius, double z, std::vector<Eigen::Vector3d>* corners) {
@@ -148,7 +142,7 @@ Aabb BoundsOf(const Shape& shape, const Pose3& X_WS) {
     return Aabb{X_WS.translation - half, X_WS.translation + half};
   };
   return std::visit(
-      Overloaded{
+      base::Overloaded{
           [&](const Box& box) {
             const Eigen::Matrix3d R_WS = X_WS.rotation.toRotationMatrix();
             return around(R_WS.cwiseAbs() * box.size / 2.0);
@@ -171,15 +165,15 @@ std::optional<Polygon> OutlineInBand(const Shape& shape, const Pose3& X_WS, doub
                                      double z_max) {
   HIRES_CHECK(z_min <= z_max, "a band ends below its beginning");
   std::vector<Eigen::Vector2d> points = std::visit(
-      Overloaded{[&](const Sphere& sphere) {
-                   return CutSphereToBand(sphere, X_WS.translation, z_min, z_max);
-                 },
-                 [&](const std::shared_ptr<const TriangleMesh>& mesh) {
-                   return CutMeshToBand(*mesh, X_WS, z_min, z_max);
-                 },
-                 [&](const auto& box_or_cylinder) {
-                   return CutPolytopeToBand(CornersOf(box_or_cylinder), X_WS, z_min, z_max);
-                 }},
+      base::Overloaded{[&](const Sphere& sphere) {
+                         return CutSphereToBand(sphere, X_WS.translation, z_min, z_max);
+                       },
+                       [&](const std::shared_ptr<const TriangleMesh>& mesh) {
+                         return CutMeshToBand(*mesh, X_WS, z_min, z_max);
+                       },
+                       [&](const auto& box_or_cylinder) {
+                         return CutPolytopeToBand(CornersOf(box_or_cylinder), X_WS, z_min, z_max);
+                       }},
       shape);
   if (!SpansAnArea(points)) return std::nullopt;
   return WithoutTinyCorners(ConvexHull(std::move(points)));

@@ -72,7 +72,7 @@ class LocalWorker {
 Report ImagineLocally(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions,
                       const SchedulerParams& params, int num_threads, const OnInterim& on_interim,
                       const std::function<bool()>& cancelled) {
-  for (const base::ActionCall& action : actions) CheckSetup(setup, action);
+  CheckSetupForAll(setup, actions);
   const double start = SteadySeconds();
   Scheduler scheduler(params, static_cast<int>(actions.size()), start);
   base::Mailbox<Event> events;

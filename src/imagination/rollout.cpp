@@ -146,7 +146,11 @@ RolloutParams ReadRolloutParams(base::ParamReader in) {
 }
 
 void CheckSetup(const RolloutSetup& setup, const base::ActionCall& action) {
-  skills::MakeSkill(*setup.skills, action);
+  CheckSetupForAll(setup, {action});
+}
+
+void CheckSetupForAll(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions) {
+  for (const base::ActionCall& action : actions) skills::MakeSkill(*setup.skills, action);
   TraySimulator(setup.scene, {}, setup.world_state, setup.robot_state, base::Rng(setup.seed),
                 setup.physics);
 }

@@ -87,16 +87,20 @@ Distribution ReadDistribution(base::ParamReader in, const Quantity& quantity) {
 
 std::uint64_t HashOf(const std::map<std::string, Distribution>& quantities) {
   base::Hasher hasher;
-  for (const auto& [name, distribution] : quantities) {
-    hasher.Add(name);
-    hasher.Add(static_cast<std::uint64_t>(distribution.kind));
-    hasher.Add(distribution.first);
-    hasher.Add(distribution.second);
-  }
+  AddTo(&hasher, quantities);
   return hasher.value();
 }
 
 }  // namespace
+
+void AddTo(base::Hasher* hasher, const std::map<std::string, Distribution>& quantities) {
+  for (const auto& [name, distribution] : quantities) {
+    hasher->Add(name);
+    hasher->Add(static_cast<std::uint64_t>(distribution.kind));
+    hasher->Add(distribution.first);
+    hasher->Add(distribution.second);
+  }
+}
 
 double Distribution::Sample(base::Rng* rng) const {
   if (kind == Kind::kFixed) return first;

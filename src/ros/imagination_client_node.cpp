@@ -6,6 +6,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
+#include "hires/base/overloaded.h"
 #include "hires/imagination/report.h"
 #include "hires/imagination/rollout.h"
 #include "hires/ros/conversions.h"
@@ -21,13 +22,6 @@ namespace imagination = hires::imagination;
 
 constexpr double kTickPeriod = 0.02;       // [s]
 constexpr std::size_t kLongestWhy = 2000;  // bytes
-
-template <typename... Fs>
-struct Overloaded : Fs... {
-  using Fs::operator()...;
-};
-template <typename... Fs>
-Overloaded(Fs...) -> Overloaded<Fs...>;
 
 /// The scheduler's clock: the deadline is in ROS time where that is simulated; the wall's ROS time
 /// may jump, so there the steady clock counts.
@@ -161,8 +155,8 @@ void ImaginationClientNode::OnWorkerEvent(int worker, const WorkerLink::Event& e
   const auto log = [&](const std::string& what) {
     hires::base::Log(hires::base::LogLevel::kInfo, fmt::format("worker={} {}", worker, what));
   };
-  std::visit(
-      Overloaded{[&](const WorkerLink::Joined&) {
+  std::visit(hires::base::Overloaded{
+                 [&](const WorkerLink::Joined&) {
                    log("joined");
                    for (auto& s : sessions_) Feed(s.get(), imagination::WorkerJoined{worker});
                  },
@@ -190,7 +184,7 @@ void ImaginationClientNode::OnWorkerEvent(int worker, const WorkerLink::Event& e
                    with_session(e.session, imagination::AssignmentFailed{worker, e.assignment,
                                                                          e.reason, e.is_unusable});
                  }},
-      event);
+             event);
 }
 
 hires::RolloutGoal ImaginationClientNode::RolloutGoalFor(const Session& session,

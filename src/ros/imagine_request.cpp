@@ -72,7 +72,7 @@ ImagineRequest RequestOf(const hires::ImagineGoal& goal, const imagination::Imag
         imagination::UncertaintyFromText(goal.uncertainty, "uncertainty of the request"));
   }
   request.params = ParamsOf(goal, defaults);
-  for (const auto& action : request.actions) imagination::CheckSetup(request.setup, action);
+  imagination::CheckSetupForAll(request.setup, request.actions);
   return request;
 }
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "hires/base/action.h"
 #include "hires/base/param_reader.h"
@@ -43,6 +44,8 @@ struct RolloutSetup {
 /// Refuses what could not be played: unknown action, area, motion set, model; poses that make no
 /// sense; a nominal start in collision.  @throws base::ConfigError saying what.
 void CheckSetup(const RolloutSetup& setup, const base::ActionCall& action);
+/// The same for alternatives of one request: their common start is looked at once.
+void CheckSetupForAll(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions);
 
 /// What a caller may want to know while a rollout is played; both may be empty.
 struct RolloutHooks {

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 
+#include "hires/base/hash.h"
 #include "hires/base/rng.h"
 #include "hires/simulation/variation.h"
 
@@ -34,6 +35,9 @@ struct Uncertainty {
 Uncertainty LoadUncertainty(const std::string& path);
 Uncertainty ParseUncertainty(const std::string& yaml, const std::string& where);
 Uncertainty NoUncertainty();  ///< everything exactly nominal
+
+/// What makes two uncertainties the same: names and distributions.
+void AddTo(base::Hasher* hasher, const std::map<std::string, Distribution>& quantities);
 
 /// `text` is "none", or YAML as above.
 Uncertainty UncertaintyFromText(const std::string& text, const std::string& where);
