@@ -1,0 +1,145 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hires/planning/datum.h"
+
+namespace hires::planning {
+
+/// A logical expression over a state, in SHOP2's terms; HDDL's translate into the same.
+struct Formula {
+  enum class Kind {
+    kSequence,  ///< a plain list of goals: each in its order, bindings in the list's order
+    kAnd,       ///< the word `and`: as a sequence, but SHOP tries its bindings the other way round
+    kOr,        ///< parts
+    kNot,       ///< parts[0]
+    kImply,     ///< parts[0] (ground when reached) implies parts[1]
+    kForall,    ///< for all `variables` that satisfy parts[0], parts[1] holds
+    kExists,    ///< for some `variables` that satisfy parts[0], parts[1] holds
+    kAtom,      ///< `term`: (predicate arguments...), by facts and axioms
+    kGoal,      ///< `term`: a variable that stands for an atom when it is reached
+    kEqual,     ///< HDDL's built-in (= a b): `term` is that list. SHOP2's `=` is a plain atom
+    kAssign,    ///< variable `term` becomes the value of `expression`
+    kAssignEach,  ///< variable `term` becomes each member of the value of `expression` (assign*)
+    kEval,        ///< the value of `expression` is not nil (eval, call)
+    kSetOf,       ///< variable `expression` becomes the list of all `term` with parts[0], once each
+    kBagOf,       ///< the same with repetitions
+  };
+
+  Kind kind{Kind::kSequence};
+  std::vector<Formula> parts;
+  std::vector<std::string> variables;  ///< of kForall and kExists, with their `?`
+  Datum term;
+  Datum expression;
+  Place place;
+};
+
+/// A condition and the order in which its bindings are tried.
+struct Precondition {
+  enum class Order {
+    kAll,     ///< every binding, oldest fact first
+    kFirst,   ///< one binding, newest fact first (:first)
+    kSortBy,  ///< every binding, ordered by `sort_key` under `comparison` (:sort-by)
+  };
+  Order order{Order::kAll};
+  Datum sort_key;               ///< expression
+  std::string comparison{"<"};  ///< name of a function of two values
+  Formula condition;
+};
+
+/// A change of the state, or of the protections.
+struct Effect {
+  enum class Kind {
+    kAtom,        ///< `term` is an atom
+    kList,        ///< `term` is a variable bound to a list of atoms
+    kProtection,  ///< `term` is an atom: protected from now on, or (as a delete) no more
+    kForall,      ///< `effects` for each binding of `condition` before the step (forall, when)
+  };
+  Kind kind{Kind::kAtom};
+  Datum term;
+  Formula condition;
+  std::vector<Effect> effects;
+  Place place;
+};
+
+struct Operator {
+  Datum head;  ///< (!name arguments...); arguments are variables, constants or lists of them
+  Precondition precondition;  ///< one binding is used: the newest fact first
+  std::vector<Effect> deletes;
+  std::vector<Effect> adds;
+  Datum cost;  ///< expression; 1 where nothing is said
+  Place place;
+};
+
+struct TaskNetwork;
+
+/// A task or a network within a network.
+struct TaskItem {
+  Datum task;                        ///< (name arguments...), when `network` is empty
+  bool immediate{false};             ///< goes before every task that is not
+  std::vector<TaskNetwork> network;  ///< none or one
+  Place place;
+};
+
+/// Tasks and the order between them. `(:ordered a b c)` has the order {(0, 1), (1, 2)},
+/// `(:unordered a b c)` has none; HDDL may order its tasks in any way that has no cycle.
+struct TaskNetwork {
+  std::vector<TaskItem> items;
+  std::vector<std::pair<int, int>> order;  ///< (before, after), indices of items
+};
+
+/// One `if` of a method's if-then-else.
+struct Branch {
+  std::string label;  ///< "" where the domain gives none
+  Precondition precondition;
+  TaskNetwork subtasks;
+  Place place;
+};
+
+struct Method {
+  std::string name;  ///< HDDL's, or SHOP3's; "" where the domain gives none
+  Datum head;        ///< (task arguments...)
+  std::vector<Branch> branches;
+  Place place;
+};
+
+/// `head` holds where a branch does; the first branch that can be proven is the only one used.
+struct Axiom {
+  struct Branch {
+    std::string label;
+    bool first{false};  ///< `:first`: one proof, newest fact first
+    Formula condition;
+  };
+  Datum head;
+  std::vector<Branch> branches;
+  Place place;
+};
+
+/// What can be done, as a file describes it. Constant once read.
+struct Domain {
+  enum class Language { kShop2, kHddl };
+
+  std::string name;
+  std::string source;  ///< file, for messages
+  Language language{Language::kShop2};
+  std::vector<Operator> operators;
+  std::vector<Method> methods;  ///< in the order in which they are tried
+  std::vector<Axiom> axioms;
+  std::vector<Datum> facts;  ///< hold in every state: HDDL's constants with their types
+};
+
+/// What is to be done, and from where.
+struct Problem {
+  std::string name;
+  std::string domain;  ///< name of the domain it is written for
+  std::string source;
+  std::vector<Datum> facts;  ///< ground atoms, oldest first; repeated ones count once
+  Precondition parameters;   ///< binds variables of `tasks` (HDDL's :htn :parameters); else empty
+  TaskNetwork tasks;
+  std::optional<Formula> goal;  ///< must hold in the end (HDDL's :goal)
+};
+
+}  // namespace hires::planning

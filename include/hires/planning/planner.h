@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hires/planning/domain.h"
+#include "hires/planning/functions.h"
+#include "hires/planning/plan.h"
+
+namespace hires::planning {
+
+/// How far a search is; the caller sees it with every question.
+struct Progress {
+  std::uint64_t expansions{0};  ///< tasks decomposed or applied
+  std::uint64_t inferences{0};  ///< goals taken up by the prover
+  int depth{0};                 ///< decompositions and steps on the current path
+  double cost{0.0};             ///< of the current path
+  std::size_t bytes{0};         ///< memory held by the search
+  int plans{0};                 ///< found so far
+};
+
+/// The caller's answer to "shall I go on?".
+enum class Stop { kContinue, kTime, kMemory, kCancelled };
+using StopQuestion = std::function<Stop(const Progress&)>;
+
+/// Stops when the search holds more than `max_bytes`; `next` is asked first.
+StopQuestion WithMemoryLimit(std::size_t max_bytes, StopQuestion next = {});
+
+enum class Which { kFirst, kAll, kBest };
+
+struct PlanRequest {
+  Which which{Which::kFirst};
+  std::size_t max_plans{1000};                               ///< kAll stops there
+  int max_depth{1'000'000};                                  ///< longer paths are given up
+  double max_cost{std::numeric_limits<double>::infinity()};  ///< dearer paths are given up
+  bool loop_check{true};     ///< give up paths that come back to a state and task network
+  std::size_t max_trace{0};  ///< reasons kept, the latest ones; 0 keeps none
+  StopQuestion stop;         ///< asked at least every 256 expansions or 4096 inferences
+};
+
+enum class PlanOutcome {
+  kFound,   ///< kFirst: a plan; kAll: all there are, or max_plans; kBest: the cheapest
+  kNoPlan,  ///< there is none, proven by exhausting the search
+  kLimitTime,
+  kLimitMemory,
+  kCancelled,  ///< stopped by the caller; plans found so far are given
+  kLimitDepth,
+  kLimitCost,  ///< none found, and paths were given up for that reason
+};
+std::string_view ToString(PlanOutcome outcome);  ///< "found", "no_plan", "limit_time", ...
+
+/// Why a path was given up.
+struct TraceEntry {
+  int depth{0};
+  std::string task;    ///< as instantiated
+  std::string where;   ///< operator or method with its branch, and the line in the domain
+  std::string reason;  ///< "no fact or axiom matches goal 3 (on ?x b2) with ?x = b1"
+};
+
+struct PlanResult {
+  PlanOutcome outcome{PlanOutcome::kNoPlan};
+  bool exhausted{false};    ///< the whole search space was seen, so there are no other plans
+  std::vector<Plan> plans;  ///< kBest: the cheapest alone
+  Progress progress;        ///< at the end; bytes: the most that were ever held
+  std::vector<TraceEntry> trace;
+};
+
+/// Searches for plans with SHOP2's semantics: tasks are decomposed in the order in which their
+/// steps will be executed, so that the state is known at every moment. Deterministic: the same
+/// domain, problem and request give the same result. The steps of the plans carry task, cost,
+/// bindings and node; AddReasons (reasons.h) fills in preconditions, effects and causal links. A
+/// step that matches a fact (imagined_failure action arguments...) of its state is refused.
+/// @throws ConfigError where domain and problem do not fit (unknown task, wrong number of
+/// arguments,
+///   a function that fails), naming file and line.
+/// Source: Nau et al. 2003, J. Artif. Intell. Res. 20:379-404; order of bindings as SHOP3 4.3.
+PlanResult FindPlans(const Domain& domain, const Problem& problem, const PlanRequest& request = {},
+                     const Functions& functions = Functions::Standard());
+
+}  // namespace hires::planning
