@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hires/planning/datum.h"
+
+namespace hires::planning {
+
+/// What a text may ask of the reader. Beyond it reading ends with an error, early and in bounded
+/// memory.
+struct ReaderLimits {
+  std::size_t max_bytes{64u << 20};  ///< of the text
+  int max_depth{1000};               ///< parentheses (and quotes) open at the same time
+  std::size_t max_symbol{1000};      ///< characters of a symbol, a variable or a number
+  std::size_t max_data{5'000'000};   ///< symbols, numbers, strings and lists
+};
+
+/// Reads Lisp data as SHOP2 and HDDL files hold them, whatever they may mean: lists, dotted lists,
+/// symbols, keywords `:x` (symbols that keep their colon), variables `?x`, integers, reals, ratios
+/// (as reals), strings, `'x` `` `x `` `,x` `#'f` as (quote x) (backquote x) (unquote x)
+/// (function f), comments `;` and `#| |#`. Letters become lower case, except in strings.
+/// @param source  File, for messages.
+/// @throws base::ConfigError naming source:line:column, what came, what was wanted, what to do.
+std::vector<Datum> ReadData(std::string_view text, const std::string& source,
+                            const ReaderLimits& limits = {});
+
+/// A datum for a message, on one line and at most about 60 characters long. Constant time.
+std::string Excerpt(const Datum& datum);
+
+/// "source:line:column: text" as ConfigError, for whoever makes sense of the data.
+[[noreturn]] void FailAt(const std::string& source, Place place, const std::string& text);
+
+}  // namespace hires::planning

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hires/planning/domain.h"
+
+namespace hires::planning {
+
+/// The language of a planning file by its first words: SHOP2's (defdomain ...), (defproblem ...),
+/// (make-problem ...), (in-package ...); HDDL's (define ...). An empty text is SHOP2's.
+/// @throws base::ConfigError if it is neither.
+Domain::Language LanguageOf(std::string_view text, const std::string& source);
+
+/// The domain in a file of either language.
+/// @throws base::ConfigError naming file, line, column and remedy.
+Domain LoadDomain(const std::string& path);
+
+/// The problems in a file of the language of `domain`: one in HDDL, one or more in SHOP2. Their
+/// tasks are checked against the domain.
+/// @throws base::ConfigError as above, also where file and domain are of different languages.
+std::vector<Problem> LoadProblems(const std::string& path, const Domain& domain);
+
+}  // namespace hires::planning

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hires/planning/domain.h"
+
+namespace hires::planning {
+
+/// The only `defdomain` of a text in SHOP2's language; problems beside it are left alone.
+/// Data of the file cannot run anything. All errors are base::ConfigError and name
+/// source:line:column, the construct ("method 'serve_cup', branch 2"), what came, what was wanted
+/// and what to do: wrong forms, names of operators and methods, doubled operators, tasks that
+/// nothing handles or that come with the wrong number of arguments, adds whose variables nothing
+/// binds.
+Domain ReadShop2Domain(std::string_view text, const std::string& source);
+
+/// All problems (`defproblem`, `make-problem`) of a text, in its order; a domain beside them is
+/// left alone. Facts must be ground. Whether the tasks exist is told by CheckTasks.
+/// @throws base::ConfigError as above, also where there is no problem at all.
+std::vector<Problem> ReadShop2Problems(std::string_view text, const std::string& source);
+
+/// Every task of `problem` has an operator or a method in `domain` that takes its arguments.
+/// @throws base::ConfigError naming the task and the nearest names.
+void CheckTasks(const Problem& problem, const Domain& domain);
+
+}  // namespace hires::planning
