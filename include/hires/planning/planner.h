@@ -22,6 +22,7 @@ struct Progress {
   double cost{0.0};             ///< of the current path
   std::size_t bytes{0};         ///< memory held by the search
   int plans{0};                 ///< found so far
+  double best_cost{std::numeric_limits<double>::infinity()};  ///< of the plans found so far
 };
 
 /// The caller's answer to "shall I go on?".
