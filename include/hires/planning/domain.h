@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -118,6 +119,8 @@ struct Axiom {
   Place place;
 };
 
+struct HddlVocabulary;
+
 /// What can be done, as a file describes it. Constant once read.
 struct Domain {
   enum class Language { kShop2, kHddl };
@@ -129,6 +132,9 @@ struct Domain {
   std::vector<Method> methods;  ///< in the order in which they are tried
   std::vector<Axiom> axioms;
   std::vector<Datum> facts;  ///< hold in every state: HDDL's constants with their types
+  /// What an HDDL domain declares (types, predicates, tasks), for the reader of its problems; else
+  /// null.
+  std::shared_ptr<const HddlVocabulary> vocabulary;
 };
 
 /// What is to be done, and from where.
