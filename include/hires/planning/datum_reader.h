@@ -13,8 +13,9 @@ namespace hires::planning {
 /// memory.
 struct ReaderLimits {
   std::size_t max_bytes{64u << 20};  ///< of the text
-  int max_depth{1000};               ///< parentheses (and quotes) open at the same time
-  std::size_t max_symbol{1000};      ///< characters of a symbol, a variable or a number
+  int max_depth{1000};               ///< parentheses and quotes open at the same time
+  std::size_t max_symbol{1000};      ///< bytes of a symbol, a variable or a number
+  std::size_t max_string{1u << 20};  ///< bytes of a string
   std::size_t max_data{5'000'000};   ///< symbols, numbers, strings and lists
 };
 
@@ -27,10 +28,11 @@ struct ReaderLimits {
 std::vector<Datum> ReadData(std::string_view text, const std::string& source,
                             const ReaderLimits& limits = {});
 
-/// A datum for a message, on one line and at most about 60 characters long. Constant time.
+/// A datum for a message: on one line, at most 60 bytes, cut where it is longer. Takes no longer
+/// for a huge datum than for a small one.
 std::string Excerpt(const Datum& datum);
 
-/// "source:line:column: text" as ConfigError, for whoever makes sense of the data.
+/// Throws "source:line:column: text" as ConfigError, for whoever makes sense of the data.
 [[noreturn]] void FailAt(const std::string& source, Place place, const std::string& text);
 
 }  // namespace hires::planning

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "hires/planning/datum.h"
+
+namespace hires::planning {
+
+/// As ToString, cut after `at_most` bytes; takes no longer than they need.
+std::string ToString(const Datum& datum, std::size_t at_most);
+
+/// What a plain token, one without bars and backslashes, means.
+enum class TokenKind { kSymbol, kVariable, kInteger, kReal, kRatio, kDots };
+TokenKind KindOfToken(std::string_view token);
+
+/// A symbol of this name must be written |name|, or it would read as something else.
+bool NeedsBars(std::string_view name);
+
+/// Ends a token where it stands: white space, parentheses, quotes, a comma, a semicolon.
+bool EndsToken(char c);
+
+/// Bytes of the longest beginning of `text` that is UTF-8.
+std::size_t ValidUtf8Length(std::string_view text);
+
+}  // namespace hires::planning
