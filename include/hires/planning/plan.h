@@ -56,7 +56,12 @@ struct Plan {
   double cost{0.0};
 };
 
-/// Names of the tasks above a step, the root's first: "serve_coffee/move_object/put_object".
+/// Names of the tasks above a step, the root's first: "serve_coffee/move_object/put_object". Empty
+/// for a step that the problem itself asks for.
+/// @pre `step` is an index into plan.steps.  @throws std::logic_error if broken.
 std::string DecompositionPath(const Plan& plan, int step);
+
+/// One ground operator a line, as SHOP writes plans: "(!pickup kiwi)\n".
+std::string ToShop2Plan(const Plan& plan);
 
 }  // namespace hires::planning
