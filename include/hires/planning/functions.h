@@ -51,6 +51,8 @@ class Functions {
   std::vector<Entry> entries_;  ///< sorted by name
 };
 
+struct CompiledExpression;  // expression_node.h
+
 /// Gives the values of a domain's variables while an expression is evaluated.
 class VariableValues {
  public:
@@ -65,6 +67,7 @@ class VariableValues {
 /// `?variable` stands for its value, quoted or not (as SHOP substitutes before Lisp evaluates).
 class Expression {
  public:
+  /// @param terms    The table that every evaluation uses; the expression keeps terms of it.
   /// @param slot_of  Number of a variable `?x` of the surrounding clause.
   /// @param source   File, for messages.
   /// @throws ConfigError naming file, line and column: unknown function (with the nearest names),
@@ -75,14 +78,13 @@ class Expression {
   Expression& operator=(Expression&&) noexcept;
   ~Expression();
 
+  /// One evaluation at a time.
   /// @throws ConfigError naming file, line and column where a function refuses its arguments, a
   ///   variable that it needs is unbound, or the expression nests or grows beyond all measure.
   Term Evaluate(TermTable* terms, VariableValues* variables) const;
 
  private:
-  struct Node;
-  std::unique_ptr<Node> root_;
-  std::string source_;
+  std::unique_ptr<CompiledExpression> compiled_;
 };
 
 }  // namespace hires::planning
