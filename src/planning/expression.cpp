@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "hires/base/error.h"
 #include "hires/planning/datum_reader.h"
 #include "hires/planning/expression_compiler.h"
 #include "hires/planning/expression_node.h"
@@ -108,6 +109,8 @@ class Evaluation {
                  : ApplyListForm(node.list_form, node.callable, terms_, node.arguments,
                                  expression_.true_term);
     } catch (const EvaluationError& error) {
+      Fail(node, error.what());
+    } catch (const base::ConfigError& error) {  // of the terms: lists that nest too deep
       Fail(node, error.what());
     }
   }
