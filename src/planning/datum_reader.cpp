@@ -41,6 +41,7 @@ class DataReader {
       : text_(text), source_(source), limits_(limits) {}
 
   std::vector<Datum> Read();
+  std::string FirstWord();
 
  private:
   bool AtEnd() const { return position_ == text_.size(); }
@@ -53,6 +54,7 @@ class DataReader {
   [[noreturn]] void Fail(const std::string& text) const { FailAt(source_, here_, text); }
   [[noreturn]] void FailUnclosed() const;
 
+  void Begin();
   void CheckSize() const;
   bool SkipBlanks();
   void SkipLine();
@@ -92,11 +94,24 @@ class DataReader {
 };
 
 std::vector<Datum> DataReader::Read() {
-  CheckSize();
-  if (StartsWith("\xEF\xBB\xBF")) position_ += 3;  // a byte order mark, as some editors write
+  Begin();
   while (SkipBlanks()) ReadOne();
   if (!open_.empty()) FailUnclosed();
   return std::move(data_);
+}
+
+std::string DataReader::FirstWord() {
+  Begin();
+  std::string word;
+  if (!SkipBlanks() || Next() != '(' || !SkipBlanks()) return word;
+  ReadTokenText(&word);
+  CheckText(word, here_);
+  return word;
+}
+
+void DataReader::Begin() {
+  CheckSize();
+  if (StartsWith("\xEF\xBB\xBF")) position_ += 3;  // a byte order mark, as some editors write
 }
 
 void DataReader::CheckSize() const {
@@ -438,6 +453,11 @@ Datum DataReader::RatioDatum(std::string_view token, Place place) const {
 std::vector<Datum> ReadData(std::string_view text, const std::string& source,
                             const ReaderLimits& limits) {
   return DataReader(text, source, limits).Read();
+}
+
+std::string FirstWord(std::string_view text, const std::string& source) {
+  const ReaderLimits limits;
+  return DataReader(text, source, limits).FirstWord();
 }
 
 std::string Excerpt(const Datum& datum) {

@@ -16,7 +16,7 @@ struct ReaderLimits {
   int max_depth{1000};               ///< parentheses and quotes open at the same time
   std::size_t max_symbol{1000};      ///< bytes of a symbol, a variable or a number
   std::size_t max_string{1u << 20};  ///< bytes of a string
-  std::size_t max_data{5'000'000};   ///< symbols, numbers, strings and lists
+  std::size_t max_data{2'000'000};   ///< symbols, numbers, strings and lists
 };
 
 /// Reads Lisp data as SHOP2 and HDDL files hold them, whatever they may mean: lists, dotted lists,
@@ -27,6 +27,10 @@ struct ReaderLimits {
 /// @throws base::ConfigError naming source:line:column, what came, what was wanted, what to do.
 std::vector<Datum> ReadData(std::string_view text, const std::string& source,
                             const ReaderLimits& limits = {});
+
+/// The symbol after the first parenthesis, which tells what kind of file it is; "" if there is
+/// none. Reads no further. @throws base::ConfigError as above.
+std::string FirstWord(std::string_view text, const std::string& source);
 
 /// A datum for a message: on one line, at most 60 bytes, cut where it is longer. Takes no longer
 /// for a huge datum than for a small one.

@@ -8,9 +8,9 @@
 
 namespace hires::planning {
 
-/// The language of a planning file by its first words: SHOP2's (defdomain ...), (defproblem ...),
-/// (make-problem ...), (in-package ...); HDDL's (define ...). An empty text is SHOP2's.
-/// @throws base::ConfigError if it is neither.
+/// The language of a planning file by its first word: SHOP2's (defdomain ...), (defproblem ...),
+/// (make-problem ...), (in-package ...); HDDL's (define ...).
+/// @throws base::ConfigError if it begins with anything else.
 Domain::Language LanguageOf(std::string_view text, const std::string& source);
 
 /// The domain in a file of either language.

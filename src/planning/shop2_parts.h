@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "hires/planning/domain.h"
+
+namespace hires::planning::shop2 {
+
+/// What is being read, for messages: "method 'serve_cup', branch 2" in a file.
+struct Construct {
+  const std::string& source;
+  std::string name;
+};
+
+/// Throws "source:line:column: construct: text".
+[[noreturn]] void Fail(const Construct& in, Place place, const std::string& text);
+/// "came '(on a b)', wanted ..." at the place of `datum`.
+[[noreturn]] void FailAbout(const Construct& in, const Datum& datum, std::string_view wanted);
+
+/// Gives every anonymous variable, `?` or `?_...`, a name of its own, and so does it with variables
+/// of `forall` and `exists`, which are nobody else's. New names hold a `#`.
+Datum WithOwnNames(Datum item);
+
+/// A word that means a formula, so that no fact, axiom or effect may have its name.
+bool IsLogicalWord(std::string_view word);
+
+/// Checks "(name arguments...)", possibly dotted, with a symbol as name that is no keyword.
+void CheckTerm(const Construct& in, const Datum& datum, std::string_view wanted);
+/// The same for atoms, whose name is no logical word either.
+void CheckAtom(const Construct& in, const Datum& datum, std::string_view wanted);
+
+/// An expression without SHOP's word `call`: (call + ?x 1) is (+ ?x 1).
+Datum ReadExpression(Datum datum);
+
+Precondition ReadPrecondition(const Construct& in, const Datum& datum);
+/// `:op` and axioms read two goals and more as if `and` stood before them.
+Precondition ReadConjunction(const Construct& in, const Datum& datum);
+
+std::vector<Effect> ReadEffects(const Construct& in, const Datum& datum);
+TaskNetwork ReadNetwork(const Construct& in, const Datum& datum);
+
+Operator ReadOperator(const std::string& source, const Datum& item);
+Method ReadMethod(const std::string& source, const Datum& item);
+Axiom ReadAxiom(const std::string& source, const Datum& item);
+
+/// Variables of a datum are appended, as often as they stand there.
+void CollectVariables(const Datum& datum, std::vector<std::string>* variables);
+
+/// Operators once each, adds bound, tasks handled.
+void CheckDomain(const Domain& domain);
+
+}  // namespace hires::planning::shop2
