@@ -82,20 +82,22 @@ class Handlers {
   }
 
   [[noreturn]] void FailUnknown(const Construct& in, const std::string& name, Place place) const {
+    const std::vector<std::string> names = NamesLike(name);
+    const std::string text = names.empty() ? fmt::format("task '{}' is unknown", name)
+                                           : base::UnknownName("task", name, names);
     Fail(in, place,
-         base::UnknownName("task", name, NamesLike(name)) +
-             " Write an operator or a method for it, or correct its name.");
+         text + (names.empty() ? "; write" : " Write") +
+             " an operator or a method for it, or correct its name");
   }
 
   /// Comparing names takes time with their lengths and number, and files come from anywhere.
   std::vector<std::string> NamesLike(const std::string& name) const {
     constexpr std::size_t kMaxNames = 1000;
-    constexpr std::size_t kMaxDifference = 10;
+    constexpr std::size_t kMaxLength = 100;
     std::vector<std::string> names;
     for (const auto& [known, handlers] : handlers_) {
-      const std::size_t longer = std::max(known.size(), name.size());
-      const std::size_t shorter = std::min(known.size(), name.size());
-      if (names.size() < kMaxNames && longer - shorter <= kMaxDifference) names.push_back(known);
+      if (names.size() == kMaxNames || name.size() > kMaxLength) break;
+      if (known.size() <= kMaxLength) names.push_back(known);
     }
     return names;
   }

@@ -58,7 +58,8 @@ void ReadParts(const Construct& in, const Datum& item, Operator* op) {
   const std::size_t count = item.items.size() - 2;
   if (count < 2 || count > 4) {
     Fail(in, item.place,
-         fmt::format("has {} parts after its head, wanted 2 to 4: {}", count, kOperatorWanted));
+         fmt::format("number of parts after its head: {}, wanted 2 to 4 as in {}", count,
+                     kOperatorWanted));
   }
   const bool is_old_with_cost = count == 3 && IsNumber(item.items[4]);
   const bool has_precondition = count == 4 || (count == 3 && !is_old_with_cost);

@@ -11,6 +11,8 @@ constexpr std::string_view kNetworkWanted =
     "nil, a task (name arguments...), (:task [:immediate] name arguments...), a list of tasks, "
     "(:ordered tasks...) or (:unordered tasks...)";
 
+constexpr std::string_view kTaskWanted = "a task (name arguments...) whose name is a symbol";
+
 /// In a task, ,(f ?x) asks for a value as (call f ?x) does, and ,?x is ?x.
 void ReplaceUnquotes(Datum* term) {
   for (Datum& item : term->items) ReplaceUnquotes(&item);
@@ -25,9 +27,10 @@ void ReplaceUnquotes(Datum* term) {
 
 /// (name arguments...) whose name stands at `first` in `datum`.
 Datum TaskTerm(const Construct& in, const Datum& datum, std::size_t first) {
+  if (datum.items.size() <= first) FailAbout(in, datum, kTaskWanted);
   Datum task = datum;
   task.items.erase(task.items.begin(), task.items.begin() + static_cast<std::ptrdiff_t>(first));
-  CheckTerm(in, task, "a task (name arguments...) whose name is a symbol");
+  CheckTerm(in, task, kTaskWanted);
   ReplaceUnquotes(&task);
   return task;
 }
