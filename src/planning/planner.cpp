@@ -1,1 +1,45 @@
-// Written in the next step.
+#include "hires/planning/planner.h"
+
+#include <utility>
+
+#include "hires/planning/program.h"
+#include "hires/planning/search.h"
+
+namespace hires::planning {
+
+std::string_view ToString(PlanOutcome outcome) {
+  switch (outcome) {
+    case PlanOutcome::kFound:
+      return "found";
+    case PlanOutcome::kNoPlan:
+      return "no_plan";
+    case PlanOutcome::kLimitTime:
+      return "limit_time";
+    case PlanOutcome::kLimitMemory:
+      return "limit_memory";
+    case PlanOutcome::kCancelled:
+      return "cancelled";
+    case PlanOutcome::kLimitDepth:
+      return "limit_depth";
+    case PlanOutcome::kLimitCost:
+      return "limit_cost";
+  }
+  return "";
+}
+
+StopQuestion WithMemoryLimit(std::size_t max_bytes, StopQuestion next) {
+  return [max_bytes, next = std::move(next)](const Progress& progress) {
+    const Stop answer = next ? next(progress) : Stop::kContinue;
+    if (answer != Stop::kContinue) return answer;
+    return progress.bytes > max_bytes ? Stop::kMemory : Stop::kContinue;
+  };
+}
+
+PlanResult FindPlans(const Domain& domain, const Problem& problem, const PlanRequest& request,
+                     const Functions& functions) {
+  TermTable terms;
+  const Program program(domain, problem, functions, &terms);
+  return Search(program, &terms, request).Run();
+}
+
+}  // namespace hires::planning

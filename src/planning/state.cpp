@@ -1,1 +1,169 @@
-// Written in the next step.
+#include "hires/planning/state.h"
+
+#include <algorithm>
+
+#include "hires/base/check.h"
+
+namespace hires::planning {
+namespace {
+
+constexpr std::size_t kFirstSlots = 1024;
+
+/// One number for what a chain has in common. Never 0, which marks an empty slot.
+std::uint64_t ChainKey(std::uint8_t key, Term predicate, Term argument) {
+  return (std::uint64_t{predicate.bits()} << 33) ^ (std::uint64_t{argument.bits()} << 2) ^
+         (key + 1);
+}
+
+std::uint64_t Spread(std::uint64_t key) {
+  key *= 0x9e3779b97f4a7c15ULL;
+  return key ^ (key >> 29);
+}
+
+}  // namespace
+
+State::State(TermTable* terms) : terms_(terms), slots_(kFirstSlots) {}
+
+// A pair's number is never given back while a fact refers to it, so it finds the fact directly.
+std::uint32_t State::Find(Term atom) const {
+  return atom.IsPair() && atom.index() < present_.size() ? present_[atom.index()] : kNone;
+}
+
+bool State::Holds(Term atom) const { return Find(atom) != kNone; }
+
+void State::SetPresent(Term atom, std::uint32_t fact) {
+  if (atom.index() >= present_.size()) {
+    present_.resize(std::max<std::size_t>(atom.index() + 1, 2 * present_.size()), kNone);
+  }
+  present_[atom.index()] = fact;
+}
+
+std::size_t State::SlotOf(std::uint64_t key) const {
+  const std::size_t mask = slots_.size() - 1;
+  std::size_t slot = Spread(key) & mask;
+  while (slots_[slot].key != 0 && slots_[slot].key != key) slot = (slot + 1) & mask;
+  return slot;
+}
+
+std::uint32_t State::FindChain(std::uint8_t key, Term predicate, Term argument) const {
+  return slots_[SlotOf(ChainKey(key, predicate, argument))].chain;
+}
+
+std::uint32_t State::ChainOf(std::uint8_t key, Term predicate, Term argument) {
+  const std::uint64_t wanted = ChainKey(key, predicate, argument);
+  std::size_t slot = SlotOf(wanted);
+  if (slots_[slot].key == wanted) return slots_[slot].chain;
+  if (2 * (used_slots_ + 1) > slots_.size()) {
+    std::vector<Slot> old(2 * slots_.size());
+    old.swap(slots_);
+    for (const Slot& entry : old) {
+      if (entry.key != 0) slots_[SlotOf(entry.key)] = entry;
+    }
+    slot = SlotOf(wanted);
+  }
+  slots_[slot] = {wanted, static_cast<std::uint32_t>(chains_.size())};
+  chains_.emplace_back();
+  ++used_slots_;
+  return slots_[slot].chain;
+}
+
+void State::Link(std::uint32_t fact) {
+  for (std::uint8_t key = 0; key < 3; ++key) {
+    const Links& links = facts_[fact].links[key];
+    if (links.chain == kNone) continue;
+    Ends& ends = chains_[links.chain];
+    (links.previous == kNone ? ends.oldest : facts_[links.previous].links[key].next) = fact;
+    (links.next == kNone ? ends.newest : facts_[links.next].links[key].previous) = fact;
+    ++ends.length;
+  }
+  SetPresent(facts_[fact].atom, fact);
+  hash_ += terms_->Hash(facts_[fact].atom);
+}
+
+void State::Unlink(std::uint32_t fact) {
+  for (std::uint8_t key = 0; key < 3; ++key) {
+    const Links& links = facts_[fact].links[key];
+    if (links.chain == kNone) continue;
+    Ends& ends = chains_[links.chain];
+    (links.previous == kNone ? ends.oldest : facts_[links.previous].links[key].next) = links.next;
+    (links.next == kNone ? ends.newest : facts_[links.next].links[key].previous) = links.previous;
+    --ends.length;
+  }
+  present_[facts_[fact].atom.index()] = kNone;
+  hash_ -= terms_->Hash(facts_[fact].atom);
+}
+
+void State::Add(Term atom) {
+  HIRES_CHECK(atom.IsPair() && terms_->IsGround(atom), "a fact is a ground list");
+  if (Holds(atom)) return;
+  const std::uint32_t fact = static_cast<std::uint32_t>(facts_.size());
+  const Term predicate = terms_->head(atom);
+  Fact fresh{atom, static_cast<std::uint32_t>(arguments_.size()), 0, {}};
+  for (Term rest = terms_->tail(atom); rest.IsPair(); rest = terms_->tail(rest)) {
+    arguments_.push_back(terms_->head(rest));
+    ++fresh.arity;
+  }
+  for (std::uint8_t key = 0; key < 3; ++key) {
+    const bool chained = key <= fresh.arity;
+    const Term argument = key == 0 || !chained ? Term() : arguments_[fresh.arguments + key - 1];
+    const std::uint32_t chain = chained ? ChainOf(key, predicate, argument) : kNone;
+    fresh.links[key] = {chained ? chains_[chain].newest : kNone, kNone, chain};
+  }
+  facts_.push_back(fresh);
+  Link(fact);
+  trail_.push_back({fact, true});
+}
+
+void State::Remove(Term atom) {
+  const std::uint32_t fact = Find(atom);
+  if (fact == kNone) return;
+  Unlink(fact);
+  trail_.push_back({fact, false});
+}
+
+// In reverse order, so that every fact finds its neighbours as they were when it left.
+void State::Undo(std::size_t mark) {
+  while (trail_.size() > mark) {
+    const Change change = trail_.back();
+    trail_.pop_back();
+    if (!change.added) {
+      Link(change.fact);
+      continue;
+    }
+    Unlink(change.fact);
+    arguments_.resize(facts_.back().arguments);
+    facts_.pop_back();
+  }
+}
+
+State::Chain State::Candidates(Term predicate, const Term* arguments, std::size_t count) const {
+  std::uint32_t best = FindChain(0, predicate, Term());
+  if (best == kNone) return {};
+  std::uint8_t best_key = 0;
+  for (std::uint8_t key = 1; key < 3 && key <= count; ++key) {
+    if (!terms_->IsGround(arguments[key - 1])) continue;
+    const std::uint32_t chain = FindChain(key, predicate, arguments[key - 1]);
+    if (chain == kNone) return {};
+    if (chains_[chain].length < chains_[best].length) {
+      best = chain;
+      best_key = key;
+    }
+  }
+  return {chains_[best].oldest, chains_[best].newest, best_key};
+}
+
+std::vector<Term> State::Facts() const {
+  std::vector<Term> atoms;
+  for (std::uint32_t i = 0; i < facts_.size(); ++i) {
+    if (Find(facts_[i].atom) == i) atoms.push_back(facts_[i].atom);
+  }
+  return atoms;
+}
+
+std::size_t State::bytes() const {
+  return facts_.capacity() * sizeof(Fact) + arguments_.capacity() * sizeof(Term) +
+         chains_.capacity() * sizeof(Ends) + slots_.capacity() * sizeof(Slot) +
+         present_.capacity() * sizeof(std::uint32_t) + trail_.capacity() * sizeof(Change);
+}
+
+}  // namespace hires::planning

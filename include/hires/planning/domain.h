@@ -146,6 +146,7 @@ struct Problem {
   Precondition parameters;   ///< binds variables of `tasks` (HDDL's :htn :parameters); else empty
   TaskNetwork tasks;
   std::optional<Formula> goal;  ///< must hold in the end (HDDL's :goal)
+  std::vector<Datum> protections;  ///< atoms protected from the beginning, as often as listed here
 };
 
 }  // namespace hires::planning

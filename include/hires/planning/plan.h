@@ -33,6 +33,11 @@ struct PlanStep {
   int node{0};                    ///< its place in the decomposition, index into Plan::nodes
   std::vector<CausalLink> links;  ///< one per precondition
   std::vector<std::pair<std::string, Datum>> bindings;  ///< of the operator's variables
+  /// Patterns of facts that decide what the step does beside its links: what it negates or
+  /// quantifies over, conditions of its effects, deletes that found nothing, atoms that it protects
+  /// (:protection atom) or protects no more (:unprotection atom). Filled in by AddReasons, used by
+  /// PartialOrder: a step that changes a match stays on its side.
+  std::vector<Datum> reads;
 };
 
 /// A task and what became of it. Node 0 is the root: it has no task, its children are the

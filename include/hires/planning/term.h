@@ -46,7 +46,10 @@ class TermTable {
   Term Integer(std::int64_t value);
   Term Real(double value);
   Term String(std::string_view text);
+  /// @throws ConfigError when lists nest deeper than 1000.
   Term Pair(Term head, Term tail);
+  /// The pair if it was ever made, else nil.
+  Term FindPair(Term head, Term tail) const;
   Term List(const Term* begin, const Term* end);
   Term FromDatum(const Datum& datum);  ///< @pre ground
 
@@ -58,6 +61,10 @@ class TermTable {
   /// Holds no variable. Constant time.
   bool IsGround(Term term) const {
     return term.IsPair() ? pairs_[term.index()].ground : !term.IsVariable();
+  }
+  /// The same for equal content, whenever and wherever it was made; variables count by number.
+  std::uint64_t Hash(Term term) const {
+    return term.IsPair() ? pairs_[term.index()].hash : HashOfAtom(term);
   }
   Datum ToDatum(Term term) const;  ///< variables become ?1, ?2, ...
   std::string ToString(Term term) const;
@@ -71,8 +78,12 @@ class TermTable {
     Term head;
     Term tail;
     std::uint32_t next;  ///< in its bucket
+    std::uint16_t depth;
     bool ground;
+    std::uint64_t hash;
   };
+  std::uint64_t HashOfAtom(Term term) const;
+  unsigned Depth(Term term) const { return term.IsPair() ? pairs_[term.index()].depth : 0; }
   std::size_t Bucket(Term head, Term tail) const;
   void Grow();
 

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "hires/planning/term.h"
+
+namespace hires::planning {
+
+/// The facts that hold now, in the order of their age, and the way back to those that held before.
+/// Facts of one predicate are chained by age, those that share their first or their second argument
+/// too, so that a goal walks along the shortest chain that can answer it.
+class State {
+ public:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  explicit State(TermTable* terms);
+
+  /// @pre `atom` is a ground list that begins with a symbol. A fact that holds keeps its age.
+  void Add(Term atom);
+  void Remove(Term atom);  ///< no effect where it does not hold
+  bool Holds(Term atom) const;
+
+  std::size_t Remember() const { return trail_.size(); }
+  void Undo(std::size_t mark);
+
+  /// A chain of facts, walked from the oldest (Next) or the newest (Previous).
+  struct Chain {
+    std::uint32_t oldest{kNone};
+    std::uint32_t newest{kNone};
+    std::uint8_t key{0};  ///< which links: 0 predicate, 1 first argument, 2 second argument
+  };
+  /// The shortest chain on which every fact `(predicate arguments...)` lies. Arguments that are not
+  /// ground may be anything.
+  Chain Candidates(Term predicate, const Term* arguments, std::size_t count) const;
+  std::uint32_t Next(std::uint32_t fact, std::uint8_t key) const {
+    return facts_[fact].links[key].next;
+  }
+  std::uint32_t Previous(std::uint32_t fact, std::uint8_t key) const {
+    return facts_[fact].links[key].previous;
+  }
+  std::size_t Arity(std::uint32_t fact) const { return facts_[fact].arity; }
+  const Term* Arguments(std::uint32_t fact) const { return &arguments_[facts_[fact].arguments]; }
+  Term Atom(std::uint32_t fact) const { return facts_[fact].atom; }
+
+  std::uint64_t hash() const { return hash_; }  ///< of the set of facts, whatever their age
+  std::vector<Term> Facts() const;              ///< all, oldest first within a predicate
+  std::size_t bytes() const;
+
+ private:
+  struct Links {
+    std::uint32_t previous;
+    std::uint32_t next;
+    std::uint32_t chain;
+  };
+  struct Fact {
+    Term atom;
+    std::uint32_t arguments;
+    std::uint32_t arity;
+    Links links[3];
+  };
+  struct Ends {
+    std::uint32_t oldest{kNone};
+    std::uint32_t newest{kNone};
+    std::uint32_t length{0};
+  };
+  struct Change {
+    std::uint32_t fact;
+    bool added;
+  };
+
+  std::uint32_t Find(Term atom) const;
+  std::uint32_t ChainOf(std::uint8_t key, Term predicate, Term argument);
+  std::uint32_t FindChain(std::uint8_t key, Term predicate, Term argument) const;
+  void Link(std::uint32_t fact);  ///< in the place that its links name
+  void Unlink(std::uint32_t fact);
+  void SetPresent(Term atom, std::uint32_t fact);
+
+  /// Chains by (key, predicate, argument): open addressing, never shrinks.
+  struct Slot {
+    std::uint64_t key{0};
+    std::uint32_t chain{kNone};
+  };
+  std::size_t SlotOf(std::uint64_t key) const;
+
+  TermTable* terms_;
+  std::vector<Fact> facts_;
+  std::vector<Term> arguments_;
+  std::vector<Ends> chains_;
+  std::vector<Slot> slots_;
+  std::size_t used_slots_{0};
+  std::vector<std::uint32_t> present_;  ///< pair index of an atom -> its fact, or kNone
+  std::vector<Change> trail_;
+  std::uint64_t hash_{0};
+};
+
+}  // namespace hires::planning
