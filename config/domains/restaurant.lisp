@@ -133,7 +133,7 @@
   ((put_object ?object ?counter) (clear_table ?table ?counter))
 
   table_full
-  (:first (hasPlacingArea ?table ?area) (On ?object ?area))
+  (:first (On ?object ?area) (hasPlacingArea ?table ?area))
   ((move_object ?object ?counter) (clear_table ?table ?counter))
 
   clear
