@@ -1,8 +1,14 @@
 #include <gmock/gmock.h>
 
+#include <cstdint>
+#include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "hires/base/error.h"
+#include "hires/base/rng.h"
+#include "hires/planning/expression_node.h"
 #include "hires/planning/functions.h"
 #include "planning/evaluate.h"
 
@@ -234,6 +240,77 @@ TEST(DepthTest, TwoHundredAndFiftySixListsAreAllowedAndNotOneMore) {
   EXPECT_THAT([] { Evaluate(Nested(257)); },
               ThrowsMessage<base::ConfigError>(
                   AllOf(HasSubstr("test.lisp:1:1"), HasSubstr("may nest 256 lists deep"))));
+}
+
+// ------------------------------------------------------------------------------ anything at all
+
+/// Expressions out of everything that the language knows, mostly nonsense.
+class RandomExpressions {
+ public:
+  explicit RandomExpressions(base::Rng rng) : rng_(rng), words_(Functions::Standard().Names()) {
+    const std::vector<std::string> forms = FormNames();
+    for (int i = 0; i < 3; ++i) words_.insert(words_.end(), forms.begin(), forms.end());
+  }
+
+  Datum Next(int depth) {
+    if (depth == 0 || rng_.Bernoulli(0.2)) return Leaf();
+    std::vector<Datum> items = {rng_.Bernoulli(0.95) ? MakeSymbol(Word()) : Next(depth - 1)};
+    const int count = rng_.Index(4);
+    for (int i = 0; i < count; ++i) items.push_back(Argument(depth - 1));
+    Datum list = MakeList(std::move(items));
+    if (rng_.Bernoulli(0.02)) list.tail.push_back(Leaf());
+    return list;
+  }
+
+ private:
+  const std::string& Word() {
+    return words_[static_cast<std::size_t>(rng_.Index(static_cast<int>(words_.size())))];
+  }
+
+  Datum Argument(int depth) {
+    if (rng_.Bernoulli(0.15)) return MakeList({MakeSymbol("function"), MakeSymbol(Word())});
+    if (rng_.Bernoulli(0.2)) return MakeList({MakeSymbol("quote"), Next(depth)});
+    return Next(depth);
+  }
+
+  Datum Leaf() {
+    switch (rng_.Index(6)) {
+      case 0:
+        return MakeInteger(rng_.Index(7) - 3);
+      case 1:
+        return MakeReal(rng_.Normal(0.0, 1e3));
+      case 2:
+        return MakeInteger(std::numeric_limits<std::int64_t>::min() + rng_.Index(2));
+      case 3:
+        return MakeVariable(rng_.Bernoulli(0.7) ? "?list" : "?free");
+      case 4:
+        return MakeList({});
+      default:
+        return rng_.Bernoulli(0.5) ? MakeSymbol("t") : MakeString("Text");
+    }
+  }
+
+  base::Rng rng_;
+  std::vector<std::string> words_;
+};
+
+TEST(RandomExpressionsTest, EndWithAValueOrAConfigError) {
+  RandomExpressions expressions(base::Rng(11));
+  int num_values = 0;
+  for (int i = 0; i < 50'000; ++i) {
+    const Datum datum = expressions.Next(4);
+    TermTable terms;
+    test_support::TextVariables variables(&terms, {{"?list", "(3 1.5 (a . b) 2)"}, {"?free", ""}});
+    try {
+      const Expression expression(
+          datum, [&](const std::string& name) { return variables.SlotOf(name); },
+          Functions::Standard(), &terms, "random");
+      expression.Evaluate(&terms, &variables);
+      ++num_values;
+    } catch (const base::ConfigError&) {  // anything else ends the test
+    }
+  }
+  EXPECT_GT(num_values, 5'000);
 }
 
 }  // namespace
