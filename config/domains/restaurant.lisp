@@ -119,11 +119,11 @@
 ; Brings the guest a coffee, to the right of the seat, else to the left.
 (:method (serve_coffee_to_guest ?guest)
   served
-  ((At ?guest ?seat) (place_in ?seat ?area) (Type coffee ?mug) (On ?mug ?area))
+  ((At ?guest ?seat) (place_in ?seat ?area ?rank) (Type coffee ?mug) (On ?mug ?area))
   ((leave_manipulation_pose))
 
   serve
-  ((At ?guest ?seat) (coffee_to_serve ?mug))
+  (:sort-by ?rank ((At ?guest ?seat) (coffee_to_serve ?mug ?rank)))
   ((move_object ?mug ?seat)))
 
 ; Carries what stands on the table to the counter, one thing after the other.
@@ -133,7 +133,7 @@
   ((put_object ?object ?counter) (clear_table ?table ?counter))
 
   table_full
-  (:first (On ?object ?area) (hasPlacingArea ?table ?area))
+  (:first (On ?object ?area) (hasPlacingArea ?table ?area ?rank))
   ((move_object ?object ?counter) (clear_table ?table ?counter))
 
   clear
@@ -143,12 +143,13 @@
 ; Takes an object from one place to another on the tray, as tall things are carried. Places are
 ; furniture or one of its placing areas.
 (:method (carry_object_on_tray ?object ?from ?to)  ; the last bit of an interrupted way
-  ((Holding ?arm ?object) (place_in ?to ?area) (Connected ?area ?ma ?pma) (stands_at ?ma ?pma))
+  (:sort-by ?rank ((Holding ?arm ?object) (place_in ?to ?area ?rank)
+                   (Connected ?area ?ma ?pma) (stands_at ?ma ?pma)))
   ((put_object_on_area ?object ?area)))
 
 (:method (carry_object_on_tray ?object ?from ?to)
   delivered
-  ((place_in ?to ?area) (On ?object ?area))
+  ((place_in ?to ?area ?rank) (On ?object ?area))
   ((leave_manipulation_pose))
 
   by_tray
@@ -165,7 +166,7 @@
   ((put_on_tray ?object))
 
   at_source
-  ((place_in ?from ?area) (On ?object ?area))
+  ((place_in ?from ?area ?rank) (On ?object ?area))
   ((get_object ?object) (put_on_tray ?object)))
 
 (:method (put_on_tray ?object)
@@ -173,7 +174,7 @@
   ((leave_manipulation_pose) (prepare_arms ?arm) (!place_on_tray ?arm ?object)))
 
 (:method (unload_tray ?object ?to)
-  ((place_in ?to ?area) (Connected ?area ?ma ?pma))
+  (:sort-by ?rank ((place_in ?to ?area ?rank) (Connected ?area ?ma ?pma)))
   ((drive_robot ?pma) (take_from_tray ?object) (put_object_on_area ?object ?area)))
 
 (:method (take_from_tray ?object)
@@ -208,9 +209,9 @@
   ()
   ())
 
-; Where there are several areas, each is tried in turn.
+; Where there are several areas, each is tried in turn, the one with the lowest rank first.
 (:method (put_object ?object ?where)
-  ((place_in ?where ?area))
+  (:sort-by ?rank ((place_in ?where ?area ?rank)))
   ((put_object_on_area ?object ?area)))
 
 (:method (put_object_on_area ?object ?area)
@@ -340,16 +341,17 @@
 (:- (different ?x ?y) ((not (same ?x ?y))))
 
 ; Placing areas that belong to a seat (right hand first), to furniture, or to themselves.
-(:- (place_in ?where ?area) ((hasPlacingAreaRight ?where ?area)))
-(:- (place_in ?where ?area) ((hasPlacingAreaLeft ?where ?area)))
-(:- (place_in ?where ?area) ((hasPlacingArea ?where ?area)))
-(:- (place_in ?area ?area) ((Connected ?area ?ma ?pma)))
+(:- (place_in ?seat ?area 1) ((hasPlacingAreaRight ?seat ?area)))
+(:- (place_in ?seat ?area 2) ((hasPlacingAreaLeft ?seat ?area)))
+(:- (place_in ?furniture ?area ?rank) ((hasPlacingArea ?furniture ?area ?rank)))
+(:- (place_in ?area ?area 1) ((Connected ?area ?ma ?pma)))
 
-; A coffee that no guest has yet.
-(:- (coffee_to_serve ?mug) ((Type coffee ?mug) (Holding ?arm ?mug)))
-(:- (coffee_to_serve ?mug) ((Type coffee ?mug) (On ?mug trayarea1)))
-(:- (coffee_to_serve ?mug)
-  ((Type coffee ?mug) (On ?mug ?area) (hasPlacingArea ?counter ?area) (Type counter ?counter)))
+; A coffee that no guest has yet, the nearest first.
+(:- (coffee_to_serve ?mug 1) ((Type coffee ?mug) (Holding ?arm ?mug)))
+(:- (coffee_to_serve ?mug 2) ((Type coffee ?mug) (On ?mug trayarea1)))
+(:- (coffee_to_serve ?mug 3)
+  ((Type coffee ?mug) (On ?mug ?area) (hasPlacingArea ?counter ?area ?rank)
+   (Type counter ?counter)))
 
 ; The right arm works; the left one when the right is full or known to fail.
 (:- (arm_for ?object ?arm)
@@ -442,15 +444,16 @@
 (:- (Type table table1) ())
 (:- (Type table table2) ())
 
-(:- (hasPlacingArea counter1 placingareaeastrightcounter1) ())
-(:- (hasPlacingArea table1 placingareawestlefttable1) ())
-(:- (hasPlacingArea table1 placingareaeastrighttable1) ())
-(:- (hasPlacingArea table1 placingareaeastlefttable1) ())
-(:- (hasPlacingArea table1 placingareawestrighttable1) ())
-(:- (hasPlacingArea table2 placingareanorthlefttable2) ())
-(:- (hasPlacingArea table2 placingareasouthrighttable2) ())
-(:- (hasPlacingArea table2 placingareanorthrighttable2) ())
-(:- (hasPlacingArea table2 placingareasouthlefttable2) ())
+; The number is the order in which the areas are tried.
+(:- (hasPlacingArea counter1 placingareaeastrightcounter1 1) ())
+(:- (hasPlacingArea table1 placingareawestlefttable1 1) ())
+(:- (hasPlacingArea table1 placingareaeastrighttable1 2) ())
+(:- (hasPlacingArea table1 placingareaeastlefttable1 3) ())
+(:- (hasPlacingArea table1 placingareawestrighttable1 4) ())
+(:- (hasPlacingArea table2 placingareanorthlefttable2 1) ())
+(:- (hasPlacingArea table2 placingareasouthrighttable2 2) ())
+(:- (hasPlacingArea table2 placingareanorthrighttable2 3) ())
+(:- (hasPlacingArea table2 placingareasouthlefttable2 4) ())
 
 (:- (Connected placingareaeastrightcounter1
                manipulationareaeastcounter1 premanipulationareaeastcounter1) ())
