@@ -53,8 +53,8 @@ void CollectVariables(const Formula& formula, std::vector<std::string>* names) {
 }  // namespace
 
 bool IsEmpty(const TaskItem& item) {
-  return !item.network.empty() && std::all_of(item.network.front().items.begin(),
-                                              item.network.front().items.end(), IsEmpty);
+  return !item.network.empty() &&
+         std::all_of(item.network.front().items.begin(), item.network.front().items.end(), IsEmpty);
 }
 
 /// The same network without the items that hold no task; what they stood between stays in order.
@@ -420,6 +420,7 @@ class Compiler {
     CompiledOperator& compiled = program_.operators_.emplace_back();
     compiled.source = &source;
     compiled.head = Compile(source.head, &scope);
+    compiled.num_head_slots = static_cast<std::uint32_t>(scope.names().size());
     compiled.precondition = Compile(source.precondition, &scope);
     compiled.deletes = Compile(source.deletes, &scope);
     compiled.adds = Compile(source.adds, &scope);
@@ -436,6 +437,7 @@ class Compiler {
     compiled.source = &source;
     compiled.index = static_cast<int>(index);
     compiled.head = Compile(source.head, &scope);
+    compiled.num_head_slots = static_cast<std::uint32_t>(scope.names().size());
     for (const Branch& branch : source.branches) {
       compiled.branches.push_back(
           {&branch, Compile(branch.precondition, &scope), Compile(branch.subtasks, &scope)});

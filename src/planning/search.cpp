@@ -615,9 +615,10 @@ bool Search::FoundPlan() {
 }
 
 std::vector<std::pair<std::string, Datum>> Search::Values(const std::vector<std::string>& names,
+                                                          std::uint32_t first,
                                                           std::uint32_t variables) {
   std::vector<std::pair<std::string, Datum>> values;
-  for (std::uint32_t i = 0; i < names.size(); ++i) {
+  for (std::uint32_t i = first; i < names.size(); ++i) {
     const Term value = bindings_.Resolve(Term(Term::Kind::kVariable, variables + i));
     if (terms_.IsGround(value)) values.emplace_back(names[i], terms_.ToDatum(value));
   }
@@ -656,14 +657,15 @@ Plan Search::Extract() {
       node.label = decomposition.method->source->name;
     }
     node.at_step = static_cast<int>(decomposition.num_steps);
-    node.bindings = Values(decomposition.method->variables, decomposition.variables);
+    node.bindings = Values(decomposition.method->variables, decomposition.method->num_head_slots,
+                           decomposition.variables);
   }
   for (const Step& step : steps_) {
     PlanStep& fresh = plan.steps.emplace_back();
     fresh.task = terms_.ToDatum(bindings_.Resolve(network_.node(step.node).task));
     fresh.cost = step.cost;
     fresh.node = number[step.node];
-    fresh.bindings = Values(step.applied->variables, step.variables);
+    fresh.bindings = Values(step.applied->variables, step.applied->num_head_slots, step.variables);
     plan.nodes[fresh.node].step = static_cast<int>(plan.steps.size()) - 1;
   }
   return plan;

@@ -181,9 +181,11 @@ Datum TermTable::ToDatum(Term term) const {
     case Term::Kind::kPair:
       break;
   }
-  std::vector<Datum> items;
-  for (; term.IsPair(); term = tail(term)) items.push_back(ToDatum(head(term)));
-  Datum list = MakeList(std::move(items));
+  std::size_t length = 0;
+  for (Term rest = term; rest.IsPair(); rest = tail(rest)) ++length;
+  Datum list;
+  list.items.reserve(length);
+  for (; term.IsPair(); term = tail(term)) list.items.push_back(ToDatum(head(term)));
   if (!term.IsNil()) list.tail.push_back(ToDatum(term));
   return list;
 }

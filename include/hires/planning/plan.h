@@ -32,7 +32,7 @@ struct PlanStep {
   double cost{0.0};
   int node{0};                    ///< its place in the decomposition, index into Plan::nodes
   std::vector<CausalLink> links;  ///< one per precondition
-  std::vector<std::pair<std::string, Datum>> bindings;  ///< of the operator's variables
+  std::vector<std::pair<std::string, Datum>> bindings;  ///< of variables not in its head
   /// Patterns of facts that decide what the step does beside its links: what it negates or
   /// quantifies over, conditions of its effects, deletes that found nothing, atoms that it protects
   /// (:protection atom) or protects no more (:unprotection atom). Filled in by AddReasons, used by
@@ -51,7 +51,7 @@ struct PlanNode {
   int branch{-1};             ///< and of the branch taken
   std::string label;          ///< branch label, else method name, else ""
   int at_step{0};             ///< number of steps that had been taken when it was decomposed
-  std::vector<std::pair<std::string, Datum>> bindings;  ///< of the method's variables then
+  std::vector<std::pair<std::string, Datum>> bindings;  ///< of variables not in the head
 };
 
 /// A plan, its reasons and its decomposition.

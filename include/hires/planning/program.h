@@ -69,6 +69,7 @@ struct CompiledOperator {
   const Operator* source{nullptr};
   const Pattern* head{nullptr};  ///< of the whole task, name included
   std::uint32_t num_slots{0};
+  std::uint32_t num_head_slots{0};  ///< the first ones: variables of the head
   CompiledPrecondition precondition;
   std::vector<CompiledEffect> deletes;
   std::vector<CompiledEffect> adds;
@@ -103,6 +104,7 @@ struct CompiledMethod {
   int index{0};  ///< in Domain::methods
   const Pattern* head{nullptr};
   std::uint32_t num_slots{0};
+  std::uint32_t num_head_slots{0};
   std::vector<CompiledBranch> branches;
   std::vector<std::string> variables;
 };

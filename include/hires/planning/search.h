@@ -115,7 +115,7 @@ class Search {
   Plan Extract();
   void ExtractNode(std::uint32_t node, int parent, Plan* plan, std::vector<int>* number);
   std::vector<std::pair<std::string, Datum>> Values(const std::vector<std::string>& names,
-                                                    std::uint32_t variables);
+                                                    std::uint32_t first, std::uint32_t variables);
   Progress CurrentProgress() const;
   bool Ask();
   std::size_t bytes() const;
