@@ -54,7 +54,6 @@ class DataReader {
   [[noreturn]] void Fail(const std::string& text) const { FailAt(source_, here_, text); }
   [[noreturn]] void FailUnclosed() const;
 
-  void Begin();
   void CheckSize() const;
   bool SkipBlanks();
   void SkipLine();
@@ -94,24 +93,19 @@ class DataReader {
 };
 
 std::vector<Datum> DataReader::Read() {
-  Begin();
+  CheckSize();
   while (SkipBlanks()) ReadOne();
   if (!open_.empty()) FailUnclosed();
   return std::move(data_);
 }
 
 std::string DataReader::FirstWord() {
-  Begin();
+  CheckSize();
   std::string word;
   if (!SkipBlanks() || Next() != '(' || !SkipBlanks()) return word;
   ReadTokenText(&word);
   CheckText(word, here_);
   return word;
-}
-
-void DataReader::Begin() {
-  CheckSize();
-  if (StartsWith("\xEF\xBB\xBF")) position_ += 3;  // a byte order mark, as some editors write
 }
 
 void DataReader::CheckSize() const {
@@ -151,6 +145,8 @@ bool DataReader::SkipBlanks() {
   while (!AtEnd()) {
     if (IsBlank(Peek())) {
       Next();
+    } else if (StartsWith(kByteOrderMark)) {  // some editors write one, joined files have several
+      Skip(3);
     } else if (Peek() == ';') {
       SkipLine();
     } else if (StartsWith("#|")) {

@@ -111,7 +111,7 @@ TokenKind KindOfToken(std::string_view token) {
 
 bool NeedsBars(std::string_view name) {
   return name.empty() || KindOfToken(name) != TokenKind::kSymbol || name[0] == '#' ||
-         std::any_of(name.begin(), name.end(), NeedsEscape);
+         name.substr(0, 3) == kByteOrderMark || std::any_of(name.begin(), name.end(), NeedsEscape);
 }
 
 bool EndsToken(char c) {

@@ -8,6 +8,9 @@
 
 namespace hires::planning {
 
+/// Nothing to read, though it is no white space.
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 /// As ToString, cut after `at_most` bytes; takes no longer than they need.
 std::string ToString(const Datum& datum, std::size_t at_most);
 

@@ -132,7 +132,14 @@ TEST(ReadDataTest, PlacesAreLinesAndColumns) {
   EXPECT_EQ(data[0].items[3].place.column, 11) << "a letter of two bytes is one column";
 }
 
-TEST(ReadDataTest, AByteOrderMarkIsSkipped) { EXPECT_EQ(Again("\xEF\xBB\xBF(a)"), "(a)"); }
+TEST(ReadDataTest, ByteOrderMarksAreSkipped) {
+  EXPECT_EQ(Again("\xEF\xBB\xBF(a)"), "(a)");
+  EXPECT_EQ(Again("(a \xEF\xBB\xBF(b))"), "(a (b))") << "files joined by cat";
+  const Datum marked = MakeSymbol(
+      "\xEF\xBB\xBF"
+      "b");
+  EXPECT_EQ(ReadSingle(ToString(marked)), marked);
+}
 
 TEST(ReadDataTest, NilAndTheEmptyListAreEqual) {
   EXPECT_EQ(ReadSingle("nil"), ReadSingle("()"));
