@@ -75,9 +75,10 @@ PlanStep Step(const std::vector<std::string>& words) {
   return step;
 }
 
+/// As in a plan: the bindings have what the task does not say.
 PlanStep Drive(const std::string& from, const std::string& to, const std::string& set) {
   PlanStep step = Step({"!drive", to, set});
-  step.bindings = {{"?to", MakeSymbol(to)}, {"?set", MakeSymbol(set)}, {"?from", MakeSymbol(from)}};
+  step.bindings = {{"?from", MakeSymbol(from)}};
   return step;
 }
 
