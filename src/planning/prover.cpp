@@ -397,6 +397,21 @@ std::uint32_t Prover::FirstAgreeing(std::uint32_t fact, bool newest_first, std::
   return State::kNone;
 }
 
+bool Prover::SomeFactMatches(Term predicate, std::uint32_t arguments, std::uint32_t count) {
+  const State::Chain chain = state_.Candidates(predicate, &arguments_[arguments], count);
+  const Bindings::Mark mark = bindings_.Remember();
+  std::uint32_t fact = chain.newest;
+  bool matches = false;
+  while (!matches) {
+    fact = FirstAgreeing(fact, true, chain.key, arguments, count);
+    if (fact == State::kNone) break;
+    matches = UnifyFact(fact, arguments, count);
+    bindings_.Undo(mark);
+    fact = state_.Previous(fact, chain.key);
+  }
+  return matches;
+}
+
 bool Prover::UnifyFact(std::uint32_t fact, std::uint32_t arguments, std::uint32_t count) {
   const Term* known = state_.Arguments(fact);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -570,13 +585,12 @@ bool Prover::CallNot(const Goal* goal) {
       program_.Axioms(body->predicate).empty()) {
     const std::uint32_t arguments = BuildArguments(body);
     const auto count = static_cast<std::uint32_t>(body->patterns.size());
-    if (AllGround(arguments, count)) {
-      const bool holds = HoldsAsFact(body->predicate, arguments, count);
-      arguments_.resize(arguments);
-      goal_ = goal->next;
-      return !holds;
-    }
+    const bool holds = AllGround(arguments, count)
+                           ? HoldsAsFact(body->predicate, arguments, count)
+                           : SomeFactMatches(body->predicate, arguments, count);
     arguments_.resize(arguments);
+    goal_ = goal->next;
+    return !holds;
   }
   Push(Choice::Kind::kNot, goal);
   PushContinuation(Continuation::Kind::kRefute, nullptr,

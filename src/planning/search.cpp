@@ -200,6 +200,7 @@ bool Search::NextWay(Frame* frame) {
       bindings_.Undo(frame->solution.bindings);
       terms_.Release(frame->solution.pairs);
       prover_.Release(frame->solution.prover);
+      BuildTasks(*frame);
       if (Reduce(frame)) return true;
       continue;
     }
@@ -336,9 +337,9 @@ bool Search::GatherSorted(Frame* frame, const CompiledPrecondition& precondition
 bool Search::UseSolution(Frame* frame) {
   const CompiledMethod& method = *(*frame->methods)[frame->method];
   const CompiledBranch& branch = method.branches[frame->branch];
+  BuildTasks(*frame);
   const bool others = frame->sorted || prover_.num_choices() > frame->moment.choices;
   if (others || !frame->tried.empty()) {
-    BuildTasks(*branch.subtasks, frame->variables);
     std::uint64_t key = tasks_.size();
     for (const Term task : tasks_) key = key * 0x9e3779b97f4a7c15ULL + terms_.Hash(task);
     if (std::find(frame->tried.begin(), frame->tried.end(), key) != frame->tried.end()) {
@@ -354,24 +355,26 @@ bool Search::UseSolution(Frame* frame) {
   return Reduce(frame);
 }
 
-void Search::BuildTasks(const CompiledNetwork& network, std::uint32_t variables) {
+void Search::BuildTasks(const Frame& frame) {
   tasks_.clear();
-  const auto add = [&](const auto& self, const CompiledNetwork& level) -> void {
-    for (const CompiledNetwork::Item& item : level.items) {
-      if (item.network != nullptr) {
-        self(self, *item.network);
-      } else {
-        tasks_.push_back(prover_.Build(*item.task, variables));
-      }
-    }
-  };
-  add(add, network);
+  const CompiledMethod& method = *(*frame.methods)[frame.method];
+  BuildTasks(*method.branches[frame.branch].subtasks, frame.variables);
 }
 
+void Search::BuildTasks(const CompiledNetwork& network, std::uint32_t variables) {
+  for (const CompiledNetwork::Item& item : network.items) {
+    if (item.network != nullptr) {
+      BuildTasks(*item.network, variables);
+    } else {
+      tasks_.push_back(prover_.Build(*item.task, variables));
+    }
+  }
+}
+
+/// Lays out `tasks_`.
 bool Search::Reduce(Frame* frame) {
   const CompiledMethod& method = *(*frame->methods)[frame->method];
   const CompiledNetwork& subtasks = *method.branches[frame->branch].subtasks;
-  BuildTasks(subtasks, frame->variables);
   decompositions_.push_back({frame->node, &method, frame->branch, frame->variables, steps_.size()});
   const std::uint32_t node = frame->node;
   network_.Decompose(node, &subtasks, tasks_,
@@ -441,7 +444,7 @@ bool Search::Apply(std::uint32_t node) {
   adds_.clear();
   Collect(applied->deletes, variables, &deletes_);
   Collect(applied->adds, variables, &adds_);
-  if (!Change(*applied)) {
+  if (BreaksProtection() || !Change(*applied)) {
     if (tracing()) Note(ground, Where(*applied), "a protected fact would not hold any more");
     return false;
   }
@@ -554,6 +557,19 @@ void Search::RequireGround(const CompiledOperator& applied, Term atom) const {
       terms_.ToString(atom)));
 }
 
+/// Without changing anything: a protected fact would go for good.
+bool Search::BreaksProtection() const {
+  if (protections_.empty() || std::any_of(deletes_.begin(), deletes_.end(), [this](Term atom) {
+        return IsProtection(atom);  // it might be the one that protects
+      })) {
+    return false;
+  }
+  return std::any_of(deletes_.begin(), deletes_.end(), [this](Term atom) {
+    return protections_.Count(atom) > 0 && program_.Axioms(terms_.head(atom)).empty() &&
+           std::find(adds_.begin(), adds_.end(), atom) == adds_.end();
+  });
+}
+
 /// Deletes, then adds (the last one listed first, so it is the oldest), then protections.
 bool Search::Change(const CompiledOperator& applied) {
   for (const Term atom : deletes_) {
@@ -645,6 +661,8 @@ void Search::ExtractNode(std::uint32_t node, int parent, Plan* plan, std::vector
 Plan Search::Extract() {
   Plan plan;
   plan.cost = cost_;
+  plan.nodes.reserve(network_.size());
+  plan.steps.reserve(steps_.size());
   std::vector<int> number(network_.size(), -1);
   ExtractNode(Network::kRoot, -1, &plan, &number);
   for (const Decomposition& decomposition : decompositions_) {

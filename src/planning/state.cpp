@@ -9,17 +9,6 @@ namespace {
 
 constexpr std::size_t kFirstSlots = 1024;
 
-/// One number for what a chain has in common. Never 0, which marks an empty slot.
-std::uint64_t ChainKey(std::uint8_t key, Term predicate, Term argument) {
-  return (std::uint64_t{predicate.bits()} << 33) ^ (std::uint64_t{argument.bits()} << 2) ^
-         (key + 1);
-}
-
-std::uint64_t Spread(std::uint64_t key) {
-  key *= 0x9e3779b97f4a7c15ULL;
-  return key ^ (key >> 29);
-}
-
 }  // namespace
 
 State::State(TermTable* terms) : terms_(terms), slots_(kFirstSlots) {}
@@ -38,37 +27,56 @@ void State::SetPresent(Term atom, std::uint32_t fact) {
   present_[atom.index()] = fact;
 }
 
-std::size_t State::SlotOf(std::uint64_t key) const {
+std::size_t State::SlotOf(const ChainName& name) const {
+  std::uint64_t hash = name.predicate.bits();
+  hash = hash * 0x9e3779b97f4a7c15ULL + name.a.bits();
+  hash = (hash * 0x9e3779b97f4a7c15ULL + name.b.bits()) * 8 + name.key;
+  hash *= 0xd6e8feb86659fd93ULL;
   const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = Spread(key) & mask;
-  while (slots_[slot].key != 0 && slots_[slot].key != key) slot = (slot + 1) & mask;
+  std::size_t slot = (hash >> 32) & mask;
+  while (slots_[slot].name.used && !(slots_[slot].name == name)) slot = (slot + 1) & mask;
   return slot;
 }
 
-std::uint32_t State::FindChain(std::uint8_t key, Term predicate, Term argument) const {
-  return slots_[SlotOf(ChainKey(key, predicate, argument))].chain;
-}
-
-std::uint32_t State::ChainOf(std::uint8_t key, Term predicate, Term argument) {
-  const std::uint64_t wanted = ChainKey(key, predicate, argument);
-  std::size_t slot = SlotOf(wanted);
-  if (slots_[slot].key == wanted) return slots_[slot].chain;
+std::uint32_t State::ChainOf(const ChainName& name) {
+  std::size_t slot = SlotOf(name);
+  if (slots_[slot].name.used) return slots_[slot].chain;
   if (2 * (used_slots_ + 1) > slots_.size()) {
     std::vector<Slot> old(2 * slots_.size());
     old.swap(slots_);
     for (const Slot& entry : old) {
-      if (entry.key != 0) slots_[SlotOf(entry.key)] = entry;
+      if (entry.name.used) slots_[SlotOf(entry.name)] = entry;
     }
-    slot = SlotOf(wanted);
+    slot = SlotOf(name);
   }
-  slots_[slot] = {wanted, static_cast<std::uint32_t>(chains_.size())};
+  slots_[slot] = {name, static_cast<std::uint32_t>(chains_.size())};
   chains_.emplace_back();
   ++used_slots_;
   return slots_[slot].chain;
 }
 
+/// The chain of kind `key` on which a fact, or every answer to a goal, lies. False: there is none
+/// of that kind, or the goal does not say which.
+bool State::NameChain(std::uint8_t key, Term predicate, const Term* arguments, std::size_t count,
+                      ChainName* name) const {
+  *name = {predicate, Term(), Term(), key, true};
+  if (key == 0) return true;
+  if (key <= 2) {
+    if (key > count || !terms_->IsGround(arguments[key - 1])) return false;
+    name->a = arguments[key - 1];
+    return true;
+  }
+  if (count == 0 || !arguments[0].IsPair()) return false;
+  name->a = terms_->head(arguments[0]);
+  Term rest = terms_->tail(arguments[0]);
+  if (key == 4 && rest.IsPair()) rest = terms_->tail(rest);
+  if (!rest.IsPair()) return false;
+  name->b = terms_->head(rest);
+  return terms_->IsGround(name->a) && terms_->IsGround(name->b);
+}
+
 void State::Link(std::uint32_t fact) {
-  for (std::uint8_t key = 0; key < 3; ++key) {
+  for (std::uint8_t key = 0; key < kNumKeys; ++key) {
     const Links& links = facts_[fact].links[key];
     if (links.chain == kNone) continue;
     Ends& ends = chains_[links.chain];
@@ -81,7 +89,7 @@ void State::Link(std::uint32_t fact) {
 }
 
 void State::Unlink(std::uint32_t fact) {
-  for (std::uint8_t key = 0; key < 3; ++key) {
+  for (std::uint8_t key = 0; key < kNumKeys; ++key) {
     const Links& links = facts_[fact].links[key];
     if (links.chain == kNone) continue;
     Ends& ends = chains_[links.chain];
@@ -103,10 +111,11 @@ void State::Add(Term atom) {
     arguments_.push_back(terms_->head(rest));
     ++fresh.arity;
   }
-  for (std::uint8_t key = 0; key < 3; ++key) {
-    const bool chained = key <= fresh.arity;
-    const Term argument = key == 0 || !chained ? Term() : arguments_[fresh.arguments + key - 1];
-    const std::uint32_t chain = chained ? ChainOf(key, predicate, argument) : kNone;
+  for (std::uint8_t key = 0; key < kNumKeys; ++key) {
+    ChainName name;
+    const Term* arguments = arguments_.data() + fresh.arguments;
+    const bool chained = NameChain(key, predicate, arguments, fresh.arity, &name);
+    const std::uint32_t chain = chained ? ChainOf(name) : kNone;
     fresh.links[key] = {chained ? chains_[chain].newest : kNone, kNone, chain};
   }
   facts_.push_back(fresh);
@@ -137,14 +146,14 @@ void State::Undo(std::size_t mark) {
 }
 
 State::Chain State::Candidates(Term predicate, const Term* arguments, std::size_t count) const {
-  std::uint32_t best = FindChain(0, predicate, Term());
-  if (best == kNone) return {};
+  std::uint32_t best = kNone;
   std::uint8_t best_key = 0;
-  for (std::uint8_t key = 1; key < 3 && key <= count; ++key) {
-    if (!terms_->IsGround(arguments[key - 1])) continue;
-    const std::uint32_t chain = FindChain(key, predicate, arguments[key - 1]);
-    if (chain == kNone) return {};
-    if (chains_[chain].length < chains_[best].length) {
+  for (std::uint8_t key = 0; key < kNumKeys; ++key) {
+    ChainName name;
+    if (!NameChain(key, predicate, arguments, count, &name)) continue;
+    const std::uint32_t chain = FindChain(name);
+    if (chain == kNone || chains_[chain].length == 0) return {};
+    if (best == kNone || chains_[chain].length < chains_[best].length) {
       best = chain;
       best_key = key;
     }

@@ -167,27 +167,42 @@ double TermTable::number(Term term) const {
 }
 
 Datum TermTable::ToDatum(Term term) const {
+  Datum datum;
+  Write(term, &datum);
+  return datum;
+}
+
+// In place: plans hold long lists many times over.
+void TermTable::Write(Term term, Datum* datum) const {
   switch (term.kind()) {
     case Term::Kind::kSymbol:
-      return term.IsNil() ? MakeList({}) : MakeSymbol(text(term));
+      if (term.IsNil()) return;
+      datum->kind = Datum::Kind::kSymbol;
+      datum->text = text(term);
+      return;
     case Term::Kind::kInteger:
-      return MakeInteger(integer(term));
+      *datum = MakeInteger(integer(term));
+      return;
     case Term::Kind::kReal:
-      return MakeReal(number(term));
+      *datum = MakeReal(number(term));
+      return;
     case Term::Kind::kString:
-      return MakeString(text(term));
+      *datum = MakeString(text(term));
+      return;
     case Term::Kind::kVariable:
-      return MakeVariable("?" + std::to_string(term.index()));
+      *datum = MakeVariable("?" + std::to_string(term.index()));
+      return;
     case Term::Kind::kPair:
       break;
   }
   std::size_t length = 0;
   for (Term rest = term; rest.IsPair(); rest = tail(rest)) ++length;
-  Datum list;
-  list.items.reserve(length);
-  for (; term.IsPair(); term = tail(term)) list.items.push_back(ToDatum(head(term)));
-  if (!term.IsNil()) list.tail.push_back(ToDatum(term));
-  return list;
+  datum->items.resize(length);
+  for (Datum& item : datum->items) {
+    Write(head(term), &item);
+    term = tail(term);
+  }
+  if (!term.IsNil()) Write(term, &datum->tail.emplace_back());
 }
 
 std::string TermTable::ToString(Term term) const { return planning::ToString(ToDatum(term)); }

@@ -135,6 +135,7 @@ class Prover {
   bool NextFact(Choice* choice);
   std::uint32_t FirstAgreeing(std::uint32_t fact, bool newest_first, std::uint8_t key,
                               std::uint32_t arguments, std::uint32_t count) const;
+  bool SomeFactMatches(Term predicate, std::uint32_t arguments, std::uint32_t count);
   bool UnifyFact(std::uint32_t fact, std::uint32_t arguments, std::uint32_t count);
   bool EnterAxioms(Term predicate, std::uint32_t arguments, std::uint32_t count, bool once);
   bool NextAxiom(Choice* choice);

@@ -90,6 +90,7 @@ class Search {
   bool HasMore(const Frame& frame) const;
   std::uint32_t NextFitting(const Frame& frame, std::uint32_t from) const;
   bool CouldMatch(const Pattern& pattern, Term term) const;
+  void BuildTasks(const Frame& frame);
   void BuildTasks(const CompiledNetwork& network, std::uint32_t variables);
   bool WasHere();
 
@@ -104,6 +105,7 @@ class Search {
                std::vector<Term>* atoms);
   void CollectForAll(const CompiledEffect& effect, std::uint32_t variables,
                      std::vector<Term>* atoms);
+  bool BreaksProtection() const;
   bool Change(const CompiledOperator& applied);
   bool ProtectionsHold();
   bool Protect();

@@ -9,8 +9,10 @@
 namespace hires::planning {
 
 /// The facts that hold now, in the order of their age, and the way back to those that held before.
-/// Facts of one predicate are chained by age, those that share their first or their second argument
-/// too, so that a goal walks along the shortest chain that can answer it.
+/// Facts of one predicate are chained by age; those that share their first or their second argument
+/// are too, and, where the first argument is a list like in (goal (on b1 b2)), those that share its
+/// first and second or its first and third item. So a goal walks along the shortest chain that can
+/// answer it.
 class State {
  public:
   static constexpr std::uint32_t kNone = 0xffffffffu;
@@ -29,7 +31,7 @@ class State {
   struct Chain {
     std::uint32_t oldest{kNone};
     std::uint32_t newest{kNone};
-    std::uint8_t key{0};  ///< which links: 0 predicate, 1 first argument, 2 second argument
+    std::uint8_t key{0};  ///< which links
   };
   /// The shortest chain on which every fact `(predicate arguments...)` lies. Arguments that are not
   /// ground may be anything.
@@ -49,6 +51,17 @@ class State {
   std::size_t bytes() const;
 
  private:
+  static constexpr std::uint8_t kNumKeys = 5;
+  /// What the facts of a chain have in common; unused parts are nil.
+  struct ChainName {
+    Term predicate, a, b;
+    std::uint8_t key{0};
+    bool used{false};
+    bool operator==(const ChainName& other) const {
+      return predicate == other.predicate && a == other.a && b == other.b && key == other.key &&
+             used == other.used;
+    }
+  };
   struct Links {
     std::uint32_t previous;
     std::uint32_t next;
@@ -58,7 +71,7 @@ class State {
     Term atom;
     std::uint32_t arguments;
     std::uint32_t arity;
-    Links links[3];
+    Links links[kNumKeys];
   };
   struct Ends {
     std::uint32_t oldest{kNone};
@@ -71,24 +84,25 @@ class State {
   };
 
   std::uint32_t Find(Term atom) const;
-  std::uint32_t ChainOf(std::uint8_t key, Term predicate, Term argument);
-  std::uint32_t FindChain(std::uint8_t key, Term predicate, Term argument) const;
+  bool NameChain(std::uint8_t key, Term predicate, const Term* arguments, std::size_t count,
+                 ChainName* name) const;
+  std::uint32_t ChainOf(const ChainName& name);
+  std::uint32_t FindChain(const ChainName& name) const { return slots_[SlotOf(name)].chain; }
   void Link(std::uint32_t fact);  ///< in the place that its links name
   void Unlink(std::uint32_t fact);
   void SetPresent(Term atom, std::uint32_t fact);
 
-  /// Chains by (key, predicate, argument): open addressing, never shrinks.
   struct Slot {
-    std::uint64_t key{0};
+    ChainName name;
     std::uint32_t chain{kNone};
   };
-  std::size_t SlotOf(std::uint64_t key) const;
+  std::size_t SlotOf(const ChainName& name) const;
 
   TermTable* terms_;
   std::vector<Fact> facts_;
   std::vector<Term> arguments_;
   std::vector<Ends> chains_;
-  std::vector<Slot> slots_;
+  std::vector<Slot> slots_;  ///< chains by name: open addressing, never shrinks
   std::size_t used_slots_{0};
   std::vector<std::uint32_t> present_;  ///< pair index of an atom -> its fact, or kNone
   std::vector<Change> trail_;

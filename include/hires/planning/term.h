@@ -82,6 +82,7 @@ class TermTable {
     bool ground;
     std::uint64_t hash;
   };
+  void Write(Term term, Datum* datum) const;
   std::uint64_t HashOfAtom(Term term) const;
   unsigned Depth(Term term) const { return term.IsPair() ? pairs_[term.index()].depth : 0; }
   std::size_t Bucket(Term head, Term tail) const;
