@@ -401,18 +401,41 @@ void DecompositionCheck::CheckPrecondition(int node, const Branch& branch, const
                            At(domain_.source, branch.place), plan_.nodes[node].branch + 1, when));
 }
 
-/// The head's variables as far as they were known when the task came up, before the method bound
-/// any.
-ValueMap DecompositionCheck::HeadAsItCame(int node, const Method& method, const ValueMap& known) {
-  const int parent = plan_.nodes[node].parent;
-  const std::vector<int>& siblings = plan_.nodes[parent].children;
+/// The subtask of `parent` at `place` with what was known of the parent's task and its recorded
+/// bindings; nothing that was bound later.
+Datum DecompositionCheck::SubtaskAsItCame(int parent, const Datum& task_of_parent,
+                                          std::size_t place) {
   const TaskNetwork* network = NetworkOf(parent);
-  const auto place = std::find(siblings.begin(), siblings.end(), node) - siblings.begin();
   const std::vector<const TaskItem*> leaves = LeavesOf(*network);
-  if (leaves.size() != siblings.size() || HasCall(leaves[place]->task)) return known;
+  const Datum& last_known = plan_.nodes[plan_.nodes[parent].children[place]].task;
+  if (leaves.size() != plan_.nodes[parent].children.size()) return last_known;
+  if (HasCall(leaves[place]->task)) return last_known;
   Reading reading;
   ReadRecord(parent, &reading);
-  const Datum task = RenameVariables(reading.values.Apply(leaves[place]->task), kOfPlan);
+  if (parent != 0) {
+    const Datum& head = domain_.methods[plan_.nodes[parent].method].head;
+    reading.values.Unify(head, task_of_parent);
+  }
+  return RenameVariables(reading.values.Apply(leaves[place]->task), fmt::format("@{}", parent));
+}
+
+/// A task with the variables that were open when it came up, before its method bound any.
+Datum DecompositionCheck::TaskAsItCame(int node) {
+  std::vector<int> path;
+  for (int at = node; at > 0; at = plan_.nodes[at].parent) path.push_back(at);
+  Datum task;
+  for (auto at = path.rbegin(); at != path.rend(); ++at) {
+    const int parent = plan_.nodes[*at].parent;
+    if (NetworkOf(parent) == nullptr) return plan_.nodes[node].task;
+    const std::vector<int>& siblings = plan_.nodes[parent].children;
+    const auto place = std::find(siblings.begin(), siblings.end(), *at) - siblings.begin();
+    task = SubtaskAsItCame(parent, task, static_cast<std::size_t>(place));
+  }
+  return task;
+}
+
+ValueMap DecompositionCheck::HeadAsItCame(int node, const Method& method, const ValueMap& known) {
+  const Datum task = TaskAsItCame(node);
   if (IsGround(task)) return known;
   Substitution values;
   values.Unify(method.head, task);

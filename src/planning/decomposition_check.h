@@ -68,6 +68,8 @@ class DecompositionCheck {
   void Fill(int node, const Datum* head, const Precondition& precondition, Reading* reading) const;
   void CheckPrecondition(int node, const Branch& branch, const Reading& reading);
   void CheckEarlierBranches(int node, const Method& method, const Reading& reading);
+  Datum SubtaskAsItCame(int parent, const Datum& task_of_parent, std::size_t place);
+  Datum TaskAsItCame(int node);
   ValueMap HeadAsItCame(int node, const Method& method, const ValueMap& known);
   void CheckOrder(int node);
   void CheckImmediate(int node);

@@ -79,15 +79,15 @@ class Remainder {
         advance_(plan, executed),
         keep_depth_(keep_depth) {}
 
-  TaskNetwork Build() { return RestOf(0, problem_.tasks, 0); }
+  TaskNetwork Build() { return RestOf(0, Datum(), problem_.tasks, 0); }
 
   /// Begun tasks that stand as tasks again.
   const std::set<int>& again() const { return again_; }
 
  private:
-  /// What is left of a task's network, read with the values that are known by now.
-  TaskNetwork RestOf(int node, const TaskNetwork& network, int depth) {
-    const Substitution values = ValuesOf(node, network);
+  /// What is left of the network of `task`, read with the values that are known by now.
+  TaskNetwork RestOf(int node, const Datum& task, const TaskNetwork& network, int depth) {
+    const Substitution values = ValuesOf(node, task, network);
     std::size_t leaf = 0;
     return RestOf(node, network, depth, values, &leaf);
   }
@@ -113,13 +113,13 @@ class Remainder {
     }
     const int child = plan_.nodes[node].children.at((*leaf)++);
     if (advance_.IsFinished(child)) return std::nullopt;
-    if (advance_.IsBegun(child)) {
-      if (depth + 1 <= keep_depth_)
-        return AsItem(RestOf(child, NetworkOf(child), depth + 1), false);
-      again_.insert(child);
-    }
     TaskItem task = item;
     task.task = TaskOf(node, child, item, values);
+    if (!advance_.IsBegun(child)) return task;
+    if (depth + 1 <= keep_depth_) {
+      return AsItem(RestOf(child, task.task, NetworkOf(child), depth + 1), false);
+    }
+    again_.insert(child);
     return task;
   }
 
@@ -143,8 +143,9 @@ class Remainder {
   }
 
   /// By what was recorded when the task was decomposed, and by what was done since.
-  Substitution ValuesOf(int node, const TaskNetwork& network) const {
+  Substitution ValuesOf(int node, const Datum& task, const TaskNetwork& network) const {
     Substitution values;
+    if (node != 0) values.Unify(domain_.methods[plan_.nodes[node].method].head, task);
     for (const auto& [variable, value] : plan_.nodes[node].bindings) {
       values.Unify(MakeVariable(variable), RenameVariables(value, OfNode(node)));
     }
@@ -159,14 +160,26 @@ class Remainder {
     return values;
   }
 
-  /// A plan that came without bindings is taken by its word.
-  Datum TaskOf(int node, int child, const TaskItem& item, const Substitution& values) {
+  /// A value that the precondition should have found, but that is not recorded, is taken from the
+  /// plan; others are open.
+  Datum TaskOf(int node, int child, const TaskItem& item, const Substitution& values) const {
     const Datum& last_known = plan_.nodes[child].task;
     if (HasCall(item.task)) return last_known;
-    const Datum task = values.Apply(item.task);
-    if (IsGround(task)) return task;
-    if (plan_.nodes[node].bindings.empty()) return last_known;
-    return values.Apply(RenameOpen(item.task, values, OfNode(node)));
+    const Datum task = values.Apply(RenameOpen(item.task, values, OfNode(node)));
+    std::set<std::string> variables;
+    CollectVariables(item.task, &variables);
+    const std::set<std::string> found = VariablesOf(PreconditionOf(node).condition);
+    const bool lacks_record =
+        std::any_of(variables.begin(), variables.end(), [&](const std::string& variable) {
+          return !values.IsBound(variable) && found.count(variable) > 0;
+        });
+    return lacks_record ? last_known : task;
+  }
+
+  const Precondition& PreconditionOf(int node) const {
+    if (node == 0) return problem_.parameters;
+    const PlanNode& plan_node = plan_.nodes[node];
+    return domain_.methods.at(plan_node.method).branches.at(plan_node.branch).precondition;
   }
 
   /// Variables of different methods stand side by side now: those that are open get names by node.
