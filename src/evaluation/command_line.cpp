@@ -17,6 +17,7 @@
 #include "hires/base/text.h"
 #include "hires/evaluation/doctor.h"
 #include "hires/evaluation/experiment_command.h"
+#include "hires/evaluation/plan_command.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/imagination/client_config.h"
@@ -222,6 +223,8 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
   AddImagineOptions(imagine, &imagine_options);
   ExperimentOptions experiment_options;
   AddExperimentVerb(&app, &experiment_options);
+  PlanOptions plan_options;
+  AddPlanVerb(&app, &plan_options);
   CLI::App* doctor =
       app.add_subcommand("doctor", "check this machine and compare the physics with closed forms");
   std::vector<CLI::App*> others;
@@ -238,6 +241,9 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
     if (*imagine) return Imagine(imagine_options, backends);
     if (*experiment_options.verb) {
       return RunExperimentVerb(experiment_options, [] { return interrupted.load(); });
+    }
+    if (*plan_options.verb) {
+      return RunPlanVerb(plan_options, [] { return interrupted.load(); });
     }
     if (*doctor) return RunDoctor(backends);
     for (std::size_t i = 0; i < others.size(); ++i) {

@@ -101,7 +101,9 @@ void RequireFolderOf(const std::string& path) {
 
 void WriteJson(const nlohmann::ordered_json& json, const std::string& path) {
   RequireFolderOf(path);
-  const std::string text = json.dump(2) + '\n';
+  // Names in files of others may be no UTF-8.
+  const std::string text =
+      json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
   const bool is_device = fs::exists(path) && !fs::is_regular_file(path);  // /dev/stdout, say
   if (!(is_device ? WriteText(text, path) : ReplaceText(text, fs::weakly_canonical(path)))) {
     throw base::ConfigError(fmt::format(

@@ -68,7 +68,7 @@ class EffectReader {
 
   Effect AtomEffect(const Datum& datum) const {
     CheckTerm(scope_->spot, datum, "predicate", scope_->vocabulary->predicates, scope_->variables,
-              *scope_->vocabulary);
+              scope_->vocabulary);
     Effect effect;
     effect.term = datum;
     effect.place = datum.place;
@@ -155,7 +155,7 @@ class EffectReader {
   void ReadFunctionValue(const Datum& datum) {
     const HddlVocabulary::Signature& function =
         CheckTerm(scope_->spot, datum, "function", scope_->vocabulary->functions, scope_->variables,
-                  *scope_->vocabulary);
+                  scope_->vocabulary);
     const Datum value =
         MakeVariable(fmt::format("?%{}{}", function.name, effects_.value_atoms.size() + 1));
     Datum atom = datum;

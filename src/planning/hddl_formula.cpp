@@ -36,7 +36,8 @@ Formula ReadEqual(const Datum& datum, HddlScope* scope) {
   formula.term = datum;
   formula.place = datum.place;
   for (int i : {1, 2}) {
-    CheckArgument(scope->spot, datum.items[i], scope->variables, *scope->vocabulary);
+    CheckArgument(scope->spot, datum.items[i], HddlVocabulary::kObject, scope->variables,
+                  scope->vocabulary);
   }
   return formula;
 }
@@ -47,7 +48,8 @@ Formula ReadSort(const Datum& datum, HddlScope* scope) {
   if (typed.size() != 1 || typed[0].types.empty()) {
     scope->spot.Fail(datum, fmt::format("{} came, wanted (sortof ?x - type)", Excerpt(datum)));
   }
-  CheckArgument(scope->spot, *typed[0].datum, scope->variables, *scope->vocabulary);
+  CheckArgument(scope->spot, *typed[0].datum, HddlVocabulary::kObject, scope->variables,
+                scope->vocabulary);
   Formula atom = TypeAtom(*scope->vocabulary, typed[0].datum->text,
                           TypeOf(scope->spot, typed[0], scope->vocabulary));
   atom.place = datum.place;
@@ -56,7 +58,7 @@ Formula ReadSort(const Datum& datum, HddlScope* scope) {
 
 Formula ReadAtom(const Datum& datum, HddlScope* scope) {
   CheckTerm(scope->spot, datum, "predicate", scope->vocabulary->predicates, scope->variables,
-            *scope->vocabulary);
+            scope->vocabulary);
   Formula atom = MakeAtom(datum);
   atom.place = datum.place;
   return atom;

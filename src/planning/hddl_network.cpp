@@ -48,7 +48,7 @@ void ReadTasks(const Datum& datum, HddlScope* scope, HddlNetwork* result, Ids* i
     item.place = item.task.place;
     const HddlVocabulary::Signature& signature =
         CheckTerm(scope->spot, item.task, "task", scope->vocabulary->tasks, scope->variables,
-                  *scope->vocabulary);
+                  scope->vocabulary);
     if (signature.kind == "action") {
       AddStaticConditions(*scope->vocabulary, item.task, &result->conditions);
       item.task.items[0].text = "!" + signature.name;

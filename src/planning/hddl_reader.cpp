@@ -174,7 +174,7 @@ class DomainReader {
     }
     op.precondition.condition = ArrangeConjunction(conditions, parameters.type_atoms, bound);
     if (const Datum* effect = fields.Find(":effect")) TakeEffects(*effect, &scope, &op);
-    if (op.cost.IsNil()) op.cost = CostOf({}, vocabulary_);
+    if (op.cost.IsNil()) op.cost = CostOf({}, &vocabulary_);
     domain_.operators.push_back(std::move(op));
   }
 
@@ -238,10 +238,10 @@ class DomainReader {
     domain_.methods.push_back(std::move(method));
   }
 
-  const Datum& ReadHead(const HddlFields& fields, const HddlScope& scope) const {
+  const Datum& ReadHead(const HddlFields& fields, const HddlScope& scope) {
     const Datum& head = fields.Require(":task");
     const HddlVocabulary::Signature& signature =
-        CheckTerm(scope.spot, head, "task", vocabulary_.tasks, scope.variables, vocabulary_);
+        CheckTerm(scope.spot, head, "task", vocabulary_.tasks, scope.variables, &vocabulary_);
     if (signature.kind == "action") {
       scope.spot.Fail(head,
                       fmt::format("'{}' is an action; a method decomposes a task", signature.name));
@@ -325,6 +325,8 @@ class ProblemReader {
     if (const Datum* section = OneOf(sections, ":objects")) {
       ReadObjects(spot_.Within("(:objects ...)"), *section, &vocabulary_);
     }
+    vocabulary_.has_all_objects = true;
+    CheckOpenObjects(spot_, domain_.source, vocabulary_);
     ReadTasks(sections);
     if (const Datum* section = OneOf(sections, ":goal")) ReadGoal(*section);
     if (const Datum* section = OneOf(sections, ":metric")) CheckMetric(*section);
@@ -423,8 +425,8 @@ class ProblemReader {
     }
   }
 
-  void CheckFact(const HddlSpot& spot, const Datum& fact) const {
-    CheckTerm(spot, fact, "predicate", vocabulary_.predicates, {}, vocabulary_);
+  void CheckFact(const HddlSpot& spot, const Datum& fact) {
+    CheckTerm(spot, fact, "predicate", vocabulary_.predicates, {}, &vocabulary_);
   }
 
   /// What is not said does not hold anyway.
@@ -444,7 +446,7 @@ class ProblemReader {
       if (value != MakeInteger(0)) spot.Fail(fact, "plans begin with a (total-cost) of 0");
       return;
     }
-    CheckTerm(spot, term, "function", vocabulary_.functions, {}, vocabulary_);
+    CheckTerm(spot, term, "function", vocabulary_.functions, {}, &vocabulary_);
     if (!values_.emplace(ToString(term), value).second) {
       spot.Fail(fact, fmt::format("{} has a value already; keep one", Excerpt(term)));
     }

@@ -17,25 +17,32 @@ const std::vector<std::string>& KnownRequirements() {
                                               ":conditional-effects",
                                               ":disjunctive-preconditions",
                                               ":equality",
-                                              ":existential-preconditions",
-                                              ":hierarchie",
                                               ":hierarchy",
                                               ":htn",
+                                              ":existential-preconditions",
+                                              ":hierachie",
+                                              ":hierarchie",
                                               ":htn-method-prec",
-                                              ":htn-method-pre-eff",
                                               ":method-constraints",
-                                              ":method-precondition",
                                               ":method-preconditions",
-                                              ":negative-preconditions",
                                               ":partial-order",
                                               ":quantified-preconditions",
+                                              ":negative-preconditions",
                                               ":strips",
                                               ":total-order",
-                                              ":typing",
                                               ":typeof-predicate",
+                                              ":typing",
                                               ":universal-effects",
                                               ":universal-preconditions"};
   return known;
+}
+
+/// Also in the singular, as in `:method-precondition`.
+bool IsKnownRequirement(const std::string& name) {
+  const std::vector<std::string>& known = KnownRequirements();
+  return std::any_of(known.begin(), known.end(), [&name](const std::string& candidate) {
+    return candidate == name || candidate == name + "s";
+  });
 }
 
 bool CanBeName(const Datum& datum) {
@@ -224,14 +231,12 @@ HddlDefinition ReadDefinition(std::string_view text, const std::string& source,
 }
 
 void CheckRequirements(const HddlSpot& spot, const Datum& section) {
-  const std::vector<std::string>& known = KnownRequirements();
   for (std::size_t i = 1; i < section.items.size(); ++i) {
     const Datum& item = section.items[i];
-    if (std::find(known.begin(), known.end(), item.text) == known.end()) {
-      spot.Fail(item, fmt::format("requirement {} is not supported; take it away if the file does "
-                                  "without. Known are {}",
-                                  Excerpt(item), base::Join(known, " ")));
-    }
+    if (item.kind == Datum::Kind::kSymbol && IsKnownRequirement(item.text)) continue;
+    spot.Fail(item, fmt::format("requirement {} is not supported; take it away if the file does "
+                                "without. Known are {}",
+                                Excerpt(item), base::Join(KnownRequirements(), " ")));
   }
 }
 

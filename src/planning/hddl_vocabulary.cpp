@@ -217,7 +217,7 @@ const HddlVocabulary::Signature& CheckTerm(const HddlSpot& spot, const Datum& te
                                            std::string_view kind,
                                            const HddlVocabulary::Signatures& signatures,
                                            const HddlVariables& variables,
-                                           const HddlVocabulary& vocabulary) {
+                                           HddlVocabulary* vocabulary) {
   RequireList(spot, term, fmt::format("a {} with its arguments in parentheses", kind));
   if (term.items.empty()) spot.Fail(term, fmt::format("() stands where a {} is wanted", kind));
   const std::string& name = RequireName(spot, term.items[0], fmt::format("the name of a {}", kind));
@@ -232,14 +232,15 @@ const HddlVocabulary::Signature& CheckTerm(const HddlSpot& spot, const Datum& te
                                 Excerpt(term), signature.types.size()));
   }
   for (std::size_t i = 0; i < signature.types.size(); ++i) {
-    const int type = CheckArgument(spot, term.items[i + 1], variables, vocabulary);
-    CheckArgumentType(spot, term.items[i + 1], type, signature.types[i], signature, vocabulary);
+    const int type =
+        CheckArgument(spot, term.items[i + 1], signature.types[i], variables, vocabulary);
+    CheckArgumentType(spot, term.items[i + 1], type, signature.types[i], signature, *vocabulary);
   }
   return signature;
 }
 
-int CheckArgument(const HddlSpot& spot, const Datum& argument, const HddlVariables& variables,
-                  const HddlVocabulary& vocabulary) {
+int CheckArgument(const HddlSpot& spot, const Datum& argument, int wanted,
+                  const HddlVariables& variables, HddlVocabulary* vocabulary) {
   if (argument.kind == Datum::Kind::kVariable) {
     const auto found = variables.find(argument.text);
     if (found != variables.end()) return found->second;
@@ -247,10 +248,34 @@ int CheckArgument(const HddlSpot& spot, const Datum& argument, const HddlVariabl
                             " Declare it among the parameters");
   }
   const std::string& name = RequireName(spot, argument, "an object or a variable");
-  const auto found = vocabulary.objects.find(name);
-  if (found != vocabulary.objects.end()) return found->second;
-  spot.Fail(argument, base::UnknownName("object", name, KeysOf(vocabulary.objects)) +
-                          " Declare it among the constants or objects");
+  const auto found = vocabulary->objects.find(name);
+  if (found != vocabulary->objects.end()) return found->second;
+  if (vocabulary->has_all_objects) {
+    spot.Fail(argument, base::UnknownName("object", name, KeysOf(vocabulary->objects)) +
+                            " Declare it among the constants or objects");
+  }
+  vocabulary->open_objects.push_back({name, wanted, argument.place, spot.construct});
+  return wanted;
+}
+
+void CheckOpenObjects(const HddlSpot& spot, const std::string& domain_source,
+                      const HddlVocabulary& vocabulary) {
+  for (const HddlVocabulary::OpenObject& open : vocabulary.open_objects) {
+    const HddlSpot named{domain_source, open.construct};
+    Datum at;
+    at.place = open.place;
+    const auto found = vocabulary.objects.find(open.name);
+    if (found == vocabulary.objects.end()) {
+      named.Fail(at, base::UnknownName("object", open.name, KeysOf(vocabulary.objects)) +
+                         fmt::format(" Declare it among the constants, or among the objects of {}",
+                                     spot.construct));
+    }
+    if (IsA(vocabulary, found->second, open.type)) continue;
+    named.Fail(at, fmt::format("'{}' must be of type {} here, {} declares it as {}; change one of "
+                               "them",
+                               open.name, vocabulary.types[open.type].name, spot.construct,
+                               vocabulary.types[found->second].name));
+  }
 }
 
 std::string TypePredicate(const HddlVocabulary& vocabulary, int type) {

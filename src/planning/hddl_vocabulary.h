@@ -30,6 +30,13 @@ struct HddlVocabulary {
     std::vector<std::string> parameters;
     std::vector<Datum> atoms;
   };
+  /// An object that a domain names and leaves for its problems to declare.
+  struct OpenObject {
+    std::string name;
+    int type;  ///< which it must be of
+    Place place;
+    std::string construct;  ///< where it is named, for messages
+  };
   using Signatures = std::map<std::string, Signature>;
 
   std::vector<Type> types;
@@ -40,7 +47,9 @@ struct HddlVocabulary {
   Signatures functions;
   Signatures tasks;                                          ///< compound ones and actions
   std::map<std::string, StaticCondition> static_conditions;  ///< of actions, by name
-  bool has_costs{false};                                     ///< (total-cost) is declared
+  std::vector<OpenObject> open_objects;
+  bool has_costs{false};        ///< (total-cost) is declared
+  bool has_all_objects{false};  ///< no object may be left open any more
 };
 
 }  // namespace hires::planning
@@ -75,15 +84,20 @@ void ReadFunctions(const HddlSpot& spot, const Datum& section, HddlVocabulary* v
 using HddlVariables = std::map<std::string, int>;
 
 /// `term`, whose first item names one of `signatures`, checked: declared name, number of arguments,
-/// declared variables and objects, objects of the right type.
+/// declared variables and objects, objects of the right type. Several published domains name
+/// objects that only their problems declare: those are kept as open objects.
 const HddlVocabulary::Signature& CheckTerm(const HddlSpot& spot, const Datum& term,
                                            std::string_view kind,
                                            const HddlVocabulary::Signatures& signatures,
                                            const HddlVariables& variables,
-                                           const HddlVocabulary& vocabulary);
-/// A variable or an object, declared.  @return its type
-int CheckArgument(const HddlSpot& spot, const Datum& argument, const HddlVariables& variables,
-                  const HddlVocabulary& vocabulary);
+                                           HddlVocabulary* vocabulary);
+/// A variable or an object, declared; or else an open object of type `wanted`.  @return its type
+int CheckArgument(const HddlSpot& spot, const Datum& argument, int wanted,
+                  const HddlVariables& variables, HddlVocabulary* vocabulary);
+/// @param spot  Of the problem whose objects were read.
+/// @throws ConfigError if one that the domain left open is not declared, or of the wrong type.
+void CheckOpenObjects(const HddlSpot& spot, const std::string& domain_source,
+                      const HddlVocabulary& vocabulary);
 
 std::string TypePredicate(const HddlVocabulary& vocabulary, int type);  ///< "%type-place"
 std::string ValuePredicate(const std::string& function);                ///< "%value-length"

@@ -45,8 +45,10 @@ Term Prover::Build(const Pattern& pattern, std::uint32_t frame) {
   switch (pattern.kind) {
     case Pattern::Kind::kConstant:
       return pattern.constant;
-    case Pattern::Kind::kSlot:
-      return bindings_.Resolve(Term(Term::Kind::kVariable, frame + pattern.slot));
+    case Pattern::Kind::kSlot: {
+      const Term value = bindings_.Deref(Term(Term::Kind::kVariable, frame + pattern.slot));
+      return terms_.IsGround(value) ? value : bindings_.Resolve(value);
+    }
     case Pattern::Kind::kCall:
       return Evaluate(*pattern.call, frame);
     case Pattern::Kind::kPair:

@@ -641,32 +641,52 @@ std::vector<std::pair<std::string, Datum>> Search::Values(const std::vector<std:
   return values;
 }
 
-void Search::ExtractNode(std::uint32_t node, int parent, Plan* plan, std::vector<int>* number) {
-  const Network::Node& source = network_.node(node);
-  int self = parent;
-  if (node == Network::kRoot || !source.task.IsNil()) {
-    self = static_cast<int>(plan->nodes.size());
-    (*number)[node] = self;
-    PlanNode& fresh = plan->nodes.emplace_back();
-    if (node != Network::kRoot) fresh.task = terms_.ToDatum(bindings_.Resolve(source.task));
-    fresh.parent = parent;
-    if (parent >= 0) plan->nodes[parent].children.push_back(self);
-  }
-  if (source.first_child == Network::kNone) return;
-  for (std::uint32_t i = 0; i < source.subtasks->items.size(); ++i) {
-    ExtractNode(source.first_child + i, self, plan, number);
-  }
-}
-
 Plan Search::Extract() {
   Plan plan;
   plan.cost = cost_;
-  plan.nodes.reserve(network_.size());
   plan.steps.reserve(steps_.size());
   std::vector<int> number(network_.size(), -1);
-  ExtractNode(Network::kRoot, -1, &plan, &number);
+  if (request_.decomposition) ExtractNodes(&plan, &number);
+  for (const Step& step : steps_) {
+    PlanStep& fresh = plan.steps.emplace_back();
+    fresh.task = terms_.ToDatum(bindings_.Resolve(network_.node(step.node).task));
+    fresh.cost = step.cost;
+    fresh.node = number[step.node];
+    fresh.bindings = Values(step.applied->variables, step.applied->num_head_slots, step.variables);
+    if (fresh.node >= 0) plan.nodes[fresh.node].step = static_cast<int>(plan.steps.size()) - 1;
+  }
+  return plan;
+}
+
+int Search::AddNode(std::uint32_t node, int parent, Plan* plan, std::vector<int>* number) {
+  const int self = static_cast<int>(plan->nodes.size());
+  (*number)[node] = self;
+  PlanNode& fresh = plan->nodes.emplace_back();
+  if (node != Network::kRoot) {
+    fresh.task = terms_.ToDatum(bindings_.Resolve(network_.node(node).task));
+  }
+  fresh.parent = parent;
+  if (parent >= 0) plan->nodes[parent].children.push_back(self);
+  return self;
+}
+
+void Search::ExtractNodes(Plan* plan, std::vector<int>* number) {
+  plan->nodes.reserve(network_.size());
+  std::vector<std::pair<std::uint32_t, int>> open{
+      {Network::kRoot, -1}};  // node, parent in the plan
+  while (
+      !open.empty()) {  // not by recursion: methods that call themselves nest as deep as plans go
+    auto [node, self] = open.back();
+    open.pop_back();
+    const Network::Node& source = network_.node(node);
+    if (node == Network::kRoot || !source.task.IsNil()) self = AddNode(node, self, plan, number);
+    if (source.first_child == Network::kNone) continue;
+    for (auto i = static_cast<std::uint32_t>(source.subtasks->items.size()); i-- > 0;) {
+      open.emplace_back(source.first_child + i, self);
+    }
+  }
   for (const Decomposition& decomposition : decompositions_) {
-    PlanNode& node = plan.nodes[number[decomposition.node]];
+    PlanNode& node = plan->nodes[(*number)[decomposition.node]];
     node.method = decomposition.method->index;
     node.branch = static_cast<int>(decomposition.branch);
     const Branch& branch = *decomposition.method->branches[decomposition.branch].source;
@@ -678,15 +698,6 @@ Plan Search::Extract() {
     node.bindings = Values(decomposition.method->variables, decomposition.method->num_head_slots,
                            decomposition.variables);
   }
-  for (const Step& step : steps_) {
-    PlanStep& fresh = plan.steps.emplace_back();
-    fresh.task = terms_.ToDatum(bindings_.Resolve(network_.node(step.node).task));
-    fresh.cost = step.cost;
-    fresh.node = number[step.node];
-    fresh.bindings = Values(step.applied->variables, step.applied->num_head_slots, step.variables);
-    plan.nodes[fresh.node].step = static_cast<int>(plan.steps.size()) - 1;
-  }
-  return plan;
 }
 
 // --- questions and messages

@@ -8,6 +8,7 @@ namespace hires::planning {
 namespace {
 
 constexpr std::size_t kFirstSlots = 1024;
+constexpr std::uint32_t kShort = 3;  // walking so many facts is cheaper than looking for fewer
 
 }  // namespace
 
@@ -39,6 +40,15 @@ std::size_t State::SlotOf(const ChainName& name) const {
 }
 
 std::uint32_t State::ChainOf(const ChainName& name) {
+  if (name.key == 0) {
+    const std::uint32_t symbol = name.predicate.index();
+    if (symbol >= of_predicate_.size()) of_predicate_.resize(symbol + 1, kNone);
+    if (of_predicate_[symbol] == kNone) {
+      of_predicate_[symbol] = static_cast<std::uint32_t>(chains_.size());
+      chains_.emplace_back();
+    }
+    return of_predicate_[symbol];
+  }
   std::size_t slot = SlotOf(name);
   if (slots_[slot].name.used) return slots_[slot].chain;
   if (2 * (used_slots_ + 1) > slots_.size()) {
@@ -146,14 +156,16 @@ void State::Undo(std::size_t mark) {
 }
 
 State::Chain State::Candidates(Term predicate, const Term* arguments, std::size_t count) const {
-  std::uint32_t best = kNone;
+  const std::uint32_t symbol = predicate.index();
+  std::uint32_t best = symbol < of_predicate_.size() ? of_predicate_[symbol] : kNone;
+  if (best == kNone || chains_[best].length == 0) return {};
   std::uint8_t best_key = 0;
-  for (std::uint8_t key = 0; key < kNumKeys; ++key) {
+  for (std::uint8_t key = 1; key < kNumKeys && chains_[best].length > kShort; ++key) {
     ChainName name;
     if (!NameChain(key, predicate, arguments, count, &name)) continue;
-    const std::uint32_t chain = FindChain(name);
+    const std::uint32_t chain = slots_[SlotOf(name)].chain;
     if (chain == kNone || chains_[chain].length == 0) return {};
-    if (best == kNone || chains_[chain].length < chains_[best].length) {
+    if (chains_[chain].length < chains_[best].length) {
       best = chain;
       best_key = key;
     }

@@ -37,8 +37,9 @@ enum class Which { kFirst, kAll, kBest };
 struct PlanRequest {
   Which which{Which::kFirst};
   std::size_t max_plans{1000};                               ///< kAll stops there
-  int max_depth{1'000'000};                                  ///< longer paths are given up
+  int max_depth{200'000};                                    ///< longer paths are given up
   double max_cost{std::numeric_limits<double>::infinity()};  ///< dearer paths are given up
+  bool decomposition{true};  ///< plans carry their nodes; otherwise steps say node -1
   bool loop_check{true};     ///< give up paths that come back to a state and task network
   std::size_t max_trace{0};  ///< reasons kept, the latest ones; 0 keeps none
   StopQuestion stop;         ///< asked at least every 256 expansions or 4096 inferences

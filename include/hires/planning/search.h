@@ -115,7 +115,8 @@ class Search {
   // Plans, questions, messages.
   bool FoundPlan();
   Plan Extract();
-  void ExtractNode(std::uint32_t node, int parent, Plan* plan, std::vector<int>* number);
+  void ExtractNodes(Plan* plan, std::vector<int>* number);
+  int AddNode(std::uint32_t node, int parent, Plan* plan, std::vector<int>* number);
   std::vector<std::pair<std::string, Datum>> Values(const std::vector<std::string>& names,
                                                     std::uint32_t first, std::uint32_t variables);
   Progress CurrentProgress() const;

@@ -87,7 +87,6 @@ class State {
   bool NameChain(std::uint8_t key, Term predicate, const Term* arguments, std::size_t count,
                  ChainName* name) const;
   std::uint32_t ChainOf(const ChainName& name);
-  std::uint32_t FindChain(const ChainName& name) const { return slots_[SlotOf(name)].chain; }
   void Link(std::uint32_t fact);  ///< in the place that its links name
   void Unlink(std::uint32_t fact);
   void SetPresent(Term atom, std::uint32_t fact);
@@ -102,7 +101,8 @@ class State {
   std::vector<Fact> facts_;
   std::vector<Term> arguments_;
   std::vector<Ends> chains_;
-  std::vector<Slot> slots_;  ///< chains by name: open addressing, never shrinks
+  std::vector<std::uint32_t> of_predicate_;  ///< symbol -> its chain of all facts, or kNone
+  std::vector<Slot> slots_;  ///< other chains by name: open addressing, never shrinks
   std::size_t used_slots_{0};
   std::vector<std::uint32_t> present_;  ///< pair index of an atom -> its fact, or kNone
   std::vector<Change> trail_;

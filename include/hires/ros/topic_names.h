@@ -6,6 +6,7 @@
 namespace hires_ros {
 
 constexpr char kImagineAction[] = "imagine";
+constexpr char kPlanAction[] = "plan";
 constexpr char kImaginationMarkers[] = "imagination_markers";  ///< ranking, latched
 constexpr char kWorldMarkers[] = "world_markers";              ///< furniture, areas, latched
 
