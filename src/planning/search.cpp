@@ -12,6 +12,13 @@ namespace {
 
 constexpr std::uint64_t kQuestionEvery = 256;  // expansions
 
+std::uint64_t Mix(std::uint64_t a, std::uint64_t b) {
+  std::uint64_t x = a * 0x9e3779b97f4a7c15ULL + b;
+  x ^= x >> 32;
+  x *= 0xd6e8feb86659fd93ULL;
+  return x ^ (x >> 32);
+}
+
 }  // namespace
 
 Search::Search(const Program& program, TermTable* terms, const PlanRequest& request)
@@ -620,6 +627,7 @@ bool Search::FoundPlan() {
     }
     prover_.Cut(floor);
   }
+  if (request_.which == Which::kAll && !plan_keys_.insert(PlanKey()).second) return false;
   if (request_.which == Which::kBest) {
     plans_.clear();
     best_cost_ = cost_;
@@ -628,6 +636,26 @@ bool Search::FoundPlan() {
   enough_ = request_.which == Which::kFirst ||
             (request_.which == Which::kAll && plans_.size() >= request_.max_plans);
   return false;
+}
+
+/// The same for plans with the same steps in the same order and the same decomposition: those that
+/// differ only in when a task was found to need no step are one plan.
+std::uint64_t Search::PlanKey() {
+  std::vector<std::uint64_t> way(network_.size(), 0);
+  for (const Decomposition& decomposition : decompositions_) {
+    way[decomposition.node] =
+        1 + 64 * static_cast<std::uint64_t>(decomposition.method->index + 1) + decomposition.branch;
+  }
+  std::uint64_t key = 0;
+  for (std::uint32_t node = Network::kRoot; node < network_.size(); ++node) {
+    const Network::Node& source = network_.node(node);
+    const std::uint64_t parent = source.parent == Network::kNone ? 0 : way[source.parent];
+    const std::uint64_t task = terms_.Hash(bindings_.Resolve(source.task));
+    way[node] = Mix(Mix(Mix(parent, source.item), way[node]), task);
+    key += Mix(way[node], 0);
+  }
+  for (const Step& step : steps_) key = Mix(key, way[step.node]);
+  return key;
 }
 
 std::vector<std::pair<std::string, Datum>> Search::Values(const std::vector<std::string>& names,

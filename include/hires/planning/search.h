@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <string>
+#include <unordered_set>
 #include <vector>
 
 #include "hires/planning/bindings.h"
@@ -114,6 +115,7 @@ class Search {
 
   // Plans, questions, messages.
   bool FoundPlan();
+  std::uint64_t PlanKey();
   Plan Extract();
   void ExtractNodes(Plan* plan, std::vector<int>* number);
   int AddNode(std::uint32_t node, int parent, Plan* plan, std::vector<int>* number);
@@ -156,6 +158,7 @@ class Search {
   bool too_dear_{false};
   Term protection_word_, failure_word_;
   std::vector<Plan> plans_;
+  std::unordered_set<std::uint64_t> plan_keys_;
   std::deque<TraceEntry> trace_;
 };
 
