@@ -174,7 +174,7 @@ class DomainReader {
     }
     op.precondition.condition = ArrangeConjunction(conditions, parameters.type_atoms, bound);
     if (const Datum* effect = fields.Find(":effect")) TakeEffects(*effect, &scope, &op);
-    if (op.cost.IsNil()) op.cost = CostOf({}, &vocabulary_);
+    if (op.cost.IsNil()) op.cost = CostOf({}, vocabulary_);
     domain_.operators.push_back(std::move(op));
   }
 

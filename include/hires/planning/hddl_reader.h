@@ -23,7 +23,8 @@ namespace hires::planning {
 /// @throws base::ConfigError naming source:line:column, the construct ("method 'm_go'"), what came,
 ///   what was wanted and the nearest names: forms, undeclared or doubled names, numbers of
 ///   arguments, constants of the wrong type, types that contain themselves, subtasks that would
-///   come before themselves, effects on numbers other than (increase (total-cost) ...).
+///   come before themselves, effects on numbers other than (increase (total-cost) ...). An object
+///   that is not declared here may be declared by the problem, so the reader of problems tells.
 Domain ReadHddlDomain(std::string_view text, const std::string& source);
 
 /// The only problem of an HDDL text, checked against its domain; a domain beside it is left alone.
