@@ -1,0 +1,88 @@
+#include "hires/planning/planning_files.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "hires/base/error.h"
+#include "support/temporary_folder.h"
+
+namespace hires::planning {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+constexpr const char* kHddlDomain =
+    "(define (domain d) (:types place) (:predicates (at ?p - place))\n"
+    " (:action go :parameters (?p - place) :precondition () :effect (at ?p)))";
+constexpr const char* kHddlProblem =
+    "(define (problem p) (:domain d) (:objects a - place)\n"
+    " (:htn :ordered-subtasks (and (go a))) (:init))";
+constexpr const char* kShop2Domain = "(defdomain d ((:operator (!go ?p) () ((at ?p)))))";
+
+template <typename Read>
+std::string ErrorOf(const Read& read) {
+  try {
+    read();
+  } catch (const base::ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(LanguageOfTest, TheFirstWordTells) {
+  using Language = Domain::Language;
+  EXPECT_EQ(LanguageOf("; words\n#| more |# ( DefDomain d ())", "f"), Language::kShop2);
+  EXPECT_EQ(LanguageOf("(defproblem", "f"), Language::kShop2);
+  EXPECT_EQ(LanguageOf("(make-problem 'p", "f"), Language::kShop2);
+  EXPECT_EQ(LanguageOf("(in-package :shop-user)", "f"), Language::kShop2);
+  EXPECT_EQ(LanguageOf("\xEF\xBB\xBF(Define (domain d))", "f"), Language::kHddl);
+}
+
+TEST(LanguageOfTest, OtherFilesAreNamed) {
+  for (const char* text : {"", "plan: 7", "(", "((defdomain d ()))", "(\"defdomain\")"}) {
+    EXPECT_THAT(ErrorOf([&] { LanguageOf(text, "notes.txt"); }),
+                AllOf(HasSubstr("notes.txt: is no planning file"), HasSubstr("(defdomain")))
+        << text;
+  }
+  EXPECT_THAT(ErrorOf([] { LanguageOf("(setq x 1)", "notes.txt"); }), HasSubstr("(setq"));
+}
+
+TEST(LoadTest, BothLanguagesAreLoaded) {
+  const test_support::TemporaryFolder folder;
+  const Domain shop2 = LoadDomain(folder.Write("d.lisp", kShop2Domain));
+  EXPECT_EQ(shop2.language, Domain::Language::kShop2);
+  const std::string problems =
+      folder.Write("p.lisp", "(defproblem p1 d () ((!go a))) (defproblem p2 d () ((!go b)))");
+  EXPECT_THAT(LoadProblems(problems, shop2), SizeIs(2));
+
+  const Domain hddl = LoadDomain(folder.Write("d.hddl", kHddlDomain));
+  EXPECT_EQ(hddl.language, Domain::Language::kHddl);
+  EXPECT_THAT(LoadProblems(folder.Write("p.hddl", kHddlProblem), hddl), SizeIs(1));
+}
+
+TEST(LoadTest, LanguagesAreNotMixed) {
+  const test_support::TemporaryFolder folder;
+  const Domain domain = LoadDomain(folder.Write("d.lisp", kShop2Domain));
+  const std::string problem = folder.Write("p.hddl", kHddlProblem);
+  EXPECT_THAT(ErrorOf([&] { LoadProblems(problem, domain); }),
+              AllOf(HasSubstr("p.hddl: is written in HDDL"), HasSubstr("d.lisp in SHOP2")));
+}
+
+TEST(LoadTest, TasksOfProblemsAreCheckedAgainstTheDomain) {
+  const test_support::TemporaryFolder folder;
+  const Domain domain = LoadDomain(folder.Write("d.lisp", kShop2Domain));
+  const std::string problem = folder.Write("p.lisp", "(defproblem p d ()\n ((!fly a)))");
+  EXPECT_THAT(ErrorOf([&] { LoadProblems(problem, domain); }),
+              AllOf(HasSubstr("p.lisp:2:3"), HasSubstr("did you mean '!go'")));
+}
+
+TEST(LoadTest, AMissingFileIsNamed) {
+  EXPECT_THAT(ErrorOf([] { LoadDomain("/nowhere/d.lisp"); }), HasSubstr("/nowhere/d.lisp"));
+}
+
+}  // namespace
+}  // namespace hires::planning
