@@ -24,15 +24,8 @@
   (:operator (!!note ?facts) () ?facts 0)
 
   (:method (achieve-goals ?goals)
-    ()
-    ((list-goals ?goals ()) (settle) (build) (check-goals)))
-
-  (:method (list-goals (?goal . ?others) ?listed)
-    ()
-    ((list-goals ?others ((goal ?goal) . ?listed))))
-  (:method (list-goals () ?listed)
-    ()
-    ((!!note ?listed)))
+    ((setof (goal ?goal) (assign* ?goal '?goals) ?facts))
+    ((!!note ?facts) (settle) (build) (check-goals)))
 
   ; Settled from the start: what stands on the table or on a settled block, and may stay there.
   (:method (settle)
