@@ -16,7 +16,7 @@ struct ReaderLimits {
   int max_depth{1000};               ///< parentheses and quotes open at the same time
   std::size_t max_symbol{1000};      ///< bytes of a symbol, a variable or a number
   std::size_t max_string{1u << 20};  ///< bytes of a string
-  std::size_t max_data{2'000'000};   ///< symbols, numbers, strings and lists
+  std::size_t max_data{1'000'000};   ///< symbols, numbers, strings and lists
 };
 
 /// Reads Lisp data as SHOP2 and HDDL files hold them, whatever they may mean: lists, dotted lists,
