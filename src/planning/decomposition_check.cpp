@@ -196,6 +196,12 @@ const TaskNetwork* DecompositionCheck::NetworkOf(int node) const {
   return has_branch ? &branches[plan_node.branch].subtasks : nullptr;
 }
 
+const Precondition& DecompositionCheck::PreconditionOf(int node) const {
+  if (node == 0) return problem_.parameters;
+  const PlanNode& plan_node = plan_.nodes[node];
+  return domain_.methods[plan_node.method].branches[plan_node.branch].precondition;
+}
+
 void DecompositionCheck::CheckNode(int node) {
   CheckOrder(node);
   if (domain_.language == Domain::Language::kShop2 && !windowed_) CheckImmediate(node);
@@ -401,8 +407,8 @@ void DecompositionCheck::CheckPrecondition(int node, const Branch& branch, const
                            At(domain_.source, branch.place), plan_.nodes[node].branch + 1, when));
 }
 
-/// The subtask of `parent` at `place` with what was known of the parent's task and its recorded
-/// bindings; nothing that was bound later.
+/// The subtask of `parent` at `place` with what was known of the parent's task and what the
+/// precondition bound; nothing that was bound later.
 Datum DecompositionCheck::SubtaskAsItCame(int parent, const Datum& task_of_parent,
                                           std::size_t place) {
   const TaskNetwork* network = NetworkOf(parent);
@@ -410,13 +416,13 @@ Datum DecompositionCheck::SubtaskAsItCame(int parent, const Datum& task_of_paren
   const Datum& last_known = plan_.nodes[plan_.nodes[parent].children[place]].task;
   if (leaves.size() != plan_.nodes[parent].children.size()) return last_known;
   if (HasCall(leaves[place]->task)) return last_known;
-  Reading reading;
-  ReadRecord(parent, &reading);
-  if (parent != 0) {
-    const Datum& head = domain_.methods[plan_.nodes[parent].method].head;
-    reading.values.Unify(head, task_of_parent);
+  Substitution values;
+  if (parent != 0) values.Unify(domain_.methods[plan_.nodes[parent].method].head, task_of_parent);
+  const std::set<std::string> bound = VariablesBoundBy(PreconditionOf(parent).condition);
+  for (const auto& [variable, value] : plan_.nodes[parent].bindings) {
+    if (bound.count(variable) > 0) values.Unify(MakeVariable(variable), value);
   }
-  return RenameVariables(reading.values.Apply(leaves[place]->task), fmt::format("@{}", parent));
+  return RenameVariables(values.Apply(leaves[place]->task), fmt::format("@{}", parent));
 }
 
 /// A task with the variables that were open when it came up, before its method bound any.

@@ -76,6 +76,7 @@ class DecompositionCheck {
   bool Holds(const Precondition& precondition, int moment, const ValueMap& known,
              const ValueMap& expected);
   const TaskNetwork* NetworkOf(int node) const;
+  const Precondition& PreconditionOf(int node) const;  ///< @pre it has a network
   void Report(int node, const std::string& text);
 
   const Domain& domain_;

@@ -16,11 +16,45 @@ void CollectVariablesOf(const Formula& formula, std::set<std::string>* names) {
   CollectVariables(formula.expression, names);
 }
 
+void CollectBoundBy(const Formula& formula, std::set<std::string>* names) {
+  switch (formula.kind) {
+    case Formula::Kind::kNot:
+    case Formula::Kind::kImply:
+    case Formula::Kind::kForall:
+    case Formula::Kind::kEval:
+      return;
+    case Formula::Kind::kSetOf:
+    case Formula::Kind::kBagOf:
+      return CollectVariables(formula.expression, names);
+    default:
+      CollectVariables(formula.term, names);
+      for (const Formula& part : formula.parts) CollectBoundBy(part, names);
+  }
+}
+
+/// Without the numbers that copies of clauses put behind the names of their variables, where the
+/// names still tell them apart.
+Datum Readable(const Datum& atom) {
+  if (IsGround(atom)) return atom;
+  std::set<std::string> names;
+  CollectVariables(atom, &names);
+  std::set<std::string> bare_names;
+  Substitution bare;
+  for (const std::string& name : names) {
+    const std::size_t end = name.find('#', 2);  // "?_#1" is a reader's name
+    const std::string bare_name = name.substr(0, end);
+    bare_names.insert(bare_name);
+    if (bare_name != name) bare.Unify(MakeVariable(name), MakeVariable(bare_name));
+  }
+  return bare_names.size() == names.size() ? bare.Apply(atom) : atom;
+}
+
 std::vector<Literal> EachOnce(const std::vector<Literal>& literals) {
   std::set<std::pair<std::string, bool>> seen;
   std::vector<Literal> result;
   for (const Literal& literal : literals) {
-    if (seen.emplace(ToString(literal.atom), literal.holds).second) result.push_back(literal);
+    const Datum atom = Readable(literal.atom);
+    if (seen.emplace(ToString(atom), literal.holds).second) result.push_back({atom, literal.holds});
   }
   return result;
 }
@@ -28,7 +62,8 @@ std::vector<Literal> EachOnce(const std::vector<Literal>& literals) {
 std::vector<Datum> EachOnce(const std::vector<Datum>& atoms) {
   std::set<std::string> seen;
   std::vector<Datum> result;
-  for (const Datum& atom : atoms) {
+  for (const Datum& each : atoms) {
+    const Datum atom = Readable(each);
     if (seen.insert(ToString(atom)).second) result.push_back(atom);
   }
   return result;
@@ -109,6 +144,12 @@ Formula MakeAtom(Datum atom) {
 std::set<std::string> VariablesOf(const Formula& formula) {
   std::set<std::string> names;
   CollectVariablesOf(formula, &names);
+  return names;
+}
+
+std::set<std::string> VariablesBoundBy(const Formula& formula) {
+  std::set<std::string> names;
+  CollectBoundBy(formula, &names);
   return names;
 }
 

@@ -102,6 +102,9 @@ class Remainder {
       new_place[i] = static_cast<int>(rest.items.size());
       rest.items.push_back(std::move(*item));
     }
+    if (rest.items.size() == 1 && !rest.items.front().network.empty()) {
+      return TaskNetwork(std::move(rest.items.front().network.front()));
+    }
     rest.order = OrderOfKept(network, new_place);
     return rest;
   }
@@ -142,11 +145,13 @@ class Remainder {
     return domain_.methods.at(plan_node.method).branches.at(plan_node.branch).subtasks;
   }
 
-  /// By what was recorded when the task was decomposed, and by what was done since.
+  /// By what the precondition bound when the task was decomposed, and by what was done since.
   Substitution ValuesOf(int node, const Datum& task, const TaskNetwork& network) const {
     Substitution values;
     if (node != 0) values.Unify(domain_.methods[plan_.nodes[node].method].head, task);
+    const std::set<std::string> bound = VariablesBoundBy(PreconditionOf(node).condition);
     for (const auto& [variable, value] : plan_.nodes[node].bindings) {
+      if (bound.count(variable) == 0) continue;
       values.Unify(MakeVariable(variable), RenameVariables(value, OfNode(node)));
     }
     const std::vector<const TaskItem*> leaves = LeavesOf(network);
@@ -168,7 +173,7 @@ class Remainder {
     const Datum task = values.Apply(RenameOpen(item.task, values, OfNode(node)));
     std::set<std::string> variables;
     CollectVariables(item.task, &variables);
-    const std::set<std::string> found = VariablesOf(PreconditionOf(node).condition);
+    const std::set<std::string> found = VariablesBoundBy(PreconditionOf(node).condition);
     const bool lacks_record =
         std::any_of(variables.begin(), variables.end(), [&](const std::string& variable) {
           return !values.IsBound(variable) && found.count(variable) > 0;

@@ -81,6 +81,9 @@ Formula MakeAtom(Datum atom);
 /// The names of all variables of `formula`.
 std::set<std::string> VariablesOf(const Formula& formula);
 
+/// Those that a proof of it can bind: not the ones that stand only under a `not` and its like.
+std::set<std::string> VariablesBoundBy(const Formula& formula);
+
 /// "source:line:column: " for messages.
 std::string At(const std::string& source, Place place);
 
