@@ -16,20 +16,25 @@ namespace hires::test_support {
 
 /// What an exhaustive enumeration of a small planning problem gives.
 struct BruteForceResult {
-  std::map<std::string, int> plans;  ///< "(!a x) (!b y)" -> number of ways to derive it
-  std::multiset<double> costs;       ///< one for each way
+  std::map<std::string, int> plans;  ///< "(!a x) (!b y)" -> number of plans with these steps
+  std::multiset<double> costs;       ///< one for each plan
   bool complete{true};               ///< false: gave up, there are more
-  int derivations() const;
+  int num_plans() const;
 };
 
 /// Plans a small problem by trying everything, straight from the definition of SHOP2 and as simply
 /// as possible: states, tasks and bindings are copied at every step. The slow road to which the
 /// search is compared.
 ///
-/// A derivation is a sequence of choices: which ready task comes next, which method, which binding
-/// of its precondition. Tasks that are decomposed go on at once with one of their first subtasks,
-/// so that an interleaving of primitive steps is counted once and not for every moment at which
-/// its tasks might have been decomposed.
+/// Its choices are which ready task comes next, which method, which binding of its precondition.
+/// Tasks that are decomposed go on at once with one of their first subtasks, so that an
+/// interleaving of primitive steps is found once and not for every moment at which its tasks might
+/// have been decomposed. A plan is a sequence of steps with its decomposition: the same steps of
+/// other subtasks or by other branches are another plan; when it turned out that a task needs no
+/// step makes no difference.
+///
+/// In an HDDL domain nothing goes on at once: a task may be decomposed at any moment at which it is
+/// ready.
 ///
 /// Knows the formulas sequence, and, not, imply, forall and atom (with flat terms), the effects
 /// atom and protection, all task networks; std::logic_error for others.
@@ -51,19 +56,27 @@ class BruteForce {
   struct Task {
     Datum task;
     bool immediate{false};
+    std::string path;     ///< place in the decomposition: "/1/0" is the first item of the second
     std::set<int> after;  ///< tasks that must be finished before
+  };
+  struct TreeNode {
+    Datum task;
+    std::string how;  ///< method and branch
   };
   struct Node {
     State state;
     std::map<int, Task> tasks;  ///< all that is left to do
     std::vector<int> ready;     ///< those that wait for nothing, in the order they became so
+    std::map<std::string, TreeNode> tree;
     std::string steps;
+    std::string paths;  ///< of the steps
     double cost{0.0};
   };
 
   static Datum Substitute(const Datum& datum, const Bindings& bindings);
   static bool Unify(const Datum& a, const Datum& b, Bindings* bindings);
   static Datum Rename(Datum datum, int number);
+  static Datum WithoutNumbers(Datum datum);
   static planning::Formula Rename(planning::Formula formula, int number);
   static std::vector<Bindings> Prove(const planning::Formula& formula, const State& state,
                                      const Bindings& bindings);
@@ -75,15 +88,17 @@ class BruteForce {
   static bool HoldsForAll(const planning::Formula& forall, const State& state,
                           const Bindings& bindings);
 
-  static std::vector<int> Flatten(const planning::TaskNetwork& network, std::vector<Task>* leaves);
+  static std::vector<int> Flatten(const planning::TaskNetwork& network, const std::string& path,
+                                  std::vector<Task>* leaves);
   static void Order(const planning::TaskNetwork& network, const std::vector<std::vector<int>>& of,
                     std::vector<Task>* leaves);
-  static std::vector<std::vector<Task>> ForceImmediate(const std::vector<Task>& leaves);
+  std::vector<std::vector<Task>> ForceImmediate(const std::vector<Task>& leaves) const;
   static void Finish(int id, Node* node);
   static void BindTasks(const Bindings& bindings, Node* node);
   static bool ChangeState(const planning::Operator& op, const Bindings& bindings, State* state);
 
   void Visit(const Node& node);
+  void Note(const Node& node);
   void Try(const Node& node, int id);
   void Apply(const Node& node, int id, const planning::Operator& op);
   void Decompose(const Node& node, int id, const planning::Method& method);
@@ -94,10 +109,11 @@ class BruteForce {
   const int max_nodes_;
   int nodes_{0};
   int next_number_{0};  ///< of variables and tasks
+  std::set<std::string> seen_;
   BruteForceResult result_;
 };
 
-inline int BruteForceResult::derivations() const {
+inline int BruteForceResult::num_plans() const {
   int sum = 0;
   for (const auto& plan : plans) sum += plan.second;
   return sum;
@@ -132,6 +148,13 @@ inline bool BruteForce::Unify(const Datum& a, const Datum& b, Bindings* bindings
 inline planning::Datum BruteForce::Rename(Datum datum, int number) {
   if (datum.kind == Datum::Kind::kVariable) datum.text += "~" + std::to_string(number);
   for (Datum& item : datum.items) item = Rename(item, number);
+  return datum;
+}
+
+/// Undoes Rename for variables that nothing was bound to.
+inline planning::Datum BruteForce::WithoutNumbers(Datum datum) {
+  if (datum.kind == Datum::Kind::kVariable) datum.text.resize(datum.text.find('~'));
+  for (Datum& item : datum.items) item = WithoutNumbers(item);
   return datum;
 }
 
@@ -204,15 +227,16 @@ inline bool BruteForce::HoldsForAll(const planning::Formula& forall, const State
 
 /// Appends the tasks of a network, nested ones included, and gives their indices.
 inline std::vector<int> BruteForce::Flatten(const planning::TaskNetwork& network,
-                                            std::vector<Task>* leaves) {
+                                            const std::string& path, std::vector<Task>* leaves) {
   std::vector<std::vector<int>> of;  // leaves of each item
   std::vector<int> all;
   for (const planning::TaskItem& item : network.items) {
+    const std::string here = path + "/" + std::to_string(of.size());
     if (item.network.empty()) {
       of.push_back({static_cast<int>(leaves->size())});
-      leaves->push_back({item.task, item.immediate, {}});
+      leaves->push_back({item.task, item.immediate, here, {}});
     } else {
-      of.push_back(Flatten(item.network[0], leaves));
+      of.push_back(Flatten(item.network[0], here, leaves));
     }
     all.insert(all.end(), of.back().begin(), of.back().end());
   }
@@ -239,7 +263,8 @@ inline void BruteForce::Order(const planning::TaskNetwork& network,
 /// The reductions with one first task made immediate, one for each that could be; or the reduction
 /// as it is where a first task is immediate already.
 inline std::vector<std::vector<BruteForce::Task>> BruteForce::ForceImmediate(
-    const std::vector<Task>& leaves) {
+    const std::vector<Task>& leaves) const {
+  if (domain_.language == planning::Domain::Language::kHddl) return {leaves};
   std::vector<std::vector<Task>> all;
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     if (!leaves[i].after.empty()) continue;
@@ -262,6 +287,7 @@ inline void BruteForce::Finish(int id, Node* node) {
 
 inline void BruteForce::BindTasks(const Bindings& bindings, Node* node) {
   for (auto& entry : node->tasks) entry.second.task = Substitute(entry.second.task, bindings);
+  for (auto& entry : node->tree) entry.second.task = Substitute(entry.second.task, bindings);
 }
 
 /// The tasks of a reduction take the place of task `id`.
@@ -269,12 +295,13 @@ inline void BruteForce::Replace(Node node, int id, const std::vector<Task>& leav
   const int first = next_number_;
   next_number_ += static_cast<int>(leaves.size());
   for (std::size_t i = 0; i < leaves.size(); ++i) {
-    Task task{leaves[i].task, leaves[i].immediate, {}};
+    Task task{leaves[i].task, leaves[i].immediate, leaves[i].path, {}};
     for (const int before : leaves[i].after) task.after.insert(first + before);
     for (auto& [other, waiting] : node.tasks) {
       if (waiting.after.count(id)) waiting.after.insert(first + static_cast<int>(i));
     }
     node.tasks.emplace(first + static_cast<int>(i), task);
+    node.tree[task.path].task = task.task;
   }
   Finish(id, &node);
   for (std::size_t i = 0; i < leaves.size(); ++i) {
@@ -296,8 +323,9 @@ inline BruteForceResult BruteForce::Run() {
     if (std::find(facts.begin(), facts.end(), fact) == facts.end()) facts.push_back(fact);
   }
   std::vector<Task> leaves;
-  Flatten(problem_.tasks, &leaves);
+  Flatten(problem_.tasks, "", &leaves);
   for (const Task& leaf : leaves) {
+    root.tree[leaf.path].task = leaf.task;
     if (leaf.after.empty()) root.ready.push_back(next_number_);
     root.tasks.emplace(next_number_++, leaf);
   }
@@ -308,15 +336,21 @@ inline BruteForceResult BruteForce::Run() {
 inline void BruteForce::Visit(const Node& node) {
   if (++nodes_ > max_nodes_) result_.complete = false;
   if (!result_.complete) return;
-  if (node.ready.empty()) {
-    ++result_.plans[node.steps];
-    result_.costs.insert(node.cost);
-    return;
-  }
+  if (node.ready.empty()) return Note(node);
   for (const int id : node.ready) {
     if (node.tasks.at(id).immediate) return Try(node, id);
   }
   for (const int id : node.ready) Try(node, id);
+}
+
+inline void BruteForce::Note(const Node& node) {
+  std::string key = node.paths;
+  for (const auto& [path, entry] : node.tree) {
+    key += path + " " + ToString(WithoutNumbers(entry.task)) + " " + entry.how + "\n";
+  }
+  if (!seen_.insert(key).second) return;
+  ++result_.plans[node.steps];
+  result_.costs.insert(node.cost);
 }
 
 inline void BruteForce::Try(const Node& node, int id) {
@@ -343,6 +377,7 @@ inline void BruteForce::Apply(const Node& node, int id, const planning::Operator
   Node next = node;
   if (!ChangeState(renamed, bindings, &next.state)) return;
   const Datum step = Substitute(node.tasks.at(id).task, bindings);
+  next.paths += node.tasks.at(id).path + "\n";
   next.steps += (next.steps.empty() ? "" : " ") + ToString(step);
   next.cost +=
       op.cost.kind == Datum::Kind::kReal ? op.cost.real : static_cast<double>(op.cost.integer);
@@ -383,6 +418,7 @@ inline void BruteForce::Decompose(const Node& node, int id, const planning::Meth
   const int number = next_number_++;
   Bindings head;
   if (!Unify(Rename(method.head, number), node.tasks.at(id).task, &head)) return;
+  const std::string path = node.tasks.at(id).path;
   for (const planning::Branch& branch : method.branches) {
     const std::vector<Bindings> all =
         Prove(Rename(branch.precondition.condition, number), node.state, head);
@@ -391,7 +427,7 @@ inline void BruteForce::Decompose(const Node& node, int id, const planning::Meth
     std::set<std::string> seen;  // bindings that lead to the same subtasks are one
     for (std::size_t i = 0; i < (first_only ? 1 : all.size()); ++i) {
       std::vector<Task> leaves;
-      Flatten(branch.subtasks, &leaves);
+      Flatten(branch.subtasks, path, &leaves);
       std::string key;
       for (Task& leaf : leaves) {
         leaf.task = Substitute(Rename(leaf.task, number), all[i]);
@@ -400,6 +436,8 @@ inline void BruteForce::Decompose(const Node& node, int id, const planning::Meth
       if (!seen.insert(key).second) continue;
       Node next = node;
       BindTasks(all[i], &next);
+      next.tree.at(path).how = std::to_string(&method - domain_.methods.data()) + "." +
+                               std::to_string(&branch - method.branches.data());
       for (const std::vector<Task>& reduction : ForceImmediate(leaves)) {
         Replace(next, id, reduction);
       }
@@ -410,7 +448,7 @@ inline void BruteForce::Decompose(const Node& node, int id, const planning::Meth
 
 /// All plans of a problem; see BruteForce.
 inline BruteForceResult PlanByBruteForce(const planning::Domain& domain,
-                                         const planning::Problem& problem, int max_nodes = 20'000) {
+                                         const planning::Problem& problem, int max_nodes = 5'000) {
   return BruteForce(domain, problem, max_nodes).Run();
 }
 

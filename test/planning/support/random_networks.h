@@ -32,6 +32,7 @@ inline void showValue(const RandomNetwork& network, std::ostream& out) {
 /// What random networks are made of.
 struct NetworkOptions {
   bool protections{false};  ///< operators protect what they add, others give it free
+  bool immediate{true};     ///< some tasks are marked so
   bool recursion{false};    ///< tasks may lead to themselves; the search may have no end
   int num_tasks{3};         ///< compound tasks; without recursion each leads to later ones only
   int max_items{3};         ///< of a task network
@@ -163,7 +164,7 @@ class NetworkWriter {
                                  ? "t" + std::to_string(first + Pick(options_.num_tasks - first))
                                  : "!o" + std::to_string(Pick(kNumOperators));
     const std::string task = name + " " + Of(known);
-    return Chance(15) ? "(:task :immediate " + task + ")" : "(" + task + ")";
+    return options_.immediate && Chance(15) ? "(:task :immediate " + task + ")" : "(" + task + ")";
   }
 
   const NetworkOptions options_;
