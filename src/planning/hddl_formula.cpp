@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <map>
+#include <utility>
 
 #include "hires/base/check.h"
 #include "hires/planning/datum_reader.h"
@@ -78,102 +79,124 @@ Formula ReadQuantifier(Kind kind, const Datum& datum, HddlScope* scope) {
   return formula;
 }
 
-bool Includes(const std::set<std::string>& all, const std::set<std::string>& some) {
-  return std::includes(all.begin(), all.end(), some.begin(), some.end());
+std::vector<Formula> Pair(Formula first, Formula second) {
+  std::vector<Formula> parts;
+  parts.push_back(std::move(first));
+  parts.push_back(std::move(second));
+  return parts;
 }
 
 /// A condition other than a positive atom, all its free variables bound: quantified parts arranged.
-Formula ArrangeTest(const Formula& test, const std::set<std::string>& bound) {
-  Formula arranged = test;
+Formula ArrangeTest(Formula test, const std::set<std::string>& bound) {
+  if (test.kind != Kind::kExists && test.kind != Kind::kForall) {
+    for (Formula& part : test.parts) part = ArrangeTest(std::move(part), bound);
+    return test;
+  }
+  std::vector<Formula> types = std::move(test.parts[0].parts);
+  Formula body = std::move(test.parts[1]);
+  std::vector<Formula> guard;
   if (test.kind == Kind::kExists) {
-    arranged.parts = {ArrangeConjunction({test.parts[1]}, test.parts[0].parts, bound),
-                      MakeSequence({})};
-    return arranged;
+    guard.push_back(std::move(body));
+    body = MakeSequence({});
+  } else if (body.kind == Kind::kImply) {
+    // forall x: a implies b is the same as: for all x with a, b; and a says which x matter.
+    guard.push_back(std::move(body.parts[0]));
+    body = Formula(std::move(body.parts[1]));
   }
-  if (test.kind != Kind::kForall) {
-    for (Formula& part : arranged.parts) part = ArrangeTest(part, bound);
-    return arranged;
-  }
-  // forall x: a implies b is the same as: for all x with a, b; and a says which x matter.
-  const bool guarded = test.parts[1].kind == Kind::kImply;
-  const Formula body = guarded ? test.parts[1].parts[1] : test.parts[1];
-  const std::vector<Formula> guard =
-      guarded ? std::vector<Formula>{test.parts[1].parts[0]} : std::vector<Formula>{};
   std::set<std::string> inner = bound;
   inner.insert(test.variables.begin(), test.variables.end());
-  arranged.parts = {ArrangeConjunction(guard, test.parts[0].parts, bound),
-                    ArrangeTest(body, inner)};
-  return arranged;
+  test.parts = Pair(ArrangeConjunction(std::move(guard), std::move(types), bound),
+                    ArrangeTest(std::move(body), inner));
+  return test;
 }
 
-/// One arrangement in the making.
+/// One arrangement in the making. Goals are told apart by their index in the order in which they
+/// came; the work grows with the number of times that they name variables.
 class Arrangement {
  public:
-  Arrangement(const std::vector<Formula>& conjuncts, const std::vector<Formula>& type_atoms,
-              std::set<std::string> bound)
-      : bound_(std::move(bound)) {
-    for (const Formula& conjunct : conjuncts) {
-      const bool is_atom = conjunct.kind == Kind::kAtom;
-      (is_atom ? atoms_ : tests_).push_back({&conjunct, FreeVariables(conjunct)});
+  explicit Arrangement(const std::set<std::string>& bound) : bound_(bound) {}
+
+  void Add(Formula formula, bool is_type) {
+    const int index = static_cast<int>(goals_.size());
+    const Group group = is_type ? kType : formula.kind == Kind::kAtom ? kAtom : kTest;
+    Goal goal{std::move(formula), {}, 0, group};
+    goal.variables = FreeVariables(goal.formula);
+    for (const std::string& name : goal.variables) {
+      if (bound_.count(name) > 0) {
+        goal.is_touched = true;
+      } else {
+        ++goal.num_unbound;
+        uses_[name].push_back(index);
+      }
     }
-    for (const Formula& atom : type_atoms) types_.push_back({&atom, FreeVariables(atom)});
+    goals_.push_back(std::move(goal));
+    Enqueue(index);
   }
 
   Formula Run() {
-    while (!atoms_.empty() || !types_.empty() || !tests_.empty()) {
-      TakeBound(&atoms_);
-      TakeBound(&types_);
-      TakeBound(&tests_);
-      HIRES_CHECK(!atoms_.empty() || !types_.empty() || tests_.empty(),
-                  "a variable has neither a type nor a value");
-      TakeNext();
+    while (!queues_.empty()) {
+      const auto [queue, index] = *queues_.begin();
+      HIRES_CHECK(queue != kNeverReady, "a variable has neither a type nor a value");
+      queues_.erase(queues_.begin());
+      Take(index);
     }
-    return MakeSequence(std::move(goals_));
+    return MakeSequence(std::move(arranged_));
   }
 
  private:
+  enum Group { kAtom, kType, kTest };
   struct Goal {
-    const Formula* formula;
+    Formula formula;
     std::set<std::string> variables;
+    int num_unbound;
+    Group group;
+    bool is_touched{false};  ///< one of its variables is bound
+  };
+  /// What is taken before what.
+  enum Queue {
+    kBoundAtom,
+    kBoundType,
+    kBoundTest,
+    kTouchedAtom,
+    kUntouchedAtom,
+    kOpenType,
+    kNeverReady
   };
 
-  void Take(std::vector<Goal>* from, std::size_t index) {
-    const Goal goal = (*from)[index];
-    from->erase(from->begin() + static_cast<std::ptrdiff_t>(index));
-    goals_.push_back(ArrangeTest(*goal.formula, bound_));
-    bound_.insert(goal.variables.begin(), goal.variables.end());
+  static Queue QueueOf(const Goal& goal) {
+    if (goal.num_unbound == 0) {
+      return goal.group == kAtom ? kBoundAtom : goal.group == kType ? kBoundType : kBoundTest;
+    }
+    if (goal.group == kTest) return kNeverReady;
+    if (goal.group == kType) return kOpenType;
+    return goal.is_touched ? kTouchedAtom : kUntouchedAtom;
   }
 
-  void TakeBound(std::vector<Goal>* from) {
-    std::vector<Goal> later;
-    for (Goal& goal : *from) {
-      if (Includes(bound_, goal.variables)) {
-        goals_.push_back(ArrangeTest(*goal.formula, bound_));
-      } else {
-        later.push_back(std::move(goal));
-      }
+  void Enqueue(int index) { queues_.emplace(QueueOf(goals_[index]), index); }
+
+  void Take(int index) {
+    const std::set<std::string> variables = std::move(goals_[index].variables);
+    arranged_.push_back(ArrangeTest(std::move(goals_[index].formula), bound_));
+    for (const std::string& name : variables) {
+      if (bound_.insert(name).second) Bind(name, index);
     }
-    *from = std::move(later);
   }
 
-  void TakeNext() {
-    if (atoms_.empty()) {
-      if (!types_.empty()) Take(&types_, 0);
-      return;
+  void Bind(const std::string& name, int taken) {
+    for (const int user : uses_[name]) {
+      if (user == taken) continue;
+      queues_.erase({QueueOf(goals_[user]), user});
+      --goals_[user].num_unbound;
+      goals_[user].is_touched = true;
+      Enqueue(user);
     }
-    const auto touches = [this](const Goal& goal) {
-      return std::any_of(goal.variables.begin(), goal.variables.end(),
-                         [this](const std::string& name) { return bound_.count(name) > 0; });
-    };
-    const auto found = std::find_if(atoms_.begin(), atoms_.end(), touches);
-    Take(&atoms_, found == atoms_.end() ? 0 : static_cast<std::size_t>(found - atoms_.begin()));
   }
 
   std::set<std::string> bound_;
-  std::vector<Goal> atoms_;
-  std::vector<Goal> types_;
-  std::vector<Goal> tests_;
-  std::vector<Formula> goals_;
+  std::vector<Goal> goals_;
+  std::map<std::string, std::vector<int>> uses_;  // goals that wait for a variable
+  std::set<std::pair<Queue, int>> queues_;        // goals to be taken
+  std::vector<Formula> arranged_;
 };
 
 }  // namespace
@@ -230,7 +253,8 @@ HddlQuantified DeclareQuantified(const Datum& list, const Datum& body, HddlScope
   for (const HddlTyped& typed : ReadTypedList(scope->spot, list, 0, Datum::Kind::kVariable)) {
     std::string name = typed.datum->text;
     if (scope->variables.count(name) > 0) {
-      name = fmt::format("{}%{}", name, ++scope->num_renamed);
+      // A name that was changed before does not grow with every quantifier around it.
+      name = fmt::format("{}%{}", name.substr(0, name.find('%')), ++scope->num_renamed);
       renamed[typed.datum->text] = MakeVariable(name);
     }
     const int type = TypeOf(scope->spot, typed, scope->vocabulary);
@@ -247,18 +271,21 @@ Datum Substitute(const Datum& datum, const std::map<std::string, Datum>& values)
     const auto found = values.find(datum.text);
     return found == values.end() ? datum : found->second;
   }
-  Datum result = datum;
-  for (Datum& item : result.items) item = Substitute(item, values);
+  if (!datum.IsList()) return datum;
+  Datum result;
+  result.place = datum.place;
+  result.tail = datum.tail;
+  for (const Datum& item : datum.items) result.items.push_back(Substitute(item, values));
   return result;
 }
 
-void AppendConjuncts(const Formula& formula, std::vector<Formula>* parts) {
+void AppendConjuncts(Formula formula, std::vector<Formula>* parts) {
   if (formula.kind == Kind::kSequence || formula.kind == Kind::kAnd) {
-    for (const Formula& part : formula.parts) AppendConjuncts(part, parts);
+    for (Formula& part : formula.parts) AppendConjuncts(std::move(part), parts);
   } else if (formula.kind == Kind::kNot && formula.parts[0].kind == Kind::kNot) {
-    AppendConjuncts(formula.parts[0].parts[0], parts);
+    AppendConjuncts(std::move(formula.parts[0].parts[0]), parts);
   } else {
-    parts->push_back(formula);
+    parts->push_back(std::move(formula));
   }
 }
 
@@ -270,11 +297,14 @@ std::set<std::string> FreeVariables(const Formula& formula) {
   return variables;
 }
 
-Formula ArrangeConjunction(const std::vector<Formula>& conjuncts,
-                           const std::vector<Formula>& type_atoms, std::set<std::string> bound) {
+Formula ArrangeConjunction(std::vector<Formula> conjuncts, std::vector<Formula> type_atoms,
+                           const std::set<std::string>& bound) {
   std::vector<Formula> parts;
-  for (const Formula& conjunct : conjuncts) AppendConjuncts(conjunct, &parts);
-  return Arrangement(parts, type_atoms, std::move(bound)).Run();
+  for (Formula& conjunct : conjuncts) AppendConjuncts(std::move(conjunct), &parts);
+  Arrangement arrangement(bound);
+  for (Formula& part : parts) arrangement.Add(std::move(part), false);
+  for (Formula& atom : type_atoms) arrangement.Add(std::move(atom), true);
+  return arrangement.Run();
 }
 
 }  // namespace hires::planning::hddl

@@ -43,7 +43,7 @@ HddlQuantified DeclareQuantified(const Datum& list, const Datum& body, HddlScope
 Datum Substitute(const Datum& datum, const std::map<std::string, Datum>& values);
 
 /// The parts of nested conjunctions, double negations undone.
-void AppendConjuncts(const Formula& formula, std::vector<Formula>* parts);
+void AppendConjuncts(Formula formula, std::vector<Formula>* parts);
 
 std::set<std::string> FreeVariables(const Formula& formula);
 
@@ -57,7 +57,7 @@ std::set<std::string> FreeVariables(const Formula& formula);
 /// @param conjuncts   Conditions as ReadCondition gives them.
 /// @param type_atoms  Of the variables to be bound in the end, in the order of 4.
 /// @param bound       Variables that are bound before.
-Formula ArrangeConjunction(const std::vector<Formula>& conjuncts,
-                           const std::vector<Formula>& type_atoms, std::set<std::string> bound);
+Formula ArrangeConjunction(std::vector<Formula> conjuncts, std::vector<Formula> type_atoms,
+                           const std::set<std::string>& bound);
 
 }  // namespace hires::planning::hddl

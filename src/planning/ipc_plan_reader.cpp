@@ -15,7 +15,7 @@ namespace hires::planning {
 namespace {
 
 /// Ways to match subtasks that are tried before the reader gives up on a line.
-constexpr int kMaxTries = 100'000;
+constexpr int kMaxTries = 1'000'000;
 
 /// One line of a plan: `id task`, or `id task -> method ids`.
 struct Line {

@@ -539,6 +539,25 @@ TEST(BadHddlTextTest, DepthAndNumbersAreBounded) {
               HasSubstr("types are declared, at most 1000"));
 }
 
+// Each would take for ever if the work grew with a higher power of the depth or the width.
+TEST(HddlSizeTest, DeepQuantifiersAndLongConjunctionsAreRead) {
+  std::string deep = "(p ?x ?x)";
+  for (int i = 0; i < 480; ++i) deep = "(exists (?x) " + deep + ")";
+  std::string parameters;
+  std::string wide;
+  for (int i = 0; i < 1000; ++i) parameters += " ?v" + std::to_string(i);
+  for (int i = 0; i < 20000; ++i) {
+    wide += " (p ?v" + std::to_string(i % 1000) + " ?v" + std::to_string(7 * i % 1000) + ")";
+  }
+  const Domain domain = ReadHddlDomain(
+      "(define (domain d) (:predicates (p ?x ?y)) (:task t) (:action a :precondition " + deep +
+          ") (:method m :task (t) :parameters (" + parameters + ") :precondition (and" + wide +
+          ")))",
+      "d.hddl");
+  EXPECT_THAT(domain.methods.at(0).branches.at(0).precondition.condition.parts, SizeIs(21000));
+  EXPECT_THAT(Text(domain.operators.at(0).precondition.condition), HasSubstr("(p ?x%479 ?x%479)"));
+}
+
 class BadHddlProblemTest : public testing::TestWithParam<BadText> {};
 
 TEST_P(BadHddlProblemTest, IsRefusedWithPlaceAndRemedy) {
