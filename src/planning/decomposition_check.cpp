@@ -15,6 +15,13 @@ namespace {
 constexpr char kOfPlan[] = "@plan";
 constexpr char kThen[] = "@then";
 
+/// Unifies a term of the domain with one of the plan.
+bool UnifyWithPlan(const Datum& pattern, const Datum& of_plan, const char* suffix,
+                   Substitution* values) {
+  if (IsGround(of_plan)) return values->Unify(pattern, of_plan);  // no copy: lists may be long
+  return values->Unify(pattern, RenameVariables(of_plan, suffix));
+}
+
 int Size(const std::vector<PlanNode>& nodes) { return static_cast<int>(nodes.size()); }
 
 bool IsPrimitive(const PlanNode& node) { return node.method < 0; }
@@ -307,14 +314,13 @@ void DecompositionCheck::CheckImmediate(int node) {
 
 void DecompositionCheck::ReadRecord(int node, Reading* reading) const {
   for (const auto& [variable, value] : plan_.nodes[node].bindings) {
-    reading->fits &= reading->values.Unify(MakeVariable(variable), RenameVariables(value, kThen));
+    reading->fits &= UnifyWithPlan(MakeVariable(variable), value, kThen, &reading->values);
   }
 }
 
 void DecompositionCheck::ReadChild(int node, int child, const TaskItem& item, Reading* reading) {
   const Datum wanted = prover_.evaluator().Instantiate(item.task, reading->values);
-  const Datum came = RenameVariables(plan_.nodes[child].task, kOfPlan);
-  if (reading->values.Unify(wanted, came)) return;
+  if (UnifyWithPlan(wanted, plan_.nodes[child].task, kOfPlan, &reading->values)) return;
   reading->fits = false;
   Report(node, fmt::format("its subtask {} cannot be {} (node {})", ToString(wanted),
                            ToString(plan_.nodes[child].task), child));
@@ -325,8 +331,9 @@ DecompositionCheck::Reading DecompositionCheck::Read(int node, const Datum* head
                                                      const std::vector<const TaskItem*>& leaves) {
   Reading reading;
   ReadRecord(node, &reading);
-  const Datum task = RenameVariables(plan_.nodes[node].task, kOfPlan);
-  if (!reading.fits || (head != nullptr && !reading.values.Unify(*head, task))) {
+  const bool fits_head =
+      head == nullptr || UnifyWithPlan(*head, plan_.nodes[node].task, kOfPlan, &reading.values);
+  if (!reading.fits || !fits_head) {
     Report(node, fmt::format("its task does not fit the method for {} with the recorded bindings",
                              head != nullptr ? ToString(*head) : "the problem"));
     reading.fits = false;
@@ -387,6 +394,8 @@ void DecompositionCheck::CheckRoot() {
 
 bool DecompositionCheck::Holds(const Precondition& precondition, int moment, const ValueMap& known,
                                const ValueMap& expected) {
+  const Formula& condition = precondition.condition;
+  if (condition.kind == Formula::Kind::kSequence && condition.parts.empty()) return true;
   return prover_.Holds({precondition.condition, facts_, moment, known, expected});
 }
 

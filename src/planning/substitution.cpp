@@ -66,7 +66,7 @@ Datum Substitution::ApplyToList(const Datum& list) const {
 
 Datum Substitution::Apply(const Datum& datum) const {
   const Datum& value = Walk(datum);
-  return value.IsList() ? ApplyToList(value) : value;
+  return value.IsList() && !IsGround(value) ? ApplyToList(value) : value;
 }
 
 bool Substitution::Unify(const Datum& a, const Datum& b) {
@@ -124,10 +124,13 @@ void CollectVariables(const Datum& datum, std::set<std::string>* names) {
 }
 
 Datum RenameVariables(const Datum& datum, const std::string& suffix) {
-  Datum renamed = datum;
-  if (renamed.kind == Datum::Kind::kVariable) renamed.text += suffix;
-  for (Datum& item : renamed.items) item = RenameVariables(item, suffix);
-  for (Datum& tail : renamed.tail) tail = RenameVariables(tail, suffix);
+  if (IsGround(datum)) return datum;
+  Datum renamed;
+  renamed.kind = datum.kind;
+  renamed.place = datum.place;
+  if (datum.kind == Datum::Kind::kVariable) renamed.text = datum.text + suffix;
+  for (const Datum& item : datum.items) renamed.items.push_back(RenameVariables(item, suffix));
+  for (const Datum& tail : datum.tail) renamed.tail.push_back(RenameVariables(tail, suffix));
   return renamed;
 }
 

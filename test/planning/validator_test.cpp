@@ -399,6 +399,32 @@ TEST(ValidatePlanTest, AStepThatIsExchangedIsNoticed) {
   }
 }
 
+/// One of the numbers that tie a plan together.
+int* RandomIndex(Plan* plan, base::Rng* rng) {
+  PlanNode& node = plan->nodes[rng->Index(static_cast<int>(plan->nodes.size()))];
+  PlanStep& step = plan->steps[rng->Index(static_cast<int>(plan->steps.size()))];
+  const std::vector<int*> all = {&node.parent, &node.step,    &node.method,
+                                 &node.branch, &node.at_step, &step.node};
+  const int choice = rng->Index(static_cast<int>(all.size()) + 1);
+  if (choice < static_cast<int>(all.size())) return all[choice];
+  return node.children.empty() ? &node.parent
+                               : &node.children[rng->Index(static_cast<int>(node.children.size()))];
+}
+
+TEST(ValidatePlanTest, APlanThatHoldsTogetherNowhereIsToldSoWithoutHarm) {
+  static constexpr int kValues[] = {-2000000000, -2, -1, 0, 1, 2, 3, 5, 6, 2000000000};
+  int num_noticed = 0;
+  for (int seed = 0; seed < 500; ++seed) {
+    base::Rng rng(seed);
+    Plan plan = CupPlan();
+    for (int changes = 1 + rng.Index(3); changes > 0; --changes) {
+      *RandomIndex(&plan, &rng) = kValues[rng.Index(10)];
+    }
+    num_noticed += Wrong(plan).empty() ? 0 : 1;
+  }
+  EXPECT_GT(num_noticed, 400);  // the others changed what is free, or nothing
+}
+
 // ----------------------------------------------------------------------------------- shared data
 
 namespace fs = std::filesystem;
