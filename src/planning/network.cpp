@@ -1,17 +1,12 @@
 #include "hires/planning/network.h"
 
+#include "hires/planning/mix.h"
+
 namespace hires::planning {
 namespace {
 
 constexpr std::uint32_t kAll = 0;        // list of all ready tasks, anchored at node 0
 constexpr std::uint32_t kImmediate = 1;  // list of those that are immediate, anchored at node 1
-
-std::uint64_t Mix(std::uint64_t a, std::uint64_t b) {
-  std::uint64_t x = a * 0x9e3779b97f4a7c15ULL + b;
-  x ^= x >> 32;
-  x *= 0xd6e8feb86659fd93ULL;
-  return x ^ (x >> 32);
-}
 
 }  // namespace
 
@@ -20,8 +15,7 @@ Network::Network(TermTable* terms) : terms_(terms), nodes_(3) {
   nodes_[kImmediate].ready[kImmediate] = {kImmediate, kImmediate};
 }
 
-// --- lists of ready tasks: links of a node that left stay, so that it can come back in its place
-// ---
+// Lists of ready tasks. The links of a node that left stay, so that it can come back in its place.
 
 void Network::Append(int list, std::uint32_t node) {
   const std::uint32_t anchor = static_cast<std::uint32_t>(list);
@@ -95,9 +89,6 @@ void Network::Undo(std::size_t mark, std::uint32_t size) {
   }
   nodes_.resize(size);
 }
-
-// --- progress
-// --------------------------------------------------------------------------------------
 
 void Network::Decompose(std::uint32_t node, const CompiledNetwork* network,
                         const std::vector<Term>& tasks, int immediate) {

@@ -7,6 +7,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/planning/mix.h"
 
 namespace hires::planning {
 namespace {
@@ -15,15 +16,6 @@ constexpr std::uint32_t kEnd = 0xffffffffu;
 constexpr std::size_t kMaxIndex = (std::size_t{1} << 29) - 1;  // what Term has bits for
 constexpr std::size_t kFirstBuckets = 1024;
 constexpr unsigned kMaxDepth = 1000;
-
-/// Finalizer of splitmix64 (Steele et al. 2014).
-std::uint64_t Mix(std::uint64_t x) {
-  x ^= x >> 30;
-  x *= 0xbf58476d1ce4e5b9ULL;
-  x ^= x >> 27;
-  x *= 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
 
 std::uint32_t CheckedIndex(std::size_t index) {
   if (index > kMaxIndex) {
@@ -84,7 +76,7 @@ std::size_t TermTable::Bucket(Term head, Term tail) const {
   return (key >> 32) & (buckets_.size() - 1);
 }
 
-std::uint64_t TermTable::HashOfAtom(Term term) const { return Mix(term.bits() + 1); }
+std::uint64_t TermTable::HashOfAtom(Term term) const { return Mix(term.bits() + 1, 0); }
 
 Term TermTable::FindPair(Term head, Term tail) const {
   for (std::uint32_t i = buckets_[Bucket(head, tail)]; i != kEnd; i = pairs_[i].next) {
@@ -105,7 +97,7 @@ Term TermTable::Pair(Term head, Term tail) {
   const std::uint32_t fresh = CheckedIndex(pairs_.size());
   const std::size_t bucket = Bucket(head, tail);
   pairs_.push_back({head, tail, buckets_[bucket], static_cast<std::uint16_t>(depth),
-                    IsGround(head) && IsGround(tail), Mix(3 * Hash(head) + Mix(Hash(tail)))});
+                    IsGround(head) && IsGround(tail), Mix(Hash(head), Hash(tail))});
   buckets_[bucket] = fresh;
   if (pairs_.size() > buckets_.size()) Grow();
   return {Term::Kind::kPair, fresh};

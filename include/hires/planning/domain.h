@@ -55,7 +55,7 @@ struct Precondition {
 struct Effect {
   enum class Kind {
     kAtom,        ///< `term` is an atom
-    kList,        ///< `term` is a variable bound to a list of atoms
+    kList,        ///< `term` is a variable bound to a list of atoms, or to one atom
     kProtection,  ///< `term` is an atom: protected from now on, or (as a delete) no more
     kForall,      ///< `effects` for each binding of `condition` before the step (forall, when)
   };
@@ -145,7 +145,7 @@ struct Problem {
   std::vector<Datum> facts;  ///< ground atoms, oldest first; repeated ones count once
   Precondition parameters;   ///< binds variables of `tasks` (HDDL's :htn :parameters); else empty
   TaskNetwork tasks;
-  std::optional<Formula> goal;  ///< must hold in the end (HDDL's :goal)
+  std::optional<Formula> goal;     ///< must hold in the end (HDDL's :goal)
   std::vector<Datum> protections;  ///< atoms protected from the beginning, as often as listed here
 };
 

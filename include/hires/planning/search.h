@@ -106,7 +106,8 @@ class Search {
                std::vector<Term>* atoms);
   void CollectForAll(const CompiledEffect& effect, std::uint32_t variables,
                      std::vector<Term>* atoms);
-  bool BreaksProtection() const;
+  bool BreaksProtection();
+  bool IsLost(Term atom);
   bool Change(const CompiledOperator& applied);
   bool ProtectionsHold();
   bool Protect();
@@ -157,6 +158,7 @@ class Search {
   bool too_deep_{false};
   bool too_dear_{false};
   Term protection_word_, failure_word_;
+  Term lost_;  ///< protected fact that the last refused step would have broken
   std::vector<Plan> plans_;
   std::unordered_set<std::uint64_t> plan_keys_;
   std::deque<TraceEntry> trace_;
