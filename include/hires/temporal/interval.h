@@ -3,6 +3,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace hires::temporal {
 
@@ -47,6 +48,9 @@ constexpr int kNumAllen = 13;
 /// The one relation that holds from `a` to `b`. @pre both have start < finish.
 Allen Relation(const Interval& a, const Interval& b);
 Allen Inverse(Allen relation);
+/// The relations that an interval of which only bounds are known may have to `b`, in the order of
+/// `Allen`; none if the bounds leave it no time at all.  @pre b.start < b.finish.
+std::vector<Allen> PossibleRelations(const Bounds& start, const Bounds& finish, const Interval& b);
 std::string_view ToString(Allen relation);  ///< "before", "met_by", ...
 /// @throws ConfigError naming the thirteen words.
 Allen ReadAllen(std::string_view word);
