@@ -2,9 +2,13 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <set>
 #include <stdexcept>
 
 #include "hires/base/error.h"
+#include "hires/planning/planning_files.h"
+#include "hires/planning/substitution.h"
 #include "planning/support/conditions.h"
 #include "planning/support/plans.h"
 
@@ -174,6 +178,82 @@ TEST(FactsAfterTest, TheFirstAddOfAListIsTheNewestFact) {
   EXPECT_EQ(Text(FactsAfter(DomainOf("(:operator (!a) () () ((p) (q)))"),
                             FlatProblem("((q0))", steps), FlatPlan(steps), 1)),
             "(q0) (q) (p)");
+}
+
+// ----------------------------------------------------------------------------------- shared data
+
+using State = std::set<std::string>;
+
+/// The slow road: states as sets of text, by the plan's own deletes and adds.
+std::vector<State> StatesOf(const Domain& domain, const Problem& problem, const Plan& plan) {
+  State state;
+  for (const Datum& fact : domain.facts) state.insert(ToString(fact));
+  for (const Datum& fact : problem.facts) state.insert(ToString(fact));
+  std::vector<State> states = {state};
+  for (const PlanStep& step : plan.steps) {
+    for (const Datum& atom : step.deletes) {
+      EXPECT_EQ(state.erase(ToString(atom)), 1u) << ToString(atom);
+    }
+    for (const Datum& atom : step.adds) state.insert(ToString(atom));
+    states.push_back(state);
+  }
+  return states;
+}
+
+bool Matches(const Literal& literal, const State& state) {
+  if (IsGround(literal.atom)) return state.count(ToString(literal.atom)) > 0;
+  for (const std::string& text : state) {
+    if (Substitution().Unify(literal.atom, test_support::Read(text))) return true;
+  }
+  return false;
+}
+
+/// A link's literal holds from its producer to its consumer, and not before its producer.
+void ExpectTrueLinks(const Plan& plan, const std::vector<State>& states) {
+  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
+    EXPECT_EQ(plan.steps[i].links.size(), plan.steps[i].preconditions.size());
+    for (const CausalLink& link : plan.steps[i].links) {
+      for (int moment = link.producer + 1; moment <= static_cast<int>(i); ++moment) {
+        EXPECT_EQ(Matches(link.literal, states[moment]), link.literal.holds)
+            << Text({link.literal}) << " of step " << i << " after " << moment << " steps";
+      }
+      if (link.producer == CausalLink::kInitial) continue;
+      EXPECT_NE(Matches(link.literal, states[link.producer]), link.literal.holds)
+          << Text({link.literal}) << " of step " << i << ", produced by " << link.producer;
+    }
+  }
+}
+
+void ExpectTrueReasons(const std::string& domain_file, const std::string& problem_file) {
+  const std::filesystem::path folder = std::filesystem::path(HIRES_SHARED_DATA) / "htn";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no example problems in " << folder;
+  const Domain domain = LoadDomain(folder / domain_file);
+  const Problem problem = LoadProblems(folder / problem_file, domain).at(0);
+  Plan plan = test_support::FirstPlan(domain, problem);
+  AddReasons(domain, problem, &plan);
+  const std::vector<State> states = StatesOf(domain, problem, plan);
+  ExpectTrueLinks(plan, states);
+  const int num_steps = static_cast<int>(plan.steps.size());
+  State end;
+  for (const Datum& fact : domain.facts) end.insert(ToString(fact));
+  for (const Datum& fact : FactsAfter(domain, problem, plan, num_steps)) end.insert(ToString(fact));
+  EXPECT_EQ(end, states.back());
+}
+
+TEST(ReasonsOfSharedPlansTest, Blocks) {
+  ExpectTrueReasons("shop2/blocks.lisp", "shop2/blocks_100.lisp");
+}
+TEST(ReasonsOfSharedPlansTest, Depots) {
+  ExpectTrueReasons("shop2/depots.lisp", "shop2/depots_07.lisp");
+}
+TEST(ReasonsOfSharedPlansTest, Logistics) {
+  ExpectTrueReasons("shop2/logistics.lisp", "shop2/logistics_30_1.lisp");
+}
+TEST(ReasonsOfSharedPlansTest, Tidy) {
+  ExpectTrueReasons("hddl/tidy/domain.hddl", "hddl/tidy/tidy01.hddl");
+}
+TEST(ReasonsOfSharedPlansTest, Snake) {
+  ExpectTrueReasons("hddl/snake/domain.hddl", "hddl/snake/pb05.snake.hddl");
 }
 
 }  // namespace

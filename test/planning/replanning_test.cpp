@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <stdexcept>
 
+#include "hires/planning/planning_files.h"
 #include "hires/planning/reasons.h"
 #include "hires/planning/validator.h"
 #include "planning/support/conditions.h"
@@ -323,6 +325,42 @@ TEST(ReplanTest, CountsTheWorkOfAllTries) {
   const Replanned again = ReplanServed(served, 1, "((on cup floor) (on pot counter))");
   const PlanResult last_try = FindPlans(served.domain, again.problem);
   EXPECT_GT(again.result.progress.expansions, last_try.progress.expansions);
+}
+
+// ----------------------------------------------------------------------------------- shared data
+
+/// Where the world is as expected, the rest of the plan is found again, whole and at once.
+void ExpectRestIsFoundAgain(const std::string& domain_file, const std::string& problem_file) {
+  const std::filesystem::path folder = std::filesystem::path(HIRES_SHARED_DATA) / "htn";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no example problems in " << folder;
+  const Domain domain = LoadDomain(folder / domain_file);
+  const Problem problem = LoadProblems(folder / problem_file, domain).at(0);
+  const Plan plan = FirstPlan(domain, problem);
+  const int num_steps = static_cast<int>(plan.steps.size());
+  for (int part = 0; part <= 6; ++part) {
+    const int executed = num_steps * part / 6;
+    const Replanned again =
+        Replan(domain, problem, plan, executed, FactsAfter(domain, problem, plan, executed));
+    ASSERT_EQ(again.result.outcome, PlanOutcome::kFound) << executed;
+    EXPECT_EQ(again.kept_depth, DeepestKeepDepth(plan, executed));
+    EXPECT_THAT(ValidatePlan(domain, again.problem, again.result.plans.at(0)), IsEmpty());
+    Plan rest;
+    rest.steps.assign(plan.steps.begin() + executed, plan.steps.end());
+    EXPECT_EQ(Steps(again.result.plans.at(0)), Steps(rest)) << executed;
+  }
+}
+
+TEST(ReplanSharedPlansTest, Blocks) {
+  ExpectRestIsFoundAgain("shop2/blocks.lisp", "shop2/blocks_100.lisp");
+}
+TEST(ReplanSharedPlansTest, Depots) {
+  ExpectRestIsFoundAgain("shop2/depots.lisp", "shop2/depots_07.lisp");
+}
+TEST(ReplanSharedPlansTest, Snake) {
+  ExpectRestIsFoundAgain("hddl/snake/domain.hddl", "hddl/snake/pb05.snake.hddl");
+}
+TEST(ReplanSharedPlansTest, Tidy) {
+  ExpectRestIsFoundAgain("hddl/tidy/domain.hddl", "hddl/tidy/tidy01.hddl");
 }
 
 }  // namespace
