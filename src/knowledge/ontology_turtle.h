@@ -1,0 +1,41 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hires::knowledge {
+
+/// What a statement in Turtle is about.
+struct TurtleNode {
+  enum class Kind { kIri, kBlank, kLiteral };
+  Kind kind{Kind::kIri};
+  std::string value;  ///< IRI, blank node's label, or text of the literal
+};
+
+/// One statement in Turtle.
+struct TurtleStatement {
+  TurtleNode subject;
+  std::string predicate;  ///< IRI
+  TurtleNode object;
+  int line{0};  ///< from 1; in which its last word stands, or the next one
+};
+
+struct TurtleDocument {
+  std::string source;
+  std::vector<TurtleStatement> statements;
+  std::map<std::string, std::string> prefixes;  ///< "race" -> IRI up to the name
+};
+
+constexpr std::size_t kMaxTurtleBytes = 4u << 20;
+
+/// Reads Turtle with raptor, which is kept from the network and from every file. Safe to call from
+/// any thread.
+/// @throws ConfigError naming source and line: a text that is no Turtle, a prefix with two
+/// meanings,
+///   more than 4 MB, 100 nested brackets or 200,000 statements, an IRI of more than 200 bytes, a
+///   text of more than 64 KB.
+TurtleDocument ReadTurtle(std::string_view text, const std::string& source);
+
+}  // namespace hires::knowledge
