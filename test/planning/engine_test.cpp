@@ -97,6 +97,14 @@ TEST(OperatorTest, ItsPreconditionBindsVariablesOfLaterTasks) {
               ElementsAre("(!find a) (!show a) (!show a)"));
 }
 
+TEST(OperatorTest, AMethodsPreconditionBindsVariablesOfItsTask) {
+  EXPECT_THAT(AllPlans(kShow + "(:method (t) () ((choose ?x) (!show ?x)))"
+                               "(:method (choose ?y) ((p ?y)) ((!a)))"
+                               "(:method (choose z) () ((!b)))",
+                       "((p a) (p b))", "((t))"),
+              ElementsAre("(!a) (!show a)", "(!a) (!show b)", "(!b) (!show z)"));
+}
+
 TEST(OperatorTest, DeletesComeBeforeAdds) {
   EXPECT_THAT(AllPlans("(:operator (!renew) () ((p)) ((p))) (:operator (!need) ((p)) () ())",
                        "((p))", "((!renew) (!need))"),
@@ -132,6 +140,12 @@ TEST(EffectTest, AVariableStandsForAWholeAddOrDeleteList) {
                                   "(:operator (!!remove ?g) () ?g () 0)",
                        "((p old))", "((!!remove ((p old))) (!!assert ((p x) (q))) (show-all))"),
               ElementsAre("(!!remove ((p old))) (!!assert ((p x) (q))) (!show x)"));
+}
+
+TEST(EffectTest, AVariableStandsForAnAtomOfAList) {
+  EXPECT_THAT(AllPlans(kShowAll + "(:operator (!!swap ?old ?new) (?old) (?new))", "((p a))",
+                       "((!!swap (p a) (p b)) (show-all))"),
+              ElementsAre("(!!swap (p a) (p b)) (!show b)"));
 }
 
 TEST(EffectTest, AForallTakesAwayAllThatMatch) {
@@ -424,6 +438,28 @@ TEST(TaskNetworkTest, EmptyReductionsLeaveNoStep) {
   const std::string items = kShow + "(:method (nothing) () ())";
   EXPECT_THAT(AllPlans(items, "()", "((nothing) (!a) (nothing))"), ElementsAre("(!a)"));
   EXPECT_THAT(AllPlans(items, "()", "((nothing))"), ElementsAre(""));
+}
+
+TEST(TaskNetworkTest, EmptyNetworksInNetworksLeaveNoStep) {
+  EXPECT_THAT(AllPlans(kShow, "()", "(:unordered (:ordered) (!a))"), ElementsAre("(!a)"));
+  EXPECT_THAT(AllPlans(kShow, "()", "((:unordered) (!a) (:ordered (:unordered) ()) (!b))"),
+              ElementsAre("(!a) (!b)"));
+  EXPECT_THAT(
+      AllPlans(kShow + "(:method (t) () (:unordered () (!a)))", "()", "(:unordered (t) (!b))"),
+      UnorderedElementsAre("(!a) (!b)", "(!b) (!a)"));
+}
+
+TEST(TaskNetworkTest, WhenATaskWasFoundToNeedNoStepMakesNoOtherPlan) {
+  EXPECT_THAT(AllPlans(kShow + "(:method (nothing) () ())", "()",
+                       "(:unordered (nothing) (:ordered (!a) (!b)))"),
+              ElementsAre("(!a) (!b)"));
+}
+
+TEST(TaskNetworkTest, TheSameStepsByOtherBranchesAreOtherPlans) {
+  EXPECT_THAT(AllPlans(kShow + "(:method (t) () ((!a))) (:method (t) () ((u)))"
+                               "(:method (u) () ((!a)))",
+                       "()", "((t))"),
+              ElementsAre("(!a)", "(!a)"));
 }
 
 TEST(TaskNetworkTest, TheStateOfAnUnorderedTaskIsThatOfItsMoment) {
@@ -751,6 +787,20 @@ TEST(LoopTest, AWayOutOfALoopIsFound) {
               ElementsAre("(!on)"));
 }
 
+// Which fact is the newest decides what comes next.
+TEST(LoopTest, TheSameFactsAtAnotherAgeAreNoLoop) {
+  const std::string items =
+      "(:operator (!renew ?x) () ((q ?x)) ((q ?x))) (:operator (!done) () () ())"
+      "(:method (run) (:first (q ?x)) ((step ?x)))"
+      "(:method (step b) () ((!renew a) (run))) (:method (step a) () ((!done)))";
+  PlanRequest request;
+  for (const bool loop_check : {false, true}) {
+    request.loop_check = loop_check;
+    EXPECT_THAT(Steps(Solve(items, "((q a) (q b))", "((run))", request)),
+                ElementsAre("(!renew a) (!done)"));
+  }
+}
+
 TEST(LoopTest, MaxDepthEndsRecursionWithoutEnd) {
   PlanRequest request;
   request.max_depth = 1000;
@@ -859,6 +909,16 @@ TEST(TraceTest, SaysThatNoBranchOfAMethodHolds) {
   EXPECT_THAT(result.trace[1].reason, HasSubstr("(r "));
 }
 
+TEST(TraceTest, NamesTheProtectionThatAStepWouldBreak) {
+  PlanRequest request;
+  request.max_trace = 1;
+  const PlanResult result = Solve(kProtect, "((p))", "((!protect (p)) (!lose))", request);
+  ASSERT_EQ(result.trace.size(), 1u);
+  EXPECT_EQ(result.trace[0].task, "(!lose)");
+  EXPECT_THAT(result.trace[0].reason, HasSubstr("protect"));
+  EXPECT_THAT(result.trace[0].reason, HasSubstr("(p)"));
+}
+
 TEST(TraceTest, KeepsTheLatestReasonsOnlyAndNoneUnlessAsked) {
   const std::string items = kShow +
                             "(:operator (!need ?x) ((q ?x)) () ())"
@@ -913,6 +973,10 @@ void ExpectError(const std::string& items, const std::string& facts, const std::
 
 TEST(WrongProblemTest, ATaskThatNothingHandlesIsNamed) {
   ExpectError(kShow, "()", "((!shaw mug))", "!shaw");
+}
+
+TEST(WrongProblemTest, AWrongNumberOfArgumentsIsNamed) {
+  ExpectError(kShow, "()", "((!show mug cup))", "!show");
 }
 
 TEST(WrongProblemTest, AnImplicationFromAnUnboundVariableIsAnError) {

@@ -273,9 +273,9 @@ RC_GTEST_PROP(RandomNetworkTest, TheLoopCheckTakesNoPlanFromASearchThatEnds, ())
   RC_ASSERT(with.progress.expansions == without.progress.expansions);
 }
 
-// With the check, plans that turn in circles are left out, and only these: each plan that is left
-// is found without it as well, in the same order.
-RC_GTEST_PROP(RandomNetworkTest, TheLoopCheckKeepsTheOrderOfPlans, ()) {
+// With the check, plans that turn in circles are left out, and only these. (Not their order: a plan
+// may be found first with a circle of tasks that need no step.)
+RC_GTEST_PROP(RandomNetworkTest, TheLoopCheckLeavesOutPlansButNotAll, ()) {
   NetworkOptions options;
   options.recursion = true;
   options.max_items = 2;
@@ -287,15 +287,11 @@ RC_GTEST_PROP(RandomNetworkTest, TheLoopCheckKeepsTheOrderOfPlans, ()) {
   request.loop_check = false;
   const PlanResult without = Plans(network, request);
   RC_PRE(with.outcome != PlanOutcome::kLimitTime && without.outcome != PlanOutcome::kLimitTime);
-  const std::vector<std::string> some = Steps(with), all = Steps(without);
-  RC_CLASSIFY(some.size() < all.size(), "circles left out");
-  auto next = all.begin();
-  for (const std::string& steps : some) {
-    next = std::find(next, all.end(), steps);
-    RC_ASSERT(next != all.end());
-    ++next;
-  }
-  RC_ASSERT(some.empty() == all.empty());
+  const std::map<std::string, int> some = Count(with);
+  std::map<std::string, int> all = Count(without);
+  RC_CLASSIFY(with.plans.size() < without.plans.size(), "circles left out");
+  for (const auto& [steps, count] : some) RC_ASSERT(count <= all[steps]);
+  RC_ASSERT(with.plans.empty() == without.plans.empty());
 }
 
 // ------------------------------------------------------------------------------- interleavings

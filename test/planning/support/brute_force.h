@@ -424,11 +424,11 @@ inline void BruteForce::Decompose(const Node& node, int id, const planning::Meth
         Prove(Rename(branch.precondition.condition, number), node.state, head);
     if (all.empty()) continue;
     const bool first_only = branch.precondition.order == planning::Precondition::Order::kFirst;
-    std::set<std::string> seen;  // bindings that lead to the same subtasks are one
+    std::set<std::string> seen;  // bindings that lead to the same task and subtasks are one
     for (std::size_t i = 0; i < (first_only ? 1 : all.size()); ++i) {
       std::vector<Task> leaves;
       Flatten(branch.subtasks, path, &leaves);
-      std::string key;
+      std::string key = ToString(Substitute(node.tasks.at(id).task, all[i]));
       for (Task& leaf : leaves) {
         leaf.task = Substitute(Rename(leaf.task, number), all[i]);
         key += ToString(leaf.task);

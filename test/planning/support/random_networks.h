@@ -46,8 +46,9 @@ class NetworkWriter {
   RandomNetwork Write() {
     std::string domain = "(defdomain random (\n";
     for (int i = 0; i < kNumOperators; ++i) domain += Operator(i);
-    // Binds a variable that its task leaves open.
+    // These bind a variable that their task leaves open.
     domain += "  (:operator (!bind ?x) ((p ?x)) () ())\n";
+    domain += "  (:method (choose ?x) ((q ?x)) ())\n";
     for (int i = 0; i < options_.num_tasks; ++i) {
       const int num_methods = 1 + Pick(2);
       for (int k = 0; k < num_methods; ++k) domain += Method(i);
@@ -149,7 +150,7 @@ class NetworkWriter {
     Names names = known;
     std::string text;
     if (!is_unordered && nesting == 1 && index >= 0 && Chance(15)) {
-      text += " (!bind ?late)";  // binds it for those that follow
+      text += Of({" (!bind ?late)", " (choose ?late)"});  // for those that follow
       names.push_back("?late");
     }
     for (int i = 0; i < count; ++i) text += " " + Item(index, names, nesting);
@@ -159,7 +160,8 @@ class NetworkWriter {
   std::string Item(int index, const Names& known, int nesting) const {
     if (nesting > 0 && Chance(20)) return Network(index, known, 1, nesting - 1);
     const int first = options_.recursion ? 0 : index + 1;
-    const bool is_compound = first < options_.num_tasks && Chance(index < 0 ? 70 : 40);
+    const bool is_compound =
+        first < options_.num_tasks && Chance(options_.recursion || index < 0 ? 70 : 40);
     const std::string name = is_compound
                                  ? "t" + std::to_string(first + Pick(options_.num_tasks - first))
                                  : "!o" + std::to_string(Pick(kNumOperators));
