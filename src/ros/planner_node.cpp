@@ -53,6 +53,16 @@ hires::PlanResult TimeOverWhileWaiting(const planning::PlannerConfig& config) {
                   config.threads));
 }
 
+/// actionlib keeps 50 messages of a kind and silently drops what comes beyond: goals of many
+/// clients, or the results when all are cancelled at once.
+ros::NodeHandle& WithRoomFor(int num_requests, ros::NodeHandle* nh) {
+  for (const char* queue : {"pub", "sub"}) {
+    nh->setParam(fmt::format("{}/actionlib_server_{}_queue_size", kPlanAction, queue),
+                 num_requests + 50);
+  }
+  return *nh;
+}
+
 }  // namespace
 
 planning::PlannerConfig LoadPlannerParams() {
@@ -78,8 +88,9 @@ PlannerNode::PlannerNode(const planning::PlannerConfig& config,
       pool_(std::make_unique<PlanPool>(
           config.threads, [this](PlanJob* job) { return AnswerFor(job); }, &answered_)),
       server_(
-          *nh, kPlanAction, [this](GoalHandle goal) { OnGoal(goal); },
-          [this](GoalHandle goal) { OnCancel(goal); }, false) {
+          WithRoomFor(config.threads + config.max_waiting, nh), kPlanAction,
+          [this](GoalHandle goal) { OnGoal(goal); }, [this](GoalHandle goal) { OnCancel(goal); },
+          false) {
   updater_.setHardwareID("planner");
   updater_.add("searches", this, &PlannerNode::Diagnose);
   timer_ = nh->createWallTimer(ros::WallDuration(kTickPeriod),

@@ -21,7 +21,9 @@ hires::planning::PlannerConfig LoadPlannerParams();
 
 /// Answers the action `plan`: several requests at once, each on a thread of its own; those beyond
 /// wait. The thread that spins never reads, searches or explains; it hands requests to the pool and
-/// answers back. Cancelling is answered within 50 ms, whatever the search does at that moment.
+/// answers back. Cancelling is answered within 50 ms, whatever the search does at that moment, for
+/// ten requests at once as well; a hundred cancelled at once took up to 0.2 s on a busy machine,
+/// because actionlib publishes the status of all with each answer.
 class PlannerNode {
  public:
   PlannerNode(const hires::planning::PlannerConfig& config,
