@@ -8,6 +8,7 @@
 
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
+#include "hires/planning/planner_config.h"
 #include "hires/relay/relay_params.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/world/object_catalogue.h"
@@ -31,6 +32,10 @@ const std::map<std::string, Reader>& Readers() {
        [](const std::string& path) { imagination::ReadClientConfig(path); }},
       {"scene.yaml", [](const std::string& path) { imagination::ReadSetupConfig(path); }},
       {"uncertainty.yaml", [](const std::string& path) { imagination::LoadUncertainty(path); }},
+      {"planner.yaml",
+       [](const std::string& path) {
+         planning::LoadPlanningKnowledge(planning::ReadPlannerConfig(path));
+       }},
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
       {"relay.yaml",
        [](const std::string& path) {
@@ -55,7 +60,7 @@ TEST(ConfigurationFilesTest, EachOneLoads) {
     EXPECT_NO_THROW(reader->second(entry.path().string())) << entry.path();
     ++count;
   }
-  EXPECT_GE(count, 6);
+  EXPECT_GE(count, 7);
 }
 
 TEST(ConfigurationFilesTest, TheClientsSceneIsComplete) {
