@@ -21,14 +21,15 @@ struct FluentQuery {
   };
   struct PropertyFilter {
     std::string role;
-    std::optional<Filler> filler;  ///< any filler where empty
+    /// Any filler where empty. Text compares without regard to case; 1 and 1.0 are the same.
+    std::optional<Filler> filler;
   };
   struct TimeFilter {
     enum class Kind { kNow, kAt, kAllen, kEver };
     Kind kind{Kind::kNow};  ///< kNow: not closed
-    double at{0.0};         ///< kAt: holds at that time [s], as far as the bounds allow
-    temporal::Interval
-        interval;  ///< kAllen: the fluent's interval stands in one of `relations` to it
+    double at{0.0};  ///< kAt [s]: start.earliest <= at < finish.latest, that is, it may hold then
+    /// kAllen: the fluent's interval may stand in one of `relations` to this one.
+    temporal::Interval interval;
     std::vector<temporal::Allen> relations;
   };
 
@@ -37,7 +38,8 @@ struct FluentQuery {
   std::vector<PropertyFilter> properties;
   bool all_properties{true};  ///< each of them, or one of them
   TimeFilter time;
-  std::optional<std::int64_t> episode;                         ///< only what was written in it
+  /// Only what was written in it. Who names an imagined one asks for its world, whatever `label`.
+  std::optional<std::int64_t> episode;
   std::optional<Episode::Label> label{Episode::Label::kReal};  ///< empty: both
   std::string sparql;       ///< a select query on top: its ?instance must be the fluent's
   std::size_t limit{1000};  ///< at most so many in one answer
@@ -45,7 +47,7 @@ struct FluentQuery {
 };
 
 struct FluentPage {
-  std::vector<Fluent> fluents;  ///< by instance name, then start
+  std::vector<Fluent> fluents;  ///< by instance name (case ignored), real ones first, then start
   std::string next;             ///< cursor of the next page; "" there is none
   std::uint64_t sequence{0};    ///< last change that the answer knows of
 };

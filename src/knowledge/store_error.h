@@ -1,0 +1,28 @@
+#pragma once
+
+#include <SQLiteCpp/Exception.h>
+
+#include <string>
+#include <utility>
+
+#include "hires/base/error.h"
+
+namespace hires::knowledge {
+
+/// What SQLite reported about the store at `path`, in words that say what to do.
+base::ConfigError StoreError(const std::string& path, const SQLite::Exception& error);
+
+/// Calls `call`; what SQLite throws in it becomes a ConfigError that names `path`.
+template <typename Call>
+auto Guarded(const std::string& path, Call&& call) -> decltype(call()) {
+  try {
+    return std::forward<Call>(call)();
+  } catch (const SQLite::Exception& error) {
+    throw StoreError(path, error);
+  }
+}
+
+/// The file holds something that no store wrote there.
+[[noreturn]] void FailDamaged(const std::string& what);
+
+}  // namespace hires::knowledge

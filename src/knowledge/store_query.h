@@ -1,0 +1,121 @@
+#pragma once
+
+#include <SQLiteCpp/Statement.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/knowledge/query.h"
+#include "hires/knowledge/store.h"
+#include "store_writer.h"
+
+namespace hires::knowledge {
+
+/// What a validity is as a fluent, told as of a change: what was ended later is still open.
+Fluent ToFluent(const Validity& validity, std::int64_t as_of, StoreParts* parts);
+
+/// Statements that queries use.
+struct QueryStatements {
+  explicit QueryStatements(StoreFile* file);
+
+  SQLite::Statement levels, window, replaced, removed, filler, episode, of_concept;
+  SQLite::Statement instances, worlds, reach, stretch, newest;
+};
+
+/// Where in the order of answers a fluent stands.
+struct QueryPosition {
+  std::string name;
+  std::int64_t world{0};
+  double start{-temporal::kForever};
+  std::int64_t id{0};
+};
+/// By name (case ignored), world, start, and order of writing.
+bool operator<(const QueryPosition& a, const QueryPosition& b);
+
+/// A place to go on from: the last fluent told, and the last change that the first page knew of.
+struct QueryCursor {
+  std::int64_t as_of{0};
+  QueryPosition last;
+};
+std::string ToString(const QueryCursor& cursor);
+QueryCursor ReadCursor(const std::string& text);  ///< @throws ConfigError
+
+/// One page of the answer to one query. Where few validities can match (docs/notes_blackboard.md
+/// lists the ways to find them), they are gathered and sorted; else all instances are walked
+/// through in order of their names, from where the page before ended. Either way memory is bounded.
+class QueryRun {
+ public:
+  /// @param last  Sequence number of the last change.
+  /// @throws ConfigError
+  QueryRun(const FluentQuery& query, std::int64_t last, const Ontology& ontology, StoreParts* parts,
+           QueryStatements* statements);
+  /// Only these instances are looked at.
+  void Restrict(const std::vector<std::string>& instances);
+  FluentPage Page();
+  std::int64_t as_of() const { return as_of_; }
+
+ private:
+  struct Candidate {
+    QueryPosition position;
+    std::int64_t instance{0};
+  };
+  struct Light {  // what tells cheaply whether a validity may match
+    std::int64_t id{0}, instance{0}, world{0}, concept_id{0};
+    double start{0.0};
+  };
+  using Candidates = std::optional<std::vector<Candidate>>;  // none: too many
+
+  void ReadConcepts(const FluentQuery& query, const Ontology& ontology);
+  void AddConcepts(const FluentQuery::ConceptFilter& filter, const Ontology& ontology);
+  void ReadProperties(const Ontology& ontology) const;
+  void ReadTime();
+  void ReadAllen();
+  void ReadWorlds();
+
+  bool FitsWorld(std::int64_t world) const;
+  bool FitsConcept(std::int64_t concept_id) const;
+  bool FitsTime(const Validity& validity) const;
+  bool FitsProperties(const Fluent& fluent) const;
+  bool FitsProperty(const Fluent& fluent, const FluentQuery::PropertyFilter& filter) const;
+  bool Consider(const Validity& validity, const std::string& name);  // false: the page is full
+
+  bool Gather(const Light& light, std::vector<Candidate>* candidates) const;
+  bool Gather(std::int64_t id, std::vector<Candidate>* candidates) const;
+  std::vector<std::int64_t> WorldsToSearch() const;
+  bool GatherWindow(std::int64_t world, std::vector<Candidate>* candidates) const;
+  bool GatherLevel(std::int64_t world, int level, std::vector<Candidate>* candidates) const;
+  bool GatherReopened(std::vector<Candidate>* candidates) const;
+  Candidates ByFiller() const;
+  Candidates ByEpisode() const;
+  Candidates ByWindow() const;
+  Candidates FewCandidates() const;
+  void Take(std::vector<Candidate> candidates);
+
+  void ListInstancesOfConcepts();
+  void WalkList();
+  void WalkAll();
+  bool WalkInstance(const Instances::Named& named);
+  bool WalkWorld(const Instances::Named& named, std::int64_t world);
+  bool WalkStretch(const Instances::Named& named, QueryPosition from);
+  QueryPosition FirstInReach(const Instances::Named& named, std::int64_t world) const;
+  bool ConsiderNewest(const Instances::Named& named, std::int64_t world);
+
+  const FluentQuery& query_;
+  StoreParts* parts_;
+  QueryStatements* statements_;
+  std::int64_t last_;
+  std::int64_t as_of_;
+  std::optional<QueryPosition> from_;            // the cursor's
+  std::optional<std::vector<bool>> concepts_;    // by word; none: any
+  double earliest_finish_{-temporal::kForever};  // finish.latest lies after it,
+  double latest_start_{temporal::kForever};      // and start.earliest not after this
+  std::optional<std::int64_t> only_world_;
+  std::optional<std::vector<Instances::Named>> list_;  // only these, by name
+  FluentPage page_;
+  QueryPosition told_;
+};
+
+}  // namespace hires::knowledge

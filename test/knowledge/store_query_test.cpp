@@ -1,0 +1,263 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "hires/base/error.h"
+#include "hires/knowledge/store.h"
+#include "knowledge/support/store_world.h"
+
+namespace hires::knowledge {
+namespace {
+
+using temporal::Allen;
+using temporal::kForever;
+using test_support::At;
+using test_support::Ever;
+using test_support::HoldsAt;
+using test_support::MakeFluent;
+using test_support::Names;
+using test_support::PoseAt;
+using test_support::QueryAll;
+using test_support::SmallOntology;
+using Reach = FluentQuery::ConceptFilter::Reach;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+FluentQuery OfConcept(const std::string& name, Reach reach) {
+  FluentQuery query;
+  query.concepts = {{name, reach}};
+  return query;
+}
+
+FluentQuery Standing(const temporal::Interval& interval, const std::vector<Allen>& relations) {
+  FluentQuery query;
+  query.time.kind = FluentQuery::TimeFilter::Kind::kAllen;
+  query.time.interval = interval;
+  query.time.relations = relations;
+  return query;
+}
+
+class StoreQueryTest : public ::testing::Test {
+ protected:
+  StoreQueryTest() {
+    store_.Add({MakeFluent("Mug", "mug1",
+                           {{"hasColour", "xsd:string", std::string("blue")},
+                            {"hasPose", "Pose", std::string("poseMug1")}}),
+                MakeFluent("Mug", "Mug2", {{"hasColour", "xsd:string", std::string("red")}}),
+                MakeFluent("Vase", "vase1", {{"hasCount", "xsd:int", std::int64_t{3}}}),
+                MakeFluent("On", "on1",
+                           {{"hasObject", "Mug", std::string("mug1")},
+                            {"hasArea", "Area", std::string("area1")}}),
+                PoseAt("poseMug1", 4.0)},
+               At(10.0));
+  }
+  std::string ErrorOf(const FluentQuery& query) {
+    try {
+      store_.Query(query);
+    } catch (const base::ConfigError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  Store store_{":memory:", SmallOntology()};
+};
+
+TEST_F(StoreQueryTest, AnEmptyQueryGivesAllByName) {
+  EXPECT_THAT(Names(QueryAll(store_, FluentQuery())),
+              ElementsAre("mug1", "Mug2", "on1", "poseMug1", "vase1"));
+}
+
+TEST_F(StoreQueryTest, ConceptsAreExactOrBelowOrAbove) {
+  EXPECT_THAT(QueryAll(store_, OfConcept("Object", Reach::kExact)), IsEmpty());
+  EXPECT_THAT(Names(QueryAll(store_, OfConcept("Mug", Reach::kExact))),
+              ElementsAre("mug1", "Mug2"));
+  EXPECT_THAT(Names(QueryAll(store_, OfConcept("Object", Reach::kBelow))),
+              ElementsAre("mug1", "Mug2", "vase1"));
+  EXPECT_THAT(Names(QueryAll(store_, OfConcept("Vase", Reach::kAbove))), ElementsAre("vase1"));
+  FluentQuery two = OfConcept("Vase", Reach::kExact);
+  two.concepts.push_back({"State", Reach::kBelow});
+  EXPECT_THAT(Names(QueryAll(store_, two)), ElementsAre("on1", "vase1"));
+  two.time.kind = FluentQuery::TimeFilter::Kind::kEver;
+  EXPECT_THAT(Names(QueryAll(store_, two)), ElementsAre("on1", "vase1"));
+}
+
+TEST_F(StoreQueryTest, PropertiesByRoleAndFiller) {
+  FluentQuery query;
+  query.properties = {{"hasColour", {}}};
+  EXPECT_THAT(Names(QueryAll(store_, query)), ElementsAre("mug1", "Mug2"));
+  query.properties = {{"hasColour", Filler(std::string("red"))}};
+  EXPECT_THAT(Names(QueryAll(store_, query)), ElementsAre("Mug2"));
+  query.properties = {{"hasObject", Filler(std::string("MUG1"))}};
+  EXPECT_THAT(Names(QueryAll(store_, query)), ElementsAre("on1"));
+  query.properties = {{"hasX", Filler(std::int64_t{4})}};
+  EXPECT_THAT(Names(QueryAll(store_, query)), ElementsAre("poseMug1"));
+  query.properties = {{"hasX", Filler(true)}};
+  EXPECT_THAT(QueryAll(store_, query), IsEmpty());
+}
+
+TEST_F(StoreQueryTest, AllPropertiesOrOneOfThem) {
+  FluentQuery query;
+  query.properties = {{"hasColour", {}}, {"hasPose", Filler(std::string("poseMug1"))}};
+  EXPECT_THAT(Names(QueryAll(store_, query)), ElementsAre("mug1"));
+  query.all_properties = false;
+  EXPECT_THAT(Names(QueryAll(store_, query)), ElementsAre("mug1", "Mug2"));
+}
+
+TEST_F(StoreQueryTest, OneInstanceWithItsHistory) {
+  store_.Add({PoseAt("poseMug1", 5.0)}, At(20.0));
+  store_.Add({PoseAt("poseMug1", 6.0)}, At(30.0));
+  FluentQuery query = Ever();
+  query.instance = "POSEMUG1";
+  const std::vector<Fluent> history = QueryAll(store_, query);
+  ASSERT_THAT(history, SizeIs(3));
+  EXPECT_EQ(history[0].start.earliest, 10.0);
+  EXPECT_EQ(history[2].start.earliest, 30.0);
+  query = HoldsAt(25.0);
+  query.instance = "poseMug1";
+  EXPECT_THAT(QueryAll(store_, query), ElementsAre(history[1]));
+  query.instance = "nobody";
+  EXPECT_THAT(QueryAll(store_, query), IsEmpty());
+}
+
+TEST_F(StoreQueryTest, OnlyWhatWasWrittenInAnEpisode) {
+  const std::int64_t id = store_.StartEpisode("task", Episode::Label::kReal, 0, 15.0).id;
+  store_.Add({PoseAt("poseMug1", 5.0), PoseAt("pose2", 5.0)}, At(20.0, id));
+  store_.Add({PoseAt("pose2", 6.0)}, At(30.0));
+  FluentQuery query = Ever();
+  query.episode = id;
+  EXPECT_THAT(Names(QueryAll(store_, query)), ElementsAre("pose2", "poseMug1"));
+  query.time.kind = FluentQuery::TimeFilter::Kind::kNow;
+  EXPECT_THAT(Names(QueryAll(store_, query)), ElementsAre("poseMug1"));
+  query.episode = 0;
+  EXPECT_THAT(Names(QueryAll(store_, query)), ElementsAre("mug1", "Mug2", "on1", "pose2", "vase1"));
+}
+
+TEST_F(StoreQueryTest, IntervalsByAllensRelations) {
+  Store store(":memory:", SmallOntology());
+  const std::vector<std::pair<double, double>> stretches = {
+      {1, 5},  {5, 10}, {5, 15},  {10, 15}, {12, 18}, {15, 20}, {10, 20},
+      {5, 20}, {5, 25}, {10, 25}, {15, 25}, {20, 25}, {21, 25}};
+  // Of the thirteen, in the order of the enumeration, to [10, 20).
+  const std::vector<int> order = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
+  for (const int i : order) {
+    const auto [start, finish] = stretches[static_cast<std::size_t>(i)];
+    const std::string name = std::string(ToString(static_cast<Allen>(i)));
+    store.Add({PoseAt(name, 0.0)}, At(start));
+    if (i % 2 == 0) store.Remove({name}, At(finish));
+    if (i % 2 != 0) store.Add({PoseAt(name, 1.0)}, At(finish));
+  }
+  for (const int i : order) {
+    const auto relation = static_cast<Allen>(i);
+    FluentQuery query = Standing({10.0, 20.0}, {relation});
+    query.properties = {{"hasX", Filler(0.0)}};
+    EXPECT_THAT(Names(QueryAll(store, query)), ElementsAre(std::string(ToString(relation))));
+    query.instance = std::string(ToString(relation));  // by the other way through the file
+    EXPECT_THAT(QueryAll(store, query), SizeIs(1)) << query.instance;
+  }
+}
+
+TEST_F(StoreQueryTest, AnIntervalWithBoundsMayStandInSeveralRelations) {
+  Fluent vague = PoseAt("vague", 1.0);
+  vague.start = {0.0, 0.0};
+  vague.finish = {8.0, 15.0};
+  store_.Add({vague}, At(9.0));
+  for (const Allen relation : {Allen::kBefore, Allen::kMeets, Allen::kOverlaps}) {
+    EXPECT_THAT(Names(QueryAll(store_, Standing({10.0, 20.0}, {relation}))), ElementsAre("vague"));
+  }
+  EXPECT_THAT(QueryAll(store_, Standing({10.0, 20.0}, {Allen::kContains})), IsEmpty());
+}
+
+TEST_F(StoreQueryTest, PagesJoinToTheWhole) {
+  for (int i = 0; i < 40; ++i) {
+    store_.Add({PoseAt("pose" + std::to_string(i % 7), 0.5 * i)}, At(20.0 + i));
+  }
+  for (FluentQuery query : {FluentQuery(), Ever(), HoldsAt(45.0),
+                            Standing({30.0, 50.0}, {Allen::kDuring, Allen::kOverlaps})}) {
+    const std::vector<Fluent> whole = QueryAll(store_, query);
+    ASSERT_GT(whole.size(), 3u);
+    for (const std::size_t limit : {1u, 2u, 3u, 5u}) {
+      query.limit = limit;
+      EXPECT_EQ(QueryAll(store_, query), whole) << "limit " << limit;
+    }
+    query.limit = whole.size();
+    EXPECT_EQ(store_.Query(query).next, "");
+  }
+}
+
+TEST_F(StoreQueryTest, PagesShowTheStoreAsItWasAtTheFirst) {
+  for (FluentQuery query : {FluentQuery(), Ever(), HoldsAt(15.0), HoldsAt(1000.0)}) {
+    query.limit = 2;
+    const std::vector<Fluent> whole = QueryAll(store_, query);
+    std::vector<Fluent> paged;
+    double time = store_.ChangesSince(store_.last_sequence() - 1, 1).at(0).time;
+    for (FluentPage page = store_.Query(query);; page = store_.Query(query)) {
+      paged.insert(paged.end(), page.fluents.begin(), page.fluents.end());
+      time += 1.0;
+      store_.Add({PoseAt("poseMug1", time), PoseAt("mugless" + std::to_string(time), 1.0)},
+                 At(time));
+      if (store_.Find("vase1")) store_.Remove({"vase1"}, At(time));
+      if (page.next.empty()) break;
+      query.cursor = page.next;
+    }
+    EXPECT_EQ(paged, whole);
+    store_.Add({MakeFluent("Vase", "vase1")}, At(time + 1.0));
+  }
+}
+
+TEST_F(StoreQueryTest, ACursorMayHoldColons) {
+  store_.Add({PoseAt("a:b:c", 1.0), PoseAt("a:b:d", 1.0)}, At(11.0));
+  FluentQuery query;
+  query.limit = 1;
+  EXPECT_THAT(Names(QueryAll(store_, query)),
+              ElementsAre("a:b:c", "a:b:d", "mug1", "Mug2", "on1", "poseMug1", "vase1"));
+}
+
+TEST_F(StoreQueryTest, BadQueriesSaySo) {
+  EXPECT_THAT(ErrorOf(OfConcept("Mugg", Reach::kBelow)), HasSubstr("'Mug'"));
+  FluentQuery query;
+  query.properties = {{"hasColor", {}}};
+  EXPECT_THAT(ErrorOf(query), HasSubstr("did you mean 'hasColour'"));
+  EXPECT_THAT(ErrorOf(HoldsAt(std::nan(""))), HasSubstr("NaN"));
+  EXPECT_THAT(ErrorOf(Standing({5.0, 5.0}, {Allen::kBefore})), HasSubstr("from 5 to 5"));
+  EXPECT_THAT(ErrorOf(Standing({5.0, 6.0}, {})), HasSubstr("at least one"));
+  query = FluentQuery();
+  query.limit = 0;
+  EXPECT_THAT(ErrorOf(query), HasSubstr("limit 0"));
+  query.limit = 1;
+  for (const char* cursor :
+       {"x", "1:2:3", "1:0:zz:4:name", "-1:0:0:4:name", "1:0:7ff8000000000000:4:a"}) {
+    query.cursor = cursor;
+    EXPECT_THAT(ErrorOf(query), HasSubstr("cursor")) << cursor;
+  }
+  query = FluentQuery();
+  query.episode = 9;
+  EXPECT_THAT(ErrorOf(query), HasSubstr("no episode 9"));
+}
+
+TEST_F(StoreQueryTest, MoreThanFitsInMemoryIsWalkedThroughByName) {
+  constexpr int kMany = 20'500;  // more candidates than are sorted
+  std::vector<Fluent> fluents;
+  for (int i = 0; i < kMany; ++i) fluents.push_back(PoseAt("p" + std::to_string(i), i % 10));
+  store_.Add(fluents, At(20.0));
+  std::vector<std::string> names;
+  for (const Fluent& fluent : fluents) names.push_back(fluent.instance);
+  std::sort(names.begin(), names.end());
+  for (FluentQuery query :
+       {FluentQuery(), HoldsAt(21.0), Ever(), Standing({15.0, 25.0}, {Allen::kOverlappedBy})}) {
+    query.concepts = {{"Pose", Reach::kExact}};
+    query.limit = 7000;
+    std::vector<std::string> found = Names(QueryAll(store_, query));
+    found.erase(std::remove(found.begin(), found.end(), "poseMug1"), found.end());
+    EXPECT_EQ(found, names);
+    query.properties = {{"hasX", Filler(3.0)}};
+    EXPECT_THAT(QueryAll(store_, query), SizeIs(kMany / 10));
+  }
+}
+
+}  // namespace
+}  // namespace hires::knowledge
