@@ -35,10 +35,31 @@ StopQuestion WithMemoryLimit(std::size_t max_bytes, StopQuestion next) {
   };
 }
 
+namespace {
+
+/// A first plan of an HDDL domain: at first without left recursion, which the competition's domains
+/// are full of and on which a search from left to right may never come back; then, if that found
+/// nothing and left something out, with it.
+PlanResult FindFirstHddlPlan(const Program& program, TermTable* terms, const PlanRequest& request) {
+  Search careful(program, terms, request, false);
+  PlanResult result = careful.Run();
+  if (result.outcome != PlanOutcome::kNoPlan || !careful.gave_up_recursion()) return result;
+  const Progress before = result.progress;
+  result = Search(program, terms, request).Run();
+  result.progress.expansions += before.expansions;
+  result.progress.inferences += before.inferences;
+  return result;
+}
+
+}  // namespace
+
 PlanResult FindPlans(const Domain& domain, const Problem& problem, const PlanRequest& request,
                      const Functions& functions) {
   TermTable terms;
   const Program program(domain, problem, functions, &terms);
+  if (domain.language == Domain::Language::kHddl && request.which == Which::kFirst) {
+    return FindFirstHddlPlan(program, &terms, request);
+  }
   return Search(program, &terms, request).Run();
 }
 

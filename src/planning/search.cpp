@@ -14,10 +14,12 @@ constexpr std::uint64_t kQuestionEvery = 256;  // expansions
 
 }  // namespace
 
-Search::Search(const Program& program, TermTable* terms, const PlanRequest& request)
+Search::Search(const Program& program, TermTable* terms, const PlanRequest& request,
+               bool left_recursion)
     : program_(program),
       terms_(*terms),
       request_(request),
+      left_recursion_(left_recursion),
       bindings_(terms),
       state_(terms),
       network_(terms),
@@ -150,7 +152,26 @@ bool Search::Process(std::uint32_t node) {
                                         program_.domain().source, terms_.ToString(task),
                                         program_.domain().name));
   }
+  if (!left_recursion_ && IsLeftRecursion(node, task)) {
+    gave_up_recursion_ = true;
+    if (tracing()) Note(task, "", "comes up again below itself without a step in between");
+    return false;
+  }
   return PushMethodFrame(node, methods);
+}
+
+/// Among the decompositions since the last step, one of an ancestor is of the same task.
+bool Search::IsLeftRecursion(std::uint32_t node, Term task) const {
+  for (std::size_t i = decompositions_.size(); i-- > 0;) {
+    const Decomposition& above = decompositions_[i];
+    if (above.num_steps != steps_.size()) return false;
+    if (network_.node(above.node).task != task) continue;
+    for (std::uint32_t parent = network_.node(node).parent; parent != Network::kNone;
+         parent = network_.node(parent).parent) {
+      if (parent == above.node) return true;
+    }
+  }
+  return false;
 }
 
 // --- questions and messages ---
@@ -169,7 +190,7 @@ Progress Search::CurrentProgress() const {
   progress.cost = cost_;
   progress.bytes = bytes();
   progress.plans = static_cast<int>(plans_.size());
-  for (const Plan& plan : plans_) progress.best_cost = std::min(progress.best_cost, plan.cost);
+  progress.best_cost = best_cost_;
   return progress;
 }
 

@@ -1,4 +1,5 @@
 // Writing down the plans that were found.
+#include <algorithm>
 #include <utility>
 
 #include "hires/planning/mix.h"
@@ -17,10 +18,8 @@ bool Search::FoundPlan() {
     prover_.Cut(floor);
   }
   if (request_.which == Which::kAll && !plan_keys_.insert(PlanKey()).second) return false;
-  if (request_.which == Which::kBest) {
-    plans_.clear();
-    best_cost_ = cost_;
-  }
+  if (request_.which == Which::kBest) plans_.clear();
+  best_cost_ = std::min(best_cost_, cost_);
   plans_.push_back(Extract());
   enough_ = request_.which == Which::kFirst ||
             (request_.which == Which::kAll && plans_.size() >= request_.max_plans);

@@ -23,8 +23,13 @@ namespace hires::planning {
 /// undone, so nothing is ever copied.
 class Search {
  public:
-  Search(const Program& program, TermTable* terms, const PlanRequest& request);
+  /// @param left_recursion  Whether a task may come up again below itself before a step was taken.
+  ///   Without, a search ends that would go down for ever (get_to -> get_to, drive), but plans may
+  ///   be missed (s -> s, b); gave_up_recursion() says whether there was such a task.
+  Search(const Program& program, TermTable* terms, const PlanRequest& request,
+         bool left_recursion = true);
   PlanResult Run();
+  bool gave_up_recursion() const { return gave_up_recursion_; }
 
  private:
   /// A way back to a moment of the path.
@@ -76,6 +81,7 @@ class Search {
   bool Forward();
   bool Backward();
   bool Process(std::uint32_t node);
+  bool IsLeftRecursion(std::uint32_t node, Term task) const;
   bool ReturnTo(Frame* frame);
   void PushTaskFrame(std::uint32_t node);
   bool PushMethodFrame(std::uint32_t node, const std::vector<const CompiledMethod*>& methods);
@@ -136,6 +142,8 @@ class Search {
   const Program& program_;
   TermTable& terms_;
   const PlanRequest& request_;
+  const bool left_recursion_;
+  bool gave_up_recursion_{false};
   Bindings bindings_;
   State state_;
   Network network_;
@@ -150,7 +158,7 @@ class Search {
   std::vector<Term> tasks_, deletes_, adds_;  ///< scratch
   int depth_{0};
   double cost_{0.0};
-  double best_cost_{std::numeric_limits<double>::infinity()};
+  double best_cost_{std::numeric_limits<double>::infinity()};  ///< of the plans found
   std::uint64_t expansions_{0};
   std::size_t most_bytes_{0};
   Stop stop_{Stop::kContinue};
