@@ -1,0 +1,81 @@
+#include <gmock/gmock.h>
+
+#include <string>
+
+#include "hires/planning/hddl_reader.h"
+#include "hires/planning/plan.h"
+#include "hires/planning/planner.h"
+#include "hires/planning/validator.h"
+
+namespace hires::planning {
+namespace {
+
+/// A task that is done by doing itself for a place before, as in the competition's transport
+/// domain.
+constexpr char kRoads[] = R"((define (domain roads)
+  (:types place)
+  (:predicates (road ?a ?b - place) (at ?p - place))
+  (:task get_to :parameters (?p - place))
+  (:method there :parameters (?p - place) :task (get_to ?p)
+    :precondition (at ?p) :ordered-subtasks ())
+  (:method via :parameters (?a ?b - place) :task (get_to ?b)
+    :precondition (road ?a ?b) :ordered-subtasks (and (get_to ?a) (drive ?a ?b)))
+  (:action drive :parameters (?a ?b - place) :precondition (and (at ?a) (road ?a ?b))
+    :effect (and (not (at ?a)) (at ?b))))
+)";
+constexpr char kFromOneToFour[] = R"((define (problem far) (:domain roads)
+  (:objects p1 p2 p3 p4 - place)
+  (:htn :ordered-subtasks (and (get_to p4)))
+  (:init (at p1) (road p1 p2) (road p2 p1) (road p2 p3) (road p3 p2) (road p3 p4) (road p4 p3))))";
+
+/// A task whose only good decomposition holds the task itself in front, in the same state.
+constexpr char kRows[] = R"((define (domain rows)
+  (:predicates (first) (second))
+  (:task row :parameters ())
+  (:method one :parameters () :task (row) :ordered-subtasks (and (a)))
+  (:method longer :parameters () :task (row) :ordered-subtasks (and (row) (b)))
+  (:action a :parameters () :precondition (not (first)) :effect (first))
+  (:action b :parameters () :precondition (not (second)) :effect (second)))
+)";
+constexpr char kBoth[] = R"((define (problem both) (:domain rows)
+  (:htn :ordered-subtasks (and (row))) (:init) (:goal (and (first) (second)))))";
+
+struct Solved {
+  PlanResult result;
+  std::vector<std::string> violations;
+};
+
+Solved Solve(const char* domain_text, const char* problem_text) {
+  const Domain domain = ReadHddlDomain(domain_text, "domain.hddl");
+  const Problem problem = ReadHddlProblem(problem_text, "problem.hddl", domain);
+  PlanRequest request;
+  request.stop = [](const Progress& progress) {
+    return progress.expansions > 100'000 ? Stop::kTime : Stop::kContinue;
+  };
+  Solved solved{FindPlans(domain, problem, request), {}};
+  for (const Plan& plan : solved.result.plans) {
+    for (std::string& violation : ValidatePlan(domain, problem, plan)) {
+      solved.violations.push_back(std::move(violation));
+    }
+  }
+  return solved;
+}
+
+TEST(LeftRecursionTest, EndsWhereTheTaskComesUpAgainBelowItself) {
+  const Solved solved = Solve(kRoads, kFromOneToFour);
+  ASSERT_EQ(solved.result.outcome, PlanOutcome::kFound);
+  EXPECT_EQ(ToShop2Plan(solved.result.plans[0]),
+            "(!drive p1 p2)\n(!drive p2 p3)\n(!drive p3 p4)\n");
+  EXPECT_THAT(solved.violations, testing::IsEmpty());
+  EXPECT_LT(solved.result.progress.expansions, 1000u);
+}
+
+TEST(LeftRecursionTest, IsSearchedWhereNothingElseLeadsToAPlan) {
+  const Solved solved = Solve(kRows, kBoth);
+  ASSERT_EQ(solved.result.outcome, PlanOutcome::kFound);
+  EXPECT_EQ(ToShop2Plan(solved.result.plans[0]), "(!a)\n(!b)\n");
+  EXPECT_THAT(solved.violations, testing::IsEmpty());
+}
+
+}  // namespace
+}  // namespace hires::planning
