@@ -39,18 +39,31 @@ struct KnowledgeFile {
   std::vector<DemandTopic> topics;
 };
 
+/// Times are finite seconds, or .inf and -.inf; [0, 0] is since ever in StartTime, for ever in
+/// FinishTime, and the moment 0 itself is [-0.0, -0.0]. Documents without content are passed over.
+/// Concepts and relations are not looked up: the store does that.
 /// @throws ConfigError naming source, document, line and key: unknown tag or key, wrong shape or
 ///   type, a modification with another number of deltas than its choices (naming instance and
-///   axis), cyclic attachments, a name that YAML 1.1 reads as a truth value (On must be quoted),
-///   more than 64 MB or aliases that unfold beyond that.
+///   axis), cyclic attachments, a name or text that YAML 1.1 reads as a truth value, number or null
+///   (On must be quoted), more than 64 MB, 1 MB in a value, 100,000 values or 1,000,000 characters
+///   of punctuation in a document, 100 levels, aliases that unfold to 1,000,000 values or 64 MB.
 KnowledgeFile ReadKnowledge(std::string_view text, const std::string& source);
 KnowledgeFile LoadKnowledge(const std::string& path);
 
-/// The same YAML for the same fluents; what ReadKnowledge reads back is equal.
+/// The same YAML for the same fluents; what ReadKnowledge reads back is equal (but an integer given
+/// as xsd:float comes back as a double).
+/// @pre no NaN, fillers finite, text is UTF-8: what the store keeps, meets that.
+/// @throws std::logic_error if broken.
 std::string WriteFluents(const std::vector<Fluent>& fluents);
+/// Likewise for all of it: fluents, then modifications, then topics.
+std::string WriteKnowledge(const KnowledgeFile& file);
 
-/// Applies modifications to the poses among `fluents`; each group draws one choice.
-/// @throws ConfigError where an instance is missing or no pose.
+/// Applies modifications to the poses among `fluents`, all or none. Each group draws one choice, in
+/// the order in which groups first appear. What is attached moves along, and so does what is
+/// attached to that; each once for a modification, even where two ways lead to it. A pose that has
+/// several validities is moved in all of them.
+/// @throws ConfigError where an instance is missing or no pose, or lacks the axis; or where
+///   modifications do not fit together, as ReadKnowledge says.
 void ApplyModifications(const std::vector<PoseModification>& modifications, base::Rng rng,
                         std::vector<Fluent>* fluents);
 
