@@ -427,8 +427,7 @@ TEST(OntologyPropertyTest, DamagedFilesGiveAnOntologyOrAnError) {
   EXPECT_GT(errors, 100);
 }
 
-// The package's own ontology
-// ------------------------------------------------------------------------
+// The package's own ontology ----------------------------------------------------------------------
 
 TEST(ShippedOntologyTest, HasEveryNameOfTheOriginalsTopicsUnderItsPrefix) {
   for (const char* name : {"upper:Point",
