@@ -769,15 +769,6 @@ TEST(LoopTest, TheLoopCheckEndsAPathThatComesBackToStateAndTasks) {
   }
 }
 
-TEST(LoopTest, TheSameTasksInAnotherStateAreNoLoop) {
-  const PlanResult result = Solve(
-      "(:operator (!eat ?x) ((food ?x)) ((food ?x)) ())"
-      "(:method (eat-all) ((food ?x)) ((!eat ?x) (eat-all)) () ())",
-      "((food a) (food b) (food c))", "((eat-all))");
-  ASSERT_EQ(result.outcome, PlanOutcome::kFound);
-  EXPECT_EQ(result.plans[0].steps.size(), 3u);
-}
-
 TEST(LoopTest, AWayOutOfALoopIsFound) {
   EXPECT_THAT(AllPlans("(:operator (!on) () () ((light))) (:operator (!off) () ((light)) ())"
                        "(:method (run) ((not (light))) ((!on) (run)))"
@@ -785,6 +776,22 @@ TEST(LoopTest, AWayOutOfALoopIsFound) {
                        "(:method (run) ((light)) ())",
                        "()", "((run))"),
               ElementsAre("(!on)"));
+}
+
+TEST(LoopTest, EqualTasksInAnotherStateAreNoLoop) {
+  const PlanResult result = Solve(
+      "(:operator (!eat) ((food ?x)) ((food ?x)) ())"
+      "(:method (eat-all) ((food ?x)) ((!eat) (eat-all)) () ())",
+      "((food a) (food b) (food c))", "((eat-all))");
+  ASSERT_EQ(result.outcome, PlanOutcome::kFound);
+  EXPECT_EQ(result.plans[0].steps.size(), 3u);
+}
+
+TEST(LoopTest, TheSameStateWithFewerProtectionsIsNoLoop) {
+  EXPECT_THAT(Steps(Solve(kProtect + "(:method (run) () ((!lose)))"
+                                     "(:method (run) () ((!release (p)) (run)))",
+                          "((p))", "((!protect (p)) (!protect (p)) (run))")),
+              ElementsAre("(!protect (p)) (!protect (p)) (!release (p)) (!release (p)) (!lose)"));
 }
 
 // Which fact is the newest decides what comes next.
