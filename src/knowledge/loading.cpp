@@ -1,0 +1,47 @@
+#include "hires/knowledge/loading.h"
+
+#include <set>
+
+#include "hires/base/text.h"
+
+namespace hires::knowledge {
+namespace {
+
+void AddFromStore(const std::string& instance, const Store& store, std::set<std::string>* present,
+                  std::vector<Fluent>* fluents) {
+  if (!present->insert(base::ToLower(instance)).second) return;
+  if (std::optional<Fluent> fluent = store.Find(instance)) fluents->push_back(std::move(*fluent));
+}
+
+}  // namespace
+
+std::vector<Fluent> FluentsToLoad(const KnowledgeFile& file, base::Rng rng, const Store& store) {
+  std::vector<Fluent> fluents = file.fluents;
+  std::set<std::string> present;
+  for (const Fluent& fluent : fluents) present.insert(base::ToLower(fluent.instance));
+  for (const PoseModification& modification : file.modifications) {
+    AddFromStore(modification.instance, store, &present, &fluents);
+    for (const std::string& attached : modification.attachments) {
+      AddFromStore(attached, store, &present, &fluents);
+    }
+  }
+  ApplyModifications(file.modifications, rng, &fluents);
+  return fluents;
+}
+
+LoadSummary Summarize(const KnowledgeFile& file, std::size_t num_fluents,
+                      const std::vector<Change>& changes) {
+  LoadSummary summary;
+  for (const Change& change : changes) ++summary.concepts[change.fluent.concept_name];
+  summary.known = num_fluents - changes.size();
+  summary.modifications = file.modifications.size();
+  for (const DemandTopic& topic : file.topics) summary.topics.push_back(topic.name);
+  return summary;
+}
+
+LoadSummary Load(const KnowledgeFile& file, base::Rng rng, const Assertion& by, Store* store) {
+  const std::vector<Fluent> fluents = FluentsToLoad(file, rng, *store);
+  return Summarize(file, fluents.size(), store->Add(fluents, by));
+}
+
+}  // namespace hires::knowledge

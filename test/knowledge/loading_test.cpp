@@ -1,0 +1,76 @@
+#include "hires/knowledge/loading.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "hires/base/error.h"
+#include "knowledge/support/store_world.h"
+
+namespace hires::knowledge {
+namespace {
+
+using test_support::At;
+using test_support::PoseAt;
+using test_support::SmallOntology;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Pair;
+
+PoseModification Shift(const std::string& instance, double delta,
+                       std::vector<std::string> attachments = {}) {
+  return {instance, "group", 1, {{"hasX", {delta}}}, std::move(attachments)};
+}
+
+class LoadingTest : public ::testing::Test {
+ protected:
+  double X(const std::string& instance) {
+    for (const Property& property : store_.Find(instance).value().properties) {
+      if (property.role == "hasX") return std::get<double>(property.filler);
+    }
+    return std::nan("");
+  }
+  LoadSummary LoadFile(const KnowledgeFile& file) {
+    return Load(file, base::Rng(1), At(0.0), &store_);
+  }
+  Store store_{":memory:", SmallOntology()};
+};
+
+TEST_F(LoadingTest, TheSummaryCountsWhatWasNewByConcept) {
+  EXPECT_THAT(LoadFile({{PoseAt("p1", 1.0)}, {}, {}}).concepts, ElementsAre(Pair("Pose", 1u)));
+  const LoadSummary again = LoadFile({{PoseAt("p1", 1.0), PoseAt("p2", 2.0)}, {}, {}});
+  EXPECT_THAT(again.concepts, ElementsAre(Pair("Pose", 1u)));
+  EXPECT_EQ(again.known, 1u);
+}
+
+TEST_F(LoadingTest, PosesOfTheFileMoveBeforeTheyGoIn) {
+  const LoadSummary summary = LoadFile({{PoseAt("p1", 1.0)}, {Shift("p1", 0.5)}, {}});
+  EXPECT_EQ(summary.modifications, 1u);
+  EXPECT_EQ(X("p1"), 1.5);
+  EXPECT_EQ(store_.last_sequence(), 1u);
+}
+
+TEST_F(LoadingTest, PosesOfTheStoreMoveWithWhatIsAttached) {
+  LoadFile({{PoseAt("p1", 1.0), PoseAt("p2", 2.0)}, {}, {}});
+  LoadFile({{}, {Shift("P1", 0.5, {"p2"})}, {}});
+  EXPECT_EQ(X("p1"), 1.5);
+  EXPECT_EQ(X("p2"), 2.5);
+}
+
+TEST_F(LoadingTest, APoseNobodyKnowsIsNamedAndNothingGoesIn) {
+  try {
+    LoadFile({{PoseAt("p1", 1.0)}, {Shift("p9", 0.5)}, {}});
+    FAIL() << "no error";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("p9"));
+  }
+  EXPECT_EQ(store_.last_sequence(), 0u);
+}
+
+TEST_F(LoadingTest, TopicsAreTold) {
+  EXPECT_THAT(LoadFile({{}, {}, {{"areas", {}, {"Pose"}, {}, {}, false, {}}}}).topics,
+              ElementsAre("areas"));
+}
+
+}  // namespace
+}  // namespace hires::knowledge
