@@ -1,6 +1,7 @@
 // Decomposing tasks: methods, their branches, bindings and reductions.
 #include <algorithm>
 
+#include "hires/planning/mix.h"
 #include "hires/planning/search.h"
 
 namespace hires::planning {
@@ -241,9 +242,10 @@ bool Search::Reduce(Frame* frame) {
 
 bool Search::WasHere() {
   if (!network_.all_ground()) return false;
-  const std::uint64_t key = state_.hash() + 0x9e3779b97f4a7c15ULL * network_.hash() +
-                            0xd6e8feb86659fd93ULL * protections_.hash();
-  return !visited_.Insert(key);
+  // In SHOP2 the age of facts decides which binding comes first, and :first takes no other.
+  const bool ages_count = program_.domain().language == Domain::Language::kShop2;
+  const std::uint64_t state = ages_count ? state_.ordered_hash() : state_.hash();
+  return !visited_.Insert(Mix(Mix(state, network_.hash()), protections_.hash()));
 }
 
 bool Search::HasMore(const Frame& frame) const {

@@ -18,7 +18,10 @@ bool Search::FoundPlan() {
     prover_.Cut(floor);
   }
   if (request_.which == Which::kAll && !plan_keys_.insert(PlanKey()).second) return false;
-  if (request_.which == Which::kBest) plans_.clear();
+  if (request_.which == Which::kBest) {
+    if (cost_ >= best_cost_) return false;  // the first of the cheapest stays
+    plans_.clear();
+  }
   best_cost_ = std::min(best_cost_, cost_);
   plans_.push_back(Extract());
   enough_ = request_.which == Which::kFirst ||

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "hires/base/check.h"
+#include "hires/planning/mix.h"
 
 namespace hires::planning {
 namespace {
@@ -85,6 +86,20 @@ bool State::NameChain(std::uint8_t key, Term predicate, const Term* arguments, s
   return terms_->IsGround(name->a) && terms_->IsGround(name->b);
 }
 
+/// What two neighbours of the predicate's chain add to the ordered hash: the sum over all
+/// neighbours changes in three terms when one comes or goes.
+std::uint64_t State::Joint(std::uint32_t older, std::uint32_t newer) const {
+  const std::uint64_t a = older == kNone ? 1 : terms_->Hash(facts_[older].atom);
+  const std::uint64_t b = newer == kNone ? 2 : terms_->Hash(facts_[newer].atom);
+  return Mix(a, b);
+}
+
+/// What the ordered hash gains when the fact stands between its neighbours.
+std::uint64_t State::Place(std::uint32_t fact) const {
+  const Links& links = facts_[fact].links[0];
+  return Joint(links.previous, fact) + Joint(fact, links.next) - Joint(links.previous, links.next);
+}
+
 void State::Link(std::uint32_t fact) {
   for (std::uint8_t key = 0; key < kNumKeys; ++key) {
     const Links& links = facts_[fact].links[key];
@@ -96,6 +111,7 @@ void State::Link(std::uint32_t fact) {
   }
   SetPresent(facts_[fact].atom, fact);
   hash_ += terms_->Hash(facts_[fact].atom);
+  ordered_hash_ += Place(fact);
 }
 
 void State::Unlink(std::uint32_t fact) {
@@ -109,6 +125,7 @@ void State::Unlink(std::uint32_t fact) {
   }
   present_[facts_[fact].atom.index()] = kNone;
   hash_ -= terms_->Hash(facts_[fact].atom);
+  ordered_hash_ -= Place(fact);
 }
 
 void State::Add(Term atom) {

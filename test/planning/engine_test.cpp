@@ -808,6 +808,15 @@ TEST(LoopTest, TheSameFactsAtAnotherAgeAreNoLoop) {
   }
 }
 
+// The tasks come back as well, not only the facts.
+TEST(LoopTest, TheSameTasksWithFactsOfAnotherAgeAreNoLoop) {
+  const std::string items =
+      "(:operator (!renew ?x) () ((q ?x)) ((q ?x))) (:operator (!done) () () ())"
+      "(:method (go) () ((pick))) (:method (pick) (:first (q ?x)) ((try ?x)))"
+      "(:method (try b) () ((!renew a) (go))) (:method (try a) () ((!done)))";
+  EXPECT_THAT(Steps(Solve(items, "((q a) (q b))", "((go))")), ElementsAre("(!renew a) (!done)"));
+}
+
 TEST(LoopTest, MaxDepthEndsRecursionWithoutEnd) {
   PlanRequest request;
   request.max_depth = 1000;

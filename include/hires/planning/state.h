@@ -47,7 +47,9 @@ class State {
   Term Atom(std::uint32_t fact) const { return facts_[fact].atom; }
 
   std::uint64_t hash() const { return hash_; }  ///< of the set of facts, whatever their age
-  std::vector<Term> Facts() const;              ///< all, oldest first within a predicate
+  /// Of the facts in the order of their age within each predicate, which decides about bindings.
+  std::uint64_t ordered_hash() const { return ordered_hash_; }
+  std::vector<Term> Facts() const;  ///< all, oldest first within a predicate
   std::size_t bytes() const;
 
  private:
@@ -89,6 +91,8 @@ class State {
   std::uint32_t ChainOf(const ChainName& name);
   void Link(std::uint32_t fact);  ///< in the place that its links name
   void Unlink(std::uint32_t fact);
+  std::uint64_t Joint(std::uint32_t older, std::uint32_t newer) const;
+  std::uint64_t Place(std::uint32_t fact) const;
   void SetPresent(Term atom, std::uint32_t fact);
 
   struct Slot {
@@ -107,6 +111,7 @@ class State {
   std::vector<std::uint32_t> present_;  ///< pair index of an atom -> its fact, or kNone
   std::vector<Change> trail_;
   std::uint64_t hash_{0};
+  std::uint64_t ordered_hash_{0};
 };
 
 }  // namespace hires::planning
