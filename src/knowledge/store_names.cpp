@@ -52,7 +52,8 @@ std::int64_t Words::Intern(const std::string& word) {
 
 const std::string& Words::Text(std::int64_t id) {
   const auto known = [&] { return id > 0 && id < static_cast<std::int64_t>(texts_.size()); };
-  if (!known()) Reload();
+  // A writer knows them all; to reload would mix up what its transaction has not committed.
+  if (!known() && file_->read_only()) Reload();
   if (!known()) FailDamaged(fmt::format("word {} is missing", id));
   return texts_[static_cast<std::size_t>(id)];
 }

@@ -17,6 +17,10 @@ namespace hires::knowledge {
 /// What a validity is as a fluent, told as of a change: what was ended later is still open.
 Fluent ToFluent(const Validity& validity, std::int64_t as_of, StoreParts* parts);
 
+/// Whether the fluent has the role with that filler (text compares without regard to case, numbers
+/// by value).
+bool HasProperty(const Fluent& fluent, const FluentQuery::PropertyFilter& filter);
+
 /// Statements that queries use.
 struct QueryStatements {
   explicit QueryStatements(StoreFile* file);
@@ -52,10 +56,7 @@ class QueryRun {
   /// @throws ConfigError
   QueryRun(const FluentQuery& query, std::int64_t last, const Ontology& ontology, StoreParts* parts,
            QueryStatements* statements);
-  /// Only these instances are looked at.
-  void Restrict(const std::vector<std::string>& instances);
   FluentPage Page();
-  std::int64_t as_of() const { return as_of_; }
 
  private:
   struct Candidate {
@@ -74,12 +75,14 @@ class QueryRun {
   void ReadTime();
   void ReadAllen();
   void ReadWorlds();
+  void ReadSparql(const Ontology& ontology);
+  FluentQuery StateQuery() const;
+  void Restrict(const std::vector<std::string>& instances);
 
   bool FitsWorld(std::int64_t world) const;
   bool FitsConcept(std::int64_t concept_id) const;
   bool FitsTime(const Validity& validity) const;
   bool FitsProperties(const Fluent& fluent) const;
-  bool FitsProperty(const Fluent& fluent, const FluentQuery::PropertyFilter& filter) const;
   bool Consider(const Validity& validity, const std::string& name);  // false: the page is full
 
   bool Gather(const Light& light, std::vector<Candidate>* candidates) const;

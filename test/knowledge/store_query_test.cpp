@@ -209,6 +209,45 @@ TEST_F(StoreQueryTest, PagesShowTheStoreAsItWasAtTheFirst) {
   }
 }
 
+TEST_F(StoreQueryTest, WhatEndedMeanwhileAndStillHeldThenIsToldOnce) {
+  FluentQuery query = HoldsAt(15.0);
+  query.limit = 1;
+  const std::vector<Fluent> whole = QueryAll(store_, query);
+  const FluentPage first = store_.Query(query);
+  store_.Add({PoseAt("poseMug1", 5.0)}, At(20.0));  // it held at 15 s before and after this
+  query.cursor = first.next;
+  const std::vector<Fluent> rest = QueryAll(store_, query);
+  EXPECT_EQ(rest, std::vector<Fluent>(whole.begin() + 1, whole.end()));
+}
+
+TEST_F(StoreQueryTest, SparqlChoosesInstancesOfTheMomentAndWorld) {
+  const std::int64_t imagined =
+      store_.StartEpisode("imagine", Episode::Label::kImagined, 0, 12.0).id;
+  store_.Add({MakeFluent("Vase", "vase2", {{"hasPose", "Pose", std::string("poseMug1")}}),
+              PoseAt("poseMug1", 5.0)},
+             At(12.0, imagined));
+  store_.Remove({"mug1"}, At(20.0));
+  FluentQuery query;
+  query.sparql =
+      "prefix t: <http://example.org/test#> "
+      "select distinct ?o where { ?o t:hasPose ?p . ?p t:hasX ?x }";
+  EXPECT_THAT(QueryAll(store_, query), IsEmpty());
+  query.time.kind = FluentQuery::TimeFilter::Kind::kAt;
+  query.time.at = 15.0;
+  EXPECT_THAT(Names(QueryAll(store_, query)), ElementsAre("mug1"));
+  query.instance = "mug2";
+  EXPECT_THAT(QueryAll(store_, query), IsEmpty());
+  query.instance.clear();
+  query.episode = imagined;
+  EXPECT_THAT(Names(QueryAll(store_, query)), ElementsAre("vase2"));
+  query.episode.reset();
+  query.label.reset();
+  EXPECT_THAT(ErrorOf(query), HasSubstr("one world"));
+  query.label = Episode::Label::kReal;
+  query.sparql = "select nothing";
+  EXPECT_THAT(ErrorOf(query), ::testing::Not("no error"));
+}
+
 TEST_F(StoreQueryTest, ACursorMayHoldColons) {
   store_.Add({PoseAt("a:b:c", 1.0), PoseAt("a:b:d", 1.0)}, At(11.0));
   FluentQuery query;

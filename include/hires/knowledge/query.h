@@ -41,7 +41,9 @@ struct FluentQuery {
   /// Only what was written in it. Who names an imagined one asks for its world, whatever `label`.
   std::optional<std::int64_t> episode;
   std::optional<Episode::Label> label{Episode::Label::kReal};  ///< empty: both
-  std::string sparql;       ///< a select query on top: its ?instance must be the fluent's
+  /// A select query on top: its first variable must be the fluent's instance. It looks at the state
+  /// of one world at the moment of the query (kAt, else now).
+  std::string sparql;
   std::size_t limit{1000};  ///< at most so many in one answer
   std::string cursor;       ///< of the answer before; "" from the beginning
 };
