@@ -371,6 +371,16 @@ std::string BillionLaughs() {
   return text;
 }
 
+/// Written flat, and deep once unfolded.
+std::string StairsOfAliases() {
+  std::string text = "!Fluent\ns0: &s0 [x]\n";
+  for (int i = 1; i < 110; ++i) {
+    const std::string step = "s" + std::to_string(i);
+    text += step + ": &" + step + " [*s" + std::to_string(i - 1) + " ]\n";
+  }
+  return text;
+}
+
 /// Each document small enough, all together not.
 std::string ManySmallLaughs() {
   std::string laughs = "SubclassFilter: [";
@@ -403,6 +413,7 @@ const std::vector<Malformed> kGreed = {
     {"long text often named",
      LongTextOftenNamed(),
      {"QueryFilter item", "aliases unfold to", "67108864"}},
+    {"stairs of aliases", StairsOfAliases(), {"document 1, line 100, s98 item 1", "100 levels"}},
     {"deep nesting",
      "!Fluent\nProperties: " + std::string(100'000, '['),
      {"line 2, Properties", "100 levels"}},
@@ -488,6 +499,16 @@ TEST(WriteFluentsTest, EveryCharacterOfTextComesBack) {
   const std::string written = WriteFluents({fluent});
   EXPECT_THAT(ReadKnowledge(written, "t").fluents, ElementsAre(fluent));
   EXPECT_EQ(WriteFluents(ReadKnowledge(written, "t").fluents), written);
+}
+
+TEST(WriteFluentsTest, LineBreaksAndInvisibleCharactersAreEscaped) {
+  const Fluent fluent{
+      "Mug",
+      "mug1",
+      {{"hasReason", "xsd:string",
+        std::string("a\0\t\n\r\"\\\x7f", 8) + "\xc2\x85\xe2\x80\xa8\xef\xbb\xbf\xc3\xa4"}}};
+  EXPECT_THAT(WriteFluents({fluent}), HasSubstr(R"("a\x00\t\n\x0d\"\\\x7f\x85\u2028\ufeff)" +
+                                                std::string("\xc3\xa4\"]\n")));
 }
 
 TEST(WriteFluentsTest, WhatCannotBeReadBackIsNotWritten) {
