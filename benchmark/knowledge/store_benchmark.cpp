@@ -123,7 +123,7 @@ class BigStore {
     Store store(folder_.File(), RestaurantOntology());
     base::Rng rng(11);
     int turn = 0;
-    for (int activity = 0; store.last_sequence() < kRows; ++activity) {
+    for (int activity = 0; store.Stats().fluents < kRows; ++activity) {
       end_ += 1.0;
       store.Add(Observed(450, &turn, &rng), {Source::kObservation, 0, end_});
       std::vector<Fluent> started, finished;
