@@ -15,6 +15,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/evaluation/blackboard_command.h"
 #include "hires/evaluation/doctor.h"
 #include "hires/evaluation/experiment_command.h"
 #include "hires/evaluation/plan_command.h"
@@ -225,6 +226,8 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
   AddExperimentVerb(&app, &experiment_options);
   PlanOptions plan_options;
   AddPlanVerb(&app, &plan_options);
+  BlackboardOptions blackboard_options;
+  AddBlackboardVerb(&app, &blackboard_options);
   CLI::App* doctor =
       app.add_subcommand("doctor", "check this machine and compare the physics with closed forms");
   std::vector<CLI::App*> others;
@@ -244,6 +247,10 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
     }
     if (*plan_options.verb) {
       return RunPlanVerb(plan_options, [] { return interrupted.load(); });
+    }
+    if (*blackboard_options.verb) {
+      return RunBlackboardVerb(blackboard_options, backends.package_folder,
+                               backends.connect_blackboard);
     }
     if (*doctor) return RunDoctor(backends);
     for (std::size_t i = 0; i < others.size(); ++i) {

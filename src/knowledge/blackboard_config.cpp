@@ -38,9 +38,9 @@ BlackboardConfig ReadBlackboardConfig(const std::string& path) {
   base::ParamReader in = base::ParamReader::FromFile(path);
   BlackboardConfig config;
   config.ontology = PathsFrom(path, in.GetStrings("ontology"));
-  if (config.ontology.empty()) in.Fail("ontology", "is empty, wanted paths of Turtle files");
+  if (config.ontology.empty()) in.Fail("ontology", "wanted paths of Turtle files");
   config.store = ExpandHome(in.GetString("store"));
-  if (config.store.empty()) in.Fail("store", "is empty, wanted a path, or :memory:");
+  if (config.store.empty()) in.Fail("store", "wanted a path, or :memory:");
   config.options = ReadOptions(&in);
   config.knowledge = PathsFrom(path, in.GetStrings("knowledge"));
   config.topics = PathsFrom(path, in.GetStrings("topics"));

@@ -8,6 +8,10 @@
 
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
+#include "hires/knowledge/blackboard_config.h"
+#include "hires/knowledge/fluent_yaml.h"
+#include "hires/knowledge/loading.h"
+#include "hires/knowledge/store.h"
 #include "hires/planning/planner_config.h"
 #include "hires/relay/relay_params.h"
 #include "hires/robot/robot_profile.h"
@@ -36,6 +40,7 @@ const std::map<std::string, Reader>& Readers() {
        [](const std::string& path) {
          planning::LoadPlanningKnowledge(planning::ReadPlannerConfig(path));
        }},
+      {"blackboard.yaml", [](const std::string& path) { knowledge::ReadBlackboardConfig(path); }},
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
       {"relay.yaml",
        [](const std::string& path) {
@@ -61,6 +66,20 @@ TEST(ConfigurationFilesTest, EachOneLoads) {
     ++count;
   }
   EXPECT_GE(count, 7);
+}
+
+TEST(ConfigurationFilesTest, TheBlackboardsFilesFitTogether) {
+  const auto config = knowledge::ReadBlackboardConfig((Root() / "config/blackboard.yaml").string());
+  knowledge::Store store(":memory:", std::make_shared<const knowledge::Ontology>(
+                                         knowledge::Ontology::FromFiles(config.ontology)));
+  for (const std::string& path : config.knowledge) {
+    const auto summary = knowledge::Load(knowledge::LoadKnowledge(path), base::Rng(1),
+                                         {knowledge::Source::kKnowledge, 0, 0.0}, &store);
+    EXPECT_FALSE(summary.concepts.empty()) << path;
+  }
+  for (const std::string& path : config.topics) {
+    EXPECT_FALSE(knowledge::LoadKnowledge(path).topics.empty()) << path;
+  }
 }
 
 TEST(ConfigurationFilesTest, TheClientsSceneIsComplete) {

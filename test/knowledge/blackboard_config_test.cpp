@@ -59,9 +59,10 @@ TEST_F(BlackboardConfigTest, WhatIsWrongIsNamed) {
   EXPECT_THAT(ErrorWith("threads: 8", "thraeds: 8"), HasSubstr("threads"));
   EXPECT_THAT(ErrorWith("imagined: false", "imagined: perhaps"), HasSubstr("imagined"));
   EXPECT_THAT(ErrorWith("threads: 8", "threads: 8\nmore: 1"), HasSubstr("more"));
-  EXPECT_THAT(ErrorWith("~/.ros/hires/blackboard.db", "''"), HasSubstr("store is empty"));
+  EXPECT_THAT(ErrorWith("~/.ros/hires/blackboard.db", "''"),
+              HasSubstr("store is '', wanted a path"));
   EXPECT_THAT(ErrorWith("\n  - ontology/upper.ttl\n  - ontology/race.ttl", " []"),
-              HasSubstr("ontology is empty"));
+              HasSubstr("wanted paths of Turtle"));
 }
 
 TEST_F(BlackboardConfigTest, TheFolderOfAStoreIsMade) {

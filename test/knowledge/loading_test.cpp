@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "hires/base/error.h"
 #include "knowledge/support/store_world.h"
 
@@ -25,7 +27,9 @@ PoseModification Shift(const std::string& instance, double delta,
 class LoadingTest : public ::testing::Test {
  protected:
   double X(const std::string& instance) {
-    for (const Property& property : store_.Find(instance).value().properties) {
+    const std::optional<Fluent> pose = store_.Find(instance);
+    if (!pose) return std::nan("");
+    for (const Property& property : pose->properties) {
       if (property.role == "hasX") return std::get<double>(property.filler);
     }
     return std::nan("");
@@ -52,7 +56,7 @@ TEST_F(LoadingTest, PosesOfTheFileMoveBeforeTheyGoIn) {
 
 TEST_F(LoadingTest, PosesOfTheStoreMoveWithWhatIsAttached) {
   LoadFile({{PoseAt("p1", 1.0), PoseAt("p2", 2.0)}, {}, {}});
-  LoadFile({{}, {Shift("P1", 0.5, {"p2"})}, {}});
+  LoadFile({{}, {Shift("p1", 0.5, {"p2"})}, {}});
   EXPECT_EQ(X("p1"), 1.5);
   EXPECT_EQ(X("p2"), 2.5);
 }

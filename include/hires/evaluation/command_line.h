@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hires/base/action.h"
+#include "hires/evaluation/blackboard_command.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/report.h"
 #include "hires/imagination/scheduler.h"
@@ -43,6 +44,7 @@ using Check = std::function<bool()>;
 struct Backends {
   std::string package_folder;  ///< where config/, worlds/, urdf/ lie
   ImagineRemotely imagine_remotely;
+  ConnectBlackboard connect_blackboard;
   std::vector<Verb> more_verbs;
   std::vector<Check> more_checks;
 };
