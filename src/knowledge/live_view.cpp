@@ -40,10 +40,12 @@ bool HasSameKey(const Property& a, const Property& b) {
   return (IsNumber(a.filler) && IsNumber(b.filler)) || SameFiller(a.filler, b.filler);
 }
 
-bool HaveSameKeys(const Fluent& a, const Fluent& b) {
-  return a.concept_name == b.concept_name &&
-         std::equal(a.properties.begin(), a.properties.end(), b.properties.begin(),
-                    b.properties.end(), HasSameKey);
+/// Looks first where the property stands in the other fluent, for most changes keep the order.
+bool HasKeyOf(const Fluent& fluent, const Property& property, std::size_t place) {
+  const auto& all = fluent.properties;
+  if (place < all.size() && HasSameKey(all[place], property)) return true;
+  return std::any_of(all.begin(), all.end(),
+                     [&](const Property& other) { return HasSameKey(other, property); });
 }
 
 bool Has(const Fluent& fluent, const std::string& role, const Filler& filler) {
@@ -83,32 +85,36 @@ struct LiveView::Implementation {
 
   void Put(Fluent fluent) {
     const auto [place, is_new] = entries.try_emplace(base::ToLower(fluent.instance));
-    const bool moves = is_new || !HaveSameKeys(place->second, fluent);
-    if (moves && !is_new) Forget(&*place);
-    place->second = std::move(fluent);
-    if (moves) Note(&*place);
+    const Fluent old = std::exchange(place->second, std::move(fluent));
+    if (!is_new) Forget(&*place, old, place->second);
+    Note(&*place, old);
   }
 
   void Remove(const std::string& instance) {
     const auto place = entries.find(base::ToLower(instance));
     if (place == entries.end()) return;
-    Forget(&*place);
+    Forget(&*place, place->second, Fluent());
     entries.erase(place);
   }
 
-  void Note(Entry entry) {
-    const Fluent& fluent = entry->second;
-    by_concept[fluent.concept_name].insert(entry);
-    for (const Property& property : fluent.properties) {
-      by_filler[KeyOf(property.role, property.filler)].insert(entry);
+  /// Takes the entry out of where `old` was and `fluent` is not.
+  void Forget(Entry entry, const Fluent& old, const Fluent& fluent) {
+    if (old.concept_name != fluent.concept_name) Erase(old.concept_name, entry, &by_concept);
+    for (std::size_t i = 0; i < old.properties.size(); ++i) {
+      const Property& property = old.properties[i];
+      if (HasKeyOf(fluent, property, i)) continue;
+      Erase(KeyOf(property.role, property.filler), entry, &by_filler);
     }
   }
 
-  void Forget(Entry entry) {
+  /// Puts the entry where `old` was not.
+  void Note(Entry entry, const Fluent& old) {
     const Fluent& fluent = entry->second;
-    Erase(fluent.concept_name, entry, &by_concept);
-    for (const Property& property : fluent.properties) {
-      Erase(KeyOf(property.role, property.filler), entry, &by_filler);
+    if (old.concept_name != fluent.concept_name) by_concept[fluent.concept_name].insert(entry);
+    for (std::size_t i = 0; i < fluent.properties.size(); ++i) {
+      const Property& property = fluent.properties[i];
+      if (HasKeyOf(old, property, i)) continue;
+      by_filler[KeyOf(property.role, property.filler)].insert(entry);
     }
   }
 
