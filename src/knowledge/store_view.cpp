@@ -5,6 +5,12 @@
 #include "hires/base/text.h"
 
 namespace hires::knowledge {
+namespace {
+
+// Every page begins with a search for a short cut; with fewer pages there are fewer of them.
+constexpr std::size_t kPageSize = 20'000;
+
+}  // namespace
 
 void StoreView::Remember(const Change& change) {
   std::optional<Fluent>& place = found_[base::ToLower(change.fluent.instance)];
@@ -35,6 +41,7 @@ void StoreView::WithFiller(const std::string& role, const Filler& filler,
 }
 
 void StoreView::ForEach(FluentQuery query, const std::function<bool(const Fluent&)>& visit) const {
+  query.limit = kPageSize;
   do {
     const FluentPage page = store_.Query(query);
     for (const Fluent& fluent : page.fluents) {
