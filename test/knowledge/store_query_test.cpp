@@ -211,13 +211,25 @@ TEST_F(StoreQueryTest, PagesShowTheStoreAsItWasAtTheFirst) {
 
 TEST_F(StoreQueryTest, WhatEndedMeanwhileAndStillHeldThenIsToldOnce) {
   FluentQuery query = HoldsAt(15.0);
-  query.limit = 1;
+  query.limit = 3;
   const std::vector<Fluent> whole = QueryAll(store_, query);
   const FluentPage first = store_.Query(query);
   store_.Add({PoseAt("poseMug1", 5.0)}, At(20.0));  // it held at 15 s before and after this
   query.cursor = first.next;
   const std::vector<Fluent> rest = QueryAll(store_, query);
-  EXPECT_EQ(rest, std::vector<Fluent>(whole.begin() + 1, whole.end()));
+  EXPECT_EQ(rest, std::vector<Fluent>(whole.begin() + 3, whole.end()));
+}
+
+TEST_F(StoreQueryTest, WalkedInstancesShowTheFirstPagesMomentAsWell) {
+  store_.Add({PoseAt("pose2", 1.0)}, At(10.0));
+  FluentQuery query = HoldsAt(15.0);
+  query.sparql = "prefix t: <http://example.org/test#> select ?p where { ?p rdf:type t:Pose }";
+  query.limit = 1;
+  const std::vector<Fluent> whole = QueryAll(store_, query);
+  ASSERT_THAT(Names(whole), ElementsAre("pose2", "poseMug1"));
+  query.cursor = store_.Query(query).next;
+  store_.Add({PoseAt("poseMug1", 9.0)}, At(12.0));
+  EXPECT_THAT(QueryAll(store_, query), ElementsAre(whole[1]));
 }
 
 TEST_F(StoreQueryTest, SparqlChoosesInstancesOfTheMomentAndWorld) {
