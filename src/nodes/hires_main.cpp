@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hires/evaluation/command_line.h"
+#include "hires/ros/remote_blackboard.h"
 #include "hires/ros/remote_imagination.h"
 #include "hires/ros/replay.h"
 #include "hires/ros/ros_doctor.h"
@@ -14,6 +15,7 @@ int main(int argc, char** argv) {
   hires::evaluation::Backends backends;
   backends.package_folder = ros::package::getPath("hires");
   backends.imagine_remotely = hires_ros::ImagineRemotely;
+  backends.connect_blackboard = hires_ros::ConnectBlackboard;
   backends.more_verbs.push_back({"replay",
                                  "imagine again what a bag recorded, and compare the answers: BAG "
                                  "[--local [--threads N]] [--json FILE] [--topic NAME]",

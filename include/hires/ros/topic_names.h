@@ -7,6 +7,9 @@ namespace hires_ros {
 
 constexpr char kImagineAction[] = "imagine";
 constexpr char kPlanAction[] = "plan";
+constexpr char kBlackboard[] = "blackboard";  ///< its services and topics lie below
+constexpr char kBlackboardChanges[] = "blackboard/changes";
+constexpr char kImaginedChanges[] = "blackboard/imagined_changes";
 constexpr char kImaginationMarkers[] = "imagination_markers";  ///< ranking, latched
 constexpr char kWorldMarkers[] = "world_markers";              ///< furniture, areas, latched
 
