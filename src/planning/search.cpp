@@ -30,6 +30,7 @@ Search::Search(const Program& program, TermTable* terms, const PlanRequest& requ
       failure_word_(terms->Symbol("imagined_failure")) {
   prover_.set_interrupt([this] { return Ask(); });
   for (const Term fact : program.facts()) state_.Add(fact);
+  for (const Datum& atom : program.problem().protections) protections_.Add(terms->FromDatum(atom));
 }
 
 PlanResult Search::Run() {

@@ -327,6 +327,20 @@ TEST(ReplanTest, CountsTheWorkOfAllTries) {
   EXPECT_GT(again.result.progress.expansions, last_try.progress.expansions);
 }
 
+TEST(ReplanTest, OpenProtectionsAreKept) {
+  const Domain domain = DomainOf(kGuards + "(:method (tour) () ((!go a b)))");
+  const Problem problem = ProblemOf("((at a))", "(:unordered (job a) (tour))");
+  PlanRequest all;
+  all.which = Which::kAll;
+  const Plan plan = FindPlans(domain, problem, all).plans.at(0);
+  ASSERT_EQ(ToString(plan.steps.at(0).task), "(!guard a)");
+  const Problem rest = RemainingProblem(domain, problem, plan, 1, {Read("(at a)")}, 1);
+  for (const Plan& again : FindPlans(domain, rest, all).plans) {
+    EXPECT_THAT(ValidatePlan(domain, rest, again), IsEmpty());
+    EXPECT_EQ(Steps(again), "(!work) (!free a) (!go a b)");
+  }
+}
+
 // ----------------------------------------------------------------------------------- shared data
 
 /// Where the world is as expected, the rest of the plan is found again, whole and at once.
@@ -355,6 +369,22 @@ TEST(ReplanSharedPlansTest, Blocks) {
 }
 TEST(ReplanSharedPlansTest, Depots) {
   ExpectRestIsFoundAgain("shop2/depots.lisp", "shop2/depots_07.lisp");
+}
+// Parcels share trucks that are protected where one of them is loaded: the rest may come in another
+// order, but must keep what is protected.
+TEST(ReplanSharedPlansTest, LogisticsKeepsOpenProtections) {
+  const std::filesystem::path folder = std::filesystem::path(HIRES_SHARED_DATA) / "htn" / "shop2";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no example problems in " << folder;
+  const Domain domain = LoadDomain(folder / "logistics.lisp");
+  const Problem problem = LoadProblems(folder / "logistics_15_1.lisp", domain).at(0);
+  const Plan plan = FirstPlan(domain, problem);
+  for (int executed = 0; executed < static_cast<int>(plan.steps.size()); executed += 15) {
+    const Replanned again =
+        Replan(domain, problem, plan, executed, FactsAfter(domain, problem, plan, executed));
+    ASSERT_EQ(again.result.outcome, PlanOutcome::kFound) << executed;
+    EXPECT_THAT(ValidatePlan(domain, again.problem, again.result.plans.at(0)), IsEmpty())
+        << executed;
+  }
 }
 TEST(ReplanSharedPlansTest, Snake) {
   ExpectRestIsFoundAgain("hddl/snake/domain.hddl", "hddl/snake/pb05.snake.hddl");
