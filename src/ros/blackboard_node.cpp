@@ -81,6 +81,23 @@ void Fill(const knowledge::LoadSummary& summary, hires::LoadKnowledge::Response*
   answer->topics = summary.topics;
 }
 
+Store OpenStore(const knowledge::BlackboardConfig& config,
+                const std::shared_ptr<const knowledge::Ontology>& ontology) {
+  knowledge::MakeFolderOf(config.store);
+  Store store(config.store, ontology, config.options);
+  LoadAtFirst(config.knowledge, &store);
+  return store;
+}
+
+std::vector<Change> ChangesSince(const Store& store, std::uint64_t sequence, std::size_t limit) {
+  if (sequence > store.last_sequence()) {
+    throw ConfigError(fmt::format(
+        "sequence is {}, but the last change is {}: what you know is of another store; begin anew",
+        sequence, store.last_sequence()));
+  }
+  return store.ChangesSince(sequence, limit);
+}
+
 /// All changes of one answer as one message.
 hires::FluentChanges MessageOf(const std::vector<Change>& changes, std::uint64_t previous) {
   hires::FluentChanges message;
@@ -127,12 +144,23 @@ BlackboardNode::BlackboardNode(const knowledge::BlackboardConfig& config,
                                std::shared_ptr<const knowledge::Ontology> ontology,
                                ros::NodeHandle* nh)
     : config_(config), ontology_(std::move(ontology)), readers_(config.store, ontology_) {
-  knowledge::MakeFolderOf(config_.store);
-  Store store(config_.store, ontology_, config_.options);
-  LoadAtFirst(config_.knowledge, &store);
+  Store store = OpenStore(config_, ontology_);
   const Store::Statistics statistics = store.Stats();
   changes_before_ = statistics.changes;
   diagnosed_at_ = SteadyNow();
+  Log(LogLevel::kInfo, fmt::format("store={} fluents={} changes={}", config_.store,
+                                   statistics.fluents, statistics.changes));
+  StartWriting(std::move(store), nh);
+  ServeAll();
+  updater_.setHardwareID("blackboard");
+  updater_.add("store", this, &BlackboardNode::Diagnose);
+  timer_ = nh->createWallTimer(ros::WallDuration(kDiagnosePeriod),
+                               boost::function<void(const ros::WallTimerEvent&)>(
+                                   [this](const ros::WallTimerEvent&) { updater_.update(); }));
+}
+
+/// From here on the store belongs to the writer's thread, and so do the topics.
+void BlackboardNode::StartWriting(Store store, ros::NodeHandle* nh) {
   topics_ =
       std::make_unique<BlackboardTopics>(config_, ontology_, store.last_sequence(), nh,
                                          [this](const std::function<void(const Store&)>& task) {
@@ -149,11 +177,14 @@ BlackboardNode::BlackboardNode(const knowledge::BlackboardConfig& config,
       [this](const Store& owned, const std::vector<Change>& changes) {
         topics_->Publish(changes, owned);
       });
+  const std::vector<knowledge::DemandTopic> topics = TopicsOf(config_.topics);
   writer_->RunAlways([&](Store* owned) {
-    for (const knowledge::DemandTopic& topic : TopicsOf(config_.topics))
-      topics_->Open(topic, *owned);
+    for (const knowledge::DemandTopic& topic : topics) topics_->Open(topic, *owned);
     return std::vector<Change>();
   });
+}
+
+void BlackboardNode::ServeAll() {
   Serve<hires::WriteFluents>("add", &BlackboardNode::OnAdd);
   Serve<hires::WriteFluents>("update", &BlackboardNode::OnUpdate);
   Serve<hires::RemoveFluents>("remove", &BlackboardNode::OnRemove);
@@ -166,14 +197,6 @@ BlackboardNode::BlackboardNode(const knowledge::BlackboardConfig& config,
   Serve<hires::ChangesSince>("changes_since", &BlackboardNode::OnChangesSince);
   Serve<hires::Demand>("demand", &BlackboardNode::OnDemand);
   Serve<hires::BlackboardStatistics>("statistics", &BlackboardNode::OnStatistics);
-  updater_.setHardwareID("blackboard");
-  updater_.add("store", this, &BlackboardNode::Diagnose);
-  timer_ = nh->createWallTimer(ros::WallDuration(kDiagnosePeriod),
-                               boost::function<void(const ros::WallTimerEvent&)>(
-                                   [this](const ros::WallTimerEvent&) { updater_.update(); }));
-  Log(LogLevel::kInfo,
-      fmt::format("store={} fluents={} changes={} topics={}", config_.store, statistics.fluents,
-                  statistics.changes, topics_->names().size()));
 }
 
 template <typename Service>
@@ -330,7 +353,7 @@ void BlackboardNode::OnChangesSince(const hires::ChangesSince::Request& asked,
     return;
   }
   std::vector<Change> changes =
-      Read([&](const Store& store) { return store.ChangesSince(asked.sequence, limit + 1); });
+      Read([&](const Store& store) { return ChangesSince(store, asked.sequence, limit + 1); });
   answer->more = changes.size() > limit;
   if (answer->more) changes.pop_back();
   if (!changes.empty()) answer->messages.push_back(MessageOf(changes, asked.sequence));

@@ -255,6 +255,7 @@ class BlackboardTest(unittest.TestCase):
         self.refuse('finish_episode', '54321', id=54321)
         self.refuse('changes_since', "'mug'", "'mugs'", topic='mug')
         self.refuse('changes_since', 'limit', limit=1000000)
+        self.refuse('changes_since', 'another store', sequence=1 << 40)
         self.refuse('load', 'path and text')
         self.refuse('load', '/nowhere.yaml', path='/nowhere.yaml')
 

@@ -44,6 +44,8 @@ class BlackboardNode {
                  std::shared_ptr<const hires::knowledge::Ontology> ontology, ros::NodeHandle* nh);
 
  private:
+  void StartWriting(hires::knowledge::Store store, ros::NodeHandle* nh);
+  void ServeAll();
   template <typename Service>
   void Serve(const char* name, void (BlackboardNode::*answer)(const typename Service::Request&,
                                                               typename Service::Response*));
