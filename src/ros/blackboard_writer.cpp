@@ -101,8 +101,8 @@ Written BlackboardWriter::Post(Job job, bool always) {
     }
     waiting_.push_back(std::move(job));
     ++num_waiting_;
+    arrived_.notify_one();  // still locked: at the end, nobody touches it who is not waited for
   }
-  arrived_.notify_one();
   return written.get();
 }
 
