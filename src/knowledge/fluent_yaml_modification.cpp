@@ -61,7 +61,7 @@ void CheckDeltas(const PoseModification& modification, const std::string& where)
 }
 
 void CheckInstances(const std::vector<PoseModification>& modifications, const Where& where) {
-  std::map<std::string, std::size_t> seen;
+  ByInstance<std::size_t> seen;
   for (std::size_t i = 0; i < modifications.size(); ++i) {
     const auto [first, is_new] = seen.emplace(modifications[i].instance, i);
     if (is_new) continue;

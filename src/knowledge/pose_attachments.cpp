@@ -4,24 +4,35 @@
 #include <set>
 
 namespace hires::knowledge {
+namespace {
+
+using InstanceSet = std::set<std::string, LessIgnoringCase>;
+
+char Lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+}  // namespace
+
+bool LessIgnoringCase::operator()(const std::string& a, const std::string& b) const {
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
+                                      [](char x, char y) { return Lower(x) < Lower(y); });
+}
 
 PoseAttachments::PoseAttachments(const std::vector<PoseModification>& modifications) {
   for (std::size_t i = 0; i < modifications.size(); ++i) Add(modifications[i], i);
 }
 
 void PoseAttachments::Add(const PoseModification& modification, std::size_t index) {
-  const std::set<std::string> once(modification.attachments.begin(),
-                                   modification.attachments.end());
+  const InstanceSet once(modification.attachments.begin(), modification.attachments.end());
   attached_[modification.instance].assign(once.begin(), once.end());
   index_[modification.instance] = index;
   for (const std::string& instance : once) carriers_[instance].push_back(modification.instance);
 }
 
 std::vector<std::string> PoseAttachments::Circle() const {
-  const std::map<std::string, std::size_t> left = InOrBeforeCircles();
+  const ByInstance<std::size_t> left = InOrBeforeCircles();
   if (left.empty()) return {};
   std::vector<std::string> walk = {left.begin()->first};
-  std::map<std::string, std::size_t> visited;
+  ByInstance<std::size_t> visited;
   while (visited.emplace(walk.back(), walk.size() - 1).second) {
     const std::vector<std::string>& next = attached_.at(walk.back());
     walk.push_back(*std::find_if(next.begin(), next.end(), [&](const std::string& instance) {
@@ -34,7 +45,7 @@ std::vector<std::string> PoseAttachments::Circle() const {
 
 std::vector<std::string> PoseAttachments::MovedWith(const std::string& instance) const {
   std::vector<std::string> moved = {instance};
-  std::set<std::string> seen = {instance};
+  InstanceSet seen = {instance};
   for (std::size_t i = 0; i < moved.size(); ++i) {
     const auto attached = attached_.find(moved[i]);
     if (attached == attached_.end()) continue;
@@ -58,8 +69,8 @@ std::vector<std::string> PoseAttachments::WithoutAttachments() const {
 
 // Takes away, again and again, what has nothing attached to it. The rest stands in circles or leads
 // to one, and has so many attachments left.
-std::map<std::string, std::size_t> PoseAttachments::InOrBeforeCircles() const {
-  std::map<std::string, std::size_t> left;
+ByInstance<std::size_t> PoseAttachments::InOrBeforeCircles() const {
+  ByInstance<std::size_t> left;
   for (const auto& [instance, attached] : attached_) left[instance] = attached.size();
   std::vector<std::string> free = WithoutAttachments();
   while (!free.empty()) {

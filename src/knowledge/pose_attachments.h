@@ -9,7 +9,15 @@
 
 namespace hires::knowledge {
 
-/// Which poses move with which others.
+/// Orders instances by name, as the store does: the case of ASCII letters does not count.
+struct LessIgnoringCase {
+  bool operator()(const std::string& a, const std::string& b) const;
+};
+
+template <typename Value>
+using ByInstance = std::map<std::string, Value, LessIgnoringCase>;
+
+/// Which poses move with which others. Names are told as they were spelled first.
 class PoseAttachments {
  public:
   /// @pre no two modifications of one instance
@@ -26,12 +34,12 @@ class PoseAttachments {
 
  private:
   void Add(const PoseModification& modification, std::size_t index);
-  std::map<std::string, std::size_t> InOrBeforeCircles() const;
+  ByInstance<std::size_t> InOrBeforeCircles() const;
   std::vector<std::string> WithoutAttachments() const;
 
-  std::map<std::string, std::vector<std::string>> attached_;  // each once, by what carries them
-  std::map<std::string, std::vector<std::string>> carriers_;  // by what is attached
-  std::map<std::string, std::size_t> index_;                  // of modifications, by instance
+  ByInstance<std::vector<std::string>> attached_;  // each once, by what carries them
+  ByInstance<std::vector<std::string>> carriers_;  // by what is attached
+  ByInstance<std::size_t> index_;                  // of modifications, by instance
 };
 
 }  // namespace hires::knowledge

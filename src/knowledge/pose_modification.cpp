@@ -75,7 +75,7 @@ class Poses {
                             fluent->instance, axis));
   }
 
-  std::map<std::string, std::vector<Fluent*>> by_instance_;
+  ByInstance<std::vector<Fluent*>> by_instance_;
   std::size_t num_moves_{0};
 };
 

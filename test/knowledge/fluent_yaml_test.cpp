@@ -606,6 +606,30 @@ TEST(ApplyModificationsTest, EveryValidityOfAPoseIsMoved) {
   EXPECT_THAT(scene, ElementsAre(PoseAt("poseFar", 2, 0, 0, 0), PoseAt("poseFar", 3, 0, 0, 0)));
 }
 
+TEST(ApplyModificationsTest, NamesCompareWithoutCase) {
+  const KnowledgeFile file =
+      ReadKnowledge(Modification("POSETABLE1", "1", "[[hasX, [1]]]", "[PoseChair1, poseCHAIR1]") +
+                        Modification("poseChair1", "1", "[]", "[posebag1]"),
+                    "t");
+  std::vector<Fluent> scene = Scene();
+  ApplyModifications(file.modifications, base::Rng(1), &scene);
+  for (const std::string name : {"poseTable1", "poseChair1", "poseBag1"}) {
+    EXPECT_EQ(Value(scene, name, 0), 11.0) << name;
+  }
+  EXPECT_EQ(Value(scene, "poseChair2", 0), 10.0);
+  EXPECT_THAT(ConfigErrorOf([] {
+                ReadKnowledge(Modification("poseA", "1", "[]") + Modification("POSEA", "1", "[]"),
+                              "t");
+              }),
+              HasSubstr("'POSEA' is modified twice"));
+  EXPECT_THAT(ConfigErrorOf([] {
+                ReadKnowledge(Modification("poseA", "1", "[]", "[poseB]") +
+                                  Modification("POSEB", "1", "[]", "[POSEA]"),
+                              "t");
+              }),
+              HasSubstr("attachments go in a circle"));
+}
+
 std::string ApplyError(const std::string& text, std::vector<Fluent> scene) {
   const std::vector<Fluent> before = scene;
   const KnowledgeFile file = ReadKnowledge(text, "t");

@@ -61,6 +61,14 @@ TEST_F(LoadingTest, PosesOfTheStoreMoveWithWhatIsAttached) {
   EXPECT_EQ(X("p2"), 2.5);
 }
 
+TEST_F(LoadingTest, APoseOfTheStoreMayBeSpelledInAnotherCase) {
+  LoadFile({{PoseAt("poseMug1", 1.0), PoseAt("p2", 2.0)}, {}, {}});
+  LoadFile({{}, {Shift("POSEMUG1", 0.5, {"P2"})}, {}});
+  EXPECT_EQ(X("poseMug1"), 1.5);
+  EXPECT_EQ(X("p2"), 2.5);
+  EXPECT_EQ(store_.Stats().instances, 2u);
+}
+
 TEST_F(LoadingTest, APoseNobodyKnowsIsNamedAndNothingGoesIn) {
   try {
     LoadFile({{PoseAt("p1", 1.0)}, {Shift("p9", 0.5)}, {}});

@@ -61,7 +61,8 @@ std::string WriteKnowledge(const KnowledgeFile& file);
 /// Applies modifications to the poses among `fluents`, all or none. Each group draws one choice, in
 /// the order in which groups first appear. What is attached moves along, and so does what is
 /// attached to that; each once for a modification, even where two ways lead to it. A pose that has
-/// several validities is moved in all of them.
+/// several validities is moved in all of them. Instance names compare without regard to the case of
+/// ASCII letters, as in the store.
 /// @throws ConfigError where an instance is missing or no pose, or lacks the axis; or where
 ///   modifications do not fit together, as ReadKnowledge says.
 void ApplyModifications(const std::vector<PoseModification>& modifications, base::Rng rng,
