@@ -12,6 +12,7 @@
 #include "hires/ros/conversions.h"
 #include "hires/ros/private_params.h"
 #include "hires/ros/process.h"
+#include "hires/ros/short_text.h"
 #include "hires/ros/topic_names.h"
 #include "hires/ros/trace_markers.h"
 
@@ -20,20 +21,11 @@ namespace {
 
 namespace imagination = hires::imagination;
 
-constexpr double kTickPeriod = 0.02;       // [s]
-constexpr std::size_t kLongestWhy = 2000;  // bytes
+constexpr double kTickPeriod = 0.02;  // [s]
 
 /// The scheduler's clock: the deadline is in ROS time where that is simulated; the wall's ROS time
 /// may jump, so there the steady clock counts.
 double SchedulerNow() { return ros::Time::isSimTime() ? ros::Time::now().toSec() : SteadyNow(); }
-
-/// Messages repeat what came, however long that was. Never cuts a UTF-8 character in two.
-std::string Shortened(const std::string& text) {
-  if (text.size() <= kLongestWhy) return text;
-  std::size_t end = kLongestWhy;
-  while (end > 0 && (text[end] & 0xC0) == 0x80) --end;
-  return text.substr(0, end) + " ...";
-}
 
 /// A record that cannot be read is the worker's failure: it gets no more work of this request.
 imagination::Event EventOf(int worker, int alternative, const WorkerLink::Played& played) {

@@ -9,21 +9,12 @@
 #include "hires/base/hash.h"
 #include "hires/imagination/uncertainty.h"
 #include "hires/ros/conversions.h"
+#include "hires/ros/short_text.h"
 
 namespace hires_ros {
 namespace {
 
 namespace imagination = hires::imagination;
-
-constexpr std::size_t kLongestWhy = 2000;  // [bytes]
-
-/// Messages repeat what came, however long that was. Never cuts a UTF-8 character in two.
-std::string Shortened(const std::string& text) {
-  if (text.size() <= kLongestWhy) return text;
-  std::size_t end = kLongestWhy;
-  while (end > 0 && (text[end] & 0xC0) == 0x80) --end;
-  return text.substr(0, end) + " ...";
-}
 
 std::vector<hires::base::Atom> AtomsOf(const std::vector<hires::Atom>& atoms) {
   std::vector<hires::base::Atom> out;
