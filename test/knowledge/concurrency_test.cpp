@@ -1,6 +1,6 @@
 // Eight writers hand over to the one thread that owns the store, eight subscribers follow demand
 // topics over queues with an end, two readers look at the file meanwhile.
-// HIRES_STRESS_TRANSACTIONS sets how many calls each writer makes (1000).
+// HIRES_STRESS_TRANSACTIONS sets how many calls each writer makes (600).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -48,7 +48,7 @@ constexpr std::size_t kLong = 100;  // ... of one who keeps up
 
 int NumTransactions() {
   const char* text = std::getenv("HIRES_STRESS_TRANSACTIONS");
-  return text != nullptr ? std::atoi(text) : 1000;
+  return text != nullptr ? std::atoi(text) : 600;
 }
 
 /// Holds so many messages. Whoever posts one more waits, or the oldest is lost.
