@@ -107,8 +107,10 @@ void ImaginationClientNode::OnGoal(GoalHandle goal) {
                   goal.getGoal()->request_id, session->id, session->request.actions[0].name,
                   session->request.actions.size(), session->request.params.rollouts,
                   goal.getGoal()->seed));
+  // At the moment of the start: whoever is there then is there in time for any deadline.
   for (const auto& [k, worker] : workers_) {
-    if (worker->is_alive()) Feed(session, imagination::WorkerJoined{k});
+    if (!worker->is_alive()) continue;
+    CarryOut(session, session->scheduler->Handle(imagination::WorkerJoined{k}, session->started));
   }
 }
 
@@ -120,8 +122,9 @@ std::unique_ptr<ImaginationClientNode::Session> ImaginationClientNode::MakeSessi
   const hires::ImagineGoal& wanted = *goal.getGoal();
   if (wanted.updated_fluents.empty()) RequireSoundState(wanted.world_state, wanted.robot_state);
   session->request = RequestOf(wanted, setup_, params_.config.scheduler);
+  session->started = SchedulerNow();
   session->scheduler = std::make_unique<imagination::Scheduler>(
-      session->request.params, static_cast<int>(session->request.actions.size()), SchedulerNow());
+      session->request.params, static_cast<int>(session->request.actions.size()), session->started);
   session->begun = session->next_feedback = SteadyNow();
   return session;
 }

@@ -48,6 +48,7 @@ class ImaginationClientNode {
     ImagineRequest request;
     std::unique_ptr<hires::imagination::Scheduler> scheduler;
     std::map<int, int> alternative_of;  ///< assignment -> alternative
+    double started;                     ///< [s] by the scheduler's clock
     double begun;                       ///< [s] steady
     double next_feedback;               ///< [s] steady
   };
