@@ -7,6 +7,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/planning/shop2_reader.h"
 
 namespace hires::planning {
 namespace {
@@ -527,7 +528,7 @@ class Compiler {
     program_.root_.branches.push_back({&program_.root_branch_,
                                        Compile(program_.problem_.parameters, &scope),
                                        Compile(program_.problem_.tasks, &scope)});
-    CheckTasks(program_.problem_.tasks);
+    CheckTasks(program_.problem_, program_.domain_);
     program_.root_.index = -1;
     program_.root_.num_slots = static_cast<std::uint32_t>(scope.names().size());
     program_.root_.variables = scope.names();
@@ -536,40 +537,6 @@ class Compiler {
       program_.goal_ = Compile(*program_.problem_.goal, &goal_scope);
       program_.goal_slots_ = static_cast<std::uint32_t>(goal_scope.names().size());
     }
-  }
-
-  /// The problem's tasks against the domain; the domain's own were checked when it was read.
-  void CheckTasks(const TaskNetwork& network) const {
-    for (const TaskItem& item : network.items) {
-      for (const TaskNetwork& inner : item.network) CheckTasks(inner);
-      if (item.network.empty() && !item.task.Head().empty()) CheckTask(item.task);
-    }
-  }
-
-  void CheckTask(const Datum& task) const {
-    std::vector<std::string> names;
-    std::vector<const Datum*> heads;
-    const auto add = [&](const Datum& head) {
-      names.emplace_back(head.Head());
-      if (head.Head() == task.Head()) heads.push_back(&head);
-    };
-    for (const Operator& known : program_.domain_.operators) add(known.head);
-    for (const Method& known : program_.domain_.methods) add(known.head);
-    const std::string where = Where(source_, task.place);
-    if (heads.empty()) {
-      throw base::ConfigError(where + ": " +
-                              base::UnknownName("task", std::string(task.Head()), names));
-    }
-    const bool fits = std::any_of(heads.begin(), heads.end(), [&](const Datum* head) {
-      return head->items.size() == task.items.size() || !head->tail.empty() || !task.tail.empty();
-    });
-    if (fits) return;
-    throw base::ConfigError(
-        fmt::format("{}: task {} has {} arguments, but domain '{}' takes {} as "
-                    "in {} ({})",
-                    where, ToString(task), task.items.size() - 1, program_.domain_.name,
-                    heads[0]->items.size() - 1, ToString(*heads[0]),
-                    Where(program_.domain_.source, heads[0]->place)));
   }
 
   Program& program_;

@@ -190,14 +190,6 @@ State::Chain State::Candidates(Term predicate, const Term* arguments, std::size_
   return {chains_[best].oldest, chains_[best].newest, best_key};
 }
 
-std::vector<Term> State::Facts() const {
-  std::vector<Term> atoms;
-  for (std::uint32_t i = 0; i < facts_.size(); ++i) {
-    if (Find(facts_[i].atom) == i) atoms.push_back(facts_[i].atom);
-  }
-  return atoms;
-}
-
 std::size_t State::bytes() const {
   return facts_.capacity() * sizeof(Fact) + arguments_.capacity() * sizeof(Term) +
          chains_.capacity() * sizeof(Ends) + slots_.capacity() * sizeof(Slot) +

@@ -44,12 +44,10 @@ class State {
   }
   std::size_t Arity(std::uint32_t fact) const { return facts_[fact].arity; }
   const Term* Arguments(std::uint32_t fact) const { return &arguments_[facts_[fact].arguments]; }
-  Term Atom(std::uint32_t fact) const { return facts_[fact].atom; }
 
   std::uint64_t hash() const { return hash_; }  ///< of the set of facts, whatever their age
   /// Of the facts in the order of their age within each predicate, which decides about bindings.
   std::uint64_t ordered_hash() const { return ordered_hash_; }
-  std::vector<Term> Facts() const;  ///< all, oldest first within a predicate
   std::size_t bytes() const;
 
  private:
