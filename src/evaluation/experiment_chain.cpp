@@ -60,7 +60,7 @@ std::optional<imagination::RolloutResult> Chain::Play(const std::string& goal, L
   const simulation::RobotClearance& clearance = stage_->setup.scene->clearance;
   leg->clearance = clearance.Clearance(setup_.robot_state.X_MB, kFarClearance);
   long samples = 0;
-  const auto look = [&](const simulation::TraySimulator& simulator, double tilt) {
+  const auto look = [&](const simulation::RobotSimulator& simulator, double tilt) {
     leg->clearance =
         std::min(leg->clearance, clearance.Clearance(simulator.base().X_MB, leg->clearance));
     if (++samples % 2 == 0) leg->counts_10hz += Classify(tilt, setup_.params);

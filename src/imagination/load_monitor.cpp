@@ -9,7 +9,7 @@ namespace {
 constexpr double kCauseWindow = 0.3;  // [s] how far back a cause may lie
 }
 
-LoadMonitor::LoadMonitor(simulation::TraySimulator* simulator, const RolloutParams& params)
+LoadMonitor::LoadMonitor(simulation::RobotSimulator* simulator, const RolloutParams& params)
     : simulator_(simulator), params_(params) {
   const geometry::Pose3 X_BM = simulator->X_MB().Inverse();
   for (const int index : simulator->carried()) {

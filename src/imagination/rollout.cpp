@@ -7,12 +7,12 @@
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/imagination/load_monitor.h"
-#include "hires/simulation/tray_simulator.h"
+#include "hires/simulation/robot_simulator.h"
 
 namespace hires::imagination {
 namespace {
 
-using simulation::TraySimulator;
+using simulation::RobotSimulator;
 
 constexpr int kLookSteps = 5;  // the load is looked at every fifth step
 enum Streams : std::uint64_t { kVariation, kSimulator, kControl };
@@ -121,7 +121,7 @@ class Player {
   const simulation::Variation variation_;
   std::unique_ptr<skills::Skill> skill_;
   base::Rng control_rng_;
-  TraySimulator simulator_;
+  RobotSimulator simulator_;
   double next_cycle_{0.0};
   RolloutResult result_;
 };
@@ -151,7 +151,7 @@ void CheckSetup(const RolloutSetup& setup, const base::ActionCall& action) {
 
 void CheckSetupForAll(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions) {
   for (const base::ActionCall& action : actions) skills::MakeSkill(*setup.skills, action);
-  TraySimulator(setup.scene, {}, setup.world_state, setup.robot_state, base::Rng(setup.seed),
+  RobotSimulator(setup.scene, {}, setup.world_state, setup.robot_state, base::Rng(setup.seed),
                 setup.physics);
 }
 

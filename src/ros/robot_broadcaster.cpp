@@ -69,7 +69,7 @@ void RobotBroadcaster::PublishIdle() {
   PublishClock(SimulatedTime(in_rollout_));
 }
 
-void RobotBroadcaster::Publish(const hires::simulation::TraySimulator& simulator, double tilt) {
+void RobotBroadcaster::Publish(const hires::simulation::RobotSimulator& simulator, double tilt) {
   in_rollout_ = simulator.time();
   trace_.Add(simulator, tilt);
   if (!IsDue()) return;
@@ -85,7 +85,7 @@ void RobotBroadcaster::PublishClock(const ros::Time& time) {
   clock_.publish(clock);
 }
 
-void RobotBroadcaster::PublishRobot(const hires::simulation::TraySimulator& simulator,
+void RobotBroadcaster::PublishRobot(const hires::simulation::RobotSimulator& simulator,
                                     const ros::Time& stamp) {
   const Pose3 X_MB = simulator.X_MB();
   const std::string& base = scene_->robot.profile.base_link;

@@ -142,7 +142,7 @@ bool SimWorkerNode::PlayRange(GoalHandle goal, const imagination::RolloutSetup& 
   const hires::base::ActionCall action = FromMsg(wanted.action);
   const std::string id = goal.getGoalID().id;
   const imagination::RolloutHooks hooks{
-      [&] { return IsCancelled(id); }, [&](const hires::simulation::TraySimulator& simulator,
+      [&] { return IsCancelled(id); }, [&](const hires::simulation::RobotSimulator& simulator,
                                            double tilt) { broadcaster_.Publish(simulator, tilt); }};
   for (std::uint32_t i = wanted.first; i < wanted.first + wanted.count; ++i) {
     broadcaster_.BeginRollout();

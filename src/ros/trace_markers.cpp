@@ -89,7 +89,7 @@ TraceMarkers::TraceMarkers(int worker_index)
 
 void TraceMarkers::Clear() { points_.clear(); }
 
-void TraceMarkers::Add(const hires::simulation::TraySimulator& simulator, double) {
+void TraceMarkers::Add(const hires::simulation::RobotSimulator& simulator, double) {
   if (points_.size() >= kMostPoints) return;
   const auto& motion = simulator.base();
   const double speed = std::hypot(motion.V_B.vx, motion.V_B.vy);
@@ -125,7 +125,7 @@ void TraceMarkers::DrawTrace(MarkerArray* markers) const {
   if (!dots.points.empty()) markers->markers.push_back(dots);
 }
 
-void TraceMarkers::DrawLoad(const hires::simulation::TraySimulator& simulator, double tilt,
+void TraceMarkers::DrawLoad(const hires::simulation::RobotSimulator& simulator, double tilt,
                             MarkerArray* markers) const {
   for (const int object : simulator.carried()) {
     const Pose3 X_MO = simulator.PoseOf(object);
@@ -149,7 +149,7 @@ void TraceMarkers::DrawLoad(const hires::simulation::TraySimulator& simulator, d
   }
 }
 
-void TraceMarkers::DrawCircle(const hires::simulation::TraySimulator& simulator,
+void TraceMarkers::DrawCircle(const hires::simulation::RobotSimulator& simulator,
                               MarkerArray* markers) const {
   const auto& motion = simulator.base();
   if (std::abs(motion.V_B.wz) < kSmallestTurn || simulator.carried().empty()) return;
@@ -170,7 +170,7 @@ void TraceMarkers::DrawCircle(const hires::simulation::TraySimulator& simulator,
   markers->markers.push_back(circle);
 }
 
-void TraceMarkers::DrawBodies(const hires::simulation::TraySimulator& simulator,
+void TraceMarkers::DrawBodies(const hires::simulation::RobotSimulator& simulator,
                               MarkerArray* markers) const {
   int id = 0;
   const auto draw = [&](const hires::geometry::Collision& part, const Pose3& X_MB,
@@ -192,7 +192,7 @@ void TraceMarkers::DrawBodies(const hires::simulation::TraySimulator& simulator,
   }
 }
 
-MarkerArray TraceMarkers::Draw(const hires::simulation::TraySimulator& simulator,
+MarkerArray TraceMarkers::Draw(const hires::simulation::RobotSimulator& simulator,
                                double tilt) const {
   MarkerArray markers;
   DrawBodies(simulator, &markers);

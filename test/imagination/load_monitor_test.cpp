@@ -13,7 +13,7 @@ namespace {
 using hires::test_support::OnTray;
 using hires::test_support::RoomScene;
 using hires::test_support::StandingAt;
-using simulation::TraySimulator;
+using simulation::RobotSimulator;
 
 const geometry::Pose2 kStart{2.0, 2.0, 0.0};
 
@@ -47,7 +47,7 @@ struct Watched {
   }
 
   RolloutParams params;
-  TraySimulator simulator;
+  RobotSimulator simulator;
   LoadMonitor monitor;
   OutcomeCounts counts;
 };

@@ -182,7 +182,7 @@ TEST(RolloutTest, CancelledItGivesUpWithNothingAtTheNextSample) {
   int asked = 0, samples = 0;
   const auto result = PlayRollout(
       setup, kFast, 0,
-      {[&] { return ++asked == 3; }, [&](const simulation::TraySimulator&, double) { ++samples; }});
+      {[&] { return ++asked == 3; }, [&](const simulation::RobotSimulator&, double) { ++samples; }});
   EXPECT_FALSE(result);
   EXPECT_EQ(asked, 3);
   EXPECT_EQ(samples, 3);
@@ -192,7 +192,7 @@ TEST(RolloutTest, SamplesAreShownWithTheirTilt) {
   const RolloutSetup setup = RoomRollouts(Room(), "tower");
   std::vector<double> tilts, times;
   const auto result = PlayRollout(
-      setup, kFast, 0, {{}, [&](const simulation::TraySimulator& simulator, double tilt) {
+      setup, kFast, 0, {{}, [&](const simulation::RobotSimulator& simulator, double tilt) {
                           times.push_back(simulator.time());
                           tilts.push_back(tilt);
                         }});
@@ -244,7 +244,7 @@ TEST(RolloutTest, OneIndexIsOneTruthForAllActions) {
     bool seen = false;
     PlayRollout(setup, action, index,
                 {[&] { return seen; },
-                 [&](const simulation::TraySimulator& simulator, double) {
+                 [&](const simulation::RobotSimulator& simulator, double) {
                    p_MO = simulator.PoseOf(0).translation;
                    seen = true;
                  }});

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "hires/imagination/rollout_result.h"
-#include "hires/simulation/tray_simulator.h"
+#include "hires/simulation/robot_simulator.h"
 
 namespace hires::imagination {
 
@@ -14,7 +14,7 @@ struct RolloutParams;
 class LoadMonitor {
  public:
   /// @pre both outlive the monitor. Starts where the objects stand now.
-  LoadMonitor(simulation::TraySimulator* simulator, const RolloutParams& params);
+  LoadMonitor(simulation::RobotSimulator* simulator, const RolloutParams& params);
 
   void Look();                   ///< call every few milliseconds
   OutcomeCounts Sample() const;  ///< one sample of Eq. 5.1, of the object that leans most
@@ -36,7 +36,7 @@ class LoadMonitor {
   void NoteFall(Object* object, double tilt, bool slid);
   std::string Cause() const;
 
-  simulation::TraySimulator* simulator_;
+  simulation::RobotSimulator* simulator_;
   const RolloutParams& params_;
   std::vector<Object> objects_;
   double tilt_{0.0}, max_tilt_{0.0};

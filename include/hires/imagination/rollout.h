@@ -10,7 +10,7 @@
 #include "hires/imagination/uncertainty.h"
 #include "hires/physics/physics_world.h"
 #include "hires/simulation/scene.h"
-#include "hires/simulation/tray_simulator.h"
+#include "hires/simulation/robot_simulator.h"
 #include "hires/skills/skill_factory.h"
 
 namespace hires::imagination {
@@ -51,7 +51,7 @@ void CheckSetupForAll(const RolloutSetup& setup, const std::vector<base::ActionC
 struct RolloutHooks {
   std::function<bool()> cancelled;  ///< asked 20 times per simulated second
   /// Called with every 20 Hz sample; must not change anything.
-  std::function<void(const simulation::TraySimulator&, double tilt)> on_sample;
+  std::function<void(const simulation::RobotSimulator&, double tilt)> on_sample;
 };
 
 /// Plays rollout `index` of an action: samples a truth (the same for every action that is played

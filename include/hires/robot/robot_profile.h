@@ -1,12 +1,14 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "hires/geometry/polygon.h"
 #include "hires/geometry/pose.h"
 #include "hires/robot/robot_model.h"
+#include "hires/robot/upper_body.h"
 
 namespace hires::robot {
 
@@ -46,8 +48,9 @@ struct RobotProfile {
                                                {"slow", {0.30, 1.0, 1.4, 2.0}}};
   std::string default_motion_set{"fast"};
   BaseControllerParams base_controller;
-  JointPositions joints;  ///< posture while driving
-  std::uint64_t hash{0};  ///< of all fields but `urdf`
+  JointPositions joints;                       ///< posture while driving
+  std::optional<UpperBodyProfile> upper_body;  ///< empty: nothing above the base moves
+  std::uint64_t hash{0};                       ///< of all fields but `urdf`
 };
 
 /// A robot ready for use: model and profile that agree (links exist, joints within limits).

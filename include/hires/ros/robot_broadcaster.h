@@ -11,7 +11,7 @@
 
 #include "hires/ros/trace_markers.h"
 #include "hires/simulation/scene.h"
-#include "hires/simulation/tray_simulator.h"
+#include "hires/simulation/robot_simulator.h"
 
 namespace hires_ros {
 
@@ -26,14 +26,14 @@ class RobotBroadcaster {
                    ros::NodeHandle* nh);
 
   void BeginRollout();
-  void Publish(const hires::simulation::TraySimulator& simulator, double tilt);
+  void Publish(const hires::simulation::RobotSimulator& simulator, double tilt);
   void PublishIdle();  ///< keeps /clock ticking at the wall's pace while nothing is played
 
  private:
   bool IsDue();
   ros::Time SimulatedTime(double in_rollout) const;
   void PublishClock(const ros::Time& time);
-  void PublishRobot(const hires::simulation::TraySimulator& simulator, const ros::Time& stamp);
+  void PublishRobot(const hires::simulation::RobotSimulator& simulator, const ros::Time& stamp);
   void PublishLinks(const ros::Time& stamp);
 
   std::shared_ptr<const hires::simulation::Scene> scene_;

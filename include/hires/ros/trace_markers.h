@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hires/imagination/report.h"
-#include "hires/simulation/tray_simulator.h"
+#include "hires/simulation/robot_simulator.h"
 
 namespace hires_ros {
 
@@ -18,8 +18,8 @@ class TraceMarkers {
   explicit TraceMarkers(int worker_index);
 
   void Clear();  ///< a new rollout begins
-  void Add(const hires::simulation::TraySimulator& simulator, double tilt);
-  visualization_msgs::MarkerArray Draw(const hires::simulation::TraySimulator& simulator,
+  void Add(const hires::simulation::RobotSimulator& simulator, double tilt);
+  visualization_msgs::MarkerArray Draw(const hires::simulation::RobotSimulator& simulator,
                                        double tilt) const;
 
  private:
@@ -29,12 +29,12 @@ class TraceMarkers {
     double acceleration;  // [m/s^2], positive: along the motion
   };
   visualization_msgs::Marker Blank(const std::string& name, int id, int type) const;
-  void DrawBodies(const hires::simulation::TraySimulator& simulator,
+  void DrawBodies(const hires::simulation::RobotSimulator& simulator,
                   visualization_msgs::MarkerArray* markers) const;
   void DrawTrace(visualization_msgs::MarkerArray* markers) const;
-  void DrawLoad(const hires::simulation::TraySimulator& simulator, double tilt,
+  void DrawLoad(const hires::simulation::RobotSimulator& simulator, double tilt,
                 visualization_msgs::MarkerArray* markers) const;
-  void DrawCircle(const hires::simulation::TraySimulator& simulator,
+  void DrawCircle(const hires::simulation::RobotSimulator& simulator,
                   visualization_msgs::MarkerArray* markers) const;
 
   std::string name_space_;

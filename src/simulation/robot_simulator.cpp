@@ -1,4 +1,4 @@
-#include "hires/simulation/tray_simulator.h"
+#include "hires/simulation/robot_simulator.h"
 
 #include <fmt/format.h>
 
@@ -155,7 +155,7 @@ void RefuseStiff(const robot::BaseControllerParams& params, double time_step) {
 
 }  // namespace
 
-struct TraySimulator::Snapshot {
+struct RobotSimulator::Snapshot {
   physics::PhysicsState physics;
   double time;
   long steps;
@@ -169,7 +169,7 @@ struct TraySimulator::Snapshot {
   Disturbances disturbances;
 };
 
-TraySimulator::TraySimulator(std::shared_ptr<const Scene> scene, const Variation& variation,
+RobotSimulator::RobotSimulator(std::shared_ptr<const Scene> scene, const Variation& variation,
                              const world::WorldState& world_state,
                              const robot::RobotState& robot_state, base::Rng rng,
                              const physics::PhysicsParams& params)
@@ -202,7 +202,7 @@ TraySimulator::TraySimulator(std::shared_ptr<const Scene> scene, const Variation
   RefuseBadStart(GetWorldState());
 }
 
-void TraySimulator::AddObjects(const world::WorldState& state) {
+void RobotSimulator::AddObjects(const world::WorldState& state) {
   for (std::size_t i = 0; i < state.objects.size(); ++i) {
     world::ObjectState object = state.objects[i];
     const auto model = scene_->world.models.find(object.model);
@@ -231,7 +231,7 @@ void TraySimulator::AddObjects(const world::WorldState& state) {
   }
 }
 
-void TraySimulator::AddRobot() {
+void RobotSimulator::AddRobot() {
   std::vector<geometry::Collision> shapes = scene_->robot_shapes_B;
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     if (objects_[i].attached_to.empty()) continue;
@@ -243,7 +243,7 @@ void TraySimulator::AddRobot() {
   robot_body_ = physics_->AddDriven(shapes, X_MB_);
 }
 
-void TraySimulator::RefuseBadStart(const world::WorldState& state) const {
+void RobotSimulator::RefuseBadStart(const world::WorldState& state) const {
   if (const auto contact = scene_->clearance.FindContact(drive_.motion().X_MB)) {
     throw base::ConfigError(fmt::format(
         "robot starts in collision: its '{}' touches '{}' at x {:.3f} m, y {:.3f} m, yaw {:.3f} "
@@ -269,7 +269,7 @@ void TraySimulator::RefuseBadStart(const world::WorldState& state) const {
   }
 }
 
-void TraySimulator::RefuseTogether(const world::ObjectState& object,
+void RobotSimulator::RefuseTogether(const world::ObjectState& object,
                                    const std::vector<geometry::Collision>& shapes,
                                    const world::ObjectState& earlier) const {
   if (base::ToLower(object.name) == base::ToLower(earlier.name)) {
@@ -283,7 +283,7 @@ void TraySimulator::RefuseTogether(const world::ObjectState& object,
   }
 }
 
-geometry::Pose3 TraySimulator::LeaningPose(const BaseMotion& motion) const {
+geometry::Pose3 RobotSimulator::LeaningPose(const BaseMotion& motion) const {
   double height = 0.0, pitch = motion.pitch, roll = motion.roll;
   if (!floor_.is_flat()) {
     // Four wheels at the corners of a square within the footprint carry the base.
@@ -304,18 +304,18 @@ geometry::Pose3 TraySimulator::LeaningPose(const BaseMotion& motion) const {
           geometry::RotationFromRpy(roll, pitch, motion.X_MB.yaw)};
 }
 
-physics::BodyState TraySimulator::BodyMotion(const Pose3& X_now, const Pose3& X_next) const {
+physics::BodyState RobotSimulator::BodyMotion(const Pose3& X_now, const Pose3& X_next) const {
   const double dt = time_step();
   Eigen::Quaterniond turn = X_next.rotation * X_now.rotation.conjugate();
   if (turn.w() < 0.0) turn.coeffs() = -turn.coeffs();
   return {X_now, {(X_next.translation - X_now.translation) / dt, 2.0 / dt * turn.vec()}};
 }
 
-void TraySimulator::Send(const robot::Command& command) {
+void RobotSimulator::Send(const robot::Command& command) {
   if (command.base_velocity) drive_.Send(*command.base_velocity, time_);
 }
 
-void TraySimulator::Step() {
+void RobotSimulator::Step() {
   if (steps_ % kSlowSteps == 0) {
     MoveSlip();
     if (!contact_) contact_ = scene_->clearance.FindContact(drive_.motion().X_MB);
@@ -330,14 +330,14 @@ void TraySimulator::Step() {
   NoteDisturbances();
 }
 
-void TraySimulator::MoveSlip() {
+void RobotSimulator::MoveSlip() {
   if (variation_.wheel_slip == 0.0) return;
   const double keep = std::exp(-kSlowSteps * time_step() / kSlipCorrelation);
   slip_ = keep * slip_ +
           variation_.wheel_slip * std::sqrt(1.0 - keep * keep) * slip_rng_.Normal(0.0, 1.0);
 }
 
-void TraySimulator::NoteDisturbances() {
+void RobotSimulator::NoteDisturbances() {
   const BaseMotion& motion = drive_.motion();
   const robot::MotionSet& limits = scene_->robot.profile.base_controller.limits;
   const double power = motion.A_B.vx * motion.V_B.vx + motion.A_B.vy * motion.V_B.vy;
@@ -350,7 +350,7 @@ void TraySimulator::NoteDisturbances() {
   }
 }
 
-void TraySimulator::UpdateGhosts(const Pose2& X_MB, double elapsed) {
+void RobotSimulator::UpdateGhosts(const Pose2& X_MB, double elapsed) {
   while (!ghosts_.empty() && ghosts_.front().until <= time_) ghosts_.pop_front();
   const double chance = 1.0 - std::exp(-variation_.ghost_rate * elapsed);
   if (variation_.ghost_rate == 0.0 || !ghost_rng_.Bernoulli(chance)) return;
@@ -361,7 +361,7 @@ void TraySimulator::UpdateGhosts(const Pose2& X_MB, double elapsed) {
       {geometry::Transformed(X_MG, {{-h, -h}, {h, -h}, {h, h}, {-h, h}}), time_ + kGhostLifetime});
 }
 
-robot::Observation TraySimulator::Observe(double action_start) {
+robot::Observation RobotSimulator::Observe(double action_start) {
   const BaseMotion& motion = drive_.motion();
   robot::Observation observation;
   observation.time = time_ - action_start;
@@ -376,14 +376,14 @@ robot::Observation TraySimulator::Observe(double action_start) {
   return observation;
 }
 
-geometry::Pose3 TraySimulator::X_MB() const { return X_MB_; }
+geometry::Pose3 RobotSimulator::X_MB() const { return X_MB_; }
 
-geometry::Pose3 TraySimulator::PoseOf(int object) const {
+geometry::Pose3 RobotSimulator::PoseOf(int object) const {
   if (object_bodies_[object] < 0) return X_MB_ * X_BO_start_[object];
   return physics_->GetState(object_bodies_[object]).X_WB;
 }
 
-world::WorldState TraySimulator::GetWorldState() const {
+world::WorldState RobotSimulator::GetWorldState() const {
   world::WorldState state;
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     world::ObjectState object = objects_[i];
@@ -394,11 +394,11 @@ world::WorldState TraySimulator::GetWorldState() const {
   return state;
 }
 
-robot::RobotState TraySimulator::GetRobotState() const {
+robot::RobotState RobotSimulator::GetRobotState() const {
   return {drive_.motion().X_MB, drive_.motion().V_B, scene_->robot.profile.joints};
 }
 
-void TraySimulator::PutBack(int object) {
+void RobotSimulator::PutBack(int object) {
   HIRES_CHECK(object_bodies_.at(object) >= 0, "an attached object cannot be put back");
   const Pose3 X_MO = X_MB_ * X_BO_start_[object];
   const geometry::Twist2& V_B = drive_.motion().V_B;
@@ -408,13 +408,13 @@ void TraySimulator::PutBack(int object) {
                      {X_MO, {v_MB + w_M.cross(X_MO.translation - X_MB_.translation), w_M}});
 }
 
-std::shared_ptr<const TraySimulator::Snapshot> TraySimulator::Save() {
+std::shared_ptr<const RobotSimulator::Snapshot> RobotSimulator::Save() {
   return std::make_shared<const Snapshot>(
       Snapshot{physics_->Save(), time_, steps_, drive_, X_MB_, slip_, slip_rng_, sense_rng_,
                ghost_rng_, last_observation_, ghosts_, contact_, disturbances_});
 }
 
-void TraySimulator::Restore(const Snapshot& snapshot) {
+void RobotSimulator::Restore(const Snapshot& snapshot) {
   physics_->Restore(snapshot.physics);
   time_ = snapshot.time;
   steps_ = snapshot.steps;

@@ -25,15 +25,21 @@ struct Disturbances {
   double turning{-1e9};       ///< angular acceleration above half of the largest
 };
 
-/// The PR2 (or any robot) with its tray in one steppable world, level of detail `tray`: the base is
-/// a driven body with the behaviour of its controller, its joints are frozen, objects are loose.
+/// How much of the robot moves.
+enum class LevelOfDetail {
+  kTray,    ///< the base with its controller; joints are frozen as the robot state has them
+  kPlanar,  ///< also torso, head, arms and grippers, within the limits of their joints
+};
+
+/// The PR2 (or any robot) with its tray in one steppable world: the base is a driven body with the
+/// behaviour of its controller, objects are loose.
 /// One instance belongs to one thread at a time. The same calls give the same bits.
-class TraySimulator {
+class RobotSimulator {
  public:
   /// @throws base::ConfigError if an object's model is unknown to the world or the link that holds
   /// it to the robot, the robot or an object starts inside a static body or has a pose or velocity
   /// that is not finite, or the base's loop or leaning is too stiff for the time step.
-  TraySimulator(std::shared_ptr<const Scene> scene, const Variation& variation,
+  RobotSimulator(std::shared_ptr<const Scene> scene, const Variation& variation,
                 const world::WorldState& world_state, const robot::RobotState& robot_state,
                 base::Rng rng, const physics::PhysicsParams& params = {});
 

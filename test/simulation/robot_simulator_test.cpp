@@ -1,4 +1,4 @@
-#include "hires/simulation/tray_simulator.h"
+#include "hires/simulation/robot_simulator.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,12 +40,12 @@ robot::Command Drive(double vx, double vy = 0.0, double wz = 0.0) {
   return command;
 }
 
-void StepFor(TraySimulator* simulator, double duration) {
+void StepFor(RobotSimulator* simulator, double duration) {
   for (long i = std::lround(duration / simulator->time_step()); i > 0; --i) simulator->Step();
 }
 
 /// Sends the same command every 50 ms for a while.
-void DriveFor(TraySimulator* simulator, const robot::Command& command, double duration) {
+void DriveFor(RobotSimulator* simulator, const robot::Command& command, double duration) {
   for (long i = std::lround(duration / 0.05); i > 0; --i) {
     simulator->Send(command);
     StepFor(simulator, 0.05);
@@ -55,7 +55,7 @@ void DriveFor(TraySimulator* simulator, const robot::Command& command, double du
 // ---------------------------------------------------------------------------------- same bits
 
 /// Everything that can be seen of a simulator, as numbers.
-std::vector<double> Bits(TraySimulator* simulator) {
+std::vector<double> Bits(RobotSimulator* simulator) {
   std::vector<double> bits{simulator->time()};
   const auto add_pose = [&](const geometry::Pose3& X) {
     for (int i = 0; i < 3; ++i) bits.push_back(X.translation[i]);
@@ -85,15 +85,15 @@ Variation Lively() {
   return variation;
 }
 
-std::unique_ptr<TraySimulator> LivelySimulator(const std::shared_ptr<const Scene>& scene) {
-  return std::make_unique<TraySimulator>(
+std::unique_ptr<RobotSimulator> LivelySimulator(const std::shared_ptr<const Scene>& scene) {
+  return std::make_unique<RobotSimulator>(
       scene, Lively(),
       With({OnTray("a", "mill", kMiddle), OnTray("b", "tower", kMiddle, {0.0, 0.13})}),
       StandingAt(kMiddle), base::Rng(9));
 }
 
 /// Drives about; whatever falls rolls on the floor.
-std::vector<std::vector<double>> Play(TraySimulator* simulator, int cycles, std::uint64_t seed) {
+std::vector<std::vector<double>> Play(RobotSimulator* simulator, int cycles, std::uint64_t seed) {
   base::Rng rng(seed);
   std::vector<std::vector<double>> seen;
   for (int i = 0; i < cycles; ++i) {
@@ -104,13 +104,13 @@ std::vector<std::vector<double>> Play(TraySimulator* simulator, int cycles, std:
   return seen;
 }
 
-TEST(TraySimulatorTest, TheSameCallsGiveTheSameBits) {
+TEST(RobotSimulatorTest, TheSameCallsGiveTheSameBits) {
   const auto scene = RoomScene();
   const auto first = LivelySimulator(scene), second = LivelySimulator(scene);
   EXPECT_EQ(Play(first.get(), 50, 1), Play(second.get(), 50, 1));
 }
 
-TEST(TraySimulatorTest, RestoredItGoesOnWithTheSameBitsHereAndElsewhere) {
+TEST(RobotSimulatorTest, RestoredItGoesOnWithTheSameBitsHereAndElsewhere) {
   const auto scene = RoomScene();
   const auto original = LivelySimulator(scene);
   Play(original.get(), 40, 1);
@@ -135,7 +135,7 @@ TEST(TraySimulatorTest, RestoredItGoesOnWithTheSameBitsHereAndElsewhere) {
   EXPECT_EQ(in_thread, expected);
 }
 
-TEST(TraySimulatorTest, TwoInTwoThreadsDoNotDisturbEachOther) {
+TEST(RobotSimulatorTest, TwoInTwoThreadsDoNotDisturbEachOther) {
   const auto scene = RoomScene();
   const auto expected = Play(LivelySimulator(scene).get(), 30, 1);
   std::vector<std::vector<double>> seen[2];
@@ -148,18 +148,18 @@ TEST(TraySimulatorTest, TwoInTwoThreadsDoNotDisturbEachOther) {
   EXPECT_EQ(seen[1], expected);
 }
 
-TEST(TraySimulatorTest, AnotherSeedGivesOtherBits) {
+TEST(RobotSimulatorTest, AnotherSeedGivesOtherBits) {
   const auto scene = RoomScene();
   const auto start = With({OnTray("a", "mill", kMiddle)});
-  TraySimulator first(scene, Lively(), start, StandingAt(kMiddle), base::Rng(1));
-  TraySimulator second(scene, Lively(), start, StandingAt(kMiddle), base::Rng(2));
+  RobotSimulator first(scene, Lively(), start, StandingAt(kMiddle), base::Rng(1));
+  RobotSimulator second(scene, Lively(), start, StandingAt(kMiddle), base::Rng(2));
   EXPECT_NE(Play(&first, 5, 1), Play(&second, 5, 1));
 }
 
 // ------------------------------------------------------------------------------------ physics
 
-TEST(TraySimulatorTest, AMillOnAStandingRobotStays) {
-  TraySimulator simulator(RoomScene(), {}, With({OnTray("mill1", "mill", kMiddle)}),
+TEST(RobotSimulatorTest, AMillOnAStandingRobotStays) {
+  RobotSimulator simulator(RoomScene(), {}, With({OnTray("mill1", "mill", kMiddle)}),
                           StandingAt(kMiddle), base::Rng(1));
   const Eigen::Vector3d start = simulator.PoseOf(0).translation;
   for (int i = 0; i < 100; ++i) {
@@ -180,7 +180,7 @@ double TiltUnder(double acceleration, const Variation& variation = {}, double ya
   robot::Robot robot = TrayRobot();
   robot.profile.base_controller.limits = {100.0, 2.0, acceleration, 2.0};
   const Pose2 X_MB{0.0, 0.0, yaw};
-  TraySimulator simulator(simulation::MakeScene(plain, robot), variation,
+  RobotSimulator simulator(simulation::MakeScene(plain, robot), variation,
                           With({OnTray("mill1", model, X_MB)}), StandingAt(X_MB), base::Rng(1));
   StepFor(&simulator, 0.2);
   double tilt = 0.0;
@@ -192,7 +192,7 @@ double TiltUnder(double acceleration, const Variation& variation = {}, double ya
   return tilt;
 }
 
-TEST(TraySimulatorTest, TipsAboveItsTippingAccelerationAndStandsBelow) {
+TEST(RobotSimulatorTest, TipsAboveItsTippingAccelerationAndStandsBelow) {
   const double tipping = physics::TippingAcceleration({}, 9.81);
   for (const double yaw : {0.0, 0.6, 1.9, -2.5}) {
     EXPECT_LT(TiltUnder(0.95 * tipping, {}, yaw), 0.01) << "yaw " << yaw;
@@ -200,7 +200,7 @@ TEST(TraySimulatorTest, TipsAboveItsTippingAccelerationAndStandsBelow) {
   }
 }
 
-TEST(TraySimulatorTest, VariationMovesTheTippingPoint) {
+TEST(RobotSimulatorTest, VariationMovesTheTippingPoint) {
   const double tipping = physics::TippingAcceleration({}, 9.81);
   Variation narrow;
   narrow.radius_factor = 0.8;
@@ -216,14 +216,14 @@ TEST(TraySimulatorTest, VariationMovesTheTippingPoint) {
   EXPECT_GT(TiltUnder(1.05 * tipping, heavy), 0.8);
 }
 
-TEST(TraySimulatorTest, OnASlipperyTrayItSlidesInsteadOfTipping) {
+TEST(RobotSimulatorTest, OnASlipperyTrayItSlidesInsteadOfTipping) {
   Variation slippery;  // 0.8 * 0.25 = 0.2: slides above 1.96 m/s^2, tips at 2.65
   slippery.friction_factor = 0.25;
   world::World plain = Room();
   plain.statics.clear();
   robot::Robot robot = TrayRobot();
   robot.profile.base_controller.limits = {100.0, 2.0, 2.3, 2.0};
-  TraySimulator simulator(simulation::MakeScene(plain, robot), slippery,
+  RobotSimulator simulator(simulation::MakeScene(plain, robot), slippery,
                           With({OnTray("mill1", "mill", {}, {0.05, 0.0})}), StandingAt({}),
                           base::Rng(1));
   StepFor(&simulator, 0.2);
@@ -233,10 +233,10 @@ TEST(TraySimulatorTest, OnASlipperyTrayItSlidesInsteadOfTipping) {
   EXPECT_NEAR(slid, 0.5 * (2.3 - 0.2 * 9.81) * 0.5 * 0.5, 0.005);
 }
 
-TEST(TraySimulatorTest, StartOffsetMovesTheRobotAndItsLoad) {
+TEST(RobotSimulatorTest, StartOffsetMovesTheRobotAndItsLoad) {
   Variation variation;
   variation.start_offset = {0.1, -0.05, 0.2};
-  TraySimulator simulator(RoomScene(), variation, With({OnTray("mill1", "mill", kMiddle)}),
+  RobotSimulator simulator(RoomScene(), variation, With({OnTray("mill1", "mill", kMiddle)}),
                           StandingAt(kMiddle), base::Rng(1));
   const Pose2 X_MB = kMiddle * variation.start_offset;
   EXPECT_NEAR(simulator.base().X_MB.x, X_MB.x, 1e-12);
@@ -245,12 +245,12 @@ TEST(TraySimulatorTest, StartOffsetMovesTheRobotAndItsLoad) {
   EXPECT_NEAR((simulator.PoseOf(0).translation.head<2>() - p_MO).norm(), 0.0, 1e-9);
 }
 
-TEST(TraySimulatorTest, ObjectOffsetMovesWhatStandsOnTheTrayAlone) {
+TEST(RobotSimulatorTest, ObjectOffsetMovesWhatStandsOnTheTrayAlone) {
   Variation variation;
   variation.object_offset = {0.02, -0.01};
   world::ObjectState beside = OnTray("beside", "mill", {1.0, 1.0, 0.0});
   beside.X_MO.translation.z() = 0.0002;
-  TraySimulator simulator(RoomScene(), variation,
+  RobotSimulator simulator(RoomScene(), variation,
                           With({OnTray("mill1", "mill", {3.0, 2.0, 0.0}), beside}),
                           StandingAt({3.0, 2.0, 0.0}), base::Rng(1));
   EXPECT_NEAR(simulator.PoseOf(0).translation.x(), 3.0 + test_support::kTrayX + 0.02, 1e-9);
@@ -260,35 +260,35 @@ TEST(TraySimulatorTest, ObjectOffsetMovesWhatStandsOnTheTrayAlone) {
 
 // ------------------------------------------------------------------------- what is carried
 
-TEST(TraySimulatorTest, CarriedIsWhatStandsOnTheRobot) {
+TEST(RobotSimulatorTest, CarriedIsWhatStandsOnTheRobot) {
   world::ObjectState on_floor = OnTray("on_floor", "mill", {1.5, 1.0, 0.0});
   on_floor.X_MO.translation.z() = 0.0002;
   world::ObjectState in_the_air = OnTray("in_the_air", "mill", kMiddle, {0.1, -0.19});
   in_the_air.X_MO.translation.z() += 0.2;
   world::ObjectState held = OnTray("held", "mill", kMiddle, {0.0, -0.1});
   held.attached_to = "tray";
-  TraySimulator simulator(RoomScene(), {},
+  RobotSimulator simulator(RoomScene(), {},
                           With({on_floor, OnTray("first", "mill", kMiddle), in_the_air, held,
                                 OnTray("second", "tower", kMiddle, {0.0, 0.15})}),
                           StandingAt(kMiddle), base::Rng(1));
   EXPECT_THAT(simulator.carried(), ElementsAre(1, 4));
 }
 
-TEST(TraySimulatorTest, RefusesJointsOfAnotherRobot) {
+TEST(RobotSimulatorTest, RefusesJointsOfAnotherRobot) {
   robot::RobotState state = StandingAt(kMiddle);
   state.joints["l_shoulder_pan_joynt"] = 0.1;
   try {
-    TraySimulator(RoomScene(), {}, {}, state, base::Rng(1));
+    RobotSimulator(RoomScene(), {}, {}, state, base::Rng(1));
     FAIL() << "accepted";
   } catch (const base::ConfigError& error) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr("joint 'l_shoulder_pan_joynt' is unknown"));
   }
 }
 
-TEST(TraySimulatorTest, RefusesObjectsInEachOtherAndOneNamedTwice) {
+TEST(RobotSimulatorTest, RefusesObjectsInEachOtherAndOneNamedTwice) {
   const auto refusal = [](const world::WorldState& state) -> std::string {
     try {
-      TraySimulator(RoomScene(), {}, state, StandingAt(kMiddle), base::Rng(1));
+      RobotSimulator(RoomScene(), {}, state, StandingAt(kMiddle), base::Rng(1));
     } catch (const base::ConfigError& error) {
       return error.what();
     }
@@ -302,12 +302,12 @@ TEST(TraySimulatorTest, RefusesObjectsInEachOtherAndOneNamedTwice) {
   EXPECT_EQ(refusal(With({first, OnTray("second", "mill", kMiddle, {0.0, 0.15})})), "");
 }
 
-TEST(TraySimulatorTest, AttachedObjectsRideAlongRigidly) {
+TEST(RobotSimulatorTest, AttachedObjectsRideAlongRigidly) {
   robot::Robot robot = TrayRobot();
   robot.profile.base_controller.sway_compliance = 0.005;
   world::ObjectState held = OnTray("held", "tower", {1.5, 2.0, 0.0});
   held.attached_to = "tray";
-  TraySimulator simulator(simulation::MakeScene(Room(), robot), {}, With({held}),
+  RobotSimulator simulator(simulation::MakeScene(Room(), robot), {}, With({held}),
                           StandingAt({1.5, 2.0, 0.0}), base::Rng(1));
   const geometry::Pose3 X_BO = simulator.X_MB().Inverse() * simulator.PoseOf(0);
   EXPECT_THAT(simulator.carried(), IsEmpty());
@@ -321,19 +321,19 @@ TEST(TraySimulatorTest, AttachedObjectsRideAlongRigidly) {
   EXPECT_THROW(simulator.PutBack(0), std::logic_error);
 }
 
-TEST(TraySimulatorTest, AnAttachedObjectPushesWhatStandsInItsWay) {
+TEST(RobotSimulatorTest, AnAttachedObjectPushesWhatStandsInItsWay) {
   world::ObjectState held = OnTray("held", "tower", {1.5, 2.0, 0.0}, {0.0, 0.1});
   held.attached_to = "tray";
   world::ObjectState on_floor = OnTray("on_floor", "tower", {1.5, 2.0, 0.0}, {0.4, 0.1});
   on_floor.X_MO.translation.z() = 0.0002;
-  TraySimulator simulator(RoomScene(), {}, With({held, on_floor}), StandingAt({1.5, 2.0, 0.0}),
+  RobotSimulator simulator(RoomScene(), {}, With({held, on_floor}), StandingAt({1.5, 2.0, 0.0}),
                           base::Rng(1));
   DriveFor(&simulator, Drive(0.8), 1.5);
   EXPECT_GT(geometry::TiltOf(simulator.PoseOf(1).rotation), 0.5);
 }
 
-TEST(TraySimulatorTest, PutBackStandsItUprightAndMovingWithTheRobot) {
-  TraySimulator simulator(RoomScene(), {}, With({OnTray("tower1", "tower", {1.5, 2.0, 0.0})}),
+TEST(RobotSimulatorTest, PutBackStandsItUprightAndMovingWithTheRobot) {
+  RobotSimulator simulator(RoomScene(), {}, With({OnTray("tower1", "tower", {1.5, 2.0, 0.0})}),
                           StandingAt({1.5, 2.0, 0.0}), base::Rng(1));
   const geometry::Pose3 X_BO = simulator.X_MB().Inverse() * simulator.PoseOf(0);
   StepFor(&simulator, 0.2);
@@ -351,8 +351,8 @@ TEST(TraySimulatorTest, PutBackStandsItUprightAndMovingWithTheRobot) {
 
 // --------------------------------------------------------------------------- contact, causes
 
-TEST(TraySimulatorTest, DrivingIntoTheWallIsAContact) {
-  TraySimulator simulator(RoomScene(), {}, {}, StandingAt({5.0, 2.0, 0.0}), base::Rng(1));
+TEST(RobotSimulatorTest, DrivingIntoTheWallIsAContact) {
+  RobotSimulator simulator(RoomScene(), {}, {}, StandingAt({5.0, 2.0, 0.0}), base::Rng(1));
   DriveFor(&simulator, Drive(0.5), 1.0);
   EXPECT_FALSE(simulator.contact());
   DriveFor(&simulator, Drive(0.5), 1.0);
@@ -361,10 +361,10 @@ TEST(TraySimulatorTest, DrivingIntoTheWallIsAContact) {
   EXPECT_EQ(simulator.contact()->robot_part, "tray/plate");
 }
 
-TEST(TraySimulatorTest, NotesWhatMayDisturbTheLoad) {
+TEST(RobotSimulatorTest, NotesWhatMayDisturbTheLoad) {
   robot::Robot robot = TrayRobot();
   robot.profile.base_controller.command_timeout = 0.2;
-  TraySimulator simulator(simulation::MakeScene(Room(), robot), {}, {}, StandingAt({2.0, 2.0, 0.0}),
+  RobotSimulator simulator(simulation::MakeScene(Room(), robot), {}, {}, StandingAt({2.0, 2.0, 0.0}),
                           base::Rng(1));
   StepFor(&simulator, 0.5);
   EXPECT_LT(simulator.disturbances().accelerating, 0.0);
@@ -382,12 +382,12 @@ TEST(TraySimulatorTest, NotesWhatMayDisturbTheLoad) {
 
 // ------------------------------------------------------------------------------------ senses
 
-TEST(TraySimulatorTest, BelievedPosesHaveTheirBiasAndNoise) {
+TEST(RobotSimulatorTest, BelievedPosesHaveTheirBiasAndNoise) {
   Variation variation;
   variation.localisation_bias = {0.05, -0.02, 0.01};
   variation.localisation_noise = 0.004;
   variation.localisation_noise_yaw = 0.003;
-  TraySimulator simulator(RoomScene(), variation, {}, StandingAt({3.0, 2.0, 0.0}), base::Rng(5));
+  RobotSimulator simulator(RoomScene(), variation, {}, StandingAt({3.0, 2.0, 0.0}), base::Rng(5));
   const int count = 10000;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
   for (int i = 0; i < count; ++i) {
@@ -406,8 +406,8 @@ TEST(TraySimulatorTest, BelievedPosesHaveTheirBiasAndNoise) {
   EXPECT_NEAR(sd.z(), 0.003, 0.03 * 0.003);
 }
 
-TEST(TraySimulatorTest, WithoutVariationItSeesTheTruth) {
-  TraySimulator simulator(RoomScene(), {}, {}, StandingAt({3.0, 2.0, 0.5}), base::Rng(5));
+TEST(RobotSimulatorTest, WithoutVariationItSeesTheTruth) {
+  RobotSimulator simulator(RoomScene(), {}, {}, StandingAt({3.0, 2.0, 0.5}), base::Rng(5));
   DriveFor(&simulator, Drive(0.3, 0.1, 0.2), 1.0);
   const robot::Observation seen = simulator.Observe(0.4);
   EXPECT_NEAR(seen.time, 0.6, 1e-12);
@@ -417,10 +417,10 @@ TEST(TraySimulatorTest, WithoutVariationItSeesTheTruth) {
   EXPECT_THAT(seen.obstacles_M, IsEmpty());
 }
 
-TEST(TraySimulatorTest, GhostsComeAtTheirRateBeforeTheRobotAndGo) {
+TEST(RobotSimulatorTest, GhostsComeAtTheirRateBeforeTheRobotAndGo) {
   Variation variation;
   variation.ghost_rate = 0.5;
-  TraySimulator simulator(RoomScene(), variation, {}, StandingAt(kMiddle), base::Rng(5));
+  RobotSimulator simulator(RoomScene(), variation, {}, StandingAt(kMiddle), base::Rng(5));
   int appeared = 0;
   double seen_for = 0.0;  // [s] summed over all ghosts
   Eigen::Vector2d last_corner(0.0, 0.0);
@@ -447,10 +447,10 @@ std::string WhyRefused(const world::WorldState& world_state, const Pose2& X_MB,
                        world::World world = Room()) {
   const auto scene = simulation::MakeScene(std::move(world), TrayRobot());
   return ConfigErrorOf(
-      [&] { TraySimulator(scene, {}, world_state, StandingAt(X_MB), base::Rng(1)); });
+      [&] { RobotSimulator(scene, {}, world_state, StandingAt(X_MB), base::Rng(1)); });
 }
 
-TEST(TraySimulatorTest, RefusesARobotThatIsNowhere) {
+TEST(RobotSimulatorTest, RefusesARobotThatIsNowhere) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(WhyRefused({}, {nan, 0.0, 0.0}),
               AllOf(HasSubstr("the robot"), HasSubstr("not finite")));
@@ -461,13 +461,13 @@ TEST(TraySimulatorTest, RefusesARobotThatIsNowhere) {
               AllOf(HasSubstr("the robot"), HasSubstr("2000000 m"), HasSubstr("1000 m")));
 }
 
-TEST(TraySimulatorTest, RefusesARobotInAWall) {
+TEST(RobotSimulatorTest, RefusesARobotInAWall) {
   EXPECT_THAT(WhyRefused({}, {5.9, 2.0, 0.0}),
               AllOf(HasSubstr("robot starts in collision"), HasSubstr("'east_wall'"),
                     HasSubstr("x 5.900 m"), HasSubstr("move the start")));
 }
 
-TEST(TraySimulatorTest, RefusesObjectsWithoutAPlace) {
+TEST(RobotSimulatorTest, RefusesObjectsWithoutAPlace) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   world::ObjectState object = OnTray("mill1", "mill", kMiddle);
   object.X_MO.translation.y() = nan;
@@ -479,7 +479,7 @@ TEST(TraySimulatorTest, RefusesObjectsWithoutAPlace) {
               AllOf(HasSubstr("object 'mill1'"), HasSubstr("5000 m")));
 }
 
-TEST(TraySimulatorTest, RefusesObjectsWithoutARotationOrVelocity) {
+TEST(RobotSimulatorTest, RefusesObjectsWithoutARotationOrVelocity) {
   world::ObjectState object = OnTray("mill1", "mill", kMiddle);
   object.X_MO.rotation.coeffs().setZero();
   EXPECT_THAT(WhyRefused(With({object}), kMiddle),
@@ -490,13 +490,13 @@ TEST(TraySimulatorTest, RefusesObjectsWithoutARotationOrVelocity) {
               AllOf(HasSubstr("object 'mill1'"), HasSubstr("velocity"), HasSubstr("not finite")));
 }
 
-TEST(TraySimulatorTest, RefusesObjectsOfUnknownModels) {
+TEST(RobotSimulatorTest, RefusesObjectsOfUnknownModels) {
   EXPECT_THAT(WhyRefused(With({OnTray("mill1", "mil", kMiddle)}), kMiddle),
               AllOf(HasSubstr("object 'mill1'"), HasSubstr("model 'mil' is unknown"),
                     HasSubstr("did you mean 'mill'")));
 }
 
-TEST(TraySimulatorTest, RefusesObjectsHeldByUnknownLinks) {
+TEST(RobotSimulatorTest, RefusesObjectsHeldByUnknownLinks) {
   world::ObjectState held = OnTray("mill1", "mill", kMiddle);
   held.attached_to = "tary";
   EXPECT_THAT(WhyRefused(With({held}), kMiddle),
@@ -509,7 +509,7 @@ std::string WhyTooStiff(const robot::BaseControllerParams& base, const Variation
   robot::Robot robot = TrayRobot();
   robot.profile.base_controller = base;
   return ConfigErrorOf([&] {
-    TraySimulator simulator(simulation::MakeScene(Room(), robot), variation, {},
+    RobotSimulator simulator(simulation::MakeScene(Room(), robot), variation, {},
                             StandingAt({2.0, 2.0, 0.0}), base::Rng(1));
     DriveFor(&simulator, Drive(0.5), 2.0);
     EXPECT_GT(simulator.base().V_B.vx, 0.3);
@@ -518,7 +518,7 @@ std::string WhyTooStiff(const robot::BaseControllerParams& base, const Variation
   });
 }
 
-TEST(TraySimulatorTest, RefusesABaseThatIsTooStiffForItsTimeStep) {
+TEST(RobotSimulatorTest, RefusesABaseThatIsTooStiffForItsTimeStep) {
   robot::BaseControllerParams base = TrayRobot().profile.base_controller;
   base.loop_frequency = 3000.0;
   EXPECT_THAT(WhyTooStiff(base),
@@ -538,7 +538,7 @@ TEST(TraySimulatorTest, RefusesABaseThatIsTooStiffForItsTimeStep) {
   EXPECT_THAT(WhyTooStiff(base), HasSubstr("sway_damping 10"));
 }
 
-TEST(TraySimulatorTest, RefusesObjectsInsideOtherThings) {
+TEST(RobotSimulatorTest, RefusesObjectsInsideOtherThings) {
   world::ObjectState in_wall = OnTray("mill1", "mill", kMiddle);
   in_wall.X_MO.translation = {6.03, 2.0, 0.0};
   EXPECT_THAT(WhyRefused(With({in_wall}), kMiddle),
@@ -549,13 +549,13 @@ TEST(TraySimulatorTest, RefusesObjectsInsideOtherThings) {
               HasSubstr("object 'mill1' starts inside the robot"));
 }
 
-TEST(TraySimulatorTest, AcceptsAnObjectThatStandsOnATable) {
+TEST(RobotSimulatorTest, AcceptsAnObjectThatStandsOnATable) {
   world::World room = Room();
   room.statics.push_back(Block("table", {0.8, 0.8, 0.7}, {1.0, 1.0, 0.35}));
   world::ObjectState on_table = OnTray("mill1", "mill", kMiddle);
   on_table.X_MO.translation = {1.0, 1.0, 0.7};
   const auto scene = simulation::MakeScene(room, TrayRobot());
-  TraySimulator simulator(scene, {}, With({on_table}), StandingAt(kMiddle), base::Rng(1));
+  RobotSimulator simulator(scene, {}, With({on_table}), StandingAt(kMiddle), base::Rng(1));
   StepFor(&simulator, 0.5);
   EXPECT_NEAR(simulator.PoseOf(0).translation.z(), 0.7, 2e-3);
   EXPECT_THAT(simulator.carried(), IsEmpty());

@@ -1,0 +1,160 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "hires/base/action.h"
+#include "hires/planning/operator_data.h"
+#include "hires/planning/plan.h"
+#include "hires/planning/planner_config.h"
+#include "hires/temporal/stn.h"
+
+namespace hires::execution {
+
+// What can happen. Times are main ROS time [s], handed in with each event.
+struct TaskRequested {
+  std::string task;  ///< "serve_coffee_to_guest guest1", or a SHOP2 task network
+};
+/// The answer to StartPlanning.
+struct PlanArrived {
+  int request{0};
+  enum class Outcome { kFound, kNoPlan, kLimit, kInvalid, kUnavailable } outcome{Outcome::kFound};
+  planning::Plan plan;  ///< with its reasons
+  std::string why;      ///< one sentence
+};
+/// The answer to StartStep (or StopStep).
+struct StepFinished {
+  int activity{0};
+  enum class Result { kSucceeded, kFailed, kPreempted, kUnavailable } result{Result::kSucceeded};
+  std::string reason;  ///< "area_occupied: book1", "unreachable", ...
+};
+/// What is observed to hold now: all atoms of the state, whenever they change.
+struct StateObserved {
+  std::vector<base::Atom> atoms;
+  std::uint64_t sequence{0};  ///< of the Blackboard
+};
+/// A fluent that imagination may rest on changed more than its noise: an object was seen somewhere
+/// new, moved, or vanished.
+struct GeometryChanged {
+  std::vector<std::string> instances;  ///< lower case
+};
+struct ImagineAnswered {
+  int request{0};
+  enum class Outcome {
+    kRanked,
+    kAllFailed,
+    kNoWorker,
+    kNothingFinished,
+    kInvalid,
+    kUnavailable
+  } outcome{Outcome::kRanked};
+  base::ActionCall recommended;                  ///< kRanked
+  double duration{0.0};                          ///< [s] expected, of the recommended one
+  double duration_low{0.0}, duration_high{0.0};  ///< [s] quantiles 0.05 and 0.95
+  std::vector<base::ActionCall> failed;          ///< all alternatives that are expected to fail
+  std::vector<std::string> failure_reasons;      ///< of each of `failed`, the most frequent one
+  std::vector<std::string> depends_on;           ///< instances it rests on
+  std::string why;
+};
+struct PreemptRequested {};
+struct ClockTicked {};  ///< at WakeAt() at the latest
+using Event = std::variant<TaskRequested, PlanArrived, StepFinished, StateObserved, GeometryChanged,
+                           ImagineAnswered, PreemptRequested, ClockTicked>;
+
+// What to do.
+struct StartPlanning {
+  int request{0};
+  std::string tasks;              ///< task network as SHOP2 text
+  std::vector<base::Atom> state;  ///< whole state
+  std::vector<base::Atom> facts;  ///< imagined_failure(...) and others, besides
+};
+struct CancelPlanning {
+  int request{0};
+};
+struct StartStep {
+  int activity{0};
+  base::ActionCall action;
+  double time_limit{0.0};  ///< [s]
+};
+struct StopStep {
+  int activity{0};
+};
+struct StartImagination {
+  int request{0};
+  base::ActionTemplate action;
+  std::vector<base::Atom> state;  ///< projected to the moment at which the action will start
+  double deadline{0.0};           ///< [s] main ROS time; infinite: none
+};
+struct MoveDeadline {
+  int request{0};
+  double deadline{0.0};
+};
+struct CancelImagination {
+  int request{0};
+};
+/// For the Blackboard: what the monitor itself knows (plan, activities, predictions, failures).
+struct Record {
+  enum class Kind { kBegin, kUpdate, kEnd } kind{Kind::kBegin};
+  std::string concept_name;  ///< below ExecutionRecord (docs/ontology.md)
+  std::string instance;
+  std::vector<std::pair<std::string, std::string>> texts;  ///< role, value
+  std::vector<std::pair<std::string, double>> numbers;     ///< role, value
+  std::vector<std::pair<std::string, std::string>> links;  ///< role, instance
+};
+struct Warn {
+  std::string text;
+};  ///< for people: what went wrong and what is done about it
+struct Finish {
+  enum class Outcome { kSucceeded, kNoPlan, kFailed, kPreempted } outcome{Outcome::kSucceeded};
+  std::string reason;
+};
+using Command = std::variant<StartPlanning, CancelPlanning, StartStep, StopStep, StartImagination,
+                             MoveDeadline, CancelImagination, Record, Warn, Finish>;
+
+struct MonitorParams {
+  enum class ImaginePolicy { kDomain, kThesis, kOff };
+  ImaginePolicy imagination{ImaginePolicy::kDomain};  ///< kOff: `!imagine` steps take the default
+  int max_replans{10};                                ///< of one task before giving up
+  double effect_timeout{3.0};     ///< [s] after a step's end until its effects must be observed
+  double overdue_factor{3.0};     ///< of the expected duration: a step that lasts longer is
+  double overdue_minimum{30.0};   ///< stopped, but never before so many [s]
+  double planning_timeout{30.0};  ///< [s]
+  double arrival_margin{0.0};     ///< [s] before the latest start: the imagination's deadline
+};
+
+enum class StepPhase { kWaiting, kReady, kRunning, kChecking, kDone, kFailed, kSkipped };
+
+/// For a live table and timelines.
+struct StepStatus {
+  int index{0};  ///< place in the plan
+  base::ActionCall action;
+  StepPhase phase{StepPhase::kWaiting};
+  std::optional<double> started, finished;  ///< [s]
+  temporal::Bounds start, finish;           ///< from the network
+  std::string note;  ///< "imagined: slow, success 0.98 (0.93..1.00)", a failure's reason
+};
+
+/// The semantic execution monitor: one state machine, events in, commands out (DESIGN, section 8).
+/// It has no thread, clock or connection. Same events at the same times give the same commands.
+class Monitor {
+ public:
+  /// @pre both outlive the monitor.
+  Monitor(const planning::PlanningKnowledge* knowledge, const planning::OperatorData* operators,
+          const MonitorParams& params);
+  ~Monitor();
+
+  std::vector<Command> Handle(const Event& event, double now);
+  std::optional<double> WakeAt() const;   ///< when ClockTicked is due without another event
+  bool is_busy() const;                   ///< a task is being carried out
+  std::vector<StepStatus> Steps() const;  ///< of the present plan, done ones of earlier plans first
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace hires::execution
