@@ -1,7 +1,9 @@
 // What do demand topics cost beside the writing? In a store that holds the restaurant, some things
 // and their places: one transaction through every topic of config/knowledge/topics.yaml, and
 // through one topic each of the kinds that differ. Arguments: poses that the transaction moves (and
-// a fifth as many places), things. Counter `told`: changes in the messages of a transaction.
+// a fifth as many places), things. Counter `told`: changes in the messages of a transaction. And
+// what does one moved pose cost a join after its ten things were taken away and put back so many
+// times?
 #include <benchmark/benchmark.h>
 
 #include <memory>
@@ -80,6 +82,18 @@ class Scene {
     time_ += 0.01;
     return store_.Add(seen, {Source::kObservation, 0, time_});
   }
+  /// Takes all things away and puts them back: the same state again, over links said before.
+  void Repeat() {
+    std::vector<Fluent> things;
+    std::vector<std::string> names;
+    for (int i = 0; i < num_things_; ++i) {
+      things.push_back(Thing(i));
+      names.push_back(things.back().instance);
+    }
+    time_ += 0.01;
+    store_.Remove(names, {Source::kObservation, 0, time_});
+    store_.Add(things, {Source::kObservation, 0, time_});
+  }
   std::size_t Tell(const std::vector<Change>& changes) {
     std::size_t told = 0;
     for (Demand& demand : demands_) told += demand.Apply(changes, store_).changes.size();
@@ -101,21 +115,24 @@ class Scene {
 };
 
 /// Only the telling is timed; the writing has a benchmark of its own.
-void RunApply(const std::vector<DemandTopic>& topics, benchmark::State* state) {
-  Scene scene(topics, static_cast<int>(state->range(1)));
-  const int num_poses = static_cast<int>(state->range(0));
+void TellOnly(int num_poses, Scene* scene, benchmark::State* state) {
   std::size_t told = 0;
   std::size_t num_changes = 0;
   for (auto _ : *state) {
     state->PauseTiming();
-    const std::vector<Change> changes = scene.Observe(num_poses);
+    const std::vector<Change> changes = scene->Observe(num_poses);
     num_changes += changes.size();
     state->ResumeTiming();
-    told += scene.Tell(changes);
+    told += scene->Tell(changes);
   }
   state->SetItemsProcessed(static_cast<std::int64_t>(num_changes));
   state->counters["told"] =
       benchmark::Counter(static_cast<double>(told), benchmark::Counter::kAvgIterations);
+}
+
+void RunApply(const std::vector<DemandTopic>& topics, benchmark::State* state) {
+  Scene scene(topics, static_cast<int>(state->range(1)));
+  TellOnly(static_cast<int>(state->range(0)), &scene, state);
 }
 
 DemandTopic BelowPose() {
@@ -149,6 +166,16 @@ BENCHMARK(BM_BelowAConcept)
 
 void BM_Join(benchmark::State& state) { RunApply({Joined()}, &state); }
 BENCHMARK(BM_Join)->Args({10, 20})->Args({10, 500})->Args({50, 500})->Unit(benchmark::kMicrosecond);
+
+void BM_JoinAfterRepetitions(benchmark::State& state) {
+  Scene scene({Joined()}, 10);
+  for (int i = 0; i < state.range(0); ++i) scene.Repeat();
+  TellOnly(1, &scene, &state);
+}
+BENCHMARK(BM_JoinAfterRepetitions)
+    ->RangeMultiplier(10)
+    ->Range(10, 10'000)
+    ->Unit(benchmark::kMicrosecond);
 
 void BM_Snapshots(benchmark::State& state) {
   Scene scene(FileOf("topics.yaml").topics, static_cast<int>(state.range(0)));

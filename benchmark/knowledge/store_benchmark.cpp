@@ -1,7 +1,7 @@
 // How fast is the Blackboard's store? Writing: fluents a second, in batches and one by one, to a
 // file on disk. Reading: at a million fluents, what it takes to open the file, to ask for a concept
-// with all below it at a moment (a page of 100), and for the state of a moment. Counter `found`:
-// fluents in the answer.
+// with all below it at a moment (a page of 100), and for the state of a moment; and at 100,000 that
+// hold at once, for a few of them. Counter `found`: fluents in the answer.
 #include <benchmark/benchmark.h>
 #include <stdlib.h>
 
@@ -226,6 +226,80 @@ void BM_ChangesSince(benchmark::State& state) {
   state.counters["found"] = static_cast<double>(found);
 }
 BENCHMARK(BM_ChangesSince)->Unit(benchmark::kMillisecond);
+
+/// 100,000 poses and three mugs hold, 30,000 activities came and went, the last two go on.
+class WideStore {
+ public:
+  WideStore() {
+    constexpr int kBatch = 1000;
+    for (int i = 0; i < 100; ++i)
+      AddAll(kBatch, [&](int k) { return Pose(kBatch * i + k, &rng_); });
+    AddAll(3, [&](int k) { return Mug(k); });
+    for (int i = 0; i < 30; ++i) {
+      AddAll(kBatch, [&](int k) { return Activity(kBatch * i + k, "running"); });
+      std::vector<std::string> ended;
+      for (int k = 0; k < kBatch; ++k) ended.push_back(Activity(kBatch * i + k, "").instance);
+      store.Remove(ended, {Source::kMonitor, 0, ++time_});
+    }
+    AddAll(2, [&](int k) { return Activity(k, "running"); });
+  }
+  static WideStore& Get() {
+    static WideStore store;
+    return store;
+  }
+  double time() const { return time_; }
+
+  Store store{":memory:", RestaurantOntology()};
+
+ private:
+  template <typename Make>
+  void AddAll(int count, const Make& make) {
+    std::vector<Fluent> fluents;
+    for (int k = 0; k < count; ++k) fluents.push_back(make(k));
+    store.Add(fluents, {Source::kObservation, 0, ++time_});
+  }
+  static Fluent Mug(int index) {
+    Fluent fluent;
+    fluent.concept_name = "Mug";
+    fluent.instance = "mug" + std::to_string(index);
+    fluent.properties = {{"hasPose", "Pose", "pose" + std::to_string(index)}};
+    return fluent;
+  }
+
+  base::Rng rng_{13};
+  double time_{0.0};
+};
+
+void RunWide(FluentQuery query, bool now, benchmark::State* state) {
+  WideStore& wide = WideStore::Get();
+  if (!now) query.time.kind = FluentQuery::TimeFilter::Kind::kAt;
+  query.time.at = wide.time();
+  std::size_t found = 0;
+  for (auto _ : *state) found = wide.store.Query(query).fluents.size();
+  state->counters["found"] = static_cast<double>(found);
+}
+
+// The argument says whether what holds now is asked for (1), or at a moment (0).
+void BM_FewOfAConcept(benchmark::State& state) {
+  FluentQuery query;
+  query.concepts = {{"Mug", FluentQuery::ConceptFilter::Reach::kBelow}};
+  RunWide(query, state.range(0) == 1, &state);
+}
+BENCHMARK(BM_FewOfAConcept)->Arg(1)->Arg(0)->Unit(benchmark::kMicrosecond);
+
+void BM_FewThatGoOn(benchmark::State& state) {
+  FluentQuery query;
+  query.concepts = {{"RobotActivity", FluentQuery::ConceptFilter::Reach::kBelow}};
+  RunWide(query, state.range(0) == 1, &state);
+}
+BENCHMARK(BM_FewThatGoOn)->Arg(1)->Arg(0)->Unit(benchmark::kMicrosecond);
+
+void BM_FewByText(benchmark::State& state) {
+  FluentQuery query;
+  query.properties = {{"hasResult", Filler(std::string("running"))}};
+  RunWide(query, state.range(0) == 1, &state);
+}
+BENCHMARK(BM_FewByText)->Arg(1)->Arg(0)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace hires::knowledge

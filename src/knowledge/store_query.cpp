@@ -25,7 +25,7 @@ using TimeKind = FluentQuery::TimeFilter::Kind;
 // Fluents of a state that a SPARQL query looks at, in memory.
 constexpr std::size_t kMaxState = 200'000;
 
-const std::string kLight = "SELECT id, instance, world, concept, start_earliest FROM validity ";
+const std::string kLight = "SELECT v.id, v.instance, v.world, v.concept, v.start_earliest FROM ";
 const std::string kAll = std::string("SELECT") + kValidityColumns + "FROM validity ";
 
 std::uint64_t BitsOf(double value) {
@@ -72,13 +72,29 @@ bool HasProperty(const Fluent& fluent, const FluentQuery::PropertyFilter& filter
 QueryStatements::QueryStatements(StoreFile* file)
     : levels(file->database(), "SELECT min(level) FROM validity WHERE world = ? AND level > ?"),
       window(file->database(),
-             "SELECT id, instance, world, concept, start_earliest "
-             "FROM validity INDEXED BY validity_when WHERE world = ? AND level = ? "
-             "AND start_earliest >= ? AND start_earliest <= ? AND finish_latest > ?"),
-      replaced(file->database(), "SELECT previous FROM validity WHERE id > ? AND updated = 1"),
-      removed(file->database(), "SELECT validity FROM removal WHERE sequence > ?"),
-      filler(file->database(), "SELECT validity FROM filler WHERE hash = ? LIMIT ?"),
-      episode(file->database(), kLight + "WHERE episode = ? AND episode <> 0"),
+             kLight +
+                 "validity AS v INDEXED BY validity_when WHERE world = ? AND level = ? "
+                 "AND start_earliest >= ? AND start_earliest <= ? AND finish_latest > ?"),
+      open_of_concept(file->database(),
+                      kLight + fmt::format("validity AS v INDEXED BY validity_open "
+                                           "WHERE level = {} AND concept = ? "
+                                           "AND world BETWEEN ? AND ?",
+                                           kLevelOpen)),
+      open_filler(file->database(),
+                  kLight +
+                      "open_filler AS f CROSS JOIN validity AS v ON v.id = f.validity "
+                      "WHERE f.hash = ? AND f.world BETWEEN ? AND ?"),
+      replaced(file->database(),
+               kLight +
+                   "validity AS later CROSS JOIN validity AS v ON v.id = later.previous "
+                   "WHERE later.id > ? AND later.updated = 1"),
+      removed(file->database(), kLight +
+                                    "removal AS r CROSS JOIN validity AS v ON v.id = r.validity "
+                                    "WHERE r.sequence > ?"),
+      filler(file->database(), kLight +
+                                   "filler AS f CROSS JOIN validity AS v ON v.id = f.validity "
+                                   "WHERE f.hash = ?"),
+      episode(file->database(), kLight + "validity AS v WHERE episode = ? AND episode <> 0"),
       of_concept(file->database(), "SELECT instance FROM instance_concept WHERE concept = ?"),
       instances(file->database(), "SELECT id, name FROM instance WHERE name >= ? ORDER BY name"),
       worlds(file->database(), "SELECT min(world) FROM validity WHERE instance = ? AND world >= ?"),
@@ -227,6 +243,7 @@ void QueryRun::ReadSparql(const Ontology& ontology) {
   const Sparql sparql(query_.sparql, {std::shared_ptr<const Ontology>(), &ontology});
   const FluentQuery state = StateQuery();
   FluentPage page = QueryRun(state, last_, ontology, parts_, statements_).Page();
+  page_.visited += page.visited;
   if (!page.next.empty()) {
     throw base::ConfigError(fmt::format(
         "a SPARQL query over more than {} fluents; ask by concept, instance or property",
@@ -289,6 +306,7 @@ bool QueryRun::FitsProperties(const Fluent& fluent) const {
 }
 
 bool QueryRun::Consider(const Validity& validity, const std::string& name) {
+  ++page_.visited;
   const bool fits = validity.id <= as_of_ && FitsWorld(validity.world) &&
                     FitsConcept(validity.concept_id) &&
                     (!query_.episode || validity.episode == *query_.episode) && FitsTime(validity);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hires/knowledge/query.h"
@@ -25,8 +26,8 @@ bool HasProperty(const Fluent& fluent, const FluentQuery::PropertyFilter& filter
 struct QueryStatements {
   explicit QueryStatements(StoreFile* file);
 
-  SQLite::Statement levels, window, replaced, removed, filler, episode, of_concept;
-  SQLite::Statement instances, worlds, reach, stretch, newest;
+  SQLite::Statement levels, window, open_of_concept, open_filler, replaced, removed, filler;
+  SQLite::Statement episode, of_concept, instances, worlds, reach, stretch, newest;
 };
 
 /// Where in the order of answers a fluent stands.
@@ -47,9 +48,11 @@ struct QueryCursor {
 std::string ToString(const QueryCursor& cursor);
 QueryCursor ReadCursor(const std::string& text);  ///< @throws ConfigError
 
-/// One page of the answer to one query. Where few validities can match (docs/notes_blackboard.md
-/// lists the ways to find them), they are gathered and sorted; else all instances are walked
-/// through in order of their names, from where the page before ended. Either way memory is bounded.
+/// One page of the answer to one query. Several roads may lead to what can match
+/// (docs/notes_blackboard.md lists them), and what was said decides which is the short one. So each
+/// is followed for a few rows, then each for eight times as many, until one comes to its end. What
+/// lies on it is sorted. Where there is too much on all of them, all instances are walked through
+/// in order of their names, from where the page before ended. Either way memory is bounded.
 class QueryRun {
  public:
   /// @param last  Sequence number of the last change.
@@ -59,15 +62,14 @@ class QueryRun {
   FluentPage Page();
 
  private:
-  struct Candidate {
-    QueryPosition position;
-    std::int64_t instance{0};
-  };
   struct Light {  // what tells cheaply whether a validity may match
     std::int64_t id{0}, instance{0}, world{0}, concept_id{0};
     double start{0.0};
   };
-  using Candidates = std::optional<std::vector<Candidate>>;  // none: too many
+  struct Road {
+    bool (QueryRun::*follow)(std::int64_t text){nullptr};  // whether it came to the road's end
+    std::int64_t text{0};  // FillerHash of one that the query asks for, if the road needs it
+  };
 
   void ReadConcepts(const FluentQuery& query, const Ontology& ontology);
   void AddConcepts(const FluentQuery::ConceptFilter& filter, const Ontology& ontology);
@@ -85,25 +87,37 @@ class QueryRun {
   bool FitsProperties(const Fluent& fluent) const;
   bool Consider(const Validity& validity, const std::string& name);  // false: the page is full
 
-  bool Gather(const Light& light, std::vector<Candidate>* candidates) const;
-  bool Gather(std::int64_t id, std::vector<Candidate>* candidates) const;
+  bool Spend(int work);
+  bool Gather(const Light& light);
+  static Light ReadLight(Rows* rows);
+  bool GatherRows(Rows* rows, int work);
+  bool GatherLevel(std::int64_t world, int level);
+  bool GatherOpen();
+  bool GatherOpenOfConcepts();
+  bool GatherOpenWithText(std::int64_t text);
+  bool GatherClosed(std::int64_t world);
+  bool GatherClosed();
+  bool GatherReopened();
+  std::pair<std::int64_t, std::int64_t> WorldRange() const;
   std::vector<std::int64_t> WorldsToSearch() const;
-  bool GatherWindow(std::int64_t world, std::vector<Candidate>* candidates) const;
-  bool GatherLevel(std::int64_t world, int level, std::vector<Candidate>* candidates) const;
-  bool GatherReopened(std::vector<Candidate>* candidates) const;
-  Candidates ByFiller() const;
-  Candidates ByEpisode() const;
-  Candidates ByWindow() const;
-  Candidates FewCandidates() const;
-  void Take(std::vector<Candidate> candidates);
 
-  void ListInstancesOfConcepts();
+  bool ByOpenText(std::int64_t text);
+  bool ByText(std::int64_t text);
+  bool ByEpisode(std::int64_t);
+  bool ByTime(std::int64_t);
+  bool ByInstances(std::int64_t);
+  std::vector<std::int64_t> Texts() const;
+  std::vector<Road> Roads() const;
+  bool Follow(const Road& road, std::int64_t allowance);
+  bool FindRoad();
+  void TakeCandidates();
+
   void WalkList();
   void WalkAll();
   bool WalkInstance(const Instances::Named& named);
   bool WalkWorld(const Instances::Named& named, std::int64_t world);
   bool WalkStretch(const Instances::Named& named, QueryPosition from);
-  QueryPosition FirstInReach(const Instances::Named& named, std::int64_t world) const;
+  QueryPosition FirstInReach(const Instances::Named& named, std::int64_t world);
   bool ConsiderNewest(const Instances::Named& named, std::int64_t world);
 
   const FluentQuery& query_;
@@ -117,6 +131,9 @@ class QueryRun {
   double latest_start_{temporal::kForever};      // and start.earliest not after this
   std::optional<std::int64_t> only_world_;
   std::optional<std::vector<Instances::Named>> list_;  // only these, by name
+  std::int64_t allowance_{0};                          // work that the road may still cost
+  bool is_endless_{false};                             // the road has too much on it
+  std::vector<QueryPosition> candidates_;              // what lies on it
   FluentPage page_;
   QueryPosition told_;
 };

@@ -72,8 +72,24 @@ CREATE TABLE episode(
 constexpr const char* kEpisodeIndex =
     "CREATE INDEX validity_in ON validity(episode, id) WHERE episode <> 0;";
 
+// Version 3: what is open is found without looking at what ended. Level 6000 is kLevelOpen, the
+// other number kNotClosed.
+constexpr const char* kOpenIndexes = R"sql(
+CREATE TABLE open_filler(   -- as `filler`, of open validities only
+  hash INTEGER NOT NULL,
+  world INTEGER NOT NULL,
+  validity INTEGER NOT NULL,
+  PRIMARY KEY(hash, world, validity)) WITHOUT ROWID;
+INSERT INTO open_filler
+  SELECT f.hash, v.world, v.id FROM filler AS f CROSS JOIN validity AS v ON v.id = f.validity
+  WHERE v.closed = 9223372036854775807;
+CREATE INDEX validity_open ON validity(concept, world, instance, start_earliest, level)
+  WHERE level = 6000;       -- level is in it so that no row is read for it
+)sql";
+static_assert(kLevelOpen == 6000 && kNotClosed == 9223372036854775807, "as in kOpenIndexes");
+
 /// What brings schema i to i + 1.
-constexpr std::array<const char*, kStoreSchema> kSteps = {kTables, kEpisodeIndex};
+constexpr std::array<const char*, kStoreSchema> kSteps = {kTables, kEpisodeIndex, kOpenIndexes};
 
 int Number(SQLite::Database& database, const char* query) {
   return database.execAndGet(query).getInt();

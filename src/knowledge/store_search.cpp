@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "store_codec.h"
 #include "store_query.h"
@@ -13,31 +14,49 @@ using TimeKind = FluentQuery::TimeFilter::Kind;
 
 // Up to so many candidates are sorted in memory (some 3 MB); more are walked through by name.
 constexpr std::size_t kMaxCandidates = 20'000;
-// A filler that more validities have is no short cut.
-constexpr int kMaxOfFiller = 2'000;
+// A text that more validities ever had is no short cut to them.
+constexpr std::int64_t kMaxOfText = 2'000;
 constexpr int kBelowAnyLevel = -5000;
+
+// Work, in rows of an index read one after the other.
+constexpr int kLookUp = 4;         // a row found by its number
+constexpr int kWalkInstance = 16;  // an instance, and what holds of it
+constexpr std::int64_t kFirstAllowance = 256;
+constexpr std::int64_t kPatience = 8;  // times as much work is allowed the next time
+constexpr std::int64_t kUnlimited = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
 
-// --------------------------------------------------------------------- few candidates, then sorted
+// ---------------------------------------------------------------------------- what lies on a road
 
-/// False where there are too many.
-bool QueryRun::Gather(const Light& light, std::vector<Candidate>* candidates) const {
-  if (light.id > as_of_ || !FitsWorld(light.world) || !FitsConcept(light.concept_id)) return true;
-  if (candidates->size() == kMaxCandidates) return false;
-  Candidate candidate;
-  candidate.instance = light.instance;
-  candidate.position = {parts_->instances.Name(light.instance), light.world, light.start, light.id};
-  if (!from_ || *from_ < candidate.position) candidates->push_back(std::move(candidate));
+/// False where the road has cost what it may.
+bool QueryRun::Spend(int work) {
+  ++page_.visited;
+  allowance_ -= work;
+  return allowance_ >= 0;
+}
+
+bool QueryRun::Gather(const Light& light) {
+  const bool fits = light.id <= as_of_ && light.start <= latest_start_ && FitsWorld(light.world) &&
+                    FitsConcept(light.concept_id);
+  if (!fits) return true;
+  is_endless_ = candidates_.size() == kMaxCandidates;
+  if (is_endless_) return false;
+  QueryPosition position{parts_->instances.Name(light.instance), light.world, light.start,
+                         light.id};
+  if (!from_ || *from_ < position) candidates_.push_back(std::move(position));
   return true;
 }
 
-bool QueryRun::Gather(std::int64_t id, std::vector<Candidate>* candidates) const {
-  const auto validity = parts_->validities.Find(id);
-  if (!validity) return true;
-  return Gather(Light{id, validity->instance, validity->world, validity->concept_id,
-                      validity->start.earliest},
-                candidates);
+QueryRun::Light QueryRun::ReadLight(Rows* rows) {
+  return {rows->Integer(0), rows->Integer(1), rows->Integer(2), rows->Integer(3), rows->Real(4)};
+}
+
+bool QueryRun::GatherRows(Rows* rows, int work) {
+  while (rows->Next()) {
+    if (!Spend(work) || !Gather(ReadLight(rows))) return false;
+  }
+  return true;
 }
 
 std::vector<std::int64_t> QueryRun::WorldsToSearch() const {
@@ -47,116 +66,173 @@ std::vector<std::int64_t> QueryRun::WorldsToSearch() const {
   return worlds;
 }
 
-bool QueryRun::GatherLevel(std::int64_t world, int level,
-                           std::vector<Candidate>* candidates) const {
+/// From the first to the last that may fit.
+std::pair<std::int64_t, std::int64_t> QueryRun::WorldRange() const {
+  if (only_world_) return {*only_world_, *only_world_};
+  return {query_.label ? 1 : 0, std::numeric_limits<std::int64_t>::max()};
+}
+
+bool QueryRun::GatherLevel(std::int64_t world, int level) {
+  if (!Spend(kLookUp)) return false;
   // What lasts less than 2^level and ends after a moment began less than 2^level before it.
   const bool bounded = level != kLevelOpen && level != kLevelSinceEver;
   const double from = bounded ? earliest_finish_ - std::ldexp(1.0, level) : -temporal::kForever;
   Rows rows(statements_->window, world, level, from, latest_start_, earliest_finish_);
-  while (rows.Next()) {
-    const Light light{rows.Integer(0), rows.Integer(1), rows.Integer(2), rows.Integer(3),
-                      rows.Real(4)};
-    if (!Gather(light, candidates)) return false;
+  return GatherRows(&rows, 1);
+}
+
+bool QueryRun::GatherOpen() {
+  if (concepts_) return GatherOpenOfConcepts();
+  const std::vector<std::int64_t> worlds = WorldsToSearch();
+  return std::all_of(worlds.begin(), worlds.end(),
+                     [this](std::int64_t world) { return GatherLevel(world, kLevelOpen); });
+}
+
+bool QueryRun::GatherOpenOfConcepts() {
+  const auto [first, last] = WorldRange();
+  for (std::size_t concept_id = 0; concept_id < concepts_->size(); ++concept_id) {
+    if (!(*concepts_)[concept_id]) continue;
+    if (!Spend(kLookUp)) return false;
+    Rows rows(statements_->open_of_concept, static_cast<std::int64_t>(concept_id), first, last);
+    if (!GatherRows(&rows, 1)) return false;
   }
   return true;
 }
 
-bool QueryRun::GatherWindow(std::int64_t world, std::vector<Candidate>* candidates) const {
-  if (query_.time.kind == TimeKind::kNow) return GatherLevel(world, kLevelOpen, candidates);
+bool QueryRun::GatherOpenWithText(std::int64_t text) {
+  const auto [first, last] = WorldRange();
+  Rows rows(statements_->open_filler, text, first, last);
+  return GatherRows(&rows, kLookUp);
+}
+
+bool QueryRun::GatherClosed(std::int64_t world) {
   for (int level = kBelowAnyLevel;;) {
+    if (!Spend(kLookUp)) return false;
     {
       Rows rows(statements_->levels, world, level);
       if (!rows.Next() || rows.IsNull(0)) return true;
       level = static_cast<int>(rows.Integer(0));
     }
-    if (!GatherLevel(world, level, candidates)) return false;
+    if (level == kLevelOpen) return true;  // the highest
+    if (!GatherLevel(world, level)) return false;
   }
 }
 
+bool QueryRun::GatherClosed() {
+  if (query_.time.kind == TimeKind::kNow) return true;
+  const std::vector<std::int64_t> worlds = WorldsToSearch();
+  return std::all_of(worlds.begin(), worlds.end(),
+                     [this](std::int64_t world) { return GatherClosed(world); });
+}
+
 /// What was ended after the page's moment had not ended then.
-bool QueryRun::GatherReopened(std::vector<Candidate>* candidates) const {
+bool QueryRun::GatherReopened() {
   if (as_of_ == last_) return true;
-  if (last_ - as_of_ > static_cast<std::int64_t>(kMaxCandidates)) return false;
+  is_endless_ = last_ - as_of_ > static_cast<std::int64_t>(kMaxCandidates);
+  if (is_endless_) return false;
   for (SQLite::Statement* statement : {&statements_->replaced, &statements_->removed}) {
     Rows rows(*statement, as_of_);
-    while (rows.Next()) {
-      if (!Gather(rows.Integer(0), candidates)) return false;
-    }
+    if (!GatherRows(&rows, kLookUp)) return false;
   }
   return true;
 }
 
-QueryRun::Candidates QueryRun::ByWindow() const {
-  std::vector<Candidate> candidates;
-  for (const std::int64_t world : WorldsToSearch()) {
-    if (!GatherWindow(world, &candidates)) return std::nullopt;
-  }
-  if (!GatherReopened(&candidates)) return std::nullopt;
-  return candidates;
+// ------------------------------------------------------------------------------------- the roads
+
+bool QueryRun::ByOpenText(std::int64_t text) {
+  return GatherOpenWithText(text) && GatherClosed() && GatherReopened();
 }
 
-QueryRun::Candidates QueryRun::ByFiller() const {
-  if (!query_.all_properties && query_.properties.size() > 1) return std::nullopt;
-  for (const FluentQuery::PropertyFilter& filter : query_.properties) {
-    const auto* text = filter.filler ? std::get_if<std::string>(&*filter.filler) : nullptr;
-    if (text == nullptr) continue;
-    std::vector<std::int64_t> ids;
-    Rows rows(statements_->filler, FillerHash(filter.role, *text), kMaxOfFiller + 1);
-    while (rows.Next()) ids.push_back(rows.Integer(0));
-    if (ids.size() > static_cast<std::size_t>(kMaxOfFiller)) continue;
-    std::vector<Candidate> candidates;
-    for (const std::int64_t id : ids) Gather(id, &candidates);
-    return candidates;
+bool QueryRun::ByText(std::int64_t text) {
+  Rows rows(statements_->filler, text);
+  for (std::int64_t count = 0; rows.Next(); ++count) {
+    is_endless_ = count == kMaxOfText;
+    if (is_endless_ || !Spend(kLookUp) || !Gather(ReadLight(&rows))) return false;
   }
-  return std::nullopt;
+  return true;
 }
 
-QueryRun::Candidates QueryRun::ByEpisode() const {
-  if (!query_.episode || *query_.episode == 0) return std::nullopt;
-  std::vector<Candidate> candidates;
+bool QueryRun::ByEpisode(std::int64_t /*text*/) {
   Rows rows(statements_->episode, *query_.episode);
-  while (rows.Next()) {
-    const Light light{rows.Integer(0), rows.Integer(1), rows.Integer(2), rows.Integer(3),
-                      rows.Real(4)};
-    if (!Gather(light, &candidates)) return std::nullopt;
-  }
-  return candidates;
+  return GatherRows(&rows, kLookUp);
 }
 
-QueryRun::Candidates QueryRun::FewCandidates() const {
-  if (auto candidates = ByFiller()) return candidates;
-  if (auto candidates = ByEpisode()) return candidates;
-  if (query_.time.kind != TimeKind::kEver) return ByWindow();
-  return std::nullopt;
+bool QueryRun::ByTime(std::int64_t /*text*/) {
+  return GatherOpen() && GatherClosed() && GatherReopened();
 }
 
-void QueryRun::Take(std::vector<Candidate> candidates) {
-  std::sort(candidates.begin(), candidates.end(),
-            [](const Candidate& a, const Candidate& b) { return a.position < b.position; });
-  std::int64_t taken = 0;
-  for (const Candidate& candidate : candidates) {
-    if (candidate.position.id == taken) continue;  // found in two ways
-    taken = candidate.position.id;
-    const auto validity = parts_->validities.Find(taken);
-    if (validity && !Consider(*validity, candidate.position.name)) return;
-  }
-}
-
-// ----------------------------------------------------------------------- many: by name, one by one
-
-void QueryRun::ListInstancesOfConcepts() {
-  if (!concepts_) return;
+bool QueryRun::ByInstances(std::int64_t /*text*/) {
   std::vector<Instances::Named> named;
   for (std::size_t concept_id = 0; concept_id < concepts_->size(); ++concept_id) {
     if (!(*concepts_)[concept_id]) continue;
     Rows rows(statements_->of_concept, static_cast<std::int64_t>(concept_id));
     while (rows.Next()) {
-      if (named.size() == kMaxCandidates) return;
+      is_endless_ = named.size() == kMaxCandidates;
+      if (is_endless_ || !Spend(kWalkInstance)) return false;
       named.push_back({rows.Integer(0), parts_->instances.Name(rows.Integer(0))});
     }
   }
   list_ = std::move(named);
+  return true;
 }
+
+/// Of which every match has each.
+std::vector<std::int64_t> QueryRun::Texts() const {
+  if (!query_.all_properties && query_.properties.size() > 1) return {};
+  std::vector<std::int64_t> texts;
+  for (const FluentQuery::PropertyFilter& filter : query_.properties) {
+    const auto* text = filter.filler ? std::get_if<std::string>(&*filter.filler) : nullptr;
+    if (text != nullptr) texts.push_back(FillerHash(filter.role, *text));
+  }
+  return texts;
+}
+
+std::vector<QueryRun::Road> QueryRun::Roads() const {
+  const bool ever = query_.time.kind == TimeKind::kEver;
+  // Then what is open is all there can be, and there is an index for it.
+  const bool now = query_.time.kind == TimeKind::kNow && as_of_ == last_;
+  std::vector<Road> roads;
+  for (const std::int64_t text : Texts()) {
+    if (!ever) roads.push_back({&QueryRun::ByOpenText, text});
+    if (!now) roads.push_back({&QueryRun::ByText, text});
+  }
+  if (query_.episode && *query_.episode != 0) roads.push_back({&QueryRun::ByEpisode});
+  if (!ever) roads.push_back({&QueryRun::ByTime});
+  if (concepts_ && !now) roads.push_back({&QueryRun::ByInstances});
+  return roads;
+}
+
+bool QueryRun::Follow(const Road& road, std::int64_t allowance) {
+  allowance_ = allowance;
+  is_endless_ = false;
+  candidates_.clear();
+  return (this->*road.follow)(road.text);
+}
+
+/// False where there is too much on all of them.
+bool QueryRun::FindRoad() {
+  std::vector<Road> roads = Roads();
+  for (std::int64_t allowance = kFirstAllowance; !roads.empty(); allowance *= kPatience) {
+    for (auto road = roads.begin(); road != roads.end();) {
+      if (Follow(*road, roads.size() == 1 ? kUnlimited : allowance)) return true;
+      road = is_endless_ ? roads.erase(road) : road + 1;
+    }
+  }
+  return false;
+}
+
+void QueryRun::TakeCandidates() {
+  std::sort(candidates_.begin(), candidates_.end());
+  std::int64_t taken = 0;
+  for (const QueryPosition& candidate : candidates_) {
+    if (candidate.id == taken) continue;  // found in two ways
+    taken = candidate.id;
+    const auto validity = parts_->validities.Find(taken);
+    if (validity && !Consider(*validity, candidate.name)) return;
+  }
+}
+
+// ----------------------------------------------------------------------- many: by name, one by one
 
 void QueryRun::WalkList() {
   const auto earlier = [](const Instances::Named& a, const Instances::Named& b) {
@@ -180,6 +256,7 @@ void QueryRun::WalkAll() {
 }
 
 bool QueryRun::WalkInstance(const Instances::Named& named) {
+  ++page_.visited;
   if (only_world_) return WalkWorld(named, *only_world_);
   for (std::int64_t world = query_.label ? 1 : 0;; ++world) {
     {
@@ -206,10 +283,11 @@ bool QueryRun::WalkWorld(const Instances::Named& named, std::int64_t world) {
 }
 
 /// Just before the first validity that may still last after `earliest_finish_`.
-QueryPosition QueryRun::FirstInReach(const Instances::Named& named, std::int64_t world) const {
+QueryPosition QueryRun::FirstInReach(const Instances::Named& named, std::int64_t world) {
   QueryPosition first{named.name, world, -temporal::kForever, 0};
   Rows rows(statements_->reach, named.id, world, earliest_finish_, as_of_);
   while (rows.Next()) {
+    ++page_.visited;
     first.start = rows.Real(0);
     first.id = rows.Integer(1) - 1;
     if (rows.Real(2) <= earliest_finish_) return first;
@@ -232,17 +310,13 @@ bool QueryRun::WalkStretch(const Instances::Named& named, QueryPosition from) {
 
 FluentPage QueryRun::Page() {
   if (concepts_ && concepts_->empty()) return std::move(page_);  // of none was anything said
-  if (!list_) {
-    if (auto candidates = FewCandidates()) {
-      Take(std::move(*candidates));
-      return std::move(page_);
-    }
-    ListInstancesOfConcepts();
-  }
-  if (list_) {
+  const bool is_restricted = list_.has_value();
+  if (!is_restricted && !FindRoad()) {
+    WalkAll();
+  } else if (list_) {
     WalkList();
   } else {
-    WalkAll();
+    TakeCandidates();
   }
   return std::move(page_);
 }

@@ -73,6 +73,15 @@ std::vector<Property> Merged(const std::vector<Property>& old, const std::vector
   return merged;
 }
 
+std::vector<std::int64_t> TextHashes(const std::vector<Property>& properties) {
+  std::vector<std::int64_t> hashes;
+  for (const Property& property : properties) {
+    const auto* text = std::get_if<std::string>(&property.filler);
+    if (text != nullptr) hashes.push_back(FillerHash(property.role, *text));
+  }
+  return hashes;
+}
+
 Change MakeChange(Change::Kind kind, const Fluent& fluent, double time, std::int64_t sequence,
                   const Assertion& by, Episode::Label label) {
   Change change;
@@ -94,6 +103,10 @@ StoreWriter::StoreWriter(StoreParts* parts, std::shared_ptr<const Ontology> onto
       concept_(parts->file->database(),
                "INSERT OR IGNORE INTO instance_concept(concept, instance) VALUES(?, ?)"),
       filler_(parts->file->database(), "INSERT OR IGNORE INTO filler(hash, validity) VALUES(?, ?)"),
+      open_filler_(parts->file->database(),
+                   "INSERT OR IGNORE INTO open_filler(hash, world, validity) VALUES(?, ?, ?)"),
+      closed_filler_(parts->file->database(),
+                     "DELETE FROM open_filler WHERE hash = ? AND world = ? AND validity = ?"),
       removal_(parts->file->database(),
                "INSERT INTO removal(sequence, validity, time, episode, source) "
                "VALUES(?, ?, ?, ?, ?)") {}
@@ -216,22 +229,35 @@ void StoreWriter::Open(const Fluent& fluent, Validity validity, const Validity* 
   if (validity.updated) {
     Validity ended = *before;
     ended.closed = validity.id;
-    parts_->validities.Close(ended);
+    Close(ended);
   }
   parts_->validities.Insert(validity);
   if (before == nullptr || before->concept_id != validity.concept_id) {
     Rows(concept_, validity.concept_id, validity.instance).Run();
   }
-  IndexFillers(fluent.properties, validity.id);
+  IndexFillers(fluent.properties, validity);
   const auto kind = validity.updated ? Change::Kind::kUpdated : Change::Kind::kAdded;
   writing->changes.push_back(
       MakeChange(kind, fluent, fluent.start.earliest, validity.id, writing->by, writing->label));
 }
 
-void StoreWriter::IndexFillers(const std::vector<Property>& properties, std::int64_t validity) {
-  for (const Property& property : properties) {
-    const auto* text = std::get_if<std::string>(&property.filler);
-    if (text != nullptr) Rows(filler_, FillerHash(property.role, *text), validity).Run();
+void StoreWriter::IndexFillers(const std::vector<Property>& properties, const Validity& opened) {
+  for (const std::int64_t hash : TextHashes(properties)) {
+    Rows(filler_, hash, opened.id).Run();
+    Rows(open_filler_, hash, opened.world, opened.id).Run();
+  }
+}
+
+void StoreWriter::Close(const Validity& ended) {
+  parts_->validities.Close(ended);
+  std::vector<Property> properties;
+  try {
+    properties = DecodeProperties(ended.properties, &parts_->words);
+  } catch (const SQLite::Exception&) {
+    return;  // damaged, and can still be replaced: what stays in the index changes no answer
+  }
+  for (const std::int64_t hash : TextHashes(properties)) {
+    Rows(closed_filler_, hash, ended.world, ended.id).Run();
   }
 }
 
@@ -244,7 +270,7 @@ void StoreWriter::End(const std::string& instance, Writing* writing) {
   }
   ended.finish = Closed(ended, {time, time});
   ended.closed = writing->NextSequence();
-  parts_->validities.Close(ended);
+  Close(ended);
   Rows(removal_, ended.closed, ended.id, time, writing->by.episode,
        static_cast<int>(writing->by.source))
       .Run();

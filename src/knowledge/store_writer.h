@@ -49,11 +49,12 @@ class StoreWriter {
   void Open(const Fluent& fluent, Validity validity, const Validity* before, Writing* writing);
   Validity RequireOpen(const std::string& instance, const Writing& writing);
   void CheckHolder(const std::string& instance, const Validity& open, const Writing& writing);
-  void IndexFillers(const std::vector<Property>& properties, std::int64_t validity);
+  void IndexFillers(const std::vector<Property>& properties, const Validity& opened);
+  void Close(const Validity& ended);
 
   StoreParts* parts_;
   std::shared_ptr<const Ontology> ontology_;
-  SQLite::Statement concept_, filler_, removal_;
+  SQLite::Statement concept_, filler_, open_filler_, closed_filler_, removal_;
 };
 
 }  // namespace hires::knowledge

@@ -51,6 +51,11 @@ class StoreFileTest : public ::testing::Test {
   std::string ErrorOfOpening(StoreOptions options = {}) {
     return ErrorOf([&] { Open(options); });
   }
+  /// A file as an older version wrote it.
+  void WriteOld(const std::string& name) {
+    SQLite::Database(path_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
+        .exec(base::ReadTextFile(HIRES_SOURCE_DIR "/test/knowledge/data/" + name));
+  }
   /// Runs `call` in a process of its own, which ends by SIGKILL.
   static void RunAndDie(const std::function<void()>& call) {
     const pid_t child = fork();
@@ -208,18 +213,16 @@ TEST_F(StoreFileTest, APathThatLeadsNowhereIsRefused) {
 
 TEST_F(StoreFileTest, ANewerSchemaIsRefused) {
   Open();
-  SQLite::Database(path_, SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 3");
-  EXPECT_THAT(ErrorOfOpening(), AllOf(HasSubstr("schema 3"), HasSubstr("up to 2")));
-  EXPECT_THAT(ErrorOfOpening(ReadOnly()), HasSubstr("schema 3"));
+  SQLite::Database(path_, SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 4");
+  EXPECT_THAT(ErrorOfOpening(), AllOf(HasSubstr("schema 4"), HasSubstr("up to 3")));
+  EXPECT_THAT(ErrorOfOpening(ReadOnly()), HasSubstr("schema 4"));
 }
 
 TEST_F(StoreFileTest, TheFirstSchemaIsMigrated) {
-  // Written by the first version, which had no index by episode.
-  const std::string dump = base::ReadTextFile(HIRES_SOURCE_DIR "/test/knowledge/data/store_v1.sql");
-  SQLite::Database(path_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE).exec(dump);
+  WriteOld("store_v1.sql");  // without the index by episode
   EXPECT_THAT(ErrorOfOpening(ReadOnly()), HasSubstr("has schema 1"));
   Store store = Open();
-  EXPECT_EQ(store.Stats().schema, 2);
+  EXPECT_EQ(store.Stats().schema, 3);
   EXPECT_EQ(store.last_sequence(), 5u);
   EXPECT_THAT(Names(QueryAll(store, FluentQuery())), ElementsAre("mug1", "pose1"));
   EXPECT_EQ(QueryAll(store, HoldsAt(15.0)).at(1).properties, PoseAt("", 1.5).properties);
@@ -228,21 +231,85 @@ TEST_F(StoreFileTest, TheFirstSchemaIsMigrated) {
   EXPECT_THAT(Names(QueryAll(store, query)), ElementsAre("pose1", "pose1", "pose1"));
   store.Add({PoseAt("pose1", 9.0)}, At(50.0, 1));
   SQLite::Database raw(path_, SQLite::OPEN_READONLY);
-  EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), 2);
+  EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), 3);
   EXPECT_EQ(
       raw.execAndGet("SELECT count(*) FROM sqlite_master WHERE name = 'validity_in'").getInt(), 1);
 }
 
-TEST_F(StoreFileTest, AMigrationThatFailsLeavesTheOldSchema) {
-  const std::string dump = base::ReadTextFile(HIRES_SOURCE_DIR "/test/knowledge/data/store_v1.sql");
+FluentQuery OnMug1() {
+  FluentQuery query;
+  query.properties = {{"hasObject", Filler(std::string("MUG1"))}};
+  return query;
+}
+
+TEST_F(StoreFileTest, TheSecondSchemaIsMigrated) {
+  WriteOld("store_v2.sql");  // without the indexes of what is open
+  EXPECT_THAT(ErrorOfOpening(ReadOnly()), HasSubstr("has schema 2"));
   {
-    SQLite::Database raw(path_, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-    raw.exec(dump);
-    raw.exec("CREATE TABLE validity_in(a)");  // stands where the new index belongs
+    Store store = Open();
+    EXPECT_EQ(store.Stats().schema, 3);
+    EXPECT_EQ(store.last_sequence(), 8u);
+    const FluentPage now = store.Query(OnMug1());  // said three times, one holds
+    ASSERT_THAT(Names(now.fluents), ElementsAre("on1"));
+    EXPECT_EQ(now.fluents[0].start.earliest, 3.0);
+    FluentQuery imagined = OnMug1();
+    imagined.label = Episode::Label::kImagined;
+    EXPECT_THAT(Names(QueryAll(store, imagined)), ElementsAre("on1"));
+    FluentQuery states;
+    states.concepts = {{"State"}};
+    EXPECT_THAT(QueryAll(store, states), SizeIs(1));
+    states.time = HoldsAt(3.5).time;
+    EXPECT_THAT(Names(QueryAll(store, states)), ElementsAre("on1", "on2"));
+    store.Add({test_support::MakeFluent("On", "on2", {{"hasObject", "Mug", std::string("mug1")}})},
+              At(7.0));
+    store.Remove({"on1"}, At(8.0));
+    EXPECT_THAT(Names(QueryAll(store, OnMug1())), ElementsAre("on2"));
   }
+  EXPECT_THAT(Names(QueryAll(Open(ReadOnly()), OnMug1())), ElementsAre("on2"));
+}
+
+TEST_F(StoreFileTest, TheIndexOfOpenFillersIsThatOfWhatIsOpen) {
+  WriteOld("store_v2.sql");
+  {
+    Store store = Open();
+    for (int i = 0; i < 20; ++i) {
+      store.Add({test_support::MakeFluent("On", "on" + std::to_string(i % 3),
+                                          {{"hasObject", "Mug", std::string("mug1")},
+                                           {"hasArea", "Area", "area" + std::to_string(i % 5)}})},
+                At(10.0 + i, i % 2));  // by turns in the imagined episode
+      if (i % 4 == 3) store.Remove({"on" + std::to_string(i % 3)}, At(10.0 + i, i % 2));
+    }
+  }
+  SQLite::Database raw(path_, SQLite::OPEN_READONLY);
+  const std::string wanted =
+      "SELECT f.hash, v.world, v.id FROM filler AS f JOIN validity AS v ON v.id = f.validity "
+      "WHERE v.closed = 9223372036854775807";
+  const std::string kept = "SELECT hash, world, validity FROM open_filler";
+  const auto count = [&](const std::string& rows) {
+    return raw.execAndGet("SELECT count(*) FROM (" + rows + ")").getInt();
+  };
+  EXPECT_GE(count(wanted), 8);
+  EXPECT_EQ(count(wanted + " EXCEPT " + kept), 0);
+  EXPECT_EQ(count(kept + " EXCEPT " + wanted), 0);
+}
+
+TEST_F(StoreFileTest, AMigrationThatFailsLeavesTheOldSchema) {
+  WriteOld("store_v1.sql");
+  const auto run = [&](const std::string& sql) {
+    SQLite::Database(path_, SQLite::OPEN_READWRITE).exec(sql);
+  };
+  const auto schema = [&] {
+    return SQLite::Database(path_).execAndGet("PRAGMA user_version").getInt();
+  };
+  run("CREATE TABLE validity_in(a)");  // stands where a new index belongs
   EXPECT_THAT(ErrorOfOpening(), HasSubstr(path_));
-  SQLite::Database(path_, SQLite::OPEN_READWRITE).exec("DROP TABLE validity_in");
+  EXPECT_EQ(schema(), 1);
+  run("DROP TABLE validity_in; CREATE TABLE validity_open(a)");  // and that of the next step
+  EXPECT_THAT(ErrorOfOpening(), HasSubstr(path_));
+  EXPECT_EQ(schema(), 2);
+  run("DROP TABLE validity_open");
   EXPECT_THAT(QueryAll(Open(), FluentQuery()), SizeIs(2));
+  EXPECT_EQ(schema(), 3);
 }
 
 TEST_F(StoreFileTest, DamageIsNamedAndOtherFluentsAreStillRead) {
@@ -255,6 +322,8 @@ TEST_F(StoreFileTest, DamageIsNamedAndOtherFluentsAreStillRead) {
   EXPECT_THAT(ErrorOf([&] { store.Query(FluentQuery()); }), HasSubstr("damaged"));
   EXPECT_TRUE(store.Find("pose2").has_value());
   store.Add({PoseAt("pose3", 2.0)}, At(2.0));
+  store.Add({PoseAt("pose1", 3.0)}, At(3.0));  // takes the place of the damaged one
+  EXPECT_THAT(Names(QueryAll(store, FluentQuery())), ElementsAre("pose1", "pose2", "pose3"));
 }
 
 TEST_F(StoreFileTest, AnOverwrittenOrCutFileIsAnErrorNotACrash) {

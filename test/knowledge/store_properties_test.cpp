@@ -351,10 +351,11 @@ RC_GTEST_PROP(StoreProperties, PropertiesAreRight, ()) {
   const Property wanted = *rc::gen::element(
       Property{"hasCount", "xsd:int", std::int64_t{1}}, Property{"hasCount", "xsd:int", 2.0},
       Property{"hasColour", "xsd:string", std::string("blue")});
-  FluentQuery query = Ever();
-  query.properties = {{wanted.role, wanted.filler}};
+  const double at = *Any(-2, 30);
+  const int worlds = *Any(0, 3);
+  const bool only_vases = *rc::gen::element(false, true);
   const auto has = [&](const Model::Row& row) {
-    if (row.imagined) return false;
+    if (!IsIn(row, worlds) || (only_vases && row.fluent.concept_name != "Vase")) return false;
     for (const Property& property : row.fluent.properties) {
       if (property.role != wanted.role) continue;
       if (property.filler == Filler(std::string("Blue"))) return wanted.role == "hasColour";
@@ -363,7 +364,38 @@ RC_GTEST_PROP(StoreProperties, PropertiesAreRight, ()) {
     }
     return false;
   };
-  RC_ASSERT(QueryAll(both.store, query) == both.model.Select(has));
+  const auto ask = [&](FluentQuery query) {
+    query.properties = {{wanted.role, wanted.filler}};
+    if (only_vases) query.concepts = {{"Vase"}};
+    return QueryAll(both.store, In(query, worlds));
+  };
+  RC_ASSERT(ask(Ever()) == both.model.Select(has));
+  RC_ASSERT(ask(FluentQuery()) ==
+            both.model.Select([&](const Model::Row& row) { return row.open && has(row); }));
+  RC_ASSERT(ask(HoldsAt(at)) == both.model.Select([&](const Model::Row& row) {
+    return row.fluent.start.earliest <= at && at < row.fluent.finish.latest && has(row);
+  }));
+}
+
+RC_GTEST_PROP(StoreProperties, ConceptsAreRight, ()) {
+  Both both;
+  for (const Step& step : AnySteps()) both.Apply(step);
+  const double at = *Any(-2, 30);
+  const int worlds = *Any(0, 3);
+  const auto vase = [&](const Model::Row& row) {
+    return IsIn(row, worlds) && row.fluent.concept_name == "Vase";
+  };
+  const auto ask = [&](FluentQuery query) {
+    query.concepts = {{"Vase"}};
+    const std::vector<Fluent> found = QueryAll(both.store, In(query, worlds));
+    RC_ASSERT(ByInstance(both.store, In(query, worlds)) == found);
+    return found;
+  };
+  RC_ASSERT(ask(FluentQuery()) ==
+            both.model.Select([&](const Model::Row& row) { return row.open && vase(row); }));
+  RC_ASSERT(ask(HoldsAt(at)) == both.model.Select([&](const Model::Row& row) {
+    return row.fluent.start.earliest <= at && at < row.fluent.finish.latest && vase(row);
+  }));
 }
 
 RC_GTEST_PROP(StoreProperties, PagesShowTheFirstOnesMoment, ()) {
@@ -371,8 +403,11 @@ RC_GTEST_PROP(StoreProperties, PagesShowTheFirstOnesMoment, ()) {
   for (const Step& step : AnySteps()) both.Apply(step);
   const double at = *Any(-2, 30);
   const int worlds = *Any(0, 3);
+  const int filter = *Any(0, 3);
   for (FluentQuery query : {In(FluentQuery(), worlds), In(Ever(), worlds), In(HoldsAt(at), worlds),
                             In(HoldsAt(both.now()), worlds)}) {
+    if (filter == 1) query.properties = {{"hasColour", Filler(std::string("blue"))}};
+    if (filter == 2) query.concepts = {{"Mug"}};
     for (const char* instance : {"", "mug1"}) {
       query.instance = instance;
       query.limit = 1'000'000;

@@ -290,6 +290,105 @@ TEST_F(StoreQueryTest, BadQueriesSaySo) {
   EXPECT_THAT(ErrorOf(query), HasSubstr("no episode 9"));
 }
 
+// ------------------------------------------------------------------ the cost, in rows looked at
+
+FluentQuery WithText(const std::string& role, const std::string& text) {
+  FluentQuery query;
+  query.properties = {{role, Filler(text)}};
+  return query;
+}
+
+/// Blue mugs come and go, and on1 is said of mug1 anew, in the real world and in an imagined one.
+void Repeat(int first, int last, std::int64_t imagined, Store* store) {
+  for (int i = first; i < last; ++i) {
+    const double time = 100.0 + i;
+    const std::string passing = "passing" + std::to_string(i);
+    const std::vector<Fluent> said = {
+        MakeFluent("Mug", passing, {{"hasColour", "xsd:string", std::string("blue")}}),
+        MakeFluent("On", "on1",
+                   {{"hasObject", "Mug", std::string("mug1")},
+                    {"hasArea", "Area", "area" + std::to_string(i % 2)}})};
+    store->Add(said, At(time));
+    store->Remove({passing}, At(time));
+    store->Add(said, At(time, imagined));
+  }
+}
+
+TEST_F(StoreQueryTest, WhatHoldsNowCostsTheSameAfterAnyNumberOfRepetitions) {
+  FluentQuery blue_objects = WithText("hasColour", "blue");
+  blue_objects.concepts = {{"Object"}};
+  const std::vector<std::pair<FluentQuery, std::vector<std::string>>> cases = {
+      {WithText("hasObject", "mug1"), {"on1"}},
+      {WithText("hasColour", "Blue"), {"mug1"}},
+      {WithText("hasArea", "area1"), {"on1"}},
+      {OfConcept("Mug", Reach::kExact), {"mug1", "Mug2"}},
+      {OfConcept("Object", Reach::kBelow), {"mug1", "Mug2", "vase1"}},
+      {blue_objects, {"mug1"}}};
+  const std::int64_t imagined =
+      store_.StartEpisode("imagine", Episode::Label::kImagined, 0, 50.0).id;
+  Repeat(0, 10, imagined, &store_);
+  std::vector<std::uint64_t> cost;
+  for (const auto& [query, names] : cases) cost.push_back(store_.Query(query).visited);
+  Repeat(10, 1000, imagined, &store_);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    const FluentPage page = store_.Query(cases[i].first);
+    EXPECT_EQ(Names(page.fluents), cases[i].second);
+    EXPECT_EQ(page.visited, cost[i]) << "case " << i;
+    EXPECT_LE(page.visited, 2 * page.fluents.size() + 2) << "case " << i;
+  }
+}
+
+TEST_F(StoreQueryTest, AFewAmongManyAreFoundByTheShortRoad) {
+  constexpr int kMany = 3000;
+  std::vector<Fluent> poses;
+  std::vector<std::string> names;
+  for (int i = 0; i < kMany; ++i) {
+    poses.push_back(PoseAt("p" + std::to_string(i), i));
+    names.push_back(poses.back().instance);
+  }
+  store_.Add(poses, At(20.0));
+  // At 25 s hold many poses and few mugs; at 35 s what holds has ended now, but for a few poses.
+  FluentQuery few = HoldsAt(25.0);
+  few.concepts = {{"Mug"}};
+  const FluentPage open = store_.Query(few);
+  store_.Remove({"mug1", "Mug2"}, At(30.0));
+  names.resize(kMany - 5);
+  store_.Remove(names, At(30.0));
+  const FluentPage closed = store_.Query(few);  // one by one, for all that holds then is much more
+  FluentQuery last = HoldsAt(35.0);
+  last.concepts = {{"Pose"}};
+  const FluentPage rest = store_.Query(last);  // all that holds, for the poses of ever are many
+  EXPECT_THAT(Names(open.fluents), ElementsAre("mug1", "Mug2"));
+  EXPECT_THAT(Names(closed.fluents), ElementsAre("mug1", "Mug2"));
+  EXPECT_THAT(Names(rest.fluents),
+              ElementsAre("p2995", "p2996", "p2997", "p2998", "p2999", "poseMug1"));
+  EXPECT_LE(open.visited, 10u);
+  EXPECT_LE(rest.visited, 20u);
+  EXPECT_LE(closed.visited, 300u);
+}
+
+TEST_F(StoreQueryTest, APageIsOfTheFirstOnesMomentAfterAnyNumberOfChanges) {
+  double time = 10.0;
+  for (FluentQuery query : {WithText("hasObject", "mug1"), OfConcept("On", Reach::kBelow)}) {
+    time += 1.0;
+    store_.Add({MakeFluent("On", "on2", {{"hasObject", "Mug", std::string("mug1")}}),
+                MakeFluent("On", "on3", {{"hasObject", "Mug", std::string("mug1")}})},
+               At(time));
+    query.limit = 1;
+    const std::vector<Fluent> whole = QueryAll(store_, query);
+    ASSERT_THAT(Names(whole), ElementsAre("on1", "on2", "on3"));
+    const std::vector<Fluent> rest(whole.begin() + 1, whole.end());
+    query.cursor = store_.Query(query).next;
+    time += 1.0;
+    store_.Remove({"on2", "on3"}, At(time));
+    EXPECT_EQ(QueryAll(store_, query), rest);
+    std::vector<Fluent> poses;  // more changes than are looked through for what ended
+    for (int i = 0; i < 20'500; ++i) poses.push_back(PoseAt("p" + std::to_string(i), time));
+    ASSERT_THAT(store_.Add(poses, At(time)), SizeIs(poses.size()));
+    EXPECT_EQ(QueryAll(store_, query), rest);
+  }
+}
+
 TEST_F(StoreQueryTest, MoreThanFitsInMemoryIsWalkedThroughByName) {
   constexpr int kMany = 20'500;  // more candidates than are sorted
   std::vector<Fluent> fluents;

@@ -52,6 +52,7 @@ struct FluentPage {
   std::vector<Fluent> fluents;  ///< by instance name (case ignored), real ones first, then start
   std::string next;             ///< cursor of the next page; "" there is none
   std::uint64_t sequence{0};    ///< last change that the answer knows of
+  std::uint64_t visited{0};     ///< rows of the store looked at for it: its cost on any machine
 };
 
 }  // namespace hires::knowledge
