@@ -43,13 +43,6 @@ void CheckWithinLimits(const RobotModel& model, const Joint& joint, double posit
                           lower, upper));
 }
 
-const Joint* FindJoint(const RobotModel& model, const std::string& name) {
-  for (const Link& link : model.links) {
-    if (link.joint && link.joint->name == name) return &*link.joint;
-  }
-  return nullptr;
-}
-
 void CheckNames(const RobotModel& model, const JointPositions& positions) {
   for (const auto& [name, position] : positions) {
     const Joint* joint = FindJoint(model, name);
@@ -121,6 +114,35 @@ std::vector<std::string> RobotModel::JointNames() const {
     if (link.joint && link.joint->type != JointType::kFixed && link.joint->mimics.empty()) {
       names.push_back(link.joint->name);
     }
+  }
+  return names;
+}
+
+const Joint* FindJoint(const RobotModel& model, const std::string& name) {
+  for (const Link& link : model.links) {
+    if (link.joint && link.joint->name == name) return &*link.joint;
+  }
+  return nullptr;
+}
+
+std::optional<int> FindLinkOf(const RobotModel& model, const std::string& joint) {
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    if (model.links[i].joint && model.links[i].joint->name == joint) return static_cast<int>(i);
+  }
+  return std::nullopt;
+}
+
+bool IsBelow(const RobotModel& model, int link, int above) {
+  while (link > above) link = model.links[link].joint->parent;  // parents come before children
+  return link == above;
+}
+
+std::vector<std::string> LinksBelow(const RobotModel& model, const std::string& link) {
+  const std::optional<int> above = model.FindLink(link);
+  if (!above) Fail(model, base::UnknownName("link", link, model.LinkNames()));
+  std::vector<std::string> names;
+  for (std::size_t i = *above; i < model.links.size(); ++i) {
+    if (IsBelow(model, static_cast<int>(i), *above)) names.push_back(model.links[i].name);
   }
   return names;
 }

@@ -8,6 +8,7 @@
 #include "hires/base/hash.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
+#include "upper_body_reader.h"
 
 namespace hires::robot {
 namespace {
@@ -109,6 +110,7 @@ RobotProfile ReadProfile(ParamReader* in) {
   profile.default_motion_set = base::ToLower(in->GetString("default_motion_set"));
   profile.base_controller = ReadBaseController(in->Sub("base_controller"));
   profile.joints = ReadJoints(in->Sub("joints"));
+  if (in->Has("upper_body")) profile.upper_body = ReadUpperBody(in->Sub("upper_body"));
   in->RejectUnknownKeys();
   return profile;
 }
@@ -119,7 +121,7 @@ void CheckLink(const ParamReader& in, const std::string& key, const RobotModel& 
   in.Fail(key, base::UnknownName("link", link, model.LinkNames()) + " (links of the URDF)");
 }
 
-void CheckProfile(const ParamReader& in, const RobotProfile& profile, const RobotModel& model) {
+void CheckProfile(ParamReader in, const RobotProfile& profile, const RobotModel& model) {
   CheckLink(in, "base_link", model, profile.base_link);
   if (!profile.laser_link.empty()) CheckLink(in, "laser_link", model, profile.laser_link);
   if (!profile.tray_link.empty()) {
@@ -141,6 +143,7 @@ void CheckProfile(const ParamReader& in, const RobotProfile& profile, const Robo
   } catch (const base::ConfigError& error) {
     in.Fail("joints", error.what());
   }
+  if (profile.upper_body) CheckUpperBody(in.Sub("upper_body"), *profile.upper_body, model);
 }
 
 /// Hull of the collision shapes from above, in the frame of link `base_link`.
@@ -200,6 +203,7 @@ std::uint64_t HashOf(const RobotProfile& profile) {
     hash.Add(name);
     hash.Add(position);
   }
+  if (profile.upper_body) AddTo(&hash, *profile.upper_body);
   return hash.value();
 }
 

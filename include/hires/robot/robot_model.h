@@ -58,6 +58,16 @@ struct RobotModel {
   std::vector<std::string> JointNames() const;  ///< movable ones that mimic no other
 };
 
+/// The joint of that name, or nullptr.
+const Joint* FindJoint(const RobotModel& model, const std::string& name);
+/// Index of the link that the joint of that name carries.
+std::optional<int> FindLinkOf(const RobotModel& model, const std::string& joint);
+/// Whether `link` is `above` itself or carried by it, whatever joints lie between. Indices.
+bool IsBelow(const RobotModel& model, int link, int above);
+/// Names of `link` and of all links that it carries, in the order of model.links.
+/// @throws base::ConfigError if there is no such link.
+std::vector<std::string> LinksBelow(const RobotModel& model, const std::string& link);
+
 /// Reads a URDF. Collision meshes (package:// by ROS_PACKAGE_PATH or a folder above the file,
 /// file://, or relative to the file) are loaded; a missing one is an error. Friction comes from
 /// <gazebo reference="link"> mu1 and mu2, the smaller of both; 1 where there is none.

@@ -60,8 +60,9 @@ struct Robot {
   std::uint64_t hash() const;  ///< of both
 };
 
-/// Reads the profile and the URDF that it names. Every key must be there; an empty `footprint` list
-/// asks for the hull of the collision shapes from above, joints in the driving posture.
+/// Reads the profile and the URDF that it names. Every key must be there but `upper_body`; an empty
+/// `footprint` list asks for the hull of the collision shapes from above, joints in the driving
+/// posture.
 /// @throws base::ConfigError naming file and key.
 Robot LoadRobot(const std::string& profile_path);
 

@@ -26,11 +26,13 @@ struct ArmProfile {
 struct GripperProfile {
   double max_gap{0.09};            ///< [m]
   double max_finger_angle{0.548};  ///< [rad] at max_gap
+  double finger_slant{0.062882};   ///< [rad] of the line from finger joint to tip, when closed
   double max_speed{0.05};          ///< [m/s] of the gap
   double force{50.0};              ///< [N] with which the fingers close at most
 };
 
-/// Everything above the base that moves. A robot without it drives only.
+/// Everything above the base that moves. A robot without it drives only. Key `upper_body` of the
+/// robot's YAML; read and checked against the URDF by LoadRobot.
 struct UpperBodyProfile {
   std::map<std::string, ArmProfile> arms;  ///< by instance in lower case: leftarm1, rightarm1
   GripperProfile gripper;
@@ -45,5 +47,12 @@ struct UpperBodyProfile {
   std::map<std::string, double> accelerations;
   double default_acceleration{2.0};
 };
+
+/// [rad/s^2] or [m/s^2] with which a joint may speed up and brake.
+double AccelerationOf(const UpperBodyProfile& profile, const std::string& joint);
+
+/// Joints that a group's trajectories may name: "torso", "head", or an arm by its instance in lower
+/// case; empty for a name that is none of these.
+std::vector<std::string> JointsOfGroup(const UpperBodyProfile& profile, const std::string& group);
 
 }  // namespace hires::robot

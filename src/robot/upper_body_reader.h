@@ -1,0 +1,19 @@
+#pragma once
+
+#include "hires/base/hash.h"
+#include "hires/base/param_reader.h"
+#include "hires/robot/robot_model.h"
+#include "hires/robot/upper_body.h"
+
+namespace hires::robot {
+
+/// Reads key `upper_body` of a robot's YAML.  @throws base::ConfigError naming file and key.
+UpperBodyProfile ReadUpperBody(base::ParamReader in);
+
+/// Every name against the URDF, every posture against the limits.
+/// @throws base::ConfigError naming file and key.
+void CheckUpperBody(base::ParamReader in, const UpperBodyProfile& profile, const RobotModel& model);
+
+void AddTo(base::Hasher* hash, const UpperBodyProfile& profile);
+
+}  // namespace hires::robot
