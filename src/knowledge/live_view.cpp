@@ -135,6 +135,12 @@ LiveView::LiveView(const Store& store, double at)
   implementation_->Read(store, query);
 }
 
+LiveView::LiveView(std::vector<Fluent> fluents, std::uint64_t sequence)
+    : implementation_(std::make_unique<Implementation>()) {
+  for (Fluent& fluent : fluents) implementation_->Put(std::move(fluent));
+  implementation_->sequence = sequence;
+}
+
 LiveView::LiveView(LiveView&&) noexcept = default;
 LiveView& LiveView::operator=(LiveView&&) noexcept = default;
 LiveView::~LiveView() = default;

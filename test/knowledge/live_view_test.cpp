@@ -157,6 +157,16 @@ TEST_F(LiveViewTest, ARoleWithOneFillerTwiceIsForgottenAsAWhole) {
   EXPECT_THAT(WithFiller(view_, "hasColour", "red"), IsEmpty());
 }
 
+TEST_F(LiveViewTest, BeginsWithGivenFluentsAndGoesOnFromTheirChange) {
+  LiveView view({Mug("mug2", "blue"), Mug("mug1", "red")}, 7);
+  EXPECT_EQ(view.sequence(), 7u);
+  EXPECT_THAT(OfConcept(view, "Mug"), ElementsAre("mug1", "mug2"));
+  view.Apply(Added(Mug("mug1", "green"), 7));  // known already
+  view.Apply(Added(Mug("mug2", "green"), 8));
+  EXPECT_THAT(WithFiller(view, "hasColour", "red"), ElementsAre("mug1"));
+  EXPECT_THAT(WithFiller(view, "hasColour", "green"), ElementsAre("mug2"));
+}
+
 TEST_F(LiveViewTest, ImaginedChangesAreIgnored) {
   const Episode episode = store_.StartEpisode("dream", Episode::Label::kImagined, 0, 1.0);
   ApplyAll(store_.Add({Mug("mug1", "red")}, At(2.0, episode.id)));

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hires/knowledge/fluent.h"
 #include "hires/knowledge/sparql.h"
@@ -19,6 +20,8 @@ class LiveView : public FluentView {
  public:
   explicit LiveView(const Store& store);
   LiveView(const Store& store, double at);  ///< [s] main ROS time
+  /// Of fluents that hold as of change `sequence`, for whoever learns them without a store.
+  LiveView(std::vector<Fluent> fluents, std::uint64_t sequence);
   LiveView(LiveView&&) noexcept;
   LiveView& operator=(LiveView&&) noexcept;
   ~LiveView() override;
