@@ -46,10 +46,11 @@ void ReadPostures(ParamReader in, ArmProfile* arm) {
   }
 }
 
-void ReadHoldingPostures(ParamReader in, ArmProfile* arm) {
-  for (const auto& [name, key] : LowerKeys(in)) {
-    arm->holding_postures[name] = in.GetNumbers(key, arm->joints.size());
-  }
+std::map<std::string, std::vector<double>> ReadNamedPositions(ParamReader in,
+                                                              std::size_t num_joints) {
+  std::map<std::string, std::vector<double>> named;
+  for (const auto& [name, key] : LowerKeys(in)) named[name] = in.GetNumbers(key, num_joints);
+  return named;
 }
 
 ArmProfile ReadArm(ParamReader in) {
@@ -62,7 +63,8 @@ ArmProfile ReadArm(ParamReader in) {
   arm.left_finger_links = ReadNames(&in, "left_finger_links");
   arm.right_finger_links = ReadNames(&in, "right_finger_links");
   ReadPostures(in.Sub("postures"), &arm);
-  ReadHoldingPostures(in.Sub("holding_postures"), &arm);
+  arm.holding_postures = ReadNamedPositions(in.Sub("holding_postures"), arm.joints.size());
+  arm.way_points = ReadNamedPositions(in.Sub("way_points"), arm.joints.size());
   return arm;
 }
 
@@ -172,6 +174,14 @@ void CheckPosture(const ParamReader& in, const std::string& key, const RobotMode
   }
 }
 
+void CheckNamedPositions(const ParamReader& in, const RobotModel& model,
+                         const std::vector<std::string>& joints,
+                         const std::map<std::string, std::vector<double>>& named) {
+  for (const auto& [name, key] : LowerKeys(in)) {
+    CheckPosture(in, key, model, joints, named.at(name));
+  }
+}
+
 void CheckFingers(const ParamReader& in, const std::string& key, const RobotModel& model,
                   const ArmProfile& arm, const std::vector<std::string>& links) {
   for (const std::string& link : links) {
@@ -208,9 +218,8 @@ void CheckArm(ParamReader in, const RobotModel& model, const ArmProfile& arm,
       CheckPosture(in.Sub("postures"), key, model, arm.joints, positions);
     }
   }
-  for (const auto& [name, key] : LowerKeys(in.Sub("holding_postures"))) {
-    CheckPosture(in.Sub("holding_postures"), key, model, arm.joints, arm.holding_postures.at(name));
-  }
+  CheckNamedPositions(in.Sub("holding_postures"), model, arm.joints, arm.holding_postures);
+  CheckNamedPositions(in.Sub("way_points"), model, arm.joints, arm.way_points);
 }
 
 void CheckTorso(ParamReader in, const UpperBodyProfile& profile, const RobotModel& model) {
@@ -231,6 +240,14 @@ void Add(base::Hasher* hash, const std::vector<double>& numbers) {
   for (const double number : numbers) hash->Add(number);
 }
 
+void Add(base::Hasher* hash, const std::map<std::string, std::vector<double>>& named) {
+  hash->Add(static_cast<std::uint64_t>(named.size()));
+  for (const auto& [name, positions] : named) {
+    hash->Add(name);
+    Add(hash, positions);
+  }
+}
+
 void Add(base::Hasher* hash, const ArmProfile& arm) {
   Add(hash, arm.joints);
   Add(hash, {arm.tool_link, arm.palm_link, arm.gripper_joint, arm.finger_joint});
@@ -242,11 +259,8 @@ void Add(base::Hasher* hash, const ArmProfile& arm) {
     hash->Add(static_cast<std::uint64_t>(variants.size()));
     for (const auto& positions : variants) Add(hash, positions);
   }
-  hash->Add(static_cast<std::uint64_t>(arm.holding_postures.size()));
-  for (const auto& [name, positions] : arm.holding_postures) {
-    hash->Add(name);
-    Add(hash, positions);
-  }
+  Add(hash, arm.holding_postures);
+  Add(hash, arm.way_points);
 }
 
 void Add(base::Hasher* hash, const std::map<std::string, double>& numbers) {

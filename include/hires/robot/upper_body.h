@@ -20,6 +20,9 @@ struct ArmProfile {
   std::map<std::string, std::vector<std::vector<double>>> postures;
   /// The variant that is moved to while the hand holds something, so that it stays upright.
   std::map<std::string, std::vector<double>> holding_postures;
+  /// Lower-case name -> joint positions that motions between postures pass: "clear", "up",
+  /// "approach" (folding and opening), "above" (on the way to carrying). No postures themselves.
+  std::map<std::string, std::vector<double>> way_points;
 };
 
 /// Both grippers are alike. Gap and finger angle follow each other (GapOf, FingerAngleOf).
