@@ -26,6 +26,9 @@ class Skill {
   virtual Status Update(const robot::Observation& observation, robot::Command* command) = 0;
 
   virtual double period() const = 0;  ///< [s] between two calls of Update
+
+  /// What it is at, for people: "approach", "close_gripper"; empty where there is nothing to tell.
+  virtual std::string phase() const { return ""; }
 };
 
 }  // namespace hires::skills
