@@ -1,1 +1,52 @@
-// Written in the next step.
+#include "hires/perception/camera_view.h"
+
+#include <cmath>
+
+#include "hires/base/check.h"
+
+namespace hires::perception {
+
+bool CameraView::Contains(const Eigen::Vector3d& p_M) const {
+  const Eigen::Vector3d p_C = X_MC.Inverse() * p_M;
+  if (p_C.x() <= 0.0) return false;
+  const double range = p_C.norm();
+  if (range < min_range || range > max_range) return false;
+  return std::abs(std::atan2(p_C.y(), p_C.x())) <= width / 2 &&
+         std::abs(std::atan2(p_C.z(), p_C.x())) <= height / 2;
+}
+
+CameraView ViewOf(const robot::Robot& robot, const geometry::Pose2& X_MB,
+                  const robot::JointPositions& posture) {
+  HIRES_CHECK(robot.profile.upper_body, "robot '" + robot.model.name + "' has no camera");
+  const auto camera = robot.model.FindLink(robot.profile.upper_body->camera_link);
+  const auto base = robot.model.FindLink(robot.profile.base_link);
+  HIRES_CHECK(camera && base, "robot '" + robot.model.name + "' lacks its camera or base link");
+  const auto X_RL = robot::ForwardKinematics(robot.model, posture);
+  return ViewFrom(robot, geometry::Lift(X_MB) * X_RL[*base].Inverse() * X_RL[*camera]);
+}
+
+CameraView ViewFrom(const robot::Robot& robot, const geometry::Pose3& X_MC) {
+  HIRES_CHECK(robot.profile.upper_body, "robot '" + robot.model.name + "' has no camera");
+  const robot::UpperBodyProfile& body = *robot.profile.upper_body;
+  return {X_MC, body.camera_width, body.camera_height, body.camera_min_range,
+          body.camera_max_range};
+}
+
+std::vector<geometry::Collision> ShapesOf(const robot::Robot& robot, const geometry::Pose2& X_MB,
+                                          const robot::JointPositions& posture) {
+  const auto base = robot.model.FindLink(robot.profile.base_link);
+  HIRES_CHECK(base, "robot '" + robot.model.name + "' lacks its base link");
+  const auto X_RL = robot::ForwardKinematics(robot.model, posture);
+  const geometry::Pose3 X_MR = geometry::Lift(X_MB) * X_RL[*base].Inverse();
+  std::vector<geometry::Collision> shapes_M;
+  for (std::size_t link = 0; link < X_RL.size(); ++link) {
+    for (const geometry::Collision& collision_L : robot.model.links[link].collisions) {
+      geometry::Collision& collision_M = shapes_M.emplace_back(collision_L);
+      collision_M.name = robot.model.links[link].name;
+      collision_M.X_BS = X_MR * X_RL[link] * collision_L.X_BS;
+    }
+  }
+  return shapes_M;
+}
+
+}  // namespace hires::perception

@@ -1,0 +1,71 @@
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "hires/geometry/angles.h"
+#include "hires/perception/detector.h"
+#include "hires/world/object_catalogue.h"
+
+namespace hires::perception {
+namespace {
+
+const world::World& Restaurant() {
+  static const world::World restaurant = [] {
+    world::World world = world::LoadWorld(HIRES_SOURCE_DIR "/worlds/restaurant.world");
+    return world::WithModel(
+        world, world::FindObjectModel("mug1", HIRES_SOURCE_DIR "/worlds/objects.yaml"));
+  }();
+  return restaurant;
+}
+
+/// Mugs on and round table1, which the robot looks at from its south.
+std::vector<world::ObjectState> Mugs(int num_mugs) {
+  base::Rng rng(1);
+  std::vector<world::ObjectState> mugs(num_mugs);
+  for (int i = 0; i < num_mugs; ++i) {
+    mugs[i].name = "mug" + std::to_string(i);
+    mugs[i].model = "coffee_cup";
+    mugs[i].X_MO.translation = {rng.Uniform(7.4, 8.1), rng.Uniform(11.2, 11.8), 0.73};
+  }
+  return mugs;
+}
+
+void BM_Surroundings(benchmark::State& state) {  // what is made once for a world
+  for (auto _ : state) benchmark::DoNotOptimize(Surroundings(Restaurant()));
+}
+BENCHMARK(BM_Surroundings)->Unit(benchmark::kMillisecond);
+
+void BM_Look(benchmark::State& state) {  // shapes of the robot, a scene, and what is seen in it
+  const robot::Robot pr2 = robot::LoadRobot(HIRES_SOURCE_DIR "/config/robots/pr2.yaml");
+  const auto surroundings = std::make_shared<Surroundings>(Restaurant());
+  const auto mugs = Mugs(static_cast<int>(state.range(0)));
+  robot::JointPositions posture = pr2.profile.joints;
+  posture[pr2.profile.upper_body->head_tilt_joint] = 0.5;
+  const geometry::Pose2 X_MB{7.73, 10.3, geometry::kPi / 2};
+  base::Rng rng(2);
+  std::size_t num_seen = 0;
+  for (auto _ : state) {
+    const LineOfSight sight(surroundings, mugs, ShapesOf(pr2, X_MB, posture));
+    num_seen = Detect(sight, ViewOf(pr2, X_MB, posture), mugs, {}, &rng).size();
+  }
+  state.counters["seen"] = static_cast<double>(num_seen);
+}
+BENCHMARK(BM_Look)->Arg(1)->Arg(8)->Arg(20)->Unit(benchmark::kMicrosecond);
+
+void BM_LaserScan(benchmark::State& state) {  // 640 beams of the PR2's base laser
+  const auto surroundings = std::make_shared<Surroundings>(Restaurant());
+  const LineOfSight sight(surroundings, Mugs(20));
+  double sum = 0.0;
+  for (auto _ : state) {
+    for (int beam = 0; beam < 640; ++beam) {
+      const double angle = -2.2689 + beam * 2.0 * 2.2689 / 639.0;
+      sum += std::min(30.0, sight.Cast({7.73, 10.3, 0.303}, {std::cos(angle), std::sin(angle), 0}));
+    }
+  }
+  benchmark::DoNotOptimize(sum);
+  state.SetItemsProcessed(state.iterations() * 640);  // beams per second
+}
+BENCHMARK(BM_LaserScan)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace hires::perception

@@ -1,0 +1,143 @@
+#include "hires/perception/line_of_sight.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "hires/base/check.h"
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "ray_scene.h"
+#include "surroundings_impl.h"
+
+namespace hires::perception {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// [m] by which a ray ends before the point that it looks at, so that the point's own surface, or
+/// the one that it touches, does not hide it.
+constexpr double kEndsBefore = 1e-3;
+
+double DistanceToFloor(const Vector3d& from_M, const Vector3d& direction) {
+  if (from_M.z() < 0.0 || direction.z() >= 0.0) return kInfinity;
+  return -from_M.z() / direction.z();
+}
+
+}  // namespace
+
+struct LineOfSight::Impl {
+  const Surroundings::Impl& world() const { return *surroundings->impl_; }
+  int FindObject(const std::string& name) const;
+  bool IsFree(const Vector3d& from_M, const Vector3d& to_M, int except) const;
+  double ShareSeen(const CameraView& view, const std::vector<SurfacePoint>& surface,
+                   const geometry::Pose3& X_MO, int except) const;
+
+  std::shared_ptr<const Surroundings> surroundings;
+  std::vector<world::ObjectState> objects;
+  RayScene loose;                        // objects, then the robot
+  std::vector<std::string> owner_names;  // of `loose`
+};
+
+int LineOfSight::Impl::FindObject(const std::string& name) const {
+  for (std::size_t i = 0; i < objects.size() && !name.empty(); ++i) {
+    if (base::ToLower(objects[i].name) == base::ToLower(name)) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+bool LineOfSight::Impl::IsFree(const Vector3d& from_M, const Vector3d& to_M, int except) const {
+  const Vector3d way = to_M - from_M;
+  const double distance = way.norm() - kEndsBefore;
+  if (distance <= 0.0) return true;
+  const Vector3d direction = way.normalized();
+  return DistanceToFloor(from_M, direction) >= distance &&
+         !loose.IsBlocked(from_M, direction, distance, except) &&
+         !world().statics.IsBlocked(from_M, direction, distance);
+}
+
+double LineOfSight::Impl::ShareSeen(const CameraView& view,
+                                    const std::vector<SurfacePoint>& surface,
+                                    const geometry::Pose3& X_MO, int except) const {
+  const Vector3d p_MC = view.X_MC.translation;
+  double facing = 0.0, seen = 0.0;
+  for (const SurfacePoint& point : surface) {
+    const Vector3d p_M = X_MO * point.p_O;
+    if ((X_MO.rotation * point.n_O).dot(p_MC - p_M) <= 0.0) continue;
+    facing += point.area;
+    if (view.Contains(p_M) && IsFree(p_MC, p_M, except)) seen += point.area;
+  }
+  return facing > 0.0 ? seen / facing : 0.0;
+}
+
+LineOfSight::LineOfSight(std::shared_ptr<const Surroundings> surroundings,
+                         const std::vector<world::ObjectState>& objects,
+                         const std::vector<geometry::Collision>& robot_M)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->surroundings = std::move(surroundings);
+  impl_->objects = objects;
+  const MeshLibrary& library = impl_->world().library;
+  for (const world::ObjectState& object : objects) {
+    if (!object.X_MO.IsFinite()) {
+      throw base::ConfigError(fmt::format("object '{}': its pose is not finite", object.name));
+    }
+    const int owner = static_cast<int>(impl_->owner_names.size());
+    impl_->owner_names.push_back(object.name);
+    for (const auto& collision : impl_->world().Require(object.model).description->collisions) {
+      impl_->loose.Add(library, collision.shape, object.X_MO * collision.X_BS, owner);
+    }
+  }
+  for (const geometry::Collision& shape_M : robot_M) {
+    const int owner = static_cast<int>(impl_->owner_names.size());
+    impl_->owner_names.push_back(shape_M.name);
+    impl_->loose.Add(library, shape_M.shape, shape_M.X_BS, owner);
+  }
+  impl_->loose.Commit();
+}
+
+LineOfSight::~LineOfSight() = default;
+LineOfSight::LineOfSight(LineOfSight&&) noexcept = default;
+LineOfSight& LineOfSight::operator=(LineOfSight&&) noexcept = default;
+
+double LineOfSight::VisibleShare(const CameraView& view, const std::string& object) const {
+  const int index = impl_->FindObject(object);
+  HIRES_CHECK(index >= 0, "object '" + object + "' is not among those in sight's world");
+  const world::ObjectState& state = impl_->objects[index];
+  return impl_->ShareSeen(view, impl_->surroundings->Surface(state.model), state.X_MO, index);
+}
+
+double LineOfSight::VisibleShareAt(const CameraView& view, const std::string& model,
+                                   const geometry::Pose3& X_MO, const std::string& except) const {
+  return impl_->ShareSeen(view, impl_->surroundings->Surface(model), X_MO,
+                          impl_->FindObject(except));
+}
+
+bool LineOfSight::Sees(const CameraView& view, const Vector3d& p_M,
+                       const std::string& except) const {
+  return view.Contains(p_M) && impl_->IsFree(view.X_MC.translation, p_M, impl_->FindObject(except));
+}
+
+double LineOfSight::Cast(const Vector3d& from_M, const Vector3d& direction) const {
+  const auto hit = FirstHit(from_M, direction);
+  return hit ? hit->distance : kInfinity;
+}
+
+std::optional<Hit> LineOfSight::FirstHit(const Vector3d& from_M, const Vector3d& direction) const {
+  HIRES_CHECK(direction.norm() > 0.0, "a ray needs a direction");
+  const Vector3d ray = direction.normalized();
+  std::optional<Hit> first;
+  double nearest = DistanceToFloor(from_M, ray);
+  if (nearest < kInfinity) first = Hit{nearest, "floor"};
+  if (const auto hit = impl_->world().statics.FirstHit(from_M, ray, nearest)) {
+    nearest = hit->distance;
+    first = Hit{nearest, impl_->world().static_names[hit->owner]};
+  }
+  if (const auto hit = impl_->loose.FirstHit(from_M, ray, nearest)) {
+    first = Hit{hit->distance, impl_->owner_names[hit->owner]};
+  }
+  return first;
+}
+
+}  // namespace hires::perception
