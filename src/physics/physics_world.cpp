@@ -97,13 +97,17 @@ void PhysicsWorld::Impl::ForgetNear() {
 }
 
 void PhysicsWorld::Impl::AddFixtures(const std::vector<geometry::Collision>& collisions,
-                                     const geometry::Pose3& X_GB, Group* group) {
+                                     const geometry::Pose3& X_GB, BodyId body, Group* group) {
   for (const geometry::Collision& collision : collisions) {
     PlacedShape shape(collision);
     const geometry::Pose3 X_GS = X_GB * collision.X_BS;
     group->fixtures.push_back({std::move(shape), X_GS.translation, X_GS.rotation.toRotationMatrix(),
-                               geometry::BoundsOf(collision.shape, X_GS)});
+                               geometry::BoundsOf(collision.shape, X_GS), body});
   }
+  geometry::Aabb all;
+  for (const Fixture& fixture : group->fixtures) all.Include(fixture.bounds_G);
+  group->p_GMiddle = 0.5 * (all.lower + all.upper);
+  group->radius = group->fixtures.empty() ? 0.0 : 0.5 * (all.upper - all.lower).norm();
 }
 
 LooseBody PhysicsWorld::Impl::MakeLoose(const geometry::MassProperties& properties,
@@ -159,10 +163,12 @@ void PhysicsWorld::Impl::SetDriven(const BodyState& state, Group* group) {
   HIRES_CHECK(IsUsable(state), "the state of a driven body is finite, its rotation of unit length");
   group->motion = state;
   group->R_WG = state.X_WB.rotation.toRotationMatrix();
+  group->p_WMiddle = state.X_WB.translation + group->R_WG * group->p_GMiddle;
   ++group->num_moves;
 }
 
 BodyState PhysicsWorld::Impl::LooseState(const LooseBody& body) const {
+  if (body.held) return HeldState(body);
   if (body.is_canonical) return body.state;
   const dReal* q = dBodyGetQuaternion(body.ode);
   BodyState state;
@@ -228,7 +234,8 @@ PhysicsWorld::~PhysicsWorld() = default;
 BodyId PhysicsWorld::AddStatic(const std::vector<geometry::Collision>& collisions,
                                const geometry::Pose3& X_WB) {
   HIRES_CHECK(X_WB.IsFinite(), "the pose of a static body is finite");
-  impl_->AddFixtures(collisions, X_WB, &impl_->groups[0]);
+  const BodyId id = static_cast<BodyId>(impl_->entries.size());
+  impl_->AddFixtures(collisions, X_WB, id, &impl_->groups[0]);
   impl_->static_poses.push_back(X_WB);
   return impl_->AddEntry(BodyKind::kStatic, static_cast<int>(impl_->static_poses.size()) - 1);
 }
@@ -237,8 +244,9 @@ BodyId PhysicsWorld::AddFloor(double friction) {
   geometry::Aabb half_space;
   half_space.lower = Vector3d::Constant(-1e300);
   half_space.upper = {1e300, 1e300, 0.0};
-  impl_->groups[0].fixtures.push_back(
-      {PlacedShape::Floor(friction), Vector3d::Zero(), Matrix3d::Identity(), half_space});
+  impl_->groups[0].fixtures.push_back({PlacedShape::Floor(friction), Vector3d::Zero(),
+                                       Matrix3d::Identity(), half_space,
+                                       static_cast<BodyId>(impl_->entries.size())});
   impl_->static_poses.emplace_back();
   return impl_->AddEntry(BodyKind::kStatic, static_cast<int>(impl_->static_poses.size()) - 1);
 }
@@ -247,7 +255,8 @@ BodyId PhysicsWorld::AddDriven(const std::vector<geometry::Collision>& collision
                                const geometry::Pose3& X_WB) {
   Group group;
   group.is_static = false;
-  impl_->AddFixtures(collisions, geometry::Pose3(), &group);
+  impl_->AddFixtures(collisions, geometry::Pose3(), static_cast<BodyId>(impl_->entries.size()),
+                     &group);
   impl_->SetDriven({X_WB, {}}, &group);
   impl_->groups.push_back(std::move(group));
   return impl_->AddEntry(BodyKind::kDriven, static_cast<int>(impl_->groups.size()) - 1);
@@ -267,6 +276,7 @@ BodyId PhysicsWorld::AddLoose(const geometry::MassProperties& mass_properties,
   body.ode = dBodyCreate(impl_->world.get());
   SetMass(body.ode, mass_properties);
   impl_->SetLoose(state, &body);
+  body.id = static_cast<BodyId>(impl_->entries.size());
   impl_->loose.push_back(std::move(body));
   return impl_->AddEntry(BodyKind::kLoose, static_cast<int>(impl_->loose.size()) - 1);
 }
@@ -276,6 +286,7 @@ void PhysicsWorld::SetMotion(BodyId driven, const BodyState& state) {
 }
 
 void PhysicsWorld::SetState(BodyId loose, const BodyState& state) {
+  HIRES_CHECK(!IsHeld(loose), fmt::format("body {} is held; let it go first", loose));
   impl_->SetLoose(state, &impl_->LooseAt(loose));
 }
 
@@ -301,16 +312,7 @@ void PhysicsWorld::SetExtraAcceleration(const Vector3d& acceleration) {
 void PhysicsWorld::Step() {
   EnsureOdeIsReady();
   Impl& impl = *impl_;
-  impl.num_contacts = 0;
-  for (LooseBody& body : impl.loose) impl.PlaceLoose(&body);
-  for (LooseBody& body : impl.loose) {
-    for (std::size_t g = 0; g < impl.groups.size(); ++g) {
-      impl.TouchGroup(static_cast<int>(g), &body);
-    }
-  }
-  for (std::size_t b = 1; b < impl.loose.size(); ++b) {
-    for (std::size_t a = 0; a < b; ++a) impl.TouchLoose(&impl.loose[a], &impl.loose[b]);
-  }
+  impl.FindAllContacts();
   impl.MoveLoose();
   dJointGroupEmpty(impl.joints.get());
   impl.MoveDriven();
@@ -326,6 +328,9 @@ PhysicsState PhysicsWorld::Save() {
   for (BodyId id = 0; id < static_cast<BodyId>(impl_->entries.size()); ++id) {
     state.bodies.push_back(GetState(id));
   }
+  for (const LooseBody& body : impl_->loose) {
+    if (body.held) state.held.push_back(*body.held);
+  }
   Restore(state);
   return state;
 }
@@ -336,12 +341,14 @@ void PhysicsWorld::Restore(const PhysicsState& state) {
                           impl_->entries.size()));
   for (BodyId id = 0; id < static_cast<BodyId>(impl_->entries.size()); ++id) {
     const BodyEntry& entry = impl_->entries[id];
-    if (entry.kind == BodyKind::kLoose)
-      impl_->SetLoose(state.bodies[id], &impl_->loose[entry.index]);
+    if (entry.kind == BodyKind::kLoose) {
+      impl_->Release(state.bodies[id], &impl_->loose[entry.index]);
+    }
     if (entry.kind == BodyKind::kDriven) {
       impl_->SetDriven(state.bodies[id], &impl_->groups[entry.index]);
     }
   }
+  for (const HeldBody& held : state.held) impl_->Grip(held, &impl_->LooseAt(held.loose));
 }
 
 std::vector<std::string> PhysicsWorld::TakeSolverMessages() { return TakeOdeMessages(); }

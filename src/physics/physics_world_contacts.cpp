@@ -44,6 +44,12 @@ Vector3d FrictionDirection(const Vector3d& slip, const Vector3d& normal) {
   return (any - normal * normal.dot(any)).normalized();
 }
 
+/// Whether the group's body holds the held one.
+bool IsGrip(const HeldBody& held, const Group& group) {
+  const BodyId id = group.fixtures.empty() ? -1 : group.fixtures.front().body;
+  return id == held.driven || std::find(held.grip.begin(), held.grip.end(), id) != held.grip.end();
+}
+
 void CopyTo(dReal* to, const Vector3d& from) {
   for (int i = 0; i < 3; ++i) to[i] = from[i];
 }
@@ -56,10 +62,42 @@ void PhysicsWorld::Impl::PlaceLoose(LooseBody* body) {
   body->v = ToEigen(dBodyGetLinearVel(body->ode));
   body->w = ToEigen(dBodyGetAngularVel(body->ode));
   // What gravity and shaking will do during the step belongs to the slip that friction works on.
-  body->v += params.time_step * (acceleration + Vector3d(0.0, 0.0, -params.gravity));
+  if (!body->held)
+    body->v += params.time_step * (acceleration + Vector3d(0.0, 0.0, -params.gravity));
   for (LooseShape& at : body->shapes) {
     at.shape.Place(body->p_WC + R_WB * at.p_CS, R_WB * at.R_BS);
   }
+}
+
+void PhysicsWorld::Impl::FindAllContacts() {
+  num_contacts = 0;
+  touches.clear();
+  for (LooseBody& body : loose) {
+    if (body.held) SetLoose(HeldState(body), &body);
+    PlaceLoose(&body);
+  }
+  for (LooseBody& body : loose) {
+    for (std::size_t g = 0; g < groups.size(); ++g) TouchGroup(static_cast<int>(g), &body);
+  }
+  for (std::size_t b = 1; b < loose.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) TouchLoose(&loose[a], &loose[b]);
+  }
+}
+
+void PhysicsWorld::Impl::NoteTouch(const LooseBody& body, BodyId other, double friction) {
+  Touch touch{body.id, other, Vector3d::Zero(), Vector3d::UnitZ(), -1.0, friction};
+  for (const ContactPoint& point : found) {
+    touch.position += point.position / found.size();
+    if (point.depth <= touch.depth) continue;
+    touch.depth = point.depth;
+    touch.normal = point.normal;
+  }
+  for (Touch& known : touches) {
+    if (known.loose != touch.loose || known.other != touch.other) continue;
+    if (touch.depth > known.depth) known = touch;  // of several pairs of shapes the deepest
+    return;
+  }
+  touches.push_back(touch);
 }
 
 void PhysicsWorld::Impl::MakeNearList(const Group& group, const Vector3d& p_GC,
@@ -77,6 +115,11 @@ void PhysicsWorld::Impl::MakeNearList(const Group& group, const Vector3d& p_GC,
 
 void PhysicsWorld::Impl::TouchGroup(int index, LooseBody* body) {
   Group& group = groups[index];
+  if (!group.is_static) {
+    const double far = body->reach + group.radius + kNearMargin;
+    if ((body->p_WC - group.p_WMiddle).squaredNorm() > far * far) return;
+    if (body->held && IsGrip(*body->held, group)) return;
+  }
   const Vector3d p_GC = group.is_static
                             ? body->p_WC
                             : group.R_WG.transpose() * (body->p_WC - group.motion.X_WB.translation);
@@ -94,23 +137,29 @@ void PhysicsWorld::Impl::TouchGroup(int index, LooseBody* body) {
     Fixture& fixture = group.fixtures[i];
     if (SquaredDistance(fixture.bounds_G, p_GC) > reach * reach) continue;
     const bool touches = TouchFixture(group, lean, &fixture, body);
-    if (is_fast && !touches && !body->shapes.empty()) CatchFast(group, v_rel, &fixture, body);
+    if (is_fast && !body->held && !touches && !body->shapes.empty())
+      CatchFast(group, v_rel, &fixture, body);
   }
+}
+
+void PhysicsWorld::Impl::PlaceFixture(const Group& group, Fixture* fixture) const {
+  if (fixture->placed_at == group.num_moves) return;
+  fixture->shape.Place(group.motion.X_WB.translation + group.R_WG * fixture->p_GS,
+                       group.R_WG * fixture->R_GS);
+  fixture->placed_at = group.num_moves;
 }
 
 bool PhysicsWorld::Impl::TouchFixture(const Group& group, const Vector3d& lean, Fixture* fixture,
                                       LooseBody* body) {
-  if (fixture->placed_at != group.num_moves) {
-    fixture->shape.Place(group.motion.X_WB.translation + group.R_WG * fixture->p_GS,
-                         group.R_WG * fixture->R_GS);
-    fixture->placed_at = group.num_moves;
-  }
+  PlaceFixture(group, fixture);
   const Vector3d correction = group.ChordCorrection(body->p_WC, params.time_step);
   bool touches = false;
   for (LooseShape& at : body->shapes) {
     FindContacts(at.shape, fixture->shape, lean, &found);
     if (found.empty()) continue;
     touches = true;
+    NoteTouch(*body, fixture->body, std::min(at.shape.friction(), fixture->shape.friction()));
+    if (body->held) continue;
     AddContacts(at.shape, fixture->shape, body, nullptr, [&](const Vector3d& p_W) -> Vector3d {
       if (group.is_static) return Vector3d::Zero();
       return group.VelocityAt(p_W) + correction;
@@ -133,6 +182,8 @@ void PhysicsWorld::Impl::TouchLoose(LooseBody* a, LooseBody* b) {
       }
       FindContacts(at_a.shape, at_b.shape, lean, &found);
       if (found.empty()) continue;
+      NoteTouch(*a, b->id, std::min(at_a.shape.friction(), at_b.shape.friction()));
+      if (a->held && b->held) continue;
       AddContacts(at_a.shape, at_b.shape, a, b, [b](const Vector3d& p_W) -> Vector3d {
         return b->v + b->w.cross(p_W - b->p_WC);
       });

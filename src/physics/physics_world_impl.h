@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "hires/physics/physics_world.h"
@@ -22,6 +23,7 @@ struct Fixture {
   Vector3d p_GS;
   Matrix3d R_GS;
   geometry::Aabb bounds_G;
+  BodyId body{-1};             // whose shape it is; a driven group has one body
   std::uint64_t placed_at{0};  // the group's num_moves for which shape stands in the world
 };
 
@@ -31,7 +33,12 @@ struct Group {
   BodyState motion;
   Matrix3d R_WG{Matrix3d::Identity()};
   std::uint64_t num_moves{1};
-  std::vector<Fixture> fixtures;  // by body, then by place in the body
+  std::vector<Fixture> fixtures;         // by body, then by place in the body
+  Vector3d p_GMiddle{Vector3d::Zero()};  // of a ball around all shapes of a driven body
+  Vector3d p_WMiddle{Vector3d::Zero()};
+  double radius{0.0};
+  std::uint64_t asked_at{0};  // num_moves for which fixed_touch holds
+  std::optional<FixedTouch> fixed_touch;
 
   /// Velocity of the group's material point at p_W [m/s].
   Vector3d VelocityAt(const Vector3d& p_W) const {
@@ -70,6 +77,8 @@ struct LooseBody {
   std::vector<NearList> near;  // by group
   bool is_canonical{false};    // `state` is what ODE's numbers were made of
   BodyState state;
+  BodyId id{-1};
+  std::optional<HeldBody> held;
 
   Vector3d p_WC, v, w;  // at the start of the step
 };
@@ -114,7 +123,7 @@ struct PhysicsWorld::Impl {
 
   BodyId AddEntry(BodyKind kind, int index);
   void AddFixtures(const std::vector<geometry::Collision>& collisions, const geometry::Pose3& X_GB,
-                   Group* group);
+                   BodyId body, Group* group);
   LooseBody MakeLoose(const geometry::MassProperties& properties,
                       const std::vector<geometry::Collision>& collisions);
   void ForgetNear();
@@ -125,6 +134,15 @@ struct PhysicsWorld::Impl {
   void SetLoose(const BodyState& state, LooseBody* body);
   void SetDriven(const BodyState& state, Group* group);
   BodyState LooseState(const LooseBody& body) const;
+
+  BodyState HeldState(const LooseBody& body) const;
+  void Grip(const HeldBody& held, LooseBody* body);
+  void Release(const BodyState& state, LooseBody* body);
+  void PlaceFixture(const Group& group, Fixture* fixture) const;
+  std::optional<FixedTouch> LookForFixedTouch(Group* group);
+  void FindAllContacts();
+  /// Sums up `found` for touches().
+  void NoteTouch(const LooseBody& body, BodyId other, double friction);
 
   void PlaceLoose(LooseBody* body);
   void TouchGroup(int group, LooseBody* body);
@@ -160,6 +178,7 @@ struct PhysicsWorld::Impl {
   std::vector<RawState> raw;  // of the loose bodies, at the start of the step
   std::vector<geometry::Pose3> static_poses;
   ContactList found;
+  std::vector<Touch> touches;
 };
 
 }  // namespace hires::physics

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,35 @@ struct BodyState {
   geometry::Twist3 V_WB;  ///< of the body origin B, in world axes
 };
 
+/// A loose body that moves with a driven one.
+struct HeldBody {
+  BodyId loose{-1};
+  BodyId driven{-1};
+  geometry::Pose3 X_DL;      ///< the loose body in the driven one
+  std::vector<BodyId> grip;  ///< driven bodies that hold it: they do not collide with it
+};
+
 /// All that changes about a PhysicsWorld, in the order in which bodies were added.
 struct PhysicsState {
   std::vector<BodyState> bodies;
+  std::vector<HeldBody> held;  ///< by loose body
+};
+
+/// Two bodies that touch; where they do in several points, those are summed up.
+struct Touch {
+  BodyId loose{-1};
+  BodyId other{-1};          ///< static, driven, or a loose body added later
+  Eigen::Vector3d position;  ///< [m] mean of the contact points
+  Eigen::Vector3d normal;    ///< unit, out of `other` into `loose`, at the deepest point
+  double depth{0.0};         ///< [m] of the deepest point
+  double friction{0.0};      ///< coefficient there
+};
+
+/// Which shape of a driven body touches what never moves.
+struct FixedTouch {
+  int shape{-1};  ///< index in the collisions with which the driven body was added
+  BodyId fixed{-1};
+  double depth{0.0};  ///< [m]
 };
 
 /// Rigid bodies in contact, simulated by ODE at a fixed step. One instance belongs to one thread at
@@ -57,8 +84,19 @@ class PhysicsWorld {
 
   /// Pose of a driven body now and its velocity during the next step(s). @pre body is driven.
   void SetMotion(BodyId driven, const BodyState& state);
-  /// Puts a loose body somewhere else. @pre body is loose.
+  /// Puts a loose body somewhere else. @pre body is loose and not held.
   void SetState(BodyId loose, const BodyState& state);
+
+  /// From now on the loose body keeps its pose in the driven one, whatever that takes: it pushes
+  /// other loose bodies, and nothing pushes it. It does not collide with `grip`; with static and
+  /// other driven bodies its touches are noted and nothing more.
+  /// @pre `loose` is loose and not held, `driven` and all of `grip` are driven.
+  void Hold(BodyId loose, BodyId driven, const std::vector<BodyId>& grip);
+  /// It goes on with the velocity that it has. @pre it is held.
+  void LetGo(BodyId loose);
+  /// Moves a held body in the one that holds it, by `way_W` [m] in world axes. @pre it is held.
+  void ShiftHeld(BodyId loose, const Eigen::Vector3d& way_W);
+  bool IsHeld(BodyId loose) const;
   BodyState GetState(BodyId body) const;
 
   /// Acceleration added to every loose body's own weight during the next step(s), in world axes
@@ -69,6 +107,13 @@ class PhysicsWorld {
   void Step();  ///< advances by params().time_step
   std::uint64_t num_steps() const;
   int num_contacts() const;  ///< contact points of the last step
+  /// What touched at the beginning of the last step; held bodies and their grip left out.
+  const std::vector<Touch>& touches() const;
+  /// What touches now, without a step. Costs about as much as one.
+  std::vector<Touch> FindTouches();
+  /// The deepest touch of a driven body with static ones, or nothing. Looks at shapes only when the
+  /// body has moved since it was asked last. @pre body is driven.
+  std::optional<FixedTouch> FindFixedTouch(BodyId driven);
 
   /// Saving canonicalises the state (unit quaternions): after Save() the world goes on with exactly
   /// what was saved, so that a restored world and the saved one stay equal bit by bit.
