@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 
+#include "hires/evaluation/scenario.h"
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/knowledge/blackboard_config.h"
@@ -41,6 +42,7 @@ const std::map<std::string, Reader>& Readers() {
          planning::LoadPlanningKnowledge(planning::ReadPlannerConfig(path));
        }},
       {"blackboard.yaml", [](const std::string& path) { knowledge::ReadBlackboardConfig(path); }},
+      {"scenarios", [](const std::string& path) { evaluation::ReadScenario(path); }},
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
       {"relay.yaml",
        [](const std::string& path) {

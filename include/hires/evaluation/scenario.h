@@ -1,0 +1,36 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "hires/geometry/pose.h"
+
+namespace hires::evaluation {
+
+/// One loose object where it really stands.
+struct ScenarioObject {
+  std::string name;      ///< instance, lower case, e.g. mug1
+  std::string model;     ///< kind; empty: the one that the object catalogue names
+  geometry::Pose3 X_MO;  ///< of the model's origin, the middle of its underside
+  bool is_told{true};    ///< false: the knowledge files say nothing of it
+};
+
+/// A demonstration: what is to be done, what the robot knows at first, and what is true at first.
+/// config/scenarios/<name>.yaml; the robot's simulator begins with it.
+struct Scenario {
+  std::string name;                         ///< of the file, without folder and ending
+  std::string task;                         ///< as `hires achieve` takes it
+  std::vector<std::string> knowledge;       ///< paths, for an empty Blackboard
+  geometry::Pose2 X_MB;                     ///< the robot's base
+  std::string torso;                        ///< posture, lower case
+  std::map<std::string, std::string> arms;  ///< arm's instance -> posture, lower case
+  std::vector<ScenarioObject> objects;      ///< those that it is told of first, then the hidden
+};
+
+/// Relative paths count from the folder of the file. Postures, arms and models are names: whoever
+/// knows robot and catalogue checks them.
+/// @throws base::ConfigError naming file and key.
+Scenario ReadScenario(const std::string& path);
+
+}  // namespace hires::evaluation
