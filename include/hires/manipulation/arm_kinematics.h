@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,18 +26,30 @@ class ArmKinematics {
   /// @throws base::ConfigError if the robot has no such arm, or its joints are no chain.
   ArmKinematics(const robot::Robot& robot, const std::string& arm);
   ~ArmKinematics();
+  ArmKinematics(ArmKinematics&&) noexcept;
 
-  const std::string& arm() const;
+  const std::string& arm() const;  ///< instance, lower case
+  const std::vector<std::string>& joint_names() const;
+  /// Limits per joint [rad]; a continuous joint has -infinity and infinity.
+  const ArmJoints& lower() const;
+  const ArmJoints& upper() const;
+
   /// Tool in the base frame, the other joints as in `posture`.
+  /// @throws base::ConfigError for a joint in `posture` that the robot lacks or that is out of its
+  /// limits.  @pre one value per joint.
   geometry::Pose3 ToolPose(const robot::JointPositions& posture, const ArmJoints& joints) const;
 
   /// All different joint positions found that bring the tool to X_BT, within the limits, the one
-  /// nearest to `near` first. Deterministic: the starts of the iterations are drawn from `seed`.
-  /// Empty: unreachable as far as was tried.
+  /// nearest to `near` first (largest joint difference); continuous joints lie within half a turn
+  /// of `near`. An arm of seven joints has a whole curve of solutions, of which each try finds one.
+  /// Levenberg and Marquardt's iteration with the damping of [Sugihara 2011, IEEE Trans. Robotics
+  /// 27:984-991], joints at a limit held there. Deterministic: the starts of the iterations are
+  /// drawn from `seed`. Empty: unreachable as far as was tried.
   std::vector<ArmJoints> Solve(const robot::JointPositions& posture, const geometry::Pose3& X_BT,
                                const ArmJoints& near, std::uint64_t seed,
                                const InverseParams& params = {}) const;
 
+  /// This arm's part of a posture; joints that it does not name stand at the nearest limit to 0.
   ArmJoints JointsOf(const robot::JointPositions& posture) const;
   void SetJoints(const ArmJoints& joints, robot::JointPositions* posture) const;
 

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+
+#include "hires/manipulation/arm_path.h"
+
+namespace hires::manipulation {
+
+/// Tells whether one arm may be somewhere, or move straight in joint space. One per planning call.
+class MotionCheck {
+ public:
+  MotionCheck(const ArmScene& arm, const ArmPathParams& params);
+
+  /// What is in the way at these joint positions; empty if they are free.
+  std::string WhyBlocked(const ArmJoints& joints) const;
+  bool IsFree(const ArmJoints& joints) const { return WhyBlocked(joints).empty(); }
+  bool IsWithinLimits(const ArmJoints& joints) const;
+
+  /// What is in the way between two free positions, both ends left out; empty if the way is free.
+  std::string WhyBlocked(const ArmJoints& from, const ArmJoints& to) const;
+  bool IsFree(const ArmJoints& from, const ArmJoints& to) const {
+    return WhyBlocked(from, to).empty();
+  }
+
+  double resolution() const { return resolution_; }
+
+ private:
+  bool IsTilted(const ArmJoints& joints) const;
+
+  const ArmScene& arm_;
+  LinkMask links_;
+  double resolution_, max_held_tilt_;
+  mutable robot::JointPositions posture_;  // scratch
+};
+
+ArmJoints Between(const ArmJoints& from, const ArmJoints& to, double share);
+double LargestDifference(const ArmJoints& a, const ArmJoints& b);  ///< [rad]
+
+}  // namespace hires::manipulation

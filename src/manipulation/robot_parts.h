@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "collision_shapes.h"
+#include "hires/robot/robot_profile.h"
+#include "link_tree.h"
+
+namespace hires::manipulation {
+
+/// The robot's collision shapes, and which pairs of them have to be looked at. Constant.
+class RobotParts {
+ public:
+  RobotParts(const robot::Robot& robot, double padding, int num_samples);
+
+  struct Part {
+    int link;
+    CollisionShape shape;
+  };
+
+  const LinkTree& tree() const { return tree_; }
+  const std::vector<Part>& parts() const { return parts_; }
+  /// Indices of parts, lower one first, that must not touch each other.
+  const std::vector<std::pair<int, int>>& pairs() const { return pairs_; }
+  /// May this link touch the floor?
+  bool stands_on_floor(int link) const { return stands_on_floor_[link]; }
+  /// Pairs of links that touch in nearly all postures or a named one, hence left out.
+  const std::vector<std::pair<int, int>>& left_out() const { return left_out_; }
+
+  /// All parts in place. @param X_MR  the root link in the map.
+  void PlaceAll(const Eigen::Isometry3d& X_MR, const robot::JointPositions& posture,
+                std::vector<Eigen::Isometry3d>* X_ML,
+                std::vector<PlacedCollisionShape>* placed) const;
+
+ private:
+  void FindPairs(const robot::Robot& robot);
+  void LeaveOutUsualTouches(const robot::Robot& robot, int num_samples);
+  void FindStandingLinks(const robot::Robot& robot, double padding);
+  int RigidGroup(int link) const;  // the topmost link that is rigidly joined
+  bool AreNeighbours(int a, int b) const;
+  bool AreInOneHand(const robot::Robot& robot, int a, int b) const;
+
+  LinkTree tree_;
+  std::vector<Part> parts_;
+  std::vector<std::pair<int, int>> pairs_;
+  std::vector<bool> stands_on_floor_;
+  std::vector<std::pair<int, int>> left_out_;
+};
+
+}  // namespace hires::manipulation
