@@ -1,9 +1,10 @@
 #pragma once
 
-#include <map>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -23,8 +24,11 @@ struct TaskRequested {
 struct PlanArrived {
   int request{0};
   enum class Outcome { kFound, kNoPlan, kLimit, kInvalid, kUnavailable } outcome{Outcome::kFound};
-  planning::Plan plan;  ///< with its reasons
-  std::string why;      ///< one sentence
+  /// With its reasons, bindings and decomposition. Reasons that are missing are worked out anew;
+  /// without nodes a repair plans the whole task again from the state that is, and without bindings
+  /// durations of legs are not known.
+  planning::Plan plan;
+  std::string why;  ///< one sentence
 };
 /// The answer to StartStep (or StopStep).
 struct StepFinished {
@@ -85,6 +89,8 @@ struct StopStep {
 };
 struct StartImagination {
   int request{0};
+  int plan{0};  ///< StepStatus::plan and index of the step that will be imagined
+  int step{0};
   base::ActionTemplate action;
   std::vector<base::Atom> state;  ///< projected to the moment at which the action will start
   double deadline{0.0};           ///< [s] main ROS time; infinite: none
@@ -101,7 +107,8 @@ struct CancelImagination {
 /// For the Blackboard: what the monitor itself knows (plan, activities, predictions, failures).
 struct Record {
   enum class Kind { kBegin, kUpdate, kEnd } kind{Kind::kBegin};
-  std::string concept_name;  ///< below ExecutionRecord (docs/ontology.md)
+  std::string concept_name;     ///< below ExecutionRecord (docs/ontology.md): "MoveBaseTask"
+  std::string general_concept;  ///< for ontologies that do not know it: "PrimitiveTask"
   std::string instance;
   std::vector<std::pair<std::string, std::string>> texts;  ///< role, value
   std::vector<std::pair<std::string, double>> numbers;     ///< role, value
@@ -126,13 +133,19 @@ struct MonitorParams {
   double overdue_minimum{30.0};   ///< stopped, but never before so many [s]
   double planning_timeout{30.0};  ///< [s]
   double arrival_margin{0.0};     ///< [s] before the latest start: the imagination's deadline
+  double answer_grace{0.5};       ///< [s] after that deadline in which its answer still counts
+  double max_wait{300.0};         ///< [s] at most for an answer where the domain says `wait`
+  double retry_period{5.0};       ///< [s] until imagination is asked again in vain, then
+  double break_delay{0.5};        ///< [s] that an observation must contradict before it counts
+  double stop_timeout{10.0};      ///< [s] for a stopped step to answer; then it is given up
 };
 
 enum class StepPhase { kWaiting, kReady, kRunning, kChecking, kDone, kFailed, kSkipped };
 
 /// For a live table and timelines.
 struct StepStatus {
-  int index{0};  ///< place in the plan
+  int plan{0};   ///< 0: the first one, then one more for each repair
+  int index{0};  ///< place in that plan
   base::ActionCall action;
   StepPhase phase{StepPhase::kWaiting};
   std::optional<double> started, finished;  ///< [s]
