@@ -11,6 +11,7 @@
 #include "hires/base/error.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
+#include "hires/planning/datum_reader.h"
 
 namespace hires::planning {
 namespace {
@@ -163,6 +164,44 @@ std::map<std::string, int> ReadResources(ParamReader in, const OperatorEntry& en
   return resources;
 }
 
+// ---------------------------------------------------------------------------------- disturbance --
+
+void CollectPredicates(const Effect& effect, std::set<std::string>* names) {
+  if (effect.kind == Effect::Kind::kAtom) names->emplace(effect.term.Head());
+  for (const Effect& nested : effect.effects) CollectPredicates(nested, names);
+}
+
+/// Those that steps change: no others can be disturbed for a while.
+std::vector<std::string> ChangingPredicates(const Domain& domain) {
+  std::set<std::string> names;
+  for (const Operator& op : domain.operators) {
+    for (const Effect& effect : op.deletes) CollectPredicates(effect, &names);
+    for (const Effect& effect : op.adds) CollectPredicates(effect, &names);
+  }
+  return {names.begin(), names.end()};
+}
+
+Datum ReadPattern(const ParamReader& in, const std::string& text,
+                  const std::vector<std::string>& predicates) {
+  std::vector<Datum> data = ReadData(text, "disturbs");
+  if (data.size() != 1 || !data[0].IsList() || data[0].Head().empty()) {
+    in.Fail("disturbs", fmt::format("'{}' is no atom; wanted (predicate arguments...)", text));
+  }
+  const std::string predicate(data[0].Head());
+  if (!Contains(predicates, predicate)) {
+    in.Fail("disturbs", base::UnknownName("predicate that steps change", predicate, predicates));
+  }
+  return std::move(data[0]);
+}
+
+std::vector<Datum> ReadDisturbs(ParamReader* in, const Domain& domain) {
+  std::vector<Datum> patterns;
+  for (const std::string& text : in->GetStrings("disturbs")) {
+    patterns.push_back(ReadPattern(*in, text, ChangingPredicates(domain)));
+  }
+  return patterns;
+}
+
 // ---------------------------------------------------------------------------------- imagination --
 
 std::vector<std::string> ReadParameters(ParamReader in, const OperatorEntry& entry) {
@@ -266,11 +305,13 @@ LegVariables ReadLegVariables(ParamReader in, const Operator& op, const std::vec
 
 // ------------------------------------------------------------------------------------ operators --
 
-OperatorEntry ReadEntry(ParamReader in, const Operator& op, const OperatorData& data) {
+OperatorEntry ReadEntry(ParamReader in, const Operator& op, const Domain& domain,
+                        const OperatorData& data) {
   OperatorEntry entry;
   entry.arguments = ArgumentsOf(op);
   entry.duration = ReadDuration(in);
   entry.resources = ReadResources(in.Sub("resources"), entry, data.capacities);
+  if (in.Has("disturbs")) entry.disturbs = ReadDisturbs(&in, domain);
   if (in.Has("imagine")) entry.imagine = ReadImagine(in.Sub("imagine"), entry);
   if (in.Has("leg")) entry.leg = ReadLegVariables(in.Sub("leg"), op, data.legs);
   return entry;
@@ -284,7 +325,7 @@ OperatorData Read(ParamReader in, const Domain& domain) {
   for (const Operator& op : domain.operators) {
     if (IsBookkeeping(op)) continue;
     const std::string name = WithoutMarks(op.head.Head());
-    data.operators[name] = ReadEntry(operators.Sub(name), op, data);
+    data.operators[name] = ReadEntry(operators.Sub(name), op, domain, data);
   }
   in.RejectUnknownKeys();
   return data;

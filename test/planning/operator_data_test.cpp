@@ -13,6 +13,7 @@
 namespace hires::planning {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -38,6 +39,7 @@ operators:
     duration: [2, 9.5]
     expected: 3.0
     resources: {<arm>Hand: 1}
+    disturbs: ['(At ?where)']
   wait:
     duration: [0.0, 0.0]
     resources: {}
@@ -264,6 +266,18 @@ TEST(OperatorDataTest, AFileIsReadAndNamedInErrors) {
   const std::string path = folder.Write("small.yaml", kSidecar);
   EXPECT_THAT(LoadOperatorData(path, SmallDomain()).legs, ::testing::SizeIs(2));
   EXPECT_THROW(LoadOperatorData(path + ".gone", SmallDomain()), base::ConfigError);
+}
+
+TEST(OperatorDataTest, WhatAStepDisturbsIsAPatternOfWhatStepsChange) {
+  const OperatorData data = ReadSmall();
+  ASSERT_EQ(data.operators.at("grasp").disturbs.size(), 1u);
+  EXPECT_EQ(ToString(data.operators.at("grasp").disturbs[0]), "(at ?where)");
+  EXPECT_THAT(data.operators.at("drive").disturbs, IsEmpty());
+  EXPECT_THAT(ErrorOf(Changed("(At ?where)", "(ate ?where)")),
+              AllOf(HasSubstr("small.yaml"), HasSubstr("disturbs"), HasSubstr("'ate'"),
+                    HasSubstr("did you mean 'at'?")));
+  EXPECT_THAT(ErrorOf(Changed("(At ?where)", "at")), HasSubstr("'at' is no atom; wanted"));
+  EXPECT_THAT(ErrorOf(Changed("(At ?where)", "(at x) (at y)")), HasSubstr("is no atom"));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,11 @@ namespace hires::planning {
 /// @param source  What the text is, for messages.
 /// @throws base::ConfigError naming source:line:column, what came and what was wanted.
 TaskNetwork ReadTasks(std::string_view text, const std::string& source);
+
+/// The network as ReadTasks reads it back: the same tasks with the same order between them, nested
+/// otherwise where that is needed. SHOP2 can only nest `:ordered` and `:unordered`; nothing where
+/// that cannot say it (a before c, b before c and d), or where a nested network is immediate.
+std::optional<std::string> ToShop2Tasks(const TaskNetwork& network);
 
 /// Exactly one term without variables: `mug1`, `-1.5`, `(mug1 mug2)`.
 /// @throws base::ConfigError as above.
