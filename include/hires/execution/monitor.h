@@ -94,8 +94,6 @@ struct StartImagination {
   base::ActionTemplate action;
   std::vector<base::Atom> state;  ///< projected to the moment at which the action will start
   double deadline{0.0};           ///< [s] main ROS time; infinite: none
-  int plan{0};                    ///< number of the plan, as in StepStatus
-  int step{0};                    ///< index of the step it is about, in that plan
 };
 struct MoveDeadline {
   int request{0};
@@ -151,7 +149,6 @@ struct StepStatus {
   std::optional<double> started, finished;  ///< [s]
   temporal::Bounds start, finish;           ///< from the network
   std::string note;  ///< "imagined: slow, success 0.98 (0.93..1.00)", a failure's reason
-  int plan{0};       ///< 0: the first one, then one more for each repair
 };
 
 /// The semantic execution monitor: one state machine, events in, commands out (DESIGN, section 8).
