@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "start_checks.h"
 
 namespace hires::simulation {
 namespace {
@@ -19,11 +21,8 @@ constexpr int kSlowSteps = 10;            // slip, contacts: every tenth step
 constexpr double kSlipCorrelation = 0.1;  // [s]
 constexpr double kGhostLifetime = 4.6;    // [s] persistence of ground objects (navigation.md, 4)
 constexpr double kGhostSize = 0.10;       // [m] edge: a voxel of the obstacle filter
-constexpr double kStartSlack = 0.005;     // [m] bodies may overlap this much at the start
-constexpr double kRestingGap = 0.06;      // [m] an object this far above the tray falls onto it
-constexpr double kFarAway = 1000.0;       // [m]
-constexpr double kStiffest = 2.0;         // half of what diverges
-constexpr double kUnitSlack = 1e-6;       // how far a quaternion's length may be from 1
+constexpr double kLookPeriod = 0.5;       // [s] between two looks of the camera
+constexpr double kStillHead = 0.02;       // [rad/s] faster than this pictures blur
 
 robot::BaseControllerParams Varied(robot::BaseControllerParams params, const Variation& variation) {
   params.command_lag += variation.command_delay;
@@ -51,108 +50,6 @@ std::vector<geometry::Collision> Varied(std::vector<geometry::Collision> shapes,
   return shapes;
 }
 
-/// Does a shape of `a` reach more than the slack into a shape of `b`? Shapes count as upright
-/// prisms, as in RobotClearance.
-bool Overlap(const std::vector<geometry::Collision>& a, const Pose3& X_MA,
-             const std::vector<geometry::Collision>& b, const Pose3& X_MB) {
-  for (const geometry::Collision& first : a) {
-    const Pose3 X_MF = X_MA * first.X_BS;
-    const geometry::Aabb bounds = geometry::BoundsOf(first.shape, X_MF);
-    const double z_min = bounds.lower.z() + kStartSlack, z_max = bounds.upper.z() - kStartSlack;
-    if (z_min > z_max) continue;
-    const auto outline = geometry::OutlineInBand(first.shape, X_MF, z_min, z_max);
-    for (const geometry::Collision& second : b) {
-      const Pose3 X_MS = X_MB * second.X_BS;
-      if (!outline || !bounds.Overlaps(geometry::BoundsOf(second.shape, X_MS))) continue;
-      const auto other = geometry::OutlineInBand(second.shape, X_MS, z_min, z_max);
-      if (other && geometry::Distance(*outline, *other) == 0.0) return true;
-    }
-  }
-  return false;
-}
-
-/// Does the object's lowest point lie on top of one of the robot's shapes?
-bool StandsOn(const std::vector<geometry::Collision>& robot_B,
-              const std::vector<geometry::Collision>& object, const Pose3& X_BO) {
-  geometry::Aabb object_bounds;
-  for (const geometry::Collision& shape : object) {
-    object_bounds.Include(geometry::BoundsOf(shape.shape, X_BO * shape.X_BS));
-  }
-  const double bottom = object_bounds.lower.z();
-  return std::any_of(robot_B.begin(), robot_B.end(), [&](const geometry::Collision& part) {
-    const geometry::Aabb bounds = geometry::BoundsOf(part.shape, part.X_BS);
-    if (std::abs(bounds.upper.z() - bottom) > kRestingGap) return false;
-    const auto outline =
-        geometry::OutlineInBand(part.shape, part.X_BS, bounds.lower.z(), bounds.upper.z());
-    return outline && geometry::Contains(*outline, X_BO.translation.head<2>());
-  });
-}
-
-void RefusePose(const std::string& what, const Pose3& X) {
-  if (!X.IsFinite()) {
-    throw base::ConfigError(fmt::format("{}: its pose is not finite; give numbers", what));
-  }
-  if (X.translation.norm() > kFarAway) {
-    throw base::ConfigError(fmt::format(
-        "{}: stands {:.0f} m from the map's origin, at most {:.0f} m make sense; check its pose",
-        what, X.translation.norm(), kFarAway));
-  }
-}
-
-void RefuseObject(const world::ObjectState& object) {
-  const std::string what = fmt::format("object '{}'", object.name);
-  RefusePose(what, object.X_MO);
-  if (std::abs(object.X_MO.rotation.norm() - 1.0) > kUnitSlack) {
-    throw base::ConfigError(
-        fmt::format("{}: its quaternion has length {:.6g}, wanted unit length; no turn is (x, y, "
-                    "z, w) = (0, 0, 0, 1)",
-                    what, object.X_MO.rotation.norm()));
-  }
-  if (!object.V_MO.linear.allFinite() || !object.V_MO.angular.allFinite()) {
-    throw base::ConfigError(
-        fmt::format("{}: its velocity is not finite; give numbers, 0 at rest", what));
-  }
-}
-
-void RefuseUnknownHolder(const world::ObjectState& object, const robot::RobotModel& robot) {
-  if (object.attached_to.empty() || robot.FindLink(object.attached_to)) return;
-  throw base::ConfigError(
-      fmt::format("object '{}' is attached to the robot: {}", object.name,
-                  base::UnknownName("link", object.attached_to, robot.LinkNames())));
-}
-
-/// The joints are frozen in the driving posture, but a name that is not the robot's means that
-/// another robot is spoken of.
-void RefuseUnknownJoints(const robot::JointPositions& joints, const robot::RobotModel& robot) {
-  std::vector<std::string> known;
-  for (const robot::Link& link : robot.links) {
-    if (link.joint) known.push_back(link.joint->name);
-  }
-  for (const auto& [name, position] : joints) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw base::ConfigError(
-          fmt::format("robot '{}': {}", robot.name, base::UnknownName("joint", name, known)));
-    }
-  }
-}
-
-/// Loop and leaning are integrated by the semi-implicit Euler method: x'' = -w^2 x - 2 zeta w x'
-/// grows without bounds from (w dt)^2 + 4 zeta w dt = 4 on.
-void RefuseStiff(const char* what, double frequency, double damping, double time_step) {
-  const double h = frequency * time_step;
-  if (h * h + 4.0 * damping * h < kStiffest) return;
-  throw base::ConfigError(fmt::format(
-      "base controller: {0}_frequency {1:g} rad/s with {0}_damping {2:g} is too stiff for a time "
-      "step of {3:g} s; (w dt)^2 + 4 zeta w dt is {4:.3g}, wanted below {5:g}: lower one of the "
-      "three",
-      what, frequency, damping, time_step, h * h + 4.0 * damping * h, kStiffest));
-}
-
-void RefuseStiff(const robot::BaseControllerParams& params, double time_step) {
-  RefuseStiff("loop", params.loop_frequency, params.loop_damping, time_step);
-  RefuseStiff("sway", params.sway_frequency, params.sway_damping, time_step);
-}
-
 }  // namespace
 
 struct RobotSimulator::Snapshot {
@@ -167,12 +64,17 @@ struct RobotSimulator::Snapshot {
   std::deque<Ghost> ghosts;
   std::optional<RobotContact> contact;
   Disturbances disturbances;
+  std::optional<PlanarRobot::State> planar;
+  base::Rng encoder_rng, detection_rng;
+  ObjectMemory memory;
+  double last_look;
+  std::vector<std::string> known_grips;
 };
 
 RobotSimulator::RobotSimulator(std::shared_ptr<const Scene> scene, const Variation& variation,
-                             const world::WorldState& world_state,
-                             const robot::RobotState& robot_state, base::Rng rng,
-                             const physics::PhysicsParams& params)
+                               const world::WorldState& world_state,
+                               const robot::RobotState& robot_state, base::Rng rng,
+                               const physics::PhysicsParams& params, LevelOfDetail level)
     : scene_(std::move(scene)),
       variation_(variation),
       floor_(variation.floor_roughness, rng.Fork(0)),
@@ -180,59 +82,69 @@ RobotSimulator::RobotSimulator(std::shared_ptr<const Scene> scene, const Variati
              robot_state.X_MB * variation.start_offset),
       slip_rng_(rng.Fork(1)),
       sense_rng_(rng.Fork(2)),
-      ghost_rng_(rng.Fork(3)) {
+      ghost_rng_(rng.Fork(3)),
+      encoder_rng_(rng.Fork(4)),
+      detection_rng_(rng.Fork(5)) {
   physics::PhysicsParams physics_params = params;
   physics_params.gravity = scene_->world.gravity;
   physics_ = std::make_unique<physics::PhysicsWorld>(physics_params);
   RefuseStiff(Varied(scene_->robot.profile.base_controller, variation), time_step());
   RefusePose("the robot", geometry::Lift(robot_state.X_MB));
   RefuseUnknownJoints(robot_state.joints, scene_->robot.model);
+  Freeze(robot_state.joints);
   X_MB_ = LeaningPose(drive_.motion());
   physics_->AddFloor(scene_->world.floor_friction);
   for (const world::StaticBody& body : scene_->world.statics) {
     physics_->AddStatic(body.collisions, body.X_MB);
   }
-  world::WorldState placed = world_state;
-  for (world::ObjectState& object : placed.objects) {
+  for (const world::ObjectState& object : world_state.objects) {
     RefuseObject(object);
     X_BO_start_.push_back(geometry::Lift(robot_state.X_MB).Inverse() * object.X_MO);
   }
-  AddObjects(placed);
-  AddRobot();
+  AddObjects(world_state, level);
+  level == LevelOfDetail::kTray ? AddRobot() : AddPlanarRobot();
   RefuseBadStart(GetWorldState());
 }
 
-void RobotSimulator::AddObjects(const world::WorldState& state) {
+/// Shapes are the scene's wherever the posture is the driving one.
+void RobotSimulator::Freeze(const robot::JointPositions& joints) {
+  const robot::Robot& robot = scene_->robot;
+  joints_ = PostureOf(robot, joints);
+  if (joints_ == PostureOf(robot, {})) return;
+  shapes_B_ = FrozenShapes(robot, joints_);
+}
+
+const std::vector<geometry::Collision>& RobotSimulator::robot_shapes_B() const {
+  return shapes_B_ ? *shapes_B_ : scene_->robot_shapes_B;
+}
+
+void RobotSimulator::AddObjects(const world::WorldState& state, LevelOfDetail level) {
   for (std::size_t i = 0; i < state.objects.size(); ++i) {
     world::ObjectState object = state.objects[i];
-    const auto model = scene_->world.models.find(object.model);
-    if (model == scene_->world.models.end()) {
-      std::vector<std::string> known;
-      for (const auto& entry : scene_->world.models) known.push_back(entry.first);
-      throw base::ConfigError(fmt::format("object '{}': {}", object.name,
-                                          base::UnknownName("model", object.model, known)));
-    }
+    RefuseUnknownModel(object, scene_->world);
     RefuseUnknownHolder(object, scene_->robot.model);
-    const bool is_carried =
-        StandsOn(scene_->robot_shapes_B, model->second->collisions, X_BO_start_[i]);
+    const world::ObjectModel& model = *scene_->world.models.at(object.model);
+    const bool is_carried = StandsOn(robot_shapes_B(), model.collisions, X_BO_start_[i]);
     if (is_carried && object.attached_to.empty()) {
       X_BO_start_[i].translation.head<2>() += variation_.object_offset;
       carried_.push_back(static_cast<int>(i));
     }
     if (is_carried || !object.attached_to.empty()) object.X_MO = X_MB_ * X_BO_start_[i];
     objects_.push_back(object);
-    if (!object.attached_to.empty()) {  // becomes part of the robot
-      object_bodies_.push_back(-1);
+    object_names_.push_back(object.name);
+    if (!object.attached_to.empty() && level == LevelOfDetail::kTray) {
+      object_bodies_.push_back(-1);  // becomes part of the robot
       continue;
     }
-    object_bodies_.push_back(physics_->AddLoose(Varied(model->second->mass_properties, variation_),
-                                                Varied(model->second->collisions, variation_),
+    object_bodies_.push_back(physics_->AddLoose(Varied(model.mass_properties, variation_),
+                                                Varied(model.collisions, variation_),
                                                 {object.X_MO, object.V_MO}));
   }
 }
 
 void RobotSimulator::AddRobot() {
-  std::vector<geometry::Collision> shapes = scene_->robot_shapes_B;
+  if (shapes_B_) clearance_.emplace(*shapes_B_, scene_->world);
+  std::vector<geometry::Collision> shapes = robot_shapes_B();
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     if (objects_[i].attached_to.empty()) continue;
     for (geometry::Collision shape : scene_->world.models.at(objects_[i].model)->collisions) {
@@ -243,8 +155,45 @@ void RobotSimulator::AddRobot() {
   robot_body_ = physics_->AddDriven(shapes, X_MB_);
 }
 
-void RobotSimulator::RefuseBadStart(const world::WorldState& state) const {
-  if (const auto contact = scene_->clearance.FindContact(drive_.motion().X_MB)) {
+GraspableObject RobotSimulator::Graspable(std::size_t object) const {
+  const geometry::MassProperties mass =
+      Varied(scene_->world.models.at(objects_[object].model)->mass_properties, variation_);
+  return {object_bodies_[object], mass.mass, mass.p_BBcm};
+}
+
+void RobotSimulator::AddPlanarRobot() {
+  if (!scene_->robot.profile.upper_body) {
+    throw base::ConfigError(
+        fmt::format("robot '{}' has no upper body, so it can be simulated at level 'tray' alone; "
+                    "add 'upper_body' to its profile",
+                    scene_->robot.model.name));
+  }
+  std::vector<GraspableObject> graspable;
+  for (std::size_t i = 0; i < objects_.size(); ++i) graspable.push_back(Graspable(i));
+  std::vector<std::string> fixed_names{"floor"};
+  for (const world::StaticBody& body : scene_->world.statics) fixed_names.push_back(body.name);
+  planar_ = std::make_unique<PlanarRobot>(*scene_, joints_, X_MB_, std::move(graspable),
+                                          std::move(fixed_names), physics_.get());
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    if (objects_[i].attached_to.empty()) continue;
+    const auto& shapes = scene_->world.models.at(objects_[i].model)->collisions;
+    double friction = HUGE_VAL;
+    for (const auto& shape : Varied(shapes, variation_)) {
+      friction = std::min(friction, shape.friction);
+    }
+    planar_->Attach(static_cast<int>(i), objects_[i].attached_to, friction);
+  }
+  known_grips_.resize(objects_.size());
+  NoteGrips();
+}
+
+std::optional<RobotContact> RobotSimulator::FindContact() const {
+  if (planar_) return planar_->FindContact(drive_.motion().X_MB, object_names_);
+  return (clearance_ ? *clearance_ : scene_->clearance).FindContact(drive_.motion().X_MB);
+}
+
+void RobotSimulator::RefuseBadStart(const world::WorldState& state) {
+  if (const auto contact = FindContact()) {
     throw base::ConfigError(fmt::format(
         "robot starts in collision: its '{}' touches '{}' at x {:.3f} m, y {:.3f} m, yaw {:.3f} "
         "rad; move the start",
@@ -252,35 +201,29 @@ void RobotSimulator::RefuseBadStart(const world::WorldState& state) const {
         drive_.motion().X_MB.yaw));
   }
   for (std::size_t i = 0; i < state.objects.size(); ++i) {
-    const world::ObjectState& object = state.objects[i];
-    const auto& shapes = scene_->world.models.at(object.model)->collisions;
-    for (std::size_t j = 0; j < i; ++j) RefuseTogether(object, shapes, state.objects[j]);
-    if (!object.attached_to.empty()) continue;
-    if (Overlap(shapes, object.X_MO, scene_->robot_shapes_B, X_MB_)) {
-      throw base::ConfigError(
-          fmt::format("object '{}' starts inside the robot; put it on a free place", object.name));
+    for (std::size_t j = 0; j < i; ++j) {
+      RefuseTogether(state.objects[i], state.objects[j], scene_->world);
     }
-    for (const world::StaticBody& body : scene_->world.statics) {
-      if (Overlap(shapes, object.X_MO, body.collisions, body.X_MB)) {
-        throw base::ConfigError(fmt::format(
-            "object '{}' starts inside '{}'; put it on a free place", object.name, body.name));
-      }
-    }
+    if (!state.objects[i].attached_to.empty()) continue;
+    RefuseInsideRobot(state.objects[i], object_bodies_[i]);
+    RefuseInStatics(state.objects[i], scene_->world);
   }
 }
 
-void RobotSimulator::RefuseTogether(const world::ObjectState& object,
-                                   const std::vector<geometry::Collision>& shapes,
-                                   const world::ObjectState& earlier) const {
-  if (base::ToLower(object.name) == base::ToLower(earlier.name)) {
-    throw base::ConfigError(
-        fmt::format("object '{}' is there twice; name each instance once", object.name));
+void RobotSimulator::RefuseInsideRobot(const world::ObjectState& object, physics::BodyId body) {
+  bool is_inside = false;
+  if (planar_) {  // exactly: an arm may reach over an object
+    for (const physics::Touch& touch : physics_->FindTouches()) {
+      is_inside = is_inside || (touch.loose == body && touch.depth > kStartSlack &&
+                                !planar_->LinkOfBody(touch.other).empty());
+    }
+  } else {
+    const auto& shapes = scene_->world.models.at(object.model)->collisions;
+    is_inside = Overlap(shapes, object.X_MO, robot_shapes_B(), X_MB_);
   }
-  const auto& others = scene_->world.models.at(earlier.model)->collisions;
-  if (Overlap(shapes, object.X_MO, others, earlier.X_MO)) {
-    throw base::ConfigError(fmt::format("object '{}' starts inside '{}'; put it on a free place",
-                                        object.name, earlier.name));
-  }
+  if (!is_inside) return;
+  throw base::ConfigError(
+      fmt::format("object '{}' starts inside the robot; put it on a free place", object.name));
 }
 
 geometry::Pose3 RobotSimulator::LeaningPose(const BaseMotion& motion) const {
@@ -304,30 +247,34 @@ geometry::Pose3 RobotSimulator::LeaningPose(const BaseMotion& motion) const {
           geometry::RotationFromRpy(roll, pitch, motion.X_MB.yaw)};
 }
 
-physics::BodyState RobotSimulator::BodyMotion(const Pose3& X_now, const Pose3& X_next) const {
-  const double dt = time_step();
-  Eigen::Quaterniond turn = X_next.rotation * X_now.rotation.conjugate();
-  if (turn.w() < 0.0) turn.coeffs() = -turn.coeffs();
-  return {X_now, {(X_next.translation - X_now.translation) / dt, 2.0 / dt * turn.vec()}};
-}
-
 void RobotSimulator::Send(const robot::Command& command) {
   if (command.base_velocity) drive_.Send(*command.base_velocity, time_);
+  if (!planar_) return;
+  planar_->Send(command, time_);
+  NoteGrips();
 }
 
 void RobotSimulator::Step() {
   if (steps_ % kSlowSteps == 0) {
     MoveSlip();
-    if (!contact_) contact_ = scene_->clearance.FindContact(drive_.motion().X_MB);
+    if (!contact_) contact_ = FindContact();
+    if (planar_) LookIfStill();
   }
   drive_.Step(time_, time_step(), slip_);
   const Pose3 X_next = LeaningPose(drive_.motion());
-  physics_->SetMotion(robot_body_, BodyMotion(X_MB_, X_next));
+  if (planar_) {
+    planar_->Move(time_, X_next);
+  } else {
+    physics_->SetMotion(robot_body_, MotionBetween(X_MB_, X_next, time_step()));
+  }
   physics_->Step();
   X_MB_ = X_next;
   ++steps_;
   time_ = steps_ * time_step();
   NoteDisturbances();
+  if (!planar_) return;
+  planar_->React();
+  NoteGrips();
 }
 
 void RobotSimulator::MoveSlip() {
@@ -361,22 +308,106 @@ void RobotSimulator::UpdateGhosts(const Pose2& X_MB, double elapsed) {
       {geometry::Transformed(X_MG, {{-h, -h}, {h, -h}, {h, h}, {-h, h}}), time_ + kGhostLifetime});
 }
 
+Pose2 RobotSimulator::BelievedBase(base::Rng* rng) const {
+  const Pose2 noise{rng->Normal(0.0, variation_.localisation_noise),
+                    rng->Normal(0.0, variation_.localisation_noise),
+                    rng->Normal(0.0, variation_.localisation_noise_yaw)};
+  return drive_.motion().X_MB * variation_.localisation_bias * noise;
+}
+
+/// Where a link is in the map when the base is where the robot believes it to be.
+Pose3 RobotSimulator::Believed(const Pose3& X_ML, const Pose2& X_MBbelieved) const {
+  return geometry::Lift(X_MBbelieved) * X_MB_.Inverse() * X_ML;
+}
+
+void RobotSimulator::Remember(const std::vector<robot::SeenObject>& objects) {
+  memory_.Remember(objects);
+}
+
+/// Hands know at once what they hold and lose.
+void RobotSimulator::NoteGrips() {
+  if (planar_->num_grips() == num_known_grips_) return;
+  num_known_grips_ = planar_->num_grips();
+  const Pose2 X_MBbelieved = drive_.motion().X_MB * variation_.localisation_bias;
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const std::string link = planar_->HolderOf(static_cast<int>(i));
+    if (link == known_grips_[i]) continue;
+    const std::string before = std::exchange(known_grips_[i], link);
+    const std::string& acting = link.empty() ? before : link;
+    const Pose3 X_ML = planar_->X_MLink(acting), X_MLbelieved = Believed(X_ML, X_MBbelieved);
+    const Pose3 X_LO = X_ML.Inverse() * PoseOf(static_cast<int>(i));
+    if (!before.empty()) memory_.Release(objects_[i].name, X_MLbelieved);
+    if (link.empty()) continue;
+    memory_.Take(link, X_MLbelieved,
+                 {objects_[i].name, objects_[i].model, X_MLbelieved * X_LO, time_, link}, X_LO);
+  }
+}
+
+void RobotSimulator::LookIfStill() {
+  if (time_ - last_look_ < kLookPeriod || planar_->IsHeadFaster(kStillHead)) return;
+  last_look_ = time_;
+  const robot::Robot& robot = scene_->robot;
+  const Pose3 X_MC = planar_->X_MLink(robot.profile.upper_body->camera_link);
+  const perception::CameraView view = perception::ViewFrom(robot, X_MC);
+  const std::vector<world::ObjectState> objects = GetWorldState().objects;
+  const perception::LineOfSight sight(scene_->surroundings, objects, planar_->ShapesInMap());
+  perception::DetectorParams params;
+  params.position_noise = variation_.detection_noise;
+  params.yaw_noise = variation_.detection_noise_yaw;
+  const auto detections = perception::Detect(sight, view, objects, params, &detection_rng_);
+  const Pose3 X_MCbelieved = Believed(X_MC, BelievedBase(&detection_rng_));
+  memory_.Look(detections, sight, view, {X_MC, X_MCbelieved}, params, time_);
+}
+
+void RobotSimulator::ObserveUpperBody(double action_start, robot::Observation* observation) {
+  observation->joints = planar_->Joints();
+  observation->joint_velocities = planar_->JointVelocities();
+  if (variation_.encoder_noise > 0.0) {
+    for (const auto& [name, velocity] : observation->joint_velocities) {
+      observation->joints[name] += encoder_rng_.Normal(0.0, variation_.encoder_noise);
+    }
+  }
+  std::map<std::string, Pose3> X_MLbelieved;
+  for (const std::string& link : known_grips_) {
+    if (link.empty() || X_MLbelieved.count(link) == 1) continue;
+    X_MLbelieved[link] = Believed(planar_->X_MLink(link), observation->X_MB);
+  }
+  observation->objects = memory_.Known(X_MLbelieved);
+  for (robot::SeenObject& seen : observation->objects) {
+    seen.time = (seen.attached_to.empty() ? seen.time : time_) - action_start;
+  }
+}
+
 robot::Observation RobotSimulator::Observe(double action_start) {
   const BaseMotion& motion = drive_.motion();
   robot::Observation observation;
   observation.time = time_ - action_start;
-  const Pose2 noise{sense_rng_.Normal(0.0, variation_.localisation_noise),
-                    sense_rng_.Normal(0.0, variation_.localisation_noise),
-                    sense_rng_.Normal(0.0, variation_.localisation_noise_yaw)};
-  observation.X_MB = motion.X_MB * variation_.localisation_bias * noise;
+  observation.X_MB = BelievedBase(&sense_rng_);
   observation.V_B = motion.V_B;
   UpdateGhosts(motion.X_MB, time_ - last_observation_);
   last_observation_ = time_;
   for (const Ghost& ghost : ghosts_) observation.obstacles_M.push_back(ghost.outline_M);
+  if (planar_) ObserveUpperBody(action_start, &observation);
   return observation;
 }
 
 geometry::Pose3 RobotSimulator::X_MB() const { return X_MB_; }
+
+std::map<std::string, int> RobotSimulator::held() const {
+  return planar_ ? planar_->Held() : std::map<std::string, int>();
+}
+
+Pose3 RobotSimulator::X_MLink(const std::string& link) const {
+  if (planar_) return planar_->X_MLink(link);
+  const robot::RobotModel& model = scene_->robot.model;
+  const auto index = model.FindLink(link);
+  if (!index) {
+    throw base::ConfigError("robot: " + base::UnknownName("link", link, model.LinkNames()));
+  }
+  const std::vector<Pose3> X_R = robot::ForwardKinematics(model, joints_);
+  const Pose3& X_RB = X_R[*model.FindLink(scene_->robot.profile.base_link)];
+  return X_MB_ * X_RB.Inverse() * X_R[*index];
+}
 
 geometry::Pose3 RobotSimulator::PoseOf(int object) const {
   if (object_bodies_[object] < 0) return X_MB_ * X_BO_start_[object];
@@ -388,6 +419,7 @@ world::WorldState RobotSimulator::GetWorldState() const {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     world::ObjectState object = objects_[i];
     object.X_MO = PoseOf(static_cast<int>(i));
+    if (planar_) object.attached_to = planar_->HolderOf(static_cast<int>(i));
     if (object_bodies_[i] >= 0) object.V_MO = physics_->GetState(object_bodies_[i]).V_WB;
     state.objects.push_back(std::move(object));
   }
@@ -395,7 +427,7 @@ world::WorldState RobotSimulator::GetWorldState() const {
 }
 
 robot::RobotState RobotSimulator::GetRobotState() const {
-  return {drive_.motion().X_MB, drive_.motion().V_B, scene_->robot.profile.joints};
+  return {drive_.motion().X_MB, drive_.motion().V_B, planar_ ? planar_->Joints() : joints_};
 }
 
 void RobotSimulator::PutBack(int object) {
@@ -411,7 +443,9 @@ void RobotSimulator::PutBack(int object) {
 std::shared_ptr<const RobotSimulator::Snapshot> RobotSimulator::Save() {
   return std::make_shared<const Snapshot>(
       Snapshot{physics_->Save(), time_, steps_, drive_, X_MB_, slip_, slip_rng_, sense_rng_,
-               ghost_rng_, last_observation_, ghosts_, contact_, disturbances_});
+               ghost_rng_, last_observation_, ghosts_, contact_, disturbances_,
+               planar_ ? std::make_optional(planar_->Save()) : std::nullopt, encoder_rng_,
+               detection_rng_, memory_, last_look_, known_grips_});
 }
 
 void RobotSimulator::Restore(const Snapshot& snapshot) {
@@ -428,6 +462,15 @@ void RobotSimulator::Restore(const Snapshot& snapshot) {
   ghosts_ = snapshot.ghosts;
   contact_ = snapshot.contact;
   disturbances_ = snapshot.disturbances;
+  HIRES_CHECK(snapshot.planar.has_value() == (planar_ != nullptr),
+              "a simulator is restored from one of the same level of detail");
+  if (planar_) planar_->Restore(*snapshot.planar);
+  encoder_rng_ = snapshot.encoder_rng;
+  detection_rng_ = snapshot.detection_rng;
+  memory_ = snapshot.memory;
+  last_look_ = snapshot.last_look;
+  known_grips_ = snapshot.known_grips;
+  num_known_grips_ = planar_ ? planar_->num_grips() : 0;
 }
 
 }  // namespace hires::simulation

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +12,8 @@
 #include "hires/robot/observation.h"
 #include "hires/simulation/base_drive.h"
 #include "hires/simulation/floor_profile.h"
+#include "hires/simulation/object_memory.h"
+#include "hires/simulation/planar_robot.h"
 #include "hires/simulation/scene.h"
 #include "hires/simulation/variation.h"
 #include "hires/world/world.h"
@@ -32,19 +35,29 @@ enum class LevelOfDetail {
 };
 
 /// The PR2 (or any robot) with its tray in one steppable world: the base is a driven body with the
-/// behaviour of its controller, objects are loose.
+/// behaviour of its controller, objects are loose; at level `planar` torso, head, arms and hands
+/// are driven bodies too (JointDrives, Hands), and the camera on the head looks for objects twice a
+/// second while the head is still.
 /// One instance belongs to one thread at a time. The same calls give the same bits.
 class RobotSimulator {
  public:
+  /// @param robot_state  joints that it does not name are as in the driving posture.
   /// @throws base::ConfigError if an object's model is unknown to the world or the link that holds
   /// it to the robot, the robot or an object starts inside a static body or has a pose or velocity
-  /// that is not finite, or the base's loop or leaning is too stiff for the time step.
+  /// that is not finite, a joint is unknown or beyond its limits, the base's loop or leaning is too
+  /// stiff for the time step, or the level is `planar` and the robot has no upper body.
   RobotSimulator(std::shared_ptr<const Scene> scene, const Variation& variation,
-                const world::WorldState& world_state, const robot::RobotState& robot_state,
-                base::Rng rng, const physics::PhysicsParams& params = {});
+                 const world::WorldState& world_state, const robot::RobotState& robot_state,
+                 base::Rng rng, const physics::PhysicsParams& params = {},
+                 LevelOfDetail level = LevelOfDetail::kTray);
 
-  /// Takes over a skill's wishes; no base velocity means that no command is sent.
+  /// Takes over a skill's wishes; no base velocity means that no command is sent. At level `tray`
+  /// nothing but the base listens.
+  /// @throws base::ConfigError as JointDrives::Send and Hands::Send.
   void Send(const robot::Command& command);
+  /// What the robot knows of loose objects though it has not looked: imagination starts with what
+  /// the Blackboard knows, a robot with nothing. In the map as the robot believes it.
+  void Remember(const std::vector<robot::SeenObject>& objects);
   void Step();  ///< advances by time_step()
 
   double time() const { return time_; }  ///< [s] since construction
@@ -56,15 +69,23 @@ class RobotSimulator {
   const BaseMotion& base() const { return drive_.motion(); }
   geometry::Pose3 X_MB() const;             ///< of the base, leaning and floor included
   world::WorldState GetWorldState() const;  ///< loose objects now
-  robot::RobotState GetRobotState() const;
+  robot::RobotState GetRobotState()
+      const;  ///< joints with gaps and finger angles at level `planar`
   geometry::Pose3 PoseOf(int object) const;  ///< of the loose object with that index
 
   /// Indices of the objects that stood on a part of the robot at the start.
   const std::vector<int>& carried() const { return carried_; }
+  /// What the hands hold: object index by arm, hands that hold nothing left out.
+  std::map<std::string, int> held() const;
+  LevelOfDetail level() const { return planar_ ? LevelOfDetail::kPlanar : LevelOfDetail::kTray; }
+  /// True pose of a link in the map. @throws base::ConfigError if there is no such link.
+  geometry::Pose3 X_MLink(const std::string& link) const;
   /// Puts an object upright back to where it stood on the robot at the start, moving with it.
+  /// @pre nothing holds it
   void PutBack(int object);
 
-  /// The robot touches a static body; checked every 10 ms.
+  /// The robot touches a static body; checked every 10 ms. At level `planar` also an object in a
+  /// hand (then it is the `robot_part`) that cannot go where the hand goes.
   const std::optional<RobotContact>& contact() const { return contact_; }
   const Disturbances& disturbances() const { return disturbances_; }
   const Scene& scene() const { return *scene_; }
@@ -80,25 +101,37 @@ class RobotSimulator {
     geometry::Polygon outline_M;
     double until{0.0};
   };
+  void Freeze(const robot::JointPositions& joints);
+  void AddObjects(const world::WorldState& state, LevelOfDetail level);
+  const std::vector<geometry::Collision>& robot_shapes_B() const;
   void AddRobot();
-  void AddObjects(const world::WorldState& state);
+  void AddPlanarRobot();
+  GraspableObject Graspable(std::size_t object) const;
   geometry::Pose3 LeaningPose(const BaseMotion& motion) const;
-  physics::BodyState BodyMotion(const geometry::Pose3& X_now, const geometry::Pose3& X_next) const;
+  std::optional<RobotContact> FindContact() const;
+  geometry::Pose2 BelievedBase(base::Rng* rng) const;
+  geometry::Pose3 Believed(const geometry::Pose3& X_ML, const geometry::Pose2& X_MBbelieved) const;
+  void NoteGrips();
+  void LookIfStill();
+  void ObserveUpperBody(double action_start, robot::Observation* observation);
   void NoteDisturbances();
   void MoveSlip();
   void UpdateGhosts(const geometry::Pose2& X_MB, double elapsed);
-  void RefuseBadStart(const world::WorldState& state) const;
-  void RefuseTogether(const world::ObjectState& object,
-                      const std::vector<geometry::Collision>& shapes,
-                      const world::ObjectState& earlier) const;
+  void RefuseBadStart(const world::WorldState& state);
+  void RefuseInsideRobot(const world::ObjectState& object, physics::BodyId body);
 
   std::shared_ptr<const Scene> scene_;
   Variation variation_;
   FloorProfile floor_;
   std::unique_ptr<physics::PhysicsWorld> physics_;
+  robot::JointPositions joints_;  // at the start; at level `tray` for ever
+  std::optional<std::vector<geometry::Collision>> shapes_B_;  // where they are not the scene's
+  std::optional<RobotClearance> clearance_;                   // likewise
+  std::unique_ptr<PlanarRobot> planar_;                       // null at level `tray`
   physics::BodyId robot_body_{0};
   std::vector<physics::BodyId> object_bodies_;
   std::vector<world::ObjectState> objects_;  // names and models; poses as at the start
+  std::vector<std::string> object_names_;
   std::vector<geometry::Pose3> X_BO_start_;  // objects in the base frame at the start
   std::vector<int> carried_;
 
@@ -110,6 +143,11 @@ class RobotSimulator {
   base::Rng slip_rng_, sense_rng_, ghost_rng_;
   double last_observation_{0.0};
   std::deque<Ghost> ghosts_;
+  base::Rng encoder_rng_, detection_rng_;
+  ObjectMemory memory_;
+  double last_look_{-1e9};                // [s]
+  std::vector<std::string> known_grips_;  // by object: link that holds it as far as memory_ knows
+  int num_known_grips_{0};                // PlanarRobot::num_grips() at that time
   std::optional<RobotContact> contact_;
   Disturbances disturbances_;
 };

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "hires/perception/surroundings.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/simulation/robot_clearance.h"
 #include "hires/world/world.h"
@@ -16,7 +17,21 @@ struct Scene {
   std::vector<geometry::Collision> robot_shapes_B;  ///< joints frozen in the driving posture
   RobotClearance clearance;
   geometry::Pose3 X_BO;  ///< where an object is put on the tray, in the base frame
+
+  /// Of the parts that move with the base whatever the joints do; all, if there is no upper body.
+  RobotClearance base_clearance;
+  /// What the robot's camera looks at; null without an upper body.
+  std::shared_ptr<const perception::Surroundings> surroundings;
 };
+
+/// Collision shapes in the base frame with the joints frozen in `posture`.
+/// @throws base::ConfigError as robot::ForwardKinematics.
+std::vector<geometry::Collision> FrozenShapes(const robot::Robot& robot,
+                                              const robot::JointPositions& posture);
+
+/// The posture in which a robot stands: what `joints` leaves out as in the driving posture, gaps
+/// and finger angles of grippers completed where the robot has some.
+robot::JointPositions PostureOf(const robot::Robot& robot, const robot::JointPositions& joints);
 
 /// @throws base::ConfigError if robot and profile do not fit.
 std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot);

@@ -29,6 +29,10 @@ struct Variation {
   double late_cycle_delay{0.0};        ///< [s] how late such a cycle comes
   double loop_damping_factor{1.0};     ///< of the base's velocity loop
   double sway_factor{1.0};             ///< of the base's leaning
+
+  double detection_noise{0.0};      ///< [m] sd of each coordinate of a seen object
+  double detection_noise_yaw{0.0};  ///< [rad] sd of a seen object's turn about its own z axis
+  double encoder_noise{0.0};        ///< [rad] or [m] sd of each measured joint
 };
 
 }  // namespace hires::simulation

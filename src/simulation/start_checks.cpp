@@ -1,0 +1,151 @@
+#include "start_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+
+namespace hires::simulation {
+namespace {
+
+using geometry::Pose3;
+
+constexpr double kRestingGap = 0.06;  // [m] an object this far above the tray falls onto it
+constexpr double kFarAway = 1000.0;   // [m]
+constexpr double kStiffest = 2.0;     // half of what diverges
+constexpr double kUnitSlack = 1e-6;   // how far a quaternion's length may be from 1
+
+/// Loop and leaning are integrated by the semi-implicit Euler method: x'' = -w^2 x - 2 zeta w x'
+/// grows without bounds from (w dt)^2 + 4 zeta w dt = 4 on.
+void RefuseStiff(const char* what, double frequency, double damping, double time_step) {
+  const double h = frequency * time_step;
+  if (h * h + 4.0 * damping * h < kStiffest) return;
+  throw base::ConfigError(fmt::format(
+      "base controller: {0}_frequency {1:g} rad/s with {0}_damping {2:g} is too stiff for a time "
+      "step of {3:g} s; (w dt)^2 + 4 zeta w dt is {4:.3g}, wanted below {5:g}: lower one of the "
+      "three",
+      what, frequency, damping, time_step, h * h + 4.0 * damping * h, kStiffest));
+}
+
+}  // namespace
+
+bool Overlap(const std::vector<geometry::Collision>& a, const Pose3& X_MA,
+             const std::vector<geometry::Collision>& b, const Pose3& X_MB) {
+  for (const geometry::Collision& first : a) {
+    const Pose3 X_MF = X_MA * first.X_BS;
+    const geometry::Aabb bounds = geometry::BoundsOf(first.shape, X_MF);
+    const double z_min = bounds.lower.z() + kStartSlack, z_max = bounds.upper.z() - kStartSlack;
+    if (z_min > z_max) continue;
+    const auto outline = geometry::OutlineInBand(first.shape, X_MF, z_min, z_max);
+    for (const geometry::Collision& second : b) {
+      const Pose3 X_MS = X_MB * second.X_BS;
+      if (!outline || !bounds.Overlaps(geometry::BoundsOf(second.shape, X_MS))) continue;
+      const auto other = geometry::OutlineInBand(second.shape, X_MS, z_min, z_max);
+      if (other && geometry::Distance(*outline, *other) == 0.0) return true;
+    }
+  }
+  return false;
+}
+
+bool StandsOn(const std::vector<geometry::Collision>& robot_B,
+              const std::vector<geometry::Collision>& object, const Pose3& X_BO) {
+  geometry::Aabb object_bounds;
+  for (const geometry::Collision& shape : object) {
+    object_bounds.Include(geometry::BoundsOf(shape.shape, X_BO * shape.X_BS));
+  }
+  const double bottom = object_bounds.lower.z();
+  return std::any_of(robot_B.begin(), robot_B.end(), [&](const geometry::Collision& part) {
+    const geometry::Aabb bounds = geometry::BoundsOf(part.shape, part.X_BS);
+    if (std::abs(bounds.upper.z() - bottom) > kRestingGap) return false;
+    const auto outline =
+        geometry::OutlineInBand(part.shape, part.X_BS, bounds.lower.z(), bounds.upper.z());
+    return outline && geometry::Contains(*outline, X_BO.translation.head<2>());
+  });
+}
+
+void RefusePose(const std::string& what, const Pose3& X) {
+  if (!X.IsFinite()) {
+    throw base::ConfigError(fmt::format("{}: its pose is not finite; give numbers", what));
+  }
+  if (X.translation.norm() > kFarAway) {
+    throw base::ConfigError(fmt::format(
+        "{}: stands {:.0f} m from the map's origin, at most {:.0f} m make sense; check its pose",
+        what, X.translation.norm(), kFarAway));
+  }
+}
+
+void RefuseObject(const world::ObjectState& object) {
+  const std::string what = fmt::format("object '{}'", object.name);
+  RefusePose(what, object.X_MO);
+  if (std::abs(object.X_MO.rotation.norm() - 1.0) > kUnitSlack) {
+    throw base::ConfigError(
+        fmt::format("{}: its quaternion has length {:.6g}, wanted unit length; no turn is (x, y, "
+                    "z, w) = (0, 0, 0, 1)",
+                    what, object.X_MO.rotation.norm()));
+  }
+  if (!object.V_MO.linear.allFinite() || !object.V_MO.angular.allFinite()) {
+    throw base::ConfigError(
+        fmt::format("{}: its velocity is not finite; give numbers, 0 at rest", what));
+  }
+}
+
+void RefuseUnknownHolder(const world::ObjectState& object, const robot::RobotModel& robot) {
+  if (object.attached_to.empty() || robot.FindLink(object.attached_to)) return;
+  throw base::ConfigError(
+      fmt::format("object '{}' is attached to the robot: {}", object.name,
+                  base::UnknownName("link", object.attached_to, robot.LinkNames())));
+}
+
+void RefuseUnknownJoints(const robot::JointPositions& joints, const robot::RobotModel& robot) {
+  std::vector<std::string> known;
+  for (const robot::Link& link : robot.links) {
+    if (link.joint) known.push_back(link.joint->name);
+  }
+  for (const auto& [name, position] : joints) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      throw base::ConfigError(
+          fmt::format("robot '{}': {}", robot.name, base::UnknownName("joint", name, known)));
+    }
+  }
+}
+
+void RefuseStiff(const robot::BaseControllerParams& params, double time_step) {
+  RefuseStiff("loop", params.loop_frequency, params.loop_damping, time_step);
+  RefuseStiff("sway", params.sway_frequency, params.sway_damping, time_step);
+}
+
+void RefuseUnknownModel(const world::ObjectState& object, const world::World& world) {
+  if (world.models.count(object.model) == 1) return;
+  std::vector<std::string> known;
+  for (const auto& entry : world.models) known.push_back(entry.first);
+  throw base::ConfigError(
+      fmt::format("object '{}': {}", object.name, base::UnknownName("model", object.model, known)));
+}
+
+void RefuseTogether(const world::ObjectState& object, const world::ObjectState& earlier,
+                    const world::World& world) {
+  if (base::ToLower(object.name) == base::ToLower(earlier.name)) {
+    throw base::ConfigError(
+        fmt::format("object '{}' is there twice; name each instance once", object.name));
+  }
+  const auto& shapes = world.models.at(object.model)->collisions;
+  const auto& others = world.models.at(earlier.model)->collisions;
+  if (Overlap(shapes, object.X_MO, others, earlier.X_MO)) {
+    throw base::ConfigError(fmt::format("object '{}' starts inside '{}'; put it on a free place",
+                                        object.name, earlier.name));
+  }
+}
+
+void RefuseInStatics(const world::ObjectState& object, const world::World& world) {
+  const auto& shapes = world.models.at(object.model)->collisions;
+  for (const world::StaticBody& body : world.statics) {
+    if (!Overlap(shapes, object.X_MO, body.collisions, body.X_MB)) continue;
+    throw base::ConfigError(fmt::format("object '{}' starts inside '{}'; put it on a free place",
+                                        object.name, body.name));
+  }
+}
+
+}  // namespace hires::simulation

@@ -1,0 +1,39 @@
+// Private to this layer: what a simulator's start must satisfy. All throw base::ConfigError.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hires/geometry/shape.h"
+#include "hires/robot/robot_profile.h"
+#include "hires/world/world.h"
+
+namespace hires::simulation {
+
+constexpr double kStartSlack = 0.005;  ///< [m] bodies may overlap this much at the start
+
+/// Does a shape of `a` reach more than the slack into a shape of `b`? Shapes count as upright
+/// prisms, as in RobotClearance.
+bool Overlap(const std::vector<geometry::Collision>& a, const geometry::Pose3& X_MA,
+             const std::vector<geometry::Collision>& b, const geometry::Pose3& X_MB);
+
+/// Does the object's lowest point lie on top of one of the robot's shapes?
+bool StandsOn(const std::vector<geometry::Collision>& robot_B,
+              const std::vector<geometry::Collision>& object, const geometry::Pose3& X_BO);
+
+void RefusePose(const std::string& what, const geometry::Pose3& X);
+/// Pose and velocity.
+void RefuseObject(const world::ObjectState& object);
+void RefuseUnknownModel(const world::ObjectState& object, const world::World& world);
+void RefuseUnknownHolder(const world::ObjectState& object, const robot::RobotModel& robot);
+/// A joint's name that is not the robot's means that another robot is spoken of.
+void RefuseUnknownJoints(const robot::JointPositions& joints, const robot::RobotModel& robot);
+/// A base whose loop or leaning would diverge at this time step.
+void RefuseStiff(const robot::BaseControllerParams& params, double time_step);
+/// Two objects of one name, or in each other.
+void RefuseTogether(const world::ObjectState& object, const world::ObjectState& earlier,
+                    const world::World& world);
+/// An object in the way of what never moves.
+void RefuseInStatics(const world::ObjectState& object, const world::World& world);
+
+}  // namespace hires::simulation
