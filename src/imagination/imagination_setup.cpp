@@ -147,11 +147,12 @@ SetupConfig ReadSetupConfig(const std::string& path) {
   config.uncertainty = ResolvePath(in.GetString("uncertainty"), path);
   config.driving = ReadDriving(in.Sub("driving"));
   config.blind = ReadBlind(in.Sub("blind_driving"));
+  config.manipulation = skills::ReadManipulationParams(in.Sub("manipulation"));
   config.physics = ReadPhysics(in.Sub("physics"));
   config.rollout = ReadRolloutParams(in.Sub("rollout"));
   in.RejectUnknownKeys();
   base::Hasher hasher;
-  for (const char* section : {"driving", "blind_driving", "physics", "rollout"}) {
+  for (const char* section : {"driving", "blind_driving", "manipulation", "physics", "rollout"}) {
     hasher.Add(in.Sub(section).Canonical());
   }
   config.params_hash = hasher.value();
@@ -163,7 +164,7 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   world::World world = LoadWorldWithObjects(config, &setup.object_models);
   robot::Robot robot = LoadAnyRobot(config.robot);
   setup.skills = std::make_shared<const skills::SkillSet>(
-      skills::MakeSkillSet(world, robot, config.driving, config.blind));
+      skills::MakeSkillSet(world, robot, config.driving, config.blind, config.manipulation));
   base::Hasher hasher;
   hasher.Add(world.hash);
   hasher.Add(config.params_hash);

@@ -25,6 +25,7 @@ struct SetupConfig {
   std::vector<std::string> extra_objects;  ///< object models (.sdf, .urdf) beside the catalogue's
   skills::MoveBaseParams driving;
   skills::MoveBaseBlindParams blind;
+  skills::ManipulationParams manipulation;
   physics::PhysicsParams physics;
   RolloutParams rollout;
   std::uint64_t params_hash{0};  ///< of all numbers above

@@ -14,7 +14,9 @@ enum class Progress { kRunning, kSucceeded, kFailed };
 
 struct Status {
   Progress progress{Progress::kRunning};
-  std::string reason;  ///< why it failed, one word: "no_path", "goal_blocked", "stuck"; else empty
+  /// Why it failed, else empty: one word, where useful with names behind it: "stuck",
+  /// "area_occupied: book1".
+  std::string reason;
 };
 
 /// Something the robot can do, as a state machine that is the same in reality and in a rollout.

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hires/skills/activity.h"
+#include "hires/skills/arm_planner.h"
+#include "hires/skills/manipulation_context.h"
+
+namespace hires::skills {
+
+/// The torso to a height. Fails with "timed_out".
+class MoveTorso : public StagedSkill {
+ public:
+  /// @throws base::ConfigError for a posture that the torso does not have.
+  MoveTorso(std::shared_ptr<const ManipulationContext> context, const base::ActionCall& action,
+            const std::string& posture);
+};
+
+/// Folds and opens the arms in the order of the PR2's own tuck_arms action, so that one does not
+/// get in the other's way: right arm up; left arm to its goal (before it folds: clear); right arm
+/// to its goal (before it folds: clear, approach). Arms that are there already stay, and nothing
+/// moves if both are. Fails with "no_path: ...", "start_blocked: ..." or "timed_out".
+class TuckArms : public StagedSkill {
+ public:
+  /// @throws base::ConfigError for other goals than armtuckedposture and armuntuckedposture, and
+  /// for a robot without the arms leftarm1 and rightarm1 or their way points.
+  TuckArms(std::shared_ptr<const ManipulationContext> context, const base::ActionCall& action,
+           const std::string& left_goal, const std::string& right_goal);
+};
+
+/// One arm beside the body, what it holds upright. Fails as TuckArms.
+class MoveArmToSide : public StagedSkill {
+ public:
+  /// @throws base::ConfigError for an unknown arm or one without armtosideposture.
+  MoveArmToSide(std::shared_ptr<const ManipulationContext> context, const base::ActionCall& action,
+                const std::string& arm);
+};
+
+/// The right arm over its way point "above", then both before the body, what they hold upright; one
+/// after the other where they cannot go together. Fails as TuckArms.
+class MoveArmsToCarryPosture : public StagedSkill {
+ public:
+  /// @throws base::ConfigError as TuckArms.
+  MoveArmsToCarryPosture(std::shared_ptr<const ManipulationContext> context,
+                         const base::ActionCall& action);
+};
+
+/// Where an arm's joints are for a posture (lower-case name): the holding variant while it holds
+/// something.  @throws base::ConfigError if the arm does not have it.
+const std::vector<double>& PosturePositions(const robot::ArmProfile& arm,
+                                            const std::string& posture, bool holds);
+/// Sum of the joints' errors to the nearest variant of a posture [rad].
+double PostureError(const robot::Robot& robot, const robot::ArmProfile& arm,
+                    const std::string& posture, const robot::JointPositions& joints);
+
+/// An arm to a posture or way point round everything that is seen. Where parts of the robot touch
+/// in that posture or in the present one they may: shapes are coarser than the real parts, and the
+/// robot's makers chose its postures.
+Beginning MoveArmTo(std::shared_ptr<const ManipulationContext> context, const std::string& arm,
+                    const std::vector<double>& goal, const robot::Observation& observation,
+                    std::uint64_t seed, bool passes = false);
+
+}  // namespace hires::skills

@@ -1,0 +1,116 @@
+#include "hires/skills/free_spot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "hires/geometry/angles.h"
+
+namespace hires::skills {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using geometry::Polygon;
+using geometry::Pose3;
+
+constexpr double kSameLevel = 0.30;      // [m] above or below a support: stands somewhere else
+constexpr int kCorners = 24;             // of a circle
+constexpr double kSlotClearance = 0.01;  // [m] between things on the tray, whose places are close
+
+struct Neighbour {
+  std::string name;
+  Polygon outline_A;
+};
+
+std::vector<Neighbour> NeighboursIn(const world::World& world, const Pose3& X_MA,
+                                    const std::vector<world::ObjectState>& others) {
+  std::vector<Neighbour> neighbours;
+  for (const world::ObjectState& other : others) {
+    const auto model = world.models.find(other.model);
+    if (model == world.models.end()) continue;
+    const Pose3 X_AO = X_MA.Inverse() * other.X_MO;
+    if (std::abs(X_AO.translation.z()) > kSameLevel) continue;
+    neighbours.push_back({other.name, OutlineOf(*model->second, X_AO)});
+  }
+  return neighbours;
+}
+
+Polygon Circle(const Vector2d& centre, double radius) {
+  Polygon circle;
+  const double outside = radius / std::cos(geometry::kPi / kCorners);
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2.0 * geometry::kPi * i / kCorners;
+    circle.push_back(centre + outside * Vector2d(std::cos(angle), std::sin(angle)));
+  }
+  return circle;
+}
+
+/// Keeps the candidates that are free; notes who takes up the others.
+FreeSpots KeepFree(const std::vector<Vector2d>& candidates_A, double radius, double clearance,
+                   const std::vector<Neighbour>& neighbours) {
+  FreeSpots free;
+  std::set<std::string> occupants;
+  for (const Vector2d& p_A : candidates_A) {
+    const Polygon circle = Circle(p_A, radius);
+    bool is_free = true;
+    for (const Neighbour& neighbour : neighbours) {
+      if (geometry::Distance(circle, neighbour.outline_A) >= clearance) continue;
+      occupants.insert(neighbour.name);
+      is_free = false;
+    }
+    if (is_free) free.spots_A.emplace_back(p_A.x(), p_A.y(), 0.0);
+  }
+  free.occupants.assign(occupants.begin(), occupants.end());
+  return free;
+}
+
+/// A grid over a square, nearest to its middle first; equally near ones in a fixed order.
+std::vector<Vector2d> Grid(double half_width, double spacing) {
+  const int n = static_cast<int>(std::floor(half_width / spacing + 1e-9));
+  std::vector<Vector2d> grid;
+  for (int i = -n; i <= n; ++i) {
+    for (int j = -n; j <= n; ++j) grid.emplace_back(i * spacing, j * spacing);
+  }
+  std::stable_sort(grid.begin(), grid.end(), [](const Vector2d& a, const Vector2d& b) {
+    return a.squaredNorm() < b.squaredNorm() - 1e-12;
+  });
+  return grid;
+}
+
+}  // namespace
+
+Polygon OutlineOf(const world::ObjectModel& model, const Pose3& X_AO) {
+  std::vector<Vector2d> corners;
+  for (const geometry::Collision& shape : model.collisions) {
+    const Pose3 X_AS = X_AO * shape.X_BS;
+    const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, X_AS);
+    const auto outline =
+        geometry::OutlineInBand(shape.shape, X_AS, bounds.lower.z(), bounds.upper.z());
+    if (outline) corners.insert(corners.end(), outline->begin(), outline->end());
+  }
+  return geometry::ConvexHull(std::move(corners));
+}
+
+double RadiusOf(const world::ObjectModel& model) {
+  return geometry::CircumscribedRadius(OutlineOf(model, Pose3{})) *
+         std::cos(geometry::kPi / kCorners);
+}
+
+FreeSpots FindFreeSpots(const PlaceParams& params, const world::World& world,
+                        const world::ObjectModel& object, const Pose3& X_MA,
+                        const std::vector<world::ObjectState>& others) {
+  const double radius = RadiusOf(object);
+  const double room = std::max(0.0, params.area_half_width - radius);
+  return KeepFree(Grid(room, params.spot_spacing), radius, params.clearance,
+                  NeighboursIn(world, X_MA, others));
+}
+
+FreeSpots FindFreeSlots(const PlaceParams& params, const world::World& world,
+                        const world::ObjectModel& object, const Pose3& X_MSlot,
+                        const std::vector<world::ObjectState>& others) {
+  return KeepFree({{0.0, 0.0}, {0.0, -params.slot_distance}, {0.0, params.slot_distance}},
+                  RadiusOf(object), kSlotClearance, NeighboursIn(world, X_MSlot, others));
+}
+
+}  // namespace hires::skills

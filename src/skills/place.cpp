@@ -1,0 +1,155 @@
+#include <cmath>
+
+#include "hand_stages.h"
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/skills/free_spot.h"
+#include "hires/skills/head_aim.h"
+#include "hires/skills/joint_motion.h"
+#include "hires/skills/look_skills.h"
+#include "hires/skills/object_skills.h"
+
+namespace hires::skills {
+namespace {
+
+using geometry::Pose3;
+using robot::Observation;
+
+/// Everything loose but one object.
+std::vector<world::ObjectState> Others(const Observation& seen, const std::string& object) {
+  std::vector<world::ObjectState> others;
+  for (world::ObjectState& other : ObjectsOf(seen)) {
+    if (base::ToLower(other.name) != object && other.attached_to.empty()) {
+      others.push_back(std::move(other));
+    }
+  }
+  return others;
+}
+
+}  // namespace
+
+PlaceObject::PlaceObject(SharedContext context, const base::ActionCall& action,
+                         const std::string& object, const std::string& arm, const std::string& area)
+    : StagedSkill(context->params.period),
+      context_(std::move(context)),
+      object_(base::ToLower(object)),
+      arm_(KnownArm(*context_, arm)),
+      X_MArea_(AreaFrame(*context_->world, area)),
+      seed_(SeedOf(context_->params, action)) {
+  AppendStages();
+  AppendChecking();
+}
+
+PlaceObject::PlaceObject(SharedContext context, const base::ActionCall& action,
+                         const std::string& object, const std::string& arm)
+    : StagedSkill(context->params.period),
+      context_(std::move(context)),
+      object_(base::ToLower(object)),
+      arm_(KnownArm(*context_, arm)),
+      seed_(SeedOf(context_->params, action)) {
+  RequireTray(*context_);
+  AppendStages();
+  AppendChecking();
+}
+
+Pose3 PlaceObject::X_MGoal(const Observation& observation) const {
+  return X_MArea_ ? *X_MArea_ : TrayFrame(*context_, observation);
+}
+
+Beginning PlaceObject::Plan(const Observation& observation) {
+  const robot::SeenObject* held = FindSeen(observation, object_);
+  if (held == nullptr) return CannotBegin("object_slipped");
+  const world::ObjectModel& model = *context_->world->models.at(held->model);
+  const PlaceParams& params = context_->params.place;
+  const std::vector<world::ObjectState> others = Others(observation, object_);
+  const Pose3 X_MA = X_MGoal(observation);
+  const FreeSpots spots = X_MArea_ ? FindFreeSpots(params, *context_->world, model, X_MA, others)
+                                   : FindFreeSlots(params, *context_->world, model, X_MA, others);
+  plan_ = PlanPlacing(*context_, arm_, observation, *held, X_MA, spots, seed_);
+  return plan_.failure.empty() ? NothingToDo() : CannotBegin(plan_.failure);
+}
+
+void PlaceObject::AppendStages() {
+  const auto is_held = [this](const Observation& seen) {
+    return WhyNotHeld(*context_, arm_, object_, seen);
+  };
+  Append({"check_hand",
+          [this](const Observation& seen) {
+            const std::string why = WhyNotHeld(*context_, arm_, object_, seen);
+            return why.empty() ? NothingToDo() : CannotBegin(why);
+          },
+          {}});
+  Append({"look",
+          [this](const Observation& seen) {
+            return LookAtPoint(context_, seen, X_MGoal(seen).translation);
+          },
+          is_held});
+  Append({"plan", [this](const Observation& seen) { return Plan(seen); }, {}});
+  Append({"reach",
+          [this](const Observation& seen) {
+            return Begin(Along(context_, arm_, plan_.reach, seen, context_->params.speed));
+          },
+          is_held});
+  Append({"lower",
+          [this](const Observation& seen) {
+            return Begin(Along(context_, arm_, plan_.lower, seen, context_->params.straight_speed));
+          },
+          is_held});
+  Append({"open_gripper",
+          [this](const Observation&) { return Begin(GripperMotion::Open(context_, arm_)); },
+          {}});
+  Append({"retreat",
+          [this](const Observation& seen) {
+            return Begin(
+                Along(context_, arm_, plan_.retreat, seen, context_->params.straight_speed));
+          },
+          {}});
+}
+
+Beginning PlaceObject::ReturnAndLook(const Observation& observation) const {
+  Beginning side = ToSide(context_, arm_, false, observation, seed_);
+  if (side.activity == nullptr) return side;
+  const Pose3 X_MO = geometry::Lift(observation.X_MB) * plan_.X_BO;
+  Beginning look = LookAtPoint(context_, observation, X_MO.translation);
+  if (look.activity == nullptr) return look;
+  return Begin(std::make_unique<Both>(std::move(side.activity), std::move(look.activity)));
+}
+
+std::string PlaceObject::WhyNotStanding(const Observation& observation) const {
+  const robot::SeenObject* seen = FindSeen(observation, object_);
+  const PlaceParams& params = context_->params.place;
+  const Pose3 X_BO = geometry::Lift(observation.X_MB).Inverse() * seen->X_MO;
+  const bool lies = geometry::TiltOf(X_BO.rotation) > params.lying_tilt;
+  const double away = (X_BO.translation - plan_.X_BO.translation).norm();
+  return lies || away > params.standing_tolerance ? "object_toppled" : "";
+}
+
+void PlaceObject::AppendChecking() {
+  Append({"to_side", [this](const Observation& seen) { return ReturnAndLook(seen); }, {}});
+  Append({"see_it_stand",
+          [this](const Observation& begin) {
+            looked_since_ = begin.time;
+            return Begin(std::make_unique<WaitUntil>(
+                [this](const Observation& seen) {
+                  const robot::SeenObject* object = FindSeen(seen, object_);
+                  return object != nullptr && object->time > looked_since_;
+                },
+                context_->params.look.time_limit, "object_not_seen"));
+          },
+          {}});
+  Append({"check_stand",
+          [this](const Observation& seen) {
+            const std::string why = WhyNotStanding(seen);
+            return why.empty() ? NothingToDo() : CannotBegin(why);
+          },
+          {}});
+}
+
+std::vector<Stage> PlaceObject::AfterFailure(const std::string& stage,
+                                             const Observation& /*observation*/) {
+  const bool has_moved = stage == "reach" || stage == "lower" || stage == "open_gripper" ||
+                         stage == "retreat" || stage == "to_side";
+  return has_moved ? StopAndTidy(context_, arm_, seed_) : std::vector<Stage>{};
+}
+
+}  // namespace hires::skills

@@ -1,0 +1,270 @@
+#include "hires/skills/posture_skills.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/geometry/angles.h"
+#include "hires/manipulation/arm_path.h"
+#include "hires/skills/joint_motion.h"
+
+namespace hires::skills {
+namespace {
+
+using robot::Observation;
+using Context = std::shared_ptr<const ManipulationContext>;
+
+const char kLeft[] = "leftarm1";
+const char kRight[] = "rightarm1";
+const char kTucked[] = "armtuckedposture";
+const char kUnTucked[] = "armuntuckedposture";
+const char kToSide[] = "armtosideposture";
+const char kCarry[] = "armcarryposture";
+
+// [rad] sums over an arm's joints below which it counts as folded or opened, as the PR2's tuck_arms
+// counts.
+constexpr double kTuckedError = 0.1;
+constexpr double kUnTuckedError = 0.3;
+
+template <typename T>
+const T& Named(const std::map<std::string, T>& known, const char* kind, const std::string& name) {
+  const auto found = known.find(base::ToLower(name));
+  if (found != known.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& entry : known) names.push_back(entry.first);
+  throw base::ConfigError(base::UnknownName(kind, name, names));
+}
+
+void RequireArm(const ManipulationContext& context, const std::string& arm,
+                const std::vector<std::string>& postures,
+                const std::vector<std::string>& way_points) {
+  const robot::ArmProfile& profile = Named(context.upper_body().arms, "arm", arm);
+  for (const std::string& posture : postures) Named(profile.postures, "posture", posture);
+  for (const std::string& point : way_points) Named(profile.way_points, "way point", point);
+}
+
+const std::vector<double>& WayPoint(const ManipulationContext& context, const std::string& arm,
+                                    const std::string& name) {
+  return context.arm(arm).way_points.at(name);
+}
+
+/// Straight over positions that are passed on the way, to rest at the last.
+Stage ArmStage(const Context& context, const std::string& arm, const std::vector<double>& goal,
+               std::uint64_t seed, const std::string& name, bool passes) {
+  return {
+      name,
+      [=](const Observation& seen) { return MoveArmTo(context, arm, goal, seen, seed, passes); },
+      {}};
+}
+
+bool IsIn(const ManipulationContext& context, const std::string& arm, const std::string& posture,
+          const Observation& seen) {
+  const double largest = posture == kTucked ? kTuckedError : kUnTuckedError;
+  return PostureError(*context.robot, context.arm(arm), posture, seen.joints) <= largest;
+}
+
+/// One motion of a folding sequence.
+struct Fold {
+  const char* arm;
+  const char* to;  ///< way point or posture
+};
+
+/// The order in which arms get from what they are in to their goals.
+std::vector<Fold> FoldingSequence(const ManipulationContext& context, const Observation& seen,
+                                  const std::string& left_goal, const std::string& right_goal) {
+  const bool left_stays = IsIn(context, kLeft, left_goal, seen);
+  const bool right_stays = IsIn(context, kRight, right_goal, seen);
+  if (left_stays && right_stays) return {};
+  std::vector<Fold> folds;
+  const bool right_is_tucked = IsIn(context, kRight, kTucked, seen);
+  if (!left_stays || right_is_tucked) folds.push_back({kRight, "up"});
+  if (!left_stays) {
+    if (left_goal == kTucked && !IsIn(context, kLeft, kUnTucked, seen)) {
+      folds.push_back({kLeft, "clear"});
+    }
+    folds.push_back({kLeft, left_goal == kTucked ? kTucked : kUnTucked});
+  }
+  if (right_goal == kTucked) {
+    folds.push_back({kRight, "clear"});
+    folds.push_back({kRight, "approach"});
+  }
+  folds.push_back({kRight, right_goal == kTucked ? kTucked : kUnTucked});
+  return folds;
+}
+
+const std::vector<double>& FoldGoal(const ManipulationContext& context, const Fold& fold,
+                                    bool holds) {
+  const robot::ArmProfile& arm = context.arm(fold.arm);
+  const auto way_point = arm.way_points.find(fold.to);
+  return way_point == arm.way_points.end() ? PosturePositions(arm, fold.to, holds)
+                                           : way_point->second;
+}
+
+/// Columns `first` .. `first + count - 1` of a trajectory of several arms.
+robot::JointTrajectory Columns(const robot::JointTrajectory& both, std::size_t first,
+                               std::size_t count) {
+  const auto cut = [&](const std::vector<double>& row) {
+    if (row.empty()) return row;
+    const auto begin = row.begin() + static_cast<std::ptrdiff_t>(first);
+    return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(count));
+  };
+  robot::JointTrajectory part;
+  const auto begin = both.joints.begin() + static_cast<std::ptrdiff_t>(first);
+  part.joints.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
+  for (const robot::TrajectoryPoint& point : both.points) {
+    part.points.push_back({point.time, cut(point.positions), cut(point.velocities)});
+  }
+  return part;
+}
+
+const std::vector<double>& CarryGoal(const ManipulationContext& context, const std::string& arm,
+                                     const Observation& seen) {
+  const robot::ArmProfile& profile = context.arm(arm);
+  return PosturePositions(profile, kCarry, HeldBy(profile, seen) != nullptr);
+}
+
+std::vector<double> Joined(std::vector<double> a, const std::vector<double>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// Both arms to the carry posture at once, if nothing is in the way.
+Beginning CarryTogether(const Context& context, const Observation& seen) {
+  const std::vector<std::string>& left = context->arm(kLeft).joints;
+  std::vector<std::string> joints = left;
+  const std::vector<std::string>& right = context->arm(kRight).joints;
+  joints.insert(joints.end(), right.begin(), right.end());
+  const robot::JointPositions now = PostureOf(*context->robot, seen.joints);
+  const std::vector<double> start = JointsOf(joints, now);
+  const std::vector<double> goal = NearestTurn(
+      context->robot->model, joints,
+      Joined(CarryGoal(*context, kLeft, seen), CarryGoal(*context, kRight, seen)), start);
+  const ArmPlanner planner(*context, kRight, seen);
+  if (const auto touch = planner.TouchAlong(joints, {start, goal})) {
+    return CannotBegin("no_path: " + ToString(*touch));
+  }
+  const robot::JointTrajectory both =
+      manipulation::TimePath(*context->robot, joints, {start, goal}, context->params.speed);
+  return Begin(std::make_unique<JointMotion>(
+      context, GroupTrajectories{{kLeft, Columns(both, 0, left.size())},
+                                 {kRight, Columns(both, left.size(), right.size())}}));
+}
+
+}  // namespace
+
+const std::vector<double>& PosturePositions(const robot::ArmProfile& arm,
+                                            const std::string& posture, bool holds) {
+  if (holds) {
+    const auto holding = arm.holding_postures.find(base::ToLower(posture));
+    if (holding != arm.holding_postures.end()) return holding->second;
+  }
+  return Named(arm.postures, "posture", posture).front();
+}
+
+double PostureError(const robot::Robot& robot, const robot::ArmProfile& arm,
+                    const std::string& posture, const robot::JointPositions& joints) {
+  const std::vector<double> now = JointsOf(arm.joints, joints);
+  double least = 1e9;
+  for (const std::vector<double>& variant : Named(arm.postures, "posture", posture)) {
+    const std::vector<double> goal = NearestTurn(robot.model, arm.joints, variant, now);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < now.size(); ++i) sum += std::abs(goal[i] - now[i]);
+    least = std::min(least, sum);
+  }
+  return least;
+}
+
+Beginning MoveArmTo(Context context, const std::string& arm, const std::vector<double>& goal,
+                    const Observation& observation, std::uint64_t seed, bool passes) {
+  ArmPlanner planner(*context, arm, observation);
+  planner.AllowSelfTouches(planner.start());
+  planner.AllowSelfTouches(goal);
+  const manipulation::ArmPathResult way = planner.Way(planner.start(), goal, seed);
+  if (way.status != manipulation::ArmPathStatus::kFound) return CannotBegin(FailureOf(way));
+  robot::JointTrajectory trajectory = TrajectoryFrom(
+      *context, observation, context->arm(arm).joints, way.path, context->params.speed);
+  return Begin(std::make_unique<JointMotion>(context, GroupTrajectories{{arm, trajectory}},
+                                             passes ? MotionEnd::kPassing : MotionEnd::kSettled));
+}
+
+MoveTorso::MoveTorso(Context context, const base::ActionCall& /*action*/,
+                     const std::string& posture)
+    : StagedSkill(context->params.period) {
+  const double height = Named(context->upper_body().torso_postures, "torso posture", posture);
+  Append({"move_torso",
+          [context, height](const Observation& seen) {
+            const std::string& joint = context->upper_body().torso_joint;
+            return Begin(std::make_unique<JointMotion>(
+                context,
+                GroupTrajectories{{"torso", TrajectoryFrom(*context, seen, {joint}, {{height}},
+                                                           context->params.speed)}}));
+          },
+          {}});
+}
+
+TuckArms::TuckArms(Context context, const base::ActionCall& action, const std::string& left_goal,
+                   const std::string& right_goal)
+    : StagedSkill(context->params.period) {
+  const std::map<std::string, int> goals{{kTucked, 0}, {kUnTucked, 0}};
+  Named(goals, "goal of an arm", left_goal);
+  Named(goals, "goal of an arm", right_goal);
+  RequireArm(*context, kLeft, {kTucked, kUnTucked}, {"clear"});
+  RequireArm(*context, kRight, {kTucked, kUnTucked}, {"up", "clear", "approach"});
+  const std::uint64_t seed = SeedOf(context->params, action);
+  const std::string left = base::ToLower(left_goal), right = base::ToLower(right_goal);
+  Append({"choose_order",
+          [this, context, seed, left, right](const Observation& seen) {
+            const std::vector<Fold> folds = FoldingSequence(*context, seen, left, right);
+            std::vector<Stage> stages;
+            for (std::size_t i = 0; i < folds.size(); ++i) {
+              const bool holds = HeldBy(context->arm(folds[i].arm), seen) != nullptr;
+              stages.push_back(ArmStage(context, folds[i].arm, FoldGoal(*context, folds[i], holds),
+                                        AttemptSeed(seed, static_cast<int>(i)),
+                                        fmt::format("{}_{}", folds[i].arm, folds[i].to),
+                                        i + 1 < folds.size()));
+            }
+            Insert(std::move(stages));
+            return NothingToDo();
+          },
+          {}});
+}
+
+MoveArmToSide::MoveArmToSide(Context context, const base::ActionCall& action,
+                             const std::string& arm)
+    : StagedSkill(context->params.period) {
+  RequireArm(*context, arm, {kToSide}, {});
+  const std::string name = base::ToLower(arm);
+  const std::uint64_t seed = SeedOf(context->params, action);
+  Append({"to_side",
+          [context, name, seed](const Observation& seen) {
+            const robot::ArmProfile& profile = context->arm(name);
+            return MoveArmTo(context, name,
+                             PosturePositions(profile, kToSide, HeldBy(profile, seen) != nullptr),
+                             seen, seed);
+          },
+          {}});
+}
+
+MoveArmsToCarryPosture::MoveArmsToCarryPosture(Context context, const base::ActionCall& action)
+    : StagedSkill(context->params.period) {
+  RequireArm(*context, kLeft, {kCarry}, {});
+  RequireArm(*context, kRight, {kCarry}, {"above"});
+  const std::uint64_t seed = SeedOf(context->params, action);
+  Append(ArmStage(context, kRight, WayPoint(*context, kRight, "above"), AttemptSeed(seed, 0),
+                  "above", true));
+  Append({"carry",
+          [this, context, seed](const Observation& seen) {
+            Beginning together = CarryTogether(context, seen);
+            if (together.failure.empty()) return together;
+            Insert({ArmStage(context, kLeft, CarryGoal(*context, kLeft, seen), AttemptSeed(seed, 1),
+                             "carry_left", true),
+                    ArmStage(context, kRight, CarryGoal(*context, kRight, seen),
+                             AttemptSeed(seed, 2), "carry_right", false)});
+            return NothingToDo();
+          },
+          {}});
+}
+
+}  // namespace hires::skills
