@@ -30,9 +30,17 @@ struct Cell {
   double width() const { return u1 - u0; }
 };
 
-std::vector<Cell> Cut(const PathPiece& piece) {
-  const double way = (piece.a1 + piece.a2).lpNorm<Eigen::Infinity>();
-  const int n = std::clamp(static_cast<int>(std::ceil(way / kCellSize)), 2, kMaxCellsPerPiece);
+/// Cells are small against kCellSize, and against the way that a joint takes to get up to its
+/// speed: a torso lift does that within a millimetre.
+int NumCells(const PathPiece& piece, const JointBounds& bounds) {
+  const VectorXd way = (piece.a1 + piece.a2).cwiseAbs();
+  const VectorXd to_speed = 0.25 * bounds.velocity.cwiseAbs2().cwiseQuotient(bounds.acceleration);
+  const double cells = way.cwiseQuotient(to_speed.cwiseMin(kCellSize)).maxCoeff();
+  return static_cast<int>(std::clamp(std::ceil(cells), 2.0, 1.0 * kMaxCellsPerPiece));
+}
+
+std::vector<Cell> Cut(const PathPiece& piece, const JointBounds& bounds) {
+  const int n = NumCells(piece, bounds);
   std::vector<Cell> cells;
   for (int i = 0; i < n; ++i) {
     const double u0 = static_cast<double>(i) / n, u1 = static_cast<double>(i + 1) / n;
@@ -116,7 +124,7 @@ TimedCell Drive(const Cell& cell, double x0, double x1_max, const JointBounds& b
 std::vector<TimedCell> TimePieces(const std::vector<PathPiece>& pieces, const JointBounds& bounds) {
   std::vector<Cell> cells;
   for (const PathPiece& piece : pieces) {
-    for (Cell& cell : Cut(piece)) cells.push_back(std::move(cell));
+    for (Cell& cell : Cut(piece, bounds)) cells.push_back(std::move(cell));
   }
   const std::vector<double> x1_max = SweepBack(cells, bounds);
   std::vector<TimedCell> timed;
