@@ -19,7 +19,8 @@ constexpr int kBelowAnyLevel = -5000;
 // Work, in rows of an index read one after the other.
 constexpr int kLookUp = 4;         // a row found by its number
 constexpr int kWalkInstance = 16;  // an instance, and what holds of it
-constexpr std::int64_t kFirstAllowance = 256;
+// The state of a restaurant is found at the first try; what a wrong road costs is a millisecond.
+constexpr std::int64_t kFirstAllowance = 4096;
 constexpr std::int64_t kPatience = 8;  // times as much work is allowed the next time
 constexpr std::int64_t kUnlimited = std::numeric_limits<std::int64_t>::max();
 

@@ -339,7 +339,7 @@ TEST_F(StoreQueryTest, WhatHoldsNowCostsTheSameAfterAnyNumberOfRepetitions) {
 }
 
 TEST_F(StoreQueryTest, AFewAmongManyAreFoundByTheShortRoad) {
-  constexpr int kMany = 3000;
+  constexpr int kMany = 10'000;
   std::vector<Fluent> poses;
   std::vector<std::string> names;
   for (int i = 0; i < kMany; ++i) {
@@ -361,10 +361,10 @@ TEST_F(StoreQueryTest, AFewAmongManyAreFoundByTheShortRoad) {
   EXPECT_THAT(Names(open.fluents), ElementsAre("mug1", "Mug2"));
   EXPECT_THAT(Names(closed.fluents), ElementsAre("mug1", "Mug2"));
   EXPECT_THAT(Names(rest.fluents),
-              ElementsAre("p2995", "p2996", "p2997", "p2998", "p2999", "poseMug1"));
+              ElementsAre("p9995", "p9996", "p9997", "p9998", "p9999", "poseMug1"));
   EXPECT_LE(open.visited, 10u);
   EXPECT_LE(rest.visited, 20u);
-  EXPECT_LE(closed.visited, 300u);
+  EXPECT_LE(closed.visited, kMany / 2u);
 }
 
 TEST_F(StoreQueryTest, APageIsOfTheFirstOnesMomentAfterAnyNumberOfChanges) {
