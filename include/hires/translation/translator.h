@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,51 +10,65 @@
 #include "hires/knowledge/sparql.h"
 #include "hires/robot/observation.h"
 #include "hires/robot/robot_profile.h"
+#include "hires/translation/areas.h"
 #include "hires/world/world.h"
 
 namespace hires::translation {
 
 /// What is needed to read symbols as geometry and back; constant.
 struct TranslatorContext {
-  std::shared_ptr<const world::World> world;  ///< areas are its frames
+  std::shared_ptr<const world::World> world;
   std::shared_ptr<const robot::Robot> robot;
-  std::map<std::string, std::string> object_models;  ///< instance (lower case) -> model
+  std::map<std::string, std::string> object_models;     ///< instance (lower case) -> model
+  std::shared_ptr<const knowledge::Ontology> ontology;  ///< null: fluents are not looked at
+  Areas areas;
+
+  /// The catalogue's, or that of its kin: an instance that differs from one of the catalogue in its
+  /// number only (mug3 is what mug1 is), or a model by its own name. Empty: nobody knows.
+  std::string FindModel(const std::string& instance) const;
+  /// @throws base::ConfigError with the names that come near.
+  std::string ModelOf(const std::string& instance) const;
 };
+
+/// The context of a world, a robot and a catalogue (world::LoadObjectCatalogue).
+/// @param models  added to the world's.
+/// @param ontology  may be null.
+TranslatorContext MakeContext(
+    world::World world, robot::Robot robot,
+    const std::map<std::string, std::shared_ptr<const world::ObjectModel>>& catalogue,
+    std::shared_ptr<const knowledge::Ontology> ontology);
 
 /// Where things are, in metres and radians.
 struct GeometricState {
-  world::WorldState world;
+  world::WorldState world;  ///< objects by name, in lower case
   robot::RobotState robot;
 };
 
-/// Symbols to geometry. `fluents` are what the robot knows (a projected view: poses of objects from
-/// hasPose and Pose fluents, areas, postures), `atoms` say what holds in the state to be built:
-/// RobotAt puts the base on its area, HasArmPosture and HasTorsoPosture set joints (an arm that
-/// holds something takes the holding variant), Holding attaches an object to the palm as its last
-/// observed grasp has it, or in the middle of the fingers at the grasp that the skill would take
-/// first; On leaves an object where it was seen if that lies on the area, else puts it on the
-/// area's middle; On(x, trayarea1) on the tray's next free slot. Objects that only fluents know
-/// stay where they were seen.
-/// @throws base::ConfigError naming the atom: unknown area, object, posture; RobotAt missing.
-GeometricState StateOf(const TranslatorContext& context, const knowledge::FluentView& fluents,
+/// Symbols to geometry: `atoms` say what holds in the state to be built, `fluents` where things
+/// were seen. Atoms that follow from knowledge (Type, Connected, At, ...) and wishes are passed
+/// over.
+///
+/// RobotAt(area): the base stands where it was seen if that is at the area (anywhere in it, if it
+/// is a room), else on its middle; in the middle of a room it turns so that it is at no other area.
+/// HasArmPosture, HasTorsoPosture: the first variant of the posture; of an arm that holds something
+/// the holding variant. `armunnamedposture` says that the arm is somewhere else: it is put into its
+/// carrying posture, turned in the shoulder until that fits no name. `torsoposture` is a height
+/// between two named ones. What no atom names stands as the robot's driving posture has it. Without
+/// an upper body there is nothing to move.
+/// Holding(arm, object): in the hand as it was seen there (a Pose in the frame of the palm); else
+/// between the finger tips at 0.4 of its height, upright or, if the hand points down, hanging from
+/// it, whichever leaves it more upright in this posture. The gripper's gap is the object's width.
+/// On(object, area): where it was seen if that is on the area; else on its middle, or beside it by
+/// as little as keeps it clear of the objects that are there. On(object, trayarea1): where it was
+/// seen on the tray; else on the next free slot (middle, right, left: 0.13 m), or where there is
+/// room. Objects that only fluents know stay where they were seen in the map; those whose last
+/// place was a part of the robot, which no atom confirms, are left out.
+///
+/// @param fluents  may be null: nothing was seen.
+/// @throws base::ConfigError naming the atom: unknown area, object, posture or predicate, another
+/// number of arguments, an area of the wrong kind, contradictions (two places of one object, two
+/// objects in one hand), RobotAt missing, no room on the tray, no tray, no such arm.
+GeometricState StateOf(const TranslatorContext& context, const knowledge::FluentView* fluents,
                        const std::vector<base::Atom>& atoms);
-
-struct ClassifyParams {
-  double area_distance{0.25};        ///< [m] from an area's pose that counts as being there
-  double area_yaw{0.35};             ///< [rad]
-  double tucked_tolerance{0.1};      ///< [rad] sum over the arm's joints (PR2's tuck_arms)
-  double posture_tolerance{0.3};     ///< [rad] likewise, other postures
-  double torso_tolerance{0.02};      ///< [m]
-  double placing_half_width{0.175};  ///< [m] of a placing area's square round its frame
-  double placing_height{0.10};       ///< [m] above or below its frame
-  double tray_height{0.05};          ///< [m] above the tray
-  double lying_tilt{0.5};            ///< [rad] beyond which an object has fallen
-};
-
-/// Geometry to symbols: RobotAt (the nearest area within tolerance, else the floor area), postures
-/// (armunnamedposture where none fits), Holding, On (placing areas and the tray; an object that
-/// lies or stands elsewhere has none). Sorted as knowledge::StateAtoms.
-std::vector<base::Atom> AtomsOf(const TranslatorContext& context, const GeometricState& state,
-                                const ClassifyParams& params = {});
 
 }  // namespace hires::translation

@@ -1,0 +1,253 @@
+#include "arrangement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/geometry/angles.h"
+#include "place.h"
+#include "stated_pose.h"
+
+namespace hires::translation {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::Pose3;
+
+constexpr double kGraspHeight = 0.4;    // of an object's height, from its foot
+constexpr double kSlotDistance = 0.13;  // [m] between slots of the tray
+constexpr double kClearance = 0.01;     // [m] between objects that are put side by side
+constexpr double kStep = 0.02;          // [m] of the search for a free spot
+
+/// [m] from an object's origin to the farthest point of its outline from above.
+double RadiusOf(const world::ObjectModel& model) {
+  constexpr double kAll = 10.0;  // [m] above and below: the whole of it
+  double radius = 0.0;
+  for (const geometry::Collision& collision : model.collisions) {
+    const auto outline = geometry::OutlineInBand(collision.shape, collision.X_BS, -kAll, kAll);
+    if (outline) radius = std::max(radius, geometry::CircumscribedRadius(*outline));
+  }
+  return radius;
+}
+
+/// Whether a static body's top carries a square round p_M.
+bool IsCarried(const world::World& world, const Vector3d& p_M, double half_width) {
+  constexpr double kSlack = 0.05;  // [m] in height
+  for (const world::StaticBody& body : world.statics) {
+    for (const geometry::Collision& collision : body.collisions) {
+      const auto bounds = geometry::BoundsOf(collision.shape, body.X_MB * collision.X_BS);
+      const Vector3d half(half_width, half_width, 0.0);
+      if (std::abs(bounds.upper.z() - p_M.z()) < kSlack &&
+          ((p_M - half - bounds.lower).head<2>().array() >= 0.0).all() &&
+          ((bounds.upper - p_M - half).head<2>().array() >= 0.0).all()) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Pose in the tool's frame of an object whose z axis points along `up_T`.
+Pose3 GraspedAlong(const world::ObjectModel& model, const Vector3d& up_T) {
+  const geometry::Aabb bounds = BoundsOf(model);
+  const double height = bounds.lower.z() + kGraspHeight * (bounds.upper.z() - bounds.lower.z());
+  Pose3 X_TO;
+  X_TO.rotation = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), up_T);
+  const Vector3d grasped_O((bounds.lower.x() + bounds.upper.x()) / 2,
+                           (bounds.lower.y() + bounds.upper.y()) / 2, height);
+  X_TO.translation = -(X_TO.rotation * grasped_O);
+  return X_TO;
+}
+
+class Arrangement {
+ public:
+  Arrangement(const TranslatorContext& context, const knowledge::FluentView* fluents,
+              const WantedState& wanted, const Body& body)
+      : context_(context), fluents_(fluents), wanted_(wanted), body_(body) {}
+
+  world::WorldState Make() {
+    for (const auto& [object, arm] : wanted_.holders) AddHeld(object, arm);
+    std::vector<std::string> unplaced;
+    for (const auto& [object, area] : wanted_.places) {
+      if (!AddWhereSeen(object, context_.areas.Require(area))) unplaced.push_back(object);
+    }
+    AddOthers();
+    for (const std::string& object : unplaced) {
+      AddAnew(object, context_.areas.Require(wanted_.places.at(object)));
+    }
+    std::sort(world_.objects.begin(), world_.objects.end(),
+              [](const auto& a, const auto& b) { return a.name < b.name; });
+    return std::move(world_);
+  }
+
+ private:
+  std::optional<StatedPose> SeenPose(const std::string& object) const {
+    return fluents_ ? PoseStatedOf(*fluents_, object) : std::nullopt;
+  }
+
+  const world::ObjectModel& ModelOf(const std::string& object) const {
+    const std::string model = context_.ModelOf(object);
+    const auto found = context_.world->models.find(model);
+    if (found != context_.world->models.end()) return *found->second;
+    throw base::ConfigError(fmt::format("object '{}': the world has no model '{}'", object, model));
+  }
+
+  void Add(const std::string& object, const Pose3& X_MO, const std::string& attached_to = "") {
+    world::ObjectState state;
+    state.name = object;
+    state.model = ModelOf(object).name;
+    state.X_MO = X_MO;
+    state.attached_to = attached_to;
+    world_.objects.push_back(state);
+  }
+
+  void AddHeld(const std::string& object, const std::string& name) {
+    const robot::ArmProfile& arm = context_.robot->profile.upper_body->arms.at(name);
+    const auto seen = SeenPose(object);
+    const bool is_seen_in_hand = seen && base::ToLower(seen->frame) == base::ToLower(arm.palm_link);
+    Add(object, is_seen_in_hand ? body_.X_ML(arm.palm_link) * seen->X_FO : GraspedPose(object, arm),
+        arm.palm_link);
+  }
+
+  /// Between the finger tips, upright in the hand or below it.
+  Pose3 GraspedPose(const std::string& object, const robot::ArmProfile& arm) const {
+    const Pose3 X_MT = body_.X_ML(arm.tool_link);
+    const std::array<Pose3, 2> grasps = {X_MT * GraspedAlong(ModelOf(object), Vector3d::UnitZ()),
+                                         X_MT * GraspedAlong(ModelOf(object), -Vector3d::UnitX())};
+    const double tilt = geometry::TiltOf(grasps[0].rotation);
+    return geometry::TiltOf(grasps[1].rotation) < tilt ? grasps[1] : grasps[0];
+  }
+
+  /// Where it was seen, if that is on the area.
+  bool AddWhereSeen(const std::string& object, const Area& area) {
+    const auto seen = SeenPose(object);
+    if (!seen) return false;
+    const bool is_on_robot = !seen->frame.empty();
+    if (is_on_robot != (area.kind == AreaKind::kTray)) return false;
+    const Pose3 X_MO = is_on_robot ? body_.X_ML(seen->frame) * seen->X_FO : seen->X_FO;
+    if (!CountsAsOn(area, X_MO)) return false;
+    Add(object, X_MO);
+    return true;
+  }
+
+  /// What only fluents know.
+  void AddOthers() {
+    if (fluents_ == nullptr || context_.ontology == nullptr) return;
+    const auto root = context_.ontology->Find("PassiveObject");
+    if (root == knowledge::Ontology::kUnknown) return;
+    for (const auto below : context_.ontology->Below(root)) {
+      fluents_->OfConcept(context_.ontology->Name(below), [&](const knowledge::Fluent& fluent) {
+        AddOther(fluent);
+        return true;
+      });
+    }
+  }
+
+  void AddOther(const knowledge::Fluent& fluent) {
+    const std::string object = base::ToLower(fluent.instance);
+    if (wanted_.holders.count(object) > 0 || wanted_.places.count(object) > 0) return;
+    if (IsPartOfTheWorld(object) || context_.FindModel(object).empty()) return;
+    const auto seen = PoseStatedBy(*fluents_, fluent);
+    if (seen && seen->frame.empty()) Add(object, seen->X_FO);
+  }
+
+  bool IsPartOfTheWorld(const std::string& object) const {
+    const auto& statics = context_.world->statics;
+    return std::any_of(statics.begin(), statics.end(), [&](const world::StaticBody& body) {
+      return base::ToLower(body.name) == object;
+    });
+  }
+
+  /// As AtomsOf would say of an object that was on the area before.
+  bool CountsAsOn(const Area& area, const Pose3& X_MO) const {
+    world::ObjectState object;
+    object.X_MO = X_MO;
+    return AreaUnder(context_.areas, body_, object, ClassifyParams(), area.name) == &area;
+  }
+
+  bool IsClear(const world::ObjectModel& model, const Vector3d& p_M) const {
+    return std::all_of(world_.objects.begin(), world_.objects.end(), [&](const auto& other) {
+      const double apart = RadiusOf(model) + RadiusOf(ModelOf(other.name)) + kClearance;
+      const Vector3d way = other.X_MO.translation - p_M;
+      return way.head<2>().norm() >= apart || std::abs(way.z()) > 0.5;
+    });
+  }
+
+  void AddAnew(const std::string& object, const Area& area) {
+    const Pose3 X_MA = PoseOf(area, body_);
+    if (area.kind == AreaKind::kTray) {
+      if (AddToSlot(object)) return;
+      const auto X_MO = ClearSpot(object, area, X_MA);
+      if (X_MO) return Add(object, *X_MO);
+      throw base::ConfigError(
+          fmt::format("On({}, {}): there is no room left on the tray; put fewer objects on it",
+                      object, kTrayArea));
+    }
+    Add(object, ClearSpot(object, area, X_MA).value_or(X_MA));
+  }
+
+  /// The spot nearest to the area's middle that is clear and that furniture or tray carries.
+  std::optional<Pose3> ClearSpot(const std::string& object, const Area& area,
+                                 const Pose3& X_MA) const {
+    const world::ObjectModel& model = ModelOf(object);
+    const double radius = RadiusOf(model);
+    const int nx = static_cast<int>(area.size.x() / 2 / kStep);
+    const int ny = static_cast<int>(area.size.y() / 2 / kStep);
+    std::optional<Pose3> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int ix = -nx; ix <= nx; ++ix) {
+      for (int iy = -ny; iy <= ny; ++iy) {
+        const Pose3 X_AO = geometry::Lift({ix * kStep, iy * kStep, 0.0});
+        const double distance = X_AO.translation.norm();
+        if (distance >= least || !IsClear(model, X_MA * X_AO.translation)) continue;
+        if (!CountsAsOn(area, X_MA * X_AO)) continue;
+        const bool is_carried = area.kind == AreaKind::kTray || distance == 0.0 ||
+                                IsCarried(*context_.world, X_MA * X_AO.translation, radius);
+        if (!is_carried) continue;
+        best = X_MA * X_AO;
+        least = distance;
+      }
+    }
+    return best;
+  }
+
+  bool AddToSlot(const std::string& object) {
+    const world::ObjectModel& model = ModelOf(object);
+    const Pose3 X_MMiddle =
+        body_.X_ML(context_.robot->profile.tray_link) * context_.robot->profile.X_TO;
+    for (const double y : {0.0, -kSlotDistance, kSlotDistance}) {
+      const Pose3 X_MO = X_MMiddle * geometry::Lift({0.0, y, 0.0});
+      if (!IsClear(model, X_MO.translation)) continue;
+      Add(object, X_MO);
+      return true;
+    }
+    return false;
+  }
+
+  const TranslatorContext& context_;
+  const knowledge::FluentView* fluents_;
+  const WantedState& wanted_;
+  const Body& body_;
+  world::WorldState world_;
+};
+
+}  // namespace
+
+world::WorldState Arrange(const TranslatorContext& context, const knowledge::FluentView* fluents,
+                          const WantedState& wanted, const Body& body) {
+  return Arrangement(context, fluents, wanted, body).Make();
+}
+
+double WidthOf(const world::ObjectModel& model) {
+  const geometry::Aabb bounds = BoundsOf(model);
+  return (bounds.upper - bounds.lower).head<2>().minCoeff();
+}
+
+}  // namespace hires::translation
