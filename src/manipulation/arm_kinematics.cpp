@@ -15,6 +15,7 @@
 #include "hires/geometry/angles.h"
 #include "inverse_iteration.h"
 #include "kdl_conversions.h"
+#include "link_tree.h"
 
 namespace hires::manipulation {
 namespace {
@@ -98,7 +99,7 @@ struct ArmKinematics::Impl {
     HIRES_CHECK(given.size() == joints.size(), "one value per joint of the arm");
   }
 
-  robot::RobotModel model;
+  LinkTree tree;
   std::string arm;
   std::vector<std::string> joints;
   int root{0};  // link that carries the first joint
@@ -108,13 +109,13 @@ struct ArmKinematics::Impl {
 };
 
 ArmKinematics::Impl::Impl(const robot::Robot& robot, const std::string& arm_in)
-    : model(robot.model), arm(arm_in) {
+    : tree(robot.model), arm(arm_in) {
   const robot::ArmProfile& profile = FindArm(robot, arm);
   const std::vector<int> links = LinksToTool(robot, arm, profile);
-  root = model.links[links.front()].joint->parent;
+  root = robot.model.links[links.front()].joint->parent;
   base = LinkIndex(robot, arm, robot.profile.base_link);
   for (const int i : links) {
-    const robot::Link& link = model.links[i];
+    const robot::Link& link = robot.model.links[i];
     chain.addSegment(SegmentOf(link));
     if (link.joint->type != JointType::kFixed) AddJoint(*link.joint);
   }
@@ -133,8 +134,10 @@ void ArmKinematics::Impl::AddJoint(const Joint& joint) {
 }
 
 Pose3 ArmKinematics::Impl::RootPose(const robot::JointPositions& posture) const {
-  const std::vector<Pose3> X_R = robot::ForwardKinematics(model, posture);
-  return X_R[base].Inverse() * X_R[root];
+  std::vector<Eigen::Isometry3d> X_R;
+  tree.Compute(posture, &X_R);
+  const Eigen::Isometry3d X_BS = X_R[base].inverse() * X_R[root];
+  return {X_BS.translation(), Eigen::Quaterniond(X_BS.linear()).normalized()};
 }
 
 Eigen::VectorXd ArmKinematics::Impl::DrawStart(const Eigen::VectorXd& near, base::Rng* rng) const {

@@ -81,6 +81,8 @@ struct CollisionScene::Impl {
                 const LinkMask& links) const;
   void FindNear(const LinkMask& links) const;
   bool IsAllowed(const std::string& a, const std::string& b) const;
+  /// May the thing touch a link that is rigidly joined to this one?
+  bool IsAllowedOnBodyOf(const std::string& thing, int link) const;
   const std::string& NameOfPart(int part) const;
 
   std::optional<Touch> AmongParts(const LinkMask& links) const;
@@ -140,6 +142,15 @@ void CollisionScene::Impl::AddObject(const world::ObjectState& object,
 
 bool CollisionScene::Impl::IsAllowed(const std::string& a, const std::string& b) const {
   return allowed.count(Ordered(a, b)) > 0;
+}
+
+bool CollisionScene::Impl::IsAllowedOnBodyOf(const std::string& thing, int link) const {
+  const RobotParts& robot = fixed->robot_parts;
+  for (int i = 0; i < robot.tree().size(); ++i) {
+    if (robot.RigidGroup(i) != robot.RigidGroup(link)) continue;
+    if (IsAllowed(thing, fixed->robot->model.links[i].name)) return true;
+  }
+  return false;
 }
 
 const std::string& CollisionScene::Impl::NameOfPart(int part) const {
@@ -217,9 +228,15 @@ std::optional<Touch> CollisionScene::Impl::CarriedAndParts(const LinkMask& links
       if (!links[carried[c].link] && !links[parts[i].link]) continue;
       if (fixed->robot_parts.tree().IsBelow(parts[i].link, carried[c].link)) continue;
       const std::string& name = NameOfPart(static_cast<int>(i));
-      if (Disturb(carried[c].name, now.carried[c], name, now.parts[i], fixed->params.padding)) {
-        return Touch{carried[c].name, name};
+      if (!Disturb(carried[c].name, now.carried[c], name, now.parts[i], fixed->params.padding)) {
+        continue;
       }
+      // What stands on the tray keeps no distance from what lies just below it.
+      if (IsAllowedOnBodyOf(carried[c].name, parts[i].link) &&
+          !AreTouching(now.carried[c], now.parts[i], 0.0)) {
+        continue;
+      }
+      return Touch{carried[c].name, name};
     }
   }
   return std::nullopt;

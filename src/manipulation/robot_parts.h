@@ -25,6 +25,7 @@ class RobotParts {
   const std::vector<Part>& parts() const { return parts_; }
   /// Indices of parts, lower one first, that must not touch each other.
   const std::vector<std::pair<int, int>>& pairs() const { return pairs_; }
+  int RigidGroup(int link) const;  ///< the topmost link that is rigidly joined
   /// May this link touch the floor?
   bool stands_on_floor(int link) const { return stands_on_floor_[link]; }
   /// Pairs of links that touch in nearly all postures or a named one, hence left out.
@@ -39,7 +40,6 @@ class RobotParts {
   void FindPairs(const robot::Robot& robot);
   void LeaveOutUsualTouches(const robot::Robot& robot, int num_samples);
   void FindStandingLinks(const robot::Robot& robot, double padding);
-  int RigidGroup(int link) const;  // the topmost link that is rigidly joined
   bool AreNeighbours(int a, int b) const;
   bool AreInOneHand(const robot::Robot& robot, int a, int b) const;
 

@@ -51,13 +51,13 @@ inline void SetArm(const std::string& arm, const std::vector<double>& values,
   for (std::size_t i = 0; i < joints.size(); ++i) (*posture)[joints[i]] = values[i];
 }
 
-/// Both arms in the first variant of a named posture, torso at a height, grippers open.
-inline robot::JointPositions Posture(const std::string& name, double torso) {
+/// Both arms in the first variant of a named posture, torso at a height, grippers at a gap.
+inline robot::JointPositions Posture(const std::string& name, double torso, double gap = 0.09) {
   robot::JointPositions posture = Pr2()->profile.joints;
   posture["torso_lift_joint"] = torso;
   for (const auto& [arm, profile] : Pr2()->profile.upper_body->arms) {
     SetArm(arm, profile.postures.at(name).front(), &posture);
-    robot::SetGap(Pr2()->profile.upper_body->gripper, profile, 0.09, &posture);
+    robot::SetGap(Pr2()->profile.upper_body->gripper, profile, gap, &posture);
   }
   return posture;
 }

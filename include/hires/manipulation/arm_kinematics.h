@@ -35,8 +35,8 @@ class ArmKinematics {
   const ArmJoints& upper() const;
 
   /// Tool in the base frame, the other joints as in `posture`.
-  /// @throws base::ConfigError for a joint in `posture` that the robot lacks or that is out of its
-  /// limits.  @pre one value per joint.
+  /// @throws base::ConfigError for a joint in `posture` that the robot lacks.
+  /// @pre one value per joint.
   geometry::Pose3 ToolPose(const robot::JointPositions& posture, const ArmJoints& joints) const;
 
   /// All different joint positions found that bring the tool to X_BT, within the limits, the one

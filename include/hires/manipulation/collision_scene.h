@@ -52,7 +52,8 @@ class CollisionScene {
   void SetObjects(const std::vector<world::ObjectState>& objects, const geometry::Pose2& X_MB,
                   const robot::JointPositions& posture);
   /// `part` (link, object or static body) may touch `other` from now on: fingers what they grasp, a
-  /// held object what it stands on. Names compare without regard to case, either order.
+  /// held object what it stands on. What may touch a link keeps no distance (padding) from links
+  /// that are rigidly joined to it. Names compare without regard to case, either order.
   void Allow(const std::string& part, const std::string& other);
 
   /// The first touch in a fixed order, or nothing. Loose objects do not count among themselves and
