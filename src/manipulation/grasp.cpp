@@ -76,6 +76,7 @@ class Finder {
  private:
   bool FitsBetweenFingers(double width) const { return width >= kMinGap && width <= max_width_; }
   double TopHeight() const;
+  double DepthInV(double width) const;
 
   const world::ObjectModel& object_;
   const FingerShape& fingers_;
@@ -121,6 +122,11 @@ std::optional<Grasp> Finder::Side(double heading, double height) const {
   return grasp;
 }
 
+/// [m] from the tool's origin towards the palm that a rim of some width fits between open fingers.
+double Finder::DepthInV(double width) const {
+  return (fingers_.open_width - width - 2.0 * fingers_.rim_margin) / fingers_.narrowing;
+}
+
 /// Height of the tool for a grasp from above: as deep as the palm and the supporting face allow,
 /// but not beyond the centre of mass.
 double Finder::TopHeight() const {
@@ -131,7 +137,9 @@ double Finder::TopHeight() const {
 }
 
 std::optional<Grasp> Finder::Top(double heading) const {
-  const double height = TopHeight();
+  const Extent whole = ExtentInBand(object_, heading, bounds_.lower.z(), bounds_.upper.z());
+  const double height =
+      std::max(TopHeight(), bounds_.upper.z() - DepthInV(whole.is_empty() ? 0.0 : whole.size(1)));
   const double depth = bounds_.upper.z() - (height - fingers_.tip_reach);
   if (depth < kMinTopDepth) return std::nullopt;
   const Extent pads =

@@ -102,7 +102,9 @@ void Hands::Send(const std::string& arm, const robot::GripperCommand& command,
   hand.has_slipped = false;
   hand.force = command.max_effort < 0.0 ? max_force_ : std::min(command.max_effort, max_force_);
   const int joint = bodies_[index].gap_joint;
-  const bool opens = command.gap > drives->position(joint) + kSameGap;
+  // To its limit it opens even where what it holds has kept it there.
+  const bool opens = command.gap > drives->position(joint) + kSameGap ||
+                     command.gap >= drives->limits(joint).upper;
   if (hand.object >= 0 && !opens) return;
   if (hand.object >= 0) LetGo(index, objects, physics);
   drives->SendTo(joint, command.gap);

@@ -27,6 +27,12 @@ struct FingerShape {
   double half_height{0.028};      ///< [m] of the fingers, likewise
   double max_gap_used{0.085};  ///< [m] of an object's width: leaves room to get the fingers round
   double clearance{0.015};     ///< [m] kept from the supporting face and the palm
+  /// Open fingers stand like a V. Their inner faces, drawn on to the tool's origin, are
+  /// `open_width` apart there and `narrowing` less for each metre towards the palm (PR2's finger
+  /// boxes turned by 0.548 rad): how deep a wide object fits between them.
+  double open_width{0.125};  ///< [m]
+  double narrowing{1.22};    ///< [m/m]
+  double rim_margin{0.005};  ///< [m] on both sides, between the open fingers and the object's rim
 };
 
 /// Grasps of an object standing upright on its supporting face, best first: from the side at
