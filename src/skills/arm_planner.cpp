@@ -26,6 +26,27 @@ std::string OtherOf(const Touch& touch, const std::string& object) {
   return IsNamed(touch.b, object) ? touch.a : "";
 }
 
+/// Joint positions on the straight way, both ends included, no joint moving more than `resolution`
+/// from one to the next.
+JointPath PointsBetween(const std::vector<double>& from, const std::vector<double>& to,
+                        double resolution) {
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    farthest = std::max(farthest, std::abs(to[i] - from[i]));
+  }
+  const int steps = std::max(1, static_cast<int>(std::ceil(farthest / resolution)));
+  JointPath points;
+  for (int step = 0; step <= steps; ++step) {
+    const double share = static_cast<double>(step) / steps;
+    std::vector<double> point;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      point.push_back((1.0 - share) * from[i] + share * to[i]);
+    }
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
 }  // namespace
 
 std::string FailureOf(const ArmPathResult& result) {
@@ -55,6 +76,7 @@ ArmPlanner::ArmPlanner(const ManipulationContext& context, const std::string& ar
       kinematics_(*context.arms.at(arm)),
       scene_(context.empty_scene->Clone()),
       links_(scene_.MovedBy(context.arm(arm).joints)),
+      upper_body_(scene_.MovedBy({context.upper_body().torso_joint})),
       X_MB_(observation.X_MB),
       posture_(PostureOf(*context.robot, observation.joints)),
       start_(JointsOf(context.arm(arm).joints, posture_)) {
@@ -93,9 +115,9 @@ void ArmPlanner::AllowSupport(const std::string& object) {
     const bool is_loose =
         std::any_of(objects_.begin(), objects_.end(),
                     [&](const world::ObjectState& loose) { return IsNamed(loose.name, other); });
-    const bool is_robot = context_.robot->model.FindLink(other).has_value() &&
-                          other != context_.robot->profile.tray_link;
-    if (other.empty() || is_loose || is_robot) return;
+    const std::optional<int> link = context_.robot->model.FindLink(other);
+    const bool moves = link && upper_body_[static_cast<std::size_t>(*link)];
+    if (other.empty() || is_loose || moves) return;
     scene_.Allow(object, other);
   }
 }
@@ -106,6 +128,15 @@ void ArmPlanner::AllowSelfTouches(const std::vector<double>& joints) {
     const auto touch = TouchAt(joints);
     if (!touch || !model.FindLink(touch->a) || !model.FindLink(touch->b)) return;
     scene_.Allow(touch->a, touch->b);
+  }
+}
+
+void ArmPlanner::AllowSelfTouchesAlong(const std::vector<double>& from,
+                                       const std::vector<double>& to) {
+  const std::vector<double> goal = NearestTurn(context_.robot->model, profile().joints, to, from);
+  for (const std::vector<double>& joints :
+       PointsBetween(from, goal, context_.params.path.resolution)) {
+    AllowSelfTouches(joints);
   }
 }
 
@@ -151,17 +182,9 @@ std::optional<Touch> ArmPlanner::TouchAlong(const std::vector<std::string>& join
   const manipulation::LinkMask links = scene_.MovedBy(joints);
   robot::JointPositions posture = posture_;
   for (std::size_t leg = 1; leg < path.size(); ++leg) {
-    double farthest = 0.0;
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-      farthest = std::max(farthest, std::abs(path[leg][i] - path[leg - 1][i]));
-    }
-    const int steps =
-        std::max(1, static_cast<int>(std::ceil(farthest / context_.params.path.resolution)));
-    for (int step = 0; step <= steps; ++step) {
-      const double share = static_cast<double>(step) / steps;
-      for (std::size_t i = 0; i < joints.size(); ++i) {
-        posture[joints[i]] = (1.0 - share) * path[leg - 1][i] + share * path[leg][i];
-      }
+    for (const std::vector<double>& between :
+         PointsBetween(path[leg - 1], path[leg], context_.params.path.resolution)) {
+      SetJoints(joints, between, &posture);
       if (const auto touch = scene_.FindTouch(X_MB_, posture, links)) return touch;
     }
   }

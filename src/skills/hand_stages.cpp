@@ -50,7 +50,7 @@ Beginning ToSide(const SharedContext& context, const std::string& arm, bool hold
   const std::vector<double>& side = PosturePositions(context->arm(arm), "armtosideposture", holds);
   Beginning beginning;
   for (int i = 0; i < context->params.pick.max_return_tries; ++i) {
-    beginning = MoveArmTo(context, arm, side, observation, AttemptSeed(seed, 1000 + i));
+    beginning = MoveArmTo(context, {arm, side, AttemptSeed(seed, 1000 + i)}, observation);
     if (beginning.failure.empty()) break;
   }
   return beginning;

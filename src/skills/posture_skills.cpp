@@ -45,18 +45,17 @@ void RequireArm(const ManipulationContext& context, const std::string& arm,
   for (const std::string& point : way_points) Named(profile.way_points, "way point", point);
 }
 
-const std::vector<double>& WayPoint(const ManipulationContext& context, const std::string& arm,
-                                    const std::string& name) {
-  return context.arm(arm).way_points.at(name);
+Stage ArmStage(const Context& context, const std::string& name, const ArmMove& move) {
+  return {name, [=](const Observation& seen) { return MoveArmTo(context, move, seen); }, {}};
 }
 
-/// Straight over positions that are passed on the way, to rest at the last.
-Stage ArmStage(const Context& context, const std::string& arm, const std::vector<double>& goal,
-               std::uint64_t seed, const std::string& name, bool passes) {
-  return {
-      name,
-      [=](const Observation& seen) { return MoveArmTo(context, arm, goal, seen, seed, passes); },
-      {}};
+/// [rad] sum of the joints' distances.
+double ErrorTo(const robot::Robot& robot, const robot::ArmProfile& arm,
+               const std::vector<double>& wanted, const std::vector<double>& now) {
+  const std::vector<double> goal = NearestTurn(robot.model, arm.joints, wanted, now);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < now.size(); ++i) sum += std::abs(goal[i] - now[i]);
+  return sum;
 }
 
 bool IsIn(const ManipulationContext& context, const std::string& arm, const std::string& posture,
@@ -100,6 +99,35 @@ const std::vector<double>& FoldGoal(const ManipulationContext& context, const Fo
   const auto way_point = arm.way_points.find(fold.to);
   return way_point == arm.way_points.end() ? PosturePositions(arm, fold.to, holds)
                                            : way_point->second;
+}
+
+/// Whether an arm is where folding and opening pass: from there to there the straight way is free.
+bool IsFolding(const ManipulationContext& context, const std::string& arm,
+               const Observation& seen) {
+  const robot::ArmProfile& profile = context.arm(arm);
+  const std::vector<double> now = JointsOf(profile.joints, seen.joints);
+  for (const auto& [name, positions] : profile.way_points) {
+    if (ErrorTo(*context.robot, profile, positions, now) <= kTuckedError) return true;
+  }
+  return IsIn(context, arm, kTucked, seen) || IsIn(context, arm, kUnTucked, seen);
+}
+
+/// The first motion of an arm begins where the arm is now, the later ones where it was led.
+std::vector<Stage> FoldingStages(const Context& context, const std::vector<Fold>& folds,
+                                 const Observation& seen, std::uint64_t seed) {
+  std::map<std::string, bool> is_folding{{kLeft, IsFolding(*context, kLeft, seen)},
+                                         {kRight, IsFolding(*context, kRight, seen)}};
+  std::vector<Stage> stages;
+  for (std::size_t i = 0; i < folds.size(); ++i) {
+    const bool holds = HeldBy(context->arm(folds[i].arm), seen) != nullptr;
+    const bool is_last = i + 1 == folds.size();
+    const ArmMove move{
+        folds[i].arm, FoldGoal(*context, folds[i], holds), AttemptSeed(seed, static_cast<int>(i)),
+        is_last ? MotionEnd::kSettled : MotionEnd::kPassing, is_folding[folds[i].arm]};
+    is_folding[folds[i].arm] = true;
+    stages.push_back(ArmStage(context, fmt::format("{}_{}", folds[i].arm, folds[i].to), move));
+  }
+  return stages;
 }
 
 /// Columns `first` .. `first + count - 1` of a trajectory of several arms.
@@ -168,25 +196,22 @@ double PostureError(const robot::Robot& robot, const robot::ArmProfile& arm,
   const std::vector<double> now = JointsOf(arm.joints, joints);
   double least = 1e9;
   for (const std::vector<double>& variant : Named(arm.postures, "posture", posture)) {
-    const std::vector<double> goal = NearestTurn(robot.model, arm.joints, variant, now);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < now.size(); ++i) sum += std::abs(goal[i] - now[i]);
-    least = std::min(least, sum);
+    least = std::min(least, ErrorTo(robot, arm, variant, now));
   }
   return least;
 }
 
-Beginning MoveArmTo(Context context, const std::string& arm, const std::vector<double>& goal,
-                    const Observation& observation, std::uint64_t seed, bool passes) {
-  ArmPlanner planner(*context, arm, observation);
+Beginning MoveArmTo(Context context, const ArmMove& move, const Observation& observation) {
+  ArmPlanner planner(*context, move.arm, observation);
   planner.AllowSelfTouches(planner.start());
-  planner.AllowSelfTouches(goal);
-  const manipulation::ArmPathResult way = planner.Way(planner.start(), goal, seed);
+  planner.AllowSelfTouches(move.goal);
+  if (move.is_makers_way) planner.AllowSelfTouchesAlong(planner.start(), move.goal);
+  const manipulation::ArmPathResult way = planner.Way(planner.start(), move.goal, move.seed);
   if (way.status != manipulation::ArmPathStatus::kFound) return CannotBegin(FailureOf(way));
   robot::JointTrajectory trajectory = TrajectoryFrom(
-      *context, observation, context->arm(arm).joints, way.path, context->params.speed);
-  return Begin(std::make_unique<JointMotion>(context, GroupTrajectories{{arm, trajectory}},
-                                             passes ? MotionEnd::kPassing : MotionEnd::kSettled));
+      *context, observation, context->arm(move.arm).joints, way.path, context->params.speed);
+  return Begin(
+      std::make_unique<JointMotion>(context, GroupTrajectories{{move.arm, trajectory}}, move.end));
 }
 
 MoveTorso::MoveTorso(Context context, const base::ActionCall& /*action*/,
@@ -216,16 +241,8 @@ TuckArms::TuckArms(Context context, const base::ActionCall& action, const std::s
   const std::string left = base::ToLower(left_goal), right = base::ToLower(right_goal);
   Append({"choose_order",
           [this, context, seed, left, right](const Observation& seen) {
-            const std::vector<Fold> folds = FoldingSequence(*context, seen, left, right);
-            std::vector<Stage> stages;
-            for (std::size_t i = 0; i < folds.size(); ++i) {
-              const bool holds = HeldBy(context->arm(folds[i].arm), seen) != nullptr;
-              stages.push_back(ArmStage(context, folds[i].arm, FoldGoal(*context, folds[i], holds),
-                                        AttemptSeed(seed, static_cast<int>(i)),
-                                        fmt::format("{}_{}", folds[i].arm, folds[i].to),
-                                        i + 1 < folds.size()));
-            }
-            Insert(std::move(stages));
+            Insert(
+                FoldingStages(context, FoldingSequence(*context, seen, left, right), seen, seed));
             return NothingToDo();
           },
           {}});
@@ -240,9 +257,9 @@ MoveArmToSide::MoveArmToSide(Context context, const base::ActionCall& action,
   Append({"to_side",
           [context, name, seed](const Observation& seen) {
             const robot::ArmProfile& profile = context->arm(name);
-            return MoveArmTo(context, name,
-                             PosturePositions(profile, kToSide, HeldBy(profile, seen) != nullptr),
-                             seen, seed);
+            const bool holds = HeldBy(profile, seen) != nullptr;
+            return MoveArmTo(context, {name, PosturePositions(profile, kToSide, holds), seed},
+                             seen);
           },
           {}});
 }
@@ -252,16 +269,18 @@ MoveArmsToCarryPosture::MoveArmsToCarryPosture(Context context, const base::Acti
   RequireArm(*context, kLeft, {kCarry}, {});
   RequireArm(*context, kRight, {kCarry}, {"above"});
   const std::uint64_t seed = SeedOf(context->params, action);
-  Append(ArmStage(context, kRight, WayPoint(*context, kRight, "above"), AttemptSeed(seed, 0),
-                  "above", true));
+  Append(ArmStage(context, "above",
+                  {kRight, context->arm(kRight).way_points.at("above"), AttemptSeed(seed, 0),
+                   MotionEnd::kPassing}));
   Append({"carry",
           [this, context, seed](const Observation& seen) {
             Beginning together = CarryTogether(context, seen);
             if (together.failure.empty()) return together;
-            Insert({ArmStage(context, kLeft, CarryGoal(*context, kLeft, seen), AttemptSeed(seed, 1),
-                             "carry_left", true),
-                    ArmStage(context, kRight, CarryGoal(*context, kRight, seen),
-                             AttemptSeed(seed, 2), "carry_right", false)});
+            Insert({ArmStage(context, "carry_left",
+                             {kLeft, CarryGoal(*context, kLeft, seen), AttemptSeed(seed, 1),
+                              MotionEnd::kPassing}),
+                    ArmStage(context, "carry_right",
+                             {kRight, CarryGoal(*context, kRight, seen), AttemptSeed(seed, 2)})});
             return NothingToDo();
           },
           {}});

@@ -34,10 +34,13 @@ class ArmPlanner {
   void Allow(const std::string& part, const std::string& other) { scene_.Allow(part, other); }
   /// The fingers may touch the object, whatever it touches then.
   void AllowFingers(const std::string& object);
-  /// The object, held in the present posture, may touch the furniture or the tray that it touches.
+  /// The object, held in the present posture, may touch what it touches of furniture and of the
+  /// robot's base, its tray among it.
   void AllowSupport(const std::string& object);
   /// Parts of the robot that touch each other with the arm's joints like this may do so.
   void AllowSelfTouches(const std::vector<double>& joints);
+  /// ... anywhere on the straight way between two sets of joints.
+  void AllowSelfTouchesAlong(const std::vector<double>& from, const std::vector<double>& to);
 
   const std::vector<double>& start() const { return start_; }  ///< the arm now
   const robot::JointPositions& posture() const { return posture_; }
@@ -70,7 +73,8 @@ class ArmPlanner {
   std::string arm_;
   const manipulation::ArmKinematics& kinematics_;
   manipulation::CollisionScene scene_;
-  manipulation::LinkMask links_;  // that the arm moves
+  manipulation::LinkMask links_;       // that the arm moves
+  manipulation::LinkMask upper_body_;  // that the torso moves
   geometry::Pose2 X_MB_;
   robot::JointPositions posture_;
   std::vector<double> start_;

@@ -5,6 +5,7 @@
 
 #include "hires/skills/activity.h"
 #include "hires/skills/arm_planner.h"
+#include "hires/skills/joint_motion.h"
 #include "hires/skills/manipulation_context.h"
 
 namespace hires::skills {
@@ -54,11 +55,19 @@ const std::vector<double>& PosturePositions(const robot::ArmProfile& arm,
 double PostureError(const robot::Robot& robot, const robot::ArmProfile& arm,
                     const std::string& posture, const robot::JointPositions& joints);
 
+/// How an arm gets somewhere.
+struct ArmMove {
+  std::string arm;
+  std::vector<double> goal;
+  std::uint64_t seed{0};
+  MotionEnd end{MotionEnd::kSettled};
+  bool is_makers_way{false};  ///< the robot's makers say that the straight way is free of itself
+};
+
 /// An arm to a posture or way point round everything that is seen. Where parts of the robot touch
 /// in that posture or in the present one they may: shapes are coarser than the real parts, and the
 /// robot's makers chose its postures.
-Beginning MoveArmTo(std::shared_ptr<const ManipulationContext> context, const std::string& arm,
-                    const std::vector<double>& goal, const robot::Observation& observation,
-                    std::uint64_t seed, bool passes = false);
+Beginning MoveArmTo(std::shared_ptr<const ManipulationContext> context, const ArmMove& move,
+                    const robot::Observation& observation);
 
 }  // namespace hires::skills
