@@ -56,6 +56,10 @@ const std::vector<Quantity>& Quantities() {
       {"loop_damping", "factor", 0.1, 10,
        [](Variation& v) -> double& { return v.loop_damping_factor; }},
       {"sway", "factor", 0, 10, [](Variation& v) -> double& { return v.sway_factor; }},
+      {"detection_noise", "m", 0, 0.2, [](Variation& v) -> double& { return v.detection_noise; }},
+      {"detection_noise_yaw", "rad", 0, 1,
+       [](Variation& v) -> double& { return v.detection_noise_yaw; }},
+      {"encoder_noise", "rad", 0, 0.1, [](Variation& v) -> double& { return v.encoder_noise; }},
   };
   return quantities;
 }

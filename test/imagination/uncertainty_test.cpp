@@ -227,6 +227,10 @@ TEST(UncertaintyTest, EveryQuantityMovesItsNumberAlone) {
       {"late_cycle_delay", "s", 0.18, [](const Variation& v) { return v.late_cycle_delay; }},
       {"loop_damping", "factor", 0.19, [](const Variation& v) { return v.loop_damping_factor; }},
       {"sway", "factor", 0.2, [](const Variation& v) { return v.sway_factor; }},
+      {"detection_noise", "m", 0.021, [](const Variation& v) { return v.detection_noise; }},
+      {"detection_noise_yaw", "rad", 0.22,
+       [](const Variation& v) { return v.detection_noise_yaw; }},
+      {"encoder_noise", "rad", 0.023, [](const Variation& v) { return v.encoder_noise; }},
   };
   for (const Slot& slot : slots) {
     const Variation v = SampleVariation(
