@@ -100,7 +100,7 @@ TEST(StateOfTest, ARobotThatWasSeenAtTheAreaStaysWhereItWasSeen) {
 TEST(StateOfTest, PosturesSetJoints) {
   const auto state = Build({{"HasTorsoPosture", {"TorsoMiddlePosture"}},
                             {"HasArmPosture", {"leftArm1", "ArmToSidePosture"}}});
-  EXPECT_EQ(state.robot.joints.at("torso_lift_joint"), 0.15);
+  EXPECT_EQ(state.robot.joints.at("torso_lift_joint"), 0.20);
   EXPECT_EQ(state.robot.joints.at("l_shoulder_pan_joint"), 2.115);
 }
 
