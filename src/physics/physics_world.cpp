@@ -255,8 +255,8 @@ BodyId PhysicsWorld::AddDriven(const std::vector<geometry::Collision>& collision
                                const geometry::Pose3& X_WB) {
   Group group;
   group.is_static = false;
-  impl_->AddFixtures(collisions, geometry::Pose3(), static_cast<BodyId>(impl_->entries.size()),
-                     &group);
+  group.body = static_cast<BodyId>(impl_->entries.size());
+  impl_->AddFixtures(collisions, geometry::Pose3(), group.body, &group);
   impl_->SetDriven({X_WB, {}}, &group);
   impl_->groups.push_back(std::move(group));
   return impl_->AddEntry(BodyKind::kDriven, static_cast<int>(impl_->groups.size()) - 1);

@@ -46,8 +46,8 @@ Vector3d FrictionDirection(const Vector3d& slip, const Vector3d& normal) {
 
 /// Whether the group's body holds the held one.
 bool IsGrip(const HeldBody& held, const Group& group) {
-  const BodyId id = group.fixtures.empty() ? -1 : group.fixtures.front().body;
-  return id == held.driven || std::find(held.grip.begin(), held.grip.end(), id) != held.grip.end();
+  return group.body == held.driven ||
+         std::find(held.grip.begin(), held.grip.end(), group.body) != held.grip.end();
 }
 
 void CopyTo(dReal* to, const Vector3d& from) {

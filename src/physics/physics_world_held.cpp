@@ -35,9 +35,10 @@ void PhysicsWorld::Impl::Release(const BodyState& state, LooseBody* body) {
   SetLoose(state, body);
 }
 
-std::optional<FixedTouch> PhysicsWorld::Impl::LookForFixedTouch(Group* group) {
+std::optional<FixedTouch> PhysicsWorld::Impl::LookForFixedTouch(BodyId except, Group* group) {
   std::optional<FixedTouch> deepest;
   for (Fixture& fixed : groups[0].fixtures) {
+    if (fixed.body == except) continue;
     const Vector3d& p = group->p_WMiddle;
     const Vector3d away = (fixed.bounds_G.lower - p).cwiseMax(p - fixed.bounds_G.upper);
     if (away.cwiseMax(0.0).squaredNorm() > group->radius * group->radius) continue;
@@ -95,10 +96,13 @@ std::vector<Touch> PhysicsWorld::FindTouches() {
   return last;
 }
 
-std::optional<FixedTouch> PhysicsWorld::FindFixedTouch(BodyId driven) {
+std::optional<FixedTouch> PhysicsWorld::FindFixedTouch(BodyId driven, BodyId except) {
   Group& group = impl_->DrivenAt(driven);
-  if (group.asked_at != group.num_moves) group.fixed_touch = impl_->LookForFixedTouch(&group);
+  if (group.asked_at != group.num_moves || group.asked_except != except) {
+    group.fixed_touch = impl_->LookForFixedTouch(except, &group);
+  }
   group.asked_at = group.num_moves;
+  group.asked_except = except;
   return group.fixed_touch;
 }
 

@@ -30,6 +30,7 @@ struct Fixture {
 /// Shapes that move together: all static ones (G is the world), or those of one driven body.
 struct Group {
   bool is_static{true};
+  BodyId body{-1};  // of a driven group
   BodyState motion;
   Matrix3d R_WG{Matrix3d::Identity()};
   std::uint64_t num_moves{1};
@@ -38,6 +39,7 @@ struct Group {
   Vector3d p_WMiddle{Vector3d::Zero()};
   double radius{0.0};
   std::uint64_t asked_at{0};  // num_moves for which fixed_touch holds
+  BodyId asked_except{-1};
   std::optional<FixedTouch> fixed_touch;
 
   /// Velocity of the group's material point at p_W [m/s].
@@ -139,7 +141,7 @@ struct PhysicsWorld::Impl {
   void Grip(const HeldBody& held, LooseBody* body);
   void Release(const BodyState& state, LooseBody* body);
   void PlaceFixture(const Group& group, Fixture* fixture) const;
-  std::optional<FixedTouch> LookForFixedTouch(Group* group);
+  std::optional<FixedTouch> LookForFixedTouch(BodyId except, Group* group);
   void FindAllContacts();
   /// Sums up `found` for touches().
   void NoteTouch(const LooseBody& body, BodyId other, double friction);

@@ -48,8 +48,7 @@ PlanarRobot::PlanarRobot(const Scene& scene, const robot::JointPositions& joints
   links_.Place(MovingPositions(), &X_B_);
   for (std::size_t i = 0; i < X_B_.size(); ++i) {
     X_M_.push_back(X_MB * X_B_[i]);
-    const auto& collisions = links_.bodies()[i].collisions;
-    body_ids_.push_back(collisions.empty() ? -1 : physics_->AddDriven(collisions, X_M_.back()));
+    body_ids_.push_back(physics_->AddDriven(links_.bodies()[i].collisions, X_M_.back()));
   }
   moves_.assign(X_M_.size(), false);
   hands_ = Hands(MakeHands(), ProfileOf(scene).gripper.force);
@@ -93,7 +92,7 @@ void PlanarRobot::PlaceAll(const Pose3& X_MB) {
   links_.Place(MovingPositions(), &X_B_);
   for (std::size_t i = 0; i < X_B_.size(); ++i) {
     X_M_[i] = X_MB * X_B_[i];
-    if (body_ids_[i] >= 0) physics_->SetMotion(body_ids_[i], {X_M_[i], {}});
+    physics_->SetMotion(body_ids_[i], {X_M_[i], {}});
   }
 }
 
@@ -128,10 +127,8 @@ void PlanarRobot::Attach(int object, const std::string& link, double friction) {
     hands_.Hold(static_cast<int>(i), object, friction, objects_, physics_);
     return;
   }
-  int body = links_.BodyOf(link);
-  // Of frames without shapes physics knows nothing; what carries them will do, if it is rigid.
-  while (body > 0 && body_ids_[body] < 0) body = links_.ParentOf(body);
-  physics_->Hold(objects_[object].body, body_ids_[body], {body_ids_[body]});
+  const BodyId body = body_ids_[links_.BodyOf(link)];
+  physics_->Hold(objects_[object].body, body, {body});
   fixed_to_[object] = link;
 }
 
@@ -151,7 +148,7 @@ void PlanarRobot::Move(double time, const Pose3& X_MBnext) {
   for (std::size_t i = 0; i < X_M_.size(); ++i) {
     const Pose3 X_next = X_MBnext * X_B_[i];
     const bool moves = !IsSame(X_next, X_M_[i]);
-    if (body_ids_[i] >= 0 && (moves || moves_[i])) {
+    if (moves || moves_[i]) {
       physics_->SetMotion(body_ids_[i], MotionBetween(X_M_[i], X_next, dt));
     }
     moves_[i] = moves;
@@ -218,7 +215,6 @@ std::optional<RobotContact> PlanarRobot::FindContact(
     const Pose2& X_MB, const std::vector<std::string>& object_names) const {
   if (auto contact = scene_->base_clearance.FindContact(X_MB)) return contact;
   for (std::size_t i = 1; i < body_ids_.size(); ++i) {
-    if (body_ids_[i] < 0) continue;
     const auto touch = physics_->FindFixedTouch(body_ids_[i]);
     if (!touch) continue;
     return RobotContact{links_.bodies()[i].collisions[touch->shape].name,

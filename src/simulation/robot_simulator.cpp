@@ -17,12 +17,13 @@ namespace {
 using geometry::Pose2;
 using geometry::Pose3;
 
-constexpr int kSlowSteps = 10;            // slip, contacts: every tenth step
-constexpr double kSlipCorrelation = 0.1;  // [s]
-constexpr double kGhostLifetime = 4.6;    // [s] persistence of ground objects (navigation.md, 4)
-constexpr double kGhostSize = 0.10;       // [m] edge: a voxel of the obstacle filter
-constexpr double kLookPeriod = 0.5;       // [s] between two looks of the camera
-constexpr double kStillHead = 0.02;       // [rad/s] faster than this pictures blur
+constexpr int kSlowSteps = 10;             // slip, contacts: every tenth step
+constexpr double kSlipCorrelation = 0.1;   // [s]
+constexpr double kGhostLifetime = 4.6;     // [s] persistence of ground objects (navigation.md, 4)
+constexpr double kGhostSize = 0.10;        // [m] edge: a voxel of the obstacle filter
+constexpr double kLookPeriod = 0.5;        // [s] between two looks of the camera
+constexpr physics::BodyId kFloorBody = 0;  // statics follow in their order
+constexpr double kStillHead = 0.02;        // [rad/s] faster than this pictures blur
 
 robot::BaseControllerParams Varied(robot::BaseControllerParams params, const Variation& variation) {
   params.command_lag += variation.command_delay;
@@ -143,16 +144,19 @@ void RobotSimulator::AddObjects(const world::WorldState& state, LevelOfDetail le
 }
 
 void RobotSimulator::AddRobot() {
-  if (shapes_B_) clearance_.emplace(*shapes_B_, scene_->world);
   std::vector<geometry::Collision> shapes = robot_shapes_B();
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     if (objects_[i].attached_to.empty()) continue;
     for (geometry::Collision shape : scene_->world.models.at(objects_[i].model)->collisions) {
+      shape.name = objects_[i].name;
       shape.X_BS = X_BO_start_[i] * shape.X_BS;
       shapes.push_back(std::move(shape));
     }
   }
   robot_body_ = physics_->AddDriven(shapes, X_MB_);
+  if (!shapes_B_) return;
+  clearance_.emplace(shapes, scene_->world);
+  for (const geometry::Collision& shape : shapes) shape_names_.push_back(shape.name);
 }
 
 GraspableObject RobotSimulator::Graspable(std::size_t object) const {
@@ -189,7 +193,14 @@ void RobotSimulator::AddPlanarRobot() {
 
 std::optional<RobotContact> RobotSimulator::FindContact() const {
   if (planar_) return planar_->FindContact(drive_.motion().X_MB, object_names_);
-  return (clearance_ ? *clearance_ : scene_->clearance).FindContact(drive_.motion().X_MB);
+  if (!clearance_) return scene_->clearance.FindContact(drive_.motion().X_MB);
+  const auto contact = clearance_->FindContact(drive_.motion().X_MB);
+  if (!contact) return contact;
+  // A raised arm's prism reaches down to where the arm is not: look exactly.
+  const auto touch = physics_->FindFixedTouch(robot_body_, kFloorBody);
+  if (!touch) return std::nullopt;
+  return RobotContact{shape_names_[touch->shape],
+                      scene_->world.statics[touch->fixed - kFloorBody - 1].name};
 }
 
 void RobotSimulator::RefuseBadStart(const world::WorldState& state) {

@@ -162,6 +162,25 @@ TEST(PlanarSimulatorTest, TheTrayLevelHasTheShapeOfTheJoints) {
   }
 }
 
+TEST(PlanarSimulatorTest, AnArmMayReachOverThings) {
+  // The upper arm rises over a pillar that ends at the shoulder's height.
+  robot::RobotState state = ReadyState();
+  state.joints["r_shoulder_lift_joint"] = -0.4;
+  state.joints["r_elbow_flex_joint"] = -0.5;
+  const double shoulder = 0.790675 + kTorso;
+  for (const double too_high : {0.0, 0.12}) {
+    world::World room = test_support::Room();
+    const double height = shoulder + too_high;
+    room.statics = {
+        test_support::Block("pillar", {0.04, 0.04, height}, {0.42, kToolY, height / 2})};
+    for (const LevelOfDetail level : {LevelOfDetail::kTray, LevelOfDetail::kPlanar}) {
+      const std::string refusal = ConfigErrorOf(
+          [&] { RobotSimulator(MakeScene(room, Pr2()), {}, {}, state, base::Rng(1), {}, level); });
+      EXPECT_THAT(refusal, HasSubstr(too_high > 0.0 ? "'pillar'" : "no ConfigError"));
+    }
+  }
+}
+
 TEST(PlanarSimulatorTest, RefusesARobotWithoutUpperBody) {
   EXPECT_THAT(ConfigErrorOf([] {
                 RobotSimulator(test_support::RoomScene(), {}, {},

@@ -111,9 +111,9 @@ class PhysicsWorld {
   const std::vector<Touch>& touches() const;
   /// What touches now, without a step. Costs about as much as one.
   std::vector<Touch> FindTouches();
-  /// The deepest touch of a driven body with static ones, or nothing. Looks at shapes only when the
-  /// body has moved since it was asked last. @pre body is driven.
-  std::optional<FixedTouch> FindFixedTouch(BodyId driven);
+  /// The deepest touch of a driven body with static ones but `except`, or nothing. Looks at shapes
+  /// only when the body has moved since it was asked last. @pre body is driven.
+  std::optional<FixedTouch> FindFixedTouch(BodyId driven, BodyId except = -1);
 
   /// Saving canonicalises the state (unit quaternions): after Save() the world goes on with exactly
   /// what was saved, so that a restored world and the saved one stay equal bit by bit.

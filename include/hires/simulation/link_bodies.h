@@ -32,8 +32,6 @@ class LinkBodies {
   /// @param positions  of the moving joints, in their order; limits are not looked at.
   void Place(const std::vector<double>& positions, std::vector<geometry::Pose3>* X_B) const;
 
-  /// The body that carries another one; -1 for body 0.
-  int ParentOf(int body) const { return body == 0 ? -1 : mounts_[body].parent; }
   /// Body of a link and the link's place in it. @throws base::ConfigError if there is no such link.
   int BodyOf(const std::string& link) const;
   const geometry::Pose3& InBody(const std::string& link) const;

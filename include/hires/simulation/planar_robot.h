@@ -88,7 +88,7 @@ class PlanarRobot {
   std::vector<std::string> fixed_names_;
   JointDrives drives_;
   LinkBodies links_;
-  std::vector<physics::BodyId> body_ids_;  // by body of links_; -1 for one without shapes
+  std::vector<physics::BodyId> body_ids_;  // by body of links_
   Hands hands_;
   std::vector<geometry::Pose3> X_B_;   // of the bodies in the base frame
   std::vector<geometry::Pose3> X_M_;   // in the map

@@ -127,6 +127,7 @@ class RobotSimulator {
   robot::JointPositions joints_;  // at the start; at level `tray` for ever
   std::optional<std::vector<geometry::Collision>> shapes_B_;  // where they are not the scene's
   std::optional<RobotClearance> clearance_;                   // likewise
+  std::vector<std::string> shape_names_;                      // of robot_body_, likewise
   std::unique_ptr<PlanarRobot> planar_;                       // null at level `tray`
   physics::BodyId robot_body_{0};
   std::vector<physics::BodyId> object_bodies_;
