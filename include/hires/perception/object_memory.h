@@ -1,0 +1,116 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/perception/detector.h"
+#include "hires/robot/observation.h"
+
+namespace hires::perception {
+
+struct MemoryParams {
+  double expected_share{0.6};   ///< of an object's surface that must be free before it counts as
+                                ///< missed in a look that does not detect it
+  int looks_to_vanish{3};       ///< in a row in which it was missed
+  double blending{0.3};         ///< weight of a new sight of an object that stands still
+  double moved_distance{0.04};  ///< [m] beyond which it has moved, and the new sight alone counts
+  double moved_angle{0.3};      ///< [rad] likewise
+  double grasp_distance{0.05};  ///< [m] from between the finger tips to an object that they hold
+  double closed_gap{0.005};     ///< [m] a gripper that has closed so far holds nothing
+  double gap_below{0.02};       ///< [m] that a gap may be narrower than what it holds
+  double gap_above{0.006};      ///< [m] that it may be wider
+  double still_gap{0.0015};     ///< [m] that a gap may change and count as still
+  double still_time{0.15};      ///< [s] after which it is
+  double hand_distance{0.08};   ///< [m] between where a held object should be and where it is seen
+};
+
+/// What the robot feels of itself at a moment.
+struct BodyReading {
+  double time{0.0};  ///< [s]
+  geometry::Pose2 X_MB;
+  robot::JointPositions joints;  ///< gripper joints are gaps [m]; finger angles agree with them
+};
+
+struct RememberedObject {
+  std::string name;  ///< lower case
+  std::string model;
+  std::string link;  ///< of the robot, that it moves with: the palm that holds it, or the base
+                     ///< when it stands on the tray; empty: the map
+  bool is_held{false};
+  bool is_observed{false};  ///< seen or felt; else hearsay
+  geometry::Pose3 X_LO;     ///< in the frame of `link`
+  double time{0.0};         ///< [s] when it was seen last
+  int num_missed{0};        ///< looks in a row
+};
+
+/// What the robot knows of loose objects from looking and from its fingers: where they are, what it
+/// holds, what is not where it was any more. Knows no clock; same input, same output.
+///
+/// A hand holds an object when its gap has come to rest at about the object's width, with the
+/// object between the finger tips by what was seen last; it has let go when the gap opens, and lost
+/// it when the gap closes further, or when the object is seen elsewhere. What is held moves with
+/// the palm, what is over the tray moves with the base. An object vanishes when the place where it
+/// should be was free to look at in several looks in a row, and it was not detected; one that
+/// slipped out of the hand at once.
+class ObjectMemory {
+ public:
+  ObjectMemory(std::shared_ptr<const Surroundings> surroundings,
+               std::shared_ptr<const robot::Robot> robot, const MemoryParams& params = {});
+
+  /// Hearsay: where an object is said to be. Counts only as long as nothing was observed of it.
+  /// @throws base::ConfigError for a model that the world, or a link that the robot does not have.
+  void Believe(const std::string& name, const std::string& model, const std::string& link,
+               const geometry::Pose3& X_LO);
+  /// Nobody says so any more.
+  void Disbelieve(const std::string& name);
+
+  /// @return whether a hand took, let go or lost something.
+  /// @throws base::ConfigError as robot::ForwardKinematics.
+  bool Feel(const BodyReading& body);
+  /// One look of the robot's camera; an empty list says that nothing was seen.
+  /// @pre the robot has a camera.
+  /// @throws base::ConfigError as Feel, and for a detection whose model the world does not have or
+  /// whose pose is no number; nothing is remembered of such a look.
+  void Look(const BodyReading& body, const std::vector<Detection>& detections);
+
+  const std::map<std::string, RememberedObject>& objects() const { return objects_; }
+  /// Objects whose place was looked at in vain, or that slipped away: until they are seen again.
+  std::vector<std::string> Vanished() const;
+  /// Everything that is known to be somewhere, in the map; what is held is attached to its palm.
+  std::vector<robot::SeenObject> Known(const BodyReading& body) const;
+
+ private:
+  struct Hand {
+    double gap{-1.0};   ///< [m] at which it has been still; negative: not felt yet
+    double since{0.0};  ///< [s]
+    std::string holds;
+    double grasp_gap{0.0};  ///< [m] when it took hold
+  };
+  class Links;
+
+  bool FeelHand(const Links& links, const std::string& arm, Hand* hand, const BodyReading& body);
+  std::string Between(const Links& links, const robot::ArmProfile& arm, double gap) const;
+  void Take(const Links& links, const robot::ArmProfile& arm, const std::string& name, Hand* hand);
+  void LetGo(const Links& links, const std::string& name, double time);
+  void Lose(const std::string& name);
+  void See(const Links& links, const Detection& detection, const geometry::Pose3& X_MO,
+           double time);
+  void Miss(const LineOfSight& sight, const CameraView& view, const Links& links,
+            const std::vector<Detection>& detections);
+  void PlaceAt(const Links& links, const geometry::Pose3& X_MO, RememberedObject* object) const;
+  bool IsOverTray(const Links& links, const geometry::Pose3& X_MO) const;
+  Hand* HandOf(const std::string& object);
+
+  std::shared_ptr<const Surroundings> surroundings_;
+  std::shared_ptr<const robot::Robot> robot_;
+  MemoryParams params_;
+  std::optional<geometry::Aabb> tray_T_;  ///< plate, in the tray's frame
+  std::map<std::string, RememberedObject> objects_;
+  std::map<std::string, bool> vanished_;  ///< name -> true; by name
+  std::map<std::string, Hand> hands_;     ///< by arm
+};
+
+}  // namespace hires::perception

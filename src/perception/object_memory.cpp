@@ -1,0 +1,319 @@
+#include "hires/perception/object_memory.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+
+namespace hires::perception {
+namespace {
+
+using geometry::Pose3;
+
+geometry::Aabb BoundsOf(const std::vector<geometry::Collision>& collisions) {
+  geometry::Aabb bounds;
+  for (const geometry::Collision& collision : collisions) {
+    bounds.Include(geometry::BoundsOf(collision.shape, collision.X_BS));
+  }
+  return bounds;
+}
+
+double DistanceTo(const geometry::Aabb& bounds, const Eigen::Vector3d& p) {
+  return (bounds.lower - p).cwiseMax(p - bounds.upper).cwiseMax(0.0).norm();
+}
+
+/// What fingers that close along a direction may feel of a box: its height if they close from above
+/// and below, else one of its sides (round objects are as wide as their box however it turns).
+std::vector<double> WidthsAcross(const geometry::Aabb& bounds, const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d size = bounds.upper - bounds.lower;
+  if (std::abs(direction.z()) > 0.7) return {size.z()};
+  return {size.x(), size.y()};
+}
+
+/// The largest of the tray's shapes from above: rims are smaller than the plate.
+std::optional<geometry::Aabb> PlateOf(const robot::Robot& robot) {
+  const auto link = robot.model.FindLink(robot.profile.tray_link);
+  if (!link) return std::nullopt;
+  std::optional<geometry::Aabb> plate;
+  double largest = 0.0;
+  for (const geometry::Collision& collision : robot.model.links[*link].collisions) {
+    const geometry::Aabb bounds = geometry::BoundsOf(collision.shape, collision.X_BS);
+    const Eigen::Vector3d size = bounds.upper - bounds.lower;
+    if (size.x() * size.y() <= largest) continue;
+    largest = size.x() * size.y();
+    plate = bounds;
+  }
+  return plate;
+}
+
+bool IsDetected(const std::vector<Detection>& detections, const std::string& name) {
+  return std::any_of(detections.begin(), detections.end(), [&](const Detection& detection) {
+    return base::ToLower(detection.name) == name;
+  });
+}
+
+}  // namespace
+
+/// Where the robot's links are in the map.
+class ObjectMemory::Links {
+ public:
+  Links(const robot::Robot& robot, const BodyReading& body)
+      : model_(robot.model), X_RL_(robot::ForwardKinematics(robot.model, body.joints)) {
+    const auto base = model_.FindLink(robot.profile.base_link);
+    X_MR_ = geometry::Lift(body.X_MB) * (base ? X_RL_[*base].Inverse() : Pose3());
+  }
+  Pose3 X_ML(const std::string& link) const {
+    if (link.empty()) return {};
+    const auto index = model_.FindLink(link);
+    if (!index) throw base::ConfigError(base::UnknownName("link", link, model_.LinkNames()));
+    return X_MR_ * X_RL_[*index];
+  }
+
+ private:
+  const robot::RobotModel& model_;
+  std::vector<Pose3> X_RL_;
+  Pose3 X_MR_;
+};
+
+ObjectMemory::ObjectMemory(std::shared_ptr<const Surroundings> surroundings,
+                           std::shared_ptr<const robot::Robot> robot, const MemoryParams& params)
+    : surroundings_(std::move(surroundings)),
+      robot_(std::move(robot)),
+      params_(params),
+      tray_T_(PlateOf(*robot_)) {
+  if (!robot_->profile.upper_body) return;
+  for (const auto& [arm, unused] : robot_->profile.upper_body->arms) hands_[arm] = {};
+}
+
+// ---- Hearsay.
+
+void ObjectMemory::Believe(const std::string& name, const std::string& model,
+                           const std::string& link, const Pose3& X_LO) {
+  surroundings_->Model(model);
+  if (!link.empty() && !robot_->model.FindLink(link)) {
+    throw base::ConfigError(fmt::format(
+        "object '{}': {}", name, base::UnknownName("link", link, robot_->model.LinkNames())));
+  }
+  const std::string key = base::ToLower(name);
+  const auto known = objects_.find(key);
+  if (vanished_.count(key) > 0 || (known != objects_.end() && known->second.is_observed)) return;
+  RememberedObject object;
+  object.name = key;
+  object.model = model;
+  object.link = link;
+  object.X_LO = X_LO;
+  for (auto& [arm, hand] : hands_) {
+    const bool is_palm = robot_->profile.upper_body->arms.at(arm).palm_link == link;
+    if (hand.holds == key && !is_palm) hand.holds.clear();
+    if (!is_palm || (!hand.holds.empty() && hand.holds != key)) continue;
+    object.is_held = true;
+    hand.holds = key;
+    hand.grasp_gap = hand.gap;
+  }
+  objects_[key] = object;
+}
+
+void ObjectMemory::Disbelieve(const std::string& name) {
+  const auto known = objects_.find(base::ToLower(name));
+  if (known == objects_.end() || known->second.is_observed) return;
+  if (Hand* hand = HandOf(known->first)) hand->holds.clear();
+  objects_.erase(known);
+}
+
+// ---- Feeling.
+
+bool ObjectMemory::Feel(const BodyReading& body) {
+  const Links links(*robot_, body);
+  bool has_changed = false;
+  for (auto& [arm, hand] : hands_) has_changed |= FeelHand(links, arm, &hand, body);
+  return has_changed;
+}
+
+bool ObjectMemory::FeelHand(const Links& links, const std::string& name, Hand* hand,
+                            const BodyReading& body) {
+  const robot::ArmProfile& arm = robot_->profile.upper_body->arms.at(name);
+  const auto position = body.joints.find(arm.gripper_joint);
+  if (position == body.joints.end()) return false;
+  const double gap = position->second;
+  if (hand->gap < 0.0 && !hand->holds.empty()) hand->grasp_gap = gap;  // believed to hold
+  if (hand->gap < 0.0 || std::abs(gap - hand->gap) > params_.still_gap) {
+    hand->gap = gap;
+    hand->since = body.time;
+  }
+  if (!hand->holds.empty()) {
+    const std::string held = hand->holds;
+    const bool is_lost = gap < params_.closed_gap || gap < hand->grasp_gap - params_.gap_below;
+    if (!is_lost && gap <= hand->grasp_gap + params_.gap_above) return false;
+    hand->holds.clear();
+    is_lost ? Lose(held) : LetGo(links, held, body.time);
+    return true;
+  }
+  if (body.time - hand->since < params_.still_time || gap < params_.closed_gap) return false;
+  const std::string between = Between(links, arm, gap);
+  if (between.empty()) return false;
+  Take(links, arm, between, hand);
+  return true;
+}
+
+/// The object that a gap of this width can hold, nearest to the middle between the finger tips.
+std::string ObjectMemory::Between(const Links& links, const robot::ArmProfile& arm,
+                                  double gap) const {
+  const Pose3 X_MT = links.X_ML(arm.tool_link);
+  std::string nearest;
+  double least = params_.grasp_distance;
+  for (const auto& [name, object] : objects_) {
+    if (object.is_held) continue;
+    const geometry::Aabb bounds = BoundsOf(surroundings_->Model(object.model).collisions);
+    const Pose3 X_MO = links.X_ML(object.link) * object.X_LO;
+    const Pose3 X_OT = X_MO.Inverse() * X_MT;
+    const auto widths = WidthsAcross(bounds, X_OT.rotation * Eigen::Vector3d::UnitY());
+    const bool fits = std::any_of(widths.begin(), widths.end(), [&](double width) {
+      return gap >= width - params_.gap_below && gap <= width + params_.gap_above;
+    });
+    if (!fits) continue;
+    const double distance = DistanceTo(bounds, X_OT.translation);
+    if (distance > least) continue;
+    nearest = name;
+    least = distance;
+  }
+  return nearest;
+}
+
+void ObjectMemory::Take(const Links& links, const robot::ArmProfile& arm, const std::string& name,
+                        Hand* hand) {
+  RememberedObject& object = objects_.at(name);
+  const Pose3 X_MO = links.X_ML(object.link) * object.X_LO;
+  object.link = arm.palm_link;
+  object.X_LO = links.X_ML(arm.palm_link).Inverse() * X_MO;
+  object.is_held = object.is_observed = true;
+  object.num_missed = 0;
+  hand->holds = name;
+  hand->grasp_gap = hand->gap;
+}
+
+void ObjectMemory::LetGo(const Links& links, const std::string& name, double time) {
+  RememberedObject& object = objects_.at(name);
+  const Pose3 X_MO = links.X_ML(object.link) * object.X_LO;
+  object.is_held = false;
+  object.is_observed = true;
+  object.time = time;
+  object.num_missed = 0;
+  PlaceAt(links, X_MO, &object);
+}
+
+void ObjectMemory::Lose(const std::string& name) {
+  if (Hand* hand = HandOf(name)) hand->holds.clear();
+  objects_.erase(name);
+  vanished_[name] = true;
+}
+
+ObjectMemory::Hand* ObjectMemory::HandOf(const std::string& object) {
+  for (auto& [arm, hand] : hands_) {
+    if (hand.holds == object) return &hand;
+  }
+  return nullptr;
+}
+
+bool ObjectMemory::IsOverTray(const Links& links, const Pose3& X_MO) const {
+  if (!tray_T_) return false;
+  constexpr double kBeside = 0.02, kBelow = 0.05, kAbove = 0.10;  // [m]
+  const Eigen::Vector3d p_T = links.X_ML(robot_->profile.tray_link).Inverse() * X_MO.translation;
+  return p_T.x() >= tray_T_->lower.x() - kBeside && p_T.x() <= tray_T_->upper.x() + kBeside &&
+         p_T.y() >= tray_T_->lower.y() - kBeside && p_T.y() <= tray_T_->upper.y() + kBeside &&
+         p_T.z() >= tray_T_->upper.z() - kBelow && p_T.z() <= tray_T_->upper.z() + kAbove;
+}
+
+void ObjectMemory::PlaceAt(const Links& links, const Pose3& X_MO, RememberedObject* object) const {
+  object->link = IsOverTray(links, X_MO) ? robot_->profile.base_link : "";
+  object->X_LO = links.X_ML(object->link).Inverse() * X_MO;
+}
+
+// ---- Looking.
+
+void ObjectMemory::Look(const BodyReading& body, const std::vector<Detection>& detections) {
+  for (const Detection& detection : detections) {
+    surroundings_->Model(detection.model);
+    if (detection.X_CO.IsFinite()) continue;
+    throw base::ConfigError(
+        fmt::format("detection of '{}': its pose is not finite", detection.name));
+  }
+  const Links links(*robot_, body);
+  const CameraView view = ViewOf(*robot_, body.X_MB, body.joints);
+  std::vector<world::ObjectState> expected;
+  for (const robot::SeenObject& seen : Known(body)) {
+    expected.push_back({seen.name, seen.model, seen.X_MO, {}, seen.attached_to});
+  }
+  const LineOfSight sight(surroundings_, expected, ShapesOf(*robot_, body.X_MB, body.joints));
+  Miss(sight, view, links, detections);
+  for (const Detection& detection : detections) {
+    See(links, detection, view.X_MC * detection.X_CO, body.time);
+  }
+}
+
+/// Counts the objects that should have been detected.
+void ObjectMemory::Miss(const LineOfSight& sight, const CameraView& view, const Links& links,
+                        const std::vector<Detection>& detections) {
+  std::vector<std::string> gone;
+  for (auto& [name, object] : objects_) {
+    if (IsDetected(detections, name)) continue;
+    const Pose3 X_MO = links.X_ML(object.link) * object.X_LO;
+    const double share = sight.VisibleShareAt(view, object.model, X_MO, name);
+    if (share < params_.expected_share) continue;
+    if (++object.num_missed >= params_.looks_to_vanish) gone.push_back(name);
+  }
+  for (const std::string& name : gone) Lose(name);
+}
+
+void ObjectMemory::See(const Links& links, const Detection& detection, const Pose3& X_MO,
+                       double time) {
+  const std::string name = base::ToLower(detection.name);
+  vanished_.erase(name);
+  RememberedObject& object = objects_[name];
+  const bool is_new = object.name.empty() || object.model != detection.model;
+  object.name = name;
+  object.model = detection.model;
+  object.time = time;
+  object.num_missed = 0;
+  const Pose3 X_LO = links.X_ML(object.link).Inverse() * X_MO;
+  const double moved = (X_LO.translation - object.X_LO.translation).norm();
+  const double turned = X_LO.rotation.angularDistance(object.X_LO.rotation);
+  if (object.is_held && moved > params_.hand_distance) {
+    HandOf(name)->holds.clear();  // seen elsewhere: it is not in the hand any more
+    object.is_held = false;
+  }
+  const bool is_still = !is_new && object.is_observed && moved <= params_.moved_distance &&
+                        turned <= params_.moved_angle;
+  object.is_observed = true;
+  if (is_still) {
+    object.X_LO.translation += params_.blending * (X_LO.translation - object.X_LO.translation);
+    object.X_LO.rotation = object.X_LO.rotation.slerp(params_.blending, X_LO.rotation).normalized();
+  } else if (object.is_held) {
+    object.X_LO = X_LO;
+  } else {
+    PlaceAt(links, X_MO, &object);
+  }
+}
+
+// ---- What is known.
+
+std::vector<std::string> ObjectMemory::Vanished() const {
+  std::vector<std::string> names;
+  for (const auto& [name, unused] : vanished_) names.push_back(name);
+  return names;
+}
+
+std::vector<robot::SeenObject> ObjectMemory::Known(const BodyReading& body) const {
+  const Links links(*robot_, body);
+  std::vector<robot::SeenObject> known;
+  for (const auto& [name, object] : objects_) {
+    known.push_back({name, object.model, links.X_ML(object.link) * object.X_LO, object.time,
+                     object.is_held ? object.link : ""});
+  }
+  return known;
+}
+
+}  // namespace hires::perception

@@ -1,0 +1,328 @@
+#include "hires/perception/object_memory.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "hires/base/error.h"
+#include "hires/geometry/angles.h"
+#include "hires/robot/gripper.h"
+#include "support/sight_scenes.h"
+
+namespace hires::perception {
+namespace {
+
+using geometry::Pose3;
+using test_support::At;
+using test_support::Thing;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+const robot::Robot& Pr2() {
+  static const robot::Robot pr2 = robot::LoadRobot(HIRES_SOURCE_DIR "/config/robots/pr2.yaml");
+  return pr2;
+}
+
+/// A PR2 at the origin of an empty room, what there really is, and what it remembers of it.
+class ObjectMemoryTest : public testing::Test {
+ protected:
+  ObjectMemoryTest() {
+    body_.joints = Pr2().profile.joints;
+    SetGap("rightarm1", 0.0);
+    SetGap("leftarm1", 0.0);
+    body_.joints["head_pan_joint"] = 0.0;
+    LookDown(0.5);
+    PutArm("leftarm1", "armtosideposture");
+    PutArm("rightarm1", "armtosideposture");
+  }
+
+  static std::shared_ptr<const Surroundings> MakeSurroundings() {
+    world::World world = test_support::SightWorld();
+    world.statics.clear();
+    return std::make_shared<Surroundings>(world);
+  }
+
+  void LookDown(double tilt) { body_.joints["head_tilt_joint"] = tilt; }
+  void PutArm(const std::string& name, const std::string& posture) {
+    const robot::ArmProfile& arm = Pr2().profile.upper_body->arms.at(name);
+    const auto& positions = arm.postures.at(posture)[0];
+    for (std::size_t i = 0; i < positions.size(); ++i) body_.joints[arm.joints[i]] = positions[i];
+  }
+  void SetGap(const std::string& name, double gap) {
+    const robot::UpperBodyProfile& upper = *Pr2().profile.upper_body;
+    robot::SetGap(upper.gripper, upper.arms.at(name), gap, &body_.joints);
+  }
+  Pose3 X_ML(const std::string& link) const {
+    const auto X_RL = robot::ForwardKinematics(Pr2().model, body_.joints);
+    return geometry::Lift(body_.X_MB) *
+           X_RL[*Pr2().model.FindLink(Pr2().profile.base_link)].Inverse() *
+           X_RL[*Pr2().model.FindLink(link)];
+  }
+
+  /// A look at what there really is.
+  void Look(const std::vector<world::ObjectState>& truth, double noise = 0.0) {
+    body_.time += 0.5;
+    const LineOfSight sight(surroundings_, truth, ShapesOf(Pr2(), body_.X_MB, body_.joints));
+    const DetectorParams detector{0.3, noise, noise};
+    memory_.Look(body_,
+                 Detect(sight, ViewOf(Pr2(), body_.X_MB, body_.joints), truth, detector, &rng_));
+  }
+  /// Some time in which nothing moves.
+  bool Rest() {
+    bool has_changed = false;
+    for (int i = 0; i < 10; ++i) {
+      body_.time += 0.05;
+      has_changed |= memory_.Feel(body_);
+    }
+    return has_changed;
+  }
+  Pose3 Remembered(const std::string& name) const {
+    for (const robot::SeenObject& seen : memory_.Known(body_)) {
+      if (seen.name == name) return seen.X_MO;
+    }
+    throw std::runtime_error("nothing is remembered of " + name);
+  }
+  std::vector<std::string> Names() const {
+    std::vector<std::string> names;
+    for (const auto& [name, object] : memory_.objects()) names.push_back(name);
+    return names;
+  }
+  /// Has the right hand take a mug that was seen between its fingers, upright.
+  void Grasp() {
+    PutArm("rightarm1", "armuntuckedposture");
+    SetGap("rightarm1", 0.09);
+    mug_ = Thing("mug1", "mug", {});
+    mug_.X_MO.translation = X_ML("r_gripper_tool_frame").translation - Eigen::Vector3d(0, 0, 0.05);
+    memory_.Believe("mug1", "mug", "", mug_.X_MO);
+    Rest();
+    SetGap("rightarm1", 0.079);
+    ASSERT_TRUE(Rest());
+    ASSERT_TRUE(memory_.objects().at("mug1").is_held);
+  }
+
+  std::shared_ptr<const Surroundings> surroundings_ = MakeSurroundings();
+  ObjectMemory memory_{surroundings_, std::make_shared<const robot::Robot>(Pr2())};
+  BodyReading body_;
+  base::Rng rng_{5};
+  world::ObjectState mug_;
+};
+
+TEST_F(ObjectMemoryTest, WhatWasSeenIsRememberedWhereItWasSeen) {
+  Look({Thing("Mug1", "mug", At(1.5, 0.1, 0.7))});
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  EXPECT_LT((Remembered("mug1").translation - Eigen::Vector3d(1.5, 0.1, 0.7)).norm(), 1e-9);
+  EXPECT_EQ(memory_.objects().at("mug1").time, body_.time);
+}
+
+TEST_F(ObjectMemoryTest, ManyNoisyLooksSettleNearTheTruth) {
+  const auto truth = {Thing("mug1", "mug", At(1.5, 0.1, 0.7))};
+  for (int i = 0; i < 30; ++i) Look(truth, 0.005);
+  double sum = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    Look(truth, 0.005);
+    sum += (Remembered("mug1").translation - Eigen::Vector3d(1.5, 0.1, 0.7)).squaredNorm();
+  }
+  // Blending by 0.3 leaves a share 0.3 / 1.7 of the variance 3 * 0.005^2; looks that count as a
+  // move (0.04 m: 5 sd) hardly happen.
+  EXPECT_NEAR(sum / 200, 3 * 2.5e-5 * 0.3 / 1.7, 6e-6);
+}
+
+TEST_F(ObjectMemoryTest, AMovedObjectIsBelievedAtOnce) {
+  Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
+  Look({Thing("mug1", "mug", At(1.6, 0.1, 0.7))});
+  EXPECT_NEAR(Remembered("mug1").translation.x(), 1.6, 1e-9);
+}
+
+TEST_F(ObjectMemoryTest, AnObjectVanishesAfterThreeLooksAtItsFreePlace) {
+  Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
+  Look({});
+  Look({});
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  EXPECT_THAT(memory_.Vanished(), IsEmpty());
+  Look({});
+  EXPECT_THAT(Names(), IsEmpty());
+  EXPECT_THAT(memory_.Vanished(), ElementsAre("mug1"));
+  Look({Thing("mug1", "mug", At(1.5, 0.3, 0.7))});
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  EXPECT_THAT(memory_.Vanished(), IsEmpty());
+}
+
+TEST_F(ObjectMemoryTest, ALookThatFindsItBetweenStartsTheCountAnew) {
+  const auto mug = Thing("mug1", "mug", At(1.5, 0.1, 0.7));
+  for (int i = 0; i < 5; ++i) {
+    Look({mug});
+    Look({});
+    Look({});
+  }
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+}
+
+TEST_F(ObjectMemoryTest, WhatIsHiddenOrOutOfViewDoesNotVanish) {
+  const auto mug = Thing("mug1", "mug", At(1.8, 0.0, 0.7));
+  const auto screen = Thing("screen1", "screen", At(1.3, 0.0, 0.6));
+  Look({mug});
+  for (int i = 0; i < 5; ++i) Look({mug, screen});  // seen from above the screen's edge or not
+  Look({screen});
+  for (int i = 0; i < 5; ++i) Look({screen});
+  EXPECT_THAT(Names(), ElementsAre("mug1", "screen1")) << "the screen hides its place";
+  body_.joints["head_pan_joint"] = 1.5;
+  for (int i = 0; i < 5; ++i) Look({});
+  EXPECT_THAT(Names(), ElementsAre("mug1", "screen1")) << "the robot looked elsewhere";
+}
+
+TEST_F(ObjectMemoryTest, TheOwnArmBeforeAnObjectDoesNotMakeItVanish) {
+  PutArm("rightarm1", "armuntuckedposture");
+  body_.joints["head_pan_joint"] = -0.7;  // towards the arm
+  LookDown(0.9);
+  // In the line from the camera through the forearm.
+  const Pose3 X_MC = ViewOf(Pr2(), body_.X_MB, body_.joints).X_MC;
+  const Eigen::Vector3d way =
+      X_ML("r_forearm_link") * Eigen::Vector3d(0.15, 0.0, 0.0) - X_MC.translation;
+  world::ObjectState mug = Thing("mug1", "mug", {});
+  mug.X_MO.translation = X_MC.translation + (way.norm() + 0.25) * way.normalized();
+  memory_.Believe("mug1", "mug", "", mug.X_MO);
+  for (int i = 0; i < 5; ++i) Look({});
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  PutArm("rightarm1", "armtosideposture");
+  for (int i = 0; i < 5; ++i) Look({});
+  EXPECT_THAT(Names(), IsEmpty());
+}
+
+TEST_F(ObjectMemoryTest, AGripperThatRestsOnAnObjectHoldsIt) {
+  Grasp();
+  EXPECT_EQ(memory_.objects().at("mug1").link, "r_gripper_palm_link");
+  const Eigen::Vector3d p_PO =
+      X_ML("r_gripper_palm_link").Inverse() * Remembered("mug1").translation;
+  PutArm("rightarm1", "armcarryposture");
+  body_.X_MB = {2.0, 1.0, 0.7};
+  Rest();
+  EXPECT_LT((X_ML("r_gripper_palm_link") * p_PO - Remembered("mug1").translation).norm(), 1e-9);
+  for (const robot::SeenObject& seen : memory_.Known(body_)) {
+    EXPECT_EQ(seen.attached_to, "r_gripper_palm_link");
+  }
+}
+
+TEST_F(ObjectMemoryTest, AnOpenGripperRoundAnObjectHoldsNothing) {
+  PutArm("rightarm1", "armuntuckedposture");
+  memory_.Believe("mug1", "mug", "", X_ML("r_gripper_tool_frame"));
+  SetGap("rightarm1", 0.09);
+  EXPECT_FALSE(Rest());
+}
+
+TEST_F(ObjectMemoryTest, AGripperThatIsStillClosingHoldsNothingYet) {
+  PutArm("rightarm1", "armuntuckedposture");
+  memory_.Believe("mug1", "mug", "", X_ML("r_gripper_tool_frame"));
+  for (double gap = 0.09; gap > 0.062; gap -= 0.0025) {  // 0.05 m/s
+    SetGap("rightarm1", gap);
+    body_.time += 0.05;
+    EXPECT_FALSE(memory_.Feel(body_)) << gap;
+  }
+}
+
+TEST_F(ObjectMemoryTest, AGripperThatClosesOnSomethingElseHoldsNothing) {
+  PutArm("rightarm1", "armuntuckedposture");
+  memory_.Believe("mug1", "mug", "", X_ML("r_gripper_tool_frame"));
+  SetGap("rightarm1", 0.03);  // a mug is 0.08 m wide
+  EXPECT_FALSE(Rest());
+  memory_.Believe("mug1", "mug", "", At(3.0, 0.0, 0.5));
+  SetGap("rightarm1", 0.08);  // right width, wrong place
+  EXPECT_FALSE(Rest());
+}
+
+TEST_F(ObjectMemoryTest, AHandThatOpensLetsGoWhereItIs) {
+  Grasp();
+  const Eigen::Vector3d before = Remembered("mug1").translation;
+  SetGap("rightarm1", 0.088);
+  EXPECT_TRUE(Rest());
+  EXPECT_FALSE(memory_.objects().at("mug1").is_held);
+  PutArm("rightarm1", "armtosideposture");
+  Rest();
+  EXPECT_LT((Remembered("mug1").translation - before).norm(), 1e-9);
+}
+
+TEST_F(ObjectMemoryTest, AnObjectThatSlippedOutIsGone) {
+  Grasp();
+  SetGap("rightarm1", 0.0);
+  EXPECT_TRUE(Rest());
+  EXPECT_THAT(Names(), IsEmpty());
+  EXPECT_THAT(memory_.Vanished(), ElementsAre("mug1"));
+}
+
+TEST_F(ObjectMemoryTest, AHeldObjectThatIsSeenElsewhereIsNotHeld) {
+  Grasp();
+  Look({Thing("mug1", "mug", At(1.6, 0.2, 0.7))});
+  EXPECT_FALSE(memory_.objects().at("mug1").is_held);
+  EXPECT_NEAR(Remembered("mug1").translation.x(), 1.6, 1e-9);
+}
+
+TEST_F(ObjectMemoryTest, WhatStandsOnTheTrayTravelsWithTheBase) {
+  LookDown(1.2);
+  Look({Thing("mug1", "mug", At(0.28, 0.1, 0.3462))});
+  ASSERT_THAT(Names(), ElementsAre("mug1"));
+  EXPECT_EQ(memory_.objects().at("mug1").link, Pr2().profile.base_link);
+  body_.X_MB = {1.0, 2.0, geometry::kPi / 2};
+  EXPECT_LT((Remembered("mug1").translation - Eigen::Vector3d(0.9, 2.28, 0.3462)).norm(), 1e-9);
+  // It slides off, and is seen on the floor behind.
+  body_.X_MB = {};
+  Look({Thing("mug1", "mug", At(1.5, 0.0, 0.0))});
+  EXPECT_EQ(memory_.objects().at("mug1").link, "");
+}
+
+TEST_F(ObjectMemoryTest, HearsayCountsUntilSomethingIsObserved) {
+  memory_.Believe("mug1", "mug", "", At(1.5, 0.1, 0.7));
+  EXPECT_FALSE(memory_.objects().at("mug1").is_observed);
+  Look({Thing("mug1", "mug", At(1.52, 0.1, 0.7))});
+  EXPECT_NEAR(Remembered("mug1").translation.x(), 1.52, 1e-9) << "seen, not blended with hearsay";
+  memory_.Believe("mug1", "mug", "", At(9.0, 9.0, 0.7));
+  memory_.Disbelieve("mug1");
+  EXPECT_NEAR(Remembered("mug1").translation.x(), 1.52, 1e-9);
+  memory_.Believe("mug2", "mug", "", At(3.0, 1.0, 0.7));
+  memory_.Disbelieve("Mug2");
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+}
+
+TEST_F(ObjectMemoryTest, HearsayThatIsLookedAtInVainVanishes) {
+  memory_.Believe("mug1", "mug", "", At(1.5, 0.1, 0.7));
+  for (int i = 0; i < 3; ++i) Look({});
+  EXPECT_THAT(memory_.Vanished(), ElementsAre("mug1"));
+  memory_.Believe("mug1", "mug", "", At(1.5, 0.1, 0.7));
+  EXPECT_THAT(Names(), IsEmpty()) << "who has looked knows better";
+}
+
+TEST_F(ObjectMemoryTest, WhatIsSaidToBeInTheHandIsThereAsLongAsTheFingersFeelIt) {
+  SetGap("rightarm1", 0.08);
+  memory_.Believe("mug1", "mug", "r_gripper_palm_link", At(0.18, 0.0, -0.04));
+  EXPECT_FALSE(Rest());
+  EXPECT_TRUE(memory_.objects().at("mug1").is_held);
+  SetGap("rightarm1", 0.0);
+  EXPECT_TRUE(Rest());
+  EXPECT_THAT(Names(), IsEmpty());
+}
+
+TEST_F(ObjectMemoryTest, AnotherObjectIsNotTakenIntoAHandThatIsFull) {
+  Grasp();
+  memory_.Believe("mug2", "mug", "", X_ML("r_gripper_tool_frame"));
+  EXPECT_FALSE(Rest());
+  EXPECT_FALSE(memory_.objects().at("mug2").is_held);
+}
+
+TEST_F(ObjectMemoryTest, ABadLookLeavesTheMemoryAsItWas) {
+  Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
+  EXPECT_THROW(memory_.Look(body_, {{"teapot1", "teapot", At(1, 0, 0), 1.0}}), base::ConfigError);
+  EXPECT_THROW(memory_.Look(body_, {{"mug2", "mug", At(std::nan(""), 0, 0), 1.0}}),
+               base::ConfigError);
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  EXPECT_THROW(memory_.Believe("mug2", "mugg", "", {}), base::ConfigError);
+  EXPECT_THROW(memory_.Believe("mug2", "mug", "r_palm", {}), base::ConfigError);
+}
+
+TEST_F(ObjectMemoryTest, ARobotWithoutHandsFeelsNothing) {
+  ObjectMemory memory(surroundings_,
+                      std::make_shared<const robot::Robot>(test_support::TrayRobot()));
+  EXPECT_FALSE(memory.Feel({}));
+  memory.Believe("mug1", "mug", "", At(1.0, 0.0, 0.5));
+  EXPECT_EQ(memory.Known({}).size(), 1u);
+}
+
+}  // namespace
+}  // namespace hires::perception
