@@ -14,7 +14,7 @@ struct TrajectoryPoint {
 
 /// A motion of some joints; between two points positions follow the cubic through both points'
 /// positions and velocities (a straight line where there are no velocities), as the PR2's joint
-/// trajectory controllers do.
+/// trajectory controllers do. Without points: the joints brake and stand.
 struct JointTrajectory {
   std::vector<std::string> joints;
   std::vector<TrajectoryPoint> points;  ///< times ascending
