@@ -1,1 +1,214 @@
-// Written in the next step.
+#include "hires/execution/monitor.h"
+
+#include <algorithm>
+
+#include "hires/base/error.h"
+#include "hires/base/overloaded.h"
+#include "hires/planning/shop2_reader.h"
+#include "hires/planning/task_text.h"
+#include "imagination_desk.h"
+#include "plan_quest.h"
+#include "repair.h"
+#include "session.h"
+#include "step_dispatch.h"
+#include "step_watch.h"
+
+namespace hires::execution {
+
+/// Goes from stage to stage; the parts do the work.
+struct Monitor::Impl {
+  enum class Stage {
+    kIdle,
+    kPlanning,  ///< of the first plan
+    kExecuting,
+    kRepairing,  ///< what runs goes on, nothing new begins
+    kEnding,     ///< until every step has stopped
+  };
+
+  Impl(const planning::PlanningKnowledge* knowledge, const planning::OperatorData* operators,
+       const MonitorParams& params)
+      : session(knowledge, operators, params) {}
+
+  void On(const TaskRequested& event);
+  void On(const PlanArrived& event) { quest.OnAnswer(event); }
+  void On(const StepFinished& event) { watch.OnFinished(event); }
+  void On(const StateObserved& event) { session.Observe(event); }
+  void On(const GeometryChanged& event) { desk.OnChanged(event); }
+  void On(const ImagineAnswered& event) { desk.OnAnswer(event); }
+  void On(const PreemptRequested&);
+  void On(const ClockTicked&) {}
+
+  void Advance();
+  void Plan();
+  void Execute();
+  void Mend();
+  void TakeUpTrouble();
+  void Conclude(Finish::Outcome outcome, const std::string& reason);
+  void EndIfStill();
+
+  Session session;
+  StepWatch watch{&session};
+  ImaginationDesk desk{&session};
+  StepDispatch dispatch{&session, &desk};
+  PlanQuest quest{&session};
+  Repair repair{&session, &quest};
+  Stage stage{Stage::kIdle};
+  Finish ending;
+};
+
+void Monitor::Impl::On(const TaskRequested& event) {
+  if (stage != Stage::kIdle) {
+    return session.Warning("'" + event.task + "' is not taken up: '" + session.task() +
+                           "' is being carried out; preempt it first");
+  }
+  session.BeginTask(event.task);
+  stage = Stage::kPlanning;
+  planning::Problem problem;
+  problem.source = "task";
+  try {
+    if (!session.has_state()) throw base::ConfigError("nothing has been observed yet; try again");
+    problem.tasks = planning::ReadTasks(event.task, "task");
+    problem.facts = session.facts().Data();
+    CheckTasks(problem, session.domain());
+  } catch (const base::ConfigError& error) {
+    return Conclude(Finish::Outcome::kFailed, error.what());
+  }
+  repair.BeginTask(problem);
+  quest.Begin({{std::move(problem), event.task}}, session.facts());
+}
+
+void Monitor::Impl::On(const PreemptRequested&) {
+  if (stage == Stage::kIdle || stage == Stage::kEnding) return;
+  Conclude(Finish::Outcome::kPreempted, "preempted");
+}
+
+/// Until nothing changes any more.
+void Monitor::Impl::Advance() {
+  for (bool again = true; again;) {
+    const Stage stage_before = stage;
+    const int revision_before = session.revision();
+    switch (stage) {
+      case Stage::kIdle:
+        return;
+      case Stage::kPlanning:
+        Plan();
+        break;
+      case Stage::kExecuting:
+        Execute();
+        break;
+      case Stage::kRepairing:
+        Mend();
+        break;
+      case Stage::kEnding:
+        EndIfStill();
+        break;
+    }
+    again = stage != stage_before || session.revision() != revision_before;
+  }
+}
+
+void Monitor::Impl::Plan() {
+  quest.Update();
+  if (quest.is_under_way()) return;
+  if (quest.outcome() != PlanQuest::Outcome::kFound) {
+    const bool is_none = quest.outcome() == PlanQuest::Outcome::kNoPlan;
+    return Conclude(is_none ? Finish::Outcome::kNoPlan : Finish::Outcome::kFailed, quest.why());
+  }
+  try {
+    PlanRun run(session.next_plan(), quest.plan(), quest.problem(), session.domain(),
+                session.operators());
+    std::vector<int> informs = InformedSteps(run);
+    session.Adopt(std::move(run), std::move(informs), {});
+  } catch (const base::ConfigError& error) {
+    return Conclude(Finish::Outcome::kFailed,
+                    std::string("the planner's plan is of no use: ") + error.what());
+  }
+  desk.Open();
+  stage = Stage::kExecuting;
+}
+
+void Monitor::Impl::Execute() {
+  watch.Check(true);
+  if (session.run().IsOver()) return Conclude(Finish::Outcome::kSucceeded, "");
+  if (!session.has_trouble()) desk.Update();
+  if (session.has_trouble()) return TakeUpTrouble();
+  dispatch.Run();
+}
+
+void Monitor::Impl::TakeUpTrouble() {
+  const std::string useless = repair.Begin(*session.TakeTrouble());
+  if (!useless.empty()) return Conclude(Finish::Outcome::kFailed, useless);
+  stage = Stage::kRepairing;
+}
+
+void Monitor::Impl::Mend() {
+  watch.Check(false);
+  if (session.has_trouble()) TakeUpTrouble();
+  if (stage != Stage::kRepairing) return;
+  switch (repair.Update()) {
+    case Repair::Result::kUnderWay:
+      return;
+    case Repair::Result::kMended:
+      desk.Open();
+      stage = Stage::kExecuting;
+      return;
+    case Repair::Result::kNoPlan:
+      return Conclude(Finish::Outcome::kNoPlan, repair.why());
+    case Repair::Result::kFailed:
+      return Conclude(Finish::Outcome::kFailed, repair.why());
+  }
+}
+
+void Monitor::Impl::Conclude(Finish::Outcome outcome, const std::string& reason) {
+  desk.Close();
+  quest.Cancel();
+  repair.Cancel();
+  if (session.has_plan()) {
+    for (const int step : session.run().Active()) session.Stop(step);
+  }
+  ending = {outcome, reason};
+  stage = Stage::kEnding;
+}
+
+void Monitor::Impl::EndIfStill() {
+  if (session.has_plan()) {
+    watch.Check(false);
+    session.TakeTrouble();  // it does not matter any more
+    const PlanRun& run = session.run();
+    const std::vector<int> active = run.Active();
+    const auto moves = [&](int step) { return run.at(step).phase == StepPhase::kRunning; };
+    if (std::any_of(active.begin(), active.end(), moves)) return;
+  }
+  session.EndTask();
+  session.Send(ending);
+  stage = Stage::kIdle;
+}
+
+Monitor::Monitor(const planning::PlanningKnowledge* knowledge,
+                 const planning::OperatorData* operators, const MonitorParams& params)
+    : impl_(std::make_unique<Impl>(knowledge, operators, params)) {}
+
+Monitor::~Monitor() = default;
+
+std::vector<Command> Monitor::Handle(const Event& event, double now) {
+  impl_->session.SetNow(now);
+  std::visit([&](const auto& e) { impl_->On(e); }, event);
+  impl_->Advance();
+  return impl_->session.TakeCommands();
+}
+
+std::optional<double> Monitor::WakeAt() const {
+  if (impl_->stage == Impl::Stage::kIdle) return std::nullopt;
+  std::optional<double> wake;
+  for (const std::optional<double>& at :
+       {impl_->watch.WakeAt(), impl_->desk.WakeAt(), impl_->quest.WakeAt()}) {
+    if (at) wake = std::min(wake.value_or(*at), *at);
+  }
+  return wake;
+}
+
+bool Monitor::is_busy() const { return impl_->stage != Impl::Stage::kIdle; }
+
+std::vector<StepStatus> Monitor::Steps() const { return impl_->session.Steps(); }
+
+}  // namespace hires::execution

@@ -136,6 +136,8 @@ struct MonitorParams {
   double retry_period{5.0};       ///< [s] until imagination is asked again in vain, then
   double break_delay{0.5};        ///< [s] that an observation must contradict before it counts
   double stop_timeout{10.0};      ///< [s] for a stopped step to answer; then it is given up
+  /// Facts that say that the robot carries ?object, whose pose then tells nothing new.
+  std::vector<std::string> carried{"(Holding ?arm ?object)", "(On ?object trayArea1)"};
 };
 
 enum class StepPhase { kWaiting, kReady, kRunning, kChecking, kDone, kFailed, kSkipped };

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "session.h"
+
+namespace hires::execution {
+
+/// For each `!imagine` step the step that it informs: the next one of that name whose arguments are
+/// among the alternatives; -1: there is none, or the step does not imagine.
+std::vector<int> InformedSteps(const PlanRun& run);
+
+/// Looks after the `!imagine` steps of the plan: asks as soon as the state is known in which the
+/// imagined step will start, asks again when it changes, moves deadlines with the plan, and brings
+/// in the answers, or the defaults where there is none in time.
+class ImaginationDesk {
+ public:
+  explicit ImaginationDesk(Session* session) : session_(*session) {}
+
+  void Open();   ///< a plan was adopted; questions of the last one go on where they are the same
+  void Close();  ///< nothing is asked any more
+  void OnAnswer(const ImagineAnswered& answer);
+  void OnChanged(const GeometryChanged& change);
+  void Update();
+  /// Whether nothing is waited for any more before the step begins, which could begin now.
+  bool MayStart(int step);
+  /// The step begins: where there is no answer it takes the defaults.
+  void Settle(int step);
+  std::optional<double> WakeAt() const;
+
+ private:
+  struct Question {
+    int step{-1};    ///< the `!imagine` step
+    int target{-1};  ///< the step that it informs
+    base::ActionTemplate action;
+    planning::OnLate on_late{planning::OnLate::kDefault};
+    bool is_open{true};  ///< its step has not begun
+    bool is_hopeless{false};
+    int request{0};               ///< under way; 0: none
+    std::set<std::string> start;  ///< what changes of the state in which the step will start
+    std::set<std::string> known;  ///< instances when it was asked
+    double deadline{std::numeric_limits<double>::infinity()};
+    std::optional<double> asked;    ///< [s] for the first time
+    std::optional<double> retry;    ///< [s] not before
+    std::optional<double> limit;    ///< [s] the step waits for nothing else, and not beyond this
+    std::optional<double> differs;  ///< [s] since when the start is another one
+    std::optional<ImagineAnswered> answer;
+    std::string why_not;  ///< why there is no answer yet
+  };
+
+  Question* FindTarget(int step);
+  bool IsWorthAsking(const Question& question);
+  void TakeOver(std::vector<Question>* old, Question* question);
+  Facts Projected(int target) const;
+  std::set<std::string> StartOf(const Facts& projected) const;
+  bool HasChanged(Question* question);
+  void Ask(Question* question);
+  void AskAgain(Question* question, const std::string& why);
+  void Cancel(Question* question);
+  void MoveTo(Question* question, double deadline);
+  double DeadlineOf(const Question& question);
+  void TakeRanked(Question* question);
+  void TakeFailed(Question* question, const ImagineAnswered& answer);
+  void TakeDefaults(Question* question);
+  void SetDefaults(const Question& question);
+  bool IsCarried(const std::string& instance) const;
+  bool IsAffected(const Question& question, const std::set<std::string>& changed) const;
+
+  Session& session_;
+  std::vector<Question> questions_;
+};
+
+}  // namespace hires::execution

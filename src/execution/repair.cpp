@@ -1,0 +1,177 @@
+#include "repair.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hires/base/error.h"
+#include "hires/planning/replanning.h"
+#include "hires/planning/task_text.h"
+
+namespace hires::execution {
+namespace {
+
+std::set<std::string> TextsOf(const Facts& facts) {
+  std::set<std::string> texts;
+  for (const auto& [text, atom] : facts.all()) texts.insert(text);
+  return texts;
+}
+
+}  // namespace
+
+void Repair::BeginTask(const planning::Problem& task) {
+  task_ = task;
+  count_ = 0;
+  last_trouble_.clear();
+  last_state_.clear();
+  is_asking_ = false;
+}
+
+std::string Repair::Begin(const Trouble& trouble) {
+  const std::string text = ToString(trouble);
+  const std::set<std::string> state = TextsOf(session_.facts());
+  if (text == last_trouble_ && state == last_state_ && trouble.kind != Trouble::Kind::kImagined) {
+    return text + " (twice in a row, and nothing has changed)";
+  }
+  last_trouble_ = text;
+  last_state_ = state;
+  if (++count_ > session_.params().max_replans) {
+    return fmt::format("gave up after {} repairs; the last reason was {}", count_ - 1, text);
+  }
+  session_.Warning(fmt::format("{}; the plan is mended", text));
+  Cancel();
+  return "";
+}
+
+void Repair::Cancel() {
+  if (is_asking_) quest_.Cancel();
+  is_asking_ = false;
+}
+
+/// Whether it is clear which steps are done.
+bool Repair::IsSettled() const {
+  const PlanRun& run = session_.run();
+  const std::vector<int> active = run.Active();
+  return std::all_of(active.begin(), active.end(), [&](int step) {
+    return run.at(step).phase == StepPhase::kRunning && !run.at(step).is_stopping;
+  });
+}
+
+Repair::Result Repair::Update() {
+  if (is_asking_) {
+    quest_.Update();
+    if (quest_.is_under_way()) return Result::kUnderWay;
+    const Result result = Take();
+    if (result != Result::kUnderWay) return result;
+  }
+  if (IsSettled()) Ask();
+  return Result::kUnderWay;
+}
+
+/// What is left of the problem, changing more and more of the plan. What cannot be written as text
+/// or needs protections, which a request cannot carry, is left out; the whole task comes last.
+std::vector<PlanQuest::Try> Repair::Tries(const Facts& state) const {
+  const PlanRun& run = session_.run();
+  const planning::Problem& whole = run.problem();
+  std::vector<PlanQuest::Try> tries;
+  const auto add = [&](planning::Problem problem) {
+    const auto tasks = ToShop2Tasks(problem.tasks);
+    if (!tasks || problem.protections.size() > whole.protections.size()) return;
+    if (!tries.empty() && tries.back().tasks == *tasks) return;
+    tries.push_back({std::move(problem), *tasks});
+  };
+  if (!run.plan().nodes.empty()) {
+    const PlanRun::DoneFirst done = run.WithDoneFirst(session_.informs());
+    for (int depth = DeepestKeepDepth(done.plan, done.executed); depth > 0; --depth) {
+      add(RemainingProblem(session_.domain(), whole, done.plan, done.executed, state.Data(),
+                           depth));
+    }
+  }
+  for (planning::Problem again : {whole, task_}) {
+    again.facts = state.Data();
+    add(std::move(again));
+  }
+  return tries;
+}
+
+void Repair::Ask() {
+  is_asking_ = true;
+  assumed_ = session_.run().Active();
+  Facts state = session_.facts();
+  for (auto step = assumed_.rbegin(); step != assumed_.rend(); ++step) {
+    const StepRun& running = session_.run().at(*step);
+    TakeBack(running.disturbance, running.before, &state);
+  }
+  std::vector<PlanQuest::Try> tries = Tries(state);
+  for (const base::Atom& atom : session_.ExclusionAtoms()) {
+    for (PlanQuest::Try& one : tries) one.problem.facts.push_back(DatumOf(atom));
+  }
+  quest_.Begin(std::move(tries), state);
+}
+
+/// The plan begins with what runs, whatever imagination chose for it.
+bool Repair::IsWanted(PlanRun* plan, int step, int running) const {
+  const base::ActionCall& wanted = plan->at(step).action;
+  const base::ActionCall& runs = session_.run().at(running).action;
+  if (!plan->at(step).after.empty() || wanted.name != runs.name) return false;
+  if (wanted == runs) return true;
+  const planning::OperatorEntry& entry = EntryOf(session_.operators(), wanted.name);
+  if (!entry.imagine || wanted.arguments.size() != runs.arguments.size()) return false;
+  for (std::size_t i = 0; i < wanted.arguments.size(); ++i) {
+    const auto& chosen = entry.imagine->parameters;
+    const bool may_differ =
+        i < entry.arguments.size() &&
+        std::find(chosen.begin(), chosen.end(), entry.arguments[i]) != chosen.end();
+    if (!may_differ && wanted.arguments[i] != runs.arguments[i]) return false;
+  }
+  return plan->Instantiate(step, runs.arguments, session_.domain(), session_.operators()).empty();
+}
+
+std::vector<std::pair<int, int>> Repair::Match(PlanRun* plan, std::vector<int>* unwanted) const {
+  std::vector<std::pair<int, int>> pairs;
+  std::set<int> taken;
+  for (const int running : assumed_) {
+    int step = 0;
+    while (step < plan->size() && (taken.count(step) > 0 || !IsWanted(plan, step, running))) ++step;
+    if (step == plan->size()) {
+      unwanted->push_back(running);
+      continue;
+    }
+    taken.insert(step);
+    pairs.emplace_back(step, running);
+  }
+  return pairs;
+}
+
+Repair::Result Repair::Take() {
+  is_asking_ = false;
+  std::vector<int> unwanted = assumed_;
+  std::vector<std::pair<int, int>> pairs;
+  std::optional<PlanRun> plan;
+  if (quest_.outcome() == PlanQuest::Outcome::kFound) {
+    try {
+      plan.emplace(session_.next_plan(), quest_.plan(), quest_.problem(), session_.domain(),
+                   session_.operators());
+    } catch (const base::ConfigError& error) {
+      why_ = std::string("the planner's plan is of no use: ") + error.what();
+      return Result::kFailed;
+    }
+    unwanted.clear();
+    pairs = Match(&*plan, &unwanted);
+  }
+  const bool is_useless = quest_.outcome() == PlanQuest::Outcome::kFailed;
+  if (!unwanted.empty() &&
+      !is_useless) {  // ends by itself meanwhile, or is stopped; then it is planned anew
+    for (const int step : unwanted) session_.Stop(step);
+    return Result::kUnderWay;
+  }
+  if (!plan) {
+    why_ = quest_.why();
+    return is_useless ? Result::kFailed : Result::kNoPlan;
+  }
+  std::vector<int> informs = InformedSteps(*plan);
+  session_.Adopt(std::move(*plan), std::move(informs), pairs);
+  return Result::kMended;
+}
+
+}  // namespace hires::execution

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hires/execution/monitor.h"
+#include "plan_network.h"
+#include "plan_run.h"
+
+namespace hires::execution {
+
+/// An expectation that broke, so that the plan must be looked at again.
+struct Trouble {
+  enum class Kind { kPrecondition, kEffect, kActivity, kTimeout, kImagined };
+  Kind kind{Kind::kActivity};
+  base::ActionCall action;  ///< of the step that it is about
+  std::string reason;
+};
+std::string ToString(const Trouble& trouble);
+
+/// An action that the planner shall not use (imagined_failure action arguments...).
+struct Exclusion {
+  base::ActionCall action;
+  std::set<std::string> depends_on;  ///< instances; when one changes, it is forgotten
+  int record{0};                     ///< number of its record
+};
+
+/// What the parts of the monitor share while a task is carried out: the state, the plan with its
+/// network, and the commands that go out with the next answer.
+class Session {
+ public:
+  Session(const planning::PlanningKnowledge* knowledge, const planning::OperatorData* operators,
+          const MonitorParams& params);
+
+  const planning::Domain& domain() const { return knowledge_->domain; }
+  const planning::OperatorData& operators() const { return *operators_; }
+  const MonitorParams& params() const { return params_; }
+
+  // The state.
+  double now() const { return now_; }
+  void SetNow(double now);
+  void Observe(const StateObserved& state);
+  bool has_state() const { return has_state_; }
+  /// What was observed, and what bookkeeping steps made of it.
+  const Facts& facts() const { return facts_; }
+  /// Changes whenever facts or the plan do.
+  int revision() const { return revision_; }
+  void Note(const planning::PlanStep& bookkeeping);
+  bool IsChanging(const std::string& predicate) const { return changing_.count(predicate) > 0; }
+  /// Known to whoever imagines: named by an atom or by a change.
+  std::set<std::string>& instances() { return instances_; }
+
+  // The commands.
+  template <typename C>
+  void Send(C command) {
+    commands_.emplace_back(std::move(command));
+  }
+  void Warning(std::string text) { Send(Warn{std::move(text)}); }
+  std::vector<Command> TakeCommands() { return std::exchange(commands_, {}); }
+  int NewRequest() { return ++last_request_; }
+  int NewRecord() { return ++last_record_; }
+
+  // The plan.
+  void BeginTask(const std::string& task);
+  void EndTask();  ///< @pre no step is active
+  const std::string& task() const { return task_; }
+  /// Goes over to a plan. `taken_over`: (step of the new plan, running step of the old one) that
+  /// are the same.
+  void Adopt(PlanRun run, std::vector<int> informs,
+             const std::vector<std::pair<int, int>>& taken_over);
+  bool has_plan() const { return run_.has_value(); }
+  PlanRun& run() { return *run_; }
+  const PlanRun& run() const { return *run_; }
+  PlanNetwork& network() { return *network_; }
+  const std::vector<int>& informs() const { return informs_; }
+  int next_plan() const { return last_plan_ + 1; }
+  std::vector<StepStatus> Steps() const;
+
+  // Its steps.
+  void Start(int step, double time_limit);
+  void Stop(int step);  ///< no effect where it has been told already
+  /// The step is over as its activity told; `phase` says what now.
+  void End(int step, StepPhase phase, const std::string& result, const std::string& reason);
+  void Confirm(int step);  ///< its effects have been seen
+  bool IsAnyActive() const;
+  void Changed() { ++revision_; }
+
+  // What went wrong.
+  void Report(Trouble trouble, int activity);
+  std::optional<Trouble> TakeTrouble() { return std::exchange(trouble_, std::nullopt); }
+  bool has_trouble() const { return trouble_.has_value(); }
+  void Exclude(Exclusion exclusion, int step, const std::string& reason);
+  void ForgetExclusions(const std::set<std::string>& changed);
+  std::vector<base::Atom> ExclusionAtoms() const;
+
+ private:
+  void RecordPlan();
+  void RecordEndOfPlan(const std::string& outcome);
+  StepStatus StatusOf(int index) const;
+
+  const planning::PlanningKnowledge* knowledge_;
+  const planning::OperatorData* operators_;
+  MonitorParams params_;
+  std::set<std::string> changing_;
+
+  double now_{0.0};
+  bool has_state_{false};
+  Facts observed_, facts_;
+  std::vector<planning::PlanStep> bookkeeping_;
+  int revision_{0};
+  std::set<std::string> instances_;
+
+  std::vector<Command> commands_;
+  int last_request_{0}, last_record_{0}, last_activity_{0}, last_plan_{0}, first_plan_{0};
+
+  std::string task_;
+  std::optional<PlanRun> run_;
+  std::optional<PlanNetwork> network_;
+  std::vector<int> informs_;
+  std::vector<StepStatus> past_;
+  std::optional<Trouble> trouble_;
+  std::vector<Exclusion> exclusions_;
+};
+
+}  // namespace hires::execution

@@ -1,0 +1,83 @@
+#include "step_dispatch.h"
+
+#include <algorithm>
+
+namespace hires::execution {
+namespace {
+
+/// Whether `disturbed`, which lasts only while a step runs, would break what another rests on.
+bool Breaks(const std::vector<Datum>& passing, const StepRun& other) {
+  return std::any_of(other.expectations.begin(), other.expectations.end(),
+                     [&](const Expectation& expectation) {
+                       return CanMatchAny(passing, expectation.literal.atom);
+                     });
+}
+
+}  // namespace
+
+void StepDispatch::Run() {
+  for (bool again = true; again;) {
+    again = false;
+    for (int i = 0; i < session_.run().size(); ++i) again = Advance(i) || again;
+  }
+}
+
+bool StepDispatch::Advance(int index) {
+  StepRun& step = session_.run().at(index);
+  if (step.kind == StepRun::Kind::kImagine || !step.IsWaiting()) return false;
+  if (!session_.run().AreDone(step.after)) return false;
+  if (step.kind == StepRun::Kind::kBookkeeping) {
+    step.phase = StepPhase::kDone;
+    session_.Note(session_.run().planned(index));
+    return true;
+  }
+  if (step.phase == StepPhase::kWaiting) {
+    step.phase = StepPhase::kReady;
+    step.ready = session_.now();
+  }
+  if (CanRun(index) && desk_.MayStart(index)) Start(index);
+  return false;
+}
+
+bool StepDispatch::CanRun(int index) const {
+  const StepRun& step = session_.run().at(index);
+  const bool holds = std::all_of(
+      step.expectations.begin(), step.expectations.end(), [&](const Expectation& expectation) {
+        return session_.facts().Holds(expectation.literal, expectation.text);
+      });
+  return holds && HasResources(index) && IsUndisturbed(index);
+}
+
+bool StepDispatch::HasResources(int index) const {
+  const PlanRun& run = session_.run();
+  std::map<std::string, int> used = run.at(index).resources;
+  for (const int active : run.Active()) {
+    if (run.at(active).phase != StepPhase::kRunning) continue;
+    for (const auto& [resource, units] : run.at(active).resources) used[resource] += units;
+  }
+  const auto& capacities = session_.operators().capacities;
+  return std::all_of(used.begin(), used.end(),
+                     [&](const auto& entry) { return entry.second <= capacities.at(entry.first); });
+}
+
+bool StepDispatch::IsUndisturbed(int index) const {
+  const PlanRun& run = session_.run();
+  const StepRun& step = run.at(index);
+  for (const int active : run.Active()) {
+    const StepRun& other = run.at(active);
+    if (Breaks(other.disturbance.passing, step) || Breaks(step.disturbance.passing, other)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void StepDispatch::Start(int index) {
+  desk_.Settle(index);
+  if (!CanRun(index)) return;  // with other arguments it may need something else
+  const MonitorParams& params = session_.params();
+  const double expected = session_.network().Expected(index);
+  session_.Start(index, std::max(params.overdue_minimum, params.overdue_factor * expected));
+}
+
+}  // namespace hires::execution

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "imagination_desk.h"
+#include "session.h"
+
+namespace hires::execution {
+
+/// Starts every step whose turn has come: those before it are done and their effects seen, what it
+/// needs holds, its resources are free, and imagination has told its arguments or is too late.
+class StepDispatch {
+ public:
+  StepDispatch(Session* session, ImaginationDesk* desk) : session_(*session), desk_(*desk) {}
+  void Run();
+
+ private:
+  bool Advance(int step);  ///< true if bookkeeping made others possible
+  bool CanRun(int step) const;
+  bool HasResources(int step) const;
+  bool IsUndisturbed(int step) const;
+  void Start(int step);
+
+  Session& session_;
+  ImaginationDesk& desk_;
+};
+
+}  // namespace hires::execution

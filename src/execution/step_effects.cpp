@@ -1,0 +1,85 @@
+#include "step_effects.h"
+
+#include "hires/planning/substitution.h"
+
+namespace hires::execution {
+namespace {
+
+using planning::Effect;
+
+template <typename Visit>
+void VisitAtoms(const std::vector<Effect>& effects, Visit visit) {
+  for (const Effect& effect : effects) {
+    if (effect.kind == Effect::Kind::kAtom) visit(effect.term);
+    VisitAtoms(effect.effects, visit);
+  }
+}
+
+void RemoveDisturbed(const Disturbance& disturbance, Facts* facts) {
+  facts->RemoveMatches(disturbance.effects);
+  facts->RemoveMatches(disturbance.passing);
+}
+
+}  // namespace
+
+const planning::Operator* OperatorOf(const planning::Domain& domain, const Datum& task) {
+  for (const planning::Operator& op : domain.operators) {
+    if (op.head.Head() == task.Head() && planning::Substitution().Unify(op.head, task)) return &op;
+  }
+  return nullptr;
+}
+
+std::set<std::string> ChangingPredicates(const planning::Domain& domain) {
+  std::set<std::string> names;
+  const auto note = [&](const Datum& atom) { names.emplace(atom.Head()); };
+  for (const planning::Operator& op : domain.operators) {
+    VisitAtoms(op.deletes, note);
+    VisitAtoms(op.adds, note);
+  }
+  return names;
+}
+
+Disturbance DisturbanceOf(const planning::Domain& domain, const planning::OperatorData& operators,
+                          const planning::PlanStep& step) {
+  Disturbance disturbance;
+  disturbance.effects = step.adds;
+  disturbance.effects.insert(disturbance.effects.end(), step.deletes.begin(), step.deletes.end());
+  const planning::Operator* op = OperatorOf(domain, step.task);
+  planning::Substitution arguments;
+  if (op == nullptr || !arguments.Unify(op->head, step.task)) return disturbance;
+  VisitAtoms(op->deletes,
+             [&](const Datum& atom) { disturbance.effects.push_back(arguments.Apply(atom)); });
+  for (const Datum& pattern : EntryOf(operators, step.task.Head()).disturbs) {
+    disturbance.passing.push_back(arguments.Apply(pattern));
+  }
+  return disturbance;
+}
+
+std::vector<Datum> TouchedBy(const Disturbance& disturbance, const Facts& facts) {
+  std::vector<Datum> touched;
+  for (const auto& [text, atom] : facts.all()) {
+    if (disturbance.Touches(atom)) touched.push_back(atom);
+  }
+  return touched;
+}
+
+void ApplyEffects(const planning::PlanStep& step, Facts* facts) {
+  for (const Datum& atom : step.deletes) facts->Remove(atom);
+  for (const Datum& atom : step.adds) facts->Add(atom);
+}
+
+void ApplyEffects(const planning::PlanStep& step, const Disturbance& disturbance,
+                  const std::vector<Datum>& before, Facts* facts) {
+  RemoveDisturbed(disturbance, facts);
+  for (const Datum& atom : before) {
+    if (CanMatchAny(disturbance.passing, atom)) facts->Add(atom);
+  }
+  ApplyEffects(step, facts);
+}
+
+void TakeBack(const Disturbance& disturbance, const std::vector<Datum>& before, Facts* facts) {
+  RemoveDisturbed(disturbance, facts);
+  for (const Datum& atom : before) facts->Add(atom);
+}
+
+}  // namespace hires::execution

@@ -1,0 +1,179 @@
+#include "step_watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "hires/base/text.h"
+
+namespace hires::execution {
+namespace {
+
+std::string ReasonOf(const StepFinished& finished) {
+  switch (finished.result) {
+    case StepFinished::Result::kSucceeded:
+      return "";
+    case StepFinished::Result::kFailed:
+      return finished.reason.empty() ? "failed" : finished.reason;
+    case StepFinished::Result::kPreempted:
+      return "preempted";
+    case StepFinished::Result::kUnavailable:
+      return finished.reason.empty() ? "unavailable" : "unavailable: " + finished.reason;
+  }
+  return "failed";
+}
+
+/// "area_occupied: book1, mug2" rests on book1 and mug2.
+std::set<std::string> NamesIn(const std::string& reason) {
+  std::set<std::string> names;
+  const std::size_t colon = reason.find(": ");
+  if (colon == std::string::npos) return names;
+  for (std::string name : base::Split(reason.substr(colon + 2), ',')) {
+    name.erase(0, name.find_first_not_of(' '));
+    if (!name.empty()) names.insert(base::ToLower(name));
+  }
+  return names;
+}
+
+/// It will fail again however often it is tried from here: another way must be taken.
+bool IsOfTheWay(const std::string& reason) {
+  return reason.rfind("area_occupied", 0) == 0 || reason.rfind("unreachable", 0) == 0;
+}
+
+std::string TextOf(const Expectation& expectation) {
+  const std::string atom = base::ToString(AtomOf(expectation.literal.atom));
+  return expectation.literal.holds ? atom : "not " + atom;
+}
+
+}  // namespace
+
+void StepWatch::OnFinished(const StepFinished& finished) {
+  const int index = session_.has_plan() ? session_.run().FindActivity(finished.activity) : -1;
+  if (index < 0) return;  // of a step that is over or was given up
+  const std::string reason = ReasonOf(finished);
+  if (reason.empty()) return session_.End(index, StepPhase::kChecking, "succeeded", "");
+  const StepRun& step = session_.run().at(index);
+  if (step.is_stopping) return session_.End(index, StepPhase::kFailed, "preempted", "stopped");
+  session_.End(index, StepPhase::kFailed, "failed", reason);
+  if (IsOfTheWay(reason)) session_.Exclude({step.action, NamesIn(reason), 0}, index, reason);
+  session_.Report({Trouble::Kind::kActivity, step.action, reason}, step.activity);
+}
+
+void StepWatch::Wake(double at) { wake_at_ = std::min(wake_at_.value_or(at), at); }
+
+bool StepWatch::IsPast(double at) {
+  if (session_.now() >= at) return true;
+  Wake(at);
+  return false;
+}
+
+void StepWatch::Check(bool with_later_steps) {
+  wake_at_.reset();
+  still_broken_.clear();
+  PlanRun& run = session_.run();
+  for (const int step : run.Active()) {
+    if (run.at(step).phase == StepPhase::kChecking) {
+      CheckEffects(step);
+    } else if (run.at(step).is_stopping) {
+      CheckStop(step);
+    } else {
+      CheckDuration(step);
+      CheckConditions(step);
+    }
+  }
+  for (int step = 0; with_later_steps && step < run.size(); ++step) {
+    if (run.at(step).IsWaiting()) CheckLinks(step);
+  }
+  broken_ = std::move(still_broken_);
+}
+
+void StepWatch::CheckStop(int index) {
+  const StepRun& step = session_.run().at(index);
+  if (!IsPast(*step.stopped + session_.params().stop_timeout)) return;
+  session_.Warning(fmt::format("{} was told to stop and has not answered for {} s; it is given up",
+                               base::ToString(step.action), session_.params().stop_timeout));
+  session_.End(index, StepPhase::kFailed, "failed", "did not stop");
+}
+
+void StepWatch::CheckDuration(int index) {
+  const StepRun& step = session_.run().at(index);
+  if (!IsPast(*step.started + step.time_limit)) return;
+  session_.Stop(index);
+  session_.Report({Trouble::Kind::kTimeout, step.action, "timed_out"}, step.activity);
+}
+
+std::optional<std::string> StepWatch::MissingEffect(int index) const {
+  const planning::PlanStep& planned = session_.run().planned(index);
+  for (const Datum& atom : planned.adds) {
+    if (!session_.facts().HoldsText(ToString(atom))) return base::ToString(AtomOf(atom));
+  }
+  for (const Datum& atom : planned.deletes) {
+    if (session_.facts().HoldsText(ToString(atom))) return "not " + base::ToString(AtomOf(atom));
+  }
+  return std::nullopt;
+}
+
+void StepWatch::CheckEffects(int index) {
+  const auto missing = MissingEffect(index);
+  if (!missing) return session_.Confirm(index);
+  StepRun& step = session_.run().at(index);
+  if (!IsPast(*step.finished + session_.params().effect_timeout)) return;
+  const std::string reason = "effect_missing: " + *missing;
+  step.phase = StepPhase::kFailed;
+  step.note = reason;
+  session_.Changed();
+  session_.Report({Trouble::Kind::kEffect, step.action, reason}, step.activity);
+}
+
+/// Whether a running step may have changed it for a while.
+bool StepWatch::IsDisturbed(const Expectation& expectation) const {
+  const PlanRun& run = session_.run();
+  for (const int step : run.Active()) {
+    if (run.at(step).disturbance.Touches(expectation.literal.atom)) return true;
+  }
+  return false;
+}
+
+/// Whether it has not held for `patience` [s] by now.
+bool StepWatch::IsBroken(const Expectation& expectation, double patience) {
+  if (session_.facts().Holds(expectation.literal, expectation.text)) return false;
+  if (IsDisturbed(expectation)) return false;
+  const std::string key = TextOf(expectation);
+  const auto known = broken_.find(key);
+  const double since = known == broken_.end() ? session_.now() : known->second;
+  still_broken_[key] = since;
+  return IsPast(since + patience);
+}
+
+/// What a running step rests on, but for what it changes itself.
+void StepWatch::CheckConditions(int index) {
+  const StepRun& step = session_.run().at(index);
+  for (const Expectation& expectation : step.expectations) {
+    if (!IsBroken(expectation, session_.params().break_delay)) continue;
+    session_.Stop(index);
+    session_.Report(
+        {Trouble::Kind::kPrecondition, step.action, "condition_lost: " + TextOf(expectation)},
+        step.activity);
+    return;
+  }
+}
+
+/// What a later step rests on and was there already.
+void StepWatch::CheckLinks(int index) {
+  const PlanRun& run = session_.run();
+  const StepRun& step = run.at(index);
+  // A step whose turn has come may have to wait for an observation that is under way.
+  const double patience = step.phase == StepPhase::kReady ? session_.params().effect_timeout
+                                                          : session_.params().break_delay;
+  for (const Expectation& expectation : step.expectations) {
+    const bool is_there =
+        expectation.producer < 0 || run.at(expectation.producer).phase == StepPhase::kDone;
+    if (!is_there || !IsBroken(expectation, patience)) continue;
+    session_.Report(
+        {Trouble::Kind::kPrecondition, step.action, "condition_lost: " + TextOf(expectation)}, 0);
+    return;
+  }
+}
+
+}  // namespace hires::execution

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "session.h"
+
+namespace hires::execution {
+
+/// Holds what is observed against what the plan expects: results, effects, durations, and what
+/// steps rest on. Reports trouble to the session, and stops what cannot go on.
+class StepWatch {
+ public:
+  explicit StepWatch(Session* session) : session_(*session) {}
+
+  void OnFinished(const StepFinished& finished);
+  /// @param with_later_steps  Also what steps rest on that have not begun; not while a plan is
+  ///                          sought that takes their place.
+  void Check(bool with_later_steps);
+  std::optional<double> WakeAt() const { return wake_at_; }
+
+ private:
+  void CheckStop(int step);
+  void CheckDuration(int step);
+  void CheckEffects(int step);
+  void CheckConditions(int step);
+  void CheckLinks(int step);
+  std::optional<std::string> MissingEffect(int step) const;
+  bool IsDisturbed(const Expectation& expectation) const;
+  bool IsBroken(const Expectation& expectation, double patience);
+  void Wake(double at);
+  bool IsPast(double at);
+
+  Session& session_;
+  std::map<std::string, double> broken_;  ///< expectation that does not hold, since [s]
+  std::map<std::string, double> still_broken_;
+  std::optional<double> wake_at_;
+};
+
+}  // namespace hires::execution
