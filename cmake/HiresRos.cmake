@@ -3,7 +3,7 @@
 find_package(catkin REQUIRED COMPONENTS
   actionlib actionlib_msgs diagnostic_msgs diagnostic_updater genmsg geometry_msgs
   message_generation nav_msgs rosbag roscpp roslib rosgraph_msgs sensor_msgs std_msgs std_srvs tf2
-  tf2_msgs tf2_ros topic_tools visualization_msgs xmlrpcpp)
+  tf2_msgs tf2_ros topic_tools trajectory_msgs visualization_msgs xmlrpcpp)
 
 file(GLOB HIRES_MSG RELATIVE ${PROJECT_SOURCE_DIR}/msg CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/msg/*.msg)
 file(GLOB HIRES_SRV RELATIVE ${PROJECT_SOURCE_DIR}/srv CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/srv/*.srv)
@@ -44,6 +44,9 @@ function(hires_rostest file)
     set(ROSTEST_TIMEOUT 120)
   endif()
   get_filename_component(name ${file} NAME_WE)
+  if(TEST ros.${name})  # a gtest of the same name
+    string(APPEND name _nodes)
+  endif()
   add_test(NAME ros.${name}
     COMMAND ${CATKIN_DEVEL_PREFIX}/env.sh rostest ${CMAKE_CURRENT_SOURCE_DIR}/${file} ${ROSTEST_ARGS}
     WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
@@ -54,3 +57,6 @@ endfunction()
 
 install(DIRECTORY launch config worlds urdf
   DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION} USE_SOURCE_PERMISSIONS)
+# What programs of the package start themselves.
+install(PROGRAMS scripts/plot_timeline
+  DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/scripts)

@@ -15,6 +15,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/evaluation/achieve_command.h"
 #include "hires/evaluation/blackboard_command.h"
 #include "hires/evaluation/doctor.h"
 #include "hires/evaluation/experiment_command.h"
@@ -222,6 +223,8 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
   CLI::App* imagine =
       app.add_subcommand("imagine", "play alternatives of an action many times and rank them");
   AddImagineOptions(imagine, &imagine_options);
+  AchieveOptions achieve_options;
+  AddAchieveVerb(&app, &achieve_options);
   ExperimentOptions experiment_options;
   AddExperimentVerb(&app, &experiment_options);
   PlanOptions plan_options;
@@ -242,6 +245,10 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, OnInterrupt);
     if (*imagine) return Imagine(imagine_options, backends);
+    if (*achieve_options.verb) {
+      return RunAchieveVerb(achieve_options, backends.package_folder, backends.achieve_remotely,
+                            [] { return interrupted.load(); });
+    }
     if (*experiment_options.verb) {
       return RunExperimentVerb(experiment_options, [] { return interrupted.load(); });
     }

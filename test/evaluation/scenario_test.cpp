@@ -1,10 +1,6 @@
 #include "hires/evaluation/scenario.h"
 
 #include <gmock/gmock.h>
-#include <stdlib.h>
-
-#include <filesystem>
-#include <fstream>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -18,11 +14,11 @@
 #include "hires/planning/task_text.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/world/object_catalogue.h"
+#include "support/temporary_folder.h"
 
 namespace hires::evaluation {
 namespace {
 
-namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
@@ -45,18 +41,10 @@ hidden:
 /// A scenario file with `from` replaced by `to`.
 class ScenarioTest : public ::testing::Test {
  protected:
-  ScenarioTest() {
-    char folder[] = "/tmp/hires_scenario_XXXXXX";
-    folder_ = mkdtemp(folder);
-  }
-  ~ScenarioTest() override { fs::remove_all(folder_); }
-
   Scenario Read(const std::string& from = "", const std::string& to = "") {
     std::string text = kGood;
     if (!from.empty()) text.replace(text.find(from), from.size(), to);
-    const std::string path = (folder_ / "some_day.yaml").string();
-    std::ofstream(path) << text;
-    return ReadScenario(path);
+    return ReadScenario(folder_.Write("some_day.yaml", text));
   }
 
   std::string ErrorOf(const std::string& from, const std::string& to) {
@@ -68,15 +56,16 @@ class ScenarioTest : public ::testing::Test {
     return "no error";
   }
 
-  fs::path folder_;
+  const test_support::TemporaryFolder folder_;
 };
 
 TEST_F(ScenarioTest, ReadsEverythingInLowerCase) {
   const Scenario scenario = Read();
   EXPECT_EQ(scenario.name, "some_day");
   EXPECT_EQ(scenario.task, "carry peppermill1");
-  EXPECT_THAT(scenario.knowledge, ElementsAre((folder_ / "known.yaml").string(),
-                                              (folder_.parent_path() / "more.yaml").string()));
+  EXPECT_THAT(scenario.knowledge,
+              ElementsAre((folder_.path() / "known.yaml").string(),
+                          (folder_.path().parent_path() / "more.yaml").string()));
   EXPECT_EQ(scenario.X_MB.yaw, 3.0);
   EXPECT_EQ(scenario.torso, "torsoupposture");
   EXPECT_EQ(scenario.arms.at("leftarm1"), "armtuckedposture");
@@ -96,7 +85,8 @@ TEST_F(ScenarioTest, BadFilesAreErrorsThatNameTheKey) {
   EXPECT_THAT(ErrorOf("[1.0, 2.0, 3.0]", "[1.0, 2.0]"), HasSubstr("robot.pose"));
   EXPECT_THAT(ErrorOf("[1.0, 2.0, 3.0]", "[1.0, 2.0, 90.0]"),
               AllOf(HasSubstr("robot.pose"), HasSubstr("yaw within 6.3 rad")));
-  EXPECT_THAT(ErrorOf("torso: TorsoUpPosture", "torso: ''"), HasSubstr("robot.torso is '', wanted a name"));
+  EXPECT_THAT(ErrorOf("torso: TorsoUpPosture", "torso: ''"),
+              HasSubstr("robot.torso is '', wanted a name"));
   EXPECT_THAT(ErrorOf("[0.1, 0.2, 0.3, 0.5]", "[0.1, 0.2, 300.0, 0.5]"),
               AllOf(HasSubstr("objects[0].pose"), HasSubstr("z within 100 m")));
   EXPECT_THAT(ErrorOf("name: book1", "name: mug1"),

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hires/base/action.h"
+#include "hires/evaluation/achieve.h"
 #include "hires/evaluation/blackboard_command.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/report.h"
@@ -45,6 +46,7 @@ struct Backends {
   std::string package_folder;  ///< where config/, worlds/, urdf/ lie
   ImagineRemotely imagine_remotely;
   ConnectBlackboard connect_blackboard;
+  AchieveRemotely achieve_remotely;
   std::vector<Verb> more_verbs;
   std::vector<Check> more_checks;
 };

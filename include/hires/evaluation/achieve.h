@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/base/action.h"
+#include "hires/execution/monitor.h"
+#include "hires/imagination/report.h"
+
+namespace hires::evaluation {
+
+/// "move_base_param(area1, slow|fast)", for people.
+std::string ToString(const base::ActionTemplate& action);
+
+/// One request of the execution monitor to imagine a step. Times are main ROS time [s].
+struct ImaginedStep {
+  int plan{0};  ///< number of the plan, and
+  int step{0};  ///< index of the step in it that it is about
+  base::ActionTemplate action;
+  double requested{0.0};
+  std::optional<double> answered;
+  std::optional<double> dispatch;  ///< when that step began
+  double deadline{std::numeric_limits<double>::infinity()};
+  double wall_seconds{0.0};       ///< [s] that the imagination took
+  double simulated_seconds{0.0};  ///< [s] of all its rollouts
+  std::string outcome;            ///< "ranked", "all_failed", ...; "" while it runs
+  std::vector<imagination::Prediction> predictions;  ///< in order of merit
+  int recommended{-1};                               ///< index into `predictions`, or -1
+  std::string why;
+};
+
+/// How far a task is.
+struct AchieveStatus {
+  double now{0.0};  ///< [s] main ROS time
+  std::vector<execution::StepStatus> steps;
+  std::vector<ImaginedStep> imaginations;
+  int replans{0};
+  std::vector<std::string> warnings;  ///< new ones
+};
+
+enum class AchieveOutcome { kSucceeded, kNoPlan, kFailed, kPreempted, kInvalid, kBusy };
+std::string ToString(AchieveOutcome outcome);  ///< "succeeded", "no_plan", ...
+
+struct AchieveReport {
+  std::string task;
+  AchieveOutcome outcome{AchieveOutcome::kFailed};
+  std::string reason;       ///< one sentence
+  std::int64_t episode{0};  ///< of the Blackboard; 0: unknown
+  AchieveStatus status;     ///< at the end; `warnings` are all of them
+};
+
+/// What `hires achieve` was asked.
+struct AchieveQuery {
+  std::string task;
+  std::string imagination;  ///< domain, thesis, off; empty: as the execution monitor is configured
+};
+
+using OnAchieveStatus = std::function<void(const AchieveStatus&)>;
+/// Has the running execution monitor do a task; when `cancelled`, ends it and waits for its end.
+/// @throws base::ConfigError where there is no execution monitor, or it goes away.
+using AchieveRemotely = std::function<AchieveReport(const AchieveQuery&, const OnAchieveStatus&,
+                                                    const std::function<bool()>& cancelled)>;
+
+}  // namespace hires::evaluation

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hires/evaluation/achieve.h"
+
+namespace CLI {
+class App;
+}
+
+namespace hires::evaluation {
+
+/// Exit codes of `hires achieve`.
+enum AchieveExitCode {
+  kExitAchieved = 0,
+  kExitNotAchieved = 1,  ///< it failed, was refused, or the input is bad: the message says why
+  kExitNoWay = 2,        ///< there is no plan (left)
+  kExitPreempted = 3,    ///< ended on request; the robot stands
+};
+
+/// What was typed behind `hires achieve`.
+struct AchieveOptions {
+  std::vector<std::string> task;  ///< words
+  std::string imagination, timeline, png, json;
+  CLI::App* verb{nullptr};
+};
+
+/// Adds the verb to the program.  @pre `options` outlives `app`.
+void AddAchieveVerb(CLI::App* app, AchieveOptions* options);
+
+/// Has the task done, shows how far it is, and afterwards what was done when.
+/// @param achieve  Empty: this program has no execution monitor to ask.
+/// @return AchieveExitCode.  @throws base::ConfigError for bad input.
+int RunAchieveVerb(const AchieveOptions& options, const std::string& package_folder,
+                   const AchieveRemotely& achieve, const std::function<bool()>& cancelled);
+
+}  // namespace hires::evaluation

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hires/evaluation/achieve.h"
+
+namespace hires::evaluation {
+
+std::string ToString(execution::StepPhase phase);  ///< "waiting", "running", ...
+
+/// First moment that a status speaks of [s]: when its first step or imagination began, else now.
+double BeginOf(const AchieveStatus& status);
+
+/// The steps as a table for people: state, since when, when it is expected to end, note. Times are
+/// seconds after `begin`. Steps of plans that were given up before they began are left out.
+std::string StepTable(const AchieveStatus& status, double begin);
+
+/// What is new in `after`, a line each: "  12.3 s  running  move_base(area1)". Times as above.
+std::vector<std::string> ChangeLines(const AchieveStatus& before, const AchieveStatus& after,
+                                     double begin);
+
+/// Draws a table over itself on a terminal; elsewhere prints a line for each change.
+class AchieveDisplay {
+ public:
+  /// @param width  of the terminal in characters; longer lines are cut. 0: no terminal.
+  explicit AchieveDisplay(int width) : width_(width) {}
+  /// What to print now.
+  std::string Show(const AchieveStatus& status);
+
+ private:
+  std::string Redraw(const AchieveStatus& status);
+
+  int width_;
+  int lines_drawn_{0};
+  std::optional<double> begin_;
+  AchieveStatus shown_;
+};
+
+}  // namespace hires::evaluation

@@ -1,0 +1,163 @@
+#include "hires/evaluation/achieve_display.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hires/base/check.h"
+#include "hires/base/text.h"
+#include "hires/evaluation/report_table.h"
+
+namespace hires::evaluation {
+namespace {
+
+using execution::StepPhase;
+using execution::StepStatus;
+
+constexpr char kClearLine[] = "\033[K";
+
+std::string Seconds(double time) { return std::isfinite(time) ? fmt::format("{:.1f}", time) : ""; }
+
+bool IsNews(const StepStatus& step) {
+  return step.phase != StepPhase::kSkipped || step.started.has_value();
+}
+
+/// When it came into its phase, "" where that is not known.
+std::string Since(const StepStatus& step, double begin) {
+  if (step.finished) return Seconds(*step.finished - begin);
+  if (step.started) return Seconds(*step.started - begin);
+  return "";
+}
+
+std::string ExpectedEnd(const StepStatus& step, double begin) {
+  return step.finished ? "" : Seconds(step.finish.earliest - begin);
+}
+
+const StepStatus* Find(const AchieveStatus& status, const StepStatus& step) {
+  for (const StepStatus& other : status.steps) {
+    if (other.plan == step.plan && other.index == step.index) return &other;
+  }
+  return nullptr;
+}
+
+std::string NoteOf(const StepStatus& step) { return step.note.empty() ? "" : ": " + step.note; }
+
+std::string StepLine(const StepStatus& step, double now, double begin) {
+  double time = now;
+  if (step.started && step.phase == StepPhase::kRunning) time = *step.started;
+  if (step.finished) time = *step.finished;
+  return fmt::format("{:8.1f} s  {:<8}  {}{}", time - begin, ToString(step.phase),
+                     ToString(step.action), NoteOf(step));
+}
+
+std::string ImaginedLine(const ImaginedStep& step, double now, double begin) {
+  const std::string what = ToString(step.action);
+  if (step.outcome.empty()) {
+    return fmt::format("{:8.1f} s  imagines  {}", step.requested - begin, what);
+  }
+  return fmt::format("{:8.1f} s  imagined  {}: {}: {}", step.answered.value_or(now) - begin, what,
+                     step.outcome, step.why);
+}
+
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines = base::Split(text, '\n');
+  while (!lines.empty() && lines.back().empty()) lines.pop_back();
+  return lines;
+}
+
+}  // namespace
+
+std::string ToString(const base::ActionTemplate& action) {
+  std::vector<std::string> arguments;
+  for (const auto& list : action.alternatives) arguments.push_back(base::Join(list, "|"));
+  return fmt::format("{}({})", action.name, base::Join(arguments, ", "));
+}
+
+std::string ToString(StepPhase phase) {
+  switch (phase) {
+    case StepPhase::kWaiting:
+      return "waiting";
+    case StepPhase::kReady:
+      return "ready";
+    case StepPhase::kRunning:
+      return "running";
+    case StepPhase::kChecking:
+      return "checking";
+    case StepPhase::kDone:
+      return "done";
+    case StepPhase::kFailed:
+      return "failed";
+    case StepPhase::kSkipped:
+      return "skipped";
+  }
+  HIRES_CHECK(false, "a phase without a name");
+  return "";
+}
+
+double BeginOf(const AchieveStatus& status) {
+  double begin = status.now;
+  for (const StepStatus& step : status.steps) begin = std::min(begin, step.started.value_or(begin));
+  for (const ImaginedStep& step : status.imaginations) begin = std::min(begin, step.requested);
+  return begin;
+}
+
+std::string StepTable(const AchieveStatus& status, double begin) {
+  std::vector<std::vector<std::string>> rows{
+      {"plan", "#", "step", "state", "since", "end", "note"}};
+  for (const StepStatus& step : status.steps) {
+    if (!IsNews(step)) continue;
+    rows.push_back({std::to_string(step.plan + 1), std::to_string(step.index + 1),
+                    ToString(step.action), ToString(step.phase), Since(step, begin),
+                    ExpectedEnd(step, begin), step.note});
+  }
+  return FormatTable(rows);
+}
+
+std::vector<std::string> ChangeLines(const AchieveStatus& before, const AchieveStatus& after,
+                                     double begin) {
+  std::vector<std::string> lines;
+  for (const std::string& warning : after.warnings) {
+    lines.push_back(fmt::format("{:8.1f} s  warning   {}", after.now - begin, warning));
+  }
+  for (std::size_t i = 0; i < after.imaginations.size(); ++i) {
+    const ImaginedStep& step = after.imaginations[i];
+    if (i < before.imaginations.size() && before.imaginations[i].outcome == step.outcome) continue;
+    lines.push_back(ImaginedLine(step, after.now, begin));
+  }
+  for (const StepStatus& step : after.steps) {
+    const StepStatus* known = Find(before, step);
+    const bool is_quiet = step.phase == StepPhase::kWaiting || step.phase == StepPhase::kReady;
+    if (!IsNews(step) || (known == nullptr && is_quiet && step.note.empty())) continue;
+    if (known != nullptr && (known->phase == step.phase || is_quiet) && known->note == step.note) {
+      continue;
+    }
+    lines.push_back(StepLine(step, after.now, begin));
+  }
+  return lines;
+}
+
+std::string AchieveDisplay::Show(const AchieveStatus& status) {
+  if (!begin_) begin_ = status.now;
+  if (width_ > 0) return Redraw(status);
+  std::string text;
+  for (const std::string& line : ChangeLines(shown_, status, *begin_)) text += line + "\n";
+  shown_ = status;
+  return text;
+}
+
+/// Warnings stay above, the table is drawn over the last one.
+std::string AchieveDisplay::Redraw(const AchieveStatus& status) {
+  std::string text = lines_drawn_ > 0 ? fmt::format("\033[{}A\r", lines_drawn_) : "";
+  for (const std::string& warning : status.warnings) {
+    text += fmt::format("{:8.1f} s  warning   {}{}\n", status.now - *begin_, warning, kClearLine);
+  }
+  const std::vector<std::string> lines = Lines(StepTable(status, *begin_));
+  for (const std::string& line : lines) {
+    text += line.substr(0, static_cast<std::size_t>(width_)) + kClearLine + "\n";
+  }
+  lines_drawn_ = static_cast<int>(lines.size());
+  return text + "\033[J";
+}
+
+}  // namespace hires::evaluation

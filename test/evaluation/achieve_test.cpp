@@ -1,0 +1,217 @@
+#include <gmock/gmock.h>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/evaluation/achieve_command.h"
+#include "hires/evaluation/achieve_display.h"
+#include "hires/evaluation/command_line.h"
+#include "support/temporary_folder.h"
+
+namespace hires::evaluation {
+namespace {
+
+using execution::StepPhase;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::MatchesRegex;
+using ::testing::Not;
+
+execution::StepStatus Step(int index, const std::string& name, StepPhase phase) {
+  execution::StepStatus step;
+  step.index = index;
+  step.action = {name, {"area1"}};
+  step.phase = phase;
+  return step;
+}
+
+/// A drive that runs since 102 s, a grasp that waits for it.
+AchieveStatus Running() {
+  AchieveStatus status;
+  status.now = 105.0;
+  status.steps = {Step(0, "move_base", StepPhase::kRunning),
+                  Step(1, "pick_up", StepPhase::kWaiting)};
+  status.steps[0].started = 102.0;
+  status.steps[0].finish = {112.5, 1e300};
+  return status;
+}
+
+TEST(BeginOfTest, IsTheFirstMomentOfAnything) {
+  AchieveStatus status = Running();
+  EXPECT_EQ(BeginOf(status), 102.0);
+  status.imaginations.emplace_back();
+  status.imaginations[0].requested = 101.5;
+  EXPECT_EQ(BeginOf(status), 101.5);
+  EXPECT_EQ(BeginOf(AchieveStatus{}), 0.0);
+}
+
+TEST(StepTableTest, TellsStateSinceAndExpectedEndInSecondsOfTheTask) {
+  const std::string table = StepTable(Running(), 100.0);
+  EXPECT_THAT(table, HasSubstr("running"));
+  EXPECT_THAT(table, HasSubstr("2.0"));   // since
+  EXPECT_THAT(table, HasSubstr("12.5"));  // expected end
+  EXPECT_THAT(table, HasSubstr("pick_up(area1)"));
+}
+
+TEST(StepTableTest, WhatWasGivenUpBeforeItBeganIsLeftOut) {
+  AchieveStatus status = Running();
+  status.steps[1].phase = StepPhase::kSkipped;
+  EXPECT_THAT(StepTable(status, 100.0), Not(HasSubstr("pick_up")));
+  status.steps[1].started = 103.0;
+  EXPECT_THAT(StepTable(status, 100.0), HasSubstr("pick_up"));
+}
+
+TEST(ChangeLinesTest, TellWhatIsNewAndNothingElse) {
+  AchieveStatus before = Running();
+  EXPECT_THAT(ChangeLines({}, before, 100.0),
+              ElementsAre(HasSubstr("2.0 s  running   move_base(area1)")));
+  EXPECT_THAT(ChangeLines(before, before, 100.0), IsEmpty());
+  AchieveStatus after = before;
+  after.now = 115.0;
+  after.steps[0].phase = StepPhase::kFailed;
+  after.steps[0].finished = 114.0;
+  after.steps[0].note = "no_path";
+  EXPECT_THAT(ChangeLines(before, after, 100.0),
+              ElementsAre(HasSubstr("14.0 s  failed    move_base(area1): no_path")));
+}
+
+TEST(ChangeLinesTest, WarningsAndImaginationsAreTold) {
+  AchieveStatus before = Running();
+  AchieveStatus after = before;
+  after.warnings = {"the planner went away"};
+  after.imaginations.emplace_back();
+  after.imaginations[0].action = {"move_base_param", {{"area1"}, {"slow", "fast"}}};
+  after.imaginations[0].requested = 103.0;
+  EXPECT_THAT(ChangeLines(before, after, 100.0),
+              ElementsAre(HasSubstr("warning   the planner went away"),
+                          HasSubstr("3.0 s  imagines  move_base_param(area1, slow|fast)")));
+  before = after;
+  after.warnings.clear();
+  after.imaginations[0].outcome = "ranked";
+  after.imaginations[0].answered = 108.0;
+  after.imaginations[0].why = "slow is best";
+  EXPECT_THAT(ChangeLines(before, after, 100.0),
+              ElementsAre(HasSubstr("8.0 s  imagined  move_base_param(area1, slow|fast): ranked: "
+                                    "slow is best")));
+}
+
+TEST(AchieveDisplayTest, DrawsOverItselfOnATerminalWithinItsWidth) {
+  AchieveDisplay display(40);
+  const std::string first = display.Show(Running());
+  EXPECT_THAT(first, Not(HasSubstr("A\r")));
+  const std::string second = display.Show(Running());
+  EXPECT_EQ(second.rfind("\033[4A\r", 0), 0u) << second;  // head, line, two steps
+  for (std::string line : base::Split(second.substr(5), '\n')) {
+    if (const auto end = line.find("\033["); end != std::string::npos) line.resize(end);
+    EXPECT_LE(line.size(), 40u) << line;
+  }
+}
+
+TEST(AchieveDisplayTest, SaysOnceWhatChangesElsewhere) {
+  AchieveDisplay display(0);
+  EXPECT_THAT(display.Show(Running()), HasSubstr("running   move_base(area1)\n"));
+  EXPECT_EQ(display.Show(Running()), "");
+}
+
+/// `hires achieve` against an execution monitor made of one function.
+class AchieveVerbTest : public ::testing::Test {
+ protected:
+  /// What it printed and its exit code.
+  struct Ended {
+    int code{0};
+    std::string out, err;
+  };
+
+  Ended Run(std::vector<std::string> words) {
+    Backends backends;
+    backends.package_folder = HIRES_SOURCE_DIR;
+    backends.achieve_remotely = [this](const AchieveQuery& query, const OnAchieveStatus& on_status,
+                                       const std::function<bool()>&) {
+      query_ = query;
+      on_status(Running());
+      report_.task = query.task;
+      return report_;
+    };
+    words.insert(words.begin(), {"hires", "achieve"});
+    ::testing::internal::CaptureStdout();
+    ::testing::internal::CaptureStderr();
+    Ended ended;
+    ended.code = RunCommandLine(words, backends);
+    ended.out = ::testing::internal::GetCapturedStdout();
+    ended.err = ::testing::internal::GetCapturedStderr();
+    return ended;
+  }
+
+  Ended RunFor(AchieveOutcome outcome) {
+    report_.outcome = outcome;
+    return Run({"serve guest1"});
+  }
+
+  const test_support::TemporaryFolder folder_;
+  AchieveQuery query_;
+  AchieveReport report_;
+};
+
+TEST_F(AchieveVerbTest, TheTaskMayBeOneWordOrSeveral) {
+  report_.outcome = AchieveOutcome::kSucceeded;
+  Run({"serve", "guest1", "--imagination", "thesis"});
+  EXPECT_EQ(query_.task, "serve guest1");
+  EXPECT_EQ(query_.imagination, "thesis");
+  EXPECT_EQ(Run({"(:unordered (a x) (b y))"}).code, 0);
+  EXPECT_EQ(query_.task, "(:unordered (a x) (b y))");
+}
+
+TEST_F(AchieveVerbTest, ExitCodesTellTheOutcome) {
+  EXPECT_EQ(RunFor(AchieveOutcome::kSucceeded).code, kExitAchieved);
+  EXPECT_EQ(RunFor(AchieveOutcome::kFailed).code, kExitNotAchieved);
+  EXPECT_EQ(RunFor(AchieveOutcome::kInvalid).code, kExitNotAchieved);
+  EXPECT_EQ(RunFor(AchieveOutcome::kBusy).code, kExitNotAchieved);
+  EXPECT_EQ(RunFor(AchieveOutcome::kNoPlan).code, kExitNoWay);
+  EXPECT_EQ(RunFor(AchieveOutcome::kPreempted).code, kExitPreempted);
+}
+
+TEST_F(AchieveVerbTest, SaysOutcomeReasonAndNumbers) {
+  report_.outcome = AchieveOutcome::kFailed;
+  report_.reason = "unreachable";
+  report_.status = Running();
+  report_.status.replans = 2;
+  report_.episode = 17;
+  const Ended ended = Run({"serve", "guest1"});
+  EXPECT_THAT(ended.out, HasSubstr("running   move_base(area1)"));
+  EXPECT_THAT(ended.out, HasSubstr("serve guest1: failed: unreachable"));
+  EXPECT_THAT(ended.out, HasSubstr("1 step, 0 imaginations, 2 repairs, episode 17"));
+}
+
+TEST_F(AchieveVerbTest, WritesTimelineAndJson) {
+  report_.outcome = AchieveOutcome::kSucceeded;
+  report_.status = Running();
+  const std::string csv = (folder_.path() / "run.csv").string();
+  const std::string json = (folder_.path() / "run.json").string();
+  EXPECT_EQ(Run({"serve", "--timeline", csv, "--json", json}).code, 0);
+  EXPECT_THAT(base::ReadTextFile(csv), HasSubstr("step,0,0,move_base(area1),running"));
+  EXPECT_THAT(base::ReadTextFile(json), HasSubstr("\"outcome\": \"succeeded\""));
+}
+
+TEST_F(AchieveVerbTest, BadInputIsRefusedBeforeTheRobotSetsOut) {
+  for (const auto& [words, text] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{}, "task"},
+           {{"serve", "--imagination", "sometimes"}, "sometimes"},
+           {{"serve", "--json", "/no/such/folder/x.json"}, "/no/such/folder"},
+           {{"serve", "--png", "/no/such/folder/x.png"}, "/no/such/folder"}}) {
+    query_.task.clear();
+    const Ended ended = Run(words);
+    EXPECT_EQ(ended.code, kExitBadInput) << text;
+    EXPECT_THAT(ended.err, HasSubstr(text));
+    EXPECT_EQ(query_.task, "") << text;
+  }
+}
+
+TEST(AchieveWithoutRosTest, SaysWhatIsMissing) {
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(RunCommandLine({"hires", "achieve", "serve"}, {}), kExitBadInput);
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("no ROS nodes"));
+}
+
+}  // namespace
+}  // namespace hires::evaluation
