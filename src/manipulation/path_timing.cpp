@@ -31,12 +31,13 @@ struct Cell {
 };
 
 /// Cells are small against kCellSize, and against the way that a joint takes to get up to its
-/// speed: a torso lift does that within a millimetre.
+/// speed: a torso lift does that within a millimetre. Their number is even, so that the peak of a
+/// short straight way lies between two of them.
 int NumCells(const PathPiece& piece, const JointBounds& bounds) {
   const VectorXd way = (piece.a1 + piece.a2).cwiseAbs();
   const VectorXd to_speed = 0.25 * bounds.velocity.cwiseAbs2().cwiseQuotient(bounds.acceleration);
   const double cells = way.cwiseQuotient(to_speed.cwiseMin(kCellSize)).maxCoeff();
-  return static_cast<int>(std::clamp(std::ceil(cells), 2.0, 1.0 * kMaxCellsPerPiece));
+  return 2 * static_cast<int>(std::clamp(std::ceil(0.5 * cells), 2.0, 0.5 * kMaxCellsPerPiece));
 }
 
 std::vector<Cell> Cut(const PathPiece& piece, const JointBounds& bounds) {
