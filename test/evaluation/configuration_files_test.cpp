@@ -7,13 +7,16 @@
 #include <map>
 
 #include "hires/evaluation/scenario.h"
+#include "hires/execution/monitor_config.h"
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/knowledge/blackboard_config.h"
 #include "hires/knowledge/fluent_yaml.h"
 #include "hires/knowledge/loading.h"
 #include "hires/knowledge/store.h"
+#include "hires/planning/operator_data.h"
 #include "hires/planning/planner_config.h"
+#include "hires/planning/planning_files.h"
 #include "hires/relay/relay_params.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/world/object_catalogue.h"
@@ -42,6 +45,13 @@ const std::map<std::string, Reader>& Readers() {
          planning::LoadPlanningKnowledge(planning::ReadPlannerConfig(path));
        }},
       {"blackboard.yaml", [](const std::string& path) { knowledge::ReadBlackboardConfig(path); }},
+      {"execution_monitor.yaml",
+       [](const std::string& path) {
+         const auto config = execution::ReadMonitorConfig(path);
+         const auto domain = planning::LoadDomain(config.domain);
+         planning::LoadOperatorData(config.operators, domain);
+         knowledge::Ontology::FromFiles(config.ontology);
+       }},
       {"scenarios", [](const std::string& path) { evaluation::ReadScenario(path); }},
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
       {"relay.yaml",
