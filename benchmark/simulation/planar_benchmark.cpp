@@ -1,6 +1,7 @@
 // What does a step of 1 ms cost at level `planar`?
 #include <benchmark/benchmark.h>
 
+#include "hires/simulation/laser_scanner.h"
 #include "simulation/arm_scene.h"
 
 namespace hires::simulation {
@@ -57,6 +58,14 @@ void BM_PlanarStart(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(Simulator({MugAt()}));
 }
 BENCHMARK(BM_PlanarStart)->Unit(benchmark::kMicrosecond);
+
+/// 640 beams: 50 ms of real time are what it has.
+void BM_LaserScan(benchmark::State& state) {
+  auto simulator = Simulator(Objects(4));
+  base::Rng rng(1);
+  for (auto _ : state) benchmark::DoNotOptimize(ScanLaser(*simulator, {}, &rng));
+}
+BENCHMARK(BM_LaserScan)->Unit(benchmark::kMicrosecond);
 
 void BM_SaveAndRestore(benchmark::State& state) {
   auto simulator = Simulator({MugAt()});

@@ -130,6 +130,7 @@ void RobotSimulator::AddObjects(const world::WorldState& state, LevelOfDetail le
       X_BO_start_[i].translation.head<2>() += variation_.object_offset;
       carried_.push_back(static_cast<int>(i));
     }
+    if (!object.attached_to.empty()) MoveInHand(object.attached_to, &X_BO_start_[i]);
     if (is_carried || !object.attached_to.empty()) object.X_MO = X_MB_ * X_BO_start_[i];
     objects_.push_back(object);
     object_names_.push_back(object.name);
@@ -141,6 +142,17 @@ void RobotSimulator::AddObjects(const world::WorldState& state, LevelOfDetail le
                                                 Varied(model.collisions, variation_),
                                                 {object.X_MO, object.V_MO}));
   }
+}
+
+/// The grasp that led to the start was a little off.
+void RobotSimulator::MoveInHand(const std::string& link, Pose3* X_BO) const {
+  const Pose3 X_BL = X_MB_.Inverse() * X_MLink(link);
+  Pose3 X_LO = X_BL.Inverse() * *X_BO;
+  X_LO.translation.x() += variation_.grasp_offset.x();
+  X_LO.translation.z() += variation_.grasp_offset.y();
+  X_LO.rotation = geometry::RotationFromRpy(0.0, variation_.grasp_turn, 0.0) * X_LO.rotation;
+  const bool is_exact = variation_.grasp_offset.isZero(0.0) && variation_.grasp_turn == 0.0;
+  if (!is_exact) *X_BO = X_BL * X_LO;
 }
 
 void RobotSimulator::AddRobot() {
@@ -425,12 +437,21 @@ geometry::Pose3 RobotSimulator::PoseOf(int object) const {
   return physics_->GetState(object_bodies_[object]).X_WB;
 }
 
+geometry::Twist3 RobotSimulator::VelocityOf(int object) const {
+  if (object_bodies_[object] < 0) return {};
+  return physics_->GetState(object_bodies_[object]).V_WB;
+}
+
+std::string RobotSimulator::HolderOf(int object) const {
+  return planar_ ? planar_->HolderOf(object) : objects_[object].attached_to;
+}
+
 world::WorldState RobotSimulator::GetWorldState() const {
   world::WorldState state;
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     world::ObjectState object = objects_[i];
     object.X_MO = PoseOf(static_cast<int>(i));
-    if (planar_) object.attached_to = planar_->HolderOf(static_cast<int>(i));
+    object.attached_to = HolderOf(static_cast<int>(i));
     if (object_bodies_[i] >= 0) object.V_MO = physics_->GetState(object_bodies_[i]).V_WB;
     state.objects.push_back(std::move(object));
   }

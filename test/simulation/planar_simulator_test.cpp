@@ -96,6 +96,51 @@ TEST(PlanarSimulatorTest, TwoInTwoThreadsDoNotDisturbEachOther) {
   EXPECT_EQ(seen[1], expected);
 }
 
+/// Something that a confused skill might want.
+robot::Command RandomCommand(base::Rng* rng) {
+  robot::Command command;
+  const auto& arm = Pr2().profile.upper_body->arms.at("rightarm1");
+  const int kind = rng->Index(4);
+  if (kind == 0) return Gripper(rng->Uniform(-0.01, 0.12), rng->Uniform(-1.0, 60.0));
+  if (kind == 1) return TorsoTo(rng->Uniform(-0.1, 0.5));
+  if (kind == 2) {
+    command.base_velocity =
+        geometry::Twist2{rng->Uniform(-0.5, 0.5), rng->Uniform(-0.5, 0.5), rng->Uniform(-1, 1)};
+    return command;
+  }
+  robot::JointTrajectory trajectory{arm.joints, {}};
+  for (int i = rng->Index(4); i > 0; --i) {
+    robot::TrajectoryPoint point;
+    point.time = trajectory.duration() + rng->Uniform(0.01, 1.0);
+    for (std::size_t k = 0; k < arm.joints.size(); ++k) {
+      point.positions.push_back(rng->Uniform(-4.0, 4.0));
+      point.velocities.push_back(rng->Uniform(-3.0, 3.0));
+    }
+    trajectory.points.push_back(point);
+  }
+  command.trajectories["rightarm1"] = trajectory;
+  return command;
+}
+
+TEST(PlanarSimulatorTest, WhateverIsCommandedTheStateStaysSound) {
+  for (int seed = 0; seed < 20; ++seed) {
+    const auto simulator =
+        Simulator({MugAt(), MugAt({0.0, 0.2}, "mug2"), MugAt({0.12, 0.0}, "mug3")}, Lively());
+    base::Rng rng(seed);
+    for (int i = 0; i < 60; ++i) {
+      simulator->Send(RandomCommand(&rng));
+      StepFor(simulator.get(), 0.1);
+      for (const double number : Bits(simulator.get())) ASSERT_TRUE(std::isfinite(number)) << seed;
+      for (const auto& object : simulator->GetWorldState().objects) {
+        ASSERT_LT(object.X_MO.translation.norm(), 30.0) << object.name << " at seed " << seed;
+        ASSERT_GT(object.X_MO.translation.z(), -0.06) << object.name << " at seed " << seed;
+      }
+      // What comes out can be put in again.
+      ASSERT_NO_THROW(robot::ForwardKinematics(Pr2().model, simulator->GetRobotState().joints));
+    }
+  }
+}
+
 // -------------------------------------------------------------------------------------- robot
 
 TEST(PlanarSimulatorTest, LinksAreWhereForwardKinematicsHasThem) {

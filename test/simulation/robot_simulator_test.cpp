@@ -160,7 +160,7 @@ TEST(RobotSimulatorTest, AnotherSeedGivesOtherBits) {
 
 TEST(RobotSimulatorTest, AMillOnAStandingRobotStays) {
   RobotSimulator simulator(RoomScene(), {}, With({OnTray("mill1", "mill", kMiddle)}),
-                          StandingAt(kMiddle), base::Rng(1));
+                           StandingAt(kMiddle), base::Rng(1));
   const Eigen::Vector3d start = simulator.PoseOf(0).translation;
   for (int i = 0; i < 100; ++i) {
     StepFor(&simulator, 0.1);
@@ -181,7 +181,7 @@ double TiltUnder(double acceleration, const Variation& variation = {}, double ya
   robot.profile.base_controller.limits = {100.0, 2.0, acceleration, 2.0};
   const Pose2 X_MB{0.0, 0.0, yaw};
   RobotSimulator simulator(simulation::MakeScene(plain, robot), variation,
-                          With({OnTray("mill1", model, X_MB)}), StandingAt(X_MB), base::Rng(1));
+                           With({OnTray("mill1", model, X_MB)}), StandingAt(X_MB), base::Rng(1));
   StepFor(&simulator, 0.2);
   double tilt = 0.0;
   for (int i = 0; i < 200; ++i) {
@@ -224,8 +224,8 @@ TEST(RobotSimulatorTest, OnASlipperyTrayItSlidesInsteadOfTipping) {
   robot::Robot robot = TrayRobot();
   robot.profile.base_controller.limits = {100.0, 2.0, 2.3, 2.0};
   RobotSimulator simulator(simulation::MakeScene(plain, robot), slippery,
-                          With({OnTray("mill1", "mill", {}, {0.05, 0.0})}), StandingAt({}),
-                          base::Rng(1));
+                           With({OnTray("mill1", "mill", {}, {0.05, 0.0})}), StandingAt({}),
+                           base::Rng(1));
   StepFor(&simulator, 0.2);
   DriveFor(&simulator, Drive(90.0), 0.5);
   const double slid = test_support::kTrayX + 0.05 -
@@ -237,7 +237,7 @@ TEST(RobotSimulatorTest, StartOffsetMovesTheRobotAndItsLoad) {
   Variation variation;
   variation.start_offset = {0.1, -0.05, 0.2};
   RobotSimulator simulator(RoomScene(), variation, With({OnTray("mill1", "mill", kMiddle)}),
-                          StandingAt(kMiddle), base::Rng(1));
+                           StandingAt(kMiddle), base::Rng(1));
   const Pose2 X_MB = kMiddle * variation.start_offset;
   EXPECT_NEAR(simulator.base().X_MB.x, X_MB.x, 1e-12);
   EXPECT_NEAR(simulator.base().X_MB.yaw, X_MB.yaw, 1e-12);
@@ -251,8 +251,8 @@ TEST(RobotSimulatorTest, ObjectOffsetMovesWhatStandsOnTheTrayAlone) {
   world::ObjectState beside = OnTray("beside", "mill", {1.0, 1.0, 0.0});
   beside.X_MO.translation.z() = 0.0002;
   RobotSimulator simulator(RoomScene(), variation,
-                          With({OnTray("mill1", "mill", {3.0, 2.0, 0.0}), beside}),
-                          StandingAt({3.0, 2.0, 0.0}), base::Rng(1));
+                           With({OnTray("mill1", "mill", {3.0, 2.0, 0.0}), beside}),
+                           StandingAt({3.0, 2.0, 0.0}), base::Rng(1));
   EXPECT_NEAR(simulator.PoseOf(0).translation.x(), 3.0 + test_support::kTrayX + 0.02, 1e-9);
   EXPECT_NEAR(simulator.PoseOf(0).translation.y(), 2.0 - 0.01, 1e-9);
   EXPECT_NEAR(simulator.PoseOf(1).translation.x(), beside.X_MO.translation.x(), 1e-9);
@@ -268,9 +268,9 @@ TEST(RobotSimulatorTest, CarriedIsWhatStandsOnTheRobot) {
   world::ObjectState held = OnTray("held", "mill", kMiddle, {0.0, -0.1});
   held.attached_to = "tray";
   RobotSimulator simulator(RoomScene(), {},
-                          With({on_floor, OnTray("first", "mill", kMiddle), in_the_air, held,
-                                OnTray("second", "tower", kMiddle, {0.0, 0.15})}),
-                          StandingAt(kMiddle), base::Rng(1));
+                           With({on_floor, OnTray("first", "mill", kMiddle), in_the_air, held,
+                                 OnTray("second", "tower", kMiddle, {0.0, 0.15})}),
+                           StandingAt(kMiddle), base::Rng(1));
   EXPECT_THAT(simulator.carried(), ElementsAre(1, 4));
 }
 
@@ -308,7 +308,7 @@ TEST(RobotSimulatorTest, AttachedObjectsRideAlongRigidly) {
   world::ObjectState held = OnTray("held", "tower", {1.5, 2.0, 0.0});
   held.attached_to = "tray";
   RobotSimulator simulator(simulation::MakeScene(Room(), robot), {}, With({held}),
-                          StandingAt({1.5, 2.0, 0.0}), base::Rng(1));
+                           StandingAt({1.5, 2.0, 0.0}), base::Rng(1));
   const geometry::Pose3 X_BO = simulator.X_MB().Inverse() * simulator.PoseOf(0);
   EXPECT_THAT(simulator.carried(), IsEmpty());
   for (int i = 0; i < 20; ++i) {
@@ -327,14 +327,14 @@ TEST(RobotSimulatorTest, AnAttachedObjectPushesWhatStandsInItsWay) {
   world::ObjectState on_floor = OnTray("on_floor", "tower", {1.5, 2.0, 0.0}, {0.4, 0.1});
   on_floor.X_MO.translation.z() = 0.0002;
   RobotSimulator simulator(RoomScene(), {}, With({held, on_floor}), StandingAt({1.5, 2.0, 0.0}),
-                          base::Rng(1));
+                           base::Rng(1));
   DriveFor(&simulator, Drive(0.8), 1.5);
   EXPECT_GT(geometry::TiltOf(simulator.PoseOf(1).rotation), 0.5);
 }
 
 TEST(RobotSimulatorTest, PutBackStandsItUprightAndMovingWithTheRobot) {
   RobotSimulator simulator(RoomScene(), {}, With({OnTray("tower1", "tower", {1.5, 2.0, 0.0})}),
-                          StandingAt({1.5, 2.0, 0.0}), base::Rng(1));
+                           StandingAt({1.5, 2.0, 0.0}), base::Rng(1));
   const geometry::Pose3 X_BO = simulator.X_MB().Inverse() * simulator.PoseOf(0);
   StepFor(&simulator, 0.2);
   DriveFor(&simulator, Drive(0.0, 0.9), 0.6);  // sideways: ahead stands the torso
@@ -364,8 +364,8 @@ TEST(RobotSimulatorTest, DrivingIntoTheWallIsAContact) {
 TEST(RobotSimulatorTest, NotesWhatMayDisturbTheLoad) {
   robot::Robot robot = TrayRobot();
   robot.profile.base_controller.command_timeout = 0.2;
-  RobotSimulator simulator(simulation::MakeScene(Room(), robot), {}, {}, StandingAt({2.0, 2.0, 0.0}),
-                          base::Rng(1));
+  RobotSimulator simulator(simulation::MakeScene(Room(), robot), {}, {},
+                           StandingAt({2.0, 2.0, 0.0}), base::Rng(1));
   StepFor(&simulator, 0.5);
   EXPECT_LT(simulator.disturbances().accelerating, 0.0);
   DriveFor(&simulator, Drive(0.5), 1.0);  // 0.25 s of ramp
@@ -510,7 +510,7 @@ std::string WhyTooStiff(const robot::BaseControllerParams& base, const Variation
   robot.profile.base_controller = base;
   return ConfigErrorOf([&] {
     RobotSimulator simulator(simulation::MakeScene(Room(), robot), variation, {},
-                            StandingAt({2.0, 2.0, 0.0}), base::Rng(1));
+                             StandingAt({2.0, 2.0, 0.0}), base::Rng(1));
     DriveFor(&simulator, Drive(0.5), 2.0);
     EXPECT_GT(simulator.base().V_B.vx, 0.3);
     EXPECT_LT(simulator.base().V_B.vx, 0.51);

@@ -71,7 +71,9 @@ class RobotSimulator {
   world::WorldState GetWorldState() const;  ///< loose objects now
   robot::RobotState GetRobotState()
       const;  ///< joints with gaps and finger angles at level `planar`
-  geometry::Pose3 PoseOf(int object) const;  ///< of the loose object with that index
+  geometry::Pose3 PoseOf(int object) const;       ///< of the loose object with that index
+  geometry::Twist3 VelocityOf(int object) const;  ///< in map axes; 0 for one that is held rigidly
+  std::string HolderOf(int object) const;         ///< link that holds it now, or empty
 
   /// Indices of the objects that stood on a part of the robot at the start.
   const std::vector<int>& carried() const { return carried_; }
@@ -104,6 +106,7 @@ class RobotSimulator {
   void Freeze(const robot::JointPositions& joints);
   void AddObjects(const world::WorldState& state, LevelOfDetail level);
   const std::vector<geometry::Collision>& robot_shapes_B() const;
+  void MoveInHand(const std::string& link, geometry::Pose3* X_BO) const;
   void AddRobot();
   void AddPlanarRobot();
   GraspableObject Graspable(std::size_t object) const;

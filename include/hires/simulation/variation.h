@@ -30,6 +30,11 @@ struct Variation {
   double loop_damping_factor{1.0};     ///< of the base's velocity loop
   double sway_factor{1.0};             ///< of the base's leaning
 
+  /// How far off the hand objects are that are held at the start: [m] along the x axis (where the
+  /// hand points) and the z axis of the link that holds them ...
+  Eigen::Vector2d grasp_offset{0.0, 0.0};
+  double grasp_turn{0.0};  ///< [rad] ... and turned about its y axis (from finger to finger)
+
   double detection_noise{0.0};      ///< [m] sd of each coordinate of a seen object
   double detection_noise_yaw{0.0};  ///< [rad] sd of a seen object's turn about its own z axis
   double encoder_noise{0.0};        ///< [rad] or [m] sd of each measured joint

@@ -1,0 +1,79 @@
+#include "hires/simulation/laser_scanner.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "arm_scene.h"
+
+namespace hires::simulation {
+namespace {
+
+using test_arm::Pr2;
+
+/// The PR2 in the middle of a closed room of 6 x 4 m, at (3, 2).
+std::unique_ptr<RobotSimulator> InTheRoom(std::vector<world::ObjectState> objects, double yaw = 0) {
+  static const auto scene = MakeScene(test_support::Room(), Pr2());
+  return std::make_unique<RobotSimulator>(scene, Variation(), world::WorldState{std::move(objects)},
+                                          test_support::StandingAt({3.0, 2.0, yaw}), base::Rng(1));
+}
+
+/// Distance from a point in the room to its walls, in a direction.
+double ToWall(const Eigen::Vector2d& p, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const double along_x = c > 0.0 ? (6.0 - p.x()) / c : c < 0.0 ? -p.x() / c : INFINITY;
+  const double along_y = s > 0.0 ? (4.0 - p.y()) / s : s < 0.0 ? -p.y() / s : INFINITY;
+  return std::min(along_x, along_y);
+}
+
+TEST(LaserScannerTest, SeesTheWallsOfARoomByClosedForm) {
+  LaserParams params;
+  params.noise = 0.0;
+  for (const double yaw : {0.0, 0.7, -2.0}) {
+    const auto simulator = InTheRoom({}, yaw);
+    base::Rng rng(1);
+    const std::vector<double> ranges = ScanLaser(*simulator, params, &rng);
+    ASSERT_EQ(ranges.size(), 640u);
+    const Eigen::Vector2d p = geometry::Pose2{3.0, 2.0, yaw} * Eigen::Vector2d(0.275, 0.0);
+    for (int i = 0; i < 640; ++i) {
+      const double angle = yaw - 2.2689 + i * 2.0 * 2.2689 / 639;
+      ASSERT_NEAR(ranges[i], ToWall(p, angle), 1e-5) << i;
+    }
+  }
+}
+
+TEST(LaserScannerTest, SeesLooseObjectsAndFarAwayNothing) {
+  LaserParams params;
+  params.noise = 0.0;
+  params.range_max = 1.5;
+  world::ObjectState tower;
+  tower.name = "tower1";
+  tower.model = "tower";
+  tower.X_MO.translation = {4.275, 2.0, 0.0002};
+  base::Rng rng(1);
+  const std::vector<double> ranges = ScanLaser(*InTheRoom({tower}), params, &rng);
+  EXPECT_NEAR(std::min(ranges[319], ranges[320]), 1.0 - 0.037, 1e-3);
+  EXPECT_TRUE(std::isinf(ranges[280]));
+}
+
+TEST(LaserScannerTest, NoiseHasItsDeviation) {
+  const auto simulator = InTheRoom({});
+  LaserParams params;
+  base::Rng rng(3);
+  const std::vector<double> noisy = ScanLaser(*simulator, params, &rng);
+  params.noise = 0.0;
+  const std::vector<double> exact = ScanLaser(*simulator, params, &rng);
+  double squares = 0.0;
+  for (int i = 0; i < 640; ++i) squares += (noisy[i] - exact[i]) * (noisy[i] - exact[i]);
+  EXPECT_NEAR(std::sqrt(squares / 640), 0.005, 4.0 * 0.005 / std::sqrt(2.0 * 640));
+}
+
+TEST(LaserScannerTest, RefusesARobotWithoutSurroundings) {
+  RobotSimulator simulator(test_support::RoomScene(), {}, {},
+                           test_support::StandingAt({3.0, 2.0, 0.0}), base::Rng(1));
+  base::Rng rng(1);
+  EXPECT_THROW(ScanLaser(simulator, {}, &rng), std::logic_error);
+}
+
+}  // namespace
+}  // namespace hires::simulation
