@@ -66,6 +66,12 @@ Pose3 GraspedAlong(const world::ObjectModel& model, const Vector3d& up_T) {
   return X_TO;
 }
 
+bool IsPartOfTheWorld(const world::World& world, const std::string& object) {
+  return std::any_of(
+      world.statics.begin(), world.statics.end(),
+      [&](const world::StaticBody& body) { return base::ToLower(body.name) == object; });
+}
+
 class Arrangement {
  public:
   Arrangement(const TranslatorContext& context, const knowledge::FluentView* fluents,
@@ -139,30 +145,12 @@ class Arrangement {
 
   /// What only fluents know.
   void AddOthers() {
-    if (fluents_ == nullptr || context_.ontology == nullptr) return;
-    const auto root = context_.ontology->Find("PassiveObject");
-    if (root == knowledge::Ontology::kUnknown) return;
-    for (const auto below : context_.ontology->Below(root)) {
-      fluents_->OfConcept(context_.ontology->Name(below), [&](const knowledge::Fluent& fluent) {
-        AddOther(fluent);
-        return true;
-      });
+    if (fluents_ == nullptr) return;
+    for (const StatedObject& stated : StatedObjects(context_, *fluents_)) {
+      const bool is_named =
+          wanted_.holders.count(stated.name) > 0 || wanted_.places.count(stated.name) > 0;
+      if (!is_named && stated.link.empty()) Add(stated.name, stated.X_LO);
     }
-  }
-
-  void AddOther(const knowledge::Fluent& fluent) {
-    const std::string object = base::ToLower(fluent.instance);
-    if (wanted_.holders.count(object) > 0 || wanted_.places.count(object) > 0) return;
-    if (IsPartOfTheWorld(object) || context_.FindModel(object).empty()) return;
-    const auto seen = PoseStatedBy(*fluents_, fluent);
-    if (seen && seen->frame.empty()) Add(object, seen->X_FO);
-  }
-
-  bool IsPartOfTheWorld(const std::string& object) const {
-    const auto& statics = context_.world->statics;
-    return std::any_of(statics.begin(), statics.end(), [&](const world::StaticBody& body) {
-      return base::ToLower(body.name) == object;
-    });
   }
 
   /// As AtomsOf would say of an object that was on the area before.
@@ -239,6 +227,26 @@ class Arrangement {
 };
 
 }  // namespace
+
+std::vector<StatedObject> StatedObjects(const TranslatorContext& context,
+                                        const knowledge::FluentView& fluents) {
+  std::vector<StatedObject> objects;
+  if (context.ontology == nullptr) return objects;
+  const auto root = context.ontology->Find("PassiveObject");
+  if (root == knowledge::Ontology::kUnknown) return objects;
+  for (const auto below : context.ontology->Below(root)) {
+    fluents.OfConcept(context.ontology->Name(below), [&](const knowledge::Fluent& fluent) {
+      const std::string name = base::ToLower(fluent.instance);
+      const auto stated = PoseStatedBy(fluents, fluent);
+      const std::string model = context.FindModel(name);
+      if (stated && !model.empty() && !IsPartOfTheWorld(*context.world, name)) {
+        objects.push_back({name, model, stated->frame, stated->X_FO});
+      }
+      return true;
+    });
+  }
+  return objects;
+}
 
 world::WorldState Arrange(const TranslatorContext& context, const knowledge::FluentView* fluents,
                           const WantedState& wanted, const Body& body) {

@@ -38,6 +38,19 @@ TranslatorContext MakeContext(
     const std::map<std::string, std::shared_ptr<const world::ObjectModel>>& catalogue,
     std::shared_ptr<const knowledge::Ontology> ontology);
 
+/// Where fluents say that an object is.
+struct StatedObject {
+  std::string name;  ///< lower case
+  std::string model;
+  std::string link;  ///< of the robot, as the fluent spells it; empty: the map
+  geometry::Pose3 X_LO;
+};
+
+/// Every loose object (a PassiveObject that is no part of the world and whose model is known) of
+/// which fluents say where it is, by concept and instance. Empty without an ontology.
+std::vector<StatedObject> StatedObjects(const TranslatorContext& context,
+                                        const knowledge::FluentView& fluents);
+
 /// Where things are, in metres and radians.
 struct GeometricState {
   world::WorldState world;  ///< objects by name, in lower case
