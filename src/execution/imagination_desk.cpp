@@ -209,7 +209,7 @@ void ImaginationDesk::Ask(Question* question) {
   step.phase = StepPhase::kRunning;
   step.started = session_.now();
   step.finished.reset();
-  session_.Send(StartImagination{question->request, session_.run().number(), question->target,
+  session_.Send(StartImagination{question->request, session_.plan_index(), question->target,
                                  question->action, projected.Atoms(), question->deadline});
 }
 
@@ -381,9 +381,10 @@ void ImaginationDesk::Settle(int step) {
 void ImaginationDesk::TakeDefaults(Question* question) {
   SetDefaults(*question);
   StepRun& target = session_.run().at(question->target);
-  const std::string why = question->why_not.empty() || question->request != 0
-                              ? "there was no answer in time"
-                              : question->why_not;
+  std::string why = question->why_not;
+  if (question->request != 0 || why.empty()) {
+    why = "there was no answer in time" + (why.empty() ? "" : "; " + why);
+  }
   session_.Warning(fmt::format(
       "{} is carried out without imagination, and nobody knows how likely it succeeds: {}",
       base::ToString(target.action), why));

@@ -17,6 +17,27 @@ std::set<std::string> TextsOf(const Facts& facts) {
   return texts;
 }
 
+void CollectTasks(const planning::TaskNetwork& network, std::vector<const Datum*>* tasks) {
+  for (const planning::TaskItem& item : network.items) {
+    if (item.network.empty()) tasks->push_back(&item.task);
+    for (const planning::TaskNetwork& nested : item.network) CollectTasks(nested, tasks);
+  }
+}
+
+/// Whether the plan tells how the problem's tasks broke down; plans from elsewhere may just be
+/// lists of steps.
+bool HasDecomposition(const planning::Problem& problem, const planning::Plan& plan) {
+  if (plan.nodes.empty()) return false;
+  std::vector<const Datum*> tasks;
+  CollectTasks(problem.tasks, &tasks);
+  const std::vector<int>& children = plan.nodes[0].children;
+  return std::equal(tasks.begin(), tasks.end(), children.begin(), children.end(),
+                    [&](const Datum* task, int child) {
+                      const planning::PlanNode& node = plan.nodes[static_cast<std::size_t>(child)];
+                      return CanMatch(*task, node.task) && (node.method >= 0 || node.step >= 0);
+                    });
+}
+
 }  // namespace
 
 void Repair::BeginTask(const planning::Problem& task) {
@@ -80,7 +101,7 @@ std::vector<PlanQuest::Try> Repair::Tries(const Facts& state) const {
     if (!tries.empty() && tries.back().tasks == *tasks) return;
     tries.push_back({std::move(problem), *tasks});
   };
-  if (!run.plan().nodes.empty()) {
+  if (HasDecomposition(whole, run.plan())) {
     const PlanRun::DoneFirst done = run.WithDoneFirst(session_.informs());
     for (int depth = DeepestKeepDepth(done.plan, done.executed); depth > 0; --depth) {
       add(RemainingProblem(session_.domain(), whole, done.plan, done.executed, state.Data(),

@@ -139,7 +139,7 @@ void Session::RecordEndOfPlan(const std::string& outcome) {
 StepStatus Session::StatusOf(int index) const {
   const StepRun& step = run_->at(index);
   StepStatus status;
-  status.plan = run_->number() - first_plan_;
+  status.plan = plan_index();
   status.index = index;
   status.action = step.action;
   status.phase = step.phase;

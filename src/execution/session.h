@@ -77,6 +77,7 @@ class Session {
   PlanNetwork& network() { return *network_; }
   const std::vector<int>& informs() const { return informs_; }
   int next_plan() const { return last_plan_ + 1; }
+  int plan_index() const { return run_->number() - first_plan_; }  ///< StepStatus::plan
   std::vector<StepStatus> Steps() const;
 
   // Its steps.

@@ -53,6 +53,21 @@ std::vector<base::Atom> Values(const std::map<std::string, base::Atom>& facts) {
   return atoms;
 }
 
+/// Steps below one root: what breaks down into what is lost.
+void Flatten(planning::Plan* plan) {
+  plan->nodes.assign(1, {});
+  for (planning::PlanStep& step : plan->steps) {
+    planning::PlanNode node;
+    node.task = step.task;
+    node.parent = 0;
+    node.step = node.at_step = static_cast<int>(plan->nodes.size()) - 1;
+    step.bindings.clear();
+    step.node = static_cast<int>(plan->nodes.size());
+    plan->nodes[0].children.push_back(step.node);
+    plan->nodes.push_back(node);
+  }
+}
+
 }  // namespace
 
 const planning::PlanningKnowledge& Restaurant() {
@@ -76,7 +91,9 @@ std::vector<base::Atom> FactsOf(const std::string& problem) {
 std::string TaskOf(const std::string& problem) { return *ToShop2Tasks(Load(problem).tasks); }
 
 ScriptedWorld::ScriptedWorld(Options options)
-    : options_(std::move(options)), monitor_(&Restaurant(), &RestaurantData(), options_.monitor) {
+    : options_(std::move(options)),
+      monitor_(&Restaurant(), options_.operators ? options_.operators : &RestaurantData(),
+               options_.monitor) {
   for (const base::Atom& atom : options_.facts) world_[KeyOf(atom)] = atom;
 }
 
@@ -128,6 +145,7 @@ void ScriptedWorld::Obey(const Command& command) {
 }
 
 Finish ScriptedWorld::Run(const std::string& task) {
+  finish_.reset();
   Observe();
   Post(TaskRequested{task});
   const double end = now_ + options_.horizon;
@@ -206,11 +224,11 @@ void ScriptedWorld::Do(const StartPlanning& command) {
     answer.why = "there is no plan: every way was tried";
   } else {
     answer.plan = std::move(found.plans.front());
-    if (options_.with_reasons) {
+    if (options_.plans != Options::PlanForm::kWhole) Flatten(&answer.plan);
+    if (options_.plans != Options::PlanForm::kSteps) {
       AddReasons(Restaurant().domain, problem, &answer.plan);
     } else {
       answer.plan.nodes.clear();
-      for (planning::PlanStep& step : answer.plan.steps) step.bindings.clear(), step.node = -1;
     }
   }
   Post(answer, options_.planner_delay);

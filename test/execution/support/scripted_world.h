@@ -36,12 +36,15 @@ class ScriptedWorld {
   struct Options {
     execution::MonitorParams monitor;
     std::vector<base::Atom> facts;
-    double planner_delay{0.05};     ///< [s]
-    double imagine_delay{20.0};     ///< [s]
-    double observation_delay{0.1};  ///< [s]
-    double stop_delay{0.3};         ///< [s] until a step that is stopped has ended
-    double horizon{7200.0};         ///< [s] after which a run counts as endless
-    bool with_reasons{true};        ///< plans come with reasons and decomposition
+    const planning::OperatorData* operators{nullptr};  ///< null: the restaurant's
+    double planner_delay{0.05};                        ///< [s]
+    double imagine_delay{20.0};                        ///< [s]
+    double observation_delay{0.1};                     ///< [s]
+    double stop_delay{0.3};  ///< [s] until a step that is stopped has ended
+    double horizon{7200.0};  ///< [s] after which a run counts as endless
+    enum class PlanForm { kWhole, kSteps, kFlat };
+    /// As the planner makes them, as steps alone, or as steps below one root.
+    PlanForm plans{PlanForm::kWhole};
     /// `count`: how often this action was begun before.
     std::function<StepScript(const base::ActionCall&, int count)> step;
     /// Nothing: there is never an answer.
@@ -96,12 +99,12 @@ class ScriptedWorld {
   void Tell(const execution::Event& event);
   void Obey(const execution::Command& command);
   void Do(const execution::StartPlanning& command);
-  void Do(const execution::CancelPlanning&) {}
+  void Do(const execution::CancelPlanning&) { Log("cancel planning"); }
   void Do(const execution::StartStep& command);
   void Do(const execution::StopStep& command);
   void Do(const execution::StartImagination& command);
   void Do(const execution::MoveDeadline& command);
-  void Do(const execution::CancelImagination&) {}
+  void Do(const execution::CancelImagination&) { Log("cancel imagination"); }
   void Do(const execution::Record& command) { records_.push_back(command); }
   void Do(const execution::Warn& command);
   void Do(const execution::Finish& command);
