@@ -129,6 +129,7 @@ void Monitor::Impl::Plan() {
 
 void Monitor::Impl::Execute() {
   watch.Check(true);
+  if (!watch.lost().empty()) return Conclude(Finish::Outcome::kFailed, watch.lost());
   if (session.run().IsOver()) return Conclude(Finish::Outcome::kSucceeded, "");
   if (!session.has_trouble()) desk.Update();
   if (session.has_trouble()) return TakeUpTrouble();
@@ -143,6 +144,7 @@ void Monitor::Impl::TakeUpTrouble() {
 
 void Monitor::Impl::Mend() {
   watch.Check(false);
+  if (!watch.lost().empty()) return Conclude(Finish::Outcome::kFailed, watch.lost());
   if (session.has_trouble()) TakeUpTrouble();
   if (stage != Stage::kRepairing) return;
   switch (repair.Update()) {

@@ -70,6 +70,7 @@ bool StepWatch::IsPast(double at) {
 
 void StepWatch::Check(bool with_later_steps) {
   wake_at_.reset();
+  lost_.clear();
   still_broken_.clear();
   PlanRun& run = session_.run();
   for (const int step : run.Active()) {
@@ -88,11 +89,13 @@ void StepWatch::Check(bool with_later_steps) {
   broken_ = std::move(still_broken_);
 }
 
+/// Nobody knows what such a step still does: nothing may begin beside it.
 void StepWatch::CheckStop(int index) {
   const StepRun& step = session_.run().at(index);
   if (!IsPast(*step.stopped + session_.params().stop_timeout)) return;
-  session_.Warning(fmt::format("{} was told to stop and has not answered for {} s; it is given up",
-                               base::ToString(step.action), session_.params().stop_timeout));
+  lost_ = fmt::format("{} was told to stop and has not answered for {} s",
+                      base::ToString(step.action), session_.params().stop_timeout);
+  session_.Warning(lost_ + "; the robot may still move");
   session_.End(index, StepPhase::kFailed, "failed", "did not stop");
 }
 

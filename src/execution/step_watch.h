@@ -19,6 +19,8 @@ class StepWatch {
   ///                          sought that takes their place.
   void Check(bool with_later_steps);
   std::optional<double> WakeAt() const { return wake_at_; }
+  /// A step did not stop when it was told to: why the task cannot go on. "" if all is well.
+  const std::string& lost() const { return lost_; }
 
  private:
   void CheckStop(int step);
@@ -36,6 +38,7 @@ class StepWatch {
   std::map<std::string, double> broken_;  ///< expectation that does not hold, since [s]
   std::map<std::string, double> still_broken_;
   std::optional<double> wake_at_;
+  std::string lost_;
 };
 
 }  // namespace hires::execution

@@ -125,6 +125,10 @@ void ScriptedWorld::Post(Event event, double delay) {
 void ScriptedWorld::Tell(const Event& event) {
   ++num_handled_;
   const bool was_over = finish_.has_value();
+  const bool is_answer = std::holds_alternative<PlanArrived>(event) ||
+                         std::holds_alternative<StepFinished>(event) ||
+                         std::holds_alternative<ImagineAnswered>(event);
+  if (is_answer) last_answer_ = event;
   const std::vector<Command> commands = monitor_.Handle(event, now_);
   if (was_over && !commands.empty()) Violate("a command after the end");
   for (const Command& command : commands) Obey(command);
@@ -188,6 +192,18 @@ void ScriptedWorld::Observe(double delay) {
 void ScriptedWorld::Set(const std::vector<base::Atom>& gone, const std::vector<base::Atom>& come) {
   for (const base::Atom& atom : gone) world_.erase(KeyOf(atom));
   for (const base::Atom& atom : come) world_[KeyOf(atom)] = atom;
+}
+
+void ScriptedWorld::ReplaceAll(const std::string& predicate, const base::Atom& by) {
+  for (auto fact = world_.begin(); fact != world_.end();) {
+    const bool is_one = base::ToLower(fact->second.predicate) == predicate;
+    fact = is_one ? world_.erase(fact) : std::next(fact);
+  }
+  world_[KeyOf(by)] = by;
+}
+
+void ScriptedWorld::Repeat() {
+  if (last_answer_) Post(*last_answer_);
 }
 
 bool ScriptedWorld::Holds(const base::Atom& atom) const { return world_.count(KeyOf(atom)) > 0; }

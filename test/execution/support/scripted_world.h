@@ -69,7 +69,10 @@ class ScriptedWorld {
   double now() const { return now_; }
   void Post(execution::Event event, double delay = 0.0);
   void Set(const std::vector<base::Atom>& gone, const std::vector<base::Atom>& come);
+  /// All atoms of that predicate are replaced by one.
+  void ReplaceAll(const std::string& predicate, const base::Atom& by);
   void Observe(double delay = 0.0);
+  void Repeat();  ///< tells the last answer of somebody once more
 
   // What happened.
   /// "pick_up_object(mug1, rightarm1)", as begun.
@@ -133,6 +136,7 @@ class ScriptedWorld {
   std::vector<execution::StartPlanning> plannings_;
   std::vector<execution::Record> records_;
   int num_handled_{0};
+  std::optional<execution::Event> last_answer_;
 };
 
 /// An answer that recommends one alternative.
