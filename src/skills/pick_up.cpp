@@ -25,6 +25,7 @@ PickUpObject::PickUpObject(SharedContext context, const base::ActionCall& action
       object_(base::ToLower(object)),
       arm_(KnownArm(*context_, arm)),
       seed_(SeedOf(context_->params, action)) {
+  if (from == From::kTray) RequireTray(*context_);
   AppendLooking(from);
   AppendReaching();
   AppendTaking();

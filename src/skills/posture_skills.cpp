@@ -254,14 +254,14 @@ MoveArmToSide::MoveArmToSide(Context context, const base::ActionCall& action,
   RequireArm(*context, arm, {kToSide}, {});
   const std::string name = base::ToLower(arm);
   const std::uint64_t seed = SeedOf(context->params, action);
-  Append({"to_side",
-          [context, name, seed](const Observation& seen) {
-            const robot::ArmProfile& profile = context->arm(name);
-            const bool holds = HeldBy(profile, seen) != nullptr;
-            return MoveArmTo(context, {name, PosturePositions(profile, kToSide, holds), seed},
-                             seen);
-          },
-          {}});
+  Append(
+      {"to_side",
+       [context, name, seed](const Observation& seen) {
+         const robot::ArmProfile& profile = context->arm(name);
+         const bool holds = HeldBy(profile, seen) != nullptr;
+         return MoveArmTo(context, {name, PosturePositions(profile, kToSide, holds), seed}, seen);
+       },
+       {}});
 }
 
 MoveArmsToCarryPosture::MoveArmsToCarryPosture(Context context, const base::ActionCall& action)

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "restaurant.h"
 #include "support/messages.h"
 #include "support/scenes.h"
 
@@ -76,6 +77,87 @@ TEST(SkillFactoryTest, RefusesTheWrongNumberOfArguments) {
 TEST(SkillFactoryTest, KnowsTheAreasOfTheWorldFlat) {
   EXPECT_EQ(RoomSkills().areas.size(), 3u);
   EXPECT_EQ(RoomSkills().areas.at("corner").y, 3.0);
+}
+
+// ------------------------------------------------------------------------------- upper body
+
+std::string WhyNotInRestaurant(const base::ActionCall& action) {
+  return ConfigErrorOf([&] { MakeSkill(test_support::TheRestaurant().skills, action); });
+}
+
+TEST(SkillFactoryUpperBodyTest, MakesEveryOperatorOfTheRestaurant) {
+  const std::vector<base::ActionCall> actions{
+      {"move_base", {"home"}},
+      {"move_base_param", {"home", "slow"}},
+      {"move_base_blind", {"home"}},
+      {"move_torso", {"TorsoMiddlePosture"}},
+      {"tuck_arms", {"ArmTuckedPosture", "ArmUnTuckedPosture"}},
+      {"move_arm_to_side", {"leftArm1"}},
+      {"move_arms_to_carryposture", {}},
+      {"observe_objects_on_area", {"placingAreaEastRightCounter1"}},
+      {"look_at", {"mug1"}},
+      {"pick_up_object", {"mug1", "rightArm1"}},
+      {"place_object", {"mug1", "rightArm1", "placingAreaWestRightTable1"}},
+      {"place_on_tray", {"rightArm1", "mug1"}},
+      {"pick_up_from_tray", {"rightArm1", "mug1"}}};
+  for (const base::ActionCall& action : actions) {
+    EXPECT_NE(MakeSkill(test_support::TheRestaurant().skills, action), nullptr)
+        << base::ToString(action);
+  }
+}
+
+TEST(SkillFactoryUpperBodyTest, SaysHowMuchOfTheRobotAnActionMoves) {
+  EXPECT_EQ(DetailFor({"Move_Base", {"home"}}), NeededDetail::kBase);
+  EXPECT_EQ(DetailFor({"move_base_blind", {"home"}}), NeededDetail::kBase);
+  EXPECT_EQ(DetailFor({"place_object", {}}), NeededDetail::kUpperBody);
+  EXPECT_EQ(DetailFor({"move_torso", {}}), NeededDetail::kUpperBody);
+  EXPECT_THAT(ConfigErrorOf([] {
+                DetailFor({"move_torsi", {}});
+              }),
+              HasSubstr("did you mean 'move_torso'"));
+}
+
+TEST(SkillFactoryUpperBodyTest, ARobotWithoutArmsHasNoneOfTheirSkills) {
+  EXPECT_THAT(WhyNot("tuck_arms", {"armtuckedposture", "armtuckedposture"}),
+              AllOf(HasSubstr("tuck_arms(armtuckedposture, armtuckedposture)"),
+                    HasSubstr("robot 'tray_robot' has no upper body"), HasSubstr("upper_body")));
+  EXPECT_THAT(WhyNot("look_at", {"east"}), HasSubstr("has no upper body"));
+}
+
+TEST(SkillFactoryUpperBodyTest, RefusesUnknownArmsPosturesAndAreas) {
+  EXPECT_THAT(WhyNotInRestaurant({"move_arm_to_side", {"middleArm1"}}),
+              AllOf(HasSubstr("move_arm_to_side(middleArm1)"), HasSubstr("arm 'middleArm1'"),
+                    HasSubstr("leftarm1")));
+  EXPECT_THAT(WhyNotInRestaurant({"pick_up_object", {"mug1", "rightarm2"}}),
+              AllOf(HasSubstr("arm 'rightarm2' is unknown"), HasSubstr("'rightarm1'")));
+  EXPECT_THAT(WhyNotInRestaurant({"move_torso", {"torsotopposture"}}),
+              AllOf(HasSubstr("torso posture 'torsotopposture'"), HasSubstr("torsoupposture")));
+  EXPECT_THAT(WhyNotInRestaurant({"tuck_arms", {"armcarryposture", "armtuckedposture"}}),
+              AllOf(HasSubstr("goal of an arm 'armcarryposture'"), HasSubstr("armtuckedposture")));
+  EXPECT_THAT(WhyNotInRestaurant({"place_object", {"mug1", "rightarm1", "placingAreaMoon1"}}),
+              HasSubstr("area 'placingAreaMoon1' is unknown"));
+  EXPECT_THAT(WhyNotInRestaurant({"observe_objects_on_area", {"mug1"}}),
+              HasSubstr("area 'mug1' is unknown"));
+}
+
+TEST(SkillFactoryUpperBodyTest, RefusesTheWrongNumberOfArguments) {
+  EXPECT_THAT(WhyNotInRestaurant({"move_arms_to_carryposture", {"rightarm1"}}),
+              HasSubstr("has 1 arguments, wanted 0 (none)"));
+  EXPECT_THAT(WhyNotInRestaurant({"place_object", {"mug1", "rightarm1"}}),
+              HasSubstr("has 2 arguments, wanted 3 (object, arm, area)"));
+  EXPECT_THAT(WhyNotInRestaurant({"place_on_tray", {"mug1"}}), HasSubstr("wanted 2 (arm, object)"));
+}
+
+TEST(SkillFactoryUpperBodyTest, ARobotWithoutTrayPutsNothingOnIt) {
+  robot::Robot robot = test_support::TheRestaurant().scene->robot;
+  robot.profile.tray_link.clear();
+  const SkillSet skills = MakeSkillSet(test_support::TheRestaurant().scene->world, robot, {}, {});
+  for (const base::ActionCall& action :
+       {base::ActionCall{"place_on_tray", {"rightarm1", "mug1"}},
+        base::ActionCall{"pick_up_from_tray", {"rightarm1", "mug1"}}}) {
+    EXPECT_THAT(ConfigErrorOf([&] { MakeSkill(skills, action); }),
+                AllOf(HasSubstr("has no tray"), HasSubstr("tray_link")));
+  }
 }
 
 }  // namespace

@@ -1,0 +1,123 @@
+#include "hires/skills/free_spot.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/scenes.h"
+
+namespace hires::skills {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+/// Models mill (radius 0.037), and a book of 0.11 x 0.045.
+const world::World& Shelf() {
+  static const world::World shelf = [] {
+    world::World made = hires::test_support::Room();
+    world::ObjectModel book = hires::test_support::Mill("book");
+    book.collisions = {hires::test_support::Shape("body", geometry::Box{{0.11, 0.045, 0.175}},
+                                                  {0.0, 0.0, 0.0875})};
+    hires::test_support::AddModel(&made, book);
+    return made;
+  }();
+  return shelf;
+}
+
+const geometry::Pose3& X_MA() {
+  static const geometry::Pose3 pose{{3.0, 2.0, 0.73}, Eigen::Quaterniond::Identity()};
+  return pose;
+}
+
+world::ObjectState Stands(const std::string& name, const std::string& model, double x, double y,
+                          double z = 0.0, double yaw = 0.0) {
+  world::ObjectState object;
+  object.name = name;
+  object.model = model;
+  object.X_MO = X_MA() * geometry::Pose3{{x, y, z}, geometry::RotationFromRpy(0.0, 0.0, yaw)};
+  return object;
+}
+
+FreeSpots Spots(const std::vector<world::ObjectState>& others, const PlaceParams& params = {}) {
+  return FindFreeSpots(params, Shelf(), *Shelf().models.at("mill"), X_MA(), others);
+}
+
+TEST(RadiusOfTest, ARoundObjectHasItsOwnRadius) {
+  EXPECT_NEAR(RadiusOf(*Shelf().models.at("mill")), 0.037, 1e-6);
+}
+
+TEST(RadiusOfTest, AnOutlineTurnsWithItsObject) {
+  const geometry::Polygon outline =
+      OutlineOf(*Shelf().models.at("book"),
+                {{1.0, 0.0, 0.0}, geometry::RotationFromRpy(0.0, 0.0, 1.5707963)});
+  double lowest = 1e9, highest = -1e9;
+  for (const Eigen::Vector2d& corner : outline) {
+    lowest = std::min(lowest, corner.y());
+    highest = std::max(highest, corner.y());
+  }
+  EXPECT_NEAR(highest - lowest, 0.11, 1e-6);
+}
+
+TEST(FreeSpotsTest, AnEmptyAreaOffersItsMiddleFirst) {
+  const FreeSpots free = Spots({});
+  EXPECT_THAT(free.occupants, IsEmpty());
+  ASSERT_FALSE(free.spots_A.empty());
+  EXPECT_LT(free.spots_A.front().norm(), 1e-12);
+}
+
+TEST(FreeSpotsTest, TheObjectLiesWhollyWithinTheSquare) {
+  const PlaceParams params;
+  for (const Eigen::Vector3d& p_A : Spots({}).spots_A) {
+    EXPECT_LE(p_A.head<2>().cwiseAbs().maxCoeff() + 0.037, params.area_half_width + 1e-9);
+  }
+}
+
+TEST(FreeSpotsTest, SpotsKeepClearOfEveryNeighbourAndComeNearestFirst) {
+  const PlaceParams params;
+  const std::vector<world::ObjectState> others{Stands("mill1", "mill", 0.0, 0.0),
+                                               Stands("book1", "book", -0.12, 0.1, 0.0, 0.7)};
+  const FreeSpots free = Spots(others);
+  ASSERT_FALSE(free.spots_A.empty());
+  double before = 0.0;
+  for (const Eigen::Vector3d& p_A : free.spots_A) {
+    EXPECT_GE(p_A.norm(), 2 * 0.037 + params.clearance - 1e-9);
+    EXPECT_GE(p_A.norm(), before - 1e-6);
+    before = p_A.norm();
+  }
+  EXPECT_THAT(free.occupants, ElementsAre("book1", "mill1"));
+}
+
+TEST(FreeSpotsTest, TwoBooksFillAnArea) {
+  const FreeSpots free =
+      Spots({Stands("book2", "book", 0.0, 0.06), Stands("book1", "book", 0.0, -0.06)});
+  EXPECT_THAT(free.spots_A, IsEmpty());
+  EXPECT_THAT(free.occupants, ElementsAre("book1", "book2"));
+}
+
+TEST(FreeSpotsTest, WhatStandsOnAnotherLevelOrFarAwayIsNoNeighbour) {
+  const FreeSpots free =
+      Spots({Stands("book1", "book", 0.0, 0.0, -0.5), Stands("book2", "book", 1.0, 0.0)});
+  EXPECT_LT(free.spots_A.front().norm(), 1e-12);
+  EXPECT_THAT(free.occupants, IsEmpty());
+}
+
+TEST(FreeSpotsTest, AnObjectAsWideAsTheAreaHasItsMiddleOnly) {
+  PlaceParams params;
+  params.area_half_width = 0.03;
+  EXPECT_EQ(Spots({}, params).spots_A.size(), 1u);
+}
+
+TEST(FreeSlotsTest, TheTrayHasItsMiddleThenRightThenLeft) {
+  const auto slots = [](const std::vector<world::ObjectState>& others) {
+    return FindFreeSlots(PlaceParams{}, Shelf(), *Shelf().models.at("mill"), X_MA(), others);
+  };
+  EXPECT_THAT(slots({}).spots_A,
+              ElementsAre(Eigen::Vector3d(0.0, 0.0, 0.0), Eigen::Vector3d(0.0, -0.13, 0.0),
+                          Eigen::Vector3d(0.0, 0.13, 0.0)));
+  const FreeSpots two = slots({Stands("mill1", "mill", 0.01, 0.0)});
+  EXPECT_EQ(two.spots_A.size(), 2u);
+  EXPECT_THAT(two.occupants, ElementsAre("mill1"));
+}
+
+}  // namespace
+}  // namespace hires::skills

@@ -1,0 +1,151 @@
+#include "hires/skills/look_skills.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hires/skills/head_aim.h"
+#include "restaurant.h"
+
+namespace hires::skills {
+namespace {
+
+using Eigen::Vector3d;
+using test_support::Frame;
+using test_support::On;
+using test_support::Played;
+using test_support::Rehearsal;
+using test_support::RobotAt;
+using test_support::TheRestaurant;
+using test_support::UpperBody;
+
+const char kAtCounter[] = "manipulationAreaEastCounter1";
+const char kCounter[] = "placingAreaEastRightCounter1";
+
+robot::RobotState AtCounter() {
+  return RobotAt(kAtCounter, "torsoupposture", "armtuckedposture", "armtosideposture");
+}
+
+const robot::Robot& Pr2() { return TheRestaurant().scene->robot; }
+
+/// [rad] between the camera's axis and a point.
+double AngleOff(const robot::JointPositions& joints, const geometry::Pose2& X_MB,
+                const Vector3d& p_M) {
+  const Vector3d p_C =
+      perception::ViewOf(Pr2(), X_MB, PostureOf(Pr2(), joints)).X_MC.Inverse() * p_M;
+  return std::atan2(p_C.tail<2>().norm(), p_C.x());
+}
+
+TEST(AimHeadTest, BringsPointsAllAroundOntoTheCamerasAxis) {
+  robot::JointPositions joints = AtCounter().joints;
+  for (const double heading : {-2.0, -1.0, 0.0, 0.5, 1.5, 2.5}) {
+    for (const double height : {0.4, 0.75, 1.5}) {
+      const Vector3d p(1.5 * std::cos(heading), 1.5 * std::sin(heading), height);
+      const auto aim = AimHead(Pr2(), {}, PostureOf(Pr2(), joints), p);
+      ASSERT_TRUE(aim.has_value());
+      joints[UpperBody().head_pan_joint] = aim->at(0);
+      joints[UpperBody().head_tilt_joint] = aim->at(1);
+      EXPECT_LT(AngleOff(joints, {}, p), 2e-4) << heading << " " << height;
+    }
+  }
+}
+
+TEST(AimHeadTest, FindsNothingForWhatTheHeadCannotTurnTo) {
+  const robot::JointPositions posture = PostureOf(Pr2(), AtCounter().joints);
+  EXPECT_FALSE(AimHead(Pr2(), {}, posture, {0.3, 0.0, 6.0}).has_value());  // over its head
+}
+
+TEST(LookAtTest, TheHeadRestsOnAnArea) {
+  Rehearsal rehearsal(AtCounter(), {});
+  const Played played = rehearsal.Play({"look_at", {kCounter}});
+  EXPECT_EQ(played.status.reason, "");
+  const robot::RobotState now = rehearsal.simulator().GetRobotState();
+  EXPECT_LT(AngleOff(now.joints, now.X_MB, Frame(kCounter).translation), 0.03);
+  EXPECT_GE(played.duration, TheRestaurant().skills.manipulation->params.look.dwell);
+}
+
+TEST(LookAtTest, TheHeadTurnsToARememberedObject) {
+  Rehearsal rehearsal(AtCounter(), {On("mug1", kCounter, 0.05, -0.1)});
+  ASSERT_EQ(rehearsal.Play({"look_at", {kCounter}}).status.reason, "");
+  rehearsal.Wait(1.0);
+  EXPECT_EQ(rehearsal.Play({"look_at", {"Mug1"}}).status.reason, "");
+  const robot::RobotState now = rehearsal.simulator().GetRobotState();
+  EXPECT_LT(AngleOff(now.joints, now.X_MB, rehearsal.ObjectNow("mug1").X_MO.translation), 0.03);
+}
+
+TEST(LookAtTest, AnObjectThatNobodyKnowsIsNotSeen) {
+  Rehearsal rehearsal(AtCounter(), {});
+  EXPECT_EQ(rehearsal.Play({"look_at", {"mug1"}}).status.reason, "object_not_seen");
+}
+
+TEST(ObserveObjectsOnAreaTest, EndsWithEverythingThatStandsThere) {
+  Rehearsal rehearsal(AtCounter(),
+                      {On("mug1", kCounter, 0.1, 0.1), On("mug2", kCounter, -0.1, -0.1),
+                       On("book1", "placingAreaWestLeftTable1")});
+  EXPECT_EQ(rehearsal.Play({"observe_objects_on_area", {kCounter}}).status.reason, "");
+  std::vector<std::string> names;
+  for (const robot::SeenObject& object : rehearsal.simulator().Observe(0.0).objects) {
+    names.push_back(object.name);
+    EXPECT_LT((object.X_MO.translation - rehearsal.ObjectNow(object.name).X_MO.translation).norm(),
+              0.01);
+  }
+  EXPECT_THAT(names, ::testing::ElementsAre("mug1", "mug2"));
+}
+
+TEST(ObserveObjectsOnAreaTest, AnEmptyAreaIsSeenEmpty) {
+  Rehearsal rehearsal(AtCounter(), {});
+  EXPECT_EQ(rehearsal.Play({"observe_objects_on_area", {kCounter}}).status.reason, "");
+  EXPECT_TRUE(rehearsal.simulator().Observe(0.0).objects.empty());
+}
+
+TEST(ObserveObjectsOnAreaTest, AnAreaAcrossTheRoomIsOutOfView) {
+  Rehearsal rehearsal(AtCounter(), {});  // table2: beyond the camera's range
+  EXPECT_EQ(
+      rehearsal.Play({"observe_objects_on_area", {"placingAreaNorthLeftTable2"}}).status.reason,
+      "out_of_view");
+}
+
+/// A wide square close by needs several looks; every part has been in view at rest afterwards.
+TEST(SweepPointsTest, LooksUntilEveryPartHasBeenInView) {
+  const std::shared_ptr<const ManipulationContext>& context = TheRestaurant().skills.manipulation;
+  const robot::RobotState robot = AtCounter();
+  const geometry::Pose3 X_MF{{5.1, 10.1, 0.75}, Eigen::Quaterniond::Identity()};
+  const std::vector<Vector3d> points = PointsOfSquare(X_MF, 0.6, 0.2);
+  SweepPoints sweep(context, points);
+  std::vector<bool> seen_at_rest(points.size(), false);
+  robot::Observation seen;
+  seen.X_MB = robot.X_MB;
+  seen.joints = PostureOf(Pr2(), robot.joints);
+  Status status;
+  int looks = 0;
+  for (int cycle = 0; cycle < 4000 && status.progress == Progress::kRunning; ++cycle) {
+    seen.time = 0.05 * cycle;
+    robot::Command command;
+    status = sweep.Update(seen, &command);
+    // The head is there at once, but the skill waits as long as its own trajectory takes.
+    for (const auto& [group, trajectory] : command.trajectories) {
+      SetJoints(trajectory.joints, trajectory.points.back().positions, &seen.joints);
+      ++looks;
+    }
+    const perception::CameraView view = perception::ViewOf(Pr2(), seen.X_MB, seen.joints);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (view.Contains(points[i])) seen_at_rest[i] = true;
+    }
+  }
+  EXPECT_EQ(status.progress, Progress::kSucceeded) << status.reason;
+  EXPECT_GT(looks, 1);
+  EXPECT_LT(looks, 20);
+  EXPECT_THAT(seen_at_rest, ::testing::Each(true));
+}
+
+TEST(PointsOfSquareTest, CoverTheSquareWithItsRimsTheMiddleFirst) {
+  const auto points =
+      PointsOfSquare({{1.0, 2.0, 0.7}, Eigen::Quaterniond::Identity()}, 0.175, 0.07);
+  EXPECT_EQ(points.size(), 49u);  // 7 x 7, 0.058 apart
+  EXPECT_LT((points.front() - Vector3d(1.0, 2.0, 0.7)).norm(), 1e-12);
+  EXPECT_NEAR((points.back() - Vector3d(1.0, 2.0, 0.7)).norm(), 0.175 * std::sqrt(2.0), 1e-12);
+}
+
+}  // namespace
+}  // namespace hires::skills
