@@ -199,10 +199,11 @@ void CollisionScene::Impl::FindNear(const LinkMask& links) const {
 
 std::optional<Touch> CollisionScene::Impl::AmongParts(const LinkMask& links) const {
   const auto& parts = fixed->robot_parts.parts();
-  for (const auto& [a, b] : fixed->robot_parts.pairs()) {
-    if (!links[parts[a].link] && !links[parts[b].link]) continue;
-    const std::string &name_a = NameOfPart(a), &name_b = NameOfPart(b);
-    if (Disturb(name_a, now.parts[a], name_b, now.parts[b], 0.0)) return Touch{name_a, name_b};
+  for (const RobotParts::Pair& pair : fixed->robot_parts.pairs()) {
+    if (!links[parts[pair.a].link] && !links[parts[pair.b].link]) continue;
+    if (!AreTouchingShrunk(now.parts[pair.a], now.parts[pair.b], pair.level)) continue;
+    const std::string &a = NameOfPart(pair.a), &b = NameOfPart(pair.b);
+    if (!IsAllowed(a, b)) return Touch{a, b};
   }
   return std::nullopt;
 }

@@ -9,6 +9,8 @@
 #include <fcl/narrowphase/distance.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "hires/base/error.h"
 #include "hires/base/overloaded.h"
 
@@ -35,19 +37,29 @@ Geometry MakeMesh(const geometry::TriangleMesh& mesh) {
   return Bounded(model);
 }
 
+constexpr double kSmallest = 0.01;  // [m] edge or diameter of what is left of a shrunk shape
+
+double Length(double length, double padding) {
+  return padding < 0.0 ? std::max(std::min(length, kSmallest), length + 2.0 * padding)
+                       : length + 2.0 * padding;
+}
+
+/// The shape with `padding` added on every side; a negative one makes it smaller. Nothing for a
+/// mesh, unless it stays as it is.
 Geometry Grown(const geometry::Shape& shape, double padding) {
   return std::visit(
       base::Overloaded{
           [&](const geometry::Box& box) -> Geometry {
-            const Eigen::Vector3d size = box.size.array() + 2.0 * padding;
+            const Eigen::Vector3d size =
+                box.size.unaryExpr([&](double edge) { return Length(edge, padding); });
             return Bounded(std::make_shared<fcl::Boxd>(size));
           },
           [&](const geometry::Cylinder& c) -> Geometry {
-            return Bounded(
-                std::make_shared<fcl::Cylinderd>(c.radius + padding, c.length + 2.0 * padding));
+            return Bounded(std::make_shared<fcl::Cylinderd>(0.5 * Length(2.0 * c.radius, padding),
+                                                            Length(c.length, padding)));
           },
           [&](const geometry::Sphere& s) -> Geometry {
-            return Bounded(std::make_shared<fcl::Sphered>(s.radius + padding));
+            return Bounded(std::make_shared<fcl::Sphered>(0.5 * Length(2.0 * s.radius, padding)));
           },
           [&](const Mesh& mesh) -> Geometry { return padding > 0.0 ? nullptr : MakeMesh(*mesh); }},
       shape);
@@ -100,6 +112,11 @@ CollisionShape MakeCollisionShape(const geometry::Collision& collision, double p
   return shape;
 }
 
+void AddShrunk(const geometry::Shape& of, CollisionShape* shape) {
+  shape->shrunk.front() = shape->exact;
+  for (std::size_t i = 1; i < kShrinkage.size(); ++i) shape->shrunk[i] = Grown(of, -kShrinkage[i]);
+}
+
 void Place(const CollisionShape& shape, const Eigen::Isometry3d& X_MO, PlacedCollisionShape* out) {
   out->shape = &shape;
   out->X_MS = X_MO * shape.X_OS;
@@ -115,6 +132,12 @@ bool AreTouching(const PlacedCollisionShape& a, const PlacedCollisionShape& b, d
   if (a.shape->padded) return Collide(*a.shape->padded, a.X_MS, *b.shape->exact, b.X_MS);
   if (b.shape->padded) return Collide(*a.shape->exact, a.X_MS, *b.shape->padded, b.X_MS);
   return AreCloserThan(a, b, padding);
+}
+
+bool AreTouchingShrunk(const PlacedCollisionShape& a, const PlacedCollisionShape& b,
+                       std::size_t level) {
+  return BoundsOverlap(a, b, 0.0) &&
+         Collide(*a.shape->shrunk[level], a.X_MS, *b.shape->shrunk[level], b.X_MS);
 }
 
 }  // namespace hires::manipulation

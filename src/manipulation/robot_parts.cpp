@@ -59,10 +59,12 @@ RobotParts::RobotParts(const robot::Robot& robot, double padding, int num_sample
     const std::string what = fmt::format("robot '{}', link '{}'", robot.model.name, link.name);
     for (const geometry::Collision& collision : link.collisions) {
       parts_.push_back({static_cast<int>(i), MakeCollisionShape(collision, padding, what)});
+      AddShrunk(collision.shape, &parts_.back().shape);
     }
   }
   FindPairs(robot);
   LeaveOutUsualTouches(robot, num_samples);
+  ShrinkNamedTouches(robot);
   FindStandingLinks(robot, padding);
 }
 
@@ -94,42 +96,67 @@ void RobotParts::FindPairs(const robot::Robot& robot) {
     for (int b = a + 1; b < static_cast<int>(parts_.size()); ++b) {
       const int link_a = parts_[a].link, link_b = parts_[b].link;
       if (AreNeighbours(link_a, link_b) || AreInOneHand(robot, link_a, link_b)) continue;
-      pairs_.emplace_back(a, b);
+      pairs_.push_back({a, b, 0});
     }
   }
 }
 
-void RobotParts::LeaveOutUsualTouches(const robot::Robot& robot, int num_samples) {
+std::set<LinkPair> RobotParts::TouchingLinks(const robot::JointPositions& posture) const {
   std::vector<Eigen::Isometry3d> X_ML;
   std::vector<PlacedCollisionShape> placed;
-  const auto touching_links = [&](const robot::JointPositions& posture) {
-    PlaceAll(Eigen::Isometry3d::Identity(), posture, &X_ML, &placed);
-    std::set<LinkPair> links;
-    for (const auto& [a, b] : pairs_) {
-      const LinkPair pair(parts_[a].link, parts_[b].link);
-      if (links.count(pair) == 0 && AreTouching(placed[a], placed[b], 0.0)) links.insert(pair);
-    }
-    return links;
+  PlaceAll(Eigen::Isometry3d::Identity(), posture, &X_ML, &placed);
+  std::set<LinkPair> links;
+  for (const Pair& pair : pairs_) {
+    const LinkPair of(parts_[pair.a].link, parts_[pair.b].link);
+    if (links.count(of) > 0) continue;
+    if (AreTouchingShrunk(placed[pair.a], placed[pair.b], pair.level)) links.insert(of);
+  }
+  return links;
+}
+
+void RobotParts::LeaveOut(const std::set<LinkPair>& links) {
+  const auto is_left_out = [&](const Pair& pair) {
+    return links.count({parts_[pair.a].link, parts_[pair.b].link}) > 0;
   };
+  pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(), is_left_out), pairs_.end());
+  left_out_.insert(left_out_.end(), links.begin(), links.end());
+}
+
+void RobotParts::LeaveOutUsualTouches(const robot::Robot& robot, int num_samples) {
   std::map<LinkPair, int> counts;
   const base::Rng rng(kSamplingSeed);
   for (int i = 0; i < num_samples; ++i) {
-    for (const LinkPair& pair : touching_links(RandomPosture(robot.model, rng.Fork(i)))) {
+    for (const LinkPair& pair : TouchingLinks(RandomPosture(robot.model, rng.Fork(i)))) {
       ++counts[pair];
     }
   }
-  std::set<LinkPair> left_out;
+  std::set<LinkPair> usual;
   for (const auto& [pair, count] : counts) {
-    if (count > kUsualShare * num_samples) left_out.insert(pair);
+    if (count > kUsualShare * num_samples) usual.insert(pair);
   }
+  LeaveOut(usual);
+}
+
+bool RobotParts::HaveLevel(const Pair& pair) const {
+  return pair.level < kShrinkage.size() && parts_[pair.a].shape.shrunk[pair.level] &&
+         parts_[pair.b].shape.shrunk[pair.level];
+}
+
+void RobotParts::ShrinkNamedTouches(const robot::Robot& robot) {
+  std::set<LinkPair> hopeless;
   for (const robot::JointPositions& posture : NamedPostures(robot.profile)) {
-    left_out.merge(touching_links(posture));
+    for (auto touching = TouchingLinks(posture); !touching.empty();
+         touching = TouchingLinks(posture)) {
+      for (Pair& pair : pairs_) {
+        const LinkPair of(parts_[pair.a].link, parts_[pair.b].link);
+        if (touching.count(of) == 0) continue;
+        ++pair.level;
+        if (!HaveLevel(pair)) hopeless.insert(of);
+      }
+      LeaveOut(hopeless);
+      hopeless.clear();
+    }
   }
-  const auto is_left_out = [&](const LinkPair& p) {
-    return left_out.count({parts_[p.first].link, parts_[p.second].link}) > 0;
-  };
-  pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(), is_left_out), pairs_.end());
-  left_out_.assign(left_out.begin(), left_out.end());
 }
 
 void RobotParts::FindStandingLinks(const robot::Robot& robot, double padding) {

@@ -313,6 +313,26 @@ TEST(CollisionScenePr2Test, AnArmThroughTheTrayTouchesIt) {
   EXPECT_THAT(ToString(*touch), HasSubstr("base_"));
 }
 
+// The tuck folds the arms into each other's boxes, which must not make them blind to each other.
+TEST(CollisionScenePr2Test, ArmsThatCrossTouch) {
+  const CollisionScene scene = test_support::RestaurantScene();
+  robot::JointPositions posture = test_support::Posture("armtuckedposture", 0.295, 0.0);
+  test_support::SetArm("leftarm1", {-0.5, 0.5, 0.0, -0.2, 0.0, -0.1, 0.0}, &posture);
+  EXPECT_FALSE(
+      scene.FindTouch({12.5, 9.8, 0.0}, test_support::Posture("armtuckedposture", 0.295, 0.0)));
+  test_support::SetArm("rightarm1", {0.5, 0.5, 0.0, -0.2, 0.0, -0.1, 0.0}, &posture);
+  const auto touch = scene.FindTouch({12.5, 9.8, 0.0}, posture);
+  ASSERT_TRUE(touch);
+  EXPECT_THAT(touch->a + touch->b, AllOf(HasSubstr("l_"), HasSubstr("r_")));
+}
+
+TEST(CollisionScenePr2Test, OnlyNeighboursInOneArmAreLeftOut) {
+  for (const auto& [a, b] : test_support::RestaurantScene().LeftOutPairs()) {
+    if (a == "base_link") continue;  // wheels
+    EXPECT_EQ(a.substr(0, 2), b.substr(0, 2)) << a << " and " << b;
+  }
+}
+
 TEST(CollisionScenePr2Test, TheWheelsMayStandOnTheFloor) {
   EXPECT_FALSE(test_support::RestaurantScene().FindTouch(
       {12.5, 9.8, 0.0}, test_support::Posture("armtuckedposture", 0.1, 0.0)));

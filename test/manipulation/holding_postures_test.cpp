@@ -97,6 +97,23 @@ TEST(HoldingPosturesTest, CarryKeepsUprightWhatIsHeldFromTheSide) {
   }
 }
 
+TEST(HoldingPosturesTest, TheProfilesVariantsKeepUprightWhatIsHeldFromAbove) {
+  int num_variants = 0;
+  for (const auto& [arm, profile] : Pr2()->profile.upper_body->arms) {
+    for (const auto& [name, joints] : profile.holding_postures) {
+      for (const std::string& model : kObjects) {
+        const Grasp grasp = BestGrasp(model, "top");
+        robot::JointPositions posture = Posture(name, 0.295, 0.0);
+        TakeInHand(arm, grasp, joints, &posture);
+        EXPECT_LT(Tilt(arm, grasp, posture), 0.1) << arm << " " << name;
+        EXPECT_EQ(TouchWith({Held(arm, model, grasp, posture)}, posture, arm), "") << name;
+        ++num_variants;
+      }
+    }
+  }
+  EXPECT_EQ(num_variants, 8) << "two arms, two postures, two objects";
+}
+
 TEST(HoldingPosturesTest, BothArmsCanCarryAtOnce) {
   for (const double torso : {0.295, 0.2, 0.15}) {
     robot::JointPositions posture = Posture("armcarryposture", torso);
