@@ -35,10 +35,15 @@ void SetArm(const robot::ArmProfile& arm, const std::vector<double>& values,
   for (std::size_t i = 0; i < arm.joints.size(); ++i) (*posture)[arm.joints[i]] = values[i];
 }
 
-/// Every variant of a named posture of every arm, the other joints as while driving.
+/// The driving posture at every named height of the torso, and every variant of a named posture of
+/// every arm with the other joints as while driving.
 std::vector<robot::JointPositions> NamedPostures(const robot::RobotProfile& profile) {
   std::vector<robot::JointPositions> postures{profile.joints};
   if (!profile.upper_body) return postures;
+  for (const auto& [name, height] : profile.upper_body->torso_postures) {
+    postures.push_back(profile.joints);
+    postures.back()[profile.upper_body->torso_joint] = height;
+  }
   for (const auto& [instance, arm] : profile.upper_body->arms) {
     for (const auto& [name, variants] : arm.postures) {
       for (const auto& values : variants) {
