@@ -65,8 +65,8 @@ void PlanQuest::Next(const PlanArrived& answer) {
     ++at_;
     return Ask();
   }
-  const bool is_invalid = answer.outcome == PlanArrived::Outcome::kInvalid;
-  End(is_invalid ? Outcome::kFailed : Outcome::kNoPlan,
+  const bool is_none = answer.outcome == PlanArrived::Outcome::kNoPlan;
+  End(is_none ? Outcome::kNoPlan : Outcome::kFailed,
       answer.why.empty() ? "there is no plan" : answer.why);
 }
 

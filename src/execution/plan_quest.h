@@ -19,8 +19,8 @@ class PlanQuest {
   enum class Outcome {
     kAsking,
     kFound,
-    kNoPlan,  ///< every try saw all there is, or met a limit
-    kFailed,  ///< there is no planner, or it does not understand
+    kNoPlan,  ///< the last try, which may change all, saw all there is
+    kFailed,  ///< there is no planner, it met a limit, or it does not understand
   };
 
   explicit PlanQuest(Session* session) : session_(*session) {}

@@ -215,7 +215,8 @@ void Session::Exclude(Exclusion exclusion, int step, const std::string& reason) 
 void Session::ForgetExclusions(const std::set<std::string>& changed) {
   const auto rests_on = [&](const Exclusion& exclusion) {
     return std::any_of(changed.begin(), changed.end(), [&](const std::string& instance) {
-      return exclusion.depends_on.count(instance) > 0;
+      // What is seen for the first time was in the way before it had a pose.
+      return exclusion.depends_on.count(instance) > 0 && instances_.count(instance) > 0;
     });
   };
   for (auto exclusion = exclusions_.begin(); exclusion != exclusions_.end();) {

@@ -431,6 +431,58 @@ TEST(ToppleTest, WhatTheRobotCarriesMayMove) {
   EXPECT_THAT(world.imaginations(), SizeIs(1));
 }
 
+TEST(ImaginationTest, WhatRunsButIsNotWantedAnyMoreIsStoppedFirst) {
+  auto options = For("serve_coffee_imagined");
+  options.imagine = SouthFails;
+  options.imagine_delay = 43.0;  // on the way to the south
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "serve_coffee_imagined");
+  const double south = world.StartOf("move_base(premanipulationareasouthtable1)");
+  EXPECT_GT(south, 40.0);
+  EXPECT_LT(south, 43.0);
+  EXPECT_EQ(world.CountOf("stop move_base(premanipulationareasouthtable1)"), 1);
+  EXPECT_NEAR(world.StartOf("move_base(premanipulationareanorthtable1)"), 43.9, 0.5);
+  EXPECT_TRUE(world.Holds({"on", {"mug1", "placingareawestlefttable1"}}));
+}
+
+TEST(ToppleTest, AnAnswerOutlivesARepairThatDoesNotConcernIt) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int) { return Slow(); };
+  options.imagine_delay = 5.0;
+  options.step = [](const base::ActionCall& action, int count) {
+    StepScript script;
+    if (action.name == "place_on_tray" && count == 0) {
+      script.result = StepFinished::Result::kFailed;
+      script.reason = "no_path: r_forearm_link touches table1";
+    }
+    return script;
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(world.imaginations(), SizeIs(1));
+  EXPECT_GT(world.StartOf(kDrive + std::string("slow)")), 0.0);
+}
+
+TEST(ToppleTest, TheCheapestChangeIsTriedFirst) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int) { return Slow(); };
+  options.step = [](const base::ActionCall& action, int count) {
+    StepScript script;
+    if (action.name == "place_on_tray" && count == 0) {
+      script.result = StepFinished::Result::kFailed;
+      script.reason = "grasp_lost";
+    }
+    return script;
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  ASSERT_THAT(world.plannings(), SizeIs(2));
+  // What was begun goes on where it was: of loading the tray the last step is left.
+  EXPECT_THAT(world.plannings()[1].tasks, AllOf(HasSubstr("(!place_on_tray rightarm1 peppermill1)"),
+                                                HasSubstr("(unload_tray peppermill1 table1)"),
+                                                Not(HasSubstr("carry_object_on_tray"))));
+}
+
 // ------------------------------------------------------------------------------ things go wrong
 
 /// The first `times` attempts of actions of that name fail.
@@ -459,6 +511,30 @@ TEST(FailureTest, AnOccupiedAreaSendsTheRobotToTheOtherSide) {
   ExpectSuccess(&world, "serve_coffee");
   EXPECT_TRUE(world.Holds({"on", {"mug1", "placingareawestlefttable1"}}));
   EXPECT_EQ(world.CountOf("begin place_object"), 2);
+}
+
+TEST(FailureTest, WhatWasInTheWayAndWentIsInTheWayNoMore) {
+  // South and north are occupied, by different things; then the south becomes free.
+  auto options = For("serve_coffee");
+  bool is_free = false;
+  options.step = [&](const base::ActionCall& action, int) {
+    StepScript script;
+    if (action.name != "place_object") return script;
+    const bool is_south = action.arguments[2] == "placingareawestrighttable1";
+    if (is_south && is_free) return script;
+    script.result = StepFinished::Result::kFailed;
+    script.reason = is_south ? "area_occupied: book1" : "area_occupied: vase1";
+    return script;
+  };
+  ScriptedWorld world(options);
+  world.At(1.0, [](ScriptedWorld* w) { w->Post(GeometryChanged{{"book1"}}); });
+  world.At(80.0, [&](ScriptedWorld* w) {
+    is_free = true;
+    w->Post(GeometryChanged{{"book1"}});
+  });
+  ExpectSuccess(&world, "serve_coffee");
+  EXPECT_EQ(world.CountOf("begin place_object"), 3);
+  EXPECT_TRUE(world.Holds({"on", {"mug1", "placingareawestrighttable1"}}));
 }
 
 TEST(FailureTest, TheSameFailureTwiceWithNothingChangedEndsTheTask) {
@@ -655,6 +731,20 @@ TEST(PlannerTest, ASlowPlannerIsAskedOnceMore) {
     EXPECT_EQ(world.plannings().size(), comes ? 1u : 2u);
     ExpectSound(world);
   }
+}
+
+TEST(PlannerTest, APlannerAtItsLimitsHasNotSaidThatThereIsNoPlan) {
+  auto options = For("serve_coffee");
+  options.planner = [](int) {
+    PlanArrived answer;
+    answer.outcome = PlanArrived::Outcome::kLimit;
+    answer.why = "the time limit of 60 s came first";
+    return answer;
+  };
+  ScriptedWorld world(options);
+  const Finish finish = world.Run(TaskOf("serve_coffee"));
+  EXPECT_EQ(finish.outcome, Finish::Outcome::kFailed);
+  EXPECT_EQ(finish.reason, "the time limit of 60 s came first");
 }
 
 TEST(PlannerTest, ARequestThatThePlannerDoesNotUnderstandFails) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <set>
 #include <utility>
 
@@ -123,13 +124,15 @@ void ScriptedWorld::Post(Event event, double delay) {
 }
 
 void ScriptedWorld::Tell(const Event& event) {
-  ++num_handled_;
   const bool was_over = finish_.has_value();
   const bool is_answer = std::holds_alternative<PlanArrived>(event) ||
                          std::holds_alternative<StepFinished>(event) ||
                          std::holds_alternative<ImagineAnswered>(event);
   if (is_answer) last_answer_ = event;
+  const auto begin = std::chrono::steady_clock::now();
   const std::vector<Command> commands = monitor_.Handle(event, now_);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  handle_seconds_.push_back(took.count());
   if (was_over && !commands.empty()) Violate("a command after the end");
   for (const Command& command : commands) Obey(command);
 }

@@ -88,7 +88,8 @@ class ScriptedWorld {
   const std::vector<execution::StartPlanning>& plannings() const { return plannings_; }
   const std::vector<execution::Record>& records() const { return records_; }
   execution::Monitor& monitor() { return monitor_; }
-  int num_handled() const { return num_handled_; }
+  /// [s] wall time that the monitor took for each event; for benchmarks.
+  const std::vector<double>& handle_seconds() const { return handle_seconds_; }
 
  private:
   struct RunningStep {
@@ -135,7 +136,7 @@ class ScriptedWorld {
   std::vector<execution::MoveDeadline> moves_;
   std::vector<execution::StartPlanning> plannings_;
   std::vector<execution::Record> records_;
-  int num_handled_{0};
+  std::vector<double> handle_seconds_;
   std::optional<execution::Event> last_answer_;
 };
 
