@@ -328,7 +328,7 @@
 ; The arm that does not work must not hang over the furniture.
 (:method (clear_arm ?arm)
   clear
-  ((HasArmPosture ?arm ?posture) (clear_of_furniture ?posture))
+  ((HasArmPosture ?arm ?posture) (clear_of_furniture ?arm ?posture))
   ()
 
   stretched
@@ -408,15 +408,17 @@
 (:- (way_is_short ?from ?to)
   approach
   ((Connected ?pla ?to ?from) (HasTorsoPosture torsoupposture)
-   (HasArmPosture leftarm1 ?left) (clear_of_furniture ?left)
-   (HasArmPosture rightarm1 ?right) (clear_of_furniture ?right))
+   (HasArmPosture leftarm1 ?left) (clear_of_furniture leftarm1 ?left)
+   (HasArmPosture rightarm1 ?right) (clear_of_furniture rightarm1 ?right))
   retreat
   ((Connected ?pla ?from ?to) (HasTorsoPosture ?torso)
    (HasArmPosture leftarm1 ?left) (HasArmPosture rightarm1 ?right)))
 
-(:- (clear_of_furniture armtuckedposture) ())
-(:- (clear_of_furniture armcarryposture) ())
-(:- (clear_of_furniture armtosideposture) ())
+; Folded or carrying, the right arm reaches farther forward than the left one, over the edge; so
+; does what an arm carries.
+(:- (clear_of_furniture ?arm armtosideposture) ())
+(:- (clear_of_furniture leftarm1 armtuckedposture) ())
+(:- (clear_of_furniture leftarm1 armcarryposture) ((Holding leftarm1 nothing)))
 
 ; Only an empty arm is folded.
 (:- (may_take ?arm armtuckedposture) ((Holding ?arm nothing)))
