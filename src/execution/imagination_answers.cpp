@@ -1,0 +1,227 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "alternatives.h"
+#include "hires/base/text.h"
+#include "hires/planning/datum_reader.h"
+#include "imagination_desk.h"
+#include "records.h"
+
+// What becomes of the answers: the other half of imagination_desk.cpp.
+
+namespace hires::execution {
+namespace {
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+/// Where imagination has nothing to say.
+std::string OutcomeText(ImagineAnswered::Outcome outcome) {
+  switch (outcome) {
+    case ImagineAnswered::Outcome::kNoWorker:
+      return "nobody is there to imagine it";
+    case ImagineAnswered::Outcome::kNothingFinished:
+      return "nothing was finished in time";
+    case ImagineAnswered::Outcome::kUnavailable:
+      return "imagination is not available";
+    case ImagineAnswered::Outcome::kInvalid:
+      return "it cannot be imagined";
+    case ImagineAnswered::Outcome::kRanked:
+    case ImagineAnswered::Outcome::kAllFailed:
+      break;
+  }
+  return "no alternative is expected to succeed";
+}
+
+}  // namespace
+
+// ---------------------------------------------------------------------------------------- answers
+
+void ImaginationDesk::OnAnswer(const ImagineAnswered& answer) {
+  const auto question = std::find_if(questions_.begin(), questions_.end(), [&](const auto& open) {
+    return open.request != 0 && open.request == answer.request;
+  });
+  if (question == questions_.end()) return;  // an answer to what is not asked any more
+  question->request = 0;
+  session_.run().at(question->step).finished = session_.now();
+  using Outcome = ImagineAnswered::Outcome;
+  if (answer.outcome == Outcome::kRanked) {
+    question->answer = answer;
+    return TakeRanked(&*question);
+  }
+  if (answer.outcome == Outcome::kAllFailed) return TakeFailed(&*question, answer);
+  question->why_not = OutcomeText(answer.outcome);
+  if (!answer.why.empty()) question->why_not += ": " + answer.why;
+  question->is_hopeless = answer.outcome == Outcome::kInvalid;
+  if (!question->is_hopeless) question->retry = session_.now() + session_.params().retry_period;
+}
+
+void ImaginationDesk::TakeRanked(Question* question) {
+  const ImagineAnswered& answer = *question->answer;
+  const base::ActionCall best = Lowered(answer.recommended);
+  PlanRun& run = session_.run();
+  std::string wrong = Fits(question->action, best)
+                          ? run.Instantiate(question->target, best.arguments, session_.domain(),
+                                            session_.operators())
+                          : "it is none of the alternatives";
+  if (!wrong.empty()) {
+    question->why_not =
+        fmt::format("the recommended {} cannot be taken: {}", base::ToString(best), wrong);
+    question->answer.reset();
+    question->is_hopeless = true;
+    return;
+  }
+  planning::Duration duration{answer.duration_low, answer.duration_high, answer.duration};
+  if (!(0.0 < duration.min && duration.min <= duration.max)) duration = {0.0, kForever, {}};
+  if (answer.duration > 0.0) duration.expected = answer.duration;
+  const auto conflict = session_.network().Tighten(question->target, duration);
+  if (conflict) {
+    session_.Warning(
+        fmt::format("how long {} lasts as imagined does not fit the plan and is not "
+                    "used: {}",
+                    base::ToString(best), *conflict));
+  }
+  StepRun& step = run.at(question->step);
+  step.phase = StepPhase::kDone;
+  step.note = fmt::format("recommended: {}; {}", base::ToString(best), answer.why);
+  run.at(question->target).note = "imagined: " + answer.why;
+  session_.Send(TaskChanged(run.number(), question->target, best));
+  session_.Send(
+      Predicted(session_.NewRecord(), run.number(), question->target, best, answer.duration));
+  session_.Changed();
+}
+
+void ImaginationDesk::TakeFailed(Question* question, const ImagineAnswered& answer) {
+  question->why_not = OutcomeText(answer.outcome) + (answer.why.empty() ? "" : ": " + answer.why);
+  question->is_hopeless = true;
+  if (session_.params().imagination == MonitorParams::ImaginePolicy::kThesis) return;
+  std::vector<base::ActionCall> failed;
+  for (const base::ActionCall& call : answer.failed) failed.push_back(Lowered(call));
+  if (failed.empty()) failed = base::Combinations(question->action);
+  std::string reason;
+  for (std::size_t i = 0; i < failed.size(); ++i) {
+    const std::string why = i < answer.failure_reasons.size() ? answer.failure_reasons[i] : "";
+    if (reason.empty()) reason = why;
+    session_.Exclude({failed[i], LoweredSet(answer.depends_on), 0}, question->target, why);
+  }
+  StepRun& step = session_.run().at(question->step);
+  step.phase = StepPhase::kDone;
+  step.note = question->why_not;
+  session_.run().at(question->target).note = "imagined to fail: " + reason;
+  session_.Report({Trouble::Kind::kImagined, session_.run().at(question->target).action,
+                   "imagined to fail" + (reason.empty() ? "" : ": " + reason)},
+                  0);
+}
+
+// --------------------------------------------------------------------------------------- deciding
+
+bool ImaginationDesk::MayStart(int step) {
+  Question* question = FindTarget(step);
+  if (question == nullptr || question->answer || question->is_hopeless) return true;
+  const MonitorParams& params = session_.params();
+  if (question->on_late == planning::OnLate::kWait) {
+    return question->asked && session_.now() >= *question->asked + params.max_wait;
+  }
+  if (!question->limit) {
+    question->limit = std::max(session_.now(), session_.network().LatestStart(step));
+    MoveTo(question, DeadlineOf(*question));
+  }
+  if (session_.now() < *question->limit) return false;
+  return question->request == 0 || session_.now() >= *question->limit + params.answer_grace;
+}
+
+void ImaginationDesk::Settle(int step) {
+  Question* question = FindTarget(step);
+  if (question == nullptr) return;
+  question->is_open = false;
+  session_.network().Forget(question->step);
+  if (!question->answer) TakeDefaults(question);
+  Cancel(question);
+}
+
+void ImaginationDesk::TakeDefaults(Question* question) {
+  SetDefaults(*question);
+  StepRun& target = session_.run().at(question->target);
+  std::string why = question->why_not;
+  if (question->request != 0 || why.empty()) {
+    why = "there was no answer in time" + (why.empty() ? "" : "; " + why);
+  }
+  session_.Warning(fmt::format(
+      "{} is carried out without imagination, and nobody knows how likely it succeeds: {}",
+      base::ToString(target.action), why));
+  target.note = "not imagined: " + why;
+  StepRun& step = session_.run().at(question->step);
+  step.phase = StepPhase::kSkipped;
+  step.note = why;
+}
+
+void ImaginationDesk::SetDefaults(const Question& question) {
+  PlanRun& run = session_.run();
+  const planning::OperatorEntry& entry = EntryOf(session_.operators(), question.action.name);
+  if (!entry.imagine) return;
+  std::vector<std::string> arguments = run.at(question.target).action.arguments;
+  for (std::size_t i = 0; i < arguments.size() && i < entry.arguments.size(); ++i) {
+    const auto value = entry.imagine->defaults.find(entry.arguments[i]);
+    if (value == entry.imagine->defaults.end()) continue;
+    const auto& list = question.action.alternatives[i];
+    if (std::find(list.begin(), list.end(), value->second) != list.end()) {
+      arguments[i] = value->second;
+    }
+  }
+  const std::string wrong =
+      run.Instantiate(question.target, arguments, session_.domain(), session_.operators());
+  if (!wrong.empty()) session_.Warning("the default cannot be taken: " + wrong);
+  session_.network().Tighten(question.target, {0.0, kForever, run.at(question.target).expected});
+}
+
+// ----------------------------------------------------------------------------------------- change
+
+/// What the robot carries moves with it, and that changes nothing that was imagined.
+bool ImaginationDesk::IsCarried(const std::string& instance) const {
+  const PlanRun& run = session_.run();
+  for (const int active : run.Active()) {
+    const auto& arguments = run.at(active).action.arguments;
+    if (std::find(arguments.begin(), arguments.end(), instance) != arguments.end()) return true;
+  }
+  for (const std::string& text : session_.params().carried) {
+    std::vector<Datum> patterns = planning::ReadData(text, "carried");
+    for (Datum& item : patterns.at(0).items) {
+      if (item.kind == Datum::Kind::kVariable && item.text == "?object") {
+        item = planning::MakeSymbol(instance);
+      }
+    }
+    if (session_.facts().HasMatch(patterns[0])) return true;
+  }
+  return false;
+}
+
+bool ImaginationDesk::IsAffected(const Question& question,
+                                 const std::set<std::string>& changed) const {
+  if (question.request == 0 && !question.answer) return false;
+  if (question.request != 0) return true;
+  const std::set<std::string> depends_on = LoweredSet(question.answer->depends_on);
+  return std::any_of(changed.begin(), changed.end(), [&](const std::string& instance) {
+    return depends_on.count(instance) > 0 || question.known.count(instance) == 0;
+  });
+}
+
+void ImaginationDesk::OnChanged(const GeometryChanged& change) {
+  std::set<std::string> changed = LoweredSet(change.instances);
+  for (auto instance = changed.begin(); instance != changed.end();) {
+    instance =
+        session_.has_plan() && IsCarried(*instance) ? changed.erase(instance) : std::next(instance);
+  }
+  session_.ForgetExclusions(changed);
+  std::vector<Question*> affected;
+  for (Question& question : questions_) {
+    if (!changed.empty() && question.is_open && IsAffected(question, changed)) {
+      affected.push_back(&question);
+    }
+  }
+  session_.instances().insert(changed.begin(), changed.end());
+  for (Question* question : affected) {
+    AskAgain(question, base::Join({changed.begin(), changed.end()}, ", ") + " changed");
+  }
+}
+
+}  // namespace hires::execution
