@@ -1,0 +1,43 @@
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "hires/perception/object_memory.h"
+#include "hires/ros/translator_params.h"
+#include "hires/translation/observed_fluents.h"
+
+namespace hires_ros {
+
+/// How the head looks around when nobody else wants it to look somewhere.
+struct SweepParams {
+  bool enabled{true};
+  double range{3.2};                   ///< [m] from the camera to what is worth looking at
+  double period{4.0};                  ///< [s] after which a place is looked at again
+  double dwell{1.0};                   ///< [s] that the head rests on a place: some looks
+  double speed{1.0};                   ///< [rad/s] of the head
+  double hands_off{2.0};               ///< [s] after an action that uses the head
+  std::set<std::string> busy_actions;  ///< lower case: while one of these runs, the head is theirs
+};
+
+/// config/world_tracker.yaml.
+struct WorldTrackerParams {
+  TranslatorParams files;
+  hires::perception::MemoryParams memory;
+  hires::translation::ClassifyParams classify;
+  hires::translation::ChangeParams changes;
+  std::map<std::string, std::string> concepts;  ///< model -> concept, for objects nobody knows
+  SweepParams sweep;
+  double write_period{0.05};  ///< [s] between writes to the Blackboard
+  /// Tells of known objects with looks alone, so that whoever waits for them after each look sees
+  /// the same however messages interleave.
+  bool lockstep{false};
+};
+
+/// @throws hires::base::ConfigError naming file and key.
+WorldTrackerParams ReadWorldTrackerParams(const std::string& path);
+/// From the private parameters config, world, robot, objects, sweep, lockstep.
+WorldTrackerParams LoadWorldTrackerParams();
+
+}  // namespace hires_ros

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "hires/perception/object_memory.h"
+#include "hires/ros/robot_messages.h"
+
+namespace hires_ros {
+
+/// A moment of which all is known: where the robot is, its joints, and what its camera saw if it
+/// looked then.
+struct TrackerMoment {
+  hires::perception::BodyReading body;
+  hires::geometry::Twist2 V_B;
+  std::optional<std::vector<hires::perception::Detection>> look;
+};
+
+/// Puts together moments from messages that come in any order, each with its own stamp [s]. Knows
+/// no clock and no connection. Localisation corrects odometry: a moment waits for one of its own
+/// stamp as long as odometry is less than 0.15 s ahead, so that the same messages give the same
+/// moments however they interleave.
+class TrackerSenses {
+ public:
+  void OnOdometry(double stamp, const OdometryReading& reading);
+  void OnLocalisation(double stamp, const hires::geometry::Pose2& X_MB);
+  void OnJoints(double stamp, hires::robot::JointPositions joints);
+  void OnLook(double stamp, std::vector<hires::perception::Detection> detections);
+
+  /// The next complete moment, in the order of time; nothing if it is not complete yet.
+  std::optional<TrackerMoment> Take();
+
+  int num_dropped() const { return num_dropped_; }  ///< moments that came too late, or stayed alone
+  std::string Missing() const;                      ///< what has not come at all; for people
+
+ private:
+  struct Pending {
+    std::optional<hires::robot::JointPositions> joints;
+    std::optional<std::vector<hires::perception::Detection>> look;
+  };
+  template <typename T>
+  struct Stamped {
+    double stamp;
+    T value;
+  };
+
+  Pending* PendingAt(double stamp);
+  void NoteTime(double stamp);
+  bool IsComplete(double stamp, const Pending& pending) const;
+  bool IsHopeless(double stamp) const;
+  std::optional<hires::geometry::Pose2> BaseAt(double stamp) const;
+  const OdometryReading* OdometryAt(double stamp) const;
+  void Forget();
+
+  std::deque<Stamped<OdometryReading>> odometry_;                // oldest first
+  std::deque<Stamped<hires::geometry::Pose2>> localisation_;     // likewise
+  std::map<double, Pending> pending_;                            // by stamp
+  std::optional<Stamped<hires::robot::JointPositions>> joints_;  // taken last
+  std::optional<double> newest_joints_;                          // stamp
+  double taken_{-1.0};                                           // stamp of the last moment
+  int num_dropped_{0};
+};
+
+}  // namespace hires_ros

@@ -1,0 +1,103 @@
+#include "hires/ros/world_tracker_params.h"
+
+#include "hires/base/text.h"
+#include "hires/ros/private_params.h"
+
+namespace hires_ros {
+namespace {
+
+using hires::base::Between;
+using hires::base::ParamReader;
+
+hires::perception::MemoryParams ReadMemory(ParamReader in) {
+  hires::perception::MemoryParams params;
+  params.expected_share = in.Get("expected_share", Between(0.05, 1.0));
+  params.looks_to_vanish = in.Get("looks_to_vanish", Between(1, 1000));
+  params.blending = in.Get("blending", Between(0.01, 1.0));
+  params.moved_distance = in.Get("moved_distance", Between(0.0, 1.0));
+  params.moved_angle = in.Get("moved_angle", Between(0.0, 3.2));
+  params.grasp_distance = in.Get("grasp_distance", Between(0.0, 0.5));
+  params.closed_gap = in.Get("closed_gap", Between(0.0, 0.05));
+  params.gap_below = in.Get("gap_below", Between(0.0, 0.1));
+  params.gap_above = in.Get("gap_above", Between(0.0, 0.1));
+  params.still_gap = in.Get("still_gap", Between(0.0001, 0.02));
+  params.still_time = in.Get("still_time", Between(0.0, 5.0));
+  params.hand_distance = in.Get("hand_distance", Between(0.01, 1.0));
+  return params;
+}
+
+hires::translation::ClassifyParams ReadClassify(ParamReader in) {
+  hires::translation::ClassifyParams params;
+  params.area_distance = in.Get("area_distance", Between(0.01, 5.0));
+  params.area_yaw = in.Get("area_yaw", Between(0.01, 3.2));
+  params.tucked_tolerance = in.Get("tucked_tolerance", Between(0.01, 3.2));
+  params.posture_tolerance = in.Get("posture_tolerance", Between(0.01, 3.2));
+  params.torso_tolerance = in.Get("torso_tolerance", Between(0.001, 0.2));
+  params.placing_height = in.Get("placing_height", Between(0.005, 1.0));
+  params.tray_height = in.Get("tray_height", Between(0.005, 1.0));
+  params.lying_tilt = in.Get("lying_tilt", Between(0.01, 3.2));
+  params.hysteresis = in.Get("hysteresis", Between(1.0, 3.0));
+  params.placing_hysteresis = in.Get("placing_hysteresis", Between(0.0, 0.2));
+  return params;
+}
+
+hires::translation::ChangeParams ReadChanges(ParamReader in) {
+  hires::translation::ChangeParams params;
+  params.position = in.Get("position", Between(0.0, 1.0));
+  params.angle = in.Get("angle", Between(0.0, 3.2));
+  params.robot_position = in.Get("robot_position", Between(0.0, 5.0));
+  params.robot_angle = in.Get("robot_angle", Between(0.0, 3.2));
+  return params;
+}
+
+SweepParams ReadSweep(ParamReader in) {
+  SweepParams params;
+  params.enabled = in.GetBool("enabled");
+  params.range = in.Get("range", Between(0.5, 30.0));
+  params.period = in.Get("period", Between(0.1, 3600.0));
+  params.dwell = in.Get("dwell", Between(0.0, 60.0));
+  params.speed = in.Get("speed", Between(0.05, 10.0));
+  params.hands_off = in.Get("hands_off", Between(0.0, 60.0));
+  for (const std::string& action : in.GetStrings("busy_actions")) {
+    params.busy_actions.insert(hires::base::ToLower(action));
+  }
+  return params;
+}
+
+std::map<std::string, std::string> ReadConcepts(ParamReader in) {
+  std::map<std::string, std::string> concepts;
+  for (const std::string& model : in.Keys()) {
+    concepts[hires::base::ToLower(model)] = in.GetString(model);
+  }
+  return concepts;
+}
+
+}  // namespace
+
+WorldTrackerParams ReadWorldTrackerParams(const std::string& path) {
+  ParamReader in = ParamReader::FromFile(path);
+  WorldTrackerParams params;
+  ReadTranslatorFiles(path, &in, &params.files);
+  params.memory = ReadMemory(in.Sub("memory"));
+  params.classify = ReadClassify(in.Sub("classify"));
+  params.changes = ReadChanges(in.Sub("changes"));
+  params.concepts = ReadConcepts(in.Sub("concepts"));
+  params.sweep = ReadSweep(in.Sub("sweep"));
+  params.write_period = in.Get("write_period", Between(0.0, 10.0));
+  params.lockstep = in.GetBool("lockstep");
+  in.RejectUnknownKeys();
+  return params;
+}
+
+WorldTrackerParams LoadWorldTrackerParams() {
+  RejectUnknownPrivate({"config", "world", "robot", "objects", "sweep", "lockstep"});
+  WorldTrackerParams params = ReadWorldTrackerParams(ConfigPath("world_tracker"));
+  params.files.world = PrivateText("world").value_or("");
+  params.files.robot = PrivateText("robot").value_or("");
+  params.files.objects = PrivateText("objects").value_or("");
+  params.sweep.enabled = PrivateBool("sweep").value_or(params.sweep.enabled);
+  params.lockstep = PrivateBool("lockstep").value_or(params.lockstep);
+  return params;
+}
+
+}  // namespace hires_ros

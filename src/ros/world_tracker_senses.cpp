@@ -1,0 +1,140 @@
+#include "hires/ros/world_tracker_senses.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hires_ros {
+namespace {
+
+namespace geometry = hires::geometry;
+
+constexpr double kSameStamp = 5e-4;         // [s]
+constexpr double kLocalisationWait = 0.15;  // [s] of odometry
+constexpr double kHistory = 3.0;            // [s] that is kept
+constexpr double kTooOld = 2.0;             // [s] after which nobody waits any more
+constexpr double kJumpBack = 1.0;           // [s] by which time must go back to have begun anew
+
+template <typename Deque>
+void Insert(Deque* deque, typename Deque::value_type item) {
+  const auto place =
+      std::upper_bound(deque->begin(), deque->end(), item.stamp,
+                       [](double stamp, const auto& one) { return stamp < one.stamp; });
+  deque->insert(place, std::move(item));
+  while (deque->back().stamp - deque->front().stamp > kHistory) deque->pop_front();
+}
+
+}  // namespace
+
+/// A clock that begins anew (a simulation that is started again) makes all older stamps worthless.
+void TrackerSenses::NoteTime(double stamp) {
+  if (!odometry_.empty() && stamp < odometry_.back().stamp - kJumpBack - kHistory) Forget();
+}
+
+void TrackerSenses::Forget() {
+  odometry_.clear();
+  localisation_.clear();
+  pending_.clear();
+  joints_.reset();
+  newest_joints_.reset();
+  taken_ = -1.0;
+}
+
+void TrackerSenses::OnOdometry(double stamp, const OdometryReading& reading) {
+  NoteTime(stamp);
+  Insert(&odometry_, {stamp, reading});
+}
+
+void TrackerSenses::OnLocalisation(double stamp, const geometry::Pose2& X_MB) {
+  Insert(&localisation_, {stamp, X_MB});
+}
+
+TrackerSenses::Pending* TrackerSenses::PendingAt(double stamp) {
+  if (stamp <= taken_ - kSameStamp) {
+    ++num_dropped_;
+    return nullptr;
+  }
+  const auto near = pending_.lower_bound(stamp - kSameStamp);
+  if (near != pending_.end() && near->first <= stamp + kSameStamp) return &near->second;
+  return &pending_[stamp];
+}
+
+void TrackerSenses::OnJoints(double stamp, hires::robot::JointPositions joints) {
+  NoteTime(stamp);
+  newest_joints_ = std::max(newest_joints_.value_or(stamp), stamp);
+  if (Pending* pending = PendingAt(stamp)) pending->joints = std::move(joints);
+}
+
+void TrackerSenses::OnLook(double stamp, std::vector<hires::perception::Detection> detections) {
+  if (Pending* pending = PendingAt(stamp)) pending->look = std::move(detections);
+}
+
+/// The reading nearest in time, as long as it is near.
+const OdometryReading* TrackerSenses::OdometryAt(double stamp) const {
+  constexpr double kNear = 0.1;  // [s]
+  const Stamped<OdometryReading>* nearest = nullptr;
+  for (const auto& one : odometry_) {
+    if (nearest == nullptr || std::abs(one.stamp - stamp) < std::abs(nearest->stamp - stamp)) {
+      nearest = &one;
+    }
+  }
+  return nearest && std::abs(nearest->stamp - stamp) <= kNear ? &nearest->value : nullptr;
+}
+
+/// The last correction of the odometry, and the odometry since then.
+std::optional<geometry::Pose2> TrackerSenses::BaseAt(double stamp) const {
+  const OdometryReading* now = OdometryAt(stamp);
+  if (now == nullptr) return std::nullopt;
+  for (auto one = localisation_.rbegin(); one != localisation_.rend(); ++one) {
+    if (one->stamp > stamp + kSameStamp) continue;
+    const OdometryReading* then = OdometryAt(one->stamp);
+    if (then) return one->value * then->X_OB.Inverse() * now->X_OB;
+  }
+  return std::nullopt;
+}
+
+bool TrackerSenses::IsComplete(double stamp, const Pending& pending) const {
+  if (odometry_.empty() || odometry_.back().stamp < stamp - kSameStamp) return false;
+  if (!newest_joints_ || *newest_joints_ < stamp - kSameStamp) return false;
+  if (!pending.joints && !joints_) return false;
+  const bool is_corrected =
+      !localisation_.empty() && localisation_.back().stamp >= stamp - kSameStamp;
+  if (!is_corrected && odometry_.back().stamp < stamp + kLocalisationWait) return false;
+  return BaseAt(stamp).has_value();
+}
+
+bool TrackerSenses::IsHopeless(double stamp) const {
+  const double newest = std::max(odometry_.empty() ? stamp : odometry_.back().stamp,
+                                 pending_.empty() ? stamp : pending_.rbegin()->first);
+  return newest - stamp > kTooOld;
+}
+
+std::optional<TrackerMoment> TrackerSenses::Take() {
+  while (!pending_.empty()) {
+    const auto first = pending_.begin();
+    const double stamp = first->first;
+    if (!IsComplete(stamp, first->second)) {
+      if (!IsHopeless(stamp)) return std::nullopt;
+      ++num_dropped_;
+      pending_.erase(first);
+      continue;
+    }
+    if (first->second.joints) joints_ = {stamp, *first->second.joints};
+    TrackerMoment moment;
+    moment.body = {stamp, *BaseAt(stamp), joints_->value};
+    moment.V_B = OdometryAt(stamp)->V_B;
+    moment.look = std::move(first->second.look);
+    taken_ = stamp;
+    pending_.erase(first);
+    return moment;
+  }
+  return std::nullopt;
+}
+
+std::string TrackerSenses::Missing() const {
+  if (odometry_.empty()) return "odometry";
+  if (localisation_.empty()) return "localisation";
+  if (!newest_joints_) return "joint states";
+  return "";
+}
+
+}  // namespace hires_ros

@@ -1,0 +1,156 @@
+#include "hires/ros/world_tracker_writer.h"
+
+#include <fmt/format.h>
+#include <hires/RemoveFluents.h>
+#include <hires/WriteFluents.h>
+
+#include <chrono>
+#include <utility>
+
+#include "hires/base/error.h"
+#include "hires/base/log.h"
+#include "hires/ros/blackboard_messages.h"
+#include "hires/ros/process.h"
+#include "hires/ros/topic_names.h"
+
+namespace hires_ros {
+namespace {
+
+namespace knowledge = hires::knowledge;
+namespace translation = hires::translation;
+using hires::base::Log;
+using hires::base::LogLevel;
+using Seconds = std::chrono::duration<double>;
+
+constexpr double kRetryPeriod = 0.2;    // [s] while the Blackboard is away or refuses
+constexpr double kWarningPeriod = 1.0;  // [s]
+
+}  // namespace
+
+ObservationWriter::ObservationWriter(const translation::TranslatorContext* context,
+                                     const WorldTrackerParams& params, const ros::NodeHandle& nh,
+                                     RemoteView::Listener on_view)
+    : context_(context),
+      params_(params),
+      on_view_(std::move(on_view)),
+      nh_(nh),
+      view_(nh, [this](const RemoteView::Update& update) { OnView(update); }),
+      thread_([this] { Run(); }) {}
+
+ObservationWriter::~ObservationWriter() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    is_ending_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void ObservationWriter::OnView(const RemoteView::Update& update) {
+  for (const knowledge::Change& change : update.changes) {
+    if (change.source == knowledge::Source::kMonitor) episode_ = change.episode;
+  }
+  if (on_view_) on_view_(update);
+}
+
+void ObservationWriter::Post(translation::ObservedWorld observed) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    observed_ = std::move(observed);
+  }
+  changed_.notify_all();
+}
+
+std::string ObservationWriter::last_failure() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return last_failure_;
+}
+
+translation::TranslatorContext ObservationWriter::ContextNow(
+    const knowledge::FluentView& view) const {
+  translation::TranslatorContext context = *context_;
+  context.areas = translation::WithKnowledge(context.areas, view, *context.ontology);
+  return context;
+}
+
+void ObservationWriter::Run() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!is_ending_) {
+    changed_.wait(lock, [this] { return is_ending_ || observed_.has_value(); });
+    if (is_ending_) return;
+    const translation::ObservedWorld observed = std::move(*observed_);
+    observed_.reset();
+    lock.unlock();
+    const bool is_written = Write(observed);
+    lock.lock();
+    // What could not be written waits, unless something newer has come.
+    if (!is_written && !observed_) observed_ = observed;
+    const Seconds pause(is_written ? params_.write_period : kRetryPeriod);
+    changed_.wait_for(lock, pause, [this] { return is_ending_; });
+  }
+}
+
+/// @return whether the Blackboard says now what was observed.
+bool ObservationWriter::Write(const translation::ObservedWorld& observed) {
+  if (!view_.is_known() && !view_.CatchUp()) return false;
+  translation::FluentUpdate update;
+  try {
+    update = view_.Read([&](const knowledge::FluentView& view) {
+      return translation::ChangesFrom(ContextNow(view), view, observed, params_.classify,
+                                      params_.changes, params_.concepts);
+    });
+  } catch (const hires::base::ConfigError& error) {
+    Fail(error.what());
+    return true;  // trying again makes it no better
+  }
+  if (update.empty()) return true;
+  const bool is_sent = Send(update);
+  // Also after a refusal: the view may have been behind.
+  const bool is_known = view_.CatchUp();
+  return is_sent && is_known;
+}
+
+/// What is new comes before what ends, so that a hand is full before a place is empty, and nobody
+/// sees an object that is nowhere.
+bool ObservationWriter::Send(const translation::FluentUpdate& update) {
+  const knowledge::Assertion by{knowledge::Source::kObservation, episode_, 0.0};
+  hires::WriteFluents add, replace;
+  hires::RemoveFluents remove;
+  add.request.by = replace.request.by = remove.request.by = ToMessage(by);
+  add.request.fluents = ToMessages(update.added);
+  replace.request.fluents = ToMessages(update.updated);
+  remove.request.instances = update.removed;
+  if (!update.added.empty() && !Call("add", &add)) return false;
+  if (!update.updated.empty() && !Call("update", &replace)) return false;
+  if (!update.removed.empty() && !Call("remove", &remove)) return false;
+  num_written_ += add.response.changed + replace.response.changed + remove.response.changed;
+  return true;
+}
+
+template <typename Service>
+bool ObservationWriter::Call(const char* service, Service* call) {
+  const std::string name = std::string(kBlackboard) + "/" + service;
+  ros::ServiceClient client = nh_.serviceClient<Service>(name);
+  if (!client.call(*call)) {
+    Fail(fmt::format("nobody answers at '{}'", nh_.resolveName(name)));
+    return false;
+  }
+  if (call->response.error.code == hires::BlackboardError::NONE) return true;
+  // An episode that has ended takes nothing more; the next words of the monitor name another.
+  if (call->response.error.code == hires::BlackboardError::REFUSED) episode_ = 0;
+  Fail(fmt::format("{}: {}", name, call->response.error.message));
+  return false;
+}
+
+void ObservationWriter::Fail(const std::string& why) {
+  ++num_failures_;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    last_failure_ = why;
+  }
+  if (SteadyNow() - last_warning_ < kWarningPeriod) return;
+  last_warning_ = SteadyNow();
+  Log(LogLevel::kWarn, fmt::format("observation=unwritten why={}", why));
+}
+
+}  // namespace hires_ros
