@@ -61,12 +61,13 @@ std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot) {
     X_BO = X_BR * PoseOfLink(robot.model, X_RL, profile.tray_link) * profile.X_TO;
   }
   RobotClearance clearance(shapes_B, world);
-  RobotClearance base_clearance(ShapesOfTheBase(robot, shapes_B), world);
+  std::vector<geometry::Collision> base_B = ShapesOfTheBase(robot, shapes_B);
+  RobotClearance base_clearance(base_B, world);
   std::shared_ptr<const perception::Surroundings> surroundings;
   if (profile.upper_body) surroundings = std::make_shared<const perception::Surroundings>(world);
-  return std::make_shared<const Scene>(Scene{std::move(world), std::move(robot),
-                                             std::move(shapes_B), std::move(clearance), X_BO,
-                                             std::move(base_clearance), std::move(surroundings)});
+  return std::make_shared<const Scene>(
+      Scene{std::move(world), std::move(robot), std::move(shapes_B), std::move(clearance), X_BO,
+            std::move(base_B), std::move(base_clearance), std::move(surroundings)});
 }
 
 }  // namespace hires::simulation

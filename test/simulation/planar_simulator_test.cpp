@@ -308,6 +308,59 @@ TEST(PlanarSimulatorTest, WhatIsRememberedStaysUntilItIsMissed) {
   EXPECT_THAT(simulator->Observe(0.0).objects, IsEmpty());
 }
 
+TEST(PlanarSimulatorTest, RefusesToRememberWhatCannotBe) {
+  const auto simulator = Simulator({});
+  robot::SeenObject told{"mug1", "mgu", {}, 0.0, ""};
+  EXPECT_THAT(ConfigErrorOf([&] { simulator->Remember({told}); }),
+              AllOf(HasSubstr("'mug1'"), HasSubstr("model 'mgu' is unknown")));
+  told.model = "mug";
+  told.X_MO.translation.x() = NAN;
+  EXPECT_THAT(ConfigErrorOf([&] { simulator->Remember({told}); }),
+              AllOf(HasSubstr("'mug1'"), HasSubstr("not finite")));
+}
+
+TEST(PlanarSimulatorTest, WhatStandsOnTheTrayIsKnownToDriveAlong) {
+  world::ObjectState mill;
+  mill.name = "mill1";
+  mill.model = "mill";
+  mill.X_MO.translation = {0.28, 0.0, 0.3464};
+  world::ObjectState on_table = MugOnTable(1.2, 0.1);
+  robot::RobotState state;
+  state.joints["torso_lift_joint"] = 0.29;
+  const auto simulator = Simulator({mill, on_table}, {}, state);
+  robot::SeenObject told{"mill1", "mill", mill.X_MO, 0.0, ""};
+  robot::SeenObject told_too{"mug1", "mug", on_table.X_MO, 0.0, ""};
+  simulator->Remember({told, told_too});
+  robot::Command drive;
+  drive.base_velocity = geometry::Twist2{-0.2, 0.1, 0.3};
+  for (int i = 0; i < 40; ++i) {
+    simulator->Send(drive);
+    StepFor(simulator.get(), 0.05);
+  }
+  const auto seen = simulator->Observe(0.0).objects;
+  ASSERT_EQ(seen.size(), 2u);
+  EXPECT_GT((seen[0].X_MO.translation - mill.X_MO.translation).norm(), 0.3);
+  EXPECT_LT((seen[0].X_MO.translation - simulator->PoseOf(0).translation).norm(), 0.005);
+  EXPECT_LT((seen[1].X_MO.translation - on_table.X_MO.translation).norm(), 1e-9);
+}
+
+TEST(PlanarSimulatorTest, WhatTheHandHoldsNobodyNeedsToTell) {
+  world::ObjectState mug = MugAt();
+  mug.attached_to = "r_gripper_palm_link";
+  const auto simulator = Simulator({mug}, {}, Looking(-0.4));
+  robot::SeenObject held, free;
+  held.name = "mug1";
+  held.model = free.model = "mug";
+  held.attached_to = free.attached_to = "r_gripper_palm_link";
+  free.name = "mug2";
+  simulator->Remember({held, free});
+  const auto seen = simulator->Observe(0.0).objects;
+  ASSERT_EQ(seen.size(), 2u);
+  EXPECT_EQ(seen[0].attached_to, "r_gripper_palm_link");
+  EXPECT_LT((seen[0].X_MO.translation - simulator->PoseOf(0).translation).norm(), 1e-9);
+  EXPECT_THAT(seen[1].attached_to, IsEmpty());
+}
+
 TEST(PlanarSimulatorTest, WhatIsHeldIsKnownWhereTheHandIs) {
   const auto simulator = Simulator({MugAt()});
   simulator->Send(Gripper(0.0));

@@ -56,7 +56,8 @@ class RobotSimulator {
   /// @throws base::ConfigError as JointDrives::Send and Hands::Send.
   void Send(const robot::Command& command);
   /// What the robot knows of loose objects though it has not looked: imagination starts with what
-  /// the Blackboard knows, a robot with nothing. In the map as the robot believes it.
+  /// the Blackboard knows, a robot with nothing. In the map as the robot believes it. What its
+  /// hands hold it knows by itself.
   void Remember(const std::vector<robot::SeenObject>& objects);
   void Step();  ///< advances by time_step()
 

@@ -18,8 +18,9 @@ struct Scene {
   RobotClearance clearance;
   geometry::Pose3 X_BO;  ///< where an object is put on the tray, in the base frame
 
-  /// Of the parts that move with the base whatever the joints do; all, if there is no upper body.
-  RobotClearance base_clearance;
+  /// The parts that move with the base whatever the joints do; all, if there is no upper body.
+  std::vector<geometry::Collision> base_shapes_B;
+  RobotClearance base_clearance;  ///< of those
   /// What the robot's camera looks at; null without an upper body.
   std::shared_ptr<const perception::Surroundings> surroundings;
 };

@@ -1,0 +1,121 @@
+// What the simulated robot believes and sees.
+#include <cmath>
+#include <utility>
+
+#include "hires/simulation/robot_simulator.h"
+#include "start_checks.h"
+
+namespace hires::simulation {
+namespace {
+
+using geometry::Pose2;
+using geometry::Pose3;
+
+constexpr double kGhostLifetime = 4.6;  // [s] persistence of ground objects (navigation.md, 4)
+constexpr double kGhostSize = 0.10;     // [m] edge: a voxel of the obstacle filter
+constexpr double kLookPeriod = 0.5;     // [s] between two looks of the camera
+constexpr double kStillHead = 0.02;     // [rad/s] faster than this pictures blur
+
+}  // namespace
+
+void RobotSimulator::UpdateGhosts(const Pose2& X_MB, double elapsed) {
+  while (!ghosts_.empty() && ghosts_.front().until <= time_) ghosts_.pop_front();
+  const double chance = 1.0 - std::exp(-variation_.ghost_rate * elapsed);
+  if (variation_.ghost_rate == 0.0 || !ghost_rng_.Bernoulli(chance)) return;
+  const double distance = ghost_rng_.Uniform(0.8, 2.5), bearing = ghost_rng_.Uniform(-1.0, 1.0);
+  const Pose2 X_MG = X_MB * Pose2{distance * std::cos(bearing), distance * std::sin(bearing), 0.0};
+  const double h = kGhostSize / 2;
+  ghosts_.push_back(
+      {geometry::Transformed(X_MG, {{-h, -h}, {h, -h}, {h, h}, {-h, h}}), time_ + kGhostLifetime});
+}
+
+Pose2 RobotSimulator::BelievedBase(base::Rng* rng) const {
+  const Pose2 noise{rng->Normal(0.0, variation_.localisation_noise),
+                    rng->Normal(0.0, variation_.localisation_noise),
+                    rng->Normal(0.0, variation_.localisation_noise_yaw)};
+  return drive_.motion().X_MB * variation_.localisation_bias * noise;
+}
+
+/// Where a link is in the map when the base is where the robot believes it to be.
+Pose3 RobotSimulator::Believed(const Pose3& X_ML, const Pose2& X_MBbelieved) const {
+  return geometry::Lift(X_MBbelieved) * X_MB_.Inverse() * X_ML;
+}
+
+void RobotSimulator::Remember(const std::vector<robot::SeenObject>& objects) {
+  for (const robot::SeenObject& object : objects) {
+    RefuseUnknownModel({object.name, object.model, object.X_MO, {}, ""}, scene_->world);
+    RefusePose("remembered object '" + object.name + "'", object.X_MO);
+  }
+  memory_.Remember(objects, drive_.motion().X_MB * variation_.localisation_bias);
+}
+
+/// Hands know at once what they hold and lose.
+void RobotSimulator::NoteGrips() {
+  if (planar_->num_grips() == num_known_grips_) return;
+  num_known_grips_ = planar_->num_grips();
+  const Pose2 X_MBbelieved = drive_.motion().X_MB * variation_.localisation_bias;
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    const std::string link = planar_->HolderOf(static_cast<int>(i));
+    if (link == known_grips_[i]) continue;
+    const std::string before = std::exchange(known_grips_[i], link);
+    const std::string& acting = link.empty() ? before : link;
+    const Pose3 X_ML = planar_->X_MLink(acting), X_MLbelieved = Believed(X_ML, X_MBbelieved);
+    const Pose3 X_LO = X_ML.Inverse() * PoseOf(static_cast<int>(i));
+    if (!before.empty()) memory_.Release(objects_[i].name, X_MLbelieved, X_MBbelieved);
+    if (link.empty()) continue;
+    memory_.Take(link, X_MLbelieved,
+                 {objects_[i].name, objects_[i].model, X_MLbelieved * X_LO, time_, link}, X_LO,
+                 X_MBbelieved);
+  }
+}
+
+void RobotSimulator::LookIfStill() {
+  if (time_ - last_look_ < kLookPeriod || planar_->IsHeadFaster(kStillHead)) return;
+  last_look_ = time_;
+  const robot::Robot& robot = scene_->robot;
+  const Pose3 X_MC = planar_->X_MLink(robot.profile.upper_body->camera_link);
+  const perception::CameraView view = perception::ViewFrom(robot, X_MC);
+  const std::vector<world::ObjectState> objects = GetWorldState().objects;
+  const perception::LineOfSight sight(scene_->surroundings, objects, planar_->ShapesInMap());
+  perception::DetectorParams params;
+  params.position_noise = variation_.detection_noise;
+  params.yaw_noise = variation_.detection_noise_yaw;
+  const auto detections = perception::Detect(sight, view, objects, params, &detection_rng_);
+  const Pose2 X_MBbelieved = BelievedBase(&detection_rng_);
+  memory_.Look(detections, sight, view, {X_MC, Believed(X_MC, X_MBbelieved)}, params, time_,
+               X_MBbelieved);
+}
+
+void RobotSimulator::ObserveUpperBody(double action_start, robot::Observation* observation) {
+  observation->joints = planar_->Joints();
+  observation->joint_velocities = planar_->JointVelocities();
+  if (variation_.encoder_noise > 0.0) {
+    for (const auto& [name, velocity] : observation->joint_velocities) {
+      observation->joints[name] += encoder_rng_.Normal(0.0, variation_.encoder_noise);
+    }
+  }
+  std::map<std::string, Pose3> X_MLbelieved;
+  for (const std::string& link : known_grips_) {
+    if (link.empty() || X_MLbelieved.count(link) == 1) continue;
+    X_MLbelieved[link] = Believed(planar_->X_MLink(link), observation->X_MB);
+  }
+  observation->objects = memory_.Known(X_MLbelieved, observation->X_MB);
+  for (robot::SeenObject& seen : observation->objects) {
+    seen.time = (seen.attached_to.empty() ? seen.time : time_) - action_start;
+  }
+}
+
+robot::Observation RobotSimulator::Observe(double action_start) {
+  const BaseMotion& motion = drive_.motion();
+  robot::Observation observation;
+  observation.time = time_ - action_start;
+  observation.X_MB = BelievedBase(&sense_rng_);
+  observation.V_B = motion.V_B;
+  UpdateGhosts(motion.X_MB, time_ - last_observation_);
+  last_observation_ = time_;
+  for (const Ghost& ghost : ghosts_) observation.obstacles_M.push_back(ghost.outline_M);
+  if (planar_) ObserveUpperBody(action_start, &observation);
+  return observation;
+}
+
+}  // namespace hires::simulation
