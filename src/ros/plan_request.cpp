@@ -13,6 +13,7 @@
 #include "hires/planning/reasons.h"
 #include "hires/planning/shop2_reader.h"
 #include "hires/planning/task_text.h"
+#include "hires/ros/plan_nodes.h"
 #include "hires/ros/short_text.h"
 
 namespace hires_ros {
@@ -268,6 +269,7 @@ hires::Plan ToMsg(const planning::Plan& plan) {
   for (const auto& [first, second] : planning::PartialOrder(plan)) {
     message.steps[second].after.push_back(static_cast<std::uint32_t>(first));
   }
+  message.nodes = NodesToMsg(plan);
   return message;
 }
 
