@@ -99,6 +99,7 @@ std::vector<PlanQuest::Try> Repair::Tries(const Facts& state) const {
     const auto tasks = ToShop2Tasks(problem.tasks);
     if (!tasks || problem.protections.size() > whole.protections.size()) return;
     if (!tries.empty() && tries.back().tasks == *tasks) return;
+    problem.tasks = planning::ReadTasks(*tasks, "rest");  // as the planner will read it
     tries.push_back({std::move(problem), *tasks});
   };
   if (HasDecomposition(whole, run.plan())) {
