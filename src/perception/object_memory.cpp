@@ -186,13 +186,30 @@ std::string ObjectMemory::Between(const Links& links, const robot::ArmProfile& a
 void ObjectMemory::Take(const Links& links, const robot::ArmProfile& arm, const std::string& name,
                         Hand* hand) {
   RememberedObject& object = objects_.at(name);
-  const Pose3 X_MO = links.X_ML(object.link) * object.X_LO;
+  Pose3 X_MO = links.X_ML(object.link) * object.X_LO;
+  // The fingers touch it: where it was seen beside them, it was seen badly.
+  const Eigen::Vector3d p_MT = links.X_ML(arm.tool_link).translation;
+  const geometry::Aabb bounds = BoundsOf(surroundings_->Model(object.model).collisions);
+  const Eigen::Vector3d p_OT = X_MO.Inverse() * p_MT;
+  X_MO.translation += p_MT - X_MO * p_OT.cwiseMax(bounds.lower).cwiseMin(bounds.upper).eval();
   object.link = arm.palm_link;
   object.X_LO = links.X_ML(arm.palm_link).Inverse() * X_MO;
   object.is_held = object.is_observed = true;
   object.num_missed = 0;
   hand->holds = name;
   hand->grasp_gap = hand->gap;
+}
+
+/// Whether an object at X_MO may be what the hand that is said to hold it holds.
+bool ObjectMemory::IsInHand(const Links& links, const RememberedObject& object,
+                            const Pose3& X_MO) const {
+  for (const auto& [name, arm] : robot_->profile.upper_body->arms) {
+    if (arm.palm_link != object.link) continue;
+    const geometry::Aabb bounds = BoundsOf(surroundings_->Model(object.model).collisions);
+    const Eigen::Vector3d p_OT = X_MO.Inverse() * links.X_ML(arm.tool_link).translation;
+    return DistanceTo(bounds, p_OT) <= params_.grasp_distance;
+  }
+  return false;
 }
 
 void ObjectMemory::LetGo(const Links& links, const std::string& name, double time) {
@@ -281,7 +298,7 @@ void ObjectMemory::See(const Links& links, const Detection& detection, const Pos
   const Pose3 X_LO = links.X_ML(object.link).Inverse() * X_MO;
   const double moved = (X_LO.translation - object.X_LO.translation).norm();
   const double turned = X_LO.rotation.angularDistance(object.X_LO.rotation);
-  if (object.is_held && moved > params_.hand_distance) {
+  if (object.is_held && moved > params_.hand_distance && !IsInHand(links, object, X_MO)) {
     HandOf(name)->holds.clear();  // seen elsewhere: it is not in the hand any more
     object.is_held = false;
   }

@@ -202,6 +202,20 @@ TEST_F(ObjectMemoryTest, AGripperThatRestsOnAnObjectHoldsIt) {
   }
 }
 
+TEST_F(ObjectMemoryTest, WhatWasSeenBesideTheFingersIsBetweenThemWhenTheyHoldIt) {
+  PutArm("rightarm1", "armuntuckedposture");
+  const Eigen::Vector3d tool = X_ML("r_gripper_tool_frame").translation;
+  Pose3 beside;
+  beside.translation = tool + Eigen::Vector3d(0.12, 0.0, -0.05);  // 0.08 m from the mug's side
+  memory_.Believe("mug1", "mug", "", beside);
+  SetGap("rightarm1", 0.08);
+  ASSERT_TRUE(Rest());
+  EXPECT_NEAR((Remembered("mug1").translation - tool).head<2>().norm(), 0.04, 1e-9);
+  memory_.Look(body_, {{"mug1", "mug",
+                        ViewOf(Pr2(), body_.X_MB, body_.joints).X_MC.Inverse() * beside, 1.0}});
+  EXPECT_TRUE(memory_.objects().at("mug1").is_held) << "seen within reach of the fingers";
+}
+
 TEST_F(ObjectMemoryTest, AnOpenGripperRoundAnObjectHoldsNothing) {
   PutArm("rightarm1", "armuntuckedposture");
   memory_.Believe("mug1", "mug", "", X_ML("r_gripper_tool_frame"));

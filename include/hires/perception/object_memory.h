@@ -18,7 +18,7 @@ struct MemoryParams {
   double blending{0.3};         ///< weight of a new sight of an object that stands still
   double moved_distance{0.04};  ///< [m] beyond which it has moved, and the new sight alone counts
   double moved_angle{0.3};      ///< [rad] likewise
-  double grasp_distance{0.05};  ///< [m] from between the finger tips to an object that they hold
+  double grasp_distance{0.12};  ///< [m] from between the finger tips to an object that they hold
   double closed_gap{0.005};     ///< [m] a gripper that has closed so far holds nothing
   double gap_below{0.02};       ///< [m] that a gap may be narrower than what it holds
   double gap_above{0.006};      ///< [m] that it may be wider
@@ -94,6 +94,8 @@ class ObjectMemory {
   bool FeelHand(const Links& links, const std::string& arm, Hand* hand, const BodyReading& body);
   std::string Between(const Links& links, const robot::ArmProfile& arm, double gap) const;
   void Take(const Links& links, const robot::ArmProfile& arm, const std::string& name, Hand* hand);
+  bool IsInHand(const Links& links, const RememberedObject& object,
+                const geometry::Pose3& X_MO) const;
   void LetGo(const Links& links, const std::string& name, double time);
   void Lose(const std::string& name);
   void See(const Links& links, const Detection& detection, const geometry::Pose3& X_MO,
