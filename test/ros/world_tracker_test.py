@@ -1,0 +1,377 @@
+#!/usr/bin/env python3
+"""The world tracker as a real node beside a real Blackboard; a script plays the robot's sensors. Run
+alone, or by `rostest hires world_tracker.test`."""
+
+import math
+import os
+import sys
+import threading
+import unittest
+
+import numpy
+import rosunit
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
+
+from pr2_frames import Robot, planar, quaternion, translation  # noqa: E402
+from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
+
+ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..'))
+CONFIG = os.path.join(ROOT, 'config')
+CAMERA = 'head_mount_kinect_ir_link'
+UNTUCKED = dict(zip(('shoulder_pan', 'shoulder_lift', 'upper_arm_roll', 'elbow_flex',
+                     'forearm_roll', 'wrist_flex', 'wrist_roll'),
+                    (-0.4, 1.0, 0.0, -2.05, 0.0, -0.1, 0.0)))
+TO_SIDE = dict(zip(UNTUCKED, (2.115, -0.02, 1.64, -2.07, 1.64, -1.68, 1.40)))
+
+
+class WorldTrackerTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.processes = Processes()
+        cls.addClassCleanup(cls.processes.stop_all)
+        cls.main = cls.processes.master()
+        os.environ.update(ROS_MASTER_URI=cls.main.uri, ROS_IP='127.0.0.1',
+                          ROS_LOG_DIR=cls.processes.folder.name)
+        os.environ.pop('ROS_HOSTNAME', None)
+        import rospy
+        from geometry_msgs.msg import Pose, PoseWithCovarianceStamped
+        from hires import msg, srv
+        from nav_msgs.msg import Odometry
+        from sensor_msgs.msg import JointState
+        from trajectory_msgs.msg import JointTrajectory
+        cls.rospy, cls.msg, cls.srv = rospy, msg, srv
+        cls.types = dict(base_odometry=Odometry, amcl=PoseWithCovarianceStamped, joints=JointState,
+                         trajectory=JointTrajectory, pose=Pose)
+        rospy.init_node('world_tracker_test', disable_signals=True)
+        cls.robot = Robot(os.path.join(ROOT, 'urdf', 'pr2_tray.urdf'))
+
+    def setUp(self):
+        """Everything anew: what one test saw is nothing to the next."""
+        self.number = getattr(type(self), 'number', 0) + 1
+        type(self).number = self.number
+        self.nodes = []
+        self.addCleanup(self.stop)
+        self.start_blackboard()
+        self.tracker = self.start('world_tracker', '_config:=' + CONFIG + '/world_tracker.yaml')
+        latch = dict(queue_size=100)
+        p = self.rospy.Publisher
+        self.publishers = dict(
+            odometry=p('base_odometry/odom', self.types['base_odometry'], **latch),
+            amcl=p('amcl_pose', self.types['amcl'], **latch),
+            joints=p('joint_states', self.types['joints'], **latch),
+            detections=p('detections', self.msg.Detections, **latch),
+            goal=p('execute_action/goal', self.msg.ExecuteActionActionGoal, **latch),
+            result=p('execute_action/result', self.msg.ExecuteActionActionResult, **latch))
+        self.known, self.turns = [], []
+        self.changed = threading.Condition()
+        self.subscribers = [
+            self.rospy.Subscriber('known_objects', self.msg.WorldState, self.note(self.known)),
+            self.rospy.Subscriber('head_traj_controller/command', self.types['trajectory'],
+                                  self.note(self.turns))]
+        for publisher in self.publishers.values():
+            wait_until(lambda: publisher.get_num_connections() > 0, 'the tracker to subscribe')
+        wait_until(lambda: all(s.get_num_connections() > 0 for s in self.subscribers), 'its topics')
+        self.t, self.base = 1000.0, (12.5, 11.8, 3.14)
+        self.joints = dict(torso_lift_joint=0.0115, head_pan_joint=0.0, head_tilt_joint=0.5,
+                           l_gripper_joint=0.0, r_gripper_joint=0.0)
+        for name, position in TO_SIDE.items():
+            self.joints['l_%s_joint' % name] = position
+            mirrored = name in ('shoulder_pan', 'upper_arm_roll', 'forearm_roll')
+            self.joints['r_%s_joint' % name] = -position if mirrored else position
+
+    def start(self, name, *arguments):
+        node = self.processes.start([executable(name), *arguments], self.main)
+        self.nodes.append(node)
+        return node
+
+    def start_blackboard(self):
+        store = os.path.join(self.processes.folder.name, 'store_%d.db' % self.number)
+        self.blackboard = self.start('blackboard', '_config:=' + CONFIG + '/blackboard.yaml',
+                                     '_store:=' + store)
+        self.rospy.wait_for_service('blackboard/add', LIMIT)
+        wait_until(self.blackboard_answers, 'the Blackboard')
+
+    def blackboard_answers(self):
+        try:
+            return bool(self.query(limit=1))
+        except self.rospy.ServiceException:
+            return False
+
+    def stop(self):
+        running = self.tracker.is_running()
+        output = self.tracker.output()
+        for subscriber in self.subscribers:
+            subscriber.unregister()
+        for publisher in self.publishers.values():
+            publisher.unregister()
+        for node in self.nodes:
+            node.destroy()
+        self.assertTrue(running, output)
+
+    def note(self, where):
+        def take(message):
+            with self.changed:
+                where.append(message)
+                self.changed.notify_all()
+        return take
+
+    # The robot's sensors.
+
+    def tick(self, seen=None, dt=0.05, frame=CAMERA):
+        """All sensors once; `seen`: {name: (model, pose in the map)}."""
+        self.t += dt
+        stamp = self.rospy.Time.from_sec(self.t)
+        odometry = self.types['base_odometry']()
+        odometry.header.stamp, odometry.header.frame_id = stamp, 'odom_combined'
+        odometry.pose.pose = self.pose_of(planar(*self.base))
+        amcl = self.types['amcl']()
+        amcl.header.stamp, amcl.header.frame_id = stamp, 'map'
+        amcl.pose.pose = self.pose_of(planar(*self.base))
+        joints = self.types['joints']()
+        joints.header.stamp = stamp
+        joints.name, joints.position = list(self.joints), list(self.joints.values())
+        self.publishers['odometry'].publish(odometry)
+        self.publishers['amcl'].publish(amcl)
+        self.publishers['joints'].publish(joints)
+        if seen is None:
+            return
+        detections = self.msg.Detections()
+        detections.header.stamp, detections.header.frame_id = stamp, frame
+        X_CM = numpy.linalg.inv(self.link(CAMERA))
+        for name, (model, X_MO) in seen.items():
+            detections.objects.append(self.msg.DetectedObject(
+                name=name, model=model, pose=self.pose_of(X_CM @ X_MO), visible_share=1.0))
+        self.publishers['detections'].publish(detections)
+
+    def link(self, name):
+        root = numpy.linalg.inv(self.robot.link('base_footprint', self.joints))
+        return planar(*self.base) @ root @ self.robot.link(name, self.joints)
+
+    def pose_of(self, matrix):
+        pose = self.types['pose']()
+        p, q = pose.position, pose.orientation
+        p.x, p.y, p.z = matrix[:3, 3]
+        q.x, q.y, q.z, q.w = quaternion(matrix)
+        return pose
+
+    def rest(self, ticks=10):
+        for _ in range(ticks):
+            self.tick()
+
+    def look(self, seen, times=1):
+        """Looks, each waited for until known_objects has its stamp."""
+        for _ in range(times):
+            self.tick(seen)
+            stamp = self.t
+            self.wait(lambda: self.known and
+                      abs(self.known[-1].header.stamp.to_sec() - stamp) < 1e-3, 'the look')
+
+    def wait(self, condition, what):
+        with self.changed:
+            if not self.changed.wait_for(condition, LIMIT):
+                raise AssertionError('waited in vain for %s; the tracker said:\n%s' % (
+                    what, self.tracker.output()))
+
+    # The Blackboard.
+
+    def query(self, **fields):
+        return self.rospy.ServiceProxy('blackboard/query', self.srv.QueryFluents)(
+            query=self.msg.FluentQuery(**fields)).fluents
+
+    def value(self, instance, role):
+        """The first filler of the role: a name or a number; None if nothing holds."""
+        for fluent in self.query(instance=instance):
+            for p in fluent.properties:
+                if p.role == role:
+                    return p.real if p.type == 'xsd:float' else p.text.lower()
+        return None
+
+    def expect(self, instance, role, wanted, what=None):
+        """Goes on sensing until the Blackboard says so."""
+        def says():
+            self.tick()
+            value = self.value(instance, role)
+            if isinstance(wanted, float) and value is not None:
+                return abs(value - wanted) < 0.02
+            return value == wanted
+        wait_until(says, what or '%s %s %s' % (instance, role, wanted))
+
+    def names(self):
+        return {thing.name: thing for thing in self.known[-1].objects} if self.known else {}
+
+    # What the robot feels of itself.
+
+    def test_place_and_postures_of_the_robot(self):
+        self.expect('robotAtPR21', 'hasArea', 'nearstartarea1')
+        def posture(instance):
+            found = self.query(instance=instance)
+            return found[0].concept_name if found else None
+        wait_until(lambda: posture('postureLeftArm1') == 'ArmToSidePosture', 'the left arm')
+        wait_until(lambda: posture('postureRightArm1') == 'ArmToSidePosture', 'the right arm')
+        self.joints['torso_lift_joint'] = 0.295
+        def torso_is_up():
+            self.tick()
+            return posture('postureTorso1') == 'TorsoUpPosture'
+        wait_until(torso_is_up, 'the torso')
+        self.base = (7.0, 10.1, 3.14)  # 0.2 m from its pose
+        self.expect('robotAtPR21', 'hasArea', 'premanipulationareaeastcounter1')
+        self.expect('posePR21', 'hasX', 7.0)
+
+    # What it sees.
+
+    def at_table(self):
+        """South of table1, looking at it."""
+        self.base = (7.68, 9.9, 1.57)
+        self.joints['head_tilt_joint'] = 0.55
+
+    def test_an_obstacle_is_known_once_it_is_seen(self):
+        self.at_table()
+        self.look({'book1': ('book', translation(7.48, 11.28, 0.73))})
+        self.expect('onBook1', 'hasArea', 'placingareawestrighttable1')
+        self.assertEqual(self.query(instance='book1')[0].concept_name, 'Book')
+        self.expect('poseBook1', 'hasX', 7.48)
+        self.assertEqual(self.names()['book1'].model, 'book')
+        self.assertEqual(self.known[-1].header.frame_id, 'map')
+
+    def test_what_is_believed_is_known_to_the_middle_layer_and_corrected_by_looking(self):
+        self.look({})
+        self.wait(lambda: 'mug1' in self.names() or self.tick(), 'the belief')
+        self.assertAlmostEqual(self.names()['mug1'].pose.position.x, 5.37, places=2)
+        self.base = (6.8, 10.1, 3.14)
+        self.look({'mug1': ('coffee_cup', translation(5.45, 10.30, 0.75))}, 3)
+        self.expect('poseMug1', 'hasX', 5.45)
+        self.assertEqual(self.value('onMug1', 'hasArea'), 'placingareaeastrightcounter1')
+
+    def test_an_object_that_is_not_where_it_was_has_vanished(self):
+        self.at_table()
+        mug = {'mug3': ('coffee_cup', translation(7.60, 11.25, 0.73))}
+        self.look(mug)
+        self.expect('onMug3', 'hasArea', 'placingareawestrighttable1')
+        self.look({}, 3)
+        self.assertNotIn('mug3', self.names())
+        self.expect('onMug3', 'hasArea', None)
+        self.expect('poseMug3', 'hasX', None)
+        self.look(mug)
+        self.expect('onMug3', 'hasArea', 'placingareawestrighttable1')
+
+    def test_an_object_that_fell_is_on_nothing(self):
+        self.at_table()
+        upright = translation(7.60, 11.25, 0.73)
+        self.look({'mug3': ('coffee_cup', upright)})
+        self.expect('onMug3', 'hasArea', 'placingareawestrighttable1')
+        lying = translation(7.60, 11.25, 0.77)
+        lying[:3, :3] = [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]
+        self.look({'mug3': ('coffee_cup', lying)})
+        self.expect('onMug3', 'hasArea', None)
+        self.assertIsNotNone(self.value('poseMug3', 'hasX'))
+
+    def test_grasp_carry_and_slip(self):
+        for name, position in UNTUCKED.items():
+            self.joints['r_%s_joint' % name] = position
+        self.joints['r_gripper_joint'] = 0.09
+        self.base = (12.5, 11.8, 0.0)
+        tool = self.link('r_gripper_tool_frame')[:3, 3]
+        self.joints['head_pan_joint'], self.joints['head_tilt_joint'] = -0.6, 0.9
+        self.look({'mug3': ('coffee_cup', translation(*(tool - (0, 0, 0.04))))})
+        self.expect('poseMug3', 'hasX', float(tool[0]))
+        self.assertEqual(self.value('holdingRightArm1', 'hasPassiveObject'), 'nothing')
+        self.joints['r_gripper_joint'] = 0.079
+        self.expect('holdingRightArm1', 'hasPassiveObject', 'mug3')
+        self.expect('poseMug3', 'hasFrame', 'r_gripper_palm_link')
+        self.wait(lambda: self.names()['mug3'].attached_to == 'r_gripper_palm_link' or self.tick(),
+                  'the held object')
+        # It travels with the robot, and nothing new is said of it.
+        x_in_hand = self.value('poseMug3', 'hasX')
+        self.base = (13.0, 11.3, 3.14)
+        self.expect('robotAtPR21', 'hasArea', 'home')
+        self.assertEqual(self.value('poseMug3', 'hasX'), x_in_hand)
+        self.joints['r_gripper_joint'] = 0.0
+        self.expect('holdingRightArm1', 'hasPassiveObject', 'nothing')
+        self.expect('poseMug3', 'hasX', None)
+
+    # When things go wrong.
+
+    def test_the_blackboard_is_away_for_a_while(self):
+        self.expect('robotAtPR21', 'hasArea', 'nearstartarea1')
+        self.blackboard.kill()
+        self.at_table()
+        self.rest(20)
+        self.look({'book1': ('book', translation(7.48, 11.28, 0.73))})
+        self.start_blackboard()
+        wait_until(lambda: self.value('onBook1', 'hasArea') == 'placingareawestrighttable1',
+                   'what was seen meanwhile, without another look')
+        self.assertEqual(self.value('poseBook1', 'hasFrame'), None)
+
+    def test_bad_input_is_warned_of_and_changes_nothing(self):
+        self.at_table()
+        self.look({})
+        book = translation(7.48, 11.28, 0.73)
+        nan = book.copy()
+        nan[0, 3] = math.nan
+        self.tick({'teapot1': ('teapot', book)})
+        self.tracker.wait_for("object model 'teapot' is unknown")
+        self.look({'book1': ('book', book), 'vase1': ('vase', nan), '': ('book', book)})
+        self.assertEqual(set(self.names()) & {'book1', 'vase1', ''}, {'book1'})
+        self.tick({'book2': ('book', book)}, frame='base_link')
+        self.tracker.wait_for("frame_id is 'base_link', wanted '%s'" % CAMERA)
+        amcl = self.types['amcl']()
+        amcl.header.frame_id = 'odom'
+        self.publishers['amcl'].publish(amcl)
+        self.tracker.wait_for("frame_id is 'odom', wanted 'map'")
+        joints = self.types['joints']()
+        joints.name, joints.position = ['torso_lift_joint'], [math.nan]
+        self.publishers['joints'].publish(joints)
+        self.tracker.wait_for('torso_lift_joint')
+        joints.name, joints.position = ['torso_lift_joint', 'x'], [0.1]
+        self.publishers['joints'].publish(joints)
+        old, self.t = self.t, self.t - 3.0
+        self.tick({'book3': ('book', book)})  # a look of long ago
+        self.t = old
+        self.look({'book1': ('book', book)})
+        self.assertEqual(set(self.names()) & {'book1', 'book2', 'book3'}, {'book1'})
+        self.expect('onBook1', 'hasArea', 'placingareawestrighttable1')
+
+    def test_bad_parameters_end_the_node(self):
+        for argument, text in (('_config:=/nowhere.yaml', '/nowhere.yaml'), ('_swep:=x', 'swep')):
+            arguments = ['__name:=other%d' % len(self.nodes), argument]
+            if not argument.startswith('_config'):
+                arguments.append('_config:=' + CONFIG + '/world_tracker.yaml')
+            node = self.start('world_tracker', *arguments)
+            self.assertNotEqual(node.wait(), 0)
+            self.assertIn(text, node.output())
+
+    # The head.
+
+    def add_task(self):
+        task = self.msg.Fluent(concept_name='ServeCoffeeToGuestTask', instance='task1', properties=[
+            self.msg.FluentProperty(role='hasArgument', type='xsd:string', text='guest1')])
+        by = self.msg.Assertion(source=self.msg.Assertion.MONITOR)
+        answer = self.rospy.ServiceProxy('blackboard/add', self.srv.WriteFluents)(
+            fluents=[task], by=by)
+        self.assertEqual(answer.error.code, 0, answer.error.message)
+
+    def test_the_head_sweeps_the_places_of_the_task_unless_an_action_needs_it(self):
+        self.at_table()
+        self.joints['head_tilt_joint'] = -0.3  # at the ceiling
+        goal = self.msg.ExecuteActionActionGoal()
+        goal.goal_id.id = 'other-1'
+        goal.goal.action.name = '!pick_up_object'
+        self.publishers['goal'].publish(goal)
+        self.add_task()
+        self.look({}, 3)
+        self.rest(60)
+        self.assertEqual(self.turns, [])
+        result = self.msg.ExecuteActionActionResult()
+        result.status.goal_id.id = 'other-1'
+        self.publishers['result'].publish(result)
+        def has_turned():
+            self.tick()
+            return self.turns
+        wait_until(has_turned, 'the head to turn')
+        self.assertEqual(self.turns[0].joint_names, ['head_pan_joint', 'head_tilt_joint'])
+        self.assertGreater(self.turns[0].points[-1].positions[1], 0.2)  # down at the table
+
+
+if __name__ == '__main__':
+    rosunit.unitrun('hires', 'world_tracker_node', WorldTrackerTest)
