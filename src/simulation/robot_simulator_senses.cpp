@@ -1,4 +1,5 @@
 // What the simulated robot believes and sees.
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -86,14 +87,26 @@ void RobotSimulator::LookIfStill() {
                X_MBbelieved);
 }
 
+/// Of torso, head and arms; a measured joint stays within its limits.
+void RobotSimulator::AddEncoderNoise(robot::JointPositions* joints) {
+  const robot::UpperBodyProfile& profile = *scene_->robot.profile.upper_body;
+  std::vector<std::string> groups{"torso", "head"};
+  for (const auto& [arm, parts] : profile.arms) groups.push_back(arm);
+  for (const std::string& group : groups) {
+    for (const std::string& name : robot::JointsOfGroup(profile, group)) {
+      double& position = joints->at(name);
+      position += encoder_rng_.Normal(0.0, variation_.encoder_noise);
+      const robot::Joint& joint = *robot::FindJoint(scene_->robot.model, name);
+      if (joint.type == robot::JointType::kContinuous) continue;
+      position = std::clamp(position, joint.limits->lower, joint.limits->upper);
+    }
+  }
+}
+
 void RobotSimulator::ObserveUpperBody(double action_start, robot::Observation* observation) {
   observation->joints = planar_->Joints();
   observation->joint_velocities = planar_->JointVelocities();
-  if (variation_.encoder_noise > 0.0) {
-    for (const auto& [name, velocity] : observation->joint_velocities) {
-      observation->joints[name] += encoder_rng_.Normal(0.0, variation_.encoder_noise);
-    }
-  }
+  if (variation_.encoder_noise > 0.0) AddEncoderNoise(&observation->joints);
   std::map<std::string, Pose3> X_MLbelieved;
   for (const std::string& link : known_grips_) {
     if (link.empty() || X_MLbelieved.count(link) == 1) continue;

@@ -235,6 +235,41 @@ TEST(PlanarSimulatorTest, RefusesARobotWithoutUpperBody) {
               AllOf(HasSubstr("no upper body"), HasSubstr("upper_body")));
 }
 
+TEST(PlanarSimulatorTest, TakesJointsAsDriversMeasureThem) {
+  robot::RobotState state = ReadyState();
+  state.joints["r_gripper_r_finger_joint"] = 0.3;  // follows another
+  state.joints["torso_lift_joint"] = -0.001;       // a little too low
+  state.joints["fl_caster_rotation_joint"] = 1.0;
+  state.joints.erase("r_shoulder_lift_joint");  // the arm not above the table
+  state.joints.erase("r_elbow_flex_joint");
+  for (const LevelOfDetail level : {LevelOfDetail::kTray, LevelOfDetail::kPlanar}) {
+    RobotSimulator simulator(
+        MakeScene(test_support::Room(), Pr2()), {}, {},
+        [&] {
+          robot::RobotState middle = state;
+          middle.X_MB = {3.0, 2.0, 0.0};
+          return middle;
+        }(),
+        base::Rng(1), {}, level);
+    const auto joints = simulator.GetRobotState().joints;
+    EXPECT_EQ(joints.count("r_gripper_r_finger_joint"), 0u);
+    EXPECT_EQ(joints.at("torso_lift_joint"), 0.0);
+    EXPECT_EQ(joints.at("fl_caster_rotation_joint"), 1.0);
+  }
+}
+
+TEST(PlanarSimulatorTest, NoisyEncodersStayWithinTheLimits) {
+  Variation variation;
+  variation.encoder_noise = 0.05;
+  robot::RobotState state = ReadyState(0.0);
+  const auto simulator = Simulator({}, variation, state);
+  for (int i = 0; i < 500; ++i) {
+    const auto joints = simulator->Observe(0.0).joints;
+    ASSERT_NO_THROW(robot::ForwardKinematics(Pr2().model, joints));
+    ASSERT_EQ(joints.at("r_gripper_joint"), 0.0);
+  }
+}
+
 TEST(PlanarSimulatorTest, RefusesJointsBeyondTheirLimits) {
   robot::RobotState state = ReadyState();
   state.joints["r_elbow_flex_joint"] = 0.5;

@@ -117,6 +117,7 @@ class RobotSimulator {
   geometry::Pose3 Believed(const geometry::Pose3& X_ML, const geometry::Pose2& X_MBbelieved) const;
   void NoteGrips();
   void LookIfStill();
+  void AddEncoderNoise(robot::JointPositions* joints);
   void ObserveUpperBody(double action_start, robot::Observation* observation);
   void NoteDisturbances();
   void MoveSlip();
