@@ -48,6 +48,21 @@ std::optional<int> PrivateInt(const std::string& key) {
   return static_cast<int>(*value);
 }
 
+std::optional<double> PrivateNumber(const std::string& key) {
+  auto value = PrivateValue(key);
+  if (!value) return std::nullopt;
+  if (value->getType() == XmlRpcValue::TypeInt) return static_cast<int>(*value);
+  if (value->getType() != XmlRpcValue::TypeDouble) Fail(key, *value, "a number");
+  return static_cast<double>(*value);
+}
+
+std::optional<bool> PrivateBool(const std::string& key) {
+  auto value = PrivateValue(key);
+  if (!value) return std::nullopt;
+  if (value->getType() != XmlRpcValue::TypeBoolean) Fail(key, *value, "true or false");
+  return static_cast<bool>(*value);
+}
+
 std::optional<std::vector<std::string>> PrivateWords(const std::string& key) {
   auto value = PrivateValue(key);
   if (!value) return std::nullopt;

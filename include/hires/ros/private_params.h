@@ -15,6 +15,8 @@ namespace hires_ros {
 /// wanted ...".
 std::optional<std::string> PrivateText(const std::string& key);
 std::optional<int> PrivateInt(const std::string& key);
+std::optional<double> PrivateNumber(const std::string& key);  ///< whole numbers too
+std::optional<bool> PrivateBool(const std::string& key);
 /// A list of text, or one text split at white space.
 std::optional<std::vector<std::string>> PrivateWords(const std::string& key);
 

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <actionlib/server/action_server.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <hires/Detections.h>
+#include <hires/ExecuteActionAction.h>
+#include <hires/LockstepAck.h>
+#include <hires/LockstepTick.h>
+#include <hires/WorldState.h>
+#include <ros/node_handle.h>
+#include <sensor_msgs/LaserScan.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <chrono>
+#include <list>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hires/ros/middle_layer_params.h"
+#include "hires/ros/middle_layer_runner.h"
+#include "hires/ros/middle_layer_senses.h"
+
+namespace hires_ros {
+
+/// Carries out steps with the robot's own skills: the action `execute_action`. Several at once
+/// where they need different groups of joints. The skills are those that rollouts play; here they
+/// see what the robot's topics say, and what they want goes to its controllers.
+///
+/// A robot that nobody watches stands: when the node ends in good order it stops what runs; when it
+/// is killed, the base's own timeout does.
+///
+/// In lockstep with a simulated robot, each tick is answered when all skills that were due have
+/// looked at the sensors of that very stamp and what they want is on its way.
+class MiddleLayerNode {
+ public:
+  MiddleLayerNode(const MiddleLayerParams& params, hires::imagination::ImaginationSetup setup,
+                  ros::NodeHandle* nh);
+
+  /// Works until `stop` says so or ROS ends; then stops the robot.
+  void Run(const std::function<bool()>& stop);
+
+ private:
+  using Server = actionlib::ActionServer<hires::ExecuteActionAction>;
+  using GoalHandle = Server::GoalHandle;
+  using Steady = std::chrono::steady_clock;
+
+  /// A goal whose controllers may not be connected yet.
+  struct Waiting {
+    GoalHandle goal;
+    Steady::time_point since;
+  };
+  struct Going {
+    GoalHandle goal;
+    double next_feedback{0.0};  // [s] since its start
+    std::string phase;
+  };
+
+  void Subscribe(ros::NodeHandle* nh);
+  void Advertise(ros::NodeHandle* nh);
+  void OnGoal(GoalHandle goal);
+  void OnCancel(GoalHandle goal);
+  void StartWaiting();
+  void StartGoal(GoalHandle goal);
+  void OnEnded(const ActionNews& news, ActionEnd end, const std::string& reason);
+
+  void OnTransforms(const tf2_msgs::TFMessage& msg);
+  void OnScan(const sensor_msgs::LaserScan& msg);
+  void OnDetections(const hires::Detections& msg);
+  void OnKnownObjects(const hires::WorldState& msg);
+  void OnTick(const hires::LockstepTick& msg);
+  void Note(const std::string& topic, double stamp);
+
+  void LookWhereFree();  ///< without lockstep: as soon as a newer moment is complete
+  void LookAtTick();     ///< in lockstep: once all sensors of the tick are there
+  bool IsTickComplete() const;
+  void AnswerTick();
+  void OnWake();
+  void Tend();  ///< what is due by the clocks
+  void PublishFeedback();
+  void Send(const hires::robot::Command& command);
+  std::string MissingController(const std::set<std::string>& groups) const;
+  void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  const MiddleLayerParams params_;
+  const hires::imagination::ImaginationSetup setup_;
+  const ScanObstacles scan_obstacles_;
+  Senses senses_;
+  ActionRunner runner_;
+
+  std::map<std::string, double> arrived_;  // topic -> newest stamp [s]
+  double looked_{-1.0};                    // [s] stamp of the last look
+  std::optional<hires::LockstepTick> tick_;
+  std::optional<hires::LockstepAck> acked_;  // the last one
+  bool is_tick_looked_at_{false};
+  std::uint64_t commands_since_ack_{0};
+  Steady::time_point last_look_;
+
+  std::list<Waiting> waiting_;
+  std::map<int, Going> going_;
+  int next_id_{1};
+  long num_ended_{0};
+
+  ros::Publisher base_, ack_;
+  std::map<std::string, ros::Publisher> trajectories_, grippers_;  // by group, by arm
+  std::vector<ros::Subscriber> subscribers_;
+  Server server_;
+  diagnostic_updater::Updater updater_;
+  ros::WallTimer heartbeat_;
+};
+
+}  // namespace hires_ros

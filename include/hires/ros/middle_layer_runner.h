@@ -1,0 +1,115 @@
+#pragma once
+
+#include <functional>
+#include <list>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hires/base/action.h"
+#include "hires/robot/observation.h"
+#include "hires/robot/robot_profile.h"
+#include "hires/ros/middle_layer_stop.h"
+#include "hires/ros/middle_layer_thread.h"
+
+namespace hires_ros {
+
+enum class ActionEnd { kSucceeded, kFailed, kPreempted };
+
+/// How an action went, or goes.
+struct ActionNews {
+  int id{0};
+  double elapsed{0.0};  ///< [s] since its first look
+  std::string phase;
+};
+
+struct RunnerParams {
+  double time_limit{300.0};  ///< [s] of an action that brings none of its own
+  double stale_after{0.3};   ///< [s] without a new observation: the robot is blind, and stops
+  StopParams stop;
+};
+
+/// Runs skills side by side on one robot: those that need different groups of joints. Time and
+/// observations are handed in; commands and ends go out through the hooks. One thread owns it.
+///
+///   Start(...); then, again and again, Look(now, seen); Collect() whenever `wake` was called.
+///
+/// A skill begins at the first look after its start; it is asked at its own period, as in a
+/// rollout.
+class ActionRunner {
+ public:
+  struct Hooks {
+    std::function<void(const hires::robot::Command&)> send;
+    std::function<void(const ActionNews&, ActionEnd, const std::string& reason)> ended;
+    std::function<void()> wake;  ///< from another thread: there is something to collect
+  };
+
+  /// @pre the robot outlives the runner.
+  ActionRunner(const hires::robot::Robot& robot, const RunnerParams& params, Hooks hooks);
+  ~ActionRunner();
+
+  /// @param time_limit  [s]; 0 takes the configured one.
+  /// @param now         [s] the time of Look.
+  /// @return why not, if the groups are taken: "busy: move_base(home) needs base".
+  std::optional<std::string> Start(int id, const hires::base::ActionCall& action,
+                                   std::unique_ptr<hires::skills::Skill> skill, double time_limit,
+                                   double now);
+
+  /// The action stops the robot and then ends as kPreempted; nothing happens if it has ended.
+  void Cancel(int id);
+  void CancelAll();
+
+  /// All that is known at `now` [s]; `seen.time` and the objects' times are on the same clock.
+  void Look(double now, const hires::robot::Observation& seen);
+
+  /// Takes what skills made of their looks.
+  void Collect();
+
+  /// Ends all actions as failed with "stale_observation" if the last look is too long ago.
+  void CheckFreshness(double now);
+
+  /// Ends what is being stopped without waiting until the robot stands: nobody tells any more.
+  void GiveUpStopping();
+  bool is_stopping() const;
+
+  bool is_thinking() const;  ///< some skill has not made up its mind about its look
+  bool is_idle() const { return sessions_.empty(); }
+  std::vector<ActionNews> News() const;
+  std::vector<std::string> Running() const;  ///< for people
+
+ private:
+  struct Session {
+    int id;
+    hires::base::ActionCall action;
+    std::set<std::string> groups;
+    double time_limit;
+    double accepted;              // [s]
+    std::optional<double> start;  // [s] of the first look
+    double next{0.0};             // [s] when the skill is due
+    std::string phase;
+    std::unique_ptr<SkillThread> skill;
+    std::unique_ptr<Stop> stop;         // it is being broken off
+    ActionEnd end{ActionEnd::kFailed};  // how it will have ended when it stands
+    std::string reason;
+  };
+  void LookWith(Session* session, const hires::robot::Observation& seen);
+  void Ask(Session* session, hires::robot::Observation seen);
+  void Hear(Session* session, const SkillTurn& turn);
+  void BreakOff(Session* session, ActionEnd end, const std::string& reason);
+  void KeepStopping(Session* session);
+  void Finish(Session* session, ActionEnd end, const std::string& reason);
+  void RemoveFinished();
+  ActionNews NewsOf(const Session& session) const;
+
+  const hires::robot::Robot& robot_;
+  const RunnerParams params_;
+  const Hooks hooks_;
+  double now_{0.0};                                // [s] of the last look
+  std::optional<hires::robot::Observation> seen_;  // at the last look
+  std::list<Session> sessions_;
+  std::list<std::unique_ptr<SkillThread>> leaving_;  // still thinking when nobody cared any more
+};
+
+}  // namespace hires_ros

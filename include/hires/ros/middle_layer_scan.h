@@ -1,0 +1,47 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "hires/geometry/polygon.h"
+#include "hires/navigation/costmap.h"
+
+namespace hires_ros {
+
+struct ScanParams {
+  double tolerance{0.15};  ///< [m] a point this near to an obstacle of the map is that obstacle
+  double range{2.5};       ///< [m] obstacle_range of the PR2's costmaps
+  double cell{0.05};       ///< [m] edge of the squares that stand for what was seen
+};
+
+/// A planar laser scan in the laser's frame.
+struct ScanReading {
+  double angle_min{0.0};        ///< [rad]
+  double angle_increment{0.0};  ///< [rad]
+  double range_min{0.0};        ///< [m] shorter ones are no measurement
+  std::vector<float> ranges;    ///< [m]
+};
+
+/// Tells what a scan shows beyond the map.
+class ScanObstacles {
+ public:
+  /// @param map        what is known to stand there.
+  /// @param footprint  of the robot, in its base: points within are the robot's own.
+  ScanObstacles(std::shared_ptr<const hires::navigation::Costmap> map,
+                hires::geometry::Polygon footprint, const ScanParams& params);
+
+  /// Squares in the map around the points that the map does not explain, each cell once.
+  std::vector<hires::geometry::Polygon> Find(const ScanReading& scan,
+                                             const hires::geometry::Pose2& X_MB,
+                                             const hires::geometry::Pose2& X_BL) const;
+
+ private:
+  bool IsExplained(const Eigen::Vector2d& p_M) const;
+
+  std::shared_ptr<const hires::navigation::Costmap> map_;
+  hires::geometry::Polygon footprint_;
+  ScanParams params_;
+};
+
+}  // namespace hires_ros

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <geometry_msgs/TransformStamped.h>
+#include <geometry_msgs/Twist.h>
+#include <nav_msgs/Odometry.h>
+#include <sensor_msgs/JointState.h>
+#include <trajectory_msgs/JointTrajectory.h>
+
+#include <string>
+#include <vector>
+
+#include "hires/geometry/pose.h"
+#include "hires/robot/observation.h"
+
+/// A robot's sensors and controllers as messages. What came and makes no sense is a
+/// hires::base::ConfigError naming topic and field.
+namespace hires_ros {
+
+geometry_msgs::Twist ToMsg(const hires::geometry::Twist2& V_B);
+/// @throws ConfigError for a number that is not finite.
+hires::geometry::Twist2 FromMsg(const geometry_msgs::Twist& twist, const std::string& where);
+
+trajectory_msgs::JointTrajectory ToMsg(const hires::robot::JointTrajectory& trajectory);
+/// @throws ConfigError: no joints or points, a joint that is none of `known` or comes twice, a
+/// point with another number of positions or velocities (none is allowed), times that do not ascend
+/// from 0 on, numbers that are not finite.
+hires::robot::JointTrajectory FromMsg(const trajectory_msgs::JointTrajectory& msg,
+                                      const std::vector<std::string>& known,
+                                      const std::string& where);
+
+/// Where a joint_states message says that joints are and how fast; velocities may be missing.
+struct JointReading {
+  hires::robot::JointPositions positions, velocities;
+};
+JointReading FromMsg(const sensor_msgs::JointState& msg);
+sensor_msgs::JointState ToMsg(const JointReading& joints, const ros::Time& stamp);
+
+/// Odometry: base in its frame, and velocity in the base frame.
+struct OdometryReading {
+  hires::geometry::Pose2 X_OB;
+  hires::geometry::Twist2 V_B;
+};
+OdometryReading FromMsg(const nav_msgs::Odometry& msg);
+
+geometry_msgs::TransformStamped MakeTransform(const std::string& parent, const std::string& child,
+                                              const hires::geometry::Pose3& X_PC,
+                                              const ros::Time& stamp);
+
+}  // namespace hires_ros

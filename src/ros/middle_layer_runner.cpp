@@ -1,0 +1,202 @@
+#include "hires/ros/middle_layer_runner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hires/base/log.h"
+#include "hires/base/text.h"
+#include "hires/ros/middle_layer_groups.h"
+
+namespace hires_ros {
+namespace {
+
+using hires::robot::Observation;
+using hires::skills::Progress;
+
+// Stamps and periods are sums of rounded numbers; a skill may come this much before its time [s].
+constexpr double kEarly = 1e-4;
+
+std::vector<std::string> Common(const std::set<std::string>& a, const std::set<std::string>& b) {
+  std::vector<std::string> common;
+  std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
+  return common;
+}
+
+}  // namespace
+
+ActionRunner::ActionRunner(const hires::robot::Robot& robot, const RunnerParams& params,
+                           Hooks hooks)
+    : robot_(robot), params_(params), hooks_(std::move(hooks)) {}
+
+ActionRunner::~ActionRunner() = default;
+
+std::optional<std::string> ActionRunner::Start(int id, const hires::base::ActionCall& action,
+                                               std::unique_ptr<hires::skills::Skill> skill,
+                                               double time_limit, double now) {
+  Session session;
+  session.id = id;
+  session.action = action;
+  session.groups = GroupsOf(action);
+  for (const Session& other : sessions_) {
+    const auto common = Common(session.groups, other.groups);
+    if (!common.empty()) {
+      return fmt::format("busy: {} needs {}", hires::base::ToString(other.action),
+                         hires::base::Join(common, ", "));
+    }
+  }
+  session.time_limit = time_limit > 0.0 ? time_limit : params_.time_limit;
+  session.accepted = now;
+  session.skill = std::make_unique<SkillThread>(std::move(skill), hooks_.wake);
+  sessions_.push_back(std::move(session));
+  return std::nullopt;
+}
+
+void ActionRunner::Cancel(int id) {
+  for (Session& session : sessions_) {
+    if (session.id == id) BreakOff(&session, ActionEnd::kPreempted, "");
+  }
+  RemoveFinished();
+}
+
+void ActionRunner::CancelAll() {
+  for (Session& session : sessions_) BreakOff(&session, ActionEnd::kPreempted, "");
+  RemoveFinished();
+}
+
+void ActionRunner::Look(double now, const Observation& seen) {
+  now_ = now;
+  seen_ = seen;
+  for (Session& session : sessions_) LookWith(&session, seen);
+  RemoveFinished();
+}
+
+void ActionRunner::LookWith(Session* session, const Observation& seen) {
+  if (!session->start) session->start = session->next = now_;
+  if (!session->stop && now_ - *session->start >= session->time_limit) {
+    BreakOff(session, ActionEnd::kFailed, "timed_out");
+    return;
+  }
+  if (session->stop) {
+    KeepStopping(session);
+  } else if (!session->skill->is_thinking() && now_ >= session->next - kEarly) {
+    Ask(session, seen);
+  }
+}
+
+void ActionRunner::Ask(Session* session, Observation seen) {
+  seen.time = now_ - *session->start;
+  for (hires::robot::SeenObject& object : seen.objects) object.time -= *session->start;
+  session->next += session->skill->period();
+  // What was missed is missed: a late skill does not hurry after its clock.
+  if (session->next < now_) session->next = now_ + session->skill->period();
+  session->skill->Look(std::move(seen));
+}
+
+void ActionRunner::Collect() {
+  for (Session& session : sessions_) {
+    const auto turn = session.skill ? session.skill->Take() : std::nullopt;
+    if (turn && !session.stop) Hear(&session, *turn);
+  }
+  RemoveFinished();
+}
+
+void ActionRunner::Hear(Session* session, const SkillTurn& turn) {
+  session->phase = turn.phase;
+  if (!turn.error.empty()) {
+    hires::base::Log(
+        hires::base::LogLevel::kError,
+        fmt::format("action={} error=\"{}\"", hires::base::ToString(session->action), turn.error));
+    BreakOff(session, ActionEnd::kFailed, "internal_error: " + turn.error);
+    return;
+  }
+  hooks_.send(turn.command);
+  if (turn.status.progress == Progress::kSucceeded) Finish(session, ActionEnd::kSucceeded, "");
+  if (turn.status.progress == Progress::kFailed) {
+    BreakOff(session, ActionEnd::kFailed, turn.status.reason);
+  }
+}
+
+void ActionRunner::BreakOff(Session* session, ActionEnd end, const std::string& reason) {
+  if (session->skill == nullptr || session->stop) return;  // has ended, or will
+  if (!session->start) {                                   // has not moved anything
+    Finish(session, end, reason);
+    return;
+  }
+  session->end = end;
+  session->reason = reason;
+  session->phase = "stopping";
+  session->stop = std::make_unique<Stop>(robot_, session->groups, params_.stop);
+  KeepStopping(session);
+}
+
+void ActionRunner::KeepStopping(Session* session) {
+  hooks_.send(session->stop->Update(now_, *seen_));
+  if (session->stop->is_over()) Finish(session, session->end, session->reason);
+}
+
+void ActionRunner::Finish(Session* session, ActionEnd end, const std::string& reason) {
+  // A skill that still thinks about its last look is let go; nobody hears what it will say.
+  if (session->skill->is_thinking()) {
+    leaving_.push_back(std::move(session->skill));
+  }
+  session->skill.reset();
+  hooks_.ended(NewsOf(*session), end, reason);
+}
+
+void ActionRunner::RemoveFinished() {
+  sessions_.remove_if([](const Session& session) { return session.skill == nullptr; });
+  leaving_.remove_if(
+      [](const std::unique_ptr<SkillThread>& skill) { return skill->Take().has_value(); });
+}
+
+void ActionRunner::CheckFreshness(double now) {
+  for (Session& session : sessions_) {
+    const double last = std::max(session.accepted, session.start ? now_ : 0.0);
+    if (now - last <= params_.stale_after) continue;
+    if (session.start && !session.stop) {
+      Stop stop(robot_, session.groups, params_.stop);
+      Observation still = *seen_;
+      still.V_B = {};  // a blind robot does not roll out along a ramp that nobody watches
+      hooks_.send(stop.Update(now, still));
+    }
+    Finish(&session, ActionEnd::kFailed, "stale_observation");
+  }
+  RemoveFinished();
+}
+
+void ActionRunner::GiveUpStopping() {
+  for (Session& session : sessions_) {
+    if (session.stop) Finish(&session, session.end, session.reason);
+  }
+  RemoveFinished();
+}
+
+bool ActionRunner::is_stopping() const {
+  return std::any_of(sessions_.begin(), sessions_.end(),
+                     [](const Session& session) { return session.stop != nullptr; });
+}
+
+bool ActionRunner::is_thinking() const {
+  return std::any_of(sessions_.begin(), sessions_.end(), [](const Session& session) {
+    return session.skill && session.skill->is_thinking();
+  });
+}
+
+ActionNews ActionRunner::NewsOf(const Session& session) const {
+  return {session.id, session.start ? now_ - *session.start : 0.0, session.phase};
+}
+
+std::vector<ActionNews> ActionRunner::News() const {
+  std::vector<ActionNews> news;
+  for (const Session& session : sessions_) news.push_back(NewsOf(session));
+  return news;
+}
+
+std::vector<std::string> ActionRunner::Running() const {
+  std::vector<std::string> names;
+  for (const Session& session : sessions_) names.push_back(hires::base::ToString(session.action));
+  return names;
+}
+
+}  // namespace hires_ros

@@ -1,0 +1,52 @@
+#include "hires/ros/middle_layer_scan.h"
+
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace hires_ros {
+
+using hires::geometry::Polygon;
+using hires::geometry::Pose2;
+
+ScanObstacles::ScanObstacles(std::shared_ptr<const hires::navigation::Costmap> map,
+                             Polygon footprint, const ScanParams& params)
+    : map_(std::move(map)), footprint_(std::move(footprint)), params_(params) {}
+
+std::vector<Polygon> ScanObstacles::Find(const ScanReading& scan, const Pose2& X_MB,
+                                         const Pose2& X_BL) const {
+  std::set<std::pair<long, long>> cells;
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const double range = scan.ranges[i];
+    if (!(range >= scan.range_min && range <= params_.range)) continue;  // NaN included
+    const double angle = scan.angle_min + static_cast<double>(i) * scan.angle_increment;
+    const Eigen::Vector2d p_B =
+        X_BL * Eigen::Vector2d(range * std::cos(angle), range * std::sin(angle));
+    const Eigen::Vector2d p_M = X_MB * p_B;
+    if (hires::geometry::Contains(footprint_, p_B) || IsExplained(p_M)) continue;
+    cells.emplace(std::lround(std::floor(p_M.x() / params_.cell)),
+                  std::lround(std::floor(p_M.y() / params_.cell)));
+  }
+  std::vector<Polygon> squares;
+  for (const auto& [column, row] : cells) {
+    const double x = column * params_.cell, y = row * params_.cell, edge = params_.cell;
+    squares.push_back({{x, y}, {x + edge, y}, {x + edge, y + edge}, {x, y + edge}});
+  }
+  return squares;
+}
+
+/// What lies beyond the map's border is nobody's concern.
+bool ScanObstacles::IsExplained(const Eigen::Vector2d& p_M) const {
+  int column = 0, row = 0;
+  map_->CellOf(p_M, &column, &row);
+  if (!map_->Inside(column, row)) return true;
+  const int reach = static_cast<int>(std::ceil(params_.tolerance / map_->resolution()));
+  for (int y = row - reach; y <= row + reach; ++y) {
+    for (int x = column - reach; x <= column + reach; ++x) {
+      if (map_->Inside(x, y) && map_->cost(x, y) == hires::navigation::kLethalCost) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace hires_ros
