@@ -77,7 +77,7 @@ void Chain::Measure(const std::string& goal, Leg* leg) const {
   if (const auto contact = setup_.scene->clearance.FindContact(X_MB)) {
     leg->touched = contact->robot_part + " / " + contact->obstacle;
     leg->clearance = 0.0;
-  } else if (leg->result.reason == "robot_collision") {
+  } else if (leg->result.reason.rfind("robot_collision", 0) == 0) {
     leg->touched = "unknown";  // it was over before the robot stood still
     leg->clearance = 0.0;
   }

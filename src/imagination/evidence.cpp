@@ -61,6 +61,7 @@ class Tally {
     AddFailure(result);
     evidence_.counts += result.counts;
     evidence_.falls += result.falls;
+    watched_nothing_ = watched_nothing_ && result.nothing_watched;
     num_fallen_ += result.falls > 0;
     confidence_sum_ += RolloutConfidence(result);
     if (!ActionFailed(result)) durations_.emplace_back(result.duration, index);
@@ -77,7 +78,9 @@ class Tally {
     evidence_.action_failed_share = num_action_failed / n;
     evidence_.confidence_mean = confidence_sum_ / n;
     const bool mostly_failed = 2 * num_action_failed > evidence_.num_rollouts;
-    evidence_.confidence_pooled = mostly_failed ? 0.0 : Confidence(evidence_.counts);
+    evidence_.confidence_pooled = mostly_failed      ? 0.0
+                                  : watched_nothing_ ? 1.0
+                                                     : Confidence(evidence_.counts);
     SumUpDurations(std::move(durations_), &evidence_);
     SumUpTilts(std::move(tilts_), &evidence_);
     return evidence_;
@@ -96,6 +99,7 @@ class Tally {
   Evidence evidence_;
   int num_success_{0};
   int num_fallen_{0};
+  bool watched_nothing_{true};  // in every rollout
   double confidence_sum_{0.0};
   IndexedValues durations_;
   std::vector<double> tilts_;
@@ -111,7 +115,8 @@ double Confidence(const OutcomeCounts& counts, const ConfidenceCoefficients& coe
 }
 
 double RolloutConfidence(const RolloutResult& result) {
-  return ActionFailed(result) ? 0.0 : Confidence(result.counts);
+  if (ActionFailed(result)) return 0.0;
+  return result.nothing_watched ? 1.0 : Confidence(result.counts);
 }
 
 SuccessInterval EstimateSuccess(int num_success, int num_rollouts) {

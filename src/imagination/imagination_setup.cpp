@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <set>
 
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
@@ -16,8 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using base::Between;
 using base::ParamReader;
-
-constexpr double kSlotDistance = 0.13;  // [m] pr2.md, section 9
 
 navigation::DwaParams ReadDwa(ParamReader in) {
   navigation::DwaParams p;
@@ -171,6 +168,11 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   setup.world_hash = hasher.value();
   setup.robot_hash = robot.hash();
   setup.scene = simulation::MakeScene(std::move(world), std::move(robot));
+  // The scene keeps them; the translator only looks.
+  setup.translator.object_models = setup.object_models;
+  setup.translator.world = {setup.scene, &setup.scene->world};
+  setup.translator.robot = {setup.scene, &setup.scene->robot};
+  setup.translator.areas = translation::AreasOf(setup.scene->world, setup.scene->robot);
   setup.uncertainty = std::make_shared<const Uncertainty>(
       config.uncertainty == "none" ? NoUncertainty() : LoadUncertainty(config.uncertainty));
   setup.rollout = config.rollout;
@@ -181,6 +183,8 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
 std::string ImaginationSetup::ModelOf(const std::string& instance_or_model) const {
   const auto instance = object_models.find(base::ToLower(instance_or_model));
   if (instance != object_models.end()) return instance->second;
+  const std::string kin = translator.FindModel(instance_or_model);
+  if (!kin.empty()) return kin;
   std::vector<std::string> known;
   for (const auto& [name, model] : object_models) known.push_back(name);
   for (const auto& [name, model] : scene->world.models) {
@@ -188,104 +192,6 @@ std::string ImaginationSetup::ModelOf(const std::string& instance_or_model) cons
     known.push_back(name);
   }
   throw base::ConfigError(base::UnknownName("object", instance_or_model, known));
-}
-
-namespace {
-
-geometry::Pose3 AreaPose(const ImaginationSetup& setup, const std::string& area) {
-  if (const auto X_MArea = setup.scene->world.FindFrame(area)) return *X_MArea;
-  throw base::ConfigError(base::UnknownName("area", area, setup.scene->world.FrameNames()));
-}
-
-world::ObjectState MakeObject(const ImaginationSetup& setup, const std::string& name,
-                              const geometry::Pose3& X_MO) {
-  world::ObjectState object;
-  object.name = base::ToLower(name);
-  object.model = setup.ModelOf(name);
-  object.X_MO = X_MO;
-  return object;
-}
-
-const base::Atom& RobotAtom(const std::vector<base::Atom>& atoms) {
-  const base::Atom* found = nullptr;
-  for (const base::Atom& atom : atoms) {
-    if (base::ToLower(atom.predicate) != "robotat") continue;
-    if (found != nullptr || atom.arguments.size() != 1) {
-      throw base::ConfigError("updated_fluents: RobotAt(area) is wanted once, with one area");
-    }
-    found = &atom;
-  }
-  if (found == nullptr) {
-    throw base::ConfigError(
-        "updated_fluents: RobotAt(area) is missing; say where the robot stands");
-  }
-  return *found;
-}
-
-void RefuseLoad(const ImaginationSetup& setup, const std::vector<std::string>& on_tray) {
-  if (on_tray.size() > 3) {
-    throw base::ConfigError(fmt::format(
-        "{} objects are wanted on the tray, it has 3 places; name at most 3", on_tray.size()));
-  }
-  if (!on_tray.empty() && setup.scene->robot.profile.tray_link.empty()) {
-    throw base::ConfigError(
-        fmt::format("robot '{}' has no tray to carry '{}'; name a tray_link in its profile",
-                    setup.scene->robot.model.name, on_tray.front()));
-  }
-}
-
-/// The robot at an area, objects on its tray and in other places, and what else the world's file
-/// has.
-StartState Arrange(const ImaginationSetup& setup, const std::string& area,
-                   const std::vector<std::string>& on_tray,
-                   const std::vector<world::ObjectState>& elsewhere) {
-  RefuseLoad(setup, on_tray);
-  StartState start;
-  start.robot.X_MB = geometry::Flatten(AreaPose(setup, area));
-  start.robot.joints = setup.scene->robot.profile.joints;
-  world::WorldState named;
-  for (std::size_t i = 0; i < on_tray.size(); ++i) {
-    const double y = i == 0 ? 0.0 : (i == 1 ? -kSlotDistance : kSlotDistance);
-    named.objects.push_back(MakeObject(
-        setup, on_tray[i],
-        geometry::Lift(start.robot.X_MB) * setup.scene->X_BO * geometry::Lift({0.0, y, 0.0})));
-  }
-  named.objects.insert(named.objects.end(), elsewhere.begin(), elsewhere.end());
-  // Who asks knows better than the world's file where an object is.
-  for (const world::ObjectState& object : setup.scene->world.initial.objects) {
-    if (named.Find(object.name) == nullptr) start.world.objects.push_back(object);
-  }
-  start.world.objects.insert(start.world.objects.end(), named.objects.begin(), named.objects.end());
-  return start;
-}
-
-}  // namespace
-
-StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
-                          const std::vector<std::string>& objects) {
-  return Arrange(setup, area, objects, {});
-}
-
-StartState MakeStartState(const ImaginationSetup& setup, const std::vector<base::Atom>& atoms) {
-  static const std::set<std::string> kWithoutEffect{"robotat", "hasarmposture", "hastorsoposture",
-                                                    "instance", "holding"};
-  std::vector<std::string> on_tray;
-  std::vector<world::ObjectState> elsewhere;
-  for (const base::Atom& atom : atoms) {
-    const std::string predicate = base::ToLower(atom.predicate);
-    if (kWithoutEffect.count(predicate) > 0) continue;
-    if (predicate != "on" || atom.arguments.size() != 2) {
-      throw base::ConfigError(fmt::format(
-          "updated_fluents: {} is not understood; RobotAt(area) and On(object, area) are",
-          base::ToString(atom)));
-    }
-    if (base::ToLower(atom.arguments[1]) == "trayarea1") {
-      on_tray.push_back(atom.arguments[0]);
-    } else {
-      elsewhere.push_back(MakeObject(setup, atom.arguments[0], AreaPose(setup, atom.arguments[1])));
-    }
-  }
-  return Arrange(setup, RobotAtom(atoms).arguments[0], on_tray, elsewhere);
 }
 
 RolloutSetup MakeRolloutSetup(const ImaginationSetup& setup, const StartState& start,

@@ -2,19 +2,45 @@
 
 #include <algorithm>
 
+#include "hires/base/text.h"
 #include "hires/imagination/rollout.h"
 
 namespace hires::imagination {
 namespace {
+
+using geometry::Pose3;
+
 constexpr double kCauseWindow = 0.3;  // [s] how far back a cause may lie
+constexpr double kDrop = 0.05;        // [m] lower than where it stood: fallen off
+constexpr double kStillSpeed = 0.01;  // [m/s] below which an object stands still
+
+}  // namespace
+
+LoadMonitor::LoadMonitor(simulation::RobotSimulator* simulator, const RolloutParams& params,
+                         const Purpose& purpose)
+    : simulator_(simulator), params_(params), purpose_(purpose) {
+  Sort(purpose);
 }
 
-LoadMonitor::LoadMonitor(simulation::RobotSimulator* simulator, const RolloutParams& params)
-    : simulator_(simulator), params_(params) {
-  const geometry::Pose3 X_BM = simulator->X_MB().Inverse();
-  for (const int index : simulator->carried()) {
-    objects_.push_back({index, X_BM * simulator->PoseOf(index), false});
+void LoadMonitor::Sort(const Purpose& purpose) {
+  const Pose3 X_BM = simulator_->X_MB().Inverse();
+  const std::vector<int>& carried = simulator_->carried();
+  const std::vector<world::ObjectState> all = simulator_->GetWorldState().objects;
+  for (int i = 0; i < static_cast<int>(all.size()); ++i) {
+    const bool is_handled = !purpose.object.empty() && base::ToLower(all[i].name) == purpose.object;
+    const bool stands_on_robot = std::count(carried.begin(), carried.end(), i) > 0;
+    const bool is_held = !all[i].attached_to.empty();
+    if (is_handled) handled_ = static_cast<int>(objects_.size());
+    if (is_handled || stands_on_robot || is_held) {
+      objects_.push_back({i, X_BM * all[i].X_MO, stands_on_robot && !is_handled, is_held, false});
+    } else if (geometry::TiltOf(all[i].X_MO.rotation) < params_.topple_tilt) {
+      bystanders_.push_back({i, base::ToLower(all[i].name), all[i].X_MO.translation.z()});
+    }
   }
+}
+
+bool LoadMonitor::IsHeld(const Object& object) const {
+  return !simulator_->HolderOf(object.index).empty();
 }
 
 void LoadMonitor::Look() {
@@ -25,34 +51,40 @@ void LoadMonitor::Look() {
 }
 
 void LoadMonitor::LookAt(Object* object) {
-  const geometry::Pose3 X_MO = simulator_->PoseOf(object->index);
+  const Pose3 X_MO = simulator_->PoseOf(object->index);
   if (!X_MO.IsFinite()) {
     is_lost_ = true;
     return;
   }
   const double tilt = geometry::TiltOf(X_MO.rotation);
   tilt_ = std::max(tilt_, tilt);
-  const geometry::Pose3 X_BO = simulator_->X_MB().Inverse() * X_MO;
-  const bool slid = (X_BO.translation - object->X_BO.translation).norm() > params_.lost_distance;
-  if (!object->has_fallen && (tilt >= params_.topple_tilt || slid)) {
-    NoteFall(object, tilt, slid);
+  const bool lies = tilt >= params_.topple_tilt;
+  if (!object->is_load) {
+    if (lies && IsHeld(*object)) {
+      if (first_trouble_.empty()) first_trouble_ = "object_tilted";
+    } else if (lies && !object->has_fallen) {
+      NoteFall(object, "object_toppled");
+    }
+    return;
   }
+  const Pose3 X_BO = simulator_->X_MB().Inverse() * X_MO;
+  const bool slid = (X_BO.translation - object->X_BO.translation).norm() > params_.lost_distance;
+  if (!object->has_fallen && (lies || slid)) NoteFall(object, lies ? "object_fell" : "object_slid");
   if (params_.put_back && object->has_fallen && (slid || tilt > params_.put_back_tilt)) {
     simulator_->PutBack(object->index);
     object->has_fallen = false;
   }
 }
 
-void LoadMonitor::NoteFall(Object* object, double tilt, bool slid) {
+void LoadMonitor::NoteFall(Object* object, const std::string& reason) {
   object->has_fallen = true;
   ++falls_;
-  if (first_fall_.empty()) {
-    first_fall_ = slid && tilt < params_.topple_tilt ? "object_slid" : "object_fell";
-  }
+  if (first_trouble_.empty()) first_trouble_ = reason;
 }
 
 OutcomeCounts LoadMonitor::Sample() const {
   OutcomeCounts counts;
+  if (objects_.empty()) return counts;
   if (tilt_ <= params_.shaking_tilt) {
     counts.notopple = 1;
   } else if (tilt_ >= params_.topple_tilt) {
@@ -61,6 +93,87 @@ OutcomeCounts LoadMonitor::Sample() const {
     counts.shaking = 1;
   }
   return counts;
+}
+
+bool LoadMonitor::Moves(int index) const {
+  return simulator_->VelocityOf(index).linear.norm() > kStillSpeed;
+}
+
+bool LoadMonitor::IsSettled() const {
+  if (tilt_ > params_.shaking_tilt && tilt_ < params_.topple_tilt) return false;
+  const bool is_put_down =
+      purpose_.kind == Purpose::Kind::kPutOnArea || purpose_.kind == Purpose::Kind::kPutOnTray;
+  if (handled_ >= 0 && is_put_down && Moves(objects_[handled_].index)) return false;
+  return std::none_of(bystanders_.begin(), bystanders_.end(),
+                      [&](const Bystander& bystander) { return Moves(bystander.index); });
+}
+
+std::vector<std::string> LoadMonitor::KnockedOver() const {
+  std::vector<std::string> names;
+  for (const Bystander& bystander : bystanders_) {
+    const Pose3 X_MO = simulator_->PoseOf(bystander.index);
+    const bool lies = geometry::TiltOf(X_MO.rotation) >= params_.topple_tilt;
+    const bool fell_off = X_MO.translation.z() < bystander.height - kDrop;
+    if (lies || fell_off) names.push_back(bystander.name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void LoadMonitor::Conclude() {
+  Look();
+  falls_ += static_cast<int>(KnockedOver().size());
+}
+
+std::string LoadMonitor::WhyNotWell() const {
+  std::string why = WhyHandledIsNotWell();
+  if (why.empty()) why = first_trouble_;
+  if (why.empty()) why = WhyNotHeldAnyMore();
+  const std::vector<std::string> knocked_over = KnockedOver();
+  if (why.empty() && !knocked_over.empty()) why = "knocked_over: " + base::Join(knocked_over, ", ");
+  return why;
+}
+
+std::string LoadMonitor::WhyHandledIsNotWell() const {
+  if (handled_ < 0) return "";
+  const Object& object = objects_[handled_];
+  return purpose_.kind == Purpose::Kind::kTake ? WhyNotTaken(object) : WhyNotStanding(object);
+}
+
+std::string LoadMonitor::WhyNotTaken(const Object& object) const {
+  const auto held = simulator_->held();
+  const auto hand = held.find(purpose_.arm);
+  if (hand != held.end() && hand->second == object.index) return "";
+  const double z_start = (simulator_->X_MB() * object.X_BO).translation.z();
+  const double z = simulator_->PoseOf(object.index).translation.z();
+  return z < z_start - kDrop ? "object_fell"
+         : object.has_fallen ? "object_toppled"
+                             : "object_slipped";
+}
+
+/// Where the object was to be put: the frame of the area, or the middle of the tray.
+Pose3 LoadMonitor::X_MGoal() const {
+  const simulation::Scene& scene = simulator_->scene();
+  if (purpose_.kind == Purpose::Kind::kPutOnTray) return simulator_->X_MB() * scene.X_BO;
+  return scene.world.FindFrame(purpose_.area).value_or(Pose3());
+}
+
+std::string LoadMonitor::WhyNotStanding(const Object& object) const {
+  if (IsHeld(object)) return "object_not_released";
+  const Pose3 X_MO = simulator_->PoseOf(object.index);
+  const Pose3 X_GO = X_MGoal().Inverse() * X_MO;
+  if (X_GO.translation.z() < -kDrop) return "object_fell";
+  if (geometry::TiltOf(X_MO.rotation) >= params_.topple_tilt) return "object_toppled";
+  const double away = X_GO.translation.head<2>().cwiseAbs().maxCoeff();
+  return away > purpose_.area_half_width ? "object_slipped" : "";
+}
+
+std::string LoadMonitor::WhyNotHeldAnyMore() const {
+  for (int i = 0; i < static_cast<int>(objects_.size()); ++i) {
+    const Object& object = objects_[i];
+    if (i != handled_ && object.was_held && !IsHeld(object)) return "object_slipped";
+  }
+  return "";
 }
 
 std::string LoadMonitor::Cause() const {

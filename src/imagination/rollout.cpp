@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/imagination/load_monitor.h"
+#include "hires/imagination/purpose.h"
 #include "hires/simulation/robot_simulator.h"
+#include "rollout_start.h"
 
 namespace hires::imagination {
 namespace {
@@ -17,35 +20,33 @@ using simulation::RobotSimulator;
 constexpr int kLookSteps = 5;  // the load is looked at every fifth step
 enum Streams : std::uint64_t { kVariation, kSimulator, kControl };
 
-/// A start pose that collides cannot be one where the robot stands: its offset is drawn in.
-simulation::Variation WithFreeStart(simulation::Variation variation, const RolloutSetup& setup) {
-  for (int halving = 0; halving < 8; ++halving) {
-    if (!setup.scene->clearance.FindContact(setup.robot_state.X_MB * variation.start_offset)) {
-      return variation;
-    }
-    variation.start_offset.x /= 2;
-    variation.start_offset.y /= 2;
-    variation.start_offset.yaw /= 2;
+Purpose PurposeIn(const RolloutSetup& setup, const base::ActionCall& action) {
+  Purpose purpose = PurposeOf(action);
+  if (setup.skills->manipulation) {
+    purpose.area_half_width = setup.skills->manipulation->params.place.area_half_width;
   }
-  variation.start_offset = {};
-  return variation;
+  return purpose;
 }
 
 /// One play, from settling to the end.
 class Player {
  public:
-  Player(const RolloutSetup& setup, std::unique_ptr<skills::Skill> skill,
-         const simulation::Variation& variation, const base::Rng& rng)
+  Player(const RolloutSetup& setup, const base::ActionCall& action,
+         std::unique_ptr<skills::Skill> skill, const simulation::Variation& variation,
+         const base::Rng& rng)
       : params_(setup.params),
+        purpose_(PurposeIn(setup, action)),
         variation_(variation),
         skill_(std::move(skill)),
         control_rng_(rng.Fork(kControl)),
         simulator_(setup.scene, variation, setup.world_state, setup.robot_state,
-                   rng.Fork(kSimulator), setup.physics) {}
+                   rng.Fork(kSimulator), setup.physics, LevelFor(action)) {
+    simulator_.Remember(KnownAtStart(setup, variation, simulator_));
+  }
 
   std::optional<RolloutResult> Play(const RolloutHooks& hooks) {
     StepFor(params_.settling_time);
-    LoadMonitor monitor(&simulator_, params_);
+    LoadMonitor monitor(&simulator_, params_, purpose_);
     const double start = simulator_.time();
     skills::Status status;
     next_cycle_ = start;
@@ -63,12 +64,13 @@ class Player {
         if (hooks.on_sample) hooks.on_sample(simulator_, monitor.tilt());
         if (hooks.cancelled && hooks.cancelled()) return std::nullopt;
       }
-      if (simulator_.contact()) status = {skills::Progress::kFailed, "robot_collision"};
+      if (simulator_.contact()) status = {skills::Progress::kFailed, CollisionReason()};
       if (monitor.is_lost()) status = {skills::Progress::kFailed, "object_lost"};
       if (elapsed >= params_.time_limit) status = {skills::Progress::kFailed, "timed_out"};
     }
     result_.duration = simulator_.time() - start;
     WatchAftermath(&monitor);
+    monitor.Conclude();
     Conclude(status, monitor);
     return result_;
   }
@@ -90,10 +92,14 @@ class Player {
     return status;
   }
 
+  std::string CollisionReason() const {
+    return fmt::format("robot_collision: {} touches {}", simulator_.contact()->robot_part,
+                       simulator_.contact()->obstacle);
+  }
+
   void WatchAftermath(LoadMonitor* monitor) {
     const double end = simulator_.time() + params_.aftermath;
-    while (simulator_.time() < end && monitor->tilt() > params_.shaking_tilt &&
-           monitor->tilt() < params_.topple_tilt) {
+    while (simulator_.time() < end && !monitor->IsSettled()) {
       for (int i = 0; i < kLookSteps; ++i) simulator_.Step();
       monitor->Look();
     }
@@ -101,11 +107,12 @@ class Player {
 
   void Conclude(const skills::Status& status, const LoadMonitor& monitor) {
     result_.action_finished = status.progress == skills::Progress::kSucceeded;
-    result_.reason = result_.action_finished ? monitor.first_fall() : status.reason;
+    result_.nothing_watched = !monitor.watches_something();
+    result_.reason = result_.action_finished ? monitor.WhyNotWell() : status.reason;
     result_.outcome = result_.reason.empty()          ? Outcome::kSucceeded
                       : result_.reason == "timed_out" ? Outcome::kTimedOut
                                                       : Outcome::kFailed;
-    if (result_.action_finished && result_.counts.total() == 0) {
+    if (result_.outcome == Outcome::kSucceeded && ActionFailed(result_)) {
       result_.outcome = Outcome::kFailed;
       result_.reason = "no_samples";
     }
@@ -118,6 +125,7 @@ class Player {
   }
 
   const RolloutParams& params_;
+  const Purpose purpose_;
   const simulation::Variation variation_;
   std::unique_ptr<skills::Skill> skill_;
   base::Rng control_rng_;
@@ -150,19 +158,25 @@ void CheckSetup(const RolloutSetup& setup, const base::ActionCall& action) {
 }
 
 void CheckSetupForAll(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions) {
-  for (const base::ActionCall& action : actions) skills::MakeSkill(*setup.skills, action);
-  RobotSimulator(setup.scene, {}, setup.world_state, setup.robot_state, base::Rng(setup.seed),
-                setup.physics);
+  std::set<simulation::LevelOfDetail> levels;
+  for (const base::ActionCall& action : actions) {
+    skills::MakeSkill(*setup.skills, action);
+    levels.insert(LevelFor(action));
+  }
+  for (const simulation::LevelOfDetail level : levels) {
+    RobotSimulator(setup.scene, {}, setup.world_state, setup.robot_state, base::Rng(setup.seed),
+                   setup.physics, level);
+  }
+  CheckHands(setup);
 }
 
 std::optional<RolloutResult> PlayRollout(const RolloutSetup& setup, const base::ActionCall& action,
                                          int index, const RolloutHooks& hooks) {
   const base::Rng rng = base::Rng(setup.seed).Fork(static_cast<std::uint64_t>(index));
-  const simulation::Variation variation =
-      WithFreeStart(SampleVariation(*setup.uncertainty, rng.Fork(kVariation)), setup);
+  const simulation::Variation variation = DrawTruth(setup, rng.Fork(kVariation));
   std::unique_ptr<skills::Skill> skill = skills::MakeSkill(*setup.skills, action);
   try {
-    return Player(setup, std::move(skill), variation, rng).Play(hooks);
+    return Player(setup, action, std::move(skill), variation, rng).Play(hooks);
   } catch (const base::ConfigError& error) {
     // The nominal start is sound (CheckSetup), the sampled one is not: a truth that cannot be.
     base::Log(base::LogLevel::kDebug,

@@ -10,7 +10,8 @@ namespace {
 
 auto Counted(const RolloutResult& result) {
   return std::tie(result.outcome, result.reason, result.duration, result.counts, result.falls,
-                  result.max_tilt, result.first_cause, result.action_finished);
+                  result.max_tilt, result.first_cause, result.action_finished,
+                  result.nothing_watched);
 }
 
 std::string NumberDefect(const char* name, double value, const char* unit) {
@@ -20,11 +21,18 @@ std::string NumberDefect(const char* name, double value, const char* unit) {
 
 std::string CountDefect(const RolloutResult& result) {
   const OutcomeCounts& counts = result.counts;
+  if (result.nothing_watched && counts.total() != 0) {
+    return fmt::format("nothing was watched, but there are {} samples", counts.total());
+  }
   if (counts.notopple >= 0 && counts.shaking >= 0 && counts.topple >= 0 && result.falls >= 0) {
     return {};
   }
   return fmt::format("a count is negative (notopple {}, shaking {}, topple {}, falls {})",
                      counts.notopple, counts.shaking, counts.topple, result.falls);
+}
+
+bool LacksSamples(const RolloutResult& result) {
+  return result.counts.total() == 0 && !result.nothing_watched;
 }
 
 }  // namespace
@@ -41,7 +49,7 @@ bool OutcomeCounts::operator==(const OutcomeCounts& other) const {
 }
 
 bool ActionFailed(const RolloutResult& result) {
-  return !result.action_finished || result.counts.total() == 0;
+  return !result.action_finished || LacksSamples(result);
 }
 
 std::string FailureReason(const RolloutResult& result) {
@@ -49,7 +57,7 @@ std::string FailureReason(const RolloutResult& result) {
   if (result.outcome == Outcome::kTimedOut) return "timed_out";
   if (!result.action_finished) return "unfinished";
   if (result.falls > 0) return "object_fell";
-  if (result.counts.total() == 0) return "no_samples";
+  if (LacksSamples(result)) return "no_samples";
   return result.outcome == Outcome::kSucceeded ? "" : "unknown";
 }
 

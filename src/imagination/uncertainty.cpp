@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "hires/base/error.h"
@@ -21,6 +22,7 @@ struct Quantity {
   std::string unit;
   double lower, upper;  // what makes sense at all
   std::function<double&(Variation&)> slot;
+  std::optional<Arrival> only_after{};
 };
 
 const std::vector<Quantity>& Quantities() {
@@ -35,9 +37,18 @@ const std::vector<Quantity>& Quantities() {
        [](Variation& v) -> double& { return v.friction_factor; }},
       {"object_x", "m", -0.2, 0.2, [](Variation& v) -> double& { return v.object_offset.x(); }},
       {"object_y", "m", -0.5, 0.5, [](Variation& v) -> double& { return v.object_offset.y(); }},
-      {"start_x", "m", -1, 1, [](Variation& v) -> double& { return v.start_offset.x; }},
-      {"start_y", "m", -1, 1, [](Variation& v) -> double& { return v.start_offset.y; }},
-      {"start_yaw", "rad", -3.2, 3.2, [](Variation& v) -> double& { return v.start_offset.yaw; }},
+      {"start_x", "m", -1, 1, [](Variation& v) -> double& { return v.start_offset.x; },
+       Arrival::kDriven},
+      {"start_y", "m", -1, 1, [](Variation& v) -> double& { return v.start_offset.y; },
+       Arrival::kDriven},
+      {"start_yaw", "rad", -3.2, 3.2, [](Variation& v) -> double& { return v.start_offset.yaw; },
+       Arrival::kDriven},
+      {"docked_x", "m", -0.2, 0.2, [](Variation& v) -> double& { return v.start_offset.x; },
+       Arrival::kDocked},
+      {"docked_y", "m", -0.2, 0.2, [](Variation& v) -> double& { return v.start_offset.y; },
+       Arrival::kDocked},
+      {"docked_yaw", "rad", -0.5, 0.5, [](Variation& v) -> double& { return v.start_offset.yaw; },
+       Arrival::kDocked},
       {"localisation_x", "m", -1, 1, [](Variation& v) -> double& { return v.localisation_bias.x; }},
       {"localisation_y", "m", -1, 1, [](Variation& v) -> double& { return v.localisation_bias.y; }},
       {"localisation_yaw", "rad", -1, 1,
@@ -59,6 +70,9 @@ const std::vector<Quantity>& Quantities() {
       {"detection_noise", "m", 0, 0.2, [](Variation& v) -> double& { return v.detection_noise; }},
       {"detection_noise_yaw", "rad", 0, 1,
        [](Variation& v) -> double& { return v.detection_noise_yaw; }},
+      {"grasp_x", "m", -0.05, 0.05, [](Variation& v) -> double& { return v.grasp_offset.x(); }},
+      {"grasp_z", "m", -0.05, 0.05, [](Variation& v) -> double& { return v.grasp_offset.y(); }},
+      {"grasp_turn", "rad", -0.5, 0.5, [](Variation& v) -> double& { return v.grasp_turn; }},
       {"encoder_noise", "rad", 0, 0.1, [](Variation& v) -> double& { return v.encoder_noise; }},
   };
   return quantities;
@@ -138,11 +152,13 @@ Uncertainty UncertaintyFromText(const std::string& text, const std::string& wher
   return text == "none" ? NoUncertainty() : ParseUncertainty(text, where);
 }
 
-simulation::Variation SampleVariation(const Uncertainty& uncertainty, const base::Rng& rng) {
+simulation::Variation SampleVariation(const Uncertainty& uncertainty, const base::Rng& rng,
+                                      Arrival arrival) {
   Variation variation;
   for (const Quantity& quantity : Quantities()) {
     const auto found = uncertainty.quantities.find(quantity.name);
     if (found == uncertainty.quantities.end()) continue;
+    if (quantity.only_after && *quantity.only_after != arrival) continue;
     base::Hasher stream;
     stream.Add(quantity.name);
     base::Rng own = rng.Fork(stream.value());

@@ -21,7 +21,10 @@ namespace {
 using Eigen::Vector3d;
 using geometry::Pose3;
 
-constexpr double kGraspHeight = 0.4;    // of an object's height, from its foot
+constexpr double kGraspHeight = 0.4;  // of an object's height, from its foot
+// [m] from the tool up to the top of what hangs from the hand: as deep as a cup of 0.08 m fits
+// between the open fingers of the PR2, which stand like a V.
+constexpr double kHangingDepth = 0.028;
 constexpr double kSlotDistance = 0.13;  // [m] between slots of the tray
 constexpr double kClearance = 0.01;     // [m] between objects that are put side by side
 constexpr double kStep = 0.02;          // [m] of the search for a free spot
@@ -54,10 +57,10 @@ bool IsCarried(const world::World& world, const Vector3d& p_M, double half_width
   return false;
 }
 
-/// Pose in the tool's frame of an object whose z axis points along `up_T`.
-Pose3 GraspedAlong(const world::ObjectModel& model, const Vector3d& up_T) {
+/// Pose in the tool's frame of an object whose z axis points along `up_T`, grasped at a height in
+/// its own frame [m].
+Pose3 GraspedAlong(const world::ObjectModel& model, const Vector3d& up_T, double height) {
   const geometry::Aabb bounds = BoundsOf(model);
-  const double height = bounds.lower.z() + kGraspHeight * (bounds.upper.z() - bounds.lower.z());
   Pose3 X_TO;
   X_TO.rotation = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), up_T);
   const Vector3d grasped_O((bounds.lower.x() + bounds.upper.x()) / 2,
@@ -125,8 +128,12 @@ class Arrangement {
   /// Between the finger tips, upright in the hand or below it.
   Pose3 GraspedPose(const std::string& object, const robot::ArmProfile& arm) const {
     const Pose3 X_MT = body_.X_ML(arm.tool_link);
-    const std::array<Pose3, 2> grasps = {X_MT * GraspedAlong(ModelOf(object), Vector3d::UnitZ()),
-                                         X_MT * GraspedAlong(ModelOf(object), -Vector3d::UnitX())};
+    const world::ObjectModel& model = ModelOf(object);
+    const geometry::Aabb bounds = BoundsOf(model);
+    const double middle = bounds.lower.z() + kGraspHeight * (bounds.upper.z() - bounds.lower.z());
+    const double near_top = std::max(middle, bounds.upper.z() - kHangingDepth);
+    const std::array<Pose3, 2> grasps = {X_MT * GraspedAlong(model, Vector3d::UnitZ(), middle),
+                                         X_MT * GraspedAlong(model, -Vector3d::UnitX(), near_top)};
     const double tilt = geometry::TiltOf(grasps[0].rotation);
     return geometry::TiltOf(grasps[1].rotation) < tilt ? grasps[1] : grasps[0];
   }

@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "hires/imagination/evidence.h"
 #include "imagination/room_rollouts.h"
 #include "support/messages.h"
 
@@ -130,7 +131,7 @@ TEST(RolloutTest, DrivingBlindIntoACrateIsACollision) {
   room.statics.push_back(Block("crate", {0.5, 0.5, 0.8}, {2.75, 2.0, 0.4}));
   const RolloutResult result = Play(RoomRollouts(room, "mill"), kBlind);
   EXPECT_EQ(result.outcome, Outcome::kFailed);
-  EXPECT_EQ(result.reason, "robot_collision");
+  EXPECT_EQ(result.reason, "robot_collision: tray/plate touches crate");
   EXPECT_FALSE(result.action_finished);
   EXPECT_NEAR(result.final_robot.X_MB.x, 2.5 - 0.325, 0.02);
 }
@@ -174,15 +175,18 @@ TEST(RolloutTest, AStartOffsetIntoAWallIsDrawnIn) {
 TEST(RolloutTest, WithoutALoadTheDriveAloneIsPlayed) {
   const RolloutResult result = Play(RoomRollouts(Room(), ""), kFast);
   EXPECT_EQ(result.outcome, Outcome::kSucceeded);
-  EXPECT_EQ(result.counts.notopple, result.counts.total());
+  EXPECT_TRUE(result.nothing_watched);
+  EXPECT_EQ(result.counts.total(), 0);
+  EXPECT_FALSE(ActionFailed(result));
+  EXPECT_EQ(RolloutConfidence(result), 1.0) << "its success is all the evidence there is";
 }
 
 TEST(RolloutTest, CancelledItGivesUpWithNothingAtTheNextSample) {
   const RolloutSetup setup = RoomRollouts(Room(), "mill");
   int asked = 0, samples = 0;
-  const auto result = PlayRollout(
-      setup, kFast, 0,
-      {[&] { return ++asked == 3; }, [&](const simulation::RobotSimulator&, double) { ++samples; }});
+  const auto result = PlayRollout(setup, kFast, 0,
+                                  {[&] { return ++asked == 3; },
+                                   [&](const simulation::RobotSimulator&, double) { ++samples; }});
   EXPECT_FALSE(result);
   EXPECT_EQ(asked, 3);
   EXPECT_EQ(samples, 3);

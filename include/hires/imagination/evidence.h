@@ -19,7 +19,8 @@ struct ConfidenceCoefficients {
 /// no sample.
 double Confidence(const OutcomeCounts& counts, const ConfidenceCoefficients& coefficients = {});
 
-/// Eq. 6.1 of one rollout; 0 when its action failed (see ActionFailed).
+/// Eq. 6.1 of one rollout; 0 when its action failed (see ActionFailed), 1 when it succeeded and
+/// there was nothing to watch.
 double RolloutConfidence(const RolloutResult& result);
 
 /// How often an action succeeds, as far as counted rollouts tell. All shares lie in [0, 1].
@@ -40,7 +41,7 @@ SuccessInterval EstimateSuccess(int num_success, int num_rollouts);
 /// played, and duration.p50 is the duration of median_rollout.
 struct Evidence {
   double confidence_pooled{0.0};    ///< Eq. 6.1 on the summed counts; 0 when more than half of the
-                                    ///< rollouts failed to act
+                                    ///< rollouts failed to act, else 1 if nothing was watched
   double confidence_mean{0.0};      ///< mean of Eq. 6.1 per rollout, 0 for one whose action failed
   SuccessInterval success;          ///< goal reached and nothing fell; timed out counts as failed
   double fall_share{0.0};           ///< rollouts in which something fell

@@ -8,10 +8,12 @@
 
 #include "hires/base/param_reader.h"
 #include "hires/imagination/rollout.h"
+#include "hires/imagination/start_state.h"
 #include "hires/imagination/uncertainty.h"
 #include "hires/physics/physics_world.h"
 #include "hires/simulation/scene.h"
 #include "hires/skills/skill_factory.h"
+#include "hires/translation/translator.h"
 
 namespace hires::imagination {
 
@@ -50,35 +52,18 @@ struct ImaginationSetup {
   RolloutParams rollout;
   physics::PhysicsParams physics;
   std::map<std::string, std::string> object_models;  ///< instance (lower case) -> model
+  translation::TranslatorContext translator;  ///< knows names of objects and areas; no fluents
   std::uint64_t world_hash{0};  ///< world, object models and all parameters of physics and skills
   std::uint64_t robot_hash{0};
 
-  /// The model of an instance of the catalogue, or of an object model by its own name.
+  /// The model of an instance of the catalogue (or of its kin, see
+  /// translation::TranslatorContext::FindModel), or of an object model by its own name.
   /// @throws base::ConfigError with names like it.
   std::string ModelOf(const std::string& instance_or_model) const;
 };
 
 /// @throws base::ConfigError naming file, element and remedy.
 ImaginationSetup LoadImaginationSetup(const SetupConfig& config);
-
-/// Where a rollout begins.
-struct StartState {
-  world::WorldState world;
-  robot::RobotState robot;
-};
-
-/// The robot at an area with objects on its tray: the first in the middle, the next ones to its
-/// right and left, 0.13 m apart (the slots of the tray pick and place action). Loose objects of the
-/// world file stand where it says, unless they are named.
-/// @throws base::ConfigError for an unknown area or object, or more than three objects.
-StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
-                          const std::vector<std::string>& objects);
-
-/// The same from a projected symbolic state. RobotAt(area) is needed once; On(object, trayArea1)
-/// puts an object on the tray, On(object, area) on that area. Postures (HasArmPosture,
-/// HasTorsoPosture, Instance, Holding) are accepted: at the level of detail `tray` the joints are
-/// frozen in the driving posture.  @throws base::ConfigError for anything else, and as above.
-StartState MakeStartState(const ImaginationSetup& setup, const std::vector<base::Atom>& atoms);
 
 /// What the rollouts of a request share.
 RolloutSetup MakeRolloutSetup(const ImaginationSetup& setup, const StartState& start,

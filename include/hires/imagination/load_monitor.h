@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/imagination/purpose.h"
 #include "hires/imagination/rollout_result.h"
 #include "hires/simulation/robot_simulator.h"
 
@@ -10,39 +11,86 @@ namespace hires::imagination {
 
 struct RolloutParams;
 
-/// Watches what the robot carries: tilt, falls, and the cause of the first shaking.
+/// Watches the objects that an action is about, and those that it should leave alone.
+///
+/// Its concern are the objects that stand on the robot or are in its hands at the start, and the
+/// one that the action takes or puts down: their tilt is what Eq. 5.1 counts. Everything else that
+/// stands upright at the start is a bystander, which must still stand when all is over.
 class LoadMonitor {
  public:
-  /// @pre both outlive the monitor. Starts where the objects stand now.
-  LoadMonitor(simulation::RobotSimulator* simulator, const RolloutParams& params);
+  /// @pre simulator and params outlive the monitor. Starts where the objects are now.
+  LoadMonitor(simulation::RobotSimulator* simulator, const RolloutParams& params,
+              const Purpose& purpose = {});
 
-  void Look();                   ///< call every few milliseconds
-  OutcomeCounts Sample() const;  ///< one sample of Eq. 5.1, of the object that leans most
+  void Look();  ///< call every few milliseconds
+  /// One sample of Eq. 5.1, of the object of concern that leans most; none if there is no such
+  /// object.
+  OutcomeCounts Sample() const;
 
+  bool watches_something() const { return !objects_.empty(); }
   double tilt() const { return tilt_; }          ///< [rad] of the object that leans most, now
   double max_tilt() const { return max_tilt_; }  ///< [rad]
+  /// Objects that fell over, slid off the robot, or were knocked over (see KnockedOver).
   int falls() const { return falls_; }
   bool is_lost() const { return is_lost_; }  ///< physics gave an object a pose that is not finite
-  const std::string& first_fall() const { return first_fall_; }  ///< "object_fell", "object_slid"
   const std::string& first_cause() const { return first_cause_; }
+
+  /// Nothing of concern is on the way to falling or standing still again, and no bystander moves.
+  bool IsSettled() const;
+
+  /// Looks at how things are now that the action says it has reached its goal: the first of these
+  /// that is not well, or nothing.
+  ///   object_fell       what was taken or put down fell from its place, or what stood on the robot
+  ///                     fell over
+  ///   object_toppled    what was taken or put down lies where it should stand
+  ///   object_slipped    what the hand should hold it does not, or what was put down is not where
+  ///                     it was to be
+  ///   object_not_released  the hand still holds what it should have put down
+  ///   object_slid       what stood on the robot slid too far
+  ///   object_tilted     what a hand held leant as far as if it had toppled
+  ///   knocked_over: a, b   bystanders
+  std::string WhyNotWell() const;
+
+  /// Bystanders that do not stand any more, by name. Each counts as one fall once Conclude was
+  /// called.
+  std::vector<std::string> KnockedOver() const;
+  void Conclude();  ///< the last look: counts bystanders that fell
 
  private:
   struct Object {
     int index;
     geometry::Pose3 X_BO;  // in the base frame, at the start
+    bool is_load;          // stands on the robot and is not to be taken from there
+    bool was_held;         // at the start
     bool has_fallen{false};
   };
+  struct Bystander {
+    int index;
+    std::string name;
+    double height;  // [m] at the start
+  };
+  void Sort(const Purpose& purpose);
   void LookAt(Object* object);
-  void NoteFall(Object* object, double tilt, bool slid);
+  void NoteFall(Object* object, const std::string& reason);
+  bool IsHeld(const Object& object) const;
+  bool Moves(int index) const;
+  std::string WhyNotTaken(const Object& object) const;
+  std::string WhyNotStanding(const Object& object) const;
+  std::string WhyHandledIsNotWell() const;
+  std::string WhyNotHeldAnyMore() const;
+  geometry::Pose3 X_MGoal() const;
   std::string Cause() const;
 
   simulation::RobotSimulator* simulator_;
   const RolloutParams& params_;
+  Purpose purpose_;
   std::vector<Object> objects_;
+  std::vector<Bystander> bystanders_;
+  int handled_{-1};  // in objects_
   double tilt_{0.0}, max_tilt_{0.0};
   int falls_{0};
   bool is_lost_{false};
-  std::string first_fall_, first_cause_;
+  std::string first_trouble_, first_cause_;
 };
 
 }  // namespace hires::imagination

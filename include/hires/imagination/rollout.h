@@ -9,8 +9,8 @@
 #include "hires/imagination/rollout_result.h"
 #include "hires/imagination/uncertainty.h"
 #include "hires/physics/physics_world.h"
-#include "hires/simulation/scene.h"
 #include "hires/simulation/robot_simulator.h"
+#include "hires/simulation/scene.h"
 #include "hires/skills/skill_factory.h"
 
 namespace hires::imagination {

@@ -25,29 +25,36 @@ enum class Outcome { kSucceeded, kFailed, kTimedOut };
 /// What one simulated play of an action from one start with one seed gave.
 struct RolloutResult {
   Outcome outcome{Outcome::kFailed};
-  std::string reason;  ///< why it did not succeed, one word ("object_fell", "no_path"); else empty
+  /// Why it did not succeed, one word, where useful with names behind it ("object_fell",
+  /// "robot_collision: l_forearm touches table1"); else empty.
+  std::string reason;
   double duration{0.0};  ///< [s] simulated, of the action alone
   OutcomeCounts counts;
   int falls{0};             ///< events, not samples
   double max_tilt{0.0};     ///< [rad]
   std::string first_cause;  ///< what happened just before the object first left its rest; or empty
   bool action_finished{false};  ///< the action itself reached its goal, whatever fell
+  /// The robot carried nothing and the action handled nothing: there are no samples to count, and
+  /// its success is all the evidence there is.
+  bool nothing_watched{false};
   world::WorldState final_world;
   robot::RobotState final_robot;
   double simulated{0.0};  ///< [s] of physics, settling included
 };
 
 /// Whether the action counts as failed: it did not reach its goal, or nothing was sampled while it
-/// ran (the object was missing), so that Eq. 6.1 has nothing to speak about.
+/// ran although something was carried or handled, so that Eq. 6.1 has nothing to speak about.
 bool ActionFailed(const RolloutResult& result);
 
 /// Why a rollout is no success; empty if it is one. A result that calls itself succeeded although
 /// its action is unfinished ("unfinished"), something fell ("object_fell") or nothing was sampled
-/// ("no_samples") is none; a failure without a reason of its own is "timed_out" or "unknown".
+/// of what was to be watched ("no_samples") is none; a failure without a reason of its own is
+/// "timed_out" or "unknown".
 std::string FailureReason(const RolloutResult& result);
 
-/// What makes a result unusable as evidence (a number that is not finite or negative), in words for
-/// people; empty if it is sound. Results come from other computers: look before counting.
+/// What makes a result unusable as evidence (a number that is not finite or negative, samples of
+/// nothing), in words for people; empty if it is sound. Results come from other computers: look
+/// before counting.
 std::string Defect(const RolloutResult& result);
 
 /// Whether two plays of one rollout gave the same to the last bit: everything that is counted; the

@@ -20,8 +20,9 @@ struct Distribution {
   double Sample(base::Rng* rng) const;  ///< a normal one is drawn again beyond 3 deviations
 };
 
-/// What is uncertain about world, robot and control. One quantity for each number of
-/// simulation::Variation; a quantity that is not named keeps its nominal value.
+/// What is uncertain about world, robot and control. A quantity for each number of
+/// simulation::Variation (two for where the robot starts: see Arrival); a quantity that is not
+/// named keeps its nominal value.
 struct Uncertainty {
   std::map<std::string, Distribution> quantities;
   std::string yaml;       ///< the text it was read from; "none" if nothing is uncertain
@@ -42,8 +43,16 @@ void AddTo(base::Hasher* hasher, const std::map<std::string, Distribution>& quan
 /// `text` is "none", or YAML as above.
 Uncertainty UncertaintyFromText(const std::string& text, const std::string& where);
 
+/// How the robot came to where an action begins. It tells which quantities say how far it may be
+/// off: start_x, start_y, start_yaw, or docked_x, docked_y, docked_yaw.
+enum class Arrival {
+  kDriven,  ///< by move_base, within its goal tolerance
+  kDocked   ///< by move_base_blind, straight up to furniture
+};
+
 /// Draws one truth. Each quantity has a stream of its own, so that one more or less uncertain
 /// quantity leaves the draws of the others alone (common random numbers).
-simulation::Variation SampleVariation(const Uncertainty& uncertainty, const base::Rng& rng);
+simulation::Variation SampleVariation(const Uncertainty& uncertainty, const base::Rng& rng,
+                                      Arrival arrival = Arrival::kDriven);
 
 }  // namespace hires::imagination

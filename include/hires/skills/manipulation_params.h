@@ -28,8 +28,8 @@ struct GripperParams {
 struct LookParams {
   double dwell{0.5};            ///< [s] that the head rests on a target
   double margin{0.05};          ///< [rad] of the field of view's rim that does not count
-  double time_limit{3.0};       ///< [s] until an object must have been seen
-  int sightings{4};             ///< of an object, averaged before it is grasped
+  double time_limit{4.0};       ///< [s] until an object must have been seen
+  int sightings{6};             ///< of an object, averaged before it is grasped
   double search_distance{1.5};  ///< [m] placing areas within it may hold an unseen object
   double part_spacing{0.07};    ///< [m] of the points that an area is looked at by
 };
@@ -59,7 +59,7 @@ struct PlaceParams {
 struct ManipulationParams {
   double period{0.05};         ///< [s] control cycle
   int seed{1};                 ///< of all searches, together with the action's text
-  double speed{1.0};           ///< share of the joints' limits on free ways
+  double speed{0.95};          ///< share of the joints' limits on free ways: room to catch up
   double straight_speed{0.3};  ///< ... on straight ways to and from objects
   double straight_step{0.01};  ///< [m] between two points of a straight way
   JointGoalParams goal;

@@ -69,13 +69,14 @@ struct GeometricState {
 /// between two named ones. What no atom names stands as the robot's driving posture has it. Without
 /// an upper body there is nothing to move.
 /// Holding(arm, object): in the hand as it was seen there (a Pose in the frame of the palm); else
-/// between the finger tips at 0.4 of its height, upright or, if the hand points down, hanging from
-/// it, whichever leaves it more upright in this posture. The gripper's gap is the object's width.
-/// On(object, area): where it was seen if that is on the area; else on its middle, or beside it by
-/// as little as keeps it clear of the objects that are there. On(object, trayarea1): where it was
-/// seen on the tray; else on the next free slot (middle, right, left: 0.13 m), or where there is
-/// room. Objects that only fluents know stay where they were seen in the map; those whose last
-/// place was a part of the robot, which no atom confirms, are left out.
+/// between the finger tips, upright and held at 0.4 of its height or, if the hand points down,
+/// hanging from it by its uppermost 0.028 m, whichever leaves it more upright in this posture. The
+/// gripper's gap is the object's width. On(object, area): where it was seen if that is on the area;
+/// else on its middle, or beside it by as little as keeps it clear of the objects that are there.
+/// On(object, trayarea1): where it was seen on the tray; else on the next free slot (middle, right,
+/// left: 0.13 m), or where there is room. Objects that only fluents know stay where they were seen
+/// in the map; those whose last place was a part of the robot, which no atom confirms, are left
+/// out.
 ///
 /// @param fluents  may be null: nothing was seen.
 /// @throws base::ConfigError naming the atom: unknown area, object, posture or predicate, another

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hires/base/action.h"
+#include "hires/geometry/pose.h"
+#include "hires/robot/observation.h"
+#include "hires/world/world.h"
+
+namespace hires::imagination {
+
+struct ImaginationSetup;
+
+/// Where a rollout begins. It may come from symbols, from the translator, or from the final state
+/// of a rollout of the step before (RolloutResult::final_world, final_robot).
+struct StartState {
+  world::WorldState world;
+  robot::RobotState robot;
+};
+
+/// An object that stands at a place given in numbers.
+struct PutObject {
+  std::string object;
+  std::string area;      ///< in whose frame the pose is given; empty: in the map
+  geometry::Pose3 X_AO;  ///< of the object
+};
+
+/// The robot at an area with objects on its tray: the first in the middle, the next ones to its
+/// right and left, 0.13 m apart (the slots of the tray pick and place action). Loose objects of the
+/// world file stand where it says, unless they are named.
+/// @throws base::ConfigError for an unknown area or object, or more than three objects.
+StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
+                          const std::vector<std::string>& objects);
+
+/// From a projected symbolic state, as translation::StateOf reads it (RobotAt, HasArmPosture,
+/// HasTorsoPosture, Holding, On), and objects at poses of their own. Objects of the world file
+/// that neither names stand where it says.
+/// @throws base::ConfigError naming the atom or object and what is wrong with it.
+StartState MakeStartState(const ImaginationSetup& setup, const std::vector<base::Atom>& atoms,
+                          const std::vector<PutObject>& put = {});
+
+}  // namespace hires::imagination

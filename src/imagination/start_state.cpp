@@ -1,0 +1,85 @@
+#include "hires/imagination/start_state.h"
+
+#include <fmt/format.h>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/imagination/imagination_setup.h"
+
+namespace hires::imagination {
+namespace {
+
+constexpr double kSlotDistance = 0.13;  // [m] pr2.md, section 9
+
+geometry::Pose3 AreaPose(const ImaginationSetup& setup, const std::string& area) {
+  if (const auto X_MArea = setup.scene->world.FindFrame(area)) return *X_MArea;
+  throw base::ConfigError(base::UnknownName("area", area, setup.scene->world.FrameNames()));
+}
+
+world::ObjectState MakeObject(const ImaginationSetup& setup, const std::string& name,
+                              const geometry::Pose3& X_MO) {
+  world::ObjectState object;
+  object.name = base::ToLower(name);
+  object.model = setup.ModelOf(name);
+  object.X_MO = X_MO;
+  return object;
+}
+
+void RefuseLoad(const ImaginationSetup& setup, const std::vector<std::string>& on_tray) {
+  if (on_tray.size() > 3) {
+    throw base::ConfigError(fmt::format(
+        "{} objects are wanted on the tray, it has 3 places; name at most 3", on_tray.size()));
+  }
+  if (!on_tray.empty() && setup.scene->robot.profile.tray_link.empty()) {
+    throw base::ConfigError(
+        fmt::format("robot '{}' has no tray to carry '{}'; name a tray_link in its profile",
+                    setup.scene->robot.model.name, on_tray.front()));
+  }
+}
+
+/// Who asks knows better than the world's file where an object is.
+void AddInitialObjects(const ImaginationSetup& setup, world::WorldState* state) {
+  std::vector<world::ObjectState> objects;
+  for (const world::ObjectState& object : setup.scene->world.initial.objects) {
+    if (state->Find(object.name) == nullptr) objects.push_back(object);
+  }
+  state->objects.insert(state->objects.begin(), objects.begin(), objects.end());
+}
+
+void Put(const ImaginationSetup& setup, const PutObject& put, world::WorldState* state) {
+  if (state->Find(put.object) != nullptr) {
+    throw base::ConfigError(
+        fmt::format("object '{}' has two places; name it once", base::ToLower(put.object)));
+  }
+  const geometry::Pose3 X_MArea = put.area.empty() ? geometry::Pose3() : AreaPose(setup, put.area);
+  state->objects.push_back(MakeObject(setup, put.object, X_MArea * put.X_AO));
+}
+
+}  // namespace
+
+StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
+                          const std::vector<std::string>& objects) {
+  RefuseLoad(setup, objects);
+  StartState start;
+  start.robot.X_MB = geometry::Flatten(AreaPose(setup, area));
+  start.robot.joints = setup.scene->robot.profile.joints;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const double y = i == 0 ? 0.0 : (i == 1 ? -kSlotDistance : kSlotDistance);
+    start.world.objects.push_back(MakeObject(
+        setup, objects[i],
+        geometry::Lift(start.robot.X_MB) * setup.scene->X_BO * geometry::Lift({0.0, y, 0.0})));
+  }
+  AddInitialObjects(setup, &start.world);
+  return start;
+}
+
+StartState MakeStartState(const ImaginationSetup& setup, const std::vector<base::Atom>& atoms,
+                          const std::vector<PutObject>& put) {
+  const translation::GeometricState state = translation::StateOf(setup.translator, nullptr, atoms);
+  StartState start{state.world, state.robot};
+  for (const PutObject& object : put) Put(setup, object, &start.world);
+  AddInitialObjects(setup, &start.world);
+  return start;
+}
+
+}  // namespace hires::imagination
