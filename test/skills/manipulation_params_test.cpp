@@ -62,7 +62,7 @@ TEST(ManipulationParamsTest, NumbersOutOfRangeAreRefusedByName) {
 
 TEST(ManipulationParamsTest, MissingAndMisspelledKeysAreRefused) {
   EXPECT_THAT(
-      ConfigErrorOf([] { Read(Replaced(SceneText(), "    sightings: 4", "    sightigns: 4")); }),
+      ConfigErrorOf([] { Read(Replaced(SceneText(), "    sightings: 6", "    sightigns: 6")); }),
       HasSubstr("sightings"));
   EXPECT_THAT(ConfigErrorOf([] {
                 Read(Replaced(SceneText(), "    dwell: 0.5", "    dwell: 0.5\n    nod: 1"));
