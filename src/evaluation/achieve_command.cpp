@@ -112,6 +112,9 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
                    "domain: as the domain says; thesis: imagined, but the defaults are taken; off; "
                    "default: as the execution monitor is configured")
       ->check(CLI::IsMember({"domain", "thesis", "off"}));
+  verb->add_option("--wait", options->wait,
+                   "[s] for the execution monitor to be there; default: 10")
+      ->check(CLI::Range(0.0, 1e6));
   verb->add_option("--timeline", options->timeline, "write what was done when to this CSV file");
   verb->add_option("--png", options->png, "and draw it to this file");
   verb->add_option("--json", options->json, "write everything to this file for machines");
@@ -128,7 +131,7 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   RequireFolders(options);
   AchieveDisplay display(TerminalWidth());
   const AchieveReport report = achieve(
-      {base::Join(options.task, " "), options.imagination},
+      {base::Join(options.task, " "), options.imagination, options.wait},
       [&](const AchieveStatus& status) { std::cout << display.Show(status) << std::flush; },
       cancelled);
   PrintReport(report);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hires/evaluation/command_line.h"
+#include "hires/ros/remote_achieve.h"
 #include "hires/ros/remote_blackboard.h"
 #include "hires/ros/remote_imagination.h"
 #include "hires/ros/replay.h"
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
   hires::evaluation::Backends backends;
   backends.package_folder = ros::package::getPath("hires");
   backends.imagine_remotely = hires_ros::ImagineRemotely;
+  backends.achieve_remotely = hires_ros::AchieveRemotely;
   backends.connect_blackboard = hires_ros::ConnectBlackboard;
   backends.more_verbs.push_back({"replay",
                                  "imagine again what a bag recorded, and compare the answers: BAG "

@@ -57,6 +57,7 @@ struct AchieveReport {
 struct AchieveQuery {
   std::string task;
   std::string imagination;  ///< domain, thesis, off; empty: as the execution monitor is configured
+  double wait{10.0};        ///< [s] for the execution monitor to be there
 };
 
 using OnAchieveStatus = std::function<void(const AchieveStatus&)>;

@@ -24,6 +24,7 @@ enum AchieveExitCode {
 struct AchieveOptions {
   std::vector<std::string> task;  ///< words
   std::string imagination, timeline, png, json;
+  double wait{10.0};  ///< [s] for the execution monitor to be there
   CLI::App* verb{nullptr};
 };
 

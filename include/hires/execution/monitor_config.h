@@ -32,7 +32,7 @@ struct MonitorConfig {
   MonitorParams monitor;
   ImaginingParams imagining;
   ServerParams servers;
-  double start_wait{10.0};      ///< [s] steady, for the state and the clock when a task comes
+  double start_wait{30.0};      ///< [s] steady, for all that a task needs to begin
   double feedback_period{0.2};  ///< [s] steady
   double pose_distance{0.02};   ///< [m] that counts as moved
   double pose_angle{0.1};       ///< [rad] likewise

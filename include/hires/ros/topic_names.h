@@ -7,6 +7,8 @@ namespace hires_ros {
 
 constexpr char kImagineAction[] = "imagine";
 constexpr char kPlanAction[] = "plan";
+constexpr char kAchieveAction[] = "achieve";
+constexpr char kGenerateImagineState[] = "generate_imagine_state";  ///< service
 constexpr char kBlackboard[] = "blackboard";  ///< its services and topics lie below
 constexpr char kBlackboardChanges[] = "blackboard/changes";
 constexpr char kImaginedChanges[] = "blackboard/imagined_changes";

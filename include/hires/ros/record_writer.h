@@ -1,0 +1,89 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+
+#include "hires/execution/monitor.h"
+#include "hires/knowledge/fluent.h"
+#include "hires/knowledge/ontology.h"
+
+namespace hires_ros {
+
+/// The fluent that a record stands for, since `start` [s] main ROS time. An ontology that does not
+/// know its concept has the general one. Types of the fillers are those of the ontology; what it
+/// does not know is left for the Blackboard to refuse.
+hires::knowledge::Fluent FluentOf(const hires::execution::Record& record, double start,
+                                  const hires::knowledge::Ontology& ontology);
+
+/// Writes what the execution monitor knows to the Blackboard, in order, on a thread of its own.
+/// While the Blackboard is away, records wait; they are written when it is back.
+class RecordWriter {
+ public:
+  explicit RecordWriter(std::shared_ptr<const hires::knowledge::Ontology> ontology);
+  ~RecordWriter();  ///< Writes what it can without waiting for a Blackboard that is away.
+  RecordWriter(const RecordWriter&) = delete;
+  RecordWriter& operator=(const RecordWriter&) = delete;
+
+  // Times are main ROS time [s].
+  void BeginEpisode(const std::string& task, double time);
+  void Write(hires::execution::Record record, double time);
+  void EndEpisode(const std::string& outcome, double time);
+
+  std::int64_t episode() const { return episode_; }  ///< the running or last one; 0: not begun yet
+  int num_waiting() const;
+  int num_written() const { return num_written_; }
+  int num_refused() const { return num_refused_; }
+
+ private:
+  struct Begin {
+    std::string task;
+  };
+  struct End {
+    std::string outcome;
+  };
+  struct Item {
+    std::variant<Begin, hires::execution::Record, End> what;
+    double time;
+  };
+  enum class Answer { kDone, kRefused, kAgain };
+
+  void Post(Item item);
+  void Run();
+  bool Pause();
+  Answer Carry(const Item& item);
+  Answer Carry(const Begin& begin, double time);
+  Answer Carry(const hires::execution::Record& record, double time);
+  Answer Carry(const End& end, double time);
+  Answer WriteFluent(const char* service, const hires::knowledge::Fluent& fluent, double time);
+  Answer Remove(const std::string& instance, double time);
+  template <typename Service>
+  Answer Ask(const char* name, Service* call);
+
+  const std::shared_ptr<const hires::knowledge::Ontology> ontology_;
+  std::atomic<std::int64_t> episode_{0};
+  std::atomic<int> num_written_{0}, num_refused_{0};
+
+  // Of the writer's thread.
+  std::string episode_name_;
+  std::map<std::string, double> begun_;  // [s], by instance in lower case
+  bool is_updated_{
+      false};  // of the item under way: its last properties are in, only its end is not
+  bool is_away_{false};
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Item> waiting_;  // guarded
+  bool is_ending_{false};     // guarded
+  std::thread thread_;
+};
+
+}  // namespace hires_ros

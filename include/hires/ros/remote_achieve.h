@@ -1,0 +1,16 @@
+#pragma once
+
+#include <functional>
+
+#include "hires/evaluation/achieve.h"
+
+namespace hires_ros {
+
+/// Has the running execution monitor (action `achieve`) do a task. When `cancelled`, the task is
+/// preempted and its end waited for.
+/// @throws hires::base::ConfigError if there is no master or no execution monitor, or it goes away.
+hires::evaluation::AchieveReport AchieveRemotely(
+    const hires::evaluation::AchieveQuery& query,
+    const hires::evaluation::OnAchieveStatus& on_status, const std::function<bool()>& cancelled);
+
+}  // namespace hires_ros
