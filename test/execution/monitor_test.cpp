@@ -445,6 +445,28 @@ TEST(ImaginationTest, WhatRunsButIsNotWantedAnyMoreIsStoppedFirst) {
   EXPECT_TRUE(world.Holds({"on", {"mug1", "placingareawestlefttable1"}}));
 }
 
+TEST(ImaginationTest, SeveralStepsAreImaginedAtOnceEachFromItsOwnStart) {
+  auto options = For("carry_object");
+  options.facts.push_back({"imagine", {"place_object"}});
+  options.imagine = [](const StartImagination& request, int) {
+    return Ranked(base::Combinations(request.action).front(), 20.0);
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  ASSERT_THAT(world.imaginations(), SizeIs(2));
+  std::map<std::string, std::string> robot_at;
+  for (const StartImagination& imagination : world.imaginations()) {
+    for (const base::Atom& atom : imagination.state) {
+      if (atom.predicate == "robotat") robot_at[imagination.action.name] = atom.arguments[0];
+    }
+  }
+  EXPECT_EQ(robot_at["move_base_param"], "premanipulationareaeastcounter1");
+  EXPECT_EQ(robot_at["place_object"], "manipulationareanorthtable1");
+  EXPECT_LT(world.imaginations()[0].deadline, world.imaginations()[1].deadline);
+  EXPECT_EQ(world.CountOf("imagine"), 2);
+  EXPECT_THAT(world.log()[2], HasSubstr("@0.05"));
+}
+
 TEST(ToppleTest, AnAnswerOutlivesARepairThatDoesNotConcernIt) {
   auto options = For("carry_object");
   options.imagine = [](const StartImagination&, int) { return Slow(); };
@@ -876,6 +898,19 @@ TEST(StatusTest, StepsOfEarlierPlansComeFirst) {
                             return step.phase == StepPhase::kDone && step.action.name != "imagine";
                           }),
             16);
+}
+
+TEST(DeterminismTest, TheDateMakesNoDifference) {
+  std::vector<std::string> logs[2];
+  for (const double start : {1000.0, 1763636490.3}) {
+    auto options = For("carry_object");
+    options.start = start;
+    options.imagine = [](const StartImagination&, int) { return Slow(); };
+    ScriptedWorld world(options);
+    ExpectSuccess(&world, "carry_object");
+    logs[start > 1000.0] = world.log();
+  }
+  EXPECT_EQ(logs[0], logs[1]);
 }
 
 TEST(DeterminismTest, TheSameEventsGiveTheSameCommands) {

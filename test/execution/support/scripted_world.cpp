@@ -94,7 +94,8 @@ std::string TaskOf(const std::string& problem) { return *ToShop2Tasks(Load(probl
 ScriptedWorld::ScriptedWorld(Options options)
     : options_(std::move(options)),
       monitor_(&Restaurant(), options_.operators ? options_.operators : &RestaurantData(),
-               options_.monitor) {
+               options_.monitor),
+      now_(options_.start) {
   for (const base::Atom& atom : options_.facts) world_[KeyOf(atom)] = atom;
 }
 
@@ -103,7 +104,7 @@ void ScriptedWorld::Schedule(double time, Happening happening) {
 }
 
 void ScriptedWorld::At(double time, std::function<void(ScriptedWorld*)> what) {
-  Schedule(1000.0 + time, [this, what = std::move(what)] { what(this); });
+  Schedule(options_.start + time, [this, what = std::move(what)] { what(this); });
 }
 
 void ScriptedWorld::When(std::function<bool(const Command&)> when,
@@ -112,11 +113,11 @@ void ScriptedWorld::When(std::function<bool(const Command&)> when,
 }
 
 void ScriptedWorld::Violate(const std::string& text) {
-  violations_.push_back(fmt::format("{:.2f}: {}", now_ - 1000.0, text));
+  violations_.push_back(fmt::format("{:.2f}: {}", now_ - options_.start, text));
 }
 
 void ScriptedWorld::Log(const std::string& line) {
-  log_.push_back(fmt::format("{} @{:.2f}", line, now_ - 1000.0));
+  log_.push_back(fmt::format("{} @{:.2f}", line, now_ - options_.start));
 }
 
 void ScriptedWorld::Post(Event event, double delay) {
@@ -161,7 +162,8 @@ Finish ScriptedWorld::Run(const std::string& task) {
     const bool is_tick = wake && (happenings_.empty() || *wake < happenings_.begin()->first);
     if (!is_tick && happenings_.empty()) break;
     if (is_tick) {
-      if (*wake < now_ - 1e-9) Violate(fmt::format("wants to wake in the past: {}", *wake - 1000));
+      if (*wake < now_ - 1e-9)
+        Violate(fmt::format("wants to wake in the past: {}", *wake - options_.start));
       now_ = std::max(now_, *wake);
       Tell(ClockTicked{});
       continue;
@@ -286,7 +288,7 @@ void ScriptedWorld::Do(const StartStep& command) {
   CheckStart(command);
   const std::string text = base::ToString(command.action);
   Log("begin " + text);
-  begun_.emplace_back(text, now_ - 1000.0);
+  begun_.emplace_back(text, now_ - options_.start);
   RunningStep step{command.action, {}, false};
   const int count = begun_count_[text]++;
   if (options_.step) step.script = options_.step(command.action, count);

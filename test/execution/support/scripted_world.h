@@ -36,6 +36,7 @@ class ScriptedWorld {
   struct Options {
     execution::MonitorParams monitor;
     std::vector<base::Atom> facts;
+    double start{1000.0};  ///< [s] main ROS time at which the run begins
     const planning::OperatorData* operators{nullptr};  ///< null: the restaurant's
     double planner_delay{0.05};                        ///< [s]
     double imagine_delay{20.0};                        ///< [s]
@@ -121,7 +122,7 @@ class ScriptedWorld {
 
   Options options_;
   execution::Monitor monitor_;
-  double now_{1000.0};
+  double now_;
   std::map<std::string, base::Atom> world_, observed_;
   std::multimap<double, Happening> happenings_;
   std::vector<std::pair<std::function<bool(const execution::Command&)>,
