@@ -5,8 +5,37 @@
 #include "hires/base/error.h"
 #include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
+#include "hires/ros/private_params.h"
+#include "hires/ros/sim_robot_node.h"
 #include "hires/ros/sim_worker_node.h"
 #include "hires/ros/xmlrpc_master_api.h"
+
+namespace {
+
+using hires::imagination::LoadImaginationSetup;
+
+void Work(ros::NodeHandle* nh) {
+  const hires_ros::SimWorkerParams params = hires_ros::LoadSimWorkerParams();
+  hires_ros::SimWorkerNode node(params, LoadImaginationSetup(params.setup), nh);
+  ros::spin();
+}
+
+void PlayRobot(ros::NodeHandle* nh) {
+  const hires_ros::SimRobotParams params = hires_ros::LoadSimRobotParams();
+  hires_ros::SimRobotNode node(params, LoadImaginationSetup(params.setup), nh);
+  ros::spin();
+}
+
+/// A worker plays rollouts under a master of its own; the robot is the one that is real to the
+/// rest.
+bool IsRobot() {
+  std::string role = "worker";
+  hires_ros::Override("role", hires_ros::PrivateText("role"),
+                      hires::base::OneOf({"worker", "robot"}), &role);
+  return role == "robot";
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   hires_ros::QuietXmlRpc();
@@ -15,10 +44,11 @@ int main(int argc, char** argv) {
   ros::NodeHandle nh;
   const hires_ros::ScopedLogSink log_sink;
   try {
-    const hires_ros::SimWorkerParams params = hires_ros::LoadSimWorkerParams();
-    hires_ros::SimWorkerNode node(params, hires::imagination::LoadImaginationSetup(params.setup),
-                                  &nh);
-    ros::spin();
+    if (IsRobot()) {
+      PlayRobot(&nh);
+    } else {
+      Work(&nh);
+    }
   } catch (const hires::base::ConfigError& error) {
     ROS_FATAL("sim_worker: %s", error.what());
     return EXIT_FAILURE;

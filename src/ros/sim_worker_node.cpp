@@ -45,7 +45,7 @@ std::string ReadUrdf(const std::string& robot_path, const hires::robot::RobotPro
 }  // namespace
 
 SimWorkerParams LoadSimWorkerParams() {
-  RejectUnknownPrivate({"config", "index", "world", "robot", "objects", "uncertainty"});
+  RejectUnknownPrivate({"role", "config", "index", "world", "robot", "objects", "uncertainty"});
   const std::string path =
       PrivateText("config").value_or(ros::package::getPath("hires") + "/config/sim_worker.yaml");
   auto in = hires::base::ParamReader::FromFile(path);

@@ -1,0 +1,176 @@
+"""A simulated robot and its middle layer as real processes under a main master of their own.
+
+    robot = RobotSystem(uncertainty='none', lockstep=True)
+    robot.start()
+    result = robot.execute('move_base', 'preManipulationAreaEastCounter1').result()
+    robot.stop()
+
+One test program has one master (a rospy node cannot change it); the processes may be started anew.
+"""
+
+import os
+import threading
+
+from ros_processes import LIMIT, Processes, executable, wait_until
+
+SKILL_LIMIT = 300.0  # [s] by the wall's clock: it ends a broken test, and measures nothing
+
+
+class Goal:
+    """An action on its way."""
+
+    def __init__(self, client, goal):
+        from actionlib import CommState
+        self._states = CommState
+        self._changed = threading.Condition()
+        self._state = None
+        self.feedback = []
+        self.handle = client.send_goal(goal, self._on_transition, self._on_feedback)
+
+    def _on_transition(self, handle):
+        with self._changed:
+            self._state = handle.get_comm_state()
+            self._changed.notify_all()
+
+    def _on_feedback(self, _, feedback):
+        with self._changed:
+            self.feedback.append(feedback)
+            self._changed.notify_all()
+
+    def _wait(self, condition, what):
+        with self._changed:
+            if not self._changed.wait_for(condition, SKILL_LIMIT):
+                raise AssertionError('waited in vain for ' + what)
+
+    def wait_for_active(self):
+        done = (self._states.ACTIVE, self._states.DONE)
+        self._wait(lambda: self._state in done, 'the goal to be accepted')
+        return self
+
+    def wait_for_feedback(self, condition, what):
+        self._wait(lambda: any(condition(f) for f in self.feedback) or self.is_done(), what)
+        return self
+
+    def is_done(self):
+        return self._state == self._states.DONE
+
+    def cancel(self):
+        self.wait_for_active()
+        self.handle.cancel()
+        return self
+
+    def result(self):
+        self._wait(self.is_done, 'the result')
+        return self.handle.get_result()
+
+
+class RobotSystem:
+    """@param arguments  private parameters of the simulated robot."""
+
+    def __init__(self, **arguments):
+        self.processes = Processes()
+        self.main = self.processes.master()
+        self.main.set_param('/use_sim_time', True)
+        self.arguments = arguments
+        self.robot = None
+        self.middle_layer = None
+        os.environ.update(ROS_MASTER_URI=self.main.uri, ROS_IP='127.0.0.1',
+                          ROS_LOG_DIR=self.processes.folder.name)
+        os.environ.pop('ROS_HOSTNAME', None)
+        self.client = None
+        self.truth = []  # (stamp in ns, RobotState) in order
+        self._truth_changed = threading.Condition()
+
+    def connect(self, name):
+        """Once per test program: our own node."""
+        import actionlib
+        import rospy
+        from hires import msg, srv
+        self.rospy, self.msg, self.srv = rospy, msg, srv
+        self.codes = msg.ExecuteActionResult
+        rospy.init_node(name, disable_signals=True)
+        self.client = actionlib.ActionClient('execute_action', msg.ExecuteActionAction)
+        rospy.Subscriber('ground_truth/robot_state', msg.RobotState, self._on_truth,
+                         queue_size=10000, tcp_nodelay=True)
+
+    def wait_for_ack(self):
+        """Until the middle layer has answered a tick: from the next one on it decides."""
+        acked = threading.Event()
+        subscriber = self.rospy.Subscriber('lockstep/ack', self.msg.LockstepAck,
+                                           lambda _: acked.set())
+        assert acked.wait(LIMIT), 'no tick is answered: ' + self.output()
+        subscriber.unregister()
+
+    def _on_truth(self, state):
+        with self._truth_changed:
+            self.truth.append((state.joints.header.stamp.to_nsec(), state))
+            self._truth_changed.notify_all()
+
+    def wait_for_truth(self, condition, what, limit=SKILL_LIMIT):
+        """Waits until the true state of the robot is as wanted; that state."""
+        with self._truth_changed:
+            if not self._truth_changed.wait_for(
+                    lambda: self.truth and condition(self.truth[-1][1]), limit):
+                raise AssertionError('waited in vain for ' + what)
+            return self.truth[-1][1]
+
+    def start_robot(self, **more):
+        arguments = dict(self.arguments, **more)
+        self.truth = []
+        self.robot = self.processes.start(
+            [executable('sim_worker'), '__name:=sim_robot', '_role:=robot'] +
+            ['_%s:=%s' % (key, str(value).lower() if isinstance(value, bool) else value)
+             for key, value in arguments.items()], self.main)
+        return self.robot
+
+    def start_middle_layer(self, *remaps, **arguments):
+        arguments.setdefault('lockstep', self.arguments.get('lockstep', False))
+        self.middle_layer = self.processes.start(
+            [executable('middle_layer'), *remaps] +
+            ['_%s:=%s' % (key, str(value).lower() if isinstance(value, bool) else value)
+             for key, value in arguments.items()], self.main)
+        return self.middle_layer
+
+    def require_server(self):
+        """Time may stand still, so that rospy's own waiting would never end."""
+        wait_until(self._has_server, 'the middle layer, which says: ' + self.output())
+
+    def _has_server(self):
+        # Goal and cancel have a listener, and status, feedback and result come from it.
+        client = self.client
+        return (client.pub_goal.get_num_connections() > 0 and
+                client.pub_cancel.get_num_connections() > 0 and
+                client.result_sub.get_num_connections() > 0 and
+                client.feedback_sub.get_num_connections() > 0 and
+                client.status_sub.get_num_connections() > 0)
+
+    def output(self):
+        return '\n'.join(process.output() for process in (self.robot, self.middle_layer)
+                         if process is not None)
+
+    def goal(self, name, *arguments, limit=0.0):
+        goal = self.msg.ExecuteActionGoal()
+        goal.action.name = name
+        goal.action.arguments = list(arguments)
+        goal.time_limit = self.rospy.Duration(limit)
+        return goal
+
+    def execute(self, name, *arguments, limit=0.0):
+        return Goal(self.client, self.goal(name, *arguments, limit=limit))
+
+    def call(self, service, kind, **fields):
+        """The answer of a service of the simulated robot."""
+        self.rospy.wait_for_service('sim_robot/' + service, LIMIT)
+        return self.rospy.ServiceProxy('sim_robot/' + service, kind)(**fields)
+
+    def hold(self, is_held):
+        from std_srvs.srv import SetBool
+        return self.call('hold', SetBool, data=is_held)
+
+    def end_processes(self):
+        for process in (self.middle_layer, self.robot):
+            if process is not None:
+                process.destroy()
+
+    def stop(self):
+        self.processes.stop_all()

@@ -1,0 +1,87 @@
+// Plays one skill as a rollout does, in this process and without topics, and prints the robot's
+// true path: one line "seconds x y yaw joint=position ..." for every 0.05 s, and at last "end
+// reason".
+//
+//   skill_trace SCENE AREA|SCENARIO.yaml ACTION [ARGUMENT ...]
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+
+#include "hires/base/error.h"
+#include "hires/ros/sim_robot_world.h"
+
+namespace {
+
+using hires::simulation::RobotSimulator;
+
+constexpr double kSettling = 0.5;  // [s]
+constexpr double kSample = 0.05;   // [s]
+constexpr double kLimit = 300.0;   // [s]
+
+void Print(double time, const RobotSimulator& simulator) {
+  const hires::robot::RobotState state = simulator.GetRobotState();
+  std::string line = fmt::format("{:.3f} {:.17g} {:.17g} {:.17g}", time, state.X_MB.x, state.X_MB.y,
+                                 state.X_MB.yaw);
+  for (const auto& [name, position] : state.joints) {
+    line += fmt::format(" {}={:.17g}", name, position);
+  }
+  std::cout << line << "\n";
+}
+
+void StepFor(double duration, RobotSimulator* simulator) {
+  const long steps = std::lround(duration / simulator->time_step());
+  for (long i = 0; i < steps; ++i) simulator->Step();
+}
+
+hires::skills::Status Play(hires::skills::Skill* skill, RobotSimulator* simulator) {
+  StepFor(kSettling, simulator);
+  const double start = simulator->time();
+  hires::skills::Status status;
+  double next = start;
+  while (simulator->time() - start < kLimit) {
+    Print(simulator->time() - start, *simulator);
+    if (simulator->time() >= next - 1e-6) {
+      hires::robot::Command command;
+      status = skill->Update(simulator->Observe(start), &command);
+      simulator->Send(command);
+      next += skill->period();
+    }
+    if (status.progress != hires::skills::Progress::kRunning) return status;
+    StepFor(kSample, simulator);
+  }
+  return {hires::skills::Progress::kFailed, "timed_out"};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 4) {
+    std::cerr << "usage: skill_trace SCENE AREA|SCENARIO.yaml ACTION [ARGUMENT ...]\n";
+    return EXIT_FAILURE;
+  }
+  try {
+    hires_ros::SimRobotParams params;
+    params.setup = hires::imagination::ReadSetupConfig(argv[1]);
+    params.setup.uncertainty = "none";
+    const std::string where = argv[2];
+    const bool is_scenario = where.find(".yaml") != std::string::npos;
+    (is_scenario ? params.scenario : params.area) = where;
+    const auto setup = hires::imagination::LoadImaginationSetup(params.setup);
+    const auto start = hires_ros::StartOf(setup, params);
+    RobotSimulator simulator(setup.scene, {}, start.world, start.robot, hires::base::Rng(1),
+                             setup.physics, hires_ros::LevelFor(*setup.scene));
+    const auto skill = hires::skills::MakeSkill(*setup.skills, {argv[3], {argv + 4, argv + argc}});
+    const hires::skills::Status status = Play(skill.get(), &simulator);
+    std::cout << "end "
+              << (status.progress == hires::skills::Progress::kSucceeded ? "succeeded"
+                                                                         : status.reason)
+              << std::endl;
+  } catch (const hires::base::ConfigError& error) {
+    std::cerr << error.what() << "\n";
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}
