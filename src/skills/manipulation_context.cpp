@@ -139,6 +139,13 @@ geometry::Pose3 LinkPose(const robot::Robot& robot, const geometry::Pose2& X_MB,
          X_RL[static_cast<std::size_t>(*robot.model.FindLink(link))];
 }
 
+std::string WhyNotKnown(const ManipulationContext& context, const robot::Observation& seen) {
+  for (const robot::SeenObject& object : seen.objects) {
+    if (context.world->models.count(object.model) == 0) return "unknown_model: " + object.model;
+  }
+  return "";
+}
+
 const robot::SeenObject* HeldBy(const robot::ArmProfile& arm, const robot::Observation& seen) {
   for (const robot::SeenObject& object : seen.objects) {
     if (object.attached_to == arm.palm_link) return &object;

@@ -53,6 +53,12 @@ void PickUpObject::AppendLooking(From from) {
 }
 
 Beginning PickUpObject::Plan(const Observation& observation) {
+  const std::string unknown = WhyNotKnown(*context_, observation);
+  if (!unknown.empty()) return CannotBegin(unknown);
+  if (!sighted_.attached_to.empty()) return CannotBegin("object_held: " + sighted_.attached_to);
+  if (geometry::TiltOf(sighted_.X_MO.rotation) > context_->params.place.lying_tilt) {
+    return CannotBegin("object_toppled");
+  }
   plan_ = PlanGrasp(*context_, arm_, observation, sighted_, seed_);
   return plan_.failure.empty() ? NothingToDo() : CannotBegin(plan_.failure);
 }

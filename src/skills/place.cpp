@@ -57,6 +57,8 @@ Pose3 PlaceObject::X_MGoal(const Observation& observation) const {
 }
 
 Beginning PlaceObject::Plan(const Observation& observation) {
+  const std::string unknown = WhyNotKnown(*context_, observation);
+  if (!unknown.empty()) return CannotBegin(unknown);
   const robot::SeenObject* held = FindSeen(observation, object_);
   if (held == nullptr) return CannotBegin("object_slipped");
   const world::ObjectModel& model = *context_->world->models.at(held->model);

@@ -160,6 +160,8 @@ std::vector<double> Joined(std::vector<double> a, const std::vector<double>& b) 
 
 /// Both arms to the carry posture at once, if nothing is in the way.
 Beginning CarryTogether(const Context& context, const Observation& seen) {
+  const std::string unknown = WhyNotKnown(*context, seen);
+  if (!unknown.empty()) return CannotBegin(unknown);
   const std::vector<std::string>& left = context->arm(kLeft).joints;
   std::vector<std::string> joints = left;
   const std::vector<std::string>& right = context->arm(kRight).joints;
@@ -202,6 +204,8 @@ double PostureError(const robot::Robot& robot, const robot::ArmProfile& arm,
 }
 
 Beginning MoveArmTo(Context context, const ArmMove& move, const Observation& observation) {
+  const std::string unknown = WhyNotKnown(*context, observation);
+  if (!unknown.empty()) return CannotBegin(unknown);
   ArmPlanner planner(*context, move.arm, observation);
   planner.AllowSelfTouches(planner.start());
   planner.AllowSelfTouches(move.goal);

@@ -295,6 +295,37 @@ TEST(PickUpObjectFailureTest, AFullHandTakesNothingElse) {
   EXPECT_EQ(Why(rehearsal.Play({"pick_up_object", {"mug2", "rightarm1"}})), "hand_full: mug1");
 }
 
+/// What the robot is told of the mug, in every cycle.
+Rehearsal::Meddle Telling(std::function<void(robot::SeenObject*)> change) {
+  return [change](Rehearsal*, const Skill&, robot::Observation* seen) {
+    for (robot::SeenObject& object : seen->objects) change(&object);
+  };
+}
+
+TEST(PickUpObjectFailureTest, NothingIsTakenThatLiesOrThatAnotherHandHasOrThatHasNoShape) {
+  const auto why = [](const std::function<void(robot::SeenObject*)>& change) {
+    Rehearsal rehearsal(ReadyAt(kAtCounter), {On("mug1", kCounter)});
+    return Why(rehearsal.Play({"pick_up_object", {"mug1", "rightarm1"}}, Telling(change)));
+  };
+  EXPECT_EQ(why([](robot::SeenObject* mug) {
+              mug->X_MO.rotation = geometry::RotationFromRpy(1.5, 0.0, 0.0);
+            }),
+            "object_toppled");
+  EXPECT_EQ(why([](robot::SeenObject* mug) { mug->attached_to = "l_gripper_palm_link"; }),
+            "object_held: l_gripper_palm_link");
+  EXPECT_EQ(why([](robot::SeenObject* mug) { mug->model = "riddle"; }), "unknown_model: riddle");
+}
+
+TEST(PlaceObjectFailureTest, NothingIsPutDownBesideWhatHasNoShape) {
+  Rehearsal table = AtTableWithMug({On("book1", kSouthWest, 0.1, 0.1)});
+  const Played placed = table.Play({"place_object", {"mug1", "rightarm1", kSouthWest}},
+                                   Telling([](robot::SeenObject* object) {
+                                     if (object->name == "book1") object->model = "riddle";
+                                   }));
+  EXPECT_EQ(Why(placed), "unknown_model: riddle");
+  EXPECT_EQ(table.ObjectNow("mug1").attached_to, "r_gripper_palm_link");
+}
+
 /// The mug is seen 12 cm from where it stands: the fingers close on air.
 TEST(PickUpObjectFailureTest, FingersThatCloseOnNothingDrawBack) {
   Rehearsal rehearsal(ReadyAt(kAtCounter), {On("mug1", kCounter)});

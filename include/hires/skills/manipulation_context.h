@@ -67,6 +67,10 @@ geometry::Pose3 TrayFrame(const ManipulationContext& context,
 geometry::Pose3 LinkPose(const robot::Robot& robot, const geometry::Pose2& X_MB,
                          const robot::JointPositions& posture, const std::string& link);
 
+/// "unknown_model: name" for the first seen object whose shape nobody knows, so that no way round
+/// it can be found; empty if all are known.
+std::string WhyNotKnown(const ManipulationContext& context, const robot::Observation& seen);
+
 /// What the arm holds, or nothing.
 const robot::SeenObject* HeldBy(const robot::ArmProfile& arm, const robot::Observation& seen);
 /// The object of that name (lower case), or nullptr.

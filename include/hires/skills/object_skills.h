@@ -14,8 +14,10 @@ namespace hires::skills {
 ///   object_not_seen    it is not seen although the head looked where it was or may be
 ///   unreachable, no_path: a touches b, start_blocked: ...   no way to any of its grasps
 ///   hand_full: name    the hand holds something already
+///   object_held: link, object_toppled    another hand has it; it lies
 ///   grasp_failed       the fingers closed on nothing; the hand is drawn back
 ///   object_slipped     it was lost on the way to the side
+///   unknown_model: name    something is seen whose shape nobody knows
 ///   out_of_view, timed_out
 class PickUpObject : public StagedSkill {
  public:
@@ -48,6 +50,7 @@ class PickUpObject : public StagedSkill {
 ///   unreachable, no_path: a touches b, start_blocked: ...   no way to any free place
 ///   object_toppled          it lies, or does not stand where it was put
 ///   object_not_seen         it is not seen any more afterwards
+///   unknown_model: name    something is seen whose shape nobody knows
 ///   out_of_view, timed_out
 class PlaceObject : public StagedSkill {
  public:
