@@ -72,7 +72,6 @@ planning::Plan PlanOf(const hires::Plan& message, const hires::PlanGoal& goal,
   const planning::Problem problem = RequestOf(goal, knowledge, AnyConfig()).problem;
   planning::Plan plan = StepsOf(message);
   AddNodes(message, knowledge.domain, &plan);
-  AddNodes(message, knowledge.domain, &plan);
   AddBindings(knowledge.domain, problem, &plan);
   planning::AddReasons(knowledge.domain, problem, &plan);
   return plan;
