@@ -95,9 +95,9 @@ Status JointMotion::Update(const Observation& observation, robot::Command* comma
   } else if (at_goal_since_ < 0.0) {
     at_goal_since_ = observation.time;
   }
-  // Most joints are only over when their trajectory is; the torso's goal is its tolerance, as that
+  // Most motions are only over when their trajectory is; the torso's goal is its tolerance, as that
   // of the PR2's own controller.
-  const bool is_due = elapsed >= duration_ || IsTorsoAlone();
+  const bool is_due = elapsed >= duration_ || end_ == MotionEnd::kPassing || IsTorsoAlone();
   const double settling = end_ == MotionEnd::kSettled ? params.settling_time : 0.0;
   if (is_there && is_due && observation.time - at_goal_since_ >= settling) {
     return {Progress::kSucceeded, ""};
