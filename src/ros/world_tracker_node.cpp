@@ -48,6 +48,11 @@ void RequireFrame(const std::string& frame, const std::string& wanted) {
   throw ConfigError(fmt::format("frame_id is '{}', wanted '{}'", frame, wanted));
 }
 
+/// Without a time a message would count as one of long ago.
+void RequireStamp(const ros::Time& stamp) {
+  if (stamp.isZero()) throw ConfigError("header.stamp is 0, wanted the time of the measurement");
+}
+
 void RequireFinite(const hires::geometry::Pose3& pose, const std::string& what) {
   if (!pose.IsFinite()) throw ConfigError(fmt::format("{} is not finite", what));
 }
@@ -98,6 +103,7 @@ void WorldTrackerNode::Guard(const char* topic, const std::function<void()>& rea
 
 void WorldTrackerNode::OnOdometry(const nav_msgs::Odometry& msg) {
   Guard(kOdometry, [&] {
+    RequireStamp(msg.header.stamp);
     RequireFinite(FromMsg(msg.pose.pose), "pose");
     senses_.OnOdometry(msg.header.stamp.toSec(), FromMsg(msg));
   });
@@ -105,6 +111,7 @@ void WorldTrackerNode::OnOdometry(const nav_msgs::Odometry& msg) {
 
 void WorldTrackerNode::OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg) {
   Guard(kAmclPose, [&] {
+    RequireStamp(msg.header.stamp);
     RequireFrame(msg.header.frame_id, kMapFrame);
     const auto X_MB = FromMsg(msg.pose.pose);
     RequireFinite(X_MB, "pose");
@@ -116,6 +123,11 @@ void WorldTrackerNode::OnLocalisation(const geometry_msgs::PoseWithCovarianceSta
 /// joint a little beyond its stop.
 void WorldTrackerNode::OnJoints(const sensor_msgs::JointState& msg) {
   Guard(kJointStates, [&] {
+    RequireStamp(msg.header.stamp);
+    if (msg.name.size() != msg.position.size()) {
+      throw ConfigError(fmt::format("{} names and {} positions, wanted one position for each name",
+                                    msg.name.size(), msg.position.size()));
+    }
     robot::JointPositions joints = context_.robot->profile.joints;
     for (const auto& [name, position] : FromMsg(msg).positions) {
       const auto limits = joint_limits_.find(name);
@@ -138,6 +150,7 @@ void WorldTrackerNode::OnDetections(const hires::Detections& msg) {
       throw ConfigError(fmt::format("robot '{}' has no camera (upper_body in its profile)",
                                     context_.robot->model.name));
     }
+    RequireStamp(msg.header.stamp);
     RequireFrame(msg.header.frame_id, context_.robot->profile.upper_body->camera_link);
     std::vector<perception::Detection> detections;
     for (const hires::DetectedObject& object : msg.objects) {

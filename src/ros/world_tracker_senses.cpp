@@ -59,7 +59,6 @@ TrackerSenses::Pending* TrackerSenses::PendingAt(double stamp) {
 }
 
 void TrackerSenses::OnJoints(double stamp, hires::robot::JointPositions joints) {
-  NoteTime(stamp);
   newest_joints_ = std::max(newest_joints_.value_or(stamp), stamp);
   if (Pending* pending = PendingAt(stamp)) pending->joints = std::move(joints);
 }

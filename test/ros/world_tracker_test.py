@@ -53,7 +53,9 @@ class WorldTrackerTest(unittest.TestCase):
         self.nodes = []
         self.addCleanup(self.stop)
         self.start_blackboard()
-        self.tracker = self.start('world_tracker', '_config:=' + CONFIG + '/world_tracker.yaml')
+        # In lockstep known objects come with looks alone, so that a look can be waited for.
+        self.tracker = self.start('world_tracker', '_config:=' + CONFIG + '/world_tracker.yaml',
+                                  '_lockstep:=true')
         latch = dict(queue_size=100)
         p = self.rospy.Publisher
         self.publishers = dict(
@@ -235,8 +237,7 @@ class WorldTrackerTest(unittest.TestCase):
         self.assertEqual(self.known[-1].header.frame_id, 'map')
 
     def test_what_is_believed_is_known_to_the_middle_layer_and_corrected_by_looking(self):
-        self.look({})
-        self.wait(lambda: 'mug1' in self.names() or self.tick(), 'the belief')
+        self.wait(lambda: 'mug1' in self.names() or self.tick({}), 'the belief')
         self.assertAlmostEqual(self.names()['mug1'].pose.position.x, 5.37, places=2)
         self.base = (6.8, 10.1, 3.14)
         self.look({'mug1': ('coffee_cup', translation(5.45, 10.30, 0.75))}, 3)
@@ -273,14 +274,15 @@ class WorldTrackerTest(unittest.TestCase):
         self.base = (12.5, 11.8, 0.0)
         tool = self.link('r_gripper_tool_frame')[:3, 3]
         self.joints['head_pan_joint'], self.joints['head_tilt_joint'] = -0.6, 0.9
-        self.look({'mug3': ('coffee_cup', translation(*(tool - (0, 0, 0.04))))})
+        mug = {'mug3': ('coffee_cup', translation(*(tool - (0, 0, 0.04))))}
+        self.look(mug)
         self.expect('poseMug3', 'hasX', float(tool[0]))
         self.assertEqual(self.value('holdingRightArm1', 'hasPassiveObject'), 'nothing')
         self.joints['r_gripper_joint'] = 0.079
         self.expect('holdingRightArm1', 'hasPassiveObject', 'mug3')
         self.expect('poseMug3', 'hasFrame', 'r_gripper_palm_link')
-        self.wait(lambda: self.names()['mug3'].attached_to == 'r_gripper_palm_link' or self.tick(),
-                  'the held object')
+        self.look(mug)
+        self.assertEqual(self.names()['mug3'].attached_to, 'r_gripper_palm_link')
         # It travels with the robot, and nothing new is said of it.
         x_in_hand = self.value('poseMug3', 'hasX')
         self.base = (13.0, 11.3, 3.14)
@@ -291,6 +293,13 @@ class WorldTrackerTest(unittest.TestCase):
         self.expect('poseMug3', 'hasX', None)
 
     # When things go wrong.
+
+    def until_warned(self, send, text):
+        """Of each topic there is one warning a second; so what is wrong is sent until it is told."""
+        def is_told():
+            send()
+            return any(text in line for line in self.tracker.lines)
+        wait_until(is_told, 'the warning: ' + text)
 
     def test_the_blackboard_is_away_for_a_while(self):
         self.expect('robotAtPR21', 'hasArea', 'nearstartarea1')
@@ -309,22 +318,24 @@ class WorldTrackerTest(unittest.TestCase):
         book = translation(7.48, 11.28, 0.73)
         nan = book.copy()
         nan[0, 3] = math.nan
-        self.tick({'teapot1': ('teapot', book)})
-        self.tracker.wait_for("object model 'teapot' is unknown")
+        self.until_warned(lambda: self.tick({'teapot1': ('teapot', book)}),
+                          "object model 'teapot' is unknown")
         self.look({'book1': ('book', book), 'vase1': ('vase', nan), '': ('book', book)})
         self.assertEqual(set(self.names()) & {'book1', 'vase1', ''}, {'book1'})
-        self.tick({'book2': ('book', book)}, frame='base_link')
-        self.tracker.wait_for("frame_id is 'base_link', wanted '%s'" % CAMERA)
+        self.until_warned(lambda: self.tick({'book2': ('book', book)}, frame='base_link'),
+                          "frame_id is 'base_link', wanted '%s'" % CAMERA)
         amcl = self.types['amcl']()
-        amcl.header.frame_id = 'odom'
-        self.publishers['amcl'].publish(amcl)
-        self.tracker.wait_for("frame_id is 'odom', wanted 'map'")
+        amcl.header.stamp, amcl.header.frame_id = self.rospy.Time.from_sec(self.t), 'odom'
+        self.until_warned(lambda: self.publishers['amcl'].publish(amcl),
+                          "frame_id is 'odom', wanted 'map'")
         joints = self.types['joints']()
+        self.until_warned(lambda: self.publishers['joints'].publish(joints), 'header.stamp is 0')
+        joints.header.stamp = self.rospy.Time.from_sec(self.t)
         joints.name, joints.position = ['torso_lift_joint'], [math.nan]
-        self.publishers['joints'].publish(joints)
-        self.tracker.wait_for('torso_lift_joint')
+        self.until_warned(lambda: self.publishers['joints'].publish(joints), 'torso_lift_joint')
         joints.name, joints.position = ['torso_lift_joint', 'x'], [0.1]
-        self.publishers['joints'].publish(joints)
+        self.until_warned(lambda: self.publishers['joints'].publish(joints),
+                          '2 names and 1 positions')
         old, self.t = self.t, self.t - 3.0
         self.tick({'book3': ('book', book)})  # a look of long ago
         self.t = old
