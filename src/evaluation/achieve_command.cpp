@@ -109,7 +109,8 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
   verb->add_option("task", options->task, "'serve_coffee_to_guest guest1', or a SHOP2 task network")
       ->required();
   verb->add_option("--imagination", options->imagination,
-                   "domain: as the domain says; thesis: imagined, but the defaults are taken; off; "
+                   "domain: as the domain says; thesis: the default also where all alternatives "
+                   "fail; off; "
                    "default: as the execution monitor is configured")
       ->check(CLI::IsMember({"domain", "thesis", "off"}));
   verb->add_option("--wait", options->wait,
@@ -134,6 +135,9 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
       {base::Join(options.task, " "), options.imagination, options.wait},
       [&](const AchieveStatus& status) { std::cout << display.Show(status) << std::flush; },
       cancelled);
+  AchieveStatus last = report.status;  // its changes may have come with the result alone
+  last.warnings.clear();
+  std::cout << display.Show(last);
   PrintReport(report);
   WriteFiles(options, package_folder, report);
   return ExitCodeOf(report.outcome);

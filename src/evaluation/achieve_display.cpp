@@ -138,7 +138,7 @@ std::vector<std::string> ChangeLines(const AchieveStatus& before, const AchieveS
 }
 
 std::string AchieveDisplay::Show(const AchieveStatus& status) {
-  if (!begin_) begin_ = status.now;
+  if (!begin_) begin_ = BeginOf(status);
   if (width_ > 0) return Redraw(status);
   std::string text;
   for (const std::string& line : ChangeLines(shown_, status, *begin_)) text += line + "\n";

@@ -12,7 +12,7 @@
 namespace hires::evaluation {
 namespace {
 
-constexpr std::size_t kLongestName = 44;  // characters in the text
+constexpr std::size_t kLongestName = 58;  // characters in the text
 
 TimelineBar BarOf(const ImaginedStep& step, double begin, double end) {
   TimelineBar bar;
@@ -42,6 +42,9 @@ TimelineBar BarOf(const execution::StepStatus& step, double begin, double end) {
   bar.note = step.note;
   return bar;
 }
+
+/// A step that only has another one imagined; the imagination itself has a bar.
+bool IsImagining(const execution::StepStatus& step) { return step.action.name == "imagine"; }
 
 void SortByBegin(std::vector<TimelineBar>::iterator first,
                  std::vector<TimelineBar>::iterator last) {
@@ -122,7 +125,9 @@ Timeline MakeTimeline(const AchieveReport& report) {
   }
   const auto num_imaginations = static_cast<std::ptrdiff_t>(timeline.bars.size());
   for (const execution::StepStatus& step : status.steps) {
-    if (step.started) timeline.bars.push_back(BarOf(step, begin, status.now));
+    if (step.started && !IsImagining(step)) {
+      timeline.bars.push_back(BarOf(step, begin, status.now));
+    }
   }
   SortByBegin(timeline.bars.begin(), timeline.bars.begin() + num_imaginations);
   SortByBegin(timeline.bars.begin() + num_imaginations, timeline.bars.end());

@@ -111,6 +111,7 @@ void RecordWriter::Run() {
       continue;
     }
     is_updated_ = false;
+    is_repeated_ = false;
     ++(answer == Answer::kDone ? num_written_ : num_refused_);
     const std::lock_guard<std::mutex> lock(mutex_);
     waiting_.pop_front();
@@ -195,7 +196,10 @@ RecordWriter::Answer RecordWriter::Ask(const char* name, Service* call) {
   if (!is_there && !std::exchange(is_away_, true)) {
     Log(LogLevel::kWarn, "the Blackboard does not answer; records wait until it is back");
   }
-  if (!is_there) return Answer::kAgain;
+  if (!is_there) {
+    is_repeated_ = true;
+    return Answer::kAgain;
+  }
   if (std::exchange(is_away_, false)) Log(LogLevel::kInfo, "the Blackboard answers again");
   switch (call->response.error.code) {
     case hires::BlackboardError::NONE:
@@ -204,6 +208,11 @@ RecordWriter::Answer RecordWriter::Ask(const char* name, Service* call) {
     case hires::BlackboardError::ENDING:
       return Answer::kAgain;
     default:
+      if (is_repeated_) {  // it had been written before the Blackboard's answer was lost
+        Log(LogLevel::kInfo,
+            fmt::format("record=repeated service={} {}", name, call->response.error.message));
+        return Answer::kDone;
+      }
       Log(LogLevel::kError,
           fmt::format("record=refused service={} {}", name, call->response.error.message));
       return Answer::kRefused;

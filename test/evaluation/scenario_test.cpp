@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
+
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/knowledge/blackboard_config.h"
@@ -148,6 +150,15 @@ TEST_P(ShippedScenarioTest, TheRobotKnowsOfWhatItIsToldAndNothingElse) {
     EXPECT_THAT(wishes, ElementsAre("imagine(place_object)"));
   } else {
     EXPECT_THAT(wishes, IsEmpty());
+  }
+}
+
+TEST_P(ShippedScenarioTest, ItsLaunchFileHasTheSameTaskAndKnowledge) {
+  const std::string launch = base::ReadTextFile(kRoot + "/launch/" + scenario_.name + ".launch");
+  EXPECT_THAT(launch, HasSubstr("default=\"" + scenario_.task + "\""));
+  for (const std::string& path : scenario_.knowledge) {
+    const std::string name = std::filesystem::path(path).filename().string();
+    EXPECT_THAT(launch, HasSubstr("$(find hires)/config/knowledge/" + name));
   }
 }
 

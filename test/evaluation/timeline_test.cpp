@@ -77,6 +77,12 @@ TEST(TimelineTest, WhatStillRunsEndsNow) {
   EXPECT_EQ(timeline.bars[2].end, 50.0);
 }
 
+TEST(TimelineTest, AStepThatOnlyHasAnotherOneImaginedIsLeftOut) {
+  AchieveReport report = Report();
+  report.status.steps.push_back(Step(2, {"imagine", {"!move_base_param"}}, 1000.0, 1008.0));
+  EXPECT_THAT(MakeTimeline(report).bars, SizeIs(3));
+}
+
 TEST(TimelineTest, NothingDoneIsAnEmptyTimeline) {
   const Timeline timeline = MakeTimeline({});
   EXPECT_THAT(timeline.bars, SizeIs(0));

@@ -34,7 +34,7 @@ Timeline MakeTimeline(const AchieveReport& report);
 
 /// Bars of characters, one line each, `width` characters for the whole duration. Imagined steps and
 /// the steps that they are about are marked.
-std::string TimelineText(const Timeline& timeline, int width = 60);
+std::string TimelineText(const Timeline& timeline, int width = 48);
 
 /// What the imaginations took, as the dissertation's Table 6.7: seconds simulated, seconds of the
 /// wall's clock, and whether the answer came before the step began. "" where there were none.

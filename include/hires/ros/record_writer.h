@@ -77,6 +77,7 @@ class RecordWriter {
   std::map<std::string, double> begun_;  // [s], by instance in lower case
   bool is_updated_{
       false};  // of the item under way: its last properties are in, only its end is not
+  bool is_repeated_{false};  // a call of the item under way had no answer, and may have been heard
   bool is_away_{false};
 
   mutable std::mutex mutex_;

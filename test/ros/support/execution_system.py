@@ -1,0 +1,245 @@
+"""The execution monitor with the real planner and Blackboard, and fakes of what is beyond, as
+processes under a main master of their own.
+
+    system = ExecutionSystem()
+    system.start()
+    task = system.achieve(CARRY)
+    result = task.result()
+    system.destroy()
+"""
+
+import os
+import threading
+
+import yaml
+
+from ros_processes import LIMIT, Processes, executable, wait_until
+
+SUPPORT = os.path.dirname(os.path.abspath(__file__))
+CONFIG = os.path.abspath(os.path.join(SUPPORT, '..', '..', '..', 'config'))
+ROLES = ('middle_layer', 'imagination', 'translator')
+CARRY = 'carry_object_on_tray peppermill1 counter1 table1'
+SERVE = 'serve_coffee_to_guest guest1'
+
+
+class Task:
+    """A goal of `achieve` on its way."""
+
+    def __init__(self, client, goal):
+        from actionlib import CommState
+        self._states = CommState
+        self._changed = threading.Condition()
+        self._state = None
+        self.feedback = []
+        self._handle = client.send_goal(goal, self._on_transition, self._on_feedback)
+
+    def _on_transition(self, handle):
+        with self._changed:
+            self._state = handle.get_comm_state()
+            self._changed.notify_all()
+
+    def _on_feedback(self, _, feedback):
+        with self._changed:
+            self.feedback.append(feedback)
+            self._changed.notify_all()
+
+    def _wait(self, condition, what):
+        with self._changed:
+            if not self._changed.wait_for(condition, LIMIT):
+                raise AssertionError('waited in vain for %s; last feedback: %s' % (
+                    what, self.feedback[-1:]))
+
+    def wait_for(self, condition, what):
+        """Waits for feedback."""
+        self._wait(lambda: any(condition(f) for f in self.feedback), what)
+
+    def wait_until_accepted(self):
+        self._wait(lambda: self._state == self._states.ACTIVE, 'the task to be accepted')
+
+    def preempt(self):
+        self.wait_until_accepted()
+        self._handle.cancel()
+
+    def give_up(self):
+        """Leaves nothing under way if the test failed before it had the result."""
+        if self._state != self._states.DONE:
+            self._handle.cancel()
+            self.result()
+
+    def result(self):
+        self._wait(lambda: self._state == self._states.DONE, 'the result')
+        return self._handle.get_result()
+
+    def state(self):
+        self.result()
+        return self._handle.get_terminal_state()
+
+    def warnings(self):
+        return [text for feedback in self.feedback for text in feedback.warnings]
+
+
+class ExecutionSystem:
+    def __init__(self):
+        self.processes = Processes()
+        self.main = self.processes.master()
+        self.nodes = {}
+        self.monitor_config = self._write_config()
+
+    def _write_config(self, **changes):
+        """The shipped file with short times."""
+        with open(os.path.join(CONFIG, 'execution_monitor.yaml')) as file:
+            config = yaml.safe_load(file)
+        config['domain'] = os.path.join(CONFIG, config['domain'])
+        config['operators'] = os.path.join(CONFIG, config['operators'])
+        config['ontology'] = [os.path.join(CONFIG, path) for path in config['ontology']]
+        config['monitor'].update(effect_timeout=1.0, break_delay=0.2, stop_timeout=5.0,
+                                 planning_timeout=10.0)
+        config['servers'].update(server_wait=2.0, cancel_wait=2.0)
+        config['start_wait'] = 4.0
+        config.update(changes)
+        return self.processes.write('execution_monitor.yaml', yaml.safe_dump(config))
+
+    # Processes.
+
+    def start(self):
+        self.start_blackboard()
+        self.start_planner()
+        for role in ROLES:
+            self.start_fake(role)
+        self.start_monitor()
+
+    def start_blackboard(self):
+        store = os.path.join(self.processes.folder.name, 'blackboard.db')
+        self.nodes['blackboard'] = self.processes.start(
+            [executable('blackboard'), '_store:=' + store], self.main)
+
+    def start_planner(self):
+        self.nodes['planner'] = self.processes.start([executable('planner')], self.main)
+
+    def start_fake(self, role):
+        fake = self.processes.start(
+            ['/usr/bin/python3', os.path.join(SUPPORT, 'execution_fakes.py'), role], self.main)
+        self.nodes[role] = fake
+        fake.wait_for('fakes are ready')
+
+    def start_monitor(self, *arguments):
+        self.nodes['monitor'] = self.processes.start(
+            [executable('execution_monitor'), '_config:=' + self.monitor_config, *arguments],
+            self.main)
+
+    def kill(self, name):
+        self.nodes[name].kill()
+
+    def destroy(self):
+        self.processes.stop_all()
+
+    # What the fakes do, and did.
+
+    def behave(self, action, **wanted):
+        self.main.set_param('/fake/' + action, wanted)
+
+    def log(self):
+        """What the fakes were asked, role by role."""
+        return [text for told in (self.main.param('/fake/log') or {}).values() for text in told]
+
+    def done(self, name):
+        """Calls of an action, in order."""
+        return [text for text in self.log() if text.startswith(name + '(')]
+
+    def robot_steps(self):
+        """All calls of actions, in order."""
+        return [text for text in self.log() if '(' in text]
+
+    def free(self, action):
+        """Lets what hangs in this action go on."""
+        self.main.set_param('/fake/go_on', action)
+
+    def reset(self):
+        """The restaurant as it was at first, and fakes that do as they are told."""
+        self.main.set_param('/fake', {'imagine': {'answer': 'ranked', 'recommend': 'slow'}})
+        wait_until(lambda: self._reaches('blackboard/add'), 'the Blackboard')
+        seen = self._observations
+        seen.robot_at('floorAreaTamsRestaurant1')
+        seen.torso('torsodownposture')
+        for arm in ('leftarm1', 'rightarm1'):
+            seen.arm(arm, 'armuntuckedposture')
+            seen.holding(arm, 'nothing')
+        for thing in ('mug1', 'mug2', 'peppermill1'):
+            seen.on(thing, 'placingAreaEastRightCounter1')
+        if self.fluents('ImagineWish', now=True):
+            seen.end('imaginePlaceObject')
+
+    def put_wish(self):
+        """Placing is to be imagined."""
+        wish = self.msg.Fluent(concept_name='ImagineWish', instance='imaginePlaceObject', properties=[
+            self.msg.FluentProperty(role='hasAction', type='xsd:string', text='place_object')])
+        self.ask('add', self.srv.WriteFluents, fluents=[wish])
+
+    def diagnostics(self, name, condition):
+        """Values of a node's status, once they are as wanted."""
+        from diagnostic_msgs.msg import DiagnosticArray
+        found = {}
+
+        def take(message):
+            for status in message.status:
+                if status.name.startswith(name):
+                    found.update({value.key: value.value for value in status.values})
+
+        subscriber = self.rospy.Subscriber('/diagnostics', DiagnosticArray, take)
+        try:
+            wait_until(lambda: found and condition(found), 'diagnostics of ' + name)
+        finally:
+            subscriber.unregister()
+        return found
+
+    # The test itself as a node.
+
+    def _reaches(self, service):
+        try:
+            self.rospy.wait_for_service(service, 1.0)
+            return True
+        except self.rospy.ROSException:
+            return False
+
+    def connect(self):
+        os.environ.update(ROS_MASTER_URI=self.main.uri, ROS_IP='127.0.0.1',
+                          ROS_LOG_DIR=self.processes.folder.name)
+        os.environ.pop('ROS_HOSTNAME', None)
+        import actionlib
+        import rospy
+        from hires import msg, srv
+        self.rospy, self.msg, self.srv = rospy, msg, srv
+        from execution_fakes import Observations
+        self._observations = Observations()
+        rospy.init_node('execution_test', disable_signals=True)
+        self.client = actionlib.ActionClient('achieve', msg.AchieveAction)
+        self.require_server()
+
+    def require_server(self):
+        assert self.client.wait_for_server(self.rospy.Duration(LIMIT)), (
+            self.nodes['monitor'].output())
+
+    def achieve(self, task, imagination=''):
+        return Task(self.client, self.msg.AchieveGoal(task=task, imagination=imagination))
+
+    def ask(self, service, kind, **fields):
+        self.rospy.wait_for_service('blackboard/' + service, LIMIT)
+        answer = self.rospy.ServiceProxy('blackboard/' + service, kind)(**fields)
+        assert answer.error.code == 0, answer.error.message
+        return answer
+
+    def episodes(self):
+        return self.ask('list_episodes', self.srv.ListEpisodes).episodes
+
+    def fluents(self, concept, now=False, **fields):
+        """Of this concept and below: those that hold, or all that ever held."""
+        kind = self.msg.FluentQuery.NOW if now else self.msg.FluentQuery.EVER
+        query = self.msg.FluentQuery(below=[concept], time_kind=kind, **fields)
+        return self.ask('query', self.srv.QueryFluents, query=query).fluents
+
+
+def text_of(fluent, role):
+    for entry in fluent.properties:
+        if entry.role == role:
+            return entry.text
+    return None
