@@ -34,8 +34,9 @@ void OnInterrupt(int) { interrupted = true; }
 
 /// What was typed, before it is checked against files.
 struct ImagineOptions {
-  std::string action, from, config, scene, world, robot, objects, uncertainty, ranking, json;
-  std::vector<std::string> arguments, carried;
+  StartOptions start;
+  std::string action, config, scene, world, robot, objects, uncertainty, ranking, json;
+  std::vector<std::string> arguments;
   int rollouts{0}, threads{0};
   std::uint64_t seed{1};
   double deadline{-1.0};
@@ -43,12 +44,10 @@ struct ImagineOptions {
 };
 
 void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
-  app->add_option("--action", o->action, "move_base, move_base_param or move_base_blind")
+  app->add_option("--action", o->action,
+                  "what the robot would do: move_base_param, place_object, ...")
       ->required();
-  app->add_option("--from", o->from, "area where the robot stands")->required();
-  app->add_option("--object", o->carried,
-                  "what stands on its tray: instance, model, or .sdf/.urdf file; up to three times")
-      ->allow_extra_args(false);
+  AddStartOptions(app, &o->start);
   app->add_option("--arg", o->arguments,
                   "alternatives of one argument, separated by commas; once per argument, in order")
       ->allow_extra_args(false);
@@ -87,14 +86,12 @@ std::vector<std::string> AlternativesOf(const std::string& list) {
 }
 
 /// An object that is given as a file is loaded beside the catalogue's, and called by its model.
-void SetObjects(const ImagineOptions& o, ImagineQuery* query) {
-  for (const std::string& object : o.carried) {
-    if (!IsFile(object)) {
-      query->objects.push_back(object);
-      continue;
-    }
+void SetStart(const ImagineOptions& o, ImagineQuery* query) {
+  query->start = ReadStart(o.start, o.action);
+  for (std::string& object : query->start.on_tray) {
+    if (!IsFile(object)) continue;
     query->setup.extra_objects.push_back(object);
-    query->objects.push_back(world::LoadObjectModel(object).name);
+    object = world::LoadObjectModel(object).name;
   }
 }
 
@@ -105,7 +102,7 @@ ImagineQuery MakeQuery(const ImagineOptions& o, const Backends& backends) {
   ImagineQuery query;
   query.setup = imagination::ReadSetupConfig(o.scene.empty() ? config.scene : o.scene);
   imagination::OverridePaths(o.world, o.robot, o.objects, o.uncertainty, &query.setup);
-  SetObjects(o, &query);
+  SetStart(o, &query);
   query.own_scene =
       !(o.world + o.robot + o.objects + o.scene).empty() || !query.setup.extra_objects.empty();
   query.own_uncertainty = !o.uncertainty.empty();
@@ -113,7 +110,6 @@ ImagineQuery MakeQuery(const ImagineOptions& o, const Backends& backends) {
   for (const std::string& list : o.arguments) {
     query.action.alternatives.push_back(AlternativesOf(list));
   }
-  query.from = o.from;
   query.seed = o.seed;
   query.scheduler = config.scheduler;
   if (o.rollouts > 0) query.scheduler.rollouts = o.rollouts;
@@ -209,7 +205,7 @@ imagination::Report ImagineInThisProcess(const ImagineQuery& query,
                                          const std::function<bool()>& cancelled) {
   const imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(query.setup);
   const imagination::StartState start =
-      imagination::MakeStartState(setup, query.from, query.objects);
+      imagination::MakeStartState(setup, query.start.AllAtoms(), query.start.put);
   return imagination::ImagineLocally(imagination::MakeRolloutSetup(setup, start, query.seed),
                                      base::Combinations(query.action), query.scheduler,
                                      query.threads, on_interim, cancelled);

@@ -39,6 +39,10 @@ void LoadMonitor::Sort(const Purpose& purpose) {
   }
 }
 
+bool LoadMonitor::IsHandled(const Object& object) const {
+  return handled_ >= 0 && &object == &objects_[handled_];
+}
+
 bool LoadMonitor::IsHeld(const Object& object) const {
   return !simulator_->HolderOf(object.index).empty();
 }
@@ -60,11 +64,11 @@ void LoadMonitor::LookAt(Object* object) {
   tilt_ = std::max(tilt_, tilt);
   const bool lies = tilt >= params_.topple_tilt;
   if (!object->is_load) {
-    if (lies && IsHeld(*object)) {
-      if (first_trouble_.empty()) first_trouble_ = "object_tilted";
-    } else if (lies && !object->has_fallen) {
-      NoteFall(object, "object_toppled");
-    }
+    // What a hand holds may lean, it cannot fall.
+    const bool falls = lies && !object->has_fallen && !IsHeld(*object);
+    if (falls)
+      NoteFall(object,
+               object->was_held && !IsHandled(*object) ? "object_slipped" : "object_toppled");
     return;
   }
   const Pose3 X_BO = simulator_->X_MB().Inverse() * X_MO;

@@ -51,13 +51,15 @@ class Player {
     skills::Status status;
     next_cycle_ = start;
     long samples = 0;
+    const double half_step = 0.5 * simulator_.time_step();
     for (long step = 0; status.progress == skills::Progress::kRunning; ++step) {
-      if (simulator_.time() >= next_cycle_) status = Control(start);
+      // Periods are sums of rounded numbers: without the half step some cycles came a step late.
+      if (simulator_.time() >= next_cycle_ - half_step) status = Control(start);
       if (status.progress != skills::Progress::kRunning) break;
       simulator_.Step();
       if (step % kLookSteps == 0) monitor.Look();
       const double elapsed = simulator_.time() - start;
-      if (elapsed >= (samples + 1) * params_.sample_period - 0.5 * simulator_.time_step()) {
+      if (elapsed >= (samples + 1) * params_.sample_period - half_step) {
         ++samples;
         monitor.Look();
         result_.counts += monitor.Sample();

@@ -217,6 +217,7 @@ msg::RolloutRecord ToMsg(const hires::imagination::RolloutResult& result, int in
   out.max_tilt = result.max_tilt;
   out.first_cause = result.first_cause;
   out.action_finished = result.action_finished;
+  out.nothing_watched = result.nothing_watched;
   out.final_world = ToMsg(result.final_world);
   out.final_robot = ToMsg(result.final_robot);
   out.simulated = result.simulated;
@@ -235,6 +236,7 @@ hires::imagination::RolloutResult FromMsg(const msg::RolloutRecord& record) {
   out.max_tilt = record.max_tilt;
   out.first_cause = record.first_cause;
   out.action_finished = record.action_finished;
+  out.nothing_watched = record.nothing_watched;
   out.final_world = FromMsg(record.final_world);
   out.final_robot = FromMsg(record.final_robot);
   out.simulated = record.simulated;

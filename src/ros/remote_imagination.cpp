@@ -29,13 +29,27 @@ hires::Atom MakeAtom(const std::string& predicate, const std::vector<std::string
   return atom;
 }
 
+/// Symbols, which the client reads by itself; what stands at places given in numbers has none, so
+/// that the state is made here, from the same files.
+void SetStart(const hires::evaluation::ImagineQuery& query, hires::ImagineGoal* goal) {
+  if (query.start.put.empty()) {
+    for (const hires::base::Atom& atom : query.start.AllAtoms()) {
+      goal->updated_fluents.push_back(MakeAtom(atom.predicate, atom.arguments));
+    }
+    return;
+  }
+  const auto setup = hires::imagination::LoadImaginationSetup(query.setup);
+  const auto start =
+      hires::imagination::MakeStartState(setup, query.start.AllAtoms(), query.start.put);
+  goal->world_state = ToMsg(start.world);
+  goal->world_state.world_hash = setup.world_hash;
+  goal->robot_state = ToMsg(start.robot);
+}
+
 hires::ImagineGoal GoalOf(const hires::evaluation::ImagineQuery& query) {
   hires::ImagineGoal goal;
   goal.action = ToMsg(query.action);
-  goal.updated_fluents.push_back(MakeAtom("RobotAt", {query.from}));
-  for (const std::string& object : query.objects) {
-    goal.updated_fluents.push_back(MakeAtom("On", {object, "trayArea1"}));
-  }
+  SetStart(query, &goal);
   goal.deadline = ros::Duration(query.scheduler.deadline);
   goal.rollouts = query.scheduler.rollouts;
   goal.seed = query.seed;

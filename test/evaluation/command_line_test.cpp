@@ -196,8 +196,8 @@ TEST(CommandLineTest, RemoteQueriesCarryWhatWasAsked) {
   EXPECT_THAT(ended.out, HasSubstr("ranked: slow: it says so"));
   EXPECT_EQ(seen.action.name, "move_base_param");
   EXPECT_THAT(seen.action.alternatives, ElementsAre(ElementsAre("a", "b"), ElementsAre("slow")));
-  EXPECT_EQ(seen.from, "home");
-  EXPECT_THAT(seen.objects, ElementsAre("peppermill1", "mug1"));
+  EXPECT_EQ(seen.start.from, "home");
+  EXPECT_THAT(seen.start.on_tray, ElementsAre("peppermill1", "mug1"));
   EXPECT_EQ(seen.scheduler.rollouts, 9);
   EXPECT_EQ(seen.scheduler.deadline, 3.5);
   EXPECT_EQ(seen.scheduler.rule, imagination::RankingRule::kThesis);
@@ -232,7 +232,7 @@ TEST(CommandLineTest, FilesOfOnesOwnAreSaid) {
   RunWith(start + std::vector<std::string>{"--object", file}, backends);
   EXPECT_TRUE(seen.own_scene);
   EXPECT_THAT(seen.setup.extra_objects, ElementsAre(file));
-  EXPECT_THAT(seen.objects, ElementsAre("vase"));
+  EXPECT_THAT(seen.start.on_tray, ElementsAre("vase"));
 }
 
 TEST(CommandLineTest, MoreVerbsGetTheirOwnArguments) {
@@ -274,7 +274,7 @@ TEST(CommandLineTest, RefusesNumbersOutOfRange) {
 
 TEST(CommandLineTest, RefusesWhatTheWorldDoesNotKnow) {
   ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Dor", "--arg", "Window"}),
-                {"area 'Dor' is unknown", "'Door'"});
+                {"area 'Dor' is unknown", "'door'"});
   ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Door", "--arg", "Windw"}),
                 {"area 'windw' is unknown", "'window'"});
   ExpectRefused(Small().Imagine({"--action", "move_bas", "--from", "Door", "--arg", "Window"}),

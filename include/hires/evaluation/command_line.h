@@ -7,6 +7,7 @@
 #include "hires/base/action.h"
 #include "hires/evaluation/achieve.h"
 #include "hires/evaluation/blackboard_command.h"
+#include "hires/evaluation/imagine_start.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/report.h"
 #include "hires/imagination/scheduler.h"
@@ -16,8 +17,7 @@ namespace hires::evaluation {
 /// What `hires imagine` was asked.
 struct ImagineQuery {
   base::ActionTemplate action;
-  std::string from;                  ///< area where the robot stands
-  std::vector<std::string> objects;  ///< on its tray
+  ImagineStart start;
   std::uint64_t seed{1};
   imagination::SchedulerParams scheduler;
   imagination::SetupConfig setup;

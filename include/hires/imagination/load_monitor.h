@@ -47,7 +47,6 @@ class LoadMonitor {
   ///                     it was to be
   ///   object_not_released  the hand still holds what it should have put down
   ///   object_slid       what stood on the robot slid too far
-  ///   object_tilted     what a hand held leant as far as if it had toppled
   ///   knocked_over: a, b   bystanders
   std::string WhyNotWell() const;
 
@@ -73,6 +72,7 @@ class LoadMonitor {
   void LookAt(Object* object);
   void NoteFall(Object* object, const std::string& reason);
   bool IsHeld(const Object& object) const;
+  bool IsHandled(const Object& object) const;
   bool Moves(int index) const;
   std::string WhyNotTaken(const Object& object) const;
   std::string WhyNotStanding(const Object& object) const;

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hires/base/action.h"
+#include "hires/imagination/start_state.h"
+
+namespace CLI {
+class App;
+}
+
+namespace hires::evaluation {
+
+/// Where an imagined action begins, as `hires imagine` is told: the robot, what it carries and
+/// holds, how its arms and torso are, and what stands about.
+struct ImagineStart {
+  std::string from;                          ///< area where the robot stands
+  std::vector<std::string> on_tray;          ///< objects
+  std::vector<base::Atom> atoms;             ///< what else holds: Holding, postures, On
+  std::vector<imagination::PutObject> put;   ///< objects at places given in numbers
+  std::vector<base::Atom> AllAtoms() const;  ///< `atoms`, RobotAt, and On of the tray's load
+};
+
+/// What was typed of it.
+struct StartOptions {
+  std::string from;
+  std::vector<std::string> on_tray, in_hand, postures, put;
+};
+void AddStartOptions(CLI::App* app, StartOptions* options);
+
+/// An arm that holds something without a posture of its own being given has it where the action
+/// before leaves it: at its side for actions of the arms, before the body for driving.
+/// @throws base::ConfigError naming the option and what it wants.
+ImagineStart ReadStart(const StartOptions& options, const std::string& action);
+
+}  // namespace hires::evaluation

@@ -1,0 +1,126 @@
+#include "hires/evaluation/imagine_start.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/skills/skill_factory.h"
+
+namespace hires::evaluation {
+namespace {
+
+/// The parts of "a:b" or "a:b:c".
+std::vector<std::string> PartsOf(const std::string& option, const std::string& text,
+                                 std::size_t most, const std::string& wanted) {
+  const std::vector<std::string> parts = base::Split(text, ':');
+  const bool is_empty = std::count(parts.begin(), parts.end(), "") > 0;
+  if (parts.size() >= 2 && parts.size() <= most && !is_empty) return parts;
+  throw base::ConfigError(fmt::format("{} '{}': wanted {}", option, text, wanted));
+}
+
+/// Numbers separated by commas, or nothing if there is anything else.
+std::vector<double> NumbersIn(const std::string& text) {
+  std::vector<double> numbers;
+  for (const std::string& part : base::Split(text, ',')) {
+    std::size_t used = 0;
+    try {
+      numbers.push_back(std::stod(part, &used));
+    } catch (const std::exception&) {
+      return {};
+    }
+    if (used != part.size() || !std::isfinite(numbers.back())) return {};
+  }
+  return numbers;
+}
+
+constexpr char kPutWanted[] =
+    "OBJECT:AREA, OBJECT:AREA:X,Y[,YAW] in the area's frame, or OBJECT:X,Y,Z[,YAW] in the map "
+    "[m, rad]";
+
+void ReadPut(const std::string& text, ImagineStart* start) {
+  const auto parts = PartsOf("--put", text, 3, kPutWanted);
+  const bool is_in_map = parts.size() == 2 && !NumbersIn(parts[1]).empty();
+  if (parts.size() == 2 && !is_in_map) {
+    if (parts[1].find(',') != std::string::npos) {
+      throw base::ConfigError(fmt::format("--put '{}': wanted {}", text, kPutWanted));
+    }
+    start->atoms.push_back({"On", {parts[0], parts[1]}});
+    return;
+  }
+  const std::vector<double> numbers = NumbersIn(parts.back());
+  const std::size_t least = is_in_map ? 3 : 2;
+  if (numbers.size() != least && numbers.size() != least + 1) {
+    throw base::ConfigError(fmt::format("--put '{}': wanted {}", text, kPutWanted));
+  }
+  imagination::PutObject put;
+  put.object = parts[0];
+  if (!is_in_map) put.area = parts[1];
+  const double yaw = numbers.size() > least ? numbers.back() : 0.0;
+  put.X_AO = geometry::Lift({numbers[0], numbers[1], yaw}, is_in_map ? numbers[2] : 0.0);
+  start->put.push_back(put);
+}
+
+void ReadPosture(const std::string& text, ImagineStart* start) {
+  const auto parts =
+      PartsOf("--posture", text, 2, "ARM:POSTURE or torso1:POSTURE, as rightArm1:ArmToSidePosture");
+  const bool is_torso = base::ToLower(parts[0]).rfind("torso", 0) == 0;
+  start->atoms.push_back(is_torso ? base::Atom{"HasTorsoPosture", {parts[1]}}
+                                  : base::Atom{"HasArmPosture", parts});
+}
+
+std::set<std::string> ArmsWithPosture(const ImagineStart& start) {
+  std::set<std::string> arms;
+  for (const base::Atom& atom : start.atoms) {
+    if (atom.predicate == "HasArmPosture") arms.insert(base::ToLower(atom.arguments[0]));
+  }
+  return arms;
+}
+
+void ReadInHand(const std::string& text, const std::string& action, ImagineStart* start) {
+  const auto parts = PartsOf("--object-in-hand", text, 2, "OBJECT:ARM, as mug1:rightArm1");
+  start->atoms.push_back({"Holding", {parts[1], parts[0]}});
+  if (ArmsWithPosture(*start).count(base::ToLower(parts[1])) > 0) return;
+  const bool drives = skills::DetailFor({action, {}}) == skills::NeededDetail::kBase;
+  start->atoms.push_back(
+      {"HasArmPosture", {parts[1], drives ? "ArmCarryPosture" : "ArmToSidePosture"}});
+}
+
+}  // namespace
+
+std::vector<base::Atom> ImagineStart::AllAtoms() const {
+  std::vector<base::Atom> all{{"RobotAt", {from}}};
+  for (const std::string& object : on_tray) all.push_back({"On", {object, "trayArea1"}});
+  all.insert(all.end(), atoms.begin(), atoms.end());
+  return all;
+}
+
+void AddStartOptions(CLI::App* app, StartOptions* o) {
+  app->add_option("--from", o->from, "area where the robot stands")->required();
+  app->add_option("--object", o->on_tray,
+                  "what stands on its tray: instance, model, or .sdf/.urdf file; up to three times")
+      ->allow_extra_args(false);
+  app->add_option("--object-in-hand", o->in_hand, "OBJECT:ARM, what an arm holds: mug1:rightArm1")
+      ->allow_extra_args(false);
+  app->add_option("--posture", o->postures,
+                  "ARM:POSTURE or torso1:POSTURE; the driving posture where none is given")
+      ->allow_extra_args(false);
+  app->add_option("--put", o->put, std::string("what stands about: ") + kPutWanted)
+      ->allow_extra_args(false);
+}
+
+ImagineStart ReadStart(const StartOptions& options, const std::string& action) {
+  ImagineStart start;
+  start.from = options.from;
+  start.on_tray = options.on_tray;
+  for (const std::string& posture : options.postures) ReadPosture(posture, &start);
+  for (const std::string& held : options.in_hand) ReadInHand(held, action, &start);
+  for (const std::string& put : options.put) ReadPut(put, &start);
+  return start;
+}
+
+}  // namespace hires::evaluation
