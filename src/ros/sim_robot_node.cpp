@@ -54,7 +54,7 @@ SimRobotNode::SimRobotNode(const SimRobotParams& params,
       publisher_(params, setup, nh),
       is_held_(params.hold) {
   nh->setParam("robot_description", ReadUrdf(params.setup.robot, robot_.profile));
-  tick_ = nh->advertise<hires::LockstepTick>(kLockstepTick, 10);
+  AdvertiseTick(nh);
   Subscribe(nh);
   Serve(nh);
   updater_.setHardwareID("simulated " + robot_.model.name);
@@ -68,6 +68,23 @@ SimRobotNode::SimRobotNode(const SimRobotParams& params,
 SimRobotNode::~SimRobotNode() {
   stop_ = true;
   thread_.join();
+}
+
+/// A subscriber that dies is gone at once; a publisher that dies is looked for for a while.
+void SimRobotNode::AdvertiseTick(ros::NodeHandle* nh) {
+  using Peer = ros::SingleSubscriberPublisher;
+  tick_ = nh->advertise<hires::LockstepTick>(
+      kLockstepTick, 10,
+      [this](const Peer& peer) {
+        mail_.Post([this, name = peer.getSubscriberName()] { listeners_.insert(name); });
+      },
+      [this](const Peer& peer) {
+        mail_.Post([this, name = peer.getSubscriberName()] {
+          const auto listener = listeners_.find(name);
+          if (listener != listeners_.end()) listeners_.erase(listener);
+          if (listeners_.count(name) == 0) inbox_.Forget(name);
+        });
+      });
 }
 
 // What comes from outside
@@ -125,6 +142,7 @@ void SimRobotNode::Subscribe(ros::NodeHandle* nh) {
 void SimRobotNode::OnAck(const ros::MessageEvent<const hires::LockstepAck>& event) {
   const hires::LockstepAck& msg = *event.getMessage();
   mail_.Post([this, ack = Ack{event.getPublisherName(), msg.header.stamp, msg.num_commands}] {
+    middle_layer_ = ack.sender;
     if (ack.stamp == SimRobotPublisher::StampOf(world_)) ack_ = ack;
   });
 }
@@ -237,7 +255,7 @@ void SimRobotNode::AwaitRelease() {
 void SimRobotNode::AwaitAck() {
   auto repeat = Steady::now() + kRepeat;
   std::optional<Steady::time_point> answered;
-  while (!stop_ && ack_subscriber_.getNumPublishers() > 0 && !IsAnswered()) {
+  while (!stop_ && IsMiddleLayerThere() && !IsAnswered()) {
     ReadMail(kShort);
     const auto now = Steady::now();
     if (ack_ && !answered) answered = now;
@@ -257,6 +275,11 @@ void SimRobotNode::AwaitAck() {
   ReadMail(std::chrono::seconds(0));
   if (ack_) inbox_.CountOff(ack_->sender, ack_->num_commands);
   ack_.reset();
+}
+
+bool SimRobotNode::IsMiddleLayerThere() const {
+  return middle_layer_ ? listeners_.count(*middle_layer_) > 0
+                       : ack_subscriber_.getNumPublishers() > 0 && !listeners_.empty();
 }
 
 bool SimRobotNode::IsAnswered() const {

@@ -52,6 +52,11 @@ class MiddleLayerTest(unittest.TestCase):
         self.assertEqual((result.code, result.reason), (code, reason), self.system.output())
         return result
 
+    def require_arrival(self, pose, tolerance):
+        self.system.wait_for_truth(
+            lambda s: speed(s) < 0.02 and distance(s, pose) < tolerance,
+            'the robot to stand within %g m of %s' % (tolerance, pose))
+
     def path_from(self, first):
         return [state for _, state in self.system.truth[first:]]
 
@@ -60,24 +65,24 @@ class MiddleLayerTest(unittest.TestCase):
     def test_drives_to_an_area_round_obstacles(self):
         goal = self.system.execute('move_base', 'preManipulationAreaEastTable2')
         result = self.require(goal.result(), self.codes.SUCCEEDED)
-        self.assertLess(distance(self.system.truth[-1][1], EAST_TABLE_2), XY_TOLERANCE + STOPPING)
+        self.require_arrival(EAST_TABLE_2, XY_TOLERANCE + STOPPING)
         self.assertGreater(result.duration, 1.0)
 
     def test_motion_sets_bound_the_speed(self):
         fastest = {}
-        for motion_set, area in (('slow', 'preManipulationAreaEastTable2'),
+        for motion_set, area in (('slow', 'preManipulationAreaWestTable2'),
                                  ('fast', 'nearStartArea1')):
             first = len(self.system.truth)
             goal = self.system.execute('move_base_param', area, motion_set)
             self.require(goal.result(), self.codes.SUCCEEDED)
             fastest[motion_set] = max(map(speed, self.path_from(first)))
         self.assertLess(fastest['slow'], 0.33)
-        self.assertGreater(fastest['fast'], fastest['slow'])
+        self.assertGreater(fastest['fast'], 0.45)
 
     def test_drives_blindly(self):
         goal = self.system.execute('move_base_blind', 'home')
         self.require(goal.result(), self.codes.SUCCEEDED)
-        self.assertLess(distance(self.system.truth[-1][1], (13.0, 11.3)), 0.05)
+        self.require_arrival((13.0, 11.3), 0.05)
 
     def test_a_pushed_robot_plans_anew_and_arrives(self):
         goal = self.system.execute('move_base', 'preManipulationAreaWestTable2')
@@ -86,7 +91,7 @@ class MiddleLayerTest(unittest.TestCase):
                                   offset=self.pose_2d(-0.2, 0.4, 0.5))
         self.assertTrue(answer.success, answer.message)
         self.require(goal.result(), self.codes.SUCCEEDED)
-        self.assertLess(distance(self.system.truth[-1][1], (9.0, 11.49)), XY_TOLERANCE + STOPPING)
+        self.require_arrival((9.0, 11.49), XY_TOLERANCE + STOPPING)
 
     def pose_2d(self, x, y, theta):
         from geometry_msgs.msg import Pose2D

@@ -15,6 +15,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -46,6 +47,7 @@ class SimRobotNode {
   using Steady = std::chrono::steady_clock;
   using Mail = std::function<void()>;  // runs on the thread that simulates
 
+  void AdvertiseTick(ros::NodeHandle* nh);
   void Subscribe(ros::NodeHandle* nh);
   void Serve(ros::NodeHandle* nh);
   template <typename Message>
@@ -61,6 +63,7 @@ class SimRobotNode {
   void AwaitRelease();
   void AwaitAck();
   bool IsAnswered() const;
+  bool IsMiddleLayerThere() const;
   void AwaitPace();
   void ReadMail(std::chrono::duration<double> timeout);  ///< all there is; waits for the first
   void PublishTick();
@@ -78,7 +81,9 @@ class SimRobotNode {
     ros::Time stamp;
     std::uint64_t num_commands;
   };
-  std::optional<Ack> ack_;
+  std::optional<Ack> ack_;                   // of the present tick
+  std::optional<std::string> middle_layer_;  // who acknowledged last
+  std::multiset<std::string> listeners_;     // to ticks, by node
   SensorReadings readings_;
   std::atomic<bool> is_held_;
   Steady::time_point due_;  // when the next tick is, at the wanted pace
