@@ -245,6 +245,10 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
       return RunAchieveVerb(achieve_options, backends.package_folder, backends.achieve_remotely,
                             [] { return interrupted.load(); });
     }
+    if (*experiment_options.hypothesis.verb) {
+      return RunHypothesisVerb(experiment_options.hypothesis, backends.package_folder,
+                               backends.play_hypothesis, [] { return interrupted.load(); });
+    }
     if (*experiment_options.verb) {
       return RunExperimentVerb(experiment_options, [] { return interrupted.load(); });
     }

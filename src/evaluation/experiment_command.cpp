@@ -79,7 +79,7 @@ std::string ProgressText(double fraction, double elapsed) {
 void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
   CLI::App* verb = app->add_subcommand(
       "experiment", "play an experiment of config/experiments and check what it expects");
-  verb->add_option("file", options->file, "YAML file of the experiment")->required();
+  verb->add_option("file", options->file, "YAML file of the experiment");
   verb->add_option("--threads", options->threads, "default: one per core; changes no number")
       ->check(CLI::Range(1, 256));
   verb->add_option("--seed", options->seed, "instead of the file's");
@@ -91,9 +91,15 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
   verb->add_option("--json", options->json, "write everything to this file");
   verb->add_flag("--quiet", options->quiet, "no progress bar");
   options->verb = verb;
+  AddHypothesisVerb(verb, &options->hypothesis);
 }
 
 int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool()>& cancelled) {
+  if (options.file.empty()) {
+    throw base::ConfigError(
+        "experiment: wanted a YAML file, such as config/experiments/paired.yaml, or `hypothesis` "
+        "(see hires experiment hypothesis --help)");
+  }
   const ExperimentConfig config = ReadExperiment(options.file, OverridesOf(options));
   CheckWritable(options.csv);
   CheckWritable(options.json);

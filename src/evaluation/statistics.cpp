@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
@@ -24,6 +25,30 @@ void CheckCounts(const PairedCounts& counts) {
   HIRES_CHECK(counts.only_first >= 0 && counts.only_second >= 0 &&
                   counts.only_first + counts.only_second <= counts.num_pairs,
               "there are more discordant pairs than pairs, or fewer than none");
+}
+
+/// Tango's score statistic of a difference, its numerator positive where the difference is too
+/// small. The standard error holds the second cell's share at its restricted maximum of likelihood.
+double PairedScore(const PairedCounts& counts, double difference) {
+  const double n = counts.num_pairs, first = counts.only_first, second = counts.only_second;
+  const double a = 2.0 * n;
+  const double b = (2.0 * n - first + second) * difference - first - second;
+  const double c = -second * difference * (1.0 - difference);
+  const double share = (std::sqrt(std::max(0.0, b * b - 4.0 * a * c)) - b) / (2.0 * a);
+  const double variance = n * (2.0 * share + difference * (1.0 - difference));
+  const double numerator = first - second - n * difference;
+  if (variance > 0.0) return numerator / std::sqrt(variance);
+  return numerator == 0.0 ? 0.0 : std::copysign(std::numeric_limits<double>::infinity(), numerator);
+}
+
+/// The largest difference in [lower, upper] whose score is at least `bound`, by halving: the score
+/// falls with the difference.
+double WhereScoreIs(const PairedCounts& counts, double bound, double lower, double upper) {
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (lower + upper);
+    (PairedScore(counts, middle) >= bound ? lower : upper) = middle;
+  }
+  return 0.5 * (lower + upper);
 }
 
 }  // namespace
@@ -73,6 +98,16 @@ Interval PairedShareDifference(const PairedCounts& counts) {
   const double share = static_cast<double>(discordant) / counts.num_pairs;
   const auto difference = [share](double p) { return (2.0 * p - 1.0) * share; };
   return {difference(first.estimate), difference(first.lower), difference(first.upper)};
+}
+
+Interval PairedScoreInterval(const PairedCounts& counts) {
+  CheckCounts(counts);
+  if (counts.num_pairs == 0) return {0.0, -1.0, 1.0};
+  const double estimate =
+      static_cast<double>(counts.only_first - counts.only_second) / counts.num_pairs;
+  const double z = boost::math::quantile(boost::math::normal(), 1.0 - kTail);
+  return {estimate, WhereScoreIs(counts, z, -1.0, estimate),
+          WhereScoreIs(counts, -z, estimate, 1.0)};
 }
 
 double McNemarPValue(const PairedCounts& counts) {

@@ -125,5 +125,116 @@ TEST(PairedShareDifferenceTest, MoreDiscordantPairsThanPairsAreRefused) {
   EXPECT_THROW(McNemarPValue({-1, 2, 3}), std::logic_error);
 }
 
+// 1 and 7 discordant pairs of 21 (Bentur et al. 2009, airway reactivity before and after stem cell
+// transplantation) are the example of Fagerland, Lydersen, Laake 2014: -0.517 .. -0.026.
+TEST(PairedScoreIntervalTest, OneAgainstSevenOfTwentyOneIsThePublishedInterval) {
+  const Interval difference = PairedScoreInterval({1, 7, 21});
+  EXPECT_DOUBLE_EQ(difference.estimate, -6.0 / 21.0);
+  EXPECT_NEAR(difference.lower, -0.517232, 1e-6);
+  EXPECT_NEAR(difference.upper, -0.026003, 1e-6);
+}
+
+TEST(PairedScoreIntervalTest, WithoutDiscordantPairsItIsKnownInClosedForm) {
+  constexpr double kSquare = 3.841458820694124;  // of the normal's 97.5 % quantile
+  for (const int n : {1, 20, 500}) {
+    EXPECT_NEAR(PairedScoreInterval({0, 0, n}).upper, kSquare / (n + kSquare), 1e-9) << n;
+    EXPECT_NEAR(PairedScoreInterval({0, 0, n}).lower, -kSquare / (n + kSquare), 1e-9) << n;
+  }
+  EXPECT_EQ(PairedScoreInterval({0, 0, 0}).upper, 1.0);
+  EXPECT_EQ(PairedScoreInterval({0, 0, 0}).lower, -1.0);
+}
+
+TEST(PairedScoreIntervalTest, ReachesTheEndWhereOneMemberAlwaysWins) {
+  EXPECT_DOUBLE_EQ(PairedScoreInterval({20, 0, 20}).upper, 1.0);
+  EXPECT_NEAR(PairedScoreInterval({20, 0, 20}).lower, 0.677750, 1e-6);
+  EXPECT_DOUBLE_EQ(PairedScoreInterval({0, 20, 20}).lower, -1.0);
+}
+
+/// Logarithm of the likelihood, but for a constant, of shares q + difference, q and the rest.
+double LogLikelihood(const PairedCounts& counts, double difference, double q) {
+  const auto term = [](int count, double share) {
+    return count == 0 ? 0.0 : count * std::log(std::max(share, 1e-300));
+  };
+  return term(counts.only_first, q + difference) + term(counts.only_second, q) +
+         term(counts.num_pairs - counts.only_first - counts.only_second,
+              1.0 - 2.0 * q - difference);
+}
+
+/// The q that is likeliest given the difference, by thirds: the likelihood has one summit.
+double LikeliestShare(const PairedCounts& counts, double difference) {
+  double lower = std::max(0.0, -difference), upper = 0.5 * (1.0 - difference);
+  for (int i = 0; i < 300; ++i) {
+    const double left = lower + (upper - lower) / 3.0, right = upper - (upper - lower) / 3.0;
+    const bool is_left_better =
+        LogLikelihood(counts, difference, left) > LogLikelihood(counts, difference, right);
+    (is_left_better ? upper : lower) = is_left_better ? right : left;
+  }
+  return 0.5 * (lower + upper);
+}
+
+// Two roads: at both ends the score with a share that was searched for is the normal's quantile.
+TEST(PairedScoreIntervalTest, EndsWhereTheScoreTestBeginsToReject) {
+  for (const PairedCounts& counts : {PairedCounts{5, 2, 20}, PairedCounts{1, 7, 21},
+                                     PairedCounts{12, 3, 20}, PairedCounts{30, 40, 100}}) {
+    const Interval interval = PairedScoreInterval(counts);
+    for (const double end : {interval.lower, interval.upper}) {
+      const double q = LikeliestShare(counts, end), n = counts.num_pairs;
+      const double variance = (2.0 * q + end * (1.0 - end)) / n;
+      EXPECT_NEAR(std::abs(interval.estimate - end) / std::sqrt(variance), 1.959964, 1e-5);
+    }
+  }
+}
+
+TEST(PairedScoreIntervalTest, ChangesItsSignWithTheOrder) {
+  for (int first = 0; first <= 20; ++first) {
+    for (int second = 0; second <= 20 - first; ++second) {
+      const Interval forth = PairedScoreInterval({first, second, 20});
+      const Interval back = PairedScoreInterval({second, first, 20});
+      EXPECT_NEAR(forth.lower, -back.upper, 1e-9) << first << " : " << second;
+      EXPECT_LE(forth.lower, forth.estimate);
+      EXPECT_GE(forth.upper, forth.estimate);
+    }
+  }
+}
+
+/// Probability of these counts among 20 pairs.
+double Multinomial(const PairedCounts& counts, double first, double second) {
+  const int rest = counts.num_pairs - counts.only_first - counts.only_second;
+  const double ways = std::lgamma(counts.num_pairs + 1.0) - std::lgamma(counts.only_first + 1.0) -
+                      std::lgamma(counts.only_second + 1.0) - std::lgamma(rest + 1.0);
+  return std::exp(ways) * std::pow(first, counts.only_first) *
+         std::pow(second, counts.only_second) * std::pow(std::max(0.0, 1.0 - first - second), rest);
+}
+
+// Counted out over all outcomes of 20 pairs for truths on a grid.
+TEST(PairedScoreIntervalTest, CoversTheTruthOfTwentyPairsAsOftenAsItSays) {
+  std::vector<std::pair<PairedCounts, Interval>> outcomes;
+  for (int first = 0; first <= 20; ++first) {
+    for (int second = 0; second <= 20 - first; ++second) {
+      const PairedCounts counts{first, second, 20};
+      outcomes.emplace_back(counts, PairedScoreInterval(counts));
+    }
+  }
+  std::vector<double> coverages;
+  for (int i = 0; i <= 20; ++i) {
+    for (int j = 0; j <= 20 - i; ++j) {
+      const double first = i / 20.0, second = j / 20.0;
+      double coverage = 0.0;
+      for (const auto& [counts, interval] : outcomes) {
+        const bool covers =
+            interval.lower <= first - second + 1e-9 && interval.upper >= first - second - 1e-9;
+        if (covers) coverage += Multinomial(counts, first, second);
+      }
+      coverages.push_back(coverage);
+      EXPECT_GE(coverage, 0.92) << first << ", " << second;
+    }
+  }
+  EXPECT_GE(Mean(coverages), 0.95);
+}
+
+TEST(PairedScoreIntervalTest, MoreDiscordantPairsThanPairsAreRefused) {
+  EXPECT_THROW(PairedScoreInterval({2, 2, 3}), std::logic_error);
+}
+
 }  // namespace
 }  // namespace hires::evaluation

@@ -7,6 +7,7 @@
 #include "hires/base/action.h"
 #include "hires/evaluation/achieve.h"
 #include "hires/evaluation/blackboard_command.h"
+#include "hires/evaluation/experiment_hypothesis.h"
 #include "hires/evaluation/imagine_start.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/report.h"
@@ -47,6 +48,7 @@ struct Backends {
   ImagineRemotely imagine_remotely;
   ConnectBlackboard connect_blackboard;
   AchieveRemotely achieve_remotely;
+  PlayHypothesis play_hypothesis;
   std::vector<Verb> more_verbs;
   std::vector<Check> more_checks;
 };

@@ -4,6 +4,8 @@
 #include <functional>
 #include <string>
 
+#include "hires/evaluation/experiment_hypothesis_command.h"
+
 namespace CLI {
 class App;
 }
@@ -16,10 +18,11 @@ struct ExperimentOptions {
   std::uint64_t seed{0};
   int threads{0}, runs{0};
   bool quiet{false};
-  CLI::App* verb{nullptr};  ///< tells what was given
+  CLI::App* verb{nullptr};       ///< tells what was given
+  HypothesisOptions hypothesis;  ///< of `hires experiment hypothesis`
 };
 
-/// Adds the verb to the program.  @pre `options` outlives `app`.
+/// Adds the verb to the program, with `hypothesis` below it.  @pre `options` outlives `app`.
 void AddExperimentVerb(CLI::App* app, ExperimentOptions* options);
 
 /// Reads, plays, prints, writes.

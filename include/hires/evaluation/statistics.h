@@ -38,6 +38,15 @@ struct PairedCounts {
 /// @pre counts are not negative and fit into num_pairs.  @throws std::logic_error if broken.
 Interval PairedShareDifference(const PairedCounts& counts);
 
+/// Difference of two paired shares (first - second) with its 95 % score interval: all differences
+/// that the score test does not reject, the nuisance share being at its restricted maximum of
+/// likelihood [Tango 1998, Stat. Med. 17:891-908]. Holds its level well from about ten pairs on,
+/// also when all pairs agree [Fagerland, Lydersen, Laake 2014, Stat. Med. 33:2850-2875]. Unlike
+/// PairedShareDifference it does not take the share of discordant pairs as given.
+/// Without pairs: 0 (-1 .. 1).
+/// @pre counts are not negative and fit into num_pairs.  @throws std::logic_error if broken.
+Interval PairedScoreInterval(const PairedCounts& counts);
+
 /// P-value of McNemar's exact test: two-sided, doubled tail, at most 1; 1 without discordant pairs.
 double McNemarPValue(const PairedCounts& counts);
 

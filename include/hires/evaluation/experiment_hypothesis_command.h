@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "hires/evaluation/experiment_hypothesis.h"
+#include "hires/evaluation/experiment_hypothesis_report.h"
+
+namespace CLI {
+class App;
+}
+
+namespace hires::evaluation {
+
+/// What was typed behind `hires experiment hypothesis`.
+struct HypothesisOptions {
+  std::string scenario, journal, csv, json, logs;
+  int runs{20}, workers{1};
+  std::uint64_t seed{1};
+  double pace{1.0};
+  bool quiet{false};
+  CLI::App* verb{nullptr};
+};
+
+/// Adds `hypothesis` below the verb `experiment`.  @pre `options` outlives `experiment`.
+void AddHypothesisVerb(CLI::App* experiment, HypothesisOptions* options);
+
+/// Plays what the journal does not have yet, prints, writes.
+/// @param play  Empty: this program cannot start a system.
+/// @return kExitRecommended when all runs were played, kExitAllFailed when each of them broke down,
+/// kExitCancelled.  @throws base::ConfigError for bad input, before anything is played.
+int RunHypothesisVerb(const HypothesisOptions& options, const std::string& package_folder,
+                      const PlayHypothesis& play, const std::function<bool()>& cancelled);
+
+/// Of all files below config/, worlds/ and urdf/, by name and content.
+std::string HashOfFiles(const std::string& package_folder);
+
+}  // namespace hires::evaluation

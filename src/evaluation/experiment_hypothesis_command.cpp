@@ -1,0 +1,213 @@
+#include "hires/evaluation/experiment_hypothesis_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+
+#include "hires/base/error.h"
+#include "hires/base/hash.h"
+#include "hires/base/text.h"
+#include "hires/evaluation/command_line.h"
+#include "hires/evaluation/experiment_command.h"
+#include "hires/evaluation/experiment_hypothesis_journal.h"
+#include "hires/evaluation/report_json.h"
+#include "hires/evaluation/timeline.h"
+
+namespace hires::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+using Steady = std::chrono::steady_clock;
+
+std::string JournalPath(const HypothesisOptions& options) {
+  if (!options.journal.empty()) return options.journal;
+  if (!options.json.empty()) return options.json + ".journal";
+  return "hypothesis_" + options.scenario + ".journal";
+}
+
+void RequireFolders(const HypothesisOptions& options) {
+  for (const std::string& path : {JournalPath(options), options.csv, options.json}) {
+    if (!path.empty()) RequireFolderOf(path);
+  }
+  if (options.logs.empty()) return;
+  std::error_code error;
+  fs::create_directories(options.logs, error);
+  if (error || !fs::is_directory(options.logs)) {
+    throw base::ConfigError(
+        fmt::format("--logs {}: the folder cannot be made; check its rights", options.logs));
+  }
+}
+
+/// A task that takes `time_limit` at this pace must fit into a run.
+void CheckLimits(const HypothesisGoal& goal, double pace, const std::string& path) {
+  if (pace <= 0.0 || goal.start_limit + goal.time_limit / pace <= goal.wall_limit) return;
+  throw base::ConfigError(fmt::format(
+      "--pace {:g}: {:g} s simulated take {:g} s, with {:g} s to start more than wall_limit, {:g} "
+      "s, in {}; choose a higher pace or limit",
+      pace, goal.time_limit, goal.time_limit / pace, goal.start_limit, goal.wall_limit, path));
+}
+
+HypothesisSetting SettingOf(const HypothesisOptions& options, const std::string& package_folder) {
+  return {options.scenario, options.runs,    options.seed,
+          options.pace,     options.workers, HashOfFiles(package_folder)};
+}
+
+std::string Quoted(const std::string& word) {
+  if (word.find_first_of(" '\"$\\*?[]&;|<>()`") == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string CommandOf(const HypothesisOptions& options) {
+  return fmt::format(
+      "hires experiment hypothesis --scenario {} --runs {} --pace {:g} --seed {} "
+      "--workers {} --resume {}",
+      Quoted(options.scenario), options.runs, options.pace, options.seed, options.workers,
+      Quoted(JournalPath(options)));
+}
+
+std::string Arm(bool imagines) { return imagines ? "with" : "without"; }
+
+/// All that the journal lacks, pair after pair.
+std::vector<HypothesisOrder> OrdersFor(const HypothesisOptions& options, const HypothesisGoal& goal,
+                                       const HypothesisJournal& journal) {
+  std::vector<HypothesisOrder> orders;
+  for (int run = 1; run <= options.runs; ++run) {
+    for (const bool imagines : {true, false}) {
+      if (journal.Has(run, imagines)) continue;
+      HypothesisOrder order;
+      order.scenario = options.scenario;
+      order.run = run;
+      order.imagines = imagines;
+      order.seed = SeedOfRun(options.seed, run);
+      order.pace = options.pace;
+      order.workers = options.workers;
+      order.goal = goal;
+      if (!options.logs.empty()) {
+        order.folder = fmt::format("{}/run_{:03}_{}", options.logs, run, Arm(imagines));
+      }
+      orders.push_back(order);
+    }
+  }
+  return orders;
+}
+
+/// A record that can be trusted to be of this order, whoever played it.
+HypothesisRun Stamped(HypothesisRun record, const HypothesisOrder& order, double wall_seconds) {
+  record.run = order.run;
+  record.imagines = order.imagines;
+  record.seed = order.seed;
+  record.success = record.success && record.is_complete;
+  record.wall_seconds = wall_seconds;
+  return record;
+}
+
+double SecondsSince(Steady::time_point begin) {
+  return std::chrono::duration<double>(Steady::now() - begin).count();
+}
+
+std::string DoneLine(const HypothesisRun& run, int num_runs) {
+  return fmt::format("run {} of {} {} imagination: {}, {}{}; {:.0f} s simulated, {:.0f} s", run.run,
+                     num_runs, Arm(run.imagines), run.outcome, run.verdict,
+                     run.is_complete ? "" : run.reason, run.duration, run.wall_seconds);
+}
+
+/// @return false when cancelled.
+bool PlayAll(const std::vector<HypothesisOrder>& orders, const HypothesisOptions& options,
+             const PlayHypothesis& play, const std::function<bool()>& cancelled,
+             HypothesisJournal* journal) {
+  const auto begin = Steady::now();
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    const auto run_begin = Steady::now();
+    std::optional<HypothesisRun> record;
+    if (!cancelled()) record = play(orders[i], cancelled);
+    if (!record) return false;
+    journal->Append(Stamped(*std::move(record), orders[i], SecondsSince(run_begin)));
+    if (options.quiet) continue;
+    const double fraction = static_cast<double>(i + 1) / static_cast<double>(orders.size());
+    std::cerr << DoneLine(journal->runs().back(), options.runs) << '\n'
+              << ProgressText(fraction, SecondsSince(begin)) << std::endl;
+  }
+  return true;
+}
+
+void Write(const HypothesisReport& report, const HypothesisOptions& options) {
+  std::cout << HypothesisText(report);
+  if (!options.csv.empty()) WriteText(HypothesisCsv(report), options.csv);
+  if (!options.json.empty()) WriteJson(ToJson(report, CommandOf(options)), options.json);
+}
+
+int Cancelled(const HypothesisJournal& journal, const HypothesisOptions& options) {
+  std::cerr << fmt::format(
+      "{} of {} runs are kept in {}; the same command goes on with them:\n{}\n",
+      journal.runs().size(), 2 * options.runs, JournalPath(options), CommandOf(options));
+  return kExitCancelled;
+}
+
+}  // namespace
+
+void AddHypothesisVerb(CLI::App* experiment, HypothesisOptions* options) {
+  CLI::App* verb = experiment->add_subcommand("hypothesis",
+                                              "play a scenario with the whole system, with and "
+                                              "without imagination, on equal hidden truths");
+  verb->add_option("--scenario", options->scenario, "topple or serve_coffee")->required();
+  verb->add_option("--runs", options->runs, "with imagination, and as many without; default: 20")
+      ->check(CLI::Range(1, 100000));
+  verb->add_option("--pace", options->pace,
+                   "simulated seconds of the robot per second, 0: as fast as it can; default: 1")
+      ->check(CLI::Range(0.0, 1000.0));
+  verb->add_option("--seed", options->seed, "of all chance; default: 1")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--workers", options->workers, "simulators that imagine; default: 1")
+      ->check(CLI::Range(1, 64));
+  verb->add_option("--resume", options->journal,
+                   "keep finished runs in this file, and go on with those that are there; default: "
+                   "beside --json, else hypothesis_<scenario>.journal here");
+  verb->add_option("--csv", options->csv, "write one line per run to this file");
+  verb->add_option("--json", options->json, "write everything to this file");
+  verb->add_option("--logs", options->logs, "keep what the system of each run said in this folder");
+  verb->add_flag("--quiet", options->quiet, "no progress");
+  options->verb = verb;
+}
+
+std::string HashOfFiles(const std::string& package_folder) {
+  std::vector<std::string> paths;
+  for (const char* folder : {"config", "worlds", "urdf"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(package_folder) / folder)) {
+      if (entry.is_regular_file()) paths.push_back(entry.path().string());
+    }
+  }
+  std::sort(paths.begin(), paths.end());
+  base::Hasher hasher;
+  for (const std::string& path : paths) {
+    hasher.Add(fs::path(path).lexically_relative(package_folder).string());
+    hasher.Add(base::ReadTextFile(path));
+  }
+  return base::HexOf(hasher.value());
+}
+
+int RunHypothesisVerb(const HypothesisOptions& options, const std::string& package_folder,
+                      const PlayHypothesis& play, const std::function<bool()>& cancelled) {
+  const std::string path = package_folder + "/config/experiments/hypothesis.yaml";
+  const HypothesisGoal goal = ReadHypothesisGoal(path, options.scenario);
+  CheckLimits(goal, options.pace, path);
+  if (!play) {
+    throw base::ConfigError(
+        "this build has no ROS nodes to start; build with ROS, source its setup.bash and repeat");
+  }
+  RequireFolders(options);
+  const HypothesisSetting setting = SettingOf(options, package_folder);
+  HypothesisJournal journal(JournalPath(options), setting);
+  const auto orders = OrdersFor(options, goal, journal);
+  if (!PlayAll(orders, options, play, cancelled, &journal)) return Cancelled(journal, options);
+  const HypothesisReport report = SumUpHypothesis(setting, journal.runs());
+  Write(report, options);
+  return report.with.complete + report.without.complete > 0 ? kExitRecommended : kExitAllFailed;
+}
+
+}  // namespace hires::evaluation
