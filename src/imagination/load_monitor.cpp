@@ -108,17 +108,22 @@ bool LoadMonitor::IsSettled() const {
   const bool is_put_down =
       purpose_.kind == Purpose::Kind::kPutOnArea || purpose_.kind == Purpose::Kind::kPutOnTray;
   if (handled_ >= 0 && is_put_down && Moves(objects_[handled_].index)) return false;
-  return std::none_of(bystanders_.begin(), bystanders_.end(),
-                      [&](const Bystander& bystander) { return Moves(bystander.index); });
+  // What has fallen may roll on for ever; nothing more depends on it.
+  return std::none_of(bystanders_.begin(), bystanders_.end(), [&](const Bystander& bystander) {
+    return Moves(bystander.index) && !HasFallen(bystander);
+  });
+}
+
+bool LoadMonitor::HasFallen(const Bystander& bystander) const {
+  const Pose3 X_MO = simulator_->PoseOf(bystander.index);
+  return geometry::TiltOf(X_MO.rotation) >= params_.topple_tilt ||
+         X_MO.translation.z() < bystander.height - kDrop;
 }
 
 std::vector<std::string> LoadMonitor::KnockedOver() const {
   std::vector<std::string> names;
   for (const Bystander& bystander : bystanders_) {
-    const Pose3 X_MO = simulator_->PoseOf(bystander.index);
-    const bool lies = geometry::TiltOf(X_MO.rotation) >= params_.topple_tilt;
-    const bool fell_off = X_MO.translation.z() < bystander.height - kDrop;
-    if (lies || fell_off) names.push_back(bystander.name);
+    if (HasFallen(bystander)) names.push_back(bystander.name);
   }
   std::sort(names.begin(), names.end());
   return names;

@@ -227,5 +227,29 @@ TEST(SumUpTest, OrderOfRolloutsChangesNoCountAndNoQuantile) {
   }
 }
 
+TEST(DefectTest, SamplesOfNothingAreNone) {
+  RolloutResult result = test_support::Success();
+  result.nothing_watched = true;
+  EXPECT_EQ(Defect(result), "nothing was watched, but there are 640 samples");
+  result.counts = {};
+  EXPECT_EQ(Defect(result), "");
+}
+
+TEST(SumUpTest, WithNothingToWatchSuccessIsTheConfidence) {
+  RolloutResult good = test_support::Success();
+  good.nothing_watched = true;
+  good.counts = {};
+  RolloutResult bad = test_support::NoPath();
+  bad.nothing_watched = true;
+  bad.counts = {};
+  const Evidence evidence = SumUp({good, good, good, bad});
+  EXPECT_EQ(evidence.confidence_pooled, 1.0);
+  EXPECT_EQ(evidence.confidence_mean, 0.75);
+  EXPECT_EQ(evidence.success.share, 0.75);
+  EXPECT_EQ(evidence.action_failed_share, 0.25);
+  EXPECT_EQ(SumUp({good, bad, bad}).confidence_pooled, 0.0);
+  EXPECT_EQ(FailureReason(good), "");
+}
+
 }  // namespace
 }  // namespace hires::imagination

@@ -1,5 +1,6 @@
 #include "hires/imagination/load_monitor.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,10 +21,13 @@ const geometry::Pose2 kStart{2.0, 2.0, 0.0};
 /// A simulator with a load, and its monitor.
 struct Watched {
   explicit Watched(const std::vector<std::string>& models, const RolloutParams& rollout = {},
-                   const simulation::Variation& variation = {})
+                   const simulation::Variation& variation = {}, const Purpose& purpose = {})
+      : Watched(LoadOf(models), rollout, variation, purpose) {}
+  explicit Watched(const world::WorldState& objects, const RolloutParams& rollout = {},
+                   const simulation::Variation& variation = {}, const Purpose& purpose = {})
       : params(rollout),
-        simulator(RoomScene(), variation, LoadOf(models), StandingAt(kStart), base::Rng(1)),
-        monitor(&simulator, params) {}
+        simulator(RoomScene(), variation, objects, StandingAt(kStart), base::Rng(1)),
+        monitor(&simulator, params, purpose) {}
 
   static world::WorldState LoadOf(const std::vector<std::string>& models) {
     world::WorldState load;
@@ -64,7 +68,7 @@ TEST(LoadMonitorTest, ALoadAtRestDoesNotShake) {
 }
 
 TEST(LoadMonitorTest, WithoutALoadThereIsNothingToCount) {
-  Watched watched({});
+  Watched watched(world::WorldState{});
   watched.Drive(0.8, 0.0, 0.5);
   EXPECT_FALSE(watched.monitor.watches_something());
   EXPECT_EQ(watched.counts.total(), 0);
@@ -144,6 +148,92 @@ TEST(LoadMonitorTest, SamplesAreCutAtTheirThresholds) {
   Watched calm({"mill"}, lax);
   calm.Drive(0.3, 0.0, 0.2);
   EXPECT_EQ(calm.counts.notopple, 20);
+}
+
+// ----------------------------------------------------------------- what an action is about
+
+/// An object on the floor, `x` m before the robot.
+world::ObjectState OnFloor(const std::string& name, const std::string& model, double x) {
+  world::ObjectState object;
+  object.name = name;
+  object.model = model;
+  object.X_MO.translation = {kStart.x + x, kStart.y, 0.0002};
+  return object;
+}
+
+Watched WithPurpose(const world::WorldState& objects, Purpose::Kind kind,
+                    const std::string& object) {
+  return Watched(objects, {}, {}, {kind, object, "rightarm1", "east"});
+}
+
+TEST(LoadMonitorTest, ABystanderThatIsKnockedOverIsNamed) {
+  world::WorldState objects{{OnFloor("Tower1", "tower", 0.6), OnFloor("mill1", "mill", 1.6)}};
+  Watched watched(objects);
+  EXPECT_FALSE(watched.monitor.watches_something()) << "they are none of its business";
+  watched.Drive(0.8, 0.0, 0.8);
+  watched.Drive(0.0, 0.0, 1.5);
+  EXPECT_EQ(watched.counts.total(), 0);
+  EXPECT_EQ(watched.monitor.falls(), 0);
+  watched.monitor.Conclude();
+  EXPECT_EQ(watched.monitor.WhyNotWell(), "knocked_over: tower1");
+  EXPECT_EQ(watched.monitor.falls(), 1);
+  EXPECT_TRUE(watched.monitor.IsSettled());
+}
+
+TEST(LoadMonitorTest, WhatLiesFromTheStartWasNotKnockedOver) {
+  world::ObjectState lying = OnFloor("tower1", "tower", 1.2);
+  lying.X_MO.rotation = geometry::RotationFromRpy(1.5707963267948966, 0.0, 0.0);
+  lying.X_MO.translation.z() = 0.038;
+  Watched watched(world::WorldState{{lying}});
+  watched.Drive(0.0, 0.0, 0.5);
+  watched.monitor.Conclude();
+  EXPECT_EQ(watched.monitor.WhyNotWell(), "");
+}
+
+TEST(LoadMonitorTest, NothingIsSettledWhileABystanderMoves) {
+  world::ObjectState sliding = OnFloor("mill1", "mill", 1.2);
+  sliding.V_MO.linear.x() = 0.3;
+  Watched watched(world::WorldState{{sliding}});
+  watched.Drive(0.0, 0.0, 0.01);
+  EXPECT_FALSE(watched.monitor.IsSettled());
+  watched.Drive(0.0, 0.0, 2.0);
+  EXPECT_TRUE(watched.monitor.IsSettled());
+  EXPECT_EQ(watched.monitor.WhyNotWell(), "");
+}
+
+TEST(LoadMonitorTest, WhatTheActionHandlesIsWatchedWhereverItStands) {
+  Watched watched = WithPurpose({{OnFloor("mill1", "mill", 1.2)}}, Purpose::Kind::kTake, "mill1");
+  EXPECT_TRUE(watched.monitor.watches_something());
+  watched.Drive(0.0, 0.0, 0.2);
+  EXPECT_EQ(watched.counts.notopple, 20);
+  EXPECT_EQ(watched.monitor.WhyNotWell(), "object_slipped") << "no hand holds it";
+}
+
+TEST(LoadMonitorTest, WhatShouldStandOnTheTrayMustBeThere) {
+  Watched there = WithPurpose(Watched::LoadOf({"mill"}), Purpose::Kind::kPutOnTray, "load0");
+  there.Drive(0.0, 0.0, 0.2);
+  EXPECT_EQ(there.monitor.WhyNotWell(), "");
+  Watched below =
+      WithPurpose({{OnFloor("load0", "mill", 1.2)}}, Purpose::Kind::kPutOnTray, "load0");
+  EXPECT_EQ(below.monitor.WhyNotWell(), "object_fell");
+  Watched toppled = WithPurpose(Watched::LoadOf({"tower"}), Purpose::Kind::kPutOnTray, "load0");
+  toppled.Drive(0.0, 0.9, 0.6);
+  toppled.Drive(0.0, 0.0, 0.35);
+  EXPECT_THAT(toppled.monitor.WhyNotWell(), testing::AnyOf("object_toppled", "object_fell"));
+  EXPECT_EQ(toppled.monitor.falls(), 1);
+}
+
+TEST(LoadMonitorTest, WhatShouldStandOnAnAreaMustBeThere) {
+  world::ObjectState mill = OnFloor("mill1", "mill", 2.5);  // the middle of East
+  Watched there = WithPurpose({{mill}}, Purpose::Kind::kPutOnArea, "mill1");
+  EXPECT_EQ(there.monitor.WhyNotWell(), "");
+  mill.X_MO.translation.y() += 0.2;
+  Watched beside = WithPurpose({{mill}}, Purpose::Kind::kPutOnArea, "mill1");
+  EXPECT_EQ(beside.monitor.WhyNotWell(), "object_slipped");
+  mill = OnFloor("mill1", "mill", 2.5);
+  mill.attached_to = "tray";
+  Watched held = WithPurpose({{mill}}, Purpose::Kind::kPutOnArea, "mill1");
+  EXPECT_EQ(held.monitor.WhyNotWell(), "object_not_released");
 }
 
 }  // namespace

@@ -273,5 +273,21 @@ TEST(UncertaintyTest, TheConfiguredFileLoads) {
   EXPECT_GT(uncertainty.quantities.size(), 5u);
 }
 
+TEST(SampleVariationTest, HowTheRobotCameTellsHowFarItIsOff) {
+  const Uncertainty uncertainty = ParseUncertainty(
+      "start_x: {distribution: fixed, value: 0.1, unit: m, source: a}\n"
+      "start_yaw: {distribution: fixed, value: 0.2, unit: rad, source: a}\n"
+      "docked_x: {distribution: fixed, value: 0.01, unit: m, source: a}\n"
+      "grasp_z: {distribution: fixed, value: 0.004, unit: m, source: a}\n",
+      "test");
+  const simulation::Variation driven = SampleVariation(uncertainty, base::Rng(1));
+  EXPECT_EQ(driven.start_offset.x, 0.1);
+  EXPECT_EQ(driven.start_offset.yaw, 0.2);
+  const simulation::Variation docked = SampleVariation(uncertainty, base::Rng(1), Arrival::kDocked);
+  EXPECT_EQ(docked.start_offset.x, 0.01);
+  EXPECT_EQ(docked.start_offset.yaw, 0.0);
+  EXPECT_EQ(docked.grasp_offset.y(), 0.004);
+}
+
 }  // namespace
 }  // namespace hires::imagination

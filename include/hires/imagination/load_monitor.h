@@ -35,7 +35,8 @@ class LoadMonitor {
   bool is_lost() const { return is_lost_; }  ///< physics gave an object a pose that is not finite
   const std::string& first_cause() const { return first_cause_; }
 
-  /// Nothing of concern is on the way to falling or standing still again, and no bystander moves.
+  /// Nothing of concern is on the way to falling or standing still again, and no bystander that
+  /// still stands moves.
   bool IsSettled() const;
 
   /// Looks at how things are now that the action says it has reached its goal: the first of these
@@ -74,6 +75,7 @@ class LoadMonitor {
   bool IsHeld(const Object& object) const;
   bool IsHandled(const Object& object) const;
   bool Moves(int index) const;
+  bool HasFallen(const Bystander& bystander) const;
   std::string WhyNotTaken(const Object& object) const;
   std::string WhyNotStanding(const Object& object) const;
   std::string WhyHandledIsNotWell() const;

@@ -1,0 +1,89 @@
+#include "hires/evaluation/imagine_start.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/messages.h"
+
+namespace hires::evaluation {
+namespace {
+
+using hires::test_support::ConfigErrorOf;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::vector<std::string> Texts(const std::vector<base::Atom>& atoms) {
+  std::vector<std::string> texts;
+  for (const base::Atom& atom : atoms) texts.push_back(base::ToString(atom));
+  return texts;
+}
+
+StartOptions AtDoor() {
+  StartOptions options;
+  options.from = "Door";
+  return options;
+}
+
+TEST(ImagineStartTest, SaysWhatHolds) {
+  StartOptions options = AtDoor();
+  options.on_tray = {"mill1"};
+  options.in_hand = {"mug1:rightArm1"};
+  options.postures = {"torso1:TorsoUpPosture", "rightArm1:ArmCarryPosture"};
+  options.put = {"bowl1:table"};
+  const ImagineStart start = ReadStart(options, "place_object");
+  EXPECT_THAT(Texts(start.AllAtoms()), ElementsAre("RobotAt(Door)", "On(mill1, trayArea1)",
+                                                   "HasTorsoPosture(TorsoUpPosture)",
+                                                   "HasArmPosture(rightArm1, ArmCarryPosture)",
+                                                   "Holding(rightArm1, mug1)", "On(bowl1, table)"));
+  EXPECT_TRUE(start.put.empty());
+}
+
+TEST(ImagineStartTest, AnArmThatHoldsSomethingIsWhereTheStepBeforeLeavesIt) {
+  StartOptions options = AtDoor();
+  options.in_hand = {"mug1:rightArm1"};
+  EXPECT_EQ(base::ToString(ReadStart(options, "place_object").atoms.back()),
+            "HasArmPosture(rightArm1, ArmToSidePosture)");
+  EXPECT_EQ(base::ToString(ReadStart(options, "move_base").atoms.back()),
+            "HasArmPosture(rightArm1, ArmCarryPosture)");
+}
+
+TEST(ImagineStartTest, ReadsPlacesInNumbers) {
+  StartOptions options = AtDoor();
+  options.put = {"book1:table:0.1,-0.2", "book2:table:0.1,-0.2,1.5", "bowl1:1,2,0.7",
+                 "bowl2:1,2,0.7,-1"};
+  const std::vector<imagination::PutObject> put = ReadStart(options, "move_base").put;
+  ASSERT_EQ(put.size(), 4u);
+  EXPECT_EQ(put[0].object, "book1");
+  EXPECT_EQ(put[0].area, "table");
+  EXPECT_EQ(put[0].X_AO.translation, Eigen::Vector3d(0.1, -0.2, 0.0));
+  EXPECT_NEAR(geometry::YawOf(put[1].X_AO.rotation), 1.5, 1e-12);
+  EXPECT_EQ(put[2].area, "");
+  EXPECT_EQ(put[2].X_AO.translation, Eigen::Vector3d(1.0, 2.0, 0.7));
+  EXPECT_NEAR(geometry::YawOf(put[3].X_AO.rotation), -1.0, 1e-12);
+}
+
+TEST(ImagineStartTest, RefusesWhatItCannotRead) {
+  const auto why_not = [](StartOptions options, const std::string& action = "move_base") {
+    return ConfigErrorOf([&] { ReadStart(options, action); });
+  };
+  for (const char* put :
+       {"book1", "book1:", ":table", "book1:table:0.1", "book1:table:0.1,0.2,0.3,1", "book1:1,2",
+        "book1:1,x,3", "book1:table:nan,0", "a:b:c:d"}) {
+    StartOptions options = AtDoor();
+    options.put = {put};
+    EXPECT_THAT(why_not(options), AllOf(HasSubstr(put), HasSubstr("OBJECT:AREA:X,Y[,YAW]"))) << put;
+  }
+  StartOptions options = AtDoor();
+  options.in_hand = {"mug1"};
+  EXPECT_THAT(why_not(options),
+              AllOf(HasSubstr("--object-in-hand 'mug1'"), HasSubstr("OBJECT:ARM")));
+  options.in_hand = {"mug1:rightArm1"};
+  EXPECT_THAT(why_not(options, "fly"), HasSubstr("action 'fly' is unknown"));
+  options = AtDoor();
+  options.postures = {"TorsoUpPosture"};
+  EXPECT_THAT(why_not(options), AllOf(HasSubstr("--posture"), HasSubstr("ARM:POSTURE")));
+}
+
+}  // namespace
+}  // namespace hires::evaluation
