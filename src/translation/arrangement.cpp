@@ -40,21 +40,41 @@ double RadiusOf(const world::ObjectModel& model) {
   return radius;
 }
 
-/// Whether a static body's top carries a square round p_M.
-bool IsCarried(const world::World& world, const Vector3d& p_M, double half_width) {
-  constexpr double kSlack = 0.05;  // [m] in height
+/// Height of the static top within `slack` [m] of p_M that carries a square round it.
+std::optional<double> TopUnder(const world::World& world, const Vector3d& p_M, double half_width,
+                               double slack) {
+  const Vector3d half(half_width, half_width, 0.0);
   for (const world::StaticBody& body : world.statics) {
     for (const geometry::Collision& collision : body.collisions) {
       const auto bounds = geometry::BoundsOf(collision.shape, body.X_MB * collision.X_BS);
-      const Vector3d half(half_width, half_width, 0.0);
-      if (std::abs(bounds.upper.z() - p_M.z()) < kSlack &&
+      if (std::abs(bounds.upper.z() - p_M.z()) < slack &&
           ((p_M - half - bounds.lower).head<2>().array() >= 0.0).all() &&
           ((bounds.upper - p_M - half).head<2>().array() >= 0.0).all()) {
-        return true;
+        return bounds.upper.z();
       }
     }
   }
-  return false;
+  return std::nullopt;
+}
+
+/// Whether a static body's top carries a square round p_M.
+bool IsCarried(const world::World& world, const Vector3d& p_M, double half_width) {
+  constexpr double kSlack = 0.05;  // [m] in height
+  return TopUnder(world, p_M, half_width, kSlack).has_value();
+}
+
+/// An upright object that was seen a little above or below a top stands on it: the detector's error
+/// would have it begin inside the furniture, or fall.
+Pose3 Rested(const world::World& world, const world::ObjectModel& model, Pose3 X_MO) {
+  constexpr double kUpright = 0.1;      // [rad]
+  constexpr double kSeenWithin = 0.03;  // [m]: several deviations of the detector's error
+  if (geometry::TiltOf(X_MO.rotation) > kUpright) return X_MO;
+  const double foot = BoundsOf(model).lower.z();
+  const Vector3d p_MFoot = X_MO.translation + foot * Vector3d::UnitZ();
+  if (const auto top = TopUnder(world, p_MFoot, 0.0, kSeenWithin)) {
+    X_MO.translation.z() = *top - foot;
+  }
+  return X_MO;
 }
 
 /// Pose in the tool's frame of an object whose z axis points along `up_T`, grasped at a height in
@@ -146,7 +166,7 @@ class Arrangement {
     if (is_on_robot != (area.kind == AreaKind::kTray)) return false;
     const Pose3 X_MO = is_on_robot ? body_.X_ML(seen->frame) * seen->X_FO : seen->X_FO;
     if (!CountsAsOn(area, X_MO)) return false;
-    Add(object, X_MO);
+    Add(object, is_on_robot ? X_MO : Rested(*context_.world, ModelOf(object), X_MO));
     return true;
   }
 
@@ -156,7 +176,8 @@ class Arrangement {
     for (const StatedObject& stated : StatedObjects(context_, *fluents_)) {
       const bool is_named =
           wanted_.holders.count(stated.name) > 0 || wanted_.places.count(stated.name) > 0;
-      if (!is_named && stated.link.empty()) Add(stated.name, stated.X_LO);
+      if (is_named || !stated.link.empty()) continue;
+      Add(stated.name, Rested(*context_.world, ModelOf(stated.name), stated.X_LO));
     }
   }
 

@@ -75,7 +75,7 @@ struct GeometricState {
 /// else on its middle, or beside it by as little as keeps it clear of the objects that are there.
 /// On(object, trayarea1): where it was seen on the tray; else on the next free slot (middle, right,
 /// left: 0.13 m), or where there is room. Objects that only fluents know stay where they were seen
-/// in the map; those whose last place was a part of the robot, which no atom confirms, are left
+/// in the map; upright ones within 0.03 m of the top of furniture stand on it; those whose last place was a part of the robot, which no atom confirms, are left
 /// out.
 ///
 /// @param fluents  may be null: nothing was seen.
