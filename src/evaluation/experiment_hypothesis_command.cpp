@@ -112,9 +112,9 @@ double SecondsSince(Steady::time_point begin) {
 }
 
 std::string DoneLine(const HypothesisRun& run, int num_runs) {
-  return fmt::format("run {} of {} {} imagination: {}, {}{}; {:.0f} s simulated, {:.0f} s", run.run,
-                     num_runs, Arm(run.imagines), run.outcome, run.verdict,
-                     run.is_complete ? "" : run.reason, run.duration, run.wall_seconds);
+  return fmt::format("run {} of {} {} imagination: {}: {}; {:.0f} s simulated, {:.0f} s", run.run,
+                     num_runs, Arm(run.imagines), run.outcome,
+                     run.is_complete ? run.verdict : run.reason, run.duration, run.wall_seconds);
 }
 
 /// @return false when cancelled.

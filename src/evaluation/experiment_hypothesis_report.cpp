@@ -73,8 +73,10 @@ std::string FailureLines(const std::vector<HypothesisRun>& runs) {
   std::map<std::string, int> counts;
   for (const HypothesisRun& run : runs) {
     if (run.success) continue;
-    ++counts[fmt::format("{} imagination: {}: {}{}{}", run.imagines ? "with" : "without",
-                         run.outcome, run.verdict, run.reason.empty() ? "" : "; ", run.reason)];
+    std::string what = run.is_complete ? run.verdict : "";
+    if (!run.reason.empty()) what += (what.empty() ? "" : "; ") + run.reason;
+    ++counts[fmt::format("{} imagination: {}: {}", run.imagines ? "with" : "without", run.outcome,
+                         what)];
   }
   std::string text;
   for (const auto& [what, count] : counts) text += fmt::format("  {} x {}\n", count, what);

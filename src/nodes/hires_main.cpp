@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hires/evaluation/command_line.h"
+#include "hires/ros/hypothesis_run.h"
 #include "hires/ros/remote_achieve.h"
 #include "hires/ros/remote_blackboard.h"
 #include "hires/ros/remote_imagination.h"
@@ -18,6 +19,12 @@ int main(int argc, char** argv) {
   backends.imagine_remotely = hires_ros::ImagineRemotely;
   backends.achieve_remotely = hires_ros::AchieveRemotely;
   backends.connect_blackboard = hires_ros::ConnectBlackboard;
+  backends.play_hypothesis = hires_ros::PlayHypothesisRun;
+  backends.more_verbs.push_back(
+      {hires_ros::kHypothesisRunVerb, "one run of `hires experiment hypothesis`, which starts it",
+       [&](const std::vector<std::string>& words) {
+         return hires_ros::RunHypothesisProcess(words, backends.package_folder);
+       }});
   backends.more_verbs.push_back({"replay",
                                  "imagine again what a bag recorded, and compare the answers: BAG "
                                  "[--local [--threads N]] [--json FILE] [--topic NAME]",

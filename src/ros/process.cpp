@@ -41,6 +41,7 @@ struct Prepared {
   std::vector<char*> envp;
   int nice{0};
   int parent{0};
+  int output{-1};  // takes both outputs, unless negative
 };
 
 std::vector<char*> Pointers(std::vector<std::string>* texts) {
@@ -75,6 +76,10 @@ std::vector<std::string> EnvironmentWith(const std::vector<std::string>& changes
   setpriority(PRIO_PROCESS, 0, std::max(getpriority(PRIO_PROCESS, 0), prepared.nice));
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGCHLD}) {
     ::signal(signal, SIG_DFL);
+  }
+  if (prepared.output >= 0) {
+    dup2(prepared.output, STDOUT_FILENO);
+    dup2(prepared.output, STDERR_FILENO);
   }
   sigset_t none;
   sigemptyset(&none);
@@ -117,6 +122,14 @@ std::string HowItEnded(const siginfo_t& info) {
   return fmt::format("signal {} ({})", info.si_status, strsignal(info.si_status));
 }
 
+/// -1 for an empty path.
+int OpenOutput(const std::string& path) {
+  if (path.empty()) return -1;
+  const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (fd >= 0) return fd;
+  throw ConfigError(fmt::format("{}: cannot be written: {}", path, strerror(errno)));
+}
+
 bool IsExecutable(const std::string& path) { return access(path.c_str(), X_OK) == 0; }
 
 std::string OwnFolder() {
@@ -138,7 +151,14 @@ ChildProcess::ChildProcess(const ProcessOptions& options) {
   prepared.envp = Pointers(&prepared.environment);
   prepared.nice = options.nice;
   prepared.parent = getpid();
-  pid_ = StartProgram(prepared);
+  prepared.output = OpenOutput(options.output);
+  try {
+    pid_ = StartProgram(prepared);
+  } catch (...) {
+    if (prepared.output >= 0) close(prepared.output);
+    throw;
+  }
+  if (prepared.output >= 0) close(prepared.output);
 }
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept

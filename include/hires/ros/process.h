@@ -10,6 +10,7 @@ struct ProcessOptions {
   std::vector<std::string> command;      ///< program (see FindExecutable) and arguments
   std::vector<std::string> environment;  ///< "NAME=value" sets, "NAME" removes; the rest is kept
   int nice{0};                           ///< at least this niceness, -20 .. 19
+  std::string output;  ///< file that takes both outputs, made new; empty: where this process writes
 };
 
 /// A program started by this process, in a process group of its own. The kernel kills it
