@@ -1,0 +1,156 @@
+#include "hires/evaluation/experiment_hypothesis_command.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "evaluation/hypothesis_examples.h"
+#include "hires/base/text.h"
+#include "hires/evaluation/command_line.h"
+#include "support/temporary_folder.h"
+
+namespace hires::evaluation {
+namespace {
+
+using test_support::TemporaryFolder;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+const std::string kRoot = HIRES_SOURCE_DIR;
+
+struct Ended {
+  int code{0};
+  std::string out, err;
+};
+
+Ended RunWith(const std::vector<std::string>& words, const PlayHypothesis& play = {}) {
+  std::vector<std::string> arguments{"hires", "experiment", "hypothesis"};
+  arguments.insert(arguments.end(), words.begin(), words.end());
+  Backends backends;
+  backends.package_folder = kRoot;
+  backends.play_hypothesis = play;
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  Ended ended;
+  ended.code = RunCommandLine(arguments, backends);
+  ended.out = ::testing::internal::GetCapturedStdout();
+  ended.err = ::testing::internal::GetCapturedStderr();
+  return ended;
+}
+
+/// Succeeds with imagination, and without in odd runs; remembers what it was asked.
+class FakePlayer {
+ public:
+  std::optional<HypothesisRun> operator()(const HypothesisOrder& order) {
+    if (static_cast<int>(orders.size()) == stop_after) return std::nullopt;
+    orders.push_back(order);
+    HypothesisRun run = RecordOf(0, false, order.imagines || order.run % 2 == 1);
+    if (order.run == dies_in) {
+      run = {};
+      run.outcome = "system_died";
+      run.success = true;  // whatever a broken run says
+    }
+    return run;
+  }
+  PlayHypothesis AsPlay() {
+    return [this](const HypothesisOrder& order, const std::function<bool()>&) {
+      return (*this)(order);
+    };
+  }
+
+  std::vector<HypothesisOrder> orders;
+  int stop_after{-1};
+  int dies_in{-1};
+};
+
+class HypothesisCommandTest : public ::testing::Test {
+ protected:
+  std::string File(const std::string& name) const { return (folder_.path() / name).string(); }
+  std::vector<std::string> Words(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{"--scenario", "topple",  "--runs", "4",
+                                   "--resume",   File("j"), "--json", File("report.json")};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  nlohmann::json Report() const {
+    return nlohmann::json::parse(base::ReadTextFile(File("report.json")));
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(HypothesisCommandTest, PlaysEveryRunInBothArmsOnTheSameSeed) {
+  FakePlayer player;
+  const Ended ended = RunWith(Words({"--csv", File("runs.csv")}), player.AsPlay());
+  EXPECT_EQ(ended.code, kExitRecommended) << ended.err;
+  ASSERT_THAT(player.orders, SizeIs(8));
+  for (std::size_t i = 0; i < 8; i += 2) {
+    EXPECT_EQ(player.orders[i].seed, player.orders[i + 1].seed);
+    EXPECT_NE(player.orders[i].imagines, player.orders[i + 1].imagines);
+    EXPECT_EQ(player.orders[i].goal.furniture, "table1");
+  }
+  EXPECT_NE(player.orders[0].seed, player.orders[2].seed);
+  EXPECT_EQ(Report()["with_imagination"]["successes"], 4);
+  EXPECT_EQ(Report()["without_imagination"]["successes"], 2);
+  EXPECT_EQ(Report()["paired_difference"]["mean"], 0.5);
+  EXPECT_THAT(Report()["command"], HasSubstr("hires experiment hypothesis --scenario topple"));
+  EXPECT_THAT(base::Split(base::ReadTextFile(File("runs.csv")), '\n'), SizeIs(10));
+  EXPECT_THAT(ended.out, HasSubstr("4 of 4"));
+}
+
+TEST_F(HypothesisCommandTest, WhatWasPlayedBeforeAnInterruptionIsNotPlayedAgain) {
+  FakePlayer first, second, whole;
+  first.stop_after = 3;
+  const Ended stopped = RunWith(Words(), first.AsPlay());
+  EXPECT_EQ(stopped.code, kExitCancelled);
+  EXPECT_THAT(stopped.err, HasSubstr("3 of 8 runs are kept"));
+  EXPECT_EQ(RunWith(Words(), second.AsPlay()).code, kExitRecommended);
+  ASSERT_THAT(second.orders, SizeIs(5));
+  EXPECT_EQ(second.orders[0].run, 2);
+  EXPECT_FALSE(second.orders[0].imagines);
+  auto resumed = Report();
+  std::filesystem::remove(File("j"));
+  EXPECT_EQ(RunWith(Words(), whole.AsPlay()).code, kExitRecommended);
+  auto at_once = Report();
+  for (auto* report : {&resumed, &at_once}) {
+    for (auto& run : (*report)["list"]) run.erase("wall_seconds");
+  }
+  EXPECT_EQ(resumed, at_once);
+}
+
+TEST_F(HypothesisCommandTest, ARunWhoseSystemDiesCountsAsFailed) {
+  FakePlayer player;
+  player.dies_in = 1;
+  EXPECT_EQ(RunWith(Words(), player.AsPlay()).code, kExitRecommended);
+  EXPECT_EQ(Report()["with_imagination"]["successes"], 3);
+  EXPECT_EQ(Report()["with_imagination"]["complete"], 3);
+  EXPECT_EQ(Report()["list"][0]["outcome"], "system_died");
+  EXPECT_EQ(Report()["list"][0]["success"], false);
+}
+
+TEST_F(HypothesisCommandTest, RefusesBadArgumentsBeforeAnythingIsPlayed) {
+  FakePlayer player;
+  const auto error = [&](const std::vector<std::string>& words) {
+    const Ended ended = RunWith(words, player.AsPlay());
+    EXPECT_EQ(ended.code, kExitBadInput);
+    return ended.err;
+  };
+  EXPECT_THAT(error({"--scenario", "tople"}), HasSubstr("did you mean 'topple'"));
+  EXPECT_THAT(error({}), HasSubstr("--scenario"));
+  EXPECT_THAT(error({"--scenario", "topple", "--runs", "0"}), HasSubstr("--runs"));
+  EXPECT_THAT(error({"--scenario", "topple", "--pace", "-1"}), HasSubstr("--pace"));
+  EXPECT_THAT(error({"--scenario", "topple", "--workers", "0"}), HasSubstr("--workers"));
+  EXPECT_THAT(error({"--scenario", "topple", "--pace", "0.1"}), HasSubstr("wall_limit"));
+  EXPECT_THAT(error({"--scenario", "topple", "--json", "/no/such/folder/x.json"}),
+              HasSubstr("/no/such/folder"));
+  EXPECT_THAT(player.orders, SizeIs(0));
+}
+
+TEST_F(HypothesisCommandTest, SaysThatABuildWithoutRosCannotPlayIt) {
+  const Ended ended = RunWith(Words(), {});
+  EXPECT_EQ(ended.code, kExitBadInput);
+  EXPECT_THAT(ended.err, HasSubstr("build with ROS"));
+}
+
+}  // namespace
+}  // namespace hires::evaluation
