@@ -17,6 +17,12 @@ ROLLOUTS = 48
 SLOW_AND_FAST = ['--action', 'move_base_param', '--from', 'preManipulationAreaEastCounter1',
                  '--object', 'peppermill1', '--arg', 'preManipulationAreaNorthTable1', '--arg',
                  'slow,fast']
+PLACE = ['--action', 'place_object', '--from', 'manipulationAreaSouthTable1', '--object-in-hand',
+         'mug1:rightArm1', '--posture', 'torso1:TorsoUpPosture', '--posture',
+         'leftArm1:ArmToSidePosture', '--arg', 'mug1', '--arg', 'rightArm1', '--arg',
+         'placingAreaWestRightTable1']
+OCCUPIED = ['--put', 'bowl1:7.539,11.241,0.73', '--put', 'book1:7.481,11.384,0.73', '--put',
+            'book2:7.613,11.405,0.73']
 
 
 class ImaginationIdentityTest(unittest.TestCase):
@@ -73,6 +79,22 @@ class ImaginationIdentityTest(unittest.TestCase):
         local = self.local.ask('--local', **arguments).answer()
         self.assertEqual(remote.code, local.code, remote.output)
         self.assertEqual(remote.content(), local.content())
+
+    def test_arms_are_identical_too(self):
+        system = self.start(2)
+        remote = system.ask(action=PLACE, rollouts=8).answer()
+        local = self.local.ask('--local', action=PLACE, rollouts=8).answer()
+        self.assertEqual(remote.code, 0, remote.output)
+        self.assertEqual(remote.content(), local.content())
+        self.assertGreater(remote.report['ranking'][0]['counts']['notopple'], 0)
+
+    def test_what_stands_on_the_table_travels_to_the_workers(self):
+        system = self.start(2)
+        remote = system.ask(action=PLACE + OCCUPIED, rollouts=8).answer()
+        local = self.local.ask('--local', action=PLACE + OCCUPIED, rollouts=8).answer()
+        self.assertEqual(remote.code, 2, remote.output)  # all fail
+        self.assertEqual(remote.content(), local.content())
+        self.assertIn('area_occupied: book1, book2, bowl1', remote.output)
 
 
 if __name__ == '__main__':
