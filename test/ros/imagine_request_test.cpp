@@ -77,6 +77,62 @@ TEST(ImagineRequestTest, AGoalWithStatesStartsInThem) {
   EXPECT_EQ(Request(goal).setup.world_state.objects.size(), 1u);
 }
 
+/// Put the mug down, which the right hand holds.
+hires::ImagineGoal PlaceGoal() {
+  hires::ImagineGoal goal = Goal();
+  goal.action.name = "place_object";
+  goal.action.alternatives.resize(3);
+  goal.action.alternatives[0].values = {"mug1"};
+  goal.action.alternatives[1].values = {"rightArm1"};
+  goal.action.alternatives[2].values = {"placingAreaWestRightTable1"};
+  goal.updated_fluents = {MakeAtom("RobotAt", {"manipulationAreaSouthTable1"}),
+                          MakeAtom("HasTorsoPosture", {"TorsoUpPosture"}),
+                          MakeAtom("HasArmPosture", {"leftArm1", "ArmToSidePosture"}),
+                          MakeAtom("HasArmPosture", {"rightArm1", "ArmToSidePosture"}),
+                          MakeAtom("Holding", {"rightArm1", "mug1"})};
+  return goal;
+}
+
+TEST(ImagineRequestTest, WhatAHandHoldsAndHowTheArmsAreTravelsAsAState) {
+  const ImagineRequest in_symbols = Request(PlaceGoal());
+  hires::ImagineGoal goal = PlaceGoal();
+  goal.updated_fluents.clear();
+  goal.world_state = ToMsg(in_symbols.setup.world_state);
+  goal.robot_state = ToMsg(in_symbols.setup.robot_state);
+  const ImagineRequest in_numbers = Request(goal);
+  EXPECT_TRUE(in_numbers.setup.robot_state == in_symbols.setup.robot_state);
+  EXPECT_GT(in_numbers.setup.robot_state.joints.count("r_gripper_joint"), 0u);
+  ASSERT_EQ(in_numbers.setup.world_state.objects.size(), 1u);
+  const auto& mug = in_numbers.setup.world_state.objects[0];
+  EXPECT_EQ(mug.attached_to, "r_gripper_palm_link");
+  EXPECT_EQ(mug.X_MO.translation, in_symbols.setup.world_state.objects[0].X_MO.translation);
+}
+
+TEST(ImagineRequestTest, AFinalStateIsAStart) {
+  const ImagineRequest request = Request(PlaceGoal());
+  const auto result = imagination::PlayRollout(request.setup, request.actions[0], 0);
+  ASSERT_TRUE(result);
+  const hires::RolloutRecord record = ToMsg(*result, 0);
+  hires::ImagineGoal next;
+  next.action.name = "move_base_blind";
+  next.action.alternatives.resize(1);
+  next.action.alternatives[0].values = {"preManipulationAreaSouthTable1"};
+  next.rollouts = 1;
+  next.world_state = record.final_world;
+  next.robot_state = record.final_robot;
+  EXPECT_NO_THROW(Request(next));
+}
+
+TEST(ConversionsTest, ARolloutSaysWhetherAnythingWasWatched) {
+  imagination::RolloutResult result;
+  result.reason = "area_occupied: book1, book2";
+  result.nothing_watched = true;
+  const imagination::RolloutResult back = FromMsg(ToMsg(result, 3));
+  EXPECT_TRUE(imagination::SameOutcome(result, back));
+  result.nothing_watched = false;
+  EXPECT_FALSE(FromMsg(ToMsg(result, 3)).nothing_watched);
+}
+
 TEST(ImagineRequestTest, AStateOfAnotherWorldIsRefused) {
   hires::ImagineGoal goal = Goal();
   goal.updated_fluents.clear();
