@@ -96,7 +96,7 @@ TEST(AtomsOfTest, TheTorsoIsNamedWithinItsTolerance) {
   GeometricState state = RobotAt(12.5, 11.8, 3.14);
   state.robot.joints["torso_lift_joint"] = 0.28;
   EXPECT_THAT(Says(state), Contains("HasTorsoPosture(torsoupposture)"));
-  state.robot.joints["torso_lift_joint"] = 0.22;
+  state.robot.joints["torso_lift_joint"] = 0.24;
   EXPECT_THAT(Says(state), Contains("HasTorsoPosture(torsoposture)"));
 }
 
