@@ -159,9 +159,11 @@ void MiddleLayerNode::StartWaiting() {
   }
 }
 
-/// A controller that is needed and does not listen; empty: all are there.
+/// A controller that is needed and does not listen; empty: all are there. In lockstep that includes
+/// a robot that would go on without an answer.
 std::string MiddleLayerNode::MissingController(const std::set<std::string>& groups) const {
   if (groups.count("base") > 0 && base_.getNumSubscribers() == 0) return base_.getTopic();
+  if (params_.lockstep && awaited_ != ros::this_node::getName()) return ack_.getTopic();
   for (const auto* controllers : {&trajectories_, &grippers_}) {
     for (const auto& [group, publisher] : *controllers) {
       if (groups.count(group) > 0 && publisher.getNumSubscribers() == 0) {
@@ -271,6 +273,7 @@ void MiddleLayerNode::OnKnownObjects(const hires::WorldState& msg) {
 }
 
 void MiddleLayerNode::OnTick(const hires::LockstepTick& msg) {
+  awaited_ = msg.awaited;
   // A tick is repeated where the answer is late, or went before the robot listened.
   if (tick_ && tick_->header.stamp == msg.header.stamp) return;
   if (acked_ && acked_->header.stamp == msg.header.stamp) {

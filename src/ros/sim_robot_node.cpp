@@ -26,7 +26,7 @@ using hires::robot::Command;
 constexpr long kTick = 50;                                // [ms]
 constexpr long kFast = 10;                                // [ms] 100 Hz
 constexpr auto kShort = std::chrono::milliseconds(20);    // between two looks at stop_
-constexpr auto kRepeat = std::chrono::milliseconds(500);  // an unanswered tick is sent again
+constexpr auto kRepeat = std::chrono::milliseconds(100);  // an unanswered tick is sent again
 constexpr auto kLostCommand = std::chrono::seconds(2);    // announced, and has not come
 constexpr auto kLag = std::chrono::milliseconds(200);     // that is made up for; more is not
 
@@ -217,6 +217,7 @@ void SimRobotNode::PublishTick() {
   hires::LockstepTick tick;
   tick.header.stamp = SimRobotPublisher::StampOf(world_);
   tick.sensors = publisher_.PublishTick(world_, readings_, truth_);
+  if (params_.lockstep && middle_layer_ && IsMiddleLayerThere()) tick.awaited = *middle_layer_;
   publisher_.PublishFast(world_, readings_);
   tick_.publish(tick);
 }

@@ -131,7 +131,8 @@ void SimRobotPublisher::PublishLocalisation(const SensorReadings& readings,
 
 void SimRobotPublisher::PublishScan(const SimRobotWorld& world, const SensorReadings& readings,
                                     const ros::Time& stamp) {
-  std::vector<double> ranges = hires::simulation::ScanLaser(world.simulator(), laser_, &scan_rng_);
+  hires::base::Rng rng = scan_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
+  std::vector<double> ranges = hires::simulation::ScanLaser(world.simulator(), laser_, &rng);
   AddGhosts(readings.ghosts_M, laser_,
             hires::geometry::Flatten(world.simulator().X_MLink(laser_.link)), &ranges);
   sensor_msgs::LaserScan scan;
@@ -179,11 +180,12 @@ void SimRobotPublisher::PublishDetections(const SimRobotWorld& world, const ros:
       hires::perception::ViewFrom(robot, simulator.X_MLink(robot.profile.upper_body->camera_link));
   const hires::perception::DetectorParams detector{
       params_.min_visible_share, world.detection_noise(), world.detection_noise_yaw()};
+  hires::base::Rng rng = detector_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
   hires::Detections detections;
   detections.header.stamp = stamp;
   detections.header.frame_id = scene_->robot.profile.upper_body->camera_link;
   for (const hires::perception::Detection& detection :
-       hires::perception::Detect(sight, view, objects, detector, &detector_rng_)) {
+       hires::perception::Detect(sight, view, objects, detector, &rng)) {
     hires::DetectedObject object;
     object.name = detection.name;
     object.model = detection.model;

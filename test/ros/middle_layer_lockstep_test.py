@@ -67,11 +67,10 @@ class MiddleLayerLockstepTest(unittest.TestCase):
         self.system.start_robot(**robot)
         self.system.start_middle_layer()
         self.system.require_server()
-        self.system.wait_for_ack()
+        self.system.wait_for_truth(lambda s: True, 'the truth')
         goal = self.system.execute(*action).wait_for_active()
         self.system.hold(False)
         result = goal.result()
-        self.system.wait_for_truth(lambda s: True, 'the truth')
         begin = self.system.truth[0][0] + TICK  # it was held at the first one
         self.system.wait_for_truth(
             lambda s: s.joints.header.stamp.to_nsec() >= begin + result.duration * 1e9,

@@ -94,6 +94,7 @@ class MiddleLayerNode {
   std::optional<hires::LockstepTick> tick_;
   std::optional<hires::LockstepAck> acked_;  // the last one
   bool is_tick_looked_at_{false};
+  std::string awaited_;  // node for whose answers the robot waits
   std::uint64_t commands_since_ack_{0};
   Steady::time_point last_look_;
 

@@ -28,7 +28,7 @@ class SimRobotPublisher {
   void PublishFast(const SimRobotWorld& world, const SensorReadings& readings);
 
   /// What comes with every tick of 0.05 s, before the fast ones of the same moment: transforms,
-  /// localisation, laser, and the detector when it is due.
+  /// localisation, laser, and the detector when it is due. Called again, it says the same again.
   /// @return topics that have a message of this stamp, fast ones included.
   std::vector<std::string> PublishTick(const SimRobotWorld& world, const SensorReadings& readings,
                                        const TruthRecord& truth);
@@ -49,8 +49,8 @@ class SimRobotPublisher {
   const SimRobotParams params_;
   std::shared_ptr<const hires::simulation::Scene> scene_;
   hires::simulation::LaserParams laser_;
-  std::optional<long> last_look_;  // [ms] of the camera
-  hires::base::Rng scan_rng_, detector_rng_;
+  std::optional<long> last_look_;                   // [ms] of the camera
+  const hires::base::Rng scan_rng_, detector_rng_;  // forked for each moment
   ros::Publisher clock_, odometry_, joints_, amcl_, scan_, detections_, map_, world_markers_,
       markers_, true_world_, true_robot_, truth_;
   tf2_ros::TransformBroadcaster tf_;

@@ -80,6 +80,7 @@ class RobotSystem:
         self.client = None
         self.truth = []  # (stamp in ns, RobotState) in order
         self._truth_changed = threading.Condition()
+        self._truth_subscriber = None
 
     def connect(self, name):
         """Once per test program: our own node."""
@@ -90,21 +91,20 @@ class RobotSystem:
         self.codes = msg.ExecuteActionResult
         rospy.init_node(name, disable_signals=True)
         self.client = actionlib.ActionClient('execute_action', msg.ExecuteActionAction)
-        rospy.Subscriber('ground_truth/robot_state', msg.RobotState, self._on_truth,
-                         queue_size=10000, tcp_nodelay=True)
 
-    def wait_for_ack(self):
-        """Until the middle layer has answered a tick: from the next one on it decides."""
-        acked = threading.Event()
-        subscriber = self.rospy.Subscriber('lockstep/ack', self.msg.LockstepAck,
-                                           lambda _: acked.set())
-        assert acked.wait(LIMIT), 'no tick is answered: ' + self.output()
-        subscriber.unregister()
+    def _watch_truth(self):
+        """From now on, and nothing of an earlier robot that is still on its way."""
+        if self._truth_subscriber is not None:
+            self._truth_subscriber.unregister()
+        truth = self.truth = []
 
-    def _on_truth(self, state):
-        with self._truth_changed:
-            self.truth.append((state.joints.header.stamp.to_nsec(), state))
-            self._truth_changed.notify_all()
+        def note(state):
+            with self._truth_changed:
+                truth.append((state.joints.header.stamp.to_nsec(), state))
+                self._truth_changed.notify_all()
+        self._truth_subscriber = self.rospy.Subscriber(
+            'ground_truth/robot_state', self.msg.RobotState, note, queue_size=10000,
+            tcp_nodelay=True)
 
     def wait_for_truth(self, condition, what, limit=SKILL_LIMIT):
         """Waits until the true state of the robot is as wanted; that state."""
@@ -116,7 +116,7 @@ class RobotSystem:
 
     def start_robot(self, **more):
         arguments = dict(self.arguments, **more)
-        self.truth = []
+        self._watch_truth()
         self.robot = self.processes.start(
             [executable('sim_worker'), '__name:=sim_robot', '_role:=robot'] +
             ['_%s:=%s' % (key, str(value).lower() if isinstance(value, bool) else value)

@@ -197,6 +197,9 @@ class Master:
     def services(self):
         return dict((self._call('getSystemState') or [[], [], []])[2])
 
+    def topic_types(self):
+        return dict(self._call('getTopicTypes') or [])
+
     def node_uri(self, node):
         return self._call('lookupNode', node)
 

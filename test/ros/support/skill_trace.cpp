@@ -17,9 +17,9 @@ namespace {
 
 using hires::simulation::RobotSimulator;
 
-constexpr double kSettling = 0.5;  // [s]
-constexpr double kSample = 0.05;   // [s]
-constexpr double kLimit = 300.0;   // [s]
+constexpr double kSettling = 0.55;  // [s] with the tick at which the simulated robot is held
+constexpr double kSample = 0.05;    // [s]
+constexpr double kLimit = 300.0;    // [s]
 
 void Print(double time, const RobotSimulator& simulator) {
   const hires::robot::RobotState state = simulator.GetRobotState();
