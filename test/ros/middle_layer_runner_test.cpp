@@ -251,7 +251,7 @@ TEST_F(ActionRunnerTest, AFaultOfASkillEndsItAloneWithItsWords) {
 TEST_F(ActionRunnerTest, ABlindRobotStopsAndSaysSo) {
   Start(1, "move_base", Endless());
   Look(200.0);
-  runner_.CheckFreshness(200.3);
+  runner_.CheckFreshness(200.29);
   EXPECT_THAT(ended_, IsEmpty());
   sent_.clear();
   runner_.CheckFreshness(200.31);
@@ -264,7 +264,7 @@ TEST_F(ActionRunnerTest, ABlindRobotStopsAndSaysSo) {
 
 TEST_F(ActionRunnerTest, ARobotThatSeesNothingAtAllFailsTheSameWay) {
   Start(1, "move_base", Endless());  // at 100 s, and no look ever
-  runner_.CheckFreshness(100.3);
+  runner_.CheckFreshness(100.29);
   EXPECT_THAT(ended_, IsEmpty());
   runner_.CheckFreshness(100.4);
   ASSERT_EQ(ended_.size(), 1u);

@@ -114,7 +114,7 @@ TEST_F(SensesTest, ThePlaceIsOdometryCorrected) {
 TEST_F(SensesTest, SeveralNodesMayTellOfJoints) {
   senses_.OnLocalisation(1.0, {});
   TellBase(1.0);
-  senses_.OnJoints(1.01, {{{"b", 2.0}}, {}});
+  senses_.OnJoints(1.0, {{{"b", 2.0}}, {}});
   EXPECT_THAT(senses_.Look(1.0).joints, SizeIs(2));
 }
 

@@ -146,6 +146,9 @@ class SimRobotWorldTest : public ::testing::Test {
     setup.uncertainty = std::make_shared<const hires::imagination::Uncertainty>(
         hires::imagination::UncertaintyFromText(uncertainty, "test"));
     setup.object_models = {{"mill1", "mill"}};
+    setup.translator.object_models = setup.object_models;
+    setup.translator.world = {setup.scene, &setup.scene->world};
+    setup.translator.robot = {setup.scene, &setup.scene->robot};
     return setup;
   }
   static hires::imagination::StartState Start() {
@@ -300,10 +303,10 @@ TEST_F(SimRobotParamsTest, TheFileOfThePackageIsComplete) {
 }
 
 TEST_F(SimRobotParamsTest, WhatMakesNoSenseIsNamed) {
-  EXPECT_THAT(Refusal("pace: 1.0", "pace: -1.0"), HasSubstr("pace is -1"));
+  EXPECT_THAT(Refusal("pace: 1.0", "pace: -1.0"), HasSubstr("pace is '-1.0'"));
   EXPECT_THAT(Refusal("pace: 1.0", "speed: 1.0"), HasSubstr("pace"));
   EXPECT_THAT(Refusal("period: 0.5", "period: 0.12"), HasSubstr("multiple of 0.05 s"));
-  EXPECT_THAT(Refusal("beams: 640", "beams: 1"), HasSubstr("beams is 1"));
+  EXPECT_THAT(Refusal("beams: 640", "beams: 1"), HasSubstr("laser.beams is '1'"));
   EXPECT_THAT(Refusal("hold: false", "hold: maybe"), HasSubstr("hold"));
 }
 
