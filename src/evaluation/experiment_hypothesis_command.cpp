@@ -193,7 +193,7 @@ std::string HashOfFiles(const std::string& package_folder) {
 
 int RunHypothesisVerb(const HypothesisOptions& options, const std::string& package_folder,
                       const PlayHypothesis& play, const std::function<bool()>& cancelled) {
-  const std::string path = package_folder + "/config/experiments/hypothesis.yaml";
+  const std::string path = package_folder + "/config/hypothesis.yaml";
   const HypothesisGoal goal = ReadHypothesisGoal(path, options.scenario);
   CheckLimits(goal, options.pace, path);
   if (!play) {

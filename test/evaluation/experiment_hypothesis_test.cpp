@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
-const std::string kFile = kRoot + "/config/experiments/hypothesis.yaml";
+const std::string kFile = kRoot + "/config/hypothesis.yaml";
 
 world::StaticBody Table() {
   world::StaticBody table;

@@ -23,7 +23,7 @@ struct HypothesisGoal {
   double wall_limit{3600.0};         ///< [s] likewise, for a whole run
 };
 
-/// Reads a file like config/experiments/hypothesis.yaml.
+/// Reads a file like config/hypothesis.yaml.
 /// @throws base::ConfigError naming file and key; for an unknown scenario, with names like it.
 HypothesisGoal ReadHypothesisGoal(const std::string& path, const std::string& scenario);
 
