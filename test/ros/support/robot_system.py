@@ -81,6 +81,7 @@ class RobotSystem:
         self.truth = []  # (stamp in ns, RobotState) in order
         self._truth_changed = threading.Condition()
         self._truth_subscriber = None
+        self._known_objects = None
 
     def connect(self, name):
         """Once per test program: our own node."""
@@ -113,6 +114,15 @@ class RobotSystem:
                     lambda: self.truth and condition(self.truth[-1][1]), limit):
                 raise AssertionError('waited in vain for ' + what)
             return self.truth[-1][1]
+
+    def wait_for_standstill(self):
+        """While the world is held: the stamp [ns] at which it stands."""
+        def is_repeated():
+            return len(self.truth) > 1 and self.truth[-1][0] == self.truth[-2][0]
+        with self._truth_changed:
+            if not self._truth_changed.wait_for(is_repeated, LIMIT):
+                raise AssertionError('waited in vain for the world to stand')
+            return self.truth[-1][0]
 
     def start_robot(self, **more):
         arguments = dict(self.arguments, **more)
@@ -157,6 +167,20 @@ class RobotSystem:
 
     def execute(self, name, *arguments, limit=0.0):
         return Goal(self.client, self.goal(name, *arguments, limit=limit))
+
+    def tell(self, objects):
+        """Says where objects are, as the world tracker does: {name: (model, x, y, z)}."""
+        state = self.msg.WorldState()
+        state.header.frame_id = 'map'
+        for name, (model, x, y, z) in objects.items():
+            told = self.msg.ObjectState(name=name, model=model)
+            told.pose.position.x, told.pose.position.y, told.pose.position.z = x, y, z
+            told.pose.orientation.w = 1.0
+            state.objects.append(told)
+        if self._known_objects is None:
+            self._known_objects = self.rospy.Publisher('known_objects', self.msg.WorldState,
+                                                       latch=True, queue_size=1)
+        self._known_objects.publish(state)
 
     def call(self, service, kind, **fields):
         """The answer of a service of the simulated robot."""

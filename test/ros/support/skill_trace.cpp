@@ -11,6 +11,7 @@
 #include <iostream>
 
 #include "hires/base/error.h"
+#include "hires/base/text.h"
 #include "hires/ros/sim_robot_world.h"
 
 namespace {
@@ -37,7 +38,6 @@ void StepFor(double duration, RobotSimulator* simulator) {
 }
 
 hires::skills::Status Play(hires::skills::Skill* skill, RobotSimulator* simulator) {
-  StepFor(kSettling, simulator);
   const double start = simulator->time();
   hires::skills::Status status;
   double next = start;
@@ -55,11 +55,46 @@ hires::skills::Status Play(hires::skills::Skill* skill, RobotSimulator* simulato
   return {hires::skills::Progress::kFailed, "timed_out"};
 }
 
+void Remember(const hires::world::WorldState& world, RobotSimulator* simulator) {
+  std::vector<hires::robot::SeenObject> told;
+  for (const hires::world::ObjectState& object : world.objects) {
+    told.push_back({hires::base::ToLower(object.name), object.model, object.X_MO, 0.0, ""});
+  }
+  simulator->Remember(told);
+}
+
+/// The words between commas.
+std::vector<hires::base::ActionCall> ActionsFrom(const std::vector<std::string>& words) {
+  std::vector<hires::base::ActionCall> actions(1);
+  for (const std::string& word : words) {
+    if (word == ",") {
+      actions.emplace_back();
+    } else if (actions.back().name.empty()) {
+      actions.back().name = word;
+    } else {
+      actions.back().arguments.push_back(word);
+    }
+  }
+  return actions;
+}
+
+void PlayAll(const hires::imagination::ImaginationSetup& setup,
+             const std::vector<hires::base::ActionCall>& actions, RobotSimulator* simulator) {
+  StepFor(kSettling, simulator);
+  for (const hires::base::ActionCall& action : actions) {
+    const auto skill = hires::skills::MakeSkill(*setup.skills, action);
+    const hires::skills::Status status = Play(skill.get(), simulator);
+    const bool is_done = status.progress == hires::skills::Progress::kSucceeded;
+    std::cout << "end " << (is_done ? "succeeded" : status.reason) << std::endl;
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 4) {
-    std::cerr << "usage: skill_trace SCENE AREA|SCENARIO.yaml ACTION [ARGUMENT ...]\n";
+    std::cerr
+        << "usage: skill_trace SCENE AREA|SCENARIO.yaml ACTION [ARGUMENT ...] [, ACTION ...]\n";
     return EXIT_FAILURE;
   }
   try {
@@ -73,12 +108,10 @@ int main(int argc, char** argv) {
     const auto start = hires_ros::StartOf(setup, params);
     RobotSimulator simulator(setup.scene, {}, start.world, start.robot, hires::base::Rng(1),
                              setup.physics, hires_ros::LevelFor(*setup.scene));
-    const auto skill = hires::skills::MakeSkill(*setup.skills, {argv[3], {argv + 4, argv + argc}});
-    const hires::skills::Status status = Play(skill.get(), &simulator);
-    std::cout << "end "
-              << (status.progress == hires::skills::Progress::kSucceeded ? "succeeded"
-                                                                         : status.reason)
-              << std::endl;
+    if (simulator.level() == hires::simulation::LevelOfDetail::kPlanar) {
+      Remember(start.world, &simulator);
+    }
+    PlayAll(setup, ActionsFrom({argv + 3, argv + argc}), &simulator);
   } catch (const hires::base::ConfigError& error) {
     std::cerr << error.what() << "\n";
     return EXIT_FAILURE;
