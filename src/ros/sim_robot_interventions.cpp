@@ -18,6 +18,8 @@ constexpr double kDropDistance = 0.75;  // [m] from the base to where things fal
 constexpr double kDropHeight = 0.4;     // [m]
 constexpr double kDropTilt = 1.2;       // [rad]
 constexpr int kDropBearings = 16;
+constexpr double kLowestLoad = 0.1;  // [m] above the floor: what lies lower is not carried
+constexpr std::uint64_t kFirstRebuilt = 1000;  // stream of chance
 
 void Erase(const std::string& object, WorldState* state) {
   auto& objects = state->objects;
@@ -36,24 +38,59 @@ std::string Unknown(const WorldState& state, const std::string& object) {
 
 }  // namespace
 
-/// The simulator cannot be changed from outside, so another one goes on from its state.
-std::string SimRobotWorld::Rebuild(const WorldState& world, const hires::robot::RobotState& robot) {
+/// What joints and empty hands have been told and have not done yet, from now on.
+hires::robot::Command SimRobotWorld::RestOfMotions(const WorldState& world) const {
+  hires::robot::Command rest;
+  for (const auto& [group, sent] : trajectories_) {
+    hires::robot::JointTrajectory left{sent.trajectory.joints, {}};
+    for (hires::robot::TrajectoryPoint point : sent.trajectory.points) {
+      point.time -= time() - sent.time;
+      if (point.time > 0.0) left.points.push_back(std::move(point));
+    }
+    if (!left.points.empty()) rest.trajectories[group] = std::move(left);
+  }
+  for (const auto& [arm, gripper] : grippers_) {
+    const std::string& palm = setup_->scene->robot.profile.upper_body->arms.at(arm).palm_link;
+    const bool holds = std::any_of(world.objects.begin(), world.objects.end(),
+                                   [&](const ObjectState& o) { return o.attached_to == palm; });
+    if (!holds) rest.grippers[arm] = gripper;
+  }
+  return rest;
+}
+
+/// A simulator cannot be changed from outside, so another one goes on from its state: at rest, from
+/// where base and joints take up their motions again.
+std::string SimRobotWorld::Rebuild(WorldState world, const hires::robot::RobotState& robot) {
   hires::simulation::Variation variation = variation_;
   variation.start_offset = {};  // robot and objects stand where they are, no further draw
   variation.object_offset = {0.0, 0.0};
   variation.grasp_offset = {0.0, 0.0};
   variation.grasp_turn = 0.0;
+  for (ObjectState& object : world.objects) {
+    if (RidesAlong(object, robot.X_MB)) object.V_MO = {};  // as its carrier
+  }
   try {
-    simulator_ = std::make_unique<hires::simulation::RobotSimulator>(
-        setup_->scene, variation, world, robot, simulator_rng_.Fork(1000 + num_rebuilt_),
+    auto simulator = std::make_unique<hires::simulation::RobotSimulator>(
+        setup_->scene, variation, world, robot, simulator_rng_.Fork(kFirstRebuilt + num_rebuilt_),
         setup_->physics, LevelFor(*setup_->scene));
-    ++num_rebuilt_;
+    simulator->Send(RestOfMotions(world));
+    simulator_ = std::move(simulator);
   } catch (const hires::base::ConfigError& error) {
     return error.what();
   }
+  ++num_rebuilt_;
   last_delivery_ = late_until_ = -1e9;
   held_back_.reset();
   return "";
+}
+
+/// In a hand, or over the base.
+bool SimRobotWorld::RidesAlong(const ObjectState& object, const Pose2& X_MB) const {
+  if (!object.attached_to.empty()) return true;
+  const Pose3 X_BO = hires::geometry::Lift(X_MB).Inverse() * object.X_MO;
+  return X_BO.translation.z() > kLowestLoad &&
+         hires::geometry::Contains(setup_->scene->robot.profile.footprint,
+                                   X_BO.translation.head<2>());
 }
 
 std::string SimRobotWorld::Push(const Pose2& offset) {
@@ -61,20 +98,15 @@ std::string SimRobotWorld::Push(const Pose2& offset) {
     return "the offset is not finite; give numbers";
   }
   hires::robot::RobotState robot = simulator_->GetRobotState();
-  const Pose3 X_MB = hires::geometry::Lift(robot.X_MB);
+  const Pose2 X_MBold = robot.X_MB;
   robot.X_MB = robot.X_MB * offset;
   WorldState world = simulator_->GetWorldState();
-  const auto move = [&](ObjectState* object) {
-    object->X_MO = hires::geometry::Lift(robot.X_MB) * X_MB.Inverse() * object->X_MO;
-    object->V_MO = {};
-  };
-  for (std::size_t i = 0; i < world.objects.size(); ++i) {
-    const auto& carried = simulator_->carried();
-    const bool is_carried =
-        std::find(carried.begin(), carried.end(), static_cast<int>(i)) != carried.end();
-    if (is_carried || !world.objects[i].attached_to.empty()) move(&world.objects[i]);
+  for (ObjectState& object : world.objects) {
+    if (!RidesAlong(object, X_MBold)) continue;
+    object.X_MO =
+        hires::geometry::Lift(robot.X_MB) * hires::geometry::Lift(X_MBold).Inverse() * object.X_MO;
   }
-  return Rebuild(world, robot);
+  return Rebuild(std::move(world), robot);
 }
 
 std::string SimRobotWorld::Remove(const std::string& object) {

@@ -132,12 +132,20 @@ void SimRobotWorld::Apply(const hires::robot::Command& command) {
   hires::robot::Command rest = command;
   rest.base_velocity.reset();
   simulator_->Send(rest);
+  NoteSent(rest);
   if (!command.base_velocity) return;
   if (time() < late_until_) {
     held_back_ = command.base_velocity;
   } else {
     Deliver(*command.base_velocity);
   }
+}
+
+void SimRobotWorld::NoteSent(const hires::robot::Command& command) {
+  for (const auto& [group, trajectory] : command.trajectories) {
+    trajectories_[group] = {time(), trajectory};
+  }
+  for (const auto& [arm, gripper] : command.grippers) grippers_[arm] = gripper;
 }
 
 void SimRobotWorld::Deliver(const Twist2& velocity) {

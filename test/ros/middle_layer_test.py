@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""The middle layer and the simulated robot as real processes: driving, breaking off, a robot that is
-pushed, goals that make no sense, goals side by side, the end of the node. In lockstep, as fast as it
-goes. Run alone, or by `rostest hires middle_layer.test`."""
+"""The middle layer and the simulated robot as real processes: driving, arms and hands, breaking off, a
+robot that is pushed, objects that vanish or slip, goals that make no sense, goals side by side, the
+end of the node. In lockstep, as fast as it goes. Run alone, or by `rostest hires middle_layer.test`.
+"""
 
 import math
 import os
@@ -19,6 +20,21 @@ from ros_processes import wait_until  # noqa: E402
 # Poses of areas in worlds/restaurant.world: x, y [m], yaw [rad].
 EAST_TABLE_2 = (11.78, 11.49, 3.14)
 START = (12.5, 11.8, 3.14)
+TORSO_MIDDLE = 0.2  # [m]
+MUG = (5.47, 10.16, 0.75)
+COUNTER = """
+task: none
+knowledge: []
+robot:
+  pose: [6.0, 10.11, 3.14]  # manipulationAreaEastCounter1
+  torso: torsoupposture
+  arms: {leftarm1: armtosideposture, rightarm1: armtosideposture}
+objects:
+  - {name: mug1, pose: [%g, %g, %g, 0.0]}
+hidden: []
+""" % MUG
+TOPPLE = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..',
+                                      'config', 'scenarios', 'topple.yaml'))
 XY_TOLERANCE, YAW_TOLERANCE = 0.2, 0.17  # config/scene.yaml
 STOPPING = 0.08  # [m] the base rolls on a little after it counts as arrived
 
@@ -40,9 +56,18 @@ class MiddleLayerTest(unittest.TestCase):
         cls.codes = cls.system.codes
 
     def setUp(self):
-        self.system.start_robot()
+        self.begin()
+
+    def begin(self, **robot):
+        self.system.end_processes()
+        self.system.start_robot(**robot)
         self.system.start_middle_layer()
         self.system.require_server()
+
+    def begin_at_counter(self):
+        """Ready to grasp the mug, which stands before the robot."""
+        self.system.tell({'mug1': ('coffee_cup', *MUG)})
+        self.begin(scenario=self.system.processes.write('counter.yaml', COUNTER))
 
     def tearDown(self):
         self.assertTrue(self.system.robot.is_running(), self.system.robot.output())
@@ -132,6 +157,112 @@ class MiddleLayerTest(unittest.TestCase):
                 self.system.wait_for_truth(lambda s: speed(s) < 0.02, 'the robot to stand')
                 self.system.start_middle_layer()
                 self.system.require_server()
+
+    # Arms and hands
+
+    def joints(self):
+        state = self.system.truth[-1][1]
+        return dict(zip(state.joints.name, state.joints.position))
+
+    def require_standing_joints(self):
+        """No joint moves: two states of the truth in a row are the same."""
+        self.system.hold(True)
+        self.system.wait_for_standstill()
+        self.system.hold(False)
+        count = len(self.system.truth)
+        self.system.wait_for_truth(lambda s: len(self.system.truth) > count + 2, 'time to go on')
+        states = [state.joints.position for _, state in self.system.truth[count:count + 2]]
+        for before, after in zip(*states):
+            self.assertAlmostEqual(before, after, delta=1e-3)
+
+    def test_what_needs_different_joints_runs_side_by_side(self):
+        self.begin(scenario=TOPPLE)
+        drive = self.system.execute('move_base', 'preManipulationAreaEastTable2')
+        tuck = self.system.execute('tuck_arms', 'armTuckedPosture', 'armTuckedPosture')
+        lift = self.system.execute('move_torso', 'torsoMiddlePosture')
+        durations = [self.require(goal.result(), self.codes.SUCCEEDED).duration
+                     for goal in (drive, tuck, lift)]
+        begin = self.system.truth[0][0]
+        self.system.wait_for_truth(
+            lambda s: abs(self.joints()['torso_lift_joint'] - TORSO_MIDDLE) < 0.02,
+            'the torso to be up')
+        took = (self.system.truth[-1][0] - begin) * 1e-9
+        self.assertLess(took, sum(durations))
+        self.assertLess(distance(self.system.truth[-1][1], EAST_TABLE_2), XY_TOLERANCE + STOPPING)
+
+    def test_preempting_the_torso_leaves_it_where_it_is(self):
+        self.begin(scenario=TOPPLE)
+        goal = self.system.execute('move_torso', 'torsoUpPosture')
+        self.system.wait_for_truth(
+            lambda s: self.joints()['torso_lift_joint'] > 0.05, 'the torso to rise')
+        self.require(goal.cancel().result(), self.codes.PREEMPTED)
+        self.require_standing_joints()
+        self.assertLess(self.joints()['torso_lift_joint'], 0.29)
+
+    def test_preempting_arms_leaves_them_where_they_are(self):
+        self.begin(scenario=TOPPLE)
+        goal = self.system.execute('tuck_arms', 'armTuckedPosture', 'armTuckedPosture')
+        self.system.wait_for_truth(
+            lambda s: self.joints()['r_shoulder_lift_joint'] < 0.7, 'the right arm to move')
+        self.require(goal.cancel().result(), self.codes.PREEMPTED)
+        self.require_standing_joints()
+
+    def held(self):
+        """{object: link}, as it really is."""
+        return {o.name: o.attached_to for o in self.world.objects if o.attached_to}
+
+    def watch_world(self):
+        from hires.msg import WorldState
+
+        def note(world):
+            self.world = world
+        subscriber = self.system.rospy.Subscriber('ground_truth/world_state', WorldState, note)
+        self.addCleanup(subscriber.unregister)
+
+    def test_picks_up_and_places(self):
+        self.begin_at_counter()
+        self.watch_world()
+        goal = self.system.execute('pick_up_object', 'mug1', 'rightArm1')
+        self.require(goal.result(), self.codes.SUCCEEDED)
+        wait_until(lambda: self.held() == {'mug1': 'r_gripper_palm_link'}, 'the mug to be held')
+        phases = [feedback.phase for feedback in goal.feedback]
+        self.assertIn('close_gripper', phases)
+        goal = self.system.execute('place_object', 'mug1', 'rightArm1',
+                                   'placingAreaEastRightCounter1')
+        self.require(goal.result(), self.codes.SUCCEEDED)
+        wait_until(lambda: not self.held(), 'the mug to be let go')
+
+    def test_preempting_while_holding_keeps_what_is_held(self):
+        self.begin_at_counter()
+        self.watch_world()
+        goal = self.system.execute('pick_up_object', 'mug1', 'rightArm1')
+        goal.wait_for_feedback(lambda f: f.phase == 'lift', 'the mug to be lifted')
+        self.require(goal.cancel().result(), self.codes.PREEMPTED)
+        self.require_standing_joints()
+        self.assertEqual(self.held(), {'mug1': 'r_gripper_palm_link'})
+        goal = self.system.execute('place_object', 'mug1', 'rightArm1',
+                                   'placingAreaEastRightCounter1')
+        goal.result()  # whatever it can do from there: the next one is taken
+
+    def test_an_object_that_vanishes_before_it_is_grasped_is_missed(self):
+        self.begin_at_counter()
+        goal = self.system.execute('pick_up_object', 'mug1', 'rightArm1')
+        goal.wait_for_feedback(lambda f: f.phase == 'reach', 'the arm to reach out')
+        answer = self.system.call('remove_object', self.system.srv.ObjectRequest, name='mug1')
+        self.assertTrue(answer.success, answer.message)
+        result = goal.result()
+        self.assertEqual(result.code, self.codes.FAILED)
+        self.assertIn(result.reason, ('grasp_failed', 'object_not_seen', 'object_slipped'))
+
+    def test_an_object_that_slips_away_is_missed_when_it_is_placed(self):
+        self.begin_at_counter()
+        goal = self.system.execute('pick_up_object', 'mug1', 'rightArm1')
+        self.require(goal.result(), self.codes.SUCCEEDED)
+        answer = self.system.call('drop', self.system.srv.ObjectRequest, name='mug1')
+        self.assertTrue(answer.success, answer.message)
+        result = self.system.execute('place_object', 'mug1', 'rightArm1',
+                                     'placingAreaEastRightCounter1').result()
+        self.assertEqual((result.code, result.reason), (self.codes.FAILED, 'object_slipped'))
 
     # Goals
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -63,7 +63,11 @@ class SimRobotWorld {
   void Deliver(const hires::geometry::Twist2& velocity);
   void DeliverLate();
   void MoveOdometry(double dt);
-  std::string Rebuild(const hires::world::WorldState& world, const hires::robot::RobotState& robot);
+  void NoteSent(const hires::robot::Command& command);
+  hires::robot::Command RestOfMotions(const hires::world::WorldState& world) const;
+  std::string Rebuild(hires::world::WorldState world, const hires::robot::RobotState& robot);
+  bool RidesAlong(const hires::world::ObjectState& object,
+                  const hires::geometry::Pose2& X_MB) const;
 
   std::shared_ptr<const hires::imagination::ImaginationSetup> setup_;
   hires::base::Rng control_rng_, simulator_rng_;
@@ -74,6 +78,14 @@ class SimRobotWorld {
   std::unique_ptr<hires::simulation::RobotSimulator> simulator_;
   long milliseconds_{0};
   hires::geometry::Pose2 X_OB_;
+
+  /// What a group of joints was told last.
+  struct SentTrajectory {
+    double time;  // [s]
+    hires::robot::JointTrajectory trajectory;
+  };
+  std::map<std::string, SentTrajectory> trajectories_;            // by group
+  std::map<std::string, hires::robot::GripperCommand> grippers_;  // by arm
 
   // A control cycle that comes late: its commands wait until then.
   double last_delivery_{-1e9};  // [s]

@@ -126,6 +126,7 @@ class RobotSystem:
 
     def start_robot(self, **more):
         arguments = dict(self.arguments, **more)
+        self._forget_parameters('/sim_robot')
         self._watch_truth()
         self.robot = self.processes.start(
             [executable('sim_worker'), '__name:=sim_robot', '_role:=robot'] +
@@ -134,12 +135,18 @@ class RobotSystem:
         return self.robot
 
     def start_middle_layer(self, *remaps, **arguments):
+        self._forget_parameters('/middle_layer')
         arguments.setdefault('lockstep', self.arguments.get('lockstep', False))
         self.middle_layer = self.processes.start(
             [executable('middle_layer'), *remaps] +
             ['_%s:=%s' % (key, str(value).lower() if isinstance(value, bool) else value)
              for key, value in arguments.items()], self.main)
         return self.middle_layer
+
+    def _forget_parameters(self, node):
+        """What an earlier process was started with stays at the master."""
+        if self.rospy.has_param(node):
+            self.rospy.delete_param(node)
 
     def require_server(self):
         """Time may stand still, so that rospy's own waiting would never end."""
