@@ -144,19 +144,27 @@ void MiddleLayerNode::OnGoal(GoalHandle goal) {
 void MiddleLayerNode::StartWaiting() {
   for (auto waiting = waiting_.begin(); waiting != waiting_.end();) {
     const auto action = FromMsg(waiting->goal.getGoal()->action);
-    const std::string missing = MissingController(GroupsOf(action));
+    const std::string why_not = WhyNotReady(GroupsOf(action));
     const std::chrono::duration<double> waited = Steady::now() - waiting->since;
-    if (missing.empty()) {
+    if (why_not.empty()) {
       StartGoal(waiting->goal);
-    } else if (waited.count() > params_.controller_patience) {
-      waiting->goal.setRejected(
-          ResultOf(ExecuteActionResult::FAILED, "no_controller: " + missing, 0.0));
+    } else if (waited.count() > params_.start_patience) {
+      waiting->goal.setRejected(ResultOf(ExecuteActionResult::FAILED, why_not, 0.0));
     } else {
       ++waiting;
       continue;
     }
     waiting = waiting_.erase(waiting);
   }
+}
+
+/// The reason why an action would fail at once; empty: nothing is missing.
+std::string MiddleLayerNode::WhyNotReady(const std::set<std::string>& groups) const {
+  const std::string controller = MissingController(groups);
+  if (!controller.empty()) return "no_controller: " + controller;
+  const bool is_fresh = senses_.Missing().empty() && !ros::Time::now().isZero() &&
+                        ros::Time::now().toSec() - looked_ <= params_.runner.stale_after;
+  return is_fresh || params_.lockstep ? "" : "stale_observation";
 }
 
 /// A controller that is needed and does not listen; empty: all are there. In lockstep that includes

@@ -38,7 +38,7 @@ MiddleLayerParams ReadMiddleLayerParams(const std::string& path) {
   params.runner.stale_after = in.Get("stale_after", Between(0.05, 10.0));
   params.runner.stop = ReadStopping(in.Sub("stopping"));
   params.scan = ReadScan(in.Sub("scan"));
-  params.controller_patience = in.Get("controller_patience", Between(0.0, 600.0));
+  params.start_patience = in.Get("start_patience", Between(0.0, 600.0));
   params.feedback_period = in.Get("feedback_period", Between(0.01, 60.0));
   params.lockstep = in.GetBool("lockstep");
   in.RejectUnknownKeys();

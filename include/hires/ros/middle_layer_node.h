@@ -46,7 +46,7 @@ class MiddleLayerNode {
   using GoalHandle = Server::GoalHandle;
   using Steady = std::chrono::steady_clock;
 
-  /// A goal whose controllers may not be connected yet.
+  /// A goal whose controllers and sensors may not be connected yet.
   struct Waiting {
     GoalHandle goal;
     Steady::time_point since;
@@ -80,6 +80,7 @@ class MiddleLayerNode {
   void Tend();  ///< what is due by the clocks
   void PublishFeedback();
   void Send(const hires::robot::Command& command);
+  std::string WhyNotReady(const std::set<std::string>& groups) const;
   std::string MissingController(const std::set<std::string>& groups) const;
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 

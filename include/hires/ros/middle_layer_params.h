@@ -10,9 +10,9 @@ struct MiddleLayerParams {
   hires::imagination::SetupConfig setup;
   RunnerParams runner;
   ScanParams scan;
-  double controller_patience{5.0};  ///< [s] by the wall's clock
-  double feedback_period{0.2};      ///< [s]
-  bool lockstep{false};             ///< acknowledge every tick of a simulated robot
+  double start_patience{5.0};   ///< [s] by the wall's clock, that controllers and sensors may take
+  double feedback_period{0.2};  ///< [s]
+  bool lockstep{false};         ///< acknowledge every tick of a simulated robot
 };
 
 /// Reads a file like config/middle_layer.yaml.  @throws hires::base::ConfigError.
