@@ -10,8 +10,8 @@
 #include <string>
 
 #include "hires/ros/trace_markers.h"
-#include "hires/simulation/scene.h"
 #include "hires/simulation/robot_simulator.h"
+#include "hires/simulation/scene.h"
 
 namespace hires_ros {
 
