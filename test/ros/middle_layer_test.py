@@ -318,4 +318,4 @@ class MiddleLayerTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'middle_layer', MiddleLayerTest)
+    rosunit.unitrun('hires', 'middle_layer_node', MiddleLayerTest)

@@ -185,4 +185,4 @@ class SimRobotTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'sim_robot', SimRobotTest)
+    rosunit.unitrun('hires', 'sim_robot_node', SimRobotTest)
