@@ -169,7 +169,8 @@ const ArmJoints& ArmKinematics::upper() const { return impl_->upper; }
 
 Pose3 ArmKinematics::ToolPose(const robot::JointPositions& posture, const ArmJoints& joints) const {
   impl_->CheckSize(joints);
-  KDL::ChainFkSolverPos_recursive forward(impl_->chain);
+  const KDL::Chain chain = impl_->chain;  // of this call alone: see InverseIteration
+  KDL::ChainFkSolverPos_recursive forward(chain);
   KDL::JntArray q(joints.size());
   q.data = ToVector(joints);
   KDL::Frame X_ST;

@@ -17,11 +17,12 @@ constexpr double kProgress = 0.9;      // the error has to shrink to this share 
 
 InverseIteration::InverseIteration(const KDL::Chain& chain, const Eigen::VectorXd& lower,
                                    const Eigen::VectorXd& upper, const InverseParams& params)
-    : lower_(lower),
+    : chain_(chain),
+      lower_(lower),
       upper_(upper),
       params_(params),
-      forward_(chain),
-      jacobian_solver_(chain),
+      forward_(chain_),
+      jacobian_solver_(chain_),
       joints_(chain.getNrOfJoints()),
       jacobian_(chain.getNrOfJoints()) {}
 

@@ -16,6 +16,8 @@ class InverseIteration {
  public:
   InverseIteration(const KDL::Chain& chain, const Eigen::VectorXd& lower,
                    const Eigen::VectorXd& upper, const InverseParams& params);
+  InverseIteration(const InverseIteration&) = delete;
+  InverseIteration& operator=(const InverseIteration&) = delete;
 
   /// @param goal  in the frame of the chain's root.
   std::optional<Eigen::VectorXd> Run(const KDL::Frame& goal, const Eigen::VectorXd& start);
@@ -27,6 +29,9 @@ class InverseIteration {
   Eigen::VectorXd Step(const Eigen::Matrix<double, 6, 1>& error);
   bool HoldPushedJoints(const Eigen::VectorXd& step, Eigen::MatrixXd* jacobian) const;
 
+  // KDL's joints remember the last position behind their const functions, and its solvers only
+  // refer to the chain: a chain of one's own keeps threads apart.
+  KDL::Chain chain_;
   Eigen::VectorXd lower_, upper_;
   InverseParams params_;
   KDL::ChainFkSolverPos_recursive forward_;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <future>
 
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
@@ -131,6 +132,32 @@ TEST_P(ArmKinematicsTest, SameSeedGivesTheSameBitsAndAnotherSeedOtherSolutions) 
   const ArmJoints near = arm_.JointsOf(posture_);
   EXPECT_EQ(arm_.Solve(posture_, X_BT, near, 9), arm_.Solve(posture_, X_BT, near, 9));
   EXPECT_NE(arm_.Solve(posture_, X_BT, near, 9), arm_.Solve(posture_, X_BT, near, 10));
+}
+
+/// Pose and solution of random postures; each sequence of its own for another `seed`.
+std::vector<ArmJoints> AnswersOf(const ArmKinematics& arm, std::uint64_t seed) {
+  base::Rng rng(seed);
+  std::vector<ArmJoints> answers;
+  for (int i = 0; i < 50; ++i) {
+    const robot::JointPositions& posture = Pr2().profile.joints;
+    const Pose3 X_BT = arm.ToolPose(posture, RandomJoints(arm, &rng));
+    for (auto& solution : arm.Solve(posture, X_BT, RandomJoints(arm, &rng), seed, {})) {
+      answers.push_back(std::move(solution));
+    }
+  }
+  return answers;
+}
+
+TEST_P(ArmKinematicsTest, ThreadsThatShareItDoNotDisturbEachOther) {
+  std::vector<std::future<std::vector<ArmJoints>>> shared;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    shared.push_back(
+        std::async(std::launch::async, [this, seed] { return AnswersOf(arm_, seed); }));
+  }
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const ArmKinematics own(Pr2(), GetParam());
+    EXPECT_EQ(shared[seed].get(), AnswersOf(own, seed));
+  }
 }
 
 TEST_P(ArmKinematicsTest, BeyondItsReachThereIsNoSolution) {
