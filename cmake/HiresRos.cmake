@@ -1,9 +1,9 @@
 # What only the ROS build needs: messages, nodes, rostests, installation.
 
 find_package(catkin REQUIRED COMPONENTS
-  actionlib actionlib_msgs diagnostic_msgs diagnostic_updater genmsg geometry_msgs
-  message_generation nav_msgs rosbag roscpp roslib rosgraph_msgs sensor_msgs std_msgs std_srvs tf2
-  tf2_msgs tf2_ros topic_tools trajectory_msgs visualization_msgs xmlrpcpp)
+  actionlib actionlib_msgs diagnostic_msgs diagnostic_updater dynamic_reconfigure genmsg
+  geometry_msgs message_generation move_base_msgs nav_msgs rosbag roscpp roslib rosgraph_msgs
+  sensor_msgs std_msgs std_srvs tf2 tf2_msgs tf2_ros topic_tools trajectory_msgs visualization_msgs xmlrpcpp)
 
 file(GLOB HIRES_MSG RELATIVE ${PROJECT_SOURCE_DIR}/msg CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/msg/*.msg)
 file(GLOB HIRES_SRV RELATIVE ${PROJECT_SOURCE_DIR}/srv CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/srv/*.srv)
