@@ -1,0 +1,90 @@
+#!/usr/bin/env python3
+"""Whoever imagines is dead, slow or lost: the run completes as the domain says, and a warning says
+so. Run alone, or by `rostest hires loop_imagination_losses.test`."""
+
+import os
+import sys
+
+import rosunit
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
+
+from loop_case import AT_COUNTER, MUG, LoopCase, names  # noqa: E402
+
+# A mug stands firmly: that it is driven fast without imagination does no harm.
+THERE = 'carry_object_on_tray mug1 counter1 table1'
+BACK = 'carry_object_on_tray mug1 table1 counter1'
+
+
+class ImaginationLossesTest(LoopCase):
+    def drive_of(self, result):
+        drives = self.steps_of(result, 'move_base_param')
+        self.assertEqual(len(drives), 1, [names(d.action) for d in drives])
+        return drives[0]
+
+    def assert_default_was_driven(self, task, result, *words):
+        drive = self.drive_of(result)
+        self.assertEqual(drive.action.arguments[-1], 'fast')
+        self.assertTrue(drive.note.startswith('not imagined'), drive.note)
+        self.warned(task, names(drive.action), 'without imagination', *words)
+
+    def assert_imagined(self, result):
+        self.assertTrue(self.drive_of(result).note.startswith('imagined'), result.imaginations)
+        self.assertEqual(result.imaginations[-1].outcome, 'ranked')
+
+    def test_the_default_is_driven_without_client_with_one_that_hangs_and_without_workers(self):
+        self.begin(AT_COUNTER, MUG)
+        with self.subTest('the client is killed while it imagines'):
+            task = self.achieve(THERE)
+            self.wait_for_imagination(task)
+            self.loop.kill('imagination_client')
+            result = self.require(task, self.codes.SUCCEEDED)
+            self.assertEqual(result.imaginations[0].outcome, 'unavailable')
+            self.assert_default_was_driven(task, result, 'imagination is not available')
+            self.assert_on_table1('mug1')
+        self.loop.start_node('imagination_client')
+        with self.subTest('the client hangs while it imagines'):
+            task = self.achieve(BACK)
+            self.wait_for_imagination(task)
+            self.loop.pause('imagination_client')
+            result = self.require(task, self.codes.SUCCEEDED)
+            self.assert_default_was_driven(task, result)
+            self.assert_on_counter('mug1')
+        self.loop.unpause('imagination_client')
+        with self.subTest('all workers are lost while they imagine'):
+            task = self.achieve(THERE)
+            self.wait_for_imagination(task)
+            self.loop.kill_workers()
+            result = self.require(task, self.codes.SUCCEEDED)
+            self.assert_default_was_driven(task, result, 'nobody is there to imagine it')
+            self.assert_on_table1('mug1')
+        self.loop.start_worker(1)
+        self.loop.wait_for_worker(1)
+        with self.subTest('all are there again'):
+            task = self.achieve(BACK)
+            self.assert_imagined(self.require(task, self.codes.SUCCEEDED))
+            self.assert_on_counter('mug1')
+
+
+class WaitingForImaginationTest(LoopCase):
+    arguments = {'on_late': 'wait'}
+
+    def test_where_the_domain_says_wait_the_robot_waits_for_a_worker(self):
+        self.begin(AT_COUNTER, MUG)
+        self.loop.wait_for_worker(1)
+        self.loop.kill_workers()
+        task = self.achieve(THERE)
+        self.wait_for_step(task, 'move_base_param', self.phases.READY)
+        self.wait_until_it_stands()
+        self.loop.start_worker(1)
+        result = self.require(task, self.codes.SUCCEEDED)
+        drive = [s for s in result.steps if s.action.name == 'move_base_param'][0]
+        self.assertTrue(drive.note.startswith('imagined'), drive.note)
+        self.assertIn('no_worker', [i.outcome for i in result.imaginations])
+        self.assertEqual(result.imaginations[-1].outcome, 'ranked')
+        self.assertGreater(drive.started, result.imaginations[-1].answered)
+        self.assert_on_table1('mug1')
+
+
+if __name__ == '__main__':
+    rosunit.unitrun('hires', 'loop_imagination_losses', ImaginationLossesTest)

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""What goes wrong in the world: a step never ends, an object slips off or vanishes, the robot is
+pushed off its path. The monitor notices from what is observed, and what it says is true. Run alone,
+or by `rostest hires loop_mishaps.test`."""
+
+import math
+import os
+import sys
+
+import rosunit
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
+
+from closed_loop import SERVE  # noqa: E402
+from loop_case import AT_COUNTER, BOTH, LYING, MUG, STILL, LoopCase  # noqa: E402
+
+THERE = 'carry_object_on_tray mug1 counter1 table1'
+DRIVING = {'pose': [12.5, 9.8, 2.0], 'torso': 'torsodownposture',
+           'arms': {'leftarm1': 'armtuckedposture', 'rightarm1': 'armtuckedposture'}}
+TORSO_DOWN = dict(AT_COUNTER, torso='torsodownposture')
+FAST = 0.3   # [m/s]
+PUSH = 0.35  # [m] to the left of its way
+
+
+class LoopMishapsTest(LoopCase):
+    def act(self, service, kind, **fields):
+        answer = self.loop.intervene(service, kind, **fields)
+        self.assertTrue(answer.success, answer.message)
+
+    def swallow(self, topic):
+        """The robot's controller does not hear what it is told; somebody else does."""
+        from trajectory_msgs.msg import JointTrajectory
+        heard = []
+        subscriber = self.loop.rospy.Subscriber(topic, JointTrajectory, heard.append)
+        self.addCleanup(subscriber.unregister)
+        self.loop.remaps['sim_robot'] = [topic + ':=nowhere']
+        self.addCleanup(self.loop.remaps.clear)
+        return heard
+
+    def test_a_step_that_never_ends_is_stopped_and_named(self):
+        heard = self.swallow('torso_controller/command')
+        self.begin(TORSO_DOWN, MUG)
+        at_first = self.truth.joint('torso_lift_joint')
+        result = self.require(self.achieve(THERE), self.codes.FAILED,
+                              'move_torso(torsoupposture)', 'timed_out')
+        self.assertTrue(heard)
+        self.assertAlmostEqual(self.truth.joint('torso_lift_joint'), at_first, delta=0.001)
+        for step in self.steps_of(result, 'move_torso'):
+            self.assertEqual(step.phase, self.phases.FAILED)
+            self.assertIn('timed_out', step.note)
+        self.assertEqual(self.steps_of(result, 'move_base_blind'), [])
+        self.wait_until_it_stands()
+
+    def test_an_object_that_slips_off_in_transit_is_noticed(self):
+        self.begin(AT_COUNTER, MUG)
+        task = self.achieve(THERE)
+        self.wait_for_step(task, 'move_base_param')
+        self.truth.wait(lambda t: t.speed() > FAST, 'the robot to drive')
+        self.act('drop', self.loop.srv.ObjectRequest, name='mug1')
+        result = self.require(task, self.codes.NO_PLAN)
+        self.warned(task, 'on(mug1, trayarea1)')
+        self.assertEqual(self.steps_of(result, 'place_object'), [])
+        self.assertGreater(self.truth.tilt('mug1'), LYING)
+        self.assertLess(self.truth.position('mug1')[2], 0.2)
+        self.wait_until_it_stands()
+
+    def test_an_object_that_vanishes_is_noticed(self):
+        self.begin(AT_COUNTER, BOTH)
+        task = self.achieve(SERVE)
+        self.wait_for_step(task, 'move_base_blind')
+        self.act('remove_object', self.loop.srv.ObjectRequest, name='mug1')
+        result = self.require(task, self.codes.NO_PLAN)
+        self.assertEqual(self.steps_of(result, 'place_object'), [])
+        self.assertEqual([o.attached_to for o in self.truth.world.objects], [''])
+        on = [f for f in self.loop.fluents('On', now=True)]
+        self.assertFalse(any('mug1' in f.instance.lower() for f in on))
+        self.wait_until_it_stands()
+
+    def test_a_robot_pushed_off_its_path_arrives_all_the_same(self):
+        from geometry_msgs.msg import Pose2D
+        self.begin(DRIVING, MUG)
+        task = self.achieve(THERE)
+        self.wait_for_step(task, 'move_base')
+        self.truth.wait(lambda t: t.speed() > FAST, 'the robot to drive')
+        self.act('push', self.loop.srv.PushRobot, offset=Pose2D(y=PUSH))
+        self.wait_for_step(task, 'pick_up_object')
+        base = self.truth.robot[-1].pose.position
+        self.assertLess(math.hypot(base.x - 6.0, base.y - 10.11), 0.06)
+        self.assertFalse(self.truth.summary.robot_collided, self.truth.summary.contact)
+        task.preempt()
+        self.require(task, self.codes.PREEMPTED)
+        self.assertLess(self.truth.speed(), STILL)
+
+
+if __name__ == '__main__':
+    rosunit.unitrun('hires', 'loop_mishaps', LoopMishapsTest)

@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""Planner, Blackboard and middle layer are killed in the middle: the run completes, or the robot
+stands and it is said why. Run alone, or by `rostest hires loop_node_losses.test`."""
+
+import collections
+import os
+import sys
+
+import rosunit
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
+
+from closed_loop import link_of, text_of  # noqa: E402
+from loop_case import AT_COUNTER, MUG, STILL, LoopCase  # noqa: E402
+from ros_processes import wait_until  # noqa: E402
+
+THERE = 'carry_object_on_tray mug1 counter1 table1'
+BACK_TO_DRIVING_AREA = -0.8  # [m] from where it picks up to where it came from
+DRIVING = {'pose': [12.5, 9.8, 2.0], 'torso': 'torsodownposture',
+           'arms': {'leftarm1': 'armtuckedposture', 'rightarm1': 'armtuckedposture'}}
+FAST = 0.3      # [m/s]
+MAY_TAKE = 1.0  # [s] simulated, from the last command until the base stands
+
+
+class NodeLossesTest(LoopCase):
+    # Long enough for a program to start again, though the robot is ten times as fast.
+    arguments = {'effect_timeout': 100.0, 'planning_timeout': 60.0}
+
+    def push(self, x):
+        from geometry_msgs.msg import Pose2D
+        answer = self.loop.intervene('push', self.loop.srv.PushRobot, offset=Pose2D(x=x))
+        self.assertTrue(answer.success, answer.message)
+
+    def test_a_planner_that_dies_while_the_plan_is_mended(self):
+        self.begin(AT_COUNTER, MUG)
+        task = self.achieve(THERE)
+        self.wait_for_step(task, 'pick_up_object')
+        self.loop.pause('planner')
+        self.push(BACK_TO_DRIVING_AREA)
+        self.assertTrue(task.wait_for(lambda f: any('is mended' in w for w in f.warnings), 'trouble'))
+        self.loop.kill('planner')
+        self.loop.start_node('planner')
+        result = self.require(task, self.codes.SUCCEEDED)
+        self.assertGreaterEqual(result.replans, 1)
+        self.warned(task, 'pick_up_object')
+        self.assert_on_table1('mug1')
+
+    def assert_everything_is_in_the_store(self, result):
+        """Every step that was begun, with its end, and every answer of imagination."""
+        episode = wait_until(lambda: [e for e in self.loop.episodes()
+                                      if e.id == result.episode and e.outcome], 'the episode')[0]
+        self.assertEqual(episode.outcome, 'succeeded')
+        begun = collections.Counter(s.action.name.replace('_', '') for s in result.steps
+                                    if s.started == s.started and s.action.name != 'imagine')
+        activities = [f for f in self.loop.fluents('RobotActivity', in_episode=True,
+                                                   episode=episode.id)
+                      if text_of(f, 'hasResult')]  # as it was before that is kept, too
+        self.assertEqual(collections.Counter(
+            a.concept_name.lower().replace('activity', '') for a in activities), begun)
+        for activity in activities:
+            self.assertLess(activity.finish_latest, float('inf'), activity.instance)
+        self.assertEqual(self.loop.fluents('RobotActivity', now=True), [])
+        on = {link_of(f, 'hasPhysicalEntity'): link_of(f, 'hasArea')
+              for f in self.loop.fluents('On', now=True)}
+        self.assertEqual(on['mug1'], 'placingareawestlefttable1')
+
+    def test_a_blackboard_killed_in_the_middle_has_everything_afterwards(self):
+        self.begin(AT_COUNTER, MUG)
+        task = self.achieve(THERE)
+        self.wait_for_step(task, 'pick_up_object')
+        self.loop.kill('blackboard')
+        self.wait_for_step(task, 'pick_up_object', self.phases.CHECKING)
+        self.loop.start_node('blackboard')
+        result = self.require(task, self.codes.SUCCEEDED)
+        self.assertEqual(result.replans, 0)
+        self.assert_on_table1('mug1')
+        self.assert_everything_is_in_the_store(result)
+        self.loop.kill('blackboard')
+        self.loop.start_node('blackboard')
+        self.assert_everything_is_in_the_store(result)
+        refused = [line for line in self.loop.nodes['execution_monitor'].lines
+                   if 'record=refused' in line]
+        self.assertEqual(refused, [])
+
+    def test_without_middle_layer_the_robot_stands_and_with_a_new_one_it_goes_on(self):
+        self.begin(DRIVING, MUG)
+        task = self.achieve(THERE)
+        self.wait_for_step(task, 'move_base')
+        self.truth.wait(lambda t: t.speed() > FAST, 'the robot to drive')
+        self.loop.kill('middle_layer')
+        killed = self.truth.now()
+        self.truth.wait(lambda t: t.now() > killed + MAY_TAKE, 'time to go on')
+        self.assertLess(self.truth.speed(), STILL)
+        self.require(task, self.codes.FAILED, 'move_base', "'execute_action'")
+        self.assertLess(self.truth.speed(), STILL)
+        self.loop.start_node('middle_layer')
+        self.require(self.achieve(THERE), self.codes.SUCCEEDED)
+        self.assert_on_table1('mug1')
+
+
+if __name__ == '__main__':
+    rosunit.unitrun('hires', 'loop_node_losses', NodeLossesTest)
