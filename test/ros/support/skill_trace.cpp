@@ -1,8 +1,8 @@
-// Plays one skill as a rollout does, in this process and without topics, and prints the robot's
-// true path: one line "seconds x y yaw joint=position ..." for every 0.05 s, and at last "end
-// reason".
+// Plays skills one after the other as a rollout does, in this process and without topics, and
+// prints for each the robot's true path: one line "seconds x y yaw joint=position ..." for every
+// 0.05 s, then where each loose object is, "object name x y z", and at last "end reason".
 //
-//   skill_trace SCENE AREA|SCENARIO.yaml ACTION [ARGUMENT ...]
+//   skill_trace SCENE AREA|SCENARIO.yaml ACTION [ARGUMENT ...] [, ACTION ...]
 
 #include <fmt/format.h>
 
@@ -30,6 +30,14 @@ void Print(double time, const RobotSimulator& simulator) {
     line += fmt::format(" {}={:.17g}", name, position);
   }
   std::cout << line << "\n";
+}
+
+void PrintObjects(const RobotSimulator& simulator) {
+  for (const hires::world::ObjectState& object : simulator.GetWorldState().objects) {
+    const auto& p_MO = object.X_MO.translation;
+    std::cout << fmt::format("object {} {:.17g} {:.17g} {:.17g}\n", object.name, p_MO.x(), p_MO.y(),
+                             p_MO.z());
+  }
 }
 
 void StepFor(double duration, RobotSimulator* simulator) {
@@ -84,6 +92,7 @@ void PlayAll(const hires::imagination::ImaginationSetup& setup,
   for (const hires::base::ActionCall& action : actions) {
     const auto skill = hires::skills::MakeSkill(*setup.skills, action);
     const hires::skills::Status status = Play(skill.get(), simulator);
+    PrintObjects(*simulator);
     const bool is_done = status.progress == hires::skills::Progress::kSucceeded;
     std::cout << "end " << (is_done ? "succeeded" : status.reason) << std::endl;
   }
