@@ -33,22 +33,15 @@ const std::vector<Limit>& Table() {
 }
 
 /// The planner's own word for a limit.
-const std::string& WordFor(const std::string& limit, const RobotNames::MoveBase& names,
+const std::string& WordFor(const std::string& limit, const std::vector<std::string>& words,
                            const PlannerValues& having) {
-  const auto known = names.parameters.find(limit);
-  if (known == names.parameters.end()) {
-    throw ConfigError(
-        fmt::format("the robot's names do not say what its local planner calls {}; add it to "
-                    "move_base.parameters",
-                    limit));
-  }
-  for (const std::string& word : known->second) {
+  for (const std::string& word : words) {
     if (having.count(word) > 0) return word;
   }
-  throw ConfigError(
-      fmt::format("has no parameter for {}: none of {}; add its name to "
-                  "move_base.parameters in the file of the robot's names; it has {}",
-                  limit, hires::base::Join(known->second, ", "), ToText(having)));
+  throw ConfigError(fmt::format(
+      "has no parameter for {}: none of {}; add its name to move_base.parameters in the "
+      "file of the robot's names; it has {}",
+      limit, hires::base::Join(words, ", "), ToText(having)));
 }
 
 }  // namespace
@@ -72,8 +65,8 @@ double LimitOf(const MotionSet& set, const std::string& limit) {
 PlannerValues InWordsOf(const PlannerValues& having, const RobotNames::MoveBase& names,
                         const MotionSet& set) {
   PlannerValues values;
-  for (const Limit& limit : Table()) {
-    values[WordFor(limit.word, names, having)] = set.*limit.field;
+  for (const auto& [limit, words] : names.parameters) {
+    values[WordFor(limit, words, having)] = LimitOf(set, limit);
   }
   return values;
 }

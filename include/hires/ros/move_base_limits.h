@@ -26,7 +26,8 @@ double LimitOf(const hires::robot::MotionSet& set, const std::string& limit);
 /// @param names   limit -> what planners have called it, newest first; those are taken that the
 ///                planner has.
 /// @param having  all that the planner has.
-/// @throws hires::base::ConfigError naming the limit for which it has no parameter.
+/// @throws hires::base::ConfigError naming the limit for which it has no parameter, or the word
+/// that is no limit. (ReadRobotNames sees to it that no limit of a set is left out.)
 PlannerValues InWordsOf(const PlannerValues& having, const RobotNames::MoveBase& names,
                         const hires::robot::MotionSet& set);
 

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <actionlib/client/action_client.h>
+#include <move_base_msgs/MoveBaseAction.h>
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "hires/geometry/pose.h"
+#include "hires/ros/move_base_drive.h"
+
+namespace hires_ros {
+
+/// A robot's move_base, by its action. Its answers are heard on a thread of its own; all calls may
+/// come from any thread, and none waits.
+class MoveBaseLink : public MoveBaseServer {
+ public:
+  /// @param action     e.g. "move_base"
+  /// @param map_frame  of the goals
+  MoveBaseLink(const std::string& action, const std::string& map_frame);
+  ~MoveBaseLink() override;  ///< takes the goal back
+  MoveBaseLink(const MoveBaseLink&) = delete;
+  MoveBaseLink& operator=(const MoveBaseLink&) = delete;
+
+  bool IsThere() override;
+  void Go(const hires::geometry::Pose2& X_MGoal) override;
+  void Cancel() override;
+  MoveBaseNews News() override;
+
+ private:
+  using Client = actionlib::ActionClient<move_base_msgs::MoveBaseAction>;
+
+  void Hear(std::uint64_t goal, Client::GoalHandle handle);
+  void SetNews(std::uint64_t goal, const MoveBaseNews& news);
+
+  const std::string map_frame_;
+  ros::CallbackQueue queue_;
+  std::unique_ptr<Client> client_;
+
+  std::mutex handle_mutex_;  // never taken by what is called from the queue
+  Client::GoalHandle handle_;
+
+  std::mutex news_mutex_;
+  std::uint64_t current_{0};  // number of the goal that the news is about
+  MoveBaseNews news_;
+
+  std::atomic<bool> is_ending_{false};
+  std::thread thread_;
+};
+
+}  // namespace hires_ros
