@@ -33,8 +33,7 @@ class RelayTest(unittest.TestCase):
     def setUp(self):
         self.processes = Processes()
         self.addCleanup(self.processes.stop_all)
-        self.main = self.processes.master()
-        self.foreign = self.processes.master()
+        self.main, self.foreign = self.processes.masters(2)
 
     def start_relay(self, **changes):
         text = yaml.safe_dump({**CONFIG, **changes})
@@ -68,7 +67,7 @@ class RelayTest(unittest.TestCase):
 
     def test_a_topic_crosses(self):
         self.start_relay()
-        self.peer(self.foreign, 'stream', '/worker_1/scan', '100', name='talker')
+        self.peer(self.foreign, 'stream', '/worker_1/scan', '1000', name='talker')
         counter = self.peer(self.main, 'count', '/worker_1/scan', name='listener')
         self.assertEqual(self.received(counter, 100)[1], 0)
 
@@ -115,8 +114,8 @@ class RelayTest(unittest.TestCase):
 
     def test_equal_node_names_on_both_sides_live_side_by_side(self):
         self.start_relay(local_pubs=['{ns}/here'], foreign_pubs=['{ns}/there'])
-        here = self.peer(self.main, 'stream', '/worker_1/here', '10', name='twin')
-        there = self.peer(self.foreign, 'stream', '/worker_1/there', '10', name='twin')
+        here = self.peer(self.main, 'stream', '/worker_1/here', '100', name='twin')
+        there = self.peer(self.foreign, 'stream', '/worker_1/there', '100', name='twin')
         self.received(self.peer(self.main, 'count', '/worker_1/there', name='a'), 20)
         self.received(self.peer(self.foreign, 'count', '/worker_1/here', name='b'), 20)
         self.assertTrue(here.is_running() and there.is_running())
@@ -180,7 +179,7 @@ class RelayTest(unittest.TestCase):
 
     def test_a_restarted_main_master_gets_mirrors_relay_and_parameters_back(self):
         relay = self.start_relay()
-        self.peer(self.foreign, 'stream', '/worker_1/scan', '10', name='talker')
+        self.peer(self.foreign, 'stream', '/worker_1/scan', '100', name='talker')
         self.wait_for_mirror(self.main, '/worker_1/scan')
         wait_until(lambda: self.main.publishers('/diagnostics'), 'the relay node')
         self.main.set_param('/use_sim_time', False)
@@ -224,7 +223,7 @@ class RelayTest(unittest.TestCase):
 
     def test_a_hung_foreign_master_blocks_neither_data_nor_the_main_side(self):
         self.start_relay()
-        self.peer(self.foreign, 'stream', '/worker_1/scan', '100', name='talker')
+        self.peer(self.foreign, 'stream', '/worker_1/scan', '1000', name='talker')
         doomed = self.peer(self.foreign, 'stream', '/worker_1/doomed', '10', name='doomed')
         counter = self.peer(self.main, 'count', '/worker_1/scan', name='listener')
         self.received(counter, 10)
@@ -233,7 +232,7 @@ class RelayTest(unittest.TestCase):
         doomed.kill()
         self.wait_for_withdrawal(self.main, '/worker_1/doomed')
         before = self.received(counter, 10)
-        self.assertEqual(self.received(counter, before[0] + 200)[1], 0)
+        self.assertEqual(self.received(counter, before[0] + 1000)[1], 0)
         self.foreign.process.signal(signal.SIGCONT)
         self.peer(self.foreign, 'stream', '/worker_1/new', '10', name='new')
         self.wait_for_mirror(self.main, '/worker_1/new')

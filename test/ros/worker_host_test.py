@@ -8,6 +8,7 @@ import socket
 import sys
 import unittest
 import uuid
+from concurrent.futures import ThreadPoolExecutor
 
 import rosunit
 import yaml
@@ -29,15 +30,20 @@ def kind_of(command):
     return command
 
 
-class WorkerHostTest(unittest.TestCase):
-    def setUp(self):
+class Family:
+    """A main master, and on demand a supervisor with its children."""
+
+    def found(self):
         self.processes = Processes()
-        self.addCleanup(self.processes.stop_all)
         self.main = self.processes.master()
         self.mark = uuid.uuid4().hex
         self.base_port = free_port_block(4)
         self.port = self.base_port + 1
-        self.addCleanup(self.kill_marked)
+        self.num_configs = 0
+
+    def end(self):
+        self.processes.stop_all()
+        self.kill_marked()
 
     def kill_marked(self):
         for pid in processes_with(MARK, self.mark):
@@ -51,12 +57,14 @@ class WorkerHostTest(unittest.TestCase):
             config = yaml.safe_load(file)
         config['relay_config'] = os.path.abspath(os.path.join(CONFIG_FOLDER, 'relay.yaml'))
         config.update(changes)
-        return self.processes.write('worker_host.yaml', yaml.safe_dump(config))
+        self.num_configs += 1
+        return self.processes.write('worker_host_%d.yaml' % self.num_configs,
+                                    yaml.safe_dump(config))
 
-    def start_host(self, *arguments, command=None, **changes):
+    def start_host(self, *arguments, command=None, name='worker_host_1', **changes):
         command = command or executable('relay_test_peer') + ' worker {ns} __name:=sim_{index}'
         return self.processes.start(
-            [executable('worker_host'), '__name:=worker_host_1',
+            [executable('worker_host'), '__name:=' + name,
              '_config:=' + self.write_config(**changes), '_base_port:=%d' % self.base_port,
              '_worker_command:=' + command, *arguments],
             self.main, **{MARK: self.mark})
@@ -72,8 +80,9 @@ class WorkerHostTest(unittest.TestCase):
     def wait_until_ready(self, host, times=1):
         wait_until(lambda: host.output().count('state=ready') >= times or not host.is_running(),
                    'the worker to be ready')
-        self.assertTrue(host.is_running(), host.output())
-        self.assertEqual(set(self.children()), {'rosmaster', 'relay_test_peer', 'relay'})
+        assert host.is_running(), host.output()
+        children = self.children()
+        assert set(children) == {'rosmaster', 'relay_test_peer', 'relay'}, children
 
     def wait_until_all_gone(self):
         wait_until(lambda: not processes_with(MARK, self.mark), 'all processes to end')
@@ -81,6 +90,24 @@ class WorkerHostTest(unittest.TestCase):
     def mirrors(self):
         return [node for node in self.main.publishers('/worker_1/state')
                 if node.startswith('/mirrored/worker_1/')]
+
+    def start_and_stop(self, number, is_half_way):
+        """Stops a host by that signal in the middle of its start, or when it is ready."""
+        host = self.start_host()
+        if is_half_way:
+            wait_until(lambda: 'rosmaster' in self.marked(), 'rosmaster')
+        else:
+            self.wait_until_ready(host)
+        host.signal(number)
+        code, left = host.wait(), processes_with(MARK, self.mark)
+        assert code == 0, host.output()
+        assert not left and not self.mirrors(), (left, self.mirrors())
+
+
+class WorkerHostTest(Family, unittest.TestCase):
+    def setUp(self):
+        self.found()
+        self.addCleanup(self.end)
 
     def test_a_worker_that_is_ready_plays_rollouts_for_the_main_master(self):
         host = self.start_host()
@@ -130,17 +157,16 @@ class WorkerHostTest(unittest.TestCase):
 
     def test_twenty_starts_and_stops_leave_nothing(self):
         signals = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-        for cycle in range(20):
-            with self.subTest(cycle=cycle):
-                host = self.start_host()
-                if cycle % 4 == 3:  # in the middle of its start
-                    wait_until(lambda: 'rosmaster' in self.marked(), 'rosmaster')
-                else:
-                    self.wait_until_ready(host)
-                host.signal(signals[cycle % 3])
-                self.assertEqual(host.wait(), 0, host.output())
-                self.assertEqual(processes_with(MARK, self.mark), {})
-                self.assertEqual(self.mirrors(), [])
+        other = Family()  # two side by side, each with a main master of its own
+        other.found()
+        self.addCleanup(other.end)
+
+        def play(lane, family):
+            for cycle in range(lane, 20, 2):
+                family.start_and_stop(signals[cycle % 3], is_half_way=cycle % 4 == 3)
+        with ThreadPoolExecutor(2) as pool:
+            for lane in [pool.submit(play, *lane) for lane in enumerate((self, other))]:
+                lane.result()
 
     def test_a_port_taken_by_a_master_is_named_with_its_process(self):
         other = self.processes.master(self.port)
@@ -233,22 +259,22 @@ class WorkerHostTest(unittest.TestCase):
                       host.output())
 
     def test_mistakes_are_named(self):
-        for arguments, changes, text in (
-                (['_index:=300'], {}, '~index is 300, wanted a whole number between 1 and 256'),
-                (['_nice:=low'], {}, '~nice is low, wanted a whole number'),
-                (['_address:=0.0.0.0'], {}, '~address is 0.0.0.0, wanted an address'),
-                (['_indx:=1'], {}, "'indx' is unknown; did you mean 'index'"),
-                ([], {'base_port': 80}, "base_port is '80', wanted a whole number between 1024"),
-                ([], {'relay_config': '/nowhere.yaml'}, '/nowhere.yaml'),
-                ([], {'master_command': ['rosmastr']}, "the program 'rosmastr' is in none of"),
-                ([], {'master_command': ['x', '{prt}']}, '{prt} stands for nothing'),
-                ([], {'environment': ['=x']}, 'wanted entries NAME=value')):
+        mistakes = (
+            (['_index:=300'], {}, '~index is 300, wanted a whole number between 1 and 256'),
+            (['_nice:=low'], {}, '~nice is low, wanted a whole number'),
+            (['_address:=0.0.0.0'], {}, '~address is 0.0.0.0, wanted an address'),
+            (['_indx:=1'], {}, "'indx' is unknown; did you mean 'index'"),
+            ([], {'base_port': 80}, "base_port is '80', wanted a whole number between 1024"),
+            ([], {'relay_config': '/nowhere.yaml'}, '/nowhere.yaml'),
+            ([], {'master_command': ['rosmastr']}, "the program 'rosmastr' is in none of"),
+            ([], {'master_command': ['x', '{prt}']}, '{prt} stands for nothing'),
+            ([], {'environment': ['=x']}, 'wanted entries NAME=value'))
+        hosts = [self.start_host(*arguments, name='mistaken_%d' % k, **changes)
+                 for k, (arguments, changes, _) in enumerate(mistakes)]
+        for host, (_, _, text) in zip(hosts, mistakes):
             with self.subTest(text=text):
-                host = self.start_host(*arguments, **changes)
                 self.assertEqual(host.wait(), 1)
                 self.assertIn(text, host.output())
-                for name in ('index', 'nice', 'address', 'indx'):
-                    self.main._call('deleteParam', '/worker_host_1/' + name)
 
     def test_a_host_that_waits_for_its_main_master_can_be_stopped(self):
         self.main.kill()

@@ -46,15 +46,22 @@ def wait_until(condition, what, limit=LIMIT):
 
 def free_port():
     """A port of the loopback interface that nobody listens on now."""
-    with socket.socket() as probe:
-        probe.bind(('127.0.0.1', 0))
-        return probe.getsockname()[1]
+    return free_port_block(1)
+
+
+_FIRST_PORT, _NUM_PORTS = 20000, 12000  # below the range of outgoing connections
+_handed_out = set()
 
 
 def free_port_block(size):
-    """First of `size` ports in a row that are free now, below the range of outgoing connections."""
-    for first in range(20000 + os.getpid() % 1000 * 10, 32000, size):
-        if all(is_port_free(port) for port in range(first, first + size)):
+    """First of `size` ports in a row that are free now, and were given to nobody else here: they
+    may be taken only later. Tests that run side by side begin their search far from each other."""
+    start = os.getpid() * 37 % 1000 * (_NUM_PORTS // 1000)
+    for offset in range(0, _NUM_PORTS - size, size):
+        first = _FIRST_PORT + (start + offset) % (_NUM_PORTS - size)
+        block = range(first, first + size)
+        if not _handed_out.intersection(block) and all(map(is_port_free, block)):
+            _handed_out.update(block)
             return first
     raise AssertionError('no %d free ports in a row' % size)
 
@@ -162,16 +169,25 @@ class Process:
 class Master:
     """A bare rosmaster on the loopback interface."""
 
-    def __init__(self, environment, port=None):
+    def __init__(self, environment, port=None, wait=True):
         self.port = port or free_port()
         self.uri = 'http://127.0.0.1:%d/' % self.port
         self._environment = environment
         self.process = None
-        self.start()
+        if wait:
+            self.start()
+        else:
+            self.launch()
 
     def start(self):
         """Starts it (again, after kill()), and returns when it answers."""
+        self.launch()
+        self.wait_until_there()
+
+    def launch(self):
         self.process = Process(['rosmaster', '--core', '-p', str(self.port)], self._environment)
+
+    def wait_until_there(self):
         wait_until(lambda: self._call('getPid') == self.process.pid, 'master %s' % self.uri)
 
     def kill(self):
@@ -234,6 +250,14 @@ class Processes:
         master = Master(self.environment(), port)
         self._masters.append(master)
         return master
+
+    def masters(self, count):
+        """So many, started all at once."""
+        masters = [Master(self.environment(), wait=False) for _ in range(count)]
+        self._masters += masters
+        for master in masters:
+            master.wait_until_there()
+        return masters
 
     def start(self, command, master, **environment):
         process = Process(command, self.environment(master, **environment))
