@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "hires/base/text.h"
 
@@ -63,6 +65,10 @@ std::string Defect(const DriveRequest& request) {
     }
   }
   return "";
+}
+
+double LargestSd(double xx, double xy, double yy) {
+  return std::sqrt(0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy));
 }
 
 BaseGuard::BaseGuard(const BaseGuardParams& params) : params_(params) {}
@@ -135,11 +141,14 @@ std::optional<geometry::Twist2> BaseGuard::Brake(double now) {
   return std::nullopt;
 }
 
+std::uint64_t BaseGuard::Applicant(double now) const {
+  const bool is_alive = now - request_time_ <= params_.request_patience;
+  return is_alive && !HasEnded(request_.id) ? request_.id : 0;
+}
+
 /// Standing: does somebody want to drive, and may he?
 void BaseGuard::Wait(double now) {
-  const bool is_wanted =
-      request_.id != 0 && !HasEnded(request_.id) && now - request_time_ <= params_.request_patience;
-  if (!is_wanted) return;
+  if (is_held_ || Applicant(now) == 0) return;
   const std::string defect = Defect(request_);
   const std::string wrong = defect.empty() ? WhatIsWrong(now) : "bad_request: " + defect;
   if (wrong.empty()) {
@@ -173,6 +182,7 @@ std::string BaseGuard::StalePose(double now) const {
 
 std::string BaseGuard::WhatIsWrong(double now) const {
   if (motors_halted_.value_or(false)) return "motors_halted";
+  if (!hindrance_.empty()) return hindrance_;
   if (params_.needs_motors_state && !motors_halted_) return "no_motors_state";
   if (const std::string stale = StalePose(now); !stale.empty()) return stale;
   if (params_.needs_scan && !scan_stamp_) return "no_scan";
@@ -196,7 +206,8 @@ std::string BaseGuard::WhyStop(double now) const {
   if (now - request_time_ > params_.request_patience) {
     return Late("silent_middle_layer", now - request_time_);
   }
-  if (request_.id == 0) return "request_over";
+  const bool must_wait = is_held_ && request_.id != current_;  // somebody else takes over
+  if (request_.id == 0 || must_wait) return "request_over";
   if (const std::string defect = Defect(request_); !defect.empty()) return "bad_request: " + defect;
   if (!command_) return "";
   if (!IsFinite(command_->V)) return "bad_command";

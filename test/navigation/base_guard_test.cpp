@@ -118,6 +118,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "localisation_lost: sd 0.90 rad", 0.0},
         Trouble{"NoNumber", [](GuardedBase* b) { b->guard.OnLocalisation(kNan, 0.1); },
                 "localisation_lost: sd nan m", 0.0},
+        Trouble{"Hindrance", [](GuardedBase* b) { b->guard.OnHindrance("guard_ends"); },
+                "guard_ends", 0.0},
         Trouble{"MiddleLayer", [](GuardedBase* b) { b->has_request = false; },
                 "silent_middle_layer: 0.12 s", 0.1},
         Trouble{"Commands", [](GuardedBase* b) { b->command.reset(); }, "silent_commands: 0.26 s",
@@ -331,6 +333,44 @@ TEST(BaseGuardTest, UnknownAndOverboldBrakingBecomesTheGuardsOwn) {
   EXPECT_NEAR(stop_time({0.0, 0.0}), StoppingTime(0.5, {0.8, 2.0}), 1e-9);
   EXPECT_NEAR(stop_time({9.0, 90.0}), StoppingTime(0.5, {1.5, 6.0}), 1e-9);
   EXPECT_NEAR(stop_time({1.0, 3.0}), StoppingTime(0.5, {1.0, 3.0}), 1e-9);
+}
+
+TEST(BaseGuardTest, WhoIsHeldWaitsAndIsNotRefused) {
+  GuardedBase base;
+  base.guard.OnHold(true);
+  base.Drive({0.4, 0.0, 0.0});
+  EXPECT_EQ(base.guard.state(), GuardState::kStanding);
+  EXPECT_EQ(base.guard.request(), 0u);
+  EXPECT_EQ(base.guard.Applicant(base.now), 1u);
+  base.guard.OnHold(false);
+  base.TickFor(0.1);
+  EXPECT_EQ(base.guard.state(), GuardState::kPassing);
+  base.guard.OnHold(true);  // who drives already goes on
+  base.TickFor(0.5);
+  EXPECT_EQ(base.guard.state(), GuardState::kPassing);
+  base.request.id = 2;  // but nobody takes over from him
+  base.Tick();
+  EXPECT_EQ(base.guard.state(), GuardState::kBraking);
+  EXPECT_EQ(base.guard.reason(), "request_over");
+}
+
+TEST(BaseGuardTest, WhoIsSilentOrOverIsNoApplicant) {
+  GuardedBase base;
+  EXPECT_EQ(base.guard.Applicant(base.now), 0u);
+  base.Drive({0.4, 0.0, 0.0});
+  EXPECT_EQ(base.guard.Applicant(base.now), 1u);
+  EXPECT_EQ(base.guard.Applicant(base.now + 0.2), 0u);
+  base.guard.OnMotorsHalted(true);
+  base.Tick();
+  EXPECT_EQ(base.guard.Applicant(base.now), 0u);
+}
+
+TEST(LocalisationTest, TheWorstDirectionCounts) {
+  EXPECT_NEAR(LargestSd(0.04, 0.0, 0.01), 0.2, 1e-12);
+  EXPECT_NEAR(LargestSd(0.02, 0.02, 0.02), 0.2, 1e-12);  // 0.04 along the diagonal, 0 across
+  EXPECT_EQ(LargestSd(0.0, 0.0, 0.0), 0.0);
+  EXPECT_TRUE(std::isnan(LargestSd(-1.0, 0.0, -1.0)));
+  EXPECT_TRUE(std::isnan(LargestSd(kNan, 0.0, 1.0)));
 }
 
 TEST(DriveRequestTest, DefectsAreNamed) {

@@ -39,6 +39,10 @@ struct DriveRequest {
   robot::MotionSet limits{0.0, 0.0, 0.0, 0.0};  ///< velocities are clipped to its speeds
   BrakingLimits braking{0.0, 0.0};              ///< what the load survives; 0: unknown
 };
+/// Standard deviation [m] of a position in its worst direction, from its covariance [m^2]; no
+/// number where it is none.
+double LargestSd(double xx, double xy, double yy);
+
 /// What is wrong with a request, in words for people; empty if it can be used.
 std::string Defect(const DriveRequest& request);
 
@@ -76,6 +80,13 @@ class BaseGuard {
   /// count as lost.
   void OnLocalisation(double position_sd, double yaw_sd);
   void OnScan(double stamp, double now);
+  /// Something else that forbids driving, as a reason; empty: nothing.
+  void OnHindrance(const std::string& reason) { hindrance_ = reason; }
+  /// While held, who wants to drive waits: what it needs is being prepared. Who drives goes on.
+  void OnHold(bool is_held) { is_held_ = is_held; }
+
+  /// The request that wants to drive, or drives: alive and not over. 0: none.
+  std::uint64_t Applicant(double now) const;
 
   /// To be called often (50 Hz), and after each command that shall pass at once.
   /// @return the velocity to send to the base now; nothing where nothing is to be sent.
@@ -127,6 +138,8 @@ class BaseGuard {
   std::array<std::optional<double>, 3> pose_stamps_;
   std::optional<double> scan_stamp_;
   std::optional<bool> motors_halted_;
+  std::string hindrance_;
+  bool is_held_{false};
   std::optional<Localisation> localisation_;
 
   double last_update_{0.0};
