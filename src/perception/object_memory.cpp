@@ -139,6 +139,7 @@ bool ObjectMemory::FeelHand(const Links& links, const std::string& name, Hand* h
   const auto position = body.joints.find(arm.gripper_joint);
   if (position == body.joints.end()) return false;
   const double gap = position->second;
+  const double max_gap = robot_->profile.upper_body->gripper.max_gap;
   if (hand->gap < 0.0 && !hand->holds.empty()) hand->grasp_gap = gap;  // believed to hold
   if (hand->gap < 0.0 || std::abs(gap - hand->gap) > params_.still_gap) {
     hand->gap = gap;
@@ -147,12 +148,15 @@ bool ObjectMemory::FeelHand(const Links& links, const std::string& name, Hand* h
   if (!hand->holds.empty()) {
     const std::string held = hand->holds;
     const bool is_lost = gap < params_.closed_gap || gap < hand->grasp_gap - params_.gap_below;
-    if (!is_lost && gap <= hand->grasp_gap + params_.gap_above) return false;
+    const double most =
+        std::min(hand->grasp_gap + params_.opening, max_gap - 0.5 * params_.open_gap);
+    if (!is_lost && gap <= most) return false;
     hand->holds.clear();
     is_lost ? Lose(held) : LetGo(links, held, body.time);
     return true;
   }
-  if (body.time - hand->since < params_.still_time || gap < params_.closed_gap) return false;
+  if (body.time - hand->since < params_.still_time) return false;
+  if (gap < params_.closed_gap || gap > max_gap - params_.open_gap) return false;
   const std::string between = Between(links, arm, gap);
   if (between.empty()) return false;
   Take(links, arm, between, hand);

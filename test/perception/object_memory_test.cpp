@@ -216,11 +216,24 @@ TEST_F(ObjectMemoryTest, WhatWasSeenBesideTheFingersIsBetweenThemWhenTheyHoldIt)
   EXPECT_TRUE(memory_.objects().at("mug1").is_held) << "seen within reach of the fingers";
 }
 
+TEST_F(ObjectMemoryTest, AnObjectThatStandsAslantInTheHandIsHeld) {
+  PutArm("rightarm1", "armuntuckedposture");
+  memory_.Believe("mug1", "mug", "", X_ML("r_gripper_tool_frame"));
+  SetGap("rightarm1", 0.087);  // 7 mm wider than the mug, 3 mm from open
+  EXPECT_TRUE(Rest());
+  EXPECT_TRUE(memory_.objects().at("mug1").is_held);
+  SetGap("rightarm1", 0.09);
+  EXPECT_TRUE(Rest());
+  EXPECT_FALSE(memory_.objects().at("mug1").is_held);
+}
+
 TEST_F(ObjectMemoryTest, AnOpenGripperRoundAnObjectHoldsNothing) {
   PutArm("rightarm1", "armuntuckedposture");
   memory_.Believe("mug1", "mug", "", X_ML("r_gripper_tool_frame"));
-  SetGap("rightarm1", 0.09);
-  EXPECT_FALSE(Rest());
+  for (const double gap : {0.088, 0.09}) {
+    SetGap("rightarm1", gap);
+    EXPECT_FALSE(Rest()) << gap;
+  }
 }
 
 TEST_F(ObjectMemoryTest, AGripperThatIsStillClosingHoldsNothingYet) {

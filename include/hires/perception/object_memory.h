@@ -21,7 +21,10 @@ struct MemoryParams {
   double grasp_distance{0.12};  ///< [m] from between the finger tips to an object that they hold
   double closed_gap{0.005};     ///< [m] a gripper that has closed so far holds nothing
   double gap_below{0.02};       ///< [m] that a gap may be narrower than what it holds
-  double gap_above{0.006};      ///< [m] that it may be wider
+  double gap_above{0.012};      ///< [m] that it may be wider: what is held may stand aslant
+                                ///< between the fingers, whose gap errs by up to 3 mm itself
+  double open_gap{0.0025};      ///< [m] from its limit a gripper is open and holds nothing
+  double opening{0.006};        ///< [m] by which a gap opens when it lets go
   double still_gap{0.0015};     ///< [m] that a gap may change and count as still
   double still_time{0.15};      ///< [s] after which it is
   double hand_distance{0.08};   ///< [m] between where a held object should be and where it is seen
@@ -49,12 +52,12 @@ struct RememberedObject {
 /// What the robot knows of loose objects from looking and from its fingers: where they are, what it
 /// holds, what is not where it was any more. Knows no clock; same input, same output.
 ///
-/// A hand holds an object when its gap has come to rest at about the object's width, with the
-/// object between the finger tips by what was seen last; it has let go when the gap opens, and lost
-/// it when the gap closes further, or when the object is seen elsewhere. What is held moves with
-/// the palm, what is over the tray moves with the base. An object vanishes when the place where it
-/// should be was free to look at in several looks in a row, and it was not detected; one that
-/// slipped out of the hand at once.
+/// A hand holds an object when its gap has come to rest, not open, at about the object's width,
+/// with the object between the finger tips by what was seen last; it has let go when the gap opens,
+/// and lost it when the gap closes further, or when the object is seen elsewhere. What is held
+/// moves with the palm, what is over the tray moves with the base. An object vanishes when the
+/// place where it should be was free to look at in several looks in a row, and it was not detected;
+/// one that slipped out of the hand at once.
 class ObjectMemory {
  public:
   ObjectMemory(std::shared_ptr<const Surroundings> surroundings,
