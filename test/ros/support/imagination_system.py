@@ -71,19 +71,30 @@ class Question:
 
 class ImaginationSystem:
     def __init__(self, workers=2):
-        self.processes = Processes()
+        self.processes = self.make_processes()
         self.workers = workers
         self.mark = uuid.uuid4().hex
-        self.base_port = free_port_block(workers + 1) - 1
+        self.base_port = self.first_port()
         self.main = self.processes.master()
         self.client = None
         self.hosts = {}
         self._num_files = 0
 
+    # Where it runs; others put it elsewhere.
+
+    def make_processes(self):
+        return Processes()
+
+    def first_port(self):
+        return free_port_block(self.workers + 1) - 1
+
     # Parts.
 
-    def run(self, command):
-        return self.processes.start(command, self.main, **{MARK: self.mark})
+    def marked(self, environment):
+        return {MARK: self.mark, **environment}
+
+    def run(self, command, **environment):
+        return self.processes.start(command, self.main, **self.marked(environment))
 
     def start(self, **scheduler):
         """Client and all workers; returns when each worker has joined."""
@@ -100,10 +111,10 @@ class ImaginationSystem:
         config['scheduler'].update(scheduler)
         return self.write('imagination_client.yaml', yaml.safe_dump(config))
 
-    def start_client(self, **scheduler):
+    def start_client(self, client_environment=None, **scheduler):
         self.client = self.run([
             executable('imagination_client'), '_config:=' + self.client_config(**scheduler),
-            '_workers:=%d' % self.workers])
+            '_workers:=%d' % self.workers], **(client_environment or {}))
         return self.client
 
     def start_host(self, k, worker_arguments=''):
