@@ -19,20 +19,19 @@ BACK_TO_DRIVING_AREA = -0.8  # [m] from where it picks up to where it came from
 DRIVING = {'pose': [12.5, 9.8, 2.0], 'torso': 'torsodownposture',
            'arms': {'leftarm1': 'armtuckedposture', 'rightarm1': 'armtuckedposture'}}
 FAST = 0.3      # [m/s]
+# [s] simulated: long enough for a program to start again, though the robot is ten times as fast.
+PATIENCE = {'effect_timeout': 100.0, 'planning_timeout': 60.0}
 MAY_TAKE = 1.0  # [s] simulated, from the last command until the base stands
 
 
 class NodeLossesTest(LoopCase):
-    # Long enough for a program to start again, though the robot is ten times as fast.
-    arguments = {'effect_timeout': 100.0, 'planning_timeout': 60.0}
-
     def push(self, x):
         from geometry_msgs.msg import Pose2D
         answer = self.loop.intervene('push', self.loop.srv.PushRobot, offset=Pose2D(x=x))
         self.assertTrue(answer.success, answer.message)
 
     def test_a_planner_that_dies_while_the_plan_is_mended(self):
-        self.begin(AT_COUNTER, MUG)
+        self.begin(AT_COUNTER, MUG, **PATIENCE)
         task = self.achieve(THERE)
         self.wait_for_step(task, 'pick_up_object')
         self.loop.pause('planner')
@@ -65,7 +64,7 @@ class NodeLossesTest(LoopCase):
         self.assertEqual(on['mug1'], 'placingareawestlefttable1')
 
     def test_a_blackboard_killed_in_the_middle_has_everything_afterwards(self):
-        self.begin(AT_COUNTER, MUG)
+        self.begin(AT_COUNTER, MUG, **PATIENCE)
         task = self.achieve(THERE)
         self.wait_for_step(task, 'pick_up_object')
         self.loop.kill('blackboard')
@@ -83,7 +82,7 @@ class NodeLossesTest(LoopCase):
         self.assertEqual(refused, [])
 
     def test_without_middle_layer_the_robot_stands_and_with_a_new_one_it_goes_on(self):
-        self.begin(DRIVING, MUG)
+        self.begin(DRIVING, MUG, **PATIENCE)
         task = self.achieve(THERE)
         self.wait_for_step(task, 'move_base')
         self.truth.wait(lambda t: t.speed() > FAST, 'the robot to drive')

@@ -35,9 +35,12 @@ def is_at_work(name, truth):
 
 class PreemptTest(LoopCase):
     def listen_to_steps(self):
-        """Words of the middle layer about its goals."""
-        from actionlib_msgs.msg import GoalStatus, GoalStatusArray
-        self.ended = (GoalStatus.PREEMPTING, GoalStatus.PREEMPTED, GoalStatus.ABORTED)
+        """Words of the middle layer about its goals, and a line to whoever stops time."""
+        from actionlib_msgs.msg import GoalStatusArray
+        from std_srvs.srv import SetBool
+        self.loop.rospy.wait_for_service('sim_robot/hold', 60.0)
+        self.holder = self.loop.rospy.ServiceProxy('sim_robot/hold', SetBool, persistent=True)
+        self.addCleanup(self.holder.close)
         self.statuses = []
         subscriber = self.loop.rospy.Subscriber(
             'execute_action/status', GoalStatusArray, self.statuses.append, tcp_nodelay=True)
@@ -49,8 +52,11 @@ class PreemptTest(LoopCase):
         return {s.goal_id.id for s in self.statuses[-1].status_list
                 if s.status == GoalStatus.ACTIVE} if self.statuses else set()
 
+    def hold(self, is_held):
+        self.assertTrue(self.holder(data=is_held).success)
+
     def stop_time(self):
-        self.assertTrue(self.loop.intervene('hold', self.set_bool, data=True).success)
+        self.hold(True)
         self.truth.wait(lambda t: t.num_repeated > 0, 'time to stand')
 
     def preempt_during(self, text, name):
@@ -65,7 +71,7 @@ class PreemptTest(LoopCase):
         self.assertTrue(self.running(), name + ' was over too early')
         task.preempt()
         wait_until(lambda: not self.running(), 'the middle layer to break off')
-        self.assertTrue(self.loop.intervene('hold', self.set_bool, data=False).success)
+        self.hold(False)
         self.require(task, self.codes.PREEMPTED)
         self.assertEqual(task.state(), 2)  # actionlib's PREEMPTED
         self.truth.wait(lambda t: t.now() > before + MAY_TAKE + WATCHED, 'time to go on')
@@ -83,10 +89,8 @@ class PreemptTest(LoopCase):
             self.assertEqual(moving, {}, now.joints.header.stamp.to_sec() - since)
 
     def test_the_robot_stands_whatever_it_was_at_and_goes_on_when_asked_again(self):
-        from std_srvs.srv import SetBool
-        self.set_bool = SetBool
-        self.listen_to_steps()
         self.begin(ON_FLOOR, {'peppermill1': (5.47, 10.16, 0.75, 0.0)})
+        self.listen_to_steps()
         for name in ('tuck_arms', 'move_base', 'move_torso', 'move_arm_to_side', 'move_base_blind',
                      'pick_up_object', 'place_on_tray', 'move_base_param', 'pick_up_from_tray',
                      'place_object'):
@@ -96,10 +100,8 @@ class PreemptTest(LoopCase):
         self.assert_on_table1('peppermill1')
 
     def test_a_mug_in_the_hand_stays_there(self):
-        from std_srvs.srv import SetBool
-        self.set_bool = SetBool
-        self.listen_to_steps()
         self.begin(AT_COUNTER, MUG)
+        self.listen_to_steps()
         for name in ('move_arms_to_carryposture', 'move_base'):
             with self.subTest(name):
                 self.preempt_during(SERVE, name)

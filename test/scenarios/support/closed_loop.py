@@ -65,12 +65,13 @@ def link_of(fluent, role):
 class Task:
     """A goal of `achieve` on its way."""
 
-    def __init__(self, client, goal, told):
+    def __init__(self, client, goal, told, on_warning=None):
         from actionlib import CommState
         self._states = CommState
         self._changed = threading.Condition()
         self._state = None
         self._told = told
+        self._on_warning = on_warning
         self.feedback = []
         self._handle = client.send_goal(goal, self._on_transition, self._on_feedback)
 
@@ -80,6 +81,8 @@ class Task:
             self._changed.notify_all()
 
     def _on_feedback(self, _, feedback):
+        for text in feedback.warnings if self._on_warning else ():
+            self._on_warning(text)
         with self._changed:
             self.feedback.append(feedback)
             self._changed.notify_all()
@@ -225,12 +228,9 @@ class Truth:
 class ClosedLoop:
     """@param seed   of the robot's hidden truth and of all chance.
     @param pace      [s] of the simulated robot per second.
-    @param rollouts  of an imagination, per combination of alternatives.
-    @param on_late   what the domain says of a drive whose imagination is late: default, wait.
-    @param monitor   changes of the section `monitor` of execution_monitor.yaml."""
+    @param rollouts  of an imagination, per combination of alternatives."""
 
-    def __init__(self, seed=1, pace=10.0, rollouts=4, workers=1, uncertainty=None,
-                 on_late='default', **monitor):
+    def __init__(self, seed=1, pace=10.0, rollouts=4, workers=1, uncertainty=None):
         self.processes = Processes()
         self.main = self.processes.master()
         self.main.set_param('/use_sim_time', True)
@@ -239,16 +239,17 @@ class ClosedLoop:
         os.environ.pop('ROS_HOSTNAME', None)
         self.seed = seed
         self.pace = pace
+        self.rollouts = rollouts
         self.workers = workers
         self.uncertainty = uncertainty
         self.base_port = free_port_block(workers + 1) - 1
         self.nodes = {}
         self.truth = None
         self.scenario = None
+        self._monitor_config = None
         self.remaps = {}  # node -> ['topic:=other']
         self.knowledge = [RESTAURANT]
         self._stores = 0
-        self._monitor_config = self._write_monitor_config(rollouts, on_late, monitor)
 
     def _write_operators(self, on_late):
         with open(os.path.join(CONFIG, 'domains', 'restaurant.yaml')) as file:
@@ -256,7 +257,7 @@ class ClosedLoop:
         operators['operators']['move_base_param']['imagine']['on_late'] = on_late
         return self.processes.write('operators.yaml', yaml.safe_dump(operators))
 
-    def _write_monitor_config(self, rollouts, on_late, monitor):
+    def _write_monitor_config(self, on_late, monitor):
         with open(os.path.join(CONFIG, 'execution_monitor.yaml')) as file:
             config = yaml.safe_load(file)
         config['domain'] = os.path.join(CONFIG, config['domain'])
@@ -265,7 +266,7 @@ class ClosedLoop:
         for name in WORKING_TIMES:
             config['monitor'][name] *= self.pace
         config['monitor'].update(monitor)
-        config['imagining']['rollouts'] = rollouts
+        config['imagining']['rollouts'] = self.rollouts
         return self.processes.write('execution_monitor.yaml', yaml.safe_dump(config))
 
     # Nodes.
@@ -276,7 +277,7 @@ class ClosedLoop:
                     '_pace:=%g' % self.pace, '_lockstep:=true'] + (
                         ['_uncertainty:=' + self.uncertainty] if self.uncertainty else [])
         if name == 'middle_layer':
-            return ['_lockstep:=true']
+            return ['_lockstep:=true', 'navigation/cmd_vel:=base_controller/command']
         if name == 'world_tracker':
             return ['_config:=' + os.path.join(CONFIG, 'world_tracker.yaml'), '_lockstep:=true']
         if name == 'translator':
@@ -308,12 +309,15 @@ class ClosedLoop:
              '_config:=' + os.path.join(CONFIG, 'worker_host.yaml'), '_index:=%d' % index, '_base_port:=%d' % self.base_port], self.main, **{MARK: self.main.uri})
         return self.nodes[name]
 
-    def start(self, scenario, knowledge=(RESTAURANT,)):
-        """Everything; what runs already is for another world, and ended first, but for workers."""
+    def start(self, scenario, knowledge=(RESTAURANT,), on_late='default', **monitor):
+        """Everything; what runs already is for another world, and ended first, but for workers.
+        @param on_late  what the domain says of a drive whose imagination is late: default, wait.
+        @param monitor  changes of the section `monitor` of execution_monitor.yaml."""
         self.end_nodes()
         self._stores += 1
         self.knowledge = list(knowledge)
         self.scenario = self.processes.write('scenario.yaml', yaml.safe_dump(scenario))
+        self._monitor_config = self._write_monitor_config(on_late, monitor)
         self.truth = Truth(self.rospy, self.msg)
         for index in range(1, self.workers + 1):
             if 'worker_host_%d' % index not in self.nodes:
@@ -389,9 +393,9 @@ class ClosedLoop:
         wait_until(is_there, 'the execution monitor, which says: ' +
                    self.nodes['execution_monitor'].output())
 
-    def achieve(self, task, imagination=''):
+    def achieve(self, task, imagination='', on_warning=None):
         goal = self.msg.AchieveGoal(task=task, imagination=imagination)
-        return Task(self.client, goal, self.output)
+        return Task(self.client, goal, self.output, on_warning)
 
     def intervene(self, service, kind, **fields):
         """The answer of a service of the simulated robot."""

@@ -33,22 +33,20 @@ def names(call):
 
 
 class LoopCase(unittest.TestCase):
-    """@var arguments  of ClosedLoop."""
-
-    arguments = {}
-
     @classmethod
     def setUpClass(cls):
-        cls.loop = ClosedLoop(**cls.arguments)
+        cls.loop = ClosedLoop()
         cls.addClassCleanup(cls.loop.destroy)
         cls.loop.connect(cls.__name__.lower() + '_driver')
         cls.codes = cls.loop.msg.AchieveResult
         cls.phases = cls.loop.msg.StepStatus
 
-    def begin(self, robot, objects, hidden=(), knowledge=(RESTAURANT,)):
-        """The whole system in this situation, once the Blackboard has seen it."""
-        self.loop.start(scenario_of(robot, objects, hidden), knowledge)
+    def begin(self, robot, objects, hidden=(), knowledge=(RESTAURANT,), **monitor):
+        """The whole system in this situation, once the Blackboard has seen it.
+        @param monitor  as of ClosedLoop.start."""
+        self.loop.start(scenario_of(robot, objects, hidden), knowledge, **monitor)
         self.truth = self.loop.truth
+        self.truth.wait(lambda truth: True, 'the simulated robot\n' + self.loop.output())
         self.wait_for_belief(robot)
 
     def wait_for_belief(self, robot):

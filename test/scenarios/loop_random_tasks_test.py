@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""Tasks drawn at random run to their end, or stop with a reason that is true. Run alone, or by
+`rostest hires loop_random_tasks.test`; `tasks:=20 first:=1 --text` draws more of them and shows a
+table."""
+
+import os
+import sys
+
+import rosunit
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
+
+from claims import FALSE, OPEN, Snapshot, judge_warning  # noqa: E402
+from closed_loop import IMAGINE_PLACING, link_of  # noqa: E402
+from loop_case import LoopCase  # noqa: E402
+from random_tasks import RandomTask  # noqa: E402
+from ros_processes import wait_until  # noqa: E402
+
+ENDS = {0: 'succeeded', 1: 'no_plan', 2: 'failed'}
+
+
+def numbers_given():
+    """How many tasks, and the first one's seed."""
+    numbers = [int(word) for word in sys.argv[1:] if word.isdigit()]
+    return (numbers + [4, 1][len(numbers):])[:2]
+
+
+class LoopRandomTasksTest(LoopCase):
+    rows = []
+
+    @classmethod
+    def tearDownClass(cls):
+        print('%-4s %-48s %-34s %5s %7s %-10s %-32s %s' % (
+            'seed', 'task', 'from', 'steps', 'sim. s', 'end', 'touched', 'reason | claims [true?]'))
+        for row in cls.rows:
+            print('%-4d %-48s %-34s %5d %7.1f %-10s %-32s %s' % row)
+
+    def run_task(self, seed):
+        drawn = RandomTask(seed)
+        self.loop.seed = seed
+        knowledge = [self.loop.processes.write('knowledge_%d.yaml' % seed, drawn.knowledge())]
+        if drawn.is_placing_imagined:
+            knowledge.append(IMAGINE_PLACING)
+        self.begin(drawn.robot, drawn.objects, drawn.hidden, knowledge)
+        self.claims = []
+        begun = self.truth.now()
+        task = self.achieve(drawn.task, on_warning=self.note_claims)
+        result = task.result()
+        self.wait_until_it_stands()
+        self.note_end(drawn, result, self.truth.now() - begun)
+        self.check(drawn, task, result)
+
+    def note_claims(self, text):
+        """As soon as it is said."""
+        self.claims += judge_warning(text, Snapshot(self.truth))
+
+    def note_end(self, drawn, result, duration):
+        steps = [s for s in result.steps
+                 if s.started == s.started and s.action.name != 'imagine']
+        told = '; '.join('%s [%s]' % claim for claim in self.claims) or 'nothing'
+        self.rows.append((drawn.seed, drawn.task, drawn.start, len(steps), duration,
+                          ENDS.get(result.code, str(result.code)), self.truth.summary.contact,
+                          '%s | %s' % (result.reason, told)))
+
+    def check(self, drawn, task, result):
+        story = lambda: self.story(task, result)  # noqa: E731
+        self.assertIn(result.code, ENDS, story())
+        self.assertTrue(result.code == 0 or result.reason, story())
+        false = [claim for claim, verdict in self.claims if verdict == FALSE]
+        self.assertEqual(false, [], story())
+        if result.code == self.codes.SUCCEEDED:
+            self.check_goal(drawn, story)
+        self.check_belief(drawn, story)
+
+    def check_goal(self, drawn, story):
+        truth = Snapshot(self.truth)
+        there = {name for name in drawn.objects
+                 if truth.stands_on(name, 0.02) in drawn.goal_areas}
+        if drawn.kind == 'serve':
+            self.assertTrue(there & set(drawn.coffees), story())
+        elif drawn.kind == 'carry':
+            self.assertIn(drawn.goal_object, there, story())
+        else:
+            self.assertEqual(there, set(drawn.objects), story())
+
+    def check_belief(self, drawn, story):
+        """What it decided by is so, of everything that it was told of."""
+        def differences():
+            truth = Snapshot(self.truth)
+            atoms = [('on', [link_of(f, 'hasPhysicalEntity'), link_of(f, 'hasArea')])
+                     for f in self.loop.fluents('On', now=True)]
+            atoms += [('holding', [link_of(f, 'hasArm'), link_of(f, 'hasPassiveObject')])
+                      for f in self.loop.fluents('Holding', now=True)]
+            return [atom for atom in atoms if truth.holds(*atom) is False]
+        try:
+            wait_until(lambda: not differences(), 'belief to agree with truth', 5.0)
+        except AssertionError:
+            self.fail('%s\n%s' % (differences(), story()))
+
+    def test_tasks_at_random_end_as_they_say(self):
+        count, first = numbers_given()
+        for seed in range(first, first + count):
+            with self.subTest(seed=seed, task=RandomTask(seed).task):
+                self.run_task(seed)
+
+
+if __name__ == '__main__':
+    rosunit.unitrun('hires', 'loop_random_tasks', LoopRandomTasksTest)

@@ -1,0 +1,104 @@
+"""Tasks at random: what is to be done, where everything stands at first, what nobody tells the
+robot. The same seed gives the same task."""
+
+import random
+
+from restaurant import FRAMES, FURNITURE, SEATS, area_under, knowledge_of
+from closed_loop import scenario_of
+
+OBJECTS = ('mug1', 'mug2', 'peppermill1')
+OBSTACLES = ('bowl1', 'book1')
+STANDS = ('premanipulationareaeastcounter1', 'premanipulationareanorthtable1',
+          'premanipulationareasouthtable1', 'premanipulationareaeasttable2',
+          'premanipulationareawesttable2', 'nearstartarea1', 'home', (12.5, 9.8, 2.0))
+TORSOS = ('torsodownposture', 'torsomiddleposture', 'torsoupposture')
+ARMS = (('armtuckedposture', 'armtuckedposture'), ('armuntuckedposture', 'armuntuckedposture'),
+        ('armtuckedposture', 'armtosideposture'), ('armtosideposture', 'armtosideposture'))
+APART = 0.16  # [m] between objects
+
+
+class RandomTask:
+    def __init__(self, seed):
+        chance = random.Random('task %d' % seed)
+        self.seed = seed
+        self.objects, self.hidden = {}, {}
+        self.guests = self._draw_guests(chance)
+        self.kind = chance.choice(('serve', 'carry', 'clear'))
+        getattr(self, '_draw_' + self.kind)(chance)
+        self.coffees = self._draw_coffees(chance)
+        self.robot, self.start = self._draw_robot(chance)
+        self.is_placing_imagined = chance.random() < 0.5
+
+    def knowledge(self):
+        """Text of a file."""
+        return knowledge_of(self.objects, self.coffees, self.guests)
+
+    def scenario(self):
+        return scenario_of(self.robot, self.objects, self.hidden)
+
+    def _draw_guests(self, chance):
+        seats = chance.sample(sorted(SEATS), chance.randint(1, len(SEATS)))
+        return {'guest%d' % (i + 1): seat for i, seat in enumerate(seats)}
+
+    def _draw_serve(self, chance):
+        guest = chance.choice(sorted(self.guests))
+        self.task = 'serve_coffee_to_guest ' + guest
+        self.goal_areas = SEATS[self.guests[guest]]
+        for name in chance.sample(OBJECTS, chance.randint(1, 3)):
+            self._put(chance, name, 'placingareaeastrightcounter1')
+        if not any(name.startswith('mug') for name in self.objects):
+            self._put(chance, 'mug1', 'placingareaeastrightcounter1')
+        self._hide(chance)
+
+    def _draw_carry(self, chance):
+        source, target = chance.sample(sorted(FURNITURE), 2)
+        name = chance.choice(OBJECTS)
+        self.task = 'carry_object_on_tray %s %s %s' % (name, source, target)
+        self.goal_areas = FURNITURE[target]
+        self.goal_object = name
+        self._put(chance, name, chance.choice(FURNITURE[source]))
+        for other in OBJECTS:
+            if other != name and chance.random() < 0.3:
+                self._put(chance, other, 'placingareaeastrightcounter1')
+        self._hide(chance)
+
+    def _draw_clear(self, chance):
+        table = chance.choice(('table1', 'table2'))
+        self.task = 'clear_table %s counter1' % table
+        self.goal_areas = FURNITURE['counter1']
+        areas = chance.sample(FURNITURE[table], 2)
+        for name, area in zip(chance.sample(OBJECTS, chance.randint(1, 2)), areas):
+            self._put(chance, name, area)
+
+    def _draw_coffees(self, chance):
+        mugs = sorted(name for name in self.objects if name.startswith('mug'))
+        full = [name for name in mugs if chance.random() < 0.7]
+        return full or mugs[:1]
+
+    def _draw_robot(self, chance):
+        stand = chance.choice(STANDS)
+        pose = list(FRAMES[stand][:2] + FRAMES[stand][3:]) if isinstance(stand, str) else list(stand)
+        arms = chance.choice(ARMS)
+        robot = {'pose': pose, 'torso': chance.choice(TORSOS),
+                 'arms': {'leftarm1': arms[0], 'rightarm1': arms[1]}}
+        return robot, stand if isinstance(stand, str) else 'floor'
+
+    def _hide(self, chance):
+        """Now and then things stand where something is to be put."""
+        if chance.random() < 0.4:
+            name = chance.choice(OBSTACLES)
+            self._put(chance, name, chance.choice(self.goal_areas), self.hidden)
+
+    def _put(self, chance, name, area, among=None):
+        """Somewhere on an area, away from what stands there."""
+        among = self.objects if among is None else among
+        x, y, z, _ = FRAMES[area]
+        along = 0.24 if 'counter' in area else 0.06
+        while True:
+            pose = (round(x + chance.uniform(-0.06, 0.06), 3),
+                    round(y + chance.uniform(-along, along), 3), z, 0.0)
+            others = [*self.objects.values(), *self.hidden.values()]
+            if all(max(abs(pose[0] - p[0]), abs(pose[1] - p[1])) > APART for p in others):
+                break
+        assert area_under(*pose[:3]) == area, (name, area)
+        among[name] = pose
