@@ -32,11 +32,25 @@ class ImaginationIdentityTest(unittest.TestCase):
         cls.addClassCleanup(local.destroy)
         cls.local = local
         cls.expected = local.ask('--local', '--threads', '1', rollouts=ROLLOUTS).answer()
+        cls.two = None
 
-    def start(self, workers):
+    @classmethod
+    def with_two_workers(cls):
+        """One system for all cases that need no more."""
+        if cls.two is None:
+            cls.two = ImaginationSystem(workers=2)
+            cls.addClassCleanup(cls.two.destroy)
+            cls.two.start()
+        return cls.two
+
+    def ask_with(self, workers):
+        if workers == 2:
+            return self.with_two_workers().ask(rollouts=ROLLOUTS).answer()
         system = ImaginationSystem(workers)
         self.addCleanup(system.destroy)
-        return system.start()
+        answer = system.start().ask(rollouts=ROLLOUTS).answer()
+        system.shut_down()
+        return answer
 
     def require_expected(self, answer):
         self.assertEqual(answer.code, 0, answer.output)
@@ -59,21 +73,22 @@ class ImaginationIdentityTest(unittest.TestCase):
     def test_one_two_and_four_workers_answer_as_one_thread(self):
         for workers in (1, 2, 4):
             with self.subTest(workers=workers):
-                system = self.start(workers)
-                self.require_expected(system.ask(rollouts=ROLLOUTS).answer())
-                system.shut_down()
+                self.require_expected(self.ask_with(workers))
 
     def test_a_worker_that_is_killed_half_way_changes_nothing(self):
-        system = self.start(2)
+        system = self.with_two_workers()
         watcher = system.watch()
+        self.addCleanup(watcher.destroy)
+        joined, told = system.times_joined(1), len(system.client.lines)
         question = system.ask(rollouts=ROLLOUTS)
         watcher.wait_for(r'feedback done=(4[89]|[5-9]\d) ')
         os.kill(system.pids_of_worker(1)['sim_worker'], signal.SIGKILL)
         self.require_expected(question.answer())
-        self.assertIn('worker=1 lost', system.client.output())
+        system.client.wait_for('worker=1 lost', first=told)
+        system.wait_until_joined(1, times=joined + 1)  # for the cases that follow
 
     def test_planned_driving_with_early_stop_is_identical_too(self):
-        system = self.start(2)
+        system = self.with_two_workers()
         arguments = {'action': SLOW_AND_FAST, 'rollouts': 32, 'early_stop': True}
         remote = system.ask(**arguments).answer()
         local = self.local.ask('--local', **arguments).answer()
@@ -81,7 +96,7 @@ class ImaginationIdentityTest(unittest.TestCase):
         self.assertEqual(remote.content(), local.content())
 
     def test_arms_are_identical_too(self):
-        system = self.start(2)
+        system = self.with_two_workers()
         remote = system.ask(action=PLACE, rollouts=8).answer()
         local = self.local.ask('--local', action=PLACE, rollouts=8).answer()
         self.assertEqual(remote.code, 0, remote.output)
@@ -89,7 +104,7 @@ class ImaginationIdentityTest(unittest.TestCase):
         self.assertGreater(remote.report['ranking'][0]['counts']['notopple'], 0)
 
     def test_what_stands_on_the_table_travels_to_the_workers(self):
-        system = self.start(2)
+        system = self.with_two_workers()
         remote = system.ask(action=PLACE + OCCUPIED, rollouts=8).answer()
         local = self.local.ask('--local', action=PLACE + OCCUPIED, rollouts=8).answer()
         self.assertEqual(remote.code, 2, remote.output)  # all fail

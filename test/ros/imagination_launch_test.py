@@ -7,6 +7,7 @@ import signal
 import sys
 import time
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 
 import rosunit
 
@@ -16,14 +17,16 @@ from imagination_system import ImaginationSystem  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
 
 CYCLES = 20
+SIDE_BY_SIDE = 2  # under a master each
 
 
-class ImaginationLaunchTest(unittest.TestCase):
-    def setUp(self):
+class Launch:
+    """imagination.launch with one worker, to be started again and again."""
+
+    def __init__(self):
         self.system = ImaginationSystem(workers=1)
-        self.addCleanup(self.system.destroy)
 
-    def launch(self):
+    def start(self):
         # With -p roslaunch would bring a master of its own; the one at ROS_MASTER_URI is there.
         return self.system.run(['roslaunch', 'hires', 'imagination.launch', 'workers:=1',
                                 'base_port:=%d' % self.system.base_port])
@@ -31,36 +34,54 @@ class ImaginationLaunchTest(unittest.TestCase):
     def is_there(self, sign):
         return any(sign in command for command in self.system.alive().values())
 
+    def stop_at(self, moment):
+        """Starts it, and stops it when a process with that in its command line is there, or when
+        all is up; [s] it took to stop."""
+        launch = self.start()
+        if moment:
+            wait_until(lambda: self.is_there(moment), moment)
+        else:
+            launch.wait_for('worker=1 joined')
+        launch.signal(signal.SIGINT)
+        stopped = time.monotonic()
+        assert launch.wait() == 0, launch.output()
+        wait_until(lambda: not self.system.alive(), 'all processes to end', 2.0)
+        return time.monotonic() - stopped
+
+
+class ImaginationLaunchTest(unittest.TestCase):
+    def launches(self, count):
+        launches = [Launch() for _ in range(count)]
+        for launch in launches:
+            self.addCleanup(launch.system.destroy)
+        return launches
+
     def test_launched_as_a_user_does_it_answers(self):
-        launch = self.launch()
+        (imagination,) = self.launches(1)
+        launch = imagination.start()
         launch.wait_for('worker=1 joined')
-        answer = self.system.ask(rollouts=16).answer()
+        answer = imagination.system.ask(rollouts=16).answer()
         self.assertEqual(answer.code, 0, answer.output)
         launch.signal(signal.SIGINT)
         self.assertEqual(launch.wait(), 0)
-        wait_until(lambda: not self.system.alive(), 'all processes to end', 2.0)
+        wait_until(lambda: not imagination.system.alive(), 'all processes to end', 2.0)
 
     def test_twenty_starts_and_stops_leave_no_process(self):
         # Each cycle is stopped at another moment of the start, every fourth when all is up. Not
         # earlier: a signal that roslaunch sends to a node it is just forking is lost, and
         # roslaunch waits 15 s before it sends another.
         moments = ('lib/hires/worker_host', 'rosmaster --core', '__name:=sim_worker_1', None)
-        longest = 0.0
-        for cycle in range(CYCLES):
-            moment = moments[cycle % len(moments)]
-            with self.subTest(cycle=cycle, stopped_at=moment):
-                launch = self.launch()
-                if moment:
-                    wait_until(lambda: self.is_there(moment), moment)
-                else:
-                    launch.wait_for('worker=1 joined')
-                launch.signal(signal.SIGINT)
-                stopped = time.monotonic()
-                self.assertEqual(launch.wait(), 0, launch.output())
-                wait_until(lambda: not self.system.alive(), 'all processes to end', 2.0)
-                longest = max(longest, time.monotonic() - stopped)
+        launches = self.launches(SIDE_BY_SIDE)
+
+        def play(lane):
+            return [launches[lane].stop_at(moments[cycle % len(moments)])
+                    for cycle in range(lane, CYCLES, SIDE_BY_SIDE)]
+        with ThreadPoolExecutor(SIDE_BY_SIDE) as pool:
+            durations = [duration for lane in pool.map(play, range(SIDE_BY_SIDE))
+                         for duration in lane]
+        self.assertEqual(len(durations), CYCLES)
         # Past rosunit, which keeps standard output to itself.
-        print('longest shutdown: %.2f s' % longest, file=sys.__stderr__, flush=True)
+        print('longest shutdown: %.2f s' % max(durations), file=sys.__stderr__, flush=True)
 
 
 if __name__ == '__main__':

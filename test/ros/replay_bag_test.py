@@ -83,6 +83,8 @@ class ReplayBagTest(unittest.TestCase):
     def setUpClass(cls):
         cls.system = ImaginationSystem(workers=1)
         cls.addClassCleanup(cls.system.destroy)
+        # [s] How long the server remembers a goal after its end; actionlib's own is 5.
+        cls.system.main.set_param('/imagine/status_list_timeout', 0.5)
         cls.system.start()
         os.environ['ROS_MASTER_URI'] = cls.system.main.uri
         rospy.init_node('replay_bag_test', disable_signals=True)
