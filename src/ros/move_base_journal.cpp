@@ -12,6 +12,8 @@
 #include <cstring>
 #include <filesystem>
 #include <set>
+#include <string_view>
+#include <vector>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -156,10 +158,18 @@ class Reader {
   [[noreturn]] void FailAt(int line, const std::string& what) {
     throw ConfigError(fmt::format(
         "{}: line {}: {}. It tells what limits of move_base were before they were changed; could "
-        "be read of it: {}{}. Set the limits right by hand (rosrun dynamic_reconfigure dynparam "
+        "be read of it: {}. Set the limits right by hand (rosrun dynamic_reconfigure dynparam "
         "set), then remove the file; until then move_base is not used",
-        path_, line + 1, what, journal_.server.empty() ? "" : journal_.server + ": ",
-        ToText(journal_.original)));
+        path_, line + 1, what, WhatCouldBeRead()));
+  }
+
+  /// For people; where nothing was understood, they may understand the text itself.
+  std::string WhatCouldBeRead() const {
+    if (!journal_.original.empty()) return journal_.server + ": " + ToText(journal_.original);
+    constexpr std::size_t kMost = 500;
+    const std::vector<std::string> lines =
+        hires::base::Split(std::string_view(text_).substr(0, kMost), '\n');
+    return "\"" + hires::base::Join(lines, " / ") + "\"";
   }
 
   const std::string& path_;

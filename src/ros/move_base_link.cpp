@@ -30,8 +30,9 @@ State StateOf(const TerminalState& end) {
 
 }  // namespace
 
-MoveBaseLink::MoveBaseLink(const std::string& action, const std::string& map_frame)
-    : map_frame_(map_frame) {
+MoveBaseLink::MoveBaseLink(const std::string& action, const std::string& map_frame,
+                           const hires::world::MapToWorld& map_to_world)
+    : map_frame_(map_frame), map_to_world_(map_to_world) {
   ros::NodeHandle nh;
   nh.setCallbackQueue(&queue_);
   client_ = std::make_unique<Client>(nh, action, &queue_);
@@ -41,7 +42,7 @@ MoveBaseLink::MoveBaseLink(const std::string& action, const std::string& map_fra
 }
 
 MoveBaseLink::~MoveBaseLink() {
-  Cancel();
+  Shut();
   is_ending_ = true;
   thread_.join();
   const std::lock_guard<std::mutex> lock(handle_mutex_);
@@ -50,7 +51,22 @@ MoveBaseLink::~MoveBaseLink() {
 
 bool MoveBaseLink::IsThere() { return client_->isServerConnected(); }
 
+void MoveBaseLink::Open() {
+  const std::lock_guard<std::mutex> lock(handle_mutex_);
+  is_open_ = true;
+}
+
+void MoveBaseLink::Shut() {
+  {
+    const std::lock_guard<std::mutex> lock(handle_mutex_);
+    is_open_ = false;
+  }
+  Cancel();
+}
+
 void MoveBaseLink::Go(const hires::geometry::Pose2& X_MGoal) {
+  const std::lock_guard<std::mutex> handle_lock(handle_mutex_);
+  if (!is_open_) return;
   std::uint64_t number;
   {
     const std::lock_guard<std::mutex> lock(news_mutex_);
@@ -60,8 +76,7 @@ void MoveBaseLink::Go(const hires::geometry::Pose2& X_MGoal) {
   move_base_msgs::MoveBaseGoal goal;
   goal.target_pose.header.frame_id = map_frame_;
   goal.target_pose.header.stamp = ros::Time::now();
-  goal.target_pose.pose = ToMsg(hires::geometry::Lift(X_MGoal));
-  const std::lock_guard<std::mutex> lock(handle_mutex_);
+  goal.target_pose.pose = ToMsg(hires::geometry::Lift(map_to_world_.ToMap(X_MGoal)));
   handle_ =
       client_->sendGoal(goal, [this, number](Client::GoalHandle handle) { Hear(number, handle); });
 }

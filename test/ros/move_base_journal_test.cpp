@@ -103,6 +103,8 @@ TEST_F(MoveBaseJournalTest, AFileThatWasCutOffIsNamedWithWhatCouldBeRead) {
 TEST_F(MoveBaseJournalTest, WhatIsNoJournalIsAnError) {
   EXPECT_THAT(Complaint(""), HasSubstr("is no map"));
   EXPECT_THAT(Complaint("{"), HasSubstr("is no YAML"));
+  EXPECT_THAT(Complaint("server: /a\nparameters: {x: {original: 0.5, in"),
+              HasSubstr("\"server: /a / parameters: {x: {original: 0.5, in\""));
   EXPECT_THAT(Complaint("motion_set: slow\n"), HasSubstr("has no server"));
   EXPECT_THAT(Complaint("server: /a\nmotion_set: [slow]\n"), HasSubstr("has no motion_set"));
   EXPECT_THAT(Complaint("server: /a\nmotion_set: slow\n"), HasSubstr("has no parameters"));

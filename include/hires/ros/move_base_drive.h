@@ -43,7 +43,9 @@ class MoveBaseServer {
 /// took move_base), "no_controller: move_base".
 std::string ReasonFor(const MoveBaseNews& news);
 
+/// Section `navigation` of config/middle_layer.yaml.
 struct MoveBaseDriveParams {
+  bool is_used{false};          ///< long ways are driven by move_base, not by our own skill
   double start_patience{10.0};  ///< [s] until there is leave to drive, and a server
   double answer_patience{5.0};  ///< [s] from the goal to the server's first word
   /// Where move_base stops short, our own straight drive does the rest: at most so far ...
