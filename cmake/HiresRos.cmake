@@ -32,14 +32,16 @@ function(hires_node name)
   install(TARGETS ${target} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 endfunction()
 
-# hires_rostest(<file.test> [TIMEOUT seconds]): a rostest that ctest runs and a user can run alone.
-# One at a time: each brings masters and worker processes of its own. Not in ${CATKIN_ENV}: that is a
-# snapshot taken while configuring, and in a fresh folder it misses the Python messages built later.
+# hires_rostest(<file.test> [TIMEOUT seconds] [BESIDE_OTHERS]): a rostest that ctest runs and a user
+# can run alone. Nothing else runs meanwhile, as each brings masters and worker processes of its own;
+# BESIDE_OTHERS: it judges no times and takes no fixed ports, so that other tests may run too.
+# Not in ${CATKIN_ENV}: that is a snapshot taken while configuring, and in a fresh folder it misses
+# the Python messages built later.
 function(hires_rostest file)
   if(NOT HIRES_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ROSTEST "" "TIMEOUT" "ARGS" ${ARGN})
+  cmake_parse_arguments(ROSTEST "BESIDE_OTHERS" "TIMEOUT" "ARGS" ${ARGN})
   if(NOT ROSTEST_TIMEOUT)
     set(ROSTEST_TIMEOUT 120)
   endif()
@@ -50,8 +52,12 @@ function(hires_rostest file)
   add_test(NAME ros.${name}
     COMMAND ${CATKIN_DEVEL_PREFIX}/env.sh rostest ${CMAKE_CURRENT_SOURCE_DIR}/${file} ${ROSTEST_ARGS}
     WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})
+  set(alone ON)
+  if(ROSTEST_BESIDE_OTHERS)
+    set(alone OFF)
+  endif()
   set_tests_properties(ros.${name} PROPERTIES
-    TIMEOUT ${ROSTEST_TIMEOUT} RUN_SERIAL ON
+    TIMEOUT ${ROSTEST_TIMEOUT} RUN_SERIAL ${alone}
     ENVIRONMENT "ROS_HOSTNAME=localhost;ROS_IP=")
 endfunction()
 
