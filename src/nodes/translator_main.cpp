@@ -17,8 +17,9 @@ int main(int argc, char** argv) {
   hires_ros::MasterWatch master_watch;
   const hires_ros::ScopedLogSink log_sink;
   try {
-    hires_ros::TranslatorNode node(
-        hires_ros::LoadTranslatorContext(hires_ros::LoadTranslatorParams()), &nh);
+    const auto params = hires_ros::LoadTranslatorParams();
+    hires_ros::TranslatorNode node(hires_ros::LoadTranslatorContext(params), params.names.map_frame,
+                                   &nh);
     ros::spin();
   } catch (const hires::base::ConfigError& error) {
     ROS_FATAL("translator: %s", error.what());

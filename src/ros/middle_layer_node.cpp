@@ -25,7 +25,6 @@ using hires::base::LogLevel;
 
 constexpr auto kBlindStop = std::chrono::seconds(3);  // that a stop may go on unseen
 constexpr auto kFarewell = std::chrono::seconds(5);   // that the node takes to stop the robot
-constexpr double kSameStamp = 1e-9;                   // [s]
 
 /// Runs a function in the thread that spins.
 class Call : public ros::CallbackInterface {
@@ -60,8 +59,9 @@ MiddleLayerNode::MiddleLayerNode(const MiddleLayerParams& params,
       setup_(std::move(setup)),
       scan_obstacles_(setup_.skills->driving->costmap, PaddedFootprint(setup_.scene->robot),
                       params.scan),
+      odometry_frame_(params.names.odometry_frame),
       senses_({setup_.scene, &setup_.scene->robot}, setup_.scene->surroundings, scan_obstacles_,
-              params.runner.stale_after),
+              params.names, params.runner.stale_after),
       runner_(setup_.scene->robot, params.runner,
               {[this](const hires::robot::Command& command) { Send(command); },
                [this](const ActionNews& news, ActionEnd end, const std::string& reason) {
@@ -70,7 +70,18 @@ MiddleLayerNode::MiddleLayerNode(const MiddleLayerParams& params,
                [this] {
                  ros::getGlobalCallbackQueue()->addCallback(
                      boost::make_shared<Call>([this] { OnWake(); }));
+               },
+               [this](const ActionNews& news) {
+                 if (news.has_base && move_base_) move_base_->Shut();
                }}),
+      leave_(params.guard.request_period,
+             {[this](hires::BaseRequest request) {
+                if (!request_) return;
+                request.header.stamp = ros::Time::now();
+                request_.publish(request);
+              },
+              [this](const std::string& reason) { OnGuardStopped(reason); }}),
+      override_(params.override),
       last_look_(Steady::now()),
       server_(
           *nh, kExecuteAction, [this](GoalHandle goal) { OnGoal(goal); },
@@ -86,41 +97,20 @@ MiddleLayerNode::MiddleLayerNode(const MiddleLayerParams& params,
 }
 
 void MiddleLayerNode::Advertise(ros::NodeHandle* nh) {
-  base_ = nh->advertise<geometry_msgs::Twist>(kBaseCommand, 10);
-  for (const auto& [group, topic] : TrajectoryTopics()) {
+  if (params_.lockstep) ack_ = nh->advertise<hires::LockstepAck>(kLockstepAck, 10);
+  if (params_.dry_run) return;
+  if (params_.guard.is_there) request_ = nh->advertise<hires::BaseRequest>(kGuardRequest, 10);
+  base_ = nh->advertise<geometry_msgs::Twist>(
+      params_.guard.is_there ? kGuardCommand : params_.names.base_command, 10);
+  for (const auto& [group, topic] : params_.names.trajectories) {
     trajectories_[group] = nh->advertise<trajectory_msgs::JointTrajectory>(topic, 10);
   }
-  for (const auto& [arm, topic] : GripperTopics()) {
+  for (const auto& [arm, topic] : params_.names.grippers) {
     grippers_[arm] = nh->advertise<Pr2GripperCommand>(topic, 10);
   }
-  if (params_.lockstep) ack_ = nh->advertise<hires::LockstepAck>(kLockstepAck, 10);
-}
-
-void MiddleLayerNode::Subscribe(ros::NodeHandle* nh) {
-  const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
-  const auto add = [&](ros::Subscriber subscriber) { subscribers_.push_back(subscriber); };
-  add(nh->subscribe<nav_msgs::Odometry>(kOdometry, 100,
-                                        boost::function<void(const nav_msgs::OdometryConstPtr&)>(
-                                            [this](const nav_msgs::OdometryConstPtr& msg) {
-                                              senses_.OnOdometry(msg->header.stamp.toSec(),
-                                                                 FromMsg(*msg));
-                                              Note(kOdometry, msg->header.stamp.toSec());
-                                            }),
-                                        ros::VoidConstPtr(), hints));
-  add(nh->subscribe<sensor_msgs::JointState>(
-      kJointStates, 100,
-      boost::function<void(const sensor_msgs::JointStateConstPtr&)>(
-          [this](const sensor_msgs::JointStateConstPtr& msg) {
-            senses_.OnJoints(msg->header.stamp.toSec(), FromMsg(*msg));
-            Note(kJointStates, msg->header.stamp.toSec());
-          }),
-      ros::VoidConstPtr(), hints));
-  add(nh->subscribe(kTransforms, 100, &MiddleLayerNode::OnTransforms, this, hints));
-  add(nh->subscribe(kBaseScan, 10, &MiddleLayerNode::OnScan, this, hints));
-  add(nh->subscribe(kDetections, 10, &MiddleLayerNode::OnDetections, this, hints));
-  add(nh->subscribe(kKnownObjects, 10, &MiddleLayerNode::OnKnownObjects, this, hints));
-  if (params_.lockstep) {
-    add(nh->subscribe(kLockstepTick, 10, &MiddleLayerNode::OnTick, this, hints));
+  if (params_.navigation.is_used) {
+    move_base_ = std::make_shared<MoveBaseLink>(
+        params_.names.move_base.action, params_.names.map_frame, params_.names.map_to_world);
   }
 }
 
@@ -135,6 +125,10 @@ void MiddleLayerNode::OnGoal(GoalHandle goal) {
     }
   } catch (const ConfigError& error) {
     goal.setRejected(ResultOf(ExecuteActionResult::INVALID, error.what(), 0.0));
+    return;
+  }
+  if (params_.dry_run) {
+    goal.setRejected(ResultOf(ExecuteActionResult::FAILED, "dry_run", 0.0));
     return;
   }
   waiting_.push_back({goal, Steady::now()});
@@ -160,6 +154,7 @@ void MiddleLayerNode::StartWaiting() {
 
 /// The reason why an action would fail at once; empty: nothing is missing.
 std::string MiddleLayerNode::WhyNotReady(const std::set<std::string>& groups) const {
+  if (are_motors_halted_) return "motors_halted";
   const std::string controller = MissingController(groups);
   if (!controller.empty()) return "no_controller: " + controller;
   const bool is_fresh = senses_.Missing().empty() && !ros::Time::now().isZero() &&
@@ -172,29 +167,50 @@ std::string MiddleLayerNode::WhyNotReady(const std::set<std::string>& groups) co
 std::string MiddleLayerNode::MissingController(const std::set<std::string>& groups) const {
   if (groups.count("base") > 0 && base_.getNumSubscribers() == 0) return base_.getTopic();
   if (params_.lockstep && awaited_ != ros::this_node::getName()) return ack_.getTopic();
-  for (const auto* controllers : {&trajectories_, &grippers_}) {
-    for (const auto& [group, publisher] : *controllers) {
-      if (groups.count(group) > 0 && publisher.getNumSubscribers() == 0) {
-        return publisher.getTopic();
-      }
+  for (const std::string& group : groups) {
+    if (group == "base") continue;
+    const bool is_arm = group != "torso" && group != "head";
+    const auto trajectory = trajectories_.find(group), gripper = grippers_.find(group);
+    if (trajectory == trajectories_.end() || (is_arm && gripper == grippers_.end())) {
+      return "the robot's names tell none for " + group;
     }
+    if (trajectory->second.getNumSubscribers() == 0) return trajectory->second.getTopic();
+    if (is_arm && gripper->second.getNumSubscribers() == 0) return gripper->second.getTopic();
   }
   return "";
+}
+
+std::unique_ptr<hires::skills::Skill> MiddleLayerNode::MakeSkill(
+    const hires::base::ActionCall& action) const {
+  if (!move_base_ || !IsForMoveBase(action)) {
+    return hires::skills::MakeSkill(*setup_.skills, action);
+  }
+  return MakeMoveBaseDrive(
+      *setup_.skills, action, move_base_, [granted = leave_.granted()] { return granted->load(); },
+      params_.navigation);
 }
 
 void MiddleLayerNode::StartGoal(GoalHandle goal) {
   const hires::base::ActionCall action = FromMsg(goal.getGoal()->action);
   const double now = std::max(looked_, ros::Time::now().toSec());
   const auto refusal =
-      runner_.Start(next_id_, action, hires::skills::MakeSkill(*setup_.skills, action),
-                    goal.getGoal()->time_limit.toSec(), now);
+      runner_.Start(next_id_, action, MakeSkill(action), goal.getGoal()->time_limit.toSec(), now);
   if (refusal) {
     goal.setRejected(ResultOf(ExecuteActionResult::INVALID, *refusal, 0.0));
     return;
   }
   hires::base::Log(LogLevel::kInfo, fmt::format("action={} begins", hires::base::ToString(action)));
   goal.setAccepted();
-  going_[next_id_++] = {goal, 0.0, ""};
+  const int id = next_id_++;
+  going_[id] = {goal, 0.0, ""};
+  if (GroupsOf(action).count("base") == 0) return;
+  override_.Forget();
+  if (move_base_) move_base_->Open();
+  DriveLimits limits = LimitsFor(*setup_.skills, action);
+  limits.max_braking = braking_.max_deceleration;
+  limits.max_braking_jerk = braking_.max_jerk;
+  leave_.Begin(id, limits, ros::WallTime::now().toNSec());
+  AskForLeave();
 }
 
 void MiddleLayerNode::OnCancel(GoalHandle goal) {
@@ -213,6 +229,8 @@ void MiddleLayerNode::OnCancel(GoalHandle goal) {
 void MiddleLayerNode::OnEnded(const ActionNews& news, ActionEnd end, const std::string& reason) {
   const auto going = going_.find(news.id);
   GoalHandle goal = going->second.goal;
+  leave_.End(news.id);
+  if (news.has_base && move_base_) move_base_->Shut();
   going_.erase(going);
   ++num_ended_;
   hires::base::Log(
@@ -233,7 +251,8 @@ void MiddleLayerNode::OnEnded(const ActionNews& news, ActionEnd end, const std::
 }
 
 void MiddleLayerNode::PublishFeedback() {
-  for (const ActionNews& news : runner_.News()) {
+  for (ActionNews news : runner_.News()) {
+    if (news.has_base && override_.is_overridden()) news.phase = "overridden";
     Going& going = going_.at(news.id);
     if (news.elapsed < going.next_feedback && news.phase == going.phase) continue;
     going.next_feedback = news.elapsed + params_.feedback_period;
@@ -245,118 +264,12 @@ void MiddleLayerNode::PublishFeedback() {
   }
 }
 
-// Senses ------------------------------------------------------------------------------------------
+// Commands ----------------------------------------------------------------------------------------
 
-void MiddleLayerNode::OnTransforms(const tf2_msgs::TFMessage& msg) {
-  for (const geometry_msgs::TransformStamped& transform : msg.transforms) {
-    if (transform.header.frame_id != kMapFrame || transform.child_frame_id != kOdometryFrame) {
-      continue;
-    }
-    geometry_msgs::Pose pose;
-    pose.position.x = transform.transform.translation.x;
-    pose.position.y = transform.transform.translation.y;
-    pose.orientation = transform.transform.rotation;
-    senses_.OnLocalisation(transform.header.stamp.toSec(), hires::geometry::Flatten(FromMsg(pose)));
-    Note(kTransforms, transform.header.stamp.toSec());
-  }
-}
-
-void MiddleLayerNode::OnScan(const sensor_msgs::LaserScan& msg) {
-  senses_.OnScan(msg.header.stamp.toSec(),
-                 {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges});
-  Note(kBaseScan, msg.header.stamp.toSec());
-}
-
-void MiddleLayerNode::OnDetections(const hires::Detections& msg) {
-  std::vector<hires::perception::Detection> detections;
-  for (const hires::DetectedObject& object : msg.objects) {
-    detections.push_back({object.name, object.model, FromMsg(object.pose), object.visible_share});
-  }
-  senses_.OnDetections(msg.header.stamp.toSec(), std::move(detections));
-  Note(kDetections, msg.header.stamp.toSec());
-}
-
-void MiddleLayerNode::OnKnownObjects(const hires::WorldState& msg) {
-  senses_.OnKnownObjects(FromMsg(msg));
-}
-
-void MiddleLayerNode::OnTick(const hires::LockstepTick& msg) {
-  awaited_ = msg.awaited;
-  // A tick is repeated where the answer is late, or went before the robot listened.
-  if (tick_ && tick_->header.stamp == msg.header.stamp) return;
-  if (acked_ && acked_->header.stamp == msg.header.stamp) {
-    ack_.publish(*acked_);
-    return;
-  }
-  tick_ = msg;
-  is_tick_looked_at_ = false;
-  LookAtTick();
-}
-
-void MiddleLayerNode::Note(const std::string& topic, double stamp) {
-  double& newest = arrived_[topic];
-  newest = std::max(newest, stamp);
-  if (params_.lockstep) {
-    LookAtTick();
-  } else if (topic == kOdometry || topic == kJointStates) {
-    LookWhereFree();
-  }
-}
-
-void MiddleLayerNode::LookWhereFree() {
-  const auto complete = senses_.CompleteUntil();
-  if (!complete || *complete <= looked_) return;
-  looked_ = *complete;
-  last_look_ = Steady::now();
-  runner_.Look(looked_, senses_.Look(looked_));
-}
-
-bool MiddleLayerNode::IsTickComplete() const {
-  const double stamp = tick_->header.stamp.toSec();
-  const auto is_there = [&](const std::string& topic) {
-    const auto arrived = arrived_.find(topic);
-    return arrived != arrived_.end() && arrived->second >= stamp - kSameStamp;
-  };
-  for (const std::string& topic : tick_->sensors) {
-    if (!is_there(topic)) return false;
-  }
-  return true;
-}
-
-void MiddleLayerNode::LookAtTick() {
-  if (!tick_ || is_tick_looked_at_ || !IsTickComplete()) return;
-  is_tick_looked_at_ = true;
-  const double stamp = tick_->header.stamp.toSec();
-  const auto complete = senses_.CompleteUntil();
-  if (complete && *complete >= stamp - kSameStamp) {
-    looked_ = stamp;
-    last_look_ = Steady::now();
-    runner_.Look(stamp, senses_.Look(std::min(stamp, *complete)));
-  } else {
-    runner_.CheckFreshness(stamp);
-  }
-  AnswerTick();
-}
-
-void MiddleLayerNode::AnswerTick() {
-  if (!tick_ || !is_tick_looked_at_ || runner_.is_thinking()) return;
-  hires::LockstepAck ack;
-  ack.header.stamp = tick_->header.stamp;
-  ack.num_commands = commands_since_ack_;
-  commands_since_ack_ = 0;
-  tick_.reset();
-  acked_ = ack;
-  ack_.publish(ack);
-}
-
-void MiddleLayerNode::OnWake() {
-  runner_.Collect();
-  PublishFeedback();
-  AnswerTick();
-}
-
+/// @pre not in a dry run: no action runs then.
 void MiddleLayerNode::Send(const hires::robot::Command& command) {
   if (command.base_velocity) {
+    override_.Command(*command.base_velocity);
     base_.publish(ToMsg(*command.base_velocity));
     ++commands_since_ack_;
   }
@@ -386,8 +299,16 @@ void MiddleLayerNode::Run(const std::function<bool()>& stop) {
   }
 }
 
+void MiddleLayerNode::AskForLeave() {
+  if (!params_.guard.is_there || !leave_.is_asking()) return;
+  // Nothing that drives would be heard any more.
+  if (base_.getNumSubscribers() == 0) return runner_.FailAll("no_controller: " + base_.getTopic());
+  leave_.Tick(std::chrono::duration<double>(Steady::now().time_since_epoch()).count());
+}
+
 void MiddleLayerNode::Tend() {
   StartWaiting();
+  AskForLeave();
   if (!params_.lockstep) runner_.CheckFreshness(ros::Time::now().toSec());
   if (runner_.is_stopping() && Steady::now() - last_look_ > kBlindStop) runner_.GiveUpStopping();
   PublishFeedback();
@@ -403,6 +324,9 @@ void MiddleLayerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& stat
   status.add("running", hires::base::Join(runner_.Running(), "; "));
   status.add("ended", num_ended_);
   status.add("lockstep", params_.lockstep);
+  status.add("dry run", params_.dry_run);
+  status.add("request to the guard", leave_.id());
+  status.add("overridden", override_.is_overridden());
   status.add("world hash", hires::base::HexOf(setup_.world_hash));
 }
 

@@ -2,6 +2,7 @@
 
 #include <ros/package.h>
 
+#include "hires/navigation/base_guard.h"
 #include "hires/ros/private_params.h"
 
 namespace hires_ros {
@@ -27,9 +28,27 @@ ScanParams ReadScan(ParamReader in) {
   return params;
 }
 
-}  // namespace
+/// How loads bear braking stands in the guard's own file, so that both think the same.
+GuardParams ReadGuard(ParamReader in, std::optional<bool> is_there, const std::string& path) {
+  GuardParams params;
+  params.is_there = in.GetBool("is_there");
+  params.is_there = is_there.value_or(params.is_there);
+  params.request_period = in.Get("request_period", Between(0.01, 0.05));
+  const std::string file = hires::imagination::ResolvePath(in.GetString("config"), path);
+  if (params.is_there) params.braking = hires::navigation::ReadBaseGuardParams(file).braking;
+  return params;
+}
 
-MiddleLayerParams ReadMiddleLayerParams(const std::string& path) {
+OverrideParams ReadOverride(ParamReader in) {
+  OverrideParams params;
+  params.after = in.Get("after", Between(0.1, 60.0));
+  params.linear = in.Get("linear", Between(0.01, 2.0));
+  params.angular = in.Get("angular", Between(0.01, 4.0));
+  return params;
+}
+
+MiddleLayerParams Read(const std::string& path, std::optional<bool> is_guard_there,
+                       std::optional<std::string> navigation_by) {
   ParamReader in = ParamReader::FromFile(path);
   MiddleLayerParams params;
   params.setup = hires::imagination::ReadSetupConfig(
@@ -38,6 +57,9 @@ MiddleLayerParams ReadMiddleLayerParams(const std::string& path) {
   params.runner.stale_after = in.Get("stale_after", Between(0.05, 10.0));
   params.runner.stop = ReadStopping(in.Sub("stopping"));
   params.scan = ReadScan(in.Sub("scan"));
+  params.guard = ReadGuard(in.Sub("guard"), is_guard_there, path);
+  params.override = ReadOverride(in.Sub("override"));
+  params.navigation = ReadNavigation(in.Sub("navigation"), std::move(navigation_by));
   params.start_patience = in.Get("start_patience", Between(0.0, 600.0));
   params.feedback_period = in.Get("feedback_period", Between(0.01, 60.0));
   params.lockstep = in.GetBool("lockstep");
@@ -45,12 +67,23 @@ MiddleLayerParams ReadMiddleLayerParams(const std::string& path) {
   return params;
 }
 
+}  // namespace
+
+MiddleLayerParams ReadMiddleLayerParams(const std::string& path) {
+  return Read(path, std::nullopt, std::nullopt);
+}
+
 MiddleLayerParams LoadMiddleLayerParams() {
-  RejectUnknownPrivate({"config", "world", "robot", "objects", "lockstep"});
-  MiddleLayerParams params = ReadMiddleLayerParams(
-      PrivateText("config").value_or(ros::package::getPath("hires") + "/config/middle_layer.yaml"));
+  RejectUnknownPrivate({"config", "world", "robot", "objects", "lockstep", "names", "map_to_world",
+                        "guard", "navigation", "dry_run"});
+  MiddleLayerParams params = Read(
+      PrivateText("config").value_or(ros::package::getPath("hires") + "/config/middle_layer.yaml"),
+      PrivateBool("guard"), PrivateText("navigation"));
   hires::imagination::OverridePaths(PrivateText("world"), PrivateText("robot"),
                                     PrivateText("objects"), std::nullopt, &params.setup);
+  params.names = LoadRobotNames();
+  RequireMeansFor(params.navigation, params.names, params.guard.is_there);
+  params.dry_run = PrivateBool("dry_run").value_or(params.dry_run);
   params.lockstep = PrivateBool("lockstep").value_or(params.lockstep);
   return params;
 }

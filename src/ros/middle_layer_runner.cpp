@@ -27,7 +27,7 @@ std::vector<std::string> Common(const std::set<std::string>& a, const std::set<s
 
 ActionRunner::ActionRunner(const hires::robot::Robot& robot, const RunnerParams& params,
                            Hooks hooks)
-    : robot_(robot), params_(params), hooks_(std::move(hooks)) {}
+    : robot_(robot), params_(params), stop_(params.stop), hooks_(std::move(hooks)) {}
 
 ActionRunner::~ActionRunner() = default;
 
@@ -61,6 +61,11 @@ void ActionRunner::Cancel(int id) {
 
 void ActionRunner::CancelAll() {
   for (Session& session : sessions_) BreakOff(&session, ActionEnd::kPreempted, "");
+  RemoveFinished();
+}
+
+void ActionRunner::FailAll(const std::string& reason) {
+  for (Session& session : sessions_) BreakOff(&session, ActionEnd::kFailed, reason);
   RemoveFinished();
 }
 
@@ -126,7 +131,8 @@ void ActionRunner::BreakOff(Session* session, ActionEnd end, const std::string& 
   session->end = end;
   session->reason = reason;
   session->phase = "stopping";
-  session->stop = std::make_unique<Stop>(robot_, session->groups, params_.stop);
+  if (hooks_.broken_off) hooks_.broken_off(NewsOf(*session));
+  session->stop = std::make_unique<Stop>(robot_, session->groups, stop_);
   KeepStopping(session);
 }
 
@@ -155,10 +161,14 @@ void ActionRunner::CheckFreshness(double now) {
     const double last = std::max(session.accepted, session.start ? now_ : 0.0);
     if (now - last <= params_.stale_after) continue;
     if (session.start && !session.stop) {
-      Stop stop(robot_, session.groups, params_.stop);
+      Stop stop(robot_, session.groups, stop_);
       Observation still = *seen_;
       still.V_B = {};  // a blind robot does not roll out along a ramp that nobody watches
-      hooks_.send(stop.Update(now, still));
+      hires::robot::Command command = stop.Update(now, still);
+      // With a load the base is not told to stand at once: with the action ends the leave to drive,
+      // and then the guard, who knows how fast the base is, brings it to a stand.
+      if (stop_.braking) command.base_velocity.reset();
+      hooks_.send(command);
     }
     Finish(&session, ActionEnd::kFailed, "stale_observation");
   }
@@ -184,7 +194,8 @@ bool ActionRunner::is_thinking() const {
 }
 
 ActionNews ActionRunner::NewsOf(const Session& session) const {
-  return {session.id, session.start ? now_ - *session.start : 0.0, session.phase};
+  return {session.id, session.start ? now_ - *session.start : 0.0, session.phase,
+          session.groups.count("base") > 0};
 }
 
 std::vector<ActionNews> ActionRunner::News() const {

@@ -47,9 +47,10 @@ Pose3 LinkPose(const hires::robot::Robot& robot, const hires::perception::BodyRe
 
 Senses::Senses(std::shared_ptr<const hires::robot::Robot> robot,
                std::shared_ptr<const hires::perception::Surroundings> surroundings,
-               const ScanObstacles& obstacles, double stale_after)
+               const ScanObstacles& obstacles, const RobotNames& names, double stale_after)
     : robot_(std::move(robot)),
       find_obstacles_(obstacles),
+      names_(names),
       stale_after_(stale_after),
       X_BL_(LaserPose(*robot_)) {
   if (surroundings) memory_.emplace(std::move(surroundings), robot_);
@@ -61,7 +62,12 @@ void Senses::OnOdometry(double stamp, const OdometryReading& reading) {
   while (odometry_.front().stamp < stamp - kHistory) odometry_.pop_front();
 }
 
-void Senses::OnLocalisation(double stamp, const Pose2& X_MO) { X_MO_ = {stamp, X_MO}; }
+/// amcl dates its word ahead, by the time that it may be used; it is not newer for that than what
+/// else is known when it comes.
+void Senses::OnLocalisation(double stamp, const Pose2& X_MO) {
+  const double known = odometry_.empty() ? stamp : std::min(stamp, odometry_.back().stamp);
+  X_MO_ = {known, X_MO};
+}
 
 void Senses::OnJoints(double stamp, JointReading reading) {
   if (!joints_.empty() && stamp < joints_.back().stamp) return;
@@ -89,11 +95,11 @@ std::optional<double> Senses::CompleteUntil() const {
 }
 
 std::string Senses::Missing() const {
-  if (odometry_.empty()) return kOdometry;
-  if (joints_.empty()) return kJointStates;
+  if (odometry_.empty()) return names_.odometry;
+  if (joints_.empty()) return names_.joint_states;
   const double complete = std::min(odometry_.back().stamp, joints_.back().stamp);
   if (!X_MO_ || X_MO_->stamp + stale_after_ < complete) {
-    return std::string(kMapFrame) + " -> " + kOdometryFrame;
+    return names_.map_frame + " -> " + names_.odometry_frame;
   }
   return "";
 }
@@ -107,7 +113,9 @@ const T& Senses::At(double stamp, const std::deque<Stamped<T>>& history) {
   return history.front().value;
 }
 
-Pose2 Senses::BaseAt(double stamp) const { return X_MO_->value * At(stamp, odometry_).X_OB; }
+Pose2 Senses::BaseAt(double stamp) const {
+  return names_.map_to_world.ToWorld(X_MO_->value * At(stamp, odometry_).X_OB);
+}
 
 hires::perception::BodyReading Senses::BodyAt(double stamp) const {
   return {stamp, BaseAt(stamp), hires::skills::PostureOf(*robot_, At(stamp, joints_).positions)};

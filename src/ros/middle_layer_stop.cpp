@@ -39,6 +39,9 @@ hires::robot::Command Stop::Update(double time, const Observation& seen) {
   if (!begin_) {
     begin_ = time;
     V_begin_ = seen.V_B;
+    if (params_.braking) {
+      ramp_.emplace(V_begin_, Twist2{}, params_.braking->limits, params_.braking->params);
+    }
     HaltJoints(seen, &command);
   }
   const double elapsed = time - *begin_;
@@ -48,6 +51,7 @@ hires::robot::Command Stop::Update(double time, const Observation& seen) {
 }
 
 Twist2 Stop::RampAt(double elapsed) const {
+  if (ramp_) return ramp_->VelocityAt(elapsed);
   const double needed = std::max(LinearSpeed(V_begin_) / params_.linear_deceleration,
                                  std::abs(V_begin_.wz) / params_.angular_deceleration);
   if (elapsed >= needed) return {};

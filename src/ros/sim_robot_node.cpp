@@ -53,7 +53,7 @@ SimRobotNode::SimRobotNode(const SimRobotParams& params,
       world_(setup, StartOf(setup, params), params.seed),
       publisher_(params, setup, nh),
       is_held_(params.hold) {
-  nh->setParam("robot_description", ReadUrdf(params.setup.robot, robot_.profile));
+  nh->setParam(params.names.robot_description, ReadUrdf(params.setup.robot, robot_.profile));
   AdvertiseTick(nh);
   Subscribe(nh);
   Serve(nh);
@@ -111,12 +111,12 @@ void SimRobotNode::SubscribeTo(ros::NodeHandle* nh, const std::string& topic,
 }
 
 void SimRobotNode::Subscribe(ros::NodeHandle* nh) {
-  SubscribeTo<geometry_msgs::Twist>(nh, kBaseCommand, [](const geometry_msgs::Twist& msg) {
+  SubscribeTo<geometry_msgs::Twist>(nh, kSimulatedBase, [](const geometry_msgs::Twist& msg) {
     Command command;
-    command.base_velocity = FromMsg(msg, kBaseCommand);
+    command.base_velocity = FromMsg(msg, kSimulatedBase);
     return command;
   });
-  for (const auto& [group, topic] : TrajectoryTopics()) {
+  for (const auto& [group, topic] : params_.names.trajectories) {
     SubscribeTo<trajectory_msgs::JointTrajectory>(
         nh, topic,
         [this, group = group, topic = topic](const trajectory_msgs::JointTrajectory& msg) {
@@ -125,7 +125,7 @@ void SimRobotNode::Subscribe(ros::NodeHandle* nh) {
           return command;
         });
   }
-  for (const auto& [arm, topic] : GripperTopics()) {
+  for (const auto& [arm, topic] : params_.names.grippers) {
     SubscribeTo<Pr2GripperCommand>(nh, topic, [arm = arm](const Pr2GripperCommand& msg) {
       Command command;
       command.grippers[arm] = {msg.position, msg.max_effort};

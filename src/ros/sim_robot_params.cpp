@@ -80,9 +80,10 @@ SimRobotParams ReadSimRobotParams(const std::string& path) {
 
 SimRobotParams LoadSimRobotParams() {
   RejectUnknownPrivate({"role", "config", "world", "robot", "objects", "uncertainty", "scenario",
-                        "area", "seed", "pace", "lockstep", "hold"});
+                        "area", "seed", "pace", "lockstep", "hold", "names"});
   SimRobotParams params = ReadSimRobotParams(
       PrivateText("config").value_or(ros::package::getPath("hires") + "/config/sim_robot.yaml"));
+  params.names = LoadRobotNames();
   OverridePrivate(&params);
   DropNoiseIfCertain(&params);
   return params;

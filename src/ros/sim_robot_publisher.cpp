@@ -40,12 +40,12 @@ SimRobotPublisher::SimRobotPublisher(const SimRobotParams& params,
       scan_rng_(hires::base::Rng(params.seed).Fork(kScanStream)),
       detector_rng_(hires::base::Rng(params.seed).Fork(kDetectorStream)),
       clock_(nh->advertise<rosgraph_msgs::Clock>("/clock", 100)),
-      odometry_(nh->advertise<nav_msgs::Odometry>(kOdometry, 100)),
-      joints_(nh->advertise<sensor_msgs::JointState>(kJointStates, 100)),
-      amcl_(nh->advertise<geometry_msgs::PoseWithCovarianceStamped>(kAmclPose, 10)),
-      scan_(nh->advertise<sensor_msgs::LaserScan>(kBaseScan, 10)),
+      odometry_(nh->advertise<nav_msgs::Odometry>(params.names.odometry, 100)),
+      joints_(nh->advertise<sensor_msgs::JointState>(params.names.joint_states, 100)),
+      amcl_(nh->advertise<geometry_msgs::PoseWithCovarianceStamped>(params.names.localisation, 10)),
+      scan_(nh->advertise<sensor_msgs::LaserScan>(params.names.base_scan, 10)),
       detections_(nh->advertise<hires::Detections>(kDetections, 10)),
-      map_(nh->advertise<nav_msgs::OccupancyGrid>("map", 1, true)),
+      map_(nh->advertise<nav_msgs::OccupancyGrid>(params.names.map, 1, true)),
       world_markers_(nh->advertise<visualization_msgs::MarkerArray>(kWorldMarkers, 1, true)),
       markers_(nh->advertise<visualization_msgs::MarkerArray>("robot_markers", 10)),
       true_world_(nh->advertise<hires::WorldState>("ground_truth/world_state", 100)),
@@ -74,7 +74,7 @@ void SimRobotPublisher::PublishFast(const SimRobotWorld& world, const SensorRead
   joints_.publish(ToMsg(readings.joints, stamp));
   nav_msgs::Odometry odometry;
   odometry.header.stamp = stamp;
-  odometry.header.frame_id = kOdometryFrame;
+  odometry.header.frame_id = params_.names.odometry_frame;
   odometry.child_frame_id = scene_->robot.profile.base_link;
   odometry.pose.pose = ToMsg(hires::geometry::Lift(readings.odometry.X_OB));
   odometry.twist.twist = ToMsg(readings.odometry.V_B);
@@ -86,12 +86,12 @@ std::vector<std::string> SimRobotPublisher::PublishTick(const SimRobotWorld& wor
                                                         const SensorReadings& readings,
                                                         const TruthRecord& truth) {
   const ros::Time stamp = StampOf(world);
-  std::vector<std::string> sensors{kTransforms, kJointStates, kOdometry};
+  std::vector<std::string> sensors{kTransforms, params_.names.joint_states, params_.names.odometry};
   PublishTransforms(readings, stamp);
   PublishLocalisation(readings, stamp);
   if (!laser_.link.empty() && scene_->surroundings) {
     PublishScan(world, readings, stamp);
-    sensors.push_back(kBaseScan);
+    sensors.push_back(params_.names.base_scan);
   }
   if (IsLookDue(world, readings)) {
     last_look_ = world.milliseconds();
@@ -104,10 +104,10 @@ std::vector<std::string> SimRobotPublisher::PublishTick(const SimRobotWorld& wor
 
 void SimRobotPublisher::PublishTransforms(const SensorReadings& readings, const ros::Time& stamp) {
   const hires::robot::Robot& robot = scene_->robot;
-  tf_.sendTransform(
-      MakeTransform(kMapFrame, kOdometryFrame, hires::geometry::Lift(readings.X_MO), stamp));
+  tf_.sendTransform(MakeTransform(params_.names.map_frame, params_.names.odometry_frame,
+                                  hires::geometry::Lift(readings.X_MO), stamp));
   std::vector<geometry_msgs::TransformStamped> links{
-      MakeTransform(kOdometryFrame, robot.profile.base_link,
+      MakeTransform(params_.names.odometry_frame, robot.profile.base_link,
                     hires::geometry::Lift(readings.odometry.X_OB), stamp)};
   const auto X_RL = hires::robot::ForwardKinematics(
       robot.model, hires::skills::PostureOf(robot, readings.joints.positions));
@@ -124,7 +124,7 @@ void SimRobotPublisher::PublishLocalisation(const SensorReadings& readings,
                                             const ros::Time& stamp) {
   geometry_msgs::PoseWithCovarianceStamped pose;
   pose.header.stamp = stamp;
-  pose.header.frame_id = kMapFrame;
+  pose.header.frame_id = params_.names.map_frame;
   pose.pose.pose = ToMsg(hires::geometry::Lift(readings.X_MB));
   amcl_.publish(pose);
 }
@@ -200,7 +200,7 @@ void SimRobotPublisher::PublishTruth(const SimRobotWorld& world, const TruthReco
                                      const ros::Time& stamp) {
   hires::WorldState state = ToMsg(world.simulator().GetWorldState());
   state.header.stamp = stamp;
-  state.header.frame_id = kMapFrame;
+  state.header.frame_id = params_.names.map_frame;
   true_world_.publish(state);
   hires::RobotState robot = ToMsg(world.simulator().GetRobotState());
   robot.joints.header.stamp = stamp;
@@ -228,7 +228,7 @@ void SimRobotPublisher::PublishMap() {
   const auto grid =
       hires::world::SliceWorld(scene_->world, kLaserHeight, kLaserHeight, kMapResolution);
   nav_msgs::OccupancyGrid map;
-  map.header.frame_id = kMapFrame;
+  map.header.frame_id = params_.names.map_frame;
   map.info.resolution = static_cast<float>(grid.resolution);
   map.info.width = static_cast<std::uint32_t>(grid.width);
   map.info.height = static_cast<std::uint32_t>(grid.height);

@@ -88,8 +88,9 @@ std::vector<Atom> AtomsWith(const knowledge::FluentView& view, const knowledge::
   return knowledge::StateAtoms(projected, ontology);
 }
 
-TranslatorNode::TranslatorNode(translation::TranslatorContext context, ros::NodeHandle* nh)
-    : context_(std::move(context)), view_(*nh) {
+TranslatorNode::TranslatorNode(translation::TranslatorContext context, const std::string& map_frame,
+                               ros::NodeHandle* nh)
+    : context_(std::move(context)), map_frame_(map_frame), view_(*nh) {
   updater_.setHardwareID("translator");
   updater_.add("translator", this, &TranslatorNode::Diagnose);
   timer_ = nh->createSteadyTimer(ros::WallDuration(1.0),
@@ -130,7 +131,7 @@ bool TranslatorNode::OnRequest(Request& request, Response& response) {
     const auto state = StateFor(atoms, request.is_whole_state);
     response.world_state = ToMsg(state.world);
     response.world_state.header.stamp = ros::Time::now();
-    response.world_state.header.frame_id = kMapFrame;
+    response.world_state.header.frame_id = map_frame_;
     response.robot_state = ToMsg(state.robot);
     response.robot_state.postures = PosturesOf(context_, state);
     ++num_answered_;

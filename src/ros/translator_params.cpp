@@ -38,11 +38,12 @@ TranslatorParams ReadTranslatorParams(const std::string& path) {
 }
 
 TranslatorParams LoadTranslatorParams() {
-  RejectUnknownPrivate({"config", "world", "robot", "objects"});
+  RejectUnknownPrivate({"config", "world", "robot", "objects", "names"});
   TranslatorParams params = ReadTranslatorParams(ConfigPath("translator"));
   params.world = PrivateText("world").value_or("");
   params.robot = PrivateText("robot").value_or("");
   params.objects = PrivateText("objects").value_or("");
+  params.names = LoadRobotNames();
   return params;
 }
 

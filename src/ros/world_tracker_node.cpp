@@ -65,10 +65,11 @@ WorldTrackerNode::WorldTrackerNode(const WorldTrackerParams& params,
       context_(std::move(context)),
       surroundings_(std::make_shared<const perception::Surroundings>(*context_.world)),
       joint_limits_(LimitsOf(context_.robot->model)),
+      odometry_frame_(params.files.names.odometry_frame),
+      senses_(params.files.names.map_to_world),
       memory_(surroundings_, context_.robot, params.memory),
       sweep_(context_.robot, params.sweep),
       known_(nh->advertise<hires::WorldState>(kKnownObjects, 10, true)),
-      head_(nh->advertise<trajectory_msgs::JointTrajectory>(TrajectoryTopics().at("head"), 10)),
       writer_(&context_, params_, *nh, [this](const RemoteView::Update&) { is_view_new_ = true; }) {
   updater_.setHardwareID("world_tracker");
   updater_.add("world tracker", this, &WorldTrackerNode::Diagnose);
@@ -81,9 +82,16 @@ void WorldTrackerNode::Subscribe(ros::NodeHandle* nh) {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   using Self = WorldTrackerNode;
   const std::string action = kExecuteAction;
-  subscribers_ = {nh->subscribe(kOdometry, 100, &Self::OnOdometry, this, hints),
-                  nh->subscribe(kAmclPose, 100, &Self::OnLocalisation, this, hints),
-                  nh->subscribe(kJointStates, 100, &Self::OnJoints, this, hints),
+  const RobotNames& names = params_.files.names;
+  // A robot whose head nobody may turn has no publisher that could.
+  const auto head = names.trajectories.find("head");
+  if (params_.sweep.enabled && head != names.trajectories.end()) {
+    head_ = nh->advertise<trajectory_msgs::JointTrajectory>(head->second, 10);
+  }
+  subscribers_ = {nh->subscribe(names.odometry, 100, &Self::OnOdometry, this, hints),
+                  nh->subscribe(names.localisation, 100, &Self::OnLocalisation, this, hints),
+                  nh->subscribe(names.joint_states, 100, &Self::OnJoints, this, hints),
+                  nh->subscribe(kTransforms, 100, &Self::OnTransforms, this, hints),
                   nh->subscribe(kDetections, 10, &Self::OnDetections, this, hints),
                   nh->subscribe(action + "/goal", 10, &Self::OnGoal, this, hints),
                   nh->subscribe(action + "/result", 10, &Self::OnResult, this, hints)};
@@ -91,7 +99,7 @@ void WorldTrackerNode::Subscribe(ros::NodeHandle* nh) {
 
 // What comes in --------------------------------------------------------------------------------
 
-void WorldTrackerNode::Guard(const char* topic, const std::function<void()>& read) {
+void WorldTrackerNode::Guard(const std::string& topic, const std::function<void()>& read) {
   try {
     read();
     Process();
@@ -102,17 +110,30 @@ void WorldTrackerNode::Guard(const char* topic, const std::function<void()>& rea
 }
 
 void WorldTrackerNode::OnOdometry(const nav_msgs::Odometry& msg) {
-  Guard(kOdometry, [&] {
+  Guard(params_.files.names.odometry, [&] {
     RequireStamp(msg.header.stamp);
     RequireFinite(FromMsg(msg.pose.pose), "pose");
-    senses_.OnOdometry(msg.header.stamp.toSec(), FromMsg(msg));
+    const double stamp = msg.header.stamp.toSec();
+    const auto reading = odometry_frame_.Take(stamp, msg.header.frame_id, FromMsg(msg));
+    if (reading) senses_.OnOdometry(stamp, *reading);
   });
 }
 
+void WorldTrackerNode::OnTransforms(const tf2_msgs::TFMessage& msg) {
+  const RobotNames& names = params_.files.names;
+  for (const geometry_msgs::TransformStamped& transform : msg.transforms) {
+    const double stamp = transform.header.stamp.toSec();
+    const auto X_OB = PoseBetween(transform, names.odometry_frame, names.base_frame);
+    const auto X_MO = PoseBetween(transform, names.map_frame, names.odometry_frame);
+    if (X_OB) odometry_frame_.OnTransform(stamp, *X_OB);
+    if (X_MO) senses_.OnOdometryOrigin(stamp, *X_MO);
+  }
+}
+
 void WorldTrackerNode::OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg) {
-  Guard(kAmclPose, [&] {
+  Guard(params_.files.names.localisation, [&] {
     RequireStamp(msg.header.stamp);
-    RequireFrame(msg.header.frame_id, kMapFrame);
+    RequireFrame(msg.header.frame_id, params_.files.names.map_frame);
     const auto X_MB = FromMsg(msg.pose.pose);
     RequireFinite(X_MB, "pose");
     senses_.OnLocalisation(msg.header.stamp.toSec(), hires::geometry::Flatten(X_MB));
@@ -122,7 +143,7 @@ void WorldTrackerNode::OnLocalisation(const geometry_msgs::PoseWithCovarianceSta
 /// Joints that the robot does not have, or that follow others, are not ours; sensors may see a
 /// joint a little beyond its stop.
 void WorldTrackerNode::OnJoints(const sensor_msgs::JointState& msg) {
-  Guard(kJointStates, [&] {
+  Guard(params_.files.names.joint_states, [&] {
     RequireStamp(msg.header.stamp);
     if (msg.name.size() != msg.position.size()) {
       throw ConfigError(fmt::format("{} names and {} positions, wanted one position for each name",
@@ -206,7 +227,8 @@ void WorldTrackerNode::Handle(const TrackerMoment& moment) {
   const auto known = memory_.Known(moment.body);
   const bool is_due = has_changed || time_ - published_ >= kKnownPeriod || time_ < published_;
   if (moment.look || (is_due && !params_.lockstep)) PublishKnown(moment, known);
-  if (const auto turn = sweep_.Update(moment, known)) head_.publish(ToMsg(*turn));
+  const auto turn = sweep_.Update(moment, known);
+  if (turn && head_) head_.publish(ToMsg(*turn));
   writer_.Post(Observed(moment, known));
 }
 
@@ -241,7 +263,7 @@ void WorldTrackerNode::PublishKnown(const TrackerMoment& moment,
   }
   hires::WorldState msg = ToMsg(state);
   msg.header.stamp.fromSec(moment.body.time);
-  msg.header.frame_id = kMapFrame;
+  msg.header.frame_id = params_.files.names.map_frame;
   known_.publish(msg);
 }
 

@@ -11,6 +11,7 @@ namespace geometry = hires::geometry;
 constexpr double kSameStamp = 5e-4;         // [s]
 constexpr double kLocalisationWait = 0.15;  // [s] of odometry
 constexpr double kHistory = 3.0;            // [s] that is kept
+constexpr double kOldOrigin = 1.0;          // [s] after which odometry has drifted from it
 constexpr double kTooOld = 2.0;             // [s] after which nobody waits any more
 constexpr double kJumpBack = 1.0;           // [s] by which time must go back to have begun anew
 
@@ -33,6 +34,7 @@ void TrackerSenses::NoteTime(double stamp) {
 void TrackerSenses::Forget() {
   odometry_.clear();
   localisation_.clear();
+  X_MO_.reset();
   pending_.clear();
   joints_.reset();
   newest_joints_.reset();
@@ -46,6 +48,10 @@ void TrackerSenses::OnOdometry(double stamp, const OdometryReading& reading) {
 
 void TrackerSenses::OnLocalisation(double stamp, const geometry::Pose2& X_MB) {
   Insert(&localisation_, {stamp, X_MB});
+}
+
+void TrackerSenses::OnOdometryOrigin(double stamp, const geometry::Pose2& X_MO) {
+  X_MO_ = {stamp, X_MO};
 }
 
 TrackerSenses::Pending* TrackerSenses::PendingAt(double stamp) {
@@ -86,9 +92,10 @@ std::optional<geometry::Pose2> TrackerSenses::BaseAt(double stamp) const {
   for (auto one = localisation_.rbegin(); one != localisation_.rend(); ++one) {
     if (one->stamp > stamp + kSameStamp) continue;
     const OdometryReading* then = OdometryAt(one->stamp);
-    if (then) return one->value * then->X_OB.Inverse() * now->X_OB;
+    if (then) return map_to_world_.ToWorld(one->value * then->X_OB.Inverse() * now->X_OB);
   }
-  return std::nullopt;
+  if (!X_MO_ || std::abs(X_MO_->stamp - stamp) > kOldOrigin) return std::nullopt;
+  return map_to_world_.ToWorld(X_MO_->value * now->X_OB);
 }
 
 bool TrackerSenses::IsComplete(double stamp, const Pending& pending) const {
@@ -131,7 +138,7 @@ std::optional<TrackerMoment> TrackerSenses::Take() {
 
 std::string TrackerSenses::Missing() const {
   if (odometry_.empty()) return "odometry";
-  if (localisation_.empty()) return "localisation";
+  if (localisation_.empty() && !X_MO_) return "localisation";
   if (!newest_joints_) return "joint states";
   return "";
 }

@@ -14,6 +14,7 @@
 #include "hires/knowledge/fluent_yaml.h"
 #include "hires/knowledge/loading.h"
 #include "hires/knowledge/store.h"
+#include "hires/navigation/base_guard.h"
 #include "hires/planning/operator_data.h"
 #include "hires/planning/planner_config.h"
 #include "hires/planning/planning_files.h"
@@ -52,6 +53,8 @@ const std::map<std::string, Reader>& Readers() {
          planning::LoadOperatorData(config.operators, domain);
          knowledge::Ontology::FromFiles(config.ontology);
        }},
+      {"base_guard.yaml",
+       [](const std::string& path) { navigation::ReadBaseGuardParams(path); }},
       {"scenarios", [](const std::string& path) { evaluation::ReadScenario(path); }},
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
       {"relay.yaml",
@@ -66,6 +69,8 @@ const std::map<std::string, Reader>& Readers() {
 /// The key of Readers() for a file.
 std::string KindOf(const fs::path& file) {
   const fs::path relative = file.lexically_relative(Root() / "config");
+  // What a robot calls its topics is read, and tested, where topics are known.
+  if (file.stem().string().find("_names") != std::string::npos) return "names";
   return relative.begin()->string();
 }
 

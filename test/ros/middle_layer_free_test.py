@@ -109,7 +109,7 @@ class MiddleLayerFreeTest(unittest.TestCase):
         self.assertEqual((result.code, result.reason), (self.codes.FAILED, 'stale_observation'))
 
     def test_without_controllers_an_action_fails_with_their_topic(self):
-        self.begin_without('base_controller/command:=nobody/command')
+        self.begin_without('navigation/cmd_vel:=nobody/command')
         result = self.system.execute('move_base', 'home').result()
         self.assertEqual((result.code, result.reason),
                          (self.codes.FAILED, 'no_controller: /nobody/command'))

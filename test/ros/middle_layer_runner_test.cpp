@@ -262,6 +262,55 @@ TEST_F(ActionRunnerTest, ABlindRobotStopsAndSaysSo) {
   EXPECT_EQ(sent_[0].base_velocity->vx, 0.0);
 }
 
+TEST_F(ActionRunnerTest, WithALoadABlindRobotLeavesItsBaseToTheGuard) {
+  runner_.SetBraking({{0.5, 2.0}, {}});
+  Start(1, "move_base", Endless());
+  Look(200.0);
+  sent_.clear();
+  runner_.CheckFreshness(200.31);
+  ASSERT_EQ(ended_.size(), 1u);
+  for (const Command& command : sent_) EXPECT_FALSE(command.base_velocity);
+}
+
+TEST_F(ActionRunnerTest, WithALoadTheBaseStopsAsTheLoadBearsIt) {
+  const hires::navigation::BrakingLimits limits{0.5, 2.0};
+  runner_.SetBraking({limits, {}});
+  Start(1, "move_base", Endless());
+  Look(200.0);
+  sent_.clear();
+  runner_.Cancel(1);
+  const double dt = 0.01;
+  for (int i = 1; i <= 200; ++i) Look(200.0 + dt * i);
+  double speed = 0.5, deceleration = 0.0;
+  ASSERT_GT(sent_.size(), 100u);
+  for (std::size_t i = 1; i < sent_.size(); ++i) {
+    const double next = sent_[i].base_velocity->vx;
+    const double now = (speed - next) / dt;
+    EXPECT_LE(now, limits.max_deceleration + 1e-6);
+    EXPECT_LE(now - deceleration, limits.max_jerk * dt + 1e-6);
+    speed = next;
+    deceleration = now;
+  }
+  EXPECT_EQ(speed, 0.0);
+}
+
+TEST_F(ActionRunnerTest, EverythingFailsForOneReason) {
+  Start(1, "move_base", Endless());
+  Start(2, "move_torso", Endless());
+  Look(200.0);
+  Start(3, "look_at", Endless());  // has not moved anything
+  runner_.FailAll("motors_halted");
+  ASSERT_EQ(ended_.size(), 1u);
+  EXPECT_EQ(ended_[0].id, 3);
+  Look(200.1, 0.0);
+  Look(200.2, 0.0);
+  ASSERT_EQ(ended_.size(), 3u);
+  for (const Ended& ended : ended_) {
+    EXPECT_EQ(ended.end, ActionEnd::kFailed);
+    EXPECT_EQ(ended.reason, "motors_halted");
+  }
+}
+
 TEST_F(ActionRunnerTest, ARobotThatSeesNothingAtAllFailsTheSameWay) {
   Start(1, "move_base", Endless());  // at 100 s, and no look ever
   runner_.CheckFreshness(100.29);

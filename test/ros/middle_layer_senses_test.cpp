@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "hires/ros/robot_topics.h"
 #include "support/scenes.h"
 
 namespace hires_ros {
@@ -21,6 +20,10 @@ using ::testing::SizeIs;
 std::shared_ptr<const hires::navigation::Costmap> RoomMap() {
   return std::make_shared<const hires::navigation::Costmap>(
       hires::world::SliceWorld(Room(), 0.1, 0.9), 0.25, hires::navigation::CostmapParams{});
+}
+
+RobotNames Pr2Names() {
+  return ReadRobotNames(std::string(HIRES_SOURCE_DIR) + "/config/robots/pr2_names.yaml");
 }
 
 /// A single beam, straight ahead.
@@ -69,14 +72,14 @@ class SensesTest : public ::testing::Test {
   std::shared_ptr<const hires::robot::Robot> robot_ =
       std::make_shared<const hires::robot::Robot>(TrayRobot());
   ScanObstacles obstacles_{RoomMap(), robot_->profile.footprint, {}};
-  Senses senses_{robot_, nullptr, obstacles_, 0.3};
+  Senses senses_{robot_, nullptr, obstacles_, Pr2Names(), 0.3};
 };
 
 TEST_F(SensesTest, NothingIsKnownUntilBaseJointsAndPlaceAre) {
   EXPECT_FALSE(senses_.CompleteUntil());
-  EXPECT_EQ(senses_.Missing(), kOdometry);
+  EXPECT_EQ(senses_.Missing(), "base_odometry/odom");
   senses_.OnOdometry(1.0, {});
-  EXPECT_EQ(senses_.Missing(), kJointStates);
+  EXPECT_EQ(senses_.Missing(), "joint_states");
   senses_.OnJoints(1.0, {});
   EXPECT_EQ(senses_.Missing(), "map -> odom_combined");
   senses_.OnLocalisation(1.0, {});
@@ -92,6 +95,15 @@ TEST_F(SensesTest, TheSlowestSensorSaysHowFarItIsComplete) {
 
 TEST_F(SensesTest, AnOldPlaceIsNone) {
   senses_.OnLocalisation(1.0, {});
+  TellBase(1.3);
+  EXPECT_TRUE(senses_.CompleteUntil());
+  TellBase(1.31);
+  EXPECT_FALSE(senses_.CompleteUntil());
+}
+
+TEST_F(SensesTest, AWordDatedAheadIsNoFresherForThat) {
+  TellBase(1.0);
+  senses_.OnLocalisation(3.0, {});  // came at 1.0
   TellBase(1.3);
   EXPECT_TRUE(senses_.CompleteUntil());
   TellBase(1.31);
@@ -149,7 +161,7 @@ class SensesOfObjectsTest : public ::testing::Test {
       hires::robot::LoadRobot(std::string(HIRES_SOURCE_DIR) + "/config/robots/pr2.yaml"));
   ScanObstacles obstacles_{RoomMap(), robot_->profile.footprint, {}};
   Senses senses_{robot_, std::make_shared<const hires::perception::Surroundings>(Room()),
-                 obstacles_, 0.3};
+                 obstacles_, Pr2Names(), 0.3};
 };
 
 TEST_F(SensesOfObjectsTest, WhatIsSeenStandsWhereTheCameraWasThen) {

@@ -56,6 +56,27 @@ TEST(TrackerSensesTest, OdometryLeadsOnFromTheLastLocalisation) {
   EXPECT_NEAR(moment->body.X_MB.x, 5.3, 1e-12);
 }
 
+TEST(TrackerSensesTest, ARobotThatStandsHasALocalisationOfLongAgo) {
+  TrackerSenses senses;
+  senses.OnLocalisation(10.0, {5.0, 2.0, 0.0});  // before the tracker was started
+  for (const double stamp : {100.0, 100.2}) senses.OnOdometry(stamp, Odometry(1.0));
+  senses.OnJoints(100.0, {});
+  EXPECT_FALSE(senses.Take()) << "nothing tells where odometry begins";
+  senses.OnOdometryOrigin(100.1, {4.0, 2.0, 0.0});
+  const auto moment = senses.Take();
+  ASSERT_TRUE(moment);
+  EXPECT_NEAR(moment->body.X_MB.x, 5.0, 1e-12);
+  EXPECT_NEAR(moment->body.X_MB.y, 2.0, 1e-12);
+}
+
+TEST(TrackerSensesTest, AnOriginOfLongAgoIsNone) {
+  TrackerSenses senses;
+  senses.OnOdometryOrigin(10.0, {4.0, 2.0, 0.0});
+  for (const double stamp : {11.1, 11.3}) senses.OnOdometry(stamp, Odometry(1.0));
+  senses.OnJoints(11.1, {});
+  EXPECT_FALSE(senses.Take());
+}
+
 TEST(TrackerSensesTest, ALookJoinsTheJointsOfItsMoment) {
   TrackerSenses senses;
   senses.OnLook(10.0, {{"mug1", "mug", {}, 1.0}});

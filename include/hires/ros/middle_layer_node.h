@@ -2,6 +2,7 @@
 
 #include <actionlib/server/action_server.h>
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <hires/BaseGuardState.h>
 #include <hires/Detections.h>
 #include <hires/ExecuteActionAction.h>
 #include <hires/LockstepAck.h>
@@ -9,6 +10,7 @@
 #include <hires/WorldState.h>
 #include <ros/node_handle.h>
 #include <sensor_msgs/LaserScan.h>
+#include <std_msgs/Bool.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <chrono>
@@ -18,9 +20,13 @@
 #include <string>
 #include <vector>
 
+#include "hires/ros/middle_layer_leave.h"
+#include "hires/ros/middle_layer_override.h"
 #include "hires/ros/middle_layer_params.h"
 #include "hires/ros/middle_layer_runner.h"
 #include "hires/ros/middle_layer_senses.h"
+#include "hires/ros/move_base_link.h"
+#include "hires/ros/odometry_frame.h"
 
 namespace hires_ros {
 
@@ -30,6 +36,12 @@ namespace hires_ros {
 ///
 /// A robot that nobody watches stands: when the node ends in good order it stops what runs; when it
 /// is killed, the base's own timeout does.
+///
+/// On a real robot a guard stands between the skills and the base: velocities go to it, with a
+/// request for leave that lives as long as this node does. When it stops the base, or the motors
+/// halt, everything that runs ends with the reason.
+///
+/// In a dry run no controller has a publisher here, and every goal is refused.
 ///
 /// In lockstep with a simulated robot, each tick is answered when all skills that were due have
 /// looked at the sensors of that very stamp and what they want is on its way.
@@ -63,8 +75,12 @@ class MiddleLayerNode {
   void OnCancel(GoalHandle goal);
   void StartWaiting();
   void StartGoal(GoalHandle goal);
+  std::unique_ptr<hires::skills::Skill> MakeSkill(const hires::base::ActionCall& action) const;
   void OnEnded(const ActionNews& news, ActionEnd end, const std::string& reason);
 
+  void OnOdometry(const nav_msgs::Odometry& msg);
+  void OnMotorsHalted(bool are_halted);
+  void OnGuardStopped(const std::string& reason);
   void OnTransforms(const tf2_msgs::TFMessage& msg);
   void OnScan(const sensor_msgs::LaserScan& msg);
   void OnDetections(const hires::Detections& msg);
@@ -72,12 +88,15 @@ class MiddleLayerNode {
   void OnTick(const hires::LockstepTick& msg);
   void Note(const std::string& topic, double stamp);
 
+  void LookAt(double time, double stamp);
+  void WeighLoad(double time, const hires::robot::Observation& seen);
   void LookWhereFree();  ///< without lockstep: as soon as a newer moment is complete
   void LookAtTick();     ///< in lockstep: once all sensors of the tick are there
   bool IsTickComplete() const;
   void AnswerTick();
   void OnWake();
   void Tend();  ///< what is due by the clocks
+  void AskForLeave();
   void PublishFeedback();
   void Send(const hires::robot::Command& command);
   std::string WhyNotReady(const std::set<std::string>& groups) const;
@@ -87,8 +106,15 @@ class MiddleLayerNode {
   const MiddleLayerParams params_;
   const hires::imagination::ImaginationSetup setup_;
   const ScanObstacles scan_obstacles_;
+  OdometryFrame odometry_frame_;
   Senses senses_;
   ActionRunner runner_;
+  BaseLeave leave_;
+  OverrideWatch override_;
+  std::shared_ptr<MoveBaseLink> move_base_;             // where it drives long ways; else null
+  hires::navigation::BrakingLimits braking_{0.0, 0.0};  // what the load bears; 0: unknown
+  double weighed_{-1.0};                                // [s] when that was found out
+  bool are_motors_halted_{false};
 
   std::map<std::string, double> arrived_;  // topic -> newest stamp [s]
   double looked_{-1.0};                    // [s] stamp of the last look
@@ -104,7 +130,7 @@ class MiddleLayerNode {
   int next_id_{1};
   long num_ended_{0};
 
-  ros::Publisher base_, ack_;
+  ros::Publisher base_, request_, ack_;
   std::map<std::string, ros::Publisher> trajectories_, grippers_;  // by group, by arm
   std::vector<ros::Subscriber> subscribers_;
   Server server_;

@@ -23,6 +23,7 @@ struct ActionNews {
   int id{0};
   double elapsed{0.0};  ///< [s] since its first look
   std::string phase;
+  bool has_base{false};  ///< it is among the groups that the action needs
 };
 
 struct RunnerParams {
@@ -44,6 +45,8 @@ class ActionRunner {
     std::function<void(const hires::robot::Command&)> send;
     std::function<void(const ActionNews&, ActionEnd, const std::string& reason)> ended;
     std::function<void()> wake;  ///< from another thread: there is something to collect
+    /// It is being broken off, and the robot stopped; may be empty.
+    std::function<void(const ActionNews&)> broken_off{};
   };
 
   /// @pre the robot outlives the runner.
@@ -60,6 +63,13 @@ class ActionRunner {
   /// The action stops the robot and then ends as kPreempted; nothing happens if it has ended.
   void Cancel(int id);
   void CancelAll();
+
+  /// All actions stop the robot and then end as kFailed for this reason. What is held stays held.
+  void FailAll(const std::string& reason);
+
+  /// There is a guard of the base, and this is what the base carries: stops that begin from now on
+  /// heed it, and where nobody sees any more how fast the base is, its stop is left to the guard.
+  void SetBraking(const LoadBraking& braking) { stop_.braking = braking; }
 
   /// All that is known at `now` [s]; `seen.time` and the objects' times are on the same clock.
   void Look(double now, const hires::robot::Observation& seen);
@@ -105,6 +115,7 @@ class ActionRunner {
 
   const hires::robot::Robot& robot_;
   const RunnerParams params_;
+  StopParams stop_;  // as configured, and for the load
   const Hooks hooks_;
   double now_{0.0};                                // [s] of the last look
   std::optional<hires::robot::Observation> seen_;  // at the last look

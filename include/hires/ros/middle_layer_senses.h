@@ -12,6 +12,7 @@
 #include "hires/robot/robot_profile.h"
 #include "hires/ros/middle_layer_scan.h"
 #include "hires/ros/robot_messages.h"
+#include "hires/ros/robot_names.h"
 #include "hires/world/world.h"
 
 namespace hires_ros {
@@ -24,11 +25,12 @@ namespace hires_ros {
 class Senses {
  public:
   /// @param surroundings  what the camera looks at; null: the robot has none, and sees no objects.
+  /// @param names         for messages to people.
   /// @param stale_after   [s] an older correction of the odometry is none.
   /// @pre the obstacles outlive it.
   Senses(std::shared_ptr<const hires::robot::Robot> robot,
          std::shared_ptr<const hires::perception::Surroundings> surroundings,
-         const ScanObstacles& obstacles, double stale_after);
+         const ScanObstacles& obstacles, const RobotNames& names, double stale_after);
 
   void OnOdometry(double stamp, const OdometryReading& reading);
   void OnLocalisation(double stamp, const hires::geometry::Pose2& X_MO);  ///< odometry's origin
@@ -62,6 +64,7 @@ class Senses {
 
   std::shared_ptr<const hires::robot::Robot> robot_;
   const ScanObstacles& find_obstacles_;
+  RobotNames names_;
   double stale_after_;
   hires::geometry::Pose2 X_BL_;                    // laser
   std::deque<Stamped<OdometryReading>> odometry_;  // of the last seconds, oldest first

@@ -4,10 +4,17 @@
 #include <set>
 #include <string>
 
+#include "hires/navigation/braking.h"
 #include "hires/robot/observation.h"
 #include "hires/robot/robot_profile.h"
 
 namespace hires_ros {
+
+/// What a load bears, and how stops are planned for it.
+struct LoadBraking {
+  hires::navigation::BrakingLimits limits;
+  hires::navigation::BrakingParams params;
+};
 
 /// How the robot comes to rest when an action is broken off.
 struct StopParams {
@@ -15,6 +22,8 @@ struct StopParams {
   double angular_deceleration{2.0};  ///< [rad/s^2]
   double still_speed{0.01};          ///< [m/s], [rad/s], of base and joints: counts as standing
   double patience{3.0};              ///< [s] after which it counts as stopped in any case
+  /// Where it is there the base stops as the load bears it, and not by the decelerations above.
+  std::optional<LoadBraking> braking;
 };
 
 /// Brings groups of joints and the base to rest: the base along a ramp, joints where they can be
@@ -44,6 +53,7 @@ class Stop {
   StopParams params_;
   std::optional<double> begin_;
   hires::geometry::Twist2 V_begin_;
+  std::optional<hires::navigation::PlanarStop> ramp_;
   bool is_over_{false};
 };
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "hires/world/map_to_world.h"
+
 namespace hires_ros {
 
 /// What a robot calls its topics, frames, joints' groups and servers: one YAML file per kind of
@@ -18,23 +20,34 @@ struct RobotNames {
   std::string localisation;   ///< geometry_msgs/PoseWithCovarianceStamped; its covariance counts
   std::string base_scan;      ///< sensor_msgs/LaserScan
   std::string map;            ///< nav_msgs/OccupancyGrid, latched
-  std::string static_map;     ///< nav_msgs/GetMap, where no map is latched
+  std::string static_map;     ///< nav_msgs/GetMap, where no map is latched; empty: none
   std::string motors_halted;  ///< std_msgs/Bool; empty: the robot has none
   std::string robot_description;  ///< parameter
 
   std::map<std::string, std::string> trajectories;  ///< group -> trajectory_msgs/JointTrajectory
   std::map<std::string, std::string> grippers;  ///< arm -> pr2_controllers_msgs/Pr2GripperCommand
 
+  /// How the robot's map lies in the world; not in the file, for it is the laboratory's.
+  hires::world::MapToWorld map_to_world;
+
   struct MoveBase {
-    std::string action;   ///< move_base_msgs/MoveBaseAction
-    std::string planner;  ///< dynamic_reconfigure server of the local planner
+    std::string action;   ///< move_base_msgs/MoveBaseAction; empty: the robot has none
+    std::string planner;  ///< dynamic_reconfigure server of the local planner; empty with `action`
     /// Limit (max_linear_velocity, ...) -> what local planners have called it, newest first.
     std::map<std::string, std::vector<std::string>> parameters;
   } move_base;
 };
 
 /// @throws hires::base::ConfigError naming file and line: fields that lack or nobody knows, groups
-/// and arms that are none, names that are not ROS names.
+/// and arms that are none, names that are not ROS names, two groups with one topic.
 RobotNames ReadRobotNames(const std::string& path);
+
+/// As ReadRobotNames, of text; `where` stands for the file's name in messages.
+RobotNames ParseRobotNames(const std::string& yaml, const std::string& where);
+
+/// The file in ~names (config/robots/pr2_names.yaml where there is none or it is empty), and
+/// ~map_to_world ("x y yaw scale"; the identity where there is none).
+/// @throws hires::base::ConfigError as ReadRobotNames.
+RobotNames LoadRobotNames();
 
 }  // namespace hires_ros

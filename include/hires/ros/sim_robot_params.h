@@ -4,12 +4,14 @@
 #include <string>
 
 #include "hires/imagination/imagination_setup.h"
+#include "hires/ros/robot_names.h"
 #include "hires/simulation/laser_scanner.h"
 
 namespace hires_ros {
 
 struct SimRobotParams {
   hires::imagination::SetupConfig setup;
+  RobotNames names;
   std::string scenario;  ///< file; empty: the world's own objects, the robot at `area`
   std::string area{"nearStartArea1"};
   std::uint64_t seed{1};                 ///< of the hidden truth and of all noise
@@ -21,11 +23,13 @@ struct SimRobotParams {
   double detection_period{0.5};          ///< [s], a multiple of the tick's 0.05 s
 };
 
-/// Reads a file like config/sim_robot.yaml.  @throws hires::base::ConfigError.
+/// Reads a file like config/sim_robot.yaml; it does not say the names.  @throws
+/// hires::base::ConfigError.
 SimRobotParams ReadSimRobotParams(const std::string& path);
 
 /// The file in ~config (config/sim_robot.yaml where there is none); ~world, ~robot, ~objects,
-/// ~uncertainty, ~scenario, ~area, ~seed, ~pace, ~lockstep and ~hold win over it.
+/// ~uncertainty, ~scenario, ~area, ~seed, ~pace, ~lockstep and ~hold win over it. Names as
+/// LoadRobotNames.
 /// @throws hires::base::ConfigError.
 SimRobotParams LoadSimRobotParams();
 

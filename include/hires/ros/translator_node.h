@@ -4,6 +4,8 @@
 #include <hires/GenerateImagineState.h>
 #include <ros/node_handle.h>
 
+#include <string>
+
 #include "hires/ros/remote_view.h"
 #include "hires/translation/translator.h"
 
@@ -13,7 +15,9 @@ namespace hires_ros {
 /// the Blackboard knows of poses.
 class TranslatorNode {
  public:
-  TranslatorNode(hires::translation::TranslatorContext context, ros::NodeHandle* nh);
+  /// @param map_frame  tf's name of the frame in which the answers are.
+  TranslatorNode(hires::translation::TranslatorContext context, const std::string& map_frame,
+                 ros::NodeHandle* nh);
 
   /// @throws hires::base::ConfigError naming the atom, or saying that the Blackboard is missing.
   hires::translation::GeometricState StateFor(const std::vector<hires::base::Atom>& atoms,
@@ -27,6 +31,7 @@ class TranslatorNode {
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const hires::translation::TranslatorContext context_;
+  const std::string map_frame_;
   RemoteView view_;
   int num_answered_{0}, num_refused_{0};
   ros::ServiceServer server_;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hires/base/param_reader.h"
+#include "hires/ros/robot_names.h"
 #include "hires/translation/translator.h"
 
 namespace hires_ros {
@@ -14,11 +15,12 @@ struct TranslatorParams {
   std::string scene;                  ///< scene.yaml: names world, robot and objects
   std::vector<std::string> ontology;  ///< Turtle files
   std::string world, robot, objects;  ///< instead of the scene's where not empty
+  RobotNames names;
 };
 
 /// @throws hires::base::ConfigError naming file and key.
 TranslatorParams ReadTranslatorParams(const std::string& path);
-/// From the private parameters config, world, robot, objects.
+/// From the private parameters config, world, robot, objects, names.
 TranslatorParams LoadTranslatorParams();
 
 /// Loads the files.  @throws hires::base::ConfigError naming file, element and remedy.

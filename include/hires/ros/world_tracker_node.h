@@ -8,6 +8,7 @@
 #include <nav_msgs/Odometry.h>
 #include <ros/node_handle.h>
 #include <sensor_msgs/JointState.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include <atomic>
 #include <functional>
@@ -16,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/ros/odometry_frame.h"
 #include "hires/ros/world_tracker_params.h"
 #include "hires/ros/world_tracker_senses.h"
 #include "hires/ros/world_tracker_sweep.h"
@@ -34,13 +36,14 @@ class WorldTrackerNode {
   void Subscribe(ros::NodeHandle* nh);
   void OnOdometry(const nav_msgs::Odometry& msg);
   void OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg);
+  void OnTransforms(const tf2_msgs::TFMessage& msg);
   void OnJoints(const sensor_msgs::JointState& msg);
   void OnDetections(const hires::Detections& msg);
   void OnGoal(const hires::ExecuteActionActionGoal& msg);
   void OnResult(const hires::ExecuteActionActionResult& msg);
 
   /// Calls `read`; what it says is wrong with a message becomes a warning.
-  void Guard(const char* topic, const std::function<void()>& read);
+  void Guard(const std::string& topic, const std::function<void()>& read);
   void Process();
   void Handle(const TrackerMoment& moment);
   void Look(const TrackerMoment& moment);
@@ -57,6 +60,7 @@ class WorldTrackerNode {
   const hires::translation::TranslatorContext context_;
   const std::shared_ptr<const hires::perception::Surroundings> surroundings_;
   std::map<std::string, std::pair<double, double>> joint_limits_;  // by joint that may be set
+  OdometryFrame odometry_frame_;
   TrackerSenses senses_;
   hires::perception::ObjectMemory memory_;
   HeadSweep sweep_;

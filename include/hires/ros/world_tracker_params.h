@@ -37,7 +37,7 @@ struct WorldTrackerParams {
 
 /// @throws hires::base::ConfigError naming file and key.
 WorldTrackerParams ReadWorldTrackerParams(const std::string& path);
-/// From the private parameters config, world, robot, objects, sweep, lockstep.
+/// From the private parameters config, world, robot, objects, sweep, lockstep, names.
 WorldTrackerParams LoadWorldTrackerParams();
 
 }  // namespace hires_ros

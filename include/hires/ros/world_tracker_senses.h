@@ -7,6 +7,7 @@
 
 #include "hires/perception/object_memory.h"
 #include "hires/ros/robot_messages.h"
+#include "hires/world/map_to_world.h"
 
 namespace hires_ros {
 
@@ -24,8 +25,15 @@ struct TrackerMoment {
 /// moments however they interleave.
 class TrackerSenses {
  public:
+  /// How the map that localisation speaks of lies in the world that moments speak of.
+  explicit TrackerSenses(const hires::world::MapToWorld& map_to_world = {})
+      : map_to_world_(map_to_world) {}
+
   void OnOdometry(double stamp, const OdometryReading& reading);
   void OnLocalisation(double stamp, const hires::geometry::Pose2& X_MB);
+  /// Where odometry begins, which tf tells again and again. It counts for moments that have no
+  /// localisation of late: a PR2's tells its pose when it has moved, and not while it stands.
+  void OnOdometryOrigin(double stamp, const hires::geometry::Pose2& X_MO);
   void OnJoints(double stamp, hires::robot::JointPositions joints);
   void OnLook(double stamp, std::vector<hires::perception::Detection> detections);
 
@@ -54,8 +62,10 @@ class TrackerSenses {
   const OdometryReading* OdometryAt(double stamp) const;
   void Forget();
 
-  std::deque<Stamped<OdometryReading>> odometry_;                // oldest first
-  std::deque<Stamped<hires::geometry::Pose2>> localisation_;     // likewise
+  hires::world::MapToWorld map_to_world_;
+  std::deque<Stamped<OdometryReading>> odometry_;             // oldest first
+  std::deque<Stamped<hires::geometry::Pose2>> localisation_;  // likewise
+  std::optional<Stamped<hires::geometry::Pose2>> X_MO_;
   std::map<double, Pending> pending_;                            // by stamp
   std::optional<Stamped<hires::robot::JointPositions>> joints_;  // taken last
   std::optional<double> newest_joints_;                          // stamp

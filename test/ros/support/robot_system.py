@@ -137,6 +137,8 @@ class RobotSystem:
     def start_middle_layer(self, *remaps, **arguments):
         self._forget_parameters('/middle_layer')
         arguments.setdefault('lockstep', self.arguments.get('lockstep', False))
+        if not any(remap.startswith('navigation/cmd_vel:=') for remap in remaps):
+            remaps += ('navigation/cmd_vel:=base_controller/command',)  # no multiplexer between
         self.middle_layer = self.processes.start(
             [executable('middle_layer'), *remaps] +
             ['_%s:=%s' % (key, str(value).lower() if isinstance(value, bool) else value)

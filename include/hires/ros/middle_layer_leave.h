@@ -1,0 +1,78 @@
+#pragma once
+
+#include <hires/BaseGuardState.h>
+#include <hires/BaseRequest.h>
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hires/base/action.h"
+#include "hires/robot/robot_profile.h"
+#include "hires/skills/skill_factory.h"
+
+namespace hires_ros {
+
+/// How fast an action may drive, and how hard its load lets the base brake.
+struct DriveLimits {
+  std::string set_name;  ///< of the motion set
+  hires::robot::MotionSet limits;
+  double max_braking{0.0};       ///< [m/s^2]
+  double max_braking_jerk{0.0};  ///< [m/s^3]
+};
+
+/// The motion set in force while an action has the base: the one that it names, else the robot's
+/// default; never more than a straight approach may have. Braking is left at 0.
+/// @pre skills::MakeSkill accepts the action.
+DriveLimits LimitsFor(const hires::skills::SkillSet& skills, const hires::base::ActionCall& action);
+
+/// Leave to drive, asked of the guard of the base again and again while an action has the base, and
+/// what the guard says to it. A stop by the guard holds for the rest of the action: the next action
+/// asks with another id. Time is handed in; messages go out through the hooks.
+class BaseLeave {
+ public:
+  struct Hooks {
+    std::function<void(const hires::BaseRequest&)> send;
+    std::function<void(const std::string& reason)> stopped;  ///< once for each request
+  };
+
+  /// @param period  [s] between two requests.
+  BaseLeave(double period, Hooks hooks) : period_(period), hooks_(std::move(hooks)) {}
+
+  /// @param wall  [ns] since 1970, so that ids differ from those of this node's predecessors.
+  void Begin(int action, const DriveLimits& limits, std::uint64_t wall);
+
+  /// The load has changed.
+  void SetBraking(double max_braking, double max_braking_jerk);
+
+  /// The action has ended; nothing happens if it never had the base.
+  void End(int action);
+
+  /// Sends what is due.
+  /// @param now  [s] steady.
+  void Tick(double now);
+
+  void OnState(const hires::BaseGuardState& state);
+
+  bool is_asking() const { return action_.has_value(); }
+  std::uint64_t id() const { return request_.id; }  ///< 0: nobody wants to drive
+
+  /// Whether the guard lets velocities of the present request pass; may be read by any thread, and
+  /// outlives this.
+  std::shared_ptr<const std::atomic<bool>> granted() const { return granted_; }
+
+ private:
+  double period_;
+  Hooks hooks_;
+  std::optional<int> action_;
+  hires::BaseRequest request_;
+  std::uint64_t last_id_{0};
+  std::optional<double> sent_;  // [s] steady
+  bool is_stopped_{false};
+  std::shared_ptr<std::atomic<bool>> granted_{std::make_shared<std::atomic<bool>>(false)};
+};
+
+}  // namespace hires_ros
