@@ -57,6 +57,7 @@ void PrintReport(const AchieveReport& report) {
   if (!timeline.bars.empty()) std::cout << '\n' << TimelineText(timeline);
   const std::string table = ImaginationTable(report);
   if (!table.empty()) std::cout << '\n' << table;
+  if (report.outcome == AchieveOutcome::kDryRun) std::cout << '\n' << DryRunTable(report.status);
   const std::size_t num_imaginations = report.status.imaginations.size();
   std::cout << fmt::format("\n{}: {}{}\n", report.task, ToString(report.outcome),
                            report.reason.empty() ? "" : ": " + report.reason);
@@ -70,6 +71,7 @@ void PrintReport(const AchieveReport& report) {
 int ExitCodeOf(AchieveOutcome outcome) {
   switch (outcome) {
     case AchieveOutcome::kSucceeded:
+    case AchieveOutcome::kDryRun:
       return kExitAchieved;
     case AchieveOutcome::kNoPlan:
       return kExitNoWay;
@@ -96,6 +98,8 @@ std::string ToString(AchieveOutcome outcome) {
       return "invalid";
     case AchieveOutcome::kBusy:
       return "busy";
+    case AchieveOutcome::kDryRun:
+      return "dry_run";
   }
   HIRES_CHECK(false, "an outcome without a name");
   return "";
@@ -104,7 +108,8 @@ std::string ToString(AchieveOutcome outcome) {
 void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
   CLI::App* verb = app->add_subcommand(
       "achieve",
-      "have the running robot do a task. Exit codes: 0 done, 1 failed or refused, 2 no plan, 3 "
+      "have the running robot do a task. Exit codes: 0 done (or planned and imagined, where the "
+      "execution monitor has ~dry_run), 1 failed or refused, 2 no plan, 3 "
       "preempted");
   verb->add_option("task", options->task, "'serve_coffee_to_guest guest1', or a SHOP2 task network")
       ->required();

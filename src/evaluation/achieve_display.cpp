@@ -34,6 +34,11 @@ std::string ExpectedEnd(const StepStatus& step, double begin) {
   return step.finished ? "" : Seconds(step.finish.earliest - begin);
 }
 
+/// Of a dry run: what the robot would do, and not what was thought about it.
+bool IsToBegin(const StepStatus& step) {
+  return step.phase == StepPhase::kWaiting || step.phase == StepPhase::kReady;
+}
+
 const StepStatus* Find(const AchieveStatus& status, const StepStatus& step) {
   for (const StepStatus& other : status.steps) {
     if (other.plan == step.plan && other.index == step.index) return &other;
@@ -110,6 +115,21 @@ std::string StepTable(const AchieveStatus& status, double begin) {
     rows.push_back({std::to_string(step.plan + 1), std::to_string(step.index + 1),
                     ToString(step.action), ToString(step.phase), Since(step, begin),
                     ExpectedEnd(step, begin), step.note});
+  }
+  return FormatTable(rows);
+}
+
+std::string DryRunTable(const AchieveStatus& status) {
+  int last_plan = 0;
+  for (const StepStatus& step : status.steps) last_plan = std::max(last_plan, step.plan);
+  std::optional<double> begin;
+  std::vector<std::vector<std::string>> rows{{"#", "step", "would begin", "would end", "expected"}};
+  for (const StepStatus& step : status.steps) {
+    if (step.plan != last_plan || !IsToBegin(step)) continue;
+    if (!begin) begin = step.start.earliest;
+    rows.push_back({std::to_string(step.index + 1), ToString(step.action),
+                    Seconds(step.start.earliest - *begin), Seconds(step.finish.earliest - *begin),
+                    step.note});
   }
   return FormatTable(rows);
 }

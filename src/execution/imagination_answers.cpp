@@ -139,6 +139,23 @@ void ImaginationDesk::Settle(int step) {
   Cancel(question);
 }
 
+bool ImaginationDesk::IsAnswered() const {
+  return std::all_of(questions_.begin(), questions_.end(), [this](const Question& question) {
+    if (!question.is_open || question.answer || question.is_hopeless) return true;
+    if (!question.asked) return false;
+    const bool has_heard = question.request == 0 && !question.why_not.empty();
+    return has_heard || session_.now() >= *question.asked + session_.params().max_wait;
+  });
+}
+
+void ImaginationDesk::SettleAll() {
+  std::vector<int> targets;
+  for (const Question& question : questions_) {
+    if (question.is_open) targets.push_back(question.target);
+  }
+  for (const int target : targets) Settle(target);
+}
+
 void ImaginationDesk::TakeDefaults(Question* question) {
   SetDefaults(*question);
   StepRun& target = session_.run().at(question->target);

@@ -122,7 +122,8 @@ std::set<std::string> ImaginationDesk::StartOf(const Facts& projected) const {
 }
 
 double ImaginationDesk::DeadlineOf(const Question& question) {
-  if (question.on_late == planning::OnLate::kWait) return kForever;
+  const bool is_patient = question.on_late == planning::OnLate::kWait || session_.params().dry_run;
+  if (is_patient) return kForever;
   const double latest = question.limit.value_or(session_.network().LatestStart(question.target));
   return std::max(session_.now(), latest - session_.params().arrival_margin);
 }

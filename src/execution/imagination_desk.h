@@ -30,6 +30,10 @@ class ImaginationDesk {
   bool MayStart(int step);
   /// The step begins: where there is no answer it takes the defaults.
   void Settle(int step);
+  /// Whether no answer is awaited any more, also for steps whose turn has not come. Where nobody
+  /// can answer, that is one.
+  bool IsAnswered() const;
+  void SettleAll();  ///< as if every step began
   std::optional<double> WakeAt() const;
 
  private:

@@ -41,6 +41,7 @@ struct Monitor::Impl {
   void Advance();
   void Plan();
   void Execute();
+  void EndDryRun();
   void Mend();
   void TakeUpTrouble();
   void Conclude(Finish::Outcome outcome, const std::string& reason);
@@ -130,10 +131,19 @@ void Monitor::Impl::Plan() {
 void Monitor::Impl::Execute() {
   watch.Check(true);
   if (!watch.lost().empty()) return Conclude(Finish::Outcome::kFailed, watch.lost());
-  if (session.run().IsOver()) return Conclude(Finish::Outcome::kSucceeded, "");
+  const bool is_dry_run = session.params().dry_run;
+  if (session.run().IsOver() && !is_dry_run) return Conclude(Finish::Outcome::kSucceeded, "");
   if (!session.has_trouble()) desk.Update();
   if (session.has_trouble()) return TakeUpTrouble();
+  if (is_dry_run) return EndDryRun();
   dispatch.Run();
+}
+
+/// As soon as all is known that would have been asked.
+void Monitor::Impl::EndDryRun() {
+  if (!desk.IsAnswered()) return;
+  desk.SettleAll();
+  Conclude(Finish::Outcome::kDryRun, "planned and imagined; nothing was begun");
 }
 
 void Monitor::Impl::TakeUpTrouble() {

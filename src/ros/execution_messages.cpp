@@ -231,6 +231,8 @@ std::uint8_t CodeOf(execution::Finish::Outcome outcome) {
       return hires::AchieveResult::NO_PLAN;
     case execution::Finish::Outcome::kFailed:
       return hires::AchieveResult::FAILED;
+    case execution::Finish::Outcome::kDryRun:
+      return hires::AchieveResult::DRY_RUN;
     case execution::Finish::Outcome::kPreempted:
       return hires::AchieveResult::PREEMPTED;
   }
@@ -245,6 +247,8 @@ std::string OutcomeName(execution::Finish::Outcome outcome) {
       return "no_plan";
     case execution::Finish::Outcome::kFailed:
       return "failed";
+    case execution::Finish::Outcome::kDryRun:
+      return "dry_run";
     case execution::Finish::Outcome::kPreempted:
       return "preempted";
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
@@ -81,7 +82,7 @@ void SetDispatch(const std::vector<hires::StepStatus>& steps,
 }  // namespace
 
 execution::MonitorConfig LoadExecutionMonitorParams() {
-  RejectUnknownPrivate({"config", "domain", "operators", "imagination", "seed"});
+  RejectUnknownPrivate({"config", "domain", "operators", "imagination", "seed", "dry_run"});
   const auto path = PrivateText("config");
   execution::MonitorConfig config = execution::ReadMonitorConfig(
       path && !path->empty() ? *path
@@ -94,6 +95,7 @@ execution::MonitorConfig LoadExecutionMonitorParams() {
   if (imagination && !imagination->empty()) {
     config.monitor.imagination = execution::ReadImaginePolicy(*imagination);
   }
+  config.monitor.dry_run = PrivateBool("dry_run").value_or(config.monitor.dry_run);
   int seed = static_cast<int>(config.imagining.seed);
   Override("seed", PrivateInt("seed"), hires::base::Between(0, 2'000'000'000), &seed);
   config.imagining.seed = static_cast<std::uint64_t>(seed);
@@ -188,7 +190,7 @@ void ExecutionMonitorNode::Tick() {
   imagination_.Tick(now);
   steps_.Tick();
   // A predecessor that died left the robot at work, with nobody to watch it.
-  if (!has_cleared_ && steps_.is_available()) {
+  if (!has_cleared_ && !config_.monitor.dry_run && steps_.is_available()) {
     has_cleared_ = true;
     if (!task_) steps_.CancelAllGoals();
   }
@@ -254,7 +256,8 @@ std::string ExecutionMonitorNode::MissingForBegin() {
   if (last_now_ <= 0.0 && RosNow() <= 0.0) return "the robot's clock has not begun to run";
   if (!state_) return "the Blackboard does not answer, so the state is not known";
   if (!planning_.is_available()) return "the planner does not answer";
-  if (!steps_.is_available()) return "the middle layer does not answer";
+  const bool needs_robot = !task_->params.dry_run;
+  if (needs_robot && !steps_.is_available()) return "the middle layer does not answer";
   return "";
 }
 
@@ -308,6 +311,7 @@ void ExecutionMonitorNode::CarryOut(const execution::CancelPlanning& command) {
 }
 
 void ExecutionMonitorNode::CarryOut(const execution::StartStep& command) {
+  HIRES_CHECK(!config_.monitor.dry_run, "a dry run begins no step");
   const int key = next_key_++;
   activities_[key] = command.activity;
   steps_.Send(key, GoalOf(command));
@@ -391,7 +395,8 @@ void ExecutionMonitorNode::Conclude(const execution::Finish& finish) {
                   OutcomeName(finish.outcome), result.replans, result.reason));
   const bool is_cancelled =
       task_->goal.getGoalStatus().status == actionlib_msgs::GoalStatus::PREEMPTING;
-  if (finish.outcome == execution::Finish::Outcome::kSucceeded) {
+  if (finish.outcome == execution::Finish::Outcome::kSucceeded ||
+      finish.outcome == execution::Finish::Outcome::kDryRun) {
     task_->goal.setSucceeded(result, result.reason);
   } else if (finish.outcome == execution::Finish::Outcome::kPreempted && is_cancelled) {
     task_->goal.setCanceled(result, result.reason);
@@ -426,8 +431,9 @@ void ExecutionMonitorNode::PublishFeedback() {
 
 void ExecutionMonitorNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using Level = diagnostic_msgs::DiagnosticStatus;
-  const bool is_complete = planning_.is_available() && steps_.is_available() &&
-                           imagination_.is_available() && view_.is_connected();
+  const bool has_robot = config_.monitor.dry_run || steps_.is_available();
+  const bool is_complete =
+      planning_.is_available() && has_robot && imagination_.is_available() && view_.is_connected();
   const std::string task = task_ ? Shortened(task_->goal.getGoal()->task) : "no task";
   status.summary(is_complete ? Level::OK : Level::WARN, task);
   const auto word = [](bool is_there) { return is_there ? "there" : "away"; };
@@ -436,6 +442,7 @@ void ExecutionMonitorNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper&
   status.add("imagination_client", word(imagination_.is_available()));
   status.add("translator", word(imagination_.is_translator_available()));
   status.add("blackboard", word(view_.is_connected()));
+  status.add("dry_run", config_.monitor.dry_run);
   status.add("tasks", num_tasks_);
   status.add("records_waiting", records_.num_waiting());
   status.add("records_written", records_.num_written());

@@ -89,6 +89,8 @@ evaluation::AchieveOutcome OutcomeOf(std::uint8_t code) {
       return Outcome::kInvalid;
     case hires::AchieveResult::BUSY:
       return Outcome::kBusy;
+    case hires::AchieveResult::DRY_RUN:
+      return Outcome::kDryRun;
   }
   return Outcome::kFailed;
 }

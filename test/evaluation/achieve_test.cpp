@@ -62,6 +62,23 @@ TEST(StepTableTest, WhatWasGivenUpBeforeItBeganIsLeftOut) {
   EXPECT_THAT(StepTable(status, 100.0), HasSubstr("pick_up"));
 }
 
+TEST(DryRunTableTest, ShowsTheLastPlanWithWhatIsExpectedOfIt) {
+  AchieveStatus status;
+  status.steps = {Step(0, "given_up", StepPhase::kSkipped), Step(0, "imagine", StepPhase::kDone),
+                  Step(1, "move_base", StepPhase::kWaiting),
+                  Step(2, "pick_up", StepPhase::kWaiting)};
+  for (std::size_t i = 1; i < 4; ++i) status.steps[i].plan = 1;
+  status.steps[2].start = {1000.0, 1e300};
+  status.steps[2].finish = {1012.5, 1e300};
+  status.steps[2].note = "imagined: slow succeeds in 0.98";
+  status.steps[3].start = {1012.5, 1e300};
+  const std::string table = DryRunTable(status);
+  EXPECT_THAT(table, AllOf(HasSubstr("move_base(area1)"), HasSubstr("imagined: slow"),
+                           HasSubstr("12.5"), HasSubstr("pick_up(area1)")));
+  EXPECT_THAT(table, AllOf(Not(HasSubstr("given_up")), Not(HasSubstr("imagine(area1)")),
+                           Not(HasSubstr("1000"))));
+}
+
 TEST(ChangeLinesTest, TellWhatIsNewAndNothingElse) {
   AchieveStatus before = Running();
   EXPECT_THAT(ChangeLines({}, before, 100.0),
@@ -169,6 +186,16 @@ TEST_F(AchieveVerbTest, ExitCodesTellTheOutcome) {
   EXPECT_EQ(RunFor(AchieveOutcome::kBusy).code, kExitNotAchieved);
   EXPECT_EQ(RunFor(AchieveOutcome::kNoPlan).code, kExitNoWay);
   EXPECT_EQ(RunFor(AchieveOutcome::kPreempted).code, kExitPreempted);
+  EXPECT_EQ(RunFor(AchieveOutcome::kDryRun).code, kExitAchieved);
+}
+
+TEST_F(AchieveVerbTest, ADryRunPrintsThePlan) {
+  report_.outcome = AchieveOutcome::kDryRun;
+  report_.reason = "planned and imagined; nothing was begun";
+  report_.status.steps = {Step(0, "pick_up", StepPhase::kWaiting)};
+  const Ended ended = Run({"serve guest1"});
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("would begin"), HasSubstr("pick_up(area1)"),
+                               HasSubstr("dry_run: planned and imagined; nothing was begun")));
 }
 
 TEST_F(AchieveVerbTest, SaysOutcomeReasonAndNumbers) {

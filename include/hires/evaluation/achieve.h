@@ -42,7 +42,7 @@ struct AchieveStatus {
   std::vector<std::string> warnings;  ///< new ones
 };
 
-enum class AchieveOutcome { kSucceeded, kNoPlan, kFailed, kPreempted, kInvalid, kBusy };
+enum class AchieveOutcome { kSucceeded, kNoPlan, kFailed, kPreempted, kInvalid, kBusy, kDryRun };
 std::string ToString(AchieveOutcome outcome);  ///< "succeeded", "no_plan", ...
 
 struct AchieveReport {

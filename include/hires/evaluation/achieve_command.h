@@ -14,7 +14,7 @@ namespace hires::evaluation {
 
 /// Exit codes of `hires achieve`.
 enum AchieveExitCode {
-  kExitAchieved = 0,
+  kExitAchieved = 0,     ///< or it was a dry run, which came to its end
   kExitNotAchieved = 1,  ///< it failed, was refused, or the input is bad: the message says why
   kExitNoWay = 2,        ///< there is no plan (left)
   kExitPreempted = 3,    ///< ended on request; the robot stands

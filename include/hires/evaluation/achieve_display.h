@@ -16,6 +16,10 @@ double BeginOf(const AchieveStatus& status);
 /// seconds after `begin`. Steps of plans that were given up before they began are left out.
 std::string StepTable(const AchieveStatus& status, double begin);
 
+/// What a dry run found: the last plan with the alternatives that imagination chose, how many
+/// seconds after its beginning each step would begin and end, and what is expected of it.
+std::string DryRunTable(const AchieveStatus& status);
+
 /// What is new in `after`, a line each: "  12.3 s  running  move_base(area1)". Times as above.
 std::vector<std::string> ChangeLines(const AchieveStatus& before, const AchieveStatus& after,
                                      double begin);

@@ -116,7 +116,13 @@ struct Warn {
   std::string text;
 };  ///< for people: what went wrong and what is done about it
 struct Finish {
-  enum class Outcome { kSucceeded, kNoPlan, kFailed, kPreempted } outcome{Outcome::kSucceeded};
+  enum class Outcome {
+    kSucceeded,
+    kNoPlan,
+    kFailed,
+    kPreempted,
+    kDryRun,  ///< planned and imagined; nothing was begun, on purpose
+  } outcome{Outcome::kSucceeded};
   std::string reason;
 };
 using Command = std::variant<StartPlanning, CancelPlanning, StartStep, StopStep, StartImagination,
@@ -125,7 +131,11 @@ using Command = std::variant<StartPlanning, CancelPlanning, StartStep, StopStep,
 struct MonitorParams {
   enum class ImaginePolicy { kDomain, kThesis, kOff };
   ImaginePolicy imagination{ImaginePolicy::kDomain};  ///< kOff: `!imagine` steps take the default
-  int max_replans{10};                                ///< of one task before giving up
+  /// Plans and imagines from the state that is, repairs the plan where all alternatives of a step
+  /// are imagined to fail, and ends instead of beginning a step. Answers have all the time of
+  /// `max_wait`.
+  bool dry_run{false};
+  int max_replans{10};            ///< of one task before giving up
   double effect_timeout{3.0};     ///< [s] after a step's end until its effects must be observed
   double overdue_factor{3.0};     ///< of the expected duration: a step that lasts longer is
   double overdue_minimum{30.0};   ///< stopped, but never before so many [s]

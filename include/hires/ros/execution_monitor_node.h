@@ -30,7 +30,7 @@
 namespace hires_ros {
 
 /// The file in ~config (config/execution_monitor.yaml where there is none); ~domain, ~operators
-/// (paths), ~imagination and ~seed win over it.  @throws hires::base::ConfigError.
+/// (paths), ~imagination, ~seed and ~dry_run win over it.  @throws hires::base::ConfigError.
 hires::execution::MonitorConfig LoadExecutionMonitorParams();
 
 /// What the monitor knows before it is asked; constant.
@@ -46,6 +46,9 @@ ExecutionKnowledge LoadExecutionKnowledge(const hires::execution::MonitorConfig&
 /// imagination client, middle layer and Blackboard, and their answers back. The monitor has one
 /// owner, a thread of this node; whatever comes from elsewhere is posted to it, and whatever may
 /// block is done on other threads. Servers may be away and come back.
+///
+/// In a dry run tasks are planned and imagined, and end before the first step: nothing is asked of
+/// the middle layer, which need not be there.
 class ExecutionMonitorNode {
  public:
   ExecutionMonitorNode(const hires::execution::MonitorConfig& config,

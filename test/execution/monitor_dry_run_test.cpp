@@ -1,0 +1,149 @@
+#include <gmock/gmock.h>
+
+#include "hires/base/text.h"
+#include "hires/execution/monitor.h"
+#include "support/scripted_world.h"
+
+// Tasks that are planned and imagined and not begun, in a scripted world.
+
+namespace hires::execution {
+namespace {
+
+using test_support::AllFail;
+using test_support::FactsOf;
+using test_support::Ranked;
+using test_support::ScriptedWorld;
+using test_support::TaskOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+ScriptedWorld::Options DryRun(const std::string& problem) {
+  ScriptedWorld::Options options;
+  options.facts = FactsOf(problem);
+  options.monitor.dry_run = true;
+  return options;
+}
+
+void ExpectNothingBegun(const ScriptedWorld& world, const Finish& finish) {
+  EXPECT_EQ(finish.outcome, Finish::Outcome::kDryRun) << finish.reason;
+  EXPECT_THAT(finish.reason, HasSubstr("nothing was begun"));
+  EXPECT_THAT(world.Begun(), IsEmpty());
+  EXPECT_THAT(world.violations(), IsEmpty());
+}
+
+/// The step that imagination was asked about, at the end.
+const StepStatus* DriveOf(const std::vector<StepStatus>& steps) {
+  const StepStatus* drive = nullptr;
+  for (const StepStatus& step : steps) {
+    const bool is_drive = step.action.name == "move_base_param";
+    if (is_drive && step.phase == StepPhase::kWaiting) drive = &step;
+  }
+  return drive;
+}
+
+ImagineAnswered Slow(const std::string& area) {
+  return Ranked({"move_base_param", {area, "slow"}}, 24.0);
+}
+
+TEST(DryRunTest, ThePlanEndsWithTheRecommendedAlternativeAndNothingIsBegun) {
+  auto options = DryRun("carry_object");
+  options.imagine = [](const StartImagination&, int) {
+    return Slow("premanipulationareanorthtable1");
+  };
+  ScriptedWorld world(options);
+  ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
+  EXPECT_NEAR(world.now(), 1020.05, 1e-6) << "as soon as the answer is there, after 20 s";
+  const auto steps = world.monitor().Steps();
+  const StepStatus* drive = DriveOf(steps);
+  ASSERT_NE(drive, nullptr);
+  EXPECT_THAT(drive->action.arguments, ElementsAre("premanipulationareanorthtable1", "slow"));
+  EXPECT_THAT(drive->note, HasSubstr("imagined"));
+  EXPECT_THAT(world.warnings(), IsEmpty());
+}
+
+TEST(DryRunTest, AnswersHaveAllTheTimeTheyNeed) {
+  auto options = DryRun("carry_object");
+  options.imagine_delay = 250.0;  // long after the drive would have begun
+  options.imagine = [](const StartImagination& request, int) {
+    EXPECT_EQ(request.deadline, std::numeric_limits<double>::infinity());
+    return Slow("premanipulationareanorthtable1");
+  };
+  ScriptedWorld world(options);
+  ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
+  EXPECT_THAT(DriveOf(world.monitor().Steps())->note, HasSubstr("imagined"));
+}
+
+TEST(DryRunTest, APlanThatIsImaginedToFailIsMendedAsInEarnest) {
+  auto options = DryRun("carry_object");
+  options.imagine = [](const StartImagination& request, int) {
+    const std::string area = request.action.alternatives[0][0];
+    if (area == "premanipulationareanorthtable1") return AllFail(request, "object_toppled");
+    return Slow(area);
+  };
+  ScriptedWorld world(options);
+  ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
+  EXPECT_THAT(world.imaginations(), SizeIs(2));
+  EXPECT_THAT(DriveOf(world.monitor().Steps())->action.arguments,
+              ElementsAre("premanipulationareasouthtable1", "slow"));
+}
+
+TEST(DryRunTest, WhereEverythingIsImaginedToFailThereIsNoPlan) {
+  auto options = DryRun("carry_object");
+  options.imagine = [](const StartImagination& request, int) {
+    return AllFail(request, "object_toppled");
+  };
+  ScriptedWorld world(options);
+  EXPECT_EQ(world.Run(TaskOf("carry_object")).outcome, Finish::Outcome::kNoPlan);
+  EXPECT_THAT(world.Begun(), IsEmpty());
+}
+
+TEST(DryRunTest, NobodyWhoImaginesIsSaidAtOnceWithTheDefault) {
+  auto options = DryRun("carry_object");
+  options.imagine = [](const StartImagination&, int) {
+    ImagineAnswered answer;
+    answer.outcome = ImagineAnswered::Outcome::kNoWorker;
+    return answer;
+  };
+  ScriptedWorld world(options);
+  ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
+  EXPECT_THAT(world.imaginations(), SizeIs(1));
+  EXPECT_THAT(DriveOf(world.monitor().Steps())->note, HasSubstr("nobody is there to imagine it"));
+  EXPECT_THAT(world.warnings(), ElementsAre(HasSubstr("without imagination")));
+}
+
+TEST(DryRunTest, SilenceEndsAtTheLongestWait) {
+  auto options = DryRun("carry_object");
+  options.imagine = [](const StartImagination&, int) { return std::nullopt; };
+  ScriptedWorld world(options);
+  ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
+  EXPECT_NEAR(world.now(), 1000.05 + options.monitor.max_wait, 1.0);
+}
+
+TEST(DryRunTest, WithoutImaginationThePlanAloneIsShown) {
+  auto options = DryRun("carry_object");
+  options.monitor.imagination = MonitorParams::ImaginePolicy::kOff;
+  ScriptedWorld world(options);
+  ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
+  EXPECT_THAT(world.imaginations(), IsEmpty());
+  EXPECT_EQ(DriveOf(world.monitor().Steps())->action.arguments.back(), "fast");
+}
+
+TEST(DryRunTest, APlanWithoutImaginationIsShownAtOnce) {
+  ScriptedWorld world(DryRun("serve_coffee"));
+  ExpectNothingBegun(world, world.Run(TaskOf("serve_coffee")));
+  EXPECT_NEAR(world.now(), 1000.05, 1e-6);
+}
+
+TEST(DryRunTest, ItCanBePreempted) {
+  auto options = DryRun("carry_object");
+  options.imagine = [](const StartImagination&, int) { return std::nullopt; };
+  ScriptedWorld world(options);
+  world.At(10.0, [](ScriptedWorld* w) { w->Post(PreemptRequested{}); });
+  EXPECT_EQ(world.Run(TaskOf("carry_object")).outcome, Finish::Outcome::kPreempted);
+  EXPECT_THAT(world.Begun(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace hires::execution
