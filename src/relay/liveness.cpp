@@ -43,6 +43,7 @@ void Liveness::Record(const std::string& uri, const PingReply& reply) {
       node.pid = 0;
       break;
     case PingReply::Kind::kSilent:
+    case PingReply::Kind::kUnknown:  // a name server may be away for a while
       if (++node.num_silent >= kMaxSilent) node.is_alive = false;
       break;
   }

@@ -111,7 +111,17 @@ void Relay::PingDue(double now) {
   if (due.empty()) return;
   const std::vector<PingReply> replies = pinger_->Ping(due);
   HIRES_CHECK(replies.size() == due.size(), "one reply for each ping");
-  for (std::size_t i = 0; i < due.size(); ++i) liveness_.Record(due[i], replies[i]);
+  for (auto it = unknown_hosts_.begin(); it != unknown_hosts_.end();) {
+    it = uris.count(*it) > 0 ? std::next(it) : unknown_hosts_.erase(it);
+  }
+  for (std::size_t i = 0; i < due.size(); ++i) {
+    liveness_.Record(due[i], replies[i]);
+    if (replies[i].kind == PingReply::Kind::kUnknown) {
+      unknown_hosts_.insert(due[i]);
+    } else {
+      unknown_hosts_.erase(due[i]);
+    }
+  }
 }
 
 std::vector<Offer> Relay::AliveOffers(const Direction& direction) const {
@@ -120,6 +130,18 @@ std::vector<Offer> Relay::AliveOffers(const Direction& direction) const {
     if (liveness_.IsAlive(offer.node_uri)) alive.push_back(offer);
   }
   return alive;
+}
+
+void Relay::AddUnknownHosts(const Direction& direction, MirrorPlan* plan) const {
+  for (const Offer& offer : direction.offers) {
+    if (unknown_hosts_.count(offer.node_uri) == 0 || liveness_.IsAlive(offer.node_uri)) continue;
+    const std::string host = ParseUri(offer.node_uri)->host;
+    plan->refused.push_back(
+        {offer.kind, offer.name, offer.node,
+         fmt::format("the host name in its address {} cannot be looked up on this computer; add a "
+                     "line 'ADDRESS {}' to /etc/hosts here, or start it with ROS_IP=ADDRESS",
+                     offer.node_uri, host)});
+  }
 }
 
 std::vector<Registration> Relay::RegistrationsOfDead(const Direction& direction) const {
@@ -135,7 +157,10 @@ std::vector<Registration> Relay::RegistrationsOfDead(const Direction& direction)
 
 MirrorPlan Relay::PlanFor(const Direction& direction) const {
   if (direction.source->graph) {
-    return PlanMirror(AliveOffers(direction), *direction.target->graph, names_, is_same_host_);
+    MirrorPlan plan =
+        PlanMirror(AliveOffers(direction), *direction.target->graph, names_, is_same_host_);
+    AddUnknownHosts(direction, &plan);
+    return plan;
   }
   MirrorPlan plan;
   plan.withdraw = RegistrationsOfDead(direction);

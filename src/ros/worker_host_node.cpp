@@ -265,7 +265,7 @@ void WorkerHostNode::StartMaster(double now) {
   phase_since_ = started_at_ = now;
   policy_.OnStarted(now);
   master_.emplace(
-      ProcessOptions{Filled(params_.master_command), WorkerEnvironment(), params_.nice});
+      ProcessOptions{Filled(params_.master_command), WorkerEnvironment(), params_.nice, ""});
 }
 
 void WorkerHostNode::AwaitMaster(double now) {
@@ -288,9 +288,11 @@ void WorkerHostNode::StartNodes(double now) {
   phase_since_ = now;
   std::vector<std::string> command = params_.worker_command;
   command.insert(command.end(), params_.worker_arguments.begin(), params_.worker_arguments.end());
-  worker_.emplace(ProcessOptions{Filled(command), WorkerEnvironment(), params_.nice});
-  relay_.emplace(ProcessOptions{
-      Filled(params_.relay_command), {"ROS_MASTER_URI=" + ros::master::getURI()}, params_.nice});
+  worker_.emplace(ProcessOptions{Filled(command), WorkerEnvironment(), params_.nice, ""});
+  relay_.emplace(ProcessOptions{Filled(params_.relay_command),
+                                {"ROS_MASTER_URI=" + ros::master::getURI()},
+                                params_.nice,
+                                ""});
 }
 
 bool WorkerHostNode::HasCrossed() {
@@ -418,7 +420,16 @@ void WorkerHostNode::PublishDiagnostics() {
 
 bool WaitForMainMaster(StopSignals* signals) {
   const auto main = hires::relay::RequireMasterUri(ros::master::getURI(), "ROS_MASTER_URI");
+  bool has_told = false;
   while (!AskPid(main, ros::this_node::getName(), kCallTimeout)) {
+    if (!has_told) {
+      Log(LogLevel::kWarn,
+          fmt::format("waiting for the main master {}; if it runs: can this computer look up '{}'? "
+                      "(otherwise a line 'ADDRESS {}' in /etc/hosts helps), and does its firewall "
+                      "let this computer in?",
+                      ros::master::getURI(), main.host, main.host));
+      has_told = true;
+    }
     if (signals->Wait(0.05)) return false;
   }
   return true;

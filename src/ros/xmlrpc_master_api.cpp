@@ -163,7 +163,7 @@ PingCall StartPing(const std::string& uri, const XmlRpcValue& params, SteadyCloc
   if (!endpoint) return call;
   const auto address = Resolve(endpoint->host, end);
   if (!address) {
-    call.kind = PingReply::Kind::kSilent;
+    call.kind = PingReply::Kind::kUnknown;
     return call;
   }
   call.client = std::make_unique<Client>(address->c_str(), endpoint->port, "/");

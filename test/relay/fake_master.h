@@ -123,6 +123,7 @@ class FakePinger : public NodePinger {
 
   void Kill(const std::string& uri) { replies[uri] = {PingReply::Kind::kRefused, 0}; }
   void Hang(const std::string& uri) { replies[uri] = {PingReply::Kind::kSilent, 0}; }
+  void Forget(const std::string& uri) { replies[uri] = {PingReply::Kind::kUnknown, 0}; }
   void Answer(const std::string& uri, int pid) { replies[uri] = {PingReply::Kind::kAnswered, pid}; }
 
   std::vector<PingReply> Ping(const std::vector<std::string>& uris) override {

@@ -179,6 +179,21 @@ TEST_F(RelayTest, ALoopbackAddressIsRefusedAtAMasterElsewhere) {
   EXPECT_THAT(log_, Contains(HasSubstr("refused topic=/worker_1/scan")));
 }
 
+TEST_F(RelayTest, ANodeWhoseHostNobodyKnowsIsRefusedUntilItsNameIsKnown) {
+  const char kNamed[] = "http://imaginer:4001/";
+  foreign_.AddPublisher("/sim_worker", kScan, "sensor_msgs/LaserScan", kNamed);
+  pinger_.Forget(kNamed);
+  TickFor(3.0);
+  EXPECT_THAT(Publishers(main_, kScan), IsEmpty());
+  ASSERT_EQ(log_.size(), 1u) << "a refusal is logged once";
+  EXPECT_THAT(log_[0], HasSubstr("refused topic=/worker_1/scan node=/sim_worker"));
+  EXPECT_THAT(log_[0], HasSubstr("'ADDRESS imaginer' to /etc/hosts"));
+  pinger_.Answer(kNamed, 5);
+  TickFor(1.1);
+  EXPECT_EQ(Publishers(main_, kScan).size(), 1u);
+  EXPECT_THAT(relay_->status().refused, IsEmpty());
+}
+
 TEST_F(RelayTest, ALoopbackServiceIsRefusedAtAMasterElsewhere) {
   FakeMaster robot("http://robot:11311/");
   Relay relay(params_, HostNames{"station"}, &robot, &foreign_, &pinger_);

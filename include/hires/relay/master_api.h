@@ -54,6 +54,7 @@ struct PingReply {
     kAnswered,
     kRefused,  ///< nobody listens there, or not a node
     kSilent,   ///< no answer in time: stopped, overloaded or cut off
+    kUnknown,  ///< its host name cannot be looked up here, or not in time
   };
   Kind kind{Kind::kSilent};
   int pid{0};  ///< only with kAnswered

@@ -70,6 +70,7 @@ class Relay {
   void Serve(Direction* direction);
   MirrorPlan PlanFor(const Direction& direction) const;
   std::vector<Offer> AliveOffers(const Direction& direction) const;
+  void AddUnknownHosts(const Direction& direction, MirrorPlan* plan) const;
   std::vector<Registration> RegistrationsOfDead(const Direction& direction) const;
   void Withdraw(const Registration& registration, Direction* direction);
   void Announce(const std::vector<Announcement>& announcements, Direction* direction);
@@ -84,6 +85,7 @@ class Relay {
   bool is_same_host_;
   NodePinger* pinger_;
   Liveness liveness_;
+  std::set<std::string> unknown_hosts_;  // addresses of nodes whose host nobody here knows
   Side local_;
   Side foreign_;
   Direction to_foreign_;
