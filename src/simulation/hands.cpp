@@ -115,7 +115,6 @@ void Hands::Hold(int index, int object, double friction,
   Hand& hand = hands_[index];
   HIRES_CHECK(hand.object < 0, "a hand holds one object");
   physics->Hold(objects[object].body, bodies_[index].palm, bodies_[index].All());
-  ++num_changes_;
   hand.object = object;
   hand.friction = friction;
   hand.yielded = 0.0;
@@ -125,7 +124,6 @@ void Hands::Hold(int index, int object, double friction,
 void Hands::LetGo(int index, const std::vector<GraspableObject>& objects, PhysicsWorld* physics) {
   Hand& hand = hands_[index];
   physics->LetGo(objects[hand.object].body);
-  ++num_changes_;
   hand.object = -1;
 }
 

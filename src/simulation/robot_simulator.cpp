@@ -34,9 +34,8 @@ struct RobotSimulator::Snapshot {
   Disturbances disturbances;
   std::optional<PlanarRobot::State> planar;
   base::Rng encoder_rng, detection_rng;
-  ObjectMemory memory;
+  std::optional<perception::ObjectMemory> memory;
   double last_look;
-  std::vector<std::string> known_grips;
 };
 
 std::optional<RobotContact> RobotSimulator::FindContact() const {
@@ -74,16 +73,14 @@ geometry::Pose3 RobotSimulator::LeaningPose(const BaseMotion& motion) const {
 
 void RobotSimulator::Send(const robot::Command& command) {
   if (command.base_velocity) drive_.Send(*command.base_velocity, time_);
-  if (!planar_) return;
-  planar_->Send(command, time_);
-  NoteGrips();
+  if (planar_) planar_->Send(command, time_);
 }
 
 void RobotSimulator::Step() {
   if (steps_ % kSlowSteps == 0) {
     MoveSlip();
     if (!contact_) contact_ = FindContact();
-    if (planar_) LookIfStill();
+    if (memory_) FeelAndLook();
   }
   drive_.Step(time_, time_step(), slip_);
   const Pose3 X_next = LeaningPose(drive_.motion());
@@ -97,9 +94,7 @@ void RobotSimulator::Step() {
   ++steps_;
   time_ = steps_ * time_step();
   NoteDisturbances();
-  if (!planar_) return;
-  planar_->React();
-  NoteGrips();
+  if (planar_) planar_->React();
 }
 
 void RobotSimulator::MoveSlip() {
@@ -185,7 +180,7 @@ std::shared_ptr<const RobotSimulator::Snapshot> RobotSimulator::Save() {
       Snapshot{physics_->Save(), time_, steps_, drive_, X_MB_, slip_, slip_rng_, sense_rng_,
                ghost_rng_, last_observation_, ghosts_, contact_, disturbances_,
                planar_ ? std::make_optional(planar_->Save()) : std::nullopt, encoder_rng_,
-               detection_rng_, memory_, last_look_, known_grips_});
+               detection_rng_, memory_, last_look_});
 }
 
 void RobotSimulator::Restore(const Snapshot& snapshot) {
@@ -209,8 +204,6 @@ void RobotSimulator::Restore(const Snapshot& snapshot) {
   detection_rng_ = snapshot.detection_rng;
   memory_ = snapshot.memory;
   last_look_ = snapshot.last_look;
-  known_grips_ = snapshot.known_grips;
-  num_known_grips_ = planar_ ? planar_->num_grips() : 0;
 }
 
 }  // namespace hires::simulation

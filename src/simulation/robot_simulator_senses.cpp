@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hires/base/text.h"
 #include "hires/simulation/robot_simulator.h"
 #include "start_checks.h"
 
@@ -37,9 +38,8 @@ Pose2 RobotSimulator::BelievedBase(base::Rng* rng) const {
   return drive_.motion().X_MB * variation_.localisation_bias * noise;
 }
 
-/// Where a link is in the map when the base is where the robot believes it to be.
-Pose3 RobotSimulator::Believed(const Pose3& X_ML, const Pose2& X_MBbelieved) const {
-  return geometry::Lift(X_MBbelieved) * X_MB_.Inverse() * X_ML;
+perception::BodyReading RobotSimulator::FeltBody(const Pose2& X_MBbelieved) const {
+  return {time_, X_MBbelieved, planar_->Joints()};
 }
 
 void RobotSimulator::Remember(const std::vector<robot::SeenObject>& objects) {
@@ -47,27 +47,32 @@ void RobotSimulator::Remember(const std::vector<robot::SeenObject>& objects) {
     RefuseUnknownModel({object.name, object.model, object.X_MO, {}, ""}, scene_->world);
     RefusePose("remembered object '" + object.name + "'", object.X_MO);
   }
-  memory_.Remember(objects, drive_.motion().X_MB * variation_.localisation_bias);
+  if (!memory_) return;
+  const Pose2 X_MBbelieved = drive_.motion().X_MB * variation_.localisation_bias;
+  for (const robot::SeenObject& object : objects) {
+    const Pose3 X_BO = geometry::Lift(X_MBbelieved).Inverse() * object.X_MO;
+    const auto& shapes = scene_->world.models.at(object.model)->collisions;
+    const bool rides_along = StandsOn(scene_->base_shapes_B, shapes, X_BO);
+    const auto known = memory_->objects().find(base::ToLower(object.name));
+    if (known != memory_->objects().end() && known->second.is_held) continue;
+    memory_->Believe(object.name, object.model, rides_along ? scene_->robot.profile.base_link : "",
+                     rides_along ? X_BO : object.X_MO);
+  }
 }
 
-/// Hands know at once what they hold and lose.
-void RobotSimulator::NoteGrips() {
-  if (planar_->num_grips() == num_known_grips_) return;
-  num_known_grips_ = planar_->num_grips();
-  const Pose2 X_MBbelieved = drive_.motion().X_MB * variation_.localisation_bias;
+/// What hands hold at the start they know.
+void RobotSimulator::BelieveHands() {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const std::string link = planar_->HolderOf(static_cast<int>(i));
-    if (link == known_grips_[i]) continue;
-    const std::string before = std::exchange(known_grips_[i], link);
-    const std::string& acting = link.empty() ? before : link;
-    const Pose3 X_ML = planar_->X_MLink(acting), X_MLbelieved = Believed(X_ML, X_MBbelieved);
-    const Pose3 X_LO = X_ML.Inverse() * PoseOf(static_cast<int>(i));
-    if (!before.empty()) memory_.Release(objects_[i].name, X_MLbelieved, X_MBbelieved);
     if (link.empty()) continue;
-    memory_.Take(link, X_MLbelieved,
-                 {objects_[i].name, objects_[i].model, X_MLbelieved * X_LO, time_, link}, X_LO,
-                 X_MBbelieved);
+    memory_->Believe(objects_[i].name, objects_[i].model, link,
+                     planar_->X_MLink(link).Inverse() * PoseOf(static_cast<int>(i)));
   }
+}
+
+void RobotSimulator::FeelAndLook() {
+  memory_->Feel(FeltBody(drive_.motion().X_MB * variation_.localisation_bias));
+  LookIfStill();
 }
 
 void RobotSimulator::LookIfStill() {
@@ -82,9 +87,7 @@ void RobotSimulator::LookIfStill() {
   params.position_noise = variation_.detection_noise;
   params.yaw_noise = variation_.detection_noise_yaw;
   const auto detections = perception::Detect(sight, view, objects, params, &detection_rng_);
-  const Pose2 X_MBbelieved = BelievedBase(&detection_rng_);
-  memory_.Look(detections, sight, view, {X_MC, Believed(X_MC, X_MBbelieved)}, params, time_,
-               X_MBbelieved);
+  memory_->Look(FeltBody(BelievedBase(&detection_rng_)), detections);
 }
 
 /// Of torso, head and arms; a measured joint stays within its limits.
@@ -107,15 +110,9 @@ void RobotSimulator::ObserveUpperBody(double action_start, robot::Observation* o
   observation->joints = planar_->Joints();
   observation->joint_velocities = planar_->JointVelocities();
   if (variation_.encoder_noise > 0.0) AddEncoderNoise(&observation->joints);
-  std::map<std::string, Pose3> X_MLbelieved;
-  for (const std::string& link : known_grips_) {
-    if (link.empty() || X_MLbelieved.count(link) == 1) continue;
-    X_MLbelieved[link] = Believed(planar_->X_MLink(link), observation->X_MB);
-  }
-  observation->objects = memory_.Known(X_MLbelieved, observation->X_MB);
-  for (robot::SeenObject& seen : observation->objects) {
-    seen.time = (seen.attached_to.empty() ? seen.time : time_) - action_start;
-  }
+  if (!memory_) return;
+  observation->objects = memory_->Known(FeltBody(observation->X_MB));
+  for (robot::SeenObject& seen : observation->objects) seen.time -= action_start;
 }
 
 robot::Observation RobotSimulator::Observe(double action_start) {

@@ -54,10 +54,7 @@ RobotSimulator::RobotSimulator(std::shared_ptr<const Scene> scene, const Variati
       sense_rng_(rng.Fork(2)),
       ghost_rng_(rng.Fork(3)),
       encoder_rng_(rng.Fork(4)),
-      detection_rng_(rng.Fork(5)),
-      memory_([scene = scene_](const std::string& model, const Pose3& X_BO) {
-        return StandsOn(scene->base_shapes_B, scene->world.models.at(model)->collisions, X_BO);
-      }) {
+      detection_rng_(rng.Fork(5)) {
   physics::PhysicsParams physics_params = params;
   physics_params.gravity = scene_->world.gravity;
   physics_ = std::make_unique<physics::PhysicsWorld>(physics_params);
@@ -171,8 +168,11 @@ void RobotSimulator::AddPlanarRobot() {
     }
     planar_->Attach(static_cast<int>(i), objects_[i].attached_to, friction);
   }
-  known_grips_.resize(objects_.size());
-  NoteGrips();
+  if (scene_->surroundings) {
+    memory_.emplace(scene_->surroundings,
+                    std::shared_ptr<const robot::Robot>(scene_, &scene_->robot));
+    BelieveHands();
+  }
 }
 
 void RobotSimulator::RefuseBadStart(const world::WorldState& state) {

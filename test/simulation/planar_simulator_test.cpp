@@ -318,7 +318,8 @@ TEST(PlanarSimulatorTest, TheCameraFindsWhatItLooksAt) {
   ASSERT_EQ(seen.size(), 1u);
   EXPECT_EQ(seen[0].name, "mug1");
   EXPECT_EQ(seen[0].model, "mug");
-  EXPECT_LT((seen[0].X_MO.translation - simulator->PoseOf(0).translation).norm(), 1e-4);
+  // The camera leans with the base, which the robot does not know.
+  EXPECT_LT((seen[0].X_MO.translation - simulator->PoseOf(0).translation).norm(), 5e-4);
   EXPECT_THAT(seen[0].attached_to, IsEmpty());
 }
 
@@ -339,7 +340,7 @@ TEST(PlanarSimulatorTest, WhatIsRememberedStaysUntilItIsMissed) {
   ASSERT_EQ(simulator->Observe(0.0).objects.size(), 1u);  // it did not look there
   EXPECT_EQ(simulator->Observe(0.0).objects[0].name, "mug7");
   simulator->Send(JointTo("head", "head_tilt_joint", 0.7, 0.5));
-  StepFor(simulator.get(), 2.0);
+  StepFor(simulator.get(), 3.0);  // three looks
   EXPECT_THAT(simulator->Observe(0.0).objects, IsEmpty());
 }
 
@@ -398,6 +399,7 @@ TEST(PlanarSimulatorTest, WhatTheHandHoldsNobodyNeedsToTell) {
 
 TEST(PlanarSimulatorTest, WhatIsHeldIsKnownWhereTheHandIs) {
   const auto simulator = Simulator({MugAt()});
+  simulator->Remember({{"mug1", "mug", MugAt().X_MO, 0.0, ""}});
   simulator->Send(Gripper(0.0));
   StepFor(simulator.get(), 1.0);
   simulator->Send(JointTo("rightarm1", "r_shoulder_pan_joint", 0.4, 1.0));
@@ -406,9 +408,8 @@ TEST(PlanarSimulatorTest, WhatIsHeldIsKnownWhereTheHandIs) {
   ASSERT_EQ(seen.size(), 1u);
   EXPECT_EQ(seen[0].attached_to, "r_gripper_palm_link");
   EXPECT_LT((seen[0].X_MO.translation - simulator->PoseOf(0).translation).norm(), 0.005);
-  EXPECT_NEAR(seen[0].time, simulator->time(), 1e-9);
   simulator->Send(Gripper(0.09));
-  StepFor(simulator.get(), 0.1);
+  StepFor(simulator.get(), 0.4);
   seen = simulator->Observe(0.0).objects;
   ASSERT_EQ(seen.size(), 1u);
   EXPECT_THAT(seen[0].attached_to, IsEmpty());

@@ -77,7 +77,6 @@ class Hands {
     physics::BodyId by{-1};
   };
   const std::optional<Blocked>& blocked() const { return blocked_; }
-  int num_changes() const { return num_changes_; }  ///< goes up with every hold taken or lost
   void RestoreBlocked(std::optional<Blocked> blocked) { blocked_ = blocked; }
 
  private:
@@ -92,7 +91,6 @@ class Hands {
   double max_force_;
   std::vector<Hand> hands_;
   std::optional<Blocked> blocked_;
-  int num_changes_{0};
 };
 
 /// Whether two fingers hold what they touch: the line between the touches lies within both friction

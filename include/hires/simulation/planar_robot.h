@@ -56,8 +56,6 @@ class PlanarRobot {
   std::optional<RobotContact> FindContact(const geometry::Pose2& X_MB,
                                           const std::vector<std::string>& object_names) const;
 
-  /// Goes up with every hold that is taken or lost.
-  int num_grips() const { return hands_.num_changes(); }
   std::vector<geometry::Collision> ShapesInMap() const;  ///< named by their links
 
   /// Name of a robot link by body, or empty.

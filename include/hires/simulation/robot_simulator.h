@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "hires/base/rng.h"
+#include "hires/perception/object_memory.h"
 #include "hires/physics/physics_world.h"
 #include "hires/robot/observation.h"
 #include "hires/simulation/base_drive.h"
 #include "hires/simulation/floor_profile.h"
-#include "hires/simulation/object_memory.h"
 #include "hires/simulation/planar_robot.h"
 #include "hires/simulation/scene.h"
 #include "hires/simulation/variation.h"
@@ -114,9 +114,10 @@ class RobotSimulator {
   geometry::Pose3 LeaningPose(const BaseMotion& motion) const;
   std::optional<RobotContact> FindContact() const;
   geometry::Pose2 BelievedBase(base::Rng* rng) const;
-  geometry::Pose3 Believed(const geometry::Pose3& X_ML, const geometry::Pose2& X_MBbelieved) const;
-  void NoteGrips();
+  void BelieveHands();
+  void FeelAndLook();
   void LookIfStill();
+  perception::BodyReading FeltBody(const geometry::Pose2& X_MBbelieved) const;
   void AddEncoderNoise(robot::JointPositions* joints);
   void ObserveUpperBody(double action_start, robot::Observation* observation);
   void NoteDisturbances();
@@ -150,10 +151,8 @@ class RobotSimulator {
   double last_observation_{0.0};
   std::deque<Ghost> ghosts_;
   base::Rng encoder_rng_, detection_rng_;
-  ObjectMemory memory_;
-  double last_look_{-1e9};                // [s]
-  std::vector<std::string> known_grips_;  // by object: link that holds it as far as memory_ knows
-  int num_known_grips_{0};                // PlanarRobot::num_grips() at that time
+  std::optional<perception::ObjectMemory> memory_;  // none at level `tray`
+  double last_look_{-1e9};                          // [s]
   std::optional<RobotContact> contact_;
   Disturbances disturbances_;
 };
