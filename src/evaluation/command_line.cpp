@@ -227,8 +227,8 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
   AddPlanVerb(&app, &plan_options);
   BlackboardOptions blackboard_options;
   AddBlackboardVerb(&app, &blackboard_options);
-  CLI::App* doctor =
-      app.add_subcommand("doctor", "check this machine and compare the physics with closed forms");
+  DoctorOptions doctor_options;
+  AddDoctorVerb(&app, &doctor_options);
   std::vector<CLI::App*> others;
   for (const Verb& verb : backends.more_verbs) {
     CLI::App* other = app.add_subcommand(verb.name, verb.help)->prefix_command();
@@ -259,7 +259,7 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
       return RunBlackboardVerb(blackboard_options, backends.package_folder,
                                backends.connect_blackboard);
     }
-    if (*doctor) return RunDoctor(backends);
+    if (*doctor_options.verb) return RunDoctorVerb(doctor_options, backends);
     for (std::size_t i = 0; i < others.size(); ++i) {
       if (*others[i]) return backends.more_verbs[i].run(others[i]->remaining());
     }

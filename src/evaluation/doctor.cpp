@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <iostream>
 #include <thread>
 #include <vector>
 
+#include "hires/base/error.h"
 #include "hires/evaluation/command_line.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/imagination/client_config.h"
@@ -61,15 +63,45 @@ bool CheckPhysics() {
   return passed;
 }
 
-}  // namespace
-
-int RunDoctor(const Backends& backends) {
+int CheckAll(const Backends& backends) {
   bool passed = CheckMachine();
   passed = CheckFiles(backends) && passed;
   for (const Check& check : backends.more_checks) passed = check() && passed;
   passed = CheckPhysics() && passed;
   std::cout << (passed ? "\nall is well\n" : "\nsomething needs attention, see FAILED above\n");
   return passed ? kExitRecommended : kExitBadInput;
+}
+
+}  // namespace
+
+void AddDoctorVerb(CLI::App* app, DoctorOptions* o) {
+  o->verb = app->add_subcommand(
+      "doctor",
+      "check this machine and compare the physics with closed forms, or --robot: a running robot");
+  CLI::Option* robot =
+      o->verb->add_flag("--robot", o->is_robot, "look at the robot of ROS_MASTER_URI instead");
+  o->verb->add_option("--names", o->robot.names, "what the robot calls its things (YAML)")
+      ->needs(robot);
+  o->verb->add_option("--profile", o->robot.profile, "the robot's profile (YAML)")->needs(robot);
+  o->verb
+      ->add_option("--navigation", o->robot.navigation,
+                   "move_base or own: who will drive; what move_base lacks is then a failure, or "
+                   "of no interest")
+      ->check(CLI::IsMember({"move_base", "own"}))
+      ->needs(robot);
+  o->verb->add_option("--seconds", o->robot.seconds, "[s] to listen")
+      ->check(CLI::Range(0.2, 600.0))
+      ->needs(robot);
+  o->verb->add_option("--json", o->robot.json, "write what was found to this file as well")
+      ->needs(robot);
+}
+
+int RunDoctorVerb(const DoctorOptions& options, const Backends& backends) {
+  if (!options.is_robot) return CheckAll(backends);
+  if (!backends.examine_robot) {
+    throw base::ConfigError("this build has no ROS, so it cannot ask a robot; leave out --robot");
+  }
+  return backends.examine_robot(options.robot);
 }
 
 }  // namespace hires::evaluation

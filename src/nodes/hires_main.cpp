@@ -9,6 +9,7 @@
 #include "hires/ros/remote_blackboard.h"
 #include "hires/ros/remote_imagination.h"
 #include "hires/ros/replay.h"
+#include "hires/ros/robot_doctor.h"
 #include "hires/ros/ros_doctor.h"
 
 int main(int argc, char** argv) {
@@ -20,6 +21,9 @@ int main(int argc, char** argv) {
   backends.achieve_remotely = hires_ros::AchieveRemotely;
   backends.connect_blackboard = hires_ros::ConnectBlackboard;
   backends.play_hypothesis = hires_ros::PlayHypothesisRun;
+  backends.examine_robot = [&](const hires::evaluation::RobotDoctorOptions& options) {
+    return hires_ros::ExamineRobot(options, backends.package_folder);
+  };
   backends.more_verbs.push_back(
       {hires_ros::kHypothesisRunVerb, "one run of `hires experiment hypothesis`, which starts it",
        [&](const std::vector<std::string>& words) {

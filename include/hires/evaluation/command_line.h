@@ -7,6 +7,7 @@
 #include "hires/base/action.h"
 #include "hires/evaluation/achieve.h"
 #include "hires/evaluation/blackboard_command.h"
+#include "hires/evaluation/doctor.h"
 #include "hires/evaluation/experiment_hypothesis.h"
 #include "hires/evaluation/imagine_start.h"
 #include "hires/imagination/imagination_setup.h"
@@ -49,6 +50,7 @@ struct Backends {
   ConnectBlackboard connect_blackboard;
   AchieveRemotely achieve_remotely;
   PlayHypothesis play_hypothesis;
+  ExamineRobot examine_robot;
   std::vector<Verb> more_verbs;
   std::vector<Check> more_checks;
 };
