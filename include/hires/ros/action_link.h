@@ -18,7 +18,8 @@ namespace hires_ros {
 
 /// How long a client of an action waits. [s] on a clock that never jumps, unless it says otherwise.
 struct ActionLinkParams {
-  double server_wait{2.0};  ///< for a server to be there, and for it to take a goal
+  /// For a server to be there, for it to take a goal, and for a result it says to have sent.
+  double server_wait{2.0};
   double server_loss{0.5};  ///< without connection, after which its goals are lost
   /// Without a word from a connected server, both on a steady clock and in main ROS time (whose
   /// standstill silences every server): it hangs.
@@ -114,6 +115,7 @@ class ActionLink {
     std::optional<double> sent;
     std::optional<GoalHandle> handle;
     bool is_taken{false};
+    std::optional<double> over;  // [s] steady: the server has ended it, the result is on its way
     std::optional<Moment> cancelled;
 
     /// A server that only hung must not go on with what nobody waits for.
@@ -146,13 +148,16 @@ class ActionLink {
                     : terminal.getText());
       });
     } else if (state != actionlib::CommState::WAITING_FOR_GOAL_ACK) {
-      post_([this, request] { OnTaken(request); });
+      const bool is_over = state == actionlib::CommState::WAITING_FOR_RESULT;
+      post_([this, request, is_over] { OnTaken(request, is_over); });
     }
   }
 
-  void OnTaken(int request) {
+  void OnTaken(int request, bool is_over) {
     const auto found = pending_.find(request);
-    if (found == pending_.end() || found->second.is_taken) return;
+    if (found == pending_.end()) return;
+    if (is_over && !found->second.over) found->second.over = SteadyNow();
+    if (found->second.is_taken) return;
     found->second.is_taken = true;
     if (found->second.cancelled) found->second.handle->cancel();
   }
@@ -177,6 +182,10 @@ class ActionLink {
     }
     if (!pending.is_taken && now - *pending.sent > params_.server_wait) {
       return fmt::format("the server of '{}' does not take the goal", name_);
+    }
+    // A server that has just started may send it before we are connected to hear it.
+    if (pending.over && now - *pending.over > params_.server_wait) {
+      return fmt::format("the result of '{}' was lost", name_);
     }
     if (pending.cancelled && IsOver(*pending.cancelled, params_.cancel_wait)) {
       return fmt::format("the server of '{}' does not end the cancelled goal", name_);

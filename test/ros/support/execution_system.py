@@ -93,9 +93,9 @@ class ExecutionSystem:
         config['operators'] = os.path.join(CONFIG, config['operators'])
         config['ontology'] = [os.path.join(CONFIG, path) for path in config['ontology']]
         config['monitor'].update(effect_timeout=1.0, break_delay=0.2, stop_timeout=5.0,
-                                 planning_timeout=10.0)
-        config['servers'].update(server_wait=2.0, cancel_wait=2.0)
-        config['start_wait'] = 4.0
+                                 planning_timeout=3.0)
+        config['servers'].update(server_wait=1.0, cancel_wait=1.0)
+        config['start_wait'] = 2.0
         config.update(changes)
         return self.processes.write('execution_monitor.yaml', yaml.safe_dump(config))
 
