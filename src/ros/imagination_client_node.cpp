@@ -41,7 +41,8 @@ imagination::Event EventOf(int worker, int alternative, const WorkerLink::Played
 }  // namespace
 
 ImaginationClientParams LoadImaginationClientParams() {
-  RejectUnknownPrivate({"config", "workers", "world", "robot", "objects", "uncertainty"});
+  RejectUnknownPrivate({"config", "workers", "world", "robot", "objects", "uncertainty",
+                        "localisation", "map_to_world"});
   ImaginationClientParams params;
   params.config = imagination::ReadClientConfig(PrivateText("config").value_or(
       ros::package::getPath("hires") + "/config/imagination_client.yaml"));
@@ -49,6 +50,9 @@ ImaginationClientParams LoadImaginationClientParams() {
   Override("workers", PrivateInt("workers"), hires::base::Between(1, 256), &params.num_workers);
   imagination::OverridePaths(PrivateText("world"), PrivateText("robot"), PrivateText("objects"),
                              PrivateText("uncertainty"), &params.setup);
+  params.localisation = PrivateText("localisation").value_or("");
+  params.map_to_world =
+      hires::world::ParseMapToWorld(PrivateText("map_to_world").value_or(""), "~map_to_world");
   return params;
 }
 
@@ -67,6 +71,10 @@ ImaginationClientNode::ImaginationClientNode(const ImaginationClientParams& para
     workers_[k] = std::make_unique<WorkerLink>(
         k, params_.config.worker_timeout, nh,
         [this, k](const WorkerLink::Event& event) { OnWorkerEvent(k, event); });
+  }
+  if (!params_.localisation.empty()) {
+    localisation_ = nh->subscribe(params_.localisation, 1, &ImaginationClientNode::OnLocalisation,
+                                  this, ros::TransportHints().tcpNoDelay());
   }
   world_markers_.publish(WorldMarkers(setup_.scene->world));
   updater_.setHardwareID("imagination");
@@ -122,11 +130,36 @@ std::unique_ptr<ImaginationClientNode::Session> ImaginationClientNode::MakeSessi
   const hires::ImagineGoal& wanted = *goal.getGoal();
   if (wanted.updated_fluents.empty()) RequireSoundState(wanted.world_state, wanted.robot_state);
   session->request = RequestOf(wanted, setup_, params_.config.scheduler);
+  if (wanted.uncertainty.empty()) SpreadStart(&session->request);
   session->started = SchedulerNow();
   session->scheduler = std::make_unique<imagination::Scheduler>(
       session->request.params, static_cast<int>(session->request.actions.size()), session->started);
   session->begun = session->next_feedback = SteadyNow();
   return session;
+}
+
+void ImaginationClientNode::OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg) {
+  const auto& c = msg.pose.covariance;  // row by row: x, y, z, and about x, y, z
+  imagination::BelievedPose believed;
+  believed.X_MB = params_.map_to_world.ToWorld(hires::geometry::Flatten(FromMsg(msg.pose.pose)));
+  believed.covariance << c[0], c[1], c[5], c[6], c[7], c[11], c[30], c[31], c[35];
+  const double turn = params_.map_to_world.X_WM.yaw, scale = params_.map_to_world.scale;
+  Eigen::Matrix3d R_WM = Eigen::Matrix3d::Identity();
+  R_WM.topLeftCorner<2, 2>() = scale * Eigen::Rotation2Dd(turn).toRotationMatrix();
+  believed.covariance = R_WM * believed.covariance * R_WM.transpose();
+  believed_ = believed;
+}
+
+/// What begins where the robot stands begins as surely as it knows where that is.
+void ImaginationClientNode::SpreadStart(ImagineRequest* request) const {
+  const auto& X_MStart = request->setup.robot_state.X_MB;
+  if (!believed_ || !imagination::BeginsHere(X_MStart, *believed_)) return;
+  const auto spread = imagination::SpreadOf(*believed_, params_.localisation);
+  request->setup.uncertainty = std::make_shared<const imagination::Uncertainty>(
+      imagination::WithStartSpread(*request->setup.uncertainty, spread));
+  hires::base::Log(hires::base::LogLevel::kInfo,
+                   fmt::format("start=here spread_x={:.3f} spread_y={:.3f} spread_yaw={:.3f}",
+                               spread.x, spread.y, spread.yaw));
 }
 
 void ImaginationClientNode::OnCancel(GoalHandle goal) {
@@ -193,7 +226,8 @@ hires::RolloutGoal ImaginationClientNode::RolloutGoalFor(const Session& session,
   goal.world_hash = setup_.world_hash;
   goal.robot_hash = setup_.robot_hash;
   goal.uncertainty_hash = setup.uncertainty->hash;
-  goal.uncertainty = session.goal.getGoal()->uncertainty;
+  const bool is_own = setup.uncertainty->hash == setup_.uncertainty->hash;
+  goal.uncertainty = is_own ? session.goal.getGoal()->uncertainty : setup.uncertainty->yaml;
   goal.seed = setup.seed;
   goal.first = assign.first_index;
   goal.count = assign.count;

@@ -2,20 +2,24 @@
 
 #include <actionlib/server/action_server.h>
 #include <diagnostic_updater/diagnostic_updater.h>
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <hires/ImagineAction.h>
 #include <ros/node_handle.h>
 
 #include <list>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/scheduler.h"
+#include "hires/imagination/start_spread.h"
 #include "hires/ros/imagine_request.h"
 #include "hires/ros/worker_link.h"
+#include "hires/world/map_to_world.h"
 
 namespace hires_ros {
 
@@ -23,10 +27,15 @@ struct ImaginationClientParams {
   hires::imagination::ClientConfig config;
   hires::imagination::SetupConfig setup;
   int num_workers{1};  ///< /worker_1 .. /worker_n may come and go
+  /// Topic (geometry_msgs/PoseWithCovarianceStamped) that tells where the robot stands and how sure
+  /// that is: the spread of start poses of what begins there. Empty: as the uncertainty says.
+  std::string localisation;
+  hires::world::MapToWorld map_to_world;  ///< of the localisation's map
 };
 
 /// The file in ~config (config/imagination_client.yaml where there is none); ~workers, ~world,
-/// ~robot, ~objects and ~uncertainty win over it.  @throws hires::base::ConfigError.
+/// ~robot, ~objects, ~uncertainty win over it; ~localisation and ~map_to_world.  @throws
+/// hires::base::ConfigError.
 ImaginationClientParams LoadImaginationClientParams();
 
 /// Answers the action `imagine`: several requests at once share the workers fairly, each has a
@@ -55,6 +64,8 @@ class ImaginationClientNode {
 
   void OnGoal(GoalHandle goal);
   void OnCancel(GoalHandle goal);
+  void OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg);
+  void SpreadStart(ImagineRequest* request) const;
   void OnTick();
   void OnWorkerEvent(int worker, const WorkerLink::Event& event);
   std::unique_ptr<Session> MakeSession(GoalHandle goal);
@@ -74,7 +85,9 @@ class ImaginationClientNode {
   std::map<int, std::unique_ptr<WorkerLink>> workers_;
   std::list<std::unique_ptr<Session>> sessions_;
   int next_session_{1};
+  std::optional<hires::imagination::BelievedPose> believed_;
   Server server_;
+  ros::Subscriber localisation_;
   ros::Publisher ranking_markers_, world_markers_;
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;

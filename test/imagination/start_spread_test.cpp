@@ -1,0 +1,112 @@
+#include "hires/imagination/start_spread.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "hires/base/error.h"
+
+namespace hires::imagination {
+namespace {
+
+using geometry::Pose2;
+using ::testing::HasSubstr;
+
+Uncertainty Shipped() { return LoadUncertainty(HIRES_SOURCE_DIR "/config/uncertainty.yaml"); }
+
+BelievedPose Believed(double yaw, double xx, double yy, double aa) {
+  BelievedPose believed{{3.0, 4.0, yaw}, Eigen::Matrix3d::Zero()};
+  believed.covariance.diagonal() << xx, yy, aa;
+  return believed;
+}
+
+TEST(StartSpreadTest, IsTheRootOfTheVariances) {
+  const StartSpread spread = SpreadOf(Believed(0.0, 0.04, 0.01, 0.0025), "amcl_pose");
+  EXPECT_DOUBLE_EQ(spread.x, 0.2);
+  EXPECT_DOUBLE_EQ(spread.y, 0.1);
+  EXPECT_DOUBLE_EQ(spread.yaw, 0.05);
+}
+
+TEST(StartSpreadTest, IsAlongTheRobotsAxes) {
+  const StartSpread spread = SpreadOf(Believed(M_PI / 2, 0.04, 0.01, 0.0), "amcl_pose");
+  EXPECT_NEAR(spread.x, 0.1, 1e-12);
+  EXPECT_NEAR(spread.y, 0.2, 1e-12);
+}
+
+TEST(StartSpreadTest, WhatGoesTogetherCountsWhenTurned) {
+  BelievedPose believed = Believed(M_PI / 4, 0.02, 0.02, 0.0);
+  believed.covariance(0, 1) = believed.covariance(1, 0) = 0.01;
+  const StartSpread spread = SpreadOf(believed, "amcl_pose");
+  EXPECT_NEAR(spread.x, std::sqrt(0.03), 1e-12);
+  EXPECT_NEAR(spread.y, std::sqrt(0.01), 1e-12);
+}
+
+TEST(StartSpreadTest, ALostRobotHasNone) {
+  for (const BelievedPose& believed :
+       {Believed(0.0, 1.5, 0.0, 0.0), Believed(0.0, 0.0, 1.5, 0.0), Believed(0.0, -0.1, 0.0, 0.0),
+        Believed(0.0, 0.0, 0.0, NAN), Believed(0.0, INFINITY, 0.0, 0.0)}) {
+    EXPECT_THROW(SpreadOf(believed, "amcl_pose"), base::ConfigError);
+  }
+  try {
+    SpreadOf(Believed(0.0, 2.0, 0.0, 0.0), "amcl_pose");
+    FAIL();
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("amcl_pose: variance of x is 2"));
+  }
+}
+
+TEST(StartSpreadTest, BeginsHereAsLongAsAmclIsSilent) {
+  const BelievedPose believed = Believed(3.1, 0.0, 0.0, 0.0);
+  EXPECT_TRUE(BeginsHere({3.15, 4.15, -2.8}, believed));
+  EXPECT_FALSE(BeginsHere({3.3, 4.0, 3.1}, believed));
+  EXPECT_FALSE(BeginsHere({3.0, 4.0, 2.4}, believed));
+}
+
+TEST(StartSpreadTest, ReplacesStartPosesAndNothingElse) {
+  const Uncertainty before = Shipped();
+  const Uncertainty after = WithStartSpread(before, {0.08, 0.06, 0.04});
+  for (const auto& [name, distribution] : before.quantities) {
+    const Distribution& now = after.quantities.at(name);
+    const bool is_start = name.rfind("start_", 0) == 0 || name.rfind("docked_", 0) == 0;
+    EXPECT_EQ(now.kind, is_start ? Distribution::Kind::kNormal : distribution.kind) << name;
+    if (is_start) continue;
+    EXPECT_EQ(now.first, distribution.first) << name;
+    EXPECT_EQ(now.second, distribution.second) << name;
+  }
+  EXPECT_EQ(after.quantities.size(), before.quantities.size());
+  EXPECT_EQ(after.quantities.at("start_x").second, 0.08);
+  EXPECT_EQ(after.quantities.at("docked_y").second, 0.06);
+  EXPECT_EQ(after.quantities.at("start_yaw").second, 0.04);
+  EXPECT_NE(after.hash, before.hash);
+}
+
+/// Workers read the text, and refuse it where its hash is another one.
+TEST(StartSpreadTest, ItsTextIsTheSameUncertainty) {
+  for (const double sd : {0.0, 0.1, 1.0 / 3.0, 0.07071067811865477, 0.5}) {
+    const Uncertainty after = WithStartSpread(Shipped(), {sd, sd / 2, sd});
+    EXPECT_EQ(UncertaintyFromText(after.yaml, "text").hash, after.hash) << sd;
+  }
+}
+
+TEST(StartSpreadTest, DrawsHaveTheSpread) {
+  const Uncertainty after = WithStartSpread(Shipped(), {0.05, 0.02, 0.01});
+  const base::Rng rng(3);
+  double sum = 0.0;
+  constexpr int kDraws = 2000;
+  for (int i = 0; i < kDraws; ++i) {
+    const double x = SampleVariation(after, rng.Fork(i)).start_offset.x;
+    EXPECT_LE(std::abs(x), 3 * 0.05);
+    sum += x * x;
+  }
+  EXPECT_NEAR(std::sqrt(sum / kDraws), 0.05, 0.003);
+}
+
+TEST(StartSpreadTest, WhereNothingIsUncertainNothingIs) {
+  EXPECT_EQ(WithStartSpread(NoUncertainty(), {0.1, 0.1, 0.1}).hash, NoUncertainty().hash);
+  const Uncertainty mass = ParseUncertainty(
+      "object_mass: {distribution: fixed, value: 1, unit: factor, source: x}", "t");
+  EXPECT_EQ(WithStartSpread(mass, {0.1, 0.1, 0.1}).hash, mass.hash);
+}
+
+}  // namespace
+}  // namespace hires::imagination
