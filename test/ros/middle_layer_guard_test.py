@@ -174,7 +174,7 @@ class MiddleLayerGuardTest(unittest.TestCase):
 
     def test_a_stop_by_the_guard_ends_everything_that_runs(self):
         self.begin()
-        torso = self.system.execute('move_torso', 'torsoUpPosture').wait_for_active()
+        torso = self.system.execute('move_torso', 'torsoMiddlePosture').wait_for_active()
         drive = self.drive()
         self.guard.stop('stale_scan: 0.41 s')
         for goal in (drive, torso):
@@ -217,7 +217,7 @@ class MiddleLayerGuardTest(unittest.TestCase):
                                              latch=True)
         self.addCleanup(halted.unregister)
         halted.publish(False)
-        torso = self.system.execute('move_torso', 'torsoUpPosture').wait_for_active()
+        torso = self.system.execute('move_torso', 'torsoMiddlePosture').wait_for_active()
         drive = self.drive()
         halted.publish(True)
         for goal in (drive, torso):
@@ -225,7 +225,7 @@ class MiddleLayerGuardTest(unittest.TestCase):
         self.require(self.system.execute('move_torso', 'torsoUpPosture'), self.codes.FAILED,
                      'motors_halted')
         halted.publish(False)
-        wait_until(lambda: self.system.execute('move_torso', 'torsoDownPosture').result().code ==
+        wait_until(lambda: self.system.execute('move_torso', 'torsoMiddlePosture').result().code ==
                    self.codes.SUCCEEDED, 'the torso to move again')
 
     def test_a_drive_that_somebody_overrides_says_so_and_goes_on(self):
