@@ -66,6 +66,18 @@ bool IsHere(const std::string& node, const RobotView& view) {
 
 bool HasNobody(const SeenTopic* topic) { return topic == nullptr || topic->publishers.empty(); }
 
+/// What to do where a topic is published and nothing comes: the cause may be its node's computer.
+std::string RemedyForSilence(const WantedTopic& wanted, const SeenTopic& topic,
+                             const RobotView& view) {
+  for (const std::string& name : topic.publishers) {
+    const auto node = view.nodes.find(name);
+    if (node == view.nodes.end() || node->second.reach == Reach::kAnswers) continue;
+    return fmt::format("{} cannot be reached: see first what is said of host {}", name,
+                       node->second.host());
+  }
+  return wanted.remedy;
+}
+
 RobotFindings JudgeTopic(const WantedTopic& wanted, const RobotView& view) {
   const SeenTopic* topic = view.FindTopic(wanted.name);
   const std::string subject = "topic " + wanted.name;
@@ -81,7 +93,7 @@ RobotFindings JudgeTopic(const WantedTopic& wanted, const RobotView& view) {
     return {{FindingLevel::kFailed, "topic_silent", subject,
              fmt::format("{} publishes it, but nothing came within {:.1f} s",
                          Listed(topic->publishers), view.seconds),
-             wanted.remedy + "; see also what is said of that node's ports"}};
+             RemedyForSilence(wanted, *topic, view)}};
   }
   RobotFindings findings;
   for (const auto& [node, seen] : topic->messages) {
@@ -265,6 +277,12 @@ RobotFindings JudgeListeners(const RobotNames& names, const RobotView& view) {
 
 RobotFindings JudgeFrames(const RobotNames& names, const RobotProfile& profile,
                           const RobotView& view) {
+  if (view.frames.empty()) {
+    return {{FindingLevel::kFailed, "frame_missing", "frames",
+             fmt::format("no transform at all came on /tf within {:.1f} s", view.seconds),
+             "mend first what is said above of hosts and topics; then start robot_state_publisher "
+             "and amcl"}};
+  }
   RobotFindings findings =
       JudgeLink(names.odometry_frame, names.map_frame,
                 "start amcl, and give the first pose (RViz: 2D Pose Estimate)", view);
@@ -316,7 +334,7 @@ RobotFindings JudgeMoveBase(const RobotNames& names, const RobotView& view, bool
   if (is_needed) return findings;
   for (RobotFinding& finding : findings) {
     finding.level = std::min(finding.level, FindingLevel::kWarning);
-    finding.text += "; needed only with navigation:=move_base";
+    finding.text += "; matters only with navigation:=move_base";
   }
   return findings;
 }

@@ -12,11 +12,11 @@
 #include <algorithm>
 #include <cstring>
 #include <future>
-#include <limits>
 
 #include "hires/base/error.h"
 #include "hires/ros/process.h"
 #include "hires/ros/robot_doctor.h"
+#include "hires/ros/robot_doctor_network.h"
 #include "hires/ros/xmlrpc_master_api.h"
 
 namespace hires_ros {
@@ -28,9 +28,6 @@ using topic_tools::ShapeShifter;
 using Event = ros::MessageEvent<ShapeShifter const>;
 
 constexpr double kMasterTimeout = 2.0;  // [s] for one question to the master
-constexpr double kProbeTimeout = 1.0;   // [s] for one port of a node
-constexpr double kClockTimeout = 1.5;   // [s] until the second of another computer changes
-constexpr double kClockWidth = 0.02;    // [s] of bounds that are good enough
 constexpr double kSlice = 0.01;         // [s] of waiting for messages
 constexpr char kName[] = "/hires_doctor";
 constexpr std::size_t kStampOffset = 4;  // [bytes] of a header's stamp, behind its number
@@ -119,112 +116,6 @@ bool ReadSimTime(MasterQuestions* master) {
   return value.getType() == XmlRpc::XmlRpcValue::TypeBoolean && static_cast<bool>(value);
 }
 
-// ---------------------------------------------------------------- questions to nodes
-
-/// What one node answers. Each is asked on a thread of its own: silent ones take their time.
-struct NodeAnswers {
-  Reach reach{Reach::kAnswers};
-  std::map<std::string, std::pair<Endpoint, Reach>> data;  // by topic
-};
-
-NodeAnswers AskNode(const std::string& uri, const std::vector<std::string>& topics) {
-  NodeAnswers answers;
-  const auto node = hires::relay::ParseUri(uri);
-  answers.reach = node ? ProbePort(*node, kProbeTimeout) : Reach::kBadUri;
-  if (answers.reach != Reach::kAnswers) return answers;
-  for (const std::string& topic : topics) {
-    const auto port = AskDataPort(*node, topic, kName, kProbeTimeout);
-    if (port) answers.data[topic] = {*port, ProbePort(*port, kProbeTimeout)};
-  }
-  return answers;
-}
-
-/// What all nodes answer, and what follows from it.
-struct NetworkAnswers {
-  std::map<std::string, NodeAnswers> nodes;
-  std::map<std::string, std::vector<std::string>> addresses;
-  std::map<std::string, ClockBounds> clocks;
-};
-
-/// Wanted topics by the nodes that publish them.
-std::map<std::string, std::vector<std::string>> WantedByNode(const std::vector<WantedTopic>& wanted,
-                                                             const RobotView& view) {
-  std::map<std::string, std::vector<std::string>> topics;
-  for (const WantedTopic& one : wanted) {
-    const SeenTopic* topic = view.FindTopic(one.name);
-    if (topic == nullptr) continue;
-    for (const std::string& node : topic->publishers) topics[node].push_back(one.name);
-  }
-  return topics;
-}
-
-std::optional<ClockBounds> CompareWithAny(const std::vector<Endpoint>& servers) {
-  for (const Endpoint& server : servers) {
-    if (auto bounds = CompareClocks(server, kClockWidth, kClockTimeout)) return bounds;
-  }
-  return std::nullopt;
-}
-
-/// Only programs that answered: each silent one would take the whole time limit.
-std::map<std::string, std::vector<Endpoint>> ClockServers(const Endpoint& master,
-                                                          const RobotView& view,
-                                                          const NetworkAnswers& answers) {
-  std::map<std::string, std::vector<Endpoint>> servers;
-  if (!view.IsHere(master.host)) servers[master.host].push_back(master);
-  for (const auto& [name, node] : answers.nodes) {
-    const auto endpoint = hires::relay::ParseUri(view.nodes.at(name).uri);
-    if (node.reach != Reach::kAnswers || view.IsHere(endpoint->host)) continue;
-    servers[endpoint->host].push_back(*endpoint);
-  }
-  return servers;
-}
-
-void CompareAllClocks(const Endpoint& master, const RobotView& view, NetworkAnswers* answers) {
-  std::map<std::string, std::future<std::optional<ClockBounds>>> running;
-  for (const auto& [host, servers] : ClockServers(master, view, *answers)) {
-    running[host] = std::async(std::launch::async, CompareWithAny, servers);
-  }
-  for (auto& [host, future] : running) {
-    if (const auto bounds = future.get()) answers->clocks[host] = *bounds;
-  }
-}
-
-/// @param view  what the master said, and who this computer is.
-NetworkAnswers AskNetwork(const Endpoint& master, RobotView view,
-                          const std::vector<WantedTopic>& wanted) {
-  NetworkAnswers answers;
-  std::map<std::string, std::future<std::vector<std::string>>> lookups;
-  std::map<std::string, std::future<NodeAnswers>> running;
-  auto topics = WantedByNode(wanted, view);
-  const bool is_master_here = view.IsHere(master.host);
-  for (const auto& [name, node] : view.nodes) {
-    const std::string host = node.host();
-    if (!host.empty() && lookups.count(host) == 0) {
-      lookups[host] = std::async(std::launch::async, AddressesOf, host);
-    }
-    // A loopback address of another computer would lead to a program of this one.
-    if (!is_master_here && hires::relay::IsLoopback(host)) continue;
-    running[name] = std::async(std::launch::async, AskNode, node.uri, topics[name]);
-  }
-  for (auto& [host, future] : lookups) answers.addresses[host] = future.get();
-  for (auto& [name, future] : running) answers.nodes[name] = future.get();
-  view.addresses = answers.addresses;
-  CompareAllClocks(master, view, &answers);
-  return answers;
-}
-
-void TakeAnswers(const NetworkAnswers& answers, RobotView* view) {
-  view->addresses = answers.addresses;
-  view->clocks = answers.clocks;
-  for (const auto& [name, node] : answers.nodes) {
-    view->nodes[name].reach = node.reach;
-    for (const auto& [topic, data] : node.data) {
-      view->topics[topic].data_at[name] = data.first;
-      view->topics[topic].data_ports[name] = data.second;
-    }
-  }
-}
-
 // ---------------------------------------------------------------- messages
 
 /// The stamp of a message that begins with a header; nothing if it has none or it is 0.
@@ -259,6 +150,13 @@ class Ears {
     }
     ListenToFrames("/tf", false);
     ListenToFrames("/tf_static", true);
+  }
+
+  /// Frames get older while nothing comes.
+  void Finish() {
+    for (auto& [child, frame] : view_->frames) {
+      frame.age = (ros::Time::now() - newest_[child]).toSec();
+    }
   }
 
  private:
@@ -322,15 +220,6 @@ class Ears {
     frame.age = (ros::Time::now() - newest).toSec();
   }
 
- public:
-  /// Frames get older while nothing comes.
-  void Finish() {
-    for (auto& [child, frame] : view_->frames) {
-      frame.age = (ros::Time::now() - newest_[child]).toSec();
-    }
-  }
-
- private:
   RobotView* view_;
   ros::NodeHandle nh_;
   std::vector<ros::Subscriber> subscribers_;
@@ -364,6 +253,8 @@ void ReadMaster(const RobotNames& names, MasterQuestions* master, RobotView* vie
   view->has_robot_description = HasParam(master, Absolute(names.robot_description));
   view->this_host = NamesOfThisHost();
   view->own_host = ros::network::getHost();
+  const std::string& host = master->endpoint().host;
+  view->addresses[host] = AddressesOf(host);
   view->own_address = OwnAddressTowards(master->endpoint());
 }
 
@@ -383,7 +274,7 @@ RobotView LookAtRobot(const hires::evaluation::RobotDoctorOptions& options,
   const std::vector<WantedTopic> wanted = AllWanted(names);
   ros::start();
   auto network =
-      std::async(std::launch::async, AskNetwork, master.endpoint(), view, std::cref(wanted));
+      std::async(std::launch::async, AskNetwork, kName, master.endpoint(), view, std::cref(wanted));
   Ears ears(names, wanted, &view);
   const double end = SteadyNow() + options.seconds;
   while (SteadyNow() < end ||

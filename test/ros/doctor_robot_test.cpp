@@ -151,6 +151,24 @@ TEST(JudgeRobotTest, HowMuchAMissingMoveBaseMattersDependsOnWhoDrives) {
   EXPECT_THAT(JudgeRobot(options, Names(), Profile(), view), IsEmpty());
 }
 
+TEST(JudgeRobotTest, SilenceOfANodeThatCannotBeReachedPointsToItsComputer) {
+  RobotView view = HealthyView();
+  view.topics["/base_scan"].messages.clear();
+  RobotFindings findings = JudgeTopics(Names(), view);
+  ASSERT_THAT(CodesOf(findings), ElementsAre("topic_silent"));
+  EXPECT_THAT(findings[0].remedy, HasSubstr("start the robot"));
+  view.nodes["/pr2"].reach = Reach::kUnresolvable;
+  findings = JudgeTopics(Names(), view);
+  ASSERT_THAT(CodesOf(findings), ElementsAre("topic_silent"));
+  EXPECT_THAT(findings[0].remedy, HasSubstr("what is said of host pr2"));
+}
+
+TEST(JudgeRobotTest, WithoutAnyTransformThereIsOneFindingForAllFrames) {
+  RobotView view = HealthyView();
+  view.frames.clear();
+  EXPECT_THAT(Codes(view), ElementsAre("frame_missing"));
+}
+
 TEST(JudgeRobotTest, WhatFollowsFromOnesOwnLoopbackIsNotSaidAsWell) {
   RobotView view = HealthyView();
   view.own_host = "127.0.0.1";
