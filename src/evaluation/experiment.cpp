@@ -134,6 +134,29 @@ class Durations : public Kind {
   std::vector<Rollouts> rollouts_;
 };
 
+class Braking : public Kind {
+ public:
+  Braking(const BrakingConfig& braking, const ExperimentConfig& config,
+          std::shared_ptr<const Stage> stage)
+      : braking_(braking),
+        config_(config),
+        stage_(std::move(stage)),
+        plays_(BrakingCells(braking, *stage_)) {}
+  std::vector<Drive> Drives() const override { return {}; }
+  bool Play(const Crew& crew) override {
+    auto plays = PlayBraking(braking_, config_, *stage_, crew);
+    if (plays) plays_ = *std::move(plays);
+    return plays.has_value();
+  }
+  Findings SumUp() const override { return SumUpBraking(braking_, plays_); }
+
+ private:
+  const BrakingConfig& braking_;
+  const ExperimentConfig& config_;
+  std::shared_ptr<const Stage> stage_;
+  std::vector<BrakingPlay> plays_;
+};
+
 std::unique_ptr<Kind> MakeKind(const ExperimentConfig& config, std::shared_ptr<const Stage> stage) {
   if (const auto* legs = std::get_if<LegsConfig>(&config.kind)) {
     return std::make_unique<Legs>(*legs, config, std::move(stage));
@@ -143,6 +166,9 @@ std::unique_ptr<Kind> MakeKind(const ExperimentConfig& config, std::shared_ptr<c
   }
   if (const auto* loop = std::get_if<ToppleLoopConfig>(&config.kind)) {
     return std::make_unique<ToppleLoop>(*loop, config, std::move(stage));
+  }
+  if (const auto* braking = std::get_if<BrakingConfig>(&config.kind)) {
+    return std::make_unique<Braking>(*braking, config, std::move(stage));
   }
   return std::make_unique<Durations>(std::get<DurationsConfig>(config.kind), config,
                                      std::move(stage));

@@ -20,7 +20,7 @@ constexpr double kFar = 1000.0;     // [m] worlds are not larger
 constexpr double kLongest = 1.0e7;  // [s] about four months
 constexpr int kMostRuns = 1000000;
 constexpr int kMostSamples = 1000000000;
-const char* const kKinds[] = {"legs", "paired", "topple_loop", "durations"};
+const char* const kKinds[] = {"legs", "paired", "topple_loop", "durations", "braking"};
 
 std::vector<Goal> ReadGoals(ParamReader* in) {
   std::vector<Goal> goals;
@@ -143,12 +143,13 @@ DurationsConfig ReadDurations(ParamReader* in, const std::vector<Goal>& goals,
   return durations;
 }
 
-void ReadKind(const std::string& kind, ParamReader* in, const ExperimentOverrides& overrides,
-              ExperimentConfig* config) {
+void ReadKind(const std::string& kind, const std::string& path, ParamReader* in,
+              const ExperimentOverrides& overrides, ExperimentConfig* config) {
   if (kind == "legs") config->kind = ReadLegs(in, overrides);
   if (kind == "paired") config->kind = ReadPaired(in, config->goals, overrides);
   if (kind == "topple_loop") config->kind = ReadToppleLoop(in, config->goals, overrides);
   if (kind == "durations") config->kind = ReadDurations(in, config->goals, overrides);
+  if (kind == "braking") config->kind = ReadBraking(in, path, overrides);
 }
 
 /// As text, for the reader of uncertainties, which says what is wrong with a quantity.
@@ -207,7 +208,7 @@ ExperimentConfig ReadExperiment(const std::string& path, const ExperimentOverrid
   config.goals = ReadGoals(&in);
   config.objects = in.GetStrings("objects");
   ParamReader own = in.Sub(kind);
-  ReadKind(kind, &own, overrides, &config);
+  ReadKind(kind, path, &own, overrides, &config);
   config.expect = ReadExpectations(&in);
   in.RejectUnknownKeys();
   config.hash = HashOf(in, overrides);

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "hires/evaluation/experiment_braking.h"
 #include "hires/evaluation/experiment_report.h"
 #include "hires/geometry/pose.h"
 #include "hires/imagination/rollout_result.h"
@@ -78,7 +79,7 @@ struct ExperimentConfig {
   std::vector<Goal> goals;           ///< at least two
   std::vector<std::string> objects;  ///< on the tray
   std::uint64_t seed{1};
-  std::variant<LegsConfig, PairedConfig, ToppleLoopConfig, DurationsConfig> kind;
+  std::variant<LegsConfig, PairedConfig, ToppleLoopConfig, DurationsConfig, BrakingConfig> kind;
   std::vector<Expectation> expect;
   std::uint64_t hash{0};  ///< of the file and of what overrode it
 };
@@ -86,14 +87,15 @@ struct ExperimentConfig {
 /// What the command line sets instead of the file.
 struct ExperimentOverrides {
   std::optional<std::uint64_t> seed;
-  std::optional<int> runs;  ///< legs, pairs, chains (with their share of the duration), or runs
-  std::string map;          ///< path; empty: as in the file
+  std::optional<int>
+      runs;         ///< legs, pairs, chains (with their share of the duration), runs, rollouts
+  std::string map;  ///< path; empty: as in the file
 };
 
 /// @throws base::ConfigError naming file and key.
 ExperimentConfig ReadExperiment(const std::string& path, const ExperimentOverrides& overrides = {});
 
-/// "legs", "paired", "topple_loop", "durations".
+/// "legs", "paired", "topple_loop", "durations", "braking".
 std::string KindName(const ExperimentConfig& config);
 
 /// Who does the work of an experiment, and who is told.
