@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """A stand-in for a PR2's move_base: the action move_base, the local planner's parameters by
-dynamic_reconfigure (move_base_node/DWAPlannerROS), velocities on cmd_vel. It plans on the map and on
-what a tilting laser would have marked in ~world (SDF; ~map_to_world: x y yaw of its frame in the
+dynamic_reconfigure (move_base_node/DWAPlannerROS), velocities on cmd_vel. It plans on the map and
+on what a tilting laser would have marked in ~world (SDF; ~map_to_world: x y yaw of its frame in the
 map). ~old_names: parameters are named as before Noetic."""
 
+import ctypes
 import math
 import os
+import signal
 import sys
 import threading
 
@@ -84,7 +86,8 @@ class FakeMoveBase:
         self._velocity = rospy.Publisher('cmd_vel', Twist, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber('/tf', TFMessage, self._on_transforms, queue_size=100, tcp_nodelay=True)
         rospy.Subscriber('map', OccupancyGrid, self._on_map, queue_size=1)
-        self._server = actionlib.SimpleActionServer('move_base', MoveBaseAction, self._execute, False)
+        self._server = actionlib.SimpleActionServer('move_base', MoveBaseAction, self._execute,
+                                                    False)
         self._server.start()
 
     def _on_parameters(self, config, _):
@@ -182,6 +185,7 @@ class FakeMoveBase:
 
 
 if __name__ == '__main__':
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG: not without its roslaunch
     rospy.init_node('move_base_node')
     FakeMoveBase()
     rospy.spin()

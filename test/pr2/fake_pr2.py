@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
 """A PR2 that is none, for tests: names, types and habits of the real one in front of a kinematic
 world. It shares no code with HIRES. Parameters: ~world (SDF), ~urdf, ~map_to_world (x y yaw of the
-world's frame in the map), ~pose (x y yaw in the world), ~objects ([name, model, x, y, z] ...),
-~seed, ~latched_map (false: static_map alone).
+world's frame in the map), ~pose (x y yaw in the world), ~torso [m], ~objects ([name, model, x, y,
+z] ...), ~seed, ~latched_map (false: static_map alone).
 
 Besides the PR2's own topics and services there are, under fake_pr2/, the test's hands:
 joystick (Twist), halt_motors, freeze_localisation, freeze_scan, lose_localisation (SetBool),
 truth (Odometry: where the base really is), objects (WorldState: where things really are)."""
 
 import collections
+import ctypes
 import os
+import signal
 import sys
 import threading
 import time
@@ -56,6 +58,7 @@ class FakePr2:
         self.robot = Robot(get('~urdf'))
         self.limits = joints.Limits(urdf)
         self.positions = joints.initial_positions()
+        self.positions['torso_lift_joint'] = get('~torso', joints.TORSO_DOWN)
         self.controllers = {name: joints.TrajectoryController(own, self.limits, self.positions)
                             for name, own in joints.CONTROLLERS.items()}
         self.base = bases.Base(self.X_MW * Pose2(*get('~pose')))
@@ -108,7 +111,8 @@ class FakePr2:
                        self.later(lambda m, n=name: self.on_trajectory(n, m)), **more)
         for side in ('l', 'r'):
             subscriber(side + '_gripper_controller/command', Pr2GripperCommand,
-                       self.later(lambda m, s=side: self.world.hands[s].command(m.position)), **more)
+                       self.later(lambda m, s=side: self.world.hands[s].command(m.position)),
+                       **more)
         for name, action in (('halt_motors', self.halt),
                              ('freeze_localisation', lambda on: self.freeze('localisation', on)),
                              ('freeze_scan', lambda on: self.freeze('scan', on)),
@@ -367,5 +371,6 @@ def map_message(grid):
 
 
 if __name__ == '__main__':
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG: not without its roslaunch
     rospy.init_node('fake_pr2')
     FakePr2().run()

@@ -1,5 +1,5 @@
-"""A recogniser of objects in the picture of the head's camera. A laboratory brings its own; this one
-knows the objects of the fake world and errs a little."""
+"""A recogniser of objects in the picture of the head's camera. A laboratory brings its own; this
+one knows the objects of the fake world and errs a little."""
 
 import math
 

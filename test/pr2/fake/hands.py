@@ -1,5 +1,5 @@
-"""Hands and what they can hold: a kinematic world. A gripper that closes around an object carries it;
-what is let go comes to stand on what is below it; what stands on the tray rides along."""
+"""Hands and what they can hold: a kinematic world. A gripper that closes around an object carries
+it; what is let go comes to stand on what is below it; what stands on the tray rides along."""
 
 import math
 import os

@@ -1,5 +1,5 @@
-"""What stands in the fake PR2's world, read from an SDF world: boxes and upright cylinders. All poses
-are in the map of the robot, which may lie elsewhere than the world's own frame."""
+"""What stands in the fake PR2's world, read from an SDF world: boxes and upright cylinders. All
+poses are in the map of the robot, which may lie elsewhere than the world's own frame."""
 
 import math
 import os
@@ -134,8 +134,10 @@ class Grid:
         self.resolution = resolution
         self.x = math.floor((min(x - r for x, _, r in reach) - margin) / resolution) * resolution
         self.y = math.floor((min(y - r for _, y, r in reach) - margin) / resolution) * resolution
-        self.width = int(math.ceil((max(x + r for x, _, r in reach) + margin - self.x) / resolution))
-        self.height = int(math.ceil((max(y + r for _, y, r in reach) + margin - self.y) / resolution))
+        right = max(x + r for x, _, r in reach) + margin
+        upper = max(y + r for _, y, r in reach) + margin
+        self.width = int(math.ceil((right - self.x) / resolution))
+        self.height = int(math.ceil((upper - self.y) / resolution))
         x = self.x + (numpy.arange(self.width) + 0.5) * resolution
         y = self.y + (numpy.arange(self.height) + 0.5) * resolution
         x, y = numpy.meshgrid(x, y)
