@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "evaluation/report_examples.h"
 #include "hires/base/text.h"
@@ -157,6 +158,28 @@ TEST(CommandLineTest, HelpIsNoError) {
   EXPECT_EQ(ended.code, 0);
   EXPECT_THAT(ended.out, AllOf(HasSubstr("imagine"), HasSubstr("doctor")));
   EXPECT_THAT(RunWith({"imagine", "--help"}).out, HasSubstr("--rollouts"));
+}
+
+TEST(CommandLineTest, ADoctorForRobotsIsAskedWithItsOptions) {
+  std::optional<RobotDoctorOptions> seen;
+  Backends backends;
+  backends.examine_robot = [&](const RobotDoctorOptions& options) {
+    seen = options;
+    return 7;
+  };
+  const Ended ended = RunWith({"doctor", "--robot", "--names", "n.yaml", "--seconds", "0.5",
+                               "--navigation", "own", "--json", "r.json"},
+                              backends);
+  EXPECT_EQ(ended.code, 7) << ended.err;
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->names, "n.yaml");
+  EXPECT_EQ(seen->seconds, 0.5);
+  EXPECT_EQ(seen->navigation, "own");
+  EXPECT_EQ(seen->json, "r.json");
+  EXPECT_EQ(RunWith({"doctor", "--robot", "--navigation", "teleport"}, backends).code, 1);
+  EXPECT_EQ(RunWith({"doctor", "--robot", "--seconds", "0"}, backends).code, 1);
+  EXPECT_EQ(RunWith({"doctor", "--names", "n.yaml"}, backends).code, 1) << "it needs --robot";
+  EXPECT_THAT(RunWith({"doctor", "--robot"}).err, HasSubstr("this build has no ROS"));
 }
 
 TEST(CommandLineTest, RemoteQueriesCarryWhatWasAsked) {

@@ -6,8 +6,10 @@ import json
 import os
 import socket
 import sys
+import threading
 import unittest
 import xmlrpc.client
+import xmlrpc.server
 
 import rosunit
 
@@ -53,6 +55,16 @@ class DoctorRobotTest(unittest.TestCase):
         """At the master, as a node of that address would."""
         with xmlrpc.client.ServerProxy(self.main.uri) as master:
             self.assertEqual(master.registerPublisher(node, topic, 'std_msgs/String', uri)[0], 1)
+
+    def start_node_with_data_at(self, port):
+        """A node that answers, and says that its data comes from `port`; its address."""
+        server = xmlrpc.server.SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
+        server.register_function(lambda *_: [1, '', ['TCPROS', '127.0.0.1', port]], 'requestTopic')
+        server.register_function(lambda *_: [1, '', 0], 'publisherUpdate')
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        self.addCleanup(lambda: (server.shutdown(), thread.join(), server.server_close()))
+        return 'http://127.0.0.1:%d/' % server.server_address[1]
 
     def require_found(self, report, wanted):
         self.assertEqual(sorted(report.found()), sorted(wanted), report.output)
@@ -176,6 +188,15 @@ class DoctorRobotTest(unittest.TestCase):
         self.assertIn("'ADDRESS no-such-host.invalid' to /etc/hosts", report.output)
         # A node elsewhere makes loopback addresses wrong.
         self.assertIn(('loopback', 'address 127.0.0.1'), found, report.output)
+
+    def test_a_node_whose_data_cannot_be_fetched_is_named(self):
+        self.start('robot')
+        with xmlrpc.client.ServerProxy(self.main.uri) as master:
+            master.registerPublisher('/walled', '/base_scan', 'sensor_msgs/LaserScan',
+                                     self.start_node_with_data_at(free_port()))
+        report = self.ask('--navigation', 'own')
+        self.require_found(report, [('data_unreachable', 'topic /base_scan')])
+        self.assertIn('/walled sends its data from 127.0.0.1 port', report.output)
 
     def test_simulated_time_is_named(self):
         self.main.set_param('/use_sim_time', True)
