@@ -37,6 +37,14 @@ geometry::Twist2 Clipped(const geometry::Twist2& V, const robot::MotionSet& limi
   return {scale * V.vx, scale * V.vy, scale * V.wz};
 }
 
+/// From `V` as far towards `told` as `most` allows, speed and turning each.
+geometry::Twist2 Towards(const geometry::Twist2& V, const geometry::Twist2& told, double most) {
+  const double x = told.vx - V.vx, y = told.vy - V.vy, w = told.wz - V.wz;
+  const double change = std::max(std::hypot(x, y), std::abs(w));
+  const double share = change > most ? most / change : 1.0;
+  return {V.vx + share * x, V.vy + share * y, V.wz + share * w};
+}
+
 /// "stale_pose" of "stale_pose: 0.41 s".
 std::string WordOf(const std::string& reason) { return base::Split(reason, ':').front(); }
 
@@ -239,11 +247,14 @@ bool BaseGuard::HasEnded(std::uint64_t id) const {
   return id != 0 && std::find(ended_.begin(), ended_.end(), id) != ended_.end();
 }
 
-/// The measured speed as long as it is fresh; else what the base was told last.
+/// The measured speed as long as it is fresh, and what the wheels still have to make up; else what
+/// the base was told last.
 geometry::Twist2 BaseGuard::MotionNow(double now) const {
   const double age = odometry_.empty() ? HUGE_VAL : now - odometry_.back().time;
+  const bool was_told = sent_ && now - sent_->time <= params_.command_patience;
+  if (age <= kFresh && was_told) return Towards(odometry_.back().V, sent_->V, params_.trailing);
   if (age <= kFresh) return odometry_.back().V;
-  if (sent_ && now - sent_->time <= params_.command_patience) return sent_->V;
+  if (was_told) return sent_->V;
   return age <= 2.0 * params_.pose_patience ? odometry_.back().V : geometry::Twist2{};
 }
 

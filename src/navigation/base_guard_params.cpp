@@ -14,6 +14,7 @@ BaseGuardParams ReadBaseGuardParams(const std::string& path) {
   params.max_position_sd = in.Get("max_position_sd", Between(0.001, 100.0));
   params.max_yaw_sd = in.Get("max_yaw_sd", Between(0.001, 10.0));
   params.zero_time = in.Get("zero_time", Between(0.0, 60.0));
+  params.trailing = in.Get("trailing", Between(0.0, 2.0));
   params.still_speed = in.Get("still_speed", Between(0.0001, 0.1));
   params.braking = ReadBrakingParams(in.Sub("braking"));
   in.RejectUnknownKeys();

@@ -245,13 +245,21 @@ TEST(BaseGuardTest, AnotherRequestMayTakeOver) {
   EXPECT_NEAR(base.sent->vx, 0.3, 1e-12);
 }
 
-TEST(BaseGuardTest, RampsFromTheMeasuredSpeed) {
+/// Where the ramp begins of a base that was told 0.5 m/s.
+double RampBegin(double measured) {
   GuardedBase base;
   base.Drive({0.5, 0.0, 0.0});
-  base.measured = {0.2, 0.0, 0.0};  // it has only begun to drive
+  base.measured = {measured, 0.0, 0.0};
   base.guard.OnMotorsHalted(true);
   base.Tick();
-  EXPECT_NEAR(base.sent->vx, 0.2, 1e-9);
+  return base.sent->vx;
+}
+
+TEST(BaseGuardTest, RampsFromTheMeasuredSpeedButForWhatTheWheelsTrail) {
+  EXPECT_NEAR(RampBegin(0.05), 0.25, 1e-9);  // it has only begun to drive, or is held back
+  EXPECT_NEAR(RampBegin(0.4), 0.5, 1e-9);    // it follows
+  EXPECT_NEAR(RampBegin(0.54), 0.5, 1e-9);   // it slows down
+  EXPECT_NEAR(RampBegin(0.9), 0.55, 1e-9);   // somebody pushes; never beyond the request's limits
 }
 
 TEST(BaseGuardTest, WithoutOdometryItRampsFromWhatWasSent) {

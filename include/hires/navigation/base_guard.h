@@ -23,6 +23,7 @@ struct BaseGuardParams {
   double max_position_sd{0.3};    ///< [m] of the localisation, in its worst direction
   double max_yaw_sd{0.2};         ///< [rad] of the localisation
   double zero_time{1.0};          ///< that zeros are sent once the base stands
+  double trailing{0.2};           ///< [m/s], [rad/s] by which a base may trail what it was told
   double still_speed{0.01};       ///< [m/s], [rad/s] counts as standing
   bool needs_motors_state{true};  ///< false: the robot does not tell whether motors are halted
   bool needs_localisation{true};  ///< false: nobody tells how sure the localisation is
