@@ -14,10 +14,11 @@ HERE_IN_SOURCE = os.path.abspath(
     os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..'))
 MAIN_PORT = 11311
 BASE_PORT = 11411
-# A master of a computer whose clock is ahead by so many seconds.
-LATER = """import time
+# A master of a computer whose clock is ahead by so many seconds, and that may keep it to itself.
+LATER = """import http.server, time
 now = time.time
 time.time = lambda: now() + %f
+if %r: http.server.BaseHTTPRequestHandler.date_time_string = lambda *_: ''
 import rosmaster
 rosmaster.rosmaster_main()"""
 
@@ -25,14 +26,16 @@ rosmaster.rosmaster_main()"""
 class HostMaster(Master):
     """A bare rosmaster of a host; the calling thread must be able to reach it."""
 
-    def __init__(self, host, environment, port, clock=0.0):
+    def __init__(self, host, environment, port, clock=0.0, tells_no_time=False):
         self.host = host
         self.clock = clock
+        self.tells_no_time = tells_no_time
         super().__init__(environment, port)
 
     def start(self):
         self.uri = 'http://%s:%d/' % (self.host.address, self.port)
-        program = ['rosmaster'] if not self.clock else ['/usr/bin/python3', '-c', LATER % self.clock]
+        program = ['rosmaster'] if not self.clock else [
+            '/usr/bin/python3', '-c', LATER % (self.clock, self.tells_no_time)]
         self.process = Process(self.host.command([*program, '--core', '-p', str(self.port)]),
                                self._environment)
         wait_until(lambda: self._call('getPid') == self.process.pid, 'master ' + self.uri)
@@ -57,8 +60,8 @@ class HostProcesses(Processes):
         environment.update(more)
         return {name: value for name, value in environment.items() if value is not None}
 
-    def master(self, port=MAIN_PORT, clock=0.0):
-        master = HostMaster(self.host, self.environment(), port, clock)
+    def master(self, port=MAIN_PORT, **clock):
+        master = HostMaster(self.host, self.environment(), port, **clock)
         self._masters.append(master)
         return master
 

@@ -40,11 +40,11 @@ class HostsDoctorTest(unittest.TestCase):
         self.addCleanup(self.here.stop_all)
         self.addCleanup(self.station.know, {'robot': self.robot.address})
 
-    def start_robot(self, clock=0.0, **environment):
+    def start_robot(self, clock=None, **environment):
         """Master, robot and move_base on the robot's computer, whose clock may be ahead."""
-        self.main = self.there.master(clock=clock)
+        self.main = self.there.master(**(clock or {}))
         for role in ('robot', 'move_base_node'):
-            node = self.there.start(['/usr/bin/python3', FAKE, role, json.dumps({'clock': clock})],
+            node = self.there.start(['/usr/bin/python3', FAKE, role, json.dumps(clock or {})],
                                     self.main, **environment)
             node.wait_for('^ready')
 
@@ -60,7 +60,7 @@ class HostsDoctorTest(unittest.TestCase):
         return code, doctor.output(), report, found
 
     def test_a_clock_that_is_ahead_is_told_with_how_sure_that_is(self):
-        self.start_robot(clock=AHEAD)
+        self.start_robot({'clock': AHEAD})
         code, output, report, found = self.ask()
         self.assertIn(('clock_skew', 'clock of ' + self.robot.address), found, output)
         self.assertEqual(code, 1, output)
@@ -68,6 +68,13 @@ class HostsDoctorTest(unittest.TestCase):
         self.assertLessEqual(clock['ahead_at_least'], AHEAD)
         self.assertGreaterEqual(clock['ahead_at_most'], AHEAD)
         self.assertRegex(output, r'is 0\.\d+ s ahead of this computer\'s \(sure to \d+ ms, by \d+')
+
+    def test_without_answers_that_tell_the_time_stamps_prove_a_clock_that_is_ahead(self):
+        self.start_robot({'clock': AHEAD, 'tells_no_time': True})
+        code, output, report, found = self.ask()
+        self.assertIn(('clock_skew', 'clock of ' + self.robot.address), found, output)
+        self.assertEqual((code, report['clocks']), (1, {}), output)
+        self.assertRegex(output, r'is 0\.\d+ s or more ahead of .* comes before its stamp')
 
     def test_names_and_addresses_that_lead_nowhere_are_told(self):
         self.station.know({})

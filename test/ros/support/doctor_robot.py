@@ -8,16 +8,20 @@ says so. It has no physics: it says the same all the time.
 Faults of the robot: without (topics, commands, joints, frames, parameters), types ({topic: type}),
 offset ({topic or frame: seconds added to stamps}), rate ({topic: Hz}), silent (topics that are
 advertised and never sent), halted, odometry_frame (name), more_parents ({frame: parent}), served_map
-(a service instead of the topic), clock (seconds by which all clocks of this process are ahead).
+(a service instead of the topic), clock (seconds by which all clocks of this process are ahead),
+tells_no_time (its HTTP answers have no date, as those of roscpp).
 Of move_base: without (action, planner, updates), drives (topic of its velocities), parameters,
-goal_type, clock."""
+goal_type, clock, tells_no_time."""
 
+import http.server
 import json
 import os
 import sys
 import time
 
 SPEC = json.loads(sys.argv[2]) if len(sys.argv) > 2 else {}
+if SPEC.get('tells_no_time'):
+    http.server.BaseHTTPRequestHandler.date_time_string = lambda *_: ''
 if SPEC.get('clock'):
     _time = time.time
     time.time = lambda: _time() + SPEC['clock']  # before anybody else takes it
