@@ -29,6 +29,13 @@ Pose2 LaserPose(const hires::robot::Robot& robot) {
   return hires::geometry::Flatten(X_RL[*base].Inverse() * X_RL[*link]);
 }
 
+/// A real robot tells of more joints than skills may set: those that follow others (a PR2's finger
+/// tips), and those that its model does not have. A robot without arms is not asked for any.
+bool IsOurs(const hires::robot::Robot& robot, const std::string& name) {
+  const hires::robot::Joint* joint = hires::robot::FindJoint(robot.model, name);
+  return joint == nullptr ? !robot.profile.upper_body : joint->mimics.empty();
+}
+
 /// A link of the robot in the map; no name is the map itself.
 Pose3 LinkPose(const hires::robot::Robot& robot, const hires::perception::BodyReading& body,
                const std::string& link) {
@@ -73,8 +80,12 @@ void Senses::OnJoints(double stamp, JointReading reading) {
   if (!joints_.empty() && stamp < joints_.back().stamp) return;
   // Several nodes may tell about some joints each.
   JointReading all = joints_.empty() ? JointReading() : joints_.back().value;
-  for (auto& [name, position] : reading.positions) all.positions[name] = position;
-  for (auto& [name, velocity] : reading.velocities) all.velocities[name] = velocity;
+  for (auto& [name, position] : reading.positions) {
+    if (IsOurs(*robot_, name)) all.positions[name] = position;
+  }
+  for (auto& [name, velocity] : reading.velocities) {
+    if (IsOurs(*robot_, name)) all.velocities[name] = velocity;
+  }
   joints_.push_back({stamp, std::move(all)});
   while (joints_.front().stamp < stamp - kHistory) joints_.pop_front();
 }

@@ -164,6 +164,22 @@ class SensesOfObjectsTest : public ::testing::Test {
                  obstacles_, Pr2Names(), 0.3};
 };
 
+/// A PR2's joint_states has 45 joints: those of its finger tips follow others.
+TEST_F(SensesOfObjectsTest, JointsThatFollowOthersOrThatNobodyKnowsAreLeftOut) {
+  JointReading reading{robot_->profile.joints, {}};
+  reading.positions["l_gripper_r_finger_tip_joint"] = 0.1;
+  reading.velocities["l_gripper_r_finger_tip_joint"] = 0.1;
+  reading.positions["gadget_joint"] = 1.0;
+  reading.positions["fl_caster_rotation_joint"] = 0.5;
+  senses_.OnOdometry(1.1, {});
+  senses_.OnJoints(1.1, reading);
+  const auto seen = senses_.Look(1.1);
+  EXPECT_EQ(seen.joints.count("l_gripper_r_finger_tip_joint"), 0u);
+  EXPECT_EQ(seen.joint_velocities.count("l_gripper_r_finger_tip_joint"), 0u);
+  EXPECT_EQ(seen.joints.count("gadget_joint"), 0u);
+  EXPECT_EQ(seen.joints.at("fl_caster_rotation_joint"), 0.5);
+}
+
 TEST_F(SensesOfObjectsTest, WhatIsSeenStandsWhereTheCameraWasThen) {
   hires::geometry::Pose3 X_CO;
   X_CO.translation = {1.0, 0.0, 0.0};
