@@ -21,6 +21,8 @@ CONTROLLERS = ('navigation/cmd_vel', 'base_controller/command', 'base_guard/cmd_
                'l_arm_controller/command', 'r_arm_controller/command', 'torso_controller/command',
                'head_traj_controller/command', 'l_gripper_controller/command',
                'r_gripper_controller/command')
+CONFIG = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..',
+                                       'config'))
 FAR = 'preManipulationAreaEastCounter1'
 
 
@@ -107,11 +109,10 @@ class MiddleLayerGuardTest(unittest.TestCase):
 
     def impatient(self):
         """A configuration that does not wait long for what is missing."""
-        config = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'config')
-        with open(os.path.join(config, 'middle_layer.yaml')) as file:
+        with open(os.path.join(CONFIG, 'middle_layer.yaml')) as file:
             text = file.read()
         for name in ('scene: ', 'config: '):
-            text = text.replace(name, name + config + '/')
+            text = text.replace(name, name + CONFIG + '/')
         return self.system.processes.write(
             'middle_layer.yaml', text.replace('start_patience: 5.0', 'start_patience: 0.2'))
 
@@ -235,6 +236,29 @@ class MiddleLayerGuardTest(unittest.TestCase):
         goal.wait_for_feedback(lambda f: f.phase == 'overridden', 'word of the joystick')
         self.guard.instead = None
         self.require(goal, self.codes.SUCCEEDED)
+
+    # Names.
+
+    def test_another_robots_names_are_used(self):
+        self.start_with_names('l_arm_controller/command', 'left/command')
+        self.system.require_server()
+        publishers = self.system.main.publishers()
+        self.assertIn('/middle_layer', publishers.get('/left/command', []))
+        self.assertNotIn('/middle_layer', publishers.get('/l_arm_controller/command', []))
+
+    def test_bad_names_stop_the_node_with_file_and_line(self):
+        node = self.start_with_names('base_scan: base_scan', 'base_scan: /scan')
+        self.assertEqual(node.wait(), 1)
+        self.assertRegex(node.output(), "names.yaml: base_scan is '/scan', .*relative.*; line 1[0-9]")
+
+    def start_with_names(self, word, by):
+        with open(os.path.join(CONFIG, 'robots', 'pr2_names.yaml')) as file:
+            text = file.read()
+        self.assertIn(word, text)
+        self.system.start_robot()
+        self.addCleanup(self.system.end_processes)
+        return self.system.start_middle_layer(
+            names=self.system.processes.write('names.yaml', text.replace(word, by)))
 
     # Dry run.
 
