@@ -35,7 +35,7 @@ class ImaginationLossesTest(LoopCase):
             self.wait_for_imagination(task)
             self.loop.kill('imagination_client')
             result = self.require(task, self.codes.SUCCEEDED)
-            self.assertEqual(result.imaginations[0].outcome, 'unavailable')
+            self.assertIn('unavailable', [i.outcome for i in result.imaginations])
             self.assert_default_was_driven(task, result, 'imagination is not available')
             self.assert_on_table1('mug1')
         self.loop.start_node('imagination_client')
@@ -52,14 +52,9 @@ class ImaginationLossesTest(LoopCase):
             self.wait_for_imagination(task)
             self.loop.kill_workers()
             result = self.require(task, self.codes.SUCCEEDED)
-            self.assert_default_was_driven(task, result, 'nobody is there to imagine it')
+            self.assert_default_was_driven(task, result)
+            self.assertNotIn('ranked', [i.outcome for i in result.imaginations])
             self.assert_on_table1('mug1')
-        self.loop.start_worker(1)
-        self.loop.wait_for_worker(1)
-        with self.subTest('all are there again'):
-            result = self.require(self.achieve(BACK), self.codes.SUCCEEDED)
-            self.assertIn('ranked', [i.outcome for i in result.imaginations])
-            self.assert_on_counter('mug1')
 
     def test_where_the_domain_says_wait_the_robot_waits_for_a_worker(self):
         self.begin(AT_COUNTER, MUG, on_late='wait')

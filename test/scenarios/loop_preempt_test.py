@@ -11,10 +11,12 @@ import rosunit
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
-from closed_loop import CARRY, SERVE, joint_speeds, speed_of  # noqa: E402
+from closed_loop import SERVE, joint_speeds, speed_of  # noqa: E402
 from loop_case import AT_COUNTER, MUG, ON_FLOOR, LoopCase, JOINT_STILL, STILL  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
 
+# A mug stands firmly: what makes it fall is not how the plan goes on, which has no time to imagine.
+THERE = 'carry_object_on_tray mug1 counter1 table1'
 MAY_TAKE = 1.0     # [s] simulated, from the middle layer's word until the robot stands
 WATCHED = 2.0      # [s] simulated, for which it is then watched
 ARM_JOINT = re.compile('[lr]_(shoulder|upper_arm|elbow|forearm|wrist)')
@@ -89,15 +91,15 @@ class PreemptTest(LoopCase):
             self.assertEqual(moving, {}, now.joints.header.stamp.to_sec() - since)
 
     def test_the_robot_stands_whatever_it_was_at_and_goes_on_when_asked_again(self):
-        self.begin(ON_FLOOR, {'peppermill1': (5.47, 10.16, 0.75, 0.0)})
+        self.begin(ON_FLOOR, MUG)
         self.listen_to_steps()
         for name in ('tuck_arms', 'move_base', 'move_torso', 'move_arm_to_side', 'move_base_blind',
                      'pick_up_object', 'place_on_tray', 'move_base_param', 'pick_up_from_tray',
                      'place_object'):
             with self.subTest(name):
-                self.preempt_during(CARRY, name)
-        self.require(self.achieve(CARRY), self.codes.SUCCEEDED)
-        self.assert_on_table1('peppermill1')
+                self.preempt_during(THERE, name)
+        self.require(self.achieve(THERE), self.codes.SUCCEEDED)
+        self.assert_on_table1('mug1')
 
     def test_a_mug_in_the_hand_stays_there(self):
         self.begin(AT_COUNTER, MUG)

@@ -101,8 +101,9 @@ def judge(action, arguments, reason, detail, truth):
         return FALSE if truth.holder(thing) else TRUE
     if reason == 'object_toppled' and thing:
         return TRUE if truth.tilts[thing] > LYING or truth.falls.get(thing) else FALSE
-    if reason == 'object_not_seen' and thing:
-        return FALSE if truth.stands_on(thing) or truth.is_on_tray(thing) else TRUE
+    if reason == 'object_not_seen':
+        is_there = thing and (truth.stands_on(thing) or truth.is_on_tray(thing))
+        return FALSE if is_there else TRUE
     if reason == 'robot_collision':
         return TRUE if truth.has_collided else FALSE
     return OPEN

@@ -28,7 +28,6 @@ from ros_processes import (  # noqa: E402
 CONFIG = os.path.abspath(os.path.join(HERE, '..', '..', '..', 'config'))
 RESTAURANT = os.path.join(CONFIG, 'knowledge', 'restaurant.yaml')
 IMAGINE_PLACING = os.path.join(CONFIG, 'knowledge', 'imagine_placing.yaml')
-CARRY = 'carry_object_on_tray peppermill1 counter1 table1'
 SERVE = 'serve_coffee_to_guest guest1'
 TASK_LIMIT = 300.0  # [s] by the wall's clock: it ends a broken test, and measures nothing
 MARK = 'HIRES_TEST_LOOP'

@@ -1,11 +1,12 @@
 """Tasks at random: what is to be done, where everything stands at first, what nobody tells the
-robot. The same seed gives the same task."""
+robot, and what it is told and is not so. The same seed gives the same task."""
 
 import random
 
 from restaurant import FRAMES, FURNITURE, SEATS, area_under, knowledge_of
 from closed_loop import scenario_of
 
+KINDS = ('serve', 'carry', 'clear')
 OBJECTS = ('mug1', 'mug2', 'peppermill1')
 OBSTACLES = ('bowl1', 'book1')
 STANDS = ('premanipulationareaeastcounter1', 'premanipulationareanorthtable1',
@@ -15,6 +16,7 @@ TORSOS = ('torsodownposture', 'torsomiddleposture', 'torsoupposture')
 ARMS = (('armtuckedposture', 'armtuckedposture'), ('armuntuckedposture', 'armuntuckedposture'),
         ('armtuckedposture', 'armtosideposture'), ('armtosideposture', 'armtosideposture'))
 APART = 0.16  # [m] between objects
+TRIES = 100
 
 
 class RandomTask:
@@ -23,9 +25,10 @@ class RandomTask:
         self.seed = seed
         self.objects, self.hidden = {}, {}
         self.guests = self._draw_guests(chance)
-        self.kind = chance.choice(('serve', 'carry', 'clear'))
+        self.kind = KINDS[seed % len(KINDS)]
         getattr(self, '_draw_' + self.kind)(chance)
         self.coffees = self._draw_coffees(chance)
+        self.missing = self._draw_missing(chance)
         self.robot, self.start = self._draw_robot(chance)
         self.is_placing_imagined = chance.random() < 0.5
 
@@ -34,7 +37,8 @@ class RandomTask:
         return knowledge_of(self.objects, self.coffees, self.guests)
 
     def scenario(self):
-        return scenario_of(self.robot, self.objects, self.hidden)
+        there = {name: pose for name, pose in self.objects.items() if name not in self.missing}
+        return scenario_of(self.robot, there, self.hidden)
 
     def _draw_guests(self, chance):
         seats = chance.sample(sorted(SEATS), chance.randint(1, len(SEATS)))
@@ -75,6 +79,10 @@ class RandomTask:
         full = [name for name in mugs if chance.random() < 0.7]
         return full or mugs[:1]
 
+    def _draw_missing(self, chance):
+        """Now and then somebody took a thing away."""
+        return {chance.choice(sorted(self.objects))} if chance.random() < 0.2 else set()
+
     def _draw_robot(self, chance):
         stand = chance.choice(STANDS)
         pose = list(FRAMES[stand][:2] + FRAMES[stand][3:]) if isinstance(stand, str) else list(stand)
@@ -85,20 +93,20 @@ class RandomTask:
 
     def _hide(self, chance):
         """Now and then things stand where something is to be put."""
-        if chance.random() < 0.4:
-            name = chance.choice(OBSTACLES)
-            self._put(chance, name, chance.choice(self.goal_areas), self.hidden)
+        for name in OBSTACLES:
+            if chance.random() < 0.3:
+                self._put(chance, name, chance.choice(self.goal_areas), self.hidden)
 
     def _put(self, chance, name, area, among=None):
-        """Somewhere on an area, away from what stands there."""
+        """Somewhere on an area, away from what stands there; nowhere if there is no room."""
         among = self.objects if among is None else among
         x, y, z, _ = FRAMES[area]
         along = 0.24 if 'counter' in area else 0.06
-        while True:
+        for _ in range(TRIES):
             pose = (round(x + chance.uniform(-0.06, 0.06), 3),
                     round(y + chance.uniform(-along, along), 3), z, 0.0)
             others = [*self.objects.values(), *self.hidden.values()]
             if all(max(abs(pose[0] - p[0]), abs(pose[1] - p[1])) > APART for p in others):
-                break
-        assert area_under(*pose[:3]) == area, (name, area)
-        among[name] = pose
+                assert area_under(*pose[:3]) == area, (name, area)
+                among[name] = pose
+                return
