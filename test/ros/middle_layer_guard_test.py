@@ -213,7 +213,7 @@ class MiddleLayerGuardTest(unittest.TestCase):
 
     def test_halted_motors_end_everything_and_let_nothing_begin(self):
         from std_msgs.msg import Bool
-        self.begin(config=self.impatient())
+        self.begin()
         halted = self.system.rospy.Publisher('pr2_ethercat/motors_halted', Bool, queue_size=1,
                                              latch=True)
         self.addCleanup(halted.unregister)
