@@ -113,16 +113,23 @@ class MoveBaseModeTest(unittest.TestCase):
             self.rospy.set_param('/fake_pr2/' + name, value)
         self.pr2 = self.keep(self.processes.start(
             [sys.executable, os.path.join(ROOT, 'test', 'pr2', 'fake_pr2.py')], self.main))
-        wait_until(lambda: self.base.truth, 'the fake PR2')
+        self.wait_for(lambda: self.base.truth, 'the fake PR2')
 
     def start_middle_layer(self):
         self.middle_layer = self.keep(self.processes.start(
             [executable('middle_layer'), '_config:=' + self.config, '_guard:=true',
              '_navigation:=move_base'], self.main))
         client = self.client
-        wait_until(lambda: client.pub_goal.get_num_connections() > 0 and
-                   client.pub_cancel.get_num_connections() > 0 and
-                   client.result_sub.get_num_connections() > 0, 'the middle layer')
+        self.wait_for(lambda: client.pub_goal.get_num_connections() > 0 and
+                      client.pub_cancel.get_num_connections() > 0 and
+                      client.result_sub.get_num_connections() > 0, 'the middle layer')
+
+    def wait_for(self, condition, what):
+        """With what everybody said where it is in vain."""
+        try:
+            wait_until(condition, what)
+        except AssertionError as error:
+            self.fail('%s\n%s' % (error, self.output()))
 
     # What is asked for.
 
@@ -135,17 +142,17 @@ class MoveBaseModeTest(unittest.TestCase):
         """On its way by a move_base that would never arrive."""
         self.begin(FAR, behaviour='drive')
         goal = self.execute()
-        wait_until(lambda: self.base.speed() > 0.15, 'the base to move, ' + self.output())
+        self.wait_for(lambda: self.base.speed() > 0.15, 'the base to move')
         self.assertEqual(self.system.values(), SLOW)
         return goal
 
-    def require(self, goal, code, pattern=''):
+    def require(self, goal, code, pattern='^'):
         result = goal.result()
         self.assertEqual(result.code, code, '%s\n%s' % (result, self.output()))
         self.assertRegex(result.reason, pattern)
 
     def require_stand(self):
-        wait_until(lambda: self.base.speed() < 0.01, 'the base to stand')
+        self.wait_for(lambda: self.base.speed() < 0.01, 'the base to stand')
 
     def output(self):
         return '\n'.join(process.output() for process in self.started)
@@ -201,7 +208,7 @@ class MoveBaseModeTest(unittest.TestCase):
         from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
         goal = self.drive()
         other = self.actionlib.ActionClient('move_base', MoveBaseAction)
-        wait_until(lambda: other.pub_goal.get_num_connections() > 0, 'the other to be connected')
+        self.wait_for(lambda: other.pub_goal.get_num_connections() > 0, 'the other to be connected')
         theirs = Goal(other, MoveBaseGoal())
         self.require(goal, self.codes.FAILED, '^interrupted$')
         self.require_stand()
@@ -214,7 +221,7 @@ class MoveBaseModeTest(unittest.TestCase):
         self.middle_layer.kill()
         self.require_stand()
         self.system.await_values(FAST)
-        wait_until(lambda: self.base.cancels, 'the goal to be taken back')
+        self.wait_for(lambda: self.base.cancels, 'the goal to be taken back')
         self.start_middle_layer()
         self.rospy.set_param('/move_base_node/behaviour', 'abort')
         self.rospy.set_param('/move_base_node/text', 'no')
