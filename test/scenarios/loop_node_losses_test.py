@@ -36,7 +36,8 @@ class NodeLossesTest(LoopCase):
         self.wait_for_step(task, 'pick_up_object')
         self.loop.pause('planner')
         self.push(BACK_TO_DRIVING_AREA)
-        self.assertTrue(task.wait_for(lambda f: any('is mended' in w for w in f.warnings), 'trouble'))
+        self.assertTrue(
+            task.wait_for(lambda f: any('is mended' in text for text in f.warnings), 'trouble'))
         self.loop.kill('planner')
         self.loop.start_node('planner')
         result = self.require(task, self.codes.SUCCEEDED)

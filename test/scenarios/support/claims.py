@@ -6,6 +6,7 @@ from restaurant import FRAMES, area_under, is_at
 
 WORD = re.compile(r'(\w+)\(([^()]*)\): (?:unavailable: )?(\w+)(?:: ([^;]*))?')
 ATOM = re.compile(r'(not )?(\w+)\(([^()]*)\)')
+STANDING = re.compile('manipulationarea|startarea|^home$')
 LYING = 0.5    # [rad]
 EDGE = 0.06    # [m] that an object may be off what is seen of it, and that counts as on an area
 PALMS = {'leftarm1': 'l_gripper_palm_link', 'rightarm1': 'r_gripper_palm_link'}
@@ -47,6 +48,15 @@ class Snapshot:
         p, base = found.pose.position, self.robot.pose.position
         return 0.25 < p.z < 0.45 and abs(p.x - base.x) + abs(p.y - base.y) < 0.7
 
+    def is_at(self, area):
+        """As observation classifies it; None near the edge, where it may be either."""
+        if 'floorarea' in area:  # where it is at no other one
+            others = [self.is_at(other) for other in FRAMES if STANDING.search(other)]
+            return False if True in others else None if None in others else True
+        if is_at(self.robot.pose, self.robot.yaw, area, 0.20, 0.28):
+            return True
+        return None if is_at(self.robot.pose, self.robot.yaw, area, 0.32, 0.45) else False
+
     def holds(self, predicate, arguments):
         """Whether an atom is so: True, False, or None where truth does not tell."""
         if predicate == 'on':
@@ -55,10 +65,8 @@ class Snapshot:
             return self.stands_on(arguments[0], EDGE) == arguments[1]
         if predicate == 'holding':
             return self.held_by(arguments[0]) == arguments[1]
-        if predicate == 'robotat' and 'manipulationarea' in arguments[0]:
-            near = is_at(self.robot.pose, self.robot.yaw, arguments[0], 0.20, 0.28)
-            far = not is_at(self.robot.pose, self.robot.yaw, arguments[0], 0.32, 0.45)
-            return True if near else False if far else None
+        if predicate == 'robotat':
+            return self.is_at(arguments[0])
         if predicate == 'hastorsoposture' and arguments[0] in TORSO:
             height = dict(zip(self.robot.joints.name, self.robot.joints.position))[
                 'torso_lift_joint']

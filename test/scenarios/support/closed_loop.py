@@ -4,7 +4,7 @@ with its workers, execution monitor. Each node can be killed, stopped and starte
 
     loop = ClosedLoop()
     loop.connect('my_test')
-    loop.start(scenario_of(task, robot, objects))
+    loop.start(scenario_of(robot, objects))
     result = loop.achieve(task).result()
     loop.destroy()
 
@@ -95,7 +95,7 @@ class Task:
         return self._state == self._states.DONE
 
     def wait_for(self, condition, what):
-        """Waits for feedback, that last one that came included; false when the task ends first."""
+        """Waits for feedback like this, of the past included; false when the task ends first."""
         looked = [0]
 
         def is_there():
@@ -305,7 +305,8 @@ class ClosedLoop:
         name = 'worker_host_%d' % index
         self.nodes[name] = self.processes.start(
             [executable('worker_host'), '__name:=' + name,
-             '_config:=' + os.path.join(CONFIG, 'worker_host.yaml'), '_index:=%d' % index, '_base_port:=%d' % self.base_port], self.main, **{MARK: self.main.uri})
+             '_config:=' + os.path.join(CONFIG, 'worker_host.yaml'), '_index:=%d' % index,
+             '_base_port:=%d' % self.base_port], self.main, **{MARK: self.main.uri})
         return self.nodes[name]
 
     def start(self, scenario, knowledge=(RESTAURANT,), on_late='default', **monitor):

@@ -77,8 +77,8 @@ class LoopCase(unittest.TestCase):
 
     def story(self, task, result):
         outcome = 'code=%d %s' % (result.code, result.reason)
-        steps = [outcome] + ['%d.%d %s phase=%d %s' % (s.plan, s.index, names(s.action), s.phase, s.note)
-                 for s in result.steps]
+        steps = [outcome] + ['%d.%d %s phase=%d %s' % (
+            s.plan, s.index, names(s.action), s.phase, s.note) for s in result.steps]
         truth = self.truth.summary, self.truth.world.objects, self.truth.robot[-1].pose
         return '\n'.join(steps + task.warnings() + [self.loop.output()] + [str(t) for t in truth])
 

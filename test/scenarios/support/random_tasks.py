@@ -85,11 +85,12 @@ class RandomTask:
 
     def _draw_robot(self, chance):
         stand = chance.choice(STANDS)
-        pose = list(FRAMES[stand][:2] + FRAMES[stand][3:]) if isinstance(stand, str) else list(stand)
+        is_area = isinstance(stand, str)
+        pose = list(FRAMES[stand][:2] + FRAMES[stand][3:]) if is_area else list(stand)
         arms = chance.choice(ARMS)
         robot = {'pose': pose, 'torso': chance.choice(TORSOS),
                  'arms': {'leftarm1': arms[0], 'rightarm1': arms[1]}}
-        return robot, stand if isinstance(stand, str) else 'floor'
+        return robot, stand if is_area else 'floor'
 
     def _hide(self, chance):
         """Now and then things stand where something is to be put."""
