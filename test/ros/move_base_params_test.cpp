@@ -55,7 +55,7 @@ TEST(NavigationParamsTest, WhatMakesNoSenseIsNamed) {
                     "{by: own, start_patience: 7, answer_patience: 3, max_rest: 20, "
                     "max_rest_turn: 0.6}");
               }),
-              HasSubstr("max_rest is 20"));
+              HasSubstr("max_rest is '20'"));
 }
 
 TEST(NavigationParamsTest, MoveBaseWantsItsNameAndAGuard) {
