@@ -264,9 +264,11 @@ MapFit RequireMapFits(const OccupancyGrid& map, const OccupancyGrid& slice,
   const bool is_best = better_fit.score < fit.score + params.worth_saying;
   if (fit.score >= params.min_score && is_best) return fit;
   std::string why = fmt::format(
-      "map_to_world '{}': map and world agree with {:.2f}, wanted {:.2f} or more ({:.0f} % of the "
-      "map's obstacles stand in the world, {:.0f} % of the world's in the map)",
-      TextOf(map_to_world), fit.score, params.min_score, 100.0 * fit.explained, 100.0 * fit.found);
+      "map_to_world '{}': map and world agree with {:.2f} ({:.0f} % of the map's obstacles stand "
+      "in "
+      "the world, {:.0f} % of the world's in the map)",
+      TextOf(map_to_world), fit.score, 100.0 * fit.explained, 100.0 * fit.found);
+  if (fit.score < params.min_score) why += fmt::format(", wanted {:.2f} or more", params.min_score);
   throw base::ConfigError(why + Advice(map_to_world, better, better_fit.score, params));
 }
 
