@@ -73,7 +73,7 @@ class LoopRandomTasksTest(LoopCase):
     def check_goal(self, drawn, story):
         truth = Snapshot(self.truth)
         there = {name for name in drawn.objects
-                 if truth.stands_on(name, 0.02) in drawn.goal_areas}
+                 if truth.stands_on(name, drawn.goal_areas, 0.02)}
         if drawn.kind == 'serve':
             self.assertTrue(there & set(drawn.coffees), story())
         elif drawn.kind == 'carry':

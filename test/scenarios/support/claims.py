@@ -2,7 +2,7 @@
 
 import re
 
-from restaurant import FRAMES, area_under, is_at
+from restaurant import FRAMES, FURNITURE, is_at, is_over
 
 WORD = re.compile(r'(\w+)\(([^()]*)\): (?:unavailable: )?(\w+)(?:: ([^;]*))?')
 ATOM = re.compile(r'(not )?(\w+)\(([^()]*)\)')
@@ -33,19 +33,23 @@ class Snapshot:
         return next((o.name for o in self.objects.values() if o.attached_to == PALMS[arm]),
                     'nothing')
 
-    def stands_on(self, name, slack=0.0):
-        """Area that it stands on upright and free."""
+    def stands_free(self, name):
+        """It is there, upright, and nobody holds it."""
         found = self.objects.get(name)
-        if found is None or found.attached_to or self.tilts.get(name, 0.0) > LYING:
-            return None
-        p = found.pose.position
-        return area_under(p.x, p.y, p.z, slack)
+        return (found is not None and not found.attached_to and
+                self.tilts.get(name, 0.0) <= LYING)
+
+    def stands_on(self, name, areas, slack=0.0):
+        """Whether it stands free on one of these."""
+        if not self.stands_free(name):
+            return False
+        p = self.objects[name].pose.position
+        return any(is_over(area, p.x, p.y, p.z, slack) for area in areas)
 
     def is_on_tray(self, name):
-        found = self.objects.get(name)
-        if found is None or found.attached_to or self.tilts.get(name, 0.0) > LYING:
+        if not self.stands_free(name):
             return False
-        p, base = found.pose.position, self.robot.pose.position
+        p, base = self.objects[name].pose.position, self.robot.pose.position
         return 0.25 < p.z < 0.45 and abs(p.x - base.x) + abs(p.y - base.y) < 0.7
 
     def is_at(self, area):
@@ -62,7 +66,7 @@ class Snapshot:
         if predicate == 'on':
             if arguments[1] == 'trayarea1':
                 return self.is_on_tray(arguments[0])
-            return self.stands_on(arguments[0], EDGE) == arguments[1]
+            return self.stands_on(arguments[0], [arguments[1]], EDGE)
         if predicate == 'holding':
             return self.held_by(arguments[0]) == arguments[1]
         if predicate == 'robotat':
@@ -110,7 +114,8 @@ def judge(action, arguments, reason, detail, truth):
     if reason == 'object_toppled' and thing:
         return TRUE if truth.tilts[thing] > LYING or truth.falls.get(thing) else FALSE
     if reason == 'object_not_seen':
-        is_there = thing and (truth.stands_on(thing) or truth.is_on_tray(thing))
+        furniture = sum(FURNITURE.values(), [])
+        is_there = thing and (truth.stands_on(thing, furniture) or truth.is_on_tray(thing))
         return FALSE if is_there else TRUE
     if reason == 'robot_collision':
         return TRUE if truth.has_collided else FALSE

@@ -42,17 +42,20 @@ def read_frames():
 FRAMES = read_frames()
 
 
-def area_under(x, y, z, slack=0.0):
-    """The placing area that a point lies on, or None.
+def is_over(area, x, y, z, slack=0.0):
+    """Whether a point lies on a placing area; those of table2 overlap.
     @param slack  [m] beyond its edges."""
-    for areas in FURNITURE.values():
-        for area in areas:
-            middle = FRAMES[area]
-            half = HALF.get(area, HALF_TABLE)
-            if (abs(x - middle[0]) <= half[0] + slack and abs(y - middle[1]) <= half[1] + slack and
-                    abs(z - middle[2]) <= 0.1):
-                return area
-    return None
+    middle = FRAMES[area]
+    half = HALF.get(area, HALF_TABLE)
+    return (abs(x - middle[0]) <= half[0] + slack and abs(y - middle[1]) <= half[1] + slack and
+            abs(z - middle[2]) <= 0.1)
+
+
+def area_under(x, y, z):
+    """The nearest placing area that a point lies on, or None."""
+    under = [area for areas in FURNITURE.values() for area in areas if is_over(area, x, y, z)]
+    return min(under, default=None,
+               key=lambda area: math.hypot(x - FRAMES[area][0], y - FRAMES[area][1]))
 
 
 def is_at(pose, yaw, area, distance, angle):
