@@ -168,7 +168,10 @@ class FakePr2:
         (self.frozen.add if on else self.frozen.discard)(what)
 
     def lose(self, on):
+        """Off: somebody told it where it is (initialpose); then amcl speaks at once."""
         self.amcl.is_lost = on
+        if not on:
+            self.amcl.forget()
 
     # The loop -----------------------------------------------------------------------------------
 

@@ -97,6 +97,9 @@ class AmclTest(unittest.TestCase):
         amcl = bases.Amcl(1)
         self.assertEqual(amcl.update(Pose2(), Pose2())[1], bases.Amcl.SPREAD)
         amcl.is_lost = True
+        self.assertIsNone(amcl.update(Pose2(), Pose2()))
+        amcl.forget()
+        self.assertEqual(amcl.update(Pose2(), Pose2())[1], bases.Amcl.LOST_SPREAD)
         self.assertEqual(amcl.update(Pose2(1.0), Pose2(1.0))[1], bases.Amcl.LOST_SPREAD)
 
 

@@ -30,7 +30,8 @@ NODES = ('middle_layer', 'world_tracker', 'translator', 'blackboard', 'planner',
 
 def executable_of(package):
     """The program of the same name, which may be Debian's or a workspace's."""
-    prefixes = os.environ.get('CMAKE_PREFIX_PATH', '').split(os.pathsep) + ['/usr', '/opt/ros/noetic']
+    prefixes = os.environ.get('CMAKE_PREFIX_PATH', '').split(os.pathsep)
+    prefixes += ['/usr', '/opt/ros/noetic']
     paths = [os.path.join(prefix, 'lib', package, package) for prefix in prefixes]
     return next(path for path in paths if os.access(path, os.X_OK))
 
@@ -159,6 +160,15 @@ class Lab:
         wait_for(lambda: client.pub_goal.get_num_connections() > 0 and
                  client.result_sub.get_num_connections() > 0, client.ns)
 
+    def wait_for_news(self, client):
+        """Of a server that was started again: it says its status, and hears goals."""
+        from actionlib_msgs.msg import GoalStatusArray
+        heard = []
+        subscriber = self.rospy.Subscriber(client.ns + '/status', GoalStatusArray, heard.append)
+        wait_for(lambda: heard, client.ns + '/status')
+        subscriber.unregister()
+        self.require_server(client)
+
     def execute(self, name, *arguments, limit=0.0):
         goal = self.msg.ExecuteActionGoal()
         goal.action.name, goal.action.arguments = name, list(arguments)
@@ -176,8 +186,11 @@ class Lab:
 
     def pid_of(self, node):
         uri = wait_for(lambda: self.main.node_uri('/' + node), 'the node ' + node)
-        with xmlrpc.client.ServerProxy(uri) as proxy:
-            return proxy.getPid('/test')[2]
+        try:
+            with xmlrpc.client.ServerProxy(uri) as proxy:
+                return proxy.getPid('/test')[2]
+        except OSError:
+            return None  # dead, and the master does not know yet
 
     def stop(self):
         """As a user stops it; what then still lives, goes."""

@@ -126,6 +126,10 @@ class Amcl:
         self.X_MO = X_MB_believed * X_OB.inverse()
         return X_MB_believed, self.LOST_SPREAD if self.is_lost else self.SPREAD
 
+    def forget(self):
+        """It begins anew with the next scan."""
+        self._at = None
+
     def _is_due(self, X_OB):
         moved = self._at.inverse() * X_OB
         return (math.hypot(moved.x, moved.y) >= self.UPDATE_DISTANCE or
