@@ -54,8 +54,8 @@ class Pr2SafetyTest(unittest.TestCase):
                 return goal, index
             result = goal.result()
             is_stopped = result.reason.startswith('silent_')
-            self.assertTrue(result.code == self.codes.SUCCEEDED or is_stopped, '%s\n%s' % (
-                result, self.lab.output()[-3000:]))
+            self.assertTrue(result.code == self.codes.SUCCEEDED or is_stopped,
+                            '%s\n%s' % (result, self.lab.output()[-3000:]))
         raise AssertionError('no drive gets fast:\n' + self.lab.output()[-3000:])
 
     def end(self, goal):
@@ -68,7 +68,8 @@ class Pr2SafetyTest(unittest.TestCase):
 
     def require_gentle_stop(self, index, limit):
         """From sample `index` on the base comes to a stand, and since the guard stops it it never
-        brakes harder than `limit`: before that whoever drove may have. @return [s] until it stood, [m] that it went, hardest braking."""
+        brakes harder than `limit`: before that whoever drove may have. @return [s] until it stood,
+        [m] that it went, hardest braking."""
         last = self.lab.truth.wait_for(lambda s: abs(s[4]) < STILL and abs(s[5]) < STILL,
                                        'the base to stand')
         wait_until(lambda: self.state().state == self.states.STANDING, 'the guard to stand')
