@@ -254,14 +254,29 @@ ExecutionMonitorNode::Task ExecutionMonitorNode::MakeTask(const GoalHandle& goal
 /// What a task cannot be begun without; "": all is there.
 std::string ExecutionMonitorNode::MissingForBegin() {
   if (last_now_ <= 0.0 && RosNow() <= 0.0) return "the robot's clock has not begun to run";
-  if (!state_) return "the Blackboard does not answer, so the state is not known";
+  if (!task_->is_state_current) return "the Blackboard does not answer, so the state is not known";
   if (!planning_.is_available()) return "the planner does not answer";
   const bool needs_robot = !task_->params.dry_run;
   if (needs_robot && !steps_.is_available()) return "the middle layer does not answer";
   return "";
 }
 
+/// What the Blackboard acknowledged before the task came may still be on its way here.
+void ExecutionMonitorNode::CatchUp() {
+  if (task_->is_state_current || std::exchange(task_->is_catching_up, true)) return;
+  catcher_.Post([this, goal = task_->goal] {
+    const bool is_known = view_.CatchUp();
+    Post([this, goal, is_known] {  // behind the state that it brought
+      if (!task_ || !(task_->goal == goal)) return;
+      task_->is_catching_up = false;
+      task_->is_state_current = is_known && state_;
+      if (task_->is_state_current && !task_->monitor) BeginWhenReady();
+    });
+  });
+}
+
 void ExecutionMonitorNode::BeginWhenReady() {
+  CatchUp();
   const std::string missing = MissingForBegin();
   if (!missing.empty()) {
     if (SteadyNow() - task_->accepted < config_.start_wait) return;

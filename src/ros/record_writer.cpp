@@ -75,8 +75,13 @@ RecordWriter::~RecordWriter() {
 }
 
 void RecordWriter::BeginEpisode(const std::string& task, double time) {
-  episode_ = 0;
-  Post({Begin{task}, time});
+  int number = 0;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    number = ++num_begun_;
+    episode_ = 0;
+  }
+  Post({Begin{task, number}, time});
 }
 void RecordWriter::Write(execution::Record record, double time) { Post({std::move(record), time}); }
 void RecordWriter::EndEpisode(const std::string& outcome, double time) {
@@ -137,17 +142,24 @@ RecordWriter::Answer RecordWriter::Carry(const Begin& begin, double time) {
   call.request.task = begin.task;
   call.request.time = time;
   const Answer answer = Ask("start_episode", &call);
-  if (answer != Answer::kDone) return answer;
+  if (answer == Answer::kAgain) return answer;
   begun_.clear();
+  current_ = answer == Answer::kDone ? call.response.episode.id : 0;
   episode_name_ = call.response.episode.name;
-  episode_ = call.response.episode.id;
+  Announce(begin.number);
   return answer;
 }
 
+/// Unless the next episode is asked for already: its number is not known yet then.
+void RecordWriter::Announce(int number) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (number == num_begun_) episode_ = current_;
+}
+
 RecordWriter::Answer RecordWriter::Carry(const End& end, double time) {
-  if (episode_ == 0) return Answer::kRefused;  // it was not begun: said already
+  if (current_ == 0) return Answer::kRefused;  // it was not begun: said already
   hires::FinishEpisode call;
-  call.request.id = episode_;
+  call.request.id = current_;
   call.request.outcome = end.outcome;
   call.request.time = time;
   return Ask("finish_episode", &call);
@@ -179,14 +191,14 @@ RecordWriter::Answer RecordWriter::WriteFluent(const char* service, const knowle
                                                double time) {
   hires::WriteFluents call;
   call.request.fluents.push_back(ToMessage(fluent));
-  call.request.by = ToMessage(knowledge::Assertion{knowledge::Source::kMonitor, episode_, time});
+  call.request.by = ToMessage(knowledge::Assertion{knowledge::Source::kMonitor, current_, time});
   return Ask(service, &call);
 }
 
 RecordWriter::Answer RecordWriter::Remove(const std::string& instance, double time) {
   hires::RemoveFluents call;
   call.request.instances.push_back(instance);
-  call.request.by = ToMessage(knowledge::Assertion{knowledge::Source::kMonitor, episode_, time});
+  call.request.by = ToMessage(knowledge::Assertion{knowledge::Source::kMonitor, current_, time});
   return Ask("remove", &call);
 }
 

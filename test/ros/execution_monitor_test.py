@@ -266,6 +266,9 @@ class ExecutionMonitorTest(unittest.TestCase):
         result = task.result()  # whatever it is, it comes
         self.assertIn(result.code, (self.codes.SUCCEEDED, self.codes.FAILED), result.reason)
         self.assertTrue(any(s.phase == self.phases.FAILED for s in result.steps))
+        # A server that has just started may send a result before anybody is there to hear it: that
+        # is noticed, and not waited for until the step is overdue.
+        self.assertEqual([s.note for s in result.steps if 'timed_out' in s.note], [])
 
     def test_a_middle_layer_that_is_gone(self):
         self.system.behave('move_base', hang=True)
@@ -293,6 +296,18 @@ class ExecutionMonitorTest(unittest.TestCase):
         begun = [s for s in result.steps
                  if s.started == s.started and s.action.name != 'imagine']
         self.assertEqual(len([e for e in ended if e]), len(begun))
+
+    def test_tasks_in_quick_succession_each_have_their_episode(self):
+        before = self.system.episodes()[-1].id if self.system.episodes() else 0
+        self.system.behave('tuck_arms', hang=True)
+        for _ in range(10):
+            task = self.achieve(CARRY)
+            task.wait_for(lambda f: f.steps, 'a plan')
+            task.preempt()
+            self.require(task, self.codes.PREEMPTED)
+        wait_until(lambda: self.system.episodes()[-1].outcome, 'the end of the last episode')
+        episodes = [e for e in self.system.episodes() if e.id > before]
+        self.assertEqual([e.outcome for e in episodes], 10 * ['preempted: preempted'])
 
     def test_without_a_blackboard_a_task_is_refused_at_first_only(self):
         self.system.kill('monitor')

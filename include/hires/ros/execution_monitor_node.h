@@ -26,6 +26,7 @@
 #include "hires/ros/reaction_times.h"
 #include "hires/ros/record_writer.h"
 #include "hires/ros/remote_view.h"
+#include "hires/ros/work_thread.h"
 
 namespace hires_ros {
 
@@ -70,6 +71,8 @@ class ExecutionMonitorNode {
     hires::execution::MonitorParams params;
     double accepted{0.0};                                ///< [s] steady
     std::unique_ptr<hires::execution::Monitor> monitor;  ///< none: it waits for the state
+    bool is_state_current{false};                        ///< all that held when the task came
+    bool is_catching_up{false};                          ///< the Blackboard is being asked for it
     std::vector<std::string> warnings;                   ///< not told yet
     std::optional<hires::execution::Finish> finish;
     std::optional<hires::AchieveFeedback> told;
@@ -88,6 +91,7 @@ class ExecutionMonitorNode {
   Task MakeTask(const GoalHandle& goal) const;
   void Preempt(const GoalHandle& goal);
   void BeginWhenReady();
+  void CatchUp();
   std::string MissingForBegin();
   void WatchClock(double now);
   void Feed(const hires::execution::Event& event);
@@ -136,6 +140,7 @@ class ExecutionMonitorNode {
   ImaginationDesk imagination_;
   ActionLink<hires::ExecuteActionAction> steps_;
   RemoteView view_;
+  WorkThread catcher_;  // asks the Blackboard, which may take its time
   diagnostic_updater::Updater updater_;
   Server server_;
   std::thread thread_;

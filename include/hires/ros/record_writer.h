@@ -46,6 +46,7 @@ class RecordWriter {
  private:
   struct Begin {
     std::string task;
+    int number;  ///< the first, the second, ...
   };
   struct End {
     std::string outcome;
@@ -57,6 +58,7 @@ class RecordWriter {
   enum class Answer { kDone, kRefused, kAgain };
 
   void Post(Item item);
+  void Announce(int number);
   void Run();
   bool Pause();
   Answer Carry(const Item& item);
@@ -73,6 +75,7 @@ class RecordWriter {
   std::atomic<int> num_written_{0}, num_refused_{0};
 
   // Of the writer's thread.
+  std::int64_t current_{0};  // episode that is written; 0: it was refused
   std::string episode_name_;
   std::map<std::string, double> begun_;  // [s], by instance in lower case
   bool is_updated_{
@@ -82,6 +85,7 @@ class RecordWriter {
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
+  int num_begun_{0};          // guarded: episodes asked for
   std::deque<Item> waiting_;  // guarded
   bool is_ending_{false};     // guarded
   std::thread thread_;
