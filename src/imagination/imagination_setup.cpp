@@ -69,6 +69,7 @@ skills::MoveBaseBlindParams ReadBlind(ParamReader in) {
   p.max_velocity = in.Get("max_velocity", Between(0.01, 2.0));
   p.max_angular_velocity = in.Get("max_angular_velocity", Between(0.01, 4.0));
   p.deceleration = in.Get("deceleration", Between(0.01, 5.0));
+  p.reaction_time = in.Get("reaction_time", Between(0.0, 1.0));
   p.xy_tolerance = in.Get("xy_tolerance", Between(0.001, 1.0));
   p.yaw_tolerance = in.Get("yaw_tolerance", Between(0.001, 1.0));
   p.stuck_timeout = in.Get("stuck_timeout", Between(0.1, 100.0));

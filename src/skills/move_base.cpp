@@ -41,6 +41,13 @@ double RobotHeight(const robot::Robot& robot) {
   return bounds.upper.z();
 }
 
+/// The speed from which a deceleration that sets in after a reaction time still ends at the goal:
+/// distance = v t + v^2 / 2a, solved for v.
+double ApproachSpeed(double distance, double deceleration, double reaction_time) {
+  const double lost = deceleration * reaction_time;
+  return std::sqrt(lost * lost + 2.0 * deceleration * distance) - lost;
+}
+
 }  // namespace
 
 DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::Robot& robot,
@@ -174,12 +181,11 @@ Status MoveBaseBlind::Update(const robot::Observation& observation, robot::Comma
     last_progress_ = observation.time;
   }
   if (observation.time - last_progress_ > params_.stuck_timeout) return Failed("stuck");
-  // The speed from which the deceleration still stops it at the goal.
   const double deceleration = std::min(params_.deceleration, motion_set_.max_linear_acceleration);
-  const double v = std::min({std::sqrt(2.0 * deceleration * distance), params_.max_velocity,
-                             motion_set_.max_linear_velocity});
-  const double w = std::min({std::sqrt(2.0 * deceleration * turn), params_.max_angular_velocity,
-                             motion_set_.max_angular_velocity});
+  const double v = std::min({ApproachSpeed(distance, deceleration, params_.reaction_time),
+                             params_.max_velocity, motion_set_.max_linear_velocity});
+  const double w = std::min({ApproachSpeed(turn, deceleration, params_.reaction_time),
+                             params_.max_angular_velocity, motion_set_.max_angular_velocity});
   const double scale = distance > 0.0 ? v / distance : 0.0;
   command->base_velocity =
       geometry::Twist2{scale * X_BGoal.x, scale * X_BGoal.y, std::copysign(w, X_BGoal.yaw)};

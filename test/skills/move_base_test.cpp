@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <deque>
 #include <memory>
 
 #include "hires/geometry/angles.h"
@@ -246,6 +247,28 @@ TEST(MoveBaseBlindTest, ArrivesWithinItsTolerances) {
     EXPECT_LE(run.fastest, params.max_velocity + 1e-9);
     EXPECT_LE(run.fastest_turn, params.max_angular_velocity + 1e-9);
   }
+}
+
+TEST(MoveBaseBlindTest, ARobotThatReactsLateDoesNotOvershoot) {
+  const MoveBaseBlindParams params;
+  const Pose2 goal{1.8, 2.0, 0.0};
+  MoveBaseBlind skill(params, goal, kFast);
+  std::deque<double> on_the_way(3, 0.0);  // [m/s], one per cycle: 0.15 s
+  robot::Observation seen;
+  seen.X_MB = kWest;
+  double farthest = kWest.x;
+  for (Status status; status.progress == Progress::kRunning; seen.time += params.period) {
+    ASSERT_LT(seen.time, 30.0);
+    robot::Command command;
+    status = skill.Update(seen, &command);
+    on_the_way.push_back(command.base_velocity->vx);
+    seen.V_B.vx = on_the_way.front();
+    on_the_way.pop_front();
+    seen.X_MB.x += params.period * seen.V_B.vx;
+    farthest = std::max(farthest, seen.X_MB.x);
+  }
+  EXPECT_LE(farthest, goal.x + 0.005);
+  EXPECT_NEAR(seen.X_MB.x, goal.x, params.xy_tolerance);
 }
 
 TEST(MoveBaseBlindTest, TakesTheShorterTurn) {

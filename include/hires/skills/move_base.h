@@ -72,7 +72,8 @@ struct MoveBaseBlindParams {
   double period{0.05};               ///< [s] control cycle
   double max_velocity{0.3};          ///< [m/s]; the motion set may be slower
   double max_angular_velocity{0.5};  ///< [rad/s]
-  double deceleration{0.5};          ///< [m/s^2] with which it comes to its goal
+  double deceleration{0.5};          ///< [m/s^2], [rad/s^2] with which it comes to its goal
+  double reaction_time{0.15};        ///< [s] from what is seen to what the wheels do of it
   double xy_tolerance{0.03};         ///< [m]
   double yaw_tolerance{0.03};        ///< [rad]
   double stuck_timeout{5.0};         ///< [s] without coming 0.01 m or rad nearer
