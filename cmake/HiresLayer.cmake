@@ -29,7 +29,8 @@ function(hires_test layer name)
   cmake_parse_arguments(TEST "" "TIMEOUT" "LINK" ${ARGN})
   set(target ${layer}_${name}_test)
   add_executable(${target} ${name}_test.cpp)
-  target_compile_options(${target} PRIVATE ${HIRES_WARNINGS})
+  # What is tested is as fast as ever; the tests' own code is built a third faster so.
+  target_compile_options(${target} PRIVATE ${HIRES_WARNINGS} -O1)
   target_compile_definitions(${target} PRIVATE
     HIRES_SOURCE_DIR="${PROJECT_SOURCE_DIR}" HIRES_SHARED_DATA="${HIRES_SHARED_DATA}")
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/test)
