@@ -38,14 +38,17 @@ class Base:
         self.commands, self.goals, self.cancels = [], [], []
 
         def listen(topic, kind, callback):
-            rospy.Subscriber(topic, kind, callback, queue_size=1000, tcp_nodelay=True)
+            return rospy.Subscriber(topic, kind, callback, queue_size=1000, tcp_nodelay=True)
         listen('fake_pr2/truth', Odometry, self._note)
         listen('navigation/cmd_vel', Twist, self.commands.append)
-        listen('move_base/goal', MoveBaseActionGoal, self.goals.append)
-        listen('move_base/cancel', GoalID, self.cancels.append)
+        self._asked = (listen('move_base/goal', MoveBaseActionGoal, self.goals.append),
+                       listen('move_base/cancel', GoalID, self.cancels.append))
 
     def _note(self, truth):
         self.truth = truth
+
+    def hears_who_asks(self):
+        return all(subscriber.get_num_connections() > 0 for subscriber in self._asked)
 
     def forget(self):
         self.truth = None
@@ -122,7 +125,8 @@ class MoveBaseModeTest(unittest.TestCase):
         client = self.client
         self.wait_for(lambda: client.pub_goal.get_num_connections() > 0 and
                       client.pub_cancel.get_num_connections() > 0 and
-                      client.result_sub.get_num_connections() > 0, 'the middle layer')
+                      client.result_sub.get_num_connections() > 0 and
+                      self.base.hears_who_asks(), 'the middle layer')
 
     def wait_for(self, condition, what):
         """With what everybody said where it is in vain."""
