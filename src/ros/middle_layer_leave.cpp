@@ -67,6 +67,12 @@ void BaseLeave::Tick(double now) {
 }
 
 void BaseLeave::OnState(const hires::BaseGuardState& state) {
+  if (*granted_ && state.request == 0) {  // it knows nothing of the request that it let pass
+    *granted_ = false;
+    is_stopped_ = true;
+    hooks_.stopped("guard_restarted");
+    return;
+  }
   const bool is_ours = action_ && state.request == request_.id;
   *granted_ = is_ours && !is_stopped_ && state.state == hires::BaseGuardState::PASSING;
   if (!is_ours || is_stopped_ || state.state == hires::BaseGuardState::PASSING) return;

@@ -89,6 +89,17 @@ TEST_F(BaseLeaveTest, AStopIsToldOnceAndOnlyToWhomItConcerns) {
   EXPECT_THAT(stops_, ElementsAre("motors_halted", "motors_halted"));
 }
 
+TEST_F(BaseLeaveTest, AGuardThatWasStartedAnewEndsTheDrive) {
+  leave_.Begin(1, slow_, kNow);
+  leave_.OnState(State(BaseGuardState::STANDING, 0, "no_request"));  // from before the request
+  EXPECT_THAT(stops_, IsEmpty());
+  leave_.OnState(State(BaseGuardState::PASSING, kNow, ""));
+  leave_.OnState(State(BaseGuardState::STANDING, 0, "no_request"));
+  leave_.OnState(State(BaseGuardState::PASSING, kNow, ""));
+  EXPECT_THAT(stops_, ElementsAre("guard_restarted"));
+  EXPECT_FALSE(*leave_.granted());
+}
+
 TEST_F(BaseLeaveTest, WhatStandsOnTheTrayMayChange) {
   leave_.Begin(1, slow_, kNow);
   leave_.SetBraking(0.5, 2.0);

@@ -31,7 +31,8 @@ DriveLimits LimitsFor(const hires::skills::SkillSet& skills, const hires::base::
 
 /// Leave to drive, asked of the guard of the base again and again while an action has the base, and
 /// what the guard says to it. A stop by the guard holds for the rest of the action: the next action
-/// asks with another id. Time is handed in; messages go out through the hooks.
+/// asks with another id. So does a guard that was started anew meanwhile, which knows of no drive
+/// that it could bring to its end. Time is handed in; messages go out through the hooks.
 class BaseLeave {
  public:
   struct Hooks {
