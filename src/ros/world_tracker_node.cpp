@@ -90,7 +90,7 @@ void WorldTrackerNode::Subscribe(ros::NodeHandle* nh) {
   }
   subscribers_ = {nh->subscribe(names.odometry, 100, &Self::OnOdometry, this, hints),
                   nh->subscribe(names.localisation, 100, &Self::OnLocalisation, this, hints),
-                  nh->subscribe(names.joint_states, 100, &Self::OnJoints, this, hints),
+                  nh->subscribe(names.joint_states, 1000, &Self::OnJoints, this, hints),
                   nh->subscribe(kTransforms, 100, &Self::OnTransforms, this, hints),
                   nh->subscribe(kDetections, 10, &Self::OnDetections, this, hints),
                   nh->subscribe(action + "/goal", 10, &Self::OnGoal, this, hints),

@@ -13,6 +13,7 @@ constexpr double kLocalisationWait = 0.15;  // [s] of odometry
 constexpr double kHistory = 3.0;            // [s] that is kept
 constexpr double kOldOrigin = 1.0;          // [s] after which odometry has drifted from it
 constexpr double kTooOld = 2.0;             // [s] after which nobody waits any more
+constexpr double kOldPosture = 0.05;        // [s] after which head and arms may be elsewhere
 constexpr double kJumpBack = 1.0;           // [s] by which time must go back to have begun anew
 
 template <typename Deque>
@@ -128,7 +129,10 @@ std::optional<TrackerMoment> TrackerSenses::Take() {
     TrackerMoment moment;
     moment.body = {stamp, *BaseAt(stamp), joints_->value};
     moment.V_B = OdometryAt(stamp)->V_B;
-    moment.look = std::move(first->second.look);
+    // Joints that were lost on the way: nobody knows where the camera looked then.
+    const bool is_posture_known = stamp - joints_->stamp <= kOldPosture;
+    if (is_posture_known) moment.look = std::move(first->second.look);
+    if (!is_posture_known && first->second.look) ++num_dropped_;
     taken_ = stamp;
     pending_.erase(first);
     return moment;

@@ -134,6 +134,19 @@ std::vector<TrackerMoment> Played(hires::base::Rng* rng) {
   return moments;
 }
 
+TEST(TrackerSensesTest, ALookWhoseJointsWereLostIsNone) {
+  TrackerSenses senses;
+  for (const double stamp : {10.0, 10.1, 10.2, 10.4}) senses.OnOdometry(stamp, Odometry(1.0));
+  senses.OnLocalisation(10.0, {5.0, 2.0, 0.0});
+  senses.OnJoints(10.0, {{"head", 1.0}});
+  senses.OnLook(10.1, {});  // the head may look elsewhere since
+  senses.OnJoints(10.2, {{"head", 0.0}});
+  const auto moments = TakeAll(&senses);
+  ASSERT_EQ(moments.size(), 3u);
+  EXPECT_FALSE(moments[1].look);
+  EXPECT_EQ(senses.num_dropped(), 1);
+}
+
 TEST(TrackerSensesTest, PlaceAndJointsDoNotDependOnHowTopicsInterleave) {
   hires::base::Rng first(0);
   const auto wanted = Played(&first);
