@@ -261,9 +261,11 @@ std::string ExecutionMonitorNode::MissingForBegin() {
   return "";
 }
 
-/// What the Blackboard acknowledged before the task came may still be on its way here.
+/// What the Blackboard acknowledged before the task came may still be on its way here, and what the
+/// task before this one left behind, that its end takes back, on its way there.
 void ExecutionMonitorNode::CatchUp() {
-  if (task_->is_state_current || std::exchange(task_->is_catching_up, true)) return;
+  if (task_->is_state_current || records_.num_waiting() > 0) return;
+  if (std::exchange(task_->is_catching_up, true)) return;
   catcher_.Post([this, goal = task_->goal] {
     const bool is_known = view_.CatchUp();
     Post([this, goal, is_known] {  // behind the state that it brought

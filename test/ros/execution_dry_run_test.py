@@ -27,6 +27,8 @@ class ExecutionDryRunTest(unittest.TestCase):
             system.start_fake(role)
         system.start_monitor('_dry_run:=true')
         system.connect()
+        system.diagnostics('execution_monitor', lambda values: all(
+            values[server] == 'there' for server in ('planner', 'imagination_client', 'translator')))
         cls.codes = system.msg.AchieveResult
         cls.phases = system.msg.StepStatus
 

@@ -48,6 +48,11 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.assertIn(text, result.reason)
         return result
 
+    def ended_after(self, episode, count):
+        """Outcomes of the episodes after this one, once so many have ended."""
+        outcomes = [e.outcome for e in self.system.episodes() if e.id > episode]
+        return outcomes if len(outcomes) == count and all(outcomes) else None
+
     def wait_for_step(self, name):
         """Until the fake robot is told to do this."""
         return wait_until(lambda: self.system.done(name), name)
@@ -305,9 +310,8 @@ class ExecutionMonitorTest(unittest.TestCase):
             task.wait_for(lambda f: f.steps, 'a plan')
             task.preempt()
             self.require(task, self.codes.PREEMPTED)
-        wait_until(lambda: self.system.episodes()[-1].outcome, 'the end of the last episode')
-        episodes = [e for e in self.system.episodes() if e.id > before]
-        self.assertEqual([e.outcome for e in episodes], 10 * ['preempted: preempted'])
+        outcomes = wait_until(lambda: self.ended_after(before, 10), 'the end of ten episodes')
+        self.assertEqual(outcomes, 10 * ['preempted: preempted'])
 
     def test_without_a_blackboard_a_task_is_refused_at_first_only(self):
         self.system.kill('monitor')
