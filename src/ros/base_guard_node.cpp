@@ -10,6 +10,8 @@
 #include <cmath>
 
 #include "hires/base/log.h"
+#include "hires/ros/odometry_frame.h"
+#include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 
 namespace hires_ros {
@@ -48,19 +50,6 @@ hires::robot::MotionSet MotionSetOf(const hires::BaseRequest& msg) {
 
 hires::geometry::Twist2 FlatTwist(const geometry_msgs::Twist& msg) {
   return {msg.linear.x, msg.linear.y, msg.angular.z};
-}
-
-geometry_msgs::Twist ToTwist(const hires::geometry::Twist2& V) {
-  geometry_msgs::Twist msg;
-  msg.linear.x = V.vx;
-  msg.linear.y = V.vy;
-  msg.angular.z = V.wz;
-  return msg;
-}
-
-/// Frames of old robots begin with a slash.
-std::string Plain(const std::string& frame) {
-  return frame.rfind('/', 0) == 0 ? frame.substr(1) : frame;
 }
 
 /// What ends in good order is no trouble.
@@ -143,8 +132,8 @@ void BaseGuardNode::OnLocalisation(const geometry_msgs::PoseWithCovarianceStampe
 void BaseGuardNode::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static) {
   const RobotNames& names = params_.names;
   for (const geometry_msgs::TransformStamped& transform : msg.transforms) {
-    const std::string parent = Plain(transform.header.frame_id);
-    const std::string child = Plain(transform.child_frame_id);
+    const std::string parent = BareFrame(transform.header.frame_id);
+    const std::string child = BareFrame(transform.child_frame_id);
     const bool is_map = parent == names.map_frame && child == names.odometry_frame;
     const bool is_base = parent == names.odometry_frame && child == names.base_frame;
     if (!is_map && !is_base) continue;
@@ -189,7 +178,7 @@ void BaseGuardNode::Update() {
   TendTuner(now);
   const GuardState before = guard_.state();
   const auto velocity = guard_.Update(now);
-  if (velocity) base_.publish(ToTwist(*velocity));
+  if (velocity) base_.publish(ToMsg(*velocity));
   const bool has_stopped = before == GuardState::kPassing && guard_.state() != GuardState::kPassing;
   if (has_stopped) {
     ++num_stops_;

@@ -14,6 +14,7 @@
 #include <future>
 
 #include "hires/base/error.h"
+#include "hires/ros/odometry_frame.h"
 #include "hires/ros/process.h"
 #include "hires/ros/robot_doctor.h"
 #include "hires/ros/robot_doctor_network.h"
@@ -208,12 +209,9 @@ class Ears {
   }
 
   void OnTransform(const geometry_msgs::TransformStamped& transform, bool is_static) {
-    const auto bare = [](const std::string& name) {  // tf wrote names with a slash in front
-      return !name.empty() && name.front() == '/' ? name.substr(1) : name;
-    };
-    const std::string child = bare(transform.child_frame_id);
+    const std::string child = BareFrame(transform.child_frame_id);
     SeenFrame& frame = view_->frames[child];
-    frame.parents.insert(bare(transform.header.frame_id));
+    frame.parents.insert(BareFrame(transform.header.frame_id));
     frame.is_static = is_static;
     ros::Time& newest = newest_[child];
     newest = std::max(newest, transform.header.stamp);

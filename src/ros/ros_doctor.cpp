@@ -2,7 +2,6 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
-#include <netdb.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,6 +17,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/ros/doctor_probe.h"
 #include "hires/ros/process.h"
 #include "hires/ros/worker_host_node.h"
 #include "hires/ros/xmlrpc_master_api.h"
@@ -122,23 +122,6 @@ std::optional<std::string> Variable(const char* name) {
 std::string HostName() {
   std::array<char, 256> name{};
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
-
-std::vector<std::string> Resolve(const std::string& name) {
-  addrinfo hints{};
-  hints.ai_family = AF_INET;  // as roscpp, unless ROS_IPV6 says otherwise
-  hints.ai_socktype = SOCK_STREAM;
-  addrinfo* found = nullptr;
-  if (getaddrinfo(name.c_str(), nullptr, &hints, &found) != 0) return {};
-  std::set<std::string> addresses;
-  for (const addrinfo* it = found; it != nullptr; it = it->ai_next) {
-    std::array<char, INET_ADDRSTRLEN> text{};
-    const auto* address = reinterpret_cast<const sockaddr_in*>(it->ai_addr);
-    inet_ntop(AF_INET, &address->sin_addr, text.data(), text.size());
-    addresses.insert(text.data());
-  }
-  freeaddrinfo(found);
-  return {addresses.begin(), addresses.end()};
 }
 
 std::string LogFolder() {
@@ -343,7 +326,7 @@ std::vector<Finding> ExamineRos() {
   const auto append = [&](const std::vector<Finding>& more) {
     findings.insert(findings.end(), more.begin(), more.end());
   };
-  append(JudgeNames(settings, Resolve, NamesOfThisHost()));
+  append(JudgeNames(settings, AddressesOf, NamesOfThisHost()));
   append(ExaminePorts());
   append(ExaminePrograms());
   const int nice = WorkerHostParams().nice;

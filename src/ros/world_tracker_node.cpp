@@ -43,8 +43,7 @@ std::map<std::string, std::pair<double, double>> LimitsOf(const robot::RobotMode
 }
 
 void RequireFrame(const std::string& frame, const std::string& wanted) {
-  const std::string bare = !frame.empty() && frame[0] == '/' ? frame.substr(1) : frame;
-  if (bare == wanted) return;
+  if (BareFrame(frame) == wanted) return;
   throw ConfigError(fmt::format("frame_id is '{}', wanted '{}'", frame, wanted));
 }
 
