@@ -25,6 +25,18 @@ void Insert(Deque* deque, typename Deque::value_type item) {
   while (deque->back().stamp - deque->front().stamp > kHistory) deque->pop_front();
 }
 
+/// What is nearest in time; none farther than `reach` [s].
+template <typename Deque>
+const typename Deque::value_type* Nearest(const Deque& deque, double stamp, double reach) {
+  const typename Deque::value_type* nearest = nullptr;
+  for (const auto& one : deque) {
+    const bool is_nearer =
+        nearest == nullptr || std::abs(one.stamp - stamp) < std::abs(nearest->stamp - stamp);
+    if (is_nearer) nearest = &one;
+  }
+  return nearest && std::abs(nearest->stamp - stamp) <= reach ? nearest : nullptr;
+}
+
 }  // namespace
 
 /// A clock that begins anew (a simulation that is started again) makes all older stamps worthless.
@@ -35,10 +47,11 @@ void TrackerSenses::NoteTime(double stamp) {
 void TrackerSenses::Forget() {
   odometry_.clear();
   localisation_.clear();
-  X_MO_.reset();
+  origins_.clear();
   pending_.clear();
   joints_.reset();
   newest_joints_.reset();
+  why_dropped_.clear();
   taken_ = -1.0;
 }
 
@@ -52,7 +65,7 @@ void TrackerSenses::OnLocalisation(double stamp, const geometry::Pose2& X_MB) {
 }
 
 void TrackerSenses::OnOdometryOrigin(double stamp, const geometry::Pose2& X_MO) {
-  X_MO_ = {stamp, X_MO};
+  Insert(&origins_, {stamp, X_MO});
 }
 
 TrackerSenses::Pending* TrackerSenses::PendingAt(double stamp) {
@@ -76,14 +89,8 @@ void TrackerSenses::OnLook(double stamp, std::vector<hires::perception::Detectio
 
 /// The reading nearest in time, as long as it is near.
 const OdometryReading* TrackerSenses::OdometryAt(double stamp) const {
-  constexpr double kNear = 0.1;  // [s]
-  const Stamped<OdometryReading>* nearest = nullptr;
-  for (const auto& one : odometry_) {
-    if (nearest == nullptr || std::abs(one.stamp - stamp) < std::abs(nearest->stamp - stamp)) {
-      nearest = &one;
-    }
-  }
-  return nearest && std::abs(nearest->stamp - stamp) <= kNear ? &nearest->value : nullptr;
+  const auto* nearest = Nearest(odometry_, stamp, 0.1);
+  return nearest ? &nearest->value : nullptr;
 }
 
 /// The last correction of the odometry, and the odometry since then.
@@ -95,18 +102,21 @@ std::optional<geometry::Pose2> TrackerSenses::BaseAt(double stamp) const {
     const OdometryReading* then = OdometryAt(one->stamp);
     if (then) return map_to_world_.ToWorld(one->value * then->X_OB.Inverse() * now->X_OB);
   }
-  if (!X_MO_ || std::abs(X_MO_->stamp - stamp) > kOldOrigin) return std::nullopt;
-  return map_to_world_.ToWorld(X_MO_->value * now->X_OB);
+  const auto* X_MO = Nearest(origins_, stamp, kOldOrigin);
+  if (X_MO == nullptr) return std::nullopt;
+  return map_to_world_.ToWorld(X_MO->value * now->X_OB);
 }
 
-bool TrackerSenses::IsComplete(double stamp, const Pending& pending) const {
-  if (odometry_.empty() || odometry_.back().stamp < stamp - kSameStamp) return false;
-  if (!newest_joints_ || *newest_joints_ < stamp - kSameStamp) return false;
-  if (!pending.joints && !joints_) return false;
+/// What a moment still waits for; empty: it is complete.
+std::string TrackerSenses::Lack(double stamp, const Pending& pending) const {
+  if (odometry_.empty() || odometry_.back().stamp < stamp - kSameStamp) return "odometry";
+  if (!newest_joints_ || *newest_joints_ < stamp - kSameStamp) return "joint states";
+  if (!pending.joints && !joints_) return "joint states";
   const bool is_corrected =
       !localisation_.empty() && localisation_.back().stamp >= stamp - kSameStamp;
-  if (!is_corrected && odometry_.back().stamp < stamp + kLocalisationWait) return false;
-  return BaseAt(stamp).has_value();
+  if (!is_corrected && odometry_.back().stamp < stamp + kLocalisationWait) return "odometry";
+  if (OdometryAt(stamp) == nullptr) return "odometry of that time";
+  return BaseAt(stamp) ? "" : "localisation";
 }
 
 bool TrackerSenses::IsHopeless(double stamp) const {
@@ -119,9 +129,11 @@ std::optional<TrackerMoment> TrackerSenses::Take() {
   while (!pending_.empty()) {
     const auto first = pending_.begin();
     const double stamp = first->first;
-    if (!IsComplete(stamp, first->second)) {
+    const std::string lack = Lack(stamp, first->second);
+    if (!lack.empty()) {
       if (!IsHopeless(stamp)) return std::nullopt;
       ++num_dropped_;
+      why_dropped_ = lack;
       pending_.erase(first);
       continue;
     }
@@ -134,6 +146,7 @@ std::optional<TrackerMoment> TrackerSenses::Take() {
     if (is_posture_known) moment.look = std::move(first->second.look);
     if (!is_posture_known && first->second.look) ++num_dropped_;
     taken_ = stamp;
+    why_dropped_.clear();
     pending_.erase(first);
     return moment;
   }
@@ -142,9 +155,9 @@ std::optional<TrackerMoment> TrackerSenses::Take() {
 
 std::string TrackerSenses::Missing() const {
   if (odometry_.empty()) return "odometry";
-  if (localisation_.empty() && !X_MO_) return "localisation";
+  if (localisation_.empty() && origins_.empty()) return "localisation";
   if (!newest_joints_) return "joint states";
-  return "";
+  return why_dropped_;
 }
 
 }  // namespace hires_ros

@@ -77,6 +77,28 @@ TEST(TrackerSensesTest, AnOriginOfLongAgoIsNone) {
   EXPECT_FALSE(senses.Take());
 }
 
+TEST(TrackerSensesTest, MomentsThatWaitedHaveTheOriginOfTheirTime) {
+  TrackerSenses senses;
+  senses.OnLocalisation(10.0, {5.0, 2.0, 0.0});
+  const auto hear = [&](double stamp) {
+    senses.OnOdometry(stamp, Odometry(1.0));
+    senses.OnJoints(stamp, {});
+    return TakeAll(&senses).size();
+  };
+  // tf is late by so much that the oldest moments are given up...
+  double stamp = 100.0;
+  for (; stamp < 102.5; stamp += 0.05) EXPECT_EQ(hear(stamp), 0u);
+  EXPECT_EQ(senses.Missing(), "localisation");
+  // ... and the origins of now are no good for those that wait.
+  std::size_t taken = 0;
+  for (const double end = stamp + 3.0; stamp < end; stamp += 0.05) {
+    senses.OnOdometryOrigin(stamp + 0.05, {4.0, 2.0, 0.0});
+    taken += hear(stamp);
+  }
+  EXPECT_GE(taken, 3.0 / 0.05) << "all that came after the first origin but the last 0.15 s";
+  EXPECT_EQ(senses.Missing(), "");
+}
+
 TEST(TrackerSensesTest, ALookJoinsTheJointsOfItsMoment) {
   TrackerSenses senses;
   senses.OnLook(10.0, {{"mug1", "mug", {}, 1.0}});

@@ -3,6 +3,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "hires/perception/object_memory.h"
@@ -41,7 +42,8 @@ class TrackerSenses {
   std::optional<TrackerMoment> Take();
 
   int num_dropped() const { return num_dropped_; }  ///< moments that came too late, or stayed alone
-  std::string Missing() const;                      ///< what has not come at all; for people
+  /// What has not come at all, or kept the last moment from being complete; for people.
+  std::string Missing() const;
 
  private:
   struct Pending {
@@ -56,7 +58,7 @@ class TrackerSenses {
 
   Pending* PendingAt(double stamp);
   void NoteTime(double stamp);
-  bool IsComplete(double stamp, const Pending& pending) const;
+  std::string Lack(double stamp, const Pending& pending) const;
   bool IsHopeless(double stamp) const;
   std::optional<hires::geometry::Pose2> BaseAt(double stamp) const;
   const OdometryReading* OdometryAt(double stamp) const;
@@ -65,11 +67,12 @@ class TrackerSenses {
   hires::world::MapToWorld map_to_world_;
   std::deque<Stamped<OdometryReading>> odometry_;             // oldest first
   std::deque<Stamped<hires::geometry::Pose2>> localisation_;  // likewise
-  std::optional<Stamped<hires::geometry::Pose2>> X_MO_;
+  std::deque<Stamped<hires::geometry::Pose2>> origins_;       // X_MO, likewise
   std::map<double, Pending> pending_;                            // by stamp
   std::optional<Stamped<hires::robot::JointPositions>> joints_;  // taken last
   std::optional<double> newest_joints_;                          // stamp
   double taken_{-1.0};                                           // stamp of the last moment
+  std::string why_dropped_;                                      // the last one, none came since
   int num_dropped_{0};
 };
 
