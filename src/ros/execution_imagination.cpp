@@ -79,10 +79,10 @@ void ImaginationDesk::Translate(int key, const execution::StartImagination& comm
   for (const auto& atom : command.state) call.request.updated_fluents.push_back(ToMsg(atom));
   const double give_up = SteadyNow() + params_.server_wait;
   translator_.Post([this, key, call, give_up, shared = translator_state_]() mutable {
-    bool is_answered = ros::service::call(kGenerateImagineState, call);
+    bool is_answered = shared->services.Call(kGenerateImagineState, &call);
     while (!is_answered && SteadyNow() < give_up && !shared->is_ending && ros::ok()) {
       ros::WallDuration(kRetryPeriod).sleep();
-      is_answered = ros::service::call(kGenerateImagineState, call);
+      is_answered = shared->services.Call(kGenerateImagineState, &call);
     }
     shared->is_available = is_answered;
     post_(

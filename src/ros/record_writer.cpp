@@ -63,7 +63,9 @@ knowledge::Fluent FluentOf(const execution::Record& record, double start,
 }
 
 RecordWriter::RecordWriter(std::shared_ptr<const knowledge::Ontology> ontology)
-    : ontology_(std::move(ontology)), thread_([this] { Run(); }) {}
+    : ontology_(std::move(ontology)),
+      blackboard_(ros::NodeHandle(), std::string(kBlackboard) + "/"),
+      thread_([this] { Run(); }) {}
 
 RecordWriter::~RecordWriter() {
   {
@@ -204,7 +206,7 @@ RecordWriter::Answer RecordWriter::Remove(const std::string& instance, double ti
 
 template <typename Service>
 RecordWriter::Answer RecordWriter::Ask(const char* name, Service* call) {
-  const bool is_there = ros::service::call(kBlackboard + std::string("/") + name, *call);
+  const bool is_there = blackboard_.Call(name, call);
   if (!is_there && !std::exchange(is_away_, true)) {
     Log(LogLevel::kWarn, "the Blackboard does not answer; records wait until it is back");
   }

@@ -23,12 +23,11 @@ constexpr std::uint32_t kMessageQueue = 1000;  // what is dropped beyond is aske
 
 /// False if nobody answers, or not with what was asked for.
 template <typename Service>
-bool Ask(ros::NodeHandle* nh, const char* service, Service* call) {
-  const std::string name = std::string(kBlackboard) + "/" + service;
-  ros::ServiceClient client = nh->serviceClient<Service>(name);
-  if (!client.call(*call)) return false;
+bool Ask(ServiceLinks* blackboard, const char* service, Service* call) {
+  if (!blackboard->Ask(service, call)) return false;
   if (call->response.error.code == hires::BlackboardError::NONE) return true;
-  Log(LogLevel::kWarn, fmt::format("service={} error={}", name, call->response.error.message));
+  Log(LogLevel::kWarn, fmt::format("service={} error={}", blackboard->NameOf(service),
+                                   call->response.error.message));
   return false;
 }
 
@@ -37,6 +36,7 @@ bool Ask(ros::NodeHandle* nh, const char* service, Service* call) {
 RemoteView::RemoteView(const ros::NodeHandle& nh, Listener listener, double check_period)
     : listener_(std::move(listener)),
       view_(std::vector<knowledge::Fluent>(), 0),
+      blackboard_(nh, std::string(kBlackboard) + "/"),
       nh_(nh),
       spinner_(1, &queue_) {
   nh_.setCallbackQueue(&queue_);
@@ -74,7 +74,7 @@ void RemoteView::OnMessage(const hires::FluentChangesConstPtr& message) {
 bool RemoteView::Synchronise() {
   hires::QueryFluents question;
   question.request.query.limit = 1;
-  is_connected_ = Ask(&nh_, "query", &question);
+  is_connected_ = Ask(&blackboard_, "query", &question);
   if (!is_connected_) return false;
   const std::uint64_t theirs = question.response.sequence;
   if (is_known_ && theirs == sequence_) return true;
@@ -91,7 +91,7 @@ bool RemoteView::LoadAll() {
   do {
     page.request.query.cursor = page.response.next;
     page.response = {};
-    if (!Ask(&nh_, "query", &page)) return false;
+    if (!Ask(&blackboard_, "query", &page)) return false;
     if (fluents.empty()) sequence = page.response.sequence;
     for (knowledge::Fluent& fluent : FromMessages(page.response.fluents)) {
       fluents.push_back(std::move(fluent));
@@ -113,7 +113,7 @@ bool RemoteView::LoadMissed() {
     call.request.sequence = sequence_;
     call.request.limit = kPage;
     call.response = {};
-    if (!Ask(&nh_, "changes_since", &call)) return false;
+    if (!Ask(&blackboard_, "changes_since", &call)) return false;
     for (const hires::FluentChanges& message : call.response.messages) Take(message);
   } while (call.response.more);
   return true;

@@ -33,7 +33,7 @@ ObservationWriter::ObservationWriter(const translation::TranslatorContext* conte
     : context_(context),
       params_(params),
       on_view_(std::move(on_view)),
-      nh_(nh),
+      blackboard_(nh, std::string(kBlackboard) + "/"),
       view_(nh, [this](const RemoteView::Update& update) { OnView(update); }),
       thread_([this] { Run(); }) {}
 
@@ -129,16 +129,14 @@ bool ObservationWriter::Send(const translation::FluentUpdate& update) {
 
 template <typename Service>
 bool ObservationWriter::Call(const char* service, Service* call) {
-  const std::string name = std::string(kBlackboard) + "/" + service;
-  ros::ServiceClient client = nh_.serviceClient<Service>(name);
-  if (!client.call(*call)) {
-    Fail(fmt::format("nobody answers at '{}'", nh_.resolveName(name)));
+  if (!blackboard_.Call(service, call)) {
+    Fail(fmt::format("nobody answers at '{}'", blackboard_.NameOf(service)));
     return false;
   }
   if (call->response.error.code == hires::BlackboardError::NONE) return true;
   // An episode that has ended takes nothing more; the next words of the monitor name another.
   if (call->response.error.code == hires::BlackboardError::REFUSED) episode_ = 0;
-  Fail(fmt::format("{}: {}", name, call->response.error.message));
+  Fail(fmt::format("{}/{}: {}", kBlackboard, service, call->response.error.message));
   return false;
 }
 

@@ -13,6 +13,7 @@
 
 #include "hires/execution/monitor_config.h"
 #include "hires/ros/action_link.h"
+#include "hires/ros/service_links.h"
 #include "hires/ros/work_thread.h"
 
 namespace hires_ros {
@@ -60,6 +61,7 @@ class ImaginationDesk {
   struct TranslatorState {
     std::atomic<bool> is_ending{false};
     std::atomic<bool> is_available{true};
+    ServiceLinks services{ros::NodeHandle(), ""};  // of the translator's thread
   };
 
   void Translate(int key, const hires::execution::StartImagination& command);

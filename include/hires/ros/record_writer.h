@@ -15,6 +15,7 @@
 #include "hires/execution/monitor.h"
 #include "hires/knowledge/fluent.h"
 #include "hires/knowledge/ontology.h"
+#include "hires/ros/service_links.h"
 
 namespace hires_ros {
 
@@ -75,6 +76,7 @@ class RecordWriter {
   std::atomic<int> num_written_{0}, num_refused_{0};
 
   // Of the writer's thread.
+  ServiceLinks blackboard_;
   std::int64_t current_{0};  // episode that is written; 0: it was refused
   std::string episode_name_;
   std::map<std::string, double> begun_;  // [s], by instance in lower case

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "hires/knowledge/live_view.h"
+#include "hires/ros/service_links.h"
 
 namespace hires_ros {
 
@@ -71,6 +72,7 @@ class RemoteView {
   std::atomic<bool> is_connected_{false};
   std::atomic<std::uint64_t> sequence_{0};
 
+  ServiceLinks blackboard_;  // guarded by synchronising_
   ros::CallbackQueue queue_;
   ros::NodeHandle nh_;
   ros::Subscriber subscriber_;

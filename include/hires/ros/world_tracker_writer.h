@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "hires/ros/remote_view.h"
+#include "hires/ros/service_links.h"
 #include "hires/ros/world_tracker_params.h"
 
 namespace hires_ros {
@@ -50,7 +51,7 @@ class ObservationWriter {
   const RemoteView::Listener on_view_;
   std::atomic<std::int64_t> episode_{0};  // of the monitor's last word
   std::atomic<std::uint64_t> num_written_{0}, num_failures_{0};
-  ros::NodeHandle nh_;
+  ServiceLinks blackboard_;
   double last_warning_{-1e9};  // [s] steady; of the writing thread
 
   mutable std::mutex mutex_;
