@@ -10,10 +10,6 @@
 namespace hires::base {
 namespace {
 
-std::string CanonicalName(const std::string& name) {
-  return ToLower(!name.empty() && name.front() == '!' ? name.substr(1) : name);
-}
-
 std::vector<std::string> Distinct(const std::vector<std::string>& names) {
   std::vector<std::string> distinct;
   for (const std::string& name : names) {
@@ -30,6 +26,21 @@ bool EqualIgnoringCase(const std::string& a, const std::string& b) {
 }
 
 }  // namespace
+
+std::string CanonicalName(const std::string& name) {
+  return ToLower(!name.empty() && name.front() == '!' ? name.substr(1) : name);
+}
+
+bool IsAmong(const ActionCall& call, const ActionTemplate& action) {
+  const auto has = [](const std::string& argument, const std::vector<std::string>& alternatives) {
+    return std::any_of(
+        alternatives.begin(), alternatives.end(),
+        [&](const std::string& alternative) { return EqualIgnoringCase(argument, alternative); });
+  };
+  return CanonicalName(call.name) == CanonicalName(action.name) &&
+         std::equal(call.arguments.begin(), call.arguments.end(), action.alternatives.begin(),
+                    action.alternatives.end(), has);
+}
 
 bool ActionCall::operator==(const ActionCall& other) const {
   return CanonicalName(name) == CanonicalName(other.name) &&

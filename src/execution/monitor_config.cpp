@@ -40,7 +40,7 @@ ImaginingParams ReadImagining(ParamReader in) {
   ImaginingParams params;
   params.rollouts = in.Get("rollouts", Between(1, 100'000));
   params.ranking = in.Get("ranking", base::OneOf({"", "risk", "thesis"}));
-  params.seed = static_cast<std::uint64_t>(in.Get("seed", Between(0, 2'000'000'000)));
+  params.seed = static_cast<std::uint64_t>(in.Get("seed", Between(0, 2'147'483'647)));
   return params;
 }
 

@@ -88,6 +88,20 @@ std::vector<std::string> InstancesOf(const hires::GenerateImagineState::Response
 
 }  // namespace
 
+void SetDispatch(const std::vector<hires::StepStatus>& steps,
+                 std::vector<hires::ImaginationStatus>* imaginations) {
+  for (hires::ImaginationStatus& imagination : *imaginations) {
+    const auto begun = [&](const hires::StepStatus& step) {
+      if (std::isnan(step.started)) return false;
+      if (step.plan == imagination.plan) return step.index == imagination.step;
+      return step.plan > imagination.plan &&
+             base::IsAmong(FromMsg(step.action), FromMsg(imagination.action));
+    };
+    const auto step = std::find_if(steps.begin(), steps.end(), begun);
+    if (step != steps.end()) imagination.dispatch = step->started;
+  }
+}
+
 hires::Atom ToMsg(const base::Atom& atom) {
   hires::Atom message;
   message.predicate = atom.predicate;

@@ -68,17 +68,6 @@ bool LooksSame(const hires::AchieveFeedback& a, const hires::AchieveFeedback& b)
                     b.imaginations.end(), same_imagination);
 }
 
-void SetDispatch(const std::vector<hires::StepStatus>& steps,
-                 std::vector<hires::ImaginationStatus>* imaginations) {
-  for (hires::ImaginationStatus& imagination : *imaginations) {
-    for (const hires::StepStatus& step : steps) {
-      if (step.plan == imagination.plan && step.index == imagination.step) {
-        imagination.dispatch = step.started;
-      }
-    }
-  }
-}
-
 }  // namespace
 
 execution::MonitorConfig LoadExecutionMonitorParams() {
@@ -97,7 +86,7 @@ execution::MonitorConfig LoadExecutionMonitorParams() {
   }
   config.monitor.dry_run = PrivateBool("dry_run").value_or(config.monitor.dry_run);
   int seed = static_cast<int>(config.imagining.seed);
-  Override("seed", PrivateInt("seed"), hires::base::Between(0, 2'000'000'000), &seed);
+  Override("seed", PrivateInt("seed"), hires::base::Between(0, 2'147'483'647), &seed);
   config.imagining.seed = static_cast<std::uint64_t>(seed);
   return config;
 }

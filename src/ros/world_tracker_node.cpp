@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "hires/base/action.h"
 #include "hires/base/error.h"
 #include "hires/base/log.h"
-#include "hires/base/text.h"
 #include "hires/robot/gripper.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/process.h"
@@ -190,7 +190,7 @@ void WorldTrackerNode::OnDetections(const hires::Detections& msg) {
 }
 
 void WorldTrackerNode::OnGoal(const hires::ExecuteActionActionGoal& msg) {
-  running_[msg.goal_id.id] = hires::base::ToLower(msg.goal.action.name);
+  running_[msg.goal_id.id] = hires::base::CanonicalName(msg.goal.action.name);
   TellActions();
 }
 
@@ -201,10 +201,7 @@ void WorldTrackerNode::OnResult(const hires::ExecuteActionActionResult& msg) {
 
 void WorldTrackerNode::TellActions() {
   std::vector<std::string> actions;
-  for (const auto& [id, action] : running_) {
-    const bool is_bare = !action.empty() && action[0] == '!';
-    actions.push_back(is_bare ? action.substr(1) : action);
-  }
+  for (const auto& [id, action] : running_) actions.push_back(action);
   sweep_.SetRunning(actions, time_);
 }
 

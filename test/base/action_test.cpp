@@ -80,5 +80,15 @@ TEST(CombinationsTest, ManyArgumentsAreRefusedBeforeTheyFillTheMemory) {
   EXPECT_THROW(Combinations(huge), ConfigError);
 }
 
+TEST(IsAmongTest, CallsAreAmongTheCombinationsAndOthersAreNot) {
+  const ActionTemplate drive{"!Move_Base", {{"Area1", "area2"}, {"slow"}}};
+  for (const ActionCall& call : Combinations(drive)) EXPECT_TRUE(IsAmong(call, drive));
+  EXPECT_TRUE(IsAmong({"move_base", {"AREA2", "Slow"}}, drive));
+  EXPECT_FALSE(IsAmong({"move_base", {"area2", "fast"}}, drive));
+  EXPECT_FALSE(IsAmong({"move_base", {"area2"}}, drive)) << "too few arguments";
+  EXPECT_FALSE(IsAmong({"move_base", {"area2", "slow", "slow"}}, drive));
+  EXPECT_FALSE(IsAmong({"move_torso", {"area1", "slow"}}, drive));
+}
+
 }  // namespace
 }  // namespace hires::base

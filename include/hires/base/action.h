@@ -29,6 +29,12 @@ struct ActionTemplate {
   std::vector<std::vector<std::string>> alternatives;  ///< one list per argument, none empty
 };
 
+/// Lower-case, without `!`: names of actions that are the same are equal so.
+std::string CanonicalName(const std::string& name);
+
+/// Whether a call is one of a template's combinations.
+bool IsAmong(const ActionCall& call, const ActionTemplate& action);
+
 /// "move_base_param(area1, slow)", for people.
 std::string ToString(const ActionCall& call);
 

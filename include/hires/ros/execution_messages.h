@@ -4,6 +4,7 @@
 #include <hires/ExecuteActionGoal.h>
 #include <hires/ExecuteActionResult.h>
 #include <hires/GenerateImagineState.h>
+#include <hires/ImaginationStatus.h>
 #include <hires/ImagineGoal.h>
 #include <hires/ImagineResult.h>
 #include <hires/PlanGoal.h>
@@ -46,6 +47,11 @@ hires::execution::ImagineAnswered AnswerOf(int request, const hires::ImagineResu
                                            const hires::GenerateImagineState::Response& state,
                                            bool is_late);
 std::string OutcomeName(hires::execution::ImagineAnswered::Outcome outcome);  ///< "ranked", ...
+
+/// When the imagined steps began. A step that a repair took over into a later plan, where it has
+/// another number, is the first one there that does what was imagined.
+void SetDispatch(const std::vector<hires::StepStatus>& steps,
+                 std::vector<hires::ImaginationStatus>* imaginations);
 
 /// Code of hires::AchieveResult.
 std::uint8_t CodeOf(hires::execution::Finish::Outcome outcome);
