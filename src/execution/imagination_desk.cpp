@@ -108,7 +108,7 @@ Facts ImaginationDesk::Projected(int target) const {
     ApplyEffects(run.planned(active), step.disturbance, step.before, &facts);
   }
   for (int i = 0; i < target; ++i) {
-    if (run.at(i).IsWaiting()) ApplyEffects(run.planned(i), &facts);
+    if (run.at(i).IsWaiting()) ApplyEffects(run.planned(i), run.at(i).disturbance, &facts);
   }
   return facts;
 }

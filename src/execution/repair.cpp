@@ -52,7 +52,8 @@ std::string Repair::Begin(const Trouble& trouble) {
   const std::string text = ToString(trouble);
   const std::set<std::string> state = TextsOf(session_.facts());
   if (text == last_trouble_ && state == last_state_ && trouble.kind != Trouble::Kind::kImagined) {
-    return text + " (twice in a row, and nothing has changed)";
+    if (!trouble.is_of_the_way) return text + " (twice in a row, and nothing has changed)";
+    session_.Exclude({trouble.action, NamesIn(trouble.reason), 0}, trouble.step, trouble.reason);
   }
   last_trouble_ = text;
   last_state_ = state;
@@ -188,7 +189,7 @@ Repair::Result Repair::Take() {
     return Result::kUnderWay;
   }
   if (!plan) {
-    why_ = quest_.why();
+    why_ = fmt::format("{}; the last reason was {}", quest_.why(), last_trouble_);
     return is_useless ? Result::kFailed : Result::kNoPlan;
   }
   std::vector<int> informs = InformedSteps(*plan);

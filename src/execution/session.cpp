@@ -37,6 +37,18 @@ std::string ToString(const Trouble& trouble) {
   return fmt::format("{}: {}", base::ToString(trouble.action), trouble.reason);
 }
 
+std::set<std::string> NamesIn(const std::string& reason) {
+  std::set<std::string> names;
+  const std::size_t colon = reason.find(": ");
+  if (colon == std::string::npos) return names;
+  for (const std::string& part : base::Split(base::ToLower(reason.substr(colon + 2)), ',')) {
+    for (const std::string& word : base::Split(part, ' ')) {
+      if (!word.empty()) names.insert(word);
+    }
+  }
+  return names;
+}
+
 Session::Session(const planning::PlanningKnowledge* knowledge,
                  const planning::OperatorData* operators, const MonitorParams& params)
     : knowledge_(knowledge),

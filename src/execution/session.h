@@ -18,8 +18,12 @@ struct Trouble {
   Kind kind{Kind::kActivity};
   base::ActionCall action;  ///< of the step that it is about
   std::string reason;
+  int step{-1};               ///< its number in the plan, where it was one of the plan's that failed
+  bool is_of_the_way{false};  ///< not of whoever carries it out: another way may do
 };
 std::string ToString(const Trouble& trouble);
+/// What a reason names: "area_occupied: book1, mug2" and "no_path: hand touches book1" book1.
+std::set<std::string> NamesIn(const std::string& reason);
 
 /// An action that the planner shall not use (imagined_failure action arguments...).
 struct Exclusion {

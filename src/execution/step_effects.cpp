@@ -1,5 +1,7 @@
 #include "step_effects.h"
 
+#include <algorithm>
+
 #include "hires/planning/substitution.h"
 
 namespace hires::execution {
@@ -66,6 +68,14 @@ std::vector<Datum> TouchedBy(const Disturbance& disturbance, const Facts& facts)
 void ApplyEffects(const planning::PlanStep& step, Facts* facts) {
   for (const Datum& atom : step.deletes) facts->Remove(atom);
   for (const Datum& atom : step.adds) facts->Add(atom);
+}
+
+void ApplyEffects(const planning::PlanStep& step, const Disturbance& disturbance, Facts* facts) {
+  const bool is_foreseen =
+      std::all_of(step.deletes.begin(), step.deletes.end(),
+                  [&](const Datum& atom) { return facts->HoldsText(ToString(atom)); });
+  if (!is_foreseen) facts->RemoveMatches(disturbance.effects);
+  ApplyEffects(step, facts);
 }
 
 void ApplyEffects(const planning::PlanStep& step, const Disturbance& disturbance,

@@ -34,8 +34,11 @@ Disturbance DisturbanceOf(const planning::Domain& domain, const planning::Operat
 /// What holds of that which a step will touch: to be noted when it begins.
 std::vector<Datum> TouchedBy(const Disturbance& disturbance, const Facts& facts);
 
-/// The state when a step that has not begun is done.
+/// The state when a step is done that changes just what was planned.
 void ApplyEffects(const planning::PlanStep& step, Facts* facts);
+/// The same of one that has not begun. Where the state is not as foreseen (an arm is in another
+/// posture), it changes what its operator changes of any state.
+void ApplyEffects(const planning::PlanStep& step, const Disturbance& disturbance, Facts* facts);
 /// The same of one that runs; `before`: what TouchedBy said when it began.
 void ApplyEffects(const planning::PlanStep& step, const Disturbance& disturbance,
                   const std::vector<Datum>& before, Facts* facts);

@@ -24,18 +24,6 @@ std::string ReasonOf(const StepFinished& finished) {
   return "failed";
 }
 
-/// "area_occupied: book1, mug2" rests on book1 and mug2.
-std::set<std::string> NamesIn(const std::string& reason) {
-  std::set<std::string> names;
-  const std::size_t colon = reason.find(": ");
-  if (colon == std::string::npos) return names;
-  for (std::string name : base::Split(reason.substr(colon + 2), ',')) {
-    name.erase(0, name.find_first_not_of(' '));
-    if (!name.empty()) names.insert(base::ToLower(name));
-  }
-  return names;
-}
-
 /// It will fail again however often it is tried from here: another way must be taken.
 bool IsOfTheWay(const std::string& reason) {
   return reason.rfind("area_occupied", 0) == 0 || reason.rfind("unreachable", 0) == 0;
@@ -57,7 +45,10 @@ void StepWatch::OnFinished(const StepFinished& finished) {
   if (step.is_stopping) return session_.End(index, StepPhase::kFailed, "preempted", "stopped");
   session_.End(index, StepPhase::kFailed, "failed", reason);
   if (IsOfTheWay(reason)) session_.Exclude({step.action, NamesIn(reason), 0}, index, reason);
-  session_.Report({Trouble::Kind::kActivity, step.action, reason}, step.activity);
+  const bool is_of_the_way =
+      finished.result == StepFinished::Result::kFailed && reason.rfind("timed_out", 0) != 0;
+  session_.Report({Trouble::Kind::kActivity, step.action, reason, index, is_of_the_way},
+                  step.activity);
 }
 
 void StepWatch::Wake(double at) { wake_at_ = std::min(wake_at_.value_or(at), at); }
