@@ -218,6 +218,23 @@ Costmap Costmap::WithRoomFor(const geometry::Polygon& outline_M) const {
   return roomier;
 }
 
+Costmap Costmap::WithInscribedRadius(double inscribed_radius) const {
+  world::OccupancyGrid grid;
+  grid.resolution = resolution_;
+  grid.width = width_;
+  grid.height = height_;
+  grid.origin = origin_;
+  for (const std::uint8_t cost : costs_) {
+    grid.cells.push_back(cost == kUnknownCost  ? world::Cell::kUnknown
+                         : cost == kLethalCost ? world::Cell::kOccupied
+                                               : world::Cell::kFree);
+  }
+  CostmapParams params = params_;
+  params.inflation_radius =
+      std::max(0.0, params_.inflation_radius + inscribed_radius - inscribed_radius_);
+  return {grid, inscribed_radius, params};
+}
+
 void Costmap::Inflate(const std::vector<std::pair<int, int>>& cells) {
   const double radius = std::max(params_.inflation_radius, inscribed_radius_);
   const int reach = static_cast<int>(std::min(radius / resolution_, 1e4));

@@ -146,24 +146,6 @@ void CheckProfile(ParamReader in, const RobotProfile& profile, const RobotModel&
   if (profile.upper_body) CheckUpperBody(in.Sub("upper_body"), *profile.upper_body, model);
 }
 
-/// Hull of the collision shapes from above, in the frame of link `base_link`.
-geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_link,
-                            const JointPositions& joints) {
-  const Pose3 X_RB = ForwardKinematics(model, joints)[*model.FindLink(base_link)];
-  std::vector<Eigen::Vector2d> points;
-  for (const geometry::Collision& collision : FrozenCollisions(model, joints)) {
-    const auto outline = geometry::OutlineInBand(collision.shape, X_RB.Inverse() * collision.X_BS,
-                                                 0.0, kFootprintTop);
-    if (outline) points.insert(points.end(), outline->begin(), outline->end());
-  }
-  if (points.size() >= 3) return geometry::ConvexHull(std::move(points));
-  throw base::ConfigError(
-      fmt::format("robot '{}': no collision shape lies 0 to {} m above link '{}', so there is no "
-                  "footprint; add "
-                  "<collision> shapes, or give 'footprint' in a profile",
-                  model.name, kFootprintTop, base_link));
-}
-
 void AddTo(base::Hasher* hash, const MotionSet& set) {
   hash->Add(set.max_linear_velocity);
   hash->Add(set.max_angular_velocity);
@@ -232,6 +214,23 @@ TrayCandidate FindTray(const RobotModel& model) {
 }
 
 }  // namespace
+
+geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_link,
+                            const JointPositions& joints) {
+  const Pose3 X_RB = ForwardKinematics(model, joints)[*model.FindLink(base_link)];
+  std::vector<Eigen::Vector2d> points;
+  for (const geometry::Collision& collision : FrozenCollisions(model, joints)) {
+    const auto outline = geometry::OutlineInBand(collision.shape, X_RB.Inverse() * collision.X_BS,
+                                                 0.0, kFootprintTop);
+    if (outline) points.insert(points.end(), outline->begin(), outline->end());
+  }
+  if (points.size() >= 3) return geometry::ConvexHull(std::move(points));
+  throw base::ConfigError(
+      fmt::format("robot '{}': no collision shape lies 0 to {} m above link '{}', so there is no "
+                  "footprint; add "
+                  "<collision> shapes, or give 'footprint' in a profile",
+                  model.name, kFootprintTop, base_link));
+}
 
 std::uint64_t Robot::hash() const {
   base::Hasher hash;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hires/geometry/angles.h"
+#include "hires/skills/posture_skills.h"
 
 namespace hires::skills {
 namespace {
@@ -48,6 +49,13 @@ double ApproachSpeed(double distance, double deceleration, double reaction_time)
   return std::sqrt(lost * lost + 2.0 * deceleration * distance) - lost;
 }
 
+/// In whole steps: arms in no known posture, measured and never quite the same, give the same
+/// drive.
+double Outwards(double coordinate, double padding) {
+  constexpr double kStep = 0.05;  // [m] a cell of the map
+  return std::copysign(kStep * std::ceil((std::abs(coordinate) + padding) / kStep), coordinate);
+}
+
 }  // namespace
 
 DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::Robot& robot,
@@ -56,7 +64,7 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
       geometry::Padded(robot.profile.footprint, robot.profile.footprint_padding);
   return {std::make_shared<const navigation::Costmap>(map, geometry::InscribedRadius(footprint),
                                                       params.costmap),
-          footprint, params};
+          std::make_shared<const robot::Robot>(robot), footprint, params};
 }
 
 DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot& robot,
@@ -66,13 +74,53 @@ DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot&
                             robot, params);
 }
 
+geometry::Polygon FootprintOf(const DrivingContext& context,
+                              const robot::JointPositions& measured) {
+  const robot::Robot& robot = *context.robot;
+  if (!robot.profile.upper_body || measured.empty()) return context.footprint;
+  const geometry::Polygon outline =
+      robot::OutlineOf(robot.model, robot.profile.base_link, DrivingJoints(robot, measured));
+  std::vector<Eigen::Vector2d> corners = context.footprint;
+  for (const Eigen::Vector2d& corner : outline) {
+    if (geometry::Contains(context.footprint, corner)) continue;
+    corners.emplace_back(Outwards(corner.x(), robot.profile.footprint_padding),
+                         Outwards(corner.y(), robot.profile.footprint_padding));
+  }
+  if (corners.size() == context.footprint.size()) return context.footprint;
+  return geometry::ConvexHull(std::move(corners));
+}
+
 MoveBase::MoveBase(std::shared_ptr<const DrivingContext> context, const Pose2& X_MGoal,
                    const robot::MotionSet& motion_set)
     : context_(std::move(context)),
       X_MGoal_(X_MGoal),
       motion_set_(motion_set),
-      local_(context_->params.local, context_->footprint) {
+      costmap_(context_->costmap),
+      footprint_(context_->footprint),
+      local_(context_->params.local, footprint_) {
   local_.SetMotionSet(motion_set);
+}
+
+/// Whoever has its arms elsewhere than for driving needs more room: to turn anywhere on its way, or
+/// at least to pass. Where there is no such way it is tried as if there were no arms; the local
+/// planner sees to it that nothing is touched.
+void MoveBase::Begin(const robot::Observation& observation) {
+  has_begun_ = true;
+  footprint_ = FootprintOf(*context_, observation.joints);
+  if (footprint_ == context_->footprint) return;
+  local_ = navigation::DwaPlanner(context_->params.local, footprint_);
+  local_.SetMotionSet(motion_set_);
+  double half_width = 0.0;
+  for (const Eigen::Vector2d& p : footprint_) half_width = std::max(half_width, std::abs(p.y()));
+  for (const double radius : {geometry::CircumscribedRadius(footprint_), half_width}) {
+    costmap_ =
+        std::make_shared<const navigation::Costmap>(context_->costmap->WithInscribedRadius(radius));
+    const std::optional<navigation::Costmap> now = CostmapNow(observation);
+    const auto way = navigation::PlanPath(now ? *now : *costmap_, observation.X_MB, X_MGoal_,
+                                          context_->params.planner);
+    if (way.status == navigation::PathStatus::kFound) return;
+  }
+  costmap_ = context_->costmap;
 }
 
 std::optional<Status> MoveBase::Plan(const navigation::Costmap& costmap, const Pose2& X_MB) {
@@ -125,10 +173,10 @@ std::optional<navigation::Costmap> MoveBase::CostmapNow(
     const robot::Observation& observation) const {
   std::optional<navigation::Costmap> now;
   if (!observation.obstacles_M.empty()) {
-    now = context_->costmap->WithObstacles(observation.obstacles_M);
+    now = costmap_->WithObstacles(observation.obstacles_M);
   }
-  const geometry::Polygon outline_M = geometry::Transformed(observation.X_MB, context_->footprint);
-  const navigation::Costmap& known = now ? *now : *context_->costmap;
+  const geometry::Polygon outline_M = geometry::Transformed(observation.X_MB, footprint_);
+  const navigation::Costmap& known = now ? *now : *costmap_;
   int column = 0, row = 0;
   known.CellOf(observation.X_MB.position(), &column, &row);
   if (known.Inside(column, row) && known.cost(column, row) < navigation::kLethalCost &&
@@ -140,8 +188,9 @@ std::optional<navigation::Costmap> MoveBase::CostmapNow(
 
 Status MoveBase::Update(const robot::Observation& observation, robot::Command* command) {
   command->motion_set = motion_set_;
+  if (!has_begun_) Begin(observation);
   const std::optional<navigation::Costmap> now = CostmapNow(observation);
-  const navigation::Costmap& costmap = now ? *now : *context_->costmap;
+  const navigation::Costmap& costmap = now ? *now : *costmap_;
   if (!has_path_) {
     if (const auto failed = Plan(costmap, observation.X_MB)) return *failed;
     X_MMoved_ = observation.X_MB;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -27,6 +28,7 @@ const char kCarry[] = "armcarryposture";
 // counts.
 constexpr double kTuckedError = 0.1;
 constexpr double kUnTuckedError = 0.3;
+constexpr double kInPosture = 0.3;  // [rad] the same sum, for any posture
 
 template <typename T>
 const T& Named(const std::map<std::string, T>& known, const char* kind, const std::string& name) {
@@ -182,7 +184,37 @@ Beginning CarryTogether(const Context& context, const Observation& seen) {
                                  {kRight, Columns(both, left.size(), right.size())}}));
 }
 
+/// The variant of a posture that an arm is in, holding or not.
+std::optional<std::vector<double>> VariantOf(const robot::Robot& robot,
+                                             const robot::ArmProfile& arm,
+                                             const std::vector<double>& now) {
+  std::optional<std::vector<double>> nearest;
+  double least = kInPosture;
+  const auto look_at = [&](const std::vector<double>& variant) {
+    const double error = ErrorTo(robot, arm, variant, now);
+    if (error > least) return;
+    least = error;
+    nearest = variant;
+  };
+  for (const auto& [name, variants] : arm.postures) {
+    for (const std::vector<double>& variant : variants) look_at(variant);
+  }
+  for (const auto& [name, variant] : arm.holding_postures) look_at(variant);
+  return nearest;
+}
+
 }  // namespace
+
+robot::JointPositions DrivingJoints(const robot::Robot& robot,
+                                    const robot::JointPositions& measured) {
+  robot::JointPositions joints = robot.profile.joints;
+  const robot::JointPositions posture = PostureOf(robot, measured);
+  for (const auto& [name, arm] : robot.profile.upper_body->arms) {
+    const std::vector<double> now = JointsOf(arm.joints, posture);
+    SetJoints(arm.joints, VariantOf(robot, arm, now).value_or(now), &joints);
+  }
+  return joints;
+}
 
 const std::vector<double>& PosturePositions(const robot::ArmProfile& arm,
                                             const std::string& posture, bool holds) {

@@ -85,6 +85,22 @@ TEST(CostmapTest, RoomIsMadeBelowTheOutlineAndNowhereElse) {
   EXPECT_NO_THROW(before.WithRoomFor({{-5.0, -5.0}, {0.2, 0.1}, {-5.0, 20.0}}));
 }
 
+TEST(CostmapTest, AnotherRadiusIsAsIfMadeWithIt) {
+  world::OccupancyGrid grid = FreeGrid(30, 20, 0.1);
+  Set(&grid, 4, 7);
+  Set(&grid, 21, 12);
+  grid.cells[5] = world::Cell::kUnknown;
+  for (const double radius : {0.1, 0.35, 1.0}) {
+    const Costmap changed = Costmap(grid, 0.2, Params(0.4)).WithInscribedRadius(radius);
+    const Costmap made(grid, radius, Params(0.4 + radius - 0.2));
+    for (int row = 0; row < 20; ++row) {
+      for (int column = 0; column < 30; ++column) {
+        EXPECT_EQ(changed.cost(column, row), made.cost(column, row)) << column << ", " << row;
+      }
+    }
+  }
+}
+
 TEST(CostmapTest, BrokenGridsAreRefused) {
   world::OccupancyGrid grid = FreeGrid(3, 3);
   grid.cells.pop_back();

@@ -14,25 +14,13 @@ import rosunit
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
-from robot_system import RobotSystem  # noqa: E402
+from robot_system import COUNTER, MUG, RobotSystem  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
 
 # Poses of areas in worlds/restaurant.world: x, y [m], yaw [rad].
 EAST_TABLE_2 = (11.78, 11.49, 3.14)
 START = (12.5, 11.8, 3.14)
 TORSO_MIDDLE = 0.2  # [m]
-MUG = (5.47, 10.16, 0.75)
-COUNTER = """
-task: none
-knowledge: []
-robot:
-  pose: [6.0, 10.11, 3.14]  # manipulationAreaEastCounter1
-  torso: torsoupposture
-  arms: {leftarm1: armtosideposture, rightarm1: armtosideposture}
-objects:
-  - {name: mug1, pose: [%g, %g, %g, 0.0]}
-hidden: []
-""" % MUG
 TOPPLE = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..',
                                       'config', 'scenarios', 'topple.yaml'))
 XY_TOLERANCE, YAW_TOLERANCE = 0.2, 0.17  # config/scene.yaml

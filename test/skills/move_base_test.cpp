@@ -8,6 +8,8 @@
 #include <memory>
 
 #include "hires/geometry/angles.h"
+#include "hires/skills/manipulation_context.h"
+#include "hires/skills/posture_skills.h"
 #include "skills/point_robot.h"
 #include "support/scenes.h"
 
@@ -232,6 +234,81 @@ TEST(DrivingContextTest, ARecordedMapWillDo) {
       MakeDrivingContext(grid, TrayRobot(), MoveBaseParams()));
   MoveBase skill(context, kEast, kFast);
   ExpectArrivedAt(kEast, RunSkill(&skill, {kWest, {}, false}));
+}
+
+// -------------------------------------------------------------------------------------- arms
+
+/// The PR2's joints with both arms carrying something, or in the posture of that name.
+robot::JointPositions ArmsOf(const robot::Robot& pr2, const std::string& posture, bool holds) {
+  robot::JointPositions joints = pr2.profile.joints;
+  for (const auto& [name, arm] : pr2.profile.upper_body->arms) {
+    SetJoints(arm.joints, PosturePositions(arm, posture, holds), &joints);
+  }
+  return joints;
+}
+
+DrivingContext Pr2In(const world::World& world) {
+  static const robot::Robot pr2 =
+      robot::LoadRobot(std::string(HIRES_SOURCE_DIR) + "/config/robots/pr2.yaml");
+  return MakeDrivingContext(world, pr2, {});
+}
+
+TEST(FootprintOfTest, ArmsAreInItWhereTheyStickOut) {
+  const DrivingContext context = Pr2In(Room());
+  const robot::Robot& pr2 = *context.robot;
+  EXPECT_EQ(FootprintOf(context, {}), context.footprint) << "nobody knows where they are";
+  EXPECT_EQ(FootprintOf(context, pr2.profile.joints), context.footprint);
+  EXPECT_EQ(FootprintOf(context, ArmsOf(pr2, "armtuckedposture", false)), context.footprint);
+  const auto carrying = ArmsOf(pr2, "armcarryposture", true);
+  const geometry::Polygon wide = FootprintOf(context, carrying);
+  for (const Eigen::Vector2d& corner : context.footprint)
+    EXPECT_TRUE(geometry::Contains(wide, corner));
+  for (const Eigen::Vector2d& corner :
+       robot::OutlineOf(pr2.model, pr2.profile.base_link, carrying)) {
+    EXPECT_TRUE(geometry::Contains(wide, corner)) << corner.transpose();
+  }
+  EXPECT_TRUE(geometry::Contains(wide, {0.2, 0.45}) && geometry::Contains(wide, {0.2, -0.45}))
+      << "elbows";
+}
+
+TEST(FootprintOfTest, WhatCarriesNothingHasOnlyOne) {
+  const auto context = ContextOf(Room());
+  EXPECT_EQ(FootprintOf(*context, {{"wheel", 1.0}}), context->footprint);
+}
+
+/// The nearest that a drive comes to what stands about [m]; 0: it touches.
+double ClearanceOfDrive(const world::World& world, const std::vector<geometry::Polygon>& posts,
+                        const std::string& posture, bool holds) {
+  const auto context = std::make_shared<const DrivingContext>(Pr2In(world));
+  const auto joints = ArmsOf(*context->robot, posture, holds);
+  const geometry::Polygon outline =
+      robot::OutlineOf(context->robot->model, context->robot->profile.base_link, joints);
+  MoveBase skill(context, kEast, kFast);
+  double clearance = 1e9;
+  const SkillRun run =
+      RunSkill(&skill, {kWest, {}, false}, [&](robot::Observation* seen, PointRobot* robot) {
+        seen->joints = joints;
+        for (const geometry::Polygon& post : posts) {
+          clearance = std::min(
+              clearance, geometry::Distance(geometry::Transformed(robot->X_MB, outline), post));
+        }
+      });
+  ExpectArrivedAt(kEast, run);
+  return clearance;
+}
+
+TEST(MoveBaseTest, ArmsThatStickOutTouchNothing) {
+  // Two posts: the base has 0.1 m of room on each side of it, arms that carry would touch both.
+  world::World room = Room();
+  room.statics.clear();
+  std::vector<geometry::Polygon> posts;
+  for (const double y : {1.5, 2.5}) {
+    room.statics.push_back(Block("post", {0.1, 0.1, 1.0}, {2.75, y, 0.5}));
+    posts.push_back(geometry::Transformed(
+        {2.75, y, 0.0}, {{-0.05, -0.05}, {0.05, -0.05}, {0.05, 0.05}, {-0.05, 0.05}}));
+  }
+  EXPECT_GT(ClearanceOfDrive(room, posts, "armtuckedposture", false), 0.0);
+  EXPECT_GT(ClearanceOfDrive(room, posts, "armcarryposture", true), 0.0);
 }
 
 // ------------------------------------------------------------------------------------- blind

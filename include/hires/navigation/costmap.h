@@ -61,6 +61,10 @@ class Costmap {
   /// cost less than kInscribedCost. Nothing else changes, so that only ways out are opened.
   Costmap WithRoomFor(const geometry::Polygon& outline_M) const;
 
+  /// The same obstacles for a robot of another inscribed radius [m]; costs decay beyond it over the
+  /// same distance. @pre >= 0
+  Costmap WithInscribedRadius(double inscribed_radius) const;
+
  private:
   bool Covers(const geometry::Polygon& outline_M) const;
   void SetCostsFrom(const world::OccupancyGrid& grid);

@@ -60,6 +60,12 @@ struct Robot {
   std::uint64_t hash() const;  ///< of both
 };
 
+/// The robot seen from above: the convex hull of its collision shapes from 0 to 2 m above the link
+/// `base_link`, in that link's frame [m].
+/// @throws base::ConfigError where no shape lies there, and as FrozenCollisions.
+geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_link,
+                            const JointPositions& joints);
+
 /// Reads the profile and the URDF that it names. Every key must be there but `upper_body`; an empty
 /// `footprint` list asks for the hull of the collision shapes from above, joints in the driving
 /// posture.

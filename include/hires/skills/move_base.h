@@ -27,9 +27,15 @@ struct MoveBaseParams {
 /// What a driving skill knows about where it drives; constant, shared by all skills of a scene.
 struct DrivingContext {
   std::shared_ptr<const navigation::Costmap> costmap;
-  geometry::Polygon footprint;  ///< padded
+  std::shared_ptr<const robot::Robot> robot;
+  geometry::Polygon footprint;  ///< padded; of the posture for driving
   MoveBaseParams params;
 };
+
+/// The footprint of a robot that does not have its arms where they are for driving: the padded
+/// footprint, and what sticks out of it in this posture, padded as well. A body of one height, as
+/// the costmap is.
+geometry::Polygon FootprintOf(const DrivingContext& context, const robot::JointPositions& measured);
 
 /// A costmap of everything that stands between the lowest obstacle that matters and the robot's
 /// top.
@@ -40,8 +46,9 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
                                   const MoveBaseParams& params);
 
 /// Drives to a pose in the map round all known obstacles: A* on the inflated costmap, dynamic
-/// window approach for control, as move_base does. Fails with "start_blocked", "goal_blocked",
-/// "no_path", "no_valid_trajectory" or "oscillating".
+/// window approach for control, as move_base does, with room for the arms as they are when it
+/// begins. Fails with "start_blocked", "goal_blocked", "no_path", "no_valid_trajectory" or
+/// "oscillating".
 class MoveBase : public Skill {
  public:
   MoveBase(std::shared_ptr<const DrivingContext> context, const geometry::Pose2& X_MGoal,
@@ -51,6 +58,7 @@ class MoveBase : public Skill {
   double period() const override { return context_->params.local.control_period; }
 
  private:
+  void Begin(const robot::Observation& observation);
   std::optional<Status> Plan(const navigation::Costmap& costmap, const geometry::Pose2& X_MB);
   bool NoteMotion(const robot::Observation& observation);
   std::optional<navigation::Costmap> CostmapNow(const robot::Observation& observation) const;
@@ -59,7 +67,10 @@ class MoveBase : public Skill {
   std::shared_ptr<const DrivingContext> context_;
   geometry::Pose2 X_MGoal_;
   robot::MotionSet motion_set_;
+  std::shared_ptr<const navigation::Costmap> costmap_;  // the map, inflated for this drive
+  geometry::Polygon footprint_;
   navigation::DwaPlanner local_;
+  bool has_begun_{false};
   bool has_path_{false};
   double last_valid_{0.0};    // [s] when a valid trajectory was last found
   double last_plan_{0.0};     // [s]

@@ -55,6 +55,11 @@ const std::vector<double>& PosturePositions(const robot::ArmProfile& arm,
 double PostureError(const robot::Robot& robot, const robot::ArmProfile& arm,
                     const std::string& posture, const robot::JointPositions& joints);
 
+/// The robot's posture for driving, but with its arms as they are: exactly in the variant of a
+/// posture that they are in (0.3 rad, summed over the joints), as measured where they are in none.
+robot::JointPositions DrivingJoints(const robot::Robot& robot,
+                                    const robot::JointPositions& measured);
+
 /// How an arm gets somewhere.
 struct ArmMove {
   std::string arm;

@@ -15,6 +15,20 @@ from ros_processes import LIMIT, Processes, executable, wait_until
 
 SKILL_LIMIT = 300.0  # [s] by the wall's clock: it ends a broken test, and measures nothing
 
+# A robot at the counter, ready to grasp the mug there.
+MUG = (5.47, 10.16, 0.75)
+COUNTER = """
+task: none
+knowledge: []
+robot:
+  pose: [6.0, 10.11, 3.14]  # manipulationAreaEastCounter1
+  torso: torsoupposture
+  arms: {leftarm1: armtosideposture, rightarm1: armtosideposture}
+objects:
+  - {name: mug1, pose: [%g, %g, %g, 0.0]}
+hidden: []
+""" % MUG
+
 
 class Goal:
     """An action on its way."""
