@@ -1,6 +1,5 @@
 #include <ros/ros.h>
 
-#include <csignal>
 #include <cstdlib>
 
 #include "hires/base/error.h"
@@ -9,19 +8,10 @@
 #include "hires/ros/middle_layer_node.h"
 #include "hires/ros/xmlrpc_master_api.h"
 
-namespace {
-
-volatile std::sig_atomic_t stop_wanted = 0;
-
-void WantStop(int) { stop_wanted = 1; }
-
-}  // namespace
-
 int main(int argc, char** argv) {
   hires_ros::QuietXmlRpc();
   ros::init(argc, argv, "middle_layer", ros::init_options::NoSigintHandler);
-  // ROS must live on until the robot stands: not hires_ros::ShutDownRosOnSignals().
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, WantStop);
+  hires_ros::NoteStopSignals();
   ros::NodeHandle nh;
   hires_ros::MasterWatch master_watch;
   const hires_ros::ScopedLogSink log_sink;
@@ -29,7 +19,7 @@ int main(int argc, char** argv) {
     const auto params = hires_ros::LoadMiddleLayerParams();
     hires_ros::MiddleLayerNode node(params, hires::imagination::LoadImaginationSetup(params.setup),
                                     &nh);
-    node.Run([] { return stop_wanted != 0; });
+    node.Run(hires_ros::IsStopWanted);
   } catch (const hires::base::ConfigError& error) {
     ROS_FATAL("middle_layer: %s", error.what());
     return EXIT_FAILURE;

@@ -112,6 +112,17 @@ std::vector<std::string> ProgramArguments() {
 
 void OnStopSignal(int) { ros::requestShutdown(); }
 
+volatile std::sig_atomic_t stop_wanted = 0;
+
+void WantStop(int /*signal*/) { stop_wanted = 1; }
+
+void OnStopSignals(void (*handler)(int), int flags) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = flags;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
+}
+
 }  // namespace
 
 MasterWatch::MasterWatch(const MasterWatchParams& params) : params_(params) {
@@ -181,10 +192,8 @@ void RestartProgram() {
   execv(path.data(), argv.data());
 }
 
-void ShutDownRosOnSignals() {
-  struct sigaction action {};
-  action.sa_handler = OnStopSignal;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
-}
+void ShutDownRosOnSignals() { OnStopSignals(OnStopSignal, 0); }
+void NoteStopSignals() { OnStopSignals(WantStop, SA_RESTART); }
+bool IsStopWanted() { return stop_wanted != 0; }
 
 }  // namespace hires_ros

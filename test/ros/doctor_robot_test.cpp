@@ -322,15 +322,20 @@ TEST(JudgeClocksTest, ThisComputersClockIsNotComparedWithItself) {
 
 // ---------------------------------------------------------------- probes
 
-TEST(ProbePortTest, PortsAnswerRefuseOrStaySilent) {
-  const int server = socket(AF_INET, SOCK_STREAM, 0);
+void BindToLoopback(int server, hires::relay::Endpoint* port) {
   sockaddr_in where{};
   where.sin_family = AF_INET;
   inet_pton(AF_INET, "127.0.0.1", &where.sin_addr);
   socklen_t size = sizeof(where);
   ASSERT_EQ(bind(server, reinterpret_cast<sockaddr*>(&where), size), 0);
   ASSERT_EQ(getsockname(server, reinterpret_cast<sockaddr*>(&where), &size), 0);
-  const hires::relay::Endpoint port{"127.0.0.1", ntohs(where.sin_port)};
+  *port = {"127.0.0.1", ntohs(where.sin_port)};
+}
+
+TEST(ProbePortTest, PortsAnswerRefuseOrStaySilent) {
+  const int server = socket(AF_INET, SOCK_STREAM, 0);
+  hires::relay::Endpoint port;
+  ASSERT_NO_FATAL_FAILURE(BindToLoopback(server, &port));
   EXPECT_EQ(ProbePort(port, 5.0), Reach::kRefused) << "bound, but nobody listens";
   ASSERT_EQ(listen(server, 5), 0);
   EXPECT_EQ(ProbePort(port, 5.0), Reach::kAnswers);
@@ -340,14 +345,9 @@ TEST(ProbePortTest, PortsAnswerRefuseOrStaySilent) {
 
 TEST(ProbePortTest, ADeafServerTellsNoTime) {
   const int server = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in where{};
-  where.sin_family = AF_INET;
-  inet_pton(AF_INET, "127.0.0.1", &where.sin_addr);
-  socklen_t size = sizeof(where);
-  ASSERT_EQ(bind(server, reinterpret_cast<sockaddr*>(&where), size), 0);
-  ASSERT_EQ(getsockname(server, reinterpret_cast<sockaddr*>(&where), &size), 0);
+  hires::relay::Endpoint port;
+  ASSERT_NO_FATAL_FAILURE(BindToLoopback(server, &port));
   ASSERT_EQ(listen(server, 5), 0);
-  const hires::relay::Endpoint port{"127.0.0.1", ntohs(where.sin_port)};
   EXPECT_EQ(CompareClocks(port, 0.01, 0.1), std::nullopt);
   EXPECT_EQ(AskDataPort(port, "/x", "/test", 0.1), std::nullopt);
   close(server);

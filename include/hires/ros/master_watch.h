@@ -70,4 +70,9 @@ void RestartProgram();
 /// Makes SIGINT, SIGTERM and SIGHUP shut ROS down in good order (roscpp by itself: SIGINT only).
 void ShutDownRosOnSignals();
 
+/// Makes them do nothing but be noted, for nodes that have to bring the robot to a stand first: ROS
+/// lives on. Give ros::init_options::NoSigintHandler.
+void NoteStopSignals();
+bool IsStopWanted();  ///< one of them came
+
 }  // namespace hires_ros

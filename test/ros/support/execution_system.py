@@ -13,6 +13,7 @@ import threading
 
 import yaml
 
+from blackboard_access import BlackboardAccess
 from ros_processes import LIMIT, Processes, executable, wait_until
 
 SUPPORT = os.path.dirname(os.path.abspath(__file__))
@@ -78,7 +79,7 @@ class Task:
         return [text for feedback in self.feedback for text in feedback.warnings]
 
 
-class ExecutionSystem:
+class ExecutionSystem(BlackboardAccess):
     def __init__(self):
         self.processes = Processes()
         self.main = self.processes.master()
@@ -221,21 +222,6 @@ class ExecutionSystem:
 
     def achieve(self, task, imagination=''):
         return Task(self.client, self.msg.AchieveGoal(task=task, imagination=imagination))
-
-    def ask(self, service, kind, **fields):
-        self.rospy.wait_for_service('blackboard/' + service, LIMIT)
-        answer = self.rospy.ServiceProxy('blackboard/' + service, kind)(**fields)
-        assert answer.error.code == 0, answer.error.message
-        return answer
-
-    def episodes(self):
-        return self.ask('list_episodes', self.srv.ListEpisodes).episodes
-
-    def fluents(self, concept, now=False, **fields):
-        """Of this concept and below: those that hold, or all that ever held."""
-        kind = self.msg.FluentQuery.NOW if now else self.msg.FluentQuery.EVER
-        query = self.msg.FluentQuery(below=[concept], time_kind=kind, **fields)
-        return self.ask('query', self.srv.QueryFluents, query=query).fluents
 
 
 def text_of(fluent, role):

@@ -22,6 +22,7 @@ import yaml
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.abspath(os.path.join(HERE, '..', '..', 'ros', 'support')))
 
+from blackboard_access import BlackboardAccess  # noqa: E402
 from ros_processes import (  # noqa: E402
     Processes, executable, free_port_block, processes_with, wait_until)
 
@@ -224,7 +225,7 @@ class Truth:
         return joint_speeds(*self.robot[-2:]) if len(self.robot) > 1 else {}
 
 
-class ClosedLoop:
+class ClosedLoop(BlackboardAccess):
     """@param seed   of the robot's hidden truth and of all chance.
     @param pace      [s] of the simulated robot per second.
     @param rollouts  of an imagination, per combination of alternatives."""
@@ -401,20 +402,3 @@ class ClosedLoop:
         """The answer of a service of the simulated robot."""
         self.rospy.wait_for_service('sim_robot/' + service, 60.0)
         return self.rospy.ServiceProxy('sim_robot/' + service, kind)(**fields)
-
-    # The Blackboard.
-
-    def ask(self, service, kind, **fields):
-        self.rospy.wait_for_service('blackboard/' + service, 60.0)
-        answer = self.rospy.ServiceProxy('blackboard/' + service, kind)(**fields)
-        assert answer.error.code == 0, answer.error.message
-        return answer
-
-    def episodes(self):
-        return self.ask('list_episodes', self.srv.ListEpisodes).episodes
-
-    def fluents(self, concept, now=False, **fields):
-        """Of this concept and below: those that hold, or all that ever held."""
-        kind = self.msg.FluentQuery.NOW if now else self.msg.FluentQuery.EVER
-        query = self.msg.FluentQuery(below=[concept], time_kind=kind, **fields)
-        return self.ask('query', self.srv.QueryFluents, query=query).fluents
