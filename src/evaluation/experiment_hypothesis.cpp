@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "hires/base/error.h"
 #include "hires/base/param_reader.h"
@@ -91,6 +93,11 @@ std::string StandingOf(const HypothesisGoal& goal, const world::StaticBody& body
   return "";
 }
 
+/// Whether it was carried through: not cancelled, refused or asked again.
+bool HasVerdict(const ImaginedStep& step) {
+  return step.answered && !step.predictions.empty() && step.outcome != "cancelled";
+}
+
 std::string RecommendationOf(const ImaginedStep& step) {
   const auto index = static_cast<std::size_t>(step.recommended);
   if (step.recommended < 0 || index >= step.predictions.size()) return "none";
@@ -174,13 +181,16 @@ void CountReport(const AchieveReport& report, HypothesisRun* run) {
       std::count_if(report.status.steps.begin(), report.status.steps.end(),
                     [](const execution::StepStatus& step) { return step.started.has_value(); }));
   run->imaginations = static_cast<int>(report.status.imaginations.size());
+  std::map<std::pair<int, int>, bool> is_answered;  // by plan and step, of those that were begun
   for (const ImaginedStep& step : report.status.imaginations) {
-    run->dispatched += step.dispatch ? 1 : 0;
-    run->in_time += step.dispatch && step.answered && *step.answered <= *step.dispatch ? 1 : 0;
+    const bool in_time = HasVerdict(step) && *step.answered <= step.dispatch.value_or(-1.0);
+    if (step.dispatch) is_answered[{step.plan, step.step}] |= in_time;
     run->imagination_wall += step.wall_seconds;
     run->imagination_simulated += step.simulated_seconds;
     run->recommended.push_back(RecommendationOf(step));
   }
+  run->dispatched = static_cast<int>(is_answered.size());
+  for (const auto& [step, in_time] : is_answered) run->in_time += in_time ? 1 : 0;
 }
 
 }  // namespace hires::evaluation

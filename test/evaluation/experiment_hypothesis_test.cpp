@@ -140,6 +140,7 @@ TEST(CountReportTest, CountsStepsAndAnswersInTime) {
   report.status.steps[1].started = 30.0;
   report.status.steps[1].finished = 50.0;
   ImaginedStep in_time;
+  in_time.outcome = "ranked";
   in_time.requested = 11.0;
   in_time.answered = 20.0;
   in_time.dispatch = 30.0;
@@ -147,22 +148,28 @@ TEST(CountReportTest, CountsStepsAndAnswersInTime) {
   in_time.recommended = 0;
   in_time.predictions.resize(1);
   in_time.predictions[0].action = {"move_base_param", {"area1", "slow"}};
-  ImaginedStep late = in_time, given_up = in_time;
+  ImaginedStep late = in_time, given_up = in_time, refused = in_time, asked_again = in_time;
+  late.step = 1;
   late.answered = 31.0;
   late.recommended = -1;
+  given_up.step = 2;
   given_up.dispatch.reset();
-  report.status.imaginations = {in_time, late, given_up};
+  refused.step = 3;
+  refused.predictions.clear();
+  refused.outcome = "invalid";
+  asked_again.outcome = "cancelled";  // the same step as the first
+  report.status.imaginations = {in_time, late, given_up, refused, asked_again};
   HypothesisRun run;
   CountReport(report, &run);
   EXPECT_EQ(run.outcome, "succeeded");
   EXPECT_EQ(run.duration, 40.0);
   EXPECT_EQ(run.steps, 2);
   EXPECT_EQ(run.replans, 2);
-  EXPECT_EQ(run.imaginations, 3);
-  EXPECT_EQ(run.dispatched, 2);
+  EXPECT_EQ(run.imaginations, 5);
+  EXPECT_EQ(run.dispatched, 3) << "steps, not requests";
   EXPECT_EQ(run.in_time, 1);
-  EXPECT_EQ(run.imagination_wall, 12.0);
-  ASSERT_THAT(run.recommended, SizeIs(3));
+  EXPECT_EQ(run.imagination_wall, 20.0);
+  ASSERT_THAT(run.recommended, SizeIs(5));
   EXPECT_THAT(run.recommended[0], HasSubstr("slow"));
   EXPECT_EQ(run.recommended[1], "none");
 }

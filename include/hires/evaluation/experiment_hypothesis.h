@@ -58,8 +58,8 @@ struct HypothesisRun {
   int steps{0};          ///< begun
   int replans{0};
   int imaginations{0};
-  int dispatched{0};                  ///< imaginations whose step was begun
-  int in_time{0};                     ///< ... after the answer
+  int dispatched{0};                  ///< imagined steps that were begun
+  int in_time{0};                     ///< ... after a verdict, be it that all alternatives fail
   double imagination_wall{0.0};       ///< [s] of the wall's clock, all imaginations
   double imagination_simulated{0.0};  ///< [s] of all rollouts
   std::vector<std::string>
