@@ -17,7 +17,7 @@ sys.path.insert(0, os.path.join(HERE, 'support'))
 
 from move_base_system import FAST, ROOT, SLOW, MoveBaseSystem, config_text  # noqa: E402
 from robot_system import Goal  # noqa: E402
-from ros_processes import Processes, executable, wait_until  # noqa: E402
+from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
 
 # preManipulationAreaEastTable2 of worlds/restaurant.world: x, y [m], yaw [rad].
 AREA, NAME = (11.78, 11.49, 3.14), 'preManipulationAreaEastTable2'
@@ -212,7 +212,8 @@ class MoveBaseModeTest(unittest.TestCase):
         from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
         goal = self.drive()
         other = self.actionlib.ActionClient('move_base', MoveBaseAction)
-        self.wait_for(lambda: other.pub_goal.get_num_connections() > 0, 'the other to be connected')
+        # Not only a connection: we listen to these goals ourselves.
+        self.assertTrue(other.wait_for_server(self.rospy.Duration(LIMIT)))
         theirs = Goal(other, MoveBaseGoal())
         self.require(goal, self.codes.FAILED, '^interrupted$')
         self.require_stand()
