@@ -33,6 +33,7 @@ struct Monitor::Impl {
   void On(const PlanArrived& event) { quest.OnAnswer(event); }
   void On(const StepFinished& event) { watch.OnFinished(event); }
   void On(const StateObserved& event) { session.Observe(event); }
+  void On(const ObservedUntil& event) { session.ObserveUntil(event.time); }
   void On(const GeometryChanged& event) { desk.OnChanged(event); }
   void On(const ImagineAnswered& event) { desk.OnAnswer(event); }
   void On(const PreemptRequested&);

@@ -24,6 +24,7 @@ MonitorParams ReadMonitor(ParamReader in) {
       ReadImaginePolicy(in.Get("imagination", base::OneOf({"domain", "thesis", "off"})));
   params.max_replans = in.Get("max_replans", Between(0, 1000));
   params.effect_timeout = in.Get("effect_timeout", Between(0.0, kLongest));
+  params.observation_delay = in.Get("observation_delay", Between(0.0, kLongest));
   params.overdue_factor = in.Get("overdue_factor", Between(1.0, 1000.0));
   params.overdue_minimum = in.Get("overdue_minimum", Between(0.1, kLongest));
   params.planning_timeout = in.Get("planning_timeout", Between(0.1, kLongest));

@@ -52,7 +52,7 @@ std::string Repair::Begin(const Trouble& trouble) {
   const std::string text = ToString(trouble);
   const std::set<std::string> state = TextsOf(session_.facts());
   if (text == last_trouble_ && state == last_state_ && trouble.kind != Trouble::Kind::kImagined) {
-    if (!trouble.is_of_the_way) return text + " (twice in a row, and nothing has changed)";
+    if (!trouble.is_of_the_action) return text + " (twice in a row, and nothing has changed)";
     session_.Exclude({trouble.action, NamesIn(trouble.reason), 0}, trouble.step, trouble.reason);
   }
   last_trouble_ = text;

@@ -70,6 +70,10 @@ void Session::Observe(const StateObserved& state) {
   Changed();
 }
 
+void Session::ObserveUntil(double time) {
+  observed_until_ = std::max(observed_until_.value_or(time), time);
+}
+
 void Session::Note(const planning::PlanStep& bookkeeping) {
   bookkeeping_.push_back(bookkeeping);
   ApplyEffects(bookkeeping, &facts_);

@@ -18,8 +18,8 @@ struct Trouble {
   Kind kind{Kind::kActivity};
   base::ActionCall action;  ///< of the step that it is about
   std::string reason;
-  int step{-1};               ///< its number in the plan, where it was one of the plan's that failed
-  bool is_of_the_way{false};  ///< not of whoever carries it out: another way may do
+  int step{-1};  ///< its number in the plan, where it was one of the plan's that failed
+  bool is_of_the_action{false};  ///< not of whoever carries it out: another way may do
 };
 std::string ToString(const Trouble& trouble);
 /// What a reason names: "area_occupied: book1, mug2" and "no_path: hand touches book1" book1.
@@ -47,6 +47,9 @@ class Session {
   double now() const { return now_; }
   void SetNow(double now);
   void Observe(const StateObserved& state);
+  void ObserveUntil(double time);
+  /// Whether something observed at that time [s] may be on its way here.
+  bool IsBehind(double time) const { return observed_until_ && *observed_until_ < time; }
   bool has_state() const { return has_state_; }
   /// What was observed, and what bookkeeping steps made of it.
   const Facts& facts() const { return facts_; }
@@ -113,6 +116,7 @@ class Session {
 
   double now_{0.0};
   bool has_state_{false};
+  std::optional<double> observed_until_;  // [s]
   Facts observed_, facts_;
   std::vector<planning::PlanStep> bookkeeping_;
   int revision_{0};

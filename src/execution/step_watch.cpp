@@ -25,7 +25,7 @@ std::string ReasonOf(const StepFinished& finished) {
 }
 
 /// It will fail again however often it is tried from here: another way must be taken.
-bool IsOfTheWay(const std::string& reason) {
+bool IsBlocked(const std::string& reason) {
   return reason.rfind("area_occupied", 0) == 0 || reason.rfind("unreachable", 0) == 0;
 }
 
@@ -44,10 +44,10 @@ void StepWatch::OnFinished(const StepFinished& finished) {
   const StepRun& step = session_.run().at(index);
   if (step.is_stopping) return session_.End(index, StepPhase::kFailed, "preempted", "stopped");
   session_.End(index, StepPhase::kFailed, "failed", reason);
-  if (IsOfTheWay(reason)) session_.Exclude({step.action, NamesIn(reason), 0}, index, reason);
-  const bool is_of_the_way =
+  if (IsBlocked(reason)) session_.Exclude({step.action, NamesIn(reason), 0}, index, reason);
+  const bool is_of_the_action =
       finished.result == StepFinished::Result::kFailed && reason.rfind("timed_out", 0) != 0;
-  session_.Report({Trouble::Kind::kActivity, step.action, reason, index, is_of_the_way},
+  session_.Report({Trouble::Kind::kActivity, step.action, reason, index, is_of_the_action},
                   step.activity);
 }
 
@@ -112,12 +112,28 @@ void StepWatch::CheckEffects(int index) {
   const auto missing = MissingEffect(index);
   if (!missing) return session_.Confirm(index);
   StepRun& step = session_.run().at(index);
-  if (!IsPast(*step.finished + session_.params().effect_timeout)) return;
-  const std::string reason = "effect_missing: " + *missing;
+  const double due = *step.finished + session_.params().effect_timeout;
+  if (!IsPast(due) || MayBeOnItsWay(index, due)) return;
+  const std::string reason =
+      (session_.IsBehind(due) ? "effect_unknown: " : "effect_missing: ") + *missing;
   step.phase = StepPhase::kFailed;
   step.note = reason;
   session_.Changed();
   session_.Report({Trouble::Kind::kEffect, step.action, reason}, step.activity);
+}
+
+/// What nobody has told yet is no proof that it is not so; but not for ever.
+bool StepWatch::MayBeOnItsWay(int index, double due) {
+  if (!session_.IsBehind(due)) return false;
+  StepRun& step = session_.run().at(index);
+  const double patience = session_.params().observation_delay;
+  if (!std::exchange(step.is_unobserved, true)) {
+    session_.Warning(
+        fmt::format("what was observed after {} has not been told yet; it is waited "
+                    "for up to {} s",
+                    base::ToString(step.action), patience));
+  }
+  return !IsPast(due + patience);
 }
 
 /// Whether a running step may have changed it for a while.

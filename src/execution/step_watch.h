@@ -26,6 +26,7 @@ class StepWatch {
   void CheckStop(int step);
   void CheckDuration(int step);
   void CheckEffects(int step);
+  bool MayBeOnItsWay(int step, double due);
   void CheckConditions(int step);
   void CheckLinks(int step);
   std::optional<std::string> MissingEffect(int step) const;

@@ -129,6 +129,8 @@ ExecutionMonitorNode::ExecutionMonitorNode(const execution::MonitorConfig& confi
   updater_.setHardwareID("execution_monitor");
   updater_.add("execution", this, &ExecutionMonitorNode::Diagnose);
   thread_ = std::thread([this] { Run(); });
+  progress_subscriber_ =
+      nh->subscribe(kObservationProgress, 100, &ExecutionMonitorNode::OnProgress, this);
   server_.start();
 }
 
@@ -155,8 +157,31 @@ void ExecutionMonitorNode::OnView(const RemoteView::Update& update) {
     atoms_ = state.atoms;
     Post([this, state = std::move(state)] { OnState(state); });
   }
-  if (geometry.instances.empty()) return;
-  Post([this, geometry = std::move(geometry)] { Feed(geometry); });
+  if (!geometry.instances.empty()) {
+    Post([this, geometry = std::move(geometry)] { Feed(geometry); });
+  }
+  Post([this, sequence = update.sequence, is_fresh = update.is_fresh] {
+    if (is_fresh) progress_.clear();  // another store may have taken the place of the one before
+    sequence_ = sequence;
+    TellProgress();
+  });
+}
+
+void ExecutionMonitorNode::OnProgress(const hires::ObservationProgress& progress) {
+  Post([this, progress] {
+    progress_.push_back(progress);
+    TellProgress();
+  });
+}
+
+/// Counts as soon as what the Blackboard said then has been told.
+void ExecutionMonitorNode::TellProgress() {
+  bool is_reached = false;
+  for (; !progress_.empty() && progress_.front().sequence <= sequence_; progress_.pop_front()) {
+    observed_until_ = {progress_.front().header.stamp.toSec()};
+    is_reached = true;
+  }
+  if (is_reached) Feed(*observed_until_);
 }
 
 void ExecutionMonitorNode::Run() {
@@ -279,6 +304,7 @@ void ExecutionMonitorNode::BeginWhenReady() {
   const std::string text = task_->goal.getGoal()->task;
   records_.BeginEpisode(text, RosNow());
   Feed(*state_);
+  if (observed_until_) Feed(*observed_until_);
   Feed(execution::TaskRequested{text});
 }
 

@@ -225,7 +225,7 @@ void WorldTrackerNode::Handle(const TrackerMoment& moment) {
   if (moment.look || (is_due && !params_.lockstep)) PublishKnown(moment, known);
   const auto turn = sweep_.Update(moment, known);
   if (turn && head_) head_.publish(ToMsg(*turn));
-  writer_.Post(Observed(moment, known));
+  writer_.Post(time_, Observed(moment, known));
 }
 
 /// What others say of objects, and what tasks are about.

@@ -1,6 +1,7 @@
 #include "hires/ros/world_tracker_writer.h"
 
 #include <fmt/format.h>
+#include <hires/ObservationProgress.h>
 #include <hires/RemoveFluents.h>
 #include <hires/WriteFluents.h>
 
@@ -34,6 +35,8 @@ ObservationWriter::ObservationWriter(const translation::TranslatorContext* conte
       params_(params),
       on_view_(std::move(on_view)),
       blackboard_(nh, std::string(kBlackboard) + "/"),
+      progress_(ros::NodeHandle(nh).advertise<hires::ObservationProgress>(kObservationProgress, 10,
+                                                                          true)),
       view_(nh, [this](const RemoteView::Update& update) { OnView(update); }),
       thread_([this] { Run(); }) {}
 
@@ -53,10 +56,10 @@ void ObservationWriter::OnView(const RemoteView::Update& update) {
   if (on_view_) on_view_(update);
 }
 
-void ObservationWriter::Post(translation::ObservedWorld observed) {
+void ObservationWriter::Post(double time, translation::ObservedWorld observed) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    observed_ = std::move(observed);
+    posted_ = {time, std::move(observed)};
   }
   changed_.notify_all();
 }
@@ -76,23 +79,24 @@ translation::TranslatorContext ObservationWriter::ContextNow(
 void ObservationWriter::Run() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!is_ending_) {
-    changed_.wait(lock, [this] { return is_ending_ || observed_.has_value(); });
+    changed_.wait(lock, [this] { return is_ending_ || posted_.has_value(); });
     if (is_ending_) return;
-    const translation::ObservedWorld observed = std::move(*observed_);
-    observed_.reset();
+    const Posted posted = std::move(*posted_);
+    posted_.reset();
     lock.unlock();
-    const bool is_written = Write(observed);
+    const Written written = Write(posted.observed);
+    if (written == Written::kAll) TellProgress(posted.time);
     lock.lock();
     // What could not be written waits, unless something newer has come.
-    if (!is_written && !observed_) observed_ = observed;
-    const Seconds pause(is_written ? params_.write_period : kRetryPeriod);
+    if (written == Written::kNotNow && !posted_) posted_ = posted;
+    const Seconds pause(written == Written::kNotNow ? kRetryPeriod : params_.write_period);
     changed_.wait_for(lock, pause, [this] { return is_ending_; });
   }
 }
 
-/// @return whether the Blackboard says now what was observed.
-bool ObservationWriter::Write(const translation::ObservedWorld& observed) {
-  if (!view_.is_known() && !view_.CatchUp()) return false;
+/// Whether the Blackboard says now what was observed.
+ObservationWriter::Written ObservationWriter::Write(const translation::ObservedWorld& observed) {
+  if (!view_.is_known() && !view_.CatchUp()) return Written::kNotNow;
   translation::FluentUpdate update;
   try {
     update = view_.Read([&](const knowledge::FluentView& view) {
@@ -101,13 +105,21 @@ bool ObservationWriter::Write(const translation::ObservedWorld& observed) {
     });
   } catch (const hires::base::ConfigError& error) {
     Fail(error.what());
-    return true;  // trying again makes it no better
+    return Written::kNever;  // trying again makes it no better
   }
-  if (update.empty()) return true;
+  if (update.empty()) return Written::kAll;
   const bool is_sent = Send(update);
   // Also after a refusal: the view may have been behind.
   const bool is_known = view_.CatchUp();
-  return is_sent && is_known;
+  return is_sent && is_known ? Written::kAll : Written::kNotNow;
+}
+
+/// The view has what was written, so that nobody who has as much of the Blackboard lacks it.
+void ObservationWriter::TellProgress(double time) {
+  hires::ObservationProgress progress;
+  progress.header.stamp.fromSec(time);
+  progress.sequence = view_.sequence();
+  progress_.publish(progress);
 }
 
 /// What is new comes before what ends, so that a hand is full before a place is empty, and nobody

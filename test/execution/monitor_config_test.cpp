@@ -45,6 +45,8 @@ TEST_F(MonitorConfigTest, ValuesGoWhereTheyBelong) {
   EXPECT_EQ(Read("imagination: domain", "imagination: thesis").monitor.imagination,
             MonitorParams::ImaginePolicy::kThesis);
   EXPECT_EQ(Read("effect_timeout: 3.0", "effect_timeout: 7.5").monitor.effect_timeout, 7.5);
+  EXPECT_EQ(Read("observation_delay: 30.0", "observation_delay: 9.5").monitor.observation_delay,
+            9.5);
   EXPECT_EQ(Read("seed: 1", "seed: 42").imagining.seed, 42u);
   EXPECT_EQ(Read("server_loss: 0.5", "server_loss: 0.25").servers.server_loss, 0.25);
   EXPECT_EQ(Read("pose_angle: 0.2", "pose_angle: 0.3").pose_angle, 0.3);

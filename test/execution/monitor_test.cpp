@@ -693,6 +693,57 @@ TEST(FailureTest, SuccessThatNobodySeesIsNone) {
   EXPECT_THAT(world.warnings(), ElementsAreArray({HasSubstr("effect_missing: holding(rightarm1")}));
 }
 
+/// Somebody observes, and says every second until when all is told.
+void ObserveEverySecond(double until, double delay, ScriptedWorld* world) {
+  world->At(0.0, [](ScriptedWorld* w) { w->ObserveUntilNow(0.0); });
+  for (double t = 1.0; t < until; t += 1.0) {
+    world->At(t, [delay](ScriptedWorld* w) { w->ObserveUntilNow(delay); });
+  }
+}
+
+TEST(FailureTest, EffectsThatAreToldLateAreWaitedFor) {
+  auto options = For("serve_coffee");
+  options.observation_delay = 10.0;  // far beyond effect_timeout
+  ScriptedWorld world(options);
+  ObserveEverySecond(600.0, 10.0, &world);
+  ExpectSuccess(&world, "serve_coffee");
+  EXPECT_EQ(world.CountOf("begin pick_up_object"), 1);
+  EXPECT_THAT(world.plannings(), SizeIs(1));
+  EXPECT_THAT(world.warnings(),
+              Contains(HasSubstr("what was observed after pick_up_object(mug1, rightarm1) has not "
+                                 "been told yet; it is waited for up to 30 s")));
+}
+
+TEST(FailureTest, WhatIsMissingIsSoOnceAllWasTold) {
+  auto options = For("serve_coffee");
+  options.step = [](const base::ActionCall& action, int count) {
+    StepScript script;
+    script.has_effects = action.name != "pick_up_object" || count > 0;
+    return script;
+  };
+  ScriptedWorld world(options);
+  ObserveEverySecond(600.0, 2.5, &world);
+  ExpectSuccess(&world, "serve_coffee");
+  EXPECT_THAT(world.warnings(),
+              ElementsAreArray({HasSubstr("what was observed after pick_up_object"),
+                                HasSubstr("effect_missing: holding(rightarm1")}));
+  EXPECT_EQ(world.CountOf("begin pick_up_object"), 2);
+}
+
+TEST(FailureTest, ObservationsThatStayAwayAreNotWaitedForForEver) {
+  auto options = For("serve_coffee");
+  options.step = [](const base::ActionCall& action, int count) {
+    StepScript script;
+    script.is_observed = action.name != "pick_up_object" || count > 0;
+    return script;
+  };
+  ScriptedWorld world(options);
+  ObserveEverySecond(3.0, 0.0, &world);
+  world.Run(TaskOf("serve_coffee"));
+  EXPECT_THAT(world.warnings(), Contains(HasSubstr("effect_unknown: holding(rightarm1")));
+  ExpectSound(world);
+}
+
 TEST(FailureTest, AnObjectThatSlipsOffInTransitIsNoticedAndTheDriveIsStopped) {
   auto options = For("carry_object");
   options.imagine = [](const StartImagination&, int) { return Slow(); };

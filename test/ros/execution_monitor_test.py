@@ -218,6 +218,19 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.assertGreater(len(self.system.done('tuck_arms')), 1)
         self.assertTrue(any(s.phase == self.phases.FAILED for s in result.steps))
 
+    def test_effects_that_are_told_late_are_waited_for(self):
+        now = self.system.rospy.Time.now()
+        self.system.say_observed_until(now)
+        self.addCleanup(self.system.say_observed_until, now + self.system.rospy.Duration(1e6))
+        self.system.behave('tuck_arms', silent=True, times=1)
+        task = self.achieve(CARRY)
+        wait_until(lambda: any('has not been told yet' in text for text in task.warnings()),
+                   'the warning')
+        self.system.observe(self.system.done('tuck_arms')[0])
+        result = self.require(task, self.codes.SUCCEEDED)
+        self.assertEqual(result.replans, 0)
+        self.assertEqual([s for s in result.steps if s.phase == self.phases.FAILED], [])
+
     # Who dies.
 
     def test_without_imagination_client_the_default_is_taken_and_a_warning_says_so(self):

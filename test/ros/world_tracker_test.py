@@ -65,12 +65,14 @@ class WorldTrackerTest(unittest.TestCase):
             detections=p('detections', self.msg.Detections, **latch),
             goal=p('execute_action/goal', self.msg.ExecuteActionActionGoal, **latch),
             result=p('execute_action/result', self.msg.ExecuteActionActionResult, **latch))
-        self.known, self.turns = [], []
+        self.known, self.turns, self.progress = [], [], []
         self.changed = threading.Condition()
         self.subscribers = [
             self.rospy.Subscriber('known_objects', self.msg.WorldState, self.note(self.known)),
             self.rospy.Subscriber('head_traj_controller/command', self.types['trajectory'],
-                                  self.note(self.turns))]
+                                  self.note(self.turns)),
+            self.rospy.Subscriber('observation_progress', self.msg.ObservationProgress,
+                                  self.note(self.progress))]
         for publisher in self.publishers.values():
             wait_until(lambda: publisher.get_num_connections() > 0, 'the tracker to subscribe')
         wait_until(lambda: all(s.get_num_connections() > 0 for s in self.subscribers), 'its topics')
@@ -174,6 +176,10 @@ class WorldTrackerTest(unittest.TestCase):
             if not self.changed.wait_for(condition, LIMIT):
                 raise AssertionError('waited in vain for %s; the tracker said:\n%s' % (
                     what, self.tracker.output()))
+
+    def said_until(self):
+        """[s] until when the Blackboard has what was sensed."""
+        return self.progress[-1].header.stamp.to_sec() if self.progress else 0.0
 
     # The Blackboard.
 
@@ -301,15 +307,30 @@ class WorldTrackerTest(unittest.TestCase):
             return any(text in line for line in self.tracker.lines)
         wait_until(is_told, 'the warning: ' + text)
 
+    def test_what_is_told_to_be_on_the_blackboard_is_there(self):
+        self.at_table()
+        for x in (7.48, 7.58):
+            self.look({'book1': ('book', translation(x, 11.28, 0.73))})
+            self.rest()  # the moment of the look itself may be told without it
+            self.wait(lambda: self.said_until() >= self.t - 1e-3, 'the progress')
+            self.assertAlmostEqual(self.value('poseBook1', 'hasX'), x, delta=0.02)
+            self.assertGreater(self.progress[-1].sequence, 0)
+
     def test_the_blackboard_is_away_for_a_while(self):
         self.expect('robotAtPR21', 'hasArea', 'nearstartarea1')
         self.blackboard.kill()
         self.at_table()
         self.rest(20)
         self.look({'book1': ('book', translation(7.48, 11.28, 0.73))})
+        self.tick()
+        seen = self.t - 1e-3  # stamps are rounded
+        wait_until(lambda: any('observation=unwritten' in line for line in self.tracker.lines),
+                   'word that nobody takes it')
+        self.assertLess(self.said_until(), seen)
         self.start_blackboard()
-        wait_until(lambda: self.value('onBook1', 'hasArea') == 'placingareawestrighttable1',
-                   'what was seen meanwhile, without another look')
+        self.wait(lambda: self.said_until() >= seen, 'the progress')
+        self.assertEqual(self.value('onBook1', 'hasArea'), 'placingareawestrighttable1',
+                         'what was seen meanwhile, without another look')
         self.assertEqual(self.value('poseBook1', 'hasFrame'), None)
 
     def test_bad_input_is_warned_of_and_changes_nothing(self):

@@ -20,7 +20,7 @@ DRIVING = {'pose': [12.5, 9.8, 2.0], 'torso': 'torsodownposture',
            'arms': {'leftarm1': 'armtuckedposture', 'rightarm1': 'armtuckedposture'}}
 FAST = 0.3      # [m/s]
 # [s] simulated: long enough for a program to start again, though the robot is ten times as fast.
-PATIENCE = {'effect_timeout': 100.0, 'planning_timeout': 60.0}
+PATIENCE = {'planning_timeout': 60.0}
 MAY_TAKE = 1.0  # [s] simulated, from the last command until the base stands
 
 

@@ -41,6 +41,11 @@ struct StateObserved {
   std::vector<base::Atom> atoms;
   std::uint64_t sequence{0};  ///< of the Blackboard
 };
+/// All that was observed until then [s] has been told, so that what is missing is not so. Where it
+/// is never told, observations count as told at once.
+struct ObservedUntil {
+  double time{0.0};
+};
 /// A fluent that imagination may rest on changed more than its noise: an object was seen somewhere
 /// new, moved, or vanished.
 struct GeometryChanged {
@@ -66,8 +71,8 @@ struct ImagineAnswered {
 };
 struct PreemptRequested {};
 struct ClockTicked {};  ///< at WakeAt() at the latest
-using Event = std::variant<TaskRequested, PlanArrived, StepFinished, StateObserved, GeometryChanged,
-                           ImagineAnswered, PreemptRequested, ClockTicked>;
+using Event = std::variant<TaskRequested, PlanArrived, StepFinished, StateObserved, ObservedUntil,
+                           GeometryChanged, ImagineAnswered, PreemptRequested, ClockTicked>;
 
 // What to do.
 struct StartPlanning {
@@ -135,17 +140,18 @@ struct MonitorParams {
   /// are imagined to fail, and ends instead of beginning a step. Answers have all the time of
   /// `max_wait`.
   bool dry_run{false};
-  int max_replans{10};            ///< of one task before giving up
-  double effect_timeout{3.0};     ///< [s] after a step's end until its effects must be observed
-  double overdue_factor{3.0};     ///< of the expected duration: a step that lasts longer is
-  double overdue_minimum{30.0};   ///< stopped, but never before so many [s]
-  double planning_timeout{30.0};  ///< [s]
-  double arrival_margin{0.0};     ///< [s] before the latest start: the imagination's deadline
-  double answer_grace{0.5};       ///< [s] after that deadline in which its answer still counts
-  double max_wait{300.0};         ///< [s] at most for an answer where the domain says `wait`
-  double retry_period{5.0};       ///< [s] until imagination is asked again in vain, then
-  double break_delay{0.5};        ///< [s] that an observation must contradict before it counts
-  double stop_timeout{10.0};      ///< [s] for a stopped step to answer; then it is given up
+  int max_replans{10};             ///< of one task before giving up
+  double effect_timeout{3.0};      ///< [s] after a step's end until its effects must be observed,
+  double observation_delay{30.0};  ///< [s] and so much longer until that must have been told
+  double overdue_factor{3.0};      ///< of the expected duration: a step that lasts longer is
+  double overdue_minimum{30.0};    ///< stopped, but never before so many [s]
+  double planning_timeout{30.0};   ///< [s]
+  double arrival_margin{0.0};      ///< [s] before the latest start: the imagination's deadline
+  double answer_grace{0.5};        ///< [s] after that deadline in which its answer still counts
+  double max_wait{300.0};          ///< [s] at most for an answer where the domain says `wait`
+  double retry_period{5.0};        ///< [s] until imagination is asked again in vain, then
+  double break_delay{0.5};         ///< [s] that an observation must contradict before it counts
+  double stop_timeout{10.0};       ///< [s] for a stopped step to answer; then it is given up
   /// Facts that say that the robot carries ?object, whose pose then tells nothing new.
   std::vector<std::string> carried{"(Holding ?arm ?object)", "(On ?object trayArea1)"};
 };

@@ -4,9 +4,13 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <hires/AchieveAction.h>
 #include <hires/ExecuteActionAction.h>
+#include <hires/ObservationProgress.h>
 #include <ros/node_handle.h>
+#include <ros/subscriber.h>
 
 #include <atomic>
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -82,6 +86,7 @@ class ExecutionMonitorNode {
   // On any thread.
   void Post(std::function<void()> run);
   void OnView(const RemoteView::Update& update);
+  void OnProgress(const hires::ObservationProgress& progress);
 
   // On the monitor's thread.
   void Run();
@@ -107,6 +112,7 @@ class ExecutionMonitorNode {
   void CarryOut(const hires::execution::Finish& command);
   void OnStepEnd(int key, const hires::ExecuteActionResultConstPtr& result, const std::string& why);
   void OnState(const hires::execution::StateObserved& state);
+  void TellProgress();
   void FinishTask(const hires::execution::Finish& finish);
   void EndAll();
   void Conclude(const hires::execution::Finish& finish);
@@ -127,7 +133,10 @@ class ExecutionMonitorNode {
   // Of the monitor's thread.
   std::optional<Task> task_;
   std::optional<hires::execution::StateObserved> state_;
-  std::map<int, int> activities_;  ///< the link's key -> the monitor's activity
+  std::optional<hires::execution::ObservedUntil> observed_until_;
+  std::uint64_t sequence_{0};  ///< of the Blackboard, up to which all was told
+  std::deque<hires::ObservationProgress> progress_;  ///< in order; not reached yet
+  std::map<int, int> activities_;                    ///< the link's key -> the monitor's activity
   int next_key_{1};
   double event_time_{0.0};  ///< [s] steady, of the event being handled; 0: none
   double last_now_{0.0};    ///< [s] main ROS time
@@ -142,6 +151,7 @@ class ExecutionMonitorNode {
   RemoteView view_;
   WorkThread catcher_;  // asks the Blackboard, which may take its time
   diagnostic_updater::Updater updater_;
+  ros::Subscriber progress_subscriber_;
   Server server_;
   std::thread thread_;
 };

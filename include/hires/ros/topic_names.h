@@ -12,8 +12,9 @@ constexpr char kGenerateImagineState[] = "generate_imagine_state";  ///< service
 constexpr char kBlackboard[] = "blackboard";  ///< its services and topics lie below
 constexpr char kBlackboardChanges[] = "blackboard/changes";
 constexpr char kImaginedChanges[] = "blackboard/imagined_changes";
-constexpr char kImaginationMarkers[] = "imagination_markers";  ///< ranking, latched
-constexpr char kWorldMarkers[] = "world_markers";              ///< furniture, areas, latched
+constexpr char kObservationProgress[] = "observation_progress";  ///< what of it was observed
+constexpr char kImaginationMarkers[] = "imagination_markers";    ///< ranking, latched
+constexpr char kWorldMarkers[] = "world_markers";                ///< furniture, areas, latched
 
 /// What a worker owns under its master and what crosses to the main one: "/worker_3/rollout".
 inline std::string WorkerName(int index, const std::string& what) {

@@ -14,7 +14,8 @@
 namespace hires_ros {
 
 /// Makes the Blackboard say what was observed last, on a thread of its own: what changed against
-/// what it says, in batches. While it is away, the latest observation waits for it.
+/// what it says, in batches; and tells until when it is said. While the Blackboard is away, the
+/// latest observation waits for it.
 class ObservationWriter {
  public:
   /// @param on_view  told of every change of the view, as RemoteView::Listener.
@@ -27,7 +28,8 @@ class ObservationWriter {
   ObservationWriter& operator=(const ObservationWriter&) = delete;
 
   /// Replaces what was posted before and is not written yet.
-  void Post(hires::translation::ObservedWorld observed);
+  /// @param time  [s] main ROS time, of the observation.
+  void Post(double time, hires::translation::ObservedWorld observed);
 
   const RemoteView& view() const { return view_; }
   /// The context with what the Blackboard knows of areas.
@@ -38,9 +40,16 @@ class ObservationWriter {
   std::string last_failure() const;
 
  private:
+  struct Posted {
+    double time;  ///< [s]
+    hires::translation::ObservedWorld observed;
+  };
+  enum class Written { kAll, kNotNow, kNever };
+
   void OnView(const RemoteView::Update& update);
   void Run();
-  bool Write(const hires::translation::ObservedWorld& observed);
+  Written Write(const hires::translation::ObservedWorld& observed);
+  void TellProgress(double time);
   bool Send(const hires::translation::FluentUpdate& update);
   template <typename Service>
   bool Call(const char* service, Service* call);
@@ -52,13 +61,14 @@ class ObservationWriter {
   std::atomic<std::int64_t> episode_{0};  // of the monitor's last word
   std::atomic<std::uint64_t> num_written_{0}, num_failures_{0};
   ServiceLinks blackboard_;
+  ros::Publisher progress_;
   double last_warning_{-1e9};  // [s] steady; of the writing thread
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::optional<hires::translation::ObservedWorld> observed_;  // guarded
-  std::string last_failure_;                                   // guarded
-  bool is_ending_{false};                                      // guarded
+  std::optional<Posted> posted_;  // guarded
+  std::string last_failure_;      // guarded
+  bool is_ending_{false};         // guarded
   RemoteView view_;
   std::thread thread_;
 };

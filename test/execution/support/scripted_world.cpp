@@ -194,6 +194,8 @@ void ScriptedWorld::Observe(double delay) {
   });
 }
 
+void ScriptedWorld::ObserveUntilNow(double delay) { Post(ObservedUntil{now_}, delay); }
+
 void ScriptedWorld::Set(const std::vector<base::Atom>& gone, const std::vector<base::Atom>& come) {
   for (const base::Atom& atom : gone) world_.erase(KeyOf(atom));
   for (const base::Atom& atom : come) world_[KeyOf(atom)] = atom;

@@ -73,6 +73,8 @@ class ScriptedWorld {
   /// All atoms of that predicate are replaced by one.
   void ReplaceAll(const std::string& predicate, const base::Atom& by);
   void Observe(double delay = 0.0);
+  /// The monitor hears that it knows all that was so until now.
+  void ObserveUntilNow(double delay);
   void Repeat();  ///< tells the last answer of somebody once more
 
   // What happened.

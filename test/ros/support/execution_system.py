@@ -151,6 +151,17 @@ class ExecutionSystem(BlackboardAccess):
         """All calls of actions, in order."""
         return [text for text in self.log() if '(' in text]
 
+    def observe(self, step):
+        """What follows from a step, "move_torso(torsoupposture)", is seen."""
+        name, arguments = step.rstrip(')').split('(')
+        getattr(self._observations, name)(*arguments.split(', '))
+
+    def say_observed_until(self, time):
+        """As a tracker does that the Blackboard has kept up with since it began."""
+        message = self.msg.ObservationProgress(sequence=0)
+        message.header.stamp = time
+        self._progress.publish(message)
+
     def free(self, action):
         """Lets what hangs in this action go on."""
         self.main.set_param('/fake/go_on', action)
@@ -214,6 +225,8 @@ class ExecutionSystem(BlackboardAccess):
         self._observations = Observations()
         rospy.init_node('execution_test', disable_signals=True)
         self.client = actionlib.ActionClient('achieve', msg.AchieveAction)
+        self._progress = rospy.Publisher('observation_progress', msg.ObservationProgress,
+                                         queue_size=1, latch=True)
         self.require_server()
 
     def require_server(self):
