@@ -56,6 +56,19 @@ double Outwards(double coordinate, double padding) {
   return std::copysign(kStep * std::ceil((std::abs(coordinate) + padding) / kStep), coordinate);
 }
 
+/// The map with room for a robot that is in it, where that is not so already. A localisation that
+/// errs by a hand's breadth would else let it stand in a wall for good; move_base's costmaps clear
+/// the footprint for the same reason. A robot whose centre lies in an obstacle is lost instead.
+std::optional<navigation::Costmap> WithRoom(const navigation::Costmap& map, const Pose2& X_MB,
+                                            const geometry::Polygon& footprint) {
+  const geometry::Polygon outline_M = geometry::Transformed(X_MB, footprint);
+  int column = 0, row = 0;
+  map.CellOf(X_MB.position(), &column, &row);
+  const bool is_in_it = map.Inside(column, row) && map.cost(column, row) < navigation::kLethalCost;
+  if (!is_in_it || map.CostBelow(outline_M) < navigation::kLethalCost) return std::nullopt;
+  return map.WithRoomFor(outline_M);
+}
+
 }  // namespace
 
 DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::Robot& robot,
@@ -166,23 +179,13 @@ Status MoveBase::Recover(const navigation::Costmap& costmap,
 }
 
 /// The map as it must be now, if it is not the one that is known: with what is seen, and free where
-/// the robot stands. A localisation that errs by a hand's breadth would else let it stand in a wall
-/// for good; move_base's costmaps clear the footprint for the same reason. A robot whose centre
-/// lies in an obstacle is lost instead.
+/// the robot stands. What is seen below its arms stays: it may be driven into.
 std::optional<navigation::Costmap> MoveBase::CostmapNow(
     const robot::Observation& observation) const {
-  std::optional<navigation::Costmap> now;
-  if (!observation.obstacles_M.empty()) {
-    now = costmap_->WithObstacles(observation.obstacles_M);
-  }
-  const geometry::Polygon outline_M = geometry::Transformed(observation.X_MB, footprint_);
-  const navigation::Costmap& known = now ? *now : *costmap_;
-  int column = 0, row = 0;
-  known.CellOf(observation.X_MB.position(), &column, &row);
-  if (known.Inside(column, row) && known.cost(column, row) < navigation::kLethalCost &&
-      known.CostBelow(outline_M) >= navigation::kLethalCost) {
-    now = known.WithRoomFor(outline_M);
-  }
+  std::optional<navigation::Costmap> now = WithRoom(*costmap_, observation.X_MB, footprint_);
+  if (observation.obstacles_M.empty()) return now;
+  now = (now ? *now : *costmap_).WithObstacles(observation.obstacles_M);
+  if (auto roomier = WithRoom(*now, observation.X_MB, context_->footprint)) now = roomier;
   return now;
 }
 

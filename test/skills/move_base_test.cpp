@@ -311,6 +311,24 @@ TEST(MoveBaseTest, ArmsThatStickOutTouchNothing) {
   EXPECT_GT(ClearanceOfDrive(room, posts, "armcarryposture", true), 0.0);
 }
 
+TEST(MoveBaseTest, WhatIsSeenBelowTheArmsIsNotDrivenInto) {
+  const auto context = std::make_shared<const DrivingContext>(Pr2In(Room()));
+  const auto joints = ArmsOf(*context->robot, "armcarryposture", true);
+  const geometry::Polygon leg{{1.18, 2.40}, {1.22, 2.40}, {1.22, 2.44}, {1.18, 2.44}};
+  ASSERT_TRUE(geometry::Contains(FootprintOf(*context, joints), {0.2, 0.42}));
+  MoveBase skill(context, {1.2, 3.3, 1.57}, kFast);
+  double clearance = 1e9;
+  const SkillRun run = RunSkill(&skill, {kWest, {}, false}, [&](auto* seen, auto* robot) {
+    seen->joints = joints;
+    seen->obstacles_M = {leg};
+    clearance = std::min(
+        clearance, geometry::Distance(
+                       geometry::Transformed(robot->X_MB, context->robot->profile.footprint), leg));
+  });
+  EXPECT_GT(clearance, 0.0);
+  ExpectFailed("no_valid_trajectory", run);
+}
+
 // ------------------------------------------------------------------------------------- blind
 
 TEST(MoveBaseBlindTest, ArrivesWithinItsTolerances) {
