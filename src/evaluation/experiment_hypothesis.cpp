@@ -181,10 +181,13 @@ void CountReport(const AchieveReport& report, HypothesisRun* run) {
       std::count_if(report.status.steps.begin(), report.status.steps.end(),
                     [](const execution::StepStatus& step) { return step.started.has_value(); }));
   run->imaginations = static_cast<int>(report.status.imaginations.size());
-  std::map<std::pair<int, int>, bool> is_answered;  // by plan and step, of those that were begun
+  // Of steps that were begun. One that a repair took over may stand in several plans; what was
+  // asked last counts, for it is asked again where an answer counts no more.
+  std::map<std::pair<double, std::string>, bool> is_answered;
   for (const ImaginedStep& step : report.status.imaginations) {
     const bool in_time = HasVerdict(step) && *step.answered <= step.dispatch.value_or(-1.0);
-    if (step.dispatch) is_answered[{step.plan, step.step}] |= in_time;
+    if (step.dispatch)
+      is_answered[{*step.dispatch, base::CanonicalName(step.action.name)}] = in_time;
     run->imagination_wall += step.wall_seconds;
     run->imagination_simulated += step.simulated_seconds;
     run->recommended.push_back(RecommendationOf(step));

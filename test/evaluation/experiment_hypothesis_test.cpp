@@ -148,30 +148,37 @@ TEST(CountReportTest, CountsStepsAndAnswersInTime) {
   in_time.recommended = 0;
   in_time.predictions.resize(1);
   in_time.predictions[0].action = {"move_base_param", {"area1", "slow"}};
-  ImaginedStep late = in_time, given_up = in_time, refused = in_time, asked_again = in_time;
+  ImaginedStep late = in_time, given_up = in_time, refused = in_time, asked_first = in_time;
   late.step = 1;
-  late.answered = 31.0;
+  late.dispatch = 35.0;
+  late.answered = 36.0;
   late.recommended = -1;
   given_up.step = 2;
   given_up.dispatch.reset();
   refused.step = 3;
+  refused.dispatch = 40.0;
   refused.predictions.clear();
   refused.outcome = "invalid";
-  asked_again.outcome = "cancelled";  // the same step as the first
-  report.status.imaginations = {in_time, late, given_up, refused, asked_again};
+  asked_first.plan = -1;  // the same step, before a repair took it over
+  asked_first.outcome = "cancelled";
+  ImaginedStep thrown_away = in_time, asked_in_vain = in_time;
+  thrown_away.dispatch = asked_in_vain.dispatch = 45.0;
+  asked_in_vain.outcome = "cancelled";
+  report.status.imaginations = {asked_first, in_time,     late,         given_up,
+                                refused,     thrown_away, asked_in_vain};
   HypothesisRun run;
   CountReport(report, &run);
   EXPECT_EQ(run.outcome, "succeeded");
   EXPECT_EQ(run.duration, 40.0);
   EXPECT_EQ(run.steps, 2);
   EXPECT_EQ(run.replans, 2);
-  EXPECT_EQ(run.imaginations, 5);
-  EXPECT_EQ(run.dispatched, 3) << "steps, not requests";
+  EXPECT_EQ(run.imaginations, 7);
+  EXPECT_EQ(run.dispatched, 4) << "steps, not requests";
   EXPECT_EQ(run.in_time, 1);
-  EXPECT_EQ(run.imagination_wall, 20.0);
-  ASSERT_THAT(run.recommended, SizeIs(5));
-  EXPECT_THAT(run.recommended[0], HasSubstr("slow"));
-  EXPECT_EQ(run.recommended[1], "none");
+  EXPECT_EQ(run.imagination_wall, 28.0);
+  ASSERT_THAT(run.recommended, SizeIs(7));
+  EXPECT_THAT(run.recommended[1], HasSubstr("slow"));
+  EXPECT_EQ(run.recommended[2], "none");
 }
 
 TEST(HypothesisGoalTest, UnknownScenariosAndBadFilesAreNamed) {
