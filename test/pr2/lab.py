@@ -157,8 +157,8 @@ class Lab:
         self.require_server(self.actions)
 
     def require_server(self, client):
-        wait_for(lambda: client.pub_goal.get_num_connections() > 0 and
-                 client.result_sub.get_num_connections() > 0, client.ns)
+        # Connections alone do not tell: the tracker listens to goals, too.
+        assert client.wait_for_server(self.rospy.Duration(START)), client.ns + ' has no server'
 
     def wait_for_news(self, client):
         """Of a server that was started again: it says its status, and hears goals."""
