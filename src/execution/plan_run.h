@@ -42,7 +42,6 @@ struct StepRun {
   std::optional<double> started;
   std::optional<double> finished;
   std::optional<double> stopped;  ///< when it was told to stop
-  bool is_unobserved{false};      ///< word of its effects is late, and somebody was told so
   std::string note;
 
   bool IsActive() const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "hires/base/text.h"
@@ -22,6 +23,18 @@ std::string ReasonOf(const StepFinished& finished) {
       return finished.reason.empty() ? "unavailable" : "unavailable: " + finished.reason;
   }
   return "failed";
+}
+
+/// Why the way that was taken is no good, as skills say it (docs/notes_skills.md): another arm or
+/// place may do. Whatever else comes is of the robot (motors_halted, stale_scan, no_controller),
+/// and no other way helps against it.
+bool IsOfTheAction(const std::string& reason) {
+  static const std::set<std::string> kReasons{
+      "area_occupied",  "goal_blocked",        "goal_missed", "grasp_failed",    "hand_full",
+      "no_path",        "no_valid_trajectory", "object_held", "object_not_seen", "object_slipped",
+      "object_toppled", "oscillating",         "out_of_view", "start_blocked",   "stuck",
+      "unreachable"};
+  return kReasons.count(reason.substr(0, reason.find(':'))) > 0;
 }
 
 /// It will fail again however often it is tried from here: another way must be taken.
@@ -45,9 +58,7 @@ void StepWatch::OnFinished(const StepFinished& finished) {
   if (step.is_stopping) return session_.End(index, StepPhase::kFailed, "preempted", "stopped");
   session_.End(index, StepPhase::kFailed, "failed", reason);
   if (IsBlocked(reason)) session_.Exclude({step.action, NamesIn(reason), 0}, index, reason);
-  const bool is_of_the_action =
-      finished.result == StepFinished::Result::kFailed && reason.rfind("timed_out", 0) != 0;
-  session_.Report({Trouble::Kind::kActivity, step.action, reason, index, is_of_the_action},
+  session_.Report({Trouble::Kind::kActivity, step.action, reason, index, IsOfTheAction(reason)},
                   step.activity);
 }
 
@@ -113,7 +124,7 @@ void StepWatch::CheckEffects(int index) {
   if (!missing) return session_.Confirm(index);
   StepRun& step = session_.run().at(index);
   const double due = *step.finished + session_.params().effect_timeout;
-  if (!IsPast(due) || MayBeOnItsWay(index, due)) return;
+  if (!IsPast(due) || MayBeOnItsWay(due, base::ToString(step.action))) return;
   const std::string reason =
       (session_.IsBehind(due) ? "effect_unknown: " : "effect_missing: ") + *missing;
   step.phase = StepPhase::kFailed;
@@ -123,17 +134,19 @@ void StepWatch::CheckEffects(int index) {
 }
 
 /// What nobody has told yet is no proof that it is not so; but not for ever.
-bool StepWatch::MayBeOnItsWay(int index, double due) {
-  if (!session_.IsBehind(due)) return false;
-  StepRun& step = session_.run().at(index);
-  const double patience = session_.params().observation_delay;
-  if (!std::exchange(step.is_unobserved, true)) {
-    session_.Warning(
-        fmt::format("what was observed after {} has not been told yet; it is waited "
-                    "for up to {} s",
-                    base::ToString(step.action), patience));
+bool StepWatch::MayBeOnItsWay(double due, const std::string& action) {
+  if (!session_.IsBehind(due)) {
+    late_.erase(action);
+    return false;
   }
-  return !IsPast(due + patience);
+  const MonitorParams& params = session_.params();
+  // Word of what is observed always takes a moment: it is worth telling where it takes long.
+  if (IsPast(due + params.effect_timeout) && late_.insert(action).second) {
+    session_.Warning(
+        fmt::format("{}: word of what is observed is {:.1f} s late; it is waited for up to {} s",
+                    action, params.effect_timeout, params.observation_delay));
+  }
+  return !IsPast(due + params.observation_delay);
 }
 
 /// Whether a running step may have changed it for a while.
@@ -145,22 +158,23 @@ bool StepWatch::IsDisturbed(const Expectation& expectation) const {
   return false;
 }
 
-/// Whether it has not held for `patience` [s] by now.
-bool StepWatch::IsBroken(const Expectation& expectation, double patience) {
-  if (session_.facts().Holds(expectation.literal, expectation.text)) return false;
-  if (IsDisturbed(expectation)) return false;
+/// Since when it does not hold [s], undisturbed.
+std::optional<double> StepWatch::BrokenSince(const Expectation& expectation) {
+  if (session_.facts().Holds(expectation.literal, expectation.text)) return std::nullopt;
+  if (IsDisturbed(expectation)) return std::nullopt;
   const std::string key = TextOf(expectation);
   const auto known = broken_.find(key);
   const double since = known == broken_.end() ? session_.now() : known->second;
   still_broken_[key] = since;
-  return IsPast(since + patience);
+  return since;
 }
 
 /// What a running step rests on, but for what it changes itself.
 void StepWatch::CheckConditions(int index) {
   const StepRun& step = session_.run().at(index);
   for (const Expectation& expectation : step.expectations) {
-    if (!IsBroken(expectation, session_.params().break_delay)) continue;
+    const std::optional<double> since = BrokenSince(expectation);
+    if (!since || !IsPast(*since + session_.params().break_delay)) continue;
     session_.Stop(index);
     session_.Report(
         {Trouble::Kind::kPrecondition, step.action, "condition_lost: " + TextOf(expectation)},
@@ -179,7 +193,9 @@ void StepWatch::CheckLinks(int index) {
   for (const Expectation& expectation : step.expectations) {
     const bool is_there =
         expectation.producer < 0 || run.at(expectation.producer).phase == StepPhase::kDone;
-    if (!is_there || !IsBroken(expectation, patience)) continue;
+    const auto since = is_there ? BrokenSince(expectation) : std::nullopt;
+    if (!since || !IsPast(*since + patience)) continue;
+    if (MayBeOnItsWay(*since + patience, base::ToString(step.action))) continue;
     session_.Report(
         {Trouble::Kind::kPrecondition, step.action, "condition_lost: " + TextOf(expectation)}, 0);
     return;

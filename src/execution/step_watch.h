@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "session.h"
@@ -26,18 +27,19 @@ class StepWatch {
   void CheckStop(int step);
   void CheckDuration(int step);
   void CheckEffects(int step);
-  bool MayBeOnItsWay(int step, double due);
+  bool MayBeOnItsWay(double due, const std::string& action);
   void CheckConditions(int step);
   void CheckLinks(int step);
   std::optional<std::string> MissingEffect(int step) const;
   bool IsDisturbed(const Expectation& expectation) const;
-  bool IsBroken(const Expectation& expectation, double patience);
+  std::optional<double> BrokenSince(const Expectation& expectation);
   void Wake(double at);
   bool IsPast(double at);
 
   Session& session_;
   std::map<std::string, double> broken_;  ///< expectation that does not hold, since [s]
   std::map<std::string, double> still_broken_;
+  std::set<std::string> late_;  ///< actions of which was told that word of them is late
   std::optional<double> wake_at_;
   std::string lost_;
 };

@@ -169,6 +169,10 @@ void ExecutionMonitorNode::OnView(const RemoteView::Update& update) {
 
 void ExecutionMonitorNode::OnProgress(const hires::ObservationProgress& progress) {
   Post([this, progress] {
+    // Of equal numbers the newest says it all; higher ones are of a store that was replaced.
+    while (!progress_.empty() && progress_.back().sequence >= progress.sequence) {
+      progress_.pop_back();
+    }
     progress_.push_back(progress);
     TellProgress();
   });
@@ -221,6 +225,10 @@ void ExecutionMonitorNode::Tick() {
 void ExecutionMonitorNode::WatchClock(double now) {
   const bool has_jumped = now < last_now_ - kClockJump;
   last_now_ = now;
+  if (has_jumped) {
+    progress_.clear();
+    observed_until_.reset();
+  }
   if (!has_jumped || !task_ || !task_->monitor) return;
   FinishTask({execution::Finish::Outcome::kFailed,
               "the robot's clock jumped back: the robot was started anew"});

@@ -100,8 +100,8 @@ bool RemoteView::LoadAll() {
   {
     const std::unique_lock<std::shared_mutex> lock(view_mutex_);
     view_ = knowledge::LiveView(std::move(fluents), sequence);
+    sequence_ = sequence;  // never behind what the view shows
   }
-  sequence_ = sequence;
   is_known_ = true;
   Tell({true, {}, sequence});
   return true;
@@ -129,9 +129,9 @@ void RemoteView::Take(const hires::FluentChanges& message) {
   {
     const std::unique_lock<std::shared_mutex> lock(view_mutex_);
     for (const knowledge::Change& change : update.changes) view_.Apply(change);
+    sequence_ = message.last_sequence;
   }
   update.sequence = message.last_sequence;
-  sequence_ = message.last_sequence;
   Tell(std::move(update));
 }
 

@@ -710,8 +710,8 @@ TEST(FailureTest, EffectsThatAreToldLateAreWaitedFor) {
   EXPECT_EQ(world.CountOf("begin pick_up_object"), 1);
   EXPECT_THAT(world.plannings(), SizeIs(1));
   EXPECT_THAT(world.warnings(),
-              Contains(HasSubstr("what was observed after pick_up_object(mug1, rightarm1) has not "
-                                 "been told yet; it is waited for up to 30 s")));
+              Contains(HasSubstr("pick_up_object(mug1, rightarm1): word of what is observed is "
+                                 "3.0 s late; it is waited for up to 30 s")));
 }
 
 TEST(FailureTest, WhatIsMissingIsSoOnceAllWasTold) {
@@ -724,10 +724,23 @@ TEST(FailureTest, WhatIsMissingIsSoOnceAllWasTold) {
   ScriptedWorld world(options);
   ObserveEverySecond(600.0, 2.5, &world);
   ExpectSuccess(&world, "serve_coffee");
-  EXPECT_THAT(world.warnings(),
-              ElementsAreArray({HasSubstr("what was observed after pick_up_object"),
-                                HasSubstr("effect_missing: holding(rightarm1")}));
+  EXPECT_THAT(world.warnings(), ElementsAreArray({HasSubstr("effect_missing: holding(rightarm1")}));
+  const auto ended = world.TimeOf("end pick_up_object"),
+             mended = world.TimeOf("warn pick_up_object");
+  EXPECT_GT(mended, ended + 3.0);
+  EXPECT_LT(mended, ended + 3.0 + 2.5 + 1.0) << "as soon as it is told";
   EXPECT_EQ(world.CountOf("begin pick_up_object"), 2);
+}
+
+TEST(FailureTest, AStoppedRobotTriesNoOtherWay) {
+  auto options = For("serve_coffee");
+  options.step = Failing("pick_up_object", 100, "motors_halted");
+  ScriptedWorld world(options);
+  const Finish finish = world.Run(TaskOf("serve_coffee"));
+  EXPECT_EQ(finish.outcome, Finish::Outcome::kFailed);
+  EXPECT_THAT(finish.reason, HasSubstr("motors_halted (twice in a row, and nothing has changed)"));
+  EXPECT_EQ(world.CountOf("begin pick_up_object"), 2);
+  ExpectSound(world);
 }
 
 TEST(FailureTest, ObservationsThatStayAwayAreNotWaitedForForEver) {
@@ -788,6 +801,18 @@ TEST(FailureTest, AGlanceThatSeesNothingChangesNothing) {
   world.At(7.3, [&](ScriptedWorld* w) { w->Set({}, {mug}), w->Observe(); });
   ExpectSuccess(&world, "serve_coffee");
   EXPECT_THAT(world.warnings(), IsEmpty());
+}
+
+TEST(FailureTest, WhatALaterStepRestsOnMayBeToldLate) {
+  ScriptedWorld world(For("serve_coffee"));
+  const base::Atom mug{"on", {"mug1", "placingareaeastrightcounter1"}};
+  world.At(0.0, [](ScriptedWorld* w) { w->ObserveUntilNow(0.0); });
+  // Two words about one change, the second far too late, and nobody says that the first is all.
+  world.At(7.0, [&](ScriptedWorld* w) { w->Set({mug}, {}), w->Observe(); });
+  world.At(12.0, [&](ScriptedWorld* w) { w->Set({}, {mug}), w->Observe(); });
+  ExpectSuccess(&world, "serve_coffee");
+  EXPECT_THAT(world.plannings(), SizeIs(1));
+  EXPECT_THAT(world.warnings(), ElementsAreArray({HasSubstr("word of what is observed is 3.0 s")}));
 }
 
 TEST(FailureTest, AnObjectThatIsMovedToAnotherAreaIsFetchedThere) {

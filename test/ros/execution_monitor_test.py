@@ -222,9 +222,11 @@ class ExecutionMonitorTest(unittest.TestCase):
         now = self.system.rospy.Time.now()
         self.system.say_observed_until(now)
         self.addCleanup(self.system.say_observed_until, now + self.system.rospy.Duration(1e6))
+        # Nobody has been told so much.
+        self.system.say_observed_until(now + self.system.rospy.Duration(1e6), sequence=10**9)
         self.system.behave('tuck_arms', silent=True, times=1)
         task = self.achieve(CARRY)
-        wait_until(lambda: any('has not been told yet' in text for text in task.warnings()),
+        wait_until(lambda: any('word of what is observed' in text for text in task.warnings()),
                    'the warning')
         self.system.observe(self.system.done('tuck_arms')[0])
         result = self.require(task, self.codes.SUCCEEDED)

@@ -386,6 +386,13 @@ double ScriptedWorld::StartOf(const std::string& action) const {
   return -1.0;
 }
 
+double ScriptedWorld::TimeOf(const std::string& word) const {
+  for (const std::string& line : log_) {
+    if (line.rfind(word, 0) == 0) return std::stod(line.substr(line.rfind('@') + 1));
+  }
+  return -1.0;
+}
+
 int ScriptedWorld::CountOf(const std::string& word) const {
   return static_cast<int>(std::count_if(
       log_.begin(), log_.end(), [&](const std::string& line) { return line.rfind(word, 0) == 0; }));

@@ -81,7 +81,8 @@ class ScriptedWorld {
   /// "pick_up_object(mug1, rightarm1)", as begun.
   std::vector<std::string> Begun() const;
   double StartOf(const std::string& action) const;  ///< [s] of the first one of that text; -1: none
-  int CountOf(const std::string& word) const;       ///< lines of the log that begin with it
+  double TimeOf(const std::string& word) const;  ///< [s] of the first line that begins so; -1: none
+  int CountOf(const std::string& word) const;    ///< lines of the log that begin with it
   bool Holds(const base::Atom& atom) const;
   const std::vector<std::string>& log() const { return log_; }
   const std::vector<std::string>& violations() const { return violations_; }

@@ -156,9 +156,9 @@ class ExecutionSystem(BlackboardAccess):
         name, arguments = step.rstrip(')').split('(')
         getattr(self._observations, name)(*arguments.split(', '))
 
-    def say_observed_until(self, time):
-        """As a tracker does that the Blackboard has kept up with since it began."""
-        message = self.msg.ObservationProgress(sequence=0)
+    def say_observed_until(self, time, sequence=0):
+        """As a tracker does when the Blackboard has come to that number."""
+        message = self.msg.ObservationProgress(sequence=sequence)
         message.header.stamp = time
         self._progress.publish(message)
 
@@ -226,7 +226,7 @@ class ExecutionSystem(BlackboardAccess):
         rospy.init_node('execution_test', disable_signals=True)
         self.client = actionlib.ActionClient('achieve', msg.AchieveAction)
         self._progress = rospy.Publisher('observation_progress', msg.ObservationProgress,
-                                         queue_size=1, latch=True)
+                                         queue_size=10, latch=True)
         self.require_server()
 
     def require_server(self):
