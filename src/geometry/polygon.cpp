@@ -35,6 +35,23 @@ bool SomeEdgeSeparates(const Polygon& a, const Polygon& b) {
   return false;
 }
 
+/// The shortest shift of `other` out of `polygon` along the normal of one of its edges; zero where
+/// an edge parts them already.
+Eigen::Vector2d ShiftOutOf(const Polygon& polygon, const Polygon& other) {
+  double least = std::numeric_limits<double>::infinity();
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d along = polygon[(i + 1) % polygon.size()] - polygon[i];
+    const Eigen::Vector2d outwards = Eigen::Vector2d(along.y(), -along.x()).normalized();
+    double depth = 0.0;
+    for (const Eigen::Vector2d& p : other) depth = std::max(depth, outwards.dot(polygon[i] - p));
+    if (depth >= least) continue;
+    least = depth;
+    shift = depth * outwards;
+  }
+  return shift;
+}
+
 double CornersToEdges(const Polygon& corners, const Polygon& edges) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Eigen::Vector2d& p : corners) {
@@ -96,6 +113,13 @@ bool Contains(const Polygon& polygon, const Eigen::Vector2d& point) {
 double Distance(const Polygon& a, const Polygon& b) {
   if (!SomeEdgeSeparates(a, b) && !SomeEdgeSeparates(b, a)) return 0.0;
   return std::min(CornersToEdges(a, b), CornersToEdges(b, a));
+}
+
+Eigen::Vector2d PartingShift(const Polygon& a, const Polygon& b) {
+  const Eigen::Vector2d out_of_b = ShiftOutOf(b, a);
+  const Eigen::Vector2d out_of_a = ShiftOutOf(a, b);
+  if (out_of_a.squaredNorm() < out_of_b.squaredNorm()) return -out_of_a;
+  return out_of_b;
 }
 
 double InscribedRadius(const Polygon& polygon) {

@@ -134,6 +134,48 @@ TEST(DistanceTest, CrossingBarsOverlapAlthoughNoCornerLiesWithin) {
   EXPECT_EQ(Distance(wide, Transformed({0.0, 0.0, kPi / 2}, wide)), 0.0);
 }
 
+TEST(PartingShiftTest, GoldenValues) {
+  const auto square_at = [](double x, double y) { return Transformed({x, y, 0.0}, kUnitSquare); };
+  EXPECT_EQ(PartingShift(kUnitSquare, square_at(3.0, 0.0)), Eigen::Vector2d(0.0, 0.0));
+  EXPECT_EQ(PartingShift(kUnitSquare, square_at(1.0, 0.5)), Eigen::Vector2d(0.0, 0.0))
+      << "touching";
+  EXPECT_LT((PartingShift(kUnitSquare, square_at(0.75, 0.5)) - Eigen::Vector2d(-0.25, 0.0)).norm(),
+            1e-12);
+  EXPECT_LT(
+      (PartingShift(kUnitSquare, square_at(0.25, -0.875)) - Eigen::Vector2d(0.0, 0.125)).norm(),
+      1e-12);
+  const Polygon diamond{{0.9, 0.5}, {1.9, -0.5}, {2.9, 0.5}, {1.9, 1.5}};
+  EXPECT_LT((PartingShift(kUnitSquare, diamond) - Eigen::Vector2d(-0.1, 0.0)).norm(), 1e-12);
+}
+
+TEST(PartingShiftTest, PartsAndNoShorterShiftInSixtyDirectionsDoes) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    base::Rng rng = base::Rng(3).Fork(seed);
+    const auto polygon = [&rng] {
+      std::vector<Eigen::Vector2d> points;
+      for (int i = 0; i < 6; ++i) points.emplace_back(rng.Uniform(-1, 1), rng.Uniform(-1, 1));
+      return ConvexHull(points);
+    };
+    const Polygon a = polygon(), b = polygon();
+    const Eigen::Vector2d shift = PartingShift(a, b);
+    const auto moved = [&](const Eigen::Vector2d& by) {
+      return Transformed({by.x(), by.y(), 0.0}, a);
+    };
+    if (Distance(a, b) > 0.0) {
+      EXPECT_EQ(shift, Eigen::Vector2d(0.0, 0.0));
+      continue;
+    }
+    EXPECT_GT(Distance(moved(1.0001 * shift), b), 0.0) << "seed " << seed;
+    EXPECT_LT(Distance(moved(1.0001 * shift), b), 1e-3) << "seed " << seed;
+    for (int i = 0; i < 60; ++i) {
+      const double angle = i * kPi / 30;
+      const Eigen::Vector2d shorter =
+          0.999 * shift.norm() * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+      EXPECT_EQ(Distance(moved(shorter), b), 0.0) << "seed " << seed;
+    }
+  }
+}
+
 TEST(DistanceTest, AgreesWithPointsSampledOnBothOutlines) {
   constexpr int kPerEdge = 100;
   for (std::uint64_t seed = 0; seed < 100; ++seed) {

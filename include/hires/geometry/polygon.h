@@ -24,6 +24,10 @@ bool Contains(const Polygon& polygon, const Eigen::Vector2d& point);  ///< bound
 /// Distance between convex polygons [m]; 0 if they touch or overlap.
 double Distance(const Polygon& a, const Polygon& b);
 
+/// The shortest shift of `a` after which it only touches `b` [m]; zero where they are apart. By the
+/// separating axis theorem: along the normal of an edge of one of them.
+Eigen::Vector2d PartingShift(const Polygon& a, const Polygon& b);
+
 double InscribedRadius(const Polygon& polygon);      ///< origin to the nearest edge [m]
 double CircumscribedRadius(const Polygon& polygon);  ///< origin to the farthest corner [m]
 

@@ -75,8 +75,10 @@ struct GeometricState {
 /// else on its middle, or beside it by as little as keeps it clear of the objects that are there.
 /// On(object, trayarea1): where it was seen on the tray; else on the next free slot (middle, right,
 /// left: 0.13 m), or where there is room. Objects that only fluents know stay where they were seen
-/// in the map; upright ones within 0.03 m of the top of furniture stand on it; those whose last place was a part of the robot, which no atom confirms, are left
-/// out.
+/// in the map; upright ones from 0.08 m below to 0.03 m above the top of furniture stand on it;
+/// those whose last place was a part of the robot, which no atom confirms, are left out. Objects
+/// that were seen in each other are parted, by the shortest way, where that moves none by more than
+/// 0.06 m.
 ///
 /// @param fluents  may be null: nothing was seen.
 /// @throws base::ConfigError naming the atom: unknown area, object, posture or predicate, another
