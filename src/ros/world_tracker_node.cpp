@@ -29,6 +29,7 @@ using hires::base::LogLevel;
 
 constexpr double kKnownPeriod = 0.1;    // [s] at most, between words about known objects
 constexpr double kWarningPeriod = 1.0;  // [s] for each topic
+constexpr double kNever = -1e9;         // [s]
 
 std::map<std::string, std::pair<double, double>> LimitsOf(const robot::RobotModel& model) {
   std::map<std::string, std::pair<double, double>> limits;
@@ -211,11 +212,24 @@ void WorldTrackerNode::Process() {
   while (const auto moment = senses_.Take()) Handle(*moment);
 }
 
+/// What a look says of a time before a hand took or let go of something says nothing of now.
+void WorldTrackerNode::HandleLate(const TrackerMoment& moment) {
+  if (moment.body.time <= hands_changed_) {
+    ++num_outdated_;
+    return;
+  }
+  ++num_looks_;
+  memory_.Look(moment.body, *moment.look);
+  published_ = kNever;  // with the next moment
+}
+
 void WorldTrackerNode::Handle(const TrackerMoment& moment) {
+  if (moment.is_late) return HandleLate(moment);
   ++num_moments_;
   time_ = moment.body.time;
   if (is_view_new_.exchange(false)) ReadView();
   const bool has_changed = memory_.Feel(moment.body);
+  if (has_changed || time_ < hands_changed_) hands_changed_ = has_changed ? time_ : kNever;
   if (moment.look) {
     ++num_looks_;
     memory_.Look(moment.body, *moment.look);
@@ -299,6 +313,7 @@ void WorldTrackerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& sta
   status.add("moments", num_moments_);
   status.add("looks", num_looks_);
   status.add("moments dropped", senses_.num_dropped());
+  status.add("looks outdated", num_outdated_);
   status.add("bad messages", num_bad_);
   status.add("objects remembered", memory_.objects().size());
   status.add("objects vanished", memory_.Vanished().size());

@@ -49,7 +49,8 @@ void TrackerSenses::Forget() {
   localisation_.clear();
   origins_.clear();
   pending_.clear();
-  joints_.reset();
+  late_.clear();
+  postures_.clear();
   newest_joints_.reset();
   why_dropped_.clear();
   taken_ = -1.0;
@@ -68,8 +69,10 @@ void TrackerSenses::OnOdometryOrigin(double stamp, const geometry::Pose2& X_MO) 
   Insert(&origins_, {stamp, X_MO});
 }
 
+bool TrackerSenses::IsTaken(double stamp) const { return stamp <= taken_ - kSameStamp; }
+
 TrackerSenses::Pending* TrackerSenses::PendingAt(double stamp) {
-  if (stamp <= taken_ - kSameStamp) {
+  if (IsTaken(stamp)) {
     ++num_dropped_;
     return nullptr;
   }
@@ -84,7 +87,8 @@ void TrackerSenses::OnJoints(double stamp, hires::robot::JointPositions joints) 
 }
 
 void TrackerSenses::OnLook(double stamp, std::vector<hires::perception::Detection> detections) {
-  if (Pending* pending = PendingAt(stamp)) pending->look = std::move(detections);
+  if (IsTaken(stamp)) return late_.push_back({stamp, std::move(detections)});
+  PendingAt(stamp)->look = std::move(detections);
 }
 
 /// The reading nearest in time, as long as it is near.
@@ -111,7 +115,7 @@ std::optional<geometry::Pose2> TrackerSenses::BaseAt(double stamp) const {
 std::string TrackerSenses::Lack(double stamp, const Pending& pending) const {
   if (odometry_.empty() || odometry_.back().stamp < stamp - kSameStamp) return "odometry";
   if (!newest_joints_ || *newest_joints_ < stamp - kSameStamp) return "joint states";
-  if (!pending.joints && !joints_) return "joint states";
+  if (!pending.joints && postures_.empty()) return "joint states";
   const bool is_corrected =
       !localisation_.empty() && localisation_.back().stamp >= stamp - kSameStamp;
   if (!is_corrected && odometry_.back().stamp < stamp + kLocalisationWait) return "odometry";
@@ -125,7 +129,28 @@ bool TrackerSenses::IsHopeless(double stamp) const {
   return newest - stamp > kTooOld;
 }
 
+/// Joints that are older: nobody knows where the camera looked then.
+const hires::robot::JointPositions* TrackerSenses::PostureAt(double stamp) const {
+  const auto* nearest = Nearest(postures_, stamp, kOldPosture);
+  return nearest ? &nearest->value : nullptr;
+}
+
+std::optional<TrackerMoment> TrackerSenses::TakeLate() {
+  while (!late_.empty()) {
+    const auto [stamp, look] = late_.front();
+    late_.pop_front();
+    const hires::robot::JointPositions* posture = PostureAt(stamp);
+    const auto X_MB = BaseAt(stamp);
+    if (posture && X_MB) {
+      return TrackerMoment{{stamp, *X_MB, *posture}, OdometryAt(stamp)->V_B, look, true};
+    }
+    ++num_dropped_;
+  }
+  return std::nullopt;
+}
+
 std::optional<TrackerMoment> TrackerSenses::Take() {
+  if (auto late = TakeLate()) return late;
   while (!pending_.empty()) {
     const auto first = pending_.begin();
     const double stamp = first->first;
@@ -137,12 +162,11 @@ std::optional<TrackerMoment> TrackerSenses::Take() {
       pending_.erase(first);
       continue;
     }
-    if (first->second.joints) joints_ = {stamp, *first->second.joints};
+    if (first->second.joints) Insert(&postures_, {stamp, *first->second.joints});
     TrackerMoment moment;
-    moment.body = {stamp, *BaseAt(stamp), joints_->value};
+    moment.body = {stamp, *BaseAt(stamp), postures_.back().value};
     moment.V_B = OdometryAt(stamp)->V_B;
-    // Joints that were lost on the way: nobody knows where the camera looked then.
-    const bool is_posture_known = stamp - joints_->stamp <= kOldPosture;
+    const bool is_posture_known = PostureAt(stamp) != nullptr;
     if (is_posture_known) moment.look = std::move(first->second.look);
     if (!is_posture_known && first->second.look) ++num_dropped_;
     taken_ = stamp;

@@ -169,6 +169,26 @@ TEST(TrackerSensesTest, ALookWhoseJointsWereLostIsNone) {
   EXPECT_EQ(senses.num_dropped(), 1);
 }
 
+TEST(TrackerSensesTest, ALookThatTookLongIsOfItsOwnTime) {
+  TrackerSenses senses;
+  for (int i = 0; i <= 20; ++i) {  // for 1 s
+    const double stamp = 10.0 + 0.05 * i;
+    senses.OnOdometry(stamp, Odometry(0.1 * i));
+    senses.OnLocalisation(stamp, {0.1 * i, 0.0, 0.0});
+    senses.OnJoints(stamp, {{"head", 0.01 * i}});
+    EXPECT_EQ(TakeAll(&senses).size(), 1u);
+  }
+  senses.OnLook(10.2, {{"mug1", "mug", {}, 1.0}});
+  const auto moments = TakeAll(&senses);
+  ASSERT_EQ(moments.size(), 1u);
+  EXPECT_TRUE(moments[0].is_late);
+  EXPECT_EQ(moments[0].body.time, 10.2);
+  EXPECT_NEAR(moments[0].body.X_MB.x, 0.4, 1e-12);
+  EXPECT_NEAR(moments[0].body.joints.at("head"), 0.04, 1e-12);
+  EXPECT_EQ(moments[0].look->at(0).name, "mug1");
+  EXPECT_EQ(senses.num_dropped(), 0);
+}
+
 TEST(TrackerSensesTest, PlaceAndJointsDoNotDependOnHowTopicsInterleave) {
   hires::base::Rng first(0);
   const auto wanted = Played(&first);
@@ -196,8 +216,11 @@ TEST(TrackerSensesTest, WhatIsLateOrStaysAloneIsDropped) {
   senses.OnLocalisation(10.0, {});
   senses.OnJoints(10.0, {});
   EXPECT_TRUE(senses.Take());
-  senses.OnLook(9.0, {});
+  senses.OnJoints(9.0, {});
   EXPECT_EQ(senses.num_dropped(), 1);
+  senses.OnLook(9.0, {});  // nobody knows where the camera was
+  EXPECT_FALSE(senses.Take());
+  EXPECT_EQ(senses.num_dropped(), 2);
   senses.OnLook(20.0, {});  // of a clock that nobody else has: waits, and holds up nobody
   senses.OnOdometry(10.05, Odometry(0.0));
   senses.OnLocalisation(10.05, {});

@@ -138,15 +138,19 @@ class WorldTrackerTest(unittest.TestCase):
         self.publishers['odometry'].publish(odometry)
         self.publishers['amcl'].publish(amcl)
         self.publishers['joints'].publish(joints)
-        if seen is None:
-            return
+        if seen is not None:
+            self.publishers['detections'].publish(self.detections(seen, frame))
+
+    def detections(self, seen, frame=CAMERA):
+        """What the camera says of this moment."""
         detections = self.msg.Detections()
-        detections.header.stamp, detections.header.frame_id = stamp, frame
+        detections.header.stamp = self.rospy.Time.from_sec(self.t)
+        detections.header.frame_id = frame
         X_CM = numpy.linalg.inv(self.link(CAMERA))
         for name, (model, X_MO) in seen.items():
             detections.objects.append(self.msg.DetectedObject(
                 name=name, model=model, pose=self.pose_of(X_CM @ X_MO), visible_share=1.0))
-        self.publishers['detections'].publish(detections)
+        return detections
 
     def link(self, name):
         root = numpy.linalg.inv(self.robot.link('base_footprint', self.joints))
@@ -242,6 +246,17 @@ class WorldTrackerTest(unittest.TestCase):
         self.assertEqual(self.names()['book1'].model, 'book')
         self.assertEqual(self.known[-1].header.frame_id, 'map')
 
+    def test_an_object_may_be_recognised_when_the_robot_looks_elsewhere(self):
+        self.at_table()
+        self.rest()
+        late = self.detections({'book1': ('book', translation(7.48, 11.28, 0.73))})
+        self.base = (8.68, 9.9, 1.57)
+        self.joints['head_pan_joint'] = 0.8
+        self.rest(20)
+        self.publishers['detections'].publish(late)
+        self.expect('poseBook1', 'hasX', 7.48)
+        self.expect('poseBook1', 'hasY', 11.28)
+
     def test_what_is_believed_is_known_to_the_middle_layer_and_corrected_by_looking(self):
         self.wait(lambda: 'mug1' in self.names() or self.tick({}), 'the belief')
         self.assertAlmostEqual(self.names()['mug1'].pose.position.x, 5.37, places=2)
@@ -284,7 +299,11 @@ class WorldTrackerTest(unittest.TestCase):
         self.look(mug)
         self.expect('poseMug3', 'hasX', float(tool[0]))
         self.assertEqual(self.value('holdingRightArm1', 'hasPassiveObject'), 'nothing')
+        before = self.detections({'mug3': ('coffee_cup', translation(*(tool - (0.2, 0, 0.04))))})
         self.joints['r_gripper_joint'] = 0.079
+        self.rest()
+        self.publishers['detections'].publish(before)  # where it stood before it was grasped
+        self.rest()
         self.expect('holdingRightArm1', 'hasPassiveObject', 'mug3')
         self.expect('poseMug3', 'hasFrame', 'r_gripper_palm_link')
         self.look(mug)
@@ -357,7 +376,7 @@ class WorldTrackerTest(unittest.TestCase):
         joints.name, joints.position = ['torso_lift_joint', 'x'], [0.1]
         self.until_warned(lambda: self.publishers['joints'].publish(joints),
                           '2 names and 1 positions')
-        old, self.t = self.t, self.t - 3.0
+        old, self.t = self.t, self.t - 3.5
         self.tick({'book3': ('book', book)})  # a look of long ago
         self.t = old
         self.look({'book1': ('book', book)})

@@ -45,8 +45,8 @@ class WorldTrackerNode {
   /// Calls `read`; what it says is wrong with a message becomes a warning.
   void Guard(const std::string& topic, const std::function<void()>& read);
   void Process();
+  void HandleLate(const TrackerMoment& moment);
   void Handle(const TrackerMoment& moment);
-  void Look(const TrackerMoment& moment);
   void ReadView();
   void PublishKnown(const TrackerMoment& moment,
                     const std::vector<hires::robot::SeenObject>& known);
@@ -68,7 +68,8 @@ class WorldTrackerNode {
   double time_{0.0};                            // [s] of the last moment
   double published_{-1e9};                      // [s] when known objects were told last
   std::map<std::string, double> warned_;        // topic -> steady [s]
-  std::uint64_t num_moments_{0}, num_looks_{0}, num_bad_{0};
+  double hands_changed_{-1e9};                  // [s] when one took or let go of something
+  std::uint64_t num_moments_{0}, num_looks_{0}, num_outdated_{0}, num_bad_{0};
 
   std::atomic<bool> is_view_new_{false};
   ros::Publisher known_, head_;

@@ -18,12 +18,14 @@ struct TrackerMoment {
   hires::perception::BodyReading body;
   hires::geometry::Twist2 V_B;
   std::optional<std::vector<hires::perception::Detection>> look;
+  /// A look that came after later moments had been taken: `body` is as it was then.
+  bool is_late{false};
 };
 
 /// Puts together moments from messages that come in any order, each with its own stamp [s]. Knows
 /// no clock and no connection. Localisation corrects odometry: a moment waits for one of its own
 /// stamp as long as odometry is less than 0.15 s ahead, so that the same messages give the same
-/// moments however they interleave.
+/// moments however they interleave. Looks may take longer, up to 3 s: recognising objects does.
 class TrackerSenses {
  public:
   /// How the map that localisation speaks of lies in the world that moments speak of.
@@ -38,7 +40,8 @@ class TrackerSenses {
   void OnJoints(double stamp, hires::robot::JointPositions joints);
   void OnLook(double stamp, std::vector<hires::perception::Detection> detections);
 
-  /// The next complete moment, in the order of time; nothing if it is not complete yet.
+  /// Late looks, and then the next complete moment, in the order of time; nothing if it is not
+  /// complete yet.
   std::optional<TrackerMoment> Take();
 
   int num_dropped() const { return num_dropped_; }  ///< moments that came too late, or stayed alone
@@ -56,7 +59,10 @@ class TrackerSenses {
     T value;
   };
 
+  bool IsTaken(double stamp) const;
   Pending* PendingAt(double stamp);
+  std::optional<TrackerMoment> TakeLate();
+  const hires::robot::JointPositions* PostureAt(double stamp) const;
   void NoteTime(double stamp);
   std::string Lack(double stamp, const Pending& pending) const;
   bool IsHopeless(double stamp) const;
@@ -65,14 +71,15 @@ class TrackerSenses {
   void Forget();
 
   hires::world::MapToWorld map_to_world_;
-  std::deque<Stamped<OdometryReading>> odometry_;             // oldest first
-  std::deque<Stamped<hires::geometry::Pose2>> localisation_;  // likewise
-  std::deque<Stamped<hires::geometry::Pose2>> origins_;       // X_MO, likewise
-  std::map<double, Pending> pending_;                            // by stamp
-  std::optional<Stamped<hires::robot::JointPositions>> joints_;  // taken last
-  std::optional<double> newest_joints_;                          // stamp
-  double taken_{-1.0};                                           // stamp of the last moment
-  std::string why_dropped_;                                      // the last one, none came since
+  std::deque<Stamped<OdometryReading>> odometry_;                        // oldest first
+  std::deque<Stamped<hires::geometry::Pose2>> localisation_;             // likewise
+  std::deque<Stamped<hires::geometry::Pose2>> origins_;                  // X_MO, likewise
+  std::map<double, Pending> pending_;                                    // by stamp
+  std::deque<Stamped<std::vector<hires::perception::Detection>>> late_;  // as they came
+  std::deque<Stamped<hires::robot::JointPositions>> postures_;  // of moments taken, oldest first
+  std::optional<double> newest_joints_;                         // stamp
+  double taken_{-1.0};                                          // stamp of the last moment
+  std::string why_dropped_;                                     // the last one, none came since
   int num_dropped_{0};
 };
 
