@@ -1,0 +1,401 @@
+#include <gmock/gmock.h>
+
+#include <map>
+
+#include "hires/base/text.h"
+#include "hires/execution/monitor.h"
+#include "support/whole_tasks.h"
+
+// Steps that are imagined while others are carried out.
+
+namespace hires::execution {
+namespace {
+
+using test_support::AllFail;
+using test_support::ExpectSound;
+using test_support::ExpectSuccess;
+using test_support::For;
+using test_support::Golden;
+using test_support::LogOf;
+using test_support::Ranked;
+using test_support::ScriptedWorld;
+using test_support::Slow;
+using test_support::SouthFails;
+using test_support::StepScript;
+using test_support::TaskOf;
+using test_support::Texts;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAreArray;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+using ::testing::UnorderedElementsAre;
+
+TEST(ImaginationTest, WherePlacingIsImaginedToFailTheOtherSideIsServedAndNoStepIsWasted) {
+  auto options = For("serve_coffee_imagined");
+  options.imagine = SouthFails;
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "serve_coffee_imagined");
+  Texts expected = Golden("serve_coffee");
+  expected.resize(10);
+  for (const std::string& step : Golden("serve_coffee_south_failed")) expected.push_back(step);
+  EXPECT_THAT(world.Begun(), ElementsAreArray(expected)) << LogOf(world);
+  EXPECT_EQ(world.CountOf("stop"), 0);
+  EXPECT_TRUE(world.Holds({"on", {"mug1", "placingareawestlefttable1"}}));
+  EXPECT_THAT(world.warnings(), SizeIs(1)) << "one repair";
+  EXPECT_THAT(world.warnings()[0], HasSubstr("imagined to fail: area_occupied: book1"));
+}
+
+TEST(ImaginationTest, TheStateIsProjectedToTheImaginedStep) {
+  auto options = For("serve_coffee_imagined");
+  options.imagine = SouthFails;
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "serve_coffee_imagined");
+  std::vector<std::string> state;
+  for (const base::Atom& atom : world.imaginations().at(0).state) {
+    state.push_back(base::ToString(atom));
+  }
+  EXPECT_THAT(state, AllOf(Contains("robotat(manipulationareasouthtable1)"),
+                           Contains("holding(rightarm1, mug1)"),
+                           Contains("hasarmposture(rightarm1, armtosideposture)"),
+                           Contains("hastorsoposture(torsoupposture)"),
+                           Contains("on(mug2, placingareaeastrightcounter1)")));
+  EXPECT_THAT(state, Not(Contains("on(mug1, placingareaeastrightcounter1)")));
+  EXPECT_EQ(world.imaginations()[0].plan, 0);
+  EXPECT_EQ(world.imaginations()[0].step, 15);
+}
+
+TEST(ImaginationTest, WhatIsOtherThanPlannedIsReplacedAllTheSame) {
+  // The arm that has set the mill down is on its way back for some time yet, where the plan has it
+  // at the side. It will be tucked before the robot drives: the drive is imagined as before.
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination& request, int) {
+    return Ranked(base::Combinations(request.action).front(), 20.0);
+  };
+  ScriptedWorld world(options);
+  const auto is_placing = [](const Command& command) {
+    const auto* start = std::get_if<StartStep>(&command);
+    return start != nullptr && start->action.name == "place_on_tray";
+  };
+  const base::Atom at_side{"hasarmposture", {"rightarm1", "armtosideposture"}};
+  const base::Atom on_its_way{"hasarmposture", {"rightarm1", "armunnamedposture"}};
+  world.When(is_placing, [&](ScriptedWorld* w) {
+    const double end = w->now() - options.start + StepScript().duration;
+    const auto becomes = [](const base::Atom& gone, const base::Atom& come) {
+      return [=](ScriptedWorld* world) {
+        world->Set({gone}, {come});
+        world->Observe();
+      };
+    };
+    w->At(end + 0.02, becomes(at_side, on_its_way));
+    w->At(end + 2.0, becomes(on_its_way, at_side));
+  });
+  ExpectSuccess(&world, "carry_object");
+  for (const StartImagination& imagination : world.imaginations()) {
+    Texts arms;
+    for (const base::Atom& atom : imagination.state) {
+      if (atom.predicate == "hasarmposture") arms.push_back(base::ToString(atom));
+    }
+    EXPECT_THAT(arms, UnorderedElementsAre("hasarmposture(leftarm1, armtuckedposture)",
+                                           "hasarmposture(rightarm1, armtuckedposture)"));
+  }
+  EXPECT_THAT(world.imaginations(), SizeIs(1));
+}
+
+const char kDrive[] = "move_base_param(premanipulationareanorthtable1, ";
+
+TEST(ToppleTest, TheRecommendedMotionSetIsDriven) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int) { return Slow(); };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(world.imaginations(), SizeIs(1));
+  EXPECT_THAT(world.log()[1], HasSubstr("imagine move_base_param @0.05")) << "at once";
+  EXPECT_GT(world.StartOf(kDrive + std::string("slow)")), 20.0);
+  EXPECT_THAT(world.warnings(), IsEmpty());
+  EXPECT_THAT(world.imaginations()[0].action.alternatives,
+              ElementsAreArray({Texts{"premanipulationareanorthtable1"}, Texts{"slow", "fast"}}));
+}
+
+TEST(ToppleTest, TheDeadlineIsWhenTheDriveIsExpectedAndMovesWithThePlan) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int) { return std::nullopt; };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  // tuck 6.9, drive, torso 22.8 beside tuck 6.9 and arm 2.1, blind 5, pick 14.1, blind 5,
+  // tray 10.9, tuck 6.9: as the sidecar expects. The first drive has no measured duration.
+  EXPECT_NEAR(world.imaginations().at(0).deadline, 1000.05 + 6.9 + 22.8 + 5 + 14.1 + 5 + 10.9 + 6.9,
+              1e-3);
+  ASSERT_THAT(world.moves(), Not(IsEmpty()));
+  EXPECT_NEAR(world.moves().back().deadline - 1000.0, world.StartOf(kDrive + std::string("fast)")),
+              2.0);
+}
+
+TEST(ToppleTest, WithoutAnAnswerInTimeTheDefaultIsDrivenAndSomebodyIsWarned) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int) { return Slow(); };
+  options.imagine_delay = 500.0;
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(world.Begun(), ElementsAreArray(Golden("carry_object"))) << "with fast";
+  EXPECT_THAT(world.warnings(),
+              ElementsAreArray({AllOf(HasSubstr("without imagination"),
+                                      HasSubstr("there was no answer in time"))}));
+}
+
+TEST(ToppleTest, AnAnswerInTheLastMomentStillCounts) {
+  auto options = For("carry_object");
+  options.imagine_delay = 0.4;
+  ScriptedWorld world(options);
+  bool is_answered = false;
+  world.At(45.0, [&](ScriptedWorld* w) {
+    ImagineAnswered answer = Slow();
+    answer.request = w->imaginations().at(0).request;
+    const auto steps = w->monitor().Steps();
+    is_answered = true;
+    w->Post(answer);
+  });
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_TRUE(is_answered);
+}
+
+planning::OperatorData Waiting() {
+  planning::OperatorData data = test_support::RestaurantData();
+  data.operators.at("move_base_param").imagine->on_late = planning::OnLate::kWait;
+  return data;
+}
+
+TEST(ToppleTest, WhereTheDomainSaysSoTheRobotWaits) {
+  const planning::OperatorData waiting = Waiting();
+  auto options = For("carry_object");
+  options.operators = &waiting;
+  options.imagine = [](const StartImagination&, int) { return Slow(); };
+  options.imagine_delay = 150.0;
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_NEAR(world.StartOf(kDrive + std::string("slow)")), 150.05, 1e-6);
+  EXPECT_EQ(world.imaginations().at(0).deadline, temporal::kForever);
+  EXPECT_THAT(world.warnings(), IsEmpty());
+}
+
+TEST(ToppleTest, NobodyWaitsForEver) {
+  const planning::OperatorData waiting = Waiting();
+  auto options = For("carry_object");
+  options.operators = &waiting;
+  options.imagine = [](const StartImagination&, int) {
+    ImagineAnswered answer;
+    answer.outcome = ImagineAnswered::Outcome::kNoWorker;
+    return answer;
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_NEAR(world.StartOf(kDrive + std::string("fast)")), 300.05, 1e-6);
+  EXPECT_GT(world.imaginations().size(), 5u) << "asked again and again";
+  EXPECT_THAT(world.warnings(), ElementsAreArray({HasSubstr("nobody is there")}));
+}
+
+TEST(ToppleTest, AWorkerThatComesLaterIsAskedAgain) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int count) {
+    if (count >= 2) return Slow();
+    ImagineAnswered answer;
+    answer.outcome = ImagineAnswered::Outcome::kNoWorker;
+    return answer;
+  };
+  options.imagine_delay = 1.0;
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_GT(world.StartOf(kDrive + std::string("slow)")), 0.0);
+  EXPECT_THAT(world.warnings(), IsEmpty());
+}
+
+TEST(ToppleTest, WhatCannotBeImaginedIsNotAskedAgain) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int) {
+    ImagineAnswered answer;
+    answer.outcome = ImagineAnswered::Outcome::kInvalid;
+    answer.why = "no such area";
+    return answer;
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(world.imaginations(), SizeIs(1));
+  EXPECT_THAT(world.warnings(), ElementsAreArray({HasSubstr("no such area")}));
+}
+
+TEST(ToppleTest, WhenAllSetsFailTheTrayGoesToAnotherSideOfTheTable) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination& request, int) {
+    const std::string area = request.action.alternatives[0][0];
+    if (area == "premanipulationareanorthtable1") return AllFail(request, "object_toppled");
+    return Ranked({"move_base_param", {area, "slow"}}, 24.0);
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(world.Begun(), Contains("move_base_param(premanipulationareasouthtable1, slow)"));
+  EXPECT_THAT(world.imaginations(), SizeIs(2));
+  EXPECT_EQ(world.CountOf("stop"), 0) << "what ran is part of the new plan too";
+}
+
+TEST(ToppleTest, WhenEverythingFailsEverywhereTheRobotStopsAndSaysSo) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination& request, int) {
+    return AllFail(request, "object_toppled");
+  };
+  ScriptedWorld world(options);
+  const Finish finish = world.Run(TaskOf("carry_object"));
+  EXPECT_EQ(finish.outcome, Finish::Outcome::kNoPlan) << finish.reason;
+  ExpectSound(world);
+}
+
+TEST(ToppleTest, UnderThesisPolicyTheDefaultIsDrivenInEveryCase) {
+  auto options = For("carry_object");
+  options.monitor.imagination = MonitorParams::ImaginePolicy::kThesis;
+  options.imagine = [](const StartImagination& request, int) {
+    return AllFail(request, "object_toppled");
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(world.Begun(), ElementsAreArray(Golden("carry_object")));
+  EXPECT_THAT(world.plannings(), SizeIs(1)) << "nothing is planned again";
+  EXPECT_THAT(world.warnings(), SizeIs(1));
+}
+
+TEST(ToppleTest, WithoutImaginationNothingIsAsked) {
+  auto options = For("carry_object");
+  options.monitor.imagination = MonitorParams::ImaginePolicy::kOff;
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(world.Begun(), ElementsAreArray(Golden("carry_object")));
+  EXPECT_THAT(world.imaginations(), IsEmpty());
+  EXPECT_THAT(world.warnings(), IsEmpty());
+}
+
+TEST(ToppleTest, ADurationThatDoesNotFitIsDroppedWithItsConflict) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int) {
+    ImagineAnswered answer = Slow();
+    answer.duration = 2.0;
+    answer.duration_low = 1.0;
+    answer.duration_high = 3.0;  // the leg takes at least 4.4 s
+    return answer;
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(
+      world.warnings(),
+      ElementsAreArray({AllOf(HasSubstr("does not fit the plan"), HasSubstr("at most 3 s"))}));
+  EXPECT_GT(world.StartOf(kDrive + std::string("slow)")), 0.0);
+}
+
+TEST(ToppleTest, ItIsImaginedAgainWhenWhatItRestsOnChanges) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int count) {
+    ImagineAnswered answer =
+        count == 0 ? Slow()
+                   : Ranked({"move_base_param", {"premanipulationareanorthtable1", "fast"}}, 12.0);
+    answer.depends_on = {"chair1"};
+    return answer;
+  };
+  options.imagine_delay = 5.0;
+  ScriptedWorld world(options);
+  world.At(10.0, [](ScriptedWorld* w) { w->Post(GeometryChanged{{"mug2"}}); });
+  world.At(12.0, [](ScriptedWorld* w) { w->Post(GeometryChanged{{"Chair1"}}); });
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(world.imaginations(), SizeIs(3)) << "mug2 was not known; chair1 counts";
+  EXPECT_GT(world.StartOf(kDrive + std::string("fast)")), 0.0);
+}
+
+TEST(ToppleTest, WhatTheRobotCarriesMayMove) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int) { return Slow(); };
+  options.imagine_delay = 1.0;
+  ScriptedWorld world(options);
+  world.When(
+      [](const Command& c) {
+        const auto* start = std::get_if<StartStep>(&c);
+        return start != nullptr && start->action.name == "place_on_tray";
+      },
+      [](ScriptedWorld* w) { w->Post(GeometryChanged{{"peppermill1"}}); });
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(world.imaginations(), SizeIs(1));
+}
+
+TEST(ImaginationTest, WhatRunsButIsNotWantedAnyMoreIsStoppedFirst) {
+  auto options = For("serve_coffee_imagined");
+  options.imagine = SouthFails;
+  options.imagine_delay = 43.0;  // on the way to the south
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "serve_coffee_imagined");
+  const double south = world.StartOf("move_base(premanipulationareasouthtable1)");
+  EXPECT_GT(south, 40.0);
+  EXPECT_LT(south, 43.0);
+  EXPECT_EQ(world.CountOf("stop move_base(premanipulationareasouthtable1)"), 1);
+  EXPECT_NEAR(world.StartOf("move_base(premanipulationareanorthtable1)"), 43.9, 0.5);
+  EXPECT_TRUE(world.Holds({"on", {"mug1", "placingareawestlefttable1"}}));
+}
+
+TEST(ImaginationTest, SeveralStepsAreImaginedAtOnceEachFromItsOwnStart) {
+  auto options = For("carry_object");
+  options.facts.push_back({"imagine", {"place_object"}});
+  options.imagine = [](const StartImagination& request, int) {
+    return Ranked(base::Combinations(request.action).front(), 20.0);
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  ASSERT_THAT(world.imaginations(), SizeIs(2));
+  std::map<std::string, std::string> robot_at;
+  for (const StartImagination& imagination : world.imaginations()) {
+    for (const base::Atom& atom : imagination.state) {
+      if (atom.predicate == "robotat") robot_at[imagination.action.name] = atom.arguments[0];
+    }
+  }
+  EXPECT_EQ(robot_at["move_base_param"], "premanipulationareaeastcounter1");
+  EXPECT_EQ(robot_at["place_object"], "manipulationareanorthtable1");
+  EXPECT_LT(world.imaginations()[0].deadline, world.imaginations()[1].deadline);
+  EXPECT_EQ(world.CountOf("imagine"), 2);
+  EXPECT_THAT(world.log()[2], HasSubstr("@0.05"));
+}
+
+TEST(ToppleTest, AnAnswerOutlivesARepairThatDoesNotConcernIt) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int) { return Slow(); };
+  options.imagine_delay = 5.0;
+  options.step = [](const base::ActionCall& action, int count) {
+    StepScript script;
+    if (action.name == "place_on_tray" && count == 0) {
+      script.result = StepFinished::Result::kFailed;
+      script.reason = "no_path: r_forearm_link touches table1";
+    }
+    return script;
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(world.imaginations(), SizeIs(1));
+  EXPECT_GT(world.StartOf(kDrive + std::string("slow)")), 0.0);
+}
+
+TEST(ToppleTest, TheCheapestChangeIsTriedFirst) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int) { return Slow(); };
+  options.step = [](const base::ActionCall& action, int count) {
+    StepScript script;
+    if (action.name == "place_on_tray" && count == 0) {
+      script.result = StepFinished::Result::kFailed;
+      script.reason = "grasp_lost";
+    }
+    return script;
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  ASSERT_THAT(world.plannings(), SizeIs(2));
+  // What was begun goes on where it was: of loading the tray the last step is left.
+  EXPECT_THAT(world.plannings()[1].tasks, AllOf(HasSubstr("(!place_on_tray rightarm1 peppermill1)"),
+                                                HasSubstr("(unload_tray peppermill1 table1)"),
+                                                Not(HasSubstr("carry_object_on_tray"))));
+}
+
+}  // namespace
+}  // namespace hires::execution
