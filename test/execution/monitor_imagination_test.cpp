@@ -14,6 +14,7 @@ namespace {
 using test_support::AllFail;
 using test_support::ExpectSound;
 using test_support::ExpectSuccess;
+using test_support::Failing;
 using test_support::For;
 using test_support::Golden;
 using test_support::LogOf;
@@ -363,14 +364,7 @@ TEST(ToppleTest, AnAnswerOutlivesARepairThatDoesNotConcernIt) {
   auto options = For("carry_object");
   options.imagine = [](const StartImagination&, int) { return Slow(); };
   options.imagine_delay = 5.0;
-  options.step = [](const base::ActionCall& action, int count) {
-    StepScript script;
-    if (action.name == "place_on_tray" && count == 0) {
-      script.result = StepFinished::Result::kFailed;
-      script.reason = "no_path: r_forearm_link touches table1";
-    }
-    return script;
-  };
+  options.step = Failing("place_on_tray", 1, "no_path: r_forearm_link touches table1");
   ScriptedWorld world(options);
   ExpectSuccess(&world, "carry_object");
   EXPECT_THAT(world.imaginations(), SizeIs(1));
@@ -380,14 +374,7 @@ TEST(ToppleTest, AnAnswerOutlivesARepairThatDoesNotConcernIt) {
 TEST(ToppleTest, TheCheapestChangeIsTriedFirst) {
   auto options = For("carry_object");
   options.imagine = [](const StartImagination&, int) { return Slow(); };
-  options.step = [](const base::ActionCall& action, int count) {
-    StepScript script;
-    if (action.name == "place_on_tray" && count == 0) {
-      script.result = StepFinished::Result::kFailed;
-      script.reason = "grasp_lost";
-    }
-    return script;
-  };
+  options.step = Failing("place_on_tray", 1, "grasp_lost");
   ScriptedWorld world(options);
   ExpectSuccess(&world, "carry_object");
   ASSERT_THAT(world.plannings(), SizeIs(2));

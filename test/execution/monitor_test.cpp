@@ -21,7 +21,6 @@ using test_support::LogOf;
 using test_support::ScriptedWorld;
 using test_support::Slow;
 using test_support::SouthFails;
-using test_support::StepScript;
 using test_support::TaskOf;
 using ::testing::AllOf;
 using ::testing::ElementsAreArray;
@@ -59,14 +58,7 @@ TEST(MonitorTest, PlansWithoutDecompositionAreMendedByTheWholeTask) {
        {ScriptedWorld::Options::PlanForm::kSteps, ScriptedWorld::Options::PlanForm::kFlat}) {
     auto options = For("serve_coffee");
     options.plans = form;
-    options.step = [](const base::ActionCall& action, int count) {
-      StepScript script;
-      if (action.name == "move_torso" && count == 0) {
-        script.result = StepFinished::Result::kFailed;
-        script.reason = "stuck";
-      }
-      return script;
-    };
+    options.step = Failing("move_torso", 1, "stuck");
     ScriptedWorld world(options);
     ExpectSuccess(&world, "serve_coffee");
     EXPECT_GT(world.plannings().size(), 2u);
