@@ -22,7 +22,6 @@ using simulation::RobotSimulator;
 
 constexpr double kTick = 0.02;     // [s] between two looks of the guard, as its node has it
 constexpr int kLookSteps = 5;      // the load is looked at every fifth step
-constexpr double kStands = 0.01;   // [m/s] and [rad/s] of a base that stands
 constexpr double kQuiet = 0.6;     // [s] that the base must have stood ...
 constexpr double kStill = 0.004;   // [rad] ... with its load no more tilted than this
 constexpr double kAtOnce = 1.0e4;  // [m/s^2] more than any speed needs within a step
@@ -39,6 +38,7 @@ std::shared_ptr<const simulation::Scene> SceneFor(const ImaginationSetup& setup,
   if (way.kind == BrakingWay::Kind::kConstant && way.deceleration > 0.0) {
     controller.limits.max_linear_acceleration = way.deceleration;
   }
+  controller.stops_at_timeout = way.kind == BrakingWay::Kind::kSilence;
   if (way.kind == BrakingWay::Kind::kAtOnce) {
     controller.limits.max_linear_acceleration = kAtOnce;
     controller.limits.max_angular_acceleration = kAtOnce;
@@ -147,8 +147,12 @@ class Player {
     while (simulator_.time() < end && !IsOver()) {
       Tell({});
       const auto led = guard_.Update(simulator_.time());
-      const bool is_ramp = cell_.way.kind == BrakingWay::Kind::kRamp;
-      Send(is_ramp ? led.value_or(Twist2{}) : Twist2{});
+      const BrakingWay::Kind kind = cell_.way.kind;
+      if (kind == BrakingWay::Kind::kRamp) {
+        Send(led.value_or(Twist2{}));
+      } else if (kind != BrakingWay::Kind::kSilence) {
+        Send({});
+      }
       for (long i = std::lround(kTick / simulator_.time_step()); i > 0; --i) {
         Step();
         NoteStand();
@@ -161,7 +165,7 @@ class Player {
   /// The last moment at which the base still moved.
   void NoteStand() {
     const Twist2& V = simulator_.base().V_B;
-    const bool moves = std::hypot(V.vx, V.vy) > kStands || std::abs(V.wz) > kStands;
+    const bool moves = std::hypot(V.vx, V.vy) > kStandingSpeed || std::abs(V.wz) > kStandingSpeed;
     if (moves) stop_.time = simulator_.time() - *begin_;
   }
 

@@ -21,12 +21,13 @@ using Kind = BrakingWay::Kind;
 BrakingWay ReadWay(base::ParamReader* in, const std::string& name) {
   if (name == "ramp") return {Kind::kRamp, 0.0, name};
   if (name == "controller") return {Kind::kConstant, 0.0, name};
+  if (name == "silence") return {Kind::kSilence, 0.0, name};
   if (name == "at_once") return {Kind::kAtOnce, 0.0, name};
   char* end = nullptr;
   const double value = std::strtod(name.c_str(), &end);
   if (name.empty() || *end != '\0' || !(value >= 0.1 && value <= 100.0)) {
-    in->Fail("ways", fmt::format("which has '{}'; wanted ramp, controller, at_once or a "
-                                 "deceleration between 0.1 and 100 m/s^2",
+    in->Fail("ways", fmt::format("which has '{}'; wanted ramp, controller, silence, at_once "
+                                 "or a deceleration between 0.1 and 100 m/s^2",
                                  name));
   }
   return {Kind::kConstant, value, name};
@@ -39,6 +40,15 @@ double WheelLag(const robot::BaseControllerParams& controller) {
                           ? 2.0 * controller.loop_damping / controller.loop_frequency
                           : 0.0;
   return controller.command_lag + loop;
+}
+
+/// [s] in which the wheels' loop comes from speed v to a stand when its target is 0 at once: its
+/// envelope is v exp(-r t), -r the real part of its slowest pole.
+double SettlingTime(const robot::BaseControllerParams& controller, double v) {
+  const double w = controller.loop_frequency, d = controller.loop_damping;
+  if (w == 0.0 || v <= kStandingSpeed) return 0.0;
+  const double rate = w * (d - std::sqrt(std::max(0.0, d * d - 1.0)));
+  return std::log(v / kStandingSpeed) / rate;
 }
 
 void StateStop(const BrakingConfig& braking, const robot::BaseControllerParams& controller,
@@ -59,6 +69,12 @@ void StateStop(const BrakingConfig& braking, const robot::BaseControllerParams& 
         std::max(v / cell->deceleration,
                  std::abs(cell->motion.angular) / controller.limits.max_angular_acceleration);
     cell->stated_distance = 0.5 * v * cell->stated_time;
+  } else if (cell->way.kind == Kind::kSilence) {
+    cell->deceleration = std::numeric_limits<double>::infinity();
+    cell->stated_distance = v * (controller.command_timeout + lag);
+    cell->stated_time = controller.command_timeout + controller.command_lag +
+                        SettlingTime(controller, std::max(v, std::abs(cell->motion.angular)));
+    return;
   } else {
     cell->deceleration = std::numeric_limits<double>::infinity();
     lag = controller.command_lag;  // only then the wheels lock
@@ -79,10 +95,9 @@ void Predict(const world::ObjectModel& model, double gravity, BrakingCell* cell)
   cell->is_comparable = true;
   cell->is_predicted_to_tip = a > physics::TippingAcceleration(body, gravity);
   cell->is_predicted_to_fall =
-      cell->way.kind == Kind::kAtOnce
-          ? v > physics::SuddenStopTopplingSpeed(body, gravity)
-          : cell->is_predicted_to_tip &&
-                v / a > physics::OverturningPulseDuration(body, a, gravity);
+      std::isinf(a) ? v > physics::SuddenStopTopplingSpeed(body, gravity)
+                    : cell->is_predicted_to_tip &&
+                          v / a > physics::OverturningPulseDuration(body, a, gravity);
 }
 
 }  // namespace

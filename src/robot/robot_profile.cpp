@@ -43,6 +43,7 @@ BaseControllerParams ReadBaseController(ParamReader in) {
   params.limits = ReadMotionSet(in.Sub("limits"));
   params.max_linear_jerk = in.Get("max_linear_jerk", Between(0.0, 1e6));
   params.command_timeout = in.Get("command_timeout", Between(0.001, 60.0));
+  params.stops_at_timeout = in.Get("at_timeout", base::OneOf({"ramp", "stop"})) == "stop";
   params.command_lag = in.Get("command_lag", Between(0.0, 10.0));
   params.loop_frequency = in.Get("loop_frequency", Between(0.0, 1e4));
   params.loop_damping = in.Get("loop_damping", Between(0.0, 100.0));
@@ -160,6 +161,7 @@ void AddTo(base::Hasher* hash, const BaseControllerParams& params) {
         params.loop_damping, params.sway_compliance, params.sway_frequency, params.sway_damping}) {
     hash->Add(value);
   }
+  if (params.stops_at_timeout) hash->Add("stops_at_timeout");
 }
 
 std::uint64_t HashOf(const RobotProfile& profile) {

@@ -45,17 +45,16 @@ void BaseDrive::Send(const geometry::Twist2& velocity, double time) {
   sent_.push_back({time + params_.command_lag, Clipped(velocity, params_.limits)});
 }
 
-geometry::Twist2 BaseDrive::Target(double time) {
+void BaseDrive::Receive(double time) {
   while (!sent_.empty() && sent_.front().effective <= time) {
     target_ = sent_.front().velocity;
     last_command_ = sent_.front().effective;
     sent_.pop_front();
   }
-  const bool late = time - last_command_ > params_.command_timeout;
-  // Once it stands there is nothing left to brake.
-  const bool moving = x_.ramp != 0.0 || y_.ramp != 0.0 || yaw_.ramp != 0.0;
-  motion_.timed_out = late && moving;
-  return late ? geometry::Twist2{} : target_;
+}
+
+void BaseDrive::StandAtOnce() {
+  for (Axis* axis : {&x_, &y_, &yaw_}) axis->ramp = axis->ramp_rate = 0.0;
 }
 
 void BaseDrive::StepRamp(const geometry::Twist2& target, double dt) {
@@ -97,7 +96,15 @@ double BaseDrive::StepLean(Lean* lean, double acceleration, double dt) const {
 }
 
 void BaseDrive::Step(double time, double dt, double slip) {
-  StepRamp(Target(time), dt);
+  Receive(time);
+  const bool is_late = time - last_command_ > params_.command_timeout;
+  // Once it stands there is nothing left to brake.
+  motion_.timed_out = is_late && (x_.ramp != 0.0 || y_.ramp != 0.0 || yaw_.ramp != 0.0);
+  if (is_late && params_.stops_at_timeout) {
+    StandAtOnce();
+  } else {
+    StepRamp(is_late ? geometry::Twist2{} : target_, dt);
+  }
   for (Axis* axis : {&x_, &y_, &yaw_}) StepAxis(axis, 1.0 - slip, dt);
   motion_.V_B = {x_.velocity, y_.velocity, yaw_.velocity};
   motion_.A_B = {x_.acceleration, y_.acceleration, yaw_.acceleration};

@@ -55,17 +55,18 @@ std::string ErrorWith(const std::string& from, const std::string& to) {
 TEST(BrakingConfigTest, WaysAreWordsOrDecelerations) {
   ExperimentConfig config = Config();
   const auto& ways = BrakingOf(&config).ways;
-  ASSERT_EQ(ways.size(), 5u);
+  ASSERT_EQ(ways.size(), 6u);
   EXPECT_EQ(ways[0].kind, Kind::kRamp);
   EXPECT_EQ(ways[1].kind, Kind::kConstant);
   EXPECT_EQ(ways[1].deceleration, 0.0);
-  EXPECT_EQ(ways[3].kind, Kind::kConstant);
-  EXPECT_EQ(ways[3].deceleration, 10.0);
-  EXPECT_EQ(ways[4].kind, Kind::kAtOnce);
+  EXPECT_EQ(ways[2].kind, Kind::kSilence);
+  EXPECT_EQ(ways[4].kind, Kind::kConstant);
+  EXPECT_EQ(ways[4].deceleration, 10.0);
+  EXPECT_EQ(ways[5].kind, Kind::kAtOnce);
 }
 
 TEST(BrakingConfigTest, WhatMakesNoSenseIsNamed) {
-  EXPECT_THAT(ErrorWith("at_once]", "slowly]"),
+  EXPECT_THAT(ErrorWith("- at_once", "- slowly"),
               AllOf(HasSubstr("braking.ways"), HasSubstr("'slowly'"), HasSubstr("at_once")));
   EXPECT_THAT(ErrorWith("\"10\"", "\"-10\""), HasSubstr("'-10'"));
   EXPECT_THAT(ErrorWith("\"10\"", "\"10x\""), HasSubstr("'10x'"));
@@ -90,7 +91,7 @@ const BrakingCell& Cell(const std::vector<BrakingPlay>& plays, const std::string
 TEST(BrakingCellsTest, ClosedFormsSpeakOfEachStraightStop) {
   ExperimentConfig config = Config();
   const auto plays = BrakingCells(BrakingOf(&config), MakeStage(config));
-  EXPECT_EQ(plays.size(), 3u * 3u * 5u);
+  EXPECT_EQ(plays.size(), 3u * 3u * 6u);
   // Tips at 2.65 m/s^2; from 0.37 m/s on a sudden stop topples it.
   const BrakingCell& controller = Cell(plays, "peppermill1", 0.55, "controller");
   EXPECT_TRUE(controller.is_comparable);
@@ -100,6 +101,7 @@ TEST(BrakingCellsTest, ClosedFormsSpeakOfEachStraightStop) {
   EXPECT_TRUE(slow.is_predicted_to_tip);
   EXPECT_FALSE(slow.is_predicted_to_fall);
   EXPECT_TRUE(Cell(plays, "peppermill1", 0.55, "at_once").is_predicted_to_fall);
+  EXPECT_TRUE(Cell(plays, "peppermill1", 0.55, "silence").is_predicted_to_fall);
   EXPECT_FALSE(Cell(plays, "peppermill1", 0.55, "ramp").is_comparable);
 }
 
@@ -110,6 +112,9 @@ TEST(BrakingCellsTest, StatedDistancesIncludeTheLagOfTheWheels) {
   const BrakingCell& controller = Cell(plays, "peppermill1", 0.30, "controller");
   EXPECT_NEAR(controller.stated_distance, 0.30 * 0.30 / 4.0 + 0.30 * lag, 1e-12);
   EXPECT_NEAR(controller.stated_time, 0.15 + lag, 1e-12);
+  const BrakingCell& silence = Cell(plays, "peppermill1", 0.30, "silence");
+  EXPECT_NEAR(silence.stated_distance, 0.30 * (0.2 + lag), 1e-12);
+  EXPECT_NEAR(silence.stated_time, 0.2 + 0.02 + std::log(30.0) / (0.7 * 20.0), 1e-12);
   const BrakingCell& ramp = Cell(plays, "peppermill1", 0.55, "ramp");
   EXPECT_NEAR(ramp.stated_distance, navigation::StoppingDistance(0.55, ramp.limits) + 0.55 * lag,
               1e-9);
@@ -126,14 +131,16 @@ TEST(BrakingCellsTest, AnUnknownLoadIsRefused) {
   }
 }
 
-/// Two stops of one mill from 0.55 m/s, along the ramp and at once.
+/// Two stops of one mill from 0.55 m/s, along the ramp, by the time-out, and at once.
 ExperimentConfig Short() {
   ExperimentConfig config = Config();
   BrakingConfig& braking = BrakingOf(&config);
   braking.rollouts = 2;
   braking.loads = {"peppermill1"};
   braking.motions = {{0.55, 0.0}};
-  braking.ways = {{Kind::kRamp, 0.0, "ramp"}, {Kind::kAtOnce, 0.0, "at_once"}};
+  braking.ways = {{Kind::kRamp, 0.0, "ramp"},
+                  {Kind::kSilence, 0.0, "silence"},
+                  {Kind::kAtOnce, 0.0, "at_once"}};
   return config;
 }
 
@@ -144,6 +151,7 @@ TEST(BrakingExperimentTest, TheRampSavesAMillThatASuddenStopTopples) {
   EXPECT_EQ(ValueOf(report.findings, "closed_form_disagreements"), 0.0);
   EXPECT_LT(ValueOf(report.findings, "max_tilt_ramp"), 0.05);
   EXPECT_LT(ValueOf(report.findings, "distance_error_ramp"), 0.02);
+  EXPECT_LT(ValueOf(report.findings, "distance_error_silence"), 0.005);
 }
 
 TEST(BrakingExperimentTest, AnyNumberOfThreadsGivesTheSameBits) {

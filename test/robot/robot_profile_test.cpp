@@ -62,6 +62,7 @@ base_controller:
   limits: {max_linear_velocity: 1.5, max_angular_velocity: 2.5, max_linear_acceleration: 3.5, max_angular_acceleration: 4.5}
   max_linear_jerk: 9.0
   command_timeout: 0.3
+  at_timeout: ramp
   command_lag: 0.04
   loop_frequency: 20.0
   loop_damping: 0.7
@@ -167,6 +168,7 @@ TEST_F(RobotProfileFile, HashTellsApartEveryField) {
       {"max_angular_acceleration: 4.5", "max_angular_acceleration: 4.6"},
       {"max_linear_jerk: 9.0", "max_linear_jerk: 9.1"},
       {"command_timeout: 0.3", "command_timeout: 0.4"},
+      {"at_timeout: ramp", "at_timeout: stop"},
       {"command_lag: 0.04", "command_lag: 0.05"},
       {"loop_frequency: 20.0", "loop_frequency: 21.0"},
       {"loop_damping: 0.7", "loop_damping: 0.8"},

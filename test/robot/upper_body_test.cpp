@@ -68,6 +68,7 @@ base_controller:
   limits: {max_linear_velocity: 1.5, max_angular_velocity: 2.5, max_linear_acceleration: 3.5, max_angular_acceleration: 4.5}
   max_linear_jerk: 0.0
   command_timeout: 0.3
+  at_timeout: ramp
   command_lag: 0.0
   loop_frequency: 0.0
   loop_damping: 0.7

@@ -120,6 +120,34 @@ TEST(BaseDriveTest, BrakesToAStopWhenNoCommandComes) {
   EXPECT_GT(drive.drive.motion().V_B.vx, 0.0);
 }
 
+TEST(BaseDriveTest, AControllerWithoutARampAtItsTimeoutStandsAtOnce) {
+  robot::BaseControllerParams params = Ideal();
+  params.command_timeout = 0.3;
+  params.stops_at_timeout = true;
+  Drive drive(params);
+  drive.Send({0.5, 0.0, 0.0});
+  EXPECT_NEAR(drive.StepFor(0.301).V_B.vx, 0.5, 1e-12);
+  const BaseMotion last = drive.Step();
+  EXPECT_TRUE(last.timed_out);
+  EXPECT_EQ(last.V_B.vx, 0.0);
+  EXPECT_FALSE(drive.Step().timed_out);
+}
+
+TEST(BaseDriveTest, ThenTheLoopAloneSoftensTheStop) {
+  robot::BaseControllerParams params = LoopAlone(20.0, 0.7);
+  params.command_timeout = 2.0;
+  params.stops_at_timeout = true;
+  Drive drive(params, 1e-5);
+  drive.Send({0.55, 0.0, 0.0});
+  const double x_silent = drive.StepFor(2.0).X_MB.x;
+  double hardest = 0.0;
+  while (drive.Now() < 4.0) hardest = std::min(hardest, drive.Step().A_B.vx);
+  // Step response of a loop of second order: its steepest slope, and the area above it.
+  const double w = 20.0, zeta = 0.7, root = std::sqrt(1.0 - zeta * zeta);
+  EXPECT_NEAR(hardest, -0.55 * w * std::exp(-zeta / root * std::acos(zeta)), 0.01);  // 5.0
+  EXPECT_NEAR(drive.drive.motion().X_MB.x - x_silent, 0.55 * 2.0 * zeta / w, 1e-4);
+}
+
 TEST(BaseDriveTest, ACommandToStandIsNeverLate) {
   robot::BaseControllerParams params = Ideal();
   params.command_timeout = 0.05;

@@ -10,8 +10,11 @@
 #include "hires/navigation/base_guard.h"
 
 // How a loaded base comes to a stand, and what becomes of the load: along the guard's ramp, at the
-// limit of the base's controller, harder, at once.
+// limit of the base's controller, harder, by its time-out, at once.
 namespace hires::evaluation {
+
+/// [m/s], [rad/s] of a base that stands.
+inline constexpr double kStandingSpeed = 0.01;
 
 struct Crew;
 struct ExperimentConfig;
@@ -23,11 +26,12 @@ struct BrakingWay {
   enum class Kind {
     kRamp,      ///< led by navigation::BaseGuard, with limits for the load
     kConstant,  ///< velocity zero is commanded; the controller brakes at its limit
+    kSilence,   ///< nothing is commanded any more: the controller's time-out strikes
     kAtOnce     ///< the wheels lock: from full speed to none within a step of physics
   };
   Kind kind{Kind::kRamp};
   double deceleration{0.0};  ///< [m/s^2] of kConstant; 0: the robot's own
-  std::string name;          ///< as in the file: "ramp", "controller", "5", "at_once"
+  std::string name;          ///< as in the file: "ramp", "controller", "silence", "5" ...
 };
 
 /// What the base does before it stops.
@@ -59,7 +63,7 @@ struct BrakingCell {
   BrakingWay way;
   navigation::StandingLoad standing;  ///< the load, as its model says
   navigation::BrakingLimits limits;   ///< of the guard's ramp
-  double deceleration{0.0};           ///< [m/s^2] largest on the way; infinite at once
+  double deceleration{0.0};           ///< [m/s^2] largest of the wheels' target; infinite at once
   double stated_distance{0.0};        ///< [m] by the closed form, lags included
   double stated_time{0.0};            ///< [s] likewise
   bool is_comparable{false};          ///< closed forms speak of it: straight, constant, at once
@@ -74,7 +78,7 @@ struct BrakingStop {
   double tilt_before{0.0};  ///< [rad] largest while driving
   double slide{0.0};        ///< [m] of the load on the tray
   double distance{0.0};     ///< [m] of the base, from the trigger to the stand
-  double time{0.0};         ///< [s] likewise, until it is slower than 0.01 m/s
+  double time{0.0};         ///< [s] likewise, until it is slower than kStandingSpeed
   double simulated{0.0};    ///< [s]
 };
 

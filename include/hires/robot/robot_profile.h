@@ -25,6 +25,7 @@ struct BaseControllerParams {
   MotionSet limits{1.0, 2.0, 2.0, 2.0};  ///< clips commands; ramps at these accelerations
   double max_linear_jerk{0.0};           ///< [m/s^3]; 0 means that acceleration may jump
   double command_timeout{0.2};           ///< [s] without a command after which it brakes to a stop
+  bool stops_at_timeout{false};          ///< then at once, without the ramp of a command
   double command_lag{0.0};               ///< [s] from a command's sending to its effect
   double loop_frequency{0.0};   ///< [rad/s] natural frequency of the velocity loop; 0: ideal
   double loop_damping{1.0};     ///< damping ratio of the velocity loop

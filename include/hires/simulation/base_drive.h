@@ -20,7 +20,8 @@ struct BaseMotion {
 /// A robot's base between the velocity commands it is sent and the motion it makes: lag, clipping
 /// to the controller's limits, a ramp of limited acceleration (all axes scaled alike, so that the
 /// direction of a change is kept) and jerk, a velocity loop of second order, braking on command
-/// timeout, and the leaning of the body on its wheels. A value: copy it to save it.
+/// timeout, with the ramp or at once, and the leaning of the body on its wheels. A value: copy it
+/// to save it.
 class BaseDrive {
  public:
   BaseDrive(const robot::BaseControllerParams& params, const geometry::Pose2& X_MB);
@@ -50,7 +51,8 @@ class BaseDrive {
     double effective{0.0};  // [s]
     geometry::Twist2 velocity;
   };
-  geometry::Twist2 Target(double time);
+  void Receive(double time);
+  void StandAtOnce();
   void StepRamp(const geometry::Twist2& target, double dt);
   void StepAxis(Axis* axis, double grip, double dt) const;
   double StepLean(Lean* lean, double acceleration, double dt) const;
