@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A stand-in for a PR2's move_base: the action move_base, the local planner's parameters by
 dynamic_reconfigure (move_base_node/DWAPlannerROS), velocities on cmd_vel. It plans on the map and
-on what a tilting laser would have marked in ~world (SDF; ~map_to_world: x y yaw of its frame in the
+on what a tilting laser would have marked in ~world (SDF; ~world_in_map: x y yaw of its frame in the
 map). ~old_names: parameters are named as before Noetic."""
 
 import ctypes
@@ -78,7 +78,7 @@ class FakeMoveBase:
         self._transforms = {}
         self._router = None
         scene = Scene(rospy.get_param('~world'),
-                      Pose2(*rospy.get_param('~map_to_world', [0.0, 0.0, 0.0])))
+                      Pose2(*rospy.get_param('~world_in_map', [0.0, 0.0, 0.0])))
         self._marked = scene.within(*MARKED)
         self._limits = {}
         self._config = PlannerConfig(rospy.get_param('~old_names', False))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """A PR2 that is none, for tests: names, types and habits of the real one in front of a kinematic
-world. It shares no code with HIRES. Parameters: ~world (SDF), ~urdf, ~map_to_world (x y yaw of the
+world. It shares no code with HIRES. Parameters: ~world (SDF), ~urdf, ~world_in_map (x y yaw of the
 world's frame in the map), ~pose (x y yaw in the world), ~torso [m], ~objects ([name, model, x, y,
 z] ...), ~seed, ~latched_map (false: static_map alone).
 
@@ -47,7 +47,7 @@ LATEST_START = 0.25  # [s] that the loop may lag behind and still catch up
 class FakePr2:
     def __init__(self):
         get = rospy.get_param
-        self.X_MW = Pose2(*get('~map_to_world', [0.0, 0.0, 0.0]))
+        self.X_MW = Pose2(*get('~world_in_map', [0.0, 0.0, 0.0]))
         seed = get('~seed', 1)
         scene = Scene(get('~world'), self.X_MW)
         at_laser = scene.slice(laser.HEIGHT)

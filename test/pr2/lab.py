@@ -80,7 +80,7 @@ class Truth:
 
 
 class Lab:
-    """@param fake   parameters of the fake PR2: pose, torso, objects, map_to_world, latched_map,
+    """@param fake   parameters of the fake PR2: pose, torso, objects, world_in_map, latched_map,
     seed; cmd_vel and old_names of its move_base.  @param arguments  of pr2.launch."""
 
     def __init__(self, fake=None, **arguments):
@@ -108,7 +108,7 @@ class Lab:
         """As fake_pr2.launch does it, without the time that a roslaunch of its own takes."""
         world, urdf = os.path.join(ROOT, 'worlds', 'restaurant.world'), \
             os.path.join(ROOT, 'urdf', 'pr2_tray.urdf')
-        shared = dict(world=world, map_to_world=self._fake.pop('map_to_world', [0.0, 0.0, 0.0]))
+        shared = dict(world=world, world_in_map=self._fake.pop('world_in_map', [0.0, 0.0, 0.0]))
         move_base = dict(shared, old_names=self._fake.pop('old_names', False))
         cmd_vel = self._fake.pop('cmd_vel', 'base_guard/cmd_vel')
         robot = dict(shared, urdf=urdf, pose=[12.5, 9.8, 2.0], objects=[MILL])

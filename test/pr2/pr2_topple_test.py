@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The topple scenario whole on the fake PR2, through launch/pr2.launch: run by `rostest hires
-pr2_topple.test`, with navigation:=move_base for the robot's own navigation."""
+pr2_topple.test`, with navigation:=move_base for the robot's own navigation. The robot's map lies
+elsewhere than the world's frame, and turned, as every laboratory's does."""
 
 import os
 import sys
@@ -10,12 +11,15 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
+from fake.scene import Pose2  # noqa: E402
 from lab import Lab  # noqa: E402
 
 TASK = 'carry_object_on_tray peppermill1 counter1 table1'
 TABLE_1 = (7.73, 11.49)  # [m] its middle
 REACH = 0.75             # [m] from its middle to its farthest corner
 TOP = 0.73               # [m]
+X_MW = Pose2(1.4, -0.7, 0.3)  # the world's frame in the robot's map
+X_WM = X_MW.inverse()
 
 
 class Pr2ToppleTest(unittest.TestCase):
@@ -24,8 +28,10 @@ class Pr2ToppleTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         # Near the counter and with its torso up, which takes a PR2 20 s: the rest is whole.
-        cls.lab = Lab(fake=dict(pose=[8.5, 9.8, 3.0], torso=0.295), navigation=cls.navigation,
-                      workers=1)
+        cls.lab = Lab(fake=dict(pose=[8.5, 9.8, 3.0], torso=0.295,
+                                world_in_map=[X_MW.x, X_MW.y, X_MW.yaw]),
+                      map_to_world='%.6f %.6f %.6f 1' % (X_WM.x, X_WM.y, X_WM.yaw),
+                      navigation=cls.navigation, workers=1)
         cls.addClassCleanup(cls.lab.stop)
         cls.lab.start()
         cls.lab.connect('pr2_topple')
@@ -39,15 +45,16 @@ class Pr2ToppleTest(unittest.TestCase):
                          '%s\n%s' % (result.reason, self.lab.output()[-6000:]))
         mill = self.objects[-1].objects[0]
         at = mill.pose.position
-        self.assertLess(max(abs(at.x - TABLE_1[0]), abs(at.y - TABLE_1[1])), REACH)
+        x, y = X_WM.apply(at.x, at.y)
+        self.assertLess(max(abs(x - TABLE_1[0]), abs(y - TABLE_1[1])), REACH)
         self.assertAlmostEqual(at.z, TOP, delta=0.01)
         self.assertEqual(mill.attached_to, '')
         on_the_way = {o.objects[0].attached_to for o in self.objects}
         self.assertIn('base_footprint', on_the_way, 'it was on the tray')
         imagined = [i for i in result.imaginations if i.outcome]
         self.assertTrue(imagined, 'something was imagined')
-        print('topple, %s: %d steps, %.0f s, imagined %s' % (
-            self.navigation, len(result.steps),
+        print('topple, %s: %d steps, %d replans, %.0f s, imagined %s' % (
+            self.navigation, len(result.steps), result.replans,
             self.lab.truth.samples[-1][0] - self.lab.truth.samples[0][0],
             [(i.action.name, i.outcome, i.recommended) for i in imagined]))
 
