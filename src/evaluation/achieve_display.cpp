@@ -31,7 +31,7 @@ std::string Since(const StepStatus& step, double begin) {
 }
 
 std::string ExpectedEnd(const StepStatus& step, double begin) {
-  return step.finished ? "" : Seconds(step.finish.earliest - begin);
+  return step.finished ? "" : Seconds(step.expected_finish - begin);
 }
 
 /// Of a dry run: what the robot would do, and not what was thought about it.
@@ -126,9 +126,9 @@ std::string DryRunTable(const AchieveStatus& status) {
   std::vector<std::vector<std::string>> rows{{"#", "step", "would begin", "would end", "expected"}};
   for (const StepStatus& step : status.steps) {
     if (step.plan != last_plan || !IsToBegin(step)) continue;
-    if (!begin) begin = step.start.earliest;
+    if (!begin) begin = step.expected_start;
     rows.push_back({std::to_string(step.index + 1), ToString(step.action),
-                    Seconds(step.start.earliest - *begin), Seconds(step.finish.earliest - *begin),
+                    Seconds(step.expected_start - *begin), Seconds(step.expected_finish - *begin),
                     step.note});
   }
   return FormatTable(rows);

@@ -41,6 +41,8 @@ ordered_json StepToJson(const execution::StepStatus& step) {
           {"latest_start", Number(step.start.latest)},
           {"earliest_finish", Number(step.finish.earliest)},
           {"latest_finish", Number(step.finish.latest)},
+          {"expected_start", Number(step.expected_start)},
+          {"expected_finish", Number(step.expected_finish)},
           {"note", step.note}};
 }
 

@@ -161,6 +161,13 @@ std::optional<std::string> PlanNetwork::Tighten(int step, const planning::Durati
 Bounds PlanNetwork::StartOf(int step) const { return bounds_.network.Of(bounds_.starts[step]); }
 Bounds PlanNetwork::FinishOf(int step) const { return bounds_.network.Of(bounds_.finishes[step]); }
 
+double PlanNetwork::ExpectedStart(int step) const {
+  return expectation_.network.Of(expectation_.starts[step]).earliest;
+}
+double PlanNetwork::ExpectedFinish(int step) const {
+  return expectation_.network.Of(expectation_.finishes[step]).earliest;
+}
+
 double PlanNetwork::LatestStart(int step) const {
   const Stn& network = expectation_.network;
   return network.Of(expectation_.end).earliest -

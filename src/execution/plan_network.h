@@ -30,6 +30,8 @@ class PlanNetwork {
   temporal::Bounds StartOf(int step) const;
   temporal::Bounds FinishOf(int step) const;
   double Expected(int step) const { return expected_[step]; }  ///< [s] duration
+  double ExpectedStart(int step) const;   ///< [s] if all steps last as long as expected
+  double ExpectedFinish(int step) const;  ///< [s] likewise
   /// When the step must begin at the latest so that the plan ends as early as it is expected to.
   double LatestStart(int step) const;
 

@@ -163,6 +163,8 @@ StepStatus Session::StatusOf(int index) const {
   status.finished = step.finished;
   status.start = network_->StartOf(index);
   status.finish = network_->FinishOf(index);
+  status.expected_start = network_->ExpectedStart(index);
+  status.expected_finish = network_->ExpectedFinish(index);
   status.note = step.note;
   return status;
 }

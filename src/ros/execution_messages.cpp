@@ -121,6 +121,8 @@ hires::StepStatus ToMsg(const execution::StepStatus& status) {
   message.latest_start = status.start.latest;
   message.earliest_finish = status.finish.earliest;
   message.latest_finish = status.finish.latest;
+  message.expected_start = status.expected_start;
+  message.expected_finish = status.expected_finish;
   message.note = status.note;
   return message;
 }

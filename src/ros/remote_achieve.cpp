@@ -41,6 +41,8 @@ execution::StepStatus StepOf(const hires::StepStatus& message) {
   step.finished = Moment(message.finished);
   step.start = {message.earliest_start, message.latest_start};
   step.finish = {message.earliest_finish, message.latest_finish};
+  step.expected_start = message.expected_start;
+  step.expected_finish = message.expected_finish;
   step.note = message.note;
   return step;
 }

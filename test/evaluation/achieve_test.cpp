@@ -33,7 +33,7 @@ AchieveStatus Running() {
   status.steps = {Step(0, "move_base", StepPhase::kRunning),
                   Step(1, "pick_up", StepPhase::kWaiting)};
   status.steps[0].started = 102.0;
-  status.steps[0].finish = {112.5, 1e300};
+  status.steps[0].expected_finish = 112.5;
   return status;
 }
 
@@ -68,10 +68,11 @@ TEST(DryRunTableTest, ShowsTheLastPlanWithWhatIsExpectedOfIt) {
                   Step(1, "move_base", StepPhase::kWaiting),
                   Step(2, "pick_up", StepPhase::kWaiting)};
   for (std::size_t i = 1; i < 4; ++i) status.steps[i].plan = 1;
-  status.steps[2].start = {1000.0, 1e300};
-  status.steps[2].finish = {1012.5, 1e300};
+  status.steps[2].expected_start = 1000.0;
+  status.steps[2].expected_finish = 1012.5;
   status.steps[2].note = "imagined: slow succeeds in 0.98";
-  status.steps[3].start = {1012.5, 1e300};
+  status.steps[3].expected_start = 1012.5;
+  status.steps[3].expected_finish = 1020.0;
   const std::string table = DryRunTable(status);
   EXPECT_THAT(table, AllOf(HasSubstr("move_base(area1)"), HasSubstr("imagined: slow"),
                            HasSubstr("12.5"), HasSubstr("pick_up(area1)")));

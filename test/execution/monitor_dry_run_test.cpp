@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "hires/base/text.h"
 #include "hires/execution/monitor.h"
 #include "support/scripted_world.h"
@@ -61,6 +63,25 @@ TEST(DryRunTest, ThePlanEndsWithTheRecommendedAlternativeAndNothingIsBegun) {
   EXPECT_THAT(drive->action.arguments, ElementsAre("premanipulationareanorthtable1", "slow"));
   EXPECT_THAT(drive->note, HasSubstr("imagined"));
   EXPECT_THAT(world.warnings(), IsEmpty());
+}
+
+TEST(DryRunTest, StepsBeginAndEndWhenTheyAreExpectedTo) {
+  auto options = DryRun("carry_object");
+  options.imagine = [](const StartImagination&, int) {
+    return Slow("premanipulationareanorthtable1");
+  };
+  ScriptedWorld world(options);
+  ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
+  const auto steps = world.monitor().Steps();
+  const StepStatus* drive = DriveOf(steps);
+  ASSERT_NE(drive, nullptr);
+  EXPECT_NEAR(drive->expected_finish - drive->expected_start, 24.0, 1e-6) << "as imagined";
+  EXPECT_GT(drive->expected_start, drive->start.earliest + 30.0) << "before it more than the least";
+  const auto grasp = std::find_if(steps.begin(), steps.end(), [](const StepStatus& step) {
+    return step.action.name == "pick_up_object";
+  });
+  ASSERT_NE(grasp, steps.end());
+  EXPECT_NEAR(grasp->expected_finish - grasp->expected_start, 14.1, 1e-6) << "restaurant.yaml";
 }
 
 TEST(DryRunTest, AnswersHaveAllTheTimeTheyNeed) {

@@ -164,8 +164,9 @@ struct StepStatus {
   int index{0};  ///< place in that plan
   base::ActionCall action;
   StepPhase phase{StepPhase::kWaiting};
-  std::optional<double> started, finished;  ///< [s]
-  temporal::Bounds start, finish;           ///< from the network
+  std::optional<double> started, finished;           ///< [s]
+  temporal::Bounds start, finish;                    ///< from the network
+  double expected_start{0.0}, expected_finish{0.0};  ///< [s] if all last as long as expected
   std::string note;  ///< "imagined: slow, success 0.98 (0.93..1.00)", a failure's reason
 };
 
