@@ -191,11 +191,15 @@ TEST(StepMessageTest, WhatHasNotHappenedIsNoNumber) {
   status.plan = 2;
   status.phase = execution::StepPhase::kChecking;
   status.started = 5.0;
+  status.expected_start = 5.0;
+  status.expected_finish = 19.1;
   const hires::StepStatus message = ToMsg(status);
   EXPECT_EQ(message.plan, 2u);
   EXPECT_EQ(message.phase, hires::StepStatus::CHECKING);
   EXPECT_EQ(message.started, 5.0);
   EXPECT_TRUE(std::isnan(message.finished));
+  EXPECT_EQ(message.expected_start, 5.0);
+  EXPECT_EQ(message.expected_finish, 19.1);
 }
 
 TEST(DispatchTest, AStepThatARepairTookOverBeganInTheLaterPlan) {
