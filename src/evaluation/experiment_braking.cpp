@@ -38,7 +38,7 @@ std::shared_ptr<const simulation::Scene> SceneFor(const ImaginationSetup& setup,
   if (way.kind == BrakingWay::Kind::kConstant && way.deceleration > 0.0) {
     controller.limits.max_linear_acceleration = way.deceleration;
   }
-  controller.stops_at_timeout = way.kind == BrakingWay::Kind::kSilence;
+  if (way.kind == BrakingWay::Kind::kSilence) controller.stops_at_timeout = true;
   if (way.kind == BrakingWay::Kind::kAtOnce) {
     controller.limits.max_linear_acceleration = kAtOnce;
     controller.limits.max_angular_acceleration = kAtOnce;

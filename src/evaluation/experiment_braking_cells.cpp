@@ -33,13 +33,10 @@ BrakingWay ReadWay(base::ParamReader* in, const std::string& name) {
   return {Kind::kConstant, value, name};
 }
 
-/// [s] between a command and what the wheels make of it: the lag, and a loop of second order that
-/// trails a ramp by 2 d / w.
-double WheelLag(const robot::BaseControllerParams& controller) {
-  const double loop = controller.loop_frequency > 0.0
-                          ? 2.0 * controller.loop_damping / controller.loop_frequency
-                          : 0.0;
-  return controller.command_lag + loop;
+/// [s] by which the wheels' loop, of second order, trails its target: 2 d / w.
+double LoopLag(const robot::BaseControllerParams& controller) {
+  return controller.loop_frequency > 0.0 ? 2.0 * controller.loop_damping / controller.loop_frequency
+                                         : 0.0;
 }
 
 /// [s] in which the wheels' loop comes from speed v to a stand when its target is 0 at once: its
@@ -54,7 +51,7 @@ double SettlingTime(const robot::BaseControllerParams& controller, double v) {
 void StateStop(const BrakingConfig& braking, const robot::BaseControllerParams& controller,
                BrakingCell* cell) {
   const double v = cell->motion.linear;
-  double lag = WheelLag(controller);
+  double lag = controller.command_lag + LoopLag(controller);
   if (cell->way.kind == Kind::kRamp) {
     const navigation::PlanarStop stop({v, 0.0, cell->motion.angular}, {}, cell->limits,
                                       braking.guard.braking);
@@ -69,15 +66,14 @@ void StateStop(const BrakingConfig& braking, const robot::BaseControllerParams& 
         std::max(v / cell->deceleration,
                  std::abs(cell->motion.angular) / controller.limits.max_angular_acceleration);
     cell->stated_distance = 0.5 * v * cell->stated_time;
-  } else if (cell->way.kind == Kind::kSilence) {
-    cell->deceleration = std::numeric_limits<double>::infinity();
-    cell->stated_distance = v * (controller.command_timeout + lag);
-    cell->stated_time = controller.command_timeout + controller.command_lag +
-                        SettlingTime(controller, std::max(v, std::abs(cell->motion.angular)));
-    return;
   } else {
     cell->deceleration = std::numeric_limits<double>::infinity();
-    lag = controller.command_lag;  // only then the wheels lock
+    lag = controller.command_lag;  // only then the wheels lock, or the time-out begins
+    if (cell->way.kind == Kind::kSilence) {
+      cell->stated_time = controller.command_timeout +
+                          SettlingTime(controller, std::max(v, std::abs(cell->motion.angular)));
+      cell->stated_distance = v * (controller.command_timeout + LoopLag(controller));
+    }
   }
   cell->stated_time += lag;
   cell->stated_distance += v * lag;

@@ -161,6 +161,7 @@ void AddTo(base::Hasher* hash, const BaseControllerParams& params) {
         params.loop_damping, params.sway_compliance, params.sway_frequency, params.sway_damping}) {
     hash->Add(value);
   }
+  // Only then, so that what was measured with a base that ramps keeps its hash.
   if (params.stops_at_timeout) hash->Add("stops_at_timeout");
 }
 

@@ -49,12 +49,17 @@ ImagineAnswered Slow(const std::string& area) {
   return Ranked({"move_base_param", {area, "slow"}}, 24.0);
 }
 
-TEST(DryRunTest, ThePlanEndsWithTheRecommendedAlternativeAndNothingIsBegun) {
+/// Slow is recommended for the drive to table1.
+ScriptedWorld::Options SlowDryRun() {
   auto options = DryRun("carry_object");
   options.imagine = [](const StartImagination&, int) {
     return Slow("premanipulationareanorthtable1");
   };
-  ScriptedWorld world(options);
+  return options;
+}
+
+TEST(DryRunTest, ThePlanEndsWithTheRecommendedAlternativeAndNothingIsBegun) {
+  ScriptedWorld world(SlowDryRun());
   ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
   EXPECT_NEAR(world.now(), 1020.05, 1e-6) << "as soon as the answer is there, after 20 s";
   const auto steps = world.monitor().Steps();
@@ -66,11 +71,7 @@ TEST(DryRunTest, ThePlanEndsWithTheRecommendedAlternativeAndNothingIsBegun) {
 }
 
 TEST(DryRunTest, StepsBeginAndEndWhenTheyAreExpectedTo) {
-  auto options = DryRun("carry_object");
-  options.imagine = [](const StartImagination&, int) {
-    return Slow("premanipulationareanorthtable1");
-  };
-  ScriptedWorld world(options);
+  ScriptedWorld world(SlowDryRun());
   ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
   const auto steps = world.monitor().Steps();
   const StepStatus* drive = DriveOf(steps);

@@ -26,7 +26,8 @@ struct BrakingWay {
   enum class Kind {
     kRamp,      ///< led by navigation::BaseGuard, with limits for the load
     kConstant,  ///< velocity zero is commanded; the controller brakes at its limit
-    kSilence,   ///< nothing is commanded any more: the controller's time-out strikes
+    kSilence,   ///< nothing is commanded any more; the controller stops at once at its time-out,
+                ///< whatever the robot's profile says of it
     kAtOnce     ///< the wheels lock: from full speed to none within a step of physics
   };
   Kind kind{Kind::kRamp};
