@@ -27,7 +27,7 @@ const std::vector<FailureInfo>& Table() {
       {Code::kHandFull, "hand_full", kAction, true},
       {Code::kGraspFailed, "grasp_failed", kAction, true},
       {Code::kAreaOccupied, "area_occupied", kAction, false},
-      {Code::kUnknownModel, "unknown_model", kRobot, false},
+      {Code::kUnknownModel, "unknown_model", kRobot, true},
 
       {Code::kRobotCollision, "robot_collision", kAction, true},
       {Code::kNoPath, "no_path", kAction, true},
@@ -62,6 +62,8 @@ const std::vector<FailureInfo>& Table() {
       {Code::kInternalError, "internal_error", kRobot, true},
       {Code::kBusy, "busy", kRobot, true},
       {Code::kGuardEnds, "guard_ends", kRobot, true},
+      {Code::kLateGuard, "late_guard", kRobot, true},
+      {Code::kNoRequest, "no_request", kRobot, true},
 
       {Code::kPreempted, "preempted", kPlan, true},
       {Code::kUnavailable, "unavailable", kRobot, true},
