@@ -20,8 +20,8 @@ StopParams ReadStopping(ParamReader in) {
   return params;
 }
 
-ScanParams ReadScan(ParamReader in) {
-  ScanParams params;
+hires::sensing::ScanParams ReadScan(ParamReader in) {
+  hires::sensing::ScanParams params;
   params.tolerance = in.Get("tolerance", Between(0.0, 1.0));
   params.range = in.Get("range", Between(0.1, 30.0));
   params.cell = in.Get("cell", Between(0.01, 0.5));

@@ -37,7 +37,7 @@ bool IsOurs(const hires::robot::Robot& robot, const std::string& name) {
 }
 
 /// A link of the robot in the map; no name is the map itself.
-Pose3 LinkPose(const hires::robot::Robot& robot, const hires::perception::BodyReading& body,
+Pose3 LinkPose(const hires::robot::Robot& robot, const hires::sensing::BodyReading& body,
                const std::string& link) {
   if (link.empty()) return {};
   const auto index = robot.model.FindLink(link);
@@ -54,7 +54,8 @@ Pose3 LinkPose(const hires::robot::Robot& robot, const hires::perception::BodyRe
 
 Senses::Senses(std::shared_ptr<const hires::robot::Robot> robot,
                std::shared_ptr<const hires::perception::Surroundings> surroundings,
-               const ScanObstacles& obstacles, const RobotNames& names, double stale_after)
+               const hires::sensing::ScanObstacles& obstacles, const RobotNames& names,
+               double stale_after)
     : robot_(std::move(robot)),
       find_obstacles_(obstacles),
       names_(names),
@@ -90,7 +91,9 @@ void Senses::OnJoints(double stamp, JointReading reading) {
   while (joints_.front().stamp < stamp - kHistory) joints_.pop_front();
 }
 
-void Senses::OnScan(double stamp, ScanReading reading) { scan_ = {stamp, std::move(reading)}; }
+void Senses::OnScan(double stamp, hires::sensing::ScanReading reading) {
+  scan_ = {stamp, std::move(reading)};
+}
 
 void Senses::OnKnownObjects(const hires::world::WorldState& state) { hearsay_ = state; }
 
@@ -128,7 +131,7 @@ Pose2 Senses::BaseAt(double stamp) const {
   return names_.map_to_world.ToWorld(X_MO_->value * At(stamp, odometry_).X_OB);
 }
 
-hires::perception::BodyReading Senses::BodyAt(double stamp) const {
+hires::sensing::BodyReading Senses::BodyAt(double stamp) const {
   return {stamp, BaseAt(stamp), hires::skills::PostureOf(*robot_, At(stamp, joints_).positions)};
 }
 
@@ -154,7 +157,7 @@ void Senses::FindObstacles() {
 }
 
 void Senses::LookAtObjects(double stamp, Observation* seen) {
-  const hires::perception::BodyReading body = BodyAt(stamp);
+  const hires::sensing::BodyReading body = BodyAt(stamp);
   try {
     Hear(body);
     while (!looks_.empty() && looks_.front().stamp <= stamp) {
@@ -170,7 +173,7 @@ void Senses::LookAtObjects(double stamp, Observation* seen) {
 }
 
 /// What others say; what they do not say any more is believed no longer.
-void Senses::Hear(const hires::perception::BodyReading& body) {
+void Senses::Hear(const hires::sensing::BodyReading& body) {
   if (!hearsay_) return;
   const hires::world::WorldState said = *std::exchange(hearsay_, std::nullopt);
   for (auto name = believed_.begin(); name != believed_.end();) {

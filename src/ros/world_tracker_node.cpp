@@ -22,6 +22,7 @@ namespace {
 namespace knowledge = hires::knowledge;
 namespace perception = hires::perception;
 namespace robot = hires::robot;
+namespace sensing = hires::sensing;
 namespace translation = hires::translation;
 using hires::base::ConfigError;
 using hires::base::Log;
@@ -282,7 +283,7 @@ translation::ObservedWorld WorldTrackerNode::Observed(
   translation::ObservedWorld observed;
   observed.state.robot = {moment.body.X_MB, moment.V_B, moment.body.joints};
   for (const robot::SeenObject& object : known) {
-    const perception::RememberedObject& remembered = memory_.objects().at(object.name);
+    const sensing::RememberedObject& remembered = memory_.objects().at(object.name);
     if (!remembered.is_observed && !remembered.is_held) continue;  // others' word
     observed.state.world.objects.push_back(
         {object.name, object.model, object.X_MO, {}, object.attached_to});

@@ -9,8 +9,8 @@ namespace {
 using hires::base::Between;
 using hires::base::ParamReader;
 
-hires::perception::MemoryParams ReadMemory(ParamReader in) {
-  hires::perception::MemoryParams params;
+hires::sensing::MemoryParams ReadMemory(ParamReader in) {
+  hires::sensing::MemoryParams params;
   params.expected_share = in.Get("expected_share", Between(0.05, 1.0));
   params.looks_to_vanish = in.Get("looks_to_vanish", Between(1, 1000));
   params.blending = in.Get("blending", Between(0.01, 1.0));

@@ -34,7 +34,7 @@ struct RobotSimulator::Snapshot {
   Disturbances disturbances;
   std::optional<PlanarRobot::State> planar;
   base::Rng encoder_rng, detection_rng;
-  std::optional<perception::ObjectMemory> memory;
+  std::optional<sensing::ObjectMemory> memory;
   double last_look;
 };
 

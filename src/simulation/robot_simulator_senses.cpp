@@ -38,7 +38,7 @@ Pose2 RobotSimulator::BelievedBase(base::Rng* rng) const {
   return drive_.motion().X_MB * variation_.localisation_bias * noise;
 }
 
-perception::BodyReading RobotSimulator::FeltBody(const Pose2& X_MBbelieved) const {
+sensing::BodyReading RobotSimulator::FeltBody(const Pose2& X_MBbelieved) const {
   return {time_, X_MBbelieved, planar_->Joints()};
 }
 

@@ -20,6 +20,7 @@ LAYERS = [
     ["robot", "knowledge"],
     ["world", "planning"],
     ["physics", "navigation", "manipulation", "perception", "execution", "translation"],
+    ["sensing"],
     ["simulation", "skills"],
     ["imagination"],
     ["evaluation"],

@@ -27,39 +27,8 @@ RobotNames Pr2Names() {
 }
 
 /// A single beam, straight ahead.
-ScanReading Beam(double range) { return {0.0, 0.01, 0.08, {static_cast<float>(range)}}; }
-
-class ScanObstaclesTest : public ::testing::Test {
- protected:
-  ScanObstacles obstacles_{RoomMap(), TrayRobot().profile.footprint, {}};
-  const Pose2 X_MB_{3.0, 2.0, 0.0};  // the east wall stands at x = 6
-};
-
-TEST_F(ScanObstaclesTest, APointInFreeSpaceBecomesASquareAroundIt) {
-  const auto found = obstacles_.Find(Beam(1.02), X_MB_, {});
-  ASSERT_THAT(found, SizeIs(1));
-  EXPECT_TRUE(hires::geometry::Contains(found[0], {4.02, 2.0}));
-  EXPECT_NEAR(found[0][1].x() - found[0][0].x(), 0.05, 1e-12);
-}
-
-TEST_F(ScanObstaclesTest, AWallOfTheMapIsNoObstacle) {
-  EXPECT_THAT(obstacles_.Find(Beam(2.4), {3.6, 2.0, 0.0}, {}), IsEmpty());
-  EXPECT_THAT(obstacles_.Find(Beam(2.3), {3.6, 2.0, 0.0}, {}), IsEmpty());
-}
-
-TEST_F(ScanObstaclesTest, TheRobotItselfIsNoObstacle) {
-  EXPECT_THAT(obstacles_.Find(Beam(0.2), X_MB_, {}), IsEmpty());
-}
-
-TEST_F(ScanObstaclesTest, WhatIsFarOrNoMeasurementIsLeftOut) {
-  for (const double range : {2.6, 0.05, std::numeric_limits<double>::infinity(),
-                             std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_THAT(obstacles_.Find(Beam(range), X_MB_, {}), IsEmpty()) << range;
-  }
-}
-
-TEST_F(ScanObstaclesTest, ManyPointsOfOneCellAreOneSquare) {
-  EXPECT_THAT(obstacles_.Find({0.0, 0.0001, 0.08, {1.02f, 1.02f, 1.03f}}, X_MB_, {}), SizeIs(1));
+hires::sensing::ScanReading Beam(double range) {
+  return {0.0, 0.01, 0.08, {static_cast<float>(range)}};
 }
 
 class SensesTest : public ::testing::Test {
@@ -71,7 +40,7 @@ class SensesTest : public ::testing::Test {
 
   std::shared_ptr<const hires::robot::Robot> robot_ =
       std::make_shared<const hires::robot::Robot>(TrayRobot());
-  ScanObstacles obstacles_{RoomMap(), robot_->profile.footprint, {}};
+  hires::sensing::ScanObstacles obstacles_{RoomMap(), robot_->profile.footprint, {}};
   Senses senses_{robot_, nullptr, obstacles_, Pr2Names(), 0.3};
 };
 
@@ -159,7 +128,7 @@ class SensesOfObjectsTest : public ::testing::Test {
 
   std::shared_ptr<const hires::robot::Robot> robot_ = std::make_shared<const hires::robot::Robot>(
       hires::robot::LoadRobot(std::string(HIRES_SOURCE_DIR) + "/config/robots/pr2.yaml"));
-  ScanObstacles obstacles_{RoomMap(), robot_->profile.footprint, {}};
+  hires::sensing::ScanObstacles obstacles_{RoomMap(), robot_->profile.footprint, {}};
   Senses senses_{robot_, std::make_shared<const hires::perception::Surroundings>(Room()),
                  obstacles_, Pr2Names(), 0.3};
 };

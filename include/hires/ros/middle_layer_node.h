@@ -105,7 +105,7 @@ class MiddleLayerNode {
 
   const MiddleLayerParams params_;
   const hires::imagination::ImaginationSetup setup_;
-  const ScanObstacles scan_obstacles_;
+  const hires::sensing::ScanObstacles scan_obstacles_;
   OdometryFrame odometry_frame_;
   Senses senses_;
   ActionRunner runner_;

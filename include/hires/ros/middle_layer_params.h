@@ -4,9 +4,9 @@
 #include "hires/navigation/braking.h"
 #include "hires/ros/middle_layer_override.h"
 #include "hires/ros/middle_layer_runner.h"
-#include "hires/ros/middle_layer_scan.h"
 #include "hires/ros/move_base_params.h"
 #include "hires/ros/robot_names.h"
+#include "hires/sensing/scan_obstacles.h"
 
 namespace hires_ros {
 
@@ -21,7 +21,7 @@ struct MiddleLayerParams {
   hires::imagination::SetupConfig setup;
   RobotNames names;
   RunnerParams runner;
-  ScanParams scan;
+  hires::sensing::ScanParams scan;
   GuardParams guard;
   OverrideParams override;
   MoveBaseDriveParams navigation;

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "hires/perception/object_memory.h"
 #include "hires/robot/observation.h"
 #include "hires/robot/robot_profile.h"
-#include "hires/ros/middle_layer_scan.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_names.h"
+#include "hires/sensing/object_memory.h"
+#include "hires/sensing/scan_obstacles.h"
 #include "hires/world/world.h"
 
 namespace hires_ros {
@@ -30,12 +30,13 @@ class Senses {
   /// @pre the obstacles outlive it.
   Senses(std::shared_ptr<const hires::robot::Robot> robot,
          std::shared_ptr<const hires::perception::Surroundings> surroundings,
-         const ScanObstacles& obstacles, const RobotNames& names, double stale_after);
+         const hires::sensing::ScanObstacles& obstacles, const RobotNames& names,
+         double stale_after);
 
   void OnOdometry(double stamp, const OdometryReading& reading);
   void OnLocalisation(double stamp, const hires::geometry::Pose2& X_MO);  ///< odometry's origin
   void OnJoints(double stamp, JointReading reading);
-  void OnScan(double stamp, ScanReading reading);
+  void OnScan(double stamp, hires::sensing::ScanReading reading);
   void OnKnownObjects(const hires::world::WorldState& state);
   void OnDetections(double stamp, std::vector<hires::perception::Detection> detections);
 
@@ -57,22 +58,22 @@ class Senses {
   template <typename T>
   static const T& At(double stamp, const std::deque<Stamped<T>>& history);
   hires::geometry::Pose2 BaseAt(double stamp) const;
-  hires::perception::BodyReading BodyAt(double stamp) const;
+  hires::sensing::BodyReading BodyAt(double stamp) const;
   void FindObstacles();
   void LookAtObjects(double stamp, hires::robot::Observation* seen);
-  void Hear(const hires::perception::BodyReading& body);
+  void Hear(const hires::sensing::BodyReading& body);
 
   std::shared_ptr<const hires::robot::Robot> robot_;
-  const ScanObstacles& find_obstacles_;
+  const hires::sensing::ScanObstacles& find_obstacles_;
   RobotNames names_;
   double stale_after_;
   hires::geometry::Pose2 X_BL_;                    // laser
   std::deque<Stamped<OdometryReading>> odometry_;  // of the last seconds, oldest first
   std::deque<Stamped<JointReading>> joints_;       // likewise
   std::optional<Stamped<hires::geometry::Pose2>> X_MO_;
-  std::optional<Stamped<ScanReading>> scan_;  // not looked at yet
+  std::optional<Stamped<hires::sensing::ScanReading>> scan_;  // not looked at yet
   std::vector<hires::geometry::Polygon> obstacles_M_;
-  std::optional<hires::perception::ObjectMemory> memory_;
+  std::optional<hires::sensing::ObjectMemory> memory_;
   std::deque<Stamped<std::vector<hires::perception::Detection>>> looks_;  // not remembered yet
   std::optional<hires::world::WorldState> hearsay_;                       // not believed yet
   std::set<std::string> believed_;

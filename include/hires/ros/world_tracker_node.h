@@ -62,7 +62,7 @@ class WorldTrackerNode {
   std::map<std::string, std::pair<double, double>> joint_limits_;  // by joint that may be set
   OdometryFrame odometry_frame_;
   TrackerSenses senses_;
-  hires::perception::ObjectMemory memory_;
+  hires::sensing::ObjectMemory memory_;
   HeadSweep sweep_;
   std::map<std::string, std::string> running_;  // goal id -> action
   double time_{0.0};                            // [s] of the last moment

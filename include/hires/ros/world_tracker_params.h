@@ -4,8 +4,8 @@
 #include <set>
 #include <string>
 
-#include "hires/perception/object_memory.h"
 #include "hires/ros/translator_params.h"
+#include "hires/sensing/object_memory.h"
 #include "hires/translation/observed_fluents.h"
 
 namespace hires_ros {
@@ -24,7 +24,7 @@ struct SweepParams {
 /// config/world_tracker.yaml.
 struct WorldTrackerParams {
   TranslatorParams files;
-  hires::perception::MemoryParams memory;
+  hires::sensing::MemoryParams memory;
   hires::translation::ClassifyParams classify;
   hires::translation::ChangeParams changes;
   std::map<std::string, std::string> concepts;  ///< model -> concept, for objects nobody knows

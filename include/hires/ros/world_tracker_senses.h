@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "hires/perception/object_memory.h"
 #include "hires/ros/robot_messages.h"
+#include "hires/sensing/object_memory.h"
 #include "hires/world/map_to_world.h"
 
 namespace hires_ros {
@@ -15,7 +15,7 @@ namespace hires_ros {
 /// A moment of which all is known: where the robot is, its joints, and what its camera saw if it
 /// looked then.
 struct TrackerMoment {
-  hires::perception::BodyReading body;
+  hires::sensing::BodyReading body;
   hires::geometry::Twist2 V_B;
   std::optional<std::vector<hires::perception::Detection>> look;
   /// A look that came after later moments had been taken: `body` is as it was then.

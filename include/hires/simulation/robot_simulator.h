@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "hires/base/rng.h"
-#include "hires/perception/object_memory.h"
 #include "hires/physics/physics_world.h"
 #include "hires/robot/observation.h"
+#include "hires/sensing/object_memory.h"
 #include "hires/simulation/base_drive.h"
 #include "hires/simulation/floor_profile.h"
 #include "hires/simulation/planar_robot.h"
@@ -117,7 +117,7 @@ class RobotSimulator {
   void BelieveHands();
   void FeelAndLook();
   void LookIfStill();
-  perception::BodyReading FeltBody(const geometry::Pose2& X_MBbelieved) const;
+  sensing::BodyReading FeltBody(const geometry::Pose2& X_MBbelieved) const;
   void AddEncoderNoise(robot::JointPositions* joints);
   void ObserveUpperBody(double action_start, robot::Observation* observation);
   void NoteDisturbances();
@@ -151,8 +151,8 @@ class RobotSimulator {
   double last_observation_{0.0};
   std::deque<Ghost> ghosts_;
   base::Rng encoder_rng_, detection_rng_;
-  std::optional<perception::ObjectMemory> memory_;  // none at level `tray`
-  double last_look_{-1e9};                          // [s]
+  std::optional<sensing::ObjectMemory> memory_;  // none at level `tray`
+  double last_look_{-1e9};                       // [s]
   std::optional<RobotContact> contact_;
   Disturbances disturbances_;
 };

@@ -1,4 +1,4 @@
-#include "hires/perception/object_memory.h"
+#include "hires/sensing/object_memory.h"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,13 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 
-namespace hires::perception {
+namespace hires::sensing {
 namespace {
 
 using geometry::Pose3;
+using perception::CameraView;
+using perception::Detection;
+using perception::LineOfSight;
 
 geometry::Aabb BoundsOf(const std::vector<geometry::Collision>& collisions) {
   geometry::Aabb bounds;
@@ -79,7 +82,7 @@ class ObjectMemory::Links {
   Pose3 X_MR_;
 };
 
-ObjectMemory::ObjectMemory(std::shared_ptr<const Surroundings> surroundings,
+ObjectMemory::ObjectMemory(std::shared_ptr<const perception::Surroundings> surroundings,
                            std::shared_ptr<const robot::Robot> robot, const MemoryParams& params)
     : surroundings_(std::move(surroundings)),
       robot_(std::move(robot)),
@@ -263,12 +266,13 @@ void ObjectMemory::Look(const BodyReading& body, const std::vector<Detection>& d
         fmt::format("detection of '{}': its pose is not finite", detection.name));
   }
   const Links links(*robot_, body);
-  const CameraView view = ViewOf(*robot_, body.X_MB, body.joints);
+  const CameraView view = perception::ViewOf(*robot_, body.X_MB, body.joints);
   std::vector<world::ObjectState> expected;
   for (const robot::SeenObject& seen : Known(body)) {
     expected.push_back({seen.name, seen.model, seen.X_MO, {}, seen.attached_to});
   }
-  const LineOfSight sight(surroundings_, expected, ShapesOf(*robot_, body.X_MB, body.joints));
+  const LineOfSight sight(surroundings_, expected,
+                          perception::ShapesOf(*robot_, body.X_MB, body.joints));
   Miss(sight, view, links, detections);
   for (const Detection& detection : detections) {
     See(links, detection, view.X_MC * detection.X_CO, body.time);
@@ -337,4 +341,4 @@ std::vector<robot::SeenObject> ObjectMemory::Known(const BodyReading& body) cons
   return known;
 }
 
-}  // namespace hires::perception
+}  // namespace hires::sensing

@@ -7,7 +7,7 @@
 #include "hires/geometry/polygon.h"
 #include "hires/navigation/costmap.h"
 
-namespace hires_ros {
+namespace hires::sensing {
 
 struct ScanParams {
   double tolerance{0.15};  ///< [m] a point this near to an obstacle of the map is that obstacle
@@ -28,20 +28,19 @@ class ScanObstacles {
  public:
   /// @param map        what is known to stand there.
   /// @param footprint  of the robot, in its base: points within are the robot's own.
-  ScanObstacles(std::shared_ptr<const hires::navigation::Costmap> map,
-                hires::geometry::Polygon footprint, const ScanParams& params);
+  ScanObstacles(std::shared_ptr<const navigation::Costmap> map, geometry::Polygon footprint,
+                const ScanParams& params);
 
   /// Squares in the map around the points that the map does not explain, each cell once.
-  std::vector<hires::geometry::Polygon> Find(const ScanReading& scan,
-                                             const hires::geometry::Pose2& X_MB,
-                                             const hires::geometry::Pose2& X_BL) const;
+  std::vector<geometry::Polygon> Find(const ScanReading& scan, const geometry::Pose2& X_MB,
+                                      const geometry::Pose2& X_BL) const;
 
  private:
   bool IsExplained(const Eigen::Vector2d& p_M) const;
 
-  std::shared_ptr<const hires::navigation::Costmap> map_;
-  hires::geometry::Polygon footprint_;
+  std::shared_ptr<const navigation::Costmap> map_;
+  geometry::Polygon footprint_;
   ScanParams params_;
 };
 
-}  // namespace hires_ros
+}  // namespace hires::sensing

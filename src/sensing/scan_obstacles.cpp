@@ -1,16 +1,16 @@
-#include "hires/ros/middle_layer_scan.h"
+#include "hires/sensing/scan_obstacles.h"
 
 #include <cmath>
 #include <set>
 #include <utility>
 
-namespace hires_ros {
+namespace hires::sensing {
 
-using hires::geometry::Polygon;
-using hires::geometry::Pose2;
+using geometry::Polygon;
+using geometry::Pose2;
 
-ScanObstacles::ScanObstacles(std::shared_ptr<const hires::navigation::Costmap> map,
-                             Polygon footprint, const ScanParams& params)
+ScanObstacles::ScanObstacles(std::shared_ptr<const navigation::Costmap> map, Polygon footprint,
+                             const ScanParams& params)
     : map_(std::move(map)), footprint_(std::move(footprint)), params_(params) {}
 
 std::vector<Polygon> ScanObstacles::Find(const ScanReading& scan, const Pose2& X_MB,
@@ -23,7 +23,7 @@ std::vector<Polygon> ScanObstacles::Find(const ScanReading& scan, const Pose2& X
     const Eigen::Vector2d p_B =
         X_BL * Eigen::Vector2d(range * std::cos(angle), range * std::sin(angle));
     const Eigen::Vector2d p_M = X_MB * p_B;
-    if (hires::geometry::Contains(footprint_, p_B) || IsExplained(p_M)) continue;
+    if (geometry::Contains(footprint_, p_B) || IsExplained(p_M)) continue;
     cells.emplace(std::lround(std::floor(p_M.x() / params_.cell)),
                   std::lround(std::floor(p_M.y() / params_.cell)));
   }
@@ -43,10 +43,10 @@ bool ScanObstacles::IsExplained(const Eigen::Vector2d& p_M) const {
   const int reach = static_cast<int>(std::ceil(params_.tolerance / map_->resolution()));
   for (int y = row - reach; y <= row + reach; ++y) {
     for (int x = column - reach; x <= column + reach; ++x) {
-      if (map_->Inside(x, y) && map_->cost(x, y) == hires::navigation::kLethalCost) return true;
+      if (map_->Inside(x, y) && map_->cost(x, y) == navigation::kLethalCost) return true;
     }
   }
   return false;
 }
 
-}  // namespace hires_ros
+}  // namespace hires::sensing

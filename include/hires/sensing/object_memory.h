@@ -9,7 +9,7 @@
 #include "hires/perception/detector.h"
 #include "hires/robot/observation.h"
 
-namespace hires::perception {
+namespace hires::sensing {
 
 struct MemoryParams {
   double expected_share{0.6};   ///< of an object's surface that must be free before it counts as
@@ -60,7 +60,7 @@ struct RememberedObject {
 /// one that slipped out of the hand at once.
 class ObjectMemory {
  public:
-  ObjectMemory(std::shared_ptr<const Surroundings> surroundings,
+  ObjectMemory(std::shared_ptr<const perception::Surroundings> surroundings,
                std::shared_ptr<const robot::Robot> robot, const MemoryParams& params = {});
 
   /// Hearsay: where an object is said to be. Counts only as long as nothing was observed of it.
@@ -77,7 +77,7 @@ class ObjectMemory {
   /// @pre the robot has a camera.
   /// @throws base::ConfigError as Feel, and for a detection whose model the world does not have or
   /// whose pose is no number; nothing is remembered of such a look.
-  void Look(const BodyReading& body, const std::vector<Detection>& detections);
+  void Look(const BodyReading& body, const std::vector<perception::Detection>& detections);
 
   const std::map<std::string, RememberedObject>& objects() const { return objects_; }
   /// Objects whose place was looked at in vain, or that slipped away: until they are seen again.
@@ -101,15 +101,15 @@ class ObjectMemory {
                 const geometry::Pose3& X_MO) const;
   void LetGo(const Links& links, const std::string& name, double time);
   void Lose(const std::string& name);
-  void See(const Links& links, const Detection& detection, const geometry::Pose3& X_MO,
+  void See(const Links& links, const perception::Detection& detection, const geometry::Pose3& X_MO,
            double time);
-  void Miss(const LineOfSight& sight, const CameraView& view, const Links& links,
-            const std::vector<Detection>& detections);
+  void Miss(const perception::LineOfSight& sight, const perception::CameraView& view,
+            const Links& links, const std::vector<perception::Detection>& detections);
   void PlaceAt(const Links& links, const geometry::Pose3& X_MO, RememberedObject* object) const;
   bool IsOverTray(const Links& links, const geometry::Pose3& X_MO) const;
   Hand* HandOf(const std::string& object);
 
-  std::shared_ptr<const Surroundings> surroundings_;
+  std::shared_ptr<const perception::Surroundings> surroundings_;
   std::shared_ptr<const robot::Robot> robot_;
   MemoryParams params_;
   std::optional<geometry::Aabb> tray_T_;  ///< plate, in the tray's frame
@@ -118,4 +118,4 @@ class ObjectMemory {
   std::map<std::string, Hand> hands_;     ///< by arm
 };
 
-}  // namespace hires::perception
+}  // namespace hires::sensing

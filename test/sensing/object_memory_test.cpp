@@ -1,4 +1,4 @@
-#include "hires/perception/object_memory.h"
+#include "hires/sensing/object_memory.h"
 
 #include <gmock/gmock.h>
 
@@ -9,10 +9,17 @@
 #include "hires/robot/gripper.h"
 #include "support/sight_scenes.h"
 
-namespace hires::perception {
+namespace hires::sensing {
 namespace {
 
 using geometry::Pose3;
+using perception::Detect;
+using perception::Detection;
+using perception::DetectorParams;
+using perception::LineOfSight;
+using perception::ShapesOf;
+using perception::Surroundings;
+using perception::ViewOf;
 using test_support::At;
 using test_support::Thing;
 using testing::ElementsAre;
@@ -352,4 +359,4 @@ TEST_F(ObjectMemoryTest, ARobotWithoutHandsFeelsNothing) {
 }
 
 }  // namespace
-}  // namespace hires::perception
+}  // namespace hires::sensing
