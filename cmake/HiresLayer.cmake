@@ -1,5 +1,5 @@
-# One library per layer (hires_<name>), one test program per test file, one benchmark program per
-# benchmark file. A layer's folders are include/hires/<name>, src/<name>, test/<name>.
+# One library per layer (hires_<name>), one benchmark program per benchmark file; tests are in
+# HiresTests.cmake. A layer's folders are include/hires/<name>, src/<name>, test/<name>.
 
 # hires_layer(<name> [SOURCES a.cpp ...] [DEPENDS lower layers ...] [LINK libraries ...])
 # Call it in src/<name>/CMakeLists.txt.
@@ -18,31 +18,6 @@ function(hires_layer name)
   target_include_directories(${target} ${scope} ${PROJECT_SOURCE_DIR}/include)
   list(TRANSFORM LAYER_DEPENDS PREPEND hires_)
   target_link_libraries(${target} ${scope} ${LAYER_DEPENDS} ${LAYER_LINK})
-endfunction()
-
-# hires_test(<layer> <file without _test.cpp> [LINK more libraries ...])
-# Call it in test/<layer>/CMakeLists.txt; the test links its layer and test/support.
-function(hires_test layer name)
-  if(NOT HIRES_TESTS)
-    return()
-  endif()
-  cmake_parse_arguments(TEST "" "TIMEOUT" "LINK" ${ARGN})
-  set(target ${layer}_${name}_test)
-  add_executable(${target} ${name}_test.cpp)
-  # What is tested is as fast as ever; the tests' own code is built a third faster so.
-  target_compile_options(${target} PRIVATE ${HIRES_WARNINGS} -O1)
-  target_compile_definitions(${target} PRIVATE
-    HIRES_SOURCE_DIR="${PROJECT_SOURCE_DIR}" HIRES_SHARED_DATA="${HIRES_SHARED_DATA}")
-  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/test)
-  target_link_libraries(${target} PRIVATE hires_${layer} ${TEST_LINK} GTest::gmock_main)
-  add_test(NAME ${layer}.${name} COMMAND ${target})
-  if(NOT TEST_TIMEOUT)
-    set(TEST_TIMEOUT 120)
-  endif()
-  if(HIRES_SANITIZE)  # up to ten times slower, and nothing to do with hanging
-    math(EXPR TEST_TIMEOUT "10 * ${TEST_TIMEOUT}")
-  endif()
-  set_tests_properties(${layer}.${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT} SKIP_RETURN_CODE 77)
 endfunction()
 
 # hires_benchmark(<layer> <file without _benchmark.cpp> [LINK more libraries ...])

@@ -1,11 +1,12 @@
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
+#include <rapidcheck.h>
 
 #include <string>
 #include <vector>
 
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
+#include "support/property.h"
 #include "support/scripted_world.h"
 
 // Everything at any moment: steps that fail, are slow, never end or are not seen; objects that
@@ -181,7 +182,9 @@ Played Play(std::uint64_t seed) {
   return {finish, world.log(), world.violations()};
 }
 
-RC_GTEST_PROP(MonitorPropertyTest, WhateverHappensItEndsAndTheRobotStands, ()) {
+constexpr test_support::PropertyCases kPropertyCases{};
+
+HIRES_PROPERTY(MonitorPropertyTest, WhateverHappensItEndsAndTheRobotStands, ()) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
   const Played played = Play(seed);
   if (!played.violations.empty()) {
@@ -194,7 +197,7 @@ RC_GTEST_PROP(MonitorPropertyTest, WhateverHappensItEndsAndTheRobotStands, ()) {
   RC_CLASSIFY(played.finish.outcome == Finish::Outcome::kPreempted, "preempted");
 }
 
-RC_GTEST_PROP(MonitorPropertyTest, TheSameEventsGiveTheSameCommands, ()) {
+HIRES_PROPERTY(MonitorPropertyTest, TheSameEventsGiveTheSameCommands, ()) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
   RC_ASSERT(Play(seed).log == Play(seed).log);
 }

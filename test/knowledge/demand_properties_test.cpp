@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-#include <stdlib.h>
+#include <rapidcheck.h>
 
 #include <map>
 #include <string>
@@ -9,6 +8,7 @@
 #include "hires/base/text.h"
 #include "hires/knowledge/demand.h"
 #include "knowledge/support/random_world.h"
+#include "support/property.h"
 
 namespace hires::knowledge {
 namespace {
@@ -19,8 +19,7 @@ using test_support::PickFluent;
 using test_support::PickName;
 using test_support::RestaurantOntology;
 
-// Every run checks the same cases. RC_PARAMS in the environment looks at others.
-const int kSeedIsSet = setenv("RC_PARAMS", "seed=1 max_success=60", 0);
+constexpr test_support::PropertyCases kPropertyCases{60};
 
 DemandTopic Topic(std::vector<std::string> below, std::vector<std::string> queries) {
   DemandTopic topic;
@@ -130,7 +129,7 @@ void CheckAgainstFreshSnapshots(const DemandTopic& topic) {
 }
 
 TEST_P(DemandProperty, MessagesFromASnapshotOnGiveWhatAFreshSnapshotGives) {
-  EXPECT_TRUE(rc::check([] { CheckAgainstFreshSnapshots(GetParam()); }));
+  test_support::CheckProperty(kPropertyCases, [] { CheckAgainstFreshSnapshots(GetParam()); });
 }
 
 std::string NameOfCase(const ::testing::TestParamInfo<DemandTopic>& info) {

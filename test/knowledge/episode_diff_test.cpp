@@ -1,8 +1,7 @@
 #include "hires/knowledge/episode_diff.h"
 
 #include <gmock/gmock.h>
-#include <rapidcheck/gtest.h>
-#include <stdlib.h>
+#include <rapidcheck.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -15,6 +14,7 @@
 #include "hires/base/error.h"
 #include "hires/knowledge/episode_diff_report.h"
 #include "knowledge/support/store_world.h"
+#include "support/property.h"
 
 namespace hires::knowledge {
 namespace {
@@ -30,8 +30,7 @@ using ::testing::Not;
 using ::testing::ThrowsMessage;
 using Verdict = InstanceDiff::Verdict;
 
-// Every run checks the same cases. RC_PARAMS in the environment looks at others.
-const int kSeedIsSet = setenv("RC_PARAMS", "seed=1 max_success=200 max_size=30", 0);
+constexpr test_support::PropertyCases kPropertyCases{200, 30};
 
 Fluent Mug(const std::string& instance, const std::string& colour) {
   return MakeFluent("Mug", instance, {{"hasColour", "xsd:string", colour}});
@@ -333,12 +332,12 @@ std::vector<Change> AnyChanges() {
   return *rc::gen::container<std::vector<Change>>(change);
 }
 
-RC_GTEST_PROP(EpisodeDiffProperty, AnEpisodeIsTheSameAsItself, ()) {
+HIRES_PROPERTY(EpisodeDiffProperty, AnEpisodeIsTheSameAsItself, ()) {
   const std::vector<Change> changes = AnyChanges();
   RC_ASSERT(Compare({}, changes, {}, changes).Same());
 }
 
-RC_GTEST_PROP(EpisodeDiffProperty, EveryChangeIsToldOnceAndInItsOrder, ()) {
+HIRES_PROPERTY(EpisodeDiffProperty, EveryChangeIsToldOnceAndInItsOrder, ()) {
   const std::vector<Change> a = AnyChanges(), b = AnyChanges();
   const EpisodeDiff diff = Compare({}, a, {}, b);
   for (const InstanceDiff& instance : diff.instances) {
@@ -359,7 +358,7 @@ RC_GTEST_PROP(EpisodeDiffProperty, EveryChangeIsToldOnceAndInItsOrder, ()) {
   }
 }
 
-RC_GTEST_PROP(EpisodeDiffProperty, TheOtherWayRoundFindsAsMuch, ()) {
+HIRES_PROPERTY(EpisodeDiffProperty, TheOtherWayRoundFindsAsMuch, ()) {
   const std::vector<Change> a = AnyChanges(), b = AnyChanges();
   const auto cost = [](const EpisodeDiff& diff) {
     std::size_t changes = 0;
@@ -374,7 +373,7 @@ RC_GTEST_PROP(EpisodeDiffProperty, TheOtherWayRoundFindsAsMuch, ()) {
   RC_ASSERT(there.Count(Verdict::kSame) == back.Count(Verdict::kSame));
 }
 
-RC_GTEST_PROP(EpisodeDiffProperty, WhatIsInOrderRisesInBothEpisodes, ()) {
+HIRES_PROPERTY(EpisodeDiffProperty, WhatIsInOrderRisesInBothEpisodes, ()) {
   const EpisodeDiff diff = Compare({}, AnyChanges(), {}, AnyChanges());
   std::vector<std::pair<std::size_t, std::size_t>> moments;
   for (const InstanceDiff& instance : diff.instances) {

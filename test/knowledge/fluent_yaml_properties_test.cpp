@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-#include <stdlib.h>
+#include <rapidcheck.h>
 
 #include <cmath>
 #include <cstring>
@@ -11,6 +10,7 @@
 
 #include "hires/base/error.h"
 #include "hires/knowledge/fluent_yaml.h"
+#include "support/property.h"
 
 namespace hires::knowledge {
 namespace {
@@ -18,8 +18,7 @@ namespace {
 using temporal::Bounds;
 using temporal::kForever;
 
-// Every run checks the same cases. RC_PARAMS in the environment looks at others.
-const int kSeedIsSet = setenv("RC_PARAMS", "seed=1 max_success=500", 0);
+constexpr test_support::PropertyCases kPropertyCases{500};
 
 /// What YAML is most likely to trip over.
 const std::vector<std::string> kTraps = {
@@ -122,7 +121,7 @@ Fluent AnyFluent() {
   return fluent;
 }
 
-RC_GTEST_PROP(FluentYamlProperties, WhatIsWrittenIsReadBackToTheLastBit, ()) {
+HIRES_PROPERTY(FluentYamlProperties, WhatIsWrittenIsReadBackToTheLastBit, ()) {
   std::vector<Fluent> fluents;
   const int count = *rc::gen::inRange(0, 4);
   for (int i = 0; i < count; ++i) fluents.push_back(AnyFluent());
@@ -132,7 +131,7 @@ RC_GTEST_PROP(FluentYamlProperties, WhatIsWrittenIsReadBackToTheLastBit, ()) {
   RC_ASSERT(WriteFluents(read) == text);  // also tells -0.0 from 0.0
 }
 
-RC_GTEST_PROP(FluentYamlProperties, DamagedTextIsReadOrRefusedAndNothingElse, ()) {
+HIRES_PROPERTY(FluentYamlProperties, DamagedTextIsReadOrRefusedAndNothingElse, ()) {
   std::string text = WriteFluents({AnyFluent(), AnyFluent()});
   const int num_damages = *rc::gen::inRange(1, 5);
   for (int i = 0; i < num_damages; ++i) {
@@ -179,7 +178,7 @@ bool LeadsTo(const std::vector<PoseModification>& modifications, int from, int t
 
 // The slow obvious way: for each pose, look whether any way leads to it from each modification.
 // Deltas are quarters, so sums are exact in any order.
-RC_GTEST_PROP(FluentYamlProperties, APoseMovesByAllThatLeadsToIt, ()) {
+HIRES_PROPERTY(FluentYamlProperties, APoseMovesByAllThatLeadsToIt, ()) {
   const int num_poses = *rc::gen::inRange(1, 8);
   const std::vector<PoseModification> modifications = AnyModifications(num_poses);
   const base::Rng rng(*rc::gen::arbitrary<std::uint64_t>());
@@ -207,7 +206,7 @@ RC_GTEST_PROP(FluentYamlProperties, APoseMovesByAllThatLeadsToIt, ()) {
   }
 }
 
-RC_GTEST_PROP(FluentYamlProperties, ModificationsComeBackAsTheyWere, ()) {
+HIRES_PROPERTY(FluentYamlProperties, ModificationsComeBackAsTheyWere, ()) {
   KnowledgeFile file;
   file.modifications = AnyModifications(*rc::gen::inRange(0, 6));
   const std::string text = WriteKnowledge(file);

@@ -1,8 +1,7 @@
 #include "hires/knowledge/live_view.h"
 
 #include <gmock/gmock.h>
-#include <rapidcheck/gtest.h>
-#include <stdlib.h>
+#include <rapidcheck.h>
 
 #include <cstdint>
 #include <limits>
@@ -13,6 +12,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "knowledge/support/store_world.h"
+#include "support/property.h"
 
 namespace hires::knowledge {
 namespace {
@@ -26,8 +26,7 @@ using test_support::SmallOntology;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-// Every run checks the same cases. RC_PARAMS in the environment looks at others.
-const int kSeedIsSet = setenv("RC_PARAMS", "seed=1 max_success=200 max_size=60", 0);
+constexpr test_support::PropertyCases kPropertyCases{200, 60};
 
 std::vector<Fluent> Everything(const FluentView& view) {
   std::vector<Fluent> fluents;
@@ -307,7 +306,7 @@ void ExpectIndexIsRight(const FluentView& view) {
   }
 }
 
-RC_GTEST_PROP(LiveViewProperty, ChangesKeepItEqualToAFreshViewOfTheStore, ()) {
+HIRES_PROPERTY(LiveViewProperty, ChangesKeepItEqualToAFreshViewOfTheStore, ()) {
   Store store(":memory:", SmallOntology());
   const Episode dream = store.StartEpisode("dream", Episode::Label::kImagined, 0, 0.0);
   LiveView view(store);

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-#include <stdlib.h>
+#include <rapidcheck.h>
 
 #include <algorithm>
 #include <functional>
@@ -13,6 +12,7 @@
 #include "hires/knowledge/sparql.h"
 #include "knowledge/support/memory_view.h"
 #include "knowledge/support/random_world.h"
+#include "support/property.h"
 
 namespace hires::knowledge {
 namespace {
@@ -24,8 +24,7 @@ using test_support::PickFluent;
 using test_support::PickOf;
 using test_support::RestaurantOntology;
 
-// Every run checks the same cases. RC_PARAMS in the environment looks at others.
-const int kSeedIsSet = setenv("RC_PARAMS", "seed=1 max_success=400", 0);
+constexpr test_support::PropertyCases kPropertyCases{400};
 
 /// A pattern in words. Instances are "n0"..., concepts and values as they are written; variables of
 /// instances are "?v0"..., of concepts "?c0"....
@@ -161,7 +160,7 @@ bool Names(const Triples& triples, const std::string& variable) {
   });
 }
 
-RC_GTEST_PROP(SparqlProperty, JoinsGiveWhatTryingEveryValueGives, ()) {
+HIRES_PROPERTY(SparqlProperty, JoinsGiveWhatTryingEveryValueGives, ()) {
   std::vector<Fluent> fluents;
   for (int i = 0; i < kNumNames; ++i) {
     if (Pick(5) > 0) fluents.push_back(PickFluent("n" + std::to_string(i)));
@@ -198,7 +197,7 @@ RC_GTEST_PROP(SparqlProperty, JoinsGiveWhatTryingEveryValueGives, ()) {
   }
 }
 
-RC_GTEST_PROP(SparqlProperty, AnyTextIsReadOrRefusedWithItsPlace, ()) {
+HIRES_PROPERTY(SparqlProperty, AnyTextIsReadOrRefusedWithItsPlace, ()) {
   const std::vector<std::string> pieces{
       "select ", "?x ",    "{",       "}",           "race:Mug ",
       "a ",      "union ", ". ",      "; ",          ", ",

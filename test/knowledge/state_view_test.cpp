@@ -1,8 +1,7 @@
 #include "hires/knowledge/state_view.h"
 
 #include <gmock/gmock.h>
-#include <rapidcheck/gtest.h>
-#include <stdlib.h>
+#include <rapidcheck.h>
 
 #include <algorithm>
 #include <iterator>
@@ -20,6 +19,7 @@
 #include "hires/knowledge/live_view.h"
 #include "hires/knowledge/store.h"
 #include "knowledge/support/store_world.h"
+#include "support/property.h"
 
 namespace hires::knowledge {
 namespace {
@@ -36,8 +36,7 @@ using ::testing::Not;
 using ::testing::ThrowsMessage;
 using ::testing::UnorderedElementsAre;
 
-// Every run checks the same cases. RC_PARAMS in the environment looks at others.
-const int kSeedIsSet = setenv("RC_PARAMS", "seed=1 max_success=200 max_size=40", 0);
+constexpr test_support::PropertyCases kPropertyCases{200, 40};
 
 const std::string kRoot = HIRES_SOURCE_DIR;
 using Texts = std::vector<std::string>;
@@ -441,7 +440,7 @@ class Model {
   std::vector<Atom> atoms_;
 };
 
-RC_GTEST_PROP(ProjectedViewProperty, SaysWhatTheViewBelowSaysWithoutDeletesAndWithAdds, ()) {
+HIRES_PROPERTY(ProjectedViewProperty, SaysWhatTheViewBelowSaysWithoutDeletesAndWithAdds, ()) {
   ProjectedView view(&Restaurant(), TheOntology().get());
   Model model(StateAtoms(Restaurant(), *TheOntology()));
   for (const Effect& effect : *rc::gen::container<std::vector<Effect>>(AnyEffect())) {
@@ -466,7 +465,7 @@ std::map<std::string, Fluent> Everything(const FluentView& view) {
   return fluents;
 }
 
-RC_GTEST_PROP(ProjectedViewProperty, AllWaysToLookAtItAgree, ()) {
+HIRES_PROPERTY(ProjectedViewProperty, AllWaysToLookAtItAgree, ()) {
   ProjectedView view(&Restaurant(), TheOntology().get());
   for (const Effect& effect : *rc::gen::container<std::vector<Effect>>(AnyEffect())) {
     effect.add ? view.Add(effect.atom) : view.Delete(effect.atom);

@@ -1,8 +1,7 @@
 // The store against a list in memory that does the same in the most obvious way: after any sequence
 // of writes, the state of every moment, the changes, and the answers to queries agree.
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-#include <stdlib.h>
+#include <rapidcheck.h>
 
 #include <algorithm>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "hires/base/text.h"
 #include "hires/knowledge/store.h"
 #include "knowledge/support/store_world.h"
+#include "support/property.h"
 
 namespace hires::knowledge {
 namespace {
@@ -27,8 +27,7 @@ using test_support::MakeFluent;
 using test_support::QueryAll;
 using test_support::SmallOntology;
 
-// Every run checks the same cases. RC_PARAMS in the environment looks at others.
-const int kSeedIsSet = setenv("RC_PARAMS", "seed=1 max_success=300", 0);
+constexpr test_support::PropertyCases kPropertyCases{300};
 
 const std::vector<std::string> kNames = {"mug1", "Mug2", "MUG1", "vase1", "a"};
 
@@ -277,7 +276,7 @@ std::vector<Fluent> ByInstance(const Store& store, FluentQuery query) {
   return all;
 }
 
-RC_GTEST_PROP(StoreProperties, TheStateOfEveryMomentIsRight, ()) {
+HIRES_PROPERTY(StoreProperties, TheStateOfEveryMomentIsRight, ()) {
   Both both;
   for (const Step& step : AnySteps()) both.Apply(step);
   const int worlds = *Any(0, 3);
@@ -291,7 +290,7 @@ RC_GTEST_PROP(StoreProperties, TheStateOfEveryMomentIsRight, ()) {
   }
 }
 
-RC_GTEST_PROP(StoreProperties, NowAndEverAreRight, ()) {
+HIRES_PROPERTY(StoreProperties, NowAndEverAreRight, ()) {
   Both both;
   for (const Step& step : AnySteps()) both.Apply(step);
   const int worlds = *Any(0, 3);
@@ -308,7 +307,7 @@ RC_GTEST_PROP(StoreProperties, NowAndEverAreRight, ()) {
   RC_ASSERT(QueryAll(both.store, vases) == both.model.Select(vase));
 }
 
-RC_GTEST_PROP(StoreProperties, ChangesAreRight, ()) {
+HIRES_PROPERTY(StoreProperties, ChangesAreRight, ()) {
   Both both;
   for (const Step& step : AnySteps()) both.Apply(step);
   const std::vector<Change> changes = both.store.ChangesSince(0, 1'000'000);
@@ -323,7 +322,7 @@ RC_GTEST_PROP(StoreProperties, ChangesAreRight, ()) {
   }
 }
 
-RC_GTEST_PROP(StoreProperties, AllensRelationsAreRight, ()) {
+HIRES_PROPERTY(StoreProperties, AllensRelationsAreRight, ()) {
   using temporal::Allen;
   Both both;
   for (const Step& step : AnySteps()) both.Apply(step);
@@ -345,7 +344,7 @@ RC_GTEST_PROP(StoreProperties, AllensRelationsAreRight, ()) {
   }
 }
 
-RC_GTEST_PROP(StoreProperties, PropertiesAreRight, ()) {
+HIRES_PROPERTY(StoreProperties, PropertiesAreRight, ()) {
   Both both;
   for (const Step& step : AnySteps()) both.Apply(step);
   const Property wanted = *rc::gen::element(
@@ -377,7 +376,7 @@ RC_GTEST_PROP(StoreProperties, PropertiesAreRight, ()) {
   }));
 }
 
-RC_GTEST_PROP(StoreProperties, ConceptsAreRight, ()) {
+HIRES_PROPERTY(StoreProperties, ConceptsAreRight, ()) {
   Both both;
   for (const Step& step : AnySteps()) both.Apply(step);
   const double at = *Any(-2, 30);
@@ -398,7 +397,7 @@ RC_GTEST_PROP(StoreProperties, ConceptsAreRight, ()) {
   }));
 }
 
-RC_GTEST_PROP(StoreProperties, PagesShowTheFirstOnesMoment, ()) {
+HIRES_PROPERTY(StoreProperties, PagesShowTheFirstOnesMoment, ()) {
   Both both;
   for (const Step& step : AnySteps()) both.Apply(step);
   const double at = *Any(-2, 30);

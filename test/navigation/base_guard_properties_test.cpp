@@ -1,13 +1,13 @@
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
+#include <rapidcheck.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <set>
 #include <vector>
 
 #include "hires/navigation/base_guard.h"
+#include "support/property.h"
 
 // What holds for the guard of the base whatever comes in whatever order: lost messages, late ones,
 // requests that change, a driver that asks for anything.
@@ -17,8 +17,7 @@ namespace {
 
 using geometry::Twist2;
 
-// Every run checks the same cases. RC_PARAMS in the environment looks at others.
-const int kSeedIsSet = setenv("RC_PARAMS", "seed=1 max_success=300", 0);
+constexpr test_support::PropertyCases kPropertyCases{300};
 
 constexpr double kSlack = 1e-9;
 
@@ -213,14 +212,14 @@ class Play {
   double began_{0.0}, stop_time_{0.0};
 };
 
-RC_GTEST_PROP(BaseGuardProperties, WhateverHappensTheBaseIsGentleAndStops, ()) {
+HIRES_PROPERTY(BaseGuardProperties, WhateverHappensTheBaseIsGentleAndStops, ()) {
   Play play{BaseGuardParams{}};
   play.Run(400);
   RC_ASSERT(play.has_driven());
 }
 
 /// With everything gone for good, the base stands after patience and the stated time.
-RC_GTEST_PROP(BaseGuardProperties, ItStandsWithinTheStatedTime, ()) {
+HIRES_PROPERTY(BaseGuardProperties, ItStandsWithinTheStatedTime, ()) {
   const BaseGuardParams params;
   BaseGuard guard(params);
   DriveRequest request{5, {InRange(0.05, 1.0), InRange(0.1, 2.0), 1.0, 1.0}, {}};

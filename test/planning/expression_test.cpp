@@ -89,7 +89,7 @@ TEST(WhenTest, WhenAndUnlessAreOpposites) {
   EXPECT_EQ(Evaluate("(unless t (/ 1 0))"), "nil");
 }
 
-TEST(LogicTest, StopsAtTheFirstPartThatDecides) {
+TEST(LogicExpressionTest, StopsAtTheFirstPartThatDecides) {
   EXPECT_EQ(Evaluate("(and)"), "t");
   EXPECT_EQ(Evaluate("(and 1 2)"), "2");
   EXPECT_EQ(Evaluate("(and nil (/ 1 0))"), "nil");
@@ -175,9 +175,9 @@ struct Malformed {
 };
 void PrintTo(const Malformed& c, std::ostream* out) { *out << c.expression; }
 
-class MalformedTest : public ::testing::TestWithParam<Malformed> {};
+class MalformedExpressionTest : public ::testing::TestWithParam<Malformed> {};
 
-TEST_P(MalformedTest, IsRefusedWithPlaceAndRemedy) {
+TEST_P(MalformedExpressionTest, IsRefusedWithPlaceAndRemedy) {
   EXPECT_THAT(
       [] {
         Evaluate(GetParam().expression, {{"?u", ""}});
@@ -187,7 +187,7 @@ TEST_P(MalformedTest, IsRefusedWithPlaceAndRemedy) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    All, MalformedTest,
+    All, MalformedExpressionTest,
     ::testing::Values(
         Malformed{"(lenght '(a))", "1:1", "did you mean 'length'"},
         Malformed{"(+ 1 (first))", "1:6", "function 'first' has 0 arguments, takes 1"},

@@ -611,7 +611,7 @@ TEST(BadHddlProblemTest, AnHddlProblemNeedsAnHddlDomain) {
 // ------------------------------------------------------------------------------------- shared
 // files
 
-TEST(SharedHddlTest, EveryFileIsRead) {
+TEST(SharedHddlFilesTest, EveryFileIsRead) {
   const std::string folder = std::string(HIRES_SHARED_DATA) + "/htn/hddl";
   if (!std::filesystem::exists(folder)) {
     GTEST_SKIP() << "the folder of example problems is missing (HIRES_SHARED_DATA)";

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-#include <stdlib.h>
+#include <rapidcheck.h>
 
 #include <algorithm>
 #include <map>
@@ -14,6 +13,7 @@
 #include "planning/support/brute_force.h"
 #include "planning/support/plan_text.h"
 #include "planning/support/random_networks.h"
+#include "support/property.h"
 
 namespace hires::planning {
 namespace {
@@ -26,8 +26,7 @@ using test_support::RandomNetworks;
 using test_support::Solve;
 using test_support::Steps;
 
-// Every run checks the same cases. RC_PARAMS in the environment looks at others.
-const int kSeedIsSet = setenv("RC_PARAMS", "seed=1 max_success=300", 0);
+constexpr test_support::PropertyCases kPropertyCases{300};
 
 constexpr std::size_t kEnough = 100'000;  // plans
 
@@ -112,12 +111,12 @@ TEST(BruteForceTest, CountsTheInterleavingsThatShop3Counts) {
   EXPECT_EQ(count(foo, "((foo))", tasks), 9);
 }
 
-RC_GTEST_PROP(RandomNetworkTest, AllPlansAreThoseOfBruteForce, ()) {
+HIRES_PROPERTY(RandomNetworkTest, AllPlansAreThoseOfBruteForce, ()) {
   const RandomNetwork network = *RandomNetworks();
   ExpectSameAsBruteForce(network.domain(), network.problem());
 }
 
-RC_GTEST_PROP(RandomNetworkTest, AllPlansWithProtectionsAreThoseOfBruteForce, ()) {
+HIRES_PROPERTY(RandomNetworkTest, AllPlansWithProtectionsAreThoseOfBruteForce, ()) {
   NetworkOptions options;
   options.protections = true;
   const RandomNetwork network = *RandomNetworks(options);
@@ -125,7 +124,7 @@ RC_GTEST_PROP(RandomNetworkTest, AllPlansWithProtectionsAreThoseOfBruteForce, ()
 }
 
 // HDDL's tasks may be decomposed long before their first step.
-RC_GTEST_PROP(RandomNetworkTest, AllPlansByTheRulesOfHddlAreThoseOfBruteForce, ()) {
+HIRES_PROPERTY(RandomNetworkTest, AllPlansByTheRulesOfHddlAreThoseOfBruteForce, ()) {
   NetworkOptions options;
   options.immediate = false;
   options.max_items = 2;
@@ -146,15 +145,15 @@ void ExpectValid(const RandomNetwork& network) {
   }
 }
 
-RC_GTEST_PROP(RandomNetworkTest, EveryPlanIsValid, ()) { ExpectValid(*RandomNetworks()); }
+HIRES_PROPERTY(RandomNetworkTest, EveryPlanIsValid, ()) { ExpectValid(*RandomNetworks()); }
 
-RC_GTEST_PROP(RandomNetworkTest, EveryPlanWithProtectionsIsValid, ()) {
+HIRES_PROPERTY(RandomNetworkTest, EveryPlanWithProtectionsIsValid, ()) {
   NetworkOptions options;
   options.protections = true;
   ExpectValid(*RandomNetworks(options));
 }
 
-RC_GTEST_PROP(RandomNetworkTest, EveryPlanOfARecursiveDomainIsValid, ()) {
+HIRES_PROPERTY(RandomNetworkTest, EveryPlanOfARecursiveDomainIsValid, ()) {
   NetworkOptions options;
   options.recursion = true;
   const RandomNetwork network = *RandomNetworks(options);
@@ -168,7 +167,7 @@ RC_GTEST_PROP(RandomNetworkTest, EveryPlanOfARecursiveDomainIsValid, ()) {
   }
 }
 
-RC_GTEST_PROP(RandomNetworkTest, TheFirstPlanIsTheFirstOfAll, ()) {
+HIRES_PROPERTY(RandomNetworkTest, TheFirstPlanIsTheFirstOfAll, ()) {
   const RandomNetwork network = *RandomNetworks();
   const PlanResult all = AllPlans(network);
   const PlanResult first = Plans(network, AskFor(Which::kFirst));
@@ -178,7 +177,7 @@ RC_GTEST_PROP(RandomNetworkTest, TheFirstPlanIsTheFirstOfAll, ()) {
   if (!all.plans.empty()) RC_ASSERT(Steps(first.plans[0]) == Steps(all.plans[0]));
 }
 
-RC_GTEST_PROP(RandomNetworkTest, TheBestPlanIsTheFirstOfTheCheapest, ()) {
+HIRES_PROPERTY(RandomNetworkTest, TheBestPlanIsTheFirstOfTheCheapest, ()) {
   const RandomNetwork network = *RandomNetworks();
   const PlanResult all = AllPlans(network);
   const PlanResult best = Plans(network, AskFor(Which::kBest));
@@ -192,7 +191,7 @@ RC_GTEST_PROP(RandomNetworkTest, TheBestPlanIsTheFirstOfTheCheapest, ()) {
   RC_ASSERT(Steps(best.plans[0]) == Steps(*cheapest));
 }
 
-RC_GTEST_PROP(RandomNetworkTest, MaxPlansGivesTheFirstOnes, ()) {
+HIRES_PROPERTY(RandomNetworkTest, MaxPlansGivesTheFirstOnes, ()) {
   const RandomNetwork network = *RandomNetworks();
   const std::vector<std::string> all = Steps(AllPlans(network));
   PlanRequest request = AskFor(Which::kAll);
@@ -203,7 +202,7 @@ RC_GTEST_PROP(RandomNetworkTest, MaxPlansGivesTheFirstOnes, ()) {
   if (all.size() > request.max_plans) RC_ASSERT(!some.exhausted);
 }
 
-RC_GTEST_PROP(RandomNetworkTest, MaxCostKeepsThePlansThatCostNoMore, ()) {
+HIRES_PROPERTY(RandomNetworkTest, MaxCostKeepsThePlansThatCostNoMore, ()) {
   const RandomNetwork network = *RandomNetworks();
   PlanRequest request = AskFor(Which::kAll);
   request.max_cost = *rc::gen::inRange(0, 8);
@@ -218,7 +217,7 @@ RC_GTEST_PROP(RandomNetworkTest, MaxCostKeepsThePlansThatCostNoMore, ()) {
   if (all.plans.empty()) RC_ASSERT(cheap.outcome != PlanOutcome::kFound);
 }
 
-RC_GTEST_PROP(RandomNetworkTest, MaxDepthKeepsThePlansThatAreNoDeeper, ()) {
+HIRES_PROPERTY(RandomNetworkTest, MaxDepthKeepsThePlansThatAreNoDeeper, ()) {
   const RandomNetwork network = *RandomNetworks();
   PlanRequest request = AskFor(Which::kAll);
   request.max_depth = *rc::gen::inRange(1, 12);
@@ -232,7 +231,7 @@ RC_GTEST_PROP(RandomNetworkTest, MaxDepthKeepsThePlansThatAreNoDeeper, ()) {
   if (wanted.empty() && !all.plans.empty()) RC_ASSERT(shallow.outcome == PlanOutcome::kLimitDepth);
 }
 
-RC_GTEST_PROP(RandomNetworkTest, TwoRunsAreTheSame, ()) {
+HIRES_PROPERTY(RandomNetworkTest, TwoRunsAreTheSame, ()) {
   NetworkOptions options;
   options.protections = true;
   const RandomNetwork network = *RandomNetworks(options);
@@ -254,7 +253,7 @@ RC_GTEST_PROP(RandomNetworkTest, TwoRunsAreTheSame, ()) {
 
 // A path that comes back to a state and task network that it has been at can do so for ever. So
 // where a search without loop check ends, it has met no such path, and there is nothing to cut.
-RC_GTEST_PROP(RandomNetworkTest, TheLoopCheckTakesNoPlanFromASearchThatEnds, ()) {
+HIRES_PROPERTY(RandomNetworkTest, TheLoopCheckTakesNoPlanFromASearchThatEnds, ()) {
   NetworkOptions options;
   options.recursion = *rc::gen::arbitrary<bool>();
   options.max_items = 2;
@@ -275,7 +274,7 @@ RC_GTEST_PROP(RandomNetworkTest, TheLoopCheckTakesNoPlanFromASearchThatEnds, ())
 
 // With the check, plans that turn in circles are left out, and only these. (Not their order: a plan
 // may be found first with a circle of tasks that need no step.)
-RC_GTEST_PROP(RandomNetworkTest, TheLoopCheckLeavesOutPlansButNotAll, ()) {
+HIRES_PROPERTY(RandomNetworkTest, TheLoopCheckLeavesOutPlansButNotAll, ()) {
   NetworkOptions options;
   options.recursion = true;
   options.max_items = 2;
@@ -340,7 +339,7 @@ SeriesParallel MakeSeriesParallel(int max_steps, int depth, int* number) {
   return whole;
 }
 
-RC_GTEST_PROP(InterleavingTest, EveryOrderOfStepsIsFoundOnceHoweverTheTasksAreNested, ()) {
+HIRES_PROPERTY(InterleavingTest, EveryOrderOfStepsIsFoundOnceHoweverTheTasksAreNested, ()) {
   int number = 0;
   const SeriesParallel network = MakeSeriesParallel(8, 3, &number);
   RC_PRE(network.num_orders <= 3000);
@@ -354,7 +353,7 @@ RC_GTEST_PROP(InterleavingTest, EveryOrderOfStepsIsFoundOnceHoweverTheTasksAreNe
   }
 }
 
-RC_GTEST_PROP(InterleavingTest, IndependentSequencesGiveTheMultinomialCoefficient, ()) {
+HIRES_PROPERTY(InterleavingTest, IndependentSequencesGiveTheMultinomialCoefficient, ()) {
   const std::vector<int> lengths = *rc::gen::container<std::vector<int>>(
       *rc::gen::inRange(1, 5), rc::gen::resize(rc::kNominalSize, rc::gen::inRange(1, 4)));
   const int sum = std::accumulate(lengths.begin(), lengths.end(), 0);
@@ -380,7 +379,7 @@ RC_GTEST_PROP(InterleavingTest, IndependentSequencesGiveTheMultinomialCoefficien
 /// 8! = 40320 plans, a long search.
 const char kManyPlans[] = "(:unordered (!s 1) (!s 2) (!s 3) (!s 4) (!s 5) (!s 6) (!s 7) (!s 8))";
 
-RC_GTEST_PROP(StopQuestionTest, TheSearchEndsWithTheAnswerAndKeepsThePlansFound, ()) {
+HIRES_PROPERTY(StopQuestionTest, TheSearchEndsWithTheAnswerAndKeepsThePlansFound, ()) {
   const auto [stop, outcome] =
       *rc::gen::element(std::make_pair(Stop::kTime, PlanOutcome::kLimitTime),
                         std::make_pair(Stop::kMemory, PlanOutcome::kLimitMemory),

@@ -146,12 +146,12 @@ TEST(ReferenceProverTest, AVariableThatIsAGoalStandsForAnAtom) {
 
 // --------------------------------------------------------------------------------------- axioms
 
-TEST(AxiomTest, FactsComeBeforeAxioms) {
+TEST(ReferenceProverAxiomTest, FactsComeBeforeAxioms) {
   const Condition condition("((p ?x))", "((q 1) (p 2))", "(:- (p ?x) ((q ?x)))");
   EXPECT_THAT(condition.Values("?x"), ElementsAre("2", "1"));
 }
 
-TEST(AxiomTest, TheFirstBranchWithAProofIsTheOnlyOneUsed) {
+TEST(ReferenceProverAxiomTest, TheFirstBranchWithAProofIsTheOnlyOneUsed) {
   const std::string axiom = "(:- (p ?x) first ((q ?x)) second ((r ?x)))";
   EXPECT_THAT(Condition("((p ?x))", "((q 1) (q 2) (r 3))", axiom).Values("?x"),
               ElementsAre("1", "2"));
@@ -160,32 +160,32 @@ TEST(AxiomTest, TheFirstBranchWithAProofIsTheOnlyOneUsed) {
   EXPECT_FALSE(Condition("((p ?x) (s ?x))", "((q 1) (r 3) (s 3))", axiom).Holds());
 }
 
-TEST(AxiomTest, SeveralAxiomsOfAPredicateAreAllTried) {
+TEST(ReferenceProverAxiomTest, SeveralAxiomsOfAPredicateAreAllTried) {
   const Condition condition("((p ?x))", "((q 1) (r 2))",
                             "(:- (p ?x) ((q ?x))) (:- (p ?x) ((r ?x)))");
   EXPECT_THAT(condition.Values("?x"), ElementsAre("1", "2"));
 }
 
-TEST(AxiomTest, AFirstBranchHasOneProof) {
+TEST(ReferenceProverAxiomTest, AFirstBranchHasOneProof) {
   const Condition condition("((p ?x))", "((q 1) (q 2))", "(:- (p ?x) (:first (q ?x)))");
   EXPECT_THAT(condition.Values("?x"), ElementsAre("2"));
 }
 
-TEST(AxiomTest, ReachesThroughItself) {
+TEST(ReferenceProverAxiomTest, ReachesThroughItself) {
   const std::string above =
       "(:- (above ?x ?y) ((on ?x ?y))) (:- (above ?x ?y) ((on ?x ?z) (above ?z ?y)))";
   EXPECT_THAT(Condition("((above a ?y))", "((on a b) (on b c) (on c d))", above).Values("?y"),
               ElementsAre("b", "c", "d"));
 }
 
-TEST(AxiomTest, TakesListsApart) {
+TEST(ReferenceProverAxiomTest, TakesListsApart) {
   const std::string all_true =
       "(:- (all-true nil) ()) (:- (all-true (?g . ?gs)) (?g (all-true ?gs)))";
   EXPECT_TRUE(Condition("((all-true ((p a) (q b))))", "((p a) (q b))", all_true).Holds());
   EXPECT_FALSE(Condition("((all-true ((p a) (q b))))", "((p a))", all_true).Holds());
 }
 
-TEST(AxiomTest, ALongChainIsNoMatterOfTheStack) {
+TEST(ReferenceProverAxiomTest, ALongChainIsNoMatterOfTheStack) {
   std::string facts = "(";
   for (int i = 0; i < 5000; ++i) {
     facts += "(next " + std::to_string(i) + " " + std::to_string(i + 1) + ")";
@@ -196,7 +196,7 @@ TEST(AxiomTest, ALongChainIsNoMatterOfTheStack) {
   EXPECT_TRUE(condition.Holds());
 }
 
-TEST(AxiomTest, CallingItselfWithoutEndIsAnError) {
+TEST(ReferenceProverAxiomTest, CallingItselfWithoutEndIsAnError) {
   const Condition condition("((p a))", "()", "(:- (p ?x) ((p ?x)))");
   EXPECT_THAT([&] { condition.Holds(); },
               ThrowsMessage<base::ConfigError>(
@@ -204,7 +204,7 @@ TEST(AxiomTest, CallingItselfWithoutEndIsAnError) {
                         HasSubstr("(p a)"), HasSubstr("a branch that ends"))));
 }
 
-TEST(AxiomTest, CallingItselfUnderANotWithoutEndIsAnError) {
+TEST(ReferenceProverAxiomTest, CallingItselfUnderANotWithoutEndIsAnError) {
   const Condition condition("((p a))", "()", "(:- (p ?x) ((not (p ?x))))");
   EXPECT_THAT([&] { condition.Holds(); },
               ThrowsMessage<base::ConfigError>(HasSubstr("more than 250 levels deep")));

@@ -177,25 +177,25 @@ TEST(PreconditionTest, AnonymousVariablesDiffer) {
 // ----------------------------------------------------------------------------------------
 // operators
 
-TEST(OperatorTest, FormsAreToldByTheirNumberOfParts) {
+TEST(OperatorReaderTest, FormsAreToldByTheirNumberOfParts) {
   EXPECT_EQ(OperatorOf("((d ?x)) ((a ?x))"), "seq {(d ?x)} {(a ?x)} 1");
   EXPECT_EQ(OperatorOf("((d ?x)) ((a ?x)) 2.5"), "seq {(d ?x)} {(a ?x)} 2.5");
   EXPECT_EQ(OperatorOf("((p ?x)) ((d ?x)) ((a ?x))"), "seq[atom(p ?x)] {(d ?x)} {(a ?x)} 1");
   EXPECT_EQ(OperatorOf("(p ?x) () ((a ?x)) (call * .1 ?y)"), "atom(p ?x) {} {(a ?x)} (* 0.1 ?y)");
 }
 
-TEST(OperatorTest, EffectsMayBeVariablesProtectionsAndForalls) {
+TEST(OperatorReaderTest, EffectsMayBeVariablesProtectionsAndForalls) {
   EXPECT_EQ(OperatorOf("?x ((:protection (p ?x)) (:protection ?y) ?x) 0"),
             "seq {list?x} {protect(p ?x) protect?y list?x} 0");
   EXPECT_EQ(OperatorOf("((forall (?u) (last ?u) ((last ?u) (q ?u ?x)))) ()"),
             "seq {forall[atom(last ?u#1) {(last ?u#1) (q ?u#1 ?x)}]} {} 1");
 }
 
-TEST(OperatorTest, DeletesMayStayUnbound) {
+TEST(OperatorReaderTest, DeletesMayStayUnbound) {
   EXPECT_EQ(OperatorOf("((at ?anywhere)) ()"), "seq {(at ?anywhere)} {} 1");
 }
 
-TEST(OperatorTest, KeywordsComeInAnyOrder) {
+TEST(OperatorReaderTest, KeywordsComeInAnyOrder) {
   const Operator op =
       DomainOf("(:op (!o ?x) :cost 3 :add ((a ?x)) :precond ((p ?x) (q)) :delete ((d ?x)))")
           .operators.at(0);
@@ -209,7 +209,7 @@ TEST(OperatorTest, KeywordsComeInAnyOrder) {
 // ------------------------------------------------------------------------------------------
 // methods
 
-TEST(MethodTest, BranchesMayHaveLabels) {
+TEST(MethodReaderTest, BranchesMayHaveLabels) {
   const Domain domain =
       DomainOf(std::string(kOperators) +
                "(:method swap-them (swap ?x) first-way ((p)) ((!a ?x)) nil nil ?x ((!b ?x)))");
@@ -224,13 +224,13 @@ TEST(MethodTest, BranchesMayHaveLabels) {
   EXPECT_EQ(Outline(method.branches[2].subtasks), "{(!b ?x)}");
 }
 
-TEST(MethodTest, HeadsMayHoldLists) {
+TEST(MethodReaderTest, HeadsMayHoldLists) {
   const Domain domain = DomainOf("(:method (m (?g . ?gs) nil) () ((m ?gs ((goal ?g) . ?gs))))");
   EXPECT_EQ(ToString(domain.methods[0].head), "(m (?g . ?gs) nil)");
   EXPECT_EQ(Outline(domain.methods[0].branches[0].subtasks), "{(m ?gs ((goal ?g) . ?gs))}");
 }
 
-TEST(MethodTest, MethodsStayInTheirOrder) {
+TEST(MethodReaderTest, MethodsStayInTheirOrder) {
   const Domain domain = DomainOf("(:method (m) () ()) (:method (n) () ()) (:method (m) (p) ())");
   ASSERT_THAT(domain.methods, SizeIs(3));
   EXPECT_EQ(ToString(domain.methods[1].head), "(n)");
@@ -280,7 +280,7 @@ TEST(NetworkTest, TasksMayBeDotted) {
 // -------------------------------------------------------------------------------------------
 // axioms
 
-TEST(AxiomTest, TailsAreBranches) {
+TEST(AxiomReaderTest, TailsAreBranches) {
   const Axiom axiom = DomainOf("(:- (p ?x) ((q ?x) (r ?x)) ((s ?x)) (t ?x))").axioms.at(0);
   EXPECT_EQ(ToString(axiom.head), "(p ?x)");
   ASSERT_THAT(axiom.branches, SizeIs(3));
@@ -289,7 +289,7 @@ TEST(AxiomTest, TailsAreBranches) {
   EXPECT_EQ(Outline(axiom.branches[2].condition), "atom(t ?x)");
 }
 
-TEST(AxiomTest, TailsMayHaveLabelsAndFirst) {
+TEST(AxiomReaderTest, TailsMayHaveLabelsAndFirst) {
   const Axiom axiom =
       DomainOf("(:- (p ?x) one ((q ?x)) two (:first (r ?x) (s ?x)) nil ?x)").axioms.at(0);
   ASSERT_THAT(axiom.branches, SizeIs(4));

@@ -322,24 +322,24 @@ std::vector<std::string> WrongGuards(const std::vector<std::string>& steps) {
   return ValidatePlan(DomainOf(kGuards), FlatProblem("((at a))", steps), FlatPlan(steps));
 }
 
-TEST(ProtectionTest, AProtectedAtomMustNotGo) {
+TEST(ValidatorProtectionTest, AProtectedAtomMustNotGo) {
   EXPECT_THAT(WrongGuards({"(!guard a)", "(!go a b)"}),
               ElementsAre("step 1 (!go a b): the protected atom (at a) does not hold after it"));
   EXPECT_THAT(WrongGuards({"(!guard a)", "(!free a)", "(!go a b)"}), IsEmpty());
 }
 
-TEST(ProtectionTest, ProtectionsAreCounted) {
+TEST(ValidatorProtectionTest, ProtectionsAreCounted) {
   EXPECT_THAT(WrongGuards({"(!guard a)", "(!guard a)", "(!free a)", "(!go a b)"}),
               ElementsAre(HasSubstr("step 3 (!go a b): the protected atom (at a)")));
   EXPECT_THAT(WrongGuards({"(!guard a)", "(!guard a)", "(!free a)", "(!free a)", "(!go a b)"}),
               IsEmpty());
 }
 
-TEST(ProtectionTest, WhatDoesNotHoldCannotBeProtected) {
+TEST(ValidatorProtectionTest, WhatDoesNotHoldCannotBeProtected) {
   EXPECT_THAT(WrongGuards({"(!guard b)"}), ElementsAre(HasSubstr("the protected atom (at b)")));
 }
 
-TEST(ProtectionTest, AProblemMayBeginWithProtections) {
+TEST(ValidatorProtectionTest, AProblemMayBeginWithProtections) {
   Problem problem = FlatProblem("((at a))", {"(!go a b)"});
   problem.protections.push_back(TaskOf("(at a)"));
   EXPECT_THAT(ValidatePlan(DomainOf(kGuards), problem, FlatPlan({"(!go a b)"})),

@@ -1,11 +1,12 @@
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
+#include <rapidcheck.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "hires/temporal/stn.h"
+#include "support/property.h"
 
 // The network against the slow and obvious way: all shortest paths by Floyd and Warshall, over
 // whole seconds, so that both are exact.
@@ -130,7 +131,9 @@ class Pair {
   std::vector<bool> is_active_;
 };
 
-RC_GTEST_PROP(StnPropertyTest, BoundsAreThoseOfAllShortestPathsAlsoAfterRetraction, ()) {
+constexpr test_support::PropertyCases kPropertyCases{};
+
+HIRES_PROPERTY(StnPropertyTest, BoundsAreThoseOfAllShortestPathsAlsoAfterRetraction, ()) {
   const int num_points = *rc::gen::inRange(1, 13);
   Pair pair(num_points);
   const int num_changes = *rc::gen::inRange(0, 120);
