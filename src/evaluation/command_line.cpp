@@ -24,6 +24,7 @@
 #include "hires/evaluation/report_table.h"
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/local_imagination.h"
+#include "hires/skills/action_loader.h"
 
 namespace hires::evaluation {
 namespace {
@@ -36,7 +37,7 @@ void OnInterrupt(int) { interrupted = true; }
 struct ImagineOptions {
   StartOptions start;
   std::string action, config, scene, world, robot, objects, uncertainty, ranking, json;
-  std::vector<std::string> arguments;
+  std::vector<std::string> arguments, action_libraries;
   int rollouts{0}, threads{0};
   std::uint64_t seed{1};
   double deadline{-1.0};
@@ -47,6 +48,9 @@ void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
   app->add_option("--action", o->action,
                   "what the robot would do: move_base_param, place_object, ...")
       ->required();
+  app->add_option("--actions", o->action_libraries,
+                  "library with more actions (.so), for --local; nodes have ~action_libraries")
+      ->allow_extra_args(false);
   AddStartOptions(app, &o->start);
   app->add_option("--arg", o->arguments,
                   "alternatives of one argument, separated by commas; once per argument, in order")
@@ -87,7 +91,9 @@ std::vector<std::string> AlternativesOf(const std::string& list) {
 
 /// An object that is given as a file is loaded beside the catalogue's, and called by its model.
 void SetStart(const ImagineOptions& o, ImagineQuery* query) {
-  query->start = ReadStart(o.start, o.action);
+  query->setup.action_libraries = o.action_libraries;
+  query->start =
+      ReadStart(o.start, o.action, skills::LoadActionSet(o.action_libraries)->catalogue());
   for (std::string& object : query->start.on_tray) {
     if (!IsFile(object)) continue;
     query->setup.extra_objects.push_back(object);
@@ -163,6 +169,11 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
   const auto cancelled = [] { return interrupted.load(); };
   if (!options.local && !backends.imagine_remotely) {
     throw base::ConfigError("this build has no ROS nodes to ask; add --local");
+  }
+  if (!options.local && !options.action_libraries.empty()) {
+    throw base::ConfigError(
+        "--actions is for --local; running nodes load theirs by the parameter ~action_libraries "
+        "(imagination.launch actions:=FILE)");
   }
   const imagination::Report report = options.local
                                          ? ImagineInThisProcess(query, on_interim, cancelled)

@@ -9,7 +9,6 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/skills/skill_factory.h"
 
 namespace hires::evaluation {
 namespace {
@@ -81,11 +80,11 @@ std::set<std::string> ArmsWithPosture(const ImagineStart& start) {
   return arms;
 }
 
-void ReadInHand(const std::string& text, const std::string& action, ImagineStart* start) {
+void ReadInHand(const std::string& text, const actions::ActionSpec& action, ImagineStart* start) {
   const auto parts = PartsOf("--object-in-hand", text, 2, "OBJECT:ARM, as mug1:rightArm1");
   start->atoms.push_back({"Holding", {parts[1], parts[0]}});
   if (ArmsWithPosture(*start).count(base::ToLower(parts[1])) > 0) return;
-  const bool drives = skills::DetailFor({action, {}}) == skills::NeededDetail::kBase;
+  const bool drives = action.detail == actions::Detail::kBase;
   start->atoms.push_back(
       {"HasArmPosture", {parts[1], drives ? "ArmCarryPosture" : "ArmToSidePosture"}});
 }
@@ -113,12 +112,15 @@ void AddStartOptions(CLI::App* app, StartOptions* o) {
       ->allow_extra_args(false);
 }
 
-ImagineStart ReadStart(const StartOptions& options, const std::string& action) {
+ImagineStart ReadStart(const StartOptions& options, const std::string& action,
+                       const actions::Catalogue& catalogue) {
   ImagineStart start;
   start.from = options.from;
   start.on_tray = options.on_tray;
   for (const std::string& posture : options.postures) ReadPosture(posture, &start);
-  for (const std::string& held : options.in_hand) ReadInHand(held, action, &start);
+  for (const std::string& held : options.in_hand) {
+    ReadInHand(held, catalogue.Get(action), &start);
+  }
   for (const std::string& put : options.put) ReadPut(put, &start);
   return start;
 }

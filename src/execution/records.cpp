@@ -1,25 +1,9 @@
 #include "records.h"
 
-#include <cctype>
+#include "hires/actions/action_spec.h"
 
 namespace hires::execution {
 namespace {
-
-/// move_base_param: MoveBaseParam.
-std::string Camel(const std::string& name) {
-  std::string camel;
-  bool is_first = true;
-  for (const char letter : name) {
-    if (letter == '_' || letter == '-') {
-      is_first = true;
-    } else {
-      camel +=
-          is_first ? static_cast<char>(std::toupper(static_cast<unsigned char>(letter))) : letter;
-      is_first = false;
-    }
-  }
-  return camel;
-}
 
 Record About(Record::Kind kind, const std::string& concept_name, const std::string& general,
              const std::string& instance) {
@@ -40,7 +24,7 @@ void AddAction(const base::ActionCall& action, Record* record) {
 
 Record OfTask(Record::Kind kind, int plan, int step, const base::ActionCall& action) {
   Record record =
-      About(kind, Camel(action.name) + "Task", "PrimitiveTask", TaskInstance(plan, step));
+      About(kind, actions::TaskConcept(action.name), "PrimitiveTask", TaskInstance(plan, step));
   AddAction(action, &record);
   record.numbers.emplace_back("hasIndex", step + 1);
   record.links.emplace_back("hasPlan", PlanInstance(plan));
@@ -48,7 +32,7 @@ Record OfTask(Record::Kind kind, int plan, int step, const base::ActionCall& act
 }
 
 Record OfActivity(Record::Kind kind, int activity, const base::ActionCall& action) {
-  Record record = About(kind, Camel(action.name) + "Activity", "ElementaryRobotActivity",
+  Record record = About(kind, actions::ActivityConcept(action.name), "ElementaryRobotActivity",
                         "activity" + std::to_string(activity));
   AddAction(action, &record);
   return record;

@@ -7,6 +7,7 @@
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
+#include "hires/skills/action_loader.h"
 #include "hires/world/object_catalogue.h"
 
 namespace hires::imagination {
@@ -162,7 +163,9 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   world::World world = LoadWorldWithObjects(config, &setup.object_models);
   robot::Robot robot = LoadAnyRobot(config.robot);
   setup.skills = std::make_shared<const skills::SkillSet>(
-      skills::MakeSkillSet(world, robot, config.driving, config.blind, config.manipulation));
+      skills::MakeSkillSet(world, robot, config.driving, config.blind, config.manipulation,
+                           skills::LoadActionSet(config.action_libraries)));
+  setup.actions_hash = setup.skills->actions->hash();
   base::Hasher hasher;
   hasher.Add(world.hash);
   hasher.Add(config.params_hash);

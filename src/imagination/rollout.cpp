@@ -21,7 +21,7 @@ constexpr int kLookSteps = 5;  // the load is looked at every fifth step
 enum Streams : std::uint64_t { kVariation, kSimulator, kControl };
 
 Purpose PurposeIn(const RolloutSetup& setup, const base::ActionCall& action) {
-  Purpose purpose = PurposeOf(action);
+  Purpose purpose = PurposeOf(setup.skills->actions->catalogue(), action);
   if (setup.skills->manipulation) {
     purpose.area_half_width = setup.skills->manipulation->params.place.area_half_width;
   }
@@ -40,7 +40,7 @@ class Player {
         skill_(std::move(skill)),
         control_rng_(rng.Fork(kControl)),
         simulator_(setup.scene, variation, setup.world_state, setup.robot_state,
-                   rng.Fork(kSimulator), setup.physics, LevelFor(action)) {
+                   rng.Fork(kSimulator), setup.physics, LevelFor(*setup.skills, action)) {
     simulator_.Remember(KnownAtStart(setup, variation, simulator_));
   }
 
@@ -163,7 +163,7 @@ void CheckSetupForAll(const RolloutSetup& setup, const std::vector<base::ActionC
   std::set<simulation::LevelOfDetail> levels;
   for (const base::ActionCall& action : actions) {
     skills::MakeSkill(*setup.skills, action);
-    levels.insert(LevelFor(action));
+    levels.insert(LevelFor(*setup.skills, action));
   }
   for (const simulation::LevelOfDetail level : levels) {
     RobotSimulator(setup.scene, {}, setup.world_state, setup.robot_state, base::Rng(setup.seed),

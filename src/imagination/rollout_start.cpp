@@ -62,8 +62,8 @@ double DistanceFrom(const robot::Robot& robot, const robot::RobotState& state,
 
 }  // namespace
 
-simulation::LevelOfDetail LevelFor(const base::ActionCall& action) {
-  return skills::DetailFor(action) == skills::NeededDetail::kBase
+simulation::LevelOfDetail LevelFor(const skills::SkillSet& skills, const base::ActionCall& action) {
+  return skills::SpecOf(skills, action).detail == actions::Detail::kBase
              ? simulation::LevelOfDetail::kTray
              : simulation::LevelOfDetail::kPlanar;
 }

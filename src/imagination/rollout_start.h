@@ -9,7 +9,7 @@
 namespace hires::imagination {
 
 /// How much of the robot must move for an action.  @throws base::ConfigError for an unknown one.
-simulation::LevelOfDetail LevelFor(const base::ActionCall& action);
+simulation::LevelOfDetail LevelFor(const skills::SkillSet& skills, const base::ActionCall& action);
 
 /// Draws the truth of one rollout. A start that collides cannot be one where the robot stands: its
 /// offset is drawn in.

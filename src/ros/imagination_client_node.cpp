@@ -42,7 +42,7 @@ imagination::Event EventOf(int worker, int alternative, const WorkerLink::Played
 
 ImaginationClientParams LoadImaginationClientParams() {
   RejectUnknownPrivate({"config", "workers", "world", "robot", "objects", "uncertainty",
-                        "localisation", "map_to_world"});
+                        "localisation", "map_to_world", "action_libraries"});
   ImaginationClientParams params;
   params.config = imagination::ReadClientConfig(PrivateText("config").value_or(
       ros::package::getPath("hires") + "/config/imagination_client.yaml"));
@@ -50,6 +50,7 @@ ImaginationClientParams LoadImaginationClientParams() {
   Override("workers", PrivateInt("workers"), hires::base::Between(1, 256), &params.num_workers);
   imagination::OverridePaths(PrivateText("world"), PrivateText("robot"), PrivateText("objects"),
                              PrivateText("uncertainty"), &params.setup);
+  params.setup.action_libraries = PrivateActionLibraries();
   params.localisation = PrivateText("localisation").value_or("");
   params.map_to_world =
       hires::world::ParseMapToWorld(PrivateText("map_to_world").value_or(""), "~map_to_world");

@@ -2,27 +2,14 @@
 
 #include <algorithm>
 
-#include "hires/base/text.h"
-
 namespace hires_ros {
-namespace {
-
-using hires::base::ToLower;
-
-std::string SetNameOf(const hires::skills::SkillSet& skills,
-                      const hires::base::ActionCall& action) {
-  const bool names_it = ToLower(action.name) == "move_base_param" && action.arguments.size() > 1;
-  return ToLower(names_it ? action.arguments[1] : skills.default_motion_set);
-}
-
-}  // namespace
 
 DriveLimits LimitsFor(const hires::skills::SkillSet& skills,
                       const hires::base::ActionCall& action) {
   DriveLimits limits;
-  limits.set_name = SetNameOf(skills, action);
+  limits.set_name = hires::skills::MotionSetNameOf(skills, action);
   limits.limits = skills.motion_sets.at(limits.set_name);
-  if (ToLower(action.name) == "move_base_blind") {
+  if (hires::skills::SpecOf(skills, action).driving == hires::actions::Driving::kStraight) {
     limits.limits.max_linear_velocity =
         std::min(limits.limits.max_linear_velocity, skills.blind.max_velocity);
     limits.limits.max_angular_velocity =

@@ -10,7 +10,6 @@
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/middle_layer_groups.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 #include "hires/ros/short_text.h"
@@ -180,9 +179,14 @@ std::string MiddleLayerNode::MissingController(const std::set<std::string>& grou
   return "";
 }
 
+/// @pre the action was accepted.
+std::set<std::string> MiddleLayerNode::GroupsOf(const hires::base::ActionCall& action) const {
+  return hires::actions::GroupsOf(hires::skills::SpecOf(*setup_.skills, action), action);
+}
+
 std::unique_ptr<hires::skills::Skill> MiddleLayerNode::MakeSkill(
     const hires::base::ActionCall& action) const {
-  if (!move_base_ || !IsForMoveBase(action)) {
+  if (!move_base_ || !IsForMoveBase(*setup_.skills, action)) {
     return hires::skills::MakeSkill(*setup_.skills, action);
   }
   return MakeMoveBaseDrive(
@@ -193,8 +197,8 @@ std::unique_ptr<hires::skills::Skill> MiddleLayerNode::MakeSkill(
 void MiddleLayerNode::StartGoal(GoalHandle goal) {
   const hires::base::ActionCall action = FromMsg(goal.getGoal()->action);
   const double now = std::max(looked_, ros::Time::now().toSec());
-  const auto refusal =
-      runner_.Start(next_id_, action, MakeSkill(action), goal.getGoal()->time_limit.toSec(), now);
+  const auto refusal = runner_.Start(next_id_, action, GroupsOf(action), MakeSkill(action),
+                                     goal.getGoal()->time_limit.toSec(), now);
   if (refusal) {
     goal.setRejected(ResultOf(ExecuteActionResult::INVALID, *refusal, 0.0));
     return;

@@ -75,12 +75,13 @@ MiddleLayerParams ReadMiddleLayerParams(const std::string& path) {
 
 MiddleLayerParams LoadMiddleLayerParams() {
   RejectUnknownPrivate({"config", "world", "robot", "objects", "lockstep", "names", "map_to_world",
-                        "guard", "navigation", "dry_run"});
+                        "guard", "navigation", "dry_run", "action_libraries"});
   MiddleLayerParams params = Read(
       PrivateText("config").value_or(ros::package::getPath("hires") + "/config/middle_layer.yaml"),
       PrivateBool("guard"), PrivateText("navigation"));
   hires::imagination::OverridePaths(PrivateText("world"), PrivateText("robot"),
                                     PrivateText("objects"), std::nullopt, &params.setup);
+  params.setup.action_libraries = PrivateActionLibraries();
   params.names = LoadRobotNames();
   RequireMeansFor(params.navigation, params.names, params.guard.is_there);
   params.dry_run = PrivateBool("dry_run").value_or(params.dry_run);

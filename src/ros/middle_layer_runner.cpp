@@ -6,7 +6,6 @@
 
 #include "hires/base/log.h"
 #include "hires/base/text.h"
-#include "hires/ros/middle_layer_groups.h"
 
 namespace hires_ros {
 namespace {
@@ -32,12 +31,13 @@ ActionRunner::ActionRunner(const hires::robot::Robot& robot, const RunnerParams&
 ActionRunner::~ActionRunner() = default;
 
 std::optional<std::string> ActionRunner::Start(int id, const hires::base::ActionCall& action,
+                                               const std::set<std::string>& groups,
                                                std::unique_ptr<hires::skills::Skill> skill,
                                                double time_limit, double now) {
   Session session;
   session.id = id;
   session.action = action;
-  session.groups = GroupsOf(action);
+  session.groups = groups;
   for (const Session& other : sessions_) {
     const auto common = Common(session.groups, other.groups);
     if (!common.empty()) {

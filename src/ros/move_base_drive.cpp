@@ -31,14 +31,6 @@ std::string ReasonOfAbortion(const std::string& text) {
   return is_stuck ? "stuck" : "unreachable";
 }
 
-/// A motion set by its name, as skills know it.
-const hires::robot::MotionSet& MotionSetOf(const hires::skills::SkillSet& skills,
-                                           const hires::base::ActionCall& action) {
-  const std::string& name =
-      action.arguments.size() > 1 ? action.arguments[1] : skills.default_motion_set;
-  return skills.motion_sets.at(hires::base::ToLower(name));
-}
-
 }  // namespace
 
 std::string ReasonFor(const MoveBaseNews& news) {
@@ -171,9 +163,8 @@ bool MoveBaseDrive::IsWayFree(const hires::robot::Observation& seen) const {
   return true;
 }
 
-bool IsForMoveBase(const hires::base::ActionCall& action) {
-  const std::string name = hires::base::ToLower(action.name);
-  return name == "move_base" || name == "move_base_param";
+bool IsForMoveBase(const hires::skills::SkillSet& skills, const hires::base::ActionCall& action) {
+  return hires::skills::SpecOf(skills, action).driving == hires::actions::Driving::kRoundObstacles;
 }
 
 std::unique_ptr<hires::skills::Skill> MakeMoveBaseDrive(const hires::skills::SkillSet& skills,
@@ -181,11 +172,13 @@ std::unique_ptr<hires::skills::Skill> MakeMoveBaseDrive(const hires::skills::Ski
                                                         std::shared_ptr<MoveBaseServer> server,
                                                         std::function<bool()> may_drive,
                                                         const MoveBaseDriveParams& params) {
-  HIRES_CHECK(IsForMoveBase(action), "the action is none for move_base");
+  HIRES_CHECK(IsForMoveBase(skills, action), "the action is none for move_base");
   hires::skills::MakeSkill(skills, action);  // its words for what is wrong with an action
   return std::make_unique<MoveBaseDrive>(
       std::move(server), std::move(may_drive), params, skills.driving, skills.blind,
-      skills.areas.at(hires::base::ToLower(action.arguments[0])), MotionSetOf(skills, action));
+      skills.areas.at(*hires::actions::ArgumentOf(hires::skills::SpecOf(skills, action), action,
+                                                  hires::actions::ParameterKind::kArea)),
+      skills.motion_sets.at(hires::skills::MotionSetNameOf(skills, action)));
 }
 
 }  // namespace hires_ros

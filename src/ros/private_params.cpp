@@ -79,6 +79,11 @@ std::optional<std::vector<std::string>> PrivateWords(const std::string& key) {
   return words;
 }
 
+std::vector<std::string> PrivateActionLibraries() {
+  const std::string paths = PrivateText("action_libraries").value_or("");
+  return paths.empty() ? std::vector<std::string>() : hires::base::Split(paths, ':');
+}
+
 void RejectUnknownPrivate(const std::vector<std::string>& known) {
   const std::string prefix = ros::this_node::getName() + "/";
   std::vector<std::string> names;

@@ -45,7 +45,8 @@ std::string ReadUrdf(const std::string& robot_path, const hires::robot::RobotPro
 }  // namespace
 
 SimWorkerParams LoadSimWorkerParams() {
-  RejectUnknownPrivate({"role", "config", "index", "world", "robot", "objects", "uncertainty"});
+  RejectUnknownPrivate(
+      {"role", "config", "index", "world", "robot", "objects", "uncertainty", "action_libraries"});
   const std::string path =
       PrivateText("config").value_or(ros::package::getPath("hires") + "/config/sim_worker.yaml");
   auto in = hires::base::ParamReader::FromFile(path);
@@ -58,6 +59,7 @@ SimWorkerParams LoadSimWorkerParams() {
   Override("index", PrivateInt("index"), hires::base::Between(1, 256), &params.index);
   imagination::OverridePaths(PrivateText("world"), PrivateText("robot"), PrivateText("objects"),
                              PrivateText("uncertainty"), &params.setup);
+  params.setup.action_libraries = PrivateActionLibraries();
   return params;
 }
 

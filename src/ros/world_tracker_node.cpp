@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hires/actions/catalogue.h"
 #include "hires/base/action.h"
 #include "hires/base/error.h"
 #include "hires/base/log.h"
@@ -202,9 +203,10 @@ void WorldTrackerNode::OnResult(const hires::ExecuteActionActionResult& msg) {
 }
 
 void WorldTrackerNode::TellActions() {
-  std::vector<std::string> actions;
-  for (const auto& [id, action] : running_) actions.push_back(action);
-  sweep_.SetRunning(actions, time_);
+  const bool is_busy = std::any_of(running_.begin(), running_.end(), [](const auto& running) {
+    return hires::actions::MayUseHead(hires::actions::OwnActions(), running.second);
+  });
+  sweep_.SetBusy(is_busy, time_);
 }
 
 // What is made of it ---------------------------------------------------------------------------

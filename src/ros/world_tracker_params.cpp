@@ -58,9 +58,6 @@ SweepParams ReadSweep(ParamReader in) {
   params.dwell = in.Get("dwell", Between(0.0, 60.0));
   params.speed = in.Get("speed", Between(0.05, 10.0));
   params.hands_off = in.Get("hands_off", Between(0.0, 60.0));
-  for (const std::string& action : in.GetStrings("busy_actions")) {
-    params.busy_actions.insert(hires::base::ToLower(action));
-  }
   return params;
 }
 

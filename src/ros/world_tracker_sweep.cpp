@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "hires/base/text.h"
 #include "hires/skills/head_aim.h"
 
 namespace hires_ros {
@@ -31,12 +30,9 @@ void HeadSweep::SetPlaces(std::vector<std::string> places, hires::translation::A
   areas_ = std::move(areas);
 }
 
-void HeadSweep::SetRunning(const std::vector<std::string>& actions, double time) {
-  const bool was_busy = is_busy_;
-  is_busy_ = std::any_of(actions.begin(), actions.end(), [this](const std::string& action) {
-    return params_.busy_actions.count(hires::base::ToLower(action)) > 0;
-  });
-  if (was_busy && !is_busy_) free_from_ = time + params_.hands_off;
+void HeadSweep::SetBusy(bool is_busy, double time) {
+  if (is_busy_ && !is_busy) free_from_ = time + params_.hands_off;
+  is_busy_ = is_busy;
 }
 
 std::optional<Eigen::Vector3d> HeadSweep::PointOf(const std::string& place,

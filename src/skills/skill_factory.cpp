@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/skills/look_skills.h"
@@ -12,7 +13,6 @@ namespace hires::skills {
 namespace {
 
 using base::ActionCall;
-using Arguments = std::vector<std::string>;
 
 /// The value of a lower-case name, or an error that lists names like it.
 template <typename T>
@@ -24,25 +24,16 @@ const T& Lookup(const std::map<std::string, T>& known, const char* kind, const s
   throw base::ConfigError(base::UnknownName(kind, name, names));
 }
 
-using Maker = std::unique_ptr<Skill> (*)(const SkillSet&, const ActionCall&);
-struct Entry {
-  std::vector<std::string> parameters;
-  NeededDetail detail;
-  Maker make;
-};
-
 std::unique_ptr<Skill> MakeMoveBase(const SkillSet& skills, const ActionCall& action) {
-  const std::string& motion_set =
-      action.arguments.size() > 1 ? action.arguments[1] : skills.default_motion_set;
-  return std::make_unique<MoveBase>(skills.driving,
-                                    Lookup(skills.areas, "area", action.arguments[0]),
-                                    Lookup(skills.motion_sets, "motion set", motion_set));
+  return std::make_unique<MoveBase>(
+      skills.driving, Lookup(skills.areas, "area", action.arguments[0]),
+      Lookup(skills.motion_sets, "motion set", MotionSetNameOf(skills, action)));
 }
 
 std::unique_ptr<Skill> MakeMoveBaseBlind(const SkillSet& skills, const ActionCall& action) {
   return std::make_unique<MoveBaseBlind>(
       skills.blind, Lookup(skills.areas, "area", action.arguments[0]),
-      Lookup(skills.motion_sets, "motion set", skills.default_motion_set));
+      Lookup(skills.motion_sets, "motion set", MotionSetNameOf(skills, action)));
 }
 
 std::unique_ptr<Skill> MakeMoveTorso(const SkillSet& skills, const ActionCall& action) {
@@ -90,49 +81,63 @@ std::unique_ptr<Skill> MakePickUpFromTray(const SkillSet& skills, const ActionCa
                                         action.arguments[0], PickUpObject::From::kTray);
 }
 
-const std::map<std::string, Entry>& Actions() {
-  constexpr NeededDetail kBase = NeededDetail::kBase, kUpperBody = NeededDetail::kUpperBody;
-  static const std::map<std::string, Entry> actions{
-      {"move_base", {{"area"}, kBase, MakeMoveBase}},
-      {"move_base_param", {{"area", "motion set"}, kBase, MakeMoveBase}},
-      {"move_base_blind", {{"area"}, kBase, MakeMoveBaseBlind}},
-      {"move_torso", {{"posture"}, kUpperBody, MakeMoveTorso}},
-      {"tuck_arms", {{"left goal", "right goal"}, kUpperBody, MakeTuckArms}},
-      {"move_arm_to_side", {{"arm"}, kUpperBody, MakeMoveArmToSide}},
-      {"move_arms_to_carryposture", {{}, kUpperBody, MakeMoveArmsToCarry}},
-      {"look_at", {{"area or object"}, kUpperBody, MakeLookAt}},
-      {"observe_objects_on_area", {{"area"}, kUpperBody, MakeObserve}},
-      {"pick_up_object", {{"object", "arm"}, kUpperBody, MakePickUp}},
-      {"place_object", {{"object", "arm", "area"}, kUpperBody, MakePlace}},
-      {"place_on_tray", {{"arm", "object"}, kUpperBody, MakePlaceOnTray}},
-      {"pick_up_from_tray", {{"arm", "object"}, kUpperBody, MakePickUpFromTray}},
+/// A maker for each of actions::OwnActions().
+const std::map<std::string, SkillMaker>& Makers() {
+  static const std::map<std::string, SkillMaker> makers{
+      {"move_base", MakeMoveBase},
+      {"move_base_param", MakeMoveBase},
+      {"move_base_blind", MakeMoveBaseBlind},
+      {"move_torso", MakeMoveTorso},
+      {"tuck_arms", MakeTuckArms},
+      {"move_arm_to_side", MakeMoveArmToSide},
+      {"move_arms_to_carryposture", MakeMoveArmsToCarry},
+      {"look_at", MakeLookAt},
+      {"observe_objects_on_area", MakeObserve},
+      {"pick_up_object", MakePickUp},
+      {"place_object", MakePlace},
+      {"place_on_tray", MakePlaceOnTray},
+      {"pick_up_from_tray", MakePickUpFromTray},
   };
-  return actions;
+  return makers;
+}
+
+std::shared_ptr<const ActionSet> MakeOwnActionSet() {
+  auto own = std::make_shared<ActionSet>();
+  for (const auto& [name, spec] : actions::OwnActions().specs()) {
+    const auto maker = Makers().find(name);
+    HIRES_CHECK(maker != Makers().end(), "action '" + name + "' has no maker in skill_factory.cpp");
+    own->Add({spec, maker->second});
+  }
+  HIRES_CHECK(Makers().size() == actions::OwnActions().specs().size(),
+              "skill_factory.cpp has a maker for an action that own_actions.cpp does not describe");
+  return own;
 }
 
 std::unique_ptr<Skill> Make(const SkillSet& skills, const ActionCall& action) {
-  const Entry& entry = Lookup(Actions(), "action", action.name);
-  const Arguments& wanted = entry.parameters;
-  if (action.arguments.size() != wanted.size()) {
-    throw base::ConfigError(fmt::format("has {} arguments, wanted {} ({})", action.arguments.size(),
-                                        wanted.size(),
-                                        wanted.empty() ? "none" : base::Join(wanted, ", ")));
-  }
-  if (entry.detail == NeededDetail::kUpperBody && skills.manipulation == nullptr) {
+  const actions::ActionSpec& spec = SpecOf(skills, action);
+  actions::CheckArguments(spec, action);
+  if (spec.detail == actions::Detail::kUpperBody && skills.manipulation == nullptr) {
     throw base::ConfigError(
         fmt::format("robot '{}' has no upper body that could do it; describe one in its profile, "
                     "key upper_body",
                     skills.robot_name));
   }
-  return entry.make(skills, action);
+  return skills.actions->MakerOf(action.name)(skills, action);
 }
 
 }  // namespace
 
+std::shared_ptr<const ActionSet> OwnActionSet() {
+  static const std::shared_ptr<const ActionSet> own = MakeOwnActionSet();
+  return own;
+}
+
 SkillSet MakeSkillSet(const world::World& world, const robot::Robot& robot,
                       const MoveBaseParams& driving, const MoveBaseBlindParams& blind,
-                      const ManipulationParams& manipulation) {
+                      const ManipulationParams& manipulation,
+                      std::shared_ptr<const ActionSet> actions) {
   SkillSet skills;
+  skills.actions = std::move(actions);
   skills.driving =
       std::make_shared<const DrivingContext>(MakeDrivingContext(world, robot, driving));
   skills.blind = blind;
@@ -156,8 +161,13 @@ std::unique_ptr<Skill> MakeSkill(const SkillSet& skills, const ActionCall& actio
   }
 }
 
-NeededDetail DetailFor(const ActionCall& action) {
-  return Lookup(Actions(), "action", action.name).detail;
+const actions::ActionSpec& SpecOf(const SkillSet& skills, const ActionCall& action) {
+  return skills.actions->catalogue().Get(action.name);
+}
+
+std::string MotionSetNameOf(const SkillSet& skills, const ActionCall& action) {
+  return actions::ArgumentOf(SpecOf(skills, action), action, actions::ParameterKind::kMotionSet)
+      .value_or(base::ToLower(skills.default_motion_set));
 }
 
 }  // namespace hires::skills

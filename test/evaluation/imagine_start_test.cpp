@@ -31,7 +31,7 @@ TEST(ImagineStartTest, SaysWhatHolds) {
   options.in_hand = {"mug1:rightArm1"};
   options.postures = {"torso1:TorsoUpPosture", "rightArm1:ArmCarryPosture"};
   options.put = {"bowl1:table"};
-  const ImagineStart start = ReadStart(options, "place_object");
+  const ImagineStart start = ReadStart(options, "place_object", actions::OwnActions());
   EXPECT_THAT(Texts(start.AllAtoms()), ElementsAre("RobotAt(Door)", "On(mill1, trayArea1)",
                                                    "HasTorsoPosture(TorsoUpPosture)",
                                                    "HasArmPosture(rightArm1, ArmCarryPosture)",
@@ -42,9 +42,9 @@ TEST(ImagineStartTest, SaysWhatHolds) {
 TEST(ImagineStartTest, AnArmThatHoldsSomethingIsWhereTheStepBeforeLeavesIt) {
   StartOptions options = AtDoor();
   options.in_hand = {"mug1:rightArm1"};
-  EXPECT_EQ(base::ToString(ReadStart(options, "place_object").atoms.back()),
+  EXPECT_EQ(base::ToString(ReadStart(options, "place_object", actions::OwnActions()).atoms.back()),
             "HasArmPosture(rightArm1, ArmToSidePosture)");
-  EXPECT_EQ(base::ToString(ReadStart(options, "move_base").atoms.back()),
+  EXPECT_EQ(base::ToString(ReadStart(options, "move_base", actions::OwnActions()).atoms.back()),
             "HasArmPosture(rightArm1, ArmCarryPosture)");
 }
 
@@ -52,7 +52,8 @@ TEST(ImagineStartTest, ReadsPlacesInNumbers) {
   StartOptions options = AtDoor();
   options.put = {"book1:table:0.1,-0.2", "book2:table:0.1,-0.2,1.5", "bowl1:1,2,0.7",
                  "bowl2:1,2,0.7,-1"};
-  const std::vector<imagination::PutObject> put = ReadStart(options, "move_base").put;
+  const std::vector<imagination::PutObject> put =
+      ReadStart(options, "move_base", actions::OwnActions()).put;
   ASSERT_EQ(put.size(), 4u);
   EXPECT_EQ(put[0].object, "book1");
   EXPECT_EQ(put[0].area, "table");
@@ -65,7 +66,7 @@ TEST(ImagineStartTest, ReadsPlacesInNumbers) {
 
 TEST(ImagineStartTest, RefusesWhatItCannotRead) {
   const auto why_not = [](StartOptions options, const std::string& action = "move_base") {
-    return ConfigErrorOf([&] { ReadStart(options, action); });
+    return ConfigErrorOf([&] { ReadStart(options, action, actions::OwnActions()); });
   };
   for (const char* put :
        {"book1", "book1:", ":table", "book1:table:0.1", "book1:table:0.1,0.2,0.3,1", "book1:1,2",

@@ -16,7 +16,7 @@ import xml.etree.ElementTree as ElementTree
 # From the bottom up. An include points to a lower line, never sideways, never up.
 LAYERS = [
     ["base"],
-    ["geometry", "temporal", "relay"],
+    ["geometry", "temporal", "relay", "actions"],
     ["robot", "knowledge"],
     ["world", "planning"],
     ["physics", "navigation", "manipulation", "perception", "execution", "translation"],

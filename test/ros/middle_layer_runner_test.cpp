@@ -82,7 +82,10 @@ class ActionRunnerTest : public ::testing::Test {
   std::optional<std::string> Start(int id, const std::string& action,
                                    std::unique_ptr<hires::skills::Skill> skill,
                                    double limit = 0.0) {
-    return runner_.Start(id, {action, {"leftArm1", "leftArm1"}}, std::move(skill), limit, now_);
+    const hires::base::ActionCall call{action, {"leftArm1", "leftArm1"}};
+    const hires::actions::ActionSpec& spec = hires::actions::OwnActions().Get(action);
+    return runner_.Start(id, call, hires::actions::GroupsOf(spec, call), std::move(skill), limit,
+                         now_);
   }
 
   /// One look at `now`, and what the skills make of it.
@@ -331,13 +334,9 @@ TEST_F(ActionRunnerTest, WhatNobodySeesStopIsGivenUp) {
   EXPECT_EQ(ended_[0].end, ActionEnd::kPreempted);
 }
 
-TEST(GroupsOfTest, WhoGraspsNeedsAllThatMustStandStill) {
-  EXPECT_THAT(GroupsOf({"Pick_Up_Object", {"mug1", "rightArm1"}}),
-              ElementsAre("base", "rightarm1", "torso"));
-  EXPECT_THAT(GroupsOf({"place_on_tray", {"leftArm1", "mug1"}}),
-              ElementsAre("base", "leftarm1", "torso"));
-  EXPECT_THAT(GroupsOf({"look_at", {"table1"}}), ElementsAre("head"));
-  EXPECT_EQ(GroupsOf({"somersault", {}}).size(), 5u);
+TEST_F(ActionRunnerTest, TheHeadLooksAtNothingElseWhileAnObjectIsPickedUp) {
+  EXPECT_EQ(Start(1, "pick_up_object", Endless()), std::nullopt);
+  EXPECT_THAT(Start(2, "look_at", Endless()).value_or(""), HasSubstr("needs head"));
 }
 
 }  // namespace

@@ -201,10 +201,10 @@ TEST_F(MoveBaseDriveTest, AGoalThatWasReachedIsNotTakenBack) {
 }
 
 TEST_F(MoveBaseDriveTest, OnlyLongWaysAreForMoveBase) {
-  EXPECT_TRUE(IsForMoveBase({"move_base", {"East"}}));
-  EXPECT_TRUE(IsForMoveBase({"Move_Base_Param", {"East", "slow"}}));
-  EXPECT_FALSE(IsForMoveBase({"move_base_blind", {"East"}}));
-  EXPECT_FALSE(IsForMoveBase({"pick_up_object", {"mug1", "leftarm1"}}));
+  EXPECT_TRUE(IsForMoveBase(skills_, {"move_base", {"East"}}));
+  EXPECT_TRUE(IsForMoveBase(skills_, {"Move_Base_Param", {"East", "slow"}}));
+  EXPECT_FALSE(IsForMoveBase(skills_, {"move_base_blind", {"East"}}));
+  EXPECT_FALSE(IsForMoveBase(skills_, {"pick_up_object", {"mug1", "leftarm1"}}));
 }
 
 TEST_F(MoveBaseDriveTest, AnActionThatMakesNoSenseIsTheErrorThatSkillsMake) {

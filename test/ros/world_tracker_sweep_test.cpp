@@ -15,7 +15,6 @@ const std::vector<std::string> kPlaces = {"placingareawestlefttable1", "placinga
 class HeadSweepTest : public testing::Test {
  protected:
   HeadSweepTest() {
-    params_.busy_actions = {"pick_up_object"};
     moment_.body.X_MB = {7.68, 9.6, 1.57};  // south of table1
     moment_.body.joints = RestaurantContext().robot->profile.joints;
     moment_.body.joints["head_tilt_joint"] = -0.3;
@@ -75,9 +74,9 @@ TEST_F(HeadSweepTest, AfterTheTurnTheCameraSeesTheTarget) {
 
 TEST_F(HeadSweepTest, AnActionThatUsesTheHeadHasIt) {
   HeadSweep sweep = Make();
-  sweep.SetRunning({"move_base", "Pick_Up_Object"}, 0.0);
+  sweep.SetBusy(true, 0.0);
   EXPECT_TRUE(Play(&sweep, 10.0).empty());
-  sweep.SetRunning({"move_base"}, moment_.body.time);
+  sweep.SetBusy(false, moment_.body.time);
   EXPECT_TRUE(Play(&sweep, params_.hands_off - 0.2).empty()) << "it may go on at once";
   EXPECT_FALSE(Play(&sweep, 1.0).empty());
 }

@@ -71,7 +71,7 @@ TEST(SkillFactoryTest, RefusesTheWrongNumberOfArguments) {
               AllOf(HasSubstr("has 0 arguments"), HasSubstr("wanted 1 (area)")));
   EXPECT_THAT(WhyNot("move_base", {"east", "fast"}), HasSubstr("has 2 arguments, wanted 1 (area)"));
   EXPECT_THAT(WhyNot("move_base_param", {"east"}),
-              HasSubstr("has 1 arguments, wanted 2 (area, motion set)"));
+              HasSubstr("has 1 arguments, wanted 2 (area, motion_set)"));
 }
 
 TEST(SkillFactoryTest, KnowsTheAreasOfTheWorldFlat) {
@@ -85,36 +85,28 @@ std::string WhyNotInRestaurant(const base::ActionCall& action) {
   return ConfigErrorOf([&] { MakeSkill(test_support::TheRestaurant().skills, action); });
 }
 
-TEST(SkillFactoryUpperBodyTest, MakesEveryOperatorOfTheRestaurant) {
-  const std::vector<base::ActionCall> actions{
-      {"move_base", {"home"}},
-      {"move_base_param", {"home", "slow"}},
-      {"move_base_blind", {"home"}},
-      {"move_torso", {"TorsoMiddlePosture"}},
-      {"tuck_arms", {"ArmTuckedPosture", "ArmUnTuckedPosture"}},
-      {"move_arm_to_side", {"leftArm1"}},
-      {"move_arms_to_carryposture", {}},
-      {"observe_objects_on_area", {"placingAreaEastRightCounter1"}},
-      {"look_at", {"mug1"}},
-      {"pick_up_object", {"mug1", "rightArm1"}},
-      {"place_object", {"mug1", "rightArm1", "placingAreaWestRightTable1"}},
-      {"place_on_tray", {"rightArm1", "mug1"}},
-      {"pick_up_from_tray", {"rightArm1", "mug1"}}};
-  for (const base::ActionCall& action : actions) {
+/// A name of the restaurant for each parameter of an action.
+base::ActionCall SampleOf(const actions::ActionSpec& spec) {
+  using Kind = actions::ParameterKind;
+  const std::map<Kind, std::string> samples{{Kind::kArea, "placingAreaWestRightTable1"},
+                                            {Kind::kMotionSet, "slow"},
+                                            {Kind::kTorsoPosture, "TorsoMiddlePosture"},
+                                            {Kind::kArmPosture, "ArmUnTuckedPosture"},
+                                            {Kind::kArm, "leftArm1"},
+                                            {Kind::kObject, "mug1"},
+                                            {Kind::kAreaOrObject, "mug1"}};
+  base::ActionCall call{spec.name, {}};
+  for (const auto& parameter : spec.parameters)
+    call.arguments.push_back(samples.at(parameter.kind));
+  return call;
+}
+
+TEST(SkillFactoryUpperBodyTest, MakesEveryActionThatIsDescribed) {
+  for (const auto& [name, spec] : actions::OwnActions().specs()) {
+    const base::ActionCall action = SampleOf(spec);
     EXPECT_NE(MakeSkill(test_support::TheRestaurant().skills, action), nullptr)
         << base::ToString(action);
   }
-}
-
-TEST(SkillFactoryUpperBodyTest, SaysHowMuchOfTheRobotAnActionMoves) {
-  EXPECT_EQ(DetailFor({"Move_Base", {"home"}}), NeededDetail::kBase);
-  EXPECT_EQ(DetailFor({"move_base_blind", {"home"}}), NeededDetail::kBase);
-  EXPECT_EQ(DetailFor({"place_object", {}}), NeededDetail::kUpperBody);
-  EXPECT_EQ(DetailFor({"move_torso", {}}), NeededDetail::kUpperBody);
-  EXPECT_THAT(ConfigErrorOf([] {
-                DetailFor({"move_torsi", {}});
-              }),
-              HasSubstr("did you mean 'move_torso'"));
 }
 
 TEST(SkillFactoryUpperBodyTest, ARobotWithoutArmsHasNoneOfTheirSkills) {

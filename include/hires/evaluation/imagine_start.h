@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/actions/catalogue.h"
 #include "hires/base/action.h"
 #include "hires/imagination/start_state.h"
 
@@ -32,6 +33,7 @@ void AddStartOptions(CLI::App* app, StartOptions* options);
 /// An arm that holds something without a posture of its own being given has it where the action
 /// before leaves it: at its side for actions of the arms, before the body for driving.
 /// @throws base::ConfigError naming the option and what it wants.
-ImagineStart ReadStart(const StartOptions& options, const std::string& action);
+ImagineStart ReadStart(const StartOptions& options, const std::string& action,
+                       const actions::Catalogue& catalogue);
 
 }  // namespace hires::evaluation

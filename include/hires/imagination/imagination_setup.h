@@ -25,6 +25,8 @@ struct SetupConfig {
   std::string objects;                     ///< catalogue of object instances (YAML)
   std::string uncertainty;                 ///< YAML, or "none"
   std::vector<std::string> extra_objects;  ///< object models (.sdf, .urdf) beside the catalogue's
+  /// Shared libraries with more actions: never from a file, as they are code.
+  std::vector<std::string> action_libraries;
   skills::MoveBaseParams driving;
   skills::MoveBaseBlindParams blind;
   skills::ManipulationParams manipulation;
@@ -55,6 +57,7 @@ struct ImaginationSetup {
   translation::TranslatorContext translator;  ///< knows names of objects and areas; no fluents
   std::uint64_t world_hash{0};  ///< world, object models and all parameters of physics and skills
   std::uint64_t robot_hash{0};
+  std::uint64_t actions_hash{0};  ///< of all actions, with the libraries that they came from
 
   /// The model of an instance of the catalogue (or of its kin, see
   /// translation::TranslatorContext::FindModel), or of an object model by its own name.

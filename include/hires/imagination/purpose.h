@@ -2,18 +2,14 @@
 
 #include <string>
 
+#include "hires/actions/catalogue.h"
 #include "hires/base/action.h"
 
 namespace hires::imagination {
 
 /// What an action is meant to do with one object; actions that only move the robot have none.
 struct Purpose {
-  enum class Kind {
-    kNone,       ///< nothing is taken or put down: what is carried stays where it is
-    kTake,       ///< the object ends in the hand
-    kPutOnArea,  ///< the object ends upright on an area of the world
-    kPutOnTray   ///< the object ends upright on the robot's tray
-  };
+  using Kind = actions::Purpose;
   Kind kind{Kind::kNone};
   std::string object;             ///< lower case; empty for kNone
   std::string arm;                ///< that takes it or puts it down, lower case
@@ -21,8 +17,8 @@ struct Purpose {
   double area_half_width{0.175};  ///< [m] of the square round its place that it must stand on
 };
 
-/// In the words of skills::MakeSkill; kNone for everything else, arguments that are missing
-/// included.
-Purpose PurposeOf(const base::ActionCall& action);
+/// As the action's description says; kNone for what the catalogue does not know, and where
+/// arguments are missing.
+Purpose PurposeOf(const actions::Catalogue& catalogue, const base::ActionCall& action);
 
 }  // namespace hires::imagination

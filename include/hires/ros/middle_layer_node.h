@@ -75,6 +75,7 @@ class MiddleLayerNode {
   void OnCancel(GoalHandle goal);
   void StartWaiting();
   void StartGoal(GoalHandle goal);
+  std::set<std::string> GroupsOf(const hires::base::ActionCall& action) const;
   std::unique_ptr<hires::skills::Skill> MakeSkill(const hires::base::ActionCall& action) const;
   void OnEnded(const ActionNews& news, ActionEnd end, const std::string& reason);
 

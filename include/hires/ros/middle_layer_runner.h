@@ -53,10 +53,12 @@ class ActionRunner {
   ActionRunner(const hires::robot::Robot& robot, const RunnerParams& params, Hooks hooks);
   ~ActionRunner();
 
+  /// @param groups      of joints that it needs for itself, as actions::GroupsOf.
   /// @param time_limit  [s]; 0 takes the configured one.
   /// @param now         [s] the time of Look.
   /// @return why not, if the groups are taken: "busy: move_base(home) needs base".
   std::optional<std::string> Start(int id, const hires::base::ActionCall& action,
+                                   const std::set<std::string>& groups,
                                    std::unique_ptr<hires::skills::Skill> skill, double time_limit,
                                    double now);
 

@@ -31,7 +31,7 @@ struct StopParams {
 /// held.
 class Stop {
  public:
-  /// @param groups  as GroupsOf.
+  /// @param groups  as actions::GroupsOf.
   Stop(const hires::robot::Robot& robot, std::set<std::string> groups, const StopParams& params);
 
   /// The command for now; the first call begins the stopping.

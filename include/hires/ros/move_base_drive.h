@@ -96,12 +96,13 @@ class MoveBaseDrive : public hires::skills::Skill {
   double sent_{0.0};  // [s]
 };
 
-/// Whether an action's way is long enough that move_base drives it: move_base, move_base_param. The
-/// straight last stretch (move_base_blind) leads under furniture, which move_base would not.
-bool IsForMoveBase(const hires::base::ActionCall& action);
+/// Whether the robot's own move_base may do an action, as its description says. The straight last
+/// stretch (move_base_blind) leads under furniture, where move_base would not go.
+/// @throws hires::base::ConfigError for an unknown action.
+bool IsForMoveBase(const hires::skills::SkillSet& skills, const hires::base::ActionCall& action);
 
 /// The same as skills::MakeSkill makes, by move_base.
-/// @pre IsForMoveBase(action)
+/// @pre IsForMoveBase(skills, action)
 /// @throws hires::base::ConfigError as skills::MakeSkill.
 std::unique_ptr<hires::skills::Skill> MakeMoveBaseDrive(const hires::skills::SkillSet& skills,
                                                         const hires::base::ActionCall& action,

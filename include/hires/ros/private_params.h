@@ -20,6 +20,10 @@ std::optional<bool> PrivateBool(const std::string& key);
 /// A list of text, or one text split at white space.
 std::optional<std::vector<std::string>> PrivateWords(const std::string& key);
 
+/// ~action_libraries: paths of shared libraries with more actions, see skills::LoadActionSet,
+/// separated by colons. Never from a file, as they are code.
+std::vector<std::string> PrivateActionLibraries();
+
 /// @throws ConfigError naming a private parameter that is none of `known`.
 void RejectUnknownPrivate(const std::vector<std::string>& known);
 

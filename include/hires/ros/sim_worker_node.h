@@ -25,7 +25,8 @@ struct SimWorkerParams {
 };
 
 /// The file in ~config (config/sim_worker.yaml where there is none); ~index, ~world, ~robot,
-/// ~objects and ~uncertainty win over it.  @throws hires::base::ConfigError.
+/// ~objects and ~uncertainty win over it, ~action_libraries adds to it.  @throws
+/// hires::base::ConfigError.
 SimWorkerParams LoadSimWorkerParams();
 
 /// Plays rollouts for whoever asks: the action /worker_k/rollout. Goals wait for their turn in the

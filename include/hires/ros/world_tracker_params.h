@@ -1,7 +1,6 @@
 #pragma once
 
 #include <map>
-#include <set>
 #include <string>
 
 #include "hires/ros/translator_params.h"
@@ -13,12 +12,11 @@ namespace hires_ros {
 /// How the head looks around when nobody else wants it to look somewhere.
 struct SweepParams {
   bool enabled{true};
-  double range{3.2};                   ///< [m] from the camera to what is worth looking at
-  double period{4.0};                  ///< [s] after which a place is looked at again
-  double dwell{1.0};                   ///< [s] that the head rests on a place: some looks
-  double speed{1.0};                   ///< [rad/s] of the head
-  double hands_off{2.0};               ///< [s] after an action that uses the head
-  std::set<std::string> busy_actions;  ///< lower case: while one of these runs, the head is theirs
+  double range{3.2};      ///< [m] from the camera to what is worth looking at
+  double period{4.0};     ///< [s] after which a place is looked at again
+  double dwell{1.0};      ///< [s] that the head rests on a place: some looks
+  double speed{1.0};      ///< [rad/s] of the head
+  double hands_off{2.0};  ///< [s] after an action that uses the head
 };
 
 /// config/world_tracker.yaml.

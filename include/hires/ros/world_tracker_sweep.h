@@ -22,8 +22,8 @@ class HeadSweep {
 
   /// @param places  areas or objects, lower case.
   void SetPlaces(std::vector<std::string> places, hires::translation::Areas areas);
-  /// Actions that run now, lower case names.
-  void SetRunning(const std::vector<std::string>& actions, double time);
+  /// Whether actions that run now use the head.
+  void SetBusy(bool is_busy, double time);
 
   /// @param known  objects that are remembered now.
   /// @return how to move the head, if it shall move.

@@ -6,6 +6,7 @@
 
 #include "hires/base/action.h"
 #include "hires/robot/robot_profile.h"
+#include "hires/skills/action_set.h"
 #include "hires/skills/manipulation_context.h"
 #include "hires/skills/move_base.h"
 #include "hires/skills/skill.h"
@@ -22,28 +23,24 @@ struct SkillSet {
   std::string default_motion_set;
   std::string robot_name;
   std::shared_ptr<const ManipulationContext> manipulation;  ///< null: nothing above the base moves
+  std::shared_ptr<const ActionSet> actions = OwnActionSet();
 };
 
 SkillSet MakeSkillSet(const world::World& world, const robot::Robot& robot,
                       const MoveBaseParams& driving, const MoveBaseBlindParams& blind,
-                      const ManipulationParams& manipulation = {});
+                      const ManipulationParams& manipulation = {},
+                      std::shared_ptr<const ActionSet> actions = OwnActionSet());
 
-/// The skill for an action, in the words of config/domains/restaurant.lisp:
-///   move_base(area), move_base_param(area, motion set), move_base_blind(area),
-///   move_torso(posture), tuck_arms(left goal, right goal), move_arm_to_side(arm),
-///   move_arms_to_carryposture(), look_at(area or object), observe_objects_on_area(area),
-///   pick_up_object(object, arm), place_object(object, arm, area),
-///   place_on_tray(arm, object), pick_up_from_tray(arm, object).
+/// The skill for an action of `skills.actions`.
 /// @throws base::ConfigError naming the action and what is wrong with it: unknown, or a name among
 /// its arguments is, or their number is not what is wanted, or the robot has no upper body for it.
 std::unique_ptr<Skill> MakeSkill(const SkillSet& skills, const base::ActionCall& action);
 
-/// How much of a robot must move in a simulation that an action is played in.
-enum class NeededDetail {
-  kBase,       ///< base and tray
-  kUpperBody,  ///< also torso, head, arms and grippers
-};
-/// @throws base::ConfigError for an unknown action.
-NeededDetail DetailFor(const base::ActionCall& action);
+/// What an action is.  @throws base::ConfigError for an unknown one.
+const actions::ActionSpec& SpecOf(const SkillSet& skills, const base::ActionCall& action);
+
+/// Limits of driving that are in force while an action runs: those that its arguments name, else
+/// the robot's default; lower case.  @throws base::ConfigError for an unknown action.
+std::string MotionSetNameOf(const SkillSet& skills, const base::ActionCall& action);
 
 }  // namespace hires::skills

@@ -1,0 +1,102 @@
+#include "hires/skills/action_loader.h"
+
+#include <gmock/gmock.h>
+
+#include "hires/base/text.h"
+#include "hires/skills/skill_factory.h"
+#include "support/messages.h"
+#include "support/temporary_folder.h"
+
+namespace hires::skills {
+namespace {
+
+using test_support::ConfigErrorOf;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// A library of test/skills/libraries.
+std::string PathOf(const std::string& name) {
+  return std::string(HIRES_TEST_LIBRARIES) + "/lib" + name + "_actions.so";
+}
+
+std::string WhyNot(const std::vector<std::string>& paths) {
+  return ConfigErrorOf([&] { LoadActionSet(paths); });
+}
+
+/// A robot at an area, without anything that drives.
+SkillSet SkillsWith(std::shared_ptr<const ActionSet> actions) {
+  SkillSet skills;
+  skills.areas = {{"east", {}}};
+  skills.actions = std::move(actions);
+  return skills;
+}
+
+TEST(ActionLoaderTest, WithoutLibrariesThereAreTheOwnActions) {
+  const auto set = LoadActionSet({});
+  EXPECT_EQ(set->catalogue().specs().size(), actions::OwnActions().specs().size());
+  EXPECT_EQ(set->hash(), OwnActionSet()->hash());
+  EXPECT_EQ(ToString(set->libraries()), "no library");
+}
+
+TEST(ActionLoaderTest, ALibrarysActionsAreMadeBesideTheOwn) {
+  const SkillSet skills = SkillsWith(LoadActionSet({PathOf("sound")}));
+  EXPECT_EQ(MakeSkill(skills, {"Nod", {"east"}})->period(), 0.125);
+  EXPECT_EQ(SpecOf(skills, {"nod", {}}).groups, (std::set<std::string>{"base"}));
+  EXPECT_NE(skills.actions->catalogue().Find("pick_up_object"), nullptr);
+  EXPECT_THAT(ConfigErrorOf([&] {
+                MakeSkill(skills, {"nod", {"west"}});
+              }),
+              HasSubstr("action 'nod(west)': area 'west' is unknown"));
+  EXPECT_THAT(ConfigErrorOf([&] {
+                MakeSkill(skills, {"nod", {}});
+              }),
+              HasSubstr("has 0 arguments, wanted 1 (area)"));
+}
+
+TEST(ActionLoaderTest, TheHashTellsLibrariesApart) {
+  const auto set = LoadActionSet({PathOf("sound")});
+  EXPECT_NE(set->hash(), OwnActionSet()->hash());
+  EXPECT_EQ(set->hash(), LoadActionSet({PathOf("sound")})->hash());
+  EXPECT_THAT(ToString(set->libraries()), HasSubstr("libsound_actions.so "));
+}
+
+TEST(ActionLoaderTest, AnotherBuildOfALibraryHasAnotherHash) {
+  const test_support::TemporaryFolder folder;
+  const std::string copy =
+      folder.Write("libsound_actions.so", base::ReadTextFile(PathOf("sound")) + "one more byte");
+  EXPECT_NE(LoadActionSet({copy})->hash(), LoadActionSet({PathOf("sound")})->hash());
+}
+
+TEST(ActionLoaderTest, RefusesAFileThatIsMissingOrNoLibrary) {
+  EXPECT_THAT(WhyNot({"/nowhere/lib.so"}),
+              AllOf(HasSubstr("library of actions '/nowhere/lib.so'"), HasSubstr("/nowhere")));
+  const test_support::TemporaryFolder folder;
+  EXPECT_THAT(WhyNot({folder.Write("text.so", "no library")}),
+              HasSubstr("is no library that can be loaded"));
+}
+
+TEST(ActionLoaderTest, RefusesALibraryWithoutActions) {
+  EXPECT_THAT(WhyNot({PathOf("empty")}),
+              AllOf(HasSubstr("has no class of actions"), HasSubstr("HIRES_REGISTER_ACTIONS")));
+}
+
+TEST(ActionLoaderTest, RefusesANameThatExists) {
+  EXPECT_THAT(WhyNot({PathOf("clashing")}),
+              AllOf(HasSubstr("libclashing_actions.so"), HasSubstr("'move_base' exists already")));
+  EXPECT_THAT(WhyNot({PathOf("sound"), PathOf("sound")}), HasSubstr("'nod' exists already"));
+}
+
+TEST(ActionLoaderTest, RefusesWhatMakesNoSense) {
+  EXPECT_THAT(WhyNot({PathOf("senseless")}),
+              AllOf(HasSubstr("libsenseless_actions.so"),
+                    HasSubstr("action 'do_nothing': it needs no group of joints")));
+  EXPECT_THAT(WhyNot({PathOf("without_maker")}), HasSubstr("action 'bow' has no maker"));
+  EXPECT_THAT(WhyNot({PathOf("throwing")}), HasSubstr("the licence server is away"));
+}
+
+TEST(ActionLoaderTest, RefusesALibraryThatWasBuiltWithOtherHeaders) {
+  EXPECT_THAT(WhyNot({PathOf("other_headers")}), HasSubstr("built with other headers"));
+}
+
+}  // namespace
+}  // namespace hires::skills
