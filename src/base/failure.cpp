@@ -64,6 +64,8 @@ const std::vector<FailureInfo>& Table() {
       {Code::kGuardEnds, "guard_ends", kRobot, true},
       {Code::kLateGuard, "late_guard", kRobot, true},
       {Code::kNoRequest, "no_request", kRobot, true},
+      {Code::kGuardRestarted, "guard_restarted", kRobot, true},
+      {Code::kDryRun, "dry_run", kRobot, false},
 
       {Code::kPreempted, "preempted", kPlan, true},
       {Code::kUnavailable, "unavailable", kRobot, true},
@@ -128,8 +130,7 @@ bool Failure::operator<(const Failure& other) const {
 }
 
 std::string ToString(const Failure& failure) {
-  const std::string words =
-      failure.detail.empty() ? Join(failure.subjects, ", ") : failure.detail;
+  const std::string words = failure.detail.empty() ? Join(failure.subjects, ", ") : failure.detail;
   return words.empty() ? ToString(failure.code) : ToString(failure.code) + ": " + words;
 }
 

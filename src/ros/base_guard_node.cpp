@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "hires/base/log.h"
+#include "hires/ros/conversions.h"
 #include "hires/ros/odometry_frame.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
@@ -218,7 +219,7 @@ void BaseGuardNode::PublishState() {
   msg.header.stamp = ros::Time::now();
   msg.state = ToMsg(now.state);
   msg.request = now.request;
-  msg.reason = now.reason;
+  msg.failure = FailureMsgOf(now.reason);
   state_.publish(msg);
   const bool is_trouble = !now.reason.empty() && !IsPeaceful(now.reason);
   hires::base::Log(

@@ -35,7 +35,7 @@ std::string MainReason(const hires::Prediction& prediction) {
   const auto most = std::max_element(
       prediction.failures.begin(), prediction.failures.end(),
       [](const hires::FailureCount& a, const hires::FailureCount& b) { return a.count < b.count; });
-  return most == prediction.failures.end() ? "" : most->reason;
+  return most == prediction.failures.end() ? "" : ReasonOf(most->failure);
 }
 
 using ImagineOutcome = execution::ImagineAnswered::Outcome;
@@ -174,18 +174,18 @@ execution::StepFinished AnswerOf(int activity, const hires::ExecuteActionResult&
   using Result = execution::StepFinished::Result;
   switch (result.code) {
     case hires::ExecuteActionResult::SUCCEEDED:
-      return {activity, Result::kSucceeded, result.reason};
+      return {activity, Result::kSucceeded, ReasonOf(result.failure)};
     case hires::ExecuteActionResult::PREEMPTED:
-      return {activity, Result::kPreempted, result.reason};
+      return {activity, Result::kPreempted, ReasonOf(result.failure)};
   }
-  return {activity, Result::kFailed, result.reason};
+  return {activity, Result::kFailed, ReasonOf(result.failure)};
 }
 
 hires::ImagineGoal GoalOf(const execution::StartImagination& command,
                           const hires::GenerateImagineState::Response& state,
                           const execution::ImaginingParams& params) {
   hires::ImagineGoal goal;
-  goal.action = ToMsg(command.action);
+  goal.steps.push_back(ToMsg(command.action));
   goal.world_state = state.world_state;
   goal.robot_state = state.robot_state;
   goal.rollouts = static_cast<std::uint32_t>(params.rollouts);

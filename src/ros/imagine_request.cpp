@@ -40,6 +40,15 @@ imagination::StartState StartOf(const hires::ImagineGoal& goal,
   return {FromMsg(goal.world_state), FromMsg(goal.robot_state)};
 }
 
+hires::base::ActionTemplate StepOf(const hires::ImagineGoal& goal) {
+  if (goal.steps.size() != 1) {
+    throw hires::base::ConfigError(fmt::format(
+        "steps has {} entries, wanted 1: one step is imagined at a time; ask for each by itself",
+        goal.steps.size()));
+  }
+  return FromMsg(goal.steps.front());
+}
+
 imagination::SchedulerParams ParamsOf(const hires::ImagineGoal& goal,
                                       const imagination::SchedulerParams& defaults) {
   imagination::SchedulerParams params = defaults;
@@ -56,7 +65,7 @@ imagination::SchedulerParams ParamsOf(const hires::ImagineGoal& goal,
 ImagineRequest RequestOf(const hires::ImagineGoal& goal, const imagination::ImaginationSetup& setup,
                          const imagination::SchedulerParams& defaults) {
   ImagineRequest request;
-  request.actions = hires::base::Combinations(FromMsg(goal.action));
+  request.actions = hires::base::Combinations(StepOf(goal));
   request.setup = imagination::MakeRolloutSetup(setup, StartOf(goal, setup), goal.seed);
   if (!goal.uncertainty.empty()) {
     request.setup.uncertainty = std::make_shared<const imagination::Uncertainty>(

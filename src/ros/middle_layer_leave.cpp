@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "hires/ros/conversions.h"
+
 namespace hires_ros {
 
 DriveLimits LimitsFor(const hires::skills::SkillSet& skills,
@@ -64,7 +66,7 @@ void BaseLeave::OnState(const hires::BaseGuardState& state) {
   *granted_ = is_ours && !is_stopped_ && state.state == hires::BaseGuardState::PASSING;
   if (!is_ours || is_stopped_ || state.state == hires::BaseGuardState::PASSING) return;
   is_stopped_ = true;
-  hooks_.stopped(state.reason);
+  hooks_.stopped(ReasonOf(state.failure));
 }
 
 }  // namespace hires_ros

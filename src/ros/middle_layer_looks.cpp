@@ -94,8 +94,9 @@ void MiddleLayerNode::OnScan(const sensor_msgs::LaserScan& msg) {
 
 void MiddleLayerNode::OnDetections(const hires::Detections& msg) {
   std::vector<hires::perception::Detection> detections;
-  for (const hires::DetectedObject& object : msg.objects) {
-    detections.push_back({object.name, object.model, FromMsg(object.pose), object.visible_share});
+  for (const hires::Detection& object : msg.detections) {
+    detections.push_back(
+        {object.instance, object.label, FromMsg(object.pose), object.visible_share});
   }
   senses_.OnDetections(msg.header.stamp.toSec(), std::move(detections));
   Note(kDetections, msg.header.stamp.toSec());

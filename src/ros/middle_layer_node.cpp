@@ -45,7 +45,11 @@ hires::geometry::Polygon PaddedFootprint(const hires::robot::Robot& robot) {
 ExecuteActionResult ResultOf(std::uint8_t code, const std::string& reason, double duration) {
   ExecuteActionResult result;
   result.code = code;
-  result.reason = Shortened(reason);
+  result.failure = FailureMsgOf(Shortened(reason));
+  const bool is_refused = code == ExecuteActionResult::INVALID;
+  if (is_refused && result.failure.code == hires::Failure::OTHER) {
+    result.failure.code = hires::Failure::INVALID_ACTION;
+  }
   result.duration = duration;
   return result;
 }

@@ -48,7 +48,7 @@ void SetStart(const hires::evaluation::ImagineQuery& query, hires::ImagineGoal* 
 
 hires::ImagineGoal GoalOf(const hires::evaluation::ImagineQuery& query) {
   hires::ImagineGoal goal;
-  goal.action = ToMsg(query.action);
+  goal.steps.push_back(ToMsg(query.action));
   SetStart(query, &goal);
   goal.deadline = ros::Duration(query.scheduler.deadline);
   goal.rollouts = query.scheduler.rollouts;

@@ -144,10 +144,14 @@ std::vector<std::string> DifferencesOf(const ImagineResult& then, const ImagineR
   return out.Take();
 }
 
+std::string ActionNameOf(const hires::ImagineGoal& goal) {
+  return goal.steps.empty() ? "no step" : goal.steps.front().name;
+}
+
 bool HasUnplayable(const ImagineResult& result) {
   for (const hires::Prediction& prediction : result.predictions) {
     for (const hires::FailureCount& failure : prediction.failures) {
-      if (failure.reason == "unplayable") return true;
+      if (failure.failure.code == hires::Failure::UNPLAYABLE) return true;
     }
   }
   return false;
@@ -329,9 +333,9 @@ std::string ReplayText(const ReplayedRequest& replayed) {
   return fmt::format(
              "request '{}' ({}, goal id {}): {} of at most {} rollouts each, seed {}\n"
              "outcome: {} then, {} now\n",
-             recorded.goal.request_id, recorded.action, recorded.goal_id, recorded.goal.action.name,
-             recorded.goal.rollouts, recorded.goal.seed, OutcomeText(recorded.result.outcome),
-             OutcomeText(replayed.now.outcome)) +
+             recorded.goal.request_id, recorded.action, recorded.goal_id,
+             ActionNameOf(recorded.goal), recorded.goal.rollouts, recorded.goal.seed,
+             OutcomeText(recorded.result.outcome), OutcomeText(replayed.now.outcome)) +
          RankingsText(recorded.result, replayed.now) + VerdictText(replayed);
 }
 

@@ -184,14 +184,15 @@ void SimRobotPublisher::PublishDetections(const SimRobotWorld& world, const ros:
   hires::Detections detections;
   detections.header.stamp = stamp;
   detections.header.frame_id = scene_->robot.profile.upper_body->camera_link;
-  for (const hires::perception::Detection& detection :
+  for (const hires::perception::Detection& seen :
        hires::perception::Detect(sight, view, objects, detector, &rng)) {
-    hires::DetectedObject object;
-    object.name = detection.name;
-    object.model = detection.model;
-    object.pose = ToMsg(detection.X_CO);
-    object.visible_share = static_cast<float>(detection.visible_share);
-    detections.objects.push_back(object);
+    hires::Detection detection;
+    detection.label = seen.model;
+    detection.instance = seen.name;  // this detector is told which one it is
+    detection.confidence = 1.0f;
+    detection.pose = ToMsg(seen.X_CO);
+    detection.visible_share = static_cast<float>(seen.visible_share);
+    detections.detections.push_back(detection);
   }
   detections_.publish(detections);
 }
@@ -207,9 +208,16 @@ void SimRobotPublisher::PublishTruth(const SimRobotWorld& world, const TruthReco
   true_robot_.publish(robot);
   hires::GroundTruth summary;
   summary.header.stamp = stamp;
-  for (const auto& [name, fate] : truth.objects()) {
+  summary.header.frame_id = "map";
+  for (const auto& state : world.simulator().GetWorldState().objects) {
+    const auto known = truth.objects().find(state.name);
+    if (known == truth.objects().end()) continue;
+    const ObjectFate& fate = known->second;
     hires::ObjectTruth object;
-    object.name = name;
+    object.name = state.name;
+    object.pose = ToMsg(state.X_MO);
+    object.attached_to = state.attached_to;
+    object.stands = !fate.is_down;
     object.tilt = fate.tilt;
     object.max_tilt = fate.max_tilt;
     object.falls = static_cast<std::uint32_t>(fate.falls);

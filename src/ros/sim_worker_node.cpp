@@ -127,12 +127,12 @@ void SimWorkerNode::Play(GoalHandle goal) {
     }
   } catch (const HashDiffers& error) {
     result.code = RolloutResult::HASH_DIFFERS;
-    result.reason = error.what();
-    goal.setAborted(result, result.reason);
+    result.why = error.what();
+    goal.setAborted(result, result.why);
   } catch (const std::exception& error) {  // the next goal may be a better one
     result.code = RolloutResult::INVALID;
-    result.reason = error.what();
-    goal.setAborted(result, result.reason);
+    result.why = error.what();
+    goal.setAborted(result, result.why);
   }
   const std::lock_guard<std::mutex> lock(cancelled_mutex_);
   cancelled_.erase(id);

@@ -81,10 +81,10 @@ void WorkerLink::OnTransition(Client::GoalHandle handle) {
     handler_(Finished{ended.session, ended.assignment, result->results});
   } else {
     const bool differs = result && result->code == hires::RolloutResult::HASH_DIFFERS;
-    handler_(Failed{
-        ended.session, ended.assignment,
-        result && !result->reason.empty() ? result->reason : handle.getTerminalState().toString(),
-        differs});
+    handler_(
+        Failed{ended.session, ended.assignment,
+               result && !result->why.empty() ? result->why : handle.getTerminalState().toString(),
+               differs});
   }
   StartNext();
 }

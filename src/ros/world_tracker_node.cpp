@@ -176,13 +176,15 @@ void WorldTrackerNode::OnDetections(const hires::Detections& msg) {
     RequireStamp(msg.header.stamp);
     RequireFrame(msg.header.frame_id, context_.robot->profile.upper_body->camera_link);
     std::vector<perception::Detection> detections;
-    for (const hires::DetectedObject& object : msg.objects) {
+    for (const hires::Detection& object : msg.detections) {
       try {
-        if (object.name.empty()) throw ConfigError("an object has no name");
-        surroundings_->Model(object.model);
+        if (object.instance.empty()) {
+          throw ConfigError(fmt::format("a detection of a '{}' has no instance", object.label));
+        }
+        surroundings_->Model(object.label);
         const auto X_CO = FromMsg(object.pose);
-        RequireFinite(X_CO, fmt::format("pose of '{}'", object.name));
-        detections.push_back({object.name, object.model, X_CO, object.visible_share});
+        RequireFinite(X_CO, fmt::format("pose of '{}'", object.instance));
+        detections.push_back({object.instance, object.label, X_CO, object.visible_share});
       } catch (const ConfigError& error) {  // the others are good
         ++num_bad_;
         Warn(kDetections, error.what());

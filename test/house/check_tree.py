@@ -275,8 +275,27 @@ def check_scripts(root):
                 yield f"{path}:{error.lineno}: python cannot read it: {error.msg}"
 
 
+def check_failure_codes(root):
+    """The message Failure and the table in base carry the same codes under the same numbers."""
+    message, table = "msg/Failure.msg", "src/base/failure.cpp"
+    header = "include/hires/base/failure.h"
+    if not os.path.exists(os.path.join(root, table)):
+        return
+    words = dict(re.findall(r'\{Code::(k\w+), "(\w+)"', read(root, table)))
+    numbers = dict(re.findall(r"^\s*(k\w+) = (\d+)", read(root, header), re.MULTILINE))
+    wanted = {words[name].upper(): number for name, number in numbers.items() if name in words}
+    told = dict(re.findall(r"^uint16 (\w+)=(\d+)", read(root, message), re.MULTILINE))
+    told.pop("NONE", None)
+    for name in sorted(set(numbers) - set(words) - {"kNone"}):
+        yield f"{table}: has no row for {name} of {header}; add one"
+    for name in sorted(set(wanted) | set(told)):
+        if wanted.get(name) != told.get(name):
+            yield (f"{message}: {name} is {told.get(name, 'missing')}, in {header} it is "
+                   f"{wanted.get(name, 'missing')}; let both say the same")
+
+
 CHECKS = [check_includes, check_dependencies, check_headers, check_whitespace, check_packages,
-          check_catkin_components, check_scripts]
+          check_catkin_components, check_scripts, check_failure_codes]
 
 
 def complaints_about(root):

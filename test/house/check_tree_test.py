@@ -140,6 +140,18 @@ class CheckTreeTest(unittest.TestCase):
             {"cmake/HiresRos.cmake": "find_package(catkin REQUIRED COMPONENTS roscpp tf2)\n"},
             "tf2", "package.xml")
 
+    def test_failure_codes_that_differ_are_found(self):
+        tree = {"include/hires/base/failure.h": "#pragma once\nenum Code {\n  kNone = 0,\n  kStuck = 4,\n};\n",
+                "src/base/failure.cpp": '#include "hires/base/failure.h"\n{Code::kStuck, "stuck"}\n',
+                "msg/Failure.msg": "uint16 NONE=0\nuint16 STUCK=4\n"}
+        self.assertEqual(self.complaints(tree), [])
+        self.expect_one({**tree, "msg/Failure.msg": "uint16 NONE=0\nuint16 STUCK=5\n"},
+                        "msg/Failure.msg", "STUCK is 5", "it is 4")
+        self.expect_one({**tree, "msg/Failure.msg": "uint16 STUCK=4\nuint16 LATE=6\n"},
+                        "LATE is 6", "missing")
+        self.expect_one({**tree, "src/base/failure.cpp": '#include "hires/base/failure.h"\n',
+                         "msg/Failure.msg": "uint16 NONE=0\n"}, "no row for kStuck")
+
     def test_scripts_that_cannot_be_read_are_found(self):
         self.expect_one({"scripts/build": "#!/bin/bash\nif true; then\n"}, "scripts/build", "bash")
         self.expect_one({"scripts/table": "#!/usr/bin/env python3\nprint(\n"},

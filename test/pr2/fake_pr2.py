@@ -20,7 +20,7 @@ import numpy
 import rospy
 import tf2_ros
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped, Twist
-from hires.msg import DetectedObject, Detections, ObjectState, WorldState
+from hires.msg import Detection, Detections, ObjectState, WorldState
 from nav_msgs.msg import OccupancyGrid, Odometry
 from nav_msgs.srv import GetMap, GetMapResponse
 from sensor_msgs.msg import JointState, LaserScan
@@ -304,9 +304,10 @@ class FakePr2:
         message = Detections()
         message.header.stamp, message.header.frame_id = stamp, cameras.LINK
         for thing, X_CO, share in self.camera.look():
-            seen = DetectedObject(name=thing.name, model=thing.model, visible_share=share)
+            seen = Detection(instance=thing.name, label=thing.model, confidence=1.0,
+                             visible_share=share)
             fill_frame(seen.pose, X_CO)
-            message.objects.append(seen)
+            message.detections.append(seen)
         return message
 
     def objects_message(self, stamp):

@@ -12,6 +12,7 @@ import rosunit
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
+from failures import text_of  # noqa: E402
 from lab import Lab, wait_for  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
 
@@ -53,7 +54,7 @@ class Pr2SafetyTest(unittest.TestCase):
             if not goal.is_done():
                 return goal, index
             result = goal.result()
-            is_stopped = result.reason.startswith('silent_')
+            is_stopped = text_of(result.failure).startswith('silent_')
             self.assertTrue(result.code == self.codes.SUCCEEDED or is_stopped,
                             '%s\n%s' % (result, self.lab.output()[-3000:]))
         raise AssertionError('no drive gets fast:\n' + self.lab.output()[-3000:])
@@ -91,9 +92,9 @@ class Pr2SafetyTest(unittest.TestCase):
         """The middle layer may have noticed itself, in its own words, before the guard told it."""
         result = goal.result()
         self.assertEqual(result.code, self.codes.FAILED, result)
-        self.assertIn(result.reason.split(':')[0], (reason, 'stale_observation'))
+        self.assertIn(text_of(result.failure).split(':')[0], (reason, 'stale_observation'))
         wait_until(lambda: self.state().state == self.states.STANDING, 'the guard to stand')
-        self.assertIn(reason, self.state().reason)
+        self.assertIn(reason, text_of(self.state().failure))
 
     def require_stand(self):
         """Nothing moves by itself once all is well again."""
@@ -141,7 +142,7 @@ class Pr2SafetyTest(unittest.TestCase):
         os.kill(pid, signal.SIGKILL)
         self.require_gentle_stop(index, allowed)
         wait_until(lambda: self.state().state == self.states.STANDING, 'the guard to stand')
-        self.assertIn('silent', self.state().reason)
+        self.assertIn('silent', text_of(self.state().failure))
         self.require_stand()
         wait_for(lambda: self.lab.pid_of('middle_layer') not in (None, pid),
                  'it to be started again')
@@ -159,9 +160,9 @@ class Pr2SafetyTest(unittest.TestCase):
         self.assertAlmostEqual(self.lab.truth.samples[-1][4], -0.2, places=2)
         result = goal.result()
         self.assertIn(result.code, (self.codes.SUCCEEDED, self.codes.FAILED))
-        print('joystick: code %d, reason "%s"' % (result.code, result.reason))
+        print('joystick: code %d, reason "%s"' % (result.code, text_of(result.failure)))
         if result.code == self.codes.FAILED:
-            self.assertNotEqual(result.reason, '')
+            self.assertNotEqual(text_of(result.failure), '')
         self.lab.truth.wait_for(lambda s: abs(s[4]) < STILL, 'the base to stand')
 
     def test_it_is_never_faster_than_its_motion_set(self):

@@ -19,6 +19,7 @@ from std_msgs.msg import Bool
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from failures import text_of  # noqa: E402
 from ros_processes import Processes, executable, wait_until  # noqa: E402
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..')
@@ -97,7 +98,7 @@ class BaseGuardTest(unittest.TestCase):
             return now if now and (now.state, now.request) == (state, request) else None
         now = wait_until(reached, 'state %d of request %d; the guard said:\n%s' % (
             state, request, self.guard.output()))
-        self.assertTrue(now.reason.startswith(reason), now.reason)
+        self.assertTrue(text_of(now.failure).startswith(reason), text_of(now.failure))
         return now
 
     def require_gentle_stop(self, reason, request=1):
@@ -135,7 +136,7 @@ class BaseGuardTest(unittest.TestCase):
         self.wait_for_state(BaseGuardState.PASSING)
         self.wait_for_speed(FULL_SPEED)
         self.assertEqual(max(command.linear.x for command in self.commands), FULL_SPEED)
-        self.assertEqual(state.reason, 'no_request')
+        self.assertEqual(text_of(state.failure), 'no_request')
 
     # What ends in a stop.
 
@@ -171,7 +172,7 @@ class BaseGuardTest(unittest.TestCase):
         self.drive()
         self.localiser.signal(signal.SIGSTOP)
         self.require_gentle_stop('stale_pose')
-        self.assertIn('map_transform', self.states[-1].reason)
+        self.assertIn('map_transform', text_of(self.states[-1].failure))
         self.localiser.signal(signal.SIGCONT)
         self.require_nothing_moves()
 

@@ -120,10 +120,10 @@ hires::Prediction Prediction(const std::string& set, double success) {
   prediction.duration_sd = 2.0;
   prediction.duration_p95 = 23.0;
   hires::FailureCount fell;
-  fell.reason = "object_fell";
+  fell.failure.code = hires::Failure::OBJECT_FELL;
   fell.count = 5;
   hires::FailureCount late;
-  late.reason = "timed_out";
+  late.failure.code = hires::Failure::TIMED_OUT;
   late.count = 1;
   prediction.failures = {late, fell};
   return prediction;
@@ -257,10 +257,11 @@ TEST(ExecuteMessageTest, NoLimitIsNone) {
 TEST(ExecuteMessageTest, WhatCannotBeDoneFailed) {
   hires::ExecuteActionResult result;
   result.code = hires::ExecuteActionResult::INVALID;
-  result.reason = "no such action";
+  result.failure.code = hires::Failure::INVALID_ACTION;
+  result.failure.detail = "no such action";
   const auto finished = AnswerOf(4, result);
   EXPECT_EQ(finished.result, execution::StepFinished::Result::kFailed);
-  EXPECT_EQ(finished.reason, "no such action");
+  EXPECT_EQ(finished.reason, "invalid_action: no such action");
 }
 
 }  // namespace

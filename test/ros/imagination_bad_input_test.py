@@ -11,6 +11,7 @@ import rosunit
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from failures import text_of  # noqa: E402
 from imagination_system import ImaginationSystem  # noqa: E402
 from ros_processes import LIMIT  # noqa: E402
 
@@ -44,8 +45,9 @@ class ImaginationBadInputTest(unittest.TestCase):
     def goal(cls, name='move_base_blind', alternatives=((SOUTH_TABLE,),), **fields):
         msg = cls.msg
         goal = msg.ImagineGoal()
-        goal.action.name = name
-        goal.action.alternatives = [msg.StringList(values=list(a)) for a in alternatives]
+        step = msg.ActionTemplate(name=name)
+        step.alternatives = [msg.StringList(values=list(a)) for a in alternatives]
+        goal.steps = [step]
         goal.updated_fluents = [msg.Atom('RobotAt', [EAST_COUNTER]),
                                 msg.Atom('On', ['peppermill1', 'trayArea1'])]
         goal.rollouts = 4
@@ -82,7 +84,7 @@ class ImaginationBadInputTest(unittest.TestCase):
         self.assertEqual(result.outcome, self.msg.ImagineResult.ALL_FAILED, result.why)
         self.assertEqual(result.recommended, -1)
         failures = result.predictions[0].failures
-        self.assertEqual({f.reason.split(':')[0] for f in failures}, {reason})
+        self.assertEqual({text_of(f.failure).split(':')[0] for f in failures}, {reason})
         self.assertEqual(sum(f.count for f in failures), rollouts)
         self.assertIn(reason, result.why)
 

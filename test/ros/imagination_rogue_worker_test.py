@@ -49,7 +49,7 @@ class RogueWorker:
 
     def abort(self, goal, wanted):
         goal.set_accepted()
-        goal.set_aborted(self.msg.RolloutResult(code=1, reason='no mood'))
+        goal.set_aborted(self.msg.RolloutResult(code=1, why='no mood'))
 
     def reject(self, goal, wanted):
         goal.set_rejected(self.msg.RolloutResult(), 'no time')

@@ -33,10 +33,11 @@ hires::Atom MakeAtom(const std::string& predicate, const std::vector<std::string
 /// Drive blindly with the mill to one of two tables.
 hires::ImagineGoal Goal() {
   hires::ImagineGoal goal;
-  goal.action.name = "move_base_blind";
-  goal.action.alternatives.resize(1);
-  goal.action.alternatives[0].values = {"preManipulationAreaSouthTable1",
-                                        "preManipulationAreaNorthTable1"};
+  goal.steps.resize(1);
+  goal.steps[0].name = "move_base_blind";
+  goal.steps[0].alternatives.resize(1);
+  goal.steps[0].alternatives[0].values = {"preManipulationAreaSouthTable1",
+                                          "preManipulationAreaNorthTable1"};
   goal.updated_fluents = {MakeAtom("RobotAt", {"preManipulationAreaEastCounter1"}),
                           MakeAtom("On", {"peppermill1", "trayArea1"})};
   goal.rollouts = 8;
@@ -80,11 +81,11 @@ TEST(ImagineRequestTest, AGoalWithStatesStartsInThem) {
 /// Put the mug down, which the right hand holds.
 hires::ImagineGoal PlaceGoal() {
   hires::ImagineGoal goal = Goal();
-  goal.action.name = "place_object";
-  goal.action.alternatives.resize(3);
-  goal.action.alternatives[0].values = {"mug1"};
-  goal.action.alternatives[1].values = {"rightArm1"};
-  goal.action.alternatives[2].values = {"placingAreaWestRightTable1"};
+  goal.steps[0].name = "place_object";
+  goal.steps[0].alternatives.resize(3);
+  goal.steps[0].alternatives[0].values = {"mug1"};
+  goal.steps[0].alternatives[1].values = {"rightArm1"};
+  goal.steps[0].alternatives[2].values = {"placingAreaWestRightTable1"};
   goal.updated_fluents = {MakeAtom("RobotAt", {"manipulationAreaSouthTable1"}),
                           MakeAtom("HasTorsoPosture", {"TorsoUpPosture"}),
                           MakeAtom("HasArmPosture", {"leftArm1", "ArmToSidePosture"}),
@@ -114,9 +115,10 @@ TEST(ImagineRequestTest, AFinalStateIsAStart) {
   ASSERT_TRUE(result);
   const hires::RolloutRecord record = ToMsg(*result, 0);
   hires::ImagineGoal next;
-  next.action.name = "move_base_blind";
-  next.action.alternatives.resize(1);
-  next.action.alternatives[0].values = {"preManipulationAreaSouthTable1"};
+  next.steps.resize(1);
+  next.steps[0].name = "move_base_blind";
+  next.steps[0].alternatives.resize(1);
+  next.steps[0].alternatives[0].values = {"preManipulationAreaSouthTable1"};
   next.rollouts = 1;
   next.world_state = record.final_world;
   next.robot_state = record.final_robot;
@@ -131,6 +133,36 @@ TEST(ConversionsTest, ARolloutSaysWhetherAnythingWasWatched) {
   EXPECT_TRUE(imagination::SameOutcome(result, back));
   result.nothing_watched = false;
   EXPECT_FALSE(FromMsg(ToMsg(result, 3)).nothing_watched);
+}
+
+TEST(ConversionsTest, AFailureKeepsItsCodeItsSubjectsAndItsWords) {
+  const hires::base::Failure failure(hires::base::FailureCode::kAreaOccupied, {"book1", "book2"},
+                                     "two books");
+  const hires::base::Failure back = FromMsg(ToMsg(failure));
+  EXPECT_EQ(back, failure);
+  EXPECT_EQ(back.detail, "two books");
+  EXPECT_EQ(FromMsg(hires::Failure()), hires::base::Failure());
+}
+
+TEST(ConversionsTest, AFailureThatALaterVersionSendsIsToldAndNotGuessed) {
+  hires::Failure later;
+  later.code = 60000;
+  later.subjects = {"mug1"};
+  later.detail = "spilt";
+  const hires::base::Failure failure = FromMsg(later);
+  EXPECT_EQ(failure.code, hires::base::FailureCode::kOther);
+  EXPECT_EQ(failure.subjects, later.subjects);
+  EXPECT_EQ(hires::base::ToString(failure), "other: code 60000, unknown to this version: spilt");
+}
+
+TEST(ImagineRequestTest, StepsMustBeOne) {
+  hires::ImagineGoal goal = Goal();
+  goal.steps.push_back(goal.steps.front());
+  EXPECT_EQ(
+      ErrorOf(goal),
+      "steps has 2 entries, wanted 1: one step is imagined at a time; ask for each by itself");
+  goal.steps.clear();
+  EXPECT_THAT(ErrorOf(goal), testing::HasSubstr("steps has 0 entries"));
 }
 
 TEST(ImagineRequestTest, AStateOfAnotherWorldIsRefused) {
@@ -186,7 +218,7 @@ TEST(ImagineRequestTest, WhatCannotBePlayedIsRefusedByName) {
   goal.uncertainty = "objct_mass: 1";
   EXPECT_THAT(ErrorOf(goal), HasSubstr("uncertainty of the request"));
   goal = Goal();
-  goal.action.alternatives[0].values = {"preManipulationAreaSouthTabel1"};
+  goal.steps[0].alternatives[0].values = {"preManipulationAreaSouthTabel1"};
   EXPECT_THAT(ErrorOf(goal), HasSubstr("did you mean 'premanipulationareasouthtable1'"));
   goal = Goal();
   goal.updated_fluents.pop_back();

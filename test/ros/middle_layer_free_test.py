@@ -11,6 +11,7 @@ import rosunit
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from failures import text_of  # noqa: E402
 from robot_system import RobotSystem  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
 
@@ -57,7 +58,7 @@ class MiddleLayerFreeTest(unittest.TestCase):
     def test_drives_with_noise_at_the_pace_of_time(self):
         self.begin()
         result = self.system.execute('move_base', 'preManipulationAreaEastTable2').result()
-        self.assertEqual((result.code, result.reason), (self.codes.SUCCEEDED, ''),
+        self.assertEqual((result.code, text_of(result.failure)), (self.codes.SUCCEEDED, ''),
                          self.system.output())
         self.system.wait_for_truth(
             lambda s: speed(s) < 0.02 and math.hypot(
@@ -72,7 +73,7 @@ class MiddleLayerFreeTest(unittest.TestCase):
         self.system.wait_for_truth(lambda s: speed(s) > 0.3, 'the robot to be fast')
         gate.is_open = False
         result = goal.result()
-        self.assertEqual((result.code, result.reason),
+        self.assertEqual((result.code, text_of(result.failure)),
                          (self.codes.FAILED, 'stale_observation'), self.system.output())
         self.system.wait_for_truth(lambda s: speed(s) < 0.02, 'the robot to stand')
 
@@ -106,12 +107,12 @@ class MiddleLayerFreeTest(unittest.TestCase):
     def test_without_sensors_an_action_fails(self):
         self.begin_without('base_odometry/odom:=nowhere')
         result = self.system.execute('move_torso', 'torsoUpPosture').result()
-        self.assertEqual((result.code, result.reason), (self.codes.FAILED, 'stale_observation'))
+        self.assertEqual((result.code, text_of(result.failure)), (self.codes.FAILED, 'stale_observation'))
 
     def test_without_controllers_an_action_fails_with_their_topic(self):
         self.begin_without('navigation/cmd_vel:=nobody/command')
         result = self.system.execute('move_base', 'home').result()
-        self.assertEqual((result.code, result.reason),
+        self.assertEqual((result.code, text_of(result.failure)),
                          (self.codes.FAILED, 'no_controller: /nobody/command'))
 
     def test_a_missing_sensor_is_in_the_diagnostics(self):

@@ -14,6 +14,7 @@ import rosunit
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from failures import failure, text_of  # noqa: E402
 from robot_system import RobotSystem  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
 
@@ -75,7 +76,7 @@ class Guard:
 
     def say(self, state, request, reason=''):
         self.is_passing = state == self._system.msg.BaseGuardState.PASSING
-        self._state.publish(state=state, request=request, reason=reason)
+        self._state.publish(state=state, request=request, failure=failure(reason))
 
     def stop(self, reason):
         """The base, for whoever asked last."""
@@ -118,7 +119,7 @@ class MiddleLayerGuardTest(unittest.TestCase):
 
     def require(self, goal, code, reason=''):
         result = goal.result()
-        self.assertEqual((result.code, result.reason), (code, reason), self.system.output())
+        self.assertEqual((result.code, text_of(result.failure)), (code, reason), self.system.output())
 
     def drive(self):
         """On the way, and fast."""
@@ -192,8 +193,8 @@ class MiddleLayerGuardTest(unittest.TestCase):
         state = self.system.msg.BaseGuardState
         self.guard.say(state.PASSING, self.guard.ids()[-1])
         self.guard._state.publish(state=state.STANDING, request=self.guard.ids()[-1] - 1,
-                                  reason='motors_halted')
-        self.guard._state.publish(state=state.STANDING, request=0, reason='no_request')
+                                  failure=failure('motors_halted'))
+        self.guard._state.publish(state=state.STANDING, request=0, failure=failure('no_request'))
         goal.cancel()
         self.assertEqual(goal.result().code, self.codes.PREEMPTED)
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "hires/ros/conversions.h"
+
 namespace hires_ros {
 namespace {
 
@@ -19,7 +21,7 @@ class BaseLeaveTest : public ::testing::Test {
     BaseGuardState msg;
     msg.state = state;
     msg.request = request;
-    msg.reason = reason;
+    msg.failure = FailureMsgOf(reason);
     return msg;
   }
 

@@ -15,6 +15,7 @@ import yaml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from failures import text_of  # noqa: E402
 from robot_system import COUNTER, MUG, RobotSystem  # noqa: E402
 from ros_processes import executable, wait_until  # noqa: E402
 
@@ -206,12 +207,12 @@ class MiddleLayerLockstepTest(unittest.TestCase):
             else:
                 runs.append(self.run_alone(action, seed=3, scenario=TOPPLE))
         result, path = runs[0]
-        self.assertEqual(result.code, self.system.codes.SUCCEEDED, result.reason)
+        self.assertEqual(result.code, self.system.codes.SUCCEEDED, text_of(result.failure))
         self.assertGreater(len(path), 50)
         exact = {stamp: values_of(state) for stamp, state in path.items()}
         for other_result, other_path in runs[1:]:
-            self.assertEqual((other_result.code, other_result.reason, other_result.duration),
-                             (result.code, result.reason, result.duration))
+            self.assertEqual((other_result.code, text_of(other_result.failure), other_result.duration),
+                             (result.code, text_of(result.failure), result.duration))
             self.assertEqual({stamp: values_of(state) for stamp, state in other_path.items()},
                              exact)
 
@@ -246,7 +247,7 @@ class MiddleLayerLockstepTest(unittest.TestCase):
             with self.subTest(action=action):
                 result, states = self.run_action(action)
                 succeeded = result.code == self.system.codes.SUCCEEDED
-                self.assertEqual('succeeded' if succeeded else result.reason, imagined.end,
+                self.assertEqual('succeeded' if succeeded else text_of(result.failure), imagined.end,
                                  self.system.output())
                 self.require_same_path(action, [configuration_of(states[stamp])
                                                 for stamp in sorted(states)], imagined.path)

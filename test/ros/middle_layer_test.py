@@ -14,6 +14,7 @@ import rosunit
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from failures import text_of  # noqa: E402
 from robot_system import COUNTER, MUG, RobotSystem  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
 
@@ -62,7 +63,7 @@ class MiddleLayerTest(unittest.TestCase):
         self.system.end_processes()
 
     def require(self, result, code, reason=''):
-        self.assertEqual((result.code, result.reason), (code, reason), self.system.output())
+        self.assertEqual((result.code, text_of(result.failure)), (code, reason), self.system.output())
         return result
 
     def require_arrival(self, pose, tolerance):
@@ -241,7 +242,7 @@ class MiddleLayerTest(unittest.TestCase):
         self.assertTrue(answer.success, answer.message)
         result = goal.result()
         self.assertEqual(result.code, self.codes.FAILED)
-        self.assertIn(result.reason, ('grasp_failed', 'object_not_seen', 'object_slipped'))
+        self.assertIn(text_of(result.failure), ('grasp_failed', 'object_not_seen', 'object_slipped'))
 
     def test_an_object_that_slips_away_is_missed_when_it_is_placed(self):
         self.begin_at_counter()
@@ -251,7 +252,7 @@ class MiddleLayerTest(unittest.TestCase):
         self.assertTrue(answer.success, answer.message)
         result = self.system.execute('place_object', 'mug1', 'rightArm1',
                                      'placingAreaEastRightCounter1').result()
-        self.assertEqual((result.code, result.reason), (self.codes.FAILED, 'object_slipped'))
+        self.assertEqual((result.code, text_of(result.failure)), (self.codes.FAILED, 'object_slipped'))
 
     # Goals
 
@@ -267,17 +268,17 @@ class MiddleLayerTest(unittest.TestCase):
         for words, expected in bad:
             with self.subTest(goal=words):
                 result = self.system.execute(*words).result()
-                self.assertEqual(result.code, self.codes.INVALID, result.reason)
-                self.assertIn(expected.lower(), result.reason.lower())
+                self.assertEqual(result.code, self.codes.INVALID, text_of(result.failure))
+                self.assertIn(expected.lower(), text_of(result.failure).lower())
         result = self.system.execute('move_base', 'home', limit=-1.0).result()
         self.assertEqual(result.code, self.codes.INVALID)
-        self.assertIn('time_limit', result.reason)
+        self.assertIn('time_limit', text_of(result.failure))
 
     def test_a_conflicting_goal_is_refused_and_disturbs_nobody(self):
         first = self.system.execute('move_base', 'preManipulationAreaEastTable2').wait_for_active()
         second = self.system.execute('move_base_blind', 'home').result()
         self.assertEqual(second.code, self.codes.INVALID)
-        self.assertEqual(second.reason,
+        self.assertEqual(text_of(second.failure),
                          'busy: move_base(preManipulationAreaEastTable2) needs base')
         self.require(first.result(), self.codes.SUCCEEDED)
 

@@ -15,6 +15,7 @@ import rosunit
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, 'support'))
 
+from failures import text_of  # noqa: E402
 from move_base_system import FAST, ROOT, SLOW, MoveBaseSystem, config_text  # noqa: E402
 from robot_system import Goal  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
@@ -153,7 +154,7 @@ class MoveBaseModeTest(unittest.TestCase):
     def require(self, goal, code, pattern='^'):
         result = goal.result()
         self.assertEqual(result.code, code, '%s\n%s' % (result, self.output()))
-        self.assertRegex(result.reason, pattern)
+        self.assertRegex(text_of(result.failure), pattern)
 
     def require_stand(self):
         self.wait_for(lambda: self.base.speed() < 0.01, 'the base to stand')
@@ -243,7 +244,7 @@ class MoveBaseModeTest(unittest.TestCase):
         self.rospy.set_param('/move_base_node/behaviour', 'abort')
         self.rospy.set_param('/move_base_node/text', 'no')
         # A guard that has only just begun may not have heard the laser yet, and says so.
-        self.wait_for(lambda: self.execute().result().reason == 'unreachable',
+        self.wait_for(lambda: text_of(self.execute().result().failure) == 'unreachable',
                       'an action that gets as far as move_base')
 
     def test_a_killed_move_base_is_named_and_gets_its_own_values_when_it_is_back(self):

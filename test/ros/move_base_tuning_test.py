@@ -16,6 +16,7 @@ import rosunit
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from failures import text_of  # noqa: E402
 from move_base_system import FAST, NOETIC, OLD, PLANNER, SLOW, MoveBaseSystem  # noqa: E402
 from ros_processes import Processes, wait_until  # noqa: E402
 
@@ -88,7 +89,7 @@ class Robot:
         self.request = request
 
     def is_said(self, state, number, pattern=''):
-        return any(s.state == state and s.request == number and re.search(pattern, s.reason)
+        return any(s.state == state and s.request == number and re.search(pattern, text_of(s.failure))
                    for s in list(self.states))
 
     def close(self):

@@ -28,7 +28,7 @@ COMPLETE = ('one_way', 'two_ways', 'refused')  # requests whose answers must rep
 
 def goal_of(request_id, areas, **changes):
     goal = ImagineGoal(
-        action=ActionTemplate('move_base_blind', [StringList(areas)]),
+        steps=[ActionTemplate('move_base_blind', [StringList(areas)])],
         updated_fluents=[Atom('RobotAt', ['preManipulationAreaEastCounter1']),
                          Atom('On', ['peppermill1', 'trayArea1'])],
         rollouts=8, seed=7, request_id=request_id)

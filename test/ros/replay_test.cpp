@@ -35,7 +35,8 @@ const ros::Time kTime(100.0);
 
 ImagineGoal Goal(const std::string& request_id = "r", std::uint64_t seed = 7) {
   ImagineGoal goal;
-  goal.action.name = "move_base_blind";
+  goal.steps.resize(1);
+  goal.steps[0].name = "move_base_blind";
   goal.rollouts = 8;
   goal.seed = seed;
   goal.request_id = request_id;
@@ -375,7 +376,7 @@ TEST(DependsOnMomentTest, AnswersThatWereCutShortDo) {
 TEST(DependsOnMomentTest, RolloutsThatTookTheirWorkersDownDo) {
   ImagineResult result = Ranked();
   result.predictions[1].failures.resize(1);
-  result.predictions[1].failures[0].reason = "unplayable";
+  result.predictions[1].failures[0].failure.code = hires::Failure::UNPLAYABLE;
   EXPECT_TRUE(DependsOnMoment(Goal(), result));
 }
 

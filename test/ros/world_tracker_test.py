@@ -148,8 +148,8 @@ class WorldTrackerTest(unittest.TestCase):
         detections.header.frame_id = frame
         X_CM = numpy.linalg.inv(self.link(CAMERA))
         for name, (model, X_MO) in seen.items():
-            detections.objects.append(self.msg.DetectedObject(
-                name=name, model=model, pose=self.pose_of(X_CM @ X_MO), visible_share=1.0))
+            detections.detections.append(self.msg.Detection(
+                instance=name, label=model, pose=self.pose_of(X_CM @ X_MO), visible_share=1.0))
         return detections
 
     def link(self, name):

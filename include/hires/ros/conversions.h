@@ -3,6 +3,7 @@
 #include <hires/ActionCall.h>
 #include <hires/ActionTemplate.h>
 #include <hires/Atom.h>
+#include <hires/Failure.h>
 #include <hires/ImagineFeedback.h>
 #include <hires/ImagineResult.h>
 #include <hires/OutcomeCounts.h>
@@ -12,6 +13,7 @@
 #include <hires/WorldState.h>
 
 #include "hires/base/action.h"
+#include "hires/base/failure.h"
 #include "hires/geometry/pose.h"
 #include "hires/imagination/report.h"
 #include "hires/imagination/rollout_result.h"
@@ -30,6 +32,15 @@ msg::ActionCall ToMsg(const hires::base::ActionCall& call);
 hires::base::ActionCall FromMsg(const msg::ActionCall& call);
 msg::ActionTemplate ToMsg(const hires::base::ActionTemplate& action);
 hires::base::ActionTemplate FromMsg(const msg::ActionTemplate& action);
+
+msg::Failure ToMsg(const hires::base::Failure& failure);
+/// A number that this version does not know, as a later one may send, becomes kOther with words
+/// that name it: what is unknown is told, and nothing is guessed.
+hires::base::Failure FromMsg(const msg::Failure& failure);
+
+/// For layers whose failures are still text, "area_occupied: book1".
+msg::Failure FailureMsgOf(const std::string& reason);
+std::string ReasonOf(const msg::Failure& failure);
 
 msg::WorldState ToMsg(const hires::world::WorldState& state);
 hires::world::WorldState FromMsg(const msg::WorldState& state);

@@ -21,6 +21,7 @@ import threading
 
 import actionlib
 import rospy
+from failures import failure
 from hires import msg, srv
 
 POSTURES = {name.lower(): name for name in (
@@ -174,7 +175,7 @@ class MiddleLayer(Server):
         call = goal.get_goal().action
         wanted = behaviour_of(call.name, call.arguments)
         log('%s(%s)' % (call.name, ', '.join(call.arguments)))
-        result = msg.ExecuteActionResult(reason=wanted.get('reason', ''))
+        result = msg.ExecuteActionResult(failure=failure(wanted.get('reason', '')))
         if wanted.get('hang') or wanted.get('hang_for'):
             if self._hangs_until_freed(call.name, cancelled):
                 return self._succeed(goal, call, wanted, result)
@@ -183,7 +184,7 @@ class MiddleLayer(Server):
             log('preempted %s' % call.name)
             result.code = result.PREEMPTED
             return goal.set_canceled(result)
-        if result.reason:
+        if result.failure.code:
             result.code = result.FAILED
             return goal.set_aborted(result)
         self._succeed(goal, call, wanted, result)
@@ -208,7 +209,7 @@ class Imagination(Server):
     def answer(self, goal, cancelled):
         asked = goal.get_goal()
         wanted = rospy.get_param('/fake/imagine', {'answer': 'ranked'})
-        log('imagine %s' % asked.action.name)
+        log('imagine %s' % asked.steps[0].name)
         result = msg.ImagineResult(recommended=-1, seed=asked.seed, wall_seconds=1.5,
                                    simulated_seconds=30.0, why='as the test wants')
         if wanted['answer'] == 'hang':
@@ -219,15 +220,15 @@ class Imagination(Server):
             result.outcome = result.NO_WORKER
             return goal.set_aborted(result)
         is_ranked = wanted['answer'] == 'ranked'
-        last = asked.action.alternatives[-1].values
+        last = asked.steps[0].alternatives[-1].values
         best = wanted.get('recommend', last[0])
         for value in sorted(last, key=lambda v: v != best):
-            arguments = [a.values[0] for a in asked.action.alternatives[:-1]] + [value]
+            arguments = [a.values[0] for a in asked.steps[0].alternatives[:-1]] + [value]
             result.predictions.append(msg.Prediction(
-                action=msg.ActionCall(name=asked.action.name, arguments=arguments), rollouts=16,
+                action=msg.ActionCall(name=asked.steps[0].name, arguments=arguments), rollouts=16,
                 success_share=1.0 if is_ranked else 0.0, duration_mean=20.0, duration_sd=1.0,
                 duration_p50=20.0, duration_p95=22.0,
-                failures=[] if is_ranked else [msg.FailureCount('area_occupied', 16)]))
+                failures=[] if is_ranked else [msg.FailureCount(failure('area_occupied'), 16)]))
         result.outcome = result.RANKED if is_ranked else result.ALL_FAILED
         result.recommended = 0 if is_ranked else -1
         goal.set_succeeded(result)
