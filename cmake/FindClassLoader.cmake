@@ -11,8 +11,10 @@ mark_as_advanced(ClassLoader_LIBRARY ClassLoader_INCLUDE ClassLoader_RCPPUTILS_I
   ClassLoader_CONSOLE_BRIDGE_LIBRARY)
 
 include(FindPackageHandleStandardArgs)
+set(FPHSA_NAME_MISMATCHED ON)  # catkin includes this file where it looks for hires
 find_package_handle_standard_args(ClassLoader
   REQUIRED_VARS ClassLoader_LIBRARY ClassLoader_INCLUDE ClassLoader_CONSOLE_BRIDGE_LIBRARY)
+unset(FPHSA_NAME_MISMATCHED)
 
 if(ClassLoader_FOUND AND NOT TARGET ClassLoader::ClassLoader)
   set(folders ${ClassLoader_INCLUDE})

@@ -33,11 +33,3 @@ function(hires_benchmark layer name)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/test)
   target_link_libraries(${target} PRIVATE hires_${layer} ${BENCH_LINK} benchmark::benchmark_main)
 endfunction()
-
-# hires_action_library(<target> a.cpp ...): actions that programs load when they are told to, see
-# hires/skills/action_library.h.
-function(hires_action_library target)
-  add_library(${target} MODULE ${ARGN})
-  target_compile_options(${target} PRIVATE ${HIRES_WARNINGS})
-  target_link_libraries(${target} PRIVATE hires_skills)
-endfunction()

@@ -15,7 +15,13 @@ endif()
 add_action_files(DIRECTORY action FILES ${HIRES_ACTION})
 generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs sensor_msgs std_msgs)
 
+# What packages of actions are built with; the libraries in the order in which they need each other.
+set(HIRES_EXPORTED_LIBRARIES hires_skills hires_manipulation hires_perception hires_navigation hires_world
+  hires_robot hires_actions hires_geometry hires_base)
 catkin_package(
+  INCLUDE_DIRS include
+  LIBRARIES ${HIRES_EXPORTED_LIBRARIES}
+  CFG_EXTRAS FindClassLoader.cmake HiresActionLibrary.cmake
   CATKIN_DEPENDS actionlib actionlib_msgs geometry_msgs message_runtime roscpp sensor_msgs std_msgs)
 
 # hires_node(<name> [LINK libraries ...]): an executable that rosrun and roslaunch find as <name>,
@@ -63,6 +69,7 @@ endfunction()
 
 install(DIRECTORY launch config worlds urdf
   DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION} USE_SOURCE_PERMISSIONS)
+install(DIRECTORY include/hires DESTINATION ${CATKIN_GLOBAL_INCLUDE_DESTINATION})
 # What programs of the package start themselves.
 install(PROGRAMS scripts/plot_timeline
   DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/scripts)

@@ -102,6 +102,11 @@ void SetStart(const ImagineOptions& o, ImagineQuery* query) {
 }
 
 ImagineQuery MakeQuery(const ImagineOptions& o, const Backends& backends) {
+  if (!o.local && !o.action_libraries.empty()) {
+    throw base::ConfigError(
+        "--actions is for --local; running nodes load theirs by the parameter ~action_libraries "
+        "(imagination.launch actions:=FILE)");
+  }
   const std::string config_path =
       o.config.empty() ? backends.package_folder + "/config/imagination_client.yaml" : o.config;
   const imagination::ClientConfig config = imagination::ReadClientConfig(config_path);
@@ -169,11 +174,6 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
   const auto cancelled = [] { return interrupted.load(); };
   if (!options.local && !backends.imagine_remotely) {
     throw base::ConfigError("this build has no ROS nodes to ask; add --local");
-  }
-  if (!options.local && !options.action_libraries.empty()) {
-    throw base::ConfigError(
-        "--actions is for --local; running nodes load theirs by the parameter ~action_libraries "
-        "(imagination.launch actions:=FILE)");
   }
   const imagination::Report report = options.local
                                          ? ImagineInThisProcess(query, on_interim, cancelled)

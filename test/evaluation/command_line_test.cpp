@@ -355,6 +355,20 @@ TEST(CommandLineTest, ARefusedRequestLeavesAnEarlierAnswerAlone) {
   EXPECT_EQ(base::ReadTextFile(json), "{\"earlier\": true}\n");
 }
 
+TEST(CommandLineTest, LibrariesOfActionsAreLoadedHereAndNowhereElse) {
+  const std::vector<std::string> words{"--action", "turn_towards", "--from",
+                                       "Door",     "--actions",    "/nowhere/lib.so"};
+  const Ended local = Small().Imagine(words);
+  EXPECT_EQ(local.code, kExitBadInput);
+  EXPECT_THAT(local.err,
+              AllOf(HasSubstr("library of actions '/nowhere/lib.so'"), HasSubstr("no such file")));
+  std::vector<std::string> remote{"imagine"};
+  remote.insert(remote.end(), words.begin(), words.end());
+  const Ended refused = RunWith(remote);
+  EXPECT_EQ(refused.code, kExitBadInput);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("--local"), HasSubstr("~action_libraries")));
+}
+
 TEST(CommandLineTest, WithoutNodesToAskItSaysSo) {
   ExpectRefused(RunWith({"imagine", "--action", "move_base", "--from", "home"}), {"--local"});
 }

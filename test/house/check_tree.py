@@ -31,7 +31,8 @@ RANK = {layer: rank for rank, line in enumerate(LAYERS) for layer in line}
 FIRST_LAYER_WITH_ROS = RANK["ros"]
 
 CODE_FOLDERS = ["include/hires", "src", "test", "benchmark"]
-TEXT_FOLDERS = [".ci", "action", "benchmark", "cmake", "config", "docs", "include", "launch", "msg",
+TEXT_FOLDERS = [".ci", "action", "benchmark", "cmake", "config", "docs", "examples", "include",
+                "launch", "msg",
                 "scripts", "src", "srv", "test", "urdf", "worlds"]
 # Given as they are: meshes, maps, and data that tests read.
 NOT_OUR_TEXT = re.compile(r"(^|/)test/data/|\.(pgm|png|jpg|stl|dae|obj|bag|db|svg)$", re.IGNORECASE)
