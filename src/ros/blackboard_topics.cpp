@@ -1,6 +1,7 @@
 #include "hires/ros/blackboard_topics.h"
 
 #include <fmt/format.h>
+#include <ros/init.h>
 #include <ros/names.h>
 
 #include <algorithm>
@@ -63,8 +64,10 @@ BlackboardTopics::BlackboardTopics(const knowledge::BlackboardConfig& config,
     : config_(config),
       ontology_(std::move(ontology)),
       nh_(nh),
-      on_store_thread_(std::move(on_store_thread)) {
-  const auto queue = static_cast<std::uint32_t>(config.queue_size);
+      on_store_thread_(std::move(on_store_thread)),
+      pace_(config.queue_size, [] { return ros::isShuttingDown(); }),
+      rounds_(&pace_) {
+  const std::uint32_t queue = pace_.queue_size();
   changes_ = {nh->advertise<hires::FluentChanges>(kBlackboardChanges, queue), last};
   if (!config.imagined) return;
   imagined_ = {nh->advertise<hires::FluentChanges>(kImaginedChanges, queue), last};
@@ -103,7 +106,7 @@ std::string BlackboardTopics::Open(const knowledge::DemandTopic& topic,
   opened.demand.Snapshot(store);
   Topic& kept = topics_.emplace(topic.name, std::move(opened)).first->second;
   kept.publisher = nh_->advertise<hires::FluentChanges>(
-      name, static_cast<std::uint32_t>(config_.queue_size),
+      name, pace_.queue_size(),
       [this, wanted = topic.name](const ros::SingleSubscriberPublisher& subscriber) {
         OnSubscriber(wanted, subscriber);
       });
@@ -131,13 +134,17 @@ hires::FluentChanges BlackboardTopics::SnapshotOf(Topic* topic,
 }
 
 void BlackboardTopics::Publish(const std::vector<Change>& changes, const knowledge::Store& store) {
+  pace_.Await();
+  is_heard_ = false;
   const auto real = OfLabel(changes, knowledge::Episode::Label::kReal);
   if (config_.imagined) {
     PublishAll(OfLabel(changes, knowledge::Episode::Label::kImagined), &imagined_);
   }
-  if (real.empty()) return;
-  PublishAll(real, &changes_);
-  for (auto& [name, topic] : topics_) PublishDemand(real, store, &topic);
+  if (!real.empty()) {
+    PublishAll(real, &changes_);
+    for (auto& [name, topic] : topics_) PublishDemand(real, store, &topic);
+  }
+  if (is_heard_) pace_.Count();
 }
 
 void BlackboardTopics::PublishAll(const std::vector<Change>& changes, Stream* stream) {
@@ -149,7 +156,14 @@ void BlackboardTopics::PublishAll(const std::vector<Change>& changes, Stream* st
   if (stream->publisher.getNumSubscribers() == 0) return;
   message.changes.reserve(changes.size());
   for (const Change& change : changes) message.changes.push_back(ToMessage(change));
-  stream->publisher.publish(message);
+  PublishTo(stream->publisher, message);
+}
+
+void BlackboardTopics::PublishTo(const ros::Publisher& publisher,
+                                 const hires::FluentChanges& message) {
+  if (publisher.getNumSubscribers() == 0) return;
+  is_heard_ = true;
+  publisher.publish(message);
 }
 
 void BlackboardTopics::PublishDemand(const std::vector<Change>& changes,
@@ -166,7 +180,7 @@ void BlackboardTopics::PublishDemand(const std::vector<Change>& changes,
 
 void BlackboardTopics::Send(hires::FluentChanges message, Topic* topic) {
   message.previous = std::exchange(topic->last, message.last_sequence);
-  topic->publisher.publish(message);
+  PublishTo(topic->publisher, message);
   topic->num_kept += message.changes.size();
   topic->kept.push_back(std::move(message));
   while (topic->num_kept > static_cast<std::size_t>(config_.history)) {

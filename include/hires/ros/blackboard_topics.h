@@ -16,6 +16,7 @@
 #include "hires/knowledge/blackboard_config.h"
 #include "hires/knowledge/demand.h"
 #include "hires/knowledge/store.h"
+#include "hires/ros/publishing_pace.h"
 
 namespace hires_ros {
 
@@ -43,7 +44,8 @@ class BlackboardTopics {
   std::string Open(const hires::knowledge::DemandTopic& topic,
                    const hires::knowledge::Store& store);
 
-  /// Tells what one transaction changed.
+  /// Tells what one transaction changed. Waits, and so slows down who writes, while roscpp is
+  /// behind by half a queue: a subscriber that keeps up gets every change, however fast they come.
   void Publish(const std::vector<hires::knowledge::Change>& changes,
                const hires::knowledge::Store& store);
 
@@ -81,6 +83,7 @@ class BlackboardTopics {
   void PublishDemand(const std::vector<hires::knowledge::Change>& changes,
                      const hires::knowledge::Store& store, Topic* topic);
   void Send(hires::FluentChanges message, Topic* topic);
+  void PublishTo(const ros::Publisher& publisher, const hires::FluentChanges& message);
   void Lose(std::uint64_t sequence, const hires::knowledge::Store& store, Topic* topic);
   Topic* Find(const std::string& name);
 
@@ -88,6 +91,9 @@ class BlackboardTopics {
   const std::shared_ptr<const hires::knowledge::Ontology> ontology_;
   ros::NodeHandle* const nh_;
   const OnStoreThread on_store_thread_;
+  PublishingPace pace_;
+  RoscppRounds rounds_;
+  bool is_heard_{false};  ///< somebody subscribes to what the transaction at hand changed
   Stream changes_;
   Stream imagined_;
   std::map<std::string, Topic> topics_;
