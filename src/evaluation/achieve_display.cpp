@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "hires/base/check.h"
+#include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/report_table.h"
 
@@ -15,6 +17,10 @@ namespace {
 using execution::StepPhase;
 using execution::StepStatus;
 
+/// In the order of ImaginedOutcome.
+const std::array<std::string, 9> kImaginedOutcomes{"running",   "ranked",      "all_failed",
+                                                   "undecided", "no_worker",   "nothing_finished",
+                                                   "invalid",   "unavailable", "cancelled"};
 constexpr char kClearLine[] = "\033[K";
 
 std::string Seconds(double time) { return std::isfinite(time) ? fmt::format("{:.1f}", time) : ""; }
@@ -58,11 +64,11 @@ std::string StepLine(const StepStatus& step, double now, double begin) {
 
 std::string ImaginedLine(const ImaginedStep& step, double now, double begin) {
   const std::string what = ToString(step.action);
-  if (step.outcome.empty()) {
+  if (step.outcome == ImaginedOutcome::kRunning) {
     return fmt::format("{:8.1f} s  imagines  {}", step.requested - begin, what);
   }
   return fmt::format("{:8.1f} s  imagined  {}: {}: {}", step.answered.value_or(now) - begin, what,
-                     step.outcome, step.why);
+                     ToString(step.outcome), step.why);
 }
 
 std::vector<std::string> Lines(const std::string& text) {
@@ -98,6 +104,21 @@ std::string ToString(StepPhase phase) {
   }
   HIRES_CHECK(false, "a phase without a name");
   return "";
+}
+
+std::string ToString(ImaginedOutcome outcome) {
+  return kImaginedOutcomes.at(static_cast<std::size_t>(outcome));
+}
+
+ImaginedOutcome ParseImaginedOutcome(const std::string& word) {
+  if (word.empty()) return ImaginedOutcome::kRunning;
+  const auto found = std::find(kImaginedOutcomes.begin(), kImaginedOutcomes.end(), word);
+  if (found == kImaginedOutcomes.end()) {
+    throw base::ConfigError(fmt::format(
+        "outcome of an imagination is '{}', wanted one of {}; are both programs of one version?",
+        word, fmt::join(kImaginedOutcomes, ", ")));
+  }
+  return static_cast<ImaginedOutcome>(found - kImaginedOutcomes.begin());
 }
 
 double BeginOf(const AchieveStatus& status) {

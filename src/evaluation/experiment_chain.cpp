@@ -77,7 +77,7 @@ void Chain::Measure(const std::string& goal, Leg* leg) const {
   if (const auto contact = setup_.scene->clearance.FindContact(X_MB)) {
     leg->touched = contact->robot_part + " / " + contact->obstacle;
     leg->clearance = 0.0;
-  } else if (leg->result.reason.rfind("robot_collision", 0) == 0) {
+  } else if (leg->result.failure.code == base::FailureCode::kRobotCollision) {
     leg->touched = "unknown";  // it was over before the robot stood still
     leg->clearance = 0.0;
   }
@@ -86,7 +86,8 @@ void Chain::Measure(const std::string& goal, Leg* leg) const {
 void Chain::GoOn(const std::string& goal, Leg* leg) {
   at_ = goal;
   Pose2 X_MB = leg->result.final_robot.X_MB;
-  const bool is_stuck = !leg->touched.empty() || leg->result.reason == "bad_start";
+  const bool is_stuck =
+      !leg->touched.empty() || leg->result.failure.code == base::FailureCode::kBadStart;
   if (is_stuck) {
     X_MB = geometry::Flatten(*setup_.scene->world.FindFrame(goal));
     leg->was_restarted = true;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hires/base/text.h"
 #include "hires/evaluation/experiment_kinds.h"
 #include "hires/evaluation/experiment_parallel.h"
 #include "hires/evaluation/statistics.h"
@@ -93,7 +94,8 @@ nlohmann::ordered_json RowOf(const DurationsConfig::Row& row, int run,
           {"from", row.from},
           {"to", row.to},
           {"run", run},
-          {"reason", result.reason},
+          {"failure", base::ToString(result.failure.code)},
+          {"subjects", base::Join(result.failure.subjects, " ")},
           {"action_finished", result.action_finished},
           {"duration", result.duration}};
 }

@@ -95,7 +95,7 @@ std::string StandingOf(const HypothesisGoal& goal, const world::StaticBody& body
 
 /// Whether it was carried through: not cancelled, refused or asked again.
 bool HasVerdict(const ImaginedStep& step) {
-  return step.answered && !step.predictions.empty() && step.outcome != "cancelled";
+  return step.answered && !step.predictions.empty() && step.outcome != ImaginedOutcome::kCancelled;
 }
 
 std::string RecommendationOf(const ImaginedStep& step) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "hires/base/text.h"
 #include "hires/evaluation/experiment_kinds.h"
 #include "hires/evaluation/experiment_parallel.h"
 #include "hires/evaluation/statistics.h"
@@ -33,7 +34,7 @@ class LegTally {
     contacts += !leg.touched.empty();
     clearance = std::min(clearance, leg.clearance);
     if (!IsReached(leg)) {
-      ++failures[leg.result.reason];
+      ++failures[leg.result.failure];
       return;
     }
     ++reached;
@@ -45,7 +46,9 @@ class LegTally {
 
   std::vector<std::string> Row(const std::string& goal) const {
     std::string reasons;
-    for (const auto& [reason, count] : failures) reasons += fmt::format("{} {} ", reason, count);
+    for (const auto& [failure, count] : failures) {
+      reasons += fmt::format("{} {} ", base::ToString(failure), count);
+    }
     return {goal,
             fmt::format("{}", legs),
             fmt::format("{}", reached),
@@ -61,7 +64,7 @@ class LegTally {
   int legs{0}, reached{0}, contacts{0}, beyond{0};
   double max_distance{0.0}, max_yaw_error{0.0}, clearance{kFarClearance};
   std::vector<double> durations;
-  std::map<std::string, int> failures;
+  std::map<base::Failure, int> failures;
 
  private:
   double xy_tolerance_, yaw_tolerance_;
@@ -76,7 +79,8 @@ nlohmann::ordered_json RowOf(int chain, int number, const Leg& leg) {
           {"start_y", leg.X_MStart.y},
           {"start_yaw", leg.X_MStart.yaw},
           {"reached", IsReached(leg)},
-          {"reason", leg.result.reason},
+          {"failure", base::ToString(leg.result.failure.code)},
+          {"subjects", base::Join(leg.result.failure.subjects, " ")},
           {"touched", leg.touched},
           {"distance", leg.distance},
           {"yaw_error", leg.yaw_error},
@@ -90,7 +94,7 @@ std::vector<std::string> ProblemRow(int chain, int number, const Leg& leg) {
           fmt::format("{}", number),
           leg.from,
           leg.to,
-          leg.result.reason,
+          base::ToString(leg.result.failure),
           leg.touched,
           fmt::format("{:.1f} s", leg.result.duration),
           fmt::format("({:.3f}, {:.3f}, {:.3f})", leg.X_MStart.x, leg.X_MStart.y, leg.X_MStart.yaw),
@@ -162,7 +166,7 @@ Findings SumUpLegs(const ExperimentConfig& config, const Stage& stage, const Cha
   for (const Goal& goal : config.goals) by_goal.emplace(goal.name, empty);
   TextTable problems{
       "Legs that failed or touched something",
-      {{"chain", "leg", "from", "to", "reason", "touched", "after", "start", "end"}}};
+      {{"chain", "leg", "from", "to", "failure", "touched", "after", "start", "end"}}};
   for (std::size_t c = 0; c < chains.size(); ++c) {
     for (std::size_t i = 0; i < chains[c].size(); ++i) {
       const Leg& leg = chains[c][i];

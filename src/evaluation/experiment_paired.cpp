@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "hires/base/text.h"
 #include "hires/evaluation/experiment_kinds.h"
 #include "hires/evaluation/experiment_parallel.h"
 #include "hires/evaluation/statistics.h"
@@ -103,7 +104,8 @@ nlohmann::ordered_json RowOf(const std::string& motion_set, int index,
                              const RolloutResult& result) {
   return {{"motion_set", motion_set},
           {"rollout", index},
-          {"reason", result.reason},
+          {"failure", base::ToString(result.failure.code)},
+          {"subjects", base::Join(result.failure.subjects, " ")},
           {"action_finished", result.action_finished},
           {"duration", result.duration},
           {"notopple", result.counts.notopple},

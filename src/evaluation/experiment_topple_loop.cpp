@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "hires/base/text.h"
 #include "hires/evaluation/experiment_kinds.h"
 #include "hires/evaluation/experiment_parallel.h"
 #include "hires/imagination/evidence.h"
@@ -145,7 +146,8 @@ nlohmann::ordered_json RowOf(const std::string& motion_set, int chain, int numbe
           {"leg", number},
           {"from", leg.from},
           {"to", leg.to},
-          {"reason", leg.result.reason},
+          {"failure", base::ToString(leg.result.failure.code)},
+          {"subjects", base::Join(leg.result.failure.subjects, " ")},
           {"touched", leg.touched},
           {"action_finished", leg.result.action_finished},
           {"duration", leg.result.duration},

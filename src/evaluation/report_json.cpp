@@ -15,8 +15,6 @@ using nlohmann::ordered_json;
 
 ordered_json ToJson(const imagination::Prediction& prediction) {
   const imagination::Evidence& e = prediction.evidence;
-  ordered_json failures = ordered_json::object();
-  for (const auto& [reason, count] : e.failures) failures[reason] = count;
   return {{"action", prediction.action.name},
           {"arguments", prediction.action.arguments},
           {"confidence", {{"pooled", e.confidence_pooled}, {"mean", e.confidence_mean}}},
@@ -35,7 +33,7 @@ ordered_json ToJson(const imagination::Prediction& prediction) {
             {"p95", e.duration.p95}}},
           {"max_tilt", {{"p50", e.max_tilt.p50}, {"p95", e.max_tilt.p95}}},
           {"rollouts", e.num_rollouts},
-          {"failures", failures}};
+          {"failures", FailuresToJson(e.failures)}};
 }
 
 bool WriteText(const std::string& text, const fs::path& path) {
@@ -58,6 +56,23 @@ bool ReplaceText(const std::string& text, const fs::path& path) {
 }
 
 }  // namespace
+
+ordered_json ToJson(const base::Failure& failure) {
+  if (!failure) return nullptr;
+  return {{"failure", base::ToString(failure.code)},
+          {"subjects", failure.subjects},
+          {"detail", failure.detail}};
+}
+
+ordered_json FailuresToJson(const std::map<base::Failure, int>& failures) {
+  ordered_json list = ordered_json::array();
+  for (const auto& [failure, count] : failures) {
+    list.push_back({{"failure", base::ToString(failure.code)},
+                    {"subjects", failure.subjects},
+                    {"count", count}});
+  }
+  return list;
+}
 
 std::string OutcomeName(const imagination::Report& report) {
   switch (report.outcome) {

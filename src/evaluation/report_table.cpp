@@ -22,8 +22,8 @@ bool IsNumber(const std::string& text) {
 
 std::string Failures(const imagination::Evidence& evidence) {
   std::vector<std::string> parts;
-  for (const auto& [reason, count] : evidence.failures) {
-    parts.push_back(fmt::format("{} {}", reason, count));
+  for (const auto& [failure, count] : evidence.failures) {
+    parts.push_back(fmt::format("{} {}", base::ToString(failure), count));
   }
   return base::Join(parts, ", ");
 }

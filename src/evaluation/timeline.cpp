@@ -20,7 +20,7 @@ TimelineBar BarOf(const ImaginedStep& step, double begin, double end) {
   bar.plan = step.plan;
   bar.index = step.step;
   bar.action = ToString(step.action);
-  bar.outcome = step.outcome.empty() ? "running" : step.outcome;
+  bar.outcome = ToString(step.outcome);
   bar.begin = step.requested - begin;
   bar.end = step.answered.value_or(end) - begin;
   if (std::isfinite(step.deadline)) bar.deadline = step.deadline - begin;
@@ -155,7 +155,7 @@ std::string ImaginationTable(const AchieveReport& report) {
   std::vector<std::vector<std::string>> rows{{"imagined", "outcome", "rollouts", "simulated",
                                               "wall", "factor", "wall / task", "before its step"}};
   for (const ImaginedStep& step : report.status.imaginations) {
-    rows.push_back({ToString(step.action), step.outcome, std::to_string(RolloutsOf(step)),
+    rows.push_back({ToString(step.action), ToString(step.outcome), std::to_string(RolloutsOf(step)),
                     fmt::format("{:.1f} s", step.simulated_seconds),
                     fmt::format("{:.1f} s", step.wall_seconds),
                     Ratio(step.simulated_seconds, step.wall_seconds),

@@ -43,7 +43,8 @@ ordered_json StepToJson(const execution::StepStatus& step) {
           {"latest_finish", Number(step.finish.latest)},
           {"expected_start", Number(step.expected_start)},
           {"expected_finish", Number(step.expected_finish)},
-          {"note", step.note}};
+          {"note", step.note},
+          {"failure", ToJson(step.failure)}};
 }
 
 ordered_json PredictionToJson(const imagination::Prediction& prediction) {
@@ -59,7 +60,7 @@ ordered_json PredictionToJson(const imagination::Prediction& prediction) {
           {"falls", evidence.falls},
           {"duration_mean", evidence.duration.mean},
           {"duration_sd", evidence.duration.sd},
-          {"failures", evidence.failures}};
+          {"failures", FailuresToJson(evidence.failures)}};
 }
 
 ordered_json ImaginedToJson(const ImaginedStep& step) {
@@ -77,7 +78,7 @@ ordered_json ImaginedToJson(const ImaginedStep& step) {
           {"deadline", Number(step.deadline)},
           {"wall_seconds", step.wall_seconds},
           {"simulated_seconds", step.simulated_seconds},
-          {"outcome", step.outcome},
+          {"outcome", ToString(step.outcome)},
           {"recommended", step.recommended},
           {"predictions", predictions},
           {"why", step.why}};
@@ -137,6 +138,7 @@ ordered_json ToJson(const AchieveReport& report) {
   return {{"task", report.task},
           {"outcome", ToString(report.outcome)},
           {"reason", report.reason},
+          {"failure", ToJson(report.failure)},
           {"episode", report.episode},
           {"replans", report.status.replans},
           {"duration", MakeTimeline(report).duration},

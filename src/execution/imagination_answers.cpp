@@ -98,19 +98,19 @@ void ImaginationDesk::TakeFailed(Question* question, const ImagineAnswered& answ
   std::vector<base::ActionCall> failed;
   for (const base::ActionCall& call : answer.failed) failed.push_back(Lowered(call));
   if (failed.empty()) failed = base::Combinations(question->action);
-  std::string reason;
+  base::Failure first;
   for (std::size_t i = 0; i < failed.size(); ++i) {
-    const std::string why = i < answer.failure_reasons.size() ? answer.failure_reasons[i] : "";
-    if (reason.empty()) reason = why;
-    session_.Exclude({failed[i], LoweredSet(answer.depends_on), 0}, question->target, why);
+    const base::Failure why = i < answer.failures.size() ? answer.failures[i] : base::Failure();
+    if (!first) first = why;
+    session_.Exclude({failed[i], why, LoweredSet(answer.depends_on), 0}, question->target);
   }
   StepRun& step = session_.run().at(question->step);
   step.phase = StepPhase::kDone;
   step.note = question->why_not;
-  session_.run().at(question->target).note = "imagined to fail: " + reason;
-  session_.Report({Trouble::Kind::kImagined, session_.run().at(question->target).action,
-                   "imagined to fail" + (reason.empty() ? "" : ": " + reason)},
-                  0);
+  StepRun& target = session_.run().at(question->target);
+  target.note = "imagined to fail: " + ToString(first);
+  target.failure = {base::FailureCode::kImaginedFailure, first.subjects, ToString(first)};
+  session_.Report({Violation::Kind::kImagined, target.action, target.failure}, 0);
 }
 
 // --------------------------------------------------------------------------------------- deciding

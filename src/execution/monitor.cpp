@@ -44,8 +44,9 @@ struct Monitor::Impl {
   void Execute();
   void EndDryRun();
   void Mend();
-  void TakeUpTrouble();
-  void Conclude(Finish::Outcome outcome, const std::string& reason);
+  void TakeUpViolation();
+  void Conclude(Finish::Outcome outcome, const std::string& reason,
+                const base::Failure& failure = {});
   void EndIfStill();
 
   Session session;
@@ -81,7 +82,8 @@ void Monitor::Impl::On(const TaskRequested& event) {
 
 void Monitor::Impl::On(const PreemptRequested&) {
   if (stage == Stage::kIdle || stage == Stage::kEnding) return;
-  Conclude(Finish::Outcome::kPreempted, "preempted");
+  Conclude(Finish::Outcome::kPreempted, ToString(base::FailureCode::kPreempted),
+           base::FailureCode::kPreempted);
 }
 
 /// Until nothing changes any more.
@@ -131,11 +133,12 @@ void Monitor::Impl::Plan() {
 
 void Monitor::Impl::Execute() {
   watch.Check(true);
-  if (!watch.lost().empty()) return Conclude(Finish::Outcome::kFailed, watch.lost());
+  if (!watch.lost().empty())
+    return Conclude(Finish::Outcome::kFailed, watch.lost(), base::FailureCode::kDidNotStop);
   const bool is_dry_run = session.params().dry_run;
   if (session.run().IsOver() && !is_dry_run) return Conclude(Finish::Outcome::kSucceeded, "");
-  if (!session.has_trouble()) desk.Update();
-  if (session.has_trouble()) return TakeUpTrouble();
+  if (!session.has_violation()) desk.Update();
+  if (session.has_violation()) return TakeUpViolation();
   if (is_dry_run) return EndDryRun();
   dispatch.Run();
 }
@@ -147,16 +150,19 @@ void Monitor::Impl::EndDryRun() {
   Conclude(Finish::Outcome::kDryRun, "planned and imagined; nothing was begun");
 }
 
-void Monitor::Impl::TakeUpTrouble() {
-  const std::string useless = repair.Begin(*session.TakeTrouble());
-  if (!useless.empty()) return Conclude(Finish::Outcome::kFailed, useless);
+void Monitor::Impl::TakeUpViolation() {
+  const std::string useless = repair.Begin(*session.TakeViolation());
+  if (!useless.empty()) {
+    return Conclude(Finish::Outcome::kFailed, useless, repair.failure());
+  }
   stage = Stage::kRepairing;
 }
 
 void Monitor::Impl::Mend() {
   watch.Check(false);
-  if (!watch.lost().empty()) return Conclude(Finish::Outcome::kFailed, watch.lost());
-  if (session.has_trouble()) TakeUpTrouble();
+  if (!watch.lost().empty())
+    return Conclude(Finish::Outcome::kFailed, watch.lost(), base::FailureCode::kDidNotStop);
+  if (session.has_violation()) TakeUpViolation();
   if (stage != Stage::kRepairing) return;
   switch (repair.Update()) {
     case Repair::Result::kUnderWay:
@@ -166,27 +172,28 @@ void Monitor::Impl::Mend() {
       stage = Stage::kExecuting;
       return;
     case Repair::Result::kNoPlan:
-      return Conclude(Finish::Outcome::kNoPlan, repair.why());
+      return Conclude(Finish::Outcome::kNoPlan, repair.why(), repair.failure());
     case Repair::Result::kFailed:
-      return Conclude(Finish::Outcome::kFailed, repair.why());
+      return Conclude(Finish::Outcome::kFailed, repair.why(), repair.failure());
   }
 }
 
-void Monitor::Impl::Conclude(Finish::Outcome outcome, const std::string& reason) {
+void Monitor::Impl::Conclude(Finish::Outcome outcome, const std::string& reason,
+                             const base::Failure& failure) {
   desk.Close();
   quest.Cancel();
   repair.Cancel();
   if (session.has_plan()) {
     for (const int step : session.run().Active()) session.Stop(step);
   }
-  ending = {outcome, reason};
+  ending = {outcome, reason, failure};
   stage = Stage::kEnding;
 }
 
 void Monitor::Impl::EndIfStill() {
   if (session.has_plan()) {
     watch.Check(false);
-    session.TakeTrouble();  // it does not matter any more
+    session.TakeViolation();  // it does not matter any more
     const PlanRun& run = session.run();
     const std::vector<int> active = run.Active();
     const auto moves = [&](int step) { return run.at(step).phase == StepPhase::kRunning; };

@@ -43,6 +43,7 @@ struct StepRun {
   std::optional<double> finished;
   std::optional<double> stopped;  ///< when it was told to stop
   std::string note;
+  base::Failure failure;
 
   bool IsActive() const {
     return kind != Kind::kImagine &&

@@ -22,6 +22,15 @@ void AddAction(const base::ActionCall& action, Record* record) {
   }
 }
 
+void AddFailure(const base::Failure& failure, Record* record) {
+  if (!failure) return;
+  record->texts.emplace_back("hasFailure", ToString(failure.code));
+  for (const std::string& subject : failure.subjects) {
+    record->texts.emplace_back("hasSubject", subject);
+  }
+  if (!failure.detail.empty()) record->texts.emplace_back("hasDetail", failure.detail);
+}
+
 Record OfTask(Record::Kind kind, int plan, int step, const base::ActionCall& action) {
   Record record =
       About(kind, actions::TaskConcept(action.name), "PrimitiveTask", TaskInstance(plan, step));
@@ -74,10 +83,10 @@ Record ActivityBegun(int activity, int plan, int step, const base::ActionCall& a
 }
 
 Record ActivityEnded(int activity, const base::ActionCall& action, const std::string& result,
-                     const std::string& reason) {
+                     const base::Failure& failure) {
   Record record = OfActivity(Record::Kind::kEnd, activity, action);
   record.texts.emplace_back("hasResult", result);
-  if (!reason.empty()) record.texts.emplace_back("hasReason", reason);
+  AddFailure(failure, &record);
   return record;
 }
 
@@ -92,11 +101,11 @@ Record Predicted(int number, int plan, int step, const base::ActionCall& action,
 }
 
 Record FailureImagined(int number, int plan, int step, const base::ActionCall& action,
-                       const std::string& reason) {
+                       const base::Failure& failure) {
   Record record = About(Record::Kind::kBegin, "ImaginedFailure", "Prediction",
                         "prediction" + std::to_string(number));
   AddAction(action, &record);
-  if (!reason.empty()) record.texts.emplace_back("hasReason", reason);
+  AddFailure(failure, &record);
   record.links.emplace_back("hasTask", TaskInstance(plan, step));
   return record;
 }
@@ -109,11 +118,11 @@ Record FailureForgotten(int number, const base::ActionCall& action) {
 }
 
 Record Failed(int number, const std::string& concept_name, int activity,
-              const base::ActionCall& action, const std::string& reason) {
+              const base::ActionCall& action, const base::Failure& failure) {
   Record record = About(Record::Kind::kBegin, concept_name, "MonitoredFailure",
                         "failure" + std::to_string(number));
   AddAction(action, &record);
-  record.texts.emplace_back("hasReason", reason);
+  AddFailure(failure, &record);
   if (activity > 0) {
     record.links.emplace_back("hasActivity", "activity" + std::to_string(activity));
   }

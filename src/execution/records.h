@@ -18,12 +18,12 @@ Record TaskChanged(int plan, int step, const base::ActionCall& action);
 
 Record ActivityBegun(int activity, int plan, int step, const base::ActionCall& action);
 Record ActivityEnded(int activity, const base::ActionCall& action, const std::string& result,
-                     const std::string& reason);
+                     const base::Failure& failure);
 
 /// What imagination says about an alternative.
 Record Predicted(int number, int plan, int step, const base::ActionCall& action, double duration);
 Record FailureImagined(int number, int plan, int step, const base::ActionCall& action,
-                       const std::string& reason);
+                       const base::Failure& failure);
 
 /// It counts no more: what it rested on changed, or the task is over.
 Record FailureForgotten(int number, const base::ActionCall& action);
@@ -31,6 +31,6 @@ Record FailureForgotten(int number, const base::ActionCall& action);
 /// @param concept_name  "PreconditionFailure", ...
 /// @param activity      0: none
 Record Failed(int number, const std::string& concept_name, int activity,
-              const base::ActionCall& action, const std::string& reason);
+              const base::ActionCall& action, const base::Failure& failure);
 
 }  // namespace hires::execution

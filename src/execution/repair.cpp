@@ -38,25 +38,38 @@ bool HasDecomposition(const planning::Problem& problem, const planning::Plan& pl
                     });
 }
 
+/// Not who carries it out has failed, nor what was expected of it, but the way that it took.
+bool MayGoAnotherWay(const Violation& violation) {
+  return violation.kind == Violation::Kind::kActivity &&
+         base::InfoOf(violation.failure.code).scope == base::FailureScope::kAction;
+}
+
 }  // namespace
 
 void Repair::BeginTask(const planning::Problem& task) {
   task_ = task;
   count_ = 0;
-  last_trouble_.clear();
+  last_.reset();
   last_state_.clear();
   is_asking_ = false;
 }
 
-std::string Repair::Begin(const Trouble& trouble) {
-  const std::string text = ToString(trouble);
+/// The same went wrong as the last time, and nothing else has changed.
+bool Repair::IsRepetition(const Violation& violation, const std::set<std::string>& state) const {
+  return violation.kind != Violation::Kind::kImagined && last_ && IsSame(*last_, violation) &&
+         state == last_state_;
+}
+
+std::string Repair::Begin(const Violation& violation) {
+  const std::string text = ToString(violation);
   const std::set<std::string> state = TextsOf(session_.facts());
-  if (text == last_trouble_ && state == last_state_ && trouble.kind != Trouble::Kind::kImagined) {
-    if (!trouble.is_of_the_action) return text + " (twice in a row, and nothing has changed)";
-    session_.Exclude({trouble.action, NamesIn(trouble.reason), 0}, trouble.step, trouble.reason);
-  }
-  last_trouble_ = text;
+  const bool is_repetition = IsRepetition(violation, state);
+  last_ = violation;
   last_state_ = state;
+  if (is_repetition) {
+    if (!MayGoAnotherWay(violation)) return text + " (twice in a row, and nothing has changed)";
+    session_.Exclude(ExclusionFor(violation.action, violation.failure), violation.step);
+  }
   if (++count_ > session_.params().max_replans) {
     return fmt::format("gave up after {} repairs; the last reason was {}", count_ - 1, text);
   }
@@ -189,7 +202,7 @@ Repair::Result Repair::Take() {
     return Result::kUnderWay;
   }
   if (!plan) {
-    why_ = fmt::format("{}; the last reason was {}", quest_.why(), last_trouble_);
+    why_ = fmt::format("{}; the last reason was {}", quest_.why(), last_ ? ToString(*last_) : "");
     return is_useless ? Result::kFailed : Result::kNoPlan;
   }
   std::vector<int> informs = InformedSteps(*plan);

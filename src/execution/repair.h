@@ -27,14 +27,17 @@ class Repair {
 
   void BeginTask(const planning::Problem& task);  ///< forgets what was repaired for the last one
   /// @return why it is of no use; "" if it was begun.
-  std::string Begin(const Trouble& trouble);
+  std::string Begin(const Violation& violation);
   void Cancel();
   /// Goes on with a repair; something else may have gone wrong meanwhile.
   Result Update();
   const std::string& why() const { return why_; }
+  /// What the last repair was for.  @pre there was one.
+  const base::Failure& failure() const { return last_->failure; }
   int count() const { return count_; }
 
  private:
+  bool IsRepetition(const Violation& violation, const std::set<std::string>& state) const;
   bool IsSettled() const;
   void Ask();
   Result Take();
@@ -50,7 +53,7 @@ class Repair {
   std::vector<int> assumed_;  ///< steps that were taken back in the state that was planned from
   int count_{0};
   std::string why_;
-  std::string last_trouble_;
+  std::optional<Violation> last_;  ///< violation
   std::set<std::string> last_state_;
 };
 

@@ -12,16 +12,16 @@ namespace {
 
 constexpr double kLead = 1.0;  // [s] see PlanNetwork
 
-const char* ConceptOf(Trouble::Kind kind) {
+const char* ConceptOf(Violation::Kind kind) {
   switch (kind) {
-    case Trouble::Kind::kPrecondition:
+    case Violation::Kind::kPrecondition:
       return "PreconditionFailure";
-    case Trouble::Kind::kEffect:
+    case Violation::Kind::kEffect:
       return "EffectFailure";
-    case Trouble::Kind::kTimeout:
+    case Violation::Kind::kTimeout:
       return "TimeoutFailure";
-    case Trouble::Kind::kActivity:
-    case Trouble::Kind::kImagined:
+    case Violation::Kind::kActivity:
+    case Violation::Kind::kImagined:
       break;
   }
   return "ActivityFailure";
@@ -33,20 +33,16 @@ void CollectNames(const base::Atom& atom, std::set<std::string>* names) {
 
 }  // namespace
 
-std::string ToString(const Trouble& trouble) {
-  return fmt::format("{}: {}", base::ToString(trouble.action), trouble.reason);
+std::string ToString(const Violation& violation) {
+  return fmt::format("{}: {}", base::ToString(violation.action), ToString(violation.failure));
 }
 
-std::set<std::string> NamesIn(const std::string& reason) {
-  std::set<std::string> names;
-  const std::size_t colon = reason.find(": ");
-  if (colon == std::string::npos) return names;
-  for (const std::string& part : base::Split(base::ToLower(reason.substr(colon + 2)), ',')) {
-    for (const std::string& word : base::Split(part, ' ')) {
-      if (!word.empty()) names.insert(word);
-    }
-  }
-  return names;
+bool IsSame(const Violation& a, const Violation& b) {
+  return a.action == b.action && a.failure == b.failure;
+}
+
+Exclusion ExclusionFor(const base::ActionCall& action, const base::Failure& failure) {
+  return {action, failure, {failure.subjects.begin(), failure.subjects.end()}, 0};
 }
 
 Session::Session(const planning::PlanningKnowledge* knowledge,
@@ -97,7 +93,7 @@ void Session::EndTask() {
   exclusions_.clear();
   run_.reset();
   network_.reset();
-  trouble_.reset();
+  violation_.reset();
   bookkeeping_.clear();
   facts_ = observed_;
 }
@@ -117,6 +113,7 @@ void Session::Adopt(PlanRun run, std::vector<int> informs,
     step.stopped = running.stopped;
     step.time_limit = running.time_limit;
     step.note = running.note;
+    step.failure = running.failure;
     taken.insert(old);
   }
   if (run_) {
@@ -166,6 +163,7 @@ StepStatus Session::StatusOf(int index) const {
   status.expected_start = network_->ExpectedStart(index);
   status.expected_finish = network_->ExpectedFinish(index);
   status.note = step.note;
+  status.failure = step.failure;
   return status;
 }
 
@@ -197,13 +195,14 @@ void Session::Stop(int index) {
 }
 
 void Session::End(int index, StepPhase phase, const std::string& result,
-                  const std::string& reason) {
+                  const base::Failure& failure) {
   StepRun& step = run_->at(index);
   step.phase = phase;
   step.finished = now_;
-  if (!reason.empty()) step.note = reason;
+  step.failure = failure;
+  if (failure) step.note = ToString(failure);
   network_->End(index, now_);
-  Send(ActivityEnded(step.activity, step.action, result, reason));
+  Send(ActivityEnded(step.activity, step.action, result, failure));
   Changed();
 }
 
@@ -214,19 +213,21 @@ void Session::Confirm(int index) {
 
 bool Session::IsAnyActive() const { return run_ && !run_->Active().empty(); }
 
-void Session::Report(Trouble trouble, int activity) {
-  if (trouble.kind != Trouble::Kind::kImagined) {
-    Send(Failed(NewRecord(), ConceptOf(trouble.kind), activity, trouble.action, trouble.reason));
+void Session::Report(Violation violation, int activity) {
+  if (violation.kind != Violation::Kind::kImagined) {
+    Send(Failed(NewRecord(), ConceptOf(violation.kind), activity, violation.action,
+                violation.failure));
   }
-  if (!trouble_) trouble_ = std::move(trouble);
+  if (!violation_) violation_ = std::move(violation);
 }
 
-void Session::Exclude(Exclusion exclusion, int step, const std::string& reason) {
+void Session::Exclude(Exclusion exclusion, int step) {
   for (const Exclusion& known : exclusions_) {
     if (known.action == exclusion.action) return;
   }
   exclusion.record = NewRecord();
-  Send(FailureImagined(exclusion.record, run_->number(), step, exclusion.action, reason));
+  Send(
+      FailureImagined(exclusion.record, run_->number(), step, exclusion.action, exclusion.failure));
   exclusions_.push_back(std::move(exclusion));
 }
 

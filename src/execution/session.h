@@ -13,24 +13,27 @@
 namespace hires::execution {
 
 /// An expectation that broke, so that the plan must be looked at again.
-struct Trouble {
+struct Violation {
   enum class Kind { kPrecondition, kEffect, kActivity, kTimeout, kImagined };
   Kind kind{Kind::kActivity};
   base::ActionCall action;  ///< of the step that it is about
-  std::string reason;
+  base::Failure failure;
   int step{-1};  ///< its number in the plan, where it was one of the plan's that failed
-  bool is_of_the_action{false};  ///< not of whoever carries it out: another way may do
 };
-std::string ToString(const Trouble& trouble);
-/// What a reason names: "area_occupied: book1, mug2" and "no_path: hand touches book1" book1.
-std::set<std::string> NamesIn(const std::string& reason);
+std::string ToString(const Violation& violation);
+/// The same went wrong with the same action.
+bool IsSame(const Violation& a, const Violation& b);
 
 /// An action that the planner shall not use (imagined_failure action arguments...).
 struct Exclusion {
   base::ActionCall action;
+  base::Failure failure;             ///< that is expected of it
   std::set<std::string> depends_on;  ///< instances; when one changes, it is forgotten
   int record{0};                     ///< number of its record
 };
+
+/// One that rests on what the failure is about.
+Exclusion ExclusionFor(const base::ActionCall& action, const base::Failure& failure);
 
 /// What the parts of the monitor share while a task is carried out: the state, the plan with its
 /// network, and the commands that go out with the next answer.
@@ -91,16 +94,16 @@ class Session {
   void Start(int step, double time_limit);
   void Stop(int step);  ///< no effect where it has been told already
   /// The step is over as its activity told; `phase` says what now.
-  void End(int step, StepPhase phase, const std::string& result, const std::string& reason);
+  void End(int step, StepPhase phase, const std::string& result, const base::Failure& failure);
   void Confirm(int step);  ///< its effects have been seen
   bool IsAnyActive() const;
   void Changed() { ++revision_; }
 
   // What went wrong.
-  void Report(Trouble trouble, int activity);
-  std::optional<Trouble> TakeTrouble() { return std::exchange(trouble_, std::nullopt); }
-  bool has_trouble() const { return trouble_.has_value(); }
-  void Exclude(Exclusion exclusion, int step, const std::string& reason);
+  void Report(Violation violation, int activity);
+  std::optional<Violation> TakeViolation() { return std::exchange(violation_, std::nullopt); }
+  bool has_violation() const { return violation_.has_value(); }
+  void Exclude(Exclusion exclusion, int step);
   void ForgetExclusions(const std::set<std::string>& changed);
   std::vector<base::Atom> ExclusionAtoms() const;
 
@@ -130,7 +133,7 @@ class Session {
   std::optional<PlanNetwork> network_;
   std::vector<int> informs_;
   std::vector<StepStatus> past_;
-  std::optional<Trouble> trouble_;
+  std::optional<Violation> violation_;
   std::vector<Exclusion> exclusions_;
 };
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "hires/base/text.h"
@@ -11,35 +10,30 @@
 namespace hires::execution {
 namespace {
 
-std::string ReasonOf(const StepFinished& finished) {
+/// Nothing where it succeeded.
+base::Failure FailureOf(const StepFinished& finished) {
+  using Code = base::FailureCode;
   switch (finished.result) {
     case StepFinished::Result::kSucceeded:
-      return "";
+      return {};
     case StepFinished::Result::kFailed:
-      return finished.reason.empty() ? "failed" : finished.reason;
+      return finished.failure ? finished.failure : Code::kOther;
     case StepFinished::Result::kPreempted:
-      return "preempted";
+      return Code::kPreempted;
     case StepFinished::Result::kUnavailable:
-      return finished.reason.empty() ? "unavailable" : "unavailable: " + finished.reason;
+      return {Code::kUnavailable, {}, finished.failure.detail};
   }
-  return "failed";
+  return Code::kOther;
 }
 
-/// Why the way that was taken is no good, as skills say it (docs/notes_skills.md): another arm or
-/// place may do. Whatever else comes is of the robot (motors_halted, stale_scan, no_controller),
-/// and no other way helps against it.
-bool IsOfTheAction(const std::string& reason) {
-  static const std::set<std::string> kReasons{
-      "area_occupied",  "goal_blocked",        "goal_missed", "grasp_failed",    "hand_full",
-      "no_path",        "no_valid_trajectory", "object_held", "object_not_seen", "object_slipped",
-      "object_toppled", "oscillating",         "out_of_view", "start_blocked",   "stuck",
-      "unreachable"};
-  return kReasons.count(reason.substr(0, reason.find(':'))) > 0;
+/// It will fail again however often it is tried from here, and another way may do.
+bool NeedsAnotherWay(const base::Failure& failure) {
+  const base::FailureInfo& info = base::InfoOf(failure.code);
+  return info.scope == base::FailureScope::kAction && !info.may_pass;
 }
 
-/// It will fail again however often it is tried from here: another way must be taken.
-bool IsBlocked(const std::string& reason) {
-  return reason.rfind("area_occupied", 0) == 0 || reason.rfind("unreachable", 0) == 0;
+base::Failure About(base::FailureCode code, const base::Atom& atom, const std::string& text) {
+  return {code, atom.arguments, text};
 }
 
 std::string TextOf(const Expectation& expectation) {
@@ -47,19 +41,25 @@ std::string TextOf(const Expectation& expectation) {
   return expectation.literal.holds ? atom : "not " + atom;
 }
 
+base::Failure LossOf(const Expectation& expectation) {
+  return About(base::FailureCode::kConditionLost, AtomOf(expectation.literal.atom),
+               TextOf(expectation));
+}
+
 }  // namespace
 
 void StepWatch::OnFinished(const StepFinished& finished) {
   const int index = session_.has_plan() ? session_.run().FindActivity(finished.activity) : -1;
   if (index < 0) return;  // of a step that is over or was given up
-  const std::string reason = ReasonOf(finished);
-  if (reason.empty()) return session_.End(index, StepPhase::kChecking, "succeeded", "");
+  const base::Failure failure = FailureOf(finished);
+  if (!failure) return session_.End(index, StepPhase::kChecking, "succeeded", {});
   const StepRun& step = session_.run().at(index);
-  if (step.is_stopping) return session_.End(index, StepPhase::kFailed, "preempted", "stopped");
-  session_.End(index, StepPhase::kFailed, "failed", reason);
-  if (IsBlocked(reason)) session_.Exclude({step.action, NamesIn(reason), 0}, index, reason);
-  session_.Report({Trouble::Kind::kActivity, step.action, reason, index, IsOfTheAction(reason)},
-                  step.activity);
+  if (step.is_stopping) {
+    return session_.End(index, StepPhase::kFailed, "preempted", base::FailureCode::kPreempted);
+  }
+  session_.End(index, StepPhase::kFailed, "failed", failure);
+  if (NeedsAnotherWay(failure)) session_.Exclude(ExclusionFor(step.action, failure), index);
+  session_.Report({Violation::Kind::kActivity, step.action, failure, index}, step.activity);
 }
 
 void StepWatch::Wake(double at) { wake_at_ = std::min(wake_at_.value_or(at), at); }
@@ -98,39 +98,43 @@ void StepWatch::CheckStop(int index) {
   lost_ = fmt::format("{} was told to stop and has not answered for {} s",
                       base::ToString(step.action), session_.params().stop_timeout);
   session_.Warning(lost_ + "; the robot may still move");
-  session_.End(index, StepPhase::kFailed, "failed", "did not stop");
+  session_.End(index, StepPhase::kFailed, "failed", base::FailureCode::kDidNotStop);
 }
 
 void StepWatch::CheckDuration(int index) {
   const StepRun& step = session_.run().at(index);
   if (!IsPast(*step.started + step.time_limit)) return;
   session_.Stop(index);
-  session_.Report({Trouble::Kind::kTimeout, step.action, "timed_out"}, step.activity);
+  session_.Report({Violation::Kind::kTimeout, step.action, base::FailureCode::kTimedOut},
+                  step.activity);
 }
 
-std::optional<std::string> StepWatch::MissingEffect(int index) const {
+std::optional<base::Failure> StepWatch::MissingEffect(int index) const {
+  constexpr base::FailureCode kCode = base::FailureCode::kEffectMissing;
   const planning::PlanStep& planned = session_.run().planned(index);
   for (const Datum& atom : planned.adds) {
-    if (!session_.facts().HoldsText(ToString(atom))) return base::ToString(AtomOf(atom));
+    if (session_.facts().HoldsText(ToString(atom))) continue;
+    return About(kCode, AtomOf(atom), base::ToString(AtomOf(atom)));
   }
   for (const Datum& atom : planned.deletes) {
-    if (session_.facts().HoldsText(ToString(atom))) return "not " + base::ToString(AtomOf(atom));
+    if (!session_.facts().HoldsText(ToString(atom))) continue;
+    return About(kCode, AtomOf(atom), "not " + base::ToString(AtomOf(atom)));
   }
   return std::nullopt;
 }
 
 void StepWatch::CheckEffects(int index) {
-  const auto missing = MissingEffect(index);
+  std::optional<base::Failure> missing = MissingEffect(index);
   if (!missing) return session_.Confirm(index);
   StepRun& step = session_.run().at(index);
   const double due = *step.finished + session_.params().effect_timeout;
   if (!IsPast(due) || MayBeOnItsWay(due, base::ToString(step.action))) return;
-  const std::string reason =
-      (session_.IsBehind(due) ? "effect_unknown: " : "effect_missing: ") + *missing;
+  if (session_.IsBehind(due)) missing->code = base::FailureCode::kEffectUnknown;
   step.phase = StepPhase::kFailed;
-  step.note = reason;
+  step.note = ToString(*missing);
+  step.failure = *missing;
   session_.Changed();
-  session_.Report({Trouble::Kind::kEffect, step.action, reason}, step.activity);
+  session_.Report({Violation::Kind::kEffect, step.action, *missing}, step.activity);
 }
 
 /// What nobody has told yet is no proof that it is not so; but not for ever.
@@ -176,9 +180,8 @@ void StepWatch::CheckConditions(int index) {
     const std::optional<double> since = BrokenSince(expectation);
     if (!since || !IsPast(*since + session_.params().break_delay)) continue;
     session_.Stop(index);
-    session_.Report(
-        {Trouble::Kind::kPrecondition, step.action, "condition_lost: " + TextOf(expectation)},
-        step.activity);
+    session_.Report({Violation::Kind::kPrecondition, step.action, LossOf(expectation)},
+                    step.activity);
     return;
   }
 }
@@ -196,8 +199,7 @@ void StepWatch::CheckLinks(int index) {
     const auto since = is_there ? BrokenSince(expectation) : std::nullopt;
     if (!since || !IsPast(*since + patience)) continue;
     if (MayBeOnItsWay(*since + patience, base::ToString(step.action))) continue;
-    session_.Report(
-        {Trouble::Kind::kPrecondition, step.action, "condition_lost: " + TextOf(expectation)}, 0);
+    session_.Report({Violation::Kind::kPrecondition, step.action, LossOf(expectation)}, 0);
     return;
   }
 }

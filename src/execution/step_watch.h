@@ -10,7 +10,7 @@
 namespace hires::execution {
 
 /// Holds what is observed against what the plan expects: results, effects, durations, and what
-/// steps rest on. Reports trouble to the session, and stops what cannot go on.
+/// steps rest on. Reports violations to the session, and stops what cannot go on.
 class StepWatch {
  public:
   explicit StepWatch(Session* session) : session_(*session) {}
@@ -30,7 +30,7 @@ class StepWatch {
   bool MayBeOnItsWay(double due, const std::string& action);
   void CheckConditions(int step);
   void CheckLinks(int step);
-  std::optional<std::string> MissingEffect(int step) const;
+  std::optional<base::Failure> MissingEffect(int step) const;
   bool IsDisturbed(const Expectation& expectation) const;
   std::optional<double> BrokenSince(const Expectation& expectation);
   void Wake(double at);

@@ -88,11 +88,11 @@ class Tally {
 
  private:
   void AddFailure(const RolloutResult& result) {
-    const std::string reason = FailureReason(result);
-    if (reason.empty()) {
-      ++num_success_;
+    const base::Failure failure = FailureOf(result);
+    if (failure) {
+      ++evidence_.failures[failure];
     } else {
-      ++evidence_.failures[reason];
+      ++num_success_;
     }
   }
 

@@ -9,6 +9,7 @@ namespace hires::imagination {
 namespace {
 
 using geometry::Pose3;
+using Code = base::FailureCode;
 
 constexpr double kCauseWindow = 0.3;  // [s] how far back a cause may lie
 constexpr double kDrop = 0.05;        // [m] lower than where it stood: fallen off
@@ -66,24 +67,27 @@ void LoadMonitor::LookAt(Object* object) {
   if (!object->is_load) {
     // What a hand holds may lean, it cannot fall.
     const bool falls = lies && !object->has_fallen && !IsHeld(*object);
-    if (falls)
-      NoteFall(object,
-               object->was_held && !IsHandled(*object) ? "object_slipped" : "object_toppled");
+    if (falls) {
+      NoteFall(object, object->was_held && !IsHandled(*object) ? Code::kObjectSlipped
+                                                               : Code::kObjectToppled);
+    }
     return;
   }
   const Pose3 X_BO = simulator_->X_MB().Inverse() * X_MO;
   const bool slid = (X_BO.translation - object->X_BO.translation).norm() > params_.lost_distance;
-  if (!object->has_fallen && (lies || slid)) NoteFall(object, lies ? "object_fell" : "object_slid");
+  if (!object->has_fallen && (lies || slid)) {
+    NoteFall(object, lies ? Code::kObjectFell : Code::kObjectSlid);
+  }
   if (params_.put_back && object->has_fallen && (slid || tilt > params_.put_back_tilt)) {
     simulator_->PutBack(object->index);
     object->has_fallen = false;
   }
 }
 
-void LoadMonitor::NoteFall(Object* object, const std::string& reason) {
+void LoadMonitor::NoteFall(Object* object, Code code) {
   object->has_fallen = true;
   ++falls_;
-  if (first_trouble_.empty()) first_trouble_ = reason;
+  if (!first_fall_) first_fall_ = code;
 }
 
 OutcomeCounts LoadMonitor::Sample() const {
@@ -134,30 +138,30 @@ void LoadMonitor::Conclude() {
   falls_ += static_cast<int>(KnockedOver().size());
 }
 
-std::string LoadMonitor::WhyNotWell() const {
-  std::string why = WhyHandledIsNotWell();
-  if (why.empty()) why = first_trouble_;
-  if (why.empty()) why = WhyNotHeldAnyMore();
+base::Failure LoadMonitor::WhyNotWell() const {
+  base::Failure why = WhyHandledIsNotWell();
+  if (!why) why = first_fall_;
+  if (!why) why = WhyNotHeldAnyMore();
   const std::vector<std::string> knocked_over = KnockedOver();
-  if (why.empty() && !knocked_over.empty()) why = "knocked_over: " + base::Join(knocked_over, ", ");
+  if (!why && !knocked_over.empty()) why = {Code::kKnockedOver, knocked_over};
   return why;
 }
 
-std::string LoadMonitor::WhyHandledIsNotWell() const {
-  if (handled_ < 0) return "";
+base::Failure LoadMonitor::WhyHandledIsNotWell() const {
+  if (handled_ < 0) return {};
   const Object& object = objects_[handled_];
   return purpose_.kind == Purpose::Kind::kTake ? WhyNotTaken(object) : WhyNotStanding(object);
 }
 
-std::string LoadMonitor::WhyNotTaken(const Object& object) const {
+base::Failure LoadMonitor::WhyNotTaken(const Object& object) const {
   const auto held = simulator_->held();
   const auto hand = held.find(purpose_.arm);
-  if (hand != held.end() && hand->second == object.index) return "";
+  if (hand != held.end() && hand->second == object.index) return {};
   const double z_start = (simulator_->X_MB() * object.X_BO).translation.z();
   const double z = simulator_->PoseOf(object.index).translation.z();
-  return z < z_start - kDrop ? "object_fell"
-         : object.has_fallen ? "object_toppled"
-                             : "object_slipped";
+  return z < z_start - kDrop ? Code::kObjectFell
+         : object.has_fallen ? Code::kObjectToppled
+                             : Code::kObjectSlipped;
 }
 
 /// Where the object was to be put: the frame of the area, or the middle of the tray.
@@ -167,22 +171,22 @@ Pose3 LoadMonitor::X_MGoal() const {
   return scene.world.FindFrame(purpose_.area).value_or(Pose3());
 }
 
-std::string LoadMonitor::WhyNotStanding(const Object& object) const {
-  if (IsHeld(object)) return "object_not_released";
+base::Failure LoadMonitor::WhyNotStanding(const Object& object) const {
+  if (IsHeld(object)) return Code::kObjectNotReleased;
   const Pose3 X_MO = simulator_->PoseOf(object.index);
   const Pose3 X_GO = X_MGoal().Inverse() * X_MO;
-  if (X_GO.translation.z() < -kDrop) return "object_fell";
-  if (geometry::TiltOf(X_MO.rotation) >= params_.topple_tilt) return "object_toppled";
+  if (X_GO.translation.z() < -kDrop) return Code::kObjectFell;
+  if (geometry::TiltOf(X_MO.rotation) >= params_.topple_tilt) return Code::kObjectToppled;
   const double away = X_GO.translation.head<2>().cwiseAbs().maxCoeff();
-  return away > purpose_.area_half_width ? "object_slipped" : "";
+  return away > purpose_.area_half_width ? Code::kObjectSlipped : base::Failure();
 }
 
-std::string LoadMonitor::WhyNotHeldAnyMore() const {
+base::Failure LoadMonitor::WhyNotHeldAnyMore() const {
   for (int i = 0; i < static_cast<int>(objects_.size()); ++i) {
     const Object& object = objects_[i];
-    if (i != handled_ && object.was_held && !IsHeld(object)) return "object_slipped";
+    if (i != handled_ && object.was_held && !IsHeld(object)) return Code::kObjectSlipped;
   }
-  return "";
+  return {};
 }
 
 std::string LoadMonitor::Cause() const {

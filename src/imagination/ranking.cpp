@@ -41,7 +41,7 @@ void CheckPaired(const std::vector<Evidence>& alternatives) {
 
 int NumSuccess(const Evidence& evidence) {
   int failures = 0;
-  for (const auto& [reason, count] : evidence.failures) failures += count;
+  for (const auto& [failure, count] : evidence.failures) failures += count;
   return evidence.num_rollouts - failures;
 }
 
@@ -56,12 +56,14 @@ std::string Rollouts(int count) { return count == 1 ? "rollout" : "rollouts"; }
 
 /// "object_fell 7, no_path 2", the most frequent first.
 std::string Failures(const Evidence& evidence) {
-  std::vector<std::pair<std::string, int>> sorted(evidence.failures.begin(),
-                                                  evidence.failures.end());
+  std::vector<std::pair<base::Failure, int>> sorted(evidence.failures.begin(),
+                                                    evidence.failures.end());
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   std::vector<std::string> parts;
-  for (const auto& [reason, count] : sorted) parts.push_back(fmt::format("{} {}", reason, count));
+  for (const auto& [failure, count] : sorted) {
+    parts.push_back(fmt::format("{} {}", base::ToString(failure), count));
+  }
   return base::Join(parts, ", ");
 }
 
@@ -143,7 +145,7 @@ using Prefix = const std::vector<RolloutResult>&;
 using Difference = double (*)(const RolloutResult&, const RolloutResult&);
 
 double SuccessDifference(const RolloutResult& a, const RolloutResult& b) {
-  return (FailureReason(a).empty() ? 1.0 : 0.0) - (FailureReason(b).empty() ? 1.0 : 0.0);
+  return (FailureOf(a) ? 0.0 : 1.0) - (FailureOf(b) ? 0.0 : 1.0);
 }
 
 double ConfidenceDifference(const RolloutResult& a, const RolloutResult& b) {

@@ -16,6 +16,7 @@ namespace hires::imagination {
 namespace {
 
 using simulation::RobotSimulator;
+using Code = base::FailureCode;
 
 constexpr int kLookSteps = 5;  // the load is looked at every fifth step
 enum Streams : std::uint64_t { kVariation, kSimulator, kControl };
@@ -66,9 +67,9 @@ class Player {
         if (hooks.on_sample) hooks.on_sample(simulator_, monitor.tilt());
         if (hooks.cancelled && hooks.cancelled()) return std::nullopt;
       }
-      if (simulator_.contact()) status = {skills::Progress::kFailed, CollisionReason()};
-      if (monitor.is_lost()) status = {skills::Progress::kFailed, "object_lost"};
-      if (elapsed >= params_.time_limit) status = {skills::Progress::kFailed, "timed_out"};
+      if (simulator_.contact()) status = skills::Failed(Collision());
+      if (monitor.is_lost()) status = skills::Failed(Code::kObjectLost);
+      if (elapsed >= params_.time_limit) status = skills::Failed(Code::kTimedOut);
     }
     result_.duration = simulator_.time() - start;
     WatchAftermath(&monitor);
@@ -94,9 +95,10 @@ class Player {
     return status;
   }
 
-  std::string CollisionReason() const {
-    return fmt::format("robot_collision: {} touches {}", simulator_.contact()->robot_part,
-                       simulator_.contact()->obstacle);
+  base::Failure Collision() const {
+    const std::string &part = simulator_.contact()->robot_part,
+                      &obstacle = simulator_.contact()->obstacle;
+    return {Code::kRobotCollision, {part, obstacle}, part + " touches " + obstacle};
   }
 
   void WatchAftermath(LoadMonitor* monitor) {
@@ -110,13 +112,13 @@ class Player {
   void Conclude(const skills::Status& status, const LoadMonitor& monitor) {
     result_.action_finished = status.progress == skills::Progress::kSucceeded;
     result_.nothing_watched = !monitor.watches_something();
-    result_.reason = result_.action_finished ? monitor.WhyNotWell() : status.reason;
-    result_.outcome = result_.reason.empty()          ? Outcome::kSucceeded
-                      : result_.reason == "timed_out" ? Outcome::kTimedOut
-                                                      : Outcome::kFailed;
+    result_.failure = result_.action_finished ? monitor.WhyNotWell() : status.failure;
+    result_.outcome = !result_.failure                          ? Outcome::kSucceeded
+                      : result_.failure.code == Code::kTimedOut ? Outcome::kTimedOut
+                                                                : Outcome::kFailed;
     if (result_.outcome == Outcome::kSucceeded && ActionFailed(result_)) {
       result_.outcome = Outcome::kFailed;
-      result_.reason = "no_samples";
+      result_.failure = Code::kNoSamples;
     }
     result_.falls = monitor.falls();
     result_.max_tilt = monitor.max_tilt();
@@ -181,10 +183,10 @@ std::optional<RolloutResult> PlayRollout(const RolloutSetup& setup, const base::
     return Player(setup, action, std::move(skill), variation, rng).Play(hooks);
   } catch (const base::ConfigError& error) {
     // The nominal start is sound (CheckSetup), the sampled one is not: a truth that cannot be.
-    base::Log(base::LogLevel::kDebug,
-              fmt::format("rollout={} reason=bad_start {}", index, error.what()));
+    base::Log(base::LogLevel::kDebug, fmt::format("rollout={} failure={} {}", index,
+                                                  base::ToString(Code::kBadStart), error.what()));
     RolloutResult result;
-    result.reason = "bad_start";
+    result.failure = Code::kBadStart;
     result.final_world = setup.world_state;
     result.final_robot = setup.robot_state;
     return result;

@@ -9,7 +9,7 @@ namespace hires::imagination {
 namespace {
 
 auto Counted(const RolloutResult& result) {
-  return std::tie(result.outcome, result.reason, result.duration, result.counts, result.falls,
+  return std::tie(result.outcome, result.failure, result.duration, result.counts, result.falls,
                   result.max_tilt, result.first_cause, result.action_finished,
                   result.nothing_watched);
 }
@@ -52,13 +52,15 @@ bool ActionFailed(const RolloutResult& result) {
   return !result.action_finished || LacksSamples(result);
 }
 
-std::string FailureReason(const RolloutResult& result) {
-  if (result.outcome != Outcome::kSucceeded && !result.reason.empty()) return result.reason;
-  if (result.outcome == Outcome::kTimedOut) return "timed_out";
-  if (!result.action_finished) return "unfinished";
-  if (result.falls > 0) return "object_fell";
-  if (LacksSamples(result)) return "no_samples";
-  return result.outcome == Outcome::kSucceeded ? "" : "unknown";
+base::Failure FailureOf(const RolloutResult& result) {
+  using Code = base::FailureCode;
+  if (result.outcome != Outcome::kSucceeded && result.failure) return result.failure;
+  if (result.outcome == Outcome::kTimedOut) return Code::kTimedOut;
+  if (!result.action_finished) return Code::kUnfinished;
+  if (result.falls > 0) return Code::kObjectFell;
+  if (LacksSamples(result)) return Code::kNoSamples;
+  if (result.outcome == Outcome::kSucceeded) return {};
+  return {Code::kOther, {}, "no reason was given"};
 }
 
 std::string Defect(const RolloutResult& result) {

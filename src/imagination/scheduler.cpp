@@ -31,7 +31,7 @@ void CheckField(const char* name, T value, T lower, T upper) {
 
 RolloutResult Unplayable() {
   RolloutResult result;
-  result.reason = "unplayable";
+  result.failure = base::FailureCode::kUnplayable;
   return result;
 }
 

@@ -1,7 +1,6 @@
 #include "hires/manipulation/arm_path.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "corner_rounding.h"
@@ -14,19 +13,19 @@ namespace {
 
 constexpr double kMaxJump = 0.35;  // [rad] of a joint per step of a straight way; more is a jump
 
-ArmPathResult Failed(ArmPathStatus status, std::string touch = "") {
-  return {status, std::move(touch), {}};
+ArmPathResult Failed(ArmPathStatus status, Obstruction obstruction = {}) {
+  return {status, std::move(obstruction), {}};
 }
 
 /// Goals that are within the limits and free; `why` tells what blocks the first, if it is blocked.
 std::vector<ArmJoints> FreeGoals(const MotionCheck& check, const std::vector<ArmJoints>& goals,
-                                 int at_most, std::string* why) {
+                                 int at_most, Obstruction* why) {
   std::vector<ArmJoints> free;
   for (const ArmJoints& goal : goals) {
     if (static_cast<int>(free.size()) >= at_most) break;
-    const std::string blocked = check.WhyBlocked(goal);
-    if (blocked.empty()) free.push_back(goal);
-    if (why->empty()) *why = blocked;
+    const Obstruction blocked = check.WhyBlocked(goal);
+    if (!blocked) free.push_back(goal);
+    if (!*why) *why = blocked;
   }
   return free;
 }
@@ -67,22 +66,16 @@ std::vector<ArmJoints> FollowTool(const ArmScene& arm, const ArmJoints& start,
   return path;
 }
 
-std::string WhyBlockedAlong(const MotionCheck& check, const std::vector<ArmJoints>& path) {
+Obstruction WhyBlockedAlong(const MotionCheck& check, const std::vector<ArmJoints>& path) {
   for (std::size_t i = 1; i < path.size(); ++i) {
-    std::string why = check.WhyBlocked(path[i]);
-    if (why.empty()) why = check.WhyBlocked(path[i - 1], path[i]);
-    if (!why.empty()) return why;
+    Obstruction why = check.WhyBlocked(path[i]);
+    if (!why) why = check.WhyBlocked(path[i - 1], path[i]);
+    if (why) return why;
   }
-  return "";
+  return {};
 }
 
 }  // namespace
-
-std::string ToString(ArmPathStatus status) {
-  constexpr std::array<const char*, 5> kNames = {"found", "start_blocked", "goal_blocked",
-                                                 "unreachable", "no_path"};
-  return kNames.at(static_cast<std::size_t>(status));
-}
 
 ArmPathResult PlanArmPath(const ArmScene& arm, const std::vector<ArmJoints>& goals,
                           std::uint64_t seed, const ArmPathParams& params) {
@@ -93,18 +86,18 @@ ArmPathResult PlanArmPath(const ArmScene& arm, const std::vector<ArmJoints>& goa
   const MotionCheck check(arm, params);
   const std::vector<ArmJoints> reachable = WithinLimits(check, goals);
   if (reachable.empty()) return Failed(ArmPathStatus::kUnreachable);
-  if (std::string why = check.WhyBlocked(start); !why.empty()) {
+  if (Obstruction why = check.WhyBlocked(start); why) {
     return Failed(ArmPathStatus::kStartBlocked, std::move(why));
   }
-  std::string goal_touch;
+  Obstruction goal_touch;
   const auto free = FreeGoals(check, reachable, params.max_goals, &goal_touch);
   if (free.empty()) return Failed(ArmPathStatus::kGoalBlocked, std::move(goal_touch));
   for (const ArmJoints& goal : free) {
-    if (check.IsFree(start, goal)) return {ArmPathStatus::kFound, "", {start, goal}};
+    if (check.IsFree(start, goal)) return {ArmPathStatus::kFound, {}, {start, goal}};
   }
   auto path = PlanByRrtConnect(check, *arm.kinematics, start, free, seed, params);
   if (path.empty()) return Failed(ArmPathStatus::kNoPath, check.WhyBlocked(start, free.front()));
-  return {ArmPathStatus::kFound, "", RoundCorners(check, path)};
+  return {ArmPathStatus::kFound, {}, RoundCorners(check, path)};
 }
 
 ArmPathResult PlanStraight(const ArmScene& arm, const geometry::Pose3& X_BT, double step,
@@ -112,18 +105,18 @@ ArmPathResult PlanStraight(const ArmScene& arm, const geometry::Pose3& X_BT, dou
   HIRES_CHECK(step > 0.0, "step > 0");
   const ArmJoints start = arm.kinematics->JointsOf(arm.posture);
   const MotionCheck check(arm, params);
-  if (std::string why = check.WhyBlocked(start); !why.empty()) {
+  if (Obstruction why = check.WhyBlocked(start); why) {
     return Failed(ArmPathStatus::kStartBlocked, std::move(why));
   }
   std::vector<ArmJoints> path = FollowTool(arm, start, X_BT, step);
   if (path.empty()) return Failed(ArmPathStatus::kUnreachable);
-  if (std::string why = check.WhyBlocked(path.back()); !why.empty()) {
+  if (Obstruction why = check.WhyBlocked(path.back()); why) {
     return Failed(ArmPathStatus::kGoalBlocked, std::move(why));
   }
-  if (std::string why = WhyBlockedAlong(check, path); !why.empty()) {
+  if (Obstruction why = WhyBlockedAlong(check, path); why) {
     return Failed(ArmPathStatus::kNoPath, std::move(why));
   }
-  return {ArmPathStatus::kFound, "", std::move(path)};
+  return {ArmPathStatus::kFound, {}, std::move(path)};
 }
 
 }  // namespace hires::manipulation

@@ -43,25 +43,25 @@ bool MotionCheck::IsTilted(const ArmJoints& joints) const {
   return up_B.z() < std::cos(max_held_tilt_);
 }
 
-std::string MotionCheck::WhyBlocked(const ArmJoints& joints) const {
-  if (IsTilted(joints)) return "held object tilts";
+Obstruction MotionCheck::WhyBlocked(const ArmJoints& joints) const {
+  if (IsTilted(joints)) return {{}, "held object tilts"};
   arm_.kinematics->SetJoints(joints, &posture_);
   const auto touch = arm_.scene->FindTouch(arm_.X_MB, posture_, links_);
-  return touch ? ToString(*touch) : "";
+  return touch ? Obstruction{{touch->a, touch->b}, ToString(*touch)} : Obstruction{};
 }
 
-std::string MotionCheck::WhyBlocked(const ArmJoints& from, const ArmJoints& to) const {
+Obstruction MotionCheck::WhyBlocked(const ArmJoints& from, const ArmJoints& to) const {
   const int steps = static_cast<int>(std::ceil(LargestDifference(from, to) / resolution_));
   // Coarse points first, then those between: what is in the way is met early.
   int stride = 1;
   while (stride < steps) stride *= 2;
   for (; stride >= 1; stride /= 2) {
     for (int i = stride; i < steps; i += 2 * stride) {
-      const std::string why = WhyBlocked(Between(from, to, static_cast<double>(i) / steps));
-      if (!why.empty()) return why;
+      Obstruction why = WhyBlocked(Between(from, to, static_cast<double>(i) / steps));
+      if (why) return why;
     }
   }
-  return "";
+  return {};
 }
 
 }  // namespace hires::manipulation

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "hires/manipulation/arm_path.h"
 
 namespace hires::manipulation {
@@ -11,16 +9,14 @@ class MotionCheck {
  public:
   MotionCheck(const ArmScene& arm, const ArmPathParams& params);
 
-  /// What is in the way at these joint positions; empty if they are free.
-  std::string WhyBlocked(const ArmJoints& joints) const;
-  bool IsFree(const ArmJoints& joints) const { return WhyBlocked(joints).empty(); }
+  /// What is in the way at these joint positions; nothing if they are free.
+  Obstruction WhyBlocked(const ArmJoints& joints) const;
+  bool IsFree(const ArmJoints& joints) const { return !WhyBlocked(joints); }
   bool IsWithinLimits(const ArmJoints& joints) const;
 
-  /// What is in the way between two free positions, both ends left out; empty if the way is free.
-  std::string WhyBlocked(const ArmJoints& from, const ArmJoints& to) const;
-  bool IsFree(const ArmJoints& from, const ArmJoints& to) const {
-    return WhyBlocked(from, to).empty();
-  }
+  /// What is in the way between two free positions, both ends left out; nothing if the way is free.
+  Obstruction WhyBlocked(const ArmJoints& from, const ArmJoints& to) const;
+  bool IsFree(const ArmJoints& from, const ArmJoints& to) const { return !WhyBlocked(from, to); }
 
   double resolution() const { return resolution_; }
 

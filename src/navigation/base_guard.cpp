@@ -7,10 +7,10 @@
 #include <tuple>
 #include <utility>
 
-#include "hires/base/text.h"
-
 namespace hires::navigation {
 namespace {
+
+using Code = base::FailureCode;
 
 constexpr double kFresh = 0.1;               // [s] a younger speed is the speed now
 constexpr double kSlope = 0.06;              // [s] of odometry that tell an acceleration ...
@@ -45,10 +45,12 @@ geometry::Twist2 Towards(const geometry::Twist2& V, const geometry::Twist2& told
   return {V.vx + share * x, V.vy + share * y, V.wz + share * w};
 }
 
-/// "stale_pose" of "stale_pose: 0.41 s".
-std::string WordOf(const std::string& reason) { return base::Split(reason, ':').front(); }
+base::Failure BadRequest(const DriveRequest& request) {
+  const std::string defect = Defect(request);
+  return defect.empty() ? base::Failure() : base::Failure(Code::kBadRequest, {}, defect);
+}
 
-std::string Late(const char* word, double age) { return fmt::format("{}: {:.2f} s", word, age); }
+base::Failure Late(Code code, double age) { return {code, {}, fmt::format("{:.2f} s", age)}; }
 
 }  // namespace
 
@@ -120,8 +122,9 @@ std::optional<geometry::Twist2> BaseGuard::Update(double now) {
   const double gap = now - last_update_;
   last_update_ = now;
   if (state_ == GuardState::kPassing) {
-    const std::string why = gap > params_.update_patience ? Late("late_guard", gap) : WhyStop(now);
-    why.empty() ? FollowRequest() : Begin(why, now);
+    const base::Failure why =
+        gap > params_.update_patience ? Late(Code::kLateGuard, gap) : WhyStop(now);
+    why ? Begin(why, now) : FollowRequest();
   }
   if (state_ == GuardState::kStanding) Wait(now);
   auto velocity = state_ == GuardState::kPassing ? Pass(now) : Brake(now);
@@ -157,16 +160,16 @@ std::uint64_t BaseGuard::Applicant(double now) const {
 /// Standing: does somebody want to drive, and may he?
 void BaseGuard::Wait(double now) {
   if (is_held_ || Applicant(now) == 0) return;
-  const std::string defect = Defect(request_);
-  const std::string wrong = defect.empty() ? WhatIsWrong(now) : "bad_request: " + defect;
-  if (wrong.empty()) {
+  base::Failure wrong = BadRequest(request_);
+  if (!wrong) wrong = WhatIsWrong(now);
+  if (!wrong) {
     state_ = GuardState::kPassing;
     active_ = request_;
     command_.reset();
     stop_.reset();
   }
   // Ages grow from update to update; that is no news.
-  if (wrong.empty() || current_ != request_.id || WordOf(wrong) != WordOf(reason_)) reason_ = wrong;
+  if (!wrong || current_ != request_.id || wrong != failure_) failure_ = wrong;
   current_ = request_.id;
 }
 
@@ -177,57 +180,57 @@ void BaseGuard::FollowRequest() {
   active_ = request_;
 }
 
-std::string BaseGuard::StalePose(double now) const {
+base::Failure BaseGuard::WhyNoPose(double now) const {
   std::size_t oldest = 0;
   for (std::size_t i = 0; i < pose_stamps_.size(); ++i) {
-    if (!pose_stamps_[i]) return fmt::format("no_pose: {}", kPoseSources[i]);
+    if (!pose_stamps_[i]) return {Code::kNoPose, {}, kPoseSources[i]};
     if (*pose_stamps_[i] < *pose_stamps_[oldest]) oldest = i;
   }
   const double age = now - *pose_stamps_[oldest];
-  if (age <= params_.pose_patience) return "";
-  return Late("stale_pose", age) + ", " + kPoseSources[oldest];
+  if (age <= params_.pose_patience) return {};
+  return {Code::kStalePose, {}, fmt::format("{:.2f} s, {}", age, kPoseSources[oldest])};
 }
 
-std::string BaseGuard::WhatIsWrong(double now) const {
-  if (motors_halted_.value_or(false)) return "motors_halted";
-  if (!hindrance_.empty()) return hindrance_;
-  if (params_.needs_motors_state && !motors_halted_) return "no_motors_state";
-  if (const std::string stale = StalePose(now); !stale.empty()) return stale;
-  if (params_.needs_scan && !scan_stamp_) return "no_scan";
+base::Failure BaseGuard::WhatIsWrong(double now) const {
+  if (motors_halted_.value_or(false)) return Code::kMotorsHalted;
+  if (hindrance_) return hindrance_;
+  if (params_.needs_motors_state && !motors_halted_) return Code::kNoMotorsState;
+  if (base::Failure missing = WhyNoPose(now); missing) return missing;
+  if (params_.needs_scan && !scan_stamp_) return Code::kNoScan;
   if (params_.needs_scan && now - *scan_stamp_ > params_.scan_patience) {
-    return Late("stale_scan", now - *scan_stamp_);
+    return Late(Code::kStaleScan, now - *scan_stamp_);
   }
-  if (!params_.needs_localisation) return "";
-  if (!localisation_) return "no_localisation";
+  if (!params_.needs_localisation) return {};
+  if (!localisation_) return Code::kNoLocalisation;
   if (!(localisation_->position_sd >= 0.0 &&
         localisation_->position_sd <= params_.max_position_sd)) {
-    return fmt::format("localisation_lost: sd {:.2f} m", localisation_->position_sd);
+    return {Code::kLocalisationLost, {}, fmt::format("sd {:.2f} m", localisation_->position_sd)};
   }
   if (!(localisation_->yaw_sd >= 0.0 && localisation_->yaw_sd <= params_.max_yaw_sd)) {
-    return fmt::format("localisation_lost: sd {:.2f} rad", localisation_->yaw_sd);
+    return {Code::kLocalisationLost, {}, fmt::format("sd {:.2f} rad", localisation_->yaw_sd)};
   }
-  return "";
+  return {};
 }
 
-std::string BaseGuard::WhyStop(double now) const {
-  if (const std::string wrong = WhatIsWrong(now); !wrong.empty()) return wrong;
+base::Failure BaseGuard::WhyStop(double now) const {
+  if (base::Failure wrong = WhatIsWrong(now); wrong) return wrong;
   if (now - request_time_ > params_.request_patience) {
-    return Late("silent_middle_layer", now - request_time_);
+    return Late(Code::kSilentMiddleLayer, now - request_time_);
   }
   const bool must_wait = is_held_ && request_.id != current_;  // somebody else takes over
-  if (request_.id == 0 || must_wait) return "request_over";
-  if (const std::string defect = Defect(request_); !defect.empty()) return "bad_request: " + defect;
-  if (!command_) return "";
-  if (!IsFinite(command_->V)) return "bad_command";
+  if (request_.id == 0 || must_wait) return Code::kRequestOver;
+  if (base::Failure bad = BadRequest(request_); bad) return bad;
+  if (!command_) return {};
+  if (!IsFinite(command_->V)) return Code::kBadCommand;
   if (!IsZero(command_->V) && now - command_->time > params_.command_patience) {
-    return Late("silent_commands", now - command_->time);
+    return Late(Code::kSilentCommands, now - command_->time);
   }
-  return "";
+  return {};
 }
 
-void BaseGuard::Begin(const std::string& reason, double now) {
+void BaseGuard::Begin(base::Failure failure, double now) {
   state_ = GuardState::kBraking;
-  reason_ = reason;
+  failure_ = std::move(failure);
   since_ = now;
   End(current_);
   command_.reset();

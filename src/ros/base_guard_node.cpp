@@ -53,9 +53,10 @@ hires::geometry::Twist2 FlatTwist(const geometry_msgs::Twist& msg) {
   return {msg.linear.x, msg.linear.y, msg.angular.z};
 }
 
-/// What ends in good order is no trouble.
-bool IsPeaceful(const std::string& reason) {
-  return reason == "no_request" || reason == "request_over";
+/// Nothing is wrong, and what ends in good order is no trouble either.
+bool IsPeaceful(const hires::base::Failure& failure) {
+  using Code = hires::base::FailureCode;
+  return !failure || failure.code == Code::kNoRequest || failure.code == Code::kRequestOver;
 }
 
 }  // namespace
@@ -175,7 +176,7 @@ void BaseGuardNode::Run(const std::function<bool()>& stop) {
 void BaseGuardNode::Update() {
   const double now = Now();
   for (const PoseSource source : static_sources_) guard_.OnTransform(source, now, now);
-  guard_.OnHindrance(is_ending_ ? "guard_ends" : "");
+  guard_.OnHindrance(is_ending_ ? hires::base::FailureCode::kGuardEnds : hires::base::Failure());
   TendTuner(now);
   const GuardState before = guard_.state();
   const auto velocity = guard_.Update(now);
@@ -203,7 +204,9 @@ void BaseGuardNode::TendTuner(double now) {
   const bool is_ours = tuned_for_ != 0 && tuner.request == tuned_for_;
   const bool has_failed = is_ours && tuner.phase == TunerState::Phase::kFailed;
   guard_.OnHold(!has_failed && !(is_ours && tuner.phase == TunerState::Phase::kInForce));
-  if (has_failed) guard_.OnHindrance("motion_set_refused: " + tuner.reason);
+  if (has_failed) {
+    guard_.OnHindrance({hires::base::FailureCode::kMotionSetRefused, {}, tuner.reason});
+  }
 }
 
 void BaseGuardNode::CancelMoveBase() {
@@ -213,29 +216,28 @@ void BaseGuardNode::CancelMoveBase() {
 }
 
 void BaseGuardNode::PublishState() {
-  const Said now{guard_.state(), guard_.request(), guard_.reason()};
+  const Said now{guard_.state(), guard_.request(), guard_.failure()};
   if (said_ && *said_ == now) return;
   hires::BaseGuardState msg;
   msg.header.stamp = ros::Time::now();
   msg.state = ToMsg(now.state);
   msg.request = now.request;
-  msg.failure = FailureMsgOf(now.reason);
+  msg.failure = ToMsg(now.failure);
   state_.publish(msg);
-  const bool is_trouble = !now.reason.empty() && !IsPeaceful(now.reason);
+  const bool is_trouble = !IsPeaceful(now.failure);
   hires::base::Log(
       is_trouble && now.state != GuardState::kPassing ? LogLevel::kWarn : LogLevel::kInfo,
-      fmt::format("base_guard={} request={} reason={} stop_time={:.2f} stop_distance={:.2f}",
-                  ToText(now.state), now.request, now.reason.empty() ? "none" : now.reason,
+      fmt::format("base_guard={} request={} failure={} stop_time={:.2f} stop_distance={:.2f}",
+                  ToText(now.state), now.request, now.failure ? ToString(now.failure) : "none",
                   guard_.stop_time(), guard_.stop_distance()));
   said_ = std::make_unique<Said>(now);
   updater_.force_update();
 }
 
 void BaseGuardNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const std::string& reason = guard_.reason();
-  const bool is_well = reason.empty() || IsPeaceful(reason);
-  status.summary(is_well ? Diagnostic::OK : Diagnostic::WARN,
-                 ToText(guard_.state()) + (reason.empty() ? "" : ": " + reason));
+  const hires::base::Failure& failure = guard_.failure();
+  status.summary(IsPeaceful(failure) ? Diagnostic::OK : Diagnostic::WARN,
+                 ToText(guard_.state()) + (failure ? ": " + ToString(failure) : ""));
   status.add("request", guard_.request());
   status.add("stops", num_stops_);
   status.add("last stop [s]", guard_.stop_time());

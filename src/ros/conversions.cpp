@@ -140,21 +140,6 @@ hires::base::Failure FromMsg(const msg::Failure& failure) {
                       failure.detail.empty() ? "" : ": ", failure.detail)};
 }
 
-msg::Failure FailureMsgOf(const std::string& reason) {
-  if (reason.empty()) return {};
-  const std::size_t colon = reason.find(": ");
-  const auto code = hires::base::ParseFailureCode(reason.substr(0, colon));
-  if (!code) return ToMsg(hires::base::Failure(hires::base::FailureCode::kOther, {}, reason));
-  const std::string detail = colon == std::string::npos ? "" : reason.substr(colon + 2);
-  return ToMsg(hires::base::Failure(*code, {}, detail));
-}
-
-std::string ReasonOf(const msg::Failure& failure) {
-  const hires::base::Failure known = FromMsg(failure);
-  const bool is_text = known.code == hires::base::FailureCode::kOther;
-  return is_text ? known.detail : hires::base::ToString(known);
-}
-
 msg::WorldState ToMsg(const hires::world::WorldState& state) {
   msg::WorldState out;
   out.header.frame_id = "map";
@@ -239,7 +224,7 @@ msg::RolloutRecord ToMsg(const hires::imagination::RolloutResult& result, int in
   msg::RolloutRecord out;
   out.index = index;
   out.outcome = static_cast<std::uint8_t>(result.outcome);
-  out.failure = FailureMsgOf(result.reason);
+  out.failure = ToMsg(result.failure);
   out.duration = result.duration;
   out.counts.notopple = result.counts.notopple;
   out.counts.shaking = result.counts.shaking;
@@ -258,7 +243,7 @@ msg::RolloutRecord ToMsg(const hires::imagination::RolloutResult& result, int in
 hires::imagination::RolloutResult FromMsg(const msg::RolloutRecord& record) {
   hires::imagination::RolloutResult out;
   out.outcome = OutcomeOfRollout(record.outcome);
-  out.reason = ReasonOf(record.failure);
+  out.failure = FromMsg(record.failure);
   out.duration = record.duration;
   out.counts.notopple = record.counts.notopple;
   out.counts.shaking = record.counts.shaking;
@@ -296,11 +281,10 @@ msg::Prediction ToMsg(const hires::imagination::Prediction& prediction) {
   out.max_tilt_p50 = e.max_tilt.p50;
   out.max_tilt_p95 = e.max_tilt.p95;
   out.rollouts = e.num_rollouts;
-  for (const auto& [reason, count] : e.failures) {
-    msg::FailureCount failure;
-    failure.failure = FailureMsgOf(reason);
-    failure.count = count;
-    out.failures.push_back(failure);
+  for (const auto& [failure, count] : e.failures) {
+    out.failures.emplace_back();
+    out.failures.back().failure = ToMsg(failure);
+    out.failures.back().count = count;
   }
   out.final_world = ToMsg(prediction.final_world);
   out.final_robot = ToMsg(prediction.final_robot);
@@ -326,7 +310,7 @@ hires::imagination::Prediction FromMsg(const msg::Prediction& prediction) {
                 prediction.duration_p95};
   e.max_tilt = {prediction.max_tilt_p50, prediction.max_tilt_p95};
   for (const msg::FailureCount& failure : prediction.failures) {
-    e.failures[ReasonOf(failure.failure)] = failure.count;
+    e.failures[FromMsg(failure.failure)] += failure.count;
   }
   out.final_world = FromMsg(prediction.final_world);
   out.final_robot = FromMsg(prediction.final_robot);

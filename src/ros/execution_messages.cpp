@@ -30,12 +30,12 @@ bool IsExpectedToFail(const hires::Prediction& prediction) {
   return prediction.success_share < 0.5;
 }
 
-/// What made most rollouts fail; "" where none says.
-std::string MainReason(const hires::Prediction& prediction) {
+/// What made most rollouts fail; nothing where none says.
+base::Failure MainFailure(const hires::Prediction& prediction) {
   const auto most = std::max_element(
       prediction.failures.begin(), prediction.failures.end(),
       [](const hires::FailureCount& a, const hires::FailureCount& b) { return a.count < b.count; });
-  return most == prediction.failures.end() ? "" : ReasonOf(most->failure);
+  return most == prediction.failures.end() ? base::Failure() : FromMsg(most->failure);
 }
 
 using ImagineOutcome = execution::ImagineAnswered::Outcome;
@@ -124,6 +124,7 @@ hires::StepStatus ToMsg(const execution::StepStatus& status) {
   message.expected_start = status.expected_start;
   message.expected_finish = status.expected_finish;
   message.note = status.note;
+  message.failure = ToMsg(status.failure);
   return message;
 }
 
@@ -174,11 +175,11 @@ execution::StepFinished AnswerOf(int activity, const hires::ExecuteActionResult&
   using Result = execution::StepFinished::Result;
   switch (result.code) {
     case hires::ExecuteActionResult::SUCCEEDED:
-      return {activity, Result::kSucceeded, ReasonOf(result.failure)};
+      return {activity, Result::kSucceeded, {}};
     case hires::ExecuteActionResult::PREEMPTED:
-      return {activity, Result::kPreempted, ReasonOf(result.failure)};
+      return {activity, Result::kPreempted, FromMsg(result.failure)};
   }
-  return {activity, Result::kFailed, ReasonOf(result.failure)};
+  return {activity, Result::kFailed, FromMsg(result.failure)};
 }
 
 hires::ImagineGoal GoalOf(const execution::StartImagination& command,
@@ -214,7 +215,7 @@ execution::ImagineAnswered AnswerOf(int request, const hires::ImagineResult& res
   for (const hires::Prediction& prediction : result.predictions) {
     if (answer.outcome != ImagineOutcome::kAllFailed && !IsExpectedToFail(prediction)) continue;
     answer.failed.push_back(FromMsg(prediction.action));
-    answer.failure_reasons.push_back(MainReason(prediction));
+    answer.failures.push_back(MainFailure(prediction));
   }
   answer.depends_on = InstancesOf(state, result.depends_on);
   return answer;

@@ -14,6 +14,7 @@
 #include "hires/knowledge/state_view.h"
 #include "hires/planning/shop2_reader.h"
 #include "hires/planning/task_text.h"
+#include "hires/ros/conversions.h"
 #include "hires/ros/execution_messages.h"
 #include "hires/ros/private_params.h"
 #include "hires/ros/process.h"
@@ -396,10 +397,11 @@ void ExecutionMonitorNode::OnStepEnd(int key, const hires::ExecuteActionResultCo
   const int activity = found->second;
   activities_.erase(found);
   const execution::StepFinished finished =
-      result
-          ? AnswerOf(activity, *result)
-          : execution::StepFinished{activity, execution::StepFinished::Result::kUnavailable, why};
-  Log(LogLevel::kInfo, fmt::format("activity={} ended {}", activity, finished.reason));
+      result ? AnswerOf(activity, *result)
+             : execution::StepFinished{
+                   activity, execution::StepFinished::Result::kUnavailable,
+                   hires::base::Failure(hires::base::FailureCode::kUnavailable, {}, why)};
+  Log(LogLevel::kInfo, fmt::format("activity={} ended {}", activity, ToString(finished.failure)));
   Feed(finished);
 }
 
@@ -425,6 +427,7 @@ void ExecutionMonitorNode::Conclude(const execution::Finish& finish) {
   const hires::AchieveFeedback status = Status();
   hires::AchieveResult result;
   result.code = CodeOf(finish.outcome);
+  result.failure = ToMsg(finish.failure);
   result.reason = Shortened(finish.reason);
   result.episode = task_->monitor ? records_.episode() : 0;
   result.replans = status.replans;

@@ -153,7 +153,7 @@ class Limits {
 void AwaitStart(const std::function<bool()>& is_there, const std::string& what, Limits* limits) {
   while (!is_there()) {
     if (limits->Broken(limits->start_limit())) {
-      throw ConfigError(fmt::format("{}; waiting for {}", limits->reason(), what));
+      throw ConfigError("waiting for " + what);
     }
     limits->Pass(kPoll);
   }
@@ -217,9 +217,7 @@ HypothesisRun Play(const HypothesisOrder& order, const evaluation::Scenario& sce
   limits->Broken();  // a system that died may have been noticed elsewhere first
   if (!run.is_complete && !limits->outcome().empty()) {
     run.outcome = limits->outcome();
-    if (run.reason.find(limits->reason()) == std::string::npos) {
-      run.reason = limits->reason() + (run.reason.empty() ? "" : "; ") + run.reason;
-    }
+    run.reason = limits->reason() + (run.reason.empty() ? "" : "; ") + run.reason;
   }
   const std::string death = run.is_complete ? "" : LastDeath(order.folder + "/system.log");
   if (!death.empty()) run.reason += "; " + death;

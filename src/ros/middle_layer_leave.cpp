@@ -59,14 +59,14 @@ void BaseLeave::OnState(const hires::BaseGuardState& state) {
   if (*granted_ && state.request == 0) {  // it knows nothing of the request that it let pass
     *granted_ = false;
     is_stopped_ = true;
-    hooks_.stopped("guard_restarted");
+    hooks_.stopped(hires::base::FailureCode::kGuardRestarted);
     return;
   }
   const bool is_ours = action_ && state.request == request_.id;
   *granted_ = is_ours && !is_stopped_ && state.state == hires::BaseGuardState::PASSING;
   if (!is_ours || is_stopped_ || state.state == hires::BaseGuardState::PASSING) return;
   is_stopped_ = true;
-  hooks_.stopped(ReasonOf(state.failure));
+  hooks_.stopped(FromMsg(state.failure));
 }
 
 }  // namespace hires_ros

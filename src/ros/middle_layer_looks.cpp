@@ -75,15 +75,15 @@ void MiddleLayerNode::OnTransforms(const tf2_msgs::TFMessage& msg) {
 void MiddleLayerNode::OnMotorsHalted(bool are_halted) {
   if (are_halted && !are_motors_halted_) {
     hires::base::Log(LogLevel::kWarn, "motors=halted everything that runs ends");
-    runner_.FailAll("motors_halted");
+    runner_.FailAll(hires::base::FailureCode::kMotorsHalted);
   }
   are_motors_halted_ = are_halted;
 }
 
-void MiddleLayerNode::OnGuardStopped(const std::string& reason) {
-  hires::base::Log(LogLevel::kWarn,
-                   fmt::format("request={} stopped by the guard: {}", leave_.id(), reason));
-  runner_.FailAll(reason);
+void MiddleLayerNode::OnGuardStopped(const hires::base::Failure& failure) {
+  hires::base::Log(LogLevel::kWarn, fmt::format("request={} stopped by the guard: {}", leave_.id(),
+                                                ToString(failure)));
+  runner_.FailAll(failure);
 }
 
 void MiddleLayerNode::OnScan(const sensor_msgs::LaserScan& msg) {

@@ -19,7 +19,9 @@ namespace hires_ros {
 namespace {
 
 using hires::ExecuteActionResult;
+using Code = hires::base::FailureCode;
 using hires::base::ConfigError;
+using hires::base::Failure;
 using hires::base::LogLevel;
 
 constexpr auto kBlindStop = std::chrono::seconds(3);  // that a stop may go on unseen
@@ -42,14 +44,11 @@ hires::geometry::Polygon PaddedFootprint(const hires::robot::Robot& robot) {
   return hires::geometry::Padded(robot.profile.footprint, robot.profile.footprint_padding);
 }
 
-ExecuteActionResult ResultOf(std::uint8_t code, const std::string& reason, double duration) {
+ExecuteActionResult ResultOf(std::uint8_t code, const Failure& failure, double duration) {
   ExecuteActionResult result;
   result.code = code;
-  result.failure = FailureMsgOf(Shortened(reason));
-  const bool is_refused = code == ExecuteActionResult::INVALID;
-  if (is_refused && result.failure.code == hires::Failure::OTHER) {
-    result.failure.code = hires::Failure::INVALID_ACTION;
-  }
+  result.failure = ToMsg(failure);
+  result.failure.detail = Shortened(failure.detail);
   result.duration = duration;
   return result;
 }
@@ -67,8 +66,8 @@ MiddleLayerNode::MiddleLayerNode(const MiddleLayerParams& params,
               params.names, params.runner.stale_after),
       runner_(setup_.scene->robot, params.runner,
               {[this](const hires::robot::Command& command) { Send(command); },
-               [this](const ActionNews& news, ActionEnd end, const std::string& reason) {
-                 OnEnded(news, end, reason);
+               [this](const ActionNews& news, ActionEnd end, const Failure& failure) {
+                 OnEnded(news, end, failure);
                },
                [this] {
                  ros::getGlobalCallbackQueue()->addCallback(
@@ -83,7 +82,7 @@ MiddleLayerNode::MiddleLayerNode(const MiddleLayerParams& params,
                 request.header.stamp = ros::Time::now();
                 request_.publish(request);
               },
-              [this](const std::string& reason) { OnGuardStopped(reason); }}),
+              [this](const Failure& failure) { OnGuardStopped(failure); }}),
       override_(params.override),
       last_look_(Steady::now()),
       server_(
@@ -127,11 +126,12 @@ void MiddleLayerNode::OnGoal(GoalHandle goal) {
                                     goal.getGoal()->time_limit.toSec()));
     }
   } catch (const ConfigError& error) {
-    goal.setRejected(ResultOf(ExecuteActionResult::INVALID, error.what(), 0.0));
+    goal.setRejected(
+        ResultOf(ExecuteActionResult::INVALID, {Code::kInvalidAction, {}, error.what()}, 0.0));
     return;
   }
   if (params_.dry_run) {
-    goal.setRejected(ResultOf(ExecuteActionResult::FAILED, "dry_run", 0.0));
+    goal.setRejected(ResultOf(ExecuteActionResult::FAILED, Code::kDryRun, 0.0));
     return;
   }
   waiting_.push_back({goal, Steady::now()});
@@ -141,9 +141,9 @@ void MiddleLayerNode::OnGoal(GoalHandle goal) {
 void MiddleLayerNode::StartWaiting() {
   for (auto waiting = waiting_.begin(); waiting != waiting_.end();) {
     const auto action = FromMsg(waiting->goal.getGoal()->action);
-    const std::string why_not = WhyNotReady(GroupsOf(action));
+    const Failure why_not = WhyNotReady(GroupsOf(action));
     const std::chrono::duration<double> waited = Steady::now() - waiting->since;
-    if (why_not.empty()) {
+    if (!why_not) {
       StartGoal(waiting->goal);
     } else if (waited.count() > params_.start_patience) {
       waiting->goal.setRejected(ResultOf(ExecuteActionResult::FAILED, why_not, 0.0));
@@ -155,14 +155,14 @@ void MiddleLayerNode::StartWaiting() {
   }
 }
 
-/// The reason why an action would fail at once; empty: nothing is missing.
-std::string MiddleLayerNode::WhyNotReady(const std::set<std::string>& groups) const {
-  if (are_motors_halted_) return "motors_halted";
+/// Why an action would fail at once; nothing is missing else.
+Failure MiddleLayerNode::WhyNotReady(const std::set<std::string>& groups) const {
+  if (are_motors_halted_) return Code::kMotorsHalted;
   const std::string controller = MissingController(groups);
-  if (!controller.empty()) return "no_controller: " + controller;
+  if (!controller.empty()) return {Code::kNoController, {}, controller};
   const bool is_fresh = senses_.Missing().empty() && !ros::Time::now().isZero() &&
                         ros::Time::now().toSec() - looked_ <= params_.runner.stale_after;
-  return is_fresh || params_.lockstep ? "" : "stale_observation";
+  return is_fresh || params_.lockstep ? Failure() : Code::kStaleObservation;
 }
 
 /// A controller that is needed and does not listen; empty: all are there. In lockstep that includes
@@ -201,10 +201,10 @@ std::unique_ptr<hires::skills::Skill> MiddleLayerNode::MakeSkill(
 void MiddleLayerNode::StartGoal(GoalHandle goal) {
   const hires::base::ActionCall action = FromMsg(goal.getGoal()->action);
   const double now = std::max(looked_, ros::Time::now().toSec());
-  const auto refusal = runner_.Start(next_id_, action, GroupsOf(action), MakeSkill(action),
-                                     goal.getGoal()->time_limit.toSec(), now);
+  const Failure refusal = runner_.Start(next_id_, action, GroupsOf(action), MakeSkill(action),
+                                        goal.getGoal()->time_limit.toSec(), now);
   if (refusal) {
-    goal.setRejected(ResultOf(ExecuteActionResult::INVALID, *refusal, 0.0));
+    goal.setRejected(ResultOf(ExecuteActionResult::INVALID, refusal, 0.0));
     return;
   }
   hires::base::Log(LogLevel::kInfo, fmt::format("action={} begins", hires::base::ToString(action)));
@@ -224,7 +224,7 @@ void MiddleLayerNode::StartGoal(GoalHandle goal) {
 void MiddleLayerNode::OnCancel(GoalHandle goal) {
   waiting_.remove_if([&](Waiting& waiting) {
     if (!(waiting.goal == goal)) return false;
-    goal.setCanceled(ResultOf(ExecuteActionResult::PREEMPTED, "", 0.0));
+    goal.setCanceled(ResultOf(ExecuteActionResult::PREEMPTED, {}, 0.0));
     return true;
   });
   for (const auto& [id, going] : going_) {
@@ -234,26 +234,26 @@ void MiddleLayerNode::OnCancel(GoalHandle goal) {
   }
 }
 
-void MiddleLayerNode::OnEnded(const ActionNews& news, ActionEnd end, const std::string& reason) {
+void MiddleLayerNode::OnEnded(const ActionNews& news, ActionEnd end, const Failure& failure) {
   const auto going = going_.find(news.id);
   GoalHandle goal = going->second.goal;
   leave_.End(news.id);
   if (news.has_base && move_base_) move_base_->Shut();
   going_.erase(going);
   ++num_ended_;
-  hires::base::Log(
-      LogLevel::kInfo,
-      fmt::format("action={} ends reason=\"{}\" duration={:.2f}",
-                  hires::base::ToString(FromMsg(goal.getGoal()->action)), reason, news.elapsed));
+  hires::base::Log(LogLevel::kInfo,
+                   fmt::format("action={} ends failure=\"{}\" duration={:.2f}",
+                               hires::base::ToString(FromMsg(goal.getGoal()->action)),
+                               ToString(failure), news.elapsed));
   switch (end) {
     case ActionEnd::kSucceeded:
-      goal.setSucceeded(ResultOf(ExecuteActionResult::SUCCEEDED, reason, news.elapsed));
+      goal.setSucceeded(ResultOf(ExecuteActionResult::SUCCEEDED, failure, news.elapsed));
       break;
     case ActionEnd::kFailed:
-      goal.setAborted(ResultOf(ExecuteActionResult::FAILED, reason, news.elapsed));
+      goal.setAborted(ResultOf(ExecuteActionResult::FAILED, failure, news.elapsed));
       break;
     case ActionEnd::kPreempted:
-      goal.setCanceled(ResultOf(ExecuteActionResult::PREEMPTED, reason, news.elapsed));
+      goal.setCanceled(ResultOf(ExecuteActionResult::PREEMPTED, failure, news.elapsed));
       break;
   }
 }
@@ -310,7 +310,9 @@ void MiddleLayerNode::Run(const std::function<bool()>& stop) {
 void MiddleLayerNode::AskForLeave() {
   if (!params_.guard.is_there || !leave_.is_asking()) return;
   // Nothing that drives would be heard any more.
-  if (base_.getNumSubscribers() == 0) return runner_.FailAll("no_controller: " + base_.getTopic());
+  if (base_.getNumSubscribers() == 0) {
+    return runner_.FailAll({Code::kNoController, {}, base_.getTopic()});
+  }
   leave_.Tick(std::chrono::duration<double>(Steady::now().time_since_epoch()).count());
 }
 

@@ -10,6 +10,8 @@
 namespace hires_ros {
 namespace {
 
+using hires::base::Failure;
+using Code = hires::base::FailureCode;
 using hires::robot::Observation;
 using hires::skills::Progress;
 
@@ -30,10 +32,10 @@ ActionRunner::ActionRunner(const hires::robot::Robot& robot, const RunnerParams&
 
 ActionRunner::~ActionRunner() = default;
 
-std::optional<std::string> ActionRunner::Start(int id, const hires::base::ActionCall& action,
-                                               const std::set<std::string>& groups,
-                                               std::unique_ptr<hires::skills::Skill> skill,
-                                               double time_limit, double now) {
+Failure ActionRunner::Start(int id, const hires::base::ActionCall& action,
+                            const std::set<std::string>& groups,
+                            std::unique_ptr<hires::skills::Skill> skill, double time_limit,
+                            double now) {
   Session session;
   session.id = id;
   session.action = action;
@@ -41,31 +43,33 @@ std::optional<std::string> ActionRunner::Start(int id, const hires::base::Action
   for (const Session& other : sessions_) {
     const auto common = Common(session.groups, other.groups);
     if (!common.empty()) {
-      return fmt::format("busy: {} needs {}", hires::base::ToString(other.action),
-                         hires::base::Join(common, ", "));
+      return {Code::kBusy,
+              {},
+              fmt::format("{} needs {}", hires::base::ToString(other.action),
+                          hires::base::Join(common, ", "))};
     }
   }
   session.time_limit = time_limit > 0.0 ? time_limit : params_.time_limit;
   session.accepted = now;
   session.skill = std::make_unique<SkillThread>(std::move(skill), hooks_.wake);
   sessions_.push_back(std::move(session));
-  return std::nullopt;
+  return {};
 }
 
 void ActionRunner::Cancel(int id) {
   for (Session& session : sessions_) {
-    if (session.id == id) BreakOff(&session, ActionEnd::kPreempted, "");
+    if (session.id == id) BreakOff(&session, ActionEnd::kPreempted, {});
   }
   RemoveFinished();
 }
 
 void ActionRunner::CancelAll() {
-  for (Session& session : sessions_) BreakOff(&session, ActionEnd::kPreempted, "");
+  for (Session& session : sessions_) BreakOff(&session, ActionEnd::kPreempted, {});
   RemoveFinished();
 }
 
-void ActionRunner::FailAll(const std::string& reason) {
-  for (Session& session : sessions_) BreakOff(&session, ActionEnd::kFailed, reason);
+void ActionRunner::FailAll(const Failure& failure) {
+  for (Session& session : sessions_) BreakOff(&session, ActionEnd::kFailed, failure);
   RemoveFinished();
 }
 
@@ -79,7 +83,7 @@ void ActionRunner::Look(double now, const Observation& seen) {
 void ActionRunner::LookWith(Session* session, const Observation& seen) {
   if (!session->start) session->start = session->next = now_;
   if (!session->stop && now_ - *session->start >= session->time_limit) {
-    BreakOff(session, ActionEnd::kFailed, "timed_out");
+    BreakOff(session, ActionEnd::kFailed, Code::kTimedOut);
     return;
   }
   if (session->stop) {
@@ -112,24 +116,24 @@ void ActionRunner::Hear(Session* session, const SkillTurn& turn) {
     hires::base::Log(
         hires::base::LogLevel::kError,
         fmt::format("action={} error=\"{}\"", hires::base::ToString(session->action), turn.error));
-    BreakOff(session, ActionEnd::kFailed, "internal_error: " + turn.error);
+    BreakOff(session, ActionEnd::kFailed, {Code::kInternalError, {}, turn.error});
     return;
   }
   hooks_.send(turn.command);
-  if (turn.status.progress == Progress::kSucceeded) Finish(session, ActionEnd::kSucceeded, "");
+  if (turn.status.progress == Progress::kSucceeded) Finish(session, ActionEnd::kSucceeded, {});
   if (turn.status.progress == Progress::kFailed) {
-    BreakOff(session, ActionEnd::kFailed, turn.status.reason);
+    BreakOff(session, ActionEnd::kFailed, turn.status.failure);
   }
 }
 
-void ActionRunner::BreakOff(Session* session, ActionEnd end, const std::string& reason) {
+void ActionRunner::BreakOff(Session* session, ActionEnd end, const Failure& failure) {
   if (session->skill == nullptr || session->stop) return;  // has ended, or will
   if (!session->start) {                                   // has not moved anything
-    Finish(session, end, reason);
+    Finish(session, end, failure);
     return;
   }
   session->end = end;
-  session->reason = reason;
+  session->failure = failure;
   session->phase = "stopping";
   if (hooks_.broken_off) hooks_.broken_off(NewsOf(*session));
   session->stop = std::make_unique<Stop>(robot_, session->groups, stop_);
@@ -138,16 +142,16 @@ void ActionRunner::BreakOff(Session* session, ActionEnd end, const std::string& 
 
 void ActionRunner::KeepStopping(Session* session) {
   hooks_.send(session->stop->Update(now_, *seen_));
-  if (session->stop->is_over()) Finish(session, session->end, session->reason);
+  if (session->stop->is_over()) Finish(session, session->end, session->failure);
 }
 
-void ActionRunner::Finish(Session* session, ActionEnd end, const std::string& reason) {
+void ActionRunner::Finish(Session* session, ActionEnd end, const Failure& failure) {
   // A skill that still thinks about its last look is let go; nobody hears what it will say.
   if (session->skill->is_thinking()) {
     leaving_.push_back(std::move(session->skill));
   }
   session->skill.reset();
-  hooks_.ended(NewsOf(*session), end, reason);
+  hooks_.ended(NewsOf(*session), end, failure);
 }
 
 void ActionRunner::RemoveFinished() {
@@ -170,14 +174,14 @@ void ActionRunner::CheckFreshness(double now) {
       if (stop_.braking) command.base_velocity.reset();
       hooks_.send(command);
     }
-    Finish(&session, ActionEnd::kFailed, "stale_observation");
+    Finish(&session, ActionEnd::kFailed, Code::kStaleObservation);
   }
   RemoveFinished();
 }
 
 void ActionRunner::GiveUpStopping() {
   for (Session& session : sessions_) {
-    if (session.stop) Finish(&session, session.end, session.reason);
+    if (session.stop) Finish(&session, session.end, session.failure);
   }
   RemoveFinished();
 }

@@ -12,12 +12,14 @@
 namespace hires_ros {
 namespace {
 
+using hires::base::Failure;
 using hires::geometry::Pose2;
 using hires::navigation::Costmap;
-using hires::skills::Progress;
+using Code = hires::base::FailureCode;
+using hires::skills::Failed;
 using hires::skills::Status;
 
-Status Failed(const std::string& reason) { return {Progress::kFailed, reason}; }
+Failure NoMoveBase() { return {Code::kNoController, {}, "move_base"}; }
 
 double LengthOf(const Pose2& X) { return std::hypot(X.x, X.y); }
 
@@ -26,31 +28,31 @@ bool Mentions(const std::string& text, const std::string& word) {
 }
 
 /// move_base tells in words what it gave up at: a valid plan, a valid control, or oscillation.
-std::string ReasonOfAbortion(const std::string& text) {
+Code CodeOfAbortion(const std::string& text) {
   const bool is_stuck = Mentions(text, "control") || Mentions(text, "oscillat");
-  return is_stuck ? "stuck" : "unreachable";
+  return is_stuck ? Code::kStuck : Code::kUnreachable;
 }
 
 }  // namespace
 
-std::string ReasonFor(const MoveBaseNews& news) {
+Failure FailureOf(const MoveBaseNews& news) {
   using State = MoveBaseNews::State;
   switch (news.state) {
     case State::kAborted:
-      return ReasonOfAbortion(news.text);
+      return CodeOfAbortion(news.text);
     case State::kRejected:
-      return "unreachable";
+      return Code::kUnreachable;
     case State::kReplaced:
-      return "interrupted";
+      return Code::kInterrupted;
     case State::kLost:
-      return "no_controller: move_base";
+      return NoMoveBase();
     case State::kNone:
     case State::kSent:
     case State::kDriving:
     case State::kArrived:
       break;
   }
-  return "";
+  return {};
 }
 
 MoveBaseDrive::MoveBaseDrive(std::shared_ptr<MoveBaseServer> server,
@@ -103,7 +105,7 @@ Status MoveBaseDrive::Begin(const hires::robot::Observation& seen) {
     sent_ = seen.time;
     stage_ = Stage::kDriving;
   } else if (seen.time > params_.start_patience) {
-    return Failed(is_there ? "no_leave" : "no_controller: move_base");
+    return Failed(is_there ? Failure(Code::kNoPermit) : NoMoveBase());
   }
   return {};
 }
@@ -112,15 +114,16 @@ Status MoveBaseDrive::Follow(const hires::robot::Observation& seen,
                              hires::robot::Command* command) {
   const MoveBaseNews news = server_->News();
   if (news.state == MoveBaseNews::State::kArrived) return BeginRest(seen, command);
-  const std::string reason = ReasonFor(news);
-  if (!reason.empty()) {
-    hires::base::Log(hires::base::LogLevel::kWarn,
-                     fmt::format("move_base reason=\"{}\" text=\"{}\"", reason, news.text));
-    return Failed(reason);
+  const Failure failure = FailureOf(news);
+  if (failure) {
+    hires::base::Log(
+        hires::base::LogLevel::kWarn,
+        fmt::format("move_base failure=\"{}\" text=\"{}\"", ToString(failure), news.text));
+    return Failed(failure);
   }
   const bool is_silent =
       news.state == MoveBaseNews::State::kSent && seen.time - sent_ > params_.answer_patience;
-  if (is_silent || !server_->IsThere()) return Failed("no_controller: move_base");
+  if (is_silent || !server_->IsThere()) return Failed(NoMoveBase());
   return {};
 }
 
@@ -132,13 +135,14 @@ Status MoveBaseDrive::BeginRest(const hires::robot::Observation& seen,
   const hires::navigation::DwaParams& tolerances = driving_->params.local;
   stage_ = Stage::kRest;
   if (distance <= tolerances.xy_goal_tolerance && turn <= tolerances.yaw_goal_tolerance) {
-    return {Progress::kSucceeded, ""};
+    return hires::skills::Succeeded();
   }
   if (distance > params_.max_rest || turn > params_.max_rest_turn) {
-    return Failed(fmt::format("goal_missed: {:.2f} m, {:.2f} rad", distance, turn));
+    return Failed({Code::kGoalMissed, {}, fmt::format("{:.2f} m, {:.2f} rad", distance, turn)});
   }
   if (!IsWayFree(seen)) {
-    return Failed(fmt::format("unreachable: something stands on the last {:.2f} m", distance));
+    const auto words = fmt::format("something stands on the last {:.2f} m", distance);
+    return Failed({Code::kUnreachable, {}, words});
   }
   return rest_.Update(seen, command);
 }

@@ -44,6 +44,7 @@ execution::StepStatus StepOf(const hires::StepStatus& message) {
   step.expected_start = message.expected_start;
   step.expected_finish = message.expected_finish;
   step.note = message.note;
+  step.failure = FromMsg(message.failure);
   return step;
 }
 
@@ -58,7 +59,7 @@ evaluation::ImaginedStep ImaginedOf(const hires::ImaginationStatus& message) {
   step.deadline = message.deadline;
   step.wall_seconds = message.wall_seconds;
   step.simulated_seconds = message.simulated_seconds;
-  step.outcome = message.outcome;
+  step.outcome = evaluation::ParseImaginedOutcome(message.outcome);
   for (const hires::Prediction& prediction : message.predictions) {
     step.predictions.push_back(FromMsg(prediction));
   }
@@ -201,6 +202,7 @@ class Conversation {
     report.task = query_.task;
     report.outcome = OutcomeOf(result.code);
     report.reason = result.reason;
+    report.failure = FromMsg(result.failure);
     report.episode = result.episode;
     report.status = StatusOf(result);
     report.status.warnings = warnings_;

@@ -155,9 +155,10 @@ bool SimWorkerNode::PlayRange(GoalHandle goal, const imagination::RolloutSetup& 
     goal.publishFeedback(feedback);
     result->results.push_back(feedback.result);
     ++rollouts_played_;
-    hires::base::Log(hires::base::LogLevel::kDebug,
-                     fmt::format("rollout={} action={} reason={} t_sim={:.2f}", i,
-                                 hires::base::ToString(action), played->reason, played->duration));
+    hires::base::Log(
+        hires::base::LogLevel::kDebug,
+        fmt::format("rollout={} action={} failure={} t_sim={:.2f}", i,
+                    hires::base::ToString(action), ToString(played->failure), played->duration));
   }
   return true;
 }

@@ -9,22 +9,24 @@ void StagedSkill::Insert(std::vector<Stage> stages) {
                  std::make_move_iterator(stages.end()));
 }
 
-/// Why the present stage has failed; empty while it has not. Its activity is gone when it is over.
-std::string StagedSkill::Continue(const robot::Observation& observation, robot::Command* command) {
+/// Why the present stage has failed; nothing while it has not. Its activity is gone when it is
+/// over.
+base::Failure StagedSkill::Continue(const robot::Observation& observation,
+                                    robot::Command* command) {
   if (stage_.watch) {
-    const std::string why = stage_.watch(observation);
-    if (!why.empty()) return why;
+    base::Failure why = stage_.watch(observation);
+    if (why) return why;
   }
   const Status status = activity_->Update(observation, command);
   if (status.progress == Progress::kSucceeded) activity_.reset();
-  return status.progress == Progress::kFailed ? status.reason : "";
+  return status.progress == Progress::kFailed ? status.failure : base::Failure();
 }
 
-void StagedSkill::Fail(const std::string& reason, const robot::Observation& observation) {
+void StagedSkill::Fail(const base::Failure& failure, const robot::Observation& observation) {
   activity_.reset();
   stages_.clear();
-  if (!failure_.empty()) return;  // tidying up failed too: that is not why the skill fails
-  failure_ = reason;
+  if (failure_) return;  // tidying up failed too: that is not why the skill fails
+  failure_ = failure;
   Insert(AfterFailure(stage_.name, observation));
 }
 
@@ -35,17 +37,17 @@ Status StagedSkill::Update(const robot::Observation& observation, robot::Command
       stages_.pop_front();
       Beginning beginning = stage_.begin(observation);
       activity_ = std::move(beginning.activity);
-      if (!beginning.failure.empty()) Fail(beginning.failure, observation);
+      if (beginning.failure) Fail(beginning.failure, observation);
     } else {
-      const std::string failure = Continue(observation, command);
-      if (!failure.empty()) {
+      const base::Failure failure = Continue(observation, command);
+      if (failure) {
         Fail(failure, observation);
       } else if (activity_ != nullptr) {
         return {};
       }
     }
   }
-  return {failure_.empty() ? Progress::kSucceeded : Progress::kFailed, failure_};
+  return failure_ ? Failed(failure_) : Succeeded();
 }
 
 }  // namespace hires::skills

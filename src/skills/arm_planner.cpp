@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hires/base/check.h"
 #include "hires/base/text.h"
 #include "hires/robot/gripper.h"
 
@@ -47,13 +48,30 @@ JointPath PointsBetween(const std::vector<double>& from, const std::vector<doubl
   return points;
 }
 
+/// An arm's goal that is blocked is one of many postures: no way, rather than a blocked goal.
+base::FailureCode CodeOf(ArmPathStatus status) {
+  switch (status) {
+    case ArmPathStatus::kStartBlocked:
+      return base::FailureCode::kStartBlocked;
+    case ArmPathStatus::kUnreachable:
+      return base::FailureCode::kUnreachable;
+    case ArmPathStatus::kGoalBlocked:
+    case ArmPathStatus::kNoPath:
+      return base::FailureCode::kNoPath;
+    case ArmPathStatus::kFound:
+      break;
+  }
+  HIRES_CHECK(false, "a way that was found is no failure");
+}
+
 }  // namespace
 
-std::string FailureOf(const ArmPathResult& result) {
-  const std::string reason = ToString(result.status);
-  const bool is_blocked = result.status == ArmPathStatus::kGoalBlocked;
-  const std::string word = is_blocked ? "no_path" : reason;
-  return result.touch.empty() ? word : word + ": " + result.touch;
+base::Failure FailureOf(const ArmPathResult& result) {
+  return {CodeOf(result.status), result.obstruction.parts, result.obstruction.words};
+}
+
+base::Failure NoPath(const Touch& touch) {
+  return {base::FailureCode::kNoPath, {touch.a, touch.b}, ToString(touch)};
 }
 
 std::vector<world::ObjectState> ObjectsOf(const Observation& observation) {

@@ -8,8 +8,6 @@ namespace {
 
 using robot::Observation;
 
-Status Succeeded() { return {Progress::kSucceeded, ""}; }
-
 /// Advances one of two; false if it has failed.
 bool Advance(std::unique_ptr<Activity>* activity, const Observation& observation,
              robot::Command* command, Status* failed) {
@@ -51,7 +49,7 @@ Beginning ToSide(const SharedContext& context, const std::string& arm, bool hold
   Beginning beginning;
   for (int i = 0; i < context->params.pick.max_return_tries; ++i) {
     beginning = MoveArmTo(context, {arm, side, AttemptSeed(seed, 1000 + i)}, observation);
-    if (beginning.failure.empty()) break;
+    if (!beginning.failure) break;
   }
   return beginning;
 }
@@ -86,7 +84,7 @@ Status Sight::Update(const Observation& observation, robot::Command* /*command*/
 }
 
 Status Sight::Conclude() {
-  if (X_MO_.empty()) return {Progress::kFailed, "object_not_seen"};
+  if (X_MO_.empty()) return Failed(base::FailureCode::kObjectNotSeen);
   sighted_->X_MO = X_MO_.back();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const geometry::Pose3& X_MO : X_MO_) sum += X_MO.translation;

@@ -40,7 +40,7 @@ std::vector<Stage> StopAndTidy(const SharedContext& context, const std::string& 
                                std::uint64_t seed);
 
 /// The object's pose as the mean of several sightings, taken while the head rests. Fails with
-/// "object_not_seen" when there is none in time.
+/// object_not_seen when there is none in time.
 class Sight : public Activity {
  public:
   /// @param sighted  filled when it is over; outlives the activity.

@@ -41,7 +41,7 @@ class LookAndRest : public Activity {
       rests_since_ = observation.time;
     }
     const bool is_over = observation.time - rests_since_ >= dwell_;
-    return {is_over ? Progress::kSucceeded : Progress::kRunning, ""};
+    return is_over ? Succeeded() : Status{};
   }
 
  private:
@@ -77,7 +77,7 @@ Beginning LookAtPoint(std::shared_ptr<const ManipulationContext> context,
   const robot::UpperBodyProfile& profile = context->upper_body();
   const auto aim = AimHead(*context->robot, observation.X_MB,
                            PostureOf(*context->robot, observation.joints), p_M);
-  if (!aim) return CannotBegin("out_of_view");
+  if (!aim) return CannotBegin(base::FailureCode::kOutOfView);
   GroupTrajectories head{{"head", TrajectoryFrom(*context, observation,
                                                  {profile.head_pan_joint, profile.head_tilt_joint},
                                                  {*aim}, context->params.speed)}};
@@ -126,7 +126,7 @@ Status SweepPoints::Update(const Observation& observation, robot::Command* comma
   while (!left_M_.empty()) {
     if (look_ == nullptr) {
       Beginning look = LookAtPoint(context_, observation, left_M_.front());
-      if (!look.failure.empty()) return {Progress::kFailed, look.failure};
+      if (look.failure) return Failed(look.failure);
       look_ = std::move(look.activity);
     }
     const Status status = look_->Update(observation, command);
@@ -134,9 +134,9 @@ Status SweepPoints::Update(const Observation& observation, robot::Command* comma
     look_.reset();
     const std::size_t before = left_M_.size();
     CrossOff(observation);
-    if (left_M_.size() == before) return {Progress::kFailed, "out_of_view"};  // too near or too far
+    if (left_M_.size() == before) return Failed(base::FailureCode::kOutOfView);  // too near or far
   }
-  return {Progress::kSucceeded, ""};
+  return Succeeded();
 }
 
 }  // namespace hires::skills

@@ -14,8 +14,6 @@ using robot::Observation;
 constexpr double kMovingSpeed = 1e-3;     // [rad/s] or [m/s] slower joints stand
 constexpr double kShortestBraking = 0.1;  // [s]
 
-Status Failed(const std::string& reason) { return {Progress::kFailed, reason}; }
-
 double ToleranceOf(const JointGoalParams& params, const std::string& group) {
   if (group == "torso") return params.torso_tolerance;
   return group == "head" ? params.head_tolerance : params.arm_tolerance;
@@ -100,10 +98,10 @@ Status JointMotion::Update(const Observation& observation, robot::Command* comma
   const bool is_due = elapsed >= duration_ || end_ == MotionEnd::kPassing || IsTorsoAlone();
   const double settling = end_ == MotionEnd::kSettled ? params.settling_time : 0.0;
   if (is_there && is_due && observation.time - at_goal_since_ >= settling) {
-    return {Progress::kSucceeded, ""};
+    return Succeeded();
   }
   if (elapsed > params.time_limit_factor * duration_ + params.time_limit_surplus) {
-    return Failed("timed_out");
+    return Failed(base::FailureCode::kTimedOut);
   }
   return {};
 }
@@ -157,15 +155,15 @@ Status GripperMotion::Update(const Observation& observation, robot::Command* com
     resting_gap_ = gap;
     command->grippers[arm_] = wanted_;
   }
-  if (IsOver(gap, observation.time)) return {Progress::kSucceeded, ""};
+  if (IsOver(gap, observation.time)) return Succeeded();
   const bool is_late = observation.time - begin_ > context_->params.gripper.time_limit;
-  return is_late ? Failed("timed_out") : Status{};
+  return is_late ? Failed(base::FailureCode::kTimedOut) : Status{};
 }
 
 Status WaitUntil::Update(const Observation& observation, robot::Command* /*command*/) {
   if (begin_ < 0.0) begin_ = observation.time;
-  if (condition_(observation)) return {Progress::kSucceeded, ""};
-  return observation.time - begin_ > time_limit_ ? Failed(reason_) : Status{};
+  if (condition_(observation)) return Succeeded();
+  return observation.time - begin_ > time_limit_ ? Failed(failure_) : Status{};
 }
 
 double GapNow(const robot::ArmProfile& arm, const Observation& observation) {

@@ -51,7 +51,7 @@ LookAt::LookAt(Context context, const std::string& target) : StagedSkill(context
           [context, X_MF, object](const Observation& seen) {
             if (X_MF) return LookAtPoint(context, seen, X_MF->translation);
             const robot::SeenObject* known = FindSeen(seen, object);
-            return known == nullptr ? CannotBegin("object_not_seen")
+            return known == nullptr ? CannotBegin(base::FailureCode::kObjectNotSeen)
                                     : LookAtPoint(context, seen, known->X_MO.translation);
           },
           {}});

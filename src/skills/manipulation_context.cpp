@@ -139,11 +139,12 @@ geometry::Pose3 LinkPose(const robot::Robot& robot, const geometry::Pose2& X_MB,
          X_RL[static_cast<std::size_t>(*robot.model.FindLink(link))];
 }
 
-std::string WhyNotKnown(const ManipulationContext& context, const robot::Observation& seen) {
+base::Failure WhyNotKnown(const ManipulationContext& context, const robot::Observation& seen) {
   for (const robot::SeenObject& object : seen.objects) {
-    if (context.world->models.count(object.model) == 0) return "unknown_model: " + object.model;
+    if (context.world->models.count(object.model) > 0) continue;
+    return {base::FailureCode::kUnknownModel, {object.model}};
   }
-  return "";
+  return {};
 }
 
 const robot::SeenObject* HeldBy(const robot::ArmProfile& arm, const robot::Observation& seen) {

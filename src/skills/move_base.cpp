@@ -13,8 +13,6 @@ using geometry::Pose2;
 
 constexpr double kMapMargin = 2.0;  // [m] free floor around the outermost body or area
 
-Status Failed(const std::string& reason) { return {Progress::kFailed, reason}; }
-
 /// [m] The map covers all bodies and this much more: far enough that all areas lie well inside.
 double MapMargin(const world::World& world) {
   geometry::Aabb bodies;
@@ -141,11 +139,11 @@ std::optional<Status> MoveBase::Plan(const navigation::Costmap& costmap, const P
       navigation::PlanPath(costmap, X_MB, X_MGoal_, context_->params.planner);
   switch (result.status) {
     case navigation::PathStatus::kStartBlocked:
-      return Failed("start_blocked");
+      return Failed(base::FailureCode::kStartBlocked);
     case navigation::PathStatus::kGoalBlocked:
-      return Failed("goal_blocked");
+      return Failed(base::FailureCode::kGoalBlocked);
     case navigation::PathStatus::kNoPath:
-      return Failed("no_path");
+      return Failed(base::FailureCode::kNoPath);
     case navigation::PathStatus::kFound:
       break;
   }
@@ -169,7 +167,7 @@ bool MoveBase::NoteMotion(const robot::Observation& observation) {
 Status MoveBase::Recover(const navigation::Costmap& costmap,
                          const robot::Observation& observation) {
   if (observation.time - last_valid_ > context_->params.controller_patience) {
-    return Failed("no_valid_trajectory");
+    return Failed(base::FailureCode::kNoValidTrajectory);
   }
   if (observation.time - last_plan_ >= context_->params.replanning_period) {
     last_plan_ = observation.time;
@@ -201,13 +199,13 @@ Status MoveBase::Update(const robot::Observation& observation, robot::Command* c
   }
   const navigation::DwaResult result = local_.Update(costmap, observation.X_MB, observation.V_B);
   command->base_velocity = result.velocity;
-  if (result.status == navigation::DwaStatus::kGoalReached) return {Progress::kSucceeded, ""};
+  if (result.status == navigation::DwaStatus::kGoalReached) return Succeeded();
   if (result.status == navigation::DwaStatus::kNoValidTrajectory) {
     return Recover(costmap, observation);
   }
   last_valid_ = observation.time;
   if (!NoteMotion(observation)) {
-    if (++oscillations_ > 1) return Failed("oscillating");
+    if (++oscillations_ > 1) return Failed(base::FailureCode::kOscillating);
     last_moved_ = observation.time;
     if (const auto failed = Plan(costmap, observation.X_MB)) return *failed;
   }
@@ -226,13 +224,14 @@ Status MoveBaseBlind::Update(const robot::Observation& observation, robot::Comma
     command->base_velocity = geometry::Twist2{};
     const bool stopped = std::hypot(observation.V_B.vx, observation.V_B.vy) < 0.01 &&
                          std::abs(observation.V_B.wz) < 0.01;
-    return {stopped ? Progress::kSucceeded : Progress::kRunning, ""};
+    return stopped ? Succeeded() : Status{};
   }
   if (distance + turn < nearest_ - 0.01) {
     nearest_ = distance + turn;
     last_progress_ = observation.time;
   }
-  if (observation.time - last_progress_ > params_.stuck_timeout) return Failed("stuck");
+  if (observation.time - last_progress_ > params_.stuck_timeout)
+    return Failed(base::FailureCode::kStuck);
   const double deceleration = std::min(params_.deceleration, motion_set_.max_linear_acceleration);
   const double v = std::min({ApproachSpeed(distance, deceleration, params_.reaction_time),
                              params_.max_velocity, motion_set_.max_linear_velocity});

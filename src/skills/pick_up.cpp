@@ -9,6 +9,7 @@
 namespace hires::skills {
 namespace {
 
+using Code = base::FailureCode;
 using robot::Observation;
 
 /// Stages after which the hand is at the object and has to be drawn back before anything else.
@@ -35,7 +36,7 @@ void PickUpObject::AppendLooking(From from) {
   Append({"look",
           [this, from](const Observation& seen) {
             const robot::SeenObject* held = HeldBy(context_->arm(arm_), seen);
-            if (held != nullptr) return CannotBegin("hand_full: " + base::ToLower(held->name));
+            if (held != nullptr) return CannotBegin({Code::kHandFull, {held->name}});
             const robot::SeenObject* known = FindSeen(seen, object_);
             if (known != nullptr) return LookAtPoint(context_, seen, known->X_MO.translation);
             if (from == From::kTray) {
@@ -53,14 +54,17 @@ void PickUpObject::AppendLooking(From from) {
 }
 
 Beginning PickUpObject::Plan(const Observation& observation) {
-  const std::string unknown = WhyNotKnown(*context_, observation);
-  if (!unknown.empty()) return CannotBegin(unknown);
-  if (!sighted_.attached_to.empty()) return CannotBegin("object_held: " + sighted_.attached_to);
+  if (base::Failure unknown = WhyNotKnown(*context_, observation); unknown) {
+    return CannotBegin(unknown);
+  }
+  if (!sighted_.attached_to.empty()) {
+    return CannotBegin({Code::kObjectHeld, {sighted_.attached_to}});
+  }
   if (geometry::TiltOf(sighted_.X_MO.rotation) > context_->params.place.lying_tilt) {
-    return CannotBegin("object_toppled");
+    return CannotBegin(Code::kObjectToppled);
   }
   plan_ = PlanGrasp(*context_, arm_, observation, sighted_, seed_);
-  return plan_.failure.empty() ? NothingToDo() : CannotBegin(plan_.failure);
+  return plan_.failure ? CannotBegin(plan_.failure) : NothingToDo();
 }
 
 void PickUpObject::AppendReaching() {
@@ -91,7 +95,7 @@ void PickUpObject::AppendTaking() {
           [this](const Observation& seen) {
             const double gap = GapNow(context_->arm(arm_), seen);
             const bool is_empty = gap < context_->params.gripper.min_held_gap;
-            return is_empty ? CannotBegin("grasp_failed") : NothingToDo();
+            return is_empty ? CannotBegin(Code::kGraspFailed) : NothingToDo();
           },
           {}});
   Append({"lift",
@@ -124,13 +128,15 @@ std::vector<Stage> PickUpObject::AfterFailure(const std::string& stage,
   return stages;
 }
 
-std::string WhyNotHeld(const ManipulationContext& context, const std::string& arm,
-                       const std::string& object, const Observation& observation) {
+base::Failure WhyNotHeld(const ManipulationContext& context, const std::string& arm,
+                         const std::string& object, const Observation& observation) {
   const robot::ArmProfile& profile = context.arm(arm);
-  if (GapNow(profile, observation) < context.params.gripper.min_held_gap) return "object_slipped";
+  if (GapNow(profile, observation) < context.params.gripper.min_held_gap) {
+    return Code::kObjectSlipped;
+  }
   const robot::SeenObject* seen = FindSeen(observation, object);
   const bool is_elsewhere = seen == nullptr || seen->attached_to != profile.palm_link;
-  return is_elsewhere ? "object_slipped" : "";
+  return is_elsewhere ? Code::kObjectSlipped : base::Failure();
 }
 
 }  // namespace hires::skills

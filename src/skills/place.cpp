@@ -14,6 +14,7 @@ namespace {
 
 using geometry::Pose3;
 using robot::Observation;
+using Code = base::FailureCode;
 
 /// Everything loose but one object.
 std::vector<world::ObjectState> Others(const Observation& seen, const std::string& object) {
@@ -57,10 +58,11 @@ Pose3 PlaceObject::X_MGoal(const Observation& observation) const {
 }
 
 Beginning PlaceObject::Plan(const Observation& observation) {
-  const std::string unknown = WhyNotKnown(*context_, observation);
-  if (!unknown.empty()) return CannotBegin(unknown);
+  if (base::Failure unknown = WhyNotKnown(*context_, observation); unknown) {
+    return CannotBegin(unknown);
+  }
   const robot::SeenObject* held = FindSeen(observation, object_);
-  if (held == nullptr) return CannotBegin("object_slipped");
+  if (held == nullptr) return CannotBegin(Code::kObjectSlipped);
   const world::ObjectModel& model = *context_->world->models.at(held->model);
   const PlaceParams& params = context_->params.place;
   const std::vector<world::ObjectState> others = Others(observation, object_);
@@ -68,7 +70,7 @@ Beginning PlaceObject::Plan(const Observation& observation) {
   const FreeSpots spots = X_MArea_ ? FindFreeSpots(params, *context_->world, model, X_MA, others)
                                    : FindFreeSlots(params, *context_->world, model, X_MA, others);
   plan_ = PlanPlacing(*context_, arm_, observation, *held, X_MA, spots, seed_);
-  return plan_.failure.empty() ? NothingToDo() : CannotBegin(plan_.failure);
+  return plan_.failure ? CannotBegin(plan_.failure) : NothingToDo();
 }
 
 void PlaceObject::AppendStages() {
@@ -77,8 +79,8 @@ void PlaceObject::AppendStages() {
   };
   Append({"check_hand",
           [this](const Observation& seen) {
-            const std::string why = WhyNotHeld(*context_, arm_, object_, seen);
-            return why.empty() ? NothingToDo() : CannotBegin(why);
+            const base::Failure why = WhyNotHeld(*context_, arm_, object_, seen);
+            return why ? CannotBegin(why) : NothingToDo();
           },
           {}});
   Append({"look",
@@ -117,13 +119,14 @@ Beginning PlaceObject::ReturnAndLook(const Observation& observation) const {
   return Begin(std::make_unique<Both>(std::move(side.activity), std::move(look.activity)));
 }
 
-std::string PlaceObject::WhyNotStanding(const Observation& observation) const {
+base::Failure PlaceObject::WhyNotStanding(const Observation& observation) const {
   const robot::SeenObject* seen = FindSeen(observation, object_);
   const PlaceParams& params = context_->params.place;
   const Pose3 X_BO = geometry::Lift(observation.X_MB).Inverse() * seen->X_MO;
   const bool lies = geometry::TiltOf(X_BO.rotation) > params.lying_tilt;
   const double away = (X_BO.translation - plan_.X_BO.translation).norm();
-  return lies || away > params.standing_tolerance ? "object_toppled" : "";
+  const bool stands = !lies && away <= params.standing_tolerance;
+  return stands ? base::Failure() : Code::kObjectToppled;
 }
 
 void PlaceObject::AppendChecking() {
@@ -136,13 +139,13 @@ void PlaceObject::AppendChecking() {
                   const robot::SeenObject* object = FindSeen(seen, object_);
                   return object != nullptr && object->time > looked_since_;
                 },
-                context_->params.look.time_limit, "object_not_seen"));
+                context_->params.look.time_limit, Code::kObjectNotSeen));
           },
           {}});
   Append({"check_stand",
           [this](const Observation& seen) {
-            const std::string why = WhyNotStanding(seen);
-            return why.empty() ? NothingToDo() : CannotBegin(why);
+            const base::Failure why = WhyNotStanding(seen);
+            return why ? CannotBegin(why) : NothingToDo();
           },
           {}});
 }

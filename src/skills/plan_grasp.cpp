@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 #include "hires/skills/posture_skills.h"
 #include "hires/skills/reach.h"
@@ -77,7 +76,7 @@ class GraspSearch {
       if (Try(AttemptSeed(seed_, i), &plan)) return plan;
     }
     GraspPlan none;
-    none.failure = failure_.reason();
+    none.failure = failure_.failure();
     return none;
   }
 
@@ -95,7 +94,7 @@ class GraspSearch {
   bool TryFrom(const std::vector<double>& before, const Pose3& X_MT, std::uint64_t seed,
                GraspPlan* plan) {
     if (const auto touch = free_.TouchAt(before)) {
-      failure_.Note(kInverse, "no_path: " + ToString(*touch));
+      failure_.Note(kInverse, NoPath(*touch));
       return false;
     }
     return Keep(touching_.Straight(before, X_MT), kFree, &plan->approach) &&
@@ -130,7 +129,7 @@ class GraspSearch {
   ArmPlanner free_;      // hand open, object standing
   ArmPlanner touching_;  // the same, fingers may touch it
   ArmPlanner lifting_;   // object in the hand
-  BestFailure failure_{"unreachable"};
+  BestFailure failure_{base::FailureCode::kUnreachable};
 };
 
 }  // namespace

@@ -55,7 +55,7 @@ class PlacingSearch {
       if (TrySpot(p_MO, AttemptSeed(seed_, i), &plan)) return plan;
     }
     PlacePlan none;
-    none.failure = Failure();
+    none.failure = WhyNone();
     return none;
   }
 
@@ -90,8 +90,8 @@ class PlacingSearch {
   bool TryFrom(const std::vector<double>& above, const Pose3& X_MO, const Pose3& X_MT,
                std::uint64_t seed, PlacePlan* plan) {
     if (const auto touch = holding_.TouchAt(above)) {
-      NoteTouch(touch->a, touch->b);
-      failure_.Note(kInverse, "no_path: " + ToString(*touch));
+      NoteParts({touch->a, touch->b});
+      failure_.Note(kInverse, NoPath(*touch));
       return false;
     }
     if (!Keep(Lower(above, X_MT, seed), kFree, &plan->lower) ||
@@ -106,7 +106,7 @@ class PlacingSearch {
   /// Down to the support, which the object may touch at the end.
   ArmPathResult Lower(const std::vector<double>& above, const Pose3& X_MT, std::uint64_t seed) {
     const auto low = lowering_.Inverse(X_MT, above, seed);
-    if (low.empty()) return {ArmPathStatus::kUnreachable, "", {}};
+    if (low.empty()) return {ArmPathStatus::kUnreachable, {}, {}};
     lowering_.SetArm(low.front());
     lowering_.AllowSupport(name_);
     lowering_.SetArm(lowering_.start());
@@ -129,20 +129,15 @@ class PlacingSearch {
       return true;
     }
     failure_.Note(came, FailureOf(result));
-    const std::vector<std::string> words = base::Split(result.touch, ' ');
-    if (words.size() == 3) {
-      NoteTouch(words.front(), words.back());
-    } else {
-      only_objects_ = false;
-    }
+    NoteParts(result.obstruction.parts);
     return false;
   }
 
   /// Notes which loose object was in the way, or that something else was.
-  void NoteTouch(const std::string& a, const std::string& b) {
+  void NoteParts(const std::vector<std::string>& parts) {
     std::vector<world::ObjectState> objects = holding_.objects();
     bool is_object = false;
-    for (const std::string& name : {a, b}) {
+    for (const std::string& name : parts) {
       if (base::ToLower(name) == base::ToLower(name_)) continue;
       if (FindObject(&objects, name) == nullptr) continue;
       in_the_way_.insert(base::ToLower(name));
@@ -151,9 +146,9 @@ class PlacingSearch {
     only_objects_ = only_objects_ && is_object;
   }
 
-  std::string Failure() const {
-    if (in_the_way_.empty() || !only_objects_) return failure_.reason();
-    return "area_occupied: " + base::Join({in_the_way_.begin(), in_the_way_.end()}, ", ");
+  base::Failure WhyNone() const {
+    if (in_the_way_.empty() || !only_objects_) return failure_.failure();
+    return {base::FailureCode::kAreaOccupied, {in_the_way_.begin(), in_the_way_.end()}};
   }
 
   const ManipulationContext& context_;
@@ -166,7 +161,7 @@ class PlacingSearch {
   ArmPlanner lowering_;  // the same, the object may touch what it will stand on
   ArmPlanner leaving_;   // hand open, object standing
   Pose3 X_OT_;           // how the object lies in the hand
-  BestFailure failure_{"unreachable"};
+  BestFailure failure_{base::FailureCode::kUnreachable};
   std::set<std::string> in_the_way_;
   bool only_objects_{true};
 };
@@ -178,7 +173,7 @@ PlacePlan PlanPlacing(const ManipulationContext& context, const std::string& arm
                       const Pose3& X_MA, const FreeSpots& spots, std::uint64_t seed) {
   if (spots.spots_A.empty()) {
     PlacePlan none;
-    none.failure = "area_occupied: " + base::Join(spots.occupants, ", ");
+    none.failure = {base::FailureCode::kAreaOccupied, spots.occupants};
     return none;
   }
   return PlacingSearch(context, arm, observation, held, seed).Find(X_MA, spots);

@@ -162,8 +162,9 @@ std::vector<double> Joined(std::vector<double> a, const std::vector<double>& b) 
 
 /// Both arms to the carry posture at once, if nothing is in the way.
 Beginning CarryTogether(const Context& context, const Observation& seen) {
-  const std::string unknown = WhyNotKnown(*context, seen);
-  if (!unknown.empty()) return CannotBegin(unknown);
+  if (base::Failure unknown = WhyNotKnown(*context, seen); unknown) {
+    return CannotBegin(unknown);
+  }
   const std::vector<std::string>& left = context->arm(kLeft).joints;
   std::vector<std::string> joints = left;
   const std::vector<std::string>& right = context->arm(kRight).joints;
@@ -175,7 +176,7 @@ Beginning CarryTogether(const Context& context, const Observation& seen) {
       Joined(CarryGoal(*context, kLeft, seen), CarryGoal(*context, kRight, seen)), start);
   const ArmPlanner planner(*context, kRight, seen);
   if (const auto touch = planner.TouchAlong(joints, {start, goal})) {
-    return CannotBegin("no_path: " + ToString(*touch));
+    return CannotBegin(NoPath(*touch));
   }
   const robot::JointTrajectory both =
       manipulation::TimePath(*context->robot, joints, {start, goal}, context->params.speed);
@@ -236,8 +237,9 @@ double PostureError(const robot::Robot& robot, const robot::ArmProfile& arm,
 }
 
 Beginning MoveArmTo(Context context, const ArmMove& move, const Observation& observation) {
-  const std::string unknown = WhyNotKnown(*context, observation);
-  if (!unknown.empty()) return CannotBegin(unknown);
+  if (base::Failure unknown = WhyNotKnown(*context, observation); unknown) {
+    return CannotBegin(unknown);
+  }
   ArmPlanner planner(*context, move.arm, observation);
   planner.AllowSelfTouches(planner.start());
   planner.AllowSelfTouches(move.goal);
@@ -311,7 +313,7 @@ MoveArmsToCarryPosture::MoveArmsToCarryPosture(Context context, const base::Acti
   Append({"carry",
           [this, context, seed](const Observation& seen) {
             Beginning together = CarryTogether(context, seen);
-            if (together.failure.empty()) return together;
+            if (!together.failure) return together;
             Insert({ArmStage(context, "carry_left",
                              {kLeft, CarryGoal(*context, kLeft, seen), AttemptSeed(seed, 1),
                               MotionEnd::kPassing}),

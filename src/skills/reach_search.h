@@ -7,20 +7,20 @@
 
 namespace hires::skills {
 
-/// Keeps the reason of the attempt that came farthest: what is told when all fail.
+/// Keeps the failure of the attempt that came farthest: what is told when all fail.
 class BestFailure {
  public:
-  explicit BestFailure(std::string reason) : reason_(std::move(reason)) {}
-  void Note(int stage, const std::string& reason) {
+  explicit BestFailure(base::Failure failure) : failure_(std::move(failure)) {}
+  void Note(int stage, const base::Failure& failure) {
     if (stage <= stage_) return;
     stage_ = stage;
-    reason_ = reason;
+    failure_ = failure;
   }
-  const std::string& reason() const { return reason_; }
+  const base::Failure& failure() const { return failure_; }
 
  private:
   int stage_{0};
-  std::string reason_;
+  base::Failure failure_;
 };
 
 /// The object with that name in a list of objects.

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <regex>
 #include <set>
 #include <stdexcept>
+#include <string>
+
+#include "hires/base/text.h"
 
 namespace hires::base {
 namespace {
@@ -20,6 +24,20 @@ TEST(FailureTest, EveryCodeHasOneNumberAndOneWordAndComesBackFromBoth) {
     EXPECT_EQ(FailureCodeOf(number), info.code);
     EXPECT_EQ(ToString(info.code), info.word);
   }
+}
+
+TEST(FailureTest, TableKnowsEveryEnumerator) {
+  const std::string header =
+      ReadTextFile(std::string(HIRES_SOURCE_DIR) + "/include/hires/base/failure.h");
+  const std::regex enumerator(R"(\n  k[A-Za-z]+ = (\d+))");
+  std::size_t count = 0;
+  for (std::sregex_iterator at(header.begin(), header.end(), enumerator), end; at != end; ++at) {
+    const auto code = static_cast<FailureCode>(std::stoi((*at)[1]));
+    if (code == FailureCode::kNone) continue;
+    EXPECT_EQ(InfoOf(code).code, code) << at->str();
+    ++count;
+  }
+  EXPECT_EQ(count, AllFailures().size());
 }
 
 // Messages, bags and stores carry these numbers: whoever changes one changes what they say.

@@ -5,12 +5,14 @@
 #include "hires/evaluation/achieve_command.h"
 #include "hires/evaluation/achieve_display.h"
 #include "hires/evaluation/command_line.h"
+#include "support/messages.h"
 #include "support/temporary_folder.h"
 
 namespace hires::evaluation {
 namespace {
 
 using execution::StepPhase;
+using hires::test_support::ConfigErrorOf;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -35,6 +37,16 @@ AchieveStatus Running() {
   status.steps[0].started = 102.0;
   status.steps[0].expected_finish = 112.5;
   return status;
+}
+
+TEST(ImaginedOutcomeTest, EachHasAWordAndComesBackFromIt) {
+  for (int i = 0; i <= static_cast<int>(ImaginedOutcome::kCancelled); ++i) {
+    const auto outcome = static_cast<ImaginedOutcome>(i);
+    EXPECT_EQ(ParseImaginedOutcome(ToString(outcome)), outcome);
+  }
+  EXPECT_EQ(ParseImaginedOutcome(""), ImaginedOutcome::kRunning);
+  EXPECT_THAT(ConfigErrorOf([] { ParseImaginedOutcome("dreamt"); }),
+              AllOf(HasSubstr("'dreamt'"), HasSubstr("no_worker")));
 }
 
 TEST(BeginOfTest, IsTheFirstMomentOfAnything) {
@@ -106,7 +118,7 @@ TEST(ChangeLinesTest, WarningsAndImaginationsAreTold) {
                           HasSubstr("3.0 s  imagines  move_base_param(area1, slow|fast)")));
   before = after;
   after.warnings.clear();
-  after.imaginations[0].outcome = "ranked";
+  after.imaginations[0].outcome = ImaginedOutcome::kRanked;
   after.imaginations[0].answered = 108.0;
   after.imaginations[0].why = "slow is best";
   EXPECT_THAT(ChangeLines(before, after, 100.0),

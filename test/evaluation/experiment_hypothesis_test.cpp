@@ -140,7 +140,7 @@ TEST(CountReportTest, CountsStepsAndAnswersInTime) {
   report.status.steps[1].started = 30.0;
   report.status.steps[1].finished = 50.0;
   ImaginedStep in_time;
-  in_time.outcome = "ranked";
+  in_time.outcome = ImaginedOutcome::kRanked;
   in_time.requested = 11.0;
   in_time.answered = 20.0;
   in_time.dispatch = 30.0;
@@ -158,12 +158,12 @@ TEST(CountReportTest, CountsStepsAndAnswersInTime) {
   refused.step = 3;
   refused.dispatch = 40.0;
   refused.predictions.clear();
-  refused.outcome = "invalid";
+  refused.outcome = ImaginedOutcome::kInvalid;
   asked_first.plan = -1;  // the same step, before a repair took it over
-  asked_first.outcome = "cancelled";
+  asked_first.outcome = ImaginedOutcome::kCancelled;
   ImaginedStep thrown_away = in_time, asked_in_vain = in_time;
   thrown_away.dispatch = asked_in_vain.dispatch = 45.0;
-  asked_in_vain.outcome = "cancelled";
+  asked_in_vain.outcome = ImaginedOutcome::kCancelled;
   report.status.imaginations = {asked_first, in_time,     late,         given_up,
                                 refused,     thrown_away, asked_in_vain};
   HypothesisRun run;

@@ -78,8 +78,8 @@ TEST_F(LegsTest, CountsWhatWasReachedTouchedAndMissed) {
   far.yaw_error = 0.1;
   Leg stuck = Driven("b", Result(1, 0, 0, 0)), crash = Driven("a", Result(1, 0, 0, 0));
   stuck.result.action_finished = crash.result.action_finished = false;
-  stuck.result.reason = "no_path";
-  crash.result.reason = "robot_collision";
+  stuck.result.failure = base::FailureCode::kNoPath;
+  crash.result.failure = base::FailureCode::kRobotCollision;
   crash.touched = "base / table1";
   crash.clearance = 0.0;
   const Findings findings = SumUpLegs(config_, stage_, {{good, far}, {stuck, crash}});

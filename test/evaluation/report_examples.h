@@ -34,7 +34,7 @@ inline imagination::Report TwoAlternatives() {
   fast.evidence.duration = {14.25, 1.5, 14.0, 16.0};
   fast.evidence.max_tilt = {0.25, 1.5};
   fast.evidence.num_rollouts = 4;
-  fast.evidence.failures = {{"no_path", 2}, {"object_fell", 1}};
+  fast.evidence.failures = {{base::FailureCode::kNoPath, 2}, {base::FailureCode::kObjectFell, 1}};
   report.ranking = {slow, fast};
   return report;
 }

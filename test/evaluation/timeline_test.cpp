@@ -46,7 +46,7 @@ AchieveReport Report() {
   imagined.deadline = 1019.5;
   imagined.wall_seconds = 4.0;
   imagined.simulated_seconds = 800.0;
-  imagined.outcome = "ranked";
+  imagined.outcome = ImaginedOutcome::kRanked;
   imagined.predictions.resize(2);
   imagined.predictions[0].evidence.num_rollouts = 32;
   imagined.predictions[1].evidence.num_rollouts = 32;

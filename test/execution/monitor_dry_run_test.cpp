@@ -101,7 +101,8 @@ TEST(DryRunTest, APlanThatIsImaginedToFailIsMendedAsInEarnest) {
   auto options = DryRun("carry_object");
   options.imagine = [](const StartImagination& request, int) {
     const std::string area = request.action.alternatives[0][0];
-    if (area == "premanipulationareanorthtable1") return AllFail(request, "object_toppled");
+    if (area == "premanipulationareanorthtable1")
+      return AllFail(request, base::FailureCode::kObjectToppled);
     return Slow(area);
   };
   ScriptedWorld world(options);
@@ -114,7 +115,7 @@ TEST(DryRunTest, APlanThatIsImaginedToFailIsMendedAsInEarnest) {
 TEST(DryRunTest, WhereEverythingIsImaginedToFailThereIsNoPlan) {
   auto options = DryRun("carry_object");
   options.imagine = [](const StartImagination& request, int) {
-    return AllFail(request, "object_toppled");
+    return AllFail(request, base::FailureCode::kObjectToppled);
   };
   ScriptedWorld world(options);
   EXPECT_EQ(world.Run(TaskOf("carry_object")).outcome, Finish::Outcome::kNoPlan);

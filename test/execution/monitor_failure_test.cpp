@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "hires/execution/monitor.h"
 #include "support/whole_tasks.h"
 
@@ -28,7 +30,7 @@ TEST(FailureTest, AnOccupiedAreaSendsTheRobotToTheOtherSide) {
     StepScript script;
     if (action.name == "place_object" && action.arguments[2] == "placingareawestrighttable1") {
       script.result = StepFinished::Result::kFailed;
-      script.reason = "area_occupied: book1";
+      script.failure = {base::FailureCode::kAreaOccupied, {"book1"}};
     }
     return script;
   };
@@ -48,7 +50,7 @@ TEST(FailureTest, WhatWasInTheWayAndWentIsInTheWayNoMore) {
     const bool is_south = action.arguments[2] == "placingareawestrighttable1";
     if (is_south && is_free) return script;
     script.result = StepFinished::Result::kFailed;
-    script.reason = is_south ? "area_occupied: book1" : "area_occupied: vase1";
+    script.failure = {base::FailureCode::kAreaOccupied, {is_south ? "book1" : "vase1"}};
     return script;
   };
   ScriptedWorld world(options);
@@ -68,7 +70,9 @@ TEST(FailureTest, WhatFailsTwiceWithNothingChangedIsDoneAnotherWay) {
     StepScript script;
     if (action.name == "pick_up_object" && action.arguments[1] == "rightarm1") {
       script.result = StepFinished::Result::kFailed;
-      script.reason = "no_path: r_forearm_link touches peppermill1";
+      script.failure = {base::FailureCode::kNoPath,
+                        {"r_forearm_link", "peppermill1"},
+                        "r_forearm_link touches peppermill1"};
     }
     return script;
   };
@@ -79,7 +83,7 @@ TEST(FailureTest, WhatFailsTwiceWithNothingChangedIsDoneAnotherWay) {
 
 TEST(FailureTest, WhatFailsInEveryWayEndsTheTask) {
   auto options = For("serve_coffee");
-  options.step = Failing("pick_up_object", 100, "grasp_failed");
+  options.step = Failing("pick_up_object", 100, base::FailureCode::kGraspFailed);
   ScriptedWorld world(options);
   const Finish finish = world.Run(TaskOf("serve_coffee"));
   EXPECT_EQ(finish.outcome, Finish::Outcome::kNoPlan);
@@ -95,7 +99,7 @@ TEST(FailureTest, WhereNobodyServesActionsNoOtherWayIsTried) {
     StepScript script;
     if (action.name == "pick_up_object") {
       script.result = StepFinished::Result::kUnavailable;
-      script.reason = "nobody serves execute_action";
+      script.failure = {base::FailureCode::kUnavailable, {}, "nobody serves execute_action"};
     }
     return script;
   };
@@ -107,9 +111,65 @@ TEST(FailureTest, WhereNobodyServesActionsNoOtherWayIsTried) {
   ExpectSound(world);
 }
 
+TEST(FailureTest, WordsForPeopleDoNotMakeAFailureAnother) {
+  auto options = For("serve_coffee");
+  int turn = 0;
+  options.step = [&turn](const base::ActionCall& action, int) {
+    StepScript script;
+    if (action.name == "pick_up_object") {
+      script.result = StepFinished::Result::kFailed;
+      script.failure = {base::FailureCode::kStaleScan, {}, std::to_string(++turn) + " s"};
+    }
+    return script;
+  };
+  ScriptedWorld world(options);
+  const Finish finish = world.Run(TaskOf("serve_coffee"));
+  EXPECT_EQ(finish.outcome, Finish::Outcome::kFailed);
+  EXPECT_EQ(finish.failure, base::FailureCode::kStaleScan);
+  EXPECT_THAT(finish.reason,
+              HasSubstr("stale_scan: 2 s (twice in a row, and nothing has changed)"));
+  EXPECT_EQ(world.CountOf("begin pick_up_object"), 2);
+}
+
+/// What the table says decides, for every code there is.
+TEST(FailureTest, AWayThatNeedsAnotherIsTakenOnceOthersTwice) {
+  for (const base::FailureInfo& info : base::AllFailures()) {
+    auto options = For("serve_coffee");
+    options.step = [&](const base::ActionCall& action, int) {
+      StepScript script;
+      if (action.name == "pick_up_object" && action.arguments[1] == "rightarm1") {
+        script.result = StepFinished::Result::kFailed;
+        script.failure = info.code;
+      }
+      return script;
+    };
+    ScriptedWorld world(options);
+    const Finish finish = world.Run(TaskOf("serve_coffee"));
+    const bool is_of_action = info.scope == base::FailureScope::kAction;
+    EXPECT_EQ(finish.outcome == Finish::Outcome::kSucceeded, is_of_action) << info.word;
+    const int tries = is_of_action && !info.may_pass ? 1 : 2;
+    EXPECT_EQ(world.CountOf("begin pick_up_object"), tries + (is_of_action ? 1 : 0)) << info.word;
+    EXPECT_TRUE(is_of_action || finish.failure == info.code) << info.word;
+  }
+}
+
+TEST(FailureTest, AStepThatFailedSaysAsWhat) {
+  auto options = For("serve_coffee");
+  options.step = Failing("pick_up_object", 1, {base::FailureCode::kHandFull, {"mug2"}});
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "serve_coffee");
+  const auto steps = world.monitor().Steps();
+  const auto failed = std::find_if(steps.begin(), steps.end(), [](const StepStatus& step) {
+    return step.phase == StepPhase::kFailed;
+  });
+  ASSERT_NE(failed, steps.end());
+  EXPECT_EQ(failed->failure, base::Failure(base::FailureCode::kHandFull, {"mug2"}));
+  EXPECT_EQ(failed->note, "hand_full: mug2");
+}
+
 TEST(FailureTest, AFailureThatPassesIsTriedAgain) {
   auto options = For("serve_coffee");
-  options.step = Failing("pick_up_object", 1, "grasp_failed");
+  options.step = Failing("pick_up_object", 1, base::FailureCode::kGraspFailed);
   ScriptedWorld world(options);
   ExpectSuccess(&world, "serve_coffee");
   EXPECT_EQ(world.CountOf("begin pick_up_object"), 2);
@@ -199,7 +259,7 @@ TEST(FailureTest, WhatIsMissingIsSoOnceAllWasTold) {
 
 TEST(FailureTest, AStoppedRobotTriesNoOtherWay) {
   auto options = For("serve_coffee");
-  options.step = Failing("pick_up_object", 100, "motors_halted");
+  options.step = Failing("pick_up_object", 100, base::FailureCode::kMotorsHalted);
   ScriptedWorld world(options);
   const Finish finish = world.Run(TaskOf("serve_coffee"));
   EXPECT_EQ(finish.outcome, Finish::Outcome::kFailed);
@@ -314,7 +374,8 @@ TEST(FailureTest, AfterTooManyRepairsItIsGivenUp) {
     StepScript script;
     if (action.name == "move_torso") {
       script.result = StepFinished::Result::kFailed;
-      script.reason = "stuck_" + std::to_string(++turn);  // never the same twice
+      script.failure = {base::FailureCode::kStuck,
+                        {"turn" + std::to_string(++turn)}};  // never the same
     }
     return script;
   };

@@ -46,7 +46,7 @@ TEST(ImaginationTest, WherePlacingIsImaginedToFailTheOtherSideIsServedAndNoStepI
   EXPECT_EQ(world.CountOf("stop"), 0);
   EXPECT_TRUE(world.Holds({"on", {"mug1", "placingareawestlefttable1"}}));
   EXPECT_THAT(world.warnings(), SizeIs(1)) << "one repair";
-  EXPECT_THAT(world.warnings()[0], HasSubstr("imagined to fail: area_occupied: book1"));
+  EXPECT_THAT(world.warnings()[0], HasSubstr("imagined_failure: area_occupied: book1"));
 }
 
 TEST(ImaginationTest, TheStateIsProjectedToTheImaginedStep) {
@@ -230,7 +230,8 @@ TEST(ToppleTest, WhenAllSetsFailTheTrayGoesToAnotherSideOfTheTable) {
   auto options = For("carry_object");
   options.imagine = [](const StartImagination& request, int) {
     const std::string area = request.action.alternatives[0][0];
-    if (area == "premanipulationareanorthtable1") return AllFail(request, "object_toppled");
+    if (area == "premanipulationareanorthtable1")
+      return AllFail(request, base::FailureCode::kObjectToppled);
     return Ranked({"move_base_param", {area, "slow"}}, 24.0);
   };
   ScriptedWorld world(options);
@@ -243,7 +244,7 @@ TEST(ToppleTest, WhenAllSetsFailTheTrayGoesToAnotherSideOfTheTable) {
 TEST(ToppleTest, WhenEverythingFailsEverywhereTheRobotStopsAndSaysSo) {
   auto options = For("carry_object");
   options.imagine = [](const StartImagination& request, int) {
-    return AllFail(request, "object_toppled");
+    return AllFail(request, base::FailureCode::kObjectToppled);
   };
   ScriptedWorld world(options);
   const Finish finish = world.Run(TaskOf("carry_object"));
@@ -255,7 +256,7 @@ TEST(ToppleTest, UnderThesisPolicyTheDefaultIsDrivenInEveryCase) {
   auto options = For("carry_object");
   options.monitor.imagination = MonitorParams::ImaginePolicy::kThesis;
   options.imagine = [](const StartImagination& request, int) {
-    return AllFail(request, "object_toppled");
+    return AllFail(request, base::FailureCode::kObjectToppled);
   };
   ScriptedWorld world(options);
   ExpectSuccess(&world, "carry_object");
@@ -364,7 +365,8 @@ TEST(ToppleTest, AnAnswerOutlivesARepairThatDoesNotConcernIt) {
   auto options = For("carry_object");
   options.imagine = [](const StartImagination&, int) { return Slow(); };
   options.imagine_delay = 5.0;
-  options.step = Failing("place_on_tray", 1, "no_path: r_forearm_link touches table1");
+  options.step =
+      Failing("place_on_tray", 1, {base::FailureCode::kNoPath, {"r_forearm_link", "table1"}});
   ScriptedWorld world(options);
   ExpectSuccess(&world, "carry_object");
   EXPECT_THAT(world.imaginations(), SizeIs(1));
@@ -374,7 +376,7 @@ TEST(ToppleTest, AnAnswerOutlivesARepairThatDoesNotConcernIt) {
 TEST(ToppleTest, TheCheapestChangeIsTriedFirst) {
   auto options = For("carry_object");
   options.imagine = [](const StartImagination&, int) { return Slow(); };
-  options.step = Failing("place_on_tray", 1, "grasp_lost");
+  options.step = Failing("place_on_tray", 1, base::FailureCode::kObjectSlipped);
   ScriptedWorld world(options);
   ExpectSuccess(&world, "carry_object");
   ASSERT_THAT(world.plannings(), SizeIs(2));

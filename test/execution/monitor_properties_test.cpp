@@ -31,11 +31,16 @@ const std::vector<std::string> kAreas = {"placingareaeastrightcounter1",
                                          "trayarea1"};
 const std::vector<std::string> kPlaces = {
     "floorareatamsrestaurant1", "premanipulationareaeastcounter1", "manipulationareasouthtable1"};
-const std::vector<std::string> kReasons = {"unreachable", "no_path: r_forearm_link touches table1",
-                                           "area_occupied: book1", "grasp_failed", "timed_out"};
+const std::vector<base::Failure> kFailures = {
+    base::FailureCode::kUnreachable,
+    {base::FailureCode::kNoPath, {"r_forearm_link", "table1"}},
+    {base::FailureCode::kAreaOccupied, {"book1"}},
+    base::FailureCode::kGraspFailed,
+    base::FailureCode::kTimedOut};
 const std::vector<std::string> kObjects = {"mug1", "mug2", "peppermill1"};
 
-const std::string& AnyOf(const std::vector<std::string>& list, base::Rng* rng) {
+template <typename T>
+const T& AnyOf(const std::vector<T>& list, base::Rng* rng) {
   return list[static_cast<std::size_t>(rng->Index(static_cast<int>(list.size())))];
 }
 
@@ -51,7 +56,7 @@ StepScript AnyStep(const Trouble& trouble, base::Rng* rng) {
   switch (rng->Index(6)) {
     case 0:
       script.result = StepFinished::Result::kFailed;
-      script.reason = AnyOf(kReasons, rng);
+      script.failure = AnyOf(kFailures, rng);
       break;
     case 1:
       script.result = StepFinished::Result::kUnavailable;
@@ -82,7 +87,7 @@ std::optional<ImagineAnswered> AnyAnswer(const StartImagination& request, const 
     case 0:
       return std::nullopt;
     case 1:
-      return AllFail(request, "object_toppled");
+      return AllFail(request, base::FailureCode::kObjectToppled);
     case 2:
       best.recommended = {"dance", {"slowly"}};
       return best;
@@ -133,7 +138,7 @@ Event AnyStrayEvent(base::Rng* rng) {
   const int id = rng->Index(30);
   switch (rng->Index(4)) {
     case 0:
-      return StepFinished{id + 100, StepFinished::Result::kSucceeded, ""};
+      return StepFinished{id + 100, StepFinished::Result::kSucceeded, {}};
     case 1:
       return PlanArrived{id + 1000, PlanArrived::Outcome::kFound, {}, ""};
     case 2: {

@@ -26,6 +26,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::IsSupersetOf;
 using ::testing::SizeIs;
 
 TEST(MonitorTest, ServingCoffeeIsCarriedOutAsInListing61) {
@@ -58,7 +59,7 @@ TEST(MonitorTest, PlansWithoutDecompositionAreMendedByTheWholeTask) {
        {ScriptedWorld::Options::PlanForm::kSteps, ScriptedWorld::Options::PlanForm::kFlat}) {
     auto options = For("serve_coffee");
     options.plans = form;
-    options.step = Failing("move_torso", 1, "stuck");
+    options.step = Failing("move_torso", 1, base::FailureCode::kStuck);
     ScriptedWorld world(options);
     ExpectSuccess(&world, "serve_coffee");
     EXPECT_GT(world.plannings().size(), 2u);
@@ -123,7 +124,7 @@ TEST(MonitorTest, ASecondTaskIsNotTakenUpBesideTheFirst) {
 
 TEST(PlannerTest, ADeadPlannerIsWaitedForAndThenTheTaskFails) {
   auto options = For("serve_coffee");
-  options.step = Failing("pick_up_object", 1, "grasp_failed");
+  options.step = Failing("pick_up_object", 1, base::FailureCode::kGraspFailed);
   options.planner = [](int count) -> std::optional<PlanArrived> {
     if (count == 0) return std::nullopt;
     PlanArrived gone;
@@ -254,6 +255,27 @@ TEST(RecordTest, PlanTasksAndActivitiesAreTold) {
   EXPECT_EQ(task.links.at(0), (std::pair<std::string, std::string>{"hasPlan", "plan1"}));
 }
 
+TEST(RecordTest, AFailureIsItsWordWhomItIsAboutAndWords) {
+  auto options = For("serve_coffee");
+  options.step = Failing("pick_up_object", 1,
+                         {base::FailureCode::kNoPath, {"r_hand", "book1"}, "r_hand touches book1"});
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "serve_coffee");
+  using Text = std::pair<std::string, std::string>;
+  int found = 0;
+  for (const Record& record : world.records()) {
+    const bool is_end = record.kind == Record::Kind::kEnd &&
+                        record.concept_name == "PickUpObjectActivity" && record.texts.size() > 4;
+    if (record.concept_name != "ActivityFailure" && !is_end) continue;
+    ++found;
+    EXPECT_THAT(
+        record.texts,
+        IsSupersetOf({Text{"hasFailure", "no_path"}, Text{"hasSubject", "r_hand"},
+                      Text{"hasSubject", "book1"}, Text{"hasDetail", "r_hand touches book1"}}));
+  }
+  EXPECT_EQ(found, 2) << "the activity that failed, and the failure";
+}
+
 TEST(RecordTest, ImaginedFailuresEndWithTheTask) {
   auto options = For("serve_coffee_imagined");
   options.imagine = SouthFails;
@@ -325,9 +347,9 @@ TEST(DeterminismTest, TheSameEventsGiveTheSameCommands) {
   for (auto& log : logs) {
     auto options = For("carry_object");
     options.imagine = [](const StartImagination& request, int count) {
-      return count == 0 ? AllFail(request, "object_toppled") : Slow();
+      return count == 0 ? AllFail(request, base::FailureCode::kObjectToppled) : Slow();
     };
-    options.step = Failing("place_on_tray", 1, "grasp_failed");
+    options.step = Failing("place_on_tray", 1, base::FailureCode::kGraspFailed);
     ScriptedWorld world(options);
     world.Run(TaskOf("carry_object"));
     log = world.log();

@@ -276,9 +276,36 @@ def check_scripts(root):
                 yield f"{path}:{error.lineno}: python cannot read it: {error.msg}"
 
 
+FAILURE_TABLE = "src/base/failure.cpp"
+# Words that mean something else beside a failure, and where. Elsewhere base::FailureCode says it.
+ALSO_MEANS = {
+    "imagined_failure": {  # a predicate of the planner
+        "src/execution/session.cpp", "src/knowledge/state_view_rules.cpp",
+        "src/planning/search.cpp", "src/planning/step_replay.cpp",
+        "src/translation/wanted_state.cpp"},
+    "motors_halted": {  # a key of a robot's names, a finding of the doctor
+        "src/ros/robot_doctor_judge.cpp", "src/ros/robot_names.cpp"},
+    "busy": {"src/evaluation/achieve_command.cpp"},  # outcomes of a task, from here on
+    "dry_run": {
+        "src/evaluation/achieve_command.cpp", "src/ros/execution_messages.cpp",
+        "src/ros/execution_monitor_node.cpp", "src/ros/middle_layer_params.cpp"},
+    "preempted": {
+        "src/evaluation/achieve_command.cpp", "src/execution/step_watch.cpp",
+        "src/ros/execution_messages.cpp"},
+    "timed_out": {"src/ros/hypothesis_run.cpp"},  # an outcome of a played run
+    "unavailable": {  # an outcome of imagination
+        "src/evaluation/achieve_display.cpp", "src/ros/execution_messages.cpp"},
+}
+COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', re.DOTALL)
+TAKES_TEXT_APART = re.compile(
+    r"\b\w*(?:reason|detail|failure|why)_?(?:\(\))?\s*\.\s*(?:find|rfind|substr|compare|starts_with)\("
+    r'|\b\w*(?:reason|detail|failure|why)_?(?:\(\))?\s*[!=]=\s*"[^"]'
+    r"|\bToString\([^()]*(?:failure|code)(?:\(\))?\)\s*[!=]=")
+
+
 def check_failure_codes(root):
     """The message Failure and the table in base carry the same codes under the same numbers."""
-    message, table = "msg/Failure.msg", "src/base/failure.cpp"
+    message, table = "msg/Failure.msg", FAILURE_TABLE
     header = "include/hires/base/failure.h"
     if not os.path.exists(os.path.join(root, table)):
         return
@@ -295,8 +322,62 @@ def check_failure_codes(root):
                    f"{wanted.get(name, 'missing')}; let both say the same")
 
 
+def failure_words(root):
+    if not os.path.exists(os.path.join(root, FAILURE_TABLE)):
+        return set()
+    return set(re.findall(r'Code::k\w+,\s*"([a-z_]+)"', read(root, FAILURE_TABLE)))
+
+
+def code_and_texts(text):
+    """The code without comments, and the texts in it: [(offset, text without its quotes)]."""
+    texts = [(match.start(), match.group()[1:-1]) for match in COMMENT_OR_TEXT.finditer(text)
+             if match.group().startswith('"')]
+    code = COMMENT_OR_TEXT.sub(
+        lambda match: match.group() if match.group().startswith('"') else
+        re.sub(r"[^\n]", " ", match.group()), text)
+    return code, texts
+
+
+def check_failure_texts(root):
+    """A failure is a code: its word stands in the table, and nobody compares what is for people."""
+    words = failure_words(root)
+    for path in code_files(root):
+        if not words or path == FAILURE_TABLE or not path.startswith(("include/", "src/")):
+            continue
+        text = read(root, path)
+        code, texts = code_and_texts(text)
+        for offset, quoted in texts:
+            word = quoted.split(":", 1)[0]
+            if word in words and (quoted != word or path not in ALSO_MEANS.get(word, ())):
+                yield (f"{path}:{text.count(chr(10), 0, offset) + 1}: has the failure word '{word}' "
+                       "as a text; say base::FailureCode, and base::ToString for people")
+        for match in TAKES_TEXT_APART.finditer(code):
+            yield (f"{path}:{text.count(chr(10), 0, match.start()) + 1}: compares or takes apart "
+                   f"'{match.group().strip()}', which is for people; compare codes and subjects")
+
+
+def check_failure_tables(root):
+    """What documents say that an action fails with is in the table of failures."""
+    words = failure_words(root)
+    for path in ["README.md"] + files_below(root, "docs"):
+        if not words or not path.endswith(".md") or not os.path.exists(os.path.join(root, path)):
+            continue
+        column = None
+        for number, line in enumerate(read(root, path).splitlines(), start=1):
+            cells = line.split("|") if line.startswith("|") else []
+            heads = [i for i, cell in enumerate(cells) if cell.strip().startswith("fails with")]
+            column = heads[0] if heads else column if cells else None
+            if column is None or column >= len(cells):
+                continue
+            for word in re.findall(r"`([^`:]*)[^`]*`", cells[column]):
+                if word not in words:
+                    yield (f"{path}:{number}: '{word}' is no failure; take a word of "
+                           f"{FAILURE_TABLE}, or add a code there")
+
+
 CHECKS = [check_includes, check_dependencies, check_headers, check_whitespace, check_packages,
-          check_catkin_components, check_scripts, check_failure_codes]
+          check_catkin_components, check_scripts, check_failure_codes, check_failure_texts,
+          check_failure_tables]
 
 
 def complaints_about(root):

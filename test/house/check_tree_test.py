@@ -157,6 +157,42 @@ class CheckTreeTest(unittest.TestCase):
         self.expect_one({"scripts/table": "#!/usr/bin/env python3\nprint(\n"},
                         "scripts/table", "python")
 
+    TABLE = {"src/base/failure.cpp":
+             '#include "hires/base/rng.h"\n{Code::kNoPath, "no_path"}, {Code::kBusy, "busy"}\n'}
+
+    def test_a_failure_word_outside_of_its_table_is_found(self):
+        start = '#include "hires/robot/model.h"\n'
+        for text in ('return "no_path";', 'Fail("no_path: a touches b");'):
+            self.expect_one({**self.TABLE, "src/robot/a.cpp": start + text + "\n"},
+                            "src/robot/a.cpp:2", "'no_path'", "FailureCode")
+        for text in ('// fails with "no_path"', '/* "no_path" */', 'Show("no_path_here");'):
+            self.assertEqual(
+                self.complaints({**self.TABLE, "src/robot/a.cpp": start + text + "\n"}), [])
+        self.assertEqual(
+            self.complaints({**self.TABLE, "test/robot/a.cpp": start + 'E("no_path");\n'}), [])
+
+    def test_a_word_that_means_something_else_is_left_in_peace_where_it_does(self):
+        text = '#include "hires/robot/model.h"\nreturn "busy";\n'
+        self.expect_one({**self.TABLE, "src/robot/a.cpp": text}, "src/robot/a.cpp:2", "'busy'")
+        path = "src/evaluation/achieve_command.cpp"
+        self.assertEqual(self.complaints({**self.TABLE, path: '#include "a.h"\n' + text.split("\n")[1] + "\n",
+                                          "src/evaluation/a.h": "#pragma once\n"}), [])
+
+    def test_words_for_people_that_are_taken_apart_are_found(self):
+        start = '#include "hires/robot/model.h"\n'
+        for text in ('if (x.reason == "late") return;', 'x.reason.rfind("a", 0);',
+                     'failure.detail.substr(2);', 'if (ToString(failure) == other) return;'):
+            self.expect_one({**self.TABLE, "src/robot/a.cpp": start + text + "\n"},
+                            "src/robot/a.cpp:2", "for people")
+        for text in ('if (why.empty()) return;', 'failures.find(code);', 'a.failure == b.failure;'):
+            self.assertEqual(
+                self.complaints({**self.TABLE, "src/robot/a.cpp": start + text + "\n"}), [])
+
+    def test_a_document_that_invents_a_failure_is_found(self):
+        table = "| action | fails with |\n|---|---|\n| `look` | `no_path: a`, `%s` |\n\n`other`\n"
+        self.assertEqual(self.complaints({**self.TABLE, "docs/a.md": table % "busy"}), [])
+        self.expect_one({**self.TABLE, "docs/a.md": table % "lost"}, "docs/a.md:3", "'lost'")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -42,7 +42,7 @@ StartState MugOnCounter() {
 
 TEST(ArmRolloutTest, AMugIsPutOnAFreeTable) {
   const RolloutResult result = Play(Rollouts(MugBeforeTable()), kPlace);
-  EXPECT_EQ(result.outcome, Outcome::kSucceeded) << result.reason;
+  EXPECT_EQ(result.outcome, Outcome::kSucceeded) << ToString(result.failure);
   EXPECT_FALSE(result.nothing_watched);
   EXPECT_NEAR(result.counts.total(), 20.0 * result.duration, 1.0);
   EXPECT_EQ(result.falls, 0);
@@ -57,7 +57,7 @@ TEST(ArmRolloutTest, AMugIsPutOnAFreeTable) {
 TEST(ArmRolloutTest, OnAnOccupiedTableItFailsWithTheNamesOfWhatIsThere) {
   const RolloutResult result = Play(Rollouts(MugBeforeTable(Occupants())), kPlace);
   EXPECT_EQ(result.outcome, Outcome::kFailed);
-  EXPECT_EQ(result.reason, "area_occupied: book1, book2, bowl1");
+  EXPECT_EQ(ToString(result.failure), "area_occupied: book1, book2, bowl1");
   EXPECT_FALSE(result.action_finished);
   EXPECT_EQ(RolloutConfidence(result), 0.0);
   EXPECT_EQ(result.final_world.Find("mug1")->attached_to, "r_gripper_palm_link");
@@ -67,14 +67,15 @@ TEST(ArmRolloutTest, WithUncertaintyTheOccupiedTableStillFailsAndTheFreeOneSucce
   const RolloutSetup occupied = Rollouts(MugBeforeTable(Occupants()), "config");
   const RolloutSetup free = Rollouts(MugBeforeTable(), "config");
   for (int index = 0; index < 4; ++index) {
-    EXPECT_THAT(Play(occupied, kPlace, index).reason, HasSubstr("area_occupied: ")) << index;
-    EXPECT_EQ(Play(free, kPlace, index).reason, "") << index;
+    EXPECT_THAT(ToString(Play(occupied, kPlace, index).failure), HasSubstr("area_occupied: "))
+        << index;
+    EXPECT_EQ(ToString(Play(free, kPlace, index).failure), "") << index;
   }
 }
 
 TEST(ArmRolloutTest, WhatIsPickedUpIsHeld) {
   const RolloutResult result = Play(Rollouts(MugOnCounter()), kPick);
-  EXPECT_EQ(result.outcome, Outcome::kSucceeded) << result.reason;
+  EXPECT_EQ(result.outcome, Outcome::kSucceeded) << ToString(result.failure);
   EXPECT_EQ(result.final_world.Find("mug1")->attached_to, "r_gripper_palm_link");
   EXPECT_GT(result.counts.notopple, 0) << "it stands at first";
 }
@@ -82,18 +83,18 @@ TEST(ArmRolloutTest, WhatIsPickedUpIsHeld) {
 TEST(ArmRolloutTest, WhatIsNotThereCannotBePickedUp) {
   const StartState start = MakeStartState(Restaurant(), ReadyAt("manipulationAreaEastCounter1"));
   const RolloutResult result = Play(Rollouts(start), kPick);
-  EXPECT_EQ(result.reason, "object_not_seen");
+  EXPECT_EQ(ToString(result.failure), "object_not_seen");
   EXPECT_TRUE(ActionFailed(result));
 }
 
 TEST(ArmRolloutTest, OneStepsFinalStateIsTheNextOnesStart) {
   const RolloutResult picked = Play(Rollouts(MugOnCounter(), "config"), kPick, 1);
-  ASSERT_EQ(picked.reason, "");
+  ASSERT_EQ(ToString(picked.failure), "");
   const base::ActionCall to_side{"move_arm_to_side", {"rightArm1"}};
   const RolloutSetup next = Rollouts({picked.final_world, picked.final_robot}, "config");
   EXPECT_NO_THROW(CheckSetup(next, to_side));
   const RolloutResult result = Play(next, to_side);
-  EXPECT_EQ(result.reason, "");
+  EXPECT_EQ(ToString(result.failure), "");
   EXPECT_EQ(result.final_world.Find("mug1")->attached_to, "r_gripper_palm_link");
 }
 
@@ -102,11 +103,11 @@ TEST(ArmRolloutTest, OverTheTrayAndBack) {
   atoms.push_back({"Holding", {"rightArm1", "peppermill1"}});
   const RolloutResult put = Play(Rollouts(MakeStartState(Restaurant(), atoms)),
                                  {"place_on_tray", {"rightArm1", "peppermill1"}});
-  ASSERT_EQ(put.reason, "");
+  ASSERT_EQ(ToString(put.failure), "");
   EXPECT_EQ(put.final_world.Find("peppermill1")->attached_to, "");
   const RolloutResult taken = Play(Rollouts({put.final_world, put.final_robot}),
                                    {"pick_up_from_tray", {"rightArm1", "peppermill1"}});
-  EXPECT_EQ(taken.reason, "");
+  EXPECT_EQ(ToString(taken.failure), "");
   EXPECT_EQ(taken.final_world.Find("peppermill1")->attached_to, "r_gripper_palm_link");
 }
 
@@ -115,7 +116,7 @@ TEST(ArmRolloutTest, WithEmptyHandsSuccessIsAllTheEvidence) {
                                 {"HasTorsoPosture", {"TorsoDownPosture"}}};
   const RolloutResult result =
       Play(Rollouts(MakeStartState(Restaurant(), atoms)), {"move_torso", {"TorsoMiddlePosture"}});
-  EXPECT_EQ(result.outcome, Outcome::kSucceeded) << result.reason;
+  EXPECT_EQ(result.outcome, Outcome::kSucceeded) << ToString(result.failure);
   EXPECT_TRUE(result.nothing_watched);
   EXPECT_EQ(result.counts.total(), 0);
   const Evidence evidence = SumUp({result, result});
@@ -133,7 +134,7 @@ TEST(ArmRolloutTest, AMugInTheHandDrivesAlong) {
   const StartState start = MakeStartState(Restaurant(), atoms);
   const RolloutResult result =
       Play(Rollouts(start), {"move_base_param", {"preManipulationAreaSouthTable1", "slow"}});
-  EXPECT_EQ(result.outcome, Outcome::kSucceeded) << result.reason;
+  EXPECT_EQ(result.outcome, Outcome::kSucceeded) << ToString(result.failure);
   EXPECT_FALSE(result.nothing_watched);
   const world::ObjectState& mug = *result.final_world.Find("mug1");
   EXPECT_EQ(mug.attached_to, "r_gripper_palm_link");

@@ -11,6 +11,7 @@
 namespace hires::imagination {
 namespace {
 
+using Code = base::FailureCode;
 using test_support::Fall;
 using test_support::NoPath;
 using test_support::Success;
@@ -85,29 +86,29 @@ TEST(EstimateSuccessTest, ImpossibleCountsAreRefused) {
   EXPECT_THROW(EstimateSuccess(4, 3), std::logic_error);
 }
 
-TEST(FailureReasonTest, SuccessHasNone) { EXPECT_EQ(FailureReason(Success()), ""); }
+TEST(FailureOfTest, SuccessHasNone) { EXPECT_FALSE(FailureOf(Success())); }
 
-TEST(FailureReasonTest, OwnReasonIsKept) { EXPECT_EQ(FailureReason(NoPath()), "no_path"); }
+TEST(FailureOfTest, OwnFailureIsKept) { EXPECT_EQ(FailureOf(NoPath()), Code::kNoPath); }
 
-TEST(FailureReasonTest, ASuccessThatIsNoneGetsAReason) {
+TEST(FailureOfTest, ASuccessThatIsNoneGetsAFailure) {
   RolloutResult unfinished = Success();
   unfinished.action_finished = false;
-  EXPECT_EQ(FailureReason(unfinished), "unfinished");
+  EXPECT_EQ(FailureOf(unfinished), Code::kUnfinished);
   RolloutResult fallen = Success();
   fallen.falls = 1;
-  EXPECT_EQ(FailureReason(fallen), "object_fell");
+  EXPECT_EQ(FailureOf(fallen), Code::kObjectFell);
   RolloutResult unseen = Success();
   unseen.counts = {};
-  EXPECT_EQ(FailureReason(unseen), "no_samples");
+  EXPECT_EQ(FailureOf(unseen), Code::kNoSamples);
 }
 
-TEST(FailureReasonTest, AFailureWithoutAReasonIsNamed) {
+TEST(FailureOfTest, AFailureWithoutACodeIsNamed) {
   RolloutResult late;
   late.outcome = Outcome::kTimedOut;
-  EXPECT_EQ(FailureReason(late), "timed_out");
+  EXPECT_EQ(FailureOf(late), Code::kTimedOut);
   RolloutResult silent = Success();
   silent.outcome = Outcome::kFailed;
-  EXPECT_EQ(FailureReason(silent), "unknown");
+  EXPECT_EQ(FailureOf(silent), Code::kOther);
 }
 
 TEST(DefectTest, SoundResultHasNone) {
@@ -148,7 +149,8 @@ TEST(SumUpTest, MixedRolloutsAreCountedByHand) {
   EXPECT_EQ(evidence.counts, (OutcomeCounts{628 + 639 + 20 + 640, 12, 1}));
   EXPECT_DOUBLE_EQ(evidence.confidence_mean, (640.0 / 748.0 + 640.0 / 739.0 + 0.0 + 1.0) / 4.0);
   EXPECT_DOUBLE_EQ(evidence.confidence_pooled, 1940.0 / (1927.0 + 120.0 + 100.0));
-  EXPECT_THAT(evidence.failures, ElementsAre(Pair("no_path", 1), Pair("object_fell", 1)));
+  EXPECT_THAT(evidence.failures, ElementsAre(Pair(base::Failure(Code::kObjectFell), 1),
+                                             Pair(base::Failure(Code::kNoPath), 1)));
 }
 
 TEST(SumUpTest, DurationsAreThoseOfFinishedActionsOnly) {
@@ -176,7 +178,7 @@ TEST(SumUpTest, MedianRolloutIsTheFirstOfEquals) {
 
 TEST(SumUpTest, TiltQuantilesLeaveOutRolloutsWithoutSamples) {
   RolloutResult missing;
-  missing.reason = "object_missing";
+  missing.failure = Code::kObjectNotSeen;
   const Evidence evidence = SumUp({missing, Fall(), missing});
   EXPECT_EQ(evidence.max_tilt.p50, 1.57);
   EXPECT_EQ(evidence.max_tilt.p95, 1.57);
@@ -191,7 +193,7 @@ TEST(SumUpTest, MissingObjectIsAFailureAndNeverAConfidence) {
   EXPECT_EQ(evidence.success.share, 0.0);
   EXPECT_EQ(evidence.action_failed_share, 1.0);
   EXPECT_EQ(evidence.median_rollout, -1);
-  EXPECT_THAT(evidence.failures, ElementsAre(Pair("no_samples", 16)));
+  EXPECT_THAT(evidence.failures, ElementsAre(Pair(base::Failure(Code::kNoSamples), 16)));
 }
 
 TEST(SumUpTest, PooledConfidenceVanishesWhenMostActionsFailed) {
@@ -248,7 +250,7 @@ TEST(SumUpTest, WithNothingToWatchSuccessIsTheConfidence) {
   EXPECT_EQ(evidence.success.share, 0.75);
   EXPECT_EQ(evidence.action_failed_share, 0.25);
   EXPECT_EQ(SumUp({good, bad, bad}).confidence_pooled, 0.0);
-  EXPECT_EQ(FailureReason(good), "");
+  EXPECT_FALSE(FailureOf(good));
 }
 
 }  // namespace

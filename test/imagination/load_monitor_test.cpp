@@ -62,7 +62,7 @@ TEST(LoadMonitorTest, ALoadAtRestDoesNotShake) {
   EXPECT_EQ(watched.counts.notopple, 100);
   EXPECT_LT(watched.monitor.max_tilt(), 0.001);
   EXPECT_EQ(watched.monitor.falls(), 0);
-  EXPECT_EQ(watched.monitor.WhyNotWell(), "");
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "");
   EXPECT_EQ(watched.monitor.first_cause(), "");
   EXPECT_FALSE(watched.monitor.is_lost());
 }
@@ -85,7 +85,7 @@ TEST(LoadMonitorTest, AFallIsCountedOnceWithItsCause) {
   EXPECT_GT(watched.counts.shaking, 0);
   EXPECT_GT(watched.counts.topple, 10);
   EXPECT_GT(watched.monitor.max_tilt(), 1.0);
-  EXPECT_EQ(watched.monitor.WhyNotWell(), "object_fell");
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "object_fell");
 }
 
 TEST(LoadMonitorTest, BrakingIsTheCauseWhenItShakesFirstThen) {
@@ -116,7 +116,7 @@ TEST(LoadMonitorTest, WhatSlidesFarEnoughHasFallen) {
   Watched watched({"mill"}, params, slippery);
   watched.Drive(0.0, 0.9, 0.4);
   EXPECT_EQ(watched.monitor.falls(), 1);
-  EXPECT_EQ(watched.monitor.WhyNotWell(), "object_slid");
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "object_slid");
   EXPECT_LT(watched.monitor.max_tilt(), 0.1);
 }
 
@@ -175,7 +175,7 @@ TEST(LoadMonitorTest, ABystanderThatIsKnockedOverIsNamed) {
   EXPECT_EQ(watched.counts.total(), 0);
   EXPECT_EQ(watched.monitor.falls(), 0);
   watched.monitor.Conclude();
-  EXPECT_EQ(watched.monitor.WhyNotWell(), "knocked_over: tower1");
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "knocked_over: tower1");
   EXPECT_EQ(watched.monitor.falls(), 1);
   EXPECT_TRUE(watched.monitor.IsSettled());
 }
@@ -187,7 +187,7 @@ TEST(LoadMonitorTest, WhatLiesFromTheStartWasNotKnockedOver) {
   Watched watched(world::WorldState{{lying}});
   watched.Drive(0.0, 0.0, 0.5);
   watched.monitor.Conclude();
-  EXPECT_EQ(watched.monitor.WhyNotWell(), "");
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "");
 }
 
 TEST(LoadMonitorTest, NothingIsSettledWhileABystanderMoves) {
@@ -198,7 +198,7 @@ TEST(LoadMonitorTest, NothingIsSettledWhileABystanderMoves) {
   EXPECT_FALSE(watched.monitor.IsSettled());
   watched.Drive(0.0, 0.0, 2.0);
   EXPECT_TRUE(watched.monitor.IsSettled());
-  EXPECT_EQ(watched.monitor.WhyNotWell(), "");
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "");
 }
 
 TEST(LoadMonitorTest, WhatTheActionHandlesIsWatchedWhereverItStands) {
@@ -206,34 +206,35 @@ TEST(LoadMonitorTest, WhatTheActionHandlesIsWatchedWhereverItStands) {
   EXPECT_TRUE(watched.monitor.watches_something());
   watched.Drive(0.0, 0.0, 0.2);
   EXPECT_EQ(watched.counts.notopple, 20);
-  EXPECT_EQ(watched.monitor.WhyNotWell(), "object_slipped") << "no hand holds it";
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "object_slipped") << "no hand holds it";
 }
 
 TEST(LoadMonitorTest, WhatShouldStandOnTheTrayMustBeThere) {
   Watched there = WithPurpose(Watched::LoadOf({"mill"}), Purpose::Kind::kPutOnTray, "load0");
   there.Drive(0.0, 0.0, 0.2);
-  EXPECT_EQ(there.monitor.WhyNotWell(), "");
+  EXPECT_EQ(ToString(there.monitor.WhyNotWell()), "");
   Watched below =
       WithPurpose({{OnFloor("load0", "mill", 1.2)}}, Purpose::Kind::kPutOnTray, "load0");
-  EXPECT_EQ(below.monitor.WhyNotWell(), "object_fell");
+  EXPECT_EQ(ToString(below.monitor.WhyNotWell()), "object_fell");
   Watched toppled = WithPurpose(Watched::LoadOf({"tower"}), Purpose::Kind::kPutOnTray, "load0");
   toppled.Drive(0.0, 0.9, 0.6);
   toppled.Drive(0.0, 0.0, 0.35);
-  EXPECT_THAT(toppled.monitor.WhyNotWell(), testing::AnyOf("object_toppled", "object_fell"));
+  EXPECT_THAT(ToString(toppled.monitor.WhyNotWell()),
+              testing::AnyOf("object_toppled", "object_fell"));
   EXPECT_EQ(toppled.monitor.falls(), 1);
 }
 
 TEST(LoadMonitorTest, WhatShouldStandOnAnAreaMustBeThere) {
   world::ObjectState mill = OnFloor("mill1", "mill", 2.5);  // the middle of East
   Watched there = WithPurpose({{mill}}, Purpose::Kind::kPutOnArea, "mill1");
-  EXPECT_EQ(there.monitor.WhyNotWell(), "");
+  EXPECT_EQ(ToString(there.monitor.WhyNotWell()), "");
   mill.X_MO.translation.y() += 0.2;
   Watched beside = WithPurpose({{mill}}, Purpose::Kind::kPutOnArea, "mill1");
-  EXPECT_EQ(beside.monitor.WhyNotWell(), "object_slipped");
+  EXPECT_EQ(ToString(beside.monitor.WhyNotWell()), "object_slipped");
   mill = OnFloor("mill1", "mill", 2.5);
   mill.attached_to = "tray";
   Watched held = WithPurpose({{mill}}, Purpose::Kind::kPutOnArea, "mill1");
-  EXPECT_EQ(held.monitor.WhyNotWell(), "object_not_released");
+  EXPECT_EQ(ToString(held.monitor.WhyNotWell()), "object_not_released");
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ inline RolloutResult Success(double duration = 32.0, int shaking = 0) {
 inline RolloutResult Fall(double duration = 32.0, int topple = 5) {
   RolloutResult result = Success(duration);
   result.outcome = Outcome::kFailed;
-  result.reason = "object_fell";
+  result.failure = base::FailureCode::kObjectFell;
   result.counts = {640 - topple, 0, topple};
   result.falls = 1;
   result.max_tilt = 1.57;
@@ -35,7 +35,7 @@ inline RolloutResult Fall(double duration = 32.0, int topple = 5) {
 inline RolloutResult NoPath() {
   RolloutResult result;
   result.outcome = Outcome::kFailed;
-  result.reason = "no_path";
+  result.failure = base::FailureCode::kNoPath;
   result.counts = {20, 0, 0};
   return result;
 }

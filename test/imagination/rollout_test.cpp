@@ -14,6 +14,7 @@
 namespace hires::imagination {
 namespace {
 
+using Code = base::FailureCode;
 using hires::test_support::Block;
 using hires::test_support::ConfigErrorOf;
 using hires::test_support::OnTray;
@@ -54,7 +55,7 @@ TEST(RolloutTest, AnUneventfulDriveSucceeds) {
   const RolloutSetup setup = RoomRollouts(Room(), "mill");
   const RolloutResult result = Play(setup, kSlow);
   EXPECT_EQ(result.outcome, Outcome::kSucceeded);
-  EXPECT_EQ(result.reason, "");
+  EXPECT_EQ(ToString(result.failure), "");
   EXPECT_TRUE(result.action_finished);
   EXPECT_EQ(result.falls, 0);
   EXPECT_LT(result.max_tilt, 0.01);
@@ -92,7 +93,8 @@ TEST(RolloutTest, AFallIsOneEventHoweverManySamples) {
   EXPECT_GT(result.counts.topple, 1);
   EXPECT_GT(result.max_tilt, 0.5);
   EXPECT_EQ(result.first_cause, "accelerating");
-  EXPECT_TRUE(result.reason == "object_fell" || result.reason == "object_slid") << result.reason;
+  EXPECT_TRUE(result.failure == Code::kObjectFell || result.failure == Code::kObjectSlid)
+      << ToString(result.failure);
 }
 
 TEST(RolloutTest, PutBackItMayFallAgain) {
@@ -120,7 +122,7 @@ TEST(RolloutTest, TimeIsUp) {
   setup.params.time_limit = 3.0;
   const RolloutResult result = Play(setup, kSlow);
   EXPECT_EQ(result.outcome, Outcome::kTimedOut);
-  EXPECT_EQ(result.reason, "timed_out");
+  EXPECT_EQ(ToString(result.failure), "timed_out");
   EXPECT_FALSE(result.action_finished);
   EXPECT_NEAR(result.duration, 3.0, 0.0011);
   EXPECT_TRUE(ActionFailed(result));
@@ -131,7 +133,7 @@ TEST(RolloutTest, DrivingBlindIntoACrateIsACollision) {
   room.statics.push_back(Block("crate", {0.5, 0.5, 0.8}, {2.75, 2.0, 0.4}));
   const RolloutResult result = Play(RoomRollouts(room, "mill"), kBlind);
   EXPECT_EQ(result.outcome, Outcome::kFailed);
-  EXPECT_EQ(result.reason, "robot_collision: tray/plate touches crate");
+  EXPECT_EQ(ToString(result.failure), "robot_collision: tray/plate touches crate");
   EXPECT_FALSE(result.action_finished);
   EXPECT_NEAR(result.final_robot.X_MB.x, 2.5 - 0.325, 0.02);
 }
@@ -141,14 +143,14 @@ TEST(RolloutTest, ASkillThatGivesUpSaysWhy) {
   room.statics.push_back(Block("fence", {0.1, 4.0, 0.8}, {2.75, 2.0, 0.4}));
   const RolloutResult result = Play(RoomRollouts(room, "mill"), kFast);
   EXPECT_EQ(result.outcome, Outcome::kFailed);
-  EXPECT_EQ(result.reason, "no_path");
+  EXPECT_EQ(ToString(result.failure), "no_path");
   EXPECT_TRUE(ActionFailed(result));
 }
 
 TEST(RolloutTest, AnActionThatIsOverAtOnceIsNoEvidence) {
   const RolloutResult result = Play(RoomRollouts(Room(), "mill"), {"move_base_blind", {"west"}});
   EXPECT_EQ(result.outcome, Outcome::kFailed);
-  EXPECT_EQ(result.reason, "no_samples");
+  EXPECT_EQ(ToString(result.failure), "no_samples");
   EXPECT_EQ(result.counts.total(), 0);
 }
 
@@ -162,7 +164,7 @@ TEST(RolloutTest, ATruthThatCannotBeIsABadStart) {
   EXPECT_NO_THROW(CheckSetup(setup, kFast));
   const RolloutResult result = Play(setup, kFast);
   EXPECT_EQ(result.outcome, Outcome::kFailed);
-  EXPECT_EQ(result.reason, "bad_start");
+  EXPECT_EQ(ToString(result.failure), "bad_start");
   EXPECT_TRUE(ActionFailed(result));
 }
 

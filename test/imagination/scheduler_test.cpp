@@ -592,7 +592,7 @@ TEST(SchedulerTest, RolloutThatKillsItsWorkersCountsAsFailedInTheEnd) {
   }
   EXPECT_EQ(deaths, params.max_attempts);
   EXPECT_EQ(scheduler.result()->num_unplayable, 1);
-  EXPECT_EQ(scheduler.result()->ranking.evidence[0].failures.at("unplayable"), 1);
+  EXPECT_EQ(scheduler.result()->ranking.evidence[0].failures.at(base::FailureCode::kUnplayable), 1);
   EXPECT_EQ(scheduler.result()->ranking.evidence[0].success.share, 0.75);
 }
 

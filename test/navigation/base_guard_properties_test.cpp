@@ -135,7 +135,7 @@ class Play {
   }
 
   void CheckPassing(GuardState before, const std::optional<Twist2>& sent) {
-    RC_ASSERT(guard_.reason().empty());
+    RC_ASSERT(!guard_.failure());
     RC_ASSERT(guard_.request() == heard_.id && heard_.id != 0);
     if (before != GuardState::kPassing) {
       RC_ASSERT(before == GuardState::kStanding);  // never out of the middle of a ramp
@@ -154,7 +154,7 @@ class Play {
 
   void CheckBraking(GuardState before, const std::optional<Twist2>& sent) {
     RC_ASSERT(sent.has_value());
-    RC_ASSERT(!guard_.reason().empty());
+    RC_ASSERT(bool(guard_.failure()));
     if (before != GuardState::kBraking) {
       RC_ASSERT(before == GuardState::kPassing);
       began_ = now_;
@@ -189,7 +189,7 @@ class Play {
   }
 
   void CheckStanding(GuardState before, const std::optional<Twist2>& sent) {
-    RC_ASSERT(!guard_.reason().empty());
+    RC_ASSERT(bool(guard_.failure()));
     if (sent) RC_ASSERT(sent->vx == 0.0 && sent->vy == 0.0 && sent->wz == 0.0);
     if (before == GuardState::kBraking) RC_ASSERT(now_ - began_ >= stop_time_);
   }

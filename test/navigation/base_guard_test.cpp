@@ -26,7 +26,7 @@ TEST(BaseGuardTest, StandsUntilSomebodyAsks) {
   base.command = Twist2{0.3, 0.0, 0.0};
   base.TickFor(0.5);
   EXPECT_EQ(base.guard.state(), GuardState::kStanding);
-  EXPECT_EQ(base.guard.reason(), "no_request");
+  EXPECT_EQ(ToString(base.guard.failure()), "no_request");
   EXPECT_EQ(base.guard.request(), 0u);
   EXPECT_FALSE(base.sent.has_value());
 }
@@ -36,7 +36,7 @@ TEST(BaseGuardTest, PassesWhatARequestAllows) {
   base.Drive({0.3, 0.05, 0.4});
   EXPECT_EQ(base.guard.state(), GuardState::kPassing);
   EXPECT_EQ(base.guard.request(), 1u);
-  EXPECT_EQ(base.guard.reason(), "");
+  EXPECT_EQ(ToString(base.guard.failure()), "");
   ASSERT_TRUE(base.sent);
   EXPECT_EQ(base.sent->vx, 0.3);
   EXPECT_EQ(base.sent->vy, 0.05);
@@ -85,7 +85,7 @@ TEST_P(TroubleTest, EndsInAGentleStopAndThenNothingMoves) {
   while (base.guard.state() == GuardState::kPassing && base.now < before + 5.0) base.Tick();
   EXPECT_EQ(base.guard.state(), GuardState::kBraking);
   EXPECT_LE(base.now - before, GetParam().patience + 2.0 * kTick);
-  EXPECT_THAT(base.guard.reason(), StartsWith(GetParam().reason));
+  EXPECT_THAT(ToString(base.guard.failure()), StartsWith(GetParam().reason));
   EXPECT_EQ(base.guard.request(), 1u);
   EXPECT_NEAR(base.guard.stop_time(), StoppingTime(0.5, {1.2, 3.5}), 1e-9);
   EXPECT_NEAR(base.guard.stop_distance(), StoppingDistance(0.5, {1.2, 3.5}), 1e-9);
@@ -97,7 +97,7 @@ TEST_P(TroubleTest, EndsInAGentleStopAndThenNothingMoves) {
   base.TickFor(2.0);
   EXPECT_EQ(base.guard.state(), GuardState::kStanding);
   EXPECT_FALSE(base.sent.has_value());  // zeros have ended too
-  EXPECT_THAT(base.guard.reason(), StartsWith(GetParam().reason));
+  EXPECT_THAT(ToString(base.guard.failure()), StartsWith(GetParam().reason));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -118,7 +118,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "localisation_lost: sd 0.90 rad", 0.0},
         Trouble{"NoNumber", [](GuardedBase* b) { b->guard.OnLocalisation(kNan, 0.1); },
                 "localisation_lost: sd nan m", 0.0},
-        Trouble{"Hindrance", [](GuardedBase* b) { b->guard.OnHindrance("guard_ends"); },
+        Trouble{"Hindrance",
+                [](GuardedBase* b) { b->guard.OnHindrance(base::FailureCode::kGuardEnds); },
                 "guard_ends", 0.0},
         Trouble{"MiddleLayer", [](GuardedBase* b) { b->has_request = false; },
                 "silent_middle_layer: 0.12 s", 0.1},
@@ -191,7 +192,7 @@ TEST(BaseGuardTest, ANewRequestDrivesOnceAllIsWell) {
   base.TickFor(0.5);
   EXPECT_EQ(base.guard.state(), GuardState::kStanding);
   EXPECT_EQ(base.guard.request(), 2u);  // it is the new one that is refused now
-  EXPECT_EQ(base.guard.reason(), "motors_halted");
+  EXPECT_EQ(ToString(base.guard.failure()), "motors_halted");
   base.guard.OnMotorsHalted(false);
   base.TickFor(0.1);
   EXPECT_EQ(base.guard.state(), GuardState::kPassing);
@@ -213,7 +214,7 @@ TEST(BaseGuardTest, AStoppedRequestNeverComesBack) {
   base.request.id = 1;  // of no use: number 2 is silent now
   base.TickFor(2.0);
   EXPECT_EQ(base.guard.state(), GuardState::kStanding);
-  EXPECT_THAT(base.guard.reason(), StartsWith("silent_middle_layer"));
+  EXPECT_THAT(ToString(base.guard.failure()), StartsWith("silent_middle_layer"));
 }
 
 TEST(BaseGuardTest, ARequestThatComesWhileBrakingWaitsForTheStand) {
@@ -278,7 +279,7 @@ TEST(BaseGuardTest, StampsFromTheFutureCountAsNow) {
   base.has_scan = false;
   base.guard.OnScan(base.now + 100.0, base.now);
   base.TickFor(0.4);
-  EXPECT_THAT(base.guard.reason(), StartsWith("stale_scan"));
+  EXPECT_THAT(ToString(base.guard.failure()), StartsWith("stale_scan"));
 }
 
 TEST(BaseGuardTest, OldMessagesAreAsOldAsTheirStamps) {
@@ -289,7 +290,7 @@ TEST(BaseGuardTest, OldMessagesAreAsOldAsTheirStamps) {
     base.guard.OnScan(base.now - 0.35, base.now);
     base.Tick();
   }
-  EXPECT_THAT(base.guard.reason(), StartsWith("stale_scan: 0.3"));
+  EXPECT_THAT(ToString(base.guard.failure()), StartsWith("stale_scan: 0.3"));
 }
 
 TEST(BaseGuardTest, SaysWhatNeverCame) {
@@ -306,12 +307,12 @@ TEST(BaseGuardTest, SaysWhatNeverCame) {
     missing.omit(&base);
     base.Drive({0.5, 0.0, 0.0});
     EXPECT_EQ(base.guard.state(), GuardState::kStanding);
-    EXPECT_EQ(base.guard.reason(), missing.reason);
+    EXPECT_EQ(ToString(base.guard.failure()), missing.reason);
   }
   BaseGuard guard{BaseGuardParams{}};
   guard.OnRequest({1, {0.5, 1.0, 1.0, 1.0}, {1.0, 1.0}}, 0.0);
   guard.Update(0.0);
-  EXPECT_EQ(guard.reason(), "no_motors_state");
+  EXPECT_EQ(ToString(guard.failure()), "no_motors_state");
 }
 
 TEST(BaseGuardTest, WhatTheRobotDoesNotHaveIsNotMissed) {
@@ -359,7 +360,7 @@ TEST(BaseGuardTest, WhoIsHeldWaitsAndIsNotRefused) {
   base.request.id = 2;  // but nobody takes over from him
   base.Tick();
   EXPECT_EQ(base.guard.state(), GuardState::kBraking);
-  EXPECT_EQ(base.guard.reason(), "request_over");
+  EXPECT_EQ(ToString(base.guard.failure()), "request_over");
 }
 
 TEST(BaseGuardTest, WhoIsSilentOrOverIsNoApplicant) {

@@ -154,7 +154,8 @@ TEST(ImagineAnswerTest, ARankingHasRecommendationDurationAndWhatFails) {
   EXPECT_EQ(answer.duration_high, 23.0);
   ASSERT_EQ(answer.failed.size(), 1u);
   EXPECT_EQ(answer.failed[0].arguments[1], "fast");
-  EXPECT_THAT(answer.failure_reasons, ElementsAre("object_fell"));
+  EXPECT_THAT(answer.failures,
+              ElementsAre(hires::base::Failure(hires::base::FailureCode::kObjectFell)));
   EXPECT_THAT(answer.depends_on, ElementsAre("mug1"));
 }
 
@@ -261,7 +262,7 @@ TEST(ExecuteMessageTest, WhatCannotBeDoneFailed) {
   result.failure.detail = "no such action";
   const auto finished = AnswerOf(4, result);
   EXPECT_EQ(finished.result, execution::StepFinished::Result::kFailed);
-  EXPECT_EQ(finished.reason, "invalid_action: no such action");
+  EXPECT_EQ(ToString(finished.failure), "invalid_action: no such action");
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ TEST(ImagineRequestTest, AFinalStateIsAStart) {
 
 TEST(ConversionsTest, ARolloutSaysWhetherAnythingWasWatched) {
   imagination::RolloutResult result;
-  result.reason = "area_occupied: book1, book2";
+  result.failure = {hires::base::FailureCode::kAreaOccupied, {"book1", "book2"}};
   result.nothing_watched = true;
   const imagination::RolloutResult back = FromMsg(ToMsg(result, 3));
   EXPECT_TRUE(imagination::SameOutcome(result, back));

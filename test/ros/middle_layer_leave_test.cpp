@@ -9,6 +9,7 @@ namespace hires_ros {
 namespace {
 
 using hires::BaseGuardState;
+using Code = hires::base::FailureCode;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -17,11 +18,12 @@ constexpr std::uint64_t kNow = 1'700'000'000'000'000'000;  // [ns]
 
 class BaseLeaveTest : public ::testing::Test {
  protected:
-  static BaseGuardState State(std::uint8_t state, std::uint64_t request, const char* reason) {
+  static BaseGuardState State(std::uint8_t state, std::uint64_t request,
+                              const hires::base::Failure& failure) {
     BaseGuardState msg;
     msg.state = state;
     msg.request = request;
-    msg.failure = FailureMsgOf(reason);
+    msg.failure = ToMsg(failure);
     return msg;
   }
 
@@ -29,7 +31,7 @@ class BaseLeaveTest : public ::testing::Test {
   std::vector<std::string> stops_;
   BaseLeave leave_{0.03,
                    {[this](const hires::BaseRequest& request) { sent_.push_back(request); },
-                    [this](const std::string& reason) { stops_.push_back(reason); }}};
+                    [this](const hires::base::Failure& why) { stops_.push_back(ToString(why)); }}};
   const DriveLimits slow_{"slow", {0.30, 1.0, 1.4, 2.0}, 0.8, 3.0};
 };
 
@@ -77,27 +79,27 @@ TEST_F(BaseLeaveTest, EachActionHasANewIdAlsoWhenTheWallsClockGoesBack) {
 }
 
 TEST_F(BaseLeaveTest, AStopIsToldOnceAndOnlyToWhomItConcerns) {
-  leave_.OnState(State(BaseGuardState::STANDING, 0, "no_request"));
+  leave_.OnState(State(BaseGuardState::STANDING, 0, Code::kNoRequest));
   leave_.Begin(1, slow_, kNow);
-  leave_.OnState(State(BaseGuardState::STANDING, kNow - 1, "stale_scan: 0.4 s"));
-  leave_.OnState(State(BaseGuardState::PASSING, kNow, ""));
+  leave_.OnState(State(BaseGuardState::STANDING, kNow - 1, Code::kStaleScan));
+  leave_.OnState(State(BaseGuardState::PASSING, kNow, {}));
   EXPECT_THAT(stops_, IsEmpty());
-  leave_.OnState(State(BaseGuardState::BRAKING, kNow, "motors_halted"));
-  leave_.OnState(State(BaseGuardState::STANDING, kNow, "motors_halted"));
+  leave_.OnState(State(BaseGuardState::BRAKING, kNow, Code::kMotorsHalted));
+  leave_.OnState(State(BaseGuardState::STANDING, kNow, Code::kMotorsHalted));
   EXPECT_THAT(stops_, ElementsAre("motors_halted"));
   leave_.End(1);
   leave_.Begin(2, slow_, kNow);
-  leave_.OnState(State(BaseGuardState::STANDING, kNow + 1, "motors_halted"));
+  leave_.OnState(State(BaseGuardState::STANDING, kNow + 1, Code::kMotorsHalted));
   EXPECT_THAT(stops_, ElementsAre("motors_halted", "motors_halted"));
 }
 
 TEST_F(BaseLeaveTest, AGuardThatWasStartedAnewEndsTheDrive) {
   leave_.Begin(1, slow_, kNow);
-  leave_.OnState(State(BaseGuardState::STANDING, 0, "no_request"));  // from before the request
+  leave_.OnState(State(BaseGuardState::STANDING, 0, Code::kNoRequest));  // from before the request
   EXPECT_THAT(stops_, IsEmpty());
-  leave_.OnState(State(BaseGuardState::PASSING, kNow, ""));
-  leave_.OnState(State(BaseGuardState::STANDING, 0, "no_request"));
-  leave_.OnState(State(BaseGuardState::PASSING, kNow, ""));
+  leave_.OnState(State(BaseGuardState::PASSING, kNow, {}));
+  leave_.OnState(State(BaseGuardState::STANDING, 0, Code::kNoRequest));
+  leave_.OnState(State(BaseGuardState::PASSING, kNow, {}));
   EXPECT_THAT(stops_, ElementsAre("guard_restarted"));
   EXPECT_FALSE(*leave_.granted());
 }

@@ -8,16 +8,18 @@
 #include <memory>
 #include <stdexcept>
 
-#include "hires/ros/middle_layer_groups.h"
+#include "hires/actions/catalogue.h"
 #include "support/scenes.h"
 
 namespace hires_ros {
 namespace {
 
+using hires::base::Failure;
 using hires::robot::Command;
 using hires::robot::Observation;
 using hires::skills::Progress;
 using hires::skills::Status;
+using Code = hires::base::FailureCode;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -73,15 +75,14 @@ class SlowSkill : public hires::skills::Skill {
 struct Ended {
   int id;
   ActionEnd end;
-  std::string reason;
+  std::string failure;
   double elapsed;
 };
 
 class ActionRunnerTest : public ::testing::Test {
  protected:
-  std::optional<std::string> Start(int id, const std::string& action,
-                                   std::unique_ptr<hires::skills::Skill> skill,
-                                   double limit = 0.0) {
+  Failure Start(int id, const std::string& action, std::unique_ptr<hires::skills::Skill> skill,
+                double limit = 0.0) {
     const hires::base::ActionCall call{action, {"leftArm1", "leftArm1"}};
     const hires::actions::ActionSpec& spec = hires::actions::OwnActions().Get(action);
     return runner_.Start(id, call, hires::actions::GroupsOf(spec, call), std::move(skill), limit,
@@ -110,8 +111,8 @@ class ActionRunnerTest : public ::testing::Test {
   ActionRunner runner_{robot_,
                        {},
                        {[this](const Command& command) { sent_.push_back(command); },
-                        [this](const ActionNews& news, ActionEnd end, const std::string& reason) {
-                          ended_.push_back({news.id, end, reason, news.elapsed});
+                        [this](const ActionNews& news, ActionEnd end, const Failure& failure) {
+                          ended_.push_back({news.id, end, ToString(failure), news.elapsed});
                         },
                         [] {}}};
 };
@@ -120,7 +121,7 @@ std::unique_ptr<ScriptedSkill> Endless() { return std::make_unique<ScriptedSkill
 
 TEST_F(ActionRunnerTest, ASkillCountsTimeFromItsFirstLookAndIsAskedAtItsPeriod) {
   auto seen = std::make_shared<Seen>();
-  Start(1, "move_base", std::make_unique<ScriptedSkill>(2, Status{Progress::kSucceeded, ""}, seen));
+  Start(1, "move_base", std::make_unique<ScriptedSkill>(2, hires::skills::Succeeded(), seen));
   for (const double now : {200.0, 200.05, 200.1, 200.15, 200.2}) Look(now);
   ASSERT_EQ(seen->times.size(), 3u);
   EXPECT_NEAR(seen->times[0], 0.0, 1e-9);
@@ -143,24 +144,24 @@ TEST_F(ActionRunnerTest, ALateLookIsNotMadeUpFor) {
 TEST_F(ActionRunnerTest, ThoseThatNeedTheSameAreRefusedWithTheOneThatHasIt) {
   EXPECT_FALSE(Start(1, "move_base", Endless()));
   EXPECT_FALSE(Start(2, "move_torso", Endless()));
-  EXPECT_EQ(Start(3, "move_base_blind", Endless()),
+  EXPECT_EQ(ToString(Start(3, "move_base_blind", Endless())),
             "busy: move_base(leftArm1, leftArm1) needs base");
-  EXPECT_EQ(Start(4, "pick_up_object", Endless()),
+  EXPECT_EQ(ToString(Start(4, "pick_up_object", Endless())),
             "busy: move_base(leftArm1, leftArm1) needs base");
   EXPECT_FALSE(Start(5, "tuck_arms", Endless()));
-  EXPECT_EQ(Start(6, "move_arm_to_side", Endless()),
+  EXPECT_EQ(ToString(Start(6, "move_arm_to_side", Endless())),
             "busy: tuck_arms(leftArm1, leftArm1) needs leftarm1");
 }
 
 TEST_F(ActionRunnerTest, AnEndFreesWhatWasNeeded) {
-  Start(1, "move_base", std::make_unique<ScriptedSkill>(0, Status{Progress::kSucceeded, ""}));
+  Start(1, "move_base", std::make_unique<ScriptedSkill>(0, hires::skills::Succeeded()));
   Look(200.0);
   EXPECT_TRUE(runner_.is_idle());
   EXPECT_FALSE(Start(2, "move_base", Endless()));
 }
 
 TEST_F(ActionRunnerTest, AFailedSkillEndsWhenTheBaseStands) {
-  Start(1, "move_base", std::make_unique<ScriptedSkill>(0, Status{Progress::kFailed, "no_path"}));
+  Start(1, "move_base", std::make_unique<ScriptedSkill>(0, hires::skills::Failed(Code::kNoPath)));
   Look(200.0);
   Look(200.1, 0.4);
   EXPECT_THAT(ended_, IsEmpty());
@@ -168,7 +169,7 @@ TEST_F(ActionRunnerTest, AFailedSkillEndsWhenTheBaseStands) {
   Look(200.2, 0.0);
   ASSERT_EQ(ended_.size(), 1u);
   EXPECT_EQ(ended_[0].end, ActionEnd::kFailed);
-  EXPECT_EQ(ended_[0].reason, "no_path");
+  EXPECT_EQ(ended_[0].failure, "no_path");
 }
 
 TEST_F(ActionRunnerTest, CancellingBrakesAlongARamp) {
@@ -219,7 +220,7 @@ TEST_F(ActionRunnerTest, ASlowSkillKeepsNoOtherFromItsLooks) {
   std::promise<void> gate;
   auto seen = std::make_shared<Seen>();
   Start(1, "move_torso", std::make_unique<SlowSkill>(gate.get_future().share()));
-  Start(2, "move_base", std::make_unique<ScriptedSkill>(1, Status{Progress::kSucceeded, ""}, seen));
+  Start(2, "move_base", std::make_unique<ScriptedSkill>(1, hires::skills::Succeeded(), seen));
   runner_.Look(200.0, {});
   while (ended_.empty()) {  // until the driving skill has had its two looks
     runner_.Collect();
@@ -238,7 +239,7 @@ TEST_F(ActionRunnerTest, TheTimeLimitOfTheGoalComesBeforeTheConfigured) {
   Look(201.0);
   Look(201.1, 0.0);
   ASSERT_EQ(ended_.size(), 1u);
-  EXPECT_EQ(ended_[0].reason, "timed_out");
+  EXPECT_EQ(ended_[0].failure, "timed_out");
 }
 
 TEST_F(ActionRunnerTest, AFaultOfASkillEndsItAloneWithItsWords) {
@@ -247,7 +248,7 @@ TEST_F(ActionRunnerTest, AFaultOfASkillEndsItAloneWithItsWords) {
   Look(200.0);
   Look(200.1, 0.0);
   ASSERT_EQ(ended_.size(), 1u);
-  EXPECT_EQ(ended_[0].reason, "internal_error: a fault");
+  EXPECT_EQ(ended_[0].failure, "internal_error: a fault");
   EXPECT_THAT(runner_.Running(), ElementsAre("move_torso(leftArm1, leftArm1)"));
 }
 
@@ -260,7 +261,7 @@ TEST_F(ActionRunnerTest, ABlindRobotStopsAndSaysSo) {
   runner_.CheckFreshness(200.31);
   ASSERT_EQ(ended_.size(), 1u);
   EXPECT_EQ(ended_[0].end, ActionEnd::kFailed);
-  EXPECT_EQ(ended_[0].reason, "stale_observation");
+  EXPECT_EQ(ended_[0].failure, "stale_observation");
   ASSERT_EQ(sent_.size(), 1u);
   EXPECT_EQ(sent_[0].base_velocity->vx, 0.0);
 }
@@ -302,7 +303,7 @@ TEST_F(ActionRunnerTest, EverythingFailsForOneReason) {
   Start(2, "move_torso", Endless());
   Look(200.0);
   Start(3, "look_at", Endless());  // has not moved anything
-  runner_.FailAll("motors_halted");
+  runner_.FailAll(Code::kMotorsHalted);
   ASSERT_EQ(ended_.size(), 1u);
   EXPECT_EQ(ended_[0].id, 3);
   Look(200.1, 0.0);
@@ -310,7 +311,7 @@ TEST_F(ActionRunnerTest, EverythingFailsForOneReason) {
   ASSERT_EQ(ended_.size(), 3u);
   for (const Ended& ended : ended_) {
     EXPECT_EQ(ended.end, ActionEnd::kFailed);
-    EXPECT_EQ(ended.reason, "motors_halted");
+    EXPECT_EQ(ended.failure, "motors_halted");
   }
 }
 
@@ -320,7 +321,7 @@ TEST_F(ActionRunnerTest, ARobotThatSeesNothingAtAllFailsTheSameWay) {
   EXPECT_THAT(ended_, IsEmpty());
   runner_.CheckFreshness(100.4);
   ASSERT_EQ(ended_.size(), 1u);
-  EXPECT_EQ(ended_[0].reason, "stale_observation");
+  EXPECT_EQ(ended_[0].failure, "stale_observation");
   EXPECT_THAT(sent_, IsEmpty());
 }
 
@@ -335,8 +336,9 @@ TEST_F(ActionRunnerTest, WhatNobodySeesStopIsGivenUp) {
 }
 
 TEST_F(ActionRunnerTest, TheHeadLooksAtNothingElseWhileAnObjectIsPickedUp) {
-  EXPECT_EQ(Start(1, "pick_up_object", Endless()), std::nullopt);
-  EXPECT_THAT(Start(2, "look_at", Endless()).value_or(""), HasSubstr("needs head"));
+  EXPECT_FALSE(Start(1, "pick_up_object", Endless()));
+  EXPECT_EQ(ToString(Start(2, "look_at", Endless())),
+            "busy: pick_up_object(leftArm1, leftArm1) needs head");
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ class MoveBaseDriveTest : public ::testing::Test {
     server_->news = news;
     const Status status = Look(1.0, X_MB);
     EXPECT_EQ(status.progress, Progress::kFailed);
-    return status.reason;
+    return ToString(status.failure);
   }
 
   const hires::skills::SkillSet skills_ = RoomSkills();
@@ -98,7 +98,7 @@ TEST_F(MoveBaseDriveTest, NothingIsSentBeforeThereIsLeave) {
   EXPECT_EQ(Look(params_.start_patience).progress, Progress::kRunning);
   EXPECT_THAT(server_->goals, IsEmpty());
   EXPECT_EQ(drive_->phase(), "wait_for_leave");
-  EXPECT_EQ(Look(params_.start_patience + 0.1).reason, "no_leave");
+  EXPECT_EQ(ToString(Look(params_.start_patience + 0.1).failure), "no_permit");
   drive_.reset();
   EXPECT_EQ(server_->cancels, 0);
 }
@@ -107,7 +107,7 @@ TEST_F(MoveBaseDriveTest, AServerThatIsMissingIsWaitedForAndThenNamed) {
   server_->is_there = false;
   Make({"move_base", {"East"}});
   EXPECT_EQ(Look(0.0).progress, Progress::kRunning);
-  EXPECT_EQ(Look(params_.start_patience + 0.1).reason, "no_controller: move_base");
+  EXPECT_EQ(ToString(Look(params_.start_patience + 0.1).failure), "no_controller: move_base");
   EXPECT_THAT(server_->goals, IsEmpty());
 }
 
@@ -115,27 +115,29 @@ TEST_F(MoveBaseDriveTest, AServerThatDoesNotAnswerIsNamed) {
   Make({"move_base", {"East"}});
   Look(1.0);
   EXPECT_EQ(Look(1.0 + params_.answer_patience).progress, Progress::kRunning);
-  EXPECT_EQ(Look(1.1 + params_.answer_patience).reason, "no_controller: move_base");
+  EXPECT_EQ(ToString(Look(1.1 + params_.answer_patience).failure), "no_controller: move_base");
 }
 
 TEST_F(MoveBaseDriveTest, AServerThatDiesIsNamed) {
   Begin();
   server_->is_there = false;
-  EXPECT_EQ(Look(1.0).reason, "no_controller: move_base");
+  EXPECT_EQ(ToString(Look(1.0).failure), "no_controller: move_base");
 }
 
 TEST_F(MoveBaseDriveTest, WhatMoveBaseSaysBecomesOurReasons) {
-  const auto reason = [](State state, const std::string& text) { return ReasonFor({state, text}); };
+  const auto failure = [](State state, const std::string& text) {
+    return ToString(FailureOf({state, text}));
+  };
   const std::string still = " Even after executing recovery behaviors.";
-  EXPECT_EQ(reason(State::kAborted, "Failed to find a valid plan." + still), "unreachable");
-  EXPECT_EQ(reason(State::kAborted, "Failed to find a valid control." + still), "stuck");
-  EXPECT_EQ(reason(State::kAborted, "Robot is oscillating." + still), "stuck");
-  EXPECT_EQ(reason(State::kAborted, ""), "unreachable");
-  EXPECT_EQ(reason(State::kRejected, "invalid quaternion"), "unreachable");
-  EXPECT_EQ(reason(State::kReplaced, ""), "interrupted");
-  EXPECT_EQ(reason(State::kLost, ""), "no_controller: move_base");
+  EXPECT_EQ(failure(State::kAborted, "Failed to find a valid plan." + still), "unreachable");
+  EXPECT_EQ(failure(State::kAborted, "Failed to find a valid control." + still), "stuck");
+  EXPECT_EQ(failure(State::kAborted, "Robot is oscillating." + still), "stuck");
+  EXPECT_EQ(failure(State::kAborted, ""), "unreachable");
+  EXPECT_EQ(failure(State::kRejected, "invalid quaternion"), "unreachable");
+  EXPECT_EQ(failure(State::kReplaced, ""), "interrupted");
+  EXPECT_EQ(failure(State::kLost, ""), "no_controller: move_base");
   for (const State fine : {State::kNone, State::kSent, State::kDriving, State::kArrived}) {
-    EXPECT_EQ(reason(fine, "Goal reached."), "");
+    EXPECT_EQ(failure(fine, "Goal reached."), "");
   }
 }
 

@@ -60,7 +60,7 @@ class LoopMishapsTest(LoopCase):
             self.assertTrue(heard)
         with self.subTest('by the monitor, when it is overdue'):
             self.begin(TORSO_DOWN, MUG, overdue_factor=1.0, overdue_minimum=5.0)
-            for step in self.require_that_the_torso_is_given_up('stopped'):
+            for step in self.require_that_the_torso_is_given_up('preempted'):
                 self.assertLess(step.finished - step.started, SKILL_WAITS)
 
     def test_an_object_that_slips_off_in_transit_is_noticed(self):

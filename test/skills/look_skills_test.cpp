@@ -59,7 +59,7 @@ TEST(AimHeadTest, FindsNothingForWhatTheHeadCannotTurnTo) {
 TEST(LookAtTest, TheHeadRestsOnAnArea) {
   Rehearsal rehearsal(AtCounter(), {});
   const Played played = rehearsal.Play({"look_at", {kCounter}});
-  EXPECT_EQ(played.status.reason, "");
+  EXPECT_EQ(ToString(played.status.failure), "");
   const robot::RobotState now = rehearsal.simulator().GetRobotState();
   EXPECT_LT(AngleOff(now.joints, now.X_MB, Frame(kCounter).translation), 0.03);
   EXPECT_GE(played.duration, TheRestaurant().skills.manipulation->params.look.dwell);
@@ -67,23 +67,23 @@ TEST(LookAtTest, TheHeadRestsOnAnArea) {
 
 TEST(LookAtTest, TheHeadTurnsToARememberedObject) {
   Rehearsal rehearsal(AtCounter(), {On("mug1", kCounter, 0.05, -0.1)});
-  ASSERT_EQ(rehearsal.Play({"look_at", {kCounter}}).status.reason, "");
+  ASSERT_EQ(ToString(rehearsal.Play({"look_at", {kCounter}}).status.failure), "");
   rehearsal.Wait(1.0);
-  EXPECT_EQ(rehearsal.Play({"look_at", {"Mug1"}}).status.reason, "");
+  EXPECT_EQ(ToString(rehearsal.Play({"look_at", {"Mug1"}}).status.failure), "");
   const robot::RobotState now = rehearsal.simulator().GetRobotState();
   EXPECT_LT(AngleOff(now.joints, now.X_MB, rehearsal.ObjectNow("mug1").X_MO.translation), 0.03);
 }
 
 TEST(LookAtTest, AnObjectThatNobodyKnowsIsNotSeen) {
   Rehearsal rehearsal(AtCounter(), {});
-  EXPECT_EQ(rehearsal.Play({"look_at", {"mug1"}}).status.reason, "object_not_seen");
+  EXPECT_EQ(ToString(rehearsal.Play({"look_at", {"mug1"}}).status.failure), "object_not_seen");
 }
 
 TEST(ObserveObjectsOnAreaTest, EndsWithEverythingThatStandsThere) {
   Rehearsal rehearsal(AtCounter(),
                       {On("mug1", kCounter, 0.1, 0.1), On("mug2", kCounter, -0.1, -0.1),
                        On("book1", "placingAreaWestLeftTable1")});
-  EXPECT_EQ(rehearsal.Play({"observe_objects_on_area", {kCounter}}).status.reason, "");
+  EXPECT_EQ(ToString(rehearsal.Play({"observe_objects_on_area", {kCounter}}).status.failure), "");
   std::vector<std::string> names;
   for (const robot::SeenObject& object : rehearsal.simulator().Observe(0.0).objects) {
     names.push_back(object.name);
@@ -95,15 +95,15 @@ TEST(ObserveObjectsOnAreaTest, EndsWithEverythingThatStandsThere) {
 
 TEST(ObserveObjectsOnAreaTest, AnEmptyAreaIsSeenEmpty) {
   Rehearsal rehearsal(AtCounter(), {});
-  EXPECT_EQ(rehearsal.Play({"observe_objects_on_area", {kCounter}}).status.reason, "");
+  EXPECT_EQ(ToString(rehearsal.Play({"observe_objects_on_area", {kCounter}}).status.failure), "");
   EXPECT_TRUE(rehearsal.simulator().Observe(0.0).objects.empty());
 }
 
 TEST(ObserveObjectsOnAreaTest, AnAreaAcrossTheRoomIsOutOfView) {
   Rehearsal rehearsal(AtCounter(), {});  // table2: beyond the camera's range
-  EXPECT_EQ(
-      rehearsal.Play({"observe_objects_on_area", {"placingAreaNorthLeftTable2"}}).status.reason,
-      "out_of_view");
+  EXPECT_EQ(ToString(rehearsal.Play({"observe_objects_on_area", {"placingAreaNorthLeftTable2"}})
+                         .status.failure),
+            "out_of_view");
 }
 
 /// A wide square close by needs several looks; every part has been in view at rest afterwards.
@@ -133,7 +133,7 @@ TEST(SweepPointsTest, LooksUntilEveryPartHasBeenInView) {
       if (view.Contains(points[i])) seen_at_rest[i] = true;
     }
   }
-  EXPECT_EQ(status.progress, Progress::kSucceeded) << status.reason;
+  EXPECT_EQ(status.progress, Progress::kSucceeded) << ToString(status.failure);
   EXPECT_GT(looks, 1);
   EXPECT_LT(looks, 20);
   EXPECT_THAT(seen_at_rest, ::testing::Each(true));

@@ -12,6 +12,7 @@ namespace {
 
 using test_support::TheRestaurant;
 using test_support::UpperBody;
+using Code = base::FailureCode;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -22,18 +23,18 @@ const std::shared_ptr<const ManipulationContext>& Context() {
 /// Succeeds at its n-th update, or fails there.
 class Countdown : public Activity {
  public:
-  Countdown(int updates, std::string failure) : left_(updates), failure_(std::move(failure)) {}
+  Countdown(int updates, base::Failure failure) : left_(updates), failure_(std::move(failure)) {}
   Status Update(const robot::Observation&, robot::Command*) override {
     if (--left_ > 0) return {};
-    return {failure_.empty() ? Progress::kSucceeded : Progress::kFailed, failure_};
+    return failure_ ? Failed(failure_) : Succeeded();
   }
 
  private:
   int left_;
-  std::string failure_;
+  base::Failure failure_;
 };
 
-Stage Counting(const std::string& name, int updates, const std::string& failure = "") {
+Stage Counting(const std::string& name, int updates, const base::Failure& failure = {}) {
   return {name,
           [=](const robot::Observation&) {
             return Begin(std::make_unique<Countdown>(updates, failure));
@@ -78,35 +79,36 @@ TEST(StagedSkillTest, StagesFollowEachOtherWithinACycle) {
 
 TEST(StagedSkillTest, FailsWithTheReasonOfTheFirstStageThatFailedAfterTidyingUp) {
   Staged skill;
-  skill.Append(Counting("first", 1, "object_slipped"));
+  skill.Append(Counting("first", 1, Code::kObjectSlipped));
   skill.Append(Counting("never", 1));
-  skill.tidying = {Counting("tidy", 2), Counting("tidy_too", 1, "timed_out")};
+  skill.tidying = {Counting("tidy", 2), Counting("tidy_too", 1, Code::kTimedOut)};
   Status status;
   EXPECT_THAT(PhasesOf(&skill, &status), ElementsAre("tidy", "tidy_too"));
   EXPECT_EQ(status.progress, Progress::kFailed);
-  EXPECT_EQ(status.reason, "object_slipped");
+  EXPECT_EQ(ToString(status.failure), "object_slipped");
   EXPECT_EQ(skill.failed_stage, "first");
 }
 
 TEST(StagedSkillTest, AStageThatCannotBeginFails) {
   Staged skill;
-  skill.Append({"plan", [](const robot::Observation&) { return CannotBegin("unreachable"); }, {}});
+  skill.Append(
+      {"plan", [](const robot::Observation&) { return CannotBegin(Code::kUnreachable); }, {}});
   Status status;
   PhasesOf(&skill, &status);
-  EXPECT_EQ(status.reason, "unreachable");
+  EXPECT_EQ(ToString(status.failure), "unreachable");
 }
 
 TEST(StagedSkillTest, AWatchedStageFailsAsSoonAsItsWatchSaysSo) {
   Staged skill;
   Stage stage = Counting("carry", 100);
   int looks = 0;
-  stage.watch = [&](const robot::Observation&) -> std::string {
-    return ++looks < 3 ? "" : "object_slipped";
+  stage.watch = [&](const robot::Observation&) -> base::Failure {
+    return ++looks < 3 ? base::Failure() : Code::kObjectSlipped;
   };
   skill.Append(stage);
   Status status;
   EXPECT_EQ(PhasesOf(&skill, &status).size(), 3u);
-  EXPECT_EQ(status.reason, "object_slipped");
+  EXPECT_EQ(ToString(status.failure), "object_slipped");
 }
 
 // ---------------------------------------------------------------------------------------- joints
@@ -150,7 +152,7 @@ TEST(JointMotionTest, TimesOutWhenTheJointsDoNotCome) {
     robot::Command command;
     status = motion.Update(Standing(time), &command);
   }
-  EXPECT_EQ(status.reason, "timed_out");
+  EXPECT_EQ(ToString(status.failure), "timed_out");
   const JointGoalParams& goal = Context()->params.goal;
   EXPECT_NEAR(time, goal.time_limit_factor * HeadTo(1.0).duration() + goal.time_limit_surplus,
               0.15);
@@ -230,7 +232,7 @@ TEST(GripperMotionTest, AGripperThatJamsTimesOut) {
   robot::Command first;
   const Status status = RunGripper(
       motion.get(), [](double) { return 0.02; }, &ended, &first);
-  EXPECT_EQ(status.reason, "timed_out");
+  EXPECT_EQ(ToString(status.failure), "timed_out");
   EXPECT_NEAR(ended, Context()->params.gripper.time_limit, 0.1);
 }
 

@@ -44,8 +44,8 @@ double DistanceBetween(const Pose2& a, const Pose2& b) { return std::hypot(a.x -
 
 void ExpectArrivedAt(const Pose2& goal, const SkillRun& run) {
   const navigation::DwaParams defaults;
-  EXPECT_EQ(run.status.progress, Progress::kSucceeded) << run.status.reason;
-  EXPECT_EQ(run.status.reason, "");
+  EXPECT_EQ(run.status.progress, Progress::kSucceeded) << ToString(run.status.failure);
+  EXPECT_EQ(ToString(run.status.failure), "");
   EXPECT_LE(DistanceBetween(run.robot.X_MB, goal), defaults.xy_goal_tolerance);
   EXPECT_LE(std::abs(geometry::WrapToPi(run.robot.X_MB.yaw - goal.yaw)),
             defaults.yaw_goal_tolerance);
@@ -53,7 +53,7 @@ void ExpectArrivedAt(const Pose2& goal, const SkillRun& run) {
 
 void ExpectFailed(const std::string& reason, const SkillRun& run) {
   EXPECT_EQ(run.status.progress, Progress::kFailed);
-  EXPECT_EQ(run.status.reason, reason);
+  EXPECT_EQ(ToString(run.status.failure), reason);
 }
 
 TEST(MoveBaseTest, ArrivesAtItsGoal) {
@@ -336,7 +336,7 @@ TEST(MoveBaseBlindTest, ArrivesWithinItsTolerances) {
   for (const Pose2& goal : {Pose2{1.8, 2.0, 0.0}, Pose2{0.6, 2.3, 1.2}, Pose2{1.0, 2.0, 3.1}}) {
     MoveBaseBlind skill(params, goal, kFast);
     const SkillRun run = RunSkill(&skill, {kWest, {}, false});
-    EXPECT_EQ(run.status.progress, Progress::kSucceeded) << run.status.reason;
+    EXPECT_EQ(run.status.progress, Progress::kSucceeded) << ToString(run.status.failure);
     EXPECT_LE(DistanceBetween(run.robot.X_MB, goal), params.xy_tolerance);
     EXPECT_LE(std::abs(geometry::WrapToPi(run.robot.X_MB.yaw - goal.yaw)), params.yaw_tolerance);
     EXPECT_LE(run.fastest, params.max_velocity + 1e-9);

@@ -35,7 +35,7 @@ robot::RobotState ReadyAt(const std::string& area, const std::string& arm = "rig
   return arm == "rightarm1" ? RobotAt(area, kUp, kTucked, kSide) : RobotAt(area, kUp, kSide, kSide);
 }
 
-std::string Why(const Played& played) { return played.status.reason; }
+std::string Why(const Played& played) { return ToString(played.status.failure); }
 bool IsDone(const Played& played) { return played.status.progress == Progress::kSucceeded; }
 
 /// The base goes elsewhere with whatever the hands hold, as if it had been driven there.

@@ -29,7 +29,7 @@ const char kUp[] = "torsoupposture";
 const char kHome[] = "home";
 constexpr double kPerWayPoint = 2.5;  // [s] that the PR2's tuck_arms allows for each, six at most
 
-std::string Why(const Played& played) { return played.status.reason; }
+std::string Why(const Played& played) { return ToString(played.status.failure); }
 
 /// [rad] largest joint error of an arm to a posture's first variant.
 double ErrorOf(Rehearsal* rehearsal, const std::string& arm, const std::string& posture) {

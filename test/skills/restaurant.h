@@ -146,7 +146,8 @@ class Rehearsal {
       }
       played.duration = simulator_.time() - start;
       played.commands.push_back(std::move(command));
-      if (played.duration > 300.0) played.status = {Progress::kFailed, "(never ends)"};
+      if (played.duration > 300.0)
+        played.status = Failed({base::FailureCode::kOther, {}, "it never ends"});
       while (simulator_.time() < start + cycle * skill->period() - 1e-6) simulator_.Step();
     }
     return played;

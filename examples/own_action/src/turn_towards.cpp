@@ -43,7 +43,7 @@ hires::skills::Status TurnTowards::Update(const hires::robot::Observation& obser
     last_progress_ = observation.time;
   }
   if (observation.time - last_progress_ > kPatience) {
-    return {Progress::kFailed, hires::base::ToString(hires::base::FailureCode::kStuck)};
+    return hires::skills::Failed(hires::base::FailureCode::kStuck);
   }
   const double braking = kBraking * motion_set_.max_angular_acceleration;
   const double speed =

@@ -63,9 +63,9 @@ enum class FailureCode : std::uint16_t {
   kBusy = 219,              ///< another action needs the same joints
   kGuardEnds = 220,
   kLateGuard = 221,       ///< the base guard itself was not called in time
-  kNoRequest = 222,       ///< nobody has asked the base guard for leave to drive
-  kGuardRestarted = 223,  ///< the base guard knows nothing of the request that it let pass
-  kDryRun = 224,          ///< nothing is to move
+  kNoRequest = 222,       ///< nobody has asked the base guard to drive
+  kGuardRestarted = 223,  ///< it knows nothing of the drive that it allowed
+  kDryRun = 224,          ///< nothing is moved
 
   // A plan that is carried out. 300 .. 399
   kPreempted = 300,

@@ -16,6 +16,22 @@ namespace hires::evaluation {
 /// "move_base_param(area1, slow|fast)", for people.
 std::string ToString(const base::ActionTemplate& action);
 
+/// How such a request went, or that it runs.
+enum class ImaginedOutcome {
+  kRunning,
+  kRanked,
+  kAllFailed,
+  kUndecided,
+  kNoWorker,
+  kNothingFinished,
+  kInvalid,
+  kUnavailable,
+  kCancelled
+};
+std::string ToString(ImaginedOutcome outcome);  ///< "running", "ranked", "all_failed", ...
+/// "" is kRunning.  @throws base::ConfigError for a word that is none of these.
+ImaginedOutcome ParseImaginedOutcome(const std::string& word);
+
 /// One request of the execution monitor to imagine a step. Times are main ROS time [s].
 struct ImaginedStep {
   int plan{0};  ///< number of the plan, and
@@ -27,7 +43,7 @@ struct ImaginedStep {
   double deadline{std::numeric_limits<double>::infinity()};
   double wall_seconds{0.0};       ///< [s] that the imagination took
   double simulated_seconds{0.0};  ///< [s] of all its rollouts
-  std::string outcome;            ///< "ranked", "all_failed", ...; "" while it runs
+  ImaginedOutcome outcome{ImaginedOutcome::kRunning};
   std::vector<imagination::Prediction> predictions;  ///< in order of merit
   int recommended{-1};                               ///< index into `predictions`, or -1
   std::string why;
@@ -49,6 +65,7 @@ struct AchieveReport {
   std::string task;
   AchieveOutcome outcome{AchieveOutcome::kFailed};
   std::string reason;       ///< one sentence
+  base::Failure failure;    ///< what ended it, where a single failure did
   std::int64_t episode{0};  ///< of the Blackboard; 0: unknown
   AchieveStatus status;     ///< at the end; `warnings` are all of them
 };

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "hires/base/failure.h"
 #include "hires/imagination/report.h"
 
 namespace hires::evaluation {
@@ -14,6 +16,12 @@ std::string OutcomeName(const imagination::Report& report);
 /// The report for machines. Field order is fixed; equal reports give equal text but for
 /// `wall_seconds` and `real_time_factor`.
 nlohmann::ordered_json ToJson(const imagination::Report& report);
+
+/// {"failure": "no_path", "subjects": ["hand", "book1"], "detail": "..."}; null for no failure.
+nlohmann::ordered_json ToJson(const base::Failure& failure);
+
+/// How often each failure came: [{"failure": "area_occupied", "subjects": ["book1"], "count": 2}].
+nlohmann::ordered_json FailuresToJson(const std::map<base::Failure, int>& failures);
 
 /// For those who work long before they write.
 /// @throws base::ConfigError if the folder in which `path` lies does not exist.

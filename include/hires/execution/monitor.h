@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hires/base/action.h"
+#include "hires/base/failure.h"
 #include "hires/planning/operator_data.h"
 #include "hires/planning/plan.h"
 #include "hires/planning/planner_config.h"
@@ -34,7 +35,7 @@ struct PlanArrived {
 struct StepFinished {
   int activity{0};
   enum class Result { kSucceeded, kFailed, kPreempted, kUnavailable } result{Result::kSucceeded};
-  std::string reason;  ///< "area_occupied: book1", "unreachable", ...
+  base::Failure failure;  ///< nothing where it succeeded, or nobody told
 };
 /// What is observed to hold now: all atoms of the state, whenever they change.
 struct StateObserved {
@@ -65,7 +66,7 @@ struct ImagineAnswered {
   double duration{0.0};                          ///< [s] expected, of the recommended one
   double duration_low{0.0}, duration_high{0.0};  ///< [s] quantiles 0.05 and 0.95
   std::vector<base::ActionCall> failed;          ///< all alternatives that are expected to fail
-  std::vector<std::string> failure_reasons;      ///< of each of `failed`, the most frequent one
+  std::vector<base::Failure> failures;           ///< of each of `failed`, the most frequent one
   std::vector<std::string> depends_on;           ///< instances it rests on
   std::string why;
 };
@@ -128,7 +129,8 @@ struct Finish {
     kPreempted,
     kDryRun,  ///< planned and imagined; nothing was begun, on purpose
   } outcome{Outcome::kSucceeded};
-  std::string reason;
+  std::string reason;     ///< one sentence
+  base::Failure failure;  ///< the one that it ended with; nothing where no failure ended it
 };
 using Command = std::variant<StartPlanning, CancelPlanning, StartStep, StopStep, StartImagination,
                              MoveDeadline, CancelImagination, Record, Warn, Finish>;
@@ -167,7 +169,8 @@ struct StepStatus {
   std::optional<double> started, finished;           ///< [s]
   temporal::Bounds start, finish;                    ///< from the network
   double expected_start{0.0}, expected_finish{0.0};  ///< [s] if all last as long as expected
-  std::string note;  ///< "imagined: slow, success 0.98 (0.93..1.00)", a failure's reason
+  std::string note;       ///< for people: "imagined: slow, success 0.98 (0.93..1.00)", a failure
+  base::Failure failure;  ///< of a step that failed
 };
 
 /// The semantic execution monitor: one state machine, events in, commands out (DESIGN, section 8).

@@ -55,7 +55,7 @@ struct Evidence {
     double p50{0.0}, p95{0.0};
   } max_tilt;  ///< [rad], of rollouts with samples
   int num_rollouts{0};
-  std::map<std::string, int> failures;  ///< reason -> rollouts
+  std::map<base::Failure, int> failures;  ///< failure -> rollouts
   int median_rollout{-1};  ///< index of the finished rollout with the median duration, the first
                            ///< of equals; -1 when there is none
 };

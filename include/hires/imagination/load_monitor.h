@@ -48,8 +48,8 @@ class LoadMonitor {
   ///                     it was to be
   ///   object_not_released  the hand still holds what it should have put down
   ///   object_slid       what stood on the robot slid too far
-  ///   knocked_over: a, b   bystanders
-  std::string WhyNotWell() const;
+  ///   knocked_over      bystanders, by name
+  base::Failure WhyNotWell() const;
 
   /// Bystanders that do not stand any more, by name. Each counts as one fall once Conclude was
   /// called.
@@ -71,15 +71,15 @@ class LoadMonitor {
   };
   void Sort(const Purpose& purpose);
   void LookAt(Object* object);
-  void NoteFall(Object* object, const std::string& reason);
+  void NoteFall(Object* object, base::FailureCode code);
   bool IsHeld(const Object& object) const;
   bool IsHandled(const Object& object) const;
   bool Moves(int index) const;
   bool HasFallen(const Bystander& bystander) const;
-  std::string WhyNotTaken(const Object& object) const;
-  std::string WhyNotStanding(const Object& object) const;
-  std::string WhyHandledIsNotWell() const;
-  std::string WhyNotHeldAnyMore() const;
+  base::Failure WhyNotTaken(const Object& object) const;
+  base::Failure WhyNotStanding(const Object& object) const;
+  base::Failure WhyHandledIsNotWell() const;
+  base::Failure WhyNotHeldAnyMore() const;
   geometry::Pose3 X_MGoal() const;
   std::string Cause() const;
 
@@ -92,7 +92,8 @@ class LoadMonitor {
   double tilt_{0.0}, max_tilt_{0.0};
   int falls_{0};
   bool is_lost_{false};
-  std::string first_trouble_, first_cause_;
+  base::Failure first_fall_;
+  std::string first_cause_;
 };
 
 }  // namespace hires::imagination

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "hires/base/failure.h"
 #include "hires/robot/observation.h"
 #include "hires/world/world.h"
 
@@ -25,10 +26,8 @@ enum class Outcome { kSucceeded, kFailed, kTimedOut };
 /// What one simulated play of an action from one start with one seed gave.
 struct RolloutResult {
   Outcome outcome{Outcome::kFailed};
-  /// Why it did not succeed, one word, where useful with names behind it ("object_fell",
-  /// "robot_collision: l_forearm touches table1"); else empty.
-  std::string reason;
-  double duration{0.0};  ///< [s] simulated, of the action alone
+  base::Failure failure;  ///< why it did not succeed; nothing: it did, or nobody knows
+  double duration{0.0};   ///< [s] simulated, of the action alone
   OutcomeCounts counts;
   int falls{0};             ///< events, not samples
   double max_tilt{0.0};     ///< [rad]
@@ -46,11 +45,10 @@ struct RolloutResult {
 /// ran although something was carried or handled, so that Eq. 6.1 has nothing to speak about.
 bool ActionFailed(const RolloutResult& result);
 
-/// Why a rollout is no success; empty if it is one. A result that calls itself succeeded although
-/// its action is unfinished ("unfinished"), something fell ("object_fell") or nothing was sampled
-/// of what was to be watched ("no_samples") is none; a failure without a reason of its own is
-/// "timed_out" or "unknown".
-std::string FailureReason(const RolloutResult& result);
+/// Why a rollout is no success; nothing if it is one. A result that calls itself succeeded although
+/// its action is unfinished, something fell (object_fell) or nothing was sampled of what was to be
+/// watched (no_samples) is none; one that failed without saying why timed out or failed otherwise.
+base::Failure FailureOf(const RolloutResult& result);
 
 /// What makes a result unusable as evidence (a number that is not finite or negative, samples of
 /// nothing), in words for people; empty if it is sound. Results come from other computers: look

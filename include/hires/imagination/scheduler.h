@@ -24,7 +24,7 @@ struct SchedulerParams {
   int first_look{16};  ///< looks are at first_look, twice that, four times that, ...; >= 1
   int batch{4};        ///< at most so many rollouts per assignment, 1..1000
   /// A rollout that was given up so often by a failed assignment or a lost worker is unplayable and
-  /// counts as failed with the reason "unplayable", so that one that kills its worker ends; 1..100.
+  /// counts as failed (unplayable), so that one that kills its worker ends; 1..100.
   int max_attempts{5};
   SettleParams settle;
 };

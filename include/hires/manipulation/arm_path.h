@@ -13,7 +13,6 @@
 namespace hires::manipulation {
 
 enum class ArmPathStatus { kFound, kStartBlocked, kGoalBlocked, kUnreachable, kNoPath };
-std::string ToString(ArmPathStatus status);  ///< "found", "start_blocked", "no_path", ...
 
 struct ArmPathParams {
   int max_iterations{3000};  ///< of the planner: no clock decides, so that results repeat
@@ -33,9 +32,17 @@ struct ArmScene {
   std::optional<Eigen::Vector3d> upright_T;
 };
 
+/// What keeps an arm from being somewhere. Valid from birth as "nothing".
+struct Obstruction {
+  std::vector<std::string> parts;  ///< the two that touch; empty: it is no touch
+  std::string words;  ///< for people: "r_forearm_link touches table1", "held object tilts"
+
+  explicit operator bool() const { return !words.empty(); }
+};
+
 struct ArmPathResult {
   ArmPathStatus status{ArmPathStatus::kNoPath};
-  std::string touch;            ///< "r_forearm_link touches table1" where something is in the way
+  Obstruction obstruction;      ///< where something is in the way
   std::vector<ArmJoints> path;  ///< from start to goal, straight in joint space between points
 };
 
@@ -44,9 +51,8 @@ struct ArmPathResult {
 /// corners rounded where there is room. Only what the arm moves is looked at: that the base stands
 /// close to a table leg blocks no arm. The same arguments and seed give the same path in any
 /// process, whatever was planned before.
-/// `touch` names what is in the way: of the start, of the first goal if all are blocked, or,
-/// without a path, of the straight way to the first free goal. A held object that tilts too far is
-/// named as "held object tilts".
+/// `obstruction` is in the way of the start, of the first goal if all are blocked, or, without a
+/// path, of the straight way to the first free goal. A held object that tilts too far is one.
 /// @pre resolution > 0; goals have one value per joint.
 ArmPathResult PlanArmPath(const ArmScene& arm, const std::vector<ArmJoints>& goals,
                           std::uint64_t seed, const ArmPathParams& params = {});

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "hires/base/failure.h"
 #include "hires/base/param_reader.h"
 #include "hires/geometry/pose.h"
 #include "hires/navigation/braking.h"
@@ -81,8 +82,8 @@ class BaseGuard {
   /// count as lost.
   void OnLocalisation(double position_sd, double yaw_sd);
   void OnScan(double stamp, double now);
-  /// Something else that forbids driving, as a reason; empty: nothing.
-  void OnHindrance(const std::string& reason) { hindrance_ = reason; }
+  /// Something else that forbids driving; no failure: nothing does.
+  void OnHindrance(base::Failure hindrance) { hindrance_ = std::move(hindrance); }
   /// While held, who wants to drive waits: what it needs is being prepared. Who drives goes on.
   void OnHold(bool is_held) { is_held_ = is_held; }
 
@@ -95,9 +96,9 @@ class BaseGuard {
 
   GuardState state() const { return state_; }
   std::uint64_t request() const { return current_; }  ///< that the state is about; 0: none
-  /// Why it brakes or stands: one word, names and numbers behind a colon. "stale_pose: 0.41 s,
-  /// odometry"; "no_request" at first; empty while passing.
-  const std::string& reason() const { return reason_; }
+  /// Why it brakes or stands: stale_pose ("0.41 s, odometry"); no_request at first; nothing while
+  /// passing.
+  const base::Failure& failure() const { return failure_; }
   /// The stop that is going on or went on last: how long it takes, and how far [s, m].
   double stop_time() const { return stop_ ? stop_->duration() : 0.0; }
   double stop_distance() const { return stop_ ? stop_->distance() : 0.0; }
@@ -114,10 +115,10 @@ class BaseGuard {
   std::optional<geometry::Twist2> Brake(double now);
   void Wait(double now);
   void FollowRequest();
-  std::string WhatIsWrong(double now) const;  // empty: all is well
-  std::string StalePose(double now) const;
-  std::string WhyStop(double now) const;  // empty: go on
-  void Begin(const std::string& reason, double now);
+  base::Failure WhatIsWrong(double now) const;
+  base::Failure WhyNoPose(double now) const;
+  base::Failure WhyStop(double now) const;  // nothing: go on
+  void Begin(base::Failure failure, double now);
   void End(std::uint64_t id);
   bool HasEnded(std::uint64_t id) const;
   geometry::Twist2 MotionNow(double now) const;
@@ -126,7 +127,7 @@ class BaseGuard {
 
   BaseGuardParams params_;
   GuardState state_{GuardState::kStanding};
-  std::string reason_{"no_request"};
+  base::Failure failure_{base::FailureCode::kNoRequest};
   std::uint64_t current_{0};
   std::deque<std::uint64_t> ended_;  // requests that are over, newest last
 
@@ -139,7 +140,7 @@ class BaseGuard {
   std::array<std::optional<double>, 3> pose_stamps_;
   std::optional<double> scan_stamp_;
   std::optional<bool> motors_halted_;
-  std::string hindrance_;
+  base::Failure hindrance_;
   bool is_held_{false};
   std::optional<Localisation> localisation_;
 

@@ -74,9 +74,9 @@ class BaseGuardNode {
   struct Said {
     hires::navigation::GuardState state;
     std::uint64_t request;
-    std::string reason;
+    hires::base::Failure failure;
     bool operator==(const Said& other) const {
-      return state == other.state && request == other.request && reason == other.reason;
+      return state == other.state && request == other.request && failure == other.failure;
     }
   };
   std::unique_ptr<Said> said_;

@@ -38,10 +38,6 @@ msg::Failure ToMsg(const hires::base::Failure& failure);
 /// that name it: what is unknown is told, and nothing is guessed.
 hires::base::Failure FromMsg(const msg::Failure& failure);
 
-/// For layers whose failures are still text, "area_occupied: book1".
-msg::Failure FailureMsgOf(const std::string& reason);
-std::string ReasonOf(const msg::Failure& failure);
-
 msg::WorldState ToMsg(const hires::world::WorldState& state);
 hires::world::WorldState FromMsg(const msg::WorldState& state);
 /// The heading travels beside the quaternion, which would round it.

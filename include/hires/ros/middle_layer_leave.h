@@ -37,7 +37,7 @@ class BaseLeave {
  public:
   struct Hooks {
     std::function<void(const hires::BaseRequest&)> send;
-    std::function<void(const std::string& reason)> stopped;  ///< once for each request
+    std::function<void(const hires::base::Failure&)> stopped;  ///< once for each request
   };
 
   /// @param period  [s] between two requests.

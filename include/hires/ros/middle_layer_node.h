@@ -39,7 +39,7 @@ namespace hires_ros {
 ///
 /// On a real robot a guard stands between the skills and the base: velocities go to it, with a
 /// request for leave that lives as long as this node does. When it stops the base, or the motors
-/// halt, everything that runs ends with the reason.
+/// halt, everything that runs fails with that.
 ///
 /// In a dry run no controller has a publisher here, and every goal is refused.
 ///
@@ -77,11 +77,11 @@ class MiddleLayerNode {
   void StartGoal(GoalHandle goal);
   std::set<std::string> GroupsOf(const hires::base::ActionCall& action) const;
   std::unique_ptr<hires::skills::Skill> MakeSkill(const hires::base::ActionCall& action) const;
-  void OnEnded(const ActionNews& news, ActionEnd end, const std::string& reason);
+  void OnEnded(const ActionNews& news, ActionEnd end, const hires::base::Failure& failure);
 
   void OnOdometry(const nav_msgs::Odometry& msg);
   void OnMotorsHalted(bool are_halted);
-  void OnGuardStopped(const std::string& reason);
+  void OnGuardStopped(const hires::base::Failure& failure);
   void OnTransforms(const tf2_msgs::TFMessage& msg);
   void OnScan(const sensor_msgs::LaserScan& msg);
   void OnDetections(const hires::Detections& msg);
@@ -100,7 +100,7 @@ class MiddleLayerNode {
   void AskForLeave();
   void PublishFeedback();
   void Send(const hires::robot::Command& command);
-  std::string WhyNotReady(const std::set<std::string>& groups) const;
+  hires::base::Failure WhyNotReady(const std::set<std::string>& groups) const;
   std::string MissingController(const std::set<std::string>& groups) const;
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 

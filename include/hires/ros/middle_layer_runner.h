@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hires/base/action.h"
+#include "hires/base/failure.h"
 #include "hires/robot/observation.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/ros/middle_layer_stop.h"
@@ -43,7 +44,7 @@ class ActionRunner {
  public:
   struct Hooks {
     std::function<void(const hires::robot::Command&)> send;
-    std::function<void(const ActionNews&, ActionEnd, const std::string& reason)> ended;
+    std::function<void(const ActionNews&, ActionEnd, const hires::base::Failure&)> ended;
     std::function<void()> wake;  ///< from another thread: there is something to collect
     /// It is being broken off, and the robot stopped; may be empty.
     std::function<void(const ActionNews&)> broken_off{};
@@ -56,18 +57,18 @@ class ActionRunner {
   /// @param groups      of joints that it needs for itself, as actions::GroupsOf.
   /// @param time_limit  [s]; 0 takes the configured one.
   /// @param now         [s] the time of Look.
-  /// @return why not, if the groups are taken: "busy: move_base(home) needs base".
-  std::optional<std::string> Start(int id, const hires::base::ActionCall& action,
-                                   const std::set<std::string>& groups,
-                                   std::unique_ptr<hires::skills::Skill> skill, double time_limit,
-                                   double now);
+  /// @return why not, if the groups are taken: busy, "move_base(home) needs base".
+  hires::base::Failure Start(int id, const hires::base::ActionCall& action,
+                             const std::set<std::string>& groups,
+                             std::unique_ptr<hires::skills::Skill> skill, double time_limit,
+                             double now);
 
   /// The action stops the robot and then ends as kPreempted; nothing happens if it has ended.
   void Cancel(int id);
   void CancelAll();
 
-  /// All actions stop the robot and then end as kFailed for this reason. What is held stays held.
-  void FailAll(const std::string& reason);
+  /// All actions stop the robot and then end as kFailed with this. What is held stays held.
+  void FailAll(const hires::base::Failure& failure);
 
   /// There is a guard of the base, and this is what the base carries: stops that begin from now on
   /// heed it, and where nobody sees any more how fast the base is, its stop is left to the guard.
@@ -79,7 +80,7 @@ class ActionRunner {
   /// Takes what skills made of their looks.
   void Collect();
 
-  /// Ends all actions as failed with "stale_observation" if the last look is too long ago.
+  /// Ends all actions as failed with stale_observation if the last look is too long ago.
   void CheckFreshness(double now);
 
   /// Ends what is being stopped without waiting until the robot stands: nobody tells any more.
@@ -104,14 +105,14 @@ class ActionRunner {
     std::unique_ptr<SkillThread> skill;
     std::unique_ptr<Stop> stop;         // it is being broken off
     ActionEnd end{ActionEnd::kFailed};  // how it will have ended when it stands
-    std::string reason;
+    hires::base::Failure failure;
   };
   void LookWith(Session* session, const hires::robot::Observation& seen);
   void Ask(Session* session, hires::robot::Observation seen);
   void Hear(Session* session, const SkillTurn& turn);
-  void BreakOff(Session* session, ActionEnd end, const std::string& reason);
+  void BreakOff(Session* session, ActionEnd end, const hires::base::Failure& failure);
   void KeepStopping(Session* session);
-  void Finish(Session* session, ActionEnd end, const std::string& reason);
+  void Finish(Session* session, ActionEnd end, const hires::base::Failure& failure);
   void RemoveFinished();
   ActionNews NewsOf(const Session& session) const;
 

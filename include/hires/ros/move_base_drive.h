@@ -38,10 +38,9 @@ class MoveBaseServer {
   virtual MoveBaseNews News() = 0;
 };
 
-/// Reason of failure for news that are one, in the words of our skills; empty while all is well:
-/// "unreachable" (no way, or a goal that move_base refuses), "stuck", "interrupted" (somebody else
-/// took move_base), "no_controller: move_base".
-std::string ReasonFor(const MoveBaseNews& news);
+/// What news mean in the codes of our skills; nothing while all is well: unreachable (no way, or a
+/// goal that move_base refuses), stuck, interrupted (somebody else took move_base), no_controller.
+hires::base::Failure FailureOf(const MoveBaseNews& news);
 
 /// Section `navigation` of config/middle_layer.yaml.
 struct MoveBaseDriveParams {
@@ -57,9 +56,9 @@ struct MoveBaseDriveParams {
 /// skills::MoveBase would: within the same tolerances. While move_base drives, it wants no velocity
 /// itself.
 ///
-/// Fails with ReasonFor, with "goal_missed: 0.83 m, 0.10 rad" where move_base says it has arrived
-/// and has not, with "unreachable: ..." where an obstacle stands on the last stretch, and with
-/// "no_leave" where the base's guard never lets it begin.
+/// Fails as FailureOf says, with goal_missed where move_base says it has arrived and has not, with
+/// unreachable where an obstacle stands on the last stretch, and with no_permit where the base's
+/// guard never lets it begin.
 class MoveBaseDrive : public hires::skills::Skill {
  public:
   /// @param may_drive  whether velocities would get to the base, with the motion set in force at

@@ -19,23 +19,22 @@ class Activity {
 /// How a stage begins: with an activity, with nothing to do, or not at all.
 struct Beginning {
   std::unique_ptr<Activity> activity;  ///< null: nothing to do, or it cannot be begun
-  std::string failure;                 ///< reason; empty: it can
+  base::Failure failure;               ///< why it cannot; nothing: it can
 };
 inline Beginning NothingToDo() { return {}; }
-inline Beginning CannotBegin(std::string reason) { return {nullptr, std::move(reason)}; }
-inline Beginning Begin(std::unique_ptr<Activity> activity) { return {std::move(activity), ""}; }
+inline Beginning CannotBegin(base::Failure failure) { return {nullptr, std::move(failure)}; }
+inline Beginning Begin(std::unique_ptr<Activity> activity) { return {std::move(activity), {}}; }
 
 /// A named part of a skill. What it does is decided by what is seen when its turn comes.
 struct Stage {
   std::string name;  ///< for people: "approach", "close_gripper"
   std::function<Beginning(const robot::Observation&)> begin;
-  /// Looked at in every cycle while the stage lasts; a text is the reason why it fails. May be
-  /// empty.
-  std::function<std::string(const robot::Observation&)> watch;
+  /// Looked at in every cycle while the stage lasts; a failure ends it. May be empty.
+  std::function<base::Failure(const robot::Observation&)> watch;
 };
 
 /// A skill made of stages, one after the other. When one fails, the skill may still tidy up; then
-/// it fails with that stage's reason.
+/// it fails as that stage did.
 class StagedSkill : public Skill {
  public:
   explicit StagedSkill(double period) : period_(period) {}
@@ -56,14 +55,14 @@ class StagedSkill : public Skill {
   }
 
  private:
-  std::string Continue(const robot::Observation& observation, robot::Command* command);
-  void Fail(const std::string& reason, const robot::Observation& observation);
+  base::Failure Continue(const robot::Observation& observation, robot::Command* command);
+  void Fail(const base::Failure& failure, const robot::Observation& observation);
 
   double period_;  // [s]
   std::deque<Stage> stages_;
   Stage stage_;  // the present one
   std::unique_ptr<Activity> activity_;
-  std::string failure_;  // of the first stage that failed
+  base::Failure failure_;  // of the first stage that failed
 };
 
 }  // namespace hires::skills

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/base/failure.h"
 #include "hires/manipulation/arm_path.h"
 #include "hires/manipulation/collision_scene.h"
 #include "hires/skills/manipulation_context.h"
@@ -12,9 +13,11 @@ namespace hires::skills {
 
 using JointPath = std::vector<std::vector<double>>;
 
-/// Why a search for an arm's way failed, as a skill says it: "no_path: r_forearm_link touches
-/// table1".
-std::string FailureOf(const manipulation::ArmPathResult& result);
+/// Why a search for an arm's way failed, as a skill says it: no_path with the two that touch.
+/// @pre result.status is not kFound.
+base::Failure FailureOf(const manipulation::ArmPathResult& result);
+/// That there is no way where these two touch.
+base::Failure NoPath(const manipulation::Touch& touch);
 
 /// What is seen, as a world's objects. An object that the robot holds moves with its link.
 std::vector<world::ObjectState> ObjectsOf(const robot::Observation& observation);

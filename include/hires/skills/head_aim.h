@@ -17,7 +17,7 @@ std::optional<std::vector<double>> AimHead(const robot::Robot& robot, const geom
                                            const robot::JointPositions& posture,
                                            const Eigen::Vector3d& p_M);
 
-/// The head to a point, then resting there. Cannot begin ("out_of_view") where AimHead finds
+/// The head to a point, then resting there. Cannot begin (out_of_view) where AimHead finds
 /// nothing.
 Beginning LookAtPoint(std::shared_ptr<const ManipulationContext> context,
                       const robot::Observation& observation, const Eigen::Vector3d& p_M);
@@ -30,7 +30,7 @@ std::vector<Eigen::Vector3d> PointsOfSquare(const geometry::Pose3& X_MF, double 
                                             double spacing);
 
 /// Looks at points one after the other until the resting head has had every one in view. Fails with
-/// "out_of_view" if one cannot be brought into view.
+/// out_of_view if one cannot be brought into view.
 class SweepPoints : public Activity {
  public:
   SweepPoints(std::shared_ptr<const ManipulationContext> context,

@@ -19,7 +19,7 @@ enum class MotionEnd {
 };
 
 /// Sends trajectories once and watches the joints until they have reached their ends. Fails with
-/// "timed_out" when they are not there long after they should be.
+/// timed_out when they are not there long after they should be.
 class JointMotion : public Activity {
  public:
   JointMotion(std::shared_ptr<const ManipulationContext> context, GroupTrajectories trajectories,
@@ -45,7 +45,7 @@ robot::JointTrajectory TrajectoryFrom(const ManipulationContext& context,
                                       const std::vector<std::string>& joints,
                                       std::vector<std::vector<double>> path, double speed);
 
-/// Opens or closes a gripper. Opening ends when the gap is reached ("timed_out" otherwise), closing
+/// Opens or closes a gripper. Opening ends when the gap is reached (timed_out otherwise), closing
 /// when the fingers have come to rest, on something or on each other.
 class GripperMotion : public Activity {
  public:
@@ -71,19 +71,19 @@ class GripperMotion : public Activity {
   bool has_moved_{false};
 };
 
-/// Waits until something is seen; fails with `reason` after `time_limit` [s].
+/// Waits until something is seen; fails with `failure` after `time_limit` [s].
 class WaitUntil : public Activity {
  public:
   using Condition = std::function<bool(const robot::Observation&)>;
-  WaitUntil(Condition condition, double time_limit, std::string reason)
-      : condition_(std::move(condition)), time_limit_(time_limit), reason_(std::move(reason)) {}
+  WaitUntil(Condition condition, double time_limit, base::Failure failure)
+      : condition_(std::move(condition)), time_limit_(time_limit), failure_(std::move(failure)) {}
 
   Status Update(const robot::Observation& observation, robot::Command* command) override;
 
  private:
   Condition condition_;
   double time_limit_;  // [s]
-  std::string reason_;
+  base::Failure failure_;
   double begin_{-1.0};  // [s]
 };
 

@@ -8,7 +8,7 @@
 namespace hires::skills {
 
 /// The camera to an area's frame or to where an object was seen last, resting there for a moment.
-/// Fails with "out_of_view", "timed_out", or "object_not_seen" for an object that is not
+/// Fails with out_of_view, timed_out, or object_not_seen for an object that is not
 /// remembered.
 class LookAt : public StagedSkill {
  public:

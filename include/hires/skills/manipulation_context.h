@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hires/base/action.h"
+#include "hires/base/failure.h"
 #include "hires/manipulation/arm_kinematics.h"
 #include "hires/manipulation/collision_scene.h"
 #include "hires/robot/observation.h"
@@ -67,9 +68,9 @@ geometry::Pose3 TrayFrame(const ManipulationContext& context,
 geometry::Pose3 LinkPose(const robot::Robot& robot, const geometry::Pose2& X_MB,
                          const robot::JointPositions& posture, const std::string& link);
 
-/// "unknown_model: name" for the first seen object whose shape nobody knows, so that no way round
+/// unknown_model for the first seen object whose shape nobody knows, so that no way round
 /// it can be found; empty if all are known.
-std::string WhyNotKnown(const ManipulationContext& context, const robot::Observation& seen);
+base::Failure WhyNotKnown(const ManipulationContext& context, const robot::Observation& seen);
 
 /// What the arm holds, or nothing.
 const robot::SeenObject* HeldBy(const robot::ArmProfile& arm, const robot::Observation& seen);

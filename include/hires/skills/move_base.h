@@ -47,8 +47,8 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
 
 /// Drives to a pose in the map round all known obstacles: A* on the inflated costmap, dynamic
 /// window approach for control, as move_base does, with room for the arms as they are when it
-/// begins. Fails with "start_blocked", "goal_blocked", "no_path", "no_valid_trajectory" or
-/// "oscillating".
+/// begins. Fails with start_blocked, goal_blocked, no_path, no_valid_trajectory or
+/// oscillating.
 class MoveBase : public Skill {
  public:
   MoveBase(std::shared_ptr<const DrivingContext> context, const geometry::Pose2& X_MGoal,
@@ -91,7 +91,7 @@ struct MoveBaseBlindParams {
 };
 
 /// Drives straight to a pose, turning on the way, without looking at obstacles: for the last
-/// stretch to furniture, under whose top the base fits. Fails with "stuck".
+/// stretch to furniture, under whose top the base fits. Fails with stuck.
 class MoveBaseBlind : public Skill {
  public:
   MoveBaseBlind(const MoveBaseBlindParams& params, const geometry::Pose2& X_MGoal,

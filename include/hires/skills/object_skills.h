@@ -72,7 +72,7 @@ class PlaceObject : public StagedSkill {
   geometry::Pose3 X_MGoal(const robot::Observation& observation) const;
   Beginning Plan(const robot::Observation& observation);
   Beginning ReturnAndLook(const robot::Observation& observation) const;
-  std::string WhyNotStanding(const robot::Observation& observation) const;
+  base::Failure WhyNotStanding(const robot::Observation& observation) const;
 
   std::shared_ptr<const ManipulationContext> context_;
   std::string object_, arm_;                // lower case
@@ -82,9 +82,9 @@ class PlaceObject : public StagedSkill {
   double looked_since_{0.0};  // [s]
 };
 
-/// Why the arm does not hold `object` any more ("object_slipped"); empty while it does. Fingers
+/// Why the arm does not hold `object` any more (object_slipped); nothing while it does. Fingers
 /// that meet hold nothing; what is seen standing elsewhere is not held either.
-std::string WhyNotHeld(const ManipulationContext& context, const std::string& arm,
-                       const std::string& object, const robot::Observation& observation);
+base::Failure WhyNotHeld(const ManipulationContext& context, const std::string& arm,
+                         const std::string& object, const robot::Observation& observation);
 
 }  // namespace hires::skills

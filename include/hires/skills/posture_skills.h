@@ -10,7 +10,7 @@
 
 namespace hires::skills {
 
-/// The torso to a height. Fails with "timed_out".
+/// The torso to a height. Fails with timed_out.
 class MoveTorso : public StagedSkill {
  public:
   /// @throws base::ConfigError for a posture that the torso does not have.
@@ -21,7 +21,7 @@ class MoveTorso : public StagedSkill {
 /// Folds and opens the arms in the order of the PR2's own tuck_arms action, so that one does not
 /// get in the other's way: right arm up; left arm to its goal (before it folds: clear); right arm
 /// to its goal (before it folds: clear, approach). Arms that are there already stay, and nothing
-/// moves if both are. Fails with "no_path: ...", "start_blocked: ..." or "timed_out".
+/// moves if both are. Fails with no_path, start_blocked or timed_out.
 class TuckArms : public StagedSkill {
  public:
   /// @throws base::ConfigError for other goals than armtuckedposture and armuntuckedposture, and

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hires/base/action.h"
+#include "hires/base/failure.h"
 #include "hires/robot/observation.h"
 #include "hires/robot/robot_profile.h"
 
@@ -14,10 +15,12 @@ enum class Progress { kRunning, kSucceeded, kFailed };
 
 struct Status {
   Progress progress{Progress::kRunning};
-  /// Why it failed, else empty: one word, where useful with names behind it: "stuck",
-  /// "area_occupied: book1".
-  std::string reason;
+  base::Failure failure;  ///< why it failed; nothing while it runs and when it succeeded
 };
+
+inline Status Succeeded() { return {Progress::kSucceeded, {}}; }
+/// @pre failure is one.
+inline Status Failed(base::Failure failure) { return {Progress::kFailed, std::move(failure)}; }
 
 /// Something the robot can do, as a state machine that is the same in reality and in a rollout.
 class Skill {

@@ -175,7 +175,7 @@ Finish ScriptedWorld::Run(const std::string& task) {
   }
   if (!finish_) {
     Violate(happenings_.empty() ? "waits for nothing" : "does not come to an end");
-    return {Finish::Outcome::kFailed, "never finished"};
+    return {Finish::Outcome::kFailed, "never finished", {}};
   }
   const Finish finish = *finish_;
   while (!happenings_.empty()) {  // what comes late must change nothing
@@ -326,9 +326,9 @@ void ScriptedWorld::EndStep(int activity) {
   if (found == running_.end()) return;
   const RunningStep step = found->second;
   running_.erase(found);
-  StepFinished finished{activity, step.script.result, step.script.reason};
+  StepFinished finished{activity, step.script.result, step.script.failure};
   if (step.is_stopped) {
-    finished = {activity, StepFinished::Result::kPreempted, ""};
+    finished = {activity, StepFinished::Result::kPreempted, {}};
   } else if (finished.result == StepFinished::Result::kSucceeded && step.script.has_effects) {
     ApplyEffects(step);
   }
@@ -408,11 +408,11 @@ ImagineAnswered Ranked(const base::ActionCall& recommended, double duration) {
   return answer;
 }
 
-ImagineAnswered AllFail(const StartImagination& request, const std::string& reason) {
+ImagineAnswered AllFail(const StartImagination& request, const base::Failure& failure) {
   ImagineAnswered answer;
   answer.outcome = ImagineAnswered::Outcome::kAllFailed;
   answer.failed = base::Combinations(request.action);
-  answer.failure_reasons.assign(answer.failed.size(), reason);
+  answer.failures.assign(answer.failed.size(), failure);
   answer.why = "every alternative fails";
   return answer;
 }

@@ -22,7 +22,7 @@ std::string TaskOf(const std::string& problem);
 struct StepScript {
   double duration{5.0};  ///< [s]
   execution::StepFinished::Result result{execution::StepFinished::Result::kSucceeded};
-  std::string reason;
+  base::Failure failure;
   bool has_effects{true};  ///< the world changes as the operator says
   bool is_observed{true};  ///< and that is seen
   bool ends{true};         ///< else it goes on until it is stopped
@@ -148,6 +148,6 @@ class ScriptedWorld {
 execution::ImagineAnswered Ranked(const base::ActionCall& recommended, double duration);
 /// All alternatives of the request fail.
 execution::ImagineAnswered AllFail(const execution::StartImagination& request,
-                                   const std::string& reason);
+                                   const base::Failure& failure);
 
 }  // namespace hires::test_support

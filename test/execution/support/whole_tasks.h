@@ -53,7 +53,8 @@ inline void ExpectSuccess(ScriptedWorld* world, const std::string& problem) {
 inline std::optional<execution::ImagineAnswered> SouthFails(
     const execution::StartImagination& request, int) {
   if (request.action.alternatives.back().front() == "placingareawestrighttable1") {
-    execution::ImagineAnswered answer = AllFail(request, "area_occupied: book1");
+    execution::ImagineAnswered answer =
+        AllFail(request, {base::FailureCode::kAreaOccupied, {"book1"}});
     answer.depends_on = {"book1"};
     return answer;
   }
@@ -65,12 +66,12 @@ inline execution::ImagineAnswered Slow() {
 }
 
 /// The first `times` attempts of actions of that name fail.
-inline auto Failing(const std::string& name, int times, const std::string& reason) {
+inline auto Failing(const std::string& name, int times, const base::Failure& failure) {
   return [=](const base::ActionCall& action, int count) {
     StepScript script;
     if (action.name == name && count < times) {
       script.result = execution::StepFinished::Result::kFailed;
-      script.reason = reason;
+      script.failure = failure;
     }
     return script;
   };

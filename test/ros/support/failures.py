@@ -16,6 +16,11 @@ def text_of(failure):
 
 def failure(text):
     """The message of such words."""
-    word, _, detail = text.partition(': ')
-    codes = {word: code for code, word in WORDS.items()}
-    return Failure(code=codes[word], detail=detail) if text else Failure()
+    if not text:
+        return Failure()
+    word, _, more = text.partition(': ')
+    code = {word: code for code, word in WORDS.items()}[word]
+    names = more.split(' touches ') if ' touches ' in more else more.split(', ') if more else []
+    if any(' ' in name for name in names):
+        return Failure(code=code, detail=more)
+    return Failure(code=code, subjects=names, detail=more if ' touches ' in more else '')

@@ -60,7 +60,7 @@ hires::skills::Status Play(hires::skills::Skill* skill, RobotSimulator* simulato
     if (status.progress != hires::skills::Progress::kRunning) return status;
     StepFor(kSample, simulator);
   }
-  return {hires::skills::Progress::kFailed, "timed_out"};
+  return hires::skills::Failed(hires::base::FailureCode::kTimedOut);
 }
 
 void Remember(const hires::world::WorldState& world, RobotSimulator* simulator) {
@@ -94,7 +94,7 @@ void PlayAll(const hires::imagination::ImaginationSetup& setup,
     const hires::skills::Status status = Play(skill.get(), simulator);
     PrintObjects(*simulator);
     const bool is_done = status.progress == hires::skills::Progress::kSucceeded;
-    std::cout << "end " << (is_done ? "succeeded" : status.reason) << std::endl;
+    std::cout << "end " << (is_done ? "succeeded" : ToString(status.failure)) << std::endl;
   }
 }
 
