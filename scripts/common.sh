@@ -8,6 +8,10 @@ HIRES_SOURCE=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 # it ends configuring with "No module named catkin_pkg".
 export PATH="/usr/sbin:/usr/bin:/sbin:/bin:$PATH"
 export HOME="${HOME:-$(getent passwd "$(id -u)" | cut -d: -f6)}"
+# ccache learns from the compiler what was included, instead of preprocessing each file once more, and
+# it may answer for precompiled headers, which CMake writes anew into each folder.
+export CCACHE_DEPEND="${CCACHE_DEPEND:-1}"
+export CCACHE_SLOPPINESS="pch_defines,time_macros,include_file_mtime,include_file_ctime${CCACHE_SLOPPINESS:+,$CCACHE_SLOPPINESS}"
 # Message code for Lisp, Emacs and JavaScript would only cost time.
 export ROS_LANG_DISABLE="${ROS_LANG_DISABLE:-genlisp:geneus:gennodejs}"
 
