@@ -40,7 +40,7 @@ struct ImagineOptions {
   std::vector<std::string> arguments, action_libraries;
   int rollouts{0}, threads{0};
   std::uint64_t seed{1};
-  double deadline{-1.0};
+  double deadline{-1.0}, min_success{0.0};
   bool play_all{false}, local{false}, quiet{false};
 };
 
@@ -61,9 +61,12 @@ void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
       ->check(CLI::NonNegativeNumber);
   app->add_option("--deadline", o->deadline, "[s] after which the best answer so far is taken")
       ->check(CLI::Range(0.0, 1e6));
-  app->add_option("--ranking", o->ranking, "risk or thesis");
+  app->add_option("--ranking", o->ranking, "risk, cost or thesis");
+  app->add_option("--min-success", o->min_success,
+                  "share of successes that the lower end of the interval must reach")
+      ->check(CLI::Range(0.001, 0.999));
   app->add_option("--uncertainty", o->uncertainty, "YAML file, or none");
-  app->add_flag("--no-early-stop", o->play_all, "play all rollouts even if the ranking is settled");
+  app->add_flag("--no-early-stop", o->play_all, "play all rollouts even if the answer is decided");
   app->add_flag("--local", o->local, "in this process, without any ROS master");
   app->add_option("--threads", o->threads, "workers of --local; default: one per core")
       ->check(CLI::Range(1, 256));
@@ -125,7 +128,9 @@ ImagineQuery MakeQuery(const ImagineOptions& o, const Backends& backends) {
   query.scheduler = config.scheduler;
   if (o.rollouts > 0) query.scheduler.rollouts = o.rollouts;
   if (o.deadline >= 0.0) query.scheduler.deadline = o.deadline;
-  if (!o.ranking.empty()) query.scheduler.rule = imagination::ParseRankingRule(o.ranking);
+  if (!o.ranking.empty()) query.scheduler.criteria.rule = imagination::ParseRankingRule(o.ranking);
+  if (o.min_success > 0.0) query.scheduler.criteria.min_success = o.min_success;
+  query.validated = config.validated;
   if (o.play_all) query.scheduler.early_stop = false;
   query.threads = o.threads > 0 ? o.threads : std::max(1u, std::thread::hardware_concurrency());
   return query;
@@ -154,10 +159,13 @@ class ProgressDisplay {
   std::chrono::steady_clock::time_point next_line_{};
 };
 
-void PrintReport(const imagination::Report& report) {
-  if (!report.ranking.empty())
-    std::cout << RankingTable(report.ranking, report.recommended) << '\n';
+void PrintReport(const imagination::Report& report, imagination::RankingRule rule) {
+  if (!report.ranking.empty()) {
+    const bool with_cost = rule == imagination::RankingRule::kCost;
+    std::cout << RankingTable(report.ranking, report.recommended, with_cost) << '\n';
+  }
   std::cout << fmt::format("{}: {}\n", OutcomeName(report), report.why);
+  for (const std::string& caveat : report.caveats) std::cout << "caveat: " << caveat << '\n';
   if (report.wall_seconds > 0.0 && report.simulated_seconds > 0.0) {
     std::cout << fmt::format("{:.0f} s imagined in {:.1f} s, {:.0f} times as fast as real time\n",
                              report.simulated_seconds, report.wall_seconds,
@@ -179,7 +187,7 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
                                          ? ImagineInThisProcess(query, on_interim, cancelled)
                                          : backends.imagine_remotely(query, on_interim, cancelled);
   if (!options.quiet) display.Clear();
-  PrintReport(report);
+  PrintReport(report, query.scheduler.criteria.rule);
   if (!options.json.empty()) WriteJson(ToJson(report), options.json);
   return ExitCodeOf(report);
 }
@@ -201,6 +209,8 @@ int ExitCodeOf(const imagination::Report& report) {
       return kExitRecommended;
     case imagination::ImaginationOutcome::kAllFailed:
       return kExitAllFailed;
+    case imagination::ImaginationOutcome::kUndecided:
+      return kExitUndecided;
     case imagination::ImaginationOutcome::kNoWorker:
       return kExitNoWorker;
     case imagination::ImaginationOutcome::kNothingFinished:
@@ -217,9 +227,13 @@ imagination::Report ImagineInThisProcess(const ImagineQuery& query,
   const imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(query.setup);
   const imagination::StartState start =
       imagination::MakeStartState(setup, query.start.AllAtoms(), query.start.put);
-  return imagination::ImagineLocally(imagination::MakeRolloutSetup(setup, start, query.seed),
-                                     base::Combinations(query.action), query.scheduler,
-                                     query.threads, on_interim, cancelled);
+  const imagination::RolloutSetup rollouts =
+      imagination::MakeRolloutSetup(setup, start, query.seed);
+  const std::vector<base::ActionCall> actions = base::Combinations(query.action);
+  imagination::Report report = imagination::ImagineLocally(rollouts, actions, query.scheduler,
+                                                           query.threads, on_interim, cancelled);
+  report.caveats = imagination::CaveatsOf(rollouts, actions, query.validated);
+  return report;
 }
 
 int RunCommandLine(const std::vector<std::string>& arguments, const Backends& backends) {

@@ -59,7 +59,8 @@ std::vector<std::string> SetRow(const std::string& motion_set, const Rollouts& r
   const imagination::Evidence evidence = imagination::SumUp(rollouts);
   const std::vector<double> shares = ShakingShares(rollouts);
   const int n = static_cast<int>(rollouts.size());
-  const auto falls = imagination::EstimateSuccess(NumFallen(rollouts), n);
+  const auto falls = imagination::EstimateSuccess(NumFallen(rollouts), n,
+                                                  imagination::IntervalKind::kClopperPearson);
   return {motion_set,
           fmt::format("{}", n),
           fmt::format("{:.4f}", Mean(shares)),

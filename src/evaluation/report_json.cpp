@@ -13,13 +13,22 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
+ordered_json ToJson(const std::optional<imagination::ExpectedCost>& cost) {
+  if (!cost) return {};
+  return {{"mean", cost->mean}, {"lower", cost->lower}, {"upper", cost->upper}};
+}
+
 ordered_json ToJson(const imagination::Prediction& prediction) {
   const imagination::Evidence& e = prediction.evidence;
   return {{"action", prediction.action.name},
           {"arguments", prediction.action.arguments},
           {"confidence", {{"pooled", e.confidence_pooled}, {"mean", e.confidence_mean}}},
           {"success",
-           {{"share", e.success.share}, {"lower", e.success.lower}, {"upper", e.success.upper}}},
+           {{"share", e.success.share},
+            {"lower", e.success.lower},
+            {"upper", e.success.upper},
+            {"interval", imagination::ToString(e.success.kind)}}},
+          {"expected_cost", ToJson(e.cost)},
           {"fall_share", e.fall_share},
           {"counts",
            {{"notopple", e.counts.notopple},
@@ -80,6 +89,8 @@ std::string OutcomeName(const imagination::Report& report) {
       return report.complete ? "ranked" : "ranked_at_deadline";
     case imagination::ImaginationOutcome::kAllFailed:
       return "all_failed";
+    case imagination::ImaginationOutcome::kUndecided:
+      return "undecided";
     case imagination::ImaginationOutcome::kNoWorker:
       return "no_worker";
     case imagination::ImaginationOutcome::kNothingFinished:
@@ -99,6 +110,7 @@ nlohmann::ordered_json ToJson(const imagination::Report& report) {
       {"outcome", OutcomeName(report)},
       {"recommended", report.recommended < 0 ? ordered_json() : ordered_json(report.recommended)},
       {"why", report.why},
+      {"caveats", report.caveats},
       {"ranking", ranking},
       {"seed", report.seed},
       {"simulated_seconds", report.simulated_seconds},

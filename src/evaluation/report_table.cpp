@@ -28,6 +28,50 @@ std::string Failures(const imagination::Evidence& evidence) {
   return base::Join(parts, ", ");
 }
 
+std::vector<std::string> Heads(bool with_cost) {
+  std::vector<std::string> heads{"",           "action",  "success",  "95 % interval",
+                                 "confidence", "falls",   "duration", "tilt p95",
+                                 "n",          "failures"};
+  if (with_cost) heads.insert(heads.begin() + 4, {"cost", "95 % interval"});
+  return heads;
+}
+
+/// Expected cost and its interval.
+std::vector<std::string> CostCells(const std::optional<imagination::ExpectedCost>& cost) {
+  if (!cost) return {"-", "-"};
+  return {fmt::format("{:.1f} s", cost->mean),
+          fmt::format("{:.1f} .. {:.1f} s", cost->lower, cost->upper)};
+}
+
+std::vector<std::string> Row(const imagination::Prediction& prediction, bool is_recommended,
+                             bool with_cost) {
+  const imagination::Evidence& e = prediction.evidence;
+  std::vector<std::string> row{
+      is_recommended ? ">" : "",
+      base::ToString(prediction.action),
+      fmt::format("{:.1f} %", 100.0 * e.success.share),
+      fmt::format("{:.1f} .. {:.1f} %", 100.0 * e.success.lower, 100.0 * e.success.upper),
+      fmt::format("{:.3f}", e.confidence_mean),
+      fmt::format("{}", e.falls),
+      fmt::format("{:.1f} ± {:.1f} s", e.duration.mean, e.duration.sd),
+      fmt::format("{:.4f} rad", e.max_tilt.p95),
+      fmt::format("{}", e.num_rollouts),
+      Failures(e)};
+  const std::vector<std::string> cost = CostCells(e.cost);
+  if (with_cost) row.insert(row.begin() + 4, cost.begin(), cost.end());
+  return row;
+}
+
+/// In words, how the intervals of success were made: all of one ranking are of one kind.
+std::string KindLine(const std::vector<imagination::Prediction>& ranking) {
+  if (ranking.empty()) return "";
+  const imagination::IntervalKind kind = ranking.front().evidence.success.kind;
+  return fmt::format("95 % intervals: {} ({})\n", imagination::ToString(kind),
+                     kind == imagination::IntervalKind::kClopperPearson
+                         ? "the number of rollouts was fixed beforehand"
+                         : "valid whenever imagination stopped");
+}
+
 }  // namespace
 
 std::string FormatTable(const std::vector<std::vector<std::string>>& rows) {
@@ -54,22 +98,13 @@ std::string FormatTable(const std::vector<std::vector<std::string>>& rows) {
   return text;
 }
 
-std::string RankingTable(const std::vector<imagination::Prediction>& ranking, int recommended) {
-  std::vector<std::vector<std::string>> rows{{"", "action", "success", "95 % interval",
-                                              "confidence", "falls", "duration", "tilt p95", "n",
-                                              "failures"}};
+std::string RankingTable(const std::vector<imagination::Prediction>& ranking, int recommended,
+                         bool with_cost) {
+  std::vector<std::vector<std::string>> rows{Heads(with_cost)};
   for (std::size_t i = 0; i < ranking.size(); ++i) {
-    const imagination::Evidence& e = ranking[i].evidence;
-    rows.push_back(
-        {static_cast<int>(i) == recommended ? ">" : "", base::ToString(ranking[i].action),
-         fmt::format("{:.1f} %", 100.0 * e.success.share),
-         fmt::format("{:.1f} .. {:.1f} %", 100.0 * e.success.lower, 100.0 * e.success.upper),
-         fmt::format("{:.3f}", e.confidence_mean), fmt::format("{}", e.falls),
-         fmt::format("{:.1f} ± {:.1f} s", e.duration.mean, e.duration.sd),
-         fmt::format("{:.4f} rad", e.max_tilt.p95), fmt::format("{}", e.num_rollouts),
-         Failures(e)});
+    rows.push_back(Row(ranking[i], static_cast<int>(i) == recommended, with_cost));
   }
-  return FormatTable(rows);
+  return FormatTable(rows) + KindLine(ranking);
 }
 
 std::string ProgressLine(const imagination::Progress& progress, int width) {

@@ -22,6 +22,8 @@ std::string OutcomeText(ImagineAnswered::Outcome outcome) {
       return "nobody is there to imagine it";
     case ImagineAnswered::Outcome::kNothingFinished:
       return "nothing was finished in time";
+    case ImagineAnswered::Outcome::kUndecided:
+      return "imagination could not decide";
     case ImagineAnswered::Outcome::kUnavailable:
       return "imagination is not available";
     case ImagineAnswered::Outcome::kInvalid:
@@ -53,7 +55,9 @@ void ImaginationDesk::OnAnswer(const ImagineAnswered& answer) {
   question->why_not = OutcomeText(answer.outcome);
   if (!answer.why.empty()) question->why_not += ": " + answer.why;
   question->is_hopeless = answer.outcome == Outcome::kInvalid;
-  if (!question->is_hopeless) question->retry = session_.now() + session_.params().retry_period;
+  if (answer.outcome == Outcome::kUndecided) question->undecided = answer;
+  if (!question->is_hopeless && !question->undecided)
+    question->retry = session_.now() + session_.params().retry_period;
 }
 
 void ImaginationDesk::TakeRanked(Question* question) {
@@ -122,6 +126,7 @@ bool ImaginationDesk::MayStart(int step) {
   if (question->on_late == planning::OnLate::kWait) {
     return question->asked && session_.now() >= *question->asked + params.max_wait;
   }
+  if (question->undecided) return true;  // nothing more is on its way
   if (!question->limit) {
     question->limit = std::max(session_.now(), session_.network().LatestStart(step));
     MoveTo(question, DeadlineOf(*question));
@@ -214,9 +219,10 @@ bool ImaginationDesk::IsCarried(const std::string& instance) const {
 
 bool ImaginationDesk::IsAffected(const Question& question,
                                  const std::set<std::string>& changed) const {
-  if (question.request == 0 && !question.answer) return false;
   if (question.request != 0) return true;
-  const std::set<std::string> depends_on = LoweredSet(question.answer->depends_on);
+  const auto& answer = question.answer ? question.answer : question.undecided;
+  if (!answer) return false;
+  const std::set<std::string> depends_on = LoweredSet(answer->depends_on);
   return std::any_of(changed.begin(), changed.end(), [&](const std::string& instance) {
     return depends_on.count(instance) > 0 || question.known.count(instance) == 0;
   });

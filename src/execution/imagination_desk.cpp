@@ -14,6 +14,11 @@ constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kShift = 0.5;      // [s] by which a deadline moves before anybody is told
 constexpr double kForesight = 0.8;  // [s] before a deadline it is looked at again
 
+double MinSuccessOf(const planning::OperatorData& operators, const std::string& name) {
+  const auto& imagine = EntryOf(operators, name).imagine;
+  return imagine ? imagine->min_success.value_or(0.0) : 0.0;
+}
+
 }  // namespace
 
 std::vector<int> InformedSteps(const PlanRun& run) {
@@ -142,7 +147,8 @@ void ImaginationDesk::Ask(Question* question) {
   step.started = session_.now();
   step.finished.reset();
   session_.Send(StartImagination{question->request, session_.plan_index(), question->target,
-                                 question->action, projected.Atoms(), question->deadline});
+                                 question->action, projected.Atoms(), question->deadline,
+                                 MinSuccessOf(session_.operators(), question->action.name)});
 }
 
 void ImaginationDesk::AskAgain(Question* question, const std::string& why) {
@@ -150,6 +156,7 @@ void ImaginationDesk::AskAgain(Question* question, const std::string& why) {
   question->answer.reset();
   question->retry.reset();
   question->is_hopeless = false;
+  question->undecided.reset();
   question->why_not = why;
   Ask(question);
 }
@@ -175,7 +182,7 @@ void ImaginationDesk::MoveTo(Question* question, double deadline) {
 void ImaginationDesk::Update() {
   for (Question& question : questions_) {
     if (!question.is_open || question.is_hopeless) continue;
-    const bool is_asked = question.request != 0 || question.answer;
+    const bool is_asked = question.request != 0 || question.answer || question.undecided;
     if (is_asked && HasChanged(&question)) {
       AskAgain(&question, "the state in which it will start has changed");
     } else if (!is_asked && session_.now() >= question.retry.value_or(session_.now())) {

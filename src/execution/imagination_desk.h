@@ -44,6 +44,9 @@ class ImaginationDesk {
     planning::OnLate on_late{planning::OnLate::kDefault};
     bool is_open{true};  ///< its step has not begun
     bool is_hopeless{false};
+    /// The answer says that it does not know. Asking the same again until it does would take chance
+    /// for knowledge; so it counts as late, until something changes.
+    std::optional<ImagineAnswered> undecided;
     int request{0};               ///< under way; 0: none
     std::set<std::string> start;  ///< what changes of the state in which the step will start
     std::set<std::string> known;  ///< instances when it was asked

@@ -4,12 +4,22 @@
 #include "hires/imagination/imagination_setup.h"
 
 namespace hires::imagination {
+namespace {
+
+/// A file that the file `path` names under `key`.
+base::ParamReader FileAt(const std::string& key, const std::string& path, base::ParamReader* in) {
+  return base::ParamReader::FromFile(ResolvePath(in->GetString(key), path));
+}
+
+}  // namespace
 
 ClientConfig ReadClientConfig(const std::string& path) {
   base::ParamReader in = base::ParamReader::FromFile(path);
   ClientConfig config;
   config.scene = ResolvePath(in.GetString("scene"), path);
   config.scheduler = ReadSchedulerParams(in.Sub("scheduler"));
+  config.scheduler.criteria.prices = ReadPrices(FileAt("prices", path, &in));
+  config.validated = ReadValidated(FileAt("validated", path, &in));
   config.feedback_period = in.Get("feedback_period", base::Between(0.01, 10.0));
   config.worker_timeout = in.Get("worker_timeout", base::Between(0.1, 60.0));
   in.RejectUnknownKeys();

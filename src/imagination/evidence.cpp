@@ -8,8 +8,6 @@
 namespace hires::imagination {
 namespace {
 
-constexpr double kNormalQuantile975 = 1.959963984540054;
-
 /// Position of the `percent` quantile among `size` sorted values, definition 1 of Hyndman and Fan.
 /// Whole numbers keep 95 of 100 from becoming 96 by rounding.
 int QuantileRank(int size, int percent) {
@@ -58,7 +56,9 @@ void SumUpTilts(std::vector<double> tilts, Evidence* evidence) {
 class Tally {
  public:
   void Add(const RolloutResult& result, int index) {
-    AddFailure(result);
+    AddFailure(result, index);
+    if (!result.first_cause.empty()) ++evidence_.first_causes[result.first_cause];
+    NoteWorst(result, index);
     evidence_.counts += result.counts;
     evidence_.falls += result.falls;
     watched_nothing_ = watched_nothing_ && result.nothing_watched;
@@ -69,11 +69,11 @@ class Tally {
     ++evidence_.num_rollouts;
   }
 
-  Evidence Finish() {
+  Evidence Finish(IntervalKind kind) {
+    evidence_.success = EstimateSuccess(num_success_, evidence_.num_rollouts, kind);
     if (evidence_.num_rollouts == 0) return evidence_;
     const double n = evidence_.num_rollouts;
     const int num_action_failed = evidence_.num_rollouts - static_cast<int>(durations_.size());
-    evidence_.success = EstimateSuccess(num_success_, evidence_.num_rollouts);
     evidence_.fall_share = num_fallen_ / n;
     evidence_.action_failed_share = num_action_failed / n;
     evidence_.confidence_mean = confidence_sum_ / n;
@@ -87,16 +87,25 @@ class Tally {
   }
 
  private:
-  void AddFailure(const RolloutResult& result) {
+  void AddFailure(const RolloutResult& result, int index) {
     const base::Failure failure = FailureOf(result);
-    if (failure) {
-      ++evidence_.failures[failure];
-    } else {
+    if (!failure) {
       ++num_success_;
+      return;
     }
+    ++evidence_.failures[failure];
+    if (evidence_.first_failed < 0) evidence_.first_failed = index;
+  }
+
+  void NoteWorst(const RolloutResult& result, int index) {
+    const std::pair<bool, double> badness{static_cast<bool>(FailureOf(result)), result.max_tilt};
+    if (evidence_.worst_rollout >= 0 && badness <= worst_) return;
+    worst_ = badness;
+    evidence_.worst_rollout = index;
   }
 
   Evidence evidence_;
+  std::pair<bool, double> worst_{};  // has failed, largest tilt
   int num_success_{0};
   int num_fallen_{0};
   bool watched_nothing_{true};  // in every rollout
@@ -119,33 +128,19 @@ double RolloutConfidence(const RolloutResult& result) {
   return result.nothing_watched ? 1.0 : Confidence(result.counts);
 }
 
-SuccessInterval EstimateSuccess(int num_success, int num_rollouts) {
-  HIRES_CHECK(num_success >= 0 && num_success <= num_rollouts,
-              "there are more successes than rollouts, or fewer than none");
-  if (num_rollouts == 0) return {};
-  const double n = num_rollouts;
-  const double share = num_success / n;
-  const double z2 = kNormalQuantile975 * kNormalQuantile975;
-  const double centre = (share + z2 / (2.0 * n)) / (1.0 + z2 / n);
-  const double half = kNormalQuantile975 / (1.0 + z2 / n) *
-                      std::sqrt(share * (1.0 - share) / n + z2 / (4.0 * n * n));
-  SuccessInterval interval{share, centre - half, centre + half, num_rollouts};
-  // At the ends the bound is exact in theory and off by a rounding in practice.
-  if (num_success == 0) interval.lower = 0.0;
-  if (num_success == num_rollouts) interval.upper = 1.0;
-  return interval;
-}
-
 Evidence SumUp(const std::vector<RolloutResult>& results) {
   return SumUp(results, static_cast<int>(results.size()));
 }
 
-Evidence SumUp(const std::vector<RolloutResult>& results, int num_rollouts) {
+Evidence SumUp(const std::vector<RolloutResult>& results, int num_rollouts, IntervalKind kind,
+               const Prices& prices) {
   HIRES_CHECK(num_rollouts >= 0 && num_rollouts <= static_cast<int>(results.size()),
               "there are not that many rollouts to sum up");
   Tally tally;
   for (int index = 0; index < num_rollouts; ++index) tally.Add(results[index], index);
-  return tally.Finish();
+  Evidence evidence = tally.Finish(kind);
+  evidence.cost = EstimateCost(results, num_rollouts, prices);
+  return evidence;
 }
 
 }  // namespace hires::imagination

@@ -70,9 +70,11 @@ class LocalWorker {
 }  // namespace
 
 Report ImagineLocally(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions,
-                      const SchedulerParams& params, int num_threads, const OnInterim& on_interim,
+                      const SchedulerParams& wanted, int num_threads, const OnInterim& on_interim,
                       const std::function<bool()>& cancelled) {
   CheckSetupForAll(setup, actions);
+  SchedulerParams params = wanted;
+  params.criteria.prices.time_limit = setup.params.time_limit;
   const double start = SteadySeconds();
   Scheduler scheduler(params, static_cast<int>(actions.size()), start);
   base::Mailbox<Event> events;
@@ -102,7 +104,7 @@ Report ImagineLocally(const RolloutSetup& setup, const std::vector<base::ActionC
                   PredictionsOf(scheduler, scheduler.RankingSoFar(), actions, false), num_threads});
     }
   }
-  return MakeReport(scheduler, actions, params.rule, setup.seed, SteadySeconds() - start);
+  return MakeReport(scheduler, actions, setup.seed, SteadySeconds() - start);
 }
 
 }  // namespace hires::imagination

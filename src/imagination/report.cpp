@@ -37,7 +37,7 @@ std::vector<Prediction> PredictionsOf(const Scheduler& scheduler, const Ranking&
   std::vector<Prediction> predictions;
   if (ranking.num_rollouts == 0) return predictions;
   for (const int alternative : ranking.order) {
-    Prediction prediction{actions[alternative], ranking.evidence[alternative], {}, {}};
+    Prediction prediction{actions[alternative], alternative, ranking.evidence[alternative], {}, {}};
     const int median = prediction.evidence.median_rollout;
     if (with_final_states && median >= 0) {
       const RolloutResult& result = scheduler.Prefix(alternative)[median];
@@ -50,7 +50,7 @@ std::vector<Prediction> PredictionsOf(const Scheduler& scheduler, const Ranking&
 }
 
 Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall>& actions,
-                  RankingRule rule, std::uint64_t seed, double wall_seconds) {
+                  std::uint64_t seed, double wall_seconds) {
   HIRES_CHECK(scheduler.finished(), "there is no result yet");
   const SchedulerResult& result = *scheduler.result();
   const Ranking& ranking = result.ranking;
@@ -67,8 +67,10 @@ Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall
   for (std::size_t place = 0; place < ranking.order.size(); ++place) {
     if (ranking.recommended == ranking.order[place]) report.recommended = static_cast<int>(place);
   }
-  report.why = ranking.num_rollouts == 0 ? WhyNothing(scheduler, result.outcome)
-                                         : WhyRecommended(ranking.evidence, rule, NamesOf(actions));
+  report.why =
+      ranking.num_rollouts == 0
+          ? WhyNothing(scheduler, result.outcome)
+          : WhyRecommended(ranking.evidence, scheduler.params().criteria, NamesOf(actions));
   return report;
 }
 

@@ -13,7 +13,7 @@
 namespace hires::imagination {
 namespace {
 
-constexpr int kMostRollouts = 100000;
+constexpr double kLeastSuccess = 0.001, kMostSuccess = 0.999;  // more would need thousands
 constexpr int kLargestBatch = 1000;
 constexpr int kMostAttempts = 100;
 constexpr double kLongestWait = 1e7;     // [s]
@@ -46,6 +46,10 @@ void CheckParams(const SchedulerParams& params) {
   CheckField("first_look", params.first_look, 1, kMostRollouts);
   CheckField("batch", params.batch, 1, kLargestBatch);
   CheckField("max_attempts", params.max_attempts, 1, kMostAttempts);
+  if (params.criteria.rule == RankingRule::kCost && params.criteria.prices.empty()) {
+    throw base::ConfigError("scheduler: ranking is cost, which needs prices; name a file of them");
+  }
+  CheckField("min_success", params.criteria.min_success, kLeastSuccess, kMostSuccess);
   CheckField("alpha", params.settle.alpha, kSmallestShare, 1.0 - kSmallestShare);
   CheckField("indifference", params.settle.indifference, kSmallestShare, 1.0 - kSmallestShare);
 }
@@ -57,7 +61,9 @@ SchedulerParams ReadSchedulerParams(base::ParamReader in) {
   params.deadline = in.Get("deadline", base::Between(0.0, kLongestWait));
   params.worker_wait = in.Get("worker_wait", base::Between(0.0, kLongestWait));
   params.early_stop = in.GetBool("early_stop");
-  params.rule = ParseRankingRule(in.Get("ranking", base::OneOf({"risk", "thesis"})));
+  params.criteria.rule =
+      ParseRankingRule(in.Get("ranking", base::OneOf({"risk", "cost", "thesis"})));
+  params.criteria.min_success = in.Get("min_success", base::Between(kLeastSuccess, kMostSuccess));
   params.first_look = in.Get("first_look", base::Between(1, kMostRollouts));
   params.batch = in.Get("batch", base::Between(1, kLargestBatch));
   params.max_attempts = in.Get("max_attempts", base::Between(1, kMostAttempts));
@@ -74,6 +80,8 @@ std::string ToString(ImaginationOutcome outcome) {
       return "ranked";
     case ImaginationOutcome::kAllFailed:
       return "all_failed";
+    case ImaginationOutcome::kUndecided:
+      return "undecided";
     case ImaginationOutcome::kNoWorker:
       return "no_worker";
     case ImaginationOutcome::kNothingFinished:
@@ -322,27 +330,35 @@ void Scheduler::Decide() {
   while (!finished()) {
     const int look = NextLook(decided_, params_);
     if (look > common) return;
-    if (look == params_.rollouts || IsSettledAt(look)) FinishWith(look, true);
+    if (look == params_.rollouts || IsDecidedAt(look)) FinishWith(look, true);
     decided_ = look;
   }
 }
 
-bool Scheduler::IsSettledAt(int look) const {
+bool Scheduler::IsDecidedAt(int look) const {
   if (!params_.early_stop || alternatives_.size() < 2) return false;
   std::vector<const std::vector<RolloutResult>*> prefixes;
   prefixes.reserve(alternatives_.size());
   for (const Alternative& alternative : alternatives_) prefixes.push_back(&alternative.prefix);
-  return Settled(prefixes, look, params_.rule, params_.settle);
+  return Decided(prefixes, look, params_.criteria, params_.settle);
+}
+
+IntervalKind Scheduler::KindAt(int num_rollouts) const {
+  const bool is_fixed =
+      !params_.early_stop || alternatives_.size() < 2 || NextLook(0, params_) == params_.rollouts;
+  return is_fixed && num_rollouts == params_.rollouts ? IntervalKind::kClopperPearson
+                                                      : IntervalKind::kConfidenceSequence;
 }
 
 Ranking Scheduler::RankFirst(int num_rollouts) const {
   Ranking ranking;
   ranking.num_rollouts = num_rollouts;
   for (const Alternative& alternative : alternatives_) {
-    ranking.evidence.push_back(SumUp(alternative.prefix, num_rollouts));
+    ranking.evidence.push_back(
+        SumUp(alternative.prefix, num_rollouts, KindAt(num_rollouts), params_.criteria.prices));
   }
-  ranking.order = Rank(ranking.evidence, params_.rule);
-  ranking.recommended = Recommended(ranking.evidence, params_.rule);
+  ranking.order = Rank(ranking.evidence, params_.criteria);
+  ranking.recommended = Recommended(ranking.evidence, params_.criteria);
   return ranking;
 }
 
@@ -351,9 +367,12 @@ Ranking Scheduler::RankingSoFar() const {
 }
 
 void Scheduler::FinishWith(int num_rollouts, bool complete) {
-  const bool has_best = RankFirst(num_rollouts).recommended.has_value();
-  Finish(has_best ? ImaginationOutcome::kRanked : ImaginationOutcome::kAllFailed, complete,
-         num_rollouts);
+  const Ranking ranking = RankFirst(num_rollouts);
+  const bool all_fail = AllFail(ranking.evidence, params_.criteria);
+  Finish(ranking.recommended ? ImaginationOutcome::kRanked
+         : all_fail          ? ImaginationOutcome::kAllFailed
+                             : ImaginationOutcome::kUndecided,
+         complete, num_rollouts);
 }
 
 void Scheduler::CutShort(ImaginationOutcome if_nothing) {

@@ -129,6 +129,11 @@ double Distribution::Sample(base::Rng* rng) const {
   }
 }
 
+double Distribution::Largest() const {
+  if (kind == Kind::kFixed) return first;
+  return kind == Kind::kUniform ? second : first + 3.0 * second;
+}
+
 Uncertainty ParseUncertainty(const std::string& yaml, const std::string& where) {
   base::ParamReader in = base::ParamReader::FromString(yaml, where);
   Uncertainty uncertainty;

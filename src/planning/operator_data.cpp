@@ -234,6 +234,8 @@ ImagineData ReadImagine(ParamReader in, const OperatorEntry& entry) {
   imagine.defaults = ReadDefaults(in.Sub("default"), imagine.parameters);
   const std::string on_late = in.Get("on_late", base::OneOf({"default", "wait"}));
   imagine.on_late = on_late == "wait" ? OnLate::kWait : OnLate::kDefault;
+  if (in.Has("min_success"))
+    imagine.min_success = in.Get("min_success", base::Between(0.001, 0.999));
   return imagine;
 }
 

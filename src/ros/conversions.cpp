@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
@@ -12,6 +13,7 @@ namespace {
 
 using hires::geometry::Pose3;
 using hires::imagination::ImaginationOutcome;
+using hires::imagination::IntervalKind;
 
 geometry_msgs::Twist TwistMsg(const hires::geometry::Twist3& twist) {
   geometry_msgs::Twist out;
@@ -35,6 +37,8 @@ std::uint8_t OutcomeCode(const hires::imagination::Report& report) {
       return report.complete ? msg::ImagineResult::RANKED : msg::ImagineResult::RANKED_AT_DEADLINE;
     case ImaginationOutcome::kAllFailed:
       return msg::ImagineResult::ALL_FAILED;
+    case ImaginationOutcome::kUndecided:
+      return msg::ImagineResult::UNDECIDED;
     case ImaginationOutcome::kNoWorker:
       return msg::ImagineResult::NO_WORKER;
     case ImaginationOutcome::kNothingFinished:
@@ -52,6 +56,8 @@ ImaginationOutcome OutcomeOf(std::uint8_t code) {
       return ImaginationOutcome::kRanked;
     case msg::ImagineResult::ALL_FAILED:
       return ImaginationOutcome::kAllFailed;
+    case msg::ImagineResult::UNDECIDED:
+      return ImaginationOutcome::kUndecided;
     case msg::ImagineResult::NO_WORKER:
       return ImaginationOutcome::kNoWorker;
     case msg::ImagineResult::NOTHING_FINISHED:
@@ -73,6 +79,46 @@ hires::imagination::Outcome OutcomeOfRollout(std::uint8_t code) {
       throw hires::base::ConfigError(
           fmt::format("outcome of a rollout is {}, wanted 0, 1 or 2", code));
   }
+}
+
+/// What the prediction itself knows of single rollouts: which ones they are.
+void SetRollouts(const hires::imagination::Prediction& prediction, msg::Prediction* out) {
+  const hires::imagination::Evidence& e = prediction.evidence;
+  for (const auto& [cause, count] : e.first_causes) {
+    msg::CauseCount entry;
+    entry.cause = cause;
+    entry.count = count;
+    out->first_causes.push_back(entry);
+  }
+  const auto set = [&](int index, msg::RolloutRef* ref) {
+    ref->action = out->action;
+    ref->alternative = prediction.alternative;
+    ref->index = static_cast<std::uint32_t>(index);  // -1: beyond every number of rollouts
+  };
+  set(e.worst_rollout, &out->worst);
+  set(e.median_rollout, &out->median);
+  set(e.first_failed, &out->first_failed);
+}
+
+void ReadRollouts(const msg::Prediction& prediction, hires::imagination::Prediction* out) {
+  hires::imagination::Evidence& e = out->evidence;
+  for (const msg::CauseCount& entry : prediction.first_causes) {
+    e.first_causes[entry.cause] = entry.count;
+  }
+  const auto index_of = [&](const msg::RolloutRef& ref) {
+    return ref.index < prediction.rollouts ? static_cast<int>(ref.index) : -1;
+  };
+  e.worst_rollout = index_of(prediction.worst);
+  e.median_rollout = index_of(prediction.median);
+  e.first_failed = index_of(prediction.first_failed);
+  out->alternative = static_cast<int>(prediction.median.alternative);
+}
+
+IntervalKind KindOf(std::uint8_t code) {
+  if (code == msg::Prediction::CLOPPER_PEARSON) return IntervalKind::kClopperPearson;
+  if (code == msg::Prediction::CONFIDENCE_SEQUENCE) return IntervalKind::kConfidenceSequence;
+  throw hires::base::ConfigError(
+      fmt::format("interval_kind of a prediction is {}, wanted 0 or 1", code));
 }
 
 }  // namespace
@@ -268,6 +314,14 @@ msg::Prediction ToMsg(const hires::imagination::Prediction& prediction) {
   out.success_share = e.success.share;
   out.success_lower = e.success.lower;
   out.success_upper = e.success.upper;
+  out.interval_kind = e.success.kind == IntervalKind::kClopperPearson
+                          ? msg::Prediction::CLOPPER_PEARSON
+                          : msg::Prediction::CONFIDENCE_SEQUENCE;
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  const auto cost = e.cost.value_or(hires::imagination::ExpectedCost{unknown, unknown, unknown});
+  out.expected_cost = cost.mean;
+  out.cost_lower = cost.lower;
+  out.cost_upper = cost.upper;
   out.fall_share = e.fall_share;
   out.action_failed_share = e.action_failed_share;
   out.counts.notopple = e.counts.notopple;
@@ -286,6 +340,7 @@ msg::Prediction ToMsg(const hires::imagination::Prediction& prediction) {
     out.failures.back().failure = ToMsg(failure);
     out.failures.back().count = count;
   }
+  SetRollouts(prediction, &out);
   out.final_world = ToMsg(prediction.final_world);
   out.final_robot = ToMsg(prediction.final_robot);
   return out;
@@ -299,7 +354,10 @@ hires::imagination::Prediction FromMsg(const msg::Prediction& prediction) {
   e.confidence_mean = prediction.confidence_mean;
   e.num_rollouts = prediction.rollouts;
   e.success = {prediction.success_share, prediction.success_lower, prediction.success_upper,
-               e.num_rollouts};
+               e.num_rollouts, KindOf(prediction.interval_kind)};
+  if (!std::isnan(prediction.expected_cost)) {
+    e.cost = {prediction.expected_cost, prediction.cost_lower, prediction.cost_upper};
+  }
   e.fall_share = prediction.fall_share;
   e.action_failed_share = prediction.action_failed_share;
   e.counts.notopple = prediction.counts.notopple;
@@ -312,6 +370,7 @@ hires::imagination::Prediction FromMsg(const msg::Prediction& prediction) {
   for (const msg::FailureCount& failure : prediction.failures) {
     e.failures[FromMsg(failure.failure)] += failure.count;
   }
+  ReadRollouts(prediction, &out);
   out.final_world = FromMsg(prediction.final_world);
   out.final_robot = FromMsg(prediction.final_robot);
   return out;
@@ -323,6 +382,7 @@ msg::ImagineResult ToMsg(const hires::imagination::Report& report) {
   for (const auto& prediction : report.ranking) out.predictions.push_back(ToMsg(prediction));
   out.recommended = report.recommended;
   out.why = report.why;
+  out.caveats = report.caveats;
   out.seed = report.seed;
   out.wall_seconds = report.wall_seconds;
   out.simulated_seconds = report.simulated_seconds;
@@ -338,6 +398,7 @@ hires::imagination::Report FromMsg(const msg::ImagineResult& result) {
   for (const auto& prediction : result.predictions) out.ranking.push_back(FromMsg(prediction));
   out.recommended = result.recommended;
   out.why = result.why;
+  out.caveats = result.caveats;
   out.seed = result.seed;
   out.wall_seconds = result.wall_seconds;
   out.simulated_seconds = result.simulated_seconds;

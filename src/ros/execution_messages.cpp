@@ -25,11 +25,6 @@ std::vector<hires::Atom> ToMsgs(const std::vector<base::Atom>& atoms) {
   return messages;
 }
 
-/// Expected to fail: in most of its rollouts.
-bool IsExpectedToFail(const hires::Prediction& prediction) {
-  return prediction.success_share < 0.5;
-}
-
 /// What made most rollouts fail; nothing where none says.
 base::Failure MainFailure(const hires::Prediction& prediction) {
   const auto most = std::max_element(
@@ -40,27 +35,34 @@ base::Failure MainFailure(const hires::Prediction& prediction) {
 
 using ImagineOutcome = execution::ImagineAnswered::Outcome;
 
-/// Of a request that was cut short by its own client.
-ImagineOutcome OutcomeWhenLate(const hires::ImagineResult& result) {
+/// Of a request that was cut short by its own client, who wanted `min_success` (0: did not say).
+ImagineOutcome OutcomeWhenLate(const hires::ImagineResult& result, double min_success) {
   if (result.recommended >= 0) return ImagineOutcome::kRanked;
-  const bool is_compared = std::any_of(result.predictions.begin(), result.predictions.end(),
+  const auto& predictions = result.predictions;
+  const bool is_compared = std::any_of(predictions.begin(), predictions.end(),
                                        [](const auto& p) { return p.rollouts > 0; });
-  return is_compared ? ImagineOutcome::kAllFailed : ImagineOutcome::kNothingFinished;
+  if (!is_compared) return ImagineOutcome::kNothingFinished;
+  const bool all_fail = std::all_of(predictions.begin(), predictions.end(),
+                                    [&](const auto& p) { return p.success_upper < min_success; });
+  return all_fail ? ImagineOutcome::kAllFailed : ImagineOutcome::kUndecided;
 }
 
-ImagineOutcome OutcomeOf(const hires::ImagineResult& result, bool is_late) {
+ImagineOutcome OutcomeOf(const hires::ImagineResult& result, const Lateness& late) {
   switch (result.outcome) {
     case hires::ImagineResult::RANKED:
     case hires::ImagineResult::RANKED_AT_DEADLINE:
       return ImagineOutcome::kRanked;
     case hires::ImagineResult::ALL_FAILED:
       return ImagineOutcome::kAllFailed;
+    case hires::ImagineResult::UNDECIDED:
+      return ImagineOutcome::kUndecided;
     case hires::ImagineResult::NO_WORKER:
       return ImagineOutcome::kNoWorker;
     case hires::ImagineResult::NOTHING_FINISHED:
       return ImagineOutcome::kNothingFinished;
     case hires::ImagineResult::CANCELLED:
-      return is_late ? OutcomeWhenLate(result) : ImagineOutcome::kUnavailable;
+      return late.is_late ? OutcomeWhenLate(result, late.min_success)
+                          : ImagineOutcome::kUnavailable;
   }
   return ImagineOutcome::kInvalid;
 }
@@ -192,17 +194,18 @@ hires::ImagineGoal GoalOf(const execution::StartImagination& command,
   goal.rollouts = static_cast<std::uint32_t>(params.rollouts);
   goal.seed = params.seed;
   goal.ranking = params.ranking;
+  goal.min_success = command.min_success;
   goal.request_id = "execution_monitor";
   return goal;
 }
 
 execution::ImagineAnswered AnswerOf(int request, const hires::ImagineResult& result,
                                     const hires::GenerateImagineState::Response& state,
-                                    bool is_late) {
+                                    const Lateness& late) {
   execution::ImagineAnswered answer;
   answer.request = request;
   answer.why = result.why;
-  answer.outcome = OutcomeOf(result, is_late);
+  answer.outcome = OutcomeOf(result, late);
   const bool is_known =
       0 <= result.recommended && result.recommended < static_cast<int>(result.predictions.size());
   if (answer.outcome == ImagineOutcome::kRanked && !is_known) {
@@ -213,7 +216,7 @@ execution::ImagineAnswered AnswerOf(int request, const hires::ImagineResult& res
     SetRecommended(result.predictions[result.recommended], &answer);
   }
   for (const hires::Prediction& prediction : result.predictions) {
-    if (answer.outcome != ImagineOutcome::kAllFailed && !IsExpectedToFail(prediction)) continue;
+    if (answer.outcome != ImagineOutcome::kAllFailed) break;
     answer.failed.push_back(FromMsg(prediction.action));
     answer.failures.push_back(MainFailure(prediction));
   }
@@ -227,6 +230,8 @@ std::string OutcomeName(execution::ImagineAnswered::Outcome outcome) {
       return "ranked";
     case ImagineOutcome::kAllFailed:
       return "all_failed";
+    case ImagineOutcome::kUndecided:
+      return "undecided";
     case ImagineOutcome::kNoWorker:
       return "no_worker";
     case ImagineOutcome::kNothingFinished:

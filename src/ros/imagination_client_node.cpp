@@ -282,10 +282,10 @@ void ImaginationClientNode::FinishSessions() {
 void ImaginationClientNode::Finish(Session* session) {
   for (auto& [k, worker] : workers_) worker->CancelSession(session->id);
   const ImagineRequest& request = session->request;
-  const auto report =
-      imagination::MakeReport(*session->scheduler, request.actions, request.params.rule,
-                              request.setup.seed, SteadyNow() - session->begun);
-  const hires::ImagineResult result = AnswerTo(*session->goal.getGoal(), report);
+  auto report = imagination::MakeReport(*session->scheduler, request.actions, request.setup.seed,
+                                        SteadyNow() - session->begun);
+  report.caveats = imagination::CaveatsOf(request.setup, request.actions, params_.config.validated);
+  const hires::ImagineResult result = AnswerTo(*session->goal.getGoal(), request, setup_, report);
   hires::base::Log(hires::base::LogLevel::kInfo,
                    fmt::format("session={} outcome={} {}", session->id,
                                imagination::ToString(report.outcome), report.why));

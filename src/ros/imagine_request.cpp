@@ -55,9 +55,21 @@ imagination::SchedulerParams ParamsOf(const hires::ImagineGoal& goal,
   params.rollouts = static_cast<int>(std::min<std::uint32_t>(goal.rollouts, 1u << 30));
   params.deadline = goal.deadline.toSec();
   params.early_stop = !goal.play_all && defaults.early_stop;
-  if (!goal.ranking.empty()) params.rule = imagination::ParseRankingRule(goal.ranking);
+  if (goal.min_success != 0.0) params.criteria.min_success = goal.min_success;
+  if (!goal.ranking.empty()) params.criteria.rule = imagination::ParseRankingRule(goal.ranking);
   imagination::CheckParams(params);
   return params;
+}
+
+/// What all rollouts of a request have in common.
+void Complete(const hires::ImagineGoal& goal, const ImagineRequest& request,
+              const imagination::ImaginationSetup& setup, hires::RolloutRef* ref) {
+  ref->request_id = goal.request_id;
+  ref->seed = request.setup.seed;
+  ref->world_hash = setup.world_hash;
+  ref->robot_hash = setup.robot_hash;
+  ref->uncertainty_hash = request.setup.uncertainty->hash;
+  ref->actions_hash = setup.actions_hash;
 }
 
 }  // namespace
@@ -72,12 +84,20 @@ ImagineRequest RequestOf(const hires::ImagineGoal& goal, const imagination::Imag
         imagination::UncertaintyFromText(goal.uncertainty, "uncertainty of the request"));
   }
   request.params = ParamsOf(goal, defaults);
+  request.params.criteria.prices.time_limit = request.setup.params.time_limit;
   imagination::CheckSetupForAll(request.setup, request.actions);
   return request;
 }
 
-hires::ImagineResult AnswerTo(const hires::ImagineGoal& goal, const imagination::Report& report) {
+hires::ImagineResult AnswerTo(const hires::ImagineGoal& goal, const ImagineRequest& request,
+                              const imagination::ImaginationSetup& setup,
+                              const imagination::Report& report) {
   hires::ImagineResult result = ToMsg(report);
+  for (hires::Prediction& prediction : result.predictions) {
+    for (auto* ref : {&prediction.worst, &prediction.median, &prediction.first_failed}) {
+      Complete(goal, request, setup, ref);
+    }
+  }
   result.depends_on = goal.updated_fluents;
   return result;
 }

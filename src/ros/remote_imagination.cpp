@@ -53,7 +53,8 @@ hires::ImagineGoal GoalOf(const hires::evaluation::ImagineQuery& query) {
   goal.deadline = ros::Duration(query.scheduler.deadline);
   goal.rollouts = query.scheduler.rollouts;
   goal.seed = query.seed;
-  goal.ranking = hires::imagination::ToString(query.scheduler.rule);
+  goal.ranking = hires::imagination::ToString(query.scheduler.criteria.rule);
+  goal.min_success = query.scheduler.criteria.min_success;
   goal.play_all = !query.scheduler.early_stop;
   goal.request_id = "hires_imagine";
   if (query.own_uncertainty) {

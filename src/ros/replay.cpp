@@ -58,9 +58,9 @@ bool SameBitsButWallTime(ImagineResult a, ImagineResult b) {
 }
 
 std::string OutcomeText(std::uint8_t outcome) {
-  static constexpr std::array<const char*, 7> kNames{
+  static constexpr std::array<const char*, 8> kNames{
       "ranked",  "ranked_at_deadline", "all_failed", "no_worker", "nothing_finished",
-      "invalid", "cancelled"};
+      "invalid", "cancelled",          "undecided"};
   return outcome < kNames.size() ? kNames[outcome] : fmt::format("outcome {}", outcome);
 }
 
@@ -98,6 +98,9 @@ void CompareNumbers(const std::string& place, const hires::Prediction& then,
       {"success_share", &hires::Prediction::success_share},
       {"success_lower", &hires::Prediction::success_lower},
       {"success_upper", &hires::Prediction::success_upper},
+      {"expected_cost", &hires::Prediction::expected_cost},
+      {"cost_lower", &hires::Prediction::cost_lower},
+      {"cost_upper", &hires::Prediction::cost_upper},
       {"fall_share", &hires::Prediction::fall_share},
       {"action_failed_share", &hires::Prediction::action_failed_share},
       {"duration_mean", &hires::Prediction::duration_mean},
@@ -118,6 +121,11 @@ void ComparePredictions(const std::string& place, const hires::Prediction& then,
   out->Compare(place + "falls", then.falls, now.falls);
   out->Compare(place + "rollouts", then.rollouts, now.rollouts);
   out->CompareWhole(place + "counts", then.counts, now.counts);
+  out->CompareWhole(place + "kind of interval", then.interval_kind, now.interval_kind);
+  out->CompareWhole(place + "first_causes", then.first_causes, now.first_causes);
+  out->CompareWhole(place + "worst rollout", then.worst, now.worst);
+  out->CompareWhole(place + "median rollout", then.median, now.median);
+  out->CompareWhole(place + "first failed rollout", then.first_failed, now.first_failed);
   out->CompareWhole(place + "failures", then.failures, now.failures);
   out->CompareWhole(place + "final_world", then.final_world, now.final_world);
   out->CompareWhole(place + "final_robot", then.final_robot, now.final_robot);
@@ -138,6 +146,7 @@ std::vector<std::string> DifferencesOf(const ImagineResult& then, const ImagineR
   }
   out.Compare("recommended", then.recommended, now.recommended);
   out.Compare("why", then.why, now.why);
+  out.CompareWhole("caveats", then.caveats, now.caveats);
   out.CompareWhole("depends_on", then.depends_on, now.depends_on);
   out.Compare("seed", then.seed, now.seed);
   out.Compare("simulated_seconds", then.simulated_seconds, now.simulated_seconds);
@@ -302,6 +311,9 @@ bool DependsOnMoment(const ImagineGoal& goal, const ImagineResult& result) {
     case ImagineResult::RANKED:
     case ImagineResult::INVALID:
       return HasUnplayable(result);
+    case ImagineResult::UNDECIDED:
+      return HasUnplayable(result) ||
+             (!result.predictions.empty() && result.predictions[0].rollouts < goal.rollouts);
     case ImagineResult::ALL_FAILED:
       // The outcome alone does not say whether it was the deadline or an early stop.
       return HasUnplayable(result) || (!goal.deadline.isZero() && !result.predictions.empty() &&
@@ -395,9 +407,11 @@ ImagineAgain MakeLocalImagination(const std::string& package_folder, int num_thr
     } catch (const hires::base::ConfigError& error) {
       return RefusalOf(goal, error.what());
     }
-    return AnswerTo(goal,
-                    imagination::ImagineLocally(request->setup, request->actions, request->params,
-                                                num_threads, on_interim, cancelled));
+    imagination::Report report = imagination::ImagineLocally(
+        request->setup, request->actions, request->params, num_threads, on_interim, cancelled);
+    report.caveats =
+        imagination::CaveatsOf(request->setup, request->actions, loaded->config.validated);
+    return AnswerTo(goal, *request, loaded->setup, report);
   };
 }
 

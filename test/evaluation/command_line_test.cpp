@@ -99,7 +99,8 @@ void ExpectRefused(const Ended& ended, const std::vector<std::string>& words) {
 TEST(CommandLineTest, ImaginesAndWritesWhatItFound) {
   const TemporaryFolder folder;
   const std::string json = (folder.path() / "answer.json").string();
-  const Ended ended = Small().Imagine(kDrive + std::vector<std::string>{"--json", json});
+  const Ended ended =
+      Small().Imagine(kDrive + std::vector<std::string>{"--json", json, "--min-success", "0.15"});
   EXPECT_EQ(ended.code, kExitRecommended) << ended.err;
   EXPECT_THAT(ended.out, AllOf(HasSubstr("> "), HasSubstr("move_base(window)"),
                                HasSubstr("ranked: "), HasSubstr("times as fast as real time")));
@@ -134,10 +135,24 @@ TEST(CommandLineTest, EqualSeedsGiveEqualAnswers) {
 }
 
 TEST(CommandLineTest, AllFailingHasItsOwnCode) {
-  const Ended ended = Small().Imagine(
-      {"--action", "move_base", "--from", "Door", "--arg", "Inside", "--rollouts", "2"});
+  const Ended ended = Small().Imagine({"--action", "move_base", "--from", "Door", "--arg", "Inside",
+                                       "--rollouts", "2", "--min-success", "0.85"});
   EXPECT_EQ(ended.code, kExitAllFailed) << ended.err;
   EXPECT_THAT(ended.out, AllOf(HasSubstr("all_failed"), HasSubstr("goal_blocked 2")));
+}
+
+TEST(CommandLineTest, TwoRolloutsDecideNothing) {
+  const Ended ended = Small().Imagine(kDrive);
+  EXPECT_EQ(ended.code, kExitUndecided) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("undecided: nothing is recommended yet"),
+                               HasSubstr("rollouts decide"), HasSubstr("Clopper-Pearson")));
+}
+
+TEST(CommandLineTest, WhatWasNotValidatedIsSaid) {
+  const Ended ended = Small().Imagine(
+      {"--action", "move_base", "--from", "Door", "--arg", "Window", "--rollouts", "2", "--object",
+       std::string(HIRES_SOURCE_DIR) + "/worlds/models/vase/model.sdf"});
+  EXPECT_THAT(ended.out, HasSubstr("caveat: how vase (model vase) stands and falls was not "));
 }
 
 TEST(CommandLineTest, ExitCodesTellOutcomesApart) {
@@ -150,6 +165,7 @@ TEST(CommandLineTest, ExitCodesTellOutcomesApart) {
   EXPECT_EQ(code(imagination::ImaginationOutcome::kAllFailed), 2);
   EXPECT_EQ(code(imagination::ImaginationOutcome::kNoWorker), 3);
   EXPECT_EQ(code(imagination::ImaginationOutcome::kNothingFinished), 4);
+  EXPECT_EQ(code(imagination::ImaginationOutcome::kUndecided), 5);
   EXPECT_EQ(code(imagination::ImaginationOutcome::kCancelled), 130);
 }
 
@@ -211,6 +227,8 @@ TEST(CommandLineTest, RemoteQueriesCarryWhatWasAsked) {
                                "3.5",
                                "--ranking",
                                "thesis",
+                               "--min-success",
+                               "0.75",
                                "--no-early-stop",
                                "--threads",
                                "2"},
@@ -223,7 +241,8 @@ TEST(CommandLineTest, RemoteQueriesCarryWhatWasAsked) {
   EXPECT_THAT(seen.start.on_tray, ElementsAre("peppermill1", "mug1"));
   EXPECT_EQ(seen.scheduler.rollouts, 9);
   EXPECT_EQ(seen.scheduler.deadline, 3.5);
-  EXPECT_EQ(seen.scheduler.rule, imagination::RankingRule::kThesis);
+  EXPECT_EQ(seen.scheduler.criteria.rule, imagination::RankingRule::kThesis);
+  EXPECT_EQ(seen.scheduler.criteria.min_success, 0.75);
   EXPECT_FALSE(seen.scheduler.early_stop);
   EXPECT_EQ(seen.seed, 5u);
   EXPECT_EQ(seen.threads, 2);

@@ -11,6 +11,7 @@ inline imagination::Report TwoAlternatives() {
   report.complete = true;
   report.recommended = 0;
   report.why = "slow: it says so";
+  report.caveats = {"the floor may be uneven"};
   report.seed = 42;
   report.wall_seconds = 2.0;
   report.simulated_seconds = 150.0;
@@ -19,6 +20,7 @@ inline imagination::Report TwoAlternatives() {
   slow.evidence.confidence_pooled = 1.0;
   slow.evidence.confidence_mean = 0.96875;
   slow.evidence.success = {1.0, 0.5, 1.0, 4};
+  slow.evidence.cost = {20.0, 16.0, 32.5};
   slow.evidence.counts = {1600, 0, 0};
   slow.evidence.duration = {20.0, 0.5, 20.0, 20.5};
   slow.evidence.max_tilt = {0.001, 0.0021};

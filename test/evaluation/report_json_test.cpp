@@ -48,6 +48,7 @@ TEST(ReportJsonTest, OutcomesHaveNames) {
   EXPECT_EQ(name(ImaginationOutcome::kRanked, true), "ranked");
   EXPECT_EQ(name(ImaginationOutcome::kRanked, false), "ranked_at_deadline");
   EXPECT_EQ(name(ImaginationOutcome::kAllFailed, true), "all_failed");
+  EXPECT_EQ(name(ImaginationOutcome::kUndecided, true), "undecided");
   EXPECT_EQ(name(ImaginationOutcome::kNoWorker, false), "no_worker");
   EXPECT_EQ(name(ImaginationOutcome::kNothingFinished, false), "nothing_finished");
   EXPECT_EQ(name(ImaginationOutcome::kCancelled, false), "cancelled");

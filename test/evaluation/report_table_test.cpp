@@ -39,6 +39,24 @@ TEST(RankingTableTest, MatchesTheGoldenFile) {
   EXPECT_EQ(RankingTable(test_support::TwoAlternatives().ranking, 0), golden);
 }
 
+TEST(RankingTableTest, ShowsCostsWhereTheyDecide) {
+  const auto ranking = test_support::TwoAlternatives().ranking;
+  EXPECT_THAT(RankingTable(ranking, 0), Not(HasSubstr("cost")));
+  const std::string table = RankingTable(ranking, 0, true);
+  EXPECT_THAT(table, HasSubstr("cost"));
+  EXPECT_THAT(table, HasSubstr("20.0 s  16.0 .. 32.5 s"));
+}
+
+TEST(RankingTableTest, SaysWhatKindOfIntervalsItShows) {
+  auto ranking = test_support::TwoAlternatives().ranking;
+  for (auto& prediction : ranking) {
+    prediction.evidence.success.kind = imagination::IntervalKind::kClopperPearson;
+  }
+  EXPECT_THAT(RankingTable(ranking, 0),
+              HasSubstr("Clopper-Pearson (the number of rollouts was fixed beforehand)"));
+  EXPECT_THAT(RankingTable({}, -1), Not(HasSubstr("intervals")));
+}
+
 TEST(RankingTableTest, MarksTheRecommendedLineAlone) {
   const auto ranking = test_support::TwoAlternatives().ranking;
   EXPECT_THAT(RankingTable(ranking, -1), Not(HasSubstr(">")));

@@ -212,6 +212,63 @@ TEST(ToppleTest, AWorkerThatComesLaterIsAskedAgain) {
   EXPECT_THAT(world.warnings(), IsEmpty());
 }
 
+ImagineAnswered Undecided() {
+  ImagineAnswered answer;
+  answer.outcome = ImagineAnswered::Outcome::kUndecided;
+  answer.why = "about 90 rollouts decide";
+  answer.depends_on = {"peppermill1"};
+  return answer;
+}
+
+TEST(ToppleTest, WhatImaginationCannotDecideIsNoBanAndTheDefaultIsDriven) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int) { return Undecided(); };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(world.Begun(), ElementsAreArray(Golden("carry_object"))) << "with fast";
+  EXPECT_THAT(world.imaginations(), SizeIs(1)) << "asking until it says yes would deceive";
+  EXPECT_THAT(world.warnings(), ElementsAreArray({AllOf(HasSubstr("imagination could not decide"),
+                                                        HasSubstr("about 90 rollouts decide"))}));
+}
+
+TEST(ToppleTest, UndecidedCountsAsLateWhereTheDomainSaysWait) {
+  const planning::OperatorData waiting = Waiting();
+  auto options = For("carry_object");
+  options.operators = &waiting;
+  options.imagine = [](const StartImagination&, int) { return Undecided(); };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_NEAR(world.StartOf(kDrive + std::string("fast)")), 300.05, 1e-6);
+  EXPECT_THAT(world.imaginations(), SizeIs(1));
+}
+
+TEST(ToppleTest, UndecidedIsAskedAgainWhenSomethingChanges) {
+  auto options = For("carry_object");
+  options.imagine = [](const StartImagination&, int count) {
+    return count == 0 ? Undecided() : Slow();
+  };
+  ScriptedWorld world(options);
+  world.At(10.0, [](ScriptedWorld* w) { w->Post(GeometryChanged{{"peppermill1"}}); });
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(world.imaginations(), SizeIs(2));
+  EXPECT_GT(world.StartOf(kDrive + std::string("slow)")), 0.0);
+}
+
+TEST(ToppleTest, TheDomainSaysHowOftenItMustSucceed) {
+  planning::OperatorData strict = test_support::RestaurantData();
+  auto options = For("carry_object");
+  options.operators = &strict;
+  options.imagine = [](const StartImagination&, int) { return Slow(); };
+  const auto asked = [&](std::optional<double> min_success) {
+    strict.operators.at("move_base_param").imagine->min_success = min_success;
+    ScriptedWorld world(options);
+    ExpectSuccess(&world, "carry_object");
+    return world.imaginations().at(0).min_success;
+  };
+  EXPECT_EQ(asked(0.9), 0.9);
+  EXPECT_EQ(asked(std::nullopt), 0.0);
+}
+
 TEST(ToppleTest, WhatCannotBeImaginedIsNotAskedAgain) {
   auto options = For("carry_object");
   options.imagine = [](const StartImagination&, int) {

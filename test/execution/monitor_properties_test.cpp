@@ -97,6 +97,9 @@ std::optional<ImagineAnswered> AnyAnswer(const StartImagination& request, const 
     case 4:
       best.outcome = ImagineAnswered::Outcome::kInvalid;
       return best;
+    case 5:
+      best.outcome = ImagineAnswered::Outcome::kUndecided;
+      return best;
     default:
       best.outcome = rng->Bernoulli(0.5) ? ImagineAnswered::Outcome::kNoWorker
                                          : ImagineAnswered::Outcome::kNothingFinished;

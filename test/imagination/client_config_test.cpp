@@ -18,7 +18,10 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 YAML::Node Configured() {
-  return YAML::LoadFile(std::string(HIRES_SOURCE_DIR) + "/config/imagination_client.yaml");
+  const std::string folder = std::string(HIRES_SOURCE_DIR) + "/config/";
+  YAML::Node root = YAML::LoadFile(folder + "imagination_client.yaml");
+  for (const char* file : {"prices", "validated"}) root[file] = folder + file + ".yaml";
+  return root;
 }
 
 std::string WhyRefused(const YAML::Node& root) {
@@ -39,10 +42,14 @@ TEST(ClientConfigTest, ReadsTheConfiguredFile) {
   EXPECT_EQ(config.feedback_period, 0.7);
   EXPECT_EQ(config.worker_timeout, 3.5);
   EXPECT_EQ(config.scheduler.rollouts, 24);
+  EXPECT_EQ(config.scheduler.criteria.min_success, 0.5);
+  EXPECT_FALSE(config.scheduler.criteria.prices.empty());
+  EXPECT_FALSE(config.validated.objects.empty());
 }
 
 TEST(ClientConfigTest, EveryKeyIsNeeded) {
-  for (const char* key : {"scene", "scheduler", "feedback_period", "worker_timeout"}) {
+  for (const char* key :
+       {"scene", "scheduler", "prices", "validated", "feedback_period", "worker_timeout"}) {
     YAML::Node root = Configured();
     root.remove(key);
     EXPECT_THAT(WhyRefused(root),
@@ -64,6 +71,9 @@ TEST(ClientConfigTest, RefusesTyposAndWhatMakesNoSense) {
   YAML::Node rule = Configured();
   rule["scheduler"]["ranking"] = "hope";
   EXPECT_THAT(WhyRefused(rule), HasSubstr("hope"));
+  YAML::Node certain = Configured();
+  certain["scheduler"]["min_success"] = 1.0;
+  EXPECT_THAT(WhyRefused(certain), HasSubstr("scheduler.min_success is '1'"));
 }
 
 TEST(ClientConfigTest, NamesAMissingFile) {

@@ -41,51 +41,6 @@ TEST(ConfidenceTest, CoefficientsAreTaken) {
   EXPECT_DOUBLE_EQ(Confidence({1, 1, 1}, {4.0, 2.0, 1.0}), 3.0 / 7.0);
 }
 
-TEST(EstimateSuccessTest, EightOfTenGivesWilsonInterval) {
-  const SuccessInterval success = EstimateSuccess(8, 10);
-  EXPECT_NEAR(success.lower, 0.4902, 1e-4);
-  EXPECT_NEAR(success.upper, 0.9433, 1e-4);
-  EXPECT_DOUBLE_EQ(success.share, 0.8);
-  EXPECT_EQ(success.num_rollouts, 10);
-}
-
-TEST(EstimateSuccessTest, AllOfSixtyFourMeansAtLeastNinetyFourPercent) {
-  EXPECT_NEAR(EstimateSuccess(64, 64).lower, 64.0 / (64.0 + 3.841459), 1e-6);
-  EXPECT_EQ(EstimateSuccess(64, 64).upper, 1.0);
-}
-
-TEST(EstimateSuccessTest, NoRolloutSaysNothing) {
-  const SuccessInterval success = EstimateSuccess(0, 0);
-  EXPECT_EQ(success.lower, 0.0);
-  EXPECT_EQ(success.upper, 1.0);
-  EXPECT_EQ(success.num_rollouts, 0);
-}
-
-TEST(EstimateSuccessTest, IntervalHoldsTheShareAndMirrorsWithFailures) {
-  for (int n = 1; n <= 200; n += 7) {
-    for (int k = 0; k <= n; ++k) {
-      const SuccessInterval success = EstimateSuccess(k, n);
-      const SuccessInterval failure = EstimateSuccess(n - k, n);
-      EXPECT_LE(0.0, success.lower);
-      EXPECT_LE(success.lower, success.share);
-      EXPECT_LE(success.share, success.upper);
-      EXPECT_LE(success.upper, 1.0);
-      EXPECT_NEAR(success.lower, 1.0 - failure.upper, 1e-12) << k << " of " << n;
-    }
-  }
-}
-
-TEST(EstimateSuccessTest, MoreFlawlessRolloutsRaiseTheLowerEnd) {
-  for (int n = 1; n <= 512; n *= 2) {
-    EXPECT_GT(EstimateSuccess(2 * n, 2 * n).lower, EstimateSuccess(n, n).lower) << "n = " << n;
-  }
-}
-
-TEST(EstimateSuccessTest, ImpossibleCountsAreRefused) {
-  EXPECT_THROW(EstimateSuccess(-1, 3), std::logic_error);
-  EXPECT_THROW(EstimateSuccess(4, 3), std::logic_error);
-}
-
 TEST(FailureOfTest, SuccessHasNone) { EXPECT_FALSE(FailureOf(Success())); }
 
 TEST(FailureOfTest, OwnFailureIsKept) { EXPECT_EQ(FailureOf(NoPath()), Code::kNoPath); }
@@ -251,6 +206,25 @@ TEST(SumUpTest, WithNothingToWatchSuccessIsTheConfidence) {
   EXPECT_EQ(evidence.action_failed_share, 0.25);
   EXPECT_EQ(SumUp({good, bad, bad}).confidence_pooled, 0.0);
   EXPECT_FALSE(FailureOf(good));
+}
+
+TEST(SumUpTest, NamesTheWorstAndTheFirstFailedRollout) {
+  auto results = Times(2, Success()) + Times(1, NoPath()) + Times(2, Fall());
+  results[1].max_tilt = 2.0;  // leaned most of all, and did not fall
+  const Evidence evidence = SumUp(results);
+  EXPECT_EQ(evidence.first_failed, 2);
+  EXPECT_EQ(evidence.worst_rollout, 3);
+  EXPECT_EQ(SumUp(results, 2).worst_rollout, 1);
+  EXPECT_EQ(SumUp(results, 2).first_failed, -1);
+  EXPECT_EQ(SumUp(results, 0).worst_rollout, -1);
+}
+
+TEST(SumUpTest, CountsWhatBeganIt) {
+  auto results = Times(4, Success());
+  results[1].first_cause = results[3].first_cause = "late_command";
+  results[2].first_cause = "turning";
+  EXPECT_THAT(SumUp(results).first_causes,
+              ElementsAre(Pair("late_command", 2), Pair("turning", 1)));
 }
 
 }  // namespace

@@ -21,18 +21,36 @@ using testing::IsEmpty;
 
 using Results = std::vector<RolloutResult>;
 
-std::vector<Evidence> SumUpAll(const std::vector<Results>& alternatives) {
+std::vector<Evidence> SumUpAll(const std::vector<Results>& alternatives,
+                               const Criteria& criteria = {}) {
   std::vector<Evidence> evidence;
-  for (const Results& results : alternatives) evidence.push_back(SumUp(results));
+  for (const Results& results : alternatives) {
+    evidence.push_back(SumUp(results, static_cast<int>(results.size()),
+                             IntervalKind::kClopperPearson, criteria.prices));
+  }
   return evidence;
 }
 
+/// Ranked by cost, where a fall costs so much [s] and everything else 50 s.
+Criteria ByCost(double price_of_fall) {
+  return {RankingRule::kCost,
+          0.5,
+          {{{base::FailureCode::kObjectFell, price_of_fall}, {base::FailureCode::kOther, 50.0}},
+           300.0}};
+}
+
 const std::vector<std::string> kNames{"fast", "slow"};
+const Criteria kRisk{RankingRule::kRisk, 0.5, {}};
+const Criteria kCheap = ByCost(100.0);
+const Criteria kDear = ByCost(600.0);
+const Criteria kThesis{RankingRule::kThesis, 0.5, {}};
 
 TEST(ParseRankingRuleTest, KnowsBothNamesInAnyCase) {
   EXPECT_EQ(ParseRankingRule("risk"), RankingRule::kRisk);
   EXPECT_EQ(ParseRankingRule("Thesis"), RankingRule::kThesis);
   EXPECT_EQ(ToString(RankingRule::kRisk), "risk");
+  EXPECT_EQ(ParseRankingRule("cost"), RankingRule::kCost);
+  EXPECT_EQ(ToString(RankingRule::kCost), "cost");
   EXPECT_EQ(ToString(RankingRule::kThesis), "thesis");
 }
 
@@ -50,64 +68,66 @@ TEST(ParseRankingRuleTest, NamesWhatIsUnknown) {
 
 TEST(RankTest, RulesDisagreeOnOneFallAgainstTwelveWobbles) {  // the case DESIGN is careful about
   const auto evidence = SumUpAll({{Fall(32.0, 1)}, {Success(45.0, 12)}});
-  EXPECT_THAT(Rank(evidence, RankingRule::kRisk), ElementsAre(1, 0));
-  EXPECT_THAT(Rank(evidence, RankingRule::kThesis), ElementsAre(0, 1));
+  EXPECT_THAT(Rank(evidence, kRisk), ElementsAre(1, 0));
+  EXPECT_THAT(Rank(evidence, kThesis), ElementsAre(0, 1));
 }
 
 TEST(RankTest, OriginalExperimentRecommendsSlow) {  // one rollout each, dissertation 6.3.3
   const auto evidence = SumUpAll({{Success(32.01, 12)}, {Success(45.27, 0)}});
-  EXPECT_EQ(Recommended(evidence, RankingRule::kThesis), 1);
-  EXPECT_EQ(Recommended(evidence, RankingRule::kRisk), 1);
+  EXPECT_EQ(Recommended(evidence, kThesis), 1);
+  // One rollout proves nothing to those who ask how sure it is.
+  EXPECT_EQ(Recommended(evidence, kRisk), std::nullopt);
+  EXPECT_THAT(Rank(evidence, kRisk), ElementsAre(1, 0));
 }
 
 TEST(RankTest, ConfidenceDecidesWhereSuccessIsEqual) {
   const auto evidence = SumUpAll({Times(8, Success(20.0, 5)), Times(8, Success(30.0, 1))});
-  EXPECT_THAT(Rank(evidence, RankingRule::kRisk), ElementsAre(1, 0));
+  EXPECT_THAT(Rank(evidence, kRisk), ElementsAre(1, 0));
 }
 
 TEST(RankTest, DurationDecidesWhereTheRestIsEqual) {
   const auto evidence = SumUpAll({Times(8, Success(30.0)), Times(8, Success(20.0))});
-  EXPECT_THAT(Rank(evidence, RankingRule::kRisk), ElementsAre(1, 0));
-  EXPECT_THAT(Rank(evidence, RankingRule::kThesis), ElementsAre(1, 0));
+  EXPECT_THAT(Rank(evidence, kRisk), ElementsAre(1, 0));
+  EXPECT_THAT(Rank(evidence, kThesis), ElementsAre(1, 0));
 }
 
 TEST(RankTest, EqualsKeepTheirOrder) {
   const auto evidence = SumUpAll(std::vector<Results>(5, Times(3, Success())));
-  EXPECT_THAT(Rank(evidence, RankingRule::kRisk), ElementsAre(0, 1, 2, 3, 4));
-  EXPECT_THAT(Rank(evidence, RankingRule::kThesis), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(Rank(evidence, kRisk), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(Rank(evidence, kThesis), ElementsAre(0, 1, 2, 3, 4));
 }
 
 TEST(RankTest, FallsOnlyLowerTheConfidenceUnderThesis) {
   const auto evidence = SumUpAll({Times(10, NoPath()), Times(10, Fall())});
-  EXPECT_THAT(Rank(evidence, RankingRule::kThesis), ElementsAre(1, 0));
-  EXPECT_EQ(Recommended(evidence, RankingRule::kThesis), 1);
-  EXPECT_EQ(Recommended(evidence, RankingRule::kRisk), std::nullopt);
+  EXPECT_THAT(Rank(evidence, kThesis), ElementsAre(1, 0));
+  EXPECT_EQ(Recommended(evidence, kThesis), 1);
+  EXPECT_EQ(Recommended(evidence, kRisk), std::nullopt);
 }
 
 TEST(RankTest, HalfFailedIsNotOutUnderThesis) {
   const auto half = SumUpAll({Times(5, NoPath()) + Times(5, Success())});
-  EXPECT_EQ(Recommended(half, RankingRule::kThesis), 0);
+  EXPECT_EQ(Recommended(half, kThesis), 0);
   const auto most = SumUpAll({Times(6, NoPath()) + Times(4, Success())});
-  EXPECT_EQ(Recommended(most, RankingRule::kThesis), std::nullopt);
+  EXPECT_EQ(Recommended(most, kThesis), std::nullopt);
 }
 
 TEST(RankTest, WhoNeverFinishedIsSlowerThanWhoDid) {
   // Every rollout of both fails; with the same confidence only the duration is left.
   auto finished = SumUp({Fall(50.0)});
   finished.confidence_mean = 0.0;
-  EXPECT_THAT(Rank({SumUp({NoPath()}), finished}, RankingRule::kRisk), ElementsAre(1, 0));
+  EXPECT_THAT(Rank({SumUp({NoPath()}), finished}, kRisk), ElementsAre(1, 0));
 }
 
 TEST(RankTest, NothingAndNoRolloutRecommendNothing) {
-  EXPECT_THAT(Rank({}, RankingRule::kRisk), IsEmpty());
-  EXPECT_EQ(Recommended({}, RankingRule::kRisk), std::nullopt);
-  EXPECT_EQ(Recommended({Evidence{}, Evidence{}}, RankingRule::kThesis), std::nullopt);
+  EXPECT_THAT(Rank({}, kRisk), IsEmpty());
+  EXPECT_EQ(Recommended({}, kRisk), std::nullopt);
+  EXPECT_EQ(Recommended({Evidence{}, Evidence{}}, kThesis), std::nullopt);
 }
 
 TEST(RankTest, DifferentNumbersOfRolloutsAreRefused) {
   const auto evidence = SumUpAll({Times(8, Success()), Times(9, Success())});
-  EXPECT_THROW(Rank(evidence, RankingRule::kRisk), std::logic_error);
-  EXPECT_THROW(WhyRecommended(evidence, RankingRule::kRisk, kNames), std::logic_error);
+  EXPECT_THROW(Rank(evidence, kRisk), std::logic_error);
+  EXPECT_THROW(WhyRecommended(evidence, kRisk, kNames), std::logic_error);
 }
 
 TEST(RankTest, OrderOfTheRequestDoesNotMatterWhereNothingIsEqual) {
@@ -118,7 +138,7 @@ TEST(RankTest, OrderOfTheRequestDoesNotMatterWhereNothingIsEqual) {
       evidence.push_back(SumUp(InventAll({0.1 * a, 0.1, 20.0 + a, 30}, rng.Fork(a), 20)));
     }
     const std::vector<Evidence> reversed(evidence.rbegin(), evidence.rend());
-    for (const RankingRule rule : {RankingRule::kRisk, RankingRule::kThesis}) {
+    for (const Criteria& rule : {kRisk, kThesis}) {
       std::vector<int> expected;
       for (const int i : Rank(evidence, rule)) expected.push_back(5 - i);
       EXPECT_EQ(Rank(reversed, rule), expected);
@@ -126,76 +146,151 @@ TEST(RankTest, OrderOfTheRequestDoesNotMatterWhereNothingIsEqual) {
   }
 }
 
+// ---------------------------------------------------------------- good enough
+
+TEST(RecommendedTest, TheLowerEndMustReachWhatIsWanted) {
+  const auto of = [](int num_success, int num_rollouts) {
+    return SumUpAll({Times(num_success, Success()) + Times(num_rollouts - num_success, Fall())});
+  };
+  EXPECT_EQ(Recommended(of(4, 4), kRisk), std::nullopt);  // 39.8 .. 100 %
+  EXPECT_EQ(Recommended(of(6, 6), kRisk), 0);             // 54.1 .. 100 %
+  EXPECT_EQ(Recommended(of(1, 400), kRisk), std::nullopt);
+  EXPECT_EQ(Recommended(of(6, 6), {RankingRule::kRisk, 0.6, {}}), std::nullopt);
+}
+
+TEST(AllFailTest, OnlyWhereEveryUpperEndLiesBelow) {
+  EXPECT_TRUE(AllFail(SumUpAll({Times(8, Fall()), Times(8, NoPath())}), kRisk));
+  EXPECT_FALSE(
+      AllFail(SumUpAll({Times(8, Fall()), Times(4, Success()) + Times(4, Fall())}), kRisk));
+  EXPECT_FALSE(AllFail(SumUpAll({Times(4, Fall())}), kRisk));  // 0 .. 60 %
+  EXPECT_FALSE(AllFail({}, kRisk));
+  EXPECT_FALSE(AllFail({Evidence{}}, kRisk));
+}
+
+TEST(AllFailTest, RecommendedAndAllFailExcludeEachOther) {
+  for (int seed = 0; seed < 100; ++seed) {
+    base::Rng rng = base::Rng(4).Fork(seed);
+    const Behaviour one{rng.Uniform(0.0, 1.0)}, other{rng.Uniform(0.0, 1.0)};
+    const auto evidence =
+        SumUpAll({InventAll(one, rng.Fork(1), 24), InventAll(other, rng.Fork(2), 24)}, kCheap);
+    for (const Criteria& criteria : {kRisk, kCheap, kThesis}) {
+      EXPECT_FALSE(Recommended(evidence, criteria) && AllFail(evidence, criteria));
+    }
+  }
+}
+
+TEST(RankTest, PricesDecideWhetherAFallIsWorthTheTime) {
+  const std::vector<Results> results{Times(60, Success(20.0)) + Times(4, Fall(20.0)),
+                                     Times(64, Success(30.0))};
+  EXPECT_THAT(Rank(SumUpAll(results, kCheap), kCheap), ElementsAre(0, 1));  // 26.3 s against 30 s
+  EXPECT_THAT(Rank(SumUpAll(results, kDear), kDear), ElementsAre(1, 0));    // 57.5 s against 30 s
+}
+
+TEST(RankTest, CheapButNotGoodEnoughComesLaterUnderCost) {
+  const std::vector<Results> results{Times(64, NoPath()), Times(64, Success(200.0))};
+  const Criteria cheap{RankingRule::kCost, 0.5, {{{base::FailureCode::kOther, 0.0}}, 300.0}};
+  EXPECT_THAT(Rank(SumUpAll(results, cheap), cheap), ElementsAre(1, 0));
+  EXPECT_EQ(Recommended(SumUpAll(results, cheap), cheap), 1);
+}
+
+TEST(RankTest, CostNeedsPrices) {
+  EXPECT_THROW(Rank(SumUpAll({{Success()}}), kCheap), std::logic_error);
+}
+
+TEST(RolloutsToDecideOfRequestTest, OneGoodAlternativeIsEnough) {
+  const auto evidence = SumUpAll({Times(4, Success()), Times(4, Fall())});
+  EXPECT_EQ(RolloutsToDecide(evidence, kRisk), 6);
+  EXPECT_EQ(RolloutsToDecide(SumUpAll({Times(4, Fall()), Times(4, Fall())}), kRisk), 6);
+}
+
 // ---------------------------------------------------------------- words
 
 TEST(WhyRecommendedTest, SuccessDecides) {
   const auto evidence = SumUpAll(
       {Times(55, Success()) + Times(7, Fall()) + Times(2, NoPath()), Times(64, Success())});
-  EXPECT_EQ(WhyRecommended(evidence, RankingRule::kRisk, kNames),
+  EXPECT_EQ(WhyRecommended(evidence, kRisk, kNames),
             "slow: 64 of 64 rollouts succeeded (at least 94 %), fast failed in 9 of 64 "
             "(object_fell 7, no_path 2)");
 }
 
 TEST(WhyRecommendedTest, ConfidenceDecides) {
   const auto evidence = SumUpAll({Times(16, Success(30.0, 12)), Times(16, Success(45.0))});
-  EXPECT_EQ(WhyRecommended(evidence, RankingRule::kRisk, kNames),
-            "slow: 16 of 16 rollouts succeeded (at least 80 %) as with fast, and its confidence is "
+  EXPECT_EQ(WhyRecommended(evidence, kRisk, kNames),
+            "slow: 16 of 16 rollouts succeeded (at least 79 %) as with fast, and its confidence is "
             "higher, 1.000 against 0.856");
 }
 
 TEST(WhyRecommendedTest, DurationDecides) {
   const auto evidence = SumUpAll({Times(16, Success(18.0)), Times(16, Success(27.5))});
-  EXPECT_EQ(WhyRecommended(evidence, RankingRule::kRisk, kNames),
-            "fast: 16 of 16 rollouts succeeded (at least 80 %) as with slow and with the same "
+  EXPECT_EQ(WhyRecommended(evidence, kRisk, kNames),
+            "fast: 16 of 16 rollouts succeeded (at least 79 %) as with slow and with the same "
             "confidence 1.000, but quicker, 18.000 s against 27.500 s");
 }
 
 TEST(WhyRecommendedTest, NothingDecides) {
   const auto evidence = SumUpAll({{Success()}, {Success()}});
-  EXPECT_EQ(WhyRecommended(evidence, RankingRule::kRisk, kNames),
-            "fast: 1 of 1 rollout succeeded (at least 20 %) as with slow, and in nothing worse; it "
+  EXPECT_EQ(WhyRecommended(evidence, {RankingRule::kRisk, 0.02, {}}, kNames),
+            "fast: 1 of 1 rollout succeeded (at least 2 %) as with slow, and in nothing worse; it "
             "was named first");
 }
 
 TEST(WhyRecommendedTest, NumbersThatDifferAreShownDifferent) {
-  auto evidence = SumUpAll({{Success()}, {Success()}});
+  auto evidence = SumUpAll({Times(8, Success()), Times(8, Success())});
   evidence[0].confidence_mean = 0.99991;
-  EXPECT_THAT(WhyRecommended(evidence, RankingRule::kRisk, kNames),
-              HasSubstr("1.0000 against 0.9999"));
+  EXPECT_THAT(WhyRecommended(evidence, kRisk, kNames), HasSubstr("1.0000 against 0.9999"));
 }
 
 TEST(WhyRecommendedTest, ThesisSpeaksOfTheAction) {
   const auto evidence = SumUpAll({Times(10, NoPath()), Times(10, Fall())});
-  EXPECT_EQ(WhyRecommended(evidence, RankingRule::kThesis, kNames),
+  EXPECT_EQ(WhyRecommended(evidence, kThesis, kNames),
             "slow: its action reached its goal in 100 % of 10 rollouts, that of fast only in 0 %");
 }
 
 TEST(WhyRecommendedTest, OnlyAlternative) {
-  EXPECT_EQ(WhyRecommended(SumUpAll({Times(8, Success()) + Times(2, Fall())}), RankingRule::kRisk,
-                           {"slow"}),
-            "slow: the only alternative; 8 of 10 rollouts succeeded (at least 49 %)");
+  EXPECT_EQ(WhyRecommended(SumUpAll({Times(9, Success()) + Times(1, Fall())}), kRisk, {"slow"}),
+            "slow: the only alternative; 9 of 10 rollouts succeeded (at least 55 %)");
 }
 
 TEST(WhyRecommendedTest, NothingIsRecommended) {
-  const auto evidence = SumUpAll({Times(4, NoPath()), Times(3, Fall()) + Times(1, NoPath())});
-  EXPECT_EQ(WhyRecommended(evidence, RankingRule::kRisk, kNames),
-            "nothing is recommended, all alternatives fail: fast failed in 4 of 4 (no_path 4); "
-            "slow failed in 4 of 4 (object_fell 3, no_path 1)");
-  EXPECT_EQ(WhyRecommended({Evidence{}, Evidence{}}, RankingRule::kRisk, kNames),
+  const auto evidence = SumUpAll({Times(8, NoPath()), Times(6, Fall()) + Times(2, NoPath())});
+  EXPECT_EQ(WhyRecommended(evidence, kRisk, kNames),
+            "nothing is recommended, all alternatives fail: fast failed in 8 of 8 (no_path 8); "
+            "slow failed in 8 of 8 (object_fell 6, no_path 2); at most 37 % succeed, wanted 50 %");
+  EXPECT_EQ(WhyRecommended({Evidence{}, Evidence{}}, kRisk, kNames),
             "nothing is recommended: no rollout of every alternative has finished");
-  EXPECT_EQ(WhyRecommended({}, RankingRule::kRisk, {}),
-            "nothing is recommended: there is no alternative");
+  EXPECT_EQ(WhyRecommended({}, kRisk, {}), "nothing is recommended: there is no alternative");
+}
+
+TEST(WhyRecommendedTest, UndecidedSaysWhatIsKnownAndHowManyWouldDecide) {
+  const auto evidence = SumUpAll({Times(4, Success()), Times(2, Success()) + Times(2, Fall())});
+  EXPECT_EQ(WhyRecommended(evidence, kRisk, kNames),
+            "nothing is recommended yet, wanted are 50 % of success: fast succeeded in 4 of 4 (39 "
+            "to 100 %); slow succeeded in 2 of 4 (6 to 94 %); if it goes on like this, about 6 "
+            "rollouts decide");
+}
+
+TEST(WhyRecommendedTest, OnTheEdgeNoNumberDecides) {
+  const auto evidence = SumUpAll({Times(8, Success()) + Times(8, Fall())});
+  EXPECT_THAT(WhyRecommended(evidence, kRisk, {"slow"}),
+              HasSubstr("not even 100000 rollouts would likely decide"));
+}
+
+TEST(WhyRecommendedTest, CostDecides) {
+  const auto evidence =
+      SumUpAll({Times(60, Success(20.0)) + Times(4, Fall(20.0)), Times(64, Success(30.0))}, kCheap);
+  EXPECT_EQ(WhyRecommended(evidence, kCheap, kNames),
+            "fast: 60 of 64 rollouts succeeded (at least 84 %), good enough like slow, and its "
+            "expected cost is lower, 26.250 s against 30.000 s");
 }
 
 TEST(WhyRecommendedTest, EachAlternativeNeedsAName) {
-  EXPECT_THROW(WhyRecommended(SumUpAll({{Success()}}), RankingRule::kRisk, kNames),
-               std::logic_error);
+  EXPECT_THROW(WhyRecommended(SumUpAll({{Success()}}), kRisk, kNames), std::logic_error);
 }
 
 // ---------------------------------------------------------------- settled
 
-bool IsSettled(const std::vector<Results>& results, RankingRule rule = RankingRule::kRisk) {
-  return Settled(results, static_cast<int>(results.front().size()), rule, {});
+bool IsSettled(const std::vector<Results>& results, const Criteria& criteria = kRisk) {
+  return Settled(results, static_cast<int>(results.front().size()), criteria, {});
 }
 
 TEST(SettledTest, ClearDifferenceInSuccessSettlesAtTheFirstLook) {
@@ -231,49 +326,91 @@ TEST(SettledTest, OrderByChanceAgainstWhatIsKnownStaysOpen) {
   // is certainly quicker: Rank says a, the evidence for it is thin.
   const Results a = Times(1024, Success(30.0));
   const Results b = Times(500, Success(20.0)) + Times(1, Fall(20.0)) + Times(523, Success(20.0));
-  EXPECT_THAT(Rank(SumUpAll({a, b}), RankingRule::kRisk), ElementsAre(0, 1));
+  EXPECT_THAT(Rank(SumUpAll({a, b}), kRisk), ElementsAre(0, 1));
   EXPECT_FALSE(IsSettled({a, b}));
 }
 
 TEST(SettledTest, OneAlternativeHasNoOrderToSettle) {
-  EXPECT_TRUE(Settled({{Success()}}, 1, RankingRule::kRisk, {}));
+  EXPECT_TRUE(Settled({{Success()}}, 1, kRisk, {}));
 }
 
 TEST(SettledTest, ThesisSettlesOnceInAndOutAreCertain) {
-  EXPECT_TRUE(IsSettled({Times(16, NoPath()), Times(16, Success())}, RankingRule::kThesis));
-  EXPECT_TRUE(IsSettled({Times(16, NoPath()), Times(16, NoPath())}, RankingRule::kThesis));
+  EXPECT_TRUE(IsSettled({Times(16, NoPath()), Times(16, Success())}, kThesis));
+  EXPECT_TRUE(IsSettled({Times(16, NoPath()), Times(16, NoPath())}, kThesis));
   Results half;
   for (int i = 0; i < 64; ++i) half.push_back(i % 2 == 0 ? NoPath() : Success());
-  EXPECT_FALSE(IsSettled({half, Times(64, Success())}, RankingRule::kThesis));
+  EXPECT_FALSE(IsSettled({half, Times(64, Success())}, kThesis));
 }
 
 TEST(SettledTest, ThesisComparesConfidences) {
-  EXPECT_TRUE(
-      IsSettled({Times(32, Success(30.0, 60)), Times(32, Success(45.0))}, RankingRule::kThesis));
+  EXPECT_TRUE(IsSettled({Times(32, Success(30.0, 60)), Times(32, Success(45.0))}, kThesis));
 }
 
 TEST(SettledTest, OnlyBestIgnoresTheOrderBehind) {
   const std::vector<Results> results{Times(64, Fall(20.0)), Times(64, Success()),
                                      Times(64, Fall(30.0))};
   SettleParams params;
-  EXPECT_FALSE(Settled(results, 64, RankingRule::kRisk, params));
+  EXPECT_FALSE(Settled(results, 64, kRisk, params));
   params.only_best = true;
-  EXPECT_TRUE(Settled(results, 64, RankingRule::kRisk, params));
+  EXPECT_TRUE(Settled(results, 64, kRisk, params));
 }
 
 TEST(SettledTest, OnlyTheFirstRolloutsCount) {
   const std::vector<Results> results{Times(16, Success()) + Times(48, Fall()),
                                      Times(64, Success())};
-  EXPECT_FALSE(Settled(results, 16, RankingRule::kRisk, {}));
-  EXPECT_TRUE(Settled(results, 64, RankingRule::kRisk, {}));
+  EXPECT_FALSE(Settled(results, 16, kRisk, {}));
+  EXPECT_TRUE(Settled(results, 64, kRisk, {}));
+}
+
+TEST(SettledTest, CostSettlesOnceTheDifferenceIsCertain) {
+  // A fall in four costs 150 s in the mean, the slower way 10 s.
+  Results fast, slow = Times(64, Success(30.0));
+  for (int i = 0; i < 64; ++i) fast.push_back(i % 4 == 1 ? Fall(20.0) : Success(20.0));
+  EXPECT_FALSE(Settled({fast, slow}, 16, kDear, {}));
+  EXPECT_TRUE(Settled({fast, slow}, 64, kDear, {}));
+}
+
+TEST(SettledTest, EqualCostsStayOpen) {
+  EXPECT_FALSE(IsSettled({Times(512, Success()), Times(512, Success())}, kCheap));
+}
+
+TEST(SettledTest, UnderCostTheFirstMustReachWhatIsWanted) {
+  const Results bad = Times(64, Fall(10.0));
+  Results half;
+  for (int i = 0; i < 64; ++i) half.push_back(i % 2 == 0 ? Success(10.0) : Fall(10.0));
+  EXPECT_TRUE(IsSettled({bad, bad}, kDear));  // nobody will take either
+  EXPECT_FALSE(IsSettled({half, bad}, kDear));
+  EXPECT_TRUE(IsSettled({Times(64, Success(299.0)), bad}, kDear));
+}
+
+bool IsDecided(const std::vector<Results>& results, const Criteria& criteria = kRisk) {
+  std::vector<const Results*> apart;
+  for (const Results& of_one : results) apart.push_back(&of_one);
+  return Decided(apart, static_cast<int>(results.front().size()), criteria, {});
+}
+
+TEST(DecidedTest, TheBestMustBeGoodEnoughAndTheOrderSettled) {
+  EXPECT_TRUE(IsDecided({Times(16, Fall()), Times(16, Success())}));
+  EXPECT_FALSE(IsDecided({Times(16, Success()), Times(16, Success())}));  // who is first?
+  Results half;
+  for (int i = 0; i < 64; ++i) half.push_back(i % 2 == 0 ? Success() : Fall());
+  EXPECT_TRUE(IsSettled({half, Times(64, Fall())}));
+  EXPECT_FALSE(IsDecided({half, Times(64, Fall())}));  // the order alone is not enough
+  EXPECT_TRUE(IsDecided({half, Times(64, Fall())}, {RankingRule::kThesis, 0.9, {}}));
+}
+
+TEST(DecidedTest, AllFailingNeedsNoOrder) {
+  EXPECT_FALSE(IsSettled({Times(16, Fall()), Times(16, Fall())}));
+  EXPECT_TRUE(IsDecided({Times(16, Fall()), Times(16, Fall())}));
+  EXPECT_TRUE(IsDecided({Times(16, Fall()), Times(16, Fall())}, kCheap));
 }
 
 TEST(SettledTest, BrokenParametersAreRefused) {
   const std::vector<Results> results{{Success()}, {Success()}};
-  EXPECT_THROW(Settled(results, 0, RankingRule::kRisk, {}), std::logic_error);
-  EXPECT_THROW(Settled(results, 2, RankingRule::kRisk, {}), std::logic_error);
-  EXPECT_THROW(Settled(results, 1, RankingRule::kRisk, {0.0, 0.05, false}), std::logic_error);
-  EXPECT_THROW(Settled(results, 1, RankingRule::kRisk, {0.05, 1.0, false}), std::logic_error);
+  EXPECT_THROW(Settled(results, 0, kRisk, {}), std::logic_error);
+  EXPECT_THROW(Settled(results, 2, kRisk, {}), std::logic_error);
+  EXPECT_THROW(Settled(results, 1, kRisk, {0.0, 0.05, false}), std::logic_error);
+  EXPECT_THROW(Settled(results, 1, kRisk, {0.05, 1.0, false}), std::logic_error);
 }
 
 /// The look (of 16, 32, ..., 256) at which an order is settled, or 0 if it never is.
@@ -284,10 +421,10 @@ int SettlesAt(const std::vector<Behaviour>& behaviours, const base::Rng& rng, bo
     results.push_back(InventAll(behaviours[a], independent ? rng.Fork(1000 + a) : rng, 256));
   }
   for (int look = 16; look <= 256; look *= 2) {
-    if (!Settled(results, look, RankingRule::kRisk, {})) continue;
+    if (!Settled(results, look, kRisk, {})) continue;
     std::vector<Evidence> evidence;
     for (const Results& of_one : results) evidence.push_back(SumUp(of_one, look));
-    *first = Rank(evidence, RankingRule::kRisk)[0];
+    *first = Rank(evidence, kRisk)[0];
     return look;
   }
   return 0;

@@ -27,6 +27,7 @@ SchedulerParams AllOf4() {
   params.early_stop = false;
   params.deadline = 10.0;
   params.worker_wait = 1.0;
+  params.criteria.min_success = 0.3;  // four flawless rollouts reach it: 40 % at least
   return params;
 }
 
@@ -55,9 +56,7 @@ RolloutResult EndingAt(RolloutResult result, double x) {
   return result;
 }
 
-Report Make(const Scheduler& scheduler) {
-  return MakeReport(scheduler, kActions, RankingRule::kRisk, 7, 1.5);
-}
+Report Make(const Scheduler& scheduler) { return MakeReport(scheduler, kActions, 7, 1.5); }
 
 TEST(ReportTest, RanksTheBestFirstAndSaysWhy) {
   Scheduler scheduler(AllOf4(), 2, 0.0);
@@ -94,13 +93,27 @@ TEST(ReportTest, FinalStatesAreThoseOfTheMedianRollout) {
 }
 
 TEST(ReportTest, AllFailingIsSaidAndNothingRecommended) {
-  Scheduler scheduler(AllOf4(), 2, 0.0);
+  SchedulerParams params = AllOf4();
+  params.criteria.min_success = 0.7;
+  Scheduler scheduler(params, 2, 0.0);
   PlayAll(&scheduler, {Times(4, NoPath()), Times(4, NoPath())});
   const Report report = Make(scheduler);
   EXPECT_EQ(report.outcome, ImaginationOutcome::kAllFailed);
   EXPECT_EQ(report.recommended, -1);
   EXPECT_THAT(report.ranking, SizeIs(2));
-  EXPECT_NE(report.why, "");
+  EXPECT_THAT(report.why, HasSubstr("all alternatives fail"));
+}
+
+TEST(ReportTest, TooFewRolloutsAreUndecidedAndSayHowManyWouldDecide) {
+  SchedulerParams params = AllOf4();
+  params.criteria.min_success = 0.5;
+  Scheduler scheduler(params, 2, 0.0);
+  PlayAll(&scheduler, {Times(4, Success()), Times(4, Fall())});
+  const Report report = Make(scheduler);
+  EXPECT_EQ(report.outcome, ImaginationOutcome::kUndecided);
+  EXPECT_EQ(report.recommended, -1);
+  EXPECT_THAT(report.ranking, SizeIs(2));
+  EXPECT_THAT(report.why, HasSubstr("about 6 rollouts decide"));
 }
 
 TEST(ReportTest, WithoutWorkersThereIsNoNumber) {
@@ -143,7 +156,7 @@ TEST(ReportTest, CutShortItCountsWhatTheRankingRestsOn) {
   scheduler.Tick(11.0);
   ASSERT_TRUE(scheduler.finished());
   const Report report = Make(scheduler);
-  EXPECT_EQ(report.outcome, ImaginationOutcome::kRanked);
+  EXPECT_EQ(report.outcome, ImaginationOutcome::kUndecided);
   EXPECT_FALSE(report.complete);
   const int common = report.ranking.at(0).evidence.num_rollouts;
   EXPECT_GE(common, 1);

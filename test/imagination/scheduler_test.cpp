@@ -78,6 +78,13 @@ int PlayAlone(const Play& play, Scheduler* scheduler, double now = 0.0) {
   return played;
 }
 
+bool IsDecided(const std::vector<std::vector<RolloutResult>>& results, int num_rollouts,
+               const SchedulerParams& params) {
+  std::vector<const std::vector<RolloutResult>*> prefixes;
+  for (const auto& of_one : results) prefixes.push_back(&of_one);
+  return Decided(prefixes, num_rollouts, params.criteria, params.settle);
+}
+
 /// The obvious road: play everything in order, look at the looks.
 Ranking Sequentially(const SchedulerParams& params, int num_alternatives, const Play& play) {
   std::vector<std::vector<RolloutResult>> results(num_alternatives);
@@ -86,14 +93,19 @@ Ranking Sequentially(const SchedulerParams& params, int num_alternatives, const 
     for (int a = 0; a < num_alternatives; ++a) results[a].push_back(play(a, n - 1));
     if (n < look) continue;
     const bool may_stop = params.early_stop && num_alternatives > 1;
-    if (may_stop && Settled(results, n, params.rule, params.settle)) break;
+    if (may_stop && IsDecided(results, n, params)) break;
     look = NextLook(n, params);
   }
   Ranking ranking;
   ranking.num_rollouts = static_cast<int>(results.front().size());
-  for (const auto& of_one : results) ranking.evidence.push_back(SumUp(of_one));
-  ranking.order = Rank(ranking.evidence, params.rule);
-  ranking.recommended = Recommended(ranking.evidence, params.rule);
+  const bool is_fixed =
+      !params.early_stop || num_alternatives == 1 || params.first_look >= params.rollouts;
+  const auto kind = is_fixed ? IntervalKind::kClopperPearson : IntervalKind::kConfidenceSequence;
+  for (const auto& of_one : results) {
+    ranking.evidence.push_back(SumUp(of_one, ranking.num_rollouts, kind, params.criteria.prices));
+  }
+  ranking.order = Rank(ranking.evidence, params.criteria);
+  ranking.recommended = Recommended(ranking.evidence, params.criteria);
   return ranking;
 }
 
@@ -143,6 +155,10 @@ TEST(SchedulerParamsTest, FieldsOutOfRangeAreNamed) {
   EXPECT_THAT(message_of([](auto* p) { p->first_look = 0; }), HasSubstr("first_look is 0"));
   EXPECT_THAT(message_of([](auto* p) { p->batch = 0; }), HasSubstr("batch is 0"));
   EXPECT_THAT(message_of([](auto* p) { p->max_attempts = 0; }), HasSubstr("max_attempts is 0"));
+  EXPECT_THAT(message_of([](auto* p) { p->criteria.min_success = 1.0; }),
+              HasSubstr("min_success is 1"));
+  EXPECT_THAT(message_of([](auto* p) { p->criteria.rule = RankingRule::kCost; }),
+              HasSubstr("needs prices"));
   EXPECT_THAT(message_of([](auto* p) { p->settle.alpha = 1.0; }), HasSubstr("alpha is 1"));
   EXPECT_THAT(message_of([](auto* p) { p->settle.indifference = 0.0; }),
               HasSubstr("indifference is 0"));
@@ -150,7 +166,8 @@ TEST(SchedulerParamsTest, FieldsOutOfRangeAreNamed) {
 
 const char* const kYaml =
     "{rollouts: 128, deadline: 20.0, worker_wait: 5.0, early_stop: false, ranking: thesis, "
-    "first_look: 8, batch: 2, max_attempts: 3, alpha: 0.01, indifference: 0.1, only_best: true}";
+    "min_success: 0.75, first_look: 8, batch: 2, max_attempts: 3, alpha: 0.01, indifference: 0.1, "
+    "only_best: true}";
 
 TEST(SchedulerParamsTest, EveryKeyIsRead) {
   const auto params = ReadSchedulerParams(base::ParamReader::FromString(kYaml, "test"));
@@ -158,7 +175,8 @@ TEST(SchedulerParamsTest, EveryKeyIsRead) {
   EXPECT_EQ(params.deadline, 20.0);
   EXPECT_EQ(params.worker_wait, 5.0);
   EXPECT_FALSE(params.early_stop);
-  EXPECT_EQ(params.rule, RankingRule::kThesis);
+  EXPECT_EQ(params.criteria.rule, RankingRule::kThesis);
+  EXPECT_EQ(params.criteria.min_success, 0.75);
   EXPECT_EQ(params.first_look, 8);
   EXPECT_EQ(params.batch, 2);
   EXPECT_EQ(params.max_attempts, 3);
@@ -177,6 +195,7 @@ TEST(SchedulerParamsTest, WrongYamlIsRefused) {
   EXPECT_THROW(read("rollouts: 128, ", ""), base::ConfigError);
   EXPECT_THROW(read("ranking: thesis", "ranking: best"), base::ConfigError);
   EXPECT_THROW(read("batch: 2", "batch: 2, bacth: 2"), base::ConfigError);
+  EXPECT_THROW(read("min_success: 0.75", "min_success: 0.0"), base::ConfigError);
   EXPECT_THROW(read("alpha: 0.01", "alpha: 1.5"), base::ConfigError);
 }
 
@@ -243,7 +262,7 @@ TEST(SchedulerTest, OneAlternativeIsPlayedToTheEnd) {
 TEST(SchedulerTest, OneRolloutEachReproducesTheOriginal) {
   SchedulerParams params;
   params.rollouts = 1;
-  params.rule = RankingRule::kThesis;
+  params.criteria.rule = RankingRule::kThesis;
   Scheduler scheduler(params, 2, 0.0);
   const Play play = [](int alternative, int) {
     return alternative == 0 ? Success(32.01, 12) : Success(45.27);
@@ -336,6 +355,101 @@ TEST(SchedulerTest, NothingMattersAfterTheEnd) {
   EXPECT_EQ(scheduler.ProgressAt(1e9).time_left, 0.0);
 }
 
+// ---------------------------------------------------------------- good enough
+
+Play Always(const RolloutResult& result) {
+  return [=](int, int) { return result; };
+}
+
+/// The first `num_success` of each `period` rollouts succeed.
+Play SuccessesOf(int num_success, int period) {
+  return [=](int, int index) { return index % period < num_success ? Success() : Fall(); };
+}
+
+SchedulerParams AtMost(int rollouts, double min_success = 0.5) {
+  SchedulerParams params;
+  params.rollouts = rollouts;
+  params.criteria.min_success = min_success;
+  return params;
+}
+
+TEST(SchedulerTest, FourGoodRolloutsCutOffAreUndecidedAndNoBan) {
+  SchedulerParams params = AtMost(64);
+  params.deadline = 4.5;
+  Scheduler scheduler(params, 1, 0.0);
+  PlayAlone(Always(Success()), &scheduler);  // a rollout a second at first
+  EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kUndecided);
+  EXPECT_EQ(scheduler.result()->ranking.num_rollouts, 4);
+  EXPECT_EQ(scheduler.result()->ranking.recommended, std::nullopt);
+}
+
+TEST(SchedulerTest, OneOfFourHundredIsNotRecommended) {
+  Scheduler scheduler(AtMost(400), 1, 0.0);
+  PlayAlone(SuccessesOf(1, 400), &scheduler);
+  EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kAllFailed);
+  EXPECT_EQ(scheduler.result()->ranking.num_rollouts, 400);
+}
+
+TEST(SchedulerTest, AsOftenAsNotIsUndecidedAtTheEnd) {
+  Scheduler scheduler(AtMost(64), 1, 0.0);
+  PlayAlone(SuccessesOf(1, 2), &scheduler);
+  EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kUndecided);
+  EXPECT_TRUE(scheduler.result()->complete);
+}
+
+TEST(SchedulerTest, WhatIsWantedDecides) {
+  const auto outcome = [](double min_success) {
+    Scheduler scheduler(AtMost(64, min_success), 1, 0.0);
+    PlayAlone(SuccessesOf(3, 4), &scheduler);  // 62.6 .. 85.0 %
+    return scheduler.result()->outcome;
+  };
+  EXPECT_EQ(outcome(0.6), ImaginationOutcome::kRanked);
+  EXPECT_EQ(outcome(0.75), ImaginationOutcome::kUndecided);
+  EXPECT_EQ(outcome(0.9), ImaginationOutcome::kAllFailed);
+}
+
+TEST(SchedulerTest, AnOrderThatIsSettledDoesNotEndItWhileTheBestIsOpen) {
+  // The second is clearly better, but it succeeds half of the time only.
+  const Play play = [](int alternative, int index) {
+    return alternative == 1 && index % 2 == 0 ? Success() : Fall();
+  };
+  Scheduler scheduler({}, 2, 0.0);
+  EXPECT_EQ(PlayAlone(play, &scheduler), 128);
+  EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kUndecided);
+  EXPECT_EQ(scheduler.result()->ranking.num_rollouts, 64);
+}
+
+TEST(SchedulerTest, ItEndsAtTheFirstLookAtWhichAllFailForCertain) {
+  Scheduler scheduler({}, 2, 0.0);
+  EXPECT_EQ(PlayAlone(Always(Fall()), &scheduler), 32);  // a tie: the order is not settled
+  EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kAllFailed);
+  EXPECT_TRUE(scheduler.result()->complete);
+}
+
+TEST(SchedulerTest, IntervalsFitHowTheRolloutsWereStopped) {
+  const auto kind = [](SchedulerParams params, int num_alternatives) {
+    Scheduler scheduler(params, num_alternatives, 0.0);
+    PlayAlone(PlaySlowIsBetter(), &scheduler);
+    return scheduler.result()->ranking.evidence[0].success.kind;
+  };
+  SchedulerParams all;
+  all.early_stop = false;
+  EXPECT_EQ(kind({}, 2), IntervalKind::kConfidenceSequence);
+  EXPECT_EQ(kind(all, 2), IntervalKind::kClopperPearson);
+  EXPECT_EQ(kind({}, 1), IntervalKind::kClopperPearson);          // played to the end
+  EXPECT_EQ(kind(AtMost(16), 2), IntervalKind::kClopperPearson);  // no look before the last
+  all.deadline = 5.0;
+  EXPECT_EQ(kind(all, 2), IntervalKind::kConfidenceSequence);
+}
+
+TEST(SchedulerTest, ThesisNeedsNoMinimum) {
+  SchedulerParams params = AtMost(1, 0.99);
+  params.criteria.rule = RankingRule::kThesis;
+  Scheduler scheduler(params, 1, 0.0);
+  PlayAlone(Always(Fall()), &scheduler);
+  EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kRanked);
+}
+
 // ---------------------------------------------------------------- cut short
 
 TEST(SchedulerTest, RankingExistsFromTheFirstCommonRolloutOn) {
@@ -347,7 +461,8 @@ TEST(SchedulerTest, RankingExistsFromTheFirstCommonRolloutOn) {
   EXPECT_EQ(scheduler.RankingSoFar().num_rollouts, 0);
   Complete(work[0], PlaySlowIsBetter(), 2.0, &scheduler);
   EXPECT_EQ(scheduler.RankingSoFar().num_rollouts, 1);
-  EXPECT_EQ(scheduler.RankingSoFar().recommended, 1);
+  EXPECT_THAT(scheduler.RankingSoFar().order, ElementsAre(1, 0));
+  EXPECT_EQ(scheduler.RankingSoFar().recommended, std::nullopt);  // one rollout proves nothing
 }
 
 SchedulerParams WithDeadline(double deadline) {
@@ -357,14 +472,17 @@ SchedulerParams WithDeadline(double deadline) {
 }
 
 TEST(SchedulerTest, DeadlineTakesTheBestCommonPrefix) {
-  Scheduler scheduler(WithDeadline(5.5), 2, 100.0);
-  EXPECT_EQ(scheduler.WakeAt(), 105.5);
-  PlayAlone(PlaySlowIsBetter(), &scheduler, 100.0);  // a rollout a second: 5 in time
+  Scheduler scheduler(WithDeadline(12.5), 2, 100.0);
+  EXPECT_EQ(scheduler.WakeAt(), 110.0);  // nobody has come yet
+  PlayAlone(PlaySlowIsBetter(), &scheduler, 100.0);
   ASSERT_TRUE(scheduler.finished());
   EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kRanked);
   EXPECT_FALSE(scheduler.result()->complete);
-  EXPECT_EQ(scheduler.result()->ranking.num_rollouts, 2);
+  EXPECT_LT(scheduler.result()->ranking.num_rollouts, 16);
+  EXPECT_GE(scheduler.result()->ranking.num_rollouts, 7);
   EXPECT_EQ(scheduler.result()->ranking.recommended, 1);
+  EXPECT_EQ(scheduler.result()->ranking.evidence[1].success.kind,
+            IntervalKind::kConfidenceSequence);
 }
 
 TEST(SchedulerTest, ResultAtTheDeadlineComesTooLate) {
@@ -387,7 +505,7 @@ TEST(SchedulerTest, ResultOfOneAlternativeAloneIsNoRanking) {
 }
 
 TEST(SchedulerTest, AllFailedUntilTheDeadlineIsSaidSo) {
-  Scheduler scheduler(WithDeadline(5.5), 2, 0.0);
+  Scheduler scheduler(WithDeadline(12.5), 2, 0.0);
   PlayAlone([](int, int) { return Fall(); }, &scheduler);
   EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kAllFailed);
   EXPECT_FALSE(scheduler.result()->complete);
@@ -427,9 +545,10 @@ TEST(SchedulerTest, LossOfAllWorkersKeepsTheRankingSoFar) {
   }
   scheduler.Handle(WorkerLost{1}, 2.0);
   scheduler.Tick(12.0);
-  EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kRanked);
+  EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kUndecided);
   EXPECT_FALSE(scheduler.result()->complete);
   EXPECT_EQ(scheduler.result()->ranking.num_rollouts, 1);
+  EXPECT_THAT(scheduler.result()->ranking.order, ElementsAre(1, 0));
 }
 
 TEST(SchedulerTest, CancelEndsEverything) {
@@ -727,12 +846,17 @@ std::vector<Behaviour> SomeBehaviours(base::Rng* rng) {
   return behaviours;
 }
 
+Prices SomePrices() {
+  return {{{base::FailureCode::kObjectFell, 100.0}, {base::FailureCode::kOther, 20.0}}, 300.0};
+}
+
 SchedulerParams SomeParams(base::Rng* rng) {
   SchedulerParams params;
   params.rollouts = 1 + rng->Index(300);
   params.worker_wait = 1e6;  // [s] longer than any of these courses
   params.early_stop = rng->Bernoulli(0.8);
-  params.rule = rng->Bernoulli(0.5) ? RankingRule::kRisk : RankingRule::kThesis;
+  constexpr RankingRule kRules[] = {RankingRule::kRisk, RankingRule::kCost, RankingRule::kThesis};
+  params.criteria = {kRules[rng->Index(3)], rng->Uniform(0.2, 0.9), SomePrices()};
   params.first_look = 1 + rng->Index(20);
   params.batch = 1 + rng->Index(8);
   params.max_attempts = 100;  // these workers are clumsy, their rollouts are not to blame
@@ -793,7 +917,8 @@ TEST(SchedulerPropertyTest, AtAnyMomentTheRankingIsThatOfTheCommonPrefix) {
     for (std::size_t a = 0; a < behaviours.size(); ++a) {
       ASSERT_GE(static_cast<int>(scheduler.Prefix(a).size()), ranking.num_rollouts);
       ExpectSameEvidence(ranking.evidence[a],
-                         SumUp(InventAll(behaviours[a], rng.Fork(1), ranking.num_rollouts)));
+                         SumUp(InventAll(behaviours[a], rng.Fork(1), ranking.num_rollouts),
+                               ranking.num_rollouts, ranking.evidence[a].success.kind));
     }
   }
 }

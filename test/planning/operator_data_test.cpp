@@ -33,7 +33,7 @@ operators:
   drive:
     duration: [1.5, .inf]
     resources: {wheels: 1}
-    imagine: {parameters: [set], default: {set: Fast}, on_late: wait}
+    imagine: {parameters: [set], default: {set: Fast}, on_late: wait, min_success: 0.8}
     leg: {from: from, to: to, motion_set: set}
   grasp:
     duration: [2, 9.5]
@@ -98,6 +98,7 @@ TEST(OperatorDataTest, EveryFieldIsRead) {
   EXPECT_THAT(drive.imagine->parameters, ElementsAre("set"));
   EXPECT_THAT(drive.imagine->defaults, ElementsAre(Pair("set", "fast")));
   EXPECT_EQ(drive.imagine->on_late, OnLate::kWait);
+  EXPECT_EQ(drive.imagine->min_success, 0.8);
   const OperatorEntry& grasp = EntryOf(data, "grasp");
   EXPECT_EQ(grasp.duration.max, 9.5);
   EXPECT_EQ(grasp.duration.expected, 3.0);
@@ -239,6 +240,10 @@ INSTANTIATE_TEST_SUITE_P(
                    "on_late: wait",
                    "on_late: never",
                    {"operators.drive.imagine.on_late", "'default', 'wait'"}},
+        BadSidecar{"CertainSuccess",
+                   "min_success: 0.8",
+                   "min_success: 1.0",
+                   {"operators.drive.imagine.min_success is '1.0'", "between 0.001 and 0.999"}},
         BadSidecar{"UnknownLegVariable",
                    "leg: {from: from",
                    "leg: {from: start",

@@ -144,18 +144,15 @@ hires::GenerateImagineState::Response StateWith(const std::string& object) {
   return state;
 }
 
-TEST(ImagineAnswerTest, ARankingHasRecommendationDurationAndWhatFails) {
-  const auto answer = AnswerOf(7, Ranked(), StateWith("Mug1"), false);
+TEST(ImagineAnswerTest, ARankingHasRecommendationAndDuration) {
+  const auto answer = AnswerOf(7, Ranked(), StateWith("Mug1"), {});
   EXPECT_EQ(answer.outcome, ImagineOutcome::kRanked);
   EXPECT_EQ(answer.request, 7);
   EXPECT_THAT(answer.recommended.arguments, ElementsAre("area1", "slow"));
   EXPECT_EQ(answer.duration, 20.0);
   EXPECT_NEAR(answer.duration_low, 16.710, 1e-3);
   EXPECT_EQ(answer.duration_high, 23.0);
-  ASSERT_EQ(answer.failed.size(), 1u);
-  EXPECT_EQ(answer.failed[0].arguments[1], "fast");
-  EXPECT_THAT(answer.failures,
-              ElementsAre(hires::base::Failure(hires::base::FailureCode::kObjectFell)));
+  EXPECT_TRUE(answer.failed.empty());
   EXPECT_THAT(answer.depends_on, ElementsAre("mug1"));
 }
 
@@ -163,28 +160,46 @@ TEST(ImagineAnswerTest, WhenAllFailedEveryAlternativeIsNamed) {
   hires::ImagineResult result = Ranked();
   result.outcome = hires::ImagineResult::ALL_FAILED;
   result.recommended = -1;
-  const auto answer = AnswerOf(7, result, {}, false);
+  const auto answer = AnswerOf(7, result, {}, {});
   EXPECT_EQ(answer.outcome, ImagineOutcome::kAllFailed);
-  EXPECT_EQ(answer.failed.size(), 2u);
+  ASSERT_EQ(answer.failed.size(), 2u);
+  EXPECT_EQ(answer.failed[1].arguments[1], "fast");
+  const hires::base::Failure fell(hires::base::FailureCode::kObjectFell);
+  EXPECT_THAT(answer.failures, ElementsAre(fell, fell));
 }
 
 TEST(ImagineAnswerTest, ARequestThatWasLateCountsAsFarAsItWas) {
   hires::ImagineResult result = Ranked();
   result.outcome = hires::ImagineResult::CANCELLED;
-  EXPECT_EQ(AnswerOf(7, result, {}, true).outcome, ImagineOutcome::kRanked);
-  EXPECT_EQ(AnswerOf(7, result, {}, false).outcome, ImagineOutcome::kUnavailable);
+  const Lateness late{true, 0.5};
+  EXPECT_EQ(AnswerOf(7, result, {}, late).outcome, ImagineOutcome::kRanked);
+  EXPECT_EQ(AnswerOf(7, result, {}, {}).outcome, ImagineOutcome::kUnavailable);
   result.recommended = -1;
-  EXPECT_EQ(AnswerOf(7, result, {}, true).outcome, ImagineOutcome::kAllFailed);
+  for (auto& prediction : result.predictions) prediction.success_upper = 0.4;
+  EXPECT_EQ(AnswerOf(7, result, {}, late).outcome, ImagineOutcome::kAllFailed);
   for (auto& prediction : result.predictions) prediction.rollouts = 0;
-  EXPECT_EQ(AnswerOf(7, result, {}, true).outcome, ImagineOutcome::kNothingFinished);
+  EXPECT_EQ(AnswerOf(7, result, {}, late).outcome, ImagineOutcome::kNothingFinished);
+}
+
+TEST(ImagineAnswerTest, WhatWasCutOffRulesNothingOutUnlessItIsCertain) {
+  hires::ImagineResult result = Ranked();
+  result.outcome = hires::ImagineResult::CANCELLED;
+  result.recommended = -1;
+  result.predictions[0].success_upper = 1.0;  // four good ones, say
+  result.predictions[1].success_upper = 0.4;
+  const auto answer = AnswerOf(7, result, {}, {true, 0.5});
+  EXPECT_EQ(answer.outcome, ImagineOutcome::kUndecided);
+  EXPECT_TRUE(answer.failed.empty());
+  result.predictions[0].success_upper = 0.4;
+  EXPECT_EQ(AnswerOf(7, result, {}, {true, 0.0}).outcome, ImagineOutcome::kUndecided);
 }
 
 TEST(ImagineAnswerTest, ARankingThatRecommendsNothingIsInvalid) {
   hires::ImagineResult result = Ranked();
   result.recommended = 2;
-  EXPECT_EQ(AnswerOf(7, result, {}, false).outcome, ImagineOutcome::kInvalid);
+  EXPECT_EQ(AnswerOf(7, result, {}, {}).outcome, ImagineOutcome::kInvalid);
   result.outcome = 77;
-  EXPECT_EQ(AnswerOf(7, result, {}, false).outcome, ImagineOutcome::kInvalid);
+  EXPECT_EQ(AnswerOf(7, result, {}, {}).outcome, ImagineOutcome::kInvalid);
 }
 
 TEST(StepMessageTest, WhatHasNotHappenedIsNoNumber) {

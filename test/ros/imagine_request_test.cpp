@@ -155,6 +155,84 @@ TEST(ConversionsTest, AFailureThatALaterVersionSendsIsToldAndNotGuessed) {
   EXPECT_EQ(hires::base::ToString(failure), "other: code 60000, unknown to this version: spilt");
 }
 
+imagination::Prediction SomePrediction() {
+  imagination::Prediction prediction;
+  prediction.action = {"move_base", {"a"}};
+  prediction.alternative = 2;
+  prediction.evidence.num_rollouts = 8;
+  prediction.evidence.success = {0.75, 0.35, 0.97, 8, imagination::IntervalKind::kClopperPearson};
+  prediction.evidence.cost = {30.0, 20.0, 90.0};
+  prediction.evidence.first_causes = {{"braking", 2}, {"turning", 1}};
+  prediction.evidence.worst_rollout = 5;
+  prediction.evidence.first_failed = 3;
+  prediction.evidence.median_rollout = 1;
+  return prediction;
+}
+
+TEST(ConversionsTest, APredictionKeepsItsKindOfIntervalItsCostAndWhichRolloutsItNames) {
+  const imagination::Prediction back = FromMsg(ToMsg(SomePrediction()));
+  EXPECT_EQ(back.alternative, 2);
+  EXPECT_EQ(back.evidence.success.kind, imagination::IntervalKind::kClopperPearson);
+  ASSERT_TRUE(back.evidence.cost.has_value());
+  EXPECT_EQ(back.evidence.cost->mean, 30.0);
+  EXPECT_EQ(back.evidence.cost->lower, 20.0);
+  EXPECT_EQ(back.evidence.cost->upper, 90.0);
+  EXPECT_EQ(back.evidence.first_causes, SomePrediction().evidence.first_causes);
+  EXPECT_EQ(back.evidence.worst_rollout, 5);
+  EXPECT_EQ(back.evidence.first_failed, 3);
+  EXPECT_EQ(back.evidence.median_rollout, 1);
+}
+
+TEST(ConversionsTest, WhatAPredictionDoesNotKnowStaysUnknown) {
+  imagination::Prediction prediction = SomePrediction();
+  prediction.evidence.success.kind = imagination::IntervalKind::kConfidenceSequence;
+  prediction.evidence.cost.reset();
+  prediction.evidence.first_failed = -1;
+  const imagination::Prediction back = FromMsg(ToMsg(prediction));
+  EXPECT_EQ(back.evidence.success.kind, imagination::IntervalKind::kConfidenceSequence);
+  EXPECT_FALSE(back.evidence.cost.has_value());
+  EXPECT_EQ(back.evidence.first_failed, -1);
+}
+
+TEST(ConversionsTest, AnUnknownKindOfIntervalIsAnError) {
+  hires::Prediction prediction = ToMsg(SomePrediction());
+  prediction.interval_kind = 7;
+  EXPECT_THROW(FromMsg(prediction), hires::base::ConfigError);
+}
+
+TEST(ConversionsTest, UndecidedAndCaveatsTravel) {
+  imagination::Report report;
+  report.outcome = imagination::ImaginationOutcome::kUndecided;
+  report.caveats = {"the floor may be uneven"};
+  const hires::ImagineResult message = ToMsg(report);
+  EXPECT_EQ(message.outcome, hires::ImagineResult::UNDECIDED);
+  EXPECT_EQ(FromMsg(message).outcome, imagination::ImaginationOutcome::kUndecided);
+  EXPECT_EQ(FromMsg(message).caveats, report.caveats);
+}
+
+TEST(ImagineRequestTest, ReferencesSayAllThatARolloutTakes) {
+  imagination::Report report;
+  report.ranking = {SomePrediction()};
+  imagination::ImaginationSetup setup;
+  setup.world_hash = 1;
+  setup.robot_hash = 2;
+  setup.actions_hash = 3;
+  ImagineRequest request;
+  request.setup.seed = 7;
+  request.setup.uncertainty =
+      std::make_shared<const imagination::Uncertainty>(imagination::NoUncertainty());
+  const hires::RolloutRef worst = AnswerTo(Goal(), request, setup, report).predictions[0].worst;
+  EXPECT_EQ(worst.request_id, Goal().request_id);
+  EXPECT_EQ(worst.action.name, "move_base");
+  EXPECT_EQ(worst.alternative, 2u);
+  EXPECT_EQ(worst.index, 5u);
+  EXPECT_EQ(worst.seed, 7u);
+  EXPECT_EQ(worst.world_hash, 1u);
+  EXPECT_EQ(worst.robot_hash, 2u);
+  EXPECT_EQ(worst.actions_hash, 3u);
+  EXPECT_EQ(worst.uncertainty_hash, imagination::NoUncertainty().hash);
+}
+
 TEST(ImagineRequestTest, StepsMustBeOne) {
   hires::ImagineGoal goal = Goal();
   goal.steps.push_back(goal.steps.front());
@@ -175,19 +253,19 @@ TEST(ImagineRequestTest, AStateOfAnotherWorldIsRefused) {
 TEST(ImagineRequestTest, WhatAGoalSaysWinsOverTheDefaults) {
   imagination::SchedulerParams defaults;
   defaults.batch = 3;
-  defaults.rule = imagination::RankingRule::kThesis;
+  defaults.criteria.rule = imagination::RankingRule::kThesis;
   hires::ImagineGoal goal = Goal();
   imagination::SchedulerParams params = RequestOf(goal, Restaurant(), defaults).params;
   EXPECT_EQ(params.rollouts, 8);
   EXPECT_EQ(params.deadline, 0.0);
   EXPECT_EQ(params.batch, 3);
-  EXPECT_EQ(params.rule, imagination::RankingRule::kThesis);
+  EXPECT_EQ(params.criteria.rule, imagination::RankingRule::kThesis);
   EXPECT_TRUE(params.early_stop);
   goal.ranking = "risk";
   goal.play_all = true;
   goal.deadline = ros::Duration(2.5);
   params = RequestOf(goal, Restaurant(), defaults).params;
-  EXPECT_EQ(params.rule, imagination::RankingRule::kRisk);
+  EXPECT_EQ(params.criteria.rule, imagination::RankingRule::kRisk);
   EXPECT_FALSE(params.early_stop);
   EXPECT_EQ(params.deadline, 2.5);
   defaults.early_stop = false;
@@ -242,7 +320,7 @@ TEST(ImagineRequestTest, ALongReasonIsCutBetweenCharacters) {
 }
 
 TEST(ImagineRequestTest, AnAnswerRestsOnTheFluentsOfItsGoal) {
-  const hires::ImagineResult result = AnswerTo(Goal(), {});
+  const hires::ImagineResult result = AnswerTo(Goal(), {}, {}, {});
   EXPECT_EQ(result.outcome, hires::ImagineResult::NOTHING_FINISHED);
   EXPECT_EQ(result.depends_on, Goal().updated_fluents);
 }

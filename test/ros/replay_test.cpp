@@ -336,6 +336,16 @@ TEST(CompareAnswersTest, EveryFieldIsComparedAndNamed) {
       {[](auto* r) { r->predictions[0].max_tilt_p50 = 1; }, "place 1, max_tilt_p50: "},
       {[](auto* r) { r->predictions[0].max_tilt_p95 = 1; }, "place 1, max_tilt_p95: "},
       {[](auto* r) { r->predictions[0].rollouts = 1; }, "place 1, rollouts: 8 then, 1 now"},
+      {[](auto* r) { r->caveats = {"x"}; }, "caveats differs"},
+      {[](auto* r) { r->predictions[0].interval_kind = 1; }, "place 1, kind of interval differs"},
+      {[](auto* r) { r->predictions[0].expected_cost = 1; }, "place 1, expected_cost: "},
+      {[](auto* r) { r->predictions[0].cost_lower = 1; }, "place 1, cost_lower: "},
+      {[](auto* r) { r->predictions[0].cost_upper = 1; }, "place 1, cost_upper: "},
+      {[](auto* r) { r->predictions[0].first_causes.resize(1); }, "place 1, first_causes differs"},
+      {[](auto* r) { r->predictions[0].worst.index = 1; }, "place 1, worst rollout differs"},
+      {[](auto* r) { r->predictions[0].median.index = 1; }, "place 1, median rollout differs"},
+      {[](auto* r) { r->predictions[0].first_failed.index = 1; },
+       "place 1, first failed rollout differs"},
       {[](auto* r) { r->predictions[0].failures.resize(1); }, "place 1, failures differs"},
       {[](auto* r) { r->predictions[0].final_world.objects.resize(1); },
        "place 1, final_world differs"},
@@ -371,6 +381,14 @@ TEST(DependsOnMomentTest, AnswersThatWereCutShortDo) {
   EXPECT_FALSE(DependsOnMoment(goal, result)) << "all 8 rollouts were played";
   result.predictions[0].rollouts = 7;
   EXPECT_TRUE(DependsOnMoment(goal, result));
+}
+
+TEST(DependsOnMomentTest, UndecidedDoesWhereItWasCutShort) {
+  ImagineResult result = Ranked();
+  result.outcome = ImagineResult::UNDECIDED;
+  EXPECT_FALSE(DependsOnMoment(Goal(), result)) << "all 8 rollouts were played";
+  result.predictions[0].rollouts = 7;
+  EXPECT_TRUE(DependsOnMoment(Goal(), result));
 }
 
 TEST(DependsOnMomentTest, RolloutsThatTookTheirWorkersDownDo) {

@@ -13,6 +13,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/report.h"
 #include "hires/imagination/scheduler.h"
+#include "hires/imagination/validated.h"
 
 namespace hires::evaluation {
 
@@ -23,6 +24,7 @@ struct ImagineQuery {
   std::uint64_t seed{1};
   imagination::SchedulerParams scheduler;
   imagination::SetupConfig setup;
+  imagination::Validated validated;
   bool own_scene{false};        ///< files were named that the workers may not have
   bool own_uncertainty{false};  ///< an uncertainty was named that the workers may not have
   int threads{1};
@@ -62,6 +64,7 @@ enum ExitCode {
   kExitAllFailed = 2,    ///< every alternative fails
   kExitNoWorker = 3,     ///< nobody could be asked
   kExitDeadline = 4,     ///< nothing finished by the deadline
+  kExitUndecided = 5,    ///< too few rollouts to tell whether an alternative is good enough
   kExitCancelled = 130   ///< interrupted
 };
 int ExitCodeOf(const imagination::Report& report);

@@ -9,8 +9,8 @@
 
 namespace hires::evaluation {
 
-/// "ranked", "ranked_at_deadline" (cut short), "all_failed", "no_worker", "nothing_finished",
-/// "cancelled".
+/// "ranked", "ranked_at_deadline" (cut short), "all_failed", "undecided", "no_worker",
+/// "nothing_finished", "cancelled".
 std::string OutcomeName(const imagination::Report& report);
 
 /// The report for machines. Field order is fixed; equal reports give equal text but for

@@ -10,8 +10,11 @@ namespace hires::evaluation {
 /// Columns of text, the first row underlined as heads; numbers to the right.
 std::string FormatTable(const std::vector<std::vector<std::string>>& rows);
 
-/// The ranking as a table for people, the recommended line marked.
-std::string RankingTable(const std::vector<imagination::Prediction>& ranking, int recommended);
+/// The ranking as a table for people, the recommended line marked, and below it in words what kind
+/// of intervals it shows.
+/// @param with_cost  a column of expected costs where they are known.
+std::string RankingTable(const std::vector<imagination::Prediction>& ranking, int recommended,
+                         bool with_cost = false);
 
 /// "[#####.....]  52 %  33 of 64 rollouts, 4 s left" in at most `width` characters.
 std::string ProgressLine(const imagination::Progress& progress, int width = 78);

@@ -57,6 +57,7 @@ struct ImagineAnswered {
   enum class Outcome {
     kRanked,
     kAllFailed,
+    kUndecided,  ///< too few rollouts to tell whether an alternative is good enough
     kNoWorker,
     kNothingFinished,
     kInvalid,
@@ -100,6 +101,7 @@ struct StartImagination {
   base::ActionTemplate action;
   std::vector<base::Atom> state;  ///< projected to the moment at which the action will start
   double deadline{0.0};           ///< [s] main ROS time; infinite: none
+  double min_success{0.0};        ///< as the domain's sidecar wants it; 0: it says nothing
 };
 struct MoveDeadline {
   int request{0};

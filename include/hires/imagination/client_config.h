@@ -3,13 +3,15 @@
 #include <string>
 
 #include "hires/imagination/scheduler.h"
+#include "hires/imagination/validated.h"
 
 namespace hires::imagination {
 
 /// config/imagination_client.yaml: what the imagination client and `hires imagine` share.
 struct ClientConfig {
   std::string scene;            ///< path of the scene file (see SetupConfig)
-  SchedulerParams scheduler;    ///< what a request does not say itself
+  SchedulerParams scheduler;    ///< what a request does not say itself, prices included
+  Validated validated;          ///< beyond it answers carry caveats
   double feedback_period{0.2};  ///< [s] between two feedback messages
   double worker_timeout{1.5};   ///< [s] without a sign of life after which a worker counts as lost
 };

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "hires/imagination/prices.h"
 #include "hires/imagination/rollout_result.h"
+#include "hires/imagination/success_interval.h"
 
 namespace hires::imagination {
 
@@ -22,18 +25,6 @@ double Confidence(const OutcomeCounts& counts, const ConfidenceCoefficients& coe
 /// Eq. 6.1 of one rollout; 0 when its action failed (see ActionFailed), 1 when it succeeded and
 /// there was nothing to watch.
 double RolloutConfidence(const RolloutResult& result);
-
-/// How often an action succeeds, as far as counted rollouts tell. All shares lie in [0, 1].
-struct SuccessInterval {
-  double share{0.0};    ///< successful rollouts / all rollouts
-  double lower{0.0};    ///< lower end of the 95 % interval
-  double upper{1.0};    ///< upper end of the 95 % interval
-  int num_rollouts{0};  ///< what the numbers rest on; 0 means "we know nothing yet"
-};
-
-/// Wilson's score interval [Wilson 1927, J. Am. Stat. Assoc. 22:209-212].
-/// @pre 0 <= num_success <= num_rollouts.  @throws std::logic_error if broken.
-SuccessInterval EstimateSuccess(int num_success, int num_rollouts);
 
 /// All that is known about one parametrisation of an action from its first n rollouts.
 /// Quantiles are definition 1 of [Hyndman, Fan 1996, Am. Stat. 50:361-365]: the smallest value with
@@ -53,18 +44,26 @@ struct Evidence {
   } duration;  ///< [s], of rollouts whose action did not fail; sd divides by their number
   struct {
     double p50{0.0}, p95{0.0};
-  } max_tilt;  ///< [rad], of rollouts with samples
+  } max_tilt;                        ///< [rad], of rollouts with samples
+  std::optional<ExpectedCost> cost;  ///< none: nothing is priced, or nothing was played
   int num_rollouts{0};
   std::map<base::Failure, int> failures;  ///< failure -> rollouts
+  std::map<std::string, int> first_causes;  ///< what began it -> rollouts; those with a cause alone
+  int worst_rollout{-1};  ///< index of the one that leaned most among those that failed, else among
+                          ///< all; the first of equals; -1 when there is none
+  int first_failed{-1};   ///< index of the first one that is no success; -1 when there is none
   int median_rollout{-1};  ///< index of the finished rollout with the median duration, the first
                            ///< of equals; -1 when there is none
 };
 
-/// @param results  the first n rollouts of one alternative, in index order.
+/// @param results  the first n rollouts of one alternative, in index order, where n was fixed
+/// beforehand; nothing is priced.
 Evidence SumUp(const std::vector<RolloutResult>& results);
 
 /// The same of the first `num_rollouts` of `results` alone.
+/// @param kind  what fits how that number came about.
 /// @pre 0 <= num_rollouts <= results.size().
-Evidence SumUp(const std::vector<RolloutResult>& results, int num_rollouts);
+Evidence SumUp(const std::vector<RolloutResult>& results, int num_rollouts,
+               IntervalKind kind = IntervalKind::kClopperPearson, const Prices& prices = {});
 
 }  // namespace hires::imagination

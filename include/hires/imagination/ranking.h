@@ -8,30 +8,54 @@
 
 namespace hires::imagination {
 
+inline constexpr int kMostRollouts{100000};  ///< of each alternative that may be asked for
+
 /// By what alternatives are ordered; a later criterion decides where the earlier ones are equal.
 enum class RankingRule {
   kRisk,   ///< lower bound of success, then mean Eq. 6.1, then mean duration
+  kCost,   ///< those that reach min_success first, then expected cost, then mean Eq. 6.1
   kThesis  ///< action failed in most rollouts: out; then mean Eq. 6.1, then mean duration
 };
 
-/// "risk" or "thesis".  @throws base::ConfigError naming what came and what is known.
+/// "risk", "cost" or "thesis".  @throws base::ConfigError naming what came and what is known.
 RankingRule ParseRankingRule(const std::string& name);
 std::string ToString(RankingRule rule);
 
+/// What makes one alternative better than another, and good enough to be recommended.
+struct Criteria {
+  RankingRule rule{RankingRule::kRisk};
+  /// Share of successes that the lower end of the interval must reach; in (0, 1). Not for kThesis.
+  double min_success{0.5};
+  Prices prices;  ///< needed by kCost; else they only fill Evidence::cost
+};
+
 /// Indices of the alternatives, best first. Full equals keep their order, an alternative without
 /// any finished rollout is slower than every other. Under kThesis the ones that are out come last.
-/// @pre all rest on the same number of rollouts (paired by index).  @throws std::logic_error
-std::vector<int> Rank(const std::vector<Evidence>& alternatives, RankingRule rule);
+/// @pre all rest on the same number of rollouts (paired by index), and are priced for kCost.
+/// @throws std::logic_error
+std::vector<int> Rank(const std::vector<Evidence>& alternatives, const Criteria& criteria);
 
-/// The best alternative; none if there is no rollout yet or all fail: under kRisk if no rollout of
-/// any alternative succeeded, under kThesis if every alternative is out.  @pre as Rank.
-std::optional<int> Recommended(const std::vector<Evidence>& alternatives, RankingRule rule);
+/// The best alternative if it is good enough: its interval of success reaches min_success; under
+/// kThesis, if it is not out. None before the first rollout.  @pre as Rank.
+std::optional<int> Recommended(const std::vector<Evidence>& alternatives, const Criteria& criteria);
 
-/// One sentence for people with the numbers that decided, also where nothing is recommended.
+/// Whether no alternative is good enough, as far as these rollouts can tell: every interval lies
+/// below min_success; under kThesis, every one is out. False before the first rollout.  @pre as
+/// Rank.
+bool AllFail(const std::vector<Evidence>& alternatives, const Criteria& criteria);
+
+/// One sentence for people with the numbers that decided, also where nothing is recommended; where
+/// nothing is decided, with about how many rollouts would.
 /// @param names  one per alternative, as people call them ("slow").
 /// @pre names.size() == alternatives.size(), and as Rank.
-std::string WhyRecommended(const std::vector<Evidence>& alternatives, RankingRule rule,
+std::string WhyRecommended(const std::vector<Evidence>& alternatives, const Criteria& criteria,
                            const std::vector<std::string>& names);
+
+/// About how many rollouts of each alternative would likely take "undecided" away: until the first
+/// one reaches min_success, or all lie below it. None: more than kMostRollouts.
+/// @pre not kThesis, at least one alternative and one rollout.
+std::optional<int> RolloutsToDecide(const std::vector<Evidence>& alternatives,
+                                    const Criteria& criteria);
 
 struct SettleParams {
   double alpha{0.05};         ///< chance that any claim made at any look is wrong; in (0, 1)
@@ -51,7 +75,9 @@ struct SettleParams {
 /// order costs less than the indifference. Durations have no bound, so the difference is taken of
 /// their signs: who was quicker, 1 or -1, 0 for equal or both failed; the one that failed is
 /// slower. Under kThesis being in or out must be certain for both (share of failed actions against
-/// 1/2).
+/// 1/2). Under kCost the first must reach min_success and the other lie below it, or the paired
+/// difference of costs exclude 0 (no indifference: equal costs are played to the end); both below
+/// is settled.
 ///
 /// The error probability alpha is divided by the number of all sequences there are (every pair
 /// with every criterion), so it covers all alternatives and all looks together, however often this
@@ -59,10 +85,16 @@ struct SettleParams {
 /// @param results  per alternative its rollouts in index order, each at least num_rollouts long.
 /// @pre num_rollouts >= 1; params within their ranges.  @throws std::logic_error if broken.
 bool Settled(const std::vector<std::vector<RolloutResult>>& results, int num_rollouts,
-             RankingRule rule, const SettleParams& params);
+             const Criteria& criteria, const SettleParams& params);
 
 /// The same for rollouts that are kept apart.  @pre as above, and no nullptr.
 bool Settled(const std::vector<const std::vector<RolloutResult>*>& results, int num_rollouts,
-             RankingRule rule, const SettleParams& params);
+             const Criteria& criteria, const SettleParams& params);
+
+/// Whether more rollouts may still change the answer: no, once all alternatives fail for certain,
+/// or one is good enough and the order is settled. Under kThesis the order alone counts.  @pre as
+/// above.
+bool Decided(const std::vector<const std::vector<RolloutResult>*>& results, int num_rollouts,
+             const Criteria& criteria, const SettleParams& params);
 
 }  // namespace hires::imagination

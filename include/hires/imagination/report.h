@@ -13,6 +13,7 @@ namespace hires::imagination {
 /// What imagination found about one parametrisation.
 struct Prediction {
   base::ActionCall action;
+  int alternative{-1};  ///< its place among the request's combinations
   Evidence evidence;
   world::WorldState
       final_world;  ///< of the rollout with the median duration; empty if none finished
@@ -26,6 +27,7 @@ struct Report {
   std::vector<Prediction> ranking;  ///< best first
   int recommended{-1};              ///< index into `ranking`, or -1
   std::string why;                  ///< one sentence for people
+  std::vector<std::string> caveats;  ///< where the request lies outside of what was validated
   std::uint64_t seed{0};
   double wall_seconds{0.0};
   double simulated_seconds{0.0};  ///< of the rollouts behind the ranking
@@ -46,6 +48,6 @@ std::vector<Prediction> PredictionsOf(const Scheduler& scheduler, const Ranking&
 
 /// @pre scheduler.finished(); `actions` are its alternatives.
 Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall>& actions,
-                  RankingRule rule, std::uint64_t seed, double wall_seconds);
+                  std::uint64_t seed, double wall_seconds);
 
 }  // namespace hires::imagination

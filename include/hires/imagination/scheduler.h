@@ -19,8 +19,8 @@ struct SchedulerParams {
   int rollouts{64};          ///< at most so many per alternative, 1..100000
   double deadline{0.0};      ///< [s] after the start; 0: none
   double worker_wait{10.0};  ///< [s] to wait while there is no worker before giving up, >= 0
-  bool early_stop{true};     ///< stop at the first look at which the ranking is settled
-  RankingRule rule{RankingRule::kRisk};
+  bool early_stop{true};     ///< stop at the first look at which the answer is decided
+  Criteria criteria;
   int first_look{16};  ///< looks are at first_look, twice that, four times that, ...; >= 1
   int batch{4};        ///< at most so many rollouts per assignment, 1..1000
   /// A rollout that was given up so often by a failed assignment or a lost worker is unplayable and
@@ -29,8 +29,9 @@ struct SchedulerParams {
   SettleParams settle;
 };
 
-/// Reads every field; keys as the fields are called, `ranking` for the rule, and alpha,
-/// indifference, only_best.  @throws base::ConfigError naming file, key and bounds.
+/// Reads every field; keys as the fields are called, `ranking` for the rule, and min_success,
+/// alpha, indifference, only_best. Prices have a file of their own: the caller fills them in.
+/// @throws base::ConfigError naming file, key and bounds.
 SchedulerParams ReadSchedulerParams(base::ParamReader in);
 
 /// @throws base::ConfigError naming the field, what came and what was wanted.
@@ -82,7 +83,8 @@ using Command = std::variant<Assign, CancelAssignment>;
 
 enum class ImaginationOutcome {
   kRanked,           ///< there is a recommendation
-  kAllFailed,        ///< rollouts were played, but no alternative can be recommended
+  kAllFailed,        ///< no alternative is good enough, as far as rollouts can tell
+  kUndecided,        ///< rollouts were played, too few to tell whether one is good enough
   kNoWorker,         ///< nothing was compared, because there was nobody to play
   kNothingFinished,  ///< nothing was compared by the deadline, although there were workers
   kCancelled
@@ -100,7 +102,7 @@ struct Ranking {
 
 struct SchedulerResult {
   ImaginationOutcome outcome{ImaginationOutcome::kNothingFinished};
-  bool complete{false};  ///< the ranking was settled or all rollouts played; false: cut short
+  bool complete{false};  ///< the answer was decided or all rollouts played; false: cut short
   int num_unplayable{
       0};  ///< rollouts behind the ranking that count as failed as no worker got them done
   Ranking ranking;
@@ -136,7 +138,11 @@ int NextLook(int num_rollouts, const SchedulerParams& params);
 /// first, so that there is a ranking soon, and towards the end of a look, so that all workers end
 /// together). Who has nothing to do in the present look begins the next one, but none beyond it.
 ///
-/// A single alternative has no ranking to settle: it is played to the end.
+/// A single alternative is played to the end. It stops early only where the answer is decided (see
+/// Decided): an order that is settled, while nobody knows whether the first is good enough, is not.
+///
+/// Intervals are Clopper-Pearson's where the number of rollouts was fixed beforehand and all were
+/// played (no early stop, one alternative, or no look before the last), else confidence sequences.
 class Scheduler {
  public:
   /// @param now  [s] start; the deadline counts from here.
@@ -158,6 +164,7 @@ class Scheduler {
   /// workers.
   std::optional<double> WakeAt() const;
 
+  const SchedulerParams& params() const { return params_; }
   bool finished() const { return result_.has_value(); }
   const std::optional<SchedulerResult>& result() const { return result_; }
 
@@ -218,7 +225,8 @@ class Scheduler {
 
   void Decide();
   int CommonPrefix() const;
-  bool IsSettledAt(int look) const;
+  bool IsDecidedAt(int look) const;
+  IntervalKind KindAt(int num_rollouts) const;
   int EndOfWork() const;
   void AssignToAll(double now);
   bool AssignTo(int worker);

@@ -18,6 +18,7 @@ struct Distribution {
   double second{0.0};  ///< uniform: upper end; normal: standard deviation
 
   double Sample(base::Rng* rng) const;  ///< a normal one is drawn again beyond 3 deviations
+  double Largest() const;               ///< no value that is drawn is larger
 };
 
 /// What is uncertain about world, robot and control. A quantity for each number of

@@ -32,6 +32,9 @@ struct ImagineData {
   std::vector<std::string> parameters;
   std::map<std::string, std::string> defaults;  ///< value of each parameter, in lower case
   OnLate on_late{OnLate::kDefault};
+  /// Share of successes that the lower end of an alternative's interval must reach to be
+  /// recommended, in (0, 1); none: whoever imagines decides.
+  std::optional<double> min_success;
 };
 
 /// Which variables of a driving operator tell the leg that it drives; without their `?`.

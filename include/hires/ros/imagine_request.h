@@ -30,8 +30,10 @@ ImagineRequest RequestOf(const hires::ImagineGoal& goal,
                          const hires::imagination::ImaginationSetup& setup,
                          const hires::imagination::SchedulerParams& defaults);
 
-/// The result of a request that was played.
-hires::ImagineResult AnswerTo(const hires::ImagineGoal& goal,
+/// The result of a request that was played. Its references to rollouts are enough to play these
+/// again.
+hires::ImagineResult AnswerTo(const hires::ImagineGoal& goal, const ImagineRequest& request,
+                              const hires::imagination::ImaginationSetup& setup,
                               const hires::imagination::Report& report);
 
 /// The result INVALID of a request that cannot be played.

@@ -107,7 +107,8 @@ class ImaginationSystem:
 
     def client_config(self, **scheduler):
         config = read_yaml('imagination_client.yaml')
-        config['scene'] = os.path.join(CONFIG_FOLDER, 'scene.yaml')
+        for key in ('scene', 'prices', 'validated'):
+            config[key] = os.path.join(CONFIG_FOLDER, key + '.yaml')
         config['scheduler'].update(scheduler)
         return self.write('imagination_client.yaml', yaml.safe_dump(config))
 

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/base/failure.h"
+#include "hires/base/param_reader.h"
+#include "hires/imagination/rollout_result.h"
+
+namespace hires::imagination {
+
+/// What failures cost, as seconds of the robot's and of people's time: config/prices.yaml.
+struct Prices {
+  std::map<base::FailureCode, double> of;  ///< [s] per code, >= 0; empty: nothing is priced
+  double time_limit{300.0};  ///< [s] a rollout counts as no longer than this (RolloutParams)
+
+  bool empty() const { return of.empty(); }
+  double Highest() const;  ///< [s] what a rollout costs at most
+};
+
+/// Whether an imagined rollout may end with this code: those of things, of the way and of
+/// imagination itself; not those of a robot's drivers and of plans.
+bool EndsRollouts(base::FailureCode code);
+
+/// @throws base::ConfigError naming file and key: a word that is no failure code, a code that ends
+/// no rollout, a code without its price, a price out of range.
+Prices ReadPrices(base::ParamReader in);
+
+/// [s] duration of the rollout plus the price of its failure. A code that has no price of its own
+/// (see EndsRollouts) costs as `other`.  @pre prices are not empty.
+double CostOf(const RolloutResult& result, const Prices& prices);
+
+/// What rollouts cost in the mean, as far as played ones tell [s].
+struct ExpectedCost {
+  double mean{0.0};
+  double lower{0.0};  ///< lower end of the 95 % interval
+  double upper{0.0};  ///< upper end of the 95 % interval
+};
+
+/// The interval is a confidence sequence (MeanSequence) over [0, prices.Highest()], valid at every
+/// number of rollouts: what was never seen and is dear (one fall in 100, say) widens it.
+/// @param results  the first rollouts of one alternative.
+/// @return none: no prices, or no rollout.  @pre 0 <= num_rollouts <= results.size().
+std::optional<ExpectedCost> EstimateCost(const std::vector<RolloutResult>& results,
+                                         int num_rollouts, const Prices& prices);
+
+}  // namespace hires::imagination

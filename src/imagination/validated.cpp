@@ -1,0 +1,159 @@
+#include "hires/imagination/validated.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "hires/actions/catalogue.h"
+#include "hires/base/text.h"
+#include "hires/imagination/purpose.h"
+#include "rollout_start.h"
+
+namespace hires::imagination {
+namespace {
+
+using base::ActionCall;
+using Sentences = std::vector<std::string>;
+
+std::map<std::string, std::string> ReadPlaces(base::ParamReader in) {
+  std::map<std::string, std::string> places;
+  for (const std::string& name : in.Keys()) {
+    std::string& where = places[base::ToLower(name)];
+    where = in.GetString(name);
+    if (where.empty()) in.Fail(name, "wanted where it was shown: a document and its section");
+  }
+  return places;
+}
+
+ValidatedLimit ReadLimit(base::ParamReader in) {
+  ValidatedLimit limit;
+  limit.at_most = in.Get("at_most", base::Between(0.0, 1e6));
+  limit.where = in.GetString("where");
+  if (limit.where.empty()) in.Fail("where", "wanted a document and its section");
+  return limit;
+}
+
+std::string WordOf(simulation::LevelOfDetail level) {
+  return level == simulation::LevelOfDetail::kTray ? "tray" : "planar";
+}
+
+std::string NamesIn(const std::map<std::string, std::string>& places) {
+  std::vector<std::string> names;
+  for (const auto& [name, where] : places) names.push_back(name);
+  return base::Join(names, ", ");
+}
+
+/// What the robot carries at the start, and what an action takes or puts down: indices.
+std::set<int> ObjectsOfConcern(const RolloutSetup& setup, const std::vector<ActionCall>& actions) {
+  const simulation::RobotSimulator start(setup.scene, {}, setup.world_state, setup.robot_state,
+                                         base::Rng(setup.seed), setup.physics,
+                                         LevelFor(*setup.skills, actions.front()));
+  std::set<int> concern(start.carried().begin(), start.carried().end());
+  const actions::Catalogue& catalogue = setup.skills->actions->catalogue();
+  std::set<std::string> handled;
+  for (const ActionCall& action : actions) handled.insert(PurposeOf(catalogue, action).object);
+  const auto& objects = setup.world_state.objects;
+  for (int i = 0; i < static_cast<int>(objects.size()); ++i) {
+    const bool is_handled = handled.count(base::ToLower(objects[i].name)) > 0;
+    if (is_handled || !objects[i].attached_to.empty()) concern.insert(i);
+  }
+  return concern;
+}
+
+void AddObjects(const RolloutSetup& setup, const std::vector<ActionCall>& actions,
+                const Validated& validated, Sentences* caveats) {
+  for (const int i : ObjectsOfConcern(setup, actions)) {
+    const world::ObjectState& object = setup.world_state.objects[i];
+    if (validated.objects.count(base::ToLower(object.model)) > 0) continue;
+    caveats->push_back(
+        fmt::format("how {} (model {}) stands and falls was not validated; validated "
+                    "are {}",
+                    object.name, object.model, NamesIn(validated.objects)));
+  }
+}
+
+void AddFloor(const RolloutSetup& setup, const ValidatedLimit& limit, Sentences* caveats) {
+  const auto floor = setup.uncertainty->quantities.find("floor_roughness");
+  if (floor == setup.uncertainty->quantities.end()) return;
+  const double most = floor->second.Largest();
+  if (most <= limit.at_most) return;
+  caveats->push_back(fmt::format("the floor may be uneven by {} m, validated are up to {} m ({})",
+                                 most, limit.at_most, limit.where));
+}
+
+/// The motion sets that driving actions name; the default one where they name none.
+std::set<std::string> MotionSetsOf(const RolloutSetup& setup,
+                                   const std::vector<ActionCall>& actions) {
+  std::set<std::string> used;
+  for (const ActionCall& action : actions) {
+    const actions::ActionSpec& spec = skills::SpecOf(*setup.skills, action);
+    if (spec.driving == actions::Driving::kNone) continue;
+    const auto named = actions::ArgumentOf(spec, action, actions::ParameterKind::kMotionSet);
+    used.insert(named.value_or(base::ToLower(setup.skills->default_motion_set)));
+  }
+  return used;
+}
+
+void AddSpeed(const std::string& motion_set, const std::string& what, double speed,
+              const std::string& unit, const ValidatedLimit& limit, Sentences* caveats) {
+  if (speed <= limit.at_most) return;
+  caveats->push_back(fmt::format("motion set {} {} at up to {} {}, validated are up to {} {} ({})",
+                                 motion_set, what, speed, unit, limit.at_most, unit, limit.where));
+}
+
+void AddSpeeds(const RolloutSetup& setup, const std::vector<ActionCall>& actions,
+               const Validated& validated, Sentences* caveats) {
+  for (const std::string& name : MotionSetsOf(setup, actions)) {
+    const auto set = setup.skills->motion_sets.find(name);
+    if (set == setup.skills->motion_sets.end()) continue;
+    AddSpeed(name, "drives", set->second.max_linear_velocity, "m/s", validated.linear_speed,
+             caveats);
+    AddSpeed(name, "turns", set->second.max_angular_velocity, "rad/s", validated.angular_speed,
+             caveats);
+  }
+}
+
+void AddLevels(const RolloutSetup& setup, const std::vector<ActionCall>& actions,
+               const Validated& validated, Sentences* caveats) {
+  std::set<std::string> levels;
+  for (const ActionCall& action : actions) levels.insert(WordOf(LevelFor(*setup.skills, action)));
+  for (const std::string& level : levels) {
+    if (validated.levels.count(level) > 0) continue;
+    caveats->push_back(fmt::format("level of detail {} was not validated; validated are {}", level,
+                                   NamesIn(validated.levels)));
+  }
+}
+
+}  // namespace
+
+Validated ReadValidated(base::ParamReader in) {
+  Validated validated;
+  validated.objects = ReadPlaces(in.Sub("objects"));
+  validated.floor_roughness = ReadLimit(in.Sub("floor_roughness"));
+  validated.linear_speed = ReadLimit(in.Sub("linear_speed"));
+  validated.angular_speed = ReadLimit(in.Sub("angular_speed"));
+  base::ParamReader levels = in.Sub("levels");
+  for (const std::string& level : levels.Keys()) {
+    if (level != "tray" && level != "planar") {
+      levels.Fail(level, base::UnknownName("level of detail", level, {"tray", "planar"}));
+    }
+  }
+  validated.levels = ReadPlaces(levels);
+  in.RejectUnknownKeys();
+  return validated;
+}
+
+std::vector<std::string> CaveatsOf(const RolloutSetup& setup,
+                                   const std::vector<ActionCall>& actions,
+                                   const Validated& validated) {
+  Sentences caveats;
+  if (actions.empty()) return caveats;
+  AddObjects(setup, actions, validated, &caveats);
+  AddFloor(setup, validated.floor_roughness, &caveats);
+  AddSpeeds(setup, actions, validated, &caveats);
+  AddLevels(setup, actions, validated, &caveats);
+  return caveats;
+}
+
+}  // namespace hires::imagination

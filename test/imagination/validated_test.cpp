@@ -1,0 +1,133 @@
+#include "hires/imagination/validated.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "hires/base/text.h"
+#include "hires/imagination/uncertainty.h"
+#include "imagination/room_rollouts.h"
+#include "support/messages.h"
+
+namespace hires::imagination {
+namespace {
+
+using hires::test_support::ConfigErrorOf;
+using hires::test_support::Room;
+using hires::test_support::RoomRollouts;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string kRoot = HIRES_SOURCE_DIR;
+
+Validated Configured() {
+  return ReadValidated(base::ParamReader::FromFile(kRoot + "/config/validated.yaml"));
+}
+
+/// Everything that the request of these tests needs.
+Validated Wide() {
+  Validated validated = Configured();
+  validated.objects["mill"] = "docs/here.md";
+  validated.floor_roughness.at_most = 1.0;
+  validated.linear_speed.at_most = 100.0;
+  validated.angular_speed.at_most = 100.0;
+  return validated;
+}
+
+RolloutSetup OnFloor(double largest_roughness) {
+  Uncertainty rough = NoUncertainty();
+  rough.quantities["floor_roughness"] = {Distribution::Kind::kUniform, 0.0, largest_roughness};
+  RolloutSetup setup = RoomRollouts(Room(), "mill");
+  setup.uncertainty = std::make_shared<const Uncertainty>(rough);
+  return setup;
+}
+
+const std::vector<base::ActionCall> kDrive{{"move_base_param", {"east", "fast"}}};
+
+TEST(ReadValidatedTest, EveryPlaceIsADocumentOfThisPackage) {
+  const Validated validated = Configured();
+  std::vector<std::string> places{validated.floor_roughness.where, validated.linear_speed.where,
+                                  validated.angular_speed.where};
+  for (const auto& [model, where] : validated.objects) places.push_back(where);
+  for (const auto& [level, where] : validated.levels) places.push_back(where);
+  for (const std::string& place : places) {
+    for (const std::string& part : base::Split(place, ';')) {
+      const std::string file = part.substr(part.find("docs/"));
+      EXPECT_TRUE(std::filesystem::exists(kRoot + "/" + file.substr(0, file.find(',')))) << place;
+    }
+  }
+}
+
+TEST(ReadValidatedTest, EveryObjectHasAModel) {
+  for (const auto& [model, where] : Configured().objects) {
+    EXPECT_TRUE(std::filesystem::exists(kRoot + "/worlds/models/" + model)) << model;
+  }
+}
+
+TEST(ReadValidatedTest, RefusesWhatItDoesNotKnow) {
+  const std::string yaml = base::ReadTextFile(kRoot + "/config/validated.yaml", 1u << 16);
+  const auto why = [&](const std::string& from, const std::string& to) {
+    std::string changed = yaml;
+    changed.replace(changed.find(from), from.size(), to);
+    return ConfigErrorOf(
+        [&] { ReadValidated(base::ParamReader::FromString(changed, "validated.yaml")); });
+  };
+  EXPECT_THAT(why("  tray:", "  trai:"), AllOf(HasSubstr("validated.yaml"), HasSubstr("'trai'")));
+  EXPECT_THAT(why("levels:", "level:"), HasSubstr("levels is missing"));
+  EXPECT_THAT(why("at_most: 0.0005", "at_most: -1"), HasSubstr("floor_roughness.at_most is '-1'"));
+  EXPECT_THAT(why("linear_speed:", "speeds: {}\nlinear_speed:"), HasSubstr("'speeds' is unknown"));
+}
+
+TEST(CaveatsOfTest, WithinWhatWasValidatedThereAreNone) {
+  EXPECT_THAT(CaveatsOf(RoomRollouts(Room(), "mill"), kDrive, Wide()), IsEmpty());
+}
+
+TEST(CaveatsOfTest, AnObjectThatIsCarriedIsNamedWithItsModel) {
+  Validated validated = Wide();
+  validated.objects = {{"cup", "docs/here.md"}};
+  EXPECT_THAT(CaveatsOf(RoomRollouts(Room(), "mill"), kDrive, validated),
+              ElementsAre(AllOf(HasSubstr("(model mill)"), HasSubstr("validated are cup"))));
+}
+
+TEST(CaveatsOfTest, TheFloorThatMayBeDrawnCounts) {
+  Validated validated = Wide();
+  validated.floor_roughness = {0.001, "docs/floor.md"};
+  EXPECT_THAT(CaveatsOf(OnFloor(0.001), kDrive, validated), IsEmpty());
+  EXPECT_THAT(CaveatsOf(OnFloor(0.004), kDrive, validated),
+              ElementsAre("the floor may be uneven by 0.004 m, validated are up to 0.001 m "
+                          "(docs/floor.md)"));
+}
+
+TEST(CaveatsOfTest, OnlyTheMotionSetsThatAreDrivenWithCount) {
+  const RolloutSetup setup = RoomRollouts(Room(), "mill");
+  const auto& sets = setup.skills->motion_sets;
+  Validated validated = Wide();
+  validated.linear_speed = {
+      0.5 * (sets.at("slow").max_linear_velocity + sets.at("fast").max_linear_velocity),
+      "docs/speed.md"};
+  EXPECT_THAT(CaveatsOf(setup, kDrive, validated),
+              ElementsAre(AllOf(HasSubstr("motion set fast drives"), HasSubstr("docs/speed.md"))));
+  EXPECT_THAT(CaveatsOf(setup, {{"move_base_param", {"east", "slow"}}}, validated), IsEmpty());
+}
+
+TEST(CaveatsOfTest, TheLevelOfDetailCounts) {
+  Validated validated = Wide();
+  validated.levels.erase("tray");
+  EXPECT_THAT(CaveatsOf(RoomRollouts(Room(), "mill"), kDrive, validated),
+              ElementsAre("level of detail tray was not validated; validated are planar"));
+}
+
+TEST(DistributionTest, LargestIsNeverExceeded) {
+  for (const Distribution& distribution : {Distribution{Distribution::Kind::kFixed, 0.3, 0.0},
+                                           Distribution{Distribution::Kind::kUniform, -0.1, 0.2},
+                                           Distribution{Distribution::Kind::kNormal, 0.1, 0.05}}) {
+    base::Rng rng(3);
+    for (int i = 0; i < 1000; ++i) EXPECT_LE(distribution.Sample(&rng), distribution.Largest());
+  }
+}
+
+}  // namespace
+}  // namespace hires::imagination
