@@ -202,7 +202,7 @@ TEST(ChainTest, AfterACollisionTheRobotIsPutToTheGoal) {
   Chain chain(stage, "NT1", {"fast", 1, true, false});
   for (const char* goal : {"ST1", "WT2", "ET2", "EC1", "NT1", "ST1"}) {
     const Leg leg = chain.Drive(goal, {}).value();
-    if (leg.result.reason.rfind("robot_collision", 0) != 0) continue;
+    if (leg.result.failure.code != base::FailureCode::kRobotCollision) continue;
     EXPECT_FALSE(leg.touched.empty());
     EXPECT_EQ(leg.clearance, 0.0);
     EXPECT_TRUE(leg.was_restarted);
