@@ -38,16 +38,20 @@ function(hires_node name)
   install(TARGETS ${target} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 endfunction()
 
-# hires_rostest(<file.test> [TIMEOUT seconds] [BESIDE_OTHERS]): a rostest that ctest runs and a user
-# can run alone. Nothing else runs meanwhile, as each brings masters and worker processes of its own;
-# BESIDE_OTHERS: it judges no times and takes no fixed ports, so that other tests may run too.
+# hires_rostest(<file.test> [TIMEOUT seconds] [BESIDE_OTHERS] [LONG]): a rostest that ctest runs and a
+# user can run alone. Nothing else runs meanwhile, as each brings masters and worker processes of its
+# own; BESIDE_OTHERS: it judges no times and takes no fixed ports, so that other tests may run too.
+# LONG: only with HIRES_LONG_TESTS, as `scripts/test --long` sets it.
 # Not in ${CATKIN_ENV}: that is a snapshot taken while configuring, and in a fresh folder it misses
 # the Python messages built later.
 function(hires_rostest file)
   if(NOT HIRES_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ROSTEST "BESIDE_OTHERS" "TIMEOUT" "ARGS" ${ARGN})
+  cmake_parse_arguments(ROSTEST "BESIDE_OTHERS;LONG" "TIMEOUT" "ARGS" ${ARGN})
+  if(ROSTEST_LONG AND NOT HIRES_LONG_TESTS)
+    return()
+  endif()
   if(NOT ROSTEST_TIMEOUT)
     set(ROSTEST_TIMEOUT 120)
   endif()

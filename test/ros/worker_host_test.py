@@ -193,7 +193,8 @@ class WorkerHostTest(Family, unittest.TestCase):
         for kind, pid in self.children().items():
             self.assertEqual(os.getpriority(os.PRIO_PROCESS, pid), 10, kind)
             self.assertEqual(os.getpgid(pid), pid, kind)
-        self.assertEqual(os.getpriority(os.PRIO_PROCESS, host.pid), 0)
+        self.assertEqual(os.getpriority(os.PRIO_PROCESS, host.pid),
+                         os.getpriority(os.PRIO_PROCESS, 0))
 
     def test_the_workers_master_listens_on_loopback_only(self):
         host = self.start_host()
