@@ -307,7 +307,7 @@ def check_failure_codes(root):
     """The message Failure and the table in base carry the same codes under the same numbers."""
     message, table = "msg/Failure.msg", FAILURE_TABLE
     header = "include/hires/base/failure.h"
-    if not os.path.exists(os.path.join(root, table)):
+    if not all(os.path.exists(os.path.join(root, path)) for path in (message, table, header)):
         return
     words = dict(re.findall(r'\{Code::(k\w+), "(\w+)"', read(root, table)))
     numbers = dict(re.findall(r"^\s*(k\w+) = (\d+)", read(root, header), re.MULTILINE))
@@ -375,9 +375,21 @@ def check_failure_tables(root):
                            f"{FAILURE_TABLE}, or add a code there")
 
 
+def check_instructions(root):
+    """What CONTRIBUTING.md tells people to open must be there."""
+    path = "CONTRIBUTING.md"
+    if not os.path.exists(os.path.join(root, path)):
+        return
+    named = re.compile(r"`((?:cmake|config|docs|examples|include|launch|scripts|src|test)/[\w./-]+)`")
+    for number, line in enumerate(read(root, path).splitlines(), start=1):
+        for file in named.findall(line):
+            if not os.path.exists(os.path.join(root, file)):
+                yield f"{path}:{number}: there is no {file}; name what took its place"
+
+
 CHECKS = [check_includes, check_dependencies, check_headers, check_whitespace, check_packages,
           check_catkin_components, check_scripts, check_failure_codes, check_failure_texts,
-          check_failure_tables]
+          check_failure_tables, check_instructions]
 
 
 def complaints_about(root):

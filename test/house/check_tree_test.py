@@ -152,6 +152,10 @@ class CheckTreeTest(unittest.TestCase):
         self.expect_one({**tree, "src/base/failure.cpp": '#include "hires/base/failure.h"\n',
                          "msg/Failure.msg": "uint16 NONE=0\n"}, "no row for kStuck")
 
+    def test_instructions_that_lead_nowhere_are_found(self):
+        text = "Open `src/base/rng.cpp`, `src/`, `scripts/build --where`\nand `src/base/dice.cpp`.\n"
+        self.expect_one({"CONTRIBUTING.md": text}, "CONTRIBUTING.md:2", "no src/base/dice.cpp")
+
     def test_scripts_that_cannot_be_read_are_found(self):
         self.expect_one({"scripts/build": "#!/bin/bash\nif true; then\n"}, "scripts/build", "bash")
         self.expect_one({"scripts/table": "#!/usr/bin/env python3\nprint(\n"},
