@@ -64,7 +64,7 @@ Stage MakeStage(const ExperimentConfig& config) {
   }
   AddGoals(config.goals, &world, &skills);
   world.hash = world.ComputeHash();
-  setup.scene = simulation::MakeScene(std::move(world), setup.scene->robot);
+  setup.scene = simulation::MakeScene(std::move(world), setup.scene->robot, setup.scene->memory);
   setup.skills = std::make_shared<const skills::SkillSet>(std::move(skills));
   stage.objects = config.objects;
   stage.xy_tolerance = scene.driving.local.xy_goal_tolerance;

@@ -147,11 +147,13 @@ SetupConfig ReadSetupConfig(const std::string& path) {
   config.driving = ReadDriving(in.Sub("driving"));
   config.blind = ReadBlind(in.Sub("blind_driving"));
   config.manipulation = skills::ReadManipulationParams(in.Sub("manipulation"));
+  config.sensing = sensing::ReadSensingParams(in.Sub("sensing"));
   config.physics = ReadPhysics(in.Sub("physics"));
   config.rollout = ReadRolloutParams(in.Sub("rollout"));
   in.RejectUnknownKeys();
   base::Hasher hasher;
-  for (const char* section : {"driving", "blind_driving", "manipulation", "physics", "rollout"}) {
+  for (const char* section :
+       {"driving", "blind_driving", "manipulation", "sensing", "physics", "rollout"}) {
     hasher.Add(in.Sub(section).Canonical());
   }
   config.params_hash = hasher.value();
@@ -171,7 +173,8 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   hasher.Add(config.params_hash);
   setup.world_hash = hasher.value();
   setup.robot_hash = robot.hash();
-  setup.scene = simulation::MakeScene(std::move(world), std::move(robot));
+  setup.scene = simulation::MakeScene(std::move(world), std::move(robot), config.sensing.memory);
+  setup.sensing = config.sensing;
   // The scene keeps them; the translator only looks.
   setup.translator.object_models = setup.object_models;
   setup.translator.world = {setup.scene, &setup.scene->world};

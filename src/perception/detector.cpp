@@ -25,7 +25,12 @@ std::vector<Detection> Detect(const LineOfSight& sight, const CameraView& true_v
     const geometry::Pose3 X_CO = Blurred(X_CM * object.X_MO, params, rng);
     const double share = sight.VisibleShare(true_view, object.name);
     if (share <= 0.0 || share < params.min_visible_share) continue;
-    detections.push_back({object.name, object.model, X_CO, share});
+    Detection detection;
+    detection.instance = object.name;
+    detection.label = object.model;
+    detection.X_CO = X_CO;
+    detection.visible_share = share;
+    detections.push_back(std::move(detection));
   }
   return detections;
 }

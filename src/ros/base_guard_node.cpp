@@ -11,7 +11,6 @@
 
 #include "hires/base/log.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/odometry_frame.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 
@@ -23,8 +22,8 @@ using hires::navigation::GuardState;
 using hires::navigation::PoseSource;
 using Diagnostic = diagnostic_msgs::DiagnosticStatus;
 
-constexpr double kPeriod = 0.02;  // [s] of the guard's looks: ten within the controller's time-out
-constexpr char kStaticTransforms[] = "/tf_static";
+constexpr double kPeriod = 0.02;   // [s] of the guard's looks: ten within the controller's time-out
+constexpr double kJumpBack = 1.0;  // [s] by which time goes back when its clock began again
 
 const char* ToText(GuardState state) {
   switch (state) {
@@ -132,17 +131,29 @@ void BaseGuardNode::OnLocalisation(const geometry_msgs::PoseWithCovarianceStampe
 }
 
 void BaseGuardNode::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static) {
-  const RobotNames& names = params_.names;
-  for (const geometry_msgs::TransformStamped& transform : msg.transforms) {
-    const std::string parent = BareFrame(transform.header.frame_id);
-    const std::string child = BareFrame(transform.child_frame_id);
-    const bool is_map = parent == names.map_frame && child == names.odometry_frame;
-    const bool is_base = parent == names.odometry_frame && child == names.base_frame;
-    if (!is_map && !is_base) continue;
-    const PoseSource source = is_map ? PoseSource::kMapTransform : PoseSource::kBaseTransform;
-    if (are_static) static_sources_.insert(source);
-    guard_.OnTransform(source, StampOf(transform.header.stamp), Now());
+  const ros::Time now = ros::Time::now();
+  if (now + ros::Duration(kJumpBack) < last_transforms_) {  // the clock began again
+    tree_.ForgetMoving();
+    newest_.clear();
   }
+  last_transforms_ = now;
+  tree_.Take(msg, are_static);
+  const RobotNames& names = params_.names;
+  OnLink(PoseSource::kMapTransform, tree_.NewestOf(names.map_frame, names.odometry_frame));
+  OnLink(PoseSource::kBaseTransform, tree_.NewestOf(names.odometry_frame, names.base_frame));
+}
+
+/// @param stamp  [s] of the newest that is known of the link; infinity: it never moves.
+void BaseGuardNode::OnLink(PoseSource source, std::optional<double> stamp) {
+  if (!stamp) return;
+  if (!std::isfinite(*stamp)) {
+    static_sources_.insert(source);
+    return;
+  }
+  const auto newest = newest_.find(source);
+  if (newest != newest_.end() && newest->second >= *stamp) return;
+  newest_[source] = *stamp;
+  guard_.OnTransform(source, StampOf(ros::Time(*stamp)), Now());
 }
 
 void BaseGuardNode::OnPlannerUpdate(const dynamic_reconfigure::Config& msg) {

@@ -28,14 +28,20 @@ void MiddleLayerNode::Subscribe(ros::NodeHandle* nh) {
       params_.names.joint_states, 100,
       boost::function<void(const sensor_msgs::JointStateConstPtr&)>(
           [this](const sensor_msgs::JointStateConstPtr& msg) {
-            senses_.OnJoints(msg->header.stamp.toSec(), FromMsg(*msg));
+            sensors_.OnJoints(*msg);
             Note(params_.names.joint_states, msg->header.stamp.toSec());
           }),
       ros::VoidConstPtr(), hints));
-  add(nh->subscribe(kTransforms, 100, &MiddleLayerNode::OnTransforms, this, hints));
+  const auto on_transforms = [this](bool are_static) {
+    return boost::function<void(const tf2_msgs::TFMessage&)>(
+        [this, are_static](const tf2_msgs::TFMessage& msg) { OnTransforms(msg, are_static); });
+  };
+  add(nh->subscribe<tf2_msgs::TFMessage>(kTransforms, 100, on_transforms(false),
+                                         ros::VoidConstPtr(), hints));
+  add(nh->subscribe<tf2_msgs::TFMessage>(kStaticTransforms, 100, on_transforms(true)));
   add(nh->subscribe(params_.names.base_scan, 10, &MiddleLayerNode::OnScan, this, hints));
   add(nh->subscribe(kDetections, 10, &MiddleLayerNode::OnDetections, this, hints));
-  add(nh->subscribe(kKnownObjects, 10, &MiddleLayerNode::OnKnownObjects, this, hints));
+  add(nh->subscribe(kKnownObjects, 10, &SensorReceiver::OnKnownObjects, &sensors_, hints));
   if (params_.lockstep) {
     add(nh->subscribe(kLockstepTick, 10, &MiddleLayerNode::OnTick, this, hints));
   }
@@ -52,23 +58,19 @@ void MiddleLayerNode::Subscribe(ros::NodeHandle* nh) {
 }
 
 void MiddleLayerNode::OnOdometry(const nav_msgs::Odometry& msg) {
-  const double stamp = msg.header.stamp.toSec();
-  const auto reading = odometry_frame_.Take(stamp, msg.header.frame_id, FromMsg(msg));
-  if (reading) senses_.OnOdometry(stamp, *reading);
-  Note(params_.names.odometry, stamp);
+  sensors_.OnOdometry(msg);
+  if (restarts_ != sensors_.state().num_restarts()) {  // the robot's clock began again
+    restarts_ = sensors_.state().num_restarts();
+    arrived_.clear();
+    looked_ = -1.0;
+  }
+  Note(params_.names.odometry, msg.header.stamp.toSec());
 }
 
-void MiddleLayerNode::OnTransforms(const tf2_msgs::TFMessage& msg) {
-  const RobotNames& names = params_.names;
-  for (const geometry_msgs::TransformStamped& transform : msg.transforms) {
-    const double stamp = transform.header.stamp.toSec();
-    const auto X_OB = PoseBetween(transform, names.odometry_frame, names.base_frame);
-    const auto X_MO = PoseBetween(transform, names.map_frame, names.odometry_frame);
-    if (X_OB) odometry_frame_.OnTransform(stamp, *X_OB);
-    if (!X_MO) continue;
-    senses_.OnLocalisation(stamp, *X_MO);
-    Note(kTransforms, stamp);
-  }
+/// A tick waits for the localisation of its stamp, whatever else is told of the frames.
+void MiddleLayerNode::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static) {
+  sensors_.OnTransforms(msg, are_static);
+  if (const auto localised = sensors_.state().LocalisedUntil()) Note(kTransforms, *localised);
 }
 
 /// Whoever pulls the plug, or presses the button, means arms as well.
@@ -87,23 +89,18 @@ void MiddleLayerNode::OnGuardStopped(const hires::base::Failure& failure) {
 }
 
 void MiddleLayerNode::OnScan(const sensor_msgs::LaserScan& msg) {
-  senses_.OnScan(msg.header.stamp.toSec(),
-                 {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges});
-  Note(params_.names.base_scan, msg.header.stamp.toSec());
+  const double stamp = msg.header.stamp.toSec();
+  const auto receipt = observations_.OnScan(
+      stamp, msg.header.frame_id, {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges});
+  if (receipt.is_bad()) {
+    sensors_.Warn(params_.names.base_scan, hires::sensing::ToString(receipt));
+  }
+  Note(params_.names.base_scan, stamp);
 }
 
 void MiddleLayerNode::OnDetections(const hires::Detections& msg) {
-  std::vector<hires::perception::Detection> detections;
-  for (const hires::Detection& object : msg.detections) {
-    detections.push_back(
-        {object.instance, object.label, FromMsg(object.pose), object.visible_share});
-  }
-  senses_.OnDetections(msg.header.stamp.toSec(), std::move(detections));
+  sensors_.OnDetections(msg);
   Note(kDetections, msg.header.stamp.toSec());
-}
-
-void MiddleLayerNode::OnKnownObjects(const hires::WorldState& msg) {
-  senses_.OnKnownObjects(FromMsg(msg));
 }
 
 void MiddleLayerNode::OnTick(const hires::LockstepTick& msg) {
@@ -130,7 +127,7 @@ void MiddleLayerNode::Note(const std::string& topic, double stamp) {
 }
 
 void MiddleLayerNode::LookWhereFree() {
-  const auto complete = senses_.CompleteUntil();
+  const auto complete = sensors_.state().CompleteUntil();
   if (!complete || *complete <= looked_) return;
   looked_ = *complete;
   LookAt(looked_, looked_);
@@ -139,11 +136,22 @@ void MiddleLayerNode::LookWhereFree() {
 /// @param time   [s] that skills take for now.
 /// @param stamp  [s] up to which the senses are complete.
 void MiddleLayerNode::LookAt(double time, double stamp) {
+  const auto now = sensors_.state().At(stamp);
+  if (!now) return runner_.CheckFreshness(time);
   last_look_ = Steady::now();
-  const hires::robot::Observation seen = senses_.Look(stamp);
+  const hires::robot::Observation seen = ObservationOf(*now);
   override_.See(time, seen.V_B);
   if (params_.guard.is_there) WeighLoad(time, seen);
   runner_.Look(time, seen);
+}
+
+hires::robot::Observation MiddleLayerNode::ObservationOf(const hires::sensing::RobotEstimate& now) {
+  hires::robot::Observation seen = observations_.Observe(now);
+  const hires::sensing::Receipt& scan = observations_.scan_receipt();
+  if (scan.is_bad()) sensors_.Warn(params_.names.base_scan, hires::sensing::ToString(scan));
+  sensors_.Update(now);
+  if (sensors_.objects()) seen.objects = sensors_.objects()->memory().Known(now.Body());
+  return seen;
 }
 
 void MiddleLayerNode::WeighLoad(double time, const hires::robot::Observation& seen) {
@@ -173,7 +181,7 @@ void MiddleLayerNode::LookAtTick() {
   if (!tick_ || is_tick_looked_at_ || !IsTickComplete()) return;
   is_tick_looked_at_ = true;
   const double stamp = tick_->header.stamp.toSec();
-  const auto complete = senses_.CompleteUntil();
+  const auto complete = sensors_.state().CompleteUntil();
   if (complete && *complete >= stamp - kSameStamp) {
     looked_ = stamp;
     LookAt(stamp, std::min(stamp, *complete));

@@ -59,11 +59,10 @@ MiddleLayerNode::MiddleLayerNode(const MiddleLayerParams& params,
                                  hires::imagination::ImaginationSetup setup, ros::NodeHandle* nh)
     : params_(params),
       setup_(std::move(setup)),
-      scan_obstacles_(setup_.skills->driving->costmap, PaddedFootprint(setup_.scene->robot),
-                      params.scan),
-      odometry_frame_(params.names.odometry_frame),
-      senses_({setup_.scene, &setup_.scene->robot}, setup_.scene->surroundings, scan_obstacles_,
-              params.names, params.runner.stale_after),
+      sensors_({setup_.scene, &setup_.scene->robot}, setup_.scene->surroundings, params.names,
+               setup_.sensing),
+      observations_(&sensors_.state(), {setup_.skills->driving->costmap,
+                                        PaddedFootprint(setup_.scene->robot), params.scan}),
       runner_(setup_.scene->robot, params.runner,
               {[this](const hires::robot::Command& command) { Send(command); },
                [this](const ActionNews& news, ActionEnd end, const Failure& failure) {
@@ -160,7 +159,7 @@ Failure MiddleLayerNode::WhyNotReady(const std::set<std::string>& groups) const 
   if (are_motors_halted_) return Code::kMotorsHalted;
   const std::string controller = MissingController(groups);
   if (!controller.empty()) return {Code::kNoController, {}, controller};
-  const bool is_fresh = senses_.Missing().empty() && !ros::Time::now().isZero() &&
+  const bool is_fresh = sensors_.state().CompleteUntil() && !ros::Time::now().isZero() &&
                         ros::Time::now().toSec() - looked_ <= params_.runner.stale_after;
   return is_fresh || params_.lockstep ? Failure() : Code::kStaleObservation;
 }
@@ -325,12 +324,13 @@ void MiddleLayerNode::Tend() {
 }
 
 void MiddleLayerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
-  const std::string missing = senses_.Missing();
+  const std::string missing = sensors_.NameOf(sensors_.state().MissingNow());
   if (missing.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::OK, "ready");
   } else {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "nothing comes on " + missing);
   }
+  status.add("bad messages", sensors_.num_bad());
   status.add("running", hires::base::Join(runner_.Running(), "; "));
   status.add("ended", num_ended_);
   status.add("lockstep", params_.lockstep);

@@ -54,7 +54,7 @@ MiddleLayerParams Read(const std::string& path, std::optional<bool> is_guard_the
   params.setup = hires::imagination::ReadSetupConfig(
       hires::imagination::ResolvePath(in.GetString("scene"), path));
   params.runner.time_limit = in.Get("time_limit", Between(0.1, 3600.0));
-  params.runner.stale_after = in.Get("stale_after", Between(0.05, 10.0));
+  params.runner.stale_after = params.setup.sensing.robot_state.stale_after;
   params.runner.stop = ReadStopping(in.Sub("stopping"));
   params.scan = ReadScan(in.Sub("scan"));
   params.guard = ReadGuard(in.Sub("guard"), is_guard_there, path);

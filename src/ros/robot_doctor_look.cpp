@@ -14,11 +14,11 @@
 #include <future>
 
 #include "hires/base/error.h"
-#include "hires/ros/odometry_frame.h"
 #include "hires/ros/process.h"
 #include "hires/ros/robot_doctor.h"
 #include "hires/ros/robot_doctor_network.h"
 #include "hires/ros/xmlrpc_master_api.h"
+#include "hires/sensing/frame_tree.h"
 
 namespace hires_ros {
 namespace {
@@ -209,9 +209,9 @@ class Ears {
   }
 
   void OnTransform(const geometry_msgs::TransformStamped& transform, bool is_static) {
-    const std::string child = BareFrame(transform.child_frame_id);
+    const std::string child = hires::sensing::BareFrame(transform.child_frame_id);
     SeenFrame& frame = view_->frames[child];
-    frame.parents.insert(BareFrame(transform.header.frame_id));
+    frame.parents.insert(hires::sensing::BareFrame(transform.header.frame_id));
     frame.is_static = is_static;
     ros::Time& newest = newest_[child];
     newest = std::max(newest, transform.header.stamp);

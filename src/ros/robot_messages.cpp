@@ -127,6 +127,42 @@ OdometryReading FromMsg(const nav_msgs::Odometry& msg) {
           {twist.linear.x, twist.linear.y, twist.angular.z}};
 }
 
+hires::perception::Detection FromMsg(const hires::Detection& msg) {
+  hires::perception::Detection out;
+  if (!msg.instance.empty()) out.instance = msg.instance;
+  out.label = msg.label;
+  out.X_CO = FromMsg(msg.pose);
+  out.visible_share = msg.visible_share;
+  out.category = msg.category;
+  out.confidence = msg.confidence == 0.0f ? 1.0 : msg.confidence;
+  for (const hires::LabelConfidence& other : msg.alternatives) {
+    out.alternatives.push_back({other.label, other.confidence});
+  }
+  out.size = {msg.size.x, msg.size.y, msg.size.z};
+  out.num_points = static_cast<int>(msg.num_points);
+  return out;
+}
+
+hires::Detection ToMsg(const hires::perception::Detection& detection) {
+  hires::Detection out;
+  out.instance = detection.instance.value_or("");
+  out.label = detection.label;
+  out.pose = ToMsg(detection.X_CO);
+  out.visible_share = static_cast<float>(detection.visible_share);
+  out.category = detection.category;
+  out.confidence = static_cast<float>(detection.confidence);
+  for (const hires::perception::LabelConfidence& other : detection.alternatives) {
+    out.alternatives.emplace_back();
+    out.alternatives.back().label = other.label;
+    out.alternatives.back().confidence = static_cast<float>(other.confidence);
+  }
+  out.size.x = detection.size.x();
+  out.size.y = detection.size.y();
+  out.size.z = detection.size.z();
+  out.num_points = static_cast<std::uint32_t>(detection.num_points);
+  return out;
+}
+
 geometry_msgs::TransformStamped MakeTransform(const std::string& parent, const std::string& child,
                                               const hires::geometry::Pose3& X_PC,
                                               const ros::Time& stamp) {

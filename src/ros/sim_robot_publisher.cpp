@@ -186,13 +186,7 @@ void SimRobotPublisher::PublishDetections(const SimRobotWorld& world, const ros:
   detections.header.frame_id = scene_->robot.profile.upper_body->camera_link;
   for (const hires::perception::Detection& seen :
        hires::perception::Detect(sight, view, objects, detector, &rng)) {
-    hires::Detection detection;
-    detection.label = seen.model;
-    detection.instance = seen.name;  // this detector is told which one it is
-    detection.confidence = 1.0f;
-    detection.pose = ToMsg(seen.X_CO);
-    detection.visible_share = static_cast<float>(seen.visible_share);
-    detections.detections.push_back(detection);
+    detections.detections.push_back(ToMsg(seen));
   }
   detections_.publish(detections);
 }

@@ -1,6 +1,7 @@
 #include "hires/ros/world_tracker_params.h"
 
 #include "hires/base/text.h"
+#include "hires/imagination/imagination_setup.h"
 #include "hires/ros/private_params.h"
 
 namespace hires_ros {
@@ -8,23 +9,6 @@ namespace {
 
 using hires::base::Between;
 using hires::base::ParamReader;
-
-hires::sensing::MemoryParams ReadMemory(ParamReader in) {
-  hires::sensing::MemoryParams params;
-  params.expected_share = in.Get("expected_share", Between(0.05, 1.0));
-  params.looks_to_vanish = in.Get("looks_to_vanish", Between(1, 1000));
-  params.blending = in.Get("blending", Between(0.01, 1.0));
-  params.moved_distance = in.Get("moved_distance", Between(0.0, 1.0));
-  params.moved_angle = in.Get("moved_angle", Between(0.0, 3.2));
-  params.grasp_distance = in.Get("grasp_distance", Between(0.0, 0.5));
-  params.closed_gap = in.Get("closed_gap", Between(0.0, 0.05));
-  params.gap_below = in.Get("gap_below", Between(0.0, 0.1));
-  params.gap_above = in.Get("gap_above", Between(0.0, 0.1));
-  params.still_gap = in.Get("still_gap", Between(0.0001, 0.02));
-  params.still_time = in.Get("still_time", Between(0.0, 5.0));
-  params.hand_distance = in.Get("hand_distance", Between(0.01, 1.0));
-  return params;
-}
 
 hires::translation::ClassifyParams ReadClassify(ParamReader in) {
   hires::translation::ClassifyParams params;
@@ -75,7 +59,7 @@ WorldTrackerParams ReadWorldTrackerParams(const std::string& path) {
   ParamReader in = ParamReader::FromFile(path);
   WorldTrackerParams params;
   ReadTranslatorFiles(path, &in, &params.files);
-  params.memory = ReadMemory(in.Sub("memory"));
+  params.sensing = hires::imagination::ReadSetupConfig(params.files.scene).sensing;
   params.classify = ReadClassify(in.Sub("classify"));
   params.changes = ReadChanges(in.Sub("changes"));
   params.concepts = ReadConcepts(in.Sub("concepts"));

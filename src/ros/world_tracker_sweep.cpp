@@ -47,10 +47,10 @@ std::optional<Eigen::Vector3d> HeadSweep::PointOf(const std::string& place,
   return std::nullopt;
 }
 
-std::optional<JointTrajectory> HeadSweep::Update(const TrackerMoment& moment,
+std::optional<JointTrajectory> HeadSweep::Update(const hires::sensing::BodyReading& body,
+                                                 bool has_looked,
                                                  const std::vector<SeenObject>& known) {
   if (!params_.enabled || !robot_->profile.upper_body || places_.empty()) return std::nullopt;
-  const auto& body = moment.body;
   const auto view = hires::perception::ViewOf(*robot_, body.X_MB, body.joints);
   std::string oldest;
   std::optional<Eigen::Vector3d> point;
@@ -58,7 +58,7 @@ std::optional<JointTrajectory> HeadSweep::Update(const TrackerMoment& moment,
   for (const std::string& place : places_) {
     const auto p_M = PointOf(place, known);
     if (!p_M || (*p_M - view.X_MC.translation).norm() > params_.range) continue;
-    if (moment.look && view.Contains(*p_M)) looked_at_[place] = body.time;
+    if (has_looked && view.Contains(*p_M)) looked_at_[place] = body.time;
     const auto looked = looked_at_.find(place);
     const double time =
         looked == looked_at_.end() ? -std::numeric_limits<double>::infinity() : looked->second;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -53,13 +54,21 @@ std::optional<geometry::Aabb> PlateOf(const robot::Robot& robot) {
   return plate;
 }
 
-bool IsDetected(const std::vector<Detection>& detections, const std::string& name) {
-  return std::any_of(detections.begin(), detections.end(), [&](const Detection& detection) {
-    return base::ToLower(detection.name) == name;
-  });
+bool Contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 }  // namespace
+
+bool MemoryParams::operator==(const MemoryParams& other) const {
+  const auto numbers = [](const MemoryParams& p) {
+    return std::make_tuple(p.expected_share, p.looks_to_vanish, p.blending, p.moved_distance,
+                           p.moved_angle, p.grasp_distance, p.closed_gap, p.gap_below, p.gap_above,
+                           p.open_gap, p.opening, p.still_gap, p.still_time, p.hand_distance,
+                           p.instance_distance);
+  };
+  return numbers(*this) == numbers(other);
+}
 
 /// Where the robot's links are in the map.
 class ObjectMemory::Links {
@@ -127,6 +136,15 @@ void ObjectMemory::Disbelieve(const std::string& name) {
   objects_.erase(known);
 }
 
+void ObjectMemory::DisbelieveAllBut(const std::vector<std::string>& names) {
+  std::vector<std::string> said, unsaid;
+  for (const std::string& name : names) said.push_back(base::ToLower(name));
+  for (const auto& [name, unused] : objects_) {
+    if (!Contains(said, name)) unsaid.push_back(name);
+  }
+  for (const std::string& name : unsaid) Disbelieve(name);
+}
+
 // ---- Feeling.
 
 bool ObjectMemory::Feel(const BodyReading& body) {
@@ -144,6 +162,7 @@ bool ObjectMemory::FeelHand(const Links& links, const std::string& name, Hand* h
   const double gap = position->second;
   const double max_gap = robot_->profile.upper_body->gripper.max_gap;
   if (hand->gap < 0.0 && !hand->holds.empty()) hand->grasp_gap = gap;  // believed to hold
+  hand->since = std::min(hand->since, body.time);  // the clock may have begun again
   if (hand->gap < 0.0 || std::abs(gap - hand->gap) > params_.still_gap) {
     hand->gap = gap;
     hand->since = body.time;
@@ -258,13 +277,15 @@ void ObjectMemory::PlaceAt(const Links& links, const Pose3& X_MO, RememberedObje
 
 // ---- Looking.
 
+void ObjectMemory::Check(const Detection& detection) const {
+  surroundings_->Model(detection.label);
+  if (detection.X_CO.IsFinite()) return;
+  throw base::ConfigError(fmt::format("detection of '{}': its pose is not finite",
+                                      detection.instance.value_or(detection.label)));
+}
+
 void ObjectMemory::Look(const BodyReading& body, const std::vector<Detection>& detections) {
-  for (const Detection& detection : detections) {
-    surroundings_->Model(detection.model);
-    if (detection.X_CO.IsFinite()) continue;
-    throw base::ConfigError(
-        fmt::format("detection of '{}': its pose is not finite", detection.name));
-  }
+  for (const Detection& detection : detections) Check(detection);
   const Links links(*robot_, body);
   const CameraView view = perception::ViewOf(*robot_, body.X_MB, body.joints);
   std::vector<world::ObjectState> expected;
@@ -273,18 +294,62 @@ void ObjectMemory::Look(const BodyReading& body, const std::vector<Detection>& d
   }
   const LineOfSight sight(surroundings_, expected,
                           perception::ShapesOf(*robot_, body.X_MB, body.joints));
-  Miss(sight, view, links, detections);
-  for (const Detection& detection : detections) {
-    See(links, detection, view.X_MC * detection.X_CO, body.time);
+  const std::vector<std::string> names = NamesOf(links, view, detections);
+  Miss(sight, view, links, detections, names);
+  for (std::size_t i = 0; i < detections.size(); ++i) {
+    if (names[i].empty()) continue;
+    See(links, names[i], detections[i].label, view.X_MC * detections[i].X_CO, body.time);
   }
+}
+
+/// Whether a thing of that kind, seen at X_MO, may be the object.
+bool ObjectMemory::MayBe(const Links& links, const RememberedObject& object,
+                         const std::string& label, const Pose3& X_MO) const {
+  const Pose3 X_Mexpected = links.X_ML(object.link) * object.X_LO;
+  return object.model == label &&
+         (X_Mexpected.translation - X_MO.translation).norm() <= params_.instance_distance;
+}
+
+/// The instances that are seen, in the order of `detections`; empty where that is not certain.
+std::vector<std::string> ObjectMemory::NamesOf(const Links& links, const CameraView& view,
+                                               const std::vector<Detection>& detections) const {
+  std::vector<std::string> names;
+  for (const Detection& one : detections) names.push_back(base::ToLower(one.instance.value_or("")));
+  const std::vector<std::string> given = names;
+  std::vector<std::vector<std::size_t>> nearby;  // detections without a name, for each candidate
+  std::vector<std::string> candidates;
+  std::vector<int> num_candidates(detections.size(), 0);
+  for (const auto& [name, object] : objects_) {
+    if (Contains(given, name)) continue;
+    candidates.push_back(name);
+    nearby.emplace_back();
+    for (std::size_t i = 0; i < detections.size(); ++i) {
+      if (!given[i].empty()) continue;
+      if (!MayBe(links, object, detections[i].label, view.X_MC * detections[i].X_CO)) continue;
+      nearby.back().push_back(i);
+      ++num_candidates[i];
+    }
+  }
+  for (std::size_t k = 0; k < candidates.size(); ++k) {
+    const bool is_certain = nearby[k].size() == 1 && num_candidates[nearby[k][0]] == 1;
+    if (is_certain) names[nearby[k][0]] = candidates[k];
+  }
+  return names;
 }
 
 /// Counts the objects that should have been detected.
 void ObjectMemory::Miss(const LineOfSight& sight, const CameraView& view, const Links& links,
-                        const std::vector<Detection>& detections) {
+                        const std::vector<Detection>& detections,
+                        const std::vector<std::string>& names) {
   std::vector<std::string> gone;
   for (auto& [name, object] : objects_) {
-    if (IsDetected(detections, name)) continue;
+    if (Contains(names, name)) continue;
+    bool may_be_seen = false;
+    for (std::size_t i = 0; i < detections.size(); ++i) {
+      may_be_seen = may_be_seen || (names[i].empty() && MayBe(links, object, detections[i].label,
+                                                              view.X_MC * detections[i].X_CO));
+    }
+    if (may_be_seen) continue;
     const Pose3 X_MO = links.X_ML(object.link) * object.X_LO;
     const double share = sight.VisibleShareAt(view, object.model, X_MO, name);
     if (share < params_.expected_share) continue;
@@ -293,14 +358,13 @@ void ObjectMemory::Miss(const LineOfSight& sight, const CameraView& view, const 
   for (const std::string& name : gone) Lose(name);
 }
 
-void ObjectMemory::See(const Links& links, const Detection& detection, const Pose3& X_MO,
-                       double time) {
-  const std::string name = base::ToLower(detection.name);
+void ObjectMemory::See(const Links& links, const std::string& name, const std::string& label,
+                       const Pose3& X_MO, double time) {
   vanished_.erase(name);
   RememberedObject& object = objects_[name];
-  const bool is_new = object.name.empty() || object.model != detection.model;
+  const bool is_new = object.name.empty() || object.model != label;
   object.name = name;
-  object.model = detection.model;
+  object.model = label;
   object.time = time;
   object.num_missed = 0;
   const Pose3 X_LO = links.X_ML(object.link).Inverse() * X_MO;

@@ -170,7 +170,7 @@ void RobotSimulator::AddPlanarRobot() {
   }
   if (scene_->surroundings) {
     memory_.emplace(scene_->surroundings,
-                    std::shared_ptr<const robot::Robot>(scene_, &scene_->robot));
+                    std::shared_ptr<const robot::Robot>(scene_, &scene_->robot), scene_->memory);
     BelieveHands();
   }
 }

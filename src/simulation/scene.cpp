@@ -72,7 +72,8 @@ robot::JointPositions PostureOf(const robot::Robot& robot, const robot::JointPos
   return posture;
 }
 
-std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot) {
+std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot,
+                                       const sensing::MemoryParams& memory) {
   const robot::RobotProfile& profile = robot.profile;
   const auto X_RL = robot::ForwardKinematics(robot.model, profile.joints);
   const geometry::Pose3 X_BR = PoseOfLink(robot.model, X_RL, profile.base_link).Inverse();
@@ -88,7 +89,7 @@ std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot) {
   if (profile.upper_body) surroundings = std::make_shared<const perception::Surroundings>(world);
   return std::make_shared<const Scene>(
       Scene{std::move(world), std::move(robot), std::move(shapes_B), std::move(clearance), X_BO,
-            std::move(base_B), std::move(base_clearance), std::move(surroundings)});
+            std::move(base_B), std::move(base_clearance), std::move(surroundings), memory});
 }
 
 }  // namespace hires::simulation

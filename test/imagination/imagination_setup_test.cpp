@@ -76,7 +76,7 @@ struct SceneFile {
   YAML::Node root;
 };
 
-/// Calls visit(path, node) for every number, truth value or text below the four sections.
+/// Calls visit(path, node) for every number, truth value or text below these sections.
 void ForEveryParameter(const YAML::Node& root,
                        const std::function<void(const std::string&, YAML::Node)>& visit) {
   const std::function<void(const std::string&, YAML::Node)> descend = [&](const std::string& path,
@@ -84,7 +84,7 @@ void ForEveryParameter(const YAML::Node& root,
     if (!node.IsMap()) return visit(path, node);
     for (auto entry : node) descend(path + "." + entry.first.Scalar(), entry.second);
   };
-  for (const char* section : {"driving", "blind_driving", "physics", "rollout"}) {
+  for (const char* section : {"driving", "blind_driving", "sensing", "physics", "rollout"}) {
     descend(section, root[section]);
   }
 }

@@ -33,10 +33,10 @@ TEST_F(DetectorTest, NamesWhatIsSeenAndNotWhatIsHidden) {
   base::Rng rng(1);
   const auto seen = Look(view_, &rng);
   ASSERT_EQ(seen.size(), 2u);
-  EXPECT_EQ(seen[0].name, "mug1");
-  EXPECT_EQ(seen[0].model, "mug");
+  EXPECT_EQ(seen[0].instance, "mug1");
+  EXPECT_EQ(seen[0].label, "mug");
   EXPECT_EQ(seen[0].visible_share, 1.0);
-  EXPECT_EQ(seen[1].name, "jug1");
+  EXPECT_EQ(seen[1].instance, "jug1");
 }
 
 TEST_F(DetectorTest, WithoutNoiseThePosesAreTheTrueOnesInTheCamerasFrame) {
@@ -75,7 +75,7 @@ TEST_F(DetectorTest, WhatHidesOneObjectLeavesTheNoiseOfOthersAlone) {
   objects_[0].X_MO.translation.y() = -3.0;  // out of view: now mug2 is seen
   const auto seen = Look(view_, &same);
   ASSERT_EQ(seen.size(), 2u);
-  EXPECT_EQ(seen[0].name, "mug2");
+  EXPECT_EQ(seen[0].instance, "mug2");
   EXPECT_EQ(seen[1].X_CO.translation, jug.X_CO.translation);
 }
 
@@ -83,10 +83,10 @@ TEST_F(DetectorTest, AnObjectOfWhichTooLittleIsSeenIsMissed) {
   objects_.push_back(Thing("screen1", "screen", At(1.0, 0.5, 0.7)));  // half of mug1, all of jug1
   base::Rng rng(1);
   params_.min_visible_share = 0.3;
-  EXPECT_THAT(Look(view_, &rng), testing::Contains(testing::Field(&Detection::name, "mug1")));
+  EXPECT_THAT(Look(view_, &rng), testing::Contains(testing::Field(&Detection::instance, "mug1")));
   params_.min_visible_share = 0.8;
   EXPECT_THAT(Look(view_, &rng),
-              testing::Not(testing::Contains(testing::Field(&Detection::name, "mug1"))));
+              testing::Not(testing::Contains(testing::Field(&Detection::instance, "mug1"))));
 }
 
 TEST_F(DetectorTest, NothingIsDetectedWhereNothingIs) {

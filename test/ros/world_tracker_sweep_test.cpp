@@ -15,10 +15,9 @@ const std::vector<std::string> kPlaces = {"placingareawestlefttable1", "placinga
 class HeadSweepTest : public testing::Test {
  protected:
   HeadSweepTest() {
-    moment_.body.X_MB = {7.68, 9.6, 1.57};  // south of table1
-    moment_.body.joints = RestaurantContext().robot->profile.joints;
-    moment_.body.joints["head_tilt_joint"] = -0.3;
-    moment_.look.emplace();
+    body_.X_MB = {7.68, 9.6, 1.57};  // south of table1
+    body_.joints = RestaurantContext().robot->profile.joints;
+    body_.joints["head_tilt_joint"] = -0.3;
   }
   HeadSweep Make() const {
     HeadSweep sweep(RestaurantContext().robot, params_);
@@ -28,20 +27,19 @@ class HeadSweepTest : public testing::Test {
   /// A while, in which the head does what it is told. @return targets in their order.
   std::vector<std::string> Play(HeadSweep* sweep, double seconds) {
     std::vector<std::string> targets;
-    for (const double end = moment_.body.time + seconds; moment_.body.time < end;
-         moment_.body.time += 0.1) {
-      const auto turn = sweep->Update(moment_, known_);
+    for (const double end = body_.time + seconds; body_.time < end; body_.time += 0.1) {
+      const auto turn = sweep->Update(body_, true, known_);
       if (!turn) continue;
       targets.push_back(sweep->target());
       for (std::size_t i = 0; i < turn->joints.size(); ++i) {
-        moment_.body.joints[turn->joints[i]] = turn->points.back().positions[i];
+        body_.joints[turn->joints[i]] = turn->points.back().positions[i];
       }
     }
     return targets;
   }
 
   SweepParams params_;
-  TrackerMoment moment_;
+  hires::sensing::BodyReading body_;
   std::vector<hires::robot::SeenObject> known_;
 };
 
@@ -49,8 +47,8 @@ TEST_F(HeadSweepTest, EveryPlaceOfTheTaskIsLookedAt) {
   HeadSweep sweep = Make();
   const auto targets = Play(&sweep, 12.0);
   for (const std::string& place : kPlaces) {
-    const auto view = hires::perception::ViewOf(*RestaurantContext().robot, moment_.body.X_MB,
-                                                moment_.body.joints);
+    const auto view =
+        hires::perception::ViewOf(*RestaurantContext().robot, body_.X_MB, body_.joints);
     const bool is_seen = view.Contains(RestaurantContext().areas.Require(place).X_FA.translation);
     EXPECT_TRUE(is_seen || std::count(targets.begin(), targets.end(), place) > 0) << place;
   }
@@ -59,16 +57,15 @@ TEST_F(HeadSweepTest, EveryPlaceOfTheTaskIsLookedAt) {
 
 TEST_F(HeadSweepTest, AfterTheTurnTheCameraSeesTheTarget) {
   HeadSweep sweep = Make();
-  const auto turn = sweep.Update(moment_, known_);
+  const auto turn = sweep.Update(body_, true, known_);
   ASSERT_TRUE(turn);
   ASSERT_EQ(turn->points.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
-    moment_.body.joints[turn->joints[i]] = turn->points.back().positions[i];
+    body_.joints[turn->joints[i]] = turn->points.back().positions[i];
     const double way = std::abs(turn->points[1].positions[i] - turn->points[0].positions[i]);
     EXPECT_LE(1.5 * way / turn->duration(), params_.speed + 1e-9);
   }
-  const auto view =
-      hires::perception::ViewOf(*RestaurantContext().robot, moment_.body.X_MB, moment_.body.joints);
+  const auto view = hires::perception::ViewOf(*RestaurantContext().robot, body_.X_MB, body_.joints);
   EXPECT_TRUE(view.Contains(RestaurantContext().areas.Require(sweep.target()).X_FA.translation));
 }
 
@@ -76,21 +73,21 @@ TEST_F(HeadSweepTest, AnActionThatUsesTheHeadHasIt) {
   HeadSweep sweep = Make();
   sweep.SetBusy(true, 0.0);
   EXPECT_TRUE(Play(&sweep, 10.0).empty());
-  sweep.SetBusy(false, moment_.body.time);
+  sweep.SetBusy(false, body_.time);
   EXPECT_TRUE(Play(&sweep, params_.hands_off - 0.2).empty()) << "it may go on at once";
   EXPECT_FALSE(Play(&sweep, 1.0).empty());
 }
 
 TEST_F(HeadSweepTest, WhatIsFarAwayIsNotLookedAt) {
   HeadSweep sweep = Make();
-  moment_.body.X_MB = {12.5, 11.8, 3.14};
+  body_.X_MB = {12.5, 11.8, 3.14};
   EXPECT_TRUE(Play(&sweep, 10.0).empty());
 }
 
 TEST_F(HeadSweepTest, AnObjectOnTheTrayIsLookedAtWhereItIs) {
   HeadSweep sweep = Make();
   sweep.SetPlaces({"mug1", "mug2"}, RestaurantContext().areas);
-  const auto X_MB = hires::geometry::Lift(moment_.body.X_MB);
+  const auto X_MB = hires::geometry::Lift(body_.X_MB);
   known_.push_back(
       {"mug1", "coffee_cup", X_MB * hires::geometry::Lift({0.28, 0.0, 0.0}, 0.346), 0.0, ""});
   const auto targets = Play(&sweep, 3.0);

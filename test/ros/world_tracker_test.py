@@ -35,14 +35,15 @@ class WorldTrackerTest(unittest.TestCase):
                           ROS_LOG_DIR=cls.processes.folder.name)
         os.environ.pop('ROS_HOSTNAME', None)
         import rospy
-        from geometry_msgs.msg import Pose, PoseWithCovarianceStamped
+        from geometry_msgs.msg import Pose, TransformStamped
         from hires import msg, srv
         from nav_msgs.msg import Odometry
         from sensor_msgs.msg import JointState
+        from tf2_msgs.msg import TFMessage
         from trajectory_msgs.msg import JointTrajectory
         cls.rospy, cls.msg, cls.srv = rospy, msg, srv
-        cls.types = dict(base_odometry=Odometry, amcl=PoseWithCovarianceStamped, joints=JointState,
-                         trajectory=JointTrajectory, pose=Pose)
+        cls.types = dict(base_odometry=Odometry, joints=JointState, transforms=TFMessage,
+                         transform=TransformStamped, trajectory=JointTrajectory, pose=Pose)
         rospy.init_node('world_tracker_test', disable_signals=True)
         cls.robot = Robot(os.path.join(ROOT, 'urdf', 'pr2_tray.urdf'))
 
@@ -60,7 +61,7 @@ class WorldTrackerTest(unittest.TestCase):
         p = self.rospy.Publisher
         self.publishers = dict(
             odometry=p('base_odometry/odom', self.types['base_odometry'], **latch),
-            amcl=p('amcl_pose', self.types['amcl'], **latch),
+            transforms=p('/tf', self.types['transforms'], **latch),
             joints=p('joint_states', self.types['joints'], **latch),
             detections=p('detections', self.msg.Detections, **latch),
             goal=p('execute_action/goal', self.msg.ExecuteActionActionGoal, **latch),
@@ -129,24 +130,32 @@ class WorldTrackerTest(unittest.TestCase):
         odometry = self.types['base_odometry']()
         odometry.header.stamp, odometry.header.frame_id = stamp, 'odom_combined'
         odometry.pose.pose = self.pose_of(planar(*self.base))
-        amcl = self.types['amcl']()
-        amcl.header.stamp, amcl.header.frame_id = stamp, 'map'
-        amcl.pose.pose = self.pose_of(planar(*self.base))
         joints = self.types['joints']()
         joints.header.stamp = stamp
         joints.name, joints.position = list(self.joints), list(self.joints.values())
         self.publishers['odometry'].publish(odometry)
-        self.publishers['amcl'].publish(amcl)
+        self.tell_transform('map', 'odom_combined', numpy.eye(4))
         self.publishers['joints'].publish(joints)
         if seen is not None:
             self.publishers['detections'].publish(self.detections(seen, frame))
+
+    def tell_transform(self, parent, child, matrix):
+        """A word on tf about this moment."""
+        transform = self.types['transform']()
+        transform.header.stamp, transform.header.frame_id = self.rospy.Time.from_sec(self.t), parent
+        transform.child_frame_id = child
+        pose = self.pose_of(matrix)
+        p = transform.transform.translation
+        p.x, p.y, p.z = pose.position.x, pose.position.y, pose.position.z
+        transform.transform.rotation = pose.orientation
+        self.publishers['transforms'].publish(self.types['transforms'](transforms=[transform]))
 
     def detections(self, seen, frame=CAMERA):
         """What the camera says of this moment."""
         detections = self.msg.Detections()
         detections.header.stamp = self.rospy.Time.from_sec(self.t)
         detections.header.frame_id = frame
-        X_CM = numpy.linalg.inv(self.link(CAMERA))
+        X_CM = numpy.eye(4) if frame == 'map' else numpy.linalg.inv(self.link(CAMERA))
         for name, (model, X_MO) in seen.items():
             detections.detections.append(self.msg.Detection(
                 instance=name, label=model, pose=self.pose_of(X_CM @ X_MO), visible_share=1.0))
@@ -245,6 +254,13 @@ class WorldTrackerTest(unittest.TestCase):
         self.expect('poseBook1', 'hasX', 7.48)
         self.assertEqual(self.names()['book1'].model, 'book')
         self.assertEqual(self.known[-1].header.frame_id, 'map')
+
+    def test_an_object_may_be_seen_in_another_frame_than_the_cameras(self):
+        self.at_table()
+        self.rest()
+        self.tick({'book1': ('book', translation(7.48, 11.28, 0.73))}, frame='map')
+        self.expect('poseBook1', 'hasX', 7.48)
+        self.expect('onBook1', 'hasArea', 'placingareawestrighttable1')
 
     def test_an_object_may_be_recognised_when_the_robot_looks_elsewhere(self):
         self.at_table()
@@ -362,12 +378,15 @@ class WorldTrackerTest(unittest.TestCase):
                           "object model 'teapot' is unknown")
         self.look({'book1': ('book', book), 'vase1': ('vase', nan), '': ('book', book)})
         self.assertEqual(set(self.names()) & {'book1', 'vase1', ''}, {'book1'})
-        self.until_warned(lambda: self.tick({'book2': ('book', book)}, frame='base_link'),
-                          "frame_id is 'base_link', wanted '%s'" % CAMERA)
-        amcl = self.types['amcl']()
-        amcl.header.stamp, amcl.header.frame_id = self.rospy.Time.from_sec(self.t), 'odom'
-        self.until_warned(lambda: self.publishers['amcl'].publish(amcl),
-                          "frame_id is 'odom', wanted 'map'")
+        self.until_warned(lambda: self.tick({'book2': ('book', book)}, frame='submarine'),
+                          "frame 'submarine' is unknown to tf")
+        self.until_warned(lambda: self.tell_transform('map', 'odom_combined', nan),
+                          "'map' -> 'odom_combined': it is not finite")
+        odometry = self.types['base_odometry']()
+        odometry.header.stamp = self.rospy.Time.from_sec(self.t)
+        odometry.header.frame_id, odometry.child_frame_id = 'odom_combined', 'trailer'
+        self.until_warned(lambda: self.publishers['odometry'].publish(odometry),
+                          "frame 'trailer' is unknown to tf")
         joints = self.types['joints']()
         self.until_warned(lambda: self.publishers['joints'].publish(joints), 'header.stamp is 0')
         joints.header.stamp = self.rospy.Time.from_sec(self.t)

@@ -358,5 +358,73 @@ TEST_F(ObjectMemoryTest, ARobotWithoutHandsFeelsNothing) {
   EXPECT_EQ(memory.Known({}).size(), 1u);
 }
 
+// ---- Recognisers that know kinds alone.
+
+class NamelessTest : public ObjectMemoryTest {
+ protected:
+  /// A look in which mugs are seen there, whoever they are.
+  void SeeMugs(const std::vector<Pose3>& X_MOs) {
+    body_.time += 0.5;
+    const Pose3 X_CM = ViewOf(Pr2(), body_.X_MB, body_.joints).X_MC.Inverse();
+    std::vector<Detection> detections;
+    for (const Pose3& X_MO : X_MOs) {
+      Detection detection;
+      detection.label = "mug";
+      detection.X_CO = X_CM * X_MO;
+      detections.push_back(detection);
+    }
+    memory_.Look(body_, detections);
+  }
+};
+
+TEST_F(NamelessTest, AThingNearTheOneObjectOfItsKindIsThatObject) {
+  Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
+  SeeMugs({At(1.5, 0.17, 0.7)});
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  EXPECT_NEAR(Remembered("mug1").translation.y(), 0.17, 1e-9);
+  EXPECT_EQ(memory_.objects().at("mug1").time, body_.time);
+}
+
+TEST_F(NamelessTest, AThingBetweenTwoObjectsOfItsKindIsNoneOfThem) {
+  Look({Thing("mug1", "mug", At(1.5, 0.08, 0.7)), Thing("mug2", "mug", At(1.5, -0.08, 0.7))});
+  const double before = body_.time;
+  for (int i = 0; i < 4; ++i) SeeMugs({At(1.5, 0.0, 0.7)});
+  EXPECT_THAT(Names(), ElementsAre("mug1", "mug2")) << "one of them is there: none is missed";
+  EXPECT_EQ(memory_.objects().at("mug1").time, before);
+}
+
+TEST_F(NamelessTest, TwoThingsNearOneObjectAreNotTold) {
+  Look({Thing("mug1", "mug", At(1.5, 0.0, 0.7))});
+  SeeMugs({At(1.5, 0.08, 0.7), At(1.5, -0.08, 0.7)});
+  EXPECT_NEAR(Remembered("mug1").translation.y(), 0.0, 1e-9);
+}
+
+TEST_F(NamelessTest, OfSeveralKindsEachFindsItsOwn) {
+  Look({Thing("mug1", "mug", At(1.5, 0.05, 0.7)), Thing("jug1", "jug", At(1.5, -0.12, 0.7))});
+  SeeMugs({At(1.5, -0.02, 0.7)});
+  EXPECT_NEAR(Remembered("mug1").translation.y(), -0.02, 1e-9);
+  EXPECT_NEAR(Remembered("jug1").translation.y(), -0.12, 1e-9);
+}
+
+TEST_F(NamelessTest, AThingFarFromAllIsNotRememberedAndExcusesNobody) {
+  Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
+  for (int i = 0; i < 3; ++i) SeeMugs({At(1.5, -0.4, 0.7)});
+  EXPECT_THAT(Names(), IsEmpty());
+  EXPECT_THAT(memory_.Vanished(), ElementsAre("mug1"));
+}
+
+TEST_F(ObjectMemoryTest, AHandThatClosesAfterTheClockBeganAgainTakesHold) {
+  body_.time = 1000.0;
+  PutArm("rightarm1", "armuntuckedposture");
+  SetGap("rightarm1", 0.079);
+  memory_.Feel(body_);
+  mug_ = Thing("mug1", "mug", {});
+  mug_.X_MO.translation = X_ML("r_gripper_tool_frame").translation - Eigen::Vector3d(0, 0, 0.05);
+  memory_.Believe("mug1", "mug", "", mug_.X_MO);
+  body_.time = 1.0;
+  EXPECT_TRUE(Rest());
+  EXPECT_TRUE(memory_.objects().at("mug1").is_held);
+}
+
 }  // namespace
 }  // namespace hires::sensing

@@ -11,6 +11,7 @@
 #include "hires/imagination/start_state.h"
 #include "hires/imagination/uncertainty.h"
 #include "hires/physics/physics_world.h"
+#include "hires/sensing/sensing_params.h"
 #include "hires/simulation/scene.h"
 #include "hires/skills/skill_factory.h"
 #include "hires/translation/translator.h"
@@ -30,6 +31,7 @@ struct SetupConfig {
   skills::MoveBaseParams driving;
   skills::MoveBaseBlindParams blind;
   skills::ManipulationParams manipulation;
+  sensing::SensingParams sensing;
   physics::PhysicsParams physics;
   RolloutParams rollout;
   std::uint64_t params_hash{0};  ///< of all numbers above
@@ -53,6 +55,7 @@ struct ImaginationSetup {
   std::shared_ptr<const Uncertainty> uncertainty;
   RolloutParams rollout;
   physics::PhysicsParams physics;
+  sensing::SensingParams sensing;
   std::map<std::string, std::string> object_models;  ///< instance (lower case) -> model
   translation::TranslatorContext translator;  ///< knows names of objects and areas; no fluents
   std::uint64_t world_hash{0};  ///< world, object models and all parameters of physics and skills

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,11 +16,23 @@ struct DetectorParams {
   double yaw_noise{0.02};         ///< [rad] sd, about the object's own z axis
 };
 
+struct LabelConfidence {
+  std::string label;
+  double confidence{0.0};  ///< 0 .. 1
+};
+
+/// What a recogniser says of one thing in a picture. It knows kinds; which one of them a thing is,
+/// most do not know.
 struct Detection {
-  std::string name;  ///< instance
-  std::string model;
+  std::optional<std::string> instance;  ///< of those who really know
+  std::string label;                    ///< kind: a key of World::models
   geometry::Pose3 X_CO;  ///< in the camera's frame: the localisation error is not the detector's
   double visible_share{0.0};
+  std::string category{};
+  double confidence{1.0};                         ///< 0 .. 1
+  std::vector<LabelConfidence> alternatives{};    ///< what else it may be
+  Eigen::Vector3d size{Eigen::Vector3d::Zero()};  ///< [m] of the box around it; 0: not told
+  int num_points{0};                              ///< of the cloud that it was seen as
 };
 
 /// Stands in for a camera and a recogniser: which of the true objects are seen, and where.

@@ -14,7 +14,9 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,6 +24,7 @@
 #include "hires/navigation/base_guard.h"
 #include "hires/ros/base_guard_params.h"
 #include "hires/ros/move_base_tuner.h"
+#include "hires/ros/transform_buffer.h"
 
 namespace hires_ros {
 
@@ -51,6 +54,7 @@ class BaseGuardNode {
   void OnOdometry(const nav_msgs::Odometry& msg);
   void OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg);
   void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
+  void OnLink(hires::navigation::PoseSource source, std::optional<double> stamp);
   void OnPlannerUpdate(const dynamic_reconfigure::Config& msg);
 
   double Now() const;  ///< [s] steady, since the node began
@@ -65,7 +69,10 @@ class BaseGuardNode {
   const BaseGuardNodeParams params_;
   hires::navigation::BaseGuard guard_;
   const Steady::time_point begin_;
+  TransformBuffer tree_;
+  std::map<hires::navigation::PoseSource, double> newest_;  // [s] stamp of what is known of a link
   std::set<hires::navigation::PoseSource> static_sources_;  // transforms that never age
+  ros::Time last_transforms_;                               // when some came
 
   std::unique_ptr<MoveBaseTuner> tuner_;  // where move_base drives
   hires::BaseRequest request_;            // the last that came

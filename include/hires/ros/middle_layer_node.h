@@ -24,9 +24,9 @@
 #include "hires/ros/middle_layer_override.h"
 #include "hires/ros/middle_layer_params.h"
 #include "hires/ros/middle_layer_runner.h"
-#include "hires/ros/middle_layer_senses.h"
 #include "hires/ros/move_base_link.h"
-#include "hires/ros/odometry_frame.h"
+#include "hires/ros/sensor_receiver.h"
+#include "hires/sensing/observation_maker.h"
 
 namespace hires_ros {
 
@@ -82,14 +82,14 @@ class MiddleLayerNode {
   void OnOdometry(const nav_msgs::Odometry& msg);
   void OnMotorsHalted(bool are_halted);
   void OnGuardStopped(const hires::base::Failure& failure);
-  void OnTransforms(const tf2_msgs::TFMessage& msg);
+  void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
   void OnScan(const sensor_msgs::LaserScan& msg);
   void OnDetections(const hires::Detections& msg);
-  void OnKnownObjects(const hires::WorldState& msg);
   void OnTick(const hires::LockstepTick& msg);
   void Note(const std::string& topic, double stamp);
 
   void LookAt(double time, double stamp);
+  hires::robot::Observation ObservationOf(const hires::sensing::RobotEstimate& now);
   void WeighLoad(double time, const hires::robot::Observation& seen);
   void LookWhereFree();  ///< without lockstep: as soon as a newer moment is complete
   void LookAtTick();     ///< in lockstep: once all sensors of the tick are there
@@ -106,9 +106,8 @@ class MiddleLayerNode {
 
   const MiddleLayerParams params_;
   const hires::imagination::ImaginationSetup setup_;
-  const hires::sensing::ScanObstacles scan_obstacles_;
-  OdometryFrame odometry_frame_;
-  Senses senses_;
+  SensorReceiver sensors_;
+  hires::sensing::ObservationMaker observations_;
   ActionRunner runner_;
   BaseLeave leave_;
   OverrideWatch override_;
@@ -119,6 +118,7 @@ class MiddleLayerNode {
 
   std::map<std::string, double> arrived_;  // topic -> newest stamp [s]
   double looked_{-1.0};                    // [s] stamp of the last look
+  int restarts_{0};                        // of the robot's clock
   std::optional<hires::LockstepTick> tick_;
   std::optional<hires::LockstepAck> acked_;  // the last one
   bool is_tick_looked_at_{false};

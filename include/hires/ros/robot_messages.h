@@ -2,6 +2,7 @@
 
 #include <geometry_msgs/TransformStamped.h>
 #include <geometry_msgs/Twist.h>
+#include <hires/Detection.h>
 #include <nav_msgs/Odometry.h>
 #include <sensor_msgs/JointState.h>
 #include <trajectory_msgs/JointTrajectory.h>
@@ -10,7 +11,9 @@
 #include <vector>
 
 #include "hires/geometry/pose.h"
+#include "hires/perception/detector.h"
 #include "hires/robot/observation.h"
+#include "hires/sensing/readings.h"
 
 /// A robot's sensors and controllers as messages. What came and makes no sense is a
 /// hires::base::ConfigError naming topic and field.
@@ -28,19 +31,18 @@ hires::robot::JointTrajectory FromMsg(const trajectory_msgs::JointTrajectory& ms
                                       const std::vector<std::string>& known,
                                       const std::string& where);
 
-/// Where a joint_states message says that joints are and how fast; velocities may be missing.
-struct JointReading {
-  hires::robot::JointPositions positions, velocities;
-};
+using hires::sensing::JointReading;
+using hires::sensing::OdometryReading;
+
 JointReading FromMsg(const sensor_msgs::JointState& msg);
 sensor_msgs::JointState ToMsg(const JointReading& joints, const ros::Time& stamp);
 
-/// Odometry: base in its frame, and velocity in the base frame.
-struct OdometryReading {
-  hires::geometry::Pose2 X_OB;
-  hires::geometry::Twist2 V_B;
-};
 OdometryReading FromMsg(const nav_msgs::Odometry& msg);
+
+/// A confidence of 0, which the recogniser did not tell, counts as 1; an empty instance as not
+/// known.
+hires::perception::Detection FromMsg(const hires::Detection& msg);
+hires::Detection ToMsg(const hires::perception::Detection& detection);
 
 geometry_msgs::TransformStamped MakeTransform(const std::string& parent, const std::string& child,
                                               const hires::geometry::Pose3& X_PC,

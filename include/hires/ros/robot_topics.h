@@ -7,6 +7,7 @@ namespace hires_ros {
 /// Of the simulated robot's base, behind whatever lets others win (RobotNames::base_command).
 constexpr char kSimulatedBase[] = "base_controller/command";
 constexpr char kTransforms[] = "/tf";
+constexpr char kStaticTransforms[] = "/tf_static";
 
 constexpr char kDetections[] = "detections";       ///< what the head's camera recognises
 constexpr char kKnownObjects[] = "known_objects";  ///< what is remembered of it

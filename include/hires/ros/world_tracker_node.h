@@ -1,7 +1,6 @@
 #pragma once
 
 #include <diagnostic_updater/diagnostic_updater.h>
-#include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <hires/Detections.h>
 #include <hires/ExecuteActionActionGoal.h>
 #include <hires/ExecuteActionActionResult.h>
@@ -17,9 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "hires/ros/odometry_frame.h"
+#include "hires/ros/sensor_receiver.h"
 #include "hires/ros/world_tracker_params.h"
-#include "hires/ros/world_tracker_senses.h"
 #include "hires/ros/world_tracker_sweep.h"
 #include "hires/ros/world_tracker_writer.h"
 
@@ -34,42 +32,34 @@ class WorldTrackerNode {
 
  private:
   void Subscribe(ros::NodeHandle* nh);
-  void OnOdometry(const nav_msgs::Odometry& msg);
-  void OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg);
-  void OnTransforms(const tf2_msgs::TFMessage& msg);
-  void OnJoints(const sensor_msgs::JointState& msg);
-  void OnDetections(const hires::Detections& msg);
+  template <typename Message>
+  void Hear(ros::NodeHandle* nh, const std::string& topic, int queue,
+            std::function<void(const Message&)> take);
   void OnGoal(const hires::ExecuteActionActionGoal& msg);
   void OnResult(const hires::ExecuteActionActionResult& msg);
 
-  /// Calls `read`; what it says is wrong with a message becomes a warning.
-  void Guard(const std::string& topic, const std::function<void()>& read);
   void Process();
-  void HandleLate(const TrackerMoment& moment);
-  void Handle(const TrackerMoment& moment);
+  std::optional<double> NextMoment() const;
+  void Handle(double time);
   void ReadView();
-  void PublishKnown(const TrackerMoment& moment,
+  void PublishKnown(const hires::sensing::RobotEstimate& now,
                     const std::vector<hires::robot::SeenObject>& known);
   hires::translation::ObservedWorld Observed(
-      const TrackerMoment& moment, const std::vector<hires::robot::SeenObject>& known) const;
+      const hires::sensing::RobotEstimate& now,
+      const std::vector<hires::robot::SeenObject>& known) const;
   void TellActions();
-  void Warn(const std::string& topic, const std::string& text);
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const WorldTrackerParams params_;
   const hires::translation::TranslatorContext context_;
-  const std::shared_ptr<const hires::perception::Surroundings> surroundings_;
-  std::map<std::string, std::pair<double, double>> joint_limits_;  // by joint that may be set
-  OdometryFrame odometry_frame_;
-  TrackerSenses senses_;
-  hires::sensing::ObjectMemory memory_;
+  SensorReceiver sensors_;
   HeadSweep sweep_;
   std::map<std::string, std::string> running_;  // goal id -> action
-  double time_{0.0};                            // [s] of the last moment
+  double time_{-1e9};                           // [s] of the last moment
   double published_{-1e9};                      // [s] when known objects were told last
-  std::map<std::string, double> warned_;        // topic -> steady [s]
-  double hands_changed_{-1e9};                  // [s] when one took or let go of something
-  std::uint64_t num_moments_{0}, num_looks_{0}, num_outdated_{0}, num_bad_{0};
+  int restarts_{0};                             // of the robot's clock
+  hires::sensing::Missing lack_{hires::sensing::Missing::kNothing};  // of the last moment
+  std::uint64_t num_moments_{0}, num_looks_{0}, num_dropped_{0};
 
   std::atomic<bool> is_view_new_{false};
   ros::Publisher known_, head_;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "hires/ros/translator_params.h"
-#include "hires/sensing/object_memory.h"
+#include "hires/sensing/sensing_params.h"
 #include "hires/translation/observed_fluents.h"
 
 namespace hires_ros {
@@ -22,7 +22,7 @@ struct SweepParams {
 /// config/world_tracker.yaml.
 struct WorldTrackerParams {
   TranslatorParams files;
-  hires::sensing::MemoryParams memory;
+  hires::sensing::SensingParams sensing;  ///< of the scene
   hires::translation::ClassifyParams classify;
   hires::translation::ChangeParams changes;
   std::map<std::string, std::string> concepts;  ///< model -> concept, for objects nobody knows

@@ -8,7 +8,7 @@
 
 #include "hires/robot/observation.h"
 #include "hires/ros/world_tracker_params.h"
-#include "hires/ros/world_tracker_senses.h"
+#include "hires/sensing/body_reading.h"
 #include "hires/translation/areas.h"
 
 namespace hires_ros {
@@ -25,10 +25,12 @@ class HeadSweep {
   /// Whether actions that run now use the head.
   void SetBusy(bool is_busy, double time);
 
-  /// @param known  objects that are remembered now.
+  /// @param has_looked  the camera took a picture at that moment.
+  /// @param known       objects that are remembered now.
   /// @return how to move the head, if it shall move.
   std::optional<hires::robot::JointTrajectory> Update(
-      const TrackerMoment& moment, const std::vector<hires::robot::SeenObject>& known);
+      const hires::sensing::BodyReading& body, bool has_looked,
+      const std::vector<hires::robot::SeenObject>& known);
 
   const std::string& target() const { return target_; }  ///< looked at last, or empty
 

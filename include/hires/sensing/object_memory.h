@@ -8,6 +8,8 @@
 
 #include "hires/perception/detector.h"
 #include "hires/robot/observation.h"
+#include "hires/robot/robot_profile.h"
+#include "hires/sensing/body_reading.h"
 
 namespace hires::sensing {
 
@@ -28,13 +30,9 @@ struct MemoryParams {
   double still_gap{0.0015};     ///< [m] that a gap may change and count as still
   double still_time{0.15};      ///< [s] after which it is
   double hand_distance{0.08};   ///< [m] between where a held object should be and where it is seen
-};
-
-/// What the robot feels of itself at a moment.
-struct BodyReading {
-  double time{0.0};  ///< [s]
-  geometry::Pose2 X_MB;
-  robot::JointPositions joints;  ///< gripper joints are gaps [m]; finger angles agree with them
+  double instance_distance{0.1};  ///< [m] from where an object is expected within which a thing of
+                                  ///< its kind, that nobody gave a name, is taken for it
+  bool operator==(const MemoryParams& other) const;
 };
 
 struct RememberedObject {
@@ -58,6 +56,10 @@ struct RememberedObject {
 /// moves with the palm, what is over the tray moves with the base. An object vanishes when the
 /// place where it should be was free to look at in several looks in a row, and it was not detected;
 /// one that slipped out of the hand at once.
+///
+/// A detection whose recogniser does not know the instance is that of the remembered object of its
+/// kind near it, if there is one such object and one such detection; else it says only that
+/// something of the kind is there, so that what is remembered there does not count as missed.
 class ObjectMemory {
  public:
   ObjectMemory(std::shared_ptr<const perception::Surroundings> surroundings,
@@ -69,14 +71,18 @@ class ObjectMemory {
                const geometry::Pose3& X_LO);
   /// Nobody says so any more.
   void Disbelieve(const std::string& name);
+  /// Nobody speaks of other objects than these any more.
+  void DisbelieveAllBut(const std::vector<std::string>& names);
 
   /// @return whether a hand took, let go or lost something.
   /// @throws base::ConfigError as robot::ForwardKinematics.
   bool Feel(const BodyReading& body);
+  /// @throws base::ConfigError for what Look would refuse: a label that is no model of the world, a
+  /// pose that is no number.
+  void Check(const perception::Detection& detection) const;
   /// One look of the robot's camera; an empty list says that nothing was seen.
   /// @pre the robot has a camera.
-  /// @throws base::ConfigError as Feel, and for a detection whose model the world does not have or
-  /// whose pose is no number; nothing is remembered of such a look.
+  /// @throws base::ConfigError as Feel and Check; nothing is remembered of such a look.
   void Look(const BodyReading& body, const std::vector<perception::Detection>& detections);
 
   const std::map<std::string, RememberedObject>& objects() const { return objects_; }
@@ -101,10 +107,15 @@ class ObjectMemory {
                 const geometry::Pose3& X_MO) const;
   void LetGo(const Links& links, const std::string& name, double time);
   void Lose(const std::string& name);
-  void See(const Links& links, const perception::Detection& detection, const geometry::Pose3& X_MO,
-           double time);
+  std::vector<std::string> NamesOf(const Links& links, const perception::CameraView& view,
+                                   const std::vector<perception::Detection>& detections) const;
+  bool MayBe(const Links& links, const RememberedObject& object, const std::string& label,
+             const geometry::Pose3& X_MO) const;
+  void See(const Links& links, const std::string& name, const std::string& label,
+           const geometry::Pose3& X_MO, double time);
   void Miss(const perception::LineOfSight& sight, const perception::CameraView& view,
-            const Links& links, const std::vector<perception::Detection>& detections);
+            const Links& links, const std::vector<perception::Detection>& detections,
+            const std::vector<std::string>& names);
   void PlaceAt(const Links& links, const geometry::Pose3& X_MO, RememberedObject* object) const;
   bool IsOverTray(const Links& links, const geometry::Pose3& X_MO) const;
   Hand* HandOf(const std::string& object);

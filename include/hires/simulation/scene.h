@@ -5,6 +5,7 @@
 
 #include "hires/perception/surroundings.h"
 #include "hires/robot/robot_profile.h"
+#include "hires/sensing/object_memory.h"
 #include "hires/simulation/robot_clearance.h"
 #include "hires/world/world.h"
 
@@ -23,6 +24,7 @@ struct Scene {
   RobotClearance base_clearance;  ///< of those
   /// What the robot's camera looks at; null without an upper body.
   std::shared_ptr<const perception::Surroundings> surroundings;
+  sensing::MemoryParams memory;  ///< of what that camera sees
 };
 
 /// Collision shapes in the base frame with the joints frozen in `posture`.
@@ -36,6 +38,7 @@ std::vector<geometry::Collision> FrozenShapes(const robot::Robot& robot,
 robot::JointPositions PostureOf(const robot::Robot& robot, const robot::JointPositions& joints);
 
 /// @throws base::ConfigError if robot and profile do not fit.
-std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot);
+std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot,
+                                       const sensing::MemoryParams& memory = {});
 
 }  // namespace hires::simulation

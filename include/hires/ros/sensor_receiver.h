@@ -1,0 +1,63 @@
+#pragma once
+
+#include <hires/Detections.h>
+#include <hires/WorldState.h>
+#include <nav_msgs/Odometry.h>
+#include <sensor_msgs/JointState.h>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hires/ros/robot_names.h"
+#include "hires/ros/transform_buffer.h"
+#include "hires/sensing/object_estimator.h"
+#include "hires/sensing/robot_state_estimator.h"
+#include "hires/sensing/sensing_params.h"
+
+namespace hires_ros {
+
+/// Hands what a robot's sensors say to the estimators of its state and of objects: conversion
+/// alone, for the middle layer and the tracker alike. What is wrong with a message becomes one
+/// warning a second for each topic.
+class SensorReceiver {
+ public:
+  /// @param surroundings  what the camera looks at; null: the robot sees no objects.
+  SensorReceiver(std::shared_ptr<const hires::robot::Robot> robot,
+                 std::shared_ptr<const hires::perception::Surroundings> surroundings,
+                 const RobotNames& names, const hires::sensing::SensingParams& params);
+  SensorReceiver(const SensorReceiver&) = delete;
+
+  void OnOdometry(const nav_msgs::Odometry& msg);
+  void OnJoints(const sensor_msgs::JointState& msg);
+  void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
+  void OnDetections(const hires::Detections& msg);
+  /// What another node remembers; taken into account with the next Update.
+  void OnKnownObjects(const hires::WorldState& msg);
+
+  /// Objects as they are known at this moment; warns of looks that were dropped.
+  hires::sensing::LookNews Update(const hires::sensing::RobotEstimate& now);
+  void Warn(const std::string& topic, const std::string& text);
+
+  const hires::sensing::RobotStateEstimator& state() const { return state_; }
+  /// Null if the robot sees no objects.
+  hires::sensing::ObjectEstimator* objects() const { return objects_.get(); }
+  /// What has not come, by the names of topics and frames; empty: nothing is missing.
+  std::string NameOf(hires::sensing::Missing missing) const;
+  int num_bad() const { return num_bad_; }  ///< messages, or parts of them
+
+ private:
+  void Note(const std::string& topic, const hires::sensing::Receipt& receipt);
+
+  RobotNames names_;
+  std::shared_ptr<TransformBuffer> tree_;
+  hires::sensing::RobotStateEstimator state_;
+  std::unique_ptr<hires::sensing::ObjectEstimator> objects_;
+  std::unique_ptr<hires::WorldState> stated_;  // by another node, not believed yet
+  std::map<std::string, double> warned_;       // topic -> steady [s]
+  int num_bad_{0};
+};
+
+}  // namespace hires_ros

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <tf2/buffer_core.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/sensing/frame_tree.h"
+
+namespace hires_ros {
+
+/// What came on /tf and /tf_static, as the core asks for it.
+class TransformBuffer : public hires::sensing::FrameTree {
+ public:
+  /// What a message brought.
+  struct News {
+    std::vector<double> stamps;         ///< [s] of what was taken, each once; infinity: fixed ones
+    std::vector<std::string> warnings;  ///< what was left out, and why
+  };
+  News Take(const tf2_msgs::TFMessage& msg, bool are_static);
+
+  hires::sensing::FramePose Find(const std::string& parent, const std::string& child,
+                                 double time) const override;
+  std::optional<double> NewestOf(const std::string& parent,
+                                 const std::string& child) const override;
+  void ForgetMoving() override;
+
+ private:
+  bool IsKnown(const std::string& frame) const;
+
+  tf2::BufferCore buffer_;
+};
+
+}  // namespace hires_ros

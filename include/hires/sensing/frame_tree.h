@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "hires/geometry/pose.h"
+
+namespace hires::sensing {
+
+enum class FrameStatus {
+  kFound,
+  kUnknown,       ///< nobody has told of one of the frames
+  kNotConnected,  ///< both are known, and nothing leads from one to the other
+  kNotThen        ///< they are connected, but not known at that time
+};
+
+struct FramePose {
+  FrameStatus status{FrameStatus::kUnknown};
+  geometry::Pose3 X_PC;  ///< of the child in the parent, where it was found
+  bool is_found() const { return status == FrameStatus::kFound; }
+};
+
+/// What is known of how frames move against each other. On a robot that is tf.
+class FrameTree {
+ public:
+  virtual ~FrameTree() = default;
+  /// Between two moments that are known it is interpolated. Frames are named without a slash.
+  virtual FramePose Find(const std::string& parent, const std::string& child,
+                         double time) const = 0;
+  /// The newest moment [s] for which Find works; infinity if the two never move against each other,
+  /// nothing if they are not connected.
+  virtual std::optional<double> NewestOf(const std::string& parent,
+                                         const std::string& child) const = 0;
+  /// The clock began again: what moves is unknown, what never does stays.
+  virtual void ForgetMoving() = 0;
+};
+
+/// The frame without the slash that old nodes put in front.
+std::string BareFrame(const std::string& frame);
+
+}  // namespace hires::sensing

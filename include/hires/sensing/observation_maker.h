@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hires/robot/observation.h"
+#include "hires/sensing/robot_state_estimator.h"
+#include "hires/sensing/scan_obstacles.h"
+
+namespace hires::sensing {
+
+/// Makes of the robot's state and its laser what skills get to see. Objects are added by who
+/// remembers them.
+class ObservationMaker {
+ public:
+  /// @param state  outlives this.
+  ObservationMaker(const RobotStateEstimator* state, ScanObstacles obstacles);
+
+  /// @param frame  of the laser.
+  Receipt OnScan(double stamp, const std::string& frame, ScanReading reading);
+
+  /// What is seen at that moment; `time` is its stamp. Obstacles are those of the last scan up to
+  /// now, where the robot was when it was taken.
+  robot::Observation Observe(const RobotEstimate& now);
+  /// What became of the last scan that was looked at.
+  const Receipt& scan_receipt() const { return scan_receipt_; }
+
+ private:
+  struct Scan {
+    std::string frame;
+    ScanReading reading;
+  };
+  void FindObstacles(const RobotEstimate& now);
+
+  const RobotStateEstimator* state_;
+  ScanObstacles find_obstacles_;
+  History<Scan> scans_;  // not looked at yet
+  Receipt scan_receipt_;
+  std::vector<geometry::Polygon> obstacles_M_;
+};
+
+}  // namespace hires::sensing

@@ -1,0 +1,100 @@
+#include "hires/ros/transform_buffer.h"
+
+#include <fmt/format.h>
+#include <tf2/exceptions.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hires/ros/conversions.h"
+
+namespace hires_ros {
+namespace {
+
+using hires::geometry::Pose3;
+using hires::sensing::BareFrame;
+using hires::sensing::FramePose;
+using hires::sensing::FrameStatus;
+
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kSameStamp = 1e-6;  // [s]
+constexpr double kUnitSlack = 1e-3;  // of a quaternion's length, as tf2 has it
+
+/// The moment that is meant, where seconds since 1970 round it by some 1e-7 s; time 0 asks for the
+/// newest, and of frames that never move any time is as good.
+ros::Time TimeOf(double time, std::optional<double> newest) {
+  const bool is_newest = newest && std::abs(time - *newest) < kSameStamp;
+  return std::isfinite(time) && !is_newest ? ros::Time(time) : ros::Time(0);
+}
+
+std::string WhyUnsound(const geometry_msgs::TransformStamped& msg) {
+  const auto& p = msg.transform.translation;
+  const auto& q = msg.transform.rotation;
+  const double length = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
+  if (BareFrame(msg.child_frame_id).empty() || BareFrame(msg.header.frame_id).empty()) {
+    return "frame_id or child_frame_id is empty";
+  }
+  if (!std::isfinite(p.x + p.y + p.z + length)) return "it is not finite, wanted numbers";
+  if (std::abs(length - 1.0) > kUnitSlack) {
+    return fmt::format("its quaternion has length {:.3g}, wanted 1", length);
+  }
+  return "";
+}
+
+}  // namespace
+
+TransformBuffer::News TransformBuffer::Take(const tf2_msgs::TFMessage& msg, bool are_static) {
+  News news;
+  for (const geometry_msgs::TransformStamped& transform : msg.transforms) {
+    const std::string why = WhyUnsound(transform);
+    if (!why.empty()) {
+      news.warnings.push_back(fmt::format("transform '{}' -> '{}': {}", transform.header.frame_id,
+                                          transform.child_frame_id, why));
+      continue;
+    }
+    if (!buffer_.setTransform(transform, "", are_static)) continue;  // too old
+    const double stamp = are_static ? kForever : transform.header.stamp.toSec();
+    const bool is_new =
+        std::find(news.stamps.begin(), news.stamps.end(), stamp) == news.stamps.end();
+    if (is_new) news.stamps.push_back(stamp);
+  }
+  return news;
+}
+
+bool TransformBuffer::IsKnown(const std::string& frame) const {
+  return !frame.empty() && buffer_._frameExists(frame);
+}
+
+FramePose TransformBuffer::Find(const std::string& parent, const std::string& child,
+                                double time) const {
+  if (!IsKnown(parent) || !IsKnown(child)) return {FrameStatus::kUnknown, {}};
+  try {
+    const ros::Time moment = TimeOf(time, NewestOf(parent, child));
+    const auto found = buffer_.lookupTransform(parent, child, moment).transform;
+    geometry_msgs::Pose pose;
+    pose.position.x = found.translation.x;
+    pose.position.y = found.translation.y;
+    pose.position.z = found.translation.z;
+    pose.orientation = found.rotation;
+    return {FrameStatus::kFound, FromMsg(pose)};
+  } catch (const tf2::ExtrapolationException&) {
+    return {FrameStatus::kNotThen, {}};
+  } catch (const tf2::TransformException&) {
+    return {FrameStatus::kNotConnected, {}};
+  }
+}
+
+std::optional<double> TransformBuffer::NewestOf(const std::string& parent,
+                                                const std::string& child) const {
+  if (!IsKnown(parent) || !IsKnown(child)) return std::nullopt;
+  ros::Time newest;
+  const int error = buffer_._getLatestCommonTime(
+      buffer_._lookupFrameNumber(parent), buffer_._lookupFrameNumber(child), newest, nullptr);
+  if (error != 0) return std::nullopt;
+  return newest.isZero() ? kForever : newest.toSec();
+}
+
+void TransformBuffer::ForgetMoving() { buffer_.clear(); }
+
+}  // namespace hires_ros

@@ -1,0 +1,169 @@
+#include "hires/sensing/object_estimator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hires/base/error.h"
+
+namespace hires::sensing {
+namespace {
+
+using base::ConfigError;
+using geometry::Pose3;
+
+constexpr double kFramePatience = 0.2;  // [s] that the transform of a look's frame may be late
+constexpr double kNever = -1e9;         // [s]
+constexpr std::size_t kMaxLooks = 100;  // that wait
+
+}  // namespace
+
+ObjectEstimator::ObjectEstimator(std::shared_ptr<const perception::Surroundings> surroundings,
+                                 std::shared_ptr<const robot::Robot> robot,
+                                 const MemoryParams& params, const RobotStateEstimator* state)
+    : surroundings_(std::move(surroundings)),
+      robot_(std::move(robot)),
+      state_(state),
+      memory_(surroundings_, robot_, params) {}
+
+// ---- What comes in.
+
+std::vector<std::string> ObjectEstimator::OnLook(Look look) {
+  FollowClock();
+  if (!robot_->profile.upper_body) {
+    return {
+        fmt::format("robot '{}' has no camera (upper_body in its profile)", robot_->model.name)};
+  }
+  if (!(look.stamp > 0.0)) return {ToString(Receipt{Reception::kNoStamp, {}})};
+  if (look.frame.empty()) return {ToString(Receipt{Reception::kUnknownFrame, {}})};
+  if (state_->IsAhead(look.stamp)) return {ToString(Receipt{Reception::kAhead, "header.stamp"})};
+  std::vector<std::string> left_out;
+  std::vector<perception::Detection> sound;
+  for (perception::Detection& detection : look.detections) {
+    try {
+      memory_.Check(detection);
+      sound.push_back(std::move(detection));
+    } catch (const ConfigError& error) {  // the others are good
+      left_out.push_back(error.what());
+    }
+  }
+  look.detections = std::move(sound);
+  const auto place =
+      std::upper_bound(looks_.begin(), looks_.end(), look.stamp,
+                       [](double stamp, const Waiting& one) { return stamp < one.look.stamp; });
+  looks_.insert(place, {std::move(look), false});
+  if (looks_.size() > kMaxLooks) looks_.pop_front();
+  return left_out;
+}
+
+std::vector<std::string> ObjectEstimator::OnStated(const std::vector<StatedObject>& stated) {
+  std::vector<std::string> refused;
+  std::vector<std::string> names;
+  for (const StatedObject& object : stated) {
+    names.push_back(object.name);
+    try {
+      memory_.Believe(object.name, object.model, object.link, object.X_LO);
+    } catch (const ConfigError& error) {
+      refused.push_back(error.what());
+    }
+  }
+  memory_.DisbelieveAllBut(names);
+  return refused;
+}
+
+std::vector<std::string> ObjectEstimator::OnStated(const world::WorldState& stated,
+                                                   const RobotEstimate& at) {
+  std::vector<std::string> refused;
+  std::vector<StatedObject> objects;
+  for (const world::ObjectState& object : stated.objects) {
+    try {
+      const Pose3 X_WL = state_->LinkInWorld(object.attached_to, at);
+      objects.push_back(
+          {object.name, object.model, object.attached_to, X_WL.Inverse() * object.X_MO});
+    } catch (const ConfigError& error) {
+      refused.push_back(fmt::format("object '{}': {}", object.name, error.what()));
+    }
+  }
+  for (std::string& why : OnStated(objects)) refused.push_back(std::move(why));
+  return refused;
+}
+
+// ---- What is made of it.
+
+/// A clock that began again makes older stamps worthless.
+void ObjectEstimator::FollowClock() {
+  if (restarts_ == state_->num_restarts()) return;
+  restarts_ = state_->num_restarts();
+  looks_.clear();
+  felt_ = hands_changed_ = kNever;
+}
+
+void ObjectEstimator::Feel(const BodyReading& body, LookNews* news) {
+  if (body.time < felt_) return;
+  felt_ = body.time;
+  if (!memory_.Feel(body)) return;
+  hands_changed_ = body.time;
+  news->has_changed_hands = true;
+}
+
+LookNews ObjectEstimator::Update(const RobotEstimate& now) {
+  FollowClock();
+  LookNews news;
+  for (auto one = looks_.begin(); one != looks_.end() && one->look.stamp <= now.time;) {
+    one->is_tried = true;
+    one = Remember(one->look, now.time, &news) ? looks_.erase(one) : std::next(one);
+  }
+  Feel(now.Body(), &news);
+  return news;
+}
+
+/// @return whether the look is done with; else it waits for its frame.
+bool ObjectEstimator::Remember(const Look& look, double now, LookNews* news) {
+  if (look.stamp < felt_ && look.stamp <= hands_changed_) {
+    ++num_outdated_;
+    return true;
+  }
+  const auto then = state_->At(look.stamp);
+  if (!then || !state_->IsPostureKnown(look.stamp)) {
+    Drop("nobody knows how the robot stood when the picture was taken", news);
+    return true;
+  }
+  std::vector<perception::Detection> detections = look.detections;
+  const FrameStatus status = PutInCamera(look.frame, *then, &detections);
+  if (status == FrameStatus::kNotThen && now < look.stamp + kFramePatience) return false;
+  if (status == FrameStatus::kFound) {
+    Feel(then->Body(), news);
+    memory_.Look(then->Body(), detections);
+    ++news->num_looks;
+    news->newest_look = std::max(news->newest_look, look.stamp);
+  } else {
+    Drop(ToString(ReceiptOf(status, look.frame)), news);
+  }
+  return true;
+}
+
+/// Turns poses in a frame into poses in the camera's; those that are in it keep their bits.
+FrameStatus ObjectEstimator::PutInCamera(const std::string& frame, const RobotEstimate& then,
+                                         std::vector<perception::Detection>* detections) const {
+  const std::string& camera = robot_->profile.upper_body->camera_link;
+  if (BareFrame(frame) == camera) return FrameStatus::kFound;
+  const FramePose X_BF = state_->InBase(frame, then);
+  if (!X_BF.is_found()) return X_BF.status;
+  const Pose3 X_CF = state_->InBase(camera, then).X_PC.Inverse() * X_BF.X_PC;
+  for (perception::Detection& detection : *detections) detection.X_CO = X_CF * detection.X_CO;
+  return FrameStatus::kFound;
+}
+
+void ObjectEstimator::Drop(const std::string& why, LookNews* news) {
+  ++num_dropped_;
+  news->warnings.push_back("look: " + why);
+}
+
+std::optional<double> ObjectEstimator::NextLook(double time) const {
+  for (const Waiting& one : looks_) {
+    if (!one.is_tried && one.look.stamp >= time) return one.look.stamp;
+  }
+  return std::nullopt;
+}
+
+}  // namespace hires::sensing

@@ -1,0 +1,356 @@
+#include "hires/sensing/robot_state_estimator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/geometry/angles.h"
+
+namespace hires::sensing {
+namespace {
+
+using geometry::Pose2;
+using geometry::Pose3;
+using geometry::Twist2;
+
+constexpr double kHistory = 3.0;   // [s] that is kept: recognising objects may take so long
+constexpr double kJumpBack = 1.0;  // [s] by which odometry is behind when its clock began again ...
+constexpr int kSureJump = 5;       // ... if so many readings in a row are, or one is older than all
+constexpr double kNear = 0.1;      // [s] from a reading with which a moment beyond it makes do
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+bool IsFinite(const Pose2& X) {
+  return std::isfinite(X.x) && std::isfinite(X.y) && std::isfinite(X.yaw);
+}
+
+bool IsFinite(const Twist2& V) {
+  return std::isfinite(V.vx) && std::isfinite(V.vy) && std::isfinite(V.wz);
+}
+
+bool IsStamp(double stamp) { return std::isfinite(stamp) && stamp > 0.0; }
+
+Pose2 Between(const Pose2& from, const Pose2& to, double share) {
+  return {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y),
+          geometry::WrapToPi(from.yaw + share * geometry::WrapToPi(to.yaw - from.yaw))};
+}
+
+OdometryReading Between(const OdometryReading& from, const OdometryReading& to, double share) {
+  const Twist2 &a = from.V_B, &b = to.V_B;
+  return {
+      Between(from.X_OB, to.X_OB, share),
+      {a.vx + share * (b.vx - a.vx), a.vy + share * (b.vy - a.vy), a.wz + share * (b.wz - a.wz)}};
+}
+
+/// The velocity of a frame B that is fixed to C.
+Twist2 MovedTo(const Pose2& X_CB, const Twist2& V_C) {
+  const double vx = V_C.vx - V_C.wz * X_CB.y, vy = V_C.vy + V_C.wz * X_CB.x;
+  const double c = std::cos(X_CB.yaw), s = std::sin(X_CB.yaw);
+  return {c * vx + s * vy, -s * vx + c * vy, V_C.wz};
+}
+
+}  // namespace
+
+Receipt ReceiptOf(FrameStatus status, const std::string& frame) {
+  if (status == FrameStatus::kFound) return {};
+  const bool is_unknown = status == FrameStatus::kUnknown;
+  return {is_unknown ? Reception::kUnknownFrame : Reception::kNotConnected, frame};
+}
+
+bool StateParams::operator==(const StateParams& other) const {
+  return stale_after == other.stale_after && correction_wait == other.correction_wait &&
+         posture_reach == other.posture_reach;
+}
+
+bool Receipt::is_bad() const {
+  return what != Reception::kTaken && what != Reception::kRepeated && what != Reception::kLate;
+}
+
+std::string ToString(const Receipt& receipt) {
+  switch (receipt.what) {
+    case Reception::kTaken:
+      return "";
+    case Reception::kRepeated:
+      return "it came before";
+    case Reception::kLate:
+      return fmt::format("it is more than {:g} s late", kHistory);
+    case Reception::kAhead:
+      return fmt::format(
+          "{} is more than {:g} s ahead of the odometry; synchronise the clocks of the computers",
+          receipt.subject, kHistory);
+    case Reception::kNoStamp:
+      return "header.stamp is 0 or no number, wanted the time of the measurement";
+    case Reception::kNotFinite:
+      return fmt::format("{} is not finite, wanted a number", receipt.subject);
+    case Reception::kUnknownFrame:
+      return fmt::format(
+          "frame '{}' is unknown to tf; name one that is connected with the robot, or publish it",
+          receipt.subject);
+    case Reception::kNotConnected:
+      return fmt::format(
+          "frame '{}' is not connected with the robot's frames; publish the transform between",
+          receipt.subject);
+  }
+  return "";
+}
+
+RobotStateEstimator::RobotStateEstimator(std::shared_ptr<const robot::Robot> robot,
+                                         FrameNames frames, const StateParams& params,
+                                         const world::MapToWorld& map_to_world,
+                                         std::shared_ptr<FrameTree> tree)
+    : robot_(std::move(robot)),
+      frames_(std::move(frames)),
+      params_(params),
+      map_to_world_(map_to_world),
+      tree_(std::move(tree)),
+      joints_(robot_) {}
+
+// ---- The clock.
+
+std::optional<double> RobotStateEstimator::now() const {
+  if (raw_.empty()) return std::nullopt;
+  return raw_.back().stamp;
+}
+
+bool RobotStateEstimator::IsAhead(double stamp) const { return now() && stamp > *now() + kHistory; }
+
+bool RobotStateEstimator::IsLate(double stamp) const { return now() && stamp < *now() - kHistory; }
+
+/// A clock that began again, and not a message that comes late.
+bool RobotStateEstimator::HasClockRestarted(double stamp) {
+  num_behind_ = now() && stamp < *now() - kJumpBack ? num_behind_ + 1 : 0;
+  return num_behind_ >= kSureJump || (now() && stamp < *now() - kHistory - kJumpBack);
+}
+
+void RobotStateEstimator::Restart() {
+  num_behind_ = 0;
+  raw_.Clear();
+  base_in_odometry_.Clear();
+  corrections_.Clear();
+  joints_.Clear();
+  tree_->ForgetMoving();
+  ++num_restarts_;
+}
+
+void RobotStateEstimator::ForgetOld() {
+  const double oldest = *now() - kHistory, latest = *now() + kHistory;
+  raw_.KeepBetween(oldest, latest);
+  base_in_odometry_.KeepBetween(oldest, latest);
+  corrections_.KeepBetween(oldest, latest);
+  joints_.KeepBetween(oldest, latest);
+}
+
+// ---- What comes in.
+
+Receipt RobotStateEstimator::OnOdometry(double stamp, const std::string& frame,
+                                        const std::string& child, const OdometryReading& reading) {
+  if (!IsStamp(stamp)) return {Reception::kNoStamp, {}};
+  if (!IsFinite(reading.X_OB)) return {Reception::kNotFinite, "pose"};
+  if (!IsFinite(reading.V_B)) return {Reception::kNotFinite, "twist"};
+  if (frame.empty()) return {Reception::kUnknownFrame, {}};
+  const FramePose offset = ChildToBase(BareFrame(child), stamp);
+  if (!offset.is_found()) return ReceiptOf(offset.status, child);
+  if (HasClockRestarted(stamp)) Restart();
+  if (IsLate(stamp)) return {Reception::kLate, {}};
+  if (BareFrame(frame) != raw_frame_) raw_.Clear();
+  raw_frame_ = BareFrame(frame);
+  const Pose2 X_CB = geometry::Flatten(offset.X_PC);
+  const bool is_base = X_CB.x == 0.0 && X_CB.y == 0.0 && X_CB.yaw == 0.0;  // bits stay as they came
+  const bool is_new = raw_.Insert(
+      stamp, is_base ? reading : OdometryReading{reading.X_OB * X_CB, MovedTo(X_CB, reading.V_B)});
+  ForgetOld();
+  return is_new ? CheckFrame(frame) : Receipt{Reception::kRepeated, {}};
+}
+
+FramePose RobotStateEstimator::ChildToBase(const std::string& child, double stamp) const {
+  if (child.empty() || child == frames_.base || child == robot_->profile.base_link) {
+    return {FrameStatus::kFound, {}};
+  }
+  if (const auto X_BC = LinkInBase(child, joints_.PostureOf({}))) {
+    return {FrameStatus::kFound, X_BC->Inverse()};
+  }
+  const auto newest = tree_->NewestOf(child, frames_.base);
+  return tree_->Find(child, frames_.base, std::min(stamp, newest.value_or(stamp)));
+}
+
+/// Whether the odometry's frame leads to the one that localisation corrects.
+Receipt RobotStateEstimator::CheckFrame(const std::string& frame) const {
+  if (raw_frame_ == frames_.odometry || !base_in_odometry_.empty()) return {};
+  if (tree_->NewestOf(frames_.odometry, raw_frame_)) return {};
+  return ReceiptOf(tree_->Find(frames_.odometry, raw_frame_, *now()).status, frame);
+}
+
+Receipt RobotStateEstimator::OnJoints(double stamp, const JointReading& reading) {
+  if (!IsStamp(stamp)) return {Reception::kNoStamp, {}};
+  for (const auto* numbers : {&reading.positions, &reading.velocities}) {
+    for (const auto& [name, number] : *numbers) {
+      if (!std::isfinite(number)) return {Reception::kNotFinite, "joint '" + name + "'"};
+    }
+  }
+  if (IsLate(stamp)) return {Reception::kLate, {}};
+  if (IsAhead(stamp)) return {Reception::kAhead, "header.stamp"};
+  const bool is_new = joints_.Insert(stamp, reading);
+  if (!now()) joints_.KeepBetween(stamp - kHistory, kForever);
+  return {is_new ? Reception::kTaken : Reception::kRepeated, {}};
+}
+
+Receipt RobotStateEstimator::OnTransforms(double stamp) {
+  if (const auto newest = tree_->NewestOf(frames_.odometry, frames_.base)) {
+    const double time = std::min(stamp, *newest);
+    const FramePose X_OB = tree_->Find(frames_.odometry, frames_.base, time);
+    if (X_OB.is_found() && !IsAhead(time)) {
+      base_in_odometry_.Insert(time, geometry::Flatten(X_OB.X_PC));
+    }
+  }
+  const auto newest = tree_->NewestOf(frames_.map, frames_.odometry);
+  if (!newest) return {};
+  const double time = std::min(stamp, *newest);
+  const FramePose found = tree_->Find(frames_.map, frames_.odometry, time);
+  if (!found.is_found()) return {Reception::kLate, {}};
+  const Pose2 X_MO = geometry::Flatten(found.X_PC);
+  X_MOfixed_.reset();
+  if (*newest == kForever) {
+    X_MOfixed_ = X_MO;
+    return {};
+  }
+  if (IsLate(time)) return {Reception::kLate, {}};
+  if (IsAhead(time)) return {Reception::kAhead, frames_.map + " -> " + frames_.odometry};
+  const bool is_new = corrections_.Insert(time, {X_MO, std::min(time, now().value_or(time))});
+  if (!now()) corrections_.KeepBetween(time - kHistory, kForever);
+  return {is_new ? Reception::kTaken : Reception::kRepeated, {}};
+}
+
+// ---- What is known.
+
+/// @param reach  [s] from a reading with which `time` makes do where it does not lie between two.
+std::optional<OdometryReading> RobotStateEstimator::RawAt(double time, double reach) const {
+  const auto* before = raw_.Before(time);
+  const auto* after = raw_.After(time);
+  if (before && before->stamp == time) return before->value;
+  if (before && after && after->stamp <= before->stamp + params_.stale_after) {
+    const double share = (time - before->stamp) / (after->stamp - before->stamp);
+    return Between(before->value, after->value, share);
+  }
+  const double since = before ? time - before->stamp : kForever;
+  const double until = after ? after->stamp - time : kForever;
+  if (std::min(since, until) > reach) return std::nullopt;
+  return since <= until ? before->value : after->value;
+}
+
+/// Where the odometry's own frame R is in the odometry's frame of the tree: X_OR.
+std::optional<Pose2> RobotStateEstimator::OdometryOrigin(double time) const {
+  if (const auto newest = tree_->NewestOf(frames_.odometry, raw_frame_)) {
+    const FramePose X_OR = tree_->Find(frames_.odometry, raw_frame_, std::min(time, *newest));
+    if (!X_OR.is_found()) return std::nullopt;
+    return geometry::Flatten(X_OR.X_PC);
+  }
+  const auto* told = base_in_odometry_.Before(time);
+  if (told == nullptr) told = base_in_odometry_.After(time);
+  const auto then = told ? RawAt(told->stamp, kNear) : std::nullopt;
+  if (!then) return std::nullopt;
+  return told->value * then->X_OB.Inverse();
+}
+
+std::optional<Pose2> RobotStateEstimator::CorrectionAt(double time) const {
+  if (X_MOfixed_) return X_MOfixed_;
+  const bool is_fresh = std::any_of(corrections_.begin(), corrections_.end(), [&](const auto& one) {
+    const double heard = one.value.heard;
+    return time <= heard + params_.stale_after && heard <= time + params_.stale_after;
+  });
+  if (!is_fresh) return std::nullopt;
+  const auto* before = corrections_.Before(time);
+  const auto* after = corrections_.After(time);
+  if (before == nullptr) return after->value.X_MO;
+  if (after == nullptr || before->stamp == time) return before->value.X_MO;
+  const double share = (time - before->stamp) / (after->stamp - before->stamp);
+  return Between(before->value.X_MO, after->value.X_MO, share);
+}
+
+Missing RobotStateEstimator::MissingAt(double time) const {
+  if (!now() || time > *now() || !RawAt(time, kNear)) return Missing::kOdometry;
+  const bool are_joints_known = !joints_.empty() && time <= joints_.newest() &&
+                                joints_.DistanceTo(time) <= params_.stale_after;
+  if (!are_joints_known) return Missing::kJointStates;
+  if (raw_frame_ != frames_.odometry && !OdometryOrigin(time)) return Missing::kOdometryFrame;
+  return CorrectionAt(time) ? Missing::kNothing : Missing::kLocalisation;
+}
+
+Missing RobotStateEstimator::MissingNow() const {
+  if (raw_.empty()) return Missing::kOdometry;
+  if (joints_.empty()) return Missing::kJointStates;
+  return MissingAt(std::min(*now(), joints_.newest()));
+}
+
+std::optional<double> RobotStateEstimator::CompleteUntil() const {
+  if (MissingNow() != Missing::kNothing) return std::nullopt;
+  return std::min(*now(), joints_.newest());
+}
+
+bool RobotStateEstimator::IsSettled(double time) const {
+  if (!now() || *now() < time || joints_.empty() || joints_.newest() < time) return false;
+  return LocalisedUntil().value_or(-kForever) >= time || *now() >= time + params_.correction_wait;
+}
+
+std::optional<double> RobotStateEstimator::LocalisedUntil() const {
+  if (X_MOfixed_) return kForever;
+  if (corrections_.empty()) return std::nullopt;
+  return corrections_.back().stamp;
+}
+
+std::optional<RobotEstimate> RobotStateEstimator::At(double time) const {
+  if (MissingAt(time) != Missing::kNothing) return std::nullopt;
+  const OdometryReading raw = *RawAt(time, kNear);
+  RobotEstimate estimate;
+  estimate.time = time;
+  estimate.X_OB = raw_frame_ == frames_.odometry ? raw.X_OB : *OdometryOrigin(time) * raw.X_OB;
+  estimate.X_MB = *CorrectionAt(time) * estimate.X_OB;
+  estimate.X_WB = map_to_world_.ToWorld(estimate.X_MB);
+  estimate.V_B = raw.V_B;
+  JointReading joints = joints_.At(time, params_.stale_after);
+  estimate.joints = std::move(joints.positions);
+  estimate.joint_velocities = std::move(joints.velocities);
+  estimate.posture = joints_.PostureOf(estimate.joints);
+  return estimate;
+}
+
+bool RobotStateEstimator::IsPostureKnown(double time) const {
+  return joints_.DistanceTo(time) <= params_.posture_reach;
+}
+
+// ---- Frames.
+
+std::optional<Pose3> RobotStateEstimator::LinkInBase(const std::string& link,
+                                                     const robot::JointPositions& posture) const {
+  const auto index = robot_->model.FindLink(link);
+  const auto base = robot_->model.FindLink(robot_->profile.base_link);
+  if (!index || !base) return std::nullopt;
+  const auto X_RL = robot::ForwardKinematics(robot_->model, posture);
+  return X_RL[*base].Inverse() * X_RL[*index];
+}
+
+FramePose RobotStateEstimator::InBase(const std::string& name, const RobotEstimate& at) const {
+  const std::string frame = BareFrame(name);
+  if (frame.empty()) return {};
+  if (frame == frames_.base) return {FrameStatus::kFound, {}};
+  if (const auto X_BL = LinkInBase(frame, at.posture)) return {FrameStatus::kFound, *X_BL};
+  if (frame == frames_.map) return {FrameStatus::kFound, geometry::Lift(at.X_MB).Inverse()};
+  if (frame == frames_.odometry) return {FrameStatus::kFound, geometry::Lift(at.X_OB).Inverse()};
+  const FramePose X_BF = tree_->Find(frames_.base, frame, at.time);
+  if (X_BF.is_found()) return X_BF;
+  // The tree may not know yet where the robot is; what stands about hangs on the map.
+  const FramePose X_MF = tree_->Find(frames_.map, frame, at.time);
+  if (!X_MF.is_found()) return X_BF.status == FrameStatus::kUnknown ? X_MF : X_BF;
+  return {FrameStatus::kFound, geometry::Lift(at.X_MB).Inverse() * X_MF.X_PC};
+}
+
+Pose3 RobotStateEstimator::LinkInWorld(const std::string& link, const RobotEstimate& at) const {
+  if (link.empty()) return {};
+  const auto X_BL = LinkInBase(link, at.posture);
+  if (X_BL) return geometry::Lift(at.X_WB) * *X_BL;
+  throw base::ConfigError(base::UnknownName("link", link, robot_->model.LinkNames()));
+}
+
+}  // namespace hires::sensing

@@ -1,0 +1,139 @@
+#include "hires/ros/sensor_receiver.h"
+
+#include <gmock/gmock.h>
+
+#include "hires/ros/conversions.h"
+#include "hires/ros/robot_messages.h"
+#include "support/sight_scenes.h"
+
+namespace hires_ros {
+namespace {
+
+using hires::geometry::Lift;
+using hires::sensing::Missing;
+using ::testing::SizeIs;
+
+std::shared_ptr<const hires::robot::Robot> Pr2() {
+  static const auto pr2 = std::make_shared<const hires::robot::Robot>(
+      hires::robot::LoadRobot(std::string(HIRES_SOURCE_DIR) + "/config/robots/pr2.yaml"));
+  return pr2;
+}
+
+class SensorReceiverTest : public ::testing::Test {
+ protected:
+  void Odometry(double stamp, const std::string& frame = "odom_combined") {
+    nav_msgs::Odometry msg;
+    msg.header.stamp.fromSec(stamp);
+    msg.header.frame_id = frame;
+    msg.child_frame_id = "base_footprint";
+    msg.pose.pose = ToMsg(Lift({1.0, 2.0, 0.0}));
+    sensors_.OnOdometry(msg);
+  }
+  void Joints(double stamp) {
+    sensors_.OnJoints(ToMsg(JointReading{Pr2()->profile.joints, {}}, ros::Time(stamp)));
+  }
+  void Transform(const std::string& parent, const std::string& child, double stamp) {
+    tf2_msgs::TFMessage msg;
+    msg.transforms.push_back(MakeTransform(parent, child, {}, ros::Time(stamp)));
+    sensors_.OnTransforms(msg, false);
+  }
+  void All(double stamp) {
+    Odometry(stamp);
+    Joints(stamp);
+    Transform("map", "odom_combined", stamp);
+  }
+
+  SensorReceiver sensors_{
+      Pr2(),
+      std::make_shared<const hires::perception::Surroundings>(hires::test_support::SightWorld()),
+      ReadRobotNames(std::string(HIRES_SOURCE_DIR) + "/config/robots/pr2_names.yaml"),
+      {}};
+};
+
+TEST_F(SensorReceiverTest, WhatIsMissingIsNamedAsTheRobotNamesIt) {
+  const auto missing = [&] { return sensors_.NameOf(sensors_.state().MissingNow()); };
+  EXPECT_EQ(missing(), "base_odometry/odom");
+  Odometry(1.0);
+  EXPECT_EQ(missing(), "joint_states");
+  Joints(1.0);
+  EXPECT_EQ(missing(), "map -> odom_combined");
+  Transform("map", "odom_combined", 1.0);
+  EXPECT_EQ(missing(), "");
+  EXPECT_EQ(sensors_.NameOf(Missing::kOdometryFrame), "odom_combined -> base_footprint");
+  EXPECT_EQ(sensors_.num_bad(), 0);
+}
+
+TEST_F(SensorReceiverTest, BadMessagesAreCountedAndLeftOut) {
+  Odometry(0.0);
+  EXPECT_EQ(sensors_.num_bad(), 1);
+  sensor_msgs::JointState joints;
+  joints.header.stamp.fromSec(1.0);
+  joints.name = {"torso_lift_joint"};
+  sensors_.OnJoints(joints);
+  EXPECT_EQ(sensors_.num_bad(), 2);
+  hires::Detections look;
+  look.header.frame_id = "head_mount_kinect_ir_link";
+  sensors_.OnDetections(look);  // without a time
+  EXPECT_EQ(sensors_.num_bad(), 3);
+  hires::WorldState known;
+  known.header.frame_id = "odom_combined";
+  sensors_.OnKnownObjects(known);
+  EXPECT_EQ(sensors_.num_bad(), 4);
+  EXPECT_EQ(sensors_.state().MissingNow(), Missing::kOdometry);
+}
+
+TEST_F(SensorReceiverTest, DetectionsInTheMapAndWhatAnotherNodeRemembersBecomeObjects) {
+  All(1.0);
+  hires::Detections look;
+  look.header.stamp.fromSec(1.0);
+  look.header.frame_id = "/map";
+  look.detections.emplace_back();
+  look.detections[0].label = "mug";
+  look.detections[0].instance = "Mug1";
+  look.detections[0].pose = ToMsg(Lift({2.0, 2.0, 0.0}, 0.7));
+  sensors_.OnDetections(look);
+  hires::world::WorldState state;
+  state.objects.push_back({"jug1", "jug", Lift({3.0, 2.0, 0.0}, 0.7), {}, ""});
+  hires::WorldState known = ToMsg(state);
+  known.header.frame_id = "map";
+  sensors_.OnKnownObjects(known);
+  const auto now = sensors_.state().At(1.0);
+  ASSERT_TRUE(now);
+  EXPECT_EQ(sensors_.Update(*now).num_looks, 1);
+  const auto objects = sensors_.objects()->memory().Known(now->Body());
+  ASSERT_THAT(objects, SizeIs(2));
+  EXPECT_EQ(objects[0].name, "jug1");
+  EXPECT_EQ(objects[1].name, "mug1");
+  EXPECT_NEAR(objects[1].X_MO.translation.x(), 2.0, 1e-9);
+  EXPECT_EQ(sensors_.num_bad(), 0);
+}
+
+TEST(DetectionMessageTest, SurvivesBothWays) {
+  hires::perception::Detection detection{"mug1", "mug", Lift({1.0, 2.0, 0.5}, 0.7), 0.5};
+  detection.category = "Mug";
+  detection.confidence = 0.75;
+  detection.alternatives = {{"jug", 0.25}};
+  detection.size = {0.1, 0.2, 0.3};
+  detection.num_points = 77;
+  const auto back = FromMsg(ToMsg(detection));
+  EXPECT_EQ(back.instance, detection.instance);
+  EXPECT_EQ(back.label, "mug");
+  EXPECT_EQ(back.X_CO.translation, detection.X_CO.translation);
+  EXPECT_EQ(back.visible_share, 0.5);
+  EXPECT_EQ(back.category, "Mug");
+  EXPECT_EQ(back.confidence, 0.75);
+  ASSERT_THAT(back.alternatives, SizeIs(1));
+  EXPECT_EQ(back.alternatives[0].label, "jug");
+  EXPECT_EQ(back.alternatives[0].confidence, 0.25);
+  EXPECT_EQ(back.size, detection.size);
+  EXPECT_EQ(back.num_points, 77);
+}
+
+TEST(DetectionMessageTest, WhatIsNotToldIsNotKnown) {
+  const auto detection = FromMsg(hires::Detection());
+  EXPECT_FALSE(detection.instance);
+  EXPECT_EQ(detection.confidence, 1.0);
+}
+
+}  // namespace
+}  // namespace hires_ros
