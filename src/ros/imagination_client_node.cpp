@@ -209,11 +209,18 @@ void ImaginationClientNode::OnWorkerEvent(int worker, const WorkerLink::Event& e
                    with_session(e.session, imagination::AssignmentFinished{worker, e.assignment});
                  },
                  [&](const WorkerLink::Failed& e) {
-                   log("failed " + e.reason);
-                   with_session(e.session, imagination::AssignmentFailed{worker, e.assignment,
-                                                                         e.reason, e.is_unusable});
+                   const std::string why = e.reason + (e.is_unusable ? OwnLibraries() : "");
+                   log("failed " + why);
+                   with_session(e.session, imagination::AssignmentFailed{worker, e.assignment, why,
+                                                                         e.is_unusable});
                  }},
              event);
+}
+
+/// For people, behind what a worker says that is not the same as here.
+std::string ImaginationClientNode::OwnLibraries() const {
+  const auto& libraries = setup_.skills->actions->libraries();
+  return libraries.empty() ? "" : "; the client loaded " + hires::skills::ToString(libraries);
 }
 
 hires::RolloutGoal ImaginationClientNode::RolloutGoalFor(const Session& session,
@@ -226,6 +233,7 @@ hires::RolloutGoal ImaginationClientNode::RolloutGoalFor(const Session& session,
   goal.robot_state = ToMsg(setup.robot_state);
   goal.world_hash = setup_.world_hash;
   goal.robot_hash = setup_.robot_hash;
+  goal.actions_hash = setup_.actions_hash;
   goal.uncertainty_hash = setup.uncertainty->hash;
   const bool is_own = setup.uncertainty->hash == setup_.uncertainty->hash;
   goal.uncertainty = is_own ? session.goal.getGoal()->uncertainty : setup.uncertainty->yaml;

@@ -13,6 +13,7 @@
 #include "hires/ros/conversions.h"
 #include "hires/ros/private_params.h"
 #include "hires/ros/topic_names.h"
+#include "hires/skills/action_loader.h"
 
 namespace hires_ros {
 namespace {
@@ -34,6 +35,13 @@ void RequireHash(const char* what, std::uint64_t wanted, std::uint64_t own) {
   throw HashDiffers(
       fmt::format("{} differs: the client has {}, this worker {}; start both with the same files",
                   what, hires::base::HexOf(wanted), hires::base::HexOf(own)));
+}
+
+/// Whoever has other actions, or another build of a library, may do something else by the same
+/// name.
+void RequireActions(std::uint64_t wanted, const hires::skills::ActionSet& own) {
+  const std::string why_not = hires::skills::WhyActionsDiffer(wanted, own);
+  if (!why_not.empty()) throw HashDiffers(why_not);
 }
 
 /// The URDF behind a robot's profile, or the URDF that was given in place of one.
@@ -171,6 +179,7 @@ imagination::RolloutSetup SimWorkerNode::SetupFor(const RolloutGoal& goal) const
   }
   RequireHash("world", goal.world_hash, setup_.world_hash);
   RequireHash("robot", goal.robot_hash, setup_.robot_hash);
+  RequireActions(goal.actions_hash, *setup_.skills->actions);
   auto uncertainty = setup_.uncertainty;
   if (!goal.uncertainty.empty()) {
     uncertainty = std::make_shared<const imagination::Uncertainty>(
@@ -188,6 +197,8 @@ void SimWorkerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status
   status.add("rollouts played", rollouts_played_.load());
   status.add("world hash", hires::base::HexOf(setup_.world_hash));
   status.add("robot hash", hires::base::HexOf(setup_.robot_hash));
+  status.add("actions hash", hires::base::HexOf(setup_.actions_hash));
+  status.add("action libraries", hires::skills::ToString(setup_.skills->actions->libraries()));
 }
 
 }  // namespace hires_ros

@@ -103,4 +103,12 @@ std::shared_ptr<const ActionSet> LoadActionSet(const std::vector<std::string>& l
   return set;
 }
 
+std::string WhyActionsDiffer(std::uint64_t wanted, const ActionSet& own) {
+  if (wanted == own.hash()) return "";
+  return fmt::format(
+      "actions differ: the client has {}, this worker {} with {}; start both with the same "
+      "~action_libraries",
+      base::HexOf(wanted), base::HexOf(own.hash()), ToString(own.libraries()));
+}
+
 }  // namespace hires::skills

@@ -47,6 +47,25 @@ class ImaginationBadFilesTest(unittest.TestCase):
         for k in (1, 2):
             self.assertEqual(system.times_joined(k), 1)
 
+    def test_workers_with_other_actions_are_named_with_their_libraries(self):
+        system = self.system
+        library = os.path.join(os.path.dirname(executable('hires')), '..', 'libown_action.so')
+        other = system.file('libother_build.so')
+        with open(library, 'rb') as file, open(other, 'wb') as copy:
+            copy.write(file.read() + b'another build')
+        system.start_client(worker_wait=0.5, arguments=['_action_libraries:=' + library])
+        system.start_host(1)
+        system.start_host(2, '_action_libraries:=' + other)
+        for k in (1, 2):
+            system.wait_until_joined(k)
+        answer = system.ask().answer()
+        self.assertEqual(answer.code, 3, answer.output)
+        why = answer.report['why']
+        self.assertRegex(why, 'worker 1: actions differ: the client has [0-9a-f]{16}, this worker '
+                         '[0-9a-f]{16} with no library')
+        self.assertRegex(why, 'worker 2: actions differ: .* with [0-9]+_libother_build.so [0-9a-f]{16}')
+        self.assertRegex(why, 'the client loaded libown_action.so [0-9a-f]{16}')
+
     def copy_of_world(self, text):
         folder = os.path.join(CONFIG_FOLDER, '..', 'worlds')
         copies = os.path.join(self.system.processes.folder.name, 'worlds')
@@ -102,6 +121,12 @@ class ImaginationBadFilesTest(unittest.TestCase):
                 with self.subTest(node=node, key=key):
                     self.require_refusal(node, ['_%s:=/nowhere/%s.yaml' % (key, key)],
                                          '/nowhere/%s.yaml' % key)
+
+    def test_libraries_of_actions_that_are_not_there(self):
+        for node in ('imagination_client', 'sim_worker', 'middle_layer'):
+            with self.subTest(node=node):
+                self.require_refusal(node, ['_action_libraries:=/nowhere/lib.so'],
+                                     "library of actions '/nowhere/lib.so'", 'no such file')
 
     def test_malformed_yaml_is_named_with_its_line(self):
         for node in ('imagination_client', 'sim_worker', 'relay', 'worker_host'):

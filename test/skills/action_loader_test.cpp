@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "hires/base/hash.h"
 #include "hires/base/text.h"
 #include "hires/skills/skill_factory.h"
 #include "support/messages.h"
@@ -65,6 +66,16 @@ TEST(ActionLoaderTest, AnotherBuildOfALibraryHasAnotherHash) {
   const std::string copy =
       folder.Write("libsound_actions.so", base::ReadTextFile(PathOf("sound")) + "one more byte");
   EXPECT_NE(LoadActionSet({copy})->hash(), LoadActionSet({PathOf("sound")})->hash());
+}
+
+TEST(ActionLoaderTest, WhoHasOtherActionsSaysWithWhichLibraries) {
+  const auto with = LoadActionSet({PathOf("sound")});
+  EXPECT_EQ(WhyActionsDiffer(with->hash(), *with), "");
+  EXPECT_THAT(WhyActionsDiffer(with->hash(), *OwnActionSet()),
+              AllOf(HasSubstr("actions differ: the client has " + base::HexOf(with->hash())),
+                    HasSubstr("this worker " + base::HexOf(OwnActionSet()->hash())),
+                    HasSubstr("with no library; start both with the same ~action_libraries")));
+  EXPECT_THAT(WhyActionsDiffer(1, *with), HasSubstr("with libsound_actions.so "));
 }
 
 TEST(ActionLoaderTest, RefusesAFileThatIsMissingOrNoLibrary) {

@@ -72,6 +72,7 @@ class ImaginationClientNode {
   void Refuse(GoalHandle goal, const std::string& why);
   void CarryOut(Session* session, const std::vector<hires::imagination::Command>& commands);
   void Feed(Session* session, const hires::imagination::Event& event);
+  std::string OwnLibraries() const;
   hires::RolloutGoal RolloutGoalFor(const Session& session,
                                     const hires::imagination::Assign& assign) const;
   void PublishFeedback(Session* session, double now);

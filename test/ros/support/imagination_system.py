@@ -112,10 +112,10 @@ class ImaginationSystem:
         config['scheduler'].update(scheduler)
         return self.write('imagination_client.yaml', yaml.safe_dump(config))
 
-    def start_client(self, client_environment=None, **scheduler):
+    def start_client(self, client_environment=None, arguments=(), **scheduler):
         self.client = self.run([
             executable('imagination_client'), '_config:=' + self.client_config(**scheduler),
-            '_workers:=%d' % self.workers], **(client_environment or {}))
+            '_workers:=%d' % self.workers, *arguments], **(client_environment or {}))
         return self.client
 
     def start_host(self, k, worker_arguments=''):
