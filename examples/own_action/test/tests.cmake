@@ -33,3 +33,7 @@ else()
 endif()
 set_tests_properties(examples.own_action_imagined PROPERTIES TIMEOUT 300
   PASS_REGULAR_EXPRESSION "ranked: turn_towards.sittingareawesttable1")
+
+if(HIRES_ROS)  # the whole of it, executed by a simulated robot
+  hires_rostest(../../test/ros/own_action.test TIMEOUT 300 ARGS actions:=$<TARGET_FILE:own_action>)
+endif()
