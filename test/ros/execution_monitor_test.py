@@ -12,6 +12,7 @@ import rosunit
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+import failures  # noqa: E402
 from execution_system import CARRY, SERVE, ExecutionSystem, text_of  # noqa: E402
 from ros_processes import executable, wait_until  # noqa: E402
 
@@ -112,6 +113,7 @@ class ExecutionMonitorTest(unittest.TestCase):
         result = self.achieve(SERVE).result()
         # Every place fails in imagination: no way is left, and nothing was put anywhere.
         self.assertEqual(result.code, self.codes.NO_PLAN, result.reason)
+        self.assertEqual(failures.text_of(result.failure), 'imagined_failure: area_occupied')
         self.assertEqual(self.system.done('place_object'), [])
         self.assertGreater(result.replans, 0)
 
@@ -210,7 +212,11 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.assertGreaterEqual(result.replans, 1)
         failed = [s for s in result.steps if s.phase == self.phases.FAILED]
         self.assertEqual([s.action.name for s in failed], ['pick_up_object'])
+        self.assertEqual(failures.text_of(failed[0].failure), 'grasp_failed')
         self.assertIn('grasp_failed', failed[0].note)
+        told = [text_of(f, 'hasFailure') for f in self.system.fluents(
+            'MonitoredFailure', in_episode=True, episode=result.episode)]
+        self.assertEqual(told, ['grasp_failed'])
 
     def test_effects_that_nobody_observes_are_noticed(self):
         self.system.behave('tuck_arms', silent=True, times=1)
