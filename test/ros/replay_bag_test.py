@@ -31,7 +31,7 @@ def goal_of(request_id, areas, **changes):
         steps=[ActionTemplate('move_base_blind', [StringList(areas)])],
         updated_fluents=[Atom('RobotAt', ['preManipulationAreaEastCounter1']),
                          Atom('On', ['peppermill1', 'trayArea1'])],
-        rollouts=8, seed=7, request_id=request_id)
+        rollouts=8, min_success=0.3, seed=7, request_id=request_id)
     for name, value in changes.items():
         setattr(goal, name, value)
     return ImagineActionGoal(goal=goal)
