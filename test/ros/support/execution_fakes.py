@@ -216,9 +216,6 @@ class Imagination(Server):
             cancelled.wait()
             result.outcome = result.CANCELLED
             return goal.set_canceled(result)
-        if wanted['answer'] == 'undecided':
-            result.outcome = result.UNDECIDED
-            return goal.set_aborted(result)
         if wanted['answer'] == 'no_worker':
             result.outcome = result.NO_WORKER
             return goal.set_aborted(result)
