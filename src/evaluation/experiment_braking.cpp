@@ -11,6 +11,7 @@
 #include "hires/evaluation/experiment_parallel.h"
 #include "hires/evaluation/experiment_stage.h"
 #include "hires/imagination/uncertainty.h"
+#include "hires/simulation/fall_watch.h"
 #include "hires/simulation/robot_simulator.h"
 
 namespace hires::evaluation {
@@ -57,13 +58,14 @@ std::shared_ptr<const simulation::Scene> SceneFor(const ImaginationSetup& setup,
 /// One stop in one world.
 class Player {
  public:
-  Player(const BrakingConfig& braking, const BrakingCell& cell,
-         const imagination::RolloutParams& rollout, RobotSimulator* simulator)
+  Player(const BrakingConfig& braking, const BrakingCell& cell, const ImaginationSetup& setup,
+         RobotSimulator* simulator)
       : braking_(braking),
         cell_(cell),
-        rollout_(rollout),
+        rollout_(setup.rollout),
         simulator_(*simulator),
-        guard_(braking.guard) {}
+        guard_(braking.guard),
+        watch_(setup.standing) {}
 
   BrakingStop Play() {
     StepFor(rollout_.settling_time, [] { return Twist2{}; });
@@ -72,9 +74,9 @@ class Player {
     stop_.max_tilt = 0.0;
     begin_ = simulator_.time();
     X_MBbegin_ = simulator_.base().X_MB;
-    X_BObegin_ = LoadInBase();
+    watch_.Look(simulator_, 0);
     Brake();
-    stop_.fell = stop_.max_tilt >= rollout_.topple_tilt || stop_.slide > rollout_.lost_distance;
+    stop_.fell = watch_.detector().falls() > 0;
     stop_.simulated = simulator_.time();
     return stop_;
   }
@@ -103,11 +105,9 @@ class Player {
   void Look() {
     tilt_ = geometry::TiltOf(simulator_.PoseOf(0).rotation);
     stop_.max_tilt = std::max(stop_.max_tilt, tilt_);
-    if (begin_) stop_.slide = std::max(stop_.slide, (LoadInBase() - X_BObegin_).norm());
-  }
-
-  Eigen::Vector2d LoadInBase() const {
-    return (simulator_.X_MB().Inverse() * simulator_.PoseOf(0)).translation.head<2>();
+    if (!begin_) return;  // what it does while driving is not the stop's
+    watch_.Look(simulator_, 0);
+    stop_.slide = std::max(stop_.slide, watch_.detector().now().slide);
   }
 
   /// Up to full speed, and on until nothing shakes any more.
@@ -173,7 +173,7 @@ class Player {
   /// still.
   bool IsOver() const {
     const double since = simulator_.time() - *begin_ - stop_.time;
-    return since > kQuiet && (stop_.max_tilt >= rollout_.topple_tilt || tilt_ < kStill);
+    return since > kQuiet && (watch_.detector().is_down() || tilt_ < kStill);
   }
 
   const BrakingConfig& braking_;
@@ -184,8 +184,8 @@ class Player {
   BrakingStop stop_;
   std::optional<double> begin_;
   geometry::Pose2 X_MBbegin_;
-  Eigen::Vector2d X_BObegin_{0.0, 0.0};
-  double tilt_{0.0};  // [rad] at the last look
+  simulation::FallWatch watch_;  // of the load, from the stop's beginning on
+  double tilt_{0.0};             // [rad] at the last look
   long steps_{0};
 };
 
@@ -220,7 +220,7 @@ BrakingStop PlayOne(const BrakingConfig& braking, const BrakingCell& cell, const
   const imagination::StartState& start = setup.starts[index % setup.starts.size()];
   RobotSimulator simulator(setup.scene, truth, start.world, start.robot, rng.Fork(kSimulator),
                            stage.setup.physics, simulation::LevelOfDetail::kTray);
-  return Player(braking, cell, stage.setup.rollout, &simulator).Play();
+  return Player(braking, cell, stage.setup, &simulator).Play();
 }
 
 BrakingStop PlayIdeal(const BrakingConfig& braking, const BrakingCell& cell, const CellSetup& setup,
@@ -231,7 +231,7 @@ BrakingStop PlayIdeal(const BrakingConfig& braking, const BrakingCell& cell, con
   RobotSimulator simulator(setup.ideal_scene, nominal, start.world, start.robot,
                            base::Rng(config.seed), stage.setup.physics,
                            simulation::LevelOfDetail::kTray);
-  return Player(braking, cell, stage.setup.rollout, &simulator).Play();
+  return Player(braking, cell, stage.setup, &simulator).Play();
 }
 
 }  // namespace

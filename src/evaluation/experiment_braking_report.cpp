@@ -12,7 +12,6 @@ namespace hires::evaluation {
 namespace {
 
 constexpr double kTipped = 0.005;  // [rad] more than contacts that settle; an edge has lifted
-constexpr double kFallen = 0.5;    // [rad]
 
 /// A share of all stops, or the extremes, of one cell.
 struct Summary {
@@ -59,7 +58,7 @@ const char* Verdict(bool tips, bool falls) { return falls ? "falls" : tips ? "ro
 
 std::vector<std::string> FormsRow(const BrakingPlay& play) {
   const BrakingCell& cell = play.cell;
-  const bool tips = play.ideal->max_tilt > kTipped, falls = play.ideal->max_tilt >= kFallen;
+  const bool tips = play.ideal->max_tilt > kTipped, falls = play.ideal->fell;
   return {cell.load,
           MotionText(cell.motion),
           cell.way.name,
@@ -79,7 +78,7 @@ std::vector<std::string> LimitsRow(const BrakingCell& cell) {
 }
 
 bool Disagrees(const BrakingPlay& play) {
-  const bool falls = play.ideal->max_tilt >= kFallen, tips = play.ideal->max_tilt > kTipped;
+  const bool falls = play.ideal->fell, tips = play.ideal->max_tilt > kTipped;
   return falls != play.cell.is_predicted_to_fall || tips != play.cell.is_predicted_to_tip;
 }
 

@@ -104,8 +104,8 @@ bool Chain::SettleLoad(const world::WorldState& final_world, const Pose2& X_MB) 
     const Pose3& nominal = X_BO_nominal_[i];
     Pose3 X_BO_next = nominal;
     const bool stands =
-        X_BO.IsFinite() && geometry::TiltOf(X_BO.rotation) < setup_.params.topple_tilt &&
-        (X_BO.translation - nominal.translation).norm() <= setup_.params.lost_distance;
+        X_BO.IsFinite() &&
+        world::FallSeen(setup_.standing, world::DepartureFrom(nominal, X_BO)) == world::Fall::kNone;
     if (stands) X_BO_next = geometry::Lift(geometry::Flatten(X_BO), nominal.translation.z());
     has_put_back = has_put_back || !stands;
     world::ObjectState& object = setup_.world_state.objects[i];

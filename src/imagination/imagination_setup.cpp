@@ -150,10 +150,18 @@ SetupConfig ReadSetupConfig(const std::string& path) {
   config.sensing = sensing::ReadSensingParams(in.Sub("sensing"));
   config.physics = ReadPhysics(in.Sub("physics"));
   config.rollout = ReadRolloutParams(in.Sub("rollout"));
+  config.standing = world::ReadStandingCriterion(in.Sub("standing"));
+  if (config.standing.hold_time > config.rollout.aftermath) {
+    in.Sub("standing")
+        .Fail("hold_time",
+              fmt::format("wanted no more than rollout.aftermath, {:g} s: a fall at the end "
+                          "of a rollout would not be seen",
+                          config.rollout.aftermath));
+  }
   in.RejectUnknownKeys();
   base::Hasher hasher;
   for (const char* section :
-       {"driving", "blind_driving", "manipulation", "sensing", "physics", "rollout"}) {
+       {"driving", "blind_driving", "manipulation", "sensing", "physics", "rollout", "standing"}) {
     hasher.Add(in.Sub(section).Canonical());
   }
   config.params_hash = hasher.value();
@@ -164,9 +172,9 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   ImaginationSetup setup;
   world::World world = LoadWorldWithObjects(config, &setup.object_models);
   robot::Robot robot = LoadAnyRobot(config.robot);
-  setup.skills = std::make_shared<const skills::SkillSet>(
-      skills::MakeSkillSet(world, robot, config.driving, config.blind, config.manipulation,
-                           skills::LoadActionSet(config.action_libraries)));
+  setup.skills = std::make_shared<const skills::SkillSet>(skills::MakeSkillSet(
+      world, robot, config.driving, config.blind, config.manipulation, config.standing,
+      skills::LoadActionSet(config.action_libraries)));
   setup.actions_hash = setup.skills->actions->hash();
   base::Hasher hasher;
   hasher.Add(world.hash);
@@ -184,6 +192,8 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
       config.uncertainty == "none" ? NoUncertainty() : LoadUncertainty(config.uncertainty));
   setup.rollout = config.rollout;
   setup.physics = config.physics;
+  setup.standing = config.standing;
+  setup.translator.standing = config.standing;
   return setup;
 }
 
@@ -203,8 +213,8 @@ std::string ImaginationSetup::ModelOf(const std::string& instance_or_model) cons
 
 RolloutSetup MakeRolloutSetup(const ImaginationSetup& setup, const StartState& start,
                               std::uint64_t seed) {
-  return {setup.scene, setup.skills, setup.uncertainty, start.world,
-          start.robot, seed,         setup.rollout,     setup.physics};
+  return {setup.scene, setup.skills,  setup.uncertainty, start.world,   start.robot,
+          seed,        setup.rollout, setup.physics,     setup.standing};
 }
 
 }  // namespace hires::imagination

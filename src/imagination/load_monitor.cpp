@@ -9,22 +9,22 @@ namespace hires::imagination {
 namespace {
 
 using geometry::Pose3;
+using world::Fall;
 using Code = base::FailureCode;
 
 constexpr double kCauseWindow = 0.3;  // [s] how far back a cause may lie
-constexpr double kDrop = 0.05;        // [m] lower than where it stood: fallen off
 constexpr double kStillSpeed = 0.01;  // [m/s] below which an object stands still
 
 }  // namespace
 
 LoadMonitor::LoadMonitor(simulation::RobotSimulator* simulator, const RolloutParams& params,
-                         const Purpose& purpose)
-    : simulator_(simulator), params_(params), purpose_(purpose) {
+                         const world::StandingCriterion& standing, const Purpose& purpose)
+    : simulator_(simulator), params_(params), standing_(standing), purpose_(purpose) {
   Sort(purpose);
 }
 
 void LoadMonitor::Sort(const Purpose& purpose) {
-  const Pose3 X_BM = simulator_->X_MB().Inverse();
+  const simulation::FallWatch watch(standing_);
   const std::vector<int>& carried = simulator_->carried();
   const std::vector<world::ObjectState> all = simulator_->GetWorldState().objects;
   for (int i = 0; i < static_cast<int>(all.size()); ++i) {
@@ -33,9 +33,9 @@ void LoadMonitor::Sort(const Purpose& purpose) {
     const bool is_held = !all[i].attached_to.empty();
     if (is_handled) handled_ = static_cast<int>(objects_.size());
     if (is_handled || stands_on_robot || is_held) {
-      objects_.push_back({i, X_BM * all[i].X_MO, stands_on_robot && !is_handled, is_held, false});
-    } else if (geometry::TiltOf(all[i].X_MO.rotation) < params_.topple_tilt) {
-      bystanders_.push_back({i, base::ToLower(all[i].name), all[i].X_MO.translation.z()});
+      objects_.push_back({i, stands_on_robot && !is_handled, is_held, watch});
+    } else if (world::IsUpright(standing_, all[i].X_MO)) {
+      bystanders_.push_back({i, base::ToLower(all[i].name), watch});
     }
   }
 }
@@ -51,43 +51,40 @@ bool LoadMonitor::IsHeld(const Object& object) const {
 void LoadMonitor::Look() {
   tilt_ = 0.0;
   for (Object& object : objects_) LookAt(&object);
+  for (Bystander& bystander : bystanders_) bystander.watch.Look(*simulator_, bystander.index);
   max_tilt_ = std::max(max_tilt_, tilt_);
   if (first_cause_.empty() && tilt_ > params_.shaking_tilt) first_cause_ = Cause();
 }
 
 void LoadMonitor::LookAt(Object* object) {
-  const Pose3 X_MO = simulator_->PoseOf(object->index);
-  if (!X_MO.IsFinite()) {
+  const Fall fall = object->watch.Look(*simulator_, object->index);
+  if (fall == Fall::kLost) {
     is_lost_ = true;
     return;
   }
-  const double tilt = geometry::TiltOf(X_MO.rotation);
-  tilt_ = std::max(tilt_, tilt);
-  const bool lies = tilt >= params_.topple_tilt;
-  if (!object->is_load) {
-    // What a hand holds may lean, it cannot fall.
-    const bool falls = lies && !object->has_fallen && !IsHeld(*object);
-    if (falls) {
-      NoteFall(object, object->was_held && !IsHandled(*object) ? Code::kObjectSlipped
-                                                               : Code::kObjectToppled);
-    }
-    return;
+  tilt_ = std::max(tilt_, object->watch.detector().now().tilt);
+  if (fall != Fall::kNone) {
+    ++falls_;
+    if (!first_fall_) first_fall_ = CodeOf(*object, fall);
   }
-  const Pose3 X_BO = simulator_->X_MB().Inverse() * X_MO;
-  const bool slid = (X_BO.translation - object->X_BO.translation).norm() > params_.lost_distance;
-  if (!object->has_fallen && (lies || slid)) {
-    NoteFall(object, lies ? Code::kObjectFell : Code::kObjectSlid);
-  }
-  if (params_.put_back && object->has_fallen && (slid || tilt > params_.put_back_tilt)) {
-    simulator_->PutBack(object->index);
-    object->has_fallen = false;
-  }
+  if (params_.put_back && object->is_load) PutBackIfDown(object);
 }
 
-void LoadMonitor::NoteFall(Object* object, Code code) {
-  object->has_fallen = true;
-  ++falls_;
-  if (!first_fall_) first_fall_ = code;
+/// What fell is put back once it lies, or is far from where it stood.
+void LoadMonitor::PutBackIfDown(Object* object) {
+  const world::FallDetector& detector = object->watch.detector();
+  const world::Departure& now = detector.now();
+  const bool is_away = now.drop > standing_.drop || now.slide > standing_.slide;
+  if (!detector.is_down() || !(is_away || now.tilt > params_.put_back_tilt)) return;
+  simulator_->PutBack(object->index);
+  object->watch.Reset();
+}
+
+Code LoadMonitor::CodeOf(const Object& object, Fall fall) const {
+  if (!object.is_load && !IsHandled(object)) return Code::kObjectSlipped;  // out of a hand
+  if (fall == Fall::kSlid) return Code::kObjectSlid;
+  const bool lies = fall == Fall::kToppled && !object.is_load;
+  return lies ? Code::kObjectToppled : Code::kObjectFell;
 }
 
 OutcomeCounts LoadMonitor::Sample() const {
@@ -107,27 +104,28 @@ bool LoadMonitor::Moves(int index) const {
   return simulator_->VelocityOf(index).linear.norm() > kStillSpeed;
 }
 
+bool LoadMonitor::Shakes(const Object& object) const {
+  const world::FallDetector& detector = object.watch.detector();
+  return detector.now().tilt > params_.shaking_tilt && !detector.is_down();
+}
+
 bool LoadMonitor::IsSettled() const {
-  if (tilt_ > params_.shaking_tilt && tilt_ < params_.topple_tilt) return false;
+  if (std::any_of(objects_.begin(), objects_.end(), [&](const Object& o) { return Shakes(o); })) {
+    return false;
+  }
   const bool is_put_down =
       purpose_.kind == Purpose::Kind::kPutOnArea || purpose_.kind == Purpose::Kind::kPutOnTray;
   if (handled_ >= 0 && is_put_down && Moves(objects_[handled_].index)) return false;
   // What has fallen may roll on for ever; nothing more depends on it.
   return std::none_of(bystanders_.begin(), bystanders_.end(), [&](const Bystander& bystander) {
-    return Moves(bystander.index) && !HasFallen(bystander);
+    return Moves(bystander.index) && !bystander.watch.detector().is_down();
   });
-}
-
-bool LoadMonitor::HasFallen(const Bystander& bystander) const {
-  const Pose3 X_MO = simulator_->PoseOf(bystander.index);
-  return geometry::TiltOf(X_MO.rotation) >= params_.topple_tilt ||
-         X_MO.translation.z() < bystander.height - kDrop;
 }
 
 std::vector<std::string> LoadMonitor::KnockedOver() const {
   std::vector<std::string> names;
   for (const Bystander& bystander : bystanders_) {
-    if (HasFallen(bystander)) names.push_back(bystander.name);
+    if (bystander.watch.detector().is_down()) names.push_back(bystander.name);
   }
   std::sort(names.begin(), names.end());
   return names;
@@ -157,11 +155,8 @@ base::Failure LoadMonitor::WhyNotTaken(const Object& object) const {
   const auto held = simulator_->held();
   const auto hand = held.find(purpose_.arm);
   if (hand != held.end() && hand->second == object.index) return {};
-  const double z_start = (simulator_->X_MB() * object.X_BO).translation.z();
-  const double z = simulator_->PoseOf(object.index).translation.z();
-  return z < z_start - kDrop ? Code::kObjectFell
-         : object.has_fallen ? Code::kObjectToppled
-                             : Code::kObjectSlipped;
+  const Fall fall = object.watch.detector().fall();
+  return fall == Fall::kNone ? Code::kObjectSlipped : CodeOf(object, fall);
 }
 
 /// Where the object was to be put: the frame of the area, or the middle of the tray.
@@ -175,8 +170,8 @@ base::Failure LoadMonitor::WhyNotStanding(const Object& object) const {
   if (IsHeld(object)) return Code::kObjectNotReleased;
   const Pose3 X_MO = simulator_->PoseOf(object.index);
   const Pose3 X_GO = X_MGoal().Inverse() * X_MO;
-  if (X_GO.translation.z() < -kDrop) return Code::kObjectFell;
-  if (geometry::TiltOf(X_MO.rotation) >= params_.topple_tilt) return Code::kObjectToppled;
+  if (X_GO.translation.z() < -standing_.drop) return Code::kObjectFell;
+  if (!world::IsUpright(standing_, X_MO)) return Code::kObjectToppled;
   const double away = X_GO.translation.head<2>().cwiseAbs().maxCoeff();
   return away > purpose_.area_half_width ? Code::kObjectSlipped : base::Failure();
 }

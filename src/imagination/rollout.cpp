@@ -36,6 +36,7 @@ class Player {
          std::unique_ptr<skills::Skill> skill, const simulation::Variation& variation,
          const base::Rng& rng)
       : params_(setup.params),
+        standing_(setup.standing),
         purpose_(PurposeIn(setup, action)),
         variation_(variation),
         skill_(std::move(skill)),
@@ -47,7 +48,7 @@ class Player {
 
   std::optional<RolloutResult> Play(const RolloutHooks& hooks) {
     StepFor(params_.settling_time);
-    LoadMonitor monitor(&simulator_, params_, purpose_);
+    LoadMonitor monitor(&simulator_, params_, standing_, purpose_);
     const double start = simulator_.time();
     skills::Status status;
     next_cycle_ = start;
@@ -129,6 +130,7 @@ class Player {
   }
 
   const RolloutParams& params_;
+  const world::StandingCriterion& standing_;
   const Purpose purpose_;
   const simulation::Variation variation_;
   std::unique_ptr<skills::Skill> skill_;
@@ -150,7 +152,6 @@ RolloutParams ReadRolloutParams(base::ParamReader in) {
   if (params.shaking_tilt >= params.topple_tilt) {
     in.Fail("shaking_tilt", "wanted less than topple_tilt");
   }
-  params.lost_distance = in.Get("lost_distance", base::Between(0.01, 10.0));
   params.aftermath = in.Get("aftermath", base::Between(0.0, 10.0));
   params.put_back = in.GetBool("put_back");
   params.put_back_tilt = in.Get("put_back_tilt", base::Between(0.01, 3.2));

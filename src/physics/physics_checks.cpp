@@ -21,8 +21,11 @@ constexpr double kSlidingFriction = 0.2;
 constexpr double kRestitution = 0.5;
 constexpr int kHeadings = 36;
 constexpr int kPulseHeadings = 6;  // spread over one sixth of the circle: a pulse takes long
-constexpr double kFallen = 1.0;    // [rad]
-constexpr int kHalvings = 14;      // of the bracket around a boundary: 6e-5 of its width
+// [rad] Far beyond the angle at which any of these cylinders balances on its rim: none comes back.
+// It tells which side of a closed form's boundary a body is on, not what counts as a fall
+// elsewhere.
+constexpr double kFallen = 1.0;
+constexpr int kHalvings = 14;  // of the bracket around a boundary: 6e-5 of its width
 
 /// One cylinder on a wide plate that moves as told along one heading.
 class Ground {

@@ -244,6 +244,29 @@ hires::robot::RobotState FromMsg(const msg::RobotState& state) {
   return out;
 }
 
+msg::ObjectTruth ToMsg(const std::string& name, const hires::simulation::ObjectFate& fate) {
+  msg::ObjectTruth out;
+  out.name = name;
+  out.pose = ToMsg(fate.X_MO);
+  out.attached_to = fate.attached_to;
+  out.stands = fate.stands;
+  out.tilt = fate.tilt;
+  out.max_tilt = fate.max_tilt;
+  out.falls = static_cast<std::uint32_t>(fate.falls);
+  return out;
+}
+
+hires::simulation::ObjectFate FromMsg(const msg::ObjectTruth& truth) {
+  hires::simulation::ObjectFate fate;
+  fate.X_MO = FromMsg(truth.pose);
+  fate.attached_to = truth.attached_to;
+  fate.stands = truth.stands;
+  fate.tilt = truth.tilt;
+  fate.max_tilt = truth.max_tilt;
+  fate.falls = static_cast<int>(truth.falls);
+  return fate;
+}
+
 void RequireSoundState(const msg::WorldState& world, const msg::RobotState& robot) {
   if (world.header.frame_id != "map") {
     throw hires::base::ConfigError(

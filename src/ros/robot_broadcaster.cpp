@@ -30,7 +30,8 @@ geometry_msgs::TransformStamped Transform(const std::string& parent, const std::
 
 }  // namespace
 
-RobotBroadcaster::RobotBroadcaster(std::shared_ptr<const hires::simulation::Scene> scene, int index,
+RobotBroadcaster::RobotBroadcaster(std::shared_ptr<const hires::simulation::Scene> scene,
+                                   const hires::world::StandingCriterion& standing, int index,
                                    double rate, ros::NodeHandle* nh)
     : scene_(std::move(scene)),
       period_(1.0 / rate),
@@ -39,7 +40,7 @@ RobotBroadcaster::RobotBroadcaster(std::shared_ptr<const hires::simulation::Scen
       joints_(nh->advertise<sensor_msgs::JointState>("joint_states", 10)),
       markers_(
           nh->advertise<visualization_msgs::MarkerArray>(WorkerName(index, kWorkerMarkers), 10)),
-      trace_(index) {
+      trace_(index, standing) {
   PublishLinks(SimulatedTime(0.0));
 }
 
@@ -69,14 +70,14 @@ void RobotBroadcaster::PublishIdle() {
   PublishClock(SimulatedTime(in_rollout_));
 }
 
-void RobotBroadcaster::Publish(const hires::simulation::RobotSimulator& simulator, double tilt) {
+void RobotBroadcaster::Publish(const hires::simulation::RobotSimulator& simulator) {
   in_rollout_ = simulator.time();
-  trace_.Add(simulator, tilt);
+  trace_.Add(simulator);
   if (!IsDue()) return;
   const ros::Time stamp = SimulatedTime(in_rollout_);
   PublishClock(stamp);
   PublishRobot(simulator, stamp);
-  if (markers_.getNumSubscribers() > 0) markers_.publish(trace_.Draw(simulator, tilt));
+  if (markers_.getNumSubscribers() > 0) markers_.publish(trace_.Draw(simulator));
 }
 
 void RobotBroadcaster::PublishClock(const ros::Time& time) {

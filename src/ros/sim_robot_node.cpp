@@ -52,7 +52,9 @@ SimRobotNode::SimRobotNode(const SimRobotParams& params,
       robot_(setup.scene->robot),
       world_(setup, StartOf(setup, params), params.seed),
       publisher_(params, setup, nh),
+      truth_(setup.standing),
       is_held_(params.hold) {
+  truth_.Look(world_.simulator());
   nh->setParam(params.names.robot_description, ReadUrdf(params.setup.robot, robot_.profile));
   AdvertiseTick(nh);
   Subscribe(nh);
@@ -181,7 +183,9 @@ void SimRobotNode::Serve(ros::NodeHandle* nh) {
         [this](const hires::ObjectRequestRequest& request) { return world_.Drop(request.name); });
   serve("place_object", hires::PlaceObjectRequest(), hires::PlaceObjectResponse(),
         [this](const hires::PlaceObjectRequest& request) {
-          return world_.Place(request.name, request.model, FromMsg(request.pose));
+          std::string refusal = world_.Place(request.name, request.model, FromMsg(request.pose));
+          if (refusal.empty()) truth_.ForgetPlaceOf(request.name);
+          return refusal;
         });
   serve("hold", std_srvs::SetBoolRequest(), std_srvs::SetBoolResponse(),
         [this](const std_srvs::SetBoolRequest& request) {

@@ -51,7 +51,7 @@ SimRobotPublisher::SimRobotPublisher(const SimRobotParams& params,
       true_world_(nh->advertise<hires::WorldState>("ground_truth/world_state", 100)),
       true_robot_(nh->advertise<hires::RobotState>("ground_truth/robot_state", 100)),
       truth_(nh->advertise<hires::GroundTruth>("ground_truth/summary", 10, true)),
-      trace_(kShownIndex) {
+      trace_(kShownIndex, setup.standing) {
   laser_.link = scene_->robot.profile.laser_link;
   world_markers_.publish(WorldMarkers(scene_->world));
   PublishMap();
@@ -82,9 +82,9 @@ void SimRobotPublisher::PublishFast(const SimRobotWorld& world, const SensorRead
   PublishClock(world);
 }
 
-std::vector<std::string> SimRobotPublisher::PublishTick(const SimRobotWorld& world,
-                                                        const SensorReadings& readings,
-                                                        const TruthRecord& truth) {
+std::vector<std::string> SimRobotPublisher::PublishTick(
+    const SimRobotWorld& world, const SensorReadings& readings,
+    const hires::simulation::TruthRecord& truth) {
   const ros::Time stamp = StampOf(world);
   std::vector<std::string> sensors{kTransforms, params_.names.joint_states, params_.names.odometry};
   PublishTransforms(readings, stamp);
@@ -191,7 +191,8 @@ void SimRobotPublisher::PublishDetections(const SimRobotWorld& world, const ros:
   detections_.publish(detections);
 }
 
-void SimRobotPublisher::PublishTruth(const SimRobotWorld& world, const TruthRecord& truth,
+void SimRobotPublisher::PublishTruth(const SimRobotWorld& world,
+                                     const hires::simulation::TruthRecord& truth,
                                      const ros::Time& stamp) {
   hires::WorldState state = ToMsg(world.simulator().GetWorldState());
   state.header.stamp = stamp;
@@ -202,28 +203,15 @@ void SimRobotPublisher::PublishTruth(const SimRobotWorld& world, const TruthReco
   true_robot_.publish(robot);
   hires::GroundTruth summary;
   summary.header.stamp = stamp;
-  summary.header.frame_id = "map";
-  for (const auto& state : world.simulator().GetWorldState().objects) {
-    const auto known = truth.objects().find(state.name);
-    if (known == truth.objects().end()) continue;
-    const ObjectFate& fate = known->second;
-    hires::ObjectTruth object;
-    object.name = state.name;
-    object.pose = ToMsg(state.X_MO);
-    object.attached_to = state.attached_to;
-    object.stands = !fate.is_down;
-    object.tilt = fate.tilt;
-    object.max_tilt = fate.max_tilt;
-    object.falls = static_cast<std::uint32_t>(fate.falls);
-    summary.objects.push_back(object);
-  }
+  summary.header.frame_id = params_.names.map_frame;
+  for (const auto& [name, fate] : truth.objects()) summary.objects.push_back(ToMsg(name, fate));
   summary.falls = static_cast<std::uint32_t>(truth.falls());
   summary.robot_collided = !truth.contact().empty();
   summary.contact = truth.contact();
   summary.distance = truth.distance();
   truth_.publish(summary);
-  trace_.Add(world.simulator(), 0.0);
-  if (markers_.getNumSubscribers() > 0) markers_.publish(trace_.Draw(world.simulator(), 0.0));
+  trace_.Add(world.simulator());
+  if (markers_.getNumSubscribers() > 0) markers_.publish(trace_.Draw(world.simulator()));
 }
 
 void SimRobotPublisher::PublishMap() {

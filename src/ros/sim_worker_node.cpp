@@ -75,7 +75,7 @@ SimWorkerNode::SimWorkerNode(const SimWorkerParams& params, imagination::Imagina
                              ros::NodeHandle* nh)
     : params_(params),
       setup_(std::move(setup)),
-      broadcaster_(setup_.scene, params.index, params.display_rate, nh),
+      broadcaster_(setup_.scene, setup_.standing, params.index, params.display_rate, nh),
       server_(
           *nh, WorkerName(params.index, kRollout), [this](GoalHandle goal) { OnGoal(goal); },
           [this](GoalHandle goal) { OnCancel(goal); }, false) {
@@ -151,9 +151,9 @@ bool SimWorkerNode::PlayRange(GoalHandle goal, const imagination::RolloutSetup& 
   const RolloutGoal& wanted = *goal.getGoal();
   const hires::base::ActionCall action = FromMsg(wanted.action);
   const std::string id = goal.getGoalID().id;
-  const imagination::RolloutHooks hooks{
-      [&] { return IsCancelled(id); }, [&](const hires::simulation::RobotSimulator& simulator,
-                                           double tilt) { broadcaster_.Publish(simulator, tilt); }};
+  const imagination::RolloutHooks hooks{[&] { return IsCancelled(id); },
+                                        [&](const hires::simulation::RobotSimulator& simulator,
+                                            double /*tilt*/) { broadcaster_.Publish(simulator); }};
   for (std::uint32_t i = wanted.first; i < wanted.first + wanted.count; ++i) {
     broadcaster_.BeginRollout();
     const auto played = imagination::PlayRollout(setup, action, static_cast<int>(i), hooks);

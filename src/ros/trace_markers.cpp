@@ -18,7 +18,6 @@ using visualization_msgs::MarkerArray;
 constexpr std::size_t kMostPoints = 2000;
 constexpr double kArrowLength = 0.35;       // [m]
 constexpr double kSmallestTurn = 0.02;      // [rad/s] below it the path counts as straight
-constexpr double kFallen = 0.5;             // [rad] alpha_t of Eq. 5.1
 constexpr double kSeeThroughHeight = 1.7;   // [m]
 constexpr double kShownAcceleration = 2.0;  // [m/s^2] full colour
 
@@ -84,12 +83,22 @@ void Label(Marker* marker, const std::string& name_space, int id) {
 
 }  // namespace
 
-TraceMarkers::TraceMarkers(int worker_index)
-    : name_space_("worker_" + std::to_string(worker_index)) {}
+TraceMarkers::TraceMarkers(int worker_index, const hires::world::StandingCriterion& standing)
+    : name_space_("worker_" + std::to_string(worker_index)), standing_(standing) {}
 
-void TraceMarkers::Clear() { points_.clear(); }
+void TraceMarkers::Clear() {
+  points_.clear();
+  load_.clear();
+}
 
-void TraceMarkers::Add(const hires::simulation::RobotSimulator& simulator, double) {
+void TraceMarkers::Add(const hires::simulation::RobotSimulator& simulator) {
+  const auto objects = simulator.GetWorldState().objects;
+  for (const int index : simulator.carried()) {
+    const hires::simulation::FallWatch watch(standing_);
+    Load& load = load_.try_emplace(objects[index].name, Load{index, watch}).first->second;
+    load.index = index;
+    load.watch.Look(simulator, index);
+  }
   if (points_.size() >= kMostPoints) return;
   const auto& motion = simulator.base();
   const double speed = std::hypot(motion.V_B.vx, motion.V_B.vy);
@@ -125,38 +134,36 @@ void TraceMarkers::DrawTrace(MarkerArray* markers) const {
   if (!dots.points.empty()) markers->markers.push_back(dots);
 }
 
-void TraceMarkers::DrawLoad(const hires::simulation::RobotSimulator& simulator, double tilt,
+void TraceMarkers::DrawLoad(const hires::simulation::RobotSimulator& simulator, const Load& load,
                             MarkerArray* markers) const {
-  for (const int object : simulator.carried()) {
-    const Pose3 X_MO = simulator.PoseOf(object);
-    const auto arrow = [&](const char* name, const Eigen::Vector3d& axis, const auto& colour) {
-      Marker marker = Blank(name, object, Marker::ARROW);
-      marker.points = {PointMsg(X_MO.translation),
-                       PointMsg(X_MO.translation + kArrowLength * axis)};
-      SetScale(&marker, 0.015, 0.03, 0.05);
-      marker.color = colour;
-      markers->markers.push_back(marker);
-    };
-    arrow("up", Eigen::Vector3d::UnitZ(), Colour(0.1, 0.8, 0.1));
-    arrow("tilt", X_MO.rotation * Eigen::Vector3d::UnitZ(),
-          tilt < kFallen ? Colour(1.0, 0.7, 0.0) : Colour(1.0, 0.0, 0.0));
-    Marker text = Blank("alpha", object, Marker::TEXT_VIEW_FACING);
-    text.pose.position = PointMsg(X_MO.translation + Eigen::Vector3d(0.0, 0.0, 0.45));
-    text.scale.z = 0.08;
-    text.color = Colour(1, 1, 1);
-    text.text = fmt::format("{:.3f} rad", tilt);
-    markers->markers.push_back(text);
-  }
+  const Pose3 X_MO = simulator.PoseOf(load.index);
+  const hires::world::FallDetector& detector = load.watch.detector();
+  const auto arrow = [&](const char* name, const Eigen::Vector3d& axis, const auto& colour) {
+    Marker marker = Blank(name, load.index, Marker::ARROW);
+    marker.points = {PointMsg(X_MO.translation), PointMsg(X_MO.translation + kArrowLength * axis)};
+    SetScale(&marker, 0.015, 0.03, 0.05);
+    marker.color = colour;
+    markers->markers.push_back(marker);
+  };
+  arrow("up", Eigen::Vector3d::UnitZ(), Colour(0.1, 0.8, 0.1));
+  arrow("tilt", X_MO.rotation * Eigen::Vector3d::UnitZ(),
+        detector.is_down() ? Colour(1.0, 0.0, 0.0) : Colour(1.0, 0.7, 0.0));
+  Marker text = Blank("alpha", load.index, Marker::TEXT_VIEW_FACING);
+  text.pose.position = PointMsg(X_MO.translation + Eigen::Vector3d(0.0, 0.0, 0.45));
+  text.scale.z = 0.08;
+  text.color = Colour(1, 1, 1);
+  text.text = fmt::format("{:.3f} rad", detector.now().tilt);
+  markers->markers.push_back(text);
 }
 
-void TraceMarkers::DrawCircle(const hires::simulation::RobotSimulator& simulator,
+void TraceMarkers::DrawCircle(const hires::simulation::RobotSimulator& simulator, const Load& load,
                               MarkerArray* markers) const {
   const auto& motion = simulator.base();
-  if (std::abs(motion.V_B.wz) < kSmallestTurn || simulator.carried().empty()) return;
+  if (std::abs(motion.V_B.wz) < kSmallestTurn || load.watch.detector().is_down()) return;
   // The instantaneous centre of rotation of the base: where its velocity field vanishes.
   const Eigen::Vector2d centre =
       motion.X_MB * Eigen::Vector2d(-motion.V_B.vy / motion.V_B.wz, motion.V_B.vx / motion.V_B.wz);
-  const Eigen::Vector3d p_MO = simulator.PoseOf(simulator.carried().front()).translation;
+  const Eigen::Vector3d p_MO = simulator.PoseOf(load.index).translation;
   const double radius = (p_MO.head<2>() - centre).norm();
   if (radius > 20.0) return;
   Marker circle = Blank("circle", 0, Marker::LINE_STRIP);
@@ -192,13 +199,16 @@ void TraceMarkers::DrawBodies(const hires::simulation::RobotSimulator& simulator
   }
 }
 
-MarkerArray TraceMarkers::Draw(const hires::simulation::RobotSimulator& simulator,
-                               double tilt) const {
+MarkerArray TraceMarkers::Draw(const hires::simulation::RobotSimulator& simulator) const {
   MarkerArray markers;
   DrawBodies(simulator, &markers);
   DrawTrace(&markers);
-  DrawLoad(simulator, tilt, &markers);
-  if (tilt < kFallen) DrawCircle(simulator, &markers);
+  const std::vector<int>& carried = simulator.carried();
+  for (const auto& [name, load] : load_) {
+    if (std::count(carried.begin(), carried.end(), load.index) == 0) continue;
+    DrawLoad(simulator, load, &markers);
+    if (load.index == carried.front()) DrawCircle(simulator, load, &markers);
+  }
   return markers;
 }
 

@@ -50,10 +50,13 @@ TranslatorParams LoadTranslatorParams() {
 translation::TranslatorContext LoadTranslatorContext(const TranslatorParams& params) {
   imagination::SetupConfig files = imagination::ReadSetupConfig(params.scene);
   imagination::OverridePaths(params.world, params.robot, params.objects, std::nullopt, &files);
-  return translation::MakeContext(hires::world::LoadWorld(files.world), LoadAnyRobot(files.robot),
-                                  hires::world::LoadCatalogueModels(files.objects),
-                                  std::make_shared<const hires::knowledge::Ontology>(
-                                      hires::knowledge::Ontology::FromFiles(params.ontology)));
+  translation::TranslatorContext context =
+      translation::MakeContext(hires::world::LoadWorld(files.world), LoadAnyRobot(files.robot),
+                               hires::world::LoadCatalogueModels(files.objects),
+                               std::make_shared<const hires::knowledge::Ontology>(
+                                   hires::knowledge::Ontology::FromFiles(params.ontology)));
+  context.standing = files.standing;
+  return context;
 }
 
 }  // namespace hires_ros

@@ -19,7 +19,6 @@ hires::translation::ClassifyParams ReadClassify(ParamReader in) {
   params.torso_tolerance = in.Get("torso_tolerance", Between(0.001, 0.2));
   params.placing_height = in.Get("placing_height", Between(0.005, 1.0));
   params.tray_height = in.Get("tray_height", Between(0.005, 1.0));
-  params.lying_tilt = in.Get("lying_tilt", Between(0.01, 3.2));
   params.hysteresis = in.Get("hysteresis", Between(1.0, 3.0));
   params.placing_hysteresis = in.Get("placing_hysteresis", Between(0.0, 0.2));
   return params;

@@ -113,6 +113,12 @@ void RobotSimulator::AddObjects(const world::WorldState& state, LevelOfDetail le
   }
 }
 
+bool RobotSimulator::StandsOnRobot(int object) const {
+  const auto& parts_B = planar_ ? scene_->base_shapes_B : robot_shapes_B();
+  const world::ObjectModel& model = *scene_->world.models.at(objects_.at(object).model);
+  return StandsOn(parts_B, model.collisions, X_MB_.Inverse() * PoseOf(object));
+}
+
 /// The grasp that led to the start was a little off.
 void RobotSimulator::MoveInHand(const std::string& link, Pose3* X_BO) const {
   const Pose3 X_BL = X_MB_.Inverse() * X_MLink(link);

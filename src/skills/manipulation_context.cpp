@@ -41,12 +41,13 @@ void AllowWayPoints(const ManipulationContext& context, manipulation::CollisionS
 
 std::shared_ptr<const ManipulationContext> MakeManipulationContext(
     std::shared_ptr<const world::World> world, std::shared_ptr<const robot::Robot> robot,
-    const ManipulationParams& params) {
+    const ManipulationParams& params, const world::StandingCriterion& standing) {
   HIRES_CHECK(robot->profile.upper_body.has_value(), "a context of a robot without upper body");
   auto context = std::make_shared<ManipulationContext>();
   context->world = std::move(world);
   context->robot = std::move(robot);
   context->params = params;
+  context->standing = standing;
   for (const auto& [name, arm] : context->upper_body().arms) {
     context->arms[name] =
         std::make_shared<const manipulation::ArmKinematics>(*context->robot, name);

@@ -57,7 +57,6 @@ PlaceParams ReadPlace(ParamReader in) {
   p.release_height = in.Get("release_height", Between(0.0, 0.05));
   p.retreat = in.Get("retreat", Between(0.01, 0.5));
   p.standing_tolerance = in.Get("standing_tolerance", Between(0.001, 0.5));
-  p.lying_tilt = in.Get("lying_tilt", Between(0.01, 3.2));
   p.slot_distance = in.Get("slot_distance", Between(0.01, 1.0));
   return p;
 }

@@ -60,7 +60,7 @@ Beginning PickUpObject::Plan(const Observation& observation) {
   if (!sighted_.attached_to.empty()) {
     return CannotBegin({Code::kObjectHeld, {sighted_.attached_to}});
   }
-  if (geometry::TiltOf(sighted_.X_MO.rotation) > context_->params.place.lying_tilt) {
+  if (!world::IsUpright(context_->standing, sighted_.X_MO)) {
     return CannotBegin(Code::kObjectToppled);
   }
   plan_ = PlanGrasp(*context_, arm_, observation, sighted_, seed_);

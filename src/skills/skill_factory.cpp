@@ -135,6 +135,7 @@ std::shared_ptr<const ActionSet> OwnActionSet() {
 SkillSet MakeSkillSet(const world::World& world, const robot::Robot& robot,
                       const MoveBaseParams& driving, const MoveBaseBlindParams& blind,
                       const ManipulationParams& manipulation,
+                      const world::StandingCriterion& standing,
                       std::shared_ptr<const ActionSet> actions) {
   SkillSet skills;
   skills.actions = std::move(actions);
@@ -146,9 +147,9 @@ SkillSet MakeSkillSet(const world::World& world, const robot::Robot& robot,
   skills.default_motion_set = robot.profile.default_motion_set;
   skills.robot_name = robot.model.name;
   if (robot.profile.upper_body) {
-    skills.manipulation =
-        MakeManipulationContext(std::make_shared<const world::World>(world),
-                                std::make_shared<const robot::Robot>(robot), manipulation);
+    skills.manipulation = MakeManipulationContext(std::make_shared<const world::World>(world),
+                                                  std::make_shared<const robot::Robot>(robot),
+                                                  manipulation, standing);
   }
   return skills;
 }

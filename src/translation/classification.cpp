@@ -125,8 +125,7 @@ std::vector<Atom> AtomsOf(const TranslatorContext& context, const GeometricState
   const Body body(*context.robot, state.robot);
   for (const world::ObjectState& object : state.world.objects) {
     const std::string name = base::ToLower(object.name);
-    const Area* area =
-        AreaUnder(context.areas, body, object, params, ValueBefore(before, "on", name));
+    const Area* area = AreaUnder(context, body, object, params, ValueBefore(before, "on", name));
     if (area) atoms.push_back({"On", {name, area->name}});
   }
   std::sort(atoms.begin(), atoms.end(), [](const Atom& a, const Atom& b) {

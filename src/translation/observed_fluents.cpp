@@ -121,7 +121,7 @@ class Comparison {
     std::string frame;
     if (!object.attached_to.empty()) frame = object.attached_to;
     const Area* tray = context_.areas.Find(kTrayArea);
-    if (frame.empty() && tray && StandsOnTray(*tray, object.X_MO)) {
+    if (frame.empty() && tray && IsOverTray(*tray, object.X_MO)) {
       frame = context_.robot->profile.base_link;
     }
     const geometry::Pose3 X_FO =
@@ -137,10 +137,8 @@ class Comparison {
   }
 
   /// What lies on the tray moves along as well.
-  bool StandsOnTray(const Area& tray, const geometry::Pose3& X_MO) const {
-    ClassifyParams any_tilt = classify_;
-    any_tilt.lying_tilt = 4.0;
-    return IsOn(tray, body_, X_MO, any_tilt, classify_.placing_hysteresis);
+  bool IsOverTray(const Area& tray, const geometry::Pose3& X_MO) const {
+    return IsOver(tray, body_, X_MO, classify_, classify_.placing_hysteresis);
   }
 
   Fluent NewThing(const world::ObjectState& object) const {

@@ -17,23 +17,26 @@ geometry::Pose3 PoseOf(const Area& area, const Body& body) {
   return area.link.empty() ? area.X_FA : body.X_ML(area.link) * area.X_FA;
 }
 
-bool IsOn(const Area& area, const Body& body, const geometry::Pose3& X_MO,
-          const ClassifyParams& params, double beyond) {
-  if (!CarriesObjects(area) || geometry::TiltOf(X_MO.rotation) > params.lying_tilt) return false;
+bool IsOver(const Area& area, const Body& body, const geometry::Pose3& X_MO,
+            const ClassifyParams& params, double beyond) {
+  if (!CarriesObjects(area)) return false;
   const Eigen::Vector3d p_A = PoseOf(area, body).Inverse() * X_MO.translation;
   const double height = area.kind == AreaKind::kTray ? params.tray_height : params.placing_height;
   return std::abs(p_A.x()) <= area.size.x() / 2 + beyond &&
          std::abs(p_A.y()) <= area.size.y() / 2 + beyond && std::abs(p_A.z()) <= height;
 }
 
-const Area* AreaUnder(const Areas& areas, const Body& body, const world::ObjectState& object,
-                      const ClassifyParams& params, const std::string& before) {
-  if (!object.attached_to.empty()) return nullptr;
+const Area* AreaUnder(const TranslatorContext& context, const Body& body,
+                      const world::ObjectState& object, const ClassifyParams& params,
+                      const std::string& before) {
+  if (!object.attached_to.empty() || !world::IsUpright(context.standing, object.X_MO)) {
+    return nullptr;
+  }
   const Area* nearest = nullptr;
   double least = std::numeric_limits<double>::infinity();
-  for (const Area& area : areas.all) {
+  for (const Area& area : context.areas.all) {
     const double slack = area.name == before ? params.placing_hysteresis : 0.0;
-    if (!IsOn(area, body, object.X_MO, params, slack)) continue;
+    if (!IsOver(area, body, object.X_MO, params, slack)) continue;
     const Eigen::Vector3d p_A = PoseOf(area, body).Inverse() * object.X_MO.translation;
     // Where squares overlap: the middle that is nearest, and the old one a little longer.
     const double distance = p_A.head<2>().norm() - slack;

@@ -21,13 +21,15 @@ const geometry::Pose2 kStart{2.0, 2.0, 0.0};
 /// A simulator with a load, and its monitor.
 struct Watched {
   explicit Watched(const std::vector<std::string>& models, const RolloutParams& rollout = {},
-                   const simulation::Variation& variation = {}, const Purpose& purpose = {})
-      : Watched(LoadOf(models), rollout, variation, purpose) {}
+                   const world::StandingCriterion& standing = {},
+                   const simulation::Variation& variation = {})
+      : Watched(LoadOf(models), rollout, standing, variation) {}
   explicit Watched(const world::WorldState& objects, const RolloutParams& rollout = {},
+                   const world::StandingCriterion& standing = {},
                    const simulation::Variation& variation = {}, const Purpose& purpose = {})
       : params(rollout),
         simulator(RoomScene(), variation, objects, StandingAt(kStart), base::Rng(1)),
-        monitor(&simulator, params, purpose) {}
+        monitor(&simulator, params, standing, purpose) {}
 
   static world::WorldState LoadOf(const std::vector<std::string>& models) {
     world::WorldState load;
@@ -109,11 +111,11 @@ TEST(LoadMonitorTest, TheObjectThatLeansMostCounts) {
 }
 
 TEST(LoadMonitorTest, WhatSlidesFarEnoughHasFallen) {
-  RolloutParams params;
-  params.lost_distance = 0.02;
+  world::StandingCriterion strict;
+  strict.slide = 0.02;
   simulation::Variation slippery;
   slippery.friction_factor = 0.1;
-  Watched watched({"mill"}, params, slippery);
+  Watched watched({"mill"}, {}, strict, slippery);
   watched.Drive(0.0, 0.9, 0.4);
   EXPECT_EQ(watched.monitor.falls(), 1);
   EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "object_slid");
@@ -163,7 +165,7 @@ world::ObjectState OnFloor(const std::string& name, const std::string& model, do
 
 Watched WithPurpose(const world::WorldState& objects, Purpose::Kind kind,
                     const std::string& object) {
-  return Watched(objects, {}, {}, {kind, object, "rightarm1", "east"});
+  return Watched(objects, {}, {}, {}, {kind, object, "rightarm1", "east"});
 }
 
 TEST(LoadMonitorTest, ABystanderThatIsKnockedOverIsNamed) {

@@ -328,7 +328,7 @@ TEST(CheckSetupTest, RefusesStartsThatCannotBe) {
 
 constexpr char kParams[] =
     "settling_time: 0.5\ntime_limit: 300.0\nsample_period: 0.05\nshaking_tilt: 0.01\n"
-    "topple_tilt: 0.5\nlost_distance: 0.10\naftermath: 2.0\nput_back: true\nput_back_tilt: 1.56\n";
+    "topple_tilt: 0.5\naftermath: 2.0\nput_back: true\nput_back_tilt: 1.56\n";
 
 TEST(RolloutParamsTest, ReadsEveryKey) {
   base::ParamReader in = base::ParamReader::FromString(kParams, "r.yaml");
@@ -339,7 +339,6 @@ TEST(RolloutParamsTest, ReadsEveryKey) {
   EXPECT_EQ(params.sample_period, 0.05);
   EXPECT_EQ(params.shaking_tilt, 0.01);
   EXPECT_EQ(params.topple_tilt, 0.5);
-  EXPECT_EQ(params.lost_distance, 0.10);
   EXPECT_EQ(params.aftermath, 2.0);
   EXPECT_TRUE(params.put_back);
   EXPECT_EQ(params.put_back_tilt, 1.56);

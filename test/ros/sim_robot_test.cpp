@@ -5,12 +5,13 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/ros/conversions.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/sim_robot_commands.h"
 #include "hires/ros/sim_robot_ghosts.h"
 #include "hires/ros/sim_robot_params.h"
-#include "hires/ros/sim_robot_truth.h"
 #include "hires/ros/sim_robot_world.h"
+#include "hires/simulation/truth_record.h"
 #include "support/messages.h"
 #include "support/scenes.h"
 #include "support/temporary_folder.h"
@@ -237,7 +238,7 @@ TEST_F(SimRobotWorldTest, APushIntoAWallIsRefusedAndChangesNothing) {
 
 TEST_F(SimRobotWorldTest, ObjectsGoAndComeAndFall) {
   SimRobotWorld world(Setup(), Start(), 1);
-  TruthRecord truth;
+  hires::simulation::TruthRecord truth{{}};
   truth.Look(world.simulator());
   ASSERT_EQ(world.Drop("Mill1"), "");
   for (int i = 0; i < 200; ++i) {
@@ -258,7 +259,7 @@ TEST_F(SimRobotWorldTest, ObjectsGoAndComeAndFall) {
 
 TEST_F(SimRobotWorldTest, AnObjectThatStaysUpHasNotFallen) {
   SimRobotWorld world(Setup(), Start(), 1);
-  TruthRecord truth;
+  hires::simulation::TruthRecord truth{{}};
   for (int tick = 0; tick < 20; ++tick) {
     world.Apply(Drive(0.1));
     world.Advance(50);
@@ -267,6 +268,25 @@ TEST_F(SimRobotWorldTest, AnObjectThatStaysUpHasNotFallen) {
   EXPECT_EQ(truth.falls(), 0);
   EXPECT_NEAR(truth.distance(), world.simulator().base().X_MB.x - 1.0, 0.01);
   EXPECT_EQ(truth.contact(), "");
+}
+
+TEST(ObjectTruthTest, SurvivesBothWays) {
+  hires::simulation::ObjectFate fate;
+  fate.X_MO = hires::geometry::Lift({1.0 / 3.0, 2.0, 0.0}, 0.73);
+  fate.attached_to = "l_gripper_palm_link";
+  fate.tilt = 0.1;
+  fate.max_tilt = 1.0 / 7.0;
+  fate.falls = 2;
+  fate.stands = true;
+  const hires::ObjectTruth msg = ToMsg("mug1", fate);
+  EXPECT_EQ(msg.name, "mug1");
+  const auto back = FromMsg(msg);
+  EXPECT_EQ(back.X_MO.translation, fate.X_MO.translation);
+  EXPECT_EQ(back.attached_to, fate.attached_to);
+  EXPECT_EQ(back.tilt, fate.tilt);
+  EXPECT_EQ(back.max_tilt, fate.max_tilt);
+  EXPECT_EQ(back.falls, 2);
+  EXPECT_TRUE(back.stands);
 }
 
 // Parameters

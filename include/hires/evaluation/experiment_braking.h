@@ -74,7 +74,7 @@ struct BrakingCell {
 
 /// What one stop did.
 struct BrakingStop {
-  bool fell{false};         ///< tilted beyond the topple angle, or slid off its place
+  bool fell{false};         ///< as simulation::FallWatch says, from the stop's beginning on
   double max_tilt{0.0};     ///< [rad] of the load, from the stop's beginning on
   double tilt_before{0.0};  ///< [rad] largest while driving
   double slide{0.0};        ///< [m] of the load on the tray

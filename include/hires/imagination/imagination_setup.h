@@ -34,10 +34,12 @@ struct SetupConfig {
   sensing::SensingParams sensing;
   physics::PhysicsParams physics;
   RolloutParams rollout;
+  world::StandingCriterion standing;
   std::uint64_t params_hash{0};  ///< of all numbers above
 };
 
-/// @throws base::ConfigError naming file and key.
+/// @throws base::ConfigError naming file and key; also if the aftermath of a rollout ends before
+/// the hold time of a fall does.
 SetupConfig ReadSetupConfig(const std::string& path);
 
 /// A path that stands in the file `config_path`: relative ones count from that file's folder.
@@ -56,6 +58,7 @@ struct ImaginationSetup {
   RolloutParams rollout;
   physics::PhysicsParams physics;
   sensing::SensingParams sensing;
+  world::StandingCriterion standing;
   std::map<std::string, std::string> object_models;  ///< instance (lower case) -> model
   translation::TranslatorContext translator;  ///< knows names of objects and areas; no fluents
   std::uint64_t world_hash{0};  ///< world, object models and all parameters of physics and skills

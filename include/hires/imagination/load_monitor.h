@@ -5,7 +5,9 @@
 
 #include "hires/imagination/purpose.h"
 #include "hires/imagination/rollout_result.h"
+#include "hires/simulation/fall_watch.h"
 #include "hires/simulation/robot_simulator.h"
+#include "hires/world/standing.h"
 
 namespace hires::imagination {
 
@@ -15,12 +17,14 @@ struct RolloutParams;
 ///
 /// Its concern are the objects that stand on the robot or are in its hands at the start, and the
 /// one that the action takes or puts down: their tilt is what Eq. 5.1 counts. Everything else that
-/// stands upright at the start is a bystander, which must still stand when all is over.
+/// stands upright at the start is a bystander, which must still stand when all is over. What counts
+/// as a fall is the world::StandingCriterion's to say; the thresholds of Eq. 5.1 in RolloutParams
+/// are about samples.
 class LoadMonitor {
  public:
-  /// @pre simulator and params outlive the monitor. Starts where the objects are now.
+  /// @pre simulator and params outlive the monitor. The first look finds things where they stand.
   LoadMonitor(simulation::RobotSimulator* simulator, const RolloutParams& params,
-              const Purpose& purpose = {});
+              const world::StandingCriterion& standing, const Purpose& purpose = {});
 
   void Look();  ///< call every few milliseconds
   /// One sample of Eq. 5.1, of the object of concern that leans most; none if there is no such
@@ -42,12 +46,12 @@ class LoadMonitor {
   /// Looks at how things are now that the action says it has reached its goal: the first of these
   /// that is not well, or nothing.
   ///   object_fell       what was taken or put down fell from its place, or what stood on the robot
-  ///                     fell over
+  ///                     fell over or down
   ///   object_toppled    what was taken or put down lies where it should stand
   ///   object_slipped    what the hand should hold it does not, or what was put down is not where
   ///                     it was to be
   ///   object_not_released  the hand still holds what it should have put down
-  ///   object_slid       what stood on the robot slid too far
+  ///   object_slid       what stood on the robot, or was taken or put down, slid too far
   ///   knocked_over      bystanders, by name
   base::Failure WhyNotWell() const;
 
@@ -59,23 +63,23 @@ class LoadMonitor {
  private:
   struct Object {
     int index;
-    geometry::Pose3 X_BO;  // in the base frame, at the start
-    bool is_load;          // stands on the robot and is not to be taken from there
-    bool was_held;         // at the start
-    bool has_fallen{false};
+    bool is_load;   // stands on the robot and is not to be taken from there
+    bool was_held;  // at the start
+    simulation::FallWatch watch;
   };
   struct Bystander {
     int index;
     std::string name;
-    double height;  // [m] at the start
+    simulation::FallWatch watch;
   };
   void Sort(const Purpose& purpose);
   void LookAt(Object* object);
-  void NoteFall(Object* object, base::FailureCode code);
+  void PutBackIfDown(Object* object);
   bool IsHeld(const Object& object) const;
+  bool Shakes(const Object& object) const;
   bool IsHandled(const Object& object) const;
   bool Moves(int index) const;
-  bool HasFallen(const Bystander& bystander) const;
+  base::FailureCode CodeOf(const Object& object, world::Fall fall) const;
   base::Failure WhyNotTaken(const Object& object) const;
   base::Failure WhyNotStanding(const Object& object) const;
   base::Failure WhyHandledIsNotWell() const;
@@ -85,6 +89,7 @@ class LoadMonitor {
 
   simulation::RobotSimulator* simulator_;
   const RolloutParams& params_;
+  world::StandingCriterion standing_;
   Purpose purpose_;
   std::vector<Object> objects_;
   std::vector<Bystander> bystanders_;

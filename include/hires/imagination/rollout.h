@@ -12,6 +12,7 @@
 #include "hires/simulation/robot_simulator.h"
 #include "hires/simulation/scene.h"
 #include "hires/skills/skill_factory.h"
+#include "hires/world/standing.h"
 
 namespace hires::imagination {
 
@@ -20,12 +21,14 @@ struct RolloutParams {
   double settling_time{0.5};   ///< [s] before the action begins; not counted
   double time_limit{300.0};    ///< [s] simulated, for the action
   double sample_period{0.05};  ///< [s] 20 Hz
-  double shaking_tilt{0.01};   ///< [rad] alpha_n of Eq. 5.1
-  double topple_tilt{0.5};     ///< [rad] alpha_t of Eq. 5.1
-  double lost_distance{0.10};  ///< [m] on the tray, from where it stood: counts as fallen
-  double aftermath{2.0};       ///< [s] at most, to see whether what still shakes will fall
-  bool put_back{false};        ///< a fallen object is put back, as in the original's experiments
-  double put_back_tilt{1.56};  ///< [rad] from which it is put back
+  /// [rad] alpha_n and alpha_t of Eq. 5.1. They sort samples of how far the load leans, for
+  /// Eq. 6.1; whether something fell is an event and the world::StandingCriterion's to say.
+  double shaking_tilt{0.01}, topple_tilt{0.5};
+  double aftermath{2.0};  ///< [s] at most, to see whether what still shakes will fall
+  bool put_back{false};   ///< a fallen object is put back, as in the original's experiments
+  /// [rad] from which on a fallen object is put back: it has come to lie. That it fell was counted
+  /// before.
+  double put_back_tilt{1.56};
 };
 RolloutParams ReadRolloutParams(base::ParamReader in);
 
@@ -39,6 +42,7 @@ struct RolloutSetup {
   std::uint64_t seed{0};
   RolloutParams params;
   physics::PhysicsParams physics;
+  world::StandingCriterion standing;
 };
 
 /// Refuses what could not be played: unknown action, area, motion set, model; poses that make no

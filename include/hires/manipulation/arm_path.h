@@ -18,8 +18,10 @@ struct ArmPathParams {
   int max_iterations{3000};  ///< of the planner: no clock decides, so that results repeat
   double resolution{0.05};   ///< [rad] largest joint step between two collision checks, > 0
   int max_simplifications{100};
-  double max_held_tilt{0.5};  ///< [rad] of a held object's axis, all along the way
-  int max_goals{8};           ///< free goals that the planner grows trees from
+  /// [rad] of a held object's axis, all along the way. What a hand holds cannot fall: this keeps
+  /// its content in it.
+  double max_held_tilt{0.5};
+  int max_goals{8};  ///< free goals that the planner grows trees from
 };
 
 /// What a motion of one arm begins with and has to keep clear of.

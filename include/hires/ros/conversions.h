@@ -6,6 +6,7 @@
 #include <hires/Failure.h>
 #include <hires/ImagineFeedback.h>
 #include <hires/ImagineResult.h>
+#include <hires/ObjectTruth.h>
 #include <hires/OutcomeCounts.h>
 #include <hires/Prediction.h>
 #include <hires/RobotState.h>
@@ -18,6 +19,7 @@
 #include "hires/imagination/report.h"
 #include "hires/imagination/rollout_result.h"
 #include "hires/robot/observation.h"
+#include "hires/simulation/truth_record.h"
 #include "hires/world/world.h"
 
 /// Messages to core values and back. Every float64 survives both ways bit for bit.
@@ -43,6 +45,9 @@ hires::world::WorldState FromMsg(const msg::WorldState& state);
 /// The heading travels beside the quaternion, which would round it.
 msg::RobotState ToMsg(const hires::robot::RobotState& state);
 hires::robot::RobotState FromMsg(const msg::RobotState& state);
+msg::ObjectTruth ToMsg(const std::string& name, const hires::simulation::ObjectFate& fate);
+hires::simulation::ObjectFate FromMsg(const msg::ObjectTruth& truth);
+
 /// What FromMsg would drop or read as something else: poses in another frame than map, a velocity,
 /// heading or joint that is no number. @throws hires::base::ConfigError naming the field.
 void RequireSoundState(const msg::WorldState& world, const msg::RobotState& robot);

@@ -22,11 +22,12 @@ namespace hires_ros {
 class RobotBroadcaster {
  public:
   /// @param rate  [Hz] at most, by the wall's clock.
-  RobotBroadcaster(std::shared_ptr<const hires::simulation::Scene> scene, int index, double rate,
+  RobotBroadcaster(std::shared_ptr<const hires::simulation::Scene> scene,
+                   const hires::world::StandingCriterion& standing, int index, double rate,
                    ros::NodeHandle* nh);
 
   void BeginRollout();
-  void Publish(const hires::simulation::RobotSimulator& simulator, double tilt);
+  void Publish(const hires::simulation::RobotSimulator& simulator);
   void PublishIdle();  ///< keeps /clock ticking at the wall's pace while nothing is played
 
  private:

@@ -24,6 +24,7 @@
 #include "hires/ros/sim_robot_commands.h"
 #include "hires/ros/sim_robot_publisher.h"
 #include "hires/ros/sim_robot_world.h"
+#include "hires/simulation/truth_record.h"
 
 namespace hires_ros {
 
@@ -73,7 +74,7 @@ class SimRobotNode {
   const hires::robot::Robot& robot_;
   SimRobotWorld world_;
   SimRobotPublisher publisher_;
-  TruthRecord truth_;
+  hires::simulation::TruthRecord truth_;
   CommandInbox inbox_;
 
   struct Ack {

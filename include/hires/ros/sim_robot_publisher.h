@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "hires/imagination/imagination_setup.h"
-#include "hires/ros/sim_robot_truth.h"
 #include "hires/ros/sim_robot_world.h"
 #include "hires/ros/trace_markers.h"
+#include "hires/simulation/truth_record.h"
 
 namespace hires_ros {
 
@@ -31,7 +31,7 @@ class SimRobotPublisher {
   /// localisation, laser, and the detector when it is due. Called again, it says the same again.
   /// @return topics that have a message of this stamp, fast ones included.
   std::vector<std::string> PublishTick(const SimRobotWorld& world, const SensorReadings& readings,
-                                       const TruthRecord& truth);
+                                       const hires::simulation::TruthRecord& truth);
 
   void PublishClock(const SimRobotWorld& world);
   static ros::Time StampOf(const SimRobotWorld& world);  ///< begins at 1 s; 0 means "no time yet"
@@ -43,7 +43,8 @@ class SimRobotPublisher {
                    const ros::Time& stamp);
   bool IsLookDue(const SimRobotWorld& world, const SensorReadings& readings) const;
   void PublishDetections(const SimRobotWorld& world, const ros::Time& stamp);
-  void PublishTruth(const SimRobotWorld& world, const TruthRecord& truth, const ros::Time& stamp);
+  void PublishTruth(const SimRobotWorld& world, const hires::simulation::TruthRecord& truth,
+                    const ros::Time& stamp);
   void PublishMap();
 
   const SimRobotParams params_;

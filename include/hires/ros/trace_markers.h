@@ -2,25 +2,27 @@
 
 #include <visualization_msgs/MarkerArray.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "hires/imagination/report.h"
+#include "hires/simulation/fall_watch.h"
 #include "hires/simulation/robot_simulator.h"
 
 namespace hires_ros {
 
 /// Markers of one worker's rollout in the map frame, lifetime 2 s: robot and load, the trace of the
-/// base (thickness = speed, green = speeding up, red = braking), the load's axis and the world's up
-/// as arrows, and the circle on which the load turns (dissertation, Figures 5.7 and 5.16).
+/// base (thickness = speed, green = speeding up, red = braking), the load's axis (red once it has
+/// fallen) and the world's up as arrows, and the circle on which the load turns (dissertation,
+/// Figures 5.7 and 5.16).
 class TraceMarkers {
  public:
-  explicit TraceMarkers(int worker_index);
+  TraceMarkers(int worker_index, const hires::world::StandingCriterion& standing);
 
-  void Clear();  ///< a new rollout begins
-  void Add(const hires::simulation::RobotSimulator& simulator, double tilt);
-  visualization_msgs::MarkerArray Draw(const hires::simulation::RobotSimulator& simulator,
-                                       double tilt) const;
+  void Clear();                                                  ///< a new rollout begins
+  void Add(const hires::simulation::RobotSimulator& simulator);  ///< 20 times a simulated second
+  visualization_msgs::MarkerArray Draw(const hires::simulation::RobotSimulator& simulator) const;
 
  private:
   struct Point {
@@ -28,16 +30,22 @@ class TraceMarkers {
     double speed;         // [m/s]
     double acceleration;  // [m/s^2], positive: along the motion
   };
+  struct Load {
+    int index;  // in the simulator
+    hires::simulation::FallWatch watch;
+  };
   visualization_msgs::Marker Blank(const std::string& name, int id, int type) const;
   void DrawBodies(const hires::simulation::RobotSimulator& simulator,
                   visualization_msgs::MarkerArray* markers) const;
   void DrawTrace(visualization_msgs::MarkerArray* markers) const;
-  void DrawLoad(const hires::simulation::RobotSimulator& simulator, double tilt,
+  void DrawLoad(const hires::simulation::RobotSimulator& simulator, const Load& load,
                 visualization_msgs::MarkerArray* markers) const;
-  void DrawCircle(const hires::simulation::RobotSimulator& simulator,
+  void DrawCircle(const hires::simulation::RobotSimulator& simulator, const Load& load,
                   visualization_msgs::MarkerArray* markers) const;
 
   std::string name_space_;
+  hires::world::StandingCriterion standing_;
+  std::map<std::string, Load> load_;  // what stood on the robot at the start, by name
   std::vector<Point> points_;
 };
 

@@ -75,6 +75,8 @@ class RobotSimulator {
   geometry::Pose3 PoseOf(int object) const;       ///< of the loose object with that index
   geometry::Twist3 VelocityOf(int object) const;  ///< in map axes; 0 for one that is held rigidly
   std::string HolderOf(int object) const;         ///< link that holds it now, or empty
+  /// It stands on, or up to 0.06 m above, a part of the robot that moves with its base.
+  bool StandsOnRobot(int object) const;
 
   /// Indices of the objects that stood on a part of the robot at the start.
   const std::vector<int>& carried() const { return carried_; }

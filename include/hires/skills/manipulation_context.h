@@ -13,6 +13,7 @@
 #include "hires/robot/observation.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/skills/manipulation_params.h"
+#include "hires/world/standing.h"
 #include "hires/world/world.h"
 
 namespace hires::skills {
@@ -22,6 +23,7 @@ struct ManipulationContext {
   std::shared_ptr<const world::World> world;
   std::shared_ptr<const robot::Robot> robot;  ///< has an upper body
   ManipulationParams params;
+  world::StandingCriterion standing;
   std::map<std::string, std::shared_ptr<const manipulation::ArmKinematics>> arms;
   /// Without objects; to be cloned.
   std::shared_ptr<const manipulation::CollisionScene> empty_scene;
@@ -33,7 +35,7 @@ struct ManipulationContext {
 /// @pre the robot has an upper body.  @throws base::ConfigError for an arm that is no chain.
 std::shared_ptr<const ManipulationContext> MakeManipulationContext(
     std::shared_ptr<const world::World> world, std::shared_ptr<const robot::Robot> robot,
-    const ManipulationParams& params);
+    const ManipulationParams& params, const world::StandingCriterion& standing = {});
 
 /// The same for the same action, parameters and attempt, whoever plays it, where and when.
 std::uint64_t SeedOf(const ManipulationParams& params, const base::ActionCall& action);

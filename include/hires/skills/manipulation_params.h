@@ -41,17 +41,17 @@ struct PickParams {
 };
 
 struct PlaceParams {
-  double area_half_width{0.14};     ///< [m] of an area's square round its frame, edges left out
-  double spot_spacing{0.025};       ///< [m] between spots that are considered
-  double clearance{0.05};           ///< [m] from an object's outline to the next: room for fingers
-  int max_spots{6};                 ///< tried in thought before giving up
-  int headings{16};                 ///< of the object that are tried at each spot
-  double above{0.10};               ///< [m] over the spot, where the straight way down begins
-  double release_height{0.005};     ///< [m] over the support, where the fingers open
-  double retreat{0.12};             ///< [m] straight back after opening
-  double standing_tolerance{0.05};  ///< [m] between where it was put and where it stands
-  double lying_tilt{0.5};           ///< [rad] beyond which it has toppled
-  double slot_distance{0.13};       ///< [m] between places on the tray
+  double area_half_width{0.14};  ///< [m] of an area's square round its frame, edges left out
+  double spot_spacing{0.025};    ///< [m] between spots that are considered
+  double clearance{0.05};        ///< [m] from an object's outline to the next: room for fingers
+  int max_spots{6};              ///< tried in thought before giving up
+  int headings{16};              ///< of the object that are tried at each spot
+  double above{0.10};            ///< [m] over the spot, where the straight way down begins
+  double release_height{0.005};  ///< [m] over the support, where the fingers open
+  double retreat{0.12};          ///< [m] straight back after opening
+  /// [m] between where it was put and where it stands: how well it was put, not whether it fell.
+  double standing_tolerance{0.05};
+  double slot_distance{0.13};  ///< [m] between places on the tray
 };
 
 /// Everything that moving arms, torso and head depends on; section `manipulation` of

@@ -29,6 +29,7 @@ struct SkillSet {
 SkillSet MakeSkillSet(const world::World& world, const robot::Robot& robot,
                       const MoveBaseParams& driving, const MoveBaseBlindParams& blind,
                       const ManipulationParams& manipulation = {},
+                      const world::StandingCriterion& standing = {},
                       std::shared_ptr<const ActionSet> actions = OwnActionSet());
 
 /// The skill for an action of `skills.actions`.

@@ -15,7 +15,6 @@ struct ClassifyParams {
   double torso_tolerance{0.02};     ///< [m]
   double placing_height{0.10};      ///< [m] above or below a placing area
   double tray_height{0.05};         ///< [m] above or below the tray
-  double lying_tilt{0.5};           ///< [rad] beyond which an object has fallen
   double hysteresis{1.2};           ///< a symbol that holds already may be so many times off...
   double placing_hysteresis{0.02};  ///< [m] ... or so far beyond the edge
 };

@@ -7,7 +7,6 @@ from restaurant import FRAMES, FURNITURE, is_at, is_over
 WORD = re.compile(r'(\w+)\(([^()]*)\): (?:unavailable: )?(\w+)(?:: ([^;]*))?')
 ATOM = re.compile(r'(not )?(\w+)\(([^()]*)\)')
 STANDING = re.compile('manipulationarea|startarea|^home$')
-LYING = 0.5    # [rad]
 EDGE = 0.06    # [m] that an object may be off what is seen of it, and that counts as on an area
 PALMS = {'leftarm1': 'l_gripper_palm_link', 'rightarm1': 'r_gripper_palm_link'}
 TORSO = {'torsodownposture': (0.0, 0.03), 'torsoupposture': (0.27, 0.33)}  # [m] surely so
@@ -21,7 +20,7 @@ class Snapshot:
     def __init__(self, truth):
         self.robot = truth.robot[-1]
         self.objects = {o.name: o for o in truth.world.objects}
-        self.tilts = {o.name: o.tilt for o in truth.summary.objects}
+        self.stands = {o.name: o.stands for o in truth.summary.objects}
         self.falls = truth.falls()
         self.has_collided = truth.summary.robot_collided
 
@@ -36,8 +35,7 @@ class Snapshot:
     def stands_free(self, name):
         """It is there, upright, and nobody holds it."""
         found = self.objects.get(name)
-        return (found is not None and not found.attached_to and
-                self.tilts.get(name, 0.0) <= LYING)
+        return found is not None and self.stands[name]
 
     def stands_on(self, name, areas, slack=0.0):
         """Whether it stands free on one of these."""
@@ -104,7 +102,7 @@ def judge_occupied(arguments, things, truth):
 
 def judge(action, arguments, reason, detail, truth):
     """One claim about one step."""
-    thing = next((a for a in arguments if a in truth.tilts), None)
+    thing = next((a for a in arguments if a in truth.stands), None)
     if reason in ('condition_lost', 'effect_missing'):
         return judge_atom(detail, truth)
     if reason == 'area_occupied':
@@ -112,7 +110,8 @@ def judge(action, arguments, reason, detail, truth):
     if reason in ('object_slipped', 'grasp_failed') and thing:
         return FALSE if truth.holder(thing) else TRUE
     if reason == 'object_toppled' and thing:
-        return TRUE if truth.tilts[thing] > LYING or truth.falls.get(thing) else FALSE
+        lies = not truth.stands[thing] and not truth.holder(thing)
+        return TRUE if lies or truth.falls.get(thing) else FALSE
     if reason == 'object_not_seen':
         furniture = sum(FURNITURE.values(), [])
         is_there = thing and (truth.stands_on(thing, furniture) or truth.is_on_tray(thing))

@@ -208,6 +208,10 @@ class Truth:
         """[rad] against the world's up-axis."""
         return next(o.tilt for o in self.summary.objects if o.name == name)
 
+    def stands(self, name):
+        """Nothing holds it, and it is not down."""
+        return next(o.stands for o in self.summary.objects if o.name == name)
+
     def joint(self, name):
         """[m] or [rad]"""
         joints = self.robot[-1].joints

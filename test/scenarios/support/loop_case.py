@@ -22,7 +22,6 @@ BOTH = {'mug1': (5.37, 10.26, 0.75, 0.0), 'mug2': (5.37, 9.94, 0.75, 0.0)}
 
 COUNTER = 'placingareaeastrightcounter1'
 TABLE_TOP, COUNTER_TOP = 0.73, 0.75  # [m]
-LYING = 0.5    # [rad] from which an object has fallen
 STILL = 0.01   # [m/s], [rad/s] of the base, counts as standing
 JOINT_STILL = 0.02  # [m/s], [rad/s] likewise
 

@@ -1,0 +1,87 @@
+#include "hires/world/standing.h"
+
+namespace hires::world {
+namespace {
+
+using geometry::Pose3;
+
+constexpr double kUprightShare = 0.2;  // of the tilt, below which a thing is put up again
+constexpr double kRounding = 1e-9;     // [s] of times that are sums of steps
+
+Fall FallOf(const StandingCriterion& criterion, const Departure& departure, bool leans) {
+  if (leans) return Fall::kToppled;
+  if (departure.drop > criterion.drop) return Fall::kDropped;
+  return departure.slide > criterion.slide ? Fall::kSlid : Fall::kNone;
+}
+
+}  // namespace
+
+StandingCriterion ReadStandingCriterion(base::ParamReader in) {
+  StandingCriterion criterion;
+  criterion.tilt = in.Get("tilt", base::Between(0.01, 3.0));
+  criterion.hold_time = in.Get("hold_time", base::Between(0.0, 10.0));
+  criterion.drop = in.Get("drop", base::Between(0.005, 10.0));
+  criterion.slide = in.Get("slide", base::Between(0.005, 10.0));
+  in.RejectUnknownKeys();
+  return criterion;
+}
+
+Departure DepartureFrom(const Pose3& X_CstoodO, const Pose3& X_CO) {
+  const Eigen::Vector3d way = X_CO.translation - X_CstoodO.translation;
+  return {geometry::TiltOf(X_CO.rotation), -way.z(), way.head<2>().norm()};
+}
+
+Fall FallSeen(const StandingCriterion& criterion, const Departure& departure) {
+  return FallOf(criterion, departure, departure.tilt >= criterion.tilt);
+}
+
+bool IsUpright(const StandingCriterion& criterion, const Pose3& X_MO) {
+  return X_MO.IsFinite() && geometry::TiltOf(X_MO.rotation) < criterion.tilt;
+}
+
+Fall FallDetector::Update(const Pose3& X_MO, bool is_held, double t, const Pose3& X_MC) {
+  now_ = {};
+  if (!X_MO.IsFinite()) return is_down() ? Fall::kNone : Begin(Fall::kLost);
+  if (is_held) {
+    Reset();
+    now_ = {geometry::TiltOf(X_MO.rotation), 0.0, 0.0};
+    return Fall::kNone;
+  }
+  const Pose3 X_CO = X_MC.Inverse() * X_MO;
+  if (!X_CstoodO_) X_CstoodO_ = X_CO;
+  now_ = DepartureFrom(*X_CstoodO_, X_CO);
+  now_.tilt = geometry::TiltOf(X_MO.rotation);  // the carrier may lean
+  const Fall seen = FallOf(criterion_, now_, HasLeanedLong(t));
+  if (!is_down()) return Begin(seen);
+  const bool is_put_up = seen == Fall::kNone && now_.tilt < kUprightShare * criterion_.tilt;
+  if (is_put_up) fall_ = Fall::kNone;
+  return Fall::kNone;
+}
+
+bool FallDetector::HasLeanedLong(double t) {
+  if (now_.tilt < criterion_.tilt) {
+    leaning_since_.reset();
+    return false;
+  }
+  if (!leaning_since_ || t < *leaning_since_) leaning_since_ = t;
+  return t - *leaning_since_ >= criterion_.hold_time - kRounding;
+}
+
+Fall FallDetector::Begin(Fall fall) {
+  fall_ = fall;
+  if (fall != Fall::kNone) ++falls_;
+  return fall;
+}
+
+void FallDetector::Reset() {
+  X_CstoodO_.reset();
+  leaning_since_.reset();
+  fall_ = Fall::kNone;
+  now_ = {};
+}
+
+bool FallDetector::stands() const {
+  return X_CstoodO_ && !is_down() && now_.tilt < criterion_.tilt;
+}
+
+}  // namespace hires::world

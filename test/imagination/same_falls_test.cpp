@@ -1,0 +1,87 @@
+// Imagined and true falls are judged by the same detector: whatever happens to things, the monitor
+// of a rollout and the record of truth say the same of it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hires/imagination/load_monitor.h"
+#include "hires/imagination/rollout.h"
+#include "hires/simulation/truth_record.h"
+#include "support/scenes.h"
+
+namespace hires::imagination {
+namespace {
+
+using test_support::OnTray;
+using test_support::RoomScene;
+using test_support::StandingAt;
+
+const geometry::Pose2 kStart{1.5, 2.0, 0.0};
+
+/// Two things on the tray, two that stand in the way.
+world::WorldState Things() {
+  world::WorldState things{{OnTray("tower1", "tower", kStart, {0.0, 0.1}),
+                            OnTray("mill1", "mill", kStart, {0.0, -0.1})}};
+  for (const double x : {0.8, 1.4}) {
+    world::ObjectState object;
+    object.name = "bystander" + std::to_string(things.objects.size());
+    object.model = "tower";
+    object.X_MO.translation = {kStart.x + x, kStart.y, 0.0002};
+    things.objects.push_back(object);
+  }
+  return things;
+}
+
+/// What becomes of things on one drive that chance chooses.
+struct Drive {
+  int falls{0};         // of all things, as imagination counts
+  double seconds{0.0};  // that something was down
+};
+
+Drive PlayBoth(const world::StandingCriterion& standing, base::Rng rng) {
+  simulation::Variation variation;
+  variation.friction_factor = rng.Uniform(0.1, 1.0);
+  simulation::RobotSimulator simulator(RoomScene(), variation, Things(), StandingAt(kStart),
+                                       base::Rng(1));
+  const RolloutParams params;
+  LoadMonitor imagined(&simulator, params, standing);
+  simulation::TruthRecord truth(standing);
+  Drive drive;
+  geometry::Twist2 V;
+  for (int tick = 0; tick < 300; ++tick) {
+    if (tick % 60 == 0) V = {rng.Uniform(-0.5, 1.0), rng.Uniform(-0.5, 0.5), 0.0};
+    robot::Command command;
+    command.base_velocity = V;
+    simulator.Send(command);
+    for (int step = 0; step < 10; ++step) simulator.Step();
+    imagined.Look();
+    truth.Look(simulator);
+    drive.falls = imagined.falls() + static_cast<int>(imagined.KnockedOver().size());
+    EXPECT_EQ(drive.falls, truth.falls()) << "tick " << tick;
+    drive.seconds += drive.falls > 0 ? 0.01 : 0.0;
+  }
+  return drive;
+}
+
+TEST(SameFallsTest, ImaginationAndTruthCountTheSameAtEveryMoment) {
+  const world::StandingCriterion criteria[] = {
+      {}, {0.4, 0.2, 0.05, 0.10}, {0.2, 0.0, 0.02, 0.03}, {1.2, 0.5, 0.30, 0.40}};
+  for (const world::StandingCriterion& standing : criteria) {
+    int falls = 0;
+    for (int seed = 0; seed < 10; ++seed)
+      falls += PlayBoth(standing, base::Rng(7).Fork(seed)).falls;
+    EXPECT_GT(falls, 5) << "drives in which nothing falls show nothing";
+  }
+}
+
+// The same trajectories: only the criterion differs.
+TEST(SameFallsTest, AHoldTimeIsAskedOfBoth) {
+  const Drive at_once = PlayBoth({0.5, 0.0, 10.0, 10.0}, base::Rng(7).Fork(0));
+  const Drive held = PlayBoth({0.5, 0.3, 10.0, 10.0}, base::Rng(7).Fork(0));
+  ASSERT_GT(at_once.falls, 0);
+  EXPECT_EQ(held.falls, at_once.falls);
+  EXPECT_NEAR(at_once.seconds - held.seconds, 0.3, 0.011) << "as much later as it must last";
+}
+
+}  // namespace
+}  // namespace hires::imagination
