@@ -44,6 +44,7 @@ std::uint64_t HashOf(const ImaginationSetup& setup) {
   hasher.Add(setup.world_hash);
   hasher.Add(setup.scene->world.hash);  // differs from that of the scene file where there is a map
   hasher.Add(setup.robot_hash);
+  hasher.Add(setup.physics_hash);
   imagination::AddTo(&hasher, setup.uncertainty->quantities);
   return hasher.value();
 }

@@ -7,6 +7,7 @@
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
+#include "hires/imagination/physics_hash.h"
 #include "hires/skills/action_loader.h"
 #include "hires/world/object_catalogue.h"
 
@@ -161,7 +162,7 @@ SetupConfig ReadSetupConfig(const std::string& path) {
   in.RejectUnknownKeys();
   base::Hasher hasher;
   for (const char* section :
-       {"driving", "blind_driving", "manipulation", "sensing", "physics", "rollout", "standing"}) {
+       {"driving", "blind_driving", "manipulation", "sensing"}) {
     hasher.Add(in.Sub(section).Canonical());
   }
   config.params_hash = hasher.value();
@@ -181,6 +182,7 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   hasher.Add(config.params_hash);
   setup.world_hash = hasher.value();
   setup.robot_hash = robot.hash();
+  setup.physics_hash = PhysicsHash(config.physics, config.rollout, config.standing);
   setup.scene = simulation::MakeScene(std::move(world), std::move(robot), config.sensing.memory);
   setup.sensing = config.sensing;
   // The scene keeps them; the translator only looks.

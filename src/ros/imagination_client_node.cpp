@@ -235,6 +235,7 @@ hires::RolloutGoal ImaginationClientNode::RolloutGoalFor(const Session& session,
   goal.robot_hash = setup_.robot_hash;
   goal.actions_hash = setup_.actions_hash;
   goal.uncertainty_hash = setup.uncertainty->hash;
+  goal.physics_hash = setup_.physics_hash;
   const bool is_own = setup.uncertainty->hash == setup_.uncertainty->hash;
   goal.uncertainty = is_own ? session.goal.getGoal()->uncertainty : setup.uncertainty->yaml;
   goal.seed = setup.seed;

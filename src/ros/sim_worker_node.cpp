@@ -179,6 +179,8 @@ imagination::RolloutSetup SimWorkerNode::SetupFor(const RolloutGoal& goal) const
   }
   RequireHash("world", goal.world_hash, setup_.world_hash);
   RequireHash("robot", goal.robot_hash, setup_.robot_hash);
+  RequireHash("physics (sections physics, rollout, standing of the scene)", goal.physics_hash,
+              setup_.physics_hash);
   RequireActions(goal.actions_hash, *setup_.skills->actions);
   auto uncertainty = setup_.uncertainty;
   if (!goal.uncertainty.empty()) {
@@ -199,6 +201,7 @@ void SimWorkerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status
   status.add("robot hash", hires::base::HexOf(setup_.robot_hash));
   status.add("actions hash", hires::base::HexOf(setup_.actions_hash));
   status.add("action libraries", hires::skills::ToString(setup_.skills->actions->libraries()));
+  status.add("physics hash", hires::base::HexOf(setup_.physics_hash));
 }
 
 }  // namespace hires_ros

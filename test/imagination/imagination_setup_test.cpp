@@ -5,7 +5,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include <functional>
+#include <utility>
 
+#include "hires/imagination/physics_hash.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
@@ -84,7 +86,8 @@ void ForEveryParameter(const YAML::Node& root,
     if (!node.IsMap()) return visit(path, node);
     for (auto entry : node) descend(path + "." + entry.first.Scalar(), entry.second);
   };
-  for (const char* section : {"driving", "blind_driving", "sensing", "physics", "rollout"}) {
+  for (const char* section :
+       {"driving", "blind_driving", "sensing", "physics", "rollout", "standing"}) {
     descend(section, root[section]);
   }
 }
@@ -198,11 +201,36 @@ TEST(SetupConfigTest, ResolvesPaths) {
   EXPECT_EQ(ResolvePath("a.world", "scene.yaml"), "a.world");
 }
 
+TEST(SetupConfigTest, AFallMustShowBeforeARolloutEnds) {
+  SceneFile file;
+  file.root["rollout"]["aftermath"] = 0.5;
+  file.root["standing"]["hold_time"] = 0.5;
+  EXPECT_NO_THROW(file.Read());
+  file.root["standing"]["hold_time"] = 0.6;
+  EXPECT_THAT(ConfigErrorOf([&] { file.Read(); }),
+              AllOf(HasSubstr("scene.yaml"), HasSubstr("standing.hold_time"),
+                    HasSubstr("rollout.aftermath, 0.5 s")));
+}
+
+TEST(SetupConfigTest, WhatAFallIsReachesAllWhoJudge) {
+  SceneFile file;
+  file.root["standing"]["tilt"] = 0.4;
+  const ImaginationSetup setup = file.Load();
+  EXPECT_EQ(setup.standing.tilt, 0.4);
+  EXPECT_EQ(setup.translator.standing.tilt, 0.4);
+  EXPECT_EQ(MakeRolloutSetup(setup, {}, 1).standing.tilt, 0.4);
+}
+
 // ------------------------------------------------------------------------------------ hashes
 
+/// Of skills, and of physics with what judges rollouts.
+std::pair<std::uint64_t, std::uint64_t> HashesOf(const SetupConfig& config) {
+  return {config.params_hash, PhysicsHash(config.physics, config.rollout, config.standing)};
+}
+
 TEST(SetupHashTest, EveryParameterMattersCommentsDoNot) {
-  const std::uint64_t hash = SceneFile().Read().params_hash;
-  EXPECT_EQ(SceneFile().Read("# a remark\n").params_hash, hash);
+  const auto hashes = HashesOf(SceneFile().Read());
+  EXPECT_EQ(HashesOf(SceneFile().Read("# a remark\n")), hashes);
   ForEveryParameter(SceneFile().root, [&](const std::string& path, const YAML::Node& original) {
     SceneFile file;
     ForEveryParameter(file.root, [&](const std::string& other, YAML::Node node) {
@@ -216,7 +244,7 @@ TEST(SetupHashTest, EveryParameterMattersCommentsDoNot) {
         node = std::to_string(0.99 * std::stod(before) + 1e-6);
       }
     });
-    EXPECT_NE(file.Read().params_hash, hash) << path;
+    EXPECT_NE(HashesOf(file.Read()), hashes) << path;
   });
 }
 
@@ -245,6 +273,12 @@ TEST(SetupHashTest, WorldObjectsAndParametersMatter) {
   SceneFile coarser;
   coarser.root["driving"]["map_resolution"] = 0.07;
   EXPECT_NE(coarser.Load().world_hash, setup.world_hash);
+
+  SceneFile stricter;  // another meaning of a fall is another physics, in the same world
+  stricter.root["standing"]["tilt"] = 0.4;
+  EXPECT_EQ(stricter.Load().world_hash, setup.world_hash);
+  EXPECT_NE(stricter.Load().physics_hash, setup.physics_hash);
+  EXPECT_EQ(coarser.Load().physics_hash, setup.physics_hash);
 
   SetupConfig with_more = file.Read();
   with_more.extra_objects = {file.folder.Write("extra/jug.sdf", SceneFile::MillSdf("jug", 0.2))};

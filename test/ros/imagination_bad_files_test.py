@@ -66,6 +66,34 @@ class ImaginationBadFilesTest(unittest.TestCase):
         self.assertRegex(why, 'worker 2: actions differ: .* with [0-9]+_libother_build.so [0-9a-f]{16}')
         self.assertRegex(why, 'the client loaded libown_action.so [0-9a-f]{16}')
 
+    def test_workers_that_call_something_else_a_fall_are_named(self):
+        system = self.system
+        other = '_config:=' + self.worker_config(tilt=0.4, hold_time=0.2)
+        system.start_client(worker_wait=0.5)
+        for k in (1, 2):
+            system.start_host(k, other)
+        for k in (1, 2):
+            system.wait_until_joined(k)
+        answer = system.ask().answer()
+        self.assertEqual(answer.code, 3, answer.output)
+        for k in (1, 2):
+            self.assertIn('worker %d: physics (sections physics, rollout, standing of the scene) '
+                          'differs: the client has' % k, answer.report['why'])
+
+    def worker_config(self, **standing):
+        """Path of a worker's configuration whose scene says so of falls."""
+        scene = read_yaml('scene.yaml')
+        scene['standing'].update(standing)
+        for key in ('world', 'robot', 'objects', 'uncertainty'):
+            scene[key] = os.path.normpath(os.path.join(CONFIG_FOLDER, scene[key]))
+        worker = read_yaml('sim_worker.yaml')
+        worker['scene'] = self.system.file('scene.yaml')
+        path = self.system.file('sim_worker.yaml')
+        for name, content in ((worker['scene'], scene), (path, worker)):
+            with open(name, 'w') as file:
+                yaml.safe_dump(content, file)
+        return path
+
     def copy_of_world(self, text):
         folder = os.path.join(CONFIG_FOLDER, '..', 'worlds')
         copies = os.path.join(self.system.processes.folder.name, 'worlds')

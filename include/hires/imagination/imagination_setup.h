@@ -35,7 +35,7 @@ struct SetupConfig {
   physics::PhysicsParams physics;
   RolloutParams rollout;
   world::StandingCriterion standing;
-  std::uint64_t params_hash{0};  ///< of all numbers above
+  std::uint64_t params_hash{0};  ///< of driving, blind, manipulation, sensing
 };
 
 /// @throws base::ConfigError naming file and key; also if the aftermath of a rollout ends before
@@ -61,8 +61,9 @@ struct ImaginationSetup {
   world::StandingCriterion standing;
   std::map<std::string, std::string> object_models;  ///< instance (lower case) -> model
   translation::TranslatorContext translator;  ///< knows names of objects and areas; no fluents
-  std::uint64_t world_hash{0};  ///< world, object models and all parameters of physics and skills
+  std::uint64_t world_hash{0};  ///< world, object models and all parameters of skills
   std::uint64_t robot_hash{0};
+  std::uint64_t physics_hash{0};  ///< see PhysicsHash
   std::uint64_t actions_hash{0};  ///< of all actions, with the libraries that they came from
 
   /// The model of an instance of the catalogue (or of its kin, see
