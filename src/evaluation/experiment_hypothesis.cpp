@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "hires/base/error.h"
+#include "hires/base/failure.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
@@ -19,14 +20,13 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::uint64_t kLargestSeed = 0x7fffffff;  // ROS parameters have 32 bits and a sign
-constexpr double kUpright = 0.1;                    // [rad]
 constexpr double kTouching = 0.02;                  // [m] between underside and top
 
-std::vector<std::string> ReadObjects(base::ParamReader* in) {
-  std::vector<std::string> objects;
-  for (const std::string& name : in->GetStrings("objects")) objects.push_back(base::ToLower(name));
-  if (objects.empty()) in->Fail("objects", "wanted at least one object");
-  return objects;
+std::vector<std::string> ReadNames(base::ParamReader* in, const std::string& key) {
+  std::vector<std::string> names;
+  for (const std::string& name : in->GetStrings(key)) names.push_back(base::ToLower(name));
+  if (names.empty()) in->Fail(key, "wanted at least one name");
+  return names;
 }
 
 template <typename T>
@@ -49,6 +49,7 @@ void VisitFields(Run* run, const Visitor& visit) {
   visit("reason", &run->reason);
   visit("success", &run->success);
   visit("verdict", &run->verdict);
+  visit("broken_rules", &run->broken_rules);
   visit("falls", &run->falls);
   visit("contact", &run->contact);
   visit("duration", &run->duration);
@@ -63,34 +64,53 @@ void VisitFields(Run* run, const Visitor& visit) {
   visit("wall_seconds", &run->wall_seconds);
 }
 
-const world::StaticBody& FurnitureOf(const HypothesisGoal& goal, const world::World& world) {
-  std::vector<std::string> names;
-  for (const world::StaticBody& body : world.statics) {
-    if (base::ToLower(body.name) == base::ToLower(goal.furniture)) return body;
-    names.push_back(body.name);
-  }
-  throw base::ConfigError(fmt::format("world '{}': {}", world.name,
-                                      base::UnknownName("furniture", goal.furniture, names)));
+bool IsWanted(const HypothesisGoal& goal, const std::string& object) {
+  return std::count(goal.objects.begin(), goal.objects.end(), object) > 0;
 }
 
-/// Objects of the goal that fell, as a sentence; "" for none.
-std::string FallsOf(const HypothesisGoal& goal, const RunTruth& truth) {
-  std::vector<std::string> fallen;
-  for (const auto& [name, falls] : truth.falls) {
-    const bool is_wanted =
-        std::count(goal.objects.begin(), goal.objects.end(), base::ToLower(name));
-    if (is_wanted && falls > 0) fallen.push_back(name);
+/// A broken rule with what is to be said of it.
+struct Breach {
+  JudgeRule rule;
+  std::string text;
+};
+
+void AddFalls(const HypothesisGoal& goal, const RunTruth& truth, std::vector<Breach>* breaches) {
+  std::vector<std::string> fell, knocked_over;
+  for (const auto& [name, object] : truth.objects) {
+    if (object.falls > 0) (IsWanted(goal, name) ? fell : knocked_over).push_back(name);
   }
-  return fallen.empty() ? "" : base::Join(fallen, " and ") + " fell";
+  if (!fell.empty()) {
+    breaches->push_back({JudgeRule::kFell, base::Join(fell, " and ") + " fell"});
+  }
+  if (!knocked_over.empty()) {
+    breaches->push_back(
+        {JudgeRule::kKnockedOver, base::Join(knocked_over, " and ") + " knocked over"});
+  }
 }
 
-std::string StandingOf(const HypothesisGoal& goal, const world::StaticBody& body,
-                       const world::WorldState& state) {
+/// "mug1 stands on placingareawestrighttable1", or "" where no wanted object stands at a place.
+std::string StandingOf(const HypothesisGoal& goal, const std::vector<WantedPlace>& places,
+                       const RunTruth& truth) {
   for (const std::string& name : goal.objects) {
-    const world::ObjectState* object = state.Find(name);
-    if (object != nullptr && StandsOn(body, *object)) return name;
+    const auto object = truth.objects.find(name);
+    if (object == truth.objects.end()) continue;
+    for (const WantedPlace& place : places) {
+      if (StandsAt(place, object->second)) return name + " stands on " + place.name;
+    }
   }
   return "";
+}
+
+/// Of a run in which nothing stands where it should.
+Breach NotThere(const HypothesisGoal& goal, const RunTruth& truth) {
+  for (const std::string& name : goal.objects) {
+    const auto object = truth.objects.find(name);
+    if (object != truth.objects.end() && !object->second.attached_to.empty()) {
+      return {JudgeRule::kHeld, name + " is held by " + object->second.attached_to};
+    }
+  }
+  return {JudgeRule::kNotThere, fmt::format("no {} stands on {}", base::Join(goal.objects, " or "),
+                                            base::Join(goal.areas, " or "))};
 }
 
 /// Whether it was carried through: not cancelled, refused or asked again.
@@ -114,8 +134,8 @@ HypothesisGoal ReadHypothesisGoal(const std::string& path, const std::string& sc
   for (const std::string& name : scenarios.Keys()) {
     base::ParamReader entry = scenarios.Sub(name);
     HypothesisGoal goal;
-    goal.objects = ReadObjects(&entry);
-    goal.furniture = entry.GetString("furniture");
+    goal.objects = ReadNames(&entry, "objects");
+    goal.areas = ReadNames(&entry, "areas");
     goal.time_limit = entry.Get("time_limit", base::Between(1.0, 1e5));
     if (name == scenario) wanted = goal;
     is_known = is_known || name == scenario;
@@ -144,32 +164,69 @@ HypothesisRun ParseHypothesisRun(const ordered_json& json, const std::string& wh
   return run;
 }
 
-bool StandsOn(const world::StaticBody& body, const world::ObjectState& object) {
-  if (!object.attached_to.empty() || !object.X_MO.IsFinite()) return false;
-  if (geometry::TiltOf(object.X_MO.rotation) >= kUpright) return false;
-  const Eigen::Vector3d& p_MO = object.X_MO.translation;
-  return std::any_of(body.collisions.begin(), body.collisions.end(),
-                     [&](const geometry::Collision& collision) {
-                       const geometry::Aabb bounds =
-                           geometry::BoundsOf(collision.shape, body.X_MB * collision.X_BS);
-                       return p_MO.x() >= bounds.lower.x() && p_MO.x() <= bounds.upper.x() &&
-                              p_MO.y() >= bounds.lower.y() && p_MO.y() <= bounds.upper.y() &&
-                              std::abs(p_MO.z() - bounds.upper.z()) <= kTouching;
-                     });
+std::string ToString(JudgeRule rule) {
+  switch (rule) {
+    case JudgeRule::kFell:
+      return "fell";
+    case JudgeRule::kKnockedOver:
+      return base::ToString(base::FailureCode::kKnockedOver);
+    case JudgeRule::kTouched:
+      return "touched";
+    case JudgeRule::kHeld:
+      return "held";
+    case JudgeRule::kNotThere:
+      return "not_there";
+  }
+  return "";
 }
 
-void Judge(const HypothesisGoal& goal, const world::World& world, const RunTruth& truth,
-           HypothesisRun* run) {
-  const std::string standing = StandingOf(goal, FurnitureOf(goal, world), truth.state);
-  const std::string fallen = FallsOf(goal, truth);
-  run->success = !standing.empty() && fallen.empty();
-  run->verdict = standing.empty() ? fmt::format("no {} stands on {}",
-                                                base::Join(goal.objects, " or "), goal.furniture)
-                                  : fmt::format("{} stands on {}", standing, goal.furniture);
-  if (!fallen.empty()) run->verdict += ", " + fallen;
-  run->falls = 0;
-  for (const auto& [name, falls] : truth.falls) run->falls += falls;
+const std::vector<JudgeRule>& AllJudgeRules() {
+  static const std::vector<JudgeRule> kAll{JudgeRule::kFell, JudgeRule::kKnockedOver,
+                                           JudgeRule::kTouched, JudgeRule::kHeld,
+                                           JudgeRule::kNotThere};
+  return kAll;
+}
+
+std::vector<WantedPlace> PlacesOf(const HypothesisGoal& goal, const world::World& world,
+                                  double half_width) {
+  std::vector<WantedPlace> places;
+  for (const std::string& area : goal.areas) {
+    const auto X_MA = world.FindFrame(area);
+    if (!X_MA) {
+      throw base::ConfigError(fmt::format("world '{}': {}", world.name,
+                                          base::UnknownName("area", area, world.FrameNames())));
+    }
+    places.push_back({area, *X_MA, half_width});
+  }
+  return places;
+}
+
+bool StandsAt(const WantedPlace& place, const simulation::ObjectFate& object) {
+  if (!object.stands || !object.attached_to.empty()) return false;
+  const Eigen::Vector3d p_AO = (place.X_MA.Inverse() * object.X_MO).translation;
+  return p_AO.head<2>().cwiseAbs().maxCoeff() <= place.half_width &&
+         std::abs(p_AO.z()) <= kTouching;
+}
+
+void Judge(const HypothesisGoal& goal, const std::vector<WantedPlace>& places,
+           const RunTruth& truth, HypothesisRun* run) {
+  std::vector<Breach> breaches;
+  const std::string standing = StandingOf(goal, places, truth);
+  if (standing.empty()) breaches.push_back(NotThere(goal, truth));
+  AddFalls(goal, truth, &breaches);
+  if (!truth.contact.empty()) breaches.push_back({JudgeRule::kTouched, truth.contact});
+  std::vector<std::string> words;
+  if (!standing.empty()) words.push_back(standing);
+  run->broken_rules.clear();
+  for (const Breach& breach : breaches) {
+    run->broken_rules.push_back(ToString(breach.rule));
+    words.push_back(breach.text);
+  }
+  run->success = breaches.empty();
+  run->verdict = base::Join(words, ", ");
   run->contact = truth.contact;
+  run->falls = 0;
+  for (const auto& [name, object] : truth.objects) run->falls += object.falls;
 }
 
 void CountReport(const AchieveReport& report, HypothesisRun* run) {

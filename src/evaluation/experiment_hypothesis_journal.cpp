@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr char kKind[] = "hires hypothesis 1";
+constexpr char kKind[] = "hires hypothesis 2";
 
 ordered_json HeadOf(const HypothesisSetting& setting) {
   return {{"journal", kKind},      {"scenario", setting.scenario}, {"runs", setting.runs},

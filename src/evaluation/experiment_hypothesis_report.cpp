@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "hires/base/check.h"
+#include "hires/base/text.h"
 #include "hires/evaluation/experiment_report.h"
 #include "hires/evaluation/report_table.h"
 
@@ -43,6 +44,7 @@ ordered_json ArmToJson(const HypothesisArm& arm) {
             {"lower", arm.success.lower},
             {"upper", arm.success.upper}}},
           {"falls", arm.falls},
+          {"broken_rules", arm.broken_rules},
           {"duration", {{"mean", arm.duration_mean}, {"sd", arm.duration_sd}}},
           {"steps", arm.steps},
           {"replans", arm.replans},
@@ -69,6 +71,19 @@ std::vector<std::string> Row(const std::string& name, const HypothesisArm& arm) 
           std::to_string(arm.runs - arm.complete)};
 }
 
+/// How many runs broke which rule of the judge; a run may break several.
+std::string RulesText(const HypothesisReport& report) {
+  std::vector<std::vector<std::string>> rows{{"rule", "with", "without"}};
+  for (const JudgeRule rule : AllJudgeRules()) {
+    const std::string word = ToString(rule);
+    const int with = report.with.broken_rules.at(word);
+    const int without = report.without.broken_rules.at(word);
+    if (with + without == 0) continue;
+    rows.push_back({word, std::to_string(with), std::to_string(without)});
+  }
+  return rows.size() == 1 ? "" : "\nruns that broke a rule:\n" + FormatTable(rows);
+}
+
 std::string FailureLines(const std::vector<HypothesisRun>& runs) {
   std::map<std::string, int> counts;
   for (const HypothesisRun& run : runs) {
@@ -93,6 +108,7 @@ ordered_json RowsOf(const std::vector<HypothesisRun>& runs) {
 
 HypothesisArm SumUpArm(const std::vector<HypothesisRun>& runs, bool imagines) {
   HypothesisArm arm;
+  for (const JudgeRule rule : AllJudgeRules()) arm.broken_rules[ToString(rule)] = 0;
   std::vector<double> durations, steps, replans, walls;
   for (const HypothesisRun& run : runs) {
     if (run.imagines != imagines) continue;
@@ -101,6 +117,7 @@ HypothesisArm SumUpArm(const std::vector<HypothesisRun>& runs, bool imagines) {
     arm.falls += run.falls;
     if (!run.is_complete) continue;
     ++arm.complete;
+    for (const std::string& rule : run.broken_rules) ++arm.broken_rules[rule];
     arm.dispatched += run.dispatched;
     arm.in_time += run.in_time;
     durations.push_back(run.duration);
@@ -149,6 +166,7 @@ std::string HypothesisText(const HypothesisReport& report) {
       "without; p = {:.3g} (McNemar's exact test)\n{}\n",
       report.difference.estimate, report.difference.lower, report.difference.upper,
       report.pairs.only_first, report.pairs.only_second, McNemarPValue(report.pairs), kMethod);
+  text += RulesText(report);
   const std::string failures = FailureLines(report.runs);
   return failures.empty() ? text : text + '\n' + failures;
 }
@@ -157,11 +175,9 @@ std::string HypothesisCsv(const HypothesisReport& report) {
   ExperimentReport table;
   table.findings.rows = RowsOf(report.runs);
   for (ordered_json& row : table.findings.rows) {
-    std::string recommended;
-    for (const auto& action : row["recommended"]) {
-      recommended += (recommended.empty() ? "" : "; ") + action.get<std::string>();
+    for (const char* list : {"broken_rules", "recommended"}) {
+      row[list] = base::Join(row[list].get<std::vector<std::string>>(), "; ");
     }
-    row["recommended"] = recommended;
   }
   return ReportCsv(table);
 }

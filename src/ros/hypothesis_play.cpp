@@ -85,7 +85,7 @@ void VisitFields(Order* order, const Visitor& visit) {
   visit("pace", &order->pace);
   visit("workers", &order->workers);
   visit("objects", &order->goal.objects);
-  visit("furniture", &order->goal.furniture);
+  visit("areas", &order->goal.areas);
   visit("time_limit", &order->goal.time_limit);
   visit("start_limit", &order->goal.start_limit);
   visit("wall_limit", &order->goal.wall_limit);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <hires/GroundTruth.h>
-#include <hires/WorldState.h>
 #include <ros/ros.h>
 #include <signal.h>
 
@@ -73,12 +72,11 @@ ProcessOptions LaunchOptions(const HypothesisOrder& order, const evaluation::Sce
 class Witness {
  public:
   explicit Witness(ros::NodeHandle* nh)
-      : subscribers_{nh->subscribe("ground_truth/world_state", 10, &Witness::OnState, this),
-                     nh->subscribe("ground_truth/summary", 10, &Witness::OnSummary, this)} {}
+      : subscriber_(nh->subscribe("ground_truth/summary", 10, &Witness::OnSummary, this)) {}
 
   bool HasSeen() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return has_state_ && has_summary_;
+    return has_seen_;
   }
   evaluation::RunTruth Truth() const {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -86,24 +84,19 @@ class Witness {
   }
 
  private:
-  void OnState(const hires::WorldStateConstPtr& state) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    truth_.state = FromMsg(*state);
-    has_state_ = true;
-  }
   void OnSummary(const hires::GroundTruthConstPtr& summary) {
     const std::lock_guard<std::mutex> lock(mutex_);
     truth_.contact = summary->contact;
-    for (const auto& object : summary->objects) {
-      truth_.falls[object.name] = static_cast<int>(object.falls);
+    for (const hires::ObjectTruth& object : summary->objects) {
+      truth_.objects[hires::base::ToLower(object.name)] = FromMsg(object);
     }
-    has_summary_ = true;
+    has_seen_ = true;
   }
 
   mutable std::mutex mutex_;
   evaluation::RunTruth truth_;
-  bool has_state_{false}, has_summary_{false};
-  std::vector<ros::Subscriber> subscribers_;
+  bool has_seen_{false};
+  ros::Subscriber subscriber_;
 };
 
 /// Why a run must end before its task does: what was first.
@@ -178,7 +171,7 @@ void AwaitRest(Limits* limits) {
 }
 
 void Watch(const HypothesisOrder& order, const evaluation::Scenario& scenario,
-           const hires::world::World& world, Limits* limits, HypothesisRun* run) {
+           const std::vector<evaluation::WantedPlace>& places, Limits* limits, HypothesisRun* run) {
   AwaitMaster(limits);
   ros::NodeHandle nh;
   Witness witness(&nh);
@@ -190,7 +183,7 @@ void Watch(const HypothesisOrder& order, const evaluation::Scenario& scenario,
   evaluation::WriteJson(ToJson(report), order.folder + "/result.json");
   evaluation::CountReport(report, run);
   AwaitRest(limits);
-  evaluation::Judge(order.goal, world, witness.Truth(), run);
+  evaluation::Judge(order.goal, places, witness.Truth(), run);
   run->is_complete = limits->outcome().empty();
 }
 
@@ -206,10 +199,10 @@ std::string LastDeath(const std::string& log) {
 
 /// Never throws for what a run may run into.
 HypothesisRun Play(const HypothesisOrder& order, const evaluation::Scenario& scenario,
-                   const hires::world::World& world, Limits* limits) {
+                   const std::vector<evaluation::WantedPlace>& places, Limits* limits) {
   HypothesisRun run;
   try {
-    Watch(order, scenario, world, limits, &run);
+    Watch(order, scenario, places, limits, &run);
   } catch (const std::exception& error) {
     run.outcome = "broke_down";
     run.reason = error.what();
@@ -239,12 +232,13 @@ HypothesisRun PlayInSystem(const HypothesisOrder& order, int port,
                            const std::string& package_folder, StopSignals* stop) {
   const auto scenario = evaluation::ReadScenario(
       fmt::format("{}/config/scenarios/{}.yaml", package_folder, order.scenario));
-  const auto world = hires::world::LoadWorld(
-      hires::imagination::ReadSetupConfig(package_folder + "/config/scene.yaml").world);
+  const auto scene = hires::imagination::ReadSetupConfig(package_folder + "/config/scene.yaml");
+  const auto places = evaluation::PlacesOf(order.goal, hires::world::LoadWorld(scene.world),
+                                           scene.manipulation.place.area_half_width);
   EnterSystem(order, port);
   ChildProcess system(LaunchOptions(order, scenario, port, package_folder));
   Limits limits(order, &system, stop);
-  const HypothesisRun run = Play(order, scenario, world, &limits);
+  const HypothesisRun run = Play(order, scenario, places, &limits);
   if (ros::isStarted()) ros::shutdown();
   StopSystem(&system, stop);
   return run;

@@ -15,102 +15,147 @@ namespace {
 
 using test_support::TemporaryFolder;
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
 const std::string kFile = kRoot + "/config/hypothesis.yaml";
 
-world::StaticBody Table() {
-  world::StaticBody table;
-  table.name = "Table1";
-  table.X_MB = geometry::Lift({4.0, 2.0, 0.0});
-  const auto part = [&](const geometry::Box& box, double z) {
-    geometry::Collision collision;
-    collision.shape = box;
-    collision.X_BS = geometry::Lift({0.0, 0.0, 0.0}, z);
-    table.collisions.push_back(collision);
-  };
-  part({{0.1, 0.1, 0.7}}, 0.35);
-  part({{1.0, 0.6, 0.04}}, 0.72);
-  return table;
+constexpr double kTop = 0.73;  // [m]
+
+/// A thing that stands x, y from the middle of the guest's place.
+simulation::ObjectFate Standing(double x = 0.0, double y = 0.0, double z = kTop) {
+  simulation::ObjectFate object;
+  object.X_MO = geometry::Lift({4.0 + x, 2.0 + y, 0.3}, z);
+  object.stands = true;
+  return object;
 }
 
-world::ObjectState Mug(double x, double y, double z) {
-  world::ObjectState mug;
-  mug.name = "Mug1";
-  mug.model = "mug";
-  mug.X_MO = geometry::Lift({x, y, 0.3}, z);
-  return mug;
+const WantedPlace kPlace{"placingareawest", geometry::Lift({4.0, 2.0, 0.0}, kTop), 0.14};
+
+TEST(StandsAtTest, NeedsToStandOverTheSquareAndLetGo) {
+  EXPECT_TRUE(StandsAt(kPlace, Standing()));
+  EXPECT_TRUE(StandsAt(kPlace, Standing(0.139, -0.139)));
+  EXPECT_FALSE(StandsAt(kPlace, Standing(0.141, 0.0))) << "beside it";
+  EXPECT_FALSE(StandsAt(kPlace, Standing(0.0, -0.141))) << "beside it";
+  EXPECT_FALSE(StandsAt(kPlace, Standing(0.0, 0.0, kTop + 0.021))) << "on something else";
+  EXPECT_FALSE(StandsAt(kPlace, Standing(0.0, 0.0, 0.0))) << "on the floor below";
+  simulation::ObjectFate held = Standing();
+  held.attached_to = "l_gripper_palm_link";
+  EXPECT_FALSE(StandsAt(kPlace, held));
+  simulation::ObjectFate down = Standing();
+  down.stands = false;
+  EXPECT_FALSE(StandsAt(kPlace, down));
 }
 
-TEST(StandsOnTest, NeedsToBeUprightOverTheTopAndLetGo) {
-  const world::StaticBody table = Table();
-  EXPECT_TRUE(StandsOn(table, Mug(4.4, 2.2, 0.741)));
-  EXPECT_FALSE(StandsOn(table, Mug(4.6, 2.2, 0.741))) << "beside the table";
-  EXPECT_FALSE(StandsOn(table, Mug(4.4, 2.2, 0.80))) << "above it";
-  EXPECT_FALSE(StandsOn(table, Mug(4.4, 2.2, 0.0))) << "below it";
-  world::ObjectState mug = Mug(4.4, 2.2, 0.741);
-  mug.attached_to = "l_gripper_palm_link";
-  EXPECT_FALSE(StandsOn(table, mug)) << "held";
-  mug = Mug(4.4, 2.2, 0.741);
-  mug.X_MO.rotation = Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX());
-  EXPECT_FALSE(StandsOn(table, mug)) << "tilted";
+TEST(StandsAtTest, ThePlaceMayBeTurned) {
+  const WantedPlace turned{"turned", geometry::Lift({4.0, 2.0, M_PI / 4}, kTop), 0.14};
+  EXPECT_TRUE(StandsAt(turned, Standing(0.19, 0.0))) << "0.14 times the square root of 2 is 0.198";
+  EXPECT_FALSE(StandsAt(turned, Standing(0.139, 0.139)));
 }
 
-HypothesisGoal MugGoal() {
+// ----------------------------------------------------------------------------------- the judge
+
+/// A run that broke no rule: its mug stands at the guest's place, a book and another mug elsewhere.
+struct JudgeTest : ::testing::Test {
+  JudgeTest() {
+    goal.objects = {"mug1", "mug2"};
+    goal.areas = {kPlace.name};
+    truth.objects = {{"mug1", Standing()}, {"mug2", Standing(2.0)}, {"book1", Standing(2.0, 1.0)}};
+  }
+  HypothesisRun Judged() const {
+    HypothesisRun run;
+    run.broken_rules = {"of another run"};
+    Judge(goal, {kPlace}, truth, &run);
+    EXPECT_EQ(run.success, run.broken_rules.empty());
+    return run;
+  }
   HypothesisGoal goal;
-  goal.objects = {"mug1", "mug2"};
-  goal.furniture = "table1";
-  return goal;
+  RunTruth truth;
+};
+
+TEST_F(JudgeTest, OneOfTheObjectsAtThePlaceIsSuccess) {
+  const HypothesisRun run = Judged();
+  EXPECT_TRUE(run.success);
+  EXPECT_EQ(run.verdict, "mug1 stands on placingareawest");
+  EXPECT_EQ(run.falls, 0);
+  truth.objects["mug2"] = Standing(0.1);
+  truth.objects["mug1"] = Standing(2.0);
+  EXPECT_TRUE(Judged().success) << "either of them";
 }
 
-world::World Room() {
+TEST_F(JudgeTest, AFallOfTheThingBreaksARule) {
+  truth.objects["mug1"].falls = 1;
+  const HypothesisRun run = Judged();
+  EXPECT_THAT(run.broken_rules, ElementsAre("fell"));
+  EXPECT_EQ(run.verdict, "mug1 stands on placingareawest, mug1 fell");
+  EXPECT_EQ(run.falls, 1);
+}
+
+TEST_F(JudgeTest, AnythingElseThatFellWasKnockedOver) {
+  truth.objects["book1"].falls = 2;
+  const HypothesisRun run = Judged();
+  EXPECT_THAT(run.broken_rules, ElementsAre("knocked_over"));
+  EXPECT_THAT(run.verdict, HasSubstr("book1 knocked over"));
+  EXPECT_EQ(run.falls, 2);
+}
+
+TEST_F(JudgeTest, ACollisionOfTheRobotBreaksARule) {
+  truth.contact = "l_forearm touches Table1";
+  const HypothesisRun run = Judged();
+  EXPECT_THAT(run.broken_rules, ElementsAre("touched"));
+  EXPECT_EQ(run.contact, truth.contact);
+  EXPECT_THAT(run.verdict, HasSubstr("l_forearm touches Table1"));
+}
+
+TEST_F(JudgeTest, AThingInTheHandBreaksARule) {
+  truth.objects["mug1"].attached_to = "l_gripper_palm_link";
+  truth.objects["mug1"].stands = false;
+  const HypothesisRun run = Judged();
+  EXPECT_THAT(run.broken_rules, ElementsAre("held"));
+  EXPECT_EQ(run.verdict, "mug1 is held by l_gripper_palm_link");
+}
+
+TEST_F(JudgeTest, AnotherGuestsPlaceIsNotThere) {
+  truth.objects["mug1"] = Standing(0.41);  // the guest opposite, on the same table
+  const HypothesisRun run = Judged();
+  EXPECT_THAT(run.broken_rules, ElementsAre("not_there"));
+  EXPECT_EQ(run.verdict, "no mug1 or mug2 stands on placingareawest");
+}
+
+TEST_F(JudgeTest, AThingThatIsGoneIsNotThere) {
+  truth.objects.clear();
+  EXPECT_THAT(Judged().broken_rules, ElementsAre("not_there"));
+}
+
+TEST_F(JudgeTest, EveryBrokenRuleIsTold) {
+  truth.objects["mug1"] = Standing(0.0, 0.0, 0.0);
+  truth.objects["mug1"].falls = 1;
+  truth.objects["mug1"].stands = false;
+  truth.objects["book1"].falls = 1;
+  truth.contact = "base touches Chair3";
+  const HypothesisRun run = Judged();
+  EXPECT_THAT(run.broken_rules, ElementsAre("not_there", "fell", "knocked_over", "touched"));
+  EXPECT_EQ(run.falls, 2);
+}
+
+TEST(PlacesOfTest, AnUnknownAreaIsNamed) {
   world::World room;
   room.name = "room";
-  room.statics = {Table()};
-  return room;
+  room.frames["placingareawest"] = kPlace.X_MA;
+  room.frame_names["placingareawest"] = "placingAreaWest";
+  HypothesisGoal goal;
+  goal.areas = {"placingareawest"};
+  ASSERT_THAT(PlacesOf(goal, room, 0.1), SizeIs(1));
+  EXPECT_EQ(PlacesOf(goal, room, 0.1)[0].half_width, 0.1);
+  goal.areas = {"placingareawset"};
+  EXPECT_THAT(ErrorOf([&] { PlacesOf(goal, room, 0.1); }),
+              AllOf(HasSubstr("room"), HasSubstr("did you mean 'placingAreaWest'")));
 }
 
-TEST(JudgeTest, OneOfTheObjectsOnTheFurnitureIsSuccess) {
-  RunTruth truth;
-  truth.state.objects = {Mug(4.0, 2.0, 0.74)};
-  truth.falls = {{"mug1", 0}, {"book1", 1}};
-  HypothesisRun run;
-  Judge(MugGoal(), Room(), truth, &run);
-  EXPECT_TRUE(run.success);
-  EXPECT_EQ(run.verdict, "mug1 stands on table1");
-  EXPECT_EQ(run.falls, 1) << "of whatever was there";
-}
-
-TEST(JudgeTest, AFallOnTheWaySpoilsIt) {
-  RunTruth truth;
-  truth.state.objects = {Mug(4.0, 2.0, 0.74)};
-  truth.falls = {{"Mug1", 1}};
-  HypothesisRun run;
-  Judge(MugGoal(), Room(), truth, &run);
-  EXPECT_FALSE(run.success);
-  EXPECT_EQ(run.verdict, "mug1 stands on table1, Mug1 fell");
-}
-
-TEST(JudgeTest, AnObjectElsewhereOrGoneIsNoSuccess) {
-  RunTruth truth;
-  HypothesisRun run;
-  Judge(MugGoal(), Room(), truth, &run);
-  EXPECT_FALSE(run.success);
-  EXPECT_EQ(run.verdict, "no mug1 or mug2 stands on table1");
-}
-
-TEST(JudgeTest, UnknownFurnitureIsNamed) {
-  HypothesisGoal goal = MugGoal();
-  goal.furniture = "tabel1";
-  HypothesisRun run;
-  EXPECT_THAT(ErrorOf([&] { Judge(goal, Room(), {}, &run); }),
-              AllOf(HasSubstr("tabel1"), HasSubstr("did you mean 'Table1'")));
-}
-
-// Both scenarios begin unfinished, and the objects and furniture that decide are there.
-TEST(JudgeTest, NoScenarioBeginsWithSuccess) {
+// Both scenarios begin unfinished, and the objects and areas that decide are there.
+TEST(HypothesisScenariosTest, NoScenarioBeginsWithSuccess) {
   const auto world =
       world::LoadWorld(imagination::ReadSetupConfig(kRoot + "/config/scene.yaml").world);
   for (const std::string scenario : {"topple", "serve_coffee"}) {
@@ -118,14 +163,27 @@ TEST(JudgeTest, NoScenarioBeginsWithSuccess) {
     RunTruth truth;
     for (const auto& object :
          ReadScenario(kRoot + "/config/scenarios/" + scenario + ".yaml").objects) {
-      truth.state.objects.push_back({object.name, object.model, object.X_MO, {}, ""});
+      simulation::ObjectFate& fate = truth.objects[base::ToLower(object.name)];
+      fate.X_MO = object.X_MO;
+      fate.stands = true;
     }
     for (const std::string& object : goal.objects) {
-      EXPECT_NE(truth.state.Find(object), nullptr) << scenario << ": " << object;
+      EXPECT_EQ(truth.objects.count(object), 1U) << scenario << ": " << object;
     }
     HypothesisRun run;
-    Judge(goal, world, truth, &run);
-    EXPECT_FALSE(run.success) << scenario;
+    Judge(goal, PlacesOf(goal, world, 0.14), truth, &run);
+    EXPECT_THAT(run.broken_rules, ElementsAre("not_there")) << scenario;
+  }
+}
+
+TEST(HypothesisScenariosTest, TheCoffeesPlacesAreTheGuestsOwn) {
+  const std::string domain = base::ReadTextFile(kRoot + "/config/domains/restaurant.lisp");
+  for (const std::string& area : ReadHypothesisGoal(kFile, "serve_coffee").areas) {
+    EXPECT_TRUE(domain.find("(hasPlacingAreaRight sittingareawesttable1 " + area + ")") !=
+                    std::string::npos ||
+                domain.find("(hasPlacingAreaLeft sittingareawesttable1 " + area + ")") !=
+                    std::string::npos)
+        << area;
   }
 }
 
@@ -193,6 +251,8 @@ TEST(HypothesisGoalTest, UnknownScenariosAndBadFilesAreNamed) {
     return ErrorOf([&] { ReadHypothesisGoal(path, "topple"); });
   };
   EXPECT_THAT(broken("[peppermill1]", "[]"), HasSubstr("objects"));
+  EXPECT_THAT(broken("[placingAreaWestRightTable1, placingAreaWestLeftTable1]", "[]"),
+              HasSubstr("areas"));
   EXPECT_THAT(broken("start_limit: 180.0", "start_limit: -1"), HasSubstr("start_limit"));
   EXPECT_THAT(broken("start_limit", "strat_limit"), HasSubstr("start_limit"));
   EXPECT_THAT(broken("time_limit: 1500.0", "time_limit: soon"), HasSubstr("time_limit"));
@@ -257,6 +317,9 @@ TEST(HypothesisReportTest, SaysTheSameToMachines) {
   EXPECT_EQ(json["pace"], 4.0);
   EXPECT_EQ(json["with_imagination"]["successes"], 1);
   EXPECT_EQ(json["without_imagination"]["falls"], 1);
+  EXPECT_EQ(json["without_imagination"]["broken_rules"]["not_there"], 1);
+  EXPECT_EQ(json["with_imagination"]["broken_rules"]["not_there"], 0);
+  EXPECT_EQ(json["list"][1]["broken_rules"][0], "not_there");
   EXPECT_EQ(json["without_imagination"]["duration"]["mean"], 110.0);
   EXPECT_EQ(json["with_imagination"]["steps"], 12.0);
   EXPECT_EQ(json["paired_difference"]["mean"], 1.0);
@@ -266,6 +329,9 @@ TEST(HypothesisReportTest, SaysTheSameToMachines) {
   ASSERT_THAT(lines, SizeIs(4));  // head, two runs, end
   EXPECT_THAT(lines[0], HasSubstr("run,imagination,seed"));
   EXPECT_THAT(lines[1], HasSubstr("move_base_param(area1, slow); none"));
+  EXPECT_THAT(lines[2], HasSubstr("not_there"));
+  EXPECT_THAT(HypothesisText(report), HasSubstr("rule       with  without"));
+  EXPECT_THAT(HypothesisText(report), HasSubstr("not_there     0        1"));
 }
 
 }  // namespace

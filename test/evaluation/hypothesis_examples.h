@@ -29,6 +29,7 @@ inline HypothesisRun RecordOf(int run, bool imagines, bool success, std::uint64_
   record.outcome = success ? "succeeded" : "failed";
   record.success = success;
   record.verdict = success ? "mug1 stands on table1" : "no mug1 stands on table1";
+  if (!success) record.broken_rules = {"not_there"};
   record.falls = success ? 0 : 1;
   record.duration = 100.0 + 10.0 * run;
   record.steps = imagines ? 12 : 10;

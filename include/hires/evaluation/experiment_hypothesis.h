@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "hires/evaluation/achieve.h"
 #include "hires/evaluation/statistics.h"
+#include "hires/simulation/truth_record.h"
 #include "hires/world/world.h"
 
 // The project's hypothesis: a robot that imagines critical steps before it does them does its tasks
@@ -16,8 +18,8 @@ namespace hires::evaluation {
 
 /// What counts as success in a scenario, and how long a run may take.
 struct HypothesisGoal {
-  std::vector<std::string> objects;  ///< one of these...
-  std::string furniture;             ///< ... stands upright on this, a static body of the world
+  std::vector<std::string> objects;  ///< one of these ...
+  std::vector<std::string> areas;    ///< ... stands on one of these placing areas; lower case, both
   double time_limit{900.0};          ///< [s] simulated, from the system's start
   double start_limit{180.0};         ///< [s] of the wall's clock, until the system is there
   double wall_limit{3600.0};         ///< [s] likewise, for a whole run
@@ -50,10 +52,11 @@ struct HypothesisRun {
   bool is_complete{false};  ///< the task came to an end, well or not; else the run broke down
   std::string outcome;      ///< as ToString(AchieveOutcome); or timed_out, system_died, not_started
   std::string reason;
-  bool success{false};   ///< by what is really so, not by what the robot believes; false if broken
-  std::string verdict;   ///< why: "mug1 stands on table1", "peppermill1 fell"
-  int falls{0};          ///< of all objects
-  std::string contact;   ///< first collision of the robot, or empty
+  bool success{false};  ///< by what is really so, not by what the robot believes; false if broken
+  std::string verdict;  ///< why: "mug1 stands on placingareawestrighttable1", "peppermill1 fell"
+  std::vector<std::string> broken_rules;  ///< words of JudgeRule; empty where it succeeded
+  int falls{0};                           ///< of all objects
+  std::string contact;                    ///< first collision of the robot, or empty
   double duration{0.0};  ///< [s] simulated, from the first step's or imagination's begin to the end
   int steps{0};          ///< begun
   int replans{0};
@@ -70,21 +73,42 @@ nlohmann::ordered_json ToJson(const HypothesisRun& run);
 /// @throws base::ConfigError naming `where` and the field.
 HypothesisRun ParseHypothesisRun(const nlohmann::ordered_json& json, const std::string& where);
 
-/// How loose objects really are at a run's end.
+/// How loose objects really fared when a run ends, by name in lower case.
 struct RunTruth {
-  world::WorldState state;
-  std::map<std::string, int> falls;  ///< by object, since the run's start
-  std::string contact;               ///< the robot's first collision, or empty
+  std::map<std::string, simulation::ObjectFate> objects;
+  std::string contact;  ///< the robot's first collision, or empty
 };
 
-/// Whether the object stands upright on that body: tilted by less than 0.1 rad, held by nothing,
-/// its origin (on its underside) within 0.02 m of the top of one of the body's shapes and over it.
-bool StandsOn(const world::StaticBody& body, const world::ObjectState& object);
+/// What a run must not break to be a success. At least as strict as a rollout is judged.
+enum class JudgeRule {
+  kFell,         ///< a thing that the task is about fell, be it that it was put up again
+  kKnockedOver,  ///< any other thing did
+  kTouched,      ///< the robot touched something
+  kHeld,         ///< the thing is still in a hand
+  kNotThere      ///< none of the things stands where the task wants it
+};
+/// "fell", "knocked_over", "touched", "held", "not_there".
+std::string ToString(JudgeRule rule);
+const std::vector<JudgeRule>& AllJudgeRules();
 
-/// Success and why: one of the goal's objects stands on the furniture, and none of them fell.
-/// @throws base::ConfigError if the world has no such furniture.
-void Judge(const HypothesisGoal& goal, const world::World& world, const RunTruth& truth,
-           HypothesisRun* run);
+/// A place that the task is content with: a square round its middle, on top of furniture.
+struct WantedPlace {
+  std::string name;  ///< lower case
+  geometry::Pose3 X_MA;
+  double half_width{0.14};  ///< [m]
+};
+/// @param half_width  [m] as rollouts are judged: skills::PlaceParams::area_half_width.
+/// @throws base::ConfigError for an area that the world does not have, with names like it.
+std::vector<WantedPlace> PlacesOf(const HypothesisGoal& goal, const world::World& world,
+                                  double half_width);
+
+/// Whether the object stands there: as the fall detector says, its origin (on its underside) over
+/// the square and within 0.02 m of the place's height.
+bool StandsAt(const WantedPlace& place, const simulation::ObjectFate& object);
+
+/// Success, verdict, broken rules, falls and contact of the run.
+void Judge(const HypothesisGoal& goal, const std::vector<WantedPlace>& places,
+           const RunTruth& truth, HypothesisRun* run);
 
 /// What the execution monitor reports, counted.
 void CountReport(const AchieveReport& report, HypothesisRun* run);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -24,6 +25,7 @@ struct HypothesisSetting {
 struct HypothesisArm {
   int runs{0}, complete{0}, successes{0};
   int falls{0};                                 ///< of all objects in all runs
+  std::map<std::string, int> broken_rules;      ///< complete runs that broke a rule of the judge
   Interval success;                             ///< share, with the exact 95 % interval
   double duration_mean{0.0}, duration_sd{0.0};  ///< [s]; sd divides by n
   double steps{0.0}, replans{0.0};              ///< means
