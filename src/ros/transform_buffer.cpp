@@ -53,6 +53,7 @@ TransformBuffer::News TransformBuffer::Take(const tf2_msgs::TFMessage& msg, bool
                                           transform.child_frame_id, why));
       continue;
     }
+    if (!are_static && IsRepeated(transform)) continue;
     if (!buffer_.setTransform(transform, "", are_static)) continue;  // too old
     const double stamp = are_static ? kForever : transform.header.stamp.toSec();
     const bool is_new =
@@ -60,6 +61,14 @@ TransformBuffer::News TransformBuffer::Take(const tf2_msgs::TFMessage& msg, bool
     if (is_new) news.stamps.push_back(stamp);
   }
   return news;
+}
+
+/// tf2 prints a warning of two lines for each that comes twice.
+bool TransformBuffer::IsRepeated(const geometry_msgs::TransformStamped& msg) {
+  ros::Time& newest = newest_[msg.child_frame_id];
+  const bool is_repeated = !msg.header.stamp.isZero() && newest == msg.header.stamp;
+  newest = msg.header.stamp;
+  return is_repeated;
 }
 
 bool TransformBuffer::IsKnown(const std::string& frame) const {
@@ -95,6 +104,9 @@ std::optional<double> TransformBuffer::NewestOf(const std::string& parent,
   return newest.isZero() ? kForever : newest.toSec();
 }
 
-void TransformBuffer::ForgetMoving() { buffer_.clear(); }
+void TransformBuffer::ForgetMoving() {
+  buffer_.clear();
+  newest_.clear();
+}
 
 }  // namespace hires_ros

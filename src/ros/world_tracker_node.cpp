@@ -123,6 +123,7 @@ void WorldTrackerNode::Handle(double time) {
   lack_ = sensors_.state().MissingAt(time);
   if (lack_ != sensing::Missing::kNothing) {
     ++num_dropped_;
+    sensors_.objects()->DropUntil(time);  // else it would be the next moment for good
     return;
   }
   ++num_moments_;

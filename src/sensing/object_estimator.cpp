@@ -159,6 +159,16 @@ void ObjectEstimator::Drop(const std::string& why, LookNews* news) {
   news->warnings.push_back("look: " + why);
 }
 
+int ObjectEstimator::DropUntil(double time) {
+  int num_dropped = 0;
+  while (!looks_.empty() && looks_.front().look.stamp <= time) {
+    looks_.pop_front();
+    ++num_dropped;
+  }
+  num_dropped_ += num_dropped;
+  return num_dropped;
+}
+
 std::optional<double> ObjectEstimator::NextLook(double time) const {
   for (const Waiting& one : looks_) {
     if (!one.is_tried && one.look.stamp >= time) return one.look.stamp;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -332,7 +333,7 @@ TEST(ThisComputerTest, ASocketOfThisProcessIsFoundAndKnownAsRos) {
   const auto owners = FindSocketOwners({*found}, "/proc", "");
   ASSERT_EQ(owners.count(found->inode), 1u);
   EXPECT_EQ(owners.at(found->inode).pid, getpid());
-  EXPECT_EQ(owners.at(found->inode).name, "ros_doctor_test");
+  EXPECT_EQ(owners.at(found->inode).name, program_invocation_short_name);
   EXPECT_FALSE(ros::isInitialized()) << "a call into roscpp, which links this test with it";
   EXPECT_TRUE(owners.at(found->inode).is_ros);
 }

@@ -3,6 +3,7 @@
 that differ are named. Run alone, or by `rostest hires imagination_bad_files.test`."""
 
 import os
+import re
 import sys
 import unittest
 
@@ -81,17 +82,24 @@ class ImaginationBadFilesTest(unittest.TestCase):
                           'differs: the client has' % k, answer.report['why'])
 
     def worker_config(self, **standing):
-        """Path of a worker's configuration whose scene says so of falls."""
-        scene = read_yaml('scene.yaml')
-        scene['standing'].update(standing)
+        """Path of a worker's configuration whose scene says so of falls, and is the same elsewhere
+        to the letter: hashes are of the text of values."""
+        with open(os.path.join(CONFIG_FOLDER, 'scene.yaml')) as file:
+            scene = file.read()
         for key in ('world', 'robot', 'objects', 'uncertainty'):
-            scene[key] = os.path.normpath(os.path.join(CONFIG_FOLDER, scene[key]))
+            scene = re.sub(r'(?m)^(%s: )(\S+)' % key, lambda found: found[1] + os.path.normpath(
+                os.path.join(CONFIG_FOLDER, found[2])), scene, count=1)
+        for key, value in standing.items():
+            scene, count = re.subn(r'(?m)^(standing: .*\b%s: )[^,}]+' % key,
+                                   lambda found: '%s%g' % (found[1], value), scene)
+            self.assertEqual(count, 1, key)
         worker = read_yaml('sim_worker.yaml')
         worker['scene'] = self.system.file('scene.yaml')
         path = self.system.file('sim_worker.yaml')
-        for name, content in ((worker['scene'], scene), (path, worker)):
-            with open(name, 'w') as file:
-                yaml.safe_dump(content, file)
+        with open(worker['scene'], 'w') as file:
+            file.write(scene)
+        with open(path, 'w') as file:
+            yaml.safe_dump(worker, file)
         return path
 
     def copy_of_world(self, text):

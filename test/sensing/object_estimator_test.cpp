@@ -242,6 +242,17 @@ TEST_F(ObjectEstimatorTest, ALookOfBeforeAHandTookSomethingSaysNothingOfNow) {
   EXPECT_TRUE(objects_.memory().objects().at("mug1").is_held);
 }
 
+TEST_F(ObjectEstimatorTest, LooksOfATimeThatNobodyWillKnowAreDroppedAndComeUpNoMore) {
+  const double then = time_;
+  See(camera_, {Mug(At(1.0, 0.0, 0.0))});
+  objects_.OnLook({then + 0.05, camera_, {}});
+  ASSERT_EQ(objects_.NextLook(then), then);
+  EXPECT_EQ(objects_.DropUntil(then), 1);
+  EXPECT_EQ(objects_.NextLook(then), then + 0.05);
+  EXPECT_EQ(objects_.num_dropped(), 1);
+  EXPECT_EQ(objects_.DropUntil(then), 0);
+}
+
 TEST_F(ObjectEstimatorTest, AClockThatBeginsAgainIsFollowed) {
   Grasp();
   objects_.OnLook({time_ + 0.2, camera_, {}});

@@ -3,6 +3,7 @@
 #include <tf2/buffer_core.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,8 +30,10 @@ class TransformBuffer : public hires::sensing::FrameTree {
 
  private:
   bool IsKnown(const std::string& frame) const;
+  bool IsRepeated(const geometry_msgs::TransformStamped& msg);
 
   tf2::BufferCore buffer_;
+  std::map<std::string, ros::Time> newest_;  // stamp that came last, by child frame
 };
 
 }  // namespace hires_ros
