@@ -234,7 +234,7 @@ class ClosedLoop(BlackboardAccess):
     @param pace      [s] of the simulated robot per second.
     @param rollouts  of an imagination, per combination of alternatives."""
 
-    def __init__(self, seed=1, pace=10.0, rollouts=4, workers=1, uncertainty=None):
+    def __init__(self, seed=1, pace=10.0, rollouts=8, workers=1, uncertainty=None):
         self.processes = Processes()
         self.main = self.processes.master()
         self.main.set_param('/use_sim_time', True)
