@@ -176,7 +176,7 @@ class ImaginationBadFilesTest(unittest.TestCase):
                                ('relay', 'poll_period', 'often'),
                                ('worker_host', 'nice', 77)):
             good = read_yaml(node + '.yaml')
-            for path in {'scene', 'relay_config'} & set(good):
+            for path in {'scene', 'prices', 'validated', 'relay_config'} & set(good):
                 good[path] = os.path.join(CONFIG_FOLDER, good[path])
             without = {k: v for k, v in good.items() if k != key}
             for change, text in (({key: bad}, '%s is' % key), ({}, key),
