@@ -161,8 +161,7 @@ SetupConfig ReadSetupConfig(const std::string& path) {
   }
   in.RejectUnknownKeys();
   base::Hasher hasher;
-  for (const char* section :
-       {"driving", "blind_driving", "manipulation", "sensing"}) {
+  for (const char* section : {"driving", "blind_driving", "manipulation", "sensing"}) {
     hasher.Add(in.Sub(section).Canonical());
   }
   config.params_hash = hasher.value();
@@ -173,9 +172,9 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   ImaginationSetup setup;
   world::World world = LoadWorldWithObjects(config, &setup.object_models);
   robot::Robot robot = LoadAnyRobot(config.robot);
-  setup.skills = std::make_shared<const skills::SkillSet>(skills::MakeSkillSet(
-      world, robot, config.driving, config.blind, config.manipulation, config.standing,
-      skills::LoadActionSet(config.action_libraries)));
+  setup.skills = std::make_shared<const skills::SkillSet>(
+      skills::MakeSkillSet(world, robot, config.driving, config.blind, config.manipulation,
+                           config.standing, skills::LoadActionSet(config.action_libraries)));
   setup.actions_hash = setup.skills->actions->hash();
   base::Hasher hasher;
   hasher.Add(world.hash);

@@ -91,7 +91,8 @@ TEST(CoverageTest, ShownIntervalsHoldTheTruthInNinetyFivePercentOfRequests) {
                  early_stop ? "on" : "off", found.share(), found.other_share(),
                  found.num_stopped_early, found.rollouts_sum / found.num_requests);
       EXPECT_GE(found.share(), 0.95) << truth << (early_stop ? " on" : " off");
-      // Clopper-Pearson covers the other's share by 95.1 to 96.5 %: chance may take three deviations.
+      // Clopper-Pearson covers the other's share by 95.1 to 96.5 %: chance may take three
+      // deviations.
       const double chance = 3.0 * std::sqrt(0.95 * 0.05 / found.num_requests);
       EXPECT_GE(found.other_share(), 0.95 - chance) << other << (early_stop ? " on" : " off");
       // Else nothing would be stopped by what was seen, and the test could not fail.

@@ -47,7 +47,7 @@ struct Evidence {
   } max_tilt;                        ///< [rad], of rollouts with samples
   std::optional<ExpectedCost> cost;  ///< none: nothing is priced, or nothing was played
   int num_rollouts{0};
-  std::map<base::Failure, int> failures;  ///< failure -> rollouts
+  std::map<base::Failure, int> failures;    ///< failure -> rollouts
   std::map<std::string, int> first_causes;  ///< what began it -> rollouts; those with a cause alone
   int worst_rollout{-1};  ///< index of the one that leaned most among those that failed, else among
                           ///< all; the first of equals; -1 when there is none

@@ -61,7 +61,7 @@ struct ImaginationSetup {
   world::StandingCriterion standing;
   std::map<std::string, std::string> object_models;  ///< instance (lower case) -> model
   translation::TranslatorContext translator;  ///< knows names of objects and areas; no fluents
-  std::uint64_t world_hash{0};  ///< world, object models and all parameters of skills
+  std::uint64_t world_hash{0};                ///< world, object models and all parameters of skills
   std::uint64_t robot_hash{0};
   std::uint64_t physics_hash{0};  ///< see PhysicsHash
   std::uint64_t actions_hash{0};  ///< of all actions, with the libraries that they came from

@@ -67,9 +67,8 @@ class FallDetector {
   /// Somebody else put it somewhere: it stands where the next look finds it.
   void Reset();
 
-  Fall fall() const {
-    return fall_;
-  }  ///< what it is down by; kNone if it did not fall, or was put up
+  /// What it is down by; kNone if it did not fall, or was put up.
+  Fall fall() const { return fall_; }
   bool is_down() const { return fall_ != Fall::kNone; }
   /// It stood at the last look: nothing holds it, it is not down and does not lean too far.
   bool stands() const;
