@@ -160,11 +160,12 @@ void ObjectEstimator::Drop(const std::string& why, LookNews* news) {
 }
 
 int ObjectEstimator::DropUntil(double time) {
-  int num_dropped = 0;
-  while (!looks_.empty() && looks_.front().look.stamp <= time) {
-    looks_.pop_front();
-    ++num_dropped;
-  }
+  // Of a look that waits for its frame it was known how the robot stood.
+  const auto first = std::remove_if(looks_.begin(), looks_.end(), [&](const Waiting& one) {
+    return !one.is_tried && one.look.stamp <= time;
+  });
+  const int num_dropped = static_cast<int>(looks_.end() - first);
+  looks_.erase(first, looks_.end());
   num_dropped_ += num_dropped;
   return num_dropped;
 }

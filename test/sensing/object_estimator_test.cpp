@@ -162,6 +162,7 @@ TEST_F(ObjectEstimatorTest, ALookWaitsAWhileForTheTransformOfItsFrame) {
   EXPECT_EQ(objects_.NextLook(time_), time_) << "nobody has looked at it";
   EXPECT_EQ(Update().num_looks, 0);
   EXPECT_FALSE(objects_.NextLook(time_));
+  EXPECT_EQ(objects_.DropUntil(time_), 0) << "it was known how the robot stood";
   tree_->Tell("base_footprint", "arm_camera", time_, Lift({0.2, 0.0, 0.0}));
   EXPECT_EQ(Update().num_looks, 1);
   ExpectMugAt(Lift(X_MB_) * Eigen::Vector3d(1.2, 0.0, 0.7));

@@ -57,7 +57,8 @@ class ObjectEstimator {
 
   /// Remembers what was felt and seen up to this moment.
   LookNews Update(const RobotEstimate& now);
-  /// Drops the looks up to a moment of which nobody will ever know how the robot stood.
+  /// Drops the looks up to a moment of which nobody will ever know how the robot stood, but for
+  /// those that wait for their frame.
   /// @return how many.
   int DropUntil(double time);
   /// Stamp of the first look from `time` on that no Update has seen; nothing if there is none.
