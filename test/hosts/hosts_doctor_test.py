@@ -8,7 +8,6 @@ import os
 import sys
 import unittest
 
-import rosunit
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
@@ -16,6 +15,7 @@ sys.path.insert(0, HERE)
 from host_processes import (HERE_IN_SOURCE, HostProcesses, TwoHostSystem, executable,  # noqa: E402
                             wait_until)
 from network import Network, skip_unless_possible  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 FAKE = os.path.join(HERE_IN_SOURCE, 'test', 'ros', 'support', 'doctor_robot.py')
 AHEAD = 0.2  # [s]
@@ -121,4 +121,4 @@ class HostsDoctorTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'hosts_doctor', HostsDoctorTest)
+    run_test('hosts_doctor', HostsDoctorTest)

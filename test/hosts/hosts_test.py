@@ -9,7 +9,6 @@ import sys
 import threading
 import unittest
 
-import rosunit
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
@@ -17,6 +16,7 @@ sys.path.insert(0, HERE)
 from host_processes import (HERE_IN_SOURCE, HostProcesses, MAIN_PORT, TwoHostSystem,  # noqa: E402
                             executable, wait_until)
 from network import Network, skip_unless_possible  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 ROLLOUTS = 24
 FEW = 8
@@ -141,4 +141,4 @@ def workspace_entrance():
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'hosts', HostsTest)
+    run_test('hosts', HostsTest)

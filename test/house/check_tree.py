@@ -375,6 +375,22 @@ def check_failure_tables(root):
                            f"{FAILURE_TABLE}, or add a code there")
 
 
+TEST_RUN = "test/ros/support/test_run.py"
+RUNS_CASES_ITSELF = re.compile(r"\b(?:rosunit\.unitrun|rostest\.(?:rosrun|run|unitrun))\b"
+                               r"|^\s*from (?:rosunit|rostest) import .*\b(?:unitrun|rosrun)\b")
+
+
+def check_rostests(root):
+    """rosunit does not say which part of a test failed; what runs the cases for all tests does."""
+    for path in [p for folder in ("test", "examples") for p in files_below(root, folder)]:
+        if not path.endswith(".py") or path == TEST_RUN or path.startswith("test/house/"):
+            continue
+        for number, line in enumerate(read(root, path).splitlines(), start=1):
+            if RUNS_CASES_ITSELF.search(line):
+                yield (f"{path}:{number}: lets rosunit run the cases, which does not tell what fails "
+                       f"in a subTest; call run_test of {TEST_RUN}")
+
+
 def check_instructions(root):
     """What CONTRIBUTING.md tells people to open must be there."""
     path = "CONTRIBUTING.md"
@@ -389,7 +405,7 @@ def check_instructions(root):
 
 CHECKS = [check_includes, check_dependencies, check_headers, check_whitespace, check_packages,
           check_catkin_components, check_scripts, check_failure_codes, check_failure_texts,
-          check_failure_tables, check_instructions]
+          check_failure_tables, check_rostests, check_instructions]
 
 
 def complaints_about(root):

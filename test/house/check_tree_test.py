@@ -156,6 +156,16 @@ class CheckTreeTest(unittest.TestCase):
         text = "Open `src/base/rng.cpp`, `src/`, `scripts/build --where`\nand `src/base/dice.cpp`.\n"
         self.expect_one({"CONTRIBUTING.md": text}, "CONTRIBUTING.md:2", "no src/base/dice.cpp")
 
+    def test_rostests_that_would_hide_what_fails_are_found(self):
+        for line in ("rosunit.unitrun('hires', 'a', ATest)", "rostest.rosrun('hires', 'a', ATest)",
+                     "from rosunit import unitrun"):
+            self.expect_one({"test/ros/a_test.py": "import rosunit\n" + line + "\n"},
+                            "test/ros/a_test.py:2", "subTest", "run_test")
+        for path, line in (("test/ros/a_test.py", "run_test('a', ATest)"),
+                           ("test/ros/a_test.py", "from rosunit import junitxml"),
+                           ("test/ros/support/test_run.py", "rosunit.unitrun")):
+            self.assertEqual(self.complaints({path: line + "\n"}), [])
+
     def test_scripts_that_cannot_be_read_are_found(self):
         self.expect_one({"scripts/build": "#!/bin/bash\nif true; then\n"}, "scripts/build", "bash")
         self.expect_one({"scripts/table": "#!/usr/bin/env python3\nprint(\n"},

@@ -8,12 +8,11 @@ import sys
 import unittest
 import xmlrpc.client
 
-import rosunit
-
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 from lab import NODES, Lab, wait_for  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 TRAJECTORY = 'trajectory_msgs/JointTrajectory'
 GRIPPER = 'pr2_controllers_msgs/Pr2GripperCommand'
@@ -186,5 +185,5 @@ class Pr2NamesMoveBaseTest(Pr2NamesTest):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'pr2_names',
-                    Pr2NamesMoveBaseTest if '--move_base' in sys.argv else Pr2NamesTest)
+    run_test('pr2_names',
+             Pr2NamesMoveBaseTest if '--move_base' in sys.argv else Pr2NamesTest)

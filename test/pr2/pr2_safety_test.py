@@ -8,13 +8,12 @@ import signal
 import sys
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
-from failures import text_of  # noqa: E402
 from lab import Lab, wait_for  # noqa: E402
+from failures import text_of  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 FAST = 0.4          # [m/s] a drive is well under way
 STILL = 0.005       # [m/s]
@@ -173,4 +172,4 @@ class Pr2SafetyTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'pr2_safety', Pr2SafetyTest)
+    run_test('pr2_safety', Pr2SafetyTest)

@@ -7,12 +7,11 @@ import os
 import sys
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 from fake.scene import Pose2  # noqa: E402
 from lab import Lab  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 TASK = 'carry_object_on_tray peppermill1 counter1 table1'
 TABLE_1 = (7.73, 11.49)  # [m] its middle
@@ -64,5 +63,5 @@ class Pr2ToppleMoveBaseTest(Pr2ToppleTest):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'pr2_topple',
-                    Pr2ToppleMoveBaseTest if '--move_base' in sys.argv else Pr2ToppleTest)
+    run_test('pr2_topple',
+             Pr2ToppleMoveBaseTest if '--move_base' in sys.argv else Pr2ToppleTest)

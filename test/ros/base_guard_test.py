@@ -9,7 +9,6 @@ import sys
 import unittest
 
 import rospy
-import rosunit
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
@@ -21,6 +20,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 
 from failures import text_of  # noqa: E402
 from ros_processes import Processes, executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..')
 CONFIG = os.path.join(ROOT, 'config', 'base_guard.yaml')
@@ -265,4 +265,4 @@ class BaseGuardTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'base_guard', BaseGuardTest)
+    run_test('base_guard', BaseGuardTest)

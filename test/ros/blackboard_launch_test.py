@@ -8,7 +8,6 @@ import threading
 import unittest
 
 import rospy
-import rosunit
 
 from hires.msg import BlackboardError, FluentChanges, FluentQuery
 from hires.srv import BlackboardStatistics, QueryFluents
@@ -16,6 +15,7 @@ from hires.srv import BlackboardStatistics, QueryFluents
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from ros_processes import LIMIT  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 
 class BlackboardLaunchTest(unittest.TestCase):
@@ -50,4 +50,4 @@ class BlackboardLaunchTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'blackboard_launch', BlackboardLaunchTest)
+    run_test('blackboard_launch', BlackboardLaunchTest)

@@ -8,12 +8,12 @@ import sys
 import threading
 import unittest
 
-import rosunit
 import yaml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..'))
 ONTOLOGY = [os.path.join(ROOT, 'config', 'ontology', name) for name in ('upper.ttl', 'race.ttl')]
@@ -669,4 +669,4 @@ class BlackboardTest(unittest.TestCase):
 
 if __name__ == '__main__':
     # Not 'blackboard': rostest gives the test's name to its node.
-    rosunit.unitrun('hires', 'blackboard_node', BlackboardTest)
+    run_test('blackboard_node', BlackboardTest)

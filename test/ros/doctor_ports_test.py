@@ -7,11 +7,10 @@ import re
 import sys
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 
 class DoctorPortsTest(unittest.TestCase):
@@ -53,4 +52,4 @@ class DoctorPortsTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'doctor_ports', DoctorPortsTest)
+    run_test('doctor_ports', DoctorPortsTest)

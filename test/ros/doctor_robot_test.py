@@ -11,12 +11,12 @@ import unittest
 import xmlrpc.client
 import xmlrpc.server
 
-import rosunit
 
 SUPPORT = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support')
 sys.path.insert(0, SUPPORT)
 
 from ros_processes import LIMIT, Processes, executable, free_port  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 ROBOT = os.path.join(SUPPORT, 'doctor_robot.py')
 
@@ -222,4 +222,4 @@ class DoctorRobotTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'doctor_robot', DoctorRobotTest)
+    run_test('doctor_robot', DoctorRobotTest)

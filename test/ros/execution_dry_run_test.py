@@ -6,12 +6,11 @@ import os
 import sys
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from execution_system import CARRY, ExecutionSystem  # noqa: E402
 from ros_processes import executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 NORTH = 'premanipulationareanorthtable1'
 
@@ -79,4 +78,4 @@ class ExecutionDryRunTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'execution_dry_run', ExecutionDryRunTest)
+    run_test('execution_dry_run', ExecutionDryRunTest)

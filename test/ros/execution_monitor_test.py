@@ -8,13 +8,12 @@ import signal
 import sys
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 import failures  # noqa: E402
 from execution_system import CARRY, SERVE, ExecutionSystem, text_of  # noqa: E402
 from ros_processes import executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 NORTH = 'premanipulationareanorthtable1'
 MOST_REACTION = 50.0  # [ms] from an event to what is dispatched for it
@@ -397,4 +396,4 @@ class ExecutionMonitorTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'execution_monitor_node', ExecutionMonitorTest)
+    run_test('execution_monitor_node', ExecutionMonitorTest)

@@ -9,12 +9,12 @@ import sys
 import unittest
 import uuid
 
-import rosunit
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, 'support'))
 
 from ros_processes import Processes, executable, processes_with, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 MARK = 'HIRES_TEST_MARK'
 START = 180.0  # [s] at most for a whole system to start on a loaded machine
@@ -114,4 +114,4 @@ class HypothesisTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'hypothesis', HypothesisTest)
+    run_test('hypothesis', HypothesisTest)

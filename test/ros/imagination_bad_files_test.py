@@ -7,7 +7,6 @@ import re
 import sys
 import unittest
 
-import rosunit
 import yaml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
@@ -15,6 +14,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 from imagination_system import (ACTION, CONFIG_FOLDER, ImaginationSystem,  # noqa: E402
                                 read_yaml)
 from ros_processes import executable  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 
 class ImaginationBadFilesTest(unittest.TestCase):
@@ -203,4 +203,4 @@ class ImaginationBadFilesTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'imagination_bad_files', ImaginationBadFilesTest)
+    run_test('imagination_bad_files', ImaginationBadFilesTest)

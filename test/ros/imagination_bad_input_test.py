@@ -7,13 +7,12 @@ import os
 import sys
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from failures import text_of  # noqa: E402
 from imagination_system import ImaginationSystem  # noqa: E402
 from ros_processes import LIMIT  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 EAST_COUNTER = 'preManipulationAreaEastCounter1'
 SOUTH_TABLE = 'preManipulationAreaSouthTable1'
@@ -324,4 +323,4 @@ class ImaginationBadInputTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'imagination_bad_input', ImaginationBadInputTest)
+    run_test('imagination_bad_input', ImaginationBadInputTest)

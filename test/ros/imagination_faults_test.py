@@ -13,12 +13,11 @@ import sys
 import time
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from imagination_system import ImaginationSystem  # noqa: E402
 from ros_processes import executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 ROLLOUTS = 40  # long enough for something to happen in the middle
 FEW = 16       # enough to see whether all still works
@@ -391,4 +390,4 @@ class ImaginationFaultsTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'imagination_faults', ImaginationFaultsTest)
+    run_test('imagination_faults', ImaginationFaultsTest)

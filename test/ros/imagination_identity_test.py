@@ -7,11 +7,10 @@ import signal
 import sys
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from imagination_system import ImaginationSystem  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 ROLLOUTS = 48
 SLOW_AND_FAST = ['--action', 'move_base_param', '--from', 'preManipulationAreaEastCounter1',
@@ -113,4 +112,4 @@ class ImaginationIdentityTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'imagination_identity', ImaginationIdentityTest)
+    run_test('imagination_identity', ImaginationIdentityTest)

@@ -9,12 +9,11 @@ import time
 import unittest
 from concurrent.futures import ThreadPoolExecutor
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from imagination_system import ImaginationSystem  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 CYCLES = 20
 SIDE_BY_SIDE = 2  # under a master each
@@ -85,4 +84,4 @@ class ImaginationLaunchTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'imagination_launch', ImaginationLaunchTest)
+    run_test('imagination_launch', ImaginationLaunchTest)

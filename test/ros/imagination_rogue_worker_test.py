@@ -7,11 +7,10 @@ import os
 import sys
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from imagination_system import ImaginationSystem  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 ROLLOUTS = 12
 
@@ -117,4 +116,4 @@ class ImaginationRogueWorkerTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'imagination_rogue_worker', ImaginationRogueWorkerTest)
+    run_test('imagination_rogue_worker', ImaginationRogueWorkerTest)

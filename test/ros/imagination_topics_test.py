@@ -8,12 +8,11 @@ import sys
 import threading
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from imagination_system import ImaginationSystem  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 # What the worker's node publishes under its own master; action topics aside.
 PR2_TOPICS = {'/clock', '/tf', '/tf_static', '/joint_states', '/base_odometry/odom'}
@@ -181,4 +180,4 @@ class ImaginationTopicsTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'imagination_topics', ImaginationTopicsTest)
+    run_test('imagination_topics', ImaginationTopicsTest)

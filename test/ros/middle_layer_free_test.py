@@ -7,13 +7,12 @@ import os
 import sys
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from failures import text_of  # noqa: E402
 from robot_system import RobotSystem  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 EAST_TABLE_2 = (11.78, 11.49)
 TOLERANCE = 0.2 + 0.08 + 3 * 0.03  # [m] goal tolerance, rolling on, error of the localisation
@@ -126,4 +125,4 @@ class MiddleLayerFreeTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'middle_layer_free', MiddleLayerFreeTest)
+    run_test('middle_layer_free', MiddleLayerFreeTest)

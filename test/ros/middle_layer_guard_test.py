@@ -10,13 +10,12 @@ import sys
 import threading
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from failures import failure, text_of  # noqa: E402
 from robot_system import RobotSystem  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 CONTROLLERS = ('navigation/cmd_vel', 'base_controller/command', 'base_guard/cmd_vel',
                'l_arm_controller/command', 'r_arm_controller/command', 'torso_controller/command',
@@ -278,4 +277,4 @@ class MiddleLayerGuardTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'middle_layer_guard', MiddleLayerGuardTest)
+    run_test('middle_layer_guard', MiddleLayerGuardTest)

@@ -10,7 +10,6 @@ import subprocess
 import sys
 import unittest
 
-import rosunit
 import yaml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
@@ -18,6 +17,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 from failures import text_of  # noqa: E402
 from robot_system import COUNTER, MUG, RobotSystem  # noqa: E402
 from ros_processes import executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 CONFIG = os.path.abspath(
     os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'config'))
@@ -285,4 +285,4 @@ class MiddleLayerLockstepTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'middle_layer_lockstep', MiddleLayerLockstepTest)
+    run_test('middle_layer_lockstep', MiddleLayerLockstepTest)

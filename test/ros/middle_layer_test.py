@@ -10,13 +10,12 @@ import signal
 import sys
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from failures import text_of  # noqa: E402
 from robot_system import COUNTER, MUG, RobotSystem  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 # Poses of areas in worlds/restaurant.world: x, y [m], yaw [rad].
 EAST_TABLE_2 = (11.78, 11.49, 3.14)
@@ -308,4 +307,4 @@ class MiddleLayerTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'middle_layer_node', MiddleLayerTest)
+    run_test('middle_layer_node', MiddleLayerTest)

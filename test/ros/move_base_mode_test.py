@@ -10,7 +10,6 @@ import signal
 import sys
 import unittest
 
-import rosunit
 import yaml
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -20,6 +19,7 @@ from failures import text_of  # noqa: E402
 from move_base_system import FAST, ROOT, SLOW, MoveBaseSystem, config_text  # noqa: E402
 from robot_system import Goal  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 # preManipulationAreaEastTable2 of worlds/restaurant.world: x, y [m], yaw [rad].
 AREA, NAME = (11.78, 11.49, 3.14), 'preManipulationAreaEastTable2'
@@ -285,4 +285,4 @@ class MoveBaseModeTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'move_base_mode', MoveBaseModeTest)
+    run_test('move_base_mode', MoveBaseModeTest)

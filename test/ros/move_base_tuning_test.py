@@ -12,13 +12,12 @@ import sys
 import threading
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from failures import text_of  # noqa: E402
 from move_base_system import FAST, NOETIC, OLD, PLANNER, SLOW, MoveBaseSystem  # noqa: E402
 from ros_processes import Processes, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 class Robot:
     """All that the guard wants to know of a robot that stands, and somebody who wants to drive it."""
@@ -288,4 +287,4 @@ class MoveBaseTuningTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'move_base_tuning', MoveBaseTuningTest)
+    run_test('move_base_tuning', MoveBaseTuningTest)

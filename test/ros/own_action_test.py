@@ -12,8 +12,11 @@ import threading
 import unittest
 
 import rospy
-import rostest
 from hires.msg import RobotState
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
+
+from test_run import run_test  # noqa: E402
 
 SEAT = (7.05, 11.43)  # [m] sittingAreaWestTable1, where guest1 sits
 FACING = 0.06         # [rad] the skill's own tolerance of 0.03, and what localisation errs
@@ -56,4 +59,4 @@ class OwnActionTest(unittest.TestCase):
 
 if __name__ == '__main__':
     rospy.init_node('own_action_test', disable_signals=True)
-    rostest.rosrun('hires', 'own_action', OwnActionTest, sys.argv)
+    run_test('own_action', OwnActionTest)

@@ -9,13 +9,13 @@ import unittest
 
 import actionlib
 import rospy
-import rosunit
 
 from hires.msg import Atom, PlanAction, PlanGoal, PlanResult
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from ros_processes import LIMIT, executable  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 DOMAINS = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..',
                                        'config', 'domains'))
@@ -62,4 +62,4 @@ class PlannerLaunchTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'planner_launch', PlannerLaunchTest)
+    run_test('planner_launch', PlannerLaunchTest)

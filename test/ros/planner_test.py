@@ -8,12 +8,12 @@ import sys
 import threading
 import unittest
 
-import rosunit
 import yaml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 # Somebody gets something; and forty choices whose every way ends in vain.
 DOMAIN = """(defdomain delivery (
@@ -496,4 +496,4 @@ def cpu_seconds(pid):
 
 if __name__ == '__main__':
     # Not 'planner': rostest gives the test's name to its node.
-    rosunit.unitrun('hires', 'planner_node', PlannerTest)
+    run_test('planner_node', PlannerTest)

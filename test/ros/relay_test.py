@@ -7,12 +7,12 @@ import signal
 import sys
 import unittest
 
-import rosunit
 import yaml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from ros_processes import Processes, executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 CONFIG = {
     'foreign_master': 'http://127.0.0.1:1/',
@@ -285,4 +285,4 @@ class RelayTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'relay', RelayTest)
+    run_test('relay', RelayTest)

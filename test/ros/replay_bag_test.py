@@ -12,7 +12,6 @@ import unittest
 
 import rosbag
 import rospy
-import rosunit
 from actionlib_msgs.msg import GoalStatusArray
 from hires.msg import (ActionTemplate, Atom, ImagineActionGoal, ImagineActionResult, ImagineGoal,
                        ImagineResult, StringList)
@@ -21,6 +20,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 
 from imagination_system import ImaginationSystem  # noqa: E402
 from ros_processes import LIMIT, executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 SOUTH, NORTH = 'preManipulationAreaSouthTable1', 'preManipulationAreaNorthTable1'
 COMPLETE = ('one_way', 'two_ways', 'refused')  # requests whose answers must repeat themselves
@@ -276,4 +276,4 @@ class ReplayBagTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'replay_bag', ReplayBagTest)
+    run_test('replay_bag', ReplayBagTest)

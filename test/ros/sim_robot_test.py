@@ -9,12 +9,11 @@ import sys
 import threading
 import unittest
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from robot_system import RobotSystem  # noqa: E402
 from ros_processes import LIMIT, executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 START = (12.5, 11.8)
 
@@ -185,4 +184,4 @@ class SimRobotTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'sim_robot_node', SimRobotTest)
+    run_test('sim_robot_node', SimRobotTest)

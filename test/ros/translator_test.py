@@ -6,12 +6,12 @@ import os
 import sys
 import unittest
 
-import rosunit
 import yaml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..'))
 CONFIG = os.path.join(ROOT, 'config')
@@ -164,4 +164,4 @@ class TranslatorTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'translator_node', TranslatorTest)
+    run_test('translator_node', TranslatorTest)

@@ -10,7 +10,6 @@ import unittest
 import uuid
 from concurrent.futures import ThreadPoolExecutor
 
-import rosunit
 import yaml
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -18,6 +17,7 @@ sys.path.insert(0, os.path.join(HERE, 'support'))
 
 from ros_processes import (Processes, executable, free_port_block, is_port_free,  # noqa: E402
                            processes_with, wait_until)
+from test_run import run_test  # noqa: E402
 
 CONFIG_FOLDER = os.path.join(HERE, '..', '..', 'config')
 MARK = 'HIRES_TEST_MARK'
@@ -286,4 +286,4 @@ class WorkerHostTest(Family, unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'worker_host', WorkerHostTest)
+    run_test('worker_host', WorkerHostTest)

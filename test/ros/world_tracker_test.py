@@ -9,12 +9,12 @@ import threading
 import unittest
 
 import numpy
-import rosunit
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from pr2_frames import Robot, planar, quaternion, translation  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..'))
 CONFIG = os.path.join(ROOT, 'config')
@@ -444,4 +444,4 @@ class WorldTrackerTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'world_tracker_node', WorldTrackerTest)
+    run_test('world_tracker_node', WorldTrackerTest)

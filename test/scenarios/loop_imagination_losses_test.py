@@ -5,11 +5,10 @@ so. Run alone, or by `rostest hires loop_imagination_losses.test`."""
 import os
 import sys
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from loop_case import AT_COUNTER, MUG, LoopCase, names  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 # A mug stands firmly: that it is driven fast without imagination does no harm.
 THERE = 'carry_object_on_tray mug1 counter1 table1'
@@ -74,4 +73,4 @@ class ImaginationLossesTest(LoopCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'loop_imagination_losses', ImaginationLossesTest)
+    run_test('loop_imagination_losses', ImaginationLossesTest)

@@ -7,12 +7,11 @@ import math
 import os
 import sys
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from closed_loop import SERVE  # noqa: E402
 from loop_case import AT_COUNTER, BOTH, MUG, STILL, LoopCase  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 THERE = 'carry_object_on_tray mug1 counter1 table1'
 DRIVING = {'pose': [12.5, 9.8, 2.0], 'torso': 'torsodownposture',
@@ -105,4 +104,4 @@ class LoopMishapsTest(LoopCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'loop_mishaps', LoopMishapsTest)
+    run_test('loop_mishaps', LoopMishapsTest)

@@ -6,13 +6,12 @@ import collections
 import os
 import sys
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from closed_loop import link_of, text_of  # noqa: E402
 from loop_case import AT_COUNTER, MUG, STILL, LoopCase  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 THERE = 'carry_object_on_tray mug1 counter1 table1'
 BACK_TO_DRIVING_AREA = -0.8  # [m] from where it picks up to where it came from
@@ -99,4 +98,4 @@ class NodeLossesTest(LoopCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'loop_node_losses', NodeLossesTest)
+    run_test('loop_node_losses', NodeLossesTest)

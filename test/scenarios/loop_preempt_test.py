@@ -7,13 +7,12 @@ import os
 import re
 import sys
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from closed_loop import SERVE, joint_speeds, speed_of  # noqa: E402
 from loop_case import AT_COUNTER, MUG, ON_FLOOR, LoopCase, JOINT_STILL, STILL  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 # A mug stands firmly: what makes it fall is not how the plan goes on, which has no time to imagine.
 THERE = 'carry_object_on_tray mug1 counter1 table1'
@@ -111,4 +110,4 @@ class PreemptTest(LoopCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'loop_preempt', PreemptTest)
+    run_test('loop_preempt', PreemptTest)

@@ -6,8 +6,6 @@ table."""
 import os
 import sys
 
-import rosunit
-
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from claims import FALSE, Snapshot, judge_warning  # noqa: E402
@@ -15,6 +13,7 @@ from closed_loop import IMAGINE_PLACING, link_of  # noqa: E402
 from loop_case import LoopCase  # noqa: E402
 from random_tasks import RandomTask  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
+from test_run import run_test  # noqa: E402
 
 ROW = '%-4s %-48s %-32s %5s %7s %-10s %-34s %s'
 ENDS = {0: 'succeeded', 1: 'no_plan', 2: 'failed'}
@@ -106,4 +105,4 @@ class LoopRandomTasksTest(LoopCase):
 
 
 if __name__ == '__main__':
-    rosunit.unitrun('hires', 'loop_random_tasks', LoopRandomTasksTest)
+    run_test('loop_random_tasks', LoopRandomTasksTest)
