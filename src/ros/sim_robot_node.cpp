@@ -190,6 +190,13 @@ void SimRobotNode::Serve(ros::NodeHandle* nh) {
   serve("hold", std_srvs::SetBoolRequest(), std_srvs::SetBoolResponse(),
         [this](const std_srvs::SetBoolRequest& request) {
           is_held_ = request.data != 0;
+          num_steps_ = 0;
+          return std::string();
+        });
+  serve("step", std_srvs::TriggerRequest(), std_srvs::TriggerResponse(),
+        [this](const std_srvs::TriggerRequest&) {
+          if (!is_held_) return std::string("time goes on by itself; call sim_robot/hold first");
+          ++num_steps_;
           return std::string();
         });
 }
@@ -249,12 +256,13 @@ void SimRobotNode::ReadMail(std::chrono::duration<double> timeout) {
 /// Whoever comes while it stands still must learn the time and what the sensors say.
 void SimRobotNode::AwaitRelease() {
   auto repeat = Steady::now() + kRepeat;
-  while (is_held_ && !stop_) {
+  while (is_held_ && num_steps_ == 0 && !stop_) {
     ReadMail(kShort);
     if (Steady::now() < repeat) continue;
     PublishTick();
     repeat = Steady::now() + kRepeat;
   }
+  num_steps_ = std::max(0, num_steps_ - 1);
 }
 
 void SimRobotNode::AwaitAck() {

@@ -73,6 +73,19 @@ class MiddleLayerTest(unittest.TestCase):
     def path_from(self, first):
         return [state for _, state in self.system.truth[first:]]
 
+    def execute_until(self, condition, what, *words):
+        """An action that is at work, in a world that is held from then on.
+        @param condition  of the robot's true state."""
+        self.system.hold(True)
+        goal = self.system.execute(*words).wait_for_active()
+        self.system.step_until(condition, what)
+        return goal
+
+    def preempt(self, goal):
+        """While the world is held, which then goes on."""
+        self.require(goal.cancel().result(), self.codes.PREEMPTED)
+        self.system.hold(False)
+
     # Driving
 
     def test_drives_to_an_area_round_obstacles(self):
@@ -98,11 +111,12 @@ class MiddleLayerTest(unittest.TestCase):
         self.require_arrival((13.0, 11.3), 0.05)
 
     def test_a_pushed_robot_plans_anew_and_arrives(self):
-        goal = self.system.execute('move_base', 'preManipulationAreaWestTable2')
-        self.system.wait_for_truth(lambda s: distance(s, START) > 0.5, 'the robot to be on its way')
+        goal = self.execute_until(lambda s: distance(s, START) > 0.5, 'the robot to be on its way',
+                                  'move_base', 'preManipulationAreaWestTable2')
         answer = self.system.call('push', self.system.srv.PushRobot,
                                   offset=self.pose_2d(-0.2, 0.4, 0.5))
         self.assertTrue(answer.success, answer.message)
+        self.system.hold(False)
         self.require(goal.result(), self.codes.SUCCEEDED)
         self.require_arrival((9.0, 11.49), XY_TOLERANCE + STOPPING)
 
@@ -113,10 +127,10 @@ class MiddleLayerTest(unittest.TestCase):
     # Breaking off
 
     def test_preempting_a_drive_leaves_the_robot_standing(self):
-        goal = self.system.execute('move_base', 'preManipulationAreaEastCounter1')
-        self.system.wait_for_truth(lambda s: speed(s) > 0.4, 'the robot to be fast')
+        goal = self.execute_until(lambda s: speed(s) > 0.4, 'the robot to be fast',
+                                  'move_base', 'preManipulationAreaEastCounter1')
         first = len(self.system.truth)
-        self.require(goal.cancel().result(), self.codes.PREEMPTED)
+        self.preempt(goal)
         self.system.wait_for_truth(lambda s: speed(s) < 0.02, 'the robot to stand')
         after = self.path_from(first)
         braking = [(a, b) for a, b in zip(after, after[1:]) if speed(b) < speed(a)]
@@ -124,9 +138,9 @@ class MiddleLayerTest(unittest.TestCase):
         self.assertLess(max(speed(a) - speed(b) for a, b in braking), 2.0 * 0.05)
 
     def test_preempting_a_blind_drive_leaves_the_robot_standing(self):
-        goal = self.system.execute('move_base_blind', 'preManipulationAreaEastTable2')
-        self.system.wait_for_truth(lambda s: speed(s) > 0.1, 'the robot to move')
-        self.require(goal.cancel().result(), self.codes.PREEMPTED)
+        goal = self.execute_until(lambda s: speed(s) > 0.1, 'the robot to move',
+                                  'move_base_blind', 'preManipulationAreaEastTable2')
+        self.preempt(goal)
         self.system.wait_for_truth(lambda s: speed(s) < 0.02, 'the robot to stand')
 
     def test_the_time_limit_ends_a_drive(self):
@@ -138,10 +152,11 @@ class MiddleLayerTest(unittest.TestCase):
     def test_the_robot_stands_when_the_node_ends(self):
         for number in (signal.SIGINT, signal.SIGKILL):
             with self.subTest(signal=number):
-                self.system.execute('move_base', 'preManipulationAreaEastCounter1')
-                self.system.wait_for_truth(lambda s: speed(s) > 0.3, 'the robot to be fast')
+                self.execute_until(lambda s: speed(s) > 0.3, 'the robot to be fast',
+                                   'move_base', 'preManipulationAreaEastCounter1')
                 self.system.middle_layer.signal(number)
                 self.system.middle_layer.wait()
+                self.system.hold(False)
                 self.system.wait_for_truth(lambda s: speed(s) < 0.02, 'the robot to stand')
                 self.system.start_middle_layer()
                 self.system.require_server()
@@ -153,15 +168,14 @@ class MiddleLayerTest(unittest.TestCase):
         return dict(zip(state.joints.name, state.joints.position))
 
     def require_standing_joints(self):
-        """No joint moves: two states of the truth in a row are the same."""
-        self.system.hold(True)
-        self.system.wait_for_standstill()
-        self.system.hold(False)
-        count = len(self.system.truth)
-        self.system.wait_for_truth(lambda s: len(self.system.truth) > count + 2, 'time to go on')
-        states = [state.joints.position for _, state in self.system.truth[count:count + 2]]
-        for before, after in zip(*states):
-            self.assertAlmostEqual(before, after, delta=1e-3)
+        """Within a second no joint moves any more."""
+        since = self.system.truth[-1][0] + 10 ** 9
+        self.system.wait_for_truth(lambda _: self.system.truth[-1][0] > since + 10 ** 9 // 2,
+                                   'time to go on')
+        states = [state.joints.position for stamp, state in self.system.truth if stamp > since]
+        for state in states[1:]:
+            for before, after in zip(states[0], state):
+                self.assertAlmostEqual(before, after, delta=1e-3)
 
     def test_what_needs_different_joints_runs_side_by_side(self):
         self.begin(scenario=TOPPLE)
@@ -181,19 +195,18 @@ class MiddleLayerTest(unittest.TestCase):
 
     def test_preempting_the_torso_leaves_it_where_it_is(self):
         self.begin(scenario=TOPPLE)
-        goal = self.system.execute('move_torso', 'torsoUpPosture')
-        self.system.wait_for_truth(
-            lambda s: self.joints()['torso_lift_joint'] > 0.05, 'the torso to rise')
-        self.require(goal.cancel().result(), self.codes.PREEMPTED)
+        goal = self.execute_until(lambda s: self.joints()['torso_lift_joint'] > 0.05,
+                                  'the torso to rise', 'move_torso', 'torsoUpPosture')
+        self.preempt(goal)
         self.require_standing_joints()
         self.assertLess(self.joints()['torso_lift_joint'], 0.29)
 
     def test_preempting_arms_leaves_them_where_they_are(self):
         self.begin(scenario=TOPPLE)
-        goal = self.system.execute('tuck_arms', 'armTuckedPosture', 'armTuckedPosture')
-        self.system.wait_for_truth(
-            lambda s: self.joints()['r_shoulder_lift_joint'] < 0.7, 'the right arm to move')
-        self.require(goal.cancel().result(), self.codes.PREEMPTED)
+        goal = self.execute_until(lambda s: self.joints()['r_shoulder_lift_joint'] < 0.7,
+                                  'the right arm to move',
+                                  'tuck_arms', 'armTuckedPosture', 'armTuckedPosture')
+        self.preempt(goal)
         self.require_standing_joints()
 
     def held(self):
@@ -207,6 +220,13 @@ class MiddleLayerTest(unittest.TestCase):
             self.world = world
         subscriber = self.system.rospy.Subscriber('ground_truth/world_state', WorldState, note)
         self.addCleanup(subscriber.unregister)
+
+    def pick_up_until(self, phase):
+        """The goal, in a world that is held."""
+        self.system.hold(True)
+        goal = self.system.execute('pick_up_object', 'mug1', 'rightArm1').wait_for_active()
+        self.system.step_until(lambda _: any(f.phase == phase for f in goal.feedback), phase)
+        return goal
 
     def test_picks_up_and_places(self):
         self.begin_at_counter()
@@ -224,9 +244,7 @@ class MiddleLayerTest(unittest.TestCase):
     def test_preempting_while_holding_keeps_what_is_held(self):
         self.begin_at_counter()
         self.watch_world()
-        goal = self.system.execute('pick_up_object', 'mug1', 'rightArm1')
-        goal.wait_for_feedback(lambda f: f.phase == 'lift', 'the mug to be lifted')
-        self.require(goal.cancel().result(), self.codes.PREEMPTED)
+        self.preempt(self.pick_up_until('lift'))
         self.require_standing_joints()
         self.assertEqual(self.held(), {'mug1': 'r_gripper_palm_link'})
         goal = self.system.execute('place_object', 'mug1', 'rightArm1',
@@ -235,10 +253,10 @@ class MiddleLayerTest(unittest.TestCase):
 
     def test_an_object_that_vanishes_before_it_is_grasped_is_missed(self):
         self.begin_at_counter()
-        goal = self.system.execute('pick_up_object', 'mug1', 'rightArm1')
-        goal.wait_for_feedback(lambda f: f.phase == 'reach', 'the arm to reach out')
+        goal = self.pick_up_until('reach')
         answer = self.system.call('remove_object', self.system.srv.ObjectRequest, name='mug1')
         self.assertTrue(answer.success, answer.message)
+        self.system.hold(False)
         result = goal.result()
         self.assertEqual(result.code, self.codes.FAILED)
         self.assertIn(text_of(result.failure), ('grasp_failed', 'object_not_seen', 'object_slipped'))
@@ -274,8 +292,10 @@ class MiddleLayerTest(unittest.TestCase):
         self.assertIn('time_limit', text_of(result.failure))
 
     def test_a_conflicting_goal_is_refused_and_disturbs_nobody(self):
+        self.system.hold(True)
         first = self.system.execute('move_base', 'preManipulationAreaEastTable2').wait_for_active()
         second = self.system.execute('move_base_blind', 'home').result()
+        self.system.hold(False)
         self.assertEqual(second.code, self.codes.INVALID)
         self.assertEqual(text_of(second.failure),
                          'busy: move_base(preManipulationAreaEastTable2) needs base')
@@ -294,16 +314,15 @@ class MiddleLayerTest(unittest.TestCase):
         seen = []
         subscriber = self.system.rospy.Subscriber('/diagnostics', DiagnosticArray, seen.append)
         self.addCleanup(subscriber.unregister)
+        self.system.hold(True)
         goal = self.system.execute('move_base', 'preManipulationAreaEastCounter1')
 
         def is_told():
             return any(value.key == 'running' and 'move_base' in value.value
                        for array in list(seen) for status in array.status
                        for value in status.values)
-        self.system.hold(True)
         wait_until(is_told, 'the diagnostics to name the action')
-        self.system.hold(False)
-        goal.cancel().result()
+        self.preempt(goal)
 
 
 if __name__ == '__main__':

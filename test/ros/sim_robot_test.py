@@ -137,6 +137,22 @@ class SimRobotTest(unittest.TestCase):
         self.assertTrue(self.system.hold(False).success)
         clock.wait(condition=lambda message: message.clock.to_nsec() > held)
 
+    def test_a_held_world_plays_one_tick_when_asked(self):
+        from std_srvs.srv import Trigger
+        refusal = self.system.call('step', Trigger)
+        self.assertFalse(refusal.success)
+        self.assertIn('sim_robot/hold', refusal.message)
+        self.system.hold(True)
+        begin = self.system.wait_for_standstill()
+        for _ in range(3):
+            self.assertTrue(self.system.call('step', Trigger).success)
+        self.system.wait_for_truth(lambda _: self.system.truth[-1][0] >= begin + 150000000,
+                                   'three ticks')
+        self.assertEqual(self.system.wait_for_standstill(), begin + 150000000)
+        self.system.hold(False)
+        self.system.wait_for_truth(lambda _: self.system.truth[-1][0] > begin + 500000000,
+                                   'time to go on')
+
     def test_services_push_place_drop_and_remove(self):
         from geometry_msgs.msg import Pose, Pose2D
         from hires.msg import GroundTruth, WorldState

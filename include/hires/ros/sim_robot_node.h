@@ -8,6 +8,7 @@
 #include <hires/PushRobot.h>
 #include <ros/node_handle.h>
 #include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
 #include <atomic>
@@ -87,6 +88,7 @@ class SimRobotNode {
   std::multiset<std::string> listeners_;     // to ticks, by node
   SensorReadings readings_;
   std::atomic<bool> is_held_;
+  int num_steps_{0};        // ticks to play while held
   Steady::time_point due_;  // when the next tick is, at the wanted pace
 
   hires::base::Mailbox<Mail> mail_;

@@ -214,6 +214,22 @@ class RobotSystem:
         from std_srvs.srv import SetBool
         return self.call('hold', SetBool, data=is_held)
 
+    def step_until(self, condition, what, num_ticks=1000):
+        """Lets a world that is held play on by ticks of 0.05 s until the robot's true state is as
+        wanted: however slow the computer, what happens next cannot come too late."""
+        from std_srvs.srv import Trigger
+        stamp = self.wait_for_standstill()
+        self.rospy.wait_for_service('sim_robot/step', LIMIT)
+        step = self.rospy.ServiceProxy('sim_robot/step', Trigger, persistent=True)
+        for _ in range(num_ticks):
+            if condition(self.truth[-1][1]):
+                step.close()
+                return
+            step()
+            self.wait_for_truth(lambda _: self.truth[-1][0] > stamp, 'the world to play a tick')
+            stamp = self.truth[-1][0]
+        raise AssertionError('stepped in vain for ' + what)
+
     def end_processes(self):
         for process in (self.middle_layer, self.robot):
             if process is not None:
