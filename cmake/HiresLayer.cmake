@@ -1,5 +1,6 @@
 # One library per layer (hires_<name>), one benchmark program per benchmark file; tests are in
-# HiresTests.cmake. A layer's folders are include/hires/<name>, src/<name>, test/<name>.
+# HiresTests.cmake. A layer's folders are include/hires/<name>, src/<name>, test/<name>. Headers that
+# other layers and packages include are in the first, those of the layer alone beside its sources.
 
 # hires_layer(<name> [SOURCES a.cpp ...] [DEPENDS lower layers ...] [LINK libraries ...])
 # Call it in src/<name>/CMakeLists.txt.
@@ -11,6 +12,8 @@ function(hires_layer name)
     add_library(${target} STATIC ${LAYER_SOURCES})
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_compile_options(${target} PRIVATE ${HIRES_WARNINGS})
+    # Headers of the layer's own are included by their path from src/.
+    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)
@@ -30,6 +33,7 @@ function(hires_benchmark layer name)
   add_executable(${target} ${name}_benchmark.cpp)
   target_compile_options(${target} PRIVATE ${HIRES_WARNINGS})
   target_compile_definitions(${target} PRIVATE HIRES_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/test)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/test
+    ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(${target} PRIVATE hires_${layer} ${BENCH_LINK} benchmark::benchmark_main)
 endfunction()

@@ -36,7 +36,7 @@ function(hires_test_program_of_layer layer)
   target_compile_options(${target} PRIVATE ${HIRES_WARNINGS} -O1)
   target_compile_definitions(${target} PRIVATE
     HIRES_SOURCE_DIR="${PROJECT_SOURCE_DIR}" HIRES_SHARED_DATA="${HIRES_SHARED_DATA}")
-  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/test)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/test ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(${target} PRIVATE hires_${layer} GTest::gmock_main)
   set_property(GLOBAL APPEND PROPERTY HIRES_TEST_PROGRAMS ${target})
 endfunction()

@@ -24,6 +24,7 @@ LAYERS = [
     ["simulation", "skills"],
     ["imagination"],
     ["evaluation"],
+    ["cli"],
     ["ros"],
     ["nodes"],
 ]
@@ -80,6 +81,13 @@ def included_layer(header):
     return parts[1] if parts[0] == "hires" and len(parts) > 2 else None
 
 
+def private_layer(root, header):
+    """The layer that keeps this header beside its sources, if it is named by its path from src/."""
+    layer = header.split("/")[0]
+    is_there = "/" in header and os.path.exists(os.path.join(root, "src", header))
+    return layer if layer in RANK and is_there else None
+
+
 def may_include(path, layer, other):
     if RANK[other] < RANK[layer] or other == layer:
         return True
@@ -88,10 +96,12 @@ def may_include(path, layer, other):
 
 
 def code_files(root):
-    for folder in CODE_FOLDERS:
-        for path in files_below(root, folder):
-            if path.endswith((".h", ".cpp")):
-                yield path
+    return [path for folder in CODE_FOLDERS for path in files_below(root, folder)
+            if path.endswith((".h", ".cpp"))]
+
+
+def example_files(root):
+    return [path for path in files_below(root, "examples") if path.endswith((".h", ".cpp"))]
 
 
 def check_includes(root):
@@ -116,6 +126,22 @@ def check_include(path, number, layer, header):
             ROS_HEADER.match(header) or GENERATED_MESSAGE.match(header)):
         yield (f"{place}: layer '{layer}' includes {header}, but layers below 'ros' know no ROS; "
                "convert in the layer 'ros'")
+
+
+def check_private_headers(root):
+    """What stands beside the sources of a layer is for that layer alone."""
+    for path in code_files(root) + example_files(root):
+        layer = layer_of(path)
+        for number, header in includes_of(root, path):
+            owner = private_layer(root, header)
+            if owner is None:
+                continue
+            if owner != layer:
+                yield (f"{path}:{number}: includes {header}, which layer '{owner}' keeps for itself; "
+                       f"if others need it, it belongs into include/hires/{owner}")
+            elif path.startswith("include/"):
+                yield (f"{path}:{number}: is for others, but includes {header}, which is not "
+                       f"installed; move that to include/hires/{owner}, or include it in the source")
 
 
 def declared_dependencies(root):
@@ -163,21 +189,32 @@ def check_dependencies(root):
                        f"'{other}'; add it to DEPENDS in src/{layer}/CMakeLists.txt")
 
 
+def own_headers(root, path):
+    """How a source may name its own header, as far as it is there: beside it, or for others."""
+    beside = path[len("src/"):-len(".cpp")] + ".h"
+    stem = os.path.basename(beside)
+    names = [beside, stem] if os.path.exists(os.path.join(root, "src", beside)) else []
+    for_others = f"hires/{layer_of(path)}/{stem}"  # rooms are a layer's own affair
+    if os.path.exists(os.path.join(root, "include", for_others)):
+        names.append(for_others)
+    return names
+
+
 def check_own_header(root, path):
     """A source includes its header first, which proves that the header needs nothing else. One
     without a header of its name implements a part of another of its layer, so it includes that."""
-    own = "/".join(path.split("/")[1:])[:-len(".cpp")] + ".h"
     includes = list(includes_of(root, path))
     number, first = includes[0] if includes else (1, "nothing")
-    beside = os.path.dirname(path)
-    has_part = any(included_layer(header) == layer_of(path) or
-                   os.path.exists(os.path.join(root, beside, header)) for _, header in includes)
-    exists = any(os.path.exists(os.path.join(root, folder, own))
-                 for folder in ("src", "include/hires"))
-    if exists and first not in (f"hires/{own}", own, os.path.basename(own)):
-        yield f"{path}:{number}: includes {first} first; start with its own header {own}"
-    if not exists and not has_part:
-        yield (f"{path}:1: has no header; write include/hires/{own}, or include the header of its "
+    own, layer = own_headers(root, path), layer_of(path)
+    has_part = any(layer in (included_layer(header), private_layer(root, header)) or
+                   os.path.exists(os.path.join(root, os.path.dirname(path), header))
+                   for _, header in includes)
+    if own and first not in own:
+        yield f"{path}:{number}: includes {first} first; start with its own header {own[0]}"
+    if not own and not has_part:
+        stem = os.path.basename(path)[:-len(".cpp")]
+        yield (f"{path}:1: has no header; write {path[:-len('.cpp')]}.h, or "
+               f"include/hires/{layer}/{stem}.h if others need it, or include the header of its "
                "layer that it implements")
 
 
@@ -280,21 +317,21 @@ FAILURE_TABLE = "src/base/failure.cpp"
 # Words that mean something else beside a failure, and where. Elsewhere base::FailureCode says it.
 ALSO_MEANS = {
     "imagined_failure": {  # a predicate of the planner
-        "src/execution/session.cpp", "src/knowledge/state_view_rules.cpp",
-        "src/planning/search.cpp", "src/planning/step_replay.cpp",
+        "src/execution/session.cpp", "src/knowledge/views/state_view_rules.cpp",
+        "src/planning/search/search.cpp", "src/planning/check/step_replay.cpp",
         "src/translation/wanted_state.cpp"},
     "motors_halted": {  # a key of a robot's names, a finding of the doctor
         "src/ros/robot_doctor_judge.cpp", "src/ros/robot_names.cpp"},
-    "busy": {"src/evaluation/achieve_command.cpp"},  # outcomes of a task, from here on
+    "busy": {"src/evaluation/achieve.cpp"},  # outcomes of a task, from here on
     "dry_run": {
-        "src/evaluation/achieve_command.cpp", "src/ros/execution_messages.cpp",
+        "src/evaluation/achieve.cpp", "src/ros/execution_messages.cpp",
         "src/ros/execution_monitor_node.cpp", "src/ros/middle_layer_params.cpp"},
     "preempted": {
-        "src/evaluation/achieve_command.cpp", "src/execution/step_watch.cpp",
+        "src/evaluation/achieve.cpp", "src/execution/step_watch.cpp",
         "src/ros/execution_messages.cpp"},
     "timed_out": {"src/ros/hypothesis_run.cpp"},  # an outcome of a played run
     "unavailable": {  # an outcome of imagination
-        "src/evaluation/achieve_display.cpp", "src/ros/execution_messages.cpp"},
+        "src/evaluation/achieve.cpp", "src/ros/execution_messages.cpp"},
 }
 COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', re.DOTALL)
 TAKES_TEXT_APART = re.compile(
@@ -403,7 +440,7 @@ def check_instructions(root):
                 yield f"{path}:{number}: there is no {file}; name what took its place"
 
 
-CHECKS = [check_includes, check_dependencies, check_headers, check_whitespace, check_packages,
+CHECKS = [check_includes, check_private_headers, check_dependencies, check_headers, check_whitespace, check_packages,
           check_catkin_components, check_scripts, check_failure_codes, check_failure_texts,
           check_failure_tables, check_rostests, check_instructions]
 

@@ -22,7 +22,8 @@ GOOD_TREE = {
     "include/hires/simulation/simulator.h": '#pragma once\n#include "hires/robot/model.h"\n',
     "include/hires/skills/skill.h": '#pragma once\n#include "hires/robot/model.h"\n',
     "include/hires/ros/conversions.h":
-        '#pragma once\n#include <ros/time.h>\n#include "hires/Fluent.h"\n',
+        '#pragma once\n#include <ros/time.h>\n#include "hires/Fluent.h"\n'
+        '#include "hires/skills/skill.h"\n',
     "src/nodes/planner_main.cpp": '#include "hires/ros/conversions.h"\n',
     "test/skills/skill_test.cpp":
         '#include "hires/simulation/simulator.h"\n#include "support/fakes.h"\n',
@@ -68,7 +69,7 @@ class CheckTreeTest(unittest.TestCase):
                         "test/robot/model_test.cpp:1", "an arrow up")
 
     def test_an_unknown_layer_is_found(self):
-        self.expect_one({"src/nodes/planner_main.cpp": '#include "hires/magic/wand.h"\n'},
+        self.expect_one({"src/nodes/wizard_main.cpp": '#include "hires/magic/wand.h"\n'},
                         "'magic'", "LAYERS")
 
     def test_ros_below_its_layer_is_found(self):
@@ -95,7 +96,7 @@ class CheckTreeTest(unittest.TestCase):
 
     def test_a_source_without_its_header_is_found(self):
         self.expect_one({"src/base/lost.cpp": "\n"}, "src/base/lost.cpp",
-                        "include/hires/base/lost.h")
+                        "src/base/lost.h", "include/hires/base/lost.h")
 
     def test_a_source_may_implement_another_header_of_its_layer(self):
         self.assertEqual(self.complaints(
@@ -113,6 +114,27 @@ class CheckTreeTest(unittest.TestCase):
     def test_a_header_beside_its_source_is_enough(self):
         self.assertEqual(self.complaints({"src/base/inner.cpp": '#include "inner.h"\n',
                                           "src/base/inner.h": "#pragma once\n"}), [])
+
+    def test_a_source_in_a_room_has_its_header_beside_it_or_for_others(self):
+        self.assertEqual(self.complaints(
+            {"src/base/room/inner.h": "#pragma once\n", "src/base/rng.cpp": None,
+             "src/base/room/inner.cpp": '#include "base/room/inner.h"\n',
+             "src/base/room/inner_more.cpp": '#include <vector>\n#include "base/room/inner.h"\n',
+             "src/base/room/rng.cpp": '#include "hires/base/rng.h"\n'}), [])
+        self.expect_one({"src/base/rng.cpp": None,
+                         "src/base/room/rng.cpp": '#include <vector>\n#include "hires/base/rng.h"\n'},
+                        "src/base/room/rng.cpp:1", "start with its own header")
+
+    def test_a_header_of_a_layer_alone_that_others_include_is_found(self):
+        inner = {"src/base/inner.h": "#pragma once\n"}
+        include = '#include "base/inner.h"\n'
+        self.assertEqual(self.complaints({**inner, "test/base/inner_test.cpp": include}), [])
+        for path in ("src/nodes/other_main.cpp", "test/support/fakes.h", "test/robot/a_test.cpp",
+                     "examples/own/a.cpp"):
+            guard = "#pragma once\n" if path.endswith(".h") else ""
+            self.expect_one({**inner, path: guard + include}, path, "keeps for itself")
+        self.expect_one({**inner, "include/hires/base/rng.h": "#pragma once\n" + include},
+                        "include/hires/base/rng.h:2", "not installed")
 
     def test_a_header_without_guard_is_found(self):
         self.expect_one({"include/hires/base/rng.h": "#include <cstdint>\n"}, "#pragma once")
@@ -143,7 +165,9 @@ class CheckTreeTest(unittest.TestCase):
     def test_failure_codes_that_differ_are_found(self):
         tree = {"include/hires/base/failure.h": "#pragma once\nenum Code {\n  kNone = 0,\n  kStuck = 4,\n};\n",
                 "src/base/failure.cpp": '#include "hires/base/failure.h"\n{Code::kStuck, "stuck"}\n',
-                "msg/Failure.msg": "uint16 NONE=0\nuint16 STUCK=4\n"}
+                "msg/Failure.msg": "uint16 NONE=0\nuint16 STUCK=4\n",
+                "include/hires/robot/model.h":
+                    '#pragma once\n#include "hires/base/failure.h"\n#include "hires/geometry/pose.h"\n'}
         self.assertEqual(self.complaints(tree), [])
         self.expect_one({**tree, "msg/Failure.msg": "uint16 NONE=0\nuint16 STUCK=5\n"},
                         "msg/Failure.msg", "STUCK is 5", "it is 4")
@@ -188,7 +212,7 @@ class CheckTreeTest(unittest.TestCase):
     def test_a_word_that_means_something_else_is_left_in_peace_where_it_does(self):
         text = '#include "hires/robot/model.h"\nreturn "busy";\n'
         self.expect_one({**self.TABLE, "src/robot/a.cpp": text}, "src/robot/a.cpp:2", "'busy'")
-        path = "src/evaluation/achieve_command.cpp"
+        path = "src/evaluation/achieve.cpp"
         self.assertEqual(self.complaints({**self.TABLE, path: '#include "a.h"\n' + text.split("\n")[1] + "\n",
                                           "src/evaluation/a.h": "#pragma once\n"}), [])
 
