@@ -8,9 +8,9 @@
 
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
-#include "hires/planning/expression_node.h"
 #include "hires/planning/functions.h"
 #include "planning/evaluate.h"
+#include "planning/functions/expression_node.h"
 
 namespace hires::planning {
 namespace {

@@ -1,4 +1,4 @@
-#include "hires/planning/hddl_reader.h"
+#include "planning/language/hddl_reader.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

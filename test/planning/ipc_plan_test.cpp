@@ -7,10 +7,10 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/planning/hddl_reader.h"
 #include "hires/planning/planner.h"
 #include "hires/planning/shop2_reader.h"
 #include "hires/planning/validator.h"
+#include "planning/language/hddl_reader.h"
 
 namespace hires::planning {
 namespace {

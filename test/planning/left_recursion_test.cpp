@@ -2,10 +2,10 @@
 
 #include <string>
 
-#include "hires/planning/hddl_reader.h"
 #include "hires/planning/plan.h"
 #include "hires/planning/planner.h"
 #include "hires/planning/validator.h"
+#include "planning/language/hddl_reader.h"
 
 namespace hires::planning {
 namespace {

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "hires/base/error.h"
-#include "hires/planning/hddl_reader.h"
+#include "planning/language/hddl_reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace hires::planning;

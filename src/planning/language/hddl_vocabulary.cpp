@@ -1,0 +1,307 @@
+#include "planning/language/hddl_vocabulary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hires/base/text.h"
+#include "hires/planning/datum_reader.h"
+
+namespace hires::planning::hddl {
+namespace {
+
+// A chain of types costs the square of its length, and each object a fact for each of its types.
+constexpr std::size_t kMaxTypes = 1000;
+constexpr std::size_t kMaxTypeFacts = 5'000'000;
+
+/// Keys among which the nearest to a wrong one is looked for: few enough to compare them all.
+template <typename Value>
+std::vector<std::string> KeysOf(const std::map<std::string, Value>& map) {
+  std::vector<std::string> keys;
+  for (const auto& entry : map) {
+    if (keys.size() == 1000) break;
+    if (entry.first.size() <= 100) keys.push_back(entry.first);
+  }
+  return keys;
+}
+
+std::string Plural(std::size_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+int AddType(const std::string& name, HddlVocabulary* vocabulary) {
+  const auto [entry, is_new] =
+      vocabulary->type_index.emplace(name, static_cast<int>(vocabulary->types.size()));
+  if (is_new) vocabulary->types.push_back({name, {}, {}, {}});
+  return entry->second;
+}
+
+/// Fills in what `type` is, its parents first.
+/// @param path  Types being filled in now, to find circles.
+void FillAncestors(const HddlSpot& spot, const Datum& section, int type, std::vector<int>* path,
+                   HddlVocabulary* vocabulary) {
+  HddlVocabulary::Type& self = vocabulary->types[type];
+  if (!self.is_a.empty()) return;
+  const auto again = std::find(path->begin(), path->end(), type);
+  if (again != path->end()) {
+    std::vector<std::string> names;
+    for (auto it = again; it != path->end(); ++it) names.push_back(vocabulary->types[*it].name);
+    spot.Fail(section, fmt::format("type '{}' contains itself ({} - {}); break the circle",
+                                   self.name, base::Join(names, " - "), self.name));
+  }
+  path->push_back(type);
+  std::vector<bool> is_a(vocabulary->types.size());
+  is_a[type] = is_a[HddlVocabulary::kObject] = true;
+  for (const int parent : self.parents) {
+    FillAncestors(spot, section, parent, path, vocabulary);
+    const std::vector<bool>& above = vocabulary->types[parent].is_a;
+    for (std::size_t i = 0; i < above.size(); ++i) is_a[i] = is_a[i] || above[i];
+  }
+  path->pop_back();
+  self.is_a = std::move(is_a);
+}
+
+/// The number of (either a b ...), a new one unless it was there before.
+int EitherType(std::vector<int> members, HddlVocabulary* vocabulary) {
+  std::sort(members.begin(), members.end());
+  members.erase(std::unique(members.begin(), members.end()), members.end());
+  if (members.size() == 1) return members[0];
+  std::vector<std::string> names;
+  for (const int member : members) names.push_back(vocabulary->types[member].name);
+  const int type = AddType(base::Join(names, "/"), vocabulary);
+  vocabulary->types[type].members = std::move(members);
+  return type;
+}
+
+void AddSignature(const HddlSpot& spot, const Datum& at, HddlVocabulary::Signature signature,
+                  HddlVocabulary::Signatures* signatures) {
+  const std::string name = signature.name;
+  const std::string kind = signature.kind;
+  if (!signatures->emplace(name, std::move(signature)).second) {
+    spot.Fail(at, fmt::format("{} '{}' is declared twice; keep one", kind, name));
+  }
+}
+
+/// (name ?x - type ...), a declaration.
+const Datum& RequireDeclaration(const HddlSpot& spot, const Datum& form, std::string_view kind) {
+  RequireList(spot, form, fmt::format("a {} such as (near ?a ?b - place)", kind));
+  if (form.items.empty()) spot.Fail(form, fmt::format("() stands where a {} is wanted", kind));
+  RequireName(spot, form.items[0], fmt::format("the name of a {}", kind));
+  return form;
+}
+
+void CheckArgumentType(const HddlSpot& spot, const Datum& argument, int type, int wanted,
+                       const HddlVocabulary::Signature& signature,
+                       const HddlVocabulary& vocabulary) {
+  // A variable may hold an object of a narrower type than it declares, so only objects can be told
+  // to be wrong here.
+  if (argument.kind == Datum::Kind::kVariable || IsA(vocabulary, type, wanted)) return;
+  spot.Fail(argument, fmt::format("'{}' is of type {}, {} '{}' takes {} here; name another object "
+                                  "or change the types",
+                                  argument.text, vocabulary.types[type].name, signature.kind,
+                                  signature.name, vocabulary.types[wanted].name));
+}
+
+}  // namespace
+
+void ReadTypeSection(const HddlSpot& spot, const Datum* section, HddlVocabulary* vocabulary) {
+  AddType("object", vocabulary);
+  const Datum none;
+  if (section == nullptr) section = &none;
+  for (const HddlTyped& typed : ReadTypedList(spot, *section, 1, Datum::Kind::kSymbol, false)) {
+    const int type = AddType(typed.datum->text, vocabulary);
+    for (const std::string& name : typed.types) {
+      const int parent = AddType(name, vocabulary);
+      // `object - object` is written now and then.
+      if (parent != HddlVocabulary::kObject) vocabulary->types[type].parents.push_back(parent);
+    }
+  }
+  if (vocabulary->types.size() > kMaxTypes) {
+    spot.Fail(*section, fmt::format("{} types are declared, at most {} are read",
+                                    vocabulary->types.size(), kMaxTypes));
+  }
+  std::vector<int> path;
+  for (std::size_t type = 0; type < vocabulary->types.size(); ++type) {
+    FillAncestors(spot, *section, static_cast<int>(type), &path, vocabulary);
+  }
+}
+
+bool IsA(const HddlVocabulary& vocabulary, int type, int other) {
+  if (type == other || other == HddlVocabulary::kObject) return true;
+  const HddlVocabulary::Type& self = vocabulary.types[type];
+  const HddlVocabulary::Type& target = vocabulary.types[other];
+  if (!self.members.empty()) {
+    return std::all_of(self.members.begin(), self.members.end(),
+                       [&](int member) { return IsA(vocabulary, member, other); });
+  }
+  if (!target.members.empty()) {
+    return std::any_of(target.members.begin(), target.members.end(),
+                       [&](int member) { return IsA(vocabulary, type, member); });
+  }
+  return static_cast<std::size_t>(other) < self.is_a.size() && self.is_a[other];
+}
+
+int TypeOf(const HddlSpot& spot, const HddlTyped& typed, HddlVocabulary* vocabulary) {
+  std::vector<int> members;
+  for (const std::string& name : typed.types) {
+    const auto found = vocabulary->type_index.find(name);
+    if (found == vocabulary->type_index.end()) {
+      Datum at;
+      at.place = typed.type_place;
+      spot.Fail(at, base::UnknownName("type", name, KeysOf(vocabulary->type_index)));
+    }
+    members.push_back(found->second);
+  }
+  return members.empty() ? HddlVocabulary::kObject : EitherType(members, vocabulary);
+}
+
+void ReadObjects(const HddlSpot& spot, const Datum& section, HddlVocabulary* vocabulary) {
+  for (const HddlTyped& typed : ReadTypedList(spot, section, 1, Datum::Kind::kSymbol)) {
+    if (typed.types.size() > 1) {
+      spot.Fail(*typed.datum, fmt::format("'{}' is of two types; an object has one, declare a "
+                                          "type for it",
+                                          typed.datum->text));
+    }
+    const int type = TypeOf(spot, typed, vocabulary);
+    const auto [entry, is_new] = vocabulary->objects.emplace(typed.datum->text, type);
+    if (is_new) vocabulary->object_order.push_back(typed.datum->text);
+    if (!is_new && entry->second != type) {
+      spot.Fail(*typed.datum, fmt::format("'{}' is of type {} here and of type {} before; keep one",
+                                          typed.datum->text, vocabulary->types[type].name,
+                                          vocabulary->types[entry->second].name));
+    }
+  }
+}
+
+HddlVocabulary::Signature ReadSignature(const HddlSpot& spot, std::string kind, std::string name,
+                                        const Datum& list, std::size_t begin,
+                                        HddlVocabulary* vocabulary) {
+  HddlVocabulary::Signature signature{std::move(kind), std::move(name), {}};
+  for (const HddlTyped& typed : ReadTypedList(spot, list, begin, Datum::Kind::kVariable, false)) {
+    signature.types.push_back(TypeOf(spot, typed, vocabulary));
+  }
+  return signature;
+}
+
+void ReadPredicates(const HddlSpot& spot, const Datum& section, HddlVocabulary* vocabulary) {
+  for (std::size_t i = 1; i < section.items.size(); ++i) {
+    const Datum& form = RequireDeclaration(spot, section.items[i], "predicate");
+    AddSignature(spot, form,
+                 ReadSignature(spot, "predicate", form.items[0].text, form, 1, vocabulary),
+                 &vocabulary->predicates);
+  }
+}
+
+void ReadFunctions(const HddlSpot& spot, const Datum& section, HddlVocabulary* vocabulary) {
+  for (std::size_t i = 1; i < section.items.size(); ++i) {
+    if (section.items[i].IsSymbol("-")) {  // (f ?x) - number
+      if (i + 1 < section.items.size() && section.items[i + 1].IsSymbol("number")) {
+        ++i;
+        continue;
+      }
+      spot.Fail(section.items[i], "a function gives a number; write (name ?x - type) - number");
+    }
+    const Datum& form = RequireDeclaration(spot, section.items[i], "function");
+    if (form.items[0].text == "total-cost") {
+      if (form.items.size() > 1) spot.Fail(form, "(total-cost) takes no arguments");
+      vocabulary->has_costs = true;
+      continue;
+    }
+    AddSignature(spot, form,
+                 ReadSignature(spot, "function", form.items[0].text, form, 1, vocabulary),
+                 &vocabulary->functions);
+  }
+}
+
+const HddlVocabulary::Signature& CheckTerm(const HddlSpot& spot, const Datum& term,
+                                           std::string_view kind,
+                                           const HddlVocabulary::Signatures& signatures,
+                                           const HddlVariables& variables,
+                                           HddlVocabulary* vocabulary) {
+  RequireList(spot, term, fmt::format("a {} with its arguments in parentheses", kind));
+  if (term.items.empty()) spot.Fail(term, fmt::format("() stands where a {} is wanted", kind));
+  const std::string& name = RequireName(spot, term.items[0], fmt::format("the name of a {}", kind));
+  const auto found = signatures.find(name);
+  if (found == signatures.end()) {
+    spot.Fail(term.items[0], base::UnknownName(kind, name, KeysOf(signatures)));
+  }
+  const HddlVocabulary::Signature& signature = found->second;
+  if (term.items.size() - 1 != signature.types.size()) {
+    spot.Fail(term, fmt::format("{} '{}' has {} in {}, its declaration has {}; make them agree",
+                                signature.kind, name, Plural(term.items.size() - 1, "argument"),
+                                Excerpt(term), signature.types.size()));
+  }
+  for (std::size_t i = 0; i < signature.types.size(); ++i) {
+    const int type =
+        CheckArgument(spot, term.items[i + 1], signature.types[i], variables, vocabulary);
+    CheckArgumentType(spot, term.items[i + 1], type, signature.types[i], signature, *vocabulary);
+  }
+  return signature;
+}
+
+int CheckArgument(const HddlSpot& spot, const Datum& argument, int wanted,
+                  const HddlVariables& variables, HddlVocabulary* vocabulary) {
+  if (argument.kind == Datum::Kind::kVariable) {
+    const auto found = variables.find(argument.text);
+    if (found != variables.end()) return found->second;
+    spot.Fail(argument, base::UnknownName("variable", argument.text, KeysOf(variables)) +
+                            " Declare it among the parameters");
+  }
+  const std::string& name = RequireName(spot, argument, "an object or a variable");
+  const auto found = vocabulary->objects.find(name);
+  if (found != vocabulary->objects.end()) return found->second;
+  if (vocabulary->has_all_objects) {
+    spot.Fail(argument, base::UnknownName("object", name, KeysOf(vocabulary->objects)) +
+                            " Declare it among the constants or objects");
+  }
+  vocabulary->open_objects.push_back({name, wanted, argument.place, spot.construct});
+  return wanted;
+}
+
+void CheckOpenObjects(const HddlSpot& spot, const std::string& domain_source,
+                      const HddlVocabulary& vocabulary) {
+  for (const HddlVocabulary::OpenObject& open : vocabulary.open_objects) {
+    const HddlSpot named{domain_source, open.construct};
+    Datum at;
+    at.place = open.place;
+    const auto found = vocabulary.objects.find(open.name);
+    if (found == vocabulary.objects.end()) {
+      named.Fail(at, base::UnknownName("object", open.name, KeysOf(vocabulary.objects)) +
+                         fmt::format(" Declare it among the constants, or among the objects of {}",
+                                     spot.construct));
+    }
+    if (IsA(vocabulary, found->second, open.type)) continue;
+    named.Fail(at, fmt::format("'{}' must be of type {} here, {} declares it as {}; change one of "
+                               "them",
+                               open.name, vocabulary.types[open.type].name, spot.construct,
+                               vocabulary.types[found->second].name));
+  }
+}
+
+std::string TypePredicate(const HddlVocabulary& vocabulary, int type) {
+  return "%type-" + vocabulary.types[type].name;
+}
+
+std::string ValuePredicate(const std::string& function) { return "%value-" + function; }
+
+std::vector<Datum> TypeFacts(const HddlSpot& spot, const HddlVocabulary& vocabulary,
+                             std::size_t known_objects, std::size_t known_types) {
+  std::vector<Datum> facts;
+  for (std::size_t type = 0; type < vocabulary.types.size(); ++type) {
+    const Datum predicate = MakeSymbol(TypePredicate(vocabulary, static_cast<int>(type)));
+    for (std::size_t i = type < known_types ? known_objects : 0; i < vocabulary.object_order.size();
+         ++i) {
+      const std::string& name = vocabulary.object_order[i];
+      if (!IsA(vocabulary, vocabulary.objects.at(name), static_cast<int>(type))) continue;
+      facts.push_back(MakeList({predicate, MakeSymbol(name)}));
+      if (facts.size() > kMaxTypeFacts) {
+        spot.Fail(Datum{}, fmt::format("the objects have more than {} types in all; use fewer "
+                                       "objects or a flatter hierarchy",
+                                       kMaxTypeFacts));
+      }
+    }
+  }
+  return facts;
+}
+
+}  // namespace hires::planning::hddl

@@ -1,0 +1,52 @@
+#include "hires/planning/planning_files.h"
+
+#include <fmt/format.h>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/planning/datum_reader.h"
+#include "hires/planning/shop2_reader.h"
+#include "planning/language/hddl_reader.h"
+
+namespace hires::planning {
+namespace {
+
+std::string NameOf(Domain::Language language) {
+  return language == Domain::Language::kShop2 ? "SHOP2's language" : "HDDL";
+}
+
+}  // namespace
+
+Domain::Language LanguageOf(std::string_view text, const std::string& source) {
+  const std::string word = FirstWord(text, source);
+  if (word == "define") return Domain::Language::kHddl;
+  for (const char* known : {"defdomain", "defproblem", "make-problem", "in-package"}) {
+    if (word == known) return Domain::Language::kShop2;
+  }
+  throw base::ConfigError(fmt::format(
+      "{}: is no planning file: it begins with {}, wanted (defdomain or (defproblem for SHOP2, "
+      "(define for HDDL; name another file",
+      source, word.empty() ? "no word in parentheses" : "(" + Excerpt(MakeSymbol(word))));
+}
+
+Domain LoadDomain(const std::string& path) {
+  const std::string text = base::ReadTextFile(path);
+  const bool is_hddl = LanguageOf(text, path) == Domain::Language::kHddl;
+  return is_hddl ? ReadHddlDomain(text, path) : ReadShop2Domain(text, path);
+}
+
+std::vector<Problem> LoadProblems(const std::string& path, const Domain& domain) {
+  const std::string text = base::ReadTextFile(path);
+  const Domain::Language language = LanguageOf(text, path);
+  if (language != domain.language) {
+    throw base::ConfigError(
+        fmt::format("{}: is written in {}, the domain {} in {}; name files that belong together",
+                    path, NameOf(language), domain.source, NameOf(domain.language)));
+  }
+  if (language == Domain::Language::kHddl) return {ReadHddlProblem(text, path, domain)};
+  std::vector<Problem> problems = ReadShop2Problems(text, path);
+  for (const Problem& problem : problems) CheckTasks(problem, domain);
+  return problems;
+}
+
+}  // namespace hires::planning

@@ -1,0 +1,193 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hires/base/text.h"
+#include "hires/planning/shop2_reader.h"
+#include "planning/language/shop2_parts.h"
+
+namespace hires::planning {
+namespace shop2 {
+namespace {
+
+/// How many arguments a head or a task has; with a dot, that many or more.
+struct Arity {
+  std::size_t count;
+  bool is_open;
+};
+
+Arity ArityOf(const Datum& term) { return {term.items.size() - 1, !term.tail.empty()}; }
+
+bool Fit(Arity task, Arity head) {
+  const bool task_is_enough = task.count >= head.count || task.is_open;
+  const bool head_is_enough = head.count >= task.count || head.is_open;
+  return task_is_enough && head_is_enough;
+}
+
+std::string CountText(Arity arity, std::string_view noun) {
+  return fmt::format("{}{} {}{}", arity.is_open ? "at least " : "", arity.count, noun,
+                     arity.count == 1 ? "" : "s");
+}
+
+/// Everything that handles tasks, by name.
+class Handlers {
+ public:
+  explicit Handlers(const Domain& domain) {
+    for (const Operator& op : domain.operators) Add(op.head, "operator");
+    for (const Method& method : domain.methods) Add(method.head, "method");
+  }
+
+  void Check(const Construct& in, const TaskNetwork& network) const {
+    for (const TaskItem& item : network.items) {
+      if (item.network.empty()) {
+        CheckTask(in, item);
+      } else {
+        Check(in, item.network.front());
+      }
+    }
+  }
+
+ private:
+  struct Handler {
+    std::string_view kind;
+    const Datum* head;
+  };
+
+  void Add(const Datum& head, std::string_view kind) {
+    handlers_[std::string(head.Head())].push_back({kind, &head});
+  }
+
+  void CheckTask(const Construct& in, const TaskItem& item) const {
+    const std::string name(item.task.Head());
+    const auto found = handlers_.find(name);
+    if (found == handlers_.end()) FailUnknown(in, name, item.place);
+    const Arity arity = ArityOf(item.task);
+    const bool fits =
+        std::any_of(found->second.begin(), found->second.end(),
+                    [&](const Handler& handler) { return Fit(arity, ArityOf(*handler.head)); });
+    if (!fits) FailArity(in, item, found->second.front());
+  }
+
+  [[noreturn]] static void FailArity(const Construct& in, const TaskItem& item,
+                                     const Handler& handler) {
+    Fail(in, item.place,
+         fmt::format("task '{}' has {}, {} {} in line {} takes {}; correct one of them",
+                     item.task.Head(), CountText(ArityOf(item.task), "argument"), handler.kind,
+                     ToString(*handler.head), handler.head->place.line,
+                     CountText(ArityOf(*handler.head), "argument")));
+  }
+
+  [[noreturn]] void FailUnknown(const Construct& in, const std::string& name, Place place) const {
+    const std::vector<std::string> names = NamesLike(name);
+    const std::string text = names.empty() ? fmt::format("task '{}' is unknown", name)
+                                           : base::UnknownName("task", name, names);
+    Fail(in, place,
+         text + (names.empty() ? "; write" : " Write") +
+             " an operator or a method for it, or correct its name");
+  }
+
+  /// Comparing names takes time with their lengths and number, and files come from anywhere.
+  std::vector<std::string> NamesLike(const std::string& name) const {
+    constexpr std::size_t kMaxNames = 1000;
+    constexpr std::size_t kMaxLength = 100;
+    std::vector<std::string> names;
+    for (const auto& [known, handlers] : handlers_) {
+      if (names.size() == kMaxNames || name.size() > kMaxLength) break;
+      if (known.size() <= kMaxLength) names.push_back(known);
+    }
+    return names;
+  }
+
+  std::map<std::string, std::vector<Handler>> handlers_;
+};
+
+std::string NameOf(const Datum& head) { return std::string(head.Head()); }
+
+void CheckOperatorNames(const Domain& domain) {
+  std::map<std::string, Place> places;
+  for (const Operator& op : domain.operators) {
+    const auto [first, is_new] = places.emplace(NameOf(op.head), op.place);
+    if (is_new) continue;
+    Fail({domain.source, fmt::format("operator '{}'", first->first)}, op.place,
+         fmt::format("stands in line {} already, and a name may have one operator; rename one, or "
+                     "make the difference in a method",
+                     first->second.line));
+  }
+}
+
+// ------------------------------------------------------------------------------------ unbound adds
+
+void CollectFrom(const Formula& formula, std::set<std::string>* bound) {
+  std::vector<std::string> found = formula.variables;
+  CollectVariables(formula.term, &found);
+  CollectVariables(formula.expression, &found);
+  bound->insert(found.begin(), found.end());
+  for (const Formula& part : formula.parts) CollectFrom(part, bound);
+}
+
+void CheckBound(const Construct& in, const Effect& effect, const std::set<std::string>& bound) {
+  std::vector<std::string> used;
+  CollectVariables(effect.term, &used);
+  for (const std::string& name : used) {
+    if (bound.count(name) > 0) continue;
+    Fail(in, effect.place,
+         fmt::format("{} in an add is neither in the head nor in the precondition, so that nothing "
+                     "can bind it; bind it there or correct its name",
+                     name));
+  }
+}
+
+void CheckAllBound(const Construct& in, const std::vector<Effect>& effects,
+                   const std::set<std::string>& bound) {
+  for (const Effect& effect : effects) {
+    CheckBound(in, effect, bound);
+    if (effect.kind != Effect::Kind::kForall) continue;
+    std::set<std::string> bound_inside = bound;
+    CollectFrom(effect.condition, &bound_inside);
+    CheckAllBound(in, effect.effects, bound_inside);
+  }
+}
+
+void CheckAdds(const Domain& domain) {
+  for (const Operator& op : domain.operators) {
+    std::vector<std::string> in_head;
+    CollectVariables(op.head, &in_head);
+    std::set<std::string> bound(in_head.begin(), in_head.end());
+    CollectFrom(op.precondition.condition, &bound);
+    const Construct in{domain.source, fmt::format("operator '{}'", op.head.Head())};
+    CheckAllBound(in, op.adds, bound);
+  }
+}
+
+void CheckSubtasks(const Domain& domain) {
+  const Handlers handlers(domain);
+  for (const Method& method : domain.methods) {
+    for (std::size_t i = 0; i < method.branches.size(); ++i) {
+      const std::string branch =
+          method.branches.size() > 1 ? fmt::format(", branch {}", i + 1) : "";
+      handlers.Check({domain.source, fmt::format("method '{}'{}", method.head.Head(), branch)},
+                     method.branches[i].subtasks);
+    }
+  }
+}
+
+}  // namespace
+
+void CheckDomain(const Domain& domain) {
+  CheckOperatorNames(domain);
+  CheckAdds(domain);
+  CheckSubtasks(domain);
+}
+
+}  // namespace shop2
+
+void CheckTasks(const Problem& problem, const Domain& domain) {
+  shop2::Handlers(domain).Check({problem.source, fmt::format("problem '{}'", problem.name)},
+                                problem.tasks);
+}
+
+}  // namespace hires::planning

@@ -1,0 +1,66 @@
+#include "hires/planning/planner.h"
+
+#include <utility>
+
+#include "planning/search/program.h"
+#include "planning/search/search.h"
+
+namespace hires::planning {
+
+std::string_view ToString(PlanOutcome outcome) {
+  switch (outcome) {
+    case PlanOutcome::kFound:
+      return "found";
+    case PlanOutcome::kNoPlan:
+      return "no_plan";
+    case PlanOutcome::kLimitTime:
+      return "limit_time";
+    case PlanOutcome::kLimitMemory:
+      return "limit_memory";
+    case PlanOutcome::kCancelled:
+      return "cancelled";
+    case PlanOutcome::kLimitDepth:
+      return "limit_depth";
+    case PlanOutcome::kLimitCost:
+      return "limit_cost";
+  }
+  return "";
+}
+
+StopQuestion WithMemoryLimit(std::size_t max_bytes, StopQuestion next) {
+  return [max_bytes, next = std::move(next)](const Progress& progress) {
+    const Stop answer = next ? next(progress) : Stop::kContinue;
+    if (answer != Stop::kContinue) return answer;
+    return progress.bytes > max_bytes ? Stop::kMemory : Stop::kContinue;
+  };
+}
+
+namespace {
+
+/// A first plan of an HDDL domain: at first without left recursion, which the competition's domains
+/// are full of and on which a search from left to right may never come back; then, if that found
+/// nothing and left something out, with it.
+PlanResult FindFirstHddlPlan(const Program& program, TermTable* terms, const PlanRequest& request) {
+  Search careful(program, terms, request, false);
+  PlanResult result = careful.Run();
+  if (result.outcome != PlanOutcome::kNoPlan || !careful.gave_up_recursion()) return result;
+  const Progress before = result.progress;
+  result = Search(program, terms, request).Run();
+  result.progress.expansions += before.expansions;
+  result.progress.inferences += before.inferences;
+  return result;
+}
+
+}  // namespace
+
+PlanResult FindPlans(const Domain& domain, const Problem& problem, const PlanRequest& request,
+                     const Functions& functions) {
+  TermTable terms;
+  const Program program(domain, problem, functions, &terms);
+  if (domain.language == Domain::Language::kHddl && request.which == Which::kFirst) {
+    return FindFirstHddlPlan(program, &terms, request);
+  }
+  return Search(program, &terms, request).Run();
+}
+
+}  // namespace hires::planning
