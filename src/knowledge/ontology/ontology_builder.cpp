@@ -1,0 +1,499 @@
+#include "knowledge/ontology/ontology_builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <set>
+#include <utility>
+
+#include "hires/base/error.h"
+#include "hires/base/hash.h"
+#include "hires/base/text.h"
+
+namespace hires::knowledge {
+namespace {
+
+using ConceptId = Ontology::ConceptId;
+using Kind = TurtleNode::Kind;
+
+// Of concepts, and of relations. The is-a matrix and the closures grow with the square.
+constexpr std::size_t kMaxTerms = 5000;
+constexpr const char* kTooMany =
+    "more than 5000 concepts, or as many relations; keep what the robot does not need out of it";
+
+const std::string kRdf = "http://www.w3.org/1999/02/22-rdf-syntax-ns#";
+const std::string kRdfs = "http://www.w3.org/2000/01/rdf-schema#";
+const std::string kOwl = "http://www.w3.org/2002/07/owl#";
+const std::string kXsd = "http://www.w3.org/2001/XMLSchema#";
+const std::string kThing = kOwl + "Thing";
+constexpr std::array kValueTypes{"float", "double", "int", "integer", "boolean", "string"};
+
+bool Starts(const std::string& text, const std::string& with) {
+  return text.compare(0, with.size(), with) == 0;
+}
+
+/// "rdf:type" of an IRI that everybody knows, else the IRI itself, for messages.
+std::string Readable(const std::string& iri) {
+  const std::array<std::pair<const char*, const std::string*>, 4> known{
+      {{"rdf:", &kRdf}, {"rdfs:", &kRdfs}, {"owl:", &kOwl}, {"xsd:", &kXsd}}};
+  for (const auto& [prefix, iri_of_prefix] : known) {
+    if (Starts(iri, *iri_of_prefix)) return prefix + iri.substr(iri_of_prefix->size());
+  }
+  return "<" + iri + ">";
+}
+
+std::string Readable(const TurtleNode& node) {
+  switch (node.kind) {
+    case Kind::kIri:
+      return Readable(node.value);
+    case Kind::kBlank:
+      return "a node without a name";
+    default:
+      return "'" + node.value.substr(0, 40) + "'";
+  }
+}
+
+/// Names stand in YAML and in SPARQL, unquoted where possible.
+bool IsName(const std::string& text) {
+  const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  return !text.empty() && text.size() <= 200 && std::isalpha(static_cast<unsigned char>(text[0])) &&
+         std::all_of(text.begin(), text.end(), fits);
+}
+
+std::size_t EndOfNamespace(const std::string& iri) {
+  const std::size_t last = iri.find_last_of("#/");
+  const std::size_t end = last != std::string::npos ? last : iri.rfind(':');
+  return end == std::string::npos ? 0 : end + 1;
+}
+
+std::string LastPart(const std::string& iri) { return iri.substr(EndOfNamespace(iri)); }
+
+/// What a node would be called if it were declared.
+std::string NameForMessage(const TurtleNode& node) {
+  return node.kind == Kind::kIri ? LastPart(node.value).substr(0, 80) : Readable(node);
+}
+
+template <typename Map>
+std::vector<std::string> KeysOf(const Map& map) {
+  std::vector<std::string> keys;
+  keys.reserve(map.size());
+  for (const auto& entry : map) keys.push_back(entry.first);
+  return keys;
+}
+
+bool IsValueType(const std::string& iri) {
+  return std::any_of(kValueTypes.begin(), kValueTypes.end(),
+                     [&](const char* type) { return iri == kXsd + type; });
+}
+
+}  // namespace
+
+OntologyBuilder::OntologyBuilder(std::vector<TurtleDocument> documents)
+    : documents_(std::move(documents)) {}
+
+Ontology OntologyBuilder::Build() {
+  concepts_["Thing"] = {{kThing, "owl:Thing", {}}, {}};
+  names_[kThing] = "Thing";
+  for (const TurtleDocument& document : documents_) AddPrefixes(document);
+  for (const TurtleDocument& document : documents_) Declare(document);
+  for (const TurtleDocument& document : documents_) Describe(document);
+  CheckBlanks();
+  CheckRelations();
+  Ontology ontology;
+  NumberConcepts(&ontology);
+  FillIsA(&ontology);
+  FillClosures(&ontology);
+  FillRelations(&ontology);
+  FillHash(&ontology);
+  return ontology;
+}
+
+// Declarations ------------------------------------------------------------------------------------
+
+void OntologyBuilder::Declare(const TurtleDocument& document) {
+  for (const TurtleStatement& statement : document.statements) {
+    if (statement.subject.kind == Kind::kBlank) {
+      blanks_[{&document, statement.subject.value}].push_back(&statement);
+    } else if (statement.predicate == kRdf + "type") {
+      DeclareOne(statement, {&document, statement.line});
+    }
+  }
+}
+
+void OntologyBuilder::AddPrefixes(const TurtleDocument& document) {
+  for (const auto& [prefix, iri] : document.prefixes) {
+    const auto [known, is_new] = prefixes_.emplace(prefix, iri);
+    if (is_new || known->second == iri) continue;
+    throw base::ConfigError(
+        fmt::format("{}: prefix '{}:' is <{}>, and <{}> in a file before; all "
+                    "files of one ontology use the same prefixes",
+                    document.source, prefix, iri, known->second));
+  }
+}
+
+void OntologyBuilder::DeclareOne(const TurtleStatement& statement, Place place) {
+  const std::string type = statement.object.value;
+  if (type == kOwl + "Ontology") {
+    headers_.insert(statement.subject.value);
+  } else if (type == kOwl + "Class") {
+    DeclareConcept(statement.subject.value, place);
+  } else if (type == kOwl + "ObjectProperty" || type == kOwl + "DatatypeProperty" ||
+             type == kOwl + "FunctionalProperty") {
+    DeclareRelation(statement.subject.value, type, place);
+  } else {
+    FailOnSubset(statement, place);
+  }
+}
+
+void OntologyBuilder::DeclareConcept(const std::string& iri, Place place) {
+  if (iri == kThing) return;
+  const Term term = NewTerm(iri, place);
+  const std::string name = LastPart(iri);
+  if (const auto same = relations_.find(name); same != relations_.end()) {
+    FailOnSameName(same->second, term);
+  }
+  const auto [known, is_new] = concepts_.emplace(name, ConceptTerm{term, {}});
+  if (known->second.iri != iri) FailOnSameName(known->second, term);
+  names_[iri] = name;
+  if (concepts_.size() > kMaxTerms) Fail(place, kTooMany);
+}
+
+void OntologyBuilder::DeclareRelation(const std::string& iri, const std::string& type,
+                                      Place place) {
+  const Term term = NewTerm(iri, place);
+  const std::string name = LastPart(iri);
+  if (const auto same = concepts_.find(name); same != concepts_.end()) {
+    FailOnSameName(same->second, term);
+  }
+  const auto [known, is_new] = relations_.emplace(name, RelationTerm{term, {}, false, {}, {}});
+  if (known->second.iri != iri) FailOnSameName(known->second, term);
+  names_[iri] = name;
+  if (relations_.size() > kMaxTerms) Fail(place, kTooMany);
+  if (type == kOwl + "FunctionalProperty") {
+    known->second.functional = true;
+  } else {
+    SetIsLink(&known->second, type == kOwl + "ObjectProperty", place);
+  }
+}
+
+void OntologyBuilder::SetIsLink(RelationTerm* relation, bool is_link, Place place) {
+  if (relation->is_link.value_or(is_link) != is_link) {
+    Fail(place, fmt::format("relation {} is an owl:ObjectProperty and an owl:DatatypeProperty; it "
+                            "leads to instances or to values, not to both",
+                            relation->qualified));
+  }
+  relation->is_link = is_link;
+}
+
+OntologyBuilder::Term OntologyBuilder::NewTerm(const std::string& iri, Place place) const {
+  if (!IsName(LastPart(iri))) {
+    Fail(place, fmt::format("the last part of <{}> is no name; wanted a letter, then letters, "
+                            "digits, '_' or '-', 200 at most",
+                            iri.substr(0, 200)));
+  }
+  return {iri, QualifiedName(iri, place), place};
+}
+
+std::string OntologyBuilder::QualifiedName(const std::string& iri, Place place) const {
+  const std::size_t end = EndOfNamespace(iri);
+  // From the end: the empty prefix, which says least, comes last.
+  for (auto prefix = prefixes_.rbegin(); prefix != prefixes_.rend(); ++prefix) {
+    if (prefix->second == iri.substr(0, end)) return prefix->first + ":" + iri.substr(end);
+  }
+  Fail(place, fmt::format("<{}> has no prefix; declare one for <{}>, queries name it by that", iri,
+                          iri.substr(0, end)));
+}
+
+// Descriptions ------------------------------------------------------------------------------------
+
+void OntologyBuilder::Describe(const TurtleDocument& document) {
+  for (const TurtleStatement& statement : document.statements) {
+    if (IsPassedOver(statement)) continue;
+    DescribeOne(statement, Place{&document, statement.line});
+  }
+}
+
+bool OntologyBuilder::IsPassedOver(const TurtleStatement& statement) const {
+  static const std::set<std::string> kRemarks{kRdfs + "label", kRdfs + "comment", kRdfs + "seeAlso",
+                                              kRdfs + "isDefinedBy", kOwl + "versionInfo"};
+  // Nodes without a name count where a statement refers to them.
+  return statement.subject.kind == Kind::kBlank || statement.predicate == kRdf + "type" ||
+         kRemarks.count(statement.predicate) > 0 || headers_.count(statement.subject.value) > 0;
+}
+
+void OntologyBuilder::DescribeOne(const TurtleStatement& statement, Place place) {
+  if (statement.predicate == kRdfs + "subClassOf") {
+    AddSuperclass(statement, place);
+  } else if (statement.predicate == kRdfs + "domain") {
+    SetDomain(statement, place);
+  } else if (statement.predicate == kRdfs + "range") {
+    SetRange(statement, place);
+  } else {
+    FailOnSubset(statement, place);
+  }
+}
+
+void OntologyBuilder::AddSuperclass(const TurtleStatement& statement, Place place) {
+  if (statement.object.kind != Kind::kIri) FailOnSubset(statement, place);
+  const std::string below = RequireConcept(statement.subject, place);
+  if (below == "Thing") Fail(place, "owl:Thing stands above every concept, and below none");
+  const std::string above = RequireConcept(statement.object, place);
+  concepts_.at(below).above.push_back({above, place});
+}
+
+void OntologyBuilder::SetDomain(const TurtleStatement& statement, Place place) {
+  RelationTerm& relation = RequireRelation(statement.subject, place);
+  if (relation.domain) {
+    Fail(place,
+         fmt::format("relation {} has two domains, which in OWL means both at once; write one, "
+                     "alternatives as [ a owl:Class ; owl:unionOf ( ... ) ]",
+                     relation.qualified));
+  }
+  if (statement.object.kind == Kind::kLiteral) FailOnSubset(statement, place);
+  relation.domain = statement.object.kind == Kind::kBlank
+                        ? UnionOf(statement, place)
+                        : std::vector<std::string>{RequireConcept(statement.object, place)};
+}
+
+void OntologyBuilder::SetRange(const TurtleStatement& statement, Place place) {
+  RelationTerm& relation = RequireRelation(statement.subject, place);
+  if (relation.range) {
+    Fail(place, fmt::format("relation {} has two ranges, wanted one; write a concept above both",
+                            relation.qualified));
+  }
+  const TurtleNode& object = statement.object;
+  if (object.kind != Kind::kIri) FailOnSubset(statement, place);
+  const bool is_value = Starts(object.value, kXsd);
+  if (is_value && !IsValueType(object.value)) {
+    Fail(place,
+         fmt::format("relation {} has values of {}, wanted one of xsd:{}", relation.qualified,
+                     Readable(object), fmt::join(kValueTypes, ", xsd:")));
+  }
+  if (is_value == relation.is_link.value_or(!is_value)) FailOnKindOfRange(relation, object, place);
+  relation.range = is_value ? Readable(object) : RequireConcept(object, place);
+}
+
+OntologyBuilder::RelationTerm& OntologyBuilder::RequireRelation(const TurtleNode& subject,
+                                                                Place place) {
+  const auto name = names_.find(subject.value);
+  const auto found = name == names_.end() ? relations_.end() : relations_.find(name->second);
+  if (found != relations_.end()) return found->second;
+  Fail(place, base::UnknownName("relation", NameForMessage(subject), KeysOf(relations_)) +
+                  "; a relation is declared as owl:ObjectProperty or owl:DatatypeProperty");
+}
+
+std::string OntologyBuilder::RequireConcept(const TurtleNode& node, Place place) const {
+  const auto name = names_.find(node.value);
+  if (node.kind == Kind::kIri && name != names_.end() && concepts_.count(name->second) > 0) {
+    return name->second;
+  }
+  Fail(place, base::UnknownName("concept", NameForMessage(node), KeysOf(concepts_)) +
+                  "; a concept is declared as owl:Class");
+}
+
+/// The concepts of `[ a owl:Class ; owl:unionOf ( A B ) ]`.
+std::vector<std::string> OntologyBuilder::UnionOf(const TurtleStatement& statement, Place place) {
+  const std::string& node = statement.object.value;
+  const TurtleNode* type = ObjectOf(place, node, kRdf + "type");
+  const TurtleNode* list = ObjectOf(place, node, kOwl + "unionOf");
+  const bool is_union = type != nullptr && type->value == kOwl + "Class" && list != nullptr &&
+                        blanks_.at({place.document, node}).size() == 2;
+  if (!is_union) FailOnSubset(statement, place);
+  used_blanks_.insert({place.document, node});
+  return Members(*list, place);
+}
+
+std::vector<std::string> OntologyBuilder::Members(TurtleNode list, Place place) {
+  std::vector<std::string> members;
+  // Each node once: a list that bites its own tail has no end.
+  while (list.kind == Kind::kBlank && used_blanks_.insert({place.document, list.value}).second) {
+    const TurtleNode* first = ObjectOf(place, list.value, kRdf + "first");
+    const TurtleNode* rest = ObjectOf(place, list.value, kRdf + "rest");
+    if (first == nullptr || rest == nullptr) break;
+    members.push_back(RequireConcept(*first, place));
+    list = *rest;
+  }
+  if (list.value != kRdf + "nil" || members.empty()) {
+    Fail(place, "owl:unionOf has no list of concepts, wanted ( A B ... )");
+  }
+  return members;
+}
+
+const TurtleNode* OntologyBuilder::ObjectOf(Place place, const std::string& blank,
+                                            const std::string& predicate) const {
+  const auto said = blanks_.find({place.document, blank});
+  if (said == blanks_.end()) return nullptr;
+  for (const TurtleStatement* statement : said->second) {
+    if (statement->predicate == predicate) return &statement->object;
+  }
+  return nullptr;
+}
+
+/// Restrictions and axioms that stand for themselves hang on nodes that nothing refers to.
+void OntologyBuilder::CheckBlanks() const {
+  for (const auto& [id, statements] : blanks_) {
+    if (used_blanks_.count(id) > 0) continue;
+    FailOnSubset(*statements.front(), {id.first, statements.front()->line});
+  }
+}
+
+void OntologyBuilder::CheckRelations() const {
+  for (const auto& [name, relation] : relations_) {
+    if (!relation.is_link) {
+      Fail(relation.place,
+           fmt::format("relation {} is an owl:FunctionalProperty alone; say also whether it is an "
+                       "owl:ObjectProperty or an owl:DatatypeProperty",
+                       relation.qualified));
+    }
+    if (!relation.range) {
+      Fail(relation.place,
+           fmt::format("relation {} has no rdfs:range, wanted {}", relation.qualified,
+                       *relation.is_link ? "the concept of what it leads to"
+                                         : "the type of its values, xsd:float"));
+    }
+  }
+}
+
+// The ontology ------------------------------------------------------------------------------------
+
+void OntologyBuilder::NumberConcepts(Ontology* ontology) const {
+  for (const auto& [name, term] : concepts_) {
+    ontology->ids_[name] = static_cast<ConceptId>(ontology->concepts_.size());
+    ontology->concepts_.push_back({name, {}, {}});
+    ontology->qualified_[name] = term.qualified;
+  }
+  ontology->words_per_row_ = (ontology->concepts_.size() + 63) / 64;
+  ontology->is_a_.assign(ontology->concepts_.size() * ontology->words_per_row_, 0);
+}
+
+void OntologyBuilder::FillIsA(Ontology* ontology) const {
+  const std::size_t words = ontology->words_per_row_;
+  const ConceptId thing = ontology->ids_.at("Thing");
+  for (const std::string& name : FromTheTop()) {
+    const ConceptId id = ontology->ids_.at(name);
+    std::uint64_t* row = &ontology->is_a_[id * words];
+    row[id / 64] |= std::uint64_t{1} << (id % 64);
+    row[thing / 64] |= std::uint64_t{1} << (thing % 64);
+    for (const Superclass& above : concepts_.at(name).above) {
+      const std::uint64_t* its = &ontology->is_a_[ontology->ids_.at(above.name) * words];
+      for (std::size_t word = 0; word < words; ++word) row[word] |= its[word];
+    }
+  }
+}
+
+void OntologyBuilder::FillClosures(Ontology* ontology) {
+  const auto size = static_cast<ConceptId>(ontology->concepts_.size());
+  for (ConceptId below = 0; below < size; ++below) {
+    for (ConceptId above = 0; above < size; ++above) {
+      if (!ontology->IsA(below, above)) continue;
+      ontology->concepts_[below].above.push_back(above);
+      ontology->concepts_[above].below.push_back(below);
+    }
+  }
+}
+
+/// Every concept after all that are above it.
+std::vector<std::string> OntologyBuilder::FromTheTop() const {
+  std::map<std::string, std::size_t> open;  // superclasses still to come
+  std::map<std::string, std::vector<std::string>> below;
+  std::vector<std::string> order;
+  for (const auto& [name, term] : concepts_) {
+    open[name] = term.above.size();
+    if (term.above.empty()) order.push_back(name);
+    for (const Superclass& above : term.above) below[above.name].push_back(name);
+  }
+  for (std::size_t next = 0; next < order.size(); ++next) {
+    for (const std::string& name : below[order[next]]) {
+      if (--open[name] == 0) order.push_back(name);
+    }
+  }
+  if (order.size() < concepts_.size()) FailOnCycle(open);
+  return order;
+}
+
+void OntologyBuilder::FillRelations(Ontology* ontology) const {
+  for (const auto& [name, term] : relations_) {
+    std::set<ConceptId> domain;
+    for (const std::string& concept_name : term.domain.value_or(std::vector<std::string>{})) {
+      domain.insert(ontology->ids_.at(concept_name));
+    }
+    if (domain.count(ontology->ids_.at("Thing")) > 0) domain.clear();
+    ontology->relations_[name] = {
+        name, {domain.begin(), domain.end()}, *term.range, term.functional};
+    ontology->qualified_[name] = term.qualified;
+  }
+}
+
+void OntologyBuilder::FillHash(Ontology* ontology) {
+  base::Hasher hasher;
+  for (const auto& [name, qualified] : ontology->qualified_) {
+    hasher.Add(name);
+    hasher.Add(qualified);
+  }
+  for (const std::uint64_t word : ontology->is_a_) hasher.Add(word);
+  for (const auto& [name, relation] : ontology->relations_) {
+    hasher.Add(name);
+    hasher.Add(static_cast<std::uint64_t>(relation.domain.size()));
+    for (const ConceptId id : relation.domain) hasher.Add(static_cast<std::uint64_t>(id));
+    hasher.Add(relation.range);
+    hasher.Add(static_cast<std::uint64_t>(relation.functional));
+  }
+  ontology->hash_ = hasher.value();
+}
+
+// Errors ------------------------------------------------------------------------------------------
+
+void OntologyBuilder::Fail(Place place, const std::string& what) {
+  throw base::ConfigError(fmt::format("{}: {}; line {}", place.document->source, what, place.line));
+}
+
+void OntologyBuilder::FailOnSubset(const TurtleStatement& statement, Place place) {
+  Fail(place,
+       fmt::format("{} {} {} is beyond what is read of OWL: owl:Class with rdfs:subClassOf a named "
+                   "class; owl:ObjectProperty, owl:DatatypeProperty, owl:FunctionalProperty with "
+                   "rdfs:domain (or owl:unionOf named classes) and rdfs:range; labels and comments",
+                   Readable(statement.subject), Readable(statement.predicate),
+                   Readable(statement.object)));
+}
+
+void OntologyBuilder::FailOnSameName(const Term& known, const Term& other) {
+  const std::string before =
+      known.place.document == nullptr
+          ? "of OWL itself"
+          : fmt::format("{}, line {}", known.place.document->source, known.place.line);
+  Fail(other.place,
+       fmt::format("{} and {} ({}) share a name; fluents name concepts and relations by their last "
+                   "part alone, so call one of them something else",
+                   other.qualified, known.qualified, before));
+}
+
+void OntologyBuilder::FailOnKindOfRange(const RelationTerm& relation, const TurtleNode& range,
+                                        Place place) {
+  const bool is_link = relation.is_link.value_or(true);
+  Fail(place, fmt::format("relation {} is an owl:{}, its range {} is none for that; wanted {}",
+                          relation.qualified, is_link ? "ObjectProperty" : "DatatypeProperty",
+                          Readable(range), is_link ? "a concept" : "a type of values, xsd:float"));
+}
+
+/// Whoever is still open has a superclass that is: following those must lead round in the end.
+void OntologyBuilder::FailOnCycle(const std::map<std::string, std::size_t>& open) const {
+  const auto is_open = [&](const Superclass& above) { return open.at(above.name) > 0; };
+  const auto first =
+      std::find_if(open.begin(), open.end(), [](const auto& entry) { return entry.second > 0; });
+  std::vector<std::string> way{first->first};
+  while (true) {
+    const std::vector<Superclass>& above = concepts_.at(way.back()).above;
+    const Superclass& next = *std::find_if(above.begin(), above.end(), is_open);
+    const auto seen = std::find(way.begin(), way.end(), next.name);
+    if (seen != way.end()) {
+      Fail(next.place, fmt::format("a concept is below itself: {} -> {}; take one rdfs:subClassOf "
+                                   "of these away",
+                                   fmt::join(seen, way.end(), " -> "), next.name));
+    }
+    way.push_back(next.name);
+  }
+}
+
+}  // namespace hires::knowledge

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hires/knowledge/ontology.h"
+#include "knowledge/ontology/ontology_turtle.h"
+
+namespace hires::knowledge {
+
+/// Turns the statements of Turtle documents into an ontology: declarations first, from all of them,
+/// then what is said about the declared, then the numbers and closures. Used once.
+class OntologyBuilder {
+ public:
+  explicit OntologyBuilder(std::vector<TurtleDocument> documents);
+  /// @throws ConfigError, see Ontology::FromFiles.
+  Ontology Build();
+
+ private:
+  struct Place {
+    const TurtleDocument* document{nullptr};
+    int line{0};
+  };
+  struct Term {
+    std::string iri;
+    std::string qualified;
+    Place place;  // of its first declaration
+  };
+  struct Superclass {
+    std::string name;
+    Place place;
+  };
+  struct ConceptTerm : Term {
+    std::vector<Superclass> above;
+  };
+  struct RelationTerm : Term {
+    std::optional<bool> is_link;  // ObjectProperty, or DatatypeProperty
+    bool functional{false};
+    std::optional<std::vector<std::string>> domain;
+    std::optional<std::string> range;
+  };
+  using BlankId = std::pair<const TurtleDocument*, std::string>;
+
+  void Declare(const TurtleDocument& document);
+  void AddPrefixes(const TurtleDocument& document);
+  void DeclareOne(const TurtleStatement& statement, Place place);
+  void DeclareConcept(const std::string& iri, Place place);
+  void DeclareRelation(const std::string& iri, const std::string& type, Place place);
+  static void SetIsLink(RelationTerm* relation, bool is_link, Place place);
+  Term NewTerm(const std::string& iri, Place place) const;
+  std::string QualifiedName(const std::string& iri, Place place) const;
+
+  void Describe(const TurtleDocument& document);
+  bool IsPassedOver(const TurtleStatement& statement) const;
+  void DescribeOne(const TurtleStatement& statement, Place place);
+  void AddSuperclass(const TurtleStatement& statement, Place place);
+  void SetDomain(const TurtleStatement& statement, Place place);
+  void SetRange(const TurtleStatement& statement, Place place);
+  RelationTerm& RequireRelation(const TurtleNode& node, Place place);
+  std::string RequireConcept(const TurtleNode& node, Place place) const;
+  std::vector<std::string> UnionOf(const TurtleStatement& statement, Place place);
+  std::vector<std::string> Members(TurtleNode list, Place place);
+  const TurtleNode* ObjectOf(Place place, const std::string& blank,
+                             const std::string& predicate) const;
+  void CheckRelations() const;
+  void CheckBlanks() const;
+
+  void NumberConcepts(Ontology* ontology) const;
+  void FillIsA(Ontology* ontology) const;
+  static void FillClosures(Ontology* ontology);
+  std::vector<std::string> FromTheTop() const;
+  void FillRelations(Ontology* ontology) const;
+  static void FillHash(Ontology* ontology);
+
+  [[noreturn]] static void Fail(Place place, const std::string& what);
+  [[noreturn]] static void FailOnSubset(const TurtleStatement& statement, Place place);
+  [[noreturn]] static void FailOnSameName(const Term& known, const Term& other);
+  [[noreturn]] static void FailOnKindOfRange(const RelationTerm& relation, const TurtleNode& range,
+                                             Place place);
+  [[noreturn]] void FailOnCycle(const std::map<std::string, std::size_t>& open) const;
+
+  std::vector<TurtleDocument> documents_;
+  std::map<std::string, std::string> prefixes_;  // of all documents
+  std::map<std::string, ConceptTerm> concepts_;  // by name
+  std::map<std::string, RelationTerm> relations_;
+  std::map<std::string, std::string> names_;  // IRI of what is declared -> name
+  std::set<std::string> headers_;             // IRIs of owl:Ontology
+  std::map<BlankId, std::vector<const TurtleStatement*>> blanks_;  // what is said about them
+  std::set<BlankId> used_blanks_;                                  // that somebody referred to
+};
+
+}  // namespace hires::knowledge

@@ -1,0 +1,263 @@
+#include "knowledge/ontology/ontology_turtle.h"
+
+#include <fmt/format.h>
+#include <raptor2/raptor2.h>
+
+#include <algorithm>
+#include <cctype>
+#include <memory>
+#include <mutex>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+
+namespace hires::knowledge {
+namespace {
+
+// Raptor's memory and time grow with these, some of them with the square.
+constexpr int kMaxDepth = 100;
+constexpr int kMaxBases = 10;
+constexpr std::size_t kMaxIri = 200;
+constexpr std::size_t kMaxString = 64u << 10;
+constexpr std::size_t kMaxStatements = 200'000;
+constexpr const char* kBase = "urn:x-hires:base";
+
+[[noreturn]] void Fail(const std::string& source, int line, const std::string& what) {
+  throw base::ConfigError(fmt::format("{}: {}; line {}", source, what, line));
+}
+
+/// Walks over a text in Turtle before raptor sees it: raptor has no limit of depth, takes a NUL for
+/// the end of a name, and does not say in which line a prefix is declared.
+class TurtleScan {
+ public:
+  TurtleScan(std::string_view text, const std::string& source) : text_(text), source_(source) {
+    while (at_ < text_.size()) Step();
+  }
+
+  /// Line of the declaration of a prefix, counted from 0; the last one's where there are fewer.
+  int PrefixLine(std::size_t index) const {
+    if (prefix_lines_.empty()) return 1;
+    return prefix_lines_[std::min(index, prefix_lines_.size() - 1)];
+  }
+
+ private:
+  void Step() {
+    switch (text_[at_]) {
+      case '#':
+        return SkipComment();
+      case '<':
+        return SkipIri();
+      case '"':
+      case '\'':
+        return SkipString();
+      case '[':
+      case '(':
+        Open();
+        break;
+      case ']':
+      case ')':
+        --depth_;
+        break;
+      default:
+        if (Declares("prefix")) prefix_lines_.push_back(line_);
+        if (Declares("base")) CountBase();
+    }
+    Advance();
+  }
+
+  void Open() {
+    if (++depth_ <= kMaxDepth) return;
+    Fail(source_, line_,
+         fmt::format("brackets are nested more than {} deep; give the inner nodes names",
+                     kMaxDepth));
+  }
+
+  void Advance() {
+    const char c = text_[at_++];
+    if (c == '\0') Fail(source_, line_, "there is a NUL byte, wanted text; is this a Turtle file?");
+    if (c == '\n') ++line_;
+  }
+
+  void Advance(std::size_t count) {
+    while (count-- > 0 && at_ < text_.size()) Advance();
+  }
+
+  bool Starts(std::string_view with) const { return text_.substr(at_, with.size()) == with; }
+
+  /// `@prefix a: <b> .` or, as in SPARQL, `PREFIX a: <b>`; `base` likewise.
+  bool Declares(std::string_view word) const {
+    if (text_[at_] == '@') return text_.substr(at_ + 1, word.size()) == word;
+    const bool starts_word = at_ == 0 || std::isspace(static_cast<unsigned char>(text_[at_ - 1]));
+    const std::size_t end = at_ + word.size();
+    return starts_word && end < text_.size() &&
+           std::isspace(static_cast<unsigned char>(text_[end])) &&
+           base::ToLower(text_.substr(at_, word.size())) == word;
+  }
+
+  void CountBase() {
+    if (++num_bases_ > kMaxBases) {
+      Fail(source_, line_, fmt::format("more than {} bases; write whole IRIs", kMaxBases));
+    }
+  }
+
+  void SkipComment() {
+    while (at_ < text_.size() && text_[at_] != '\n') Advance();
+  }
+
+  /// An IRI holds no blanks; raptor complains where one does.
+  void SkipIri() {
+    const std::size_t end = std::min(text_.find_first_of("> \t\r\n", at_), text_.size());
+    CheckLength("an IRI", end - at_, kMaxIri);
+    Advance(end + 1 - at_);
+  }
+
+  void SkipString() {
+    const std::string quote(1, text_[at_]);
+    const std::string end = Starts(quote + quote + quote) ? quote + quote + quote : quote;
+    const std::size_t start = at_;
+    Advance(end.size());
+    while (at_ < text_.size() && !Starts(end)) Advance(text_[at_] == '\\' ? 2 : 1);
+    CheckLength("a text", at_ - start, kMaxString);
+    Advance(end.size());
+  }
+
+  void CheckLength(const char* what, std::size_t length, std::size_t at_most) const {
+    if (length <= at_most) return;
+    Fail(
+        source_, line_,
+        fmt::format("{} is {} bytes long, at most {} are read; shorten it", what, length, at_most));
+  }
+
+  std::string_view text_;
+  const std::string& source_;
+  std::size_t at_{0};
+  int depth_{0};
+  int num_bases_{0};
+  int line_{1};
+  std::vector<int> prefix_lines_;
+};
+
+struct RaptorDeleter {
+  void operator()(raptor_world* world) const { raptor_free_world(world); }
+  void operator()(raptor_parser* parser) const { raptor_free_parser(parser); }
+  void operator()(raptor_uri* uri) const { raptor_free_uri(uri); }
+};
+template <typename T>
+using RaptorPointer = std::unique_ptr<T, RaptorDeleter>;
+
+std::string Text(const unsigned char* text) {
+  return text == nullptr ? std::string() : reinterpret_cast<const char*>(text);
+}
+
+std::string Text(raptor_uri* uri) { return Text(raptor_uri_as_string(uri)); }
+
+TurtleNode ToNode(const raptor_term& term) {
+  switch (term.type) {
+    case RAPTOR_TERM_TYPE_URI:
+      return {TurtleNode::Kind::kIri, Text(term.value.uri)};
+    case RAPTOR_TERM_TYPE_BLANK:
+      return {TurtleNode::Kind::kBlank, Text(term.value.blank.string)};
+    default:
+      return {TurtleNode::Kind::kLiteral, Text(term.value.literal.string)};
+  }
+}
+
+/// What raptor's callbacks write to. They are called from C, so they must not throw: the first
+/// error is kept and told afterwards.
+struct Parse {
+  TurtleDocument* document;
+  const TurtleScan* scan;
+  std::size_t num_prefixes{0};  // seen up to now
+  raptor_parser* parser{nullptr};
+  std::string error{};
+  int error_line{0};
+
+  int Line() const { return raptor_locator_line(raptor_parser_get_locator(parser)); }
+  void Stop(const std::string& what, int line) {
+    if (!error.empty()) return;
+    error = what;
+    error_line = line;
+    raptor_parser_parse_abort(parser);
+  }
+};
+
+void OnStatement(void* user_data, raptor_statement* statement) {
+  auto& parse = *static_cast<Parse*>(user_data);
+  std::vector<TurtleStatement>& statements = parse.document->statements;
+  if (statements.size() >= kMaxStatements) {
+    return parse.Stop(fmt::format("more than {} statements", kMaxStatements), parse.Line());
+  }
+  statements.push_back({ToNode(*statement->subject), ToNode(*statement->predicate).value,
+                        ToNode(*statement->object), parse.Line()});
+}
+
+void OnNamespace(void* user_data, raptor_namespace* name_space) {
+  auto& parse = *static_cast<Parse*>(user_data);
+  const std::string prefix = Text(raptor_namespace_get_prefix(name_space));
+  const std::string iri = Text(raptor_namespace_get_uri(name_space));
+  const int line = parse.scan->PrefixLine(parse.num_prefixes++);
+  const auto [known, is_new] = parse.document->prefixes.emplace(prefix, iri);
+  if (is_new || known->second == iri) return;
+  parse.Stop(fmt::format("prefix '{}:' is <{}> and was <{}> before; choose another prefix", prefix,
+                         iri, known->second),
+             line);
+}
+
+void OnLog(void* user_data, raptor_log_message* message) {
+  if (message->level < RAPTOR_LOG_LEVEL_ERROR) return;
+  auto& parse = *static_cast<Parse*>(user_data);
+  const int line = message->locator == nullptr ? -1 : raptor_locator_line(message->locator);
+  // Some messages come without a line; the next one, about the same, has it. Parsing is not
+  // aborted: it ends by itself.
+  if (parse.error_line < 1) parse.error_line = line;
+  if (parse.error.empty()) parse.error = fmt::format("this is no Turtle: {}", message->text);
+}
+
+/// The curl library and its process-wide set-up are left alone: nothing is fetched.
+RaptorPointer<raptor_world> NewWorld() {
+  RaptorPointer<raptor_world> world(raptor_new_world());
+  if (!world) throw base::ConfigError("raptor cannot start; is there memory left?");
+  raptor_world_set_flag(world.get(), RAPTOR_WORLD_FLAG_WWW_SKIP_INIT_FINISH, 1);
+  if (raptor_world_open(world.get()) != 0) throw base::ConfigError("raptor cannot start");
+  return world;
+}
+
+void RunRaptor(std::string_view text, Parse* parse) {
+  static std::mutex mutex;  // raptor's start touches process-wide state of libxml2
+  const std::lock_guard<std::mutex> lock(mutex);
+  const RaptorPointer<raptor_world> world = NewWorld();
+  raptor_world_set_log_handler(world.get(), parse, OnLog);
+  const RaptorPointer<raptor_parser> parser(raptor_new_parser(world.get(), "turtle"));
+  const RaptorPointer<raptor_uri> base(
+      raptor_new_uri(world.get(), reinterpret_cast<const unsigned char*>(kBase)));
+  if (!parser || !base) throw base::ConfigError("raptor has no parser of Turtle");
+  parse->parser = parser.get();
+  raptor_parser_set_option(parser.get(), RAPTOR_OPTION_NO_NET, nullptr, 1);
+  raptor_parser_set_option(parser.get(), RAPTOR_OPTION_NO_FILE, nullptr, 1);
+  raptor_parser_set_statement_handler(parser.get(), parse, OnStatement);
+  raptor_parser_set_namespace_handler(parser.get(), parse, OnNamespace);
+  const bool failed =
+      raptor_parser_parse_start(parser.get(), base.get()) != 0 ||
+      raptor_parser_parse_chunk(parser.get(), reinterpret_cast<const unsigned char*>(text.data()),
+                                text.size(), 1) != 0;
+  if (failed) parse->Stop("this is no Turtle", parse->Line());
+  if (parse->error_line < 1) parse->error_line = std::max(parse->Line(), 1);
+}
+
+}  // namespace
+
+TurtleDocument ReadTurtle(std::string_view text, const std::string& source) {
+  if (text.size() > kMaxTurtleBytes) {
+    throw base::ConfigError(fmt::format("{}: {} bytes of Turtle, at most {} are read", source,
+                                        text.size(), kMaxTurtleBytes));
+  }
+  const TurtleScan scan(text, source);
+  TurtleDocument document;
+  document.source = source;
+  Parse parse{&document, &scan};
+  RunRaptor(text, &parse);
+  if (!parse.error.empty()) Fail(source, parse.error_line, parse.error);
+  return document;
+}
+
+}  // namespace hires::knowledge
