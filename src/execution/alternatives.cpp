@@ -1,4 +1,4 @@
-#include "alternatives.h"
+#include "execution/alternatives.h"
 
 #include <algorithm>
 

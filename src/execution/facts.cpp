@@ -1,4 +1,4 @@
-#include "facts.h"
+#include "execution/facts.h"
 
 #include <algorithm>
 

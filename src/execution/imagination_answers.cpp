@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "alternatives.h"
+#include "execution/alternatives.h"
+#include "execution/imagination_desk.h"
+#include "execution/records.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
-#include "imagination_desk.h"
-#include "records.h"
 
 // What becomes of the answers: the other half of imagination_desk.cpp.
 

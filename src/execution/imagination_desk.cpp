@@ -1,11 +1,11 @@
-#include "imagination_desk.h"
+#include "execution/imagination_desk.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "alternatives.h"
+#include "execution/alternatives.h"
 
 namespace hires::execution {
 namespace {

@@ -1,15 +1,15 @@
-#include "instantiation.h"
+#include "execution/instantiation.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "facts.h"
+#include "execution/facts.h"
+#include "execution/step_effects.h"
 #include "hires/base/error.h"
 #include "hires/planning/reasons.h"
 #include "hires/planning/substitution.h"
 #include "hires/planning/task_text.h"
-#include "step_effects.h"
 
 namespace hires::execution {
 namespace {

@@ -2,16 +2,16 @@
 
 #include <algorithm>
 
+#include "execution/imagination_desk.h"
+#include "execution/plan_quest.h"
+#include "execution/repair.h"
+#include "execution/session.h"
+#include "execution/step_dispatch.h"
+#include "execution/step_watch.h"
 #include "hires/base/error.h"
 #include "hires/base/overloaded.h"
 #include "hires/planning/shop2_reader.h"
 #include "hires/planning/task_text.h"
-#include "imagination_desk.h"
-#include "plan_quest.h"
-#include "repair.h"
-#include "session.h"
-#include "step_dispatch.h"
-#include "step_watch.h"
 
 namespace hires::execution {
 

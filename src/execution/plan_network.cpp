@@ -1,4 +1,4 @@
-#include "plan_network.h"
+#include "execution/plan_network.h"
 
 #include <fmt/format.h>
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "execution/plan_run.h"
 #include "hires/temporal/stn.h"
-#include "plan_run.h"
 
 namespace hires::execution {
 

@@ -1,4 +1,4 @@
-#include "plan_quest.h"
+#include "execution/plan_quest.h"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
-#include "plan_run.h"
+#include "execution/plan_run.h"
 
 #include <algorithm>
 
+#include "execution/instantiation.h"
 #include "hires/planning/plan_order.h"
 #include "hires/planning/reasons.h"
-#include "instantiation.h"
 
 namespace hires::execution {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "execution/step_effects.h"
 #include "hires/execution/monitor.h"
-#include "step_effects.h"
 
 namespace hires::execution {
 

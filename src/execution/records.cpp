@@ -1,4 +1,4 @@
-#include "records.h"
+#include "execution/records.h"
 
 #include "hires/actions/action_spec.h"
 

@@ -1,4 +1,4 @@
-#include "repair.h"
+#include "execution/repair.h"
 
 #include <fmt/format.h>
 

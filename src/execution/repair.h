@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "imagination_desk.h"
-#include "plan_quest.h"
-#include "session.h"
+#include "execution/imagination_desk.h"
+#include "execution/plan_quest.h"
+#include "execution/session.h"
 
 namespace hires::execution {
 

@@ -1,11 +1,11 @@
-#include "session.h"
+#include "execution/session.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "execution/records.h"
 #include "hires/base/text.h"
-#include "records.h"
 
 namespace hires::execution {
 namespace {

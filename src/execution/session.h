@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "execution/plan_network.h"
+#include "execution/plan_run.h"
 #include "hires/execution/monitor.h"
-#include "plan_network.h"
-#include "plan_run.h"
 
 namespace hires::execution {
 

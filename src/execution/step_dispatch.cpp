@@ -1,4 +1,4 @@
-#include "step_dispatch.h"
+#include "execution/step_dispatch.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "imagination_desk.h"
-#include "session.h"
+#include "execution/imagination_desk.h"
+#include "execution/session.h"
 
 namespace hires::execution {
 

@@ -1,4 +1,4 @@
-#include "step_effects.h"
+#include "execution/step_effects.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "facts.h"
+#include "execution/facts.h"
 #include "hires/planning/domain.h"
 #include "hires/planning/operator_data.h"
 

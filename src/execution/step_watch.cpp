@@ -1,4 +1,4 @@
-#include "step_watch.h"
+#include "execution/step_watch.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "session.h"
+#include "execution/session.h"
 
 namespace hires::execution {
 

@@ -1,4 +1,4 @@
-#include "hires/imagination/confidence_sequence.h"
+#include "imagination/confidence_sequence.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,9 +7,9 @@
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
-#include "hires/imagination/physics_hash.h"
 #include "hires/skills/action_loader.h"
 #include "hires/world/object_catalogue.h"
+#include "imagination/physics_hash.h"
 
 namespace hires::imagination {
 namespace {

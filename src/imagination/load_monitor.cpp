@@ -1,4 +1,4 @@
-#include "hires/imagination/load_monitor.h"
+#include "imagination/load_monitor.h"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 
 #include "hires/base/check.h"
 #include "hires/base/text.h"
-#include "hires/imagination/confidence_sequence.h"
+#include "imagination/confidence_sequence.h"
 
 namespace hires::imagination {
 namespace {

@@ -7,10 +7,10 @@
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
-#include "hires/imagination/load_monitor.h"
-#include "hires/imagination/purpose.h"
 #include "hires/simulation/robot_simulator.h"
-#include "rollout_start.h"
+#include "imagination/load_monitor.h"
+#include "imagination/purpose.h"
+#include "imagination/rollout_start.h"
 
 namespace hires::imagination {
 namespace {

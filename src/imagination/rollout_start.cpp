@@ -1,4 +1,4 @@
-#include "rollout_start.h"
+#include "imagination/rollout_start.h"
 
 #include <fmt/format.h>
 

@@ -7,8 +7,8 @@
 
 #include "hires/actions/catalogue.h"
 #include "hires/base/text.h"
-#include "hires/imagination/purpose.h"
-#include "rollout_start.h"
+#include "imagination/purpose.h"
+#include "imagination/rollout_start.h"
 
 namespace hires::imagination {
 namespace {

@@ -13,9 +13,9 @@
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
-#include "inverse_iteration.h"
-#include "kdl_conversions.h"
-#include "link_tree.h"
+#include "manipulation/inverse_iteration.h"
+#include "manipulation/kdl_conversions.h"
+#include "manipulation/link_tree.h"
 
 namespace hires::manipulation {
 namespace {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "corner_rounding.h"
 #include "hires/base/check.h"
-#include "joint_planner.h"
-#include "motion_check.h"
+#include "manipulation/corner_rounding.h"
+#include "manipulation/joint_planner.h"
+#include "manipulation/motion_check.h"
 
 namespace hires::manipulation {
 namespace {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <set>
 
-#include "collision_shapes.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "robot_parts.h"
+#include "manipulation/collision_shapes.h"
+#include "manipulation/robot_parts.h"
 
 namespace hires::manipulation {
 namespace {

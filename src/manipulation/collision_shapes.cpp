@@ -1,4 +1,4 @@
-#include "collision_shapes.h"
+#include "manipulation/collision_shapes.h"
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>

@@ -1,4 +1,4 @@
-#include "corner_rounding.h"
+#include "manipulation/corner_rounding.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "motion_check.h"
+#include "manipulation/motion_check.h"
 
 namespace hires::manipulation {
 

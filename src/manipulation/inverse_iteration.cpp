@@ -1,4 +1,4 @@
-#include "inverse_iteration.h"
+#include "manipulation/inverse_iteration.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>

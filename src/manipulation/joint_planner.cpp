@@ -1,4 +1,4 @@
-#include "joint_planner.h"
+#include "manipulation/joint_planner.h"
 
 #include <ompl/base/MotionValidator.h>
 #include <ompl/base/SpaceInformation.h>

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "motion_check.h"
+#include "manipulation/motion_check.h"
 
 namespace hires::manipulation {
 

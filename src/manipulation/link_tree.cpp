@@ -1,12 +1,12 @@
-#include "link_tree.h"
+#include "manipulation/link_tree.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "collision_shapes.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "manipulation/collision_shapes.h"
 
 namespace hires::manipulation {
 namespace {

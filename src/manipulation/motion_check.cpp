@@ -1,4 +1,4 @@
-#include "motion_check.h"
+#include "manipulation/motion_check.h"
 
 #include <algorithm>
 #include <cmath>

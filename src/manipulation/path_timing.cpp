@@ -1,4 +1,4 @@
-#include "path_timing.h"
+#include "manipulation/path_timing.h"
 
 #include <algorithm>
 #include <cmath>

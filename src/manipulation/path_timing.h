@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "smooth_path.h"
+#include "manipulation/smooth_path.h"
 
 namespace hires::manipulation {
 

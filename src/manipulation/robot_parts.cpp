@@ -1,4 +1,4 @@
-#include "robot_parts.h"
+#include "manipulation/robot_parts.h"
 
 #include <fmt/format.h>
 

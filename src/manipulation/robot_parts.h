@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "collision_shapes.h"
 #include "hires/robot/robot_profile.h"
-#include "link_tree.h"
+#include "manipulation/collision_shapes.h"
+#include "manipulation/link_tree.h"
 
 namespace hires::manipulation {
 

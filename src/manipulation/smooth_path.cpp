@@ -1,4 +1,4 @@
-#include "smooth_path.h"
+#include "manipulation/smooth_path.h"
 
 #include <algorithm>
 

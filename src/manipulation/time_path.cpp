@@ -7,8 +7,8 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/manipulation/arm_path.h"
-#include "path_timing.h"
-#include "smooth_path.h"
+#include "manipulation/path_timing.h"
+#include "manipulation/smooth_path.h"
 
 namespace hires::manipulation {
 namespace {

@@ -1,11 +1,11 @@
-#include "hires/manipulation/upright_variant.h"
+#include "manipulation/upright_variant.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "hires/base/check.h"
 #include "hires/geometry/angles.h"
-#include "motion_check.h"
+#include "manipulation/motion_check.h"
 
 namespace hires::manipulation {
 namespace {

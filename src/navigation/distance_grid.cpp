@@ -1,4 +1,4 @@
-#include "hires/navigation/distance_grid.h"
+#include "navigation/distance_grid.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,10 +8,10 @@
 
 #include "hires/base/check.h"
 #include "hires/geometry/angles.h"
-#include "hires/navigation/distance_grid.h"
-#include "hires/navigation/oscillation_guard.h"
-#include "hires/navigation/swept_footprint.h"
-#include "hires/navigation/velocity_window.h"
+#include "navigation/distance_grid.h"
+#include "navigation/oscillation_guard.h"
+#include "navigation/swept_footprint.h"
+#include "navigation/velocity_window.h"
 
 namespace hires::navigation {
 namespace {

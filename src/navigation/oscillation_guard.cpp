@@ -1,4 +1,4 @@
-#include "hires/navigation/oscillation_guard.h"
+#include "navigation/oscillation_guard.h"
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
-#include "hires/navigation/swept_footprint.h"
+#include "navigation/swept_footprint.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "hires/navigation/velocity_window.h"
+#include "navigation/velocity_window.h"
 
 namespace hires::navigation {
 namespace {

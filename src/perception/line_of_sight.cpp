@@ -8,8 +8,8 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "ray_scene.h"
-#include "surroundings_impl.h"
+#include "perception/ray_scene.h"
+#include "perception/surroundings_impl.h"
 
 namespace hires::perception {
 namespace {

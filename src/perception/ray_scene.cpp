@@ -1,4 +1,4 @@
-#include "ray_scene.h"
+#include "perception/ray_scene.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "hires/base/log.h"
-#include "shape_mesh.h"
+#include "perception/shape_mesh.h"
 
 namespace hires::perception {
 namespace {

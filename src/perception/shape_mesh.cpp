@@ -1,4 +1,4 @@
-#include "shape_mesh.h"
+#include "perception/shape_mesh.h"
 
 #include <cmath>
 

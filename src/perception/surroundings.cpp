@@ -2,8 +2,8 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "shape_mesh.h"
-#include "surroundings_impl.h"
+#include "perception/shape_mesh.h"
+#include "perception/surroundings_impl.h"
 
 namespace hires::perception {
 

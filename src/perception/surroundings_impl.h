@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "hires/perception/surroundings.h"
-#include "ray_scene.h"
+#include "perception/ray_scene.h"
 
 namespace hires::perception {
 

@@ -1,4 +1,4 @@
-#include "hires/physics/contact_points.h"
+#include "physics/contact_points.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "hires/physics/ode_session.h"
+#include "physics/ode_session.h"
 
 #include <ode/ode.h>
 

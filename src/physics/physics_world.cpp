@@ -10,8 +10,8 @@
 
 #include "hires/base/check.h"
 #include "hires/base/error.h"
-#include "hires/physics/ode_session.h"
-#include "physics_world_impl.h"
+#include "physics/ode_session.h"
+#include "physics/physics_world_impl.h"
 
 namespace hires::physics {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics_world_impl.h"
+#include "physics/physics_world_impl.h"
 
 namespace hires::physics {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "hires/base/check.h"
-#include "physics_world_impl.h"
+#include "physics/physics_world_impl.h"
 
 namespace hires::physics {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hires/physics/physics_world.h"
-#include "hires/physics/placed_shape.h"
+#include "physics/placed_shape.h"
 
 namespace hires::physics {
 namespace detail {

@@ -1,4 +1,4 @@
-#include "hires/physics/placed_shape.h"
+#include "physics/placed_shape.h"
 
 #include <fmt/format.h>
 #include <ode/ode.h>
@@ -10,7 +10,7 @@
 
 #include "hires/base/check.h"
 #include "hires/base/error.h"
-#include "hires/physics/ode_session.h"
+#include "physics/ode_session.h"
 
 namespace hires::physics {
 namespace {

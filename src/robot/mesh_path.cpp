@@ -1,4 +1,4 @@
-#include "mesh_path.h"
+#include "robot/mesh_path.h"
 
 #include <fmt/format.h>
 

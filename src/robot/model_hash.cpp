@@ -1,4 +1,4 @@
-#include "model_hash.h"
+#include "robot/model_hash.h"
 
 #include "hires/base/hash.h"
 

@@ -1,4 +1,4 @@
-#include "quiet_urdf_parser.h"
+#include "robot/quiet_urdf_parser.h"
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>

@@ -8,10 +8,10 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "model_hash.h"
-#include "quiet_urdf_parser.h"
-#include "urdf_conversion.h"
-#include "urdf_outline.h"
+#include "robot/model_hash.h"
+#include "robot/quiet_urdf_parser.h"
+#include "robot/urdf_conversion.h"
+#include "robot/urdf_outline.h"
 
 namespace hires::robot {
 namespace {

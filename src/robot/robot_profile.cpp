@@ -8,7 +8,7 @@
 #include "hires/base/hash.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
-#include "upper_body_reader.h"
+#include "robot/upper_body_reader.h"
 
 namespace hires::robot {
 namespace {

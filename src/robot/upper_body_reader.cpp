@@ -1,4 +1,4 @@
-#include "upper_body_reader.h"
+#include "robot/upper_body_reader.h"
 
 #include <fmt/format.h>
 

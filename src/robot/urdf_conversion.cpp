@@ -1,4 +1,4 @@
-#include "urdf_conversion.h"
+#include "robot/urdf_conversion.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/geometry/mesh_reader.h"
-#include "mesh_path.h"
+#include "robot/mesh_path.h"
 
 namespace hires::robot {
 namespace {

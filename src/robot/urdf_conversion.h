@@ -5,7 +5,7 @@
 #include <string>
 
 #include "hires/robot/robot_model.h"
-#include "urdf_outline.h"
+#include "robot/urdf_outline.h"
 
 namespace hires::robot {
 

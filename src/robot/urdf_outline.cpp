@@ -1,4 +1,4 @@
-#include "urdf_outline.h"
+#include "robot/urdf_outline.h"
 
 #include <fmt/format.h>
 #include <tinyxml2.h>

@@ -5,7 +5,7 @@
 
 #include "hires/base/text.h"
 #include "hires/simulation/robot_simulator.h"
-#include "start_checks.h"
+#include "simulation/start_checks.h"
 
 namespace hires::simulation {
 namespace {

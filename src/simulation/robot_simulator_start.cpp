@@ -6,7 +6,7 @@
 
 #include "hires/base/error.h"
 #include "hires/simulation/robot_simulator.h"
-#include "start_checks.h"
+#include "simulation/start_checks.h"
 
 namespace hires::simulation {
 namespace {

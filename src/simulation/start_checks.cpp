@@ -1,4 +1,4 @@
-#include "start_checks.h"
+#include "simulation/start_checks.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "hires/skills/arm_planner.h"
+#include "skills/arm_planner.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "hires/skills/free_spot.h"
+#include "skills/free_spot.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
-#include "hand_stages.h"
+#include "skills/hand_stages.h"
 
-#include "hires/skills/joint_motion.h"
-#include "hires/skills/posture_skills.h"
+#include "skills/joint_motion.h"
+#include "skills/posture_skills.h"
 
 namespace hires::skills {
 namespace {

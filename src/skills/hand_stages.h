@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "hires/skills/activity.h"
-#include "hires/skills/arm_planner.h"
 #include "hires/skills/manipulation_context.h"
+#include "skills/arm_planner.h"
 
 namespace hires::skills {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "hires/manipulation/arm_path.h"
-#include "hires/skills/joint_motion.h"
+#include "skills/joint_motion.h"
 
 namespace hires::skills {
 namespace {

@@ -1,4 +1,4 @@
-#include "hires/skills/joint_motion.h"
+#include "skills/joint_motion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "hires/skills/look_skills.h"
+#include "skills/look_skills.h"
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/skills/head_aim.h"
-#include "hires/skills/joint_motion.h"
+#include "skills/joint_motion.h"
 
 namespace hires::skills {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "hires/geometry/angles.h"
-#include "hires/skills/posture_skills.h"
+#include "skills/posture_skills.h"
 
 namespace hires::skills {
 namespace {

@@ -1,10 +1,10 @@
-#include "hand_stages.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/skills/head_aim.h"
-#include "hires/skills/joint_motion.h"
-#include "hires/skills/look_skills.h"
-#include "hires/skills/object_skills.h"
+#include "skills/hand_stages.h"
+#include "skills/joint_motion.h"
+#include "skills/look_skills.h"
+#include "skills/object_skills.h"
 
 namespace hires::skills {
 namespace {

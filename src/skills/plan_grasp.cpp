@@ -2,9 +2,9 @@
 #include <cmath>
 
 #include "hires/geometry/angles.h"
-#include "hires/skills/posture_skills.h"
-#include "hires/skills/reach.h"
-#include "reach_search.h"
+#include "skills/posture_skills.h"
+#include "skills/reach.h"
+#include "skills/reach_search.h"
 
 namespace hires::skills {
 namespace {

@@ -4,8 +4,8 @@
 
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
-#include "hires/skills/reach.h"
-#include "reach_search.h"
+#include "skills/reach.h"
+#include "skills/reach_search.h"
 
 namespace hires::skills {
 namespace {

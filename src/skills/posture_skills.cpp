@@ -1,4 +1,4 @@
-#include "hires/skills/posture_skills.h"
+#include "skills/posture_skills.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 #include "hires/manipulation/arm_path.h"
-#include "hires/skills/joint_motion.h"
+#include "skills/joint_motion.h"
 
 namespace hires::skills {
 namespace {

@@ -1,4 +1,4 @@
-#include "reach_search.h"
+#include "skills/reach_search.h"
 
 #include <cmath>
 

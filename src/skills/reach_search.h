@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/skills/arm_planner.h"
+#include "skills/arm_planner.h"
 
 namespace hires::skills {
 

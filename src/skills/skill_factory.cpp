@@ -5,9 +5,9 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/skills/look_skills.h"
-#include "hires/skills/object_skills.h"
-#include "hires/skills/posture_skills.h"
+#include "skills/look_skills.h"
+#include "skills/object_skills.h"
+#include "skills/posture_skills.h"
 
 namespace hires::skills {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "stated_pose.h"
+#include "translation/stated_pose.h"
 
 namespace hires::translation {
 namespace {

@@ -1,4 +1,4 @@
-#include "arrangement.h"
+#include "translation/arrangement.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,8 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
-#include "place.h"
-#include "stated_pose.h"
+#include "translation/place.h"
+#include "translation/stated_pose.h"
 
 namespace hires::translation {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "body.h"
 #include "hires/translation/translator.h"
-#include "wanted_state.h"
+#include "translation/body.h"
+#include "translation/wanted_state.h"
 
 namespace hires::translation {
 

@@ -1,4 +1,4 @@
-#include "body.h"
+#include "translation/body.h"
 
 #include <algorithm>
 #include <cmath>

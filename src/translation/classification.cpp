@@ -5,10 +5,10 @@
 #include <limits>
 #include <tuple>
 
-#include "body.h"
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
-#include "place.h"
+#include "translation/body.h"
+#include "translation/place.h"
 
 namespace hires::translation {
 namespace {

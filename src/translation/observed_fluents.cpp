@@ -6,13 +6,13 @@
 #include <cctype>
 #include <cmath>
 
-#include "body.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/knowledge/state_view.h"
-#include "place.h"
-#include "stated_pose.h"
+#include "translation/body.h"
+#include "translation/place.h"
+#include "translation/stated_pose.h"
 
 namespace hires::translation {
 namespace {

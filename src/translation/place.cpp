@@ -1,4 +1,4 @@
-#include "place.h"
+#include "translation/place.h"
 
 #include <algorithm>
 #include <cmath>

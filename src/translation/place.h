@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "body.h"
 #include "hires/translation/areas.h"
 #include "hires/translation/classification.h"
+#include "translation/body.h"
 
 namespace hires::translation {
 

@@ -1,4 +1,4 @@
-#include "stated_pose.h"
+#include "translation/stated_pose.h"
 
 #include <cctype>
 #include <cmath>

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cctype>
 
-#include "arrangement.h"
-#include "body.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 #include "hires/robot/gripper.h"
 #include "hires/translation/classification.h"
-#include "stated_pose.h"
-#include "wanted_state.h"
+#include "translation/arrangement.h"
+#include "translation/body.h"
+#include "translation/stated_pose.h"
+#include "translation/wanted_state.h"
 
 namespace hires::translation {
 namespace {

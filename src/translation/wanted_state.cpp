@@ -1,13 +1,13 @@
-#include "wanted_state.h"
+#include "translation/wanted_state.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <functional>
 
-#include "body.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "translation/body.h"
 
 namespace hires::translation {
 namespace {

@@ -1,4 +1,4 @@
-#include "hires/world/console_bridge_capture.h"
+#include "world/console_bridge_capture.h"
 
 namespace hires::world {
 namespace {

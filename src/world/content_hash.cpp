@@ -1,4 +1,4 @@
-#include "hires/world/content_hash.h"
+#include "world/content_hash.h"
 
 #include <algorithm>
 

@@ -9,11 +9,11 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/world/content_hash.h"
-#include "hires/world/sdf_file.h"
-#include "hires/world/sdf_model.h"
-#include "hires/world/urdf_object.h"
 #include "hires/world/world.h"
+#include "world/content_hash.h"
+#include "world/sdf_file.h"
+#include "world/sdf_model.h"
+#include "world/urdf_object.h"
 
 namespace hires::world {
 namespace {

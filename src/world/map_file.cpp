@@ -10,7 +10,7 @@
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
 #include "hires/world/occupancy_grid.h"
-#include "hires/world/pgm.h"
+#include "world/pgm.h"
 
 namespace hires::world {
 namespace {

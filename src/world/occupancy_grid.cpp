@@ -9,7 +9,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/world/mesh_pieces.h"
+#include "world/mesh_pieces.h"
 
 namespace hires::world {
 namespace {

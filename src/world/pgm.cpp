@@ -1,4 +1,4 @@
-#include "hires/world/pgm.h"
+#include "world/pgm.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "hires/world/quick_sdf.h"
+#include "world/quick_sdf.h"
 
 #include <algorithm>
 #include <iterator>

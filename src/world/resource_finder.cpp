@@ -1,4 +1,4 @@
-#include "hires/world/resource_finder.h"
+#include "world/resource_finder.h"
 
 #include <fmt/format.h>
 

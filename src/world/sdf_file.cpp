@@ -1,4 +1,4 @@
-#include "hires/world/sdf_file.h"
+#include "world/sdf_file.h"
 
 #include <fmt/format.h>
 
@@ -15,8 +15,8 @@
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/geometry/inertia.h"
-#include "hires/world/console_bridge_capture.h"
-#include "hires/world/quick_sdf.h"
+#include "world/console_bridge_capture.h"
+#include "world/quick_sdf.h"
 
 namespace hires::world {
 namespace {

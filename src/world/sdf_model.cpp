@@ -1,4 +1,4 @@
-#include "hires/world/sdf_model.h"
+#include "world/sdf_model.h"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 
 #include "hires/base/error.h"
 #include "hires/geometry/mesh_reader.h"
-#include "hires/world/sdf_file.h"
+#include "world/sdf_file.h"
 
 namespace hires::world {
 namespace {

@@ -1,4 +1,4 @@
-#include "hires/world/urdf_object.h"
+#include "world/urdf_object.h"
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
@@ -8,9 +8,9 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/world/console_bridge_capture.h"
-#include "hires/world/sdf_file.h"
-#include "hires/world/sdf_model.h"
+#include "world/console_bridge_capture.h"
+#include "world/sdf_file.h"
+#include "world/sdf_model.h"
 
 namespace hires::world {
 namespace {

@@ -5,7 +5,7 @@
 #include "hires/base/check.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
-#include "hires/world/content_hash.h"
+#include "world/content_hash.h"
 
 namespace hires::world {
 namespace {

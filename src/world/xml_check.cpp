@@ -1,4 +1,4 @@
-#include "hires/world/xml_check.h"
+#include "world/xml_check.h"
 
 #include <fmt/format.h>
 #include <tinyxml2.h>

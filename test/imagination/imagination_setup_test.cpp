@@ -7,7 +7,7 @@
 #include <functional>
 #include <utility>
 
-#include "hires/imagination/physics_hash.h"
+#include "imagination/physics_hash.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 

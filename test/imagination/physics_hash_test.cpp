@@ -1,4 +1,4 @@
-#include "hires/imagination/physics_hash.h"
+#include "imagination/physics_hash.h"
 
 #include <gtest/gtest.h>
 

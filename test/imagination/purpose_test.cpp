@@ -1,4 +1,4 @@
-#include "hires/imagination/purpose.h"
+#include "imagination/purpose.h"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "hires/imagination/load_monitor.h"
 #include "hires/imagination/rollout.h"
 #include "hires/simulation/truth_record.h"
+#include "imagination/load_monitor.h"
 #include "support/scenes.h"
 
 namespace hires::imagination {

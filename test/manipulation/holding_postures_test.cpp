@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "hires/manipulation/grasp.h"
-#include "hires/manipulation/upright_variant.h"
+#include "manipulation/upright_variant.h"
 #include "restaurant_scene.h"
 
 namespace hires::manipulation {

@@ -8,8 +8,8 @@
 #include "hires/base/check.h"
 #include "hires/navigation/a_star.h"
 #include "hires/navigation/dwa.h"
-#include "hires/navigation/velocity_window.h"
 #include "navigation/scenes.h"
+#include "navigation/velocity_window.h"
 
 namespace hires::navigation::test_support {
 

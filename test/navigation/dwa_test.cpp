@@ -6,9 +6,9 @@
 #include <cstdio>
 
 #include "hires/geometry/angles.h"
-#include "hires/navigation/distance_grid.h"
-#include "hires/navigation/swept_footprint.h"
 #include "navigation/closed_loop.h"
+#include "navigation/distance_grid.h"
+#include "navigation/swept_footprint.h"
 
 namespace hires::navigation {
 namespace {

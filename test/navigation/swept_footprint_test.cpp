@@ -1,10 +1,10 @@
-#include "hires/navigation/swept_footprint.h"
+#include "navigation/swept_footprint.h"
 
 #include <gtest/gtest.h>
 
 #include "hires/geometry/angles.h"
-#include "hires/navigation/velocity_window.h"
 #include "navigation/scenes.h"
+#include "navigation/velocity_window.h"
 
 namespace hires::navigation {
 namespace {

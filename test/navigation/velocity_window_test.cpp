@@ -1,4 +1,4 @@
-#include "hires/navigation/velocity_window.h"
+#include "navigation/velocity_window.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "hires/physics/placed_shape.h"
+#include "physics/placed_shape.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "hires/skills/look_skills.h"
+#include "skills/look_skills.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,8 +4,8 @@
 
 #include "hires/geometry/angles.h"
 #include "hires/skills/activity.h"
-#include "hires/skills/joint_motion.h"
 #include "restaurant.h"
+#include "skills/joint_motion.h"
 
 namespace hires::skills {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "hires/geometry/angles.h"
 #include "hires/skills/manipulation_context.h"
-#include "hires/skills/posture_skills.h"
 #include "skills/point_robot.h"
+#include "skills/posture_skills.h"
 #include "support/scenes.h"
 
 namespace hires::skills {

@@ -1,4 +1,4 @@
-#include "hires/skills/object_skills.h"
+#include "skills/object_skills.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "hires/skills/posture_skills.h"
+#include "skills/posture_skills.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

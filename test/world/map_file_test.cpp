@@ -7,7 +7,7 @@
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
 #include "hires/world/occupancy_grid.h"
-#include "hires/world/pgm.h"
+#include "world/pgm.h"
 #include "world/temp_folder.h"
 
 namespace hires::world {

@@ -1,4 +1,4 @@
-#include "hires/world/mesh_pieces.h"
+#include "world/mesh_pieces.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Two roads: what is read quickly equals what sdf::readFile makes of the same file.
-#include "hires/world/quick_sdf.h"
+#include "world/quick_sdf.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@
 
 #include "hires/base/error.h"
 #include "hires/world/object_catalogue.h"
-#include "hires/world/sdf_file.h"
+#include "world/sdf_file.h"
 #include "world/sdf_texts.h"
 #include "world/temp_folder.h"
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "hires/manipulation/grasp.h"
-#include "hires/skills/arm_planner.h"
-#include "hires/skills/free_spot.h"
+#include "skills/arm_planner.h"
+#include "skills/free_spot.h"
 
 namespace hires::skills {
 

@@ -5,7 +5,7 @@
 
 #include "hires/skills/activity.h"
 #include "hires/skills/manipulation_context.h"
-#include "hires/skills/reach.h"
+#include "skills/reach.h"
 
 namespace hires::skills {
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "hires/world/resource_finder.h"
 #include "hires/world/world.h"
+#include "world/resource_finder.h"
 
 namespace hires::world {
 

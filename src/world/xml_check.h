@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "hires/world/resource_finder.h"
+#include "world/resource_finder.h"
 
 namespace hires::world {
 

@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "hires/imagination/purpose.h"
 #include "hires/imagination/rollout_result.h"
 #include "hires/simulation/fall_watch.h"
 #include "hires/simulation/robot_simulator.h"
 #include "hires/world/standing.h"
+#include "imagination/purpose.h"
 
 namespace hires::imagination {
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "hires/geometry/shape.h"
-#include "hires/physics/contact_points.h"
+#include "physics/contact_points.h"
 
 struct dxGeom;
 struct dxTriMeshData;

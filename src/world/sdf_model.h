@@ -7,8 +7,8 @@
 #include <sdf/SemanticPose.hh>
 #include <string>
 
-#include "hires/world/resource_finder.h"
 #include "hires/world/world.h"
+#include "world/resource_finder.h"
 
 namespace hires::world {
 

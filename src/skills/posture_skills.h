@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "hires/skills/activity.h"
-#include "hires/skills/arm_planner.h"
-#include "hires/skills/joint_motion.h"
 #include "hires/skills/manipulation_context.h"
+#include "skills/arm_planner.h"
+#include "skills/joint_motion.h"
 
 namespace hires::skills {
 

@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
-#include "hires/world/resource_finder.h"
-#include "hires/world/xml_check.h"
+#include "world/resource_finder.h"
+#include "world/xml_check.h"
 
 namespace hires::world {
 
