@@ -5,9 +5,9 @@
 #include <chrono>
 #include <memory>
 
+#include "evaluation/experiment_kinds.h"
+#include "evaluation/experiment_stage.h"
 #include "hires/base/error.h"
-#include "hires/evaluation/experiment_kinds.h"
-#include "hires/evaluation/experiment_stage.h"
 
 namespace hires::evaluation {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "evaluation/experiment_stage.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/experiment.h"
 #include "hires/evaluation/experiment_braking.h"
-#include "hires/evaluation/experiment_stage.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/physics/closed_forms.h"
 

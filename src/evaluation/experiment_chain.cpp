@@ -1,4 +1,4 @@
-#include "hires/evaluation/experiment_chain.h"
+#include "evaluation/experiment_chain.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "evaluation/experiment_kinds.h"
+#include "evaluation/experiment_parallel.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/experiment_kinds.h"
-#include "hires/evaluation/experiment_parallel.h"
 #include "hires/evaluation/statistics.h"
 #include "hires/imagination/evidence.h"
 

@@ -1,4 +1,4 @@
-#include "hires/evaluation/experiment_parallel.h"
+#include "evaluation/experiment_parallel.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,4 +1,4 @@
-#include "hires/evaluation/experiment_stage.h"
+#include "evaluation/experiment_stage.h"
 
 #include "hires/base/hash.h"
 #include "hires/base/text.h"

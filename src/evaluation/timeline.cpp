@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "hires/base/text.h"
-#include "hires/evaluation/achieve_display.h"
 #include "hires/evaluation/report_table.h"
 
 namespace hires::evaluation {

@@ -12,7 +12,6 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/achieve_display.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
 

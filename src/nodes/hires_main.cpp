@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "hires/evaluation/command_line.h"
+#include "hires/cli/command_line.h"
 #include "hires/ros/hypothesis_run.h"
 #include "hires/ros/remote_achieve.h"
 #include "hires/ros/remote_blackboard.h"
@@ -15,13 +15,13 @@
 int main(int argc, char** argv) {
   std::vector<std::string> arguments;  // roslaunch adds names and remappings that are not ours
   ros::removeROSArgs(argc, argv, arguments);
-  hires::evaluation::Backends backends;
+  hires::cli::Backends backends;
   backends.package_folder = ros::package::getPath("hires");
   backends.imagine_remotely = hires_ros::ImagineRemotely;
   backends.achieve_remotely = hires_ros::AchieveRemotely;
   backends.connect_blackboard = hires_ros::ConnectBlackboard;
   backends.play_hypothesis = hires_ros::PlayHypothesisRun;
-  backends.examine_robot = [&](const hires::evaluation::RobotDoctorOptions& options) {
+  backends.examine_robot = [&](const hires::cli::RobotDoctorOptions& options) {
     return hires_ros::ExamineRobot(options, backends.package_folder);
   };
   backends.more_verbs.push_back(
@@ -36,5 +36,5 @@ int main(int argc, char** argv) {
                                    return hires_ros::RunReplay(words, backends.package_folder);
                                  }});
   backends.more_checks.push_back(hires_ros::CheckRos);
-  return hires::evaluation::RunCommandLine(arguments, backends);
+  return hires::cli::RunCommandLine(arguments, backends);
 }

@@ -32,7 +32,7 @@ std::vector<knowledge::Change> ChangesOf(const hires::ChangesSince::Response& an
   return changes;
 }
 
-class RemoteBlackboard : public hires::evaluation::BlackboardAccess {
+class RemoteBlackboard : public hires::cli::BlackboardAccess {
  public:
   knowledge::LoadSummary Load(const std::string& text, const std::string& path,
                               std::uint64_t seed) override {
@@ -123,7 +123,7 @@ class RemoteBlackboard : public hires::evaluation::BlackboardAccess {
 
 }  // namespace
 
-std::unique_ptr<hires::evaluation::BlackboardAccess> ConnectBlackboard() {
+std::unique_ptr<hires::cli::BlackboardAccess> ConnectBlackboard() {
   int no_arguments = 0;
   ros::init(no_arguments, nullptr, "hires_blackboard",
             ros::init_options::AnonymousName | ros::init_options::NoRosout);

@@ -31,7 +31,7 @@ hires::Atom MakeAtom(const std::string& predicate, const std::vector<std::string
 
 /// Symbols, which the client reads by itself; what stands at places given in numbers has none, so
 /// that the state is made here, from the same files.
-void SetStart(const hires::evaluation::ImagineQuery& query, hires::ImagineGoal* goal) {
+void SetStart(const hires::cli::ImagineQuery& query, hires::ImagineGoal* goal) {
   if (query.start.put.empty()) {
     for (const hires::base::Atom& atom : query.start.AllAtoms()) {
       goal->updated_fluents.push_back(MakeAtom(atom.predicate, atom.arguments));
@@ -46,7 +46,7 @@ void SetStart(const hires::evaluation::ImagineQuery& query, hires::ImagineGoal* 
   goal->robot_state = ToMsg(start.robot);
 }
 
-hires::ImagineGoal GoalOf(const hires::evaluation::ImagineQuery& query) {
+hires::ImagineGoal GoalOf(const hires::cli::ImagineQuery& query) {
   hires::ImagineGoal goal;
   goal.steps.push_back(ToMsg(query.action));
   SetStart(query, &goal);
@@ -126,7 +126,7 @@ hires::ImagineResult AwaitResult(const hires::ImagineGoal& goal,
 
 }  // namespace
 
-hires::imagination::Report ImagineRemotely(const hires::evaluation::ImagineQuery& query,
+hires::imagination::Report ImagineRemotely(const hires::cli::ImagineQuery& query,
                                            const hires::imagination::OnInterim& on_interim,
                                            const std::function<bool()>& cancelled) {
   if (query.own_scene) {

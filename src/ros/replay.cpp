@@ -16,7 +16,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/command_line.h"
+#include "hires/cli/command_line.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/imagination/client_config.h"
@@ -301,7 +301,7 @@ int Replay(const ReplayOptions& options, const std::string& package_folder) {
     for (const ReplayedRequest& request : replayed) json.push_back(ReplayJson(request));
     evaluation::WriteJson(json, options.json);
   }
-  return interrupted ? evaluation::kExitCancelled : ReplayExitCode(replayed);
+  return interrupted ? cli::kExitCancelled : ReplayExitCode(replayed);
 }
 
 }  // namespace
@@ -384,7 +384,7 @@ int ReplayExitCode(const std::vector<ReplayedRequest>& replayed) {
       std::any_of(replayed.begin(), replayed.end(), [](const ReplayedRequest& request) {
         return !request.comparison.identical && !request.comparison.depended_on_moment;
       });
-  return differs ? kExitDiffers : evaluation::kExitRecommended;
+  return differs ? kExitDiffers : cli::kExitRecommended;
 }
 
 ImagineAgain MakeLocalImagination(const std::string& package_folder, int num_threads,
@@ -426,7 +426,7 @@ int RunReplay(const std::vector<std::string>& arguments, const std::string& pack
     // CLI11 takes its arguments from the back.
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : evaluation::kExitBadInput;
+    return app.exit(error) == 0 ? 0 : cli::kExitBadInput;
   }
   return Replay(options, package_folder);
 }

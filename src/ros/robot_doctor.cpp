@@ -8,7 +8,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/command_line.h"
+#include "hires/cli/command_line.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 
@@ -111,9 +111,8 @@ RobotFindings Sorted(const std::vector<RobotFindings>& parts) {
 
 }  // namespace
 
-RobotFindings JudgeRobot(const hires::evaluation::RobotDoctorOptions& options,
-                         const RobotNames& names, const hires::robot::RobotProfile& profile,
-                         const RobotView& view) {
+RobotFindings JudgeRobot(const hires::cli::RobotDoctorOptions& options, const RobotNames& names,
+                         const hires::robot::RobotProfile& profile, const RobotView& view) {
   std::vector<RobotFindings> parts{JudgeHosts(view), JudgeClocks(view),
                                    JudgeListeners(names, view)};
   if (HasCode(parts.front(), "own_loopback")) return Sorted(parts);  // nothing came, of course
@@ -158,8 +157,7 @@ ordered_json RobotJson(const RobotNames& names, const RobotView& view,
   return json;
 }
 
-int ExamineRobot(const hires::evaluation::RobotDoctorOptions& options,
-                 const std::string& package_folder) {
+int ExamineRobot(const hires::cli::RobotDoctorOptions& options, const std::string& package_folder) {
   const auto or_default = [&](const std::string& path, const char* name) {
     return path.empty() ? package_folder + "/config/robots/" + name : path;
   };
@@ -172,8 +170,7 @@ int ExamineRobot(const hires::evaluation::RobotDoctorOptions& options,
   if (!options.json.empty()) {
     hires::evaluation::WriteJson(RobotJson(names, view, findings), options.json);
   }
-  return HasFailed(findings) ? hires::evaluation::kExitBadInput
-                             : hires::evaluation::kExitRecommended;
+  return HasFailed(findings) ? hires::cli::kExitBadInput : hires::cli::kExitRecommended;
 }
 
 }  // namespace hires_ros

@@ -258,8 +258,7 @@ void ReadMaster(const RobotNames& names, MasterQuestions* master, RobotView* vie
 
 }  // namespace
 
-RobotView LookAtRobot(const hires::evaluation::RobotDoctorOptions& options,
-                      const RobotNames& names) {
+RobotView LookAtRobot(const hires::cli::RobotDoctorOptions& options, const RobotNames& names) {
   QuietXmlRpc();
   int no_arguments = 0;
   ros::init(no_arguments, nullptr, "hires_doctor",

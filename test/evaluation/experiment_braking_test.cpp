@@ -6,10 +6,10 @@
 #include <cmath>
 #include <fstream>
 
+#include "evaluation/experiment_stage.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/experiment.h"
-#include "hires/evaluation/experiment_stage.h"
 
 namespace hires::evaluation {
 namespace {

@@ -1,4 +1,4 @@
-#include "hires/evaluation/experiment_kinds.h"
+#include "evaluation/experiment_kinds.h"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,9 @@
 #include <cmath>
 #include <fstream>
 
+#include "evaluation/experiment_chain.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/command_line.h"
-#include "hires/evaluation/experiment_chain.h"
 #include "hires/geometry/angles.h"
 
 namespace hires::evaluation {
@@ -227,40 +226,6 @@ TEST(ChainTest, OneTruthStaysTheSameForAllLegsAndDiffersBetweenChains) {
   EXPECT_NE(draw(spread, 1), draw(spread, 2));
   EXPECT_NE(draw(truth, 1), draw(OneTruth(spread, base::Rng(2)), 1));
   EXPECT_EQ(draw(Without(spread, {"object_mass", "sway"}), 1), 1.0);
-}
-
-/// The exit code of `hires experiment` with a file that expects `expectation` of three legs.
-int ExitCode(const std::string& expectation, const std::vector<std::string>& more = {}) {
-  std::string yaml = base::ReadTextFile(kRoot + "/config/experiments/legs_world.yaml");
-  yaml = yaml.substr(0, yaml.find("expect:")) + "expect: [" + expectation + "]\n";
-  yaml.replace(yaml.find("../scene.yaml"), 13, kRoot + "/config/scene.yaml");
-  const std::string path = testing::TempDir() + "exit_code.yaml";
-  std::ofstream(path) << yaml;
-  std::vector<std::string> arguments{"hires", "experiment", path, "--runs", "1"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  const int code = RunCommandLine(arguments, {});
-  testing::internal::GetCapturedStdout();
-  testing::internal::GetCapturedStderr();
-  return code;
-}
-
-TEST(ExperimentCommandTest, ExitsByWhatTheFileExpects) {
-  EXPECT_EQ(ExitCode("{measure: reached, at_least: 1}"), 0);
-  EXPECT_EQ(ExitCode("{measure: reached, at_least: 2}"), 2);
-  EXPECT_EQ(ExitCode("{measure: raeched, at_least: 1}"), 1);
-  EXPECT_EQ(ExitCode("", {"--threads", "0"}), 1);
-  EXPECT_EQ(ExitCode("", {"--json", "/no/such/folder/x.json"}), 1);
-}
-
-TEST(ExperimentCommandTest, WritesCsvAndJson) {
-  const std::string csv = testing::TempDir() + "legs.csv", json = testing::TempDir() + "legs.json";
-  EXPECT_EQ(ExitCode("", {"--csv", csv, "--json", json, "--seed", "5"}), 0);
-  EXPECT_THAT(base::ReadTextFile(csv), testing::StartsWith("chain,leg,from,to,start_x"));
-  const auto report = nlohmann::json::parse(base::ReadTextFile(json));
-  EXPECT_EQ(report["seed"], 5);
-  EXPECT_EQ(report["rows"].size(), 1u);
 }
 
 }  // namespace

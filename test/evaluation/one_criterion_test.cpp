@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "evaluation/experiment_chain.h"
 #include "hires/evaluation/experiment.h"
 #include "hires/evaluation/experiment_braking.h"
-#include "hires/evaluation/experiment_chain.h"
 #include "hires/imagination/rollout.h"
 #include "hires/simulation/truth_record.h"
 #include "hires/translation/classification.h"

@@ -139,7 +139,7 @@ TEST(JudgeRobotTest, AFingerTellsAsMuchAsTheGap) {
 TEST(JudgeRobotTest, HowMuchAMissingMoveBaseMattersDependsOnWhoDrives) {
   RobotView view = HealthyView();
   view.topics.erase("/move_base/goal");
-  hires::evaluation::RobotDoctorOptions options;
+  hires::cli::RobotDoctorOptions options;
   const RobotFindings undecided = JudgeRobot(options, Names(), Profile(), view);
   ASSERT_THAT(CodesOf(undecided), ElementsAre("move_base_missing"));
   EXPECT_EQ(undecided[0].level, FindingLevel::kWarning);

@@ -16,6 +16,8 @@ namespace hires::evaluation {
 /// "move_base_param(area1, slow|fast)", for people.
 std::string ToString(const base::ActionTemplate& action);
 
+std::string ToString(execution::StepPhase phase);  ///< "waiting", "running", ...
+
 /// How such a request went, or that it runs.
 enum class ImaginedOutcome {
   kRunning,
@@ -57,6 +59,9 @@ struct AchieveStatus {
   int replans{0};
   std::vector<std::string> warnings;  ///< new ones
 };
+
+/// First moment that a status speaks of [s]: when its first step or imagination began, else now.
+double BeginOf(const AchieveStatus& status);
 
 enum class AchieveOutcome { kSucceeded, kNoPlan, kFailed, kPreempted, kInvalid, kBusy, kDryRun };
 std::string ToString(AchieveOutcome outcome);  ///< "succeeded", "no_plan", ...

@@ -2,12 +2,12 @@
 
 #include <memory>
 
-#include "hires/evaluation/blackboard_command.h"
+#include "hires/cli/blackboard_command.h"
 
 namespace hires_ros {
 
 /// The running node `blackboard`, through its services.
 /// @throws hires::base::ConfigError if there is no master, or nobody serves the Blackboard there.
-std::unique_ptr<hires::evaluation::BlackboardAccess> ConnectBlackboard();
+std::unique_ptr<hires::cli::BlackboardAccess> ConnectBlackboard();
 
 }  // namespace hires_ros

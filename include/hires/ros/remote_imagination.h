@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "hires/evaluation/command_line.h"
+#include "hires/cli/command_line.h"
 #include "hires/imagination/report.h"
 
 namespace hires_ros {
@@ -13,7 +13,7 @@ namespace hires_ros {
 /// Asks the running imagination client (action `imagine`).
 /// @throws hires::base::ConfigError if there is no master or no client, the request is refused, or
 /// it needs another world than the running one.
-hires::imagination::Report ImagineRemotely(const hires::evaluation::ImagineQuery& query,
+hires::imagination::Report ImagineRemotely(const hires::cli::ImagineQuery& query,
                                            const hires::imagination::OnInterim& on_interim,
                                            const std::function<bool()>& cancelled);
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/evaluation/doctor.h"
+#include "hires/cli/doctor.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/ros/robot_doctor_view.h"
 #include "hires/ros/ros_doctor.h"
@@ -46,14 +46,12 @@ RobotFindings JudgeHosts(const RobotView& view);
 RobotFindings JudgeClocks(const RobotView& view);
 
 /// All of them, what fails first.
-RobotFindings JudgeRobot(const hires::evaluation::RobotDoctorOptions& options,
-                         const RobotNames& names, const hires::robot::RobotProfile& profile,
-                         const RobotView& view);
+RobotFindings JudgeRobot(const hires::cli::RobotDoctorOptions& options, const RobotNames& names,
+                         const hires::robot::RobotProfile& profile, const RobotView& view);
 
 /// Listens for options.seconds.
 /// @throws hires::base::ConfigError if no master answers.
-RobotView LookAtRobot(const hires::evaluation::RobotDoctorOptions& options,
-                      const RobotNames& names);
+RobotView LookAtRobot(const hires::cli::RobotDoctorOptions& options, const RobotNames& names);
 
 /// Tables for people: what was heard, then the findings, each with what to do.
 std::string RobotReport(const RobotNames& names, const RobotView& view,
@@ -63,7 +61,6 @@ nlohmann::ordered_json RobotJson(const RobotNames& names, const RobotView& view,
 
 /// The whole verb.
 /// @return 0 if nothing failed, else kExitBadInput.  @throws hires::base::ConfigError.
-int ExamineRobot(const hires::evaluation::RobotDoctorOptions& options,
-                 const std::string& package_folder);
+int ExamineRobot(const hires::cli::RobotDoctorOptions& options, const std::string& package_folder);
 
 }  // namespace hires_ros

@@ -1,4 +1,4 @@
-#include "hires/evaluation/plan_command.h"
+#include "cli/plan_command.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/command_line.h"
+#include "hires/cli/command_line.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/evaluation/resource_use.h"
@@ -23,7 +23,7 @@
 #include "hires/planning/task_text.h"
 #include "hires/planning/validator.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 using SteadyClock = std::chrono::steady_clock;
@@ -99,10 +99,10 @@ Session Read(const PlanOptions& options) {
 
 /// Nothing but the search lies between the two looks at the clock.
 void Search(Session* session) {
-  const double begin = ThreadCpuSeconds();
+  const double begin = evaluation::ThreadCpuSeconds();
   session->result = planning::FindPlans(session->domain, session->problem, session->request);
-  session->costs.cpu_seconds = ThreadCpuSeconds() - begin;
-  session->costs.peak_mb = PeakMegabytes();
+  session->costs.cpu_seconds = evaluation::ThreadCpuSeconds() - begin;
+  session->costs.peak_mb = evaluation::PeakMegabytes();
 }
 
 void AddReasons(Session* session) {
@@ -147,7 +147,7 @@ std::string PlanTable(const planning::Plan& plan) {
                     fmt::format("{}", plan.steps[i].cost), waits_for[i],
                     Origin(plan, static_cast<int>(i))});
   }
-  return FormatTable(rows);
+  return evaluation::FormatTable(rows);
 }
 
 void PrintTables(const std::vector<planning::Plan>& plans) {
@@ -172,7 +172,7 @@ void PrintTrace(const std::vector<planning::TraceEntry>& trace, std::ostream* ou
   for (const planning::TraceEntry& entry : trace) {
     rows.push_back({std::to_string(entry.depth), Shortened(entry.task), entry.where, entry.reason});
   }
-  *out << FormatTable(rows) << '\n';
+  *out << evaluation::FormatTable(rows) << '\n';
 }
 
 void PrintViolations(const Session& session, std::ostream* out) {
@@ -260,15 +260,15 @@ void AddPlanVerb(CLI::App* app, PlanOptions* options) {
 }
 
 int RunPlanVerb(const PlanOptions& options, const std::function<bool()>& cancelled) {
-  if (!options.json.empty()) RequireFolderOf(options.json);
+  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
   Session session = Read(options);
   session.request.stop = StopQuestionFor(options, cancelled);
   Search(&session);
   if (options.format.empty() || !options.json.empty()) AddReasons(&session);
   if (options.validate) Validate(&session);
   Print(session, options.format);
-  if (!options.json.empty()) WriteJson(SessionToJson(session), options.json);
+  if (!options.json.empty()) evaluation::WriteJson(SessionToJson(session), options.json);
   return ExitCodeOf(session);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

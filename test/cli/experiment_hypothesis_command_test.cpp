@@ -1,4 +1,4 @@
-#include "hires/evaluation/experiment_hypothesis_command.h"
+#include "cli/experiment_hypothesis_command.h"
 
 #include <gmock/gmock.h>
 
@@ -6,10 +6,10 @@
 
 #include "evaluation/hypothesis_examples.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/command_line.h"
+#include "hires/cli/command_line.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 using test_support::TemporaryFolder;
@@ -23,7 +23,7 @@ struct Ended {
   std::string out, err;
 };
 
-Ended RunWith(const std::vector<std::string>& words, const PlayHypothesis& play = {}) {
+Ended RunWith(const std::vector<std::string>& words, const evaluation::PlayHypothesis& play = {}) {
   std::vector<std::string> arguments{"hires", "experiment", "hypothesis"};
   arguments.insert(arguments.end(), words.begin(), words.end());
   Backends backends;
@@ -41,10 +41,11 @@ Ended RunWith(const std::vector<std::string>& words, const PlayHypothesis& play 
 /// Succeeds with imagination, and without in odd runs; remembers what it was asked.
 class FakePlayer {
  public:
-  std::optional<HypothesisRun> operator()(const HypothesisOrder& order) {
+  std::optional<evaluation::HypothesisRun> operator()(const evaluation::HypothesisOrder& order) {
     if (static_cast<int>(orders.size()) == stop_after) return std::nullopt;
     orders.push_back(order);
-    HypothesisRun run = RecordOf(0, false, order.imagines || order.run % 2 == 1);
+    evaluation::HypothesisRun run =
+        evaluation::RecordOf(0, false, order.imagines || order.run % 2 == 1);
     if (order.run == dies_in) {
       run = {};
       run.outcome = "system_died";
@@ -52,13 +53,13 @@ class FakePlayer {
     }
     return run;
   }
-  PlayHypothesis AsPlay() {
-    return [this](const HypothesisOrder& order, const std::function<bool()>&) {
+  evaluation::PlayHypothesis AsPlay() {
+    return [this](const evaluation::HypothesisOrder& order, const std::function<bool()>&) {
       return (*this)(order);
     };
   }
 
-  std::vector<HypothesisOrder> orders;
+  std::vector<evaluation::HypothesisOrder> orders;
   int stop_after{-1};
   int dies_in{-1};
 };
@@ -153,4 +154,4 @@ TEST_F(HypothesisCommandTest, SaysThatABuildWithoutRosCannotPlayIt) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::cli

@@ -11,7 +11,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::evaluation {
+namespace hires::cli {
 
 /// What was typed behind `hires experiment hypothesis`.
 struct HypothesisOptions {
@@ -31,9 +31,10 @@ void AddHypothesisVerb(CLI::App* experiment, HypothesisOptions* options);
 /// @return kExitRecommended when all runs were played, kExitAllFailed when each of them broke down,
 /// kExitCancelled.  @throws base::ConfigError for bad input, before anything is played.
 int RunHypothesisVerb(const HypothesisOptions& options, const std::string& package_folder,
-                      const PlayHypothesis& play, const std::function<bool()>& cancelled);
+                      const evaluation::PlayHypothesis& play,
+                      const std::function<bool()>& cancelled);
 
 /// Of all files below config/, worlds/ and urdf/, by name and content.
 std::string HashOfFiles(const std::string& package_folder);
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

@@ -7,7 +7,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::evaluation {
+namespace hires::cli {
 
 struct Backends;
 
@@ -41,4 +41,4 @@ void AddDoctorVerb(CLI::App* app, DoctorOptions* options);
 /// @throws base::ConfigError for --robot where there are no ROS nodes to ask.
 int RunDoctorVerb(const DoctorOptions& options, const Backends& backends);
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

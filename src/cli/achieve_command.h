@@ -10,7 +10,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::evaluation {
+namespace hires::cli {
 
 /// Exit codes of `hires achieve`.
 enum AchieveExitCode {
@@ -35,6 +35,7 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options);
 /// @param achieve  Empty: this program has no execution monitor to ask.
 /// @return AchieveExitCode.  @throws base::ConfigError for bad input.
 int RunAchieveVerb(const AchieveOptions& options, const std::string& package_folder,
-                   const AchieveRemotely& achieve, const std::function<bool()>& cancelled);
+                   const evaluation::AchieveRemotely& achieve,
+                   const std::function<bool()>& cancelled);
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

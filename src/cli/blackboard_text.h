@@ -8,7 +8,7 @@
 #include "hires/knowledge/loading.h"
 #include "hires/knowledge/store.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 
 /// A value as people type it; see ParsePropertyFilter.
 knowledge::Filler ParseFiller(const std::string& text);
@@ -26,4 +26,4 @@ nlohmann::ordered_json ToJson(const std::vector<knowledge::Episode>& episodes);
 nlohmann::ordered_json ToJson(const knowledge::Store::Statistics& statistics,
                               const std::string& path);
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

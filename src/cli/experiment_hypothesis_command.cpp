@@ -1,4 +1,4 @@
-#include "hires/evaluation/experiment_hypothesis_command.h"
+#include "cli/experiment_hypothesis_command.h"
 
 #include <fmt/format.h>
 
@@ -8,16 +8,16 @@
 #include <filesystem>
 #include <iostream>
 
+#include "cli/experiment_command.h"
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/command_line.h"
-#include "hires/evaluation/experiment_command.h"
+#include "hires/cli/command_line.h"
 #include "hires/evaluation/experiment_hypothesis_journal.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,7 +31,7 @@ std::string JournalPath(const HypothesisOptions& options) {
 
 void RequireFolders(const HypothesisOptions& options) {
   for (const std::string& path : {JournalPath(options), options.csv, options.json}) {
-    if (!path.empty()) RequireFolderOf(path);
+    if (!path.empty()) evaluation::RequireFolderOf(path);
   }
   if (options.logs.empty()) return;
   std::error_code error;
@@ -43,7 +43,7 @@ void RequireFolders(const HypothesisOptions& options) {
 }
 
 /// A task that takes `time_limit` at this pace must fit into a run.
-void CheckLimits(const HypothesisGoal& goal, double pace, const std::string& path) {
+void CheckLimits(const evaluation::HypothesisGoal& goal, double pace, const std::string& path) {
   if (pace <= 0.0 || goal.start_limit + goal.time_limit / pace <= goal.wall_limit) return;
   throw base::ConfigError(fmt::format(
       "--pace {:g}: {:g} s simulated take {:g} s, with {:g} s to start more than wall_limit, {:g} "
@@ -51,7 +51,8 @@ void CheckLimits(const HypothesisGoal& goal, double pace, const std::string& pat
       pace, goal.time_limit, goal.time_limit / pace, goal.start_limit, goal.wall_limit, path));
 }
 
-HypothesisSetting SettingOf(const HypothesisOptions& options, const std::string& package_folder) {
+evaluation::HypothesisSetting SettingOf(const HypothesisOptions& options,
+                                        const std::string& package_folder) {
   return {options.scenario, options.runs,    options.seed,
           options.pace,     options.workers, HashOfFiles(package_folder)};
 }
@@ -74,17 +75,18 @@ std::string CommandOf(const HypothesisOptions& options) {
 std::string Arm(bool imagines) { return imagines ? "with" : "without"; }
 
 /// All that the journal lacks, pair after pair.
-std::vector<HypothesisOrder> OrdersFor(const HypothesisOptions& options, const HypothesisGoal& goal,
-                                       const HypothesisJournal& journal) {
-  std::vector<HypothesisOrder> orders;
+std::vector<evaluation::HypothesisOrder> OrdersFor(const HypothesisOptions& options,
+                                                   const evaluation::HypothesisGoal& goal,
+                                                   const evaluation::HypothesisJournal& journal) {
+  std::vector<evaluation::HypothesisOrder> orders;
   for (int run = 1; run <= options.runs; ++run) {
     for (const bool imagines : {true, false}) {
       if (journal.Has(run, imagines)) continue;
-      HypothesisOrder order;
+      evaluation::HypothesisOrder order;
       order.scenario = options.scenario;
       order.run = run;
       order.imagines = imagines;
-      order.seed = SeedOfRun(options.seed, run);
+      order.seed = evaluation::SeedOfRun(options.seed, run);
       order.pace = options.pace;
       order.workers = options.workers;
       order.goal = goal;
@@ -98,7 +100,8 @@ std::vector<HypothesisOrder> OrdersFor(const HypothesisOptions& options, const H
 }
 
 /// A record that can be trusted to be of this order, whoever played it.
-HypothesisRun Stamped(HypothesisRun record, const HypothesisOrder& order, double wall_seconds) {
+evaluation::HypothesisRun Stamped(evaluation::HypothesisRun record,
+                                  const evaluation::HypothesisOrder& order, double wall_seconds) {
   record.run = order.run;
   record.imagines = order.imagines;
   record.seed = order.seed;
@@ -111,20 +114,20 @@ double SecondsSince(Steady::time_point begin) {
   return std::chrono::duration<double>(Steady::now() - begin).count();
 }
 
-std::string DoneLine(const HypothesisRun& run, int num_runs) {
+std::string DoneLine(const evaluation::HypothesisRun& run, int num_runs) {
   return fmt::format("run {} of {} {} imagination: {}: {}; {:.0f} s simulated, {:.0f} s", run.run,
                      num_runs, Arm(run.imagines), run.outcome,
                      run.is_complete ? run.verdict : run.reason, run.duration, run.wall_seconds);
 }
 
 /// @return false when cancelled.
-bool PlayAll(const std::vector<HypothesisOrder>& orders, const HypothesisOptions& options,
-             const PlayHypothesis& play, const std::function<bool()>& cancelled,
-             HypothesisJournal* journal) {
+bool PlayAll(const std::vector<evaluation::HypothesisOrder>& orders,
+             const HypothesisOptions& options, const evaluation::PlayHypothesis& play,
+             const std::function<bool()>& cancelled, evaluation::HypothesisJournal* journal) {
   const auto begin = Steady::now();
   for (std::size_t i = 0; i < orders.size(); ++i) {
     const auto run_begin = Steady::now();
-    std::optional<HypothesisRun> record;
+    std::optional<evaluation::HypothesisRun> record;
     if (!cancelled()) record = play(orders[i], cancelled);
     if (!record) return false;
     journal->Append(Stamped(*std::move(record), orders[i], SecondsSince(run_begin)));
@@ -136,13 +139,14 @@ bool PlayAll(const std::vector<HypothesisOrder>& orders, const HypothesisOptions
   return true;
 }
 
-void Write(const HypothesisReport& report, const HypothesisOptions& options) {
-  std::cout << HypothesisText(report);
-  if (!options.csv.empty()) WriteText(HypothesisCsv(report), options.csv);
-  if (!options.json.empty()) WriteJson(ToJson(report, CommandOf(options)), options.json);
+void Write(const evaluation::HypothesisReport& report, const HypothesisOptions& options) {
+  std::cout << evaluation::HypothesisText(report);
+  if (!options.csv.empty()) evaluation::WriteText(evaluation::HypothesisCsv(report), options.csv);
+  if (!options.json.empty())
+    evaluation::WriteJson(ToJson(report, CommandOf(options)), options.json);
 }
 
-int Cancelled(const HypothesisJournal& journal, const HypothesisOptions& options) {
+int Cancelled(const evaluation::HypothesisJournal& journal, const HypothesisOptions& options) {
   std::cerr << fmt::format(
       "{} of {} runs are kept in {}; the same command goes on with them:\n{}\n",
       journal.runs().size(), 2 * options.runs, JournalPath(options), CommandOf(options));
@@ -192,22 +196,23 @@ std::string HashOfFiles(const std::string& package_folder) {
 }
 
 int RunHypothesisVerb(const HypothesisOptions& options, const std::string& package_folder,
-                      const PlayHypothesis& play, const std::function<bool()>& cancelled) {
+                      const evaluation::PlayHypothesis& play,
+                      const std::function<bool()>& cancelled) {
   const std::string path = package_folder + "/config/hypothesis.yaml";
-  const HypothesisGoal goal = ReadHypothesisGoal(path, options.scenario);
+  const evaluation::HypothesisGoal goal = evaluation::ReadHypothesisGoal(path, options.scenario);
   CheckLimits(goal, options.pace, path);
   if (!play) {
     throw base::ConfigError(
         "this build has no ROS nodes to start; build with ROS, source its setup.bash and repeat");
   }
   RequireFolders(options);
-  const HypothesisSetting setting = SettingOf(options, package_folder);
-  HypothesisJournal journal(JournalPath(options), setting);
+  const evaluation::HypothesisSetting setting = SettingOf(options, package_folder);
+  evaluation::HypothesisJournal journal(JournalPath(options), setting);
   const auto orders = OrdersFor(options, goal, journal);
   if (!PlayAll(orders, options, play, cancelled, &journal)) return Cancelled(journal, options);
-  const HypothesisReport report = SumUpHypothesis(setting, journal.runs());
+  const evaluation::HypothesisReport report = evaluation::SumUpHypothesis(setting, journal.runs());
   Write(report, options);
   return report.with.complete + report.without.complete > 0 ? kExitRecommended : kExitAllFailed;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

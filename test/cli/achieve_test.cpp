@@ -1,14 +1,14 @@
 #include <gmock/gmock.h>
 
+#include "cli/achieve_command.h"
+#include "cli/achieve_display.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/achieve_command.h"
-#include "hires/evaluation/achieve_display.h"
-#include "hires/evaluation/command_line.h"
+#include "hires/cli/command_line.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 using execution::StepPhase;
@@ -29,8 +29,8 @@ execution::StepStatus Step(int index, const std::string& name, StepPhase phase) 
 }
 
 /// A drive that runs since 102 s, a grasp that waits for it.
-AchieveStatus Running() {
-  AchieveStatus status;
+evaluation::AchieveStatus Running() {
+  evaluation::AchieveStatus status;
   status.now = 105.0;
   status.steps = {Step(0, "move_base", StepPhase::kRunning),
                   Step(1, "pick_up", StepPhase::kWaiting)};
@@ -40,22 +40,22 @@ AchieveStatus Running() {
 }
 
 TEST(ImaginedOutcomeTest, EachHasAWordAndComesBackFromIt) {
-  for (int i = 0; i <= static_cast<int>(ImaginedOutcome::kCancelled); ++i) {
-    const auto outcome = static_cast<ImaginedOutcome>(i);
-    EXPECT_EQ(ParseImaginedOutcome(ToString(outcome)), outcome);
+  for (int i = 0; i <= static_cast<int>(evaluation::ImaginedOutcome::kCancelled); ++i) {
+    const auto outcome = static_cast<evaluation::ImaginedOutcome>(i);
+    EXPECT_EQ(evaluation::ParseImaginedOutcome(ToString(outcome)), outcome);
   }
-  EXPECT_EQ(ParseImaginedOutcome(""), ImaginedOutcome::kRunning);
-  EXPECT_THAT(ConfigErrorOf([] { ParseImaginedOutcome("dreamt"); }),
+  EXPECT_EQ(evaluation::ParseImaginedOutcome(""), evaluation::ImaginedOutcome::kRunning);
+  EXPECT_THAT(ConfigErrorOf([] { evaluation::ParseImaginedOutcome("dreamt"); }),
               AllOf(HasSubstr("'dreamt'"), HasSubstr("no_worker")));
 }
 
 TEST(BeginOfTest, IsTheFirstMomentOfAnything) {
-  AchieveStatus status = Running();
-  EXPECT_EQ(BeginOf(status), 102.0);
+  evaluation::AchieveStatus status = Running();
+  EXPECT_EQ(evaluation::BeginOf(status), 102.0);
   status.imaginations.emplace_back();
   status.imaginations[0].requested = 101.5;
-  EXPECT_EQ(BeginOf(status), 101.5);
-  EXPECT_EQ(BeginOf(AchieveStatus{}), 0.0);
+  EXPECT_EQ(evaluation::BeginOf(status), 101.5);
+  EXPECT_EQ(evaluation::BeginOf(evaluation::AchieveStatus{}), 0.0);
 }
 
 TEST(StepTableTest, TellsStateSinceAndExpectedEndInSecondsOfTheTask) {
@@ -67,7 +67,7 @@ TEST(StepTableTest, TellsStateSinceAndExpectedEndInSecondsOfTheTask) {
 }
 
 TEST(StepTableTest, WhatWasGivenUpBeforeItBeganIsLeftOut) {
-  AchieveStatus status = Running();
+  evaluation::AchieveStatus status = Running();
   status.steps[1].phase = StepPhase::kSkipped;
   EXPECT_THAT(StepTable(status, 100.0), Not(HasSubstr("pick_up")));
   status.steps[1].started = 103.0;
@@ -75,7 +75,7 @@ TEST(StepTableTest, WhatWasGivenUpBeforeItBeganIsLeftOut) {
 }
 
 TEST(DryRunTableTest, ShowsTheLastPlanWithWhatIsExpectedOfIt) {
-  AchieveStatus status;
+  evaluation::AchieveStatus status;
   status.steps = {Step(0, "given_up", StepPhase::kSkipped), Step(0, "imagine", StepPhase::kDone),
                   Step(1, "move_base", StepPhase::kWaiting),
                   Step(2, "pick_up", StepPhase::kWaiting)};
@@ -93,11 +93,11 @@ TEST(DryRunTableTest, ShowsTheLastPlanWithWhatIsExpectedOfIt) {
 }
 
 TEST(ChangeLinesTest, TellWhatIsNewAndNothingElse) {
-  AchieveStatus before = Running();
+  evaluation::AchieveStatus before = Running();
   EXPECT_THAT(ChangeLines({}, before, 100.0),
               ElementsAre(HasSubstr("2.0 s  running   move_base(area1)")));
   EXPECT_THAT(ChangeLines(before, before, 100.0), IsEmpty());
-  AchieveStatus after = before;
+  evaluation::AchieveStatus after = before;
   after.now = 115.0;
   after.steps[0].phase = StepPhase::kFailed;
   after.steps[0].finished = 114.0;
@@ -107,8 +107,8 @@ TEST(ChangeLinesTest, TellWhatIsNewAndNothingElse) {
 }
 
 TEST(ChangeLinesTest, WarningsAndImaginationsAreTold) {
-  AchieveStatus before = Running();
-  AchieveStatus after = before;
+  evaluation::AchieveStatus before = Running();
+  evaluation::AchieveStatus after = before;
   after.warnings = {"the planner went away"};
   after.imaginations.emplace_back();
   after.imaginations[0].action = {"move_base_param", {{"area1"}, {"slow", "fast"}}};
@@ -118,7 +118,7 @@ TEST(ChangeLinesTest, WarningsAndImaginationsAreTold) {
                           HasSubstr("3.0 s  imagines  move_base_param(area1, slow|fast)")));
   before = after;
   after.warnings.clear();
-  after.imaginations[0].outcome = ImaginedOutcome::kRanked;
+  after.imaginations[0].outcome = evaluation::ImaginedOutcome::kRanked;
   after.imaginations[0].answered = 108.0;
   after.imaginations[0].why = "slow is best";
   EXPECT_THAT(ChangeLines(before, after, 100.0),
@@ -156,7 +156,8 @@ class AchieveVerbTest : public ::testing::Test {
   Ended Run(std::vector<std::string> words) {
     Backends backends;
     backends.package_folder = HIRES_SOURCE_DIR;
-    backends.achieve_remotely = [this](const AchieveQuery& query, const OnAchieveStatus& on_status,
+    backends.achieve_remotely = [this](const evaluation::AchieveQuery& query,
+                                       const evaluation::OnAchieveStatus& on_status,
                                        const std::function<bool()>&) {
       query_ = query;
       on_status(Running());
@@ -173,18 +174,18 @@ class AchieveVerbTest : public ::testing::Test {
     return ended;
   }
 
-  Ended RunFor(AchieveOutcome outcome) {
+  Ended RunFor(evaluation::AchieveOutcome outcome) {
     report_.outcome = outcome;
     return Run({"serve guest1"});
   }
 
   const test_support::TemporaryFolder folder_;
-  AchieveQuery query_;
-  AchieveReport report_;
+  evaluation::AchieveQuery query_;
+  evaluation::AchieveReport report_;
 };
 
 TEST_F(AchieveVerbTest, TheTaskMayBeOneWordOrSeveral) {
-  report_.outcome = AchieveOutcome::kSucceeded;
+  report_.outcome = evaluation::AchieveOutcome::kSucceeded;
   Run({"serve", "guest1", "--imagination", "thesis"});
   EXPECT_EQ(query_.task, "serve guest1");
   EXPECT_EQ(query_.imagination, "thesis");
@@ -193,17 +194,17 @@ TEST_F(AchieveVerbTest, TheTaskMayBeOneWordOrSeveral) {
 }
 
 TEST_F(AchieveVerbTest, ExitCodesTellTheOutcome) {
-  EXPECT_EQ(RunFor(AchieveOutcome::kSucceeded).code, kExitAchieved);
-  EXPECT_EQ(RunFor(AchieveOutcome::kFailed).code, kExitNotAchieved);
-  EXPECT_EQ(RunFor(AchieveOutcome::kInvalid).code, kExitNotAchieved);
-  EXPECT_EQ(RunFor(AchieveOutcome::kBusy).code, kExitNotAchieved);
-  EXPECT_EQ(RunFor(AchieveOutcome::kNoPlan).code, kExitNoWay);
-  EXPECT_EQ(RunFor(AchieveOutcome::kPreempted).code, kExitPreempted);
-  EXPECT_EQ(RunFor(AchieveOutcome::kDryRun).code, kExitAchieved);
+  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kSucceeded).code, kExitAchieved);
+  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kFailed).code, kExitNotAchieved);
+  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kInvalid).code, kExitNotAchieved);
+  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kBusy).code, kExitNotAchieved);
+  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kNoPlan).code, kExitNoWay);
+  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kPreempted).code, kExitPreempted);
+  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kDryRun).code, kExitAchieved);
 }
 
 TEST_F(AchieveVerbTest, ADryRunPrintsThePlan) {
-  report_.outcome = AchieveOutcome::kDryRun;
+  report_.outcome = evaluation::AchieveOutcome::kDryRun;
   report_.reason = "planned and imagined; nothing was begun";
   report_.status.steps = {Step(0, "pick_up", StepPhase::kWaiting)};
   const Ended ended = Run({"serve guest1"});
@@ -212,7 +213,7 @@ TEST_F(AchieveVerbTest, ADryRunPrintsThePlan) {
 }
 
 TEST_F(AchieveVerbTest, SaysOutcomeReasonAndNumbers) {
-  report_.outcome = AchieveOutcome::kFailed;
+  report_.outcome = evaluation::AchieveOutcome::kFailed;
   report_.reason = "unreachable";
   report_.status = Running();
   report_.status.replans = 2;
@@ -224,7 +225,7 @@ TEST_F(AchieveVerbTest, SaysOutcomeReasonAndNumbers) {
 }
 
 TEST_F(AchieveVerbTest, WritesTimelineAndJson) {
-  report_.outcome = AchieveOutcome::kSucceeded;
+  report_.outcome = evaluation::AchieveOutcome::kSucceeded;
   report_.status = Running();
   const std::string csv = (folder_.path() / "run.csv").string();
   const std::string json = (folder_.path() / "run.json").string();
@@ -254,4 +255,4 @@ TEST(AchieveWithoutRosTest, SaysWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::cli

@@ -1,4 +1,4 @@
-#include "hires/evaluation/imagine_start.h"
+#include "hires/cli/imagine_start.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 /// The parts of "a:b" or "a:b:c".
@@ -125,4 +125,4 @@ ImagineStart ReadStart(const StartOptions& options, const std::string& action,
   return start;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

@@ -7,7 +7,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::evaluation {
+namespace hires::cli {
 
 /// Exit codes of `hires plan`; 1 is bad input and 130 interrupted, as with every verb.
 enum PlanExitCode {
@@ -38,4 +38,4 @@ void AddPlanVerb(CLI::App* app, PlanOptions* options);
 /// @return PlanExitCode or kExitCancelled.  @throws base::ConfigError for bad input.
 int RunPlanVerb(const PlanOptions& options, const std::function<bool()>& cancelled);
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

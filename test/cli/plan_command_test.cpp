@@ -1,4 +1,4 @@
-#include "hires/evaluation/plan_command.h"
+#include "cli/plan_command.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/text.h"
-#include "hires/evaluation/command_line.h"
+#include "hires/cli/command_line.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 using nlohmann::json;
@@ -286,4 +286,4 @@ TEST(PlanCommandTest, HelpIsNoError) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::cli

@@ -1,11 +1,11 @@
-#include "hires/evaluation/imagine_start.h"
+#include "hires/cli/imagine_start.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "support/messages.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -87,4 +87,4 @@ TEST(ImagineStartTest, RefusesWhatItCannotRead) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::cli

@@ -16,7 +16,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::evaluation {
+namespace hires::cli {
 
 /// A Blackboard to talk to: a running node, or a file. All throw base::ConfigError.
 class BlackboardAccess {
@@ -64,4 +64,4 @@ knowledge::FluentQuery::PropertyFilter ParsePropertyFilter(const std::string& te
 int RunBlackboardVerb(const BlackboardOptions& options, const std::string& package_folder,
                       const ConnectBlackboard& connect);
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/experiment_chain.h"
+#include "evaluation/experiment_stage.h"
 #include "hires/base/rng.h"
 #include "hires/evaluation/experiment.h"
-#include "hires/evaluation/experiment_chain.h"
-#include "hires/evaluation/experiment_stage.h"
 #include "hires/imagination/rollout_result.h"
 
 // The kinds of experiments: each has a function that plays and one that sums up what was played.

@@ -11,7 +11,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::evaluation {
+namespace hires::cli {
 
 /// Where an imagined action begins, as `hires imagine` is told: the robot, what it carries and
 /// holds, how its arms and torso are, and what stands about.
@@ -36,4 +36,4 @@ void AddStartOptions(CLI::App* app, StartOptions* options);
 ImagineStart ReadStart(const StartOptions& options, const std::string& action,
                        const actions::Catalogue& catalogue);
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

@@ -5,17 +5,17 @@
 #include <vector>
 
 #include "hires/base/action.h"
+#include "hires/cli/blackboard_command.h"
+#include "hires/cli/doctor.h"
+#include "hires/cli/imagine_start.h"
 #include "hires/evaluation/achieve.h"
-#include "hires/evaluation/blackboard_command.h"
-#include "hires/evaluation/doctor.h"
 #include "hires/evaluation/experiment_hypothesis.h"
-#include "hires/evaluation/imagine_start.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/report.h"
 #include "hires/imagination/scheduler.h"
 #include "hires/imagination/validated.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 
 /// What `hires imagine` was asked.
 struct ImagineQuery {
@@ -50,8 +50,8 @@ struct Backends {
   std::string package_folder;  ///< where config/, worlds/, urdf/ lie
   ImagineRemotely imagine_remotely;
   ConnectBlackboard connect_blackboard;
-  AchieveRemotely achieve_remotely;
-  PlayHypothesis play_hypothesis;
+  evaluation::AchieveRemotely achieve_remotely;
+  evaluation::PlayHypothesis play_hypothesis;
   ExamineRobot examine_robot;
   std::vector<Verb> more_verbs;
   std::vector<Check> more_checks;
@@ -78,4 +78,4 @@ imagination::Report ImagineInThisProcess(const ImagineQuery& query,
                                          const imagination::OnInterim& on_interim,
                                          const std::function<bool()>& cancelled);
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

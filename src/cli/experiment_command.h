@@ -4,13 +4,13 @@
 #include <functional>
 #include <string>
 
-#include "hires/evaluation/experiment_hypothesis_command.h"
+#include "cli/experiment_hypothesis_command.h"
 
 namespace CLI {
 class App;
 }
 
-namespace hires::evaluation {
+namespace hires::cli {
 
 /// What was typed behind `hires experiment`.
 struct ExperimentOptions {
@@ -33,4 +33,4 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
 /// " 52 %, 12 s left", for terminals.
 std::string ProgressText(double fraction, double elapsed);
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

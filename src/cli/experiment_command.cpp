@@ -1,4 +1,4 @@
-#include "hires/evaluation/experiment_command.h"
+#include "cli/experiment_command.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -10,11 +10,11 @@
 #include <thread>
 
 #include "hires/base/error.h"
-#include "hires/evaluation/command_line.h"
+#include "hires/cli/command_line.h"
 #include "hires/evaluation/experiment.h"
 #include "hires/evaluation/report_json.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 [[noreturn]] void FailToWrite(const std::string& path) {
@@ -33,16 +33,17 @@ void WriteText(const std::string& text, const std::string& path) {
   if (!file.flush()) FailToWrite(path);
 }
 
-ExperimentOverrides OverridesOf(const ExperimentOptions& options) {
-  ExperimentOverrides overrides;
+evaluation::ExperimentOverrides OverridesOf(const ExperimentOptions& options) {
+  evaluation::ExperimentOverrides overrides;
   if (options.verb->count("--seed") > 0) overrides.seed = options.seed;
   if (options.verb->count("--runs") > 0) overrides.runs = options.runs;
   overrides.map = options.map;
   return overrides;
 }
 
-Crew MakeCrew(const ExperimentOptions& options, const std::function<bool()>& cancelled) {
-  Crew crew;
+evaluation::Crew MakeCrew(const ExperimentOptions& options,
+                          const std::function<bool()>& cancelled) {
+  evaluation::Crew crew;
   crew.threads = options.threads > 0
                      ? options.threads
                      : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -55,8 +56,8 @@ Crew MakeCrew(const ExperimentOptions& options, const std::function<bool()>& can
   return crew;
 }
 
-void Print(const ExperimentReport& report) {
-  std::cout << ReportText(report) << '\n';
+void Print(const evaluation::ExperimentReport& report) {
+  std::cout << evaluation::ReportText(report) << '\n';
   if (report.wall_seconds > 0.0) {
     std::cout << fmt::format("{:.0f} s simulated in {:.1f} s\n", report.findings.simulated_seconds,
                              report.wall_seconds);
@@ -100,17 +101,19 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
         "experiment: wanted a YAML file, such as config/experiments/paired.yaml, or `hypothesis` "
         "(see hires experiment hypothesis --help)");
   }
-  const ExperimentConfig config = ReadExperiment(options.file, OverridesOf(options));
+  const evaluation::ExperimentConfig config =
+      evaluation::ReadExperiment(options.file, OverridesOf(options));
   CheckWritable(options.csv);
   CheckWritable(options.json);
-  const Crew crew = MakeCrew(options, cancelled);
-  const std::optional<ExperimentReport> report = RunExperiment(config, crew);
+  const evaluation::Crew crew = MakeCrew(options, cancelled);
+  const std::optional<evaluation::ExperimentReport> report =
+      evaluation::RunExperiment(config, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
   Print(*report);
-  if (!options.csv.empty()) WriteText(ReportCsv(*report), options.csv);
-  if (!options.json.empty()) WriteJson(ToJson(*report), options.json);
+  if (!options.csv.empty()) WriteText(evaluation::ReportCsv(*report), options.csv);
+  if (!options.json.empty()) evaluation::WriteJson(ToJson(*report), options.json);
   return report->passed() ? kExitRecommended : kExitAllFailed;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

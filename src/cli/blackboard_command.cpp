@@ -1,4 +1,4 @@
-#include "hires/evaluation/blackboard_command.h"
+#include "hires/cli/blackboard_command.h"
 
 #include <fmt/format.h>
 
@@ -6,15 +6,15 @@
 #include <fstream>
 #include <iostream>
 
+#include "cli/blackboard_text.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/blackboard_text.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/knowledge/blackboard_config.h"
 #include "hires/knowledge/episode_diff_report.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 using knowledge::FluentQuery;
@@ -126,7 +126,7 @@ void Emit(const nlohmann::ordered_json& json, const std::string& table, const st
     return;
   }
   std::cout << table;
-  if (!path.empty()) WriteJson(json, path);
+  if (!path.empty()) evaluation::WriteJson(json, path);
 }
 
 int RunLoad(const BlackboardOptions& options, BlackboardAccess* blackboard) {
@@ -247,4 +247,4 @@ int RunBlackboardVerb(const BlackboardOptions& options, const std::string& packa
   return RunStats(options, blackboard.get());
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

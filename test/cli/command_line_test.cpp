@@ -1,4 +1,4 @@
-#include "hires/evaluation/command_line.h"
+#include "hires/cli/command_line.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include "hires/base/text.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 using hires::test_support::TemporaryFolder;
@@ -403,4 +403,4 @@ TEST(CommandLineTest, NothingEscapes) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::cli

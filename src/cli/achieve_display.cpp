@@ -1,26 +1,19 @@
-#include "hires/evaluation/achieve_display.h"
+#include "cli/achieve_display.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "hires/base/check.h"
-#include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/report_table.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 using execution::StepPhase;
 using execution::StepStatus;
 
-/// In the order of ImaginedOutcome.
-const std::array<std::string, 9> kImaginedOutcomes{"running",   "ranked",      "all_failed",
-                                                   "undecided", "no_worker",   "nothing_finished",
-                                                   "invalid",   "unavailable", "cancelled"};
 constexpr char kClearLine[] = "\033[K";
 
 std::string Seconds(double time) { return std::isfinite(time) ? fmt::format("{:.1f}", time) : ""; }
@@ -45,7 +38,7 @@ bool IsToBegin(const StepStatus& step) {
   return step.phase == StepPhase::kWaiting || step.phase == StepPhase::kReady;
 }
 
-const StepStatus* Find(const AchieveStatus& status, const StepStatus& step) {
+const StepStatus* Find(const evaluation::AchieveStatus& status, const StepStatus& step) {
   for (const StepStatus& other : status.steps) {
     if (other.plan == step.plan && other.index == step.index) return &other;
   }
@@ -58,13 +51,13 @@ std::string StepLine(const StepStatus& step, double now, double begin) {
   double time = now;
   if (step.started && step.phase == StepPhase::kRunning) time = *step.started;
   if (step.finished) time = *step.finished;
-  return fmt::format("{:8.1f} s  {:<8}  {}{}", time - begin, ToString(step.phase),
+  return fmt::format("{:8.1f} s  {:<8}  {}{}", time - begin, evaluation::ToString(step.phase),
                      ToString(step.action), NoteOf(step));
 }
 
-std::string ImaginedLine(const ImaginedStep& step, double now, double begin) {
-  const std::string what = ToString(step.action);
-  if (step.outcome == ImaginedOutcome::kRunning) {
+std::string ImaginedLine(const evaluation::ImaginedStep& step, double now, double begin) {
+  const std::string what = evaluation::ToString(step.action);
+  if (step.outcome == evaluation::ImaginedOutcome::kRunning) {
     return fmt::format("{:8.1f} s  imagines  {}", step.requested - begin, what);
   }
   return fmt::format("{:8.1f} s  imagined  {}: {}: {}", step.answered.value_or(now) - begin, what,
@@ -79,68 +72,19 @@ std::vector<std::string> Lines(const std::string& text) {
 
 }  // namespace
 
-std::string ToString(const base::ActionTemplate& action) {
-  std::vector<std::string> arguments;
-  for (const auto& list : action.alternatives) arguments.push_back(base::Join(list, "|"));
-  return fmt::format("{}({})", action.name, base::Join(arguments, ", "));
-}
-
-std::string ToString(StepPhase phase) {
-  switch (phase) {
-    case StepPhase::kWaiting:
-      return "waiting";
-    case StepPhase::kReady:
-      return "ready";
-    case StepPhase::kRunning:
-      return "running";
-    case StepPhase::kChecking:
-      return "checking";
-    case StepPhase::kDone:
-      return "done";
-    case StepPhase::kFailed:
-      return "failed";
-    case StepPhase::kSkipped:
-      return "skipped";
-  }
-  HIRES_CHECK(false, "a phase without a name");
-  return "";
-}
-
-std::string ToString(ImaginedOutcome outcome) {
-  return kImaginedOutcomes.at(static_cast<std::size_t>(outcome));
-}
-
-ImaginedOutcome ParseImaginedOutcome(const std::string& word) {
-  if (word.empty()) return ImaginedOutcome::kRunning;
-  const auto found = std::find(kImaginedOutcomes.begin(), kImaginedOutcomes.end(), word);
-  if (found == kImaginedOutcomes.end()) {
-    throw base::ConfigError(fmt::format(
-        "outcome of an imagination is '{}', wanted one of {}; are both programs of one version?",
-        word, fmt::join(kImaginedOutcomes, ", ")));
-  }
-  return static_cast<ImaginedOutcome>(found - kImaginedOutcomes.begin());
-}
-
-double BeginOf(const AchieveStatus& status) {
-  double begin = status.now;
-  for (const StepStatus& step : status.steps) begin = std::min(begin, step.started.value_or(begin));
-  for (const ImaginedStep& step : status.imaginations) begin = std::min(begin, step.requested);
-  return begin;
-}
-
-std::string StepTable(const AchieveStatus& status, double begin) {
+std::string StepTable(const evaluation::AchieveStatus& status, double begin) {
   std::vector<std::vector<std::string>> rows{
       {"plan", "#", "step", "state", "since", "end", "note"}};
   for (const StepStatus& step : status.steps) {
     if (!IsNews(step)) continue;
     rows.push_back({std::to_string(step.plan + 1), std::to_string(step.index + 1),
-                    ToString(step.action), ToString(step.phase), Since(step, begin),
-                    ExpectedEnd(step, begin), step.note});
+                    ToString(step.action), evaluation::ToString(step.phase),
+                    Since(step, begin), ExpectedEnd(step, begin), step.note});
   }
-  return FormatTable(rows);
+  return evaluation::FormatTable(rows);
 }
 
-std::string DryRunTable(const AchieveStatus& status) {
+std::string DryRunTable(const evaluation::AchieveStatus& status) {
   int last_plan = 0;
   for (const StepStatus& step : status.steps) last_plan = std::max(last_plan, step.plan);
   std::optional<double> begin;
@@ -152,17 +96,17 @@ std::string DryRunTable(const AchieveStatus& status) {
                     Seconds(step.expected_start - *begin), Seconds(step.expected_finish - *begin),
                     step.note});
   }
-  return FormatTable(rows);
+  return evaluation::FormatTable(rows);
 }
 
-std::vector<std::string> ChangeLines(const AchieveStatus& before, const AchieveStatus& after,
-                                     double begin) {
+std::vector<std::string> ChangeLines(const evaluation::AchieveStatus& before,
+                                     const evaluation::AchieveStatus& after, double begin) {
   std::vector<std::string> lines;
   for (const std::string& warning : after.warnings) {
     lines.push_back(fmt::format("{:8.1f} s  warning   {}", after.now - begin, warning));
   }
   for (std::size_t i = 0; i < after.imaginations.size(); ++i) {
-    const ImaginedStep& step = after.imaginations[i];
+    const evaluation::ImaginedStep& step = after.imaginations[i];
     if (i < before.imaginations.size() && before.imaginations[i].outcome == step.outcome) continue;
     lines.push_back(ImaginedLine(step, after.now, begin));
   }
@@ -178,8 +122,8 @@ std::vector<std::string> ChangeLines(const AchieveStatus& before, const AchieveS
   return lines;
 }
 
-std::string AchieveDisplay::Show(const AchieveStatus& status) {
-  if (!begin_) begin_ = BeginOf(status);
+std::string AchieveDisplay::Show(const evaluation::AchieveStatus& status) {
+  if (!begin_) begin_ = evaluation::BeginOf(status);
   if (width_ > 0) return Redraw(status);
   std::string text;
   for (const std::string& line : ChangeLines(shown_, status, *begin_)) text += line + "\n";
@@ -188,7 +132,7 @@ std::string AchieveDisplay::Show(const AchieveStatus& status) {
 }
 
 /// Warnings stay above, the table is drawn over the last one.
-std::string AchieveDisplay::Redraw(const AchieveStatus& status) {
+std::string AchieveDisplay::Redraw(const evaluation::AchieveStatus& status) {
   std::string text = lines_drawn_ > 0 ? fmt::format("\033[{}A\r", lines_drawn_) : "";
   for (const std::string& warning : status.warnings) {
     text += fmt::format("{:8.1f} s  warning   {}{}\n", status.now - *begin_, warning, kClearLine);
@@ -201,4 +145,4 @@ std::string AchieveDisplay::Redraw(const AchieveStatus& status) {
   return text + "\033[J";
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

@@ -1,4 +1,4 @@
-#include "hires/evaluation/blackboard_command.h"
+#include "hires/cli/blackboard_command.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,11 +8,11 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/command_line.h"
+#include "hires/cli/command_line.h"
 #include "hires/knowledge/blackboard_config.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 using nlohmann::json;
@@ -246,4 +246,4 @@ TEST(ParsePropertyFilterTest, ValuesAreOfTheKindTheyLookLike) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::cli

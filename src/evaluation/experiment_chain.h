@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/evaluation/experiment_stage.h"
+#include "evaluation/experiment_stage.h"
 
 namespace hires::evaluation {
 

@@ -1,4 +1,4 @@
-#include "hires/evaluation/doctor.h"
+#include "hires/cli/doctor.h"
 
 #include <fmt/format.h>
 
@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "hires/base/error.h"
-#include "hires/evaluation/command_line.h"
+#include "hires/cli/command_line.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/imagination/client_config.h"
 #include "hires/physics/physics_checks.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 bool CheckFiles(const Backends& backends) {
@@ -58,7 +58,7 @@ bool CheckPhysics() {
                       check.unit, fmt::format("{:.2g}", check.error),
                       fmt::format("{:.2g}", check.tolerance), check.remark});
     }
-    std::cout << '\n' << FormatTable(rows) << std::flush;
+    std::cout << '\n' << evaluation::FormatTable(rows) << std::flush;
   }
   return passed;
 }
@@ -104,4 +104,4 @@ int RunDoctorVerb(const DoctorOptions& options, const Backends& backends) {
   return backends.examine_robot(options.robot);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

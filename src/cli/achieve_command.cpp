@@ -1,4 +1,4 @@
-#include "hires/evaluation/achieve_command.h"
+#include "cli/achieve_command.h"
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
@@ -8,14 +8,13 @@
 #include <filesystem>
 #include <iostream>
 
-#include "hires/base/check.h"
+#include "cli/achieve_display.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/achieve_display.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 constexpr char kScript[] = "/scripts/plot_timeline";
@@ -30,7 +29,7 @@ int TerminalWidth() {
 /// Before the robot sets out.
 void RequireFolders(const AchieveOptions& options) {
   for (const std::string& path : {options.timeline, options.png, options.json}) {
-    if (!path.empty()) RequireFolderOf(path);
+    if (!path.empty()) evaluation::RequireFolderOf(path);
   }
 }
 
@@ -41,23 +40,25 @@ std::string CsvPath(const AchieveOptions& options) {
 }
 
 void WriteFiles(const AchieveOptions& options, const std::string& package_folder,
-                const AchieveReport& report) {
+                const evaluation::AchieveReport& report) {
   const std::string csv = CsvPath(options);
-  if (!csv.empty()) WriteText(TimelineCsv(MakeTimeline(report)), csv);
-  if (!options.json.empty()) WriteJson(ToJson(report), options.json);
-  if (!options.png.empty()) DrawTimeline(package_folder + kScript, csv, options.png);
+  if (!csv.empty())
+    evaluation::WriteText(evaluation::TimelineCsv(evaluation::MakeTimeline(report)), csv);
+  if (!options.json.empty()) evaluation::WriteJson(ToJson(report), options.json);
+  if (!options.png.empty()) evaluation::DrawTimeline(package_folder + kScript, csv, options.png);
 }
 
 std::string Plural(std::size_t count, const std::string& what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-void PrintReport(const AchieveReport& report) {
-  const Timeline timeline = MakeTimeline(report);
-  if (!timeline.bars.empty()) std::cout << '\n' << TimelineText(timeline);
-  const std::string table = ImaginationTable(report);
+void PrintReport(const evaluation::AchieveReport& report) {
+  const evaluation::Timeline timeline = evaluation::MakeTimeline(report);
+  if (!timeline.bars.empty()) std::cout << '\n' << evaluation::TimelineText(timeline);
+  const std::string table = evaluation::ImaginationTable(report);
   if (!table.empty()) std::cout << '\n' << table;
-  if (report.outcome == AchieveOutcome::kDryRun) std::cout << '\n' << DryRunTable(report.status);
+  if (report.outcome == evaluation::AchieveOutcome::kDryRun)
+    std::cout << '\n' << DryRunTable(report.status);
   const std::size_t num_imaginations = report.status.imaginations.size();
   std::cout << fmt::format("\n{}: {}{}\n", report.task, ToString(report.outcome),
                            report.reason.empty() ? "" : ": " + report.reason);
@@ -68,14 +69,14 @@ void PrintReport(const AchieveReport& report) {
                            report.episode > 0 ? fmt::format(", episode {}", report.episode) : "");
 }
 
-int ExitCodeOf(AchieveOutcome outcome) {
+int ExitCodeOf(evaluation::AchieveOutcome outcome) {
   switch (outcome) {
-    case AchieveOutcome::kSucceeded:
-    case AchieveOutcome::kDryRun:
+    case evaluation::AchieveOutcome::kSucceeded:
+    case evaluation::AchieveOutcome::kDryRun:
       return kExitAchieved;
-    case AchieveOutcome::kNoPlan:
+    case evaluation::AchieveOutcome::kNoPlan:
       return kExitNoWay;
-    case AchieveOutcome::kPreempted:
+    case evaluation::AchieveOutcome::kPreempted:
       return kExitPreempted;
     default:
       return kExitNotAchieved;
@@ -84,33 +85,11 @@ int ExitCodeOf(AchieveOutcome outcome) {
 
 }  // namespace
 
-std::string ToString(AchieveOutcome outcome) {
-  switch (outcome) {
-    case AchieveOutcome::kSucceeded:
-      return "succeeded";
-    case AchieveOutcome::kNoPlan:
-      return "no_plan";
-    case AchieveOutcome::kFailed:
-      return "failed";
-    case AchieveOutcome::kPreempted:
-      return "preempted";
-    case AchieveOutcome::kInvalid:
-      return "invalid";
-    case AchieveOutcome::kBusy:
-      return "busy";
-    case AchieveOutcome::kDryRun:
-      return "dry_run";
-  }
-  HIRES_CHECK(false, "an outcome without a name");
-  return "";
-}
-
 void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
   CLI::App* verb = app->add_subcommand(
       "achieve",
       "have the running robot do a task. Exit codes: 0 done (or planned and imagined, where the "
-      "execution monitor has ~dry_run), 1 failed or refused, 2 no plan, 3 "
-      "preempted");
+      "execution monitor has ~dry_run), 1 failed or refused, 2 no plan, 3 preempted");
   verb->add_option("task", options->task, "'serve_coffee_to_guest guest1', or a SHOP2 task network")
       ->required();
   verb->add_option("--imagination", options->imagination,
@@ -128,7 +107,8 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
 }
 
 int RunAchieveVerb(const AchieveOptions& options, const std::string& package_folder,
-                   const AchieveRemotely& achieve, const std::function<bool()>& cancelled) {
+                   const evaluation::AchieveRemotely& achieve,
+                   const std::function<bool()>& cancelled) {
   if (!achieve) {
     throw base::ConfigError(
         "this build has no ROS nodes to ask; build with ROS and start them (roslaunch hires "
@@ -136,11 +116,14 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   }
   RequireFolders(options);
   AchieveDisplay display(TerminalWidth());
-  const AchieveReport report = achieve(
+  const evaluation::AchieveReport report = achieve(
       {base::Join(options.task, " "), options.imagination, options.wait},
-      [&](const AchieveStatus& status) { std::cout << display.Show(status) << std::flush; },
+      [&](const evaluation::AchieveStatus& status) {
+        std::cout << display.Show(status) << std::flush;
+      },
       cancelled);
-  AchieveStatus last = report.status;  // its changes may have come with the result alone
+  evaluation::AchieveStatus last =
+      report.status;  // its changes may have come with the result alone
   last.warnings.clear();
   std::cout << display.Show(last);
   PrintReport(report);
@@ -148,4 +131,4 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   return ExitCodeOf(report.outcome);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli

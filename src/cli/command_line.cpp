@@ -1,4 +1,4 @@
-#include "hires/evaluation/command_line.h"
+#include "hires/cli/command_line.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -12,21 +12,21 @@
 #include <iostream>
 #include <thread>
 
+#include "cli/achieve_command.h"
+#include "cli/experiment_command.h"
+#include "cli/plan_command.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/achieve_command.h"
-#include "hires/evaluation/blackboard_command.h"
-#include "hires/evaluation/doctor.h"
-#include "hires/evaluation/experiment_command.h"
-#include "hires/evaluation/plan_command.h"
+#include "hires/cli/blackboard_command.h"
+#include "hires/cli/doctor.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/local_imagination.h"
 #include "hires/skills/action_loader.h"
 
-namespace hires::evaluation {
+namespace hires::cli {
 namespace {
 
 std::atomic<bool> interrupted{false};
@@ -144,10 +144,10 @@ class ProgressDisplay {
   void Show(const imagination::Interim& interim) {
     const auto now = std::chrono::steady_clock::now();
     if (is_terminal_) {
-      std::cerr << '\r' << ProgressLine(interim.progress) << "\033[K" << std::flush;
+      std::cerr << '\r' << evaluation::ProgressLine(interim.progress) << "\033[K" << std::flush;
     } else if (now >= next_line_) {
       next_line_ = now + std::chrono::seconds(5);
-      std::cerr << ProgressLine(interim.progress) << std::endl;
+      std::cerr << evaluation::ProgressLine(interim.progress) << std::endl;
     }
   }
   void Clear() const {
@@ -162,9 +162,9 @@ class ProgressDisplay {
 void PrintReport(const imagination::Report& report, imagination::RankingRule rule) {
   if (!report.ranking.empty()) {
     const bool with_cost = rule == imagination::RankingRule::kCost;
-    std::cout << RankingTable(report.ranking, report.recommended, with_cost) << '\n';
+    std::cout << evaluation::RankingTable(report.ranking, report.recommended, with_cost) << '\n';
   }
-  std::cout << fmt::format("{}: {}\n", OutcomeName(report), report.why);
+  std::cout << fmt::format("{}: {}\n", evaluation::OutcomeName(report), report.why);
   for (const std::string& caveat : report.caveats) std::cout << "caveat: " << caveat << '\n';
   if (report.wall_seconds > 0.0 && report.simulated_seconds > 0.0) {
     std::cout << fmt::format("{:.0f} s imagined in {:.1f} s, {:.0f} times as fast as real time\n",
@@ -175,7 +175,7 @@ void PrintReport(const imagination::Report& report, imagination::RankingRule rul
 
 int Imagine(const ImagineOptions& options, const Backends& backends) {
   const ImagineQuery query = MakeQuery(options, backends);
-  if (!options.json.empty()) RequireFolderOf(options.json);
+  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
   ProgressDisplay display;
   imagination::OnInterim on_interim;
   if (!options.quiet) on_interim = [&](const auto& interim) { display.Show(interim); };
@@ -188,7 +188,7 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
                                          : backends.imagine_remotely(query, on_interim, cancelled);
   if (!options.quiet) display.Clear();
   PrintReport(report, query.scheduler.criteria.rule);
-  if (!options.json.empty()) WriteJson(ToJson(report), options.json);
+  if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(report), options.json);
   return ExitCodeOf(report);
 }
 
@@ -297,4 +297,4 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
   return kExitBadInput;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::cli
