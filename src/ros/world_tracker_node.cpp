@@ -21,6 +21,7 @@ namespace sensing = hires::sensing;
 namespace translation = hires::translation;
 
 constexpr double kKnownPeriod = 0.1;  // [s] at most, between words about known objects
+constexpr int kQueue = 1000;          // ten seconds of what comes at 100 Hz
 constexpr double kNever = -1e9;       // [s]
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
@@ -52,15 +53,15 @@ void WorldTrackerNode::Subscribe(ros::NodeHandle* nh) {
   if (params_.sweep.enabled && head != names.trajectories.end()) {
     head_ = nh->advertise<trajectory_msgs::JointTrajectory>(head->second, 10);
   }
-  Hear<nav_msgs::Odometry>(nh, names.odometry, 100,
+  Hear<nav_msgs::Odometry>(nh, names.odometry, kQueue,
                            [this](const auto& msg) { sensors_.OnOdometry(msg); });
-  Hear<sensor_msgs::JointState>(nh, names.joint_states, 1000,
+  Hear<sensor_msgs::JointState>(nh, names.joint_states, kQueue,
                                 [this](const auto& msg) { sensors_.OnJoints(msg); });
-  Hear<tf2_msgs::TFMessage>(nh, kTransforms, 100,
+  Hear<tf2_msgs::TFMessage>(nh, kTransforms, kQueue,
                             [this](const auto& msg) { sensors_.OnTransforms(msg, false); });
   Hear<tf2_msgs::TFMessage>(nh, kStaticTransforms, 100,
                             [this](const auto& msg) { sensors_.OnTransforms(msg, true); });
-  Hear<hires::Detections>(nh, kDetections, 10,
+  Hear<hires::Detections>(nh, kDetections, 100,
                           [this](const auto& msg) { sensors_.OnDetections(msg); });
   subscribers_.push_back(nh->subscribe(action + "/goal", 10, &Self::OnGoal, this, hints));
   subscribers_.push_back(nh->subscribe(action + "/result", 10, &Self::OnResult, this, hints));

@@ -113,8 +113,8 @@ double JointHistory::DistanceTo(double time) const {
 
 JointReading JointHistory::At(double time, double max_gap) const {
   Words before, after;
-  const auto place = std::find_if(history_.begin(), history_.end(),
-                                  [&](const auto& entry) { return entry.stamp > time; });
+  const auto place = std::partition_point(history_.begin(), history_.end(),
+                                          [&](const auto& entry) { return entry.stamp <= time; });
   for (auto entry = place; entry != history_.begin() && before.size() < names_.size();) {
     --entry;
     AddWords(entry->stamp, entry->value, &before);

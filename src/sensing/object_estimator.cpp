@@ -36,7 +36,7 @@ std::vector<std::string> ObjectEstimator::OnLook(Look look) {
   }
   if (!(look.stamp > 0.0)) return {ToString(Receipt{Reception::kNoStamp, {}})};
   if (look.frame.empty()) return {ToString(Receipt{Reception::kUnknownFrame, {}})};
-  if (state_->IsAhead(look.stamp)) return {ToString(Receipt{Reception::kAhead, "header.stamp"})};
+  if (state_->IsAhead(look.stamp)) return {ToString(state_->Ahead("header.stamp"))};
   std::vector<std::string> left_out;
   std::vector<perception::Detection> sound;
   for (perception::Detection& detection : look.detections) {

@@ -17,7 +17,7 @@ ObservationMaker::ObservationMaker(const RobotStateEstimator* state, ScanObstacl
 
 Receipt ObservationMaker::OnScan(double stamp, const std::string& frame, ScanReading reading) {
   if (!(stamp > 0.0)) return {Reception::kNoStamp, {}};
-  if (state_->IsAhead(stamp)) return {Reception::kAhead, "header.stamp"};
+  if (state_->IsAhead(stamp)) return state_->Ahead("header.stamp");
   const bool is_new = scans_.Insert(stamp, {frame, std::move(reading)});
   scans_.KeepBetween(stamp - kLongestWait, stamp + kLongestWait);
   return {is_new ? Reception::kTaken : Reception::kRepeated, {}};

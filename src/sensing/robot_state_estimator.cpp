@@ -17,7 +17,6 @@ using geometry::Pose2;
 using geometry::Pose3;
 using geometry::Twist2;
 
-constexpr double kHistory = 3.0;   // [s] that is kept: recognising objects may take so long
 constexpr double kJumpBack = 1.0;  // [s] by which odometry is behind when its clock began again ...
 constexpr int kSureJump = 5;       // ... if so many readings in a row are, or one is older than all
 constexpr double kNear = 0.1;      // [s] from a reading with which a moment beyond it makes do
@@ -61,8 +60,8 @@ Receipt ReceiptOf(FrameStatus status, const std::string& frame) {
 }
 
 bool StateParams::operator==(const StateParams& other) const {
-  return stale_after == other.stale_after && correction_wait == other.correction_wait &&
-         posture_reach == other.posture_reach;
+  return history == other.history && stale_after == other.stale_after &&
+         correction_wait == other.correction_wait && posture_reach == other.posture_reach;
 }
 
 bool Receipt::is_bad() const {
@@ -76,11 +75,11 @@ std::string ToString(const Receipt& receipt) {
     case Reception::kRepeated:
       return "it came before";
     case Reception::kLate:
-      return fmt::format("it is more than {:g} s late", kHistory);
+      return fmt::format("it is more than {:g} s late", receipt.limit);
     case Reception::kAhead:
       return fmt::format(
           "{} is more than {:g} s ahead of the odometry; synchronise the clocks of the computers",
-          receipt.subject, kHistory);
+          receipt.subject, receipt.limit);
     case Reception::kNoStamp:
       return "header.stamp is 0 or no number, wanted the time of the measurement";
     case Reception::kNotFinite:
@@ -115,14 +114,24 @@ std::optional<double> RobotStateEstimator::now() const {
   return raw_.back().stamp;
 }
 
-bool RobotStateEstimator::IsAhead(double stamp) const { return now() && stamp > *now() + kHistory; }
+bool RobotStateEstimator::IsAhead(double stamp) const {
+  return now() && stamp > *now() + params_.history;
+}
 
-bool RobotStateEstimator::IsLate(double stamp) const { return now() && stamp < *now() - kHistory; }
+bool RobotStateEstimator::IsLate(double stamp) const {
+  return now() && stamp < *now() - params_.history;
+}
+
+Receipt RobotStateEstimator::Late() const { return {Reception::kLate, {}, params_.history}; }
+
+Receipt RobotStateEstimator::Ahead(const std::string& subject) const {
+  return {Reception::kAhead, subject, params_.history};
+}
 
 /// A clock that began again, and not a message that comes late.
 bool RobotStateEstimator::HasClockRestarted(double stamp) {
   num_behind_ = now() && stamp < *now() - kJumpBack ? num_behind_ + 1 : 0;
-  return num_behind_ >= kSureJump || (now() && stamp < *now() - kHistory - kJumpBack);
+  return num_behind_ >= kSureJump || (now() && stamp < *now() - params_.history - kJumpBack);
 }
 
 void RobotStateEstimator::Restart() {
@@ -136,7 +145,7 @@ void RobotStateEstimator::Restart() {
 }
 
 void RobotStateEstimator::ForgetOld() {
-  const double oldest = *now() - kHistory, latest = *now() + kHistory;
+  const double oldest = *now() - params_.history, latest = *now() + params_.history;
   raw_.KeepBetween(oldest, latest);
   base_in_odometry_.KeepBetween(oldest, latest);
   corrections_.KeepBetween(oldest, latest);
@@ -154,7 +163,7 @@ Receipt RobotStateEstimator::OnOdometry(double stamp, const std::string& frame,
   const FramePose offset = ChildToBase(BareFrame(child), stamp);
   if (!offset.is_found()) return ReceiptOf(offset.status, child);
   if (HasClockRestarted(stamp)) Restart();
-  if (IsLate(stamp)) return {Reception::kLate, {}};
+  if (IsLate(stamp)) return Late();
   if (BareFrame(frame) != raw_frame_) raw_.Clear();
   raw_frame_ = BareFrame(frame);
   const Pose2 X_CB = geometry::Flatten(offset.X_PC);
@@ -190,10 +199,10 @@ Receipt RobotStateEstimator::OnJoints(double stamp, const JointReading& reading)
       if (!std::isfinite(number)) return {Reception::kNotFinite, "joint '" + name + "'"};
     }
   }
-  if (IsLate(stamp)) return {Reception::kLate, {}};
-  if (IsAhead(stamp)) return {Reception::kAhead, "header.stamp"};
+  if (IsLate(stamp)) return Late();
+  if (IsAhead(stamp)) return Ahead("header.stamp");
   const bool is_new = joints_.Insert(stamp, reading);
-  if (!now()) joints_.KeepBetween(stamp - kHistory, kForever);
+  if (!now()) joints_.KeepBetween(stamp - params_.history, kForever);
   return {is_new ? Reception::kTaken : Reception::kRepeated, {}};
 }
 
@@ -209,17 +218,17 @@ Receipt RobotStateEstimator::OnTransforms(double stamp) {
   if (!newest) return {};
   const double time = std::min(stamp, *newest);
   const FramePose found = tree_->Find(frames_.map, frames_.odometry, time);
-  if (!found.is_found()) return {Reception::kLate, {}};
+  if (!found.is_found()) return Late();
   const Pose2 X_MO = geometry::Flatten(found.X_PC);
   X_MOfixed_.reset();
   if (*newest == kForever) {
     X_MOfixed_ = X_MO;
     return {};
   }
-  if (IsLate(time)) return {Reception::kLate, {}};
-  if (IsAhead(time)) return {Reception::kAhead, frames_.map + " -> " + frames_.odometry};
+  if (IsLate(time)) return Late();
+  if (IsAhead(time)) return Ahead(frames_.map + " -> " + frames_.odometry);
   const bool is_new = corrections_.Insert(time, {X_MO, std::min(time, now().value_or(time))});
-  if (!now()) corrections_.KeepBetween(time - kHistory, kForever);
+  if (!now()) corrections_.KeepBetween(time - params_.history, kForever);
   return {is_new ? Reception::kTaken : Reception::kRepeated, {}};
 }
 

@@ -11,6 +11,7 @@ using base::ParamReader;
 StateParams ReadState(ParamReader in) {
   StateParams params;
   params.stale_after = in.Get("stale_after", Between(0.05, 3.0));
+  params.history = in.Get("history", Between(1.0, 100.0));
   params.correction_wait = in.Get("correction_wait", Between(0.0, 1.0));
   params.posture_reach = in.Get("posture_reach", Between(0.001, 1.0));
   return params;

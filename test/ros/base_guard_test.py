@@ -108,6 +108,7 @@ class BaseGuardTest(unittest.TestCase):
         self.assertEqual(own[own.index(BaseGuardState.PASSING):],
                          [BaseGuardState.PASSING, BaseGuardState.BRAKING, BaseGuardState.STANDING])
         self.wait_for_speed(0.0)
+        self.wait_for_zero_command()
         speeds = [command.linear.x for command in self.commands]
         last = len(speeds) - 1 - speeds[::-1].index(max(speeds))
         ramp = speeds[last:]
@@ -116,8 +117,14 @@ class BaseGuardTest(unittest.TestCase):
         self.assertGreater(len(set(ramp)), 5, ramp)  # in steps, not at once
         self.assertLessEqual(max(speeds), FULL_SPEED + 1e-9)
 
+    def wait_for_zero_command(self):
+        """Commands and states are different topics: the last step of a ramp may come behind the
+        state in which the guard has sent its first zero."""
+        wait_until(lambda: self.commands and self.commands[-1].linear.x == 0.0, 'the zero')
+
     def require_nothing_moves(self):
         """Whatever the driver, who still is there, says. Zeros end after a second."""
+        self.wait_for_zero_command()
         seen = len(self.commands)
         start = self.odometry.header.stamp
         wait_until(lambda: (self.odometry.header.stamp - start).to_sec() > 1.5, 'odometry')

@@ -123,7 +123,7 @@ class WorldTrackerTest(unittest.TestCase):
 
     # The robot's sensors.
 
-    def tick(self, seen=None, dt=0.05, frame=CAMERA):
+    def tick(self, seen=None, dt=0.05, frame=CAMERA, is_localised=True):
         """All sensors once; `seen`: {name: (model, pose in the map)}."""
         self.t += dt
         stamp = self.rospy.Time.from_sec(self.t)
@@ -134,7 +134,8 @@ class WorldTrackerTest(unittest.TestCase):
         joints.header.stamp = stamp
         joints.name, joints.position = list(self.joints), list(self.joints.values())
         self.publishers['odometry'].publish(odometry)
-        self.tell_transform('map', 'odom_combined', numpy.eye(4))
+        if is_localised:
+            self.tell_transform('map', 'odom_combined', numpy.eye(4))
         self.publishers['joints'].publish(joints)
         if seen is not None:
             self.publishers['detections'].publish(self.detections(seen, frame))
@@ -254,6 +255,19 @@ class WorldTrackerTest(unittest.TestCase):
         self.expect('poseBook1', 'hasX', 7.48)
         self.assertEqual(self.names()['book1'].model, 'book')
         self.assertEqual(self.known[-1].header.frame_id, 'map')
+
+    def test_what_is_seen_while_localisation_is_away_is_not_remembered_and_holds_up_nothing(self):
+        self.at_table()
+        book = {'book1': ('book', translation(7.48, 11.28, 0.73))}
+        self.look(book)
+        bowl = {'bowl1': ('bowl', translation(7.88, 11.28, 0.73))}
+        for number in range(40):  # 2 s, far more than a correction may be late
+            self.tick(bowl if number in (18, 20, 22) else None, is_localised=False)
+        self.look(book)
+        self.assertIn('book1', self.names())
+        self.assertNotIn('bowl1', self.names())
+        self.look({**book, **bowl})
+        self.assertIn('bowl1', self.names())
 
     def test_an_object_may_be_seen_in_another_frame_than_the_cameras(self):
         self.at_table()

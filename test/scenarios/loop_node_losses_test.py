@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Planner, Blackboard and middle layer are killed in the middle: the run completes, or the robot
-stands and it is said why. Run alone, or by `rostest hires loop_node_losses.test`."""
+"""Planner, Blackboard and middle layer are killed in the middle, the tracker is held up: the run
+completes, or the robot stands and it is said why. Run alone, or by `rostest hires loop_node_losses.test`."""
 
 import collections
 import os
@@ -21,6 +21,8 @@ FAST = 0.3      # [m/s]
 # [s] simulated: long enough for a program to start again, though the robot is ten times as fast.
 PATIENCE = {'planning_timeout': 60.0}
 MAY_TAKE = 1.0  # [s] simulated, from the last command until the base stands
+HELD_UP = 5.0   # [s] simulated, half a second of the computer's
+OPEN = 0.08     # [m] between the fingers that are about to grasp
 
 
 class NodeLossesTest(LoopCase):
@@ -80,6 +82,20 @@ class NodeLossesTest(LoopCase):
         refused = [line for line in self.loop.nodes['execution_monitor'].lines
                    if 'record=refused' in line]
         self.assertEqual(refused, [])
+
+    def test_a_tracker_that_is_held_up_during_a_grasp_has_felt_it_afterwards(self):
+        self.begin(AT_COUNTER, MUG)
+        task = self.achieve(THERE)
+        self.wait_for_step(task, 'pick_up_object')
+        self.truth.wait(lambda t: t.joint('r_gripper_joint') > OPEN, 'the hand to open')
+        self.truth.wait(lambda t: t.joint('r_gripper_joint') < OPEN, 'the hand to close')
+        self.loop.pause('world_tracker')
+        self.truth.wait(lambda t: t.object('mug1').attached_to, 'the mug to be held')
+        held = self.truth.now()
+        self.truth.wait(lambda t: t.now() > held + HELD_UP, 'the mug to be somewhere else')
+        self.loop.unpause('world_tracker')
+        self.wait_for_step(task, 'place_on_tray')
+        self.assertEqual(task.warnings(), [])
 
     def test_without_middle_layer_the_robot_stands_and_with_a_new_one_it_goes_on(self):
         self.begin(DRIVING, MUG, **PATIENCE)

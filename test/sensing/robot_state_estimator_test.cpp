@@ -297,6 +297,30 @@ TEST_F(EstimatorTest, WhatComesTwiceOrLateIsEverydayLife) {
   EXPECT_EQ(state_.At(10.0)->joints.at("a"), 1.0);
 }
 
+TEST_F(EstimatorTest, ALongHistoryHoldsWhatAComputerThatWasBusyLearnsTopicByTopic) {
+  StateParams params;
+  params.history = 10.0;
+  RobotStateEstimator patient(robot_, {"map", "odom_combined", "base"}, params, {}, tree_);
+  for (RobotStateEstimator* state : {&patient, &state_}) {
+    for (double time = 1.0; time <= 9.0; time += 0.125) {
+      tree_->Tell("map", "odom_combined", time, Lift(Pose2()));
+      state->OnTransforms(time);
+    }
+    for (double time = 1.0; time <= 9.0; time += 0.125) {
+      state->OnOdometry(time, frame_, "", {{time, 0.0, 0.0}, {}});
+    }
+    for (double time = 1.0; time <= 9.0; time += 0.125) {
+      state->OnJoints(time, {{{"a", 10.0 * time}}, {}});
+    }
+  }
+  ASSERT_TRUE(patient.At(2.0));
+  EXPECT_EQ(patient.At(2.0)->X_WB.x, 2.0);
+  EXPECT_EQ(patient.At(2.0)->joints.at("a"), 20.0);
+  EXPECT_FALSE(state_.At(2.0)) << "it keeps 3 s";
+  EXPECT_THAT(ToString(patient.OnJoints(30.0, {{{"a", 1.0}}, {}})), HasSubstr("10 s ahead"));
+  EXPECT_THAT(ToString(Joints(30.0)), HasSubstr("3 s ahead"));
+}
+
 TEST_F(EstimatorTest, AStrayMessageOfAnotherClockHoldsUpNobody) {
   All(10.0);
   EXPECT_EQ(Joints(5000.0).what, Reception::kAhead);

@@ -46,9 +46,10 @@ class History {
     return place == entries_.end() ? nullptr : &*place;
   }
   T* Find(double stamp) {
-    const auto place = std::find_if(entries_.begin(), entries_.end(),
-                                    [&](const Entry& entry) { return entry.stamp == stamp; });
-    return place == entries_.end() ? nullptr : &place->value;
+    const auto place =
+        std::lower_bound(entries_.begin(), entries_.end(), stamp,
+                         [](const Entry& entry, double s) { return entry.stamp < s; });
+    return place == entries_.end() || place->stamp != stamp ? nullptr : &place->value;
   }
 
  private:

@@ -20,6 +20,7 @@ struct FrameNames {
 struct StateParams {
   double stale_after{0.3};       ///< [s] without odometry, joint states or a correction of map ->
                                  ///< odometry nobody knows the robot's state any more
+  double history{3.0};           ///< [s] that is kept: messages may come so late, or so early
   double correction_wait{0.15};  ///< [s] of odometry within which a correction may still come
   double posture_reach{0.05};  ///< [s] from joint states after which head and arms may be elsewhere
   bool operator==(const StateParams& other) const;
@@ -40,6 +41,7 @@ enum class Reception {
 struct Receipt {
   Reception what{Reception::kTaken};
   std::string subject;
+  double limit{0.0};  ///< [s] by which it may be late or ahead
   bool is_taken() const { return what == Reception::kTaken; }
   /// Somebody must set something right; messages that come late or twice are everyday life.
   bool is_bad() const;
@@ -119,6 +121,7 @@ class RobotStateEstimator {
   std::optional<double> NextJoints(double time) const { return joints_.NextAfter(time); }
   /// Whether that is too far ahead of the odometry to be of the same clock.
   bool IsAhead(double stamp) const;
+  Receipt Ahead(const std::string& subject) const;  ///< what to say of it
   /// Stamp of the newest odometry.
   std::optional<double> now() const;
 
@@ -142,6 +145,7 @@ class RobotStateEstimator {
   void Restart();
   void ForgetOld();
   bool IsLate(double stamp) const;
+  Receipt Late() const;
   FramePose ChildToBase(const std::string& child, double stamp) const;
   Receipt CheckFrame(const std::string& frame) const;
   std::optional<OdometryReading> RawAt(double time, double reach) const;

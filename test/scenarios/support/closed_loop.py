@@ -273,6 +273,20 @@ class ClosedLoop(BlackboardAccess):
         config['imagining']['rollouts'] = self.rollouts
         return self.processes.write('execution_monitor.yaml', yaml.safe_dump(config))
 
+    def _write_tracker_config(self):
+        """The tracker is not waited for, and a computer that is busy for a moment is so for longer
+        in the robot's time: what the tracker keeps lasts as long as on a robot."""
+        with open(os.path.join(CONFIG, 'scene.yaml')) as file:
+            scene = yaml.safe_load(file)
+        for key in ('world', 'robot', 'objects', 'uncertainty'):
+            scene[key] = os.path.join(CONFIG, scene[key])
+        scene['sensing']['robot_state']['history'] *= self.pace
+        with open(os.path.join(CONFIG, 'world_tracker.yaml')) as file:
+            config = yaml.safe_load(file)
+        config['scene'] = self.processes.write('tracker_scene.yaml', yaml.safe_dump(scene))
+        config['ontology'] = [os.path.join(CONFIG, path) for path in config['ontology']]
+        return self.processes.write('world_tracker.yaml', yaml.safe_dump(config))
+
     # Nodes.
 
     def _arguments(self, name):
@@ -283,7 +297,7 @@ class ClosedLoop(BlackboardAccess):
         if name == 'middle_layer':
             return ['_lockstep:=true', 'navigation/cmd_vel:=base_controller/command']
         if name == 'world_tracker':
-            return ['_config:=' + os.path.join(CONFIG, 'world_tracker.yaml'), '_lockstep:=true']
+            return ['_config:=' + self._write_tracker_config(), '_lockstep:=true']
         if name == 'translator':
             return ['_config:=' + os.path.join(CONFIG, 'translator.yaml')]
         if name == 'blackboard':
