@@ -19,7 +19,7 @@ namespace {
 
 constexpr char kScript[] = "/scripts/plot_timeline";
 
-/// Characters a line has on the terminal; 0: standard output is none.
+/// Characters a line has on the terminal; 0: standard output is no terminal.
 int TerminalWidth() {
   winsize size{};
   if (isatty(STDOUT_FILENO) == 0 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return 0;

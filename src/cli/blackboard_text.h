@@ -19,7 +19,7 @@ std::string FluentsText(const std::vector<knowledge::Fluent>& fluents);
 std::string EpisodesText(const std::vector<knowledge::Episode>& episodes);
 std::string StatisticsText(const knowledge::Store::Statistics& statistics, const std::string& path);
 
-/// For machines. "Since ever" and "for ever" are null.
+/// For machines. Bounds that are infinite are null.
 nlohmann::ordered_json ToJson(const knowledge::LoadSummary& summary);
 nlohmann::ordered_json ToJson(const std::vector<knowledge::Fluent>& fluents);
 nlohmann::ordered_json ToJson(const std::vector<knowledge::Episode>& episodes);

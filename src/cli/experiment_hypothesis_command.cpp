@@ -99,7 +99,7 @@ std::vector<evaluation::HypothesisOrder> OrdersFor(const HypothesisOptions& opti
   return orders;
 }
 
-/// A record that can be trusted to be of this order, whoever played it.
+/// A record that can be trusted to be of this order, by whichever process it was played.
 evaluation::HypothesisRun Stamped(evaluation::HypothesisRun record,
                                   const evaluation::HypothesisOrder& order, double wall_seconds) {
   record.run = order.run;

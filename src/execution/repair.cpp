@@ -197,7 +197,7 @@ Repair::Result Repair::Take() {
   }
   const bool is_useless = quest_.outcome() == PlanQuest::Outcome::kFailed;
   if (!unwanted.empty() &&
-      !is_useless) {  // ends by itself meanwhile, or is stopped; then it is planned anew
+      !is_useless) {  // ends by itself meanwhile, or is stopped; then a new plan is made
     for (const int step : unwanted) session_.Stop(step);
     return Result::kUnderWay;
   }

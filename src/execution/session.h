@@ -60,7 +60,7 @@ class Session {
   int revision() const { return revision_; }
   void Note(const planning::PlanStep& bookkeeping);
   bool IsChanging(const std::string& predicate) const { return changing_.count(predicate) > 0; }
-  /// Known to whoever imagines: named by an atom or by a change.
+  /// Known to imagination: named by an atom or by a change.
   std::set<std::string>& instances() { return instances_; }
 
   // The commands.

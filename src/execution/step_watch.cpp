@@ -91,7 +91,7 @@ void StepWatch::Check(bool with_later_steps) {
   broken_ = std::move(still_broken_);
 }
 
-/// Nobody knows what such a step still does: nothing may begin beside it.
+/// What such a step still does is unknown: nothing may begin beside it.
 void StepWatch::CheckStop(int index) {
   const StepRun& step = session_.run().at(index);
   if (!IsPast(*step.stopped + session_.params().stop_timeout)) return;
@@ -137,7 +137,7 @@ void StepWatch::CheckEffects(int index) {
   session_.Report({Violation::Kind::kEffect, step.action, *missing}, step.activity);
 }
 
-/// What nobody has told yet is no proof that it is not so; but not for ever.
+/// An effect that was not reported yet may still hold, for a limited time.
 bool StepWatch::MayBeOnItsWay(double due, const std::string& action) {
   if (!session_.IsBehind(due)) {
     late_.erase(action);

@@ -39,7 +39,7 @@ class StepWatch {
   Session& session_;
   std::map<std::string, double> broken_;  ///< expectation that does not hold, since [s]
   std::map<std::string, double> still_broken_;
-  std::set<std::string> late_;  ///< actions of which was told that word of them is late
+  std::set<std::string> late_;  ///< actions whose late observation was reported
   std::optional<double> wake_at_;
   std::string lost_;
 };

@@ -116,7 +116,7 @@ bool LoadMonitor::IsSettled() const {
   const bool is_put_down =
       purpose_.kind == Purpose::Kind::kPutOnArea || purpose_.kind == Purpose::Kind::kPutOnTray;
   if (handled_ >= 0 && is_put_down && Moves(objects_[handled_].index)) return false;
-  // What has fallen may roll on for ever; nothing more depends on it.
+  // What has fallen may go on rolling; nothing more depends on it.
   return std::none_of(bystanders_.begin(), bystanders_.end(), [&](const Bystander& bystander) {
     return Moves(bystander.index) && !bystander.watch.detector().is_down();
   });

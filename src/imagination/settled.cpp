@@ -105,7 +105,7 @@ class PairJudge {
     const Verdict second = InOrOut(b);
     if (first == Verdict::kOpen || second == Verdict::kOpen) return false;
     if (first != second) return first == Verdict::kFirstBetter;
-    if (first == Verdict::kSecondBetter) return true;  // both out: nobody will take either
+    if (first == Verdict::kSecondBetter) return true;  // both are out of the running
     return SettledBy({ConfidenceDifference, QuickerSign}, a, b);
   }
 

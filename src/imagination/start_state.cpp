@@ -9,7 +9,7 @@
 namespace hires::imagination {
 namespace {
 
-constexpr double kSlotDistance = 0.13;  // [m] pr2.md, section 9
+constexpr double kSlotDistance = 0.13;  // [m] between the places on the tray
 
 geometry::Pose3 AreaPose(const ImaginationSetup& setup, const std::string& area) {
   if (const auto X_MArea = setup.scene->world.FindFrame(area)) return *X_MArea;

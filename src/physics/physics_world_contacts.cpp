@@ -16,7 +16,7 @@ using detail::ToEigen;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// How far a loose body may go before its list of near shapes is made anew [m]. A wider
+/// How far a loose body may go before its list of near shapes is made again [m]. A wider
 /// margin makes longer lists, a narrower one makes them more often.
 constexpr double kNearMargin = 0.1;
 /// Slip below this has no direction worth following [m/s].

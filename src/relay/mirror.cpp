@@ -37,7 +37,7 @@ void AppendListed(Kind kind, const Graph& graph, const Route& route, const Alias
   }
 }
 
-/// Who else provides the service at the target; empty if nobody does.
+/// Who else provides the service at the target; empty if no node does.
 std::string OtherProvider(const Offer& offer, const Graph& target, const AliasNames& names) {
   const auto it = target.services.find(offer.name);
   if (offer.kind != Kind::kService || it == target.services.end()) return "";

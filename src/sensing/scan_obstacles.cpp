@@ -35,7 +35,7 @@ std::vector<Polygon> ScanObstacles::Find(const ScanReading& scan, const Pose2& X
   return squares;
 }
 
-/// What lies beyond the map's border is nobody's concern.
+/// What lies beyond the map's border is left out.
 bool ScanObstacles::IsExplained(const Eigen::Vector2d& p_M) const {
   int column = 0, row = 0;
   map_->CellOf(p_M, &column, &row);

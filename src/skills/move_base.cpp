@@ -112,8 +112,8 @@ MoveBase::MoveBase(std::shared_ptr<const DrivingContext> context, const Pose2& X
   local_.SetMotionSet(motion_set);
 }
 
-/// Whoever has its arms elsewhere than for driving needs more room: to turn anywhere on its way, or
-/// at least to pass. Where there is no such way it is tried as if there were no arms; the local
+/// A robot whose arms are not in the driving posture needs more room: to turn anywhere on its way,
+/// or at least to pass. Where there is no such way it is tried as if there were no arms; the local
 /// planner sees to it that nothing is touched.
 void MoveBase::Begin(const robot::Observation& observation) {
   has_begun_ = true;

@@ -210,7 +210,7 @@ class Arrangement {
 
   /// Objects that were seen in each other stand side by side: each was seen with an error of its
   /// own. They give way by the same amount, by no more than such errors are; what was seen farther
-  /// in another object is left as it was seen, for whoever imagines to refuse.
+  /// in another object is left as it was seen; imagination refuses it.
   void Part() {
     constexpr double kFarthest = 0.06;  // [m] that an object may be shifted
     constexpr double kApart = 0.002;    // [m] between them in the end

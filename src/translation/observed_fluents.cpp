@@ -103,7 +103,7 @@ class Comparison {
 
   void CompareRobotPose() {
     const Fluent* robot = FirstBelow("Robot");
-    if (robot == nullptr) return;  // nobody to say it of
+    if (robot == nullptr) return;  // there is no robot to say it of
     ComparePose(*robot, "", geometry::Lift(observed_.state.robot.X_MB), params_.robot_position,
                 params_.robot_angle);
   }

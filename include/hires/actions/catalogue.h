@@ -24,7 +24,7 @@ class Catalogue {
   std::map<std::string, ActionSpec> specs_;
 };
 
-/// Whether nobody else may turn the head while an action of this name runs; so it is for an action
+/// Whether nothing else may turn the head while an action of this name runs; so it is for an action
 /// that the catalogue does not know.
 bool MayUseHead(const Catalogue& catalogue, const std::string& name);
 

@@ -25,7 +25,7 @@ enum class FailureCode : std::uint16_t {
   kHandFull = 10,          ///< the hand that should take something holds something
   kGraspFailed = 11,       ///< the hand closed round nothing
   kAreaOccupied = 12,      ///< the subjects stand where something is to be put
-  kUnknownModel = 13,      ///< nobody knows the shape of what was seen
+  kUnknownModel = 13,      ///< the shape of what was seen is unknown
 
   // The way there. 100 .. 199
   kRobotCollision = 100,     ///< a part of the robot touched something
@@ -51,7 +51,7 @@ enum class FailureCode : std::uint16_t {
   kLocalisationLost = 207,
   kStaleObservation = 208,
   kNoController = 209,  ///< a driver that is needed does not listen
-  kNoPermit = 210,      ///< the base guard lets nobody drive
+  kNoPermit = 210,      ///< the base guard permits no driving
   kSilentMiddleLayer = 211,
   kSilentCommands = 212,
   kBadRequest = 213,
@@ -63,7 +63,7 @@ enum class FailureCode : std::uint16_t {
   kBusy = 219,              ///< another action needs the same joints
   kGuardEnds = 220,
   kLateGuard = 221,       ///< the base guard itself was not called in time
-  kNoRequest = 222,       ///< nobody has asked the base guard to drive
+  kNoRequest = 222,       ///< no request to drive reached the base guard
   kGuardRestarted = 223,  ///< it knows nothing of the drive that it allowed
   kDryRun = 224,          ///< nothing is moved
 
@@ -71,7 +71,7 @@ enum class FailureCode : std::uint16_t {
   kPreempted = 300,
   kUnavailable = 301,    ///< who should do it is not there
   kEffectMissing = 302,  ///< what the action should have brought about is not so
-  kEffectUnknown = 303,  ///< nobody could see whether it is so
+  kEffectUnknown = 303,  ///< it could not be seen whether it is so
   kConditionLost = 304,  ///< what the action rests on does not hold any more
   kDidNotStop = 305,
   kInvalidAction = 306,    ///< no such action, or its arguments make no sense
@@ -93,7 +93,7 @@ enum class FailureScope {
   kPlan     ///< what was expected and what was observed differ
 };
 
-/// What is known about a code, whoever met with it.
+/// What is known about a code.
 struct FailureInfo {
   FailureCode code;
   const char* word;  ///< lower case with underscores: "object_fell"
@@ -116,7 +116,7 @@ std::optional<FailureCode> FailureCodeOf(std::uint16_t number);
 struct Failure {
   FailureCode code{FailureCode::kNone};
   std::vector<std::string> subjects;  ///< names of objects or links, lower case
-  std::string detail;                 ///< for people; nobody takes it apart
+  std::string detail;                 ///< for people, never taken apart
 
   Failure() = default;
   // NOLINTNEXTLINE(google-explicit-constructor): a code alone is a failure.

@@ -47,7 +47,7 @@ class ParamReader {
 
   std::string Canonical() const;  ///< as YAML text without comments, for hashes
 
-  /// @throws ConfigError naming the first key that nobody asked for, here or in any Sub().
+  /// @throws ConfigError naming the first key that was not asked for, here or in any Sub().
   void RejectUnknownKeys() const;
 
   /// An error about `key` in the words of this reader, for checks across keys.

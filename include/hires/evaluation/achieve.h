@@ -31,7 +31,7 @@ enum class ImaginedOutcome {
   kCancelled
 };
 std::string ToString(ImaginedOutcome outcome);  ///< "running", "ranked", "all_failed", ...
-/// "" is kRunning.  @throws base::ConfigError for a word that is none of these.
+/// "" is kRunning.  @throws base::ConfigError for any other word.
 ImaginedOutcome ParseImaginedOutcome(const std::string& word);
 
 /// One request of the execution monitor to imagine a step. Times are main ROS time [s].

@@ -25,7 +25,7 @@ struct TaskRequested {
 struct PlanArrived {
   int request{0};
   enum class Outcome { kFound, kNoPlan, kLimit, kInvalid, kUnavailable } outcome{Outcome::kFound};
-  /// With its reasons, bindings and decomposition. Reasons that are missing are worked out anew;
+  /// With its reasons, bindings and decomposition. Reasons that are missing are worked out again;
   /// without nodes a repair plans the whole task again from the state that is, and without bindings
   /// durations of legs are not known.
   planning::Plan plan;
@@ -35,7 +35,7 @@ struct PlanArrived {
 struct StepFinished {
   int activity{0};
   enum class Result { kSucceeded, kFailed, kPreempted, kUnavailable } result{Result::kSucceeded};
-  base::Failure failure;  ///< nothing where it succeeded, or nobody told
+  base::Failure failure;  ///< nothing where it succeeded, or is unknown
 };
 /// What is observed to hold now: all atoms of the state, whenever they change.
 struct StateObserved {
@@ -175,7 +175,7 @@ struct StepStatus {
   base::Failure failure;  ///< of a step that failed
 };
 
-/// The semantic execution monitor: one state machine, events in, commands out (DESIGN, section 8).
+/// The semantic execution monitor: one state machine, events in, commands out.
 /// It has no thread, clock or connection. Same events at the same times give the same commands.
 class Monitor {
  public:

@@ -26,7 +26,7 @@ enum class Outcome { kSucceeded, kFailed, kTimedOut };
 /// What one simulated play of an action from one start with one seed gave.
 struct RolloutResult {
   Outcome outcome{Outcome::kFailed};
-  base::Failure failure;  ///< why it did not succeed; nothing: it did, or nobody knows
+  base::Failure failure;  ///< why it did not succeed; nothing: it did, or it is unknown
   double duration{0.0};   ///< [s] simulated, of the action alone
   OutcomeCounts counts;
   int falls{0};             ///< events, not samples

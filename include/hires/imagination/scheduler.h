@@ -61,7 +61,7 @@ struct AssignmentFailed {
   int worker;
   int assignment;
   std::string reason;       ///< for people
-  bool is_worker_unusable;  ///< e.g. its world differs: it gets nothing more until it joins anew
+  bool is_worker_unusable;  ///< e.g. its world differs: it gets nothing more until it joins again
 };
 using Event =
     std::variant<WorkerJoined, WorkerLost, RolloutFinished, AssignmentFinished, AssignmentFailed>;
@@ -85,7 +85,7 @@ enum class ImaginationOutcome {
   kRanked,           ///< there is a recommendation
   kAllFailed,        ///< no alternative is good enough, as far as rollouts can tell
   kUndecided,        ///< rollouts were played, too few to tell whether one is good enough
-  kNoWorker,         ///< nothing was compared, because there was nobody to play
+  kNoWorker,         ///< nothing was compared, because there was no worker
   kNothingFinished,  ///< nothing was compared by the deadline, although there were workers
   kCancelled
 };
@@ -139,7 +139,8 @@ int NextLook(int num_rollouts, const SchedulerParams& params);
 /// together). Who has nothing to do in the present look begins the next one, but none beyond it.
 ///
 /// A single alternative is played to the end. It stops early only where the answer is decided (see
-/// Decided): an order that is settled, while nobody knows whether the first is good enough, is not.
+/// Decided): an order that is settled, while it is unknown whether the first is good enough, is
+/// not.
 ///
 /// Intervals are Clopper-Pearson's where the number of rollouts was fixed beforehand and all were
 /// played (no early stop, one alternative, or no look before the last), else confidence sequences.

@@ -11,7 +11,7 @@ enum class IntervalKind {
   /// Exact at one number of rollouts that was fixed before the first was played [Clopper, Pearson
   /// 1934, Biometrika 26:404-413].
   kClopperPearson,
-  /// Valid at every number of rollouts at once, hence for whoever looks more than once, stops when
+  /// Valid at every number of rollouts at once, hence where one looks more than once, stops when
   /// he
   /// has seen enough, or is interrupted: the likelihood ratio of Jeffreys' beta mixture against a
   /// share of successes p is a martingale if p is true, so p is out once it exceeds 20 [Robbins

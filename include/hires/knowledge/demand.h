@@ -17,7 +17,8 @@ struct DemandUpdate {
   bool snapshot{false};
   std::uint64_t first_sequence{0};  ///< Blackboard sequence of the first change told here
   /// ... of the last one looked at, told or not. A snapshot has that of the message before it, if
-  /// nothing was told since: whoever starts with it, goes on with the next message as all others.
+  /// nothing was told since: a program that starts with it goes on with the next message as all
+  /// others.
   std::uint64_t last_sequence{0};
   std::uint64_t previous{0};  ///< last_sequence of the topic's message before: a reader that
                               ///< has another one missed something and asks `ChangesSince`
@@ -36,7 +37,8 @@ struct DemandUpdate {
 class Demand {
  public:
   /// @throws ConfigError naming topic and what is wrong with its filter: none at all, a concept or
-  ///   relation that is unknown (nearest names), a query that is none or selects no instances.
+  ///   relation that is unknown (nearest names), a text that is no query, or a query that selects
+  ///   no instances.
   Demand(const DemandTopic& topic, std::shared_ptr<const Ontology> ontology);
   Demand(Demand&&) noexcept;
   Demand& operator=(Demand&&) noexcept;

@@ -20,7 +20,7 @@ class LiveView : public FluentView {
  public:
   explicit LiveView(const Store& store);
   LiveView(const Store& store, double at);  ///< [s] main ROS time
-  /// Of fluents that hold as of change `sequence`, for whoever learns them without a store.
+  /// Of fluents that hold as of change `sequence`, for programs that have no store.
   LiveView(std::vector<Fluent> fluents, std::uint64_t sequence);
   LiveView(LiveView&&) noexcept;
   LiveView& operator=(LiveView&&) noexcept;

@@ -21,7 +21,7 @@ class Ontology {
   /// Reads the files as one ontology: each may build on what any other declares. Nothing else is
   /// read, and nothing fetched.
   /// @throws ConfigError naming file, line and what is wrong: unreadable Turtle, a cycle of
-  ///   subclasses, a relation without range, a superclass nobody declares (with the nearest names),
+  ///   subclasses, a relation without range, an undeclared superclass (with the nearest names),
   ///   OWL beyond the subset, more than 16 MB, 5000 concepts or relations each, 100 nested
   ///   brackets.
   static Ontology FromFiles(const std::vector<std::string>& paths);

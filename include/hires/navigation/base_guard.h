@@ -27,7 +27,7 @@ struct BaseGuardParams {
   double trailing{0.2};           ///< [m/s], [rad/s] by which a base may trail what it was told
   double still_speed{0.01};       ///< [m/s], [rad/s] counts as standing
   bool needs_motors_state{true};  ///< false: the robot does not tell whether motors are halted
-  bool needs_localisation{true};  ///< false: nobody tells how sure the localisation is
+  bool needs_localisation{true};  ///< false: no source tells how sure the localisation is
   bool needs_scan{true};          ///< false: the robot has no base laser
   BrakingParams braking;
 };
@@ -37,12 +37,12 @@ BaseGuardParams ReadBaseGuardParams(const std::string& path);
 
 /// Leave to drive.
 struct DriveRequest {
-  std::uint64_t id{0};                          ///< 0: nobody wants to drive
+  std::uint64_t id{0};                          ///< 0: no request to drive
   robot::MotionSet limits{0.0, 0.0, 0.0, 0.0};  ///< velocities are clipped to its speeds
   BrakingLimits braking{0.0, 0.0};              ///< what the load survives; 0: unknown
 };
 /// Standard deviation [m] of a position in its worst direction, from its covariance [m^2]; no
-/// number where it is none.
+/// number where it is not.
 double LargestSd(double xx, double xy, double yy);
 
 /// What is wrong with a request, in words for people; empty if it can be used.
@@ -61,10 +61,10 @@ enum class PoseSource {
   kMapTransform    ///< map to odometry frame
 };
 
-/// Stands between whoever drives and the base. Velocities pass while a request is alive and all is
-/// well: motors on, pose and scan fresh, localisation sure, commands coming. Else the base is led
-/// to a stand along a ramp, and nothing passes until a request with another id has come and all is
-/// well again. A request that was stopped is over for good.
+/// Stands between the program that drives and the base. Velocities pass while a request is alive
+/// and all is well: motors on, pose and scan fresh, localisation sure, commands coming. Else the
+/// base is led to a stand along a ramp, and nothing passes until a request with another id has come
+/// and all is well again. A request that was stopped is over for good.
 ///
 /// Time is handed in, on any steady clock of the caller [s]; it does not decrease. Messages say
 /// when what they tell was so (`stamp`, on the same clock); a stamp that lies ahead counts as now.

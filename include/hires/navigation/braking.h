@@ -86,7 +86,7 @@ struct BrakingMargins {
 
 /// How stops are planned: section `braking` of config/base_guard.yaml.
 struct BrakingParams {
-  BrakingLimits unknown_load{1.0, 2.5};  ///< where nobody says what is carried
+  BrakingLimits unknown_load{1.0, 2.5};  ///< where it is unknown what is carried
   BrakingLimits hardest{1.5, 10.0};      ///< also with nothing on the tray
   double max_angular_deceleration{1.5};  ///< [rad/s^2]
   double max_angular_jerk{6.0};          ///< [rad/s^3]

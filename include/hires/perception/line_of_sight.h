@@ -17,7 +17,7 @@ struct Hit {
 };
 
 /// Whether nothing stands between the camera and things that it looks at: rays against static
-/// bodies, the floor z = 0, loose objects and, where wanted, the robot's own links. Made anew for
+/// bodies, the floor z = 0, loose objects and, where wanted, the robot's own links. Made again for
 /// each look, which is cheap; constant, so several threads may ask.
 ///
 /// A ray passes through a surface from its inside: a camera within the robot's head looks out.

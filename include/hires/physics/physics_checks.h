@@ -19,7 +19,7 @@ struct PhysicsCheck {
   bool passed() const { return error <= tolerance; }
 };
 
-/// Runs all closed-form comparisons of the design (tipping, sliding, sudden stop, pulse, free fall,
+/// Runs all closed-form comparisons (tipping, sliding, sudden stop, pulse, free fall,
 /// stopping distance, restitution, rest) for one cylinder. Takes seconds.
 std::vector<PhysicsCheck> RunPhysicsChecks(const UprightCylinder& body,
                                            const std::string& body_name);

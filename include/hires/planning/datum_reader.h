@@ -36,7 +36,7 @@ std::string FirstWord(std::string_view text, const std::string& source);
 /// for a huge datum than for a small one.
 std::string Excerpt(const Datum& datum);
 
-/// Throws "source:line:column: text" as ConfigError, for whoever makes sense of the data.
+/// Throws "source:line:column: text" as ConfigError, for code that interprets the data.
 [[noreturn]] void FailAt(const std::string& source, Place place, const std::string& text);
 
 }  // namespace hires::planning

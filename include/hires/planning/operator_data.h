@@ -33,7 +33,7 @@ struct ImagineData {
   std::map<std::string, std::string> defaults;  ///< value of each parameter, in lower case
   OnLate on_late{OnLate::kDefault};
   /// Share of successes that the lower end of an alternative's interval must reach to be
-  /// recommended, in (0, 1); none: whoever imagines decides.
+  /// recommended, in (0, 1); none: imagination's own default.
   std::optional<double> min_success;
 };
 

@@ -7,7 +7,7 @@
 
 namespace hires::planning {
 
-/// What a search took, as whoever called it measured.
+/// What a search took, as its caller measured.
 struct SearchCosts {
   double cpu_seconds{0.0};  ///< [s] processor time of the search alone, without reading
   double peak_mb{0.0};      ///< [MB] (1e6 bytes) most memory the process ever held

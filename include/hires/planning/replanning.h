@@ -38,7 +38,7 @@ struct Replanned {
   Problem problem;    ///< that its plans solve: what was left to do
 };
 
-/// Plans the rest of a plan anew, changing as little as possible: tries RemainingProblem from the
+/// Plans the rest of a plan again, changing as little as possible: tries RemainingProblem from the
 /// deepest keep_depth to 0 and gives the first plans found. kNoPlan only if every try saw its whole
 /// search space; where a caller's limit ends a try, that ends all.
 Replanned Replan(const Domain& domain, const Problem& problem, const Plan& plan, int executed,

@@ -52,7 +52,7 @@ class MasterApi {
 struct PingReply {
   enum class Kind {
     kAnswered,
-    kRefused,  ///< nobody listens there, or not a node
+    kRefused,  ///< nothing listens there, or not a node
     kSilent,   ///< no answer in time: stopped, overloaded or cut off
     kUnknown,  ///< its host name cannot be looked up here, or not in time
   };

@@ -51,7 +51,7 @@ struct Refusal {
 /// <prefix>/<tag>/<node>_<digits>. A master that hears a node's own name twice shuts that node
 /// down, hence aliases. The digits stand for the address: a node that comes back elsewhere gets
 /// another alias, so an alias never changes its address, which would make the master send a
-/// shutdown to whoever sits at the old one.
+/// shutdown to the process at the old one.
 class AliasNames {
  public:
   AliasNames(std::string prefix, const std::string& tag);

@@ -85,7 +85,7 @@ class Relay {
   bool is_same_host_;
   NodePinger* pinger_;
   Liveness liveness_;
-  std::set<std::string> unknown_hosts_;  // addresses of nodes whose host nobody here knows
+  std::set<std::string> unknown_hosts_;  // addresses of nodes whose host is unknown here
   Side local_;
   Side foreign_;
   Direction to_foreign_;

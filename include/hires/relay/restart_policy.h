@@ -11,7 +11,7 @@ struct RestartLimits {
   int most_in_a_row{10};       ///< restarts without a stable life between them; then it gives up
 };
 
-/// When to start again what died: soon at first, then ever later, and not for ever.
+/// When to start again what died: soon at first, then later and later, and only so many times.
 class RestartPolicy {
  public:
   explicit RestartPolicy(const RestartLimits& limits);

@@ -55,7 +55,7 @@ struct UpperBodyProfile {
 double AccelerationOf(const UpperBodyProfile& profile, const std::string& joint);
 
 /// Joints that a group's trajectories may name: "torso", "head", or an arm by its instance in lower
-/// case; empty for a name that is none of these.
+/// case; empty for any other name.
 std::vector<std::string> JointsOfGroup(const UpperBodyProfile& profile, const std::string& group);
 
 }  // namespace hires::robot

@@ -9,7 +9,7 @@ namespace hires::sensing {
 
 enum class FrameStatus {
   kFound,
-  kUnknown,       ///< nobody has told of one of the frames
+  kUnknown,       ///< one of the frames was never received
   kNotConnected,  ///< both are known, and nothing leads from one to the other
   kNotThen        ///< they are connected, but not known at that time
 };

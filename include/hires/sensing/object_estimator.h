@@ -36,7 +36,7 @@ struct LookNews {
 
 /// Feeds the memory of objects with what is felt and seen, in the order of time: for the middle
 /// layer and the tracker alike. A look is judged with the posture that the robot had when the
-/// picture was taken, and dropped where nobody knows it. One that comes late says nothing if a hand
+/// picture was taken, and dropped where that is unknown. One that comes late says nothing if a hand
 /// took or let go of something since.
 class ObjectEstimator {
  public:
@@ -57,7 +57,7 @@ class ObjectEstimator {
 
   /// Remembers what was felt and seen up to this moment.
   LookNews Update(const RobotEstimate& now);
-  /// Drops the looks up to a moment of which nobody will ever know how the robot stood, but for
+  /// Drops the looks up to a moment for which the robot's posture will stay unknown, but for
   /// those that wait for their frame.
   /// @return how many.
   int DropUntil(double time);
@@ -66,7 +66,7 @@ class ObjectEstimator {
 
   const ObjectMemory& memory() const { return memory_; }
   int num_outdated() const { return num_outdated_; }  ///< looks that came too late
-  int num_dropped() const { return num_dropped_; }    ///< whose posture or frame nobody knew
+  int num_dropped() const { return num_dropped_; }    ///< whose posture or frame was unknown
 
  private:
   struct Waiting {

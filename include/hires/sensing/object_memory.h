@@ -31,7 +31,7 @@ struct MemoryParams {
   double still_time{0.15};      ///< [s] after which it is
   double hand_distance{0.08};   ///< [m] between where a held object should be and where it is seen
   double instance_distance{0.1};  ///< [m] from where an object is expected within which a thing of
-                                  ///< its kind, that nobody gave a name, is taken for it
+                                  ///< its kind, that has no name, is taken for it
   bool operator==(const MemoryParams& other) const;
 };
 
@@ -69,9 +69,9 @@ class ObjectMemory {
   /// @throws base::ConfigError for a model that the world, or a link that the robot does not have.
   void Believe(const std::string& name, const std::string& model, const std::string& link,
                const geometry::Pose3& X_LO);
-  /// Nobody says so any more.
+  /// That is not said any more.
   void Disbelieve(const std::string& name);
-  /// Nobody speaks of other objects than these any more.
+  /// Only these objects are still spoken of.
   void DisbelieveAllBut(const std::vector<std::string>& names);
 
   /// @return whether a hand took, let go or lost something.

@@ -19,7 +19,7 @@ struct FrameNames {
 
 struct StateParams {
   double stale_after{0.3};       ///< [s] without odometry, joint states or a correction of map ->
-                                 ///< odometry nobody knows the robot's state any more
+                                 ///< odometry the robot's state is unknown
   double history{3.0};           ///< [s] that is kept: messages may come so late, or so early
   double correction_wait{0.15};  ///< [s] of odometry within which a correction may still come
   double posture_reach{0.05};  ///< [s] from joint states after which head and arms may be elsewhere
@@ -34,7 +34,7 @@ enum class Reception {
   kAhead,         ///< of a clock that is far ahead of the odometry's
   kNoStamp,       ///< its time is 0 or no number
   kNotFinite,     ///< `subject` is no number
-  kUnknownFrame,  ///< nobody has told of the frame `subject`
+  kUnknownFrame,  ///< the frame `subject` was never received
   kNotConnected   ///< nothing leads from the frame `subject` to the robot's
 };
 

@@ -31,7 +31,7 @@ class PlanarRobot {
               std::vector<GraspableObject> objects, std::vector<std::string> fixed_names,
               physics::PhysicsWorld* physics);
 
-  /// Takes a hold of an object at the start: as a grasp if the link is a palm, for ever otherwise.
+  /// Takes a hold of an object at the start: as a grasp if the link is a palm, else without end.
   /// A hand's gap becomes the one at which its fingers just touch the object, where there is one.
   void Attach(int object, const std::string& link, double friction);
 

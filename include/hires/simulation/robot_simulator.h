@@ -132,7 +132,7 @@ class RobotSimulator {
   Variation variation_;
   FloorProfile floor_;
   std::unique_ptr<physics::PhysicsWorld> physics_;
-  robot::JointPositions joints_;  // at the start; at level `tray` for ever
+  robot::JointPositions joints_;  // at the start; at level `tray` always
   std::optional<std::vector<geometry::Collision>> shapes_B_;  // where they are not the scene's
   std::optional<RobotClearance> clearance_;                   // likewise
   std::vector<std::string> shape_names_;                      // of robot_body_, likewise

@@ -37,7 +37,7 @@ std::shared_ptr<const ManipulationContext> MakeManipulationContext(
     std::shared_ptr<const world::World> world, std::shared_ptr<const robot::Robot> robot,
     const ManipulationParams& params, const world::StandingCriterion& standing = {});
 
-/// The same for the same action, parameters and attempt, whoever plays it, where and when.
+/// The same for the same action, parameters and attempt, in whichever process, place and time.
 std::uint64_t SeedOf(const ManipulationParams& params, const base::ActionCall& action);
 std::uint64_t AttemptSeed(std::uint64_t seed, int attempt);
 
@@ -48,7 +48,7 @@ robot::JointPositions PostureOf(const robot::Robot& robot, const robot::JointPos
 /// Joint name -> position, put together from an arm's joints and their positions.
 void SetJoints(const std::vector<std::string>& joints, const std::vector<double>& positions,
                robot::JointPositions* posture);
-/// Positions of some joints; 0 for a joint that nobody measured.
+/// Positions of some joints; 0 for a joint that was not measured.
 std::vector<double> JointsOf(const std::vector<std::string>& joints,
                              const robot::JointPositions& posture);
 
@@ -70,7 +70,7 @@ geometry::Pose3 TrayFrame(const ManipulationContext& context,
 geometry::Pose3 LinkPose(const robot::Robot& robot, const geometry::Pose2& X_MB,
                          const robot::JointPositions& posture, const std::string& link);
 
-/// unknown_model for the first seen object whose shape nobody knows, so that no way round
+/// unknown_model for the first seen object whose shape is unknown, so that no way round
 /// it can be found; empty if all are known.
 base::Failure WhyNotKnown(const ManipulationContext& context, const robot::Observation& seen);
 

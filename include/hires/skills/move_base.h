@@ -21,7 +21,7 @@ struct MoveBaseParams {
   double controller_patience{15.0};  ///< [s] without a valid trajectory before giving up
   double oscillation_timeout{10.0};  ///< [s] without ...
   double oscillation_distance{0.5};  ///< [m] ... this much motion (or its half in rad) before
-                                     ///< planning anew; twice in a row: giving up
+                                     ///< planning again; twice in a row: giving up
 };
 
 /// What a driving skill knows about where it drives; constant, shared by all skills of a scene.

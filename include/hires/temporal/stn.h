@@ -17,7 +17,7 @@ namespace hires::temporal {
 /// it is not. A solution is kept as a potential; with it a new constraint is checked in the way of
 /// [Cotton, Maler 2006, SAT 2006, LNCS 4121:170-183]. Bounds are kept as shortest paths from and to
 /// the origin. A new constraint propagates as far as it changes something, a retracted one until
-/// what rested on it is found anew; both by Dijkstra's algorithm on the reduced lengths that the
+/// what rested on it is found again; both by Dijkstra's algorithm on the reduced lengths that the
 /// potential gives.
 class Stn {
  public:

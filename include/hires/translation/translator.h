@@ -26,7 +26,7 @@ struct TranslatorContext {
   world::StandingCriterion standing;  ///< what leans too far is on no area
 
   /// The catalogue's, or that of its kin: an instance that differs from one of the catalogue in its
-  /// number only (mug3 is what mug1 is), or a model by its own name. Empty: nobody knows.
+  /// number only (mug3 is what mug1 is), or a model by its own name. Empty: unknown.
   std::string FindModel(const std::string& instance) const;
   /// @throws base::ConfigError with the names that come near.
   std::string ModelOf(const std::string& instance) const;

@@ -36,7 +36,7 @@ struct MapFit {
 struct MapFitParams {
   double tolerance{0.15};    ///< [m] obstacles so near to each other are the same
   double min_score{0.5};     ///< of a map that belongs to the world; people and boxes that stand
-                             ///< about, and walls that nobody drew, cost some
+                             ///< about, and walls that were not drawn, cost some
   double worth_saying{0.1};  ///< a transformation nearby that is better by so much is the right one
   double search_distance{1.0};  ///< [m] within which a better transformation is looked for
   double search_angle{0.3};     ///< [rad] likewise

@@ -477,7 +477,7 @@ void OntologyBuilder::FailOnKindOfRange(const RelationTerm& relation, const Turt
                           Readable(range), is_link ? "a concept" : "a type of values, xsd:float"));
 }
 
-/// Whoever is still open has a superclass that is: following those must lead round in the end.
+/// A class that is still open has a superclass that is: following those must end in a cycle.
 void OntologyBuilder::FailOnCycle(const std::map<std::string, std::size_t>& open) const {
   const auto is_open = [&](const Superclass& above) { return open.at(above.name) > 0; };
   const auto first =

@@ -46,8 +46,8 @@ std::uint64_t FileBytes(const std::string& path) {
 }
 
 /// A reader needs the shared memory beside the log, which it cannot make in a folder that it may
-/// not write. Where nobody can write there and no log is left over, the file alone is all there is,
-/// and SQLite reads it as unchanging (https://sqlite.org/wal.html, "Read-Only Databases").
+/// not write. Where no process can write there and no log is left over, the file alone is all there
+/// is, and SQLite reads it as unchanging (https://sqlite.org/wal.html, "Read-Only Databases").
 bool IsAtRest(const std::string& path) {
   const bool closed_folder = faccessat(AT_FDCWD, FolderOf(path).c_str(), W_OK, AT_EACCESS) != 0;
   return closed_folder && FileBytes(path + "-wal") == 0;

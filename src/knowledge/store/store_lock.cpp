@@ -53,7 +53,7 @@ WriterLock::WriterLock(const std::string& path) {
     throw base::ConfigError(fmt::format(
         "{}: is being written by {}; end that one, or open the store read-only", path, holder));
   }
-  // The name is a courtesy to whoever comes second: on a full disk it may be missing.
+  // The name is for the message of the second process: on a full disk it may be missing.
   const std::string name = OwnName();
   if (ftruncate(descriptor_, 0) != 0 || pwrite(descriptor_, name.data(), name.size(), 0) < 0) {
     return;

@@ -11,7 +11,7 @@
 
 namespace hires::knowledge {
 
-/// A value and where it stands. Whoever asks for something that it is not gets a ConfigError with
+/// A value and where it stands. Asking for something that it is not throws a ConfigError with
 /// source, document, line, key, what came and what was wanted.
 class Field {
  public:

@@ -54,7 +54,7 @@ Property ReadProperty(const Field& field) {
   return property;
 }
 
-/// [0, 0] stands for `unbounded`, since ever or for ever. The moment 0 itself, which the original
+/// [0, 0] stands for `unbounded`, -infinity or infinity. The moment 0 itself, which the original
 /// had no need of, is [-0.0, -0.0].
 temporal::Bounds ReadBounds(const Field& field, double unbounded) {
   const std::vector<Field> ends = field.Items("[earliest, latest]", 2);

@@ -24,7 +24,7 @@ std::string Write(const Filler& filler) {
       filler);
 }
 
-/// [0, 0] for `unbounded`, since ever or for ever; hence the moment 0 is [-0.0, -0.0].
+/// [0, 0] for `unbounded`, -infinity or infinity; hence the moment 0 is [-0.0, -0.0].
 std::string Write(const temporal::Bounds& bounds, double unbounded) {
   if (bounds == temporal::Bounds{unbounded, unbounded}) return "[0, 0]";
   if (bounds == temporal::Bounds{0.0, 0.0}) return "[-0.0, -0.0]";

@@ -348,7 +348,7 @@ bool ReferenceSolver::NextMember(Choice* choice) {
   return false;
 }
 
-/// Nothing matched this atom: a reason for whoever asks why the whole did not hold.
+/// Nothing matched this atom: a reason why the whole did not hold.
 void ReferenceSolver::NoteFailure(const Choice& choice) {
   if (session_->failures == nullptr || choice.had_proof || choice.axioms == nullptr) return;
   if (choice.axioms->empty()) session_->failures->push_back({choice.atom, false});

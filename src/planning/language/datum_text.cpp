@@ -83,7 +83,8 @@ bool IsSecondByteInRange(unsigned char first, unsigned char second) {
   }
 }
 
-/// Bytes of the character that begins `text`; 0 if it is none. @pre text is not empty.
+/// Bytes of the character that begins `text`; 0 if those bytes are no character. @pre text is not
+/// empty.
 std::size_t CharacterLength(std::string_view text) {
   const std::size_t length = LengthByFirstByte(static_cast<unsigned char>(text[0]));
   if (length == 0 || length > text.size()) return 0;

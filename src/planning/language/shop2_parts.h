@@ -20,7 +20,7 @@ struct Construct {
 [[noreturn]] void FailAbout(const Construct& in, const Datum& datum, std::string_view wanted);
 
 /// Gives every anonymous variable, `?` or `?_...`, a name of its own, and so does it with variables
-/// of `forall` and `exists`, which are nobody else's. New names hold a `#`.
+/// of `forall` and `exists`, which nothing else uses. New names hold a `#`.
 Datum WithOwnNames(Datum item);
 
 /// A word that means a formula, so that no fact, axiom or effect may have its name.

@@ -487,7 +487,7 @@ class PlanBuilder {
     return order;
   }
 
-  /// Names a task that is nobody's subtask; if all are, they go round in a circle.
+  /// Names a task that is no other's subtask; if all are, they form a cycle.
   [[noreturn]] void FailForMissing(std::set<std::int64_t> seen) const {
     std::set<std::int64_t> children = seen;
     for (const auto& entry : text_.lines) {

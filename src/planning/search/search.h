@@ -24,8 +24,8 @@ namespace hires::planning {
 class Search {
  public:
   /// @param left_recursion  Whether a task may come up again below itself before a step was taken.
-  ///   Without, a search ends that would go down for ever (get_to -> get_to, drive), but plans may
-  ///   be missed (s -> s, b); gave_up_recursion() says whether there was such a task.
+  ///   Without, a search ends that would never stop going down (get_to -> get_to, drive), but plans
+  ///   may be missed (s -> s, b); gave_up_recursion() says whether there was such a task.
   Search(const Program& program, TermTable* terms, const PlanRequest& request,
          bool left_recursion = true);
   PlanResult Run();
