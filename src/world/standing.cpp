@@ -5,8 +5,7 @@ namespace {
 
 using geometry::Pose3;
 
-constexpr double kUprightShare = 0.2;  // of the tilt, below which a thing is put up again
-constexpr double kRounding = 1e-9;     // [s] of times that are sums of steps
+constexpr double kRounding = 1e-9;  // [s] of times that are sums of steps
 
 Fall FallOf(const StandingCriterion& criterion, const Departure& departure, bool leans) {
   if (leans) return Fall::kToppled;
@@ -53,7 +52,7 @@ Fall FallDetector::Update(const Pose3& X_MO, bool is_held, double t, const Pose3
   now_.tilt = geometry::TiltOf(X_MO.rotation);  // the carrier may lean
   const Fall seen = FallOf(criterion_, now_, HasLeanedLong(t));
   if (!is_down()) return Begin(seen);
-  const bool is_put_up = seen == Fall::kNone && now_.tilt < kUprightShare * criterion_.tilt;
+  const bool is_put_up = seen == Fall::kNone && now_.tilt < criterion_.upright_tilt();
   if (is_put_up) fall_ = Fall::kNone;
   return Fall::kNone;
 }

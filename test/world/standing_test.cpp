@@ -151,6 +151,18 @@ TEST(FallDetectorTest, UprightOnTheFloorIsNotPutUp) {
   EXPECT_EQ(detector.falls(), 1);
 }
 
+TEST(FallDetectorTest, ItIsPutUpOnceItLeansByLessThanTheUprightTilt) {
+  const StandingCriterion criterion{0.4, 0.0, 0.05, 0.10};
+  EXPECT_DOUBLE_EQ(criterion.upright_tilt(), 0.08);
+  FallDetector detector{criterion};
+  detector.Update(Leaning(0.0), false, 0.0);
+  EXPECT_EQ(detector.Update(Leaning(0.41), false, 0.1), Fall::kToppled);
+  detector.Update(Leaning(0.081), false, 0.2);
+  EXPECT_TRUE(detector.is_down());
+  detector.Update(Leaning(0.079), false, 0.3);
+  EXPECT_FALSE(detector.is_down());
+}
+
 TEST(FallDetectorTest, AfterAResetItStandsWhereItIsFound) {
   FallDetector detector{{}};
   detector.Update(At(0.0, 1.0), false, 0.0);

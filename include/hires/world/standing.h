@@ -5,8 +5,8 @@
 #include "hires/base/param_reader.h"
 #include "hires/geometry/pose.h"
 
-// The one meaning of a fall. Whoever wants to know whether a thing fell asks here: rollouts,
-// experiments, the record of what really happens, skills, translation and markers.
+// The one meaning of a fall, for rollouts, experiments, the record of what really happens, skills,
+// translation and markers.
 namespace hires::world {
 
 /// When a thing that should stand counts as fallen. Block `standing` of config/scene.yaml;
@@ -16,6 +16,11 @@ struct StandingCriterion {
   double hold_time{0.0};  ///< [s] ... and has done so for that long
   double drop{0.05};      ///< [m] it is lower than where it stood by more than that
   double slide{0.10};     ///< [m] it is beside where it stood, level, by more than that
+
+  /// What fell counts as put up again once it leans by less than this share of `tilt`. No
+  /// parameter: it only keeps a thing that rocks at the edge from falling many times.
+  static constexpr double kUprightShare = 0.2;
+  double upright_tilt() const { return kUprightShare * tilt; }  ///< [rad]
 };
 /// @throws base::ConfigError naming file and key; unknown keys are refused.
 StandingCriterion ReadStandingCriterion(base::ParamReader in);
@@ -49,7 +54,7 @@ bool IsUpright(const StandingCriterion& criterion, const geometry::Pose3& X_MO);
 /// Follows one thing and says when it falls. A thing stands where it was first seen, where a hand
 /// let go of it, or where it was first seen after Reset(). What a hand holds may lean and be moved
 /// as it likes and cannot fall. A fall counts once; it may fall again after it was put up: held and
-/// let go, or upright (within a fifth of the criterion's tilt) where it stood before.
+/// let go, or upright (within the criterion's upright_tilt) where it stood before.
 class FallDetector {
  public:
   explicit FallDetector(const StandingCriterion& criterion) : criterion_(criterion) {}
