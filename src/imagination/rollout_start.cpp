@@ -8,6 +8,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/robot/posture.h"
 
 namespace hires::imagination {
 namespace {
@@ -17,8 +18,8 @@ constexpr double kHandReach = 0.5;  // [m] from a link to the origin of what it 
 /// Tells where the robot may stand with its joints as they are at the start.
 std::optional<simulation::RobotClearance> ClearanceFor(const RolloutSetup& setup) {
   const robot::Robot& robot = setup.scene->robot;
-  const robot::JointPositions posture = simulation::PostureOf(robot, setup.robot_state.joints);
-  if (posture == simulation::PostureOf(robot, {})) return std::nullopt;
+  const robot::JointPositions posture = robot::PostureOf(robot, setup.robot_state.joints);
+  if (posture == robot::PostureOf(robot, {})) return std::nullopt;
   return simulation::RobotClearance(simulation::FrozenShapes(robot, posture), setup.scene->world);
 }
 
@@ -53,7 +54,7 @@ Arrival ArrivalAt(const RolloutSetup& setup) {
 double DistanceFrom(const robot::Robot& robot, const robot::RobotState& state,
                     const world::ObjectState& object) {
   const auto X_RL =
-      robot::ForwardKinematics(robot.model, simulation::PostureOf(robot, state.joints));
+      robot::ForwardKinematics(robot.model, robot::PostureOf(robot, state.joints));
   const geometry::Pose3& X_RB = X_RL.at(*robot.model.FindLink(robot.profile.base_link));
   const geometry::Pose3& X_RLink = X_RL.at(*robot.model.FindLink(object.attached_to));
   const geometry::Pose3 X_ML = geometry::Lift(state.X_MB) * X_RB.Inverse() * X_RLink;

@@ -2,6 +2,7 @@
 
 #include "hires/base/error.h"
 #include "hires/geometry/shape.h"
+#include "hires/robot/posture.h"
 #include "hires/skills/manipulation_context.h"
 
 namespace hires_ros {
@@ -49,7 +50,7 @@ std::vector<hires::robot::SeenObject> OnTray(const Robot& robot,
   const auto tray = robot.model.FindLink(robot.profile.tray_link);
   if (robot.profile.tray_link.empty() || !tray) return objects;
   const Aabb plate = PlateOf(robot.model.links[*tray]);
-  const auto X_MT = TrayPose(robot, seen.X_MB, hires::skills::PostureOf(robot, seen.joints));
+  const auto X_MT = TrayPose(robot, seen.X_MB, hires::robot::PostureOf(robot, seen.joints));
   for (const hires::robot::SeenObject& object : seen.objects) {
     const bool is_loose = object.attached_to.empty();
     if (is_loose && IsOver(plate, X_MT.Inverse() * object.X_MO.translation)) {

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "hires/perception/detector.h"
+#include "hires/robot/posture.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/robot_topics.h"
 #include "hires/ros/sim_robot_ghosts.h"
@@ -110,7 +111,7 @@ void SimRobotPublisher::PublishTransforms(const SensorReadings& readings, const 
       MakeTransform(params_.names.odometry_frame, robot.profile.base_link,
                     hires::geometry::Lift(readings.odometry.X_OB), stamp)};
   const auto X_RL = hires::robot::ForwardKinematics(
-      robot.model, hires::skills::PostureOf(robot, readings.joints.positions));
+      robot.model, hires::robot::PostureOf(robot, readings.joints.positions));
   for (std::size_t i = 0; i < robot.model.links.size(); ++i) {
     const auto& joint = robot.model.links[i].joint;
     if (!joint || robot.model.links[i].name == robot.profile.base_link) continue;

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "hires/geometry/angles.h"
-#include "hires/robot/gripper.h"
+#include "hires/robot/posture.h"
 
 namespace hires::sensing {
 namespace {
@@ -136,19 +136,12 @@ JointReading JointHistory::At(double time, double max_gap) const {
 }
 
 robot::JointPositions JointHistory::PostureOf(const robot::JointPositions& measured) const {
-  robot::JointPositions posture;
+  robot::JointPositions known;
   for (const auto& [name, position] : measured) {
     const robot::Joint* joint = robot::FindJoint(robot_->model, name);
-    const bool may_be_set =
-        joint != nullptr && joint->type != robot::JointType::kFixed && joint->mimics.empty();
-    if (may_be_set) posture[name] = position;
+    if (joint != nullptr && joint->type != robot::JointType::kFixed) known[name] = position;
   }
-  // A gap or finger angle that was measured leads; the driving posture must not contradict it.
-  const auto& upper_body = robot_->profile.upper_body;
-  if (upper_body) robot::CompleteGrippers(*upper_body, &posture);
-  posture.insert(robot_->profile.joints.begin(), robot_->profile.joints.end());
-  if (upper_body) robot::CompleteGrippers(*upper_body, &posture);
-  return posture;
+  return robot::PostureOf(*robot_, known);
 }
 
 }  // namespace hires::sensing

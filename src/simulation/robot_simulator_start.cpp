@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hires/base/error.h"
+#include "hires/robot/posture.h"
 #include "hires/simulation/robot_simulator.h"
 #include "simulation/start_checks.h"
 

@@ -6,6 +6,7 @@
 #include "hires/base/check.h"
 #include "hires/base/text.h"
 #include "hires/robot/gripper.h"
+#include "hires/robot/posture.h"
 
 namespace hires::skills {
 namespace {

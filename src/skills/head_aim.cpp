@@ -5,6 +5,7 @@
 
 #include "hires/manipulation/arm_path.h"
 #include "skills/joint_motion.h"
+#include "hires/robot/posture.h"
 
 namespace hires::skills {
 namespace {

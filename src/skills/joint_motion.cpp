@@ -5,6 +5,7 @@
 
 #include "hires/geometry/angles.h"
 #include "hires/manipulation/arm_path.h"
+#include "hires/robot/posture.h"
 
 namespace hires::skills {
 namespace {

@@ -10,6 +10,7 @@
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 #include "hires/robot/gripper.h"
+#include "hires/robot/posture.h"
 
 namespace hires::skills {
 namespace {
@@ -68,18 +69,6 @@ std::uint64_t SeedOf(const ManipulationParams& params, const base::ActionCall& a
 
 std::uint64_t AttemptSeed(std::uint64_t seed, int attempt) {
   return base::Rng(seed).Fork(static_cast<std::uint64_t>(attempt)).seed();
-}
-
-JointPositions PostureOf(const robot::Robot& robot, const JointPositions& measured) {
-  JointPositions posture = measured;
-  if (robot.profile.upper_body) robot::CompleteGrippers(*robot.profile.upper_body, &posture);
-  for (auto& [name, position] : posture) {
-    const robot::Joint* joint = robot::FindJoint(robot.model, name);
-    if (joint == nullptr || !joint->limits || joint->type == robot::JointType::kContinuous)
-      continue;
-    position = std::clamp(position, joint->limits->lower, joint->limits->upper);
-  }
-  return posture;
 }
 
 void SetJoints(const std::vector<std::string>& joints, const std::vector<double>& positions,

@@ -10,6 +10,7 @@
 #include "hires/geometry/angles.h"
 #include "hires/manipulation/arm_path.h"
 #include "skills/joint_motion.h"
+#include "hires/robot/posture.h"
 
 namespace hires::skills {
 namespace {

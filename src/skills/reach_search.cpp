@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hires/base/text.h"
+#include "hires/robot/posture.h"
 
 namespace hires::skills {
 namespace {

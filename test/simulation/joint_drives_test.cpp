@@ -6,6 +6,7 @@
 
 #include "hires/base/rng.h"
 #include "hires/robot/gripper.h"
+#include "hires/robot/posture.h"
 #include "hires/simulation/scene.h"
 #include "support/messages.h"
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "hires/robot/posture.h"
 #include "hires/skills/head_aim.h"
 #include "restaurant.h"
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hires/geometry/angles.h"
+#include "hires/robot/posture.h"
 #include "hires/skills/activity.h"
 #include "restaurant.h"
 #include "skills/joint_motion.h"

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "hires/robot/posture.h"
 #include "restaurant.h"
 
 namespace hires::skills {

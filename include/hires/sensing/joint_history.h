@@ -33,8 +33,8 @@ class JointHistory {
   /// Each joint between the two readings around `time`, as long as they are at most `max_gap` [s]
   /// apart; else as in the earlier one, or in the later one where nothing came before.
   JointReading At(double time, double max_gap) const;
-  /// How the whole robot stands: measured joints, the others as in the driving posture, gaps and
-  /// finger angles in agreement.
+  /// How the whole robot stands, see robot::PostureOf; names that its model does not know, or whose
+  /// joint is fixed, are left out.
   robot::JointPositions PostureOf(const robot::JointPositions& measured) const;
 
  private:

@@ -32,11 +32,6 @@ struct Scene {
 std::vector<geometry::Collision> FrozenShapes(const robot::Robot& robot,
                                               const robot::JointPositions& posture);
 
-/// The posture in which a robot stands: what `joints` leaves out as in the driving posture, gaps
-/// and finger angles of grippers completed where the robot has some. As drivers measure it: joints
-/// that follow others are left out, and up to 0.02 rad or m over a limit count as the limit.
-robot::JointPositions PostureOf(const robot::Robot& robot, const robot::JointPositions& joints);
-
 /// @throws base::ConfigError if robot and profile do not fit.
 std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot,
                                        const sensing::MemoryParams& memory = {});

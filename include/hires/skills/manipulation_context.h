@@ -41,10 +41,6 @@ std::shared_ptr<const ManipulationContext> MakeManipulationContext(
 std::uint64_t SeedOf(const ManipulationParams& params, const base::ActionCall& action);
 std::uint64_t AttemptSeed(std::uint64_t seed, int attempt);
 
-/// Measured joints as models of the robot want them: gaps and finger angles agree, noise beyond a
-/// joint's limits is cut off.
-robot::JointPositions PostureOf(const robot::Robot& robot, const robot::JointPositions& measured);
-
 /// Joint name -> position, put together from an arm's joints and their positions.
 void SetJoints(const std::vector<std::string>& joints, const std::vector<double>& positions,
                robot::JointPositions* posture);
