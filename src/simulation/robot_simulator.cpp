@@ -21,27 +21,15 @@ constexpr physics::BodyId kFloorBody = 0;  // statics follow in their order
 }  // namespace
 
 struct RobotSimulator::Snapshot {
+  State state;
   physics::PhysicsState physics;
-  double time;
-  long steps;
-  BaseDrive drive;
-  Pose3 X_MB;
-  double slip;
-  base::Rng slip_rng, sense_rng, ghost_rng;
-  double last_observation;
-  std::deque<Ghost> ghosts;
-  std::optional<RobotContact> contact;
-  Disturbances disturbances;
   std::optional<PlanarRobot::State> planar;
-  base::Rng encoder_rng, detection_rng;
-  std::optional<sensing::ObjectMemory> memory;
-  double last_look;
 };
 
 std::optional<RobotContact> RobotSimulator::FindContact() const {
-  if (planar_) return planar_->FindContact(drive_.motion().X_MB, object_names_);
-  if (!clearance_) return scene_->clearance.FindContact(drive_.motion().X_MB);
-  const auto contact = clearance_->FindContact(drive_.motion().X_MB);
+  if (planar_) return planar_->FindContact(state_.drive.motion().X_MB, object_names_);
+  if (!clearance_) return scene_->clearance.FindContact(state_.drive.motion().X_MB);
+  const auto contact = clearance_->FindContact(state_.drive.motion().X_MB);
   if (!contact) return contact;
   // A raised arm's prism reaches down to where the arm is not: look exactly.
   const auto touch = physics_->FindFixedTouch(robot_body_, kFloorBody);
@@ -72,27 +60,27 @@ geometry::Pose3 RobotSimulator::LeaningPose(const BaseMotion& motion) const {
 }
 
 void RobotSimulator::Send(const robot::Command& command) {
-  if (command.base_velocity) drive_.Send(*command.base_velocity, time_);
-  if (planar_) planar_->Send(command, time_);
+  if (command.base_velocity) state_.drive.Send(*command.base_velocity, state_.time);
+  if (planar_) planar_->Send(command, state_.time);
 }
 
 void RobotSimulator::Step() {
-  if (steps_ % kSlowSteps == 0) {
+  if (state_.steps % kSlowSteps == 0) {
     MoveSlip();
-    if (!contact_) contact_ = FindContact();
-    if (memory_) FeelAndLook();
+    if (!state_.contact) state_.contact = FindContact();
+    if (state_.memory) FeelAndLook();
   }
-  drive_.Step(time_, time_step(), slip_);
-  const Pose3 X_next = LeaningPose(drive_.motion());
+  state_.drive.Step(state_.time, time_step(), state_.slip);
+  const Pose3 X_next = LeaningPose(state_.drive.motion());
   if (planar_) {
-    planar_->Move(time_, X_next);
+    planar_->Move(state_.time, X_next);
   } else {
-    physics_->SetMotion(robot_body_, MotionBetween(X_MB_, X_next, time_step()));
+    physics_->SetMotion(robot_body_, MotionBetween(state_.X_MB, X_next, time_step()));
   }
   physics_->Step();
-  X_MB_ = X_next;
-  ++steps_;
-  time_ = steps_ * time_step();
+  state_.X_MB = X_next;
+  ++state_.steps;
+  state_.time = state_.steps * time_step();
   NoteDisturbances();
   if (planar_) planar_->React();
 }
@@ -100,24 +88,24 @@ void RobotSimulator::Step() {
 void RobotSimulator::MoveSlip() {
   if (variation_.wheel_slip == 0.0) return;
   const double keep = std::exp(-kSlowSteps * time_step() / kSlipCorrelation);
-  slip_ = keep * slip_ +
-          variation_.wheel_slip * std::sqrt(1.0 - keep * keep) * slip_rng_.Normal(0.0, 1.0);
+  state_.slip = keep * state_.slip + variation_.wheel_slip * std::sqrt(1.0 - keep * keep) *
+                                         state_.slip_rng.Normal(0.0, 1.0);
 }
 
 void RobotSimulator::NoteDisturbances() {
-  const BaseMotion& motion = drive_.motion();
+  const BaseMotion& motion = state_.drive.motion();
   const robot::MotionSet& limits = scene_->robot.profile.base_controller.limits;
   const double power = motion.A_B.vx * motion.V_B.vx + motion.A_B.vy * motion.V_B.vy;
-  if (motion.timed_out) disturbances_.late_command = time_;
+  if (motion.timed_out) state_.disturbances.late_command = state_.time;
   if (std::hypot(motion.A_B.vx, motion.A_B.vy) > 0.5 * limits.max_linear_acceleration) {
-    (power < 0.0 ? disturbances_.braking : disturbances_.accelerating) = time_;
+    (power < 0.0 ? state_.disturbances.braking : state_.disturbances.accelerating) = state_.time;
   }
   if (std::abs(motion.A_B.wz) > 0.5 * limits.max_angular_acceleration) {
-    disturbances_.turning = time_;
+    state_.disturbances.turning = state_.time;
   }
 }
 
-geometry::Pose3 RobotSimulator::X_MB() const { return X_MB_; }
+geometry::Pose3 RobotSimulator::X_MB() const { return state_.X_MB; }
 
 std::map<std::string, int> RobotSimulator::held() const {
   return planar_ ? planar_->Held() : std::map<std::string, int>();
@@ -132,11 +120,11 @@ Pose3 RobotSimulator::X_MLink(const std::string& link) const {
   }
   const std::vector<Pose3> X_R = robot::ForwardKinematics(model, joints_);
   const Pose3& X_RB = X_R[*model.FindLink(scene_->robot.profile.base_link)];
-  return X_MB_ * X_RB.Inverse() * X_R[*index];
+  return state_.X_MB * X_RB.Inverse() * X_R[*index];
 }
 
 geometry::Pose3 RobotSimulator::PoseOf(int object) const {
-  if (object_bodies_[object] < 0) return X_MB_ * X_BO_start_[object];
+  if (object_bodies_[object] < 0) return state_.X_MB * X_BO_start_[object];
   return physics_->GetState(object_bodies_[object]).X_WB;
 }
 
@@ -162,48 +150,31 @@ world::WorldState RobotSimulator::GetWorldState() const {
 }
 
 robot::RobotState RobotSimulator::GetRobotState() const {
-  return {drive_.motion().X_MB, drive_.motion().V_B, planar_ ? planar_->Joints() : joints_};
+  return {state_.drive.motion().X_MB, state_.drive.motion().V_B,
+          planar_ ? planar_->Joints() : joints_};
 }
 
 void RobotSimulator::PutBack(int object) {
   HIRES_CHECK(object_bodies_.at(object) >= 0, "an attached object cannot be put back");
-  const Pose3 X_MO = X_MB_ * X_BO_start_[object];
-  const geometry::Twist2& V_B = drive_.motion().V_B;
+  const Pose3 X_MO = state_.X_MB * X_BO_start_[object];
+  const geometry::Twist2& V_B = state_.drive.motion().V_B;
   const Eigen::Vector3d w_M(0.0, 0.0, V_B.wz);
-  const Eigen::Vector3d v_MB = X_MB_.rotation * Eigen::Vector3d(V_B.vx, V_B.vy, 0.0);
+  const Eigen::Vector3d v_MB = state_.X_MB.rotation * Eigen::Vector3d(V_B.vx, V_B.vy, 0.0);
   physics_->SetState(object_bodies_[object],
-                     {X_MO, {v_MB + w_M.cross(X_MO.translation - X_MB_.translation), w_M}});
+                     {X_MO, {v_MB + w_M.cross(X_MO.translation - state_.X_MB.translation), w_M}});
 }
 
 std::shared_ptr<const RobotSimulator::Snapshot> RobotSimulator::Save() {
-  return std::make_shared<const Snapshot>(
-      Snapshot{physics_->Save(), time_, steps_, drive_, X_MB_, slip_, slip_rng_, sense_rng_,
-               ghost_rng_, last_observation_, ghosts_, contact_, disturbances_,
-               planar_ ? std::make_optional(planar_->Save()) : std::nullopt, encoder_rng_,
-               detection_rng_, memory_, last_look_});
+  return std::make_shared<const Snapshot>(Snapshot{
+      state_, physics_->Save(), planar_ ? std::make_optional(planar_->Save()) : std::nullopt});
 }
 
 void RobotSimulator::Restore(const Snapshot& snapshot) {
-  physics_->Restore(snapshot.physics);
-  time_ = snapshot.time;
-  steps_ = snapshot.steps;
-  drive_ = snapshot.drive;
-  X_MB_ = snapshot.X_MB;
-  slip_ = snapshot.slip;
-  slip_rng_ = snapshot.slip_rng;
-  sense_rng_ = snapshot.sense_rng;
-  ghost_rng_ = snapshot.ghost_rng;
-  last_observation_ = snapshot.last_observation;
-  ghosts_ = snapshot.ghosts;
-  contact_ = snapshot.contact;
-  disturbances_ = snapshot.disturbances;
   HIRES_CHECK(snapshot.planar.has_value() == (planar_ != nullptr),
               "a simulator is restored from one of the same level of detail");
+  state_ = snapshot.state;
+  physics_->Restore(snapshot.physics);
   if (planar_) planar_->Restore(*snapshot.planar);
-  encoder_rng_ = snapshot.encoder_rng;
-  detection_rng_ = snapshot.detection_rng;
-  memory_ = snapshot.memory;
-  last_look_ = snapshot.last_look;
 }
 
 }  // namespace hires::simulation

@@ -42,6 +42,14 @@ std::vector<geometry::Collision> Varied(std::vector<geometry::Collision> shapes,
 
 }  // namespace
 
+RobotSimulator::State::State(BaseDrive drive_at_start, const base::Rng& rng)
+    : drive(std::move(drive_at_start)),
+      slip_rng(rng.Fork(1)),
+      sense_rng(rng.Fork(2)),
+      ghosts(rng.Fork(3)),
+      encoder_rng(rng.Fork(4)),
+      detection_rng(rng.Fork(5)) {}
+
 RobotSimulator::RobotSimulator(std::shared_ptr<const Scene> scene, const Variation& variation,
                                const world::WorldState& world_state,
                                const robot::RobotState& robot_state, base::Rng rng,
@@ -49,13 +57,9 @@ RobotSimulator::RobotSimulator(std::shared_ptr<const Scene> scene, const Variati
     : scene_(std::move(scene)),
       variation_(variation),
       floor_(variation.floor_roughness, rng.Fork(0)),
-      drive_(Varied(scene_->robot.profile.base_controller, variation),
-             robot_state.X_MB * variation.start_offset),
-      slip_rng_(rng.Fork(1)),
-      sense_rng_(rng.Fork(2)),
-      ghost_rng_(rng.Fork(3)),
-      encoder_rng_(rng.Fork(4)),
-      detection_rng_(rng.Fork(5)) {
+      state_(BaseDrive(Varied(scene_->robot.profile.base_controller, variation),
+                       robot_state.X_MB * variation.start_offset),
+             rng) {
   physics::PhysicsParams physics_params = params;
   physics_params.gravity = scene_->world.gravity;
   physics_ = std::make_unique<physics::PhysicsWorld>(physics_params);
@@ -63,7 +67,7 @@ RobotSimulator::RobotSimulator(std::shared_ptr<const Scene> scene, const Variati
   RefusePose("the robot", geometry::Lift(robot_state.X_MB));
   RefuseUnknownJoints(robot_state.joints, scene_->robot.model);
   Freeze(robot_state.joints);
-  X_MB_ = LeaningPose(drive_.motion());
+  state_.X_MB = LeaningPose(state_.drive.motion());
   physics_->AddFloor(scene_->world.floor_friction);
   for (const world::StaticBody& body : scene_->world.statics) {
     physics_->AddStatic(body.collisions, body.X_MB);
@@ -101,7 +105,7 @@ void RobotSimulator::AddObjects(const world::WorldState& state, LevelOfDetail le
       carried_.push_back(static_cast<int>(i));
     }
     if (!object.attached_to.empty()) MoveInHand(object.attached_to, &X_BO_start_[i]);
-    if (is_carried || !object.attached_to.empty()) object.X_MO = X_MB_ * X_BO_start_[i];
+    if (is_carried || !object.attached_to.empty()) object.X_MO = state_.X_MB * X_BO_start_[i];
     objects_.push_back(object);
     object_names_.push_back(object.name);
     if (!object.attached_to.empty() && level == LevelOfDetail::kTray) {
@@ -117,12 +121,12 @@ void RobotSimulator::AddObjects(const world::WorldState& state, LevelOfDetail le
 bool RobotSimulator::StandsOnRobot(int object) const {
   const auto& parts_B = planar_ ? scene_->base_shapes_B : robot_shapes_B();
   const world::ObjectModel& model = *scene_->world.models.at(objects_.at(object).model);
-  return StandsOn(parts_B, model.collisions, X_MB_.Inverse() * PoseOf(object));
+  return StandsOn(parts_B, model.collisions, state_.X_MB.Inverse() * PoseOf(object));
 }
 
 /// The grasp that led to the start was a little off.
 void RobotSimulator::MoveInHand(const std::string& link, Pose3* X_BO) const {
-  const Pose3 X_BL = X_MB_.Inverse() * X_MLink(link);
+  const Pose3 X_BL = state_.X_MB.Inverse() * X_MLink(link);
   Pose3 X_LO = X_BL.Inverse() * *X_BO;
   X_LO.translation.x() += variation_.grasp_offset.x();
   X_LO.translation.z() += variation_.grasp_offset.y();
@@ -141,7 +145,7 @@ void RobotSimulator::AddRobot() {
       shapes.push_back(std::move(shape));
     }
   }
-  robot_body_ = physics_->AddDriven(shapes, X_MB_);
+  robot_body_ = physics_->AddDriven(shapes, state_.X_MB);
   if (!shapes_B_) return;
   clearance_.emplace(shapes, scene_->world);
   for (const geometry::Collision& shape : shapes) shape_names_.push_back(shape.name);
@@ -164,7 +168,7 @@ void RobotSimulator::AddPlanarRobot() {
   for (std::size_t i = 0; i < objects_.size(); ++i) graspable.push_back(Graspable(i));
   std::vector<std::string> fixed_names{"floor"};
   for (const world::StaticBody& body : scene_->world.statics) fixed_names.push_back(body.name);
-  planar_ = std::make_unique<PlanarRobot>(*scene_, joints_, X_MB_, std::move(graspable),
+  planar_ = std::make_unique<PlanarRobot>(*scene_, joints_, state_.X_MB, std::move(graspable),
                                           std::move(fixed_names), physics_.get());
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     if (objects_[i].attached_to.empty()) continue;
@@ -176,8 +180,9 @@ void RobotSimulator::AddPlanarRobot() {
     planar_->Attach(static_cast<int>(i), objects_[i].attached_to, friction);
   }
   if (scene_->surroundings) {
-    memory_.emplace(scene_->surroundings,
-                    std::shared_ptr<const robot::Robot>(scene_, &scene_->robot), scene_->memory);
+    state_.memory.emplace(scene_->surroundings,
+                          std::shared_ptr<const robot::Robot>(scene_, &scene_->robot),
+                          scene_->memory);
     BelieveHands();
   }
 }
@@ -187,8 +192,8 @@ void RobotSimulator::RefuseBadStart(const world::WorldState& state) {
     throw base::ConfigError(fmt::format(
         "robot starts in collision: its '{}' touches '{}' at x {:.3f} m, y {:.3f} m, yaw {:.3f} "
         "rad; move the start",
-        contact->robot_part, contact->obstacle, drive_.motion().X_MB.x, drive_.motion().X_MB.y,
-        drive_.motion().X_MB.yaw));
+        contact->robot_part, contact->obstacle, state_.drive.motion().X_MB.x,
+        state_.drive.motion().X_MB.y, state_.drive.motion().X_MB.yaw));
   }
   for (std::size_t i = 0; i < state.objects.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -209,7 +214,7 @@ void RobotSimulator::RefuseInsideRobot(const world::ObjectState& object, physics
     }
   } else {
     const auto& shapes = scene_->world.models.at(object.model)->collisions;
-    is_inside = Overlap(shapes, object.X_MO, robot_shapes_B(), X_MB_);
+    is_inside = Overlap(shapes, object.X_MO, robot_shapes_B(), state_.X_MB);
   }
   if (!is_inside) return;
   throw base::ConfigError(

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "hires/sensing/object_memory.h"
 #include "hires/simulation/base_drive.h"
 #include "hires/simulation/floor_profile.h"
+#include "hires/simulation/ghost_obstacles.h"
 #include "hires/simulation/planar_robot.h"
 #include "hires/simulation/scene.h"
 #include "hires/simulation/variation.h"
@@ -61,13 +61,13 @@ class RobotSimulator {
   void Remember(const std::vector<robot::SeenObject>& objects);
   void Step();  ///< advances by time_step()
 
-  double time() const { return time_; }  ///< [s] since construction
+  double time() const { return state_.time; }  ///< [s] since construction
   double time_step() const { return physics_->params().time_step; }
 
   /// What the robot believes and sees; draws sensor noise. `time` counts from `action_start`.
   robot::Observation Observe(double action_start);
 
-  const BaseMotion& base() const { return drive_.motion(); }
+  const BaseMotion& base() const { return state_.drive.motion(); }
   geometry::Pose3 X_MB() const;             ///< of the base, leaning and floor included
   world::WorldState GetWorldState() const;  ///< loose objects now
   robot::RobotState GetRobotState()
@@ -91,8 +91,8 @@ class RobotSimulator {
 
   /// The robot touches a static body; checked every 10 ms. At level `planar` also an object in a
   /// hand (then it is the `robot_part`) that cannot go where the hand goes.
-  const std::optional<RobotContact>& contact() const { return contact_; }
-  const Disturbances& disturbances() const { return disturbances_; }
+  const std::optional<RobotContact>& contact() const { return state_.contact; }
+  const Disturbances& disturbances() const { return state_.disturbances; }
   const Scene& scene() const { return *scene_; }
 
   /// All that changes about the simulator. Restoring it in a simulator that was built from the same
@@ -102,9 +102,22 @@ class RobotSimulator {
   void Restore(const Snapshot& snapshot);
 
  private:
-  struct Ghost {
-    geometry::Polygon outline_M;
-    double until{0.0};
+  /// All that changes beside what physics and the moving parts of the robot keep themselves.
+  struct State {
+    State(BaseDrive drive_at_start, const base::Rng& rng);
+
+    double time{0.0};  // [s]
+    long steps{0};
+    BaseDrive drive;
+    geometry::Pose3 X_MB;  // leaning pose at `time`
+    double slip{0.0};
+    base::Rng slip_rng, sense_rng;
+    GhostObstacles ghosts;
+    base::Rng encoder_rng, detection_rng;
+    std::optional<sensing::ObjectMemory> memory;  // none at level `tray`
+    double last_look{-1e9};                       // [s]
+    std::optional<RobotContact> contact;
+    Disturbances disturbances;
   };
   void Freeze(const robot::JointPositions& joints);
   void AddObjects(const world::WorldState& state, LevelOfDetail level);
@@ -124,7 +137,6 @@ class RobotSimulator {
   void ObserveUpperBody(double action_start, robot::Observation* observation);
   void NoteDisturbances();
   void MoveSlip();
-  void UpdateGhosts(const geometry::Pose2& X_MB, double elapsed);
   void RefuseBadStart(const world::WorldState& state);
   void RefuseInsideRobot(const world::ObjectState& object, physics::BodyId body);
 
@@ -144,19 +156,7 @@ class RobotSimulator {
   std::vector<geometry::Pose3> X_BO_start_;  // objects in the base frame at the start
   std::vector<int> carried_;
 
-  double time_{0.0};
-  long steps_{0};
-  BaseDrive drive_;
-  geometry::Pose3 X_MB_;  // leaning pose at time_
-  double slip_{0.0};
-  base::Rng slip_rng_, sense_rng_, ghost_rng_;
-  double last_observation_{0.0};
-  std::deque<Ghost> ghosts_;
-  base::Rng encoder_rng_, detection_rng_;
-  std::optional<sensing::ObjectMemory> memory_;  // none at level `tray`
-  double last_look_{-1e9};                       // [s]
-  std::optional<RobotContact> contact_;
-  Disturbances disturbances_;
+  State state_;
 };
 
 }  // namespace hires::simulation

@@ -1,6 +1,5 @@
 // What the simulated robot believes and sees.
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "hires/base/text.h"
@@ -13,33 +12,20 @@ namespace {
 using geometry::Pose2;
 using geometry::Pose3;
 
-constexpr double kGhostLifetime = 4.6;  // [s] persistence of ground objects (navigation.md, 4)
-constexpr double kGhostSize = 0.10;     // [m] edge: a voxel of the obstacle filter
-constexpr double kLookPeriod = 0.5;     // [s] between two looks of the camera
-constexpr double kStillHead = 0.02;     // [rad/s] faster than this pictures blur
+constexpr double kLookPeriod = 0.5;  // [s] between two looks of the camera
+constexpr double kStillHead = 0.02;  // [rad/s] faster than this pictures blur
 
 }  // namespace
-
-void RobotSimulator::UpdateGhosts(const Pose2& X_MB, double elapsed) {
-  while (!ghosts_.empty() && ghosts_.front().until <= time_) ghosts_.pop_front();
-  const double chance = 1.0 - std::exp(-variation_.ghost_rate * elapsed);
-  if (variation_.ghost_rate == 0.0 || !ghost_rng_.Bernoulli(chance)) return;
-  const double distance = ghost_rng_.Uniform(0.8, 2.5), bearing = ghost_rng_.Uniform(-1.0, 1.0);
-  const Pose2 X_MG = X_MB * Pose2{distance * std::cos(bearing), distance * std::sin(bearing), 0.0};
-  const double h = kGhostSize / 2;
-  ghosts_.push_back(
-      {geometry::Transformed(X_MG, {{-h, -h}, {h, -h}, {h, h}, {-h, h}}), time_ + kGhostLifetime});
-}
 
 Pose2 RobotSimulator::BelievedBase(base::Rng* rng) const {
   const Pose2 noise{rng->Normal(0.0, variation_.localisation_noise),
                     rng->Normal(0.0, variation_.localisation_noise),
                     rng->Normal(0.0, variation_.localisation_noise_yaw)};
-  return drive_.motion().X_MB * variation_.localisation_bias * noise;
+  return state_.drive.motion().X_MB * variation_.localisation_bias * noise;
 }
 
 sensing::BodyReading RobotSimulator::FeltBody(const Pose2& X_MBbelieved) const {
-  return {time_, X_MBbelieved, planar_->Joints()};
+  return {state_.time, X_MBbelieved, planar_->Joints()};
 }
 
 void RobotSimulator::Remember(const std::vector<robot::SeenObject>& objects) {
@@ -47,16 +33,17 @@ void RobotSimulator::Remember(const std::vector<robot::SeenObject>& objects) {
     RefuseUnknownModel({object.name, object.model, object.X_MO, {}, ""}, scene_->world);
     RefusePose("remembered object '" + object.name + "'", object.X_MO);
   }
-  if (!memory_) return;
-  const Pose2 X_MBbelieved = drive_.motion().X_MB * variation_.localisation_bias;
+  if (!state_.memory) return;
+  const Pose2 X_MBbelieved = state_.drive.motion().X_MB * variation_.localisation_bias;
   for (const robot::SeenObject& object : objects) {
     const Pose3 X_BO = geometry::Lift(X_MBbelieved).Inverse() * object.X_MO;
     const auto& shapes = scene_->world.models.at(object.model)->collisions;
     const bool rides_along = StandsOn(scene_->base_shapes_B, shapes, X_BO);
-    const auto known = memory_->objects().find(base::ToLower(object.name));
-    if (known != memory_->objects().end() && known->second.is_held) continue;
-    memory_->Believe(object.name, object.model, rides_along ? scene_->robot.profile.base_link : "",
-                     rides_along ? X_BO : object.X_MO);
+    const auto known = state_.memory->objects().find(base::ToLower(object.name));
+    if (known != state_.memory->objects().end() && known->second.is_held) continue;
+    state_.memory->Believe(object.name, object.model,
+                           rides_along ? scene_->robot.profile.base_link : "",
+                           rides_along ? X_BO : object.X_MO);
   }
 }
 
@@ -65,19 +52,19 @@ void RobotSimulator::BelieveHands() {
   for (std::size_t i = 0; i < objects_.size(); ++i) {
     const std::string link = planar_->HolderOf(static_cast<int>(i));
     if (link.empty()) continue;
-    memory_->Believe(objects_[i].name, objects_[i].model, link,
-                     planar_->X_MLink(link).Inverse() * PoseOf(static_cast<int>(i)));
+    state_.memory->Believe(objects_[i].name, objects_[i].model, link,
+                           planar_->X_MLink(link).Inverse() * PoseOf(static_cast<int>(i)));
   }
 }
 
 void RobotSimulator::FeelAndLook() {
-  memory_->Feel(FeltBody(drive_.motion().X_MB * variation_.localisation_bias));
+  state_.memory->Feel(FeltBody(state_.drive.motion().X_MB * variation_.localisation_bias));
   LookIfStill();
 }
 
 void RobotSimulator::LookIfStill() {
-  if (time_ - last_look_ < kLookPeriod || planar_->IsHeadFaster(kStillHead)) return;
-  last_look_ = time_;
+  if (state_.time - state_.last_look < kLookPeriod || planar_->IsHeadFaster(kStillHead)) return;
+  state_.last_look = state_.time;
   const robot::Robot& robot = scene_->robot;
   const Pose3 X_MC = planar_->X_MLink(robot.profile.upper_body->camera_link);
   const perception::CameraView view = perception::ViewFrom(robot, X_MC);
@@ -86,8 +73,8 @@ void RobotSimulator::LookIfStill() {
   perception::DetectorParams params;
   params.position_noise = variation_.detection_noise;
   params.yaw_noise = variation_.detection_noise_yaw;
-  const auto detections = perception::Detect(sight, view, objects, params, &detection_rng_);
-  memory_->Look(FeltBody(BelievedBase(&detection_rng_)), detections);
+  const auto detections = perception::Detect(sight, view, objects, params, &state_.detection_rng);
+  state_.memory->Look(FeltBody(BelievedBase(&state_.detection_rng)), detections);
 }
 
 /// Of torso, head and arms; a measured joint stays within its limits.
@@ -98,7 +85,7 @@ void RobotSimulator::AddEncoderNoise(robot::JointPositions* joints) {
   for (const std::string& group : groups) {
     for (const std::string& name : robot::JointsOfGroup(profile, group)) {
       double& position = joints->at(name);
-      position += encoder_rng_.Normal(0.0, variation_.encoder_noise);
+      position += state_.encoder_rng.Normal(0.0, variation_.encoder_noise);
       const robot::Joint& joint = *robot::FindJoint(scene_->robot.model, name);
       if (joint.type == robot::JointType::kContinuous) continue;
       position = std::clamp(position, joint.limits->lower, joint.limits->upper);
@@ -110,20 +97,19 @@ void RobotSimulator::ObserveUpperBody(double action_start, robot::Observation* o
   observation->joints = planar_->Joints();
   observation->joint_velocities = planar_->JointVelocities();
   if (variation_.encoder_noise > 0.0) AddEncoderNoise(&observation->joints);
-  if (!memory_) return;
-  observation->objects = memory_->Known(FeltBody(observation->X_MB));
+  if (!state_.memory) return;
+  observation->objects = state_.memory->Known(FeltBody(observation->X_MB));
   for (robot::SeenObject& seen : observation->objects) seen.time -= action_start;
 }
 
 robot::Observation RobotSimulator::Observe(double action_start) {
-  const BaseMotion& motion = drive_.motion();
+  const BaseMotion& motion = state_.drive.motion();
   robot::Observation observation;
-  observation.time = time_ - action_start;
-  observation.X_MB = BelievedBase(&sense_rng_);
+  observation.time = state_.time - action_start;
+  observation.X_MB = BelievedBase(&state_.sense_rng);
   observation.V_B = motion.V_B;
-  UpdateGhosts(motion.X_MB, time_ - last_observation_);
-  last_observation_ = time_;
-  for (const Ghost& ghost : ghosts_) observation.obstacles_M.push_back(ghost.outline_M);
+  state_.ghosts.Update(motion.X_MB, variation_.ghost_rate, state_.time);
+  observation.obstacles_M = state_.ghosts.OutlinesInMap();
   if (planar_) ObserveUpperBody(action_start, &observation);
   return observation;
 }
