@@ -61,10 +61,10 @@ ActionSpec Handle(const std::string& name, std::vector<Parameter> parameters, Pu
 }
 
 ActionSpec PickUp(const std::string& name, std::vector<Parameter> parameters) {
-  return Handle(
-      name, std::move(parameters), Purpose::kTake, {{"Holding", {"?arm", "?object"}}},
-      {Code::kObjectNotSeen, Code::kUnreachable, Code::kNoPath, Code::kHandFull, Code::kObjectHeld,
-       Code::kObjectToppled, Code::kGraspFailed, Code::kObjectSlipped, Code::kUnknownModel});
+  return Handle(name, std::move(parameters), Purpose::kTake, {{"Holding", {"?arm", "?object"}}},
+                {Code::kOutOfView, Code::kObjectNotSeen, Code::kUnreachable, Code::kNoPath,
+                 Code::kStartBlocked, Code::kHandFull, Code::kObjectHeld, Code::kObjectToppled,
+                 Code::kGraspFailed, Code::kObjectSlipped, Code::kUnknownModel});
 }
 
 ActionSpec Place(const std::string& name, std::vector<Parameter> parameters, Purpose purpose,
@@ -72,7 +72,8 @@ ActionSpec Place(const std::string& name, std::vector<Parameter> parameters, Pur
   return Handle(name, std::move(parameters), purpose,
                 {{"Holding", {"?arm", "nothing"}}, {"On", {"?object", area}}},
                 {Code::kObjectSlipped, Code::kAreaOccupied, Code::kUnreachable, Code::kNoPath,
-                 Code::kObjectToppled, Code::kObjectNotSeen, Code::kUnknownModel});
+                 Code::kStartBlocked, Code::kOutOfView, Code::kObjectToppled, Code::kObjectNotSeen,
+                 Code::kUnknownModel});
 }
 
 ActionSpec LookAt() {

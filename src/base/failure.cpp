@@ -39,6 +39,7 @@ const std::vector<FailureInfo>& Table() {
       {Code::kOscillating, "oscillating", kAction, true},
       {Code::kStuck, "stuck", kAction, true},
       {Code::kOutOfView, "out_of_view", kAction, true},
+      // Every motion has a time in which it ends; one that does not is not obeyed by the robot.
       {Code::kTimedOut, "timed_out", kRobot, true},
 
       {Code::kMotorsHalted, "motors_halted", kRobot, true},

@@ -8,7 +8,7 @@
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
 
-// What becomes of the answers: the other half of imagination_desk.cpp.
+// What becomes of the answers to the questions that ImaginationDesk asks.
 
 namespace hires::execution {
 namespace {

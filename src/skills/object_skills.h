@@ -17,7 +17,7 @@ namespace hires::skills {
 ///   object_held: link, object_toppled    another hand has it; it lies
 ///   grasp_failed       the fingers closed on nothing; the hand is drawn back
 ///   object_slipped     it was lost on the way to the side
-///   unknown_model: name    something is seen whose shape nobody knows
+///   unknown_model: name    something is seen whose shape is unknown
 ///   out_of_view, timed_out
 class PickUpObject : public StagedSkill {
  public:
@@ -45,12 +45,13 @@ class PickUpObject : public StagedSkill {
 };
 
 /// Puts what the arm holds down on a free place and lets go. Fails with
-///   object_slipped          the hand is empty, at the start or on the way
+///   object_slipped          the hand is empty, at the start or on the way; it does not stand where
+///                           it was put
 ///   area_occupied: names    no free place, or only objects are in the way
 ///   unreachable, no_path: a touches b, start_blocked: ...   no way to any free place
-///   object_toppled          it lies, or does not stand where it was put
+///   object_toppled          it lies
 ///   object_not_seen         it is not seen any more afterwards
-///   unknown_model: name    something is seen whose shape nobody knows
+///   unknown_model: name    something is seen whose shape is unknown
 ///   out_of_view, timed_out
 class PlaceObject : public StagedSkill {
  public:

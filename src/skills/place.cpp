@@ -123,10 +123,9 @@ base::Failure PlaceObject::WhyNotStanding(const Observation& observation) const 
   const robot::SeenObject* seen = FindSeen(observation, object_);
   const PlaceParams& params = context_->params.place;
   const Pose3 X_BO = geometry::Lift(observation.X_MB).Inverse() * seen->X_MO;
-  const bool lies = !world::IsUpright(context_->standing, seen->X_MO);
+  if (!world::IsUpright(context_->standing, seen->X_MO)) return Code::kObjectToppled;
   const double away = (X_BO.translation - plan_.X_BO.translation).norm();
-  const bool stands = !lies && away <= params.standing_tolerance;
-  return stands ? base::Failure() : Code::kObjectToppled;
+  return away <= params.standing_tolerance ? base::Failure() : Code::kObjectSlipped;
 }
 
 void PlaceObject::AppendChecking() {

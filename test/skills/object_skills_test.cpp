@@ -255,6 +255,20 @@ TEST(PlaceObjectFailureTest, AMugThatIsSeenLyingHasToppled) {
             "object_toppled");
 }
 
+TEST(PlaceObjectFailureTest, AMugThatStandsBesideItsPlaceHasSlipped) {
+  const double tolerance = TheRestaurant().skills.manipulation->params.place.standing_tolerance;
+  const auto why = [](double shift) {
+    Rehearsal table = AtTableWithMug({});
+    const auto move = [&](Rehearsal*, const Skill& skill, robot::Observation* seen) {
+      if (skill.phase() != "see_it_stand" && skill.phase() != "check_stand") return;
+      for (robot::SeenObject& object : seen->objects) object.X_MO.translation.x() += shift;
+    };
+    return Why(table.Play({"place_object", {"mug1", "rightarm1", kSouthWest}}, move));
+  };
+  EXPECT_EQ(why(3.0 * tolerance), "object_slipped");
+  EXPECT_EQ(why(0.1 * tolerance), "");
+}
+
 TEST(PlaceObjectFailureTest, AMugThatIsGoneAfterwardsIsNotSeen) {
   Rehearsal table = AtTableWithMug({});
   const auto hide = [](Rehearsal*, const Skill& skill, robot::Observation* seen) {

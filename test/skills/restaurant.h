@@ -1,11 +1,15 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "hires/actions/catalogue.h"
 #include "hires/base/param_reader.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/simulation/robot_simulator.h"
@@ -119,6 +123,13 @@ struct Played {
   std::vector<robot::Command> commands;  ///< of every cycle
 };
 
+/// Whether the action's description names that failure; everything that moves may take too long.
+inline bool IsDescribed(const base::ActionCall& action, base::FailureCode code) {
+  const std::vector<base::FailureCode>& own = actions::OwnActions().Get(action.name).failures;
+  return code == base::FailureCode::kNone || code == base::FailureCode::kTimedOut ||
+         std::find(own.begin(), own.end(), code) != own.end();
+}
+
 /// A simulator at level planar and skills in lockstep with it.
 class Rehearsal {
  public:
@@ -131,6 +142,7 @@ class Rehearsal {
       : simulator_(TheRestaurant().scene, variation, {objects}, robot, base::Rng(seed), {},
                    simulation::LevelOfDetail::kPlanar) {}
 
+  /// Expects of a failure that the action's description names it.
   Played Play(const base::ActionCall& action, const Meddle& meddle = {}) {
     Played played;
     const double start = simulator_.time();
@@ -150,6 +162,9 @@ class Rehearsal {
         played.status = Failed({base::FailureCode::kOther, {}, "it never ends"});
       while (simulator_.time() < start + cycle * skill->period() - 1e-6) simulator_.Step();
     }
+    EXPECT_TRUE(IsDescribed(action, played.status.failure.code))
+        << action.name << ": " << ToString(played.status.failure)
+        << " is not among the failures in src/actions/own_actions.cpp";
     return played;
   }
 
