@@ -12,7 +12,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 from imagination_system import ImaginationSystem  # noqa: E402
 from test_run import run_test  # noqa: E402
 
-ROLLOUTS = 48
+ROLLOUTS = 24
 SLOW_AND_FAST = ['--action', 'move_base_param', '--from', 'preManipulationAreaEastCounter1',
                  '--object', 'peppermill1', '--arg', 'preManipulationAreaNorthTable1', '--arg',
                  'slow,fast']
@@ -80,7 +80,7 @@ class ImaginationIdentityTest(unittest.TestCase):
         self.addCleanup(watcher.destroy)
         joined, told = system.times_joined(1), len(system.client.lines)
         question = system.ask(rollouts=ROLLOUTS)
-        watcher.wait_for(r'feedback done=(4[89]|[5-9]\d) ')
+        watcher.wait_for(r'feedback done=(2[4-9]|[34]\d) ')
         os.kill(system.pids_of_worker(1)['sim_worker'], signal.SIGKILL)
         self.require_expected(question.answer())
         system.client.wait_for('worker=1 lost', first=told)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""launch/imagination.launch comes up, answers, and goes without a trace, many times: run alone, or
-by `rostest hires imagination_launch.test`."""
+"""launch/imagination.launch comes up, answers, and goes without a trace; with --cycles, many times
+and at any moment. Run alone, or by `rostest hires imagination_launch.test`."""
 
 import os
 import signal
@@ -48,13 +48,15 @@ class Launch:
         return time.monotonic() - stopped
 
 
-class ImaginationLaunchTest(unittest.TestCase):
+class LaunchCase(unittest.TestCase):
     def launches(self, count):
         launches = [Launch() for _ in range(count)]
         for launch in launches:
             self.addCleanup(launch.system.destroy)
         return launches
 
+
+class ImaginationLaunchTest(LaunchCase):
     def test_launched_as_a_user_does_it_answers(self):
         (imagination,) = self.launches(1)
         launch = imagination.start()
@@ -65,6 +67,8 @@ class ImaginationLaunchTest(unittest.TestCase):
         self.assertEqual(launch.wait(), 0)
         wait_until(lambda: not imagination.system.alive(), 'all processes to end', 2.0)
 
+
+class ImaginationLaunchCyclesTest(LaunchCase):
     def test_twenty_starts_and_stops_leave_no_process(self):
         # Each cycle is stopped at another moment of the start, every fourth when all is up. Not
         # earlier: a signal that roslaunch sends to a node it is just forking is lost, and
@@ -84,4 +88,7 @@ class ImaginationLaunchTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    run_test('imagination_launch', ImaginationLaunchTest)
+    if '--cycles' in sys.argv:
+        run_test('imagination_launch_cycles', ImaginationLaunchCyclesTest)
+    else:
+        run_test('imagination_launch', ImaginationLaunchTest)
