@@ -144,6 +144,27 @@ def check_private_headers(root):
                        f"installed; move that to include/hires/{owner}, or include it in the source")
 
 
+def check_public_headers(root):
+    """What stands in include/hires is included by others, itself or through another such header."""
+    users = {}
+    for path in code_files(root) + example_files(root):
+        for _, header in includes_of(root, path):
+            users.setdefault(f"include/{header}", set()).add(path)
+    headers = [path for path in files_below(root, "include/hires")
+               if path.endswith(".h") and RANK.get(layer_of(path), 0) < FIRST_LAYER_WITH_ROS]
+    used = {path for path in headers
+            if any(layer_of(user) != layer_of(path) for user in users.get(path, ()))}
+    grown = True
+    while grown:
+        more = {path for path in headers if path not in used and users.get(path, set()) & used}
+        used |= more
+        grown = bool(more)
+    for path in headers:
+        if path not in used:
+            yield (f"{path}:1: no other layer, node or example includes it; keep it beside its "
+                   f"source in src/{layer_of(path)}")
+
+
 def declared_dependencies(root):
     """{layer: layers that its hires_layer(... DEPENDS ...) names}"""
     declared = {}
@@ -440,7 +461,8 @@ def check_instructions(root):
                 yield f"{path}:{number}: there is no {file}; name what took its place"
 
 
-CHECKS = [check_includes, check_private_headers, check_dependencies, check_headers, check_whitespace, check_packages,
+CHECKS = [check_includes, check_private_headers, check_public_headers, check_dependencies,
+          check_headers, check_whitespace, check_packages,
           check_catkin_components, check_scripts, check_failure_codes, check_failure_texts,
           check_failure_tables, check_rostests, check_instructions]
 

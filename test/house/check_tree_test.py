@@ -136,6 +136,15 @@ class CheckTreeTest(unittest.TestCase):
         self.expect_one({**inner, "include/hires/base/rng.h": "#pragma once\n" + include},
                         "include/hires/base/rng.h:2", "not installed")
 
+    def test_a_header_for_others_that_only_its_layer_includes_is_found(self):
+        lonely = {"include/hires/base/dice.h": "#pragma once\n",
+                  "src/base/dice.cpp": '#include "hires/base/dice.h"\n',
+                  "test/base/dice_test.cpp": '#include "hires/base/dice.h"\n'}
+        self.expect_one(lonely, "include/hires/base/dice.h:1", "keep it beside")
+        user = '#pragma once\n#include "hires/base/dice.h"\n'
+        self.assertEqual(self.complaints({**lonely, "include/hires/base/rng.h": user}), [])
+        self.assertEqual(self.complaints({**lonely, "examples/own/a.h": user}), [])
+
     def test_a_header_without_guard_is_found(self):
         self.expect_one({"include/hires/base/rng.h": "#include <cstdint>\n"}, "#pragma once")
 
