@@ -213,16 +213,16 @@ TEST_F(StoreFileTest, APathThatLeadsNowhereIsRefused) {
 
 TEST_F(StoreFileTest, ANewerSchemaIsRefused) {
   Open();
-  SQLite::Database(path_, SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 4");
-  EXPECT_THAT(ErrorOfOpening(), AllOf(HasSubstr("schema 4"), HasSubstr("up to 3")));
-  EXPECT_THAT(ErrorOfOpening(ReadOnly()), HasSubstr("schema 4"));
+  SQLite::Database(path_, SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 5");
+  EXPECT_THAT(ErrorOfOpening(), AllOf(HasSubstr("schema 5"), HasSubstr("up to 4")));
+  EXPECT_THAT(ErrorOfOpening(ReadOnly()), HasSubstr("schema 5"));
 }
 
 TEST_F(StoreFileTest, TheFirstSchemaIsMigrated) {
   WriteOld("store_v1.sql");  // without the index by episode
   EXPECT_THAT(ErrorOfOpening(ReadOnly()), HasSubstr("has schema 1"));
   Store store = Open();
-  EXPECT_EQ(store.Stats().schema, 3);
+  EXPECT_EQ(store.Stats().schema, 4);
   EXPECT_EQ(store.last_sequence(), 5u);
   EXPECT_THAT(Names(QueryAll(store, FluentQuery())), ElementsAre("mug1", "pose1"));
   EXPECT_EQ(QueryAll(store, HoldsAt(15.0)).at(1).properties, PoseAt("", 1.5).properties);
@@ -231,7 +231,7 @@ TEST_F(StoreFileTest, TheFirstSchemaIsMigrated) {
   EXPECT_THAT(Names(QueryAll(store, query)), ElementsAre("pose1", "pose1", "pose1"));
   store.Add({PoseAt("pose1", 9.0)}, At(50.0, 1));
   SQLite::Database raw(path_, SQLite::OPEN_READONLY);
-  EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), 3);
+  EXPECT_EQ(raw.execAndGet("PRAGMA user_version").getInt(), 4);
   EXPECT_EQ(
       raw.execAndGet("SELECT count(*) FROM sqlite_master WHERE name = 'validity_in'").getInt(), 1);
 }
@@ -247,7 +247,7 @@ TEST_F(StoreFileTest, TheSecondSchemaIsMigrated) {
   EXPECT_THAT(ErrorOfOpening(ReadOnly()), HasSubstr("has schema 2"));
   {
     Store store = Open();
-    EXPECT_EQ(store.Stats().schema, 3);
+    EXPECT_EQ(store.Stats().schema, 4);
     EXPECT_EQ(store.last_sequence(), 8u);
     const FluentPage now = store.Query(OnMug1());  // said three times, one holds
     ASSERT_THAT(Names(now.fluents), ElementsAre("on1"));
@@ -309,7 +309,7 @@ TEST_F(StoreFileTest, AMigrationThatFailsLeavesTheOldSchema) {
   EXPECT_EQ(schema(), 2);
   run("DROP TABLE validity_open");
   EXPECT_THAT(QueryAll(Open(), FluentQuery()), SizeIs(2));
-  EXPECT_EQ(schema(), 3);
+  EXPECT_EQ(schema(), 4);
 }
 
 TEST_F(StoreFileTest, DamageIsNamedAndOtherFluentsAreStillRead) {

@@ -229,7 +229,7 @@ TEST_F(StoreTest, StatisticsCount) {
   EXPECT_EQ(statistics.changes, 4u);
   EXPECT_EQ(statistics.episodes, 1u);
   EXPECT_GT(statistics.bytes, 0u);
-  EXPECT_EQ(statistics.schema, 3);
+  EXPECT_EQ(statistics.schema, 4);
 }
 
 // ------------------------------------------------------------------------------------ bad input

@@ -144,4 +144,13 @@ std::int64_t FillerHash(std::string_view role, std::string_view text) {
   return static_cast<std::int64_t>(hasher.value());
 }
 
+std::vector<std::int64_t> TextHashes(const std::vector<Property>& properties) {
+  std::vector<std::int64_t> hashes;
+  for (const Property& property : properties) {
+    const auto* text = std::get_if<std::string>(&property.filler);
+    if (text != nullptr) hashes.push_back(FillerHash(property.role, *text));
+  }
+  return hashes;
+}
+
 }  // namespace hires::knowledge

@@ -20,5 +20,7 @@ std::vector<Property> DecodeProperties(std::string_view bytes, Words* words);
 /// By which a validity is found that has `text` in `role`, whatever the case of its letters. Kept
 /// in files: never change it without a migration.
 std::int64_t FillerHash(std::string_view role, std::string_view text);
+/// Of all properties that have a text.
+std::vector<std::int64_t> TextHashes(const std::vector<Property>& properties);
 
 }  // namespace hires::knowledge

@@ -12,15 +12,17 @@ constexpr std::size_t kNamesKept = 100'000;  // some 20 MB
 
 }  // namespace
 
-Words::Words(StoreFile* file)
-    : file_(file), insert_(file->database(), "INSERT INTO word(id, text) VALUES(?, ?)") {
+Words::Words(SQLite::Database* database, bool read_only)
+    : database_(database),
+      read_only_(read_only),
+      insert_(*database, "INSERT INTO word(id, text) VALUES(?, ?)") {
   Reload();
 }
 
 void Words::Reload() {
   ids_.clear();
   texts_.assign(1, "");  // numbers count from 1
-  SQLite::Statement all(file_->database(), "SELECT id, text FROM word ORDER BY id");
+  SQLite::Statement all(*database_, "SELECT id, text FROM word ORDER BY id");
   Rows rows(all);
   while (rows.Next()) {
     if (rows.Integer(0) != static_cast<std::int64_t>(texts_.size())) FailDamaged("a word is lost");
@@ -53,7 +55,7 @@ std::int64_t Words::Intern(const std::string& word) {
 const std::string& Words::Text(std::int64_t id) {
   const auto known = [&] { return id > 0 && id < static_cast<std::int64_t>(texts_.size()); };
   // A writer knows them all; to reload would mix up what its transaction has not committed.
-  if (!known() && file_->read_only()) Reload();
+  if (!known() && read_only_) Reload();
   if (!known()) FailDamaged(fmt::format("word {} is missing", id));
   return texts_[static_cast<std::size_t>(id)];
 }

@@ -16,7 +16,7 @@ namespace hires::knowledge {
 /// all are kept in memory.
 class Words {
  public:
-  explicit Words(StoreFile* file);
+  Words(SQLite::Database* database, bool read_only);
   std::optional<std::int64_t> Find(const std::string& word);
   std::int64_t Intern(const std::string& word);  ///< within a writing transaction
   const std::string& Text(std::int64_t id);      ///< damaged file if there is none
@@ -24,7 +24,8 @@ class Words {
   void Reload();                                 ///< what others may have written
 
  private:
-  StoreFile* file_;
+  SQLite::Database* database_;
+  bool read_only_;
   SQLite::Statement insert_;
   std::size_t settled_{0};  // texts that are in the file for good
   std::unordered_map<std::string, std::int64_t> ids_;

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "hires/base/error.h"
+#include "knowledge/store/store_reasons.h"
 
 namespace hires::knowledge {
 namespace {
@@ -88,8 +89,13 @@ CREATE INDEX validity_open ON validity(concept, world, instance, start_earliest,
 )sql";
 static_assert(kLevelOpen == 6000 && kNotClosed == 9223372036854775807, "as in kOpenIndexes");
 
-/// What brings schema i to i + 1.
-constexpr std::array<const char*, kStoreSchema> kSteps = {kTables, kEpisodeIndex, kOpenIndexes};
+using Step = void (*)(SQLite::Database&);
+/// What brings schema i to i + 1. Version 4 has the tables of version 3.
+constexpr std::array<Step, kStoreSchema> kSteps = {
+    [](SQLite::Database& database) { database.exec(kTables); },
+    [](SQLite::Database& database) { database.exec(kEpisodeIndex); },
+    [](SQLite::Database& database) { database.exec(kOpenIndexes); },
+    [](SQLite::Database& database) { ReasonMigration(&database).Run(); }};
 
 int Number(SQLite::Database& database, const char* query) {
   return database.execAndGet(query).getInt();
@@ -125,7 +131,7 @@ void RequireCurrentSchema(const std::string& path, int schema) {
 
 void TakeStep(int schema, SQLite::Database& database) {
   SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
-  database.exec(kSteps.at(static_cast<std::size_t>(schema)));
+  kSteps.at(static_cast<std::size_t>(schema))(database);
   database.exec(fmt::format("PRAGMA application_id = {}", kApplicationId));
   database.exec(fmt::format("PRAGMA user_version = {}", schema + 1));
   transaction.commit();

@@ -8,7 +8,7 @@
 namespace hires::knowledge {
 
 /// The schema this program writes. Older files are brought up to it, newer ones refused.
-constexpr int kStoreSchema = 3;
+constexpr int kStoreSchema = 4;
 
 /// Levels of validities in the index by time, see docs/notes_blackboard.md. A closed validity that
 /// lasts at least 2^(n-1) and less than 2^n seconds has level n.

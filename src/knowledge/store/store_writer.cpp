@@ -73,15 +73,6 @@ std::vector<Property> Merged(const std::vector<Property>& old, const std::vector
   return merged;
 }
 
-std::vector<std::int64_t> TextHashes(const std::vector<Property>& properties) {
-  std::vector<std::int64_t> hashes;
-  for (const Property& property : properties) {
-    const auto* text = std::get_if<std::string>(&property.filler);
-    if (text != nullptr) hashes.push_back(FillerHash(property.role, *text));
-  }
-  return hashes;
-}
-
 Change MakeChange(Change::Kind kind, const Fluent& fluent, double time, std::int64_t sequence,
                   const Assertion& by, Episode::Label label) {
   Change change;

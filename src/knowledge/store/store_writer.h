@@ -17,7 +17,11 @@ namespace hires::knowledge {
 /// What every part of a store works on.
 struct StoreParts {
   explicit StoreParts(StoreFile* opened)
-      : file(opened), words(opened), instances(opened), validities(opened), episodes(opened) {}
+      : file(opened),
+        words(&opened->database(), opened->read_only()),
+        instances(opened),
+        validities(opened),
+        episodes(opened) {}
 
   StoreFile* file;
   Words words;
