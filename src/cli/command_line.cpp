@@ -188,7 +188,9 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
                                          : backends.imagine_remotely(query, on_interim, cancelled);
   if (!options.quiet) display.Clear();
   PrintReport(report, query.scheduler.criteria.rule);
-  if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(report), options.json);
+  if (!options.json.empty()) {
+    evaluation::WriteJson(evaluation::ToJson(report, query.scheduler.criteria), options.json);
+  }
   return ExitCodeOf(report);
 }
 

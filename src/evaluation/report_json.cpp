@@ -119,6 +119,14 @@ nlohmann::ordered_json ToJson(const imagination::Report& report) {
        report.wall_seconds > 0.0 ? report.simulated_seconds / report.wall_seconds : 0.0}};
 }
 
+nlohmann::ordered_json ToJson(const imagination::Report& report,
+                              const imagination::Criteria& criteria) {
+  const bool has_minimum = criteria.rule != imagination::RankingRule::kThesis;
+  ordered_json json = ToJson(report);
+  json["min_success"] = has_minimum ? ordered_json(criteria.min_success) : ordered_json();
+  return json;
+}
+
 void RequireFolderOf(const std::string& path) {
   const fs::path folder = fs::absolute(path).parent_path();
   if (fs::is_directory(folder)) return;

@@ -69,6 +69,7 @@ void Complete(const hires::ImagineGoal& goal, const ImagineRequest& request,
   ref->world_hash = setup.world_hash;
   ref->robot_hash = setup.robot_hash;
   ref->uncertainty_hash = request.setup.uncertainty->hash;
+  ref->physics_hash = setup.physics_hash;
   ref->actions_hash = setup.actions_hash;
 }
 

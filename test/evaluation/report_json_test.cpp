@@ -38,6 +38,16 @@ TEST(ReportJsonTest, NothingRecommendedIsNull) {
   EXPECT_EQ(json.at("real_time_factor"), 0.0);
 }
 
+TEST(ReportJsonTest, MinSuccessIsToldUnlessTheRuleAsksForNone) {
+  imagination::Criteria criteria;
+  criteria.min_success = 0.8;
+  const auto json = ToJson(TwoAlternatives(), criteria);
+  EXPECT_EQ(json.at("min_success"), 0.8);
+  EXPECT_EQ(json.at("why"), ToJson(TwoAlternatives()).at("why"));
+  criteria.rule = imagination::RankingRule::kThesis;
+  EXPECT_TRUE(ToJson(TwoAlternatives(), criteria).at("min_success").is_null());
+}
+
 TEST(ReportJsonTest, OutcomesHaveNames) {
   imagination::Report report;
   const auto name = [&](ImaginationOutcome outcome, bool complete) {

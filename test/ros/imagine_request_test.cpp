@@ -217,6 +217,7 @@ TEST(ImagineRequestTest, ReferencesSayAllThatARolloutTakes) {
   setup.world_hash = 1;
   setup.robot_hash = 2;
   setup.actions_hash = 3;
+  setup.physics_hash = 4;
   ImagineRequest request;
   request.setup.seed = 7;
   request.setup.uncertainty =
@@ -230,6 +231,7 @@ TEST(ImagineRequestTest, ReferencesSayAllThatARolloutTakes) {
   EXPECT_EQ(worst.world_hash, 1u);
   EXPECT_EQ(worst.robot_hash, 2u);
   EXPECT_EQ(worst.actions_hash, 3u);
+  EXPECT_EQ(worst.physics_hash, 4u);
   EXPECT_EQ(worst.uncertainty_hash, imagination::NoUncertainty().hash);
 }
 

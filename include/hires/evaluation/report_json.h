@@ -16,6 +16,9 @@ std::string OutcomeName(const imagination::Report& report);
 /// The report for machines. Field order is fixed; equal reports give equal text but for
 /// `wall_seconds` and `real_time_factor`.
 nlohmann::ordered_json ToJson(const imagination::Report& report);
+/// With `min_success`, what a recommendation had to reach; null where the rule asks for none.
+nlohmann::ordered_json ToJson(const imagination::Report& report,
+                              const imagination::Criteria& criteria);
 
 /// {"failure": "no_path", "subjects": ["hand", "book1"], "detail": "..."}; null for no failure.
 nlohmann::ordered_json ToJson(const base::Failure& failure);
