@@ -24,17 +24,27 @@ catkin_package(
   CFG_EXTRAS FindClassLoader.cmake HiresActionLibrary.cmake
   CATKIN_DEPENDS actionlib actionlib_msgs geometry_msgs message_runtime roscpp sensor_msgs std_msgs)
 
-# hires_node(<name> [LINK libraries ...]): an executable that rosrun and roslaunch find as <name>,
-# from <name>_main.cpp. The target is hires_<name>_node, so that it cannot clash with a layer's.
+# hires_node(<name> SOURCES a.cpp ... [LINK libraries ...]): an executable that rosrun and roslaunch find
+# as <name>, from <name>/<name>_main.cpp. The sources, in the same folder, are the static library
+# hires_nodes_<name>, so that tests can link what the node is made of; it is added to
+# HIRES_NODE_LIBRARIES of the caller. The target is hires_<name>_node, so that it cannot clash with a
+# layer's.
 function(hires_node name)
-  cmake_parse_arguments(NODE "" "" "LINK" ${ARGN})
+  cmake_parse_arguments(NODE "" "" "SOURCES;LINK" ${ARGN})
+  set(library hires_nodes_${name})
+  list(TRANSFORM NODE_SOURCES PREPEND ${name}/)
+  add_library(${library} STATIC ${NODE_SOURCES})
+  target_compile_options(${library} PRIVATE ${HIRES_WARNINGS})
+  target_include_directories(${library} PUBLIC ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(${library} PUBLIC hires_ros ${NODE_LINK})
+  set(HIRES_NODE_LIBRARIES ${HIRES_NODE_LIBRARIES} ${library} PARENT_SCOPE)
   set(target hires_${name}_node)
-  add_executable(${target} ${name}_main.cpp)
+  add_executable(${target} ${name}/${name}_main.cpp)
   set_target_properties(${target} PROPERTIES
     OUTPUT_NAME ${name}
     RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION})
   target_compile_options(${target} PRIVATE ${HIRES_WARNINGS})
-  target_link_libraries(${target} PRIVATE hires_ros ${NODE_LINK})
+  target_link_libraries(${target} PRIVATE ${library})
   install(TARGETS ${target} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 endfunction()
 

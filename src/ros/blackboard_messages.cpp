@@ -7,7 +7,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/overloaded.h"
-#include "hires/ros/short_text.h"
+#include "hires/base/short_text.h"
 
 namespace hires_ros {
 namespace {

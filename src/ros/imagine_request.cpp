@@ -7,9 +7,9 @@
 
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
+#include "hires/base/short_text.h"
 #include "hires/imagination/uncertainty.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/short_text.h"
 
 namespace hires_ros {
 namespace {
@@ -107,7 +107,7 @@ hires::ImagineResult RefusalOf(const hires::ImagineGoal& goal, const std::string
   hires::ImagineResult result;
   result.outcome = hires::ImagineResult::INVALID;
   result.recommended = -1;
-  result.why = Shortened(why);
+  result.why = hires::base::Shortened(why);
   result.seed = goal.seed;
   return result;
 }

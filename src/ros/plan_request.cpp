@@ -6,6 +6,7 @@
 #include <new>
 
 #include "hires/base/error.h"
+#include "hires/base/short_text.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/resource_use.h"
 #include "hires/planning/plan_order.h"
@@ -14,7 +15,6 @@
 #include "hires/planning/shop2_reader.h"
 #include "hires/planning/task_text.h"
 #include "hires/ros/plan_nodes.h"
-#include "hires/ros/short_text.h"
 
 namespace hires_ros {
 namespace {
@@ -29,7 +29,7 @@ Datum AtomOf(const hires::Atom& atom, const std::string& where) {
   std::vector<Datum> items{planning::ReadGroundTerm(atom.predicate, where + ".predicate")};
   if (items[0].kind != Datum::Kind::kSymbol) {
     throw ConfigError(fmt::format("{}.predicate: is {}, wanted a name, as `on` of (on mug1 table1)",
-                                  where, Shortened(atom.predicate)));
+                                  where, hires::base::Shortened(atom.predicate)));
   }
   for (std::size_t i = 0; i < atom.arguments.size(); ++i) {
     items.push_back(
@@ -252,7 +252,7 @@ hires::PlanResult AnswerTo(const hires::PlanGoal& goal,
 hires::PlanResult ResultWithout(int outcome, const std::string& why) {
   hires::PlanResult result;
   result.outcome = static_cast<std::uint8_t>(outcome);
-  result.why = Shortened(why);
+  result.why = hires::base::Shortened(why);
   return result;
 }
 

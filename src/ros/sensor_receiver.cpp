@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "hires/base/log.h"
+#include "hires/base/process.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/process.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 
@@ -19,7 +19,8 @@ constexpr double kWarningPeriod = 1.0;  // [s] for each topic
 
 SensorReceiver::SensorReceiver(std::shared_ptr<const hires::robot::Robot> robot,
                                std::shared_ptr<const hires::perception::Surroundings> surroundings,
-                               const RobotNames& names, const sensing::SensingParams& params)
+                               const hires::control::RobotNames& names,
+                               const sensing::SensingParams& params)
     : names_(names),
       tree_(std::make_shared<TransformBuffer>()),
       state_(robot, {names.map_frame, names.odometry_frame, names.base_frame}, params.robot_state,
@@ -108,8 +109,8 @@ void SensorReceiver::Note(const std::string& topic, const sensing::Receipt& rece
 
 void SensorReceiver::Warn(const std::string& topic, const std::string& text) {
   const auto warned = warned_.find(topic);
-  if (warned != warned_.end() && SteadyNow() - warned->second < kWarningPeriod) return;
-  warned_[topic] = SteadyNow();
+  if (warned != warned_.end() && hires::base::SteadyNow() - warned->second < kWarningPeriod) return;
+  warned_[topic] = hires::base::SteadyNow();
   hires::base::Log(hires::base::LogLevel::kWarn,
                    fmt::format("topic={} dropped why={}", topic, text));
 }

@@ -2,6 +2,7 @@
 
 #include "hires/base/text.h"
 #include "hires/imagination/imagination_setup.h"
+#include "hires/ros/load_robot_names.h"
 #include "hires/ros/private_params.h"
 #include "hires/world/object_catalogue.h"
 

@@ -22,6 +22,7 @@ LAYERS = [
     ["physics", "navigation", "manipulation", "perception", "execution", "translation"],
     ["sensing"],
     ["simulation", "skills"],
+    ["control"],
     ["imagination"],
     ["evaluation"],
     ["cli"],
@@ -41,7 +42,7 @@ NOT_OUR_TEXT = re.compile(r"(^|/)test/data/|\.(pgm|png|jpg|stl|dae|obj|bag|db|sv
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 ROS_HEADER = re.compile(
     r"^(ros|tf2?|tf2_[a-z_]+|actionlib|rosbag|rosgraph_msgs|roslib|topic_tools|message_filters|"
-    r"diagnostic_updater|dynamic_reconfigure|[a-z_0-9]+_msgs|[a-z_]+_srvs)/")
+    r"diagnostic_updater|dynamic_reconfigure|xmlrpcpp|[a-z_0-9]+_msgs|[a-z_]+_srvs)/")
 GENERATED_MESSAGE = re.compile(r"^hires/[^/]+\.h$")
 
 
@@ -221,6 +222,72 @@ def own_headers(root, path):
     return names
 
 
+# Nothing but names; STYLE of the project keeps those of topics where topics are.
+NAMES_OF_TOPICS = {"ros/robot_topics", "ros/topic_names"}
+
+
+def unit_of(path):
+    """What header and source of one name have in common: "ros/conversions"."""
+    below = path[len("include/hires/"):] if path.startswith("include/hires/") else path[len("src/"):]
+    return os.path.splitext(below)[0]
+
+
+def units_of(root):
+    """{unit: its files} of include and src"""
+    units = {}
+    for path in code_files(root):
+        if path.startswith(("include/hires/", "src/")):
+            units.setdefault(unit_of(path), []).append(path)
+    return units
+
+
+def own_file(root, path, header):
+    """The file of ours that an include of `path` means, or None."""
+    for candidate in (f"include/{header}", f"src/{header}",
+                      os.path.normpath(os.path.join(os.path.dirname(path), header))):
+        if os.path.exists(os.path.join(root, candidate)):
+            return candidate
+    return None
+
+
+def sees_ros(root, unit, units):
+    """Whether a unit needs ROS or generated messages: itself, or what it includes with its sources."""
+    seen, todo = {unit}, [unit]
+    while todo:
+        for path in units.get(todo.pop(), ()):
+            for _, header in includes_of(root, path):
+                found = own_file(root, path, header)
+                if found is None and (ROS_HEADER.match(header) or
+                                      GENERATED_MESSAGE.match(header)):
+                    return True
+                if found and found.startswith(("include/hires/", "src/")) and unit_of(found) not in seen:
+                    seen.add(unit_of(found))
+                    todo.append(unit_of(found))
+    return False
+
+
+def check_units_with_ros(root):
+    """What knows no ROS is of use below, and is tested there without ROS."""
+    units = units_of(root)
+    for unit, paths in sorted(units.items()):
+        if unit.split("/")[0] not in ("ros", "nodes") or unit in NAMES_OF_TOPICS:
+            continue
+        if not sees_ros(root, unit, units):
+            yield (f"{paths[0]}:1: sees no ROS, not even through what it includes; move it down to the "
+                   "layer that it is about")
+
+
+def check_nodes_apart(root):
+    """Nodes meet on topics; what two of them need is shared further down."""
+    for path in code_files(root):
+        node = path.split("/")[2] if path.startswith("src/nodes/") else None
+        for number, header in includes_of(root, path) if node else ():
+            parts = (own_file(root, path, header) or "").split("/")
+            if parts[:2] == ["src", "nodes"] and parts[2] != node:
+                yield (f"{path}:{number}: node '{node}' includes {header} of another node; move what both "
+                       "need to 'ros' or below")
+
+
 def check_own_header(root, path):
     """A source includes its header first, which proves that the header needs nothing else. One
     without a header of its name implements a part of another of its layer, so it includes that."""
@@ -342,17 +409,17 @@ ALSO_MEANS = {
         "src/planning/search/search.cpp", "src/planning/check/step_replay.cpp",
         "src/translation/wanted_state.cpp"},
     "motors_halted": {  # a key of a robot's names, a finding of the doctor
-        "src/ros/robot_doctor_judge.cpp", "src/ros/robot_names.cpp"},
+        "src/nodes/hires/robot_doctor_judge.cpp", "src/control/robot_names.cpp"},
     "busy": {"src/evaluation/achieve.cpp"},  # outcomes of a task, from here on
     "dry_run": {
-        "src/evaluation/achieve.cpp", "src/ros/execution_messages.cpp",
-        "src/ros/execution_monitor_node.cpp", "src/ros/middle_layer_params.cpp"},
+        "src/evaluation/achieve.cpp", "src/nodes/execution_monitor/execution_messages.cpp",
+        "src/nodes/execution_monitor/execution_monitor_node.cpp", "src/nodes/middle_layer/middle_layer_params.cpp"},
     "preempted": {
         "src/evaluation/achieve.cpp", "src/execution/step_watch.cpp",
-        "src/ros/execution_messages.cpp"},
-    "timed_out": {"src/ros/hypothesis_run.cpp"},  # an outcome of a played run
+        "src/nodes/execution_monitor/execution_messages.cpp"},
+    "timed_out": {"src/nodes/hires/hypothesis_run.cpp"},  # an outcome of a played run
     "unavailable": {  # an outcome of imagination
-        "src/evaluation/achieve.cpp", "src/ros/execution_messages.cpp"},
+        "src/evaluation/achieve.cpp", "src/nodes/execution_monitor/execution_messages.cpp"},
 }
 COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', re.DOTALL)
 TAKES_TEXT_APART = re.compile(
@@ -462,7 +529,7 @@ def check_instructions(root):
 
 
 CHECKS = [check_includes, check_private_headers, check_public_headers, check_dependencies,
-          check_headers, check_whitespace, check_packages,
+          check_units_with_ros, check_nodes_apart, check_headers, check_whitespace, check_packages,
           check_catkin_components, check_scripts, check_failure_codes, check_failure_texts,
           check_failure_tables, check_rostests, check_instructions]
 

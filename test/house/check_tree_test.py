@@ -24,7 +24,7 @@ GOOD_TREE = {
     "include/hires/ros/conversions.h":
         '#pragma once\n#include <ros/time.h>\n#include "hires/Fluent.h"\n'
         '#include "hires/skills/skill.h"\n',
-    "src/nodes/planner_main.cpp": '#include "hires/ros/conversions.h"\n',
+    "src/nodes/planner/planner_main.cpp": '#include "hires/ros/conversions.h"\n',
     "test/skills/skill_test.cpp":
         '#include "hires/simulation/simulator.h"\n#include "support/fakes.h"\n',
     "test/data/given.txt": "tabs\tof others stay \n",
@@ -69,7 +69,8 @@ class CheckTreeTest(unittest.TestCase):
                         "test/robot/model_test.cpp:1", "an arrow up")
 
     def test_an_unknown_layer_is_found(self):
-        self.expect_one({"src/nodes/wizard_main.cpp": '#include "hires/magic/wand.h"\n'},
+        self.expect_one({"src/nodes/wizard/wizard_main.cpp":
+                             '#include <ros/ros.h>\n#include "hires/magic/wand.h"\n'},
                         "'magic'", "LAYERS")
 
     def test_ros_below_its_layer_is_found(self):
@@ -84,6 +85,34 @@ class CheckTreeTest(unittest.TestCase):
             {"src/base/rng.cpp": '#include "hires/base/rng.h"\n'
                                  "#include <rosy.h>\n#include <XmlRpcClient.h>\n"
                                  "// #include <ros/ros.h> would be wrong here\n"}), [])
+
+    def test_a_unit_of_ros_or_nodes_that_sees_no_ros_is_found(self):
+        plain = {"include/hires/ros/words.h": '#pragma once\n#include "hires/base/rng.h"\n',
+                 "src/ros/words.cpp": '#include "hires/ros/words.h"\n'}
+        self.expect_one(plain, "include/hires/ros/words.h:1", "sees no ROS", "move it down")
+        self.expect_one({"src/nodes/planner/pool.cpp": "#include <vector>\n"},
+                        "src/nodes/planner/pool.cpp:1", "sees no ROS")
+
+    def test_a_unit_that_sees_ros_through_others_is_left_in_peace(self):
+        self.assertEqual(self.complaints(
+            {"include/hires/ros/words.h": '#pragma once\n#include "hires/ros/more_words.h"\n',
+             "include/hires/ros/more_words.h": '#pragma once\n#include <hires/Fluent.h>\n',
+             "src/nodes/planner/pool.h":
+                 '#pragma once\n#include "hires/ros/words.h"\n#include "hires/ros/more_words.h"\n',
+             "src/nodes/planner/pool_more.cpp": '#include "pool.h"\n',
+             "include/hires/ros/master.h": "#pragma once\n",
+             "src/ros/master.cpp": '#include "hires/ros/master.h"\n#include <xmlrpcpp/XmlRpcClient.h>\n',
+             "src/nodes/planner/watch.cpp": '#include "hires/ros/master.h"\n'}), [])
+
+    def test_names_of_topics_may_stand_where_topics_are(self):
+        self.assertEqual(self.complaints({"include/hires/ros/topic_names.h": "#pragma once\n"}), [])
+
+    def test_a_node_that_includes_another_one_is_found(self):
+        pool = {"src/nodes/planner/pool.h": "#pragma once\n#include <ros/time.h>\n"}
+        self.expect_one({**pool, "src/nodes/relay/relay_main.cpp": '#include "nodes/planner/pool.h"\n'},
+                        "src/nodes/relay/relay_main.cpp:1", "another node")
+        self.assertEqual(self.complaints(
+            {**pool, "src/nodes/planner/planner_main.cpp": '#include "nodes/planner/pool.h"\n'}), [])
 
     def test_a_dependency_that_cmake_does_not_know_is_found(self):
         self.expect_one({"src/geometry/CMakeLists.txt": "hires_layer(geometry LINK base)\n",
@@ -131,7 +160,8 @@ class CheckTreeTest(unittest.TestCase):
         self.assertEqual(self.complaints({**inner, "test/base/inner_test.cpp": include}), [])
         for path in ("src/nodes/other_main.cpp", "test/support/fakes.h", "test/robot/a_test.cpp",
                      "examples/own/a.cpp"):
-            guard = "#pragma once\n" if path.endswith(".h") else ""
+            guard = ("#pragma once\n" if path.endswith(".h") else
+                     "#include <ros/ros.h>\n" if "nodes" in path else "")
             self.expect_one({**inner, path: guard + include}, path, "keeps for itself")
         self.expect_one({**inner, "include/hires/base/rng.h": "#pragma once\n" + include},
                         "include/hires/base/rng.h:2", "not installed")

@@ -46,7 +46,8 @@ class SensorReceiverTest : public ::testing::Test {
   SensorReceiver sensors_{
       Pr2(),
       std::make_shared<const hires::perception::Surroundings>(hires::test_support::SightWorld()),
-      ReadRobotNames(std::string(HIRES_SOURCE_DIR) + "/config/robots/pr2_names.yaml"),
+      hires::control::ReadRobotNames(std::string(HIRES_SOURCE_DIR) +
+                                     "/config/robots/pr2_names.yaml"),
       {}};
 };
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/ros/robot_names.h"
+#include "hires/control/robot_names.h"
 #include "hires/ros/transform_buffer.h"
 #include "hires/sensing/object_estimator.h"
 #include "hires/sensing/robot_state_estimator.h"
@@ -27,7 +27,8 @@ class SensorReceiver {
   /// @param surroundings  what the camera looks at; null: the robot sees no objects.
   SensorReceiver(std::shared_ptr<const hires::robot::Robot> robot,
                  std::shared_ptr<const hires::perception::Surroundings> surroundings,
-                 const RobotNames& names, const hires::sensing::SensingParams& params);
+                 const hires::control::RobotNames& names,
+                 const hires::sensing::SensingParams& params);
   SensorReceiver(const SensorReceiver&) = delete;
 
   void OnOdometry(const nav_msgs::Odometry& msg);
@@ -51,7 +52,7 @@ class SensorReceiver {
  private:
   void Note(const std::string& topic, const hires::sensing::Receipt& receipt);
 
-  RobotNames names_;
+  hires::control::RobotNames names_;
   std::shared_ptr<TransformBuffer> tree_;
   hires::sensing::RobotStateEstimator state_;
   std::unique_ptr<hires::sensing::ObjectEstimator> objects_;

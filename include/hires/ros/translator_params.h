@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "hires/base/param_reader.h"
-#include "hires/ros/robot_names.h"
+#include "hires/control/robot_names.h"
 #include "hires/translation/translator.h"
 
 namespace hires_ros {
@@ -15,7 +15,7 @@ struct TranslatorParams {
   std::string scene;                  ///< scene.yaml: names world, robot and objects
   std::vector<std::string> ontology;  ///< Turtle files
   std::string world, robot, objects;  ///< instead of the scene's where not empty
-  RobotNames names;
+  hires::control::RobotNames names;
 };
 
 /// @throws hires::base::ConfigError naming file and key.

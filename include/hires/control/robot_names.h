@@ -1,0 +1,48 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "hires/world/map_to_world.h"
+
+namespace hires::control {
+
+/// What a robot calls its topics, frames, joints' groups and servers: one YAML file per kind of
+/// robot (config/robots/pr2_names.yaml). Topics and servers are relative, so that a launch file can
+/// put them elsewhere; frames are tf's.
+struct RobotNames {
+  std::string map_frame, odometry_frame, base_frame;  ///< REP 105
+
+  std::string base_command;   ///< geometry_msgs/Twist
+  std::string odometry;       ///< nav_msgs/Odometry
+  std::string joint_states;   ///< sensor_msgs/JointState
+  std::string localisation;   ///< geometry_msgs/PoseWithCovarianceStamped; its covariance counts
+  std::string base_scan;      ///< sensor_msgs/LaserScan
+  std::string map;            ///< nav_msgs/OccupancyGrid, latched
+  std::string static_map;     ///< nav_msgs/GetMap, where no map is latched; empty: none
+  std::string motors_halted;  ///< std_msgs/Bool; empty: the robot has none
+  std::string robot_description;  ///< parameter
+
+  std::map<std::string, std::string> trajectories;  ///< group -> trajectory_msgs/JointTrajectory
+  std::map<std::string, std::string> grippers;  ///< arm -> pr2_controllers_msgs/Pr2GripperCommand
+
+  /// How the robot's map lies in the world; not in the file, for it is the laboratory's.
+  world::MapToWorld map_to_world;
+
+  struct MoveBase {
+    std::string action;   ///< move_base_msgs/MoveBaseAction; empty: the robot has none
+    std::string planner;  ///< dynamic_reconfigure server of the local planner; empty with `action`
+    /// Limit (max_linear_velocity, ...) -> what local planners have called it, newest first.
+    std::map<std::string, std::vector<std::string>> parameters;
+  } move_base;
+};
+
+/// @throws base::ConfigError naming file and line: fields that lack or nobody knows, groups
+/// and arms that are none, names that are not ROS names, two groups with one topic.
+RobotNames ReadRobotNames(const std::string& path);
+
+/// As ReadRobotNames, of text; `where` stands for the file's name in messages.
+RobotNames ParseRobotNames(const std::string& yaml, const std::string& where);
+
+}  // namespace hires::control

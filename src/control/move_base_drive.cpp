@@ -1,0 +1,183 @@
+#include "hires/control/move_base_drive.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hires/base/check.h"
+#include "hires/base/log.h"
+#include "hires/base/text.h"
+
+namespace hires::control {
+namespace {
+
+using base::Failure;
+using geometry::Pose2;
+using navigation::Costmap;
+using Code = base::FailureCode;
+using skills::Failed;
+using skills::Status;
+
+Failure NoMoveBase() { return {Code::kNoController, {}, "move_base"}; }
+
+double LengthOf(const Pose2& X) { return std::hypot(X.x, X.y); }
+
+bool Mentions(const std::string& text, const std::string& word) {
+  return base::ToLower(text).find(word) != std::string::npos;
+}
+
+/// move_base tells in words what it gave up at: a valid plan, a valid control, or oscillation.
+Code CodeOfAbortion(const std::string& text) {
+  const bool is_stuck = Mentions(text, "control") || Mentions(text, "oscillat");
+  return is_stuck ? Code::kStuck : Code::kUnreachable;
+}
+
+}  // namespace
+
+Failure FailureOf(const MoveBaseNews& news) {
+  using State = MoveBaseNews::State;
+  switch (news.state) {
+    case State::kAborted:
+      return CodeOfAbortion(news.text);
+    case State::kRejected:
+      return Code::kUnreachable;
+    case State::kReplaced:
+      return Code::kInterrupted;
+    case State::kLost:
+      return NoMoveBase();
+    case State::kNone:
+    case State::kSent:
+    case State::kDriving:
+    case State::kArrived:
+      break;
+  }
+  return {};
+}
+
+MoveBaseDrive::MoveBaseDrive(std::shared_ptr<MoveBaseServer> server,
+                             std::function<bool()> may_drive, const MoveBaseDriveParams& params,
+                             std::shared_ptr<const skills::DrivingContext> driving,
+                             const skills::MoveBaseBlindParams& blind, const Pose2& X_MGoal,
+                             const robot::MotionSet& motion_set)
+    : server_(std::move(server)),
+      may_drive_(std::move(may_drive)),
+      params_(params),
+      driving_(std::move(driving)),
+      X_MGoal_(X_MGoal),
+      motion_set_(motion_set),
+      rest_(blind, X_MGoal, motion_set) {}
+
+MoveBaseDrive::~MoveBaseDrive() {
+  if (stage_ == Stage::kDriving) server_->Cancel();
+}
+
+std::string MoveBaseDrive::phase() const {
+  switch (stage_) {
+    case Stage::kWaiting:
+      return "wait_for_leave";
+    case Stage::kDriving:
+      return "move_base";
+    case Stage::kRest:
+      return "last_stretch";
+  }
+  return "";
+}
+
+Status MoveBaseDrive::Update(const robot::Observation& seen, robot::Command* command) {
+  command->motion_set = motion_set_;
+  switch (stage_) {
+    case Stage::kWaiting:
+      return Begin(seen);
+    case Stage::kDriving:
+      return Follow(seen, command);
+    case Stage::kRest:
+      break;
+  }
+  return rest_.Update(seen, command);
+}
+
+Status MoveBaseDrive::Begin(const robot::Observation& seen) {
+  const bool may_drive = may_drive_(), is_there = server_->IsThere();
+  if (may_drive && is_there) {
+    server_->Go(X_MGoal_);
+    sent_ = seen.time;
+    stage_ = Stage::kDriving;
+  } else if (seen.time > params_.start_patience) {
+    return Failed(is_there ? Failure(Code::kNoPermit) : NoMoveBase());
+  }
+  return {};
+}
+
+Status MoveBaseDrive::Follow(const robot::Observation& seen, robot::Command* command) {
+  const MoveBaseNews news = server_->News();
+  if (news.state == MoveBaseNews::State::kArrived) return BeginRest(seen, command);
+  const Failure failure = FailureOf(news);
+  if (failure) {
+    base::Log(base::LogLevel::kWarn,
+              fmt::format("move_base failure=\"{}\" text=\"{}\"", ToString(failure), news.text));
+    return Failed(failure);
+  }
+  const bool is_silent =
+      news.state == MoveBaseNews::State::kSent && seen.time - sent_ > params_.answer_patience;
+  if (is_silent || !server_->IsThere()) return Failed(NoMoveBase());
+  return {};
+}
+
+/// move_base says that it has arrived; whether that is so, our own tolerances say.
+Status MoveBaseDrive::BeginRest(const robot::Observation& seen, robot::Command* command) {
+  const Pose2 X_BGoal = seen.X_MB.Inverse() * X_MGoal_;
+  const double distance = LengthOf(X_BGoal), turn = std::abs(X_BGoal.yaw);
+  const navigation::DwaParams& tolerances = driving_->params.local;
+  stage_ = Stage::kRest;
+  if (distance <= tolerances.xy_goal_tolerance && turn <= tolerances.yaw_goal_tolerance) {
+    return skills::Succeeded();
+  }
+  if (distance > params_.max_rest || turn > params_.max_rest_turn) {
+    return Failed({Code::kGoalMissed, {}, fmt::format("{:.2f} m, {:.2f} rad", distance, turn)});
+  }
+  if (!IsWayFree(seen)) {
+    const auto words = fmt::format("something stands on the last {:.2f} m", distance);
+    return Failed({Code::kUnreachable, {}, words});
+  }
+  return rest_.Update(seen, command);
+}
+
+/// Whether the outline passes over free floor on the straight way to the goal.
+bool MoveBaseDrive::IsWayFree(const robot::Observation& seen) const {
+  // Where the robot stands it can stand, whatever the map says.
+  const Costmap costmap = driving_->costmap->WithObstacles(seen.obstacles_M)
+                              .WithRoomFor(geometry::Transformed(seen.X_MB, driving_->footprint));
+  const Pose2 X_BGoal = seen.X_MB.Inverse() * X_MGoal_;
+  const double reach = geometry::CircumscribedRadius(driving_->footprint);
+  const double way = LengthOf(X_BGoal) + reach * std::abs(X_BGoal.yaw);
+  const int steps = std::max(1, static_cast<int>(std::ceil(way / costmap.resolution())));
+  for (int i = 1; i <= steps; ++i) {
+    const double share = static_cast<double>(i) / steps;
+    const Pose2 X_MB = seen.X_MB * Pose2{share * X_BGoal.x, share * X_BGoal.y, share * X_BGoal.yaw};
+    if (costmap.FootprintCost(driving_->footprint, X_MB) >= navigation::kLethalCost) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool IsForMoveBase(const skills::SkillSet& skills, const base::ActionCall& action) {
+  return skills::SpecOf(skills, action).driving == actions::Driving::kRoundObstacles;
+}
+
+std::unique_ptr<skills::Skill> MakeMoveBaseDrive(const skills::SkillSet& skills,
+                                                 const base::ActionCall& action,
+                                                 std::shared_ptr<MoveBaseServer> server,
+                                                 std::function<bool()> may_drive,
+                                                 const MoveBaseDriveParams& params) {
+  HIRES_CHECK(IsForMoveBase(skills, action), "the action is none for move_base");
+  skills::MakeSkill(skills, action);  // its words for what is wrong with an action
+  return std::make_unique<MoveBaseDrive>(
+      std::move(server), std::move(may_drive), params, skills.driving, skills.blind,
+      skills.areas.at(*actions::ArgumentOf(skills::SpecOf(skills, action), action,
+                                           actions::ParameterKind::kArea)),
+      skills.motion_sets.at(skills::MotionSetNameOf(skills, action)));
+}
+
+}  // namespace hires::control

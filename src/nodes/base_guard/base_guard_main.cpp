@@ -1,0 +1,26 @@
+#include <ros/ros.h>
+
+#include <cstdlib>
+
+#include "hires/base/error.h"
+#include "hires/ros/log_sink.h"
+#include "hires/ros/master_watch.h"
+#include "hires/ros/xmlrpc_master_api.h"
+#include "nodes/base_guard/base_guard_node.h"
+
+int main(int argc, char** argv) {
+  hires_ros::QuietXmlRpc();
+  ros::init(argc, argv, "base_guard", ros::init_options::NoSigintHandler);
+  hires_ros::NoteStopSignals();
+  ros::NodeHandle nh;
+  hires_ros::MasterWatch master_watch;
+  const hires_ros::ScopedLogSink log_sink;
+  try {
+    hires_ros::BaseGuardNode node(hires_ros::LoadBaseGuardParams(), &nh);
+    node.Run(hires_ros::IsStopWanted);
+  } catch (const hires::base::ConfigError& error) {
+    ROS_FATAL("base_guard: %s", error.what());
+    return EXIT_FAILURE;
+  }
+  return master_watch.Finish(EXIT_SUCCESS);
+}

@@ -1,0 +1,28 @@
+#include <ros/ros.h>
+
+#include <cstdlib>
+
+#include "hires/base/error.h"
+#include "hires/ros/log_sink.h"
+#include "hires/ros/master_watch.h"
+#include "hires/ros/xmlrpc_master_api.h"
+#include "nodes/execution_monitor/execution_monitor_node.h"
+
+int main(int argc, char** argv) {
+  hires_ros::QuietXmlRpc();
+  ros::init(argc, argv, "execution_monitor", ros::init_options::NoSigintHandler);
+  hires_ros::ShutDownRosOnSignals();
+  ros::NodeHandle nh;
+  hires_ros::MasterWatch master_watch;
+  const hires_ros::ScopedLogSink log_sink;
+  try {
+    const auto config = hires_ros::LoadExecutionMonitorParams();
+    const auto knowledge = hires_ros::LoadExecutionKnowledge(config);
+    hires_ros::ExecutionMonitorNode node(config, knowledge, &nh);
+    ros::spin();
+  } catch (const hires::base::ConfigError& error) {
+    ROS_FATAL("execution_monitor: %s", error.what());
+    return EXIT_FAILURE;
+  }
+  return master_watch.Finish(EXIT_SUCCESS);
+}

@@ -1,0 +1,40 @@
+#include <ros/init.h>
+#include <ros/package.h>
+
+#include <vector>
+
+#include "hires/cli/command_line.h"
+#include "nodes/hires/hypothesis_run.h"
+#include "nodes/hires/remote_achieve.h"
+#include "nodes/hires/remote_blackboard.h"
+#include "nodes/hires/remote_imagination.h"
+#include "nodes/hires/replay.h"
+#include "nodes/hires/robot_doctor.h"
+#include "nodes/hires/ros_doctor.h"
+
+int main(int argc, char** argv) {
+  std::vector<std::string> arguments;  // roslaunch adds names and remappings that are not ours
+  ros::removeROSArgs(argc, argv, arguments);
+  hires::cli::Backends backends;
+  backends.package_folder = ros::package::getPath("hires");
+  backends.imagine_remotely = hires_ros::ImagineRemotely;
+  backends.achieve_remotely = hires_ros::AchieveRemotely;
+  backends.connect_blackboard = hires_ros::ConnectBlackboard;
+  backends.play_hypothesis = hires_ros::PlayHypothesisRun;
+  backends.examine_robot = [&](const hires::cli::RobotDoctorOptions& options) {
+    return hires_ros::ExamineRobot(options, backends.package_folder);
+  };
+  backends.more_verbs.push_back(
+      {hires_ros::kHypothesisRunVerb, "one run of `hires experiment hypothesis`, which starts it",
+       [&](const std::vector<std::string>& words) {
+         return hires_ros::RunHypothesisProcess(words, backends.package_folder);
+       }});
+  backends.more_verbs.push_back({"replay",
+                                 "imagine again what a bag recorded, and compare the answers: BAG "
+                                 "[--local [--threads N]] [--json FILE] [--topic NAME]",
+                                 [&](const std::vector<std::string>& words) {
+                                   return hires_ros::RunReplay(words, backends.package_folder);
+                                 }});
+  backends.more_checks.push_back(hires_ros::CheckRos);
+  return hires::cli::RunCommandLine(arguments, backends);
+}

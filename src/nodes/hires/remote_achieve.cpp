@@ -1,0 +1,233 @@
+#include "nodes/hires/remote_achieve.h"
+
+#include <actionlib/client/simple_action_client.h>
+#include <fmt/format.h>
+#include <hires/AchieveAction.h>
+#include <ros/ros.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "hires/base/error.h"
+#include "hires/base/process.h"
+#include "hires/ros/conversions.h"
+#include "hires/ros/topic_names.h"
+
+namespace hires_ros {
+namespace {
+
+namespace evaluation = hires::evaluation;
+namespace execution = hires::execution;
+using Client = actionlib::SimpleActionClient<hires::AchieveAction>;
+
+constexpr double kStopWait = 60.0;    // [s] for the robot to come to a stand
+constexpr double kPollPeriod = 0.02;  // [s]
+
+std::optional<double> Moment(double time) {
+  return std::isnan(time) ? std::nullopt : std::optional<double>(time);
+}
+
+execution::StepStatus StepOf(const hires::StepStatus& message) {
+  execution::StepStatus step;
+  step.plan = static_cast<int>(message.plan);
+  step.index = static_cast<int>(message.index);
+  step.action = FromMsg(message.action);
+  step.phase = static_cast<execution::StepPhase>(
+      std::min<std::uint8_t>(message.phase, hires::StepStatus::SKIPPED));  // in the same order
+  step.started = Moment(message.started);
+  step.finished = Moment(message.finished);
+  step.start = {message.earliest_start, message.latest_start};
+  step.finish = {message.earliest_finish, message.latest_finish};
+  step.expected_start = message.expected_start;
+  step.expected_finish = message.expected_finish;
+  step.note = message.note;
+  step.failure = FromMsg(message.failure);
+  return step;
+}
+
+evaluation::ImaginedStep ImaginedOf(const hires::ImaginationStatus& message) {
+  evaluation::ImaginedStep step;
+  step.plan = static_cast<int>(message.plan);
+  step.step = static_cast<int>(message.step);
+  step.action = FromMsg(message.action);
+  step.requested = message.requested;
+  step.answered = Moment(message.answered);
+  step.dispatch = Moment(message.dispatch);
+  step.deadline = message.deadline;
+  step.wall_seconds = message.wall_seconds;
+  step.simulated_seconds = message.simulated_seconds;
+  step.outcome = evaluation::ParseImaginedOutcome(message.outcome);
+  for (const hires::Prediction& prediction : message.predictions) {
+    step.predictions.push_back(FromMsg(prediction));
+  }
+  step.recommended = message.recommended;
+  step.why = message.why;
+  return step;
+}
+
+/// Of a feedback or a result.
+template <typename Message>
+evaluation::AchieveStatus StatusOf(const Message& message) {
+  evaluation::AchieveStatus status;
+  status.now = ros::Time::now().toSec();
+  for (const auto& step : message.steps) status.steps.push_back(StepOf(step));
+  for (const auto& step : message.imaginations) status.imaginations.push_back(ImaginedOf(step));
+  status.replans = message.replans;
+  return status;
+}
+
+evaluation::AchieveOutcome OutcomeOf(std::uint8_t code) {
+  using Outcome = evaluation::AchieveOutcome;
+  switch (code) {
+    case hires::AchieveResult::SUCCEEDED:
+      return Outcome::kSucceeded;
+    case hires::AchieveResult::NO_PLAN:
+      return Outcome::kNoPlan;
+    case hires::AchieveResult::PREEMPTED:
+      return Outcome::kPreempted;
+    case hires::AchieveResult::INVALID:
+      return Outcome::kInvalid;
+    case hires::AchieveResult::BUSY:
+      return Outcome::kBusy;
+    case hires::AchieveResult::DRY_RUN:
+      return Outcome::kDryRun;
+  }
+  return Outcome::kFailed;
+}
+
+void RequireMaster() {
+  if (ros::master::check()) return;
+  throw hires::base::ConfigError(
+      fmt::format("no ROS master answers at {}; start one (roslaunch hires topple.launch), or set "
+                  "ROS_MASTER_URI",
+                  ros::master::getURI()));
+}
+
+[[noreturn]] void FailAsMonitorIsGone() {
+  throw hires::base::ConfigError(
+      "the execution monitor went away during the task; see its log, and whether the robot stands");
+}
+
+/// Feedback on its way from the thread that spins.
+class Feedback {
+ public:
+  void Put(evaluation::AchieveStatus status) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (latest_) {  // not taken yet: its warnings would be lost
+      status.warnings.insert(status.warnings.begin(), latest_->warnings.begin(),
+                             latest_->warnings.end());
+    }
+    latest_ = std::move(status);
+  }
+  std::optional<evaluation::AchieveStatus> Take() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::exchange(latest_, std::nullopt);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::optional<evaluation::AchieveStatus> latest_;
+};
+
+/// The conversation about one task.
+class Conversation {
+ public:
+  Conversation(const evaluation::AchieveQuery& query, const evaluation::OnAchieveStatus& on_status,
+               const std::function<bool()>& cancelled)
+      : query_(query),
+        on_status_(on_status),
+        cancelled_(cancelled),
+        client_(kAchieveAction, true) {}
+
+  evaluation::AchieveReport Run() {
+    RequireServer();
+    hires::AchieveGoal goal;
+    goal.task = query_.task;
+    goal.imagination = query_.imagination;
+    client_.sendGoal(goal, {}, {}, [this](const hires::AchieveFeedbackConstPtr& feedback) {
+      evaluation::AchieveStatus status = StatusOf(*feedback);
+      status.warnings = feedback->warnings;
+      feedback_.Put(std::move(status));
+    });
+    while (!client_.getState().isDone()) {
+      Pass();
+      ros::WallDuration(kPollPeriod).sleep();
+    }
+    Show();
+    if (client_.getState() == actionlib::SimpleClientGoalState::LOST) FailAsMonitorIsGone();
+    return ReportOf(*client_.getResult());
+  }
+
+ private:
+  void RequireServer() {
+    const double give_up = hires::base::SteadyNow() + query_.wait;
+    while (!client_.isServerConnected()) {
+      if (cancelled_() || hires::base::SteadyNow() > give_up) {
+        throw hires::base::ConfigError(fmt::format(
+            "no execution monitor serves the action '{}' at {}; start execution_monitor.launch",
+            kAchieveAction, ros::master::getURI()));
+      }
+      ros::WallDuration(kPollPeriod).sleep();
+    }
+  }
+
+  /// One round of waiting. By the wall's clock: ROS time stands still while the robot's does.
+  void Pass() {
+    Show();
+    const bool is_gone = !ros::ok() || !client_.isServerConnected();
+    if (is_gone && !client_.getState().isDone()) FailAsMonitorIsGone();
+    if (cancelled_() && !give_up_) {
+      client_.cancelGoal();
+      give_up_ = hires::base::SteadyNow() + kStopWait;
+    }
+    if (give_up_ && hires::base::SteadyNow() > *give_up_) {
+      throw hires::base::ConfigError(fmt::format(
+          "the execution monitor did not end the task within {} s; see whether the robot stands",
+          kStopWait));
+    }
+  }
+
+  void Show() {
+    const auto status = feedback_.Take();
+    if (!status) return;
+    warnings_.insert(warnings_.end(), status->warnings.begin(), status->warnings.end());
+    if (on_status_) on_status_(*status);
+  }
+
+  evaluation::AchieveReport ReportOf(const hires::AchieveResult& result) const {
+    evaluation::AchieveReport report;
+    report.task = query_.task;
+    report.outcome = OutcomeOf(result.code);
+    report.reason = result.reason;
+    report.failure = FromMsg(result.failure);
+    report.episode = result.episode;
+    report.status = StatusOf(result);
+    report.status.warnings = warnings_;
+    return report;
+  }
+
+  const evaluation::AchieveQuery& query_;
+  const evaluation::OnAchieveStatus& on_status_;
+  const std::function<bool()>& cancelled_;
+  Feedback feedback_;
+  std::vector<std::string> warnings_;
+  std::optional<double> give_up_;  // [s] steady, once it was cancelled
+  Client client_;
+};
+
+}  // namespace
+
+evaluation::AchieveReport AchieveRemotely(const evaluation::AchieveQuery& query,
+                                          const evaluation::OnAchieveStatus& on_status,
+                                          const std::function<bool()>& cancelled) {
+  int no_arguments = 0;
+  ros::init(no_arguments, nullptr, "hires_achieve",
+            ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
+  RequireMaster();
+  return Conversation(query, on_status, cancelled).Run();
+}
+
+}  // namespace hires_ros

@@ -1,0 +1,434 @@
+#include "nodes/hires/replay.h"
+
+#include <fmt/format.h>
+#include <ros/serialization.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/cli/command_line.h"
+#include "hires/evaluation/report_json.h"
+#include "hires/evaluation/report_table.h"
+#include "hires/imagination/client_config.h"
+#include "hires/imagination/local_imagination.h"
+#include "hires/ros/conversions.h"
+#include "hires/ros/imagine_request.h"
+#include "nodes/hires/remote_imagination.h"
+
+namespace hires_ros {
+namespace {
+
+namespace evaluation = hires::evaluation;
+namespace imagination = hires::imagination;
+using hires::ImagineGoal;
+using hires::ImagineResult;
+using nlohmann::ordered_json;
+
+std::atomic<bool> interrupted{false};
+
+void OnInterrupt(int) { interrupted = true; }
+
+/// The bytes that would travel: equal for equal bits, whatever the type.
+template <typename T>
+std::vector<std::uint8_t> BytesOf(const T& value) {
+  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(value));
+  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(stream, value);
+  return bytes;
+}
+
+template <typename T>
+bool SameBits(const T& a, const T& b) {
+  return BytesOf(a) == BytesOf(b);
+}
+
+bool SameBitsButWallTime(ImagineResult a, ImagineResult b) {
+  a.wall_seconds = b.wall_seconds = 0.0;
+  return SameBits(a, b);
+}
+
+std::string OutcomeText(std::uint8_t outcome) {
+  static constexpr std::array<const char*, 8> kNames{
+      "ranked",  "ranked_at_deadline", "all_failed", "no_worker", "nothing_finished",
+      "invalid", "cancelled",          "undecided"};
+  return outcome < kNames.size() ? kNames[outcome] : fmt::format("outcome {}", outcome);
+}
+
+std::string TextOf(double value) { return fmt::format("{:.17g}", value); }
+std::string TextOf(std::int32_t value) { return fmt::format("{}", value); }
+std::string TextOf(std::uint32_t value) { return fmt::format("{}", value); }
+std::string TextOf(std::uint64_t value) { return fmt::format("{}", value); }
+std::string TextOf(const std::string& value) { return "'" + value + "'"; }
+std::string TextOf(const hires::ActionCall& call) { return hires::base::ToString(FromMsg(call)); }
+
+/// Collects what differs, with both values where a line can hold them.
+class Differences {
+ public:
+  template <typename T>
+  void Compare(const std::string& name, const T& then, const T& now) {
+    if (SameBits(then, now)) return;
+    lines_.push_back(fmt::format("{}: {} then, {} now", name, TextOf(then), TextOf(now)));
+  }
+  template <typename T>
+  void CompareWhole(const std::string& name, const T& then, const T& now) {
+    if (!SameBits(then, now)) lines_.push_back(name + " differs");
+  }
+  void Add(std::string line) { lines_.push_back(std::move(line)); }
+  std::vector<std::string> Take() { return std::move(lines_); }
+
+ private:
+  std::vector<std::string> lines_;
+};
+
+void CompareNumbers(const std::string& place, const hires::Prediction& then,
+                    const hires::Prediction& now, Differences* out) {
+  static constexpr std::pair<const char*, double hires::Prediction::*> kNumbers[] = {
+      {"confidence_pooled", &hires::Prediction::confidence_pooled},
+      {"confidence_mean", &hires::Prediction::confidence_mean},
+      {"success_share", &hires::Prediction::success_share},
+      {"success_lower", &hires::Prediction::success_lower},
+      {"success_upper", &hires::Prediction::success_upper},
+      {"expected_cost", &hires::Prediction::expected_cost},
+      {"cost_lower", &hires::Prediction::cost_lower},
+      {"cost_upper", &hires::Prediction::cost_upper},
+      {"fall_share", &hires::Prediction::fall_share},
+      {"action_failed_share", &hires::Prediction::action_failed_share},
+      {"duration_mean", &hires::Prediction::duration_mean},
+      {"duration_sd", &hires::Prediction::duration_sd},
+      {"duration_p50", &hires::Prediction::duration_p50},
+      {"duration_p95", &hires::Prediction::duration_p95},
+      {"max_tilt_p50", &hires::Prediction::max_tilt_p50},
+      {"max_tilt_p95", &hires::Prediction::max_tilt_p95}};
+  for (const auto& [name, number] : kNumbers) {
+    out->Compare(place + name, then.*number, now.*number);
+  }
+}
+
+void ComparePredictions(const std::string& place, const hires::Prediction& then,
+                        const hires::Prediction& now, Differences* out) {
+  out->Compare(place + "action", then.action, now.action);
+  CompareNumbers(place, then, now, out);
+  out->Compare(place + "falls", then.falls, now.falls);
+  out->Compare(place + "rollouts", then.rollouts, now.rollouts);
+  out->CompareWhole(place + "counts", then.counts, now.counts);
+  out->CompareWhole(place + "kind of interval", then.interval_kind, now.interval_kind);
+  out->CompareWhole(place + "first_causes", then.first_causes, now.first_causes);
+  out->CompareWhole(place + "worst rollout", then.worst, now.worst);
+  out->CompareWhole(place + "median rollout", then.median, now.median);
+  out->CompareWhole(place + "first failed rollout", then.first_failed, now.first_failed);
+  out->CompareWhole(place + "failures", then.failures, now.failures);
+  out->CompareWhole(place + "final_world", then.final_world, now.final_world);
+  out->CompareWhole(place + "final_robot", then.final_robot, now.final_robot);
+}
+
+std::vector<std::string> DifferencesOf(const ImagineResult& then, const ImagineResult& now) {
+  Differences out;
+  if (then.outcome != now.outcome) {
+    out.Add(fmt::format("outcome: {} then, {} now", OutcomeText(then.outcome),
+                        OutcomeText(now.outcome)));
+  }
+  out.Compare("number of predictions", static_cast<std::uint32_t>(then.predictions.size()),
+              static_cast<std::uint32_t>(now.predictions.size()));
+  const std::size_t both = std::min(then.predictions.size(), now.predictions.size());
+  for (std::size_t i = 0; i < both; ++i) {
+    ComparePredictions(fmt::format("place {}, ", i + 1), then.predictions[i], now.predictions[i],
+                       &out);
+  }
+  out.Compare("recommended", then.recommended, now.recommended);
+  out.Compare("why", then.why, now.why);
+  out.CompareWhole("caveats", then.caveats, now.caveats);
+  out.CompareWhole("depends_on", then.depends_on, now.depends_on);
+  out.Compare("seed", then.seed, now.seed);
+  out.Compare("simulated_seconds", then.simulated_seconds, now.simulated_seconds);
+  return out.Take();
+}
+
+std::string ActionNameOf(const hires::ImagineGoal& goal) {
+  return goal.steps.empty() ? "no step" : goal.steps.front().name;
+}
+
+bool HasUnplayable(const ImagineResult& result) {
+  for (const hires::Prediction& prediction : result.predictions) {
+    for (const hires::FailureCount& failure : prediction.failures) {
+      if (failure.failure.code == hires::Failure::UNPLAYABLE) return true;
+    }
+  }
+  return false;
+}
+
+// ---------------------------------------------------------------- text and JSON
+
+std::vector<std::string> TableRow(const char* when, const ImagineResult& result, std::size_t i) {
+  const bool is_recommended = result.recommended == static_cast<std::int32_t>(i);
+  std::vector<std::string> row{when, is_recommended ? ">" : "", fmt::format("{}", i + 1)};
+  if (i >= result.predictions.size()) {
+    row.push_back("(no such place)");
+    return row;
+  }
+  const hires::Prediction& p = result.predictions[i];
+  row.insert(row.end(),
+             {TextOf(p.action), fmt::format("{:.1f} %", 100.0 * p.success_share),
+              fmt::format("{:.3f}", p.confidence_mean), fmt::format("{:.2f} s", p.duration_mean),
+              fmt::format("{}", p.falls), fmt::format("{}", p.rollouts)});
+  return row;
+}
+
+std::string RankingsText(const ImagineResult& then, const ImagineResult& now) {
+  const std::size_t places = std::max(then.predictions.size(), now.predictions.size());
+  if (places == 0) return "";
+  std::vector<std::vector<std::string>> rows{
+      {"", "", "place", "action", "success", "confidence", "duration", "falls", "n"}};
+  for (std::size_t i = 0; i < places; ++i) {
+    rows.push_back(TableRow("then", then, i));
+    rows.push_back(TableRow("now", now, i));
+  }
+  return evaluation::FormatTable(rows);
+}
+
+std::string VerdictText(const ReplayedRequest& replayed) {
+  const ReplayComparison& comparison = replayed.comparison;
+  const std::string walls =
+      fmt::format("{:.2f} s then, {:.2f} s now", replayed.recorded.result.wall_seconds,
+                  replayed.now.wall_seconds);
+  if (comparison.identical) {
+    return fmt::format("identical, bit by bit, but for the wall time ({})\n", walls);
+  }
+  std::string text =
+      comparison.depended_on_moment
+          ? fmt::format(
+                "not identical, and not expected to be: the answer then was {}, which "
+                "depends on the moment and not on the seed alone ({})\n",
+                replayed.recorded.result.outcome == ImagineResult::ALL_FAILED
+                    ? "all_failed before all rollouts were played"
+                    : OutcomeText(replayed.recorded.result.outcome),
+                walls)
+          : fmt::format(
+                "DIFFERS ({}): software, world, robot, configuration or the bag are not "
+                "what they were\n",
+                walls);
+  for (const std::string& line : comparison.differences) text += "  " + line + '\n';
+  return text;
+}
+
+ordered_json AnswerJson(const ImagineResult& result) {
+  if (result.outcome == ImagineResult::INVALID) {
+    return {{"outcome", "invalid"},
+            {"recommended", nullptr},
+            {"why", result.why},
+            {"ranking", ordered_json::array()},
+            {"seed", result.seed}};
+  }
+  return evaluation::ToJson(FromMsg(result));
+}
+
+// ---------------------------------------------------------------- the verb
+
+struct ReplayOptions {
+  std::string bag, json, action;
+  bool local{false};
+  int threads{0};
+};
+
+void AddOptions(CLI::App* app, ReplayOptions* o) {
+  app->add_option("BAG", o->bag, "recorded with `rosbag record /imagine/goal /imagine/result`")
+      ->required();
+  CLI::Option* local =
+      app->add_flag("--local", o->local, "in this process, with the package's own scene");
+  app->add_option("--threads", o->threads, "workers of --local; default: one per core")
+      ->check(CLI::Range(1, 256))
+      ->needs(local);
+  app->add_option("--json", o->json, "write the comparisons to this file as well");
+  app->add_option("--topic", o->action, "only this recorded action, e.g. /imagine; default: all");
+}
+
+/// A bar that is drawn over itself on a terminal; nothing elsewhere.
+void ShowProgress(const imagination::Interim& interim) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  const bool is_done = interim.progress.done >= interim.progress.total;
+  std::cerr << '\r' << (is_done ? "" : evaluation::ProgressLine(interim.progress)) << "\033[K"
+            << std::flush;
+}
+
+ImagineAgain ChooseImagination(const ReplayOptions& options, const std::string& package_folder,
+                               const std::function<bool()>& cancelled) {
+  if (!options.local) {
+    return [cancelled](const ImagineGoal& goal) {
+      return AskImaginationClient(goal, ShowProgress, cancelled);
+    };
+  }
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return MakeLocalImagination(package_folder, options.threads > 0 ? options.threads : cores,
+                              ShowProgress, cancelled);
+}
+
+std::string SummaryText(const std::vector<ReplayedRequest>& replayed) {
+  const auto count = [&](auto holds) {
+    return std::count_if(replayed.begin(), replayed.end(),
+                         [&](const ReplayedRequest& r) { return holds(r.comparison); });
+  };
+  return fmt::format("{} requests: {} identical, {} differ, {} not comparable bit by bit\n",
+                     replayed.size(), count([](const auto& c) { return c.identical; }),
+                     count([](const auto& c) { return !c.identical && !c.depended_on_moment; }),
+                     count([](const auto& c) { return !c.identical && c.depended_on_moment; }));
+}
+
+int Replay(const ReplayOptions& options, const std::string& package_folder) {
+  const ImagineRecording recording = ReadImagineRecording(options.bag, options.action);
+  if (recording.results_without_goal > 0) {
+    std::cout << fmt::format(
+        "{} results without a goal are left out: their goals were sent before "
+        "the recording began\n\n",
+        recording.results_without_goal);
+  }
+  std::signal(SIGINT, OnInterrupt);
+  const auto cancelled = [] { return interrupted.load(); };
+  const auto replayed =
+      ReplayAll(recording.requests, ChooseImagination(options, package_folder, cancelled),
+                cancelled, std::cout);
+  std::cout << SummaryText(replayed);
+  if (!options.json.empty()) {
+    ordered_json json = ordered_json::array();
+    for (const ReplayedRequest& request : replayed) json.push_back(ReplayJson(request));
+    evaluation::WriteJson(json, options.json);
+  }
+  return interrupted ? cli::kExitCancelled : ReplayExitCode(replayed);
+}
+
+}  // namespace
+
+bool DependsOnMoment(const ImagineGoal& goal, const ImagineResult& result) {
+  switch (result.outcome) {
+    case ImagineResult::RANKED:
+    case ImagineResult::INVALID:
+      return HasUnplayable(result);
+    case ImagineResult::UNDECIDED:
+      return HasUnplayable(result) ||
+             (!result.predictions.empty() && result.predictions[0].rollouts < goal.rollouts);
+    case ImagineResult::ALL_FAILED:
+      // The outcome alone does not say whether it was the deadline or an early stop.
+      return HasUnplayable(result) || (!goal.deadline.isZero() && !result.predictions.empty() &&
+                                       result.predictions[0].rollouts < goal.rollouts);
+    default:
+      return true;
+  }
+}
+
+ImagineGoal GoalToReplay(const RecordedRequest& recorded) {
+  ImagineGoal goal = recorded.goal;
+  const bool was_complete = recorded.result.outcome != ImagineResult::INVALID &&
+                            !DependsOnMoment(recorded.goal, recorded.result);
+  if (was_complete) goal.deadline = ros::Duration(0.0);
+  return goal;
+}
+
+ReplayComparison CompareAnswers(const ImagineGoal& goal, const ImagineResult& then,
+                                const ImagineResult& now) {
+  ReplayComparison comparison;
+  comparison.identical = SameBitsButWallTime(then, now);
+  comparison.depended_on_moment = DependsOnMoment(goal, then);
+  if (!comparison.identical) comparison.differences = DifferencesOf(then, now);
+  return comparison;
+}
+
+std::string ReplayText(const ReplayedRequest& replayed) {
+  const RecordedRequest& recorded = replayed.recorded;
+  return fmt::format(
+             "request '{}' ({}, goal id {}): {} of at most {} rollouts each, seed {}\n"
+             "outcome: {} then, {} now\n",
+             recorded.goal.request_id, recorded.action, recorded.goal_id,
+             ActionNameOf(recorded.goal), recorded.goal.rollouts, recorded.goal.seed,
+             OutcomeText(recorded.result.outcome), OutcomeText(replayed.now.outcome)) +
+         RankingsText(recorded.result, replayed.now) + VerdictText(replayed);
+}
+
+ordered_json ReplayJson(const ReplayedRequest& replayed) {
+  const RecordedRequest& recorded = replayed.recorded;
+  return {{"request_id", recorded.goal.request_id},
+          {"action", recorded.action},
+          {"goal_id", recorded.goal_id},
+          {"outcome_then", OutcomeText(recorded.result.outcome)},
+          {"outcome_now", OutcomeText(replayed.now.outcome)},
+          {"identical", replayed.comparison.identical},
+          {"depended_on_moment", replayed.comparison.depended_on_moment},
+          {"differences", replayed.comparison.differences},
+          {"then", AnswerJson(recorded.result)},
+          {"now", AnswerJson(replayed.now)}};
+}
+
+std::vector<ReplayedRequest> ReplayAll(const std::vector<RecordedRequest>& requests,
+                                       const ImagineAgain& imagine_again,
+                                       const std::function<bool()>& cancelled, std::ostream& out) {
+  std::vector<ReplayedRequest> replayed;
+  for (const RecordedRequest& recorded : requests) {
+    ReplayedRequest request{recorded, imagine_again(GoalToReplay(recorded)), {}};
+    if (cancelled()) break;
+    request.comparison = CompareAnswers(recorded.goal, recorded.result, request.now);
+    out << ReplayText(request) << '\n' << std::flush;
+    replayed.push_back(std::move(request));
+  }
+  return replayed;
+}
+
+int ReplayExitCode(const std::vector<ReplayedRequest>& replayed) {
+  const bool differs =
+      std::any_of(replayed.begin(), replayed.end(), [](const ReplayedRequest& request) {
+        return !request.comparison.identical && !request.comparison.depended_on_moment;
+      });
+  return differs ? kExitDiffers : cli::kExitRecommended;
+}
+
+ImagineAgain MakeLocalImagination(const std::string& package_folder, int num_threads,
+                                  const imagination::OnInterim& on_interim,
+                                  const std::function<bool()>& cancelled) {
+  struct Loaded {
+    imagination::ClientConfig config;
+    imagination::ImaginationSetup setup;
+  };
+  const auto load = [package_folder] {
+    auto config = imagination::ReadClientConfig(package_folder + "/config/imagination_client.yaml");
+    auto setup = imagination::LoadImaginationSetup(imagination::ReadSetupConfig(config.scene));
+    return std::make_shared<const Loaded>(Loaded{std::move(config), std::move(setup)});
+  };
+  return [=, loaded = std::shared_ptr<const Loaded>()](const ImagineGoal& goal) mutable {
+    if (!loaded) loaded = load();
+    std::optional<ImagineRequest> request;
+    try {
+      request = RequestOf(goal, loaded->setup, loaded->config.scheduler);
+    } catch (const hires::base::ConfigError& error) {
+      return RefusalOf(goal, error.what());
+    }
+    imagination::Report report = imagination::ImagineLocally(
+        request->setup, request->actions, request->params, num_threads, on_interim, cancelled);
+    report.caveats =
+        imagination::CaveatsOf(request->setup, request->actions, loaded->config.validated);
+    return AnswerTo(goal, *request, loaded->setup, report);
+  };
+}
+
+int RunReplay(const std::vector<std::string>& arguments, const std::string& package_folder) {
+  CLI::App app("imagine recorded requests again, and compare", "hires replay");
+  ReplayOptions options;
+  AddOptions(&app, &options);
+  app.footer(
+      "exit codes: 0 all identical, 2 something differs, 1 bad input; answers that ended at a "
+      "deadline are compared, but may differ");
+  try {
+    // CLI11 takes its arguments from the back.
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : cli::kExitBadInput;
+  }
+  return Replay(options, package_folder);
+}
+
+}  // namespace hires_ros

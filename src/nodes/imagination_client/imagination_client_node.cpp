@@ -1,0 +1,333 @@
+#include "nodes/imagination_client/imagination_client_node.h"
+
+#include <fmt/format.h>
+#include <ros/package.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include "hires/base/error.h"
+#include "hires/base/log.h"
+#include "hires/base/overloaded.h"
+#include "hires/base/process.h"
+#include "hires/base/short_text.h"
+#include "hires/imagination/report.h"
+#include "hires/imagination/rollout.h"
+#include "hires/ros/conversions.h"
+#include "hires/ros/private_params.h"
+#include "hires/ros/topic_names.h"
+#include "hires/ros/trace_markers.h"
+
+namespace hires_ros {
+namespace {
+
+namespace imagination = hires::imagination;
+
+constexpr double kTickPeriod = 0.02;  // [s]
+
+/// The scheduler's clock: the deadline is in ROS time where that is simulated; the wall's ROS time
+/// may jump, so there the steady clock counts.
+double SchedulerNow() {
+  return ros::Time::isSimTime() ? ros::Time::now().toSec() : hires::base::SteadyNow();
+}
+
+/// A record that cannot be read is the worker's failure: it gets no more work of this request.
+imagination::Event EventOf(int worker, int alternative, const WorkerLink::Played& played) {
+  try {
+    return imagination::RolloutFinished{worker, played.assignment, alternative,
+                                        static_cast<int>(played.record.index),
+                                        FromMsg(played.record)};
+  } catch (const hires::base::ConfigError& error) {
+    return imagination::AssignmentFailed{worker, played.assignment, error.what(), true};
+  }
+}
+
+}  // namespace
+
+ImaginationClientParams LoadImaginationClientParams() {
+  RejectUnknownPrivate({"config", "workers", "world", "robot", "objects", "uncertainty",
+                        "localisation", "map_to_world", "action_libraries"});
+  ImaginationClientParams params;
+  params.config = imagination::ReadClientConfig(PrivateText("config").value_or(
+      ros::package::getPath("hires") + "/config/imagination_client.yaml"));
+  params.setup = imagination::ReadSetupConfig(params.config.scene);
+  Override("workers", PrivateInt("workers"), hires::base::Between(1, 256), &params.num_workers);
+  imagination::OverridePaths(PrivateText("world"), PrivateText("robot"), PrivateText("objects"),
+                             PrivateText("uncertainty"), &params.setup);
+  params.setup.action_libraries = PrivateActionLibraries();
+  params.localisation = PrivateText("localisation").value_or("");
+  params.map_to_world =
+      hires::world::ParseMapToWorld(PrivateText("map_to_world").value_or(""), "~map_to_world");
+  return params;
+}
+
+ImaginationClientNode::ImaginationClientNode(const ImaginationClientParams& params,
+                                             imagination::ImaginationSetup setup,
+                                             ros::NodeHandle* nh)
+    : params_(params),
+      setup_(std::move(setup)),
+      server_(
+          *nh, kImagineAction, [this](GoalHandle goal) { OnGoal(goal); },
+          [this](GoalHandle goal) { OnCancel(goal); }, false),
+      ranking_markers_(
+          nh->advertise<visualization_msgs::MarkerArray>(kImaginationMarkers, 1, true)),
+      world_markers_(nh->advertise<visualization_msgs::MarkerArray>(kWorldMarkers, 1, true)) {
+  for (int k = 1; k <= params_.num_workers; ++k) {
+    workers_[k] = std::make_unique<WorkerLink>(
+        k, params_.config.worker_timeout, nh,
+        [this, k](const WorkerLink::Event& event) { OnWorkerEvent(k, event); });
+  }
+  if (!params_.localisation.empty()) {
+    localisation_ = nh->subscribe(params_.localisation, 1, &ImaginationClientNode::OnLocalisation,
+                                  this, ros::TransportHints().tcpNoDelay());
+  }
+  world_markers_.publish(WorldMarkers(setup_.scene->world));
+  updater_.setHardwareID("imagination");
+  updater_.add("workers", this, &ImaginationClientNode::Diagnose);
+  timer_ = nh->createWallTimer(ros::WallDuration(kTickPeriod),
+                               boost::function<void(const ros::WallTimerEvent&)>(
+                                   [this](const ros::WallTimerEvent&) { OnTick(); }));
+  server_.start();
+}
+
+ImaginationClientNode::~ImaginationClientNode() {
+  for (auto& session : sessions_) {
+    hires::ImagineResult result;
+    result.outcome = hires::ImagineResult::CANCELLED;
+    result.why = "the imagination client is going down";
+    session->goal.setAborted(result, result.why);
+  }
+}
+
+void ImaginationClientNode::Refuse(GoalHandle goal, const std::string& why) {
+  hires::base::Log(hires::base::LogLevel::kWarn,
+                   fmt::format("request={} outcome=invalid {}", goal.getGoal()->request_id, why));
+  goal.setAborted(RefusalOf(*goal.getGoal(), why), why);
+}
+
+void ImaginationClientNode::OnGoal(GoalHandle goal) {
+  goal.setAccepted();
+  try {
+    sessions_.push_back(MakeSession(goal));
+  } catch (const std::exception& error) {  // one bad request must not end the others
+    Refuse(goal, hires::base::Shortened(error.what()));
+    return;
+  }
+  Session* session = sessions_.back().get();
+  hires::base::Log(
+      hires::base::LogLevel::kInfo,
+      fmt::format("request={} session={} action={} alternatives={} rollouts={} seed={}",
+                  goal.getGoal()->request_id, session->id, session->request.actions[0].name,
+                  session->request.actions.size(), session->request.params.rollouts,
+                  goal.getGoal()->seed));
+  // At the moment of the start: whoever is there then is there in time for any deadline.
+  for (const auto& [k, worker] : workers_) {
+    if (!worker->is_alive()) continue;
+    CarryOut(session, session->scheduler->Handle(imagination::WorkerJoined{k}, session->started));
+  }
+}
+
+std::unique_ptr<ImaginationClientNode::Session> ImaginationClientNode::MakeSession(
+    GoalHandle goal) {
+  auto session = std::make_unique<Session>();
+  session->id = next_session_++;
+  session->goal = goal;
+  const hires::ImagineGoal& wanted = *goal.getGoal();
+  if (wanted.updated_fluents.empty()) RequireSoundState(wanted.world_state, wanted.robot_state);
+  session->request = RequestOf(wanted, setup_, params_.config.scheduler);
+  if (wanted.uncertainty.empty()) SpreadStart(&session->request);
+  session->started = SchedulerNow();
+  session->scheduler = std::make_unique<imagination::Scheduler>(
+      session->request.params, static_cast<int>(session->request.actions.size()), session->started);
+  session->begun = session->next_feedback = hires::base::SteadyNow();
+  return session;
+}
+
+void ImaginationClientNode::OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg) {
+  const auto& c = msg.pose.covariance;  // row by row: x, y, z, and about x, y, z
+  imagination::BelievedPose believed;
+  believed.X_MB = params_.map_to_world.ToWorld(hires::geometry::Flatten(FromMsg(msg.pose.pose)));
+  believed.covariance << c[0], c[1], c[5], c[6], c[7], c[11], c[30], c[31], c[35];
+  const double turn = params_.map_to_world.X_WM.yaw, scale = params_.map_to_world.scale;
+  Eigen::Matrix3d R_WM = Eigen::Matrix3d::Identity();
+  R_WM.topLeftCorner<2, 2>() = scale * Eigen::Rotation2Dd(turn).toRotationMatrix();
+  believed.covariance = R_WM * believed.covariance * R_WM.transpose();
+  believed_ = believed;
+}
+
+/// What begins where the robot stands begins as surely as it knows where that is.
+void ImaginationClientNode::SpreadStart(ImagineRequest* request) const {
+  const auto& X_MStart = request->setup.robot_state.X_MB;
+  if (!believed_ || !imagination::BeginsHere(X_MStart, *believed_)) return;
+  const auto spread = imagination::SpreadOf(*believed_, params_.localisation);
+  request->setup.uncertainty = std::make_shared<const imagination::Uncertainty>(
+      imagination::WithStartSpread(*request->setup.uncertainty, spread));
+  hires::base::Log(hires::base::LogLevel::kInfo,
+                   fmt::format("start=here spread_x={:.3f} spread_y={:.3f} spread_yaw={:.3f}",
+                               spread.x, spread.y, spread.yaw));
+}
+
+void ImaginationClientNode::OnCancel(GoalHandle goal) {
+  for (auto& session : sessions_) {
+    if (session->goal == goal) {
+      CarryOut(session.get(), session->scheduler->Cancel(SchedulerNow()));
+    }
+  }
+}
+
+void ImaginationClientNode::Feed(Session* session, const imagination::Event& event) {
+  CarryOut(session, session->scheduler->Handle(event, SchedulerNow()));
+}
+
+void ImaginationClientNode::OnWorkerEvent(int worker, const WorkerLink::Event& event) {
+  const auto with_session = [&](int id, const imagination::Event& what) {
+    for (auto& session : sessions_) {
+      if (session->id == id) Feed(session.get(), what);
+    }
+  };
+  const auto log = [&](const std::string& what) {
+    hires::base::Log(hires::base::LogLevel::kInfo, fmt::format("worker={} {}", worker, what));
+  };
+  std::visit(hires::base::Overloaded{
+                 [&](const WorkerLink::Joined&) {
+                   log("joined");
+                   for (auto& s : sessions_) Feed(s.get(), imagination::WorkerJoined{worker});
+                 },
+                 [&](const WorkerLink::Lost&) {
+                   log("lost");
+                   for (auto& s : sessions_) Feed(s.get(), imagination::WorkerLost{worker});
+                 },
+                 [&](const WorkerLink::Played& e) {
+                   for (auto& s : sessions_) {
+                     if (s->id != e.session) continue;
+                     const auto alternative = s->alternative_of.find(e.assignment);
+                     if (alternative == s->alternative_of.end()) continue;
+                     Feed(s.get(), EventOf(worker, alternative->second, e));
+                   }
+                 },
+                 [&](const WorkerLink::Finished& e) {
+                   // Feedback may have been lost on the way: the result has all rollouts once more.
+                   for (const auto& record : e.records) {
+                     OnWorkerEvent(worker, WorkerLink::Played{e.session, e.assignment, record});
+                   }
+                   with_session(e.session, imagination::AssignmentFinished{worker, e.assignment});
+                 },
+                 [&](const WorkerLink::Failed& e) {
+                   const std::string why = e.reason + (e.is_unusable ? OwnLibraries() : "");
+                   log("failed " + why);
+                   with_session(e.session, imagination::AssignmentFailed{worker, e.assignment, why,
+                                                                         e.is_unusable});
+                 }},
+             event);
+}
+
+/// For people, behind what a worker says that is not the same as here.
+std::string ImaginationClientNode::OwnLibraries() const {
+  const auto& libraries = setup_.skills->actions->libraries();
+  return libraries.empty() ? "" : "; the client loaded " + hires::skills::ToString(libraries);
+}
+
+hires::RolloutGoal ImaginationClientNode::RolloutGoalFor(const Session& session,
+                                                         const imagination::Assign& assign) const {
+  hires::RolloutGoal goal;
+  const imagination::RolloutSetup& setup = session.request.setup;
+  goal.action = ToMsg(session.request.actions[assign.alternative]);
+  goal.world_state = ToMsg(setup.world_state);
+  goal.world_state.world_hash = setup_.world_hash;
+  goal.robot_state = ToMsg(setup.robot_state);
+  goal.world_hash = setup_.world_hash;
+  goal.robot_hash = setup_.robot_hash;
+  goal.actions_hash = setup_.actions_hash;
+  goal.uncertainty_hash = setup.uncertainty->hash;
+  goal.physics_hash = setup_.physics_hash;
+  const bool is_own = setup.uncertainty->hash == setup_.uncertainty->hash;
+  goal.uncertainty = is_own ? session.goal.getGoal()->uncertainty : setup.uncertainty->yaml;
+  goal.seed = setup.seed;
+  goal.first = assign.first_index;
+  goal.count = assign.count;
+  return goal;
+}
+
+void ImaginationClientNode::CarryOut(Session* session,
+                                     const std::vector<imagination::Command>& commands) {
+  for (const auto& command : commands) {
+    if (const auto* assign = std::get_if<imagination::Assign>(&command)) {
+      session->alternative_of[assign->assignment] = assign->alternative;
+      workers_.at(assign->worker)
+          ->Send(session->id, assign->assignment, RolloutGoalFor(*session, *assign));
+    } else if (const auto* cancel = std::get_if<imagination::CancelAssignment>(&command)) {
+      workers_.at(cancel->worker)->Cancel(session->id, cancel->assignment);
+    }
+  }
+}
+
+void ImaginationClientNode::OnTick() {
+  for (auto& [k, worker] : workers_) worker->Look();
+  const double now = hires::base::SteadyNow();
+  for (auto& session : sessions_) {
+    CarryOut(session.get(), session->scheduler->Tick(SchedulerNow()));
+    if (now >= session->next_feedback) PublishFeedback(session.get(), now);
+  }
+  FinishSessions();
+  updater_.update();
+}
+
+void ImaginationClientNode::PublishFeedback(Session* session, double now) {
+  session->next_feedback = now + params_.config.feedback_period;
+  session->goal.publishFeedback(ToMsg(
+      imagination::Interim{session->scheduler->ProgressAt(SchedulerNow()),
+                           PredictionsOf(*session->scheduler, session->scheduler->RankingSoFar(),
+                                         session->request.actions, false),
+                           NumWorkers()}));
+}
+
+void ImaginationClientNode::FinishSessions() {
+  for (auto it = sessions_.begin(); it != sessions_.end();) {
+    if (!(*it)->scheduler->finished()) {
+      ++it;
+      continue;
+    }
+    Finish(it->get());
+    it = sessions_.erase(it);
+  }
+}
+
+void ImaginationClientNode::Finish(Session* session) {
+  for (auto& [k, worker] : workers_) worker->CancelSession(session->id);
+  const ImagineRequest& request = session->request;
+  auto report = imagination::MakeReport(*session->scheduler, request.actions, request.setup.seed,
+                                        hires::base::SteadyNow() - session->begun);
+  report.caveats = imagination::CaveatsOf(request.setup, request.actions, params_.config.validated);
+  const hires::ImagineResult result = AnswerTo(*session->goal.getGoal(), request, setup_, report);
+  hires::base::Log(hires::base::LogLevel::kInfo,
+                   fmt::format("session={} outcome={} {}", session->id,
+                               imagination::ToString(report.outcome), report.why));
+  ranking_markers_.publish(
+      RankingMarkers(report.ranking, report.recommended, request.setup.robot_state.X_MB));
+  if (report.outcome == imagination::ImaginationOutcome::kCancelled) {
+    session->goal.setCanceled(result, report.why);
+  } else if (report.outcome == imagination::ImaginationOutcome::kRanked) {
+    session->goal.setSucceeded(result, report.why);
+  } else {
+    session->goal.setAborted(result, report.why);
+  }
+}
+
+int ImaginationClientNode::NumWorkers() const {
+  int alive = 0;
+  for (const auto& [k, worker] : workers_) alive += worker->is_alive() ? 1 : 0;
+  return alive;
+}
+
+void ImaginationClientNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const int alive = NumWorkers();
+  using Level = diagnostic_msgs::DiagnosticStatus;
+  status.summary(alive == 0                    ? Level::ERROR
+                 : alive < params_.num_workers ? Level::WARN
+                                               : Level::OK,
+                 fmt::format("{} of {} workers", alive, params_.num_workers));
+  for (const auto& [k, worker] : workers_) {
+    status.add(worker->name(), worker->is_alive() ? "alive" : "lost");
+  }
+  status.add("requests", sessions_.size());
+}
+
+}  // namespace hires_ros

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <actionlib/server/action_server.h>
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <hires/ImagineAction.h>
+#include <ros/node_handle.h>
+
+#include <list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/imagination/client_config.h"
+#include "hires/imagination/imagination_setup.h"
+#include "hires/imagination/scheduler.h"
+#include "hires/imagination/start_spread.h"
+#include "hires/ros/imagine_request.h"
+#include "hires/world/map_to_world.h"
+#include "nodes/imagination_client/worker_link.h"
+
+namespace hires_ros {
+
+struct ImaginationClientParams {
+  hires::imagination::ClientConfig config;
+  hires::imagination::SetupConfig setup;
+  int num_workers{1};  ///< /worker_1 .. /worker_n may come and go
+  /// Topic (geometry_msgs/PoseWithCovarianceStamped) that tells where the robot stands and how sure
+  /// that is: the spread of start poses of what begins there. Empty: as the uncertainty says.
+  std::string localisation;
+  hires::world::MapToWorld map_to_world;  ///< of the localisation's map
+};
+
+/// The file in ~config (config/imagination_client.yaml where there is none); ~workers, ~world,
+/// ~robot, ~objects, ~uncertainty win over it; ~localisation and ~map_to_world.  @throws
+/// hires::base::ConfigError.
+ImaginationClientParams LoadImaginationClientParams();
+
+/// Answers the action `imagine`: several requests at once share the workers fairly, each has a
+/// scheduler of its own. All work is done on the thread that spins; callbacks never block.
+class ImaginationClientNode {
+ public:
+  ImaginationClientNode(const ImaginationClientParams& params,
+                        hires::imagination::ImaginationSetup setup, ros::NodeHandle* nh);
+  ~ImaginationClientNode();
+
+ private:
+  using Server = actionlib::ActionServer<hires::ImagineAction>;
+  using GoalHandle = Server::GoalHandle;
+
+  /// One request being answered.
+  struct Session {
+    int id;
+    GoalHandle goal;
+    ImagineRequest request;
+    std::unique_ptr<hires::imagination::Scheduler> scheduler;
+    std::map<int, int> alternative_of;  ///< assignment -> alternative
+    double started;                     ///< [s] by the scheduler's clock
+    double begun;                       ///< [s] steady
+    double next_feedback;               ///< [s] steady
+  };
+
+  void OnGoal(GoalHandle goal);
+  void OnCancel(GoalHandle goal);
+  void OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg);
+  void SpreadStart(ImagineRequest* request) const;
+  void OnTick();
+  void OnWorkerEvent(int worker, const WorkerLink::Event& event);
+  std::unique_ptr<Session> MakeSession(GoalHandle goal);
+  void Refuse(GoalHandle goal, const std::string& why);
+  void CarryOut(Session* session, const std::vector<hires::imagination::Command>& commands);
+  void Feed(Session* session, const hires::imagination::Event& event);
+  std::string OwnLibraries() const;
+  hires::RolloutGoal RolloutGoalFor(const Session& session,
+                                    const hires::imagination::Assign& assign) const;
+  void PublishFeedback(Session* session, double now);
+  void FinishSessions();
+  void Finish(Session* session);
+  int NumWorkers() const;
+  void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  ImaginationClientParams params_;
+  hires::imagination::ImaginationSetup setup_;
+  std::map<int, std::unique_ptr<WorkerLink>> workers_;
+  std::list<std::unique_ptr<Session>> sessions_;
+  int next_session_{1};
+  std::optional<hires::imagination::BelievedPose> believed_;
+  Server server_;
+  ros::Subscriber localisation_;
+  ros::Publisher ranking_markers_, world_markers_;
+  diagnostic_updater::Updater updater_;
+  ros::WallTimer timer_;
+};
+
+}  // namespace hires_ros

@@ -1,0 +1,161 @@
+#include "nodes/map_check/map_check_node.h"
+
+#include <fmt/format.h>
+#include <nav_msgs/GetMap.h>
+#include <ros/callback_queue.h>
+#include <ros/package.h>
+#include <ros/service.h>
+
+#include <cmath>
+
+#include "hires/base/error.h"
+#include "hires/base/log.h"
+#include "hires/imagination/imagination_setup.h"
+#include "hires/robot/robot_profile.h"
+#include "hires/ros/load_robot_names.h"
+#include "hires/ros/private_params.h"
+#include "hires/world/world.h"
+
+namespace hires_ros {
+namespace {
+
+using hires::base::ConfigError;
+using hires::world::Cell;
+using hires::world::OccupancyGrid;
+
+constexpr double kOccupied = 65, kFree = 19.6;  // [%] map_server's thresholds
+constexpr double kPatience = 5.0;               // [s] for a latched map, before static_map is asked
+
+Cell CellOf(int value) {
+  if (value > kOccupied) return Cell::kOccupied;
+  return value >= 0 && value < kFree ? Cell::kFree : Cell::kUnknown;
+}
+
+bool IsUrdf(const std::string& path) {
+  return path.size() > 5 && path.substr(path.size() - 5) == ".urdf";
+}
+
+void RequireSound(const nav_msgs::OccupancyGrid& map) {
+  const auto& info = map.info;
+  const std::size_t wanted = static_cast<std::size_t>(info.width) * info.height;
+  if (wanted == 0 || map.data.size() != wanted) {
+    throw ConfigError(
+        fmt::format("map: {} x {} cells and {} values, wanted one for each of at "
+                    "least one cell",
+                    info.width, info.height, map.data.size()));
+  }
+  if (!(info.resolution > 0.0f && std::isfinite(info.resolution))) {
+    throw ConfigError(fmt::format("map: resolution is {} m, wanted more than 0", info.resolution));
+  }
+  const auto& turn = info.origin.orientation;
+  if (std::abs(turn.x) + std::abs(turn.y) + std::abs(turn.z) > 1e-6) {
+    throw ConfigError(
+        "map: its origin is turned; save it with yaw 0, and say how it lies in the "
+        "world by map_to_world");
+  }
+}
+
+}  // namespace
+
+MapCheckParams LoadMapCheckParams() {
+  RejectUnknownPrivate({"scene", "world", "robot", "names", "map_to_world"});
+  auto setup = hires::imagination::ReadSetupConfig(
+      PrivateText("scene").value_or(ros::package::getPath("hires") + "/config/scene.yaml"));
+  hires::imagination::OverridePaths(PrivateText("world"), PrivateText("robot"), {}, {}, &setup);
+  MapCheckParams params;
+  params.world = setup.world;
+  params.robot = setup.robot;
+  params.names = LoadRobotNames();
+  return params;
+}
+
+OccupancyGrid FromMsg(const nav_msgs::OccupancyGrid& map) {
+  RequireSound(map);
+  OccupancyGrid grid;
+  grid.resolution = static_cast<double>(map.info.resolution);
+  grid.width = static_cast<int>(map.info.width);
+  grid.height = static_cast<int>(map.info.height);
+  grid.origin = {map.info.origin.position.x, map.info.origin.position.y};
+  grid.cells.reserve(map.data.size());
+  for (const int value : map.data) grid.cells.push_back(CellOf(value));
+  return grid;
+}
+
+double LaserHeight(const std::string& robot_path) {
+  const hires::robot::Robot robot = IsUrdf(robot_path) ? hires::robot::LoadRobotFromUrdf(robot_path)
+                                                       : hires::robot::LoadRobot(robot_path);
+  const auto laser = robot.model.FindLink(robot.profile.laser_link);
+  const auto base = robot.model.FindLink(robot.profile.base_link);
+  if (robot.profile.laser_link.empty() || !laser || !base) {
+    throw ConfigError(
+        fmt::format("{}: the robot has no laser (laser_link), so its map cannot be "
+                    "compared with the world; start with check_map:=false",
+                    robot_path));
+  }
+  const auto X_RL = hires::robot::ForwardKinematics(robot.model, robot.profile.joints);
+  return (X_RL[*base].Inverse() * X_RL[*laser]).translation.z();
+}
+
+MapCheckNode::MapCheckNode(const MapCheckParams& params, ros::NodeHandle* nh)
+    : params_(params),
+      slice_(hires::world::SliceWorld(hires::world::LoadWorld(params.world),
+                                      LaserHeight(params.robot), LaserHeight(params.robot))),
+      nh_(*nh),
+      subscriber_(nh->subscribe(params.names.map, 1, &MapCheckNode::OnMap, this)) {
+  updater_.setHardwareID("map_check");
+  updater_.add("map", this, &MapCheckNode::Diagnose);
+}
+
+std::string MapCheckNode::Run() {
+  const ros::WallTime begin = ros::WallTime::now();
+  bool has_asked = params_.names.static_map.empty();
+  while (ros::ok() && misfit_.empty()) {
+    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.1));
+    if (!has_asked && !fit_ && (ros::WallTime::now() - begin).toSec() > kPatience) {
+      has_asked = true;
+      AskForMap();
+    }
+    updater_.update();
+  }
+  return misfit_;
+}
+
+void MapCheckNode::AskForMap() {
+  nav_msgs::GetMap call;
+  if (ros::service::call(nh_.resolveName(params_.names.static_map), call)) {
+    OnMap(call.response.map);
+    return;
+  }
+  hires::base::Log(hires::base::LogLevel::kWarn,
+                   fmt::format("nothing comes on {} and {} does not answer: start the robot's "
+                               "map_server",
+                               params_.names.map, params_.names.static_map));
+}
+
+void MapCheckNode::OnMap(const nav_msgs::OccupancyGrid& map) {
+  try {
+    fit_ =
+        hires::world::RequireMapFits(FromMsg(map), slice_, params_.names.map_to_world, params_.fit);
+    hires::base::Log(hires::base::LogLevel::kInfo,
+                     fmt::format("map=fits score={:.2f} explained={:.2f} found={:.2f}", fit_->score,
+                                 fit_->explained, fit_->found));
+  } catch (const ConfigError& error) {
+    misfit_ = error.what();
+  }
+}
+
+void MapCheckNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using diagnostic_msgs::DiagnosticStatus;
+  if (!misfit_.empty()) {
+    status.summary(DiagnosticStatus::ERROR, misfit_);
+  } else if (fit_) {
+    status.summary(DiagnosticStatus::OK, "map and world agree");
+    status.add("score", fit_->score);
+    status.add("map's obstacles explained", fit_->explained);
+    status.add("world's obstacles found", fit_->found);
+  } else {
+    status.summary(DiagnosticStatus::WARN, "waits for " + params_.names.map);
+  }
+}
+
+}  // namespace hires_ros

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <nav_msgs/OccupancyGrid.h>
+#include <ros/node_handle.h>
+
+#include <optional>
+#include <string>
+
+#include "hires/control/robot_names.h"
+#include "hires/world/map_to_world.h"
+
+namespace hires_ros {
+
+struct MapCheckParams {
+  std::string world;  ///< path of the SDF world
+  std::string robot;  ///< path of the robot's profile or URDF
+  hires::control::RobotNames names;
+  hires::world::MapFitParams fit;
+};
+
+/// ~scene (config/scene.yaml where there is none); ~world, ~robot, ~names, ~map_to_world.
+/// @throws hires::base::ConfigError.
+MapCheckParams LoadMapCheckParams();
+
+/// 0 is free, 100 occupied, -1 unknown; in between map_server's thresholds count.
+/// @throws hires::base::ConfigError: no cells, another number of cells than its size says, a
+/// resolution that is none, an origin that is turned (map_server refuses such maps too).
+hires::world::OccupancyGrid FromMsg(const nav_msgs::OccupancyGrid& map);
+
+/// Height of the robot's laser over the floor [m], in its driving posture.
+/// @throws hires::base::ConfigError for a robot without one.
+double LaserHeight(const std::string& robot_path);
+
+/// Compares the robot's map with the world that is imagined, once at first and whenever a new map
+/// comes. A map that does not belong to the world is a reason to end: whatever the robot were told,
+/// it would be in the wrong place.
+class MapCheckNode {
+ public:
+  MapCheckNode(const MapCheckParams& params, ros::NodeHandle* nh);
+
+  /// Until a map does not fit, or ROS ends.
+  /// @return why it does not; empty: ROS ended.
+  std::string Run();
+
+ private:
+  void OnMap(const nav_msgs::OccupancyGrid& map);
+  void AskForMap();
+  void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  const MapCheckParams params_;
+  const hires::world::OccupancyGrid slice_;
+  ros::NodeHandle nh_;
+  ros::Subscriber subscriber_;
+  diagnostic_updater::Updater updater_;
+  std::optional<hires::world::MapFit> fit_;
+  std::string misfit_;
+};
+
+}  // namespace hires_ros

@@ -1,0 +1,93 @@
+#include "nodes/sim_worker/sim_robot_params.h"
+
+#include <ros/package.h>
+
+#include <cmath>
+#include <limits>
+
+#include "hires/ros/load_robot_names.h"
+#include "hires/ros/private_params.h"
+
+namespace hires_ros {
+namespace {
+
+using hires::base::Between;
+using hires::base::ParamReader;
+
+constexpr double kTick = 0.05;  // [s]
+
+hires::simulation::LaserParams ReadLaser(ParamReader in) {
+  hires::simulation::LaserParams params;
+  params.num_beams = in.Get("beams", Between(2, 10000));
+  params.angle_min = in.Get("angle_min", Between(-3.1415, 3.1415));
+  params.angle_max = in.Get("angle_max", Between(-3.1415, 3.1415));
+  if (params.angle_max <= params.angle_min) in.Fail("angle_max", "wanted more than angle_min");
+  params.range_min = in.Get("range_min", Between(0.0, 10.0));
+  params.range_max = in.Get("range_max", Between(0.1, 100.0));
+  params.noise = in.Get("noise", Between(0.0, 1.0));
+  return params;
+}
+
+void ReadDetector(ParamReader in, SimRobotParams* params) {
+  params->detection_period = in.Get("period", Between(kTick, 60.0));
+  const double ticks = params->detection_period / kTick;
+  if (std::abs(ticks - std::round(ticks)) > 1e-6) in.Fail("period", "wanted a multiple of 0.05 s");
+  params->min_visible_share = in.Get("min_visible_share", Between(0.0, 1.0));
+}
+
+/// Nothing uncertain means that the laser tells the truth, too.
+void DropNoiseIfCertain(SimRobotParams* params) {
+  if (params->setup.uncertainty == "none") params->laser.noise = 0.0;
+}
+
+void OverridePrivate(SimRobotParams* params) {
+  hires::imagination::OverridePaths(PrivateText("world"), PrivateText("robot"),
+                                    PrivateText("objects"), PrivateText("uncertainty"),
+                                    &params->setup);
+  const auto override_text = [](const char* key, std::string* target) {
+    const auto given = PrivateText(key);
+    if (given && !given->empty()) *target = *given;
+  };
+  override_text("scenario", &params->scenario);
+  override_text("area", &params->area);
+  int seed = static_cast<int>(params->seed);
+  Override("seed", PrivateInt("seed"), Between(0, std::numeric_limits<int>::max()), &seed);
+  params->seed = static_cast<std::uint64_t>(seed);
+  Override("pace", PrivateNumber("pace"), Between(0.0, 1000.0), &params->pace);
+  params->lockstep = PrivateBool("lockstep").value_or(params->lockstep);
+  params->hold = PrivateBool("hold").value_or(params->hold);
+}
+
+}  // namespace
+
+SimRobotParams ReadSimRobotParams(const std::string& path) {
+  ParamReader in = ParamReader::FromFile(path);
+  SimRobotParams params;
+  params.setup = hires::imagination::ReadSetupConfig(
+      hires::imagination::ResolvePath(in.GetString("scene"), path));
+  params.scenario = hires::imagination::ResolvePath(in.GetString("scenario"), path);
+  params.area = in.GetString("area");
+  params.seed =
+      static_cast<std::uint64_t>(in.Get("seed", Between(0, std::numeric_limits<int>::max())));
+  params.pace = in.Get("pace", Between(0.0, 1000.0));
+  params.lockstep = in.GetBool("lockstep");
+  params.hold = in.GetBool("hold");
+  params.laser = ReadLaser(in.Sub("laser"));
+  ReadDetector(in.Sub("detector"), &params);
+  in.RejectUnknownKeys();
+  DropNoiseIfCertain(&params);
+  return params;
+}
+
+SimRobotParams LoadSimRobotParams() {
+  RejectUnknownPrivate({"role", "config", "world", "robot", "objects", "uncertainty", "scenario",
+                        "area", "seed", "pace", "lockstep", "hold", "names"});
+  SimRobotParams params = ReadSimRobotParams(
+      PrivateText("config").value_or(ros::package::getPath("hires") + "/config/sim_robot.yaml"));
+  params.names = LoadRobotNames();
+  OverridePrivate(&params);
+  DropNoiseIfCertain(&params);
+  return params;
+}
+
+}  // namespace hires_ros

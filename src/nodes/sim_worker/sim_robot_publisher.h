@@ -1,0 +1,61 @@
+#pragma once
+
+#include <hires/GroundTruth.h>
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <tf2_ros/transform_broadcaster.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hires/imagination/imagination_setup.h"
+#include "hires/ros/trace_markers.h"
+#include "hires/simulation/truth_record.h"
+#include "nodes/sim_worker/sim_robot_world.h"
+
+namespace hires_ros {
+
+/// Says under a PR2's names what the simulated robot's sensors read, and under ground_truth/ what
+/// is really so.
+class SimRobotPublisher {
+ public:
+  SimRobotPublisher(const SimRobotParams& params, const hires::imagination::ImaginationSetup& setup,
+                    ros::NodeHandle* nh);
+
+  /// What comes at 100 Hz: joints and odometry, then the clock, so that nobody knows a time whose
+  /// sensors are not on their way.
+  void PublishFast(const SimRobotWorld& world, const SensorReadings& readings);
+
+  /// What comes with every tick of 0.05 s, before the fast ones of the same moment: transforms,
+  /// localisation, laser, and the detector when it is due. Called again, it says the same again.
+  /// @return topics that have a message of this stamp, fast ones included.
+  std::vector<std::string> PublishTick(const SimRobotWorld& world, const SensorReadings& readings,
+                                       const hires::simulation::TruthRecord& truth);
+
+  void PublishClock(const SimRobotWorld& world);
+  static ros::Time StampOf(const SimRobotWorld& world);  ///< begins at 1 s; 0 means "no time yet"
+
+ private:
+  void PublishTransforms(const SensorReadings& readings, const ros::Time& stamp);
+  void PublishLocalisation(const SensorReadings& readings, const ros::Time& stamp);
+  void PublishScan(const SimRobotWorld& world, const SensorReadings& readings,
+                   const ros::Time& stamp);
+  bool IsLookDue(const SimRobotWorld& world, const SensorReadings& readings) const;
+  void PublishDetections(const SimRobotWorld& world, const ros::Time& stamp);
+  void PublishTruth(const SimRobotWorld& world, const hires::simulation::TruthRecord& truth,
+                    const ros::Time& stamp);
+  void PublishMap();
+
+  const SimRobotParams params_;
+  std::shared_ptr<const hires::simulation::Scene> scene_;
+  hires::simulation::LaserParams laser_;
+  std::optional<long> last_look_;                   // [ms] of the camera
+  const hires::base::Rng scan_rng_, detector_rng_;  // forked for each moment
+  ros::Publisher clock_, odometry_, joints_, amcl_, scan_, detections_, map_, world_markers_,
+      markers_, true_world_, true_robot_, truth_;
+  tf2_ros::TransformBroadcaster tf_;
+  TraceMarkers trace_;
+};
+
+}  // namespace hires_ros

@@ -1,0 +1,183 @@
+#include "nodes/sim_worker/sim_robot_world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/evaluation/scenario.h"
+
+namespace hires_ros {
+namespace {
+
+using hires::base::ConfigError;
+using hires::base::ToLower;
+using hires::geometry::Pose2;
+using hires::geometry::Pose3;
+using hires::geometry::Twist2;
+using hires::imagination::ImaginationSetup;
+using hires::imagination::StartState;
+using hires::simulation::RobotSimulator;
+
+constexpr long kSettling = 500;  // [ms]
+enum Streams : std::uint64_t { kVariation, kSimulator, kControl, kOdometer };
+
+template <typename T>
+const T& Lookup(const std::map<std::string, T>& known, const std::string& kind,
+                const std::string& name, const std::string& where) {
+  const auto found = known.find(ToLower(name));
+  if (found != known.end()) return found->second;
+  std::vector<std::string> names;
+  for (const auto& entry : known) names.push_back(entry.first);
+  throw ConfigError(where + ": " + hires::base::UnknownName(kind, name, names));
+}
+
+void SetPostures(const hires::robot::Robot& robot, const hires::evaluation::Scenario& scenario,
+                 const std::string& where, hires::robot::JointPositions* joints) {
+  if (!robot.profile.upper_body) return;  // nothing above the base moves
+  const hires::robot::UpperBodyProfile& body = *robot.profile.upper_body;
+  (*joints)[body.torso_joint] = Lookup(body.torso_postures, "torso posture", scenario.torso, where);
+  for (const auto& [name, posture] : scenario.arms) {
+    const hires::robot::ArmProfile& arm = Lookup(body.arms, "arm", name, where);
+    const auto& positions = Lookup(arm.postures, "posture of " + name, posture, where).front();
+    for (std::size_t i = 0; i < arm.joints.size(); ++i) (*joints)[arm.joints[i]] = positions[i];
+  }
+}
+
+StartState StartOfScenario(const ImaginationSetup& setup, const std::string& path) {
+  const hires::evaluation::Scenario scenario = hires::evaluation::ReadScenario(path);
+  StartState start;
+  start.robot.X_MB = scenario.X_MB;
+  SetPostures(setup.scene->robot, scenario, path, &start.robot.joints);
+  for (const hires::evaluation::ScenarioObject& object : scenario.objects) {
+    const std::string& kind = object.model.empty() ? object.name : object.model;
+    start.world.objects.push_back({object.name, setup.ModelOf(kind), object.X_MO, {}, ""});
+  }
+  return start;
+}
+
+/// A start that collides cannot be one where the robot stands: its offset is drawn in.
+hires::simulation::Variation WithFreeStart(hires::simulation::Variation variation,
+                                           const hires::simulation::Scene& scene,
+                                           const Pose2& X_MB) {
+  Pose2& offset = variation.start_offset;
+  for (int halving = 0; halving < 8; ++halving) {
+    if (!scene.clearance.FindContact(X_MB * offset)) return variation;
+    offset = {offset.x / 2, offset.y / 2, offset.yaw / 2};
+  }
+  offset = {};
+  return variation;
+}
+
+long StepsPerMillisecond(double time_step) {
+  const double steps = 0.001 / time_step;
+  if (std::abs(steps - std::round(steps)) < 1e-6 && steps > 0.5) return std::lround(steps);
+  throw ConfigError(fmt::format(
+      "physics: time_step is {:g} s; the robot's sensors need 0.001 s or a whole part of it",
+      time_step));
+}
+
+}  // namespace
+
+hires::simulation::LevelOfDetail LevelFor(const hires::simulation::Scene& scene) {
+  return scene.robot.profile.upper_body ? hires::simulation::LevelOfDetail::kPlanar
+                                        : hires::simulation::LevelOfDetail::kTray;
+}
+
+StartState StartOf(const ImaginationSetup& setup, const SimRobotParams& params) {
+  return params.scenario.empty()
+             ? hires::imagination::MakeStartState(setup, params.area, std::vector<std::string>{})
+             : StartOfScenario(setup, params.scenario);
+}
+
+SimRobotWorld::SimRobotWorld(const ImaginationSetup& setup, const StartState& start,
+                             std::uint64_t seed)
+    : setup_(std::make_shared<const ImaginationSetup>(setup)),
+      control_rng_(hires::base::Rng(seed).Fork(kControl)),
+      simulator_rng_(hires::base::Rng(seed).Fork(kSimulator)),
+      steps_per_millisecond_(StepsPerMillisecond(setup.physics.time_step)) {
+  const hires::base::Rng rng(seed);
+  variation_ =
+      WithFreeStart(hires::imagination::SampleVariation(*setup.uncertainty, rng.Fork(kVariation)),
+                    *setup.scene, start.robot.X_MB);
+  odometry_scale_ = 1.0 + rng.Fork(kOdometer).Normal(0.0, variation_.wheel_slip);
+  simulator_ =
+      std::make_unique<RobotSimulator>(setup.scene, variation_, start.world, start.robot,
+                                       simulator_rng_, setup.physics, LevelFor(*setup.scene));
+  Advance(kSettling);
+  milliseconds_ = 0;
+}
+
+void SimRobotWorld::Advance(long milliseconds) {
+  for (long i = 0; i < milliseconds; ++i) {
+    DeliverLate();
+    for (long step = 0; step < steps_per_millisecond_; ++step) simulator_->Step();
+    MoveOdometry(0.001);
+    ++milliseconds_;
+  }
+}
+
+void SimRobotWorld::MoveOdometry(double dt) {
+  const Twist2& V_B = simulator_->base().V_B;
+  const double length = odometry_scale_ * dt;
+  const double half_turn = 0.5 * dt * V_B.wz;
+  // The middle of the arc: second order, as the simulator's own base.
+  const Pose2 turn{0.0, 0.0, half_turn};
+  X_OB_ = X_OB_ * turn * Pose2{length * V_B.vx, length * V_B.vy, 0.0} * turn;
+}
+
+void SimRobotWorld::Apply(const hires::robot::Command& command) {
+  hires::robot::Command rest = command;
+  rest.base_velocity.reset();
+  simulator_->Send(rest);
+  NoteSent(rest);
+  if (!command.base_velocity) return;
+  if (time() < late_until_) {
+    held_back_ = command.base_velocity;
+  } else {
+    Deliver(*command.base_velocity);
+  }
+}
+
+void SimRobotWorld::NoteSent(const hires::robot::Command& command) {
+  for (const auto& [group, trajectory] : command.trajectories) {
+    trajectories_[group] = {time(), trajectory};
+  }
+  for (const auto& [arm, gripper] : command.grippers) grippers_[arm] = gripper;
+}
+
+void SimRobotWorld::Deliver(const Twist2& velocity) {
+  hires::robot::Command command;
+  command.base_velocity = velocity;
+  simulator_->Send(command);
+  const double period = std::min(time() - last_delivery_, 0.2);
+  last_delivery_ = time();
+  if (control_rng_.Bernoulli(variation_.late_cycle_probability)) {
+    late_until_ = time() + period + variation_.late_cycle_delay;
+  }
+}
+
+void SimRobotWorld::DeliverLate() {
+  if (!held_back_ || time() < late_until_) return;
+  const Twist2 velocity = *held_back_;
+  held_back_.reset();
+  Deliver(velocity);
+}
+
+SensorReadings SimRobotWorld::Sense() {
+  const hires::robot::Observation seen = simulator_->Observe(0.0);
+  SensorReadings readings;
+  readings.X_MB = seen.X_MB;
+  readings.X_MO = seen.X_MB * X_OB_.Inverse();
+  readings.odometry = {X_OB_, seen.V_B};
+  readings.joints = {seen.joints, seen.joint_velocities};
+  if (readings.joints.positions.empty()) {
+    readings.joints.positions = simulator_->GetRobotState().joints;
+  }
+  readings.ghosts_M = seen.obstacles_M;
+  return readings;
+}
+
+}  // namespace hires_ros

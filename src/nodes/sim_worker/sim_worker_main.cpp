@@ -1,0 +1,57 @@
+#include <ros/ros.h>
+
+#include <cstdlib>
+
+#include "hires/base/error.h"
+#include "hires/ros/log_sink.h"
+#include "hires/ros/master_watch.h"
+#include "hires/ros/private_params.h"
+#include "hires/ros/xmlrpc_master_api.h"
+#include "nodes/sim_worker/sim_robot_node.h"
+#include "nodes/sim_worker/sim_worker_node.h"
+
+namespace {
+
+using hires::imagination::LoadImaginationSetup;
+
+void Work(ros::NodeHandle* nh) {
+  const hires_ros::SimWorkerParams params = hires_ros::LoadSimWorkerParams();
+  hires_ros::SimWorkerNode node(params, LoadImaginationSetup(params.setup), nh);
+  ros::spin();
+}
+
+void PlayRobot(ros::NodeHandle* nh) {
+  const hires_ros::SimRobotParams params = hires_ros::LoadSimRobotParams();
+  hires_ros::SimRobotNode node(params, LoadImaginationSetup(params.setup), nh);
+  ros::spin();
+}
+
+/// A worker plays rollouts under a master of its own; the robot is the one that is real to the
+/// rest.
+bool IsRobot() {
+  std::string role = "worker";
+  hires_ros::Override("role", hires_ros::PrivateText("role"),
+                      hires::base::OneOf({"worker", "robot"}), &role);
+  return role == "robot";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hires_ros::QuietXmlRpc();
+  ros::init(argc, argv, "sim_worker", ros::init_options::NoSigintHandler);
+  hires_ros::ShutDownRosOnSignals();
+  ros::NodeHandle nh;
+  const hires_ros::ScopedLogSink log_sink;
+  try {
+    if (IsRobot()) {
+      PlayRobot(&nh);
+    } else {
+      Work(&nh);
+    }
+  } catch (const hires::base::ConfigError& error) {
+    ROS_FATAL("sim_worker: %s", error.what());
+    return EXIT_FAILURE;
+  }
+  return EXIT_SUCCESS;
+}

@@ -1,0 +1,29 @@
+#include <ros/ros.h>
+
+#include <cstdlib>
+
+#include "hires/base/error.h"
+#include "hires/ros/log_sink.h"
+#include "hires/ros/master_watch.h"
+#include "hires/ros/translator_params.h"
+#include "hires/ros/xmlrpc_master_api.h"
+#include "nodes/translator/translator_node.h"
+
+int main(int argc, char** argv) {
+  hires_ros::QuietXmlRpc();
+  ros::init(argc, argv, "translator", ros::init_options::NoSigintHandler);
+  hires_ros::ShutDownRosOnSignals();
+  ros::NodeHandle nh;
+  hires_ros::MasterWatch master_watch;
+  const hires_ros::ScopedLogSink log_sink;
+  try {
+    const auto params = hires_ros::LoadTranslatorParams();
+    hires_ros::TranslatorNode node(hires_ros::LoadTranslatorContext(params), params.names.map_frame,
+                                   &nh);
+    ros::spin();
+  } catch (const hires::base::ConfigError& error) {
+    ROS_FATAL("translator: %s", error.what());
+    return EXIT_FAILURE;
+  }
+  return master_watch.Finish(EXIT_SUCCESS);
+}

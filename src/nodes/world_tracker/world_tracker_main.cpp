@@ -1,0 +1,28 @@
+#include <ros/ros.h>
+
+#include <cstdlib>
+
+#include "hires/base/error.h"
+#include "hires/ros/log_sink.h"
+#include "hires/ros/master_watch.h"
+#include "hires/ros/xmlrpc_master_api.h"
+#include "nodes/world_tracker/world_tracker_node.h"
+#include "nodes/world_tracker/world_tracker_params.h"
+
+int main(int argc, char** argv) {
+  hires_ros::QuietXmlRpc();
+  ros::init(argc, argv, "world_tracker", ros::init_options::NoSigintHandler);
+  hires_ros::ShutDownRosOnSignals();
+  ros::NodeHandle nh;
+  hires_ros::MasterWatch master_watch;
+  const hires_ros::ScopedLogSink log_sink;
+  try {
+    const auto params = hires_ros::LoadWorldTrackerParams();
+    hires_ros::WorldTrackerNode node(params, hires_ros::LoadTranslatorContext(params.files), &nh);
+    ros::spin();
+  } catch (const hires::base::ConfigError& error) {
+    ROS_FATAL("world_tracker: %s", error.what());
+    return EXIT_FAILURE;
+  }
+  return master_watch.Finish(EXIT_SUCCESS);
+}

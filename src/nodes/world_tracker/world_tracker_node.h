@@ -1,0 +1,72 @@
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <hires/Detections.h>
+#include <hires/ExecuteActionActionGoal.h>
+#include <hires/ExecuteActionActionResult.h>
+#include <nav_msgs/Odometry.h>
+#include <ros/node_handle.h>
+#include <sensor_msgs/JointState.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <atomic>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hires/ros/sensor_receiver.h"
+#include "nodes/world_tracker/world_tracker_params.h"
+#include "nodes/world_tracker/world_tracker_sweep.h"
+#include "nodes/world_tracker/world_tracker_writer.h"
+
+namespace hires_ros {
+
+/// Turns what the robot senses into fluents on the Blackboard and into the objects that the middle
+/// layer's skills know of.
+class WorldTrackerNode {
+ public:
+  WorldTrackerNode(const WorldTrackerParams& params, hires::translation::TranslatorContext context,
+                   ros::NodeHandle* nh);
+
+ private:
+  void Subscribe(ros::NodeHandle* nh);
+  template <typename Message>
+  void Hear(ros::NodeHandle* nh, const std::string& topic, int queue,
+            std::function<void(const Message&)> take);
+  void OnGoal(const hires::ExecuteActionActionGoal& msg);
+  void OnResult(const hires::ExecuteActionActionResult& msg);
+
+  void Process();
+  std::optional<double> NextMoment() const;
+  void Handle(double time);
+  void ReadView();
+  void PublishKnown(const hires::sensing::RobotEstimate& now,
+                    const std::vector<hires::robot::SeenObject>& known);
+  hires::translation::ObservedWorld Observed(
+      const hires::sensing::RobotEstimate& now,
+      const std::vector<hires::robot::SeenObject>& known) const;
+  void TellActions();
+  void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  const WorldTrackerParams params_;
+  const hires::translation::TranslatorContext context_;
+  SensorReceiver sensors_;
+  HeadSweep sweep_;
+  std::map<std::string, std::string> running_;  // goal id -> action
+  double time_{-1e9};                           // [s] of the last moment
+  double published_{-1e9};                      // [s] when known objects were told last
+  int restarts_{0};                             // of the robot's clock
+  hires::sensing::Missing lack_{hires::sensing::Missing::kNothing};  // of the last moment
+  std::uint64_t num_moments_{0}, num_looks_{0}, num_dropped_{0};
+
+  std::atomic<bool> is_view_new_{false};
+  ros::Publisher known_, head_;
+  std::vector<ros::Subscriber> subscribers_;
+  diagnostic_updater::Updater updater_;
+  ros::SteadyTimer timer_;
+  ObservationWriter writer_;  // last: its threads end first
+};
+
+}  // namespace hires_ros

@@ -1,0 +1,86 @@
+#include "nodes/world_tracker/world_tracker_params.h"
+
+#include "hires/base/text.h"
+#include "hires/imagination/imagination_setup.h"
+#include "hires/ros/load_robot_names.h"
+#include "hires/ros/private_params.h"
+
+namespace hires_ros {
+namespace {
+
+using hires::base::Between;
+using hires::base::ParamReader;
+
+hires::translation::ClassifyParams ReadClassify(ParamReader in) {
+  hires::translation::ClassifyParams params;
+  params.area_distance = in.Get("area_distance", Between(0.01, 5.0));
+  params.area_yaw = in.Get("area_yaw", Between(0.01, 3.2));
+  params.tucked_tolerance = in.Get("tucked_tolerance", Between(0.01, 3.2));
+  params.posture_tolerance = in.Get("posture_tolerance", Between(0.01, 3.2));
+  params.torso_tolerance = in.Get("torso_tolerance", Between(0.001, 0.2));
+  params.placing_height = in.Get("placing_height", Between(0.005, 1.0));
+  params.tray_height = in.Get("tray_height", Between(0.005, 1.0));
+  params.hysteresis = in.Get("hysteresis", Between(1.0, 3.0));
+  params.placing_hysteresis = in.Get("placing_hysteresis", Between(0.0, 0.2));
+  return params;
+}
+
+hires::translation::ChangeParams ReadChanges(ParamReader in) {
+  hires::translation::ChangeParams params;
+  params.position = in.Get("position", Between(0.0, 1.0));
+  params.angle = in.Get("angle", Between(0.0, 3.2));
+  params.robot_position = in.Get("robot_position", Between(0.0, 5.0));
+  params.robot_angle = in.Get("robot_angle", Between(0.0, 3.2));
+  return params;
+}
+
+SweepParams ReadSweep(ParamReader in) {
+  SweepParams params;
+  params.enabled = in.GetBool("enabled");
+  params.range = in.Get("range", Between(0.5, 30.0));
+  params.period = in.Get("period", Between(0.1, 3600.0));
+  params.dwell = in.Get("dwell", Between(0.0, 60.0));
+  params.speed = in.Get("speed", Between(0.05, 10.0));
+  params.hands_off = in.Get("hands_off", Between(0.0, 60.0));
+  return params;
+}
+
+std::map<std::string, std::string> ReadConcepts(ParamReader in) {
+  std::map<std::string, std::string> concepts;
+  for (const std::string& model : in.Keys()) {
+    concepts[hires::base::ToLower(model)] = in.GetString(model);
+  }
+  return concepts;
+}
+
+}  // namespace
+
+WorldTrackerParams ReadWorldTrackerParams(const std::string& path) {
+  ParamReader in = ParamReader::FromFile(path);
+  WorldTrackerParams params;
+  ReadTranslatorFiles(path, &in, &params.files);
+  params.sensing = hires::imagination::ReadSetupConfig(params.files.scene).sensing;
+  params.classify = ReadClassify(in.Sub("classify"));
+  params.changes = ReadChanges(in.Sub("changes"));
+  params.concepts = ReadConcepts(in.Sub("concepts"));
+  params.sweep = ReadSweep(in.Sub("sweep"));
+  params.write_period = in.Get("write_period", Between(0.0, 10.0));
+  params.lockstep = in.GetBool("lockstep");
+  in.RejectUnknownKeys();
+  return params;
+}
+
+WorldTrackerParams LoadWorldTrackerParams() {
+  RejectUnknownPrivate(
+      {"config", "world", "robot", "objects", "sweep", "lockstep", "names", "map_to_world"});
+  WorldTrackerParams params = ReadWorldTrackerParams(ConfigPath("world_tracker"));
+  params.files.world = PrivateText("world").value_or("");
+  params.files.robot = PrivateText("robot").value_or("");
+  params.files.objects = PrivateText("objects").value_or("");
+  params.files.names = LoadRobotNames();
+  params.sweep.enabled = PrivateBool("sweep").value_or(params.sweep.enabled);
+  params.lockstep = PrivateBool("lockstep").value_or(params.lockstep);
+  return params;
+}
+
+}  // namespace hires_ros

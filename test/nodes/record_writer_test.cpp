@@ -1,0 +1,54 @@
+#include "nodes/execution_monitor/record_writer.h"
+
+#include <gmock/gmock.h>
+
+namespace hires_ros {
+namespace {
+
+namespace execution = hires::execution;
+namespace knowledge = hires::knowledge;
+using ::testing::ElementsAre;
+
+const knowledge::Ontology& TheOntology() {
+  static const knowledge::Ontology ontology =
+      knowledge::Ontology::FromFiles({HIRES_SOURCE_DIR "/config/ontology/upper.ttl",
+                                      HIRES_SOURCE_DIR "/config/ontology/race.ttl"});
+  return ontology;
+}
+
+TEST(FluentOfTest, FillersHaveTheTypesOfTheOntology) {
+  execution::Record record;
+  record.concept_name = "MoveBaseTask";
+  record.instance = "task3";
+  record.texts = {{"hasAction", "move_base"}};
+  record.numbers = {{"hasIndex", 3.0}, {"hasConfidence", 0.5}};
+  record.links = {{"hasPlan", "plan1"}};
+  const knowledge::Fluent fluent = FluentOf(record, 12.5, TheOntology());
+  EXPECT_EQ(fluent.concept_name, "MoveBaseTask");
+  EXPECT_EQ(fluent.start.earliest, 12.5);
+  EXPECT_THAT(fluent.properties,
+              ElementsAre(knowledge::Property{"hasAction", "xsd:string", std::string("move_base")},
+                          knowledge::Property{"hasIndex", "xsd:integer", std::int64_t{3}},
+                          knowledge::Property{"hasConfidence", "xsd:float", 0.5},
+                          knowledge::Property{"hasPlan", "Plan", std::string("plan1")}));
+}
+
+TEST(FluentOfTest, TruthIsANumberThatIsNotZero) {
+  execution::Record record;
+  record.concept_name = "Prediction";
+  record.numbers = {{"hasRecommendation", 1.0}};
+  EXPECT_THAT(FluentOf(record, 0.0, TheOntology()).properties,
+              ElementsAre(knowledge::Property{"hasRecommendation", "xsd:boolean", true}));
+}
+
+TEST(FluentOfTest, AConceptThatTheOntologyLacksGivesWayToTheGeneralOne) {
+  execution::Record record;
+  record.concept_name = "JuggleTask";
+  record.general_concept = "PrimitiveTask";
+  EXPECT_EQ(FluentOf(record, 0.0, TheOntology()).concept_name, "PrimitiveTask");
+  record.general_concept.clear();
+  EXPECT_EQ(FluentOf(record, 0.0, TheOntology()).concept_name, "JuggleTask");
+}
+
+}  // namespace
+}  // namespace hires_ros

@@ -1,0 +1,54 @@
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include "hires/imagination/imagination_setup.h"
+#include "nodes/middle_layer/middle_layer_params.h"
+#include "nodes/world_tracker/world_tracker_params.h"
+#include "support/temporary_folder.h"
+
+// One block of the scene says how robot and objects are sensed, to all who ask.
+
+namespace hires_ros {
+namespace {
+
+const std::string kConfig = std::string(HIRES_SOURCE_DIR) + "/config/";
+
+/// config/NAME with another scene; paths count from config still.
+std::string WithScene(const std::string& name, const std::string& scene,
+                      const hires::test_support::TemporaryFolder& folder) {
+  YAML::Node root = YAML::LoadFile(kConfig + name);
+  root["scene"] = scene;
+  if (root["ontology"]) {
+    for (YAML::Node file : root["ontology"]) file = kConfig + file.Scalar();
+  }
+  if (root["guard"]) root["guard"]["config"] = kConfig + root["guard"]["config"].Scalar();
+  return folder.Write(name, YAML::Dump(root));
+}
+
+TEST(SensingSetupTest, TrackerMiddleLayerAndRolloutsRememberByTheSameNumbers) {
+  const hires::test_support::TemporaryFolder folder;
+  YAML::Node root = YAML::LoadFile(kConfig + "scene.yaml");
+  for (const char* file : {"world", "robot", "objects"}) {
+    root[file] = kConfig + root[file].Scalar();
+  }
+  root["uncertainty"] = "none";
+  for (auto entry : root["sensing"]["memory"]) {
+    const bool is_count = entry.first.Scalar() == "looks_to_vanish";
+    entry.second = is_count ? "5" : std::to_string(0.9 * entry.second.as<double>());
+  }
+  root["sensing"]["robot_state"]["stale_after"] = 0.25;
+  const std::string scene = folder.Write("scene.yaml", YAML::Dump(root));
+
+  const auto tracker = ReadWorldTrackerParams(WithScene("world_tracker.yaml", scene, folder));
+  const auto layer = ReadMiddleLayerParams(WithScene("middle_layer.yaml", scene, folder));
+  const auto setup = hires::imagination::LoadImaginationSetup(layer.setup);
+  EXPECT_EQ(tracker.sensing.memory.looks_to_vanish, 5);
+  EXPECT_EQ(tracker.sensing.robot_state.stale_after, 0.25);
+  EXPECT_TRUE(tracker.sensing == layer.setup.sensing);
+  EXPECT_TRUE(tracker.sensing == setup.sensing);
+  EXPECT_TRUE(tracker.sensing.memory == setup.scene->memory) << "what rollouts play with";
+  EXPECT_FALSE(tracker.sensing.memory == hires::sensing::MemoryParams());
+}
+
+}  // namespace
+}  // namespace hires_ros

@@ -1,0 +1,349 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/ros/conversions.h"
+#include "hires/ros/robot_messages.h"
+#include "hires/simulation/command_inbox.h"
+#include "hires/simulation/scan_ghosts.h"
+#include "hires/simulation/truth_record.h"
+#include "nodes/sim_worker/sim_robot_params.h"
+#include "nodes/sim_worker/sim_robot_world.h"
+#include "support/messages.h"
+#include "support/scenes.h"
+#include "support/temporary_folder.h"
+
+namespace hires_ros {
+namespace {
+
+using hires::geometry::Polygon;
+using hires::geometry::Pose2;
+using hires::geometry::Pose3;
+using ::testing::HasSubstr;
+
+// What controllers are told
+// --------------------------------------------------------------------------
+
+hires::robot::Command Drive(double vx) {
+  hires::robot::Command command;
+  command.base_velocity = hires::geometry::Twist2{vx, 0.0, 0.0};
+  return command;
+}
+
+TEST(CommandInboxTest, LaterCommandsReplaceEarlierOnesOfTheSameKindOnly) {
+  hires::simulation::CommandInbox inbox;
+  inbox.Add("a", Drive(0.1));
+  hires::robot::Command grip;
+  grip.grippers["leftarm1"] = {0.05, 10.0};
+  inbox.Add("a", grip);
+  inbox.Add("a", Drive(0.2));
+  const auto taken = inbox.Take();
+  EXPECT_EQ(taken.base_velocity->vx, 0.2);
+  EXPECT_EQ(taken.grippers.at("leftarm1").gap, 0.05);
+  EXPECT_FALSE(inbox.Take().base_velocity);
+}
+
+TEST(CommandInboxTest, EachSenderIsCountedForItself) {
+  hires::simulation::CommandInbox inbox;
+  inbox.Add("a", Drive(0.1));
+  inbox.Add("a", Drive(0.1));
+  inbox.Add("b", Drive(0.1));
+  EXPECT_EQ(inbox.num_from("a"), 2u);
+  inbox.CountOff("a", 1);
+  inbox.CountOff("b", 7);  // announced more than it has sent
+  EXPECT_EQ(inbox.num_from("a"), 1u);
+  EXPECT_EQ(inbox.num_from("b"), 0u);
+  EXPECT_EQ(inbox.num_from("nobody"), 0u);
+}
+
+trajectory_msgs::JointTrajectory Trajectory(const std::vector<std::string>& joints,
+                                            const std::vector<double>& times) {
+  trajectory_msgs::JointTrajectory msg;
+  msg.joint_names = joints;
+  for (const double time : times) {
+    trajectory_msgs::JointTrajectoryPoint point;
+    point.positions.assign(joints.size(), 0.5);
+    point.time_from_start = ros::Duration(time);
+    msg.points.push_back(point);
+  }
+  return msg;
+}
+
+std::string Refusal(const trajectory_msgs::JointTrajectory& msg) {
+  return hires::test_support::ConfigErrorOf([&] {
+    FromMsg(msg, {"elbow", "wrist"}, "arm/command");
+  });
+}
+
+TEST(TrajectoryTest, TravelsBothWaysUnchanged) {
+  hires::robot::JointTrajectory trajectory{{"elbow", "wrist"},
+                                           {{0.5, {0.1, 0.2}, {}}, {1.25, {0.3, 0.4}, {0.0, 1.0}}}};
+  const auto back = FromMsg(ToMsg(trajectory), {"elbow", "wrist"}, "arm/command");
+  ASSERT_EQ(back.points.size(), 2u);
+  EXPECT_EQ(back.joints, trajectory.joints);
+  EXPECT_EQ(back.points[1].time, 1.25);
+  EXPECT_EQ(back.points[1].positions, trajectory.points[1].positions);
+  EXPECT_EQ(back.points[1].velocities, trajectory.points[1].velocities);
+}
+
+TEST(TrajectoryTest, WhatMakesNoSenseIsNamed) {
+  EXPECT_THAT(Refusal(Trajectory({}, {1.0})), HasSubstr("names no joints"));
+  EXPECT_THAT(Refusal(Trajectory({"elbow"}, {})), HasSubstr("has no points"));
+  EXPECT_THAT(Refusal(Trajectory({"elbowe"}, {1.0})), HasSubstr("elbow"));
+  EXPECT_THAT(Refusal(Trajectory({"elbow", "elbow"}, {1.0})), HasSubstr("'elbow' twice"));
+  EXPECT_THAT(Refusal(Trajectory({"elbow"}, {1.0, 1.0})), HasSubstr("point 1 comes at 1 s"));
+  EXPECT_THAT(Refusal(Trajectory({"elbow"}, {-1.0})), HasSubstr("point 0 comes at -1 s"));
+  auto msg = Trajectory({"elbow"}, {1.0});
+  msg.points[0].positions.push_back(0.0);
+  EXPECT_THAT(Refusal(msg), HasSubstr("2 positions for 1 joints"));
+  msg = Trajectory({"elbow", "wrist"}, {1.0});
+  msg.points[0].velocities = {0.0};
+  EXPECT_THAT(Refusal(msg), HasSubstr("1 velocities for 2 joints"));
+  msg = Trajectory({"elbow"}, {1.0});
+  msg.points[0].positions[0] = std::nan("");
+  EXPECT_THAT(Refusal(msg), HasSubstr("not finite"));
+}
+
+// Laser
+// ----------------------------------------------------------------------------------------------
+
+TEST(SimLaserTest, ARayMeetsTheNearestEdge) {
+  const Polygon square{{1.0, -1.0}, {2.0, -1.0}, {2.0, 1.0}, {1.0, 1.0}};
+  EXPECT_NEAR(hires::simulation::DistanceTo(square, {0.0, 0.0}, {2.0, 0.0}), 1.0, 1e-12);
+  EXPECT_NEAR(hires::simulation::DistanceTo(square, {0.0, 0.0}, {1.0, 0.5}), std::hypot(1.0, 0.5),
+              1e-12);
+  EXPECT_TRUE(std::isinf(hires::simulation::DistanceTo(square, {0.0, 0.0}, {-1.0, 0.0})));
+  EXPECT_TRUE(std::isinf(hires::simulation::DistanceTo(square, {0.0, 0.0}, {0.0, 1.0})));
+  EXPECT_EQ(hires::simulation::DistanceTo(square, {1.5, 0.0}, {1.0, 0.0}), 0.0);
+}
+
+TEST(SimLaserTest, AGhostStandsBeforeWhatIsReallyThere) {
+  hires::simulation::LaserParams params;
+  params.num_beams = 3;
+  params.angle_min = -M_PI / 2;
+  params.angle_max = M_PI / 2;
+  params.range_max = 4.0;
+  const Polygon near{{2.3, 1.4}, {2.4, 1.4}, {2.4, 1.6}, {2.3, 1.6}};
+  const Polygon far{{7.0, 1.4}, {7.1, 1.4}, {7.1, 1.6}, {7.0, 1.6}};
+  std::vector<double> ranges{1.5, INFINITY, 2.5};
+  hires::simulation::AddGhosts({near, far}, params, {1.3, 1.5, 0.0}, &ranges);
+  EXPECT_EQ(ranges[0], 1.5);
+  EXPECT_NEAR(ranges[1], 1.0, 1e-12);
+  EXPECT_EQ(ranges[2], 2.5);
+}
+
+// World
+// ----------------------------------------------------------------------------------------------
+
+class SimRobotWorldTest : public ::testing::Test {
+ protected:
+  static hires::imagination::ImaginationSetup Setup(const std::string& uncertainty = "none") {
+    hires::imagination::ImaginationSetup setup;
+    setup.scene = hires::test_support::RoomScene();
+    setup.skills = std::make_shared<const hires::skills::SkillSet>(hires::skills::MakeSkillSet(
+        hires::test_support::Room(), hires::test_support::TrayRobot(), {}, {}));
+    setup.uncertainty = std::make_shared<const hires::imagination::Uncertainty>(
+        hires::imagination::UncertaintyFromText(uncertainty, "test"));
+    setup.object_models = {{"mill1", "mill"}};
+    setup.translator.object_models = setup.object_models;
+    setup.translator.world = {setup.scene, &setup.scene->world};
+    setup.translator.robot = {setup.scene, &setup.scene->robot};
+    return setup;
+  }
+  static hires::imagination::StartState Start() {
+    const Pose2 X_MB{1.0, 2.0, 0.0};
+    hires::imagination::StartState start;
+    start.robot.X_MB = X_MB;
+    start.world.objects = {hires::test_support::OnTray("mill1", "mill", X_MB)};
+    return start;
+  }
+  /// Drives ahead for some ticks, as somebody who commands at 10 Hz.
+  static void DriveAhead(int ticks, SimRobotWorld* world) {
+    for (int tick = 0; tick < ticks; ++tick) {
+      if (tick % 2 == 0) world->Apply(Drive(0.3));
+      world->Advance(50);
+    }
+  }
+};
+
+constexpr char kUncertain[] = R"(
+object_mass: {distribution: uniform, lower: 0.8, upper: 1.2, unit: factor, source: test}
+start_x: {distribution: uniform, lower: -0.1, upper: 0.1, unit: m, source: test}
+localisation_x: {distribution: normal, mean: 0.0, sd: 0.015, unit: m, source: test}
+localisation_noise: {distribution: fixed, value: 0.002, unit: m, source: test}
+wheel_slip: {distribution: uniform, lower: 0.01, upper: 0.03, unit: share, source: test}
+late_cycle_probability: {distribution: fixed, value: 0.2, unit: share, source: test}
+late_cycle_delay: {distribution: uniform, lower: 0.3, upper: 0.5, unit: s, source: test}
+)";
+
+TEST_F(SimRobotWorldTest, WithoutUncertaintyTheSensorsTellTheTruth) {
+  SimRobotWorld world(Setup(), Start(), 1);
+  DriveAhead(40, &world);
+  const SensorReadings readings = world.Sense();
+  const Pose2& X_MB = world.simulator().base().X_MB;
+  EXPECT_GT(X_MB.x, 1.5);
+  EXPECT_NEAR(readings.X_MB.x, X_MB.x, 1e-12);
+  const Pose2 by_odometry = readings.X_MO * readings.odometry.X_OB;
+  EXPECT_NEAR(by_odometry.x, X_MB.x, 1e-9);
+  EXPECT_NEAR(readings.X_MO.x, 1.0, 1e-6);  // odometry has not drifted
+}
+
+TEST_F(SimRobotWorldTest, TheSameSeedIsTheSameTruthBitByBit) {
+  SimRobotWorld a(Setup(kUncertain), Start(), 7), b(Setup(kUncertain), Start(), 7);
+  SimRobotWorld c(Setup(kUncertain), Start(), 8);
+  for (SimRobotWorld* world : {&a, &b, &c}) DriveAhead(40, world);
+  EXPECT_EQ(a.simulator().base().X_MB.x, b.simulator().base().X_MB.x);
+  EXPECT_EQ(a.Sense().X_MB.x, b.Sense().X_MB.x);
+  EXPECT_NE(a.simulator().base().X_MB.x, c.simulator().base().X_MB.x);
+}
+
+TEST_F(SimRobotWorldTest, OdometryDriftsAndIsCorrectedByThePlace) {
+  SimRobotWorld world(Setup(kUncertain), Start(), 7);
+  const double before = world.Sense().X_MO.x;
+  DriveAhead(80, &world);
+  const SensorReadings readings = world.Sense();
+  EXPECT_GT(std::abs(readings.X_MO.x - before), 1e-4);
+  EXPECT_NEAR((readings.X_MO * readings.odometry.X_OB).x, readings.X_MB.x, 1e-9);
+}
+
+TEST_F(SimRobotWorldTest, ACommandCycleThatComesLateLetsTheBaseBrake) {
+  constexpr char kLate[] = R"(
+late_cycle_probability: {distribution: fixed, value: 1.0, unit: share, source: test}
+late_cycle_delay: {distribution: fixed, value: 0.5, unit: s, source: test}
+)";
+  SimRobotWorld late(Setup(kLate), Start(), 1), punctual(Setup(), Start(), 1);
+  for (SimRobotWorld* world : {&late, &punctual}) DriveAhead(40, world);
+  EXPECT_LT(late.simulator().base().X_MB.x, punctual.simulator().base().X_MB.x - 0.1);
+}
+
+TEST_F(SimRobotWorldTest, APushMovesTheRobotWithItsLoadAndOdometryFeelsNothing) {
+  SimRobotWorld world(Setup(), Start(), 1);
+  const Pose2 odometry = world.Sense().odometry.X_OB;
+  ASSERT_EQ(world.Push({0.0, 0.5, 0.0}), "");
+  EXPECT_NEAR(world.simulator().base().X_MB.y, 2.5, 1e-9);
+  const auto state = world.simulator().GetWorldState();
+  EXPECT_NEAR(state.Find("mill1")->X_MO.translation.y(), 2.5, 1e-3);
+  EXPECT_EQ(world.Sense().odometry.X_OB.y, odometry.y);
+  EXPECT_NEAR(world.Sense().X_MB.y, 2.5, 1e-9);
+}
+
+TEST_F(SimRobotWorldTest, APushIntoAWallIsRefusedAndChangesNothing) {
+  SimRobotWorld world(Setup(), Start(), 1);
+  EXPECT_THAT(world.Push({-1.0, 0.0, 0.0}), HasSubstr("west_wall"));
+  EXPECT_THAT(world.Push({std::nan(""), 0.0, 0.0}), HasSubstr("not finite"));
+  EXPECT_NEAR(world.simulator().base().X_MB.x, 1.0, 1e-9);
+}
+
+TEST_F(SimRobotWorldTest, ObjectsGoAndComeAndFall) {
+  SimRobotWorld world(Setup(), Start(), 1);
+  hires::simulation::TruthRecord truth{{}};
+  truth.Look(world.simulator());
+  ASSERT_EQ(world.Drop("Mill1"), "");
+  for (int i = 0; i < 200; ++i) {
+    world.Advance(10);
+    truth.Look(world.simulator());
+  }
+  EXPECT_EQ(truth.falls(), 1);
+  EXPECT_GT(truth.objects().at("mill1").max_tilt, 0.5);
+  ASSERT_EQ(world.Remove("mill1"), "");
+  EXPECT_TRUE(world.simulator().GetWorldState().objects.empty());
+  EXPECT_THAT(world.Remove("mill1"), HasSubstr("mill1"));
+  ASSERT_EQ(world.Place("Tower1", "tower", hires::geometry::Lift({3.0, 1.0, 0.0})), "");
+  EXPECT_NE(world.simulator().GetWorldState().Find("tower1"), nullptr);
+  EXPECT_THAT(world.Place("vase1", "", {}), HasSubstr("vase1"));
+  EXPECT_THAT(world.Place("vase1", "mill", hires::geometry::Lift({3.0, 0.0, 0.0})),
+              HasSubstr("south_wall"));
+}
+
+TEST_F(SimRobotWorldTest, AnObjectThatStaysUpHasNotFallen) {
+  SimRobotWorld world(Setup(), Start(), 1);
+  hires::simulation::TruthRecord truth{{}};
+  for (int tick = 0; tick < 20; ++tick) {
+    world.Apply(Drive(0.1));
+    world.Advance(50);
+    truth.Look(world.simulator());
+  }
+  EXPECT_EQ(truth.falls(), 0);
+  EXPECT_NEAR(truth.distance(), world.simulator().base().X_MB.x - 1.0, 0.01);
+  EXPECT_EQ(truth.contact(), "");
+}
+
+TEST(ObjectTruthTest, SurvivesBothWays) {
+  hires::simulation::ObjectFate fate;
+  fate.X_MO = hires::geometry::Lift({1.0 / 3.0, 2.0, 0.0}, 0.73);
+  fate.attached_to = "l_gripper_palm_link";
+  fate.tilt = 0.1;
+  fate.max_tilt = 1.0 / 7.0;
+  fate.falls = 2;
+  fate.stands = true;
+  const hires::ObjectTruth msg = ToMsg("mug1", fate);
+  EXPECT_EQ(msg.name, "mug1");
+  const auto back = FromMsg(msg);
+  EXPECT_EQ(back.X_MO.translation, fate.X_MO.translation);
+  EXPECT_EQ(back.attached_to, fate.attached_to);
+  EXPECT_EQ(back.tilt, fate.tilt);
+  EXPECT_EQ(back.max_tilt, fate.max_tilt);
+  EXPECT_EQ(back.falls, 2);
+  EXPECT_TRUE(back.stands);
+}
+
+// Parameters
+// -----------------------------------------------------------------------------------------
+
+class SimRobotParamsTest : public ::testing::Test {
+ protected:
+  const std::string config_ = std::string(HIRES_SOURCE_DIR) + "/config/";
+
+  /// The file with one line changed.
+  std::string With(const std::string& from, const std::string& to) {
+    std::string text = hires::base::ReadTextFile(config_ + "sim_robot.yaml");
+    const auto replace = [&](const std::string& a, const std::string& b) {
+      const auto at = text.find(a);
+      ASSERT_NE(at, std::string::npos) << a;
+      text.replace(at, a.size(), b);
+    };
+    replace("scene: scene.yaml", "scene: " + config_ + "scene.yaml");
+    replace(from, to);
+    return text;
+  }
+  std::string Refusal(const std::string& from, const std::string& to) {
+    const std::string path = folder_.Write("sim_robot.yaml", With(from, to));
+    return hires::test_support::ConfigErrorOf([&] { ReadSimRobotParams(path); });
+  }
+  hires::test_support::TemporaryFolder folder_;
+};
+
+TEST_F(SimRobotParamsTest, TheFileOfThePackageIsComplete) {
+  const SimRobotParams params = ReadSimRobotParams(config_ + "sim_robot.yaml");
+  EXPECT_EQ(params.pace, 1.0);
+  EXPECT_EQ(params.laser.num_beams, 640);
+  EXPECT_TRUE(params.scenario.empty());
+}
+
+TEST_F(SimRobotParamsTest, WhatMakesNoSenseIsNamed) {
+  EXPECT_THAT(Refusal("pace: 1.0", "pace: -1.0"), HasSubstr("pace is '-1.0'"));
+  EXPECT_THAT(Refusal("pace: 1.0", "speed: 1.0"), HasSubstr("pace"));
+  EXPECT_THAT(Refusal("period: 0.5", "period: 0.12"), HasSubstr("multiple of 0.05 s"));
+  EXPECT_THAT(Refusal("beams: 640", "beams: 1"), HasSubstr("laser.beams is '1'"));
+  EXPECT_THAT(Refusal("hold: false", "hold: maybe"), HasSubstr("hold"));
+}
+
+TEST_F(SimRobotParamsTest, ScenariosOfThePackageHaveAStart) {
+  auto params = ReadSimRobotParams(config_ + "sim_robot.yaml");
+  const auto setup = hires::imagination::LoadImaginationSetup(params.setup);
+  params.scenario = config_ + "scenarios/serve_coffee.yaml";
+  const auto start = StartOf(setup, params);
+  EXPECT_NE(start.world.Find("book1"), nullptr);
+  EXPECT_NEAR(start.robot.X_MB.x, 12.5, 1e-9);
+  EXPECT_NEAR(start.robot.joints.at("l_elbow_flex_joint"), -2.05, 1e-9);
+  params.scenario.clear();
+  params.area = "nowhere";
+  EXPECT_THAT(hires::test_support::ConfigErrorOf([&] { StartOf(setup, params); }),
+              HasSubstr("nowhere"));
+}
+
+}  // namespace
+}  // namespace hires_ros
