@@ -12,8 +12,9 @@ namespace hires_ros {
 
 /// The process between the skills and the base, and what it is told.
 struct GuardParams {
-  bool is_there{false};         ///< velocities go to the guard, and only with its leave
-  double request_period{0.03};  ///< [s] between two requests for leave; the guard waits for 0.1 s
+  bool is_there{false};  ///< velocities go to the guard, and only with its permission
+  double request_period{
+      0.03};  ///< [s] between two requests for permission; the guard waits for 0.1 s
   hires::navigation::BrakingParams braking;  ///< the guard's, so that both think the same
 };
 

@@ -1,0 +1,85 @@
+#include "nodes/middle_layer/robot_inputs.h"
+
+#include "hires/ros/robot_topics.h"
+
+namespace hires_ros {
+namespace {
+
+hires::sensing::ScanObstacles ObstaclesOf(const hires::imagination::ImaginationSetup& setup,
+                                          const hires::sensing::ScanParams& params) {
+  const hires::robot::RobotProfile& profile = setup.scene->robot.profile;
+  return {setup.skills->driving->costmap,
+          hires::geometry::Padded(profile.footprint, profile.footprint_padding), params};
+}
+
+}  // namespace
+
+RobotInputs::RobotInputs(const hires::imagination::ImaginationSetup& setup,
+                         const hires::control::RobotNames& names,
+                         const hires::sensing::ScanParams& scan, Hooks hooks, ros::NodeHandle* nh)
+    : names_(names),
+      hooks_(std::move(hooks)),
+      sensors_({setup.scene, &setup.scene->robot}, setup.scene->surroundings, names, setup.sensing),
+      observations_(&sensors_.state(), ObstaclesOf(setup, scan)) {
+  Subscribe(nh);
+}
+
+void RobotInputs::Subscribe(ros::NodeHandle* nh) {
+  const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
+  const auto add = [&](ros::Subscriber subscriber) { subscribers_.push_back(subscriber); };
+  add(nh->subscribe(names_.odometry, 100, &RobotInputs::OnOdometry, this, hints));
+  add(nh->subscribe(names_.joint_states, 100, &RobotInputs::OnJoints, this, hints));
+  const auto on_transforms = [this](bool are_static) {
+    return boost::function<void(const tf2_msgs::TFMessage&)>(
+        [this, are_static](const tf2_msgs::TFMessage& msg) { OnTransforms(msg, are_static); });
+  };
+  add(nh->subscribe<tf2_msgs::TFMessage>(kTransforms, 100, on_transforms(false),
+                                         ros::VoidConstPtr(), hints));
+  add(nh->subscribe<tf2_msgs::TFMessage>(kStaticTransforms, 100, on_transforms(true)));
+  add(nh->subscribe(names_.base_scan, 10, &RobotInputs::OnScan, this, hints));
+  add(nh->subscribe(kDetections, 10, &RobotInputs::OnDetections, this, hints));
+  add(nh->subscribe(kKnownObjects, 10, &SensorReceiver::OnKnownObjects, &sensors_, hints));
+}
+
+void RobotInputs::OnOdometry(const nav_msgs::Odometry& msg) {
+  sensors_.OnOdometry(msg);
+  if (num_restarts_ != state().num_restarts()) {
+    num_restarts_ = state().num_restarts();
+    hooks_.clock_restarted();
+  }
+  hooks_.arrived(names_.odometry, msg.header.stamp.toSec());
+}
+
+void RobotInputs::OnJoints(const sensor_msgs::JointState& msg) {
+  sensors_.OnJoints(msg);
+  hooks_.arrived(names_.joint_states, msg.header.stamp.toSec());
+}
+
+void RobotInputs::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static) {
+  sensors_.OnTransforms(msg, are_static);
+  if (const auto localised = state().LocalisedUntil()) hooks_.arrived(kTransforms, *localised);
+}
+
+void RobotInputs::OnScan(const sensor_msgs::LaserScan& msg) {
+  const double stamp = msg.header.stamp.toSec();
+  const auto receipt = observations_.OnScan(
+      stamp, msg.header.frame_id, {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges});
+  if (receipt.is_bad()) sensors_.Warn(names_.base_scan, hires::sensing::ToString(receipt));
+  hooks_.arrived(names_.base_scan, stamp);
+}
+
+void RobotInputs::OnDetections(const hires::Detections& msg) {
+  sensors_.OnDetections(msg);
+  hooks_.arrived(kDetections, msg.header.stamp.toSec());
+}
+
+hires::robot::Observation RobotInputs::ObservationOf(const hires::sensing::RobotEstimate& now) {
+  hires::robot::Observation seen = observations_.Observe(now);
+  const hires::sensing::Receipt& scan = observations_.scan_receipt();
+  if (scan.is_bad()) sensors_.Warn(names_.base_scan, hires::sensing::ToString(scan));
+  sensors_.Update(now);
+  if (sensors_.objects()) seen.objects = sensors_.objects()->memory().Known(now.Body());
+  return seen;
+}
+
+}  // namespace hires_ros
