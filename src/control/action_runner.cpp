@@ -142,7 +142,7 @@ void ActionRunner::KeepStopping(Session* session) {
 }
 
 void ActionRunner::Finish(Session* session, ActionEnd end, const Failure& failure) {
-  // A skill that still thinks about its last look is let go; nobody hears what it will say.
+  // A skill that still thinks about its last look is let go; its answer is not used.
   if (session->skill->is_thinking()) {
     leaving_.push_back(std::move(session->skill));
   }
@@ -163,10 +163,10 @@ void ActionRunner::CheckFreshness(double now) {
     if (session.start && !session.stop) {
       Stop stop(robot_, session.groups, stop_);
       Observation still = *seen_;
-      still.V_B = {};  // a blind robot does not roll out along a ramp that nobody watches
+      still.V_B = {};  // without observations the robot stops at once, not along a ramp
       robot::Command command = stop.Update(now, still);
-      // With a load the base is not told to stand at once: with the action ends the leave to drive,
-      // and then the guard, who knows how fast the base is, brings it to a stand.
+      // With a load the base is not told to stand at once: the permission to drive ends with the
+      // action, and then the guard, who knows how fast the base is, brings it to a stand.
       if (stop_.braking) command.base_velocity.reset();
       hooks_.send(command);
     }

@@ -103,12 +103,12 @@ void MoveBaseTuner::End(const Job& job, const std::string& why_failed) {
   if (!now.reason.empty() && now.reason != state_.reason) {
     base::Log(LogLevel::kError, now.reason);
   }
-  if (!waiting_) state_ = now;  // else somebody wants something else by now
+  if (!waiting_) state_ = now;  // else another request came meanwhile
   changed_.notify_all();
 }
 
 TunerState MoveBaseTuner::StateAfter(const Job& job, const std::string& why_failed) const {
-  // What failed for somebody stays failed for him, though a repeated attempt tidies up after it.
+  // What failed for a request stays failed for it, though a repeated attempt tidies up after it.
   if (job.is_retry && state_.request != 0) return state_;
   if (!why_failed.empty()) return {Phase::kFailed, job.request, why_failed};
   if (job.kind == Kind::kRestore) return {};

@@ -185,7 +185,7 @@ hires::PlanResult WithoutPlans(const planning::PlanResult& found, planning::Whic
   return result;
 }
 
-/// Adding reasons and sending many plans takes time that whoever cancels does not want to wait.
+/// Adding reasons and sending many plans takes time, and a cancelled request is answered at once.
 bool AddPlans(const planning::Domain& domain, const PlanRequest& request,
               const planning::StopQuestion& stop, planning::PlanResult* found,
               hires::PlanResult* result) {

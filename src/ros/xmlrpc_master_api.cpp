@@ -51,7 +51,7 @@ class Client : public XmlRpc::XmlRpcClient {
   int TextLength() const { return static_cast<int>(std::max(_header.size(), _response.size())); }
 };
 
-/// Says nothing. It must not log: a log line can itself lead to an XML-RPC call that fails.
+/// Keeps quiet. It must not log: a log line can itself lead to an XML-RPC call that fails.
 class SilentErrorHandler : public XmlRpc::XmlRpcErrorHandler {
  public:
   void error(const char*) override {}
@@ -251,7 +251,7 @@ std::optional<XmlRpcValue> BoundedXmlRpcClient::Call(const std::string& method,
   }
   if (!is_started || !client->IsIdle() || !client->executeCheckDone(value) || client->isFault() ||
       !value.valid()) {
-    client_.reset();  // the next call connects anew, and looks the name up again
+    client_.reset();  // the next call connects again and looks the name up again
     return std::nullopt;
   }
   return value;

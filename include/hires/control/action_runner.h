@@ -69,7 +69,8 @@ class ActionRunner {
   void FailAll(const base::Failure& failure);
 
   /// There is a guard of the base, and this is what the base carries: stops that begin from now on
-  /// heed it, and where nobody sees any more how fast the base is, its stop is left to the guard.
+  /// heed it, and where the speed of the base is not observed any more, its stop is left to the
+  /// guard.
   void SetBraking(const LoadBraking& braking) { stop_.braking = braking; }
 
   /// All that is known at `now` [s]; `seen.time` and the objects' times are on the same clock.
@@ -81,7 +82,7 @@ class ActionRunner {
   /// Ends all actions as failed with stale_observation if the last look is too long ago.
   void CheckFreshness(double now);
 
-  /// Ends what is being stopped without waiting until the robot stands: nobody tells any more.
+  /// Ends what is being stopped without waiting until the robot stands: no observation would tell.
   void GiveUpStopping();
   bool is_stopping() const;
 
@@ -121,7 +122,7 @@ class ActionRunner {
   double now_{0.0};                         // [s] of the last look
   std::optional<robot::Observation> seen_;  // at the last look
   std::list<Session> sessions_;
-  std::list<std::unique_ptr<SkillThread>> leaving_;  // still thinking when nobody cared any more
+  std::list<std::unique_ptr<SkillThread>> leaving_;  // still thinking when their actions had ended
 };
 
 }  // namespace hires::control

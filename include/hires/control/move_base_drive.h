@@ -21,14 +21,14 @@ struct MoveBaseNews {
     kArrived,   ///< by its own tolerances
     kAborted,   ///< `text` says why
     kRejected,  ///< likewise
-    kReplaced,  ///< taken back, by us or by somebody else; another goal may be driven to
-    kLost,      ///< move_base does not know it any more: it was started anew
+    kReplaced,  ///< taken back, by us or by another client; another goal may be driven to
+    kLost,      ///< move_base does not know it any more: it was restarted
   };
   State state{State::kNone};
   std::string text;  ///< what move_base said
 };
 
-/// Somebody who drives to goals: move_base, or what stands for it in a test.
+/// A server that drives to goals: move_base, or what stands for it in a test.
 class MoveBaseServer {
  public:
   virtual ~MoveBaseServer() = default;
@@ -39,13 +39,13 @@ class MoveBaseServer {
 };
 
 /// What news mean in the codes of our skills; nothing while all is well: unreachable (no way, or a
-/// goal that move_base refuses), stuck, interrupted (somebody else took move_base), no_controller.
+/// goal that move_base refuses), stuck, interrupted (another client took move_base), no_controller.
 base::Failure FailureOf(const MoveBaseNews& news);
 
 /// Section `navigation` of config/middle_layer.yaml.
 struct MoveBaseDriveParams {
   bool is_used{false};          ///< long ways are driven by move_base, not by our own skill
-  double start_patience{10.0};  ///< [s] until there is leave to drive, and a server
+  double start_patience{10.0};  ///< [s] until there is permission to drive, and a server
   double answer_patience{5.0};  ///< [s] from the goal to the server's first word
   /// Where move_base stops short, our own straight drive does the rest: at most so far ...
   double max_rest{0.5};       ///< [m]

@@ -8,7 +8,7 @@
 namespace hires::control {
 
 /// What was changed at a local planner and has to be put back: on disk before the first change, so
-/// that whoever comes after a crash can do it.
+/// that the next process can do it after a crash.
 struct MoveBaseJournal {
   std::string server;      ///< dynamic_reconfigure server, resolved: /move_base_node/DWAPlannerROS
   std::string set_name;    ///< motion set in force

@@ -30,8 +30,8 @@ class MotionSetKeeper {
   void Apply(const std::string& set_name, const robot::MotionSet& set);
 
   /// Puts back what was before, also what another process left behind. A value that is neither what
-  /// was set nor what was before has been changed by somebody else since: it stays, with a warning.
-  /// Nothing happens without a journal.
+  /// was set nor what was before has been changed by another program since: it stays, with a
+  /// warning. Nothing happens without a journal.
   /// @throws base::ConfigError as Apply; the journal stays then.
   void Restore();
 

@@ -15,11 +15,11 @@ using PlannerValues = std::map<std::string, double>;
 /// What a motion set asks of a local planner, by the words of RobotNames::MoveBase::parameters.
 /// A limit in the plane holds along every axis: linear also means translational and lateral
 /// [facts of the original: max_trans_vel = max_vel_x, acc_lim_y = acc_lim_x].
-/// max_lateral_velocity is none of them: a PR2 that may drive sideways as fast as ahead would.
+/// max_lateral_velocity is not among them: a PR2 that may drive sideways as fast as ahead would.
 const std::vector<std::string>& MotionLimits();
 
 /// One of MotionLimits() of a set [m/s, rad/s, m/s^2, rad/s^2].
-/// @throws base::ConfigError for a word that is none.
+/// @throws base::ConfigError for an unknown word.
 double LimitOf(const robot::MotionSet& set, const std::string& limit);
 
 /// A motion set in a planner's own words.

@@ -22,11 +22,11 @@ struct TunerState {
     kFailed,     ///< `reason` says why; do not drive
   };
   Phase phase{Phase::kAtRest};
-  std::uint64_t request{0};  ///< for whom; 0: for nobody
+  std::uint64_t request{0};  ///< for which it is; 0: none
   std::string reason;        ///< empty unless kFailed
 };
 
-/// A MotionSetKeeper on a thread of its own, so that whoever guards the base never waits for
+/// A MotionSetKeeper on a thread of its own, so that the guard of the base never waits for
 /// move_base. What a former process left behind is put back at once when it starts; what cannot be
 /// put back is tried again until it can.
 ///
@@ -53,7 +53,7 @@ class MoveBaseTuner {
   void Restore();
 
   /// The planner said what it has (topic <server>/parameter_updates). If that is not the set in
-  /// force, the planner is asked, for what it said may be old; where somebody else has changed
+  /// force, the planner is asked, for what it said may be old; where another program has changed
   /// limits, the phase becomes kFailed.
   void OnUpdate(const PlannerValues& values);
 

@@ -12,8 +12,8 @@ struct OverrideParams {
   double angular{0.35};  ///< [rad/s] likewise
 };
 
-/// Notices that somebody else drives: a person with the joystick, whom the robot's multiplexer lets
-/// win. Time is handed in.
+/// Notices that a person drives with the joystick, which has priority in the robot's multiplexer.
+/// Time is handed in.
 class OverrideWatch {
  public:
   explicit OverrideWatch(const OverrideParams& params) : params_(params) {}
@@ -23,7 +23,7 @@ class OverrideWatch {
   /// How the base moved at `now` [s].
   void See(double now, const geometry::Twist2& V_B);
 
-  /// Nobody drives on our behalf any more.
+  /// No action of ours drives any more.
   void Forget();
 
   bool is_overridden() const { return is_overridden_; }

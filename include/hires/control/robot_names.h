@@ -38,8 +38,8 @@ struct RobotNames {
   } move_base;
 };
 
-/// @throws base::ConfigError naming file and line: fields that lack or nobody knows, groups
-/// and arms that are none, names that are not ROS names, two groups with one topic.
+/// @throws base::ConfigError naming file and line: missing or unknown fields, groups
+/// and arms that there are not, names that are not ROS names, two groups with one topic.
 RobotNames ReadRobotNames(const std::string& path);
 
 /// As ReadRobotNames, of text; `where` stands for the file's name in messages.

@@ -18,7 +18,7 @@ std::vector<robot::SeenObject> OnTray(const robot::Robot& robot, const robot::Ob
 /// How hard the base may brake with what stands on the tray. Nothing where that is not known: an
 /// object of a model that the world does not have, or that could not stand; then the guard of the
 /// base takes the worst.
-/// @param has_eyes  The robot would know of objects; else nobody knows what stands on the tray.
+/// @param has_eyes  The robot sees objects; else it is unknown what stands on the tray.
 std::optional<navigation::BrakingLimits> BrakingFor(const robot::Robot& robot,
                                                     const world::World& world,
                                                     const robot::Observation& seen, bool has_eyes,

@@ -39,10 +39,10 @@ struct WorkerHostParams {
 WorkerHostParams ReadWorkerHostParams(base::ParamReader in, const std::string& folder);
 
 /// `text` with the placeholders of WorkerHostParams filled in.
-/// @throws base::ConfigError for a placeholder that is none of them.
+/// @throws base::ConfigError for an unknown placeholder.
 std::string FillIn(const std::string& text, const WorkerHostParams& params);
 
-/// What `address` and `environment` may be, whoever sets them.
+/// What `address` and `environment` may be, in a file or as a parameter.
 base::Bound<std::string> WorkerAddress();
 base::Bound<std::vector<std::string>> WorkerVariables();
 

@@ -22,7 +22,7 @@
 /// names the field.
 namespace hires_ros {
 
-/// Bounds of 0, 0 are "since ever" and "for ever", the moment 0 is -0.0, -0.0.
+/// Bounds of 0, 0 mean that there is no bound, the moment 0 is -0.0, -0.0.
 hires::knowledge::Fluent FromMessage(const hires::Fluent& message);
 hires::Fluent ToMessage(const hires::knowledge::Fluent& fluent);
 std::vector<hires::knowledge::Fluent> FromMessages(const std::vector<hires::Fluent>& messages);
@@ -40,7 +40,7 @@ hires::FluentQuery ToMessage(const hires::knowledge::FluentQuery& query);
 
 hires::knowledge::Change FromMessage(const hires::FluentChange& message);
 hires::FluentChange ToMessage(const hires::knowledge::Change& change);
-/// `previous` is left to whoever publishes.
+/// `previous` is filled by the publisher.
 hires::FluentChanges ToMessage(const hires::knowledge::DemandUpdate& update);
 
 hires::knowledge::DemandTopic FromMessage(const hires::DemandRequest& message);

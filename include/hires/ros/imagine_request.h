@@ -13,7 +13,7 @@
 #include "hires/imagination/scheduler.h"
 
 /// What a goal of the action `imagine` means: the same for the node that spreads it over workers
-/// and for whoever plays it in one process.
+/// and for a program that plays it in one process.
 namespace hires_ros {
 
 /// One request, checked and ready to be played.

@@ -21,11 +21,11 @@ struct MasterWatchParams {
 };
 
 /// Watches the node's own master. A roscpp node registers once and never again: when its master is
-/// replaced by a new process, the node lives on unseen. The watch notices (other process id, other
+/// replaced by a new process, the node goes on unregistered. The watch notices (other process id, other
 /// run_id, or own registration gone), puts back what the new master's parameter server lost (the
 /// node's private parameters and /use_sim_time, as they were when the watch was made, unless
-/// somebody has set them anew), and shuts ROS down; Finish() then starts the program again in the
-/// same process, so that neither roslaunch nor any other parent needs to know.
+/// they were set again), and shuts ROS down; Finish() then starts the program again in the
+/// same process, so that roslaunch or any other parent sees the same child.
 ///
 ///   ros::init(argc, argv, "planner");
 ///   ros::NodeHandle nh;                      // registers the node
@@ -46,7 +46,7 @@ class MasterWatch {
   /// [s] since the master last answered; 0 while it does. For nodes that give up some day.
   double silent_for() const { return silent_for_; }
 
-  /// Ends the watch. Returns `code`, or starts the program anew if the master was replaced.
+  /// Ends the watch. Returns `code`, or starts the program again if the master was replaced.
   int Finish(int code);
 
  private:

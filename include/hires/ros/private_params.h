@@ -24,7 +24,7 @@ std::optional<std::vector<std::string>> PrivateWords(const std::string& key);
 /// separated by colons. Never from a file, as they are code.
 std::vector<std::string> PrivateActionLibraries();
 
-/// @throws ConfigError naming a private parameter that is none of `known`.
+/// @throws ConfigError naming a private parameter that is not among `known`.
 void RejectUnknownPrivate(const std::vector<std::string>& known);
 
 /// Puts `value` into `target` if there is one and it fits.

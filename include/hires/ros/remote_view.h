@@ -22,11 +22,12 @@ namespace hires_ros {
 /// are lost: what was missed is asked for. While the Blackboard is away, the view shows what was
 /// known last.
 ///
-/// It has a thread of its own, so nobody need spin; all members may be called from any thread.
+/// It has a thread of its own, so it does not need a spinner; all members may be called from any
+/// thread.
 class RemoteView {
  public:
   struct Update {
-    bool is_fresh{false};  ///< everything was read anew: compare for yourself; `changes` is empty
+    bool is_fresh{false};  ///< everything was read again: compare for yourself; `changes` is empty
     std::vector<hires::knowledge::Change> changes;  ///< real ones, in order
     std::uint64_t sequence{0};                      ///< of the Blackboard, after them
   };

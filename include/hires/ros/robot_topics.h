@@ -13,7 +13,7 @@ constexpr char kDetections[] = "detections";       ///< what the head's camera r
 constexpr char kKnownObjects[] = "known_objects";  ///< what is remembered of it
 constexpr char kExecuteAction[] = "execute_action";
 
-/// Between whoever drives and the guard of the base.
+/// Between the node that drives and the guard of the base.
 constexpr char kGuardCommand[] = "base_guard/cmd_vel";
 constexpr char kGuardRequest[] = "base_guard/request";
 constexpr char kGuardState[] = "base_guard/state";

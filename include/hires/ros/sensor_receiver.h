@@ -56,7 +56,7 @@ class SensorReceiver {
   std::shared_ptr<TransformBuffer> tree_;
   hires::sensing::RobotStateEstimator state_;
   std::unique_ptr<hires::sensing::ObjectEstimator> objects_;
-  std::unique_ptr<hires::WorldState> stated_;  // by another node, not believed yet
+  std::unique_ptr<hires::WorldState> stated_;  // by another node, not taken into account yet
   std::map<std::string, double> warned_;       // topic -> steady [s]
   int num_bad_{0};
 };

@@ -9,16 +9,16 @@
 namespace hires_ros {
 
 /// Services of one node that are asked again and again, each over a connection that lasts. roscpp
-/// else asks the master and connects anew for every call: a master with many nodes lets connections
-/// wait in vain, and TCP tries again after 1 and after 3 s. For one thread at a time.
+/// else asks the master and connects again for every call: a master with many nodes lets
+/// connections wait in vain, and TCP tries again after 1 and after 3 s. For one thread at a time.
 class ServiceLinks {
  public:
   /// @param prefix  of all names, as "blackboard/".
   ServiceLinks(const ros::NodeHandle& nh, std::string prefix)
       : nh_(nh), prefix_(std::move(prefix)) {}
 
-  /// @return false if nobody answers, or the connection broke off, which leaves open whether the
-  /// call was heard; the next call connects anew.
+  /// @return false if no server answers, or the connection broke off, which leaves open whether the
+  /// call was heard; the next call connects again.
   template <typename Service>
   bool Call(const std::string& name, Service* call) {
     ros::ServiceClient& client = clients_[name];
@@ -28,7 +28,7 @@ class ServiceLinks {
     return false;
   }
 
-  /// The same of what changes nothing, and may be asked twice: a server that was started anew since
+  /// The same of what changes nothing, and may be asked twice: a server that was restarted since
   /// the last call is found at once.
   template <typename Service>
   bool Ask(const std::string& name, Service* call) {

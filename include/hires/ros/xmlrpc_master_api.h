@@ -53,7 +53,7 @@ std::optional<RosReply> CallRos(BoundedXmlRpcClient* client, const std::string& 
                                 const std::string& caller_id,
                                 const std::vector<std::string>& arguments);
 
-/// Process id of whoever serves ROS's XML-RPC at `server`, or nothing.
+/// Process id of the program that serves ROS's XML-RPC at `server`, or nothing.
 std::optional<int> AskPid(const hires::relay::Endpoint& server, const std::string& caller_id,
                           double timeout);
 
@@ -62,7 +62,7 @@ class XmlRpcMasterApi : public hires::relay::MasterApi {
  public:
   /// @param uri        "http://host:port/".
   /// @param caller_id  Under which questions are asked; registrations carry their own.
-  /// @throws hires::base::ConfigError if `uri` is none.
+  /// @throws hires::base::ConfigError if `uri` is not a URI.
   XmlRpcMasterApi(const std::string& uri, std::string caller_id, double timeout);
 
   const std::string& uri() const override { return uri_; }

@@ -224,7 +224,7 @@ void BaseGuardNode::TendTuner(double now) {
 
 void BaseGuardNode::CancelMoveBase() {
   if (!cancel_) return;
-  // Stops all goals, whoever sent them: what moves the base now is to end.
+  // Stops all goals, of all clients: what moves the base now is to end.
   cancel_.publish(actionlib_msgs::GoalID());
 }
 
@@ -241,18 +241,16 @@ void BaseGuardNode::PublishState() {
   hires::base::Log(
       is_trouble && now.state != GuardState::kPassing ? LogLevel::kWarn : LogLevel::kInfo,
       fmt::format("base_guard={} request={} failure={} stop_time={:.2f} stop_distance={:.2f}",
-                  ToText(now.state), now.request,
-                  now.failure ? ToString(now.failure) : "none", guard_.stop_time(),
-                  guard_.stop_distance()));
+                  ToText(now.state), now.request, now.failure ? ToString(now.failure) : "none",
+                  guard_.stop_time(), guard_.stop_distance()));
   said_ = std::make_unique<Said>(now);
   updater_.force_update();
 }
 
 void BaseGuardNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const hires::base::Failure& failure = guard_.failure();
-  status.summary(
-      IsPeaceful(failure) ? Diagnostic::OK : Diagnostic::WARN,
-      ToText(guard_.state()) + (failure ? ": " + ToString(failure) : ""));
+  status.summary(IsPeaceful(failure) ? Diagnostic::OK : Diagnostic::WARN,
+                 ToText(guard_.state()) + (failure ? ": " + ToString(failure) : ""));
   status.add("request", guard_.request());
   status.add("stops", num_stops_);
   status.add("last stop [s]", guard_.stop_time());

@@ -16,7 +16,7 @@ using hires::base::ConfigError;
 using Steady = std::chrono::steady_clock;
 
 constexpr auto kRetryPeriod = std::chrono::milliseconds(1000);
-constexpr auto kPatience = std::chrono::milliseconds(3000);  // with a planner that says nothing
+constexpr auto kPatience = std::chrono::milliseconds(3000);  // with a planner that does not answer
 constexpr auto kFarewell = std::chrono::milliseconds(8000);  // two calls, and what they follow
 
 dynamic_reconfigure::Config ToMsg(const hires::control::PlannerValues& values) {

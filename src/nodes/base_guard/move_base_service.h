@@ -17,7 +17,7 @@ hires::control::PlannerValues FromMsg(const dynamic_reconfigure::Config& config)
 /// @param patience  that the server may take to appear, and to answer.
 hires::control::Reconfigure ReconfigureByService(std::chrono::milliseconds patience);
 
-/// The tuner of a robot's move_base. Whoever has it also hears <planner>/parameter_updates and
+/// The tuner of a robot's move_base. Its owner also subscribes to <planner>/parameter_updates and
 /// hands that to OnUpdate.
 /// @param names    the planner's name is resolved as this node's names are.
 /// @param journal  empty: control::DefaultJournalPath().

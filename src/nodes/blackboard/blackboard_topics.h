@@ -69,7 +69,7 @@ class BlackboardTopics {
     ros::Publisher publisher;
     std::deque<hires::FluentChanges> kept;
     std::size_t num_kept{0};     ///< changes in them
-    std::uint64_t kept_from{0};  ///< whoever knows this, or more, is served from `kept`
+    std::uint64_t kept_from{0};  ///< a subscriber that knows this, or more, is served from `kept`
   };
   /// A topic of unfiltered changes.
   struct Stream {
@@ -93,7 +93,7 @@ class BlackboardTopics {
   const OnStoreThread on_store_thread_;
   PublishingPace pace_;
   RoscppRounds rounds_;
-  bool is_heard_{false};  ///< somebody subscribes to what the transaction at hand changed
+  bool is_heard_{false};  ///< there is a subscriber to what the transaction at hand changed
   Stream changes_;
   Stream imagined_;
   std::map<std::string, Topic> topics_;

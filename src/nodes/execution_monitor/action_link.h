@@ -118,7 +118,7 @@ class ActionLink {
     std::optional<double> over;  // [s] steady: the server has ended it, the result is on its way
     std::optional<Moment> cancelled;
 
-    /// A server that only hung must not go on with what nobody waits for.
+    /// A server that only hung must not go on with a goal that was given up.
     void GiveUp() {
       if (handle) handle->cancel();
     }

@@ -34,7 +34,7 @@ hires::ImaginationStatus StatusOf(const execution::StartImagination& command, do
   return status;
 }
 
-/// Numbers for people; the final states are left out, for nobody reads them there.
+/// Numbers for people; the final states are left out, as no reader needs them there.
 void SetPredictions(const hires::ImagineResult& result, hires::ImaginationStatus* status) {
   status->wall_seconds = result.wall_seconds;
   status->simulated_seconds = result.simulated_seconds;

@@ -36,7 +36,7 @@ hires::execution::PlanArrived AnswerOf(int request, const hires::PlanResult& res
 hires::ExecuteActionGoal GoalOf(const hires::execution::StartStep& command);
 hires::execution::StepFinished AnswerOf(int activity, const hires::ExecuteActionResult& result);
 
-/// Without a deadline: that moves, so whoever asks keeps it.
+/// Without a deadline: that moves, so the caller keeps it.
 hires::ImagineGoal GoalOf(const hires::execution::StartImagination& command,
                           const hires::GenerateImagineState::Response& state,
                           const hires::execution::ImaginingParams& params);

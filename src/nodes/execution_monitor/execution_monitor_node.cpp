@@ -33,7 +33,7 @@ using hires::base::Log;
 using hires::base::LogLevel;
 
 constexpr double kTickPeriod = 0.02;  // [s] steady
-constexpr double kClockJump = 1.0;    // [s] backwards: the robot's clock began anew
+constexpr double kClockJump = 1.0;    // [s] backwards: the robot's clock began again
 constexpr double kViewPeriod = 0.5;   // [s] between two looks whether something was missed
 
 ActionLinkParams LinkParams(const execution::ServerParams& servers) {
@@ -208,7 +208,7 @@ void ExecutionMonitorNode::Tick() {
   planning_.Tick();
   imagination_.Tick(now);
   steps_.Tick();
-  // A predecessor that died left the robot at work, with nobody to watch it.
+  // A predecessor that crashed left the robot at work without a monitor.
   if (!has_cleared_ && !config_.monitor.dry_run && steps_.is_available()) {
     has_cleared_ = true;
     if (!task_) steps_.CancelAllGoals();
@@ -232,7 +232,7 @@ void ExecutionMonitorNode::WatchClock(double now) {
   }
   if (!has_jumped || !task_ || !task_->monitor) return;
   FinishTask({execution::Finish::Outcome::kFailed,
-              "the robot's clock jumped back: the robot was started anew"});
+              "the robot's clock jumped back: the robot was started again"});
 }
 
 void ExecutionMonitorNode::Accept(GoalHandle goal) {

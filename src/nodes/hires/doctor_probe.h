@@ -17,7 +17,7 @@ std::vector<std::string> AddressesOf(const std::string& host);
 /// How a port of another program answers.
 enum class Reach {
   kAnswers,
-  kRefused,       ///< its computer says that nobody listens there
+  kRefused,       ///< its computer says that no program listens there
   kSilent,        ///< no answer in time: a firewall, or its computer is off or cut off
   kUnresolvable,  ///< its host name is unknown here
   kBadUri         ///< its address cannot be read

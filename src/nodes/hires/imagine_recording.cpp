@@ -69,7 +69,7 @@ std::string WithoutEnd(const std::string& text, const std::string& end) {
   return EndsWith(text, end) ? text.substr(0, text.size() - end.size()) : text;
 }
 
-/// "/imagine" from whatever of it somebody typed.
+/// "/imagine" from whatever part of it was typed.
 std::string ActionOf(std::string name) {
   if (name.empty()) return name;
   if (name.front() != '/') name.insert(name.begin(), '/');

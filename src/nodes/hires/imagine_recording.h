@@ -8,7 +8,7 @@
 
 namespace hires_ros {
 
-/// One request that somebody recorded, with the answer it got then.
+/// One recorded request, with the answer it got then.
 struct RecordedRequest {
   std::string action;   ///< whose topics were recorded: "/imagine"
   std::string goal_id;  ///< never empty

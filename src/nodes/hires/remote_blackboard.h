@@ -7,7 +7,7 @@
 namespace hires_ros {
 
 /// The running node `blackboard`, through its services.
-/// @throws hires::base::ConfigError if there is no master, or nobody serves the Blackboard there.
+/// @throws hires::base::ConfigError if there is no master, or no Blackboard there.
 std::unique_ptr<hires::cli::BlackboardAccess> ConnectBlackboard();
 
 }  // namespace hires_ros

@@ -78,7 +78,7 @@ void RequireMaster() {
       "the imagination client went away during the request; see its log, then ask again");
 }
 
-/// @throws ConfigError if nobody serves the action in time.
+/// @throws ConfigError if no server of the action is there in time.
 void RequireServer(const Client& client, const std::function<bool()>& cancelled) {
   const double give_up = hires::base::SteadyNow() + kClientWait;
   while (!client.isServerConnected()) {
@@ -118,7 +118,7 @@ hires::ImagineResult AwaitResult(const hires::ImagineGoal& goal,
     if (give_up && hires::base::SteadyNow() > *give_up) return Unconfirmed(goal);
     ros::WallDuration(kPollPeriod).sleep();
   }
-  // A client that died and came back knows nothing of the goal: there is no result then, and an
+  // A client that was restarted does not know the goal: there is no result then, and an
   // empty one would read as a ranking.
   if (client->getState() == actionlib::SimpleClientGoalState::LOST) FailAsClientIsGone();
   return *client->getResult();

@@ -49,7 +49,7 @@ std::string ReplayText(const ReplayedRequest& replayed);
 /// depended_on_moment, differences, then and now (as `hires imagine --json`).
 nlohmann::ordered_json ReplayJson(const ReplayedRequest& replayed);
 
-/// Imagines one goal, or throws hires::base::ConfigError if nobody can be asked.
+/// Imagines one goal, or throws hires::base::ConfigError if there is no client to ask.
 using ImagineAgain = std::function<hires::ImagineResult(const hires::ImagineGoal&)>;
 
 /// Imagines all requests again, and prints each comparison as soon as it is there.
@@ -69,7 +69,7 @@ ImagineAgain MakeLocalImagination(const std::string& package_folder, int num_thr
 /// The verb `hires replay BAG [--local] [--threads N] [--json FILE] [--topic NAME]`.
 /// @param arguments  without the program's and the verb's name.
 /// @return The exit code: as ReplayExitCode, 1 for wrong arguments, 130 when interrupted.
-/// @throws hires::base::ConfigError for a bad bag, and if nobody can be asked.
+/// @throws hires::base::ConfigError for a bad bag, and if there is no client to ask.
 int RunReplay(const std::vector<std::string>& arguments, const std::string& package_folder);
 
 }  // namespace hires_ros

@@ -14,7 +14,7 @@
 /// What `hires doctor --robot` wants of a robot, and what it saw of one.
 namespace hires_ros {
 
-/// A topic that somebody must publish for our nodes to work.
+/// A topic that some node must publish for our nodes to work.
 struct WantedTopic {
   std::string what;  ///< "odometry"
   std::string name;  ///< "/base_odometry/odom"
@@ -23,10 +23,10 @@ struct WantedTopic {
   bool is_stamped{false};  ///< its messages begin with a header
   double min_rate{0.0};    ///< [Hz] below which a motion is not safe; 0: comes when there is news
   double max_age{0.0};     ///< [s] of its stamps; 0: old ones are well
-  std::string remedy;      ///< what to do where nobody publishes it
+  std::string remedy;      ///< what to do where no node publishes it
 };
 
-/// A topic that somebody must listen to, or nothing moves.
+/// A topic that some node must listen to, or nothing moves.
 struct WantedListener {
   std::string what;  ///< "arm leftarm1"
   std::string name;  ///< "/l_arm_controller/command"
@@ -62,7 +62,7 @@ struct SeenMessages {
 };
 
 struct SeenTopic {
-  std::string type;  ///< by the master; empty: nobody said
+  std::string type;  ///< by the master; empty: unknown
   std::set<std::string> publishers, subscribers;
   std::map<std::string, SeenMessages> messages;           ///< by publisher
   std::map<std::string, Reach> data_ports;                ///< by publisher
@@ -72,7 +72,7 @@ struct SeenTopic {
 struct SeenNode {
   std::string uri;
   Reach reach{Reach::kAnswers};
-  std::string host() const;  ///< of the URI, as it is written there; empty if it is none
+  std::string host() const;  ///< of the URI, as it is written there; empty if it is not a URI
 };
 
 struct SeenFrame {

@@ -17,7 +17,7 @@ namespace hires_ros {
 enum class FindingLevel {
   kOk,
   kNote,     ///< worth knowing, nothing to do
-  kWarning,  ///< works, but somebody should look at it
+  kWarning,  ///< works, but a person should look at it
   kFailed    ///< does not work before it is mended
 };
 

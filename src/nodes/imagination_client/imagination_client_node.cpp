@@ -118,7 +118,7 @@ void ImaginationClientNode::OnGoal(GoalHandle goal) {
                   goal.getGoal()->request_id, session->id, session->request.actions[0].name,
                   session->request.actions.size(), session->request.params.rollouts,
                   goal.getGoal()->seed));
-  // At the moment of the start: whoever is there then is there in time for any deadline.
+  // At the moment of the start: a worker that is there then is in time for any deadline.
   for (const auto& [k, worker] : workers_) {
     if (!worker->is_alive()) continue;
     CarryOut(session, session->scheduler->Handle(imagination::WorkerJoined{k}, session->started));

@@ -48,7 +48,7 @@ void WorkerLink::CancelSession(int session) {
 
 void WorkerLink::StartNext() {
   if (running_ || jobs_.empty() || !is_alive_) return;
-  // Whoever was not served last goes first: sessions take turns.
+  // The session that waited longest goes first: sessions take turns.
   auto next = std::find_if(jobs_.begin(), jobs_.end(),
                            [&](const Job& job) { return job.session != last_session_; });
   if (next == jobs_.end()) next = jobs_.begin();

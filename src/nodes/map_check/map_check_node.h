@@ -25,7 +25,7 @@ MapCheckParams LoadMapCheckParams();
 
 /// 0 is free, 100 occupied, -1 unknown; in between map_server's thresholds count.
 /// @throws hires::base::ConfigError: no cells, another number of cells than its size says, a
-/// resolution that is none, an origin that is turned (map_server refuses such maps too).
+/// resolution that is not positive, an origin that is turned (map_server refuses such maps too).
 hires::world::OccupancyGrid FromMsg(const nav_msgs::OccupancyGrid& map);
 
 /// Height of the robot's laser over the floor [m], in its driving posture.

@@ -22,7 +22,7 @@ using hires::base::Log;
 using hires::base::LogLevel;
 
 constexpr double kTickPeriod = 0.005;  // [s]
-// What a thread may take to see that it is cancelled; whoever cancelled is answered then in any
+// What a thread may take to see that it is cancelled; the client is answered then in any
 // case.
 constexpr double kPatience = 0.03;  // [s]
 

@@ -21,7 +21,7 @@ class RelayNode {
   RelayNode(const hires::relay::RelayParams& params, ros::NodeHandle* nh);
 
   /// Relays until ROS is shut down; then withdraws what was registered, unless the main master
-  /// was replaced: the relay starts anew then, and its mirrors stay in use meanwhile.
+  /// was replaced: the relay starts again then, and its mirrors stay in use meanwhile.
   void Run(const MasterWatch& master_watch);
 
  private:

@@ -72,7 +72,7 @@ SimRobotNode::~SimRobotNode() {
   thread_.join();
 }
 
-/// A subscriber that dies is gone at once; a publisher that dies is looked for for a while.
+/// A subscriber that ends is gone at once; a publisher that ends is looked for for a while.
 void SimRobotNode::AdvertiseTick(ros::NodeHandle* nh) {
   using Peer = ros::SingleSubscriberPublisher;
   tick_ = nh->advertise<hires::LockstepTick>(
@@ -253,7 +253,7 @@ void SimRobotNode::ReadMail(std::chrono::duration<double> timeout) {
   for (; mail; mail = mail_.Take()) (*mail)();
 }
 
-/// Whoever comes while it stands still must learn the time and what the sensors say.
+/// A node that starts while it stands still must learn the time and what the sensors say.
 void SimRobotNode::AwaitRelease() {
   auto repeat = Steady::now() + kRepeat;
   while (is_held_ && num_steps_ == 0 && !stop_) {

@@ -31,14 +31,14 @@ namespace hires_ros {
 
 struct Pr2GripperCommand;
 
-/// Plays the real robot and its world under the main master, with the topics of a PR2: whoever
+/// Plays the real robot and its world under the main master, with the topics of a PR2: a node that
 /// works with the one works with the other. Its world has a truth of its own, drawn once, which
-/// shows only below ground_truth/ for evaluation and which nobody who decides may look at.
+/// shows only below ground_truth/ for evaluation and which no node that decides may look at.
 ///
 /// The world goes on in ticks of 0.05 s, at `pace` times real time. In lockstep it waits at each
 /// tick until the middle layer has answered it and everything that it commanded is here, so that
-/// load on the machine changes nothing about what happens. Nobody waits for a middle layer that is
-/// not there, or dies.
+/// load on the machine changes nothing about what happens. It does not wait for a middle layer that
+/// is not there, or ends.
 class SimRobotNode {
  public:
   SimRobotNode(const SimRobotParams& params, const hires::imagination::ImaginationSetup& setup,

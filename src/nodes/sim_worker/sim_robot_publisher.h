@@ -23,7 +23,7 @@ class SimRobotPublisher {
   SimRobotPublisher(const SimRobotParams& params, const hires::imagination::ImaginationSetup& setup,
                     ros::NodeHandle* nh);
 
-  /// What comes at 100 Hz: joints and odometry, then the clock, so that nobody knows a time whose
+  /// What comes at 100 Hz: joints and odometry, then the clock, so that no node knows a time whose
   /// sensors are not on their way.
   void PublishFast(const SimRobotWorld& world, const SensorReadings& readings);
 

@@ -26,14 +26,14 @@ hires::simulation::LevelOfDetail LevelFor(const hires::simulation::Scene& scene)
 struct SensorReadings {
   OdometryReading odometry;
   JointReading joints;
-  hires::geometry::Pose2 X_MB;                     ///< where it believes to stand
-  hires::geometry::Pose2 X_MO;                     ///< where its odometry began, by that belief
-  std::vector<hires::geometry::Polygon> ghosts_M;  ///< outlines that the laser sees in vain
+  hires::geometry::Pose2 X_MB;                     ///< where its localisation says that it stands
+  hires::geometry::Pose2 X_MO;                     ///< where its odometry began, by the same
+  std::vector<hires::geometry::Polygon> ghosts_M;  ///< seen by the laser, though not there
 };
 
 /// The robot and its world as they really are: a simulator with a truth that was drawn once and is
-/// told to nobody, odometry that drifts, and a command line of base velocities that stalls now and
-/// then. Knows no ROS, no clock but its own, and gives the same bits for the same calls.
+/// not published, odometry that drifts, and a command line of base velocities that stalls now and
+/// then. It sees no topics and no clock but its own; the same calls give the same bits.
 class SimRobotWorld {
  public:
   /// The load settles for half a second that counts nowhere.

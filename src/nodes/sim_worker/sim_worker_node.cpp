@@ -37,7 +37,7 @@ void RequireHash(const char* what, std::uint64_t wanted, std::uint64_t own) {
                   what, hires::base::HexOf(wanted), hires::base::HexOf(own)));
 }
 
-/// Whoever has other actions, or another build of a library, may do something else by the same
+/// A client with other actions, or another build of a library, may do something else by the same
 /// name.
 void RequireActions(std::uint64_t wanted, const hires::skills::ActionSet& own) {
   const std::string why_not = hires::skills::WhyActionsDiffer(wanted, own);

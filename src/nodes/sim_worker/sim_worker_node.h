@@ -29,7 +29,7 @@ struct SimWorkerParams {
 /// hires::base::ConfigError.
 SimWorkerParams LoadSimWorkerParams();
 
-/// Plays rollouts for whoever asks: the action /worker_k/rollout. Goals wait for their turn in the
+/// Plays rollouts for any client: the action /worker_k/rollout. Goals wait for their turn in the
 /// order in which they came; they are played on a thread beside the ROS callbacks. Feedback carries
 /// one rollout each, the result all of them once more. The robot's URDF is the parameter
 /// /robot_description of the worker's master.

@@ -210,7 +210,7 @@ bool WorkerHostNode::HasCrossed() {
   const hires::relay::AliasNames names(relay_params_.alias_prefix,
                                        hires::relay::TagOf(params_.name_space()));
   for (const auto& registration : hires::relay::OwnRegistrations(*graph, names)) {
-    // Not what an earlier life left behind: nobody answers there, and the relay withdraws it.
+    // Not what an earlier start left behind: no node answers there, and the relay withdraws it.
     const auto uri = main_.LookupNode(registration.alias);
     const auto endpoint = uri ? hires::relay::ParseUri(*uri) : std::nullopt;
     if (endpoint && AskPid(*endpoint, ros::this_node::getName(), kCallTimeout)) return true;

@@ -48,7 +48,7 @@ void WorldTrackerNode::Subscribe(ros::NodeHandle* nh) {
   using Self = WorldTrackerNode;
   const std::string action = kExecuteAction;
   const hires::control::RobotNames& names = params_.files.names;
-  // A robot whose head nobody may turn has no publisher that could.
+  // A robot whose head must not be turned has no publisher for it.
   const auto head = names.trajectories.find("head");
   if (params_.sweep.enabled && head != names.trajectories.end()) {
     head_ = nh->advertise<trajectory_msgs::JointTrajectory>(head->second, 10);

@@ -9,7 +9,7 @@
 
 namespace hires_ros {
 
-/// How the head looks around when nobody else wants it to look somewhere.
+/// How the head looks around when no action needs it.
 struct SweepParams {
   bool enabled{true};
   double range{3.2};      ///< [m] from the camera to what is worth looking at
@@ -25,11 +25,12 @@ struct WorldTrackerParams {
   hires::sensing::SensingParams sensing;  ///< of the scene
   hires::translation::ClassifyParams classify;
   hires::translation::ChangeParams changes;
-  std::map<std::string, std::string> concepts;  ///< model -> concept, for objects nobody knows
+  std::map<std::string, std::string>
+      concepts;  ///< model -> concept, for objects that are not in the Blackboard
   SweepParams sweep;
   double write_period{0.05};  ///< [s] between writes to the Blackboard
-  /// Tells of known objects with looks alone, so that whoever waits for them after each look sees
-  /// the same however messages interleave.
+  /// Tells of known objects with looks alone, so that a node that waits for them after each look
+  /// sees the same however messages interleave.
   bool lockstep{false};
 };
 

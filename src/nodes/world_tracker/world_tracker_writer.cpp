@@ -114,7 +114,7 @@ ObservationWriter::Written ObservationWriter::Write(const translation::ObservedW
   return is_sent && is_known ? Written::kAll : Written::kNotNow;
 }
 
-/// The view has what was written, so that nobody who has as much of the Blackboard lacks it.
+/// The view has what was written, so that a view as new as this one has it, too.
 void ObservationWriter::TellProgress(double time) {
   hires::ObservationProgress progress;
   progress.header.stamp.fromSec(time);
@@ -122,8 +122,8 @@ void ObservationWriter::TellProgress(double time) {
   progress_.publish(progress);
 }
 
-/// What is new comes before what ends, so that a hand is full before a place is empty, and nobody
-/// sees an object that is nowhere.
+/// What is new comes before what ends, so that a hand is full before a place is empty, and no
+/// reader sees an object without a place.
 bool ObservationWriter::Send(const translation::FluentUpdate& update) {
   const knowledge::Assertion by{knowledge::Source::kObservation, episode_, 0.0};
   hires::WriteFluents add, replace;
