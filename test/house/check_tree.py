@@ -288,6 +288,22 @@ def check_nodes_apart(root):
                        "need to 'ros' or below")
 
 
+MOST_UNITS = 25
+
+
+def check_rooms(root):
+    """A folder fits in a glance; a header and its source in one folder are one unit."""
+    folders = {}
+    for path in code_files(root):
+        if path.startswith(("include/hires/", "src/")):
+            folder, name = os.path.split(path)
+            folders.setdefault(folder, set()).add(os.path.splitext(name)[0])
+    for folder, units in sorted(folders.items()):
+        if len(units) > MOST_UNITS:
+            yield (f"{folder}: has {len(units)} units (pairs of header and source), wanted at most "
+                   f"{MOST_UNITS}; make rooms by concept")
+
+
 def check_own_header(root, path):
     """A source includes its header first, which proves that the header needs nothing else. One
     without a header of its name implements a part of another of its layer, so it includes that."""
@@ -529,7 +545,8 @@ def check_instructions(root):
 
 
 CHECKS = [check_includes, check_private_headers, check_public_headers, check_dependencies,
-          check_units_with_ros, check_nodes_apart, check_headers, check_whitespace, check_packages,
+          check_units_with_ros, check_nodes_apart, check_rooms, check_headers, check_whitespace,
+          check_packages,
           check_catkin_components, check_scripts, check_failure_codes, check_failure_texts,
           check_failure_tables, check_rostests, check_instructions]
 

@@ -114,6 +114,16 @@ class CheckTreeTest(unittest.TestCase):
         self.assertEqual(self.complaints(
             {**pool, "src/nodes/planner/planner_main.cpp": '#include "nodes/planner/pool.h"\n'}), [])
 
+    def test_a_folder_of_too_many_units_is_found(self):
+        def units(number, folder="src/base"):
+            names = [f"{folder}/unit_{i}" for i in range(number)]
+            return {**{f"{name}.h": "#pragma once\n" for name in names},
+                    **{f"{name}.cpp": f'#include "{name[4:]}.h"\n' for name in names}}
+        most = check_tree.MOST_UNITS - 1  # and rng.cpp
+        self.assertEqual(self.complaints(units(most)), [])
+        self.expect_one(units(most + 1), "src/base:", "26 units", "rooms by concept")
+        self.assertEqual(self.complaints({**units(most), **units(9, "src/base/room")}), [])
+
     def test_a_dependency_that_cmake_does_not_know_is_found(self):
         self.expect_one({"src/geometry/CMakeLists.txt": "hires_layer(geometry LINK base)\n",
                          "src/robot/CMakeLists.txt": "hires_layer(robot DEPENDS geometry base)\n"},
