@@ -102,12 +102,12 @@ void ActionRunner::Ask(Session* session, Observation seen) {
 void ActionRunner::Collect() {
   for (Session& session : sessions_) {
     const auto turn = session.skill ? session.skill->Take() : std::nullopt;
-    if (turn && !session.stop) Hear(&session, *turn);
+    if (turn && !session.stop) TakeTurn(&session, *turn);
   }
   RemoveFinished();
 }
 
-void ActionRunner::Hear(Session* session, const SkillTurn& turn) {
+void ActionRunner::TakeTurn(Session* session, const SkillTurn& turn) {
   session->phase = turn.phase;
   if (!turn.error.empty()) {
     base::Log(base::LogLevel::kError,

@@ -9,6 +9,8 @@
 
 #include "nodes/hires/doctor_probe.h"
 #include "nodes/hires/robot_doctor.h"
+#include "nodes/hires/robot_doctor_hosts.h"
+#include "nodes/hires/robot_doctor_judge.h"
 
 namespace hires_ros {
 namespace {

@@ -108,7 +108,7 @@ class ActionRunner {
   };
   void LookWith(Session* session, const robot::Observation& seen);
   void Ask(Session* session, robot::Observation seen);
-  void Hear(Session* session, const SkillTurn& turn);
+  void TakeTurn(Session* session, const SkillTurn& turn);
   void BreakOff(Session* session, ActionEnd end, const base::Failure& failure);
   void KeepStopping(Session* session);
   void Finish(Session* session, ActionEnd end, const base::Failure& failure);

@@ -35,7 +35,7 @@ struct DriveRequest {
 
 /// What the guard says.
 struct GuardAnswer {
-  std::uint64_t request{0};  ///< that it speaks of; 0: it has none
+  std::uint64_t request{0};  ///< that it is about; 0: it has none
   bool passes{false};        ///< velocities go through
   base::Failure failure;     ///< why they do not
 };

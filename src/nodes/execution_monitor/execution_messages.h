@@ -17,7 +17,7 @@
 #include "hires/execution/monitor_config.h"
 #include "hires/planning/planner_config.h"
 
-/// What the execution monitor says and hears, as messages.
+/// What the execution monitor sends and receives, as messages.
 namespace hires_ros {
 
 hires::Atom ToMsg(const hires::base::Atom& atom);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hires/cli/command_line.h"
+#include "hires/cli/hypothesis_play.h"
 #include "nodes/hires/hypothesis_run.h"
 #include "nodes/hires/remote_achieve.h"
 #include "nodes/hires/remote_blackboard.h"
@@ -20,12 +21,12 @@ int main(int argc, char** argv) {
   backends.imagine_remotely = hires_ros::ImagineRemotely;
   backends.achieve_remotely = hires_ros::AchieveRemotely;
   backends.connect_blackboard = hires_ros::ConnectBlackboard;
-  backends.play_hypothesis = hires_ros::PlayHypothesisRun;
+  backends.play_hypothesis = hires::cli::PlayHypothesisRun;
   backends.examine_robot = [&](const hires::cli::RobotDoctorOptions& options) {
     return hires_ros::ExamineRobot(options, backends.package_folder);
   };
   backends.more_verbs.push_back(
-      {hires_ros::kHypothesisRunVerb, "one run of `hires experiment hypothesis`, which starts it",
+      {hires::cli::kHypothesisRunVerb, "one run of `hires experiment hypothesis`, which starts it",
        [&](const std::vector<std::string>& words) {
          return hires_ros::RunHypothesisProcess(words, backends.package_folder);
        }});

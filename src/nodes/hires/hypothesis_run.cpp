@@ -14,6 +14,7 @@
 #include "hires/base/process.h"
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
+#include "hires/cli/hypothesis_play.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/scenario.h"
 #include "hires/evaluation/timeline.h"
@@ -69,7 +70,7 @@ hires::base::ProcessOptions LaunchOptions(const HypothesisOrder& order,
   return options;
 }
 
-/// The truth as last heard, from whatever thread spins.
+/// The last truth that came, from whichever thread spins.
 class Witness {
  public:
   explicit Witness(ros::NodeHandle* nh)
@@ -260,12 +261,13 @@ int RunHypothesisProcess(const std::vector<std::string>& words, const std::strin
     throw ConfigError(
         fmt::format("{}: wanted ORDER.json RECORD.json FIRST_PORT; `hires experiment "
                     "hypothesis` starts it",
-                    kHypothesisRunVerb));
+                    hires::cli::kHypothesisRunVerb));
   }
   hires::base::StopSignals stop;
   hires::base::StopWithParent();
   hires::base::AdoptOrphans();
-  const HypothesisOrder order = ParseHypothesisOrder(hires::base::ReadTextFile(words[0]), words[0]);
+  const HypothesisOrder order =
+      hires::cli::ParseHypothesisOrder(hires::base::ReadTextFile(words[0]), words[0]);
   HypothesisRun run;
   try {
     run = PlayInSystem(order, PortOf(words[2]), package_folder, &stop);

@@ -11,6 +11,9 @@
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
+#include "nodes/hires/robot_doctor_hosts.h"
+#include "nodes/hires/robot_doctor_judge.h"
+#include "nodes/hires/robot_doctor_look.h"
 
 namespace hires_ros {
 namespace {

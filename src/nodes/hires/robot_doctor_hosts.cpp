@@ -1,9 +1,10 @@
+#include "nodes/hires/robot_doctor_hosts.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "hires/base/text.h"
-#include "nodes/hires/robot_doctor.h"
 
 namespace hires_ros {
 namespace {

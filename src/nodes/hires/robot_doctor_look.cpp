@@ -1,3 +1,5 @@
+#include "nodes/hires/robot_doctor_look.h"
+
 #include <dynamic_reconfigure/Config.h>
 #include <fmt/format.h>
 #include <ros/callback_queue.h>
@@ -17,7 +19,6 @@
 #include "hires/base/process.h"
 #include "hires/ros/xmlrpc_master_api.h"
 #include "hires/sensing/frame_tree.h"
-#include "nodes/hires/robot_doctor.h"
 #include "nodes/hires/robot_doctor_network.h"
 
 namespace hires_ros {
@@ -133,10 +134,10 @@ std::optional<ros::Time> StampOf(const ShapeShifter& message) {
 }
 
 /// Listens to what is wanted, and to frames. All callbacks run in ros::spinOnce().
-class Ears {
+class TopicListeners {
  public:
-  Ears(const hires::control::RobotNames& names, const std::vector<WantedTopic>& wanted,
-       RobotView* view)
+  TopicListeners(const hires::control::RobotNames& names, const std::vector<WantedTopic>& wanted,
+                 RobotView* view)
       : view_(view) {
     for (const WantedTopic& topic : wanted) Listen(topic);
     On<sensor_msgs::JointState>(names.joint_states, [this](const auto& joints) {
@@ -274,13 +275,13 @@ RobotView LookAtRobot(const hires::cli::RobotDoctorOptions& options,
   ros::start();
   auto network =
       std::async(std::launch::async, AskNetwork, kName, master.endpoint(), view, std::cref(wanted));
-  Ears ears(names, wanted, &view);
+  TopicListeners listeners(names, wanted, &view);
   const double end = hires::base::SteadyNow() + options.seconds;
   while (hires::base::SteadyNow() < end ||
          network.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(kSlice));
   }
-  ears.Finish();
+  listeners.Finish();
   TakeAnswers(network.get(), &view);
   view.is_heard = IsHeard(view);
   return view;

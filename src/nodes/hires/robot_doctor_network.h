@@ -7,7 +7,7 @@
 
 #include "nodes/hires/robot_doctor_view.h"
 
-/// What the nodes of a running system answer when `hires doctor --robot` knocks at their doors.
+/// What the nodes of a running system answer to `hires doctor --robot`.
 namespace hires_ros {
 
 /// What one node answers.

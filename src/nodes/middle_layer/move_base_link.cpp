@@ -77,11 +77,11 @@ void MoveBaseLink::Go(const hires::geometry::Pose2& X_MGoal) {
   goal.target_pose.header.frame_id = map_frame_;
   goal.target_pose.header.stamp = ros::Time::now();
   goal.target_pose.pose = ToMsg(hires::geometry::Lift(map_to_world_.ToMap(X_MGoal)));
-  handle_ =
-      client_->sendGoal(goal, [this, number](Client::GoalHandle handle) { Hear(number, handle); });
+  handle_ = client_->sendGoal(
+      goal, [this, number](Client::GoalHandle handle) { OnTransition(number, handle); });
 }
 
-void MoveBaseLink::Hear(std::uint64_t goal, Client::GoalHandle handle) {
+void MoveBaseLink::OnTransition(std::uint64_t goal, Client::GoalHandle handle) {
   const CommState state = handle.getCommState();
   if (state == CommState::DONE) {
     const TerminalState end = handle.getTerminalState();

@@ -17,7 +17,7 @@
 
 namespace hires_ros {
 
-/// A robot's move_base, by its action. Its answers are heard on a thread of its own; all calls may
+/// A robot's move_base, by its action. Its answers come on a thread of its own; all calls may
 /// come from any thread, and none waits.
 ///
 /// Goals go out between Open and Shut only, so that a skill on its own thread cannot give one after
@@ -44,7 +44,7 @@ class MoveBaseLink : public hires::control::MoveBaseServer {
  private:
   using Client = actionlib::ActionClient<move_base_msgs::MoveBaseAction>;
 
-  void Hear(std::uint64_t goal, Client::GoalHandle handle);
+  void OnTransition(std::uint64_t goal, Client::GoalHandle handle);
   void SetNews(std::uint64_t goal, const hires::control::MoveBaseNews& news);
 
   const std::string map_frame_;

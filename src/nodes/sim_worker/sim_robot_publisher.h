@@ -28,7 +28,8 @@ class SimRobotPublisher {
   void PublishFast(const SimRobotWorld& world, const SensorReadings& readings);
 
   /// What comes with every tick of 0.05 s, before the fast ones of the same moment: transforms,
-  /// localisation, laser, and the detector when it is due. Called again, it says the same again.
+  /// localisation, laser, and the detector when it is due. Called again, it publishes the same
+  /// again.
   /// @return topics that have a message of this stamp, fast ones included.
   std::vector<std::string> PublishTick(const SimRobotWorld& world, const SensorReadings& readings,
                                        const hires::simulation::TruthRecord& truth);

@@ -53,16 +53,16 @@ void WorldTrackerNode::Subscribe(ros::NodeHandle* nh) {
   if (params_.sweep.enabled && head != names.trajectories.end()) {
     head_ = nh->advertise<trajectory_msgs::JointTrajectory>(head->second, 10);
   }
-  Hear<nav_msgs::Odometry>(nh, names.odometry, kQueue,
-                           [this](const auto& msg) { sensors_.OnOdometry(msg); });
-  Hear<sensor_msgs::JointState>(nh, names.joint_states, kQueue,
-                                [this](const auto& msg) { sensors_.OnJoints(msg); });
-  Hear<tf2_msgs::TFMessage>(nh, kTransforms, kQueue,
-                            [this](const auto& msg) { sensors_.OnTransforms(msg, false); });
-  Hear<tf2_msgs::TFMessage>(nh, kStaticTransforms, 100,
-                            [this](const auto& msg) { sensors_.OnTransforms(msg, true); });
-  Hear<hires::Detections>(nh, kDetections, 100,
-                          [this](const auto& msg) { sensors_.OnDetections(msg); });
+  SubscribeTo<nav_msgs::Odometry>(nh, names.odometry, kQueue,
+                                  [this](const auto& msg) { sensors_.OnOdometry(msg); });
+  SubscribeTo<sensor_msgs::JointState>(nh, names.joint_states, kQueue,
+                                       [this](const auto& msg) { sensors_.OnJoints(msg); });
+  SubscribeTo<tf2_msgs::TFMessage>(nh, kTransforms, kQueue,
+                                   [this](const auto& msg) { sensors_.OnTransforms(msg, false); });
+  SubscribeTo<tf2_msgs::TFMessage>(nh, kStaticTransforms, 100,
+                                   [this](const auto& msg) { sensors_.OnTransforms(msg, true); });
+  SubscribeTo<hires::Detections>(nh, kDetections, 100,
+                                 [this](const auto& msg) { sensors_.OnDetections(msg); });
   subscribers_.push_back(nh->subscribe(action + "/goal", 10, &Self::OnGoal, this, hints));
   subscribers_.push_back(nh->subscribe(action + "/result", 10, &Self::OnResult, this, hints));
 }
@@ -71,8 +71,8 @@ void WorldTrackerNode::Subscribe(ros::NodeHandle* nh) {
 
 /// After each message, whatever it made complete is made use of.
 template <typename Message>
-void WorldTrackerNode::Hear(ros::NodeHandle* nh, const std::string& topic, int queue,
-                            std::function<void(const Message&)> take) {
+void WorldTrackerNode::SubscribeTo(ros::NodeHandle* nh, const std::string& topic, int queue,
+                                   std::function<void(const Message&)> take) {
   subscribers_.push_back(nh->subscribe<Message>(
       topic, static_cast<std::uint32_t>(queue),
       boost::function<void(const Message&)>([this, take = std::move(take)](const Message& msg) {

@@ -33,8 +33,8 @@ class WorldTrackerNode {
  private:
   void Subscribe(ros::NodeHandle* nh);
   template <typename Message>
-  void Hear(ros::NodeHandle* nh, const std::string& topic, int queue,
-            std::function<void(const Message&)> take);
+  void SubscribeTo(ros::NodeHandle* nh, const std::string& topic, int queue,
+                   std::function<void(const Message&)> take);
   void OnGoal(const hires::ExecuteActionActionGoal& msg);
   void OnResult(const hires::ExecuteActionActionResult& msg);
 

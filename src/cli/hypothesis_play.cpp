@@ -1,3 +1,5 @@
+#include "hires/cli/hypothesis_play.h"
+
 #include <fmt/format.h>
 
 #include <csignal>
@@ -9,14 +11,12 @@
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/timeline.h"
-#include "nodes/hires/hypothesis_run.h"
 
-namespace hires_ros {
+namespace hires::cli {
 namespace {
 
-namespace evaluation = hires::evaluation;
 namespace fs = std::filesystem;
-using hires::base::ConfigError;
+using base::ConfigError;
 using nlohmann::ordered_json;
 
 constexpr double kStopGrace = 60.0;   // [s] for a run to end its system
@@ -25,16 +25,15 @@ constexpr useconds_t kPoll = 50000;   // [us]
 
 /// How long the process may live: the run watches its own limit, and stops the robot first.
 double DeadlineOf(const evaluation::HypothesisOrder& order) {
-  return hires::base::SteadyNow() + order.goal.wall_limit + kExtraTime;
+  return base::SteadyNow() + order.goal.wall_limit + kExtraTime;
 }
 
 enum class Ending { kDone, kCancelled, kHung };
 
-Ending Await(hires::base::ChildProcess* process, double deadline,
-             const std::function<bool()>& cancelled) {
+Ending Await(base::ChildProcess* process, double deadline, const std::function<bool()>& cancelled) {
   while (!process->Ended()) {
     const bool is_cancelled = cancelled();
-    if (is_cancelled || hires::base::SteadyNow() > deadline) {
+    if (is_cancelled || base::SteadyNow() > deadline) {
       process->Terminate(kStopGrace);
       return is_cancelled ? Ending::kCancelled : Ending::kHung;
     }
@@ -53,7 +52,7 @@ evaluation::HypothesisRun Broken(const std::string& outcome, const std::string& 
 std::string LastLineOf(const std::string& path) {
   std::error_code error;
   if (!fs::exists(path, error)) return "";
-  std::string text = hires::base::ReadTextFile(path);
+  std::string text = base::ReadTextFile(path);
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return text.substr(text.rfind('\n') + 1);
 }
@@ -64,7 +63,7 @@ evaluation::HypothesisRun ReadRecord(const std::string& path, const std::string&
   if (!fs::exists(path, error)) {
     return Broken("run_died", fmt::format("{}: {}", how_it_ended, LastLineOf(log)));
   }
-  const ordered_json json = ordered_json::parse(hires::base::ReadTextFile(path), nullptr, false);
+  const ordered_json json = ordered_json::parse(base::ReadTextFile(path), nullptr, false);
   return evaluation::ParseHypothesisRun(json, path);
 }
 
@@ -111,9 +110,9 @@ evaluation::HypothesisOrder ParseHypothesisOrder(const std::string& text,
 
 std::optional<evaluation::HypothesisRun> PlayHypothesisRun(
     const evaluation::HypothesisOrder& wanted, const std::function<bool()>& cancelled) {
-  hires::base::AdoptOrphans();
-  const hires::base::RunFolder folder(wanted.folder);
-  const hires::base::PortClaim ports(wanted.workers + 1);
+  base::AdoptOrphans();
+  const base::RunFolder folder(wanted.folder);
+  const base::PortClaim ports(wanted.workers + 1);
   evaluation::HypothesisOrder order = wanted;
   order.folder = folder.path();
   const std::string order_path = order.folder + "/order.json";
@@ -121,21 +120,21 @@ std::optional<evaluation::HypothesisRun> PlayHypothesisRun(
   const std::string log_path = order.folder + "/run.log";
   evaluation::WriteText(HypothesisOrderText(order), order_path);
   fs::remove(record_path);
-  hires::base::ProcessOptions options;
+  base::ProcessOptions options;
   options.command = {fs::read_symlink("/proc/self/exe").string(), kHypothesisRunVerb, order_path,
                      record_path, std::to_string(ports.first())};
   options.output = log_path;
   Ending ending = Ending::kDone;
   std::string how_it_ended;
   {
-    hires::base::ChildProcess process(options);
+    base::ChildProcess process(options);
     ending = Await(&process, DeadlineOf(order), cancelled);
     how_it_ended = process.Ended().value_or("killed");
   }
-  hires::base::KillDescendants();
+  base::KillDescendants();
   if (ending == Ending::kCancelled) return std::nullopt;
   if (ending == Ending::kHung) return Broken("hung", "it did not end at its limit: killed");
   return ReadRecord(record_path, how_it_ended, log_path);
 }
 
-}  // namespace hires_ros
+}  // namespace hires::cli
