@@ -28,6 +28,7 @@
 namespace hires_ros {
 namespace {
 
+namespace cli = hires::cli;
 namespace evaluation = hires::evaluation;
 namespace imagination = hires::imagination;
 using hires::ImagineGoal;

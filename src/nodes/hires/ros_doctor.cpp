@@ -18,6 +18,7 @@
 #include "hires/base/error.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
+#include "hires/relay/worker_host_params.h"
 #include "hires/ros/xmlrpc_master_api.h"
 #include "nodes/hires/doctor_probe.h"
 
