@@ -204,7 +204,7 @@ TEST(CommandLineTest, RemoteQueriesCarryWhatWasAsked) {
   backends.imagine_remotely = [&](const ImagineQuery& query, const imagination::OnInterim&,
                                   const std::function<bool()>&) {
     seen = query;
-    return test_support::TwoAlternatives();
+    return evaluation::test_support::TwoAlternatives();
   };
   const Ended ended = RunWith({"imagine",
                                "--action",
