@@ -24,6 +24,9 @@ catkin_package(
   CFG_EXTRAS FindClassLoader.cmake HiresActionLibrary.cmake
   CATKIN_DEPENDS actionlib actionlib_msgs geometry_msgs message_runtime roscpp sensor_msgs std_msgs)
 
+# Code that sees ROS converts and waits; what is to be fast lies below. -O1 builds it a quarter faster.
+set(HIRES_ROS_OPTIONS ${HIRES_WARNINGS} -O1)
+
 # hires_node(<name> SOURCES a.cpp ... [LINK libraries ...]): an executable that rosrun and roslaunch find
 # as <name>, from <name>/<name>_main.cpp. The sources, in the same folder, are the static library
 # hires_nodes_<name>, so that tests can link what the node is made of; it is added to
@@ -34,7 +37,7 @@ function(hires_node name)
   set(library hires_nodes_${name})
   list(TRANSFORM NODE_SOURCES PREPEND ${name}/)
   add_library(${library} STATIC ${NODE_SOURCES})
-  target_compile_options(${library} PRIVATE ${HIRES_WARNINGS})
+  target_compile_options(${library} PRIVATE ${HIRES_ROS_OPTIONS})
   target_include_directories(${library} PUBLIC ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(${library} PUBLIC hires_ros ${NODE_LINK})
   set(HIRES_NODE_LIBRARIES ${HIRES_NODE_LIBRARIES} ${library} PARENT_SCOPE)
@@ -43,7 +46,7 @@ function(hires_node name)
   set_target_properties(${target} PROPERTIES
     OUTPUT_NAME ${name}
     RUNTIME_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION})
-  target_compile_options(${target} PRIVATE ${HIRES_WARNINGS})
+  target_compile_options(${target} PRIVATE ${HIRES_ROS_OPTIONS})
   target_link_libraries(${target} PRIVATE ${library})
   install(TARGETS ${target} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 endfunction()

@@ -151,8 +151,7 @@ def check_public_headers(root):
     for path in code_files(root) + example_files(root):
         for _, header in includes_of(root, path):
             users.setdefault(f"include/{header}", set()).add(path)
-    headers = [path for path in files_below(root, "include/hires")
-               if path.endswith(".h") and RANK.get(layer_of(path), 0) < FIRST_LAYER_WITH_ROS]
+    headers = [path for path in files_below(root, "include/hires") if path.endswith(".h")]
     used = {path for path in headers
             if any(layer_of(user) != layer_of(path) for user in users.get(path, ()))}
     grown = True
