@@ -88,7 +88,8 @@ class CheckTreeTest(unittest.TestCase):
 
     def test_a_unit_of_ros_or_nodes_that_sees_no_ros_is_found(self):
         plain = {"include/hires/ros/words.h": '#pragma once\n#include "hires/base/rng.h"\n',
-                 "src/ros/words.cpp": '#include "hires/ros/words.h"\n'}
+                 "src/ros/words.cpp": '#include "hires/ros/words.h"\n',
+                 "src/nodes/planner/said.cpp": '#include <ros/time.h>\n#include "hires/ros/words.h"\n'}
         self.expect_one(plain, "include/hires/ros/words.h:1", "sees no ROS", "move it down")
         self.expect_one({"src/nodes/planner/pool.cpp": "#include <vector>\n"},
                         "src/nodes/planner/pool.cpp:1", "sees no ROS")
@@ -105,14 +106,17 @@ class CheckTreeTest(unittest.TestCase):
              "src/nodes/planner/watch.cpp": '#include "hires/ros/master.h"\n'}), [])
 
     def test_names_of_topics_may_stand_where_topics_are(self):
-        self.assertEqual(self.complaints({"include/hires/ros/topic_names.h": "#pragma once\n"}), [])
+        self.assertEqual(self.complaints(
+            {"include/hires/ros/topic_names.h": "#pragma once\n",
+             "src/nodes/planner/said.cpp":
+                 '#include <ros/time.h>\n#include "hires/ros/topic_names.h"\n'}), [])
 
     def test_a_node_that_includes_another_one_is_found(self):
         pool = {"src/nodes/planner/pool.h": "#pragma once\n#include <ros/time.h>\n"}
         self.expect_one({**pool, "src/nodes/relay/relay_main.cpp": '#include "nodes/planner/pool.h"\n'},
                         "src/nodes/relay/relay_main.cpp:1", "another node")
         self.assertEqual(self.complaints(
-            {**pool, "src/nodes/planner/planner_main.cpp": '#include "nodes/planner/pool.h"\n'}), [])
+            {**pool, "src/nodes/planner/pool.cpp": '#include "nodes/planner/pool.h"\n'}), [])
 
     def test_a_folder_of_too_many_units_is_found(self):
         def units(number, folder="src/base"):

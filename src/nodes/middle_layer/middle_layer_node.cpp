@@ -61,9 +61,10 @@ MiddleLayerNode::MiddleLayerNode(const MiddleLayerParams& params,
   ConnectRobot(nh);
   updater_.setHardwareID(setup_.scene->robot.model.name);
   updater_.add("actions", this, &MiddleLayerNode::Diagnose);
-  heartbeat_ = nh->createWallTimer(ros::WallDuration(1.0),
-                                   boost::function<void(const ros::WallTimerEvent&)>(
-                                       [this](const ros::WallTimerEvent&) { updater_.update(); }));
+  // Also while the robot's time stands, by which update() would wait.
+  heartbeat_ = nh->createWallTimer(
+      ros::WallDuration(1.0), boost::function<void(const ros::WallTimerEvent&)>(
+                                  [this](const ros::WallTimerEvent&) { updater_.force_update(); }));
   goals_.Start();
 }
 
