@@ -23,6 +23,13 @@ function(hires_layer name)
   target_link_libraries(${target} ${scope} ${LAYER_DEPENDS} ${LAYER_LINK})
 endfunction()
 
+# hires_compile_together(<target>): its sources are compiled several at a time, in the order in which
+# they are listed. Reading headers and instantiating what they define is most of the work, and is done
+# once for each lot so.
+function(hires_compile_together target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${HIRES_TOGETHER} UNITY_BUILD_BATCH_SIZE 6)
+endfunction()
+
 # hires_benchmark(<layer> <file without _benchmark.cpp> [LINK more libraries ...])
 function(hires_benchmark layer name)
   if(NOT HIRES_BENCHMARKS)

@@ -69,7 +69,7 @@ void PrintReport(const evaluation::AchieveReport& report) {
                            report.episode > 0 ? fmt::format(", episode {}", report.episode) : "");
 }
 
-int ExitCodeOf(evaluation::AchieveOutcome outcome) {
+int ExitCodeFor(evaluation::AchieveOutcome outcome) {
   switch (outcome) {
     case evaluation::AchieveOutcome::kSucceeded:
     case evaluation::AchieveOutcome::kDryRun:
@@ -128,7 +128,7 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   std::cout << display.Show(last);
   PrintReport(report);
   WriteFiles(options, package_folder, report);
-  return ExitCodeOf(report.outcome);
+  return ExitCodeFor(report.outcome);
 }
 
 }  // namespace hires::cli

@@ -213,7 +213,7 @@ nlohmann::ordered_json SessionToJson(const Session& session) {
   return json;
 }
 
-int ExitCodeOf(const Session& session) {
+int ExitCodeFor(const Session& session) {
   for (const auto& violations : session.violations) {
     if (!violations.empty()) return kExitInvalidPlan;
   }
@@ -268,7 +268,7 @@ int RunPlanVerb(const PlanOptions& options, const std::function<bool()>& cancell
   if (options.validate) Validate(&session);
   Print(session, options.format);
   if (!options.json.empty()) evaluation::WriteJson(SessionToJson(session), options.json);
-  return ExitCodeOf(session);
+  return ExitCodeFor(session);
 }
 
 }  // namespace hires::cli

@@ -16,13 +16,12 @@ namespace hires::evaluation {
 namespace {
 
 using base::Between;
-using Kind = BrakingWay::Kind;
 
 BrakingWay ReadWay(base::ParamReader* in, const std::string& name) {
-  if (name == "ramp") return {Kind::kRamp, 0.0, name};
-  if (name == "controller") return {Kind::kConstant, 0.0, name};
-  if (name == "silence") return {Kind::kSilence, 0.0, name};
-  if (name == "at_once") return {Kind::kAtOnce, 0.0, name};
+  if (name == "ramp") return {BrakingWay::Kind::kRamp, 0.0, name};
+  if (name == "controller") return {BrakingWay::Kind::kConstant, 0.0, name};
+  if (name == "silence") return {BrakingWay::Kind::kSilence, 0.0, name};
+  if (name == "at_once") return {BrakingWay::Kind::kAtOnce, 0.0, name};
   char* end = nullptr;
   const double value = std::strtod(name.c_str(), &end);
   if (name.empty() || *end != '\0' || !(value >= 0.1 && value <= 100.0)) {
@@ -30,7 +29,7 @@ BrakingWay ReadWay(base::ParamReader* in, const std::string& name) {
                                  "or a deceleration between 0.1 and 100 m/s^2",
                                  name));
   }
-  return {Kind::kConstant, value, name};
+  return {BrakingWay::Kind::kConstant, value, name};
 }
 
 /// [s] by which the wheels' loop, of second order, trails its target: 2 d / w.
@@ -52,13 +51,13 @@ void StateStop(const BrakingConfig& braking, const robot::BaseControllerParams& 
                BrakingCell* cell) {
   const double v = cell->motion.linear;
   double lag = controller.command_lag + LoopLag(controller);
-  if (cell->way.kind == Kind::kRamp) {
+  if (cell->way.kind == BrakingWay::Kind::kRamp) {
     const navigation::PlanarStop stop({v, 0.0, cell->motion.angular}, {}, cell->limits,
                                       braking.guard.braking);
     cell->deceleration = cell->limits.max_deceleration;
     cell->stated_time = stop.duration();
     cell->stated_distance = stop.distance();
-  } else if (cell->way.kind == Kind::kConstant) {
+  } else if (cell->way.kind == BrakingWay::Kind::kConstant) {
     cell->deceleration = cell->way.deceleration > 0.0 ? cell->way.deceleration
                                                       : controller.limits.max_linear_acceleration;
     // All axes slow down together: around a bend the slower one tells.
@@ -69,7 +68,7 @@ void StateStop(const BrakingConfig& braking, const robot::BaseControllerParams& 
   } else {
     cell->deceleration = std::numeric_limits<double>::infinity();
     lag = controller.command_lag;  // only then the wheels lock, or the time-out begins
-    if (cell->way.kind == Kind::kSilence) {
+    if (cell->way.kind == BrakingWay::Kind::kSilence) {
       cell->stated_time = controller.command_timeout +
                           SettlingTime(controller, std::max(v, std::abs(cell->motion.angular)));
       cell->stated_distance = v * (controller.command_timeout + LoopLag(controller));
@@ -84,7 +83,7 @@ void Predict(const world::ObjectModel& model, double gravity, BrakingCell* cell)
   const bool is_cylinder = model.collisions.size() == 1 &&
                            std::holds_alternative<geometry::Cylinder>(model.collisions[0].shape);
   const bool is_straight = cell->motion.angular == 0.0;
-  if (!is_cylinder || !is_straight || cell->way.kind == Kind::kRamp) return;
+  if (!is_cylinder || !is_straight || cell->way.kind == BrakingWay::Kind::kRamp) return;
   const auto& shape = std::get<geometry::Cylinder>(model.collisions[0].shape);
   const physics::UprightCylinder body{shape.radius, shape.length, model.mass_properties.mass};
   const double v = cell->motion.linear, a = cell->deceleration;

@@ -13,7 +13,7 @@ using geometry::Pose3;
 
 // A chain knows where its robot and its load stand.
 const std::set<std::string> kKnown{"start_x", "start_y", "start_yaw", "object_x", "object_y"};
-enum Streams : std::uint64_t { kRollouts, kTruth };
+enum ChainStreams : std::uint64_t { kRolloutStream, kTruthStream };
 
 imagination::OutcomeCounts Classify(double tilt, const imagination::RolloutParams& params) {
   imagination::OutcomeCounts counts;
@@ -28,11 +28,11 @@ imagination::OutcomeCounts Classify(double tilt, const imagination::RolloutParam
 Chain::Chain(std::shared_ptr<const Stage> stage, const std::string& start, const Options& options)
     : stage_(std::move(stage)),
       options_(options),
-      setup_(SetupAt(*stage_, start, base::Rng(options.seed).Fork(kRollouts).seed())),
+      setup_(SetupAt(*stage_, start, base::Rng(options.seed).Fork(kRolloutStream).seed())),
       at_(start) {
   imagination::Uncertainty uncertainty = Without(*setup_.uncertainty, kKnown);
   if (options.one_truth) {
-    uncertainty = OneTruth(std::move(uncertainty), base::Rng(options.seed).Fork(kTruth));
+    uncertainty = OneTruth(std::move(uncertainty), base::Rng(options.seed).Fork(kTruthStream));
   }
   setup_.uncertainty = std::make_shared<const imagination::Uncertainty>(std::move(uncertainty));
   setup_.params.put_back = options.put_back;

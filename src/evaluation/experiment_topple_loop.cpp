@@ -36,19 +36,19 @@ LoopTotals TotalsOf(const Chains& chains) {
 }
 
 /// The three kinds of samples, by name.
-struct Event {
+struct CountedEvent {
   const char* name;
   int OutcomeCounts::*count;
 };
-constexpr Event kEvents[] = {{"notopple", &OutcomeCounts::notopple},
-                             {"shaking", &OutcomeCounts::shaking},
-                             {"topple", &OutcomeCounts::topple}};
+constexpr CountedEvent kEvents[] = {{"notopple", &OutcomeCounts::notopple},
+                                    {"shaking", &OutcomeCounts::shaking},
+                                    {"topple", &OutcomeCounts::topple}};
 
-double Likelihood(const OutcomeCounts& counts, const Event& event) {
+double Likelihood(const OutcomeCounts& counts, const CountedEvent& event) {
   return static_cast<double>(counts.*event.count) / counts.total();
 }
 
-double Ratio(const OutcomeCounts& first, const OutcomeCounts& second, const Event& event) {
+double Ratio(const OutcomeCounts& first, const OutcomeCounts& second, const CountedEvent& event) {
   return Likelihood(first, event) / Likelihood(second, event);
 }
 
@@ -60,14 +60,15 @@ struct Pair {
 
 TextTable CountsTable(const ToppleLoopConfig& loop, const std::vector<Pair>& pairs) {
   TextTable table{"Samples, as Table 6.5", {{"", "samples"}}};
-  for (const Event& event : kEvents) table.rows[0].push_back(event.name);
+  for (const CountedEvent& event : kEvents) table.rows[0].push_back(event.name);
   table.rows[0].push_back("confidence");
   for (const Pair& pair : pairs) {
     for (int s = 0; s < 2; ++s) {
       const OutcomeCounts& counts = s == 0 ? pair.first : pair.second;
       std::vector<std::string> row{pair.title + ", " + loop.motion_sets[s],
                                    fmt::format("{}", counts.total())};
-      for (const Event& event : kEvents) row.push_back(fmt::format("{}", counts.*event.count));
+      for (const CountedEvent& event : kEvents)
+        row.push_back(fmt::format("{}", counts.*event.count));
       row.push_back(fmt::format("{:.3f}", imagination::Confidence(counts)));
       table.rows.push_back(std::move(row));
     }
@@ -79,7 +80,7 @@ TextTable LikelihoodTable(const ToppleLoopConfig& loop, const std::vector<Pair>&
   TextTable table{"Likelihood L per event, as Table 6.6",
                   {{"", "event", "L " + loop.motion_sets[0], "L " + loop.motion_sets[1], "ratio"}}};
   for (const Pair& pair : pairs) {
-    for (const Event& event : kEvents) {
+    for (const CountedEvent& event : kEvents) {
       table.rows.push_back({pair.title, event.name,
                             fmt::format("{:.4f}", Likelihood(pair.first, event)),
                             fmt::format("{:.4f}", Likelihood(pair.second, event)),
@@ -119,7 +120,7 @@ TextTable RunTable(const ToppleLoopConfig& loop, const std::vector<LoopTotals>& 
 std::vector<Measure> MeasuresOf(const ToppleLoopConfig& loop,
                                 const std::vector<LoopTotals>& totals) {
   std::vector<Measure> measures;
-  for (const Event& event : kEvents) {
+  for (const CountedEvent& event : kEvents) {
     const std::string name = std::string(event.name) + "_ratio";
     measures.push_back({name, Ratio(totals[0].counts, totals[1].counts, event)});
     measures.push_back(
@@ -132,7 +133,7 @@ std::vector<Measure> MeasuresOf(const ToppleLoopConfig& loop,
     measures.push_back(
         {"failed_share_" + set, static_cast<double>(totals[s].failed) / totals[s].legs});
     measures.push_back({"duration_" + set, totals[s].duration});
-    for (const Event& event : kEvents) {
+    for (const CountedEvent& event : kEvents) {
       measures.push_back(
           {std::string(event.name) + "_share_" + set, Likelihood(totals[s].counts, event)});
     }

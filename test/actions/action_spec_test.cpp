@@ -5,7 +5,7 @@
 #include "hires/actions/catalogue.h"
 #include "support/messages.h"
 
-namespace hires::actions {
+namespace hires::actions::action_spec_test {
 namespace {
 
 using test_support::ConfigErrorOf;
@@ -134,4 +134,4 @@ TEST(ActionSpecTest, ConceptsAreCalledAsOntologiesCallThem) {
 }
 
 }  // namespace
-}  // namespace hires::actions
+}  // namespace hires::actions::action_spec_test

@@ -4,7 +4,7 @@
 
 #include "support/messages.h"
 
-namespace hires::actions {
+namespace hires::actions::catalogue_test {
 namespace {
 
 using test_support::ConfigErrorOf;
@@ -72,4 +72,4 @@ TEST(OwnActionsTest, OnlyLookingPromisesNothing) {
 }
 
 }  // namespace
-}  // namespace hires::actions
+}  // namespace hires::actions::catalogue_test

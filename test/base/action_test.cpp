@@ -4,7 +4,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::base {
+namespace hires::base::action_test {
 namespace {
 
 using ::testing::AllOf;
@@ -91,4 +91,4 @@ TEST(IsAmongTest, CallsAreAmongTheCombinationsAndOthersAreNot) {
 }
 
 }  // namespace
-}  // namespace hires::base
+}  // namespace hires::base::action_test

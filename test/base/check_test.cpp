@@ -4,7 +4,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::base {
+namespace hires::base::check_test {
 namespace {
 
 using ::testing::AllOf;
@@ -49,4 +49,4 @@ TEST(ConfigErrorTest, IsNoFaultOfTheCaller) {
 }
 
 }  // namespace
-}  // namespace hires::base
+}  // namespace hires::base::check_test

@@ -9,7 +9,7 @@
 
 #include "hires/base/text.h"
 
-namespace hires::base {
+namespace hires::base::failure_test {
 namespace {
 
 TEST(FailureTest, EveryCodeHasOneNumberAndOneWordAndComesBackFromBoth) {
@@ -91,4 +91,4 @@ TEST(FailureTest, ScopesSayWhetherAnotherWayMayHelp) {
 }
 
 }  // namespace
-}  // namespace hires::base
+}  // namespace hires::base::failure_test

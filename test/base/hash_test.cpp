@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-namespace hires::base {
+namespace hires::base::hash_test {
 namespace {
 
 template <typename... Values>
@@ -55,4 +55,4 @@ TEST(HexOfTest, AlwaysWritesSixteenDigits) {
 }
 
 }  // namespace
-}  // namespace hires::base
+}  // namespace hires::base::hash_test

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace hires::base {
+namespace hires::base::log_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -85,4 +85,4 @@ TEST_F(LogTest, NoLineOfManyThreadsIsLost) {
 }
 
 }  // namespace
-}  // namespace hires::base
+}  // namespace hires::base::log_test

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace hires::base {
+namespace hires::base::mailbox_test {
 namespace {
 
 using ::testing::Optional;
@@ -112,4 +112,4 @@ TEST(MailboxTest, EachMessageReachesOneOfManyReceivers) {
 }
 
 }  // namespace
-}  // namespace hires::base
+}  // namespace hires::base::mailbox_test

@@ -9,7 +9,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::base {
+namespace hires::base::param_reader_test {
 namespace {
 
 using ::testing::AllOf;
@@ -259,4 +259,4 @@ TEST(ParamReaderTest, AFileIsReadUnderItsOwnName) {
 }
 
 }  // namespace
-}  // namespace hires::base
+}  // namespace hires::base::param_reader_test

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-namespace hires::base {
+namespace hires::base::rng_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -164,4 +164,4 @@ TEST(RngTest, BrokenPreconditionsAreTheCallersFault) {
 }
 
 }  // namespace
-}  // namespace hires::base
+}  // namespace hires::base::rng_test

@@ -9,7 +9,7 @@
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
 
-namespace hires::base {
+namespace hires::base::text_test {
 namespace {
 
 using ::testing::AllOf;
@@ -125,4 +125,4 @@ TEST_F(ReadTextFileTest, AForbiddenFileIsNamed) {
 }
 
 }  // namespace
-}  // namespace hires::base
+}  // namespace hires::base::text_test

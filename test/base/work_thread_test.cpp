@@ -5,7 +5,7 @@
 #include <future>
 #include <vector>
 
-namespace hires::base {
+namespace hires::base::work_thread_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -21,4 +21,4 @@ TEST(WorkThreadTest, WorksInTheOrderOfPosting) {
 }
 
 }  // namespace
-}  // namespace hires::base
+}  // namespace hires::base::work_thread_test

@@ -8,7 +8,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::cli {
+namespace hires::cli::achieve_test {
 namespace {
 
 using execution::StepPhase;
@@ -255,4 +255,4 @@ TEST(AchieveWithoutRosTest, SaysWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace hires::cli
+}  // namespace hires::cli::achieve_test

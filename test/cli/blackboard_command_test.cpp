@@ -12,7 +12,7 @@
 #include "hires/knowledge/blackboard_config.h"
 #include "support/temporary_folder.h"
 
-namespace hires::cli {
+namespace hires::cli::blackboard_command_test {
 namespace {
 
 using nlohmann::json;
@@ -246,4 +246,4 @@ TEST(ParsePropertyFilterTest, ValuesAreOfTheKindTheyLookLike) {
 }
 
 }  // namespace
-}  // namespace hires::cli
+}  // namespace hires::cli::blackboard_command_test

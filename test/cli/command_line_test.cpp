@@ -12,7 +12,7 @@
 #include "hires/base/text.h"
 #include "support/temporary_folder.h"
 
-namespace hires::cli {
+namespace hires::cli::command_line_test {
 namespace {
 
 using hires::test_support::TemporaryFolder;
@@ -403,4 +403,4 @@ TEST(CommandLineTest, NothingEscapes) {
 }
 
 }  // namespace
-}  // namespace hires::cli
+}  // namespace hires::cli::command_line_test

@@ -9,7 +9,7 @@
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 
-namespace hires::cli {
+namespace hires::cli::experiment_command_test {
 namespace {
 
 const std::string kRoot = HIRES_SOURCE_DIR;
@@ -49,4 +49,4 @@ TEST(ExperimentCommandTest, WritesCsvAndJson) {
 }
 
 }  // namespace
-}  // namespace hires::cli
+}  // namespace hires::cli::experiment_command_test

@@ -9,7 +9,7 @@
 #include "hires/cli/command_line.h"
 #include "support/temporary_folder.h"
 
-namespace hires::cli {
+namespace hires::cli::experiment_hypothesis_command_test {
 namespace {
 
 using test_support::TemporaryFolder;
@@ -154,4 +154,4 @@ TEST_F(HypothesisCommandTest, SaysThatABuildWithoutRosCannotPlayIt) {
 }
 
 }  // namespace
-}  // namespace hires::cli
+}  // namespace hires::cli::experiment_hypothesis_command_test

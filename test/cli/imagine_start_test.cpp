@@ -5,7 +5,7 @@
 
 #include "support/messages.h"
 
-namespace hires::cli {
+namespace hires::cli::imagine_start_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -87,4 +87,4 @@ TEST(ImagineStartTest, RefusesWhatItCannotRead) {
 }
 
 }  // namespace
-}  // namespace hires::cli
+}  // namespace hires::cli::imagine_start_test

@@ -9,7 +9,7 @@
 #include "hires/cli/command_line.h"
 #include "support/temporary_folder.h"
 
-namespace hires::cli {
+namespace hires::cli::plan_command_test {
 namespace {
 
 using nlohmann::json;
@@ -286,4 +286,4 @@ TEST(PlanCommandTest, HelpIsNoError) {
 }
 
 }  // namespace
-}  // namespace hires::cli
+}  // namespace hires::cli::plan_command_test

@@ -11,7 +11,7 @@
 #include "hires/actions/catalogue.h"
 #include "support/scenes.h"
 
-namespace hires::control {
+namespace hires::control::action_runner_test {
 namespace {
 
 using base::Failure;
@@ -341,4 +341,4 @@ TEST_F(ActionRunnerTest, TheHeadLooksAtNothingElseWhileAnObjectIsPickedUp) {
 }
 
 }  // namespace
-}  // namespace hires::control
+}  // namespace hires::control::action_runner_test

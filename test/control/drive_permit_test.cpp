@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace hires::control {
+namespace hires::control::drive_permit_test {
 namespace {
 
 using Code = base::FailureCode;
@@ -140,4 +140,4 @@ TEST_F(LimitsForTest, AStraightApproachIsSlowerThanItsSet) {
 }
 
 }  // namespace
-}  // namespace hires::control
+}  // namespace hires::control::drive_permit_test

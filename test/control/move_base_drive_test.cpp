@@ -5,7 +5,7 @@
 #include "hires/base/error.h"
 #include "support/scenes.h"
 
-namespace hires::control {
+namespace hires::control::move_base_drive_test {
 namespace {
 
 using base::ActionCall;
@@ -224,4 +224,4 @@ TEST_F(MoveBaseDriveTest, AnActionThatMakesNoSenseIsTheErrorThatSkillsMake) {
 }
 
 }  // namespace
-}  // namespace hires::control
+}  // namespace hires::control::move_base_drive_test

@@ -10,7 +10,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 
-namespace hires::control {
+namespace hires::control::move_base_journal_test {
 namespace {
 
 using base::ConfigError;
@@ -135,4 +135,4 @@ TEST_F(MoveBaseJournalTest, ItsDefaultPlaceIsInRosHome) {
 }
 
 }  // namespace
-}  // namespace hires::control
+}  // namespace hires::control::move_base_journal_test

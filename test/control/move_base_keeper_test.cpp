@@ -8,7 +8,7 @@
 
 #include "support/move_base_fakes.h"
 
-namespace hires::control {
+namespace hires::control::move_base_keeper_test {
 namespace {
 
 using base::ConfigError;
@@ -179,4 +179,4 @@ TEST_F(MotionSetKeeperTest, WithoutAJournalNothingIsPutBack) {
 }
 
 }  // namespace
-}  // namespace hires::control
+}  // namespace hires::control::move_base_keeper_test

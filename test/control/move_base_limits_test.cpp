@@ -7,7 +7,7 @@
 #include "hires/base/error.h"
 #include "support/move_base_fakes.h"
 
-namespace hires::control {
+namespace hires::control::move_base_limits_test {
 namespace {
 
 using base::ConfigError;
@@ -67,4 +67,4 @@ TEST(MoveBaseLimitsTest, EachDifferenceIsNamed) {
 }
 
 }  // namespace
-}  // namespace hires::control
+}  // namespace hires::control::move_base_limits_test

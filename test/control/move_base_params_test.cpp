@@ -4,7 +4,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::control {
+namespace hires::control::move_base_params_test {
 namespace {
 
 using base::ConfigError;
@@ -71,4 +71,4 @@ TEST(NavigationParamsTest, MoveBaseWantsItsNameAndAGuard) {
 }
 
 }  // namespace
-}  // namespace hires::control
+}  // namespace hires::control::move_base_params_test

@@ -7,7 +7,7 @@
 
 #include "support/move_base_fakes.h"
 
-namespace hires::control {
+namespace hires::control::move_base_tuner_test {
 namespace {
 
 using Phase = TunerState::Phase;
@@ -214,4 +214,4 @@ TEST_F(MoveBaseTunerTest, AnUpdateThatIsTheSetAsksNobody) {
 }
 
 }  // namespace
-}  // namespace hires::control
+}  // namespace hires::control::move_base_tuner_test

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace hires::control {
+namespace hires::control::override_watch_test {
 namespace {
 
 using geometry::Twist2;
@@ -68,4 +68,4 @@ TEST(OverrideWatchTest, AClockThatBeginsAnewBeginsTheSecondAnew) {
 }
 
 }  // namespace
-}  // namespace hires::control
+}  // namespace hires::control::override_watch_test

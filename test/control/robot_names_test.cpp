@@ -8,7 +8,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 
-namespace hires::control {
+namespace hires::control::robot_names_test {
 namespace {
 
 using base::ConfigError;
@@ -168,4 +168,4 @@ TEST(RobotNamesTest, TextThatIsNoYamlIsRefused) {
 }
 
 }  // namespace
-}  // namespace hires::control
+}  // namespace hires::control::robot_names_test

@@ -5,7 +5,7 @@
 
 #include "support/scenes.h"
 
-namespace hires::control {
+namespace hires::control::tray_load_test {
 namespace {
 
 using geometry::Pose2;
@@ -96,4 +96,4 @@ TEST_F(LoadTest, WhatCannotStandIsNotGuessedEither) {
 }
 
 }  // namespace
-}  // namespace hires::control
+}  // namespace hires::control::tray_load_test

@@ -22,7 +22,7 @@
 #include "hires/robot/robot_profile.h"
 #include "hires/world/object_catalogue.h"
 
-namespace hires {
+namespace hires::configuration_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -124,4 +124,4 @@ TEST(ConfigurationFilesTest, NothingTouchesAtTheAreasWhereTheRobotWaits) {
 }
 
 }  // namespace
-}  // namespace hires
+}  // namespace hires::configuration_files_test

@@ -11,7 +11,7 @@
 #include "hires/base/text.h"
 #include "hires/evaluation/experiment.h"
 
-namespace hires::evaluation {
+namespace hires::evaluation::experiment_braking_test {
 namespace {
 
 using testing::AllOf;
@@ -199,4 +199,4 @@ TEST(BrakingReportTest, CountsFallsAndErrors) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::experiment_braking_test

@@ -11,7 +11,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/world/world.h"
 
-namespace hires::evaluation {
+namespace hires::evaluation::experiment_config_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -192,4 +192,4 @@ TEST(ExperimentConfigTest, MistakesOfTheOtherKindsAreNamedToo) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::experiment_config_test

@@ -8,7 +8,7 @@
 #include "hires/base/text.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation {
+namespace hires::evaluation::experiment_hypothesis_journal_test {
 namespace {
 
 using test_support::TemporaryFolder;
@@ -106,4 +106,4 @@ TEST_F(HypothesisJournalTest, HasOneWriterAtATime) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::experiment_hypothesis_journal_test

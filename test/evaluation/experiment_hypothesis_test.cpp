@@ -10,7 +10,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation {
+namespace hires::evaluation::experiment_hypothesis_test {
 namespace {
 
 using test_support::TemporaryFolder;
@@ -335,4 +335,4 @@ TEST(HypothesisReportTest, SaysTheSameToMachines) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::experiment_hypothesis_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-namespace hires::evaluation {
+namespace hires::evaluation::experiment_kinds_test {
 namespace {
 
 using imagination::Outcome;
@@ -202,4 +202,4 @@ TEST(DurationsTest, AnActionThatNeverSucceedsIsNoNumberAndStaysOne) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::experiment_kinds_test

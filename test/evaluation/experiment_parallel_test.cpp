@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace hires::evaluation {
+namespace hires::evaluation::experiment_parallel_test {
 namespace {
 
 Crew CrewOf(int threads) {
@@ -72,4 +72,4 @@ TEST(DoInParallelTest, ReportsShares) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::experiment_parallel_test

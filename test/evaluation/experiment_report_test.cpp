@@ -7,7 +7,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::evaluation {
+namespace hires::evaluation::experiment_report_test {
 namespace {
 
 using testing::HasSubstr;
@@ -123,4 +123,4 @@ TEST(ReportTest, JsonHasNullForWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::experiment_report_test

@@ -11,7 +11,7 @@
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 
-namespace hires::evaluation {
+namespace hires::evaluation::experiment_test {
 namespace {
 
 using testing::HasSubstr;
@@ -229,4 +229,4 @@ TEST(ChainTest, OneTruthStaysTheSameForAllLegsAndDiffersBetweenChains) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::experiment_test

@@ -12,7 +12,7 @@
 #include "hires/translation/classification.h"
 #include "support/scene_copy.h"
 
-namespace hires::evaluation {
+namespace hires::evaluation::one_criterion_test {
 namespace {
 
 using ::testing::AllOf;
@@ -155,4 +155,4 @@ TEST_F(OneCriterionTest, SymbolsSayWhatStandsByIt) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::one_criterion_test

@@ -12,7 +12,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation {
+namespace hires::evaluation::report_json_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -122,4 +122,4 @@ TEST(ReportJsonTest, TheNumberOfThreadsShowsNowhereButInTheWallsTime) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::report_json_test

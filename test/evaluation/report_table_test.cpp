@@ -6,7 +6,7 @@
 #include "evaluation/report_examples.h"
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::evaluation::report_table_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -87,4 +87,4 @@ TEST(ProgressLineTest, KeepsToItsWidth) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::report_table_test

@@ -18,7 +18,7 @@
 #include "hires/world/object_catalogue.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation {
+namespace hires::evaluation::scenario_test {
 namespace {
 
 using ::testing::AllOf;
@@ -166,4 +166,4 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedScenarioTest,
                          ::testing::Values("topple.yaml", "serve_coffee.yaml"));
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::scenario_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace hires::evaluation {
+namespace hires::evaluation::statistics_test {
 namespace {
 
 TEST(MeanTest, OfNothingIsZero) {
@@ -237,4 +237,4 @@ TEST(PairedScoreIntervalTest, MoreDiscordantPairsThanPairsAreRefused) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::statistics_test

@@ -6,7 +6,7 @@
 #include "hires/base/text.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation {
+namespace hires::evaluation::timeline_test {
 namespace {
 
 using execution::StepPhase;
@@ -163,4 +163,4 @@ TEST_F(DrawTimelineTest, SaysWhatTheScriptSays) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::timeline_test

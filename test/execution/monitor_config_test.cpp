@@ -6,7 +6,7 @@
 #include "hires/base/text.h"
 #include "support/temporary_folder.h"
 
-namespace hires::execution {
+namespace hires::execution::monitor_config_test {
 namespace {
 
 using ::testing::AllOf;
@@ -71,4 +71,4 @@ TEST(ReadImaginePolicyTest, NamesTheChoices) {
 }
 
 }  // namespace
-}  // namespace hires::execution
+}  // namespace hires::execution::monitor_config_test

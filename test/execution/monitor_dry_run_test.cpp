@@ -8,7 +8,7 @@
 
 // Tasks that are planned and imagined and not begun, in a scripted world.
 
-namespace hires::execution {
+namespace hires::execution::monitor_dry_run_test {
 namespace {
 
 using test_support::AllFail;
@@ -169,4 +169,4 @@ TEST(DryRunTest, ItCanBePreempted) {
 }
 
 }  // namespace
-}  // namespace hires::execution
+}  // namespace hires::execution::monitor_dry_run_test

@@ -7,7 +7,7 @@
 
 // Things go wrong.
 
-namespace hires::execution {
+namespace hires::execution::monitor_failure_test {
 namespace {
 
 using test_support::ExpectSound;
@@ -387,4 +387,4 @@ TEST(FailureTest, AfterTooManyRepairsItIsGivenUp) {
 }
 
 }  // namespace
-}  // namespace hires::execution
+}  // namespace hires::execution::monitor_failure_test

@@ -8,7 +8,7 @@
 
 // Steps that are imagined while others are carried out.
 
-namespace hires::execution {
+namespace hires::execution::monitor_imagination_test {
 namespace {
 
 using test_support::AllFail;
@@ -444,4 +444,4 @@ TEST(ToppleTest, TheCheapestChangeIsTriedFirst) {
 }
 
 }  // namespace
-}  // namespace hires::execution
+}  // namespace hires::execution::monitor_imagination_test

@@ -14,7 +14,7 @@
 // comes and goes; preempts. Whatever happens, a task ends, the robot stands at its end, and no step
 // is begun whose preconditions are not observed or whose resources are taken.
 
-namespace hires::execution {
+namespace hires::execution::monitor_properties_test {
 namespace {
 
 using test_support::AllFail;
@@ -222,4 +222,4 @@ TEST(MonitorPropertyTest, FiveHundredWorldsHoldNoSurprise) {
 }
 
 }  // namespace
-}  // namespace hires::execution
+}  // namespace hires::execution::monitor_properties_test

@@ -8,7 +8,7 @@
 #include "hires/base/text.h"
 #include "support/whole_tasks.h"
 
-namespace hires::execution {
+namespace hires::execution::monitor_test {
 namespace {
 
 using test_support::AllFail;
@@ -358,4 +358,4 @@ TEST(DeterminismTest, TheSameEventsGiveTheSameCommands) {
 }
 
 }  // namespace
-}  // namespace hires::execution
+}  // namespace hires::execution::monitor_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hires::execution {
+namespace hires::execution::reaction_times_test {
 namespace {
 
 TEST(ReactionTimesTest, QuantilesAreThoseOfTheNearestRank) {
@@ -23,4 +23,4 @@ TEST(ReactionTimesTest, TheOldestGiveWay) {
 }
 
 }  // namespace
-}  // namespace hires::execution
+}  // namespace hires::execution::reaction_times_test

@@ -4,7 +4,7 @@
 
 #include "hires/base/rng.h"
 
-namespace hires::geometry {
+namespace hires::geometry::angles_test {
 namespace {
 
 TEST(WrapToPiTest, LeavesWhatIsWrappedAlone) {
@@ -41,4 +41,4 @@ TEST(WrapToPiTest, NoNumberStaysNoNumber) {
 }
 
 }  // namespace
-}  // namespace hires::geometry
+}  // namespace hires::geometry::angles_test

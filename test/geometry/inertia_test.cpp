@@ -6,7 +6,7 @@
 
 #include "hires/base/rng.h"
 
-namespace hires::geometry {
+namespace hires::geometry::inertia_test {
 namespace {
 
 using ::testing::AllOf;
@@ -116,4 +116,4 @@ TEST(WhyUnphysicalTest, MomentsMustFormATriangle) {
 }
 
 }  // namespace
-}  // namespace hires::geometry
+}  // namespace hires::geometry::inertia_test

@@ -9,7 +9,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::geometry {
+namespace hires::geometry::mesh_reader_test {
 namespace {
 
 using ::testing::AllOf;
@@ -229,4 +229,4 @@ TEST_F(MeshReader, RefusesZeroAndInfiniteScale) {
 }
 
 }  // namespace
-}  // namespace hires::geometry
+}  // namespace hires::geometry::mesh_reader_test

@@ -8,7 +8,7 @@
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
 
-namespace hires::geometry {
+namespace hires::geometry::polygon_test {
 namespace {
 
 using ::testing::UnorderedElementsAre;
@@ -239,4 +239,4 @@ TEST(RadiusTest, TurningChangesNeitherRadius) {
 }
 
 }  // namespace
-}  // namespace hires::geometry
+}  // namespace hires::geometry::polygon_test

@@ -7,7 +7,7 @@
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
 
-namespace hires::geometry {
+namespace hires::geometry::pose_test {
 namespace {
 
 constexpr double kExact = 1e-12;  // a few roundings of numbers of order 10
@@ -200,4 +200,4 @@ TEST(TiltOfTest, SpinningTheBodyOrTheWorldChangesNothing) {
 }
 
 }  // namespace
-}  // namespace hires::geometry
+}  // namespace hires::geometry::pose_test

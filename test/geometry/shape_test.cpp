@@ -7,7 +7,7 @@
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
 
-namespace hires::geometry {
+namespace hires::geometry::shape_test {
 namespace {
 
 constexpr double kAround24 =
@@ -279,4 +279,4 @@ TEST(CollisionTest, GripsAndDoesNotBounceFromBirth) {
 }
 
 }  // namespace
-}  // namespace hires::geometry
+}  // namespace hires::geometry::shape_test

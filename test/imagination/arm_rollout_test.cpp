@@ -10,7 +10,7 @@
 #include "imagination/restaurant_rollouts.h"
 #include "support/messages.h"
 
-namespace hires::imagination {
+namespace hires::imagination::arm_rollout_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -272,4 +272,4 @@ TEST(ArmCheckSetupTest, RefusesUnknownArmsAndAreas) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::arm_rollout_test

@@ -9,7 +9,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::imagination {
+namespace hires::imagination::client_config_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -82,4 +82,4 @@ TEST(ClientConfigTest, NamesAMissingFile) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::client_config_test

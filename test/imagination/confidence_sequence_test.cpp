@@ -11,7 +11,7 @@
 
 #include "hires/base/rng.h"
 
-namespace hires::imagination {
+namespace hires::imagination::confidence_sequence_test {
 namespace {
 
 using Draw = std::function<double(base::Rng*)>;
@@ -141,4 +141,4 @@ TEST(MeanSequenceTest, ImpossibleInputIsRefused) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::confidence_sequence_test

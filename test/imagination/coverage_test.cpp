@@ -10,7 +10,7 @@
 #include "hires/imagination/scheduler.h"
 #include "imagination/rollout_examples.h"
 
-namespace hires::imagination {
+namespace hires::imagination::coverage_test {
 namespace {
 
 using test_support::Fall;
@@ -102,4 +102,4 @@ TEST(CoverageTest, ShownIntervalsHoldTheTruthInNinetyFivePercentOfRequests) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::coverage_test

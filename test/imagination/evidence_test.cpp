@@ -8,7 +8,7 @@
 
 #include "imagination/rollout_examples.h"
 
-namespace hires::imagination {
+namespace hires::imagination::evidence_test {
 namespace {
 
 using Code = base::FailureCode;
@@ -228,4 +228,4 @@ TEST(SumUpTest, CountsWhatBeganIt) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::evidence_test

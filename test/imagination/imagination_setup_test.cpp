@@ -11,7 +11,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::imagination {
+namespace hires::imagination::imagination_setup_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -416,4 +416,4 @@ TEST(StartStateTest, RolloutsGetTheWholeSetup) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::imagination_setup_test

@@ -8,7 +8,7 @@
 #include "hires/imagination/rollout.h"
 #include "support/scenes.h"
 
-namespace hires::imagination {
+namespace hires::imagination::load_monitor_test {
 namespace {
 
 using hires::test_support::OnTray;
@@ -240,4 +240,4 @@ TEST(LoadMonitorTest, WhatShouldStandOnAnAreaMustBeThere) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::load_monitor_test

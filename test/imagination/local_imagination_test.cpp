@@ -8,7 +8,7 @@
 #include "imagination/room_rollouts.h"
 #include "support/messages.h"
 
-namespace hires::imagination {
+namespace hires::imagination::local_imagination_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -116,4 +116,4 @@ TEST(ImagineLocallyTest, RefusesBadParameters) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::local_imagination_test

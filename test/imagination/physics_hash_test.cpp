@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-namespace hires::imagination {
+namespace hires::imagination::physics_hash_test {
 namespace {
 
 struct All {
@@ -51,4 +51,4 @@ TEST(PhysicsHashTest, EveryNumberChangesIt) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::physics_hash_test

@@ -6,7 +6,7 @@
 #include "imagination/rollout_examples.h"
 #include "support/messages.h"
 
-namespace hires::imagination {
+namespace hires::imagination::prices_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -120,4 +120,4 @@ TEST(EstimateCostTest, CoversTheExpectedCost) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::prices_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hires::imagination {
+namespace hires::imagination::purpose_test {
 namespace {
 
 TEST(PurposeTest, KnowsWhatIsTakenAndWhatIsPutDown) {
@@ -35,4 +35,4 @@ TEST(PurposeTest, MovingAloneHasNone) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::purpose_test

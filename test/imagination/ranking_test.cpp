@@ -5,7 +5,7 @@
 #include "hires/base/error.h"
 #include "imagination/rollout_examples.h"
 
-namespace hires::imagination {
+namespace hires::imagination::ranking_test {
 namespace {
 
 using test_support::Behaviour;
@@ -461,4 +461,4 @@ TEST(SettledTest, CommonRandomNumbersSettleEarlier) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::ranking_test

@@ -5,7 +5,7 @@
 
 #include "imagination/rollout_examples.h"
 
-namespace hires::imagination {
+namespace hires::imagination::report_test {
 namespace {
 
 using test_support::Fall;
@@ -178,4 +178,4 @@ TEST(ReportTest, ThereIsNoReportBeforeTheEnd) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::report_test

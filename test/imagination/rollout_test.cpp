@@ -11,7 +11,7 @@
 #include "imagination/room_rollouts.h"
 #include "support/messages.h"
 
-namespace hires::imagination {
+namespace hires::imagination::rollout_test {
 namespace {
 
 using Code = base::FailureCode;
@@ -367,4 +367,4 @@ TEST(RolloutParamsTest, AShakeIsLessThanATopple) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::rollout_test

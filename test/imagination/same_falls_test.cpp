@@ -9,12 +9,12 @@
 #include "imagination/load_monitor.h"
 #include "support/scenes.h"
 
-namespace hires::imagination {
+namespace hires::imagination::same_falls_test {
 namespace {
 
-using test_support::OnTray;
-using test_support::RoomScene;
-using test_support::StandingAt;
+using hires::test_support::OnTray;
+using hires::test_support::RoomScene;
+using hires::test_support::StandingAt;
 
 const geometry::Pose2 kStart{1.5, 2.0, 0.0};
 
@@ -84,4 +84,4 @@ TEST(SameFallsTest, AHoldTimeIsAskedOfBoth) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::same_falls_test

@@ -11,7 +11,7 @@
 #include "hires/base/log.h"
 #include "imagination/rollout_examples.h"
 
-namespace hires::imagination {
+namespace hires::imagination::scheduler_test {
 namespace {
 
 using test_support::Behaviour;
@@ -924,4 +924,4 @@ TEST(SchedulerPropertyTest, AtAnyMomentTheRankingIsThatOfTheCommonPrefix) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::scheduler_test

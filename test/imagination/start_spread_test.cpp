@@ -6,7 +6,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::imagination {
+namespace hires::imagination::start_spread_test {
 namespace {
 
 using geometry::Pose2;
@@ -109,4 +109,4 @@ TEST(StartSpreadTest, WhereNothingIsUncertainNothingIs) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::start_spread_test

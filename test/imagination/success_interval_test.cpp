@@ -6,7 +6,7 @@
 
 #include "hires/base/rng.h"
 
-namespace hires::imagination {
+namespace hires::imagination::success_interval_test {
 namespace {
 
 constexpr IntervalKind kFixed = IntervalKind::kClopperPearson;
@@ -218,4 +218,4 @@ TEST(RolloutsToDecideTest, ImpossibleQuestionsAreRefused) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::success_interval_test

@@ -9,7 +9,7 @@
 
 #include "support/messages.h"
 
-namespace hires::imagination {
+namespace hires::imagination::uncertainty_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -290,4 +290,4 @@ TEST(SampleVariationTest, HowTheRobotCameTellsHowFarItIsOff) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::uncertainty_test

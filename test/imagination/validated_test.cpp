@@ -10,7 +10,7 @@
 #include "imagination/room_rollouts.h"
 #include "support/messages.h"
 
-namespace hires::imagination {
+namespace hires::imagination::validated_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -130,4 +130,4 @@ TEST(DistributionTest, LargestIsNeverExceeded) {
 }
 
 }  // namespace
-}  // namespace hires::imagination
+}  // namespace hires::imagination::validated_test

@@ -10,7 +10,7 @@
 #include "hires/base/text.h"
 #include "support/temporary_folder.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::blackboard_config_test {
 namespace {
 
 using ::testing::AllOf;
@@ -84,4 +84,4 @@ TEST(ExpandHomeTest, OnlyATildeInFrontStandsForHome) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::blackboard_config_test

@@ -9,7 +9,7 @@
 #include "hires/base/error.h"
 #include "knowledge/support/store_world.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::blackboard_writer_test {
 namespace {
 
 namespace knowledge = hires::knowledge;
@@ -177,4 +177,4 @@ TEST_F(BlackboardWriterTest, WhoWaitsAtTheEndIsToldSo) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::blackboard_writer_test

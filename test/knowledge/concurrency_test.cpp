@@ -32,7 +32,7 @@
 #include "knowledge/support/store_world.h"
 #include "support/temporary_folder.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::concurrency_test {
 namespace {
 
 using test_support::At;
@@ -484,4 +484,4 @@ TEST_F(ConcurrencyTest, EverySubscriberHasWhatTheStoreHas) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::concurrency_test

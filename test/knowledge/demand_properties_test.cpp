@@ -10,7 +10,7 @@
 #include "knowledge/support/random_world.h"
 #include "support/property.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::demand_properties_test {
 namespace {
 
 using test_support::At;
@@ -139,4 +139,4 @@ std::string NameOfCase(const ::testing::TestParamInfo<DemandTopic>& info) {
 INSTANTIATE_TEST_SUITE_P(EveryKind, DemandProperty, ::testing::ValuesIn(Topics()), &NameOfCase);
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::demand_properties_test

@@ -14,7 +14,7 @@
 #include "hires/base/error.h"
 #include "knowledge/support/restaurant_world.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::demand_test {
 namespace {
 
 using test_support::At;
@@ -360,4 +360,4 @@ TEST_F(DemandTest, AQueryThatGrowsTooLargeIsAnErrorThatNamesTheTopic) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::demand_test

@@ -19,7 +19,7 @@
 #include "knowledge/support/store_workload.h"
 #include "support/temporary_folder.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::durability_test {
 namespace {
 
 using test_support::Ever;
@@ -163,4 +163,4 @@ TEST(DurabilityTest, AKillWhileTheLogGoesIntoTheFileLosesNothing) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::durability_test

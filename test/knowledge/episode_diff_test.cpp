@@ -16,7 +16,7 @@
 #include "knowledge/support/store_world.h"
 #include "support/property.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::episode_diff_test {
 namespace {
 
 using test_support::At;
@@ -389,4 +389,4 @@ HIRES_PROPERTY(EpisodeDiffProperty, WhatIsInOrderRisesInBothEpisodes, ()) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::episode_diff_test

@@ -5,7 +5,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::fluent_test {
 namespace {
 
 using ::testing::AllOf;
@@ -66,4 +66,4 @@ TEST(SourceTest, AnUnknownWordNamesTheFour) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::fluent_test

@@ -12,7 +12,7 @@
 #include "hires/knowledge/fluent_yaml.h"
 #include "support/property.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::fluent_yaml_properties_test {
 namespace {
 
 using temporal::Bounds;
@@ -214,4 +214,4 @@ HIRES_PROPERTY(FluentYamlProperties, ModificationsComeBackAsTheyWere, ()) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::fluent_yaml_properties_test

@@ -14,7 +14,7 @@
 #include "hires/base/text.h"
 #include "support/messages.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::fluent_yaml_test {
 namespace {
 
 using temporal::Bounds;
@@ -732,4 +732,4 @@ TEST_F(OriginalFileTest, ReplaceHasThreeChoicesAndTwoDeltas) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::fluent_yaml_test

@@ -14,7 +14,7 @@
 #include "knowledge/support/store_world.h"
 #include "support/property.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::live_view_test {
 namespace {
 
 using test_support::At;
@@ -325,4 +325,4 @@ HIRES_PROPERTY(LiveViewProperty, ChangesKeepItEqualToAFreshViewOfTheStore, ()) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::live_view_test

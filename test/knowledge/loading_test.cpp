@@ -8,7 +8,7 @@
 #include "hires/base/error.h"
 #include "knowledge/support/store_world.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::loading_test {
 namespace {
 
 using test_support::At;
@@ -85,4 +85,4 @@ TEST_F(LoadingTest, TopicsAreTold) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::loading_test

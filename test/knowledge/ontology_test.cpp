@@ -14,7 +14,7 @@
 #include "hires/base/rng.h"
 #include "support/temporary_folder.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::ontology_test {
 namespace {
 
 using ::testing::AllOf;
@@ -592,4 +592,4 @@ TEST(ShippedOntologyTest, RelationFluentsHaveTheRolesOfTheTable) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::ontology_test

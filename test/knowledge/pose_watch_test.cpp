@@ -8,7 +8,7 @@
 
 #include "hires/knowledge/live_view.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::pose_watch_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -122,4 +122,4 @@ TEST_F(PoseWatchTest, WhatSlidesOnTheTrayIsToldWhereItsPoseIsTheTrays) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::pose_watch_test

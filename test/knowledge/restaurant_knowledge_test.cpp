@@ -24,7 +24,7 @@
 #include "hires/knowledge/ontology.h"
 #include "hires/knowledge/store.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::restaurant_knowledge_test {
 namespace {
 
 using ::testing::Contains;
@@ -584,4 +584,4 @@ TEST(RestaurantKnowledgeTest, EveryNameOfThePlannersProblemsIsKnown) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::restaurant_knowledge_test

@@ -14,7 +14,7 @@
 #include "knowledge/support/random_world.h"
 #include "support/property.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::sparql_properties_test {
 namespace {
 
 using test_support::kNumNames;
@@ -214,4 +214,4 @@ HIRES_PROPERTY(SparqlProperty, AnyTextIsReadOrRefusedWithItsPlace, ()) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::sparql_properties_test

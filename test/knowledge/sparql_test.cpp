@@ -12,7 +12,7 @@
 #include "knowledge/support/memory_view.h"
 #include "knowledge/support/restaurant_world.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::sparql_test {
 namespace {
 
 using test_support::MakeFluent;
@@ -348,4 +348,4 @@ TEST(SparqlTest, AnAnswerOfTooManyRowsIsAnErrorNotAnEndlessSearch) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::sparql_test

@@ -21,7 +21,7 @@
 #include "knowledge/support/store_world.h"
 #include "support/property.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::state_view_test {
 namespace {
 
 using base::Atom;
@@ -510,4 +510,4 @@ TEST_F(ProjectedViewTest, VisitsStopWhenToldAmongAddedOnes) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::state_view_test

@@ -24,7 +24,7 @@
 #include "knowledge/support/store_workload.h"
 #include "support/temporary_folder.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::store_faults_test {
 namespace {
 
 using test_support::At;
@@ -457,4 +457,4 @@ TEST_F(StoreFaultsTest, QueriesOfIllWillAreRefusedAndTheStoreAnswersTheNext) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::store_faults_test

@@ -15,7 +15,7 @@
 #include "knowledge/support/store_world.h"
 #include "support/temporary_folder.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::store_file_test {
 namespace {
 
 using test_support::At;
@@ -384,4 +384,4 @@ TEST_F(StoreFileTest, AnotherProgramThatWritesIsNamedBusyAndNothingIsLost) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::store_file_test

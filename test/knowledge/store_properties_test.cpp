@@ -15,7 +15,7 @@
 #include "knowledge/support/store_world.h"
 #include "support/property.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::store_properties_test {
 namespace {
 
 using temporal::Bounds;
@@ -429,4 +429,4 @@ HIRES_PROPERTY(StoreProperties, PagesShowTheFirstOnesMoment, ()) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::store_properties_test

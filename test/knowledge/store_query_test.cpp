@@ -8,7 +8,7 @@
 #include "hires/knowledge/store.h"
 #include "knowledge/support/store_world.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::store_query_test {
 namespace {
 
 using temporal::Allen;
@@ -410,4 +410,4 @@ TEST_F(StoreQueryTest, MoreThanFitsInMemoryIsWalkedThroughByName) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::store_query_test

@@ -13,7 +13,7 @@
 #include "knowledge/support/store_world.h"
 #include "support/temporary_folder.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::store_reasons_test {
 namespace {
 
 using test_support::At;
@@ -165,4 +165,4 @@ TEST_F(StoreReasonsTest, AMigrationThatFailsChangesNothing) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::store_reasons_test

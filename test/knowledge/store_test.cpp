@@ -10,7 +10,7 @@
 #include "hires/base/error.h"
 #include "knowledge/support/store_world.h"
 
-namespace hires::knowledge {
+namespace hires::knowledge::store_test {
 namespace {
 
 using temporal::kForever;
@@ -446,4 +446,4 @@ TEST_F(StoreTest, ImaginedFluentsDoNotMixWithRealOnes) {
 }
 
 }  // namespace
-}  // namespace hires::knowledge
+}  // namespace hires::knowledge::store_test

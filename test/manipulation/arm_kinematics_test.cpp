@@ -11,7 +11,7 @@
 #include "hires/geometry/angles.h"
 #include "restaurant_scene.h"
 
-namespace hires::manipulation {
+namespace hires::manipulation::arm_kinematics_test {
 namespace {
 
 using geometry::Pose3;
@@ -208,4 +208,4 @@ TEST(ArmKinematicsErrorsTest, AnUnknownJointInThePostureIsNamed) {
 }
 
 }  // namespace
-}  // namespace hires::manipulation
+}  // namespace hires::manipulation::arm_kinematics_test

@@ -11,7 +11,7 @@
 #include "hires/base/rng.h"
 #include "restaurant_scene.h"
 
-namespace hires::manipulation {
+namespace hires::manipulation::arm_path_test {
 namespace {
 
 using namespace test_support;
@@ -300,4 +300,4 @@ TEST_F(StraightTest, StandingStillIsAWay) {
 }
 
 }  // namespace
-}  // namespace hires::manipulation
+}  // namespace hires::manipulation::arm_path_test

@@ -10,7 +10,7 @@
 #include "hires/geometry/angles.h"
 #include "restaurant_scene.h"
 
-namespace hires::manipulation {
+namespace hires::manipulation::collision_scene_test {
 namespace {
 
 using geometry::Box;
@@ -349,4 +349,4 @@ TEST(CollisionScenePr2Test, NoPairOfArmAndBaseIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace hires::manipulation
+}  // namespace hires::manipulation::collision_scene_test

@@ -9,7 +9,7 @@
 #include "hires/geometry/angles.h"
 #include "restaurant_scene.h"
 
-namespace hires::manipulation {
+namespace hires::manipulation::grasp_test {
 namespace {
 
 using geometry::Pose3;
@@ -160,4 +160,4 @@ TEST(GraspsForCatalogueTest, WhatIsServedCanBeTaken) {
 }
 
 }  // namespace
-}  // namespace hires::manipulation
+}  // namespace hires::manipulation::grasp_test

@@ -5,7 +5,7 @@
 #include "manipulation/upright_variant.h"
 #include "restaurant_scene.h"
 
-namespace hires::manipulation {
+namespace hires::manipulation::holding_postures_test {
 namespace {
 
 using namespace test_support;
@@ -183,4 +183,4 @@ TEST(UprightVariantTest, AnUprightPostureStaysAsItIs) {
 }
 
 }  // namespace
-}  // namespace hires::manipulation
+}  // namespace hires::manipulation::holding_postures_test

@@ -4,7 +4,7 @@
 #include "hires/manipulation/grasp.h"
 #include "restaurant_scene.h"
 
-namespace hires::manipulation {
+namespace hires::manipulation::restaurant_reach_test {
 namespace {
 
 using namespace test_support;
@@ -171,4 +171,4 @@ TEST(RestaurantReachTest, AtTheRecordedPoseAtTheCounterTheMillCannotBePutOnTheTr
 }
 
 }  // namespace
-}  // namespace hires::manipulation
+}  // namespace hires::manipulation::restaurant_reach_test

@@ -7,7 +7,7 @@
 #include "hires/base/rng.h"
 #include "hires/manipulation/arm_path.h"
 
-namespace hires::manipulation {
+namespace hires::manipulation::time_path_test {
 namespace {
 
 using robot::JointTrajectory;
@@ -258,4 +258,4 @@ TEST(TimePathErrorsTest, BrokenPreconditionsAreTheCallersFault) {
 }
 
 }  // namespace
-}  // namespace hires::manipulation
+}  // namespace hires::manipulation::time_path_test

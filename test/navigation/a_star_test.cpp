@@ -8,7 +8,7 @@
 #include "hires/geometry/angles.h"
 #include "navigation/scenes.h"
 
-namespace hires::navigation {
+namespace hires::navigation::a_star_test {
 namespace {
 
 using namespace test_support;
@@ -202,4 +202,4 @@ TEST(PlanPathTest, WithoutAPositiveNeutralCostThereIsNoSearch) {
 }
 
 }  // namespace
-}  // namespace hires::navigation
+}  // namespace hires::navigation::a_star_test

@@ -12,12 +12,12 @@
 // What holds for the guard of the base whatever comes in whatever order: lost messages, late ones,
 // requests that change, a driver that asks for anything.
 
-namespace hires::navigation {
+namespace hires::navigation::base_guard_properties_test {
 namespace {
 
 using geometry::Twist2;
 
-constexpr test_support::PropertyCases kPropertyCases{300};
+constexpr hires::test_support::PropertyCases kPropertyCases{300};
 
 constexpr double kSlack = 1e-9;
 
@@ -253,4 +253,4 @@ HIRES_PROPERTY(BaseGuardProperties, ItStandsWithinTheStatedTime, ()) {
 }
 
 }  // namespace
-}  // namespace hires::navigation
+}  // namespace hires::navigation::base_guard_properties_test

@@ -9,7 +9,7 @@
 
 #include "navigation/guarded_base.h"
 
-namespace hires::navigation {
+namespace hires::navigation::base_guard_test {
 namespace {
 
 using geometry::Twist2;
@@ -397,4 +397,4 @@ TEST(DriveRequestTest, DefectsAreNamed) {
 }
 
 }  // namespace
-}  // namespace hires::navigation
+}  // namespace hires::navigation::base_guard_test

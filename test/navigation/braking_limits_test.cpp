@@ -11,7 +11,7 @@
 #include "hires/navigation/braking.h"
 #include "hires/world/object_catalogue.h"
 
-namespace hires::navigation {
+namespace hires::navigation::braking_limits_test {
 namespace {
 
 using ::testing::AllOf;
@@ -169,4 +169,4 @@ TEST(BaseGuardParamsTest, RefusesBadFilesByNameAndKey) {
 }
 
 }  // namespace
-}  // namespace hires::navigation
+}  // namespace hires::navigation::braking_limits_test

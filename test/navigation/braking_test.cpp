@@ -7,7 +7,7 @@
 
 #include "hires/base/rng.h"
 
-namespace hires::navigation {
+namespace hires::navigation::braking_test {
 namespace {
 
 using geometry::Twist2;
@@ -210,4 +210,4 @@ TEST(OvershootTest, RefusesWhatIsNoOscillation) {
 }
 
 }  // namespace
-}  // namespace hires::navigation
+}  // namespace hires::navigation::braking_test

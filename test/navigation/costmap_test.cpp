@@ -8,7 +8,7 @@
 #include "hires/geometry/angles.h"
 #include "navigation/scenes.h"
 
-namespace hires::navigation {
+namespace hires::navigation::costmap_test {
 namespace {
 
 using namespace test_support;
@@ -242,4 +242,4 @@ TEST_F(FootprintEdgeTest, BeyondTheMapEverythingIsLethal) {
 }
 
 }  // namespace
-}  // namespace hires::navigation
+}  // namespace hires::navigation::costmap_test

@@ -4,7 +4,7 @@
 
 #include "navigation/scenes.h"
 
-namespace hires::navigation {
+namespace hires::navigation::distance_grid_test {
 namespace {
 
 using namespace test_support;
@@ -90,4 +90,4 @@ TEST(DistanceGridTest, NeighboursDifferByOneAtMost) {
 }
 
 }  // namespace
-}  // namespace hires::navigation
+}  // namespace hires::navigation::distance_grid_test

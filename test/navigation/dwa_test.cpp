@@ -10,7 +10,7 @@
 #include "navigation/distance_grid.h"
 #include "navigation/swept_footprint.h"
 
-namespace hires::navigation {
+namespace hires::navigation::dwa_test {
 namespace {
 
 using namespace test_support;
@@ -368,4 +368,4 @@ TEST(DwaTest, BrokenParametersAreRefused) {
 }
 
 }  // namespace
-}  // namespace hires::navigation
+}  // namespace hires::navigation::dwa_test

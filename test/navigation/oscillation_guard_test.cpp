@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hires::navigation {
+namespace hires::navigation::oscillation_guard_test {
 namespace {
 
 const geometry::Twist2 kForward{0.3, 0.0, 0.0}, kBackward{-0.3, 0.0, 0.0};
@@ -60,4 +60,4 @@ TEST_F(OscillationGuardTest, SteeringWhileDrivingForwardIsNoOscillation) {
 }
 
 }  // namespace
-}  // namespace hires::navigation
+}  // namespace hires::navigation::oscillation_guard_test

@@ -6,7 +6,7 @@
 #include "navigation/scenes.h"
 #include "navigation/velocity_window.h"
 
-namespace hires::navigation {
+namespace hires::navigation::swept_footprint_test {
 namespace {
 
 using namespace test_support;
@@ -84,4 +84,4 @@ TEST(SweptFootprintTest, TheCostIsTheHighestOfAllPosesOnTheWay) {
 }
 
 }  // namespace
-}  // namespace hires::navigation
+}  // namespace hires::navigation::swept_footprint_test

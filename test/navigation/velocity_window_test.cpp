@@ -8,7 +8,7 @@
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
 
-namespace hires::navigation {
+namespace hires::navigation::velocity_window_test {
 namespace {
 
 using ::testing::DoubleEq;
@@ -127,4 +127,4 @@ TEST(BrakedTest, ItEndsAtStandstill) {
 }
 
 }  // namespace
-}  // namespace hires::navigation
+}  // namespace hires::navigation::velocity_window_test

@@ -12,7 +12,7 @@
 #include "nodes/hires/robot_doctor_hosts.h"
 #include "nodes/hires/robot_doctor_judge.h"
 
-namespace hires_ros {
+namespace hires_ros::doctor_robot_test {
 namespace {
 
 using testing::ElementsAre;
@@ -382,4 +382,4 @@ TEST(RobotReportTest, TextAndJsonSayTheSame) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::doctor_robot_test

@@ -16,7 +16,7 @@
 #include "nodes/hires/ros_doctor.h"
 #include "support/messages.h"
 
-namespace hires_ros {
+namespace hires_ros::doctor_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -354,4 +354,4 @@ TEST(ThisComputerTest, EveryFindingSaysSomething) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::doctor_test

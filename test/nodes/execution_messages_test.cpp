@@ -11,7 +11,7 @@
 #include "hires/planning/reasons.h"
 #include "hires/ros/plan_request.h"
 
-namespace hires_ros {
+namespace hires_ros::execution_messages_test {
 namespace {
 
 namespace execution = hires::execution;
@@ -281,4 +281,4 @@ TEST(ExecuteMessageTest, WhatCannotBeDoneFailed) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::execution_messages_test

@@ -3,7 +3,7 @@
 #include "hires/base/error.h"
 #include "nodes/map_check/map_check_node.h"
 
-namespace hires_ros {
+namespace hires_ros::map_check_test {
 namespace {
 
 using hires::world::Cell;
@@ -59,4 +59,4 @@ TEST(MapCheckTest, TheSliceLiesWhereTheLaserIs) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::map_check_test

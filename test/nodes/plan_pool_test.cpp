@@ -6,7 +6,7 @@
 #include <future>
 #include <map>
 
-namespace hires_ros {
+namespace hires_ros::plan_pool_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -144,4 +144,4 @@ TEST_F(PlanPoolTest, TheEndCancelsWhatRunsAndForgetsWhatWaits) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::plan_pool_test

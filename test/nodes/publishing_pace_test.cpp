@@ -6,7 +6,7 @@
 #include <atomic>
 #include <thread>
 
-namespace hires_ros {
+namespace hires_ros::publishing_pace_test {
 namespace {
 
 bool Never() { return false; }
@@ -62,4 +62,4 @@ TEST(PublishingPaceTest, RoundsOfRoscppMakeRoom) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::publishing_pace_test

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace hires_ros {
+namespace hires_ros::record_writer_test {
 namespace {
 
 namespace execution = hires::execution;
@@ -51,4 +51,4 @@ TEST(FluentOfTest, AConceptThatTheOntologyLacksGivesWayToTheGeneralOne) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::record_writer_test

@@ -19,7 +19,7 @@
 #include "nodes/hires/imagine_recording.h"
 #include "support/messages.h"
 
-namespace hires_ros {
+namespace hires_ros::replay_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -520,4 +520,4 @@ TEST(RunReplayTest, WrongArgumentsGiveExitCodeOne) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::replay_test

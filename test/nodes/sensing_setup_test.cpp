@@ -8,7 +8,7 @@
 
 // One block of the scene says how robot and objects are sensed, to all who ask.
 
-namespace hires_ros {
+namespace hires_ros::sensing_setup_test {
 namespace {
 
 const std::string kConfig = std::string(HIRES_SOURCE_DIR) + "/config/";
@@ -51,4 +51,4 @@ TEST(SensingSetupTest, TrackerMiddleLayerAndRolloutsRememberByTheSameNumbers) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::sensing_setup_test

@@ -16,7 +16,7 @@
 #include "support/scenes.h"
 #include "support/temporary_folder.h"
 
-namespace hires_ros {
+namespace hires_ros::sim_robot_test {
 namespace {
 
 using hires::geometry::Polygon;
@@ -346,4 +346,4 @@ TEST_F(SimRobotParamsTest, ScenariosOfThePackageHaveAStart) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::sim_robot_test

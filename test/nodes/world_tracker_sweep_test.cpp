@@ -4,7 +4,7 @@
 
 #include "support/restaurant_translation.h"
 
-namespace hires_ros {
+namespace hires_ros::world_tracker_sweep_test {
 namespace {
 
 using hires::test_support::RestaurantContext;
@@ -114,4 +114,4 @@ TEST(WorldTrackerConfigTest, TheFilesThatThePackageComesWithAreRead) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::world_tracker_sweep_test

@@ -9,7 +9,7 @@
 #include "hires/perception/line_of_sight.h"
 #include "support/sight_scenes.h"
 
-namespace hires::perception {
+namespace hires::perception::camera_view_test {
 namespace {
 
 TEST(CameraViewTest, BordersOfRangeAndFieldBelongToTheView) {
@@ -81,4 +81,4 @@ TEST_F(Pr2ViewTest, TheHeadDoesNotHideWhatLiesBeforeIt) {
 }
 
 }  // namespace
-}  // namespace hires::perception
+}  // namespace hires::perception::camera_view_test

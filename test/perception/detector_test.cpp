@@ -7,7 +7,7 @@
 #include "hires/geometry/angles.h"
 #include "support/sight_scenes.h"
 
-namespace hires::perception {
+namespace hires::perception::detector_test {
 namespace {
 
 using test_support::At;
@@ -106,4 +106,4 @@ TEST_F(DetectorTest, TheSameSeedSeesTheSame) {
 }
 
 }  // namespace
-}  // namespace hires::perception
+}  // namespace hires::perception::detector_test

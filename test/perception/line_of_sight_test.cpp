@@ -11,7 +11,7 @@
 #include "support/rays.h"
 #include "support/sight_scenes.h"
 
-namespace hires::perception {
+namespace hires::perception::line_of_sight_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -270,4 +270,4 @@ TEST(SurroundingsTest, PointsOfAMeshCoverItEvenly) {
 }
 
 }  // namespace
-}  // namespace hires::perception
+}  // namespace hires::perception::line_of_sight_test

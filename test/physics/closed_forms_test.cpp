@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace hires::physics {
+namespace hires::physics::closed_forms_test {
 namespace {
 
 constexpr double kGravity = 9.81;
@@ -99,4 +99,4 @@ TEST(ClosedFormsTest, PulseTooWeakToTipBreaksThePrecondition) {
 }
 
 }  // namespace
-}  // namespace hires::physics
+}  // namespace hires::physics::closed_forms_test

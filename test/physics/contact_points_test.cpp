@@ -9,7 +9,7 @@
 #include "hires/geometry/angles.h"
 #include "hires/geometry/pose.h"
 
-namespace hires::physics {
+namespace hires::physics::contact_points_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -251,4 +251,4 @@ TEST(ContactPointsTest, QuickLookAgreesWithSampledCylinders) {
 }
 
 }  // namespace
-}  // namespace hires::physics
+}  // namespace hires::physics::contact_points_test

@@ -5,7 +5,7 @@
 
 #include "physics/scenes.h"
 
-namespace hires::physics {
+namespace hires::physics::held_bodies_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -174,4 +174,4 @@ TEST(HeldBodiesTest, WhatCannotBeIsRefused) {
 }
 
 }  // namespace
-}  // namespace hires::physics
+}  // namespace hires::physics::held_bodies_test

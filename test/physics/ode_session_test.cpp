@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
-namespace hires::physics {
+namespace hires::physics::ode_session_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -61,4 +61,4 @@ TEST_F(OdeSessionTest, EachThreadHasItsOwnMessages) {
 }
 
 }  // namespace
-}  // namespace hires::physics
+}  // namespace hires::physics::ode_session_test

@@ -7,7 +7,7 @@
 
 #include "hires/physics/physics_world.h"
 
-namespace hires::physics {
+namespace hires::physics::physics_checks_test {
 namespace {
 
 void ExpectAllPass(const UprightCylinder& body, const char* name) {
@@ -45,4 +45,4 @@ TEST(PhysicsChecksTest, ErrorBeyondToleranceFails) {
 }
 
 }  // namespace
-}  // namespace hires::physics
+}  // namespace hires::physics::physics_checks_test

@@ -13,7 +13,7 @@
 #include "hires/geometry/angles.h"
 #include "physics/scenes.h"
 
-namespace hires::physics {
+namespace hires::physics::physics_world_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -413,4 +413,4 @@ TEST(PhysicsWorldTest, WrongBodiesAndStatesBreakPreconditions) {
 }
 
 }  // namespace
-}  // namespace hires::physics
+}  // namespace hires::physics::physics_world_test

@@ -8,7 +8,7 @@
 #include "hires/base/error.h"
 #include "physics/scenes.h"
 
-namespace hires::physics {
+namespace hires::physics::placed_shape_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -137,4 +137,4 @@ TEST(PlacedShapeTest, RefusesSurfacesThatNoBodyHas) {
 }
 
 }  // namespace
-}  // namespace hires::physics
+}  // namespace hires::physics::placed_shape_test

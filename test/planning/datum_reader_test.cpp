@@ -9,7 +9,7 @@
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
 
-namespace hires::planning {
+namespace hires::planning::datum_reader_test {
 namespace {
 
 using ::testing::AllOf;
@@ -294,4 +294,4 @@ TEST(ReadDataErrorTest, TheNumberOfDataIsLimited) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::datum_reader_test

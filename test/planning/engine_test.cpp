@@ -11,7 +11,7 @@
 // Small cases worked by hand, one or more for each construct of the language. The helpers take the
 // items of a domain, facts and tasks, as in (defdomain d (ITEMS)) and (defproblem p d FACTS TASKS).
 
-namespace hires::planning {
+namespace hires::planning::engine_test {
 namespace {
 
 using test_support::AllPlans;
@@ -1013,4 +1013,4 @@ TEST(WrongProblemTest, AddingAnAtomWithAnUnboundVariableIsAnError) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::engine_test

@@ -12,7 +12,7 @@
 #include "planning/evaluate.h"
 #include "planning/functions/expression_node.h"
 
-namespace hires::planning {
+namespace hires::planning::expression_test {
 namespace {
 
 using test_support::Evaluate;
@@ -314,4 +314,4 @@ TEST(RandomExpressionsTest, EndWithAValueOrAConfigError) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::expression_test

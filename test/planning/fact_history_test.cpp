@@ -8,7 +8,7 @@
 #include "hires/base/rng.h"
 #include "planning/support/conditions.h"
 
-namespace hires::planning {
+namespace hires::planning::fact_history_test {
 namespace {
 
 using test_support::FactsOf;
@@ -83,4 +83,4 @@ TEST(FactHistoryTest, EqualsAListThatIsChangedStepByStep) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::fact_history_test

@@ -9,7 +9,7 @@
 #include "hires/base/error.h"
 #include "planning/evaluate.h"
 
-namespace hires::planning {
+namespace hires::planning::functions_test {
 namespace {
 
 using test_support::Evaluate;
@@ -264,4 +264,4 @@ TEST(FunctionsTest, StandardTestsAnswerTOrNilWithoutAnExpression) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::functions_test

@@ -8,7 +8,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 
-namespace hires::planning {
+namespace hires::planning::hddl_reader_test {
 namespace {
 
 using ::testing::AllOf;
@@ -633,4 +633,4 @@ TEST(SharedHddlFilesTest, EveryFileIsRead) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::hddl_reader_test

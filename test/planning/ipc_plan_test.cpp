@@ -12,7 +12,7 @@
 #include "hires/planning/validator.h"
 #include "planning/language/hddl_reader.h"
 
-namespace hires::planning {
+namespace hires::planning::ipc_plan_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -425,4 +425,4 @@ TEST_F(SharedHddlTest, ThePlanOfAnotherPlannerIsReadAndValid) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::ipc_plan_test

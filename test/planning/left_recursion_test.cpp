@@ -7,7 +7,7 @@
 #include "hires/planning/validator.h"
 #include "planning/language/hddl_reader.h"
 
-namespace hires::planning {
+namespace hires::planning::left_recursion_test {
 namespace {
 
 /// A task that is done by doing itself for a place before, as in the competition's transport
@@ -78,4 +78,4 @@ TEST(LeftRecursionTest, IsSearchedWhereNothingElseLeadsToAPlan) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::left_recursion_test

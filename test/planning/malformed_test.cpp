@@ -5,7 +5,7 @@
 #include "hires/base/error.h"
 #include "hires/planning/shop2_reader.h"
 
-namespace hires::planning {
+namespace hires::planning::malformed_test {
 namespace {
 
 using ::testing::AllOf;
@@ -260,4 +260,4 @@ TEST(MalformedTest, ManyTasksLikeAnUnknownOneCostLittle) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::malformed_test

@@ -10,7 +10,7 @@
 #include "hires/planning/shop2_reader.h"
 #include "support/temporary_folder.h"
 
-namespace hires::planning {
+namespace hires::planning::operator_data_test {
 namespace {
 
 using ::testing::AllOf;
@@ -267,7 +267,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& test) { return test.param.what; });
 
 TEST(OperatorDataTest, AFileIsReadAndNamedInErrors) {
-  test_support::TemporaryFolder folder;
+  hires::test_support::TemporaryFolder folder;
   const std::string path = folder.Write("small.yaml", kSidecar);
   EXPECT_THAT(LoadOperatorData(path, SmallDomain()).legs, ::testing::SizeIs(2));
   EXPECT_THROW(LoadOperatorData(path + ".gone", SmallDomain()), base::ConfigError);
@@ -286,4 +286,4 @@ TEST(OperatorDataTest, WhatAStepDisturbsIsAPatternOfWhatStepsChange) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::operator_data_test

@@ -4,7 +4,7 @@
 
 #include "hires/planning/datum_reader.h"
 
-namespace hires::planning {
+namespace hires::planning::plan_json_test {
 namespace {
 
 using nlohmann::ordered_json;
@@ -103,4 +103,4 @@ TEST(PlanJsonTest, ATraceIsToldWhereThereIsOne) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::plan_json_test

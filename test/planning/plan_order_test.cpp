@@ -11,7 +11,7 @@
 #include "planning/support/conditions.h"
 #include "planning/support/plans.h"
 
-namespace hires::planning {
+namespace hires::planning::plan_order_test {
 namespace {
 
 using test_support::DomainOf;
@@ -239,4 +239,4 @@ TEST(PartialOrderPropertyTest, NoPairFollowsFromOthers) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::plan_order_test

@@ -4,7 +4,7 @@
 
 #include "support/messages.h"
 
-namespace hires::planning {
+namespace hires::planning::plan_report_test {
 namespace {
 
 using test_support::ConfigErrorOf;
@@ -64,4 +64,4 @@ TEST(PlanReportTest, WhichIsReadAndRefused) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::plan_report_test

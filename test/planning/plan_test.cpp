@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace hires::planning {
+namespace hires::planning::plan_test {
 namespace {
 
 Datum Term(const std::vector<std::string>& names) {
@@ -73,4 +73,4 @@ TEST(PlanTest, LiteralsAreEqualInAtomAndSign) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::plan_test

@@ -8,7 +8,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::planning {
+namespace hires::planning::planner_config_test {
 namespace {
 
 using test_support::ConfigErrorOf;
@@ -125,4 +125,4 @@ TEST(PlannerConfigTest, AFileThatIsMissingOrBrokenIsNamed) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::planner_config_test

@@ -8,7 +8,7 @@
 #include "hires/base/error.h"
 #include "support/temporary_folder.h"
 
-namespace hires::planning {
+namespace hires::planning::planning_files_test {
 namespace {
 
 using ::testing::AllOf;
@@ -85,4 +85,4 @@ TEST(LoadTest, AMissingFileIsNamed) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::planning_files_test

@@ -15,7 +15,7 @@
 #include "planning/support/random_networks.h"
 #include "support/property.h"
 
-namespace hires::planning {
+namespace hires::planning::properties_test {
 namespace {
 
 using test_support::BruteForceResult;
@@ -408,4 +408,4 @@ HIRES_PROPERTY(StopQuestionTest, TheSearchEndsWithTheAnswerAndKeepsThePlansFound
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::properties_test

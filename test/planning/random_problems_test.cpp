@@ -11,7 +11,7 @@
 #include "support/planning_problems.h"
 
 // The random problems of the benchmarks, and the benchmarks' own domains.
-namespace hires::planning {
+namespace hires::planning::random_problems_test {
 namespace {
 
 using test_support::BlocksProblem;
@@ -91,4 +91,4 @@ TEST(OwnDomainsTest, BlocksMovesEachBlockTwiceAtMost) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::random_problems_test

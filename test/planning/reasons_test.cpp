@@ -12,7 +12,7 @@
 #include "planning/support/conditions.h"
 #include "planning/support/plans.h"
 
-namespace hires::planning {
+namespace hires::planning::reasons_test {
 namespace {
 
 using test_support::DomainOf;
@@ -257,4 +257,4 @@ TEST(ReasonsOfSharedPlansTest, Snake) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::reasons_test

@@ -15,7 +15,7 @@
 // Plans of SHOP3 and of other planners for original problems; the README beside them says where
 // they come from. Numbers here are that README's.
 
-namespace hires::planning {
+namespace hires::planning::reference_plans_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -202,4 +202,4 @@ TEST(HddlBestTest, TheCheapestPlanOfTidyHasTheLengthOfTheReference) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::reference_plans_test

@@ -11,7 +11,7 @@
 #include "planning/support/conditions.h"
 #include "planning/support/plan_text.h"
 
-namespace hires::planning {
+namespace hires::planning::reference_prover_test {
 namespace {
 
 using test_support::Condition;
@@ -341,4 +341,4 @@ TEST(TwoRoadsTest, TheSearchFindsTheSameBindings) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::reference_prover_test

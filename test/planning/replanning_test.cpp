@@ -13,7 +13,7 @@
 #include "planning/support/plan_text.h"
 #include "planning/support/plans.h"
 
-namespace hires::planning {
+namespace hires::planning::replanning_test {
 namespace {
 
 using test_support::DomainOf;
@@ -394,4 +394,4 @@ TEST(ReplanSharedPlansTest, Tidy) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::replanning_test

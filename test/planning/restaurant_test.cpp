@@ -23,7 +23,7 @@
 // The domain in config/domains with its problems and its sidecar. The plans in test/data/planning
 // are Listings 6.1 and 6.2 of S. Rockel's dissertation, and others worked out by hand.
 
-namespace hires::planning {
+namespace hires::planning::restaurant_test {
 namespace {
 
 using ::testing::Contains;
@@ -558,4 +558,4 @@ TEST(RestaurantSidecarTest, DrivesOfThePlansAreFoundAmongTheLegs) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::restaurant_test

@@ -7,7 +7,7 @@
 
 #include "hires/base/text.h"
 
-namespace hires::planning {
+namespace hires::planning::shop2_reader_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -412,4 +412,4 @@ TEST_F(OriginalFilesTest, TasksOfProblemsBelongToTheirDomains) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::shop2_reader_test

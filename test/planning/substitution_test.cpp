@@ -5,7 +5,7 @@
 #include "hires/base/rng.h"
 #include "planning/support/conditions.h"
 
-namespace hires::planning {
+namespace hires::planning::substitution_test {
 namespace {
 
 using test_support::Read;
@@ -118,4 +118,4 @@ TEST(RenameVariablesTest, LeavesConstantsAlone) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::substitution_test

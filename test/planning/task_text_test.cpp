@@ -8,7 +8,7 @@
 
 #include "support/messages.h"
 
-namespace hires::planning {
+namespace hires::planning::task_text_test {
 namespace {
 
 using test_support::ConfigErrorOf;
@@ -185,4 +185,4 @@ TEST(NetworkTextTest, ANestedNetworkThatIsImmediateCannotBeSaid) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::task_text_test

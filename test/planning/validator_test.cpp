@@ -10,7 +10,7 @@
 #include "hires/planning/planning_files.h"
 #include "planning/support/plans.h"
 
-namespace hires::planning {
+namespace hires::planning::validator_test {
 namespace {
 
 using test_support::DomainOf;
@@ -468,4 +468,4 @@ TEST(ValidateSharedPlansTest, Tidy) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::validator_test

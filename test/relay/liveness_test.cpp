@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace hires::relay {
+namespace hires::relay::liveness_test {
 namespace {
 
 using testing::ElementsAre;
@@ -79,4 +79,4 @@ TEST(LivenessTest, MisuseIsTheCallersFault) {
 }
 
 }  // namespace
-}  // namespace hires::relay
+}  // namespace hires::relay::liveness_test

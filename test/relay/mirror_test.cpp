@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-namespace hires::relay {
+namespace hires::relay::mirror_test {
 namespace {
 
 using testing::ElementsAre;
@@ -120,4 +120,4 @@ TEST(PlanMirrorTest, CarryingOutAPlanLeavesNothingToDo) {
 }
 
 }  // namespace
-}  // namespace hires::relay
+}  // namespace hires::relay::mirror_test

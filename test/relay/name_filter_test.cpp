@@ -4,7 +4,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::relay {
+namespace hires::relay::name_filter_test {
 namespace {
 
 std::string ErrorOf(const std::vector<std::string>& patterns) {
@@ -72,4 +72,4 @@ TEST(NameFilterTest, BadPatternsAreNamedWithTheirKey) {
 }
 
 }  // namespace
-}  // namespace hires::relay
+}  // namespace hires::relay::name_filter_test

@@ -4,7 +4,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::relay {
+namespace hires::relay::relay_params_test {
 namespace {
 
 using testing::AllOf;
@@ -143,4 +143,4 @@ TEST(TagOfTest, IsTheNamespaceInOneWord) {
 }
 
 }  // namespace
-}  // namespace hires::relay
+}  // namespace hires::relay::relay_params_test

@@ -5,7 +5,7 @@
 #include "hires/base/log.h"
 #include "relay/fake_master.h"
 
-namespace hires::relay {
+namespace hires::relay::relay_test {
 namespace {
 
 using test_support::FakeMaster;
@@ -352,4 +352,4 @@ TEST_F(RelayTest, SameInputGivesTheSameCallsInTheSameOrder) {
 }
 
 }  // namespace
-}  // namespace hires::relay
+}  // namespace hires::relay::relay_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hires::relay {
+namespace hires::relay::restart_policy_test {
 namespace {
 
 constexpr RestartLimits kLimits{0.1, 1.0, 30.0, 6};
@@ -43,4 +43,4 @@ TEST(RestartPolicyTest, SenselessDelaysAreTheCallersFault) {
 }
 
 }  // namespace
-}  // namespace hires::relay
+}  // namespace hires::relay::restart_policy_test

@@ -4,7 +4,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::relay {
+namespace hires::relay::uri_test {
 namespace {
 
 TEST(ParseUriTest, ReadsHostAndPort) {
@@ -54,4 +54,4 @@ TEST(IsSamePlaceTest, TellsThisComputerFromOthers) {
 }
 
 }  // namespace
-}  // namespace hires::relay
+}  // namespace hires::relay::uri_test

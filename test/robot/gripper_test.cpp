@@ -6,7 +6,7 @@
 
 #include "hires/robot/robot_profile.h"
 
-namespace hires::robot {
+namespace hires::robot::gripper_test {
 namespace {
 
 const Robot& Pr2() {
@@ -73,4 +73,4 @@ TEST(GripperTest, CompletingMakesGapAndAngleAgree) {
 }
 
 }  // namespace
-}  // namespace hires::robot
+}  // namespace hires::robot::gripper_test

@@ -4,7 +4,7 @@
 
 #include "hires/robot/gripper.h"
 
-namespace hires::robot {
+namespace hires::robot::posture_test {
 namespace {
 
 const Robot& Pr2() {
@@ -47,4 +47,4 @@ TEST(PostureOfTest, AFingerAngleThatIsGivenLeadsTheGap) {
 }
 
 }  // namespace
-}  // namespace hires::robot
+}  // namespace hires::robot::posture_test

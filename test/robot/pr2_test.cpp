@@ -5,7 +5,7 @@
 #include "hires/geometry/angles.h"
 #include "hires/robot/robot_profile.h"
 
-namespace hires::robot {
+namespace hires::robot::pr2_test {
 namespace {
 
 using geometry::kPi;
@@ -287,4 +287,4 @@ TEST(Pr2Profile, HeadLooksAtTheFloorAhead) {
 }
 
 }  // namespace
-}  // namespace hires::robot
+}  // namespace hires::robot::pr2_test

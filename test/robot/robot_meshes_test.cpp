@@ -6,7 +6,7 @@
 #include "hires/robot/robot_model.h"
 #include "support/temporary_folder.h"
 
-namespace hires::robot {
+namespace hires::robot::robot_meshes_test {
 namespace {
 
 using ::testing::AllOf;
@@ -129,4 +129,4 @@ TEST_F(RobotMeshes, OneMeshIsReadOnceAndHashedByContent) {
 }
 
 }  // namespace
-}  // namespace hires::robot
+}  // namespace hires::robot::robot_meshes_test

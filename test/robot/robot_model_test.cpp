@@ -8,7 +8,7 @@
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
 
-namespace hires::robot {
+namespace hires::robot::robot_model_test {
 namespace {
 
 using ::testing::AllOf;
@@ -272,4 +272,4 @@ TEST(RobotHash, TellsApartEveryValue) {
 }
 
 }  // namespace
-}  // namespace hires::robot
+}  // namespace hires::robot::robot_model_test

@@ -5,7 +5,7 @@
 #include "hires/base/error.h"
 #include "support/temporary_folder.h"
 
-namespace hires::robot {
+namespace hires::robot::robot_profile_test {
 namespace {
 
 using ::testing::AllOf;
@@ -323,4 +323,4 @@ TEST(ConfiguredRobots, CartFromItsBareUrdfIsTheSameCart) {
 }
 
 }  // namespace
-}  // namespace hires::robot
+}  // namespace hires::robot::robot_profile_test

@@ -2,7 +2,7 @@
 
 #include "hires/robot/observation.h"
 
-namespace hires::robot {
+namespace hires::robot::robot_state_test {
 namespace {
 
 RobotState Example() { return {{1.0, 2.0, 0.5}, {0.3, 0.1, -0.2}, {{"torso_lift_joint", 0.295}}}; }
@@ -27,4 +27,4 @@ TEST(RobotState, DiffersInEveryField) {
 }
 
 }  // namespace
-}  // namespace hires::robot
+}  // namespace hires::robot::robot_state_test

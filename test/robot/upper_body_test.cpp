@@ -6,7 +6,7 @@
 #include "hires/robot/robot_profile.h"
 #include "support/temporary_folder.h"
 
-namespace hires::robot {
+namespace hires::robot::upper_body_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -262,4 +262,4 @@ TEST_F(UpperBodyFile, RefusesNumbersThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace hires::robot
+}  // namespace hires::robot::upper_body_test

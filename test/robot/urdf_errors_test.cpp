@@ -4,7 +4,7 @@
 #include "hires/base/log.h"
 #include "hires/robot/robot_model.h"
 
-namespace hires::robot {
+namespace hires::robot::urdf_errors_test {
 namespace {
 
 using ::testing::AllOf;
@@ -220,4 +220,4 @@ TEST(UrdfWarnings, OurRobotsLoadWithoutAny) {
 }
 
 }  // namespace
-}  // namespace hires::robot
+}  // namespace hires::robot::urdf_errors_test

@@ -8,7 +8,7 @@
 #include "hires/knowledge/fluent.h"
 #include "support/messages.h"
 
-namespace hires_ros {
+namespace hires_ros::blackboard_messages_test {
 namespace {
 
 namespace knowledge = hires::knowledge;
@@ -165,4 +165,4 @@ TEST(BlackboardMessagesTest, CodesThatAreNoneAreNamed) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::blackboard_messages_test

@@ -9,7 +9,7 @@
 #include "hires/ros/conversions.h"
 #include "support/messages.h"
 
-namespace hires_ros {
+namespace hires_ros::imagine_request_test {
 namespace {
 
 namespace imagination = hires::imagination;
@@ -328,4 +328,4 @@ TEST(ImagineRequestTest, AnAnswerRestsOnTheFluentsOfItsGoal) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::imagine_request_test

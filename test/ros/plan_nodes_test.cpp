@@ -9,7 +9,7 @@
 #include "hires/planning/task_text.h"
 #include "support/messages.h"
 
-namespace hires_ros {
+namespace hires_ros::plan_nodes_test {
 namespace {
 
 namespace planning = hires::planning;
@@ -107,4 +107,4 @@ TEST_F(PlanNodesTest, WhatDoesNotFitIsRefusedWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::plan_nodes_test

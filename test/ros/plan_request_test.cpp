@@ -9,7 +9,7 @@
 #include "hires/planning/planning_files.h"
 #include "support/messages.h"
 
-namespace hires_ros {
+namespace hires_ros::plan_request_test {
 namespace {
 
 namespace planning = hires::planning;
@@ -231,4 +231,4 @@ TEST(PlanRequestTest, AStepKeepsAllThatItRestsOn) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::plan_request_test

@@ -6,7 +6,7 @@
 #include "hires/ros/robot_messages.h"
 #include "support/sight_scenes.h"
 
-namespace hires_ros {
+namespace hires_ros::sensor_receiver_test {
 namespace {
 
 using hires::geometry::Lift;
@@ -137,4 +137,4 @@ TEST(DetectionMessageTest, WhatIsNotToldIsNotKnown) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::sensor_receiver_test

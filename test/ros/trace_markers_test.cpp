@@ -5,7 +5,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "support/scene_copy.h"
 
-namespace hires_ros {
+namespace hires_ros::trace_markers_test {
 namespace {
 
 using hires::test_support::SceneCopy;
@@ -53,4 +53,4 @@ TEST(TraceMarkersTest, TheTextSaysHowFarTheLoadLeans) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::trace_markers_test

@@ -9,7 +9,7 @@
 #include "hires/sensing/robot_state_estimator.h"
 #include "support/scenes.h"
 
-namespace hires_ros {
+namespace hires_ros::transform_buffer_test {
 namespace {
 
 using hires::geometry::Flatten;
@@ -129,4 +129,4 @@ TEST_F(TransformBufferTest, TheRobotsStateFollowsAChainThatIsDatedAhead) {
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires_ros::transform_buffer_test

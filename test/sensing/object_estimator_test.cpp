@@ -7,7 +7,7 @@
 #include "support/fake_frame_tree.h"
 #include "support/sight_scenes.h"
 
-namespace hires::sensing {
+namespace hires::sensing::object_estimator_test {
 namespace {
 
 using geometry::Lift;
@@ -310,4 +310,4 @@ TEST_F(ObjectEstimatorTest, ARobotWithoutACameraSaysSo) {
 }
 
 }  // namespace
-}  // namespace hires::sensing
+}  // namespace hires::sensing::object_estimator_test

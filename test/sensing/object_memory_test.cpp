@@ -9,7 +9,7 @@
 #include "hires/robot/gripper.h"
 #include "support/sight_scenes.h"
 
-namespace hires::sensing {
+namespace hires::sensing::object_memory_test {
 namespace {
 
 using geometry::Pose3;
@@ -427,4 +427,4 @@ TEST_F(ObjectMemoryTest, AHandThatClosesAfterTheClockBeganAgainTakesHold) {
 }
 
 }  // namespace
-}  // namespace hires::sensing
+}  // namespace hires::sensing::object_memory_test

@@ -5,7 +5,7 @@
 #include "support/fake_frame_tree.h"
 #include "support/scenes.h"
 
-namespace hires::sensing {
+namespace hires::sensing::observation_maker_test {
 namespace {
 
 using geometry::Lift;
@@ -94,4 +94,4 @@ TEST_F(ObservationMakerTest, AScanWithoutATimeIsRefused) {
 }
 
 }  // namespace
-}  // namespace hires::sensing
+}  // namespace hires::sensing::observation_maker_test

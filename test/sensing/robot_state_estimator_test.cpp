@@ -11,7 +11,7 @@
 #include "support/fake_frame_tree.h"
 #include "support/scenes.h"
 
-namespace hires::sensing {
+namespace hires::sensing::robot_state_estimator_test {
 namespace {
 
 using geometry::Lift;
@@ -562,4 +562,4 @@ TEST_F(FramesTest, AnAngleThatWasMeasuredLeadsOverTheGapOfTheDrivingPosture) {
 }
 
 }  // namespace
-}  // namespace hires::sensing
+}  // namespace hires::sensing::robot_state_estimator_test

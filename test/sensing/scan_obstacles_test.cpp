@@ -7,7 +7,7 @@
 
 #include "support/scenes.h"
 
-namespace hires::sensing {
+namespace hires::sensing::scan_obstacles_test {
 namespace {
 
 using geometry::Pose2;
@@ -58,4 +58,4 @@ TEST_F(ScanObstaclesTest, ManyPointsOfOneCellAreOneSquare) {
 }
 
 }  // namespace
-}  // namespace hires::sensing
+}  // namespace hires::sensing::scan_obstacles_test

@@ -5,7 +5,7 @@
 #include "hires/base/param_reader.h"
 #include "support/messages.h"
 
-namespace hires::sensing {
+namespace hires::sensing::sensing_params_test {
 namespace {
 
 using test_support::ConfigErrorOf;
@@ -41,4 +41,4 @@ TEST(SensingParamsTest, EachNumberMattersAndIsNamedWhenItIsBad) {
 }
 
 }  // namespace
-}  // namespace hires::sensing
+}  // namespace hires::sensing::sensing_params_test

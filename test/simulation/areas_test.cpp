@@ -9,7 +9,7 @@
 #include "hires/simulation/scene.h"
 #include "hires/world/object_catalogue.h"
 
-namespace hires::simulation {
+namespace hires::simulation::areas_test {
 namespace {
 
 const std::string kRoot = HIRES_SOURCE_DIR;
@@ -90,4 +90,4 @@ TEST(AreasTest, TheMillsTopIsAboveTheLowerFaceOfTheSlab) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::areas_test

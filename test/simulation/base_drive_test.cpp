@@ -10,7 +10,7 @@
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
 
-namespace hires::simulation {
+namespace hires::simulation::base_drive_test {
 namespace {
 
 using geometry::Twist2;
@@ -360,4 +360,4 @@ TEST(BaseDriveTest, ACopyGoesOnWithTheSameBits) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::base_drive_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace hires::simulation {
+namespace hires::simulation::floor_profile_test {
 namespace {
 
 TEST(FloorProfileTest, TheDefaultIsFlat) {
@@ -62,4 +62,4 @@ TEST(FloorProfileTest, ChanceComesFromTheSeedAlone) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::floor_profile_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hires::simulation {
+namespace hires::simulation::ghost_obstacles_test {
 namespace {
 
 using geometry::Pose2;
@@ -49,4 +49,4 @@ TEST(GhostObstaclesTest, ACopyGoesOnAsTheOriginal) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::ghost_obstacles_test

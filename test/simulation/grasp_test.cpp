@@ -2,7 +2,7 @@
 
 #include "arm_scene.h"
 
-namespace hires::simulation {
+namespace hires::simulation::grasp_test {
 namespace {
 
 using namespace test_arm;  // NOLINT: the scene's words
@@ -209,4 +209,4 @@ TEST(ForceClosureTest, TheLineBetweenTheTouchesLiesInBothCones) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::grasp_test

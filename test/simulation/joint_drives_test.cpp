@@ -10,7 +10,7 @@
 #include "hires/simulation/scene.h"
 #include "support/messages.h"
 
-namespace hires::simulation {
+namespace hires::simulation::joint_drives_test {
 namespace {
 
 using ::testing::AllOf;
@@ -234,4 +234,4 @@ TEST(JointDrivesTest, RefusesWhatIsNoTrajectory) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::joint_drives_test

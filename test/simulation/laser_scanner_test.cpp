@@ -6,7 +6,7 @@
 
 #include "arm_scene.h"
 
-namespace hires::simulation {
+namespace hires::simulation::laser_scanner_test {
 namespace {
 
 using test_arm::Pr2;
@@ -76,4 +76,4 @@ TEST(LaserScannerTest, RefusesARobotWithoutSurroundings) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::laser_scanner_test

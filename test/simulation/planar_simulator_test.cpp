@@ -5,7 +5,7 @@
 #include "arm_scene.h"
 #include "support/messages.h"
 
-namespace hires::simulation {
+namespace hires::simulation::planar_simulator_test {
 namespace {
 
 using namespace test_arm;  // NOLINT: the scene's words
@@ -432,4 +432,4 @@ TEST(PlanarSimulatorTest, EncodersAndDetectionsHaveTheirNoise) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::planar_simulator_test

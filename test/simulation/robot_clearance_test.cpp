@@ -10,7 +10,7 @@
 #include "hires/simulation/scene.h"
 #include "support/scenes.h"
 
-namespace hires::simulation {
+namespace hires::simulation::robot_clearance_test {
 namespace {
 
 using test_support::Block;
@@ -127,4 +127,4 @@ TEST(RobotClearanceTest, WestOfTable2ThePr2StandsBesideChair2) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::robot_clearance_test

@@ -12,7 +12,7 @@
 #include "support/messages.h"
 #include "support/scenes.h"
 
-namespace hires::simulation {
+namespace hires::simulation::robot_simulator_test {
 namespace {
 
 using geometry::Pose2;
@@ -562,4 +562,4 @@ TEST(RobotSimulatorTest, AcceptsAnObjectThatStandsOnATable) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::robot_simulator_test

@@ -6,7 +6,7 @@
 #include "support/messages.h"
 #include "support/scenes.h"
 
-namespace hires::simulation {
+namespace hires::simulation::scene_test {
 namespace {
 
 using test_support::ConfigErrorOf;
@@ -59,4 +59,4 @@ TEST(SceneTest, RefusesJointsThatTheRobotLacks) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::scene_test

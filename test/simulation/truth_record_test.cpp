@@ -6,7 +6,7 @@
 
 #include "support/scenes.h"
 
-namespace hires::simulation {
+namespace hires::simulation::truth_record_test {
 namespace {
 
 using test_support::OnTray;
@@ -112,4 +112,4 @@ TEST(TruthRecordTest, WhatIsThereNoMoreDoesNotStand) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::truth_record_test

@@ -13,7 +13,7 @@
 #include "hires/planning/operator_data.h"
 #include "hires/planning/planning_files.h"
 
-namespace hires::skills {
+namespace hires::skills::action_documents_test {
 namespace {
 
 using actions::ActionSpec;
@@ -263,4 +263,4 @@ TEST(ActionDocumentsTest, TheNotesSayHowEachActionFails) {
 }
 
 }  // namespace
-}  // namespace hires::skills
+}  // namespace hires::skills::action_documents_test

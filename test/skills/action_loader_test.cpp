@@ -8,7 +8,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::skills {
+namespace hires::skills::action_loader_test {
 namespace {
 
 using test_support::ConfigErrorOf;
@@ -110,4 +110,4 @@ TEST(ActionLoaderTest, RefusesALibraryThatWasBuiltWithOtherHeaders) {
 }
 
 }  // namespace
-}  // namespace hires::skills
+}  // namespace hires::skills::action_loader_test

@@ -5,7 +5,7 @@
 
 #include "support/scenes.h"
 
-namespace hires::skills {
+namespace hires::skills::free_spot_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -120,4 +120,4 @@ TEST(FreeSlotsTest, TheTrayHasItsMiddleThenRightThenLeft) {
 }
 
 }  // namespace
-}  // namespace hires::skills
+}  // namespace hires::skills::free_spot_test

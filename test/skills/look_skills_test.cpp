@@ -9,7 +9,7 @@
 #include "hires/skills/head_aim.h"
 #include "restaurant.h"
 
-namespace hires::skills {
+namespace hires::skills::look_skills_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -149,4 +149,4 @@ TEST(PointsOfSquareTest, CoverTheSquareWithItsRimsTheMiddleFirst) {
 }
 
 }  // namespace
-}  // namespace hires::skills
+}  // namespace hires::skills::look_skills_test

@@ -6,7 +6,7 @@
 #include "hires/base/text.h"
 #include "support/messages.h"
 
-namespace hires::skills {
+namespace hires::skills::manipulation_params_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -71,4 +71,4 @@ TEST(ManipulationParamsTest, MissingAndMisspelledKeysAreRefused) {
 }
 
 }  // namespace
-}  // namespace hires::skills
+}  // namespace hires::skills::manipulation_params_test

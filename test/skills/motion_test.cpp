@@ -8,7 +8,7 @@
 #include "restaurant.h"
 #include "skills/joint_motion.h"
 
-namespace hires::skills {
+namespace hires::skills::motion_test {
 namespace {
 
 using test_support::TheRestaurant;
@@ -261,4 +261,4 @@ TEST(HaltTest, AtRestOnlyTheBaseIsTold) {
 }
 
 }  // namespace
-}  // namespace hires::skills
+}  // namespace hires::skills::motion_test

@@ -13,7 +13,7 @@
 #include "skills/posture_skills.h"
 #include "support/scenes.h"
 
-namespace hires::skills {
+namespace hires::skills::move_base_test {
 namespace {
 
 using geometry::Pose2;
@@ -410,4 +410,4 @@ TEST(MoveBaseBlindTest, IsStuckWhenItComesNoNearer) {
 }
 
 }  // namespace
-}  // namespace hires::skills
+}  // namespace hires::skills::move_base_test

@@ -7,7 +7,7 @@
 
 #include "restaurant.h"
 
-namespace hires::skills {
+namespace hires::skills::object_skills_test {
 namespace {
 
 using base::ActionCall;
@@ -394,4 +394,4 @@ TEST(ObjectSkillsDeterminismTest, SeedsDependOnActionAndParametersOnly) {
 }
 
 }  // namespace
-}  // namespace hires::skills
+}  // namespace hires::skills::object_skills_test

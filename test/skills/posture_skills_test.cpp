@@ -6,7 +6,7 @@
 #include "hires/robot/posture.h"
 #include "restaurant.h"
 
-namespace hires::skills {
+namespace hires::skills::posture_skills_test {
 namespace {
 
 using base::ActionCall;
@@ -205,4 +205,4 @@ TEST(PostureSkillsDeterminismTest, TheSameCallGivesTheSameBitsTwice) {
 }
 
 }  // namespace
-}  // namespace hires::skills
+}  // namespace hires::skills::posture_skills_test

@@ -7,7 +7,7 @@
 #include "support/messages.h"
 #include "support/scenes.h"
 
-namespace hires::skills {
+namespace hires::skills::skill_factory_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -153,4 +153,4 @@ TEST(SkillFactoryUpperBodyTest, ARobotWithoutTrayPutsNothingOnIt) {
 }
 
 }  // namespace
-}  // namespace hires::skills
+}  // namespace hires::skills::skill_factory_test

@@ -8,7 +8,7 @@
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
 
-namespace hires::temporal {
+namespace hires::temporal::interval_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -114,4 +114,4 @@ TEST(PossibleRelationsTest, AgreesWithEveryIntervalOfAGrid) {
 }
 
 }  // namespace
-}  // namespace hires::temporal
+}  // namespace hires::temporal::interval_test

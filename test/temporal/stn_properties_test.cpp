@@ -11,7 +11,7 @@
 // The network against the slow and obvious way: all shortest paths by Floyd and Warshall, over
 // whole seconds, so that both are exact.
 
-namespace hires::temporal {
+namespace hires::temporal::stn_properties_test {
 namespace {
 
 struct Requirement {
@@ -148,4 +148,4 @@ HIRES_PROPERTY(StnPropertyTest, BoundsAreThoseOfAllShortestPathsAlsoAfterRetract
 }
 
 }  // namespace
-}  // namespace hires::temporal
+}  // namespace hires::temporal::stn_properties_test

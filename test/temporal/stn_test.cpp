@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace hires::temporal {
+namespace hires::temporal::stn_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -190,4 +190,4 @@ TEST(AllenBoundsTest, BeforeLeavesTheGap) {
 }
 
 }  // namespace
-}  // namespace hires::temporal
+}  // namespace hires::temporal::stn_test

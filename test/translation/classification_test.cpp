@@ -5,7 +5,7 @@
 #include "hires/geometry/angles.h"
 #include "support/restaurant_translation.h"
 
-namespace hires::translation {
+namespace hires::translation::classification_test {
 namespace {
 
 using base::Atom;
@@ -148,4 +148,4 @@ TEST(AtomsOfTest, GripperGapsBesideFingerAnglesDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace hires::translation
+}  // namespace hires::translation::classification_test

@@ -10,7 +10,7 @@
 #include "hires/knowledge/store.h"
 #include "support/restaurant_translation.h"
 
-namespace hires::translation {
+namespace hires::translation::observed_fluents_test {
 namespace {
 
 using test_support::RestaurantContext;
@@ -235,4 +235,4 @@ TEST_F(ObservedFluentsTest, PosesThatAreNoNumbersAndUnknownModelsAreErrors) {
 }
 
 }  // namespace
-}  // namespace hires::translation
+}  // namespace hires::translation::observed_fluents_test

@@ -9,7 +9,7 @@
 #include "hires/translation/classification.h"
 #include "support/restaurant_translation.h"
 
-namespace hires::translation {
+namespace hires::translation::round_trip_test {
 namespace {
 
 using base::Atom;
@@ -129,4 +129,4 @@ TEST(RoundTripTest, AHeldObjectIsUprightWhereverTheArmCarriesIt) {
 }
 
 }  // namespace
-}  // namespace hires::translation
+}  // namespace hires::translation::round_trip_test

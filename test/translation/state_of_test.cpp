@@ -10,7 +10,7 @@
 #include "support/restaurant_translation.h"
 #include "support/scenes.h"
 
-namespace hires::translation {
+namespace hires::translation::state_of_test {
 namespace {
 
 using base::Atom;
@@ -297,4 +297,4 @@ TEST(StateOfTest, ARobotWithoutATrayCarriesNothing) {
 }
 
 }  // namespace
-}  // namespace hires::translation
+}  // namespace hires::translation::state_of_test

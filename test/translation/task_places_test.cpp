@@ -4,7 +4,7 @@
 
 #include "support/restaurant_translation.h"
 
-namespace hires::translation {
+namespace hires::translation::task_places_test {
 namespace {
 
 using test_support::RestaurantContext;
@@ -70,4 +70,4 @@ TEST(PlacesOfTasksTest, AMotionSetIsNoPlace) {
 }
 
 }  // namespace
-}  // namespace hires::translation
+}  // namespace hires::translation::task_places_test

@@ -7,7 +7,7 @@
 #include "world/sdf_texts.h"
 #include "world/temp_folder.h"
 
-namespace hires::world {
+namespace hires::world::load_world_test {
 namespace {
 
 using testing::AllOf;
@@ -431,4 +431,4 @@ TEST_F(LoadWorldTest, RefusesFilesThatAreTooLarge) {
 }
 
 }  // namespace
-}  // namespace hires::world
+}  // namespace hires::world::load_world_test

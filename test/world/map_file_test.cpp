@@ -10,7 +10,7 @@
 #include "world/pgm.h"
 #include "world/temp_folder.h"
 
-namespace hires::world {
+namespace hires::world::map_file_test {
 namespace {
 
 using testing::AllOf;
@@ -181,4 +181,4 @@ TEST(PgmTest, SurvivesEveryCutAndEveryChangedByte) {
 }
 
 }  // namespace
-}  // namespace hires::world
+}  // namespace hires::world::map_file_test

@@ -9,7 +9,7 @@
 #include "hires/base/rng.h"
 #include "hires/world/world.h"
 
-namespace hires::world {
+namespace hires::world::map_to_world_test {
 namespace {
 
 using geometry::Pose2;
@@ -172,4 +172,4 @@ TEST(RequireMapFitsTest, TheOriginalMapsBelongToTheirRestaurant) {
 }
 
 }  // namespace
-}  // namespace hires::world
+}  // namespace hires::world::map_to_world_test

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace hires::world {
+namespace hires::world::mesh_pieces_test {
 namespace {
 
 using geometry::TriangleMesh;
@@ -94,4 +94,4 @@ TEST(MeshPiecesTest, NothingLiesAboveTheMesh) {
 }
 
 }  // namespace
-}  // namespace hires::world
+}  // namespace hires::world::mesh_pieces_test

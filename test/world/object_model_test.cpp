@@ -7,7 +7,7 @@
 #include "world/sdf_texts.h"
 #include "world/temp_folder.h"
 
-namespace hires::world {
+namespace hires::world::object_model_test {
 namespace {
 
 using testing::AllOf;
@@ -213,4 +213,4 @@ TEST_F(CatalogueTest, RefusesWhatIsNoMapOfNamesToFolders) {
 }
 
 }  // namespace
-}  // namespace hires::world
+}  // namespace hires::world::object_model_test

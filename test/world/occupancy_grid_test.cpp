@@ -9,7 +9,7 @@
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
 
-namespace hires::world {
+namespace hires::world::occupancy_grid_test {
 namespace {
 
 using testing::HasSubstr;
@@ -188,4 +188,4 @@ TEST(ExtrudeMapTest, SliceOfTheExtrudedMapIsTheMap) {
 }
 
 }  // namespace
-}  // namespace hires::world
+}  // namespace hires::world::occupancy_grid_test

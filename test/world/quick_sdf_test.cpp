@@ -15,7 +15,7 @@
 #include "world/sdf_texts.h"
 #include "world/temp_folder.h"
 
-namespace hires::world {
+namespace hires::world::quick_sdf_test {
 namespace {
 
 using testing::HasSubstr;
@@ -235,4 +235,4 @@ TEST(CatalogueModelsTest, RefusesAnInstanceWhoseModelIsNotThere) {
 }
 
 }  // namespace
-}  // namespace hires::world
+}  // namespace hires::world::quick_sdf_test

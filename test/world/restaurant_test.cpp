@@ -13,7 +13,7 @@
 #include "hires/world/occupancy_grid.h"
 #include "hires/world/world.h"
 
-namespace hires::world {
+namespace hires::world::restaurant_test {
 namespace {
 
 using geometry::Polygon;
@@ -433,4 +433,4 @@ TEST(ObjectsTest, EveryNameOfTheCatalogueLeadsToAModel) {
 }
 
 }  // namespace
-}  // namespace hires::world
+}  // namespace hires::world::restaurant_test

@@ -7,7 +7,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::world {
+namespace hires::world::standing_test {
 namespace {
 
 using base::ParamReader;
@@ -246,4 +246,4 @@ TEST(ReadStandingCriterionTest, WhatMakesNoSenseIsNamed) {
 }
 
 }  // namespace
-}  // namespace hires::world
+}  // namespace hires::world::standing_test

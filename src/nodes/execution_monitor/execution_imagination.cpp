@@ -19,7 +19,6 @@ using Outcome = execution::ImagineAnswered::Outcome;
 
 constexpr double kRetryPeriod = 0.05;      // [s] between two tries to reach the translator
 constexpr double kTranslationLimit = 5.0;  // times the wait for a server: then it hangs
-constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
 
 hires::ImaginationStatus StatusOf(const execution::StartImagination& command, double now) {
   hires::ImaginationStatus status;

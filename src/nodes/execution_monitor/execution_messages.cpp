@@ -16,7 +16,6 @@ namespace {
 namespace base = hires::base;
 namespace execution = hires::execution;
 
-constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNormalQuantile95 = 1.6448536269514722;
 
 std::vector<hires::Atom> ToMsgs(const std::vector<base::Atom>& atoms) {

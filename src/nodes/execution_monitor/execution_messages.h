@@ -11,6 +11,7 @@
 #include <hires/PlanResult.h>
 #include <hires/StepStatus.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@
 
 /// What the execution monitor sends and receives, as messages.
 namespace hires_ros {
+
+/// The time of what has not happened yet, in messages.
+constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
 
 hires::Atom ToMsg(const hires::base::Atom& atom);
 hires::StepStatus ToMsg(const hires::execution::StepStatus& status);

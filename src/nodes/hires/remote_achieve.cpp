@@ -15,16 +15,16 @@
 #include "hires/base/process.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/topic_names.h"
+#include "nodes/hires/remote_server.h"
 
 namespace hires_ros {
 namespace {
 
 namespace evaluation = hires::evaluation;
 namespace execution = hires::execution;
-using Client = actionlib::SimpleActionClient<hires::AchieveAction>;
+using AchieveClient = actionlib::SimpleActionClient<hires::AchieveAction>;
 
-constexpr double kStopWait = 60.0;    // [s] for the robot to come to a stand
-constexpr double kPollPeriod = 0.02;  // [s]
+constexpr double kStopWait = 60.0;  // [s] for the robot to come to a stand
 
 std::optional<double> Moment(double time) {
   return std::isnan(time) ? std::nullopt : std::optional<double>(time);
@@ -96,14 +96,6 @@ evaluation::AchieveOutcome OutcomeOf(std::uint8_t code) {
       return Outcome::kDryRun;
   }
   return Outcome::kFailed;
-}
-
-void RequireMaster() {
-  if (ros::master::check()) return;
-  throw hires::base::ConfigError(
-      fmt::format("no ROS master answers at {}; start one (roslaunch hires topple.launch), or set "
-                  "ROS_MASTER_URI",
-                  ros::master::getURI()));
 }
 
 [[noreturn]] void FailAsMonitorIsGone() {
@@ -215,7 +207,7 @@ class Conversation {
   Feedback feedback_;
   std::vector<std::string> warnings_;
   std::optional<double> give_up_;  // [s] steady, once it was cancelled
-  Client client_;
+  AchieveClient client_;
 };
 
 }  // namespace
@@ -226,7 +218,7 @@ evaluation::AchieveReport AchieveRemotely(const evaluation::AchieveQuery& query,
   int no_arguments = 0;
   ros::init(no_arguments, nullptr, "hires_achieve",
             ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
-  RequireMaster();
+  RequireMaster("topple.launch");
   return Conversation(query, on_status, cancelled).Run();
 }
 

@@ -11,6 +11,7 @@
 #include "hires/base/error.h"
 #include "hires/ros/blackboard_messages.h"
 #include "hires/ros/topic_names.h"
+#include "nodes/hires/remote_server.h"
 
 namespace hires_ros {
 namespace {
@@ -127,12 +128,7 @@ std::unique_ptr<hires::cli::BlackboardAccess> ConnectBlackboard() {
   int no_arguments = 0;
   ros::init(no_arguments, nullptr, "hires_blackboard",
             ros::init_options::AnonymousName | ros::init_options::NoRosout);
-  if (!ros::master::check()) {
-    throw ConfigError(
-        fmt::format("no ROS master answers at {}; start one (roslaunch hires blackboard.launch), "
-                    "set ROS_MASTER_URI, or add --store FILE",
-                    ros::master::getURI()));
-  }
+  RequireMaster("blackboard.launch", "add --store FILE");
   if (!ros::service::exists(kBlackboard + std::string("/statistics"), false)) {
     throw ConfigError(
         fmt::format("no Blackboard is running at {}; start it (roslaunch hires blackboard.launch), "

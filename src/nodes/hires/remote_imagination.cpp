@@ -12,15 +12,15 @@
 #include "hires/base/text.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/topic_names.h"
+#include "nodes/hires/remote_server.h"
 
 namespace hires_ros {
 namespace {
 
-using Client = actionlib::SimpleActionClient<hires::ImagineAction>;
+using ImagineClient = actionlib::SimpleActionClient<hires::ImagineAction>;
 
 constexpr double kClientWait = 10.0;  // [s] to find the imagination client
 constexpr double kCancelWait = 3.0;   // [s] for it to confirm that it cancelled
-constexpr double kPollPeriod = 0.02;  // [s]
 
 hires::Atom MakeAtom(const std::string& predicate, const std::vector<std::string>& arguments) {
   hires::Atom atom;
@@ -65,21 +65,13 @@ hires::ImagineGoal GoalOf(const hires::cli::ImagineQuery& query) {
   return goal;
 }
 
-void RequireMaster() {
-  if (ros::master::check()) return;
-  throw hires::base::ConfigError(fmt::format(
-      "no ROS master answers at {}; start one (roslaunch hires imagination.launch), set "
-      "ROS_MASTER_URI, or add --local",
-      ros::master::getURI()));
-}
-
 [[noreturn]] void FailAsClientIsGone() {
   throw hires::base::ConfigError(
       "the imagination client went away during the request; see its log, then ask again");
 }
 
 /// @throws ConfigError if no server of the action is there in time.
-void RequireServer(const Client& client, const std::function<bool()>& cancelled) {
+void RequireServer(const ImagineClient& client, const std::function<bool()>& cancelled) {
   const double give_up = hires::base::SteadyNow() + kClientWait;
   while (!client.isServerConnected()) {
     if (cancelled() || hires::base::SteadyNow() > give_up) {
@@ -105,7 +97,7 @@ hires::ImagineResult Unconfirmed(const hires::ImagineGoal& goal) {
 
 /// Waits by the wall's clock: ROS time stands still while the robot's clock does.
 hires::ImagineResult AwaitResult(const hires::ImagineGoal& goal,
-                                 const std::function<bool()>& cancelled, Client* client) {
+                                 const std::function<bool()>& cancelled, ImagineClient* client) {
   std::optional<double> give_up;
   while (!client->getState().isDone()) {
     const bool is_gone = !ros::ok() || !client->isServerConnected();
@@ -143,8 +135,8 @@ hires::ImagineResult AskImaginationClient(const hires::ImagineGoal& goal,
   int no_arguments = 0;
   ros::init(no_arguments, nullptr, "hires_imagine",
             ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
-  RequireMaster();
-  Client client(kImagineAction, true);
+  RequireMaster("imagination.launch", "add --local");
+  ImagineClient client(kImagineAction, true);
   RequireServer(client, cancelled);
   client.sendGoal(goal, {}, {}, [&](const hires::ImagineFeedbackConstPtr& feedback) {
     if (on_interim) on_interim(FromMsg(*feedback));

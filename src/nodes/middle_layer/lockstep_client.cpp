@@ -7,12 +7,6 @@
 #include "hires/ros/robot_topics.h"
 
 namespace hires_ros {
-namespace {
-
-constexpr double kSameStamp = 1e-9;  // [s]
-
-}  // namespace
-
 LockstepClient::LockstepClient(ros::NodeHandle* nh, std::function<void()> due)
     : due_(std::move(due)),
       ack_(nh->advertise<hires::LockstepAck>(kLockstepAck, 10)),

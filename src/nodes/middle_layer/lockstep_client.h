@@ -12,6 +12,8 @@
 
 namespace hires_ros {
 
+constexpr double kSameStamp = 1e-9;  ///< [s] stamps that differ by less are the same
+
 /// The side of lockstep that answers a simulated robot: each tick is looked at once, when the
 /// sensors of its stamp have come, and answered once; the answer is repeated where the tick is.
 class LockstepClient {

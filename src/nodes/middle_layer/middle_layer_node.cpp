@@ -23,7 +23,6 @@ using hires::control::ActionNews;
 
 constexpr auto kBlindStop = std::chrono::seconds(3);  // that a stop may go on unseen
 constexpr auto kFarewell = std::chrono::seconds(5);   // that the node takes to stop the robot
-constexpr double kSameStamp = 1e-9;                   // [s]
 
 /// Runs a function in the thread that spins.
 class Call : public ros::CallbackInterface {

@@ -14,7 +14,7 @@ namespace {
 using hires::base::Between;
 using hires::base::ParamReader;
 
-constexpr double kTick = 0.05;  // [s]
+constexpr double kTickSeconds = 0.05;
 
 hires::simulation::LaserParams ReadLaser(ParamReader in) {
   hires::simulation::LaserParams params;
@@ -29,8 +29,8 @@ hires::simulation::LaserParams ReadLaser(ParamReader in) {
 }
 
 void ReadDetector(ParamReader in, SimRobotParams* params) {
-  params->detection_period = in.Get("period", Between(kTick, 60.0));
-  const double ticks = params->detection_period / kTick;
+  params->detection_period = in.Get("period", Between(kTickSeconds, 60.0));
+  const double ticks = params->detection_period / kTickSeconds;
   if (std::abs(ticks - std::round(ticks)) > 1e-6) in.Fail("period", "wanted a multiple of 0.05 s");
   params->min_visible_share = in.Get("min_visible_share", Between(0.0, 1.0));
 }

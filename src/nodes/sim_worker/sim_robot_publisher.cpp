@@ -28,7 +28,7 @@ constexpr double kMapResolution = 0.05;  // [m]
 constexpr double kStillHead = 0.02;      // [rad/s]
 constexpr double kScanTime = 0.05;       // [s] 20 Hz
 constexpr int kShownIndex = 0;           // of the markers; workers count from 1
-enum Streams : std::uint64_t { kScanStream = 100, kDetectorStream };
+enum SensorStreams : std::uint64_t { kScanStream = 100, kDetectorStream };
 
 }  // namespace
 
