@@ -1,11 +1,11 @@
-#include "knowledge/store/store_snapshot.h"
+#include "knowledge/query/snapshot_view.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "hires/base/text.h"
+#include "knowledge/query/query_conditions.h"
 #include "knowledge/store/store_codec.h"
-#include "knowledge/store/store_query.h"
 
 namespace hires::knowledge {
 
