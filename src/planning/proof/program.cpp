@@ -1,4 +1,4 @@
-#include "planning/search/program.h"
+#include "planning/proof/program.h"
 
 #include <fmt/format.h>
 
@@ -557,6 +557,11 @@ const CompiledOperator* Program::FindOperator(Term name) const {
 
 const std::vector<const CompiledMethod*>& Program::Methods(Term name) const {
   return name.index() < methods_of_.size() ? methods_of_[name.index()] : no_methods_;
+}
+
+void Program::Fail(const Formula& condition, const std::string& what) const {
+  throw base::ConfigError(fmt::format("{}:{}:{}: {} {}", domain_.source, condition.place.line,
+                                      condition.place.column, ToString(condition.term), what));
 }
 
 }  // namespace hires::planning

@@ -1,9 +1,9 @@
-#include "planning/search/state.h"
+#include "planning/proof/state.h"
 
 #include <algorithm>
 
 #include "hires/base/check.h"
-#include "planning/search/mix.h"
+#include "planning/proof/mix.h"
 
 namespace hires::planning {
 namespace {

@@ -140,6 +140,8 @@ class Program {
   std::uint32_t goal_slots() const { return goal_slots_; }
   const std::vector<Term>& facts() const { return facts_; }
   bool immediate_reductions() const { return domain_.language == Domain::Language::kShop2; }
+  /// @throws ConfigError: place and text of the condition, then `what` is wrong with it.
+  [[noreturn]] void Fail(const Formula& condition, const std::string& what) const;
   const Domain& domain() const { return domain_; }
   const Problem& problem() const { return problem_; }
 

@@ -7,7 +7,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "planning/search/mix.h"
+#include "planning/proof/mix.h"
 
 namespace hires::planning {
 namespace {

@@ -1,4 +1,4 @@
-#include "planning/search/bindings.h"
+#include "planning/proof/bindings.h"
 
 #include <utility>
 
