@@ -1,6 +1,6 @@
 #pragma once
 
-namespace hires::evaluation {
+namespace hires::base {
 
 /// [s] processor time that the calling thread has used since it began.
 double ThreadCpuSeconds();
@@ -8,4 +8,4 @@ double ThreadCpuSeconds();
 /// [MB] (1e6 bytes) most memory that was ever resident in this process.
 double PeakMegabytes();
 
-}  // namespace hires::evaluation
+}  // namespace hires::base

@@ -1,9 +1,9 @@
-#include "hires/evaluation/resource_use.h"
+#include "hires/base/resource_use.h"
 
 #include <sys/resource.h>
 #include <time.h>
 
-namespace hires::evaluation {
+namespace hires::base {
 
 double ThreadCpuSeconds() {
   timespec time{};
@@ -17,4 +17,4 @@ double PeakMegabytes() {
   return static_cast<double>(usage.ru_maxrss) * 1024.0 / 1e6;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::base
