@@ -6,48 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "hires/control/robot_names.h"
+#include "hires/cli/network_probe.h"
 #include "hires/relay/uri.h"
-#include "hires/robot/robot_profile.h"
-#include "nodes/hires/doctor_probe.h"
 
-/// What `hires doctor --robot` wants of a robot, and what it saw of one.
-namespace hires_ros {
-
-/// A topic that some node must publish for our nodes to work.
-struct WantedTopic {
-  std::string what;  ///< "odometry"
-  std::string name;  ///< "/base_odometry/odom"
-  std::string type;  ///< "nav_msgs/Odometry"
-  std::string md5;
-  bool is_stamped{false};  ///< its messages begin with a header
-  double min_rate{0.0};    ///< [Hz] below which a motion is not safe; 0: comes when there is news
-  double max_age{0.0};     ///< [s] of its stamps; 0: old ones are well
-  std::string remedy;      ///< what to do where no node publishes it
-};
-
-/// A topic that some node must listen to, or nothing moves.
-struct WantedListener {
-  std::string what;  ///< "arm leftarm1"
-  std::string name;  ///< "/l_arm_controller/command"
-  std::string type;
-  std::string remedy;
-};
-
-/// Without the map, for which a service does as well.
-std::vector<WantedTopic> TopicsOf(const hires::control::RobotNames& names);
-WantedTopic MapOf(const hires::control::RobotNames& names);
-std::vector<WantedListener> ListenersOf(const hires::control::RobotNames& names);
-
-/// Links that our nodes look up; each must have a transform.
-std::vector<std::string> LinksOf(const hires::robot::RobotProfile& profile);
-
-/// A joint that must be told by one of these names: a gripper's by its gap or its finger's angle.
-using JointChoice = std::vector<std::string>;
-std::vector<JointChoice> JointsOf(const hires::robot::RobotProfile& profile);
-
-/// "/base_scan" for "base_scan".
-std::string Absolute(const std::string& name);
+/// What `hires doctor --robot` saw of a robot.
+namespace hires::cli {
 
 /// What one node sent on one topic.
 struct SeenMessages {
@@ -105,4 +68,4 @@ struct RobotView {
   bool IsHere(const std::string& host) const;
 };
 
-}  // namespace hires_ros
+}  // namespace hires::cli

@@ -1,4 +1,4 @@
-#include "nodes/hires/doctor_probe.h"
+#include "hires/cli/network_probe.h"
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -7,7 +7,6 @@
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
-#include <xmlrpcpp/XmlRpcException.h>
 
 #include <algorithm>
 #include <array>
@@ -17,9 +16,8 @@
 
 #include "hires/base/process.h"
 #include "hires/base/text.h"
-#include "hires/ros/xmlrpc_master_api.h"
 
-namespace hires_ros {
+namespace hires::cli {
 namespace {
 
 using hires::relay::Endpoint;
@@ -156,23 +154,6 @@ Reach ProbePort(const Endpoint& port, double timeout) {
   return Connection().Open(*address, hires::base::SteadyNow() + timeout);
 }
 
-std::optional<Endpoint> AskDataPort(const Endpoint& node, const std::string& topic,
-                                    const std::string& caller_id, double timeout) {
-  BoundedXmlRpcClient client(node, timeout);
-  XmlRpc::XmlRpcValue params;
-  params[0] = caller_id;
-  params[1] = topic;
-  params[2][0][0] = std::string("TCPROS");
-  auto value = client.Call("requestTopic", params);
-  try {
-    // [code, message, ["TCPROS", host, port]]
-    if (!value || value->size() != 3 || (*value)[2].size() != 3) return std::nullopt;
-    return Endpoint{static_cast<std::string>((*value)[2][1]), static_cast<int>((*value)[2][2])};
-  } catch (const XmlRpc::XmlRpcException&) {
-    return std::nullopt;
-  }
-}
-
 void ClockBounds::Add(double sent, double received, double earliest, double latest) {
   lower = std::max(lower, earliest - received);
   upper = std::min(upper, latest - sent);
@@ -217,4 +198,4 @@ std::optional<std::string> OwnAddressTowards(const Endpoint& other) {
   return text.data();
 }
 
-}  // namespace hires_ros
+}  // namespace hires::cli

@@ -1,31 +1,44 @@
-#include "nodes/world_tracker/world_tracker_sweep.h"
+#include "hires/control/head_sweep.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "hires/perception/camera_view.h"
 #include "hires/skills/head_aim.h"
 
-namespace hires_ros {
+namespace hires::control {
 namespace {
 
-using hires::robot::JointTrajectory;
-using hires::robot::SeenObject;
+using robot::JointTrajectory;
+using robot::SeenObject;
 
 constexpr double kAbove = 0.05;        // [m] over an area: where small things are
 constexpr double kShortestTurn = 0.2;  // [s]
 
-double PositionOf(const hires::robot::JointPositions& joints, const std::string& joint) {
+double PositionOf(const robot::JointPositions& joints, const std::string& joint) {
   const auto position = joints.find(joint);
   return position == joints.end() ? 0.0 : position->second;
 }
 
 }  // namespace
 
-HeadSweep::HeadSweep(std::shared_ptr<const hires::robot::Robot> robot, SweepParams params)
+SweepParams ReadSweepParams(base::ParamReader in) {
+  using base::Between;
+  SweepParams params;
+  params.enabled = in.GetBool("enabled");
+  params.range = in.Get("range", Between(0.5, 30.0));
+  params.period = in.Get("period", Between(0.1, 3600.0));
+  params.dwell = in.Get("dwell", Between(0.0, 60.0));
+  params.speed = in.Get("speed", Between(0.05, 10.0));
+  params.hands_off = in.Get("hands_off", Between(0.0, 60.0));
+  return params;
+}
+
+HeadSweep::HeadSweep(std::shared_ptr<const robot::Robot> robot, SweepParams params)
     : robot_(std::move(robot)), params_(std::move(params)) {}
 
-void HeadSweep::SetPlaces(std::vector<std::string> places, hires::translation::Areas areas) {
+void HeadSweep::SetPlaces(std::vector<std::string> places, translation::Areas areas) {
   places_ = std::move(places);
   areas_ = std::move(areas);
 }
@@ -37,7 +50,7 @@ void HeadSweep::SetBusy(bool is_busy, double time) {
 
 std::optional<Eigen::Vector3d> HeadSweep::PointOf(const std::string& place,
                                                   const std::vector<SeenObject>& known) const {
-  if (const hires::translation::Area* area = areas_.Find(place)) {
+  if (const translation::Area* area = areas_.Find(place)) {
     if (!area->link.empty()) return std::nullopt;
     return area->X_FA * Eigen::Vector3d(0.0, 0.0, kAbove);
   }
@@ -47,11 +60,10 @@ std::optional<Eigen::Vector3d> HeadSweep::PointOf(const std::string& place,
   return std::nullopt;
 }
 
-std::optional<JointTrajectory> HeadSweep::Update(const hires::sensing::BodyReading& body,
-                                                 bool has_looked,
+std::optional<JointTrajectory> HeadSweep::Update(const sensing::BodyReading& body, bool has_looked,
                                                  const std::vector<SeenObject>& known) {
   if (!params_.enabled || !robot_->profile.upper_body || places_.empty()) return std::nullopt;
-  const auto view = hires::perception::ViewOf(*robot_, body.X_MB, body.joints);
+  const auto view = perception::ViewOf(*robot_, body.X_MB, body.joints);
   std::string oldest;
   std::optional<Eigen::Vector3d> point;
   double earliest = body.time - params_.period;
@@ -68,7 +80,7 @@ std::optional<JointTrajectory> HeadSweep::Update(const hires::sensing::BodyReadi
     earliest = time;
   }
   if (!point || is_busy_ || body.time < free_from_) return std::nullopt;
-  const auto aim = hires::skills::AimHead(*robot_, body.X_MB, body.joints, *point);
+  const auto aim = skills::AimHead(*robot_, body.X_MB, body.joints, *point);
   looked_at_[oldest] = body.time;  // or cannot be looked at from here
   if (!aim) return std::nullopt;
   target_ = oldest;
@@ -77,9 +89,9 @@ std::optional<JointTrajectory> HeadSweep::Update(const hires::sensing::BodyReadi
   return turn;
 }
 
-JointTrajectory HeadSweep::Turn(const hires::robot::JointPositions& from,
+JointTrajectory HeadSweep::Turn(const robot::JointPositions& from,
                                 const std::vector<double>& to) const {
-  const hires::robot::UpperBodyProfile& upper = *robot_->profile.upper_body;
+  const robot::UpperBodyProfile& upper = *robot_->profile.upper_body;
   JointTrajectory turn;
   turn.joints = {upper.head_pan_joint, upper.head_tilt_joint};
   const std::vector<double> start = {PositionOf(from, upper.head_pan_joint),
@@ -91,4 +103,4 @@ JointTrajectory HeadSweep::Turn(const hires::robot::JointPositions& from,
   return turn;
 }
 
-}  // namespace hires_ros
+}  // namespace hires::control

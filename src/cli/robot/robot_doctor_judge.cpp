@@ -1,4 +1,4 @@
-#include "nodes/hires/robot_doctor_judge.h"
+#include "cli/robot/robot_doctor_judge.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include "hires/base/text.h"
 
-namespace hires_ros {
+namespace hires::cli {
 namespace {
 
 using hires::base::Join;
@@ -239,7 +239,7 @@ RobotFindings FindMoveBase(const hires::control::RobotNames& names, const RobotV
 
 }  // namespace
 
-RobotFindings JudgeTopics(const hires::control::RobotNames& names, const RobotView& view) {
+RobotFindings JudgeTopics(const RobotNeeds& needs, const RobotView& view) {
   RobotFindings findings;
   if (view.uses_sim_time) {
     findings.push_back({FindingLevel::kWarning, "sim_time", "parameter /use_sim_time",
@@ -247,19 +247,19 @@ RobotFindings JudgeTopics(const hires::control::RobotNames& names, const RobotVi
                         "with a real robot: rosparam delete /use_sim_time, then start all nodes "
                         "again"});
   }
-  for (const WantedTopic& wanted : TopicsOf(names)) Append(JudgeTopic(wanted, view), &findings);
-  const WantedTopic map = MapOf(names);
+  for (const WantedTopic& wanted : needs.topics) Append(JudgeTopic(wanted, view), &findings);
+  const WantedTopic& map = needs.map;
   const bool is_served =
-      !names.static_map.empty() && view.services.count(Absolute(names.static_map)) > 0;
+      !needs.names.static_map.empty() && view.services.count(Absolute(needs.names.static_map)) > 0;
   if (!HasNobody(view.FindTopic(map.name)) || !is_served) {
     Append(JudgeTopic(map, view), &findings);
   }
   return findings;
 }
 
-RobotFindings JudgeListeners(const hires::control::RobotNames& names, const RobotView& view) {
+RobotFindings JudgeListeners(const RobotNeeds& needs, const RobotView& view) {
   RobotFindings findings;
-  for (const WantedListener& wanted : ListenersOf(names)) {
+  for (const WantedListener& wanted : needs.listeners) {
     const SeenTopic* topic = view.FindTopic(wanted.name);
     const std::string subject = "command " + wanted.name;
     if (topic == nullptr || topic->subscribers.empty()) {
@@ -341,4 +341,4 @@ RobotFindings JudgeMoveBase(const hires::control::RobotNames& names, const Robot
   return findings;
 }
 
-}  // namespace hires_ros
+}  // namespace hires::cli

@@ -1,13 +1,15 @@
-#include "nodes/world_tracker/world_tracker_sweep.h"
+#include "hires/control/head_sweep.h"
 
 #include <gmock/gmock.h>
 
+#include "hires/base/error.h"
+#include "hires/perception/camera_view.h"
 #include "support/restaurant_translation.h"
 
-namespace hires_ros {
+namespace hires::control {
 namespace {
 
-using hires::test_support::RestaurantContext;
+using test_support::RestaurantContext;
 using testing::UnorderedElementsAre;
 
 const std::vector<std::string> kPlaces = {"placingareawestlefttable1", "placingareaeastlefttable1"};
@@ -39,16 +41,15 @@ class HeadSweepTest : public testing::Test {
   }
 
   SweepParams params_;
-  hires::sensing::BodyReading body_;
-  std::vector<hires::robot::SeenObject> known_;
+  sensing::BodyReading body_;
+  std::vector<robot::SeenObject> known_;
 };
 
 TEST_F(HeadSweepTest, EveryPlaceOfTheTaskIsLookedAt) {
   HeadSweep sweep = Make();
   const auto targets = Play(&sweep, 12.0);
   for (const std::string& place : kPlaces) {
-    const auto view =
-        hires::perception::ViewOf(*RestaurantContext().robot, body_.X_MB, body_.joints);
+    const auto view = perception::ViewOf(*RestaurantContext().robot, body_.X_MB, body_.joints);
     const bool is_seen = view.Contains(RestaurantContext().areas.Require(place).X_FA.translation);
     EXPECT_TRUE(is_seen || std::count(targets.begin(), targets.end(), place) > 0) << place;
   }
@@ -65,7 +66,7 @@ TEST_F(HeadSweepTest, AfterTheTurnTheCameraSeesTheTarget) {
     const double way = std::abs(turn->points[1].positions[i] - turn->points[0].positions[i]);
     EXPECT_LE(1.5 * way / turn->duration(), params_.speed + 1e-9);
   }
-  const auto view = hires::perception::ViewOf(*RestaurantContext().robot, body_.X_MB, body_.joints);
+  const auto view = perception::ViewOf(*RestaurantContext().robot, body_.X_MB, body_.joints);
   EXPECT_TRUE(view.Contains(RestaurantContext().areas.Require(sweep.target()).X_FA.translation));
 }
 
@@ -87,9 +88,8 @@ TEST_F(HeadSweepTest, WhatIsFarAwayIsNotLookedAt) {
 TEST_F(HeadSweepTest, AnObjectOnTheTrayIsLookedAtWhereItIs) {
   HeadSweep sweep = Make();
   sweep.SetPlaces({"mug1", "mug2"}, RestaurantContext().areas);
-  const auto X_MB = hires::geometry::Lift(body_.X_MB);
-  known_.push_back(
-      {"mug1", "coffee_cup", X_MB * hires::geometry::Lift({0.28, 0.0, 0.0}, 0.346), 0.0, ""});
+  const auto X_MB = geometry::Lift(body_.X_MB);
+  known_.push_back({"mug1", "coffee_cup", X_MB * geometry::Lift({0.28, 0.0, 0.0}, 0.346), 0.0, ""});
   const auto targets = Play(&sweep, 3.0);
   EXPECT_THAT(targets, testing::Each("mug1"));
   EXPECT_FALSE(targets.empty());
@@ -103,15 +103,17 @@ TEST_F(HeadSweepTest, WithoutPlacesOrWhenSwitchedOffTheHeadRests) {
   EXPECT_TRUE(Play(&off, 5.0).empty());
 }
 
-TEST(WorldTrackerConfigTest, TheFilesThatThePackageComesWithAreRead) {
-  const auto tracker = ReadWorldTrackerParams(HIRES_SOURCE_DIR "/config/world_tracker.yaml");
-  EXPECT_EQ(tracker.concepts.at("coffee_cup"), "Mug");
-  for (const auto& [model, concept_name] : tracker.concepts) {
-    EXPECT_NO_THROW(RestaurantContext().ontology->Require(concept_name)) << model;
-  }
-  const auto translator = ReadTranslatorParams(HIRES_SOURCE_DIR "/config/translator.yaml");
-  EXPECT_EQ(LoadTranslatorContext(translator).world->hash, RestaurantContext().world->hash);
+TEST(SweepParamsTest, WhatMakesNoSenseIsNamed) {
+  const auto read = [](const std::string& speed) {
+    return ReadSweepParams(
+        base::ParamReader::FromString("enabled: true\nrange: 3.2\nperiod: 4.0\n"
+                                      "dwell: 1.0\nspeed: " +
+                                          speed + "\nhands_off: 2.0\n",
+                                      "sweep.yaml"));
+  };
+  EXPECT_EQ(read("0.5").speed, 0.5);
+  EXPECT_THROW(read("0.0"), base::ConfigError);
 }
 
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires::control

@@ -1,21 +1,19 @@
-#include "nodes/hires/robot_doctor.h"
+#include "hires/cli/robot_doctor.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
-#include "hires/base/error.h"
-#include "hires/base/text.h"
+#include "cli/robot/robot_doctor_hosts.h"
+#include "cli/robot/robot_doctor_judge.h"
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
-#include "nodes/hires/robot_doctor_hosts.h"
-#include "nodes/hires/robot_doctor_judge.h"
-#include "nodes/hires/robot_doctor_look.h"
 
-namespace hires_ros {
+namespace hires::cli {
 namespace {
 
 using nlohmann::ordered_json;
@@ -30,12 +28,6 @@ bool HasFailed(const RobotFindings& findings) {
   });
 }
 
-std::vector<WantedTopic> AllTopics(const hires::control::RobotNames& names) {
-  std::vector<WantedTopic> topics = TopicsOf(names);
-  topics.push_back(MapOf(names));
-  return topics;
-}
-
 std::vector<std::string> RowOf(const std::string& topic, const std::string& node,
                                const SeenMessages& seen) {
   const auto age = seen.age();
@@ -44,16 +36,16 @@ std::vector<std::string> RowOf(const std::string& topic, const std::string& node
           age ? fmt::format("{:.3f}", *age) : ""};
 }
 
-std::string MessageTable(const hires::control::RobotNames& names, const RobotView& view) {
+std::string MessageTable(const RobotNeeds& needs, const RobotView& view) {
   std::vector<std::vector<std::string>> rows{{"topic", "from", "messages", "Hz", "age [s]"}};
-  for (const WantedTopic& wanted : AllTopics(names)) {
+  for (const WantedTopic& wanted : needs.all_topics()) {
     const SeenTopic* topic = view.FindTopic(wanted.name);
     if (topic == nullptr) continue;
     for (const auto& [node, seen] : topic->messages) {
       rows.push_back(RowOf(wanted.name, node, seen));
     }
   }
-  return rows.size() > 1 ? hires::evaluation::FormatTable(rows) + '\n' : "";
+  return rows.size() > 1 ? evaluation::FormatTable(rows) + '\n' : "";
 }
 
 std::string ClockTable(const RobotView& view) {
@@ -63,7 +55,7 @@ std::string ClockTable(const RobotView& view) {
                     fmt::format("{:.3f}", 0.5 * bounds.width()),
                     std::to_string(bounds.num_answers)});
   }
-  return rows.size() > 1 ? hires::evaluation::FormatTable(rows) + '\n' : "";
+  return rows.size() > 1 ? evaluation::FormatTable(rows) + '\n' : "";
 }
 
 std::string LastLine(const RobotFindings& findings) {
@@ -114,26 +106,25 @@ RobotFindings Sorted(const std::vector<RobotFindings>& parts) {
 
 }  // namespace
 
-RobotFindings JudgeRobot(const hires::cli::RobotDoctorOptions& options,
-                         const hires::control::RobotNames& names,
+RobotFindings JudgeRobot(const RobotDoctorOptions& options, const RobotNeeds& needs,
                          const hires::robot::RobotProfile& profile, const RobotView& view) {
   std::vector<RobotFindings> parts{JudgeHosts(view), JudgeClocks(view),
-                                   JudgeListeners(names, view)};
+                                   JudgeListeners(needs, view)};
   if (HasCode(parts.front(), "own_loopback")) return Sorted(parts);  // nothing came, of course
-  parts.insert(parts.end(), {JudgeTopics(names, view), JudgeFrames(names, profile, view),
-                             JudgeJoints(profile, view), JudgeReadiness(names, view)});
+  parts.insert(parts.end(), {JudgeTopics(needs, view), JudgeFrames(needs.names, profile, view),
+                             JudgeJoints(profile, view), JudgeReadiness(needs.names, view)});
   if (options.navigation != "own") {
-    parts.push_back(JudgeMoveBase(names, view, options.navigation == "move_base"));
+    parts.push_back(JudgeMoveBase(needs.names, view, options.navigation == "move_base"));
   }
   return Sorted(parts);
 }
 
-std::string RobotReport(const hires::control::RobotNames& names, const RobotView& view,
+std::string RobotReport(const RobotNeeds& needs, const RobotView& view,
                         const RobotFindings& findings) {
   std::string text =
       fmt::format("robot at {}: {} nodes, {} topics, listened for {:.1f} s\n\n", view.master_uri,
                   view.nodes.size(), view.topics.size(), view.seconds);
-  text += MessageTable(names, view) + ClockTable(view);
+  text += MessageTable(needs, view) + ClockTable(view);
   for (const RobotFinding& finding : findings) {
     text += FindingText(
         {finding.level, fmt::format("{} {}\n{}", finding.subject, finding.text, finding.remedy)});
@@ -141,7 +132,7 @@ std::string RobotReport(const hires::control::RobotNames& names, const RobotView
   return text + (findings.empty() ? "" : "\n") + LastLine(findings);
 }
 
-ordered_json RobotJson(const hires::control::RobotNames& names, const RobotView& view,
+ordered_json RobotJson(const RobotNeeds& needs, const RobotView& view,
                        const RobotFindings& findings) {
   ordered_json json{{"ok", !HasFailed(findings)},
                     {"master", view.master_uri},
@@ -149,7 +140,7 @@ ordered_json RobotJson(const hires::control::RobotNames& names, const RobotView&
                     {"findings", ordered_json::array()},
                     {"topics", ordered_json::object()}};
   for (const RobotFinding& finding : findings) json["findings"].push_back(ToJson(finding));
-  for (const WantedTopic& wanted : AllTopics(names)) {
+  for (const WantedTopic& wanted : needs.all_topics()) {
     const SeenTopic* topic = view.FindTopic(wanted.name);
     ordered_json publishers = ordered_json::object();
     if (topic != nullptr) {
@@ -161,21 +152,22 @@ ordered_json RobotJson(const hires::control::RobotNames& names, const RobotView&
   return json;
 }
 
-int ExamineRobot(const hires::cli::RobotDoctorOptions& options, const std::string& package_folder) {
+int RunRobotDoctor(const RobotDoctorOptions& options, const std::string& package_folder,
+                   const RobotMessageTypes& types, const LookAtRobot& look) {
   const auto or_default = [&](const std::string& path, const char* name) {
     return path.empty() ? package_folder + "/config/robots/" + name : path;
   };
-  const hires::control::RobotNames names =
-      hires::control::ReadRobotNames(or_default(options.names, "pr2_names.yaml"));
-  const auto robot = hires::robot::LoadRobot(or_default(options.profile, "pr2.yaml"));
-  if (!options.json.empty()) hires::evaluation::RequireFolderOf(options.json);
-  const RobotView view = LookAtRobot(options, names);
-  const RobotFindings findings = JudgeRobot(options, names, robot.profile, view);
-  std::cout << RobotReport(names, view, findings) << std::flush;
+  const RobotNeeds needs =
+      NeedsOf(control::ReadRobotNames(or_default(options.names, "pr2_names.yaml")), types);
+  const auto robot = robot::LoadRobot(or_default(options.profile, "pr2.yaml"));
+  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  const RobotView view = look(options.seconds, needs);
+  const RobotFindings findings = JudgeRobot(options, needs, robot.profile, view);
+  std::cout << RobotReport(needs, view, findings) << std::flush;
   if (!options.json.empty()) {
-    hires::evaluation::WriteJson(RobotJson(names, view, findings), options.json);
+    evaluation::WriteJson(RobotJson(needs, view, findings), options.json);
   }
-  return HasFailed(findings) ? hires::cli::kExitBadInput : hires::cli::kExitRecommended;
+  return HasFailed(findings) ? kExitBadInput : kExitRecommended;
 }
 
-}  // namespace hires_ros
+}  // namespace hires::cli

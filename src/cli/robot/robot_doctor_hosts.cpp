@@ -1,4 +1,4 @@
-#include "nodes/hires/robot_doctor_hosts.h"
+#include "cli/robot/robot_doctor_hosts.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include "hires/base/text.h"
 
-namespace hires_ros {
+namespace hires::cli {
 namespace {
 
 using hires::base::Join;
@@ -268,4 +268,4 @@ RobotFindings JudgeClocks(const RobotView& view) {
   return findings;
 }
 
-}  // namespace hires_ros
+}  // namespace hires::cli

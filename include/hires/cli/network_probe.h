@@ -9,7 +9,7 @@
 
 /// Single questions of `hires doctor --robot` to other programs over the network. Each ends within
 /// its time limit, whatever the other side does, and none changes anything there.
-namespace hires_ros {
+namespace hires::cli {
 
 /// IPv4 addresses of a host name, in order; none if it is unknown here. An address is its own.
 std::vector<std::string> AddressesOf(const std::string& host);
@@ -26,13 +26,6 @@ enum class Reach {
 /// Connects and hangs up.
 /// @param timeout  [s]
 Reach ProbePort(const hires::relay::Endpoint& port, double timeout);
-
-/// Where a node serves the data of a topic that it publishes, as it says itself; nothing if it does
-/// not answer, or has no such topic.
-/// @param timeout  [s]
-std::optional<hires::relay::Endpoint> AskDataPort(const hires::relay::Endpoint& node,
-                                                  const std::string& topic,
-                                                  const std::string& caller_id, double timeout);
 
 /// How far the clock of another computer is ahead of this one's: between `lower` and `upper` [s].
 struct ClockBounds {
@@ -60,4 +53,4 @@ std::optional<ClockBounds> CompareClocks(const hires::relay::Endpoint& server, d
 /// This computer's address on the way to another one; nothing if there is no way.
 std::optional<std::string> OwnAddressTowards(const hires::relay::Endpoint& other);
 
-}  // namespace hires_ros
+}  // namespace hires::cli

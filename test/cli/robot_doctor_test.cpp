@@ -1,18 +1,21 @@
+#include "hires/cli/robot_doctor.h"
+
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "nodes/hires/doctor_probe.h"
-#include "nodes/hires/robot_doctor.h"
-#include "nodes/hires/robot_doctor_hosts.h"
-#include "nodes/hires/robot_doctor_judge.h"
+#include "cli/robot/robot_doctor_hosts.h"
+#include "cli/robot/robot_doctor_judge.h"
+#include "hires/cli/command_line.h"
+#include "hires/cli/robot_doctor_network.h"
 
-namespace hires_ros {
+namespace hires::cli {
 namespace {
 
 using testing::ElementsAre;
@@ -21,10 +24,24 @@ using testing::IsEmpty;
 
 const std::string kRobots = std::string(HIRES_SOURCE_DIR) + "/config/robots/";
 
-const hires::control::RobotNames& Names() {
-  static const hires::control::RobotNames names =
-      hires::control::ReadRobotNames(kRobots + "pr2_names.yaml");
-  return names;
+RobotMessageTypes Types() {
+  RobotMessageTypes types;
+  types.odometry = {"nav_msgs/Odometry", "od0", true};
+  types.joint_states = {"sensor_msgs/JointState", "js1", true};
+  types.scan = {"sensor_msgs/LaserScan", "ls2", true};
+  types.localisation = {"geometry_msgs/PoseWithCovarianceStamped", "pc3", true};
+  types.motors_halted = {"std_msgs/Bool", "bo4", false};
+  types.map = {"nav_msgs/OccupancyGrid", "og5", true};
+  types.base_command = {"geometry_msgs/Twist", "tw6", false};
+  types.trajectory = {"trajectory_msgs/JointTrajectory", "jt7", true};
+  types.gripper = {"pr2_controllers_msgs/Pr2GripperCommand", "gc8", false};
+  return types;
+}
+
+const RobotNeeds& Needs() {
+  static const RobotNeeds needs =
+      NeedsOf(hires::control::ReadRobotNames(kRobots + "pr2_names.yaml"), Types());
+  return needs;
 }
 
 const hires::robot::RobotProfile& Profile() {
@@ -54,15 +71,13 @@ RobotView HealthyView() {
   view.addresses = {{"pr2", {"10.0.0.1"}}};
   view.nodes["/pr2"] = {"http://pr2:40001/", Reach::kAnswers};
   view.has_robot_description = true;
-  std::vector<WantedTopic> topics = TopicsOf(Names());
-  topics.push_back(MapOf(Names()));
-  for (const WantedTopic& wanted : topics) {
+  for (const WantedTopic& wanted : Needs().all_topics()) {
     SeenTopic& topic = view.topics[wanted.name];
     topic.type = wanted.type;
     topic.publishers = {"/pr2"};
     topic.messages["/pr2"] = Stream(wanted, 30.0, 0.004);
   }
-  for (const WantedListener& wanted : ListenersOf(Names())) {
+  for (const WantedListener& wanted : Needs().listeners) {
     view.topics[wanted.name].type = wanted.type;
     view.topics[wanted.name].subscribers = {"/pr2"};
   }
@@ -87,18 +102,35 @@ std::vector<std::string> CodesOf(const RobotFindings& findings) {
 }
 
 std::vector<std::string> Codes(const RobotView& view) {
-  return CodesOf(JudgeRobot({}, Names(), Profile(), view));
+  return CodesOf(JudgeRobot({}, Needs(), Profile(), view));
+}
+
+TEST(RobotNeedsTest, TheRobotsOwnNamesAreWantedWithTheirTypes) {
+  const std::vector<WantedTopic> topics = Needs().all_topics();
+  ASSERT_EQ(topics.size(), Needs().topics.size() + 1);
+  EXPECT_EQ(topics.back().name, "/map");
+  EXPECT_EQ(topics.back().md5, "og5");
+  EXPECT_EQ(topics.front().name, "/base_odometry/odom");
+  EXPECT_EQ(topics.front().type, "nav_msgs/Odometry");
+  EXPECT_TRUE(topics.front().is_stamped);
+  EXPECT_EQ(Needs().listeners.front().type, "geometry_msgs/Twist");
+}
+
+TEST(RobotNeedsTest, ARobotThatDoesNotTellOfItsMotorsNeedNot) {
+  hires::control::RobotNames names = Needs().names;
+  names.motors_halted.clear();
+  EXPECT_EQ(NeedsOf(names, Types()).topics.size(), Needs().topics.size() - 1);
 }
 
 TEST(JudgeRobotTest, AHealthyRobotHasNoFindings) { EXPECT_THAT(Codes(HealthyView()), IsEmpty()); }
 
 TEST(JudgeRobotTest, EachMissingPieceIsItsOwnFinding) {
-  for (const WantedTopic& wanted : TopicsOf(Names())) {
+  for (const WantedTopic& wanted : Needs().topics) {
     RobotView view = HealthyView();
     view.topics.erase(wanted.name);
     EXPECT_THAT(Codes(view), ElementsAre("topic_missing")) << wanted.name;
   }
-  for (const WantedListener& wanted : ListenersOf(Names())) {
+  for (const WantedListener& wanted : Needs().listeners) {
     RobotView view = HealthyView();
     view.topics.erase(wanted.name);
     EXPECT_THAT(Codes(view), ElementsAre("listener_missing")) << wanted.name;
@@ -118,7 +150,7 @@ TEST(JudgeRobotTest, EachMissingPieceIsItsOwnFinding) {
 TEST(JudgeRobotTest, OtherVersionsOfAMessageAreToldByTheirChecksum) {
   RobotView view = HealthyView();
   view.topics["/base_scan"].messages["/pr2"].md5 = "0123";
-  const RobotFindings findings = JudgeTopics(Names(), view);
+  const RobotFindings findings = JudgeTopics(Needs(), view);
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].code, "topic_type");
   EXPECT_THAT(findings[0].remedy, HasSubstr("another version of that message"));
@@ -142,26 +174,26 @@ TEST(JudgeRobotTest, AFingerTellsAsMuchAsTheGap) {
 TEST(JudgeRobotTest, HowMuchAMissingMoveBaseMattersDependsOnWhoDrives) {
   RobotView view = HealthyView();
   view.topics.erase("/move_base/goal");
-  hires::cli::RobotDoctorOptions options;
-  const RobotFindings undecided = JudgeRobot(options, Names(), Profile(), view);
+  RobotDoctorOptions options;
+  const RobotFindings undecided = JudgeRobot(options, Needs(), Profile(), view);
   ASSERT_THAT(CodesOf(undecided), ElementsAre("move_base_missing"));
   EXPECT_EQ(undecided[0].level, FindingLevel::kWarning);
   options.navigation = "move_base";
-  const RobotFindings needed = JudgeRobot(options, Names(), Profile(), view);
+  const RobotFindings needed = JudgeRobot(options, Needs(), Profile(), view);
   ASSERT_THAT(CodesOf(needed), ElementsAre("move_base_missing"));
   EXPECT_EQ(needed[0].level, FindingLevel::kFailed);
   options.navigation = "own";
-  EXPECT_THAT(JudgeRobot(options, Names(), Profile(), view), IsEmpty());
+  EXPECT_THAT(JudgeRobot(options, Needs(), Profile(), view), IsEmpty());
 }
 
 TEST(JudgeRobotTest, SilenceOfANodeThatCannotBeReachedPointsToItsComputer) {
   RobotView view = HealthyView();
   view.topics["/base_scan"].messages.clear();
-  RobotFindings findings = JudgeTopics(Names(), view);
+  RobotFindings findings = JudgeTopics(Needs(), view);
   ASSERT_THAT(CodesOf(findings), ElementsAre("topic_silent"));
   EXPECT_THAT(findings[0].remedy, HasSubstr("start the robot"));
   view.nodes["/pr2"].reach = Reach::kUnresolvable;
-  findings = JudgeTopics(Names(), view);
+  findings = JudgeTopics(Needs(), view);
   ASSERT_THAT(CodesOf(findings), ElementsAre("topic_silent"));
   EXPECT_THAT(findings[0].remedy, HasSubstr("what is said of host pr2"));
 }
@@ -352,7 +384,35 @@ TEST(ProbePortTest, ADeafServerTellsNoTime) {
   ASSERT_NO_FATAL_FAILURE(BindToLoopback(server, &port));
   ASSERT_EQ(listen(server, 5), 0);
   EXPECT_EQ(CompareClocks(port, 0.01, 0.1), std::nullopt);
-  EXPECT_EQ(AskDataPort(port, "/x", "/test", 0.1), std::nullopt);
+  close(server);
+}
+
+TEST(AskNetworkTest, NodesThatAnswerAreAskedForTheirDataAndAllAreTold) {
+  const int server = socket(AF_INET, SOCK_STREAM, 0);
+  hires::relay::Endpoint port;
+  ASSERT_NO_FATAL_FAILURE(BindToLoopback(server, &port));
+  ASSERT_EQ(listen(server, 5), 0);
+  RobotView view;
+  view.this_host = {"127.0.0.1"};
+  view.nodes["/here"].uri = "http://127.0.0.1:" + std::to_string(port.port) + "/";
+  view.nodes["/gone"].uri = "http://no-such-host.invalid:1/";
+  view.nodes["/odd"].uri = "no uri";
+  view.topics["/base_scan"].publishers = {"/here", "/gone"};
+  WantedTopic wanted;
+  wanted.name = "/base_scan";
+  std::vector<std::string> asked;
+  const AskDataPort ask = [&](const hires::relay::Endpoint&, const std::string& topic, double) {
+    asked.push_back(topic);
+    return port;
+  };
+  TakeAnswers(AskNetwork(ask, port, view, {wanted}), &view);
+  EXPECT_THAT(asked, ElementsAre("/base_scan"));
+  EXPECT_EQ(view.nodes["/here"].reach, Reach::kAnswers);
+  EXPECT_EQ(view.nodes["/gone"].reach, Reach::kUnresolvable);
+  EXPECT_EQ(view.nodes["/odd"].reach, Reach::kBadUri);
+  EXPECT_EQ(view.topics["/base_scan"].data_at["/here"].port, port.port);
+  EXPECT_EQ(view.topics["/base_scan"].data_ports["/here"], Reach::kAnswers);
+  EXPECT_THAT(view.clocks, IsEmpty()) << "this computer's clock is not compared with itself";
   close(server);
 }
 
@@ -367,12 +427,12 @@ TEST(RobotReportTest, TextAndJsonSayTheSame) {
   RobotView view = HealthyView();
   view.motors_halted = true;
   view.clocks["pr2"] = {-0.004, 0.006, 150};
-  const RobotFindings findings = JudgeRobot({}, Names(), Profile(), view);
-  const std::string text = RobotReport(Names(), view, findings);
+  const RobotFindings findings = JudgeRobot({}, Needs(), Profile(), view);
+  const std::string text = RobotReport(Needs(), view, findings);
   EXPECT_THAT(text, HasSubstr("FAILED  motors /pr2_ethercat/motors_halted says that they are "));
   EXPECT_THAT(text, HasSubstr("something needs attention"));
   EXPECT_THAT(text, HasSubstr("30.0"));
-  const auto json = RobotJson(Names(), view, findings);
+  const auto json = RobotJson(Needs(), view, findings);
   EXPECT_EQ(json["ok"], false);
   EXPECT_EQ(json["findings"].size(), 1u);
   EXPECT_EQ(json["findings"][0]["level"], "failed");
@@ -381,5 +441,22 @@ TEST(RobotReportTest, TextAndJsonSayTheSame) {
   EXPECT_EQ(json["clocks"]["pr2"]["ahead_at_least"], -0.004);
 }
 
+TEST(RunRobotDoctorTest, TheRobotIsLookedAtAsLongAsWantedAndTheCodeSaysWhetherItIsWell) {
+  RobotDoctorOptions options;
+  options.seconds = 0.5;
+  double seconds = 0.0;
+  RobotView view = HealthyView();
+  const LookAtRobot look = [&](double wanted, const RobotNeeds&) {
+    seconds = wanted;
+    return view;
+  };
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(RunRobotDoctor(options, HIRES_SOURCE_DIR, Types(), look), kExitRecommended);
+  view.motors_halted = true;
+  EXPECT_EQ(RunRobotDoctor(options, HIRES_SOURCE_DIR, Types(), look), kExitBadInput);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(), HasSubstr("all is well"));
+  EXPECT_EQ(seconds, 0.5);
+}
+
 }  // namespace
-}  // namespace hires_ros
+}  // namespace hires::cli

@@ -1,18 +1,19 @@
 #pragma once
 
+#include "hires/cli/finding.h"
+#include "hires/cli/robot_needs.h"
+#include "hires/cli/robot_view.h"
 #include "hires/robot/robot_profile.h"
-#include "nodes/hires/robot_doctor_view.h"
-#include "nodes/hires/robot_finding.h"
 
 /// Judgements on what a robot publishes and listens to, by the codes of their findings; nothing
 /// where all is well.
-namespace hires_ros {
+namespace hires::cli {
 
 /// topic_missing, topic_type, topic_silent, topic_slow, topic_stale, topic_future,
 /// sim_time.
-RobotFindings JudgeTopics(const hires::control::RobotNames& names, const RobotView& view);
+RobotFindings JudgeTopics(const RobotNeeds& needs, const RobotView& view);
 /// listener_missing, listener_type.
-RobotFindings JudgeListeners(const hires::control::RobotNames& names, const RobotView& view);
+RobotFindings JudgeListeners(const RobotNeeds& needs, const RobotView& view);
 /// frame_missing, frame_stale, frame_two_parents, link_missing.
 RobotFindings JudgeFrames(const hires::control::RobotNames& names,
                           const hires::robot::RobotProfile& profile, const RobotView& view);
@@ -26,4 +27,4 @@ RobotFindings JudgeReadiness(const hires::control::RobotNames& names, const Robo
 RobotFindings JudgeMoveBase(const hires::control::RobotNames& names, const RobotView& view,
                             bool is_needed);
 
-}  // namespace hires_ros
+}  // namespace hires::cli

@@ -1,8 +1,8 @@
-#include "nodes/hires/robot_doctor_network.h"
+#include "hires/cli/robot_doctor_network.h"
 
 #include <future>
 
-namespace hires_ros {
+namespace hires::cli {
 namespace {
 
 using hires::relay::Endpoint;
@@ -12,14 +12,14 @@ constexpr double kClockTimeout = 1.5;  // [s] until the second of another comput
 constexpr double kClockWidth = 0.02;   // [s] of bounds that are good enough
 
 /// On a thread of its own: silent nodes take their time.
-NodeAnswers AskNode(const std::string& caller_id, const std::string& uri,
+NodeAnswers AskNode(const AskDataPort& ask_data_port, const std::string& uri,
                     const std::vector<std::string>& topics) {
   NodeAnswers answers;
   const auto node = hires::relay::ParseUri(uri);
   answers.reach = node ? ProbePort(*node, kProbeTimeout) : Reach::kBadUri;
   if (answers.reach != Reach::kAnswers) return answers;
   for (const std::string& topic : topics) {
-    const auto port = AskDataPort(*node, topic, caller_id, kProbeTimeout);
+    const auto port = ask_data_port(*node, topic, kProbeTimeout);
     if (port) answers.data[topic] = {*port, ProbePort(*port, kProbeTimeout)};
   }
   return answers;
@@ -70,7 +70,7 @@ void CompareAllClocks(const Endpoint& master, const RobotView& view, NetworkAnsw
 
 }  // namespace
 
-NetworkAnswers AskNetwork(const std::string& caller_id, const Endpoint& master, RobotView view,
+NetworkAnswers AskNetwork(const AskDataPort& ask_data_port, const Endpoint& master, RobotView view,
                           const std::vector<WantedTopic>& wanted) {
   NetworkAnswers answers;
   std::map<std::string, std::future<std::vector<std::string>>> lookups;
@@ -84,7 +84,7 @@ NetworkAnswers AskNetwork(const std::string& caller_id, const Endpoint& master, 
     }
     // A loopback address of another computer would lead to a program of this one.
     if (!is_master_here && hires::relay::IsLoopback(host)) continue;
-    running[name] = std::async(std::launch::async, AskNode, caller_id, node.uri, topics[name]);
+    running[name] = std::async(std::launch::async, AskNode, ask_data_port, node.uri, topics[name]);
   }
   for (auto& [host, future] : lookups) answers.addresses[host] = future.get();
   for (auto& [name, future] : running) answers.nodes[name] = future.get();
@@ -105,4 +105,4 @@ void TakeAnswers(const NetworkAnswers& answers, RobotView* view) {
   }
 }
 
-}  // namespace hires_ros
+}  // namespace hires::cli
