@@ -5,14 +5,15 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "hires/base/error.h"
+#include "hires/base/resource_use.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
-#include "hires/evaluation/resource_use.h"
 #include "hires/planning/ipc_plan.h"
 #include "hires/planning/plan_json.h"
 #include "hires/planning/plan_order.h"
@@ -99,10 +100,10 @@ Session Read(const PlanOptions& options) {
 
 /// Nothing but the search lies between the two looks at the clock.
 void Search(Session* session) {
-  const double begin = evaluation::ThreadCpuSeconds();
+  const double begin = base::ThreadCpuSeconds();
   session->result = planning::FindPlans(session->domain, session->problem, session->request);
-  session->costs.cpu_seconds = evaluation::ThreadCpuSeconds() - begin;
-  session->costs.peak_mb = evaluation::PeakMegabytes();
+  session->costs.cpu_seconds = base::ThreadCpuSeconds() - begin;
+  session->costs.peak_mb = base::PeakMegabytes();
 }
 
 void AddReasons(Session* session) {

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/experiment_kinds.h"
 #include "evaluation/experiment_stage.h"

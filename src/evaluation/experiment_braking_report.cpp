@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "hires/evaluation/experiment_braking.h"
 #include "hires/evaluation/statistics.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "hires/base/check.h"
@@ -98,8 +99,8 @@ std::string FailureLines(const std::vector<HypothesisRun>& runs) {
   return text.empty() ? "" : "not succeeded:\n" + text;
 }
 
-ordered_json RowsOf(const std::vector<HypothesisRun>& runs) {
-  ordered_json rows = ordered_json::array();
+std::vector<ordered_json> RowsOf(const std::vector<HypothesisRun>& runs) {
+  std::vector<ordered_json> rows;
   for (const HypothesisRun& run : runs) rows.push_back(ToJson(run));
   return rows;
 }

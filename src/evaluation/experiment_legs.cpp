@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/experiment_kinds.h"
 #include "evaluation/experiment_parallel.h"

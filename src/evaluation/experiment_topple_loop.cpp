@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "evaluation/experiment_kinds.h"
 #include "evaluation/experiment_parallel.h"
 #include "hires/base/text.h"

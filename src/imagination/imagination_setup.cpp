@@ -7,6 +7,7 @@
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
+#include "hires/robot/load_robot.h"
 #include "hires/skills/action_loader.h"
 #include "hires/world/object_catalogue.h"
 #include "imagination/physics_hash.h"
@@ -89,15 +90,6 @@ physics::PhysicsParams ReadPhysics(ParamReader in) {
   return p;
 }
 
-bool EndsWith(const std::string& text, const std::string& end) {
-  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-robot::Robot LoadAnyRobot(const std::string& path) {
-  return EndsWith(base::ToLower(path), ".urdf") ? robot::LoadRobotFromUrdf(path)
-                                                : robot::LoadRobot(path);
-}
-
 /// The world with every object model that a request may name.
 world::World LoadWorldWithObjects(const SetupConfig& config,
                                   std::map<std::string, std::string>* object_models) {
@@ -171,7 +163,7 @@ SetupConfig ReadSetupConfig(const std::string& path) {
 ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   ImaginationSetup setup;
   world::World world = LoadWorldWithObjects(config, &setup.object_models);
-  robot::Robot robot = LoadAnyRobot(config.robot);
+  robot::Robot robot = robot::LoadAnyRobot(config.robot);
   setup.skills = std::make_shared<const skills::SkillSet>(
       skills::MakeSkillSet(world, robot, config.driving, config.blind, config.manipulation,
                            config.standing, skills::LoadActionSet(config.action_libraries)));

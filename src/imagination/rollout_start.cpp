@@ -9,32 +9,12 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/robot/posture.h"
+#include "hires/simulation/free_start.h"
 
 namespace hires::imagination {
 namespace {
 
 constexpr double kHandReach = 0.5;  // [m] from a link to the origin of what it holds
-
-/// Tells where the robot may stand with its joints as they are at the start.
-std::optional<simulation::RobotClearance> ClearanceFor(const RolloutSetup& setup) {
-  const robot::Robot& robot = setup.scene->robot;
-  const robot::JointPositions posture = robot::PostureOf(robot, setup.robot_state.joints);
-  if (posture == robot::PostureOf(robot, {})) return std::nullopt;
-  return simulation::RobotClearance(simulation::FrozenShapes(robot, posture), setup.scene->world);
-}
-
-simulation::Variation WithFreeStart(simulation::Variation variation, const RolloutSetup& setup) {
-  const auto own = ClearanceFor(setup);
-  const simulation::RobotClearance& clearance = own ? *own : setup.scene->clearance;
-  for (int halving = 0; halving < 8; ++halving) {
-    if (!clearance.FindContact(setup.robot_state.X_MB * variation.start_offset)) return variation;
-    variation.start_offset.x /= 2;
-    variation.start_offset.y /= 2;
-    variation.start_offset.yaw /= 2;
-  }
-  variation.start_offset = {};
-  return variation;
-}
 
 /// Manipulation areas are where the robot stands at furniture: it came there by move_base_blind.
 Arrival ArrivalAt(const RolloutSetup& setup) {
@@ -53,8 +33,7 @@ Arrival ArrivalAt(const RolloutSetup& setup) {
 
 double DistanceFrom(const robot::Robot& robot, const robot::RobotState& state,
                     const world::ObjectState& object) {
-  const auto X_RL =
-      robot::ForwardKinematics(robot.model, robot::PostureOf(robot, state.joints));
+  const auto X_RL = robot::ForwardKinematics(robot.model, robot::PostureOf(robot, state.joints));
   const geometry::Pose3& X_RB = X_RL.at(*robot.model.FindLink(robot.profile.base_link));
   const geometry::Pose3& X_RLink = X_RL.at(*robot.model.FindLink(object.attached_to));
   const geometry::Pose3 X_ML = geometry::Lift(state.X_MB) * X_RB.Inverse() * X_RLink;
@@ -70,7 +49,8 @@ simulation::LevelOfDetail LevelFor(const skills::SkillSet& skills, const base::A
 }
 
 simulation::Variation DrawTruth(const RolloutSetup& setup, const base::Rng& rng) {
-  return WithFreeStart(SampleVariation(*setup.uncertainty, rng, ArrivalAt(setup)), setup);
+  return simulation::WithFreeStart(SampleVariation(*setup.uncertainty, rng, ArrivalAt(setup)),
+                                   *setup.scene, setup.robot_state);
 }
 
 std::vector<robot::SeenObject> KnownAtStart(const RolloutSetup& setup,

@@ -11,8 +11,7 @@ namespace hires::imagination {
 /// How much of the robot must move for an action.  @throws base::ConfigError for an unknown one.
 simulation::LevelOfDetail LevelFor(const skills::SkillSet& skills, const base::ActionCall& action);
 
-/// Draws the truth of one rollout. A start that collides cannot be one where the robot stands: its
-/// offset is drawn in.
+/// Draws the truth of one rollout, with a start that touches nothing (simulation::WithFreeStart).
 simulation::Variation DrawTruth(const RolloutSetup& setup, const base::Rng& rng);
 
 /// What the robot knows of loose objects when it begins: where the start state has them, but those

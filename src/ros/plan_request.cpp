@@ -6,9 +6,9 @@
 #include <new>
 
 #include "hires/base/error.h"
+#include "hires/base/resource_use.h"
 #include "hires/base/short_text.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/resource_use.h"
 #include "hires/planning/plan_order.h"
 #include "hires/planning/plan_report.h"
 #include "hires/planning/reasons.h"
@@ -199,9 +199,9 @@ bool AddPlans(const planning::Domain& domain, const PlanRequest& request,
 
 hires::PlanResult Plan(const PlanRequest& request, const planning::Domain& domain,
                        const planning::StopQuestion& stop) {
-  const double begin = hires::evaluation::ThreadCpuSeconds();
+  const double begin = hires::base::ThreadCpuSeconds();
   planning::PlanResult found = planning::FindPlans(domain, request.problem, request.search);
-  const double cpu_seconds = hires::evaluation::ThreadCpuSeconds() - begin;
+  const double cpu_seconds = hires::base::ThreadCpuSeconds() - begin;
   hires::PlanResult result = WithoutPlans(found, request.search.which);
   result.cpu_seconds = cpu_seconds;
   if (!AddPlans(domain, request, stop, &found, &result)) {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/experiment_stage.h"
 #include "hires/base/error.h"

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "evaluation/hypothesis_examples.h"
 #include "hires/base/text.h"

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
+
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "support/temporary_folder.h"

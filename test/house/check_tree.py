@@ -22,15 +22,13 @@ LAYERS = [
     ["physics", "navigation", "manipulation", "perception", "execution", "translation"],
     ["sensing"],
     ["simulation", "skills"],
-    ["control"],
-    ["imagination"],
+    ["control", "imagination"],
     ["evaluation"],
-    ["cli"],
-    ["ros"],
+    ["cli", "ros"],
     ["nodes"],
 ]
 RANK = {layer: rank for rank, line in enumerate(LAYERS) for layer in line}
-FIRST_LAYER_WITH_ROS = RANK["ros"]
+LAYERS_WITH_ROS = {"ros", "nodes"}
 
 CODE_FOLDERS = ["include/hires", "src", "test", "benchmark"]
 TEXT_FOLDERS = [".ci", "action", "benchmark", "cmake", "config", "docs", "examples", "include",
@@ -123,9 +121,9 @@ def check_include(path, number, layer, header):
         way = "sideways" if RANK[other] == RANK[layer] else "up"
         yield (f"{place}: layer '{layer}' includes {header}, an arrow {way}; move what both need "
                "to a lower layer, or hand it in from above")
-    if RANK[layer] < FIRST_LAYER_WITH_ROS and (
+    if layer not in LAYERS_WITH_ROS and (
             ROS_HEADER.match(header) or GENERATED_MESSAGE.match(header)):
-        yield (f"{place}: layer '{layer}' includes {header}, but layers below 'ros' know no ROS; "
+        yield (f"{place}: layer '{layer}' includes {header}, but only 'ros' and 'nodes' know ROS; "
                "convert in the layer 'ros'")
 
 
@@ -145,6 +143,31 @@ def check_private_headers(root):
                        f"installed; move that to include/hires/{owner}, or include it in the source")
 
 
+def hides_ros(path):
+    """Whether a header beside its source would be found where someone means one of ROS: <ros/names.h>
+    is looked for in src, too."""
+    return path.startswith("src/") and path.endswith(".h") and bool(ROS_HEADER.match(path[len("src/"):]))
+
+
+def check_hidden_headers(root):
+    for path in files_below(root, "src"):
+        if hides_ros(path):
+            yield (f"{path}:1: would be taken for the header <{path[len('src/'):]}> of ROS; put it into "
+                   f"include/hires/{layer_of(path)}")
+
+
+HEAVY_HEADER = {"nlohmann/json.hpp": "nlohmann/json_fwd.hpp"}
+
+
+def check_light_headers(root):
+    """What others include does not make them read what only sources need."""
+    for path in files_below(root, "include/hires"):
+        for number, header in includes_of(root, path):
+            if header in HEAVY_HEADER:
+                yield (f"{path}:{number}: includes {header}, which all who include it would read; say "
+                       f"{HEAVY_HEADER[header]} here and include the other one in sources")
+
+
 def check_public_headers(root):
     """What stands in include/hires is included by others, itself or through another such header."""
     users = {}
@@ -160,7 +183,8 @@ def check_public_headers(root):
         used |= more
         grown = bool(more)
     for path in headers:
-        if path not in used:
+        may_move = not hides_ros(f"src/{layer_of(path)}/{os.path.basename(path)}")
+        if path not in used and may_move:
             yield (f"{path}:1: no other layer, node or example includes it; keep it beside its "
                    f"source in src/{layer_of(path)}")
 
@@ -180,19 +204,10 @@ def declared_dependencies(root):
     return declared
 
 
-def reachable(declared, layer):
-    seen, todo = set(), [layer]
-    while todo:
-        for lower in declared.get(todo.pop(), []):
-            if lower not in seen:
-                seen.add(lower)
-                todo.append(lower)
-    return seen
-
-
 def check_dependencies(root):
-    """CMake must say what the includes say, and nothing that points up."""
+    """CMake says what the includes say: no layer more, none less, none that points up."""
     declared = declared_dependencies(root)
+    included = {layer: set() for layer in declared}
     for layer, lower_layers in declared.items():
         for lower in lower_layers:
             if lower not in RANK or RANK[lower] >= RANK[layer]:
@@ -202,12 +217,19 @@ def check_dependencies(root):
         layer = layer_of(path)
         if layer not in declared or path.startswith(("test/", "benchmark/")):
             continue
-        known = reachable(declared, layer) | {layer}
         for number, header in includes_of(root, path):
             other = included_layer(header)
-            if other in RANK and RANK[other] < RANK[layer] and other not in known:
+            if other not in RANK or RANK[other] >= RANK[layer]:
+                continue
+            if other not in included[layer] and other not in declared[layer]:
                 yield (f"{path}:{number}: layer '{layer}' includes {header} without depending on "
                        f"'{other}'; add it to DEPENDS in src/{layer}/CMakeLists.txt")
+            included[layer].add(other)
+    for layer, lower_layers in declared.items():
+        for lower in lower_layers:
+            if RANK.get(lower, RANK[layer]) < RANK[layer] and lower not in included[layer]:
+                yield (f"src/{layer}/CMakeLists.txt: layer '{layer}' DEPENDS on '{lower}', of which it "
+                       "includes nothing; take it out")
 
 
 def own_headers(root, path):
@@ -223,6 +245,8 @@ def own_headers(root, path):
 
 # Nothing but names; STYLE of the project keeps those of topics where topics are.
 NAMES_OF_TOPICS = {"ros/robot_topics", "ros/topic_names"}
+# What these do is to ask ROS, though no type of it stands in their headers: who calls them needs it.
+ASKS_ROS = {"ros/load_robot_names", "ros/private_params"}
 
 
 def unit_of(path):
@@ -249,19 +273,21 @@ def own_file(root, path, header):
     return None
 
 
-def sees_ros(root, unit, units):
-    """Whether a unit needs ROS or generated messages: itself, or what it includes with its sources."""
-    seen, todo = {unit}, [unit]
+def sees_ros(root, paths):
+    """Whether these files include ROS, generated messages or ASKS_ROS, themselves or through headers.
+    What the sources behind those headers include is their own affair."""
+    seen, todo = set(paths), list(paths)
     while todo:
-        for path in units.get(todo.pop(), ()):
-            for _, header in includes_of(root, path):
-                found = own_file(root, path, header)
-                if found is None and (ROS_HEADER.match(header) or
-                                      GENERATED_MESSAGE.match(header)):
-                    return True
-                if found and found.startswith(("include/hires/", "src/")) and unit_of(found) not in seen:
-                    seen.add(unit_of(found))
-                    todo.append(unit_of(found))
+        path = todo.pop()
+        for _, header in includes_of(root, path):
+            found = own_file(root, path, header)
+            if found is None and (ROS_HEADER.match(header) or GENERATED_MESSAGE.match(header)):
+                return True
+            if found and unit_of(found) in ASKS_ROS:
+                return True
+            if found and found not in seen:
+                seen.add(found)
+                todo.append(found)
     return False
 
 
@@ -269,11 +295,11 @@ def check_units_with_ros(root):
     """What knows no ROS is of use below, and is tested there without ROS."""
     units = units_of(root)
     for unit, paths in sorted(units.items()):
-        if unit.split("/")[0] not in ("ros", "nodes") or unit in NAMES_OF_TOPICS:
+        if unit.split("/")[0] not in LAYERS_WITH_ROS or unit in NAMES_OF_TOPICS | ASKS_ROS:
             continue
-        if not sees_ros(root, unit, units):
-            yield (f"{paths[0]}:1: sees no ROS, not even through what it includes; move it down to the "
-                   "layer that it is about")
+        if not sees_ros(root, paths):
+            yield (f"{paths[0]}:1: sees no ROS, not even through headers; move it down to the layer that "
+                   "it is about")
 
 
 def check_nodes_apart(root):
@@ -301,6 +327,51 @@ def check_rooms(root):
         if len(units) > MOST_UNITS:
             yield (f"{folder}: has {len(units)} units (pairs of header and source), wanted at most "
                    f"{MOST_UNITS}; make rooms by concept")
+
+
+MOST_LINES = 60
+NO_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)\'',
+                     re.DOTALL)
+NO_FUNCTION = re.compile(r"\s*(?:template\s*<.*>\s*)?(?:inline )?(?:namespace|class|struct|union|enum|extern)\b"
+                         r"|[^(]*$|.*[=,(]\s*$", re.DOTALL)
+
+
+GOES_ON = re.compile(r"(?!\s*#).*[^\s;:{}]\s*$")  # a statement that does not end with the line
+
+
+def indent_of(line):
+    return len(line) - len(line.lstrip())
+
+
+def functions_in(text):
+    """(line, number of lines) for each definition with a body, as `scripts/format` writes them: it ends
+    where a brace stands as far to the left as its first line."""
+    code = NO_CODE.sub(lambda match: re.sub(r"[^\n]", " ", match.group()), text)
+    lines, opened = code.split("\n"), []
+    for last, line in enumerate(lines):
+        for match in re.finditer(r"[{}]", line):
+            if match.group() == "{":
+                opened.append((last, match.start()))
+            elif opened:
+                brace, column = opened.pop()
+                first = brace
+                while first > 0 and (indent_of(lines[first]) > indent_of(line) or
+                                     GOES_ON.match(lines[first - 1])):
+                    first -= 1
+                head = "\n".join(lines[first:brace] + [lines[brace][:column]])
+                if brace < last and match.start() == indent_of(line) and not NO_FUNCTION.match(head):
+                    yield first + 1, last - first + 1
+
+
+def check_functions(root):
+    """A function fits in a glance."""
+    for path in code_files(root):
+        if not path.startswith(("include/hires/", "src/")):
+            continue
+        for line, length in functions_in(read(root, path)):
+            if length > MOST_LINES:
+                yield (f"{path}:{line}: is {length} lines long, wanted at most {MOST_LINES}; give its parts "
+                       "names")
 
 
 def check_own_header(root, path):
@@ -424,7 +495,7 @@ ALSO_MEANS = {
         "src/planning/search/search.cpp", "src/planning/check/step_replay.cpp",
         "src/translation/wanted_state.cpp"},
     "motors_halted": {  # a key of a robot's names, a finding of the doctor
-        "src/nodes/hires/robot_doctor_judge.cpp", "src/control/robot_names.cpp"},
+        "src/cli/robot/robot_doctor_judge.cpp", "src/control/robot_names.cpp"},
     "busy": {"src/evaluation/achieve.cpp"},  # outcomes of a task, from here on
     "dry_run": {
         "src/evaluation/achieve.cpp", "src/nodes/execution_monitor/execution_messages.cpp",
@@ -437,10 +508,13 @@ ALSO_MEANS = {
         "src/evaluation/achieve.cpp", "src/nodes/execution_monitor/execution_messages.cpp"},
 }
 COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', re.DOTALL)
+FOR_PEOPLE = r"\b[\w.>()\[\]-]*(?:reason|detail|failure|why)_?(?:\(\))?"
 TAKES_TEXT_APART = re.compile(
-    r"\b\w*(?:reason|detail|failure|why)_?(?:\(\))?\s*\.\s*(?:find|rfind|substr|compare|starts_with)\("
-    r'|\b\w*(?:reason|detail|failure|why)_?(?:\(\))?\s*[!=]=\s*"[^"]'
-    r"|\bToString\([^()]*(?:failure|code)(?:\(\))?\)\s*[!=]=")
+    FOR_PEOPLE + r"\s*\.\s*(?:find|rfind|substr|compare|starts_with|startswith|endswith|split|partition)\("
+    r"|" + FOR_PEOPLE + r"\s*(?:[!=]=|\b(?:not )?in\b)\s*\(?[\"'][^\"']"
+    r"|[^\"'\s(][\"']\s*[!=]=\s*" + FOR_PEOPLE + r"(?![\w(])"
+    r"|\bToString\([^()]*(?:failure|code)(?:\(\))?\)\s*[!=]="
+    r"|[!=]=\s*ToString\([^()]*(?:failure|code)(?:\(\))?\)")
 
 
 def check_failure_codes(root):
@@ -496,6 +570,19 @@ def check_failure_texts(root):
                    f"'{match.group().strip()}', which is for people; compare codes and subjects")
 
 
+def check_python_texts(root):
+    """As for C++: in scripts and tests, too, a failure is its code. (Tests may look for words that people
+    are to read.)"""
+    for path in [p for folder in ("examples", "scripts", "test") for p in files_below(root, folder)]:
+        if not path.endswith(".py") or path.startswith("test/house/"):
+            continue
+        for number, line in enumerate(read(root, path).splitlines(), start=1):
+            match = TAKES_TEXT_APART.search(line.split("#")[0])
+            if match:
+                yield (f"{path}:{number}: compares or takes apart '{match.group().strip()}', which is for "
+                       "people; compare codes and subjects")
+
+
 def check_failure_tables(root):
     """What documents say that an action fails with is in the table of failures."""
     words = failure_words(root)
@@ -543,10 +630,10 @@ def check_instructions(root):
                 yield f"{path}:{number}: there is no {file}; name what took its place"
 
 
-CHECKS = [check_includes, check_private_headers, check_public_headers, check_dependencies,
-          check_units_with_ros, check_nodes_apart, check_rooms, check_headers, check_whitespace,
-          check_packages,
-          check_catkin_components, check_scripts, check_failure_codes, check_failure_texts,
+CHECKS = [check_includes, check_private_headers, check_public_headers, check_hidden_headers,
+          check_light_headers, check_dependencies, check_units_with_ros, check_nodes_apart, check_rooms,
+          check_functions, check_headers, check_whitespace, check_packages, check_catkin_components,
+          check_scripts, check_failure_codes, check_failure_texts, check_python_texts,
           check_failure_tables, check_rostests, check_instructions]
 
 

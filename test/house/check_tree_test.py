@@ -78,7 +78,9 @@ class CheckTreeTest(unittest.TestCase):
                        "actionlib/server/simple_action_server.h", "std_srvs/Empty.h",
                        "hires/Fluent.h"):
             self.expect_one({"src/base/rng.cpp": f'#include "hires/base/rng.h"\n#include <{header}>\n'},
-                            "src/base/rng.cpp:2", header, "know no ROS")
+                            "src/base/rng.cpp:2", header, "know ROS")
+        self.expect_one({"src/cli/said.h": "#pragma once\n#include <ros/ros.h>\n"},
+                        "src/cli/said.h:2", "'cli'", "know ROS")
 
     def test_names_that_only_look_like_ros_are_left_in_peace(self):
         self.assertEqual(self.complaints(
@@ -93,6 +95,11 @@ class CheckTreeTest(unittest.TestCase):
         self.expect_one(plain, "include/hires/ros/words.h:1", "sees no ROS", "move it down")
         self.expect_one({"src/nodes/planner/pool.cpp": "#include <vector>\n"},
                         "src/nodes/planner/pool.cpp:1", "sees no ROS")
+        # What the source of another unit includes is that unit's own affair.
+        self.expect_one({"src/nodes/planner/watch.h": "#pragma once\n",
+                         "src/nodes/planner/watch.cpp": '#include "watch.h"\n#include <ros/time.h>\n',
+                         "src/nodes/planner/judge.cpp": '#include "watch.h"\n'},
+                        "src/nodes/planner/judge.cpp:1", "sees no ROS")
 
     def test_a_unit_that_sees_ros_through_others_is_left_in_peace(self):
         self.assertEqual(self.complaints(
@@ -103,7 +110,13 @@ class CheckTreeTest(unittest.TestCase):
              "src/nodes/planner/pool_more.cpp": '#include "pool.h"\n',
              "include/hires/ros/master.h": "#pragma once\n",
              "src/ros/master.cpp": '#include "hires/ros/master.h"\n#include <xmlrpcpp/XmlRpcClient.h>\n',
-             "src/nodes/planner/watch.cpp": '#include "hires/ros/master.h"\n'}), [])
+             "src/nodes/planner/watch.cpp":
+                 '#include "hires/ros/master.h"\n#include "hires/ros/words.h"\n'}), [])
+
+    def test_a_unit_that_asks_for_parameters_of_ros_is_left_in_peace(self):
+        self.assertEqual(self.complaints(
+            {"include/hires/ros/private_params.h": "#pragma once\n",
+             "src/nodes/planner/params.cpp": '#include "hires/ros/private_params.h"\n'}), [])
 
     def test_names_of_topics_may_stand_where_topics_are(self):
         self.assertEqual(self.complaints(
@@ -129,13 +142,65 @@ class CheckTreeTest(unittest.TestCase):
         self.assertEqual(self.complaints({**units(most), **units(9, "src/base/room")}), [])
 
     def test_a_dependency_that_cmake_does_not_know_is_found(self):
-        self.expect_one({"src/geometry/CMakeLists.txt": "hires_layer(geometry LINK base)\n",
-                         "src/robot/CMakeLists.txt": "hires_layer(robot DEPENDS geometry base)\n"},
+        self.expect_one({"src/geometry/CMakeLists.txt": "hires_layer(geometry LINK base)\n"},
                         "include/hires/geometry/pose.h:2", "DEPENDS", "'base'")
 
     def test_a_dependency_of_cmake_that_points_up_is_found(self):
         self.expect_one({"src/base/CMakeLists.txt": "hires_layer(base DEPENDS robot)\n"},
                         "src/base/CMakeLists.txt", "no lower layer")
+
+    def test_a_dependency_of_cmake_that_nothing_includes_is_found(self):
+        self.expect_one({"src/robot/CMakeLists.txt": "hires_layer(robot DEPENDS geometry base)\n"},
+                        "src/robot/CMakeLists.txt", "'base'", "take it out")
+
+    def test_a_dependency_that_comes_through_another_layer_is_declared_all_the_same(self):
+        self.expect_one({"include/hires/robot/model.h":
+                             '#pragma once\n#include "hires/geometry/pose.h"\n#include "hires/base/rng.h"\n'},
+                        "include/hires/robot/model.h:3", "'base'", "add it to DEPENDS")
+
+    def test_a_header_that_hides_one_of_ros_is_found(self):
+        use = {"src/nodes/planner/pool.cpp": '#include <ros/time.h>\n#include "ros/names.h"\n'}
+        self.assertIn("would be taken for the header <ros/names.h>",
+                      "".join(self.complaints({**use, "src/ros/names.h": "#pragma once\n#include <ros/time.h>\n"})))
+        lonely = {"include/hires/ros/names.h": "#pragma once\n#include <ros/time.h>\n",
+                  "src/ros/names.cpp": '#include "hires/ros/names.h"\n'}
+        self.assertEqual(self.complaints(lonely), [])
+
+    def test_a_heavy_header_that_others_would_read_is_found(self):
+        text = '#pragma once\n#include <nlohmann/%s>\n#include "hires/base/rng.h"\n'
+        self.expect_one({"include/hires/geometry/pose.h": text % "json.hpp"},
+                        "include/hires/geometry/pose.h:2", "json_fwd.hpp")
+        self.assertEqual(self.complaints({"include/hires/geometry/pose.h": text % "json_fwd.hpp"}), [])
+
+    def function_of(self, lines, head="void A::F(int a,\n          int b) {"):
+        return '#include "hires/base/rng.h"\nnamespace a {\n%s\n%s}\n}  // namespace a\n' % (
+            head, "  G();  // }\n" * (lines - 2 - head.count("\n")))
+
+    def test_a_function_that_is_too_long_is_found(self):
+        most = check_tree.MOST_LINES
+        heads = ("void F() {", "void A::F(int a,\n          int b) {", "A::A(int a)\n    : a_{a},\n      b_(2) {",
+                 "template <typename T>\nvoid F(T t) {")
+        for head in heads:
+            with self.subTest(head):
+                self.assertEqual(self.complaints({"src/base/rng.cpp": self.function_of(most, head)}), [])
+                self.expect_one({"src/base/rng.cpp": self.function_of(most + 1, head)},
+                                "src/base/rng.cpp:3", f"{most + 1} lines", f"at most {most}")
+
+    def test_a_long_method_in_a_class_is_found(self):
+        body = "    G();\n" * check_tree.MOST_LINES
+        self.expect_one({"include/hires/base/rng.h":
+                             "#pragma once\nclass A {\n public:\n  void F() const {\n%s  }\n};\n" % body},
+                        "include/hires/base/rng.h:4", f"{check_tree.MOST_LINES + 2} lines")
+
+    def test_long_tables_types_and_texts_are_no_functions(self):
+        many = check_tree.MOST_LINES + 9
+        for text in ("const int kTable[] = {\n%s};\n" % ("    F(1),\n" * many),
+                     "class A {\n%s};\n" % ("  int f(int);\n" * many),
+                     "enum class A {\n%s};\n" % ("  kA,\n" * many),
+                     'const char kText[] = R"(void F() {\n%s})";\n' % ("\n" * many)):
+            with self.subTest(text[:12]):
+                self.assertEqual(
+                    self.complaints({"src/base/rng.cpp": '#include "hires/base/rng.h"\n' + text}), [])
 
     def test_a_source_without_its_header_is_found(self):
         self.expect_one({"src/base/lost.cpp": "\n"}, "src/base/lost.cpp",
@@ -219,6 +284,7 @@ class CheckTreeTest(unittest.TestCase):
         tree = {"include/hires/base/failure.h": "#pragma once\nenum Code {\n  kNone = 0,\n  kStuck = 4,\n};\n",
                 "src/base/failure.cpp": '#include "hires/base/failure.h"\n{Code::kStuck, "stuck"}\n',
                 "msg/Failure.msg": "uint16 NONE=0\nuint16 STUCK=4\n",
+                "src/robot/CMakeLists.txt": "hires_layer(robot DEPENDS geometry base)\n",
                 "include/hires/robot/model.h":
                     '#pragma once\n#include "hires/base/failure.h"\n#include "hires/geometry/pose.h"\n'}
         self.assertEqual(self.complaints(tree), [])
@@ -272,12 +338,24 @@ class CheckTreeTest(unittest.TestCase):
     def test_words_for_people_that_are_taken_apart_are_found(self):
         start = '#include "hires/robot/model.h"\n'
         for text in ('if (x.reason == "late") return;', 'x.reason.rfind("a", 0);',
-                     'failure.detail.substr(2);', 'if (ToString(failure) == other) return;'):
+                     'failure.detail.substr(2);', 'if (ToString(failure) == other) return;',
+                     'if ("late" == x.reason) return;', 'if ("late" != why()) return;',
+                     'if (other == ToString(failure)) return;'):
             self.expect_one({**self.TABLE, "src/robot/a.cpp": start + text + "\n"},
                             "src/robot/a.cpp:2", "for people")
-        for text in ('if (why.empty()) return;', 'failures.find(code);', 'a.failure == b.failure;'):
+        for text in ('if (why.empty()) return;', 'failures.find(code);', 'a.failure == b.failure;',
+                     'if (a == "x") return b.reason;', 'F("x", reason == other);'):
             self.assertEqual(
                 self.complaints({**self.TABLE, "src/robot/a.cpp": start + text + "\n"}), [])
+
+    def test_python_that_takes_words_for_people_apart_is_found(self):
+        for text in ("if reason == 'late':", "if 'late' != step.failure.detail:", "why.split(',')",
+                     "if x.reason in ('late', 'lost'):", "result.reason.startswith('no way')"):
+            for path in ("test/ros/a_test.py", "examples/own/a.py", "scripts/a.py"):
+                self.expect_one({path: "x = 1\n" + text + "\n"}, path + ":2", "for people")
+        for text in ("self.assertIn('late', result.reason)", "if step.failure.code == code:",
+                     "if not why:", "# reason == 'late'", "say(reason or '-')"):
+            self.assertEqual(self.complaints({"test/ros/a_test.py": text + "\n"}), [])
 
     def test_a_document_that_invents_a_failure_is_found(self):
         table = "| action | fails with |\n|---|---|\n| `look` | `no_path: a`, `%s` |\n\n`other`\n"

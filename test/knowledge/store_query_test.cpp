@@ -338,7 +338,7 @@ TEST_F(StoreQueryTest, WhatHoldsNowCostsTheSameAfterAnyNumberOfRepetitions) {
   }
 }
 
-TEST_F(StoreQueryTest, AFewAmongManyAreFoundByTheShortRoad) {
+TEST_F(StoreQueryTest, AFewAmongManyAreFoundByTheShortPath) {
   constexpr int kMany = 10'000;
   std::vector<Fluent> poses;
   std::vector<std::string> names;

@@ -19,6 +19,8 @@
 namespace hires_ros::doctor_test {
 namespace {
 
+using hires::cli::FindingText;
+
 namespace fs = std::filesystem;
 using hires::test_support::ConfigErrorOf;
 using testing::ElementsAre;

@@ -4,6 +4,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "nodes/middle_layer/middle_layer_params.h"
 #include "nodes/world_tracker/world_tracker_params.h"
+#include "support/restaurant_translation.h"
 #include "support/temporary_folder.h"
 
 // One block of the scene says how robot and objects are sensed, to all who ask.
@@ -48,6 +49,18 @@ TEST(SensingSetupTest, TrackerMiddleLayerAndRolloutsRememberByTheSameNumbers) {
   EXPECT_TRUE(tracker.sensing == setup.sensing);
   EXPECT_TRUE(tracker.sensing.memory == setup.scene->memory) << "what rollouts play with";
   EXPECT_FALSE(tracker.sensing.memory == hires::sensing::MemoryParams());
+}
+
+TEST(WorldTrackerConfigTest, TheFilesThatThePackageComesWithAreRead) {
+  const auto tracker = ReadWorldTrackerParams(HIRES_SOURCE_DIR "/config/world_tracker.yaml");
+  EXPECT_EQ(tracker.concepts.at("coffee_cup"), "Mug");
+  for (const auto& [model, concept_name] : tracker.concepts) {
+    EXPECT_NO_THROW(hires::test_support::RestaurantContext().ontology->Require(concept_name))
+        << model;
+  }
+  const auto translator = ReadTranslatorParams(HIRES_SOURCE_DIR "/config/translator.yaml");
+  EXPECT_EQ(LoadTranslatorContext(translator).world->hash,
+            hires::test_support::RestaurantContext().world->hash);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "hires/planning/datum_reader.h"
 
 namespace hires::planning::plan_json_test {

@@ -8,8 +8,8 @@ import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
-from claims import FALSE, Snapshot, judge_warning  # noqa: E402
 from closed_loop import IMAGINE_PLACING, link_of  # noqa: E402
+from claims import FALSE, Claims, Snapshot  # noqa: E402
 from loop_case import LoopCase  # noqa: E402
 from random_tasks import RandomTask  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
@@ -39,22 +39,23 @@ class LoopRandomTasksTest(LoopCase):
         if drawn.is_placing_imagined:
             knowledge.append(IMAGINE_PLACING)
         self.begin(drawn.robot, drawn.objects, drawn.hidden, knowledge)
-        self.claims = []
+        self.claims = Claims()
         begun = self.truth.now()
-        task = self.achieve(drawn.task, on_warning=self.note_claims)
+        task = self.achieve(drawn.task, on_feedback=self.note_claims)
         result = task.result()
+        self.note_claims(result)
         self.wait_until_it_stands()
         self.note_end(drawn, result, self.truth.now() - begun)
         self.check(drawn, task, result)
 
-    def note_claims(self, text):
-        """As soon as it is said."""
-        self.claims += judge_warning(text, Snapshot(self.truth))
+    def note_claims(self, report):
+        """As soon as they are said."""
+        self.claims.note(report.steps, Snapshot(self.truth))
 
     def note_end(self, drawn, result, duration):
         steps = [s for s in result.steps
                  if s.started == s.started and s.action.name != 'imagine']
-        told = '; '.join('%s [%s]' % claim for claim in self.claims) or 'nothing'
+        told = '; '.join('%s [%s]' % claim for claim in self.claims.verdicts) or 'nothing'
         print(ROW % (drawn.seed, drawn.task, drawn.start, len(steps), '%.1f' % duration,
                      ENDS.get(result.code, str(result.code)), self.truth.summary.contact or '-',
                      '%s | %s' % (result.reason or '-', told)), flush=True)
@@ -63,7 +64,7 @@ class LoopRandomTasksTest(LoopCase):
         story = lambda: self.story(task, result)  # noqa: E731
         self.assertIn(result.code, ENDS, story())
         self.assertTrue(result.code == 0 or result.reason, story())
-        false = [claim for claim, verdict in self.claims if verdict == FALSE]
+        false = [claim for claim, verdict in self.claims.verdicts if verdict == FALSE]
         self.assertEqual(false, [], story())
         if result.code == self.codes.SUCCEEDED:
             self.check_goal(drawn, story)

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -41,8 +41,9 @@ struct TextTable {
 struct Findings {
   std::vector<TextTable> tables;
   std::vector<Measure> measures;  ///< names and order do not depend on what was played
-  /// One flat object per leg, rollout or run, all with the same keys.
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  /// One flat object per leg, rollout or run, all with the same keys. Who makes or copies Findings
+  /// includes nlohmann/json.hpp.
+  std::vector<nlohmann::ordered_json> rows;
   double simulated_seconds{0.0};
 };
 

@@ -9,8 +9,8 @@
 
 #include "hires/base/check.h"
 #include "hires/base/error.h"
+#include "knowledge/query/query_engine.h"
 #include "knowledge/store/store_error.h"
-#include "knowledge/store/store_query.h"
 #include "knowledge/store/store_reader.h"
 #include "knowledge/store/store_writer.h"
 
@@ -33,7 +33,7 @@ struct Store::Implementation {
         parts(&file),
         writer(&parts, ontology),
         reader(&parts),
-        statements(&file) {
+        queries(&parts, ontology) {
     last = static_cast<std::uint64_t>(reader.LastSequence());
   }
 
@@ -79,7 +79,7 @@ struct Store::Implementation {
   StoreParts parts;
   StoreWriter writer;
   StoreReader reader;
-  QueryStatements statements;
+  QueryEngine queries;
   std::uint64_t last{0};
 };
 
@@ -110,11 +110,7 @@ std::vector<Change> Store::Remove(const std::vector<std::string>& instances, con
 
 FluentPage Store::Query(const FluentQuery& query) const {
   Implementation& self = *implementation_;
-  return self.Read([&] {
-    return QueryRun(query, self.reader.LastSequence(), *self.ontology, &self.parts,
-                    &self.statements)
-        .Page();
-  });
+  return self.Read([&] { return self.queries.Page(query, self.reader.LastSequence()); });
 }
 
 std::optional<Fluent> Store::Find(const std::string& instance) const {

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "knowledge/store/store_error.h"
-#include "knowledge/store/store_query.h"
 
 namespace hires::knowledge {
 namespace {

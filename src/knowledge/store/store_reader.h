@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hires/knowledge/store.h"
-#include "knowledge/store/store_writer.h"
+#include "knowledge/store/store_parts.h"
 
 namespace hires::knowledge {
 

@@ -8,27 +8,9 @@
 #include <vector>
 
 #include "hires/knowledge/store.h"
-#include "knowledge/store/store_episodes.h"
-#include "knowledge/store/store_names.h"
-#include "knowledge/store/store_validity.h"
+#include "knowledge/store/store_parts.h"
 
 namespace hires::knowledge {
-
-/// What every part of a store works on.
-struct StoreParts {
-  explicit StoreParts(StoreFile* opened)
-      : file(opened),
-        words(&opened->database(), opened->read_only()),
-        instances(opened),
-        validities(opened),
-        episodes(opened) {}
-
-  StoreFile* file;
-  Words words;
-  Instances instances;
-  Validities validities;
-  Episodes episodes;
-};
 
 /// Writes fluents. Every call is part of a transaction that its caller opens, and undoes if one of
 /// them throws.

@@ -48,7 +48,7 @@ void SetPredictions(const hires::ImagineResult& result, hires::ImaginationStatus
 
 }  // namespace
 
-ImaginationDesk::ImaginationDesk(const execution::ImaginingParams& imagining,
+ImagineRequests::ImagineRequests(const execution::ImaginingParams& imagining,
                                  const ActionLinkParams& params, ros::NodeHandle* nh, Post post,
                                  OnAnswer on_answer)
     : imagining_(imagining),
@@ -60,9 +60,9 @@ ImaginationDesk::ImaginationDesk(const execution::ImaginingParams& imagining,
                    const std::string& why) { OnEnd(key, result, why); }),
       translator_state_(std::make_shared<TranslatorState>()) {}
 
-ImaginationDesk::~ImaginationDesk() { translator_state_->is_ending = true; }
+ImagineRequests::~ImagineRequests() { translator_state_->is_ending = true; }
 
-void ImaginationDesk::Start(const execution::StartImagination& command, double now) {
+void ImagineRequests::Start(const execution::StartImagination& command, double now) {
   const int key = next_key_++;
   Request& request = requests_[key];
   request.command = command;
@@ -72,7 +72,7 @@ void ImaginationDesk::Start(const execution::StartImagination& command, double n
 }
 
 /// The translator may be away for a moment; its thread waits for it, nobody else does.
-void ImaginationDesk::Translate(int key, const execution::StartImagination& command) {
+void ImagineRequests::Translate(int key, const execution::StartImagination& command) {
   hires::GenerateImagineState call;
   call.request.is_whole_state = true;
   for (const auto& atom : command.state) call.request.updated_fluents.push_back(ToMsg(atom));
@@ -89,7 +89,7 @@ void ImaginationDesk::Translate(int key, const execution::StartImagination& comm
   });
 }
 
-void ImaginationDesk::OnTranslated(int key, bool is_answered, const State& state) {
+void ImagineRequests::OnTranslated(int key, bool is_answered, const State& state) {
   const auto found = requests_.find(key);
   if (found == requests_.end() || found->second.is_translated) return;
   if (!is_answered) return Refuse(key, Outcome::kUnavailable, "the translator does not answer");
@@ -102,25 +102,25 @@ void ImaginationDesk::OnTranslated(int key, bool is_answered, const State& state
   link_.Send(key, std::move(goal));
 }
 
-void ImaginationDesk::Move(const execution::MoveDeadline& command) {
+void ImagineRequests::Move(const execution::MoveDeadline& command) {
   const auto found = requests_.find(KeyOf(command.request));
   if (found == requests_.end()) return;  // answered just now
   found->second.command.deadline = command.deadline;
   found->second.status.deadline = command.deadline;
 }
 
-void ImaginationDesk::Cancel(const execution::CancelImagination& command, double now) {
+void ImagineRequests::Cancel(const execution::CancelImagination& command, double now) {
   const int key = KeyOf(command.request);
   if (key == kNone) return;
   Finish(key, "cancelled", now);
   link_.Cancel(key);
 }
 
-void ImaginationDesk::CancelAll(double now) {
+void ImagineRequests::CancelAll(double now) {
   while (!requests_.empty()) Cancel({requests_.begin()->second.command.request}, now);
 }
 
-void ImaginationDesk::Tick(double now) {
+void ImagineRequests::Tick(double now) {
   link_.Tick();
   for (const int key : Overdue(now)) {
     Request& request = requests_.at(key);
@@ -138,7 +138,7 @@ void ImaginationDesk::Tick(double now) {
 }
 
 /// Those that the translator should have answered long ago.
-std::vector<int> ImaginationDesk::Stuck() const {
+std::vector<int> ImagineRequests::Stuck() const {
   const double latest = hires::base::SteadyNow() - kTranslationLimit * params_.server_wait;
   std::vector<int> keys;
   for (const auto& [key, request] : requests_) {
@@ -147,7 +147,7 @@ std::vector<int> ImaginationDesk::Stuck() const {
   return keys;
 }
 
-std::vector<int> ImaginationDesk::Overdue(double now) const {
+std::vector<int> ImagineRequests::Overdue(double now) const {
   std::vector<int> keys;
   for (const auto& [key, request] : requests_) {
     if (!request.is_late && now >= request.command.deadline) keys.push_back(key);
@@ -155,7 +155,7 @@ std::vector<int> ImaginationDesk::Overdue(double now) const {
   return keys;
 }
 
-void ImaginationDesk::OnEnd(int key, const hires::ImagineResultConstPtr& result,
+void ImagineRequests::OnEnd(int key, const hires::ImagineResultConstPtr& result,
                             const std::string& why) {
   const auto found = requests_.find(key);
   if (found == requests_.end()) return;
@@ -168,7 +168,7 @@ void ImaginationDesk::OnEnd(int key, const hires::ImagineResultConstPtr& result,
                        {request.is_late, request.command.min_success}));
 }
 
-void ImaginationDesk::Refuse(int key, Outcome outcome, const std::string& why) {
+void ImagineRequests::Refuse(int key, Outcome outcome, const std::string& why) {
   execution::ImagineAnswered answer;
   answer.request = requests_.at(key).command.request;
   answer.outcome = outcome;
@@ -176,14 +176,14 @@ void ImaginationDesk::Refuse(int key, Outcome outcome, const std::string& why) {
   Answer(key, answer);
 }
 
-void ImaginationDesk::Answer(int key, const execution::ImagineAnswered& answer) {
+void ImagineRequests::Answer(int key, const execution::ImagineAnswered& answer) {
   hires::ImaginationStatus& status = requests_.at(key).status;
   if (status.why.empty()) status.why = answer.why;
   Finish(key, OutcomeName(answer.outcome), ros::Time::now().toSec());
   on_answer_(answer);
 }
 
-void ImaginationDesk::Finish(int key, const std::string& outcome, double now) {
+void ImagineRequests::Finish(int key, const std::string& outcome, double now) {
   hires::ImaginationStatus status = std::move(requests_.at(key).status);
   requests_.erase(key);
   status.answered = now;
@@ -191,7 +191,7 @@ void ImaginationDesk::Finish(int key, const std::string& outcome, double now) {
   finished_[key] = std::move(status);
 }
 
-std::vector<hires::ImaginationStatus> ImaginationDesk::Statuses() const {
+std::vector<hires::ImaginationStatus> ImagineRequests::Statuses() const {
   std::map<int, hires::ImaginationStatus> all = finished_;
   for (const auto& [key, request] : requests_) all[key] = request.status;
   std::vector<hires::ImaginationStatus> statuses;
@@ -199,7 +199,7 @@ std::vector<hires::ImaginationStatus> ImaginationDesk::Statuses() const {
   return statuses;
 }
 
-int ImaginationDesk::KeyOf(int request) const {
+int ImagineRequests::KeyOf(int request) const {
   for (const auto& [key, value] : requests_) {
     if (value.command.request == request) return key;
   }

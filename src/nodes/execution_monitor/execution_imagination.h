@@ -18,19 +18,19 @@
 
 namespace hires_ros {
 
-/// Has steps imagined for the execution monitor: the translator turns the projected state into
-/// poses, the imagination client plays. Deadlines are kept here, because they move: when one has
-/// passed, the request is ended and what was found until then counts. Belongs to the monitor's
-/// thread.
-class ImaginationDesk {
+/// The requests by which the execution monitor has steps imagined: the translator turns the
+/// projected state into poses, the imagination client plays. Deadlines are kept here, because they
+/// move: when one has passed, the request is ended and what was found until then counts. Belongs to
+/// the monitor's thread.
+class ImagineRequests {
  public:
   using Post = std::function<void(std::function<void()>)>;  ///< to the monitor's thread
   using OnAnswer = std::function<void(const hires::execution::ImagineAnswered&)>;
 
-  ImaginationDesk(const hires::execution::ImaginingParams& imagining,
+  ImagineRequests(const hires::execution::ImaginingParams& imagining,
                   const ActionLinkParams& params, ros::NodeHandle* nh, Post post,
                   OnAnswer on_answer);
-  ~ImaginationDesk();
+  ~ImagineRequests();
 
   // Times are main ROS time [s].
   void Start(const hires::execution::StartImagination& command, double now);

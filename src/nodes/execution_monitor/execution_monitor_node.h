@@ -146,7 +146,7 @@ class ExecutionMonitorNode {
 
   RecordWriter records_;
   PlanningDesk planning_;
-  ImaginationDesk imagination_;
+  ImagineRequests imagination_;
   ActionLink<hires::ExecuteActionAction> steps_;
   RemoteView view_;
   hires::base::WorkThread catcher_;  // asks the Blackboard, which may take its time

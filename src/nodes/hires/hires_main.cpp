@@ -5,12 +5,14 @@
 
 #include "hires/cli/command_line.h"
 #include "hires/cli/hypothesis_play.h"
+#include "hires/cli/robot_doctor.h"
 #include "nodes/hires/hypothesis_run.h"
+#include "nodes/hires/message_types.h"
 #include "nodes/hires/remote_achieve.h"
 #include "nodes/hires/remote_blackboard.h"
 #include "nodes/hires/remote_imagination.h"
 #include "nodes/hires/replay.h"
-#include "nodes/hires/robot_doctor.h"
+#include "nodes/hires/robot_doctor_look.h"
 #include "nodes/hires/ros_doctor.h"
 
 int main(int argc, char** argv) {
@@ -23,7 +25,8 @@ int main(int argc, char** argv) {
   backends.connect_blackboard = hires_ros::ConnectBlackboard;
   backends.play_hypothesis = hires::cli::PlayHypothesisRun;
   backends.examine_robot = [&](const hires::cli::RobotDoctorOptions& options) {
-    return hires_ros::ExamineRobot(options, backends.package_folder);
+    return hires::cli::RunRobotDoctor(options, backends.package_folder,
+                                      hires_ros::MessageTypesOfRobot(), hires_ros::LookAtRobot);
   };
   backends.more_verbs.push_back(
       {hires::cli::kHypothesisRunVerb, "one run of `hires experiment hypothesis`, which starts it",

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iostream>
 #include <mutex>
+#include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
 #include "hires/base/process.h"

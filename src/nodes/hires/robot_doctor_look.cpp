@@ -17,14 +17,22 @@
 
 #include "hires/base/error.h"
 #include "hires/base/process.h"
+#include "hires/cli/robot_doctor_network.h"
 #include "hires/ros/xmlrpc_master_api.h"
 #include "hires/sensing/frame_tree.h"
-#include "nodes/hires/robot_doctor_network.h"
+#include "nodes/hires/data_port.h"
 
 namespace hires_ros {
 namespace {
 
 using hires::base::ConfigError;
+using hires::cli::Absolute;
+using hires::cli::RobotNeeds;
+using hires::cli::RobotView;
+using hires::cli::SeenFrame;
+using hires::cli::SeenMessages;
+using hires::cli::SeenTopic;
+using hires::cli::WantedTopic;
 using hires::relay::Endpoint;
 using topic_tools::ShapeShifter;
 using Event = ros::MessageEvent<ShapeShifter const>;
@@ -239,12 +247,6 @@ std::optional<bool> IsHeard(const RobotView& view) {
   return ros::TopicManager::instance()->getNumSubscribers("/rosout") > 0;
 }
 
-std::vector<WantedTopic> AllWanted(const hires::control::RobotNames& names) {
-  std::vector<WantedTopic> wanted = TopicsOf(names);
-  wanted.push_back(MapOf(names));
-  return wanted;
-}
-
 void ReadMaster(const hires::control::RobotNames& names, MasterQuestions* master, RobotView* view) {
   ReadGraph(master, view);
   ReadTypes(master, view);
@@ -254,14 +256,13 @@ void ReadMaster(const hires::control::RobotNames& names, MasterQuestions* master
   view->this_host = NamesOfThisHost();
   view->own_host = ros::network::getHost();
   const std::string& host = master->endpoint().host;
-  view->addresses[host] = AddressesOf(host);
-  view->own_address = OwnAddressTowards(master->endpoint());
+  view->addresses[host] = hires::cli::AddressesOf(host);
+  view->own_address = hires::cli::OwnAddressTowards(master->endpoint());
 }
 
 }  // namespace
 
-RobotView LookAtRobot(const hires::cli::RobotDoctorOptions& options,
-                      const hires::control::RobotNames& names) {
+RobotView LookAtRobot(double seconds, const RobotNeeds& needs) {
   QuietXmlRpc();
   int no_arguments = 0;
   ros::init(no_arguments, nullptr, "hires_doctor",
@@ -269,20 +270,23 @@ RobotView LookAtRobot(const hires::cli::RobotDoctorOptions& options,
   MasterQuestions master(ros::master::getURI());
   RobotView view;
   view.master_uri = ros::master::getURI();
-  view.seconds = options.seconds;
-  ReadMaster(names, &master, &view);
-  const std::vector<WantedTopic> wanted = AllWanted(names);
+  view.seconds = seconds;
+  ReadMaster(needs.names, &master, &view);
+  const std::vector<WantedTopic> wanted = needs.all_topics();
   ros::start();
-  auto network =
-      std::async(std::launch::async, AskNetwork, kName, master.endpoint(), view, std::cref(wanted));
-  TopicListeners listeners(names, wanted, &view);
-  const double end = hires::base::SteadyNow() + options.seconds;
+  const auto ask_data_port = [](const Endpoint& node, const std::string& topic, double timeout) {
+    return AskDataPort(node, topic, kName, timeout);
+  };
+  auto network = std::async(std::launch::async, hires::cli::AskNetwork, ask_data_port,
+                            master.endpoint(), view, std::cref(wanted));
+  TopicListeners listeners(needs.names, wanted, &view);
+  const double end = hires::base::SteadyNow() + seconds;
   while (hires::base::SteadyNow() < end ||
          network.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(kSlice));
   }
   listeners.Finish();
-  TakeAnswers(network.get(), &view);
+  hires::cli::TakeAnswers(network.get(), &view);
   view.is_heard = IsHeard(view);
   return view;
 }

@@ -1,13 +1,12 @@
 #pragma once
 
-#include "hires/cli/doctor.h"
-#include "nodes/hires/robot_doctor_view.h"
+#include "hires/cli/robot_needs.h"
+#include "hires/cli/robot_view.h"
 
 namespace hires_ros {
 
-/// Listens for options.seconds.
+/// Listens for `seconds`.
 /// @throws hires::base::ConfigError if no master answers.
-RobotView LookAtRobot(const hires::cli::RobotDoctorOptions& options,
-                      const hires::control::RobotNames& names);
+hires::cli::RobotView LookAtRobot(double seconds, const hires::cli::RobotNeeds& needs);
 
 }  // namespace hires_ros

@@ -18,9 +18,9 @@
 #include "hires/base/error.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
+#include "hires/cli/network_probe.h"
 #include "hires/relay/worker_host_params.h"
 #include "hires/ros/xmlrpc_master_api.h"
-#include "nodes/hires/doctor_probe.h"
 
 namespace hires_ros {
 namespace {
@@ -198,13 +198,6 @@ Finding ExamineSpace() {
 
 }  // namespace
 
-std::string FindingText(const Finding& finding) {
-  static constexpr std::array<const char*, 4> kHeads{"ok", "note", "warn", "FAILED"};
-  const std::vector<std::string> lines = hires::base::Split(finding.text, '\n');
-  return fmt::format("{:<8}{}\n", kHeads[static_cast<std::size_t>(finding.level)],
-                     hires::base::Join(lines, "\n          "));
-}
-
 std::vector<Finding> JudgeNames(const NameSettings& settings, const ResolveHost& resolve,
                                 const HostNames& this_host) {
   std::vector<Finding> findings;
@@ -327,7 +320,7 @@ std::vector<Finding> ExamineRos() {
   const auto append = [&](const std::vector<Finding>& more) {
     findings.insert(findings.end(), more.begin(), more.end());
   };
-  append(JudgeNames(settings, AddressesOf, NamesOfThisHost()));
+  append(JudgeNames(settings, hires::cli::AddressesOf, NamesOfThisHost()));
   append(ExaminePorts());
   append(ExaminePrograms());
   const int nice = hires::relay::WorkerHostParams().nice;
@@ -342,7 +335,7 @@ bool CheckRos() {
   } catch (const ConfigError& error) {
     findings = {{FindingLevel::kFailed, error.what()}};
   }
-  for (const Finding& finding : findings) std::cout << FindingText(finding);
+  for (const Finding& finding : findings) std::cout << hires::cli::FindingText(finding);
   std::cout << std::flush;
   return std::none_of(findings.begin(), findings.end(), [](const Finding& finding) {
     return finding.level == FindingLevel::kFailed;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/cli/finding.h"
 #include "hires/relay/listening_sockets.h"
 #include "hires/relay/uri.h"
 
@@ -14,20 +15,8 @@
 /// handed in as values, so that every judgement can be tested.
 namespace hires_ros {
 
-enum class FindingLevel {
-  kOk,
-  kNote,     ///< worth knowing, nothing to do
-  kWarning,  ///< works, but a person should look at it
-  kFailed    ///< does not work before it is mended
-};
-
-struct Finding {
-  FindingLevel level{FindingLevel::kOk};
-  std::string text;  ///< what is, and what to do; further lines are indented when printed
-};
-
-/// "ok      ...", "note    ...", "warn    ...", "FAILED  ...".
-std::string FindingText(const Finding& finding);
+using hires::cli::Finding;
+using hires::cli::FindingLevel;
 
 /// How the nodes of this computer call themselves.
 struct NameSettings {

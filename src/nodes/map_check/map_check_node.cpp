@@ -11,7 +11,7 @@
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/imagination/imagination_setup.h"
-#include "hires/robot/robot_profile.h"
+#include "hires/robot/load_robot.h"
 #include "hires/ros/load_robot_names.h"
 #include "hires/ros/private_params.h"
 #include "hires/world/world.h"
@@ -29,10 +29,6 @@ constexpr double kPatience = 5.0;               // [s] for a latched map, before
 Cell CellOf(int value) {
   if (value > kOccupied) return Cell::kOccupied;
   return value >= 0 && value < kFree ? Cell::kFree : Cell::kUnknown;
-}
-
-bool IsUrdf(const std::string& path) {
-  return path.size() > 5 && path.substr(path.size() - 5) == ".urdf";
 }
 
 void RequireSound(const nav_msgs::OccupancyGrid& map) {
@@ -82,8 +78,7 @@ OccupancyGrid FromMsg(const nav_msgs::OccupancyGrid& map) {
 }
 
 double LaserHeight(const std::string& robot_path) {
-  const hires::robot::Robot robot = IsUrdf(robot_path) ? hires::robot::LoadRobotFromUrdf(robot_path)
-                                                       : hires::robot::LoadRobot(robot_path);
+  const hires::robot::Robot robot = hires::robot::LoadAnyRobot(robot_path);
   const auto laser = robot.model.FindLink(robot.profile.laser_link);
   const auto base = robot.model.FindLink(robot.profile.base_link);
   if (robot.profile.laser_link.empty() || !laser || !base) {

@@ -8,6 +8,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/scenario.h"
+#include "hires/simulation/free_start.h"
 
 namespace hires_ros {
 namespace {
@@ -58,19 +59,6 @@ StartState StartOfScenario(const ImaginationSetup& setup, const std::string& pat
   return start;
 }
 
-/// A start that collides cannot be one where the robot stands: its offset is drawn in.
-hires::simulation::Variation WithFreeStart(hires::simulation::Variation variation,
-                                           const hires::simulation::Scene& scene,
-                                           const Pose2& X_MB) {
-  Pose2& offset = variation.start_offset;
-  for (int halving = 0; halving < 8; ++halving) {
-    if (!scene.clearance.FindContact(X_MB * offset)) return variation;
-    offset = {offset.x / 2, offset.y / 2, offset.yaw / 2};
-  }
-  offset = {};
-  return variation;
-}
-
 long StepsPerMillisecond(double time_step) {
   const double steps = 0.001 / time_step;
   if (std::abs(steps - std::round(steps)) < 1e-6 && steps > 0.5) return std::lround(steps);
@@ -99,9 +87,9 @@ SimRobotWorld::SimRobotWorld(const ImaginationSetup& setup, const StartState& st
       simulator_rng_(hires::base::Rng(seed).Fork(kSimulator)),
       steps_per_millisecond_(StepsPerMillisecond(setup.physics.time_step)) {
   const hires::base::Rng rng(seed);
-  variation_ =
-      WithFreeStart(hires::imagination::SampleVariation(*setup.uncertainty, rng.Fork(kVariation)),
-                    *setup.scene, start.robot.X_MB);
+  variation_ = hires::simulation::WithFreeStart(
+      hires::imagination::SampleVariation(*setup.uncertainty, rng.Fork(kVariation)), *setup.scene,
+      start.robot);
   odometry_scale_ = 1.0 + rng.Fork(kOdometer).Normal(0.0, variation_.wheel_slip);
   simulator_ =
       std::make_unique<RobotSimulator>(setup.scene, variation_, start.world, start.robot,

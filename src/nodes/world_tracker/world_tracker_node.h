@@ -18,7 +18,6 @@
 
 #include "hires/ros/sensor_receiver.h"
 #include "nodes/world_tracker/world_tracker_params.h"
-#include "nodes/world_tracker/world_tracker_sweep.h"
 #include "nodes/world_tracker/world_tracker_writer.h"
 
 namespace hires_ros {
@@ -53,7 +52,7 @@ class WorldTrackerNode {
   const WorldTrackerParams params_;
   const hires::translation::TranslatorContext context_;
   SensorReceiver sensors_;
-  HeadSweep sweep_;
+  hires::control::HeadSweep sweep_;
   std::map<std::string, std::string> running_;  // goal id -> action
   double time_{-1e9};                           // [s] of the last moment
   double published_{-1e9};                      // [s] when known objects were told last

@@ -34,17 +34,6 @@ hires::translation::ChangeParams ReadChanges(ParamReader in) {
   return params;
 }
 
-SweepParams ReadSweep(ParamReader in) {
-  SweepParams params;
-  params.enabled = in.GetBool("enabled");
-  params.range = in.Get("range", Between(0.5, 30.0));
-  params.period = in.Get("period", Between(0.1, 3600.0));
-  params.dwell = in.Get("dwell", Between(0.0, 60.0));
-  params.speed = in.Get("speed", Between(0.05, 10.0));
-  params.hands_off = in.Get("hands_off", Between(0.0, 60.0));
-  return params;
-}
-
 std::map<std::string, std::string> ReadConcepts(ParamReader in) {
   std::map<std::string, std::string> concepts;
   for (const std::string& model : in.Keys()) {
@@ -63,7 +52,7 @@ WorldTrackerParams ReadWorldTrackerParams(const std::string& path) {
   params.classify = ReadClassify(in.Sub("classify"));
   params.changes = ReadChanges(in.Sub("changes"));
   params.concepts = ReadConcepts(in.Sub("concepts"));
-  params.sweep = ReadSweep(in.Sub("sweep"));
+  params.sweep = hires::control::ReadSweepParams(in.Sub("sweep"));
   params.write_period = in.Get("write_period", Between(0.0, 10.0));
   params.lockstep = in.GetBool("lockstep");
   in.RejectUnknownKeys();

@@ -1,5 +1,7 @@
 #include "hires/planning/plan_json.h"
 
+#include <nlohmann/json.hpp>
+
 #include "hires/planning/plan_order.h"
 
 namespace hires::planning {

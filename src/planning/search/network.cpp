@@ -1,6 +1,6 @@
 #include "planning/search/network.h"
 
-#include "planning/search/mix.h"
+#include "planning/proof/mix.h"
 
 namespace hires::planning {
 namespace {

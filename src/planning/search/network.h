@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "hires/planning/term.h"
-#include "planning/search/program.h"
+#include "planning/proof/program.h"
 
 namespace hires::planning {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "planning/search/program.h"
+#include "planning/proof/program.h"
 #include "planning/search/search.h"
 
 namespace hires::planning {

@@ -21,10 +21,11 @@ Search::Search(const Program& program, TermTable* terms, const PlanRequest& requ
       request_(request),
       left_recursion_(left_recursion),
       bindings_(terms),
+      instances_(terms, &bindings_),
       state_(terms),
       network_(terms),
       protections_(terms),
-      prover_(program, terms, &bindings_, &state_),
+      prover_(program, terms, &bindings_, &instances_, &state_),
       root_methods_{&program.root()},
       protection_word_(terms->Symbol(":protection")),
       failure_word_(terms->Symbol("imagined_failure")) {
@@ -178,8 +179,9 @@ bool Search::IsLeftRecursion(std::uint32_t node, Term task) const {
 // --- questions and messages ---
 
 std::size_t Search::bytes() const {
-  return terms_.bytes() + bindings_.bytes() + state_.bytes() + network_.bytes() + visited_.bytes() +
-         prover_.bytes() + frames_.capacity() * sizeof(Frame) + steps_.capacity() * sizeof(Step) +
+  return terms_.bytes() + bindings_.bytes() + instances_.bytes() + state_.bytes() +
+         network_.bytes() + visited_.bytes() + prover_.bytes() +
+         frames_.capacity() * sizeof(Frame) + steps_.capacity() * sizeof(Step) +
          decompositions_.capacity() * sizeof(Decomposition);
 }
 

@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "hires/planning/planner.h"
-#include "planning/search/bindings.h"
+#include "planning/proof/bindings.h"
+#include "planning/proof/instantiator.h"
+#include "planning/proof/program.h"
+#include "planning/proof/prover.h"
+#include "planning/proof/state.h"
 #include "planning/search/network.h"
-#include "planning/search/program.h"
 #include "planning/search/protections.h"
-#include "planning/search/prover.h"
-#include "planning/search/state.h"
 #include "planning/search/visited.h"
 
 namespace hires::planning {
@@ -96,7 +97,6 @@ class Search {
   bool Reduce(Frame* frame);
   bool HasMore(const Frame& frame) const;
   std::uint32_t NextFitting(const Frame& frame, std::uint32_t from) const;
-  bool CouldMatch(const Pattern& pattern, Term term) const;
   void BuildTasks(const Frame& frame);
   void BuildTasks(const CompiledNetwork& network, std::uint32_t variables);
   bool WasHere();
@@ -145,6 +145,7 @@ class Search {
   const bool left_recursion_;
   bool gave_up_recursion_{false};
   Bindings bindings_;
+  Instantiator instances_;
   State state_;
   Network network_;
   Protections protections_;

@@ -1,7 +1,7 @@
 // Decomposing tasks: methods, their branches, bindings and reductions.
 #include <algorithm>
 
-#include "planning/search/mix.h"
+#include "planning/proof/mix.h"
 #include "planning/search/search.h"
 
 namespace hires::planning {
@@ -17,24 +17,11 @@ bool Search::PushMethodFrame(std::uint32_t node,
   return NextWay(&frame);
 }
 
-/// Whether a head might match, without binding anything: constants and shapes agree.
-bool Search::CouldMatch(const Pattern& pattern, Term term) const {
-  term = bindings_.Deref(term);
-  if (term.IsVariable()) return true;
-  switch (pattern.kind) {
-    case Pattern::Kind::kConstant:
-      return pattern.constant == term || !terms_.IsGround(term);
-    case Pattern::Kind::kPair:
-      return term.IsPair() && CouldMatch(*pattern.head, terms_.head(term)) &&
-             CouldMatch(*pattern.tail, terms_.tail(term));
-    default:
-      return true;
-  }
-}
-
 std::uint32_t Search::NextFitting(const Frame& frame, std::uint32_t from) const {
   const Term task = network_.node(frame.node).task;
-  while (from < frame.methods->size() && !CouldMatch(*(*frame.methods)[from]->head, task)) ++from;
+  while (from < frame.methods->size() &&
+         !instances_.CouldMatch(*(*frame.methods)[from]->head, task))
+    ++from;
   return from;
 }
 
@@ -92,7 +79,7 @@ bool Search::EnterMethod(Frame* frame) {
   frame->branch = static_cast<std::uint32_t>(method.branches.size());  // as if all had been tried
   frame->variables = bindings_.Make(method.num_slots);
   const Term task = bindings_.Resolve(network_.node(frame->node).task);
-  if (!prover_.Match(*method.head, frame->variables, task)) {
+  if (!instances_.Match(*method.head, frame->variables, task)) {
     if (tracing()) Note(task, Where(method, 0), "the head does not match the task");
     return false;
   }
@@ -161,7 +148,8 @@ bool Search::GatherSorted(Frame* frame, const CompiledPrecondition& precondition
   prover_.HoldPairs(true);
   bool found = prover_.Solve(precondition.goals, frame->variables, false);
   for (; found; found = prover_.num_choices() > floor && prover_.Next(floor)) {
-    entries.push_back({prover_.Evaluate(*precondition.sort_key, frame->variables), values.size()});
+    entries.push_back(
+        {instances_.Evaluate(*precondition.sort_key, frame->variables), values.size()});
     for (std::uint32_t i = 0; i < slots; ++i) {
       values.push_back(bindings_.Resolve(Term(Term::Kind::kVariable, frame->variables + i)));
     }
@@ -216,7 +204,7 @@ void Search::BuildTasks(const CompiledNetwork& network, std::uint32_t variables)
     if (item.network != nullptr) {
       BuildTasks(*item.network, variables);
     } else {
-      tasks_.push_back(prover_.Build(*item.task, variables));
+      tasks_.push_back(instances_.Build(*item.task, variables));
     }
   }
 }

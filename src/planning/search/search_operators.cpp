@@ -18,7 +18,7 @@ bool Search::Apply(std::uint32_t node) {
                                         program_.domain().name));
   }
   const std::uint32_t variables = bindings_.Make(applied->num_slots);
-  if (!prover_.Match(*applied->head, variables, task)) {
+  if (!instances_.Match(*applied->head, variables, task)) {
     if (tracing()) Note(task, Where(*applied), "the head does not match the step");
     return false;
   }
@@ -90,7 +90,7 @@ bool Search::IsExcluded(Term task) const {
 
 double Search::CostOf(const CompiledOperator& applied, std::uint32_t variables) {
   if (applied.cost == nullptr) return applied.fixed_cost;
-  const Term value = prover_.Evaluate(*applied.cost, variables);
+  const Term value = instances_.Evaluate(*applied.cost, variables);
   const double cost = value.IsNumber() ? terms_.number(value) : 1.0;
   if (cost < 0.0 && request_.which == Which::kBest) {
     throw base::ConfigError(fmt::format(
@@ -117,14 +117,14 @@ void Search::Collect(const std::vector<CompiledEffect>& effects, std::uint32_t v
         CollectForAll(effect, variables, atoms);
         break;
       case Effect::Kind::kAtom:
-        atoms->push_back(prover_.Build(*effect.pattern, variables));
+        atoms->push_back(instances_.Build(*effect.pattern, variables));
         break;
       case Effect::Kind::kProtection:
         atoms->push_back(terms_.Pair(
-            protection_word_, terms_.Pair(prover_.Build(*effect.pattern, variables), Term())));
+            protection_word_, terms_.Pair(instances_.Build(*effect.pattern, variables), Term())));
         break;
       case Effect::Kind::kList: {
-        Term list = prover_.Build(*effect.pattern, variables);
+        Term list = instances_.Build(*effect.pattern, variables);
         if (list.IsPair() && terms_.head(list).kind() == Term::Kind::kSymbol) {  // an atom alone
           atoms->push_back(list);
           break;

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "planning/search/mix.h"
+#include "planning/proof/mix.h"
 #include "planning/search/search.h"
 
 namespace hires::planning {

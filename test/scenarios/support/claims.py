@@ -1,11 +1,12 @@
-"""Whether what the monitor claims is so: its words against the truth of the same moment."""
+"""Whether what the monitor claims is so: failures of steps against the truth of the same moment."""
 
 import re
 
+from hires.msg import Failure, StepStatus
+
+from failures import text_of
 from restaurant import FRAMES, FURNITURE, is_at, is_over
 
-WORD = re.compile(r'(\w+)\(([^()]*)\): (?:unavailable: )?(\w+)(?:: ([^;]*))?')
-ATOM = re.compile(r'(not )?(\w+)\(([^()]*)\)')
 STANDING = re.compile('manipulationarea|startarea|^home$')
 EDGE = 0.06    # [m] that an object may be off what is seen of it, and that counts as on an area
 PALMS = {'leftarm1': 'l_gripper_palm_link', 'rightarm1': 'r_gripper_palm_link'}
@@ -77,56 +78,74 @@ class Snapshot:
         return None
 
 
-def words_of(text):
-    return [word.strip() for word in text.split(',') if word.strip()]
+def effect_of(step):
+    """(predicate, whether it is to hold) of the effect whose arguments the failure names; None where
+    these are of no kind that truth tells of."""
+    subjects, action = step.failure.subjects, step.action
+    if len(subjects) == 2:
+        is_taken = action.name.startswith('pick')
+        return ('holding', is_taken) if subjects[0] in PALMS else ('on', not is_taken)
+    if len(subjects) == 1 and subjects[0] in TORSO:
+        return 'hastorsoposture', subjects[0] in action.arguments
+    if len(subjects) == 1 and subjects[0] in FRAMES:
+        return 'robotat', subjects[0] in action.arguments
+    return None
 
 
-def judge_atom(text, truth):
-    """Of 'condition_lost' and 'effect_missing': the atom must not hold."""
-    match = ATOM.match(text.strip())
-    is_so = truth.holds(match.group(2), words_of(match.group(3))) if match else None
+def judge_effect(step, truth):
+    """The effect must be missing in truth, too."""
+    effect = effect_of(step)
+    is_so = truth.holds(effect[0], step.failure.subjects) if effect else None
     if is_so is None:
         return OPEN
-    return FALSE if is_so != bool(match.group(1)) else TRUE
+    return FALSE if is_so == effect[1] else TRUE
 
 
-def judge_occupied(arguments, things, truth):
-    area = FRAMES[arguments[-1]]
+def judge_occupied(step, truth):
+    area = FRAMES[step.action.arguments[-1]]
 
     def is_there(name):
         thing = truth.objects.get(name)
         return thing is not None and not thing.attached_to and max(
             abs(thing.pose.position.x - area[0]), abs(thing.pose.position.y - area[1])) < 0.45
-    return TRUE if things and all(is_there(thing) for thing in things) else FALSE
+    return TRUE if step.failure.subjects and all(map(is_there, step.failure.subjects)) else FALSE
 
 
-def judge(action, arguments, reason, detail, truth):
-    """One claim about one step."""
-    thing = next((a for a in arguments if a in truth.stands), None)
-    if reason in ('condition_lost', 'effect_missing'):
-        return judge_atom(detail, truth)
-    if reason == 'area_occupied':
-        return judge_occupied(arguments, words_of(detail), truth)
-    if reason in ('object_slipped', 'grasp_failed') and thing:
+def judge(step, truth):
+    """What the failure of a step says."""
+    code = step.failure.code
+    thing = next((a for a in step.action.arguments if a in truth.stands), None)
+    if code == Failure.EFFECT_MISSING:
+        return judge_effect(step, truth)
+    if code == Failure.AREA_OCCUPIED:
+        return judge_occupied(step, truth)
+    if code in (Failure.OBJECT_SLIPPED, Failure.GRASP_FAILED) and thing:
         return FALSE if truth.holder(thing) else TRUE
-    if reason == 'object_toppled' and thing:
+    if code == Failure.OBJECT_TOPPLED and thing:
         lies = not truth.stands[thing] and not truth.holder(thing)
         return TRUE if lies or truth.falls.get(thing) else FALSE
-    if reason == 'object_not_seen':
+    if code == Failure.OBJECT_NOT_SEEN:
         furniture = sum(FURNITURE.values(), [])
         is_there = thing and (truth.stands_on(thing, furniture) or truth.is_on_tray(thing))
         return FALSE if is_there else TRUE
-    if reason == 'robot_collision':
+    if code == Failure.ROBOT_COLLISION:
         return TRUE if truth.has_collided else FALSE
     return OPEN
 
 
-def judge_warning(text, truth):
-    """[(claim, TRUE, FALSE or OPEN)] of a warning."""
-    match = WORD.match(text)
-    if not match:
-        return []
-    action, arguments, reason, detail = match.groups()
-    verdict = judge(action, words_of(arguments), reason, detail or '', truth)
-    return [('%s(%s): %s%s' % (action, arguments, reason, ': ' + detail if detail else ''),
-             verdict)]
+class Claims:
+    """All that was claimed, each judged when it was said first: [(words for people, verdict)]."""
+
+    def __init__(self):
+        self.verdicts = []
+        self._told = set()
+
+    def note(self, steps, truth):
+        for step in steps:
+            key = step.plan, step.index
+            if step.phase != StepStatus.FAILED or step.failure.code == Failure.NONE or key in self._told:
+                continue
+            self._told.add(key)
+            words = '%s(%s): %s' % (step.action.name, ', '.join(step.action.arguments),
+                                    text_of(step.failure))
+            self.verdicts.append((words, judge(step, truth)))

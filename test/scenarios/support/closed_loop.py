@@ -65,13 +65,13 @@ def link_of(fluent, role):
 class Task:
     """A goal of `achieve` on its way."""
 
-    def __init__(self, client, goal, told, on_warning=None):
+    def __init__(self, client, goal, told, on_feedback=None):
         from actionlib import CommState
         self._states = CommState
         self._changed = threading.Condition()
         self._state = None
         self._told = told
-        self._on_warning = on_warning
+        self._on_feedback = on_feedback
         self.feedback = []
         self._handle = client.send_goal(goal, self._on_transition, self._on_feedback)
 
@@ -81,8 +81,8 @@ class Task:
             self._changed.notify_all()
 
     def _on_feedback(self, _, feedback):
-        for text in feedback.warnings if self._on_warning else ():
-            self._on_warning(text)
+        if self._on_feedback:
+            self._on_feedback(feedback)
         with self._changed:
             self.feedback.append(feedback)
             self._changed.notify_all()
@@ -412,9 +412,9 @@ class ClosedLoop(BlackboardAccess):
         wait_until(is_there, 'the execution monitor, which says: ' +
                    self.nodes['execution_monitor'].output())
 
-    def achieve(self, task, imagination='', on_warning=None):
+    def achieve(self, task, imagination='', on_feedback=None):
         goal = self.msg.AchieveGoal(task=task, imagination=imagination)
-        return Task(self.client, goal, self.output, on_warning)
+        return Task(self.client, goal, self.output, on_feedback)
 
     def intervene(self, service, kind, **fields):
         """The answer of a service of the simulated robot."""

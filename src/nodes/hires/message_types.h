@@ -1,0 +1,10 @@
+#pragma once
+
+#include "hires/cli/robot_needs.h"
+
+namespace hires_ros {
+
+/// As this program was built with them.
+hires::cli::RobotMessageTypes MessageTypesOfRobot();
+
+}  // namespace hires_ros

@@ -1,0 +1,14 @@
+#include "hires/robot/load_robot.h"
+
+#include <filesystem>
+
+#include "hires/base/text.h"
+
+namespace hires::robot {
+
+Robot LoadAnyRobot(const std::string& path) {
+  const std::string ending = base::ToLower(std::filesystem::path(path).extension().string());
+  return ending == ".urdf" ? LoadRobotFromUrdf(path) : LoadRobot(path);
+}
+
+}  // namespace hires::robot
