@@ -492,7 +492,7 @@ FAILURE_TABLE = "src/base/failure.cpp"
 ALSO_MEANS = {
     "imagined_failure": {  # a predicate of the planner
         "src/execution/session.cpp", "src/knowledge/views/state_view_rules.cpp",
-        "src/planning/search/search.cpp", "src/planning/check/step_replay.cpp",
+        "src/planning/search/operator_applier.cpp", "src/planning/check/step_replay.cpp",
         "src/translation/wanted_state.cpp"},
     "motors_halted": {  # a key of a robot's names, a finding of the doctor
         "src/cli/robot/robot_doctor_judge.cpp", "src/control/robot_names.cpp"},

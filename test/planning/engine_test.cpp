@@ -361,6 +361,20 @@ TEST(BindingOrderTest, BindingsThatLeadToTheSameSubtasksAreOne) {
               ElementsAre("(!show a)", "(!show b)"));
 }
 
+TEST(BindingOrderTest, SortByTakesAConditionWithoutVariables) {
+  EXPECT_TRUE(Holds("(:sort-by 1 ((p a)))", "((p a))"));
+  EXPECT_FALSE(Holds("(:sort-by 1 ((p a)))", "()"));
+  EXPECT_THAT(AllPlans("(:operator (!step) (:sort-by 1 ((p))) () ())", "((p))", "((!step))"),
+              ElementsAre("(!step)"));
+}
+
+TEST(BindingOrderTest, SortByGivesAnOperatorTheSmallestKey) {
+  EXPECT_THAT(AllPlans("(:operator (!take ?x) (:sort-by ?n ((size ?x ?n))) () ())"
+                       "(:method (t) () ((!take ?x)))",
+                       "((size a 3) (size b 1) (size c 2))", "((t))"),
+              ElementsAre("(!take b)"));
+}
+
 TEST(BindingOrderTest, SortByPutsTheSmallestKeyFirst) {
   const std::string facts = "((size a 3) (size b 1) (size c 2))";
   EXPECT_THAT(ShowWhere("(:sort-by ?n ((size ?x ?n)))", facts),

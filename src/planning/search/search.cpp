@@ -8,221 +8,141 @@
 #include "hires/base/error.h"
 
 namespace hires::planning {
-namespace {
-
-constexpr std::uint64_t kQuestionEvery = 256;  // expansions
-
-}  // namespace
 
 Search::Search(const Program& program, TermTable* terms, const PlanRequest& request,
                bool left_recursion)
     : program_(program),
-      terms_(*terms),
-      request_(request),
       left_recursion_(left_recursion),
-      bindings_(terms),
-      instances_(terms, &bindings_),
-      state_(terms),
-      network_(terms),
-      protections_(terms),
-      prover_(program, terms, &bindings_, &instances_, &state_),
-      root_methods_{&program.root()},
-      protection_word_(terms->Symbol(":protection")),
-      failure_word_(terms->Symbol("imagined_failure")) {
-  prover_.set_interrupt([this] { return Ask(); });
-  for (const Term fact : program.facts()) state_.Add(fact);
-  for (const Datum& atom : program.problem().protections) protections_.Add(terms->FromDatum(atom));
+      path_(program, terms),
+      limits_(request),
+      trace_(program, &path_, request.max_trace),
+      plans_(request, &path_),
+      decomposer_(program, request.loop_check, &path_, &limits_, &trace_),
+      applier_(program, request, &path_, &limits_, &plans_, &trace_),
+      root_methods_{&program.root()} {
+  path_.prover().set_interrupt([this] { return Ask(); });
 }
 
 PlanResult Search::Run() {
-  bool good = PushMethodFrame(Network::kRoot, root_methods_);
+  bool good = Decompose(Network::kRoot, root_methods_);
   while (good || Backward()) good = Forward();
   PlanResult result;
-  result.outcome = Outcome();
-  result.exhausted = stop_ == Stop::kContinue && !enough_ && !too_deep_ && !too_dear_;
-  result.plans = std::move(plans_);
+  result.outcome = limits_.Outcome(plans_.size() > 0);
+  result.exhausted = limits_.none_reached() && !plans_.enough();
   result.progress = CurrentProgress();
-  result.progress.bytes = std::max(most_bytes_, bytes());
-  result.progress.plans = static_cast<int>(result.plans.size());
-  result.trace.assign(trace_.begin(), trace_.end());
+  result.progress.bytes = std::max(limits_.most_bytes(), result.progress.bytes);
+  result.plans = plans_.Take();
+  result.trace.assign(trace_.entries().begin(), trace_.entries().end());
   return result;
-}
-
-PlanOutcome Search::Outcome() const {
-  switch (stop_) {
-    case Stop::kTime:
-      return PlanOutcome::kLimitTime;
-    case Stop::kMemory:
-      return PlanOutcome::kLimitMemory;
-    case Stop::kCancelled:
-      return PlanOutcome::kCancelled;
-    case Stop::kContinue:
-      break;
-  }
-  if (!plans_.empty()) return PlanOutcome::kFound;
-  if (too_deep_) return PlanOutcome::kLimitDepth;
-  if (too_dear_) return PlanOutcome::kLimitCost;
-  return PlanOutcome::kNoPlan;
-}
-
-// --- forward and backward ---
-
-Search::Moment Search::Now() {
-  return {bindings_.Remember(),
-          prover_.Remember(),
-          state_.Remember(),
-          network_.Remember(),
-          protections_.Remember(),
-          visited_.Remember(),
-          terms_.Mark(),
-          network_.size(),
-          steps_.size(),
-          decompositions_.size(),
-          prover_.num_choices(),
-          depth_,
-          cost_};
-}
-
-void Search::Return(const Moment& moment) {
-  network_.Undo(moment.tasks, moment.nodes);
-  state_.Undo(moment.state);
-  protections_.Undo(moment.protections);
-  visited_.Undo(moment.visited);
-  steps_.resize(moment.num_steps);
-  decompositions_.resize(moment.num_decompositions);
-  depth_ = moment.depth;
-  cost_ = moment.cost;
 }
 
 /// One task further, or a plan. False: this path leads nowhere.
 bool Search::Forward() {
-  if (network_.done()) return FoundPlan();
-  if (depth_ >= request_.max_depth) {
-    too_deep_ = true;
-    Note(Term(), "", fmt::format("depth limit {} reached", request_.max_depth));
+  const Network& network = path_.network();
+  if (network.done()) {
+    if (GoalHolds()) plans_.Offer();
     return false;
   }
-  const std::uint32_t immediate = network_.FirstImmediate();
+  if (limits_.IsTooDeep(path_.depth())) {
+    trace_.Note(Term(), "", fmt::format("depth limit {} reached", path_.depth()));
+    return false;
+  }
+  const std::uint32_t immediate = network.FirstImmediate();
   if (immediate != 1) return Process(immediate);
-  const std::uint32_t ready = network_.FirstReady();
-  if (network_.NextReady(ready) != 0) PushTaskFrame(ready);
+  const std::uint32_t ready = network.FirstReady();
+  if (network.NextReady(ready) != 0) choices_.emplace_back(TaskChoice{path_.Now(), ready});
   return Process(ready);
 }
 
 /// To the last place with another way, and into it.
 bool Search::Backward() {
-  if (enough_ || stop_ != Stop::kContinue) return false;
-  while (!frames_.empty()) {
-    if (ReturnTo(&frames_.back())) return true;
-    if (stop_ != Stop::kContinue) return false;
+  if (plans_.enough()) return false;
+  while (!limits_.stopped() && !choices_.empty()) {
+    if (std::visit([this](auto& choice) { return TryNext(&choice); }, choices_.back())) return true;
   }
   return false;
 }
 
-bool Search::ReturnTo(Frame* frame) {
-  if (!frame->choose_task) return NextWay(frame);
-  Return(frame->moment);
-  bindings_.Undo(frame->moment.bindings);
-  terms_.Release(frame->moment.pairs);
-  const std::uint32_t ready = network_.NextReady(frame->node);
-  frame->node = ready;
-  if (network_.NextReady(ready) == 0) frames_.pop_back();
+bool Search::TryNext(TaskChoice* choice) {
+  path_.ReturnTo(choice->moment);
+  const std::uint32_t ready = path_.network().NextReady(choice->node);
+  choice->node = ready;
+  if (path_.network().NextReady(ready) == 0) choices_.pop_back();
   return Process(ready);
 }
 
-void Search::PushTaskFrame(std::uint32_t node) {
-  Frame& frame = frames_.emplace_back();
-  frame.moment = Now();
-  frame.node = node;
-  frame.choose_task = true;
+bool Search::TryNext(MethodChoice* choice) {
+  const bool good = decomposer_.Next(choice);
+  if (!good || !decomposer_.HasMore(*choice)) choices_.pop_back();
+  return good;
+}
+
+bool Search::Decompose(std::uint32_t node, const std::vector<const CompiledMethod*>& methods) {
+  choices_.emplace_back(decomposer_.Begin(node, methods));
+  return TryNext(&std::get<MethodChoice>(choices_.back()));
 }
 
 bool Search::Process(std::uint32_t node) {
-  if (++expansions_ % kQuestionEvery == 0 && Ask()) return false;
-  const Term task = bindings_.Resolve(network_.node(node).task);
-  const Term name = task.IsPair() ? terms_.head(task) : Term();
+  if (limits_.CountExpansion() && Ask()) return false;
+  const Term task = path_.Task(node);
+  TermTable& terms = path_.terms();
+  const Term name = task.IsPair() ? terms.head(task) : Term();
   if (name.IsNil() || name.kind() != Term::Kind::kSymbol) {
     throw base::ConfigError(
         fmt::format("{}: task {} has no name; a task is a list that begins with one",
-                    program_.domain().source, terms_.ToString(task)));
+                    program_.domain().source, terms.ToString(task)));
   }
-  ++depth_;
-  if (terms_.text(name).front() == '!') return Apply(node);
-  const auto& methods = program_.Methods(name);
+  path_.GoDeeper();
+  if (terms.text(name).front() == '!') return applier_.Apply(node);
+  const auto& methods = MethodsOf(task);
+  return !IsGivenUp(node, task) && Decompose(node, methods);
+}
+
+const std::vector<const CompiledMethod*>& Search::MethodsOf(Term task) {
+  const TermTable& terms = path_.terms();
+  const auto& methods = program_.Methods(terms.head(task));
   if (methods.empty()) {
     throw base::ConfigError(fmt::format("{}: task {} has no method in domain '{}'",
-                                        program_.domain().source, terms_.ToString(task),
+                                        program_.domain().source, terms.ToString(task),
                                         program_.domain().name));
   }
-  if (!left_recursion_ && IsLeftRecursion(node, task)) {
-    gave_up_recursion_ = true;
-    if (tracing()) Note(task, "", "comes up again below itself without a step in between");
+  return methods;
+}
+
+bool Search::IsGivenUp(std::uint32_t node, Term task) {
+  if (left_recursion_ || !path_.IsLeftRecursion(node, task)) return false;
+  gave_up_recursion_ = true;
+  trace_.Note(task, "", "comes up again below itself without a step in between");
+  return true;
+}
+
+/// What the problem asks for besides its tasks.
+bool Search::GoalHolds() {
+  if (program_.goal() == nullptr) return true;
+  Prover& prover = path_.prover();
+  const std::size_t floor = prover.num_choices();
+  const std::uint32_t variables = path_.bindings().Make(program_.goal_slots());
+  if (!prover.Solve(program_.goal(), variables, true)) {
+    trace_.Note(Term(), program_.problem().source, "the problem's goal does not hold in the end");
     return false;
   }
-  return PushMethodFrame(node, methods);
-}
-
-/// Among the decompositions since the last step, one of an ancestor is of the same task.
-bool Search::IsLeftRecursion(std::uint32_t node, Term task) const {
-  for (std::size_t i = decompositions_.size(); i-- > 0;) {
-    const Decomposition& above = decompositions_[i];
-    if (above.num_steps != steps_.size()) return false;
-    if (network_.node(above.node).task != task) continue;
-    for (std::uint32_t parent = network_.node(node).parent; parent != Network::kNone;
-         parent = network_.node(parent).parent) {
-      if (parent == above.node) return true;
-    }
-  }
-  return false;
-}
-
-// --- questions and messages ---
-
-std::size_t Search::bytes() const {
-  return terms_.bytes() + bindings_.bytes() + instances_.bytes() + state_.bytes() +
-         network_.bytes() + visited_.bytes() + prover_.bytes() +
-         frames_.capacity() * sizeof(Frame) + steps_.capacity() * sizeof(Step) +
-         decompositions_.capacity() * sizeof(Decomposition);
+  prover.Cut(floor);
+  return true;
 }
 
 Progress Search::CurrentProgress() const {
   Progress progress;
-  progress.expansions = expansions_;
-  progress.inferences = prover_.inferences();
-  progress.depth = depth_;
-  progress.cost = cost_;
-  progress.bytes = bytes();
+  progress.expansions = limits_.expansions();
+  progress.inferences = path_.prover().inferences();
+  progress.depth = path_.depth();
+  progress.cost = path_.cost();
+  progress.bytes = path_.bytes() + choices_.capacity() * sizeof(Choice);
   progress.plans = static_cast<int>(plans_.size());
-  progress.best_cost = best_cost_;
+  progress.best_cost = plans_.best_cost();
   return progress;
 }
 
 /// True to stop.
-bool Search::Ask() {
-  const Progress progress = CurrentProgress();
-  most_bytes_ = std::max(most_bytes_, progress.bytes);
-  if (request_.stop && stop_ == Stop::kContinue) stop_ = request_.stop(progress);
-  return stop_ != Stop::kContinue;
-}
-
-std::string Search::Where(const CompiledMethod& method, std::uint32_t branch) const {
-  if (method.source == nullptr) return program_.problem().source;
-  const Branch& tried = *method.branches[branch].source;
-  return fmt::format("{}:{}: method {}, branch {}{}", program_.domain().source, tried.place.line,
-                     method.source->head.Head(), branch + 1,
-                     tried.label.empty() ? "" : " '" + tried.label + "'");
-}
-
-std::string Search::Where(const CompiledOperator& applied) const {
-  return fmt::format("{}:{}: operator {}", program_.domain().source, applied.source->place.line,
-                     applied.source->head.Head());
-}
-
-void Search::Note(Term task, const std::string& where, const std::string& reason) {
-  if (!tracing()) return;
-  if (trace_.size() == request_.max_trace) trace_.pop_front();
-  trace_.push_back(
-      {depth_, task.IsNil() ? "" : terms_.ToString(bindings_.Resolve(task)), where, reason});
-}
+bool Search::Ask() { return limits_.Ask(CurrentProgress()); }
 
 }  // namespace hires::planning

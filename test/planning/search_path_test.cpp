@@ -1,0 +1,89 @@
+#include "planning/search/search_path.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "planning/support/path_bench.h"
+
+namespace hires::planning {
+namespace {
+
+using test_support::PathBench;
+
+const char* const kItems =
+    "(:operator (!a) () () ((p)) 2) (:method (t) () ((!a) (t))) (:method (t) () ())";
+
+/// A path on which the root was reduced to (t), and that to (!a) and (t).
+class SearchPathTest : public ::testing::Test {
+ protected:
+  void Decompose(std::uint32_t node, const std::vector<Term>& tasks) {
+    const CompiledMethod& method = *bench_.program.Methods(bench_.terms.Symbol("t")).at(0);
+    path_.Decompose({node, &method, 0, 0, path_.num_steps()}, tasks, -1);
+  }
+  PathBench bench_{kItems, "((q))"};
+  SearchPath& path_{bench_.path};
+};
+
+TEST_F(SearchPathTest, BeginsWithTheFactsOfTheProblem) {
+  EXPECT_TRUE(bench_.Holds("(q)"));
+  EXPECT_FALSE(bench_.Holds("(p)"));
+  EXPECT_EQ(path_.depth(), 0);
+  EXPECT_EQ(path_.num_steps(), 0u);
+}
+
+TEST_F(SearchPathTest, ReturnToTakesBackEverything) {
+  const SearchPath::Moment start = path_.Now();
+  path_.GoDeeper();
+  Decompose(Network::kRoot, {bench_.Term("(!a)"), bench_.Term("(t)")});
+  path_.state().Add(bench_.Term("(p)"));
+  path_.bindings().Make(3);
+  path_.Finish({path_.network().FirstReady(), &bench_.Operator("!a"), 0, 2.0});
+  EXPECT_EQ(path_.cost(), 2.0);
+  EXPECT_EQ(path_.num_steps(), 1u);
+
+  path_.ReturnTo(start);
+  EXPECT_FALSE(bench_.Holds("(p)"));
+  EXPECT_EQ(path_.depth(), 0);
+  EXPECT_EQ(path_.cost(), 0.0);
+  EXPECT_TRUE(path_.steps().empty());
+  EXPECT_TRUE(path_.decompositions().empty());
+  EXPECT_EQ(path_.bindings().size(), 0u);
+  EXPECT_EQ(path_.network().size(), Network::kRoot + 1);
+}
+
+TEST_F(SearchPathTest, UndoStepsKeepsBindings) {
+  const std::uint32_t variable = path_.bindings().Make(1);
+  const SearchPath::Moment moment = path_.Now();
+  path_.bindings().Unify(Instantiator::Variable(variable, 0), bench_.Term("a"));
+  path_.state().Add(bench_.Term("(p)"));
+  path_.UndoSteps(moment);
+  EXPECT_FALSE(bench_.Holds("(p)"));
+  EXPECT_EQ(path_.bindings().Deref(Instantiator::Variable(variable, 0)), bench_.Term("a"));
+}
+
+TEST_F(SearchPathTest, WasHereKnowsTheSameStateAndTasks) {
+  Decompose(Network::kRoot, {bench_.Term("(!a)"), bench_.Term("(t)")});
+  const SearchPath::Moment before = path_.Now();
+  EXPECT_FALSE(path_.WasHere());
+  EXPECT_TRUE(path_.WasHere());
+  path_.state().Add(bench_.Term("(p)"));
+  EXPECT_FALSE(path_.WasHere());
+  path_.ReturnTo(before);
+  EXPECT_FALSE(path_.WasHere());
+}
+
+TEST_F(SearchPathTest, LeftRecursionIsTheSameTaskBelowItselfWithoutAStepBetween) {
+  Decompose(Network::kRoot, {bench_.Term("(t)")});
+  const std::uint32_t above = path_.network().FirstReady();
+  EXPECT_FALSE(path_.IsLeftRecursion(above, bench_.Term("(t)")));
+  Decompose(above, {bench_.Term("(!a)"), bench_.Term("(t)")});
+  const std::uint32_t step = path_.network().FirstReady();
+  EXPECT_TRUE(path_.IsLeftRecursion(step, bench_.Term("(t)")));
+  EXPECT_FALSE(path_.IsLeftRecursion(step, bench_.Term("(u)")));
+  path_.Finish({step, &bench_.Operator("!a"), 0, 0.0});
+  EXPECT_FALSE(path_.IsLeftRecursion(path_.network().FirstReady(), bench_.Term("(t)")));
+}
+
+}  // namespace
+}  // namespace hires::planning
