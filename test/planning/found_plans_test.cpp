@@ -7,7 +7,7 @@
 
 #include "planning/support/path_bench.h"
 
-namespace hires::planning {
+namespace hires::planning::found_plans_test {
 namespace {
 
 using test_support::PathBench;
@@ -80,4 +80,4 @@ TEST_F(FoundPlansTest, ACheaperPlanReplacesTheOneBefore) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::found_plans_test

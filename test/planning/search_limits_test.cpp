@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace hires::planning {
+namespace hires::planning::search_limits_test {
 namespace {
 
 Progress WithBytes(std::size_t bytes) {
@@ -59,4 +59,4 @@ TEST(SearchLimitsTest, TheFirstReasonToStopStays) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::search_limits_test

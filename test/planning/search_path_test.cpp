@@ -6,7 +6,7 @@
 
 #include "planning/support/path_bench.h"
 
-namespace hires::planning {
+namespace hires::planning::search_path_test {
 namespace {
 
 using test_support::PathBench;
@@ -86,4 +86,4 @@ TEST_F(SearchPathTest, LeftRecursionIsTheSameTaskBelowItselfWithoutAStepBetween)
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::search_path_test

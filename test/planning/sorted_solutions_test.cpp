@@ -7,7 +7,7 @@
 
 #include "planning/support/path_bench.h"
 
-namespace hires::planning {
+namespace hires::planning::sorted_solutions_test {
 namespace {
 
 using test_support::PathBench;
@@ -56,4 +56,4 @@ TEST(SortedSolutionsTest, ClearForgetsThem) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::sorted_solutions_test

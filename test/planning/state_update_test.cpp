@@ -9,7 +9,7 @@
 #include "hires/base/error.h"
 #include "planning/support/path_bench.h"
 
-namespace hires::planning {
+namespace hires::planning::state_update_test {
 namespace {
 
 using test_support::PathBench;
@@ -94,4 +94,4 @@ TEST(StepEffectsTest, ForallCollectsOncePerSolutionInTheOrderOfFacts) {
 }
 
 }  // namespace
-}  // namespace hires::planning
+}  // namespace hires::planning::state_update_test
