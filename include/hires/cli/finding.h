@@ -30,4 +30,6 @@ struct RobotFinding {
 };
 using RobotFindings = std::vector<RobotFinding>;
 
+void Append(const RobotFindings& more, RobotFindings* findings);
+
 }  // namespace hires::cli

@@ -15,4 +15,8 @@ std::string FindingText(const Finding& finding) {
                      hires::base::Join(lines, "\n          "));
 }
 
+void Append(const RobotFindings& more, RobotFindings* findings) {
+  findings->insert(findings->end(), more.begin(), more.end());
+}
+
 }  // namespace hires::cli

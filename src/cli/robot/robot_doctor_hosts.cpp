@@ -239,10 +239,6 @@ RobotFindings JudgeAges(const std::string& host, const HostAges& ages) {
            "answers tell the time"}};
 }
 
-void Append(const RobotFindings& more, RobotFindings* findings) {
-  findings->insert(findings->end(), more.begin(), more.end());
-}
-
 }  // namespace
 
 RobotFindings JudgeHosts(const RobotView& view) {

@@ -201,11 +201,6 @@ RobotFindings JudgePlanner(const hires::control::RobotNames& names, const RobotV
   return findings;
 }
 
-void Append(RobotFindings more, RobotFindings* findings) {
-  findings->insert(findings->end(), std::make_move_iterator(more.begin()),
-                   std::make_move_iterator(more.end()));
-}
-
 RobotFindings FindMoveBase(const hires::control::RobotNames& names, const RobotView& view) {
   if (names.move_base.action.empty()) {
     return {{FindingLevel::kFailed, "move_base_missing", "names file", "names no move_base action",
