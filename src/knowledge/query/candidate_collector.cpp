@@ -15,12 +15,6 @@ void CandidateCollector::Begin(std::int64_t allowance) {
   candidates_.clear();
 }
 
-bool CandidateCollector::Spend(int work) {
-  ++visited_;
-  allowance_ -= work;
-  return allowance_ >= 0;
-}
-
 bool CandidateCollector::GiveUp() {
   gave_up_ = true;
   return false;

@@ -23,7 +23,12 @@ class CandidateCollector {
 
   /// Forgets what was gathered. @param allowance  Work that the path may cost.
   void Begin(std::int64_t allowance);
-  bool Spend(int work);  ///< on one row
+  /// On one row.
+  bool Spend(int work) {
+    ++visited_;
+    allowance_ -= work;
+    return allowance_ >= 0;
+  }
   bool Add(const IndexEntry& entry);
   bool AddRows(Rows* rows, int work);  ///< all of them, each of that much work
   /// There is too much on the path, whatever it may cost.

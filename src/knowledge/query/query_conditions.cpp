@@ -68,11 +68,6 @@ void ConceptSet::Insert(std::int64_t concept_id) {
   members_[index] = true;
 }
 
-bool ConceptSet::Contains(std::int64_t concept_id) const {
-  const auto index = static_cast<std::size_t>(concept_id);
-  return index < members_.size() && members_[index];
-}
-
 std::vector<std::int64_t> ConceptSet::Numbers() const {
   std::vector<std::int64_t> numbers;
   for (std::size_t index = 0; index < members_.size(); ++index) {
@@ -123,10 +118,6 @@ void QueryConditions::AddConcepts(const FluentQuery::ConceptFilter& filter,
   }
 }
 
-bool QueryConditions::FitsConcept(std::int64_t concept_id) const {
-  return !concepts_ || concepts_->Contains(concept_id);
-}
-
 bool QueryConditions::FitsTime(const Validity& validity) const {
   const FluentQuery::TimeFilter& time = query_.time;
   if (time.kind == TimeKind::kEver) return true;
@@ -138,11 +129,6 @@ bool QueryConditions::FitsTime(const Validity& validity) const {
   const auto possible = temporal::PossibleRelations(validity.start, finish, time.interval);
   return std::any_of(possible.begin(), possible.end(),
                      [&](Allen relation) { return Has(time.relations, relation); });
-}
-
-bool QueryConditions::MayFit(const IndexEntry& entry) const {
-  return entry.id <= as_of_ && entry.start <= reach_.latest_start &&
-         worlds_.Contains(entry.world) && FitsConcept(entry.concept_id);
 }
 
 bool QueryConditions::Fits(const Validity& validity) const {

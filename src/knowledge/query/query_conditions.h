@@ -16,7 +16,10 @@ namespace hires::knowledge {
 class ConceptSet {
  public:
   void Insert(std::int64_t concept_id);
-  bool Contains(std::int64_t concept_id) const;
+  bool Contains(std::int64_t concept_id) const {
+    const auto index = static_cast<std::size_t>(concept_id);
+    return index < members_.size() && members_[index];
+  }
   bool empty() const { return members_.empty(); }
   std::vector<std::int64_t> Numbers() const;  ///< ascending
 
@@ -64,7 +67,10 @@ class QueryConditions {
   /// Nothing was ever said of the concepts that the query asks for.
   bool IsImpossible() const { return concepts_ && concepts_->empty(); }
   /// False where the index tells that the validity does not match.
-  bool MayFit(const IndexEntry& entry) const;
+  bool MayFit(const IndexEntry& entry) const {
+    return entry.id <= as_of_ && entry.start <= reach_.latest_start &&
+           worlds_.Contains(entry.world) && FitsConcept(entry.concept_id);
+  }
   /// All but the properties.
   bool Fits(const Validity& validity) const;
   bool FitsProperties(const Fluent& fluent) const;
@@ -73,7 +79,9 @@ class QueryConditions {
   void ReadConcepts(const Ontology& ontology, StoreParts* parts);
   void AddConcepts(const FluentQuery::ConceptFilter& filter, const Ontology& ontology,
                    Words* words);
-  bool FitsConcept(std::int64_t concept_id) const;
+  bool FitsConcept(std::int64_t concept_id) const {
+    return !concepts_ || concepts_->Contains(concept_id);
+  }
   bool FitsTime(const Validity& validity) const;
 
   const FluentQuery& query_;
