@@ -1,4 +1,4 @@
-#include "hires/simulation/ghost_obstacles.h"
+#include "simulation/ghost_obstacles.h"
 
 #include <cmath>
 

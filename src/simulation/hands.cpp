@@ -1,4 +1,4 @@
-#include "hires/simulation/hands.h"
+#include "simulation/hands.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "hires/simulation/link_bodies.h"
+#include "simulation/link_bodies.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "hires/simulation/planar_robot.h"
+#include "simulation/planar_robot.h"
 
 #include <fmt/format.h>
 

@@ -1,180 +1,160 @@
 #include "hires/simulation/robot_simulator.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "hires/base/check.h"
-#include "hires/base/error.h"
-#include "hires/base/text.h"
+#include "simulation/frozen_robot.h"
+#include "simulation/head_camera.h"
+#include "simulation/loose_objects.h"
+#include "simulation/moving_base.h"
+#include "simulation/planar_robot.h"
+#include "simulation/robot_sensors.h"
+#include "simulation/start_checks.h"
 
 namespace hires::simulation {
 namespace {
 
-using geometry::Pose2;
 using geometry::Pose3;
 
-constexpr int kSlowSteps = 10;             // slip, contacts: every tenth step
-constexpr double kSlipCorrelation = 0.1;   // [s]
-constexpr physics::BodyId kFloorBody = 0;  // statics follow in their order
+constexpr int kSlowSteps = 10;  // slip, contacts, senses: every tenth step
+
+/// What a part that may be missing keeps.
+template <typename Part>
+auto SaveOf(const std::unique_ptr<Part>& part) {
+  return part ? std::make_optional(part->Save()) : std::nullopt;
+}
 
 }  // namespace
 
 struct RobotSimulator::Snapshot {
   State state;
+  MovingBase::State base;
+  RobotSensors::State sensors;
   physics::PhysicsState physics;
   std::optional<PlanarRobot::State> planar;
+  std::optional<HeadCamera::State> camera;
 };
 
-std::optional<RobotContact> RobotSimulator::FindContact() const {
-  if (planar_) return planar_->FindContact(state_.drive.motion().X_MB, object_names_);
-  if (!clearance_) return scene_->clearance.FindContact(state_.drive.motion().X_MB);
-  const auto contact = clearance_->FindContact(state_.drive.motion().X_MB);
-  if (!contact) return contact;
-  // A raised arm's prism reaches down to where the arm is not: look exactly.
-  const auto touch = physics_->FindFixedTouch(robot_body_, kFloorBody);
-  if (!touch) return std::nullopt;
-  return RobotContact{shape_names_[touch->shape],
-                      scene_->world.statics[touch->fixed - kFloorBody - 1].name};
-}
-
-geometry::Pose3 RobotSimulator::LeaningPose(const BaseMotion& motion) const {
-  double height = 0.0, pitch = motion.pitch, roll = motion.roll;
-  if (!floor_.is_flat()) {
-    // Four wheels at the corners of a square within the footprint carry the base.
-    const double arm = 0.7 * geometry::InscribedRadius(scene_->robot.profile.footprint);
-    double front = 0.0, left = 0.0;
-    for (const double x : {arm, -arm}) {
-      for (const double y : {arm, -arm}) {
-        const double h = floor_.HeightAt(motion.X_MB * Eigen::Vector2d(x, y));
-        height += h / 4.0;
-        front += h / 2.0 * (x > 0.0 ? 1.0 : -1.0);
-        left += h / 2.0 * (y > 0.0 ? 1.0 : -1.0);
-      }
-    }
-    pitch -= front / (2.0 * arm);
-    roll += left / (2.0 * arm);
-  }
-  return {{motion.X_MB.x, motion.X_MB.y, height},
-          geometry::RotationFromRpy(roll, pitch, motion.X_MB.yaw)};
-}
+RobotSimulator::~RobotSimulator() = default;
 
 void RobotSimulator::Send(const robot::Command& command) {
-  if (command.base_velocity) state_.drive.Send(*command.base_velocity, state_.time);
+  if (command.base_velocity) base_->Send(*command.base_velocity, state_.time);
   if (planar_) planar_->Send(command, state_.time);
+}
+
+void RobotSimulator::Remember(const std::vector<robot::SeenObject>& objects) {
+  for (const robot::SeenObject& object : objects) {
+    RefuseUnknownModel({object.name, object.model, object.X_MO, {}, ""}, scene_->world);
+    RefusePose("remembered object '" + object.name + "'", object.X_MO);
+  }
+  if (camera_) camera_->Remember(objects, base().X_MB);
 }
 
 void RobotSimulator::Step() {
   if (state_.steps % kSlowSteps == 0) {
-    MoveSlip();
+    base_->DrawSlip(kSlowSteps * time_step());
     if (!state_.contact) state_.contact = FindContact();
-    if (state_.memory) FeelAndLook();
+    if (camera_) Sense();
   }
-  state_.drive.Step(state_.time, time_step(), state_.slip);
-  const Pose3 X_next = LeaningPose(state_.drive.motion());
-  if (planar_) {
-    planar_->Move(state_.time, X_next);
-  } else {
-    physics_->SetMotion(robot_body_, MotionBetween(state_.X_MB, X_next, time_step()));
-  }
+  const double next_time = (state_.steps + 1) * time_step();
+  const Pose3 X_MB = base_->X_MB();
+  base_->Step(state_.time, next_time);
+  planar_ ? planar_->Move(state_.time, base_->X_MB()) : frozen_->Move(X_MB, base_->X_MB());
   physics_->Step();
-  state_.X_MB = X_next;
   ++state_.steps;
-  state_.time = state_.steps * time_step();
-  NoteDisturbances();
+  state_.time = next_time;
   if (planar_) planar_->React();
 }
 
-void RobotSimulator::MoveSlip() {
-  if (variation_.wheel_slip == 0.0) return;
-  const double keep = std::exp(-kSlowSteps * time_step() / kSlipCorrelation);
-  state_.slip = keep * state_.slip + variation_.wheel_slip * std::sqrt(1.0 - keep * keep) *
-                                         state_.slip_rng.Normal(0.0, 1.0);
+/// What makes the robot know more of objects.
+void RobotSimulator::Sense() {
+  camera_->Feel(state_.time, base().X_MB);
+  if (!camera_->MayLook(state_.time)) return;
+  camera_->Look(state_.time, base().X_MB, GetWorldState().objects);
 }
 
-void RobotSimulator::NoteDisturbances() {
-  const BaseMotion& motion = state_.drive.motion();
-  const robot::MotionSet& limits = scene_->robot.profile.base_controller.limits;
-  const double power = motion.A_B.vx * motion.V_B.vx + motion.A_B.vy * motion.V_B.vy;
-  if (motion.timed_out) state_.disturbances.late_command = state_.time;
-  if (std::hypot(motion.A_B.vx, motion.A_B.vy) > 0.5 * limits.max_linear_acceleration) {
-    (power < 0.0 ? state_.disturbances.braking : state_.disturbances.accelerating) = state_.time;
-  }
-  if (std::abs(motion.A_B.wz) > 0.5 * limits.max_angular_acceleration) {
-    state_.disturbances.turning = state_.time;
-  }
+robot::Observation RobotSimulator::Observe(double action_start) {
+  robot::Observation observation;
+  observation.time = state_.time - action_start;
+  sensors_->ReadBase(state_.time, base(), &observation);
+  if (planar_) sensors_->ReadJoints(*planar_, &observation);
+  if (!camera_) return observation;
+  observation.objects = camera_->Known(state_.time, observation.X_MB);
+  for (robot::SeenObject& seen : observation.objects) seen.time -= action_start;
+  return observation;
 }
 
-geometry::Pose3 RobotSimulator::X_MB() const { return state_.X_MB; }
+std::optional<RobotContact> RobotSimulator::FindContact() const {
+  if (planar_) return planar_->FindContact(base().X_MB, objects_->names());
+  return frozen_->FindContact(base().X_MB);
+}
+
+const BaseMotion& RobotSimulator::base() const { return base_->motion(); }
+
+Pose3 RobotSimulator::X_MB() const { return base_->X_MB(); }
+
+const Disturbances& RobotSimulator::disturbances() const { return base_->disturbances(); }
+
+Pose3 RobotSimulator::X_MLink(const std::string& link) const {
+  return planar_ ? planar_->X_MLink(link) : frozen_->X_MLink(X_MB(), link);
+}
+
+robot::RobotState RobotSimulator::GetRobotState() const {
+  return {base().X_MB, base().V_B, planar_ ? planar_->Joints() : frozen_->joints()};
+}
 
 std::map<std::string, int> RobotSimulator::held() const {
   return planar_ ? planar_->Held() : std::map<std::string, int>();
 }
 
-Pose3 RobotSimulator::X_MLink(const std::string& link) const {
-  if (planar_) return planar_->X_MLink(link);
-  const robot::RobotModel& model = scene_->robot.model;
-  const auto index = model.FindLink(link);
-  if (!index) {
-    throw base::ConfigError("robot: " + base::UnknownName("link", link, model.LinkNames()));
-  }
-  const std::vector<Pose3> X_R = robot::ForwardKinematics(model, joints_);
-  const Pose3& X_RB = X_R[*model.FindLink(scene_->robot.profile.base_link)];
-  return state_.X_MB * X_RB.Inverse() * X_R[*index];
-}
+const std::vector<int>& RobotSimulator::carried() const { return objects_->carried(); }
 
-geometry::Pose3 RobotSimulator::PoseOf(int object) const {
-  if (object_bodies_[object] < 0) return state_.X_MB * X_BO_start_[object];
-  return physics_->GetState(object_bodies_[object]).X_WB;
-}
+Pose3 RobotSimulator::PoseOf(int object) const { return objects_->PoseOf(object, X_MB()); }
 
 geometry::Twist3 RobotSimulator::VelocityOf(int object) const {
-  if (object_bodies_[object] < 0) return {};
-  return physics_->GetState(object_bodies_[object]).V_WB;
+  return objects_->VelocityOf(object);
 }
 
 std::string RobotSimulator::HolderOf(int object) const {
-  return planar_ ? planar_->HolderOf(object) : objects_[object].attached_to;
+  return planar_ ? planar_->HolderOf(object) : objects_->AtStart(object).attached_to;
+}
+
+bool RobotSimulator::StandsOnRobot(int object) const {
+  const auto& parts_B = planar_ ? scene_->base_shapes_B : frozen_->shapes_B();
+  return StandsOn(parts_B, objects_->ModelOf(object).collisions, X_MB().Inverse() * PoseOf(object));
 }
 
 world::WorldState RobotSimulator::GetWorldState() const {
   world::WorldState state;
-  for (std::size_t i = 0; i < objects_.size(); ++i) {
-    world::ObjectState object = objects_[i];
-    object.X_MO = PoseOf(static_cast<int>(i));
-    object.attached_to = HolderOf(static_cast<int>(i));
-    if (object_bodies_[i] >= 0) object.V_MO = physics_->GetState(object_bodies_[i]).V_WB;
+  for (int i = 0; i < objects_->size(); ++i) {
+    world::ObjectState object = objects_->AtStart(i);
+    object.X_MO = PoseOf(i);
+    object.attached_to = HolderOf(i);
+    if (objects_->IsLoose(i)) object.V_MO = VelocityOf(i);
     state.objects.push_back(std::move(object));
   }
   return state;
 }
 
-robot::RobotState RobotSimulator::GetRobotState() const {
-  return {state_.drive.motion().X_MB, state_.drive.motion().V_B,
-          planar_ ? planar_->Joints() : joints_};
-}
-
 void RobotSimulator::PutBack(int object) {
-  HIRES_CHECK(object_bodies_.at(object) >= 0, "an attached object cannot be put back");
-  const Pose3 X_MO = state_.X_MB * X_BO_start_[object];
-  const geometry::Twist2& V_B = state_.drive.motion().V_B;
-  const Eigen::Vector3d w_M(0.0, 0.0, V_B.wz);
-  const Eigen::Vector3d v_MB = state_.X_MB.rotation * Eigen::Vector3d(V_B.vx, V_B.vy, 0.0);
-  physics_->SetState(object_bodies_[object],
-                     {X_MO, {v_MB + w_M.cross(X_MO.translation - state_.X_MB.translation), w_M}});
+  const Pose3 X_MO = X_MB() * objects_->X_BOstart(object);
+  objects_->Put(object, {X_MO, base_->VelocityAt(X_MO.translation)});
 }
 
 std::shared_ptr<const RobotSimulator::Snapshot> RobotSimulator::Save() {
   return std::make_shared<const Snapshot>(Snapshot{
-      state_, physics_->Save(), planar_ ? std::make_optional(planar_->Save()) : std::nullopt});
+      state_, base_->Save(), sensors_->Save(), physics_->Save(), SaveOf(planar_), SaveOf(camera_)});
 }
 
 void RobotSimulator::Restore(const Snapshot& snapshot) {
   HIRES_CHECK(snapshot.planar.has_value() == (planar_ != nullptr),
               "a simulator is restored from one of the same level of detail");
   state_ = snapshot.state;
+  base_->Restore(snapshot.base);
+  sensors_->Restore(snapshot.sensors);
   physics_->Restore(snapshot.physics);
   if (planar_) planar_->Restore(*snapshot.planar);
+  if (camera_) camera_->Restore(*snapshot.camera);
 }
 
 }  // namespace hires::simulation

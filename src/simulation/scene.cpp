@@ -5,8 +5,8 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/robot/posture.h"
-#include "hires/simulation/joint_drives.h"
-#include "hires/simulation/link_bodies.h"
+#include "simulation/joint_drives.h"
+#include "simulation/link_bodies.h"
 
 namespace hires::simulation {
 namespace {

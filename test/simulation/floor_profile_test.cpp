@@ -1,4 +1,4 @@
-#include "hires/simulation/floor_profile.h"
+#include "simulation/floor_profile.h"
 
 #include <gtest/gtest.h>
 

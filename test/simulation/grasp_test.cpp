@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "arm_scene.h"
+#include "simulation/hands.h"
 
 namespace hires::simulation::grasp_test {
 namespace {

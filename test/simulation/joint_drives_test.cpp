@@ -1,4 +1,4 @@
-#include "hires/simulation/joint_drives.h"
+#include "simulation/joint_drives.h"
 
 #include <gmock/gmock.h>
 

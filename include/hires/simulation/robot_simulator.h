@@ -9,24 +9,21 @@
 #include "hires/base/rng.h"
 #include "hires/physics/physics_world.h"
 #include "hires/robot/observation.h"
-#include "hires/sensing/object_memory.h"
 #include "hires/simulation/base_drive.h"
-#include "hires/simulation/floor_profile.h"
-#include "hires/simulation/ghost_obstacles.h"
-#include "hires/simulation/planar_robot.h"
+#include "hires/simulation/disturbances.h"
+#include "hires/simulation/robot_clearance.h"
 #include "hires/simulation/scene.h"
 #include "hires/simulation/variation.h"
 #include "hires/world/world.h"
 
 namespace hires::simulation {
 
-/// What happened to the robot that may disturb its load; the latest time of each [s].
-struct Disturbances {
-  double late_command{-1e9};  ///< the base braked because no command came in time
-  double braking{-1e9};       ///< more than half of the largest acceleration, against the motion
-  double accelerating{-1e9};  ///< ... with the motion
-  double turning{-1e9};       ///< angular acceleration above half of the largest
-};
+class FrozenRobot;
+class HeadCamera;
+class LooseObjects;
+class MovingBase;
+class PlanarRobot;
+class RobotSensors;
 
 /// How much of the robot moves.
 enum class LevelOfDetail {
@@ -50,6 +47,7 @@ class RobotSimulator {
                  const world::WorldState& world_state, const robot::RobotState& robot_state,
                  base::Rng rng, const physics::PhysicsParams& params = {},
                  LevelOfDetail level = LevelOfDetail::kTray);
+  ~RobotSimulator();
 
   /// Takes over a skill's wishes; no base velocity means that no command is sent. At level `tray`
   /// nothing but the base listens.
@@ -67,11 +65,11 @@ class RobotSimulator {
   /// What the robot believes and sees; draws sensor noise. `time` counts from `action_start`.
   robot::Observation Observe(double action_start);
 
-  const BaseMotion& base() const { return state_.drive.motion(); }
+  const BaseMotion& base() const;
   geometry::Pose3 X_MB() const;             ///< of the base, leaning and floor included
   world::WorldState GetWorldState() const;  ///< loose objects now
-  robot::RobotState GetRobotState()
-      const;  ///< joints with gaps and finger angles at level `planar`
+  /// Joints with gaps and finger angles at level `planar`.
+  robot::RobotState GetRobotState() const;
   geometry::Pose3 PoseOf(int object) const;       ///< of the loose object with that index
   geometry::Twist3 VelocityOf(int object) const;  ///< in map axes; 0 for one that is held rigidly
   std::string HolderOf(int object) const;         ///< link that holds it now, or empty
@@ -79,7 +77,7 @@ class RobotSimulator {
   bool StandsOnRobot(int object) const;
 
   /// Indices of the objects that stood on a part of the robot at the start.
-  const std::vector<int>& carried() const { return carried_; }
+  const std::vector<int>& carried() const;
   /// What the hands hold: object index by arm, hands that hold nothing left out.
   std::map<std::string, int> held() const;
   LevelOfDetail level() const { return planar_ ? LevelOfDetail::kPlanar : LevelOfDetail::kTray; }
@@ -92,7 +90,7 @@ class RobotSimulator {
   /// The robot touches a static body; checked every 10 ms. At level `planar` also an object in a
   /// hand (then it is the `robot_part`) that cannot go where the hand goes.
   const std::optional<RobotContact>& contact() const { return state_.contact; }
-  const Disturbances& disturbances() const { return state_.disturbances; }
+  const Disturbances& disturbances() const;
   const Scene& scene() const { return *scene_; }
 
   /// All that changes about the simulator. Restoring it in a simulator that was built from the same
@@ -102,60 +100,31 @@ class RobotSimulator {
   void Restore(const Snapshot& snapshot);
 
  private:
-  /// All that changes beside what physics and the moving parts of the robot keep themselves.
+  /// What changes beside what the parts keep themselves.
   struct State {
-    State(BaseDrive drive_at_start, const base::Rng& rng);
-
     double time{0.0};  // [s]
     long steps{0};
-    BaseDrive drive;
-    geometry::Pose3 X_MB;  // leaning pose at `time`
-    double slip{0.0};
-    base::Rng slip_rng, sense_rng;
-    GhostObstacles ghosts;
-    base::Rng encoder_rng, detection_rng;
-    std::optional<sensing::ObjectMemory> memory;  // none at level `tray`
-    double last_look{-1e9};                       // [s]
     std::optional<RobotContact> contact;
-    Disturbances disturbances;
   };
-  void Freeze(const robot::JointPositions& joints);
-  void AddObjects(const world::WorldState& state, LevelOfDetail level);
-  const std::vector<geometry::Collision>& robot_shapes_B() const;
-  void MoveInHand(const std::string& link, geometry::Pose3* X_BO) const;
-  void AddRobot();
+  void AddObjects(const std::vector<world::ObjectState>& objects,
+                  const geometry::Pose3& X_MBnominal, LevelOfDetail level);
+  void AddObject(world::ObjectState object, geometry::Pose3 X_BO, LevelOfDetail level);
   void AddPlanarRobot();
-  GraspableObject Graspable(std::size_t object) const;
-  geometry::Pose3 LeaningPose(const BaseMotion& motion) const;
-  std::optional<RobotContact> FindContact() const;
-  geometry::Pose2 BelievedBase(base::Rng* rng) const;
-  void BelieveHands();
-  void FeelAndLook();
-  void LookIfStill();
-  sensing::BodyReading FeltBody(const geometry::Pose2& X_MBbelieved) const;
-  void AddEncoderNoise(robot::JointPositions* joints);
-  void ObserveUpperBody(double action_start, robot::Observation* observation);
-  void NoteDisturbances();
-  void MoveSlip();
-  void RefuseBadStart(const world::WorldState& state);
+  void AddCamera(const base::Rng& rng);
+  void RefuseBadStart();
   void RefuseInsideRobot(const world::ObjectState& object, physics::BodyId body);
+  std::optional<RobotContact> FindContact() const;
+  void Sense();
 
   std::shared_ptr<const Scene> scene_;
   Variation variation_;
-  FloorProfile floor_;
   std::unique_ptr<physics::PhysicsWorld> physics_;
-  robot::JointPositions joints_;  // at the start; at level `tray` always
-  std::optional<std::vector<geometry::Collision>> shapes_B_;  // where they are not the scene's
-  std::optional<RobotClearance> clearance_;                   // likewise
-  std::vector<std::string> shape_names_;                      // of robot_body_, likewise
-  std::unique_ptr<PlanarRobot> planar_;                       // null at level `tray`
-  physics::BodyId robot_body_{0};
-  std::vector<physics::BodyId> object_bodies_;
-  std::vector<world::ObjectState> objects_;  // names and models; poses as at the start
-  std::vector<std::string> object_names_;
-  std::vector<geometry::Pose3> X_BO_start_;  // objects in the base frame at the start
-  std::vector<int> carried_;
-
+  std::unique_ptr<MovingBase> base_;
+  std::unique_ptr<FrozenRobot> frozen_;  // as at the start; at level `tray` always
+  std::unique_ptr<LooseObjects> objects_;
+  std::unique_ptr<PlanarRobot> planar_;  // null at level `tray`
+  std::unique_ptr<RobotSensors> sensors_;
+  std::unique_ptr<HeadCamera> camera_;  // null at level `tray`, or with nothing to look at
   State state_;
 };
 

@@ -7,8 +7,8 @@
 #include "hires/physics/physics_world.h"
 #include "hires/robot/observation.h"
 #include "hires/robot/robot_profile.h"
-#include "hires/simulation/joint_drives.h"
 #include "hires/simulation/robot_clearance.h"
+#include "simulation/joint_drives.h"
 
 namespace hires::simulation {
 

@@ -7,10 +7,10 @@
 
 #include "hires/physics/physics_world.h"
 #include "hires/robot/observation.h"
-#include "hires/simulation/hands.h"
-#include "hires/simulation/joint_drives.h"
-#include "hires/simulation/link_bodies.h"
 #include "hires/simulation/scene.h"
+#include "simulation/hands.h"
+#include "simulation/joint_drives.h"
+#include "simulation/link_bodies.h"
 
 namespace hires::simulation {
 

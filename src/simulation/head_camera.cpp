@@ -1,0 +1,86 @@
+#include "simulation/head_camera.h"
+
+#include <utility>
+
+#include "hires/base/text.h"
+#include "hires/perception/line_of_sight.h"
+#include "simulation/start_checks.h"
+#include "simulation/varied.h"
+
+namespace hires::simulation {
+namespace {
+
+using geometry::Pose2;
+using geometry::Pose3;
+
+constexpr double kLookPeriod = 0.5;  // [s] between two looks of the camera
+constexpr double kStillHead = 0.02;  // [rad/s] faster than this pictures blur
+
+sensing::ObjectMemory EmptyMemory(const std::shared_ptr<const Scene>& scene) {
+  return {scene->surroundings, std::shared_ptr<const robot::Robot>(scene, &scene->robot),
+          scene->memory};
+}
+
+}  // namespace
+
+HeadCamera::HeadCamera(std::shared_ptr<const Scene> scene, const Variation& variation,
+                       const PlanarRobot* robot, const base::Rng& rng)
+    : scene_(std::move(scene)),
+      variation_(variation),
+      robot_(robot),
+      state_{rng, EmptyMemory(scene_)} {}
+
+sensing::BodyReading HeadCamera::FeltBody(double time, const Pose2& X_MBbelieved) const {
+  return {time, X_MBbelieved, robot_->Joints()};
+}
+
+bool HeadCamera::IsHeld(const std::string& name) const {
+  const auto known = state_.memory.objects().find(base::ToLower(name));
+  return known != state_.memory.objects().end() && known->second.is_held;
+}
+
+void HeadCamera::Remember(const std::vector<robot::SeenObject>& objects, const Pose2& X_MB) {
+  const Pose2 X_MBbelieved = BiasedPose(X_MB, variation_);
+  for (const robot::SeenObject& object : objects) {
+    if (IsHeld(object.name)) continue;
+    const Pose3 X_BO = geometry::Lift(X_MBbelieved).Inverse() * object.X_MO;
+    const auto& shapes = scene_->world.models.at(object.model)->collisions;
+    const bool rides_along = StandsOn(scene_->base_shapes_B, shapes, X_BO);
+    state_.memory.Believe(object.name, object.model,
+                          rides_along ? scene_->robot.profile.base_link : "",
+                          rides_along ? X_BO : object.X_MO);
+  }
+}
+
+void HeadCamera::KnowHeld(const std::string& name, const std::string& model,
+                          const std::string& link, const Pose3& X_LO) {
+  state_.memory.Believe(name, model, link, X_LO);
+}
+
+void HeadCamera::Feel(double time, const Pose2& X_MB) {
+  state_.memory.Feel(FeltBody(time, BiasedPose(X_MB, variation_)));
+}
+
+bool HeadCamera::MayLook(double time) const {
+  return time - state_.last_look >= kLookPeriod && !robot_->IsHeadFaster(kStillHead);
+}
+
+void HeadCamera::Look(double time, const Pose2& X_MB,
+                      const std::vector<world::ObjectState>& objects) {
+  state_.last_look = time;
+  const robot::Robot& robot = scene_->robot;
+  const Pose3 X_MC = robot_->X_MLink(robot.profile.upper_body->camera_link);
+  const perception::CameraView view = perception::ViewFrom(robot, X_MC);
+  const perception::LineOfSight sight(scene_->surroundings, objects, robot_->ShapesInMap());
+  perception::DetectorParams params;
+  params.position_noise = variation_.detection_noise;
+  params.yaw_noise = variation_.detection_noise_yaw;
+  const auto detections = perception::Detect(sight, view, objects, params, &state_.rng);
+  state_.memory.Look(FeltBody(time, BelievedPose(X_MB, variation_, &state_.rng)), detections);
+}
+
+std::vector<robot::SeenObject> HeadCamera::Known(double time, const Pose2& X_MBbelieved) const {
+  return state_.memory.Known(FeltBody(time, X_MBbelieved));
+}
+
+}  // namespace hires::simulation

@@ -1,0 +1,83 @@
+#include "simulation/loose_objects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "hires/base/check.h"
+#include "simulation/varied.h"
+
+namespace hires::simulation {
+
+using geometry::Pose3;
+
+LooseObjects::LooseObjects(const world::World& world, const Variation& variation,
+                           physics::PhysicsWorld* physics)
+    : world_(world), variation_(variation), physics_(physics) {}
+
+void LooseObjects::AddRigid(const world::ObjectState& object, const Pose3& X_BO) {
+  objects_.push_back(object);
+  names_.push_back(object.name);
+  bodies_.push_back(-1);
+  X_BO_start_.push_back(X_BO);
+}
+
+void LooseObjects::AddLoose(const world::ObjectState& object, const Pose3& X_BO, bool is_carried) {
+  if (is_carried) carried_.push_back(size());
+  AddRigid(object, X_BO);
+  const world::ObjectModel& model = ModelOf(size() - 1);
+  bodies_.back() =
+      physics_->AddLoose(Varied(model.mass_properties, variation_),
+                         Varied(model.collisions, variation_), {object.X_MO, object.V_MO});
+}
+
+const world::ObjectModel& LooseObjects::ModelOf(int object) const {
+  return *world_.models.at(AtStart(object).model);
+}
+
+Pose3 LooseObjects::PoseOf(int object, const Pose3& X_MB) const {
+  if (bodies_[object] < 0) return X_MB * X_BO_start_[object];
+  return physics_->GetState(bodies_[object]).X_WB;
+}
+
+geometry::Twist3 LooseObjects::VelocityOf(int object) const {
+  if (bodies_[object] < 0) return {};
+  return physics_->GetState(bodies_[object]).V_WB;
+}
+
+void LooseObjects::Put(int object, const physics::BodyState& state) {
+  HIRES_CHECK(IsLoose(object), "an attached object cannot be put elsewhere");
+  physics_->SetState(bodies_[object], state);
+}
+
+std::vector<GraspableObject> LooseObjects::Graspable() const {
+  std::vector<GraspableObject> graspable;
+  for (int i = 0; i < size(); ++i) {
+    const geometry::MassProperties mass = Varied(ModelOf(i).mass_properties, variation_);
+    graspable.push_back({bodies_[i], mass.mass, mass.p_BBcm});
+  }
+  return graspable;
+}
+
+double LooseObjects::FrictionOf(int object) const {
+  double friction = HUGE_VAL;
+  for (const auto& shape : Varied(ModelOf(object).collisions, variation_)) {
+    friction = std::min(friction, shape.friction);
+  }
+  return friction;
+}
+
+std::vector<geometry::Collision> LooseObjects::RigidShapes_B() const {
+  std::vector<geometry::Collision> shapes;
+  for (int i = 0; i < size(); ++i) {
+    if (IsLoose(i)) continue;
+    for (geometry::Collision shape : ModelOf(i).collisions) {
+      shape.name = names_[i];
+      shape.X_BS = X_BO_start_[i] * shape.X_BS;
+      shapes.push_back(std::move(shape));
+    }
+  }
+  return shapes;
+}
+
+}  // namespace hires::simulation

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+
+#include "hires/base/rng.h"
+#include "hires/robot/observation.h"
+#include "hires/simulation/base_drive.h"
+#include "hires/simulation/scene.h"
+#include "hires/simulation/variation.h"
+#include "simulation/ghost_obstacles.h"
+#include "simulation/planar_robot.h"
+
+namespace hires::simulation {
+
+/// What localisation, laser filter and encoders say. Draws their noise.
+class RobotSensors {
+ public:
+  struct State {
+    base::Rng rng;
+    GhostObstacles ghosts;
+    base::Rng encoder_rng;
+  };
+
+  /// @param rng  of the simulator; its forks 2, 3 and 4 are used.
+  RobotSensors(std::shared_ptr<const Scene> scene, const Variation& variation,
+               const base::Rng& rng);
+
+  /// Of the base at `time`: where it is believed to be, its velocity, obstacles.
+  void ReadBase(double time, const BaseMotion& motion, robot::Observation* observation);
+  /// Of torso, head, arms and hands.
+  void ReadJoints(const PlanarRobot& robot, robot::Observation* observation);
+
+  const State& Save() const { return state_; }
+  void Restore(const State& state) { state_ = state; }
+
+ private:
+  void AddEncoderNoise(robot::JointPositions* joints);
+
+  std::shared_ptr<const Scene> scene_;
+  Variation variation_;
+  State state_;
+};
+
+}  // namespace hires::simulation

@@ -1,0 +1,88 @@
+#include "simulation/loose_objects.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "support/scenes.h"
+
+namespace hires::simulation {
+namespace {
+
+using geometry::Pose3;
+using ::testing::ElementsAre;
+using ::testing::SizeIs;
+
+world::ObjectState MillAt(const std::string& name, double x) {
+  world::ObjectState object;
+  object.name = name;
+  object.model = "mill";
+  object.X_MO.translation = {x, 1.0, 0.0};
+  object.V_MO.linear = {0.1, 0.0, 0.0};
+  return object;
+}
+
+const Pose3 kBase = geometry::Lift({4.0, 3.0, 0.0});
+const Pose3 kInBase = geometry::Lift({0.5, 0.1, 0.0}, 0.8);
+
+/// mill1 stands about, mill2 on the robot, mill3 is part of it.
+class LooseObjectsTest : public ::testing::Test {
+ protected:
+  LooseObjectsTest() {
+    physics_.AddFloor(1.0);
+    variation_.mass_factor = 2.0;
+    variation_.friction_factor = 0.5;
+    objects_.emplace(room_, variation_, &physics_);
+    objects_->AddLoose(MillAt("mill1", 1.0), kInBase, false);
+    objects_->AddLoose(MillAt("mill2", 2.0), kInBase, true);
+    world::ObjectState held = MillAt("mill3", 3.0);
+    held.attached_to = "tray";
+    objects_->AddRigid(held, kInBase);
+  }
+
+  world::World room_ = test_support::Room();
+  physics::PhysicsWorld physics_{physics::PhysicsParams()};
+  Variation variation_;
+  std::optional<LooseObjects> objects_;
+};
+
+TEST_F(LooseObjectsTest, KeepTheirOrder) {
+  EXPECT_THAT(objects_->names(), ElementsAre("mill1", "mill2", "mill3"));
+  EXPECT_THAT(objects_->carried(), ElementsAre(1));
+  EXPECT_EQ(objects_->AtStart(2).attached_to, "tray");
+}
+
+TEST_F(LooseObjectsTest, LooseOnesAreWherePhysicsHasThemOthersWhereTheBaseIs) {
+  EXPECT_TRUE(objects_->IsLoose(0));
+  EXPECT_NEAR(objects_->PoseOf(0, kBase).translation.x(), 1.0, 1e-12);
+  EXPECT_NEAR(objects_->VelocityOf(0).linear.x(), 0.1, 1e-12);
+  EXPECT_FALSE(objects_->IsLoose(2));
+  EXPECT_EQ(objects_->PoseOf(2, kBase).translation, (kBase * kInBase).translation);
+  EXPECT_EQ(objects_->VelocityOf(2).linear, Eigen::Vector3d::Zero());
+}
+
+TEST_F(LooseObjectsTest, HaveTheMassAndFrictionOfTheVariation) {
+  const double mass = room_.models.at("mill")->mass_properties.mass;
+  ASSERT_THAT(objects_->Graspable(), SizeIs(3));
+  EXPECT_EQ(objects_->Graspable()[0].mass, 2.0 * mass);
+  EXPECT_EQ(objects_->Graspable()[0].body, objects_->BodyOf(0));
+  EXPECT_EQ(objects_->FrictionOf(0), 0.5 * room_.models.at("mill")->collisions[0].friction);
+}
+
+TEST_F(LooseObjectsTest, PartsOfTheRobotHaveShapesThatAreNamedByThem) {
+  const std::vector<geometry::Collision> shapes = objects_->RigidShapes_B();
+  ASSERT_THAT(shapes, SizeIs(1));
+  EXPECT_EQ(shapes[0].name, "mill3");
+  const Pose3& X_OS = room_.models.at("mill")->collisions[0].X_BS;
+  EXPECT_EQ(shapes[0].X_BS.translation, (kInBase * X_OS).translation);
+}
+
+TEST_F(LooseObjectsTest, OnlyLooseOnesCanBePutElsewhere) {
+  objects_->Put(0, {kInBase, {}});
+  EXPECT_LT((objects_->PoseOf(0, kBase).translation - kInBase.translation).norm(), 1e-12);
+  EXPECT_THROW(objects_->Put(2, {kInBase, {}}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace hires::simulation
