@@ -9,7 +9,7 @@
 namespace hires::control::head_sweep_test {
 namespace {
 
-using test_support::RestaurantContext;
+using hires::test_support::RestaurantContext;
 using testing::UnorderedElementsAre;
 
 const std::vector<std::string> kPlaces = {"placingareawestlefttable1", "placingareaeastlefttable1"};

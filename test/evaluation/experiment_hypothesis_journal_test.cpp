@@ -12,7 +12,7 @@
 namespace hires::evaluation::experiment_hypothesis_journal_test {
 namespace {
 
-using test_support::TemporaryFolder;
+using hires::test_support::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;

@@ -14,7 +14,7 @@
 namespace hires::evaluation::experiment_hypothesis_test {
 namespace {
 
-using test_support::TemporaryFolder;
+using hires::test_support::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;

@@ -42,9 +42,9 @@ struct Judges {
 class OneCriterionTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    as_it_is_ = new Judges(test_support::SceneCopy().path());
+    as_it_is_ = new Judges(hires::test_support::SceneCopy().path());
     changed_ = new Judges(
-        test_support::SceneCopy(test_support::kStandingLine, test_support::kOtherStandingLine)
+        hires::test_support::SceneCopy(hires::test_support::kStandingLine, hires::test_support::kOtherStandingLine)
             .path());
   }
   static void TearDownTestSuite() {

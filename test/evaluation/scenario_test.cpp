@@ -58,7 +58,7 @@ class ScenarioTest : public ::testing::Test {
     return "no error";
   }
 
-  const test_support::TemporaryFolder folder_;
+  const hires::test_support::TemporaryFolder folder_;
 };
 
 TEST_F(ScenarioTest, ReadsEverythingInLowerCase) {

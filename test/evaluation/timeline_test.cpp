@@ -145,7 +145,7 @@ TEST(WriteTextTest, AFolderThatIsMissingIsAnError) {
 class DrawTimelineTest : public ::testing::Test {
  protected:
   std::string Path(const std::string& name) const { return (folder_.path() / name).string(); }
-  const test_support::TemporaryFolder folder_;
+  const hires::test_support::TemporaryFolder folder_;
 };
 
 TEST_F(DrawTimelineTest, DrawsAPicture) {

@@ -14,9 +14,9 @@
 namespace hires::planning::engine_test {
 namespace {
 
-using test_support::AllPlans;
-using test_support::Solve;
-using test_support::Steps;
+using hires::test_support::AllPlans;
+using hires::test_support::Solve;
+using hires::test_support::Steps;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;

@@ -11,9 +11,9 @@
 namespace hires::planning::fact_history_test {
 namespace {
 
-using test_support::FactsOf;
-using test_support::Read;
-using test_support::Text;
+using hires::test_support::FactsOf;
+using hires::test_support::Read;
+using hires::test_support::Text;
 
 TEST(FactHistoryTest, KeepsEveryMoment) {
   FactHistory facts = FactsOf("((p a) (p b))");

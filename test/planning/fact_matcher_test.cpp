@@ -10,7 +10,7 @@
 namespace hires::planning::fact_matcher_test {
 namespace {
 
-using test_support::ProofBench;
+using hires::test_support::ProofBench;
 
 /// A goal (on ...) over the facts of a bench.
 class FactMatcherTest : public ::testing::Test {

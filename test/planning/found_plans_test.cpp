@@ -10,7 +10,7 @@
 namespace hires::planning::found_plans_test {
 namespace {
 
-using test_support::PathBench;
+using hires::test_support::PathBench;
 
 /// A path to one task (!a) or (!b), offered as a plan when it has been carried out.
 class FoundPlansTest : public ::testing::Test {

@@ -7,7 +7,7 @@
 namespace hires::planning::instantiator_test {
 namespace {
 
-using test_support::ProofBench;
+using hires::test_support::ProofBench;
 
 TEST(InstantiatorTest, BuildReplacesBoundVariablesAndLeavesOthers) {
   ProofBench bench("(on ?x (of ?y) ?x)", "()", "()");

@@ -14,10 +14,10 @@
 namespace hires::planning::plan_order_test {
 namespace {
 
-using test_support::DomainOf;
-using test_support::FlatPlan;
-using test_support::FlatProblem;
-using test_support::Text;
+using hires::test_support::DomainOf;
+using hires::test_support::FlatPlan;
+using hires::test_support::FlatProblem;
+using hires::test_support::Text;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::Pair;

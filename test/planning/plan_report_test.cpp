@@ -7,7 +7,7 @@
 namespace hires::planning::plan_report_test {
 namespace {
 
-using test_support::ConfigErrorOf;
+using hires::test_support::ConfigErrorOf;
 
 PlanResult Result(PlanOutcome outcome, const std::vector<double>& costs, bool exhausted = false) {
   PlanResult result;

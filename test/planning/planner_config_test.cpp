@@ -11,8 +11,8 @@
 namespace hires::planning::planner_config_test {
 namespace {
 
-using test_support::ConfigErrorOf;
-using test_support::TemporaryFolder;
+using hires::test_support::ConfigErrorOf;
+using hires::test_support::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;

@@ -52,7 +52,7 @@ TEST(LanguageOfTest, OtherFilesAreNamed) {
 }
 
 TEST(LoadTest, BothLanguagesAreLoaded) {
-  const test_support::TemporaryFolder folder;
+  const hires::test_support::TemporaryFolder folder;
   const Domain shop2 = LoadDomain(folder.Write("d.lisp", kShop2Domain));
   EXPECT_EQ(shop2.language, Domain::Language::kShop2);
   const std::string problems =
@@ -65,7 +65,7 @@ TEST(LoadTest, BothLanguagesAreLoaded) {
 }
 
 TEST(LoadTest, LanguagesAreNotMixed) {
-  const test_support::TemporaryFolder folder;
+  const hires::test_support::TemporaryFolder folder;
   const Domain domain = LoadDomain(folder.Write("d.lisp", kShop2Domain));
   const std::string problem = folder.Write("p.hddl", kHddlProblem);
   EXPECT_THAT(ErrorOf([&] { LoadProblems(problem, domain); }),
@@ -73,7 +73,7 @@ TEST(LoadTest, LanguagesAreNotMixed) {
 }
 
 TEST(LoadTest, TasksOfProblemsAreCheckedAgainstTheDomain) {
-  const test_support::TemporaryFolder folder;
+  const hires::test_support::TemporaryFolder folder;
   const Domain domain = LoadDomain(folder.Write("d.lisp", kShop2Domain));
   const std::string problem = folder.Write("p.lisp", "(defproblem p d ()\n ((!fly a)))");
   EXPECT_THAT(ErrorOf([&] { LoadProblems(problem, domain); }),

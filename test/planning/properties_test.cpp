@@ -18,15 +18,15 @@
 namespace hires::planning::properties_test {
 namespace {
 
-using test_support::BruteForceResult;
-using test_support::NetworkOptions;
-using test_support::PlanByBruteForce;
-using test_support::RandomNetwork;
-using test_support::RandomNetworks;
-using test_support::Solve;
-using test_support::Steps;
+using hires::test_support::BruteForceResult;
+using hires::test_support::NetworkOptions;
+using hires::test_support::PlanByBruteForce;
+using hires::test_support::RandomNetwork;
+using hires::test_support::RandomNetworks;
+using hires::test_support::Solve;
+using hires::test_support::Steps;
 
-constexpr test_support::PropertyCases kPropertyCases{300};
+constexpr hires::test_support::PropertyCases kPropertyCases{300};
 
 constexpr std::size_t kEnough = 100'000;  // plans
 

@@ -10,7 +10,7 @@
 namespace hires::planning::prover_test {
 namespace {
 
-using test_support::ProofBench;
+using hires::test_support::ProofBench;
 
 const std::string kFacts = "((p a) (p b) (q b) (q c))";
 

@@ -14,9 +14,9 @@
 namespace hires::planning::random_problems_test {
 namespace {
 
-using test_support::BlocksProblem;
-using test_support::LogisticsOf;
-using test_support::LogisticsProblem;
+using hires::test_support::BlocksProblem;
+using hires::test_support::LogisticsOf;
+using hires::test_support::LogisticsProblem;
 
 const std::string kDomains = HIRES_SOURCE_DIR "/benchmark/planning/domains/";
 

@@ -15,10 +15,10 @@
 namespace hires::planning::reasons_test {
 namespace {
 
-using test_support::DomainOf;
-using test_support::FlatPlan;
-using test_support::FlatProblem;
-using test_support::Text;
+using hires::test_support::DomainOf;
+using hires::test_support::FlatPlan;
+using hires::test_support::FlatProblem;
+using hires::test_support::Text;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -135,7 +135,7 @@ TEST(AddReasonsTest, ProtectionsAreRead) {
 
 TEST(AddReasonsTest, FactsOfTheDomainHoldFromTheBeginning) {
   Domain domain = DomainOf("(:operator (!a ?x) ((kind ?x)) () ())");
-  domain.facts.push_back(test_support::TaskOf("(kind cup)"));
+  domain.facts.push_back(hires::test_support::TaskOf("(kind cup)"));
   Plan plan = FlatPlan({"(!a cup)"});
   AddReasons(domain, FlatProblem("()", {"(!a cup)"}), &plan);
   EXPECT_EQ(Links(plan.steps[0]), "-1:(kind cup)");
@@ -203,7 +203,7 @@ std::vector<State> StatesOf(const Domain& domain, const Problem& problem, const 
 bool Matches(const Literal& literal, const State& state) {
   if (IsGround(literal.atom)) return state.count(ToString(literal.atom)) > 0;
   for (const std::string& text : state) {
-    if (Substitution().Unify(literal.atom, test_support::Read(text))) return true;
+    if (Substitution().Unify(literal.atom, hires::test_support::Read(text))) return true;
   }
   return false;
 }
@@ -229,7 +229,7 @@ void ExpectTrueReasons(const std::string& domain_file, const std::string& proble
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no example problems in " << folder;
   const Domain domain = LoadDomain(folder / domain_file);
   const Problem problem = LoadProblems(folder / problem_file, domain).at(0);
-  Plan plan = test_support::FirstPlan(domain, problem);
+  Plan plan = hires::test_support::FirstPlan(domain, problem);
   AddReasons(domain, problem, &plan);
   const std::vector<State> states = StatesOf(domain, problem, plan);
   ExpectTrueLinks(plan, states);

@@ -14,9 +14,9 @@
 namespace hires::planning::reference_prover_test {
 namespace {
 
-using test_support::Condition;
-using test_support::Read;
-using test_support::Text;
+using hires::test_support::Condition;
+using hires::test_support::Read;
+using hires::test_support::Text;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -331,7 +331,7 @@ TEST(TwoRoadsTest, TheSearchFindsTheSameBindings) {
       slow.insert("(!show " + ToString(proof.values.at("?x")) + " " +
                   ToString(proof.values.at("?y")) + ")");
     }
-    const std::vector<std::string> fast = test_support::AllPlans(
+    const std::vector<std::string> fast = hires::test_support::AllPlans(
         show + axiom + "(:method (t) " + condition + " ((!show ?x ?y)))", facts, "((t))");
     EXPECT_EQ(std::set<std::string>(fast.begin(), fast.end()), slow)
         << "seed " << seed << ": " << condition << " in " << facts;

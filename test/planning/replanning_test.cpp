@@ -16,12 +16,12 @@
 namespace hires::planning::replanning_test {
 namespace {
 
-using test_support::DomainOf;
-using test_support::FirstPlan;
-using test_support::ProblemOf;
-using test_support::Read;
-using test_support::Steps;
-using test_support::Text;
+using hires::test_support::DomainOf;
+using hires::test_support::FirstPlan;
+using hires::test_support::ProblemOf;
+using hires::test_support::Read;
+using hires::test_support::Steps;
+using hires::test_support::Text;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -114,8 +114,8 @@ TEST(RemainingProblemTest, OrderByWayOfAFinishedTaskStays) {
       "(:operator (!a) () () ()) (:operator (!b) () () ()) (:operator (!c) () () ())"
       "(:method (nothing) () ())");
   const Problem problem = ProblemOf("()", "(:unordered (!a) (:ordered (!b) (nothing) (!c)))");
-  Plan plan = test_support::FlatPlan({"(!a)", "(!b)", "(!c)"});
-  plan.nodes.push_back(test_support::MethodNode("(nothing)", 0, {}, 0, 0, 0));
+  Plan plan = hires::test_support::FlatPlan({"(!a)", "(!b)", "(!c)"});
+  plan.nodes.push_back(hires::test_support::MethodNode("(nothing)", 0, {}, 0, 0, 0));
   plan.nodes[0].children = {1, 2, 4, 3};
   EXPECT_EQ(NetworkText(RemainingProblem(domain, problem, plan, 1, {}, 1).tasks), "(!b) (!c) 0<1");
 }
@@ -311,8 +311,8 @@ TEST(ReplanTest, ACallersLimitEndsAllTries) {
       "(:operator (!step ?n) () () ((n ?n))) (:method (count ?n) () ((!step ?n) "
       "(count (call + ?n 1)))) (:method (all) () ((count 0) (count 0)))");
   const Problem problem = ProblemOf("()", "((all))");
-  Plan plan = test_support::FlatPlan({});
-  plan.nodes.push_back(test_support::MethodNode("(all)", 0, {}, 1, 0, 0));
+  Plan plan = hires::test_support::FlatPlan({});
+  plan.nodes.push_back(hires::test_support::MethodNode("(all)", 0, {}, 1, 0, 0));
   plan.nodes[0].children = {1};
   const Replanned cancelled = Replan(endless, problem, plan, 0, {}, request);
   EXPECT_EQ(cancelled.result.outcome, PlanOutcome::kCancelled);

@@ -9,7 +9,7 @@
 namespace hires::planning::search_path_test {
 namespace {
 
-using test_support::PathBench;
+using hires::test_support::PathBench;
 
 const char* const kItems =
     "(:operator (!a) () () ((p)) 2) (:method (t) () ((!a) (t))) (:method (t) () ())";

@@ -10,7 +10,7 @@
 namespace hires::planning::sorted_solutions_test {
 namespace {
 
-using test_support::PathBench;
+using hires::test_support::PathBench;
 
 /// The values of ?a, the only variable besides the sorted ?n, in order; "none" where there are
 /// none.

@@ -12,7 +12,7 @@
 namespace hires::planning::state_update_test {
 namespace {
 
-using test_support::PathBench;
+using hires::test_support::PathBench;
 
 /// Steps that have only effects, applied one after the other to the facts (p) and (q).
 class StateUpdateTest : public ::testing::Test {

@@ -8,7 +8,7 @@
 namespace hires::planning::substitution_test {
 namespace {
 
-using test_support::Read;
+using hires::test_support::Read;
 
 /// What both become when they are made equal, "" where they cannot be.
 std::string Unified(const std::string& a, const std::string& b) {

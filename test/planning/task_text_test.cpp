@@ -11,7 +11,7 @@
 namespace hires::planning::task_text_test {
 namespace {
 
-using test_support::ConfigErrorOf;
+using hires::test_support::ConfigErrorOf;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;

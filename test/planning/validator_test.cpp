@@ -13,13 +13,13 @@
 namespace hires::planning::validator_test {
 namespace {
 
-using test_support::DomainOf;
-using test_support::FirstPlan;
-using test_support::FlatPlan;
-using test_support::FlatProblem;
-using test_support::MethodNode;
-using test_support::ProblemOf;
-using test_support::TaskOf;
+using hires::test_support::DomainOf;
+using hires::test_support::FirstPlan;
+using hires::test_support::FlatPlan;
+using hires::test_support::FlatProblem;
+using hires::test_support::MethodNode;
+using hires::test_support::ProblemOf;
+using hires::test_support::TaskOf;
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;

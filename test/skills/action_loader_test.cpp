@@ -11,7 +11,7 @@
 namespace hires::skills::action_loader_test {
 namespace {
 
-using test_support::ConfigErrorOf;
+using hires::test_support::ConfigErrorOf;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -62,7 +62,7 @@ TEST(ActionLoaderTest, TheHashTellsLibrariesApart) {
 }
 
 TEST(ActionLoaderTest, AnotherBuildOfALibraryHasAnotherHash) {
-  const test_support::TemporaryFolder folder;
+  const hires::test_support::TemporaryFolder folder;
   const std::string copy =
       folder.Write("libsound_actions.so", base::ReadTextFile(PathOf("sound")) + "one more byte");
   EXPECT_NE(LoadActionSet({copy})->hash(), LoadActionSet({PathOf("sound")})->hash());
@@ -81,7 +81,7 @@ TEST(ActionLoaderTest, WhoHasOtherActionsSaysWithWhichLibraries) {
 TEST(ActionLoaderTest, RefusesAFileThatIsMissingOrNoLibrary) {
   EXPECT_THAT(WhyNot({"/nowhere/lib.so"}),
               AllOf(HasSubstr("library of actions '/nowhere/lib.so'"), HasSubstr("/nowhere")));
-  const test_support::TemporaryFolder folder;
+  const hires::test_support::TemporaryFolder folder;
   EXPECT_THAT(WhyNot({folder.Write("text.so", "no library")}),
               HasSubstr("is no library that can be loaded"));
 }
