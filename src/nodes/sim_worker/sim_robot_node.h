@@ -25,6 +25,7 @@
 #include "hires/evaluation/sim_robot_world.h"
 #include "hires/simulation/command_inbox.h"
 #include "hires/simulation/truth_record.h"
+#include "nodes/sim_worker/sim_robot_params.h"
 #include "nodes/sim_worker/sim_robot_publisher.h"
 
 namespace hires_ros {

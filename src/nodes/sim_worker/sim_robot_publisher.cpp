@@ -3,7 +3,9 @@
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <hires/Detections.h>
 #include <nav_msgs/OccupancyGrid.h>
+#include <nav_msgs/Odometry.h>
 #include <rosgraph_msgs/Clock.h>
+#include <sensor_msgs/JointState.h>
 #include <sensor_msgs/LaserScan.h>
 #include <visualization_msgs/MarkerArray.h>
 
@@ -12,6 +14,7 @@
 #include "hires/perception/detector.h"
 #include "hires/robot/posture.h"
 #include "hires/ros/conversions.h"
+#include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 #include "hires/ros/topic_names.h"
 #include "hires/simulation/scan_ghosts.h"

@@ -13,6 +13,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/ros/trace_markers.h"
 #include "hires/simulation/truth_record.h"
+#include "nodes/sim_worker/sim_robot_params.h"
 
 namespace hires_ros {
 
