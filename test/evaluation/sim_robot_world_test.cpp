@@ -9,7 +9,7 @@
 #include "support/messages.h"
 #include "support/scenes.h"
 
-namespace hires::evaluation {
+namespace hires::evaluation::sim_robot_world_test {
 namespace {
 
 using geometry::Pose2;
@@ -167,4 +167,4 @@ TEST(StartOfTest, ScenariosOfThePackageHaveAStart) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::evaluation::sim_robot_world_test
