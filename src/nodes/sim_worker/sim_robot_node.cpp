@@ -50,7 +50,7 @@ SimRobotNode::SimRobotNode(const SimRobotParams& params,
                            const hires::imagination::ImaginationSetup& setup, ros::NodeHandle* nh)
     : params_(params),
       robot_(setup.scene->robot),
-      world_(setup, StartOf(setup, params), params.seed),
+      world_(setup, hires::evaluation::StartOf(setup, params.scenario, params.area), params.seed),
       publisher_(params, setup, nh),
       truth_(setup.standing),
       is_held_(params.hold) {

@@ -22,10 +22,11 @@
 #include <vector>
 
 #include "hires/base/mailbox.h"
+#include "hires/evaluation/sim_robot_world.h"
 #include "hires/simulation/command_inbox.h"
 #include "hires/simulation/truth_record.h"
+#include "nodes/sim_worker/sim_robot_params.h"
 #include "nodes/sim_worker/sim_robot_publisher.h"
-#include "nodes/sim_worker/sim_robot_world.h"
 
 namespace hires_ros {
 
@@ -73,7 +74,7 @@ class SimRobotNode {
 
   const SimRobotParams params_;
   const hires::robot::Robot& robot_;
-  SimRobotWorld world_;
+  hires::evaluation::SimRobotWorld world_;
   SimRobotPublisher publisher_;
   hires::simulation::TruthRecord truth_;
   hires::simulation::CommandInbox inbox_;
@@ -86,7 +87,7 @@ class SimRobotNode {
   std::optional<Ack> ack_;                   // of the present tick
   std::optional<std::string> middle_layer_;  // who acknowledged last
   std::multiset<std::string> listeners_;     // to ticks, by node
-  SensorReadings readings_;
+  hires::evaluation::SensorReadings readings_;
   std::atomic<bool> is_held_;
   int num_steps_{0};        // ticks to play while held
   Steady::time_point due_;  // when the next tick is, at the wanted pace

@@ -3,7 +3,9 @@
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <hires/Detections.h>
 #include <nav_msgs/OccupancyGrid.h>
+#include <nav_msgs/Odometry.h>
 #include <rosgraph_msgs/Clock.h>
+#include <sensor_msgs/JointState.h>
 #include <sensor_msgs/LaserScan.h>
 #include <visualization_msgs/MarkerArray.h>
 
@@ -12,6 +14,7 @@
 #include "hires/perception/detector.h"
 #include "hires/robot/posture.h"
 #include "hires/ros/conversions.h"
+#include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 #include "hires/ros/topic_names.h"
 #include "hires/simulation/scan_ghosts.h"
@@ -58,19 +61,20 @@ SimRobotPublisher::SimRobotPublisher(const SimRobotParams& params,
   PublishMap();
 }
 
-ros::Time SimRobotPublisher::StampOf(const SimRobotWorld& world) {
+ros::Time SimRobotPublisher::StampOf(const hires::evaluation::SimRobotWorld& world) {
   ros::Time stamp;
   stamp.fromNSec(1000000000ULL + 1000000ULL * static_cast<std::uint64_t>(world.milliseconds()));
   return stamp;
 }
 
-void SimRobotPublisher::PublishClock(const SimRobotWorld& world) {
+void SimRobotPublisher::PublishClock(const hires::evaluation::SimRobotWorld& world) {
   rosgraph_msgs::Clock clock;
   clock.clock = StampOf(world);
   clock_.publish(clock);
 }
 
-void SimRobotPublisher::PublishFast(const SimRobotWorld& world, const SensorReadings& readings) {
+void SimRobotPublisher::PublishFast(const hires::evaluation::SimRobotWorld& world,
+                                    const hires::evaluation::SensorReadings& readings) {
   const ros::Time stamp = StampOf(world);
   joints_.publish(ToMsg(readings.joints, stamp));
   nav_msgs::Odometry odometry;
@@ -84,7 +88,8 @@ void SimRobotPublisher::PublishFast(const SimRobotWorld& world, const SensorRead
 }
 
 std::vector<std::string> SimRobotPublisher::PublishTick(
-    const SimRobotWorld& world, const SensorReadings& readings,
+    const hires::evaluation::SimRobotWorld& world,
+    const hires::evaluation::SensorReadings& readings,
     const hires::simulation::TruthRecord& truth) {
   const ros::Time stamp = StampOf(world);
   std::vector<std::string> sensors{kTransforms, params_.names.joint_states, params_.names.odometry};
@@ -103,7 +108,8 @@ std::vector<std::string> SimRobotPublisher::PublishTick(
   return sensors;
 }
 
-void SimRobotPublisher::PublishTransforms(const SensorReadings& readings, const ros::Time& stamp) {
+void SimRobotPublisher::PublishTransforms(const hires::evaluation::SensorReadings& readings,
+                                          const ros::Time& stamp) {
   const hires::robot::Robot& robot = scene_->robot;
   tf_.sendTransform(MakeTransform(params_.names.map_frame, params_.names.odometry_frame,
                                   hires::geometry::Lift(readings.X_MO), stamp));
@@ -121,7 +127,7 @@ void SimRobotPublisher::PublishTransforms(const SensorReadings& readings, const 
   tf_.sendTransform(links);
 }
 
-void SimRobotPublisher::PublishLocalisation(const SensorReadings& readings,
+void SimRobotPublisher::PublishLocalisation(const hires::evaluation::SensorReadings& readings,
                                             const ros::Time& stamp) {
   geometry_msgs::PoseWithCovarianceStamped pose;
   pose.header.stamp = stamp;
@@ -130,7 +136,8 @@ void SimRobotPublisher::PublishLocalisation(const SensorReadings& readings,
   amcl_.publish(pose);
 }
 
-void SimRobotPublisher::PublishScan(const SimRobotWorld& world, const SensorReadings& readings,
+void SimRobotPublisher::PublishScan(const hires::evaluation::SimRobotWorld& world,
+                                    const hires::evaluation::SensorReadings& readings,
                                     const ros::Time& stamp) {
   hires::base::Rng rng = scan_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
   std::vector<double> ranges = hires::simulation::ScanLaser(world.simulator(), laser_, &rng);
@@ -152,8 +159,8 @@ void SimRobotPublisher::PublishScan(const SimRobotWorld& world, const SensorRead
 }
 
 /// A camera that turns sees nothing sharp.
-bool SimRobotPublisher::IsLookDue(const SimRobotWorld& world,
-                                  const SensorReadings& readings) const {
+bool SimRobotPublisher::IsLookDue(const hires::evaluation::SimRobotWorld& world,
+                                  const hires::evaluation::SensorReadings& readings) const {
   if (!scene_->surroundings) return false;
   const long period = std::lround(1000.0 * params_.detection_period);
   if (last_look_ && world.milliseconds() != *last_look_ &&
@@ -170,7 +177,8 @@ bool SimRobotPublisher::IsLookDue(const SimRobotWorld& world,
   return true;
 }
 
-void SimRobotPublisher::PublishDetections(const SimRobotWorld& world, const ros::Time& stamp) {
+void SimRobotPublisher::PublishDetections(const hires::evaluation::SimRobotWorld& world,
+                                          const ros::Time& stamp) {
   // The camera is where the robot really is; what it sees is told in its own frame.
   const auto& simulator = world.simulator();
   const auto& robot = scene_->robot;
@@ -193,7 +201,7 @@ void SimRobotPublisher::PublishDetections(const SimRobotWorld& world, const ros:
   detections_.publish(detections);
 }
 
-void SimRobotPublisher::PublishTruth(const SimRobotWorld& world,
+void SimRobotPublisher::PublishTruth(const hires::evaluation::SimRobotWorld& world,
                                      const hires::simulation::TruthRecord& truth,
                                      const ros::Time& stamp) {
   hires::WorldState state = ToMsg(world.simulator().GetWorldState());

@@ -9,10 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "hires/evaluation/sim_robot_world.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/ros/trace_markers.h"
 #include "hires/simulation/truth_record.h"
-#include "nodes/sim_worker/sim_robot_world.h"
+#include "nodes/sim_worker/sim_robot_params.h"
 
 namespace hires_ros {
 
@@ -25,27 +26,32 @@ class SimRobotPublisher {
 
   /// What comes at 100 Hz: joints and odometry, then the clock, so that no node knows a time whose
   /// sensors are not on their way.
-  void PublishFast(const SimRobotWorld& world, const SensorReadings& readings);
+  void PublishFast(const hires::evaluation::SimRobotWorld& world,
+                   const hires::evaluation::SensorReadings& readings);
 
   /// What comes with every tick of 0.05 s, before the fast ones of the same moment: transforms,
   /// localisation, laser, and the detector when it is due. Called again, it publishes the same
   /// again.
   /// @return topics that have a message of this stamp, fast ones included.
-  std::vector<std::string> PublishTick(const SimRobotWorld& world, const SensorReadings& readings,
+  std::vector<std::string> PublishTick(const hires::evaluation::SimRobotWorld& world,
+                                       const hires::evaluation::SensorReadings& readings,
                                        const hires::simulation::TruthRecord& truth);
 
-  void PublishClock(const SimRobotWorld& world);
-  static ros::Time StampOf(const SimRobotWorld& world);  ///< begins at 1 s; 0 means "no time yet"
+  void PublishClock(const hires::evaluation::SimRobotWorld& world);
+  static ros::Time StampOf(
+      const hires::evaluation::SimRobotWorld& world);  ///< begins at 1 s; 0 means "no time yet"
 
  private:
-  void PublishTransforms(const SensorReadings& readings, const ros::Time& stamp);
-  void PublishLocalisation(const SensorReadings& readings, const ros::Time& stamp);
-  void PublishScan(const SimRobotWorld& world, const SensorReadings& readings,
-                   const ros::Time& stamp);
-  bool IsLookDue(const SimRobotWorld& world, const SensorReadings& readings) const;
-  void PublishDetections(const SimRobotWorld& world, const ros::Time& stamp);
-  void PublishTruth(const SimRobotWorld& world, const hires::simulation::TruthRecord& truth,
-                    const ros::Time& stamp);
+  void PublishTransforms(const hires::evaluation::SensorReadings& readings, const ros::Time& stamp);
+  void PublishLocalisation(const hires::evaluation::SensorReadings& readings,
+                           const ros::Time& stamp);
+  void PublishScan(const hires::evaluation::SimRobotWorld& world,
+                   const hires::evaluation::SensorReadings& readings, const ros::Time& stamp);
+  bool IsLookDue(const hires::evaluation::SimRobotWorld& world,
+                 const hires::evaluation::SensorReadings& readings) const;
+  void PublishDetections(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
+  void PublishTruth(const hires::evaluation::SimRobotWorld& world,
+                    const hires::simulation::TruthRecord& truth, const ros::Time& stamp);
   void PublishMap();
 
   const SimRobotParams params_;

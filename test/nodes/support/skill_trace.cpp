@@ -12,7 +12,8 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "nodes/sim_worker/sim_robot_world.h"
+#include "hires/evaluation/sim_robot_world.h"
+#include "nodes/sim_worker/sim_robot_params.h"
 
 namespace {
 
@@ -114,9 +115,9 @@ int main(int argc, char** argv) {
     const bool is_scenario = where.find(".yaml") != std::string::npos;
     (is_scenario ? params.scenario : params.area) = where;
     const auto setup = hires::imagination::LoadImaginationSetup(params.setup);
-    const auto start = hires_ros::StartOf(setup, params);
+    const auto start = hires::evaluation::StartOf(setup, params.scenario, params.area);
     RobotSimulator simulator(setup.scene, {}, start.world, start.robot, hires::base::Rng(1),
-                             setup.physics, hires_ros::LevelFor(*setup.scene));
+                             setup.physics, hires::evaluation::LevelFor(*setup.scene));
     if (simulator.level() == hires::simulation::LevelOfDetail::kPlanar) {
       Remember(start.world, &simulator);
     }

@@ -3,16 +3,16 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "nodes/sim_worker/sim_robot_world.h"
+#include "hires/evaluation/sim_robot_world.h"
 
-namespace hires_ros {
+namespace hires::evaluation {
 namespace {
 
-using hires::base::ToLower;
-using hires::geometry::Pose2;
-using hires::geometry::Pose3;
-using hires::world::ObjectState;
-using hires::world::WorldState;
+using base::ToLower;
+using geometry::Pose2;
+using geometry::Pose3;
+using world::ObjectState;
+using world::WorldState;
 
 constexpr double kDropDistance = 0.75;  // [m] from the base to where things fall to the floor
 constexpr double kDropHeight = 0.4;     // [m]
@@ -33,17 +33,17 @@ void Erase(const std::string& object, WorldState* state) {
 std::string Unknown(const WorldState& state, const std::string& object) {
   std::vector<std::string> names;
   for (const ObjectState& known : state.objects) names.push_back(known.name);
-  return hires::base::UnknownName("object", object, names);
+  return base::UnknownName("object", object, names);
 }
 
 }  // namespace
 
 /// What joints and empty hands have been told and have not done yet, from now on.
-hires::robot::Command SimRobotWorld::RestOfMotions(const WorldState& world) const {
-  hires::robot::Command rest;
+robot::Command SimRobotWorld::RestOfMotions(const WorldState& world) const {
+  robot::Command rest;
   for (const auto& [group, sent] : trajectories_) {
-    hires::robot::JointTrajectory left{sent.trajectory.joints, {}};
-    for (hires::robot::TrajectoryPoint point : sent.trajectory.points) {
+    robot::JointTrajectory left{sent.trajectory.joints, {}};
+    for (robot::TrajectoryPoint point : sent.trajectory.points) {
       point.time -= time() - sent.time;
       if (point.time > 0.0) left.points.push_back(std::move(point));
     }
@@ -60,8 +60,8 @@ hires::robot::Command SimRobotWorld::RestOfMotions(const WorldState& world) cons
 
 /// A simulator cannot be changed from outside, so another one goes on from its state: at rest, from
 /// where base and joints take up their motions again.
-std::string SimRobotWorld::Rebuild(WorldState world, const hires::robot::RobotState& robot) {
-  hires::simulation::Variation variation = variation_;
+std::string SimRobotWorld::Rebuild(WorldState world, const robot::RobotState& robot) {
+  simulation::Variation variation = variation_;
   variation.start_offset = {};  // robot and objects stand where they are, no further draw
   variation.object_offset = {0.0, 0.0};
   variation.grasp_offset = {0.0, 0.0};
@@ -70,12 +70,12 @@ std::string SimRobotWorld::Rebuild(WorldState world, const hires::robot::RobotSt
     if (RidesAlong(object, robot.X_MB)) object.V_MO = {};  // as its carrier
   }
   try {
-    auto simulator = std::make_unique<hires::simulation::RobotSimulator>(
+    auto simulator = std::make_unique<simulation::RobotSimulator>(
         setup_->scene, variation, world, robot, simulator_rng_.Fork(kFirstRebuilt + num_rebuilt_),
         setup_->physics, LevelFor(*setup_->scene));
     simulator->Send(RestOfMotions(world));
     simulator_ = std::move(simulator);
-  } catch (const hires::base::ConfigError& error) {
+  } catch (const base::ConfigError& error) {
     return error.what();
   }
   ++num_rebuilt_;
@@ -87,24 +87,22 @@ std::string SimRobotWorld::Rebuild(WorldState world, const hires::robot::RobotSt
 /// In a hand, or over the base.
 bool SimRobotWorld::RidesAlong(const ObjectState& object, const Pose2& X_MB) const {
   if (!object.attached_to.empty()) return true;
-  const Pose3 X_BO = hires::geometry::Lift(X_MB).Inverse() * object.X_MO;
+  const Pose3 X_BO = geometry::Lift(X_MB).Inverse() * object.X_MO;
   return X_BO.translation.z() > kLowestLoad &&
-         hires::geometry::Contains(setup_->scene->robot.profile.footprint,
-                                   X_BO.translation.head<2>());
+         geometry::Contains(setup_->scene->robot.profile.footprint, X_BO.translation.head<2>());
 }
 
 std::string SimRobotWorld::Push(const Pose2& offset) {
   if (!std::isfinite(offset.x) || !std::isfinite(offset.y) || !std::isfinite(offset.yaw)) {
     return "the offset is not finite; give numbers";
   }
-  hires::robot::RobotState robot = simulator_->GetRobotState();
+  robot::RobotState robot = simulator_->GetRobotState();
   const Pose2 X_MBold = robot.X_MB;
   robot.X_MB = robot.X_MB * offset;
   WorldState world = simulator_->GetWorldState();
   for (ObjectState& object : world.objects) {
     if (!RidesAlong(object, X_MBold)) continue;
-    object.X_MO =
-        hires::geometry::Lift(robot.X_MB) * hires::geometry::Lift(X_MBold).Inverse() * object.X_MO;
+    object.X_MO = geometry::Lift(robot.X_MB) * geometry::Lift(X_MBold).Inverse() * object.X_MO;
   }
   return Rebuild(std::move(world), robot);
 }
@@ -128,7 +126,7 @@ std::string SimRobotWorld::Place(const std::string& object, const std::string& m
   try {
     if (!model.empty()) placed.model = setup_->ModelOf(model);
     if (placed.model.empty()) placed.model = setup_->ModelOf(object);
-  } catch (const hires::base::ConfigError& error) {
+  } catch (const base::ConfigError& error) {
     return error.what();
   }
   Erase(object, &world);
@@ -144,14 +142,14 @@ std::string SimRobotWorld::Drop(const std::string& object) {
   std::string refusal;
   for (int i = 0; i < kDropBearings; ++i) {
     const double bearing = 2.0 * M_PI * i / kDropBearings;
-    Pose3 X_MO = hires::geometry::Lift(
+    Pose3 X_MO = geometry::Lift(
         X_MB * Pose2{kDropDistance * std::cos(bearing), kDropDistance * std::sin(bearing), 0.0},
         kDropHeight);
-    X_MO.rotation = X_MO.rotation * hires::geometry::RotationFromRpy(kDropTilt, 0.0, 0.0);
+    X_MO.rotation = X_MO.rotation * geometry::RotationFromRpy(kDropTilt, 0.0, 0.0);
     refusal = Place(object, "", X_MO);
     if (refusal.empty()) return "";
   }
   return "there is no free floor around the robot: " + refusal;
 }
 
-}  // namespace hires_ros
+}  // namespace hires::evaluation

@@ -1,4 +1,4 @@
-#include "nodes/sim_worker/sim_robot_world.h"
+#include "hires/evaluation/sim_robot_world.h"
 
 #include <fmt/format.h>
 
@@ -10,17 +10,17 @@
 #include "hires/evaluation/scenario.h"
 #include "hires/simulation/free_start.h"
 
-namespace hires_ros {
+namespace hires::evaluation {
 namespace {
 
-using hires::base::ConfigError;
-using hires::base::ToLower;
-using hires::geometry::Pose2;
-using hires::geometry::Pose3;
-using hires::geometry::Twist2;
-using hires::imagination::ImaginationSetup;
-using hires::imagination::StartState;
-using hires::simulation::RobotSimulator;
+using base::ConfigError;
+using base::ToLower;
+using geometry::Pose2;
+using geometry::Pose3;
+using geometry::Twist2;
+using imagination::ImaginationSetup;
+using imagination::StartState;
+using simulation::RobotSimulator;
 
 constexpr long kSettling = 500;  // [ms]
 enum Streams : std::uint64_t { kVariation, kSimulator, kControl, kOdometer };
@@ -32,27 +32,27 @@ const T& Lookup(const std::map<std::string, T>& known, const std::string& kind,
   if (found != known.end()) return found->second;
   std::vector<std::string> names;
   for (const auto& entry : known) names.push_back(entry.first);
-  throw ConfigError(where + ": " + hires::base::UnknownName(kind, name, names));
+  throw ConfigError(where + ": " + base::UnknownName(kind, name, names));
 }
 
-void SetPostures(const hires::robot::Robot& robot, const hires::evaluation::Scenario& scenario,
-                 const std::string& where, hires::robot::JointPositions* joints) {
+void SetPostures(const robot::Robot& robot, const Scenario& scenario, const std::string& where,
+                 robot::JointPositions* joints) {
   if (!robot.profile.upper_body) return;  // nothing above the base moves
-  const hires::robot::UpperBodyProfile& body = *robot.profile.upper_body;
+  const robot::UpperBodyProfile& body = *robot.profile.upper_body;
   (*joints)[body.torso_joint] = Lookup(body.torso_postures, "torso posture", scenario.torso, where);
   for (const auto& [name, posture] : scenario.arms) {
-    const hires::robot::ArmProfile& arm = Lookup(body.arms, "arm", name, where);
+    const robot::ArmProfile& arm = Lookup(body.arms, "arm", name, where);
     const auto& positions = Lookup(arm.postures, "posture of " + name, posture, where).front();
     for (std::size_t i = 0; i < arm.joints.size(); ++i) (*joints)[arm.joints[i]] = positions[i];
   }
 }
 
 StartState StartOfScenario(const ImaginationSetup& setup, const std::string& path) {
-  const hires::evaluation::Scenario scenario = hires::evaluation::ReadScenario(path);
+  const Scenario scenario = ReadScenario(path);
   StartState start;
   start.robot.X_MB = scenario.X_MB;
   SetPostures(setup.scene->robot, scenario, path, &start.robot.joints);
-  for (const hires::evaluation::ScenarioObject& object : scenario.objects) {
+  for (const ScenarioObject& object : scenario.objects) {
     const std::string& kind = object.model.empty() ? object.name : object.model;
     start.world.objects.push_back({object.name, setup.ModelOf(kind), object.X_MO, {}, ""});
   }
@@ -69,26 +69,26 @@ long StepsPerMillisecond(double time_step) {
 
 }  // namespace
 
-hires::simulation::LevelOfDetail LevelFor(const hires::simulation::Scene& scene) {
-  return scene.robot.profile.upper_body ? hires::simulation::LevelOfDetail::kPlanar
-                                        : hires::simulation::LevelOfDetail::kTray;
+simulation::LevelOfDetail LevelFor(const simulation::Scene& scene) {
+  return scene.robot.profile.upper_body ? simulation::LevelOfDetail::kPlanar
+                                        : simulation::LevelOfDetail::kTray;
 }
 
-StartState StartOf(const ImaginationSetup& setup, const SimRobotParams& params) {
-  return params.scenario.empty()
-             ? hires::imagination::MakeStartState(setup, params.area, std::vector<std::string>{})
-             : StartOfScenario(setup, params.scenario);
+StartState StartOf(const ImaginationSetup& setup, const std::string& scenario,
+                   const std::string& area) {
+  return scenario.empty() ? imagination::MakeStartState(setup, area, std::vector<std::string>{})
+                          : StartOfScenario(setup, scenario);
 }
 
 SimRobotWorld::SimRobotWorld(const ImaginationSetup& setup, const StartState& start,
                              std::uint64_t seed)
     : setup_(std::make_shared<const ImaginationSetup>(setup)),
-      control_rng_(hires::base::Rng(seed).Fork(kControl)),
-      simulator_rng_(hires::base::Rng(seed).Fork(kSimulator)),
+      control_rng_(base::Rng(seed).Fork(kControl)),
+      simulator_rng_(base::Rng(seed).Fork(kSimulator)),
       steps_per_millisecond_(StepsPerMillisecond(setup.physics.time_step)) {
-  const hires::base::Rng rng(seed);
-  variation_ = hires::simulation::WithFreeStart(
-      hires::imagination::SampleVariation(*setup.uncertainty, rng.Fork(kVariation)), *setup.scene,
+  const base::Rng rng(seed);
+  variation_ = simulation::WithFreeStart(
+      imagination::SampleVariation(*setup.uncertainty, rng.Fork(kVariation)), *setup.scene,
       start.robot);
   odometry_scale_ = 1.0 + rng.Fork(kOdometer).Normal(0.0, variation_.wheel_slip);
   simulator_ =
@@ -116,8 +116,8 @@ void SimRobotWorld::MoveOdometry(double dt) {
   X_OB_ = X_OB_ * turn * Pose2{length * V_B.vx, length * V_B.vy, 0.0} * turn;
 }
 
-void SimRobotWorld::Apply(const hires::robot::Command& command) {
-  hires::robot::Command rest = command;
+void SimRobotWorld::Apply(const robot::Command& command) {
+  robot::Command rest = command;
   rest.base_velocity.reset();
   simulator_->Send(rest);
   NoteSent(rest);
@@ -129,7 +129,7 @@ void SimRobotWorld::Apply(const hires::robot::Command& command) {
   }
 }
 
-void SimRobotWorld::NoteSent(const hires::robot::Command& command) {
+void SimRobotWorld::NoteSent(const robot::Command& command) {
   for (const auto& [group, trajectory] : command.trajectories) {
     trajectories_[group] = {time(), trajectory};
   }
@@ -137,7 +137,7 @@ void SimRobotWorld::NoteSent(const hires::robot::Command& command) {
 }
 
 void SimRobotWorld::Deliver(const Twist2& velocity) {
-  hires::robot::Command command;
+  robot::Command command;
   command.base_velocity = velocity;
   simulator_->Send(command);
   const double period = std::min(time() - last_delivery_, 0.2);
@@ -155,7 +155,7 @@ void SimRobotWorld::DeliverLate() {
 }
 
 SensorReadings SimRobotWorld::Sense() {
-  const hires::robot::Observation seen = simulator_->Observe(0.0);
+  const robot::Observation seen = simulator_->Observe(0.0);
   SensorReadings readings;
   readings.X_MB = seen.X_MB;
   readings.X_MO = seen.X_MB * X_OB_.Inverse();
@@ -168,4 +168,4 @@ SensorReadings SimRobotWorld::Sense() {
   return readings;
 }
 
-}  // namespace hires_ros
+}  // namespace hires::evaluation

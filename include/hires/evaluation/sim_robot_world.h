@@ -1,0 +1,95 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/base/rng.h"
+#include "hires/imagination/imagination_setup.h"
+#include "hires/sensing/readings.h"
+#include "hires/simulation/robot_simulator.h"
+
+namespace hires::evaluation {
+
+/// Where the robot and all loose objects are at first.
+/// @param scenario  file; empty: the world's own objects, the robot at `area`.
+/// @throws base::ConfigError naming scenario, area, arm, posture or object.
+imagination::StartState StartOf(const imagination::ImaginationSetup& setup,
+                                const std::string& scenario, const std::string& area);
+
+/// As finely as the robot can be played: level planar where something above its base moves.
+simulation::LevelOfDetail LevelFor(const simulation::Scene& scene);
+
+/// What the robot's own sensors say at one moment.
+struct SensorReadings {
+  sensing::OdometryReading odometry;
+  sensing::JointReading joints;
+  geometry::Pose2 X_MB;                     ///< where its localisation says that it stands
+  geometry::Pose2 X_MO;                     ///< where its odometry began, by the same
+  std::vector<geometry::Polygon> ghosts_M;  ///< seen by the laser, though not there
+};
+
+/// The robot and its world as they really are: a simulator with a truth that was drawn once and is
+/// not published, odometry that drifts, and a command line of base velocities that stalls now and
+/// then. It sees no topics and no clock but its own; the same calls give the same bits.
+class SimRobotWorld {
+ public:
+  /// The load settles for half a second that counts nowhere.
+  /// @throws base::ConfigError as RobotSimulator.
+  SimRobotWorld(const imagination::ImaginationSetup& setup, const imagination::StartState& start,
+                std::uint64_t seed);
+
+  void Apply(const robot::Command& command);
+  void Advance(long milliseconds);  ///< of its own time
+  SensorReadings Sense();           ///< draws noise
+
+  long milliseconds() const { return milliseconds_; }  ///< since the start
+  const simulation::RobotSimulator& simulator() const { return *simulator_; }
+  /// How the camera's recogniser errs.
+  double detection_noise() const { return variation_.detection_noise; }          ///< [m]
+  double detection_noise_yaw() const { return variation_.detection_noise_yaw; }  ///< [rad]
+
+  // What tests and demonstrations do to it. All answer with why not, or empty.
+  std::string Push(const geometry::Pose2& offset);  ///< new base in the old base frame
+  std::string Remove(const std::string& object);
+  std::string Place(const std::string& object, const std::string& model,
+                    const geometry::Pose3& X_MO);
+  std::string Drop(const std::string& object);  ///< off the tray or out of the hand, to the floor
+
+ private:
+  double time() const { return 0.001 * static_cast<double>(milliseconds_); }
+  void Deliver(const geometry::Twist2& velocity);
+  void DeliverLate();
+  void MoveOdometry(double dt);
+  void NoteSent(const robot::Command& command);
+  robot::Command RestOfMotions(const world::WorldState& world) const;
+  std::string Rebuild(world::WorldState world, const robot::RobotState& robot);
+  bool RidesAlong(const world::ObjectState& object, const geometry::Pose2& X_MB) const;
+
+  std::shared_ptr<const imagination::ImaginationSetup> setup_;
+  base::Rng control_rng_, simulator_rng_;
+  std::uint64_t num_rebuilt_{0};
+  long steps_per_millisecond_{1};
+  simulation::Variation variation_;
+  double odometry_scale_{1.0};  // wheels slip: what odometry counts per metre
+  std::unique_ptr<simulation::RobotSimulator> simulator_;
+  long milliseconds_{0};
+  geometry::Pose2 X_OB_;
+
+  /// What a group of joints was told last.
+  struct SentTrajectory {
+    double time;  // [s]
+    robot::JointTrajectory trajectory;
+  };
+  std::map<std::string, SentTrajectory> trajectories_;     // by group
+  std::map<std::string, robot::GripperCommand> grippers_;  // by arm
+
+  // A control cycle that comes late: its commands wait until then.
+  double last_delivery_{-1e9};  // [s]
+  double late_until_{-1e9};     // [s]
+  std::optional<geometry::Twist2> held_back_;
+};
+
+}  // namespace hires::evaluation
