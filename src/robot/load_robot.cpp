@@ -11,4 +11,9 @@ Robot LoadAnyRobot(const std::string& path) {
   return ending == ".urdf" ? LoadRobotFromUrdf(path) : LoadRobot(path);
 }
 
+std::string ReadUrdfOf(const std::string& path, const RobotProfile& profile) {
+  const auto folder = std::filesystem::path(path).parent_path();
+  return base::ReadTextFile((folder / profile.urdf).lexically_normal().string());
+}
+
 }  // namespace hires::robot

@@ -25,9 +25,9 @@ class SimRobotWorldTest : public ::testing::Test {
  protected:
   static imagination::ImaginationSetup Setup(const std::string& uncertainty = "none") {
     imagination::ImaginationSetup setup;
-    setup.scene = test_support::RoomScene();
+    setup.scene = hires::test_support::RoomScene();
     setup.skills = std::make_shared<const skills::SkillSet>(
-        skills::MakeSkillSet(test_support::Room(), test_support::TrayRobot(), {}, {}));
+        skills::MakeSkillSet(hires::test_support::Room(), hires::test_support::TrayRobot(), {}, {}));
     setup.uncertainty = std::make_shared<const imagination::Uncertainty>(
         imagination::UncertaintyFromText(uncertainty, "test"));
     setup.object_models = {{"mill1", "mill"}};
@@ -40,7 +40,7 @@ class SimRobotWorldTest : public ::testing::Test {
     const Pose2 X_MB{1.0, 2.0, 0.0};
     imagination::StartState start;
     start.robot.X_MB = X_MB;
-    start.world.objects = {test_support::OnTray("mill1", "mill", X_MB)};
+    start.world.objects = {hires::test_support::OnTray("mill1", "mill", X_MB)};
     return start;
   }
   /// Drives ahead for some ticks, as somebody who commands at 10 Hz.
@@ -162,7 +162,7 @@ TEST(StartOfTest, ScenariosOfThePackageHaveAStart) {
   EXPECT_NE(start.world.Find("book1"), nullptr);
   EXPECT_NEAR(start.robot.X_MB.x, 12.5, 1e-9);
   EXPECT_NEAR(start.robot.joints.at("l_elbow_flex_joint"), -2.05, 1e-9);
-  EXPECT_THAT(test_support::ConfigErrorOf([&] { StartOf(setup, "", "nowhere"); }),
+  EXPECT_THAT(hires::test_support::ConfigErrorOf([&] { StartOf(setup, "", "nowhere"); }),
               HasSubstr("nowhere"));
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hires/base/error.h"
+#include "hires/base/text.h"
 
 namespace hires::robot::load_robot_test {
 namespace {
@@ -14,6 +15,15 @@ TEST(LoadAnyRobotTest, ProfileAndBareUrdfGiveTheSameCart) {
   const Robot bare = LoadAnyRobot(kRoot + "/urdf/cart.urdf");
   EXPECT_EQ(bare.model.hash, cart.model.hash);
   EXPECT_EQ(bare.profile.tray_link, cart.profile.tray_link);
+}
+
+TEST(ReadUrdfOfTest, ProfileAndBareUrdfGiveTheSameText) {
+  for (const char* path : {"/config/robots/cart.yaml", "/urdf/cart.urdf"}) {
+    const Robot robot = LoadAnyRobot(kRoot + path);
+    EXPECT_EQ(ReadUrdfOf(kRoot + path, robot.profile),
+              base::ReadTextFile(kRoot + "/urdf/cart.urdf"))
+        << path;
+  }
 }
 
 TEST(LoadAnyRobotTest, AFileThatIsMissingIsAnErrorOfItsKind) {

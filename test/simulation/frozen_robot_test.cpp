@@ -6,7 +6,7 @@
 #include "simulation/arm_scene.h"
 #include "support/messages.h"
 
-namespace hires::simulation {
+namespace hires::simulation::frozen_robot_test {
 namespace {
 
 using namespace test_arm;  // NOLINT: the scene's words
@@ -51,4 +51,4 @@ TEST(FrozenRobotTest, TouchesWithItsExactShapes) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::frozen_robot_test

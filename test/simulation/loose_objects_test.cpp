@@ -7,7 +7,7 @@
 
 #include "support/scenes.h"
 
-namespace hires::simulation {
+namespace hires::simulation::loose_objects_test {
 namespace {
 
 using geometry::Pose3;
@@ -85,4 +85,4 @@ TEST_F(LooseObjectsTest, OnlyLooseOnesCanBePutElsewhere) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::loose_objects_test

@@ -6,7 +6,7 @@
 
 #include "support/scenes.h"
 
-namespace hires::simulation {
+namespace hires::simulation::moving_base_test {
 namespace {
 
 using geometry::Pose2;
@@ -104,4 +104,4 @@ TEST(DisturbancesTest, KeepTheLatestTimeOfEach) {
 }
 
 }  // namespace
-}  // namespace hires::simulation
+}  // namespace hires::simulation::moving_base_test

@@ -5,12 +5,12 @@
 #include <ros/ros.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <future>
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
+#include "hires/robot/load_robot.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/pr2_gripper_command.h"
 #include "hires/ros/robot_messages.h"
@@ -29,11 +29,6 @@ constexpr auto kShort = std::chrono::milliseconds(20);    // between two looks a
 constexpr auto kRepeat = std::chrono::milliseconds(100);  // an unanswered tick is sent again
 constexpr auto kLostCommand = std::chrono::seconds(2);    // announced, and has not come
 constexpr auto kLag = std::chrono::milliseconds(200);     // that is made up for; more is not
-
-std::string ReadUrdf(const std::string& robot_path, const hires::robot::RobotProfile& profile) {
-  const auto folder = std::filesystem::path(robot_path).parent_path();
-  return hires::base::ReadTextFile((folder / profile.urdf).lexically_normal().string());
-}
 
 std::vector<std::string> JointsOf(const hires::robot::Robot& robot, const std::string& group) {
   if (!robot.profile.upper_body) return {};
@@ -55,7 +50,7 @@ SimRobotNode::SimRobotNode(const SimRobotParams& params,
       truth_(setup.standing),
       is_held_(params.hold) {
   truth_.Look(world_.simulator());
-  nh->setParam(params.names.robot_description, ReadUrdf(params.setup.robot, robot_.profile));
+  nh->setParam(params.names.robot_description, hires::robot::ReadUrdfOf(params.setup.robot, robot_.profile));
   AdvertiseTick(nh);
   Subscribe(nh);
   Serve(nh);

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 #include <ros/package.h>
 
-#include <filesystem>
 
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/imagination/rollout.h"
+#include "hires/robot/load_robot.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/private_params.h"
 #include "hires/ros/topic_names.h"
@@ -44,12 +44,6 @@ void RequireActions(std::uint64_t wanted, const hires::skills::ActionSet& own) {
   if (!why_not.empty()) throw HashDiffers(why_not);
 }
 
-/// The URDF behind a robot's profile, or the URDF that was given in place of one.
-std::string ReadUrdf(const std::string& robot_path, const hires::robot::RobotProfile& profile) {
-  const auto folder = std::filesystem::path(robot_path).parent_path();
-  return hires::base::ReadTextFile((folder / profile.urdf).lexically_normal().string());
-}
-
 }  // namespace
 
 SimWorkerParams LoadSimWorkerParams() {
@@ -79,7 +73,7 @@ SimWorkerNode::SimWorkerNode(const SimWorkerParams& params, imagination::Imagina
       server_(
           *nh, WorkerName(params.index, kRollout), [this](GoalHandle goal) { OnGoal(goal); },
           [this](GoalHandle goal) { OnCancel(goal); }, false) {
-  nh->setParam("robot_description", ReadUrdf(params.setup.robot, setup_.scene->robot.profile));
+  nh->setParam("robot_description", hires::robot::ReadUrdfOf(params.setup.robot, setup_.scene->robot.profile));
   updater_.setHardwareID(fmt::format("worker_{}", params.index));
   updater_.add("rollouts", this, &SimWorkerNode::Diagnose);
   heartbeat_ = nh->createTimer(ros::Duration(1.0),
