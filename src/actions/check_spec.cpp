@@ -82,10 +82,10 @@ void CheckGroups(const ActionSpec& spec) {
 void CheckDriving(const ActionSpec& spec) {
   if (spec.driving == Driving::kNone) return;
   if (spec.groups.count(kBaseGroup) == 0) {
-    Refuse(spec, "it drives and does not need the group 'base', wanted both or none");
+    Refuse(spec, "it drives, but its groups lack 'base'; add the group, or set driving to kNone");
   }
   if (spec.driving == Driving::kRoundObstacles && !HasKind(spec, ParameterKind::kArea)) {
-    Refuse(spec, "it drives round obstacles, wanted a parameter of the kind 'area' that tells to");
+    Refuse(spec, "it drives round obstacles, but has no parameter of the kind 'area' to drive to");
   }
 }
 

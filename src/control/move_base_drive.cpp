@@ -171,7 +171,7 @@ std::unique_ptr<skills::Skill> MakeMoveBaseDrive(const skills::SkillSet& skills,
                                                  std::shared_ptr<MoveBaseServer> server,
                                                  std::function<bool()> may_drive,
                                                  const MoveBaseDriveParams& params) {
-  HIRES_CHECK(IsForMoveBase(skills, action), "the action is none for move_base");
+  HIRES_CHECK(IsForMoveBase(skills, action), "move_base cannot drive this action");
   skills::MakeSkill(skills, action);  // its words for what is wrong with an action
   return std::make_unique<MoveBaseDrive>(
       std::move(server), std::move(may_drive), params, skills.driving, skills.blind,

@@ -33,9 +33,10 @@ PlannerValues ToPutBack(const MoveBaseJournal& journal, const PlannerValues& hav
       values[name] = original;
     } else if (!WhatDiffers({{name, original}}, having).empty()) {
       Log(LogLevel::kWarn,
-          fmt::format("{}: {} was set to {:g} by somebody else during the drive, and stays so; it "
-                      "was {:g} before",
-                      journal.server, name, now->second, original));
+          fmt::format(
+              "{}: {} was set to {:g} by another program during the drive, and stays so; it "
+              "was {:g} before",
+              journal.server, name, now->second, original));
     }
   }
   return values;
@@ -126,7 +127,7 @@ void MotionSetKeeper::Verify() const {
   const std::string differs = WhatDiffers(journal->in_force, Call(journal->server, {}));
   if (!differs.empty()) {
     throw ConfigError(
-        fmt::format("{}: was changed by somebody else: {}", journal->server, differs));
+        fmt::format("{}: was changed by another program: {}", journal->server, differs));
   }
 }
 

@@ -33,14 +33,14 @@ void RequireMeansFor(const MoveBaseDriveParams& navigation, const RobotNames& na
   if (!navigation.is_used) return;
   if (names.move_base.action.empty()) {
     throw ConfigError(
-        "navigation is move_base, but the robot's names tell none (move_base.action); name it "
+        "navigation is move_base, but the robot's names have no move_base.action; name it "
         "there or take navigation own");
   }
   if (!is_guard_there) {
     throw ConfigError(
-        "navigation is move_base without a guard of the base, so that nobody would bring the "
-        "motion "
-        "set to move_base's planner, nor stop it; set ~guard and start base_guard with ~navigation "
+        "navigation is move_base without a guard of the base: nothing would set the motion set's "
+        "limits in move_base's planner, nor stop it; set ~guard and start base_guard with "
+        "~navigation "
         "move_base, or take navigation own");
   }
 }

@@ -22,7 +22,6 @@ using imagination::ImaginationSetup;
 using simulation::RobotSimulator;
 
 constexpr double kTick = 0.02;     // [s] between two looks of the guard, as its node has it
-constexpr int kLookSteps = 5;      // the load is looked at every fifth step
 constexpr double kQuiet = 0.6;     // [s] that the base must have stood ...
 constexpr double kStill = 0.004;   // [rad] ... with its load no more tilted than this
 constexpr double kAtOnce = 1.0e4;  // [m/s^2] more than any speed needs within a step
@@ -65,7 +64,8 @@ class Player {
         rollout_(setup.rollout),
         simulator_(*simulator),
         guard_(braking.guard),
-        watch_(setup.standing) {}
+        watch_(setup.standing),
+        steps_per_look_(world::StepsPerLook(simulator->time_step())) {}
 
   BrakingStop Play() {
     StepFor(rollout_.settling_time, [] { return Twist2{}; });
@@ -99,7 +99,7 @@ class Player {
 
   void Step() {
     simulator_.Step();
-    if (++steps_ % kLookSteps == 0) Look();
+    if (++steps_ % steps_per_look_ == 0) Look();
   }
 
   void Look() {
@@ -186,6 +186,7 @@ class Player {
   geometry::Pose2 X_MBbegin_;
   simulation::FallWatch watch_;  // of the load, from the stop's beginning on
   double tilt_{0.0};             // [rad] at the last look
+  const long steps_per_look_;
   long steps_{0};
 };
 

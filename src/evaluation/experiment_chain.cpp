@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 
 namespace hires::evaluation {
@@ -14,14 +15,6 @@ using geometry::Pose3;
 // A chain knows where its robot and its load stand.
 const std::set<std::string> kKnown{"start_x", "start_y", "start_yaw", "object_x", "object_y"};
 enum ChainStreams : std::uint64_t { kRolloutStream, kTruthStream };
-
-imagination::OutcomeCounts Classify(double tilt, const imagination::RolloutParams& params) {
-  imagination::OutcomeCounts counts;
-  counts.notopple = tilt <= params.shaking_tilt;
-  counts.topple = tilt >= params.topple_tilt;
-  counts.shaking = 1 - counts.notopple - counts.topple;
-  return counts;
-}
 
 }  // namespace
 
@@ -63,10 +56,12 @@ std::optional<imagination::RolloutResult> Chain::Play(const std::string& goal, L
   const auto look = [&](const simulation::RobotSimulator& simulator, double tilt) {
     leg->clearance =
         std::min(leg->clearance, clearance.Clearance(simulator.base().X_MB, leg->clearance));
-    if (++samples % 2 == 0) leg->counts_10hz += Classify(tilt, setup_.params);
+    if (++samples % 2 == 0) leg->counts_10hz += imagination::SampleOf(tilt, setup_.params);
   };
+  down_.clear();
+  const auto end = [&](const std::vector<std::string>& down) { down_ = down; };
   return imagination::PlayRollout(setup_, DriveTo(goal, options_.motion_set), next_index_++,
-                                  {cancelled, look});
+                                  {cancelled, look, end});
 }
 
 void Chain::Measure(const std::string& goal, Leg* leg) const {
@@ -103,9 +98,10 @@ bool Chain::SettleLoad(const world::WorldState& final_world, const Pose2& X_MB) 
     const Pose3 X_BO = geometry::Lift(X_MB).Inverse() * final_world.objects[i].X_MO;
     const Pose3& nominal = X_BO_nominal_[i];
     Pose3 X_BO_next = nominal;
-    const bool stands =
-        X_BO.IsFinite() &&
-        world::FallSeen(setup_.standing, world::DepartureFrom(nominal, X_BO)) == world::Fall::kNone;
+    const std::string name = base::ToLower(final_world.objects[i].name);
+    const bool is_down = std::count(down_.begin(), down_.end(), name) > 0;
+    const bool stands = X_BO.IsFinite() && !is_down &&
+                        !world::IsAway(setup_.standing, world::DepartureFrom(nominal, X_BO));
     if (stands) X_BO_next = geometry::Lift(geometry::Flatten(X_BO), nominal.translation.z());
     has_put_back = has_put_back || !stands;
     world::ObjectState& object = setup_.world_state.objects[i];

@@ -54,6 +54,7 @@ class Chain {
   Options options_;
   imagination::RolloutSetup setup_;  // where the next leg starts
   std::vector<geometry::Pose3> X_BO_nominal_;
+  std::vector<std::string> down_;  // at the end of the last leg
   std::string at_;
   int next_index_{0};
 };

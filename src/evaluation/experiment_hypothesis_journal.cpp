@@ -102,10 +102,11 @@ void HypothesisJournal::Load(const HypothesisSetting& setting) {
     const bool fits = run.run >= 1 && run.run <= setting.runs && !Has(run.run, run.imagines) &&
                       run.seed == SeedOfRun(setting.seed, run.run);
     if (!fits) {
-      throw base::ConfigError(fmt::format(
-          "{}: run {} {} imagination is there twice, or is none of this experiment's {}; move the "
-          "journal away or remove this line",
-          where, run.run, run.imagines ? "with" : "without", setting.runs));
+      throw base::ConfigError(
+          fmt::format("{}: run {} {} imagination is there twice, or is not among this experiment's "
+                      "{} runs; move the "
+                      "journal away or remove this line",
+                      where, run.run, run.imagines ? "with" : "without", setting.runs));
     }
     runs_.push_back(run);
   }

@@ -19,7 +19,7 @@ constexpr double kForever = std::numeric_limits<double>::infinity();
 std::string OutcomeText(ImagineAnswered::Outcome outcome) {
   switch (outcome) {
     case ImagineAnswered::Outcome::kNoWorker:
-      return "nobody is there to imagine it";
+      return "no worker is there to imagine it";
     case ImagineAnswered::Outcome::kNothingFinished:
       return "nothing was finished in time";
     case ImagineAnswered::Outcome::kUndecided:
@@ -67,7 +67,7 @@ void ImaginationDesk::TakeRanked(Question* question) {
   std::string wrong = Fits(question->action, best)
                           ? run.Instantiate(question->target, best.arguments, session_.domain(),
                                             session_.operators())
-                          : "it is none of the alternatives";
+                          : "it is not among the alternatives";
   if (!wrong.empty()) {
     question->why_not =
         fmt::format("the recommended {} cannot be taken: {}", base::ToString(best), wrong);
@@ -168,9 +168,9 @@ void ImaginationDesk::TakeDefaults(Question* question) {
   if (question->request != 0 || why.empty()) {
     why = "there was no answer in time" + (why.empty() ? "" : "; " + why);
   }
-  session_.Warning(fmt::format(
-      "{} is carried out without imagination, and nobody knows how likely it succeeds: {}",
-      base::ToString(target.action), why));
+  session_.Warning(
+      fmt::format("{} is carried out without imagination, how likely it succeeds is unknown: {}",
+                  base::ToString(target.action), why));
   target.note = "not imagined: " + why;
   StepRun& step = session_.run().at(question->step);
   step.phase = StepPhase::kSkipped;

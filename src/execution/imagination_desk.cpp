@@ -11,7 +11,7 @@ namespace hires::execution {
 namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
-constexpr double kShift = 0.5;      // [s] by which a deadline moves before anybody is told
+constexpr double kShift = 0.5;      // [s] by which a deadline moves before it is published
 constexpr double kForesight = 0.8;  // [s] before a deadline it is looked at again
 
 double MinSuccessOf(const planning::OperatorData& operators, const std::string& name) {

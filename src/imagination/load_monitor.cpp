@@ -74,8 +74,8 @@ void LoadMonitor::LookAt(Object* object) {
 void LoadMonitor::PutBackIfDown(Object* object) {
   const world::FallDetector& detector = object->watch.detector();
   const world::Departure& now = detector.now();
-  const bool is_away = now.drop > standing_.drop || now.slide > standing_.slide;
-  if (!detector.is_down() || !(is_away || now.tilt > params_.put_back_tilt)) return;
+  const bool lies = now.tilt > params_.put_back_tilt;
+  if (!detector.is_down() || !(lies || world::IsAway(standing_, now))) return;
   simulator_->PutBack(object->index);
   object->watch.Reset();
 }
@@ -88,16 +88,7 @@ Code LoadMonitor::CodeOf(const Object& object, Fall fall) const {
 }
 
 OutcomeCounts LoadMonitor::Sample() const {
-  OutcomeCounts counts;
-  if (objects_.empty()) return counts;
-  if (tilt_ <= params_.shaking_tilt) {
-    counts.notopple = 1;
-  } else if (tilt_ >= params_.topple_tilt) {
-    counts.topple = 1;
-  } else {
-    counts.shaking = 1;
-  }
-  return counts;
+  return objects_.empty() ? OutcomeCounts() : SampleOf(tilt_, params_);
 }
 
 bool LoadMonitor::Moves(int index) const {
@@ -128,6 +119,15 @@ std::vector<std::string> LoadMonitor::KnockedOver() const {
     if (bystander.watch.detector().is_down()) names.push_back(bystander.name);
   }
   std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::vector<std::string> LoadMonitor::Down() const {
+  const std::vector<world::ObjectState> all = simulator_->GetWorldState().objects;
+  std::vector<std::string> names;
+  for (const Object& object : objects_) {
+    if (object.watch.detector().is_down()) names.push_back(base::ToLower(all[object.index].name));
+  }
   return names;
 }
 
@@ -168,11 +168,11 @@ Pose3 LoadMonitor::X_MGoal() const {
 
 base::Failure LoadMonitor::WhyNotStanding(const Object& object) const {
   if (IsHeld(object)) return Code::kObjectNotReleased;
-  const Pose3 X_MO = simulator_->PoseOf(object.index);
-  const Pose3 X_GO = X_MGoal().Inverse() * X_MO;
-  if (X_GO.translation.z() < -standing_.drop) return Code::kObjectFell;
-  if (!world::IsUpright(standing_, X_MO)) return Code::kObjectToppled;
-  const double away = X_GO.translation.head<2>().cwiseAbs().maxCoeff();
+  const Fall fall = object.watch.detector().fall();
+  if (fall != Fall::kNone) return CodeOf(object, fall);
+  const Eigen::Vector3d p_GO = (X_MGoal().Inverse() * simulator_->PoseOf(object.index)).translation;
+  if (p_GO.z() < -standing_.drop) return Code::kObjectFell;  // it stands on something lower
+  const double away = p_GO.head<2>().cwiseAbs().maxCoeff();
   return away > purpose_.area_half_width ? Code::kObjectSlipped : base::Failure();
 }
 

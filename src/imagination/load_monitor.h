@@ -26,7 +26,7 @@ class LoadMonitor {
   LoadMonitor(simulation::RobotSimulator* simulator, const RolloutParams& params,
               const world::StandingCriterion& standing, const Purpose& purpose = {});
 
-  void Look();  ///< call every few milliseconds
+  void Look();  ///< call every world::kFallLookInterval
   /// One sample of Eq. 5.1, of the object of concern that leans most; none if there is no such
   /// object.
   OutcomeCounts Sample() const;
@@ -45,8 +45,8 @@ class LoadMonitor {
 
   /// Looks at how things are now that the action says it has reached its goal: the first of these
   /// that is not well, or nothing.
-  ///   object_fell       what was taken or put down fell from its place, or what stood on the robot
-  ///                     fell over or down
+  ///   object_fell       what was taken or put down fell from its place or stands lower than it
+  ///                     should, or what stood on the robot fell over or down
   ///   object_toppled    what was taken or put down lies where it should stand
   ///   object_slipped    what the hand should hold it does not, or what was put down is not where
   ///                     it was to be
@@ -58,6 +58,8 @@ class LoadMonitor {
   /// Bystanders that do not stand any more, by name. Each counts as one fall once Conclude was
   /// called.
   std::vector<std::string> KnockedOver() const;
+  /// What is of concern and down now, by name in lower case.
+  std::vector<std::string> Down() const;
   void Conclude();  ///< the last look: counts bystanders that fell
 
  private:

@@ -13,7 +13,7 @@ std::string WhyNothing(const Scheduler& scheduler, ImaginationOutcome outcome) {
   const std::string suffix = problems.empty() ? "" : " (" + base::Join(problems, "; ") + ")";
   switch (outcome) {
     case ImaginationOutcome::kNoWorker:
-      return "nobody is there to imagine it" + suffix;
+      return "no worker is there to imagine it" + suffix;
     case ImaginationOutcome::kNothingFinished:
       return "the deadline came before every alternative was played once" + suffix;
     case ImaginationOutcome::kCancelled:
@@ -56,6 +56,7 @@ Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall
   const Ranking& ranking = result.ranking;
   Report report;
   report.outcome = result.outcome;
+  report.found = result.found;
   report.complete = result.complete;
   report.seed = seed;
   report.wall_seconds = wall_seconds;

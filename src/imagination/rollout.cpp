@@ -18,7 +18,6 @@ namespace {
 using simulation::RobotSimulator;
 using Code = base::FailureCode;
 
-constexpr int kLookSteps = 5;  // the load is looked at every fifth step
 enum Streams : std::uint64_t { kVariation, kSimulator, kControl };
 
 Purpose PurposeIn(const RolloutSetup& setup, const base::ActionCall& action) {
@@ -54,12 +53,13 @@ class Player {
     next_cycle_ = start;
     long samples = 0;
     const double half_step = 0.5 * simulator_.time_step();
+    const long steps_per_look = world::StepsPerLook(simulator_.time_step());
     for (long step = 0; status.progress == skills::Progress::kRunning; ++step) {
       // Periods are sums of rounded numbers: without the half step some cycles came a step late.
       if (simulator_.time() >= next_cycle_ - half_step) status = Control(start);
       if (status.progress != skills::Progress::kRunning) break;
       simulator_.Step();
-      if (step % kLookSteps == 0) monitor.Look();
+      if (step % steps_per_look == 0) monitor.Look();
       const double elapsed = simulator_.time() - start;
       if (elapsed >= (samples + 1) * params_.sample_period - half_step) {
         ++samples;
@@ -75,6 +75,7 @@ class Player {
     result_.duration = simulator_.time() - start;
     WatchAftermath(&monitor);
     monitor.Conclude();
+    if (hooks.on_end) hooks.on_end(monitor.Down());
     Conclude(status, monitor);
     return result_;
   }
@@ -104,8 +105,9 @@ class Player {
 
   void WatchAftermath(LoadMonitor* monitor) {
     const double end = simulator_.time() + params_.aftermath;
+    const long steps_per_look = world::StepsPerLook(simulator_.time_step());
     while (simulator_.time() < end && !monitor->IsSettled()) {
-      for (int i = 0; i < kLookSteps; ++i) simulator_.Step();
+      for (long i = 0; i < steps_per_look; ++i) simulator_.Step();
       monitor->Look();
     }
   }
@@ -156,6 +158,14 @@ RolloutParams ReadRolloutParams(base::ParamReader in) {
   params.put_back = in.GetBool("put_back");
   params.put_back_tilt = in.Get("put_back_tilt", base::Between(0.01, 3.2));
   return params;
+}
+
+OutcomeCounts SampleOf(double tilt, const RolloutParams& params) {
+  OutcomeCounts counts;
+  counts.notopple = tilt <= params.shaking_tilt;
+  counts.topple = tilt >= params.topple_tilt;
+  counts.shaking = 1 - counts.notopple - counts.topple;
+  return counts;
 }
 
 void CheckSetup(const RolloutSetup& setup, const base::ActionCall& action) {

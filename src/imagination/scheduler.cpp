@@ -95,7 +95,7 @@ std::string ToString(ImaginationOutcome outcome) {
 
 std::optional<double> EstimateTimeLeft(int done, int total, double elapsed,
                                        std::optional<double> until_deadline) {
-  HIRES_CHECK(done >= 0 && done <= total, "more is done than there is to do, or less than nothing");
+  HIRES_CHECK(done >= 0 && done <= total, "the number of rollouts done lies outside of 0 .. total");
   std::optional<double> left = until_deadline;
   if (done == total) {
     left = 0.0;
@@ -182,7 +182,10 @@ std::vector<Command> Scheduler::Tick(double now) {
 }
 
 std::vector<Command> Scheduler::Cancel(double /*now*/) {
-  if (!finished()) Finish(ImaginationOutcome::kCancelled, false, CommonPrefix());
+  if (!finished()) {
+    CutShort(ImaginationOutcome::kCancelled);
+    result_->outcome = ImaginationOutcome::kCancelled;
+  }
   return TakeCommands();
 }
 
@@ -382,7 +385,7 @@ void Scheduler::CutShort(ImaginationOutcome if_nothing) {
 }
 
 void Scheduler::Finish(ImaginationOutcome outcome, bool complete, int num_rollouts) {
-  SchedulerResult result{outcome, complete, 0, RankFirst(num_rollouts)};
+  SchedulerResult result{outcome, outcome, complete, 0, RankFirst(num_rollouts)};
   for (Alternative& alternative : alternatives_) {
     const auto& unplayable = alternative.unplayable;
     result.num_unplayable +=

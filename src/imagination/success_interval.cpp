@@ -96,7 +96,7 @@ Suitability Judge(const SuccessInterval& success, double min_success) {
 }
 
 std::optional<int> RolloutsToDecide(const SuccessInterval& success, double min_success, int most) {
-  HIRES_CHECK(success.num_rollouts >= 1, "without a rollout nobody knows how many are needed");
+  HIRES_CHECK(success.num_rollouts >= 1, "wanted at least one rollout to estimate from");
   HIRES_CHECK(min_success > 0.0 && min_success < 1.0, "min_success lies outside (0, 1)");
   int too_few = success.num_rollouts;
   int enough = too_few;

@@ -32,7 +32,7 @@ hires::geometry::Twist3 FromTwistMsg(const geometry_msgs::Twist& twist) {
 }
 
 std::uint8_t OutcomeCode(const hires::imagination::Report& report) {
-  switch (report.outcome) {
+  switch (report.outcome == ImaginationOutcome::kCancelled ? report.found : report.outcome) {
     case ImaginationOutcome::kRanked:
       return report.complete ? msg::ImagineResult::RANKED : msg::ImagineResult::RANKED_AT_DEADLINE;
     case ImaginationOutcome::kAllFailed:
@@ -415,7 +415,7 @@ msg::ImagineResult ToMsg(const hires::imagination::Report& report) {
 hires::imagination::Report FromMsg(const msg::ImagineResult& result) {
   if (result.outcome == msg::ImagineResult::INVALID) throw hires::base::ConfigError(result.why);
   hires::imagination::Report out;
-  out.outcome = OutcomeOf(result.outcome);
+  out.outcome = out.found = OutcomeOf(result.outcome);
   out.complete = result.outcome == msg::ImagineResult::RANKED ||
                  result.outcome == msg::ImagineResult::ALL_FAILED;
   for (const auto& prediction : result.predictions) out.ranking.push_back(FromMsg(prediction));

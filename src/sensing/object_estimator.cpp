@@ -125,7 +125,7 @@ bool ObjectEstimator::Remember(const Look& look, double now, LookNews* news) {
   }
   const auto then = state_->At(look.stamp);
   if (!then || !state_->IsPostureKnown(look.stamp)) {
-    Drop("nobody knows how the robot stood when the picture was taken", news);
+    Drop("the posture of the robot when the picture was taken is unknown", news);
     return true;
   }
   std::vector<perception::Detection> detections = look.detections;

@@ -30,7 +30,8 @@ std::vector<Action> ActionsOf(const ActionLibrary& library) {
     std::vector<Action> Actions() const override { return {}; }
   };
   if (library.Layout() != HostLibrary().Layout()) {
-    throw base::ConfigError("it was built with other headers than this program; build it anew");
+    throw base::ConfigError(
+        "it was built with other headers than this program; rebuild it against the installed ones");
   }
   library.SetLog([](base::LogLevel level, const std::string& text) { base::Log(level, text); });
   return library.Actions();

@@ -1,5 +1,7 @@
 #include "skills/hand_stages.h"
 
+#include <limits>
+
 #include "skills/joint_motion.h"
 #include "skills/posture_skills.h"
 
@@ -7,6 +9,8 @@ namespace hires::skills {
 namespace {
 
 using robot::Observation;
+
+constexpr double kAnyDistance = std::numeric_limits<double>::infinity();  // [m]
 
 /// Advances one of two; false if it has failed.
 bool Advance(std::unique_ptr<Activity>* activity, const Observation& observation,
@@ -65,22 +69,38 @@ std::vector<Stage> StopAndTidy(const SharedContext& context, const std::string& 
            {}}};
 }
 
+LeanWatch::LeanWatch(const world::StandingCriterion& criterion)
+    : detector_({criterion.tilt, criterion.hold_time, kAnyDistance, kAnyDistance}) {}
+
+void LeanWatch::See(const robot::SeenObject& object) {
+  is_held_ = !object.attached_to.empty();
+  detector_.Update(object.X_MO, is_held_, object.time);
+}
+
 Sight::Sight(SharedContext context, std::string object, world::ObjectState* sighted)
-    : context_(std::move(context)), object_(std::move(object)), sighted_(sighted) {}
+    : context_(std::move(context)),
+      object_(std::move(object)),
+      lean_(context_->standing),
+      sighted_(sighted) {}
 
 Status Sight::Update(const Observation& observation, robot::Command* /*command*/) {
   if (begin_ < 0.0) begin_ = latest_ = observation.time;
   const robot::SeenObject* seen = FindSeen(observation, object_);
-  if (seen != nullptr && seen->time > latest_) {
-    latest_ = seen->time;
-    X_MO_.push_back(seen->X_MO);
-    sighted_->name = seen->name;
-    sighted_->model = seen->model;
-    sighted_->attached_to = seen->attached_to;
-  }
+  if (seen != nullptr && seen->time > latest_) Take(*seen);
   const LookParams& look = context_->params.look;
   if (static_cast<int>(X_MO_.size()) >= look.sightings) return Conclude();
-  return observation.time - begin_ > look.time_limit ? Conclude() : Status{};
+  const double time_limit = look.time_limit + context_->standing.hold_time;
+  return observation.time - begin_ > time_limit ? Conclude() : Status{};
+}
+
+void Sight::Take(const robot::SeenObject& seen) {
+  latest_ = seen.time;
+  lean_.See(seen);
+  if (lean_.is_open()) return;
+  X_MO_.push_back(seen.X_MO);
+  sighted_->name = seen.name;
+  sighted_->model = seen.model;
+  sighted_->attached_to = seen.attached_to;
 }
 
 Status Sight::Conclude() {

@@ -39,8 +39,25 @@ Beginning ToSide(const SharedContext& context, const std::string& arm, bool hold
 std::vector<Stage> StopAndTidy(const SharedContext& context, const std::string& arm,
                                std::uint64_t seed);
 
-/// The object's pose as the mean of several sightings, taken while the head rests. Fails with
-/// object_not_seen when there is none in time.
+/// Follows an object by sightings until it is known whether it stands or lies, as the criterion
+/// says: what leans too far lies once it has done so for the hold time. Where it stands does not
+/// matter.
+class LeanWatch {
+ public:
+  explicit LeanWatch(const world::StandingCriterion& criterion);
+  void See(const robot::SeenObject& object);
+  /// Nothing seen yet, or it leans too far and has not done so for long.
+  bool is_open() const { return !is_held_ && !detector_.stands() && !detector_.is_down(); }
+  bool lies() const { return detector_.is_down(); }
+
+ private:
+  world::FallDetector detector_;
+  bool is_held_{false};  // as recognised: it cannot fall
+};
+
+/// The object's pose as the mean of several sightings, taken while the head rests. While it leans
+/// too far, but not yet for the criterion's hold time, it is looked at and not counted. Fails with
+/// object_not_seen when there is no sighting in time.
 class Sight : public Activity {
  public:
   /// @param sighted  filled when it is over; outlives the activity.
@@ -48,10 +65,12 @@ class Sight : public Activity {
   Status Update(const robot::Observation& observation, robot::Command* command) override;
 
  private:
+  void Take(const robot::SeenObject& seen);
   Status Conclude();
 
   SharedContext context_;
   std::string object_;
+  LeanWatch lean_;
   world::ObjectState* sighted_;
   double begin_{-1.0};  // [s]
   double latest_{0.0};  // [s] of the sightings taken

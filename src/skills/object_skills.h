@@ -5,6 +5,7 @@
 
 #include "hires/skills/activity.h"
 #include "hires/skills/manipulation_context.h"
+#include "skills/hand_stages.h"
 #include "skills/reach.h"
 
 namespace hires::skills {
@@ -81,6 +82,7 @@ class PlaceObject : public StagedSkill {
   std::uint64_t seed_;
   PlacePlan plan_;
   double looked_since_{0.0};  // [s]
+  LeanWatch lean_;            // since then, of what was put down
 };
 
 /// Why the arm does not hold `object` any more (object_slipped); nothing while it does. Fingers

@@ -36,7 +36,8 @@ PlaceObject::PlaceObject(SharedContext context, const base::ActionCall& action,
       object_(base::ToLower(object)),
       arm_(KnownArm(*context_, arm)),
       X_MArea_(AreaFrame(*context_->world, area)),
-      seed_(SeedOf(context_->params, action)) {
+      seed_(SeedOf(context_->params, action)),
+      lean_(context_->standing) {
   AppendStages();
   AppendChecking();
 }
@@ -47,7 +48,8 @@ PlaceObject::PlaceObject(SharedContext context, const base::ActionCall& action,
       context_(std::move(context)),
       object_(base::ToLower(object)),
       arm_(KnownArm(*context_, arm)),
-      seed_(SeedOf(context_->params, action)) {
+      seed_(SeedOf(context_->params, action)),
+      lean_(context_->standing) {
   RequireTray(*context_);
   AppendStages();
   AppendChecking();
@@ -123,7 +125,7 @@ base::Failure PlaceObject::WhyNotStanding(const Observation& observation) const 
   const robot::SeenObject* seen = FindSeen(observation, object_);
   const PlaceParams& params = context_->params.place;
   const Pose3 X_BO = geometry::Lift(observation.X_MB).Inverse() * seen->X_MO;
-  if (!world::IsUpright(context_->standing, seen->X_MO)) return Code::kObjectToppled;
+  if (lean_.lies()) return Code::kObjectToppled;
   const double away = (X_BO.translation - plan_.X_BO.translation).norm();
   return away <= params.standing_tolerance ? base::Failure() : Code::kObjectSlipped;
 }
@@ -136,9 +138,12 @@ void PlaceObject::AppendChecking() {
             return Begin(std::make_unique<WaitUntil>(
                 [this](const Observation& seen) {
                   const robot::SeenObject* object = FindSeen(seen, object_);
-                  return object != nullptr && object->time > looked_since_;
+                  const bool is_new = object != nullptr && object->time > looked_since_;
+                  if (is_new) lean_.See(*object);
+                  return is_new && !lean_.is_open();
                 },
-                context_->params.look.time_limit, Code::kObjectNotSeen));
+                context_->params.look.time_limit + context_->standing.hold_time,
+                Code::kObjectNotSeen));
           },
           {}});
   Append({"check_stand",

@@ -57,7 +57,7 @@ class PgmReader {
     SkipSpaceAndComments();
     if (at_ == before) Fail(fmt::format("has no space before the {}", what));
     if (at_ >= bytes_.size() || !IsDigit(bytes_[at_])) {
-      Fail(fmt::format("has no number where the {} belongs; write the image anew", what));
+      Fail(fmt::format("has no number where the {} belongs; save the image again", what));
     }
     std::int64_t number = 0;
     for (; at_ < bytes_.size() && IsDigit(bytes_[at_]); ++at_) {

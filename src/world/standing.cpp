@@ -1,5 +1,10 @@
 #include "hires/world/standing.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "hires/base/check.h"
+
 namespace hires::world {
 namespace {
 
@@ -9,8 +14,8 @@ constexpr double kRounding = 1e-9;  // [s] of times that are sums of steps
 
 Fall FallOf(const StandingCriterion& criterion, const Departure& departure, bool leans) {
   if (leans) return Fall::kToppled;
-  if (departure.drop > criterion.drop) return Fall::kDropped;
-  return departure.slide > criterion.slide ? Fall::kSlid : Fall::kNone;
+  if (!IsAway(criterion, departure)) return Fall::kNone;
+  return departure.drop > criterion.drop ? Fall::kDropped : Fall::kSlid;
 }
 
 }  // namespace
@@ -30,12 +35,17 @@ Departure DepartureFrom(const Pose3& X_CstoodO, const Pose3& X_CO) {
   return {geometry::TiltOf(X_CO.rotation), -way.z(), way.head<2>().norm()};
 }
 
-Fall FallSeen(const StandingCriterion& criterion, const Departure& departure) {
-  return FallOf(criterion, departure, departure.tilt >= criterion.tilt);
+bool IsAway(const StandingCriterion& criterion, const Departure& departure) {
+  return departure.drop > criterion.drop || departure.slide > criterion.slide;
 }
 
 bool IsUpright(const StandingCriterion& criterion, const Pose3& X_MO) {
   return X_MO.IsFinite() && geometry::TiltOf(X_MO.rotation) < criterion.tilt;
+}
+
+long StepsPerLook(double time_step) {
+  HIRES_CHECK(time_step > 0.0, "a step of time takes no time");
+  return std::max(1L, std::lround(kFallLookInterval / time_step));
 }
 
 Fall FallDetector::Update(const Pose3& X_MO, bool is_held, double t, const Pose3& X_MC) {

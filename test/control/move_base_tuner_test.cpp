@@ -197,7 +197,7 @@ TEST_F(MoveBaseTunerTest, AnOldUpdateIsNoNewsButSomebodyElsesIs) {
   planner_.With([](FakePlanner& planner) { planner.values["max_vel_x"] = 0.5; });
   tuner_->OnUpdate(Values());
   EXPECT_THAT(Await(Phase::kFailed, 7).reason,
-              HasSubstr("changed by somebody else: max_vel_x is 0.5, wanted 0.3"));
+              HasSubstr("changed by another program: max_vel_x is 0.5, wanted 0.3"));
 }
 
 TEST_F(MoveBaseTunerTest, AnUpdateThatIsTheSetAsksNobody) {

@@ -1,6 +1,8 @@
 // "A fall is 0.4 rad held for 0.2 s" is one line of one file. It changes everything that judges
-// falls alike: what leans by 0.45 rad stands by the one line and has fallen by the other. Markers
-// are looked at in test/ros/trace_markers_test.cpp.
+// falls alike: what leans by 0.45 rad stands by the one line and has fallen by the other. What
+// leans too far, but for less than the hold time, has not fallen. Markers are looked at in
+// test/ros/trace_markers_test.cpp, skills in test/skills/object_skills_test.cpp, too.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,15 +28,17 @@ constexpr char kHome[] = "west";
 
 /// Everything that is read from a scene file.
 struct Judges {
-  explicit Judges(const std::string& scene) {
+  explicit Judges(const std::string& scene, std::string its_load = "stool1")
+      : load(std::move(its_load)) {
     config = ReadExperiment(std::string(HIRES_SOURCE_DIR) + "/config/experiments/braking.yaml");
     config.scene = scene;
     config.uncertainty = "none";
-    config.objects = {"stool1"};
+    config.objects = {load};
     stage = std::make_shared<const Stage>(MakeStage(config));
   }
   const imagination::ImaginationSetup& setup() const { return stage->setup; }
 
+  std::string load;
   ExperimentConfig config;
   std::shared_ptr<const Stage> stage;
 };
@@ -71,26 +75,30 @@ TEST_F(OneCriterionTest, RolloutsAreJudgedByIt) {
   EXPECT_EQ(before.counts.topple, after.counts.topple) << "samples of Eq. 5.1 are something else";
 }
 
+Leg FirstLeg(const Judges& judges) {
+  Chain::Options options;
+  options.motion_set = "fast";
+  return *Chain(judges.stage, kHome, options).Drive("nearStartArea1", [] { return false; });
+}
+
 TEST_F(OneCriterionTest, ChainsPutBackByIt) {
-  const auto was_put_back = [](const Judges& judges) {
-    Chain::Options options;
-    options.motion_set = "fast";
-    Chain chain(judges.stage, kHome, options);
-    return chain.Drive("nearStartArea1", [] { return false; })->was_put_back;
-  };
-  EXPECT_FALSE(was_put_back(*as_it_is_));
-  EXPECT_TRUE(was_put_back(*changed_));
+  EXPECT_FALSE(FirstLeg(*as_it_is_).was_put_back);
+  EXPECT_TRUE(FirstLeg(*changed_).was_put_back);
+}
+
+/// The load tips at that speed [m/s] with the wheels locked at once.
+BrakingStop StopAtOnce(const Judges& judges, double speed) {
+  BrakingConfig braking = std::get<BrakingConfig>(judges.config.kind);
+  braking.rollouts = 1;
+  braking.loads = {judges.load};
+  braking.motions = {{speed, 0.0}};
+  braking.ways = {{BrakingWay::Kind::kAtOnce, 0.0, "at_once"}};
+  return PlayBraking(braking, judges.config, *judges.stage, {})->front().stops.front();
 }
 
 TEST_F(OneCriterionTest, StopsAreJudgedByIt) {
-  const auto stop = [](const Judges& judges) {
-    BrakingConfig braking = std::get<BrakingConfig>(judges.config.kind);
-    braking.rollouts = 1;
-    braking.loads = {"stool1"};
-    braking.motions = {{0.12, 0.0}};  // it tips, with little to spare: no swing over its rim
-    braking.ways = {{BrakingWay::Kind::kAtOnce, 0.0, "at_once"}};
-    return PlayBraking(braking, judges.config, *judges.stage, {})->front().stops.front();
-  };
+  // It tips, with little to spare: no swing over its rim.
+  const auto stop = [](const Judges& judges) { return StopAtOnce(judges, 0.12); };
   EXPECT_NEAR(stop(*as_it_is_).max_tilt, kLean, 0.05);
   EXPECT_FALSE(stop(*as_it_is_).fell);
   EXPECT_TRUE(stop(*changed_).fell);
@@ -116,6 +124,42 @@ TEST_F(OneCriterionTest, TheRecordOfTruthCountsByIt) {
   EXPECT_EQ(fate(*as_it_is_).falls, 0);
   EXPECT_FALSE(fate(*changed_).stands);
   EXPECT_EQ(fate(*changed_).falls, 1);
+  const Judges held(
+      hires::test_support::SceneCopy(hires::test_support::kStandingLine, hires::test_support::kLongHoldStandingLine)
+          .path());
+  EXPECT_EQ(fate(held).falls, 0) << "it leans, but not yet for that long";
+}
+
+// ------------------------------------------------------------------------------ held for how long
+
+/// A mill that shakes, where a fall is to lean by that much [rad] for that long [s].
+Judges OfMill(double tilt, double hold_time) {
+  const std::string line = fmt::format(
+      "standing: {{tilt: {}, hold_time: {}, drop: 0.05, slide: 0.10}}", tilt, hold_time);
+  return Judges(hires::test_support::SceneCopy(hires::test_support::kStandingLine, line).path(), "peppermill1");
+}
+constexpr double kNearPeak = 0.9;  // of the largest lean: it leans by that much but for a moment
+constexpr double kHold = 0.2;      // [s]
+
+TEST_F(OneCriterionTest, ABriefLeanIsNoFallOfARolloutOrChain) {
+  const double peak = Drive(OfMill(0.5, 0.0)).max_tilt;
+  ASSERT_GT(kNearPeak * peak, 0.01) << "the mill was to shake";
+  ASSERT_LT(peak, 0.2) << "and not to tip";
+  const Judges at_once = OfMill(kNearPeak * peak, 0.0), held = OfMill(kNearPeak * peak, kHold);
+  EXPECT_GE(Drive(at_once).falls, 1);
+  EXPECT_EQ(Drive(held).falls, 0);
+  EXPECT_EQ(Drive(held).outcome, imagination::Outcome::kSucceeded);
+  EXPECT_GE(FirstLeg(at_once).result.falls, 1);
+  EXPECT_EQ(FirstLeg(held).result.falls, 0);
+  EXPECT_FALSE(FirstLeg(held).was_put_back);
+}
+
+TEST_F(OneCriterionTest, ABriefLeanIsNoFallInAStop) {
+  const double peak = StopAtOnce(OfMill(0.5, 0.0), 0.2).max_tilt;
+  ASSERT_GT(kNearPeak * peak, 0.01) << "the mill was to shake";
+  ASSERT_LT(peak, 0.2) << "and not to tip";
+  EXPECT_TRUE(StopAtOnce(OfMill(kNearPeak * peak, 0.0), 0.2).fell);
+  EXPECT_FALSE(StopAtOnce(OfMill(kNearPeak * peak, kHold), 0.2).fell);
 }
 
 /// The stool on the counter, leaning, and the robot before it.

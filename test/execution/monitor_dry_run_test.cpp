@@ -132,7 +132,8 @@ TEST(DryRunTest, NobodyWhoImaginesIsSaidAtOnceWithTheDefault) {
   ScriptedWorld world(options);
   ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
   EXPECT_THAT(world.imaginations(), SizeIs(1));
-  EXPECT_THAT(DriveOf(world.monitor().Steps())->note, HasSubstr("nobody is there to imagine it"));
+  EXPECT_THAT(DriveOf(world.monitor().Steps())->note,
+              HasSubstr("no worker is there to imagine it"));
   EXPECT_THAT(world.warnings(), ElementsAre(HasSubstr("without imagination")));
 }
 

@@ -194,7 +194,7 @@ TEST(ToppleTest, NobodyWaitsForEver) {
   ExpectSuccess(&world, "carry_object");
   EXPECT_NEAR(world.StartOf(kDrive + std::string("fast)")), 300.05, 1e-6);
   EXPECT_GT(world.imaginations().size(), 5u) << "asked again and again";
-  EXPECT_THAT(world.warnings(), ElementsAreArray({HasSubstr("nobody is there")}));
+  EXPECT_THAT(world.warnings(), ElementsAreArray({HasSubstr("no worker is there")}));
 }
 
 TEST(ToppleTest, AWorkerThatComesLaterIsAskedAgain) {

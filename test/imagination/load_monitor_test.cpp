@@ -152,6 +152,16 @@ TEST(LoadMonitorTest, SamplesAreCutAtTheirThresholds) {
   EXPECT_EQ(calm.counts.notopple, 20);
 }
 
+TEST(SampleOfTest, ThresholdsBelongToTheirOuterClass) {
+  RolloutParams params;
+  params.shaking_tilt = 0.01;
+  params.topple_tilt = 0.5;
+  EXPECT_EQ(SampleOf(0.01, params), (OutcomeCounts{1, 0, 0}));
+  EXPECT_EQ(SampleOf(0.0101, params), (OutcomeCounts{0, 1, 0}));
+  EXPECT_EQ(SampleOf(0.4999, params), (OutcomeCounts{0, 1, 0}));
+  EXPECT_EQ(SampleOf(0.5, params), (OutcomeCounts{0, 0, 1}));
+}
+
 // ----------------------------------------------------------------- what an action is about
 
 /// An object on the floor, `x` m before the robot.
@@ -224,6 +234,20 @@ TEST(LoadMonitorTest, WhatShouldStandOnTheTrayMustBeThere) {
   EXPECT_THAT(ToString(toppled.monitor.WhyNotWell()),
               testing::AnyOf("object_toppled", "object_fell"));
   EXPECT_EQ(toppled.monitor.falls(), 1);
+}
+
+TEST(LoadMonitorTest, WhatWasPutDownLiesAsSoonAsTheDetectorSaysSo) {
+  const auto why = [](double hold_time) {
+    Watched watched(Watched::LoadOf({"tower"}), {}, {0.2, hold_time, 0.5, 0.5}, {},
+                    {Purpose::Kind::kPutOnTray, "load0", "rightarm1", "east"});
+    watched.Drive(0.0, 0.9, 0.6);
+    watched.Drive(0.0, 0.0, 0.1);
+    EXPECT_GT(watched.monitor.tilt(), 0.2);
+    EXPECT_EQ(watched.monitor.Down().size(), hold_time > 0.0 ? 0u : 1u);
+    return ToString(watched.monitor.WhyNotWell());
+  };
+  EXPECT_EQ(why(0.0), "object_toppled");
+  EXPECT_EQ(why(10.0), "") << "it leans, but not for long";
 }
 
 TEST(LoadMonitorTest, WhatShouldStandOnAnAreaMustBeThere) {

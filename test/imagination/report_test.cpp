@@ -124,7 +124,7 @@ TEST(ReportTest, WithoutWorkersThereIsNoNumber) {
   EXPECT_THAT(report.ranking, IsEmpty());
   EXPECT_EQ(report.recommended, -1);
   EXPECT_EQ(report.simulated_seconds, 0.0);
-  EXPECT_THAT(report.why, HasSubstr("nobody is there"));
+  EXPECT_THAT(report.why, HasSubstr("no worker is there to imagine it"));
 }
 
 TEST(ReportTest, UnusableWorkersAreNamed) {

@@ -83,5 +83,43 @@ TEST(SameFallsTest, AHoldTimeIsAskedOfBoth) {
   EXPECT_NEAR(at_once.seconds - held.seconds, 0.3, 0.011) << "as much later as it must last";
 }
 
+/// What becomes of a mill that begins on the tray, leaning by 0.18 rad, and falls back upright.
+struct Rocking {
+  int imagined_falls{0}, true_falls{0};
+  double leaned{0.0};  // [s] by 0.15 rad or more
+};
+
+Rocking PlayRocking(double hold_time) {
+  world::ObjectState mill = OnTray("mill1", "mill", kStart);
+  mill.X_MO.rotation = geometry::RotationFromRpy(0.0, 0.18, 0.0);
+  mill.X_MO.translation.z() += 0.037 * std::sin(0.18);  // it stands on the rim of its foot
+  simulation::RobotSimulator simulator(RoomScene(), {}, {{mill}}, StandingAt(kStart), base::Rng(1));
+  const world::StandingCriterion standing{0.15, hold_time, 0.05, 0.10};
+  const RolloutParams params;
+  LoadMonitor imagined(&simulator, params, standing);
+  simulation::TruthRecord truth(standing);
+  Rocking rocking;
+  for (int look = 0; look < 600; ++look) {
+    for (int step = 0; step < 5; ++step) simulator.Step();
+    imagined.Look();
+    truth.Look(simulator);
+    rocking.leaned += imagined.tilt() >= 0.15 ? 0.005 : 0.0;
+  }
+  rocking.imagined_falls = imagined.falls();
+  rocking.true_falls = truth.falls();
+  EXPECT_LT(imagined.tilt(), 0.01) << "it was to stand again";
+  return rocking;
+}
+
+TEST(SameFallsTest, WhatLeansForLessThanTheHoldTimeDidNotFall) {
+  const Rocking at_once = PlayRocking(0.0), held = PlayRocking(0.2);
+  EXPECT_NEAR(at_once.leaned, 0.1, 0.05);
+  EXPECT_EQ(at_once.imagined_falls, 1);
+  EXPECT_EQ(at_once.true_falls, 1);
+  EXPECT_EQ(held.leaned, at_once.leaned);
+  EXPECT_EQ(held.imagined_falls, 0);
+  EXPECT_EQ(held.true_falls, 0);
+}
+
 }  // namespace
 }  // namespace hires::imagination::same_falls_test

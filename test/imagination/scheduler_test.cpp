@@ -557,6 +557,30 @@ TEST(SchedulerTest, CancelEndsEverything) {
   scheduler.Handle(WorkerJoined{2}, 0.0);
   EXPECT_EQ(Only<CancelAssignment>(scheduler.Cancel(1.0)).size(), 2u);
   EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kCancelled);
+  EXPECT_EQ(scheduler.result()->found, ImaginationOutcome::kCancelled) << "nothing was finished";
+}
+
+/// What is found by one alternative of which `num_rollouts` were finished when it was cancelled.
+ImaginationOutcome FoundWhenCancelled(const RolloutResult& result, int num_rollouts) {
+  SchedulerParams params;
+  params.rollouts = 100;
+  params.batch = 1;
+  Scheduler scheduler(params, 1, 0.0);
+  auto work = Only<Assign>(scheduler.Handle(WorkerJoined{1}, 0.0));
+  for (int i = 0; i < num_rollouts; ++i) {
+    const Assign& assign = work.back();
+    work = Only<Assign>(Complete(assign, Always(result), 1.0, &scheduler));
+  }
+  scheduler.Cancel(2.0);
+  EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kCancelled);
+  return scheduler.result()->found;
+}
+
+TEST(SchedulerTest, WhatWasFoundUntilACancellationIsJudgedLikeEveryOtherEnd) {
+  EXPECT_EQ(FoundWhenCancelled(Success(), 4), ImaginationOutcome::kUndecided) << "34 to 100 %";
+  EXPECT_EQ(FoundWhenCancelled(Success(), 40), ImaginationOutcome::kRanked);
+  EXPECT_EQ(FoundWhenCancelled(Fall(), 40), ImaginationOutcome::kAllFailed);
+  EXPECT_EQ(FoundWhenCancelled(Fall(), 0), ImaginationOutcome::kCancelled);
 }
 
 TEST(SchedulerTest, AnHourPassesAtOnce) {

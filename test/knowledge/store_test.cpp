@@ -365,7 +365,7 @@ TEST_F(StoreTest, WhatDoesNotHoldIsNotUpdatedNorRemoved) {
 TEST_F(StoreTest, TheMonitorTellsOfItsDoingOnly) {
   const Assertion by = At(1.0, 0, Source::kMonitor);
   store_.Add({MakeFluent("RobotActivity", "drive1")}, by);
-  EXPECT_THAT(ErrorOfAdd(PoseAt("pose1", 1.0), by), HasSubstr("let an observation say this"));
+  EXPECT_THAT(ErrorOfAdd(PoseAt("pose1", 1.0), by), HasSubstr("write this as an observation"));
   EXPECT_THAT(ErrorOfAdd(MakeFluent("On", "on1"), by), HasSubstr("ExecutionRecord"));
 }
 

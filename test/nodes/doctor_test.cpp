@@ -205,7 +205,7 @@ TEST(JudgeNamesTest, AnAddressThatOthersReachIsNoted) {
 
 TEST(JudgeNamesTest, NamesThatLeadNowhereOrElsewhereFail) {
   EXPECT_THAT(Names({"robbot", {}, "robot"}),
-              HasSubstr("FAILED  ROS_HOSTNAME is 'robbot', which nobody can look up"));
+              HasSubstr("FAILED  ROS_HOSTNAME is 'robbot', a name that cannot be looked up"));
   EXPECT_THAT(Names({{}, {}, "nameless"}), HasSubstr("FAILED"));
   EXPECT_THAT(Names({"elsewhere", {}, "robot"}), HasSubstr("FAILED"));
   EXPECT_THAT(Names({{}, "10.0.0.8", "robot"}),

@@ -145,7 +145,7 @@ hires::GenerateImagineState::Response StateWith(const std::string& object) {
 }
 
 TEST(ImagineAnswerTest, ARankingHasRecommendationAndDuration) {
-  const auto answer = AnswerOf(7, Ranked(), StateWith("Mug1"), {});
+  const auto answer = AnswerOf(7, Ranked(), StateWith("Mug1"), false);
   EXPECT_EQ(answer.outcome, ImagineOutcome::kRanked);
   EXPECT_EQ(answer.request, 7);
   EXPECT_THAT(answer.recommended.arguments, ElementsAre("area1", "slow"));
@@ -160,7 +160,7 @@ TEST(ImagineAnswerTest, WhenAllFailedEveryAlternativeIsNamed) {
   hires::ImagineResult result = Ranked();
   result.outcome = hires::ImagineResult::ALL_FAILED;
   result.recommended = -1;
-  const auto answer = AnswerOf(7, result, {}, {});
+  const auto answer = AnswerOf(7, result, {}, false);
   EXPECT_EQ(answer.outcome, ImagineOutcome::kAllFailed);
   ASSERT_EQ(answer.failed.size(), 2u);
   EXPECT_EQ(answer.failed[1].arguments[1], "fast");
@@ -170,36 +170,34 @@ TEST(ImagineAnswerTest, WhenAllFailedEveryAlternativeIsNamed) {
 
 TEST(ImagineAnswerTest, ARequestThatWasLateCountsAsFarAsItWas) {
   hires::ImagineResult result = Ranked();
-  result.outcome = hires::ImagineResult::CANCELLED;
-  const Lateness late{true, 0.5};
-  EXPECT_EQ(AnswerOf(7, result, {}, late).outcome, ImagineOutcome::kRanked);
-  EXPECT_EQ(AnswerOf(7, result, {}, {}).outcome, ImagineOutcome::kUnavailable);
+  result.outcome = hires::ImagineResult::RANKED_AT_DEADLINE;
+  EXPECT_EQ(AnswerOf(7, result, {}, true).outcome, ImagineOutcome::kRanked);
   result.recommended = -1;
-  for (auto& prediction : result.predictions) prediction.success_upper = 0.4;
-  EXPECT_EQ(AnswerOf(7, result, {}, late).outcome, ImagineOutcome::kAllFailed);
-  for (auto& prediction : result.predictions) prediction.rollouts = 0;
-  EXPECT_EQ(AnswerOf(7, result, {}, late).outcome, ImagineOutcome::kNothingFinished);
+  result.outcome = hires::ImagineResult::ALL_FAILED;
+  EXPECT_EQ(AnswerOf(7, result, {}, true).outcome, ImagineOutcome::kAllFailed);
+  EXPECT_EQ(AnswerOf(7, result, {}, true).failed.size(), 2u);
+  result.predictions.clear();
+  result.outcome = hires::ImagineResult::CANCELLED;
+  EXPECT_EQ(AnswerOf(7, result, {}, true).outcome, ImagineOutcome::kNothingFinished);
+  EXPECT_EQ(AnswerOf(7, result, {}, false).outcome, ImagineOutcome::kUnavailable);
 }
 
-TEST(ImagineAnswerTest, WhatWasCutOffRulesNothingOutUnlessItIsCertain) {
+TEST(ImagineAnswerTest, WhatIsUndecidedRulesNothingOutWhateverItsIntervalsAre) {
   hires::ImagineResult result = Ranked();
-  result.outcome = hires::ImagineResult::CANCELLED;
+  result.outcome = hires::ImagineResult::UNDECIDED;
   result.recommended = -1;
-  result.predictions[0].success_upper = 1.0;  // four good ones, say
-  result.predictions[1].success_upper = 0.4;
-  const auto answer = AnswerOf(7, result, {}, {true, 0.5});
+  for (auto& prediction : result.predictions) prediction.success_upper = 0.4;
+  const auto answer = AnswerOf(7, result, {}, true);
   EXPECT_EQ(answer.outcome, ImagineOutcome::kUndecided);
   EXPECT_TRUE(answer.failed.empty());
-  result.predictions[0].success_upper = 0.4;
-  EXPECT_EQ(AnswerOf(7, result, {}, {true, 0.0}).outcome, ImagineOutcome::kUndecided);
 }
 
 TEST(ImagineAnswerTest, ARankingThatRecommendsNothingIsInvalid) {
   hires::ImagineResult result = Ranked();
   result.recommended = 2;
-  EXPECT_EQ(AnswerOf(7, result, {}, {}).outcome, ImagineOutcome::kInvalid);
+  EXPECT_EQ(AnswerOf(7, result, {}, false).outcome, ImagineOutcome::kInvalid);
   result.outcome = 77;
-  EXPECT_EQ(AnswerOf(7, result, {}, {}).outcome, ImagineOutcome::kInvalid);
+  EXPECT_EQ(AnswerOf(7, result, {}, false).outcome, ImagineOutcome::kInvalid);
 }
 
 TEST(StepMessageTest, WhatHasNotHappenedIsNoNumber) {

@@ -272,6 +272,15 @@ TEST_F(ImagineRecordingTest, AMessageThatClaimsToBeHugeIsRefused) {
   EXPECT_THAT(Error(), HasSubstr("something in it claims to be larger than 2 GB"));
 }
 
+TEST_F(ImagineRecordingTest, WhatItsClientCancelledWasCancelledWhateverWasFound) {
+  auto result = ActionResult("g1", Ranked());
+  result.status.status = actionlib_msgs::GoalStatus::PREEMPTED;
+  result.result.outcome = ImagineResult::ALL_FAILED;
+  Write(std::pair{"/imagine/goal", ActionGoal("g1", Goal())}, std::pair{"/imagine/result", result});
+  EXPECT_EQ(ReadImagineRecording(path_, "").requests.at(0).result.outcome,
+            ImagineResult::CANCELLED);
+}
+
 // ---------------------------------------------------------------- comparing
 
 TEST(CompareAnswersTest, OnlyTheWallTimeMayDiffer) {
@@ -409,6 +418,13 @@ TEST(GoalToReplayTest, TheDeadlineIsLeftOutWhereItPlayedNoPart) {
 }
 
 // ---------------------------------------------------------------- replaying
+
+TEST(MakeLocalImaginationTest, LibrariesOfActionsAreLoaded) {
+  const ImagineAgain imagine =
+      MakeLocalImagination(HIRES_SOURCE_DIR, {"/nowhere/lib.so"}, 1, {}, [] { return false; });
+  EXPECT_THAT(ConfigErrorOf([&] { imagine(Goal()); }),
+              HasSubstr("library of actions '/nowhere/lib.so'"));
+}
 
 /// Three requests of which `imagine_again` is asked; the texts and the results.
 struct Session {

@@ -256,6 +256,15 @@ class HandTest(unittest.TestCase):
         self.assertTrue(self.mill.fell)
 
 
+    def test_what_counts_as_a_fall_is_the_scenes_to_say(self):
+        self.assertEqual(set(hands.read_standing()), {'tilt', 'hold_time', 'drop', 'slide'})
+        self.world._standing = {'tilt': 0.5, 'drop': 10.0}
+        self.grasp()
+        self.world.move_base(Pose2(12.5, 9.8, 0.0))
+        self.close(0.09)
+        self.assertFalse(self.mill.fell)
+
+
 class WorldTest(unittest.TestCase):
     def test_the_laser_sees_a_wall_where_it_is(self):
         box = type('B', (), dict(pose=Pose2(3.0, 0.0), size=(1.0, 4.0), radius=None))()

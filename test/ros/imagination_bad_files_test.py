@@ -159,7 +159,7 @@ class ImaginationBadFilesTest(unittest.TestCase):
                                          '/nowhere/%s.yaml' % key)
 
     def test_libraries_of_actions_that_are_not_there(self):
-        for node in ('imagination_client', 'sim_worker', 'middle_layer'):
+        for node in ('imagination_client', 'sim_worker', 'middle_layer', 'world_tracker'):
             with self.subTest(node=node):
                 self.require_refusal(node, ['_action_libraries:=/nowhere/lib.so'],
                                      "library of actions '/nowhere/lib.so'", 'no such file')

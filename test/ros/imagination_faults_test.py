@@ -182,7 +182,7 @@ class ImaginationFaultsTest(FaultsCase):
         self.assertEqual(answer.report['outcome'], 'no_worker')
         self.assertEqual(answer.report['ranking'], [])
         self.assertIsNone(answer.report['recommended'])
-        self.assertIn('nobody is there to imagine it', answer.report['why'])
+        self.assertIn('no worker is there to imagine it', answer.report['why'])
 
     def test_when_all_workers_go_what_was_finished_is_ranked(self):
         system = self.start(worker_wait=0.5)

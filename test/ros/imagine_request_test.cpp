@@ -200,6 +200,16 @@ TEST(ConversionsTest, AnUnknownKindOfIntervalIsAnError) {
   EXPECT_THROW(FromMsg(prediction), hires::base::ConfigError);
 }
 
+TEST(ReportMessageTest, WhatWasCancelledSaysWhatWasFound) {
+  imagination::Report report;
+  report.outcome = imagination::ImaginationOutcome::kCancelled;
+  EXPECT_EQ(ToMsg(report).outcome, hires::ImagineResult::CANCELLED) << "nothing was finished";
+  report.found = imagination::ImaginationOutcome::kAllFailed;
+  EXPECT_EQ(ToMsg(report).outcome, hires::ImagineResult::ALL_FAILED);
+  report.found = imagination::ImaginationOutcome::kRanked;
+  EXPECT_EQ(ToMsg(report).outcome, hires::ImagineResult::RANKED_AT_DEADLINE);
+}
+
 TEST(ConversionsTest, UndecidedAndCaveatsTravel) {
   imagination::Report report;
   report.outcome = imagination::ImaginationOutcome::kUndecided;

@@ -262,7 +262,7 @@ class MoveBaseTuningTest(unittest.TestCase):
         self.addCleanup(client.close)
         client.update_configuration({'max_vel_x': 0.5})
         self.guard_says(self.robot.state_type.STANDING, number,
-                        r'somebody else: max_vel_x is 0\.5, wanted 0\.3')
+                        r'another program: max_vel_x is 0\.5, wanted 0\.3')
         self.robot.ask(0, '', FAST)
         self.system.await_values((0.5,) + FAST[1:])  # his wish stays
 

@@ -46,6 +46,15 @@ TEST(TraceMarkersTest, TheAxisIsRedOnceTheLoadHasFallenAsTheCriterionSays) {
   EXPECT_EQ(after->color.r, 1.0f);
 }
 
+TEST(TraceMarkersTest, TheAxisStaysOrangeWhileTheLoadLeansForLessThanTheHoldTime) {
+  const auto marker = MarkerAfterDrive(
+      SceneCopy(hires::test_support::kStandingLine, hires::test_support::kLongHoldStandingLine)
+          .path(),
+      "tilt");
+  ASSERT_TRUE(marker);
+  EXPECT_GT(marker->color.g, 0.5f);
+}
+
 TEST(TraceMarkersTest, TheTextSaysHowFarTheLoadLeans) {
   const auto text = MarkerAfterDrive(SceneCopy().path(), "alpha");
   ASSERT_TRUE(text);

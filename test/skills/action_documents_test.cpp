@@ -103,18 +103,18 @@ TEST(ActionDocumentsTest, LispHasNoOperatorThatNobodyCanDo) {
 
 constexpr char kSidecar[] = "config/domains/restaurant.yaml";
 
-/// One action at a time may have an arm or the head; the base is held by who drives, others find it
-/// standing by their preconditions.
+/// One action at a time may have an arm, the head, the torso or the base.
+std::string ResourceOf(const std::string& group) {
+  if (group == actions::kBaseGroup) return "navigationcapacity";
+  if (group == actions::kTorsoGroup) return "torsocapacity";
+  if (group == actions::kHeadGroup) return "headcapacity";
+  const bool is_parameter = group.front() == '?';
+  return (is_parameter ? '<' + group.substr(1) + '>' : group) + "mancapacity";
+}
+
 Names ResourcesOf(const ActionSpec& spec) {
   Names resources;
-  if (spec.driving != actions::Driving::kNone) resources.insert("navigationcapacity");
-  for (const std::string& group : spec.groups) {
-    const bool is_arm = group != actions::kBaseGroup && group != actions::kTorsoGroup &&
-                        group != actions::kHeadGroup;
-    if (group == actions::kHeadGroup) resources.insert("headcapacity");
-    if (is_arm && group.front() == '?') resources.insert('<' + group.substr(1) + ">mancapacity");
-    if (is_arm && group.front() != '?') resources.insert(group + "mancapacity");
-  }
+  for (const std::string& group : spec.groups) resources.insert(ResourceOf(group));
   return resources;
 }
 

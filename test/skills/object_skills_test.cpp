@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
+#include <optional>
 
 #include "restaurant.h"
 
@@ -253,6 +255,69 @@ TEST(PlaceObjectFailureTest, AMugThatIsSeenLyingHasToppled) {
   };
   EXPECT_EQ(Why(table.Play({"place_object", {"mug1", "rightarm1", kSouthWest}}, topple)),
             "object_toppled");
+}
+
+/// The skills where a fall is 0.4 rad for `hold_time` [s].
+SkillSet WithHoldTime(double hold_time) {
+  SkillSet skills = TheRestaurant().skills;
+  auto context = std::make_shared<ManipulationContext>(*skills.manipulation);
+  context->standing = {0.4, hold_time, 0.05, 0.10};
+  skills.manipulation = std::move(context);
+  return skills;
+}
+
+/// In that stage the mug is seen leaning by 0.45 rad for a tenth of a second, and then as it
+/// stands.
+Rehearsal::Meddle LeaningBriefly(const std::string& stage) {
+  const auto since = std::make_shared<std::optional<double>>();
+  return [=](Rehearsal*, const Skill& skill, robot::Observation* seen) {
+    if (skill.phase() != stage) return;
+    for (robot::SeenObject& object : seen->objects) {
+      if (!*since) *since = object.time;
+      const bool leans = object.time - **since < 0.1;
+      if (leans) object.X_MO.rotation = geometry::RotationFromRpy(0.45, 0.0, 0.0);
+    }
+  };
+}
+
+TEST(PlaceObjectFailureTest, AMugThatLeansForLessThanTheHoldTimeStands) {
+  const auto why = [](double hold_time) {
+    Rehearsal table = AtTableWithMug({});
+    return Why(table.Play({"place_object", {"mug1", "rightarm1", kSouthWest}},
+                          LeaningBriefly("see_it_stand"), WithHoldTime(hold_time)));
+  };
+  EXPECT_EQ(why(0.2), "");
+  EXPECT_EQ(why(0.0), "object_toppled");
+}
+
+TEST(PickUpObjectFailureTest, AMugThatLeansForLessThanTheHoldTimeIsTaken) {
+  Rehearsal rehearsal(ReadyAt(kAtCounter), {On("mug1", kCounter)});
+  const ActionCall pick_up{"pick_up_object", {"mug1", "rightarm1"}};
+  EXPECT_EQ(Why(rehearsal.Play(pick_up, LeaningBriefly("see"), WithHoldTime(0.2))), "");
+}
+
+TEST(SightTest, WhatLeansCountsOnceItHasDoneSoForTheHoldTime) {
+  robot::SeenObject mug;
+  mug.name = "mug1";
+  mug.X_MO.rotation = geometry::RotationFromRpy(0.45, 0.0, 0.0);
+  const auto seconds = [&](double hold_time) {
+    world::ObjectState sighted;
+    Sight sight(WithHoldTime(hold_time).manipulation, "mug1", &sighted);
+    robot::Observation seen;
+    robot::Command command;
+    Status status;
+    for (int i = 0; i < 200 && status.progress == Progress::kRunning; ++i) {
+      seen.time = 0.05 * i;
+      mug.time = seen.time;
+      seen.objects = {mug};
+      status = sight.Update(seen, &command);
+    }
+    EXPECT_EQ(status.progress, Progress::kSucceeded);
+    EXPECT_NEAR(geometry::TiltOf(sighted.X_MO.rotation), 0.45, 1e-9);
+    return seen.time;
+  };
+  EXPECT_NEAR(seconds(0.2), seconds(0.0) + 0.2, 1e-6);
+  EXPECT_NEAR(seconds(6.0), seconds(0.0) + 6.0, 1e-6) << "longer than a look may last";
 }
 
 TEST(PlaceObjectFailureTest, AMugThatStandsBesideItsPlaceHasSlipped) {

@@ -143,10 +143,11 @@ class Rehearsal {
                    simulation::LevelOfDetail::kPlanar) {}
 
   /// Expects of a failure that the action's description names it.
-  Played Play(const base::ActionCall& action, const Meddle& meddle = {}) {
+  Played Play(const base::ActionCall& action, const Meddle& meddle = {},
+              const SkillSet& skills = TheRestaurant().skills) {
     Played played;
     const double start = simulator_.time();
-    const auto skill = MakeSkill(TheRestaurant().skills, action);
+    const auto skill = MakeSkill(skills, action);
     for (long cycle = 1; played.status.progress == Progress::kRunning; ++cycle) {
       robot::Observation seen = simulator_.Observe(start);
       if (meddle) meddle(this, *skill, &seen);

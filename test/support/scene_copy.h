@@ -68,5 +68,8 @@ inline constexpr char kStandingLine[] =
     "standing: {tilt: 0.5, hold_time: 0.0, drop: 0.05, slide: 0.10}";
 inline constexpr char kOtherStandingLine[] =
     "standing: {tilt: 0.4, hold_time: 0.2, drop: 0.05, slide: 0.10}";
+/// A third one: longer than the stool leans in a drive of 1.5 s.
+inline constexpr char kLongHoldStandingLine[] =
+    "standing: {tilt: 0.4, hold_time: 2.0, drop: 0.05, slide: 0.10}";
 
 }  // namespace hires::test_support

@@ -25,18 +25,13 @@ Pose3 Leaning(double tilt) { return At(0.0, 1.0, tilt); }
 
 // ------------------------------------------------------------------------------------ one look
 
-TEST(FallSeenTest, EachLimitIsWhereTheCriterionHasIt) {
+TEST(IsAwayTest, LowerOrBesideByMoreThanTheCriterionAllows) {
   const StandingCriterion criterion{0.5, 0.0, 0.05, 0.10};
-  EXPECT_EQ(FallSeen(criterion, {0.4999, 0.05, 0.10}), Fall::kNone);
-  EXPECT_EQ(FallSeen(criterion, {0.5, 0.0, 0.0}), Fall::kToppled);
-  EXPECT_EQ(FallSeen(criterion, {0.0, 0.0501, 0.0}), Fall::kDropped);
-  EXPECT_EQ(FallSeen(criterion, {0.0, 0.0, 0.1001}), Fall::kSlid);
-  EXPECT_EQ(FallSeen(criterion, {0.0, -3.0, 0.0}), Fall::kNone) << "lifted";
-}
-
-TEST(FallSeenTest, TheFirstWayToFallCounts) {
-  EXPECT_EQ(FallSeen({}, {1.0, 1.0, 1.0}), Fall::kToppled);
-  EXPECT_EQ(FallSeen({}, {0.0, 1.0, 1.0}), Fall::kDropped);
+  EXPECT_FALSE(IsAway(criterion, {0.0, 0.05, 0.10}));
+  EXPECT_TRUE(IsAway(criterion, {0.0, 0.0501, 0.0}));
+  EXPECT_TRUE(IsAway(criterion, {0.0, 0.0, 0.1001}));
+  EXPECT_FALSE(IsAway(criterion, {3.0, 0.0, 0.0})) << "how it leans does not matter";
+  EXPECT_FALSE(IsAway(criterion, {0.0, -3.0, 0.0})) << "lifted";
 }
 
 TEST(DepartureFromTest, IsWorkedOutInTheFrameOfTheCarrier) {
@@ -56,6 +51,29 @@ TEST(IsUprightTest, LeaningTooFarOrNowhereIsNotUpright) {
 }
 
 // ------------------------------------------------------------------------------------ detector
+
+TEST(StepsPerLookTest, LooksAre5MillisecondsApartAndAtLeastAStep) {
+  EXPECT_EQ(StepsPerLook(0.001), 5);
+  EXPECT_EQ(StepsPerLook(0.0005), 10);
+  EXPECT_EQ(StepsPerLook(0.005), 1);
+  EXPECT_EQ(StepsPerLook(1.0), 1);
+  EXPECT_THROW(StepsPerLook(0.0), std::logic_error);
+}
+
+TEST(FallDetectorTest, EachLimitIsWhereTheCriterionHasIt) {
+  const auto fall = [](double x, double z, double tilt) {
+    FallDetector detector{{0.5, 0.0, 0.05, 0.10}};
+    detector.Update(At(0.0, 1.0), false, 0.0);
+    return detector.Update(At(x, z, tilt), false, 0.1);
+  };
+  EXPECT_EQ(fall(0.0999, 0.9501, 0.4999), Fall::kNone);
+  EXPECT_EQ(fall(0.0, 1.0, 0.5001), Fall::kToppled);
+  EXPECT_EQ(fall(0.0, 0.9499, 0.0), Fall::kDropped);
+  EXPECT_EQ(fall(0.1001, 1.0, 0.0), Fall::kSlid);
+  EXPECT_EQ(fall(1.0, 0.0, 1.0), Fall::kToppled) << "the first way to fall counts";
+  EXPECT_EQ(fall(1.0, 0.0, 0.0), Fall::kDropped);
+  EXPECT_EQ(fall(0.0, 4.0, 0.0), Fall::kNone) << "lifted";
+}
 
 TEST(FallDetectorTest, BeforeTheFirstLookNothingStandsAndNothingFell) {
   const FallDetector detector{{}};

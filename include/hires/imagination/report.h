@@ -23,6 +23,7 @@ struct Prediction {
 /// The answer to one request.
 struct Report {
   ImaginationOutcome outcome{ImaginationOutcome::kNothingFinished};
+  ImaginationOutcome found{ImaginationOutcome::kCancelled};  ///< as SchedulerResult::found
   bool complete{false};             ///< settled or all played; false: cut short by deadline or loss
   std::vector<Prediction> ranking;  ///< best first
   int recommended{-1};              ///< index into `ranking`, or -1

@@ -32,6 +32,9 @@ struct RolloutParams {
 };
 RolloutParams ReadRolloutParams(base::ParamReader in);
 
+/// One sample of an object that leans by `tilt` [rad], sorted by Eq. 5.1.
+OutcomeCounts SampleOf(double tilt, const RolloutParams& params);
+
 /// Everything that the rollouts of one ground action have in common; constant, shared by threads.
 struct RolloutSetup {
   std::shared_ptr<const simulation::Scene> scene;
@@ -51,11 +54,14 @@ void CheckSetup(const RolloutSetup& setup, const base::ActionCall& action);
 /// The same for alternatives of one request: their common start is looked at once.
 void CheckSetupForAll(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions);
 
-/// What a caller may want to know while a rollout is played; both may be empty.
+/// What a caller may want to know while a rollout is played; each may be empty.
 struct RolloutHooks {
   std::function<bool()> cancelled;  ///< asked 20 times per simulated second
   /// Called with every 20 Hz sample; must not change anything.
   std::function<void(const simulation::RobotSimulator&, double tilt)> on_sample;
+  /// Called once, when it is over, with the names (lower case) of what the action was about and
+  /// the robot carried that is down, as world::FallDetector says.
+  std::function<void(const std::vector<std::string>& down)> on_end{};
 };
 
 /// Plays rollout `index` of an action: samples a truth (the same for every action that is played

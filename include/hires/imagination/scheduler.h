@@ -102,6 +102,9 @@ struct Ranking {
 
 struct SchedulerResult {
   ImaginationOutcome outcome{ImaginationOutcome::kNothingFinished};
+  /// Of a cancelled request: what the rollouts that were finished say, by the rule of every other
+  /// end; kCancelled where none was. Else as `outcome`.
+  ImaginationOutcome found{ImaginationOutcome::kCancelled};
   bool complete{false};  ///< the answer was decided or all rollouts played; false: cut short
   int num_unplayable{
       0};  ///< rollouts behind the ranking that count as failed as no worker got them done
@@ -158,7 +161,7 @@ class Scheduler {
   /// Looks at the clock alone. Call it at WakeAt() if no event comes before.
   std::vector<Command> Tick(double now);
 
-  /// Somebody does not want the answer any more.
+  /// The client does not want the answer any more.
   std::vector<Command> Cancel(double now);
 
   /// When Tick() will have something to do without an event: deadline, or end of waiting for

@@ -46,7 +46,7 @@ class BlackboardWriter {
   using Clock = std::function<double()>;  ///< [s] main ROS time
 
   BlackboardWriter(Store store, const Limits& limits, Clock now, OnCommit on_commit);
-  ~BlackboardWriter();  ///< Whoever waits is told that it ends.
+  ~BlackboardWriter();  ///< Callers that wait are told that it ends.
   BlackboardWriter(const BlackboardWriter&) = delete;
   BlackboardWriter& operator=(const BlackboardWriter&) = delete;
 

@@ -39,7 +39,7 @@ struct KnowledgeFile {
   std::vector<DemandTopic> topics;
 };
 
-/// Times are finite seconds, or .inf and -.inf; [0, 0] is since ever in StartTime, for ever in
+/// Times are finite seconds, or .inf and -.inf; [0, 0] is -infinity in StartTime, infinity in
 /// FinishTime, and the moment 0 itself is [-0.0, -0.0]. Documents without content are passed over.
 /// Concepts and relations are not looked up: the store does that.
 /// @throws ConfigError naming source, document, line and key: unknown tag or key, wrong shape or

@@ -35,7 +35,7 @@ struct BaseGuardParams {
 /// @throws base::ConfigError naming file and key.
 BaseGuardParams ReadBaseGuardParams(const std::string& path);
 
-/// Leave to drive.
+/// Permission to drive.
 struct DriveRequest {
   std::uint64_t id{0};                          ///< 0: no request to drive
   robot::MotionSet limits{0.0, 0.0, 0.0, 0.0};  ///< velocities are clipped to its speeds

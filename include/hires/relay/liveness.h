@@ -10,7 +10,7 @@
 namespace hires::relay {
 
 /// Which nodes still live, told from pings. A master never notices that a node was killed: its
-/// registrations stay until somebody withdraws them.
+/// registrations stay until they are withdrawn.
 class Liveness {
  public:
   /// Silent pings in a row after which a node counts as gone; a stopped or busy one gets this long.

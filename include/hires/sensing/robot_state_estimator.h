@@ -43,7 +43,7 @@ struct Receipt {
   std::string subject;
   double limit{0.0};  ///< [s] by which it may be late or ahead
   bool is_taken() const { return what == Reception::kTaken; }
-  /// Somebody must set something right; messages that come late or twice are everyday life.
+  /// A person must mend something; messages that come late or twice are normal.
   bool is_bad() const;
 };
 /// For people: what is wrong and what was wanted.

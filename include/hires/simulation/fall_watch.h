@@ -16,7 +16,7 @@ class FallWatch {
   /// @return the fall that this look completes.
   world::Fall Look(const RobotSimulator& simulator, int object);
 
-  /// Somebody else put it somewhere; see FallDetector.
+  /// It was put elsewhere from outside; see FallDetector.
   void Reset();
   const world::FallDetector& detector() const { return detector_; }
 

@@ -25,7 +25,7 @@ class TruthRecord {
  public:
   explicit TruthRecord(const world::StandingCriterion& criterion) : criterion_(criterion) {}
 
-  /// Looks; call it every few milliseconds of simulated time.
+  /// Looks; call it every world::kFallLookInterval of simulated time.
   void Look(const RobotSimulator& simulator);
   /// The robot drives on after it was put somewhere else: not counted as way.
   void ForgetPosition() { last_.reset(); }

@@ -15,8 +15,8 @@ namespace hires::skills {
 /// was built with other headers; or an action of it makes no sense, or has a name that another has.
 std::shared_ptr<const ActionSet> LoadActionSet(const std::vector<std::string>& libraries);
 
-/// Why who has `own` does not play for somebody whose actions have the hash `wanted`, with the
-/// libraries that are loaded here; "" where both are the same.
+/// Why a worker with `own` does not play for a client whose actions have the hash `wanted`, with
+/// the libraries that are loaded here; "" where both are the same.
 std::string WhyActionsDiffer(std::uint64_t wanted, const ActionSet& own);
 
 }  // namespace hires::skills

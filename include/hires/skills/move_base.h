@@ -41,7 +41,7 @@ geometry::Polygon FootprintOf(const DrivingContext& context, const robot::JointP
 /// top.
 DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot& robot,
                                   const MoveBaseParams& params);
-/// ... from a map that somebody recorded.
+/// ... from a recorded map.
 DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::Robot& robot,
                                   const MoveBaseParams& params);
 

@@ -44,12 +44,20 @@ struct Departure {
 /// @param X_CO       where it is now, in the same frame.
 Departure DepartureFrom(const geometry::Pose3& X_CstoodO, const geometry::Pose3& X_CO);
 
-/// The verdict of a single look, for those who see a thing once and cannot tell for how long it has
-/// leaned: it counts as having leaned for the hold time.
-Fall FallSeen(const StandingCriterion& criterion, const Departure& departure);
-/// Likewise for those who do not know where it stood: it does not lean too far. False for a pose
-/// that is not finite.
+/// It is lower than where it stood, or beside it, by more than the criterion allows, however it
+/// leans.
+bool IsAway(const StandingCriterion& criterion, const Departure& departure);
+
+/// For those who see a thing once and know neither for how long it has leaned nor where it stood:
+/// it does not lean too far. False for a pose that is not finite.
 bool IsUpright(const StandingCriterion& criterion, const geometry::Pose3& X_MO);
+
+/// [s] of simulated time between two looks at things that are followed in rollouts, experiments and
+/// the record of what really happens: what imagination sees fall, that record sees, too.
+constexpr double kFallLookInterval = 0.005;
+/// As a number of steps of `time_step` [s]; at least one.
+/// @pre time_step > 0.  @throws std::logic_error if broken.
+long StepsPerLook(double time_step);
 
 /// Follows one thing and says when it falls. A thing stands where it was first seen, where a hand
 /// let go of it, or where it was first seen after Reset(). What a hand holds may lean and be moved
@@ -69,7 +77,7 @@ class FallDetector {
   Fall Update(const geometry::Pose3& X_MO, bool is_held, double t,
               const geometry::Pose3& X_MC = {});
 
-  /// Somebody else put it somewhere: it stands where the next look finds it.
+  /// It was put elsewhere from outside: it stands where the next look finds it.
   void Reset();
 
   /// What it is down by; kNone if it did not fall, or was put up.

@@ -71,8 +71,9 @@ RobotFindings JudgeLoopback(const RobotView& view) {
   for (const auto& [host, names] : nodes) {
     findings.push_back(
         {FindingLevel::kFailed, "loopback", "address " + host,
-         fmt::format("is what {} told the master, and another computer for everybody else",
-                     Some(names)),
+         fmt::format(
+             "is what {} told the master; on any other computer it means that computer itself",
+             Some(names)),
          "start them with ROS_IP set to their computer's address (in /etc/ros or the robot's "
          "setup.bash), and without ROS_HOSTNAME=localhost"});
   }

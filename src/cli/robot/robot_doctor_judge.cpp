@@ -65,7 +65,9 @@ bool IsHere(const std::string& node, const RobotView& view) {
   return known != view.nodes.end() && view.IsHere(known->second.host());
 }
 
-bool HasNobody(const SeenTopic* topic) { return topic == nullptr || topic->publishers.empty(); }
+bool HasNoPublisher(const SeenTopic* topic) {
+  return topic == nullptr || topic->publishers.empty();
+}
 
 /// What to do where a topic is published and nothing comes: the cause may be its node's computer.
 std::string RemedyForSilence(const WantedTopic& wanted, const SeenTopic& topic,
@@ -82,9 +84,10 @@ std::string RemedyForSilence(const WantedTopic& wanted, const SeenTopic& topic,
 RobotFindings JudgeTopic(const WantedTopic& wanted, const RobotView& view) {
   const SeenTopic* topic = view.FindTopic(wanted.name);
   const std::string subject = "topic " + wanted.name;
-  if (HasNobody(topic)) {
+  if (HasNoPublisher(topic)) {
     return {{FindingLevel::kFailed, "topic_missing", subject,
-             fmt::format("nobody publishes it ({}, {})", wanted.what, wanted.type), wanted.remedy}};
+             fmt::format("no node publishes it ({}, {})", wanted.what, wanted.type),
+             wanted.remedy}};
   }
   if (topic->messages.empty()) {
     if (!topic->type.empty() && topic->type != "*" && topic->type != wanted.type) {
@@ -216,7 +219,7 @@ RobotFindings FindMoveBase(const hires::control::RobotNames& names, const RobotV
                  ? fmt::format("{} serves it with goals of {}, wanted is {}",
                                Listed(goals->subscribers),
                                goals->type.empty() ? "unknown type" : goals->type, kGoalType)
-                 : "nobody serves it",
+                 : "no node serves it",
              "start move_base, or drive with navigation:=own (doctor --robot --navigation own)"}};
   }
   RobotFindings findings = JudgePlanner(names, view);
@@ -246,7 +249,7 @@ RobotFindings JudgeTopics(const RobotNeeds& needs, const RobotView& view) {
   const WantedTopic& map = needs.map;
   const bool is_served =
       !needs.names.static_map.empty() && view.services.count(Absolute(needs.names.static_map)) > 0;
-  if (!HasNobody(view.FindTopic(map.name)) || !is_served) {
+  if (!HasNoPublisher(view.FindTopic(map.name)) || !is_served) {
     Append(JudgeTopic(map, view), &findings);
   }
   return findings;
@@ -258,9 +261,10 @@ RobotFindings JudgeListeners(const RobotNeeds& needs, const RobotView& view) {
     const SeenTopic* topic = view.FindTopic(wanted.name);
     const std::string subject = "command " + wanted.name;
     if (topic == nullptr || topic->subscribers.empty()) {
-      findings.push_back({FindingLevel::kFailed, "listener_missing", subject,
-                          fmt::format("nobody listens ({}, {})", wanted.what, wanted.type),
-                          wanted.remedy});
+      findings.push_back(
+          {FindingLevel::kFailed, "listener_missing", subject,
+           fmt::format("no node subscribes to it ({}, {})", wanted.what, wanted.type),
+           wanted.remedy});
     } else if (!topic->type.empty() && topic->type != "*" && topic->type != wanted.type) {
       findings.push_back({FindingLevel::kFailed, "listener_type", subject,
                           fmt::format("{} takes {}, wanted is {}", Listed(topic->subscribers),
@@ -311,10 +315,11 @@ RobotFindings JudgeJoints(const RobotProfile& profile, const RobotView& view) {
 RobotFindings JudgeReadiness(const hires::control::RobotNames& names, const RobotView& view) {
   RobotFindings findings;
   if (view.motors_halted.value_or(false)) {
-    findings.push_back({FindingLevel::kFailed, "motors_halted", "motors",
-                        Absolute(names.motors_halted) + " says that they are halted",
-                        "look that nobody stands in the way, release both run-stops, then reset "
-                        "the motors (on a PR2: rosservice call /pr2_etherCAT/reset_motors)"});
+    findings.push_back(
+        {FindingLevel::kFailed, "motors_halted", "motors",
+         Absolute(names.motors_halted) + " says that they are halted",
+         "make sure that no person stands in the way, release both run-stops, then reset "
+         "the motors (on a PR2: rosservice call /pr2_etherCAT/reset_motors)"});
   }
   if (!view.has_robot_description) {
     findings.push_back({FindingLevel::kFailed, "robot_description_missing",

@@ -472,7 +472,7 @@ void OntologyBuilder::FailOnSameName(const Term& known, const Term& other) {
 void OntologyBuilder::FailOnKindOfRange(const RelationTerm& relation, const TurtleNode& range,
                                         Place place) {
   const bool is_link = relation.is_link.value_or(true);
-  Fail(place, fmt::format("relation {} is an owl:{}, its range {} is none for that; wanted {}",
+  Fail(place, fmt::format("relation {} is an owl:{}, its range {} does not fit that; wanted {}",
                           relation.qualified, is_link ? "ObjectProperty" : "DatatypeProperty",
                           Readable(range), is_link ? "a concept" : "a type of values, xsd:float"));
 }

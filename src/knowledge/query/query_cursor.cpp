@@ -57,9 +57,9 @@ QueryCursor ReadCursor(const std::string& text) {
                   ReadNumber(parts[3], 10, &cursor.last.id) && cursor.as_of >= 0;
   cursor.last.start = FromBits(bits);
   if (!ok || std::isnan(cursor.last.start)) {
-    throw base::ConfigError(
-        fmt::format("cursor '{}' is none; pass on the one of the page before, or none at first",
-                    text.substr(0, 60)));
+    throw base::ConfigError(fmt::format(
+        "cursor '{}' is malformed; wanted: empty at first, then `next` of the page before",
+        text.substr(0, 60)));
   }
   cursor.last.name = base::Join({parts.begin() + 4, parts.end()}, ":");  // it may have some itself
   return cursor;

@@ -264,9 +264,10 @@ void CheckSource(Source source, const Fluent& fluent, const Ontology& ontology) 
   const Ontology::ConceptId allowed = ontology.Find(kOfMonitor);
   const bool known = subject != Ontology::kUnknown && allowed != Ontology::kUnknown;
   if (known && ontology.IsA(subject, allowed)) return;
-  Fail(Where(fluent), fmt::format("the execution monitor tells of its own doing ({} and below), "
-                                  "not of the world; let an observation say this",
-                                  kOfMonitor));
+  Fail(Where(fluent),
+       fmt::format("the execution monitor may write what it does itself ({} and below) "
+                   "and nothing else; write this as an observation",
+                   kOfMonitor));
 }
 
 }  // namespace hires::knowledge

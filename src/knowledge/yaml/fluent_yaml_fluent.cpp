@@ -95,8 +95,8 @@ Fluent ReadFluent(const Fields& in) {
       in.Require("Class_Instance", "write [concept, instance]").Items("[concept, instance]", 2);
   fluent.concept_name = head[0].Name();
   fluent.instance = head[1].Name();
-  const Field start = in.Require("StartTime", "write [0, 0] for since ever");
-  const Field finish = in.Require("FinishTime", "write [0, 0] for for ever");
+  const Field start = in.Require("StartTime", "write [0, 0] where it is not bounded");
+  const Field finish = in.Require("FinishTime", "write [0, 0] where it is not bounded");
   fluent.start = ReadBounds(start, -temporal::kForever);
   fluent.finish = ReadBounds(finish, temporal::kForever);
   CheckTimes(fluent, start, finish);

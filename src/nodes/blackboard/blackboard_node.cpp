@@ -92,7 +92,7 @@ Store OpenStore(const knowledge::BlackboardConfig& config,
 std::vector<Change> ChangesSince(const Store& store, std::uint64_t sequence, std::size_t limit) {
   if (sequence > store.last_sequence()) {
     throw ConfigError(fmt::format(
-        "sequence is {}, but the last change is {}: what you know is of another store; begin anew",
+        "sequence is {}, wanted at most {}, the last change: it is of another store; ask from 0",
         sequence, store.last_sequence()));
   }
   return store.ChangesSince(sequence, limit);

@@ -174,8 +174,9 @@ class ActionLink {
 
   std::string WhyLost(const Pending& pending, bool is_here, double now) const {
     if (!pending.sent) {
-      return now - pending.asked > params_.server_wait ? fmt::format("nobody serves '{}'", name_)
-                                                       : "";
+      return now - pending.asked > params_.server_wait
+                 ? fmt::format("no server of '{}' runs", name_)
+                 : "";
     }
     if (!is_here && now - seen_ > params_.server_loss) {
       return fmt::format("the server of '{}' went away", name_);

@@ -164,8 +164,7 @@ void ImagineRequests::OnEnd(int key, const hires::ImagineResultConstPtr& result,
     return Refuse(key, request.is_late ? Outcome::kNothingFinished : Outcome::kUnavailable, why);
   }
   SetPredictions(*result, &request.status);
-  Answer(key, AnswerOf(request.command.request, *result, request.state,
-                       {request.is_late, request.command.min_success}));
+  Answer(key, AnswerOf(request.command.request, *result, request.state, request.is_late));
 }
 
 void ImagineRequests::Refuse(int key, Outcome outcome, const std::string& why) {

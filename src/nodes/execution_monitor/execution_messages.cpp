@@ -34,19 +34,7 @@ base::Failure MainFailure(const hires::Prediction& prediction) {
 
 using ImagineOutcome = execution::ImagineAnswered::Outcome;
 
-/// Of a request that was cut short by its own client, who wanted `min_success` (0: did not say).
-ImagineOutcome OutcomeWhenLate(const hires::ImagineResult& result, double min_success) {
-  if (result.recommended >= 0) return ImagineOutcome::kRanked;
-  const auto& predictions = result.predictions;
-  const bool is_compared = std::any_of(predictions.begin(), predictions.end(),
-                                       [](const auto& p) { return p.rollouts > 0; });
-  if (!is_compared) return ImagineOutcome::kNothingFinished;
-  const bool all_fail = std::all_of(predictions.begin(), predictions.end(),
-                                    [&](const auto& p) { return p.success_upper < min_success; });
-  return all_fail ? ImagineOutcome::kAllFailed : ImagineOutcome::kUndecided;
-}
-
-ImagineOutcome OutcomeOf(const hires::ImagineResult& result, const Lateness& late) {
+ImagineOutcome OutcomeOf(const hires::ImagineResult& result, bool is_late) {
   switch (result.outcome) {
     case hires::ImagineResult::RANKED:
     case hires::ImagineResult::RANKED_AT_DEADLINE:
@@ -60,8 +48,7 @@ ImagineOutcome OutcomeOf(const hires::ImagineResult& result, const Lateness& lat
     case hires::ImagineResult::NOTHING_FINISHED:
       return ImagineOutcome::kNothingFinished;
     case hires::ImagineResult::CANCELLED:
-      return late.is_late ? OutcomeWhenLate(result, late.min_success)
-                          : ImagineOutcome::kUnavailable;
+      return is_late ? ImagineOutcome::kNothingFinished : ImagineOutcome::kUnavailable;
   }
   return ImagineOutcome::kInvalid;
 }
@@ -200,11 +187,11 @@ hires::ImagineGoal GoalOf(const execution::StartImagination& command,
 
 execution::ImagineAnswered AnswerOf(int request, const hires::ImagineResult& result,
                                     const hires::GenerateImagineState::Response& state,
-                                    const Lateness& late) {
+                                    bool is_late) {
   execution::ImagineAnswered answer;
   answer.request = request;
   answer.why = result.why;
-  answer.outcome = OutcomeOf(result, late);
+  answer.outcome = OutcomeOf(result, is_late);
   const bool is_known =
       0 <= result.recommended && result.recommended < static_cast<int>(result.predictions.size());
   if (answer.outcome == ImagineOutcome::kRanked && !is_known) {

@@ -44,16 +44,11 @@ hires::execution::StepFinished AnswerOf(int activity, const hires::ExecuteAction
 hires::ImagineGoal GoalOf(const hires::execution::StartImagination& command,
                           const hires::GenerateImagineState::Response& state,
                           const hires::execution::ImaginingParams& params);
-/// How a request ended.
-struct Lateness {
-  bool is_late{false};  ///< by us, because its time was over: what was found until then counts
-  /// Share of successes that was wanted. 0: not said, then what was cut off rules nothing out.
-  double min_success{0.0};
-};
-/// @param state  That was imagined in: its objects are what the prediction rests on.
+/// @param state    That was imagined in: its objects are what the prediction rests on.
+/// @param is_late  We cancelled it because its time was over: what was found until then counts.
 hires::execution::ImagineAnswered AnswerOf(int request, const hires::ImagineResult& result,
                                            const hires::GenerateImagineState::Response& state,
-                                           const Lateness& late);
+                                           bool is_late);
 std::string OutcomeName(hires::execution::ImagineAnswered::Outcome outcome);  ///< "ranked", ...
 
 /// When the imagined steps began. A step that a repair took over into a later plan, where it has

@@ -207,7 +207,10 @@ RecordedAction ReadAction(const std::string& path, const rosbag::Bag& bag,
       // An action server ignores a goal that comes once more, so it counts once here too.
       if (seen.insert(goal->goal_id.id).second) out.goals.push_back({goal->goal_id.id, goal->goal});
     } else if (const auto result = message.instantiate<ImagineActionResult>()) {
-      out.results.emplace(result->status.goal_id.id, result->result);
+      hires::ImagineResult& kept = result->result;
+      const bool is_cancelled = result->status.status == actionlib_msgs::GoalStatus::PREEMPTED;
+      if (is_cancelled) kept.outcome = hires::ImagineResult::CANCELLED;  // whatever was found
+      out.results.emplace(result->status.goal_id.id, std::move(kept));
     }
   }
   return out;

@@ -112,8 +112,12 @@ hires::ImagineResult AwaitResult(const hires::ImagineGoal& goal,
   }
   // A client that was restarted does not know the goal: there is no result then, and an
   // empty one would read as a ranking.
-  if (client->getState() == actionlib::SimpleClientGoalState::LOST) FailAsClientIsGone();
-  return *client->getResult();
+  const actionlib::SimpleClientGoalState state = client->getState();
+  if (state == actionlib::SimpleClientGoalState::LOST) FailAsClientIsGone();
+  hires::ImagineResult result = *client->getResult();
+  const bool is_cancelled = state == actionlib::SimpleClientGoalState::PREEMPTED;
+  if (is_cancelled) result.outcome = hires::ImagineResult::CANCELLED;  // whatever was found
+  return result;
 }
 
 }  // namespace

@@ -237,6 +237,7 @@ ordered_json AnswerJson(const ImagineResult& result) {
 
 struct ReplayOptions {
   std::string bag, json, action;
+  std::vector<std::string> action_libraries;
   bool local{false};
   int threads{0};
 };
@@ -248,6 +249,10 @@ void AddOptions(CLI::App* app, ReplayOptions* o) {
       app->add_flag("--local", o->local, "in this process, with the package's own scene");
   app->add_option("--threads", o->threads, "workers of --local; default: one per core")
       ->check(CLI::Range(1, 256))
+      ->needs(local);
+  app->add_option("--actions", o->action_libraries,
+                  "library with more actions (.so), for --local; nodes have ~action_libraries")
+      ->allow_extra_args(false)
       ->needs(local);
   app->add_option("--json", o->json, "write the comparisons to this file as well");
   app->add_option("--topic", o->action, "only this recorded action, e.g. /imagine; default: all");
@@ -269,8 +274,9 @@ ImagineAgain ChooseImagination(const ReplayOptions& options, const std::string& 
     };
   }
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  return MakeLocalImagination(package_folder, options.threads > 0 ? options.threads : cores,
-                              ShowProgress, cancelled);
+  return MakeLocalImagination(package_folder, options.action_libraries,
+                              options.threads > 0 ? options.threads : cores, ShowProgress,
+                              cancelled);
 }
 
 std::string SummaryText(const std::vector<ReplayedRequest>& replayed) {
@@ -389,16 +395,19 @@ int ReplayExitCode(const std::vector<ReplayedRequest>& replayed) {
   return differs ? kExitDiffers : cli::kExitRecommended;
 }
 
-ImagineAgain MakeLocalImagination(const std::string& package_folder, int num_threads,
+ImagineAgain MakeLocalImagination(const std::string& package_folder,
+                                  const std::vector<std::string>& action_libraries, int num_threads,
                                   const imagination::OnInterim& on_interim,
                                   const std::function<bool()>& cancelled) {
   struct Loaded {
     imagination::ClientConfig config;
     imagination::ImaginationSetup setup;
   };
-  const auto load = [package_folder] {
+  const auto load = [package_folder, action_libraries] {
     auto config = imagination::ReadClientConfig(package_folder + "/config/imagination_client.yaml");
-    auto setup = imagination::LoadImaginationSetup(imagination::ReadSetupConfig(config.scene));
+    imagination::SetupConfig files = imagination::ReadSetupConfig(config.scene);
+    files.action_libraries = action_libraries;
+    auto setup = imagination::LoadImaginationSetup(files);
     return std::make_shared<const Loaded>(Loaded{std::move(config), std::move(setup)});
   };
   return [=, loaded = std::shared_ptr<const Loaded>()](const ImagineGoal& goal) mutable {

@@ -62,11 +62,13 @@ std::vector<ReplayedRequest> ReplayAll(const std::vector<RecordedRequest>& reque
 int ReplayExitCode(const std::vector<ReplayedRequest>& replayed);
 
 /// Imagines in this process with the package's own scene; loads it at the first call.
-ImagineAgain MakeLocalImagination(const std::string& package_folder, int num_threads,
+ImagineAgain MakeLocalImagination(const std::string& package_folder,
+                                  const std::vector<std::string>& action_libraries, int num_threads,
                                   const hires::imagination::OnInterim& on_interim,
                                   const std::function<bool()>& cancelled);
 
-/// The verb `hires replay BAG [--local] [--threads N] [--json FILE] [--topic NAME]`.
+/// The verb `hires replay BAG [--local] [--actions FILE] [--threads N] [--json FILE]
+/// [--topic NAME]`.
 /// @param arguments  without the program's and the verb's name.
 /// @return The exit code: as ReplayExitCode, 1 for wrong arguments, 130 when interrupted.
 /// @throws hires::base::ConfigError for a bad bag, and if there is no client to ask.

@@ -51,9 +51,10 @@ Finding JudgeName(const std::string& what, const std::string& name, const Resolv
   const std::vector<std::string> addresses = resolve(name);
   if (addresses.empty()) {
     return {FindingLevel::kFailed,
-            fmt::format("{} is '{}', which nobody can look up, so nodes cannot reach each other; "
-                        "set ROS_HOSTNAME=localhost, or add the name to /etc/hosts",
-                        what, name)};
+            fmt::format(
+                "{} is '{}', a name that cannot be looked up, so nodes cannot reach each other; "
+                "set ROS_HOSTNAME=localhost, or add the name to /etc/hosts",
+                what, name)};
   }
   const bool is_ours =
       std::any_of(addresses.begin(), addresses.end(), [&](const std::string& address) {
@@ -134,7 +135,7 @@ std::string LogFolder() {
 std::vector<hires::relay::ListeningSocket> ListeningHere() {
   if (!std::filesystem::exists("/proc/net/tcp")) {
     throw ConfigError(
-        "/proc/net/tcp is missing, so nobody can say who listens here; mount /proc (is this "
+        "/proc/net/tcp is missing, so what listens here is unknown; mount /proc (is this "
         "Linux?)");
   }
   std::vector<hires::relay::ListeningSocket> sockets;
@@ -256,7 +257,7 @@ std::vector<Finding> JudgeOpenPorts(const std::vector<hires::relay::ListeningSoc
   if (lines.empty()) {
     return {{FindingLevel::kOk, "no ROS program of yours listens beyond this computer"}};
   }
-  std::string text = "ROS programs that other computers can reach, and that obey anyone:\n";
+  std::string text = "ROS programs that accept commands from any other computer:\n";
   for (const std::string& line : lines) text += "  " + line + '\n';
   return {{FindingLevel::kWarning, text + FenceText(first, last)}};
 }

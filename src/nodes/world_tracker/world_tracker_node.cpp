@@ -9,6 +9,7 @@
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 #include "hires/ros/topic_names.h"
+#include "hires/skills/action_loader.h"
 #include "hires/translation/task_places.h"
 
 namespace hires_ros {
@@ -31,6 +32,7 @@ WorldTrackerNode::WorldTrackerNode(const WorldTrackerParams& params,
                                    translation::TranslatorContext context, ros::NodeHandle* nh)
     : params_(params),
       context_(std::move(context)),
+      actions_(hires::skills::LoadActionSet(params.action_libraries)),
       sensors_(context_.robot, std::make_shared<const perception::Surroundings>(*context_.world),
                params.files.names, params.sensing),
       sweep_(context_.robot, params.sweep),
@@ -94,7 +96,7 @@ void WorldTrackerNode::OnResult(const hires::ExecuteActionActionResult& msg) {
 
 void WorldTrackerNode::TellActions() {
   const bool is_busy = std::any_of(running_.begin(), running_.end(), [](const auto& running) {
-    return hires::actions::MayUseHead(hires::actions::OwnActions(), running.second);
+    return hires::actions::MayUseHead(actions_->catalogue(), running.second);
   });
   sweep_.SetBusy(is_busy, time_);
 }

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "hires/ros/sensor_receiver.h"
+#include "hires/skills/action_set.h"
 #include "nodes/world_tracker/world_tracker_params.h"
 #include "nodes/world_tracker/world_tracker_writer.h"
 
@@ -51,6 +52,7 @@ class WorldTrackerNode {
 
   const WorldTrackerParams params_;
   const hires::translation::TranslatorContext context_;
+  const std::shared_ptr<const hires::skills::ActionSet> actions_;
   SensorReceiver sensors_;
   hires::control::HeadSweep sweep_;
   std::map<std::string, std::string> running_;  // goal id -> action

@@ -60,13 +60,14 @@ WorldTrackerParams ReadWorldTrackerParams(const std::string& path) {
 }
 
 WorldTrackerParams LoadWorldTrackerParams() {
-  RejectUnknownPrivate(
-      {"config", "world", "robot", "objects", "sweep", "lockstep", "names", "map_to_world"});
+  RejectUnknownPrivate({"config", "world", "robot", "objects", "sweep", "lockstep", "names",
+                        "map_to_world", "action_libraries"});
   WorldTrackerParams params = ReadWorldTrackerParams(ConfigPath("world_tracker"));
   params.files.world = PrivateText("world").value_or("");
   params.files.robot = PrivateText("robot").value_or("");
   params.files.objects = PrivateText("objects").value_or("");
   params.files.names = LoadRobotNames();
+  params.action_libraries = PrivateActionLibraries();
   params.sweep.enabled = PrivateBool("sweep").value_or(params.sweep.enabled);
   params.lockstep = PrivateBool("lockstep").value_or(params.lockstep);
   return params;

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "hires/control/head_sweep.h"
 #include "hires/ros/translator_params.h"
@@ -13,7 +14,8 @@ namespace hires_ros {
 /// config/world_tracker.yaml.
 struct WorldTrackerParams {
   TranslatorParams files;
-  hires::sensing::SensingParams sensing;  ///< of the scene
+  std::vector<std::string> action_libraries;  ///< with more actions: which of them use the head
+  hires::sensing::SensingParams sensing;      ///< of the scene
   hires::translation::ClassifyParams classify;
   hires::translation::ChangeParams changes;
   std::map<std::string, std::string>
@@ -27,7 +29,8 @@ struct WorldTrackerParams {
 
 /// @throws hires::base::ConfigError naming file and key.
 WorldTrackerParams ReadWorldTrackerParams(const std::string& path);
-/// From the private parameters config, world, robot, objects, sweep, lockstep, names.
+/// From the private parameters config, world, robot, objects, sweep, lockstep, names,
+/// action_libraries.
 WorldTrackerParams LoadWorldTrackerParams();
 
 }  // namespace hires_ros

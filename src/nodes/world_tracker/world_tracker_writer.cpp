@@ -142,7 +142,7 @@ bool ObservationWriter::Send(const translation::FluentUpdate& update) {
 template <typename Service>
 bool ObservationWriter::Call(const char* service, Service* call) {
   if (!blackboard_.Call(service, call)) {
-    Fail(fmt::format("nobody answers at '{}'", blackboard_.NameOf(service)));
+    Fail(fmt::format("no service answers at '{}'", blackboard_.NameOf(service)));
     return false;
   }
   if (call->response.error.code == hires::BlackboardError::NONE) return true;

@@ -109,7 +109,7 @@ class LineReader {
       result_.steps.push_back(id);
     }
     if (!result_.lines.emplace(id, std::move(line)).second) {
-      Fail(words[0], fmt::format("id {} stands for another task before; number them anew", id));
+      Fail(words[0], fmt::format("id {} is used twice; give each task an id of its own", id));
     }
   }
 

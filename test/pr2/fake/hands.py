@@ -6,6 +6,7 @@ import os
 import sys
 
 import numpy
+import yaml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'ros',
                                 'support'))
@@ -18,7 +19,14 @@ PAD = 0.03              # [m] of the finger tips before and behind their middle
 TIP = 0.18              # [m] of the finger tips' middle from the wrist roll frame
 TRAY = (0.0796, 0.3291, 0.329)  # [m] the plate in the base: x from .. to, y to both sides
 TRAY_TOP = 0.3462       # [m]
-DROP = 0.05             # [m] that something may fall and still stand
+SCENE = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', '..', 'config',
+                     'scene.yaml')
+
+
+def read_standing(path=SCENE):
+    """What counts as a fall: tilt [rad], drop [m]; block `standing` of a scene file."""
+    with open(path) as file:
+        return yaml.safe_load(file)['standing']
 
 
 class Thing:
@@ -28,17 +36,19 @@ class Thing:
         self.name, self.model, self.shape = name, model, shape
         self.parent = None      # None: the map; 'base'; or a palm's link
         self.X_PO = X_MO        # 4 x 4, in the parent
-        self.fell = False       # it was let go over nothing
+        self.fell = False       # it was let go leaning, or over nothing
 
     def width(self):
         return min(self.shape.size)
 
 
 class World:
-    """@param links  gives a link's pose in the base, 4 x 4, now."""
+    """@param links     gives a link's pose in the base, 4 x 4, now.
+    @param standing  what counts as a fall, as read_standing gives it."""
 
-    def __init__(self, scene, links):
+    def __init__(self, scene, links, standing=None):
         self._scene, self._links = scene, links
+        self._standing = standing or read_standing()
         self.things = {}
         self.hands = {side: Hand(self, side) for side in ('l', 'r')}
         self.X_MB = numpy.eye(4)
@@ -70,7 +80,8 @@ class World:
         yaw = math.atan2(X_MO[1, 0], X_MO[0, 0])
         is_on_tray = self._is_over_tray(x, y) and z > TRAY_TOP - 0.02
         support = TRAY_TOP if is_on_tray else self._scene.support(x, y, z + 0.02)
-        thing.fell = X_MO[2, 2] < math.cos(0.5) or z - support > DROP
+        tilt = math.acos(min(1.0, max(-1.0, X_MO[2, 2])))
+        thing.fell = tilt >= self._standing['tilt'] or z - support > self._standing['drop']
         thing.parent, thing.X_PO = None, planar(x, y, yaw) @ translation(0, 0, support)
         if is_on_tray:
             self.attach(thing, 'base')
