@@ -618,6 +618,19 @@ def check_rostests(root):
                        f"in a subTest; call run_test of {TEST_RUN}")
 
 
+def check_test_namespaces(root):
+    """Files of tests are compiled together; what each defines for itself must not meet."""
+    for path in files_below(root, "test"):
+        if not path.endswith("_test.cpp") or layer_of(path) is None:
+            continue
+        stem = os.path.basename(path)[:-len(".cpp")]
+        text = read(root, path)
+        own = re.compile(rf"^namespace hires\w*(?:::\w+)*::{stem} {{$", re.MULTILINE)
+        if re.search(r"^(namespace|TEST)", text, re.MULTILINE) and not own.search(text):
+            yield (f"{path}:1: defines what it needs in a namespace that other files of tests share; "
+                   f"write namespace hires::{layer_of(path)}::{stem}")
+
+
 def check_instructions(root):
     """What CONTRIBUTING.md tells people to open must be there."""
     path = "CONTRIBUTING.md"
@@ -634,7 +647,7 @@ CHECKS = [check_includes, check_private_headers, check_public_headers, check_hid
           check_light_headers, check_dependencies, check_units_with_ros, check_nodes_apart, check_rooms,
           check_functions, check_headers, check_whitespace, check_packages, check_catkin_components,
           check_scripts, check_failure_codes, check_failure_texts, check_python_texts,
-          check_failure_tables, check_rostests, check_instructions]
+          check_failure_tables, check_rostests, check_test_namespaces, check_instructions]
 
 
 def complaints_about(root):

@@ -26,7 +26,8 @@ GOOD_TREE = {
         '#include "hires/skills/skill.h"\n',
     "src/nodes/planner/planner_main.cpp": '#include "hires/ros/conversions.h"\n',
     "test/skills/skill_test.cpp":
-        '#include "hires/simulation/simulator.h"\n#include "support/fakes.h"\n',
+        '#include "hires/simulation/simulator.h"\n#include "support/fakes.h"\n'
+        "namespace hires::skills::skill_test {\n}\n",
     "test/data/given.txt": "tabs\tof others stay \n",
 }
 
@@ -298,6 +299,10 @@ class CheckTreeTest(unittest.TestCase):
     def test_instructions_that_lead_nowhere_are_found(self):
         text = "Open `src/base/rng.cpp`, `src/`, `scripts/build --where`\nand `src/base/dice.cpp`.\n"
         self.expect_one({"CONTRIBUTING.md": text}, "CONTRIBUTING.md:2", "no src/base/dice.cpp")
+
+    def test_a_test_in_a_namespace_of_others_is_found(self):
+        self.expect_one({"test/skills/look_test.cpp": "namespace hires::skills {\nnamespace {\n}\n}\n"},
+                        "test/skills/look_test.cpp:1", "namespace hires::skills::look_test")
 
     def test_rostests_that_would_hide_what_fails_are_found(self):
         for line in ("rosunit.unitrun('hires', 'a', ATest)", "rostest.rosrun('hires', 'a', ATest)",
