@@ -131,8 +131,8 @@ struct Finish {
     kPreempted,
     kDryRun,  ///< planned and imagined; nothing was begun, on purpose
   } outcome{Outcome::kSucceeded};
-  std::string reason;     ///< one sentence
-  base::Failure failure;  ///< the one that it ended with; nothing where no failure ended it
+  std::string reason;       ///< one sentence
+  base::Failure failure{};  ///< the one that it ended with; nothing where no failure ended it
 };
 using Command = std::variant<StartPlanning, CancelPlanning, StartStep, StopStep, StartImagination,
                              MoveDeadline, CancelImagination, Record, Warn, Finish>;

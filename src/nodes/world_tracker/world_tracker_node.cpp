@@ -95,7 +95,7 @@ void WorldTrackerNode::OnResult(const hires::ExecuteActionActionResult& msg) {
 }
 
 void WorldTrackerNode::TellActions() {
-  const bool is_busy = std::any_of(running_.begin(), running_.end(), [](const auto& running) {
+  const bool is_busy = std::any_of(running_.begin(), running_.end(), [this](const auto& running) {
     return hires::actions::MayUseHead(actions_->catalogue(), running.second);
   });
   sweep_.SetBusy(is_busy, time_);
