@@ -31,7 +31,7 @@ using hires::relay::HostNames;
 using hires::relay::IsLoopback;
 
 constexpr int kNumWorkers = 8;          // whose ports are looked at
-constexpr double kMasterTimeout = 1.0;  // [s]
+constexpr double kPidTimeout = 1.0;  // [s]
 constexpr int kMainMasterPort = 11311;  // ROS's own default
 constexpr double kLittleSpace = 1e9;    // [bytes] an hour of recording at 300 kB/s
 
@@ -314,7 +314,7 @@ Finding JudgeSpace(const std::string& folder, std::uint64_t available) {
 std::vector<Finding> ExamineRos() {
   QuietXmlRpc();
   const auto ask = [](const Endpoint& master) {
-    return AskPid(master, "/hires_doctor", kMasterTimeout);
+    return AskPid(master, "/hires_doctor", kPidTimeout);
   };
   std::vector<Finding> findings{JudgeMaster(Variable("ROS_MASTER_URI"), ask)};
   const NameSettings settings{Variable("ROS_HOSTNAME"), Variable("ROS_IP"), HostName()};
