@@ -59,7 +59,7 @@ ClassLoader* LoaderOf(const std::string& path) {
   try {
     loaders->push_back(std::make_unique<ClassLoader>(path));
   } catch (const class_loader::LibraryLoadException& error) {
-    throw base::ConfigError(fmt::format("it is no library that can be loaded: {}", error.what()));
+    throw base::ConfigError(fmt::format("it cannot be loaded: {}", error.what()));
   }
   return loaders->back().get();
 }

@@ -28,7 +28,7 @@ class XmlWalk {
   void VisitText(const std::string& text, const std::string& path) {
     tinyxml2::XMLDocument document;
     if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
-      throw base::ConfigError(fmt::format("{}:{}: no well-formed XML ({}); correct it there", path,
+      throw base::ConfigError(fmt::format("{}:{}: not well-formed XML ({}); correct it there", path,
                                           document.ErrorLineNum(), document.ErrorName()));
     }
     XmlFileInventory& file = inventory_[path];

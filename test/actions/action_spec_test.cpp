@@ -65,11 +65,11 @@ TEST(CheckSpecTest, RefusesJointsThatDoNotMoveAtTheLevelOfTheBase) {
 TEST(CheckSpecTest, RefusesToDriveWithoutBaseOrGoal) {
   ActionSpec spec = PutBeside();
   spec.driving = Driving::kRoundObstacles;
-  EXPECT_THAT(WhyNot(spec), HasSubstr("wanted a parameter of the kind 'area'"));
+  EXPECT_THAT(WhyNot(spec), HasSubstr("no parameter of the kind 'area'"));
   spec.driving = Driving::kStraight;
   EXPECT_NO_THROW(CheckSpec(spec));
   spec.groups = {"?arm"};
-  EXPECT_THAT(WhyNot(spec), HasSubstr("does not need the group 'base'"));
+  EXPECT_THAT(WhyNot(spec), HasSubstr("its groups lack 'base'"));
 }
 
 TEST(CheckSpecTest, RefusesAPurposeWithoutItsParameters) {

@@ -37,7 +37,7 @@ TEST(QueryCursorTest, RefusesWhatIsNone) {
   // The last is a start that is no number.
   for (const char* text : {"", "1:2:3", "x:0:0:1:mug1", "-1:0:0:1:mug1", "1:0:0:1x:mug1",
                            "1:0:7ff8000000000000:1:mug1"}) {
-    EXPECT_THAT(ConfigErrorOf([&] { ReadCursor(text); }), HasSubstr("is none")) << text;
+    EXPECT_THAT(ConfigErrorOf([&] { ReadCursor(text); }), HasSubstr("is malformed")) << text;
   }
 }
 

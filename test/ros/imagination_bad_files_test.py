@@ -161,7 +161,7 @@ class ImaginationBadFilesTest(unittest.TestCase):
     def test_libraries_of_actions_that_are_not_there(self):
         for node in ('imagination_client', 'sim_worker', 'middle_layer', 'world_tracker'):
             with self.subTest(node=node):
-                self.require_refusal(node, ['_action_libraries:=/nowhere/lib.so'],
+                self.require_refusal(node, [*self.config(node), '_action_libraries:=/nowhere/lib.so'],
                                      "library of actions '/nowhere/lib.so'", 'no such file')
 
     def test_malformed_yaml_is_named_with_its_line(self):

@@ -228,7 +228,7 @@ class ImaginationFaultsTest(FaultsCase):
         self.report_time('from SIGINT to idle workers', time.monotonic() - interrupted)
         self.assertEqual(answer.code, 130, answer.output)
         self.assertEqual(answer.report['outcome'], 'cancelled')
-        watcher.wait_for('result outcome=6 status=2 ')
+        watcher.wait_for(' status=2 ')  # preempted; the outcome says what was found by then
         self.require_as_at_first(system)
 
     # The imagination client and the main master.

@@ -230,7 +230,7 @@ TEST_F(ObjectEstimatorTest, ALookIsJudgedWithThePostureOfItsTime) {
 TEST_F(ObjectEstimatorTest, ALookOfATimeWithoutJointStatesIsDropped) {
   Sense(time_ + 0.25);
   objects_.OnLook({time_ - 0.12, camera_, {Mug(At(1.0, 0.0, 0.0))}});
-  EXPECT_THAT(Update().warnings, ElementsAre(HasSubstr("how the robot stood")));
+  EXPECT_THAT(Update().warnings, ElementsAre(HasSubstr("the posture of the robot when the picture was taken")));
   EXPECT_THAT(Known(), IsEmpty());
 }
 

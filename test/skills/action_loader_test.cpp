@@ -83,7 +83,7 @@ TEST(ActionLoaderTest, RefusesAFileThatIsMissingOrNoLibrary) {
               AllOf(HasSubstr("library of actions '/nowhere/lib.so'"), HasSubstr("/nowhere")));
   const hires::test_support::TemporaryFolder folder;
   EXPECT_THAT(WhyNot({folder.Write("text.so", "no library")}),
-              HasSubstr("is no library that can be loaded"));
+              HasSubstr("it cannot be loaded"));
 }
 
 TEST(ActionLoaderTest, RefusesALibraryWithoutActions) {

@@ -257,17 +257,18 @@ TEST(PlaceObjectFailureTest, AMugThatIsSeenLyingHasToppled) {
             "object_toppled");
 }
 
-/// The skills where a fall is 0.4 rad for `hold_time` [s].
-SkillSet WithHoldTime(double hold_time) {
+/// The skills where a fall is 0.4 rad for `hold_time` [s], and an object is looked at `sightings`
+/// times.
+SkillSet WithHoldTime(double hold_time, int sightings = 6) {
   SkillSet skills = TheRestaurant().skills;
   auto context = std::make_shared<ManipulationContext>(*skills.manipulation);
   context->standing = {0.4, hold_time, 0.05, 0.10};
+  context->params.look.sightings = sightings;
   skills.manipulation = std::move(context);
   return skills;
 }
 
-/// In that stage the mug is seen leaning by 0.45 rad for a tenth of a second, and then as it
-/// stands.
+/// In that stage the mug leans by 0.45 rad for a tenth of a second, and then stands.
 Rehearsal::Meddle LeaningBriefly(const std::string& stage) {
   const auto since = std::make_shared<std::optional<double>>();
   return [=](Rehearsal*, const Skill& skill, robot::Observation* seen) {
@@ -276,6 +277,20 @@ Rehearsal::Meddle LeaningBriefly(const std::string& stage) {
       if (!*since) *since = object.time;
       const bool leans = object.time - **since < 0.1;
       if (leans) object.X_MO.rotation = geometry::RotationFromRpy(0.45, 0.0, 0.0);
+    }
+  };
+}
+
+/// The first look of that stage sees the mug leaning by 0.45 rad, all others as it stands.
+Rehearsal::Meddle LeaningInItsFirstLook(const std::string& stage) {
+  const auto before = std::make_shared<std::optional<double>>();
+  const auto first = std::make_shared<std::optional<double>>();
+  return [=](Rehearsal*, const Skill& skill, robot::Observation* seen) {
+    if (skill.phase() != stage) return;
+    for (robot::SeenObject& object : seen->objects) {
+      if (!*before) *before = object.time;
+      if (!*first && object.time > **before) *first = object.time;
+      if (object.time == *first) object.X_MO.rotation = geometry::RotationFromRpy(0.45, 0.0, 0.0);
     }
   };
 }
@@ -291,9 +306,13 @@ TEST(PlaceObjectFailureTest, AMugThatLeansForLessThanTheHoldTimeStands) {
 }
 
 TEST(PickUpObjectFailureTest, AMugThatLeansForLessThanTheHoldTimeIsTaken) {
-  Rehearsal rehearsal(ReadyAt(kAtCounter), {On("mug1", kCounter)});
-  const ActionCall pick_up{"pick_up_object", {"mug1", "rightarm1"}};
-  EXPECT_EQ(Why(rehearsal.Play(pick_up, LeaningBriefly("see"), WithHoldTime(0.2))), "");
+  const auto why = [](double hold_time) {
+    Rehearsal rehearsal(ReadyAt(kAtCounter), {On("mug1", kCounter)});
+    const ActionCall pick_up{"pick_up_object", {"mug1", "rightarm1"}};
+    return Why(rehearsal.Play(pick_up, LeaningInItsFirstLook("see"), WithHoldTime(hold_time, 1)));
+  };
+  EXPECT_EQ(why(0.2), "");
+  EXPECT_EQ(why(0.0), "object_toppled");
 }
 
 TEST(SightTest, WhatLeansCountsOnceItHasDoneSoForTheHoldTime) {

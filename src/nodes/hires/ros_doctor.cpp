@@ -31,7 +31,7 @@ using hires::relay::HostNames;
 using hires::relay::IsLoopback;
 
 constexpr int kNumWorkers = 8;          // whose ports are looked at
-constexpr double kPidTimeout = 1.0;  // [s]
+constexpr double kPidTimeout = 1.0;     // [s]
 constexpr int kMainMasterPort = 11311;  // ROS's own default
 constexpr double kLittleSpace = 1e9;    // [bytes] an hour of recording at 300 kB/s
 

@@ -47,7 +47,7 @@ std::string RobotControllers::MissingOf(const std::string& group) const {
   const bool is_arm = group != "torso" && group != "head";
   const auto trajectory = trajectories_.find(group), gripper = grippers_.find(group);
   if (trajectory == trajectories_.end() || (is_arm && gripper == grippers_.end())) {
-    return "the robot's names tell none for " + group;
+    return "a controller: the names file has none for " + group;
   }
   if (trajectory->second.getNumSubscribers() == 0) return trajectory->second.getTopic();
   if (is_arm && gripper->second.getNumSubscribers() == 0) return gripper->second.getTopic();

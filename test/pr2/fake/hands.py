@@ -24,7 +24,8 @@ SCENE = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', '..
 
 
 def read_standing(path=SCENE):
-    """What counts as a fall: tilt [rad], drop [m]; block `standing` of a scene file."""
+    """Block `standing` of a scene file. Used here: tilt [rad], drop [m]; things here come to stand or lie
+    at once, so hold_time and slide never matter."""
     with open(path) as file:
         return yaml.safe_load(file)['standing']
 

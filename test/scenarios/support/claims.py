@@ -82,9 +82,11 @@ def effect_of(step):
     """(predicate, whether it is to hold) of the effect whose arguments the failure names; None where
     these are of no kind that truth tells of."""
     subjects, action = step.failure.subjects, step.action
-    if len(subjects) == 2:
-        is_taken = action.name.startswith('pick')
-        return ('holding', is_taken) if subjects[0] in PALMS else ('on', not is_taken)
+    picks, places = action.name.startswith('pick'), action.name.startswith('place')
+    if len(subjects) == 2 and (picks or places):
+        if subjects[0] not in PALMS:
+            return 'on', places
+        return 'holding', picks == (subjects[1] != 'nothing')
     if len(subjects) == 1 and subjects[0] in TORSO:
         return 'hastorsoposture', subjects[0] in action.arguments
     if len(subjects) == 1 and subjects[0] in FRAMES:

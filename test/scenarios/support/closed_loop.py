@@ -71,7 +71,7 @@ class Task:
         self._changed = threading.Condition()
         self._state = None
         self._told = told
-        self._on_feedback = on_feedback
+        self._listener = on_feedback
         self.feedback = []
         self._handle = client.send_goal(goal, self._on_transition, self._on_feedback)
 
@@ -81,8 +81,8 @@ class Task:
             self._changed.notify_all()
 
     def _on_feedback(self, _, feedback):
-        if self._on_feedback:
-            self._on_feedback(feedback)
+        if self._listener:
+            self._listener(feedback)
         with self._changed:
             self.feedback.append(feedback)
             self._changed.notify_all()
