@@ -123,10 +123,7 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
         std::cout << display.Show(status) << std::flush;
       },
       cancelled);
-  evaluation::AchieveStatus last =
-      report.status;  // its changes may have come with the result alone
-  last.warnings.clear();
-  std::cout << display.Show(last);
+  std::cout << display.Show(report.status);  // its changes may have come with the result alone
   PrintReport(report);
   WriteFiles(options, package_folder, report);
   return ExitCodeFor(report.outcome);

@@ -70,6 +70,15 @@ std::vector<std::string> Lines(const std::string& text) {
   return lines;
 }
 
+std::vector<std::string> NewWarnings(const evaluation::AchieveStatus& before,
+                                     const evaluation::AchieveStatus& after, double begin) {
+  std::vector<std::string> lines;
+  for (std::size_t i = before.warnings.size(); i < after.warnings.size(); ++i) {
+    lines.push_back(fmt::format("{:8.1f} s  warning   {}", after.now - begin, after.warnings[i]));
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::string StepTable(const evaluation::AchieveStatus& status, double begin) {
@@ -101,10 +110,7 @@ std::string DryRunTable(const evaluation::AchieveStatus& status) {
 
 std::vector<std::string> ChangeLines(const evaluation::AchieveStatus& before,
                                      const evaluation::AchieveStatus& after, double begin) {
-  std::vector<std::string> lines;
-  for (const std::string& warning : after.warnings) {
-    lines.push_back(fmt::format("{:8.1f} s  warning   {}", after.now - begin, warning));
-  }
+  std::vector<std::string> lines = NewWarnings(before, after, begin);
   for (std::size_t i = 0; i < after.imaginations.size(); ++i) {
     const evaluation::ImaginedStep& step = after.imaginations[i];
     if (i < before.imaginations.size() && before.imaginations[i].outcome == step.outcome) continue;
@@ -124,9 +130,12 @@ std::vector<std::string> ChangeLines(const evaluation::AchieveStatus& before,
 
 std::string AchieveDisplay::Show(const evaluation::AchieveStatus& status) {
   if (!begin_) begin_ = evaluation::BeginOf(status);
-  if (width_ > 0) return Redraw(status);
   std::string text;
-  for (const std::string& line : ChangeLines(shown_, status, *begin_)) text += line + "\n";
+  if (width_ > 0) {
+    text = Redraw(status);
+  } else {
+    for (const std::string& line : ChangeLines(shown_, status, *begin_)) text += line + "\n";
+  }
   shown_ = status;
   return text;
 }
@@ -134,8 +143,8 @@ std::string AchieveDisplay::Show(const evaluation::AchieveStatus& status) {
 /// Warnings stay above, the table is drawn over the last one.
 std::string AchieveDisplay::Redraw(const evaluation::AchieveStatus& status) {
   std::string text = lines_drawn_ > 0 ? fmt::format("\033[{}A\r", lines_drawn_) : "";
-  for (const std::string& warning : status.warnings) {
-    text += fmt::format("{:8.1f} s  warning   {}{}\n", status.now - *begin_, warning, kClearLine);
+  for (const std::string& line : NewWarnings(shown_, status, *begin_)) {
+    text += line + kClearLine + "\n";
   }
   const std::vector<std::string> lines = Lines(StepTable(status, *begin_));
   for (const std::string& line : lines) {

@@ -117,7 +117,6 @@ TEST(ChangeLinesTest, WarningsAndImaginationsAreTold) {
               ElementsAre(HasSubstr("warning   the planner went away"),
                           HasSubstr("3.0 s  imagines  move_base_param(area1, slow|fast)")));
   before = after;
-  after.warnings.clear();
   after.imaginations[0].outcome = evaluation::ImaginedOutcome::kRanked;
   after.imaginations[0].answered = 108.0;
   after.imaginations[0].why = "slow is best";
@@ -142,6 +141,16 @@ TEST(AchieveDisplayTest, SaysOnceWhatChangesElsewhere) {
   AchieveDisplay display(0);
   EXPECT_THAT(display.Show(Running()), HasSubstr("running   move_base(area1)\n"));
   EXPECT_EQ(display.Show(Running()), "");
+}
+
+TEST(AchieveDisplayTest, SaysEachWarningOnce) {
+  evaluation::AchieveStatus status = Running();
+  status.warnings = {"the planner went away"};
+  for (const int width : {0, 80}) {
+    AchieveDisplay display(width);
+    EXPECT_THAT(display.Show(status), HasSubstr("the planner went away")) << width;
+    EXPECT_THAT(display.Show(status), Not(HasSubstr("went away"))) << width;
+  }
 }
 
 /// `hires achieve` against an execution monitor made of one function.

@@ -65,9 +65,10 @@ class LoopMishapsTest(LoopCase):
     def test_an_object_that_slips_off_in_transit_is_noticed(self):
         self.begin(AT_COUNTER, MUG)
         task = self.achieve(THERE)
-        self.wait_for_step(task, 'move_base_param')
-        self.truth.wait(lambda t: t.speed() > FAST, 'the robot to drive')
+        self.wait_for_step(task, 'tuck_arms')
+        self.loop.step_until(lambda t: t.speed() > FAST, 'the robot to drive')
         self.act('drop', self.loop.srv.ObjectRequest, name='mug1')
+        self.loop.hold(False)
         result = self.require(task, self.codes.NO_PLAN)
         self.warned(task, 'on(mug1, trayarea1)')
         self.assertEqual(self.steps_of(result, 'place_object'), [])
@@ -91,9 +92,9 @@ class LoopMishapsTest(LoopCase):
         from geometry_msgs.msg import Pose2D
         self.begin(DRIVING, MUG)
         task = self.achieve(THERE)
-        self.wait_for_step(task, 'move_base')
-        self.truth.wait(lambda t: t.speed() > FAST, 'the robot to drive')
+        self.loop.step_until(lambda t: t.speed() > FAST, 'the robot to drive')
         self.act('push', self.loop.srv.PushRobot, offset=Pose2D(y=PUSH))
+        self.loop.hold(False)
         self.wait_for_step(task, 'pick_up_object')
         base = self.truth.robot[-1].pose.position
         self.assertLess(math.hypot(base.x - 6.0, base.y - 10.11), 0.06)

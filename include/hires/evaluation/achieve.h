@@ -57,7 +57,7 @@ struct AchieveStatus {
   std::vector<execution::StepStatus> steps;
   std::vector<ImaginedStep> imaginations;
   int replans{0};
-  std::vector<std::string> warnings;  ///< new ones
+  std::vector<std::string> warnings;  ///< all so far, in order
 };
 
 /// First moment that a status speaks of [s]: when its first step or imagination began, else now.
@@ -72,7 +72,7 @@ struct AchieveReport {
   std::string reason;       ///< one sentence
   base::Failure failure;    ///< what ended it, where a single failure did
   std::int64_t episode{0};  ///< of the Blackboard; 0: unknown
-  AchieveStatus status;     ///< at the end; `warnings` are all of them
+  AchieveStatus status;     ///< at the end
 };
 
 /// What `hires achieve` was asked.

@@ -63,7 +63,7 @@ bool LooksSame(const hires::AchieveFeedback& a, const hires::AchieveFeedback& b)
            x.action.name == y.action.name && x.action.arguments == y.action.arguments;
   };
   const auto same_imagination = [](const auto& x, const auto& y) { return x.outcome == y.outcome; };
-  return b.warnings.empty() && a.replans == b.replans &&
+  return a.warnings.size() == b.warnings.size() && a.replans == b.replans &&
          std::equal(a.steps.begin(), a.steps.end(), b.steps.begin(), b.steps.end(), same_step) &&
          std::equal(a.imaginations.begin(), a.imaginations.end(), b.imaginations.begin(),
                     b.imaginations.end(), same_imagination);
@@ -433,6 +433,7 @@ void ExecutionMonitorNode::Conclude(const execution::Finish& finish) {
   result.replans = status.replans;
   result.steps = status.steps;
   result.imaginations = status.imaginations;
+  result.warnings = task_->warnings;
   Log(LogLevel::kInfo,
       fmt::format("task='{}' {} replans={} {}", hires::base::Shortened(task_->goal.getGoal()->task),
                   OutcomeName(finish.outcome), result.replans, result.reason));
@@ -466,7 +467,6 @@ void ExecutionMonitorNode::PublishFeedback() {
   feedback.warnings = task_->warnings;
   const double now = hires::base::SteadyNow();
   if (now < task_->next_feedback && task_->told && LooksSame(*task_->told, feedback)) return;
-  task_->warnings.clear();
   task_->next_feedback = now + config_.feedback_period;
   task_->goal.publishFeedback(feedback);
   task_->told = std::move(feedback);

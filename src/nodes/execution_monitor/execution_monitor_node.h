@@ -77,7 +77,7 @@ class ExecutionMonitorNode {
     std::unique_ptr<hires::execution::Monitor> monitor;  ///< none: it waits for the state
     bool is_state_current{false};                        ///< all that held when the task came
     bool is_catching_up{false};                          ///< the Blackboard is being asked for it
-    std::vector<std::string> warnings;                   ///< not told yet
+    std::vector<std::string> warnings;                   ///< all so far
     std::optional<hires::execution::Finish> finish;
     std::optional<hires::AchieveFeedback> told;
     double next_feedback{0.0};  ///< [s] steady

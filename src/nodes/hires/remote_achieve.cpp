@@ -76,6 +76,7 @@ evaluation::AchieveStatus StatusOf(const Message& message) {
   for (const auto& step : message.steps) status.steps.push_back(StepOf(step));
   for (const auto& step : message.imaginations) status.imaginations.push_back(ImaginedOf(step));
   status.replans = message.replans;
+  status.warnings = message.warnings;
   return status;
 }
 
@@ -108,10 +109,6 @@ class Feedback {
  public:
   void Put(evaluation::AchieveStatus status) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (latest_) {  // not taken yet: its warnings would be lost
-      status.warnings.insert(status.warnings.begin(), latest_->warnings.begin(),
-                             latest_->warnings.end());
-    }
     latest_ = std::move(status);
   }
   std::optional<evaluation::AchieveStatus> Take() {
@@ -140,9 +137,7 @@ class Conversation {
     goal.task = query_.task;
     goal.imagination = query_.imagination;
     client_.sendGoal(goal, {}, {}, [this](const hires::AchieveFeedbackConstPtr& feedback) {
-      evaluation::AchieveStatus status = StatusOf(*feedback);
-      status.warnings = feedback->warnings;
-      feedback_.Put(std::move(status));
+      feedback_.Put(StatusOf(*feedback));
     });
     while (!client_.getState().isDone()) {
       Pass();
@@ -184,9 +179,7 @@ class Conversation {
 
   void Show() {
     const auto status = feedback_.Take();
-    if (!status) return;
-    warnings_.insert(warnings_.end(), status->warnings.begin(), status->warnings.end());
-    if (on_status_) on_status_(*status);
+    if (status && on_status_) on_status_(*status);
   }
 
   evaluation::AchieveReport ReportOf(const hires::AchieveResult& result) const {
@@ -197,7 +190,6 @@ class Conversation {
     report.failure = FromMsg(result.failure);
     report.episode = result.episode;
     report.status = StatusOf(result);
-    report.status.warnings = warnings_;
     return report;
   }
 
@@ -205,7 +197,6 @@ class Conversation {
   const evaluation::OnAchieveStatus& on_status_;
   const std::function<bool()>& cancelled_;
   Feedback feedback_;
-  std::vector<std::string> warnings_;
   std::optional<double> give_up_;  // [s] steady, once it was cancelled
   AchieveClient client_;
 };

@@ -76,7 +76,10 @@ class Task:
         return self._handle.get_terminal_state()
 
     def warnings(self):
-        return [text for feedback in self.feedback for text in feedback.warnings]
+        """All so far."""
+        if self._state == self._states.DONE:
+            return self._handle.get_result().warnings
+        return self.feedback[-1].warnings if self.feedback else []
 
 
 class ExecutionSystem(BlackboardAccess):

@@ -128,7 +128,10 @@ class Task:
         return self._handle.get_terminal_state()
 
     def warnings(self):
-        return [text for feedback in self.feedback for text in feedback.warnings]
+        """All so far."""
+        if self._state == self._states.DONE:
+            return self._handle.get_result().warnings
+        return self.feedback[-1].warnings if self.feedback else []
 
 
 def speed_of(robot):
@@ -420,3 +423,25 @@ class ClosedLoop(BlackboardAccess):
         """The answer of a service of the simulated robot."""
         self.rospy.wait_for_service('sim_robot/' + service, 60.0)
         return self.rospy.ServiceProxy('sim_robot/' + service, kind)(**fields)
+
+    def hold(self, is_held):
+        """Time stands, or goes on."""
+        from std_srvs.srv import SetBool
+        answer = self.intervene('hold', SetBool, data=is_held)
+        assert answer.success, answer.message
+
+    def step_until(self, condition, what, num_ticks=4000):
+        """Holds the world and lets it play on by ticks of 0.05 s until condition(truth): however slow
+        the computer, what happens next cannot come too late."""
+        from std_srvs.srv import Trigger
+        self.hold(True)
+        self.truth.wait(lambda truth: truth.num_repeated > 0, 'time to stand')
+        step = self.rospy.ServiceProxy('sim_robot/step', Trigger, persistent=True)
+        for _ in range(num_ticks):
+            if condition(self.truth):
+                step.close()
+                return
+            before = self.truth.now()
+            step()
+            self.truth.wait(lambda truth: truth.now() > before, 'the world to play a tick')
+        raise AssertionError('stepped in vain for %s\n%s' % (what, self.output()))
