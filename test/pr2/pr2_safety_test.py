@@ -60,8 +60,7 @@ class Pr2SafetyTest(unittest.TestCase):
 
     def end(self, goal):
         """Unless the server died with it."""
-        if not goal.is_done():
-            goal.handle.cancel()
+        goal.abandon()
 
     def state(self):
         return self.lab.guard_states[-1] if self.lab.guard_states else None

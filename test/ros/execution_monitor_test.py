@@ -61,7 +61,7 @@ class ExecutionMonitorTest(unittest.TestCase):
         """The fake robot does all at once: it waits, so that the answer is not too late."""
         self.system.behave('move_base', hang=True)
         task = self.achieve(CARRY)
-        task.wait_for(lambda f: f.imaginations and f.imaginations[0].outcome, 'an answer')
+        task.wait_for_feedback(lambda f: f.imaginations and f.imaginations[0].outcome, 'an answer')
         self.system.free('move_base')
         return task, self.require(task, self.codes.SUCCEEDED)
 
@@ -120,7 +120,7 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.system.behave('move_torso', hang_for='torsoupposture', times=1)
         task = self.achieve(CARRY)
         self.wait_for_step('move_arm_to_side')  # while the torso still moves
-        task.preempt()
+        task.cancel()
         self.require(task, self.codes.PREEMPTED)
 
     # Bad tasks.
@@ -142,7 +142,7 @@ class ExecutionMonitorTest(unittest.TestCase):
         first = self.achieve(CARRY)
         self.wait_for_step('move_base')
         self.require(self.achieve(SERVE), self.codes.BUSY, CARRY)
-        first.preempt()
+        first.cancel()
         self.require(first, self.codes.PREEMPTED)
 
     # Policies.
@@ -165,7 +165,7 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.system.behave('move_base', hang=True)
         task = self.achieve(CARRY)
         self.wait_for_step('move_base')
-        task.preempt()
+        task.cancel()
         result = self.require(task, self.codes.PREEMPTED)
         self.assertEqual(task.state(), 2)  # actionlib's PREEMPTED
         self.assertIn('preempted move_base', self.system.log())
@@ -175,15 +175,15 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.system.nodes['planner'].signal(signal.SIGSTOP)
         self.addCleanup(self.system.nodes['planner'].signal, signal.SIGCONT)
         task = self.achieve(CARRY)
-        task.preempt()
+        task.cancel()
         self.require(task, self.codes.PREEMPTED)
         self.assertEqual(self.system.done('tuck_arms'), [])
 
     def test_preempted_while_effects_are_awaited(self):
         self.system.behave('tuck_arms', silent=True)
         task = self.achieve(CARRY)
-        task.wait_for(lambda f: any(s.phase == self.phases.CHECKING for s in f.steps), 'checking')
-        task.preempt()
+        task.wait_for_feedback(lambda f: any(s.phase == self.phases.CHECKING for s in f.steps), 'checking')
+        task.cancel()
         self.require(task, self.codes.PREEMPTED)
 
     def test_preempted_while_it_is_imagined(self):
@@ -192,14 +192,14 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.system.behave('move_base', hang=True)
         task = self.achieve(CARRY)
         wait_until(lambda: 'imagine move_base_param' in self.system.log(), 'imagination')
-        task.preempt()
+        task.cancel()
         self.require(task, self.codes.PREEMPTED)
 
     def test_a_robot_that_does_not_stop_does_not_hold_the_task_for_ever(self):
         self.system.behave('move_base', hang=True, deaf=True)
         task = self.achieve(CARRY)
         self.wait_for_step('move_base')
-        task.preempt()
+        task.cancel()
         self.require(task, self.codes.PREEMPTED)
 
     # What fails.
@@ -327,8 +327,8 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.system.behave('tuck_arms', hang=True)
         for _ in range(10):
             task = self.achieve(CARRY)
-            task.wait_for(lambda f: f.steps, 'a plan')
-            task.preempt()
+            task.wait_for_feedback(lambda f: f.steps, 'a plan')
+            task.cancel()
             self.require(task, self.codes.PREEMPTED)
         outcomes = wait_until(lambda: self.ended_after(before, 10), 'the end of ten episodes')
         self.assertEqual(outcomes, 10 * ['preempted: preempted'])

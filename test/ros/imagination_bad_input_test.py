@@ -9,6 +9,7 @@ import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from action_goal import ActionGoal  # noqa: E402
 from failures import text_of  # noqa: E402
 from imagination_system import ImaginationSystem  # noqa: E402
 from ros_processes import LIMIT  # noqa: E402
@@ -35,8 +36,8 @@ class ImaginationBadInputTest(unittest.TestCase):
         from hires import msg
         cls.rospy, cls.msg = rospy, msg
         rospy.init_node('imagination_bad_input_test', disable_signals=True)
-        cls.action = actionlib.SimpleActionClient('imagine', msg.ImagineAction)
-        assert cls.action.wait_for_server(rospy.Duration(LIMIT))
+        cls.client = actionlib.ActionClient('imagine', msg.ImagineAction)
+        assert cls.client.wait_for_server(rospy.Duration(LIMIT))
         cls.good = cls.ask(cls.goal())
         assert cls.good.outcome == msg.ImagineResult.RANKED, cls.good.why
 
@@ -58,9 +59,7 @@ class ImaginationBadInputTest(unittest.TestCase):
 
     @classmethod
     def ask(cls, goal):
-        cls.action.send_goal(goal)
-        assert cls.action.wait_for_result(cls.rospy.Duration(LIMIT)), 'no answer'
-        return cls.action.get_result()
+        return ActionGoal(cls.client, goal).result()
 
     def tearDown(self):
         """The client lives, and answers as it did in the beginning."""
@@ -71,11 +70,12 @@ class ImaginationBadInputTest(unittest.TestCase):
         self.assertEqual(self.system.times_joined(1), 1)  # the worker never went away
 
     def require_invalid(self, goal, *texts):
-        result = self.ask(goal)
+        asked = ActionGoal(self.client, goal)
+        result = asked.result()
         self.assertEqual(result.outcome, self.msg.ImagineResult.INVALID, result.why)
-        self.assertEqual(self.action.get_state(), 4)  # aborted
+        self.assertEqual(asked.state(), 4)  # aborted
         self.assertEqual((result.recommended, result.predictions), (-1, []))
-        self.assertEqual(self.action.get_goal_status_text(), result.why)
+        self.assertEqual(asked.status_text(), result.why)
         for text in texts:
             self.assertIn(text, result.why)
 

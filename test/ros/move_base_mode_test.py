@@ -17,7 +17,8 @@ sys.path.insert(0, os.path.join(HERE, 'support'))
 
 from failures import text_of  # noqa: E402
 from move_base_system import FAST, ROOT, SLOW, MoveBaseSystem, config_text  # noqa: E402
-from robot_system import Goal  # noqa: E402
+from action_goal import ActionGoal  # noqa: E402
+from robot_system import SKILL_LIMIT  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
 
@@ -154,7 +155,7 @@ class MoveBaseModeTest(unittest.TestCase):
     def execute(self, name=NAME, motion_set='slow'):
         goal = self.msg.ExecuteActionGoal()
         goal.action.name, goal.action.arguments = 'move_base_param', [name, motion_set]
-        return Goal(self.client, goal)
+        return ActionGoal(self.client, goal, SKILL_LIMIT)
 
     def drive(self):
         """On its way by a move_base that would never arrive."""
@@ -228,7 +229,7 @@ class MoveBaseModeTest(unittest.TestCase):
         other = self.actionlib.ActionClient('move_base', MoveBaseAction)
         # Not only a connection: we listen to these goals ourselves.
         self.assertTrue(other.wait_for_server(self.rospy.Duration(LIMIT)))
-        theirs = Goal(other, MoveBaseGoal())
+        theirs = ActionGoal(other, MoveBaseGoal())
         self.require(goal, self.codes.FAILED, '^interrupted$')
         self.require_stand()
         theirs.result()  # the guard takes it back

@@ -14,6 +14,7 @@ from hires.msg import Atom, PlanAction, PlanGoal, PlanResult
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from action_goal import ActionGoal  # noqa: E402
 from ros_processes import LIMIT, executable  # noqa: E402
 from test_run import run_test  # noqa: E402
 
@@ -33,13 +34,11 @@ class PlannerLaunchTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         rospy.init_node('planner_launch_test')
-        cls.client = actionlib.SimpleActionClient('plan', PlanAction)
+        cls.client = actionlib.ActionClient('plan', PlanAction)
         assert cls.client.wait_for_server(rospy.Duration(LIMIT))
 
     def ask(self, **fields):
-        self.client.send_goal(PlanGoal(**fields))
-        self.assertTrue(self.client.wait_for_result(rospy.Duration(LIMIT)))
-        result = self.client.get_result()
+        result = ActionGoal(self.client, PlanGoal(**fields)).result()
         self.assertEqual(result.outcome, PlanResult.FOUND, result.why)
         return [step.task for step in result.plans[0].steps]
 

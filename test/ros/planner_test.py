@@ -5,13 +5,13 @@ cancelling, bad requests, restarts. Run alone, or by `rostest hires planner.test
 import os
 import signal
 import sys
-import threading
 import unittest
 
 import yaml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from action_goal import ActionGoal  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
 
@@ -47,57 +47,6 @@ def config(**changes):
                 feedback_period=0.2)
     keys.update(changes)
     return yaml.safe_dump(keys)
-
-
-class Request:
-    """A goal on its way."""
-
-    def __init__(self, client, goal):
-        from actionlib import CommState
-        self._states = CommState
-        self.feedback = []
-        self._changed = threading.Condition()
-        self._state = None
-        self.handle = client.send_goal(goal, self._on_transition, self._on_feedback)
-
-    def _on_transition(self, handle):
-        with self._changed:
-            self._state = handle.get_comm_state()
-            self._changed.notify_all()
-
-    def _on_feedback(self, _, feedback):
-        with self._changed:
-            self.feedback.append(feedback)
-            self._changed.notify_all()
-
-    def _wait(self, condition, what):
-        with self._changed:
-            if not self._changed.wait_for(condition, LIMIT):
-                raise AssertionError('waited in vain for ' + what)
-
-    def wait_for_feedback(self, condition, what):
-        self._wait(lambda: any(condition(f) for f in self.feedback), what)
-
-    def wait_for_active(self):
-        self._wait(lambda: self._state == self._states.ACTIVE, 'the goal to be accepted')
-
-    def cancel(self):
-        """A client that cancels before it knows that its goal is accepted may take it for lost."""
-        self.wait_for_active()
-        self.handle.cancel()
-
-    def give_up(self):
-        """Leaves nothing under way if the test failed before it had the answer."""
-        if self._state != self._states.DONE:
-            self.handle.cancel()
-
-    def result(self):
-        self._wait(lambda: self._state == self._states.DONE, 'the answer')
-        return self.handle.get_result()
-
-    def state(self):
-        self.result()
-        return self.handle.get_terminal_state()
 
 
 class PlannerTest(unittest.TestCase):
@@ -146,8 +95,8 @@ class PlannerTest(unittest.TestCase):
         return goal
 
     def send(self, goal):
-        request = Request(self.client, goal)
-        self.addCleanup(request.give_up)
+        request = ActionGoal(self.client, goal)
+        self.addCleanup(request.abandon)
         return request
 
     def ask(self, goal):
@@ -169,7 +118,7 @@ class PlannerTest(unittest.TestCase):
         result = request.result()
         self.assertEqual(result.outcome, outcome, result.why)
         self.assertEqual(request.state(), self.status.ABORTED)
-        self.assertEqual(request.handle.get_goal_status_text(), result.why)
+        self.assertEqual(request.status_text(), result.why)
         self.assertEqual(result.plans, [])
         for text in texts:
             self.assertIn(text, result.why)

@@ -99,7 +99,7 @@ class LoopMishapsTest(LoopCase):
         base = self.truth.robot[-1].pose.position
         self.assertLess(math.hypot(base.x - 6.0, base.y - 10.11), 0.06)
         self.assertFalse(self.truth.summary.robot_collided, self.truth.summary.contact)
-        task.preempt()
+        task.cancel()
         self.require(task, self.codes.PREEMPTED)
         self.assertLess(self.truth.speed(), STILL)
 

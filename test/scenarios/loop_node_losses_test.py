@@ -38,7 +38,7 @@ class NodeLossesTest(LoopCase):
         self.loop.pause('planner')
         self.push(BACK_TO_DRIVING_AREA)
         self.assertTrue(
-            task.wait_for(lambda f: any('is mended' in text for text in f.warnings), 'trouble'))
+            task.sees(lambda f: any('is mended' in text for text in f.warnings), 'trouble'))
         self.loop.kill('planner')
         self.loop.start_node('planner')
         result = self.require(task, self.codes.SUCCEEDED)

@@ -70,7 +70,7 @@ class PreemptTest(LoopCase):
         self.stop_time()
         before = self.truth.now()
         self.assertTrue(self.running(), name + ' was over too early')
-        task.preempt()
+        task.cancel()
         wait_until(lambda: not self.running(), 'the middle layer to break off')
         self.hold(False)
         self.require(task, self.codes.PREEMPTED)

@@ -9,10 +9,10 @@ processes under a main master of their own.
 """
 
 import os
-import threading
 
 import yaml
 
+from action_goal import Task
 from blackboard_access import BlackboardAccess
 from ros_processes import LIMIT, Processes, executable, wait_until
 
@@ -21,65 +21,6 @@ CONFIG = os.path.abspath(os.path.join(SUPPORT, '..', '..', '..', 'config'))
 ROLES = ('middle_layer', 'imagination', 'translator')
 CARRY = 'carry_object_on_tray peppermill1 counter1 table1'
 SERVE = 'serve_coffee_to_guest guest1'
-
-
-class Task:
-    """A goal of `achieve` on its way."""
-
-    def __init__(self, client, goal):
-        from actionlib import CommState
-        self._states = CommState
-        self._changed = threading.Condition()
-        self._state = None
-        self.feedback = []
-        self._handle = client.send_goal(goal, self._on_transition, self._on_feedback)
-
-    def _on_transition(self, handle):
-        with self._changed:
-            self._state = handle.get_comm_state()
-            self._changed.notify_all()
-
-    def _on_feedback(self, _, feedback):
-        with self._changed:
-            self.feedback.append(feedback)
-            self._changed.notify_all()
-
-    def _wait(self, condition, what):
-        with self._changed:
-            if not self._changed.wait_for(condition, LIMIT):
-                raise AssertionError('waited in vain for %s; last feedback: %s' % (
-                    what, self.feedback[-1:]))
-
-    def wait_for(self, condition, what):
-        """Waits for feedback."""
-        self._wait(lambda: any(condition(f) for f in self.feedback), what)
-
-    def wait_until_accepted(self):
-        self._wait(lambda: self._state == self._states.ACTIVE, 'the task to be accepted')
-
-    def preempt(self):
-        self.wait_until_accepted()
-        self._handle.cancel()
-
-    def give_up(self):
-        """Leaves nothing under way if the test failed before it had the result."""
-        if self._state != self._states.DONE:
-            self._handle.cancel()
-            self.result()
-
-    def result(self):
-        self._wait(lambda: self._state == self._states.DONE, 'the result')
-        return self._handle.get_result()
-
-    def state(self):
-        self.result()
-        return self._handle.get_terminal_state()
-
-    def warnings(self):
-        """All so far."""
-        if self._state == self._states.DONE:
-            return self._handle.get_result().warnings
-        return self.feedback[-1].warnings if self.feedback else []
 
 
 class ExecutionSystem(BlackboardAccess):

@@ -11,6 +11,7 @@ One test program has one master (a rospy node cannot change it); the processes m
 import os
 import threading
 
+from action_goal import ActionGoal
 from ros_processes import LIMIT, Processes, executable, wait_until
 
 SKILL_LIMIT = 300.0  # [s] by the wall's clock: it ends a broken test, and measures nothing
@@ -28,54 +29,6 @@ objects:
   - {name: mug1, pose: [%g, %g, %g, 0.0]}
 hidden: []
 """ % MUG
-
-
-class Goal:
-    """An action on its way."""
-
-    def __init__(self, client, goal):
-        from actionlib import CommState
-        self._states = CommState
-        self._changed = threading.Condition()
-        self._state = None
-        self.feedback = []
-        self.handle = client.send_goal(goal, self._on_transition, self._on_feedback)
-
-    def _on_transition(self, handle):
-        with self._changed:
-            self._state = handle.get_comm_state()
-            self._changed.notify_all()
-
-    def _on_feedback(self, _, feedback):
-        with self._changed:
-            self.feedback.append(feedback)
-            self._changed.notify_all()
-
-    def _wait(self, condition, what):
-        with self._changed:
-            if not self._changed.wait_for(condition, SKILL_LIMIT):
-                raise AssertionError('waited in vain for ' + what)
-
-    def wait_for_active(self):
-        done = (self._states.ACTIVE, self._states.DONE)
-        self._wait(lambda: self._state in done, 'the goal to be accepted')
-        return self
-
-    def wait_for_feedback(self, condition, what):
-        self._wait(lambda: any(condition(f) for f in self.feedback) or self.is_done(), what)
-        return self
-
-    def is_done(self):
-        return self._state == self._states.DONE
-
-    def cancel(self):
-        self.wait_for_active()
-        self.handle.cancel()
-        return self
-
-    def result(self):
-        self._wait(self.is_done, 'the result')
-        return self.handle.get_result()
 
 
 class RobotSystem:
@@ -189,7 +142,7 @@ class RobotSystem:
         return goal
 
     def execute(self, name, *arguments, limit=0.0):
-        return Goal(self.client, self.goal(name, *arguments, limit=limit))
+        return ActionGoal(self.client, self.goal(name, *arguments, limit=limit), SKILL_LIMIT)
 
     def tell(self, objects):
         """Says where objects are, as the world tracker does: {name: (model, x, y, z)}."""

@@ -22,6 +22,7 @@ import yaml
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.abspath(os.path.join(HERE, '..', '..', 'ros', 'support')))
 
+from action_goal import Task  # noqa: E402
 from blackboard_access import BlackboardAccess  # noqa: E402
 from ros_processes import (  # noqa: E402
     Processes, executable, free_port_block, processes_with, wait_until)
@@ -60,78 +61,6 @@ def text_of(fluent, role):
 def link_of(fluent, role):
     """The instance that fills a role, in lower case."""
     return next((entry.text.lower() for entry in fluent.properties if entry.role == role), None)
-
-
-class Task:
-    """A goal of `achieve` on its way."""
-
-    def __init__(self, client, goal, told, on_feedback=None):
-        from actionlib import CommState
-        self._states = CommState
-        self._changed = threading.Condition()
-        self._state = None
-        self._told = told
-        self._listener = on_feedback
-        self.feedback = []
-        self._handle = client.send_goal(goal, self._on_transition, self._on_feedback)
-
-    def _on_transition(self, handle):
-        with self._changed:
-            self._state = handle.get_comm_state()
-            self._changed.notify_all()
-
-    def _on_feedback(self, _, feedback):
-        if self._listener:
-            self._listener(feedback)
-        with self._changed:
-            self.feedback.append(feedback)
-            self._changed.notify_all()
-
-    def _wait(self, condition, what, limit=TASK_LIMIT):
-        with self._changed:
-            if not self._changed.wait_for(condition, limit):
-                raise AssertionError('waited in vain for %s\n%s' % (what, self._told()))
-
-    def is_done(self):
-        return self._state == self._states.DONE
-
-    def wait_for(self, condition, what):
-        """Waits for feedback like this, of the past included; false when the task ends first."""
-        looked = [0]
-
-        def is_there():
-            while looked[0] < len(self.feedback):
-                looked[0] += 1
-                if condition(self.feedback[looked[0] - 1]):
-                    return True
-            return self.is_done()
-        self._wait(is_there, what)
-        return looked[0] > 0 and condition(self.feedback[looked[0] - 1])
-
-    def preempt(self):
-        self._wait(lambda: self._state in (self._states.ACTIVE, self._states.DONE),
-                   'the task to be accepted')
-        self._handle.cancel()
-
-    def give_up(self):
-        """Leaves nothing under way if the test failed before it had the result."""
-        if not self.is_done():
-            self._handle.cancel()
-            self.result()
-
-    def result(self):
-        self._wait(self.is_done, 'the result')
-        return self._handle.get_result()
-
-    def state(self):
-        self.result()
-        return self._handle.get_terminal_state()
-
-    def warnings(self):
-        """All so far."""
-        if self._state == self._states.DONE:
-            return self._handle.get_result().warnings
-        return self.feedback[-1].warnings if self.feedback else []
 
 
 def speed_of(robot):
@@ -417,7 +346,7 @@ class ClosedLoop(BlackboardAccess):
 
     def achieve(self, task, imagination='', on_feedback=None):
         goal = self.msg.AchieveGoal(task=task, imagination=imagination)
-        return Task(self.client, goal, self.output, on_feedback)
+        return Task(self.client, goal, TASK_LIMIT, self.output, on_feedback)
 
     def intervene(self, service, kind, **fields):
         """The answer of a service of the simulated robot."""

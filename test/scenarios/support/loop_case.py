@@ -89,7 +89,7 @@ class LoopCase(unittest.TestCase):
     def wait_for_step(self, task, name, phase=None):
         """Until a step of this name is under way."""
         phase = self.phases.RUNNING if phase is None else phase
-        has_come = task.wait_for(
+        has_come = task.sees(
             lambda f: any(s.action.name == name and s.phase == phase for s in f.steps), name)
         if not has_come:
             self.fail('%s never came:\n%s' % (name, self.story(task, task.result())))
@@ -97,7 +97,7 @@ class LoopCase(unittest.TestCase):
     def wait_for_imagination(self, task):
         """Until an imagination is asked for and not answered."""
         self.assertTrue(
-            task.wait_for(lambda f: any(not i.outcome for i in f.imaginations), 'imagination'),
+            task.sees(lambda f: any(not i.outcome for i in f.imaginations), 'imagination'),
             'nothing was imagined')
 
     def steps_of(self, result, name):
