@@ -42,6 +42,7 @@ struct StepRun {
   std::optional<double> started;
   std::optional<double> finished;
   std::optional<double> stopped;  ///< when it was told to stop
+  base::Failure stop_reason;      ///< and why
   std::string note;
   base::Failure failure;
 

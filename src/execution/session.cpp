@@ -111,6 +111,7 @@ void Session::Adopt(PlanRun run, std::vector<int> informs,
     step.started = running.started;
     step.finished = running.finished;
     step.stopped = running.stopped;
+    step.stop_reason = running.stop_reason;
     step.time_limit = running.time_limit;
     step.note = running.note;
     step.failure = running.failure;
@@ -186,12 +187,20 @@ void Session::Start(int index, double time_limit) {
   Changed();
 }
 
-void Session::Stop(int index) {
+void Session::Stop(int index, const base::Failure& why) {
   StepRun& step = run_->at(index);
   if (step.phase != StepPhase::kRunning || step.is_stopping) return;
   step.is_stopping = true;
   step.stopped = now_;
+  step.stop_reason = why;
   Send(StopStep{step.activity});
+}
+
+void Session::Blame(int index, const base::Failure& loss) {
+  StepRun& step = run_->at(index);
+  step.failure = loss;
+  step.note = ToString(loss);
+  Changed();
 }
 
 void Session::End(int index, StepPhase phase, const std::string& result,

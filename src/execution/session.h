@@ -92,7 +92,10 @@ class Session {
 
   // Its steps.
   void Start(int step, double time_limit);
-  void Stop(int step);  ///< no effect where it has been told already
+  /// No effect where it has been told already.
+  void Stop(int step, const base::Failure& why = base::FailureCode::kPreempted);
+  /// What a step that has not begun rests on is gone.
+  void Blame(int step, const base::Failure& loss);
   /// The step is over as its activity told; `phase` says what now.
   void End(int step, StepPhase phase, const std::string& result, const base::Failure& failure);
   void Confirm(int step);  ///< its effects have been seen

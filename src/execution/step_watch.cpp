@@ -55,7 +55,7 @@ void StepWatch::OnFinished(const StepFinished& finished) {
   if (!failure) return session_.End(index, StepPhase::kChecking, "succeeded", {});
   const StepRun& step = session_.run().at(index);
   if (step.is_stopping) {
-    return session_.End(index, StepPhase::kFailed, "preempted", base::FailureCode::kPreempted);
+    return session_.End(index, StepPhase::kFailed, "preempted", step.stop_reason);
   }
   session_.End(index, StepPhase::kFailed, "failed", failure);
   if (NeedsAnotherWay(failure)) session_.Exclude(ExclusionFor(step.action, failure), index);
@@ -104,9 +104,9 @@ void StepWatch::CheckStop(int index) {
 void StepWatch::CheckDuration(int index) {
   const StepRun& step = session_.run().at(index);
   if (!IsPast(*step.started + step.time_limit)) return;
-  session_.Stop(index);
-  session_.Report({Violation::Kind::kTimeout, step.action, base::FailureCode::kTimedOut},
-                  step.activity);
+  const base::Failure overdue = base::FailureCode::kTimedOut;
+  session_.Stop(index, overdue);
+  session_.Report({Violation::Kind::kTimeout, step.action, overdue}, step.activity);
 }
 
 std::optional<base::Failure> StepWatch::MissingEffect(int index) const {
@@ -179,9 +179,9 @@ void StepWatch::CheckConditions(int index) {
   for (const Expectation& expectation : step.expectations) {
     const std::optional<double> since = BrokenSince(expectation);
     if (!since || !IsPast(*since + session_.params().break_delay)) continue;
-    session_.Stop(index);
-    session_.Report({Violation::Kind::kPrecondition, step.action, LossOf(expectation)},
-                    step.activity);
+    const base::Failure loss = LossOf(expectation);
+    session_.Stop(index, loss);
+    session_.Report({Violation::Kind::kPrecondition, step.action, loss}, step.activity);
     return;
   }
 }
@@ -199,7 +199,9 @@ void StepWatch::CheckLinks(int index) {
     const auto since = is_there ? BrokenSince(expectation) : std::nullopt;
     if (!since || !IsPast(*since + patience)) continue;
     if (MayBeOnItsWay(*since + patience, base::ToString(step.action))) continue;
-    session_.Report({Violation::Kind::kPrecondition, step.action, LossOf(expectation)}, 0);
+    const base::Failure loss = LossOf(expectation);
+    session_.Blame(index, loss);
+    session_.Report({Violation::Kind::kPrecondition, step.action, loss}, 0);
     return;
   }
 }

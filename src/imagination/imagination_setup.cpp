@@ -144,6 +144,7 @@ SetupConfig ReadSetupConfig(const std::string& path) {
   config.physics = ReadPhysics(in.Sub("physics"));
   config.rollout = ReadRolloutParams(in.Sub("rollout"));
   config.standing = world::ReadStandingCriterion(in.Sub("standing"));
+  config.classify = translation::ReadClassifyParams(in.Sub("classify"));
   if (config.standing.hold_time > config.rollout.aftermath) {
     in.Sub("standing")
         .Fail("hold_time",
@@ -187,6 +188,7 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   setup.physics = config.physics;
   setup.standing = config.standing;
   setup.translator.standing = config.standing;
+  setup.translator.classify = config.classify;
   return setup;
 }
 

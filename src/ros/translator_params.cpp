@@ -40,7 +40,7 @@ translation::TranslatorContext LoadTranslatorContext(const TranslatorParams& par
   imagination::SetupConfig files = imagination::ReadSetupConfig(params.scene);
   imagination::OverridePaths(params.world, params.robot, params.objects, std::nullopt, &files);
   return translation::LoadContext(
-      {files.world, files.robot, files.objects, params.ontology, files.standing});
+      {files.world, files.robot, files.objects, params.ontology, files.standing, files.classify});
 }
 
 }  // namespace hires_ros

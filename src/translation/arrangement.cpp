@@ -251,7 +251,7 @@ class Arrangement {
   bool CountsAsOn(const Area& area, const Pose3& X_MO) const {
     world::ObjectState object;
     object.X_MO = X_MO;
-    return AreaUnder(context_, body_, object, ClassifyParams(), area.name) == &area;
+    return AreaUnder(context_, body_, object, area.name) == &area;
   }
 
   bool IsClear(const world::ObjectModel& model, const Vector3d& p_M) const {

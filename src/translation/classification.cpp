@@ -90,19 +90,19 @@ std::string HeldBy(const robot::ArmProfile& arm, const world::WorldState& world)
 }
 
 void AddBodyAtoms(const TranslatorContext& context, const GeometricState& state,
-                  const ClassifyParams& params, const std::vector<Atom>* before,
-                  std::vector<Atom>* atoms) {
+                  const std::vector<Atom>* before, std::vector<Atom>* atoms) {
   const auto& body = context.robot->profile.upper_body;
   if (!body) return;
   for (const auto& [name, arm] : body->arms) {
-    const PostureParams tolerances{params.tucked_tolerance, params.posture_tolerance,
-                                   ValueBefore(before, "hasarmposture", name), params.hysteresis};
+    const PostureParams tolerances{
+        context.classify.tucked_tolerance, context.classify.posture_tolerance,
+        ValueBefore(before, "hasarmposture", name), context.classify.hysteresis};
     const std::string posture = NameArmPosture(*context.robot, arm, state.robot.joints, tolerances);
     atoms->push_back({"HasArmPosture", {name, posture}});
     atoms->push_back({"Holding", {name, HeldBy(arm, state.world)}});
   }
-  const std::string torso =
-      TorsoPosture(*body, state.robot.joints, params, ValueBefore(before, "hastorsoposture", ""));
+  const std::string torso = TorsoPosture(*body, state.robot.joints, context.classify,
+                                         ValueBefore(before, "hastorsoposture", ""));
   atoms->push_back({"HasTorsoPosture", {torso}});
 }
 
@@ -116,16 +116,16 @@ bool IsObservable(const Atom& atom) {
 }
 
 std::vector<Atom> AtomsOf(const TranslatorContext& context, const GeometricState& state,
-                          const ClassifyParams& params, const std::vector<Atom>* before) {
+                          const std::vector<Atom>* before) {
   std::vector<Atom> atoms;
-  const Area* standing =
-      StandingAt(context.areas, state.robot.X_MB, params, ValueBefore(before, "robotat", ""));
+  const Area* standing = StandingAt(context.areas, state.robot.X_MB, context.classify,
+                                    ValueBefore(before, "robotat", ""));
   if (standing) atoms.push_back({"RobotAt", {standing->name}});
-  AddBodyAtoms(context, state, params, before, &atoms);
+  AddBodyAtoms(context, state, before, &atoms);
   const Body body(*context.robot, state.robot);
   for (const world::ObjectState& object : state.world.objects) {
     const std::string name = base::ToLower(object.name);
-    const Area* area = AreaUnder(context, body, object, params, ValueBefore(before, "on", name));
+    const Area* area = AreaUnder(context, body, object, ValueBefore(before, "on", name));
     if (area) atoms.push_back({"On", {name, area->name}});
   }
   std::sort(atoms.begin(), atoms.end(), [](const Atom& a, const Atom& b) {

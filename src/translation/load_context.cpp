@@ -10,6 +10,7 @@ TranslatorContext LoadContext(const ContextFiles& files) {
       world::LoadCatalogueModels(files.objects),
       std::make_shared<const knowledge::Ontology>(knowledge::Ontology::FromFiles(files.ontology)));
   context.standing = files.standing;
+  context.classify = files.classify;
   return context;
 }
 

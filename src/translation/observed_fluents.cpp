@@ -67,13 +67,12 @@ class ViewWith : public knowledge::FluentView {
 class Comparison {
  public:
   Comparison(const TranslatorContext& context, const knowledge::FluentView& said,
-             const ObservedWorld& observed, const ClassifyParams& classify,
-             const ChangeParams& params, const std::map<std::string, std::string>& concepts)
+             const ObservedWorld& observed, const ChangeParams& params,
+             const std::map<std::string, std::string>& concepts)
       : context_(context),
         ontology_(*context.ontology),
         said_(said),
         observed_(observed),
-        classify_(classify),
         params_(params),
         concepts_(concepts),
         body_(*context.robot, observed.state.robot) {}
@@ -138,7 +137,7 @@ class Comparison {
 
   /// What lies on the tray moves along as well.
   bool IsOverTray(const Area& tray, const geometry::Pose3& X_MO) const {
-    return IsOver(tray, body_, X_MO, classify_, classify_.placing_hysteresis);
+    return IsOver(tray, body_, X_MO, context_.classify, context_.classify.placing_hysteresis);
   }
 
   Fluent NewThing(const world::ObjectState& object) const {
@@ -226,7 +225,7 @@ class Comparison {
     for (Atom& atom : knowledge::StateAtoms(said_, ontology_)) {
       if (IsObservable(atom)) before.push_back(std::move(atom));
     }
-    const auto after = AtomsOf(context_, observed_.state, classify_, &before);
+    const auto after = AtomsOf(context_, observed_.state, &before);
     const ViewWith base(&said_, &new_things_);
     knowledge::ProjectedView projected(&base, &ontology_);
     for (const Atom& atom : before) {
@@ -276,7 +275,6 @@ class Comparison {
   const knowledge::Ontology& ontology_;
   const knowledge::FluentView& said_;
   const ObservedWorld& observed_;
-  const ClassifyParams& classify_;
   const ChangeParams& params_;
   const std::map<std::string, std::string>& concepts_;
   const Body body_;
@@ -287,11 +285,10 @@ class Comparison {
 }  // namespace
 
 FluentUpdate ChangesFrom(const TranslatorContext& context, const knowledge::FluentView& said,
-                         const ObservedWorld& observed, const ClassifyParams& classify,
-                         const ChangeParams& params,
+                         const ObservedWorld& observed, const ChangeParams& params,
                          const std::map<std::string, std::string>& concepts) {
   HIRES_CHECK(context.ontology, "fluents cannot be compared without an ontology");
-  return Comparison(context, said, observed, classify, params, concepts).Make();
+  return Comparison(context, said, observed, params, concepts).Make();
 }
 
 }  // namespace hires::translation

@@ -27,16 +27,15 @@ bool IsOver(const Area& area, const Body& body, const geometry::Pose3& X_MO,
 }
 
 const Area* AreaUnder(const TranslatorContext& context, const Body& body,
-                      const world::ObjectState& object, const ClassifyParams& params,
-                      const std::string& before) {
+                      const world::ObjectState& object, const std::string& before) {
   if (!object.attached_to.empty() || !world::IsUpright(context.standing, object.X_MO)) {
     return nullptr;
   }
   const Area* nearest = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const Area& area : context.areas.all) {
-    const double slack = area.name == before ? params.placing_hysteresis : 0.0;
-    if (!IsOver(area, body, object.X_MO, params, slack)) continue;
+    const double slack = area.name == before ? context.classify.placing_hysteresis : 0.0;
+    if (!IsOver(area, body, object.X_MO, context.classify, slack)) continue;
     const Eigen::Vector3d p_A = PoseOf(area, body).Inverse() * object.X_MO.translation;
     // Where squares overlap: the middle that is nearest, and the old one a little longer.
     const double distance = p_A.head<2>().norm() - slack;

@@ -19,8 +19,7 @@ bool IsOver(const Area& area, const Body& body, const geometry::Pose3& X_MO,
 /// The placing area or tray that the object is on; null if there is none, or it lies or is held.
 /// @param before  area that it was on (lower case), or empty.
 const Area* AreaUnder(const TranslatorContext& context, const Body& body,
-                      const world::ObjectState& object, const ClassifyParams& params,
-                      const std::string& before);
+                      const world::ObjectState& object, const std::string& before);
 
 /// The box around an object in its own frame.
 geometry::Aabb BoundsOf(const world::ObjectModel& model);

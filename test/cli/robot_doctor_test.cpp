@@ -40,7 +40,7 @@ RobotMessageTypes Types() {
 
 const RobotNeeds& Needs() {
   static const RobotNeeds needs =
-      NeedsOf(hires::control::ReadRobotNames(kRobots + "pr2_names.yaml"), Types());
+      NeedsOf(hires::control::ReadRobotNames(kRobots + "pr2_names.yaml"), Types(), {});
   return needs;
 }
 
@@ -119,7 +119,7 @@ TEST(RobotNeedsTest, TheRobotsOwnNamesAreWantedWithTheirTypes) {
 TEST(RobotNeedsTest, ARobotThatDoesNotTellOfItsMotorsNeedNot) {
   hires::control::RobotNames names = Needs().names;
   names.motors_halted.clear();
-  EXPECT_EQ(NeedsOf(names, Types()).topics.size(), Needs().topics.size() - 1);
+  EXPECT_EQ(NeedsOf(names, Types(), {}).topics.size(), Needs().topics.size() - 1);
 }
 
 TEST(JudgeRobotTest, AHealthyRobotHasNoFindings) { EXPECT_THAT(Codes(HealthyView()), IsEmpty()); }

@@ -19,6 +19,7 @@ using test_support::Slow;
 using test_support::StepScript;
 using test_support::TaskOf;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -282,6 +283,14 @@ TEST(FailureTest, ObservationsThatStayAwayAreNotWaitedForForEver) {
   ExpectSound(world);
 }
 
+/// Why the step of this name was stopped or cannot begin.
+base::Failure FailureOf(const std::string& action, ScriptedWorld* world) {
+  for (const StepStatus& step : world->monitor().Steps()) {
+    if (step.action.name == action && step.failure) return step.failure;
+  }
+  return {};
+}
+
 TEST(FailureTest, AnObjectThatSlipsOffInTransitIsNoticedAndTheDriveIsStopped) {
   auto options = For("carry_object");
   options.imagine = [](const StartImagination&, int) { return Slow(); };
@@ -304,6 +313,9 @@ TEST(FailureTest, AnObjectThatSlipsOffInTransitIsNoticedAndTheDriveIsStopped) {
   EXPECT_EQ(finish.outcome, Finish::Outcome::kNoPlan) << "it lies where no area is";
   EXPECT_EQ(world.CountOf("stop move_base_param"), 1);
   EXPECT_THAT(world.warnings(), Contains(HasSubstr("condition_lost: on(peppermill1, trayarea1)")));
+  const base::Failure loss = FailureOf("move_base_param", &world);
+  EXPECT_EQ(loss.code, base::FailureCode::kConditionLost);
+  EXPECT_THAT(loss.subjects, ElementsAre("peppermill1", "trayarea1"));
   ExpectSound(world);
 }
 
@@ -316,6 +328,7 @@ TEST(FailureTest, AnObjectThatVanishesIsNoticedLongBeforeItIsNeeded) {
   const Finish finish = world.Run(TaskOf("serve_coffee"));
   EXPECT_EQ(finish.outcome, Finish::Outcome::kNoPlan);
   EXPECT_EQ(world.CountOf("begin pick_up_object"), 0);
+  EXPECT_EQ(FailureOf("pick_up_object", &world).code, base::FailureCode::kConditionLost);
   ExpectSound(world);
 }
 

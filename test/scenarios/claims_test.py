@@ -10,7 +10,7 @@ sys.path[:0] = [os.path.join(HERE, folder) for folder in ('support', '../ros/sup
 
 from hires.msg import ActionCall, Failure, StepStatus  # noqa: E402
 
-from claims import effect_of  # noqa: E402
+from claims import condition_of, effect_of  # noqa: E402
 
 
 def missing(subjects, name, *arguments):
@@ -39,6 +39,14 @@ class EffectOfTest(unittest.TestCase):
     def test_postures_of_arms_are_not_told_by_truth(self):
         for name in ('tuck_arms', 'move_arm_to_side'):
             self.assertIsNone(missing(['leftarm1', 'armcarryposture'], name, 'leftarm1'))
+
+
+class ConditionOfTest(unittest.TestCase):
+
+    def test_what_a_step_rests_on_is_told_by_its_arguments(self):
+        for subjects, predicate in ((['mug1', 'trayarea1'], 'on'), (['leftarm1', 'mug1'], 'holding'),
+                                    (['home'], 'robotat'), (['torsoupposture'], None), ([], None)):
+            self.assertEqual(condition_of(subjects), predicate)
 
 
 if __name__ == '__main__':

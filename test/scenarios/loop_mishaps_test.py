@@ -37,7 +37,7 @@ class LoopMishapsTest(LoopCase):
         self.addCleanup(self.loop.remaps.clear)
         return heard
 
-    def require_that_the_torso_is_given_up(self, note):
+    def require_that_the_torso_is_given_up(self):
         at_first = self.truth.joint('torso_lift_joint')
         task = self.achieve(THERE)
         result = self.require(task, self.codes.FAILED, 'move_torso(torsoupposture): timed_out')
@@ -45,7 +45,7 @@ class LoopMishapsTest(LoopCase):
         steps = self.steps_of(result, 'move_torso')
         for step in steps:
             self.assertEqual(step.phase, self.phases.FAILED)
-            self.assertEqual(step.note, note)
+            self.assertEqual(step.failure.code, self.loop.msg.Failure.TIMED_OUT)
         self.warned(task, 'move_torso(torsoupposture): timed_out')
         self.assertEqual(self.steps_of(result, 'move_base_blind'), [])
         self.wait_until_it_stands()
@@ -55,11 +55,11 @@ class LoopMishapsTest(LoopCase):
         heard = self.swallow('torso_controller/command')
         with self.subTest('by its skill'):
             self.begin(TORSO_DOWN, MUG)
-            self.require_that_the_torso_is_given_up('timed_out')
+            self.require_that_the_torso_is_given_up()
             self.assertTrue(heard)
         with self.subTest('by the monitor, when it is overdue'):
             self.begin(TORSO_DOWN, MUG, overdue_factor=1.0, overdue_minimum=5.0)
-            for step in self.require_that_the_torso_is_given_up('preempted'):
+            for step in self.require_that_the_torso_is_given_up():
                 self.assertLess(step.finished - step.started, SKILL_WAITS)
 
     def test_an_object_that_slips_off_in_transit_is_noticed(self):
@@ -71,6 +71,9 @@ class LoopMishapsTest(LoopCase):
         self.loop.hold(False)
         result = self.require(task, self.codes.NO_PLAN)
         self.warned(task, 'on(mug1, trayarea1)')
+        stopped = self.steps_of(result, 'move_base_param')[-1].failure
+        self.assertEqual((stopped.code, stopped.subjects),
+                         (self.loop.msg.Failure.CONDITION_LOST, ['mug1', 'trayarea1']))
         self.assertEqual(self.steps_of(result, 'place_object'), [])
         self.assertFalse(self.truth.stands('mug1'))
         self.assertLess(self.truth.position('mug1')[2], 0.2)

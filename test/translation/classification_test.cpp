@@ -38,7 +38,7 @@ geometry::Pose3 Standing(double x, double y, double z) {
 
 std::vector<std::string> Says(const GeometricState& state,
                               const std::vector<Atom>* before = nullptr) {
-  return Texts(AtomsOf(RestaurantContext(), state, {}, before));
+  return Texts(AtomsOf(RestaurantContext(), state, before));
 }
 
 TEST(AtomsOfTest, TheRobotIsAtTheNearestAreaWithinTolerance) {

@@ -34,7 +34,7 @@ class ObservedFluentsTest : public testing::Test {
   }
 
   FluentUpdate Changes() const {
-    return ChangesFrom(RestaurantContext(), knowledge::LiveView(store_), observed_, {}, {},
+    return ChangesFrom(RestaurantContext(), knowledge::LiveView(store_), observed_, {},
                        kConcepts);
   }
 
@@ -222,7 +222,7 @@ TEST_F(ObservedFluentsTest, WhatIsSaidStandsForTheAtomsOfWhatWasObserved) {
       if (IsObservable(atom)) said.push_back(atom);
     }
     // What was said before counts at borders, so compare with it.
-    EXPECT_EQ(Texts(said), Texts(AtomsOf(RestaurantContext(), observed_.state, {}, &said)));
+    EXPECT_EQ(Texts(said), Texts(AtomsOf(RestaurantContext(), observed_.state, &said)));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hires/control/robot_names.h"
+#include "hires/navigation/base_guard.h"
 #include "hires/robot/robot_profile.h"
 
 /// What `hires doctor --robot` wants of a robot.
@@ -48,10 +49,13 @@ struct RobotNeeds {
   std::vector<WantedTopic> topics;  ///< without the map
   WantedTopic map;                  ///< a service does as well
   std::vector<WantedListener> listeners;
+  double max_frame_age{0.0};  ///< [s] of transforms between map and base
 
   std::vector<WantedTopic> all_topics() const;  ///< the map is the last one
 };
-RobotNeeds NeedsOf(const hires::control::RobotNames& names, const RobotMessageTypes& types);
+/// @param guard  what it waits for in vain ends each motion of the base.
+RobotNeeds NeedsOf(const hires::control::RobotNames& names, const RobotMessageTypes& types,
+                   const navigation::BaseGuardParams& guard);
 
 /// Links that our nodes look up; each must have a transform.
 std::vector<std::string> LinksOf(const hires::robot::RobotProfile& profile);

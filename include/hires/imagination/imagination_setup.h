@@ -35,6 +35,7 @@ struct SetupConfig {
   physics::PhysicsParams physics;
   RolloutParams rollout;
   world::StandingCriterion standing;
+  translation::ClassifyParams classify;
   std::uint64_t params_hash{0};  ///< of driving, blind, manipulation, sensing
 };
 

@@ -15,6 +15,7 @@ struct ContextFiles {
   std::string objects;                ///< the catalogue of loose objects
   std::vector<std::string> ontology;  ///< Turtle files
   world::StandingCriterion standing;
+  ClassifyParams classify;
 };
 
 /// @throws base::ConfigError naming file, element and remedy.

@@ -45,8 +45,7 @@ struct FluentUpdate {
 /// @throws base::ConfigError for an object that the ontology or the world does not know, a pose or
 /// joint that is no number.
 FluentUpdate ChangesFrom(const TranslatorContext& context, const knowledge::FluentView& said,
-                         const ObservedWorld& observed, const ClassifyParams& classify = {},
-                         const ChangeParams& params = {},
+                         const ObservedWorld& observed, const ChangeParams& params = {},
                          const std::map<std::string, std::string>& concepts = {});
 
 }  // namespace hires::translation

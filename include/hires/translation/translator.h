@@ -11,6 +11,7 @@
 #include "hires/robot/observation.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/translation/areas.h"
+#include "hires/translation/classify_params.h"
 #include "hires/world/standing.h"
 #include "hires/world/world.h"
 
@@ -24,6 +25,7 @@ struct TranslatorContext {
   std::shared_ptr<const knowledge::Ontology> ontology;  ///< null: fluents are not looked at
   Areas areas;
   world::StandingCriterion standing;  ///< what leans too far is on no area
+  ClassifyParams classify;            ///< when a symbol holds
 
   /// The catalogue's, or that of its kin: an instance that differs from one of the catalogue in its
   /// number only (mug3 is what mug1 is), or a model by its own name. Empty: unknown.

@@ -111,7 +111,7 @@ RobotFindings JudgeRobot(const RobotDoctorOptions& options, const RobotNeeds& ne
   std::vector<RobotFindings> parts{JudgeHosts(view), JudgeClocks(view),
                                    JudgeListeners(needs, view)};
   if (HasCode(parts.front(), "own_loopback")) return Sorted(parts);  // nothing came, of course
-  parts.insert(parts.end(), {JudgeTopics(needs, view), JudgeFrames(needs.names, profile, view),
+  parts.insert(parts.end(), {JudgeTopics(needs, view), JudgeFrames(needs, profile, view),
                              JudgeJoints(profile, view), JudgeReadiness(needs.names, view)});
   if (options.navigation != "own") {
     parts.push_back(JudgeMoveBase(needs.names, view, options.navigation == "move_base"));
@@ -158,7 +158,8 @@ int RunRobotDoctor(const RobotDoctorOptions& options, const std::string& package
     return path.empty() ? package_folder + "/config/robots/" + name : path;
   };
   const RobotNeeds needs =
-      NeedsOf(control::ReadRobotNames(or_default(options.names, "pr2_names.yaml")), types);
+      NeedsOf(control::ReadRobotNames(or_default(options.names, "pr2_names.yaml")), types,
+              navigation::ReadBaseGuardParams(package_folder + "/config/base_guard.yaml"));
   const auto robot = robot::LoadRobot(or_default(options.profile, "pr2.yaml"));
   if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
   const RobotView view = look(options.seconds, needs);

@@ -12,7 +12,6 @@ namespace {
 using hires::base::Join;
 using hires::robot::RobotProfile;
 
-constexpr double kOldestFrame = 0.3;  // [s] when the base guard stops the base
 constexpr double kMostFuture = 0.05;  // [s] that clocks may differ by
 constexpr char kGoalType[] = "move_base_msgs/MoveBaseActionGoal";
 
@@ -111,7 +110,7 @@ RobotFindings JudgeTopic(const WantedTopic& wanted, const RobotView& view) {
 // ---------------------------------------------------------------- frames
 
 RobotFindings JudgeLink(const std::string& child, const std::string& parent, const char* remedy,
-                        const RobotView& view) {
+                        double max_age, const RobotView& view) {
   const std::string subject = "frame " + child;
   const auto frame = view.frames.find(child);
   if (frame == view.frames.end()) {
@@ -125,11 +124,11 @@ RobotFindings JudgeLink(const std::string& child, const std::string& parent, con
              fmt::format("hangs below {}, wanted is {}", Listed(seen.parents), parent),
              "say in the names file (frames) what this robot calls its frames"}};
   }
-  if (!seen.is_static && seen.age > kOldestFrame) {
+  if (!seen.is_static && seen.age > max_age) {
     return {{FindingLevel::kFailed, "frame_stale", subject,
              fmt::format("the newest transform {} -> {} is {:.2f} s old, wanted are {:.1f} s or "
                          "less",
-                         parent, child, seen.age, kOldestFrame),
+                         parent, child, seen.age, max_age),
              "look whether its node still runs, and at its computer's clock and load"}};
   }
   return {};
@@ -275,22 +274,23 @@ RobotFindings JudgeListeners(const RobotNeeds& needs, const RobotView& view) {
   return findings;
 }
 
-RobotFindings JudgeFrames(const hires::control::RobotNames& names, const RobotProfile& profile,
+RobotFindings JudgeFrames(const RobotNeeds& needs, const RobotProfile& profile,
                           const RobotView& view) {
+  const hires::control::RobotNames& names = needs.names;
   if (view.frames.empty()) {
     return {{FindingLevel::kFailed, "frame_missing", "frames",
              fmt::format("no transform at all came on /tf within {:.1f} s", view.seconds),
              "mend first what is said above of hosts and topics; then start robot_state_publisher "
              "and amcl"}};
   }
-  RobotFindings findings =
-      JudgeLink(names.odometry_frame, names.map_frame,
-                "start amcl, and give the first pose (RViz: 2D Pose Estimate)", view);
+  RobotFindings findings = JudgeLink(names.odometry_frame, names.map_frame,
+                                     "start amcl, and give the first pose (RViz: 2D Pose Estimate)",
+                                     needs.max_frame_age, view);
   Append(
       JudgeLink(names.base_frame, names.odometry_frame,
                 "start what fuses odometry (on a PR2: robot_pose_ekf), or name the frames in the "
                 "names file",
-                view),
+                needs.max_frame_age, view),
       &findings);
   Append(FramesWithTwoParents(view), &findings);
   Append(MissingLinks(profile, view), &findings);

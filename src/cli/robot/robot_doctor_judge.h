@@ -15,8 +15,8 @@ RobotFindings JudgeTopics(const RobotNeeds& needs, const RobotView& view);
 /// listener_missing, listener_type.
 RobotFindings JudgeListeners(const RobotNeeds& needs, const RobotView& view);
 /// frame_missing, frame_stale, frame_two_parents, link_missing.
-RobotFindings JudgeFrames(const hires::control::RobotNames& names,
-                          const hires::robot::RobotProfile& profile, const RobotView& view);
+RobotFindings JudgeFrames(const RobotNeeds& needs, const hires::robot::RobotProfile& profile,
+                          const RobotView& view);
 /// joint_missing; nothing while there are no joint states at all, which is another's finding.
 RobotFindings JudgeJoints(const hires::robot::RobotProfile& profile, const RobotView& view);
 /// motors_halted, robot_description_missing.

@@ -7,8 +7,6 @@ namespace {
 
 using hires::robot::RobotProfile;
 
-/// [s] The base guard stops the base when the pose or the scan is older.
-constexpr double kOldestPose = 0.3;
 /// [Hz] at which the middle layer decides; what it looks at should come as often.
 constexpr double kDecisionRate = 20.0;
 /// [Hz] The scan may miss every second of a 20 Hz laser's turns.
@@ -26,9 +24,9 @@ WantedTopic Want(const std::string& what, const std::string& name, const Message
   return topic;
 }
 
-WantedTopic Often(WantedTopic topic, double min_rate) {
+WantedTopic Often(WantedTopic topic, double min_rate, double max_age) {
   topic.min_rate = min_rate;
-  topic.max_age = kOldestPose;
+  topic.max_age = max_age;
   return topic;
 }
 
@@ -42,12 +40,15 @@ void AddArm(const hires::robot::ArmProfile& arm, std::vector<JointChoice>* joint
 }
 
 std::vector<WantedTopic> TopicsOf(const hires::control::RobotNames& names,
-                                  const RobotMessageTypes& types) {
+                                  const RobotMessageTypes& types,
+                                  const navigation::BaseGuardParams& guard) {
   std::vector<WantedTopic> topics{
-      Often(Want("odometry", names.odometry, types.odometry, kStartRobot), kDecisionRate),
+      Often(Want("odometry", names.odometry, types.odometry, kStartRobot), kDecisionRate,
+            guard.pose_patience),
       Often(Want("joint states", names.joint_states, types.joint_states, kStartRobot),
-            kDecisionRate),
-      Often(Want("base scan", names.base_scan, types.scan, kStartRobot), kLowestScanRate),
+            kDecisionRate, guard.pose_patience),
+      Often(Want("base scan", names.base_scan, types.scan, kStartRobot), kLowestScanRate,
+            guard.scan_patience),
       Want("localisation", names.localisation, types.localisation,
            "start amcl with the map, and give the first pose (RViz: 2D Pose Estimate)")};
   if (!names.motors_halted.empty()) {
@@ -88,10 +89,11 @@ std::vector<WantedTopic> RobotNeeds::all_topics() const {
   return all;
 }
 
-RobotNeeds NeedsOf(const hires::control::RobotNames& names, const RobotMessageTypes& types) {
-  return {names, TopicsOf(names, types),
+RobotNeeds NeedsOf(const hires::control::RobotNames& names, const RobotMessageTypes& types,
+                   const navigation::BaseGuardParams& guard) {
+  return {names, TopicsOf(names, types, guard),
           Want("map", names.map, types.map, "start map_server with the map of this building"),
-          ListenersOf(names, types)};
+          ListenersOf(names, types), guard.pose_patience};
 }
 
 std::vector<std::string> LinksOf(const RobotProfile& profile) {

@@ -11,20 +11,6 @@ namespace {
 using hires::base::Between;
 using hires::base::ParamReader;
 
-hires::translation::ClassifyParams ReadClassify(ParamReader in) {
-  hires::translation::ClassifyParams params;
-  params.area_distance = in.Get("area_distance", Between(0.01, 5.0));
-  params.area_yaw = in.Get("area_yaw", Between(0.01, 3.2));
-  params.tucked_tolerance = in.Get("tucked_tolerance", Between(0.01, 3.2));
-  params.posture_tolerance = in.Get("posture_tolerance", Between(0.01, 3.2));
-  params.torso_tolerance = in.Get("torso_tolerance", Between(0.001, 0.2));
-  params.placing_height = in.Get("placing_height", Between(0.005, 1.0));
-  params.tray_height = in.Get("tray_height", Between(0.005, 1.0));
-  params.hysteresis = in.Get("hysteresis", Between(1.0, 3.0));
-  params.placing_hysteresis = in.Get("placing_hysteresis", Between(0.0, 0.2));
-  return params;
-}
-
 hires::translation::ChangeParams ReadChanges(ParamReader in) {
   hires::translation::ChangeParams params;
   params.position = in.Get("position", Between(0.0, 1.0));
@@ -49,7 +35,6 @@ WorldTrackerParams ReadWorldTrackerParams(const std::string& path) {
   WorldTrackerParams params;
   ReadTranslatorFiles(path, &in, &params.files);
   params.sensing = hires::imagination::ReadSetupConfig(params.files.scene).sensing;
-  params.classify = ReadClassify(in.Sub("classify"));
   params.changes = ReadChanges(in.Sub("changes"));
   params.concepts = ReadConcepts(in.Sub("concepts"));
   params.sweep = hires::control::ReadSweepParams(in.Sub("sweep"));

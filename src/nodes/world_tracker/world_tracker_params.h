@@ -16,7 +16,6 @@ struct WorldTrackerParams {
   TranslatorParams files;
   std::vector<std::string> action_libraries;  ///< with more actions: which of them use the head
   hires::sensing::SensingParams sensing;      ///< of the scene
-  hires::translation::ClassifyParams classify;
   hires::translation::ChangeParams changes;
   std::map<std::string, std::string>
       concepts;  ///< model -> concept, for objects that are not in the Blackboard

@@ -103,6 +103,21 @@ def judge_effect(step, truth):
     return FALSE if is_so == effect[1] else TRUE
 
 
+def condition_of(subjects):
+    """The predicate of what a step rests on, told by its arguments; None for others."""
+    if len(subjects) == 2:
+        return 'holding' if subjects[0] in PALMS else 'on'
+    return 'robotat' if len(subjects) == 1 and subjects[0] in FRAMES else None
+
+
+def judge_loss(step, truth):
+    """What the step rests on must not be so in truth, too. The domain's steps rest on no place that
+    must be empty, and no hand."""
+    predicate = condition_of(step.failure.subjects)
+    is_so = truth.holds(predicate, step.failure.subjects) if predicate else None
+    return OPEN if is_so is None else FALSE if is_so else TRUE
+
+
 def judge_occupied(step, truth):
     area = FRAMES[step.action.arguments[-1]]
 
@@ -119,6 +134,8 @@ def judge(step, truth):
     thing = next((a for a in step.action.arguments if a in truth.stands), None)
     if code == Failure.EFFECT_MISSING:
         return judge_effect(step, truth)
+    if code == Failure.CONDITION_LOST:
+        return judge_loss(step, truth)
     if code == Failure.AREA_OCCUPIED:
         return judge_occupied(step, truth)
     if code in (Failure.OBJECT_SLIPPED, Failure.GRASP_FAILED) and thing:
@@ -145,7 +162,8 @@ class Claims:
     def note(self, steps, truth):
         for step in steps:
             key = step.plan, step.index
-            if step.phase != StepStatus.FAILED or step.failure.code == Failure.NONE or key in self._told:
+            has_begun = step.phase in (StepStatus.RUNNING, StepStatus.CHECKING, StepStatus.DONE)
+            if has_begun or step.failure.code == Failure.NONE or key in self._told:
                 continue
             self._told.add(key)
             words = '%s(%s): %s' % (step.action.name, ', '.join(step.action.arguments),
