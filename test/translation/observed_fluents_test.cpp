@@ -34,8 +34,7 @@ class ObservedFluentsTest : public testing::Test {
   }
 
   FluentUpdate Changes() const {
-    return ChangesFrom(RestaurantContext(), knowledge::LiveView(store_), observed_, {},
-                       kConcepts);
+    return ChangesFrom(RestaurantContext(), knowledge::LiveView(store_), observed_, {}, kConcepts);
   }
 
   /// Says what is new; what remains to be said after that must be nothing.
