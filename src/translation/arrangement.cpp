@@ -63,12 +63,13 @@ bool IsCarried(const world::World& world, const Vector3d& p_M, double half_width
   return TopUnder(world, p_M, half_width, kSlack).has_value();
 }
 
+constexpr double kUpright = 0.1;     // [rad]
+constexpr double kSeenAbove = 0.03;  // [m]: several deviations of the detector's error
+
 /// An upright object that was seen a little above or below a top stands on it: the detector's error
 /// would have it begin inside the furniture, or fall. Farther below than above, for nothing is in
 /// furniture, and a head that turns errs by some cm.
 Pose3 Rested(const world::World& world, const world::ObjectModel& model, Pose3 X_MO) {
-  constexpr double kUpright = 0.1;     // [rad]
-  constexpr double kSeenAbove = 0.03;  // [m]: several deviations of the detector's error
   constexpr double kSeenBelow = 0.08;  // [m]
   if (geometry::TiltOf(X_MO.rotation) > kUpright) return X_MO;
   const double foot = BoundsOf(model).lower.z();
@@ -76,6 +77,16 @@ Pose3 Rested(const world::World& world, const world::ObjectModel& model, Pose3 X
   const auto top = TopUnder(world, p_MFoot, 0.0, kSeenBelow);
   if (top && p_MFoot.z() - *top < kSeenAbove) X_MO.translation.z() = *top - foot;
   return X_MO;
+}
+
+/// Likewise, on a tray whose plane X_MA has. What was seen far above stands on something else
+/// there.
+Pose3 RestedOnTray(const Pose3& X_MA, const world::ObjectModel& model, const Pose3& X_MO) {
+  if (geometry::TiltOf(X_MO.rotation) > kUpright) return X_MO;
+  Pose3 X_AO = X_MA.Inverse() * X_MO;
+  const double foot = BoundsOf(model).lower.z();
+  if (X_AO.translation.z() + foot < kSeenAbove) X_AO.translation.z() = -foot;
+  return X_MA * X_AO;
 }
 
 /// How `object` must be shifted, seen from above, so that it is not in `other`; zero where it is
@@ -193,7 +204,9 @@ class Arrangement {
     if (is_on_robot != (area.kind == AreaKind::kTray)) return false;
     const Pose3 X_MO = is_on_robot ? body_.X_ML(seen->frame) * seen->X_FO : seen->X_FO;
     if (!CountsAsOn(area, X_MO)) return false;
-    Add(object, is_on_robot ? X_MO : Rested(*context_.world, ModelOf(object), X_MO));
+    const world::ObjectModel& model = ModelOf(object);
+    Add(object, is_on_robot ? RestedOnTray(PoseOf(area, body_), model, X_MO)
+                            : Rested(*context_.world, model, X_MO));
     return true;
   }
 

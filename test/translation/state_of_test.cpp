@@ -212,6 +212,23 @@ TEST(StateOfTest, TheTrayFillsFromTheMiddle) {
   EXPECT_NEAR(y("peppermill1"), 0.13, 1e-9);
 }
 
+TEST(StateOfTest, WhatIsSeenALittleBelowOrAboveTheTrayStandsOnIt) {
+  const Area& tray = RestaurantContext().areas.Require(kTrayArea);
+  const double surface =
+      Object(Build({{"On", {"mug1", "trayArea1"}}}), "mug1").X_MO.translation.z();
+  for (const double error : {-0.02, -0.006, 0.006, 0.02}) {  // [m] 5 mm is the detector's deviation
+    const Eigen::Vector3d p_FO = tray.X_FA.translation + Eigen::Vector3d(0.02, 0.05, error);
+    const auto view = ViewWith({PoseAt("poseMug1", p_FO.x(), p_FO.y(), p_FO.z(), tray.link)});
+    const auto state = Build({{"On", {"mug1", "trayArea1"}}}, &view);
+    const Eigen::Vector3d p_M = Object(state, "mug1").X_MO.translation;
+    EXPECT_NEAR(p_M.z(), surface, 1e-9) << error;
+    EXPECT_GT(
+        (p_M - Object(Build({{"On", {"mug1", "trayArea1"}}}), "mug1").X_MO.translation).norm(),
+        0.04)
+        << "where it was seen, not in its slot";
+  }
+}
+
 TEST(StateOfTest, ObjectsThatOnlyFluentsKnowStayWhereTheyWereSeen) {
   const knowledge::LiveView view(test_support::RestaurantFluents(), 1);
   const auto state = Build({{"On", {"mug1", "trayArea1"}}}, &view);
