@@ -62,10 +62,10 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
 
 bool MemoryParams::operator==(const MemoryParams& other) const {
   const auto numbers = [](const MemoryParams& p) {
-    return std::make_tuple(p.expected_share, p.looks_to_vanish, p.blending, p.moved_distance,
-                           p.moved_angle, p.grasp_distance, p.closed_gap, p.gap_below, p.gap_above,
-                           p.open_gap, p.opening, p.still_gap, p.still_time, p.hand_distance,
-                           p.instance_distance);
+    return std::make_tuple(p.expected_share, p.expected_margin, p.looks_to_vanish, p.blending,
+                           p.moved_distance, p.moved_angle, p.grasp_distance, p.closed_gap,
+                           p.gap_below, p.gap_above, p.open_gap, p.opening, p.still_gap,
+                           p.still_time, p.hand_distance, p.instance_distance);
   };
   return numbers(*this) == numbers(other);
 }
@@ -337,6 +337,19 @@ std::vector<std::string> ObjectMemory::NamesOf(const Links& links, const CameraV
   return names;
 }
 
+/// Whether enough of the object is in view where it is believed, and also to both sides of that.
+bool ObjectMemory::MustBeSeen(const LineOfSight& sight, const CameraView& view, const Links& links,
+                              const RememberedObject& object) const {
+  const Pose3 X_MO = links.X_ML(object.link) * object.X_LO;
+  const Eigen::Vector3d left_M = view.X_MC.rotation * Eigen::Vector3d::UnitY();
+  for (const double beside : {0.0, params_.expected_margin, -params_.expected_margin}) {
+    const Pose3 X_MBeside{X_MO.translation + beside * left_M, X_MO.rotation};
+    const double share = sight.VisibleShareAt(view, object.model, X_MBeside, object.name);
+    if (share < params_.expected_share) return false;
+  }
+  return true;
+}
+
 /// Counts the objects that should have been detected.
 void ObjectMemory::Miss(const LineOfSight& sight, const CameraView& view, const Links& links,
                         const std::vector<Detection>& detections,
@@ -350,9 +363,7 @@ void ObjectMemory::Miss(const LineOfSight& sight, const CameraView& view, const 
                                                               view.X_MC * detections[i].X_CO));
     }
     if (may_be_seen) continue;
-    const Pose3 X_MO = links.X_ML(object.link) * object.X_LO;
-    const double share = sight.VisibleShareAt(view, object.model, X_MO, name);
-    if (share < params_.expected_share) continue;
+    if (!MustBeSeen(sight, view, links, object)) continue;
     if (++object.num_missed >= params_.looks_to_vanish) gone.push_back(name);
   }
   for (const std::string& name : gone) Lose(name);

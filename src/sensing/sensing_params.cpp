@@ -20,6 +20,7 @@ StateParams ReadState(ParamReader in) {
 MemoryParams ReadMemory(ParamReader in) {
   MemoryParams params;
   params.expected_share = in.Get("expected_share", Between(0.05, 1.0));
+  params.expected_margin = in.Get("expected_margin", Between(0.0, 0.5));
   params.looks_to_vanish = in.Get("looks_to_vanish", Between(1, 1000));
   params.blending = in.Get("blending", Between(0.01, 1.0));
   params.moved_distance = in.Get("moved_distance", Between(0.0, 1.0));

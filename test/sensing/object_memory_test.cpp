@@ -177,6 +177,19 @@ TEST_F(ObjectMemoryTest, WhatIsHiddenOrOutOfViewDoesNotVanish) {
   EXPECT_THAT(Names(), ElementsAre("mug1", "screen1")) << "the robot looked elsewhere";
 }
 
+TEST_F(ObjectMemoryTest, WhatMayBeHiddenBySomethingCloseBesideDoesNotVanish) {
+  // The mug was seen first, the screen by another error of localisation: it may stand before it.
+  const auto screen = Thing("screen1", "screen", At(1.3, -0.4, 0.6));  // up to y 0.1 m
+  const Eigen::Vector3d p_MC = ViewOf(Pr2(), body_.X_MB, body_.joints).X_MC.translation;
+  const double edge = p_MC.y() + (0.1 - p_MC.y()) * (1.8 - p_MC.x()) / (1.3 - p_MC.x());
+  memory_.Believe("mug1", "mug", "", At(1.8, edge + 0.05, 0.7));  // 0.04 m is its radius
+  for (int i = 0; i < 5; ++i) Look({screen});
+  EXPECT_THAT(Names(), ElementsAre("mug1", "screen1"));
+  memory_.Believe("mug1", "mug", "", At(1.8, edge + 0.15, 0.7));
+  for (int i = 0; i < 5; ++i) Look({screen});
+  EXPECT_THAT(Names(), ElementsAre("screen1")) << "nothing hides that place";
+}
+
 TEST_F(ObjectMemoryTest, TheOwnArmBeforeAnObjectDoesNotMakeItVanish) {
   PutArm("rightarm1", "armuntuckedposture");
   body_.joints["head_pan_joint"] = -0.7;  // towards the arm

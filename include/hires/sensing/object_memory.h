@@ -14,8 +14,10 @@
 namespace hires::sensing {
 
 struct MemoryParams {
-  double expected_share{0.6};   ///< of an object's surface that must be free before it counts as
-                                ///< missed in a look that does not detect it
+  double expected_share{0.6};    ///< of an object's surface that must be free before it counts as
+                                 ///< missed in a look that does not detect it
+  double expected_margin{0.06};  ///< [m] so far beside where it is believed it must be free, too:
+                                 ///< what hides it was seen from elsewhere, or by another error
   int looks_to_vanish{3};       ///< in a row in which it was missed
   double blending{0.3};         ///< weight of a new sight of an object that stands still
   double moved_distance{0.04};  ///< [m] beyond which it has moved, and the new sight alone counts
@@ -113,6 +115,8 @@ class ObjectMemory {
              const geometry::Pose3& X_MO) const;
   void See(const Links& links, const std::string& name, const std::string& label,
            const geometry::Pose3& X_MO, double time);
+  bool MustBeSeen(const perception::LineOfSight& sight, const perception::CameraView& view,
+                  const Links& links, const RememberedObject& object) const;
   void Miss(const perception::LineOfSight& sight, const perception::CameraView& view,
             const Links& links, const std::vector<perception::Detection>& detections,
             const std::vector<std::string>& names);
