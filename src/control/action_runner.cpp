@@ -187,10 +187,11 @@ bool ActionRunner::is_stopping() const {
                      [](const Session& session) { return session.stop != nullptr; });
 }
 
-bool ActionRunner::is_thinking() const {
-  return std::any_of(sessions_.begin(), sessions_.end(), [](const Session& session) {
-    return session.skill && session.skill->is_thinking();
-  });
+int ActionRunner::num_thinking() const {
+  return static_cast<int>(
+      std::count_if(sessions_.begin(), sessions_.end(), [](const Session& session) {
+        return session.skill && session.skill->is_thinking();
+      }));
 }
 
 ActionNews ActionRunner::NewsOf(const Session& session) const {

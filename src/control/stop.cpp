@@ -30,6 +30,16 @@ double WithinLimits(const robot::RobotModel& model, const std::string& joint, do
 
 }  // namespace
 
+StopParams ReadStopParams(base::ParamReader in) {
+  using base::Between;
+  StopParams params;
+  params.linear_deceleration = in.Get("linear_deceleration", Between(0.05, 10.0));
+  params.angular_deceleration = in.Get("angular_deceleration", Between(0.05, 20.0));
+  params.still_speed = in.Get("still_speed", Between(0.0001, 1.0));
+  params.patience = in.Get("patience", Between(0.1, 60.0));
+  return params;
+}
+
 Stop::Stop(const robot::Robot& robot, std::set<std::string> groups, const StopParams& params)
     : robot_(robot), groups_(std::move(groups)), params_(params) {}
 

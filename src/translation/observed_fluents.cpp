@@ -284,6 +284,24 @@ class Comparison {
 
 }  // namespace
 
+ChangeParams ReadChangeParams(base::ParamReader in) {
+  using base::Between;
+  ChangeParams params;
+  params.position = in.Get("position", Between(0.0, 1.0));
+  params.angle = in.Get("angle", Between(0.0, 3.2));
+  params.robot_position = in.Get("robot_position", Between(0.0, 5.0));
+  params.robot_angle = in.Get("robot_angle", Between(0.0, 3.2));
+  return params;
+}
+
+std::map<std::string, std::string> ReadConcepts(base::ParamReader in) {
+  std::map<std::string, std::string> concepts;
+  for (const std::string& model : in.Keys()) {
+    concepts[base::ToLower(model)] = in.GetString(model);
+  }
+  return concepts;
+}
+
 FluentUpdate ChangesFrom(const TranslatorContext& context, const knowledge::FluentView& said,
                          const ObservedWorld& observed, const ChangeParams& params,
                          const std::map<std::string, std::string>& concepts) {

@@ -179,7 +179,7 @@ class SimRobotParamsTest : public ::testing::Test {
 TEST_F(SimRobotParamsTest, TheFileOfThePackageIsComplete) {
   const SimRobotParams params = ReadSimRobotParams(config_ + "sim_robot.yaml");
   EXPECT_EQ(params.pace, 1.0);
-  EXPECT_EQ(params.laser.num_beams, 640);
+  EXPECT_EQ(params.sensors.laser.num_beams, 640);
   EXPECT_TRUE(params.scenario.empty());
 }
 

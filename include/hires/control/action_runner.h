@@ -86,7 +86,8 @@ class ActionRunner {
   void GiveUpStopping();
   bool is_stopping() const;
 
-  bool is_thinking() const;  ///< some skill has not made up its mind about its look
+  int num_thinking() const;  ///< skills that have not made up their mind about their look
+  bool is_thinking() const { return num_thinking() > 0; }
   bool is_idle() const { return sessions_.empty(); }
   std::vector<ActionNews> News() const;
   std::vector<std::string> Running() const;  ///< for people

@@ -4,6 +4,7 @@
 #include <set>
 #include <string>
 
+#include "hires/base/param_reader.h"
 #include "hires/navigation/braking.h"
 #include "hires/robot/observation.h"
 #include "hires/robot/robot_profile.h"
@@ -25,6 +26,10 @@ struct StopParams {
   /// Where it is there the base stops as the load bears it, and not by the decelerations above.
   std::optional<LoadBraking> braking;
 };
+
+/// The block `stopping` of config/middle_layer.yaml; no braking.
+/// @throws base::ConfigError naming the key.
+StopParams ReadStopParams(base::ParamReader in);
 
 /// Brings groups of joints and the base to rest: the base along a ramp, joints where they can be
 /// stopped within the limits of their acceleration. Hands stay as they are: what is held stays

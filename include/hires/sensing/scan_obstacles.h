@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "hires/base/param_reader.h"
 #include "hires/geometry/polygon.h"
 #include "hires/navigation/costmap.h"
 
@@ -14,6 +15,9 @@ struct ScanParams {
   double range{2.5};       ///< [m] obstacle_range of the PR2's costmaps
   double cell{0.05};       ///< [m] edge of the squares that stand for what was seen
 };
+
+/// The block `scan` of config/middle_layer.yaml.  @throws base::ConfigError naming the key.
+ScanParams ReadScanParams(base::ParamReader in);
 
 /// A planar laser scan in the laser's frame.
 struct ScanReading {

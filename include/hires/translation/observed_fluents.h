@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/base/param_reader.h"
 #include "hires/knowledge/fluent.h"
 #include "hires/translation/classification.h"
 
@@ -23,6 +24,11 @@ struct ChangeParams {
   double robot_position{0.10};  ///< [m] of the base
   double robot_angle{0.10};     ///< [rad]
 };
+
+/// The block `changes` of config/world_tracker.yaml.  @throws base::ConfigError naming the key.
+ChangeParams ReadChangeParams(base::ParamReader in);
+/// The block `concepts` likewise: model in lower case -> concept.
+std::map<std::string, std::string> ReadConcepts(base::ParamReader in);
 
 /// What the Blackboard must be told; empty lists: nothing new.
 struct FluentUpdate {

@@ -12,23 +12,6 @@ namespace {
 using hires::base::Between;
 using hires::base::ParamReader;
 
-hires::control::StopParams ReadStopping(ParamReader in) {
-  hires::control::StopParams params;
-  params.linear_deceleration = in.Get("linear_deceleration", Between(0.05, 10.0));
-  params.angular_deceleration = in.Get("angular_deceleration", Between(0.05, 20.0));
-  params.still_speed = in.Get("still_speed", Between(0.0001, 1.0));
-  params.patience = in.Get("patience", Between(0.1, 60.0));
-  return params;
-}
-
-hires::sensing::ScanParams ReadScan(ParamReader in) {
-  hires::sensing::ScanParams params;
-  params.tolerance = in.Get("tolerance", Between(0.0, 1.0));
-  params.range = in.Get("range", Between(0.1, 30.0));
-  params.cell = in.Get("cell", Between(0.01, 0.5));
-  return params;
-}
-
 /// How loads bear braking stands in the guard's own file, so that both think the same.
 GuardParams ReadGuard(ParamReader in, std::optional<bool> is_there, const std::string& path) {
   GuardParams params;
@@ -56,8 +39,8 @@ MiddleLayerParams Read(const std::string& path, std::optional<bool> is_guard_the
       hires::imagination::ResolvePath(in.GetString("scene"), path));
   params.runner.time_limit = in.Get("time_limit", Between(0.1, 3600.0));
   params.runner.stale_after = params.setup.sensing.robot_state.stale_after;
-  params.runner.stop = ReadStopping(in.Sub("stopping"));
-  params.scan = ReadScan(in.Sub("scan"));
+  params.runner.stop = hires::control::ReadStopParams(in.Sub("stopping"));
+  params.scan = hires::sensing::ReadScanParams(in.Sub("scan"));
   params.guard = ReadGuard(in.Sub("guard"), is_guard_there, path);
   params.override = ReadOverride(in.Sub("override"));
   params.navigation =

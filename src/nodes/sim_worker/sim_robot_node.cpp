@@ -21,9 +21,9 @@ namespace {
 
 using hires::base::ConfigError;
 using hires::base::LogLevel;
+using hires::evaluation::kSensorTick;
 using hires::robot::Command;
 
-constexpr long kTick = 50;  // [ms]
 constexpr long kFast = 10;  // [ms] 100 Hz
 constexpr long kLook = static_cast<long>(1000.0 * hires::world::kFallLookInterval + 0.5);  // [ms]
 static_assert(kFast % kLook == 0, "what is published is the end of a look");
@@ -52,7 +52,8 @@ SimRobotNode::SimRobotNode(const SimRobotParams& params,
       truth_(setup.standing),
       is_held_(params.hold) {
   truth_.Look(world_.simulator());
-  nh->setParam(params.names.robot_description, hires::robot::ReadUrdfOf(params.setup.robot, robot_.profile));
+  nh->setParam(params.names.robot_description,
+               hires::robot::ReadUrdfOf(params.setup.robot, robot_.profile));
   AdvertiseTick(nh);
   Subscribe(nh);
   Serve(nh);
@@ -231,7 +232,7 @@ void SimRobotNode::PublishTick() {
 }
 
 void SimRobotNode::AdvanceOneTick() {
-  for (long done = 0; done < kTick; done += kFast) {
+  for (long done = 0; done < kSensorTick; done += kFast) {
     if (done > 0) publisher_.PublishFast(world_, world_.Sense());
     if (done == 0 || !params_.lockstep) Listen();
     for (long looked = 0; looked < kFast; looked += kLook) {
@@ -301,7 +302,7 @@ bool SimRobotNode::IsAnswered() const {
 void SimRobotNode::AwaitPace() {
   if (params_.pace == 0.0) return;
   due_ = std::max(due_ + std::chrono::duration_cast<Steady::duration>(
-                             std::chrono::duration<double>(0.001 * kTick / params_.pace)),
+                             std::chrono::duration<double>(0.001 * kSensorTick / params_.pace)),
                   Steady::now() - kLag);
   while (!stop_ && Steady::now() < due_) {
     ReadMail(std::min<std::chrono::duration<double>>(due_ - Steady::now(), kShort));

@@ -2,7 +2,6 @@
 
 #include <ros/package.h>
 
-#include <cmath>
 #include <limits>
 
 #include "hires/ros/load_robot_names.h"
@@ -14,30 +13,9 @@ namespace {
 using hires::base::Between;
 using hires::base::ParamReader;
 
-constexpr double kTickSeconds = 0.05;
-
-hires::simulation::LaserParams ReadLaser(ParamReader in) {
-  hires::simulation::LaserParams params;
-  params.num_beams = in.Get("beams", Between(2, 10000));
-  params.angle_min = in.Get("angle_min", Between(-3.1415, 3.1415));
-  params.angle_max = in.Get("angle_max", Between(-3.1415, 3.1415));
-  if (params.angle_max <= params.angle_min) in.Fail("angle_max", "wanted more than angle_min");
-  params.range_min = in.Get("range_min", Between(0.0, 10.0));
-  params.range_max = in.Get("range_max", Between(0.1, 100.0));
-  params.noise = in.Get("noise", Between(0.0, 1.0));
-  return params;
-}
-
-void ReadDetector(ParamReader in, SimRobotParams* params) {
-  params->detection_period = in.Get("period", Between(kTickSeconds, 60.0));
-  const double ticks = params->detection_period / kTickSeconds;
-  if (std::abs(ticks - std::round(ticks)) > 1e-6) in.Fail("period", "wanted a multiple of 0.05 s");
-  params->min_visible_share = in.Get("min_visible_share", Between(0.0, 1.0));
-}
-
 /// Nothing uncertain means that the laser tells the truth, too.
 void DropNoiseIfCertain(SimRobotParams* params) {
-  if (params->setup.uncertainty == "none") params->laser.noise = 0.0;
+  if (params->setup.uncertainty == "none") params->sensors.laser.noise = 0.0;
 }
 
 void OverridePrivate(SimRobotParams* params) {
@@ -72,8 +50,7 @@ SimRobotParams ReadSimRobotParams(const std::string& path) {
   params.pace = in.Get("pace", Between(0.0, 1000.0));
   params.lockstep = in.GetBool("lockstep");
   params.hold = in.GetBool("hold");
-  params.laser = ReadLaser(in.Sub("laser"));
-  ReadDetector(in.Sub("detector"), &params);
+  params.sensors = hires::evaluation::ReadSimSensorParams(in);
   in.RejectUnknownKeys();
   DropNoiseIfCertain(&params);
   return params;

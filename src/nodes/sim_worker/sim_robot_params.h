@@ -4,8 +4,8 @@
 #include <string>
 
 #include "hires/control/robot_names.h"
+#include "hires/evaluation/sim_robot_sensors.h"
 #include "hires/imagination/imagination_setup.h"
-#include "hires/simulation/laser_scanner.h"
 
 namespace hires_ros {
 
@@ -14,13 +14,11 @@ struct SimRobotParams {
   hires::control::RobotNames names;
   std::string scenario;  ///< file; empty: the world's own objects, the robot at `area`
   std::string area{"nearStartArea1"};
-  std::uint64_t seed{1};                 ///< of the hidden truth and of all noise
-  double pace{1.0};                      ///< simulated seconds per second; 0: as fast as it can
-  bool lockstep{false};                  ///< wait for the middle layer at every tick
-  bool hold{false};                      ///< stand still until `sim_robot/hold` lets go
-  hires::simulation::LaserParams laser;  ///< its link is the robot's own
-  double min_visible_share{0.3};         ///< of an object's surface towards the camera
-  double detection_period{0.5};          ///< [s], a multiple of the tick's 0.05 s
+  std::uint64_t seed{1};  ///< of the hidden truth and of all noise
+  double pace{1.0};       ///< simulated seconds per second; 0: as fast as it can
+  bool lockstep{false};   ///< wait for the middle layer at every tick
+  bool hold{false};       ///< stand still until `sim_robot/hold` lets go
+  hires::evaluation::SimSensorParams sensors;
 };
 
 /// Reads a file like config/sim_robot.yaml; it does not say the names.  @throws

@@ -7,9 +7,8 @@
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/LaserScan.h>
+#include <tf2_msgs/TFMessage.h>
 #include <visualization_msgs/MarkerArray.h>
-
-#include <cmath>
 
 #include "hires/perception/detector.h"
 #include "hires/robot/posture.h"
@@ -17,7 +16,6 @@
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 #include "hires/ros/topic_names.h"
-#include "hires/simulation/scan_ghosts.h"
 #include "hires/skills/manipulation_context.h"
 #include "hires/world/occupancy_grid.h"
 
@@ -28,10 +26,11 @@ using hires::geometry::Pose3;
 
 constexpr double kLaserHeight = 0.303;   // [m] of a PR2's base laser: the map's slice
 constexpr double kMapResolution = 0.05;  // [m]
-constexpr double kStillHead = 0.02;      // [rad/s]
 constexpr double kScanTime = 0.05;       // [s] 20 Hz
-constexpr int kShownIndex = 0;           // of the markers; workers count from 1
-enum SensorStreams : std::uint64_t { kScanStream = 100, kDetectorStream };
+// Messages for one who is late: a minute of what comes at 100 Hz, which at ten times the pace is
+// six seconds in which a busy computer may keep a node from listening.
+constexpr std::uint32_t kQueue = 6000;
+constexpr int kShownIndex = 0;  // of the markers; workers count from 1
 
 }  // namespace
 
@@ -40,23 +39,21 @@ SimRobotPublisher::SimRobotPublisher(const SimRobotParams& params,
                                      ros::NodeHandle* nh)
     : params_(params),
       scene_(setup.scene),
-      laser_(params.laser),
-      scan_rng_(hires::base::Rng(params.seed).Fork(kScanStream)),
-      detector_rng_(hires::base::Rng(params.seed).Fork(kDetectorStream)),
-      clock_(nh->advertise<rosgraph_msgs::Clock>("/clock", 100)),
-      odometry_(nh->advertise<nav_msgs::Odometry>(params.names.odometry, 100)),
-      joints_(nh->advertise<sensor_msgs::JointState>(params.names.joint_states, 100)),
+      sensors_(params.sensors, params.seed, setup.scene),
+      clock_(nh->advertise<rosgraph_msgs::Clock>("/clock", kQueue)),
+      odometry_(nh->advertise<nav_msgs::Odometry>(params.names.odometry, kQueue)),
+      joints_(nh->advertise<sensor_msgs::JointState>(params.names.joint_states, kQueue)),
       amcl_(nh->advertise<geometry_msgs::PoseWithCovarianceStamped>(params.names.localisation, 10)),
       scan_(nh->advertise<sensor_msgs::LaserScan>(params.names.base_scan, 10)),
-      detections_(nh->advertise<hires::Detections>(kDetections, 10)),
+      detections_(nh->advertise<hires::Detections>(kDetections, kQueue)),
       map_(nh->advertise<nav_msgs::OccupancyGrid>(params.names.map, 1, true)),
       world_markers_(nh->advertise<visualization_msgs::MarkerArray>(kWorldMarkers, 1, true)),
       markers_(nh->advertise<visualization_msgs::MarkerArray>("robot_markers", 10)),
       true_world_(nh->advertise<hires::WorldState>("ground_truth/world_state", 100)),
       true_robot_(nh->advertise<hires::RobotState>("ground_truth/robot_state", 100)),
       truth_(nh->advertise<hires::GroundTruth>("ground_truth/summary", 10, true)),
+      tf_(nh->advertise<tf2_msgs::TFMessage>(kTransforms, kQueue)),
       trace_(kShownIndex, setup.standing) {
-  laser_.link = scene_->robot.profile.laser_link;
   world_markers_.publish(WorldMarkers(scene_->world));
   PublishMap();
 }
@@ -95,13 +92,12 @@ std::vector<std::string> SimRobotPublisher::PublishTick(
   std::vector<std::string> sensors{kTransforms, params_.names.joint_states, params_.names.odometry};
   PublishTransforms(readings, stamp);
   PublishLocalisation(readings, stamp);
-  if (!laser_.link.empty() && scene_->surroundings) {
+  if (sensors_.has_laser()) {
     PublishScan(world, readings, stamp);
     sensors.push_back(params_.names.base_scan);
   }
-  if (IsLookDue(world, readings)) {
-    last_look_ = world.milliseconds();
-    PublishDetections(world, stamp);
+  if (const auto seen = sensors_.Look(world, readings)) {
+    PublishDetections(*seen, stamp);
     sensors.push_back(kDetections);
   }
   PublishTruth(world, truth, stamp);
@@ -111,20 +107,23 @@ std::vector<std::string> SimRobotPublisher::PublishTick(
 void SimRobotPublisher::PublishTransforms(const hires::evaluation::SensorReadings& readings,
                                           const ros::Time& stamp) {
   const hires::robot::Robot& robot = scene_->robot;
-  tf_.sendTransform(MakeTransform(params_.names.map_frame, params_.names.odometry_frame,
-                                  hires::geometry::Lift(readings.X_MO), stamp));
-  std::vector<geometry_msgs::TransformStamped> links{
-      MakeTransform(params_.names.odometry_frame, robot.profile.base_link,
-                    hires::geometry::Lift(readings.odometry.X_OB), stamp)};
+  tf2_msgs::TFMessage correction, links;
+  correction.transforms.push_back(MakeTransform(params_.names.map_frame,
+                                                params_.names.odometry_frame,
+                                                hires::geometry::Lift(readings.X_MO), stamp));
+  tf_.publish(correction);
+  links.transforms.push_back(MakeTransform(params_.names.odometry_frame, robot.profile.base_link,
+                                           hires::geometry::Lift(readings.odometry.X_OB), stamp));
   const auto X_RL = hires::robot::ForwardKinematics(
       robot.model, hires::robot::PostureOf(robot, readings.joints.positions));
   for (std::size_t i = 0; i < robot.model.links.size(); ++i) {
     const auto& joint = robot.model.links[i].joint;
     if (!joint || robot.model.links[i].name == robot.profile.base_link) continue;
-    links.push_back(MakeTransform(robot.model.links[joint->parent].name, robot.model.links[i].name,
-                                  X_RL[joint->parent].Inverse() * X_RL[i], stamp));
+    links.transforms.push_back(MakeTransform(robot.model.links[joint->parent].name,
+                                             robot.model.links[i].name,
+                                             X_RL[joint->parent].Inverse() * X_RL[i], stamp));
   }
-  tf_.sendTransform(links);
+  tf_.publish(links);
 }
 
 void SimRobotPublisher::PublishLocalisation(const hires::evaluation::SensorReadings& readings,
@@ -139,64 +138,29 @@ void SimRobotPublisher::PublishLocalisation(const hires::evaluation::SensorReadi
 void SimRobotPublisher::PublishScan(const hires::evaluation::SimRobotWorld& world,
                                     const hires::evaluation::SensorReadings& readings,
                                     const ros::Time& stamp) {
-  hires::base::Rng rng = scan_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
-  std::vector<double> ranges = hires::simulation::ScanLaser(world.simulator(), laser_, &rng);
-  hires::simulation::AddGhosts(readings.ghosts_M, laser_,
-                               hires::geometry::Flatten(world.simulator().X_MLink(laser_.link)),
-                               &ranges);
+  const std::vector<double> ranges = sensors_.Scan(world, readings);
+  const hires::simulation::LaserParams& laser = sensors_.laser();
   sensor_msgs::LaserScan scan;
   scan.header.stamp = stamp;
-  scan.header.frame_id = laser_.link;
-  scan.angle_min = static_cast<float>(laser_.angle_min);
-  scan.angle_max = static_cast<float>(laser_.angle_max);
+  scan.header.frame_id = laser.link;
+  scan.angle_min = static_cast<float>(laser.angle_min);
+  scan.angle_max = static_cast<float>(laser.angle_max);
   scan.angle_increment =
-      static_cast<float>((laser_.angle_max - laser_.angle_min) / (laser_.num_beams - 1));
+      static_cast<float>((laser.angle_max - laser.angle_min) / (laser.num_beams - 1));
   scan.scan_time = kScanTime;
-  scan.range_min = static_cast<float>(laser_.range_min);
-  scan.range_max = static_cast<float>(laser_.range_max);
+  scan.range_min = static_cast<float>(laser.range_min);
+  scan.range_max = static_cast<float>(laser.range_max);
   scan.ranges.assign(ranges.begin(), ranges.end());
   scan_.publish(scan);
 }
 
-/// A camera that turns sees nothing sharp.
-bool SimRobotPublisher::IsLookDue(const hires::evaluation::SimRobotWorld& world,
-                                  const hires::evaluation::SensorReadings& readings) const {
-  if (!scene_->surroundings) return false;
-  const long period = std::lround(1000.0 * params_.detection_period);
-  if (last_look_ && world.milliseconds() != *last_look_ &&
-      world.milliseconds() < *last_look_ + period) {
-    return false;
-  }
-  const hires::robot::UpperBodyProfile& body = *scene_->robot.profile.upper_body;
-  for (const std::string& joint : {body.head_pan_joint, body.head_tilt_joint}) {
-    const auto velocity = readings.joints.velocities.find(joint);
-    if (velocity != readings.joints.velocities.end() && std::abs(velocity->second) > kStillHead) {
-      return false;
-    }
-  }
-  return true;
-}
-
-void SimRobotPublisher::PublishDetections(const hires::evaluation::SimRobotWorld& world,
+void SimRobotPublisher::PublishDetections(const std::vector<hires::perception::Detection>& seen,
                                           const ros::Time& stamp) {
-  // The camera is where the robot really is; what it sees is told in its own frame.
-  const auto& simulator = world.simulator();
-  const auto& robot = scene_->robot;
-  const auto objects = simulator.GetWorldState().objects;
-  const auto truth = simulator.GetRobotState();
-  const hires::perception::LineOfSight sight(
-      scene_->surroundings, objects, hires::perception::ShapesOf(robot, truth.X_MB, truth.joints));
-  const auto view =
-      hires::perception::ViewFrom(robot, simulator.X_MLink(robot.profile.upper_body->camera_link));
-  const hires::perception::DetectorParams detector{
-      params_.min_visible_share, world.detection_noise(), world.detection_noise_yaw()};
-  hires::base::Rng rng = detector_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
   hires::Detections detections;
   detections.header.stamp = stamp;
   detections.header.frame_id = scene_->robot.profile.upper_body->camera_link;
-  for (const hires::perception::Detection& seen :
-       hires::perception::Detect(sight, view, objects, detector, &rng)) {
-    detections.detections.push_back(ToMsg(seen));
+  for (const hires::perception::Detection& detection : seen) {
+    detections.detections.push_back(ToMsg(detection));
   }
   detections_.publish(detections);
 }

@@ -3,12 +3,12 @@
 #include <hires/GroundTruth.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
-#include <tf2_ros/transform_broadcaster.h>
 
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "hires/evaluation/sim_robot_sensors.h"
 #include "hires/evaluation/sim_robot_world.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/ros/trace_markers.h"
@@ -47,21 +47,17 @@ class SimRobotPublisher {
                            const ros::Time& stamp);
   void PublishScan(const hires::evaluation::SimRobotWorld& world,
                    const hires::evaluation::SensorReadings& readings, const ros::Time& stamp);
-  bool IsLookDue(const hires::evaluation::SimRobotWorld& world,
-                 const hires::evaluation::SensorReadings& readings) const;
-  void PublishDetections(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
+  void PublishDetections(const std::vector<hires::perception::Detection>& seen,
+                         const ros::Time& stamp);
   void PublishTruth(const hires::evaluation::SimRobotWorld& world,
                     const hires::simulation::TruthRecord& truth, const ros::Time& stamp);
   void PublishMap();
 
   const SimRobotParams params_;
   std::shared_ptr<const hires::simulation::Scene> scene_;
-  hires::simulation::LaserParams laser_;
-  std::optional<long> last_look_;                   // [ms] of the camera
-  const hires::base::Rng scan_rng_, detector_rng_;  // forked for each moment
+  hires::evaluation::SimRobotSensors sensors_;
   ros::Publisher clock_, odometry_, joints_, amcl_, scan_, detections_, map_, world_markers_,
-      markers_, true_world_, true_robot_, truth_;
-  tf2_ros::TransformBroadcaster tf_;
+      markers_, true_world_, true_robot_, truth_, tf_;
   TraceMarkers trace_;
 };
 

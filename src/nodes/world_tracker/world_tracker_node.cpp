@@ -1,7 +1,6 @@
 #include "nodes/world_tracker/world_tracker_node.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "hires/actions/catalogue.h"
 #include "hires/base/action.h"
@@ -21,10 +20,7 @@ namespace robot = hires::robot;
 namespace sensing = hires::sensing;
 namespace translation = hires::translation;
 
-constexpr double kKnownPeriod = 0.1;  // [s] at most, between words about known objects
-constexpr int kQueue = 1000;          // ten seconds of what comes at 100 Hz
-constexpr double kNever = -1e9;       // [s]
-constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr int kQueue = 6000;  // a minute of what comes at 100 Hz
 
 }  // namespace
 
@@ -35,7 +31,9 @@ WorldTrackerNode::WorldTrackerNode(const WorldTrackerParams& params,
       actions_(hires::skills::LoadActionSet(params.action_libraries)),
       sensors_(context_.robot, std::make_shared<const perception::Surroundings>(*context_.world),
                params.files.names, params.sensing),
-      sweep_(context_.robot, params.sweep),
+      tracker_(&sensors_.state(), sensors_.objects(),
+               hires::control::HeadSweep(context_.robot, params.sweep), params.lockstep,
+               TrackerHooks()),
       known_(nh->advertise<hires::WorldState>(kKnownObjects, 10, true)),
       writer_(&context_, params_, *nh, [this](const RemoteView::Update&) { is_view_new_ = true; }) {
   updater_.setHardwareID("world_tracker");
@@ -79,7 +77,7 @@ void WorldTrackerNode::SubscribeTo(ros::NodeHandle* nh, const std::string& topic
       topic, static_cast<std::uint32_t>(queue),
       boost::function<void(const Message&)>([this, take = std::move(take)](const Message& msg) {
         take(msg);
-        Process();
+        tracker_.Process();
       }),
       ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
 }
@@ -98,48 +96,25 @@ void WorldTrackerNode::TellActions() {
   const bool is_busy = std::any_of(running_.begin(), running_.end(), [this](const auto& running) {
     return hires::actions::MayUseHead(actions_->catalogue(), running.second);
   });
-  sweep_.SetBusy(is_busy, time_);
+  tracker_.sweep().SetBusy(is_busy, tracker_.time());
 }
 
 // What is made of it ---------------------------------------------------------------------------
 
-void WorldTrackerNode::Process() {
-  while (const auto time = NextMoment()) Handle(*time);
-}
-
-/// The next joint states or look, once nothing can change any more what is known of that time.
-std::optional<double> WorldTrackerNode::NextMoment() const {
-  const bool is_restarted = restarts_ != sensors_.state().num_restarts();
-  const double last = is_restarted ? kNever : time_;
-  const auto joints = sensors_.state().NextJoints(last);
-  const auto look = sensors_.objects()->NextLook(last);
-  if (!joints && !look) return std::nullopt;
-  const double next = std::min(joints.value_or(kForever), look.value_or(kForever));
-  if (!sensors_.state().IsSettled(next)) return std::nullopt;
-  return next;
-}
-
-void WorldTrackerNode::Handle(double time) {
-  if (restarts_ != sensors_.state().num_restarts()) published_ = kNever;
-  restarts_ = sensors_.state().num_restarts();
-  time_ = time;
-  lack_ = sensors_.state().MissingAt(time);
-  if (lack_ != sensing::Missing::kNothing) {
-    ++num_dropped_;
-    sensors_.objects()->DropUntil(time);  // else it would be the next moment for good
-    return;
-  }
-  ++num_moments_;
-  const sensing::RobotEstimate now = *sensors_.state().At(time);
-  if (is_view_new_.exchange(false)) ReadView();
-  const sensing::LookNews news = sensors_.Update(now);
-  num_looks_ += static_cast<std::uint64_t>(news.num_looks);
-  const auto known = sensors_.objects()->memory().Known(now.Body());
-  const bool is_due = news.has_changed_hands || time - published_ >= kKnownPeriod;
-  if (news.num_looks > 0 || (is_due && !params_.lockstep)) PublishKnown(now, known);
-  const auto turn = sweep_.Update(now.Body(), news.newest_look == time, known);
-  if (turn && head_) head_.publish(ToMsg(*turn));
-  writer_.Post(time, Observed(now, known));
+hires::control::WorldTracker::Hooks WorldTrackerNode::TrackerHooks() {
+  return {[this](const sensing::RobotEstimate& now, const std::vector<robot::SeenObject>& known) {
+            PublishKnown(now, known);
+          },
+          [this](const robot::JointTrajectory& turn) {
+            if (head_) head_.publish(ToMsg(turn));
+          },
+          [this](double time, translation::ObservedWorld observed) {
+            writer_.Post(time, std::move(observed));
+          },
+          [this](const std::string& why) { sensors_.Warn(kDetections, why); },
+          [this] {
+            if (is_view_new_.exchange(false)) ReadView();
+          }};
 }
 
 /// What others say of objects, and what tasks are about.
@@ -153,13 +128,12 @@ void WorldTrackerNode::ReadView() {
     for (const std::string& why : sensors_.objects()->OnStated(stated)) {
       sensors_.Warn(kBlackboard, why);
     }
-    sweep_.SetPlaces(translation::PlacesOfTasks(context, view), context.areas);
+    tracker_.sweep().SetPlaces(translation::PlacesOfTasks(context, view), context.areas);
   });
 }
 
 void WorldTrackerNode::PublishKnown(const sensing::RobotEstimate& now,
                                     const std::vector<robot::SeenObject>& known) {
-  published_ = now.time;
   hires::world::WorldState state;
   for (const robot::SeenObject& object : known) {
     state.objects.push_back({object.name, object.model, object.X_MO, {}, object.attached_to});
@@ -170,27 +144,13 @@ void WorldTrackerNode::PublishKnown(const sensing::RobotEstimate& now,
   known_.publish(msg);
 }
 
-translation::ObservedWorld WorldTrackerNode::Observed(
-    const sensing::RobotEstimate& now, const std::vector<robot::SeenObject>& known) const {
-  const sensing::ObjectMemory& memory = sensors_.objects()->memory();
-  translation::ObservedWorld observed;
-  observed.state.robot = {now.X_WB, now.V_B, now.posture};
-  for (const robot::SeenObject& object : known) {
-    const sensing::RememberedObject& remembered = memory.objects().at(object.name);
-    if (!remembered.is_observed && !remembered.is_held) continue;  // others' word
-    observed.state.world.objects.push_back(
-        {object.name, object.model, object.X_MO, {}, object.attached_to});
-  }
-  observed.vanished = memory.Vanished();
-  return observed;
-}
-
 // How it is ------------------------------------------------------------------------------------
 
 void WorldTrackerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
   const sensing::Missing lack = sensors_.state().MissingNow();
-  const std::string missing = sensors_.NameOf(lack == sensing::Missing::kNothing ? lack_ : lack);
+  const std::string missing =
+      sensors_.NameOf(lack == sensing::Missing::kNothing ? tracker_.lack() : lack);
   if (!missing.empty()) {
     status.summary(DiagnosticStatus::WARN, "waits for " + missing);
   } else if (!writer_.view().is_connected()) {
@@ -198,15 +158,15 @@ void WorldTrackerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& sta
   } else {
     status.summary(DiagnosticStatus::OK, "tracks");
   }
-  status.add("moments", num_moments_);
-  status.add("looks", num_looks_);
-  status.add("moments dropped", num_dropped_);
+  status.add("moments", tracker_.num_moments());
+  status.add("looks", tracker_.num_looks());
+  status.add("moments dropped", tracker_.num_dropped());
   status.add("looks dropped", sensors_.objects()->num_dropped());
   status.add("looks outdated", sensors_.objects()->num_outdated());
   status.add("bad messages", sensors_.num_bad());
   status.add("objects remembered", sensors_.objects()->memory().objects().size());
   status.add("objects vanished", sensors_.objects()->memory().Vanished().size());
-  status.add("head looks at", sweep_.target());
+  status.add("head looks at", tracker_.sweep().target());
   status.add("fluents written", writer_.num_written());
   status.add("failed writes", writer_.num_failures());
   status.add("last failure", writer_.last_failure());

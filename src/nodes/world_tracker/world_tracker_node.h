@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/control/world_tracker.h"
 #include "hires/ros/sensor_receiver.h"
 #include "hires/skills/action_set.h"
 #include "nodes/world_tracker/world_tracker_params.h"
@@ -38,15 +39,10 @@ class WorldTrackerNode {
   void OnGoal(const hires::ExecuteActionActionGoal& msg);
   void OnResult(const hires::ExecuteActionActionResult& msg);
 
-  void Process();
-  std::optional<double> NextMoment() const;
-  void Handle(double time);
   void ReadView();
   void PublishKnown(const hires::sensing::RobotEstimate& now,
                     const std::vector<hires::robot::SeenObject>& known);
-  hires::translation::ObservedWorld Observed(
-      const hires::sensing::RobotEstimate& now,
-      const std::vector<hires::robot::SeenObject>& known) const;
+  hires::control::WorldTracker::Hooks TrackerHooks();
   void TellActions();
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -54,13 +50,8 @@ class WorldTrackerNode {
   const hires::translation::TranslatorContext context_;
   const std::shared_ptr<const hires::skills::ActionSet> actions_;
   SensorReceiver sensors_;
-  hires::control::HeadSweep sweep_;
+  hires::control::WorldTracker tracker_;
   std::map<std::string, std::string> running_;  // goal id -> action
-  double time_{-1e9};                           // [s] of the last moment
-  double published_{-1e9};                      // [s] when known objects were told last
-  int restarts_{0};                             // of the robot's clock
-  hires::sensing::Missing lack_{hires::sensing::Missing::kNothing};  // of the last moment
-  std::uint64_t num_moments_{0}, num_looks_{0}, num_dropped_{0};
 
   std::atomic<bool> is_view_new_{false};
   ros::Publisher known_, head_;

@@ -1,42 +1,19 @@
 #include "nodes/world_tracker/world_tracker_params.h"
 
-#include "hires/base/text.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/ros/load_robot_names.h"
 #include "hires/ros/private_params.h"
 
 namespace hires_ros {
-namespace {
-
-using hires::base::Between;
-using hires::base::ParamReader;
-
-hires::translation::ChangeParams ReadChanges(ParamReader in) {
-  hires::translation::ChangeParams params;
-  params.position = in.Get("position", Between(0.0, 1.0));
-  params.angle = in.Get("angle", Between(0.0, 3.2));
-  params.robot_position = in.Get("robot_position", Between(0.0, 5.0));
-  params.robot_angle = in.Get("robot_angle", Between(0.0, 3.2));
-  return params;
-}
-
-std::map<std::string, std::string> ReadConcepts(ParamReader in) {
-  std::map<std::string, std::string> concepts;
-  for (const std::string& model : in.Keys()) {
-    concepts[hires::base::ToLower(model)] = in.GetString(model);
-  }
-  return concepts;
-}
-
-}  // namespace
 
 WorldTrackerParams ReadWorldTrackerParams(const std::string& path) {
-  ParamReader in = ParamReader::FromFile(path);
+  using hires::base::Between;
+  hires::base::ParamReader in = hires::base::ParamReader::FromFile(path);
   WorldTrackerParams params;
   ReadTranslatorFiles(path, &in, &params.files);
   params.sensing = hires::imagination::ReadSetupConfig(params.files.scene).sensing;
-  params.changes = ReadChanges(in.Sub("changes"));
-  params.concepts = ReadConcepts(in.Sub("concepts"));
+  params.changes = hires::translation::ReadChangeParams(in.Sub("changes"));
+  params.concepts = hires::translation::ReadConcepts(in.Sub("concepts"));
   params.sweep = hires::control::ReadSweepParams(in.Sub("sweep"));
   params.write_period = in.Get("write_period", Between(0.0, 10.0));
   params.lockstep = in.GetBool("lockstep");

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "hires/base/param_reader.h"
+#include "hires/base/rng.h"
+#include "hires/evaluation/sim_robot_world.h"
+#include "hires/perception/detector.h"
+#include "hires/simulation/laser_scanner.h"
+
+namespace hires::evaluation {
+
+/// Simulated time [ms] from one tick of the robot's sensors to the next.
+inline constexpr long kSensorTick = 50;
+
+/// What the robot has besides wheels and joints.
+struct SimSensorParams {
+  simulation::LaserParams laser;  ///< its link is the robot's own
+  double min_visible_share{0.3};  ///< of an object's surface towards the camera
+  double detection_period{0.5};   ///< [s], a multiple of the tick
+};
+
+/// The blocks `laser` and `detector` of a file like config/sim_robot.yaml.
+/// @throws base::ConfigError naming file and key.
+SimSensorParams ReadSimSensorParams(base::ParamReader in);
+
+/// Base laser and head camera of the robot that stands in for a real one. Their noise is a stream
+/// of its own for each moment: asked twice, they say the same twice.
+class SimRobotSensors {
+ public:
+  /// @param seed  of all noise.
+  SimRobotSensors(const SimSensorParams& params, std::uint64_t seed,
+                  std::shared_ptr<const simulation::Scene> scene);
+
+  bool has_laser() const { return !laser_.link.empty() && scene_->surroundings != nullptr; }
+  const simulation::LaserParams& laser() const { return laser_; }
+  /// [m] of each beam, obstacles that are not there included.  @pre has_laser().
+  std::vector<double> Scan(const SimRobotWorld& world, const SensorReadings& readings) const;
+
+  /// What the camera's recogniser sees, where it is time to look and the head is still; poses in
+  /// the camera's frame. Nothing: it does not look.
+  std::optional<std::vector<perception::Detection>> Look(const SimRobotWorld& world,
+                                                         const SensorReadings& readings);
+
+ private:
+  bool IsLookDue(const SimRobotWorld& world, const SensorReadings& readings) const;
+
+  const SimSensorParams params_;
+  const std::shared_ptr<const simulation::Scene> scene_;
+  simulation::LaserParams laser_;
+  std::optional<long> last_look_;            // [ms] of the camera
+  const base::Rng scan_rng_, detector_rng_;  // forked for each moment
+};
+
+}  // namespace hires::evaluation

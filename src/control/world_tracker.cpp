@@ -1,0 +1,83 @@
+#include "hires/control/world_tracker.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace hires::control {
+namespace {
+
+constexpr double kKnownPeriod = 0.1;  // [s] at most, between words about known objects
+constexpr double kNever = -1e9;       // [s]
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+WorldTracker::WorldTracker(const sensing::RobotStateEstimator* state,
+                           sensing::ObjectEstimator* objects, HeadSweep sweep, bool lockstep,
+                           Hooks hooks)
+    : state_(*state),
+      objects_(*objects),
+      sweep_(std::move(sweep)),
+      lockstep_(lockstep),
+      hooks_(std::move(hooks)),
+      time_(kNever),
+      published_(kNever) {}
+
+void WorldTracker::Process() {
+  while (const auto time = NextMoment()) Handle(*time);
+}
+
+/// The next joint states or look, once nothing can change any more what is known of that time.
+std::optional<double> WorldTracker::NextMoment() const {
+  const double last = restarts_ != state_.num_restarts() ? kNever : time_;
+  const auto joints = state_.NextJoints(last);
+  const auto look = objects_.NextLook(last);
+  if (!joints && !look) return std::nullopt;
+  const double next = std::min(joints.value_or(kForever), look.value_or(kForever));
+  if (!state_.IsSettled(next)) return std::nullopt;
+  return next;
+}
+
+void WorldTracker::Handle(double time) {
+  if (restarts_ != state_.num_restarts()) published_ = kNever;
+  restarts_ = state_.num_restarts();
+  time_ = time;
+  lack_ = state_.MissingAt(time);
+  if (lack_ != sensing::Missing::kNothing) {
+    ++num_dropped_;
+    objects_.DropUntil(time);  // else it would be the next moment for good
+    return;
+  }
+  ++num_moments_;
+  const sensing::RobotEstimate now = *state_.At(time);
+  if (hooks_.before_update) hooks_.before_update();
+  const sensing::LookNews news = objects_.Update(now);
+  for (const std::string& why : news.warnings) hooks_.warn(why);
+  num_looks_ += static_cast<std::uint64_t>(news.num_looks);
+  const auto known = objects_.memory().Known(now.Body());
+  const bool is_due = news.has_changed_hands || time - published_ >= kKnownPeriod;
+  if (news.num_looks > 0 || (is_due && !lockstep_)) {
+    published_ = time;
+    hooks_.known(now, known);
+  }
+  const auto turn = sweep_.Update(now.Body(), news.newest_look == time, known);
+  if (turn) hooks_.turn(*turn);
+  hooks_.observed(time, Observed(now, known));
+}
+
+translation::ObservedWorld WorldTracker::Observed(
+    const sensing::RobotEstimate& now, const std::vector<robot::SeenObject>& known) const {
+  const sensing::ObjectMemory& memory = objects_.memory();
+  translation::ObservedWorld observed;
+  observed.state.robot = {now.X_WB, now.V_B, now.posture};
+  for (const robot::SeenObject& object : known) {
+    const sensing::RememberedObject& remembered = memory.objects().at(object.name);
+    if (!remembered.is_observed && !remembered.is_held) continue;  // others' word
+    observed.state.world.objects.push_back(
+        {object.name, object.model, object.X_MO, {}, object.attached_to});
+  }
+  observed.vanished = memory.Vanished();
+  return observed;
+}
+
+}  // namespace hires::control

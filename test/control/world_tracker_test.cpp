@@ -1,0 +1,127 @@
+#include "hires/control/world_tracker.h"
+
+#include <gmock/gmock.h>
+
+#include "hires/perception/camera_view.h"
+#include "hires/robot/load_robot.h"
+#include "support/fake_frame_tree.h"
+#include "support/sight_scenes.h"
+
+namespace hires::control::world_tracker_test {
+namespace {
+
+using sensing::ObjectEstimator;
+using sensing::RobotStateEstimator;
+using test_support::At;
+using testing::Each;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+std::shared_ptr<const robot::Robot> Pr2() {
+  static const auto pr2 = std::make_shared<const robot::Robot>(
+      robot::LoadRobot(HIRES_SOURCE_DIR "/config/robots/pr2.yaml"));
+  return pr2;
+}
+
+std::shared_ptr<const perception::Surroundings> EmptyRoom() {
+  world::World world = test_support::SightWorld();
+  world.statics.clear();
+  return std::make_shared<const perception::Surroundings>(world);
+}
+
+/// A PR2 whose sensors speak at 20 Hz, and a mug before it.
+class WorldTrackerTest : public testing::Test {
+ protected:
+  explicit WorldTrackerTest(bool lockstep = true)
+      : tracker_(&state_, &objects_, HeadSweep(Pr2(), {}), lockstep,
+                 {[this](const sensing::RobotEstimate& now, const auto& known) {
+                    known_at_.push_back(now.time);
+                    names_.clear();
+                    for (const robot::SeenObject& object : known) names_.push_back(object.name);
+                  },
+                  [](const robot::JointTrajectory&) {},
+                  [this](double time, translation::ObservedWorld observed) {
+                    observed_at_.push_back(time);
+                    observed_ = std::move(observed);
+                  },
+                  [this](const std::string& why) { warnings_.push_back(why); }}) {
+    joints_ = Pr2()->profile.joints;
+    joints_["head_tilt_joint"] = 0.5;
+  }
+  void Tell(double time, bool with_joints = true) {
+    tree_->Tell("map", "odom_combined", time, {});
+    state_.OnTransforms(time);
+    state_.OnOdometry(time, "odom_combined", "base_footprint", {});
+    if (with_joints) state_.OnJoints(time, {joints_, {}});
+    tracker_.Process();
+  }
+  void See(double time) {
+    perception::Detection mug;
+    mug.instance = "mug1";
+    mug.label = "mug";
+    mug.X_CO = perception::ViewOf(*Pr2(), {}, joints_).X_MC.Inverse() * At(1.5, 0.1, 0.7);
+    objects_.OnLook({time, Pr2()->profile.upper_body->camera_link, {mug}});
+    tracker_.Process();
+  }
+
+  std::shared_ptr<test_support::FakeFrameTree> tree_ =
+      std::make_shared<test_support::FakeFrameTree>();
+  RobotStateEstimator state_{Pr2(), {"map", "odom_combined", "base_footprint"}, {}, {}, tree_};
+  ObjectEstimator objects_{EmptyRoom(), Pr2(), {}, &state_};
+  robot::JointPositions joints_;
+  std::vector<double> known_at_, observed_at_;
+  std::vector<std::string> names_, warnings_;
+  translation::ObservedWorld observed_;
+  WorldTracker tracker_;
+};
+
+TEST_F(WorldTrackerTest, EachMomentIsTakenOnceAndInOrderOnceItIsSettled) {
+  for (int i = 1; i <= 20; ++i) Tell(1.0 + 0.05 * i);
+  ASSERT_THAT(observed_at_, testing::Not(IsEmpty()));
+  EXPECT_TRUE(std::is_sorted(observed_at_.begin(), observed_at_.end()));
+  EXPECT_EQ(std::adjacent_find(observed_at_.begin(), observed_at_.end()), observed_at_.end());
+  const double last = observed_at_.back();
+  state_.OnJoints(last + 0.05, {joints_, {}});
+  tracker_.Process();
+  EXPECT_EQ(observed_at_.back(), last) << "where it stands then may still be told";
+  Tell(last + 0.05);
+  EXPECT_EQ(observed_at_.back(), last + 0.05);
+  EXPECT_EQ(tracker_.num_moments(), observed_at_.size());
+}
+
+TEST_F(WorldTrackerTest, InLockstepKnownObjectsAreToldWithLooksAlone) {
+  for (int i = 1; i <= 20; ++i) Tell(1.0 + 0.05 * i);
+  EXPECT_THAT(known_at_, IsEmpty());
+  See(2.0);
+  for (int i = 21; i <= 40; ++i) Tell(1.0 + 0.05 * i);
+  EXPECT_THAT(known_at_, ElementsAre(2.0));
+  EXPECT_THAT(names_, ElementsAre("mug1"));
+  EXPECT_EQ(tracker_.num_looks(), 1u);
+  ASSERT_THAT(observed_.state.world.objects, SizeIs(1));
+  EXPECT_NEAR(observed_.state.world.objects[0].X_MO.translation.x(), 1.5, 1e-6);
+}
+
+TEST_F(WorldTrackerTest, MomentsWithoutOdometryAreDroppedAndSaid) {
+  state_.OnJoints(1.0, {joints_, {}});
+  tracker_.Process();
+  EXPECT_THAT(observed_at_, IsEmpty());
+  EXPECT_EQ(tracker_.num_moments(), 0u);
+}
+
+class FreeTrackerTest : public WorldTrackerTest {
+ protected:
+  FreeTrackerTest() : WorldTrackerTest(false) {}
+};
+
+TEST_F(FreeTrackerTest, WithoutLockstepTheyAreToldTenTimesASecond) {
+  for (int i = 1; i <= 60; ++i) Tell(1.0 + 0.05 * i);
+  ASSERT_THAT(known_at_, SizeIs(testing::Ge(20u)));
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < known_at_.size(); ++i)
+    steps.push_back(known_at_[i] - known_at_[i - 1]);
+  EXPECT_THAT(steps, Each(testing::AllOf(testing::Ge(0.1 - 1e-9), testing::Le(0.15 + 1e-9))));
+}
+
+}  // namespace
+}  // namespace hires::control::world_tracker_test
