@@ -8,12 +8,15 @@
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/achieve_display.h"
 #include "hires/base/error.h"
+#include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
+#include "hires/loop/task_loop.h"
 
 namespace hires::cli {
 namespace {
@@ -70,6 +73,39 @@ void PrintReport(const evaluation::AchieveReport& report) {
                            report.episode > 0 ? fmt::format(", episode {}", report.episode) : "");
 }
 
+std::string ScenarioPath(const std::string& scenario, const std::string& package_folder) {
+  const std::filesystem::path path(scenario);
+  if (path.has_parent_path() || path.extension() == ".yaml") return scenario;
+  return package_folder + "/config/scenarios/" + scenario + ".yaml";
+}
+
+loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& package_folder,
+                             const evaluation::OnAchieveStatus& on_status,
+                             const std::function<bool()>& cancelled) {
+  const loop::LoopSetup setup(package_folder + "/config/loop.yaml");
+  loop::LoopOrder order;
+  order.scenario = ScenarioPath(options.scenario, package_folder);
+  order.task = base::Join(options.task, " ");
+  order.imagination = options.imagination;
+  order.seed = static_cast<std::uint64_t>(options.seed);
+  order.threads = options.threads;
+  return loop::PlayTask(setup, order, on_status, cancelled);
+}
+
+/// What is really so in the end, whatever the robot believes.
+void PrintTruth(const loop::LoopRun& run, double wall_seconds) {
+  std::vector<std::string> fallen;
+  for (const auto& [name, fate] : run.truth.objects) {
+    if (fate.falls > 0) fallen.push_back(name);
+  }
+  std::cout << fmt::format(
+      "in truth (same: imagination's own model): fallen: {}; the robot touched: {}\n"
+      "{:.1f} s of virtual time in {:.1f} s: {:.1f} times real time\n",
+      fallen.empty() ? "nothing" : base::Join(fallen, ", "),
+      run.truth.contact.empty() ? "nothing" : run.truth.contact, run.virtual_seconds, wall_seconds,
+      run.virtual_seconds / wall_seconds);
+}
+
 int ExitCodeFor(evaluation::AchieveOutcome outcome) {
   switch (outcome) {
     case evaluation::AchieveOutcome::kSucceeded:
@@ -91,8 +127,10 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
       "achieve",
       "have the running robot do a task. Exit codes: 0 done (or planned and imagined, where the "
       "execution monitor has ~dry_run), 1 failed or refused, 2 no plan, 3 preempted");
-  verb->add_option("task", options->task, "'serve_coffee_to_guest guest1', or a SHOP2 task network")
-      ->required();
+  verb->add_option(
+      "task", options->task,
+      "'serve_coffee_to_guest guest1', or a SHOP2 task network; with --local it may be "
+      "left out: the scenario's");
   verb->add_option("--imagination", options->imagination,
                    "domain: as the domain says; thesis: the default also where all alternatives "
                    "fail; off; "
@@ -101,6 +139,18 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
   verb->add_option("--wait", options->wait,
                    "[s] for the execution monitor to be there; default: 10")
       ->check(CLI::Range(0.0, 1e6));
+  verb->add_flag(
+      "--local", options->is_local,
+      "play robot, world and all that plans, imagines and acts in this program, in virtual "
+      "time; needs no node. The same words give the same bits");
+  verb->add_option("--scenario", options->scenario,
+                   "with --local: file, or its name in config/scenarios; default: topple");
+  verb->add_option("--seed", options->seed,
+                   "with --local: of the hidden truth, all noise and imagination; default: 1")
+      ->check(CLI::Range(0, 2'147'483'647));
+  verb->add_option("--threads", options->threads,
+                   "with --local: that play rollouts; the answer is the same for any; default: 2")
+      ->check(CLI::Range(1, 256));
   verb->add_option("--timeline", options->timeline, "write what was done when to this CSV file");
   verb->add_option("--png", options->png, "and draw it to this file");
   verb->add_option("--json", options->json, "write everything to this file for machines");
@@ -110,21 +160,29 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
 int RunAchieveVerb(const AchieveOptions& options, const std::string& package_folder,
                    const evaluation::AchieveRemotely& achieve,
                    const std::function<bool()>& cancelled) {
-  if (!achieve) {
+  if (!options.is_local && !achieve) {
     throw base::ConfigError(
         "this build has no ROS nodes to ask; build with ROS and start them (roslaunch hires "
-        "topple.launch stay:=true task:='')");
+        "topple.launch stay:=true task:=''), or play the task here: --local");
+  }
+  if (!options.is_local && options.task.empty()) {
+    throw base::ConfigError("task: nothing came, wanted a task, as 'serve_coffee_to_guest guest1'");
   }
   RequireFolders(options);
   AchieveDisplay display(TerminalWidth());
-  const evaluation::AchieveReport report = achieve(
-      {base::Join(options.task, " "), options.imagination, options.wait},
-      [&](const evaluation::AchieveStatus& status) {
-        std::cout << display.Show(status) << std::flush;
-      },
-      cancelled);
-  std::cout << display.Show(report.status);  // its changes may have come with the result alone
+  const auto show = [&](const evaluation::AchieveStatus& status) {
+    std::cout << display.Show(status) << std::flush;
+  };
+  const double begun = base::SteadyNow();
+  std::optional<loop::LoopRun> local;
+  if (options.is_local) local = AchieveLocally(options, package_folder, show, cancelled);
+  const evaluation::AchieveReport report =
+      local ? local->report
+            : achieve({base::Join(options.task, " "), options.imagination, options.wait}, show,
+                      cancelled);
+  show(report.status);  // its changes may have come with the result alone
   PrintReport(report);
+  if (local) PrintTruth(*local, base::SteadyNow() - begun);
   WriteFiles(options, package_folder, report);
   return ExitCodeFor(report.outcome);
 }

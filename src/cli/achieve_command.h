@@ -24,7 +24,10 @@ enum AchieveExitCode {
 struct AchieveOptions {
   std::vector<std::string> task;  ///< words
   std::string imagination, timeline, png, json;
-  double wait{10.0};  ///< [s] for the execution monitor to be there
+  double wait{10.0};               ///< [s] for the execution monitor to be there
+  bool is_local{false};            ///< in this process and in virtual time, without any node
+  std::string scenario{"topple"};  ///< where the robot and everything is then: file, or its name
+  int seed{1}, threads{2};
   CLI::App* verb{nullptr};
 };
 

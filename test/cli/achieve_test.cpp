@@ -193,6 +193,24 @@ class AchieveVerbTest : public ::testing::Test {
   evaluation::AchieveReport report_;
 };
 
+TEST_F(AchieveVerbTest, ATaskIsPlayedInThisProgramWithoutAnyNode) {
+  const Ended ended = Run({"--local", "carry_object_on_tray mug7 counter1 table1"});
+  EXPECT_EQ(ended.code, kExitNoWay) << ended.err << "nobody knows mug7";
+  EXPECT_THAT(ended.out, HasSubstr("carry_object_on_tray mug7 counter1 table1: no_plan"));
+  EXPECT_THAT(ended.out, HasSubstr("in truth (same: imagination's own model): fallen: nothing"));
+  EXPECT_TRUE(query_.task.empty()) << "nobody else was asked";
+}
+
+TEST_F(AchieveVerbTest, WhatCannotBePlayedIsNamed) {
+  Ended ended = Run({"--local", "--scenario", "tipple"});
+  EXPECT_EQ(ended.code, kExitNotAchieved);
+  EXPECT_THAT(ended.err, HasSubstr("config/scenarios/tipple.yaml: no such file"));
+  ended = Run({"--local", "sreve_coffee_to_guest", "guest1"});
+  EXPECT_EQ(ended.code, kExitNotAchieved);
+  EXPECT_THAT(ended.err, HasSubstr("serve_coffee_to_guest"));
+  EXPECT_THAT(Run({}).err, HasSubstr("wanted a task"));
+}
+
 TEST_F(AchieveVerbTest, TheTaskMayBeOneWordOrSeveral) {
   report_.outcome = evaluation::AchieveOutcome::kSucceeded;
   Run({"serve", "guest1", "--imagination", "thesis"});

@@ -24,6 +24,7 @@ LAYERS = [
     ["simulation", "skills"],
     ["control", "imagination"],
     ["evaluation"],
+    ["loop"],
     ["cli", "ros"],
     ["nodes"],
 ]

@@ -95,7 +95,8 @@ class NodeLossesTest(LoopCase):
         self.truth.wait(lambda t: t.now() > held + HELD_UP, 'the mug to be somewhere else')
         self.loop.unpause('world_tracker')
         self.wait_for_step(task, 'place_on_tray')
-        self.assertEqual(task.warnings(), [])
+        of_the_grasp = [text for text in task.warnings() if text.startswith('pick_up_object')]
+        self.assertEqual(of_the_grasp, [])
 
     def test_without_middle_layer_the_robot_stands_and_with_a_new_one_it_goes_on(self):
         self.begin(DRIVING, MUG, **PATIENCE)

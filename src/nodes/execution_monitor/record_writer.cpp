@@ -13,6 +13,7 @@
 
 #include "hires/base/log.h"
 #include "hires/base/text.h"
+#include "hires/loop/record_fluent.h"
 #include "hires/ros/blackboard_messages.h"
 #include "hires/ros/topic_names.h"
 
@@ -26,41 +27,7 @@ using hires::base::LogLevel;
 
 constexpr double kPause = 0.2;  // [s] before the Blackboard is tried again
 
-std::string RangeOf(const std::string& role, const std::string& otherwise,
-                    const knowledge::Ontology& ontology) {
-  const knowledge::Ontology::Relation* relation = ontology.FindRelation(role);
-  return relation == nullptr ? otherwise : relation->range;
-}
-
-knowledge::Property NumberProperty(const std::string& role, double value,
-                                   const knowledge::Ontology& ontology) {
-  const std::string type = RangeOf(role, "xsd:double", ontology);
-  if (type == "xsd:integer" || type == "xsd:int") return {role, type, std::llround(value)};
-  if (type == "xsd:boolean") return {role, type, value != 0.0};
-  return {role, type, value};
-}
-
 }  // namespace
-
-knowledge::Fluent FluentOf(const execution::Record& record, double start,
-                           const knowledge::Ontology& ontology) {
-  knowledge::Fluent fluent;
-  const bool is_known = record.general_concept.empty() ||
-                        ontology.Find(record.concept_name) != knowledge::Ontology::kUnknown;
-  fluent.concept_name = is_known ? record.concept_name : record.general_concept;
-  fluent.instance = record.instance;
-  fluent.start = {start, start};
-  for (const auto& [role, text] : record.texts) {
-    fluent.properties.push_back({role, "xsd:string", text});
-  }
-  for (const auto& [role, number] : record.numbers) {
-    fluent.properties.push_back(NumberProperty(role, number, ontology));
-  }
-  for (const auto& [role, instance] : record.links) {
-    fluent.properties.push_back({role, RangeOf(role, "Thing", ontology), instance});
-  }
-  return fluent;
-}
 
 RecordWriter::RecordWriter(std::shared_ptr<const knowledge::Ontology> ontology)
     : ontology_(std::move(ontology)),
@@ -171,13 +138,13 @@ RecordWriter::Answer RecordWriter::Carry(const execution::Record& record, double
   const std::string key = hires::base::ToLower(record.instance);
   if (record.kind == execution::Record::Kind::kBegin) {
     begun_[key] = time;
-    knowledge::Fluent fluent = FluentOf(record, time, *ontology_);
+    knowledge::Fluent fluent = hires::loop::FluentOf(record, time, *ontology_);
     fluent.properties.push_back({"hasEpisode", "xsd:string", episode_name_});
     return WriteFluent("add", fluent, time);
   }
   const auto begun = begun_.find(key);
   const double start = begun == begun_.end() ? time : begun->second;
-  const knowledge::Fluent fluent = FluentOf(record, start, *ontology_);
+  const knowledge::Fluent fluent = hires::loop::FluentOf(record, start, *ontology_);
   if (!is_updated_ && !fluent.properties.empty()) {
     const Answer answer = WriteFluent("update", fluent, time);
     if (answer != Answer::kDone) return answer;

@@ -19,12 +19,6 @@
 
 namespace hires_ros {
 
-/// The fluent that a record stands for, since `start` [s] main ROS time. An ontology that does not
-/// know its concept has the general one. Types of the fillers are those of the ontology; what it
-/// does not know is left for the Blackboard to refuse.
-hires::knowledge::Fluent FluentOf(const hires::execution::Record& record, double start,
-                                  const hires::knowledge::Ontology& ontology);
-
 /// Writes what the execution monitor knows to the Blackboard, in order, on a thread of its own.
 /// While the Blackboard is away, records wait; they are written when it is back.
 class RecordWriter {

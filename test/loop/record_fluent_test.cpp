@@ -1,12 +1,10 @@
-#include "nodes/execution_monitor/record_writer.h"
+#include "hires/loop/record_fluent.h"
 
 #include <gmock/gmock.h>
 
-namespace hires_ros::record_writer_test {
+namespace hires::loop::record_fluent_test {
 namespace {
 
-namespace execution = hires::execution;
-namespace knowledge = hires::knowledge;
 using ::testing::ElementsAre;
 
 const knowledge::Ontology& TheOntology() {
@@ -51,4 +49,4 @@ TEST(FluentOfTest, AConceptThatTheOntologyLacksGivesWayToTheGeneralOne) {
 }
 
 }  // namespace
-}  // namespace hires_ros::record_writer_test
+}  // namespace hires::loop::record_fluent_test

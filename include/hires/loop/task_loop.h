@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "hires/evaluation/achieve.h"
+#include "hires/evaluation/experiment_hypothesis.h"
+
+namespace hires::loop {
+
+/// Everything constant that tasks in one process need, loaded once and shared by all of them.
+class LoopSetup {
+ public:
+  /// @param config  a file like config/loop.yaml.  @throws base::ConfigError naming file and key.
+  explicit LoopSetup(const std::string& config);
+  ~LoopSetup();
+  LoopSetup(const LoopSetup&) = delete;
+  LoopSetup& operator=(const LoopSetup&) = delete;
+
+  struct Parts;
+  const Parts& parts() const { return *parts_; }
+
+ private:
+  std::unique_ptr<const Parts> parts_;
+};
+
+/// One task that is to be played.
+struct LoopOrder {
+  std::string scenario;      ///< file: who stands where, and what the robot is told
+  std::string task;          ///< empty: the scenario's
+  std::string imagination;   ///< domain, thesis, off; empty: as the execution monitor is configured
+  std::uint64_t seed{1};     ///< of the hidden truth, of all noise and of imagination
+  int rollouts{0};           ///< per combination of alternatives; 0: as the monitor is configured
+  int threads{1};            ///< that play rollouts; their number changes nothing
+  double time_limit{900.0};  ///< [s] of virtual time
+};
+
+/// What became of it.
+struct LoopRun {
+  evaluation::AchieveReport report;
+  evaluation::RunTruth truth;   ///< how things really stand in the end
+  double virtual_seconds{0.0};  ///< [s] from the robot's start to the end
+  bool is_timed_out{false};     ///< the time limit came first
+};
+
+/// Plays a whole task with robot, world, middle layer, tracker, Blackboard, planner, execution
+/// monitor and imagination in this process, in virtual time: as fast as it goes, and the same to
+/// the last bit for the same order, whatever the number of threads.
+/// @param on_status  told of every change; may be empty.
+/// @param cancelled  asked every tick; then the task is preempted; may be empty.
+/// @throws base::ConfigError for a scenario or a task that makes no sense.
+LoopRun PlayTask(const LoopSetup& setup, const LoopOrder& order,
+                 const evaluation::OnAchieveStatus& on_status = {},
+                 const std::function<bool()>& cancelled = {});
+
+}  // namespace hires::loop

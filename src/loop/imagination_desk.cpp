@@ -1,0 +1,312 @@
+#include "loop/imagination_desk.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "hires/base/error.h"
+#include "hires/base/overloaded.h"
+#include "hires/base/text.h"
+#include "hires/imagination/report.h"
+
+namespace hires::loop {
+namespace {
+
+using evaluation::ImaginedOutcome;
+using evaluation::ImaginedStep;
+using execution::ImagineAnswered;
+using imagination::Assign;
+using imagination::ImaginationOutcome;
+using imagination::Prediction;
+using imagination::Report;
+using Outcome = ImagineAnswered::Outcome;
+
+constexpr double kNormalQuantile95 = 1.6448536269514722;
+
+Outcome OutcomeOf(ImaginationOutcome outcome) {
+  switch (outcome) {
+    case ImaginationOutcome::kRanked:
+      return Outcome::kRanked;
+    case ImaginationOutcome::kAllFailed:
+      return Outcome::kAllFailed;
+    case ImaginationOutcome::kUndecided:
+      return Outcome::kUndecided;
+    case ImaginationOutcome::kNoWorker:
+      return Outcome::kNoWorker;
+    case ImaginationOutcome::kNothingFinished:
+    case ImaginationOutcome::kCancelled:
+      return Outcome::kNothingFinished;
+  }
+  return Outcome::kInvalid;
+}
+
+ImaginedOutcome ImaginedOutcomeOf(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kRanked:
+      return ImaginedOutcome::kRanked;
+    case Outcome::kAllFailed:
+      return ImaginedOutcome::kAllFailed;
+    case Outcome::kUndecided:
+      return ImaginedOutcome::kUndecided;
+    case Outcome::kNoWorker:
+      return ImaginedOutcome::kNoWorker;
+    case Outcome::kNothingFinished:
+      return ImaginedOutcome::kNothingFinished;
+    case Outcome::kInvalid:
+      return ImaginedOutcome::kInvalid;
+    case Outcome::kUnavailable:
+      return ImaginedOutcome::kUnavailable;
+  }
+  return ImaginedOutcome::kInvalid;
+}
+
+/// What made most rollouts fail; nothing where none did.
+base::Failure MainFailure(const Prediction& prediction) {
+  const auto& failures = prediction.evidence.failures;
+  const auto most =
+      std::max_element(failures.begin(), failures.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == failures.end() ? base::Failure() : most->first;
+}
+
+ImagineAnswered AnswerOf(int request, const Report& report,
+                         const std::vector<std::string>& instances) {
+  ImagineAnswered answer;
+  answer.request = request;
+  answer.outcome =
+      OutcomeOf(report.outcome == ImaginationOutcome::kCancelled ? report.found : report.outcome);
+  answer.why = report.why;
+  answer.depends_on = instances;
+  if (answer.outcome == Outcome::kRanked) {
+    const Prediction& best = report.ranking.at(static_cast<std::size_t>(report.recommended));
+    const auto& duration = best.evidence.duration;
+    answer.recommended = best.action;
+    answer.duration = duration.mean;
+    answer.duration_low = std::max(0.0, duration.mean - kNormalQuantile95 * duration.sd);
+    answer.duration_high = std::max(duration.p95, duration.mean);
+  }
+  if (answer.outcome == Outcome::kAllFailed) {
+    for (const Prediction& prediction : report.ranking) {
+      answer.failed.push_back(prediction.action);
+      answer.failures.push_back(MainFailure(prediction));
+    }
+  }
+  return answer;
+}
+
+std::vector<std::string> InstancesIn(const world::WorldState& world) {
+  std::set<std::string> instances;
+  for (const world::ObjectState& object : world.objects) {
+    instances.insert(base::ToLower(object.name));
+  }
+  return {instances.begin(), instances.end()};
+}
+
+}  // namespace
+
+struct ImaginationDesk::Session {
+  execution::StartImagination command;
+  std::size_t step;  // its place among the steps
+  bool is_over{false};
+  std::shared_ptr<std::atomic<bool>> unwanted{std::make_shared<std::atomic<bool>>(false)};
+
+  // Once the state is geometry.
+  std::shared_ptr<const imagination::RolloutSetup> setup;
+  std::vector<base::ActionCall> actions;
+  std::vector<std::string> instances;
+  std::unique_ptr<imagination::Scheduler> scheduler;
+  std::map<std::pair<int, int>, RolloutPool::Result> rollouts;  // by index and alternative
+};
+
+ImaginationDesk::ImaginationDesk(const imagination::ImaginationSetup& setup,
+                                 const translation::TranslatorContext& context,
+                                 const imagination::SchedulerParams& scheduler,
+                                 const execution::ImaginingParams& imagining,
+                                 const ImaginationPace& pace, VirtualClock* clock,
+                                 Blackboard* blackboard, RolloutPool* pool, OnAnswer on_answer)
+    : setup_(setup),
+      context_(context),
+      scheduler_(scheduler),
+      imagining_(imagining),
+      pace_(pace),
+      clock_(*clock),
+      blackboard_(*blackboard),
+      pool_(*pool),
+      on_answer_(std::move(on_answer)),
+      free_from_(static_cast<std::size_t>(pace.workers), 0.0) {}
+
+ImaginationDesk::~ImaginationDesk() { CancelAll(); }
+
+ImaginationDesk::SessionPtr ImaginationDesk::Find(int request) const {
+  const auto found = sessions_.find(request);
+  return found == sessions_.end() ? nullptr : found->second;
+}
+
+void ImaginationDesk::Start(const execution::StartImagination& command) {
+  auto session = std::make_shared<Session>();
+  session->command = command;
+  session->step = steps_.size();
+  sessions_[command.request] = session;
+  ImaginedStep step;
+  step.plan = command.plan;
+  step.step = command.step;
+  step.action = command.action;
+  step.requested = clock_.now();
+  step.deadline = command.deadline;
+  steps_.push_back(std::move(step));
+  clock_.In(pace_.translation, [this, session] {
+    if (!session->is_over) Begin(session);
+  });
+  Move({command.request, command.deadline});
+}
+
+void ImaginationDesk::Move(const execution::MoveDeadline& command) {
+  const SessionPtr session = Find(command.request);
+  if (!session) return;  // answered just now
+  session->command.deadline = command.deadline;
+  steps_[session->step].deadline = command.deadline;
+  if (!std::isfinite(command.deadline)) return;
+  clock_.At(command.deadline, [this, session, deadline = command.deadline] {
+    if (session->is_over || session->command.deadline != deadline) return;
+    if (!session->scheduler) {
+      return Refuse(session, Outcome::kNothingFinished,
+                    "its time was over before the state was translated");
+    }
+    CarryOut(session, session->scheduler->Cancel(clock_.now()));
+  });
+}
+
+void ImaginationDesk::Cancel(const execution::CancelImagination& command) {
+  const SessionPtr session = Find(command.request);
+  if (session) End(session, ImaginedOutcome::kCancelled);
+}
+
+void ImaginationDesk::CancelAll() {
+  while (!sessions_.empty()) End(sessions_.begin()->second, ImaginedOutcome::kCancelled);
+}
+
+/// @throws nothing: what cannot be imagined is answered so.
+void ImaginationDesk::Begin(const SessionPtr& session) {
+  try {
+    translation::TranslatorContext context = context_;
+    context.areas =
+        translation::WithKnowledge(context.areas, blackboard_.view(), blackboard_.ontology());
+    const auto state = translation::StateOf(context, &blackboard_.view(), session->command.state);
+    session->instances = InstancesIn(state.world);
+    session->actions = base::Combinations(session->command.action);
+    const std::uint64_t seed =
+        imagining_.seed + static_cast<std::uint64_t>(session->command.request);
+    session->setup = std::make_shared<const imagination::RolloutSetup>(
+        imagination::MakeRolloutSetup(setup_, {state.world, state.robot}, seed));
+    imagination::CheckSetupForAll(*session->setup, session->actions);
+    imagination::SchedulerParams params = scheduler_;
+    params.rollouts = imagining_.rollouts;
+    params.deadline = 0.0;  // it is kept here, because it moves
+    if (session->command.min_success != 0.0) {
+      params.criteria.min_success = session->command.min_success;
+    }
+    if (!imagining_.ranking.empty()) {
+      params.criteria.rule = imagination::ParseRankingRule(imagining_.ranking);
+    }
+    params.criteria.prices.time_limit = session->setup->params.time_limit;
+    session->scheduler = std::make_unique<imagination::Scheduler>(
+        params, static_cast<int>(session->actions.size()), clock_.now());
+  } catch (const base::ConfigError& error) {
+    return Refuse(session, Outcome::kInvalid, error.what());
+  }
+  // All are played up to the first look at least: threads need not wait for virtual workers.
+  const int first = std::min(scheduler_.first_look, imagining_.rollouts);
+  for (int index = 0; index < first; ++index) {
+    for (std::size_t i = 0; i < session->actions.size(); ++i) {
+      Rollout(session, static_cast<int>(i), index);
+    }
+  }
+  for (int worker = 0; worker < pace_.workers && !session->is_over; ++worker) {
+    Handle(session, imagination::WorkerJoined{worker});
+  }
+}
+
+RolloutPool::Result ImaginationDesk::Rollout(const SessionPtr& session, int alternative,
+                                             int index) {
+  const auto key = std::make_pair(index, alternative);
+  const auto known = session->rollouts.find(key);
+  if (known != session->rollouts.end()) return known->second;
+  return session->rollouts[key] =
+             pool_.Play(session->setup, session->actions.at(static_cast<std::size_t>(alternative)),
+                        index, session->unwanted);
+}
+
+void ImaginationDesk::Handle(const SessionPtr& session, const imagination::Event& event) {
+  if (session->is_over) return;
+  CarryOut(session, session->scheduler->Handle(event, clock_.now()));
+}
+
+/// Assignments that are taken back are played in vain: the scheduler heeds no event of theirs.
+void ImaginationDesk::CarryOut(const SessionPtr& session,
+                               const std::vector<imagination::Command>& commands) {
+  std::vector<Assign> assigned;
+  for (const imagination::Command& command : commands) {
+    if (const auto* assign = std::get_if<Assign>(&command)) assigned.push_back(*assign);
+  }
+  for (const Assign& assign : assigned) {
+    for (int i = 0; i < assign.count; ++i) {
+      Rollout(session, assign.alternative, assign.first_index + i);
+    }
+  }
+  for (const Assign& assign : assigned) Play(session, assign);
+  if (!session->is_over && session->scheduler->finished()) Finish(session);
+}
+
+/// A worker plays one assignment after the other, whoever gave it.
+void ImaginationDesk::Play(const SessionPtr& session, const Assign& assign) {
+  double& free_from = free_from_.at(static_cast<std::size_t>(assign.worker));
+  free_from = std::max(free_from, clock_.now());
+  for (int i = assign.first_index; i < assign.first_index + assign.count; ++i) {
+    const imagination::RolloutResult result = Rollout(session, assign.alternative, i).get();
+    free_from += result.simulated / pace_.speed;
+    clock_.At(free_from, [this, session, assign, i, result] {
+      Handle(session, imagination::RolloutFinished{assign.worker, assign.assignment,
+                                                   assign.alternative, i, result});
+    });
+  }
+  clock_.At(free_from, [this, session, assign] {
+    Handle(session, imagination::AssignmentFinished{assign.worker, assign.assignment});
+  });
+}
+
+void ImaginationDesk::Finish(const SessionPtr& session) {
+  ImaginedStep& step = steps_[session->step];
+  const double took = clock_.now() - step.requested;
+  const Report report =
+      imagination::MakeReport(*session->scheduler, session->actions, session->setup->seed, took);
+  step.wall_seconds = took;
+  step.simulated_seconds = report.simulated_seconds;
+  step.predictions = report.ranking;
+  step.recommended = report.recommended;
+  step.why = report.why;
+  const ImagineAnswered answer = AnswerOf(session->command.request, report, session->instances);
+  End(session, ImaginedOutcomeOf(answer.outcome));
+  on_answer_(answer);
+}
+
+void ImaginationDesk::Refuse(const SessionPtr& session, Outcome outcome, const std::string& why) {
+  ImagineAnswered answer;
+  answer.request = session->command.request;
+  answer.outcome = outcome;
+  answer.why = why;
+  steps_[session->step].why = why;
+  End(session, ImaginedOutcomeOf(outcome));
+  on_answer_(answer);
+}
+
+void ImaginationDesk::End(const SessionPtr& session, ImaginedOutcome outcome) {
+  session->is_over = true;
+  *session->unwanted = true;
+  steps_[session->step].outcome = outcome;
+  steps_[session->step].answered = clock_.now();
+  sessions_.erase(session->command.request);
+}
+
+}  // namespace hires::loop

@@ -1,0 +1,86 @@
+#include "loop/loop_parts.h"
+
+#include "hires/base/param_reader.h"
+
+namespace hires::loop {
+namespace {
+
+using base::Between;
+using base::ParamReader;
+using imagination::ResolvePath;
+
+/// What a node alone needs is not looked at; the node itself refuses unknown keys.
+void ReadMiddleLayer(const std::string& path, double stale_after, LoopConfig* config) {
+  ParamReader in = ParamReader::FromFile(path);
+  config->runner.time_limit = in.Get("time_limit", Between(0.1, 3600.0));
+  config->runner.stale_after = stale_after;
+  config->runner.stop = control::ReadStopParams(in.Sub("stopping"));
+  config->scan = sensing::ReadScanParams(in.Sub("scan"));
+}
+
+TrackerParams ReadTracker(const std::string& path) {
+  ParamReader in = ParamReader::FromFile(path);
+  TrackerParams params;
+  params.sweep = control::ReadSweepParams(in.Sub("sweep"));
+  params.changes = translation::ReadChangeParams(in.Sub("changes"));
+  params.concepts = translation::ReadConcepts(in.Sub("concepts"));
+  params.write_period = in.Get("write_period", Between(0.0, 10.0));
+  return params;
+}
+
+ImaginationPace ReadPace(ParamReader in) {
+  ImaginationPace pace;
+  pace.speed = in.Get("speed", Between(0.1, 1e6));
+  pace.workers = in.Get("workers", Between(1, 256));
+  pace.translation = in.Get("translation", Between(0.0, 10.0));
+  return pace;
+}
+
+planning::PlanningKnowledge LoadPlanning(const std::string& domain) {
+  planning::PlannerConfig config;
+  config.domain = domain;
+  return planning::LoadPlanningKnowledge(config);
+}
+
+translation::TranslatorContext ContextOf(const imagination::ImaginationSetup& world,
+                                         std::shared_ptr<const knowledge::Ontology> ontology) {
+  translation::TranslatorContext context = world.translator;
+  context.ontology = std::move(ontology);
+  return context;
+}
+
+}  // namespace
+
+LoopConfig ReadLoopConfig(const std::string& path) {
+  ParamReader in = ParamReader::FromFile(path);
+  const auto file = [&](const char* key) { return ResolvePath(in.GetString(key), path); };
+  LoopConfig config;
+  config.imagination = imagination::ReadClientConfig(file("imagination_client"));
+  config.execution = execution::ReadMonitorConfig(file("execution_monitor"));
+  const double stale_after =
+      imagination::ReadSetupConfig(config.imagination.scene).sensing.robot_state.stale_after;
+  ReadMiddleLayer(file("middle_layer"), stale_after, &config);
+  config.sensors = evaluation::ReadSimSensorParams(ParamReader::FromFile(file("sim_robot")));
+  config.tracker = ReadTracker(file("world_tracker"));
+  config.pace = ReadPace(in.Sub("imagination"));
+  config.planning_time = in.Get("planning_time", Between(0.0, 60.0));
+  config.message_delay = in.Get("message_delay", Between(0.0, 1.0));
+  in.RejectUnknownKeys();
+  return config;
+}
+
+LoopSetup::Parts::Parts(const std::string& path)
+    : config(ReadLoopConfig(path)),
+      scene(imagination::ReadSetupConfig(config.imagination.scene)),
+      world(imagination::LoadImaginationSetup(scene)),
+      ontology(std::make_shared<const knowledge::Ontology>(
+          knowledge::Ontology::FromFiles(config.execution.ontology))),
+      context(ContextOf(world, ontology)),
+      planning(LoadPlanning(config.execution.domain)),
+      operators(planning::LoadOperatorData(config.execution.operators, planning.domain)) {}
+
+LoopSetup::LoopSetup(const std::string& config) : parts_(std::make_unique<const Parts>(config)) {}
+
+LoopSetup::~LoopSetup() = default;
+
+}  // namespace hires::loop

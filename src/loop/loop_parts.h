@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+
+#include "hires/control/action_runner.h"
+#include "hires/evaluation/sim_robot_sensors.h"
+#include "hires/execution/monitor_config.h"
+#include "hires/imagination/client_config.h"
+#include "hires/imagination/imagination_setup.h"
+#include "hires/loop/task_loop.h"
+#include "hires/planning/operator_data.h"
+#include "hires/planning/planner_config.h"
+#include "hires/sensing/scan_obstacles.h"
+#include "loop/imagination_desk.h"
+#include "loop/tracker.h"
+
+namespace hires::loop {
+
+/// config/loop.yaml and the files of the nodes that it names.
+struct LoopConfig {
+  imagination::ClientConfig imagination;
+  execution::MonitorConfig execution;
+  control::RunnerParams runner;
+  sensing::ScanParams scan;
+  evaluation::SimSensorParams sensors;
+  TrackerParams tracker;
+  ImaginationPace pace;
+  double planning_time{0.05};  ///< [s] that a search takes
+  double message_delay{0.0};   ///< [s] of what sensors say on its way to the tracker
+};
+
+/// @throws base::ConfigError naming file and key.
+LoopConfig ReadLoopConfig(const std::string& path);
+
+struct LoopSetup::Parts {
+  explicit Parts(const std::string& path);
+
+  LoopConfig config;
+  imagination::SetupConfig scene;
+  imagination::ImaginationSetup world;
+  std::shared_ptr<const knowledge::Ontology> ontology;
+  translation::TranslatorContext context;  ///< of the world, with the ontology
+  planning::PlanningKnowledge planning;
+  planning::OperatorData operators;
+};
+
+}  // namespace hires::loop

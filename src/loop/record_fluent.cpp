@@ -1,0 +1,44 @@
+#include "hires/loop/record_fluent.h"
+
+#include <cmath>
+
+namespace hires::loop {
+namespace {
+
+std::string RangeOf(const std::string& role, const std::string& otherwise,
+                    const knowledge::Ontology& ontology) {
+  const knowledge::Ontology::Relation* relation = ontology.FindRelation(role);
+  return relation == nullptr ? otherwise : relation->range;
+}
+
+knowledge::Property NumberProperty(const std::string& role, double value,
+                                   const knowledge::Ontology& ontology) {
+  const std::string type = RangeOf(role, "xsd:double", ontology);
+  if (type == "xsd:integer" || type == "xsd:int") return {role, type, std::llround(value)};
+  if (type == "xsd:boolean") return {role, type, value != 0.0};
+  return {role, type, value};
+}
+
+}  // namespace
+
+knowledge::Fluent FluentOf(const execution::Record& record, double start,
+                           const knowledge::Ontology& ontology) {
+  knowledge::Fluent fluent;
+  const bool is_known = record.general_concept.empty() ||
+                        ontology.Find(record.concept_name) != knowledge::Ontology::kUnknown;
+  fluent.concept_name = is_known ? record.concept_name : record.general_concept;
+  fluent.instance = record.instance;
+  fluent.start = {start, start};
+  for (const auto& [role, text] : record.texts) {
+    fluent.properties.push_back({role, "xsd:string", text});
+  }
+  for (const auto& [role, number] : record.numbers) {
+    fluent.properties.push_back(NumberProperty(role, number, ontology));
+  }
+  for (const auto& [role, instance] : record.links) {
+    fluent.properties.push_back({role, RangeOf(role, "Thing", ontology), instance});
+  }
+  return fluent;
+}
+
+}  // namespace hires::loop

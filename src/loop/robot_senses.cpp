@@ -1,0 +1,42 @@
+#include "loop/robot_senses.h"
+
+#include <utility>
+
+namespace hires::loop {
+namespace {
+
+using imagination::ImaginationSetup;
+
+std::shared_ptr<const robot::Robot> RobotOf(const ImaginationSetup& setup) {
+  return {setup.scene, &setup.scene->robot};
+}
+
+std::string CameraOf(const robot::Robot& robot) {
+  return robot.profile.upper_body ? robot.profile.upper_body->camera_link : "";
+}
+
+}  // namespace
+
+RobotSenses::RobotSenses(const ImaginationSetup& setup, const sensing::FrameNames& frames)
+    : names_(frames),
+      base_link_(setup.scene->robot.profile.base_link),
+      camera_link_(CameraOf(setup.scene->robot)),
+      frames_(std::make_shared<FrameRecord>(setup.sensing.robot_state.history)),
+      state_(RobotOf(setup), frames, setup.sensing.robot_state, {}, frames_) {
+  if (!setup.scene->surroundings) return;
+  objects_ = std::make_unique<sensing::ObjectEstimator>(setup.scene->surroundings, RobotOf(setup),
+                                                        setup.sensing.memory, &state_);
+}
+
+void RobotSenses::Hear(const SensorNews& news) {
+  const auto& readings = news.readings;
+  if (news.is_tick) {
+    frames_->Tell(names_.map, names_.odometry, news.stamp, geometry::Lift(readings.X_MO));
+    state_.OnTransforms(news.stamp);
+  }
+  if (news.seen && objects_) objects_->OnLook({news.stamp, camera_link_, *news.seen});
+  state_.OnJoints(news.stamp, readings.joints);
+  state_.OnOdometry(news.stamp, names_.odometry, base_link_, readings.odometry);
+}
+
+}  // namespace hires::loop

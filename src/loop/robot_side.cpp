@@ -1,0 +1,64 @@
+#include "loop/robot_side.h"
+
+#include <utility>
+
+#include "hires/world/standing.h"
+
+namespace hires::loop {
+namespace {
+
+constexpr long kFast = 10;  // [ms] between two words of joints and wheels
+constexpr long kLook = static_cast<long>(1000.0 * world::kFallLookInterval + 0.5);  // [ms]
+static_assert(kFast % kLook == 0, "what sensors say is the end of a look");
+constexpr double kBegin = 1.0;  // [s] 0 means "no time yet"
+
+}  // namespace
+
+RobotSide::RobotSide(const LoopSetup::Parts& parts, const imagination::StartState& start,
+                     std::uint64_t seed, VirtualClock* clock, Hooks hooks)
+    : clock_(*clock),
+      hooks_(std::move(hooks)),
+      world_(parts.world, start, seed),
+      sensors_(parts.config.sensors, seed, parts.world.scene),
+      truth_(parts.world.standing) {}
+
+void RobotSide::Begin() {
+  truth_.Look(world_.simulator());
+  clock_.At(Stamp(), [this] { Tick(); });
+}
+
+double RobotSide::Stamp() const {
+  return kBegin + 0.001 * static_cast<double>(world_.milliseconds());
+}
+
+void RobotSide::Tick() {
+  SensorNews news;
+  news.stamp = Stamp();
+  news.readings = world_.Sense();
+  news.is_tick = true;
+  if (sensors_.has_laser()) news.scan = sensors_.Scan(world_, news.readings);
+  news.seen = sensors_.Look(world_, news.readings);
+  hooks_.hear(news);
+  hooks_.look(news.stamp);
+  for (const robot::Command& command : std::exchange(commands_, {})) world_.Apply(command);
+  Advance();
+  clock_.At(Stamp(), [this] { Tick(); });
+}
+
+/// The world is ahead of the clock by a tick at most; what it says waits for its time.
+void RobotSide::Advance() {
+  for (long done = 0; done < evaluation::kSensorTick; done += kFast) {
+    if (done > 0) {
+      SensorNews news;
+      news.stamp = Stamp();
+      news.readings = world_.Sense();
+      clock_.At(news.stamp, [this, news] { hooks_.hear(news); });
+    }
+    for (long looked = 0; looked < kFast; looked += kLook) {
+      world_.Advance(kLook);
+      truth_.Look(world_.simulator());
+    }
+  }
+}
+
+}  // namespace hires::loop

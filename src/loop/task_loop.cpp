@@ -1,0 +1,183 @@
+#include "hires/loop/task_loop.h"
+
+#include <utility>
+
+#include "hires/base/error.h"
+#include "hires/evaluation/scenario.h"
+#include "hires/planning/shop2_reader.h"
+#include "hires/planning/task_text.h"
+#include "loop/loop_parts.h"
+#include "loop/middle_layer.h"
+#include "loop/monitor_shell.h"
+#include "loop/robot_side.h"
+
+namespace hires::loop {
+namespace {
+
+constexpr double kStart = 1.0;         // [s] of the clock
+constexpr double kFirstLook = 1.0;     // [s] until what is observed at first has been told
+constexpr double kFarewell = 2.0;      // [s] in which all comes to rest after the end
+constexpr double kStatusPeriod = 0.2;  // [s]
+
+using control::ActionEnd;
+using execution::StepFinished;
+
+StepFinished FinishedAs(int activity, ActionEnd end, const base::Failure& failure) {
+  switch (end) {
+    case ActionEnd::kSucceeded:
+      return {activity, StepFinished::Result::kSucceeded, {}};
+    case ActionEnd::kPreempted:
+      return {activity, StepFinished::Result::kPreempted, failure};
+    case ActionEnd::kFailed:
+      break;
+  }
+  return {activity, StepFinished::Result::kFailed, failure};
+}
+
+/// The robot's frames by the names that its own messages have.
+sensing::FrameNames FramesOf(const robot::Robot& robot) {
+  return {"map", "odom", robot.profile.base_link};
+}
+
+LoopOrder Completed(const LoopOrder& order, const evaluation::Scenario& scenario,
+                    const planning::Domain& domain) {
+  LoopOrder complete = order;
+  if (complete.task.empty()) complete.task = scenario.task;
+  planning::Problem problem;
+  problem.source = problem.name = "task";
+  problem.tasks = planning::ReadTasks(complete.task, "task");
+  planning::CheckTasks(problem, domain);
+  return complete;
+}
+
+/// All parts of one task, wired.
+class Play {
+ public:
+  Play(const LoopSetup::Parts& parts, const LoopOrder& order, const evaluation::Scenario& scenario)
+      : order_(Completed(order, scenario, parts.planning.domain)),
+        message_delay_(parts.config.message_delay),
+        clock_(kStart),
+        blackboard_(parts.ontology),
+        pool_(order.threads),
+        robot_(parts, evaluation::StartOf(parts.world, order.scenario, ""), order.seed, &clock_,
+               {[this](const SensorNews& news) { Hear(news); },
+                [this](double stamp) { Look(stamp); }}),
+        middle_layer_(parts.world, FramesOf(parts.world.scene->robot), parts.config.runner,
+                      parts.config.scan,
+                      {[this](const robot::Command& command) { robot_.Command(command); },
+                       [this](int activity, ActionEnd end, const base::Failure& failure) {
+                         tracker_.OnActions(middle_layer_.running());
+                         clock_.In(message_delay_, [this, activity, end, failure] {
+                           monitor_.OnStepEnded(FinishedAs(activity, end, failure));
+                         });
+                       }}),
+        tracker_(parts.world, parts.context, FramesOf(parts.world.scene->robot),
+                 parts.config.tracker, &clock_, &blackboard_, TrackerHooks()),
+        monitor_(parts, order_, &clock_, &blackboard_, &pool_,
+                 {[this](const execution::StartStep& step) { Start(step); },
+                  [this](int activity) {
+                    clock_.In(message_delay_, [this, activity] { middle_layer_.Cancel(activity); });
+                  }}) {
+    blackboard_.Load(scenario.knowledge, order.seed);
+    blackboard_.SetListener([this] { OnWritten(); });
+    OnWritten();
+  }
+
+  LoopRun Run(const evaluation::OnAchieveStatus& on_status,
+              const std::function<bool()>& cancelled) {
+    robot_.Begin();
+    LoopRun run;
+    double next_status = 0.0, end = order_.time_limit + kStart;
+    bool is_stopping = false;
+    while (clock_.Step() && clock_.now() < end) {
+      if (monitor_.is_over() && !std::exchange(is_stopping, true)) {
+        middle_layer_.CancelAll();
+        tracker_.SetEpisode(0);  // it has ended: what is seen from now on is of none
+        end = clock_.now() + kFarewell;
+      }
+      if (clock_.now() < next_status || is_stopping) continue;
+      next_status = clock_.now() + kStatusPeriod;
+      if (on_status && monitor_.has_begun()) on_status(monitor_.Status());
+      if (cancelled && cancelled()) monitor_.Preempt();
+    }
+    if (!monitor_.is_over()) {
+      run.is_timed_out = true;
+      run.report.task = order_.task;
+      run.report.reason = "its time was over";
+      run.report.status = monitor_.Status();
+    } else {
+      run.report = monitor_.Report();
+    }
+    run.truth = {robot_.truth().objects(), robot_.truth().contact()};
+    run.virtual_seconds = clock_.now() - kStart;
+    return run;
+  }
+
+ private:
+  Tracker::Hooks TrackerHooks() {
+    return {[this](double stamp, world::WorldState known) {
+              middle_layer_.OnKnownObjects(stamp, std::move(known));
+            },
+            [this](const robot::JointTrajectory& turn) {
+              robot::Command command;
+              command.trajectories["head"] = turn;
+              robot_.Command(command);
+            },
+            [this](double time) {
+              clock_.In(message_delay_, [this, time] { OnObservedUntil(time); });
+            }};
+  }
+
+  void Hear(const SensorNews& news) {
+    middle_layer_.Hear(news, robot_.laser());
+    clock_.In(message_delay_, [this, news] { tracker_.Hear(news); });
+  }
+
+  void Look(double stamp) { middle_layer_.Look(stamp); }
+
+  void Start(const execution::StartStep& step) {
+    clock_.In(message_delay_, [this, step] {
+      middle_layer_.Start(step.activity, step.action, step.time_limit);
+      tracker_.OnActions(middle_layer_.running());
+    });
+  }
+
+  /// Told once for all that is written until then.
+  void OnWritten() {
+    tracker_.OnView();
+    if (std::exchange(is_view_due_, true)) return;
+    clock_.In(message_delay_, [this] {
+      is_view_due_ = false;
+      monitor_.OnView();
+    });
+  }
+
+  void OnObservedUntil(double time) {
+    monitor_.OnObservedUntil(time);
+    if (monitor_.has_begun() || clock_.now() < kStart + kFirstLook) return;
+    monitor_.Begin();
+    tracker_.SetEpisode(monitor_.episode());
+  }
+
+  const LoopOrder order_;
+  const double message_delay_;
+  VirtualClock clock_;
+  Blackboard blackboard_;
+  RolloutPool pool_;
+  RobotSide robot_;
+  MiddleLayer middle_layer_;
+  Tracker tracker_;
+  MonitorShell monitor_;
+  bool is_view_due_{false};
+};
+
+}  // namespace
+
+LoopRun PlayTask(const LoopSetup& setup, const LoopOrder& order,
+                 const evaluation::OnAchieveStatus& on_status,
+                 const std::function<bool()>& cancelled) {
+  const evaluation::Scenario scenario = evaluation::ReadScenario(order.scenario);
+  return Play(setup.parts(), order, scenario).Run(on_status, cancelled);
+}
+
+}  // namespace hires::loop

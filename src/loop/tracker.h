@@ -1,0 +1,71 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "hires/control/world_tracker.h"
+#include "hires/skills/action_set.h"
+#include "hires/world/world.h"
+#include "loop/blackboard.h"
+#include "loop/robot_senses.h"
+#include "loop/virtual_clock.h"
+
+namespace hires::loop {
+
+/// How what is observed becomes what the Blackboard says.
+struct TrackerParams {
+  control::SweepParams sweep;
+  translation::ChangeParams changes;
+  std::map<std::string, std::string> concepts;  ///< model -> concept
+  double write_period{0.05};                    ///< [s] between two writes
+};
+
+/// The world tracker in one process with its robot and its Blackboard.
+class Tracker {
+ public:
+  struct Hooks {
+    std::function<void(double stamp, world::WorldState known)> known;
+    std::function<void(const robot::JointTrajectory&)> turn;  ///< the head
+    std::function<void(double time)> observed_until;          ///< what was written
+  };
+
+  /// @pre setup, context, clock and blackboard outlive this; the robot sees objects.
+  Tracker(const imagination::ImaginationSetup& setup, const translation::TranslatorContext& context,
+          const sensing::FrameNames& frames, const TrackerParams& params, VirtualClock* clock,
+          Blackboard* blackboard, Hooks hooks);
+
+  void Hear(const SensorNews& news);
+  void OnView() { is_view_new_ = true; }  ///< the Blackboard says something else
+  /// What runs now: the head is others' while one of them may use it.
+  void OnActions(const std::map<int, base::ActionCall>& running);
+  void SetEpisode(std::int64_t episode) { episode_ = episode; }
+
+ private:
+  void ReadView();
+  translation::TranslatorContext ContextNow() const;
+  void Post(double time, translation::ObservedWorld observed);
+  void Write();
+
+  const translation::TranslatorContext& context_;
+  const actions::Catalogue& actions_;
+  const TrackerParams params_;
+  VirtualClock& clock_;
+  Blackboard& blackboard_;
+  const Hooks hooks_;
+  RobotSenses senses_;
+  control::WorldTracker tracker_;
+  bool is_view_new_{true};
+  std::int64_t episode_{0};
+
+  struct Posted {
+    double time;  // [s]
+    translation::ObservedWorld observed;
+  };
+  std::optional<Posted> posted_;  // and not written yet
+  bool is_write_due_{false};      // the clock has been asked
+  double written_{-1e9};          // [s] when
+};
+
+}  // namespace hires::loop

@@ -1,0 +1,101 @@
+#include "hires/loop/task_loop.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "hires/base/error.h"
+#include "hires/evaluation/timeline.h"
+
+namespace hires::loop::task_loop_test {
+namespace {
+
+using evaluation::AchieveOutcome;
+using evaluation::ImaginedOutcome;
+using testing::HasSubstr;
+
+const std::string kConfig = HIRES_SOURCE_DIR "/config/";
+
+const LoopSetup& TheSetup() {
+  static const LoopSetup setup(kConfig + "loop.yaml");
+  return setup;
+}
+
+LoopOrder Topple(const std::string& imagination, std::uint64_t seed = 1) {
+  LoopOrder order;
+  order.scenario = kConfig + "scenarios/topple.yaml";
+  order.imagination = imagination;
+  order.seed = seed;
+  order.rollouts = 8;  // the fewest that can decide
+  return order;
+}
+
+/// Everything that was told and everything that is true, to the last bit.
+std::string Bits(const LoopRun& run) {
+  nlohmann::ordered_json json = evaluation::ToJson(run.report);
+  for (const auto& [name, fate] : run.truth.objects) {
+    const auto& p = fate.X_MO.translation;
+    json["truth"][name] = {p.x(), p.y(), p.z(), fate.max_tilt, fate.falls};
+  }
+  json["contact"] = run.truth.contact;
+  json["seconds"] = run.virtual_seconds;
+  return json.dump();
+}
+
+bool StandsOnTable1(const LoopRun& run, const std::string& object) {
+  const simulation::ObjectFate& fate = run.truth.objects.at(object);
+  return fate.stands && std::abs(fate.X_MO.translation.z() - 0.73) < 0.02;
+}
+
+TEST(TaskLoopTest, ATaskIsDoneWithoutImagining) {
+  const LoopRun run = PlayTask(TheSetup(), Topple("off"));
+  EXPECT_EQ(run.report.outcome, AchieveOutcome::kSucceeded) << run.report.reason;
+  EXPECT_TRUE(run.report.status.imaginations.empty());
+  EXPECT_EQ(run.truth.contact, "");
+}
+
+TEST(TaskLoopTest, WhatIsImaginedIsDoneAndTheSameForAnyNumberOfThreads) {
+  const LoopRun run = PlayTask(TheSetup(), Topple(""));
+  ASSERT_EQ(run.report.outcome, AchieveOutcome::kSucceeded) << run.report.reason;
+  EXPECT_TRUE(StandsOnTable1(run, "peppermill1"));
+  ASSERT_FALSE(run.report.status.imaginations.empty());
+  EXPECT_EQ(run.report.status.imaginations.back().outcome, ImaginedOutcome::kRanked);
+  LoopOrder order = Topple("");
+  order.threads = 2;
+  EXPECT_EQ(Bits(PlayTask(TheSetup(), order)), Bits(run));
+}
+
+TEST(TaskLoopTest, AnotherSeedIsAnotherTruth) {
+  EXPECT_NE(Bits(PlayTask(TheSetup(), Topple("off", 2))),
+            Bits(PlayTask(TheSetup(), Topple("off"))));
+}
+
+TEST(TaskLoopTest, WhoeverCancelsHasARobotThatStands) {
+  int num_asked = 0;
+  const LoopRun run =
+      PlayTask(TheSetup(), Topple("off"), {}, [&] { return ++num_asked > 100; });  // 20 s
+  EXPECT_EQ(run.report.outcome, AchieveOutcome::kPreempted);
+  EXPECT_LT(run.virtual_seconds, 40.0);
+}
+
+TEST(TaskLoopTest, ItEndsWhenItsTimeIsOver) {
+  LoopOrder order = Topple("off");
+  order.time_limit = 10.0;
+  const LoopRun run = PlayTask(TheSetup(), order);
+  EXPECT_TRUE(run.is_timed_out);
+  EXPECT_NEAR(run.virtual_seconds, 10.0, 0.1);
+}
+
+TEST(TaskLoopTest, ATaskThatMakesNoSenseIsRefused) {
+  LoopOrder order = Topple("off");
+  order.task = "sreve_coffee_to_guest guest1";
+  try {
+    PlayTask(TheSetup(), order);
+    FAIL() << "nothing was wrong";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("serve_coffee_to_guest"));
+  }
+}
+
+}  // namespace
+}  // namespace hires::loop::task_loop_test
