@@ -2,19 +2,23 @@
 # the entry runs the suites that stand in the file. A layer is linked once, and `ctest -R`, time-outs
 # and reports are still per file.
 
-# hires_test(<layer> <file without _test.cpp> [LINK more libraries ...] [TIMEOUT seconds])
-# Call it in test/<layer>/CMakeLists.txt; the program links its layer and test/support. The target
+# hires_test(<layer> <file without _test.cpp> [LINK more libraries ...] [TIMEOUT seconds] [BUSY])
+# BUSY: the test's own code has so much to do that it is optimised, and compiled by itself. Call it in test/<layer>/CMakeLists.txt; the program links its layer and test/support. The target
 # <layer>_<name>_test builds the program that the file is part of.
 function(hires_test layer name)
   if(NOT HIRES_TESTS)
     return()
   endif()
-  cmake_parse_arguments(TEST "" "TIMEOUT" "LINK" ${ARGN})
+  cmake_parse_arguments(TEST "BUSY" "TIMEOUT" "LINK" ${ARGN})
   set(target ${layer}_test)
   if(NOT TARGET ${target})
     hires_test_program_of_layer(${layer})
   endif()
   target_sources(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp)
+  if(TEST_BUSY)
+    set_source_files_properties(${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp PROPERTIES
+      COMPILE_OPTIONS -O2 SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
   target_link_libraries(${target} PRIVATE ${TEST_LINK})
   add_custom_target(${layer}_${name}_test DEPENDS ${target})
   hires_test_suites(${target} ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp filter)
