@@ -71,9 +71,10 @@ class LoopMishapsTest(LoopCase):
         self.loop.hold(False)
         result = self.require(task, self.codes.NO_PLAN)
         self.warned(task, 'on(mug1, trayarea1)')
-        stopped = self.steps_of(result, 'move_base_param')[-1].failure
-        self.assertEqual((stopped.code, stopped.subjects),
-                         (self.loop.msg.Failure.CONDITION_LOST, ['mug1', 'trayarea1']))
+        # Of the drive, or of what comes after it where that was soon over.
+        losses = [s.failure.subjects for s in result.steps
+                  if s.failure.code == self.loop.msg.Failure.CONDITION_LOST]
+        self.assertIn(['mug1', 'trayarea1'], losses)
         self.assertEqual(self.steps_of(result, 'place_object'), [])
         self.assertFalse(self.truth.stands('mug1'))
         self.assertLess(self.truth.position('mug1')[2], 0.2)
