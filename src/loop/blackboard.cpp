@@ -1,6 +1,5 @@
 #include "loop/blackboard.h"
 
-#include <limits>
 #include <utility>
 
 #include "hires/knowledge/fluent_yaml.h"

@@ -190,9 +190,7 @@ void ImaginationDesk::CancelAll() {
 /// @throws nothing: what cannot be imagined is answered so.
 void ImaginationDesk::Begin(const SessionPtr& session) {
   try {
-    translation::TranslatorContext context = context_;
-    context.areas =
-        translation::WithKnowledge(context.areas, blackboard_.view(), blackboard_.ontology());
+    const auto context = translation::WithKnowledge(context_, blackboard_.view());
     const auto state = translation::StateOf(context, &blackboard_.view(), session->command.state);
     session->instances = InstancesIn(state.world);
     session->actions = base::Combinations(session->command.action);

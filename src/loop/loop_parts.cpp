@@ -10,10 +10,10 @@ using base::ParamReader;
 using imagination::ResolvePath;
 
 /// What a node alone needs is not looked at; the node itself refuses unknown keys.
-void ReadMiddleLayer(const std::string& path, double stale_after, LoopConfig* config) {
+void ReadMiddleLayer(const std::string& path, LoopConfig* config) {
   ParamReader in = ParamReader::FromFile(path);
   config->runner.time_limit = in.Get("time_limit", Between(0.1, 3600.0));
-  config->runner.stale_after = stale_after;
+  config->runner.stale_after = config->scene.sensing.robot_state.stale_after;
   config->runner.stop = control::ReadStopParams(in.Sub("stopping"));
   config->scan = sensing::ReadScanParams(in.Sub("scan"));
 }
@@ -57,9 +57,8 @@ LoopConfig ReadLoopConfig(const std::string& path) {
   LoopConfig config;
   config.imagination = imagination::ReadClientConfig(file("imagination_client"));
   config.execution = execution::ReadMonitorConfig(file("execution_monitor"));
-  const double stale_after =
-      imagination::ReadSetupConfig(config.imagination.scene).sensing.robot_state.stale_after;
-  ReadMiddleLayer(file("middle_layer"), stale_after, &config);
+  config.scene = imagination::ReadSetupConfig(config.imagination.scene);
+  ReadMiddleLayer(file("middle_layer"), &config);
   config.sensors = evaluation::ReadSimSensorParams(ParamReader::FromFile(file("sim_robot")));
   config.tracker = ReadTracker(file("world_tracker"));
   config.pace = ReadPace(in.Sub("imagination"));
@@ -71,8 +70,7 @@ LoopConfig ReadLoopConfig(const std::string& path) {
 
 LoopSetup::Parts::Parts(const std::string& path)
     : config(ReadLoopConfig(path)),
-      scene(imagination::ReadSetupConfig(config.imagination.scene)),
-      world(imagination::LoadImaginationSetup(scene)),
+      world(imagination::LoadImaginationSetup(config.scene)),
       ontology(std::make_shared<const knowledge::Ontology>(
           knowledge::Ontology::FromFiles(config.execution.ontology))),
       context(ContextOf(world, ontology)),

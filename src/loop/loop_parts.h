@@ -19,6 +19,7 @@ namespace hires::loop {
 /// config/loop.yaml and the files of the nodes that it names.
 struct LoopConfig {
   imagination::ClientConfig imagination;
+  imagination::SetupConfig scene;
   execution::MonitorConfig execution;
   control::RunnerParams runner;
   sensing::ScanParams scan;
@@ -36,7 +37,6 @@ struct LoopSetup::Parts {
   explicit Parts(const std::string& path);
 
   LoopConfig config;
-  imagination::SetupConfig scene;
   imagination::ImaginationSetup world;
   std::shared_ptr<const knowledge::Ontology> ontology;
   translation::TranslatorContext context;  ///< of the world, with the ontology

@@ -52,7 +52,8 @@ void RobotSide::Advance() {
       SensorNews news;
       news.stamp = Stamp();
       news.readings = world_.Sense();
-      clock_.At(news.stamp, [this, news] { hooks_.hear(news); });
+      const double stamp = news.stamp;
+      clock_.At(stamp, [this, news = std::move(news)] { hooks_.hear(news); });
     }
     for (long looked = 0; looked < kFast; looked += kLook) {
       world_.Advance(kLook);

@@ -59,10 +59,7 @@ void Tracker::OnActions(const std::map<int, base::ActionCall>& running) {
 }
 
 translation::TranslatorContext Tracker::ContextNow() const {
-  translation::TranslatorContext context = context_;
-  context.areas =
-      translation::WithKnowledge(context.areas, blackboard_.view(), blackboard_.ontology());
-  return context;
+  return translation::WithKnowledge(context_, blackboard_.view());
 }
 
 void Tracker::ReadView() {

@@ -6,15 +6,14 @@
 namespace hires::loop {
 
 void VirtualClock::At(double time, std::function<void()> act) {
-  due_.push({std::max(time, now_), num_asked_++, std::move(act)});
+  due_.emplace(std::make_pair(std::max(time, now_), num_asked_++), std::move(act));
 }
 
 bool VirtualClock::Step() {
   if (due_.empty()) return false;
-  const Due next = due_.top();
-  due_.pop();
-  now_ = next.time;
-  next.act();
+  const auto next = due_.extract(due_.begin());
+  now_ = next.key().first;
+  next.mapped()();
   return true;
 }
 

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 #include <functional>
-#include <queue>
-#include <vector>
+#include <map>
+#include <utility>
 
 namespace hires::loop {
 
@@ -22,17 +22,9 @@ class VirtualClock {
   bool Step();
 
  private:
-  struct Due {
-    double time;
-    std::uint64_t number;
-    std::function<void()> act;
-    bool operator<(const Due& other) const {  // the queue's top is the largest
-      return time != other.time ? time > other.time : number > other.number;
-    }
-  };
   double now_;
   std::uint64_t num_asked_{0};
-  std::priority_queue<Due> due_;
+  std::map<std::pair<double, std::uint64_t>, std::function<void()>> due_;  // by time and number
 };
 
 }  // namespace hires::loop

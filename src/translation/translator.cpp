@@ -136,6 +136,11 @@ std::string TranslatorContext::ModelOf(const std::string& instance) const {
                           "; name its model in the catalogue of objects");
 }
 
+TranslatorContext WithKnowledge(TranslatorContext context, const knowledge::FluentView& view) {
+  context.areas = WithKnowledge(std::move(context.areas), view, *context.ontology);
+  return context;
+}
+
 TranslatorContext MakeContext(
     world::World world, robot::Robot robot,
     const std::map<std::string, std::shared_ptr<const world::ObjectModel>>& catalogue,

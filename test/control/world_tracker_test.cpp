@@ -13,6 +13,7 @@ namespace {
 using sensing::ObjectEstimator;
 using sensing::RobotStateEstimator;
 using test_support::At;
+using test_support::EmptyRoom;
 using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -22,12 +23,6 @@ std::shared_ptr<const robot::Robot> Pr2() {
   static const auto pr2 = std::make_shared<const robot::Robot>(
       robot::LoadRobot(HIRES_SOURCE_DIR "/config/robots/pr2.yaml"));
   return pr2;
-}
-
-std::shared_ptr<const perception::Surroundings> EmptyRoom() {
-  world::World world = test_support::SightWorld();
-  world.statics.clear();
-  return std::make_shared<const perception::Surroundings>(world);
 }
 
 /// A PR2 whose sensors speak at 20 Hz, and a mug before it.

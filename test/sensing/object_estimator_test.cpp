@@ -15,6 +15,7 @@ using geometry::Pose2;
 using geometry::Pose3;
 using perception::Detection;
 using test_support::At;
+using test_support::EmptyRoom;
 using test_support::FakeFrameTree;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -25,12 +26,6 @@ std::shared_ptr<const robot::Robot> Pr2() {
   static const auto pr2 = std::make_shared<const robot::Robot>(
       robot::LoadRobot(HIRES_SOURCE_DIR "/config/robots/pr2.yaml"));
   return pr2;
-}
-
-std::shared_ptr<const perception::Surroundings> EmptyRoom() {
-  world::World world = test_support::SightWorld();
-  world.statics.clear();
-  return std::make_shared<const perception::Surroundings>(world);
 }
 
 /// A PR2 whose sensors speak at 20 Hz, and things that it sees.
@@ -230,7 +225,8 @@ TEST_F(ObjectEstimatorTest, ALookIsJudgedWithThePostureOfItsTime) {
 TEST_F(ObjectEstimatorTest, ALookOfATimeWithoutJointStatesIsDropped) {
   Sense(time_ + 0.25);
   objects_.OnLook({time_ - 0.12, camera_, {Mug(At(1.0, 0.0, 0.0))}});
-  EXPECT_THAT(Update().warnings, ElementsAre(HasSubstr("the posture of the robot when the picture was taken")));
+  EXPECT_THAT(Update().warnings,
+              ElementsAre(HasSubstr("the posture of the robot when the picture was taken")));
   EXPECT_THAT(Known(), IsEmpty());
 }
 

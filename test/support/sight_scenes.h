@@ -59,4 +59,11 @@ inline world::World SightWorld() {
   return world;
 }
 
+/// Nothing but its models.
+inline std::shared_ptr<const perception::Surroundings> EmptyRoom() {
+  world::World world = SightWorld();
+  world.statics.clear();
+  return std::make_shared<const perception::Surroundings>(world);
+}
+
 }  // namespace hires::test_support

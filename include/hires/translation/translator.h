@@ -42,6 +42,9 @@ TranslatorContext MakeContext(
     const std::map<std::string, std::shared_ptr<const world::ObjectModel>>& catalogue,
     std::shared_ptr<const knowledge::Ontology> ontology);
 
+/// The context with what fluents say of areas.  @pre it has an ontology.
+TranslatorContext WithKnowledge(TranslatorContext context, const knowledge::FluentView& view);
+
 /// Where fluents say that an object is.
 struct StatedObject {
   std::string name;  ///< lower case

@@ -115,10 +115,9 @@ translation::GeometricState TranslatorNode::StateFor(const std::vector<Atom>& at
     Log(LogLevel::kWarn, "blackboard=away poses are those that were known last");
   }
   return view_.Read([&](const knowledge::FluentView& view) {
-    translation::TranslatorContext context = context_;
-    context.areas = translation::WithKnowledge(context.areas, view, *context.ontology);
-    return translation::StateOf(context, &view,
-                                is_whole_state ? atoms : AtomsWith(view, *context.ontology, atoms));
+    return translation::StateOf(
+        translation::WithKnowledge(context_, view), &view,
+        is_whole_state ? atoms : AtomsWith(view, *context_.ontology, atoms));
   });
 }
 

@@ -71,9 +71,7 @@ std::string ObservationWriter::last_failure() const {
 
 translation::TranslatorContext ObservationWriter::ContextNow(
     const knowledge::FluentView& view) const {
-  translation::TranslatorContext context = *context_;
-  context.areas = translation::WithKnowledge(context.areas, view, *context.ontology);
-  return context;
+  return translation::WithKnowledge(*context_, view);
 }
 
 void ObservationWriter::Run() {
