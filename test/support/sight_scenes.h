@@ -1,9 +1,11 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "hires/perception/camera_view.h"
+#include "hires/perception/surroundings.h"
 #include "hires/world/world.h"
 #include "support/scenes.h"
 
