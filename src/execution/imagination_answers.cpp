@@ -45,7 +45,7 @@ void ImaginationDesk::OnAnswer(const ImagineAnswered& answer) {
   });
   if (question == questions_.end()) return;  // an answer to what is not asked any more
   question->request = 0;
-  session_.run().at(question->step).finished = session_.now();
+  session_.progress().run().at(question->step).finished = session_.now();
   using Outcome = ImagineAnswered::Outcome;
   if (answer.outcome == Outcome::kRanked) {
     question->answer = answer;
@@ -63,7 +63,7 @@ void ImaginationDesk::OnAnswer(const ImagineAnswered& answer) {
 void ImaginationDesk::TakeRanked(Question* question) {
   const ImagineAnswered& answer = *question->answer;
   const base::ActionCall best = Lowered(answer.recommended);
-  PlanRun& run = session_.run();
+  PlanRun& run = session_.progress().run();
   std::string wrong = Fits(question->action, best)
                           ? run.Instantiate(question->target, best.arguments, session_.domain(),
                                             session_.operators())
@@ -78,9 +78,9 @@ void ImaginationDesk::TakeRanked(Question* question) {
   planning::Duration duration{answer.duration_low, answer.duration_high, answer.duration};
   if (!(0.0 < duration.min && duration.min <= duration.max)) duration = {0.0, kForever, {}};
   if (answer.duration > 0.0) duration.expected = answer.duration;
-  const auto conflict = session_.network().Tighten(question->target, duration);
+  const auto conflict = session_.progress().network().Tighten(question->target, duration);
   if (conflict) {
-    session_.Warning(
+    session_.outbox().Warning(
         fmt::format("how long {} lasts as imagined does not fit the plan and is not "
                     "used: {}",
                     base::ToString(best), *conflict));
@@ -89,10 +89,10 @@ void ImaginationDesk::TakeRanked(Question* question) {
   step.phase = StepPhase::kDone;
   step.note = fmt::format("recommended: {}; {}", base::ToString(best), answer.why);
   run.at(question->target).note = "imagined: " + answer.why;
-  session_.Send(TaskChanged(run.number(), question->target, best));
-  session_.Send(
-      Predicted(session_.NewRecord(), run.number(), question->target, best, answer.duration));
-  session_.Changed();
+  session_.outbox().Send(TaskChanged(run.number(), question->target, best));
+  session_.outbox().Send(Predicted(session_.outbox().NewRecord(), run.number(), question->target,
+                                   best, answer.duration));
+  session_.progress().Changed();
 }
 
 void ImaginationDesk::TakeFailed(Question* question, const ImagineAnswered& answer) {
@@ -108,10 +108,10 @@ void ImaginationDesk::TakeFailed(Question* question, const ImagineAnswered& answ
     if (!first) first = why;
     session_.Exclude({failed[i], why, LoweredSet(answer.depends_on), 0}, question->target);
   }
-  StepRun& step = session_.run().at(question->step);
+  StepRun& step = session_.progress().run().at(question->step);
   step.phase = StepPhase::kDone;
   step.note = question->why_not;
-  StepRun& target = session_.run().at(question->target);
+  StepRun& target = session_.progress().run().at(question->target);
   target.note = "imagined to fail: " + ToString(first);
   target.failure = {base::FailureCode::kImaginedFailure, first.subjects, ToString(first)};
   session_.Report({Violation::Kind::kImagined, target.action, target.failure}, 0);
@@ -128,7 +128,7 @@ bool ImaginationDesk::MayStart(int step) {
   }
   if (question->undecided) return true;  // nothing more is on its way
   if (!question->limit) {
-    question->limit = std::max(session_.now(), session_.network().LatestStart(step));
+    question->limit = std::max(session_.now(), session_.progress().network().LatestStart(step));
     MoveTo(question, DeadlineOf(*question));
   }
   if (session_.now() < *question->limit) return false;
@@ -139,7 +139,7 @@ void ImaginationDesk::Settle(int step) {
   Question* question = FindTarget(step);
   if (question == nullptr) return;
   question->is_open = false;
-  session_.network().Forget(question->step);
+  session_.progress().network().Forget(question->step);
   if (!question->answer) TakeDefaults(question);
   Cancel(question);
 }
@@ -163,22 +163,22 @@ void ImaginationDesk::SettleAll() {
 
 void ImaginationDesk::TakeDefaults(Question* question) {
   SetDefaults(*question);
-  StepRun& target = session_.run().at(question->target);
+  StepRun& target = session_.progress().run().at(question->target);
   std::string why = question->why_not;
   if (question->request != 0 || why.empty()) {
     why = "there was no answer in time" + (why.empty() ? "" : "; " + why);
   }
-  session_.Warning(
+  session_.outbox().Warning(
       fmt::format("{} is carried out without imagination, how likely it succeeds is unknown: {}",
                   base::ToString(target.action), why));
   target.note = "not imagined: " + why;
-  StepRun& step = session_.run().at(question->step);
+  StepRun& step = session_.progress().run().at(question->step);
   step.phase = StepPhase::kSkipped;
   step.note = why;
 }
 
 void ImaginationDesk::SetDefaults(const Question& question) {
-  PlanRun& run = session_.run();
+  PlanRun& run = session_.progress().run();
   const planning::OperatorEntry& entry = EntryOf(session_.operators(), question.action.name);
   if (!entry.imagine) return;
   std::vector<std::string> arguments = run.at(question.target).action.arguments;
@@ -192,15 +192,16 @@ void ImaginationDesk::SetDefaults(const Question& question) {
   }
   const std::string wrong =
       run.Instantiate(question.target, arguments, session_.domain(), session_.operators());
-  if (!wrong.empty()) session_.Warning("the default cannot be taken: " + wrong);
-  session_.network().Tighten(question.target, {0.0, kForever, run.at(question.target).expected});
+  if (!wrong.empty()) session_.outbox().Warning("the default cannot be taken: " + wrong);
+  session_.progress().network().Tighten(question.target,
+                                        {0.0, kForever, run.at(question.target).expected});
 }
 
 // ----------------------------------------------------------------------------------------- change
 
 /// What the robot carries moves with it, and that changes nothing that was imagined.
 bool ImaginationDesk::IsCarried(const std::string& instance) const {
-  const PlanRun& run = session_.run();
+  const PlanRun& run = session_.progress().run();
   for (const int active : run.Active()) {
     const auto& arguments = run.at(active).action.arguments;
     if (std::find(arguments.begin(), arguments.end(), instance) != arguments.end()) return true;
@@ -212,7 +213,7 @@ bool ImaginationDesk::IsCarried(const std::string& instance) const {
         item = planning::MakeSymbol(instance);
       }
     }
-    if (session_.facts().HasMatch(patterns[0])) return true;
+    if (session_.state().facts().HasMatch(patterns[0])) return true;
   }
   return false;
 }
@@ -231,17 +232,17 @@ bool ImaginationDesk::IsAffected(const Question& question,
 void ImaginationDesk::OnChanged(const GeometryChanged& change) {
   std::set<std::string> changed = LoweredSet(change.instances);
   for (auto instance = changed.begin(); instance != changed.end();) {
-    instance =
-        session_.has_plan() && IsCarried(*instance) ? changed.erase(instance) : std::next(instance);
+    instance = session_.progress().has_plan() && IsCarried(*instance) ? changed.erase(instance)
+                                                                      : std::next(instance);
   }
-  session_.ForgetExclusions(changed);
+  session_.exclusions().Forget(changed, session_.state().instances());
   std::vector<Question*> affected;
   for (Question& question : questions_) {
     if (!changed.empty() && question.is_open && IsAffected(question, changed)) {
       affected.push_back(&question);
     }
   }
-  session_.instances().insert(changed.begin(), changed.end());
+  session_.state().Know(changed);
   for (Question* question : affected) {
     AskAgain(question, base::Join({changed.begin(), changed.end()}, ", ") + " changed");
   }

@@ -37,15 +37,15 @@ std::vector<int> InformedSteps(const PlanRun& run) {
 
 void ImaginationDesk::Open() {
   std::vector<Question> old = std::exchange(questions_, {});
-  for (int i = 0; i < session_.run().size(); ++i) {
-    if (session_.run().at(i).kind != StepRun::Kind::kImagine) continue;
+  for (int i = 0; i < session_.progress().run().size(); ++i) {
+    if (session_.progress().run().at(i).kind != StepRun::Kind::kImagine) continue;
     Question question;
     question.step = i;
-    question.target = session_.informs()[i];
-    question.action = TemplateOf(session_.run().planned(i).task);
+    question.target = session_.progress().informs()[i];
+    question.action = TemplateOf(session_.progress().run().planned(i).task);
     if (!IsWorthAsking(question)) {
-      session_.run().at(i).phase = StepPhase::kSkipped;
-      session_.network().Forget(i);
+      session_.progress().run().at(i).phase = StepPhase::kSkipped;
+      session_.progress().network().Forget(i);
       continue;
     }
     const auto& entry = EntryOf(session_.operators(), question.action.name);
@@ -59,11 +59,12 @@ void ImaginationDesk::Open() {
 
 bool ImaginationDesk::IsWorthAsking(const Question& question) {
   if (question.target < 0) {
-    session_.Warning(fmt::format("{} informs no later step and is left out",
-                                 ToString(session_.run().planned(question.step).task)));
+    session_.outbox().Warning(
+        fmt::format("{} informs no later step and is left out",
+                    ToString(session_.progress().run().planned(question.step).task)));
     return false;
   }
-  if (!session_.run().at(question.target).IsWaiting()) return false;
+  if (!session_.progress().run().at(question.target).IsWaiting()) return false;
   if (session_.params().imagination != MonitorParams::ImaginePolicy::kOff) return true;
   SetDefaults(question);
   return false;
@@ -80,7 +81,7 @@ void ImaginationDesk::TakeOver(std::vector<Question>* old, Question* question) {
   std::swap(*same, *question);
   question->limit.reset();
   if (question->request == 0) return;
-  StepRun& step = session_.run().at(question->step);
+  StepRun& step = session_.progress().run().at(question->step);
   step.phase = StepPhase::kRunning;
   step.started = question->asked;
 }
@@ -98,7 +99,7 @@ ImaginationDesk::Question* ImaginationDesk::FindTarget(int step) {
 }
 
 void ImaginationDesk::Cancel(Question* question) {
-  if (question->request != 0) session_.Send(CancelImagination{question->request});
+  if (question->request != 0) session_.outbox().Send(CancelImagination{question->request});
   question->request = 0;
 }
 
@@ -106,8 +107,8 @@ void ImaginationDesk::Cancel(Question* question) {
 
 /// The present state with the effects of what runs and of what comes before the step in the plan.
 Facts ImaginationDesk::Projected(int target) const {
-  const PlanRun& run = session_.run();
-  Facts facts = session_.facts();
+  const PlanRun& run = session_.progress().run();
+  Facts facts = session_.state().facts();
   for (const int active : run.Active()) {
     const StepRun& step = run.at(active);
     ApplyEffects(run.planned(active), step.disturbance, step.before, &facts);
@@ -121,7 +122,7 @@ Facts ImaginationDesk::Projected(int target) const {
 std::set<std::string> ImaginationDesk::StartOf(const Facts& projected) const {
   std::set<std::string> start;
   for (const auto& [text, atom] : projected.all()) {
-    if (session_.IsChanging(std::string(atom.Head()))) start.insert(text);
+    if (session_.state().IsChanging(std::string(atom.Head()))) start.insert(text);
   }
   return start;
 }
@@ -129,26 +130,28 @@ std::set<std::string> ImaginationDesk::StartOf(const Facts& projected) const {
 double ImaginationDesk::DeadlineOf(const Question& question) {
   const bool is_patient = question.on_late == planning::OnLate::kWait || session_.params().dry_run;
   if (is_patient) return kForever;
-  const double latest = question.limit.value_or(session_.network().LatestStart(question.target));
+  const double latest =
+      question.limit.value_or(session_.progress().network().LatestStart(question.target));
   return std::max(session_.now(), latest - session_.params().arrival_margin);
 }
 
 void ImaginationDesk::Ask(Question* question) {
   const Facts projected = Projected(question->target);
   question->start = StartOf(projected);
-  question->known = session_.instances();
-  question->request = session_.NewRequest();
+  question->known = session_.state().instances();
+  question->request = session_.outbox().NewRequest();
   question->deadline = DeadlineOf(*question);
   if (!question->asked) question->asked = session_.now();
   question->retry.reset();
   question->differs.reset();
-  StepRun& step = session_.run().at(question->step);
+  StepRun& step = session_.progress().run().at(question->step);
   step.phase = StepPhase::kRunning;
   step.started = session_.now();
   step.finished.reset();
-  session_.Send(StartImagination{question->request, session_.plan_index(), question->target,
-                                 question->action, projected.Atoms(), question->deadline,
-                                 MinSuccessOf(session_.operators(), question->action.name)});
+  session_.outbox().Send(
+      StartImagination{question->request, session_.progress().plan_index(), question->target,
+                       question->action, projected.Atoms(), question->deadline,
+                       MinSuccessOf(session_.operators(), question->action.name)});
 }
 
 void ImaginationDesk::AskAgain(Question* question, const std::string& why) {
@@ -176,7 +179,7 @@ void ImaginationDesk::MoveTo(Question* question, double deadline) {
   if (question->request == 0 || !std::isfinite(deadline)) return;
   if (std::abs(deadline - question->deadline) <= kShift) return;
   question->deadline = deadline;
-  session_.Send(MoveDeadline{question->request, deadline});
+  session_.outbox().Send(MoveDeadline{question->request, deadline});
 }
 
 void ImaginationDesk::Update() {

@@ -32,8 +32,8 @@ struct Monitor::Impl {
   void On(const TaskRequested& event);
   void On(const PlanArrived& event) { quest.OnAnswer(event); }
   void On(const StepFinished& event) { watch.OnFinished(event); }
-  void On(const StateObserved& event) { session.Observe(event); }
-  void On(const ObservedUntil& event) { session.ObserveUntil(event.time); }
+  void On(const StateObserved& event) { session.state().Observe(event); }
+  void On(const ObservedUntil& event) { session.state().ObserveUntil(event.time); }
   void On(const GeometryChanged& event) { desk.OnChanged(event); }
   void On(const ImagineAnswered& event) { desk.OnAnswer(event); }
   void On(const PreemptRequested&);
@@ -61,23 +61,25 @@ struct Monitor::Impl {
 
 void Monitor::Impl::On(const TaskRequested& event) {
   if (stage != Stage::kIdle) {
-    return session.Warning("'" + event.task + "' is not taken up: '" + session.task() +
-                           "' is being carried out; preempt it first");
+    return session.outbox().Warning("'" + event.task + "' is not taken up: '" +
+                                    session.progress().task() +
+                                    "' is being carried out; preempt it first");
   }
-  session.BeginTask(event.task);
+  session.progress().BeginTask(event.task);
   stage = Stage::kPlanning;
   planning::Problem problem;
   problem.source = "task";
   try {
-    if (!session.has_state()) throw base::ConfigError("nothing has been observed yet; try again");
+    if (!session.state().is_known())
+      throw base::ConfigError("nothing has been observed yet; try again");
     problem.tasks = planning::ReadTasks(event.task, "task");
-    problem.facts = session.facts().Data();
+    problem.facts = session.state().facts().Data();
     CheckTasks(problem, session.domain());
   } catch (const base::ConfigError& error) {
     return Conclude(Finish::Outcome::kFailed, error.what());
   }
   repair.BeginTask(problem);
-  quest.Begin({{std::move(problem), event.task}}, session.facts());
+  quest.Begin({{std::move(problem), event.task}}, session.state().facts());
 }
 
 void Monitor::Impl::On(const PreemptRequested&) {
@@ -119,10 +121,10 @@ void Monitor::Impl::Plan() {
     return Conclude(is_none ? Finish::Outcome::kNoPlan : Finish::Outcome::kFailed, quest.why());
   }
   try {
-    PlanRun run(session.next_plan(), quest.plan(), quest.problem(), session.domain(),
+    PlanRun run(session.progress().next_plan(), quest.plan(), quest.problem(), session.domain(),
                 session.operators());
     std::vector<int> informs = InformedSteps(run);
-    session.Adopt(std::move(run), std::move(informs), {});
+    session.progress().Adopt(std::move(run), std::move(informs), {});
   } catch (const base::ConfigError& error) {
     return Conclude(Finish::Outcome::kFailed,
                     std::string("the planner's plan is of no use: ") + error.what());
@@ -136,7 +138,8 @@ void Monitor::Impl::Execute() {
   if (!watch.lost().empty())
     return Conclude(Finish::Outcome::kFailed, watch.lost(), base::FailureCode::kDidNotStop);
   const bool is_dry_run = session.params().dry_run;
-  if (session.run().IsOver() && !is_dry_run) return Conclude(Finish::Outcome::kSucceeded, "");
+  if (session.progress().run().IsOver() && !is_dry_run)
+    return Conclude(Finish::Outcome::kSucceeded, "");
   if (!session.has_violation()) desk.Update();
   if (session.has_violation()) return TakeUpViolation();
   if (is_dry_run) return EndDryRun();
@@ -183,24 +186,24 @@ void Monitor::Impl::Conclude(Finish::Outcome outcome, const std::string& reason,
   desk.Close();
   quest.Cancel();
   repair.Cancel();
-  if (session.has_plan()) {
-    for (const int step : session.run().Active()) session.Stop(step);
+  if (session.progress().has_plan()) {
+    for (const int step : session.progress().run().Active()) session.progress().Stop(step);
   }
   ending = {outcome, reason, failure};
   stage = Stage::kEnding;
 }
 
 void Monitor::Impl::EndIfStill() {
-  if (session.has_plan()) {
+  if (session.progress().has_plan()) {
     watch.Check(false);
     session.TakeViolation();  // it does not matter any more
-    const PlanRun& run = session.run();
+    const PlanRun& run = session.progress().run();
     const std::vector<int> active = run.Active();
     const auto moves = [&](int step) { return run.at(step).phase == StepPhase::kRunning; };
     if (std::any_of(active.begin(), active.end(), moves)) return;
   }
   session.EndTask();
-  session.Send(ending);
+  session.outbox().Send(ending);
   stage = Stage::kIdle;
 }
 
@@ -211,10 +214,10 @@ Monitor::Monitor(const planning::PlanningKnowledge* knowledge,
 Monitor::~Monitor() = default;
 
 std::vector<Command> Monitor::Handle(const Event& event, double now) {
-  impl_->session.SetNow(now);
+  impl_->session.progress().SetNow(now);
   std::visit([&](const auto& e) { impl_->On(e); }, event);
   impl_->Advance();
-  return impl_->session.TakeCommands();
+  return impl_->session.outbox().Take();
 }
 
 std::optional<double> Monitor::WakeAt() const {
@@ -229,6 +232,6 @@ std::optional<double> Monitor::WakeAt() const {
 
 bool Monitor::is_busy() const { return impl_->stage != Impl::Stage::kIdle; }
 
-std::vector<StepStatus> Monitor::Steps() const { return impl_->session.Steps(); }
+std::vector<StepStatus> Monitor::Steps() const { return impl_->session.progress().Steps(); }
 
 }  // namespace hires::execution

@@ -25,17 +25,18 @@ void PlanQuest::Begin(std::vector<Try> tries, const Facts& state) {
 }
 
 void PlanQuest::Cancel() {
-  if (request_ != 0) session_.Send(CancelPlanning{request_});
+  if (request_ != 0) session_.outbox().Send(CancelPlanning{request_});
   request_ = 0;
   retry_.reset();
   is_under_way_ = false;
 }
 
 void PlanQuest::Ask() {
-  request_ = session_.NewRequest();
+  request_ = session_.outbox().NewRequest();
   asked_ = session_.now();
   retry_.reset();
-  session_.Send(StartPlanning{request_, tries_[at_].tasks, state_, session_.ExclusionAtoms()});
+  session_.outbox().Send(
+      StartPlanning{request_, tries_[at_].tasks, state_, session_.exclusions().Atoms()});
 }
 
 void PlanQuest::End(Outcome outcome, const std::string& why) {
@@ -78,14 +79,14 @@ void PlanQuest::Update() {
   }
   if (retry_ && session_.now() >= *retry_) return Ask();
   if (request_ == 0 || session_.now() < asked_ + patience) return;
-  session_.Send(CancelPlanning{request_});
+  session_.outbox().Send(CancelPlanning{request_});
   request_ = 0;
   if (was_slow_) {
     return End(Outcome::kFailed,
                fmt::format("the planner did not answer within {} s, twice", patience));
   }
   was_slow_ = true;
-  session_.Warning(
+  session_.outbox().Warning(
       fmt::format("the planner has not answered for {} s; it is asked once more", patience));
   Ask();
 }

@@ -62,7 +62,7 @@ bool Repair::IsRepetition(const Violation& violation, const std::set<std::string
 
 std::string Repair::Begin(const Violation& violation) {
   const std::string text = ToString(violation);
-  const std::set<std::string> state = TextsOf(session_.facts());
+  const std::set<std::string> state = TextsOf(session_.state().facts());
   const bool is_repetition = IsRepetition(violation, state);
   last_ = violation;
   last_state_ = state;
@@ -73,7 +73,7 @@ std::string Repair::Begin(const Violation& violation) {
   if (++count_ > session_.params().max_replans) {
     return fmt::format("gave up after {} repairs; the last reason was {}", count_ - 1, text);
   }
-  session_.Warning(fmt::format("{}; the plan is mended", text));
+  session_.outbox().Warning(fmt::format("{}; the plan is mended", text));
   Cancel();
   return "";
 }
@@ -85,7 +85,7 @@ void Repair::Cancel() {
 
 /// Whether it is clear which steps are done.
 bool Repair::IsSettled() const {
-  const PlanRun& run = session_.run();
+  const PlanRun& run = session_.progress().run();
   const std::vector<int> active = run.Active();
   return std::all_of(active.begin(), active.end(), [&](int step) {
     return run.at(step).phase == StepPhase::kRunning && !run.at(step).is_stopping;
@@ -106,7 +106,7 @@ Repair::Result Repair::Update() {
 /// What is left of the problem, changing more and more of the plan. What cannot be written as text
 /// or needs protections, which a request cannot carry, is left out; the whole task comes last.
 std::vector<PlanQuest::Try> Repair::Tries(const Facts& state) const {
-  const PlanRun& run = session_.run();
+  const PlanRun& run = session_.progress().run();
   const planning::Problem& whole = run.problem();
   std::vector<PlanQuest::Try> tries;
   const auto add = [&](planning::Problem problem) {
@@ -117,7 +117,7 @@ std::vector<PlanQuest::Try> Repair::Tries(const Facts& state) const {
     tries.push_back({std::move(problem), *tasks});
   };
   if (HasDecomposition(whole, run.plan())) {
-    const PlanRun::DoneFirst done = run.WithDoneFirst(session_.informs());
+    const PlanRun::DoneFirst done = run.WithDoneFirst(session_.progress().informs());
     for (int depth = DeepestKeepDepth(done.plan, done.executed); depth > 0; --depth) {
       add(RemainingProblem(session_.domain(), whole, done.plan, done.executed, state.Data(),
                            depth));
@@ -132,14 +132,14 @@ std::vector<PlanQuest::Try> Repair::Tries(const Facts& state) const {
 
 void Repair::Ask() {
   is_asking_ = true;
-  assumed_ = session_.run().Active();
-  Facts state = session_.facts();
+  assumed_ = session_.progress().run().Active();
+  Facts state = session_.state().facts();
   for (auto step = assumed_.rbegin(); step != assumed_.rend(); ++step) {
-    const StepRun& running = session_.run().at(*step);
+    const StepRun& running = session_.progress().run().at(*step);
     TakeBack(running.disturbance, running.before, &state);
   }
   std::vector<PlanQuest::Try> tries = Tries(state);
-  for (const base::Atom& atom : session_.ExclusionAtoms()) {
+  for (const base::Atom& atom : session_.exclusions().Atoms()) {
     for (PlanQuest::Try& one : tries) one.problem.facts.push_back(DatumOf(atom));
   }
   quest_.Begin(std::move(tries), state);
@@ -148,7 +148,7 @@ void Repair::Ask() {
 /// The plan begins with what runs, whatever imagination chose for it.
 bool Repair::IsWanted(PlanRun* plan, int step, int running) const {
   const base::ActionCall& wanted = plan->at(step).action;
-  const base::ActionCall& runs = session_.run().at(running).action;
+  const base::ActionCall& runs = session_.progress().run().at(running).action;
   if (!plan->at(step).after.empty() || wanted.name != runs.name) return false;
   if (wanted == runs) return true;
   const planning::OperatorEntry& entry = EntryOf(session_.operators(), wanted.name);
@@ -186,8 +186,8 @@ Repair::Result Repair::Take() {
   std::optional<PlanRun> plan;
   if (quest_.outcome() == PlanQuest::Outcome::kFound) {
     try {
-      plan.emplace(session_.next_plan(), quest_.plan(), quest_.problem(), session_.domain(),
-                   session_.operators());
+      plan.emplace(session_.progress().next_plan(), quest_.plan(), quest_.problem(),
+                   session_.domain(), session_.operators());
     } catch (const base::ConfigError& error) {
       why_ = std::string("the planner's plan is of no use: ") + error.what();
       return Result::kFailed;
@@ -198,7 +198,7 @@ Repair::Result Repair::Take() {
   const bool is_useless = quest_.outcome() == PlanQuest::Outcome::kFailed;
   if (!unwanted.empty() &&
       !is_useless) {  // ends by itself meanwhile, or is stopped; then a new plan is made
-    for (const int step : unwanted) session_.Stop(step);
+    for (const int step : unwanted) session_.progress().Stop(step);
     return Result::kUnderWay;
   }
   if (!plan) {
@@ -206,7 +206,7 @@ Repair::Result Repair::Take() {
     return is_useless ? Result::kFailed : Result::kNoPlan;
   }
   std::vector<int> informs = InformedSteps(*plan);
-  session_.Adopt(std::move(*plan), std::move(informs), pairs);
+  session_.progress().Adopt(std::move(*plan), std::move(informs), pairs);
   return Result::kMended;
 }
 

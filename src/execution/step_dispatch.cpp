@@ -18,17 +18,17 @@ bool Breaks(const std::vector<Datum>& passing, const StepRun& other) {
 void StepDispatch::Run() {
   for (bool again = true; again;) {
     again = false;
-    for (int i = 0; i < session_.run().size(); ++i) again = Advance(i) || again;
+    for (int i = 0; i < session_.progress().run().size(); ++i) again = Advance(i) || again;
   }
 }
 
 bool StepDispatch::Advance(int index) {
-  StepRun& step = session_.run().at(index);
+  StepRun& step = session_.progress().run().at(index);
   if (step.kind == StepRun::Kind::kImagine || !step.IsWaiting()) return false;
-  if (!session_.run().AreDone(step.after)) return false;
+  if (!session_.progress().run().AreDone(step.after)) return false;
   if (step.kind == StepRun::Kind::kBookkeeping) {
     step.phase = StepPhase::kDone;
-    session_.Note(session_.run().planned(index));
+    session_.state().Note(session_.progress().run().planned(index));
     return true;
   }
   if (step.phase == StepPhase::kWaiting) {
@@ -40,16 +40,16 @@ bool StepDispatch::Advance(int index) {
 }
 
 bool StepDispatch::CanRun(int index) const {
-  const StepRun& step = session_.run().at(index);
+  const StepRun& step = session_.progress().run().at(index);
   const bool holds = std::all_of(
       step.expectations.begin(), step.expectations.end(), [&](const Expectation& expectation) {
-        return session_.facts().Holds(expectation.literal, expectation.text);
+        return session_.state().facts().Holds(expectation.literal, expectation.text);
       });
   return holds && HasResources(index) && IsUndisturbed(index);
 }
 
 bool StepDispatch::HasResources(int index) const {
-  const PlanRun& run = session_.run();
+  const PlanRun& run = session_.progress().run();
   std::map<std::string, int> used = run.at(index).resources;
   for (const int active : run.Active()) {
     if (run.at(active).phase != StepPhase::kRunning) continue;
@@ -61,7 +61,7 @@ bool StepDispatch::HasResources(int index) const {
 }
 
 bool StepDispatch::IsUndisturbed(int index) const {
-  const PlanRun& run = session_.run();
+  const PlanRun& run = session_.progress().run();
   const StepRun& step = run.at(index);
   for (const int active : run.Active()) {
     const StepRun& other = run.at(active);
@@ -76,8 +76,9 @@ void StepDispatch::Start(int index) {
   desk_.Settle(index);
   if (!CanRun(index)) return;  // with other arguments it may need something else
   const MonitorParams& params = session_.params();
-  const double expected = session_.network().Expected(index);
-  session_.Start(index, std::max(params.overdue_minimum, params.overdue_factor * expected));
+  const double expected = session_.progress().network().Expected(index);
+  const double limit = std::max(params.overdue_minimum, params.overdue_factor * expected);
+  session_.progress().Start(index, limit, session_.state().facts());
 }
 
 }  // namespace hires::execution

@@ -49,15 +49,17 @@ base::Failure LossOf(const Expectation& expectation) {
 }  // namespace
 
 void StepWatch::OnFinished(const StepFinished& finished) {
-  const int index = session_.has_plan() ? session_.run().FindActivity(finished.activity) : -1;
+  const int index = session_.progress().has_plan()
+                        ? session_.progress().run().FindActivity(finished.activity)
+                        : -1;
   if (index < 0) return;  // of a step that is over or was given up
   const base::Failure failure = FailureOf(finished);
-  if (!failure) return session_.End(index, StepPhase::kChecking, "succeeded", {});
-  const StepRun& step = session_.run().at(index);
+  if (!failure) return session_.progress().End(index, StepPhase::kChecking, "succeeded", {});
+  const StepRun& step = session_.progress().run().at(index);
   if (step.is_stopping) {
-    return session_.End(index, StepPhase::kFailed, "preempted", step.stop_reason);
+    return session_.progress().End(index, StepPhase::kFailed, "preempted", step.stop_reason);
   }
-  session_.End(index, StepPhase::kFailed, "failed", failure);
+  session_.progress().End(index, StepPhase::kFailed, "failed", failure);
   if (NeedsAnotherWay(failure)) session_.Exclude(ExclusionFor(step.action, failure), index);
   session_.Report({Violation::Kind::kActivity, step.action, failure, index}, step.activity);
 }
@@ -74,7 +76,7 @@ void StepWatch::Check(bool with_later_steps) {
   wake_at_.reset();
   lost_.clear();
   still_broken_.clear();
-  PlanRun& run = session_.run();
+  PlanRun& run = session_.progress().run();
   for (const int step : run.Active()) {
     if (run.at(step).phase == StepPhase::kChecking) {
       CheckEffects(step);
@@ -93,31 +95,31 @@ void StepWatch::Check(bool with_later_steps) {
 
 /// What such a step still does is unknown: nothing may begin beside it.
 void StepWatch::CheckStop(int index) {
-  const StepRun& step = session_.run().at(index);
+  const StepRun& step = session_.progress().run().at(index);
   if (!IsPast(*step.stopped + session_.params().stop_timeout)) return;
   lost_ = fmt::format("{} was told to stop and has not answered for {} s",
                       base::ToString(step.action), session_.params().stop_timeout);
-  session_.Warning(lost_ + "; the robot may still move");
-  session_.End(index, StepPhase::kFailed, "failed", base::FailureCode::kDidNotStop);
+  session_.outbox().Warning(lost_ + "; the robot may still move");
+  session_.progress().End(index, StepPhase::kFailed, "failed", base::FailureCode::kDidNotStop);
 }
 
 void StepWatch::CheckDuration(int index) {
-  const StepRun& step = session_.run().at(index);
+  const StepRun& step = session_.progress().run().at(index);
   if (!IsPast(*step.started + step.time_limit)) return;
   const base::Failure overdue = base::FailureCode::kTimedOut;
-  session_.Stop(index, overdue);
+  session_.progress().Stop(index, overdue);
   session_.Report({Violation::Kind::kTimeout, step.action, overdue}, step.activity);
 }
 
 std::optional<base::Failure> StepWatch::MissingEffect(int index) const {
   constexpr base::FailureCode kCode = base::FailureCode::kEffectMissing;
-  const planning::PlanStep& planned = session_.run().planned(index);
+  const planning::PlanStep& planned = session_.progress().run().planned(index);
   for (const Datum& atom : planned.adds) {
-    if (session_.facts().HoldsText(ToString(atom))) continue;
+    if (session_.state().facts().HoldsText(ToString(atom))) continue;
     return About(kCode, AtomOf(atom), base::ToString(AtomOf(atom)));
   }
   for (const Datum& atom : planned.deletes) {
-    if (!session_.facts().HoldsText(ToString(atom))) continue;
+    if (!session_.state().facts().HoldsText(ToString(atom))) continue;
     return About(kCode, AtomOf(atom), "not " + base::ToString(AtomOf(atom)));
   }
   return std::nullopt;
@@ -125,28 +127,28 @@ std::optional<base::Failure> StepWatch::MissingEffect(int index) const {
 
 void StepWatch::CheckEffects(int index) {
   std::optional<base::Failure> missing = MissingEffect(index);
-  if (!missing) return session_.Confirm(index);
-  StepRun& step = session_.run().at(index);
+  if (!missing) return session_.progress().Confirm(index);
+  StepRun& step = session_.progress().run().at(index);
   const double due = *step.finished + session_.params().effect_timeout;
   if (!IsPast(due) || MayBeOnItsWay(due, base::ToString(step.action))) return;
-  if (session_.IsBehind(due)) missing->code = base::FailureCode::kEffectUnknown;
+  if (session_.state().IsBehind(due)) missing->code = base::FailureCode::kEffectUnknown;
   step.phase = StepPhase::kFailed;
   step.note = ToString(*missing);
   step.failure = *missing;
-  session_.Changed();
+  session_.progress().Changed();
   session_.Report({Violation::Kind::kEffect, step.action, *missing}, step.activity);
 }
 
 /// An effect that was not reported yet may still hold, for a limited time.
 bool StepWatch::MayBeOnItsWay(double due, const std::string& action) {
-  if (!session_.IsBehind(due)) {
+  if (!session_.state().IsBehind(due)) {
     late_.erase(action);
     return false;
   }
   const MonitorParams& params = session_.params();
   // Word of what is observed always takes a moment: it is worth telling where it takes long.
   if (IsPast(due + params.effect_timeout) && late_.insert(action).second) {
-    session_.Warning(
+    session_.outbox().Warning(
         fmt::format("{}: word of what is observed is {:.1f} s late; it is waited for up to {} s",
                     action, params.effect_timeout, params.observation_delay));
   }
@@ -155,7 +157,7 @@ bool StepWatch::MayBeOnItsWay(double due, const std::string& action) {
 
 /// Whether a running step may have changed it for a while.
 bool StepWatch::IsDisturbed(const Expectation& expectation) const {
-  const PlanRun& run = session_.run();
+  const PlanRun& run = session_.progress().run();
   for (const int step : run.Active()) {
     if (run.at(step).disturbance.Touches(expectation.literal.atom)) return true;
   }
@@ -164,7 +166,7 @@ bool StepWatch::IsDisturbed(const Expectation& expectation) const {
 
 /// Since when it does not hold [s], undisturbed.
 std::optional<double> StepWatch::BrokenSince(const Expectation& expectation) {
-  if (session_.facts().Holds(expectation.literal, expectation.text)) return std::nullopt;
+  if (session_.state().facts().Holds(expectation.literal, expectation.text)) return std::nullopt;
   if (IsDisturbed(expectation)) return std::nullopt;
   const std::string key = TextOf(expectation);
   const auto known = broken_.find(key);
@@ -175,12 +177,12 @@ std::optional<double> StepWatch::BrokenSince(const Expectation& expectation) {
 
 /// What a running step rests on, but for what it changes itself.
 void StepWatch::CheckConditions(int index) {
-  const StepRun& step = session_.run().at(index);
+  const StepRun& step = session_.progress().run().at(index);
   for (const Expectation& expectation : step.expectations) {
     const std::optional<double> since = BrokenSince(expectation);
     if (!since || !IsPast(*since + session_.params().break_delay)) continue;
     const base::Failure loss = LossOf(expectation);
-    session_.Stop(index, loss);
+    session_.progress().Stop(index, loss);
     session_.Report({Violation::Kind::kPrecondition, step.action, loss}, step.activity);
     return;
   }
@@ -188,7 +190,7 @@ void StepWatch::CheckConditions(int index) {
 
 /// What a later step rests on and was there already.
 void StepWatch::CheckLinks(int index) {
-  const PlanRun& run = session_.run();
+  const PlanRun& run = session_.progress().run();
   const StepRun& step = run.at(index);
   // A step whose turn has come may have to wait for an observation that is under way.
   const double patience = step.phase == StepPhase::kReady ? session_.params().effect_timeout
@@ -200,7 +202,7 @@ void StepWatch::CheckLinks(int index) {
     if (!since || !IsPast(*since + patience)) continue;
     if (MayBeOnItsWay(*since + patience, base::ToString(step.action))) continue;
     const base::Failure loss = LossOf(expectation);
-    session_.Blame(index, loss);
+    session_.progress().Blame(index, loss);
     session_.Report({Violation::Kind::kPrecondition, step.action, loss}, 0);
     return;
   }

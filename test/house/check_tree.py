@@ -492,7 +492,7 @@ FAILURE_TABLE = "src/base/failure.cpp"
 # Words that mean something else beside a failure, and where. Elsewhere base::FailureCode says it.
 ALSO_MEANS = {
     "imagined_failure": {  # a predicate of the planner
-        "src/execution/session.cpp", "src/knowledge/views/state_view_rules.cpp",
+        "src/execution/exclusions.cpp", "src/knowledge/views/state_view_rules.cpp",
         "src/planning/search/operator_applier.cpp", "src/planning/check/step_replay.cpp",
         "src/translation/wanted_state.cpp"},
     "motors_halted": {  # a key of a robot's names, a finding of the doctor
