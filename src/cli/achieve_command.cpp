@@ -87,9 +87,15 @@ loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& p
   order.scenario = ScenarioPath(options.scenario, package_folder);
   order.task = base::Join(options.task, " ");
   order.imagination = options.imagination;
+  order.truth = options.truth;
   order.seed = static_cast<std::uint64_t>(options.seed);
   order.threads = options.threads;
   return loop::PlayTask(setup, order, on_status, cancelled);
+}
+
+/// As it stands beside every result: `same` is no test of predictions.
+std::string TruthNote(const std::string& truth) {
+  return truth == "same" ? "same: imagination's own model" : truth;
 }
 
 /// What is really so in the end, whatever the robot believes.
@@ -99,9 +105,9 @@ void PrintTruth(const loop::LoopRun& run, double wall_seconds) {
     if (fate.falls > 0) fallen.push_back(name);
   }
   std::cout << fmt::format(
-      "in truth (same: imagination's own model): fallen: {}; the robot touched: {}\n"
+      "in truth ({}): fallen: {}; the robot touched: {}\n"
       "{:.1f} s of virtual time in {:.1f} s: {:.1f} times real time\n",
-      fallen.empty() ? "nothing" : base::Join(fallen, ", "),
+      TruthNote(run.truth_name), fallen.empty() ? "nothing" : base::Join(fallen, ", "),
       run.truth.contact.empty() ? "nothing" : run.truth.contact, run.virtual_seconds, wall_seconds,
       run.virtual_seconds / wall_seconds);
 }
@@ -148,6 +154,9 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
   verb->add_option("--seed", options->seed,
                    "with --local: of the hidden truth, all noise and imagination; default: 1")
       ->check(CLI::Range(0, 2'147'483'647));
+  verb->add_option("--truth", options->truth,
+                   "with --local: file, or its name in config/truths: what robot and world are "
+                   "really like; default: same, imagination's own model");
   verb->add_option("--threads", options->threads,
                    "with --local: that play rollouts; the answer is the same for any; default: 2")
       ->check(CLI::Range(1, 256));

@@ -134,13 +134,19 @@ double Distribution::Largest() const {
   return kind == Kind::kUniform ? second : first + 3.0 * second;
 }
 
+std::map<std::string, Distribution> ReadQuantities(base::ParamReader* in) {
+  std::map<std::string, Distribution> quantities;
+  for (const std::string& name : in->Keys()) {
+    const Quantity& quantity = FindQuantity(*in, name);
+    quantities[name] = ReadDistribution(in->Sub(name), quantity);
+  }
+  return quantities;
+}
+
 Uncertainty ParseUncertainty(const std::string& yaml, const std::string& where) {
   base::ParamReader in = base::ParamReader::FromString(yaml, where);
   Uncertainty uncertainty;
-  for (const std::string& name : in.Keys()) {
-    const Quantity& quantity = FindQuantity(in, name);
-    uncertainty.quantities[name] = ReadDistribution(in.Sub(name), quantity);
-  }
+  uncertainty.quantities = ReadQuantities(&in);
   in.RejectUnknownKeys();
   uncertainty.yaml = yaml;
   uncertainty.hash = HashOf(uncertainty.quantities);

@@ -61,6 +61,7 @@ LoopConfig ReadLoopConfig(const std::string& path) {
   ReadMiddleLayer(file("middle_layer"), &config);
   config.sensors = evaluation::ReadSimSensorParams(ParamReader::FromFile(file("sim_robot")));
   config.tracker = ReadTracker(file("world_tracker"));
+  config.truths = file("truths");
   config.pace = ReadPace(in.Sub("imagination"));
   config.planning_time = in.Get("planning_time", Between(0.0, 60.0));
   config.message_delay = in.Get("message_delay", Between(0.0, 1.0));

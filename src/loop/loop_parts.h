@@ -26,6 +26,7 @@ struct LoopConfig {
   evaluation::SimSensorParams sensors;
   TrackerParams tracker;
   ImaginationPace pace;
+  std::string truths;          ///< folder of what robot and world may really be like
   double planning_time{0.05};  ///< [s] that a search takes
   double message_delay{0.0};   ///< [s] of what sensors say on its way to the tracker
 };

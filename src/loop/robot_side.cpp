@@ -15,11 +15,12 @@ constexpr double kBegin = 1.0;  // [s] 0 means "no time yet"
 }  // namespace
 
 RobotSide::RobotSide(const LoopSetup::Parts& parts, const imagination::StartState& start,
-                     std::uint64_t seed, VirtualClock* clock, Hooks hooks)
+                     const evaluation::Truth& truth, std::uint64_t seed, VirtualClock* clock,
+                     Hooks hooks)
     : clock_(*clock),
       hooks_(std::move(hooks)),
-      world_(parts.world, start, seed),
-      sensors_(parts.config.sensors, seed, parts.world.scene),
+      world_(parts.world, start, seed, truth),
+      sensors_(evaluation::SensorsOf(truth, parts.config.sensors), seed, world_.scene()),
       truth_(parts.world.standing) {}
 
 void RobotSide::Begin() {

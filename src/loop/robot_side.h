@@ -21,8 +21,8 @@ class RobotSide {
   };
 
   /// @pre all outlive this.
-  RobotSide(const LoopSetup::Parts& parts, const imagination::StartState& start, std::uint64_t seed,
-            VirtualClock* clock, Hooks hooks);
+  RobotSide(const LoopSetup::Parts& parts, const imagination::StartState& start,
+            const evaluation::Truth& truth, std::uint64_t seed, VirtualClock* clock, Hooks hooks);
 
   void Begin();
   /// Carried out at the end of this tick, or at the next one.

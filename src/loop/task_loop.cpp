@@ -55,11 +55,13 @@ class Play {
  public:
   Play(const LoopSetup::Parts& parts, const LoopOrder& order, const evaluation::Scenario& scenario)
       : order_(Completed(order, scenario, parts.planning.domain)),
+        truth_(evaluation::ReadTruth(evaluation::TruthPath(order.truth, parts.config.truths))),
         message_delay_(parts.config.message_delay),
         clock_(kStart),
         blackboard_(parts.ontology),
         pool_(order.threads),
-        robot_(parts, evaluation::StartOf(parts.world, order.scenario, ""), order.seed, &clock_,
+        robot_(parts, evaluation::StartOf(parts.world, order.scenario, ""), truth_, order.seed,
+               &clock_,
                {[this](const SensorNews& news) { Hear(news); },
                 [this](double stamp) { Look(stamp); }}),
         middle_layer_(parts.world, FramesOf(parts.world.scene->robot), parts.config.runner,
@@ -108,6 +110,7 @@ class Play {
     } else {
       run.report = monitor_.Report();
     }
+    run.truth_name = truth_.name;
     run.truth = {robot_.truth().objects(), robot_.truth().contact()};
     run.virtual_seconds = clock_.now() - kStart;
     return run;
@@ -160,6 +163,7 @@ class Play {
   }
 
   const LoopOrder order_;
+  const evaluation::Truth truth_;
   const double message_delay_;
   VirtualClock clock_;
   Blackboard blackboard_;

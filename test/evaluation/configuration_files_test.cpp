@@ -7,6 +7,7 @@
 #include <map>
 
 #include "hires/evaluation/scenario.h"
+#include "hires/evaluation/truth.h"
 #include "hires/execution/monitor_config.h"
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
@@ -40,6 +41,7 @@ const std::map<std::string, Reader>& Readers() {
       {"imagination_client.yaml",
        [](const std::string& path) { imagination::ReadClientConfig(path); }},
       {"scene.yaml", [](const std::string& path) { imagination::ReadSetupConfig(path); }},
+      {"truths", [](const std::string& path) { evaluation::ReadTruth(path); }},
       {"uncertainty.yaml", [](const std::string& path) { imagination::LoadUncertainty(path); }},
       {"planner.yaml",
        [](const std::string& path) {

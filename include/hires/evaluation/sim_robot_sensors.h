@@ -27,6 +27,9 @@ struct SimSensorParams {
 /// @throws base::ConfigError naming file and key.
 SimSensorParams ReadSimSensorParams(base::ParamReader in);
 
+/// How they are under this truth.
+SimSensorParams SensorsOf(const Truth& truth, SimSensorParams params);
+
 /// Base laser and head camera of the robot that stands in for a real one. Their noise is a stream
 /// of its own for each moment: asked twice, they say the same twice.
 class SimRobotSensors {

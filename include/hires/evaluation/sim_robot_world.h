@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hires/base/rng.h"
+#include "hires/evaluation/truth.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/sensing/readings.h"
 #include "hires/simulation/robot_simulator.h"
@@ -36,10 +37,11 @@ struct SensorReadings {
 /// then. It sees no topics and no clock but its own; the same calls give the same bits.
 class SimRobotWorld {
  public:
+  /// @param imagined  what imagination has; `truth` says how far from it things really are.
   /// The load settles for half a second that counts nowhere.
   /// @throws base::ConfigError as RobotSimulator.
-  SimRobotWorld(const imagination::ImaginationSetup& setup, const imagination::StartState& start,
-                std::uint64_t seed);
+  SimRobotWorld(const imagination::ImaginationSetup& imagined, const imagination::StartState& start,
+                std::uint64_t seed, const Truth& truth = {});
 
   void Apply(const robot::Command& command);
   void Advance(long milliseconds);  ///< of its own time
@@ -47,6 +49,7 @@ class SimRobotWorld {
 
   long milliseconds() const { return milliseconds_; }  ///< since the start
   const simulation::RobotSimulator& simulator() const { return *simulator_; }
+  const std::shared_ptr<const simulation::Scene>& scene() const { return setup_->scene; }
   /// How the camera's recogniser errs.
   double detection_noise() const { return variation_.detection_noise; }          ///< [m]
   double detection_noise_yaw() const { return variation_.detection_noise_yaw; }  ///< [rad]

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hires/base/hash.h"
+#include "hires/base/param_reader.h"
 #include "hires/base/rng.h"
 #include "hires/simulation/variation.h"
 
@@ -37,6 +38,8 @@ struct Uncertainty {
 Uncertainty LoadUncertainty(const std::string& path);
 Uncertainty ParseUncertainty(const std::string& yaml, const std::string& where);
 Uncertainty NoUncertainty();  ///< everything exactly nominal
+/// The quantities of such a map, or of one inside another file.
+std::map<std::string, Distribution> ReadQuantities(base::ParamReader* in);
 
 /// What makes two uncertainties the same: names and distributions.
 void AddTo(base::Hasher* hasher, const std::map<std::string, Distribution>& quantities);

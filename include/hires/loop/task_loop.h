@@ -30,6 +30,7 @@ class LoopSetup {
 struct LoopOrder {
   std::string scenario;      ///< file: who stands where, and what the robot is told
   std::string task;          ///< empty: the scenario's
+  std::string truth;         ///< of config/truths, or a file; empty: same
   std::string imagination;   ///< domain, thesis, off; empty: as the execution monitor is configured
   std::uint64_t seed{1};     ///< of the hidden truth, of all noise and of imagination
   int rollouts{0};           ///< per combination of alternatives; 0: as the monitor is configured
@@ -41,6 +42,7 @@ struct LoopOrder {
 struct LoopRun {
   evaluation::AchieveReport report;
   evaluation::RunTruth truth;   ///< how things really stand in the end
+  std::string truth_name;       ///< of what robot and world were really like: same, foreign, ...
   double virtual_seconds{0.0};  ///< [s] from the robot's start to the end
   bool is_timed_out{false};     ///< the time limit came first
 };
@@ -50,7 +52,7 @@ struct LoopRun {
 /// the last bit for the same order, whatever the number of threads.
 /// @param on_status  told of every change; may be empty.
 /// @param cancelled  asked every tick; then the task is preempted; may be empty.
-/// @throws base::ConfigError for a scenario or a task that makes no sense.
+/// @throws base::ConfigError for a scenario, a truth or a task that makes no sense.
 LoopRun PlayTask(const LoopSetup& setup, const LoopOrder& order,
                  const evaluation::OnAchieveStatus& on_status = {},
                  const std::function<bool()>& cancelled = {});

@@ -42,6 +42,11 @@ SimSensorParams ReadSimSensorParams(ParamReader in) {
   return params;
 }
 
+SimSensorParams SensorsOf(const Truth& truth, SimSensorParams params) {
+  if (truth.senses_ideally) params.laser.noise = 0.0;
+  return params;
+}
+
 SimRobotSensors::SimRobotSensors(const SimSensorParams& params, std::uint64_t seed,
                                  std::shared_ptr<const simulation::Scene> scene)
     : params_(params),

@@ -80,13 +80,14 @@ StartState StartOf(const ImaginationSetup& setup, const std::string& scenario,
                           : StartOfScenario(setup, scenario);
 }
 
-SimRobotWorld::SimRobotWorld(const ImaginationSetup& setup, const StartState& start,
-                             std::uint64_t seed)
-    : setup_(std::make_shared<const ImaginationSetup>(setup)),
+SimRobotWorld::SimRobotWorld(const ImaginationSetup& imagined, const StartState& start,
+                             std::uint64_t seed, const Truth& truth)
+    : setup_(std::make_shared<const ImaginationSetup>(SetupOf(truth, imagined))),
       control_rng_(base::Rng(seed).Fork(kControl)),
       simulator_rng_(base::Rng(seed).Fork(kSimulator)),
-      steps_per_millisecond_(StepsPerMillisecond(setup.physics.time_step)) {
+      steps_per_millisecond_(StepsPerMillisecond(imagined.physics.time_step)) {
   const base::Rng rng(seed);
+  const ImaginationSetup& setup = *setup_;
   variation_ = simulation::WithFreeStart(
       imagination::SampleVariation(*setup.uncertainty, rng.Fork(kVariation)), *setup.scene,
       start.robot);
