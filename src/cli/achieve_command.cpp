@@ -16,6 +16,7 @@
 #include "hires/base/text.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
+#include "hires/evaluation/truth.h"
 #include "hires/loop/task_loop.h"
 
 namespace hires::cli {
@@ -93,11 +94,6 @@ loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& p
   return loop::PlayTask(setup, order, on_status, cancelled);
 }
 
-/// As it stands beside every result: `same` is no test of predictions.
-std::string TruthNote(const std::string& truth) {
-  return truth == "same" ? "same: imagination's own model" : truth;
-}
-
 /// What is really so in the end, whatever the robot believes.
 void PrintTruth(const loop::LoopRun& run, double wall_seconds) {
   std::vector<std::string> fallen;
@@ -107,7 +103,7 @@ void PrintTruth(const loop::LoopRun& run, double wall_seconds) {
   std::cout << fmt::format(
       "in truth ({}): fallen: {}; the robot touched: {}\n"
       "{:.1f} s of virtual time in {:.1f} s: {:.1f} times real time\n",
-      TruthNote(run.truth_name), fallen.empty() ? "nothing" : base::Join(fallen, ", "),
+      evaluation::TruthNote(run.truth_name), fallen.empty() ? "nothing" : base::Join(fallen, ", "),
       run.truth.contact.empty() ? "nothing" : run.truth.contact, run.virtual_seconds, wall_seconds,
       run.virtual_seconds / wall_seconds);
 }

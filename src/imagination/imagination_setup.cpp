@@ -137,6 +137,7 @@ SetupConfig ReadSetupConfig(const std::string& path) {
   config.robot = ResolvePath(in.GetString("robot"), path);
   config.objects = ResolvePath(in.GetString("objects"), path);
   config.uncertainty = ResolvePath(in.GetString("uncertainty"), path);
+  config.has_base_guard = in.GetBool("base_guard");
   config.driving = ReadDriving(in.Sub("driving"));
   config.blind = ReadBlind(in.Sub("blind_driving"));
   config.manipulation = skills::ReadManipulationParams(in.Sub("manipulation"));
@@ -165,6 +166,7 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   ImaginationSetup setup;
   world::World world = LoadWorldWithObjects(config, &setup.object_models);
   robot::Robot robot = robot::LoadAnyRobot(config.robot);
+  if (config.has_base_guard) robot.profile.base_controller.stops_at_timeout = false;
   setup.skills = std::make_shared<const skills::SkillSet>(
       skills::MakeSkillSet(world, robot, config.driving, config.blind, config.manipulation,
                            config.standing, skills::LoadActionSet(config.action_libraries)));

@@ -17,6 +17,8 @@ namespace {
 
 using simulation::Variation;
 
+constexpr double kLargestScore = 3.0;  // what lies beyond is drawn again
+
 struct Quantity {
   std::string name;
   std::string unit;
@@ -89,14 +91,24 @@ const Quantity& FindQuantity(const base::ParamReader& in, const std::string& nam
 
 Distribution ReadDistribution(base::ParamReader in, const Quantity& quantity) {
   const auto bound = base::Between(quantity.lower, quantity.upper);
-  const std::string kind = in.Get("distribution", base::OneOf({"fixed", "uniform", "normal"}));
+  const std::string kind =
+      in.Get("distribution", base::OneOf({"fixed", "uniform", "normal", "lognormal", "laplace"}));
   in.Get("unit", base::OneOf({quantity.unit}));
   in.GetString("source");
   if (kind == "fixed") return {Distribution::Kind::kFixed, in.Get("value", bound), 0.0};
+  const auto spread = base::Between(0.0, quantity.upper - quantity.lower);
   if (kind == "normal") {
     const double mean = in.Get("mean", bound);
-    const double sd = in.Get("sd", base::Between(0.0, quantity.upper - quantity.lower));
-    return {Distribution::Kind::kNormal, mean, sd};
+    return {Distribution::Kind::kNormal, mean, in.Get("sd", spread)};
+  }
+  if (kind == "laplace") {
+    const double mean = in.Get("mean", bound);
+    return {Distribution::Kind::kLaplace, mean, in.Get("distance", spread)};
+  }
+  if (kind == "lognormal") {
+    const double median = in.Get("median", bound);
+    if (median <= 0.0) in.Fail("median", "wanted more than 0");
+    return {Distribution::Kind::kLogNormal, median, in.Get("log_sd", base::Between(0.0, 3.0))};
   }
   const double lower = in.Get("lower", bound), upper = in.Get("upper", bound);
   if (lower > upper) in.Fail("upper", "wanted at least the lower end");
@@ -123,15 +135,38 @@ void AddTo(base::Hasher* hasher, const std::map<std::string, Distribution>& quan
 double Distribution::Sample(base::Rng* rng) const {
   if (kind == Kind::kFixed) return first;
   if (kind == Kind::kUniform) return rng->Uniform(first, second);
+  if (kind != Kind::kNormal) {
+    for (;;) {
+      const double score = rng->Normal(0.0, 1.0);
+      if (std::abs(score) <= kLargestScore) return AtScore(score);
+    }
+  }
   for (;;) {
     const double value = rng->Normal(first, second);
     if (std::abs(value - first) <= 3.0 * second) return value;
   }
 }
 
+double Distribution::AtScore(double score) const {
+  const double below = 0.5 * std::erfc(-score / std::sqrt(2.0));  // share of smaller values
+  switch (kind) {
+    case Kind::kFixed:
+      return first;
+    case Kind::kUniform:
+      return first + below * (second - first);
+    case Kind::kNormal:
+      return first + score * second;
+    case Kind::kLogNormal:
+      return first * std::exp(score * second);
+    case Kind::kLaplace:
+      break;
+  }
+  const double tail = std::min(below, 1.0 - below);
+  return first + std::copysign(-second * std::log(2.0 * tail), score);
+}
+
 double Distribution::Largest() const {
-  if (kind == Kind::kFixed) return first;
-  return kind == Kind::kUniform ? second : first + 3.0 * second;
+  return kind == Kind::kUniform ? second : AtScore(kLargestScore);
 }
 
 std::map<std::string, Distribution> ReadQuantities(base::ParamReader* in) {
@@ -164,7 +199,8 @@ Uncertainty UncertaintyFromText(const std::string& text, const std::string& wher
 }
 
 simulation::Variation SampleVariation(const Uncertainty& uncertainty, const base::Rng& rng,
-                                      Arrival arrival) {
+                                      Arrival arrival,
+                                      const std::map<std::string, double>& scores) {
   Variation variation;
   for (const Quantity& quantity : Quantities()) {
     const auto found = uncertainty.quantities.find(quantity.name);
@@ -175,7 +211,10 @@ simulation::Variation SampleVariation(const Uncertainty& uncertainty, const base
     base::Rng own = rng.Fork(stream.value());
     double& slot = quantity.slot(variation);
     // A normal distribution may reach beyond what makes sense at all (a negative noise, say).
-    slot = std::min(quantity.upper, std::max(quantity.lower, found->second.Sample(&own)));
+    const auto score = scores.find(quantity.name);
+    const double value =
+        score == scores.end() ? found->second.Sample(&own) : found->second.AtScore(score->second);
+    slot = std::min(quantity.upper, std::max(quantity.lower, value));
   }
   return variation;
 }

@@ -87,6 +87,32 @@ void BaseDrive::StepAxis(Axis* axis, double grip, double dt) const {
   axis->velocity += dt * axis->acceleration;
 }
 
+/// Wheels that lose their grip still roll as the ramp asks for, but the base does not follow.
+void BaseDrive::SlideAxes(const Axes& before, double traction, double dt) {
+  const double linear = std::hypot(x_.acceleration, y_.acceleration);
+  const double angular = kTurningArm * std::abs(yaw_.acceleration);
+  const auto slide = [&](Axis* axis, const Axis& old, double wanted) {
+    if (wanted <= traction) return;
+    axis->acceleration *= traction / wanted;
+    axis->velocity = old.velocity + dt * axis->acceleration;
+  };
+  slide(&x_, before[0], linear);
+  slide(&y_, before[1], linear);
+  slide(&yaw_, before[2], angular);
+}
+
+void BaseDrive::AddPush(double dt) {
+  x_.velocity += dt * push_->vx;
+  y_.velocity += dt * push_->vy;
+  yaw_.velocity += dt * push_->wz;
+}
+
+geometry::Twist2 BaseDrive::Acceleration() const {
+  const geometry::Twist2 own{x_.acceleration, y_.acceleration, yaw_.acceleration};
+  if (!push_) return own;
+  return {own.vx + push_->vx, own.vy + push_->vy, own.wz + push_->wz};
+}
+
 double BaseDrive::StepLean(Lean* lean, double acceleration, double dt) const {
   const double w = params_.sway_frequency;
   const double rest = params_.sway_compliance * acceleration;
@@ -95,7 +121,7 @@ double BaseDrive::StepLean(Lean* lean, double acceleration, double dt) const {
   return lean->angle;
 }
 
-void BaseDrive::Step(double time, double dt, double slip) {
+void BaseDrive::Step(double time, double dt, double slip, double traction) {
   Receive(time);
   const bool is_late = time - last_command_ > params_.command_timeout;
   // Once it stands there is nothing left to brake.
@@ -105,9 +131,12 @@ void BaseDrive::Step(double time, double dt, double slip) {
   } else {
     StepRamp(is_late ? geometry::Twist2{} : target_, dt);
   }
+  const Axes before{x_, y_, yaw_};
   for (Axis* axis : {&x_, &y_, &yaw_}) StepAxis(axis, 1.0 - slip, dt);
+  if (traction < std::numeric_limits<double>::infinity()) SlideAxes(before, traction, dt);
+  if (push_) AddPush(dt);
   motion_.V_B = {x_.velocity, y_.velocity, yaw_.velocity};
-  motion_.A_B = {x_.acceleration, y_.acceleration, yaw_.acceleration};
+  motion_.A_B = Acceleration();
   // Braking (negative acceleration) leans the nose down; accelerating to the left leans the body
   // to the right.
   motion_.pitch = StepLean(&pitch_, -motion_.A_B.vx, dt);

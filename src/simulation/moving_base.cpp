@@ -11,28 +11,35 @@ constexpr double kSlipCorrelation = 0.1;  // [s]
 
 }  // namespace
 
-MovingBase::MovingBase(const robot::RobotProfile& profile, const Variation& variation,
-                       const geometry::Pose2& start, double time_step, const base::Rng& rng)
+MovingBase::MovingBase(const robot::RobotProfile& profile, const FloorPlaces& places,
+                       const Variation& variation, const geometry::Pose2& start, double time_step,
+                       const base::Rng& rng)
     : wheel_slip_(variation.wheel_slip),
       time_step_(time_step),
       limits_(profile.base_controller.limits),
       // Four wheels at the corners of a square within the footprint carry the base.
       wheel_arm_(0.7 * geometry::InscribedRadius(profile.footprint)),
       floor_(variation.floor_roughness, rng.Fork(0)),
+      places_(places),
       state_{
           BaseDrive(Varied(profile.base_controller, variation), start), rng.Fork(1), 0.0, {}, {}} {
   state_.X_MB = LeaningPose();
 }
 
+double MovingBase::HeightAt(const Eigen::Vector2d& p_M) const {
+  return places_.sills.empty() ? floor_.HeightAt(p_M)
+                               : floor_.HeightAt(p_M) + places_.HeightAt(p_M);
+}
+
 geometry::Pose3 MovingBase::LeaningPose() const {
   const BaseMotion& motion = state_.drive.motion();
   double height = 0.0, pitch = motion.pitch, roll = motion.roll;
-  if (!floor_.is_flat()) {
+  if (!floor_.is_flat() || !places_.sills.empty()) {
     const double arm = wheel_arm_;
     double front = 0.0, left = 0.0;
     for (const double x : {arm, -arm}) {
       for (const double y : {arm, -arm}) {
-        const double h = floor_.HeightAt(motion.X_MB * Eigen::Vector2d(x, y));
+        const double h = HeightAt(motion.X_MB * Eigen::Vector2d(x, y));
         height += h / 4.0;
         front += h / 2.0 * (x > 0.0 ? 1.0 : -1.0);
         left += h / 2.0 * (y > 0.0 ? 1.0 : -1.0);
@@ -53,7 +60,9 @@ void MovingBase::DrawSlip(double dt) {
 }
 
 void MovingBase::Step(double time, double next_time) {
-  state_.drive.Step(time, time_step_, state_.slip);
+  const double traction =
+      places_.patches.empty() ? kFullTraction : places_.TractionAt(motion().X_MB.position());
+  state_.drive.Step(time, time_step_, state_.slip, traction);
   state_.X_MB = LeaningPose();
   state_.disturbances.Note(motion(), limits_, next_time);
 }

@@ -4,8 +4,9 @@
 #include "hires/robot/robot_profile.h"
 #include "hires/simulation/base_drive.h"
 #include "hires/simulation/disturbances.h"
+#include "hires/simulation/floor_places.h"
 #include "hires/simulation/variation.h"
-#include "simulation/floor_profile.h"
+#include "simulation/floor/floor_profile.h"
 
 namespace hires::simulation {
 
@@ -20,13 +21,19 @@ class MovingBase {
     Disturbances disturbances;
   };
 
+  /// @param places  of the floor; they outlive this.
   /// @param start  where the base is really put.
   /// @param rng  of the simulator; its forks 0 and 1 are used.
-  MovingBase(const robot::RobotProfile& profile, const Variation& variation,
-             const geometry::Pose2& start, double time_step, const base::Rng& rng);
+  MovingBase(const robot::RobotProfile& profile, const FloorPlaces& places,
+             const Variation& variation, const geometry::Pose2& start, double time_step,
+             const base::Rng& rng);
 
   /// As BaseDrive::Send.
   void Send(const geometry::Twist2& velocity, double time) { state_.drive.Send(velocity, time); }
+  /// As BaseDrive::Push.
+  void Push(const std::optional<geometry::Twist2>& acceleration) {
+    state_.drive.Push(acceleration);
+  }
   /// Draws how the wheels slip from now on. @param dt  [s] since they were drawn last.
   void DrawSlip(double dt);
   void Step(double time, double next_time);
@@ -42,12 +49,14 @@ class MovingBase {
 
  private:
   geometry::Pose3 LeaningPose() const;
+  double HeightAt(const Eigen::Vector2d& p_M) const;
 
   double wheel_slip_;
   double time_step_;  // [s]
   robot::MotionSet limits_;
   double wheel_arm_;  // [m] of the wheels from the base's origin, along x and along y
   FloorProfile floor_;
+  const FloorPlaces& places_;
   State state_;
 };
 

@@ -50,6 +50,10 @@ void RobotSimulator::Remember(const std::vector<robot::SeenObject>& objects) {
   if (camera_) camera_->Remember(objects, base().X_MB);
 }
 
+void RobotSimulator::Push(const std::optional<geometry::Twist2>& acceleration) {
+  base_->Push(acceleration);
+}
+
 void RobotSimulator::Step() {
   if (state_.steps % kSlowSteps == 0) {
     base_->DrawSlip(kSlowSteps * time_step());

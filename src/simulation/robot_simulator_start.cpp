@@ -43,7 +43,7 @@ RobotSimulator::RobotSimulator(std::shared_ptr<const Scene> scene, const Variati
   RefuseStiff(Varied(robot.profile.base_controller, variation), time_step());
   RefusePose("the robot", geometry::Lift(robot_state.X_MB));
   RefuseUnknownJoints(robot_state.joints, robot.model);
-  base_ = std::make_unique<MovingBase>(robot.profile, variation,
+  base_ = std::make_unique<MovingBase>(robot.profile, scene_->floor, variation,
                                        robot_state.X_MB * variation.start_offset, time_step(), rng);
   frozen_ = std::make_unique<FrozenRobot>(scene_, robot_state.joints);
   sensors_ = std::make_unique<RobotSensors>(scene_, variation, rng);

@@ -55,9 +55,16 @@ std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot,
   RobotClearance base_clearance(base_B, world);
   std::shared_ptr<const perception::Surroundings> surroundings;
   if (profile.upper_body) surroundings = std::make_shared<const perception::Surroundings>(world);
-  return std::make_shared<const Scene>(
-      Scene{std::move(world), std::move(robot), std::move(shapes_B), std::move(clearance), X_BO,
-            std::move(base_B), std::move(base_clearance), std::move(surroundings), memory});
+  return std::make_shared<const Scene>(Scene{std::move(world),
+                                             std::move(robot),
+                                             std::move(shapes_B),
+                                             std::move(clearance),
+                                             X_BO,
+                                             std::move(base_B),
+                                             std::move(base_clearance),
+                                             std::move(surroundings),
+                                             memory,
+                                             {}});
 }
 
 }  // namespace hires::simulation

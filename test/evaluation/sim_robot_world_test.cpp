@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "hires/simulation/truth_record.h"
@@ -26,8 +27,8 @@ class SimRobotWorldTest : public ::testing::Test {
   static imagination::ImaginationSetup Setup(const std::string& uncertainty = "none") {
     imagination::ImaginationSetup setup;
     setup.scene = hires::test_support::RoomScene();
-    setup.skills = std::make_shared<const skills::SkillSet>(
-        skills::MakeSkillSet(hires::test_support::Room(), hires::test_support::TrayRobot(), {}, {}));
+    setup.skills = std::make_shared<const skills::SkillSet>(skills::MakeSkillSet(
+        hires::test_support::Room(), hires::test_support::TrayRobot(), {}, {}));
     setup.uncertainty = std::make_shared<const imagination::Uncertainty>(
         imagination::UncertaintyFromText(uncertainty, "test"));
     setup.object_models = {{"mill1", "mill"}};
@@ -164,6 +165,119 @@ TEST(StartOfTest, ScenariosOfThePackageHaveAStart) {
   EXPECT_NEAR(start.robot.joints.at("l_elbow_flex_joint"), -2.05, 1e-9);
   EXPECT_THAT(hires::test_support::ConfigErrorOf([&] { StartOf(setup, "", "nowhere"); }),
               HasSubstr("nowhere"));
+}
+
+/// All that a world does in 20 s of standing and driving.
+Truth Eventful() {
+  Truth truth;
+  truth.name = "eventful";
+  truth.bumps = {3.0, 0.2, 0.3, 0.25};
+  truth.walk = {0.02, 0.01, 5.0};
+  return truth;
+}
+
+TEST_F(SimRobotWorldTest, TheSameSeedIsTheSameUnderEveryTruth) {
+  SimRobotWorld a(Setup(kUncertain), Start(), 7, Eventful());
+  SimRobotWorld b(Setup(kUncertain), Start(), 7, Eventful());
+  SimRobotWorld same(Setup(kUncertain), Start(), 7), named(Setup(kUncertain), Start(), 7, Truth{});
+  for (SimRobotWorld* world : {&a, &b, &same, &named}) DriveAhead(100, world);
+  EXPECT_EQ(a.simulator().base().X_MB.x, b.simulator().base().X_MB.x);
+  EXPECT_EQ(a.Sense().X_MB.x, b.Sense().X_MB.x);
+  EXPECT_NE(a.simulator().base().X_MB.x, same.simulator().base().X_MB.x);
+  EXPECT_EQ(named.simulator().base().X_MB.x, same.simulator().base().X_MB.x);
+}
+
+TEST_F(SimRobotWorldTest, ABumpChangesTheTwistOfABaseThatStands) {
+  Truth truth;
+  truth.bumps = {2.0, 0.2, 0.3, 0.25};
+  truth.controller = {{"loop_frequency", 20.0}, {"loop_damping", 0.7}};
+  SimRobotWorld world(Setup(), Start(), 1, truth);
+  double fastest = 0.0;
+  for (int i = 0; i < 1000; ++i) {  // 10 s
+    world.Advance(10);
+    const geometry::Twist2& V_B = world.simulator().base().V_B;
+    fastest = std::max(fastest, std::hypot(V_B.vx, V_B.vy));
+  }
+  EXPECT_GT(fastest, 0.02);
+  EXPECT_LT(fastest, 0.3);
+}
+
+TEST_F(SimRobotWorldTest, ASillShakesWhatStandsOnTheTray) {
+  const auto largest_tilt = [](const Truth& truth) {
+    SimRobotWorld world(Setup(), Start(), 1, truth);
+    double largest = 0.0;
+    for (int tick = 0; tick < 60; ++tick) {
+      world.Apply(Drive(0.3));
+      for (int i = 0; i < 5; ++i) {
+        world.Advance(10);
+        const auto X_MO = world.simulator().GetWorldState().objects.front().X_MO;
+        if (tick > 30) largest = std::max(largest, geometry::TiltOf(X_MO.rotation));
+      }
+    }
+    return largest;
+  };
+  Truth truth;
+  truth.floor.sills = {{{1.6, 0.0}, {1.6, 4.0}, 0.04, 0.004}};
+  EXPECT_GT(largest_tilt(truth), largest_tilt(Truth{}) + 0.003);
+}
+
+TEST_F(SimRobotWorldTest, LocalisationThatWalksIsOffByItsSpread) {
+  Truth truth;
+  truth.walk = {0.02, 0.0, 1.0};
+  SimRobotWorld world(Setup(), Start(), 1, truth);
+  double sum = 0.0;
+  for (int i = 0; i < 2000; ++i) {
+    world.Advance(50);
+    const double error = world.Sense().X_MB.x - world.simulator().base().X_MB.x;
+    sum += error * error / 2000.0;
+  }
+  EXPECT_NEAR(std::sqrt(sum), 0.02, 0.006);  // 100 s are about 50 independent values
+}
+
+TEST_F(SimRobotWorldTest, ImaginationIsGivenTheSameForEveryTruth) {
+  const imagination::ImaginationSetup imagined = Setup(kUncertain);
+  const auto scene = imagined.scene;
+  const double frequency = scene->robot.profile.base_controller.loop_frequency;
+  Truth truth = Eventful();
+  truth.controller["loop_frequency"] = 11.0;
+  truth.changes["object_mass"] = {imagination::Distribution::Kind::kFixed, 2.0, 0.0};
+  truth.floor.patches = {{{1.0, 2.0}, 1.0, 0.5}};
+  const SimRobotWorld world(imagined, Start(), 1, truth);
+  EXPECT_EQ(world.scene()->robot.profile.base_controller.loop_frequency, 11.0);
+  EXPECT_NE(world.scene(), scene);
+  EXPECT_EQ(imagined.scene, scene);
+  EXPECT_EQ(scene->robot.profile.base_controller.loop_frequency, frequency);
+  EXPECT_TRUE(scene->floor.patches.empty());
+  EXPECT_EQ(imagined.uncertainty->quantities.at("object_mass").first, 0.8);
+}
+
+TEST_F(SimRobotWorldTest, FurnitureIsMovedForTheRobotAloneAndNeverOntoIt) {
+  const imagination::ImaginationSetup imagined = Setup();
+  const world::StaticBody& body = imagined.scene->world.statics[1];
+  Truth truth;
+  truth.moved = {{body.name, {-0.5, 0.0, 0.0}, 1.0}};
+  const SimRobotWorld moved(imagined, Start(), 1, truth);
+  EXPECT_NEAR(moved.scene()->world.statics[1].X_MB.translation.x(), body.X_MB.translation.x() - 0.5,
+              1e-12);
+  const Pose2 to_robot{Start().robot.X_MB.x - body.X_MB.translation.x(),
+                       Start().robot.X_MB.y - body.X_MB.translation.y(), 0.0};
+  truth.moved.front().by = to_robot;
+  const SimRobotWorld kept(imagined, Start(), 1, truth);
+  EXPECT_EQ(kept.scene()->world.statics[1].X_MB.translation, body.X_MB.translation);
+  truth.moved.front().body = "sofa";
+  EXPECT_THAT(
+      hires::test_support::ConfigErrorOf([&] { SimRobotWorld(imagined, Start(), 1, truth); }),
+      HasSubstr("static body 'sofa' is unknown"));
+}
+
+TEST_F(SimRobotWorldTest, FurnitureThatWasMovedIsThereToBeTouched) {
+  Truth truth;
+  truth.moved = {{"east_wall", {-2.5, 0.0, 0.0}, 1.0}};  // its face is at x = 3.5 m then
+  SimRobotWorld moved(Setup(), Start(), 1, truth), same(Setup(), Start(), 1);
+  for (SimRobotWorld* world : {&moved, &same}) DriveAhead(180, world);
+  ASSERT_TRUE(moved.simulator().contact());
+  EXPECT_EQ(moved.simulator().contact()->obstacle, "east_wall");
+  EXPECT_FALSE(same.simulator().contact());
 }
 
 }  // namespace

@@ -166,6 +166,7 @@ class SimRobotParamsTest : public ::testing::Test {
       text.replace(at, a.size(), b);
     };
     replace("scene: scene.yaml", "scene: " + config_ + "scene.yaml");
+    replace("truth: same", "truth: " + config_ + "truths/same.yaml");
     replace(from, to);
     return text;
   }
@@ -181,6 +182,7 @@ TEST_F(SimRobotParamsTest, TheFileOfThePackageIsComplete) {
   EXPECT_EQ(params.pace, 1.0);
   EXPECT_EQ(params.sensors.laser.num_beams, 640);
   EXPECT_TRUE(params.scenario.empty());
+  EXPECT_EQ(params.truth.name, "same");
 }
 
 TEST_F(SimRobotParamsTest, WhatMakesNoSenseIsNamed) {
@@ -189,6 +191,7 @@ TEST_F(SimRobotParamsTest, WhatMakesNoSenseIsNamed) {
   EXPECT_THAT(Refusal("period: 0.5", "period: 0.12"), HasSubstr("multiple of 0.05 s"));
   EXPECT_THAT(Refusal("beams: 640", "beams: 1"), HasSubstr("laser.beams is '1'"));
   EXPECT_THAT(Refusal("hold: false", "hold: maybe"), HasSubstr("hold"));
+  EXPECT_THAT(Refusal("truths/same.yaml", "truths/sane.yaml"), HasSubstr("truths/sane.yaml"));
 }
 
 }  // namespace

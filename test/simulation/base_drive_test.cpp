@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "hires/base/rng.h"
@@ -357,6 +359,46 @@ TEST(BaseDriveTest, ACopyGoesOnWithTheSameBits) {
   for (int i = 0; i < 1000; ++i) {
     ASSERT_TRUE(SameBits(original.Step(0.01), copy.Step(0.01))) << "step " << i;
   }
+}
+
+/// [m] that a base that is told to stand goes on from 0.5 m/s.
+double StoppingDistance(double traction) {
+  robot::BaseControllerParams params = Ideal();
+  params.loop_frequency = 20.0;
+  params.loop_damping = 0.7;
+  BaseDrive drive(params, {});
+  double time = 0.0;
+  const auto step_for = [&](double duration, double grip) {
+    for (const double end = time + duration; time < end; time += kDt) {
+      drive.Step(time, kDt, 0.0, grip);
+    }
+  };
+  drive.Send({0.5, 0.0, 0.0}, time);
+  step_for(2.0, std::numeric_limits<double>::infinity());
+  const double from = drive.motion().X_MB.x;
+  drive.Send({}, time);
+  step_for(3.0, traction);
+  return drive.motion().X_MB.x - from;
+}
+
+TEST(BaseDriveTest, WheelsThatSlideStopAsFrictionAlonePermits) {
+  // v^2 / 2a, with less than half a turn of the loop, 0.05 s, before and behind it.
+  EXPECT_NEAR(StoppingDistance(0.5), 0.25, 0.03);
+  EXPECT_GT(StoppingDistance(0.5), 2.0 * StoppingDistance(1e6));
+  EXPECT_EQ(StoppingDistance(1e6), StoppingDistance(std::numeric_limits<double>::infinity()));
+}
+
+TEST(BaseDriveTest, APushMovesABaseThatStandsAndItsLoopBringsItToRest) {
+  robot::BaseControllerParams params = Ideal();
+  params.loop_frequency = 20.0;
+  params.loop_damping = 0.7;
+  Drive pushed(params);
+  pushed.drive.Push(Twist2{0.0, 1.0, 0.0});
+  EXPECT_GT(pushed.StepFor(0.05).V_B.vy, 0.02);
+  EXPECT_EQ(pushed.drive.motion().A_B.vx, 0.0);
+  EXPECT_GT(pushed.drive.motion().A_B.vy, 0.0);
+  pushed.drive.Push(std::nullopt);
+  EXPECT_NEAR(pushed.StepFor(2.0).V_B.vy, 0.0, 1e-6);
 }
 
 }  // namespace

@@ -14,8 +14,11 @@ using test_support::TrayRobot;
 
 constexpr double kTimeStep = 0.001;
 
-MovingBase BaseAt(const Pose2& X_MB, const Variation& variation = {}, std::uint64_t seed = 1) {
-  return MovingBase(TrayRobot().profile, variation, X_MB, kTimeStep, base::Rng(seed));
+MovingBase BaseAt(const Pose2& X_MB, const Variation& variation = {}, std::uint64_t seed = 1,
+                  const FloorPlaces* places = nullptr) {
+  static const FloorPlaces kEven;
+  return MovingBase(TrayRobot().profile, places ? *places : kEven, variation, X_MB, kTimeStep,
+                    base::Rng(seed));
 }
 
 /// Drives at a constant command, with slip that is drawn every 10 ms.
@@ -101,6 +104,50 @@ TEST(DisturbancesTest, KeepTheLatestTimeOfEach) {
   EXPECT_EQ(disturbances.braking, 3.0);
   EXPECT_EQ(disturbances.turning, 4.0);
   EXPECT_EQ(disturbances.late_command, 4.0);
+}
+
+TEST(MovingBaseTest, ASillLiftsAndTiltsItWhereItLiesAndNowhereElse) {
+  FloorPlaces places;
+  places.sills = {{{1.0, -1.0}, {1.0, 1.0}, 0.1, 0.01}};
+  const double arm = 0.7 * geometry::InscribedRadius(TrayRobot().profile.footprint);
+  const MovingBase before = BaseAt({0.5 - arm, 0.0, 0.0}, {}, 1, &places);
+  EXPECT_EQ(before.X_MB().translation.z(), 0.0);
+  const MovingBase upon = BaseAt({1.0 - arm, 0.0, 0.0}, {}, 1, &places);  // its front wheels
+  EXPECT_NEAR(upon.X_MB().translation.z(), 0.005, 1e-12);
+  EXPECT_NEAR(geometry::TiltOf(upon.X_MB().rotation), 0.01 / (2.0 * arm), 1e-9);
+  EXPECT_GT((upon.X_MB().rotation * Eigen::Vector3d::UnitX()).z(), 0.0);  // the nose is up
+}
+
+TEST(MovingBaseTest, APatchLengthensAStopOnItAlone) {
+  FloorPlaces places;
+  places.patches = {{{0.0, 0.0}, 3.0, 0.3}};
+  const auto stop_from = [&](double x) {
+    MovingBase base = BaseAt({x, 0.0, 0.0}, {}, 1, &places);
+    for (int i = 0; i < 4000; ++i) {
+      if (i % 50 == 0) base.Send({i < 2000 ? 0.3 : 0.0, 0.0, 0.0}, i * kTimeStep);
+      base.Step(i * kTimeStep, (i + 1) * kTimeStep);
+      if (i == 1999) x = base.motion().X_MB.x;
+    }
+    return base.motion().X_MB.x - x;
+  };
+  EXPECT_GT(stop_from(0.0), 1.5 * stop_from(10.0));
+}
+
+TEST(FloorPlacesTest, ASillIsSmoothBesideItsTopAndEndsWithItsLine) {
+  FloorPlaces places;
+  places.sills = {{{0.0, 0.0}, {0.0, 1.0}, 0.02, 0.01}};
+  EXPECT_EQ(places.HeightAt({0.01, 0.5}), 0.01);
+  EXPECT_NEAR(places.HeightAt({0.035, 0.5}), 0.005, 1e-12);
+  EXPECT_EQ(places.HeightAt({0.06, 0.5}), 0.0);
+  EXPECT_EQ(places.HeightAt({0.0, 1.1}), 0.0);
+}
+
+TEST(FloorPlacesTest, TheMostSlipperyPatchCounts) {
+  FloorPlaces places;
+  places.patches = {{{0.0, 0.0}, 1.0, 1.2}, {{0.5, 0.0}, 1.0, 0.6}};
+  EXPECT_EQ(places.TractionAt({-0.9, 0.0}), 1.2);
+  EXPECT_EQ(places.TractionAt({0.2, 0.0}), 0.6);
+  EXPECT_EQ(places.TractionAt({0.0, 2.0}), kFullTraction);
 }
 
 }  // namespace

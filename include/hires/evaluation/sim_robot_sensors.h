@@ -21,6 +21,7 @@ struct SimSensorParams {
   simulation::LaserParams laser;  ///< its link is the robot's own
   double min_visible_share{0.3};  ///< of an object's surface towards the camera
   double detection_period{0.5};   ///< [s], a multiple of the tick
+  Recogniser recogniser;          ///< what it does wrong beside its noise
 };
 
 /// The blocks `laser` and `detector` of a file like config/sim_robot.yaml.
@@ -49,13 +50,15 @@ class SimRobotSensors {
                                                          const SensorReadings& readings);
 
  private:
+  void Misjudge(std::vector<perception::Detection>* seen, base::Rng rng) const;
   bool IsLookDue(const SimRobotWorld& world, const SensorReadings& readings) const;
 
   const SimSensorParams params_;
   const std::shared_ptr<const simulation::Scene> scene_;
   simulation::LaserParams laser_;
-  std::optional<long> last_look_;            // [ms] of the camera
-  const base::Rng scan_rng_, detector_rng_;  // forked for each moment
+  std::optional<long> last_look_;                         // [ms] of the camera
+  const base::Rng scan_rng_, detector_rng_, missed_rng_;  // forked for each moment
+  const base::Rng bias_rng_;                              // forked for each object
 };
 
 }  // namespace hires::evaluation

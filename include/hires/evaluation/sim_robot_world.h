@@ -14,6 +14,8 @@
 
 namespace hires::evaluation {
 
+class BumpSchedule;
+
 /// Where the robot and all loose objects are at first.
 /// @param scenario  file; empty: the world's own objects, the robot at `area`.
 /// @throws base::ConfigError naming scenario, area, arm, posture or object.
@@ -42,6 +44,7 @@ class SimRobotWorld {
   /// @throws base::ConfigError as RobotSimulator.
   SimRobotWorld(const imagination::ImaginationSetup& imagined, const imagination::StartState& start,
                 std::uint64_t seed, const Truth& truth = {});
+  ~SimRobotWorld();
 
   void Apply(const robot::Command& command);
   void Advance(long milliseconds);  ///< of its own time
@@ -63,6 +66,8 @@ class SimRobotWorld {
 
  private:
   double time() const { return 0.001 * static_cast<double>(milliseconds_); }
+  void Bump();
+  void Walk(double dt);
   void Deliver(const geometry::Twist2& velocity);
   void DeliverLate();
   void MoveOdometry(double dt);
@@ -88,6 +93,13 @@ class SimRobotWorld {
   };
   std::map<std::string, SentTrajectory> trajectories_;     // by group
   std::map<std::string, robot::GripperCommand> grippers_;  // by arm
+
+  // What imagination does not model.
+  std::unique_ptr<BumpSchedule> bumps_;  // null: nobody bumps into it
+  bool is_pushed_{false};
+  LocalisationWalk walk_;
+  base::Rng walk_rng_;
+  geometry::Pose2 walk_error_;  // believed pose in the one that it would believe otherwise
 
   // A control cycle that comes late: its commands wait until then.
   double last_delivery_{-1e9};  // [s]

@@ -13,12 +13,14 @@ namespace hires::imagination {
 
 /// How one uncertain quantity is spread.
 struct Distribution {
-  enum class Kind { kFixed, kUniform, kNormal };
+  enum class Kind { kFixed, kUniform, kNormal, kLogNormal, kLaplace };
   Kind kind{Kind::kFixed};
-  double first{0.0};   ///< fixed: the value; uniform: lower end; normal: mean
-  double second{0.0};  ///< uniform: upper end; normal: standard deviation
+  double first{0.0};   ///< fixed: the value; uniform: lower end; normal, laplace: mean; else median
+  double second{0.0};  ///< uniform: upper end; normal: standard deviation; lognormal: of the
+                       ///< logarithm; laplace: mean distance from the mean
 
   double Sample(base::Rng* rng) const;  ///< a normal one is drawn again beyond 3 deviations
+  double AtScore(double score) const;   ///< the quantile of a standard normal score
   double Largest() const;               ///< no value that is drawn is larger
 };
 
@@ -32,8 +34,9 @@ struct Uncertainty {
 };
 
 /// Reads `config/uncertainty.yaml` or a file like it. Each quantity is a map with `distribution`
-/// (fixed, uniform, normal), its numbers (`value`; `lower`, `upper`; `mean`, `sd`), `unit` (must be
-/// the quantity's own) and `source` (why these numbers).
+/// (fixed, uniform, normal, lognormal, laplace), its numbers (`value`; `lower`, `upper`; `mean`,
+/// `sd`; `median`, `log_sd`; `mean`, `distance`), `unit` (must be the quantity's own) and `source`
+/// (why these numbers).
 /// @throws base::ConfigError naming file, key and line.
 Uncertainty LoadUncertainty(const std::string& path);
 Uncertainty ParseUncertainty(const std::string& yaml, const std::string& where);
@@ -56,7 +59,9 @@ enum class Arrival {
 
 /// Draws one truth. Each quantity has a stream of its own, so that one more or less uncertain
 /// quantity leaves the draws of the others alone (common random numbers).
+/// @param scores  by quantity: where a standard normal score was drawn already.
 simulation::Variation SampleVariation(const Uncertainty& uncertainty, const base::Rng& rng,
-                                      Arrival arrival = Arrival::kDriven);
+                                      Arrival arrival = Arrival::kDriven,
+                                      const std::map<std::string, double>& scores = {});
 
 }  // namespace hires::imagination

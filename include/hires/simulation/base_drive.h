@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
 #include <deque>
+#include <limits>
+#include <optional>
 
 #include "hires/geometry/pose.h"
 #include "hires/robot/robot_profile.h"
@@ -30,9 +33,18 @@ class BaseDrive {
   /// @pre times do not decrease.
   void Send(const geometry::Twist2& velocity, double time);
 
+  /// Something pushes the base: what it adds to the derivative of V_B [m/s^2], [rad/s^2] until
+  /// another push is told, or that there is none any more. The wheels' loop works against it.
+  void Push(const std::optional<geometry::Twist2>& acceleration) { push_ = acceleration; }
+
   /// Moves on from `time` to `time + dt`. `slip` is the share of the wanted velocity that the
   /// wheels lose: 0 is perfect grip. It acts through the velocity loop, which cannot jump.
-  void Step(double time, double dt, double slip);
+  /// `traction` [m/s^2] is the most that the wheels speed the base up or brake it; a wheel at
+  /// kTurningArm from the middle has no more for turning.
+  void Step(double time, double dt, double slip,
+            double traction = std::numeric_limits<double>::infinity());
+
+  static constexpr double kTurningArm = 0.32;  ///< [m] of the PR2's casters
 
   const BaseMotion& motion() const { return motion_; }
 
@@ -43,6 +55,7 @@ class BaseDrive {
     double velocity{0.0};      // of the velocity loop
     double acceleration{0.0};  // its derivative
   };
+  using Axes = std::array<Axis, 3>;  // x, y, yaw
   struct Lean {
     double angle{0.0};
     double rate{0.0};
@@ -55,6 +68,9 @@ class BaseDrive {
   void StandAtOnce();
   void StepRamp(const geometry::Twist2& target, double dt);
   void StepAxis(Axis* axis, double grip, double dt) const;
+  void SlideAxes(const Axes& before, double traction, double dt);
+  void AddPush(double dt);
+  geometry::Twist2 Acceleration() const;
   double StepLean(Lean* lean, double acceleration, double dt) const;
 
   robot::BaseControllerParams params_;
@@ -63,6 +79,7 @@ class BaseDrive {
   double last_command_{-1e9};  // [s] when the command in force took effect
   Axis x_, y_, yaw_;
   Lean pitch_, roll_;
+  std::optional<geometry::Twist2> push_;
   BaseMotion motion_;
 };
 

@@ -57,6 +57,8 @@ class RobotSimulator {
   /// the Blackboard knows, a robot with nothing. In the map as the robot believes it. What its
   /// hands hold it knows by itself.
   void Remember(const std::vector<robot::SeenObject>& objects);
+  /// Something pushes the base: BaseDrive::Push.
+  void Push(const std::optional<geometry::Twist2>& acceleration);
   void Step();  ///< advances by time_step()
 
   double time() const { return state_.time; }  ///< [s] since construction

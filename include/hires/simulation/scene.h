@@ -6,6 +6,7 @@
 #include "hires/perception/surroundings.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/sensing/object_memory.h"
+#include "hires/simulation/floor_places.h"
 #include "hires/simulation/robot_clearance.h"
 #include "hires/world/world.h"
 
@@ -25,6 +26,7 @@ struct Scene {
   /// What the robot's camera looks at; null without an upper body.
   std::shared_ptr<const perception::Surroundings> surroundings;
   sensing::MemoryParams memory;  ///< of what that camera sees
+  FloorPlaces floor;             ///< what the floor has that no map tells; imagination: nothing
 };
 
 /// Collision shapes in the base frame with the joints frozen in `posture`.

@@ -1,7 +1,9 @@
 #include "hires/evaluation/sim_robot_sensors.h"
 
 #include <cmath>
+#include <utility>
 
+#include "hires/base/hash.h"
 #include "hires/simulation/scan_ghosts.h"
 
 namespace hires::evaluation {
@@ -11,7 +13,12 @@ using base::Between;
 using base::ParamReader;
 
 constexpr double kStillHead = 0.02;  // [rad/s]
-enum SensorStreams : std::uint64_t { kScanStream = 100, kDetectorStream };
+enum SensorStreams : std::uint64_t {
+  kScanStream = 100,
+  kDetectorStream,
+  kMissedStream,
+  kBiasStream
+};
 
 simulation::LaserParams ReadLaser(ParamReader in) {
   simulation::LaserParams params;
@@ -44,6 +51,7 @@ SimSensorParams ReadSimSensorParams(ParamReader in) {
 
 SimSensorParams SensorsOf(const Truth& truth, SimSensorParams params) {
   if (truth.senses_ideally) params.laser.noise = 0.0;
+  params.recogniser = truth.recogniser;
   return params;
 }
 
@@ -53,7 +61,9 @@ SimRobotSensors::SimRobotSensors(const SimSensorParams& params, std::uint64_t se
       scene_(std::move(scene)),
       laser_(params.laser),
       scan_rng_(base::Rng(seed).Fork(kScanStream)),
-      detector_rng_(base::Rng(seed).Fork(kDetectorStream)) {
+      detector_rng_(base::Rng(seed).Fork(kDetectorStream)),
+      missed_rng_(base::Rng(seed).Fork(kMissedStream)),
+      bias_rng_(base::Rng(seed).Fork(kBiasStream)) {
   laser_.link = scene_->robot.profile.laser_link;
 }
 
@@ -100,7 +110,28 @@ std::optional<std::vector<perception::Detection>> SimRobotSensors::Look(
   const perception::DetectorParams detector{params_.min_visible_share, world.detection_noise(),
                                             world.detection_noise_yaw()};
   base::Rng rng = detector_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
-  return perception::Detect(sight, view, objects, detector, &rng);
+  auto seen = perception::Detect(sight, view, objects, detector, &rng);
+  Misjudge(&seen, missed_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds())));
+  return seen;
+}
+
+/// Some are missed; the others are all off, each in its own way.
+void SimRobotSensors::Misjudge(std::vector<perception::Detection>* seen, base::Rng rng) const {
+  const Recogniser& recogniser = params_.recogniser;
+  std::vector<perception::Detection> told;
+  for (perception::Detection& detection : *seen) {
+    if (rng.Bernoulli(recogniser.missed)) continue;
+    base::Hasher object;
+    object.Add(detection.instance.value_or(detection.label));
+    base::Rng own = bias_rng_.Fork(object.value());
+    const double x = own.Normal(0.0, recogniser.bias), y = own.Normal(0.0, recogniser.bias);
+    const double yaw = own.Normal(0.0, recogniser.bias_yaw);
+    if (recogniser.bias > 0.0 || recogniser.bias_yaw > 0.0) {
+      detection.X_CO = detection.X_CO * geometry::Lift(geometry::Pose2{x, y, yaw});
+    }
+    told.push_back(std::move(detection));
+  }
+  *seen = std::move(told);
 }
 
 }  // namespace hires::evaluation

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "evaluation/truth/bump_schedule.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/scenario.h"
@@ -23,7 +24,16 @@ using imagination::StartState;
 using simulation::RobotSimulator;
 
 constexpr long kSettling = 500;  // [ms]
-enum Streams : std::uint64_t { kVariation, kSimulator, kControl, kOdometer };
+constexpr long kWalkStep = 50;   // [ms]
+enum Streams : std::uint64_t {
+  kVariation,
+  kSimulator,
+  kControl,
+  kOdometer,
+  kFurniture,
+  kBumps,
+  kWalk
+};
 
 template <typename T>
 const T& Lookup(const std::map<std::string, T>& known, const std::string& kind,
@@ -82,30 +92,57 @@ StartState StartOf(const ImaginationSetup& setup, const std::string& scenario,
 
 SimRobotWorld::SimRobotWorld(const ImaginationSetup& imagined, const StartState& start,
                              std::uint64_t seed, const Truth& truth)
-    : setup_(std::make_shared<const ImaginationSetup>(SetupOf(truth, imagined))),
+    : setup_(std::make_shared<const ImaginationSetup>(
+          SetupOf(truth, imagined, start.robot.X_MB, base::Rng(seed).Fork(kFurniture)))),
       control_rng_(base::Rng(seed).Fork(kControl)),
       simulator_rng_(base::Rng(seed).Fork(kSimulator)),
-      steps_per_millisecond_(StepsPerMillisecond(imagined.physics.time_step)) {
+      steps_per_millisecond_(StepsPerMillisecond(imagined.physics.time_step)),
+      walk_(truth.walk),
+      walk_rng_(base::Rng(seed).Fork(kWalk)) {
   const base::Rng rng(seed);
   const ImaginationSetup& setup = *setup_;
   variation_ = simulation::WithFreeStart(
-      imagination::SampleVariation(*setup.uncertainty, rng.Fork(kVariation)), *setup.scene,
-      start.robot);
+      DrawVariation(truth, *setup.uncertainty, rng.Fork(kVariation)), *setup.scene, start.robot);
   odometry_scale_ = 1.0 + rng.Fork(kOdometer).Normal(0.0, variation_.wheel_slip);
   simulator_ =
       std::make_unique<RobotSimulator>(setup.scene, variation_, start.world, start.robot,
                                        simulator_rng_, setup.physics, LevelFor(*setup.scene));
   Advance(kSettling);
   milliseconds_ = 0;
+  if (truth.bumps.mean_interval > 0.0) {
+    bumps_ = std::make_unique<BumpSchedule>(truth.bumps, rng.Fork(kBumps));
+  }
 }
+
+SimRobotWorld::~SimRobotWorld() = default;
 
 void SimRobotWorld::Advance(long milliseconds) {
   for (long i = 0; i < milliseconds; ++i) {
     DeliverLate();
+    if (bumps_) Bump();
+    if (milliseconds_ % kWalkStep == 0) Walk(0.001 * kWalkStep);
     for (long step = 0; step < steps_per_millisecond_; ++step) simulator_->Step();
     MoveOdometry(0.001);
     ++milliseconds_;
   }
+}
+
+void SimRobotWorld::Bump() {
+  const std::optional<Twist2> push = bumps_->PushAt(time());
+  if (push || is_pushed_) simulator_->Push(push);
+  is_pushed_ = push.has_value();
+}
+
+/// A process whose spread stays the same while its values lose their memory.
+void SimRobotWorld::Walk(double dt) {
+  if (walk_.sd == 0.0 && walk_.sd_yaw == 0.0) return;
+  const double keep = std::exp(-dt / walk_.time), rest = std::sqrt(1.0 - keep * keep);
+  const auto move = [&](double sd, double* error) {
+    *error = keep * *error + rest * walk_rng_.Normal(0.0, sd);
+  };
+  move(walk_.sd, &walk_error_.x);
+  move(walk_.sd, &walk_error_.y);
+  move(walk_.sd_yaw, &walk_error_.yaw);
 }
 
 void SimRobotWorld::MoveOdometry(double dt) {
@@ -158,8 +195,8 @@ void SimRobotWorld::DeliverLate() {
 SensorReadings SimRobotWorld::Sense() {
   const robot::Observation seen = simulator_->Observe(0.0);
   SensorReadings readings;
-  readings.X_MB = seen.X_MB;
-  readings.X_MO = seen.X_MB * X_OB_.Inverse();
+  readings.X_MB = walk_.sd > 0.0 || walk_.sd_yaw > 0.0 ? seen.X_MB * walk_error_ : seen.X_MB;
+  readings.X_MO = readings.X_MB * X_OB_.Inverse();
   readings.odometry = {X_OB_, seen.V_B};
   readings.joints = {seen.joints, seen.joint_velocities};
   if (readings.joints.positions.empty()) {

@@ -1,51 +1,26 @@
 #include "hires/evaluation/truth.h"
 
-#include <algorithm>
-#include <filesystem>
-#include <vector>
+#include <cmath>
+#include <utility>
 
+#include "evaluation/truth/controller_changes.h"
 #include "hires/base/error.h"
-#include "hires/base/param_reader.h"
 #include "hires/base/text.h"
 
 namespace hires::evaluation {
 namespace {
 
-namespace fs = std::filesystem;
-using base::ParamReader;
+using geometry::Pose2;
 using imagination::Distribution;
 using imagination::Uncertainty;
+using simulation::Scene;
 
-constexpr char kSame[] = "same";
+constexpr double kNearRobot = 1.0;  // [m]
+constexpr double kLargestScore = 3.0;
 constexpr const char* kOfSensors[] = {"detection_noise", "detection_noise_yaw", "encoder_noise"};
 constexpr const char* kOfLocalisation[] = {"localisation_x",         "localisation_y",
                                            "localisation_yaw",       "localisation_noise",
                                            "localisation_noise_yaw", "ghost_rate"};
-
-std::vector<std::string> NamesIn(const std::string& folder) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-void ReadUncertainty(ParamReader in, const std::string& path, Truth* truth) {
-  const std::string file = in.GetString("file");
-  if (file != kSame) {
-    const std::string resolved = imagination::ResolvePath(file, path);
-    truth->uncertainty = std::make_shared<const Uncertainty>(
-        file == "none" ? imagination::NoUncertainty() : imagination::LoadUncertainty(resolved));
-  }
-  ParamReader changes = in.Sub("changes");
-  truth->changes = imagination::ReadQuantities(&changes);
-}
-
-bool ReadIdeally(const std::string& key, ParamReader* in) {
-  return in->Get(key, base::OneOf({"fitted", "ideal"})) == "ideal";
-}
 
 bool ChangesWhatIsDrawn(const Truth& truth) {
   return truth.uncertainty || !truth.changes.empty() || truth.senses_ideally ||
@@ -64,43 +39,85 @@ Uncertainty UncertaintyOf(const Truth& truth, const Uncertainty& imagined) {
   return drawn;
 }
 
-}  // namespace
-
-std::string TruthPath(const std::string& name, const std::string& folder) {
-  const fs::path path(name);
-  if (path.has_parent_path() || path.extension() == ".yaml") return name;
-  const std::string wanted = name.empty() ? kSame : name;
-  const std::vector<std::string> names = NamesIn(folder);
-  if (std::find(names.begin(), names.end(), wanted) == names.end()) {
-    throw base::ConfigError(folder + ": " + base::UnknownName("truth", wanted, names) +
-                            "; or give a path");
-  }
-  return folder + "/" + wanted + ".yaml";
+bool ChangesTheScene(const Truth& truth) {
+  return truth.stops_at_timeout || !truth.controller.empty() || !truth.floor.sills.empty() ||
+         !truth.floor.patches.empty() || !truth.moved.empty();
 }
 
-Truth ReadTruth(const std::string& path) {
-  ParamReader in = ParamReader::FromFile(path);
-  Truth truth;
-  truth.name = fs::path(path).stem().string();
-  in.Get("engine", base::OneOf({"ode"}));
-  in.Get("level", base::OneOf({"planar"}));
-  in.Sub("controller");
-  ReadUncertainty(in.Sub("uncertainty"), path, &truth);
-  truth.senses_ideally = ReadIdeally("sensing", &in);
-  truth.localises_ideally = ReadIdeally("localisation", &in);
-  in.Sub("events");
-  in.RejectUnknownKeys();
-  return truth;
+world::StaticBody* FindStatic(const Truth& truth, const std::string& name, world::World* world) {
+  std::vector<std::string> names;
+  for (world::StaticBody& body : world->statics) {
+    if (body.name == name) return &body;
+    names.push_back(body.name);
+  }
+  throw base::ConfigError("truth '" + truth.name +
+                          "', events.moved: " + base::UnknownName("static body", name, names) +
+                          "; a truth with furniture fits one world");
+}
+
+/// Nobody puts a chair onto a robot.
+void MoveFurniture(const Truth& truth, const Pose2& X_MB, base::Rng rng, world::World* world) {
+  for (const MovedBody& moved : truth.moved) {
+    world::StaticBody* body = FindStatic(truth, moved.body, world);
+    const bool is_moved = rng.Bernoulli(moved.probability);  // drawn whatever is near
+    geometry::Pose3 X_MBody = body->X_MB;
+    X_MBody.translation += Eigen::Vector3d(moved.by.x, moved.by.y, 0.0);
+    X_MBody.rotation = geometry::RotationFromRpy(0.0, 0.0, moved.by.yaw) * X_MBody.rotation;
+    const double away = (X_MBody.translation.head<2>() - X_MB.position()).norm();
+    if (is_moved && away >= kNearRobot) body->X_MB = X_MBody;
+  }
+}
+
+std::shared_ptr<const Scene> SceneOf(const Truth& truth, const Scene& imagined, const Pose2& X_MB,
+                                     const base::Rng& rng) {
+  world::World world = imagined.world;
+  MoveFurniture(truth, X_MB, rng, &world);
+  robot::Robot robot = imagined.robot;
+  ChangeController(truth, &robot.profile.base_controller);
+  auto scene = std::make_shared<Scene>(
+      *simulation::MakeScene(std::move(world), std::move(robot), imagined.memory));
+  scene->floor = truth.floor;
+  return scene;
+}
+
+double BoundedScore(base::Rng* rng) {
+  for (;;) {
+    const double score = rng->Normal(0.0, 1.0);
+    if (std::abs(score) <= kLargestScore) return score;
+  }
+}
+
+}  // namespace
+
+std::string TruthNote(const std::string& name) {
+  return name == Truth{}.name ? name + ": imagination's own model" : name;
 }
 
 imagination::ImaginationSetup SetupOf(const Truth& truth,
-                                      const imagination::ImaginationSetup& imagined) {
+                                      const imagination::ImaginationSetup& imagined,
+                                      const Pose2& X_MB, const base::Rng& rng) {
   imagination::ImaginationSetup setup = imagined;
   if (ChangesWhatIsDrawn(truth)) {
     setup.uncertainty =
         std::make_shared<const Uncertainty>(UncertaintyOf(truth, *imagined.uncertainty));
   }
+  if (ChangesTheScene(truth)) setup.scene = SceneOf(truth, *imagined.scene, X_MB, rng);
   return setup;
+}
+
+simulation::Variation DrawVariation(const Truth& truth, const Uncertainty& uncertainty,
+                                    const base::Rng& rng) {
+  std::map<std::string, double> scores;
+  for (const Correlation& pair : truth.correlations) {
+    base::Hasher stream;
+    stream.Add("scores of " + pair.first + " and " + pair.second);
+    base::Rng own = rng.Fork(stream.value());
+    const double common = BoundedScore(&own), alone = BoundedScore(&own);
+    const double rest = std::sqrt(1.0 - pair.coefficient * pair.coefficient);
+    scores[pair.first] = common;
+    scores[pair.second] = pair.coefficient * common + rest * alone;
+  }
+  return imagination::SampleVariation(uncertainty, rng, imagination::Arrival::kDriven, scores);
 }
 
 }  // namespace hires::evaluation

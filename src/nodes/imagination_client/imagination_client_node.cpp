@@ -43,7 +43,7 @@ imagination::Event EventOf(int worker, int alternative, const WorkerLink::Played
 }  // namespace
 
 ImaginationClientParams LoadImaginationClientParams() {
-  RejectUnknownPrivate({"config", "workers", "world", "robot", "objects", "uncertainty",
+  RejectUnknownPrivate({"config", "workers", "world", "robot", "objects", "uncertainty", "guard",
                         "localisation", "map_to_world", "action_libraries"});
   ImaginationClientParams params;
   params.config = imagination::ReadClientConfig(PrivateText("config").value_or(
@@ -52,6 +52,7 @@ ImaginationClientParams LoadImaginationClientParams() {
   Override("workers", PrivateInt("workers"), hires::base::Between(1, 256), &params.num_workers);
   imagination::OverridePaths(PrivateText("world"), PrivateText("robot"), PrivateText("objects"),
                              PrivateText("uncertainty"), &params.setup);
+  params.setup.has_base_guard = PrivateBool("guard").value_or(params.setup.has_base_guard);
   params.setup.action_libraries = PrivateActionLibraries();
   params.localisation = PrivateText("localisation").value_or("");
   params.map_to_world =

@@ -13,10 +13,9 @@ using hires::base::Between;
 using hires::base::ParamReader;
 
 /// How loads bear braking stands in the guard's own file, so that both think the same.
-GuardParams ReadGuard(ParamReader in, std::optional<bool> is_there, const std::string& path) {
+GuardParams ReadGuard(ParamReader in, bool is_there, const std::string& path) {
   GuardParams params;
-  params.is_there = in.GetBool("is_there");
-  params.is_there = is_there.value_or(params.is_there);
+  params.is_there = is_there;
   params.request_period = in.Get("request_period", Between(0.01, 0.05));
   const std::string file = hires::imagination::ResolvePath(in.GetString("config"), path);
   if (params.is_there) params.braking = hires::navigation::ReadBaseGuardParams(file).braking;
@@ -37,11 +36,12 @@ MiddleLayerParams Read(const std::string& path, std::optional<bool> is_guard_the
   MiddleLayerParams params;
   params.setup = hires::imagination::ReadSetupConfig(
       hires::imagination::ResolvePath(in.GetString("scene"), path));
+  params.setup.has_base_guard = is_guard_there.value_or(params.setup.has_base_guard);
   params.runner.time_limit = in.Get("time_limit", Between(0.1, 3600.0));
   params.runner.stale_after = params.setup.sensing.robot_state.stale_after;
   params.runner.stop = hires::control::ReadStopParams(in.Sub("stopping"));
   params.scan = hires::sensing::ReadScanParams(in.Sub("scan"));
-  params.guard = ReadGuard(in.Sub("guard"), is_guard_there, path);
+  params.guard = ReadGuard(in.Sub("guard"), params.setup.has_base_guard, path);
   params.override = ReadOverride(in.Sub("override"));
   params.navigation =
       hires::control::ReadNavigation(in.Sub("navigation"), std::move(navigation_by));

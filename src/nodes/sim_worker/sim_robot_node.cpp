@@ -47,8 +47,9 @@ SimRobotNode::SimRobotNode(const SimRobotParams& params,
                            const hires::imagination::ImaginationSetup& setup, ros::NodeHandle* nh)
     : params_(params),
       robot_(setup.scene->robot),
-      world_(setup, hires::evaluation::StartOf(setup, params.scenario, params.area), params.seed),
-      publisher_(params, setup, nh),
+      world_(setup, hires::evaluation::StartOf(setup, params.scenario, params.area), params.seed,
+             params.truth),
+      publisher_(params, setup, world_, nh),
       truth_(setup.standing),
       is_held_(params.hold) {
   truth_.Look(world_.simulator());

@@ -18,7 +18,13 @@ void DropNoiseIfCertain(SimRobotParams* params) {
   if (params->setup.uncertainty == "none") params->sensors.laser.noise = 0.0;
 }
 
-void OverridePrivate(SimRobotParams* params) {
+/// @param path  of the file that the truths lie beside.
+hires::evaluation::Truth TruthOf(const std::string& name, const std::string& path) {
+  return hires::evaluation::ReadTruth(
+      hires::evaluation::TruthPath(name, hires::imagination::ResolvePath("truths", path)));
+}
+
+void OverridePrivate(const std::string& path, SimRobotParams* params) {
   hires::imagination::OverridePaths(PrivateText("world"), PrivateText("robot"),
                                     PrivateText("objects"), PrivateText("uncertainty"),
                                     &params->setup);
@@ -28,6 +34,8 @@ void OverridePrivate(SimRobotParams* params) {
   };
   override_text("scenario", &params->scenario);
   override_text("area", &params->area);
+  const std::string truth = PrivateText("truth").value_or("");
+  if (!truth.empty()) params->truth = TruthOf(truth, path);
   int seed = static_cast<int>(params->seed);
   Override("seed", PrivateInt("seed"), Between(0, std::numeric_limits<int>::max()), &seed);
   params->seed = static_cast<std::uint64_t>(seed);
@@ -45,6 +53,7 @@ SimRobotParams ReadSimRobotParams(const std::string& path) {
       hires::imagination::ResolvePath(in.GetString("scene"), path));
   params.scenario = hires::imagination::ResolvePath(in.GetString("scenario"), path);
   params.area = in.GetString("area");
+  params.truth = TruthOf(in.GetString("truth"), path);
   params.seed =
       static_cast<std::uint64_t>(in.Get("seed", Between(0, std::numeric_limits<int>::max())));
   params.pace = in.Get("pace", Between(0.0, 1000.0));
@@ -57,12 +66,13 @@ SimRobotParams ReadSimRobotParams(const std::string& path) {
 }
 
 SimRobotParams LoadSimRobotParams() {
-  RejectUnknownPrivate({"role", "config", "world", "robot", "objects", "uncertainty", "scenario",
-                        "area", "seed", "pace", "lockstep", "hold", "names"});
-  SimRobotParams params = ReadSimRobotParams(
-      PrivateText("config").value_or(ros::package::getPath("hires") + "/config/sim_robot.yaml"));
+  RejectUnknownPrivate({"role", "config", "world", "robot", "objects", "uncertainty", "truth",
+                        "scenario", "area", "seed", "pace", "lockstep", "hold", "names"});
+  const std::string path =
+      PrivateText("config").value_or(ros::package::getPath("hires") + "/config/sim_robot.yaml");
+  SimRobotParams params = ReadSimRobotParams(path);
   params.names = LoadRobotNames();
-  OverridePrivate(&params);
+  OverridePrivate(path, &params);
   DropNoiseIfCertain(&params);
   return params;
 }

@@ -12,6 +12,7 @@ namespace hires_ros {
 struct SimRobotParams {
   hires::imagination::SetupConfig setup;
   hires::control::RobotNames names;
+  hires::evaluation::Truth truth;
   std::string scenario;  ///< file; empty: the world's own objects, the robot at `area`
   std::string area{"nearStartArea1"};
   std::uint64_t seed{1};  ///< of the hidden truth and of all noise
@@ -26,7 +27,7 @@ struct SimRobotParams {
 SimRobotParams ReadSimRobotParams(const std::string& path);
 
 /// The file in ~config (config/sim_robot.yaml where there is none); ~world, ~robot, ~objects,
-/// ~uncertainty, ~scenario, ~area, ~seed, ~pace, ~lockstep and ~hold win over it. Names as
+/// ~uncertainty, ~truth, ~scenario, ~area, ~seed, ~pace, ~lockstep and ~hold win over it. Names as
 /// LoadRobotNames.
 /// @throws hires::base::ConfigError.
 SimRobotParams LoadSimRobotParams();

@@ -36,10 +36,12 @@ constexpr int kShownIndex = 0;  // of the markers; workers count from 1
 
 SimRobotPublisher::SimRobotPublisher(const SimRobotParams& params,
                                      const hires::imagination::ImaginationSetup& setup,
+                                     const hires::evaluation::SimRobotWorld& world,
                                      ros::NodeHandle* nh)
     : params_(params),
       scene_(setup.scene),
-      sensors_(params.sensors, params.seed, setup.scene),
+      sensors_(hires::evaluation::SensorsOf(params.truth, params.sensors), params.seed,
+               world.scene()),
       clock_(nh->advertise<rosgraph_msgs::Clock>("/clock", kQueue)),
       odometry_(nh->advertise<nav_msgs::Odometry>(params.names.odometry, kQueue)),
       joints_(nh->advertise<sensor_msgs::JointState>(params.names.joint_states, kQueue)),

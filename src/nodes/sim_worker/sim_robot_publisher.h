@@ -21,8 +21,9 @@ namespace hires_ros {
 /// is really so.
 class SimRobotPublisher {
  public:
+  /// @param setup  what the robot is told: the map is of it; `world` is what there is to see.
   SimRobotPublisher(const SimRobotParams& params, const hires::imagination::ImaginationSetup& setup,
-                    ros::NodeHandle* nh);
+                    const hires::evaluation::SimRobotWorld& world, ros::NodeHandle* nh);
 
   /// What comes at 100 Hz: joints and odometry, then the clock, so that no node knows a time whose
   /// sensors are not on their way.

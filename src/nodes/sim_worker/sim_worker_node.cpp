@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <ros/package.h>
 
-
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/log.h"
@@ -47,8 +46,8 @@ void RequireActions(std::uint64_t wanted, const hires::skills::ActionSet& own) {
 }  // namespace
 
 SimWorkerParams LoadSimWorkerParams() {
-  RejectUnknownPrivate(
-      {"role", "config", "index", "world", "robot", "objects", "uncertainty", "action_libraries"});
+  RejectUnknownPrivate({"role", "config", "index", "world", "robot", "objects", "uncertainty",
+                        "guard", "action_libraries"});
   const std::string path =
       PrivateText("config").value_or(ros::package::getPath("hires") + "/config/sim_worker.yaml");
   auto in = hires::base::ParamReader::FromFile(path);
@@ -61,6 +60,7 @@ SimWorkerParams LoadSimWorkerParams() {
   Override("index", PrivateInt("index"), hires::base::Between(1, 256), &params.index);
   imagination::OverridePaths(PrivateText("world"), PrivateText("robot"), PrivateText("objects"),
                              PrivateText("uncertainty"), &params.setup);
+  params.setup.has_base_guard = PrivateBool("guard").value_or(params.setup.has_base_guard);
   params.setup.action_libraries = PrivateActionLibraries();
   return params;
 }
@@ -73,7 +73,8 @@ SimWorkerNode::SimWorkerNode(const SimWorkerParams& params, imagination::Imagina
       server_(
           *nh, WorkerName(params.index, kRollout), [this](GoalHandle goal) { OnGoal(goal); },
           [this](GoalHandle goal) { OnCancel(goal); }, false) {
-  nh->setParam("robot_description", hires::robot::ReadUrdfOf(params.setup.robot, setup_.scene->robot.profile));
+  nh->setParam("robot_description",
+               hires::robot::ReadUrdfOf(params.setup.robot, setup_.scene->robot.profile));
   updater_.setHardwareID(fmt::format("worker_{}", params.index));
   updater_.add("rollouts", this, &SimWorkerNode::Diagnose);
   heartbeat_ = nh->createTimer(ros::Duration(1.0),

@@ -1,4 +1,4 @@
-#include "simulation/floor_profile.h"
+#include "simulation/floor/floor_profile.h"
 
 #include <cmath>
 

@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "evaluation/truth/controller_changes.h"
+#include "hires/base/error.h"
+#include "hires/base/param_reader.h"
+#include "hires/base/text.h"
+#include "hires/evaluation/truth.h"
+
+namespace hires::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+using base::Between;
+using base::ParamReader;
+using imagination::Uncertainty;
+
+constexpr double kFarthest = 1000.0;  // [m] worlds are not larger
+
+std::vector<std::string> NamesIn(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+// What is drawn
+// -----------------------------------------------------------------------------------
+
+void ReadCorrelations(ParamReader* in, Truth* truth) {
+  std::set<std::string> seen;
+  for (ParamReader& entry : in->SubList("correlations")) {
+    const std::vector<std::string> pair = entry.GetStrings("between");
+    if (pair.size() != 2) entry.Fail("between", "wanted the names of two quantities");
+    for (const std::string& name : pair) {
+      if (truth->changes.count(name) == 0) {
+        entry.Fail("between", "'" + name + "' is not in `changes`; say there how it is spread");
+      }
+      if (!seen.insert(name).second) entry.Fail("between", "wanted every quantity in one pair");
+    }
+    entry.GetString("source");
+    truth->correlations.push_back({pair[0], pair[1], entry.Get("coefficient", Between(-1.0, 1.0))});
+  }
+}
+
+void ReadUncertainty(ParamReader in, const std::string& path, Truth* truth) {
+  const std::string file = in.GetString("file");
+  if (file == "none") {
+    truth->uncertainty = std::make_shared<const Uncertainty>(imagination::NoUncertainty());
+  } else if (file != Truth{}.name) {
+    truth->uncertainty = std::make_shared<const Uncertainty>(
+        imagination::LoadUncertainty(imagination::ResolvePath(file, path)));
+  }
+  ParamReader changes = in.Sub("changes");
+  truth->changes = imagination::ReadQuantities(&changes);
+  ReadCorrelations(&in, truth);
+}
+
+bool ReadIdeally(const std::string& key, ParamReader* in) {
+  return in->Get(key, base::OneOf({"fitted", "ideal"})) == "ideal";
+}
+
+// Events
+// ------------------------------------------------------------------------------------------
+
+Eigen::Vector2d ReadPoint(const std::string& key, ParamReader* in) {
+  const std::vector<double> xy = in->GetNumbers(key, 2);
+  if (std::abs(xy[0]) > kFarthest || std::abs(xy[1]) > kFarthest) in->Fail(key, "wanted within 1000 m");
+  return {xy[0], xy[1]};
+}
+
+simulation::Sill ReadSill(ParamReader* in) {
+  simulation::Sill sill;
+  sill.from_M = ReadPoint("from", in);
+  sill.to_M = ReadPoint("to", in);
+  if ((sill.to_M - sill.from_M).norm() < 0.01) in->Fail("to", "wanted at least 0.01 m from `from`");
+  sill.width = in->Get("width", Between(0.0, 10.0));
+  sill.height = in->Get("height", Between(0.0, 0.05));
+  in->GetString("source");
+  return sill;
+}
+
+simulation::SlipperyPatch ReadPatch(ParamReader* in) {
+  simulation::SlipperyPatch patch;
+  patch.center_M = ReadPoint("center", in);
+  patch.radius = in->Get("radius", Between(0.0, 100.0));
+  patch.traction = in->Get("traction", Between(0.05, 20.0));
+  in->GetString("source");
+  return patch;
+}
+
+Bumps ReadBumps(ParamReader in) {
+  Bumps bumps;
+  bumps.mean_interval = in.Get("mean_interval", Between(1.0, 1e6));
+  const std::vector<double> speed = in.GetNumbers("speed", 2);
+  if (speed[0] < 0.0 || speed[1] < speed[0] || speed[1] > 1.0) {
+    in.Fail("speed", "wanted the least and the greatest, between 0 and 1 m/s");
+  }
+  bumps.least_speed = speed[0];
+  bumps.greatest_speed = speed[1];
+  bumps.duration = in.Get("duration", Between(0.02, 2.0));
+  in.GetString("source");
+  return bumps;
+}
+
+MovedBody ReadMoved(ParamReader* in) {
+  MovedBody moved;
+  moved.body = in->GetString("body");
+  const std::vector<double> by = in->GetNumbers("by", 3);
+  if (std::abs(by[0]) > kFarthest || std::abs(by[1]) > kFarthest || std::abs(by[2]) > 6.3) {
+    in->Fail("by", "wanted x and y within 1000 m, yaw within 6.3 rad");
+  }
+  moved.by = {by[0], by[1], by[2]};
+  moved.probability = in->Get("probability", Between(0.0, 1.0));
+  in->GetString("source");
+  return moved;
+}
+
+LocalisationWalk ReadWalk(ParamReader in) {
+  LocalisationWalk walk;
+  walk.sd = in.Get("sd", Between(0.0, 1.0));
+  walk.sd_yaw = in.Get("sd_yaw", Between(0.0, 1.0));
+  walk.time = in.Get("time", Between(0.1, 1e4));
+  in.GetString("source");
+  return walk;
+}
+
+Recogniser ReadRecogniser(ParamReader in) {
+  Recogniser recogniser;
+  recogniser.bias = in.Get("bias", Between(0.0, 0.2));
+  recogniser.bias_yaw = in.Get("bias_yaw", Between(0.0, 1.0));
+  recogniser.missed = in.Get("missed", Between(0.0, 0.99));
+  in.GetString("source");
+  return recogniser;
+}
+
+/// What a truth does not name does not happen.
+void ReadEvents(ParamReader in, Truth* truth) {
+  if (in.Has("sills")) {
+    for (ParamReader& entry : in.SubList("sills")) truth->floor.sills.push_back(ReadSill(&entry));
+  }
+  if (in.Has("patches")) {
+    for (ParamReader& entry : in.SubList("patches")) {
+      truth->floor.patches.push_back(ReadPatch(&entry));
+    }
+  }
+  if (in.Has("bumps")) truth->bumps = ReadBumps(in.Sub("bumps"));
+  if (in.Has("moved")) {
+    for (ParamReader& entry : in.SubList("moved")) truth->moved.push_back(ReadMoved(&entry));
+  }
+  if (in.Has("localisation_walk")) truth->walk = ReadWalk(in.Sub("localisation_walk"));
+  if (in.Has("recogniser")) truth->recogniser = ReadRecogniser(in.Sub("recogniser"));
+}
+
+}  // namespace
+
+std::string TruthPath(const std::string& name, const std::string& folder) {
+  const fs::path path(name);
+  if (path.has_parent_path() || path.extension() == ".yaml") return name;
+  const std::string wanted = name.empty() ? Truth{}.name : name;
+  const std::vector<std::string> names = NamesIn(folder);
+  if (std::find(names.begin(), names.end(), wanted) == names.end()) {
+    throw base::ConfigError(folder + ": " + base::UnknownName("truth", wanted, names) +
+                            "; or give a path");
+  }
+  return folder + "/" + wanted + ".yaml";
+}
+
+Truth ReadTruth(const std::string& path) {
+  ParamReader in = ParamReader::FromFile(path);
+  Truth truth;
+  truth.name = fs::path(path).stem().string();
+  in.Get("engine", base::OneOf({"ode"}));
+  in.Get("level", base::OneOf({"planar"}));
+  ReadControllerChanges(in.Sub("controller"), &truth);
+  ReadUncertainty(in.Sub("uncertainty"), path, &truth);
+  truth.senses_ideally = ReadIdeally("sensing", &in);
+  truth.localises_ideally = ReadIdeally("localisation", &in);
+  ReadEvents(in.Sub("events"), &truth);
+  in.RejectUnknownKeys();
+  return truth;
+}
+
+}  // namespace hires::evaluation
