@@ -26,11 +26,9 @@ std::pair<int, int> CellsOf(const Interval& interval) {
   return {first, std::max(first, last)};
 }
 
-/// The x-range of the part of a segment that lies within y_lower..y_upper.
-void IncludeClipped(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double y_lower,
+/// The x-range of the part of a segment that lies within y_lower..y_upper. @pre low lies below high
+void IncludeClipped(const Eigen::Vector2d& low, const Eigen::Vector2d& high, double y_lower,
                     double y_upper, Interval* range) {
-  const Eigen::Vector2d& low = a.y() <= b.y() ? a : b;
-  const Eigen::Vector2d& high = a.y() <= b.y() ? b : a;
   if (high.y() < y_lower || low.y() > y_upper) return;
   const bool cut_below = low.y() < y_lower;
   const bool cut_above = high.y() > y_upper;
@@ -39,26 +37,52 @@ void IncludeClipped(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double y
   range->Include(cut_above ? low.x() + slope * (y_upper - low.y()) : high.x());
 }
 
+/// The rows from first to last that a convex outline reaches, with the x-range in each [m].
+struct Spans {
+  int first{0}, last{-1};
+  std::vector<Interval> x_ranges;  // by row, from the first
+};
+
+/// Each edge adds to the rows that it passes, and one more for rounding.
+void IncludeEdge(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Costmap& costmap,
+                 Spans* spans) {
+  const double resolution = costmap.resolution(), y_origin = costmap.origin().y();
+  const Eigen::Vector2d& low = a.y() <= b.y() ? a : b;
+  const Eigen::Vector2d& high = a.y() <= b.y() ? b : a;
+  Interval y_range;
+  y_range.Include((low.y() - y_origin) / resolution);
+  y_range.Include((high.y() - y_origin) / resolution);
+  const auto [lowest, highest] = CellsOf(y_range);
+  for (int row = std::max(lowest - 1, spans->first); row <= std::min(highest + 1, spans->last);
+       ++row) {
+    const double y = y_origin + row * resolution;
+    IncludeClipped(low, high, y, y + resolution, &spans->x_ranges[row - spans->first]);
+  }
+}
+
 /// Calls visit(row, first column, last column) for all of the map's rows that a convex outline
 /// reaches. Columns may lie outside the map.
 template <typename Visit>
 void ForEachSpan(const geometry::Polygon& outline_M, const Costmap& costmap, const Visit& visit) {
-  const double resolution = costmap.resolution();
-  const Eigen::Vector2d origin = costmap.origin();
+  const double resolution = costmap.resolution(), x_origin = costmap.origin().x();
   Interval y_range;
-  for (const Eigen::Vector2d& p : outline_M) y_range.Include((p.y() - origin.y()) / resolution);
+  for (const Eigen::Vector2d& p : outline_M) {
+    y_range.Include((p.y() - costmap.origin().y()) / resolution);
+  }
   const auto [lowest, highest] = CellsOf(y_range);
-  for (int row = std::max(lowest, 0); row <= std::min(highest, costmap.height() - 1); ++row) {
-    const double y = origin.y() + row * resolution;
-    Interval x_range;
-    for (std::size_t i = 0; i < outline_M.size(); ++i) {
-      IncludeClipped(outline_M[i], outline_M[i + 1 == outline_M.size() ? 0 : i + 1], y,
-                     y + resolution, &x_range);
-    }
+  static thread_local Spans spans;  // scratch: this runs for thousands of poses a second
+  spans.first = std::max(lowest, 0);
+  spans.last = std::min(highest, costmap.height() - 1);
+  if (spans.last < spans.first) return;
+  spans.x_ranges.assign(static_cast<std::size_t>(spans.last - spans.first) + 1, Interval());
+  for (std::size_t i = 0; i < outline_M.size(); ++i) {
+    IncludeEdge(outline_M[i], outline_M[i + 1 == outline_M.size() ? 0 : i + 1], costmap, &spans);
+  }
+  for (int row = spans.first; row <= spans.last; ++row) {
+    const Interval& x_range = spans.x_ranges[row - spans.first];
     if (x_range.lower > x_range.upper) continue;  // rounding at the outline's very end
-    x_range.lower = (x_range.lower - origin.x()) / resolution;
-    x_range.upper = (x_range.upper - origin.x()) / resolution;
-    const auto [first, last] = CellsOf(x_range);
+    const auto [first, last] =
+        CellsOf({(x_range.lower - x_origin) / resolution, (x_range.upper - x_origin) / resolution});
     visit(row, first, last);
   }
 }

@@ -15,9 +15,11 @@ void LocalWindow::Centre(const Costmap& costmap, const Eigen::Vector2d& p_MB, do
   row -= reach + 1;
   corner_ = costmap.CentreOf(column, row) - Eigen::Vector2d::Constant(0.5 * resolution_);
   passable_.assign(static_cast<std::size_t>(width_) * width_, 0);
-  for (int y = 1; y + 1 < width_; ++y) {
-    for (int x = 1; x + 1 < width_; ++x) {
-      if (!costmap.Inside(column + x, row + y)) continue;
+  // Columns and rows of the window, its border left out, that lie on the map.
+  const int left = std::max(1, -column), right = std::min(width_ - 1, costmap.width() - column);
+  const int lower = std::max(1, -row), upper = std::min(width_ - 1, costmap.height() - row);
+  for (int y = lower; y < upper; ++y) {
+    for (int x = left; x < right; ++x) {
       passable_[y * width_ + x] = costmap.cost(column + x, row + y) < kInscribedCost;
     }
   }
@@ -40,6 +42,9 @@ std::optional<LocalWindow::Place> LocalWindow::Around(const Eigen::Vector2d& poi
 
 void DistanceGrid::Compute(const LocalWindow& window, const std::vector<int>& seeds) {
   const std::vector<std::uint8_t>& passable = window.passable();
+  if (seeds == seeds_ && width_ == window.width() && passable == passable_) return;
+  seeds_ = seeds;
+  passable_ = passable;
   width_ = window.width();
   distance_.assign(passable.size(), kUnreachable);
   queue_.resize(passable.size());

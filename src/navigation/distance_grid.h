@@ -52,6 +52,10 @@ class DistanceGrid {
  private:
   std::vector<int> distance_;
   std::vector<int> queue_;
+  // What the distances were computed for: mostly the robot is still in the same cell, and nothing
+  // has changed.
+  std::vector<int> seeds_;
+  std::vector<std::uint8_t> passable_;
   int width_{0};
 };
 

@@ -8,6 +8,7 @@
 
 #include "hires/base/check.h"
 #include "hires/geometry/angles.h"
+#include "navigation/arc_ends.h"
 #include "navigation/distance_grid.h"
 #include "navigation/oscillation_guard.h"
 #include "navigation/swept_footprint.h"
@@ -96,8 +97,7 @@ struct DwaPlanner::Impl {
   void DropDrivenPath(const Eigen::Vector2d& p_MB);
   std::vector<Candidate> ScoreDistances(const std::vector<geometry::Twist2>& velocities,
                                         const geometry::Pose2& X_MB, double resolution) const;
-  std::optional<double> DistanceScore(const geometry::Twist2& V_B, const geometry::Pose2& X_MB,
-                                      double resolution) const;
+  std::optional<double> DistanceScore(const ArcEnds::End& end, double resolution) const;
   std::optional<Candidate> BestWithObstacles(std::vector<Candidate> candidates,
                                              const Costmap& costmap, const geometry::Pose2& X_MB,
                                              SweptFootprint* sweep) const;
@@ -233,20 +233,19 @@ std::vector<Candidate> DwaPlanner::Impl::ScoreDistances(
     double resolution) const {
   std::vector<Candidate> candidates;
   candidates.reserve(velocities.size());
+  ArcEnds ends(X_MB, Duration(), params_.forward_point_distance);
   for (const geometry::Twist2& V_B : velocities) {
     if (!guard_.Allows(V_B)) continue;
-    const auto score = DistanceScore(V_B, X_MB, resolution);
+    const auto score = DistanceScore(ends.Of(V_B), resolution);
     if (score) candidates.push_back({*score, V_B});
   }
   return candidates;
 }
 
-std::optional<double> DwaPlanner::Impl::DistanceScore(const geometry::Twist2& V_B,
-                                                      const geometry::Pose2& X_MB,
+std::optional<double> DwaPlanner::Impl::DistanceScore(const ArcEnds::End& end,
                                                       double resolution) const {
-  const geometry::Pose2 X_MEnd = PoseAfter(X_MB, V_B, Duration());
-  const auto base = window_.Around(X_MEnd.position());
-  const auto nose = window_.Around(X_MEnd * Eigen::Vector2d(params_.forward_point_distance, 0.0));
+  const auto base = window_.Around(end.p_MB);
+  const auto nose = window_.Around(end.p_MF);
   if (!base || !nose) return std::nullopt;
   const double from_path = path_grid_.At(*base), from_goal = goal_grid_.At(*base);
   if (from_path >= DistanceGrid::kUnreachable || from_goal >= DistanceGrid::kUnreachable) {

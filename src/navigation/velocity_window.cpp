@@ -43,16 +43,17 @@ struct SmallestUseful {
 
 }  // namespace
 
+ArcIntegrals IntegralsAlong(double wz, double duration) {
+  const double angle = wz * duration;
+  if (std::abs(angle) <= 1e-9) return {duration, 0.0};
+  return {std::sin(angle) / wz, (1.0 - std::cos(angle)) / wz};
+}
+
 geometry::Pose2 PoseAfter(const geometry::Pose2& X_MB, const geometry::Twist2& V_B,
                           double duration) {
-  const double angle = V_B.wz * duration;
-  double along = duration, across = 0.0;  // integrals of cos and sin of the heading
-  if (std::abs(angle) > 1e-9) {
-    along = std::sin(angle) / V_B.wz;
-    across = (1.0 - std::cos(angle)) / V_B.wz;
-  }
-  return X_MB *
-         geometry::Pose2{V_B.vx * along - V_B.vy * across, V_B.vx * across + V_B.vy * along, angle};
+  const auto [along, across] = IntegralsAlong(V_B.wz, duration);
+  return X_MB * geometry::Pose2{V_B.vx * along - V_B.vy * across, V_B.vx * across + V_B.vy * along,
+                                V_B.wz * duration};
 }
 
 std::vector<double> SampleAxis(double lower, double upper, int count) {

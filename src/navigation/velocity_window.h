@@ -7,6 +7,12 @@
 
 namespace hires::navigation {
 
+/// Integrals over a duration of cosine and sine of a heading that turns at a constant rate [s].
+struct ArcIntegrals {
+  double along, across;
+};
+ArcIntegrals IntegralsAlong(double wz, double duration);
+
 /// Where a base ends up that keeps its velocity V_B (expressed in the moving base) for `duration`
 /// [s]: an exact arc, no matter into how many steps it is cut.
 geometry::Pose2 PoseAfter(const geometry::Pose2& X_MB, const geometry::Twist2& V_B,

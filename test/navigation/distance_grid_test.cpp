@@ -71,6 +71,26 @@ TEST(DistanceGridTest, BetweenCentresDistancesAreInterpolated) {
   EXPECT_FALSE(window.Around({-0.1, 4.0}).has_value());
 }
 
+TEST(DistanceGridTest, AGridThatIsUsedAgainIsAsANewOne) {
+  const base::Rng root(43);
+  LocalWindow window;
+  DistanceGrid used;
+  Costmap costmap(FreeGrid(50, 50), 0.0, NoInflation());
+  for (int seed = 0; seed < 100; ++seed) {
+    base::Rng rng = root.Fork(seed);
+    if (rng.Bernoulli(0.3)) costmap = Costmap(RandomGrid(50, 50, 0.3, &rng), 0.0, NoInflation());
+    if (rng.Bernoulli(0.5)) window.Centre(costmap, {rng.Uniform(0.0, 2.5), 1.2}, 1.0);
+    if (seed == 0) window.Centre(costmap, {1.2, 1.2}, 1.0);
+    const std::vector<int> seeds{window.width() + 1 + static_cast<int>(rng.Uniform(0.0, 2.0))};
+    DistanceGrid fresh;
+    fresh.Compute(window, seeds);
+    used.Compute(window, seeds);
+    for (std::size_t i = 0; i < window.passable().size(); ++i) {
+      ASSERT_EQ(used.At(i), fresh.At(i)) << "seed " << seed << " cell " << i;
+    }
+  }
+}
+
 TEST(DistanceGridTest, NeighboursDifferByOneAtMost) {
   const base::Rng root(41);
   for (int seed = 0; seed < 100; ++seed) {
