@@ -10,16 +10,24 @@ namespace {
 
 constexpr double kEncoderError = 0.02;  // [rad] or [m] over a limit that counts as the limit
 
+/// The limit where a position lies a little beyond it.
+double Clamped(const JointLimits& limits, double position) {
+  const double nearest = std::clamp(position, limits.lower, limits.upper);
+  return std::abs(position - nearest) <= kEncoderError ? nearest : position;
+}
+
 /// Drivers name joints that follow others too, and encoders stray over a limit.
 JointPositions Measured(const RobotModel& model, const JointPositions& joints) {
-  JointPositions measured;
-  for (const auto& [name, position] : joints) {
-    const Joint* joint = FindJoint(model, name);
-    if (joint != nullptr && !joint->mimics.empty()) continue;
-    measured[name] = position;
-    if (joint == nullptr || !joint->limits || joint->type == JointType::kContinuous) continue;
-    const double nearest = std::clamp(position, joint->limits->lower, joint->limits->upper);
-    if (std::abs(position - nearest) <= kEncoderError) measured[name] = nearest;
+  JointPositions measured = joints;
+  for (const Link& link : model.links) {
+    if (!link.joint) continue;
+    const auto found = measured.find(link.joint->name);
+    if (found == measured.end()) continue;
+    if (!link.joint->mimics.empty()) {
+      measured.erase(found);
+    } else if (link.joint->limits && link.joint->type != JointType::kContinuous) {
+      found->second = Clamped(*link.joint->limits, found->second);
+    }
   }
   return measured;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "robot/model_hash.h"
@@ -56,22 +57,47 @@ void CheckNames(const RobotModel& model, const JointPositions& positions) {
   }
 }
 
-/// Positions of all joints that lead, given or at rest.
-JointPositions LeadingPositions(const RobotModel& model, const JointPositions& given) {
-  JointPositions all;
-  for (const Link& link : model.links) {
-    if (!link.joint || link.joint->type == JointType::kFixed || !link.joint->mimics.empty())
-      continue;
-    const auto found = given.find(link.joint->name);
-    all[link.joint->name] = found == given.end() ? RestPosition(*link.joint) : found->second;
-  }
-  return all;
+bool Leads(const Link& link) {
+  return link.joint && link.joint->type != JointType::kFixed && link.joint->mimics.empty();
 }
 
-double PositionOf(const Joint& joint, const JointPositions& leading) {
+/// Positions of all joints that lead, by the link that they carry, given or at rest.
+/// @throws base::ConfigError for a name that no joint has that leads.
+std::vector<double> LeadingPositions(const RobotModel& model, const JointPositions& given) {
+  std::vector<double> leading(model.links.size(), 0.0);
+  std::size_t num_given = 0;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    if (!Leads(model.links[i])) continue;
+    const Joint& joint = *model.links[i].joint;
+    const auto found = given.find(joint.name);
+    leading[i] = found == given.end() ? RestPosition(joint) : found->second;
+    if (found != given.end()) ++num_given;
+  }
+  if (num_given != given.size()) CheckNames(model, given);  // says which one
+  return leading;
+}
+
+/// Index of the link whose joint that of `follower` follows. Most come shortly before it.
+std::size_t LeaderOf(const RobotModel& model, std::size_t follower) {
+  const std::string& name = model.links[follower].joint->mimics;
+  const auto is_leader = [&](std::size_t i) {
+    return Leads(model.links[i]) && model.links[i].joint->name == name;
+  };
+  for (std::size_t i = follower; i-- > 0;) {
+    if (is_leader(i)) return i;
+  }
+  for (std::size_t i = follower + 1; i < model.links.size(); ++i) {
+    if (is_leader(i)) return i;
+  }
+  HIRES_CHECK(false, "a joint follows one that leads");
+  return 0;
+}
+
+double PositionOf(const RobotModel& model, std::size_t link, const std::vector<double>& leading) {
+  const Joint& joint = *model.links[link].joint;
   if (joint.type == JointType::kFixed) return 0.0;
-  if (joint.mimics.empty()) return leading.at(joint.name);
-  return joint.mimic_multiplier * leading.at(joint.mimics) + joint.mimic_offset;
+  if (joint.mimics.empty()) return leading[link];
+  return joint.mimic_multiplier * leading[LeaderOf(model, link)] + joint.mimic_offset;
 }
 
 /// The child's frame C in the joint's frame J.
@@ -160,18 +186,18 @@ RobotModel ParseRobotModel(const std::string& urdf_xml, const std::string& where
 }
 
 std::vector<Pose3> ForwardKinematics(const RobotModel& model, const JointPositions& positions) {
-  CheckNames(model, positions);
-  const JointPositions leading = LeadingPositions(model, positions);
+  const std::vector<double> leading = LeadingPositions(model, positions);
   std::vector<Pose3> X_R;  // of each link in the root's frame
   X_R.reserve(model.links.size());
-  for (const Link& link : model.links) {
-    if (!link.joint) {
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const std::optional<Joint>& joint = model.links[i].joint;
+    if (!joint) {
       X_R.emplace_back();
       continue;
     }
-    const double position = PositionOf(*link.joint, leading);
-    CheckWithinLimits(model, *link.joint, position);
-    X_R.push_back(X_R[link.joint->parent] * link.joint->X_PJ * Displacement(*link.joint, position));
+    const double position = PositionOf(model, i, leading);
+    CheckWithinLimits(model, *joint, position);
+    X_R.push_back(X_R[joint->parent] * joint->X_PJ * Displacement(*joint, position));
   }
   return X_R;
 }

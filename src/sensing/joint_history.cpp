@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include "hires/geometry/angles.h"
 #include "hires/robot/posture.h"
@@ -11,24 +14,64 @@
 namespace hires::sensing {
 namespace {
 
+/// Looks names up in a sorted map, in ascending order: each entry is passed once.
+template <typename Map>
+class InOrder {
+ public:
+  explicit InOrder(Map& map) : next_(map.begin()), end_(map.end()) {}
+  /// What the name has, or nullptr.
+  auto Find(const std::string& name) -> decltype(&std::declval<Map&>().begin()->second) {
+    while (next_ != end_ && next_->first < name) ++next_;
+    return next_ != end_ && next_->first == name ? &next_->second : nullptr;
+  }
+  auto place() const { return next_; }  ///< where the name would be put
+
+ private:
+  decltype(std::declval<Map&>().begin()) next_, end_;
+};
+
+/// Sets the positions (or velocities) of all joints that `newer` names.
+void Overwrite(const std::map<std::string, double>& newer, std::map<std::string, double>* values) {
+  InOrder known(*values);
+  for (const auto& [name, value] : newer) {
+    if (double* old = known.Find(name)) {
+      *old = value;
+    } else {
+      values->emplace_hint(known.place(), name, value);
+    }
+  }
+}
+
 /// A joint's last word before, or first word after some time.
 struct Word {
   double stamp;
   double position;
   std::optional<double> velocity;
 };
-using Words = std::map<std::string, Word>;
 
-std::optional<double> VelocityIn(const JointReading& reading, const std::string& name) {
-  const auto velocity = reading.velocities.find(name);
-  if (velocity == reading.velocities.end()) return std::nullopt;
-  return velocity->second;
+/// Words by joint, sorted by name; the names are those of the readings.
+using Words = std::vector<std::pair<const std::string*, Word>>;
+
+bool NameBefore(const Words::value_type& a, const Words::value_type& b) {
+  return *a.first < *b.first;
 }
 
+/// Adds what joints say of which there is no word yet.
 void AddWords(double stamp, const JointReading& reading, Words* words) {
+  Words said;
+  said.reserve(reading.positions.size());
+  InOrder velocities(reading.velocities);
   for (const auto& [name, position] : reading.positions) {
-    words->insert({name, Word{stamp, position, VelocityIn(reading, name)}});
+    const double* velocity = velocities.Find(name);
+    said.push_back(
+        {&name, Word{stamp, position, velocity ? std::make_optional(*velocity) : std::nullopt}});
   }
+  if (words->empty()) return words->swap(said);
+  Words all;  // of two with the same name the first is kept
+  all.reserve(words->size() + said.size());
+  std::set_union(words->begin(), words->end(), said.begin(), said.end(), std::back_inserter(all),
+                 NameBefore);
+  words->swap(all);
 }
 
 /// A joint that turns without end takes the shorter way.
@@ -43,36 +86,46 @@ Word Between(const robot::Joint* joint, const Word& from, const Word& to, double
   return between;
 }
 
+/// @pre names come in ascending order
 void Take(const std::string& name, const Word& word, JointReading* reading) {
-  reading->positions[name] = word.position;
-  reading->velocities.erase(name);
-  if (word.velocity) reading->velocities[name] = *word.velocity;
+  reading->positions.emplace_hint(reading->positions.end(), name, word.position);
+  if (word.velocity) {
+    reading->velocities.emplace_hint(reading->velocities.end(), name, *word.velocity);
+  }
+}
+
+double Clamped(const robot::Joint& joint, double position) {
+  if (!joint.limits || joint.type == robot::JointType::kContinuous) return position;
+  return std::clamp(position, joint.limits->lower, joint.limits->upper);
 }
 
 }  // namespace
 
-JointHistory::JointHistory(std::shared_ptr<const robot::Robot> robot) : robot_(std::move(robot)) {}
-
-/// A robot without arms is not asked which joints it has.
-bool JointHistory::IsOurs(const std::string& name) const {
-  const robot::Joint* joint = robot::FindJoint(robot_->model, name);
-  return joint == nullptr ? !robot_->profile.upper_body : joint->mimics.empty();
+JointHistory::JointHistory(std::shared_ptr<const robot::Robot> robot) : robot_(std::move(robot)) {
+  for (const robot::Link& link : robot_->model.links) {
+    if (link.joint) joints_.emplace(link.joint->name, &*link.joint);
+  }
 }
 
-double JointHistory::Clamped(const std::string& name, double position) const {
-  const robot::Joint* joint = robot::FindJoint(robot_->model, name);
-  if (joint == nullptr || !joint->limits) return position;
-  if (joint->type == robot::JointType::kContinuous) return position;
-  return std::clamp(position, joint->limits->lower, joint->limits->upper);
+/// A robot without arms is not asked which joints it has.
+bool JointHistory::IsOurs(const robot::Joint* joint) const {
+  return joint == nullptr ? !robot_->profile.upper_body : joint->mimics.empty();
 }
 
 bool JointHistory::Insert(double stamp, const JointReading& reading) {
   JointReading ours;
+  InOrder joints(joints_);
   for (const auto& [name, position] : reading.positions) {
-    if (IsOurs(name)) ours.positions[name] = Clamped(name, position);
+    const auto* joint = joints.Find(name);
+    if (!IsOurs(joint ? *joint : nullptr)) continue;
+    ours.positions.emplace_hint(ours.positions.end(), name,
+                                joint ? Clamped(**joint, position) : position);
   }
+  InOrder moving(joints_);
   for (const auto& [name, velocity] : reading.velocities) {
-    if (IsOurs(name)) ours.velocities[name] = velocity;
+    const auto* joint = moving.Find(name);
+    if (!IsOurs(joint ? *joint : nullptr)) continue;
+    ours.velocities.emplace_hint(ours.velocities.end(), name, velocity);
   }
   for (const auto& [name, unused] : ours.positions) names_.insert(name);
   JointReading* same = history_.Find(stamp);
@@ -86,8 +139,8 @@ bool JointHistory::Insert(double stamp, const JointReading& reading) {
 void JointHistory::KeepBetween(double from, double to) {
   for (const auto& entry : history_) {
     if (entry.stamp >= from) break;
-    for (const auto& [name, position] : entry.value.positions) older_.positions[name] = position;
-    for (const auto& [name, speed] : entry.value.velocities) older_.velocities[name] = speed;
+    Overwrite(entry.value.positions, &older_.positions);
+    Overwrite(entry.value.velocities, &older_.velocities);
   }
   history_.KeepBetween(from, to);
 }
@@ -124,22 +177,32 @@ JointReading JointHistory::At(double time, double max_gap) const {
     AddWords(entry->stamp, entry->value, &after);
   }
   JointReading reading;
-  for (const auto& [name, word] : after) Take(name, word, &reading);
+  InOrder joints(joints_);
+  const auto between = [&](const std::string& name, const Word& last, const Word& next) {
+    if (last.stamp >= time || next.stamp - last.stamp > max_gap) return last;
+    const auto* joint = joints.Find(name);
+    return Between(joint ? *joint : nullptr, last, next, time);
+  };
+  auto next = after.begin();
   for (const auto& [name, word] : before) {
-    const auto next = after.find(name);
-    const bool is_between =
-        word.stamp < time && next != after.end() && next->second.stamp - word.stamp <= max_gap;
-    const robot::Joint* joint = robot::FindJoint(robot_->model, name);
-    Take(name, is_between ? Between(joint, word, next->second, time) : word, &reading);
+    for (; next != after.end() && *next->first < *name; ++next) {
+      Take(*next->first, next->second, &reading);
+    }
+    const bool is_both = next != after.end() && *next->first == *name;
+    Take(*name, is_both ? between(*name, word, next->second) : word, &reading);
+    if (is_both) ++next;
   }
+  for (; next != after.end(); ++next) Take(*next->first, next->second, &reading);
   return reading;
 }
 
 robot::JointPositions JointHistory::PostureOf(const robot::JointPositions& measured) const {
   robot::JointPositions known;
+  InOrder joints(joints_);
   for (const auto& [name, position] : measured) {
-    const robot::Joint* joint = robot::FindJoint(robot_->model, name);
-    if (joint != nullptr && joint->type != robot::JointType::kFixed) known[name] = position;
+    const auto* joint = joints.Find(name);
+    if (joint == nullptr || (*joint)->type == robot::JointType::kFixed) continue;
+    known.emplace_hint(known.end(), name, position);
   }
   return robot::PostureOf(*robot_, known);
 }

@@ -70,25 +70,33 @@ bool MemoryParams::operator==(const MemoryParams& other) const {
   return numbers(*this) == numbers(other);
 }
 
-/// Where the robot's links are in the map.
+/// Where the robot's links are in the map; worked out when somebody asks for one of them, as
+/// most moments change nothing.
 class ObjectMemory::Links {
  public:
-  Links(const robot::Robot& robot, const BodyReading& body)
-      : model_(robot.model), X_RL_(robot::ForwardKinematics(robot.model, body.joints)) {
-    const auto base = model_.FindLink(robot.profile.base_link);
-    X_MR_ = geometry::Lift(body.X_MB) * (base ? X_RL_[*base].Inverse() : Pose3());
-  }
+  /// Both outlive it.
+  Links(const robot::Robot& robot, const BodyReading& body) : robot_(robot), body_(body) {}
+
   Pose3 X_ML(const std::string& link) const {
     if (link.empty()) return {};
-    const auto index = model_.FindLink(link);
-    if (!index) throw base::ConfigError(base::UnknownName("link", link, model_.LinkNames()));
+    const robot::RobotModel& model = robot_.model;
+    const auto index = model.FindLink(link);
+    if (!index) throw base::ConfigError(base::UnknownName("link", link, model.LinkNames()));
+    if (X_RL_.empty()) Place();
     return X_MR_ * X_RL_[*index];
   }
 
  private:
-  const robot::RobotModel& model_;
-  std::vector<Pose3> X_RL_;
-  Pose3 X_MR_;
+  void Place() const {
+    X_RL_ = robot::ForwardKinematics(robot_.model, body_.joints);
+    const auto base = robot_.model.FindLink(robot_.profile.base_link);
+    X_MR_ = geometry::Lift(body_.X_MB) * (base ? X_RL_[*base].Inverse() : Pose3());
+  }
+
+  const robot::Robot& robot_;
+  const BodyReading& body_;
+  mutable std::vector<Pose3> X_RL_;
+  mutable Pose3 X_MR_;
 };
 
 ObjectMemory::ObjectMemory(std::shared_ptr<const perception::Surroundings> surroundings,

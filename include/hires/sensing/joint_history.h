@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -38,10 +39,12 @@ class JointHistory {
   robot::JointPositions PostureOf(const robot::JointPositions& measured) const;
 
  private:
-  bool IsOurs(const std::string& name) const;
-  double Clamped(const std::string& name, double position) const;
+  using Joints = std::map<std::string, const robot::Joint*>;
+
+  bool IsOurs(const robot::Joint* joint) const;
 
   std::shared_ptr<const robot::Robot> robot_;
+  Joints joints_;  // of the robot
   History<JointReading> history_;
   JointReading older_;           // the last words about joints before the history begins
   std::set<std::string> names_;  // of all joints that were ever told of
