@@ -33,9 +33,19 @@ int TerminalWidth() {
 
 /// Before the robot sets out.
 void RequireFolders(const AchieveOptions& options) {
-  for (const std::string& path : {options.timeline, options.png, options.json}) {
+  for (const std::string& path : {options.timeline, options.png, options.json, options.record}) {
     if (!path.empty()) evaluation::RequireFolderOf(path);
   }
+}
+
+void RequireRecorder(const AchieveOptions& options, const loop::RecordLoop& record) {
+  if (options.record.empty()) return;
+  if (!options.is_local) {
+    throw base::ConfigError(
+        "--record is for --local; what a running robot does is recorded by `roslaunch hires "
+        "episode_recorder.launch record:=FOLDER`");
+  }
+  if (!record) throw base::ConfigError("--record: this build has no ROS to write bags with");
 }
 
 /// The picture is drawn from a CSV file, which stays beside it when no other place was asked for.
@@ -82,7 +92,8 @@ std::string ScenarioPath(const std::string& scenario, const std::string& package
 
 loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& package_folder,
                              const evaluation::OnAchieveStatus& on_status,
-                             const std::function<bool()>& cancelled) {
+                             const std::function<bool()>& cancelled,
+                             loop::LoopRecording* recording) {
   const loop::LoopSetup setup(package_folder + "/config/loop.yaml");
   loop::LoopOrder order;
   order.scenario = ScenarioPath(options.scenario, package_folder);
@@ -91,7 +102,11 @@ loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& p
   order.truth = options.truth;
   order.seed = static_cast<std::uint64_t>(options.seed);
   order.threads = options.threads;
-  return loop::PlayTask(setup, order, on_status, cancelled);
+  if (recording == nullptr) return loop::PlayTask(setup, order, on_status, cancelled);
+  const loop::LoopRun run =
+      loop::PlayTask(setup, order, on_status, cancelled, recording->observer());
+  recording->Finish(run.report);
+  return run;
 }
 
 /// What is really so in the end, whatever the robot believes.
@@ -156,6 +171,9 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
   verb->add_option("--threads", options->threads,
                    "with --local: that play rollouts; the answer is the same for any; default: 2")
       ->check(CLI::Range(1, 256));
+  verb->add_option("--record", options->record,
+                   "with --local: write the episode to this bag, as a robot's would be; see "
+                   "`hires replay`");
   verb->add_option("--timeline", options->timeline, "write what was done when to this CSV file");
   verb->add_option("--png", options->png, "and draw it to this file");
   verb->add_option("--json", options->json, "write everything to this file for machines");
@@ -164,7 +182,8 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
 
 int RunAchieveVerb(const AchieveOptions& options, const std::string& package_folder,
                    const evaluation::AchieveRemotely& achieve,
-                   const std::function<bool()>& cancelled) {
+                   const std::function<bool()>& cancelled, const loop::RecordLoop& record) {
+  RequireRecorder(options, record);
   if (!options.is_local && !achieve) {
     throw base::ConfigError(
         "this build has no ROS nodes to ask; build with ROS and start them (roslaunch hires "
@@ -180,7 +199,10 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   };
   const double begun = base::SteadyNow();
   std::optional<loop::LoopRun> local;
-  if (options.is_local) local = AchieveLocally(options, package_folder, show, cancelled);
+  const auto recording = options.record.empty() ? nullptr : record(options.record);
+  if (options.is_local) {
+    local = AchieveLocally(options, package_folder, show, cancelled, recording.get());
+  }
   const evaluation::AchieveReport report =
       local ? local->report
             : achieve({base::Join(options.task, " "), options.imagination, options.wait}, show,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hires/evaluation/achieve.h"
+#include "hires/loop/loop_observer.h"
 
 namespace CLI {
 class App;
@@ -23,7 +24,7 @@ enum AchieveExitCode {
 /// What was typed behind `hires achieve`.
 struct AchieveOptions {
   std::vector<std::string> task;  ///< words
-  std::string imagination, timeline, png, json;
+  std::string imagination, timeline, png, json, record;
   double wait{10.0};               ///< [s] for the execution monitor to be there
   bool is_local{false};            ///< in this process and in virtual time, without any node
   std::string scenario{"topple"};  ///< where the robot and everything is then: file, or its name
@@ -37,9 +38,10 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options);
 
 /// Has the task done, shows how far it is, and afterwards what was done when.
 /// @param achieve  Empty: this program has no execution monitor to ask.
+/// @param record   Empty: this program cannot write bags.
 /// @return AchieveExitCode.  @throws base::ConfigError for bad input.
 int RunAchieveVerb(const AchieveOptions& options, const std::string& package_folder,
                    const evaluation::AchieveRemotely& achieve,
-                   const std::function<bool()>& cancelled);
+                   const std::function<bool()>& cancelled, const loop::RecordLoop& record = {});
 
 }  // namespace hires::cli

@@ -33,6 +33,7 @@ namespace {
 std::atomic<bool> interrupted{false};
 
 void OnInterrupt(int) { interrupted = true; }
+bool IsInterrupted() { return interrupted; }
 
 /// What was typed, before it is checked against files.
 struct ImagineOptions {
@@ -271,7 +272,7 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
     if (*imagine) return Imagine(imagine_options, backends);
     if (*achieve_options.verb) {
       return RunAchieveVerb(achieve_options, backends.package_folder, backends.achieve_remotely,
-                            [] { return interrupted.load(); });
+                            IsInterrupted, backends.record_loop);
     }
     if (*experiment_options.hypothesis.verb) {
       return RunHypothesisVerb(experiment_options.hypothesis, backends.package_folder,

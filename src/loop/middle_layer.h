@@ -9,6 +9,7 @@
 #include "hires/control/action_runner.h"
 #include "hires/sensing/observation_maker.h"
 #include "hires/sensing/scan_obstacles.h"
+#include "hires/simulation/laser_scanner.h"
 #include "hires/world/world.h"
 #include "loop/robot_senses.h"
 

@@ -1,26 +1,14 @@
 #pragma once
 
 #include <memory>
-#include <optional>
-#include <vector>
 
-#include "hires/evaluation/sim_robot_sensors.h"
 #include "hires/imagination/imagination_setup.h"
+#include "hires/loop/loop_observer.h"
 #include "hires/sensing/object_estimator.h"
 #include "hires/sensing/robot_state_estimator.h"
 #include "loop/frame_record.h"
 
 namespace hires::loop {
-
-/// What the robot's sensors say at one moment, as one who listens to them gets it.
-struct SensorNews {
-  double stamp{0.0};  ///< [s]
-  evaluation::SensorReadings readings;
-  /// With the moments at which the laser, the localisation and the camera speak, too.
-  bool is_tick{false};
-  std::vector<double> scan;  ///< [m]; empty: the robot has no laser
-  std::optional<std::vector<perception::Detection>> seen;
-};
 
 /// One listener's estimates of the robot's state and of objects: middle layer and tracker have each
 /// their own, as they have in processes of their own.

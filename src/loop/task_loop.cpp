@@ -53,8 +53,10 @@ LoopOrder Completed(const LoopOrder& order, const evaluation::Scenario& scenario
 /// All parts of one task, wired.
 class Play {
  public:
-  Play(const LoopSetup::Parts& parts, const LoopOrder& order, const evaluation::Scenario& scenario)
-      : order_(Completed(order, scenario, parts.planning.domain)),
+  Play(const LoopSetup::Parts& parts, const LoopOrder& order, const evaluation::Scenario& scenario,
+       const LoopObserver& observer)
+      : observer_(observer),
+        order_(Completed(order, scenario, parts.planning.domain)),
         truth_(evaluation::ReadTruth(evaluation::TruthPath(order.truth, parts.config.truths))),
         message_delay_(parts.config.message_delay),
         clock_(kStart),
@@ -66,8 +68,9 @@ class Play {
                 [this](double stamp) { Look(stamp); }}),
         middle_layer_(parts.world, FramesOf(parts.world.scene->robot), parts.config.runner,
                       parts.config.scan,
-                      {[this](const robot::Command& command) { robot_.Command(command); },
+                      {[this](const robot::Command& command) { Send(command); },
                        [this](int activity, ActionEnd end, const base::Failure& failure) {
+                         Tell(observer_.ended, clock_.now(), activity, end, failure);
                          tracker_.OnActions(middle_layer_.running());
                          clock_.In(message_delay_, [this, activity, end, failure] {
                            monitor_.OnStepEnded(FinishedAs(activity, end, failure));
@@ -117,14 +120,25 @@ class Play {
   }
 
  private:
+  template <typename... Args, typename... Values>
+  static void Tell(const std::function<void(Args...)>& observe, const Values&... values) {
+    if (observe) observe(values...);
+  }
+
+  void Send(const robot::Command& command) {
+    Tell(observer_.commanded, clock_.now(), command);
+    robot_.Command(command);
+  }
+
   Tracker::Hooks TrackerHooks() {
     return {[this](double stamp, world::WorldState known) {
+              Tell(observer_.known, stamp, known);
               middle_layer_.OnKnownObjects(stamp, std::move(known));
             },
             [this](const robot::JointTrajectory& turn) {
               robot::Command command;
               command.trajectories["head"] = turn;
-              robot_.Command(command);
+              Send(command);
             },
             [this](double time) {
               clock_.In(message_delay_, [this, time] { OnObservedUntil(time); });
@@ -132,6 +146,7 @@ class Play {
   }
 
   void Hear(const SensorNews& news) {
+    Tell(observer_.sensed, news);
     middle_layer_.Hear(news, robot_.laser());
     clock_.In(message_delay_, [this, news] { tracker_.Hear(news); });
   }
@@ -140,6 +155,7 @@ class Play {
 
   void Start(const execution::StartStep& step) {
     clock_.In(message_delay_, [this, step] {
+      Tell(observer_.began, clock_.now(), step.activity, step.action);
       middle_layer_.Start(step.activity, step.action, step.time_limit);
       tracker_.OnActions(middle_layer_.running());
     });
@@ -162,6 +178,7 @@ class Play {
     tracker_.SetEpisode(monitor_.episode());
   }
 
+  const LoopObserver& observer_;
   const LoopOrder order_;
   const evaluation::Truth truth_;
   const double message_delay_;
@@ -179,9 +196,9 @@ class Play {
 
 LoopRun PlayTask(const LoopSetup& setup, const LoopOrder& order,
                  const evaluation::OnAchieveStatus& on_status,
-                 const std::function<bool()>& cancelled) {
+                 const std::function<bool()>& cancelled, const LoopObserver& observer) {
   const evaluation::Scenario scenario = evaluation::ReadScenario(order.scenario);
-  return Play(setup.parts(), order, scenario).Run(on_status, cancelled);
+  return Play(setup.parts(), order, scenario, observer).Run(on_status, cancelled);
 }
 
 }  // namespace hires::loop

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 
+#include "hires/evaluation/episode_topics.h"
 #include "hires/evaluation/scenario.h"
 #include "hires/evaluation/truth.h"
 #include "hires/execution/monitor_config.h"
@@ -55,9 +56,9 @@ const std::map<std::string, Reader>& Readers() {
          planning::LoadOperatorData(config.operators, domain);
          knowledge::Ontology::FromFiles(config.ontology);
        }},
-      {"base_guard.yaml",
-       [](const std::string& path) { navigation::ReadBaseGuardParams(path); }},
+      {"base_guard.yaml", [](const std::string& path) { navigation::ReadBaseGuardParams(path); }},
       {"scenarios", [](const std::string& path) { evaluation::ReadScenario(path); }},
+      {"episode.yaml", [](const std::string& path) { evaluation::ReadEpisodeConfig(path); }},
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
       {"relay.yaml",
        [](const std::string& path) {

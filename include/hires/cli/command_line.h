@@ -14,6 +14,7 @@
 #include "hires/imagination/report.h"
 #include "hires/imagination/scheduler.h"
 #include "hires/imagination/validated.h"
+#include "hires/loop/loop_observer.h"
 
 namespace hires::cli {
 
@@ -52,6 +53,7 @@ struct Backends {
   ConnectBlackboard connect_blackboard;
   evaluation::AchieveRemotely achieve_remotely;
   evaluation::PlayHypothesis play_hypothesis;
+  loop::RecordLoop record_loop;  ///< empty: this program writes no bags
   ExamineRobot examine_robot;
   std::vector<Verb> more_verbs;
   std::vector<Check> more_checks;

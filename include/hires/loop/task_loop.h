@@ -7,6 +7,7 @@
 
 #include "hires/evaluation/achieve.h"
 #include "hires/evaluation/experiment_hypothesis.h"
+#include "hires/loop/loop_observer.h"
 
 namespace hires::loop {
 
@@ -52,9 +53,10 @@ struct LoopRun {
 /// the last bit for the same order, whatever the number of threads.
 /// @param on_status  told of every change; may be empty.
 /// @param cancelled  asked every tick; then the task is preempted; may be empty.
+/// @param observer   told of what happens; changes nothing.
 /// @throws base::ConfigError for a scenario, a truth or a task that makes no sense.
 LoopRun PlayTask(const LoopSetup& setup, const LoopOrder& order,
                  const evaluation::OnAchieveStatus& on_status = {},
-                 const std::function<bool()>& cancelled = {});
+                 const std::function<bool()>& cancelled = {}, const LoopObserver& observer = {});
 
 }  // namespace hires::loop

@@ -97,25 +97,6 @@ hires::Atom ToMsg(const base::Atom& atom) {
   return message;
 }
 
-hires::StepStatus ToMsg(const execution::StepStatus& status) {
-  hires::StepStatus message;
-  message.plan = static_cast<std::uint32_t>(status.plan);
-  message.index = static_cast<std::uint32_t>(status.index);
-  message.action = ToMsg(status.action);
-  message.phase = static_cast<std::uint8_t>(status.phase);  // in the same order
-  message.started = status.started.value_or(kNever);
-  message.finished = status.finished.value_or(kNever);
-  message.earliest_start = status.start.earliest;
-  message.latest_start = status.start.latest;
-  message.earliest_finish = status.finish.earliest;
-  message.latest_finish = status.finish.latest;
-  message.expected_start = status.expected_start;
-  message.expected_finish = status.expected_finish;
-  message.note = status.note;
-  message.failure = ToMsg(status.failure);
-  return message;
-}
-
 hires::PlanGoal GoalOf(const execution::StartPlanning& command, double time_limit) {
   hires::PlanGoal goal;
   goal.task = command.tasks;

@@ -11,21 +11,17 @@
 #include <hires/PlanResult.h>
 #include <hires/StepStatus.h>
 
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "hires/execution/monitor_config.h"
 #include "hires/planning/planner_config.h"
+#include "hires/ros/achieve_messages.h"
 
 /// What the execution monitor sends and receives, as messages.
 namespace hires_ros {
 
-/// The time of what has not happened yet, in messages.
-constexpr double kNever = std::numeric_limits<double>::quiet_NaN();
-
 hires::Atom ToMsg(const hires::base::Atom& atom);
-hires::StepStatus ToMsg(const hires::execution::StepStatus& status);
 
 /// @param time_limit  [s] for the planner.
 hires::PlanGoal GoalOf(const hires::execution::StartPlanning& command, double time_limit);

@@ -6,6 +6,7 @@
 #include "hires/cli/command_line.h"
 #include "hires/cli/hypothesis_play.h"
 #include "hires/cli/robot_doctor.h"
+#include "nodes/hires/episode_writer.h"
 #include "nodes/hires/hypothesis_run.h"
 #include "nodes/hires/message_types.h"
 #include "nodes/hires/remote_achieve.h"
@@ -23,6 +24,9 @@ int main(int argc, char** argv) {
   backends.imagine_remotely = hires_ros::ImagineRemotely;
   backends.achieve_remotely = hires_ros::AchieveRemotely;
   backends.connect_blackboard = hires_ros::ConnectBlackboard;
+  backends.record_loop = [&](const std::string& path) {
+    return hires_ros::MakeEpisodeWriter(path, backends.package_folder);
+  };
   backends.play_hypothesis = hires::cli::PlayHypothesisRun;
   backends.examine_robot = [&](const hires::cli::RobotDoctorOptions& options) {
     return hires::cli::RunRobotDoctor(options, backends.package_folder,
@@ -34,8 +38,9 @@ int main(int argc, char** argv) {
          return hires_ros::RunHypothesisProcess(words, backends.package_folder);
        }});
   backends.more_verbs.push_back({"replay",
-                                 "imagine again what a bag recorded, and compare the answers: BAG "
-                                 "[--local [--threads N]] [--json FILE] [--topic NAME]",
+                                 "imagine the steps of a recorded robot episode, or recorded "
+                                 "requests again, and compare: BAG [--local [--threads N]] "
+                                 "[--json FILE] [--requests]",
                                  [&](const std::vector<std::string>& words) {
                                    return hires_ros::RunReplay(words, backends.package_folder);
                                  }});

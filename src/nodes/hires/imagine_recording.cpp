@@ -3,17 +3,10 @@
 #include <fmt/format.h>
 #include <hires/ImagineActionGoal.h>
 #include <hires/ImagineActionResult.h>
-#include <rosbag/bag.h>
 #include <rosbag/view.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
 #include <map>
-#include <new>
 #include <set>
-#include <stdexcept>
 #include <utility>
 
 #include "hires/base/error.h"
@@ -25,41 +18,6 @@ namespace {
 using hires::ImagineActionGoal;
 using hires::ImagineActionResult;
 using hires::base::ConfigError;
-
-constexpr rlim_t kMostMemory = rlim_t{2} << 30;  // [bytes] for reading one bag
-constexpr std::size_t kMostListed = 30;          // topics in a message
-
-/// Lets this process grow by at most `bytes` while it lives. A few bytes of a broken message can
-/// claim to be the length of a list of billions.
-class ScopedMemoryLimit {
- public:
-  explicit ScopedMemoryLimit(rlim_t bytes) {
-    is_set_ = getrlimit(RLIMIT_AS, &before_) == 0;
-    rlimit now = before_;
-    const rlim_t wanted = UsedMemory() + bytes;
-    if (wanted < before_.rlim_cur) now.rlim_cur = wanted;
-    is_set_ = is_set_ && setrlimit(RLIMIT_AS, &now) == 0;
-  }
-  ~ScopedMemoryLimit() {
-    if (is_set_) setrlimit(RLIMIT_AS, &before_);
-  }
-  ScopedMemoryLimit(const ScopedMemoryLimit&) = delete;
-  ScopedMemoryLimit& operator=(const ScopedMemoryLimit&) = delete;
-
- private:
-  static rlim_t UsedMemory() {
-    rlim_t pages = 0;
-    std::ifstream("/proc/self/statm") >> pages;
-    return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
-  }
-
-  rlimit before_{};
-  bool is_set_{false};
-};
-
-struct Topic {
-  std::string name, type, md5sum;
-};
 
 bool EndsWith(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
@@ -79,64 +37,10 @@ std::string ActionOf(std::string name) {
   return name;
 }
 
-void RequireBagFile(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    throw ConfigError(fmt::format(
-        "{}: no such bag; name a file that `rosbag record` wrote, e.g. `rosbag record -O "
-        "imagine.bag /imagine/goal /imagine/result`",
-        path));
-  }
-  std::string begin(4, '\0');
-  std::ifstream file(path, std::ios::binary);
-  if (!std::filesystem::is_regular_file(path, error) || !file.read(begin.data(), 4) ||
-      begin != "#ROS") {
-    throw ConfigError(fmt::format(
-        "{}: is no ROS bag, or cannot be read: wanted a file that begins with '#ROSBAG'; name one "
-        "that `rosbag record` wrote",
-        path));
-  }
-}
-
-void Open(const std::string& path, rosbag::Bag* bag) {
-  RequireBagFile(path);
-  try {
-    bag->open(path, rosbag::bagmode::Read);
-  } catch (const rosbag::BagUnindexedException&) {
-    throw ConfigError(
-        fmt::format("{}: has no index, because its recording goes on or was cut off; end the "
-                    "recording (Ctrl-C), or mend the bag with `rosbag reindex {}`",
-                    path, path));
-  }
-}
-
-std::vector<Topic> TopicsOf(const rosbag::Bag& bag) {
-  std::map<std::string, Topic> topics;
-  for (const rosbag::ConnectionInfo* info : rosbag::View(bag).getConnections()) {
-    topics.emplace(info->topic + ' ' + info->datatype + ' ' + info->md5sum,
-                   Topic{info->topic, info->datatype, info->md5sum});
-  }
-  std::vector<Topic> out;
-  for (auto& [key, topic] : topics) out.push_back(std::move(topic));
-  return out;
-}
-
-std::string ListOf(const std::vector<Topic>& topics) {
-  if (topics.empty()) return "it is empty";
-  std::vector<std::string> lines;
-  for (const Topic& topic : topics) {
-    if (lines.size() == kMostListed) break;
-    lines.push_back(fmt::format("\n  {} ({})", topic.name, topic.type));
-  }
-  const std::size_t left = topics.size() - lines.size();
-  if (left > 0) lines.push_back(fmt::format("\n  and {} more", left));
-  return "in it are:" + hires::base::Join(lines, "");
-}
-
 /// Actions of which goals were recorded.
-std::set<std::string> ActionsIn(const std::vector<Topic>& topics) {
+std::set<std::string> ActionsIn(const std::vector<BagTopic>& topics) {
   std::set<std::string> actions;
-  for (const Topic& topic : topics) {
+  for (const BagTopic& topic : topics) {
     if (topic.type == ros::message_traits::datatype<ImagineActionGoal>() &&
         EndsWith(topic.name, "/goal")) {
       actions.insert(WithoutEnd(topic.name, "/goal"));
@@ -145,27 +49,27 @@ std::set<std::string> ActionsIn(const std::vector<Topic>& topics) {
   return actions;
 }
 
-std::set<std::string> ChooseActions(const std::string& path, const std::vector<Topic>& topics,
+std::set<std::string> ChooseActions(const std::string& path, const std::vector<BagTopic>& topics,
                                     const std::string& wanted) {
   const std::set<std::string> actions = ActionsIn(topics);
   if (actions.empty()) {
-    throw ConfigError(
-        fmt::format("{}: holds no goals of an `imagine` action (topic .../goal of type {}); record "
-                    "/imagine/goal and /imagine/result; {}",
-                    path, ros::message_traits::datatype<ImagineActionGoal>(), ListOf(topics)));
+    throw ConfigError(fmt::format(
+        "{}: holds no goals of an `imagine` action (topic .../goal of type {}); record "
+        "/imagine/goal and /imagine/result; {}",
+        path, ros::message_traits::datatype<ImagineActionGoal>(), ListOfTopics(topics)));
   }
   if (wanted.empty()) return actions;
   if (actions.count(wanted) > 0) return {wanted};
   throw ConfigError(
       fmt::format("{}: {}; --topic chooses one of the recorded actions; {}", path,
                   hires::base::UnknownName("action", wanted, {actions.begin(), actions.end()}),
-                  ListOf(topics)));
+                  ListOfTopics(topics)));
 }
 
 template <typename Message>
-void RequireVersion(const std::string& path, const std::vector<Topic>& topics,
+void RequireVersion(const std::string& path, const std::vector<BagTopic>& topics,
                     const std::string& name) {
-  for (const Topic& topic : topics) {
+  for (const BagTopic& topic : topics) {
     if (topic.name != name) continue;
     const std::string type = ros::message_traits::datatype<Message>();
     const std::string md5sum = ros::message_traits::md5sum<Message>();
@@ -178,8 +82,8 @@ void RequireVersion(const std::string& path, const std::vector<Topic>& topics,
   }
 }
 
-bool Contains(const std::vector<Topic>& topics, const std::string& name) {
-  for (const Topic& topic : topics) {
+bool Contains(const std::vector<BagTopic>& topics, const std::string& name) {
+  for (const BagTopic& topic : topics) {
     if (topic.name == name) return true;
   }
   return false;
@@ -242,8 +146,8 @@ void Match(const std::string& path, const std::string& action, bool has_results,
 
 ImagineRecording Read(const std::string& path, const std::string& wanted) {
   rosbag::Bag bag;
-  Open(path, &bag);
-  const std::vector<Topic> topics = TopicsOf(bag);
+  OpenBag(path, &bag);
+  const std::vector<BagTopic> topics = TopicsOfBag(bag);
   ImagineRecording out;
   for (const std::string& action : ChooseActions(path, topics, wanted)) {
     RequireVersion<ImagineActionGoal>(path, topics, action + "/goal");
@@ -253,32 +157,19 @@ ImagineRecording Read(const std::string& path, const std::string& wanted) {
   }
   if (out.requests.empty()) {
     throw ConfigError(
-        fmt::format("{}: holds no goal of an `imagine` action; {}", path, ListOf(topics)));
+        fmt::format("{}: holds no goal of an `imagine` action; {}", path, ListOfTopics(topics)));
   }
   return out;
 }
 
-[[noreturn]] void FailBroken(const std::string& path, const std::string& what) {
-  throw ConfigError(fmt::format(
-      "{}: is broken ({}); try `rosbag reindex {}`, which keeps what can be read, or record again",
-      path, what, path));
-}
-
 }  // namespace
 
+bool HasImagineGoals(const std::vector<BagTopic>& topics) { return !ActionsIn(topics).empty(); }
+
 ImagineRecording ReadImagineRecording(const std::string& path, const std::string& action) {
-  const ScopedMemoryLimit limit(kMostMemory);
-  try {
-    return Read(path, ActionOf(action));
-  } catch (const ConfigError&) {
-    throw;
-  } catch (const ros::Exception& error) {  // of rosbag, and of messages that end too early
-    FailBroken(path, error.what());
-  } catch (const std::bad_alloc&) {
-    FailBroken(path, "something in it claims to be larger than 2 GB");
-  } catch (const std::length_error&) {
-    FailBroken(path, "something in it claims to be larger than any memory");
-  }
+  ImagineRecording recording;
+  ReadBag(path, [&] { recording = Read(path, ActionOf(action)); });
+  return recording;
 }
 
 }  // namespace hires_ros

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "nodes/hires/bag_file.h"
+
 namespace hires_ros {
 
 /// One recorded request, with the answer it got then.
@@ -20,6 +22,9 @@ struct ImagineRecording {
   std::vector<RecordedRequest> requests;  ///< in the order of their goals, never empty
   int results_without_goal{0};            ///< of requests that were sent before the recording began
 };
+
+/// Whether goals of an `imagine` action are among them.
+bool HasImagineGoals(const std::vector<BagTopic>& topics);
 
 /// Reads a bag in which topics of `imagine` actions were recorded, in any namespace. Goals and
 /// results belong together by action and goal id. A bag is data from outside: one that asks for

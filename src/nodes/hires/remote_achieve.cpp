@@ -5,14 +5,13 @@
 #include <hires/AchieveAction.h>
 #include <ros/ros.h>
 
-#include <algorithm>
-#include <cmath>
 #include <mutex>
 #include <optional>
 #include <utility>
 
 #include "hires/base/error.h"
 #include "hires/base/process.h"
+#include "hires/ros/achieve_messages.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/topic_names.h"
 #include "nodes/hires/remote_server.h"
@@ -21,60 +20,17 @@ namespace hires_ros {
 namespace {
 
 namespace evaluation = hires::evaluation;
-namespace execution = hires::execution;
 using AchieveClient = actionlib::SimpleActionClient<hires::AchieveAction>;
 
 constexpr double kStopWait = 60.0;  // [s] for the robot to come to a stand
-
-std::optional<double> Moment(double time) {
-  return std::isnan(time) ? std::nullopt : std::optional<double>(time);
-}
-
-execution::StepStatus StepOf(const hires::StepStatus& message) {
-  execution::StepStatus step;
-  step.plan = static_cast<int>(message.plan);
-  step.index = static_cast<int>(message.index);
-  step.action = FromMsg(message.action);
-  step.phase = static_cast<execution::StepPhase>(
-      std::min<std::uint8_t>(message.phase, hires::StepStatus::SKIPPED));  // in the same order
-  step.started = Moment(message.started);
-  step.finished = Moment(message.finished);
-  step.start = {message.earliest_start, message.latest_start};
-  step.finish = {message.earliest_finish, message.latest_finish};
-  step.expected_start = message.expected_start;
-  step.expected_finish = message.expected_finish;
-  step.note = message.note;
-  step.failure = FromMsg(message.failure);
-  return step;
-}
-
-evaluation::ImaginedStep ImaginedOf(const hires::ImaginationStatus& message) {
-  evaluation::ImaginedStep step;
-  step.plan = static_cast<int>(message.plan);
-  step.step = static_cast<int>(message.step);
-  step.action = FromMsg(message.action);
-  step.requested = message.requested;
-  step.answered = Moment(message.answered);
-  step.dispatch = Moment(message.dispatch);
-  step.deadline = message.deadline;
-  step.wall_seconds = message.wall_seconds;
-  step.simulated_seconds = message.simulated_seconds;
-  step.outcome = evaluation::ParseImaginedOutcome(message.outcome);
-  for (const hires::Prediction& prediction : message.predictions) {
-    step.predictions.push_back(FromMsg(prediction));
-  }
-  step.recommended = message.recommended;
-  step.why = message.why;
-  return step;
-}
 
 /// Of a feedback or a result.
 template <typename Message>
 evaluation::AchieveStatus StatusOf(const Message& message) {
   evaluation::AchieveStatus status;
   status.now = ros::Time::now().toSec();
-  for (const auto& step : message.steps) status.steps.push_back(StepOf(step));
-  for (const auto& step : message.imaginations) status.imaginations.push_back(ImaginedOf(step));
+  for (const auto& step : message.steps) status.steps.push_back(FromMsg(step));
+  for (const auto& step : message.imaginations) status.imaginations.push_back(FromMsg(step));
   status.replans = message.replans;
   status.warnings = message.warnings;
   return status;

@@ -24,6 +24,7 @@
 #include "hires/imagination/local_imagination.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/imagine_request.h"
+#include "nodes/hires/episode_replay.h"
 #include "nodes/hires/remote_imagination.h"
 
 namespace hires_ros {
@@ -238,12 +239,15 @@ ordered_json AnswerJson(const ImagineResult& result) {
 struct ReplayOptions {
   std::string bag, json, action;
   std::vector<std::string> action_libraries;
-  bool local{false};
+  bool local{false}, requests{false};
   int threads{0};
+  EpisodeReplay episode;
 };
 
 void AddOptions(CLI::App* app, ReplayOptions* o) {
-  app->add_option("BAG", o->bag, "recorded with `rosbag record /imagine/goal /imagine/result`")
+  app->add_option("BAG", o->bag,
+                  "of a robot episode (config/episode.yaml says which topics), or of requests: "
+                  "`rosbag record /imagine/goal /imagine/result`")
       ->required();
   CLI::Option* local =
       app->add_flag("--local", o->local, "in this process, with the package's own scene");
@@ -255,7 +259,26 @@ void AddOptions(CLI::App* app, ReplayOptions* o) {
       ->allow_extra_args(false)
       ->needs(local);
   app->add_option("--json", o->json, "write the comparisons to this file as well");
-  app->add_option("--topic", o->action, "only this recorded action, e.g. /imagine; default: all");
+  app->add_option("--topic", o->action,
+                  "requests of this recorded action, e.g. /imagine; default: all");
+  app->add_flag("--requests", o->requests,
+                "the requests of imagination in the bag, though it is an episode's");
+  app->add_option("--episode", o->episode.config,
+                  "of an episode: what its topics are; default: config/episode.yaml");
+  app->add_option("--names", o->episode.names,
+                  "of an episode: what its robot calls topics and frames; default: a PR2's");
+  app->add_option("--map-to-world", o->episode.map_to_world,
+                  "of an episode: 'x y yaw scale' of its map in the world; default: they are one");
+  app->add_option("--rollouts", o->episode.params.rollouts,
+                  "of an episode: for each step; default: 64")
+      ->check(CLI::Range(1, 100000));
+  app->add_option("--seed", o->episode.params.seed, "of an episode: of all chance; default: 1")
+      ->check(CLI::NonNegativeNumber);
+}
+
+int ThreadsOf(const ReplayOptions& options) {
+  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  return options.threads > 0 ? options.threads : cores;
 }
 
 /// A bar that is drawn over itself on a terminal; nothing elsewhere.
@@ -273,10 +296,8 @@ ImagineAgain ChooseImagination(const ReplayOptions& options, const std::string& 
       return AskImaginationClient(goal, ShowProgress, cancelled);
     };
   }
-  const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  return MakeLocalImagination(package_folder, options.action_libraries,
-                              options.threads > 0 ? options.threads : cores, ShowProgress,
-                              cancelled);
+  return MakeLocalImagination(package_folder, options.action_libraries, ThreadsOf(options),
+                              ShowProgress, cancelled);
 }
 
 std::string SummaryText(const std::vector<ReplayedRequest>& replayed) {
@@ -290,7 +311,7 @@ std::string SummaryText(const std::vector<ReplayedRequest>& replayed) {
                      count([](const auto& c) { return !c.identical && c.depended_on_moment; }));
 }
 
-int Replay(const ReplayOptions& options, const std::string& package_folder) {
+int ReplayRequests(const ReplayOptions& options, const std::string& package_folder) {
   const ImagineRecording recording = ReadImagineRecording(options.bag, options.action);
   if (recording.results_without_goal > 0) {
     std::cout << fmt::format(
@@ -298,7 +319,6 @@ int Replay(const ReplayOptions& options, const std::string& package_folder) {
         "the recording began\n\n",
         recording.results_without_goal);
   }
-  std::signal(SIGINT, OnInterrupt);
   const auto cancelled = [] { return interrupted.load(); };
   const auto replayed =
       ReplayAll(recording.requests, ChooseImagination(options, package_folder, cancelled),
@@ -310,6 +330,21 @@ int Replay(const ReplayOptions& options, const std::string& package_folder) {
     evaluation::WriteJson(json, options.json);
   }
   return interrupted ? cli::kExitCancelled : ReplayExitCode(replayed);
+}
+
+int Replay(const ReplayOptions& options, const std::string& package_folder) {
+  std::signal(SIGINT, OnInterrupt);
+  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  EpisodeReplay episode = options.episode;
+  episode.bag = options.bag;
+  episode.json = options.json;
+  episode.action_libraries = options.action_libraries;
+  episode.is_local = options.local;
+  episode.threads = ThreadsOf(options);
+  if (episode.config.empty()) episode.config = package_folder + "/config/episode.yaml";
+  const bool wants_requests = options.requests || !options.action.empty();
+  if (wants_requests || !IsEpisode(episode)) return ReplayRequests(options, package_folder);
+  return ReplayEpisode(episode, package_folder, [] { return interrupted.load(); });
 }
 
 }  // namespace
@@ -427,12 +462,14 @@ ImagineAgain MakeLocalImagination(const std::string& package_folder,
 }
 
 int RunReplay(const std::vector<std::string>& arguments, const std::string& package_folder) {
-  CLI::App app("imagine recorded requests again, and compare", "hires replay");
+  CLI::App app(
+      "imagine the steps of a recorded robot episode, or recorded requests again, and compare",
+      "hires replay");
   ReplayOptions options;
   AddOptions(&app, &options);
   app.footer(
-      "exit codes: 0 all identical, 2 something differs, 1 bad input; answers that ended at a "
-      "deadline are compared, but may differ");
+      "exit codes: 0 an episode was compared, or all requests are answered identically, 2 an "
+      "answer differs, 1 bad input; answers that ended at a deadline are compared, but may differ");
   try {
     // CLI11 takes its arguments from the back.
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));

@@ -67,7 +67,8 @@ ImagineAgain MakeLocalImagination(const std::string& package_folder,
                                   const hires::imagination::OnInterim& on_interim,
                                   const std::function<bool()>& cancelled);
 
-/// The verb `hires replay BAG [--local] [--actions FILE] [--threads N] [--json FILE]
+/// The verb `hires replay BAG`, of an episode (see episode_replay.h) or of requests: `[--requests]
+/// [--local] [--actions FILE] [--threads N] [--json FILE]
 /// [--topic NAME]`.
 /// @param arguments  without the program's and the verb's name.
 /// @return The exit code: as ReplayExitCode, 1 for wrong arguments, 130 when interrupted.

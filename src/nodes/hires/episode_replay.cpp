@@ -1,0 +1,216 @@
+#include "nodes/hires/episode_replay.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "hires/base/error.h"
+#include "hires/cli/command_line.h"
+#include "hires/evaluation/report_json.h"
+#include "hires/imagination/client_config.h"
+#include "hires/ros/conversions.h"
+#include "nodes/hires/bag_file.h"
+#include "nodes/hires/episode_recording.h"
+#include "nodes/hires/imagine_recording.h"
+#include "nodes/hires/remote_imagination.h"
+
+namespace hires_ros {
+namespace {
+
+namespace cli = hires::cli;
+namespace evaluation = hires::evaluation;
+namespace imagination = hires::imagination;
+using evaluation::ComparedStep;
+using evaluation::Episode;
+using evaluation::EpisodeConfig;
+using evaluation::EpisodeStep;
+using evaluation::ImaginedAction;
+using hires::base::ConfigError;
+using imagination::ImaginationSetup;
+using nlohmann::ordered_json;
+
+/// Nothing when it was cancelled.
+using Imagine =
+    std::function<std::optional<ImaginedAction>(const EpisodeStep& step, std::uint64_t place)>;
+
+EpisodeConfig ConfigOf(const EpisodeReplay& replay) {
+  EpisodeConfig config = evaluation::ReadEpisodeConfig(replay.config, replay.names);
+  config.names.map_to_world = hires::world::ParseMapToWorld(replay.map_to_world, "--map-to-world");
+  return config;
+}
+
+ImaginationSetup SetupOf(const EpisodeReplay& replay, const std::string& package_folder) {
+  const auto client =
+      imagination::ReadClientConfig(package_folder + "/config/imagination_client.yaml");
+  imagination::SetupConfig files = imagination::ReadSetupConfig(client.scene);
+  files.action_libraries = replay.action_libraries;
+  return imagination::LoadImaginationSetup(files);
+}
+
+// ---------------------------------------------------------------- imagining
+
+hires::ImagineGoal GoalOf(const EpisodeStep& step, const ImaginationSetup& setup,
+                          const evaluation::ReplayParams& params, std::uint64_t place) {
+  hires::base::ActionTemplate action{step.action.name, {}};
+  for (const std::string& argument : step.action.arguments) {
+    action.alternatives.push_back({argument});
+  }
+  hires::ImagineGoal goal;
+  goal.steps.push_back(ToMsg(action));
+  goal.world_state = ToMsg(step.start.world);
+  goal.world_state.header.frame_id = "map";
+  goal.world_state.world_hash = setup.world_hash;
+  goal.robot_state = ToMsg(step.start.robot);
+  goal.rollouts = static_cast<std::uint32_t>(params.rollouts);
+  goal.seed = params.seed + place;
+  goal.play_all = true;
+  goal.request_id = fmt::format("replay_step_{}", place);
+  return goal;
+}
+
+std::optional<ImaginedAction> AskFor(const EpisodeStep& step, const hires::ImagineGoal& goal,
+                                     const std::function<bool()>& cancelled) {
+  ImaginedAction imagined;
+  if (step.goal) {
+    imagined.refusal =
+        "it ended at no area that the world has, so that an imagination client cannot be asked; "
+        "--local can";
+    return imagined;
+  }
+  const hires::ImagineResult result = AskImaginationClient(goal, {}, cancelled);
+  if (result.outcome == hires::ImagineResult::CANCELLED) return std::nullopt;
+  if (result.predictions.empty()) {
+    imagined.refusal = result.why;
+    return imagined;
+  }
+  imagined.evidence = FromMsg(result.predictions.front()).evidence;
+  return imagined;
+}
+
+Imagine WayOf(const EpisodeReplay& replay, const ImaginationSetup& setup,
+              const std::vector<EpisodeStep>& steps, const std::function<bool()>& cancelled) {
+  if (replay.is_local) {
+    const evaluation::Crew crew{replay.threads, cancelled, {}};
+    return [=, with_goals = evaluation::WithGoals(setup, steps)](const EpisodeStep& step,
+                                                                 std::uint64_t place) {
+      return evaluation::ImagineStep(with_goals, step, replay.params, place, crew);
+    };
+  }
+  return [=](const EpisodeStep& step, std::uint64_t place) {
+    return AskFor(step, GoalOf(step, setup, replay.params, place), cancelled);
+  };
+}
+
+void ShowPlace(std::size_t place, std::size_t all) {
+  if (isatty(STDERR_FILENO) == 0) return;
+  std::cerr << (place < all ? fmt::format("\rstep {} of {}\033[K", place + 1, all) : "\r\033[K")
+            << std::flush;
+}
+
+/// Nothing when it was cancelled.
+std::optional<std::vector<ComparedStep>> CompareAll(const std::vector<EpisodeStep>& steps,
+                                                    const Imagine& imagine, double surprise) {
+  std::vector<ComparedStep> compared;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    ShowPlace(i, steps.size());
+    std::optional<ImaginedAction> imagined = ImaginedAction();
+    if (steps[i].why_not.empty()) imagined = imagine(steps[i], i);
+    if (!imagined) return std::nullopt;
+    compared.push_back(evaluation::CompareStep(steps[i], *imagined, surprise));
+  }
+  ShowPlace(steps.size(), steps.size());
+  return compared;
+}
+
+// ---------------------------------------------------------------- what the bag says
+
+void PrintNotes(const EpisodeRecording& recording) {
+  const std::string advice = recording.topics.Advice();
+  if (!advice.empty()) std::cout << advice;
+  for (const auto& [what, count] : recording.dropped) {
+    std::cout << fmt::format("left out {} times: {}\n", count, what);
+  }
+}
+
+bool HasSamples(const EpisodeRecording& recording) {
+  for (const Episode& episode : recording.episodes) {
+    if (!episode.samples.empty()) return true;
+  }
+  return false;
+}
+
+std::string ListOfDropped(const EpisodeRecording& recording) {
+  std::string text;
+  for (const auto& [what, count] : recording.dropped) {
+    text += fmt::format("\n  {} times: {}", count, what);
+  }
+  return text.empty() ? "" : "; left out was" + text;
+}
+
+void RequireState(const EpisodeReplay& replay, const EpisodeRecording& recording) {
+  if (HasSamples(recording)) return;
+  throw ConfigError(fmt::format(
+      "{}: where the robot was is never known: {} did not come{}; record it too, or say by --names "
+      "what this robot calls its topics and frames",
+      replay.bag, recording.missing.empty() ? "a moment with all of it" : recording.missing,
+      ListOfDropped(recording)));
+}
+
+[[noreturn]] void FailWithoutSteps(const EpisodeReplay& replay) {
+  throw ConfigError(fmt::format(
+      "{}: nobody asked for an action in it, and the robot moved by nothing that could be "
+      "one; record while it works",
+      replay.bag));
+}
+
+ordered_json ReplayedJson(const EpisodeReplay& replay, const EpisodeRecording& recording) {
+  ordered_json json{{"bag", replay.bag},
+                    {"imagined_by", replay.is_local ? "this process" : "imagination client"},
+                    {"rollouts", replay.params.rollouts},
+                    {"seed", replay.params.seed},
+                    {"dropped", recording.dropped},
+                    {"episodes", ordered_json::array()}};
+  return json;
+}
+
+}  // namespace
+
+bool IsEpisode(const EpisodeReplay& replay) {
+  const std::vector<BagTopic> topics = TopicsOfBagFile(replay.bag);
+  const evaluation::TopicCheck check =
+      CheckTopics(ConfigOf(replay), {topics.begin(), topics.end()});
+  if (check.is_usable()) return true;
+  if (HasImagineGoals(topics)) return false;
+  throw ConfigError(
+      fmt::format("{}: is no robot episode, and holds no goals of an `imagine` action: "
+                  "{}{}",
+                  replay.bag, check.Advice(), ListOfTopics(topics)));
+}
+
+int ReplayEpisode(const EpisodeReplay& replay, const std::string& package_folder,
+                  const std::function<bool()>& cancelled) {
+  const EpisodeConfig config = ConfigOf(replay);
+  const ImaginationSetup setup = SetupOf(replay, package_folder);
+  const EpisodeRecording recording = ReadEpisodeRecording(replay.bag, config, setup);
+  RequireState(replay, recording);
+  PrintNotes(recording);
+  ordered_json json = ReplayedJson(replay, recording);
+  for (const Episode& episode : recording.episodes) {
+    const std::vector<EpisodeStep> steps = evaluation::StepsOf(episode, setup, config);
+    if (steps.empty()) continue;
+    const auto compared =
+        CompareAll(steps, WayOf(replay, setup, steps, cancelled), config.surprise);
+    if (!compared) return cli::kExitCancelled;
+    std::cout << evaluation::EpisodeTable(*compared) << '\n'
+              << evaluation::EpisodeSummary(*compared) << std::flush;
+    json["episodes"].push_back(evaluation::EpisodeJson(*compared));
+  }
+  if (json["episodes"].empty()) FailWithoutSteps(replay);
+  if (!replay.json.empty()) evaluation::WriteJson(json, replay.json);
+  return cli::kExitRecommended;
+}
+
+}  // namespace hires_ros
