@@ -333,7 +333,7 @@ int ReplayRequests(const ReplayOptions& options, const std::string& package_fold
 }
 
 int Replay(const ReplayOptions& options, const std::string& package_folder) {
-  std::signal(SIGINT, OnInterrupt);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, OnInterrupt);
   if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
   EpisodeReplay episode = options.episode;
   episode.bag = options.bag;
