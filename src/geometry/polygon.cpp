@@ -86,9 +86,12 @@ Polygon ConvexHull(std::vector<Eigen::Vector2d> points) {
 }
 
 Polygon Transformed(const Pose2& X_AB, const Polygon& polygon_B) {
+  const double c = std::cos(X_AB.yaw), s = std::sin(X_AB.yaw);
   Polygon polygon_A;
   polygon_A.reserve(polygon_B.size());
-  for (const Eigen::Vector2d& p : polygon_B) polygon_A.push_back(X_AB * p);
+  for (const Eigen::Vector2d& p : polygon_B) {
+    polygon_A.emplace_back(X_AB.x + c * p.x() - s * p.y(), X_AB.y + s * p.x() + c * p.y());
+  }
   return polygon_A;
 }
 

@@ -69,21 +69,42 @@ const Pose3& LinkBodies::InBody(const std::string& link) const {
   return X_BodyLink_[LinkIndex(link)];
 }
 
+Pose3 LinkBodies::PoseOf(const Mount& mount, const std::vector<double>& positions,
+                         const std::vector<Pose3>& X_B) const {
+  const double q = mount.multiplier * positions[mount.moving] + mount.offset;
+  Pose3 X_JBody;
+  if (mount.is_prismatic) {
+    X_JBody.translation = q * mount.axis;
+  } else {
+    X_JBody.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(q, mount.axis));
+  }
+  Pose3 X_BBody = X_B[mount.parent] * mount.X_PJ * X_JBody;
+  X_BBody.rotation.normalize();
+  return X_BBody;
+}
+
 void LinkBodies::Place(const std::vector<double>& positions, std::vector<Pose3>* X_B) const {
   HIRES_CHECK(positions.size() == moving_.size(), "one position for each moving joint");
   X_B->resize(bodies_.size());
   (*X_B)[0] = Pose3();
   for (std::size_t i = 1; i < bodies_.size(); ++i) {
+    (*X_B)[i] = PoseOf(mounts_[i], positions, *X_B);
+  }
+}
+
+void LinkBodies::PlaceMoved(const std::vector<double>& before, const std::vector<double>& positions,
+                            std::vector<Pose3>* X_B, std::vector<bool>* moved) const {
+  HIRES_CHECK(before.size() == moving_.size() && positions.size() == moving_.size(),
+              "one position for each moving joint");
+  HIRES_CHECK(X_B->size() == bodies_.size(), "all bodies are placed already");
+  moved->assign(bodies_.size(), false);
+  for (std::size_t i = 1; i < bodies_.size(); ++i) {
     const Mount& mount = mounts_[i];
-    const double q = mount.multiplier * positions[mount.moving] + mount.offset;
-    Pose3 X_JBody;
-    if (mount.is_prismatic) {
-      X_JBody.translation = q * mount.axis;
-    } else {
-      X_JBody.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(q, mount.axis));
-    }
-    (*X_B)[i] = (*X_B)[mount.parent] * mount.X_PJ * X_JBody;
-    (*X_B)[i].rotation.normalize();
+    const bool is_still =
+        !(*moved)[mount.parent] && before[mount.moving] == positions[mount.moving];
+    if (is_still) continue;
+    (*moved)[i] = true;
+    (*X_B)[i] = PoseOf(mount, positions, *X_B);
   }
 }
 

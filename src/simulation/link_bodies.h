@@ -32,6 +32,11 @@ class LinkBodies {
   /// @param positions  of the moving joints, in their order; limits are not looked at.
   void Place(const std::vector<double>& positions, std::vector<geometry::Pose3>* X_B) const;
 
+  /// The same where `X_B` was placed for the positions `before`: only what moved since is touched.
+  /// @param moved  which bodies did, in their order.
+  void PlaceMoved(const std::vector<double>& before, const std::vector<double>& positions,
+                  std::vector<geometry::Pose3>* X_B, std::vector<bool>* moved) const;
+
   /// Body of a link and the link's place in it. @throws base::ConfigError if there is no such link.
   int BodyOf(const std::string& link) const;
   const geometry::Pose3& InBody(const std::string& link) const;
@@ -47,6 +52,9 @@ class LinkBodies {
   };
   void AddShapes(const robot::RobotModel& model, const robot::JointPositions& posture);
   int LinkIndex(const std::string& link) const;
+  /// Pose in the base frame of a body whose parent is placed already.
+  geometry::Pose3 PoseOf(const Mount& mount, const std::vector<double>& positions,
+                         const std::vector<geometry::Pose3>& X_B) const;
   int FindMoving(const robot::Joint& joint) const;  // -1: it is frozen
 
   std::vector<std::string> moving_, links_;

@@ -9,6 +9,11 @@ namespace {
 
 constexpr double kSlipCorrelation = 0.1;  // [s]
 
+bool IsSamePlace(const BaseMotion& a, const BaseMotion& b) {
+  return a.X_MB.x == b.X_MB.x && a.X_MB.y == b.X_MB.y && a.X_MB.yaw == b.X_MB.yaw &&
+         a.pitch == b.pitch && a.roll == b.roll;
+}
+
 }  // namespace
 
 MovingBase::MovingBase(const robot::RobotProfile& profile, const FloorPlaces& places,
@@ -35,11 +40,12 @@ geometry::Pose3 MovingBase::LeaningPose() const {
   const BaseMotion& motion = state_.drive.motion();
   double height = 0.0, pitch = motion.pitch, roll = motion.roll;
   if (!floor_.is_flat() || !places_.sills.empty()) {
-    const double arm = wheel_arm_;
+    const double arm = wheel_arm_, c = std::cos(motion.X_MB.yaw), s = std::sin(motion.X_MB.yaw);
     double front = 0.0, left = 0.0;
     for (const double x : {arm, -arm}) {
       for (const double y : {arm, -arm}) {
-        const double h = HeightAt(motion.X_MB * Eigen::Vector2d(x, y));
+        const double h = HeightAt({motion.X_MB.x + c * x - s * y,  // X_MB * (x, y)
+                                   motion.X_MB.y + s * x + c * y});
         height += h / 4.0;
         front += h / 2.0 * (x > 0.0 ? 1.0 : -1.0);
         left += h / 2.0 * (y > 0.0 ? 1.0 : -1.0);
@@ -60,10 +66,11 @@ void MovingBase::DrawSlip(double dt) {
 }
 
 void MovingBase::Step(double time, double next_time) {
+  const BaseMotion before = motion();
   const double traction =
       places_.patches.empty() ? kFullTraction : places_.TractionAt(motion().X_MB.position());
   state_.drive.Step(time, time_step_, state_.slip, traction);
-  state_.X_MB = LeaningPose();
+  if (!IsSamePlace(before, motion())) state_.X_MB = LeaningPose();
   state_.disturbances.Note(motion(), limits_, next_time);
 }
 

@@ -89,6 +89,8 @@ bool PlanarRobot::IsTouched(const HandBodies& hand, int object) const {
 }
 
 void PlanarRobot::PlaceAll(const Pose3& X_MB) {
+  placed_positions_.clear();
+  placed_X_MB_.reset();
   links_.Place(MovingPositions(), &X_B_);
   for (std::size_t i = 0; i < X_B_.size(); ++i) {
     X_M_[i] = X_MB * X_B_[i];
@@ -144,16 +146,37 @@ void PlanarRobot::Send(const robot::Command& command, double time) {
 void PlanarRobot::Move(double time, const Pose3& X_MBnext) {
   const double dt = physics_->params().time_step;
   drives_.Step(time + dt, dt);
-  if (drives_.is_moving()) links_.Place(MovingPositions(), &X_B_);
+  moved_.assign(X_B_.size(), false);
+  if (drives_.is_moving()) PlaceMoved();
+  const bool base_stands = placed_X_MB_ && IsSame(*placed_X_MB_, X_MBnext);
+  placed_X_MB_ = X_MBnext;
   for (std::size_t i = 0; i < X_M_.size(); ++i) {
-    const Pose3 X_next = X_MBnext * X_B_[i];
-    const bool moves = !IsSame(X_next, X_M_[i]);
-    if (moves || moves_[i]) {
-      physics_->SetMotion(body_ids_[i], MotionBetween(X_M_[i], X_next, dt));
-    }
-    moves_[i] = moves;
-    X_M_[i] = X_next;
+    const bool stands = base_stands && !moved_[i];
+    if (stands && !moves_[i]) continue;
+    MoveBody(i, stands ? X_M_[i] : X_MBnext * X_B_[i]);
   }
+}
+
+/// The bodies in the base's frame, after the joints have moved.
+void PlanarRobot::PlaceMoved() {
+  std::vector<double> positions = MovingPositions();
+  if (placed_positions_.empty()) {
+    links_.Place(positions, &X_B_);
+    moved_.assign(X_B_.size(), true);
+  } else {
+    links_.PlaceMoved(placed_positions_, positions, &X_B_, &moved_);
+  }
+  placed_positions_ = std::move(positions);
+}
+
+void PlanarRobot::MoveBody(std::size_t body, const Pose3& X_next) {
+  const bool moves = !IsSame(X_next, X_M_[body]);
+  if (moves || moves_[body]) {
+    const double dt = physics_->params().time_step;
+    physics_->SetMotion(body_ids_[body], MotionBetween(X_M_[body], X_next, dt));
+  }
+  moves_[body] = moves;
+  X_M_[body] = X_next;
 }
 
 void PlanarRobot::React() { hands_.React(objects_, &drives_, physics_); }
@@ -242,6 +265,8 @@ void PlanarRobot::Restore(const State& state) {
   X_M_ = state.X_M;
   moves_ = state.moves;
   fixed_to_ = state.fixed_to;
+  placed_positions_.clear();
+  placed_X_MB_.reset();
 }
 
 }  // namespace hires::simulation

@@ -78,6 +78,8 @@ class PlanarRobot {
   bool IsTouched(const HandBodies& hand, int object) const;
   void FitGap(int hand, int object);
   void PlaceAll(const geometry::Pose3& X_MB);
+  void PlaceMoved();
+  void MoveBody(std::size_t body, const geometry::Pose3& X_next);
 
   const Scene* scene_;
   physics::PhysicsWorld* physics_;
@@ -92,6 +94,12 @@ class PlanarRobot {
   std::vector<geometry::Pose3> X_M_;   // in the map
   std::vector<bool> moves_;            // in the last step
   std::vector<std::string> fixed_to_;  // by object: link that holds it without a hand
+
+  // What X_B_ and X_M_ were made of: what has not moved since need not be placed again, and most
+  // does not most of the time. Empty: not known.
+  std::vector<double> placed_positions_;
+  std::optional<geometry::Pose3> placed_X_MB_;
+  std::vector<bool> moved_;  // scratch: which bodies moved within the robot
 };
 
 }  // namespace hires::simulation

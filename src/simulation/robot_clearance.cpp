@@ -1,8 +1,29 @@
 #include "hires/simulation/robot_clearance.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace hires::simulation {
+namespace {
+
+constexpr double kRounding = 1e-9;  // [m] by which a distance may be told wrongly
+
+/// Whether an edge of the outline has the whole ball, and `gap` beside it, on its far side. Costs a
+/// hundredth of the exact distance, and answers for nearly all pairs that do not touch.
+bool IsOutside(const geometry::Polygon& outline, const Eigen::Vector2d& centre, double radius,
+               double gap) {
+  const double apart = radius + gap + kRounding;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d& from = outline[i];
+    const Eigen::Vector2d along = outline[i + 1 == outline.size() ? 0 : i + 1] - from;
+    const Eigen::Vector2d to = centre - from;
+    const double outwards = along.y() * to.x() - along.x() * to.y();  // times the edge's length
+    if (outwards > 0.0 && outwards * outwards > apart * apart * along.squaredNorm()) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 std::optional<RobotClearance::Prism> RobotClearance::MakePrism(const std::string& name,
                                                                const geometry::Collision& shape,
@@ -39,13 +60,19 @@ RobotClearance::RobotClearance(const std::vector<geometry::Collision>& robot_B,
 
 template <typename Visit>
 void RobotClearance::ForNearPairs(const geometry::Pose2& X_MB, double limit, Visit visit) const {
+  const double c = std::cos(X_MB.yaw), s = std::sin(X_MB.yaw);
+  const auto in_map = [&](const Eigen::Vector2d& p_B) {
+    return Eigen::Vector2d(X_MB.x + c * p_B.x() - s * p_B.y(), X_MB.y + s * p_B.x() + c * p_B.y());
+  };
   for (const Prism& obstacle : obstacles_) {
     const double reach = robot_radius_ + obstacle.radius + limit;
     if ((obstacle.centre - X_MB.position()).squaredNorm() > reach * reach) continue;
     for (const Prism& part : robot_) {
       if (part.z_min > obstacle.z_max || obstacle.z_min > part.z_max) continue;
       const double near = part.radius + obstacle.radius + limit;
-      if ((X_MB * part.centre - obstacle.centre).squaredNorm() > near * near) continue;
+      const Eigen::Vector2d centre = in_map(part.centre);
+      if ((centre - obstacle.centre).squaredNorm() > near * near) continue;
+      if (IsOutside(obstacle.outline, centre, part.radius, limit)) continue;
       const double distance =
           geometry::Distance(geometry::Transformed(X_MB, part.outline), obstacle.outline);
       if (distance <= limit && !visit(part, obstacle, distance)) return;

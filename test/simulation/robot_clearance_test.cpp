@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "hires/base/rng.h"
@@ -27,6 +28,12 @@ world::World WorldOf(std::vector<world::StaticBody> statics) {
   world::World world;
   world.statics = std::move(statics);
   return world;
+}
+
+geometry::Polygon OutlineOf(const geometry::Collision& shape, const geometry::Pose3& X_MB) {
+  const geometry::Pose3 X_MS = X_MB * shape.X_BS;
+  const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, X_MS);
+  return *geometry::OutlineInBand(shape.shape, X_MS, bounds.lower.z(), bounds.upper.z());
 }
 
 TEST(RobotClearanceTest, MeasuresFaceToFace) {
@@ -111,6 +118,33 @@ TEST(RobotClearanceTest, TurningRobotAndWorldTogetherChangesNothing) {
     crate.X_MB = geometry::Lift(X_NM * X_MC, 0.5);
     EXPECT_NEAR(RobotClearance(BoxRobot(), WorldOf({crate})).Clearance(X_NM * X_MB, 3.0), here,
                 1e-9);
+  }
+}
+
+TEST(RobotClearanceTest, IsTheLeastDistanceOfTheOutlinesToTheLastBit) {
+  base::Rng rng(13);
+  for (int i = 0; i < 200; ++i) {
+    std::vector<world::StaticBody> crates;
+    std::vector<geometry::Polygon> outlines_M;
+    for (int k = 0; k < 6; ++k) {
+      const Eigen::Vector3d size(rng.Uniform(0.05, 3.0), rng.Uniform(0.05, 3.0), 1.0);
+      const geometry::Pose2 X_MC{rng.Uniform(-3.0, 3.0), rng.Uniform(-3.0, 3.0),
+                                 rng.Uniform(-3.0, 3.0)};
+      crates.push_back(Block("crate", size, {0.0, 0.0, 0.5}));
+      crates.back().X_MB = geometry::Lift(X_MC, 0.5);
+      outlines_M.push_back(OutlineOf(crates.back().collisions[0], crates.back().X_MB));
+    }
+    const geometry::Pose2 X_MB{rng.Uniform(-3.0, 3.0), rng.Uniform(-3.0, 3.0),
+                               rng.Uniform(-3.0, 3.0)};
+    const geometry::Polygon robot_M = geometry::Transformed(X_MB, OutlineOf(BoxRobot()[0], {}));
+    const double limit = rng.Uniform(0.0, 1.0);
+    double least = limit;
+    for (const geometry::Polygon& outline_M : outlines_M) {
+      least = std::min(least, geometry::Distance(robot_M, outline_M));
+    }
+    const RobotClearance clearance(BoxRobot(), WorldOf(crates));
+    EXPECT_EQ(clearance.Clearance(X_MB, limit), least) << "case " << i;
+    EXPECT_EQ(clearance.FindContact(X_MB).has_value(), least == 0.0) << "case " << i;
   }
 }
 
