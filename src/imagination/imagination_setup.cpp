@@ -111,6 +111,18 @@ world::World LoadWorldWithObjects(const SetupConfig& config,
   return world;
 }
 
+/// With the guard late commands end in its ramp, whatever the base's controller would do.
+/// @return the robot's hash: client and worker must agree about the guard, too.
+std::uint64_t PutGuardBefore(bool is_there, robot::Robot* robot) {
+  bool& stops = robot->profile.base_controller.stops_at_timeout;
+  if (!is_there || !stops) return robot->hash();
+  stops = false;
+  base::Hasher hasher;
+  hasher.Add(robot->hash());
+  hasher.Add("base_guard");
+  return hasher.value();
+}
+
 }  // namespace
 
 std::string ResolvePath(const std::string& path, const std::string& config_path) {
@@ -166,7 +178,7 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   ImaginationSetup setup;
   world::World world = LoadWorldWithObjects(config, &setup.object_models);
   robot::Robot robot = robot::LoadAnyRobot(config.robot);
-  if (config.has_base_guard) robot.profile.base_controller.stops_at_timeout = false;
+  setup.robot_hash = PutGuardBefore(config.has_base_guard, &robot);
   setup.skills = std::make_shared<const skills::SkillSet>(
       skills::MakeSkillSet(world, robot, config.driving, config.blind, config.manipulation,
                            config.standing, skills::LoadActionSet(config.action_libraries)));
@@ -175,7 +187,6 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   hasher.Add(world.hash);
   hasher.Add(config.params_hash);
   setup.world_hash = hasher.value();
-  setup.robot_hash = robot.hash();
   setup.physics_hash = PhysicsHash(config.physics, config.rollout, config.standing);
   setup.scene = simulation::MakeScene(std::move(world), std::move(robot), config.sensing.memory);
   setup.sensing = config.sensing;

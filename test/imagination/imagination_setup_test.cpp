@@ -415,5 +415,19 @@ TEST(StartStateTest, RolloutsGetTheWholeSetup) {
   EXPECT_NO_THROW(CheckSetup(rollouts, {"move_base", {"window"}}));
 }
 
+TEST(ImaginationSetupTest, LateCommandsEndInARampBehindTheGuardWhateverTheProfileSays) {
+  SceneFile scene;
+  YAML::Node cart = YAML::LoadFile(Root() + "/config/robots/cart.yaml");
+  cart["urdf"] = Root() + "/config/robots/" + cart["urdf"].Scalar();
+  cart["base_controller"]["at_timeout"] = "stop";
+  scene.root["robot"] = scene.folder.Write("cart.yaml", YAML::Dump(cart));
+  const ImaginationSetup alone = scene.Load();
+  scene.root["base_guard"] = true;
+  const ImaginationSetup guarded = scene.Load();
+  EXPECT_TRUE(alone.scene->robot.profile.base_controller.stops_at_timeout);
+  EXPECT_FALSE(guarded.scene->robot.profile.base_controller.stops_at_timeout);
+  EXPECT_NE(alone.robot_hash, guarded.robot_hash);  // client and worker must agree
+}
+
 }  // namespace
 }  // namespace hires::imagination::imagination_setup_test
