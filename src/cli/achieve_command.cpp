@@ -54,12 +54,20 @@ std::string CsvPath(const AchieveOptions& options) {
   return std::filesystem::path(options.png).replace_extension(".csv").string();
 }
 
+/// @param truth  under which it was played, where this is known.
+void WriteJson(const evaluation::AchieveReport& report, const std::optional<std::string>& truth,
+               const std::string& path) {
+  nlohmann::ordered_json json = ToJson(report);
+  if (truth) json["truth"] = *truth;
+  evaluation::WriteJson(json, path);
+}
+
 void WriteFiles(const AchieveOptions& options, const std::string& package_folder,
-                const evaluation::AchieveReport& report) {
+                const evaluation::AchieveReport& report, const std::optional<std::string>& truth) {
   const std::string csv = CsvPath(options);
   if (!csv.empty())
     evaluation::WriteText(evaluation::TimelineCsv(evaluation::MakeTimeline(report)), csv);
-  if (!options.json.empty()) evaluation::WriteJson(ToJson(report), options.json);
+  if (!options.json.empty()) WriteJson(report, truth, options.json);
   if (!options.png.empty()) evaluation::DrawTimeline(package_folder + kScript, csv, options.png);
 }
 
@@ -210,7 +218,8 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   show(report.status);  // its changes may have come with the result alone
   PrintReport(report);
   if (local) PrintTruth(*local, base::SteadyNow() - begun);
-  WriteFiles(options, package_folder, report);
+  WriteFiles(options, package_folder, report,
+             local ? std::make_optional(local->truth_name) : std::nullopt);
   return ExitCodeFor(report.outcome);
 }
 

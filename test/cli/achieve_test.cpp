@@ -205,6 +205,7 @@ TEST_F(AchieveVerbTest, WhatCannotBePlayedIsNamed) {
   Ended ended = Run({"--local", "--scenario", "tipple"});
   EXPECT_EQ(ended.code, kExitNotAchieved);
   EXPECT_THAT(ended.err, HasSubstr("config/scenarios/tipple.yaml: no such file"));
+  EXPECT_THAT(Run({"--local", "--truth", "foregin"}).err, HasSubstr("'foreign'"));
   ended = Run({"--local", "sreve_coffee_to_guest", "guest1"});
   EXPECT_EQ(ended.code, kExitNotAchieved);
   EXPECT_THAT(ended.err, HasSubstr("serve_coffee_to_guest"));
