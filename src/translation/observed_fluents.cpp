@@ -221,10 +221,10 @@ class Comparison {
   }
 
   void CompareSymbols() {
-    std::vector<Atom> before;
-    for (Atom& atom : knowledge::StateAtoms(said_, ontology_)) {
-      if (IsObservable(atom)) before.push_back(std::move(atom));
-    }
+    const std::vector<Atom> before =
+        knowledge::StateAtoms(said_, ontology_, [](const std::string& predicate) {
+          return IsObservable({predicate, {}});
+        });
     const auto after = AtomsOf(context_, observed_.state, &before);
     const ViewWith base(&said_, &new_things_);
     knowledge::ProjectedView projected(&base, &ontology_);

@@ -213,6 +213,18 @@ TEST(RestaurantStateTest, HoldsNothingElseButTheOtherObjectsAndWiderConcepts) {
                                "building", "wall", "horizontaltable", "table"}));
 }
 
+TEST(StateAtomsTest, WantedPredicatesAreThoseOfTheWholeStateInItsOrder) {
+  const auto is_wanted = [](const std::string& predicate) {
+    return predicate == "On" || predicate == "RobotAt" || predicate == "Type";
+  };
+  std::vector<Atom> expected;
+  for (const Atom& atom : StateAtoms(Restaurant(), *TheOntology())) {
+    if (is_wanted(atom.predicate)) expected.push_back(atom);
+  }
+  ASSERT_FALSE(expected.empty());
+  EXPECT_EQ(ToTexts(StateAtoms(Restaurant(), *TheOntology(), is_wanted)), ToTexts(expected));
+}
+
 TEST(RestaurantStateTest, IsSortedWithoutRepetitions) {
   std::vector<std::pair<std::string, Texts>> atoms;
   for (const Atom& atom : StateAtoms(Restaurant(), *TheOntology())) {

@@ -17,6 +17,9 @@ namespace hires::knowledge {
 /// lower case and in the domain's order. By predicate, then arguments, each once. A fluent that
 /// lacks a role of its row says nothing; where a state has two fillers of a role, the first counts.
 std::vector<base::Atom> StateAtoms(const FluentView& view, const Ontology& ontology);
+/// Those of the predicates that are wanted, in the same order.
+std::vector<base::Atom> StateAtoms(const FluentView& view, const Ontology& ontology,
+                                   const std::function<bool(const std::string&)>& is_wanted);
 
 /// "The state, but with these effects": a view that looks its changes up first and everything else
 /// in the view below, which it does not copy and which must outlive it. Names compare without

@@ -151,8 +151,14 @@ std::vector<const AtomRule*> RequireRules(const base::Atom& atom) {
 }  // namespace
 
 std::vector<base::Atom> StateAtoms(const FluentView& view, const Ontology& ontology) {
+  return StateAtoms(view, ontology, [](const std::string&) { return true; });
+}
+
+std::vector<base::Atom> StateAtoms(const FluentView& view, const Ontology& ontology,
+                                   const std::function<bool(const std::string&)>& is_wanted) {
   std::vector<base::Atom> atoms;
   for (const AtomRule& rule : AtomRules()) {
+    if (!is_wanted(std::string(rule.predicate))) continue;
     const Ontology::ConceptId id = ontology.Find(rule.concept_name);
     if (id == Ontology::kUnknown) continue;
     for (const Ontology::ConceptId below : ontology.Below(id)) {
