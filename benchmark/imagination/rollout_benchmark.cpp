@@ -1,5 +1,5 @@
 // How many simulated seconds does one core play in a second: navigation, arm paths, physics and
-// counting? Targets: 60 for a drive with the pepper mill, 5 for placing a mug.
+// counting? Goal: 200 for a drive with the pepper mill and for what arms do.
 #include <benchmark/benchmark.h>
 
 #include "hires/imagination/imagination_setup.h"
