@@ -12,6 +12,7 @@ function(hires_layer name)
     add_library(${target} STATIC ${LAYER_SOURCES})
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_compile_options(${target} PRIVATE ${HIRES_WARNINGS})
+    hires_compile_together(${target})
     # Headers of the layer's own are included by their path from src/.
     target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
   else()

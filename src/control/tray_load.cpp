@@ -12,9 +12,9 @@ using geometry::Aabb;
 using navigation::BrakingLimits;
 using robot::Robot;
 
-constexpr double kBeside = 0.03;  // [m] over the plate's edge: seen with an error
-constexpr double kBelow = 0.10;   // [m] below and above its top, likewise, and models whose
-constexpr double kAbove = 0.25;   // [m] origin is not at their foot
+constexpr double kBeside = 0.03;       // [m] over the plate's edge: seen with an error
+constexpr double kBelow = 0.10;        // [m] below and above its top, likewise, and models whose
+constexpr double kOriginAbove = 0.25;  // [m] origin is not at their foot
 
 /// The largest of the tray's shapes, in the tray link's frame; rims and walls are smaller.
 Aabb PlateOf(const robot::Link& tray) {
@@ -34,7 +34,7 @@ bool IsOver(const Aabb& plate, const Eigen::Vector3d& p_TO) {
   const double top = plate.upper.z();
   return p_TO.x() > plate.lower.x() - kBeside && p_TO.x() < plate.upper.x() + kBeside &&
          p_TO.y() > plate.lower.y() - kBeside && p_TO.y() < plate.upper.y() + kBeside &&
-         p_TO.z() > top - kBelow && p_TO.z() < top + kAbove;
+         p_TO.z() > top - kBelow && p_TO.z() < top + kOriginAbove;
 }
 
 geometry::Pose3 TrayPose(const Robot& robot, const geometry::Pose2& X_MB,

@@ -13,7 +13,7 @@
 namespace hires::execution {
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
+using temporal::kForever;
 
 /// Where imagination has nothing to say.
 std::string OutcomeText(ImagineAnswered::Outcome outcome) {

@@ -10,7 +10,7 @@
 namespace hires::execution {
 namespace {
 
-constexpr double kForever = std::numeric_limits<double>::infinity();
+using temporal::kForever;
 constexpr double kShift = 0.5;      // [s] by which a deadline moves before it is published
 constexpr double kForesight = 0.8;  // [s] before a deadline it is looked at again
 

@@ -12,7 +12,6 @@ namespace hires::imagination {
 namespace {
 
 constexpr double kHighestPrice = 1e5;  // [s] about a day
-constexpr double kAlpha = 0.05;
 
 std::vector<std::string> WordsThatEndRollouts() {
   std::vector<std::string> words;

@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "hires/base/check.h"
+#include "imagination/confidence_sequence.h"
 
 namespace hires::imagination {
 namespace {
-
-constexpr double kAlpha = 0.05;
 
 double BetaQuantile(double a, double b, double share) {
   return boost::math::quantile(boost::math::beta_distribution<>(a, b), share);

@@ -12,15 +12,6 @@
 #include "manipulation/robot_parts.h"
 
 namespace hires::manipulation {
-namespace {
-
-using NamePair = std::pair<std::string, std::string>;
-
-NamePair Ordered(const std::string& a, const std::string& b) {
-  NamePair pair(base::ToLower(a), base::ToLower(b));
-  if (pair.second < pair.first) std::swap(pair.first, pair.second);
-  return pair;
-}
 
 /// A shape of the world that stands still.
 struct Thing {
@@ -36,6 +27,16 @@ struct Carried {
   std::shared_ptr<const CollisionShape> shape;
   Eigen::Isometry3d X_LO;
 };
+
+namespace {
+
+using NamePair = std::pair<std::string, std::string>;
+
+NamePair Ordered(const std::string& a, const std::string& b) {
+  NamePair pair(base::ToLower(a), base::ToLower(b));
+  if (pair.second < pair.first) std::swap(pair.first, pair.second);
+  return pair;
+}
 
 Thing MakeThing(const std::string& name, const geometry::Collision& collision,
                 const geometry::Pose3& X_MO, double padding, const std::string& what) {

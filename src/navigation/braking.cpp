@@ -4,11 +4,10 @@
 #include <cmath>
 
 #include "hires/base/check.h"
+#include "hires/geometry/angles.h"
 
 namespace hires::navigation {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 double SpeedOf(const geometry::Twist2& V) { return std::hypot(V.vx, V.vy); }
 
@@ -123,7 +122,7 @@ double OvershootShare(double frequency, double damping, double rise_time) {
   HIRES_CHECK(frequency > 0.0, "an oscillation has a frequency");
   HIRES_CHECK(damping >= 0.0 && rise_time >= 0.0, "damping and rise time are not negative");
   if (damping >= 1.0) return 0.0;
-  const double of_step = std::exp(-kPi * damping / std::sqrt(1.0 - damping * damping));
+  const double of_step = std::exp(-geometry::kPi * damping / std::sqrt(1.0 - damping * damping));
   return rise_time > 0.0 ? std::min(of_step, 2.0 / (frequency * rise_time)) : of_step;
 }
 

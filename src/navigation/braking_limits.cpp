@@ -5,13 +5,13 @@
 #include <limits>
 
 #include "hires/base/error.h"
+#include "hires/geometry/angles.h"
 #include "hires/navigation/braking.h"
 
 // What a load survives.
 namespace hires::navigation {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kBaseBand = 0.001;  // [m] of a base's unevenness
 
 double BaseHeight(const world::ObjectModel& model) {
@@ -52,7 +52,7 @@ double WorstAcceleration(const StandingLoad& load, double gravity, const Braking
 /// Seconds in which the deceleration rises: so many periods of the sway that it hardly swings.
 double RiseTime(const robot::BaseControllerParams& controller, const BrakingMargins& margins) {
   return controller.sway_frequency > 0.0
-             ? margins.rise_periods * 2.0 * kPi / controller.sway_frequency
+             ? margins.rise_periods * 2.0 * geometry::kPi / controller.sway_frequency
              : 0.0;
 }
 

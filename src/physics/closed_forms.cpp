@@ -7,7 +7,7 @@
 namespace hires::physics {
 namespace {
 
-constexpr double kTimeStep = 1e-5;  // [s]
+constexpr double kIntegrationStep = 1e-5;  // [s]
 constexpr double kLongest = 100.0;  // [s] no pulse that overturns a body on a table lasts as long
 
 /// The body as a rocker on its lower edge A.
@@ -41,7 +41,7 @@ RockingState RungeKuttaStep(const Rocker& rocker, const RockingState& from, doub
   const auto slope = [&](double tilt) {
     return TiltAcceleration(rocker, tilt, acceleration, gravity);
   };
-  const double h = kTimeStep;
+  const double h = kIntegrationStep;
   const double a1 = slope(from.tilt), v1 = from.rate;
   const double a2 = slope(from.tilt + 0.5 * h * v1), v2 = from.rate + 0.5 * h * a1;
   const double a3 = slope(from.tilt + 0.5 * h * v2), v3 = from.rate + 0.5 * h * a2;
@@ -76,10 +76,10 @@ double OverturningPulseDuration(const UprightCylinder& body, double acceleration
   const Rocker rocker = RockerOf(body);
   RockingState state;
   double spare = SpareEnergy(rocker, state, gravity);
-  for (long step = 0; step * kTimeStep < kLongest; ++step) {
+  for (long step = 0; step * kIntegrationStep < kLongest; ++step) {
     state = RungeKuttaStep(rocker, state, acceleration, gravity);
     const double next = SpareEnergy(rocker, state, gravity);
-    if (next >= 0.0) return (step + spare / (spare - next)) * kTimeStep;
+    if (next >= 0.0) return (step + spare / (spare - next)) * kIntegrationStep;
     spare = next;
   }
   HIRES_CHECK(false, "the acceleration is too close to the tipping acceleration for a number");

@@ -116,12 +116,6 @@ RobotProfile ReadProfile(ParamReader* in) {
   return profile;
 }
 
-void CheckLink(const ParamReader& in, const std::string& key, const RobotModel& model,
-               const std::string& link) {
-  if (model.FindLink(link)) return;
-  in.Fail(key, base::UnknownName("link", link, model.LinkNames()) + " (links of the URDF)");
-}
-
 void CheckProfile(ParamReader in, const RobotProfile& profile, const RobotModel& model) {
   CheckLink(in, "base_link", model, profile.base_link);
   if (!profile.laser_link.empty()) CheckLink(in, "laser_link", model, profile.laser_link);

@@ -115,12 +115,6 @@ void ReadAccelerations(ParamReader in, UpperBodyProfile* profile) {
   }
 }
 
-void CheckLink(const ParamReader& in, const std::string& key, const RobotModel& model,
-               const std::string& link) {
-  if (model.FindLink(link)) return;
-  in.Fail(key, base::UnknownName("link", link, model.LinkNames()) + " (links of the URDF)");
-}
-
 const Joint& CheckedJoint(const ParamReader& in, const std::string& key, const RobotModel& model,
                           const std::string& name) {
   const Joint* joint = FindJoint(model, name);
@@ -272,6 +266,12 @@ void Add(base::Hasher* hash, const std::map<std::string, double>& numbers) {
 }
 
 }  // namespace
+
+void CheckLink(const ParamReader& in, const std::string& key, const RobotModel& model,
+               const std::string& link) {
+  if (model.FindLink(link)) return;
+  in.Fail(key, base::UnknownName("link", link, model.LinkNames()) + " (links of the URDF)");
+}
 
 UpperBodyProfile ReadUpperBody(ParamReader in) {
   UpperBodyProfile profile;

@@ -14,6 +14,10 @@ UpperBodyProfile ReadUpperBody(base::ParamReader in);
 /// @throws base::ConfigError naming file and key.
 void CheckUpperBody(base::ParamReader in, const UpperBodyProfile& profile, const RobotModel& model);
 
+/// @throws base::ConfigError naming file and key, if the robot has no such link.
+void CheckLink(const base::ParamReader& in, const std::string& key, const RobotModel& model,
+               const std::string& link);
+
 void AddTo(base::Hasher* hash, const UpperBodyProfile& profile);
 
 }  // namespace hires::robot

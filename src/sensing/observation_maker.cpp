@@ -8,7 +8,7 @@ namespace hires::sensing {
 namespace {
 
 constexpr double kLongestWait = 1.0;  // [s] of a scan for the other sensors
-constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -39,7 +39,7 @@ void ObservationMaker::FindObstacles(const RobotEstimate& now) {
   const auto* newest = scans_.Before(now.time);
   if (newest == nullptr) return;
   const auto [stamp, scan] = *newest;
-  scans_.KeepBetween(std::nextafter(now.time, kForever), kForever);
+  scans_.KeepBetween(std::nextafter(now.time, kInfinity), kInfinity);
   const auto then = state_->At(stamp);
   if (!then) return;
   const FramePose X_BL = state_->InBase(scan.frame, *then);

@@ -15,8 +15,15 @@ using manipulation::ArmPathResult;
 using manipulation::ArmPathStatus;
 using robot::Observation;
 
-constexpr int kMaxInverses = 2;  // joint positions tried for one pose
-enum Came { kNowhere, kInverse, kFree, kLower, kRetreat };
+constexpr int kMaxPlacingInverses = 2;  // joint positions tried for one pose
+// How far an attempt came.
+enum PlacingStage {
+  kPlacingNowhere,
+  kPlacingInverse,
+  kPlacingFree,
+  kPlacingLower,
+  kPlacingRetreat
+};
 
 /// Turns 0, +1, -1, +2, ... steps of a full circle in `count` steps [rad].
 std::vector<double> TurnsFromMiddle(int count) {
@@ -81,7 +88,7 @@ class PlacingSearch {
     const PlaceParams& params = context_.params.place;
     const Pose3 X_MT = Raised(X_MO * X_OT_, params.release_height);
     const auto solutions = holding_.Inverse(Raised(X_MT, params.above), holding_.start(), seed);
-    for (std::size_t i = 0; i < solutions.size() && i < kMaxInverses; ++i) {
+    for (std::size_t i = 0; i < solutions.size() && i < kMaxPlacingInverses; ++i) {
       if (TryFrom(solutions[i], X_MO, X_MT, seed, plan)) return true;
     }
     return false;
@@ -91,12 +98,12 @@ class PlacingSearch {
                std::uint64_t seed, PlacePlan* plan) {
     if (const auto touch = holding_.TouchAt(above)) {
       NoteParts({touch->a, touch->b});
-      failure_.Note(kInverse, NoPath(*touch));
+      failure_.Note(kPlacingInverse, NoPath(*touch));
       return false;
     }
-    if (!Keep(Lower(above, X_MT, seed), kFree, &plan->lower) ||
-        !Keep(Retreat(plan->lower.back(), X_MO, X_MT), kLower, &plan->retreat) ||
-        !Keep(holding_.Way(holding_.start(), above, seed), kRetreat, &plan->reach)) {
+    if (!Keep(Lower(above, X_MT, seed), kPlacingFree, &plan->lower) ||
+        !Keep(Retreat(plan->lower.back(), X_MO, X_MT), kPlacingLower, &plan->retreat) ||
+        !Keep(holding_.Way(holding_.start(), above, seed), kPlacingRetreat, &plan->reach)) {
       return false;
     }
     plan->X_BO = geometry::Lift(observation_.X_MB).Inverse() * X_MO;
@@ -123,7 +130,7 @@ class PlacingSearch {
     return leaving_.Straight(low, DrawnBack(X_MT, context_.params.place.retreat));
   }
 
-  bool Keep(ArmPathResult result, Came came, JointPath* path) {
+  bool Keep(ArmPathResult result, PlacingStage came, JointPath* path) {
     if (result.status == ArmPathStatus::kFound) {
       *path = std::move(result.path);
       return true;

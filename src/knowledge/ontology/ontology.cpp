@@ -2,6 +2,7 @@
 
 #include "hires/base/check.h"
 #include "hires/base/error.h"
+#include "hires/base/keys.h"
 #include "hires/base/text.h"
 #include "knowledge/ontology/ontology_builder.h"
 #include "knowledge/ontology/ontology_turtle.h"
@@ -15,14 +16,6 @@ std::string Shortened(std::string_view name) {
   constexpr std::size_t kMaxShown = 80;
   if (name.size() <= kMaxShown) return std::string(name);
   return std::string(name.substr(0, kMaxShown)) + "...";
-}
-
-template <typename Map>
-std::vector<std::string> KeysOf(const Map& map) {
-  std::vector<std::string> keys;
-  keys.reserve(map.size());
-  for (const auto& entry : map) keys.push_back(entry.first);
-  return keys;
 }
 
 }  // namespace
@@ -81,15 +74,15 @@ const Ontology::Relation* Ontology::FindRelation(std::string_view name) const {
   return found == relations_.end() ? nullptr : &found->second;
 }
 
-std::vector<std::string> Ontology::ConceptNames() const { return KeysOf(ids_); }
+std::vector<std::string> Ontology::ConceptNames() const { return base::KeysOf(ids_); }
 
-std::vector<std::string> Ontology::RelationNames() const { return KeysOf(relations_); }
+std::vector<std::string> Ontology::RelationNames() const { return base::KeysOf(relations_); }
 
 std::string Ontology::Qualified(std::string_view name) const {
   const auto found = qualified_.find(name);
   if (found != qualified_.end()) return found->second;
   throw base::ConfigError(
-      base::UnknownName("concept or relation", Shortened(name), KeysOf(qualified_)));
+      base::UnknownName("concept or relation", Shortened(name), base::KeysOf(qualified_)));
 }
 
 std::uint64_t Ontology::hash() const { return hash_; }

@@ -10,13 +10,14 @@
 
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
+#include "hires/base/keys.h"
 #include "hires/base/text.h"
 
 namespace hires::knowledge {
 namespace {
 
 using ConceptId = Ontology::ConceptId;
-using Kind = TurtleNode::Kind;
+using NodeKind = TurtleNode::Kind;
 
 // Of concepts, and of relations. The is-a matrix and the closures grow with the square.
 constexpr std::size_t kMaxTerms = 5000;
@@ -28,7 +29,7 @@ const std::string kRdfs = "http://www.w3.org/2000/01/rdf-schema#";
 const std::string kOwl = "http://www.w3.org/2002/07/owl#";
 const std::string kXsd = "http://www.w3.org/2001/XMLSchema#";
 const std::string kThing = kOwl + "Thing";
-constexpr std::array kValueTypes{"float", "double", "int", "integer", "boolean", "string"};
+constexpr std::array kDeclaredTypes{"float", "double", "int", "integer", "boolean", "string"};
 
 bool Starts(const std::string& text, const std::string& with) {
   return text.compare(0, with.size(), with) == 0;
@@ -46,9 +47,9 @@ std::string Readable(const std::string& iri) {
 
 std::string Readable(const TurtleNode& node) {
   switch (node.kind) {
-    case Kind::kIri:
+    case NodeKind::kIri:
       return Readable(node.value);
-    case Kind::kBlank:
+    case NodeKind::kBlank:
       return "a node without a name";
     default:
       return "'" + node.value.substr(0, 40) + "'";
@@ -72,19 +73,11 @@ std::string LastPart(const std::string& iri) { return iri.substr(EndOfNamespace(
 
 /// What a node would be called if it were declared.
 std::string NameForMessage(const TurtleNode& node) {
-  return node.kind == Kind::kIri ? LastPart(node.value).substr(0, 80) : Readable(node);
-}
-
-template <typename Map>
-std::vector<std::string> KeysOf(const Map& map) {
-  std::vector<std::string> keys;
-  keys.reserve(map.size());
-  for (const auto& entry : map) keys.push_back(entry.first);
-  return keys;
+  return node.kind == NodeKind::kIri ? LastPart(node.value).substr(0, 80) : Readable(node);
 }
 
 bool IsValueType(const std::string& iri) {
-  return std::any_of(kValueTypes.begin(), kValueTypes.end(),
+  return std::any_of(kDeclaredTypes.begin(), kDeclaredTypes.end(),
                      [&](const char* type) { return iri == kXsd + type; });
 }
 
@@ -114,7 +107,7 @@ Ontology OntologyBuilder::Build() {
 
 void OntologyBuilder::Declare(const TurtleDocument& document) {
   for (const TurtleStatement& statement : document.statements) {
-    if (statement.subject.kind == Kind::kBlank) {
+    if (statement.subject.kind == NodeKind::kBlank) {
       blanks_[{&document, statement.subject.value}].push_back(&statement);
     } else if (statement.predicate == kRdf + "type") {
       DeclareOne(statement, {&document, statement.line});
@@ -219,7 +212,7 @@ bool OntologyBuilder::IsPassedOver(const TurtleStatement& statement) const {
   static const std::set<std::string> kRemarks{kRdfs + "label", kRdfs + "comment", kRdfs + "seeAlso",
                                               kRdfs + "isDefinedBy", kOwl + "versionInfo"};
   // Nodes without a name count where a statement refers to them.
-  return statement.subject.kind == Kind::kBlank || statement.predicate == kRdf + "type" ||
+  return statement.subject.kind == NodeKind::kBlank || statement.predicate == kRdf + "type" ||
          kRemarks.count(statement.predicate) > 0 || headers_.count(statement.subject.value) > 0;
 }
 
@@ -236,7 +229,7 @@ void OntologyBuilder::DescribeOne(const TurtleStatement& statement, Place place)
 }
 
 void OntologyBuilder::AddSuperclass(const TurtleStatement& statement, Place place) {
-  if (statement.object.kind != Kind::kIri) FailOnSubset(statement, place);
+  if (statement.object.kind != NodeKind::kIri) FailOnSubset(statement, place);
   const std::string below = RequireConcept(statement.subject, place);
   if (below == "Thing") Fail(place, "owl:Thing stands above every concept, and below none");
   const std::string above = RequireConcept(statement.object, place);
@@ -251,8 +244,8 @@ void OntologyBuilder::SetDomain(const TurtleStatement& statement, Place place) {
                      "alternatives as [ a owl:Class ; owl:unionOf ( ... ) ]",
                      relation.qualified));
   }
-  if (statement.object.kind == Kind::kLiteral) FailOnSubset(statement, place);
-  relation.domain = statement.object.kind == Kind::kBlank
+  if (statement.object.kind == NodeKind::kLiteral) FailOnSubset(statement, place);
+  relation.domain = statement.object.kind == NodeKind::kBlank
                         ? UnionOf(statement, place)
                         : std::vector<std::string>{RequireConcept(statement.object, place)};
 }
@@ -264,12 +257,12 @@ void OntologyBuilder::SetRange(const TurtleStatement& statement, Place place) {
                             relation.qualified));
   }
   const TurtleNode& object = statement.object;
-  if (object.kind != Kind::kIri) FailOnSubset(statement, place);
+  if (object.kind != NodeKind::kIri) FailOnSubset(statement, place);
   const bool is_value = Starts(object.value, kXsd);
   if (is_value && !IsValueType(object.value)) {
     Fail(place,
          fmt::format("relation {} has values of {}, wanted one of xsd:{}", relation.qualified,
-                     Readable(object), fmt::join(kValueTypes, ", xsd:")));
+                     Readable(object), fmt::join(kDeclaredTypes, ", xsd:")));
   }
   if (is_value == relation.is_link.value_or(!is_value)) FailOnKindOfRange(relation, object, place);
   relation.range = is_value ? Readable(object) : RequireConcept(object, place);
@@ -280,16 +273,16 @@ OntologyBuilder::RelationTerm& OntologyBuilder::RequireRelation(const TurtleNode
   const auto name = names_.find(subject.value);
   const auto found = name == names_.end() ? relations_.end() : relations_.find(name->second);
   if (found != relations_.end()) return found->second;
-  Fail(place, base::UnknownName("relation", NameForMessage(subject), KeysOf(relations_)) +
+  Fail(place, base::UnknownName("relation", NameForMessage(subject), base::KeysOf(relations_)) +
                   "; a relation is declared as owl:ObjectProperty or owl:DatatypeProperty");
 }
 
 std::string OntologyBuilder::RequireConcept(const TurtleNode& node, Place place) const {
   const auto name = names_.find(node.value);
-  if (node.kind == Kind::kIri && name != names_.end() && concepts_.count(name->second) > 0) {
+  if (node.kind == NodeKind::kIri && name != names_.end() && concepts_.count(name->second) > 0) {
     return name->second;
   }
-  Fail(place, base::UnknownName("concept", NameForMessage(node), KeysOf(concepts_)) +
+  Fail(place, base::UnknownName("concept", NameForMessage(node), base::KeysOf(concepts_)) +
                   "; a concept is declared as owl:Class");
 }
 
@@ -308,7 +301,8 @@ std::vector<std::string> OntologyBuilder::UnionOf(const TurtleStatement& stateme
 std::vector<std::string> OntologyBuilder::Members(TurtleNode list, Place place) {
   std::vector<std::string> members;
   // Each node once: a list that bites its own tail has no end.
-  while (list.kind == Kind::kBlank && used_blanks_.insert({place.document, list.value}).second) {
+  while (list.kind == NodeKind::kBlank &&
+         used_blanks_.insert({place.document, list.value}).second) {
     const TurtleNode* first = ObjectOf(place, list.value, kRdf + "first");
     const TurtleNode* rest = ObjectOf(place, list.value, kRdf + "rest");
     if (first == nullptr || rest == nullptr) break;

@@ -22,7 +22,7 @@ constexpr std::size_t kMaxString = 64u << 10;
 constexpr std::size_t kMaxStatements = 200'000;
 constexpr const char* kBase = "urn:x-hires:base";
 
-[[noreturn]] void Fail(const std::string& source, int line, const std::string& what) {
+[[noreturn]] void FailInTurtle(const std::string& source, int line, const std::string& what) {
   throw base::ConfigError(fmt::format("{}: {}; line {}", source, what, line));
 }
 
@@ -67,14 +67,15 @@ class TurtleScan {
 
   void Open() {
     if (++depth_ <= kMaxDepth) return;
-    Fail(source_, line_,
-         fmt::format("brackets are nested more than {} deep; give the inner nodes names",
-                     kMaxDepth));
+    FailInTurtle(source_, line_,
+                 fmt::format("brackets are nested more than {} deep; give the inner nodes names",
+                             kMaxDepth));
   }
 
   void Advance() {
     const char c = text_[at_++];
-    if (c == '\0') Fail(source_, line_, "there is a NUL byte, wanted text; is this a Turtle file?");
+    if (c == '\0')
+      FailInTurtle(source_, line_, "there is a NUL byte, wanted text; is this a Turtle file?");
     if (c == '\n') ++line_;
   }
 
@@ -96,7 +97,7 @@ class TurtleScan {
 
   void CountBase() {
     if (++num_bases_ > kMaxBases) {
-      Fail(source_, line_, fmt::format("more than {} bases; write whole IRIs", kMaxBases));
+      FailInTurtle(source_, line_, fmt::format("more than {} bases; write whole IRIs", kMaxBases));
     }
   }
 
@@ -123,7 +124,7 @@ class TurtleScan {
 
   void CheckLength(const char* what, std::size_t length, std::size_t at_most) const {
     if (length <= at_most) return;
-    Fail(
+    FailInTurtle(
         source_, line_,
         fmt::format("{} is {} bytes long, at most {} are read; shorten it", what, length, at_most));
   }
@@ -256,7 +257,7 @@ TurtleDocument ReadTurtle(std::string_view text, const std::string& source) {
   document.source = source;
   Parse parse{&document, &scan};
   RunRaptor(text, &parse);
-  if (!parse.error.empty()) Fail(source, parse.error_line, parse.error);
+  if (!parse.error.empty()) FailInTurtle(source, parse.error_line, parse.error);
   return document;
 }
 

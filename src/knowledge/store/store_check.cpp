@@ -23,7 +23,7 @@ constexpr const char* kOfMonitor = "ExecutionRecord";
 constexpr std::array<std::string_view, 6> kValueTypes = {
     "xsd:float", "xsd:double", "xsd:int", "xsd:integer", "xsd:boolean", "xsd:string"};
 
-enum class Kind { kNumber, kInteger, kTruth, kText };
+enum class ValueKind { kNumber, kInteger, kTruth, kText };
 
 bool IsUtf8(std::string_view text) {
   using Utf8 = boost::locale::utf::utf_traits<char>;
@@ -35,27 +35,22 @@ bool IsUtf8(std::string_view text) {
   return true;
 }
 
-bool IsControl(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return byte < 0x20 || byte == 0x7f;
-}
-
 /// Names in messages are cut, for who sends 10 MB does not want them back.
 std::string Cut(const std::string& name) {
   constexpr std::size_t kShown = 60;
   return name.size() <= kShown ? name : name.substr(0, kShown) + "...";
 }
 
-[[noreturn]] void Fail(const std::string& where, const std::string& what) {
+[[noreturn]] void FailAt(const std::string& where, const std::string& what) {
   throw base::ConfigError(where + ": " + what);
 }
 
-std::string Where(const Fluent& fluent) {
+std::string PlaceOf(const Fluent& fluent) {
   return fmt::format("fluent '{}' of {}", Cut(fluent.instance), Cut(fluent.concept_name));
 }
 
-std::string Where(const Fluent& fluent, const Property& property) {
-  return fmt::format("{}, property '{}'", Where(fluent), Cut(property.role));
+std::string PlaceOf(const Fluent& fluent, const Property& property) {
+  return fmt::format("{}, property '{}'", PlaceOf(fluent), Cut(property.role));
 }
 
 std::string Show(const Filler& filler) {
@@ -67,33 +62,33 @@ std::string Show(const Filler& filler) {
       filler);
 }
 
-Kind KindOf(std::string_view type) {
-  if (type == "xsd:boolean") return Kind::kTruth;
-  if (type == "xsd:string") return Kind::kText;
-  return type == "xsd:float" || type == "xsd:double" ? Kind::kNumber : Kind::kInteger;
+ValueKind KindOf(std::string_view type) {
+  if (type == "xsd:boolean") return ValueKind::kTruth;
+  if (type == "xsd:string") return ValueKind::kText;
+  return type == "xsd:float" || type == "xsd:double" ? ValueKind::kNumber : ValueKind::kInteger;
 }
 
 /// Whether every value of `type` is one of `range`: integers are numbers as well.
 bool Fits(std::string_view type, std::string_view range) {
-  if (KindOf(range) == Kind::kNumber && KindOf(type) == Kind::kInteger) return true;
+  if (KindOf(range) == ValueKind::kNumber && KindOf(type) == ValueKind::kInteger) return true;
   return KindOf(type) == KindOf(range);
 }
 
 void RequireKnownType(const std::string& where, const std::string& type) {
   if (std::find(kValueTypes.begin(), kValueTypes.end(), type) != kValueTypes.end()) return;
-  Fail(where, fmt::format("type '{}' is unknown; wanted one of {}, or a concept", Cut(type),
-                          fmt::join(kValueTypes, ", ")));
+  FailAt(where, fmt::format("type '{}' is unknown; wanted one of {}, or a concept", Cut(type),
+                            fmt::join(kValueTypes, ", ")));
 }
 
-bool IsOfKind(const Filler& filler, Kind kind) {
+bool IsOfKind(const Filler& filler, ValueKind kind) {
   switch (kind) {
-    case Kind::kNumber:
+    case ValueKind::kNumber:
       return std::holds_alternative<double>(filler) || std::holds_alternative<std::int64_t>(filler);
-    case Kind::kInteger:
+    case ValueKind::kInteger:
       return std::holds_alternative<std::int64_t>(filler);
-    case Kind::kTruth:
+    case ValueKind::kTruth:
       return std::holds_alternative<bool>(filler);
-    case Kind::kText:
+    case ValueKind::kText:
       return std::holds_alternative<std::string>(filler);
   }
   return false;
@@ -101,12 +96,12 @@ bool IsOfKind(const Filler& filler, Kind kind) {
 
 void CheckNumber(const std::string& where, const Property& property) {
   if (const auto* real = std::get_if<double>(&property.filler); real && !std::isfinite(*real)) {
-    Fail(where, fmt::format("is {}; wanted a finite number", *real));
+    FailAt(where, fmt::format("is {}; wanted a finite number", *real));
   }
   const auto* integer = std::get_if<std::int64_t>(&property.filler);
   using Int = std::numeric_limits<std::int32_t>;
   if (integer && property.type == "xsd:int" && (*integer < Int::min() || *integer > Int::max())) {
-    Fail(where, fmt::format("is {}; an xsd:int has 32 bits, use xsd:integer", *integer));
+    FailAt(where, fmt::format("is {}; an xsd:int has 32 bits, use xsd:integer", *integer));
   }
 }
 
@@ -114,19 +109,19 @@ void CheckText(const std::string& where, const Filler& filler) {
   const auto* text = std::get_if<std::string>(&filler);
   if (text == nullptr) return;
   if (text->size() > kMaxValueBytes) {
-    Fail(where, fmt::format("has a value of {} bytes, at most {} are kept; store a path to it",
-                            text->size(), kMaxValueBytes));
+    FailAt(where, fmt::format("has a value of {} bytes, at most {} are kept; store a path to it",
+                              text->size(), kMaxValueBytes));
   }
-  if (!IsUtf8(*text)) Fail(where, "has a value that is no UTF-8 text");
+  if (!IsUtf8(*text)) FailAt(where, "has a value that is no UTF-8 text");
 }
 
 void CheckValue(const std::string& where, const Property& property, const std::string& range) {
   RequireKnownType(where, property.type);
   if (!range.empty() && (range.compare(0, 4, "xsd:") != 0 || !Fits(property.type, range))) {
-    Fail(where, fmt::format("is given as {}, the relation wants {}", property.type, range));
+    FailAt(where, fmt::format("is given as {}, the relation wants {}", property.type, range));
   }
   if (!IsOfKind(property.filler, KindOf(property.type))) {
-    Fail(where, fmt::format("is {}, which is no {}", Show(property.filler), property.type));
+    FailAt(where, fmt::format("is {}, which is no {}", Show(property.filler), property.type));
   }
   CheckNumber(where, property);
   CheckText(where, property.filler);
@@ -136,16 +131,16 @@ void CheckLink(const std::string& where, const Property& property, const std::st
                const Ontology& ontology) {
   const Ontology::ConceptId type = ontology.Find(property.type);
   if (type == Ontology::kUnknown) {
-    Fail(where, base::UnknownName("type", property.type, ontology.ConceptNames()));
+    FailAt(where, base::UnknownName("type", property.type, ontology.ConceptNames()));
   }
   const auto* target = std::get_if<std::string>(&property.filler);
   if (target == nullptr) {
-    Fail(where,
-         fmt::format("is {}; wanted the name of a {}", Show(property.filler), property.type));
+    FailAt(where,
+           fmt::format("is {}; wanted the name of a {}", Show(property.filler), property.type));
   }
   const Ontology::ConceptId wanted = ontology.Find(range);
   if (!range.empty() && (wanted == Ontology::kUnknown || !ontology.IsA(type, wanted))) {
-    Fail(where, fmt::format("links to a {}, the relation wants {}", property.type, range));
+    FailAt(where, fmt::format("links to a {}, the relation wants {}", property.type, range));
   }
   CheckName(where, *target);
 }
@@ -158,17 +153,17 @@ void CheckDomain(const std::string& where, const Ontology::Relation& relation,
     if (ontology.IsA(subject, id)) return;
     wanted.push_back(ontology.Name(id));
   }
-  Fail(where,
-       fmt::format("is no property of this concept; wanted a {}", base::Join(wanted, " or ")));
+  FailAt(where,
+         fmt::format("is no property of this concept; wanted a {}", base::Join(wanted, " or ")));
 }
 
 void CheckProperty(const Fluent& fluent, const Property& property, Ontology::ConceptId subject,
                    const Ontology& ontology) {
-  const std::string where = Where(fluent, property);
+  const std::string where = PlaceOf(fluent, property);
   const Ontology::Relation* relation = ontology.FindRelation(property.role);
   if (relation == nullptr) {
-    Fail(Where(fluent),
-         base::UnknownName("relation", Cut(property.role), ontology.RelationNames()));
+    FailAt(PlaceOf(fluent),
+           base::UnknownName("relation", Cut(property.role), ontology.RelationNames()));
   }
   CheckDomain(where, *relation, subject, ontology);
   if (property.IsLink()) {
@@ -183,14 +178,14 @@ void CheckFunctional(const Fluent& fluent, const Ontology& ontology) {
   for (const Property& property : fluent.properties) {
     if (seen.insert(property.role).second) continue;
     if (!ontology.FindRelation(property.role)->functional) continue;
-    Fail(Where(fluent, property), "is given twice, and there can be only one");
+    FailAt(PlaceOf(fluent, property), "is given twice, and there can be only one");
   }
 }
 
 void CheckCount(const Fluent& fluent) {
   if (fluent.properties.size() > kMaxProperties) {
-    Fail(Where(fluent), fmt::format("has {} properties, at most {} are kept; split it",
-                                    fluent.properties.size(), kMaxProperties));
+    FailAt(PlaceOf(fluent), fmt::format("has {} properties, at most {} are kept; split it",
+                                        fluent.properties.size(), kMaxProperties));
   }
 }
 
@@ -201,37 +196,42 @@ void CheckSize(const Fluent& fluent) {
     bytes += property.role.size() + property.type.size() + (text == nullptr ? 8 : text->size());
   }
   if (bytes > kMaxFluentBytes) {
-    Fail(Where(fluent),
-         fmt::format("has {} bytes, at most {} are kept; split it", bytes, kMaxFluentBytes));
+    FailAt(PlaceOf(fluent),
+           fmt::format("has {} bytes, at most {} are kept; split it", bytes, kMaxFluentBytes));
   }
 }
 
 void CheckBounds(const Fluent& fluent, const char* what, const temporal::Bounds& bounds) {
   if (bounds.earliest <= bounds.latest) return;  // false for NaN as well
-  Fail(Where(fluent), fmt::format("has a {} between {} and {}; wanted numbers in order", what,
-                                  bounds.earliest, bounds.latest));
+  FailAt(PlaceOf(fluent), fmt::format("has a {} between {} and {}; wanted numbers in order", what,
+                                      bounds.earliest, bounds.latest));
 }
 
 void CheckTimes(const Fluent& fluent) {
   CheckBounds(fluent, "start", fluent.start);
   CheckBounds(fluent, "finish", fluent.finish);
   if (fluent.start.earliest == temporal::kForever || fluent.finish.latest == -temporal::kForever) {
-    Fail(Where(fluent), "begins at the end of time, or ends before it; wanted a time between");
+    FailAt(PlaceOf(fluent), "begins at the end of time, or ends before it; wanted a time between");
   }
 }
 
 }  // namespace
 
+bool IsControl(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return byte < 0x20 || byte == 0x7f;
+}
+
 void CheckName(const std::string& what, const std::string& name) {
-  if (name.empty()) Fail(what, "the name is empty; give one");
+  if (name.empty()) FailAt(what, "the name is empty; give one");
   if (name.size() > kMaxNameBytes) {
-    Fail(what, fmt::format("the name '{}' has {} bytes, at most {} are kept; shorten it", Cut(name),
-                           name.size(), kMaxNameBytes));
+    FailAt(what, fmt::format("the name '{}' has {} bytes, at most {} are kept; shorten it",
+                             Cut(name), name.size(), kMaxNameBytes));
   }
   if (std::any_of(name.begin(), name.end(), IsControl)) {
-    Fail(what, "the name holds a control character; remove it");
+    FailAt(what, "the name holds a control character; remove it");
   }
-  if (!IsUtf8(name)) Fail(what, "the name is no UTF-8 text; encode it so");
+  if (!IsUtf8(name)) FailAt(what, "the name is no UTF-8 text; encode it so");
 }
 
 void CheckOrder(const std::string& instance, const temporal::Bounds& start,
@@ -246,8 +246,8 @@ void CheckFluent(const Fluent& fluent, const Ontology& ontology) {
   CheckName("fluent", fluent.instance);
   const Ontology::ConceptId subject = ontology.Find(fluent.concept_name);
   if (subject == Ontology::kUnknown) {
-    Fail(fmt::format("fluent '{}'", Cut(fluent.instance)),
-         base::UnknownName("concept", Cut(fluent.concept_name), ontology.ConceptNames()));
+    FailAt(fmt::format("fluent '{}'", Cut(fluent.instance)),
+           base::UnknownName("concept", Cut(fluent.concept_name), ontology.ConceptNames()));
   }
   CheckTimes(fluent);
   CheckCount(fluent);
@@ -264,10 +264,10 @@ void CheckSource(Source source, const Fluent& fluent, const Ontology& ontology) 
   const Ontology::ConceptId allowed = ontology.Find(kOfMonitor);
   const bool known = subject != Ontology::kUnknown && allowed != Ontology::kUnknown;
   if (known && ontology.IsA(subject, allowed)) return;
-  Fail(Where(fluent),
-       fmt::format("the execution monitor may write what it does itself ({} and below) "
-                   "and nothing else; write this as an observation",
-                   kOfMonitor));
+  FailAt(PlaceOf(fluent),
+         fmt::format("the execution monitor may write what it does itself ({} and below) "
+                     "and nothing else; write this as an observation",
+                     kOfMonitor));
 }
 
 }  // namespace hires::knowledge

@@ -12,6 +12,9 @@ constexpr std::size_t kMaxValueBytes = 1u << 20;
 constexpr std::size_t kMaxProperties = 1000;
 constexpr std::size_t kMaxFluentBytes = 8u << 20;  ///< of all names and values of one fluent
 
+/// One of the control characters of ASCII.
+bool IsControl(char c);
+
 /// Does the fluent say something that the ontology allows, and the store can keep? Times are looked
 /// at each for itself: bounds in order, nothing begins at the end of time or ends before it.
 /// @throws ConfigError naming instance, property, what came and what was wanted.

@@ -30,7 +30,7 @@ Episode Read(Rows* rows) {
   return episode;
 }
 
-bool IsNumber(const std::string& text) {
+bool IsEpisodeNumber(const std::string& text) {
   return !text.empty() &&
          std::all_of(text.begin(), text.end(), [](char c) { return '0' <= c && c <= '9'; });
 }
@@ -113,7 +113,7 @@ std::optional<Episode> Episodes::Find(std::int64_t id) {
 
 std::optional<Episode> Episodes::Find(const std::string& id_or_name) {
   std::int64_t id = 0;
-  if (IsNumber(id_or_name)) {
+  if (IsEpisodeNumber(id_or_name)) {
     const char* end = id_or_name.data() + id_or_name.size();
     const bool fits = std::from_chars(id_or_name.data(), end, id).ec == std::errc();
     return fits ? Find(id) : std::nullopt;

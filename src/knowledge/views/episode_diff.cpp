@@ -39,11 +39,6 @@ void CheckOptions(const EpisodeDiffOptions& options) {
 
 // Properties ----------------------------------------------------------------------------------
 
-double AsDouble(const Filler& number) {
-  const auto* integer = std::get_if<std::int64_t>(&number);
-  return integer != nullptr ? static_cast<double>(*integer) : std::get<double>(number);
-}
-
 bool SameNumber(const std::string& role, const Filler& a, const Filler& b,
                 const EpisodeDiffOptions& options) {
   if (SameFiller(a, b)) return true;

@@ -11,16 +11,19 @@
 #include "knowledge/views/live_view_match.h"
 
 namespace hires::knowledge {
+
+/// Orders what a live view holds by its instance, in lower case.
+struct LiveEntryLess {
+  using Entry = std::map<std::string, Fluent>::const_pointer;
+  bool operator()(Entry a, Entry b) const { return a->first < b->first; }
+};
+
 namespace {
 
 using Visit = std::function<bool(const Fluent&)>;
 using Entries = std::map<std::string, Fluent>;  // by lower-case instance
-using Entry = Entries::const_pointer;
-
-struct ByName {
-  bool operator()(Entry a, Entry b) const { return a->first < b->first; }
-};
-using EntrySet = std::set<Entry, ByName>;
+using Entry = LiveEntryLess::Entry;
+using EntrySet = std::set<Entry, LiveEntryLess>;
 using Index = std::unordered_map<std::string, EntrySet>;
 
 /// What the index knows of a property: all numbers of a role are one.

@@ -12,11 +12,6 @@ unsigned char Lower(char c) {
   return static_cast<unsigned char>('A' <= c && c <= 'Z' ? c - 'A' + 'a' : c);
 }
 
-double AsDouble(const Filler& number) {
-  const auto* integer = std::get_if<std::int64_t>(&number);
-  return integer != nullptr ? static_cast<double>(*integer) : std::get<double>(number);
-}
-
 }  // namespace
 
 bool SameName(std::string_view a, std::string_view b) {
@@ -31,6 +26,11 @@ bool NameLess(std::string_view a, std::string_view b) {
 
 bool IsNumber(const Filler& filler) {
   return std::holds_alternative<double>(filler) || std::holds_alternative<std::int64_t>(filler);
+}
+
+double AsDouble(const Filler& number) {
+  const auto* integer = std::get_if<std::int64_t>(&number);
+  return integer != nullptr ? static_cast<double>(*integer) : std::get<double>(number);
 }
 
 bool SameFiller(const Filler& a, const Filler& b) {

@@ -14,48 +14,68 @@
 namespace hires::knowledge {
 namespace {
 
-using Kind = AtomPart::Kind;
+using PartKind = AtomPart::Kind;
 using Words = std::vector<std::string>;
 
 AtomRule TypeRule(AtomPart type) {
-  AtomRule rule{"Type", "PassiveObject", {type, {Kind::kInstance}}};
+  AtomRule rule{"Type", "PassiveObject", {type, {PartKind::kInstance}}};
   rule.except = "NoObject";
   return rule;
 }
 
 std::vector<AtomRule> MakeRules() {
   return {
-      {"RobotAt", "RobotAt", {{Kind::kFirst, "hasArea"}}, "robotAt", 0, "hasRobot", "Robot"},
-      {"On", "On", {{Kind::kFirst, "hasPhysicalEntity"}, {Kind::kFirst, "hasArea"}}, "on", 1},
+      {"RobotAt", "RobotAt", {{PartKind::kFirst, "hasArea"}}, "robotAt", 0, "hasRobot", "Robot"},
+      {"On",
+       "On",
+       {{PartKind::kFirst, "hasPhysicalEntity"}, {PartKind::kFirst, "hasArea"}},
+       "on",
+       1},
       {"Holding",
        "Holding",
-       {{Kind::kFirst, "hasArm"}, {Kind::kFirst, "hasPassiveObject"}},
+       {{PartKind::kFirst, "hasArm"}, {PartKind::kFirst, "hasPassiveObject"}},
        "holding",
        1},
-      {"HasArmPosture", "ArmPosture", {{Kind::kFirst, "hasArm"}, {Kind::kConcept}}, "posture", 1},
-      {"HasTorsoPosture", "TorsoPosture", {{Kind::kConcept}}, "posture", 0, "hasTorso", "Torso"},
-      {"At", "At", {{Kind::kFirst, "hasPhysicalEntity"}, {Kind::kFirst, "hasArea"}}, "at", 1},
+      {"HasArmPosture",
+       "ArmPosture",
+       {{PartKind::kFirst, "hasArm"}, {PartKind::kConcept}},
+       "posture",
+       1},
+      {"HasTorsoPosture",
+       "TorsoPosture",
+       {{PartKind::kConcept}},
+       "posture",
+       0,
+       "hasTorso",
+       "Torso"},
+      {"At",
+       "At",
+       {{PartKind::kFirst, "hasPhysicalEntity"}, {PartKind::kFirst, "hasArea"}},
+       "at",
+       1},
       {"Connected",
        "Connected",
-       {{Kind::kFirst, "hasPlacingArea"},
-        {Kind::kFirst, "hasManipulationArea"},
-        {Kind::kFirst, "hasPreManipulationArea"}},
+       {{PartKind::kFirst, "hasPlacingArea"},
+        {PartKind::kFirst, "hasManipulationArea"},
+        {PartKind::kFirst, "hasPreManipulationArea"}},
        "connected"},
-      {"imagine", "ImagineWish", {{Kind::kFirst, "hasAction"}}, "imagine"},
-      {"observe", "ObserveWish", {{Kind::kFirst, "hasAction"}}, "observe"},
+      {"imagine", "ImagineWish", {{PartKind::kFirst, "hasAction"}}, "imagine"},
+      {"observe", "ObserveWish", {{PartKind::kFirst, "hasAction"}}, "observe"},
       {"imagined_failure",
        "ImaginedFailure",
-       {{Kind::kFirst, "hasAction"}, {Kind::kRest, "hasArgument"}},
+       {{PartKind::kFirst, "hasAction"}, {PartKind::kRest, "hasArgument"}},
        "imaginedFailure"},
-      TypeRule({Kind::kConceptAndAbove}),
-      TypeRule({Kind::kContent, "hasContent"}),
-      {"hasPlacingArea", "Furniture", {{Kind::kInstance}, {Kind::kRanked, "hasPlacingArea"}}},
+      TypeRule({PartKind::kConceptAndAbove}),
+      TypeRule({PartKind::kContent, "hasContent"}),
+      {"hasPlacingArea",
+       "Furniture",
+       {{PartKind::kInstance}, {PartKind::kRanked, "hasPlacingArea"}}},
       {"hasPlacingAreaLeft",
        "SittingArea",
-       {{Kind::kInstance}, {Kind::kEach, "hasPlacingAreaLeft"}}},
+       {{PartKind::kInstance}, {PartKind::kEach, "hasPlacingAreaLeft"}}},
       {"hasPlacingAreaRight",
        "SittingArea",
-       {{Kind::kInstance}, {Kind::kEach, "hasPlacingAreaRight"}}},
+       {{PartKind::kInstance}, {PartKind::kEach, "hasPlacingAreaRight"}}},
   };
 }
 
@@ -105,18 +125,18 @@ class Expansion {
 
   std::vector<Words> Of(const AtomPart& part) const {
     switch (part.kind) {
-      case Kind::kInstance:
+      case PartKind::kInstance:
         return {{base::ToLower(fluent_.instance)}};
-      case Kind::kConcept:
+      case PartKind::kConcept:
         return {{base::ToLower(fluent_.concept_name)}};
-      case Kind::kConceptAndAbove:
+      case PartKind::kConceptAndAbove:
         return Above();
-      case Kind::kRest:
+      case PartKind::kRest:
         return {Rest(part.role)};
-      case Kind::kFirst:
-      case Kind::kEach:
-      case Kind::kRanked:
-      case Kind::kContent:
+      case PartKind::kFirst:
+      case PartKind::kEach:
+      case PartKind::kRanked:
+      case PartKind::kContent:
         break;
     }
     return OfFillers(part);
@@ -141,10 +161,10 @@ class Expansion {
   std::vector<Words> OfFillers(const AtomPart& part) const {
     std::vector<Words> ways;
     for (const Property* property : OfRole(fluent_, part.role)) {
-      const bool is_content = part.kind == Kind::kContent;
+      const bool is_content = part.kind == PartKind::kContent;
       ways.push_back({is_content ? ContentOf(*property, view_) : TextOf(property->filler)});
-      if (part.kind == Kind::kRanked) ways.back().push_back(fmt::format("{}", ways.size()));
-      if (part.kind == Kind::kFirst) break;
+      if (part.kind == PartKind::kRanked) ways.back().push_back(fmt::format("{}", ways.size()));
+      if (part.kind == PartKind::kFirst) break;
     }
     return ways;
   }
@@ -208,12 +228,12 @@ std::string ConceptFor(const AtomRule& rule, const std::string& argument,
 std::size_t NumArguments(const AtomRule& rule) {
   std::size_t count = 0;
   for (const AtomPart& part : rule.parts) {
-    if (part.kind != Kind::kRest) count += part.kind == Kind::kRanked ? 2 : 1;
+    if (part.kind != PartKind::kRest) count += part.kind == PartKind::kRanked ? 2 : 1;
   }
   return count;
 }
 
-bool TakesMore(const AtomRule& rule) { return rule.parts.back().kind == Kind::kRest; }
+bool TakesMore(const AtomRule& rule) { return rule.parts.back().kind == PartKind::kRest; }
 
 }  // namespace
 
@@ -256,11 +276,11 @@ void Say(const AtomRule& rule, const base::Atom& atom, const FluentView& view,
   HIRES_CHECK(!rule.word.empty(), "this predicate has no way back from atoms to fluents");
   auto argument = atom.arguments.begin();
   for (const AtomPart& part : rule.parts) {
-    if (part.kind == Kind::kConcept) {
+    if (part.kind == PartKind::kConcept) {
       fluent->concept_name = ConceptFor(rule, *argument++, ontology);
       continue;
     }
-    const auto end = part.kind == Kind::kRest ? atom.arguments.end() : argument + 1;
+    const auto end = part.kind == PartKind::kRest ? atom.arguments.end() : argument + 1;
     std::vector<Property> fillers;
     for (; argument != end; ++argument) {
       fillers.push_back(MakeProperty(part.role, *argument, view, ontology));

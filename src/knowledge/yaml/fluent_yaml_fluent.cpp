@@ -29,19 +29,19 @@ struct ValueType {
   std::string_view name;
   Filler (*read)(const Field&);
 };
-constexpr std::array<ValueType, 6> kValueTypes = {{{"xsd:float", RealFiller},
-                                                   {"xsd:double", RealFiller},
-                                                   {"xsd:int", IntFiller},
-                                                   {"xsd:integer", IntegerFiller},
-                                                   {"xsd:boolean", TruthFiller},
-                                                   {"xsd:string", TextFiller}}};
+constexpr std::array<ValueType, 6> kWrittenTypes = {{{"xsd:float", RealFiller},
+                                                     {"xsd:double", RealFiller},
+                                                     {"xsd:int", IntFiller},
+                                                     {"xsd:integer", IntegerFiller},
+                                                     {"xsd:boolean", TruthFiller},
+                                                     {"xsd:string", TextFiller}}};
 
 const ValueType& FindValueType(const std::string& type, const Field& field) {
-  for (const ValueType& known : kValueTypes) {
+  for (const ValueType& known : kWrittenTypes) {
     if (known.name == type) return known;
   }
   std::vector<std::string> names;
-  for (const ValueType& known : kValueTypes) names.emplace_back(known.name);
+  for (const ValueType& known : kWrittenTypes) names.emplace_back(known.name);
   field.Fail(fmt::format("type '{}' is unknown; wanted one of {}, or a concept", Shown(type),
                          base::Join(names, ", ")));
 }

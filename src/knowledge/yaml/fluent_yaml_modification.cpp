@@ -20,77 +20,78 @@ namespace {
 constexpr std::array<std::string_view, 4> kAxes = {"hasX", "hasY", "hasZ", "hasYaw"};
 constexpr int kMaxChoices = 1'000'000;
 
-using Where = std::function<std::string(std::size_t)>;
-
-[[noreturn]] void Fail(const std::string& where, const std::string& what) {
-  throw base::ConfigError(where + ": " + what);
-}
+using PlaceOfEach = std::function<std::string(std::size_t)>;
 
 void CheckDelta(const PoseModification& modification, const PoseModification::Delta& delta,
                 const std::string& where) {
   if (std::count(kAxes.begin(), kAxes.end(), delta.property) == 0) {
-    Fail(where, fmt::format("'{}' is moved along {}; wanted one of {}", modification.instance,
-                            delta.property, fmt::join(kAxes, ", ")));
+    FailModification(where,
+                     fmt::format("'{}' is moved along {}; wanted one of {}", modification.instance,
+                                 delta.property, fmt::join(kAxes, ", ")));
   }
   if (delta.choices.size() != static_cast<std::size_t>(std::max(modification.choices, 0))) {
-    Fail(where, fmt::format("'{}', {}: has {} deltas, Choices says {}; give one delta for each "
-                            "choice",
-                            modification.instance, delta.property, delta.choices.size(),
-                            modification.choices));
+    FailModification(
+        where, fmt::format("'{}', {}: has {} deltas, Choices says {}; give one delta for each "
+                           "choice",
+                           modification.instance, delta.property, delta.choices.size(),
+                           modification.choices));
   }
   if (!std::all_of(delta.choices.begin(), delta.choices.end(),
                    [](double value) { return std::isfinite(value); })) {
-    Fail(where, fmt::format("'{}', {}: a delta is not finite; wanted numbers",
-                            modification.instance, delta.property));
+    FailModification(where, fmt::format("'{}', {}: a delta is not finite; wanted numbers",
+                                        modification.instance, delta.property));
   }
 }
 
 void CheckDeltas(const PoseModification& modification, const std::string& where) {
   if (modification.choices < 1) {
-    Fail(where, fmt::format("'{}': Choices is {}, wanted 1 or more", modification.instance,
-                            modification.choices));
+    FailModification(where, fmt::format("'{}': Choices is {}, wanted 1 or more",
+                                        modification.instance, modification.choices));
   }
   std::set<std::string> seen;
   for (const PoseModification::Delta& delta : modification.modifications) {
     if (!seen.insert(delta.property).second) {
-      Fail(where, fmt::format("'{}', {}: is given twice; keep one", modification.instance,
-                              delta.property));
+      FailModification(where, fmt::format("'{}', {}: is given twice; keep one",
+                                          modification.instance, delta.property));
     }
     CheckDelta(modification, delta, where);
   }
 }
 
-void CheckInstances(const std::vector<PoseModification>& modifications, const Where& where) {
+void CheckInstances(const std::vector<PoseModification>& modifications, const PlaceOfEach& where) {
   ByInstance<std::size_t> seen;
   for (std::size_t i = 0; i < modifications.size(); ++i) {
     const auto [first, is_new] = seen.emplace(modifications[i].instance, i);
     if (is_new) continue;
-    Fail(where(i), fmt::format("'{}' is modified twice (already: {}); make it one modification",
-                               modifications[i].instance, where(first->second)));
+    FailModification(where(i),
+                     fmt::format("'{}' is modified twice (already: {}); make it one modification",
+                                 modifications[i].instance, where(first->second)));
   }
 }
 
-void CheckGroups(const std::vector<PoseModification>& modifications, const Where& where) {
+void CheckGroups(const std::vector<PoseModification>& modifications, const PlaceOfEach& where) {
   std::map<std::string, std::size_t> seen;
   for (std::size_t i = 0; i < modifications.size(); ++i) {
     const PoseModification& modification = modifications[i];
     const PoseModification& first =
         modifications[seen.emplace(modification.group, i).first->second];
     if (first.choices == modification.choices) continue;
-    Fail(where(i),
-         fmt::format("'{}' has {} choices, '{}' of the same group '{}' has {}; a group draws one "
-                     "choice for all, so give all as many",
-                     modification.instance, modification.choices, first.instance,
-                     modification.group, first.choices));
+    FailModification(
+        where(i),
+        fmt::format("'{}' has {} choices, '{}' of the same group '{}' has {}; a group draws one "
+                    "choice for all, so give all as many",
+                    modification.instance, modification.choices, first.instance, modification.group,
+                    first.choices));
   }
 }
 
-void CheckCircles(const std::vector<PoseModification>& modifications, const Where& where) {
+void CheckCircles(const std::vector<PoseModification>& modifications, const PlaceOfEach& where) {
   const PoseAttachments attachments(modifications);
   const std::vector<std::string> circle = attachments.Circle();
   if (circle.empty()) return;
-  Fail(where(attachments.IndexOf(circle.front())),
-       fmt::format("attachments go in a circle: {}; take one out", base::Join(circle, " -> ")));
+  FailModification(
+      where(attachments.IndexOf(circle.front())),
+      fmt::format("attachments go in a circle: {}; take one out", base::Join(circle, " -> ")));
 }
 
 PoseModification::Delta ReadDelta(const Field& field, const PoseModification& modification) {
@@ -138,7 +139,8 @@ PoseModification ReadModification(const Fields& in) {
   return modification;
 }
 
-void CheckModifications(const std::vector<PoseModification>& modifications, const Where& where) {
+void CheckModifications(const std::vector<PoseModification>& modifications,
+                        const PlaceOfEach& where) {
   for (std::size_t i = 0; i < modifications.size(); ++i) {
     CheckDeltas(modifications[i], where(i));
   }

@@ -6,6 +6,7 @@
 #include <boost/locale/utf.hpp>
 
 #include "hires/base/error.h"
+#include "knowledge/store/store_check.h"
 
 namespace hires::knowledge {
 namespace {
@@ -26,13 +27,8 @@ int LineOf(std::string_view text, std::size_t at) {
   return 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n'));
 }
 
-[[noreturn]] void Fail(const std::string& source, int line, const std::string& what) {
+[[noreturn]] void FailInLine(const std::string& source, int line, const std::string& what) {
   throw base::ConfigError(fmt::format("{}: line {}: {}", source, line, what));
-}
-
-bool IsControl(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return byte < 0x20 || byte == 0x7f;
 }
 
 /// The first control character that may stand in no YAML text; npos if there is none.
@@ -48,13 +44,14 @@ void CheckControls(std::string_view text, const std::string& source) {
   const std::size_t found = FindForbidden(text);
   if (found == std::string_view::npos) return;
   if (text[found] == '\r') {
-    Fail(source, LineOf(text, found),
-         "holds a carriage return without a line feed; save the file with line feeds");
+    FailInLine(source, LineOf(text, found),
+               "holds a carriage return without a line feed; save the file with line feeds");
   }
-  Fail(source, LineOf(text, found),
-       fmt::format("holds the control character 0x{0:02x}; remove it, or write \"\\x{0:02x}\" in "
-                   "double quotes",
-                   static_cast<unsigned char>(text[found])));
+  FailInLine(
+      source, LineOf(text, found),
+      fmt::format("holds the control character 0x{0:02x}; remove it, or write \"\\x{0:02x}\" in "
+                  "double quotes",
+                  static_cast<unsigned char>(text[found])));
 }
 
 void CheckUtf8(std::string_view text, const std::string& source) {
@@ -62,8 +59,8 @@ void CheckUtf8(std::string_view text, const std::string& source) {
   for (const char* at = text.data(); at != end;) {
     const auto before = static_cast<std::size_t>(at - text.data());
     if (!boost::locale::utf::is_valid_codepoint(Utf8::decode(at, end))) {
-      Fail(source, LineOf(text, before),
-           fmt::format("byte {} is no UTF-8 text; save the file as UTF-8", before + 1));
+      FailInLine(source, LineOf(text, before),
+                 fmt::format("byte {} is no UTF-8 text; save the file as UTF-8", before + 1));
     }
   }
 }
@@ -85,10 +82,10 @@ void CheckPunctuation(std::string_view text, const std::string& source, int line
     return kPunctuation.find(c) != std::string_view::npos;
   });
   if (count <= kMaxPunctuation) return;
-  Fail(source, line,
-       fmt::format("a document begins that has {} of the characters {}, at most {} are read; "
-                   "split it",
-                   count, kPunctuation, kMaxPunctuation));
+  FailInLine(source, line,
+             fmt::format("a document begins that has {} of the characters {}, at most {} are read; "
+                         "split it",
+                         count, kPunctuation, kMaxPunctuation));
 }
 
 }  // namespace

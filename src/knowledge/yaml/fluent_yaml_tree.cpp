@@ -15,7 +15,7 @@
 namespace hires::knowledge {
 namespace {
 
-constexpr std::size_t kMaxDepth = 100;
+constexpr std::size_t kMaxNesting = 100;
 constexpr std::size_t kMaxValues = 100'000;         // of a document
 constexpr std::size_t kMaxAliasValues = 1'000'000;  // of a stream
 constexpr std::size_t kMaxAliasBytes = 64u << 20;   // of a stream
@@ -116,8 +116,9 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void CheckDepth(const YAML::Mark& mark, std::size_t more) const {
-    if (open_.size() + more <= kMaxDepth) return;
-    Fail(mark, fmt::format("values are nested more than {} levels deep; flatten them", kMaxDepth));
+    if (open_.size() + more <= kMaxNesting) return;
+    Fail(mark,
+         fmt::format("values are nested more than {} levels deep; flatten them", kMaxNesting));
   }
 
   void CountValues(const YAML::Mark& mark, std::size_t more) {

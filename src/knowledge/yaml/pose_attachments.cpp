@@ -3,18 +3,24 @@
 #include <algorithm>
 #include <set>
 
+#include "hires/base/error.h"
+
 namespace hires::knowledge {
 namespace {
 
 using InstanceSet = std::set<std::string, LessIgnoringCase>;
 
-char Lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+char LowerOf(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 }  // namespace
 
+void FailModification(const std::string& where, const std::string& what) {
+  throw base::ConfigError(where + ": " + what);
+}
+
 bool LessIgnoringCase::operator()(const std::string& a, const std::string& b) const {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
-                                      [](char x, char y) { return Lower(x) < Lower(y); });
+                                      [](char x, char y) { return LowerOf(x) < LowerOf(y); });
 }
 
 PoseAttachments::PoseAttachments(const std::vector<PoseModification>& modifications) {

@@ -17,6 +17,9 @@ struct LessIgnoringCase {
 template <typename Value>
 using ByInstance = std::map<std::string, Value, LessIgnoringCase>;
 
+/// `where` names the modification.  @throws ConfigError, always.
+[[noreturn]] void FailModification(const std::string& where, const std::string& what);
+
 /// Which poses move with which others. Names are told as they were spelled first.
 class PoseAttachments {
  public:

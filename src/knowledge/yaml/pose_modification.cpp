@@ -16,10 +16,6 @@ namespace {
 
 constexpr std::size_t kMaxMoves = 1'000'000;  // poses moved, each as often as it is moved
 
-[[noreturn]] void Fail(const std::string& where, const std::string& what) {
-  throw base::ConfigError(where + ": " + what);
-}
-
 /// Choice by group. Groups draw in the order in which they first appear.
 std::map<std::string, int> DrawChoices(const std::vector<PoseModification>& modifications,
                                        const base::Rng& rng) {
@@ -41,26 +37,28 @@ class Poses {
   void Move(const std::string& instance, const std::string& axis, double delta,
             const std::string& where) {
     if (++num_moves_ > kMaxMoves) {
-      Fail(where,
-           fmt::format("more than {} poses are moved; attach less to each other", kMaxMoves));
+      FailModification(
+          where, fmt::format("more than {} poses are moved; attach less to each other", kMaxMoves));
     }
     for (Fluent* fluent : Find(instance, where)) {
       double& value = Axis(fluent, axis, where);
       value += delta;
-      if (!std::isfinite(value)) Fail(where, fmt::format("{} of '{}' overflows", axis, instance));
+      if (!std::isfinite(value))
+        FailModification(where, fmt::format("{} of '{}' overflows", axis, instance));
     }
   }
 
   const std::vector<Fluent*>& Find(const std::string& instance, const std::string& where) const {
     const auto found = by_instance_.find(instance);
     if (found == by_instance_.end()) {
-      Fail(where, fmt::format("pose '{}' is to be moved, and no fluent is called so; load it first",
-                              instance));
+      FailModification(
+          where, fmt::format("pose '{}' is to be moved, and no fluent is called so; load it first",
+                             instance));
     }
     for (const Fluent* fluent : found->second) {
       if (fluent->concept_name == "Pose") continue;
-      Fail(where, fmt::format("'{}' is to be moved and is a {}; name its Pose", instance,
-                              fluent->concept_name));
+      FailModification(where, fmt::format("'{}' is to be moved and is a {}; name its Pose",
+                                          instance, fluent->concept_name));
     }
     return found->second;
   }
@@ -71,8 +69,9 @@ class Poses {
       auto* const value = std::get_if<double>(&property.filler);
       if (property.role == axis && value != nullptr) return *value;
     }
-    Fail(where, fmt::format("pose '{}' is to be moved along {} and has no such xsd:float; add it",
-                            fluent->instance, axis));
+    FailModification(
+        where, fmt::format("pose '{}' is to be moved along {} and has no such xsd:float; add it",
+                           fluent->instance, axis));
   }
 
   ByInstance<std::vector<Fluent*>> by_instance_;

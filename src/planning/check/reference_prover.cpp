@@ -59,7 +59,7 @@ std::vector<Literal> EachOnce(const std::vector<Literal>& literals) {
   return result;
 }
 
-std::vector<Datum> EachOnce(const std::vector<Datum>& atoms) {
+std::vector<Datum> EachReadableOnce(const std::vector<Datum>& atoms) {
   std::set<std::string> seen;
   std::vector<Datum> result;
   for (const Datum& each : atoms) {
@@ -108,11 +108,11 @@ std::vector<Proof> ReferenceProver::Find(const ProofQuestion& question, std::siz
   std::vector<Proof> proofs;
   ReferenceSolver solver(&session, question.formula, question.newest_first, 0, &question.expected);
   while (proofs.size() < at_most && solver.Next()) {
-    proofs.push_back(
-        {ValuesOf(variables, session.values), EachOnce(session.support), EachOnce(session.reads)});
+    proofs.push_back({ValuesOf(variables, session.values), EachOnce(session.support),
+                      EachReadableOnce(session.reads)});
   }
   if (reads != nullptr) {
-    const std::vector<Datum> asked = EachOnce(session.reads);
+    const std::vector<Datum> asked = EachReadableOnce(session.reads);
     reads->insert(reads->end(), asked.begin(), asked.end());
   }
   return proofs;

@@ -69,10 +69,10 @@ std::vector<std::pair<int, int>> OrderOfKept(const TaskNetwork& network,
 }
 
 /// Cuts the decomposition of a plan down to what is left.
-class Remainder {
+class RemainingTasks {
  public:
-  Remainder(const Domain& domain, const Problem& problem, const Plan& plan, int executed,
-            int keep_depth)
+  RemainingTasks(const Domain& domain, const Problem& problem, const Plan& plan, int executed,
+                 int keep_depth)
       : domain_(domain),
         problem_(problem),
         plan_(plan),
@@ -300,7 +300,7 @@ Problem RemainingProblem(const Domain& domain, const Problem& problem, const Pla
   Problem rest = problem;
   rest.facts = std::move(facts);
   if (keep_depth == 0) return rest;
-  Remainder remainder(domain, problem, plan, executed, keep_depth);
+  RemainingTasks remainder(domain, problem, plan, executed, keep_depth);
   rest.tasks = remainder.Build();
   rest.parameters = Precondition();
   rest.protections =

@@ -72,13 +72,13 @@ bool IsConstantSymbol(const Datum& datum) {
          (datum.text.size() > 1 && datum.text.front() == ':');
 }
 
-class Compiler {
+class ExpressionCompiler {
  public:
-  Compiler(const std::function<int(const std::string&)>& slot_of, const Functions& functions,
-           TermTable* terms, const std::string& source)
+  ExpressionCompiler(const std::function<int(const std::string&)>& slot_of,
+                     const Functions& functions, TermTable* terms, const std::string& source)
       : slot_of_(slot_of), functions_(functions), terms_(terms), source_(source) {}
 
-  using Form = Node (Compiler::*)(const Datum&);
+  using Form = Node (ExpressionCompiler::*)(const Datum&);
   static const std::map<std::string, Form, std::less<>>& Forms();
 
   int num_locals() const { return num_locals_; }
@@ -399,22 +399,22 @@ class Compiler {
   int num_locals_{0};
 };
 
-const std::map<std::string, Compiler::Form, std::less<>>& Compiler::Forms() {
+const std::map<std::string, ExpressionCompiler::Form, std::less<>>& ExpressionCompiler::Forms() {
   static const std::map<std::string, Form, std::less<>> forms = {
-      {"quote", &Compiler::Quote},
-      {"function", &Compiler::FunctionForm},
-      {"backquote", &Compiler::Backquote},
-      {"unquote", &Compiler::StrayUnquote},
-      {"if", &Compiler::If},
-      {"cond", &Compiler::Cond},
-      {"when", &Compiler::When},
-      {"unless", &Compiler::Unless},
-      {"and", &Compiler::And},
-      {"or", &Compiler::Or},
-      {"let", &Compiler::Let},
-      {"let*", &Compiler::LetStar},
-      {"progn", &Compiler::Progn},
-      {"lambda", &Compiler::Lambda},
+      {"quote", &ExpressionCompiler::Quote},
+      {"function", &ExpressionCompiler::FunctionForm},
+      {"backquote", &ExpressionCompiler::Backquote},
+      {"unquote", &ExpressionCompiler::StrayUnquote},
+      {"if", &ExpressionCompiler::If},
+      {"cond", &ExpressionCompiler::Cond},
+      {"when", &ExpressionCompiler::When},
+      {"unless", &ExpressionCompiler::Unless},
+      {"and", &ExpressionCompiler::And},
+      {"or", &ExpressionCompiler::Or},
+      {"let", &ExpressionCompiler::Let},
+      {"let*", &ExpressionCompiler::LetStar},
+      {"progn", &ExpressionCompiler::Progn},
+      {"lambda", &ExpressionCompiler::Lambda},
   };
   return forms;
 }
@@ -422,12 +422,12 @@ const std::map<std::string, Compiler::Form, std::less<>>& Compiler::Forms() {
 }  // namespace
 
 bool IsForm(std::string_view name) {
-  return Compiler::Forms().count(name) > 0 || ListForms().count(name) > 0;
+  return ExpressionCompiler::Forms().count(name) > 0 || ListForms().count(name) > 0;
 }
 
 std::vector<std::string> FormNames() {
   std::vector<std::string> names;
-  for (const auto& form : Compiler::Forms()) names.push_back(form.first);
+  for (const auto& form : ExpressionCompiler::Forms()) names.push_back(form.first);
   for (const auto& form : ListForms()) names.push_back(form.first);
   return names;
 }
@@ -450,7 +450,7 @@ std::unique_ptr<CompiledExpression> CompileExpression(
   compiled->datum = datum;
   compiled->source = source;
   compiled->true_term = terms->Symbol("t");
-  Compiler compiler(slot_of, functions, terms, compiled->source);
+  ExpressionCompiler compiler(slot_of, functions, terms, compiled->source);
   compiled->root = compiler.Compile(compiled->datum);
   compiled->num_locals = compiler.num_locals();
   return compiled;

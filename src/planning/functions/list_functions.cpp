@@ -9,8 +9,6 @@
 namespace hires::planning {
 namespace {
 
-constexpr int kAny = -1;
-
 Term HeadOf(const Call& call, std::size_t i, Term list) {
   if (list.IsPair()) return call.terms->head(list);
   if (!list.IsNil()) RefuseArgument(call, i, "a list");
@@ -271,10 +269,10 @@ void AddMakers(Functions* functions) {
   const auto add = [&](const char* name, int least, int most, Adder function) {
     functions->Add(name, least, most, StandardFunction{name, function});
   };
-  add("list", 0, kAny, List);
-  add("list*", 1, kAny, ListStar);
+  add("list", 0, kAnyNumber, List);
+  add("list*", 1, kAnyNumber, ListStar);
   add("cons", 2, 2, Cons);
-  add("append", 0, kAny, Append);
+  add("append", 0, kAnyNumber, Append);
   add("reverse", 1, 1, Reverse);
 }
 

@@ -10,8 +10,6 @@
 namespace hires::planning {
 namespace {
 
-constexpr int kAny = -1;
-
 Number Whole(std::int64_t value) { return {true, value, static_cast<double>(value)}; }
 Number Real(double value) { return {false, 0, value}; }
 
@@ -243,15 +241,15 @@ void AddArithmetic(Functions* functions) {
   const auto add = [&](const char* name, int least, int most, Term (*function)(const Call&)) {
     functions->Add(name, least, most, StandardFunction{name, function});
   };
-  add("+", 0, kAny, Add);
-  add("-", 1, kAny, Subtract);
-  add("*", 0, kAny, Multiply);
-  add("/", 1, kAny, Divide);
+  add("+", 0, kAnyNumber, Add);
+  add("-", 1, kAnyNumber, Subtract);
+  add("*", 0, kAnyNumber, Multiply);
+  add("/", 1, kAnyNumber, Divide);
   add("1+", 1, 1, AddOne);
   add("1-", 1, 1, SubtractOne);
   add("abs", 1, 1, Absolute);
-  add("min", 1, kAny, Extreme<-1>);
-  add("max", 1, kAny, Extreme<1>);
+  add("min", 1, kAnyNumber, Extreme<-1>);
+  add("max", 1, kAnyNumber, Extreme<1>);
   add("floor", 1, 2, Round<Rounding::kDown>);
   add("ceiling", 1, 2, Round<Rounding::kUp>);
   add("truncate", 1, 2, Round<Rounding::kToZero>);
@@ -266,12 +264,12 @@ void AddComparison(Functions* functions) {
   const auto add = [&](const char* name, int most, bool (*predicate)(const Call&)) {
     functions->Add(name, 1, most, StandardPredicate{name, predicate});
   };
-  add("<", kAny, Chain<IsLess>);
-  add("<=", kAny, Chain<IsLessOrEqual>);
-  add(">", kAny, Chain<IsMore>);
-  add(">=", kAny, Chain<IsMoreOrEqual>);
-  add("=", kAny, Chain<IsEqual>);
-  add("/=", kAny, AllDifferent);
+  add("<", kAnyNumber, Chain<IsLess>);
+  add("<=", kAnyNumber, Chain<IsLessOrEqual>);
+  add(">", kAnyNumber, Chain<IsMore>);
+  add(">=", kAnyNumber, Chain<IsMoreOrEqual>);
+  add("=", kAnyNumber, Chain<IsEqual>);
+  add("/=", kAnyNumber, AllDifferent);
   add("zerop", 1, IsZero);
   add("plusp", 1, IsPositive);
   add("minusp", 1, IsNegative);

@@ -24,6 +24,8 @@ struct Call {
   Term operator[](std::size_t i) const { return arguments[i]; }
 };
 
+constexpr int kAnyNumber = -1;  ///< of arguments, as the highest number that a function takes
+
 /// Functions and tests of the standard set. Their types differ from other callables, so that an
 /// expression can recognise a test and answer t without looking the symbol up.
 struct StandardFunction {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "hires/base/keys.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
 
@@ -15,16 +16,6 @@ constexpr std::size_t kMaxTypes = 1000;
 constexpr std::size_t kMaxTypeFacts = 5'000'000;
 
 /// Keys among which the nearest to a wrong one is looked for: few enough to compare them all.
-template <typename Value>
-std::vector<std::string> KeysOf(const std::map<std::string, Value>& map) {
-  std::vector<std::string> keys;
-  for (const auto& entry : map) {
-    if (keys.size() == 1000) break;
-    if (entry.first.size() <= 100) keys.push_back(entry.first);
-  }
-  return keys;
-}
-
 std::string Plural(std::size_t count, std::string_view noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
@@ -148,7 +139,7 @@ int TypeOf(const HddlSpot& spot, const HddlTyped& typed, HddlVocabulary* vocabul
     if (found == vocabulary->type_index.end()) {
       Datum at;
       at.place = typed.type_place;
-      spot.Fail(at, base::UnknownName("type", name, KeysOf(vocabulary->type_index)));
+      spot.Fail(at, base::UnknownName("type", name, base::KeysOf(vocabulary->type_index)));
     }
     members.push_back(found->second);
   }
@@ -223,7 +214,7 @@ const HddlVocabulary::Signature& CheckTerm(const HddlSpot& spot, const Datum& te
   const std::string& name = RequireName(spot, term.items[0], fmt::format("the name of a {}", kind));
   const auto found = signatures.find(name);
   if (found == signatures.end()) {
-    spot.Fail(term.items[0], base::UnknownName(kind, name, KeysOf(signatures)));
+    spot.Fail(term.items[0], base::UnknownName(kind, name, base::KeysOf(signatures)));
   }
   const HddlVocabulary::Signature& signature = found->second;
   if (term.items.size() - 1 != signature.types.size()) {
@@ -244,14 +235,14 @@ int CheckArgument(const HddlSpot& spot, const Datum& argument, int wanted,
   if (argument.kind == Datum::Kind::kVariable) {
     const auto found = variables.find(argument.text);
     if (found != variables.end()) return found->second;
-    spot.Fail(argument, base::UnknownName("variable", argument.text, KeysOf(variables)) +
+    spot.Fail(argument, base::UnknownName("variable", argument.text, base::KeysOf(variables)) +
                             " Declare it among the parameters");
   }
   const std::string& name = RequireName(spot, argument, "an object or a variable");
   const auto found = vocabulary->objects.find(name);
   if (found != vocabulary->objects.end()) return found->second;
   if (vocabulary->has_all_objects) {
-    spot.Fail(argument, base::UnknownName("object", name, KeysOf(vocabulary->objects)) +
+    spot.Fail(argument, base::UnknownName("object", name, base::KeysOf(vocabulary->objects)) +
                             " Declare it among the constants or objects");
   }
   vocabulary->open_objects.push_back({name, wanted, argument.place, spot.construct});
@@ -266,7 +257,7 @@ void CheckOpenObjects(const HddlSpot& spot, const std::string& domain_source,
     at.place = open.place;
     const auto found = vocabulary.objects.find(open.name);
     if (found == vocabulary.objects.end()) {
-      named.Fail(at, base::UnknownName("object", open.name, KeysOf(vocabulary.objects)) +
+      named.Fail(at, base::UnknownName("object", open.name, base::KeysOf(vocabulary.objects)) +
                          fmt::format(" Declare it among the constants, or among the objects of {}",
                                      spot.construct));
     }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "hires/base/error.h"
+#include "hires/base/keys.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
@@ -23,13 +24,6 @@ constexpr int kMaxUnits = 1000;
 
 bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-template <typename Value>
-std::vector<std::string> KeysOf(const std::map<std::string, Value>& entries) {
-  std::vector<std::string> keys;
-  for (const auto& [key, value] : entries) keys.push_back(key);
-  return keys;
 }
 
 std::string WithoutMarks(std::string_view name) {
@@ -51,22 +45,22 @@ std::vector<std::string> ArgumentsOf(const Operator& op) {
   return arguments;
 }
 
-void CollectVariables(const Datum& datum, std::set<std::string>* names) {
+void CollectPlainVariables(const Datum& datum, std::set<std::string>* names) {
   if (datum.kind == Datum::Kind::kVariable) names->insert(WithoutQuestionMark(datum));
-  for (const Datum& item : datum.items) CollectVariables(item, names);
-  for (const Datum& item : datum.tail) CollectVariables(item, names);
+  for (const Datum& item : datum.items) CollectPlainVariables(item, names);
+  for (const Datum& item : datum.tail) CollectPlainVariables(item, names);
 }
 
-void CollectVariables(const Formula& formula, std::set<std::string>* names) {
-  CollectVariables(formula.term, names);
-  for (const Formula& part : formula.parts) CollectVariables(part, names);
+void CollectPlainVariables(const Formula& formula, std::set<std::string>* names) {
+  CollectPlainVariables(formula.term, names);
+  for (const Formula& part : formula.parts) CollectPlainVariables(part, names);
 }
 
 /// Those of the head and of the precondition: the ones that a step of a plan has bindings for.
 std::vector<std::string> VariablesOf(const Operator& op) {
   std::set<std::string> names;
-  CollectVariables(op.head, &names);
-  CollectVariables(op.precondition.condition, &names);
+  CollectPlainVariables(op.head, &names);
+  CollectPlainVariables(op.precondition.condition, &names);
   return {names.begin(), names.end()};
 }
 
@@ -147,7 +141,7 @@ int CapacityOf(const ParamReader& in, const std::string& key, const OperatorEntr
   for (const auto& [resource, units] : capacities) {
     if (name.Matches(resource)) smallest = smallest == 0 ? units : std::min(smallest, units);
   }
-  if (smallest == 0) in.Fail(key, base::UnknownName("resource", key, KeysOf(capacities)));
+  if (smallest == 0) in.Fail(key, base::UnknownName("resource", key, base::KeysOf(capacities)));
   return smallest;
 }
 
@@ -370,8 +364,9 @@ OperatorData ReadOperatorData(const std::string& yaml, const std::string& source
 const OperatorEntry& EntryOf(const OperatorData& data, std::string_view name) {
   const auto found = data.operators.find(WithoutMarks(name));
   if (found == data.operators.end()) {
-    throw ConfigError(base::UnknownName("operator", WithoutMarks(name), KeysOf(data.operators)) +
-                      "; add it to the domain and to its sidecar");
+    throw ConfigError(
+        base::UnknownName("operator", WithoutMarks(name), base::KeysOf(data.operators)) +
+        "; add it to the domain and to its sidecar");
   }
   return found->second;
 }
@@ -382,8 +377,9 @@ std::map<std::string, int> ResourcesOf(const OperatorData& data, const PlanStep&
   for (const auto& [resource, units] : entry.resources) {
     const std::string name = Instantiate(resource, step, entry);
     if (data.capacities.count(name) == 0) {
-      throw ConfigError(fmt::format("step {}: {}", ToString(step.task),
-                                    base::UnknownName("resource", name, KeysOf(data.capacities))));
+      throw ConfigError(
+          fmt::format("step {}: {}", ToString(step.task),
+                      base::UnknownName("resource", name, base::KeysOf(data.capacities))));
     }
     held[name] += units;
   }

@@ -51,9 +51,10 @@ std::vector<Group> Split(const Group& items, AreTied are_tied) {
 }
 
 /// Writes a network as nested sequences and sets.
-class Writer {
+class NetworkWriter {
  public:
-  explicit Writer(const TaskNetwork& network) : network_(network), before_(ClosureOf(network)) {}
+  explicit NetworkWriter(const TaskNetwork& network)
+      : network_(network), before_(ClosureOf(network)) {}
 
   std::optional<std::string> Write() {
     Group all(network_.items.size());
@@ -99,7 +100,7 @@ class Writer {
 }  // namespace
 
 std::optional<std::string> ToShop2Tasks(const TaskNetwork& network) {
-  return Writer(network).Write();
+  return NetworkWriter(network).Write();
 }
 
 }  // namespace hires::planning

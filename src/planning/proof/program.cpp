@@ -18,21 +18,21 @@ std::string Where(const std::string& source, const Place& place) {
 
 /// The value at `index`, which is made where it is missing.
 template <typename Values>
-typename Values::value_type& At(Values* values, std::size_t index) {
+typename Values::value_type& EnsureAt(Values* values, std::size_t index) {
   if (index >= values->size()) values->resize(index + 1);
   return (*values)[index];
 }
 
 bool IsCall(const Datum& datum) { return datum.IsList() && datum.Head() == "call"; }
 
-void CollectVariables(const Datum& datum, std::vector<std::string>* names) {
+void CollectOuterVariables(const Datum& datum, std::vector<std::string>* names) {
   if (datum.kind == Datum::Kind::kVariable) names->push_back(datum.text);
-  for (const Datum& item : datum.items) CollectVariables(item, names);
-  for (const Datum& item : datum.tail) CollectVariables(item, names);
+  for (const Datum& item : datum.items) CollectOuterVariables(item, names);
+  for (const Datum& item : datum.tail) CollectOuterVariables(item, names);
 }
 
 /// Variables of a formula that are seen from outside of it.
-void CollectVariables(const Formula& formula, std::vector<std::string>* names) {
+void CollectOuterVariables(const Formula& formula, std::vector<std::string>* names) {
   switch (formula.kind) {
     case Formula::Kind::kNot:
     case Formula::Kind::kForall:
@@ -40,15 +40,15 @@ void CollectVariables(const Formula& formula, std::vector<std::string>* names) {
       return;  // bind nothing
     case Formula::Kind::kSetOf:
     case Formula::Kind::kBagOf:
-      CollectVariables(formula.expression, names);
+      CollectOuterVariables(formula.expression, names);
       return;
     case Formula::Kind::kEval:
       return;
     default:
       break;
   }
-  CollectVariables(formula.term, names);
-  for (const Formula& part : formula.parts) CollectVariables(part, names);
+  CollectOuterVariables(formula.term, names);
+  for (const Formula& part : formula.parts) CollectOuterVariables(part, names);
 }
 
 }  // namespace
@@ -283,7 +283,7 @@ class Compiler {
 
   void SetVisible(const Formula& formula, Scope* scope, Goal* goal) {
     std::vector<std::string> names;
-    CollectVariables(formula, &names);
+    CollectOuterVariables(formula, &names);
     for (const std::string& name : names) {
       const std::uint32_t slot = scope->SlotOf(name);
       if (std::find(goal->slots.begin(), goal->slots.end(), slot) == goal->slots.end()) {
@@ -311,7 +311,7 @@ class Compiler {
     if (kind == Goal::Kind::kImply) {  // (imply a b): (or (not a) b)
       goal->bodies.push_back(Negation(formula.parts[0], goal->bodies[0]));
       std::vector<std::string> names;
-      CollectVariables(formula.parts[0], &names);
+      CollectOuterVariables(formula.parts[0], &names);
       for (const std::string& name : names) {
         Pattern slot;
         slot.kind = Pattern::Kind::kSlot;
@@ -428,7 +428,7 @@ class Compiler {
     SetCost(source.cost, &scope, &compiled);
     compiled.num_slots = static_cast<std::uint32_t>(scope.names().size());
     compiled.variables = scope.names();
-    At(&program_.operator_of_, terms_.Symbol(source.head.Head()).index()) = &compiled;
+    EnsureAt(&program_.operator_of_, terms_.Symbol(source.head.Head()).index()) = &compiled;
   }
 
   void AddMethod(std::size_t index) {
@@ -445,7 +445,7 @@ class Compiler {
     }
     compiled.num_slots = static_cast<std::uint32_t>(scope.names().size());
     compiled.variables = scope.names();
-    At(&program_.methods_of_, terms_.Symbol(source.head.Head()).index()).push_back(&compiled);
+    EnsureAt(&program_.methods_of_, terms_.Symbol(source.head.Head()).index()).push_back(&compiled);
   }
 
   void AddAxiom(const Axiom& source) {
@@ -459,7 +459,7 @@ class Compiler {
       compiled.branches.push_back({Compile(branch.condition, &scope), branch.first});
     }
     compiled.num_slots = static_cast<std::uint32_t>(scope.names().size());
-    At(&program_.axioms_, terms_.Symbol(source.head.Head()).index()).push_back(&compiled);
+    EnsureAt(&program_.axioms_, terms_.Symbol(source.head.Head()).index()).push_back(&compiled);
   }
 
   // --- networks ------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kEnd = 0xffffffffu;
 constexpr std::size_t kMaxIndex = (std::size_t{1} << 29) - 1;  // what Term has bits for
 constexpr std::size_t kFirstBuckets = 1024;
-constexpr unsigned kMaxDepth = 1000;
+constexpr unsigned kMaxTermDepth = 1000;
 
 std::uint32_t CheckedIndex(std::size_t index) {
   if (index > kMaxIndex) {
@@ -89,7 +89,7 @@ Term TermTable::Pair(Term head, Term tail) {
   const Term known = FindPair(head, tail);
   if (known.IsPair()) return known;
   const unsigned depth = std::max(Depth(head) + 1, Depth(tail));
-  if (depth > kMaxDepth) {
+  if (depth > kMaxTermDepth) {
     throw base::ConfigError(
         "planning: a list nests deeper than 1000; look for a method or axiom "
         "that wraps its own argument without end");
