@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "hires/base/action.h"
+#include "hires/translation/task_places.h"
+
 namespace hires::control {
 namespace {
 
@@ -11,6 +14,14 @@ constexpr double kNever = -1e9;       // [s]
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
 }  // namespace
+
+world::WorldState WorldOf(const std::vector<robot::SeenObject>& known) {
+  world::WorldState state;
+  for (const robot::SeenObject& object : known) {
+    state.objects.push_back({object.name, object.model, object.X_MO, {}, object.attached_to});
+  }
+  return state;
+}
 
 WorldTracker::WorldTracker(const sensing::RobotStateEstimator* state,
                            sensing::ObjectEstimator* objects, HeadSweep sweep, bool lockstep,
@@ -25,6 +36,26 @@ WorldTracker::WorldTracker(const sensing::RobotStateEstimator* state,
 
 void WorldTracker::Process() {
   while (const auto time = NextMoment()) Handle(*time);
+}
+
+std::vector<std::string> WorldTracker::OnView(const translation::TranslatorContext& context,
+                                              const knowledge::FluentView& fluents) {
+  const translation::TranslatorContext now = translation::WithKnowledge(context, fluents);
+  std::vector<sensing::StatedObject> stated;
+  for (const auto& object : translation::StatedObjects(now, fluents)) {
+    stated.push_back({object.name, object.model, object.link, object.X_LO});
+  }
+  std::vector<std::string> doubts = objects_.OnStated(stated);
+  sweep_.SetPlaces(translation::PlacesOfTasks(now, fluents), now.areas);
+  return doubts;
+}
+
+void WorldTracker::OnActions(const actions::Catalogue& catalogue,
+                             const std::vector<std::string>& names) {
+  const bool is_busy = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+    return actions::MayUseHead(catalogue, base::CanonicalName(name));
+  });
+  sweep_.SetBusy(is_busy, time_);
 }
 
 /// The next joint states or look, once nothing can change any more what is known of that time.

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "hires/base/error.h"
 #include "hires/base/overloaded.h"
-#include "hires/base/text.h"
 #include "hires/imagination/report.h"
+#include "hires/loop/imagine_answer.h"
 
 namespace hires::loop {
 namespace {
@@ -18,29 +17,8 @@ using evaluation::ImaginedOutcome;
 using evaluation::ImaginedStep;
 using execution::ImagineAnswered;
 using imagination::Assign;
-using imagination::ImaginationOutcome;
-using imagination::Prediction;
 using imagination::Report;
 using Outcome = ImagineAnswered::Outcome;
-
-constexpr double kNormalQuantile95 = 1.6448536269514722;
-
-Outcome OutcomeOf(ImaginationOutcome outcome) {
-  switch (outcome) {
-    case ImaginationOutcome::kRanked:
-      return Outcome::kRanked;
-    case ImaginationOutcome::kAllFailed:
-      return Outcome::kAllFailed;
-    case ImaginationOutcome::kUndecided:
-      return Outcome::kUndecided;
-    case ImaginationOutcome::kNoWorker:
-      return Outcome::kNoWorker;
-    case ImaginationOutcome::kNothingFinished:
-    case ImaginationOutcome::kCancelled:
-      return Outcome::kNothingFinished;
-  }
-  return Outcome::kInvalid;
-}
 
 ImaginedOutcome ImaginedOutcomeOf(Outcome outcome) {
   switch (outcome) {
@@ -62,46 +40,10 @@ ImaginedOutcome ImaginedOutcomeOf(Outcome outcome) {
   return ImaginedOutcome::kInvalid;
 }
 
-/// What made most rollouts fail; nothing where none did.
-base::Failure MainFailure(const Prediction& prediction) {
-  const auto& failures = prediction.evidence.failures;
-  const auto most =
-      std::max_element(failures.begin(), failures.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most == failures.end() ? base::Failure() : most->first;
-}
-
-ImagineAnswered AnswerOf(int request, const Report& report,
-                         const std::vector<std::string>& instances) {
-  ImagineAnswered answer;
-  answer.request = request;
-  answer.outcome =
-      OutcomeOf(report.outcome == ImaginationOutcome::kCancelled ? report.found : report.outcome);
-  answer.why = report.why;
-  answer.depends_on = instances;
-  if (answer.outcome == Outcome::kRanked) {
-    const Prediction& best = report.ranking.at(static_cast<std::size_t>(report.recommended));
-    const auto& duration = best.evidence.duration;
-    answer.recommended = best.action;
-    answer.duration = duration.mean;
-    answer.duration_low = std::max(0.0, duration.mean - kNormalQuantile95 * duration.sd);
-    answer.duration_high = std::max(duration.p95, duration.mean);
-  }
-  if (answer.outcome == Outcome::kAllFailed) {
-    for (const Prediction& prediction : report.ranking) {
-      answer.failed.push_back(prediction.action);
-      answer.failures.push_back(MainFailure(prediction));
-    }
-  }
-  return answer;
-}
-
-std::vector<std::string> InstancesIn(const world::WorldState& world) {
-  std::set<std::string> instances;
-  for (const world::ObjectState& object : world.objects) {
-    instances.insert(base::ToLower(object.name));
-  }
-  return {instances.begin(), instances.end()};
+std::vector<std::string> NamesIn(const world::WorldState& world) {
+  std::vector<std::string> names;
+  for (const world::ObjectState& object : world.objects) names.push_back(object.name);
+  return names;
 }
 
 }  // namespace
@@ -115,7 +57,7 @@ struct ImaginationDesk::Session {
   // Once the state is geometry.
   std::shared_ptr<const imagination::RolloutSetup> setup;
   std::vector<base::ActionCall> actions;
-  std::vector<std::string> instances;
+  std::vector<std::string> things;  // names of what is imagined with
   std::unique_ptr<imagination::Scheduler> scheduler;
   std::map<std::pair<int, int>, RolloutPool::Result> rollouts;  // by index and alternative
 };
@@ -192,7 +134,7 @@ void ImaginationDesk::Begin(const SessionPtr& session) {
   try {
     const auto context = translation::WithKnowledge(context_, blackboard_.view());
     const auto state = translation::StateOf(context, &blackboard_.view(), session->command.state);
-    session->instances = InstancesIn(state.world);
+    session->things = NamesIn(state.world);
     session->actions = base::Combinations(session->command.action);
     const std::uint64_t seed =
         imagining_.seed + static_cast<std::uint64_t>(session->command.request);
@@ -284,7 +226,8 @@ void ImaginationDesk::Finish(const SessionPtr& session) {
   step.predictions = report.ranking;
   step.recommended = report.recommended;
   step.why = report.why;
-  const ImagineAnswered answer = AnswerOf(session->command.request, report, session->instances);
+  // What cuts it short is its time alone: whoever cancels it wants no answer.
+  const ImagineAnswered answer = AnswerOf(session->command.request, report, true, session->things);
   End(session, ImaginedOutcomeOf(answer.outcome));
   on_answer_(answer);
 }

@@ -36,6 +36,15 @@ ImaginationPace ReadPace(ParamReader in) {
   return pace;
 }
 
+LoopMessages ReadMessages(ParamReader in) {
+  LoopMessages messages;
+  messages.sensors = ReadMessageParams(in.Sub("sensors"), true);
+  messages.looks = ReadMessageParams(in.Sub("looks"), true);
+  messages.actions = ReadMessageParams(in.Sub("actions"), false);
+  messages.blackboard = ReadMessageParams(in.Sub("blackboard"), false);
+  return messages;
+}
+
 planning::PlanningKnowledge LoadPlanning(const std::string& domain) {
   planning::PlannerConfig config;
   config.domain = domain;
@@ -64,7 +73,7 @@ LoopConfig ReadLoopConfig(const std::string& path) {
   config.truths = file("truths");
   config.pace = ReadPace(in.Sub("imagination"));
   config.planning_time = in.Get("planning_time", Between(0.0, 60.0));
-  config.message_delay = in.Get("message_delay", Between(0.0, 1.0));
+  config.messages = ReadMessages(in.Sub("messages"));
   in.RejectUnknownKeys();
   return config;
 }

@@ -12,9 +12,18 @@
 #include "hires/planning/planner_config.h"
 #include "hires/sensing/scan_obstacles.h"
 #include "loop/imagination_desk.h"
+#include "loop/message_line.h"
 #include "loop/tracker.h"
 
 namespace hires::loop {
+
+/// How messages fare, by their kind.
+struct LoopMessages {
+  MessageParams sensors;     ///< from the robot to the tracker, but for
+  MessageParams looks;       ///< what its camera sees
+  MessageParams actions;     ///< from the monitor to skills, and back
+  MessageParams blackboard;  ///< from the Blackboard to the monitor
+};
 
 /// config/loop.yaml and the files of the nodes that it names.
 struct LoopConfig {
@@ -28,7 +37,7 @@ struct LoopConfig {
   ImaginationPace pace;
   std::string truths;          ///< folder of what robot and world may really be like
   double planning_time{0.05};  ///< [s] that a search takes
-  double message_delay{0.0};   ///< [s] of what sensors say on its way to the tracker
+  LoopMessages messages;
 };
 
 /// @throws base::ConfigError naming file and key.

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "hires/knowledge/state_view.h"
+#include "hires/loop/imagine_answer.h"
 
 namespace hires::loop {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 using evaluation::AchieveOutcome;
 using evaluation::AchieveReport;
 using evaluation::AchieveStatus;
-using evaluation::ImaginedStep;
 using execution::Finish;
 
 execution::MonitorParams ParamsOf(const LoopSetup::Parts& parts, const LoopOrder& order) {
@@ -51,20 +51,6 @@ bool SameAtoms(const std::vector<base::Atom>& a, const std::vector<base::Atom>& 
                     [](const base::Atom& x, const base::Atom& y) {
                       return x.predicate == y.predicate && x.arguments == y.arguments;
                     });
-}
-
-/// When the step that was imagined began, in its plan or a later one.
-void SetDispatch(const std::vector<execution::StepStatus>& steps,
-                 std::vector<ImaginedStep>* imaginations) {
-  for (ImaginedStep& imagination : *imaginations) {
-    const auto begun = [&](const execution::StepStatus& step) {
-      if (!step.started) return false;
-      if (step.plan == imagination.plan) return step.index == imagination.step;
-      return step.plan > imagination.plan && base::IsAmong(step.action, imagination.action);
-    };
-    const auto step = std::find_if(steps.begin(), steps.end(), begun);
-    if (step != steps.end()) imagination.dispatch = step->started;
-  }
 }
 
 }  // namespace
@@ -139,7 +125,9 @@ AchieveStatus MonitorShell::Status() const {
     status.replans = std::max(status.replans, step.plan);
   }
   status.imaginations = imagination_.steps();
-  SetDispatch(status.steps, &status.imaginations);
+  for (evaluation::ImaginedStep& imagined : status.imaginations) {
+    imagined.dispatch = DispatchOf(status.steps, imagined.plan, imagined.step, imagined.action);
+  }
   status.warnings = warnings_;
   return status;
 }

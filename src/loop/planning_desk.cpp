@@ -5,34 +5,21 @@
 #include "hires/base/error.h"
 #include "hires/planning/planner.h"
 #include "hires/planning/reasons.h"
-#include "hires/planning/shop2_reader.h"
-#include "hires/planning/task_text.h"
+#include "hires/planning/request.h"
 
 namespace hires::loop {
 namespace {
 
 using execution::PlanArrived;
 using execution::StartPlanning;
-using planning::Datum;
 
 constexpr std::uint64_t kMaxExpansions = 2'000'000;  // a limit that every computer reaches alike
 
-Datum DatumOf(const base::Atom& atom) {
-  std::vector<Datum> items{planning::ReadGroundTerm(atom.predicate, "state")};
-  for (const std::string& argument : atom.arguments) {
-    items.push_back(planning::ReadGroundTerm(argument, "state"));
-  }
-  return planning::MakeList(std::move(items));
-}
-
 planning::Problem ProblemOf(const StartPlanning& command, const planning::Domain& domain) {
   planning::Problem problem;
-  problem.tasks = planning::ReadTasks(command.tasks, "task");
-  problem.source = "task";
-  planning::CheckTasks(problem, domain);
-  for (const auto* atoms : {&command.state, &command.facts}) {
-    for (const base::Atom& atom : *atoms) problem.facts.push_back(DatumOf(atom));
-  }
+  planning::SetTasks(command.tasks, domain, &problem);
+  planning::AppendFacts(command.state, "state", &problem);
+  planning::AppendFacts(command.facts, "facts", &problem);
   return problem;
 }
 

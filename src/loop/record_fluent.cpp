@@ -1,9 +1,14 @@
 #include "hires/loop/record_fluent.h"
 
 #include <cmath>
+#include <utility>
+
+#include "hires/base/text.h"
 
 namespace hires::loop {
 namespace {
+
+using execution::Record;
 
 std::string RangeOf(const std::string& role, const std::string& otherwise,
                     const knowledge::Ontology& ontology) {
@@ -40,5 +45,30 @@ knowledge::Fluent FluentOf(const execution::Record& record, double start,
   }
   return fluent;
 }
+
+void EpisodeRecords::Begin(const std::string& name) {
+  name_ = name;
+  begun_.clear();
+}
+
+RecordWrites EpisodeRecords::WritesOf(const Record& record, double time,
+                                      const knowledge::Ontology& ontology) {
+  const std::string key = base::ToLower(record.instance);
+  RecordWrites writes;
+  if (record.kind == Record::Kind::kBegin) {
+    begun_[key] = time;
+    writes.added = FluentOf(record, time, ontology);
+    writes.added->properties.push_back({"hasEpisode", "xsd:string", name_});
+    return writes;
+  }
+  const auto begun = begun_.find(key);
+  const double start = begun == begun_.end() ? time : begun->second;
+  knowledge::Fluent fluent = FluentOf(record, start, ontology);
+  if (!fluent.properties.empty()) writes.updated = std::move(fluent);
+  if (record.kind == Record::Kind::kEnd) writes.ended = record.instance;
+  return writes;
+}
+
+void EpisodeRecords::Forget(const std::string& instance) { begun_.erase(base::ToLower(instance)); }
 
 }  // namespace hires::loop

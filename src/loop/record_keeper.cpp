@@ -1,8 +1,5 @@
 #include "loop/record_keeper.h"
 
-#include "hires/base/text.h"
-#include "hires/loop/record_fluent.h"
-
 namespace hires::loop {
 
 using execution::Record;
@@ -11,7 +8,7 @@ using knowledge::Source;
 
 void RecordKeeper::BeginEpisode(const std::string& task, double time) {
   episode_ = blackboard_.StartEpisode(task, time);
-  begun_.clear();
+  records_.Begin(episode_.name);
 }
 
 void RecordKeeper::EndEpisode(const std::string& outcome, double time) {
@@ -19,21 +16,13 @@ void RecordKeeper::EndEpisode(const std::string& outcome, double time) {
 }
 
 void RecordKeeper::Write(const Record& record, double time) {
-  const std::string key = base::ToLower(record.instance);
   const Assertion by{Source::kMonitor, episode_.id, time};
-  if (record.kind == Record::Kind::kBegin) {
-    begun_[key] = time;
-    knowledge::Fluent fluent = FluentOf(record, time, blackboard_.ontology());
-    fluent.properties.push_back({"hasEpisode", "xsd:string", episode_.name});
-    return blackboard_.Write({fluent}, {}, {}, by);
-  }
-  const auto begun = begun_.find(key);
-  const double start = begun == begun_.end() ? time : begun->second;
-  const knowledge::Fluent fluent = FluentOf(record, start, blackboard_.ontology());
-  if (!fluent.properties.empty()) blackboard_.Write({}, {fluent}, {}, by);
-  if (record.kind == Record::Kind::kUpdate) return;
-  blackboard_.Write({}, {}, {record.instance}, by);
-  begun_.erase(key);
+  const RecordWrites writes = records_.WritesOf(record, time, blackboard_.ontology());
+  if (writes.added) blackboard_.Write({*writes.added}, {}, {}, by);
+  if (writes.updated) blackboard_.Write({}, {*writes.updated}, {}, by);
+  if (!writes.ended) return;
+  blackboard_.Write({}, {}, {*writes.ended}, by);
+  records_.Forget(*writes.ended);
 }
 
 }  // namespace hires::loop

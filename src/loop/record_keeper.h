@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
 
 #include "hires/execution/monitor.h"
 #include "hires/knowledge/fluent.h"
+#include "hires/loop/record_fluent.h"
 #include "loop/blackboard.h"
 
 namespace hires::loop {
@@ -24,7 +24,7 @@ class RecordKeeper {
  private:
   Blackboard& blackboard_;
   knowledge::Episode episode_;
-  std::map<std::string, double> begun_;  // [s] by instance in lower case
+  EpisodeRecords records_;
 };
 
 }  // namespace hires::loop

@@ -28,13 +28,17 @@ RobotSenses::RobotSenses(const ImaginationSetup& setup, const sensing::FrameName
                                                         setup.sensing.memory, &state_);
 }
 
+void RobotSenses::See(double stamp, const std::vector<perception::Detection>& seen) {
+  if (objects_) objects_->OnLook({stamp, camera_link_, seen});
+}
+
 void RobotSenses::Hear(const SensorNews& news) {
   const auto& readings = news.readings;
   if (news.is_tick) {
     frames_->Tell(names_.map, names_.odometry, news.stamp, geometry::Lift(readings.X_MO));
     state_.OnTransforms(news.stamp);
   }
-  if (news.seen && objects_) objects_->OnLook({news.stamp, camera_link_, *news.seen});
+  if (news.seen) See(news.stamp, *news.seen);
   state_.OnJoints(news.stamp, readings.joints);
   state_.OnOdometry(news.stamp, names_.odometry, base_link_, readings.odometry);
 }

@@ -2,14 +2,9 @@
 
 #include <utility>
 
-#include "hires/world/standing.h"
-
 namespace hires::loop {
 namespace {
 
-constexpr long kFast = 10;  // [ms] between two words of joints and wheels
-constexpr long kLook = static_cast<long>(1000.0 * world::kFallLookInterval + 0.5);  // [ms]
-static_assert(kFast % kLook == 0, "what sensors say is the end of a look");
 constexpr double kBegin = 1.0;  // [s] 0 means "no time yet"
 
 }  // namespace
@@ -48,7 +43,7 @@ void RobotSide::Tick() {
 
 /// The world is ahead of the clock by a tick at most; what it says waits for its time.
 void RobotSide::Advance() {
-  for (long done = 0; done < evaluation::kSensorTick; done += kFast) {
+  for (long done = 0; done < evaluation::kSensorTick; done += evaluation::kJointTick) {
     if (done > 0) {
       SensorNews news;
       news.stamp = Stamp();
@@ -56,10 +51,7 @@ void RobotSide::Advance() {
       const double stamp = news.stamp;
       clock_.At(stamp, [this, news = std::move(news)] { hooks_.hear(news); });
     }
-    for (long looked = 0; looked < kFast; looked += kLook) {
-      world_.Advance(kLook);
-      truth_.Look(world_.simulator());
-    }
+    evaluation::PlayJointTick(&world_, &truth_);
   }
 }
 

@@ -4,8 +4,7 @@
 
 #include "hires/base/error.h"
 #include "hires/evaluation/scenario.h"
-#include "hires/planning/shop2_reader.h"
-#include "hires/planning/task_text.h"
+#include "hires/planning/request.h"
 #include "loop/loop_parts.h"
 #include "loop/middle_layer.h"
 #include "loop/monitor_shell.h"
@@ -18,6 +17,13 @@ constexpr double kStart = 1.0;         // [s] of the clock
 constexpr double kFirstLook = 1.0;     // [s] until what is observed at first has been told
 constexpr double kFarewell = 2.0;      // [s] in which all comes to rest after the end
 constexpr double kStatusPeriod = 0.2;  // [s]
+enum LineStreams : std::uint64_t {
+  kSensorLine = 300,
+  kLookLine,
+  kGoalLine,
+  kEndLine,
+  kBlackboardLine
+};
 
 using control::ActionEnd;
 using execution::StepFinished;
@@ -44,11 +50,21 @@ LoopOrder Completed(const LoopOrder& order, const evaluation::Scenario& scenario
   LoopOrder complete = order;
   if (complete.task.empty()) complete.task = scenario.task;
   planning::Problem problem;
-  problem.source = problem.name = "task";
-  problem.tasks = planning::ReadTasks(complete.task, "task");
-  planning::CheckTasks(problem, domain);
+  planning::SetTasks(complete.task, domain, &problem);
   return complete;
 }
+
+/// What is on its way between them.
+struct Lines {
+  Lines(const LoopMessages& messages, const base::Rng& rng, VirtualClock* clock)
+      : sensors(messages.sensors, rng.Fork(kSensorLine), clock),
+        looks(messages.looks, rng.Fork(kLookLine), clock),
+        goals(messages.actions, rng.Fork(kGoalLine), clock),
+        ends(messages.actions, rng.Fork(kEndLine), clock),
+        blackboard(messages.blackboard, rng.Fork(kBlackboardLine), clock) {}
+
+  MessageLine sensors, looks, goals, ends, blackboard;
+};
 
 /// All parts of one task, wired.
 class Play {
@@ -58,8 +74,8 @@ class Play {
       : observer_(observer),
         order_(Completed(order, scenario, parts.planning.domain)),
         truth_(evaluation::ReadTruth(evaluation::TruthPath(order.truth, parts.config.truths))),
-        message_delay_(parts.config.message_delay),
         clock_(kStart),
+        lines_(parts.config.messages, base::Rng(order.seed), &clock_),
         blackboard_(parts.ontology),
         pool_(order.threads),
         robot_(parts, evaluation::StartOf(parts.world, order.scenario, ""), truth_, order.seed,
@@ -72,7 +88,7 @@ class Play {
                        [this](int activity, ActionEnd end, const base::Failure& failure) {
                          Tell(observer_.ended, clock_.now(), activity, end, failure);
                          tracker_.OnActions(middle_layer_.running());
-                         clock_.In(message_delay_, [this, activity, end, failure] {
+                         lines_.ends.Send([this, activity, end, failure] {
                            monitor_.OnStepEnded(FinishedAs(activity, end, failure));
                          });
                        }}),
@@ -81,7 +97,7 @@ class Play {
         monitor_(parts, order_, &clock_, &blackboard_, &pool_,
                  {[this](const execution::StartStep& step) { Start(step); },
                   [this](int activity) {
-                    clock_.In(message_delay_, [this, activity] { middle_layer_.Cancel(activity); });
+                    lines_.goals.Send([this, activity] { middle_layer_.Cancel(activity); });
                   }}) {
     blackboard_.Load(scenario.knowledge, order.seed);
     blackboard_.SetListener([this] { OnWritten(); });
@@ -141,20 +157,25 @@ class Play {
               Send(command);
             },
             [this](double time) {
-              clock_.In(message_delay_, [this, time] { OnObservedUntil(time); });
+              lines_.blackboard.Send([this, time] { OnObservedUntil(time); });
             }};
   }
 
   void Hear(const SensorNews& news) {
     Tell(observer_.sensed, news);
     middle_layer_.Hear(news, robot_.laser());
-    clock_.In(message_delay_, [this, news] { tracker_.Hear(news); });
+    SensorNews rest = news;
+    rest.scan.clear();
+    if (const auto seen = std::exchange(rest.seen, std::nullopt)) {
+      lines_.looks.Send([this, stamp = news.stamp, seen = *seen] { tracker_.See(stamp, seen); });
+    }
+    lines_.sensors.Send([this, rest = std::move(rest)] { tracker_.Hear(rest); });
   }
 
   void Look(double stamp) { middle_layer_.Look(stamp); }
 
   void Start(const execution::StartStep& step) {
-    clock_.In(message_delay_, [this, step] {
+    lines_.goals.Send([this, step] {
       Tell(observer_.began, clock_.now(), step.activity, step.action);
       middle_layer_.Start(step.activity, step.action, step.time_limit);
       tracker_.OnActions(middle_layer_.running());
@@ -165,7 +186,7 @@ class Play {
   void OnWritten() {
     tracker_.OnView();
     if (std::exchange(is_view_due_, true)) return;
-    clock_.In(message_delay_, [this] {
+    lines_.blackboard.Send([this] {
       is_view_due_ = false;
       monitor_.OnView();
     });
@@ -181,8 +202,8 @@ class Play {
   const LoopObserver& observer_;
   const LoopOrder order_;
   const evaluation::Truth truth_;
-  const double message_delay_;
   VirtualClock clock_;
+  Lines lines_;
   Blackboard blackboard_;
   RolloutPool pool_;
   RobotSide robot_;

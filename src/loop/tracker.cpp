@@ -1,10 +1,8 @@
 #include "loop/tracker.h"
 
-#include <algorithm>
 #include <utility>
 
-#include "hires/actions/catalogue.h"
-#include "hires/translation/task_places.h"
+#include "hires/translation/translator.h"
 
 namespace hires::loop {
 namespace {
@@ -12,14 +10,6 @@ namespace {
 using robot::SeenObject;
 using sensing::RobotEstimate;
 using translation::ObservedWorld;
-
-world::WorldState StateOf(const std::vector<SeenObject>& known) {
-  world::WorldState state;
-  for (const SeenObject& object : known) {
-    state.objects.push_back({object.name, object.model, object.X_MO, {}, object.attached_to});
-  }
-  return state;
-}
 
 }  // namespace
 
@@ -37,13 +27,14 @@ Tracker::Tracker(const imagination::ImaginationSetup& setup,
       tracker_(&senses_.state(), senses_.objects(), control::HeadSweep(context.robot, params.sweep),
                true,
                {[this](const RobotEstimate& now, const std::vector<SeenObject>& known) {
-                  hooks_.known(now.time, StateOf(known));
+                  hooks_.known(now.time, control::WorldOf(known));
                 },
                 [this](const robot::JointTrajectory& turn) { hooks_.turn(turn); },
                 [this](double time, ObservedWorld observed) { Post(time, std::move(observed)); },
                 [](const std::string&) {},
                 [this] {
-                  if (std::exchange(is_view_new_, false)) ReadView();
+                  if (std::exchange(is_view_new_, false))
+                    tracker_.OnView(context_, blackboard_.view());
                 }}) {}
 
 void Tracker::Hear(const SensorNews& news) {
@@ -51,26 +42,15 @@ void Tracker::Hear(const SensorNews& news) {
   tracker_.Process();
 }
 
+void Tracker::See(double stamp, const std::vector<perception::Detection>& seen) {
+  senses_.See(stamp, seen);
+  tracker_.Process();
+}
+
 void Tracker::OnActions(const std::map<int, base::ActionCall>& running) {
-  const bool is_busy = std::any_of(running.begin(), running.end(), [this](const auto& action) {
-    return actions::MayUseHead(actions_, base::CanonicalName(action.second.name));
-  });
-  tracker_.sweep().SetBusy(is_busy, tracker_.time());
-}
-
-translation::TranslatorContext Tracker::ContextNow() const {
-  return translation::WithKnowledge(context_, blackboard_.view());
-}
-
-void Tracker::ReadView() {
-  const translation::TranslatorContext context = ContextNow();
-  std::vector<sensing::StatedObject> stated;
-  for (const auto& object : translation::StatedObjects(context, blackboard_.view())) {
-    stated.push_back({object.name, object.model, object.link, object.X_LO});
-  }
-  senses_.objects()->OnStated(stated);
-  tracker_.sweep().SetPlaces(translation::PlacesOfTasks(context, blackboard_.view()),
-                             context.areas);
+  std::vector<std::string> names;
+  for (const auto& [activity, action] : running) names.push_back(action.name);
+  tracker_.OnActions(actions_, names);
 }
 
 /// Replaces what was posted before and is not written yet.
@@ -85,7 +65,8 @@ void Tracker::Write() {
   written_ = clock_.now();
   const Posted posted = *std::exchange(posted_, std::nullopt);
   const translation::FluentUpdate update = translation::ChangesFrom(
-      ContextNow(), blackboard_.view(), posted.observed, params_.changes, params_.concepts);
+      translation::WithKnowledge(context_, blackboard_.view()), blackboard_.view(), posted.observed,
+      params_.changes, params_.concepts);
   blackboard_.Write(update.added, update.updated, update.removed,
                     {knowledge::Source::kObservation, episode_, clock_.now()});
   hooks_.observed_until(posted.time);

@@ -37,14 +37,13 @@ class Tracker {
           Blackboard* blackboard, Hooks hooks);
 
   void Hear(const SensorNews& news);
+  void See(double stamp, const std::vector<perception::Detection>& seen);
   void OnView() { is_view_new_ = true; }  ///< the Blackboard says something else
   /// What runs now: the head is others' while one of them may use it.
   void OnActions(const std::map<int, base::ActionCall>& running);
   void SetEpisode(std::int64_t episode) { episode_ = episode; }
 
  private:
-  void ReadView();
-  translation::TranslatorContext ContextNow() const;
   void Post(double time, translation::ObservedWorld observed);
   void Write();
 

@@ -9,18 +9,13 @@
 #include "hires/base/hash.h"
 #include "hires/base/short_text.h"
 #include "hires/imagination/uncertainty.h"
+#include "hires/ros/atom_messages.h"
 #include "hires/ros/conversions.h"
 
 namespace hires_ros {
 namespace {
 
 namespace imagination = hires::imagination;
-
-std::vector<hires::base::Atom> AtomsOf(const std::vector<hires::Atom>& atoms) {
-  std::vector<hires::base::Atom> out;
-  for (const hires::Atom& atom : atoms) out.push_back({atom.predicate, atom.arguments});
-  return out;
-}
 
 void RequireSameWorld(const hires::ImagineGoal& goal, const imagination::ImaginationSetup& setup) {
   const std::uint64_t stated = goal.world_state.world_hash;
@@ -34,7 +29,7 @@ void RequireSameWorld(const hires::ImagineGoal& goal, const imagination::Imagina
 imagination::StartState StartOf(const hires::ImagineGoal& goal,
                                 const imagination::ImaginationSetup& setup) {
   if (!goal.updated_fluents.empty()) {
-    return imagination::MakeStartState(setup, AtomsOf(goal.updated_fluents));
+    return imagination::MakeStartState(setup, FromMsg(goal.updated_fluents));
   }
   RequireSameWorld(goal, setup);
   return {FromMsg(goal.world_state), FromMsg(goal.robot_state)};

@@ -12,8 +12,9 @@
 #include "hires/planning/plan_order.h"
 #include "hires/planning/plan_report.h"
 #include "hires/planning/reasons.h"
-#include "hires/planning/shop2_reader.h"
+#include "hires/planning/request.h"
 #include "hires/planning/task_text.h"
+#include "hires/ros/atom_messages.h"
 #include "hires/ros/plan_nodes.h"
 
 namespace hires_ros {
@@ -24,26 +25,6 @@ using hires::base::ConfigError;
 using planning::Datum;
 
 constexpr std::uint32_t kMaxTrace = 100'000;  // entries
-
-Datum AtomOf(const hires::Atom& atom, const std::string& where) {
-  std::vector<Datum> items{planning::ReadGroundTerm(atom.predicate, where + ".predicate")};
-  if (items[0].kind != Datum::Kind::kSymbol) {
-    throw ConfigError(fmt::format("{}.predicate: is {}, wanted a name, as `on` of (on mug1 table1)",
-                                  where, hires::base::Shortened(atom.predicate)));
-  }
-  for (std::size_t i = 0; i < atom.arguments.size(); ++i) {
-    items.push_back(
-        planning::ReadGroundTerm(atom.arguments[i], fmt::format("{}.arguments[{}]", where, i)));
-  }
-  return planning::MakeList(std::move(items));
-}
-
-void AppendAtoms(const std::vector<hires::Atom>& atoms, const char* field,
-                 std::vector<Datum>* facts) {
-  for (std::size_t i = 0; i < atoms.size(); ++i) {
-    facts->push_back(AtomOf(atoms[i], fmt::format("{}[{}]", field, i)));
-  }
-}
 
 /// The problem that the goal names; else the first one, for what it knows.
 planning::Problem KnownProblem(const hires::PlanGoal& goal,
@@ -58,16 +39,10 @@ planning::Problem KnownProblem(const hires::PlanGoal& goal,
 planning::Problem ProblemOf(const hires::PlanGoal& goal,
                             const planning::PlanningKnowledge& knowledge) {
   planning::Problem problem = KnownProblem(goal, knowledge);
-  if (!goal.task.empty()) {
-    problem.tasks = planning::ReadTasks(goal.task, "task");
-    problem.parameters = {};
-    problem.goal.reset();
-    problem.source = "task";
-    planning::CheckTasks(problem, knowledge.domain);
-  }
+  if (!goal.task.empty()) planning::SetTasks(goal.task, knowledge.domain, &problem);
   if (!goal.state.empty()) problem.facts.clear();
-  AppendAtoms(goal.state, "state", &problem.facts);
-  AppendAtoms(goal.more_facts, "more_facts", &problem.facts);
+  planning::AppendFacts(FromMsg(goal.state), "state", &problem);
+  planning::AppendFacts(FromMsg(goal.more_facts), "more_facts", &problem);
   return problem;
 }
 

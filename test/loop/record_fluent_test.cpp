@@ -48,5 +48,36 @@ TEST(FluentOfTest, AConceptThatTheOntologyLacksGivesWayToTheGeneralOne) {
   EXPECT_EQ(FluentOf(record, 0.0, TheOntology()).concept_name, "JuggleTask");
 }
 
+execution::Record RecordOf(execution::Record::Kind kind) {
+  execution::Record record;
+  record.kind = kind;
+  record.concept_name = "MoveBaseTask";
+  record.instance = "Task3";
+  return record;
+}
+
+TEST(EpisodeRecordsTest, WhatBeganSaysInWhichEpisodeAndWhenAndEndsOnce) {
+  using Kind = execution::Record::Kind;
+  EpisodeRecords records;
+  records.Begin("episode7");
+  const RecordWrites begun = records.WritesOf(RecordOf(Kind::kBegin), 2.0, TheOntology());
+  ASSERT_TRUE(begun.added);
+  EXPECT_THAT(begun.added->properties, ElementsAre(knowledge::Property{"hasEpisode", "xsd:string",
+                                                                       std::string("episode7")}));
+  EXPECT_FALSE(begun.updated || begun.ended);
+  execution::Record last = RecordOf(Kind::kEnd);
+  last.texts = {{"hasAction", "move_base"}};
+  for (int i = 0; i < 2; ++i) {  // the Blackboard was away the first time
+    const RecordWrites ended = records.WritesOf(last, 5.0, TheOntology());
+    ASSERT_TRUE(ended.updated);
+    EXPECT_EQ(ended.updated->start.earliest, 2.0);
+    EXPECT_EQ(ended.ended, "Task3");
+  }
+  records.Forget("task3");
+  EXPECT_EQ(records.WritesOf(last, 6.0, TheOntology()).updated->start.earliest, 6.0);
+  EXPECT_FALSE(records.WritesOf(RecordOf(Kind::kUpdate), 6.0, TheOntology()).updated)
+      << "it says nothing";
+}
+
 }  // namespace
 }  // namespace hires::loop::record_fluent_test

@@ -216,40 +216,6 @@ TEST(StepMessageTest, WhatHasNotHappenedIsNoNumber) {
   EXPECT_EQ(message.expected_finish, 19.1);
 }
 
-TEST(DispatchTest, AStepThatARepairTookOverBeganInTheLaterPlan) {
-  const double never = std::numeric_limits<double>::quiet_NaN();
-  const auto step = [](unsigned plan, unsigned index, const std::string& set, double started) {
-    hires::StepStatus status;
-    status.plan = plan;
-    status.index = index;
-    status.action.name = "move_base_param";
-    status.action.arguments = {"table1", set};
-    status.started = started;
-    return status;
-  };
-  const auto imagined = [&](unsigned plan, unsigned index) {
-    hires::ImaginationStatus status;
-    status.plan = plan;
-    status.step = index;
-    status.action.name = "!move_base_param";
-    status.action.alternatives.resize(2);
-    status.action.alternatives[0].values = {"Table1"};
-    status.action.alternatives[1].values = {"slow", "fast"};
-    status.dispatch = never;
-    return status;
-  };
-  std::vector<hires::ImaginationStatus> imaginations{imagined(0, 11), imagined(2, 5)};
-  SetDispatch({step(0, 11, "fast", 3.0)}, &imaginations);
-  EXPECT_EQ(imaginations[0].dispatch, 3.0);
-  EXPECT_TRUE(std::isnan(imaginations[1].dispatch));
-  imaginations[0].dispatch = never;
-  SetDispatch({step(0, 11, "fast", never), step(0, 12, "fast", 1.0), step(1, 4, "medium", 2.0),
-               step(1, 5, "slow", 7.0), step(2, 5, "fast", 9.0)},
-              &imaginations);
-  EXPECT_EQ(imaginations[0].dispatch, 7.0);
-  EXPECT_EQ(imaginations[1].dispatch, 9.0);
-}
-
 TEST(StepMessageTest, PhasesHaveTheSameNumbers) {
   using execution::StepPhase;
   const auto number = [](StepPhase phase) { return static_cast<std::uint8_t>(phase); };

@@ -2,14 +2,20 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "hires/actions/catalogue.h"
 #include "hires/control/head_sweep.h"
+#include "hires/knowledge/sparql.h"
 #include "hires/sensing/object_estimator.h"
 #include "hires/sensing/robot_state_estimator.h"
 #include "hires/translation/observed_fluents.h"
 
 namespace hires::control {
+
+/// Objects that are known, for those who ask where all of them are.
+world::WorldState WorldOf(const std::vector<robot::SeenObject>& known);
 
 /// Follows what the robot's sensors say, moment by moment: remembers objects, tells what is known
 /// of them, turns the head to what the task is about, and says what was observed. Moments are those
@@ -34,7 +40,15 @@ class WorldTracker {
   /// All moments that have become known; after each message.
   void Process();
 
-  HeadSweep& sweep() { return sweep_; }
+  /// What others say of objects now, and which places tasks are about.
+  /// @param context  without what the fluents say of areas.
+  /// @return what could not be believed, and why.
+  std::vector<std::string> OnView(const translation::TranslatorContext& context,
+                                  const knowledge::FluentView& fluents);
+  /// What runs now: the head is others' while one of these actions may use it.
+  void OnActions(const actions::Catalogue& catalogue, const std::vector<std::string>& names);
+
+  const HeadSweep& sweep() const { return sweep_; }
   double time() const { return time_; }            ///< [s] of the last moment
   sensing::Missing lack() const { return lack_; }  ///< at the last moment
   std::uint64_t num_moments() const { return num_moments_; }

@@ -10,11 +10,17 @@
 #include "hires/evaluation/sim_robot_world.h"
 #include "hires/perception/detector.h"
 #include "hires/simulation/laser_scanner.h"
+#include "hires/simulation/truth_record.h"
 
 namespace hires::evaluation {
 
 /// Simulated time [ms] from one tick of the robot's sensors to the next.
 inline constexpr long kSensorTick = 50;
+/// Simulated time [ms] from one word of its joints and wheels to the next.
+inline constexpr long kJointTick = 10;
+
+/// Lets the world go on by kJointTick; the record looks for falls meanwhile.
+void PlayJointTick(SimRobotWorld* world, simulation::TruthRecord* truth);
 
 /// What the robot has besides wheels and joints.
 struct SimSensorParams {

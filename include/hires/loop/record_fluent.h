@@ -1,5 +1,9 @@
 #pragma once
 
+#include <map>
+#include <optional>
+#include <string>
+
 #include "hires/execution/monitor.h"
 #include "hires/knowledge/fluent.h"
 #include "hires/knowledge/ontology.h"
@@ -11,5 +15,30 @@ namespace hires::loop {
 /// does not know is left for the Blackboard to refuse.
 knowledge::Fluent FluentOf(const execution::Record& record, double start,
                            const knowledge::Ontology& ontology);
+
+/// What the Blackboard must be told of one record, in this order.
+struct RecordWrites {
+  std::optional<knowledge::Fluent> added;
+  std::optional<knowledge::Fluent> updated;
+  std::optional<std::string> ended;  ///< instance
+};
+
+/// Turns the records of one episode into what is written of them.
+class EpisodeRecords {
+ public:
+  /// @param name  of the episode, which what begins in it names; empty for none.
+  void Begin(const std::string& name);
+
+  /// Asked again for a record that could not be written, it says the same.
+  /// @param time  [s] of the record.
+  RecordWrites WritesOf(const execution::Record& record, double time,
+                        const knowledge::Ontology& ontology);
+  /// It has been told that this instance ended.
+  void Forget(const std::string& instance);
+
+ private:
+  std::string name_;
+  std::map<std::string, double> begun_;  // [s] by instance in lower case
+};
 
 }  // namespace hires::loop

@@ -5,6 +5,7 @@
 
 #include "hires/base/hash.h"
 #include "hires/simulation/scan_ghosts.h"
+#include "hires/world/standing.h"
 
 namespace hires::evaluation {
 namespace {
@@ -13,6 +14,8 @@ using base::Between;
 using base::ParamReader;
 
 constexpr double kStillHead = 0.02;  // [rad/s]
+constexpr long kLook = static_cast<long>(1000.0 * world::kFallLookInterval + 0.5);  // [ms]
+static_assert(kJointTick % kLook == 0, "what sensors say is the end of a look");
 enum SensorStreams : std::uint64_t {
   kScanStream = 100,
   kDetectorStream,
@@ -41,6 +44,13 @@ void ReadDetector(ParamReader in, SimSensorParams* params) {
 }
 
 }  // namespace
+
+void PlayJointTick(SimRobotWorld* world, simulation::TruthRecord* truth) {
+  for (long looked = 0; looked < kJointTick; looked += kLook) {
+    world->Advance(kLook);
+    truth->Look(world->simulator());
+  }
+}
 
 SimSensorParams ReadSimSensorParams(ParamReader in) {
   SimSensorParams params;

@@ -17,11 +17,10 @@
 #include "hires/execution/monitor_config.h"
 #include "hires/planning/planner_config.h"
 #include "hires/ros/achieve_messages.h"
+#include "hires/ros/atom_messages.h"
 
 /// What the execution monitor sends and receives, as messages.
 namespace hires_ros {
-
-hires::Atom ToMsg(const hires::base::Atom& atom);
 
 /// @param time_limit  [s] for the planner.
 hires::PlanGoal GoalOf(const hires::execution::StartPlanning& command, double time_limit);
@@ -46,11 +45,6 @@ hires::execution::ImagineAnswered AnswerOf(int request, const hires::ImagineResu
                                            const hires::GenerateImagineState::Response& state,
                                            bool is_late);
 std::string OutcomeName(hires::execution::ImagineAnswered::Outcome outcome);  ///< "ranked", ...
-
-/// When the imagined steps began. A step that a repair took over into a later plan, where it has
-/// another number, is the first one there that does what was imagined.
-void SetDispatch(const std::vector<hires::StepStatus>& steps,
-                 std::vector<hires::ImaginationStatus>* imaginations);
 
 /// Code of hires::AchieveResult.
 std::uint8_t CodeOf(hires::execution::Finish::Outcome outcome);

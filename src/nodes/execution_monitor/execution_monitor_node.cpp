@@ -14,8 +14,8 @@
 #include "hires/base/short_text.h"
 #include "hires/base/text.h"
 #include "hires/knowledge/state_view.h"
-#include "hires/planning/shop2_reader.h"
-#include "hires/planning/task_text.h"
+#include "hires/loop/imagine_answer.h"
+#include "hires/planning/request.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/private_params.h"
 #include "hires/ros/robot_topics.h"
@@ -51,9 +51,7 @@ bool SameAtoms(const std::vector<hires::base::Atom>& a, const std::vector<hires:
 /// A task that the domain does not know is refused before anything is begun.
 void CheckTask(const std::string& text, const planning::Domain& domain) {
   planning::Problem problem;
-  problem.source = "task";
-  problem.tasks = planning::ReadTasks(text, "task");
-  planning::CheckTasks(problem, domain);
+  planning::SetTasks(text, domain, &problem);
 }
 
 /// What people would see differ; bounds in time change all the while.
@@ -452,12 +450,18 @@ void ExecutionMonitorNode::Conclude(const execution::Finish& finish) {
 hires::AchieveFeedback ExecutionMonitorNode::Status() const {
   hires::AchieveFeedback status;
   if (!task_->monitor) return status;
-  for (const execution::StepStatus& step : task_->monitor->Steps()) {
+  const std::vector<execution::StepStatus> steps = task_->monitor->Steps();
+  for (const execution::StepStatus& step : steps) {
     status.steps.push_back(ToMsg(step));
     status.replans = std::max(status.replans, step.plan);  // each repair has the next number
   }
   status.imaginations = imagination_.Statuses();
-  SetDispatch(status.steps, &status.imaginations);
+  for (hires::ImaginationStatus& imagined : status.imaginations) {
+    const auto dispatch =
+        hires::loop::DispatchOf(steps, static_cast<int>(imagined.plan),
+                                static_cast<int>(imagined.step), FromMsg(imagined.action));
+    imagined.dispatch = dispatch.value_or(kNever);
+  }
   return status;
 }
 

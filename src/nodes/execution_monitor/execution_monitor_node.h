@@ -145,7 +145,7 @@ class ExecutionMonitorNode {
   hires::execution::ReactionTimes reactions_;
 
   RecordWriter records_;
-  PlanningDesk planning_;
+  PlanRequests planning_;
   ImagineRequests imagination_;
   ActionLink<hires::ExecuteActionAction> steps_;
   RemoteView view_;

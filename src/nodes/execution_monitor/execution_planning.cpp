@@ -13,7 +13,7 @@ namespace execution = hires::execution;
 
 }  // namespace
 
-PlanningDesk::PlanningDesk(const hires::planning::PlanningKnowledge* knowledge, double time_limit,
+PlanRequests::PlanRequests(const hires::planning::PlanningKnowledge* knowledge, double time_limit,
                            const ActionLinkParams& params, ros::NodeHandle* nh, Post post,
                            OnAnswer on_answer)
     : knowledge_(knowledge),
@@ -25,13 +25,13 @@ PlanningDesk::PlanningDesk(const hires::planning::PlanningKnowledge* knowledge, 
               OnEnd(key, result, why);
             }) {}
 
-void PlanningDesk::Start(const execution::StartPlanning& command) {
+void PlanRequests::Start(const execution::StartPlanning& command) {
   const int key = next_key_++;
   requests_[key] = {command.request, GoalOf(command, time_limit_)};
   link_.Send(key, requests_[key].goal);
 }
 
-void PlanningDesk::Cancel(const execution::CancelPlanning& command) {
+void PlanRequests::Cancel(const execution::CancelPlanning& command) {
   for (auto request = requests_.begin(); request != requests_.end(); ++request) {
     if (request->second.id != command.request) continue;
     const int key = request->first;
@@ -40,11 +40,11 @@ void PlanningDesk::Cancel(const execution::CancelPlanning& command) {
   }
 }
 
-void PlanningDesk::CancelAll() {
+void PlanRequests::CancelAll() {
   for (const auto& [key, request] : std::exchange(requests_, {})) link_.Cancel(key);
 }
 
-void PlanningDesk::OnEnd(int key, const hires::PlanResultConstPtr& result, const std::string& why) {
+void PlanRequests::OnEnd(int key, const hires::PlanResultConstPtr& result, const std::string& why) {
   const auto found = requests_.find(key);
   if (found == requests_.end()) return;
   if (result) {
@@ -59,7 +59,7 @@ void PlanningDesk::OnEnd(int key, const hires::PlanResultConstPtr& result, const
 }
 
 /// On the reader's thread.
-void PlanningDesk::Read(int key, const Request& request, const hires::PlanResultConstPtr& result) {
+void PlanRequests::Read(int key, const Request& request, const hires::PlanResultConstPtr& result) {
   execution::PlanArrived answer = AnswerOf(request.id, *result);
   if (answer.outcome == execution::PlanArrived::Outcome::kFound) {
     try {
@@ -72,7 +72,7 @@ void PlanningDesk::Read(int key, const Request& request, const hires::PlanResult
   post_([this, key, answer = std::move(answer)] { Answer(key, answer); });
 }
 
-void PlanningDesk::Answer(int key, const execution::PlanArrived& answer) {
+void PlanRequests::Answer(int key, const execution::PlanArrived& answer) {
   if (requests_.erase(key) > 0) on_answer_(answer);
 }
 

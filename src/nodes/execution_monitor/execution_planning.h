@@ -14,13 +14,13 @@ namespace hires_ros {
 
 /// Asks the planner for the execution monitor. Belongs to the monitor's thread; what takes time is
 /// done on a thread of its own.
-class PlanningDesk {
+class PlanRequests {
  public:
   using Post = std::function<void(std::function<void()>)>;  ///< to the monitor's thread
   using OnAnswer = std::function<void(const hires::execution::PlanArrived&)>;
 
   /// @param time_limit  [s] for the planner.  @pre `knowledge` outlives the desk.
-  PlanningDesk(const hires::planning::PlanningKnowledge* knowledge, double time_limit,
+  PlanRequests(const hires::planning::PlanningKnowledge* knowledge, double time_limit,
                const ActionLinkParams& params, ros::NodeHandle* nh, Post post, OnAnswer on_answer);
 
   void Start(const hires::execution::StartPlanning& command);

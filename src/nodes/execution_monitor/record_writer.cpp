@@ -12,8 +12,6 @@
 #include <utility>
 
 #include "hires/base/log.h"
-#include "hires/base/text.h"
-#include "hires/loop/record_fluent.h"
 #include "hires/ros/blackboard_messages.h"
 #include "hires/ros/topic_names.h"
 
@@ -112,9 +110,8 @@ RecordWriter::Answer RecordWriter::Carry(const Begin& begin, double time) {
   call.request.time = time;
   const Answer answer = Ask("start_episode", &call);
   if (answer == Answer::kAgain) return answer;
-  begun_.clear();
   current_ = answer == Answer::kDone ? call.response.episode.id : 0;
-  episode_name_ = call.response.episode.name;
+  records_.Begin(call.response.episode.name);
   Announce(begin.number);
   return answer;
 }
@@ -135,24 +132,16 @@ RecordWriter::Answer RecordWriter::Carry(const End& end, double time) {
 }
 
 RecordWriter::Answer RecordWriter::Carry(const execution::Record& record, double time) {
-  const std::string key = hires::base::ToLower(record.instance);
-  if (record.kind == execution::Record::Kind::kBegin) {
-    begun_[key] = time;
-    knowledge::Fluent fluent = hires::loop::FluentOf(record, time, *ontology_);
-    fluent.properties.push_back({"hasEpisode", "xsd:string", episode_name_});
-    return WriteFluent("add", fluent, time);
-  }
-  const auto begun = begun_.find(key);
-  const double start = begun == begun_.end() ? time : begun->second;
-  const knowledge::Fluent fluent = hires::loop::FluentOf(record, start, *ontology_);
-  if (!is_updated_ && !fluent.properties.empty()) {
-    const Answer answer = WriteFluent("update", fluent, time);
+  const hires::loop::RecordWrites writes = records_.WritesOf(record, time, *ontology_);
+  if (writes.added) return WriteFluent("add", *writes.added, time);
+  if (!is_updated_ && writes.updated) {
+    const Answer answer = WriteFluent("update", *writes.updated, time);
     if (answer != Answer::kDone) return answer;
     is_updated_ = true;
   }
-  if (record.kind == execution::Record::Kind::kUpdate) return Answer::kDone;
-  const Answer answer = Remove(record.instance, time);
-  if (answer != Answer::kAgain) begun_.erase(key);
+  if (!writes.ended) return Answer::kDone;
+  const Answer answer = Remove(*writes.ended, time);
+  if (answer != Answer::kAgain) records_.Forget(*writes.ended);
   return answer;
 }
 

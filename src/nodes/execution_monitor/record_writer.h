@@ -4,7 +4,6 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "hires/execution/monitor.h"
 #include "hires/knowledge/fluent.h"
 #include "hires/knowledge/ontology.h"
+#include "hires/loop/record_fluent.h"
 #include "hires/ros/service_links.h"
 
 namespace hires_ros {
@@ -72,8 +72,7 @@ class RecordWriter {
   // Of the writer's thread.
   ServiceLinks blackboard_;
   std::int64_t current_{0};  // episode that is written; 0: it was refused
-  std::string episode_name_;
-  std::map<std::string, double> begun_;  // [s], by instance in lower case
+  hires::loop::EpisodeRecords records_;
   bool is_updated_{
       false};  // of the item under way: its last properties are in, only its end is not
   bool is_repeated_{false};  // a call of the item under way had no answer, and may have been heard

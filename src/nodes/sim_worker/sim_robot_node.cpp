@@ -21,12 +21,10 @@ namespace {
 
 using hires::base::ConfigError;
 using hires::base::LogLevel;
+using hires::evaluation::kJointTick;
 using hires::evaluation::kSensorTick;
 using hires::robot::Command;
 
-constexpr long kFast = 10;  // [ms] 100 Hz
-constexpr long kLook = static_cast<long>(1000.0 * hires::world::kFallLookInterval + 0.5);  // [ms]
-static_assert(kFast % kLook == 0, "what is published is the end of a look");
 constexpr auto kShort = std::chrono::milliseconds(20);    // between two looks at stop_
 constexpr auto kRepeat = std::chrono::milliseconds(100);  // an unanswered tick is sent again
 constexpr auto kLostCommand = std::chrono::seconds(2);    // announced, and has not come
@@ -233,13 +231,10 @@ void SimRobotNode::PublishTick() {
 }
 
 void SimRobotNode::AdvanceOneTick() {
-  for (long done = 0; done < kSensorTick; done += kFast) {
+  for (long done = 0; done < kSensorTick; done += kJointTick) {
     if (done > 0) publisher_.PublishFast(world_, world_.Sense());
     if (done == 0 || !params_.lockstep) Listen();
-    for (long looked = 0; looked < kFast; looked += kLook) {
-      world_.Advance(kLook);
-      truth_.Look(world_.simulator());
-    }
+    hires::evaluation::PlayJointTick(&world_, &truth_);
   }
   simulated_ = 0.001 * static_cast<double>(world_.milliseconds());
 }

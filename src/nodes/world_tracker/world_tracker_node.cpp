@@ -1,15 +1,10 @@
 #include "nodes/world_tracker/world_tracker_node.h"
 
-#include <algorithm>
-
-#include "hires/actions/catalogue.h"
-#include "hires/base/action.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 #include "hires/ros/topic_names.h"
 #include "hires/skills/action_loader.h"
-#include "hires/translation/task_places.h"
 
 namespace hires_ros {
 namespace {
@@ -83,7 +78,7 @@ void WorldTrackerNode::SubscribeTo(ros::NodeHandle* nh, const std::string& topic
 }
 
 void WorldTrackerNode::OnGoal(const hires::ExecuteActionActionGoal& msg) {
-  running_[msg.goal_id.id] = hires::base::CanonicalName(msg.goal.action.name);
+  running_[msg.goal_id.id] = msg.goal.action.name;
   TellActions();
 }
 
@@ -93,10 +88,9 @@ void WorldTrackerNode::OnResult(const hires::ExecuteActionActionResult& msg) {
 }
 
 void WorldTrackerNode::TellActions() {
-  const bool is_busy = std::any_of(running_.begin(), running_.end(), [this](const auto& running) {
-    return hires::actions::MayUseHead(actions_->catalogue(), running.second);
-  });
-  tracker_.sweep().SetBusy(is_busy, tracker_.time());
+  std::vector<std::string> names;
+  for (const auto& [goal, name] : running_) names.push_back(name);
+  tracker_.OnActions(actions_->catalogue(), names);
 }
 
 // What is made of it ---------------------------------------------------------------------------
@@ -117,28 +111,15 @@ hires::control::WorldTracker::Hooks WorldTrackerNode::TrackerHooks() {
           }};
 }
 
-/// What others say of objects, and what tasks are about.
 void WorldTrackerNode::ReadView() {
   writer_.view().Read([this](const knowledge::FluentView& view) {
-    const translation::TranslatorContext context = writer_.ContextNow(view);
-    std::vector<sensing::StatedObject> stated;
-    for (const auto& object : translation::StatedObjects(context, view)) {
-      stated.push_back({object.name, object.model, object.link, object.X_LO});
-    }
-    for (const std::string& why : sensors_.objects()->OnStated(stated)) {
-      sensors_.Warn(kBlackboard, why);
-    }
-    tracker_.sweep().SetPlaces(translation::PlacesOfTasks(context, view), context.areas);
+    for (const std::string& why : tracker_.OnView(context_, view)) sensors_.Warn(kBlackboard, why);
   });
 }
 
 void WorldTrackerNode::PublishKnown(const sensing::RobotEstimate& now,
                                     const std::vector<robot::SeenObject>& known) {
-  hires::world::WorldState state;
-  for (const robot::SeenObject& object : known) {
-    state.objects.push_back({object.name, object.model, object.X_MO, {}, object.attached_to});
-  }
-  hires::WorldState msg = ToMsg(state);
+  hires::WorldState msg = ToMsg(hires::control::WorldOf(known));
   msg.header.stamp.fromSec(now.time);
   msg.header.frame_id = params_.files.names.map_frame;
   known_.publish(msg);
