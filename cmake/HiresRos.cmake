@@ -52,9 +52,11 @@ function(hires_node name)
   install(TARGETS ${target} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 endfunction()
 
-# hires_rostest(<file.test> [TIMEOUT seconds] [BESIDE_OTHERS] [LONG]): a rostest that ctest runs and a
+# hires_rostest(<file.test> [TIMEOUT seconds] [BESIDE_OTHERS] [WAITS] [LONG]): a rostest that ctest runs and a
 # user can run alone. Nothing else runs meanwhile, as each brings masters and worker processes of its
 # own; BESIDE_OTHERS: it judges no times and takes no fixed ports, so that other tests may run too.
+# WAITS: it takes half a processor at most, for it waits for time-outs and for what a robot does at
+# the pace of time.
 # LONG: only with HIRES_LONG_TESTS, as `scripts/test --long` sets it.
 # Not in ${CATKIN_ENV}: that is a snapshot taken while configuring, and in a fresh folder it misses
 # the Python messages built later.
@@ -62,7 +64,7 @@ function(hires_rostest file)
   if(NOT HIRES_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ROSTEST "BESIDE_OTHERS;LONG" "TIMEOUT" "ARGS" ${ARGN})
+  cmake_parse_arguments(ROSTEST "BESIDE_OTHERS;WAITS;LONG" "TIMEOUT" "ARGS" ${ARGN})
   if(ROSTEST_LONG AND NOT HIRES_LONG_TESTS)
     return()
   endif()
@@ -80,8 +82,12 @@ function(hires_rostest file)
   if(ROSTEST_BESIDE_OTHERS)
     set(alone OFF)
   endif()
+  set(processors 2)  # halves
+  if(ROSTEST_WAITS)
+    set(processors 1)
+  endif()
   set_tests_properties(ros.${name} PROPERTIES
-    TIMEOUT ${ROSTEST_TIMEOUT} RUN_SERIAL ${alone}
+    TIMEOUT ${ROSTEST_TIMEOUT} RUN_SERIAL ${alone} PROCESSORS ${processors}
     ENVIRONMENT "ROS_HOSTNAME=localhost;ROS_IP=")
 endfunction()
 

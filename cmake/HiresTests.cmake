@@ -2,6 +2,9 @@
 # the entry runs the suites that stand in the file. A layer is linked once, and `ctest -R`, time-outs
 # and reports are still per file.
 
+# ctest counts half processors (scripts/common.sh, RunTests): a test takes two of them, or one if it
+# waits more than it computes.
+
 # hires_test(<layer> <file without _test.cpp> [LINK more libraries ...] [TIMEOUT seconds] [BUSY])
 # BUSY: the test's own code has so much to do that it is optimised, and compiled by itself. Call it in test/<layer>/CMakeLists.txt; the program links its layer and test/support. The target
 # <layer>_<name>_test builds the program that the file is part of.
@@ -29,7 +32,7 @@ function(hires_test layer name)
   if(HIRES_SANITIZE)  # up to ten times slower, and nothing to do with hanging
     math(EXPR TEST_TIMEOUT "10 * ${TEST_TIMEOUT}")
   endif()
-  set_tests_properties(${layer}.${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT}
+  set_tests_properties(${layer}.${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT} PROCESSORS 2
     FAIL_REGULAR_EXPRESSION "Running 0 tests from 0 test suites")
 endfunction()
 

@@ -76,10 +76,11 @@ Compile() {
   cmake --build "$folder" --parallel "${HIRES_JOBS:-$(nproc)}" "$@"
 }
 
-# RunTests folder [ctest arguments]: the verdict is ctest's, and its summary comes last.
+# RunTests folder [ctest arguments]: the verdict is ctest's, and its summary comes last. Tests that wait
+# more than they compute take half a processor, so halves are counted.
 RunTests() {
   local folder=$1
   shift
   (cd "$folder" && ctest --output-on-failure --no-tests=error \
-    --parallel "${HIRES_JOBS:-$(nproc)}" "$@")
+    --parallel "$((2 * ${HIRES_JOBS:-$(nproc)}))" "$@")
 }

@@ -14,8 +14,6 @@ from test_run import run_test  # noqa: E402
 
 
 class DoctorPortsTest(unittest.TestCase):
-    """It compares the physics with closed forms each time: so all are asked at once."""
-
     @classmethod
     def setUpClass(cls):
         cls.processes = Processes()
@@ -26,11 +24,12 @@ class DoctorPortsTest(unittest.TestCase):
         uri = wait_until(lambda: cls.main.node_uri('/relay_test_peer'), 'the node')
         cls.port = int(re.search(r':(\d+)/', uri).group(1))
         cls.beside_a_node = cls.ask(cls.main)
-        cls.nowhere = cls.ask(alone, ROS_HOSTNAME='no-such-host.invalid')
+        cls.nowhere = cls.ask(alone, '--no-physics',
+                              ROS_HOSTNAME='no-such-host.invalid')
 
     @classmethod
-    def ask(cls, master, **environment):
-        return cls.processes.start([executable('hires'), 'doctor'], master, **environment)
+    def ask(cls, master, *options, **environment):
+        return cls.processes.start([executable('hires'), 'doctor', *options], master, **environment)
 
     def test_master_and_open_port_of_a_node_are_named(self):
         code, output = self.beside_a_node.wait(2 * LIMIT), self.beside_a_node.output()
@@ -42,6 +41,7 @@ class DoctorPortsTest(unittest.TestCase):
             self.port, self.node.pid), output)
         self.assertIn('sudo nft', output)
         self.assertNotIn('port %d: rosmaster' % self.main.port, output)
+        self.assertIn('closed form', output)
         self.assertIn('ok      programs found: rosmaster', output)
 
     def test_a_name_that_leads_nowhere_fails(self):
@@ -49,6 +49,7 @@ class DoctorPortsTest(unittest.TestCase):
         self.assertEqual(code, 1, output)
         self.assertIn("FAILED  ROS_HOSTNAME is 'no-such-host.invalid'", output)
         self.assertIn('warn    ROS_HOSTNAME ', output)
+        self.assertNotIn('closed form', output)
 
 
 if __name__ == '__main__':

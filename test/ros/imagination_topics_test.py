@@ -173,7 +173,7 @@ class ImaginationTopicsTest(unittest.TestCase):
         echo = self.system.run(['rostopic', 'echo', '-n', '1', '/worker_1/markers'])
         wait_until(lambda: '/worker_1/markers' in dict(self.system.main._call(
             'getSystemState')[1]), 'rostopic to subscribe')
-        question = self.system.ask(rollouts=200)
+        question = self.system.ask(rollouts=60)
         self.assertEqual(echo.wait(), 0, echo.output())
         self.assertIn('ns: "worker_1', echo.output())
         self.assertEqual(question.answer().code, 0)

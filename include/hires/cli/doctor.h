@@ -27,6 +27,7 @@ using ExamineRobot = std::function<int(const RobotDoctorOptions&)>;
 /// What was typed behind `hires doctor`.
 struct DoctorOptions {
   bool is_robot{false};
+  bool is_without_physics{false};  ///< what the machine has is looked at alone
   RobotDoctorOptions robot;
   CLI::App* verb{nullptr};
 };
