@@ -147,18 +147,17 @@ class Play {
   }
 
   Tracker::Hooks TrackerHooks() {
-    return {[this](double stamp, world::WorldState known) {
-              Tell(observer_.known, stamp, known);
-              middle_layer_.OnKnownObjects(stamp, std::move(known));
-            },
-            [this](const robot::JointTrajectory& turn) {
-              robot::Command command;
-              command.trajectories["head"] = turn;
-              Send(command);
-            },
-            [this](double time) {
-              lines_.blackboard.Send([this, time] { OnObservedUntil(time); });
-            }};
+    return {
+        [this](double stamp, world::WorldState known) {
+          Tell(observer_.known, stamp, known);
+          middle_layer_.OnKnownObjects(stamp, std::move(known));
+        },
+        [this](const robot::JointTrajectory& turn) {
+          robot::Command command;
+          command.trajectories["head"] = turn;
+          Send(command);
+        },
+        [this](double time) { lines_.blackboard.Send([this, time] { OnObservedUntil(time); }); }};
   }
 
   void Hear(const SensorNews& news) {

@@ -13,7 +13,7 @@ namespace {
 using base::Between;
 using base::ParamReader;
 
-constexpr double kStillHead = 0.02;  // [rad/s]
+constexpr double kStillHead = 0.02;                                                 // [rad/s]
 constexpr long kLook = static_cast<long>(1000.0 * world::kFallLookInterval + 0.5);  // [ms]
 static_assert(kJointTick % kLook == 0, "what sensors say is the end of a look");
 enum SensorStreams : std::uint64_t {

@@ -32,9 +32,11 @@ def names(call):
 
 
 class LoopCase(unittest.TestCase):
+    SETTINGS = {}  # of the ClosedLoop
+
     @classmethod
     def setUpClass(cls):
-        cls.loop = ClosedLoop()
+        cls.loop = ClosedLoop(**cls.SETTINGS)
         cls.addClassCleanup(cls.loop.destroy)
         cls.loop.connect(cls.__name__.lower() + '_driver')
         cls.codes = cls.loop.msg.AchieveResult
