@@ -35,7 +35,7 @@ base::FailureCode CodeAt(const base::ParamReader& in, const std::string& word) {
 double Prices::Highest() const {
   double highest = 0.0;
   for (const auto& [code, price] : of) highest = std::max(highest, price);
-  return time_limit + highest;
+  return CostOfTime(time_limit, *this) + highest;
 }
 
 bool EndsRollouts(base::FailureCode code) {
@@ -45,7 +45,10 @@ bool EndsRollouts(base::FailureCode code) {
 
 Prices ReadPrices(base::ParamReader in) {
   Prices prices;
+  prices.late = in.Get("late", base::Between(0.0, kHighestPrice));
+  prices.not_done = in.Get("not_done", base::Between(0.0, kHighestPrice));
   for (const std::string& word : in.Keys()) {
+    if (word == "late" || word == "not_done") continue;
     prices.of[CodeAt(in, word)] = in.Get(word, base::Between(0.0, kHighestPrice));
   }
   for (const base::FailureInfo& info : base::AllFailures()) {
@@ -58,14 +61,28 @@ Prices ReadPrices(base::ParamReader in) {
   return prices;
 }
 
-double CostOf(const RolloutResult& result, const Prices& prices) {
+Prices Scaled(Prices prices, double factor) {
+  HIRES_CHECK(factor >= 0.0, "nothing costs less than nothing");
+  for (auto& [code, price] : prices.of) price *= factor;
+  prices.late *= factor;
+  prices.not_done *= factor;
+  return prices;
+}
+
+double CostOfTime(double duration, const Prices& prices) {
+  const double time = std::min(duration, prices.time_limit);
+  return time + prices.late * std::max(0.0, time - prices.deadline);
+}
+
+double PriceOf(base::FailureCode code, const Prices& prices) {
   HIRES_CHECK(!prices.empty(), "nothing is priced");
-  const double time = std::min(result.duration, prices.time_limit);
-  const base::FailureCode code = FailureOf(result).code;
-  if (code == base::FailureCode::kNone) return time;
+  if (code == base::FailureCode::kNone) return 0.0;
   const auto price = prices.of.find(code);
-  return time +
-         (price != prices.of.end() ? price->second : prices.of.at(base::FailureCode::kOther));
+  return price != prices.of.end() ? price->second : prices.of.at(base::FailureCode::kOther);
+}
+
+double CostOf(const RolloutResult& result, const Prices& prices) {
+  return CostOfTime(result.duration, prices) + PriceOf(FailureOf(result).code, prices);
 }
 
 std::optional<ExpectedCost> EstimateCost(const std::vector<RolloutResult>& results,

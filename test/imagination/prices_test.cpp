@@ -55,12 +55,35 @@ TEST(ReadPricesTest, RefusesWhatItDoesNotKnow) {
   EXPECT_THAT(WhyRefused("object_fell", ""),
               AllOf(HasSubstr("object_fell"), HasSubstr("no price")));
   EXPECT_THAT(WhyRefused("object_fell", "object_fell: -1.0"), HasSubstr("object_fell is '-1.0'"));
+  EXPECT_THAT(WhyRefused("late", ""), HasSubstr("late"));
+  EXPECT_THAT(WhyRefused("not_done", "not_done: -1.0"), HasSubstr("not_done is '-1.0'"));
   EXPECT_THAT(WhyRefused("object_fell", "object_fell: dear"), HasSubstr("object_fell"));
 }
 
 TEST(CostOfTest, IsTheDurationPlusThePriceOfTheFailure) {
   EXPECT_EQ(CostOf(Success(32.0), Simple()), 32.0);
   EXPECT_EQ(CostOf(Fall(20.0), Simple()), 120.0);
+}
+
+TEST(CostOfTest, EverySecondBeyondTheDeadlineCosts) {
+  Prices prices = Simple();
+  prices.late = 2.0;
+  EXPECT_EQ(CostOf(Success(32.0), prices), 32.0) << "there is no deadline";
+  prices.deadline = 30.0;
+  EXPECT_EQ(CostOf(Success(30.0), prices), 30.0);
+  EXPECT_EQ(CostOf(Success(32.0), prices), 36.0);
+  EXPECT_EQ(CostOf(Fall(35.0), prices), 145.0);
+  EXPECT_EQ(prices.Highest(), 300.0 + 2.0 * 270.0 + 100.0);
+}
+
+TEST(CostOfTest, ScaledPricesLeaveTheDurationAlone) {
+  Prices prices = Simple();
+  prices.late = 2.0;
+  prices.not_done = 300.0;
+  prices.deadline = 30.0;
+  const Prices doubled = Scaled(prices, 2.0);
+  EXPECT_EQ(CostOf(Fall(35.0), doubled), 35.0 + 20.0 + 200.0);
+  EXPECT_EQ(doubled.not_done, 600.0);
 }
 
 TEST(CostOfTest, WhatHasNoPriceCostsAsOther) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,9 +16,12 @@ namespace hires::imagination {
 struct Prices {
   std::map<base::FailureCode, double> of;  ///< [s] per code, >= 0; empty: nothing is priced
   double time_limit{300.0};  ///< [s] a rollout counts as no longer than this (RolloutParams)
+  double late{0.0};          ///< [s] for each second beyond the deadline, >= 0
+  double not_done{0.0};      ///< [s] of a task that nobody begins, >= 0; no rollout costs that
+  double deadline{std::numeric_limits<double>::infinity()};  ///< [s] after the action's begin
 
   bool empty() const { return of.empty(); }
-  double Highest() const;  ///< [s] what a rollout costs at most
+  double Highest() const;  ///< [s] what a rollout costs at most, however late it is
 };
 
 /// Whether an imagined rollout may end with this code: those of things, of the way and of
@@ -28,8 +32,17 @@ bool EndsRollouts(base::FailureCode code);
 /// no rollout, a code without its price, a price out of range.
 Prices ReadPrices(base::ParamReader in);
 
-/// [s] duration of the rollout plus the price of its failure. A code that has no price of its own
-/// (see EndsRollouts) costs as `other`.  @pre prices are not empty.
+/// The same where all failures, lateness included, cost `factor` times as much.  @pre factor >= 0.
+Prices Scaled(Prices prices, double factor);
+
+/// [s] an action that takes so long: its duration, at most the time limit, and what it is late.
+double CostOfTime(double duration, const Prices& prices);
+
+/// [s] of one failure. A code that has no price of its own (see EndsRollouts) costs as `other`;
+/// kNone costs nothing.  @pre prices are not empty.
+double PriceOf(base::FailureCode code, const Prices& prices);
+
+/// [s] CostOfTime plus the price of the rollout's failure.  @pre prices are not empty.
 double CostOf(const RolloutResult& result, const Prices& prices);
 
 /// What rollouts cost in the mean, as far as played ones tell [s].
