@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "evaluation/experiment_parallel.h"
 #include "evaluation/experiment_stage.h"
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/experiment.h"
+#include "hires/evaluation/experiment_parallel.h"
 #include "hires/imagination/uncertainty.h"
 #include "hires/simulation/fall_watch.h"
 #include "hires/simulation/robot_simulator.h"

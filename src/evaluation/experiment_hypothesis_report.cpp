@@ -105,6 +105,12 @@ std::vector<ordered_json> RowsOf(const std::vector<HypothesisRun>& runs) {
   return rows;
 }
 
+std::string HowPlayed(const HypothesisSetting& setting) {
+  if (setting.is_local) return fmt::format("truth {}, in virtual time", setting.truth);
+  return fmt::format("truth {}, pace {:g}, {} worker{}", setting.truth, setting.pace,
+                     setting.workers, setting.workers == 1 ? "" : "s");
+}
+
 }  // namespace
 
 HypothesisArm SumUpArm(const std::vector<HypothesisRun>& runs, bool imagines) {
@@ -154,9 +160,8 @@ HypothesisReport SumUpHypothesis(const HypothesisSetting& setting,
 
 std::string HypothesisText(const HypothesisReport& report) {
   const HypothesisSetting& setting = report.setting;
-  std::string text = fmt::format(
-      "hypothesis: {}, {} runs each, seed {}, pace {:g}, {} worker{}\n\n", setting.scenario,
-      setting.runs, setting.seed, setting.pace, setting.workers, setting.workers == 1 ? "" : "s");
+  std::string text = fmt::format("hypothesis: {}, {} runs each, seed {}, {}\n\n", setting.scenario,
+                                 setting.runs, setting.seed, HowPlayed(setting));
   text += FormatTable({{"imagination", "succeeded (95 %)", "falls", "duration", "steps", "repairs",
                         "imagining", "in time", "broke down"},
                        Row("with", report.with),
@@ -192,6 +197,8 @@ ordered_json ToJson(const HypothesisReport& report, const std::string& command) 
           {"pace", setting.pace},
           {"workers", setting.workers},
           {"files", setting.files},
+          {"local", setting.is_local},
+          {"truth", setting.truth},
           {"command", command},
           {"with_imagination", ArmToJson(report.with)},
           {"without_imagination", ArmToJson(report.without)},

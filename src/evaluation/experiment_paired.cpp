@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluation/experiment_kinds.h"
-#include "evaluation/experiment_parallel.h"
 #include "hires/base/text.h"
+#include "hires/evaluation/experiment_parallel.h"
 #include "hires/evaluation/statistics.h"
 #include "hires/imagination/evidence.h"
 

@@ -1,4 +1,4 @@
-#include "evaluation/experiment_parallel.h"
+#include "hires/evaluation/experiment_parallel.h"
 
 #include <algorithm>
 #include <atomic>

@@ -14,12 +14,12 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-ordered_json ToJson(const std::optional<imagination::ExpectedCost>& cost) {
+ordered_json CostToJson(const std::optional<imagination::ExpectedCost>& cost) {
   if (!cost) return {};
   return {{"mean", cost->mean}, {"lower", cost->lower}, {"upper", cost->upper}};
 }
 
-ordered_json ToJson(const imagination::Prediction& prediction) {
+ordered_json RankedToJson(const imagination::Prediction& prediction) {
   const imagination::Evidence& e = prediction.evidence;
   return {{"action", prediction.action.name},
           {"arguments", prediction.action.arguments},
@@ -29,7 +29,7 @@ ordered_json ToJson(const imagination::Prediction& prediction) {
             {"lower", e.success.lower},
             {"upper", e.success.upper},
             {"interval", imagination::ToString(e.success.kind)}}},
-          {"expected_cost", ToJson(e.cost)},
+          {"expected_cost", CostToJson(e.cost)},
           {"fall_share", e.fall_share},
           {"counts",
            {{"notopple", e.counts.notopple},
@@ -105,7 +105,7 @@ std::string OutcomeName(const imagination::Report& report) {
 nlohmann::ordered_json ToJson(const imagination::Report& report) {
   ordered_json ranking = ordered_json::array();
   for (const imagination::Prediction& prediction : report.ranking) {
-    ranking.push_back(ToJson(prediction));
+    ranking.push_back(RankedToJson(prediction));
   }
   return {
       {"outcome", OutcomeName(report)},

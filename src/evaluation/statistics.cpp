@@ -51,6 +51,31 @@ double WhereScoreIs(const PairedCounts& counts, double bound, double lower, doub
   return 0.5 * (lower + upper);
 }
 
+/// Of all signs, the share whose sum is at least as far from 0 as `sum`.
+double ShareOfAllFlips(const std::vector<double>& sizes, double bound) {
+  const std::size_t all = std::size_t{1} << sizes.size();
+  std::size_t as_far = 0;
+  for (std::size_t signs = 0; signs < all; ++signs) {
+    double flipped = 0.0;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      flipped += (signs >> i & 1U) != 0 ? sizes[i] : -sizes[i];
+    }
+    as_far += std::abs(flipped) >= bound ? 1 : 0;
+  }
+  return static_cast<double>(as_far) / static_cast<double>(all);
+}
+
+double ShareOfDrawnFlips(const std::vector<double>& sizes, double bound, base::Rng* rng) {
+  constexpr int kDraws = 20000;
+  int as_far = 1;  // what was seen is one of them
+  for (int draw = 0; draw < kDraws; ++draw) {
+    double flipped = 0.0;
+    for (const double size : sizes) flipped += rng->Bernoulli(0.5) ? size : -size;
+    as_far += std::abs(flipped) >= bound ? 1 : 0;
+  }
+  return static_cast<double>(as_far) / (kDraws + 1);
+}
+
 }  // namespace
 
 double Mean(const std::vector<double>& values) {
@@ -117,6 +142,22 @@ double McNemarPValue(const PairedCounts& counts) {
   const boost::math::binomial even(discordant, 0.5);
   const double tail = boost::math::cdf(even, std::min(counts.only_first, counts.only_second));
   return std::min(1.0, 2.0 * tail);
+}
+
+double SignFlipPValue(const std::vector<double>& differences, base::Rng rng) {
+  constexpr std::size_t kMostForAll = 16;
+  std::vector<double> sizes;
+  double sum = 0.0, size = 0.0;
+  for (const double difference : differences) {
+    if (difference == 0.0) continue;
+    sizes.push_back(difference);
+    sum += difference;
+    size += std::abs(difference);
+  }
+  if (sizes.empty()) return 1.0;
+  const double bound = std::abs(sum) - 1e-12 * size;  // sums of the same numbers round differently
+  return sizes.size() <= kMostForAll ? ShareOfAllFlips(sizes, bound)
+                                     : ShareOfDrawnFlips(sizes, bound, &rng);
 }
 
 }  // namespace hires::evaluation

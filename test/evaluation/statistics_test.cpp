@@ -236,5 +236,25 @@ TEST(PairedScoreIntervalTest, MoreDiscordantPairsThanPairsAreRefused) {
   EXPECT_THROW(PairedScoreInterval({2, 2, 3}), std::logic_error);
 }
 
+TEST(SignFlipPValueTest, WorkedByHand) {
+  // Of the 8 signs of 1, 2, 3 only all plus and all minus are as far as 6; 0 says nothing.
+  EXPECT_DOUBLE_EQ(SignFlipPValue({1.0, 0.0, 2.0, 3.0}, base::Rng(1)), 0.25);
+  // Sums of -1, 2, 3: 4 or farther are 6, 4, -4, -6.
+  EXPECT_DOUBLE_EQ(SignFlipPValue({-1.0, 2.0, 3.0}, base::Rng(1)), 0.5);
+  EXPECT_EQ(SignFlipPValue({}, base::Rng(1)), 1.0);
+  EXPECT_EQ(SignFlipPValue({0.0, 0.0}, base::Rng(1)), 1.0);
+}
+
+TEST(SignFlipPValueTest, DrawnSignsOfEqualSizesGiveTheSignTest) {
+  // 14 of 20 of one sign: binomial, doubled tail, 0.1153.
+  std::vector<double> differences(14, 1.0);
+  differences.resize(20, -1.0);
+  const double exact = McNemarPValue({14, 6, 20});
+  EXPECT_NEAR(exact, 0.11532, 1e-5);
+  // Four deviations of a share of 20,000 draws.
+  EXPECT_NEAR(SignFlipPValue(differences, base::Rng(1)), exact,
+              4.0 * std::sqrt(0.1153 * 0.8847 / 2e4));
+}
+
 }  // namespace
 }  // namespace hires::evaluation::statistics_test

@@ -17,7 +17,9 @@ struct HypothesisSetting {
   std::uint64_t seed{1};
   double pace{1.0};
   int workers{1};
-  std::string files;  ///< hash of configuration, worlds and robots: what the runs rest on
+  std::string files;          ///< hash of configuration, worlds and robots: what the runs rest on
+  bool is_local{false};       ///< played in one process, in virtual time: no pace, virtual workers
+  std::string truth{"same"};  ///< what robot and world are really like
 };
 
 /// One arm of the experiment. Means are over runs that came to an end (`complete` of `runs`),

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "hires/base/rng.h"
+
 namespace hires::evaluation {
 
 double Mean(const std::vector<double>& values);       ///< 0 for no values
@@ -49,5 +51,13 @@ Interval PairedScoreInterval(const PairedCounts& counts);
 
 /// P-value of McNemar's exact test: two-sided, doubled tail, at most 1; 1 without discordant pairs.
 double McNemarPValue(const PairedCounts& counts);
+
+/// P-value of the sign-flip test that the mean of paired differences is 0, two-sided: it asks how
+/// often a mean at least as far from 0 comes when each difference keeps its size and takes either
+/// sign [Fisher 1935, The Design of Experiments, section 21]. Needs no distribution, only that
+/// differences are symmetric about 0 where there is no effect. All signs are tried for at most 16
+/// differences that are not 0; else 20,000 draws, themselves counted [Phipson, Smyth 2010, Stat.
+/// Appl. Genet. Mol. Biol. 9:39], so that the test keeps its level. 1 without differences.
+double SignFlipPValue(const std::vector<double>& differences, base::Rng rng);
 
 }  // namespace hires::evaluation
