@@ -205,6 +205,18 @@ void RefuseUnknownVerb(const CLI::App& app, const std::vector<std::string>& argu
   throw base::ConfigError(base::UnknownName("verb", arguments[1], verbs));
 }
 
+int RunAnyExperiment(const ExperimentOptions& options, const Backends& backends) {
+  const auto cancelled = [] { return interrupted.load(); };
+  if (*options.decision.verb) {
+    return RunDecisionVerb(options.decision, backends.package_folder, cancelled);
+  }
+  if (*options.hypothesis.verb) {
+    return RunHypothesisVerb(options.hypothesis, backends.package_folder, backends.play_hypothesis,
+                             cancelled);
+  }
+  return RunExperimentVerb(options, cancelled);
+}
+
 }  // namespace
 
 int ExitCodeOf(const imagination::Report& report) {
@@ -274,13 +286,7 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
       return RunAchieveVerb(achieve_options, backends.package_folder, backends.achieve_remotely,
                             IsInterrupted, backends.record_loop);
     }
-    if (*experiment_options.hypothesis.verb) {
-      return RunHypothesisVerb(experiment_options.hypothesis, backends.package_folder,
-                               backends.play_hypothesis, [] { return interrupted.load(); });
-    }
-    if (*experiment_options.verb) {
-      return RunExperimentVerb(experiment_options, [] { return interrupted.load(); });
-    }
+    if (*experiment_options.verb) return RunAnyExperiment(experiment_options, backends);
     if (*plan_options.verb) {
       return RunPlanVerb(plan_options, [] { return interrupted.load(); });
     }

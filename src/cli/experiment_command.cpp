@@ -94,13 +94,14 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
   verb->add_flag("--quiet", options->quiet, "no progress bar");
   options->verb = verb;
   AddHypothesisVerb(verb, &options->hypothesis);
+  AddDecisionVerb(verb, &options->decision);
 }
 
 int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool()>& cancelled) {
   if (options.file.empty()) {
     throw base::ConfigError(
         "experiment: wanted a YAML file, such as config/experiments/paired.yaml, or `hypothesis` "
-        "(see hires experiment hypothesis --help)");
+        "or `decision` (see hires experiment hypothesis --help)");
   }
   const evaluation::ExperimentConfig config =
       evaluation::ReadExperiment(options.file, OverridesOf(options));

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "cli/experiment_decision_command.h"
 #include "cli/experiment_hypothesis_command.h"
 
 namespace CLI {
@@ -20,9 +21,11 @@ struct ExperimentOptions {
   bool quiet{false};
   CLI::App* verb{nullptr};       ///< tells what was given
   HypothesisOptions hypothesis;  ///< of `hires experiment hypothesis`
+  DecisionOptions decision;      ///< of `hires experiment decision`
 };
 
-/// Adds the verb to the program, with `hypothesis` below it.  @pre `options` outlives `app`.
+/// Adds the verb to the program, with `hypothesis` and `decision` below it.  @pre `options`
+/// outlives `app`.
 void AddExperimentVerb(CLI::App* app, ExperimentOptions* options);
 
 /// Reads, plays, prints, writes.

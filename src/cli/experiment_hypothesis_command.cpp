@@ -7,14 +7,17 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "cli/experiment_command.h"
+#include "cli/hypothesis_local.h"
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/experiment_hypothesis_journal.h"
+#include "hires/evaluation/experiment_parallel.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
 
@@ -54,8 +57,16 @@ void CheckLimits(const evaluation::HypothesisGoal& goal, double pace, const std:
 
 evaluation::HypothesisSetting SettingOf(const HypothesisOptions& options,
                                         const std::string& package_folder) {
-  return {options.scenario, options.runs,    options.seed,
-          options.pace,     options.workers, HashOfFiles(package_folder)};
+  evaluation::HypothesisSetting setting;
+  setting.scenario = options.scenario;
+  setting.runs = options.runs;
+  setting.seed = options.seed;
+  setting.pace = options.is_local ? 0.0 : options.pace;
+  setting.workers = options.workers;
+  setting.files = HashOfFiles(package_folder);
+  setting.is_local = options.is_local;
+  setting.truth = options.truth;
+  return setting;
 }
 
 std::string Quoted(const std::string& word) {
@@ -66,11 +77,12 @@ std::string Quoted(const std::string& word) {
 }
 
 std::string CommandOf(const HypothesisOptions& options) {
-  return fmt::format(
-      "hires experiment hypothesis --scenario {} --runs {} --pace {:g} --seed {} "
-      "--workers {} --resume {}",
-      Quoted(options.scenario), options.runs, options.pace, options.seed, options.workers,
-      Quoted(JournalPath(options)));
+  const std::string how =
+      options.is_local ? fmt::format("--local --truth {}", Quoted(options.truth))
+                       : fmt::format("--pace {:g} --workers {}", options.pace, options.workers);
+  return fmt::format("hires experiment hypothesis --scenario {} --runs {} --seed {} {} --resume {}",
+                     Quoted(options.scenario), options.runs, options.seed, how,
+                     Quoted(JournalPath(options)));
 }
 
 std::string Arm(bool imagines) { return imagines ? "with" : "without"; }
@@ -121,23 +133,58 @@ std::string DoneLine(const evaluation::HypothesisRun& run, int num_runs) {
                      run.is_complete ? run.verdict : run.reason, run.duration, run.wall_seconds);
 }
 
+/// Takes in finished runs from several threads, one after the other.
+class Keeper {
+ public:
+  Keeper(std::size_t num_orders, const HypothesisOptions& options,
+         evaluation::HypothesisJournal* journal)
+      : num_orders_(num_orders), options_(options), journal_(*journal) {}
+
+  void Take(evaluation::HypothesisRun record) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    journal_.Append(std::move(record));
+    if (options_.quiet) return;
+    const double fraction = static_cast<double>(++num_done_) / static_cast<double>(num_orders_);
+    std::cerr << DoneLine(journal_.runs().back(), options_.runs) << '\n'
+              << ProgressText(fraction, SecondsSince(begin_)) << std::endl;
+  }
+
+ private:
+  const std::size_t num_orders_;
+  const HypothesisOptions& options_;
+  const Steady::time_point begin_{Steady::now()};
+  std::mutex mutex_;
+  evaluation::HypothesisJournal& journal_;  // guarded
+  std::size_t num_done_{0};                 // guarded
+};
+
+/// @return false when cancelled.
+bool PlayOne(const evaluation::HypothesisOrder& order, const evaluation::PlayHypothesis& play,
+             const std::function<bool()>& cancelled, Keeper* keeper) {
+  const auto begin = Steady::now();
+  std::optional<evaluation::HypothesisRun> record;
+  if (!cancelled()) record = play(order, cancelled);
+  if (record) keeper->Take(Stamped(*std::move(record), order, SecondsSince(begin)));
+  return record.has_value();
+}
+
+/// A whole system each has the computer to itself; runs in this process share its cores.
 /// @return false when cancelled.
 bool PlayAll(const std::vector<evaluation::HypothesisOrder>& orders,
              const HypothesisOptions& options, const evaluation::PlayHypothesis& play,
              const std::function<bool()>& cancelled, evaluation::HypothesisJournal* journal) {
-  const auto begin = Steady::now();
-  for (std::size_t i = 0; i < orders.size(); ++i) {
-    const auto run_begin = Steady::now();
-    std::optional<evaluation::HypothesisRun> record;
-    if (!cancelled()) record = play(orders[i], cancelled);
-    if (!record) return false;
-    journal->Append(Stamped(*std::move(record), orders[i], SecondsSince(run_begin)));
-    if (options.quiet) continue;
-    const double fraction = static_cast<double>(i + 1) / static_cast<double>(orders.size());
-    std::cerr << DoneLine(journal->runs().back(), options.runs) << '\n'
-              << ProgressText(fraction, SecondsSince(begin)) << std::endl;
+  Keeper keeper(orders.size(), options, journal);
+  if (!options.is_local) {
+    return std::all_of(orders.begin(), orders.end(),
+                       [&](const auto& order) { return PlayOne(order, play, cancelled, &keeper); });
   }
-  return true;
+  evaluation::Crew crew;
+  crew.threads = options.threads;
+  crew.cancelled = cancelled;
+  return evaluation::DoInParallel(
+      static_cast<int>(orders.size()), 0.0, crew, [&](int task, const evaluation::Advance&) {
+        PlayOne(orders[static_cast<std::size_t>(task)], play, cancelled, &keeper);
+      });
 }
 
 void Write(const evaluation::HypothesisReport& report, const HypothesisOptions& options) {
@@ -173,6 +220,15 @@ void AddHypothesisVerb(CLI::App* experiment, HypothesisOptions* options) {
   verb->add_option("--resume", options->journal,
                    "keep finished runs in this file, and go on with those that are there; default: "
                    "beside --json, else hypothesis_<scenario>.journal here");
+  verb->add_flag("--local", options->is_local,
+                 "play robot, world and all that plans, imagines and acts in this program, in "
+                 "virtual time; needs no node, and the same words give the same bits");
+  verb->add_option("--truth", options->truth,
+                   "with --local: what robot and world are really like, a name of config/truths or "
+                   "a file; default: same, the model of imagination itself");
+  verb->add_option("--threads", options->threads,
+                   "with --local: that play runs; changes no number; default: 2")
+      ->check(CLI::Range(1, 256));
   verb->add_option("--csv", options->csv, "write one line per run to this file");
   verb->add_option("--json", options->json, "write everything to this file");
   verb->add_option("--logs", options->logs, "keep what the system of each run said in this folder");
@@ -201,16 +257,28 @@ int RunHypothesisVerb(const HypothesisOptions& options, const std::string& packa
                       const std::function<bool()>& cancelled) {
   const std::string path = package_folder + "/config/hypothesis.yaml";
   const evaluation::HypothesisGoal goal = evaluation::ReadHypothesisGoal(path, options.scenario);
-  CheckLimits(goal, options.pace, path);
-  if (!play) {
+  if (!options.is_local) CheckLimits(goal, options.pace, path);
+  if (!options.is_local && !play) {
     throw base::ConfigError(
-        "this build has no ROS nodes to start; build with ROS, source its setup.bash and repeat");
+        "this build has no ROS nodes to start; build with ROS, source its setup.bash and repeat, "
+        "or "
+        "play here: --local");
   }
   RequireFolders(options);
+  std::optional<loop::LoopSetup> setup;
+  if (options.is_local) {
+    setup.emplace(package_folder + "/config/loop.yaml");
+    setup->ReadTruth(options.truth);  // an unknown one is refused before anything is played
+  }
   const evaluation::HypothesisSetting setting = SettingOf(options, package_folder);
   evaluation::HypothesisJournal journal(JournalPath(options), setting);
   const auto orders = OrdersFor(options, goal, journal);
-  if (!PlayAll(orders, options, play, cancelled, &journal)) return Cancelled(journal, options);
+  const evaluation::PlayHypothesis play_locally = [&](const auto& order, const auto& cancel) {
+    return PlayHypothesisLocally(*setup, package_folder, options.truth, order, cancel);
+  };
+  if (!PlayAll(orders, options, setup ? play_locally : play, cancelled, &journal)) {
+    return Cancelled(journal, options);
+  }
   const evaluation::HypothesisReport report = evaluation::SumUpHypothesis(setting, journal.runs());
   Write(report, options);
   return report.with.complete + report.without.complete > 0 ? kExitRecommended : kExitAllFailed;

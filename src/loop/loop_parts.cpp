@@ -91,4 +91,16 @@ LoopSetup::LoopSetup(const std::string& config) : parts_(std::make_unique<const 
 
 LoopSetup::~LoopSetup() = default;
 
+const imagination::ImaginationSetup& LoopSetup::world() const { return parts_->world; }
+
+const imagination::ClientConfig& LoopSetup::imagination() const {
+  return parts_->config.imagination;
+}
+
+const planning::OperatorData& LoopSetup::operators() const { return parts_->operators; }
+
+evaluation::Truth LoopSetup::ReadTruth(const std::string& name) const {
+  return evaluation::ReadTruth(evaluation::TruthPath(name, parts_->config.truths));
+}
+
 }  // namespace hires::loop

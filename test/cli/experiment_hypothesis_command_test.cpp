@@ -148,6 +148,19 @@ TEST_F(HypothesisCommandTest, RefusesBadArgumentsBeforeAnythingIsPlayed) {
   EXPECT_THAT(player.orders, SizeIs(0));
 }
 
+TEST_F(HypothesisCommandTest, PlaysInThisProcessWithoutAnyNode) {
+  const Ended ended = RunWith({"--scenario", "topple", "--runs", "1", "--local", "--resume",
+                               File("j"), "--json", File("report.json")});
+  ASSERT_EQ(ended.code, kExitRecommended) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("truth same, in virtual time"));
+  const auto runs = Report()["list"];
+  ASSERT_THAT(runs, SizeIs(2));
+  EXPECT_EQ(runs[0]["complete"], true);
+  EXPECT_GT(runs[0]["imaginations"], 0);
+  EXPECT_EQ(runs[1]["imaginations"], 0);
+  EXPECT_THAT(Report()["command"], HasSubstr("--local --truth same"));
+}
+
 TEST_F(HypothesisCommandTest, SaysThatABuildWithoutRosCannotPlayIt) {
   const Ended ended = RunWith(Words(), {});
   EXPECT_EQ(ended.code, kExitBadInput);

@@ -7,6 +7,10 @@
 
 #include "hires/evaluation/achieve.h"
 #include "hires/evaluation/experiment_hypothesis.h"
+#include "hires/evaluation/truth.h"
+#include "hires/imagination/client_config.h"
+#include "hires/imagination/imagination_setup.h"
+#include "hires/planning/operator_data.h"
 #include "hires/loop/loop_observer.h"
 
 namespace hires::loop {
@@ -19,6 +23,13 @@ class LoopSetup {
   ~LoopSetup();
   LoopSetup(const LoopSetup&) = delete;
   LoopSetup& operator=(const LoopSetup&) = delete;
+
+  /// The world that is imagined in, as the robot and its planner know it.
+  const imagination::ImaginationSetup& world() const;
+  const imagination::ClientConfig& imagination() const;  ///< what a request does not say itself
+  const planning::OperatorData& operators() const;
+  /// @param name  of config/truths, or a file; empty: same.  @throws base::ConfigError
+  evaluation::Truth ReadTruth(const std::string& name) const;
 
   struct Parts;
   const Parts& parts() const { return *parts_; }

@@ -1,0 +1,91 @@
+#include "hires/loop/action_loop.h"
+
+#include <limits>
+
+#include "hires/base/process.h"
+#include "loop/loop_parts.h"
+#include "loop/middle_layer.h"
+#include "loop/robot_side.h"
+
+namespace hires::loop {
+namespace {
+
+constexpr double kStart = 1.0;      // [s] of the clock
+constexpr double kFirstLook = 0.5;  // [s] until all sensors have spoken
+constexpr double kAftermath = 2.0;  // [s] in which what still shakes falls or not, as in rollouts
+constexpr int kActivity = 1;
+
+/// Robot and middle layer, wired.
+class Play {
+ public:
+  Play(const LoopSetup::Parts& parts, const ActionOrder& order)
+      : order_(order),
+        clock_(kStart),
+        robot_(parts, order.start, order.truth, order.seed, &clock_,
+               {[this](const SensorNews& news) { middle_layer_.Hear(news, robot_.laser()); },
+                [this](double stamp) { middle_layer_.Look(stamp); }}),
+        middle_layer_(parts.world, {"map", "odom", parts.world.scene->robot.profile.base_link},
+                      parts.config.runner, parts.config.scan,
+                      {[this](const robot::Command& command) { robot_.Command(command); },
+                       [this](int, control::ActionEnd end, const base::Failure& failure) {
+                         OnEnded(end, failure);
+                       }}) {
+    middle_layer_.OnKnownObjects(kStart, order.start.world);
+  }
+
+  std::optional<ActionRun> Run(const std::function<bool()>& cancelled) {
+    robot_.Begin();
+    clock_.At(kStart + kFirstLook, [this] {
+      begun_ = clock_.now();
+      middle_layer_.Start(kActivity, order_.action, order_.time_limit);
+    });
+    while (clock_.Step() && clock_.now() < end_) {
+      if (cancelled && cancelled()) return std::nullopt;
+    }
+    run_.truth = {robot_.truth().objects(), robot_.truth().contact()};
+    run_.virtual_seconds = clock_.now() - kStart;
+    return run_;
+  }
+
+ private:
+  void OnEnded(control::ActionEnd end, const base::Failure& failure) {
+    run_.failure = end == control::ActionEnd::kSucceeded ? base::Failure() : failure;
+    run_.duration = clock_.now() - begun_;
+    end_ = clock_.now() + kAftermath;
+  }
+
+  const ActionOrder& order_;
+  VirtualClock clock_;
+  RobotSide robot_;
+  MiddleLayer middle_layer_;
+  double begun_{0.0};  // [s]
+  double end_{std::numeric_limits<double>::infinity()};
+  ActionRun run_;
+};
+
+}  // namespace
+
+std::optional<ActionRun> PlayAction(const LoopSetup& setup, const ActionOrder& order,
+                                    const std::function<bool()>& cancelled) {
+  return Play(setup.parts(), order).Run(cancelled);
+}
+
+std::optional<evaluation::TruthPlay> PlayDrive(const LoopSetup& setup,
+                                               const evaluation::Truth& truth,
+                                               const evaluation::DecisionTask& task,
+                                               const std::string& motion_set, std::uint64_t seed,
+                                               const std::function<bool()>& cancelled) {
+  const double begin = base::SteadyNow();
+  const imagination::ImaginationSetup& world = setup.world();
+  const ActionOrder order{evaluation::StartOf(world, task), evaluation::ActionOf(task, motion_set),
+                          truth, seed, world.rollout.time_limit};
+  const auto run = PlayAction(setup, order, cancelled);
+  if (!run) return std::nullopt;
+  evaluation::TruthPlay play = evaluation::JudgeDrive(run->failure, run->duration, run->truth,
+                                                      task.load, order.start.world, world.standing);
+  play.virtual_seconds = run->virtual_seconds;
+  play.wall_seconds = base::SteadyNow() - begin;
+  return play;
+}
+
+}  // namespace hires::loop
