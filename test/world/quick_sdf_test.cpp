@@ -80,7 +80,7 @@ TEST(QuickSdfTest, EveryModelIsReadQuicklyAndTheSame) {
     ExpectBothWaysAgree(path);
     ++num_models;
   }
-  EXPECT_EQ(num_models, 25);
+  EXPECT_EQ(num_models, 28);
 }
 
 class QuickSdfFileTest : public testing::Test {

@@ -381,7 +381,7 @@ Eigen::Matrix3d InertiaByRule(const geometry::Shape& shape, double mass) {
 
 TEST(ObjectsTest, EveryInertiaFollowsTheRuleForItsShape) {
   const std::vector<std::string> folders = ObjectFolders();
-  EXPECT_EQ(folders.size(), 18u);
+  EXPECT_EQ(folders.size(), 21u);
   for (const std::string& folder : folders) {
     const ObjectModel object = Find(folder);
     ASSERT_EQ(object.collisions.size(), 1u) << folder;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "evaluation/experiment_parallel.h"
 #include "hires/base/error.h"
+#include "hires/evaluation/experiment_parallel.h"
 
 namespace hires::evaluation {
 namespace {
