@@ -220,7 +220,9 @@ class MoveBaseModeTest(unittest.TestCase):
         goal.cancel()
         self.require(goal, self.codes.PREEMPTED)
         self.require_stand()
-        self.assertIn(self.base.goals[0].goal_id.id, [c.id for c in self.base.cancels])
+        taken_back = self.base.goals[0].goal_id.id
+        wait_until(lambda: taken_back in [c.id for c in self.base.cancels],
+                   'move_base to be told')
         self.system.await_values(FAST)
 
     def test_somebody_else_who_takes_move_base_moves_nothing(self):

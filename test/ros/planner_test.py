@@ -11,7 +11,7 @@ import yaml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
-from action_goal import ActionGoal  # noqa: E402
+from action_goal import ActionGoal, require_server  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
 
@@ -83,7 +83,7 @@ class PlannerTest(unittest.TestCase):
 
     @classmethod
     def require_server(cls):
-        assert cls.client.wait_for_server(cls.rospy.Duration(LIMIT)), cls.node.output()
+        require_server(cls.client, cls.node.output)
 
     def tearDown(self):
         """The node lives, and answers."""

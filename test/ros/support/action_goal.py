@@ -8,8 +8,37 @@ that is quick enough is never seen.
 """
 
 import threading
+import xmlrpc.client
 
-from ros_processes import LIMIT
+from ros_processes import LIMIT, wait_until
+
+
+def require_server(client, output):
+    """Waits until the server that runs now hears this client and is heard by it. rospy also counts its
+    connections to a server that was killed, until it writes to them; so the server is asked.
+    @param output  called for what to say if there is none."""
+    try:
+        wait_until(lambda: _is_served(client), 'the server of %s' % client.ns)
+    except AssertionError as error:
+        raise AssertionError('%s, which says: %s' % (error, output())) from error
+
+
+def _is_served(client):
+    import rosgraph
+    import rospy
+    heard = {sub.resolved_name for sub in (client.status_sub, client.result_sub, client.feedback_sub)}
+    told = {pub.resolved_name for pub in (client.pub_goal, client.pub_cancel)}
+    master = rosgraph.Master(rospy.get_name())
+    try:
+        publishers = dict(master.getSystemState()[0])
+        servers = publishers.get(client.result_sub.resolved_name, [])
+        connections = [connection for server in servers for connection in
+                       xmlrpc.client.ServerProxy(master.lookupNode(server)).getBusInfo('/test')[2]]
+    except (OSError, rosgraph.MasterError):
+        return False  # one that is gone
+    reached = {c[4] for c in connections if c[2] == 'o' and c[1] == rospy.get_name()}
+    listened = {c[4] for c in connections if c[2] == 'i' and c[1] == rospy.get_node_uri()}
+    return heard <= reached and told <= listened and client.pub_goal.get_num_connections() > 0
 
 
 class ActionGoal:

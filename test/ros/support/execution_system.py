@@ -12,9 +12,9 @@ import os
 
 import yaml
 
-from action_goal import Task
+from action_goal import Task, require_server
 from blackboard_access import BlackboardAccess
-from ros_processes import LIMIT, Processes, executable, wait_until
+from ros_processes import Processes, executable, wait_until
 
 SUPPORT = os.path.dirname(os.path.abspath(__file__))
 CONFIG = os.path.abspath(os.path.join(SUPPORT, '..', '..', '..', 'config'))
@@ -174,8 +174,7 @@ class ExecutionSystem(BlackboardAccess):
         self.require_server()
 
     def require_server(self):
-        assert self.client.wait_for_server(self.rospy.Duration(LIMIT)), (
-            self.nodes['monitor'].output())
+        require_server(self.client, lambda: self.nodes['monitor'].output())
 
     def achieve(self, task, imagination=''):
         return Task(self.client, self.msg.AchieveGoal(task=task, imagination=imagination))
