@@ -152,9 +152,10 @@ class ReplayEpisodeTest(unittest.TestCase):
 
     def record_what_is_played(self, name, end):
         recorder = Recorder(self.system, name)
-        # Kept alive, so that its end cannot overtake what it still has queued.
+        # Kept alive, so that its end cannot overtake what it still has queued, which may be all: at
+        # this rate a tenth of a second in which nobody listens is two seconds of the episode.
         player = self.system.run(['rosbag', 'play', '--quiet', '--wait-for-subscribers',
-                                  '--keep-alive', '-r', str(RATE), self.path])
+                                  '--keep-alive', '--queue=100000', '-r', str(RATE), self.path])
         with rosbag.Bag(self.path) as bag:
             last = [m.goal_id.id for _, m, _ in bag.read_messages('/execute_action/goal')][-1]
         wait_until(lambda: recorder.has_result_of(last), 'the last result to be on disk')
@@ -170,6 +171,7 @@ class ReplayEpisodeTest(unittest.TestCase):
         for a, b in zip(found, known):
             for key in ('action', 'arguments', 'begin', 'duration', 'happened'):
                 self.assertEqual(a[key], b[key])
+            self.assertIsNotNone(a['imagined'], a)
             self.assertEqual(a['imagined']['success'], b['imagined']['success'])
 
     def test_a_recorder_that_is_killed_leaves_a_bag_that_can_be_mended(self):
