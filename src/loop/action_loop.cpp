@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kStart = 1.0;      // [s] of the clock
 constexpr double kFirstLook = 0.5;  // [s] until all sensors have spoken
-constexpr double kAftermath = 2.0;  // [s] in which what still shakes falls or not, as in rollouts
 constexpr int kActivity = 1;
 
 /// Robot and middle layer, wired.
@@ -20,12 +19,13 @@ class Play {
  public:
   Play(const LoopSetup::Parts& parts, const ActionOrder& order)
       : order_(order),
+        aftermath_(parts.world.rollout.aftermath),
         clock_(kStart),
         robot_(parts, order.start, order.truth, order.seed, &clock_,
                {[this](const SensorNews& news) { middle_layer_.Hear(news, robot_.laser()); },
                 [this](double stamp) { middle_layer_.Look(stamp); }}),
-        middle_layer_(parts.world, {"map", "odom", parts.world.scene->robot.profile.base_link},
-                      parts.config.runner, parts.config.scan,
+        middle_layer_(parts.world, FramesOf(parts.world.scene->robot), parts.config.runner,
+                      parts.config.scan,
                       {[this](const robot::Command& command) { robot_.Command(command); },
                        [this](int, control::ActionEnd end, const base::Failure& failure) {
                          OnEnded(end, failure);
@@ -51,10 +51,11 @@ class Play {
   void OnEnded(control::ActionEnd end, const base::Failure& failure) {
     run_.failure = end == control::ActionEnd::kSucceeded ? base::Failure() : failure;
     run_.duration = clock_.now() - begun_;
-    end_ = clock_.now() + kAftermath;
+    end_ = clock_.now() + aftermath_;
   }
 
   const ActionOrder& order_;
+  const double aftermath_;  // [s] in which what still shakes falls or not, as in rollouts
   VirtualClock clock_;
   RobotSide robot_;
   MiddleLayer middle_layer_;

@@ -99,8 +99,12 @@ const imagination::ClientConfig& LoopSetup::imagination() const {
 
 const planning::OperatorData& LoopSetup::operators() const { return parts_->operators; }
 
+evaluation::Truth LoopSetup::Parts::ReadTruth(const std::string& name) const {
+  return evaluation::ReadTruth(evaluation::TruthPath(name, config.truths));
+}
+
 evaluation::Truth LoopSetup::ReadTruth(const std::string& name) const {
-  return evaluation::ReadTruth(evaluation::TruthPath(name, parts_->config.truths));
+  return parts_->ReadTruth(name);
 }
 
 }  // namespace hires::loop

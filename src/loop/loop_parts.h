@@ -45,6 +45,7 @@ LoopConfig ReadLoopConfig(const std::string& path);
 
 struct LoopSetup::Parts {
   explicit Parts(const std::string& path);
+  evaluation::Truth ReadTruth(const std::string& name) const;  ///< as LoopSetup's
 
   LoopConfig config;
   imagination::ImaginationSetup world;

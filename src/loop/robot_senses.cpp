@@ -17,6 +17,10 @@ std::string CameraOf(const robot::Robot& robot) {
 
 }  // namespace
 
+sensing::FrameNames FramesOf(const robot::Robot& robot) {
+  return {"map", "odom", robot.profile.base_link};
+}
+
 RobotSenses::RobotSenses(const ImaginationSetup& setup, const sensing::FrameNames& frames)
     : names_(frames),
       base_link_(setup.scene->robot.profile.base_link),

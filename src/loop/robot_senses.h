@@ -10,6 +10,9 @@
 
 namespace hires::loop {
 
+/// The robot's frames by the names that its own messages have.
+sensing::FrameNames FramesOf(const robot::Robot& robot);
+
 /// One listener's estimates of the robot's state and of objects: middle layer and tracker have each
 /// their own, as they have in processes of their own.
 class RobotSenses {

@@ -40,11 +40,6 @@ StepFinished FinishedAs(int activity, ActionEnd end, const base::Failure& failur
   return {activity, StepFinished::Result::kFailed, failure};
 }
 
-/// The robot's frames by the names that its own messages have.
-sensing::FrameNames FramesOf(const robot::Robot& robot) {
-  return {"map", "odom", robot.profile.base_link};
-}
-
 LoopOrder Completed(const LoopOrder& order, const evaluation::Scenario& scenario,
                     const planning::Domain& domain) {
   LoopOrder complete = order;
@@ -73,7 +68,7 @@ class Play {
        const LoopObserver& observer)
       : observer_(observer),
         order_(Completed(order, scenario, parts.planning.domain)),
-        truth_(evaluation::ReadTruth(evaluation::TruthPath(order.truth, parts.config.truths))),
+        truth_(parts.ReadTruth(order.truth)),
         clock_(kStart),
         lines_(parts.config.messages, base::Rng(order.seed), &clock_),
         blackboard_(parts.ontology),

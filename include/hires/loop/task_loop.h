@@ -10,8 +10,8 @@
 #include "hires/evaluation/truth.h"
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
-#include "hires/planning/operator_data.h"
 #include "hires/loop/loop_observer.h"
+#include "hires/planning/operator_data.h"
 
 namespace hires::loop {
 
