@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hires/base/text.h"
+#include "hires/imagination/imagination_setup.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
@@ -95,6 +96,20 @@ TEST(TruthTest, SameChangesNothing) {
   const auto setup = SetupOf(ReadTruth(kTruths + "/same.yaml"), imagined, {}, base::Rng(1));
   EXPECT_EQ(setup.uncertainty, imagined.uncertainty);
   EXPECT_EQ(setup.scene, imagined.scene);
+}
+
+/// A truth that said by itself what happens at a time-out would win over the guard.
+TEST(TruthTest, EveryTruthStopsAtATimeoutExceptWhereTheGuardStandsBeforeTheBase) {
+  auto config = imagination::ReadSetupConfig(HIRES_SOURCE_DIR "/config/scene.yaml");
+  for (const bool is_guarded : {false, true}) {
+    config.has_base_guard = is_guarded;
+    const auto imagined = imagination::LoadImaginationSetup(config);
+    for (const char* name : {"same", "foreign", "harsh"}) {
+      const auto setup = SetupOf(ReadTruth(TruthPath(name, kTruths)), imagined, {}, base::Rng(1));
+      const auto& base = setup.scene->robot.profile.base_controller;
+      EXPECT_EQ(base.stops_at_timeout, !is_guarded) << name;
+    }
+  }
 }
 
 /// 400 draws of a truth from nothing but its own changes.

@@ -275,7 +275,7 @@ TEST(Pr2Profile, BaseControllerHasTheOriginalsLimits) {
   EXPECT_EQ(base.limits.max_linear_acceleration, 2.0);
   EXPECT_EQ(base.limits.max_angular_acceleration, 2.0);
   EXPECT_EQ(base.command_timeout, 0.2);
-  EXPECT_FALSE(base.stops_at_timeout);  // base_guard ramps before the controller would stop at once
+  EXPECT_TRUE(base.stops_at_timeout);  // as published; a scene with base_guard has the ramp
 }
 
 TEST(Pr2Profile, HeadLooksAtTheFloorAhead) {
