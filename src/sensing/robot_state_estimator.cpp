@@ -227,7 +227,8 @@ Receipt RobotStateEstimator::OnTransforms(double stamp) {
   }
   if (IsLate(time)) return Late();
   if (IsAhead(time)) return Ahead(frames_.map + " -> " + frames_.odometry);
-  const bool is_new = corrections_.Insert(time, {X_MO, std::min(time, now().value_or(time))});
+  const double lead = std::max(time - now().value_or(time), 0.0);
+  const bool is_new = corrections_.Insert(time, {X_MO, time - std::min(lead, LeastLead()), lead});
   if (!now()) corrections_.KeepBetween(time - params_.history, kForever);
   return {is_new ? Reception::kTaken : Reception::kRepeated, {}};
 }
@@ -261,6 +262,14 @@ std::optional<Pose2> RobotStateEstimator::OdometryOrigin(double time) const {
   const auto then = told ? RawAt(told->stamp, kNear) : std::nullopt;
   if (!then) return std::nullopt;
   return told->value * then->X_OB.Inverse();
+}
+
+/// By how much corrections are stamped ahead of their time [s]; one that is read before the
+/// odometry of its time seems further ahead than it is.
+double RobotStateEstimator::LeastLead() const {
+  double least = kForever;
+  for (const auto& one : corrections_) least = std::min(least, one.value.lead);
+  return least;
 }
 
 std::optional<Pose2> RobotStateEstimator::CorrectionAt(double time) const {
@@ -300,7 +309,8 @@ std::optional<double> RobotStateEstimator::CompleteUntil() const {
 
 bool RobotStateEstimator::IsSettled(double time) const {
   if (!now() || *now() < time || joints_.empty() || joints_.newest() < time) return false;
-  return LocalisedUntil().value_or(-kForever) >= time || *now() >= time + params_.correction_wait;
+  if (LocalisedUntil().value_or(-kForever) >= time) return true;
+  return *now() >= time + (CorrectionAt(time) ? params_.correction_wait : params_.history);
 }
 
 std::optional<double> RobotStateEstimator::LocalisedUntil() const {

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <functional>
+
 #include "hires/perception/camera_view.h"
 #include "hires/robot/load_robot.h"
 #include "support/fake_frame_tree.h"
@@ -102,6 +105,37 @@ TEST_F(WorldTrackerTest, MomentsWithoutOdometryAreDroppedAndSaid) {
   tracker_.Process();
   EXPECT_THAT(observed_at_, IsEmpty());
   EXPECT_EQ(tracker_.num_moments(), 0u);
+}
+
+/// Messages of each topic come in order; how topics interleave is chance where a program was held
+/// up.
+TEST_F(WorldTrackerTest, WhatWaitedWhileItWasHeldUpIsMadeUseOfInWhateverOrderTopicsAreRead) {
+  using Word = std::function<void(double)>;
+  std::vector<Word> topics{
+      [this](double time) {
+        tree_->Tell("map", "odom_combined", time, {});
+        state_.OnTransforms(time);
+      },
+      [this](double time) { state_.OnOdometry(time, "odom_combined", "base_footprint", {}); },
+      [this](double time) {
+        state_.OnJoints(time, {joints_, {}});
+      }};
+  std::vector<std::size_t> order{0, 1, 2};
+  double time = 1.0;
+  std::size_t num_told = 0;
+  do {
+    for (int i = 0; i < 20; ++i, ++num_told) Tell(time += 0.05);
+    const double held_up = time;
+    for (const std::size_t topic : order) {
+      for (int i = 1; i <= 50; ++i) {
+        topics[topic](time = held_up + 0.05 * i);
+        tracker_.Process();
+      }
+    }
+    num_told += 50;
+    EXPECT_EQ(observed_at_.size(), num_told) << order[0] << order[1] << order[2];
+    EXPECT_EQ(tracker_.num_dropped(), 0u) << order[0] << order[1] << order[2];
+  } while (std::next_permutation(order.begin(), order.end()));
 }
 
 class FreeTrackerTest : public WorldTrackerTest {

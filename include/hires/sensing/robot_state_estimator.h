@@ -106,7 +106,8 @@ class RobotStateEstimator {
 
   /// Time up to which everything is known; nothing while something is missing.
   std::optional<double> CompleteUntil() const;
-  /// No message that is at most `correction_wait` late can change the state of that time.
+  /// No message that is at most `correction_wait` late can change the state of that time; where the
+  /// robot is not localised then, none that is at most `history` late.
   bool IsSettled(double time) const;
   /// Stamp of the newest correction of the odometry; infinity: it never needs one.
   std::optional<double> LocalisedUntil() const;
@@ -139,7 +140,8 @@ class RobotStateEstimator {
  private:
   struct Correction {
     geometry::Pose2 X_MO;
-    double heard;  ///< [s] its stamp, or the odometry's newest when it came, if that is earlier
+    double heard;  ///< [s] about when it came
+    double lead;   ///< [s] its stamp was newer than the odometry when it was read
   };
   bool HasClockRestarted(double stamp);
   void Restart();
@@ -150,6 +152,7 @@ class RobotStateEstimator {
   Receipt CheckFrame(const std::string& frame) const;
   std::optional<OdometryReading> RawAt(double time, double reach) const;
   std::optional<geometry::Pose2> OdometryOrigin(double time) const;
+  double LeastLead() const;
   std::optional<geometry::Pose2> CorrectionAt(double time) const;
   std::optional<geometry::Pose3> LinkInBase(const std::string& link,
                                             const robot::JointPositions& posture) const;
