@@ -4,6 +4,7 @@
 
 #include "hires/base/text.h"
 #include "hires/imagination/rollout.h"
+#include "hires/world/fall_code.h"
 
 namespace hires::imagination {
 namespace {
@@ -58,15 +59,13 @@ void LoadMonitor::Look() {
 
 void LoadMonitor::LookAt(Object* object) {
   const Fall fall = object->watch.Look(*simulator_, object->index);
+  if (!first_fall_) first_fall_ = CodeOf(*object, fall);
   if (fall == Fall::kLost) {
     is_lost_ = true;
     return;
   }
   tilt_ = std::max(tilt_, object->watch.detector().now().tilt);
-  if (fall != Fall::kNone) {
-    ++falls_;
-    if (!first_fall_) first_fall_ = CodeOf(*object, fall);
-  }
+  if (fall != Fall::kNone) ++falls_;
   if (params_.put_back && object->is_load) PutBackIfDown(object);
 }
 
@@ -81,10 +80,9 @@ void LoadMonitor::PutBackIfDown(Object* object) {
 }
 
 Code LoadMonitor::CodeOf(const Object& object, Fall fall) const {
-  if (!object.is_load && !IsHandled(object)) return Code::kObjectSlipped;  // out of a hand
-  if (fall == Fall::kSlid) return Code::kObjectSlid;
-  const bool lies = fall == Fall::kToppled && !object.is_load;
-  return lies ? Code::kObjectToppled : Code::kObjectFell;
+  if (object.is_load) return world::CodeOf(fall, world::FallenThing::kLoad);
+  return world::CodeOf(
+      fall, IsHandled(object) ? world::FallenThing::kHandled : world::FallenThing::kHeld);
 }
 
 OutcomeCounts LoadMonitor::Sample() const {

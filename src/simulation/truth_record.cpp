@@ -28,7 +28,7 @@ void TruthRecord::LookAt(const RobotSimulator& simulator, int index,
                          const world::ObjectState& object) {
   const std::string name = base::ToLower(object.name);
   FallWatch& watch = watches_.try_emplace(name, criterion_).first->second;
-  watch.Look(simulator, index);
+  const world::Fall fall = watch.Look(simulator, index);
   const world::FallDetector& detector = watch.detector();
   ObjectFate& fate = objects_[name];
   fate.X_MO = object.X_MO;
@@ -36,6 +36,7 @@ void TruthRecord::LookAt(const RobotSimulator& simulator, int index,
   fate.tilt = detector.now().tilt;
   fate.max_tilt = std::max(fate.max_tilt, fate.tilt);
   fate.falls = detector.falls();
+  if (fate.first_fall == world::Fall::kNone) fate.first_fall = fall;
   fate.stands = detector.stands();
 }
 

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "hires/imagination/rollout.h"
 #include "hires/simulation/truth_record.h"
+#include "hires/world/fall_code.h"
 #include "imagination/load_monitor.h"
 #include "support/scenes.h"
 
@@ -72,6 +74,52 @@ TEST(SameFallsTest, ImaginationAndTruthCountTheSameAtEveryMoment) {
       falls += PlayBoth(standing, base::Rng(7).Fork(seed)).falls;
     EXPECT_GT(falls, 5) << "drives in which nothing falls show nothing";
   }
+}
+
+/// The codes by which both sides call what became of one load on a jerky drive.
+struct Named {
+  base::FailureCode imagined, real;
+  bool toppled_later{false};  // after it had slid
+};
+
+Named NameBoth(const world::StandingCriterion& standing, base::Rng rng) {
+  simulation::Variation variation;
+  variation.friction_factor = rng.Uniform(0.05, 1.0);
+  simulation::RobotSimulator simulator(RoomScene(), variation, {{OnTray("mill1", "mill", kStart)}},
+                                       StandingAt(kStart), base::Rng(1));
+  const RolloutParams params;
+  LoadMonitor imagined(&simulator, params, standing);
+  simulation::TruthRecord truth(standing);
+  geometry::Twist2 V;
+  for (int look = 0; look < 500; ++look) {
+    if (look % 100 == 0) V = {rng.Uniform(-0.5, 1.0), rng.Uniform(-0.9, 0.9), 0.0};
+    robot::Command command;
+    command.base_velocity = V;
+    simulator.Send(command);
+    for (int step = 0; step < 5; ++step) simulator.Step();
+    imagined.Look();
+    truth.Look(simulator);
+  }
+  const simulation::ObjectFate& fate = truth.objects().at("mill1");
+  return {imagined.WhyNotWell().code, world::CodeOf(fate.first_fall, world::FallenThing::kLoad),
+          fate.first_fall == world::Fall::kSlid && fate.max_tilt > standing.tilt};
+}
+
+TEST(SameFallsTest, BothCallThemTheSame) {
+  const world::StandingCriterion criteria[] = {{}, {0.5, 0.0, 0.05, 0.02}};
+  std::set<base::FailureCode> seen;
+  int toppled_later = 0;
+  for (const world::StandingCriterion& standing : criteria) {
+    for (int seed = 0; seed < 12; ++seed) {
+      const Named named = NameBoth(standing, base::Rng(7).Fork(seed));
+      EXPECT_EQ(named.imagined, named.real) << "seed " << seed;
+      seen.insert(named.real);
+      toppled_later += named.toppled_later ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(seen.count(base::FailureCode::kObjectFell), 1U);
+  EXPECT_EQ(seen.count(base::FailureCode::kObjectSlid), 1U);
+  EXPECT_GT(toppled_later, 0) << "what slides first and topples then is what they could differ in";
 }
 
 // The same trajectories: only the criterion differs.

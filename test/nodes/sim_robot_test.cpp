@@ -138,6 +138,7 @@ TEST(ObjectTruthTest, SurvivesBothWays) {
   fate.tilt = 0.1;
   fate.max_tilt = 1.0 / 7.0;
   fate.falls = 2;
+  fate.first_fall = hires::world::Fall::kSlid;
   fate.stands = true;
   const hires::ObjectTruth msg = ToMsg("mug1", fate);
   EXPECT_EQ(msg.name, "mug1");
@@ -147,6 +148,7 @@ TEST(ObjectTruthTest, SurvivesBothWays) {
   EXPECT_EQ(back.tilt, fate.tilt);
   EXPECT_EQ(back.max_tilt, fate.max_tilt);
   EXPECT_EQ(back.falls, 2);
+  EXPECT_EQ(back.first_fall, hires::world::Fall::kSlid);
   EXPECT_TRUE(back.stands);
 }
 

@@ -60,6 +60,7 @@ TEST(TruthRecordTest, AFallFromTheTrayIsCountedOnce) {
   recorded.Drive(0.0, 0.9, 0.6);
   recorded.Drive(0.0, 0.0, 1.5);
   EXPECT_EQ(recorded.fate("tower1").falls, 1);
+  EXPECT_EQ(recorded.fate("tower1").first_fall, world::Fall::kToppled);
   EXPECT_FALSE(recorded.fate("tower1").stands);
   EXPECT_GT(recorded.fate("tower1").max_tilt, 1.0);
 }
@@ -72,6 +73,7 @@ TEST(TruthRecordTest, WhatSlidesFarOnTheTrayFellThoughItStandsUpright) {
   Recorded recorded({{OnTray("mill1", "mill", kStart)}}, strict, slippery);
   recorded.Drive(0.0, 0.9, 0.4);
   EXPECT_EQ(recorded.fate("mill1").falls, 1);
+  EXPECT_EQ(recorded.fate("mill1").first_fall, world::Fall::kSlid);
   EXPECT_LT(recorded.fate("mill1").max_tilt, 0.1);
 }
 
@@ -81,6 +83,7 @@ TEST(TruthRecordTest, AThingThatDropsUprightFell) {
   Recorded recorded(OnFloor("mill1", "mill", 1.5, 0.2), lax);
   recorded.Drive(0.0, 0.0, 0.5);
   EXPECT_EQ(recorded.fate("mill1").falls, 1);
+  EXPECT_EQ(recorded.fate("mill1").first_fall, world::Fall::kDropped);
 }
 
 TEST(TruthRecordTest, ABystanderThatIsRunOverFell) {
