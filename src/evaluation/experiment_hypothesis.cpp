@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "evaluation/seed.h"
 #include "hires/base/error.h"
 #include "hires/base/failure.h"
 #include "hires/base/param_reader.h"
@@ -20,8 +21,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::uint64_t kLargestSeed = 0x7fffffff;  // ROS parameters have 32 bits and a sign
-constexpr double kTouching = 0.02;                  // [m] between underside and top
+constexpr double kTouching = 0.02;  // [m] between underside and top
 
 std::vector<std::string> ReadNames(base::ParamReader* in, const std::string& key) {
   std::vector<std::string> names;
@@ -150,7 +150,7 @@ HypothesisGoal ReadHypothesisGoal(const std::string& path, const std::string& sc
 }
 
 std::uint64_t SeedOfRun(std::uint64_t seed, int run) {
-  return base::Rng(seed).Fork(static_cast<std::uint64_t>(run)).seed() & kLargestSeed;
+  return SeedOf(base::Rng(seed).Fork(static_cast<std::uint64_t>(run)));
 }
 
 ordered_json ToJson(const HypothesisRun& run) {

@@ -20,9 +20,8 @@ double SteadySeconds() {
 /// One thread that plays what it is assigned and posts what comes out.
 class LocalWorker {
  public:
-  LocalWorker(int id, const RolloutSetup& setup, const std::vector<base::ActionCall>& actions,
-              base::Mailbox<Event>* events)
-      : id_(id), setup_(setup), actions_(actions), events_(*events), thread_([this] { Run(); }) {}
+  LocalWorker(int id, const PlayOne& play, base::Mailbox<Event>* events)
+      : id_(id), play_(play), events_(*events), thread_([this] { Run(); }) {}
 
   ~LocalWorker() {
     stop_ = true;
@@ -49,7 +48,7 @@ class LocalWorker {
     // Assignment numbers grow, so that "cancelled up to" needs no list.
     const auto unwanted = [&] { return stop_ || cancelled_up_to_ >= assign.assignment; };
     for (int i = assign.first_index; i < assign.first_index + assign.count; ++i) {
-      auto result = PlayRollout(setup_, actions_[assign.alternative], i, {unwanted, {}});
+      auto result = play_(assign.alternative, i, {unwanted, {}});
       if (!result) return;
       events_.Post(
           RolloutFinished{id_, assign.assignment, assign.alternative, i, *std::move(result)});
@@ -58,8 +57,7 @@ class LocalWorker {
   }
 
   const int id_;
-  const RolloutSetup& setup_;
-  const std::vector<base::ActionCall>& actions_;
+  const PlayOne& play_;
   base::Mailbox<Event>& events_;
   base::Mailbox<Assign> inbox_;
   std::atomic<bool> stop_{false};
@@ -70,8 +68,17 @@ class LocalWorker {
 }  // namespace
 
 Report ImagineLocally(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions,
-                      const SchedulerParams& wanted, int num_threads, const OnInterim& on_interim,
+                      const SchedulerParams& params, int num_threads, const OnInterim& on_interim,
                       const std::function<bool()>& cancelled) {
+  const PlayOne play = [&](int alternative, int index, const RolloutHooks& hooks) {
+    return PlayRollout(setup, actions[static_cast<std::size_t>(alternative)], index, hooks);
+  };
+  return ImagineLocally(setup, actions, params, num_threads, play, on_interim, cancelled);
+}
+
+Report ImagineLocally(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions,
+                      const SchedulerParams& wanted, int num_threads, const PlayOne& play,
+                      const OnInterim& on_interim, const std::function<bool()>& cancelled) {
   CheckSetupForAll(setup, actions);
   SchedulerParams params = wanted;
   params.criteria.prices.time_limit = setup.params.time_limit;
@@ -89,7 +96,7 @@ Report ImagineLocally(const RolloutSetup& setup, const std::vector<base::ActionC
     }
   };
   for (int id = 0; id < num_threads; ++id) {
-    workers.push_back(std::make_unique<LocalWorker>(id, setup, actions, &events));
+    workers.push_back(std::make_unique<LocalWorker>(id, play, &events));
     events.Post(WorkerJoined{id});
   }
   double next_interim = start + kInterimPeriod;

@@ -48,7 +48,7 @@ class DecisionCommandTest : public ::testing::Test {
 TEST_F(DecisionCommandTest, ASeriesGrowsAndIsTheSameForAnyNumberOfThreads) {
   Constants("1", "1", "grown");
   const auto grown = Constants("3", "1", "grown")["arms"];
-  EXPECT_THAT(base::Split(base::ReadTextFile(File("grown")), '\n'), SizeIs(5));
+  EXPECT_THAT(base::Split(base::ReadTextFile(File("grown")), '\n'), SizeIs(5)) << "and a head";
   EXPECT_THAT(grown["always_slow"]["tasks"], SizeIs(3));
   EXPECT_EQ(Constants("3", "2", "at_once")["arms"], grown);
 }

@@ -2,14 +2,15 @@
 
 #include <string>
 
-#include "hires/evaluation/decision.h"
-#include "hires/evaluation/decision_report.h"
+#include "hires/evaluation/decision/decision.h"
+#include "hires/evaluation/decision/decision_report.h"
 
 namespace hires::evaluation {
 
 /// Fast takes 10 s, slow 20 s; the load falls or not. The oracle saw each four times: fast fell in
 /// one of them, slow never.
 inline DecisionRecord DecisionOf(int number, const std::string& choice, bool falls_when_fast) {
+  using imagination::ImaginationOutcome;
   DecisionRecord record;
   record.task.number = number;
   record.task.load = "book";
@@ -21,10 +22,14 @@ inline DecisionRecord DecisionOf(int number, const std::string& choice, bool fal
   fallen.failures = {base::FailureCode::kObjectFell};
   record.plays = {{"slow", slow}, {"fast", falls_when_fast ? fallen : fast}};
   record.oracle = {{"slow", {slow, slow, slow, slow}}, {"fast", {fast, fast, fast, fallen}}};
-  record.imagined["slow"] = {4, 4, 0.4, 1.0, 20.0, {19.0, 19.5, 20.5, 21.0}};
-  record.imagined["fast"] = {4, 3, 0.2, 0.99, 35.0, {9.0, 9.5, 10.5}};
-  record.decided[kImaginationArm] = {{choice, choice, choice}, 128.0, 1.5};
-  record.decided[kDissertationArm] = {{"fast", "fast", "fast"}, 32.0, 0.25};
+  ImaginedTask& imagined = record.imagined;
+  imagined.drives["slow"] = {4, 4, 0.4, 1.0, 20.0, {19.0, 19.5, 20.5, 21.0}};
+  imagined.drives["fast"] = {4, 3, 0.2, 0.99, 35.0, {9.0, 9.5, 10.5}};
+  const Advice advice = choice.empty() ? Advice{ImaginationOutcome::kAllFailed, "slow"}
+                                       : Advice{ImaginationOutcome::kRanked, choice};
+  const Advice fastest{ImaginationOutcome::kRanked, "fast"};
+  imagined.decided[kImaginationArm] = {{advice, advice, advice}, 128.0, 1.5, 1.25};
+  imagined.decided[kDissertationArm] = {{fastest, fastest, fastest}, 32.0, 0.25, 0.2};
   return record;
 }
 

@@ -1,4 +1,4 @@
-#include "hires/evaluation/decision_report.h"
+#include "hires/evaluation/decision/decision_report.h"
 
 #include <gmock/gmock.h>
 
@@ -86,7 +86,8 @@ TEST(DecisionReportTest, JsonHasTheAgreedFields) {
         EXPECT_TRUE(found[interval][field].is_number()) << arm << interval << field;
       }
     }
-    for (const char* field : {"success", "falls", "simulated_seconds", "wall_seconds"}) {
+    for (const char* field :
+         {"success", "falls", "simulated_seconds", "wall_seconds", "processor_seconds"}) {
       EXPECT_TRUE(found[field].is_number()) << arm << field;
     }
     EXPECT_THAT(found["tasks"], SizeIs(4)) << arm;
@@ -105,6 +106,19 @@ TEST(DecisionReportTest, WithoutAnOracleThereIsNoRegret) {
   const DecisionReport report = SumUpDecisions(setting, {record}, SimplePrices());
   EXPECT_FALSE(report.verdicts.front().arms.at(kSlowArm).regret);
   EXPECT_TRUE(ToJson(report, "")["arms"][kSlowArm]["regret"].is_null());
+}
+
+TEST(DecisionReportTest, SaysWhichConstantTheDomainsDefaultIsAndHowOftenImaginationWasUndecided) {
+  EXPECT_THAT(DecisionText(Example()), HasSubstr("domain_default (always fast)"));
+  DecisionRecord open = DecisionOf(1, "slow", true);
+  for (Advice& advice : open.imagined.decided[kImaginationArm].advice) {
+    advice.outcome = imagination::ImaginationOutcome::kUndecided;
+  }
+  const DecisionReport report = SumUpDecisions(AllOf(), {open}, SimplePrices());
+  const DecisionArm& arm = report.verdicts.front().arms.at(kImaginationArm);
+  EXPECT_EQ(arm.num_undecided, 1);
+  EXPECT_EQ(arm.tasks.front().motion_set, "slow");
+  EXPECT_EQ(ToJson(report, "")["arms"][kImaginationArm]["undecided"], 1);
 }
 
 TEST(DecisionReportTest, SaysWhatTheTruthSameIs) {

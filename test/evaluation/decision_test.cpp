@@ -1,22 +1,21 @@
-#include "hires/evaluation/decision.h"
+#include "hires/evaluation/decision/decision.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <set>
+#include <tuple>
 
 #include "evaluation/decision_examples.h"
-#include "hires/base/error.h"
-#include "hires/imagination/client_config.h"
+#include "hires/world/fall_code.h"
 
 namespace hires::evaluation::decision_test {
 namespace {
 
 using base::FailureCode;
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
+using world::Fall;
 
 const std::string kConfig = HIRES_SOURCE_DIR "/config/";
 
@@ -28,31 +27,27 @@ const imagination::ImaginationSetup& TheSetup() {
   return setup;
 }
 
-simulation::ObjectFate Fate(double z, double max_tilt, int falls) {
+simulation::ObjectFate Fate(Fall first, int falls = 1) {
   simulation::ObjectFate fate;
-  fate.X_MO.translation.z() = z;
-  fate.max_tilt = max_tilt;
-  fate.falls = falls;
+  fate.first_fall = first;
+  fate.falls = first == Fall::kNone ? 0 : falls;
   return fate;
 }
 
-/// A mill that began on a tray 0.35 m high.
 TruthPlay Judged(const base::Failure& failure, const RunTruth& truth) {
-  world::WorldState start;
-  start.objects.push_back({"mill", "mill", {}, {}, ""});
-  start.objects.back().X_MO.translation.z() = 0.35;
-  return JudgeDrive(failure, 12.0, truth, "Mill", start, world::StandingCriterion());
+  return JudgeDrive(failure, 12.0, truth, "Mill");
 }
 
 TEST(DrawTaskTest, IsTheSameForTheSameNumberAndAnotherForAnother) {
   const DecisionConfig config = Configured();
-  DecisionRecord first, again, other;
-  first.task = DrawTask(config, 1, 7);
-  again.task = DrawTask(config, 1, 7);
-  other.task = DrawTask(config, 1, 8);
-  EXPECT_EQ(ToJson(first), ToJson(again));
-  EXPECT_NE(first.task.truth_seed, other.task.truth_seed);
-  EXPECT_NE(DrawTask(config, 2, 7).truth_seed, first.task.truth_seed);
+  const auto told = [](const DecisionTask& task) {
+    return std::make_tuple(CellOf(task), task.number, task.deadline, task.price_factor,
+                           task.truth_seed, task.imagination_seed, task.oracle_seed);
+  };
+  const DecisionTask first = DrawTask(config, 1, 7);
+  EXPECT_EQ(told(first), told(DrawTask(config, 1, 7)));
+  EXPECT_NE(first.truth_seed, DrawTask(config, 1, 8).truth_seed);
+  EXPECT_NE(first.truth_seed, DrawTask(config, 2, 7).truth_seed);
 }
 
 TEST(DrawTaskTest, DrawsEveryLoadAndRouteWithinTheBounds) {
@@ -105,20 +100,21 @@ TEST(DecisionStartTest, EveryLoadRouteAndHeightCanBeBegun) {
   }
 }
 
-TEST(JudgeDriveTest, SaysInWhatWayTheLoadWentWrong) {
-  EXPECT_THAT(Judged({}, {{{"mill", Fate(0.35, 0.1, 0)}}, ""}).failures, IsEmpty());
-  EXPECT_THAT(Judged({}, {{{"mill", Fate(0.35, 1.5, 1)}}, ""}).failures,
-              ElementsAre(FailureCode::kObjectFell));
-  EXPECT_THAT(Judged({}, {{{"mill", Fate(0.02, 0.1, 1)}}, ""}).failures,
-              ElementsAre(FailureCode::kObjectFell));
-  EXPECT_THAT(Judged({}, {{{"mill", Fate(0.35, 0.1, 1)}}, ""}).failures,
-              ElementsAre(FailureCode::kObjectSlid));
+TEST(JudgeDriveTest, CallsTheLoadsFirstFallAsImaginationDoes) {
+  EXPECT_THAT(Judged({}, {{{"mill", Fate(Fall::kNone)}}, ""}).failures, IsEmpty());
+  for (const Fall fall : {Fall::kLost, Fall::kToppled, Fall::kDropped, Fall::kSlid}) {
+    // How often it fell, how far it leant and where it lies in the end do not matter.
+    simulation::ObjectFate fate = Fate(fall, 2);
+    fate.max_tilt = 1.5;
+    EXPECT_THAT(Judged({}, {{{"mill", fate}}, ""}).failures,
+                ElementsAre(world::CodeOf(fall, world::FallenThing::kLoad)));
+  }
 }
 
 TEST(JudgeDriveTest, NamesAllThatWentWrong) {
-  const TruthPlay play =
-      Judged(FailureCode::kStuck,
-             {{{"mill", Fate(0.0, 1.5, 2)}, {"mug1", Fate(0.0, 1.5, 1)}}, "base touches chair1"});
+  const TruthPlay play = Judged(
+      FailureCode::kStuck,
+      {{{"mill", Fate(Fall::kToppled, 2)}, {"mug1", Fate(Fall::kSlid)}}, "base touches chair1"});
   EXPECT_THAT(play.failures, ElementsAre(FailureCode::kStuck, FailureCode::kObjectFell,
                                          FailureCode::kKnockedOver, FailureCode::kRobotCollision));
   EXPECT_TRUE(play.fell());
@@ -138,85 +134,16 @@ TEST(DecisionPricesTest, TheTasksFactorIsOfThingsAlone) {
   EXPECT_EQ(CostOf(play, prices), 10.0 + 2.0 * 2.0 * 2.0 + 100.0 + 1800.0);
 }
 
-TEST(DecisionRecordTest, ComesBackFromText) {
-  DecisionRecord record = DecisionOf(3, "", true);
-  record.task.deadline = 9.5;
-  const auto json = ToJson(record);
-  EXPECT_EQ(ToJson(ParseDecisionRecord(json, "j")), json);
-  EXPECT_EQ(ParseDecisionRecord(json, "j").plays.at("fast").failures,
-            record.plays.at("fast").failures);
-}
-
-TEST(DecisionRecordTest, SaysWhatIsWrongWithALine) {
-  const auto error = [](const std::string& field, const nlohmann::ordered_json& value) {
-    auto json = ToJson(DecisionOf(3, "slow", true));
-    json[field] = value;
-    try {
-      ParseDecisionRecord(json, "j: line 4");
-    } catch (const base::ConfigError& e) {
-      return std::string(e.what());
-    }
-    return std::string("no error");
+TEST(DecisionChoiceTest, WhatLeadsIsTakenUnlessAllFail) {
+  using Outcome = imagination::ImaginationOutcome;
+  const auto choice = [](Outcome outcome, const char* arm) {
+    return ChoiceOf({outcome, "slow"}, arm, "fast");
   };
-  EXPECT_THAT(error("task", 1), HasSubstr("j: line 4"));
-  EXPECT_THAT(error("plays", nlohmann::ordered_json::object()), HasSubstr("lacks a motion set"));
-  EXPECT_THAT(error("plays", {{"slow", {1.0, "odd", 1.0, 1.0}}}), HasSubstr("'odd'"));
-}
-
-/// Imagination itself on few rollouts; the truth is made up.
-class PlayDecisionTest : public ::testing::Test {
- protected:
-  DecisionParts Parts() {
-    DecisionParts parts{
-        TheSetup(), imagination::ReadClientConfig(kConfig + "imagination_client.yaml").scheduler};
-    parts.scheduler.rollouts = 8;
-    parts.default_motion_set = "fast";
-    parts.oracle_plays = 2;
-    parts.play = [this](const DecisionTask&, const std::string& set, std::uint64_t seed) {
-      plays.push_back(set + std::to_string(seed));
-      return std::make_optional(TruthPlay{{}, set == "fast" ? 10.0 : 20.0, 25.0, 0.1});
-    };
-    return parts;
-  }
-  static DecisionTask Block() {
-    DecisionTask task;
-    task.load = "block";
-    task.from = "premanipulationareaeastcounter1";
-    task.to = "premanipulationareasouthtable1";
-    task.torso = "torsomiddleposture";
-    return task;
-  }
-  std::vector<std::string> plays;
-};
-
-TEST_F(PlayDecisionTest, AllArmsShareRolloutsAndPlays) {
-  const auto record = PlayDecision(Block(), Parts(), nullptr);
-  ASSERT_TRUE(record);
-  EXPECT_EQ(record->imagined.at("slow").num_rollouts, 8);
-  EXPECT_EQ(record->imagined.at("fast").num_success,
-            static_cast<int>(record->imagined.at("fast").durations.size()));
-  EXPECT_EQ(record->decided.at(kImaginationArm).motion_sets.size(), PriceScales().size());
-  EXPECT_LT(record->decided.at(kDissertationArm).simulated_seconds,
-            record->decided.at(kImaginationArm).simulated_seconds / 4.0);
-  EXPECT_EQ(plays.size(), 2U + 4U) << "one of each motion set, two of each for the oracle";
-  EXPECT_EQ(plays[2].substr(4), plays[4].substr(4)) << "the oracle's seeds are those of both";
-}
-
-TEST_F(PlayDecisionTest, WhatIsKnownOfACellIsNotPlayedAgain) {
-  DecisionParts parts = Parts();
-  parts.imagines = parts.is_dissertation = false;
-  const auto first = PlayDecision(Block(), parts, nullptr);
-  plays.clear();
-  const auto second = PlayDecision(Block(), parts, &*first);
-  EXPECT_EQ(plays.size(), 2U);
-  EXPECT_EQ(ToJson(*second)["oracle"], ToJson(*first)["oracle"]);
-  EXPECT_THAT(second->decided, IsEmpty());
-}
-
-TEST_F(PlayDecisionTest, IsNothingWhenCancelled) {
-  DecisionParts parts = Parts();
-  parts.cancelled = [] { return true; };
-  EXPECT_FALSE(PlayDecision(Block(), parts, nullptr));
+  EXPECT_EQ(choice(Outcome::kRanked, kImaginationArm), "slow");
+  EXPECT_EQ(choice(Outcome::kUndecided, kImaginationArm), "slow") << "cheaper, as far as is known";
+  EXPECT_EQ(choice(Outcome::kAllFailed, kImaginationArm), "");
+  EXPECT_EQ(choice(Outcome::kAllFailed, kDissertationArm), "fast") << "it bans nothing";
+  EXPECT_EQ(choice(Outcome::kNothingFinished, kImaginationArm), "fast") << "nothing is known";
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "hires/base/action.h"
-#include "hires/evaluation/decision.h"
+#include "hires/evaluation/decision/decision.h"
 #include "hires/evaluation/experiment_hypothesis.h"
 #include "hires/evaluation/truth.h"
 #include "hires/imagination/start_state.h"

@@ -1,4 +1,4 @@
-#include "hires/evaluation/calibration.h"
+#include "hires/evaluation/decision/calibration.h"
 
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>

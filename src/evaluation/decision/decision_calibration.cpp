@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "hires/base/rng.h"
-#include "hires/evaluation/decision_report.h"
+#include "hires/evaluation/decision/decision_report.h"
 
 namespace hires::evaluation {
 namespace {
@@ -25,7 +25,7 @@ struct PlayedStep {
 std::vector<PlayedStep> StepsOf(const std::vector<DecisionRecord>& records) {
   std::vector<PlayedStep> steps;
   for (const DecisionRecord& record : records) {
-    for (const auto& [set, imagined] : record.imagined) {
+    for (const auto& [set, imagined] : record.imagined.drives) {
       if (imagined.num_rollouts == 0) continue;
       steps.push_back({record.task, set, imagined, record.plays.at(set)});
     }
@@ -113,8 +113,8 @@ void CompareWithOracle(const std::vector<DecisionRecord>& records, CalibrationRe
   int covered = 0, num_intervals = 0;
   for (const DecisionRecord& record : records) {
     for (const auto& [set, plays] : record.oracle) {
-      const auto imagined = record.imagined.find(set);
-      if (imagined == record.imagined.end() || imagined->second.num_rollouts == 0) continue;
+      const auto imagined = record.imagined.drives.find(set);
+      if (imagined == record.imagined.drives.end() || imagined->second.num_rollouts == 0) continue;
       Action& action = actions[CellOf(record.task) + "/" + set];
       action.real = SuccessShare(plays);
       action.num_rollouts += imagined->second.num_rollouts;

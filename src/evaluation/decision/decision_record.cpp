@@ -1,21 +1,24 @@
+#include "evaluation/decision/decision_record.h"
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/decision.h"
 
 namespace hires::evaluation {
 namespace {
 
+using imagination::ImaginationOutcome;
 using nlohmann::ordered_json;
 
-/// A play in one short line: journals hold a hundred of them per task.
+/// A play in one short line: journals hold hundreds of them.
 ordered_json PlayToJson(const TruthPlay& play) {
   std::vector<std::string> failures;
   for (const base::FailureCode code : play.failures) failures.push_back(base::ToString(code));
-  return {play.duration, base::Join(failures, " "), play.virtual_seconds, play.wall_seconds};
+  return {play.duration, base::Join(failures, " "), play.virtual_seconds, play.wall_seconds,
+          play.processor_seconds};
 }
 
 TruthPlay ParsePlay(const ordered_json& json) {
@@ -29,35 +32,8 @@ TruthPlay ParsePlay(const ordered_json& json) {
   }
   play.virtual_seconds = json.at(2).get<double>();
   play.wall_seconds = json.at(3).get<double>();
+  play.processor_seconds = json.at(4).get<double>();
   return play;
-}
-
-ordered_json TaskToJson(const DecisionTask& task) {
-  return {{"number", task.number},
-          {"load", task.load},
-          {"from", task.from},
-          {"to", task.to},
-          {"torso", task.torso},
-          {"deadline", task.deadline ? ordered_json(*task.deadline) : ordered_json()},
-          {"price_factor", task.price_factor},
-          {"truth_seed", task.truth_seed},
-          {"imagination_seed", task.imagination_seed},
-          {"oracle_seed", task.oracle_seed}};
-}
-
-DecisionTask ParseTask(const ordered_json& json) {
-  DecisionTask task;
-  task.number = json.at("number").get<int>();
-  task.load = json.at("load").get<std::string>();
-  task.from = json.at("from").get<std::string>();
-  task.to = json.at("to").get<std::string>();
-  task.torso = json.at("torso").get<std::string>();
-  if (!json.at("deadline").is_null()) task.deadline = json.at("deadline").get<double>();
-  task.price_factor = json.at("price_factor").get<double>();
-  task.truth_seed = json.at("truth_seed").get<std::uint64_t>();
-  task.imagination_seed = json.at("imagination_seed").get<std::uint64_t>();
-  task.oracle_seed = json.at("oracle_seed").get<std::uint64_t>();
-  return task;
 }
 
 ordered_json DriveToJson(const ImaginedDrive& drive) {
@@ -80,20 +56,40 @@ ImaginedDrive ParseDrive(const ordered_json& json) {
   return drive;
 }
 
+ImaginationOutcome ParseOutcome(const std::string& word) {
+  std::vector<std::string> words;
+  for (const auto outcome :
+       {ImaginationOutcome::kRanked, ImaginationOutcome::kAllFailed, ImaginationOutcome::kUndecided,
+        ImaginationOutcome::kNoWorker, ImaginationOutcome::kNothingFinished}) {
+    words.push_back(imagination::ToString(outcome));
+    if (words.back() == word) return outcome;
+  }
+  throw base::ConfigError(base::UnknownName("outcome", word, words));
+}
+
 ordered_json DecidedToJson(const Decided& decided) {
-  return {{"motion_sets", decided.motion_sets},
+  ordered_json advice = ordered_json::array();
+  for (const Advice& one : decided.advice) {
+    advice.push_back({{"outcome", imagination::ToString(one.outcome)}, {"first", one.first}});
+  }
+  return {{"advice", advice},
           {"simulated_seconds", decided.simulated_seconds},
-          {"wall_seconds", decided.wall_seconds}};
+          {"wall_seconds", decided.wall_seconds},
+          {"processor_seconds", decided.processor_seconds}};
 }
 
 Decided ParseDecided(const ordered_json& json) {
   Decided decided;
-  decided.motion_sets = json.at("motion_sets").get<std::vector<std::string>>();
-  if (decided.motion_sets.size() != PriceScales().size()) {
-    throw base::ConfigError("there is not one choice for each scale of prices");
+  for (const ordered_json& one : json.at("advice")) {
+    decided.advice.push_back(
+        {ParseOutcome(one.at("outcome").get<std::string>()), one.at("first").get<std::string>()});
+  }
+  if (decided.advice.size() != PriceScales().size()) {
+    throw base::ConfigError("there is not one answer for each scale of prices");
   }
   decided.simulated_seconds = json.at("simulated_seconds").get<double>();
   decided.wall_seconds = json.at("wall_seconds").get<double>();
+  decided.processor_seconds = json.at("processor_seconds").get<double>();
   return decided;
 }
 
@@ -109,45 +105,55 @@ void ParseMap(const ordered_json& json, const ParseOf& parse, Map* map) {
   for (const auto& [key, value] : json.items()) (*map)[key] = parse(value);
 }
 
-ordered_json PlaysToJson(const std::vector<TruthPlay>& plays) {
+template <typename Map>
+void RequireMotionSets(const Map& map, const char* field) {
+  for (const std::string& set : DecisionAlternatives()) {
+    if (map.count(set) > 0) continue;
+    throw base::ConfigError(fmt::format("field '{}' lacks motion set '{}'", field, set));
+  }
+}
+
+}  // namespace
+
+ordered_json ToJson(const ImaginedTask& imagined) {
+  return {{"drives", MapToJson(imagined.drives, DriveToJson)},
+          {"decided", MapToJson(imagined.decided, DecidedToJson)}};
+}
+
+ordered_json ToJson(const std::map<std::string, TruthPlay>& plays) {
+  return MapToJson(plays, PlayToJson);
+}
+
+ordered_json ToJson(const std::vector<TruthPlay>& plays) {
   ordered_json json = ordered_json::array();
   for (const TruthPlay& play : plays) json.push_back(PlayToJson(play));
   return json;
 }
 
-std::vector<TruthPlay> ParsePlays(const ordered_json& json) {
-  std::vector<TruthPlay> plays;
-  for (const ordered_json& play : json) plays.push_back(ParsePlay(play));
+ImaginedTask ParseImagined(const ordered_json& json) {
+  ImaginedTask imagined;
+  ParseMap(json.at("drives"), ParseDrive, &imagined.drives);
+  ParseMap(json.at("decided"), ParseDecided, &imagined.decided);
+  RequireMotionSets(imagined.drives, "drives");
+  for (const char* arm : {kImaginationArm, kDissertationArm}) {
+    if (imagined.decided.count(arm) > 0) continue;
+    throw base::ConfigError(fmt::format("field 'decided' lacks arm '{}'", arm));
+  }
+  return imagined;
+}
+
+std::map<std::string, TruthPlay> ParseAlternatives(const ordered_json& json) {
+  std::map<std::string, TruthPlay> plays;
+  ParseMap(json, ParsePlay, &plays);
+  RequireMotionSets(plays, "plays");
   return plays;
 }
 
-}  // namespace
-
-ordered_json ToJson(const DecisionRecord& record) {
-  return {{"task", TaskToJson(record.task)},
-          {"plays", MapToJson(record.plays, PlayToJson)},
-          {"imagined", MapToJson(record.imagined, DriveToJson)},
-          {"decided", MapToJson(record.decided, DecidedToJson)},
-          {"oracle", MapToJson(record.oracle, PlaysToJson)}};
-}
-
-DecisionRecord ParseDecisionRecord(const ordered_json& json, const std::string& where) {
-  DecisionRecord record;
-  try {
-    record.task = ParseTask(json.at("task"));
-    ParseMap(json.at("plays"), ParsePlay, &record.plays);
-    ParseMap(json.at("imagined"), ParseDrive, &record.imagined);
-    ParseMap(json.at("decided"), ParseDecided, &record.decided);
-    ParseMap(json.at("oracle"), ParsePlays, &record.oracle);
-    for (const std::string& set : DecisionAlternatives()) record.plays.at(set);
-  } catch (const ordered_json::exception& error) {
-    throw base::ConfigError(fmt::format("{}: {}", where, error.what()));
-  } catch (const base::ConfigError& error) {
-    throw base::ConfigError(fmt::format("{}: {}", where, error.what()));
-  } catch (const std::out_of_range&) {
-    throw base::ConfigError(fmt::format("{}: field 'plays' lacks a motion set", where));
-  }
-  return record;
+std::vector<TruthPlay> ParsePlays(const ordered_json& json) {
+  std::vector<TruthPlay> plays;
+  for (const ordered_json& play : json) plays.push_back(ParsePlay(play));
+  if (plays.empty()) throw base::ConfigError("field 'plays' is empty");
+  return plays;
 }
 
 }  // namespace hires::evaluation

@@ -1,4 +1,4 @@
-#include "hires/evaluation/decision_report.h"
+#include "hires/evaluation/decision/decision_report.h"
 
 #include <algorithm>
 
@@ -36,7 +36,14 @@ std::string ChoiceOf(const std::string& arm, const DecisionSetting& setting,
   if (arm == kFastArm) return "fast";
   if (arm == kDefaultArm) return setting.default_motion_set;
   if (arm == kOracleArm) return OraclesChoice(record, prices);
-  return record.decided.at(arm).motion_sets.at(scale);
+  return ChoiceOf(record.imagined.decided.at(arm).advice.at(scale), arm,
+                  setting.default_motion_set);
+}
+
+bool IsUndecided(const std::string& arm, const DecisionRecord& record, std::size_t scale) {
+  const auto decided = record.imagined.decided.find(arm);
+  return decided != record.imagined.decided.end() &&
+         decided->second.advice.at(scale).outcome == imagination::ImaginationOutcome::kUndecided;
 }
 
 ArmTask OutcomeOf(const std::string& choice, const DecisionRecord& record, const Prices& prices) {
@@ -54,16 +61,18 @@ ArmTask OutcomeOf(const std::string& choice, const DecisionRecord& record, const
 }
 
 void AddEffort(const std::string& arm, const DecisionRecord& record, DecisionArm* to) {
-  const auto decided = record.decided.find(arm);
-  if (decided != record.decided.end()) {
+  const auto decided = record.imagined.decided.find(arm);
+  if (decided != record.imagined.decided.end()) {
     to->simulated_seconds += decided->second.simulated_seconds;
     to->wall_seconds += decided->second.wall_seconds;
+    to->processor_seconds += decided->second.processor_seconds;
   }
   if (arm != kOracleArm) return;
   for (const auto& [set, plays] : record.oracle) {
     for (const TruthPlay& play : plays) {
       to->simulated_seconds += play.virtual_seconds;
       to->wall_seconds += play.wall_seconds;
+      to->processor_seconds += play.processor_seconds;
     }
   }
 }
@@ -99,6 +108,7 @@ DecisionArm SumUp(const std::string& name, const DecisionSetting& setting,
     arm.tasks.push_back(OutcomeOf(choice, record, own));
     num_success += arm.tasks.back().success ? 1 : 0;
     arm.falls += arm.tasks.back().fell ? 1 : 0;
+    arm.num_undecided += IsUndecided(name, record, scale) ? 1 : 0;
     AddEffort(name, record, &arm);
   }
   arm.cost = MeanInterval(Costs(arm));
@@ -166,10 +176,6 @@ ScaledVerdict VerdictAt(std::size_t scale, const DecisionSetting& setting,
   return verdict;
 }
 
-bool HasArm(const DecisionSetting& setting, const char* arm) {
-  return std::count(setting.arms.begin(), setting.arms.end(), arm) > 0;
-}
-
 }  // namespace
 
 DecisionReport SumUpDecisions(const DecisionSetting& setting, std::vector<DecisionRecord> records,
@@ -184,7 +190,7 @@ DecisionReport SumUpDecisions(const DecisionSetting& setting, std::vector<Decisi
   for (std::size_t scale = 0; scale < PriceScales().size(); ++scale) {
     report.verdicts.push_back(VerdictAt(scale, setting, report.records, prices));
   }
-  if (HasArm(setting, kImaginationArm))
+  if (HasArm(setting.arms, kImaginationArm))
     report.calibration = Calibrate(report.records, setting.seed);
   return report;
 }

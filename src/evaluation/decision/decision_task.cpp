@@ -2,12 +2,15 @@
 #include <cmath>
 #include <limits>
 
+#include "evaluation/seed.h"
 #include "hires/base/error.h"
+#include "hires/base/failure_block.h"
 #include "hires/base/hash.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/decision.h"
+#include "hires/evaluation/decision/decision.h"
+#include "hires/world/fall_code.h"
 
 namespace hires::evaluation {
 namespace {
@@ -16,8 +19,6 @@ using base::Between;
 using base::FailureCode;
 
 enum TaskStreams : std::uint64_t { kTaskStream, kTruthStream, kImaginationStream };
-constexpr std::uint64_t kSeedMask = 0x7fffffff;
-constexpr int kLastThing = 99;  // codes of what became of things
 
 DecisionConfig::Load ReadLoad(base::ParamReader in) {
   DecisionConfig::Load load;
@@ -37,8 +38,6 @@ template <typename T>
 const T& OneOf(const std::vector<T>& all, base::Rng* rng) {
   return all[static_cast<std::size_t>(rng->Index(static_cast<int>(all.size())))];
 }
-
-std::uint64_t SeedOf(const base::Rng& rng) { return rng.seed() & kSeedMask; }
 
 double TorsoHeight(const imagination::ImaginationSetup& setup, const std::string& posture) {
   const auto& postures = setup.scene->robot.profile.upper_body->torso_postures;
@@ -115,22 +114,18 @@ bool TruthPlay::fell() const {
 }
 
 TruthPlay JudgeDrive(const base::Failure& failure, double duration, const RunTruth& truth,
-                     const std::string& load, const world::WorldState& start,
-                     const world::StandingCriterion& standing) {
+                     const std::string& load) {
   TruthPlay play;
   play.duration = duration;
   if (failure) play.failures.push_back(failure.code);
   bool others_fell = false;
   for (const auto& [name, fate] : truth.objects) {
     if (fate.falls == 0) continue;
-    if (name != base::ToLower(load)) {
+    if (name == base::ToLower(load)) {
+      play.failures.push_back(world::CodeOf(fate.first_fall, world::FallenThing::kLoad));
+    } else {
       others_fell = true;
-      continue;
     }
-    const world::ObjectState* before = start.Find(name);
-    const bool is_level = fate.max_tilt < standing.tilt && before != nullptr &&
-                          before->X_MO.translation.z() - fate.X_MO.translation.z() < standing.drop;
-    play.failures.push_back(is_level ? FailureCode::kObjectSlid : FailureCode::kObjectFell);
   }
   if (others_fell) play.failures.push_back(FailureCode::kKnockedOver);
   const bool is_known = failure.code == FailureCode::kRobotCollision;
@@ -142,7 +137,7 @@ imagination::Prices PricesOf(const DecisionTask& task, const imagination::Prices
                              double scale) {
   imagination::Prices own = imagination::Scaled(prices, scale);
   for (auto& [code, price] : own.of) {
-    if (static_cast<int>(code) <= kLastThing) price *= task.price_factor;
+    if (base::IsOfThings(code)) price *= task.price_factor;
   }
   own.deadline = task.deadline.value_or(std::numeric_limits<double>::infinity());
   return own;
@@ -163,6 +158,19 @@ const std::vector<std::string>& AllArms() {
   static const std::vector<std::string> arms{kImaginationArm, kSlowArm,         kFastArm,
                                              kDefaultArm,     kDissertationArm, kOracleArm};
   return arms;
+}
+
+bool HasArm(const std::vector<std::string>& arms, const std::string& arm) {
+  return std::count(arms.begin(), arms.end(), arm) > 0;
+}
+
+std::string ChoiceOf(const Advice& advice, const std::string& arm, const std::string& by_default) {
+  using Outcome = imagination::ImaginationOutcome;
+  if (advice.outcome == Outcome::kRanked || advice.outcome == Outcome::kUndecided) {
+    return advice.first;
+  }
+  const bool is_banned = advice.outcome == Outcome::kAllFailed && arm != kDissertationArm;
+  return is_banned ? "" : by_default;
 }
 
 const std::vector<std::string>& DecisionAlternatives() {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "hires/evaluation/decision_report.h"
+#include "hires/evaluation/decision/decision_report.h"
 #include "hires/evaluation/report_table.h"
 
 namespace hires::evaluation {
@@ -23,29 +23,44 @@ std::string IntervalText(const std::optional<Interval>& interval) {
   return interval ? IntervalText(*interval) : "-";
 }
 
+/// The domain's default is a constant arm under another name, and says which.
+std::string LabelOf(const std::string& arm, const DecisionSetting& setting) {
+  return arm == kDefaultArm ? fmt::format("{} (always {})", arm, setting.default_motion_set) : arm;
+}
+
 std::string ArmTable(const DecisionReport& report, const ScaledVerdict& verdict) {
-  std::vector<std::vector<std::string>> rows{{"arm", "cost [s] (95 %)", "expected cost [s]",
-                                              "succeeded (95 %)", "falls", "regret [s]",
-                                              "expected regret [s]", "simulated", "wall"}};
+  std::vector<std::vector<std::string>> rows{
+      {"arm", "cost [s] (95 %)", "expected cost [s]", "succeeded (95 %)", "falls", "regret [s]",
+       "expected regret [s]", "undecided", "simulated", "wall", "processor"}};
   for (const std::string& name : report.setting.arms) {
     const DecisionArm& arm = verdict.arms.at(name);
-    rows.push_back({name, IntervalText(arm.cost), IntervalText(arm.expected),
-                    IntervalText(arm.success, 3), std::to_string(arm.falls),
-                    IntervalText(arm.regret), IntervalText(arm.expected_regret),
-                    fmt::format("{:.0f} s", arm.simulated_seconds),
-                    fmt::format("{:.1f} s", arm.wall_seconds)});
+    rows.push_back(
+        {LabelOf(name, report.setting), IntervalText(arm.cost), IntervalText(arm.expected),
+         IntervalText(arm.success, 3), std::to_string(arm.falls), IntervalText(arm.regret),
+         IntervalText(arm.expected_regret), std::to_string(arm.num_undecided),
+         fmt::format("{:.0f} s", arm.simulated_seconds), fmt::format("{:.0f} s", arm.wall_seconds),
+         fmt::format("{:.0f} s", arm.processor_seconds)});
   }
   return FormatTable(rows);
 }
 
-std::string ComparisonTable(const ScaledVerdict& verdict) {
+std::string RegretLine(const ScaledVerdict& verdict) {
+  const auto mine = verdict.arms.find(kImaginationArm), best = verdict.arms.find(kOracleArm);
+  if (mine == verdict.arms.end() || best == verdict.arms.end()) return "";
+  const double least = best->second.expected.estimate;
+  return fmt::format("expected regret of imagination: {:.1f} % of the oracle's expected cost\n",
+                     100.0 * mine->second.expected_regret->estimate / least);
+}
+
+std::string ComparisonTable(const DecisionReport& report, const ScaledVerdict& verdict) {
   if (verdict.comparisons.empty()) return "";
   std::vector<std::vector<std::string>> rows{
       {"imagination -", "chose differently", "cost [s] (Student's t)", "p (sign flips)",
        "p (signs, exact)", "expected cost [s]", "p (sign flips)", "success only / only other",
        "p (McNemar, exact)"}};
   for (const ArmComparison& c : verdict.comparisons) {
-    rows.push_back({c.arm, fmt::format("{} of {}", c.num_differ, c.success.num_pairs),
+    rows.push_back({LabelOf(c.arm, report.setting),
+                    fmt::format("{} of {}", c.num_differ, c.success.num_pairs),
                     IntervalText(c.cost), fmt::format("{:.3g}", c.t_free_p_value),
                     fmt::format("{:.3g}", c.sign_p_value), IntervalText(c.expected),
                     fmt::format("{:.3g}", c.expected_p_value),
@@ -103,7 +118,9 @@ ordered_json DecisionArmToJson(const DecisionArm& arm) {
           {"regret", IntervalToJson(arm.regret)},
           {"expected_regret", IntervalToJson(arm.expected_regret)},
           {"simulated_seconds", arm.simulated_seconds},
-          {"wall_seconds", arm.wall_seconds}};
+          {"wall_seconds", arm.wall_seconds},
+          {"processor_seconds", arm.processor_seconds},
+          {"undecided", arm.num_undecided}};
 }
 
 ordered_json ComparisonToJson(const ArmComparison& c) {
@@ -152,7 +169,7 @@ std::string DecisionText(const DecisionReport& report) {
   if (report.setting.truth == "same") text += fmt::format("({})\n", kTruthOfSame);
   for (const ScaledVerdict& verdict : report.verdicts) {
     text += fmt::format("\nprices times {:g}\n{}", verdict.scale, ArmTable(report, verdict));
-    text += ComparisonTable(verdict);
+    text += RegretLine(verdict) + ComparisonTable(report, verdict);
   }
   return report.calibration ? text + "\n" + CalibrationText(*report.calibration) : text;
 }

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "hires/evaluation/calibration.h"
-#include "hires/evaluation/decision.h"
+#include "hires/evaluation/decision/calibration.h"
+#include "hires/evaluation/decision/decision.h"
 #include "hires/evaluation/statistics.h"
 
 namespace hires::evaluation {
@@ -40,7 +40,9 @@ struct DecisionArm {
   std::optional<Interval> regret;           ///< [s] cost less the oracle's; none without oracle
   std::optional<Interval> expected_regret;  ///< [s] by expected costs
   double simulated_seconds{0.0};            ///< [s] of all plays behind its decisions
-  double wall_seconds{0.0};
+  double wall_seconds{0.0};                 ///< [s] likewise
+  double processor_seconds{0.0};            ///< [s] likewise
+  int num_undecided{0};  ///< tasks in which imagination was, and its first was taken
 };
 
 /// Imagination against another arm: differences are imagination - other.

@@ -63,16 +63,15 @@ struct TruthPlay {
   double duration{0.0};                     ///< [s] of the drive
   double virtual_seconds{0.0};              ///< [s] of the whole play
   double wall_seconds{0.0};
+  double processor_seconds{0.0};  ///< of the thread that played
 
   bool success() const { return failures.empty(); }
   bool fell() const;  ///< the load did
 };
 /// What a drive and its truth say, in the codes with which a rollout ends: the drive's own failure,
-/// the load that fell or slid (level, but away from its place), other things that fell, a touch.
-/// @param start  the world at the drive's begin.
+/// the load's first fall as world::CodeOf calls it, other things that fell, a touch.
 TruthPlay JudgeDrive(const base::Failure& failure, double duration, const RunTruth& truth,
-                     const std::string& load, const world::WorldState& start,
-                     const world::StandingCriterion& standing);
+                     const std::string& load);
 
 /// What things, lateness and all else cost in a task, failures and lateness `scale` times as much.
 imagination::Prices PricesOf(const DecisionTask& task, const imagination::Prices& prices,
@@ -91,11 +90,24 @@ struct ImaginedDrive {
   std::vector<double> durations;  ///< [s] of the rollouts that succeeded
 };
 
-/// What an arm decided, and what deciding took.
+/// What imagination answered.
+struct Advice {
+  imagination::ImaginationOutcome outcome{imagination::ImaginationOutcome::kUndecided};
+  std::string first;  ///< the motion set that leads the ranking
+};
+
+/// What an arm that imagines was told, and what that took.
 struct Decided {
-  std::vector<std::string> motion_sets;  ///< per scale of prices; empty: the task is not begun
-  double simulated_seconds{0.0};         ///< [s] of rollouts, at prices as they are
-  double wall_seconds{0.0};              ///< likewise
+  std::vector<Advice> advice;     ///< per scale of prices
+  double simulated_seconds{0.0};  ///< [s] of rollouts, at prices as they are
+  double wall_seconds{0.0};       ///< likewise
+  double processor_seconds{0.0};  ///< likewise
+};
+
+/// What was imagined of one task. It rests on the request alone, so all truths share it.
+struct ImaginedTask {
+  std::map<std::string, ImaginedDrive> drives;  ///< by motion set, at prices as they are
+  std::map<std::string, Decided> decided;       ///< by arm, those that imagine
 };
 
 /// All that was played of one task. Arms share plays: a motion set is played once per seed.
@@ -103,12 +115,8 @@ struct DecisionRecord {
   DecisionTask task;
   std::map<std::string, TruthPlay> plays;                ///< by motion set, seed of the task
   std::map<std::string, std::vector<TruthPlay>> oracle;  ///< by motion set; empty: no such arm
-  std::map<std::string, ImaginedDrive> imagined;         ///< by motion set, at prices as they are
-  std::map<std::string, Decided> decided;                ///< by arm, those that imagine
+  ImaginedTask imagined;                                 ///< empty: no arm imagines
 };
-nlohmann::ordered_json ToJson(const DecisionRecord& record);
-/// @throws base::ConfigError naming `where` and the field.
-DecisionRecord ParseDecisionRecord(const nlohmann::ordered_json& json, const std::string& where);
 
 /// Who decides.
 inline constexpr char kImaginationArm[] = "imagination";    ///< expected cost of rollouts
@@ -118,27 +126,14 @@ inline constexpr char kFastArm[] = "always_fast";
 inline constexpr char kDefaultArm[] = "domain_default";
 inline constexpr char kOracleArm[] = "oracle";  ///< the better one of many plays of the truth
 const std::vector<std::string>& AllArms();
+bool HasArm(const std::vector<std::string>& arms, const std::string& arm);
 
 /// The motion sets between which is decided.
 const std::vector<std::string>& DecisionAlternatives();
 
-/// Plays one drive in the truth.  @return nothing when cancelled.
-using PlayTruth = std::function<std::optional<TruthPlay>(
-    const DecisionTask& task, const std::string& motion_set, std::uint64_t seed)>;
-
-/// What one task is decided and played with.
-struct DecisionParts {
-  const imagination::ImaginationSetup& setup;
-  imagination::SchedulerParams scheduler;      ///< with prices
-  std::string default_motion_set{};            ///< the domain's: where imagination has no answer
-  int oracle_plays{0};                         ///< 0: no oracle
-  bool imagines{true}, is_dissertation{true};  ///< the arms that imagine
-  PlayTruth play{};
-  std::function<bool()> cancelled{};
-};
-/// Imagines, decides and plays.  @param known  plays of the oracle of the same cell, or nullptr.
-/// @return nothing when cancelled.  @throws base::ConfigError for a task that makes no sense.
-std::optional<DecisionRecord> PlayDecision(const DecisionTask& task, const DecisionParts& parts,
-                                           const DecisionRecord* known);
+/// What the robot does with an answer: what leads the ranking, also where too few rollouts were
+/// played to recommend it; nothing (""), where all fail; `by_default`, where nothing was played or
+/// the ranking that finds no way is the dissertation's, which bans nothing.
+std::string ChoiceOf(const Advice& advice, const std::string& arm, const std::string& by_default);
 
 }  // namespace hires::evaluation
