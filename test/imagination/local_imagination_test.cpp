@@ -66,6 +66,28 @@ TEST(ImagineLocallyTest, ItPlaysWhatPlayRolloutPlays) {
   EXPECT_EQ(report.seed, setup.seed);
 }
 
+TEST(ImagineLocallyTest, ItAnswersByWhatTheCallerPlays) {
+  const RolloutSetup setup = RoomRollouts(Room(), "mill");
+  std::atomic<int> played{0};
+  const PlayOne play = [&](int alternative, int index, const RolloutHooks&) {
+    ++played;
+    RolloutResult result;
+    result.outcome = Outcome::kSucceeded;
+    result.action_finished = true;
+    result.counts.notopple = 100;
+    result.duration = 10.0 * (alternative + 1) + index;
+    return std::make_optional(result);
+  };
+  SchedulerParams params = AtMost(4);
+  params.early_stop = false;
+  const Report report = ImagineLocally(setup, kActions, params, 2, play);
+  EXPECT_EQ(played, 8);
+  ASSERT_THAT(report.ranking, SizeIs(2));
+  EXPECT_EQ(report.ranking[0].action, kActions[0]) << "the quicker one";
+  EXPECT_NEAR(report.ranking[0].evidence.duration.mean, 11.5, 1e-12);
+  EXPECT_NEAR(report.ranking[1].evidence.duration.mean, 21.5, 1e-12);
+}
+
 TEST(ImagineLocallyTest, RefusesABadRequestBeforePlaying) {
   const RolloutSetup setup = RoomRollouts(Room(), "mill");
   bool asked = false;
