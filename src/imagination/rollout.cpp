@@ -7,9 +7,11 @@
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
+#include "hires/imagination/rollout_reach.h"
 #include "hires/simulation/robot_simulator.h"
 #include "imagination/load_monitor.h"
 #include "imagination/purpose.h"
+#include "imagination/reach_watch.h"
 #include "imagination/rollout_start.h"
 
 namespace hires::imagination {
@@ -31,10 +33,12 @@ Purpose PurposeIn(const RolloutSetup& setup, const base::ActionCall& action) {
 /// One play, from settling to the end.
 class Player {
  public:
+  /// `watch` is null where nothing is left out.
   Player(const RolloutSetup& setup, const base::ActionCall& action,
          std::unique_ptr<skills::Skill> skill, const simulation::Variation& variation,
-         const base::Rng& rng)
-      : params_(setup.params),
+         const base::Rng& rng, ReachWatch* watch)
+      : watch_(watch),
+        params_(setup.params),
         standing_(setup.standing),
         purpose_(PurposeIn(setup, action)),
         variation_(variation),
@@ -45,7 +49,9 @@ class Player {
     simulator_.Remember(KnownAtStart(setup, variation, simulator_));
   }
 
+  /// Nothing if it is cancelled, or comes near what is left out.
   std::optional<RolloutResult> Play(const RolloutHooks& hooks) {
+    if (!IsApart()) return std::nullopt;
     StepFor(params_.settling_time);
     LoadMonitor monitor(&simulator_, params_, standing_, purpose_);
     const double start = simulator_.time();
@@ -59,7 +65,10 @@ class Player {
       if (simulator_.time() >= next_cycle_ - half_step) status = Control(start);
       if (status.progress != skills::Progress::kRunning) break;
       simulator_.Step();
-      if (step % steps_per_look == 0) monitor.Look();
+      if (step % steps_per_look == 0) {
+        monitor.Look();
+        if (!IsApart()) return std::nullopt;
+      }
       const double elapsed = simulator_.time() - start;
       if (elapsed >= (samples + 1) * params_.sample_period - half_step) {
         ++samples;
@@ -73,7 +82,7 @@ class Player {
       if (elapsed >= params_.time_limit) status = skills::Failed(Code::kTimedOut);
     }
     result_.duration = simulator_.time() - start;
-    WatchAftermath(&monitor);
+    if (!WatchAftermath(&monitor)) return std::nullopt;
     monitor.Conclude();
     if (hooks.on_end) hooks.on_end(monitor.Down());
     Conclude(status, monitor);
@@ -103,13 +112,18 @@ class Player {
     return {Code::kRobotCollision, {part, obstacle}, part + " touches " + obstacle};
   }
 
-  void WatchAftermath(LoadMonitor* monitor) {
+  bool IsApart() const { return watch_ == nullptr || watch_->Look(simulator_); }
+
+  /// False if something comes near what is left out.
+  bool WatchAftermath(LoadMonitor* monitor) {
     const double end = simulator_.time() + params_.aftermath;
     const long steps_per_look = world::StepsPerLook(simulator_.time_step());
     while (simulator_.time() < end && !monitor->IsSettled()) {
       for (long i = 0; i < steps_per_look; ++i) simulator_.Step();
       monitor->Look();
+      if (!IsApart()) return false;
     }
+    return IsApart();
   }
 
   void Conclude(const skills::Status& status, const LoadMonitor& monitor) {
@@ -131,6 +145,7 @@ class Player {
     result_.simulated = simulator_.time();
   }
 
+  ReachWatch* const watch_;
   const RolloutParams& params_;
   const world::StandingCriterion& standing_;
   const Purpose purpose_;
@@ -140,6 +155,36 @@ class Player {
   RobotSimulator simulator_;
   double next_cycle_{0.0};
   RolloutResult result_;
+};
+
+/// From a start that cannot be.
+RolloutResult BadStart(const RolloutSetup& setup, int index, const base::ConfigError& error) {
+  // The nominal start is sound (CheckSetup), the sampled one is not: a truth that cannot be.
+  base::Log(base::LogLevel::kDebug, fmt::format("rollout={} failure={} {}", index,
+                                                base::ToString(Code::kBadStart), error.what()));
+  RolloutResult result;
+  result.failure = Code::kBadStart;
+  result.final_world = setup.world_state;
+  result.final_robot = setup.robot_state;
+  return result;
+}
+
+/// Rollout `index` of an action, from one start or narrowed ones.
+struct Rollout {
+  Rollout(const RolloutSetup& setup, const base::ActionCall& action_in, int index)
+      : action(action_in),
+        rng(base::Rng(setup.seed).Fork(static_cast<std::uint64_t>(index))),
+        variation(DrawTruth(setup, rng.Fork(kVariation))) {}
+
+  std::optional<RolloutResult> Play(const RolloutSetup& setup, const RolloutHooks& hooks,
+                                    ReachWatch* watch) const {
+    return Player(setup, action, skills::MakeSkill(*setup.skills, action), variation, rng, watch)
+        .Play(hooks);
+  }
+
+  const base::ActionCall& action;
+  const base::Rng rng;
+  const simulation::Variation variation;
 };
 
 }  // namespace
@@ -187,20 +232,38 @@ void CheckSetupForAll(const RolloutSetup& setup, const std::vector<base::ActionC
 
 std::optional<RolloutResult> PlayRollout(const RolloutSetup& setup, const base::ActionCall& action,
                                          int index, const RolloutHooks& hooks) {
-  const base::Rng rng = base::Rng(setup.seed).Fork(static_cast<std::uint64_t>(index));
-  const simulation::Variation variation = DrawTruth(setup, rng.Fork(kVariation));
-  std::unique_ptr<skills::Skill> skill = skills::MakeSkill(*setup.skills, action);
+  const Rollout rollout(setup, action, index);
+  skills::MakeSkill(*setup.skills, action);  // an unknown action is refused
   try {
-    return Player(setup, action, std::move(skill), variation, rng).Play(hooks);
+    return rollout.Play(setup, hooks, nullptr);
   } catch (const base::ConfigError& error) {
-    // The nominal start is sound (CheckSetup), the sampled one is not: a truth that cannot be.
-    base::Log(base::LogLevel::kDebug, fmt::format("rollout={} failure={} {}", index,
-                                                  base::ToString(Code::kBadStart), error.what()));
-    RolloutResult result;
-    result.failure = Code::kBadStart;
-    result.final_world = setup.world_state;
-    result.final_robot = setup.robot_state;
-    return result;
+    return BadStart(setup, index, error);
+  }
+}
+
+std::optional<ReachedRollout> PlayWithReach(const RolloutSetup& setup,
+                                            const base::ActionCall& action, int index,
+                                            const RolloutHooks& hooks) {
+  if (LevelFor(*setup.skills, action) != simulation::LevelOfDetail::kTray) {
+    auto result = PlayRollout(setup, action, index, hooks);
+    if (!result) return std::nullopt;
+    return ReachedRollout{*std::move(result), {}};
+  }
+  const Rollout rollout(setup, action, index);
+  skills::MakeSkill(*setup.skills, action);  // an unknown action is refused
+  try {
+    ReachWatch watch(setup, action);
+    while (true) {
+      auto result = rollout.Play(watch.narrowed(), hooks, &watch);
+      if (result) {
+        result->final_world = watch.WithLeftOut(result->final_world);
+        return ReachedRollout{*std::move(result), watch.reach()};
+      }
+      if (!watch.is_touched()) return std::nullopt;
+      watch.BeginAgain();
+    }
+  } catch (const base::ConfigError& error) {
+    return ReachedRollout{BadStart(setup, index, error), {}};
   }
 }
 

@@ -1,11 +1,15 @@
 #include "loop/imagination_desk.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <future>
 #include <utility>
 
 #include "hires/base/error.h"
+#include "hires/base/log.h"
 #include "hires/base/overloaded.h"
 #include "hires/imagination/report.h"
 #include "hires/loop/imagine_answer.h"
@@ -48,6 +52,11 @@ std::vector<std::string> NamesIn(const world::WorldState& world) {
 
 }  // namespace
 
+struct ImaginationDesk::Played {
+  RolloutPool::Result rollout;
+  bool is_kept{false};  // of an earlier request
+};
+
 struct ImaginationDesk::Session {
   execution::StartImagination command;
   std::size_t step;  // its place among the steps
@@ -59,7 +68,7 @@ struct ImaginationDesk::Session {
   std::vector<base::ActionCall> actions;
   std::vector<std::string> things;  // names of what is imagined with
   std::unique_ptr<imagination::Scheduler> scheduler;
-  std::map<std::pair<int, int>, RolloutPool::Result> rollouts;  // by index and alternative
+  std::map<std::pair<int, int>, Played> rollouts;  // by index and alternative
 };
 
 ImaginationDesk::ImaginationDesk(const imagination::ImaginationSetup& setup,
@@ -136,10 +145,9 @@ void ImaginationDesk::Begin(const SessionPtr& session) {
     const auto state = translation::StateOf(context, &blackboard_.view(), session->command.state);
     session->things = NamesIn(state.world);
     session->actions = base::Combinations(session->command.action);
-    const std::uint64_t seed =
-        imagining_.seed + static_cast<std::uint64_t>(session->command.request);
-    session->setup = std::make_shared<const imagination::RolloutSetup>(
-        imagination::MakeRolloutSetup(setup_, {state.world, state.robot}, seed));
+    session->setup =
+        std::make_shared<const imagination::RolloutSetup>(imagination::MakeRolloutSetup(
+            setup_, {state.world, state.robot}, SeedOf(session->command)));
     imagination::CheckSetupForAll(*session->setup, session->actions);
     imagination::SchedulerParams params = scheduler_;
     params.rollouts = imagining_.rollouts;
@@ -168,14 +176,25 @@ void ImaginationDesk::Begin(const SessionPtr& session) {
   }
 }
 
-RolloutPool::Result ImaginationDesk::Rollout(const SessionPtr& session, int alternative,
-                                             int index) {
-  const auto key = std::make_pair(index, alternative);
-  const auto known = session->rollouts.find(key);
-  if (known != session->rollouts.end()) return known->second;
-  return session->rollouts[key] =
-             pool_.Play(session->setup, session->actions.at(static_cast<std::size_t>(alternative)),
-                        index, session->unwanted);
+std::uint64_t ImaginationDesk::SeedOf(const execution::StartImagination& command) {
+  const std::uint64_t own = imagining_.seed + static_cast<std::uint64_t>(command.request);
+  return seeds_.emplace(std::make_pair(command.action.name, command.action.alternatives), own)
+      .first->second;
+}
+
+const ImaginationDesk::Played& ImaginationDesk::Rollout(const SessionPtr& session, int alternative,
+                                                        int index) {
+  const auto [known, is_new] = session->rollouts.try_emplace({index, alternative});
+  if (!is_new) return known->second;
+  const base::ActionCall& action = session->actions.at(static_cast<std::size_t>(alternative));
+  if (auto kept = kept_.Find(*session->setup, action, index)) {
+    std::promise<imagination::ReachedRollout> promise;
+    promise.set_value(*std::move(kept));
+    known->second = {promise.get_future().share(), true};
+  } else {
+    known->second.rollout = pool_.Play(session->setup, action, index, session->unwanted);
+  }
+  return known->second;
 }
 
 void ImaginationDesk::Handle(const SessionPtr& session, const imagination::Event& event) {
@@ -204,16 +223,25 @@ void ImaginationDesk::Play(const SessionPtr& session, const Assign& assign) {
   double& free_from = free_from_.at(static_cast<std::size_t>(assign.worker));
   free_from = std::max(free_from, clock_.now());
   for (int i = assign.first_index; i < assign.first_index + assign.count; ++i) {
-    const imagination::RolloutResult result = Rollout(session, assign.alternative, i).get();
-    free_from += result.simulated / pace_.speed;
-    clock_.At(free_from, [this, session, assign, i, result] {
-      Handle(session, imagination::RolloutFinished{assign.worker, assign.assignment,
-                                                   assign.alternative, i, result});
-    });
+    const Played& played = Rollout(session, assign.alternative, i);
+    if (!played.is_kept) free_from += played.rollout.get().result.simulated / pace_.speed;
+    clock_.At(free_from,
+              [this, session, assign, i, &played] { Finished(session, assign, i, played); });
   }
   clock_.At(free_from, [this, session, assign] {
     Handle(session, imagination::AssignmentFinished{assign.worker, assign.assignment});
   });
+}
+
+void ImaginationDesk::Finished(const SessionPtr& session, const Assign& assign, int index,
+                               const Played& played) {
+  if (session->is_over) return;
+  const imagination::ReachedRollout& rollout = played.rollout.get();
+  const base::ActionCall& action =
+      session->actions.at(static_cast<std::size_t>(assign.alternative));
+  if (!played.is_kept) kept_.Keep(session->setup, action, index, rollout);
+  Handle(session, imagination::RolloutFinished{assign.worker, assign.assignment, assign.alternative,
+                                               index, rollout.result});
 }
 
 void ImaginationDesk::Finish(const SessionPtr& session) {
@@ -221,6 +249,11 @@ void ImaginationDesk::Finish(const SessionPtr& session) {
   const double took = clock_.now() - step.requested;
   const Report report =
       imagination::MakeReport(*session->scheduler, session->actions, session->setup->seed, took);
+  const auto num_kept = std::count_if(session->rollouts.begin(), session->rollouts.end(),
+                                      [](const auto& rollout) { return rollout.second.is_kept; });
+  base::Log(base::LogLevel::kInfo,
+            fmt::format("imagination={} rollouts={} kept={}", session->command.request,
+                        session->rollouts.size(), num_kept));
   step.wall_seconds = took;
   step.simulated_seconds = report.simulated_seconds;
   step.predictions = report.ranking;

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hires/evaluation/achieve.h"
@@ -12,6 +14,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/scheduler.h"
 #include "loop/blackboard.h"
+#include "loop/kept_rollouts.h"
 #include "loop/rollout_pool.h"
 #include "loop/virtual_clock.h"
 
@@ -27,6 +30,8 @@ struct ImaginationPace {
 /// Imagines steps for the execution monitor: the state becomes geometry, the scheduler hands out
 /// rollouts to workers that exist in virtual time alone, and deadlines cut it short there. What a
 /// rollout gives is played by real threads, as many as there are; their number changes nothing.
+/// A request that begins again goes on with the seed that its action was first asked with, and with
+/// the rollouts that cannot depend on what has changed: they take no time.
 class ImaginationDesk {
  public:
   using OnAnswer = std::function<void(const execution::ImagineAnswered&)>;
@@ -57,7 +62,11 @@ class ImaginationDesk {
   void Handle(const SessionPtr& session, const imagination::Event& event);
   void CarryOut(const SessionPtr& session, const std::vector<imagination::Command>& commands);
   void Play(const SessionPtr& session, const imagination::Assign& assign);
-  RolloutPool::Result Rollout(const SessionPtr& session, int alternative, int index);
+  struct Played;
+  const Played& Rollout(const SessionPtr& session, int alternative, int index);
+  std::uint64_t SeedOf(const execution::StartImagination& command);
+  void Finished(const SessionPtr& session, const imagination::Assign& assign, int index,
+                const Played& played);
   void Finish(const SessionPtr& session);
   void Refuse(const SessionPtr& session, execution::ImagineAnswered::Outcome outcome,
               const std::string& why);
@@ -73,7 +82,9 @@ class ImaginationDesk {
   RolloutPool& pool_;
   const OnAnswer on_answer_;
   std::map<int, SessionPtr> sessions_;  // by request
-  std::vector<double> free_from_;       // [s] each worker, after all that it was assigned
+  KeptRollouts kept_;
+  std::map<std::pair<std::string, std::vector<std::vector<std::string>>>, std::uint64_t> seeds_;
+  std::vector<double> free_from_;  // [s] each worker, after all that it was assigned
   std::vector<evaluation::ImaginedStep> steps_;
 };
 

@@ -9,14 +9,14 @@
 #include <thread>
 #include <vector>
 
-#include "hires/imagination/rollout.h"
+#include "hires/imagination/rollout_reach.h"
 
 namespace hires::loop {
 
 /// Threads that play rollouts in the order in which they were asked for.
 class RolloutPool {
  public:
-  using Result = std::shared_future<imagination::RolloutResult>;
+  using Result = std::shared_future<imagination::ReachedRollout>;
   explicit RolloutPool(int num_threads);
   ~RolloutPool();  ///< what was not begun is not played
   RolloutPool(const RolloutPool&) = delete;
@@ -34,8 +34,8 @@ class RolloutPool {
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::packaged_task<imagination::RolloutResult()>> waiting_;  // guarded
-  bool is_ending_{false};                                                 // guarded
+  std::deque<std::packaged_task<imagination::ReachedRollout()>> waiting_;  // guarded
+  bool is_ending_{false};                                                  // guarded
   std::vector<std::thread> threads_;
 };
 

@@ -1,0 +1,145 @@
+#include "imagination/reach_watch.h"
+
+#include <algorithm>
+
+#include "hires/base/text.h"
+#include "hires/robot/posture.h"
+
+namespace hires::imagination {
+namespace {
+
+using Disc = RolloutReach::Disc;
+using Eigen::Vector2d;
+
+// [m] Fidelity only: whatever these are, what was left out has changed nothing.
+constexpr double kAtEnds = 1.0;   // around start and goal: what is in at once
+constexpr double kStride = 0.1;   // between two places that are noted
+constexpr double kMargin = 0.1;   // that is left between what moves and what was left out
+constexpr double kCompany = 0.5;  // around what was come near to: all that is in then, too
+
+double RadiusOf(const std::vector<geometry::Collision>& shapes) {
+  double radius = 0.0;
+  for (const geometry::Collision& shape : shapes) {
+    const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, shape.X_BS);
+    const Eigen::Vector3d farthest = bounds.lower.cwiseAbs().cwiseMax(bounds.upper.cwiseAbs());
+    radius = std::max(radius, farthest.norm());
+  }
+  return radius;
+}
+
+/// From above, of a robot with these joints.
+double RadiusOf(const simulation::Scene& scene, const robot::JointPositions& joints) {
+  const robot::JointPositions posture = robot::PostureOf(scene.robot, joints);
+  const bool is_usual = posture == robot::PostureOf(scene.robot, {});
+  double radius = 0.0;
+  for (geometry::Collision shape :
+       is_usual ? scene.robot_shapes_B : simulation::FrozenShapes(scene.robot, posture)) {
+    const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, shape.X_BS);
+    const Eigen::Vector3d farthest = bounds.lower.cwiseAbs().cwiseMax(bounds.upper.cwiseAbs());
+    radius = std::max(radius, farthest.head<2>().norm());
+  }
+  return radius;
+}
+
+double RadiusOf(const RolloutSetup& setup, const world::ObjectState& object) {
+  return RadiusOf(setup.scene->world.models.at(object.model)->collisions);
+}
+
+Disc DiscOf(const RolloutSetup& setup, const world::ObjectState& object) {
+  return {object.X_MO.translation.head<2>(), RadiusOf(setup, object)};
+}
+
+bool Meet(const Disc& a, const Disc& b) {
+  const double apart = a.radius + b.radius;
+  return (a.p_M - b.p_M).squaredNorm() <= apart * apart;
+}
+
+bool IsAtRest(const world::ObjectState& object) {
+  return object.V_MO.linear.isZero(0.0) && object.V_MO.angular.isZero(0.0);
+}
+
+bool IsNamedBy(const base::ActionCall& action, const std::string& name) {
+  return std::any_of(action.arguments.begin(), action.arguments.end(), [&](const auto& argument) {
+    return base::ToLower(argument) == base::ToLower(name);
+  });
+}
+
+}  // namespace
+
+bool RolloutReach::Touches(const Disc& other) const {
+  return std::any_of(discs.begin(), discs.end(),
+                     [&](const Disc& disc) { return Meet(disc, other); });
+}
+
+bool IsWithin(const RolloutReach& reach, const RolloutSetup& setup, const base::ActionCall& action,
+              const world::ObjectState& object) {
+  const bool is_own = !object.attached_to.empty() || IsNamedBy(action, object.name);
+  if (reach.is_everything || is_own || !IsAtRest(object)) return true;
+  if (setup.scene->world.models.count(object.model) == 0) return true;  // refused by name
+  return reach.Touches(DiscOf(setup, object));
+}
+
+ReachWatch::ReachWatch(const RolloutSetup& setup, const base::ActionCall& action)
+    : setup_(setup),
+      action_(action),
+      robot_radius_(RadiusOf(*setup.scene, setup.robot_state.joints)),
+      narrowed_(setup) {
+  reach_.is_everything = false;
+  reach_.discs.push_back({setup.robot_state.X_MB.position(), kAtEnds});
+  for (const std::string& argument : action.arguments) {
+    const auto area = setup.skills->areas.find(base::ToLower(argument));
+    if (area != setup.skills->areas.end()) {
+      reach_.discs.push_back({area->second.position(), kAtEnds});
+    }
+  }
+  BeginAgain();
+}
+
+void ReachWatch::BeginAgain() {
+  is_touched_ = false;
+  narrowed_.world_state.objects.clear();
+  left_out_.clear();
+  radii_.clear();
+  for (const world::ObjectState& object : setup_.world_state.objects) {
+    if (!IsWithin(reach_, setup_, action_, object)) {
+      left_out_.push_back(DiscOf(setup_, object));
+      continue;
+    }
+    const bool is_known = setup_.scene->world.models.count(object.model) > 0;
+    radii_.push_back(is_known ? RadiusOf(setup_, object) : 0.0);
+    narrowed_.world_state.objects.push_back(object);
+  }
+  noted_.assign(radii_.size() + 1, std::nullopt);
+}
+
+bool ReachWatch::Look(const simulation::RobotSimulator& simulator) {
+  is_touched_ = !Note(0, simulator.base().X_MB.position(), robot_radius_);
+  for (std::size_t i = 0; i < radii_.size() && !is_touched_; ++i) {
+    const Eigen::Vector3d p_MO = simulator.PoseOf(static_cast<int>(i)).translation;
+    is_touched_ = !Note(i + 1, p_MO.head<2>(), radii_[i]);
+  }
+  return !is_touched_;
+}
+
+bool ReachWatch::Note(std::size_t thing, const Vector2d& p_M, double radius) {
+  std::optional<Vector2d>& noted = noted_[thing];
+  if (noted && (p_M - *noted).squaredNorm() <= kStride * kStride) return true;
+  noted = p_M;
+  Disc disc{p_M, radius + kStride + kMargin};
+  const bool is_near = std::any_of(left_out_.begin(), left_out_.end(),
+                                   [&](const Disc& other) { return Meet(disc, other); });
+  if (is_near) disc.radius += kCompany;
+  reach_.discs.push_back(disc);
+  return !is_near;
+}
+
+world::WorldState ReachWatch::WithLeftOut(const world::WorldState& narrowed) const {
+  world::WorldState all = setup_.world_state;
+  for (world::ObjectState& object : all.objects) {
+    const world::ObjectState* moved = narrowed.Find(object.name);
+    if (moved != nullptr) object = *moved;
+  }
+  return all;
+}
+
+}  // namespace hires::imagination

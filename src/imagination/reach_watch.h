@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "hires/imagination/rollout_reach.h"
+
+namespace hires::imagination {
+
+/// Follows the robot and the objects of a rollout, notes where they were, and says when one of them
+/// comes near something that was left out.
+class ReachWatch {
+ public:
+  /// @throws base::ConfigError for joints that the robot does not have.
+  ReachWatch(const RolloutSetup& setup, const base::ActionCall& action);
+
+  /// The start without what stands apart from all that was reached until now.
+  const RolloutSetup& narrowed() const { return narrowed_; }
+  /// False: something is near what is left out, and the rollout must begin again with it.
+  bool Look(const simulation::RobotSimulator& simulator);
+  bool is_touched() const { return is_touched_; }  ///< what the last look said
+  void BeginAgain();                               ///< narrowed() is a wider start now
+
+  const RolloutReach& reach() const { return reach_; }
+  /// A world with what was left out, in the order of the start.
+  world::WorldState WithLeftOut(const world::WorldState& narrowed) const;
+
+ private:
+  bool Note(std::size_t thing, const Eigen::Vector2d& p_M, double radius);
+
+  const RolloutSetup& setup_;
+  const base::ActionCall& action_;
+  double robot_radius_;
+  bool is_touched_{false};
+  RolloutReach reach_;
+  RolloutSetup narrowed_;
+  std::vector<RolloutReach::Disc> left_out_;
+  std::vector<double> radii_;                          // of the narrowed objects
+  std::vector<std::optional<Eigen::Vector2d>> noted_;  // the robot, then the objects
+};
+
+/// Whether a rollout that reached so far has this object in it.
+bool IsWithin(const RolloutReach& reach, const RolloutSetup& setup, const base::ActionCall& action,
+              const world::ObjectState& object);
+
+}  // namespace hires::imagination

@@ -1,0 +1,192 @@
+#include "hires/imagination/rollout_reach.h"
+
+#include <gtest/gtest.h>
+
+#include "hires/base/error.h"
+#include "imagination/room_rollouts.h"
+
+namespace hires::imagination::rollout_reach_test {
+namespace {
+
+using hires::test_support::OnTray;
+using hires::test_support::Room;
+using hires::test_support::RoomRollouts;
+using hires::test_support::SomeUncertainty;
+using world::ObjectState;
+
+const base::ActionCall kFast{"move_base_param", {"east", "fast"}};
+
+ObjectState OnFloor(const std::string& name, double x, double y) {
+  ObjectState object;
+  object.name = name;
+  object.model = "mill";
+  object.X_MO = geometry::Lift({x, y, 0.0}, 0.0002);
+  return object;
+}
+
+/// A drive from (1, 2) to (4.5, 2) with a load that falls now and then.
+RolloutSetup Start(const std::vector<ObjectState>& about = {}) {
+  static const RolloutSetup empty = RoomRollouts(Room(), "tower", SomeUncertainty());
+  RolloutSetup setup = empty;
+  auto& objects = setup.world_state.objects;
+  objects.insert(objects.end(), about.begin(), about.end());
+  return setup;
+}
+
+RolloutSetup Reseeded(RolloutSetup setup) {
+  ++setup.seed;
+  return setup;
+}
+
+ReachedRollout Play(const RolloutSetup& setup, int index = 0) {
+  return PlayWithReach(setup, kFast, index).value();
+}
+
+bool Stays(const RolloutSetup& before, const RolloutSetup& after) {
+  return ResultFrom(before, Play(before), kFast, after).has_value();
+}
+
+void ExpectSameBits(const RolloutResult& a, const RolloutResult& b) {
+  EXPECT_TRUE(SameOutcome(a, b));
+  EXPECT_EQ(a.simulated, b.simulated);
+  EXPECT_TRUE(a.final_robot == b.final_robot);
+  ASSERT_EQ(a.final_world.objects.size(), b.final_world.objects.size());
+  for (std::size_t i = 0; i < a.final_world.objects.size(); ++i) {
+    const ObjectState &first = a.final_world.objects[i], &second = b.final_world.objects[i];
+    EXPECT_EQ(first.name, second.name);
+    EXPECT_EQ(first.X_MO.translation, second.X_MO.translation);
+    EXPECT_EQ(first.X_MO.rotation.coeffs(), second.X_MO.rotation.coeffs());
+    EXPECT_EQ(first.V_MO.linear, second.V_MO.linear);
+    EXPECT_EQ(first.V_MO.angular, second.V_MO.angular);
+  }
+}
+
+bool CanBe(const RolloutSetup& setup) {
+  try {
+    CheckSetup(setup, kFast);
+    return true;
+  } catch (const base::ConfigError&) {
+    return false;
+  }
+}
+
+/// Mostly beside a wall, where it stays left out unless a load rolls there.
+ObjectState Anywhere(const std::string& name, base::Rng* rng) {
+  const double x = rng->Uniform(0.2, 5.8), y = rng->Uniform(0.2, 0.6);
+  const int where = rng->Index(5);
+  return OnFloor(name, x, where == 0 ? rng->Uniform(0.2, 3.8) : where < 3 ? y : 4.0 - y);
+}
+
+/// One thing is moved, gone or new; the load is moved by a millimetre.
+RolloutSetup Changed(RolloutSetup setup, base::Rng* rng) {
+  auto& objects = setup.world_state.objects;
+  switch (rng->Index(10)) {
+    case 0:
+      objects[0].X_MO.translation.x() += 0.001;
+      break;
+    case 1:
+    case 2:
+      objects.erase(objects.begin() + 1 + rng->Index(static_cast<int>(objects.size()) - 1));
+      break;
+    case 3:
+    case 4:
+      objects.insert(objects.begin() + rng->Index(static_cast<int>(objects.size()) + 1),
+                     Anywhere("new", rng));
+      break;
+    default:
+      ObjectState& moved = objects[1 + rng->Index(static_cast<int>(objects.size()) - 1)];
+      moved = Anywhere(moved.name, rng);
+  }
+  return setup;
+}
+
+template <typename Draw>
+RolloutSetup Possible(const Draw& draw) {
+  RolloutSetup setup = draw();
+  while (!CanBe(setup)) setup = draw();
+  return setup;
+}
+
+TEST(RolloutReachTest, WhatStaysIsWhatPlayingAgainGives) {
+  const base::Rng seeds(14);
+  int num_kept = 0, num_refused = 0;
+  for (int round = 0; round < 20; ++round) {
+    base::Rng rng = seeds.Fork(static_cast<std::uint64_t>(round));
+    const RolloutSetup before = Possible([&] {
+      return Start({Anywhere("a", &rng), Anywhere("b", &rng), Anywhere("c", &rng)});
+    });
+    const RolloutSetup after = Possible([&] { return Changed(before, &rng); });
+    const auto kept = ResultFrom(before, Play(before, round % 4), kFast, after);
+    (kept ? num_kept : num_refused) += 1;
+    if (!kept) continue;
+    const ReachedRollout again = Play(after, round % 4);
+    SCOPED_TRACE(round);
+    ExpectSameBits(kept->result, again.result);
+    EXPECT_EQ(kept->reach.discs.size(), again.reach.discs.size());
+  }
+  EXPECT_GE(num_kept, 4);
+  EXPECT_GE(num_refused, 4);
+}
+
+TEST(RolloutReachTest, WhatIsFarAwayMayChange) {
+  const RolloutSetup before = Start({OnFloor("far", 2.7, 0.3)});
+  EXPECT_TRUE(Stays(before, before));
+  EXPECT_TRUE(Stays(before, Start()));
+  EXPECT_TRUE(Stays(before, Start({OnFloor("far", 2.5, 3.7)})));
+  EXPECT_TRUE(Stays(Start(), before));
+}
+
+TEST(RolloutReachTest, NothingStaysThatTheChangeMayTouch) {
+  const RolloutSetup before = Start({OnFloor("far", 2.7, 0.3)});
+  EXPECT_FALSE(Stays(before, Start({OnFloor("far", 2.7, 2.0)}))) << "moved into the way";
+  EXPECT_FALSE(Stays(Start({OnFloor("far", 2.7, 2.0)}), before)) << "out of the way";
+  EXPECT_FALSE(Stays(before, Start({OnFloor("far", 2.7, 0.3), OnFloor("new", 3.0, 2.3)})));
+  EXPECT_FALSE(Stays(before, Reseeded(before)));
+  RolloutSetup other = before;
+  other.world_state.objects[0].X_MO.translation.y() += 1e-12;
+  EXPECT_FALSE(Stays(before, other)) << "the load itself";
+  other = before;
+  other.world_state.objects[0].model = "mill";
+  EXPECT_FALSE(Stays(before, other));
+  other = before;
+  other.robot_state.X_MB.yaw += 1e-12;
+  EXPECT_FALSE(Stays(before, other));
+  other = before;
+  other.world_state.objects[1].V_MO.linear.x() = 0.1;
+  EXPECT_FALSE(Stays(before, other)) << "it rolls, and may come near";
+}
+
+TEST(RolloutReachTest, WhatMayDependOnAnythingStaysOnlyForTheSameStart) {
+  const RolloutSetup before = Start({OnFloor("far", 2.7, 0.3)});
+  ReachedRollout rollout = Play(before);
+  rollout.reach = {};
+  EXPECT_TRUE(ResultFrom(before, rollout, kFast, before).has_value());
+  EXPECT_FALSE(ResultFrom(before, rollout, kFast, Start()).has_value());
+}
+
+TEST(RolloutReachTest, WithNothingAboutItIsTheRolloutAsEver) {
+  for (int index = 0; index < 3; ++index) {
+    ExpectSameBits(Play(Start(), index).result, PlayRollout(Start(), kFast, index).value());
+  }
+}
+
+TEST(RolloutReachTest, WhatIsInTheWayIsInPhysics) {
+  const RolloutSetup setup = Start({OnFloor("far", 2.7, 0.3), OnFloor("hit", 2.75, 2.0)});
+  const RolloutResult with_all = PlayRollout(setup, kFast, 0).value();
+  const RolloutResult result = Play(setup).result;
+  EXPECT_EQ(ToString(result.failure), ToString(with_all.failure));
+  EXPECT_EQ(result.duration, with_all.duration);
+  EXPECT_EQ(result.final_world.objects[1].X_MO.translation,
+            setup.world_state.objects[1].X_MO.translation);
+  EXPECT_GT((result.final_world.objects[2].X_MO.translation -
+             setup.world_state.objects[2].X_MO.translation)
+                .norm(),
+            0.1);
+}
+
+TEST(RolloutReachTest, CancelledItGivesUp) {
+  EXPECT_FALSE(PlayWithReach(Start(), kFast, 0, {[] { return true; }, {}}).has_value());
+}
+
+}  // namespace
+}  // namespace hires::imagination::rollout_reach_test
