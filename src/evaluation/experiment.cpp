@@ -113,26 +113,26 @@ class Durations : public Kind {
       : durations_(durations),
         config_(config),
         stage_(std::move(stage)),
-        rollouts_(durations.rows.size()) {}
+        plays_(NothingPlayed(durations)) {}
   std::vector<Drive> Drives() const override {
     std::vector<Drive> drives;
     for (const DurationsConfig::Row& row : durations_.rows) {
-      drives.emplace_back(row.from, DriveTo(row.to, row.motion_set));
+      drives.emplace_back(StartOf(durations_, row), ActionOf(row));
     }
     return drives;
   }
   bool Play(const Crew& crew) override {
-    auto rollouts = PlayDurations(durations_, config_, *stage_, crew);
-    if (rollouts) rollouts_ = *std::move(rollouts);
-    return rollouts.has_value();
+    auto plays = PlayDurations(durations_, config_, *stage_, crew);
+    if (plays) plays_ = *std::move(plays);
+    return plays.has_value();
   }
-  Findings SumUp() const override { return SumUpDurations(durations_, rollouts_); }
+  Findings SumUp() const override { return SumUpDurations(durations_, plays_); }
 
  private:
   const DurationsConfig& durations_;
   const ExperimentConfig& config_;
   std::shared_ptr<const Stage> stage_;
-  std::vector<Rollouts> rollouts_;
+  DurationPlays plays_;
 };
 
 class Braking : public Kind {

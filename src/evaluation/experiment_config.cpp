@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
@@ -126,20 +127,64 @@ DurationReference ReadDurationReference(ParamReader in) {
   return reference;
 }
 
+DurationsConfig::Row ReadDurationsRow(ParamReader* in, const std::vector<Goal>& goals) {
+  DurationsConfig::Row row;
+  row.action = in->Get("action", base::OneOf({"move_base_param", "move_torso", "tuck_arms"}));
+  if (row.action == "move_base_param") {
+    row.motion_set = in->GetString("motion_set");
+    row.from = GetGoal(in, "from", goals);
+    row.to = GetGoal(in, "to", goals);
+  } else {
+    row.from = in->GetString("from");
+    row.to = in->GetString("to");
+  }
+  row.simulated = ReadDurationReference(in->Sub("simulated"));
+  row.real = ReadDurationReference(in->Sub("real"));
+  return row;
+}
+
+bool IsWayBack(const DurationsConfig::Row& a, const DurationsConfig::Row& b) {
+  return a.action == b.action && a.motion_set == b.motion_set && a.from == b.to && a.to == b.from;
+}
+
+/// Tables can be read as from/to and as to/from: rows are compared with their way back.
+void CheckWaysBack(const ParamReader& in, const DurationsConfig& durations) {
+  for (const DurationsConfig::Row& row : durations.rows) {
+    const auto num_back = std::count_if(durations.rows.begin(), durations.rows.end(),
+                                        [&](const auto& other) { return IsWayBack(row, other); });
+    if (num_back == 1 && row.from != row.to) continue;
+    in.Fail("actions", fmt::format("wanted one way back of {} {} from {} to {}", row.action,
+                                   row.motion_set, row.from, row.to));
+  }
+}
+
+std::vector<DurationsConfig::Planner> ReadDurationPlanners(ParamReader* in) {
+  std::vector<DurationsConfig::Planner> planners;
+  for (const std::string& name : in->GetStrings("planners")) {
+    if (name != "scene" && name != "unscaled") {
+      in->Fail("planners", base::UnknownName("planner", name, {"scene", "unscaled"}));
+    }
+    planners.push_back(name == "scene" ? DurationsConfig::Planner::kScene
+                                       : DurationsConfig::Planner::kUnscaled);
+  }
+  const std::set<DurationsConfig::Planner> different(planners.begin(), planners.end());
+  if (planners.empty() || different.size() < planners.size()) {
+    in->Fail("planners", "wanted at least one, and each once");
+  }
+  return planners;
+}
+
 DurationsConfig ReadDurations(ParamReader* in, const std::vector<Goal>& goals,
                               const ExperimentOverrides& overrides) {
   DurationsConfig durations;
   durations.runs = overrides.runs.value_or(in->Get("runs", Between(1, kMostRuns)));
+  durations.postures_at = GetGoal(in, "postures_at", goals);
+  durations.planners = ReadDurationPlanners(in);
   for (ParamReader& row : in->SubList("actions")) {
-    DurationsConfig::Row action;
-    action.motion_set = row.GetString("motion_set");
-    action.from = GetGoal(&row, "from", goals);
-    action.to = GetGoal(&row, "to", goals);
-    action.simulated = ReadDurationReference(row.Sub("simulated"));
-    action.real = ReadDurationReference(row.Sub("real"));
-    durations.rows.push_back(std::move(action));
+    durations.rows.push_back(ReadDurationsRow(&row, goals));
   }
   if (durations.rows.empty()) in->Fail("actions", "wanted at least one action");
+  CheckWaysBack(*in, durations);
   return durations;
 }
 
@@ -213,6 +258,19 @@ ExperimentConfig ReadExperiment(const std::string& path, const ExperimentOverrid
   in.RejectUnknownKeys();
   config.hash = HashOf(in, overrides);
   return config;
+}
+
+const char* ToString(DurationsConfig::Planner planner) {
+  return planner == DurationsConfig::Planner::kScene ? "scene" : "unscaled";
+}
+
+std::size_t WayBack(const DurationsConfig& durations, std::size_t row) {
+  std::size_t back = 0;
+  while (back < durations.rows.size() && !IsWayBack(durations.rows[row], durations.rows[back])) {
+    ++back;
+  }
+  HIRES_CHECK(back < durations.rows.size(), "every row has its way back");
+  return back;
 }
 
 std::string KindName(const ExperimentConfig& config) { return kKinds[config.kind.index()]; }

@@ -1,167 +1,114 @@
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
-#include <nlohmann/json.hpp>
+#include <set>
 
 #include "evaluation/experiment_kinds.h"
+#include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/experiment_parallel.h"
-#include "hires/evaluation/statistics.h"
-#include "hires/imagination/evidence.h"
 
 namespace hires::evaluation {
 namespace {
 
-/// What one row of the table found.
-struct Timed {
-  std::vector<double> durations;  // of runs that reached their goal
-  int runs{0};
+using Planner = DurationsConfig::Planner;
+/// The same stage with the local planner that is meant.
+Stage StageWith(const Stage& stage, Planner planner) {
+  Stage changed = stage;
+  if (planner == Planner::kScene) return changed;
+  skills::DrivingContext driving = *stage.setup.skills->driving;
+  driving.params.local.max_scaling_factor = 0.0;
+  skills::SkillSet skills = *stage.setup.skills;
+  skills.driving = std::make_shared<const skills::DrivingContext>(std::move(driving));
+  changed.setup.skills = std::make_shared<const skills::SkillSet>(std::move(skills));
+  return changed;
+}
 
-  double mean() const {
-    return durations.empty() ? std::numeric_limits<double>::quiet_NaN() : Mean(durations);
+template <typename Postures>
+const typename Postures::mapped_type& PostureOf(const Postures& postures, const std::string& name) {
+  const auto found = postures.find(base::ToLower(name));
+  if (found != postures.end()) return found->second;
+  std::vector<std::string> known;
+  for (const auto& [posture, value] : postures) known.push_back(posture);
+  throw base::ConfigError("durations.actions: " + base::UnknownName("posture", name, known));
+}
+
+/// Torso, or both arms, as a row begins.
+void TakePosture(const DurationsConfig::Row& row, const robot::UpperBodyProfile& body,
+                 robot::RobotState* state) {
+  if (row.action == "move_torso") {
+    state->joints[body.torso_joint] = PostureOf(body.torso_postures, row.from);
+    return;
   }
+  for (const auto& [name, arm] : body.arms) {
+    const std::vector<double>& posture = PostureOf(arm.postures, row.from).front();
+    for (std::size_t j = 0; j < arm.joints.size(); ++j) state->joints[arm.joints[j]] = posture[j];
+  }
+}
+
+imagination::RolloutSetup SetupOf(const DurationsConfig& durations, const DurationsConfig::Row& row,
+                                  const Stage& stage, std::uint64_t seed) {
+  imagination::RolloutSetup setup = SetupAt(stage, StartOf(durations, row), seed);
+  if (row.IsDrive()) return setup;
+  const auto& body = stage.setup.scene->robot.profile.upper_body;
+  if (!body) throw base::ConfigError("durations: the robot has nothing above its base that moves");
+  TakePosture(row, *body, &setup.robot_state);
+  return setup;
+}
+
+/// One row with one planner.
+struct Cell {
+  std::size_t planner{0}, row{0};
+  imagination::RolloutSetup setup;
 };
 
-Timed TimedOf(const Rollouts& rollouts) {
-  Timed timed;
-  timed.runs = static_cast<int>(rollouts.size());
-  for (const imagination::RolloutResult& result : rollouts) {
-    if (!imagination::ActionFailed(result)) timed.durations.push_back(result.duration);
-  }
-  return timed;
-}
-
-std::string Reference(const DurationReference& reference) {
-  return fmt::format("{:.2f} ± {:.2f}", reference.mean, reference.sigma);
-}
-
-std::vector<std::string> TableRow(const DurationsConfig::Row& row, const Timed& timed) {
-  return {row.motion_set,
-          row.from + "/" + row.to,
-          fmt::format("{} of {}", timed.durations.size(), timed.runs),
-          fmt::format("{:.2f} ± {:.2f}", timed.mean(), Deviation(timed.durations)),
-          Reference(row.simulated),
-          fmt::format("{:.2f}", timed.mean() - row.simulated.mean),
-          Reference(row.real),
-          fmt::format("{:.2f}", timed.mean() - row.real.mean)};
-}
-
-/// Errors of the means against one of the references.
-struct Errors {
-  const char* title;
-  const char* measure;
-  std::vector<double> absolute;
-  double worst{0.0};
-
-  double mean() const {
-    return absolute.empty() ? std::numeric_limits<double>::quiet_NaN() : Mean(absolute);
-  }
-
-  void Add(double mean, double reference) {
-    absolute.push_back(std::abs(mean - reference));
-    // A row without any duration is no number, and stays one.
-    worst = std::isnan(absolute.back()) || absolute.back() > worst ? absolute.back() : worst;
-  }
-};
-
-/// The row of the way back with the same motion set, or nothing.
-const DurationsConfig::Row* WayBack(const DurationsConfig& durations,
-                                    const DurationsConfig::Row& row) {
-  for (const DurationsConfig::Row& other : durations.rows) {
-    if (other.motion_set == row.motion_set && other.from == row.to && other.to == row.from) {
-      return &other;
+std::vector<Cell> CellsOf(const DurationsConfig& durations, const Stage& stage,
+                          std::uint64_t seed) {
+  std::vector<Cell> cells;
+  for (std::size_t p = 0; p < durations.planners.size(); ++p) {
+    const Stage with_planner = StageWith(stage, durations.planners[p]);
+    for (std::size_t r = 0; r < durations.rows.size(); ++r) {
+      if (p > 0 && !durations.rows[r].IsDrive()) continue;
+      cells.push_back({p, r, SetupOf(durations, durations.rows[r], with_planner, seed)});
+      imagination::CheckSetup(cells.back().setup, ActionOf(durations.rows[r]));
     }
   }
-  return nullptr;
-}
-
-/// Routes on which the second motion set of the file takes longer than the first.
-int NumSlowerRoutes(const DurationsConfig& durations, const std::vector<Timed>& timed) {
-  int slower = 0;
-  for (std::size_t a = 0; a < durations.rows.size(); ++a) {
-    for (std::size_t b = a + 1; b < durations.rows.size(); ++b) {
-      const DurationsConfig::Row &first = durations.rows[a], &second = durations.rows[b];
-      if (first.from != second.from || first.to != second.to) continue;
-      slower += timed[b].mean() > timed[a].mean();
-    }
-  }
-  return slower;
-}
-
-nlohmann::ordered_json RowOf(const DurationsConfig::Row& row, int run,
-                             const imagination::RolloutResult& result) {
-  return {{"motion_set", row.motion_set},
-          {"from", row.from},
-          {"to", row.to},
-          {"run", run},
-          {"failure", base::ToString(result.failure.code)},
-          {"subjects", base::Join(result.failure.subjects, " ")},
-          {"action_finished", result.action_finished},
-          {"duration", result.duration}};
+  return cells;
 }
 
 }  // namespace
 
-std::optional<std::vector<Rollouts>> PlayDurations(const DurationsConfig& durations,
-                                                   const ExperimentConfig& config,
-                                                   const Stage& stage, const Crew& crew) {
-  const int num_rows = static_cast<int>(durations.rows.size());
-  std::vector<Rollouts> rollouts(num_rows, Rollouts(durations.runs));
-  const auto play = [&](int task, const Advance& advance) {
-    const int row = task % num_rows, run = task / num_rows;
-    const DurationsConfig::Row& what = durations.rows[row];
-    auto result =
-        imagination::PlayRollout(SetupAt(stage, what.from, config.seed),
-                                 DriveTo(what.to, what.motion_set), run, {crew.cancelled, {}});
-    if (result) rollouts[row][run] = *std::move(result);
-    advance(1.0);
-  };
-  const int num_tasks = num_rows * durations.runs;
-  if (!DoInParallel(num_tasks, num_tasks, crew, play)) return std::nullopt;
-  return rollouts;
+DurationPlays NothingPlayed(const DurationsConfig& durations) {
+  return DurationPlays(durations.planners.size(), std::vector<Rollouts>(durations.rows.size()));
 }
 
-Findings SumUpDurations(const DurationsConfig& durations, const std::vector<Rollouts>& rollouts) {
-  Findings findings;
-  TextTable table{"Durations [s], mean ± sigma (1/N), beside Tables 6.1 and 6.2",
-                  {{"motion set", "route", "reached", "found", "simulated, 6.1", "difference",
-                    "real, 6.2", "difference"}}};
-  std::vector<Timed> timed;
-  Errors simulated{"simulated, 6.1", "_simulated", {}}, real{"real, 6.2", "_real", {}},
-      simulated_back{"simulated, of the way back", "_simulated_way_back", {}},
-      real_back{"real, of the way back", "_real_way_back", {}};
-  double failed = 0.0;
-  std::vector<double> sigmas;
-  for (std::size_t r = 0; r < durations.rows.size(); ++r) {
-    const DurationsConfig::Row& row = durations.rows[r];
-    timed.push_back(TimedOf(rollouts[r]));
-    table.rows.push_back(TableRow(row, timed[r]));
-    simulated.Add(timed[r].mean(), row.simulated.mean);
-    real.Add(timed[r].mean(), row.real.mean);
-    if (const DurationsConfig::Row* back = WayBack(durations, row)) {
-      simulated_back.Add(timed[r].mean(), back->simulated.mean);
-      real_back.Add(timed[r].mean(), back->real.mean);
-    }
-    sigmas.push_back(Deviation(timed[r].durations));
-    failed += timed[r].runs - static_cast<double>(timed[r].durations.size());
-    for (std::size_t i = 0; i < rollouts[r].size(); ++i) {
-      findings.rows.push_back(RowOf(row, static_cast<int>(i), rollouts[r][i]));
-      findings.simulated_seconds += rollouts[r][i].simulated;
-    }
-  }
-  TextTable table_of_errors{"Absolute errors of the means [s]", {{"against", "mean", "largest"}}};
-  findings.measures = {{"failed", failed},
-                       {"mean_sigma", Mean(sigmas)},
-                       {"slower_routes", static_cast<double>(NumSlowerRoutes(durations, timed))}};
-  for (const Errors* errors : {&simulated, &real, &simulated_back, &real_back}) {
-    table_of_errors.rows.push_back({errors->title, fmt::format("{:.2f}", errors->mean()),
-                                    fmt::format("{:.2f}", errors->worst)});
-    findings.measures.push_back({std::string("mean_error") + errors->measure, errors->mean()});
-    findings.measures.push_back({std::string("max_error") + errors->measure, errors->worst});
-  }
-  findings.tables = {std::move(table), std::move(table_of_errors)};
-  return findings;
+base::ActionCall ActionOf(const DurationsConfig::Row& row) {
+  if (row.IsDrive()) return DriveTo(row.to, row.motion_set);
+  if (row.action == "move_torso") return {row.action, {row.to}};
+  return {row.action, {row.to, row.to}};
+}
+
+std::string StartOf(const DurationsConfig& durations, const DurationsConfig::Row& row) {
+  return row.IsDrive() ? row.from : durations.postures_at;
+}
+
+std::optional<DurationPlays> PlayDurations(const DurationsConfig& durations,
+                                           const ExperimentConfig& config, const Stage& stage,
+                                           const Crew& crew) {
+  const std::vector<Cell> cells = CellsOf(durations, stage, config.seed);
+  const int num_cells = static_cast<int>(cells.size());
+  DurationPlays plays = NothingPlayed(durations);
+  for (const Cell& cell : cells) plays[cell.planner][cell.row].resize(durations.runs);
+  const auto play = [&](int task, const Advance& advance) {
+    const Cell& cell = cells[task % num_cells];
+    const int run = task / num_cells;
+    auto result = imagination::PlayRollout(cell.setup, ActionOf(durations.rows[cell.row]), run,
+                                           {crew.cancelled, {}});
+    if (result) plays[cell.planner][cell.row][run] = *std::move(result);
+    advance(1.0);
+  };
+  const int num_tasks = num_cells * durations.runs;
+  if (!DoInParallel(num_tasks, num_tasks, crew, play)) return std::nullopt;
+  return plays;
 }
 
 }  // namespace hires::evaluation

@@ -7,6 +7,7 @@
 
 #include "evaluation/experiment_chain.h"
 #include "evaluation/experiment_stage.h"
+#include "hires/base/action.h"
 #include "hires/base/rng.h"
 #include "hires/evaluation/experiment.h"
 #include "hires/imagination/rollout_result.h"
@@ -40,10 +41,16 @@ std::optional<std::vector<Chains>> PlayToppleLoop(const ToppleLoopConfig& loop,
                                                   const Crew& crew);
 Findings SumUpToppleLoop(const ToppleLoopConfig& loop, const std::vector<Chains>& by_set);
 
-/// Per row, in order.
-std::optional<std::vector<Rollouts>> PlayDurations(const DurationsConfig& durations,
-                                                   const ExperimentConfig& config,
-                                                   const Stage& stage, const Crew& crew);
-Findings SumUpDurations(const DurationsConfig& durations, const std::vector<Rollouts>& rollouts);
+/// By planner of the configuration, then by row, both in order. Torso and arms are played with the
+/// first planner only.
+using DurationPlays = std::vector<std::vector<Rollouts>>;
+DurationPlays NothingPlayed(const DurationsConfig& durations);
+/// What a row does; where it starts is the goal of StartOf.
+base::ActionCall ActionOf(const DurationsConfig::Row& row);
+std::string StartOf(const DurationsConfig& durations, const DurationsConfig::Row& row);
+std::optional<DurationPlays> PlayDurations(const DurationsConfig& durations,
+                                           const ExperimentConfig& config, const Stage& stage,
+                                           const Crew& crew);
+Findings SumUpDurations(const DurationsConfig& durations, const DurationPlays& plays);
 
 }  // namespace hires::evaluation

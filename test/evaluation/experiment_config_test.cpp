@@ -83,6 +83,16 @@ TEST(ExperimentConfigTest, GoalsAreTheAreasOfTheRestaurant) {
   }
 }
 
+/// As the tables shorten it.
+std::string Short(const std::string& name) {
+  const std::map<std::string, std::string> names{{"TorsoUpPosture", "up"},
+                                                 {"TorsoDownPosture", "down"},
+                                                 {"ArmTuckedPosture", "tucked"},
+                                                 {"ArmUnTuckedPosture", "untucked"}};
+  const auto found = names.find(name);
+  return found == names.end() ? name : found->second;
+}
+
 TEST(ExperimentConfigTest, DurationsAreThoseOfThePublishedTables) {
   if (!fs::exists(kShared + "/table_6_1_sim.csv")) GTEST_SKIP() << "no tables in " << kShared;
   const auto config = ReadExperiment(kFolder + "durations.yaml");
@@ -90,15 +100,16 @@ TEST(ExperimentConfigTest, DurationsAreThoseOfThePublishedTables) {
   const auto compare = [&](const std::string& file, auto reference) {
     std::size_t next = 0;
     for (const auto& published : ReadCsv(kShared + file)) {
-      if (published.at("action") != "move_base_param") continue;
       ASSERT_LT(next, rows.size());
       const DurationsConfig::Row& row = rows[next++];
+      EXPECT_EQ(row.action, published.at("action"));
       EXPECT_EQ(row.motion_set, published.at("parameter"));
-      EXPECT_EQ(row.from, published.at("from"));
-      EXPECT_EQ(row.to, published.at("to"));
+      EXPECT_EQ(Short(row.from), published.at("from"));
+      EXPECT_EQ(Short(row.to), published.at("to"));
       EXPECT_EQ(reference(row).mean, std::stod(published.at("mean_s")));
       EXPECT_EQ(reference(row).sigma, std::stod(published.at("sigma_s")));
     }
+    EXPECT_EQ(next, 12u);
     EXPECT_EQ(next, rows.size());
   };
   compare("/table_6_1_sim.csv", [](const auto& row) { return row.simulated; });
@@ -189,6 +200,14 @@ TEST(ExperimentConfigTest, MistakesOfTheOtherKindsAreNamedToo) {
               HasSubstr("actions[0].simulated.mean is '-1'"));
   EXPECT_THAT(ErrorAfter("durations.yaml", "runs: 20", "runs: many"),
               HasSubstr("wanted a whole number"));
+  EXPECT_THAT(ErrorAfter("durations.yaml", "fast, from: ET2, to: EC1", "fast, from: ET2, to: NT1"),
+              HasSubstr("wanted one way back of move_base_param fast from EC1 to ET2"));
+  EXPECT_THAT(ErrorAfter("durations.yaml", "[scene, unscaled]", "[scene, scene]"),
+              HasSubstr("wanted at least one, and each once"));
+  EXPECT_THAT(ErrorAfter("durations.yaml", "[scene, unscaled]", "[dwa]"),
+              HasSubstr("planner 'dwa' is unknown"));
+  EXPECT_THAT(ErrorAfter("durations.yaml", "postures_at: home", "postures_at: house"),
+              HasSubstr("durations.postures_at is 'house', wanted one of 'EC1'"));
 }
 
 }  // namespace

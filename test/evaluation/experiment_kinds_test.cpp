@@ -162,45 +162,5 @@ TEST(ToppleLoopTest, TheReferenceStandsBesideWithItsPublishedConfidence) {
   EXPECT_TRUE(std::isnan(ValueOf(findings, "topple_ratio")));
 }
 
-TEST(DurationsTest, MeansStandBesideTheirReferences) {
-  DurationsConfig durations;
-  durations.rows = {{"fast", "a", "b", {10.0, 0.1}, {12.0, 0.2}},
-                    {"slow", "a", "b", {20.0, 0.1}, {21.0, 0.2}}};
-  const Findings findings =
-      SumUpDurations(durations, {{Result(1, 0, 0, 0, 11.0), Result(1, 0, 0, 0, 13.0)},
-                                 {Result(1, 0, 0, 0, 17.0), Result(1, 0, 0, 0, 17.0)}});
-  EXPECT_DOUBLE_EQ(ValueOf(findings, "mean_error_simulated"), 2.5);
-  EXPECT_DOUBLE_EQ(ValueOf(findings, "max_error_simulated"), 3.0);
-  EXPECT_DOUBLE_EQ(ValueOf(findings, "mean_error_real"), 2.0);
-  EXPECT_DOUBLE_EQ(ValueOf(findings, "mean_sigma"), 0.5);
-  EXPECT_EQ(ValueOf(findings, "slower_routes"), 1.0);
-  EXPECT_EQ(ValueOf(findings, "failed"), 0.0);
-}
-
-TEST(DurationsTest, RoutesAreComparedWithTheirWayBackToo) {
-  DurationsConfig durations;
-  durations.rows = {{"fast", "a", "b", {10.0, 0.1}, {12.0, 0.2}},
-                    {"fast", "b", "a", {20.0, 0.1}, {23.0, 0.2}},
-                    {"slow", "b", "a", {99.0, 0.1}, {99.0, 0.2}}};
-  const Findings findings = SumUpDurations(
-      durations,
-      {{Result(1, 0, 0, 0, 19.0)}, {Result(1, 0, 0, 0, 13.0)}, {Result(1, 0, 0, 0, 50.0)}});
-  EXPECT_DOUBLE_EQ(ValueOf(findings, "mean_error_simulated_way_back"), 2.0);
-  EXPECT_DOUBLE_EQ(ValueOf(findings, "max_error_simulated_way_back"), 3.0);
-  EXPECT_DOUBLE_EQ(ValueOf(findings, "mean_error_real_way_back"), 2.5);
-}
-
-TEST(DurationsTest, AnActionThatNeverSucceedsIsNoNumberAndStaysOne) {
-  DurationsConfig durations;
-  durations.rows = {{"fast", "a", "b", {10.0, 0.1}, {12.0, 0.2}},
-                    {"fast", "b", "a", {20.0, 0.1}, {21.0, 0.2}}};
-  RolloutResult failed = Result(1, 0, 0, 0);
-  failed.action_finished = false;
-  const Findings findings = SumUpDurations(durations, {{failed}, {Result(1, 0, 0, 0, 20.0)}});
-  EXPECT_EQ(ValueOf(findings, "failed"), 1.0);
-  EXPECT_TRUE(std::isnan(ValueOf(findings, "mean_error_simulated")));
-  EXPECT_TRUE(std::isnan(ValueOf(findings, "max_error_simulated")));
-}
-
 }  // namespace
 }  // namespace hires::evaluation::experiment_kinds_test

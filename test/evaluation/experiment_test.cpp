@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "evaluation/experiment_chain.h"
 #include "hires/base/error.h"
@@ -140,6 +141,40 @@ TEST(ExperimentTest, ACancelledOneGivesNothing) {
   Crew crew = CrewOf(2);
   crew.cancelled = [] { return true; };
   EXPECT_FALSE(RunExperiment(Config("legs_world"), crew).has_value());
+}
+
+TEST(DurationsExperimentTest, EachPlannerDrivesAndTorsoAndArmsMoveOnce) {
+  const auto json = Played(Config("durations", "{}", {{}, 1, ""}));
+  std::map<std::string, std::vector<double>> durations;
+  for (const auto& row : json["rows"]) {
+    EXPECT_EQ(row["failure"], "");
+    durations[row["action"].get<std::string>() + ' ' + row["planner"].get<std::string>()].push_back(
+        row["duration"]);
+  }
+  EXPECT_EQ(durations["move_torso scene"].size(), 2u);
+  EXPECT_EQ(durations["tuck_arms scene"].size(), 2u);
+  EXPECT_EQ(durations.size(), 4u) << "no postures with another planner";
+  const std::vector<double>&scaled = durations["move_base_param scene"],
+        &unscaled = durations["move_base_param unscaled"];
+  ASSERT_EQ(scaled.size(), 8u);
+  ASSERT_EQ(unscaled.size(), 8u);
+  EXPECT_LT(std::accumulate(unscaled.begin(), unscaled.end(), 0.0),
+            std::accumulate(scaled.begin(), scaled.end(), 0.0));
+}
+
+TEST(DurationsExperimentTest, AnUnknownPostureIsRefusedBeforeAnythingIsPlayed) {
+  ExperimentConfig config = Config("durations", "{}", {{}, 1, ""});
+  auto& rows = std::get<DurationsConfig>(config.kind).rows;
+  rows[8].from = rows[9].to = "TorsoLowPosture";
+  Crew crew = CrewOf(1);
+  crew.on_progress = [](double, double) { FAIL() << "played"; };
+  try {
+    RunExperiment(config, crew);
+    FAIL() << "accepted";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("posture 'TorsoLowPosture' is unknown"));
+    EXPECT_THAT(error.what(), HasSubstr("torsodownposture"));
+  }
 }
 
 TEST(PairedExperimentTest, BothMotionSetsMeetTheSameTruth) {

@@ -15,7 +15,7 @@
 namespace hires::evaluation::truth_test {
 namespace {
 
-using test_support::ConfigErrorOf;
+using hires::test_support::ConfigErrorOf;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
@@ -42,7 +42,7 @@ class TruthFileTest : public ::testing::Test {
     const std::string path = folder_.Write("truth.yaml", text.replace(at, from.size(), to));
     return ConfigErrorOf([&] { ReadTruth(path); });
   }
-  test_support::TemporaryFolder folder_;
+  hires::test_support::TemporaryFolder folder_;
 };
 
 TEST_F(TruthFileTest, AnEngineThatDoesNotExistIsRefusedWithThoseThatDo) {

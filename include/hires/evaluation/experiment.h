@@ -58,15 +58,27 @@ struct DurationReference {
   double sigma{0.0};
 };
 
-/// How long base actions take, beside a simulated and a real reference.
+/// How long drives and motions of torso and arms take, beside a simulated and a real reference.
 struct DurationsConfig {
   struct Row {
-    std::string motion_set, from, to;
+    std::string action;      ///< move_base_param, move_torso or tuck_arms (both arms)
+    std::string motion_set;  ///< of a drive; else empty
+    std::string from, to;    ///< goals of a drive, else postures
     DurationReference simulated, real;
+    bool IsDrive() const { return !motion_set.empty(); }
   };
-  int runs{20};  ///< of each row
-  std::vector<Row> rows;
+  /// Whose local planner drives: the scene's, or one that never lets the footprint grow with speed
+  /// (max_scaling_factor 0), as the original, which computes the growth and does not use it.
+  enum class Planner { kScene, kUnscaled };
+  int runs{20};             ///< of each row
+  std::string postures_at;  ///< goal at which torso and arms move
+  std::vector<Planner> planners{Planner::kScene};
+  std::vector<Row> rows;  ///< each with its way back
 };
+const char* ToString(DurationsConfig::Planner planner);
+/// Index of the row that goes back, with the same action and motion set.
+/// @throws std::logic_error if there is none.
+std::size_t WayBack(const DurationsConfig& durations, std::size_t row);
 
 /// One experiment, as its YAML file says. Relative paths in it count from the file's folder.
 struct ExperimentConfig {
