@@ -39,7 +39,7 @@ TEST(DecisionReportTest, CostsAreWorkedByHand) {
   EXPECT_NEAR(arms.at(kSlowArm).cost.estimate, 20.0, 1e-12);
   // 10, 110, 10, 110; expected: 10 and a quarter of 100
   EXPECT_NEAR(arms.at(kFastArm).cost.estimate, 60.0, 1e-12);
-  EXPECT_NEAR(arms.at(kFastArm).expected.estimate, 35.0, 1e-12);
+  EXPECT_NEAR(arms.at(kFastArm).expected->estimate, 35.0, 1e-12);
   EXPECT_EQ(arms.at(kFastArm).falls, 2);
   EXPECT_NEAR(arms.at(kFastArm).success.estimate, 0.5, 1e-12);
   EXPECT_EQ(arms.at(kDefaultArm).cost.estimate, arms.at(kFastArm).cost.estimate);
@@ -61,8 +61,8 @@ TEST(DecisionReportTest, PricesMoveTheOracle) {
   const DecisionReport report = Example();
   ASSERT_THAT(report.verdicts, SizeIs(3));
   EXPECT_EQ(report.verdicts[1].scale, 0.5);
-  EXPECT_NEAR(report.verdicts[1].arms.at(kFastArm).expected.estimate, 22.5, 1e-12);
-  EXPECT_NEAR(report.verdicts[2].arms.at(kFastArm).expected.estimate, 60.0, 1e-12);
+  EXPECT_NEAR(report.verdicts[1].arms.at(kFastArm).expected->estimate, 22.5, 1e-12);
+  EXPECT_NEAR(report.verdicts[2].arms.at(kFastArm).expected->estimate, 60.0, 1e-12);
   EXPECT_NEAR(report.verdicts[2].arms.at(kImaginationArm).cost.estimate, 42.5, 1e-12);
 }
 
@@ -98,7 +98,7 @@ TEST(DecisionReportTest, JsonHasTheAgreedFields) {
   EXPECT_EQ(json["calibration"]["steps"], 8);
 }
 
-TEST(DecisionReportTest, WithoutAnOracleThereIsNoRegret) {
+TEST(DecisionReportTest, WithoutAnOracleThereIsNeitherRegretNorExpectation) {
   DecisionRecord record = DecisionOf(1, "slow", false);
   record.oracle.clear();
   DecisionSetting setting = AllOf();
@@ -106,6 +106,8 @@ TEST(DecisionReportTest, WithoutAnOracleThereIsNoRegret) {
   const DecisionReport report = SumUpDecisions(setting, {record}, SimplePrices());
   EXPECT_FALSE(report.verdicts.front().arms.at(kSlowArm).regret);
   EXPECT_TRUE(ToJson(report, "")["arms"][kSlowArm]["regret"].is_null());
+  EXPECT_FALSE(Against(report.verdicts.front(), kSlowArm).expected) << "one play is no expectation";
+  EXPECT_TRUE(ToJson(report, "")["arms"][kSlowArm]["expected_cost"].is_null());
 }
 
 TEST(DecisionReportTest, SaysWhichConstantTheDomainsDefaultIsAndHowOftenImaginationWasUndecided) {

@@ -112,7 +112,6 @@ DecisionArm SumUp(const std::string& name, const DecisionSetting& setting,
     AddEffort(name, record, &arm);
   }
   arm.cost = MeanInterval(Costs(arm));
-  arm.expected = MeanInterval(Expected(arm));
   arm.success = ShareInterval(num_success, static_cast<int>(arm.tasks.size()));
   return arm;
 }
@@ -121,6 +120,7 @@ void AddRegrets(std::map<std::string, DecisionArm>* arms) {
   const auto oracle = arms->find(kOracleArm);
   if (oracle == arms->end()) return;
   for (auto& [name, arm] : *arms) {
+    arm.expected = MeanInterval(Expected(arm));
     arm.regret = MeanInterval(Less(Costs(arm), Costs(oracle->second)));
     arm.expected_regret = MeanInterval(Less(Expected(arm), Expected(oracle->second)));
   }
@@ -131,11 +131,13 @@ ArmComparison Compare(const DecisionArm& imagination, const std::string& name,
   ArmComparison comparison;
   comparison.arm = name;
   const std::vector<double> costs = Less(Costs(imagination), Costs(other));
-  const std::vector<double> expected = Less(Expected(imagination), Expected(other));
   comparison.cost = MeanInterval(costs);
   comparison.t_free_p_value = SignFlipPValue(costs, rng.Fork(0));
-  comparison.expected = MeanInterval(expected);
-  comparison.expected_p_value = SignFlipPValue(expected, rng.Fork(1));
+  if (imagination.expected) {
+    const std::vector<double> expected = Less(Expected(imagination), Expected(other));
+    comparison.expected = MeanInterval(expected);
+    comparison.expected_p_value = SignFlipPValue(expected, rng.Fork(1));
+  }
   PairedCounts signs;
   signs.num_pairs = comparison.success.num_pairs = static_cast<int>(costs.size());
   for (std::size_t i = 0; i < costs.size(); ++i) {

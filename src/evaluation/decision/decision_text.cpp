@@ -47,7 +47,7 @@ std::string ArmTable(const DecisionReport& report, const ScaledVerdict& verdict)
 std::string RegretLine(const ScaledVerdict& verdict) {
   const auto mine = verdict.arms.find(kImaginationArm), best = verdict.arms.find(kOracleArm);
   if (mine == verdict.arms.end() || best == verdict.arms.end()) return "";
-  const double least = best->second.expected.estimate;
+  const double least = best->second.expected->estimate;
   return fmt::format("expected regret of imagination: {:.1f} % of the oracle's expected cost\n",
                      100.0 * mine->second.expected_regret->estimate / least);
 }
@@ -63,7 +63,7 @@ std::string ComparisonTable(const DecisionReport& report, const ScaledVerdict& v
                     fmt::format("{} of {}", c.num_differ, c.success.num_pairs),
                     IntervalText(c.cost), fmt::format("{:.3g}", c.t_free_p_value),
                     fmt::format("{:.3g}", c.sign_p_value), IntervalText(c.expected),
-                    fmt::format("{:.3g}", c.expected_p_value),
+                    c.expected ? fmt::format("{:.3g}", c.expected_p_value) : "-",
                     fmt::format("{} / {}", c.success.only_first, c.success.only_second),
                     fmt::format("{:.3g}", McNemarPValue(c.success))});
   }
@@ -130,7 +130,8 @@ ordered_json ComparisonToJson(const ArmComparison& c) {
           {"sign_flip_p_value", c.t_free_p_value},
           {"sign_p_value", c.sign_p_value},
           {"expected_cost", IntervalToJson(c.expected)},
-          {"expected_sign_flip_p_value", c.expected_p_value},
+          {"expected_sign_flip_p_value",
+           c.expected ? ordered_json(c.expected_p_value) : ordered_json()},
           {"success_only_imagination", c.success.only_first},
           {"success_only_other", c.success.only_second},
           {"success_p_value", McNemarPValue(c.success)}};

@@ -33,11 +33,12 @@ struct ArmTask {
 /// One arm over all tasks, at one scale of prices.
 struct DecisionArm {
   std::vector<ArmTask> tasks;
-  Interval cost;      ///< [s] mean with Student's t interval
-  Interval expected;  ///< [s] likewise
-  Interval success;   ///< share with the exact interval
+  Interval cost;     ///< [s] mean with Student's t interval
+  Interval success;  ///< share with the exact interval
   int falls{0};
-  std::optional<Interval> regret;           ///< [s] cost less the oracle's; none without oracle
+  // None without an oracle.
+  std::optional<Interval> expected;         ///< [s] mean expected cost
+  std::optional<Interval> regret;           ///< [s] cost less the oracle's
   std::optional<Interval> expected_regret;  ///< [s] by expected costs
   double simulated_seconds{0.0};            ///< [s] of all plays behind its decisions
   double wall_seconds{0.0};                 ///< [s] likewise
@@ -48,13 +49,13 @@ struct DecisionArm {
 /// Imagination against another arm: differences are imagination - other.
 struct ArmComparison {
   std::string arm;
-  Interval cost;                 ///< [s] Student's t
-  double t_free_p_value{1.0};    ///< of SignFlipPValue
-  double sign_p_value{1.0};      ///< exact: cheaper as often as dearer
-  Interval expected;             ///< [s] Student's t of expected costs
-  double expected_p_value{1.0};  ///< of SignFlipPValue
-  PairedCounts success;          ///< first: imagination
-  int num_differ{0};             ///< tasks in which both chose differently
+  Interval cost;                     ///< [s] Student's t
+  double t_free_p_value{1.0};        ///< of SignFlipPValue
+  double sign_p_value{1.0};          ///< exact: cheaper as often as dearer
+  std::optional<Interval> expected;  ///< [s] Student's t of expected costs; none without oracle
+  double expected_p_value{1.0};      ///< of SignFlipPValue
+  PairedCounts success;              ///< first: imagination
+  int num_differ{0};                 ///< tasks in which both chose differently
 };
 
 /// One scale of prices.
