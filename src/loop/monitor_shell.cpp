@@ -4,6 +4,7 @@
 #include <utility>
 #include <variant>
 
+#include "hires/base/atoms.h"
 #include "hires/knowledge/state_view.h"
 #include "hires/loop/imagine_answer.h"
 
@@ -46,13 +47,6 @@ AchieveOutcome OutcomeOf(Finish::Outcome outcome) {
   return AchieveOutcome::kFailed;
 }
 
-bool SameAtoms(const std::vector<base::Atom>& a, const std::vector<base::Atom>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](const base::Atom& x, const base::Atom& y) {
-                      return x.predicate == y.predicate && x.arguments == y.arguments;
-                    });
-}
-
 }  // namespace
 
 MonitorShell::MonitorShell(const LoopSetup::Parts& parts, const LoopOrder& order,
@@ -83,7 +77,7 @@ void MonitorShell::Begin() {
 void MonitorShell::OnView() {
   auto atoms = knowledge::StateAtoms(blackboard_.view(), blackboard_.ontology());
   const execution::GeometryChanged moved{poses_.Update(blackboard_.view())};
-  if (!SameAtoms(atoms, atoms_)) {
+  if (!base::SameAtoms(atoms, atoms_)) {
     atoms_ = std::move(atoms);
     Feed(execution::StateObserved{atoms_, blackboard_.view().sequence()});
   }

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "hires/base/atoms.h"
 #include "hires/base/error.h"
 
 namespace hires::base::action_test {
@@ -78,6 +79,16 @@ TEST(CombinationsTest, TheLimitItselfIsAllowedAndOneMoreIsNot) {
 TEST(CombinationsTest, ManyArgumentsAreRefusedBeforeTheyFillTheMemory) {
   const ActionTemplate huge{"go", std::vector<std::vector<std::string>>(64, {"a", "b"})};
   EXPECT_THROW(Combinations(huge), ConfigError);
+}
+
+TEST(SameAtomsTest, OrderLettersAndArgumentsCount) {
+  const std::vector<Atom> atoms{{"On", {"mug1", "table1"}}, {"RobotAt", {"area1"}}};
+  EXPECT_TRUE(SameAtoms(atoms, atoms));
+  EXPECT_TRUE(SameAtoms({}, {}));
+  EXPECT_FALSE(SameAtoms(atoms, {atoms[1], atoms[0]}));
+  EXPECT_FALSE(SameAtoms(atoms, {atoms[0]}));
+  EXPECT_FALSE(SameAtoms({{"On", {"mug1"}}}, {{"On", {"Mug1"}}}));
+  EXPECT_FALSE(SameAtoms({{"On", {"mug1"}}}, {{"At", {"mug1"}}}));
 }
 
 TEST(IsAmongTest, CallsAreAmongTheCombinationsAndOthersAreNot) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "hires/base/atoms.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/log.h"
@@ -41,12 +42,6 @@ ActionLinkParams LinkParams(const execution::ServerParams& servers) {
 }
 
 double RosNow() { return ros::Time::now().toSec(); }
-
-bool SameAtoms(const std::vector<hires::base::Atom>& a, const std::vector<hires::base::Atom>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
-    return x.predicate == y.predicate && x.arguments == y.arguments;
-  });
-}
 
 /// A task that the domain does not know is refused before anything is begun.
 void CheckTask(const std::string& text, const planning::Domain& domain) {
@@ -152,7 +147,7 @@ void ExecutionMonitorNode::OnView(const RemoteView::Update& update) {
     geometry.instances = poses_.Update(view);
   });
   state.sequence = update.sequence;
-  if (!std::exchange(has_atoms_, true) || !SameAtoms(state.atoms, atoms_)) {
+  if (!std::exchange(has_atoms_, true) || !hires::base::SameAtoms(state.atoms, atoms_)) {
     atoms_ = state.atoms;
     Post([this, state = std::move(state)] { OnState(state); });
   }

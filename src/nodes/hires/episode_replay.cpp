@@ -10,7 +10,7 @@
 #include "hires/base/error.h"
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/report_json.h"
-#include "hires/imagination/client_config.h"
+#include "hires/imagination/local_setup.h"
 #include "hires/ros/conversions.h"
 #include "nodes/hires/bag_file.h"
 #include "nodes/hires/episode_recording.h"
@@ -40,14 +40,6 @@ EpisodeConfig ConfigOf(const EpisodeReplay& replay) {
   EpisodeConfig config = evaluation::ReadEpisodeConfig(replay.config, replay.names);
   config.names.map_to_world = hires::world::ParseMapToWorld(replay.map_to_world, "--map-to-world");
   return config;
-}
-
-ImaginationSetup SetupOf(const EpisodeReplay& replay, const std::string& package_folder) {
-  const auto client =
-      imagination::ReadClientConfig(package_folder + "/config/imagination_client.yaml");
-  imagination::SetupConfig files = imagination::ReadSetupConfig(client.scene);
-  files.action_libraries = replay.action_libraries;
-  return imagination::LoadImaginationSetup(files);
 }
 
 // ---------------------------------------------------------------- imagining
@@ -178,22 +170,24 @@ ordered_json ReplayedJson(const EpisodeReplay& replay, const EpisodeRecording& r
 
 }  // namespace
 
-bool IsEpisode(const EpisodeReplay& replay) {
+std::optional<EpisodeConfig> ConfigOfEpisode(const EpisodeReplay& replay) {
+  EpisodeConfig config = ConfigOf(replay);
   const std::vector<BagTopic> topics = TopicsOfBagFile(replay.bag);
-  const evaluation::TopicCheck check =
-      CheckTopics(ConfigOf(replay), {topics.begin(), topics.end()});
-  if (check.is_usable()) return true;
-  if (HasImagineGoals(topics)) return false;
+  const evaluation::TopicCheck check = CheckTopics(config, {topics.begin(), topics.end()});
+  if (check.is_usable()) return config;
+  if (HasImagineGoals(topics)) return std::nullopt;
   throw ConfigError(
       fmt::format("{}: is no robot episode, and holds no goals of an `imagine` action: "
                   "{}{}",
                   replay.bag, check.Advice(), ListOfTopics(topics)));
 }
 
-int ReplayEpisode(const EpisodeReplay& replay, const std::string& package_folder,
-                  const std::function<bool()>& cancelled) {
-  const EpisodeConfig config = ConfigOf(replay);
-  const ImaginationSetup setup = SetupOf(replay, package_folder);
+int ReplayEpisode(const EpisodeReplay& replay, const EpisodeConfig& config,
+                  const std::string& package_folder, const std::function<bool()>& cancelled) {
+  const ImaginationSetup setup =
+      imagination::LoadLocalSetup(package_folder + "/config/imagination_client.yaml",
+                                  replay.action_libraries)
+          .setup;
   const EpisodeRecording recording = ReadEpisodeRecording(replay.bag, config, setup);
   RequireState(replay, recording);
   PrintNotes(recording);

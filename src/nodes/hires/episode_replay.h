@@ -1,10 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "hires/evaluation/episode_compare.h"
+#include "hires/evaluation/episode_topics.h"
 
 namespace hires_ros {
 
@@ -20,16 +22,17 @@ struct EpisodeReplay {
   hires::evaluation::ReplayParams params;
 };
 
-/// Whether the bag has what an episode needs.
+/// What of the bag is to be read as an episode; nothing if it holds requests of imagination alone.
 /// @throws hires::base::ConfigError if it has neither that nor requests of imagination, saying what
 /// is missing and what to record; and as OpenBag.
-bool IsEpisode(const EpisodeReplay& replay);
+std::optional<hires::evaluation::EpisodeConfig> ConfigOfEpisode(const EpisodeReplay& replay);
 
 /// Imagines each step from the state in which it began, and prints predicted against happened.
+/// @param config  of ConfigOfEpisode.
 /// @return 0, or 130 when it was cancelled.
 /// @throws hires::base::ConfigError for a bag with nothing of use, saying why, and if there is no
 /// client to ask.
-int ReplayEpisode(const EpisodeReplay& replay, const std::string& package_folder,
-                  const std::function<bool()>& cancelled);
+int ReplayEpisode(const EpisodeReplay& replay, const hires::evaluation::EpisodeConfig& config,
+                  const std::string& package_folder, const std::function<bool()>& cancelled);
 
 }  // namespace hires_ros

@@ -20,8 +20,8 @@
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
-#include "hires/imagination/client_config.h"
 #include "hires/imagination/local_imagination.h"
+#include "hires/imagination/local_setup.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/imagine_request.h"
 #include "nodes/hires/episode_replay.h"
@@ -343,8 +343,9 @@ int Replay(const ReplayOptions& options, const std::string& package_folder) {
   episode.threads = ThreadsOf(options);
   if (episode.config.empty()) episode.config = package_folder + "/config/episode.yaml";
   const bool wants_requests = options.requests || !options.action.empty();
-  if (wants_requests || !IsEpisode(episode)) return ReplayRequests(options, package_folder);
-  return ReplayEpisode(episode, package_folder, [] { return interrupted.load(); });
+  const auto config = wants_requests ? std::nullopt : ConfigOfEpisode(episode);
+  if (!config) return ReplayRequests(options, package_folder);
+  return ReplayEpisode(episode, *config, package_folder, [] { return interrupted.load(); });
 }
 
 }  // namespace
@@ -434,19 +435,12 @@ ImagineAgain MakeLocalImagination(const std::string& package_folder,
                                   const std::vector<std::string>& action_libraries, int num_threads,
                                   const imagination::OnInterim& on_interim,
                                   const std::function<bool()>& cancelled) {
-  struct Loaded {
-    imagination::ClientConfig config;
-    imagination::ImaginationSetup setup;
-  };
-  const auto load = [package_folder, action_libraries] {
-    auto config = imagination::ReadClientConfig(package_folder + "/config/imagination_client.yaml");
-    imagination::SetupConfig files = imagination::ReadSetupConfig(config.scene);
-    files.action_libraries = action_libraries;
-    auto setup = imagination::LoadImaginationSetup(files);
-    return std::make_shared<const Loaded>(Loaded{std::move(config), std::move(setup)});
-  };
-  return [=, loaded = std::shared_ptr<const Loaded>()](const ImagineGoal& goal) mutable {
-    if (!loaded) loaded = load();
+  return [=, loaded = std::shared_ptr<const imagination::LocalSetup>()](
+             const ImagineGoal& goal) mutable {
+    if (!loaded) {
+      loaded = std::make_shared<const imagination::LocalSetup>(imagination::LoadLocalSetup(
+          package_folder + "/config/imagination_client.yaml", action_libraries));
+    }
     std::optional<ImagineRequest> request;
     try {
       request = RequestOf(goal, loaded->setup, loaded->config.scheduler);
