@@ -28,7 +28,7 @@ endfunction()
 # they are listed. Reading headers and instantiating what they define is most of the work, and is done
 # once for each lot so.
 function(hires_compile_together target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${HIRES_TOGETHER} UNITY_BUILD_BATCH_SIZE 6)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${HIRES_TOGETHER} UNITY_BUILD_BATCH_SIZE 12)
 endfunction()
 
 # hires_benchmark(<layer> <file without _benchmark.cpp> [LINK more libraries ...])

@@ -26,7 +26,7 @@ using hires::test_support::RandomNetworks;
 using hires::test_support::Solve;
 using hires::test_support::Steps;
 
-constexpr hires::test_support::PropertyCases kPropertyCases{300};
+constexpr hires::test_support::PropertyCases kPropertyCases{60};
 
 constexpr std::size_t kEnough = 100'000;  // plans
 

@@ -11,8 +11,9 @@
 
 namespace hires::test_support {
 
-/// How many cases of a property are looked at. Every run looks at the same ones, whatever else runs
-/// in the program; RC_PARAMS in the environment looks at others, e.g. "seed=77 max_success=3000".
+/// How many cases of a property are looked at; with HIRES_LONG_TESTS in the environment, as
+/// `scripts/test --long` has it, five times as many. Every run looks at the same ones, whatever else
+/// runs in the program; RC_PARAMS looks at others, e.g. "seed=77 max_success=3000".
 struct PropertyCases {
   int count{100};
   int size{100};  ///< how large the largest one may be, as rapidcheck counts
@@ -22,7 +23,7 @@ inline rc::detail::TestParams ParamsOf(const PropertyCases& cases) {
   if (std::getenv("RC_PARAMS") != nullptr) return rc::detail::configuration().testParams;
   rc::detail::TestParams params;
   params.seed = 1;
-  params.maxSuccess = cases.count;
+  params.maxSuccess = cases.count * (std::getenv("HIRES_LONG_TESTS") != nullptr ? 5 : 1);
   params.maxSize = cases.size;
   return params;
 }

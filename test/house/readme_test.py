@@ -1,0 +1,86 @@
+"""What the README shows is what its commands print. Usage: readme_test.py HIRES [--long]
+
+Each console block (`$ scripts/run hires ...` and what it printed) that needs no master is run, in
+order, by the program HIRES in an empty folder that shows the package's. With --long also those that
+imagine, which take minutes. `$ ... the same with OPTIONS` is the command before with more options.
+"""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
+PREFIX = "scripts/run hires "
+SAME = "... the same with "
+MEASURED = re.compile(r"[\d.]+ ms of processor time, \d+ MB")  # and not the same twice
+FEWEST = 6  # examples; a README whose blocks are not found any more must not pass
+
+
+def console_blocks(text):
+    """Lines of the fenced blocks that begin with a command."""
+    for block in re.findall(r"^```\n(.*?)^```$", text, re.MULTILINE | re.DOTALL):
+        if block.startswith("$ "):
+            yield block.splitlines()
+
+
+def examples(text):
+    """(words after `hires`, lines shown) of each command that needs no master."""
+    found, base = [], None
+    for lines in console_blocks(text):
+        lines = list(lines)
+        while lines:
+            command = lines.pop(0)[2:]
+            while command.endswith("\\"):
+                command = command[:-1] + lines.pop(0)
+            shown = []
+            while lines and not lines[0].startswith("$ "):
+                shown.append(lines.pop(0))
+            if command.startswith(SAME):
+                words = base + shlex.split(command[len(SAME):])
+            elif command.startswith(PREFIX):
+                words = base = shlex.split(command[len(PREFIX):])
+            else:
+                continue
+            found.append((words, shown))
+    return found
+
+
+def bare(text):
+    """Lines without what was measured and what cannot be seen."""
+    return [MEASURED.sub("... ms", line.rstrip()) for line in text.rstrip().splitlines()]
+
+
+def differences(program, words, shown, folder):
+    """What is wrong, as lines; none if it prints what is shown."""
+    done = subprocess.run([program] + words, cwd=folder, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True, check=False)
+    printed, wanted = bare(done.stdout), bare("\n".join(shown))
+    if printed == wanted:
+        return []
+    return (["README.md shows of `hires %s`:" % " ".join(words)] + ["  " + w for w in wanted] +
+            ["it prints (exit code %d):" % done.returncode] + ["  " + p for p in printed] +
+            done.stderr.splitlines()[-5:])
+
+
+def main():
+    program, is_long = os.path.abspath(sys.argv[1]), "--long" in sys.argv
+    with open(os.path.join(ROOT, "README.md"), encoding="utf-8") as file:
+        found = examples(file.read())
+    wrong = []
+    if len(found) < FEWEST:
+        wrong.append("README.md: %d examples found, wanted at least %d" % (len(found), FEWEST))
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("config", "worlds", "urdf"):
+            os.symlink(os.path.join(ROOT, name), os.path.join(folder, name))
+        for words, shown in found:
+            if words[0] != "imagine" or is_long:
+                wrong += differences(program, words, shown, folder)
+    print("\n".join(wrong) if wrong else "%d examples print what is shown" % len(found))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
