@@ -26,7 +26,7 @@ constexpr double kQuiet = 0.6;     // [s] that the base must have stood ...
 constexpr double kStill = 0.004;   // [rad] ... with its load no more tilted than this
 constexpr double kAtOnce = 1.0e4;  // [m/s^2] more than any speed needs within a step
 constexpr double kNoSlip = 100.0;  // friction of what closed forms suppose
-enum Streams : std::uint64_t { kTruth, kSimulator };
+enum BrakingStreams : std::uint64_t { kBrakingTruth, kBrakingSimulator };
 
 /// The robot alone on an even floor, its base stopping in a given way.
 std::shared_ptr<const simulation::Scene> SceneFor(const ImaginationSetup& setup,
@@ -217,10 +217,11 @@ BrakingStop PlayOne(const BrakingConfig& braking, const BrakingCell& cell, const
                     const ExperimentConfig& config, const Stage& stage, int index) {
   const base::Rng rng = base::Rng(config.seed).Fork(static_cast<std::uint64_t>(index));
   simulation::Variation truth =
-      imagination::SampleVariation(*stage.setup.uncertainty, rng.Fork(kTruth));
+      imagination::SampleVariation(*stage.setup.uncertainty, rng.Fork(kBrakingTruth));
   const imagination::StartState& start = setup.starts[index % setup.starts.size()];
-  RobotSimulator simulator(setup.scene, truth, start.world, start.robot, rng.Fork(kSimulator),
-                           stage.setup.physics, simulation::LevelOfDetail::kTray);
+  RobotSimulator simulator(setup.scene, truth, start.world, start.robot,
+                           rng.Fork(kBrakingSimulator), stage.setup.physics,
+                           simulation::LevelOfDetail::kTray);
   return Player(braking, cell, stage.setup, &simulator).Play();
 }
 

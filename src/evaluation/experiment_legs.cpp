@@ -12,7 +12,7 @@
 namespace hires::evaluation {
 namespace {
 
-enum Streams : std::uint64_t { kOrder, kChain };
+enum LegStreams : std::uint64_t { kOrderStream, kChainStream };
 
 std::string MotionSetOf(const ExperimentConfig& config) {
   return std::get<LegsConfig>(config.kind).motion_set;
@@ -146,9 +146,9 @@ std::optional<Chains> PlayLegs(const LegsConfig& legs, const ExperimentConfig& c
   const auto play = [&](int number, const Advance& advance) {
     const base::Rng rng = base::Rng(config.seed).Fork(number);
     Chain chain(stage, config.goals.front().name,
-                {legs.motion_set, rng.Fork(kChain).seed(), false, false});
+                {legs.motion_set, rng.Fork(kChainStream).seed(), false, false});
     for (const std::string& goal :
-         ShuffledGoals(config.goals, LegsOfChain(legs, number), rng.Fork(kOrder))) {
+         ShuffledGoals(config.goals, LegsOfChain(legs, number), rng.Fork(kOrderStream))) {
       auto leg = chain.Drive(goal, crew.cancelled);
       if (!leg) return;
       chains[number].push_back(*std::move(leg));

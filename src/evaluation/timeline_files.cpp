@@ -24,9 +24,12 @@ namespace {
 using nlohmann::ordered_json;
 
 /// JSON knows neither infinity nor "not a number".
-ordered_json Number(double value) { return std::isfinite(value) ? ordered_json(value) : nullptr; }
-ordered_json Number(const std::optional<double>& value) {
-  return value ? Number(*value) : ordered_json(nullptr);
+/// What is not finite, or not there, is null.
+ordered_json NumberOrNull(double value) {
+  return std::isfinite(value) ? ordered_json(value) : nullptr;
+}
+ordered_json NumberOrNull(const std::optional<double>& value) {
+  return value ? NumberOrNull(*value) : ordered_json(nullptr);
 }
 
 ordered_json StepToJson(const execution::StepStatus& step) {
@@ -35,14 +38,14 @@ ordered_json StepToJson(const execution::StepStatus& step) {
           {"action", step.action.name},
           {"arguments", step.action.arguments},
           {"phase", ToString(step.phase)},
-          {"started", Number(step.started)},
-          {"finished", Number(step.finished)},
-          {"earliest_start", Number(step.start.earliest)},
-          {"latest_start", Number(step.start.latest)},
-          {"earliest_finish", Number(step.finish.earliest)},
-          {"latest_finish", Number(step.finish.latest)},
-          {"expected_start", Number(step.expected_start)},
-          {"expected_finish", Number(step.expected_finish)},
+          {"started", NumberOrNull(step.started)},
+          {"finished", NumberOrNull(step.finished)},
+          {"earliest_start", NumberOrNull(step.start.earliest)},
+          {"latest_start", NumberOrNull(step.start.latest)},
+          {"earliest_finish", NumberOrNull(step.finish.earliest)},
+          {"latest_finish", NumberOrNull(step.finish.latest)},
+          {"expected_start", NumberOrNull(step.expected_start)},
+          {"expected_finish", NumberOrNull(step.expected_finish)},
           {"note", step.note},
           {"failure", ToJson(step.failure)}};
 }
@@ -73,9 +76,9 @@ ordered_json ImaginedToJson(const ImaginedStep& step) {
           {"action", step.action.name},
           {"alternatives", step.action.alternatives},
           {"requested", step.requested},
-          {"answered", Number(step.answered)},
-          {"dispatch", Number(step.dispatch)},
-          {"deadline", Number(step.deadline)},
+          {"answered", NumberOrNull(step.answered)},
+          {"dispatch", NumberOrNull(step.dispatch)},
+          {"deadline", NumberOrNull(step.deadline)},
           {"wall_seconds", step.wall_seconds},
           {"simulated_seconds", step.simulated_seconds},
           {"outcome", ToString(step.outcome)},
