@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +11,7 @@
 #include "hires/base/text.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
+#include "hires/evaluation/timeline.h"
 #include "hires/knowledge/blackboard_config.h"
 #include "hires/knowledge/episode_diff_report.h"
 
@@ -114,13 +114,6 @@ std::vector<knowledge::Fluent> Ask(const BlackboardOptions& options, BlackboardA
   return fluents;
 }
 
-void WriteText(const std::string& text, const std::string& path) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw base::ConfigError(fmt::format("{}: cannot be written", path));
-}
-
 void Emit(const nlohmann::ordered_json& json, const std::string& table, const std::string& path) {
   if (path == "-") {
     std::cout << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
@@ -148,7 +141,7 @@ int RunExport(const BlackboardOptions& options, BlackboardAccess* blackboard) {
   if (options.output.empty()) {
     std::cout << text;
   } else {
-    WriteText(text, options.output);
+    evaluation::WriteText(text, options.output);
   }
   return 0;
 }

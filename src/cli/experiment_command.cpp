@@ -14,6 +14,7 @@
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/experiment.h"
 #include "hires/evaluation/report_json.h"
+#include "hires/evaluation/timeline.h"
 
 namespace hires::cli {
 namespace {
@@ -26,12 +27,6 @@ namespace {
 /// An hour of work must not end at a folder that is missing.
 void CheckWritable(const std::string& path) {
   if (!path.empty() && !std::ofstream(path, std::ios::app)) FailToWrite(path);
-}
-
-void WriteText(const std::string& text, const std::string& path) {
-  std::ofstream file(path);
-  file << text;
-  if (!file.flush()) FailToWrite(path);
 }
 
 evaluation::ExperimentOverrides OverridesOf(const ExperimentOptions& options) {
@@ -113,7 +108,7 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
   Print(*report);
-  if (!options.csv.empty()) WriteText(evaluation::ReportCsv(*report), options.csv);
+  if (!options.csv.empty()) evaluation::WriteText(evaluation::ReportCsv(*report), options.csv);
   if (!options.json.empty()) evaluation::WriteJson(ToJson(*report), options.json);
   return report->passed() ? kExitRecommended : kExitAllFailed;
 }

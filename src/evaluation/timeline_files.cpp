@@ -23,8 +23,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// JSON knows neither infinity nor "not a number".
-/// What is not finite, or not there, is null.
+/// What is not there is null, and so is what JSON does not know: infinity, "not a number".
 ordered_json NumberOrNull(double value) {
   return std::isfinite(value) ? ordered_json(value) : nullptr;
 }
