@@ -82,9 +82,10 @@ class MiddleLayerTest(unittest.TestCase):
         return goal
 
     def preempt(self, goal):
-        """While the world is held, which then goes on."""
-        self.require(goal.cancel().result(), self.codes.PREEMPTED)
+        """In a world that is held until the cancel was taken."""
+        goal.cancel().wait_until_cancelling()
         self.system.hold(False)
+        self.require(goal.result(), self.codes.PREEMPTED)
 
     # Driving
 

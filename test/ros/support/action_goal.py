@@ -107,6 +107,12 @@ class ActionGoal:
         self._handle.cancel()
         return self
 
+    def wait_until_cancelling(self):
+        """Until the server has taken the cancel."""
+        self._wait(lambda: self._state in (self._states.PREEMPTING, self._states.WAITING_FOR_RESULT,
+                                           self._states.DONE), 'the cancel to be taken')
+        return self
+
     def abandon(self):
         """Asks for its end, if the test failed before it had the result."""
         if not self.is_done():
