@@ -90,14 +90,14 @@ class BaseGuardTest(unittest.TestCase):
 
     def wait_for_speed(self, speed):
         wait_until(lambda: abs(self.odometry.twist.twist.linear.x - speed) < 0.01,
-                   '%g m/s; the guard said:\n%s' % (speed, self.guard.output()))
+                   lambda: '%g m/s; the guard said:\n%s' % (speed, self.guard.output()))
 
     def wait_for_state(self, state, reason='', request=1):
         def reached():
             now = self.states[-1] if self.states else None
             return now if now and (now.state, now.request) == (state, request) else None
-        now = wait_until(reached, 'state %d of request %d; the guard said:\n%s' % (
-            state, request, self.guard.output()))
+        now = wait_until(reached, lambda: 'state %d of request %d; states:\n%s\nthe guard said:\n%s' % (
+            state, request, self.states, self.guard.output()))
         self.assertTrue(text_of(now.failure).startswith(reason), text_of(now.failure))
         return now
 

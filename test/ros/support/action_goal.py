@@ -7,6 +7,7 @@ rospy's SimpleActionClient takes no notice of what comes before its `send_goal` 
 that is quick enough is never seen.
 """
 
+import socket
 import threading
 import xmlrpc.client
 
@@ -38,7 +39,22 @@ def _is_served(client):
         return False  # one that is gone
     reached = {c[4] for c in connections if c[2] == 'o' and c[1] == rospy.get_name()}
     listened = {c[4] for c in connections if c[2] == 'i' and c[1] == rospy.get_node_uri()}
-    return heard <= reached and told <= listened and client.pub_goal.get_num_connections() > 0
+    return (heard <= reached and told <= listened and
+            all(_reaches_somebody(pub) for pub in (client.pub_goal, client.pub_cancel)))
+
+
+def _reaches_somebody(publisher):
+    """Whether a connection of it is made and not closed: the server lists one as soon as it asks for it,
+    and what is published before it is made is lost."""
+    for connection in list(publisher.impl.connections):
+        try:
+            if connection.socket.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT):
+                return True
+        except BlockingIOError:
+            return True  # nothing to read, as it should be
+        except (OSError, AttributeError):
+            pass  # closed meanwhile
+    return False
 
 
 class ActionGoal:

@@ -32,7 +32,8 @@ def _die_with_parent():
 
 
 def wait_until(condition, what, limit=LIMIT):
-    """Waits until condition() is true and returns its value."""
+    """Waits until condition() is true and returns its value.
+    @param what  is waited for: words, or what says them once it was in vain."""
     end = time.monotonic() + limit
     pause = threading.Event()
     while True:
@@ -40,7 +41,8 @@ def wait_until(condition, what, limit=LIMIT):
         if value:
             return value
         if time.monotonic() > end:
-            raise AssertionError('waited %g s in vain for %s' % (limit, what))
+            words = what() if callable(what) else what
+            raise AssertionError('waited %g s in vain for %s' % (limit, words))
         pause.wait(0.01)
 
 
