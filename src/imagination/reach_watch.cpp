@@ -17,12 +17,16 @@ constexpr double kStride = 0.1;   // between two places that are noted
 constexpr double kMargin = 0.1;   // that is left between what moves and what was left out
 constexpr double kCompany = 0.5;  // around what was come near to: all that is in then, too
 
+/// [m] How far its bounds reach from the body's origin, along each axis.
+Eigen::Vector3d FarthestOf(const geometry::Collision& shape) {
+  const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, shape.X_BS);
+  return bounds.lower.cwiseAbs().cwiseMax(bounds.upper.cwiseAbs());
+}
+
 double RadiusOf(const std::vector<geometry::Collision>& shapes) {
   double radius = 0.0;
   for (const geometry::Collision& shape : shapes) {
-    const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, shape.X_BS);
-    const Eigen::Vector3d farthest = bounds.lower.cwiseAbs().cwiseMax(bounds.upper.cwiseAbs());
-    radius = std::max(radius, farthest.norm());
+    radius = std::max(radius, FarthestOf(shape).norm());
   }
   return radius;
 }
@@ -32,11 +36,9 @@ double RadiusOf(const simulation::Scene& scene, const robot::JointPositions& joi
   const robot::JointPositions posture = robot::PostureOf(scene.robot, joints);
   const bool is_usual = posture == robot::PostureOf(scene.robot, {});
   double radius = 0.0;
-  for (geometry::Collision shape :
+  for (const geometry::Collision& shape :
        is_usual ? scene.robot_shapes_B : simulation::FrozenShapes(scene.robot, posture)) {
-    const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, shape.X_BS);
-    const Eigen::Vector3d farthest = bounds.lower.cwiseAbs().cwiseMax(bounds.upper.cwiseAbs());
-    radius = std::max(radius, farthest.head<2>().norm());
+    radius = std::max(radius, FarthestOf(shape).head<2>().norm());
   }
   return radius;
 }

@@ -176,10 +176,9 @@ struct Rollout {
         rng(base::Rng(setup.seed).Fork(static_cast<std::uint64_t>(index))),
         variation(DrawTruth(setup, rng.Fork(kVariation))) {}
 
-  std::optional<RolloutResult> Play(const RolloutSetup& setup, const RolloutHooks& hooks,
-                                    ReachWatch* watch) const {
-    return Player(setup, action, skills::MakeSkill(*setup.skills, action), variation, rng, watch)
-        .Play(hooks);
+  std::optional<RolloutResult> Play(const RolloutSetup& setup, std::unique_ptr<skills::Skill> skill,
+                                    const RolloutHooks& hooks, ReachWatch* watch) const {
+    return Player(setup, action, std::move(skill), variation, rng, watch).Play(hooks);
   }
 
   const base::ActionCall& action;
@@ -233,9 +232,9 @@ void CheckSetupForAll(const RolloutSetup& setup, const std::vector<base::ActionC
 std::optional<RolloutResult> PlayRollout(const RolloutSetup& setup, const base::ActionCall& action,
                                          int index, const RolloutHooks& hooks) {
   const Rollout rollout(setup, action, index);
-  skills::MakeSkill(*setup.skills, action);  // an unknown action is refused
+  auto skill = skills::MakeSkill(*setup.skills, action);  // an unknown action is refused
   try {
-    return rollout.Play(setup, hooks, nullptr);
+    return rollout.Play(setup, std::move(skill), hooks, nullptr);
   } catch (const base::ConfigError& error) {
     return BadStart(setup, index, error);
   }
@@ -250,17 +249,18 @@ std::optional<ReachedRollout> PlayWithReach(const RolloutSetup& setup,
     return ReachedRollout{*std::move(result), {}};
   }
   const Rollout rollout(setup, action, index);
-  skills::MakeSkill(*setup.skills, action);  // an unknown action is refused
+  auto skill = skills::MakeSkill(*setup.skills, action);  // an unknown action is refused
   try {
     ReachWatch watch(setup, action);
     while (true) {
-      auto result = rollout.Play(watch.narrowed(), hooks, &watch);
+      auto result = rollout.Play(watch.narrowed(), std::move(skill), hooks, &watch);
       if (result) {
         result->final_world = watch.WithLeftOut(result->final_world);
         return ReachedRollout{*std::move(result), watch.reach()};
       }
       if (!watch.is_touched()) return std::nullopt;
       watch.BeginAgain();
+      skill = skills::MakeSkill(*setup.skills, action);
     }
   } catch (const base::ConfigError& error) {
     return ReachedRollout{BadStart(setup, index, error), {}};

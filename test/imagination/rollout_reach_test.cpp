@@ -4,10 +4,12 @@
 
 #include "hires/base/error.h"
 #include "imagination/room_rollouts.h"
+#include "imagination/same_bits.h"
 
 namespace hires::imagination::rollout_reach_test {
 namespace {
 
+using hires::test_support::ExpectSameBits;
 using hires::test_support::OnTray;
 using hires::test_support::Room;
 using hires::test_support::RoomRollouts;
@@ -44,21 +46,6 @@ ReachedRollout Play(const RolloutSetup& setup, int index = 0) {
 
 bool Stays(const RolloutSetup& before, const RolloutSetup& after) {
   return ResultFrom(before, Play(before), kFast, after).has_value();
-}
-
-void ExpectSameBits(const RolloutResult& a, const RolloutResult& b) {
-  EXPECT_TRUE(SameOutcome(a, b));
-  EXPECT_EQ(a.simulated, b.simulated);
-  EXPECT_TRUE(a.final_robot == b.final_robot);
-  ASSERT_EQ(a.final_world.objects.size(), b.final_world.objects.size());
-  for (std::size_t i = 0; i < a.final_world.objects.size(); ++i) {
-    const ObjectState &first = a.final_world.objects[i], &second = b.final_world.objects[i];
-    EXPECT_EQ(first.name, second.name);
-    EXPECT_EQ(first.X_MO.translation, second.X_MO.translation);
-    EXPECT_EQ(first.X_MO.rotation.coeffs(), second.X_MO.rotation.coeffs());
-    EXPECT_EQ(first.V_MO.linear, second.V_MO.linear);
-    EXPECT_EQ(first.V_MO.angular, second.V_MO.angular);
-  }
 }
 
 bool CanBe(const RolloutSetup& setup) {

@@ -9,6 +9,7 @@
 
 #include "hires/imagination/evidence.h"
 #include "imagination/room_rollouts.h"
+#include "imagination/same_bits.h"
 #include "support/messages.h"
 
 namespace hires::imagination::rollout_test {
@@ -17,6 +18,7 @@ namespace {
 using Code = base::FailureCode;
 using hires::test_support::Block;
 using hires::test_support::ConfigErrorOf;
+using hires::test_support::ExpectSameBits;
 using hires::test_support::OnTray;
 using hires::test_support::Room;
 using hires::test_support::RoomRollouts;
@@ -33,20 +35,6 @@ RolloutResult Play(const RolloutSetup& setup, const base::ActionCall& action, in
   const auto result = PlayRollout(setup, action, index);
   EXPECT_TRUE(result) << "nobody cancelled it";
   return result.value_or(RolloutResult());
-}
-
-void ExpectSameBits(const RolloutResult& a, const RolloutResult& b) {
-  EXPECT_TRUE(SameOutcome(a, b));
-  EXPECT_EQ(a.simulated, b.simulated);
-  EXPECT_TRUE(a.final_robot == b.final_robot);
-  ASSERT_EQ(a.final_world.objects.size(), b.final_world.objects.size());
-  for (std::size_t i = 0; i < a.final_world.objects.size(); ++i) {
-    const auto& first = a.final_world.objects[i];
-    const auto& second = b.final_world.objects[i];
-    EXPECT_EQ(first.X_MO.translation, second.X_MO.translation);
-    EXPECT_EQ(first.X_MO.rotation.coeffs(), second.X_MO.rotation.coeffs());
-    EXPECT_EQ(first.V_MO.linear, second.V_MO.linear);
-  }
 }
 
 // ---------------------------------------------------------------------------- what comes out
