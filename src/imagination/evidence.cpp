@@ -35,6 +35,7 @@ void SumUpDurations(IndexedValues durations, Evidence* evidence) {
   std::sort(durations.begin(), durations.end());
   const int size = static_cast<int>(durations.size());
   auto& duration = evidence->duration;
+  for (const auto& [value, index] : durations) evidence->durations.push_back(value);
   duration.mean = Mean(durations);
   duration.sd = Deviation(durations, duration.mean);
   duration.p50 = durations[QuantileRank(size, 50)].first;

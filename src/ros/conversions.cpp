@@ -382,6 +382,7 @@ msg::Prediction ToMsg(const hires::imagination::Prediction& prediction) {
   out.duration_sd = e.duration.sd;
   out.duration_p50 = e.duration.p50;
   out.duration_p95 = e.duration.p95;
+  out.durations = e.durations;
   out.max_tilt_p50 = e.max_tilt.p50;
   out.max_tilt_p95 = e.max_tilt.p95;
   out.rollouts = e.num_rollouts;
@@ -416,6 +417,7 @@ hires::imagination::Prediction FromMsg(const msg::Prediction& prediction) {
   e.falls = prediction.falls;
   e.duration = {prediction.duration_mean, prediction.duration_sd, prediction.duration_p50,
                 prediction.duration_p95};
+  e.durations = prediction.durations;
   e.max_tilt = {prediction.max_tilt_p50, prediction.max_tilt_p95};
   for (const msg::FailureCount& failure : prediction.failures) {
     e.failures[FromMsg(failure.failure)] += failure.count;

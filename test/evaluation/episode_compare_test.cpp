@@ -35,10 +35,7 @@ imagination::RolloutResult Result(bool is_success, double duration) {
 ImaginedAction Imagined(int num_success, int num_failed) {
   std::vector<imagination::RolloutResult> results;
   ImaginedAction imagined;
-  for (int i = 1; i <= num_success; ++i) {
-    results.push_back(Result(true, i));
-    imagined.durations.push_back(i);
-  }
+  for (int i = 1; i <= num_success; ++i) results.push_back(Result(true, i));
   for (int i = 0; i < num_failed; ++i) results.push_back(Result(false, 0.0));
   imagined.evidence = imagination::SumUp(results);
   return imagined;
@@ -65,19 +62,24 @@ TEST(CompareStepTest, ADurationBeyondAllIsASurpriseOnlyWhereEnoughWereImagined) 
             StepVerdict::kFaster);
 }
 
-TEST(CompareStepTest, WithoutSingleDurationsANormalDistributionStandsForThem) {
-  ImaginedAction imagined = Imagined(64, 0);
-  imagined.durations.clear();
-  imagined.evidence.duration.mean = 10.0;
-  imagined.evidence.duration.sd = 2.0;
-  const auto at = [&](double duration) {
-    return CompareStep(Step(ActionFate::kSucceeded, duration), imagined, kSurprise);
+TEST(CompareStepTest, WhereEveryRolloutFailedADurationHasNoPercentile) {
+  const auto compared = CompareStep(Step(ActionFate::kSucceeded, 3.0), Imagined(0, 64), kSurprise);
+  EXPECT_EQ(compared.verdict, StepVerdict::kSucceededAgainst);
+  EXPECT_FALSE(compared.percentile.has_value());
+}
+
+TEST(DefectOfTest, DurationsOfAnotherProcessAreLookedAtBeforeTheyAreUsed) {
+  EXPECT_EQ(DefectOf(Imagined(3, 1)), "");
+  const auto defect = [](std::vector<double> durations) {
+    ImaginedAction imagined = Imagined(2, 0);
+    imagined.evidence.durations = std::move(durations);
+    return DefectOf(imagined);
   };
-  EXPECT_NEAR(*at(10.0).percentile, 50.0, 1e-9);
-  EXPECT_NEAR(*at(12.0).percentile, 84.1345, 1e-3);
-  EXPECT_EQ(at(13.8).verdict, StepVerdict::kAsImagined);
-  EXPECT_EQ(at(14.0).verdict, StepVerdict::kSlower);  // 1.96 deviations are 13.92 s
-  EXPECT_EQ(at(6.0).verdict, StepVerdict::kFaster);
+  EXPECT_EQ(defect({}), "");
+  EXPECT_EQ(defect({1.0, 1.0}), "");
+  EXPECT_NE(defect({2.0, 1.0}), "");
+  EXPECT_NE(defect({1.0, std::nan("")}), "");
+  EXPECT_NE(defect({1.0, 2.0, 3.0}), "") << "of two rollouts";
 }
 
 TEST(CompareStepTest, SuccessAndFailureAreHeldAgainstTheInterval) {

@@ -114,6 +114,7 @@ TEST(SumUpTest, DurationsAreThoseOfFinishedActionsOnly) {
   EXPECT_DOUBLE_EQ(evidence.duration.sd, std::sqrt(200.0 / 3.0));
   EXPECT_EQ(evidence.duration.p50, 30.0);
   EXPECT_EQ(evidence.duration.p95, 40.0);
+  EXPECT_THAT(evidence.durations, ElementsAre(20.0, 30.0, 40.0));
   EXPECT_EQ(evidence.median_rollout, 0);
 }
 

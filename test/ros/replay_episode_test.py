@@ -172,7 +172,9 @@ class ReplayEpisodeTest(unittest.TestCase):
             for key in ('action', 'arguments', 'begin', 'duration', 'happened'):
                 self.assertEqual(a[key], b[key])
             self.assertIsNotNone(a['imagined'], a)
-            self.assertEqual(a['imagined']['success'], b['imagined']['success'])
+            for key in ('success', 'durations'):
+                self.assertEqual(a['imagined'][key], b['imagined'][key])
+            self.assertEqual(a['percentile'], b['percentile'])
 
     def test_a_recorder_that_is_killed_leaves_a_bag_that_can_be_mended(self):
         path = self.record_what_is_played('killed', signal.SIGKILL).bag('.bag.active')

@@ -15,11 +15,12 @@ namespace hires::evaluation {
 /// What imagination says of a step.
 struct ImaginedAction {
   imagination::Evidence evidence;
-  /// [s] of the rollouts whose action did not fail, ascending. An imagination client does not tell
-  /// them: empty, and a normal distribution with the evidence's mean and deviation stands for them.
-  std::vector<double> durations;
   std::string refusal;  ///< why it could not be imagined; empty: it was
 };
+
+/// What makes an answer from another process unusable: durations that are not finite, not in
+/// ascending order or more than there were rollouts; empty if it is sound.
+std::string DefectOf(const ImaginedAction& imagined);
 
 /// What prediction and event say together.
 enum class StepVerdict {

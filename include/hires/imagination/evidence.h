@@ -42,6 +42,7 @@ struct Evidence {
   struct {
     double mean{0.0}, sd{0.0}, p50{0.0}, p95{0.0};
   } duration;  ///< [s], of rollouts whose action did not fail; sd divides by their number
+  std::vector<double> durations;  ///< [s] of the same rollouts, ascending
   struct {
     double p50{0.0}, p95{0.0};
   } max_tilt;                        ///< [rad], of rollouts with samples

@@ -27,17 +27,9 @@ Rank RankAmong(const std::vector<double>& sorted, double duration) {
           100.0 * (num_below + num_up_to) / (2.0 * n)};
 }
 
-Rank RankInNormal(double mean, double sd, double duration) {
-  if (sd <= 0.0) return {};  // one rollout, or all alike: nothing is known of the spread
-  const double share = 0.5 * std::erfc(-(duration - mean) / (sd * std::sqrt(2.0)));
-  return {share, 1.0 - share, 100.0 * share};
-}
-
 std::optional<Rank> RankOf(const ImaginedAction& imagined, double duration) {
-  if (!imagined.durations.empty()) return RankAmong(imagined.durations, duration);
-  const auto& d = imagined.evidence.duration;
-  if (imagined.evidence.action_failed_share >= 1.0 || d.mean <= 0.0) return std::nullopt;
-  return RankInNormal(d.mean, d.sd, duration);
+  if (imagined.evidence.durations.empty()) return std::nullopt;
+  return RankAmong(imagined.evidence.durations, duration);
 }
 
 StepVerdict VerdictOn(bool has_succeeded, const imagination::SuccessInterval& success) {
@@ -45,17 +37,6 @@ StepVerdict VerdictOn(bool has_succeeded, const imagination::SuccessInterval& su
   const bool is_expected = success.lower > kEven;
   if (is_expected == has_succeeded) return StepVerdict::kAsImagined;
   return has_succeeded ? StepVerdict::kSucceededAgainst : StepVerdict::kFailedAgainst;
-}
-
-/// What was played, as far as it came.
-ImaginedAction SumUpAll(const std::vector<RolloutResult>& results) {
-  ImaginedAction imagined;
-  imagined.evidence = imagination::SumUp(results);
-  for (const RolloutResult& result : results) {
-    if (!ActionFailed(result)) imagined.durations.push_back(result.duration);
-  }
-  std::sort(imagined.durations.begin(), imagined.durations.end());
-  return imagined;
 }
 
 }  // namespace
@@ -78,6 +59,19 @@ std::string ToString(StepVerdict verdict) {
       break;
   }
   return "not compared";
+}
+
+std::string DefectOf(const ImaginedAction& imagined) {
+  const std::vector<double>& durations = imagined.evidence.durations;
+  const bool is_sound =
+      std::all_of(durations.begin(), durations.end(),
+                  [](double duration) { return std::isfinite(duration); }) &&
+      std::is_sorted(durations.begin(), durations.end()) &&
+      durations.size() <= static_cast<std::size_t>(imagined.evidence.num_rollouts);
+  if (is_sound) return {};
+  return "the answer's durations are not finite, not in ascending order, or more than its "
+         "rollouts; "
+         "is the imagination client of this version?";
 }
 
 ComparedStep CompareStep(const EpisodeStep& step, const ImaginedAction& imagined, double surprise) {
@@ -123,7 +117,7 @@ std::optional<ImaginedAction> ImagineStep(const imagination::ImaginationSetup& s
     if (!result) return std::nullopt;
     results.push_back(*std::move(result));
   }
-  return SumUpAll(results);
+  return ImaginedAction{imagination::SumUp(results), {}};
 }
 
 }  // namespace hires::evaluation

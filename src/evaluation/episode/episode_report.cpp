@@ -18,9 +18,6 @@ bool IsImagined(const ComparedStep& compared) {
   return compared.imagined.refusal.empty() && compared.imagined.evidence.num_rollouts > 0;
 }
 
-/// An imagination client does not tell single durations.
-bool IsExact(const ComparedStep& compared) { return !compared.imagined.durations.empty(); }
-
 std::string NameOf(const EpisodeStep& step) {
   if (step.action.name.empty()) return step.motion;
   return base::ToString(step.action) + (step.motion.empty() ? "" : ": " + step.motion);
@@ -42,9 +39,7 @@ std::vector<std::string> RowOf(const ComparedStep& compared, std::size_t place) 
   for (std::string& cell : ImaginedCells(compared)) row.push_back(std::move(cell));
   row.push_back(step.failure ? ToString(step.failure) : ToString(step.fate));
   row.push_back(fmt::format("{:.1f} s", step.duration));
-  row.push_back(compared.percentile
-                    ? fmt::format("{}{:.0f} %", IsExact(compared) ? "" : "~", *compared.percentile)
-                    : "");
+  row.push_back(compared.percentile ? fmt::format("{:.0f} %", *compared.percentile) : "");
   row.push_back(ToString(compared.verdict));
   return row;
 }
@@ -56,7 +51,7 @@ ordered_json ImaginedJson(const ComparedStep& compared) {
           {"success_upper", e.success.upper}, {"action_failed_share", e.action_failed_share},
           {"fall_share", e.fall_share},       {"duration_mean", e.duration.mean},
           {"duration_sd", e.duration.sd},     {"duration_p50", e.duration.p50},
-          {"duration_p95", e.duration.p95},   {"durations", compared.imagined.durations},
+          {"duration_p95", e.duration.p95},   {"durations", e.durations},
           {"rollouts", e.num_rollouts},       {"failures", FailuresToJson(e.failures)}};
 }
 
@@ -72,7 +67,6 @@ ordered_json StepJson(const ComparedStep& compared, std::size_t place) {
                     {"duration", step.duration},
                     {"imagined", ImaginedJson(compared)},
                     {"percentile", nullptr},
-                    {"percentile_is_exact", IsExact(compared)},
                     {"verdict", ToString(compared.verdict)},
                     {"why_not", compared.why}};
   if (compared.percentile) json["percentile"] = *compared.percentile;
