@@ -140,8 +140,8 @@ TEST(ImagineStepTest, AStepIsImaginedAlikeByAnyNumberOfThreads) {
   ASSERT_TRUE(one && two);
   EXPECT_EQ(one->refusal, "");
   EXPECT_EQ(one->evidence.num_rollouts, 4);
-  EXPECT_FALSE(one->durations.empty());
-  EXPECT_EQ(one->durations, two->durations);
+  EXPECT_FALSE(one->evidence.durations.empty());
+  EXPECT_EQ(one->evidence.durations, two->evidence.durations);
   step.action = {"move_base_blind", {"nowhere"}};
   EXPECT_THAT(ImagineStep(setup, step, params, 0, {1, {}, {}})->refusal, HasSubstr("nowhere"));
 }
