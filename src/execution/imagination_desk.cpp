@@ -148,10 +148,17 @@ void ImaginationDesk::Ask(Question* question) {
   step.phase = StepPhase::kRunning;
   step.started = session_.now();
   step.finished.reset();
-  session_.outbox().Send(
-      StartImagination{question->request, session_.progress().plan_index(), question->target,
-                       question->action, projected.Atoms(), question->deadline,
-                       MinSuccessOf(session_.operators(), question->action.name)});
+  session_.outbox().Send(StartImagination{question->request, session_.progress().plan_index(),
+                                          question->target, question->action, projected.Atoms(),
+                                          question->deadline,
+                                          MinSuccessOf(session_.operators(), question->action.name),
+                                          FirstRequestFor(question->action, question->request)});
+}
+
+/// Of this task, for the same action; this one, if it is the first.
+int ImaginationDesk::FirstRequestFor(const base::ActionTemplate& action, int request) {
+  return first_requests_.emplace(std::make_pair(action.name, action.alternatives), request)
+      .first->second;
 }
 
 void ImaginationDesk::AskAgain(Question* question, const std::string& why) {

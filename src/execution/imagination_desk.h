@@ -1,9 +1,11 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "execution/session.h"
@@ -70,6 +72,7 @@ class ImaginationDesk {
   void Cancel(Question* question);
   void MoveTo(Question* question, double deadline);
   double DeadlineOf(const Question& question);
+  int FirstRequestFor(const base::ActionTemplate& action, int request);
   void TakeRanked(Question* question);
   void TakeFailed(Question* question, const ImagineAnswered& answer);
   void TakeDefaults(Question* question);
@@ -79,6 +82,7 @@ class ImaginationDesk {
 
   Session& session_;
   std::vector<Question> questions_;
+  std::map<std::pair<std::string, std::vector<std::vector<std::string>>>, int> first_requests_;
 };
 
 }  // namespace hires::execution

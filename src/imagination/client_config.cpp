@@ -20,6 +20,7 @@ ClientConfig ReadClientConfig(const std::string& path) {
   config.scheduler = ReadSchedulerParams(in.Sub("scheduler"));
   config.scheduler.criteria.prices = ReadPrices(FileAt("prices", path, &in));
   config.validated = ReadValidated(FileAt("validated", path, &in));
+  config.kept_rollouts = in.Get("kept_rollouts", base::Between(0, 1000000));
   config.feedback_period = in.Get("feedback_period", base::Between(0.01, 10.0));
   config.worker_timeout = in.Get("worker_timeout", base::Between(0.1, 60.0));
   in.RejectUnknownKeys();

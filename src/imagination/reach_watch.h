@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "hires/imagination/rollout_reach.h"
+#include "hires/imagination/rollout.h"
 
 namespace hires::imagination {
 

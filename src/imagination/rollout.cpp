@@ -7,7 +7,6 @@
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
-#include "hires/imagination/rollout_reach.h"
 #include "hires/simulation/robot_simulator.h"
 #include "imagination/load_monitor.h"
 #include "imagination/purpose.h"
@@ -234,36 +233,23 @@ std::optional<RolloutResult> PlayRollout(const RolloutSetup& setup, const base::
   const Rollout rollout(setup, action, index);
   auto skill = skills::MakeSkill(*setup.skills, action);  // an unknown action is refused
   try {
-    return rollout.Play(setup, std::move(skill), hooks, nullptr);
-  } catch (const base::ConfigError& error) {
-    return BadStart(setup, index, error);
-  }
-}
-
-std::optional<ReachedRollout> PlayWithReach(const RolloutSetup& setup,
-                                            const base::ActionCall& action, int index,
-                                            const RolloutHooks& hooks) {
-  if (LevelFor(*setup.skills, action) != simulation::LevelOfDetail::kTray) {
-    auto result = PlayRollout(setup, action, index, hooks);
-    if (!result) return std::nullopt;
-    return ReachedRollout{*std::move(result), {}};
-  }
-  const Rollout rollout(setup, action, index);
-  auto skill = skills::MakeSkill(*setup.skills, action);  // an unknown action is refused
-  try {
+    if (LevelFor(*setup.skills, action) != simulation::LevelOfDetail::kTray) {
+      return rollout.Play(setup, std::move(skill), hooks, nullptr);
+    }
     ReachWatch watch(setup, action);
     while (true) {
       auto result = rollout.Play(watch.narrowed(), std::move(skill), hooks, &watch);
       if (result) {
         result->final_world = watch.WithLeftOut(result->final_world);
-        return ReachedRollout{*std::move(result), watch.reach()};
+        result->reach = watch.reach();
+        return result;
       }
       if (!watch.is_touched()) return std::nullopt;
       watch.BeginAgain();
       skill = skills::MakeSkill(*setup.skills, action);
     }
   } catch (const base::ConfigError& error) {
-    return ReachedRollout{BadStart(setup, index, error), {}};
+    return BadStart(setup, index, error);
   }
 }
 

@@ -31,6 +31,18 @@ std::string CountDefect(const RolloutResult& result) {
                      counts.notopple, counts.shaking, counts.topple, result.falls);
 }
 
+std::string ReachDefect(const RolloutReach& reach) {
+  for (const RolloutReach::Disc& disc : reach.discs) {
+    const bool is_sound = disc.p_M.allFinite() && std::isfinite(disc.radius) && disc.radius >= 0.0;
+    if (is_sound) continue;
+    return fmt::format(
+        "it reached a disc of {} m around ({}, {}), wanted finite numbers, radius "
+        ">= 0",
+        disc.radius, disc.p_M.x(), disc.p_M.y());
+  }
+  return {};
+}
+
 bool LacksSamples(const RolloutResult& result) {
   return result.counts.total() == 0 && !result.nothing_watched;
 }
@@ -67,6 +79,7 @@ std::string Defect(const RolloutResult& result) {
   std::string defect = CountDefect(result);
   if (defect.empty()) defect = NumberDefect("duration", result.duration, "s");
   if (defect.empty()) defect = NumberDefect("max_tilt", result.max_tilt, "rad");
+  if (defect.empty()) defect = ReachDefect(result.reach);
   return defect;
 }
 

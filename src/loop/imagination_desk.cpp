@@ -73,19 +73,20 @@ struct ImaginationDesk::Session {
 
 ImaginationDesk::ImaginationDesk(const imagination::ImaginationSetup& setup,
                                  const translation::TranslatorContext& context,
-                                 const imagination::SchedulerParams& scheduler,
+                                 const imagination::ClientConfig& config,
                                  const execution::ImaginingParams& imagining,
                                  const ImaginationPace& pace, VirtualClock* clock,
                                  Blackboard* blackboard, RolloutPool* pool, OnAnswer on_answer)
     : setup_(setup),
       context_(context),
-      scheduler_(scheduler),
+      scheduler_(config.scheduler),
       imagining_(imagining),
       pace_(pace),
       clock_(*clock),
       blackboard_(*blackboard),
       pool_(*pool),
       on_answer_(std::move(on_answer)),
+      kept_(config.kept_rollouts),
       free_from_(static_cast<std::size_t>(pace.workers), 0.0) {}
 
 ImaginationDesk::~ImaginationDesk() { CancelAll(); }
@@ -147,7 +148,7 @@ void ImaginationDesk::Begin(const SessionPtr& session) {
     session->actions = base::Combinations(session->command.action);
     session->setup =
         std::make_shared<const imagination::RolloutSetup>(imagination::MakeRolloutSetup(
-            setup_, {state.world, state.robot}, SeedOf(session->command)));
+            setup_, {state.world, state.robot}, session->command.SeedFrom(imagining_.seed)));
     imagination::CheckSetupForAll(*session->setup, session->actions);
     imagination::SchedulerParams params = scheduler_;
     params.rollouts = imagining_.rollouts;
@@ -176,19 +177,13 @@ void ImaginationDesk::Begin(const SessionPtr& session) {
   }
 }
 
-std::uint64_t ImaginationDesk::SeedOf(const execution::StartImagination& command) {
-  const std::uint64_t own = imagining_.seed + static_cast<std::uint64_t>(command.request);
-  return seeds_.emplace(std::make_pair(command.action.name, command.action.alternatives), own)
-      .first->second;
-}
-
 const ImaginationDesk::Played& ImaginationDesk::Rollout(const SessionPtr& session, int alternative,
                                                         int index) {
   const auto [known, is_new] = session->rollouts.try_emplace({index, alternative});
   if (!is_new) return known->second;
   const base::ActionCall& action = session->actions.at(static_cast<std::size_t>(alternative));
   if (auto kept = kept_.Find(*session->setup, action, index)) {
-    std::promise<imagination::ReachedRollout> promise;
+    std::promise<imagination::RolloutResult> promise;
     promise.set_value(*std::move(kept));
     known->second = {promise.get_future().share(), true};
   } else {
@@ -224,7 +219,7 @@ void ImaginationDesk::Play(const SessionPtr& session, const Assign& assign) {
   free_from = std::max(free_from, clock_.now());
   for (int i = assign.first_index; i < assign.first_index + assign.count; ++i) {
     const Played& played = Rollout(session, assign.alternative, i);
-    if (!played.is_kept) free_from += played.rollout.get().result.simulated / pace_.speed;
+    if (!played.is_kept) free_from += played.rollout.get().simulated / pace_.speed;
     clock_.At(free_from,
               [this, session, assign, i, &played] { Finished(session, assign, i, played); });
   }
@@ -236,24 +231,25 @@ void ImaginationDesk::Play(const SessionPtr& session, const Assign& assign) {
 void ImaginationDesk::Finished(const SessionPtr& session, const Assign& assign, int index,
                                const Played& played) {
   if (session->is_over) return;
-  const imagination::ReachedRollout& rollout = played.rollout.get();
+  const imagination::RolloutResult& rollout = played.rollout.get();
   const base::ActionCall& action =
       session->actions.at(static_cast<std::size_t>(assign.alternative));
   if (!played.is_kept) kept_.Keep(session->setup, action, index, rollout);
   Handle(session, imagination::RolloutFinished{assign.worker, assign.assignment, assign.alternative,
-                                               index, rollout.result});
+                                               index, rollout});
 }
 
 void ImaginationDesk::Finish(const SessionPtr& session) {
   ImaginedStep& step = steps_[session->step];
   const double took = clock_.now() - step.requested;
-  const Report report =
+  Report report =
       imagination::MakeReport(*session->scheduler, session->actions, session->setup->seed, took);
-  const auto num_kept = std::count_if(session->rollouts.begin(), session->rollouts.end(),
-                                      [](const auto& rollout) { return rollout.second.is_kept; });
+  report.rollouts_kept =
+      static_cast<int>(std::count_if(session->rollouts.begin(), session->rollouts.end(),
+                                     [](const auto& rollout) { return rollout.second.is_kept; }));
   base::Log(base::LogLevel::kInfo,
             fmt::format("imagination={} rollouts={} kept={}", session->command.request,
-                        session->rollouts.size(), num_kept));
+                        session->rollouts.size(), report.rollouts_kept));
   step.wall_seconds = took;
   step.simulated_seconds = report.simulated_seconds;
   step.predictions = report.ranking;

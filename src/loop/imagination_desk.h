@@ -11,10 +11,11 @@
 #include "hires/evaluation/achieve.h"
 #include "hires/execution/monitor.h"
 #include "hires/execution/monitor_config.h"
+#include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
+#include "hires/imagination/kept_rollouts.h"
 #include "hires/imagination/scheduler.h"
 #include "loop/blackboard.h"
-#include "loop/kept_rollouts.h"
 #include "loop/rollout_pool.h"
 #include "loop/virtual_clock.h"
 
@@ -30,8 +31,8 @@ struct ImaginationPace {
 /// Imagines steps for the execution monitor: the state becomes geometry, the scheduler hands out
 /// rollouts to workers that exist in virtual time alone, and deadlines cut it short there. What a
 /// rollout gives is played by real threads, as many as there are; their number changes nothing.
-/// A request that begins again goes on with the seed that its action was first asked with, and with
-/// the rollouts that cannot depend on what has changed: they take no time.
+/// A request that begins again goes on with the rollouts that cannot depend on what has changed:
+/// they take no time.
 class ImaginationDesk {
  public:
   using OnAnswer = std::function<void(const execution::ImagineAnswered&)>;
@@ -39,7 +40,7 @@ class ImaginationDesk {
   /// @pre all outlive this.
   ImaginationDesk(const imagination::ImaginationSetup& setup,
                   const translation::TranslatorContext& context,
-                  const imagination::SchedulerParams& scheduler,
+                  const imagination::ClientConfig& config,
                   const execution::ImaginingParams& imagining, const ImaginationPace& pace,
                   VirtualClock* clock, Blackboard* blackboard, RolloutPool* pool,
                   OnAnswer on_answer);
@@ -64,7 +65,6 @@ class ImaginationDesk {
   void Play(const SessionPtr& session, const imagination::Assign& assign);
   struct Played;
   const Played& Rollout(const SessionPtr& session, int alternative, int index);
-  std::uint64_t SeedOf(const execution::StartImagination& command);
   void Finished(const SessionPtr& session, const imagination::Assign& assign, int index,
                 const Played& played);
   void Finish(const SessionPtr& session);
@@ -82,8 +82,7 @@ class ImaginationDesk {
   RolloutPool& pool_;
   const OnAnswer on_answer_;
   std::map<int, SessionPtr> sessions_;  // by request
-  KeptRollouts kept_;
-  std::map<std::pair<std::string, std::vector<std::vector<std::string>>>, std::uint64_t> seeds_;
+  imagination::KeptRollouts kept_;
   std::vector<double> free_from_;  // [s] each worker, after all that it was assigned
   std::vector<evaluation::ImaginedStep> steps_;
 };

@@ -61,8 +61,8 @@ MonitorShell::MonitorShell(const LoopSetup::Parts& parts, const LoopOrder& order
       records_(blackboard),
       planning_(parts.planning, parts.config.planning_time, clock,
                 [this](const execution::PlanArrived& answer) { Feed(answer); }),
-      imagination_(parts.world, parts.context, parts.config.imagination.scheduler,
-                   ImaginingOf(parts, order), parts.config.pace, clock, blackboard, pool,
+      imagination_(parts.world, parts.context, parts.config.imagination, ImaginingOf(parts, order),
+                   parts.config.pace, clock, blackboard, pool,
                    [this](const execution::ImagineAnswered& answer) { Feed(answer); }),
       monitor_(&parts.planning, &parts.operators, ParamsOf(parts, order)) {}
 

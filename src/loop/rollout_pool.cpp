@@ -4,7 +4,7 @@
 
 namespace hires::loop {
 
-using imagination::ReachedRollout;
+using imagination::RolloutResult;
 using imagination::RolloutSetup;
 
 RolloutPool::RolloutPool(int num_threads) {
@@ -24,13 +24,13 @@ RolloutPool::~RolloutPool() {
 RolloutPool::Result RolloutPool::Play(std::shared_ptr<const RolloutSetup> setup,
                                       const base::ActionCall& action, int index,
                                       std::shared_ptr<const std::atomic<bool>> unwanted) {
-  std::packaged_task<ReachedRollout()> task([setup = std::move(setup), action, index,
-                                             unwanted = std::move(unwanted)] {
-    if (*unwanted) return ReachedRollout();
-    const auto rollout =
-        imagination::PlayWithReach(*setup, action, index, {[&] { return unwanted->load(); }, {}});
-    return rollout.value_or(ReachedRollout());
-  });
+  std::packaged_task<RolloutResult()> task(
+      [setup = std::move(setup), action, index, unwanted = std::move(unwanted)] {
+        if (*unwanted) return RolloutResult();
+        const auto rollout =
+            imagination::PlayRollout(*setup, action, index, {[&] { return unwanted->load(); }, {}});
+        return rollout.value_or(RolloutResult());
+      });
   Result result = task.get_future().share();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -42,7 +42,7 @@ RolloutPool::Result RolloutPool::Play(std::shared_ptr<const RolloutSetup> setup,
 
 void RolloutPool::Run() {
   while (true) {
-    std::packaged_task<ReachedRollout()> task;
+    std::packaged_task<RolloutResult()> task;
     {
       std::unique_lock<std::mutex> lock(mutex_);
       changed_.wait(lock, [this] { return is_ending_ || !waiting_.empty(); });

@@ -333,6 +333,13 @@ msg::RolloutRecord ToMsg(const hires::imagination::RolloutResult& result, int in
   out.final_world = ToMsg(result.final_world);
   out.final_robot = ToMsg(result.final_robot);
   out.simulated = result.simulated;
+  out.depends_on_everything = result.reach.is_everything;
+  for (const auto& disc : result.reach.discs) {
+    out.reach.emplace_back();
+    out.reach.back().x = disc.p_M.x();
+    out.reach.back().y = disc.p_M.y();
+    out.reach.back().radius = disc.radius;
+  }
   return out;
 }
 
@@ -352,6 +359,10 @@ hires::imagination::RolloutResult FromMsg(const msg::RolloutRecord& record) {
   out.final_world = FromMsg(record.final_world);
   out.final_robot = FromMsg(record.final_robot);
   out.simulated = record.simulated;
+  out.reach.is_everything = record.depends_on_everything;
+  for (const msg::Disc& disc : record.reach) {
+    out.reach.discs.push_back({{disc.x, disc.y}, disc.radius});
+  }
   return out;
 }
 
@@ -438,6 +449,7 @@ msg::ImagineResult ToMsg(const hires::imagination::Report& report) {
   out.seed = report.seed;
   out.wall_seconds = report.wall_seconds;
   out.simulated_seconds = report.simulated_seconds;
+  out.rollouts_kept = static_cast<std::uint32_t>(report.rollouts_kept);
   return out;
 }
 
@@ -454,6 +466,7 @@ hires::imagination::Report FromMsg(const msg::ImagineResult& result) {
   out.seed = result.seed;
   out.wall_seconds = result.wall_seconds;
   out.simulated_seconds = result.simulated_seconds;
+  out.rollouts_kept = static_cast<int>(result.rollouts_kept);
   return out;
 }
 

@@ -35,11 +35,13 @@ TEST(ClientConfigTest, ReadsTheConfiguredFile) {
   YAML::Node root = Configured();
   root["scene"] = "other/scene.yaml";
   root["feedback_period"] = 0.7;
+  root["kept_rollouts"] = 12;
   root["worker_timeout"] = 3.5;
   root["scheduler"]["rollouts"] = 24;
   const ClientConfig config = ReadClientConfig(folder.Write("client.yaml", YAML::Dump(root)));
   EXPECT_EQ(config.scene, (folder.path() / "other/scene.yaml").string());
   EXPECT_EQ(config.feedback_period, 0.7);
+  EXPECT_EQ(config.kept_rollouts, 12);
   EXPECT_EQ(config.worker_timeout, 3.5);
   EXPECT_EQ(config.scheduler.rollouts, 24);
   EXPECT_EQ(config.scheduler.criteria.min_success, 0.5);
@@ -48,8 +50,8 @@ TEST(ClientConfigTest, ReadsTheConfiguredFile) {
 }
 
 TEST(ClientConfigTest, EveryKeyIsNeeded) {
-  for (const char* key :
-       {"scene", "scheduler", "prices", "validated", "feedback_period", "worker_timeout"}) {
+  for (const char* key : {"scene", "scheduler", "prices", "validated", "kept_rollouts",
+                          "feedback_period", "worker_timeout"}) {
     YAML::Node root = Configured();
     root.remove(key);
     EXPECT_THAT(WhyRefused(root),

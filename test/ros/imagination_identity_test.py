@@ -22,6 +22,8 @@ PLACE = ['--action', 'place_object', '--from', 'manipulationAreaSouthTable1', '-
          'placingAreaWestRightTable1']
 OCCUPIED = ['--put', 'bowl1:7.539,11.241,0.73', '--put', 'book1:7.481,11.384,0.73', '--put',
             'book2:7.613,11.405,0.73']
+FAR = ['--put', 'book1:2.9,3.1,0.01']  # on the floor, where nothing drives
+NEAR = ['--put', 'book1:6.9,10.6,0.01']  # half a metre beside the robot's start
 
 
 class ImaginationIdentityTest(unittest.TestCase):
@@ -93,6 +95,18 @@ class ImaginationIdentityTest(unittest.TestCase):
         local = self.local.ask('--local', **arguments).answer()
         self.assertEqual(remote.code, local.code, remote.output)
         self.assertEqual(remote.content(), local.content())
+
+    def test_what_a_change_cannot_have_touched_is_not_played_again(self):
+        system = ImaginationSystem(workers=1)
+        self.addCleanup(system.destroy)
+        system.start(kept=100)
+        for change, kept in ([], 0), ([], 8), (FAR, 8), (NEAR, 0), (FAR, 8):
+            with self.subTest(change=change, kept=kept):
+                answer = system.ask(*change, rollouts=4).answer()
+                alone = self.local.ask('--local', *change, rollouts=4).answer()
+                self.assertEqual(answer.report['rollouts_kept'], kept, answer.output)
+                self.assertEqual(answer.content(), alone.content())
+        system.shut_down()
 
     def test_arms_are_identical_too(self):
         system = self.with_two_workers()

@@ -144,11 +144,16 @@ class ReplayEpisodeTest(unittest.TestCase):
 
     def test_what_is_played_is_recorded_and_imagined_by_a_running_client(self):
         self.system.start()
-        whole = self.record_what_is_played('whole', signal.SIGINT)
-        code, output, replayed = self.replay(whole.bag('.bag'))
+        whole = self.record_what_is_played('whole', signal.SIGINT).bag('.bag')
+        code, output, replayed = self.replay(whole)
         self.assertEqual(code, 0, output)
         self.assertEqual(replayed['imagined_by'], 'imagination client')
-        self.require_same_steps(replayed)
+        self.require_same_steps(replayed, self.replayed)
+        _, output, locally = self.replay(whole, '--local')
+        self.require_same_steps(replayed, locally)
+        for a, b in zip(self.steps(replayed), self.steps(locally)):
+            self.assertEqual(a['imagined']['durations'], b['imagined']['durations'])
+            self.assertEqual(a['percentile'], b['percentile'])
 
     def record_what_is_played(self, name, end):
         recorder = Recorder(self.system, name)
@@ -164,17 +169,16 @@ class ReplayEpisodeTest(unittest.TestCase):
         player.destroy()
         return recorder
 
-    def require_same_steps(self, replayed):
-        """Only who imagined is another."""
-        found, known = self.steps(replayed), self.steps(self.replayed)
+    def require_same_steps(self, one, other):
+        """Messages of one moment are recorded in the order in which they came, which may differ; so
+        what was known at the start may differ in its last bits, and with it a rollout's duration."""
+        found, known = self.steps(one), self.steps(other)
         self.assertEqual(len(found), len(known))
         for a, b in zip(found, known):
             for key in ('action', 'arguments', 'begin', 'duration', 'happened'):
                 self.assertEqual(a[key], b[key])
             self.assertIsNotNone(a['imagined'], a)
-            for key in ('success', 'durations'):
-                self.assertEqual(a['imagined'][key], b['imagined'][key])
-            self.assertEqual(a['percentile'], b['percentile'])
+            self.assertEqual(a['imagined']['success'], b['imagined']['success'])
 
     def test_a_recorder_that_is_killed_leaves_a_bag_that_can_be_mended(self):
         path = self.record_what_is_played('killed', signal.SIGKILL).bag('.bag.active')

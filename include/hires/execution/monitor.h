@@ -102,6 +102,12 @@ struct StartImagination {
   std::vector<base::Atom> state;  ///< projected to the moment at which the action will start
   double deadline{0.0};           ///< [s] main ROS time; infinite: none
   double min_success{0.0};        ///< as the domain's sidecar wants it; 0: it says nothing
+  int first_request{0};           ///< of this task that asked for the same action
+
+  /// A request that begins again draws what the first one drew, so that rollouts stay valid.
+  std::uint64_t SeedFrom(std::uint64_t seed) const {
+    return seed + static_cast<std::uint64_t>(first_request);
+  }
 };
 struct MoveDeadline {
   int request{0};

@@ -32,6 +32,7 @@ struct Report {
   std::uint64_t seed{0};
   double wall_seconds{0.0};
   double simulated_seconds{0.0};  ///< of the rollouts behind the ranking
+  int rollouts_kept{0};           ///< of an earlier request, which were not played again
 };
 
 /// What is known while the work goes on.

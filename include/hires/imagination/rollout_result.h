@@ -4,6 +4,7 @@
 #include <string>
 
 #include "hires/base/failure.h"
+#include "hires/imagination/rollout_reach.h"
 #include "hires/robot/observation.h"
 #include "hires/world/world.h"
 
@@ -39,6 +40,7 @@ struct RolloutResult {
   world::WorldState final_world;
   robot::RobotState final_robot;
   double simulated{0.0};  ///< [s] of physics, settling included
+  RolloutReach reach;     ///< what it depends on
 };
 
 /// Whether the action counts as failed: it did not reach its goal, or nothing was sampled while it

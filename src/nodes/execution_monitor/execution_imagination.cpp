@@ -97,9 +97,7 @@ void ImagineRequests::OnTranslated(int key, bool is_answered, const State& state
   Request& request = found->second;
   request.state = state;
   request.is_translated = true;
-  hires::ImagineGoal goal = GoalOf(request.command, state, imagining_);
-  goal.seed += static_cast<std::uint64_t>(request.command.request);
-  link_.Send(key, std::move(goal));
+  link_.Send(key, GoalOf(request.command, state, imagining_));
 }
 
 void ImagineRequests::Move(const execution::MoveDeadline& command) {

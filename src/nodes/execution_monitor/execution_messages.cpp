@@ -104,7 +104,7 @@ hires::ImagineGoal GoalOf(const execution::StartImagination& command,
   goal.world_state = state.world_state;
   goal.robot_state = state.robot_state;
   goal.rollouts = static_cast<std::uint32_t>(params.rollouts);
-  goal.seed = params.seed;
+  goal.seed = command.SeedFrom(params.seed);
   goal.ranking = params.ranking;
   goal.min_success = command.min_success;
   goal.request_id = "execution_monitor";

@@ -4,6 +4,8 @@
 #include <ros/package.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <deque>
+
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/overloaded.h"
@@ -65,6 +67,7 @@ ImaginationClientNode::ImaginationClientNode(const ImaginationClientParams& para
                                              ros::NodeHandle* nh)
     : params_(params),
       setup_(std::move(setup)),
+      kept_(params.config.kept_rollouts),
       server_(
           *nh, kImagineAction, [this](GoalHandle goal) { OnGoal(goal); },
           [this](GoalHandle goal) { OnCancel(goal); }, false),
@@ -135,6 +138,7 @@ std::unique_ptr<ImaginationClientNode::Session> ImaginationClientNode::MakeSessi
   if (wanted.updated_fluents.empty()) RequireSoundState(wanted.world_state, wanted.robot_state);
   session->request = RequestOf(wanted, setup_, params_.config.scheduler);
   if (wanted.uncertainty.empty()) SpreadStart(&session->request);
+  session->setup = std::make_shared<const imagination::RolloutSetup>(session->request.setup);
   session->started = SchedulerNow();
   session->scheduler = std::make_unique<imagination::Scheduler>(
       session->request.params, static_cast<int>(session->request.actions.size()), session->started);
@@ -196,14 +200,7 @@ void ImaginationClientNode::OnWorkerEvent(int worker, const WorkerLink::Event& e
                    log("lost");
                    for (auto& s : sessions_) Feed(s.get(), imagination::WorkerLost{worker});
                  },
-                 [&](const WorkerLink::Played& e) {
-                   for (auto& s : sessions_) {
-                     if (s->id != e.session) continue;
-                     const auto alternative = s->alternative_of.find(e.assignment);
-                     if (alternative == s->alternative_of.end()) continue;
-                     Feed(s.get(), EventOf(worker, alternative->second, e));
-                   }
-                 },
+                 [&](const WorkerLink::Played& e) { OnPlayed(worker, e); },
                  [&](const WorkerLink::Finished& e) {
                    // Feedback may have been lost on the way: the result has all rollouts once more.
                    for (const auto& record : e.records) {
@@ -218,6 +215,22 @@ void ImaginationClientNode::OnWorkerEvent(int worker, const WorkerLink::Event& e
                                                                          e.is_unusable});
                  }},
              event);
+}
+
+void ImaginationClientNode::OnPlayed(int worker, const WorkerLink::Played& played) {
+  for (auto& session : sessions_) {
+    if (session->id != played.session) continue;
+    const auto alternative = session->alternative_of.find(played.assignment);
+    if (alternative == session->alternative_of.end()) continue;
+    const imagination::Event event = EventOf(worker, alternative->second, played);
+    if (const auto* finished = std::get_if<imagination::RolloutFinished>(&event)) {
+      if (imagination::Defect(finished->result).empty()) {
+        kept_.Keep(session->setup, session->request.actions[finished->alternative], finished->index,
+                   finished->result);
+      }
+    }
+    Feed(session.get(), event);
+  }
 }
 
 /// For people, behind what a worker says that is not the same as here.
@@ -249,15 +262,38 @@ hires::RolloutGoal ImaginationClientNode::RolloutGoalFor(const Session& session,
 
 void ImaginationClientNode::CarryOut(Session* session,
                                      const std::vector<imagination::Command>& commands) {
-  for (const auto& command : commands) {
-    if (const auto* assign = std::get_if<imagination::Assign>(&command)) {
-      session->alternative_of[assign->assignment] = assign->alternative;
-      workers_.at(assign->worker)
-          ->Send(session->id, assign->assignment, RolloutGoalFor(*session, *assign));
-    } else if (const auto* cancel = std::get_if<imagination::CancelAssignment>(&command)) {
+  std::deque<imagination::Command> open(commands.begin(), commands.end());
+  for (; !open.empty(); open.pop_front()) {
+    if (const auto* cancel = std::get_if<imagination::CancelAssignment>(&open.front())) {
       workers_.at(cancel->worker)->Cancel(session->id, cancel->assignment);
+      continue;
+    }
+    const auto& assign = std::get<imagination::Assign>(open.front());
+    for (const imagination::Event& event : Begin(session, assign)) {
+      const auto next = session->scheduler->Handle(event, SchedulerNow());
+      open.insert(open.end(), next.begin(), next.end());
     }
   }
+}
+
+/// Sends to its worker what of it has to be played.  @return what is known without.
+std::vector<imagination::Event> ImaginationClientNode::Begin(Session* session,
+                                                             const imagination::Assign& assign) {
+  auto shortened =
+      kept_.Shorten(assign, *session->setup, session->request.actions[assign.alternative]);
+  std::vector<imagination::Event> known;
+  for (auto& finished : shortened.known) {
+    session->from_kept.insert({finished.alternative, finished.index});
+    known.push_back(std::move(finished));
+  }
+  if (shortened.rest.count == 0) {
+    known.push_back(imagination::AssignmentFinished{assign.worker, assign.assignment});
+  } else {
+    session->alternative_of[assign.assignment] = assign.alternative;
+    workers_.at(assign.worker)
+        ->Send(session->id, assign.assignment, RolloutGoalFor(*session, shortened.rest));
+  }
+  return known;
 }
 
 void ImaginationClientNode::OnTick() {
@@ -296,6 +332,7 @@ void ImaginationClientNode::Finish(Session* session) {
   const ImagineRequest& request = session->request;
   auto report = imagination::MakeReport(*session->scheduler, request.actions, request.setup.seed,
                                         hires::base::SteadyNow() - session->begun);
+  report.rollouts_kept = static_cast<int>(session->from_kept.size());
   report.caveats = imagination::CaveatsOf(request.setup, request.actions, params_.config.validated);
   const hires::ImagineResult result = AnswerTo(*session->goal.getGoal(), request, setup_, report);
   hires::base::Log(hires::base::LogLevel::kInfo,

@@ -10,11 +10,14 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
+#include "hires/imagination/kept_rollouts.h"
 #include "hires/imagination/scheduler.h"
 #include "hires/imagination/start_spread.h"
 #include "hires/ros/imagine_request.h"
@@ -56,10 +59,13 @@ class ImaginationClientNode {
     GoalHandle goal;
     ImagineRequest request;
     std::unique_ptr<hires::imagination::Scheduler> scheduler;
-    std::map<int, int> alternative_of;  ///< assignment -> alternative
-    double started;                     ///< [s] by the scheduler's clock
-    double begun;                       ///< [s] steady
-    double next_feedback;               ///< [s] steady
+    /// What its rollouts share, for those of later requests.
+    std::shared_ptr<const hires::imagination::RolloutSetup> setup;
+    std::map<int, int> alternative_of;        ///< assignment -> alternative
+    std::set<std::pair<int, int>> from_kept;  ///< alternative and index
+    double started;                           ///< [s] by the scheduler's clock
+    double begun;                             ///< [s] steady
+    double next_feedback;                     ///< [s] steady
   };
 
   void OnGoal(GoalHandle goal);
@@ -71,6 +77,9 @@ class ImaginationClientNode {
   std::unique_ptr<Session> MakeSession(GoalHandle goal);
   void Refuse(GoalHandle goal, const std::string& why);
   void CarryOut(Session* session, const std::vector<hires::imagination::Command>& commands);
+  std::vector<hires::imagination::Event> Begin(Session* session,
+                                               const hires::imagination::Assign& assign);
+  void OnPlayed(int worker, const WorkerLink::Played& played);
   void Feed(Session* session, const hires::imagination::Event& event);
   std::string OwnLibraries() const;
   hires::RolloutGoal RolloutGoalFor(const Session& session,
@@ -85,6 +94,7 @@ class ImaginationClientNode {
   hires::imagination::ImaginationSetup setup_;
   std::map<int, std::unique_ptr<WorkerLink>> workers_;
   std::list<std::unique_ptr<Session>> sessions_;
+  hires::imagination::KeptRollouts kept_;
   int next_session_{1};
   std::optional<hires::imagination::BelievedPose> believed_;
   Server server_;

@@ -46,7 +46,7 @@ class Answer:
     def content(self):
         """The report without what the clock had a hand in."""
         return {key: value for key, value in self.report.items()
-                if key not in ('wall_seconds', 'real_time_factor')}
+                if key not in ('wall_seconds', 'real_time_factor', 'rollouts_kept')}
 
     def rollouts(self):
         return [prediction['rollouts'] for prediction in self.report['ranking']]
@@ -105,10 +105,12 @@ class ImaginationSystem:
             self.wait_until_joined(k)
         return self
 
-    def client_config(self, **scheduler):
+    def client_config(self, kept=0, **scheduler):
+        """Without rollouts of earlier requests, which would make every second answer equal."""
         config = read_yaml('imagination_client.yaml')
         for key in ('scene', 'prices', 'validated'):
             config[key] = os.path.join(CONFIG_FOLDER, key + '.yaml')
+        config['kept_rollouts'] = kept
         config['scheduler'].update(scheduler)
         return self.write('imagination_client.yaml', yaml.safe_dump(config))
 
