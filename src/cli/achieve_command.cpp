@@ -102,7 +102,8 @@ loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& p
                              const evaluation::OnAchieveStatus& on_status,
                              const std::function<bool()>& cancelled,
                              loop::LoopRecording* recording) {
-  const loop::LoopSetup setup(package_folder + "/config/loop.yaml");
+  const loop::LoopSetup setup(options.config.empty() ? package_folder + "/config/loop.yaml"
+                                                     : options.config);
   loop::LoopOrder order;
   order.scenario = ScenarioPath(options.scenario, package_folder);
   order.task = base::Join(options.task, " ");
@@ -170,6 +171,9 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
       "time; needs no node. The same words give the same bits");
   verb->add_option("--scenario", options->scenario,
                    "with --local: file, or its name in config/scenarios; default: topple");
+  verb->add_option("--config", options->config,
+                   "with --local: file like config/loop.yaml, its default: what takes how long in "
+                   "virtual time, and which messages are late or lost");
   verb->add_option("--seed", options->seed,
                    "with --local: of the hidden truth, all noise and imagination; default: 1")
       ->check(CLI::Range(0, 2'147'483'647));

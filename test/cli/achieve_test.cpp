@@ -206,6 +206,7 @@ TEST_F(AchieveVerbTest, WhatCannotBePlayedIsNamed) {
   EXPECT_EQ(ended.code, kExitNotAchieved);
   EXPECT_THAT(ended.err, HasSubstr("config/scenarios/tipple.yaml: no such file"));
   EXPECT_THAT(Run({"--local", "--truth", "foregin"}).err, HasSubstr("'foreign'"));
+  EXPECT_THAT(Run({"--local", "--config", "lop.yaml"}).err, HasSubstr("lop.yaml"));
   ended = Run({"--local", "sreve_coffee_to_guest", "guest1"});
   EXPECT_EQ(ended.code, kExitNotAchieved);
   EXPECT_THAT(ended.err, HasSubstr("serve_coffee_to_guest"));
