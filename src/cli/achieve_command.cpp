@@ -75,10 +75,10 @@ std::string Plural(std::size_t count, const std::string& what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-void PrintReport(const evaluation::AchieveReport& report) {
+void PrintReport(const evaluation::AchieveReport& report, bool is_virtual) {
   const evaluation::Timeline timeline = evaluation::MakeTimeline(report);
   if (!timeline.bars.empty()) std::cout << '\n' << evaluation::TimelineText(timeline);
-  const std::string table = evaluation::ImaginationTable(report);
+  const std::string table = evaluation::ImaginationTable(report, is_virtual);
   if (!table.empty()) std::cout << '\n' << table;
   if (report.outcome == evaluation::AchieveOutcome::kDryRun)
     std::cout << '\n' << DryRunTable(report.status);
@@ -165,24 +165,30 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
   verb->add_option("--wait", options->wait,
                    "[s] for the execution monitor to be there; default: 10")
       ->check(CLI::Range(0.0, 1e6));
-  verb->add_flag(
+  CLI::Option* local = verb->add_flag(
       "--local", options->is_local,
       "play robot, world and all that plans, imagines and acts in this program, in virtual "
       "time; needs no node. The same words give the same bits");
   verb->add_option("--scenario", options->scenario,
-                   "with --local: file, or its name in config/scenarios; default: topple");
-  verb->add_option("--config", options->config,
-                   "with --local: file like config/loop.yaml, its default: what takes how long in "
-                   "virtual time, and which messages are late or lost");
+                   "with --local: file, or its name in config/scenarios; default: topple")
+      ->needs(local);
+  verb->add_option(
+          "--config", options->config,
+          "with --local: file like config/loop.yaml, its default: what takes how long in "
+          "virtual time, and which messages are late or lost; its paths count from its folder")
+      ->needs(local);
   verb->add_option("--seed", options->seed,
                    "with --local: of the hidden truth, all noise and imagination; default: 1")
-      ->check(CLI::Range(0, 2'147'483'647));
+      ->check(CLI::Range(0, 2'147'483'647))
+      ->needs(local);
   verb->add_option("--truth", options->truth,
                    "with --local: file, or its name in config/truths: what robot and world are "
-                   "really like; default: same, imagination's own model");
+                   "really like; default: same, imagination's own model")
+      ->needs(local);
   verb->add_option("--threads", options->threads,
                    "with --local: that play rollouts; the answer is the same for any; default: 2")
-      ->check(CLI::Range(1, 256));
+      ->check(CLI::Range(1, 256))
+      ->needs(local);
   verb->add_option("--record", options->record,
                    "with --local: write the episode to this bag, as a robot's would be; see "
                    "`hires replay`");
@@ -220,7 +226,7 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
             : achieve({base::Join(options.task, " "), options.imagination, options.wait}, show,
                       cancelled);
   show(report.status);  // its changes may have come with the result alone
-  PrintReport(report);
+  PrintReport(report, options.is_local);
   if (local) PrintTruth(*local, base::SteadyNow() - begun);
   WriteFiles(options, package_folder, report,
              local ? std::make_optional(local->truth_name) : std::nullopt);

@@ -168,10 +168,14 @@ void PrintReport(const imagination::Report& report, imagination::RankingRule rul
   }
   std::cout << fmt::format("{}: {}\n", evaluation::OutcomeName(report), report.why);
   for (const std::string& caveat : report.caveats) std::cout << "caveat: " << caveat << '\n';
-  if (report.wall_seconds > 0.0 && report.simulated_seconds > 0.0) {
+  if (report.kept.rollouts > 0) {
+    std::cout << fmt::format("{} rollouts, {:.0f} s, are those of an earlier request\n",
+                             report.kept.rollouts, report.kept.simulated_seconds);
+  }
+  if (report.wall_seconds > 0.0 && report.played_seconds() > 0.0) {
     std::cout << fmt::format("{:.0f} s imagined in {:.1f} s, {:.0f} times as fast as real time\n",
-                             report.simulated_seconds, report.wall_seconds,
-                             report.simulated_seconds / report.wall_seconds);
+                             report.played_seconds(), report.wall_seconds,
+                             report.played_seconds() / report.wall_seconds);
   }
 }
 
@@ -280,6 +284,8 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
     RefuseUnknownVerb(app, arguments);
     // CLI11 takes its arguments from the back.
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
+    // It has nothing to finish, and ends as any program does.
+    if (*doctor_options.verb) return RunDoctorVerb(doctor_options, backends);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, OnInterrupt);
     if (*imagine) return Imagine(imagine_options, backends);
     if (*achieve_options.verb) {
@@ -294,7 +300,6 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
       return RunBlackboardVerb(blackboard_options, backends.package_folder,
                                backends.connect_blackboard);
     }
-    if (*doctor_options.verb) return RunDoctorVerb(doctor_options, backends);
     for (std::size_t i = 0; i < others.size(); ++i) {
       if (*others[i]) return backends.more_verbs[i].run(others[i]->remaining());
     }

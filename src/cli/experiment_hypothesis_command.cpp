@@ -220,15 +220,18 @@ void AddHypothesisVerb(CLI::App* experiment, HypothesisOptions* options) {
   verb->add_option("--resume", options->journal,
                    "keep finished runs in this file, and go on with those that are there; default: "
                    "beside --json, else hypothesis_<scenario>.journal here");
-  verb->add_flag("--local", options->is_local,
-                 "play robot, world and all that plans, imagines and acts in this program, in "
-                 "virtual time; needs no node, and the same words give the same bits");
+  CLI::Option* local =
+      verb->add_flag("--local", options->is_local,
+                     "play robot, world and all that plans, imagines and acts in this program, in "
+                     "virtual time; needs no node, and the same words give the same bits");
   verb->add_option("--truth", options->truth,
                    "with --local: what robot and world are really like, a name of config/truths or "
-                   "a file; default: same, the model of imagination itself");
+                   "a file; default: same, the model of imagination itself")
+      ->needs(local);
   verb->add_option("--threads", options->threads,
                    "with --local: that play runs; changes no number; default: 2")
-      ->check(CLI::Range(1, 256));
+      ->check(CLI::Range(1, 256))
+      ->needs(local);
   verb->add_option("--csv", options->csv, "write one line per run to this file");
   verb->add_option("--json", options->json, "write everything to this file");
   verb->add_option("--logs", options->logs, "keep what the system of each run said in this folder");

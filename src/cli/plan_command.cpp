@@ -241,7 +241,7 @@ void AddPlanVerb(CLI::App* app, PlanOptions* options) {
   verb->add_option("--name", options->name, "which problem, where the file has several");
   verb->add_option(
       "--task", options->task,
-      "instead of the problem's tasks: 'serve_coffee guest1', or a SHOP2 task network");
+      "instead of the problem's tasks: 'serve_coffee_to_guest guest1', or a SHOP2 task network");
   verb->add_option("--which", options->which, "first, all, best (the cheapest); default: first")
       ->check(CLI::IsMember({"first", "all", "best"}));
   verb->add_option("--limit", options->limit, "plans, of --which all; default: 1000")

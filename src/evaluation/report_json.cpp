@@ -115,10 +115,10 @@ nlohmann::ordered_json ToJson(const imagination::Report& report) {
       {"ranking", ranking},
       {"seed", report.seed},
       {"simulated_seconds", report.simulated_seconds},
-      {"rollouts_kept", report.rollouts_kept},
+      {"rollouts_kept", report.kept.rollouts},
       {"wall_seconds", report.wall_seconds},
       {"real_time_factor",
-       report.wall_seconds > 0.0 ? report.simulated_seconds / report.wall_seconds : 0.0}};
+       report.wall_seconds > 0.0 ? report.played_seconds() / report.wall_seconds : 0.0}};
 }
 
 nlohmann::ordered_json ToJson(const imagination::Report& report,

@@ -148,11 +148,14 @@ std::string TimelineText(const Timeline& timeline, int width) {
   return text;
 }
 
-std::string ImaginationTable(const AchieveReport& report) {
+std::string ImaginationTable(const AchieveReport& report, bool is_virtual) {
   const double duration = MakeTimeline(report).duration;
   if (report.status.imaginations.empty()) return "";
-  std::vector<std::vector<std::string>> rows{{"imagined", "outcome", "rollouts", "simulated",
-                                              "wall", "factor", "wall / task", "before its step"}};
+  // In virtual time imagining takes as long as config/loop.yaml says: there is nothing to measure.
+  const std::string took = is_virtual ? "virtual" : "wall";
+  std::vector<std::vector<std::string>> rows{{"imagined", "outcome", "rollouts", "simulated", took,
+                                              is_virtual ? "as configured" : "factor",
+                                              took + " / task", "before its step"}};
   for (const ImaginedStep& step : report.status.imaginations) {
     rows.push_back({ToString(step.action), ToString(step.outcome), std::to_string(RolloutsOf(step)),
                     fmt::format("{:.1f} s", step.simulated_seconds),

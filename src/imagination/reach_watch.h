@@ -26,6 +26,7 @@ class ReachWatch {
   world::WorldState WithLeftOut(const world::WorldState& narrowed) const;
 
  private:
+  void AddEnds();
   bool Note(std::size_t thing, const Eigen::Vector2d& p_M, double radius);
 
   const RolloutSetup& setup_;

@@ -50,7 +50,8 @@ std::vector<Prediction> PredictionsOf(const Scheduler& scheduler, const Ranking&
 }
 
 Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall>& actions,
-                  std::uint64_t seed, double wall_seconds) {
+                  std::uint64_t seed, double wall_seconds,
+                  const std::set<std::pair<int, int>>& kept) {
   HIRES_CHECK(scheduler.finished(), "there is no result yet");
   const SchedulerResult& result = *scheduler.result();
   const Ranking& ranking = result.ranking;
@@ -64,6 +65,16 @@ Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall
   for (std::size_t alternative = 0; alternative < actions.size(); ++alternative) {
     const auto& prefix = scheduler.Prefix(static_cast<int>(alternative));
     for (int i = 0; i < ranking.num_rollouts; ++i) report.simulated_seconds += prefix[i].simulated;
+  }
+  for (const auto& [alternative, index] : kept) {
+    if (index >= ranking.num_rollouts) continue;
+    ++report.kept.rollouts;
+    report.kept.simulated_seconds += scheduler.Prefix(alternative)[index].simulated;
+  }
+  if (scheduler.num_mismatches() > 0) {
+    report.caveats.push_back(fmt::format(
+        "{} rollouts came twice and differed: workers that play one rollout differently",
+        scheduler.num_mismatches()));
   }
   for (std::size_t place = 0; place < ranking.order.size(); ++place) {
     if (ranking.recommended == ranking.order[place]) report.recommended = static_cast<int>(place);

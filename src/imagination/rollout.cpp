@@ -50,8 +50,7 @@ class Player {
 
   /// Nothing if it is cancelled, or comes near what is left out.
   std::optional<RolloutResult> Play(const RolloutHooks& hooks) {
-    if (!IsApart()) return std::nullopt;
-    StepFor(params_.settling_time);
+    if (!Settle()) return std::nullopt;
     LoadMonitor monitor(&simulator_, params_, standing_, purpose_);
     const double start = simulator_.time();
     skills::Status status;
@@ -89,9 +88,15 @@ class Player {
   }
 
  private:
-  void StepFor(double duration) {
-    const long steps = std::lround(duration / simulator_.time_step());
-    for (long i = 0; i < steps; ++i) simulator_.Step();
+  /// False if something comes near what is left out.
+  bool Settle() {
+    const long steps = std::lround(params_.settling_time / simulator_.time_step());
+    const long steps_per_look = world::StepsPerLook(simulator_.time_step());
+    for (long i = 0; i < steps; ++i) {
+      if (i % steps_per_look == 0 && !IsApart()) return false;
+      simulator_.Step();
+    }
+    return IsApart();
   }
 
   skills::Status Control(double start) {

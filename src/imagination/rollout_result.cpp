@@ -32,6 +32,10 @@ std::string CountDefect(const RolloutResult& result) {
 }
 
 std::string ReachDefect(const RolloutReach& reach) {
+  if (reach.is_everything != reach.discs.empty()) {
+    return reach.is_everything ? "it depends on everything and on discs besides"
+                               : "it depends on nothing: no disc of what it reached";
+  }
   for (const RolloutReach::Disc& disc : reach.discs) {
     const bool is_sound = disc.p_M.allFinite() && std::isfinite(disc.radius) && disc.radius >= 0.0;
     if (is_sound) continue;
@@ -39,6 +43,17 @@ std::string ReachDefect(const RolloutReach& reach) {
         "it reached a disc of {} m around ({}, {}), wanted finite numbers, radius "
         ">= 0",
         disc.radius, disc.p_M.x(), disc.p_M.y());
+  }
+  return {};
+}
+
+std::string FinalDefect(const RolloutResult& result) {
+  const auto& base = result.final_robot.X_MB;
+  if (!base.position().allFinite() || !std::isfinite(base.yaw)) {
+    return "the robot's final pose is not finite";
+  }
+  for (const world::ObjectState& object : result.final_world.objects) {
+    if (!object.X_MO.IsFinite()) return "the final pose of " + object.name + " is not finite";
   }
   return {};
 }
@@ -79,7 +94,9 @@ std::string Defect(const RolloutResult& result) {
   std::string defect = CountDefect(result);
   if (defect.empty()) defect = NumberDefect("duration", result.duration, "s");
   if (defect.empty()) defect = NumberDefect("max_tilt", result.max_tilt, "rad");
+  if (defect.empty()) defect = NumberDefect("simulated", result.simulated, "s");
   if (defect.empty()) defect = ReachDefect(result.reach);
+  if (defect.empty()) defect = FinalDefect(result);
   return defect;
 }
 

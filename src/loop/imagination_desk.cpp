@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <future>
+#include <set>
 #include <utility>
 
 #include "hires/base/error.h"
@@ -242,16 +243,17 @@ void ImaginationDesk::Finished(const SessionPtr& session, const Assign& assign, 
 void ImaginationDesk::Finish(const SessionPtr& session) {
   ImaginedStep& step = steps_[session->step];
   const double took = clock_.now() - step.requested;
-  Report report =
-      imagination::MakeReport(*session->scheduler, session->actions, session->setup->seed, took);
-  report.rollouts_kept =
-      static_cast<int>(std::count_if(session->rollouts.begin(), session->rollouts.end(),
-                                     [](const auto& rollout) { return rollout.second.is_kept; }));
+  std::set<std::pair<int, int>> kept;
+  for (const auto& [place, rollout] : session->rollouts) {
+    if (rollout.is_kept) kept.insert({place.second, place.first});
+  }
+  const Report report = imagination::MakeReport(*session->scheduler, session->actions,
+                                                session->setup->seed, took, kept);
   base::Log(base::LogLevel::kInfo,
             fmt::format("imagination={} rollouts={} kept={}", session->command.request,
-                        session->rollouts.size(), report.rollouts_kept));
+                        session->rollouts.size(), kept.size()));
   step.wall_seconds = took;
-  step.simulated_seconds = report.simulated_seconds;
+  step.simulated_seconds = report.played_seconds();
   step.predictions = report.ranking;
   step.recommended = report.recommended;
   step.why = report.why;

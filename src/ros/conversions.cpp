@@ -449,7 +449,8 @@ msg::ImagineResult ToMsg(const hires::imagination::Report& report) {
   out.seed = report.seed;
   out.wall_seconds = report.wall_seconds;
   out.simulated_seconds = report.simulated_seconds;
-  out.rollouts_kept = static_cast<std::uint32_t>(report.rollouts_kept);
+  out.rollouts_kept = static_cast<std::uint32_t>(report.kept.rollouts);
+  out.simulated_seconds_kept = report.kept.simulated_seconds;
   return out;
 }
 
@@ -466,7 +467,7 @@ hires::imagination::Report FromMsg(const msg::ImagineResult& result) {
   out.seed = result.seed;
   out.wall_seconds = result.wall_seconds;
   out.simulated_seconds = result.simulated_seconds;
-  out.rollouts_kept = static_cast<int>(result.rollouts_kept);
+  out.kept = {static_cast<int>(result.rollouts_kept), result.simulated_seconds_kept};
   return out;
 }
 

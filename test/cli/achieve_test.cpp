@@ -1,4 +1,8 @@
 #include <gmock/gmock.h>
+#include <yaml-cpp/yaml.h>
+
+#include <fstream>
+#include <regex>
 
 #include "cli/achieve_command.h"
 #include "cli/achieve_display.h"
@@ -211,6 +215,35 @@ TEST_F(AchieveVerbTest, WhatCannotBePlayedIsNamed) {
   EXPECT_EQ(ended.code, kExitNotAchieved);
   EXPECT_THAT(ended.err, HasSubstr("serve_coffee_to_guest"));
   EXPECT_THAT(Run({}).err, HasSubstr("wanted a task"));
+}
+
+double VirtualSecondsIn(const std::string& text) {
+  std::smatch found;
+  if (!std::regex_search(text, found, std::regex("([0-9.]+) s of virtual time"))) return -1.0;
+  return std::stod(found[1]);
+}
+
+TEST_F(AchieveVerbTest, WhatIsOfVirtualTimeAloneIsRefusedWithoutIt) {
+  for (const std::string option : {"--scenario", "--config", "--seed", "--truth", "--threads"}) {
+    const Ended ended = Run({"serve guest1", option, "1"});
+    EXPECT_EQ(ended.code, kExitNotAchieved) << option;
+    EXPECT_THAT(ended.err, AllOf(HasSubstr(option), HasSubstr("--local")));
+  }
+}
+
+TEST_F(AchieveVerbTest, AnotherVirtualTimeIsTakenFromAnotherFile) {
+  const std::string config = HIRES_SOURCE_DIR "/config/";
+  YAML::Node loop = YAML::LoadFile(config + "loop.yaml");
+  for (auto entry : loop) {
+    if (!entry.second.IsScalar() || entry.first.Scalar() == "planning_time") continue;
+    entry.second = config + entry.second.Scalar();
+  }
+  loop["planning_time"] = 7.05;
+  const std::string path = folder_.path() / "slow.yaml";
+  std::ofstream(path) << loop;
+  const std::string task = "carry_object_on_tray mug7 counter1 table1";
+  const double usual = VirtualSecondsIn(Run({"--local", task}).out);
+  EXPECT_NEAR(VirtualSecondsIn(Run({"--local", "--config", path, task}).out), usual + 7.0, 0.11);
 }
 
 TEST_F(AchieveVerbTest, TheTaskMayBeOneWordOrSeveral) {

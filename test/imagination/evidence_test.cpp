@@ -84,6 +84,29 @@ TEST(DefectTest, NumbersThatAreNoneAreNamed) {
   result = Success();
   result.counts.shaking = -3;
   EXPECT_THAT(Defect(result), HasSubstr("shaking -3"));
+  result = Success();
+  result.simulated = std::nan("");
+  EXPECT_THAT(Defect(result), HasSubstr("simulated is nan s"));
+  result = Success();
+  result.final_robot.X_MB.yaw = std::nan("");
+  EXPECT_THAT(Defect(result), HasSubstr("robot's final pose"));
+  result = Success();
+  result.final_world.objects.resize(1);
+  result.final_world.objects[0].name = "mug1";
+  result.final_world.objects[0].X_MO.translation.x() = std::nan("");
+  EXPECT_THAT(Defect(result), HasSubstr("final pose of mug1"));
+}
+
+TEST(DefectTest, AReachIsEverythingOrDiscs) {
+  RolloutResult result = Success();
+  result.reach.discs.push_back({{1.0, 2.0}, 0.5});
+  EXPECT_THAT(Defect(result), HasSubstr("everything and on discs"));
+  result.reach.is_everything = false;
+  EXPECT_EQ(Defect(result), "");
+  result.reach.discs[0].radius = -0.5;
+  EXPECT_THAT(Defect(result), HasSubstr("-0.5 m around (1, 2)"));
+  result.reach.discs.clear();
+  EXPECT_THAT(Defect(result), HasSubstr("depends on nothing"));
 }
 
 TEST(SumUpTest, NothingGivesNothing) {

@@ -58,6 +58,16 @@ RolloutResult EndingAt(RolloutResult result, double x) {
 
 Report Make(const Scheduler& scheduler) { return MakeReport(scheduler, kActions, 7, 1.5); }
 
+TEST(ReportTest, WhatIsKeptIsToldApartFromWhatWasPlayed) {
+  Scheduler scheduler(AllOf4(), 2, 0.0);
+  PlayAll(&scheduler,
+          {Times(4, EndingAt(Success(40.0), 1.0)), Times(4, EndingAt(Success(42.0), 2.0))});
+  const Report report = MakeReport(scheduler, kActions, 7, 1.5, {{0, 3}, {1, 0}, {1, 4}});
+  EXPECT_EQ(report.kept.rollouts, 2) << "the fifth is not behind the ranking";
+  EXPECT_EQ(report.simulated_seconds, 80.0);
+  EXPECT_EQ(report.played_seconds(), 60.0);
+}
+
 TEST(ReportTest, RanksTheBestFirstAndSaysWhy) {
   Scheduler scheduler(AllOf4(), 2, 0.0);
   const std::vector<RolloutResult> slow{EndingAt(Success(40.0), 1.0), EndingAt(Success(43.0), 2.0),

@@ -149,7 +149,7 @@ TEST(RolloutReachTest, WhatMayDependOnAnythingStaysOnlyForTheSameStart) {
 }
 
 /// All that stands about is in physics from the beginning: it is not at rest, although so slow that
-/// it moves less than its place is known to.
+/// it moves by less than the last bit of its place.
 RolloutSetup Stirred(RolloutSetup setup) {
   for (ObjectState& object : setup.world_state.objects) {
     if (object.attached_to.empty()) object.V_MO.linear.z() = 1e-30;
@@ -170,6 +170,17 @@ TEST(RolloutReachTest, WhatIsFarAwayIsLeftOutAndStandsAsItDid) {
     EXPECT_TRUE(SameOutcome(Play(setup, index), Play(Stirred(setup), index)));
     EXPECT_TRUE(SameOutcome(Play(setup, index), Play(Start(), index)));
   }
+}
+
+TEST(RolloutReachTest, WhereSomethingMovesAtTheStartAllIsInPhysics) {
+  RolloutSetup setup = Start({OnFloor("thrown", 0.6, 0.3), OnFloor("far", 2.7, 0.3)});
+  EXPECT_FALSE(Play(setup).reach.is_everything);
+  setup.world_state.objects[1].V_MO.linear.x() = 8.0;
+  const RolloutResult result = Play(setup);
+  EXPECT_TRUE(result.reach.is_everything);
+  EXPECT_TRUE(result.reach.discs.empty());
+  setup.world_state.objects.pop_back();
+  EXPECT_FALSE(ResultFrom(setup, result, kFast, Start()).has_value());
 }
 
 TEST(RolloutReachTest, WhatIsInTheWayIsInPhysics) {

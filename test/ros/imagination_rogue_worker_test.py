@@ -34,7 +34,7 @@ class RogueWorker:
 
     def record(self, wanted):
         record = self.msg.RolloutRecord(index=wanted.first, duration=4.0, action_finished=True,
-                                        simulated=4.5)
+                                        simulated=4.5, depends_on_everything=True)
         record.counts.notopple = 80
         return record
 
@@ -72,6 +72,11 @@ class RogueWorker:
         record.max_tilt = -1.0
         self.finish(goal, record)
 
+    def depend_on_nothing(self, goal, wanted):
+        record = self.record(wanted)
+        record.depends_on_everything = False  # and no disc
+        self.finish(goal, record)
+
     def send_joints_that_do_not_pair_up(self, goal, wanted):
         record = self.record(wanted)
         record.final_robot.joints.name = ['torso_lift_joint']
@@ -103,7 +108,8 @@ class ImaginationRogueWorkerTest(unittest.TestCase):
     def test_no_nonsense_of_a_worker_finds_its_way_into_the_answer(self):
         for answer in (self.rogue.abort, self.rogue.reject, self.rogue.do_nothing,
                        self.rogue.answer_another_index, self.rogue.take_no_number_for_a_duration,
-                       self.rogue.take_a_negative_tilt, self.rogue.send_joints_that_do_not_pair_up,
+                       self.rogue.take_a_negative_tilt, self.rogue.depend_on_nothing,
+                       self.rogue.send_joints_that_do_not_pair_up,
                        self.rogue.send_an_unknown_outcome_without_a_reason):
             with self.subTest(worker=answer.__name__):
                 self.rogue.answer = answer

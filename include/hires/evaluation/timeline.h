@@ -38,7 +38,8 @@ std::string TimelineText(const Timeline& timeline, int width = 48);
 
 /// What the imaginations took, as the dissertation's Table 6.7: seconds simulated, seconds of the
 /// wall's clock, and whether the answer came before the step began. "" where there were none.
-std::string ImaginationTable(const AchieveReport& report);
+/// @param is_virtual  the wall's seconds are virtual ones, as configured.
+std::string ImaginationTable(const AchieveReport& report, bool is_virtual = false);
 
 /// Comma-separated values with a head; the first line is the task itself.
 std::string TimelineCsv(const Timeline& timeline);

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hires/base/action.h"
@@ -32,7 +34,13 @@ struct Report {
   std::uint64_t seed{0};
   double wall_seconds{0.0};
   double simulated_seconds{0.0};  ///< of the rollouts behind the ranking
-  int rollouts_kept{0};           ///< of an earlier request, which were not played again
+  /// Rollouts behind the ranking that were those of an earlier request, and were not played again.
+  struct {
+    int rollouts{0};
+    double simulated_seconds{0.0};
+  } kept;
+
+  double played_seconds() const { return simulated_seconds - kept.simulated_seconds; }
 };
 
 /// What is known while the work goes on.
@@ -48,8 +56,10 @@ std::vector<Prediction> PredictionsOf(const Scheduler& scheduler, const Ranking&
                                       const std::vector<base::ActionCall>& actions,
                                       bool with_final_states);
 
+/// @param kept  alternative and index of rollouts that were those of an earlier request.
 /// @pre scheduler.finished(); `actions` are its alternatives.
 Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall>& actions,
-                  std::uint64_t seed, double wall_seconds);
+                  std::uint64_t seed, double wall_seconds,
+                  const std::set<std::pair<int, int>>& kept = {});
 
 }  // namespace hires::imagination

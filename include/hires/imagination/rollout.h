@@ -72,7 +72,8 @@ struct RolloutHooks {
 /// again with it, and its hooks are called anew. So what was left out stands to the last bit as it
 /// did at the start and has changed nothing: what is far away does not settle, and a step that the
 /// solver has to repeat is not repeated for it. Actions that move arms or head, which look at
-/// objects, are played with everything, and so are starts that cannot be.
+/// objects, are played with everything, and so are starts in which something moves or that cannot
+/// be.
 /// @pre CheckSetup; then what stands about stands apart from each other and from furniture.
 std::optional<RolloutResult> PlayRollout(const RolloutSetup& setup, const base::ActionCall& action,
                                          int index, const RolloutHooks& hooks = {});

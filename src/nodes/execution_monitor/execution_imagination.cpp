@@ -36,7 +36,7 @@ hires::ImaginationStatus StatusOf(const execution::StartImagination& command, do
 /// Numbers for people; the final states are left out, as no reader needs them there.
 void SetPredictions(const hires::ImagineResult& result, hires::ImaginationStatus* status) {
   status->wall_seconds = result.wall_seconds;
-  status->simulated_seconds = result.simulated_seconds;
+  status->simulated_seconds = result.simulated_seconds - result.simulated_seconds_kept;
   status->predictions = result.predictions;
   status->recommended = result.recommended;
   status->why = result.why;

@@ -57,6 +57,9 @@ bool SameBits(const T& a, const T& b) {
 
 bool SameBitsButWallTime(ImagineResult a, ImagineResult b) {
   a.wall_seconds = b.wall_seconds = 0.0;
+  // What the client remembered then says nothing of the answer.
+  a.rollouts_kept = b.rollouts_kept = 0;
+  a.simulated_seconds_kept = b.simulated_seconds_kept = 0.0;
   return SameBits(a, b);
 }
 
@@ -293,7 +296,8 @@ void ShowProgress(const imagination::Interim& interim) {
 ImagineAgain ChooseImagination(const ReplayOptions& options, const std::string& package_folder,
                                const std::function<bool()>& cancelled) {
   if (!options.local) {
-    return [cancelled](const ImagineGoal& goal) {
+    return [cancelled](ImagineGoal goal) {
+      goal.play_afresh = true;  // what the client remembers proves nothing
       return AskImaginationClient(goal, ShowProgress, cancelled);
     };
   }

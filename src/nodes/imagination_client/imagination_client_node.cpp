@@ -222,14 +222,7 @@ void ImaginationClientNode::OnPlayed(int worker, const WorkerLink::Played& playe
     if (session->id != played.session) continue;
     const auto alternative = session->alternative_of.find(played.assignment);
     if (alternative == session->alternative_of.end()) continue;
-    const imagination::Event event = EventOf(worker, alternative->second, played);
-    if (const auto* finished = std::get_if<imagination::RolloutFinished>(&event)) {
-      if (imagination::Defect(finished->result).empty()) {
-        kept_.Keep(session->setup, session->request.actions[finished->alternative], finished->index,
-                   finished->result);
-      }
-    }
-    Feed(session.get(), event);
+    Feed(session.get(), EventOf(worker, alternative->second, played));
   }
 }
 
@@ -279,8 +272,11 @@ void ImaginationClientNode::CarryOut(Session* session,
 /// Sends to its worker what of it has to be played.  @return what is known without.
 std::vector<imagination::Event> ImaginationClientNode::Begin(Session* session,
                                                              const imagination::Assign& assign) {
-  auto shortened =
-      kept_.Shorten(assign, *session->setup, session->request.actions[assign.alternative]);
+  imagination::KeptRollouts::Shortened shortened{{}, assign};
+  if (!session->goal.getGoal()->play_afresh) {
+    shortened =
+        kept_.Shorten(assign, *session->setup, session->request.actions[assign.alternative]);
+  }
   std::vector<imagination::Event> known;
   for (auto& finished : shortened.known) {
     session->from_kept.insert({finished.alternative, finished.index});
@@ -330,10 +326,14 @@ void ImaginationClientNode::FinishSessions() {
 void ImaginationClientNode::Finish(Session* session) {
   for (auto& [k, worker] : workers_) worker->CancelSession(session->id);
   const ImagineRequest& request = session->request;
-  auto report = imagination::MakeReport(*session->scheduler, request.actions, request.setup.seed,
-                                        hires::base::SteadyNow() - session->begun);
-  report.rollouts_kept = static_cast<int>(session->from_kept.size());
-  report.caveats = imagination::CaveatsOf(request.setup, request.actions, params_.config.validated);
+  Keep(*session);
+  auto report =
+      imagination::MakeReport(*session->scheduler, request.actions, request.setup.seed,
+                              hires::base::SteadyNow() - session->begun, session->from_kept);
+  for (std::string& caveat :
+       imagination::CaveatsOf(request.setup, request.actions, params_.config.validated)) {
+    report.caveats.push_back(std::move(caveat));
+  }
   const hires::ImagineResult result = AnswerTo(*session->goal.getGoal(), request, setup_, report);
   hires::base::Log(hires::base::LogLevel::kInfo,
                    fmt::format("session={} outcome={} {}", session->id,
@@ -346,6 +346,23 @@ void ImaginationClientNode::Finish(Session* session) {
     session->goal.setSucceeded(result, report.why);
   } else {
     session->goal.setAborted(result, report.why);
+  }
+}
+
+/// What the scheduler took. Of a request in which a worker was set aside, or played one rollout
+/// twice and differently, nothing: later requests could not see it any more.
+void ImaginationClientNode::Keep(const Session& session) {
+  const imagination::Scheduler& scheduler = *session.scheduler;
+  if (!scheduler.worker_problems().empty() || scheduler.num_mismatches() > 0) return;
+  for (std::size_t i = 0; i < session.request.actions.size(); ++i) {
+    const int alternative = static_cast<int>(i);
+    const auto& played = scheduler.Prefix(alternative);
+    for (std::size_t k = 0; k < played.size(); ++k) {
+      const int index = static_cast<int>(k);
+      const bool is_known = session.from_kept.count({alternative, index}) > 0;
+      if (is_known || played[k].failure.code == hires::base::FailureCode::kUnplayable) continue;
+      kept_.Keep(session.setup, session.request.actions[i], index, played[k]);
+    }
   }
 }
 

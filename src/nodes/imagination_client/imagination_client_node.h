@@ -87,6 +87,7 @@ class ImaginationClientNode {
   void PublishFeedback(Session* session, double now);
   void FinishSessions();
   void Finish(Session* session);
+  void Keep(const Session& session);
   int NumWorkers() const;
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
