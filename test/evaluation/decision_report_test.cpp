@@ -47,7 +47,8 @@ TEST(DecisionReportTest, CostsAreWorkedByHand) {
 }
 
 TEST(DecisionReportTest, TheOracleKnowsTheTruthsMean) {
-  const auto& arms = Example().verdicts.front().arms;
+  const DecisionReport report = Example();
+  const auto& arms = report.verdicts.front().arms;
   EXPECT_NEAR(arms.at(kOracleArm).cost.estimate, 20.0, 1e-12) << "slow: 20 s against 35 s";
   EXPECT_EQ(arms.at(kOracleArm).regret->estimate, 0.0);
   EXPECT_NEAR(arms.at(kFastArm).regret->estimate, 40.0, 1e-12);
@@ -67,7 +68,8 @@ TEST(DecisionReportTest, PricesMoveTheOracle) {
 }
 
 TEST(DecisionReportTest, ComparisonsAreOfTheSameTasks) {
-  const ArmComparison& fast = Against(Example().verdicts.front(), kFastArm);
+  const DecisionReport report = Example();
+  const ArmComparison& fast = Against(report.verdicts.front(), kFastArm);
   // 0, -90, +50, -90
   EXPECT_NEAR(fast.cost.estimate, -32.5, 1e-12);
   EXPECT_EQ(fast.num_differ, 3);
