@@ -52,6 +52,12 @@ std::string ToString(const ActionCall& call) {
   return fmt::format("{}({})", call.name, Join(call.arguments, ", "));
 }
 
+std::string ToString(const ActionTemplate& action) {
+  std::vector<std::string> arguments;
+  for (const auto& list : action.alternatives) arguments.push_back(Join(list, "|"));
+  return fmt::format("{}({})", action.name, Join(arguments, ", "));
+}
+
 std::string ToString(const Atom& atom) {
   return fmt::format("{}({})", atom.predicate, Join(atom.arguments, ", "));
 }

@@ -56,7 +56,7 @@ std::string StepLine(const StepStatus& step, double now, double begin) {
 }
 
 std::string ImaginedLine(const evaluation::ImaginedStep& step, double now, double begin) {
-  const std::string what = evaluation::ToString(step.action);
+  const std::string what = ToString(step.action);
   if (step.outcome == evaluation::ImaginedOutcome::kRunning) {
     return fmt::format("{:8.1f} s  imagines  {}", step.requested - begin, what);
   }

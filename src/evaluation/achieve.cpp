@@ -22,12 +22,6 @@ const std::array<std::string, 9> kImaginedOutcomes{"running",   "ranked",      "
 
 }  // namespace
 
-std::string ToString(const base::ActionTemplate& action) {
-  std::vector<std::string> arguments;
-  for (const auto& list : action.alternatives) arguments.push_back(base::Join(list, "|"));
-  return fmt::format("{}({})", action.name, base::Join(arguments, ", "));
-}
-
 std::string ToString(StepPhase phase) {
   switch (phase) {
     case StepPhase::kWaiting:

@@ -157,8 +157,7 @@ void ImaginationDesk::Ask(Question* question) {
 
 /// Of this task, for the same action; this one, if it is the first.
 int ImaginationDesk::FirstRequestFor(const base::ActionTemplate& action, int request) {
-  return first_requests_.emplace(std::make_pair(action.name, action.alternatives), request)
-      .first->second;
+  return first_requests_.emplace(ToString(action), request).first->second;
 }
 
 void ImaginationDesk::AskAgain(Question* question, const std::string& why) {

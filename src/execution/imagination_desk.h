@@ -82,7 +82,7 @@ class ImaginationDesk {
 
   Session& session_;
   std::vector<Question> questions_;
-  std::map<std::pair<std::string, std::vector<std::vector<std::string>>>, int> first_requests_;
+  std::map<std::string, int> first_requests_;  // by action
 };
 
 }  // namespace hires::execution

@@ -60,13 +60,6 @@ bool IsAtRest(const world::ObjectState& object) {
   return object.V_MO.linear.isZero(0.0) && object.V_MO.angular.isZero(0.0);
 }
 
-/// What moves may be anywhere before anybody looks.
-bool AllAreAtRest(const world::WorldState& state) {
-  return std::all_of(state.objects.begin(), state.objects.end(), [](const auto& object) {
-    return !object.attached_to.empty() || IsAtRest(object);
-  });
-}
-
 bool IsNamedBy(const base::ActionCall& action, const std::string& name) {
   return std::any_of(action.arguments.begin(), action.arguments.end(), [&](const auto& argument) {
     return base::ToLower(argument) == base::ToLower(name);
@@ -74,6 +67,12 @@ bool IsNamedBy(const base::ActionCall& action, const std::string& name) {
 }
 
 }  // namespace
+
+bool AllAreAtRest(const world::WorldState& state) {
+  return std::all_of(state.objects.begin(), state.objects.end(), [](const auto& object) {
+    return !object.attached_to.empty() || IsAtRest(object);
+  });
+}
 
 bool RolloutReach::Touches(const Disc& other) const {
   return std::any_of(discs.begin(), discs.end(),
@@ -93,20 +92,15 @@ ReachWatch::ReachWatch(const RolloutSetup& setup, const base::ActionCall& action
       action_(action),
       robot_radius_(RadiusOf(*setup.scene, setup.robot_state.joints)),
       narrowed_(setup) {
-  reach_.is_everything = !AllAreAtRest(setup.world_state);
-  if (!reach_.is_everything) AddEnds();
-  BeginAgain();
-}
-
-/// What is in at once: around start and goal.
-void ReachWatch::AddEnds() {
-  reach_.discs.push_back({setup_.robot_state.X_MB.position(), kAtEnds});
-  for (const std::string& argument : action_.arguments) {
-    const auto area = setup_.skills->areas.find(base::ToLower(argument));
-    if (area != setup_.skills->areas.end()) {
+  reach_.is_everything = false;
+  reach_.discs.push_back({setup.robot_state.X_MB.position(), kAtEnds});
+  for (const std::string& argument : action.arguments) {
+    const auto area = setup.skills->areas.find(base::ToLower(argument));
+    if (area != setup.skills->areas.end()) {
       reach_.discs.push_back({area->second.position(), kAtEnds});
     }
   }
+  BeginAgain();
 }
 
 void ReachWatch::BeginAgain() {
@@ -127,7 +121,6 @@ void ReachWatch::BeginAgain() {
 }
 
 bool ReachWatch::Look(const simulation::RobotSimulator& simulator) {
-  if (reach_.is_everything) return true;
   is_touched_ = !Note(0, simulator.base().X_MB.position(), robot_radius_);
   for (std::size_t i = 0; i < radii_.size() && !is_touched_; ++i) {
     const Eigen::Vector3d p_MO = simulator.PoseOf(static_cast<int>(i)).translation;

@@ -7,10 +7,15 @@
 
 namespace hires::imagination {
 
+/// Nothing but what the robot holds moves. What does may be anywhere before anybody looks, so that
+/// nothing can be left out.
+bool AllAreAtRest(const world::WorldState& state);
+
 /// Follows the robot and the objects of a rollout, notes where they were, and says when one of them
 /// comes near something that was left out.
 class ReachWatch {
  public:
+  /// @pre AllAreAtRest(setup.world_state)
   /// @throws base::ConfigError for joints that the robot does not have.
   ReachWatch(const RolloutSetup& setup, const base::ActionCall& action);
 
@@ -26,7 +31,6 @@ class ReachWatch {
   world::WorldState WithLeftOut(const world::WorldState& narrowed) const;
 
  private:
-  void AddEnds();
   bool Note(std::size_t thing, const Eigen::Vector2d& p_M, double radius);
 
   const RolloutSetup& setup_;

@@ -238,7 +238,8 @@ std::optional<RolloutResult> PlayRollout(const RolloutSetup& setup, const base::
   const Rollout rollout(setup, action, index);
   auto skill = skills::MakeSkill(*setup.skills, action);  // an unknown action is refused
   try {
-    if (LevelFor(*setup.skills, action) != simulation::LevelOfDetail::kTray) {
+    const bool is_drive = LevelFor(*setup.skills, action) == simulation::LevelOfDetail::kTray;
+    if (!is_drive || !AllAreAtRest(setup.world_state)) {
       return rollout.Play(setup, std::move(skill), hooks, nullptr);
     }
     ReachWatch watch(setup, action);

@@ -48,10 +48,7 @@ std::string ReachDefect(const RolloutReach& reach) {
 }
 
 std::string FinalDefect(const RolloutResult& result) {
-  const auto& base = result.final_robot.X_MB;
-  if (!base.position().allFinite() || !std::isfinite(base.yaw)) {
-    return "the robot's final pose is not finite";
-  }
+  if (!result.final_robot.X_MB.IsFinite()) return "the robot's final pose is not finite";
   for (const world::ObjectState& object : result.final_world.objects) {
     if (!object.X_MO.IsFinite()) return "the final pose of " + object.name + " is not finite";
   }

@@ -22,10 +22,6 @@ constexpr int kSureJump = 5;       // ... if so many readings in a row are, or o
 constexpr double kNear = 0.1;      // [s] from a reading with which a moment beyond it makes do
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
-bool IsFinite(const Pose2& X) {
-  return std::isfinite(X.x) && std::isfinite(X.y) && std::isfinite(X.yaw);
-}
-
 bool IsFinite(const Twist2& V) {
   return std::isfinite(V.vx) && std::isfinite(V.vy) && std::isfinite(V.wz);
 }
@@ -157,7 +153,7 @@ void RobotStateEstimator::ForgetOld() {
 Receipt RobotStateEstimator::OnOdometry(double stamp, const std::string& frame,
                                         const std::string& child, const OdometryReading& reading) {
   if (!IsStamp(stamp)) return {Reception::kNoStamp, {}};
-  if (!IsFinite(reading.X_OB)) return {Reception::kNotFinite, "pose"};
+  if (!reading.X_OB.IsFinite()) return {Reception::kNotFinite, "pose"};
   if (!IsFinite(reading.V_B)) return {Reception::kNotFinite, "twist"};
   if (frame.empty()) return {Reception::kUnknownFrame, {}};
   const FramePose offset = ChildToBase(BareFrame(child), stamp);

@@ -37,6 +37,8 @@ bool IsAmong(const ActionCall& call, const ActionTemplate& action);
 
 /// "move_base_param(area1, slow)", for people.
 std::string ToString(const ActionCall& call);
+/// "move_base_param(area1, slow|fast)"
+std::string ToString(const ActionTemplate& action);
 
 /// Every combination of the alternatives, the last argument varying fastest, names and arguments
 /// lower-cased and without `!`, repeated alternatives of one argument once.

@@ -13,9 +13,6 @@
 
 namespace hires::evaluation {
 
-/// "move_base_param(area1, slow|fast)", for people.
-std::string ToString(const base::ActionTemplate& action);
-
 std::string ToString(execution::StepPhase phase);  ///< "waiting", "running", ...
 
 /// How such a request went, or that it runs.

@@ -12,6 +12,7 @@ struct Pose2 {
 
   Eigen::Vector2d position() const { return {x, y}; }
   Pose2 Inverse() const;
+  bool IsFinite() const;
 };
 Pose2 operator*(const Pose2& X_AB, const Pose2& X_BC);
 Eigen::Vector2d operator*(const Pose2& X_AB, const Eigen::Vector2d& p_BC);

@@ -30,7 +30,7 @@ struct Report {
   std::vector<Prediction> ranking;  ///< best first
   int recommended{-1};              ///< index into `ranking`, or -1
   std::string why;                  ///< one sentence for people
-  std::vector<std::string> caveats;  ///< where the request lies outside of what was validated
+  std::vector<std::string> caveats;  ///< outside of what was validated; workers that disagreed
   std::uint64_t seed{0};
   double wall_seconds{0.0};
   double simulated_seconds{0.0};  ///< of the rollouts behind the ranking

@@ -93,9 +93,7 @@ bool SimRobotWorld::RidesAlong(const ObjectState& object, const Pose2& X_MB) con
 }
 
 std::string SimRobotWorld::Push(const Pose2& offset) {
-  if (!std::isfinite(offset.x) || !std::isfinite(offset.y) || !std::isfinite(offset.yaw)) {
-    return "the offset is not finite; give numbers";
-  }
+  if (!offset.IsFinite()) return "the offset is not finite; give numbers";
   robot::RobotState robot = simulator_->GetRobotState();
   const Pose2 X_MBold = robot.X_MB;
   robot.X_MB = robot.X_MB * offset;

@@ -119,8 +119,8 @@ void ImaginationClientNode::OnGoal(GoalHandle goal) {
   hires::base::Log(
       hires::base::LogLevel::kInfo,
       fmt::format("request={} session={} action={} alternatives={} rollouts={} seed={}",
-                  goal.getGoal()->request_id, session->id, session->request.actions[0].name,
-                  session->request.actions.size(), session->request.params.rollouts,
+                  goal.getGoal()->request_id, session->id, session->request->actions[0].name,
+                  session->request->actions.size(), session->request->params.rollouts,
                   goal.getGoal()->seed));
   // At the moment of the start: a worker that is there then is in time for any deadline.
   for (const auto& [k, worker] : workers_) {
@@ -136,12 +136,12 @@ std::unique_ptr<ImaginationClientNode::Session> ImaginationClientNode::MakeSessi
   session->goal = goal;
   const hires::ImagineGoal& wanted = *goal.getGoal();
   if (wanted.updated_fluents.empty()) RequireSoundState(wanted.world_state, wanted.robot_state);
-  session->request = RequestOf(wanted, setup_, params_.config.scheduler);
-  if (wanted.uncertainty.empty()) SpreadStart(&session->request);
-  session->setup = std::make_shared<const imagination::RolloutSetup>(session->request.setup);
+  ImagineRequest request = RequestOf(wanted, setup_, params_.config.scheduler);
+  if (wanted.uncertainty.empty()) SpreadStart(&request);
   session->started = SchedulerNow();
   session->scheduler = std::make_unique<imagination::Scheduler>(
-      session->request.params, static_cast<int>(session->request.actions.size()), session->started);
+      request.params, static_cast<int>(request.actions.size()), session->started);
+  session->request = std::make_shared<const ImagineRequest>(std::move(request));
   session->begun = session->next_feedback = hires::base::SteadyNow();
   return session;
 }
@@ -235,8 +235,8 @@ std::string ImaginationClientNode::OwnLibraries() const {
 hires::RolloutGoal ImaginationClientNode::RolloutGoalFor(const Session& session,
                                                          const imagination::Assign& assign) const {
   hires::RolloutGoal goal;
-  const imagination::RolloutSetup& setup = session.request.setup;
-  goal.action = ToMsg(session.request.actions[assign.alternative]);
+  const imagination::RolloutSetup& setup = session.request->setup;
+  goal.action = ToMsg(session.request->actions[assign.alternative]);
   goal.world_state = ToMsg(setup.world_state);
   goal.world_state.world_hash = setup_.world_hash;
   goal.robot_state = ToMsg(setup.robot_state);
@@ -274,8 +274,8 @@ std::vector<imagination::Event> ImaginationClientNode::Begin(Session* session,
                                                              const imagination::Assign& assign) {
   imagination::KeptRollouts::Shortened shortened{{}, assign};
   if (!session->goal.getGoal()->play_afresh) {
-    shortened =
-        kept_.Shorten(assign, *session->setup, session->request.actions[assign.alternative]);
+    const ImagineRequest& request = *session->request;
+    shortened = kept_.Shorten(assign, request.setup, request.actions[assign.alternative]);
   }
   std::vector<imagination::Event> known;
   for (auto& finished : shortened.known) {
@@ -308,7 +308,7 @@ void ImaginationClientNode::PublishFeedback(Session* session, double now) {
   session->goal.publishFeedback(ToMsg(
       imagination::Interim{session->scheduler->ProgressAt(SchedulerNow()),
                            PredictionsOf(*session->scheduler, session->scheduler->RankingSoFar(),
-                                         session->request.actions, false),
+                                         session->request->actions, false),
                            NumWorkers()}));
 }
 
@@ -325,7 +325,7 @@ void ImaginationClientNode::FinishSessions() {
 
 void ImaginationClientNode::Finish(Session* session) {
   for (auto& [k, worker] : workers_) worker->CancelSession(session->id);
-  const ImagineRequest& request = session->request;
+  const ImagineRequest& request = *session->request;
   Keep(*session);
   auto report =
       imagination::MakeReport(*session->scheduler, request.actions, request.setup.seed,
@@ -354,14 +354,16 @@ void ImaginationClientNode::Finish(Session* session) {
 void ImaginationClientNode::Keep(const Session& session) {
   const imagination::Scheduler& scheduler = *session.scheduler;
   if (!scheduler.worker_problems().empty() || scheduler.num_mismatches() > 0) return;
-  for (std::size_t i = 0; i < session.request.actions.size(); ++i) {
+  const ImagineRequest& request = *session.request;
+  const std::shared_ptr<const imagination::RolloutSetup> setup(session.request, &request.setup);
+  for (std::size_t i = 0; i < request.actions.size(); ++i) {
     const int alternative = static_cast<int>(i);
     const auto& played = scheduler.Prefix(alternative);
     for (std::size_t k = 0; k < played.size(); ++k) {
       const int index = static_cast<int>(k);
       const bool is_known = session.from_kept.count({alternative, index}) > 0;
       if (is_known || played[k].failure.code == hires::base::FailureCode::kUnplayable) continue;
-      kept_.Keep(session.setup, session.request.actions[i], index, played[k]);
+      kept_.Keep(setup, request.actions[i], index, played[k]);
     }
   }
 }

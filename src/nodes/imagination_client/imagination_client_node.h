@@ -57,10 +57,8 @@ class ImaginationClientNode {
   struct Session {
     int id;
     GoalHandle goal;
-    ImagineRequest request;
+    std::shared_ptr<const ImagineRequest> request;  ///< shared with what is kept of it
     std::unique_ptr<hires::imagination::Scheduler> scheduler;
-    /// What its rollouts share, for those of later requests.
-    std::shared_ptr<const hires::imagination::RolloutSetup> setup;
     std::map<int, int> alternative_of;        ///< assignment -> alternative
     std::set<std::pair<int, int>> from_kept;  ///< alternative and index
     double started;                           ///< [s] by the scheduler's clock
