@@ -1,5 +1,7 @@
 #include "hires/imagination/evidence.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,13 +9,6 @@
 
 namespace hires::imagination {
 namespace {
-
-/// Position of the `percent` quantile among `size` sorted values, definition 1 of Hyndman and Fan.
-/// Whole numbers keep 95 of 100 from becoming 96 by rounding.
-int QuantileRank(int size, int percent) {
-  const long long wanted = (static_cast<long long>(size) * percent + 99) / 100;
-  return static_cast<int>(std::max(wanted, 1LL)) - 1;
-}
 
 /// Values that know which rollout they came from; sorting keeps equals in index order.
 using IndexedValues = std::vector<std::pair<double, int>>;
@@ -33,13 +28,12 @@ double Deviation(const IndexedValues& values, double mean) {
 void SumUpDurations(IndexedValues durations, Evidence* evidence) {
   if (durations.empty()) return;
   std::sort(durations.begin(), durations.end());
-  const int size = static_cast<int>(durations.size());
   auto& duration = evidence->duration;
   for (const auto& [value, index] : durations) evidence->durations.push_back(value);
   duration.mean = Mean(durations);
   duration.sd = Deviation(durations, duration.mean);
-  duration.p50 = durations[QuantileRank(size, 50)].first;
-  duration.p95 = durations[QuantileRank(size, 95)].first;
+  duration.p50 = Quantile(evidence->durations, 50);
+  duration.p95 = Quantile(evidence->durations, 95);
   const auto first_median =
       std::lower_bound(durations.begin(), durations.end(), std::make_pair(duration.p50, -1));
   evidence->median_rollout = first_median->second;
@@ -48,9 +42,7 @@ void SumUpDurations(IndexedValues durations, Evidence* evidence) {
 void SumUpTilts(std::vector<double> tilts, Evidence* evidence) {
   if (tilts.empty()) return;
   std::sort(tilts.begin(), tilts.end());
-  const int size = static_cast<int>(tilts.size());
-  evidence->max_tilt.p50 = tilts[QuantileRank(size, 50)];
-  evidence->max_tilt.p95 = tilts[QuantileRank(size, 95)];
+  evidence->max_tilt = {Quantile(tilts, 50), Quantile(tilts, 95)};
 }
 
 /// Sums while walking over the rollouts; Finish() turns sums into shares.
@@ -127,6 +119,26 @@ double Confidence(const OutcomeCounts& counts, const ConfidenceCoefficients& coe
 double RolloutConfidence(const RolloutResult& result) {
   if (ActionFailed(result)) return 0.0;
   return result.nothing_watched ? 1.0 : Confidence(result.counts);
+}
+
+double Quantile(const std::vector<double>& ascending, int percent) {
+  HIRES_CHECK(!ascending.empty() && percent >= 0 && percent <= 100, "no such quantile");
+  // Whole numbers keep 95 of 100 from becoming 96 by rounding.
+  const std::size_t place = (ascending.size() * static_cast<std::size_t>(percent) + 99) / 100;
+  return ascending[std::max<std::size_t>(place, 1) - 1];
+}
+
+std::string DefectOf(const Evidence& evidence) {
+  const std::vector<double>& durations = evidence.durations;
+  const bool is_finite = std::all_of(durations.begin(), durations.end(),
+                                     [](double duration) { return std::isfinite(duration); });
+  if (!is_finite) return "a duration is not finite";
+  if (!std::is_sorted(durations.begin(), durations.end())) {
+    return "durations are not in ascending order";
+  }
+  if (durations.size() <= static_cast<std::size_t>(evidence.num_rollouts)) return {};
+  return fmt::format("there are {} durations of {} rollouts", durations.size(),
+                     evidence.num_rollouts);
 }
 
 Evidence SumUp(const std::vector<RolloutResult>& results) {

@@ -14,8 +14,6 @@ using imagination::Prediction;
 using imagination::Report;
 using Outcome = ImagineAnswered::Outcome;
 
-constexpr double kNormalQuantile95 = 1.6448536269514722;
-
 Outcome OutcomeOf(const Report& report, bool is_late) {
   const bool is_cancelled = report.outcome == ImaginationOutcome::kCancelled;
   switch (is_cancelled && is_late ? report.found : report.outcome) {
@@ -52,10 +50,10 @@ void SetRecommended(const Report& report, ImagineAnswered* answer) {
   }
   const Prediction& best = report.ranking[static_cast<std::size_t>(report.recommended)];
   const auto& duration = best.evidence.duration;
+  const std::vector<double>& durations = best.evidence.durations;
   answer->recommended = best.action;
   answer->duration = duration.mean;
-  // There is no lower quantile: as of a normal distribution.
-  answer->duration_low = std::max(0.0, duration.mean - kNormalQuantile95 * duration.sd);
+  answer->duration_low = durations.empty() ? 0.0 : imagination::Quantile(durations, 5);
   answer->duration_high = std::max(duration.p95, duration.mean);
 }
 

@@ -429,6 +429,11 @@ hires::imagination::Prediction FromMsg(const msg::Prediction& prediction) {
   e.duration = {prediction.duration_mean, prediction.duration_sd, prediction.duration_p50,
                 prediction.duration_p95};
   e.durations = prediction.durations;
+  if (const std::string defect = DefectOf(e); !defect.empty()) {
+    throw hires::base::ConfigError(
+        fmt::format("the prediction of {}: {}; is the imagination client of this version?",
+                    hires::base::ToString(out.action), defect));
+  }
   e.max_tilt = {prediction.max_tilt_p50, prediction.max_tilt_p95};
   for (const msg::FailureCount& failure : prediction.failures) {
     e.failures[FromMsg(failure.failure)] += failure.count;

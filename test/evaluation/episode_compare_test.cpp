@@ -57,29 +57,20 @@ TEST(CompareStepTest, ADurationBeyondAllIsASurpriseOnlyWhereEnoughWereImagined) 
   EXPECT_EQ(CompareStep(Step(ActionFate::kSucceeded, 99.0), Imagined(40, 0), kSurprise).verdict,
             StepVerdict::kSlower);
   EXPECT_EQ(CompareStep(Step(ActionFate::kSucceeded, 99.0), Imagined(39, 0), kSurprise).verdict,
-            StepVerdict::kAsImagined);
+            StepVerdict::kTooFewDurations);
   EXPECT_EQ(CompareStep(Step(ActionFate::kSucceeded, 0.5), Imagined(40, 0), kSurprise).verdict,
             StepVerdict::kFaster);
+}
+
+TEST(CompareStepTest, WhereAlmostAllFailedAsItDidNoDurationIsAskedFor) {
+  const auto compared = CompareStep(Step(ActionFate::kFailed, 3.0), Imagined(1, 63), kSurprise);
+  EXPECT_EQ(compared.verdict, StepVerdict::kAsImagined);
 }
 
 TEST(CompareStepTest, WhereEveryRolloutFailedADurationHasNoPercentile) {
   const auto compared = CompareStep(Step(ActionFate::kSucceeded, 3.0), Imagined(0, 64), kSurprise);
   EXPECT_EQ(compared.verdict, StepVerdict::kSucceededAgainst);
   EXPECT_FALSE(compared.percentile.has_value());
-}
-
-TEST(DefectOfTest, DurationsOfAnotherProcessAreLookedAtBeforeTheyAreUsed) {
-  EXPECT_EQ(DefectOf(Imagined(3, 1)), "");
-  const auto defect = [](std::vector<double> durations) {
-    ImaginedAction imagined = Imagined(2, 0);
-    imagined.evidence.durations = std::move(durations);
-    return DefectOf(imagined);
-  };
-  EXPECT_EQ(defect({}), "");
-  EXPECT_EQ(defect({1.0, 1.0}), "");
-  EXPECT_NE(defect({2.0, 1.0}), "");
-  EXPECT_NE(defect({1.0, std::nan("")}), "");
-  EXPECT_NE(defect({1.0, 2.0, 3.0}), "") << "of two rollouts";
 }
 
 TEST(CompareStepTest, SuccessAndFailureAreHeldAgainstTheInterval) {

@@ -141,6 +141,27 @@ TEST(SumUpTest, DurationsAreThoseOfFinishedActionsOnly) {
   EXPECT_EQ(evidence.median_rollout, 0);
 }
 
+TEST(QuantileTest, IsTheSmallestValueWithThatShareAtOrBelowIt) {
+  EXPECT_EQ(Quantile({1.0, 2.0, 3.0, 4.0}, 25), 1.0);
+  EXPECT_EQ(Quantile({1.0, 2.0, 3.0, 4.0}, 26), 2.0);
+  EXPECT_EQ(Quantile({1.0, 2.0, 3.0, 4.0}, 0), 1.0);
+  EXPECT_EQ(Quantile({1.0, 2.0, 3.0, 4.0}, 100), 4.0);
+  EXPECT_THROW(Quantile({}, 50), std::logic_error);
+}
+
+TEST(DefectOfTest, WhatIsNoListOfDurationsIsNamed) {
+  const auto defect = [](std::vector<double> durations) {
+    Evidence evidence = SumUp({Success(1.0), Success(2.0)});
+    evidence.durations = std::move(durations);
+    return DefectOf(evidence);
+  };
+  EXPECT_EQ(defect({}), "");
+  EXPECT_EQ(defect({1.0, 1.0}), "");
+  EXPECT_THAT(defect({2.0, 1.0}), HasSubstr("ascending"));
+  EXPECT_THAT(defect({1.0, std::nan("")}), HasSubstr("finite"));
+  EXPECT_EQ(defect({1.0, 2.0, 3.0}), "there are 3 durations of 2 rollouts");
+}
+
 TEST(SumUpTest, QuantilesAreValuesThatOccurred) {
   std::vector<RolloutResult> results;
   for (int i = 100; i >= 1; --i) results.push_back(Success(i));

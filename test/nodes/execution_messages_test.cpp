@@ -117,7 +117,7 @@ hires::Prediction Prediction(const std::string& set, double success) {
   prediction.success_share = success;
   prediction.rollouts = 16;
   prediction.duration_mean = 20.0;
-  prediction.duration_sd = 2.0;
+  prediction.durations = {17.0, 20.0, 23.0};
   prediction.duration_p95 = 23.0;
   hires::FailureCount fell;
   fell.failure.code = hires::Failure::OBJECT_FELL;
@@ -150,7 +150,7 @@ TEST(ImagineAnswerTest, ARankingHasRecommendationAndDuration) {
   EXPECT_EQ(answer.request, 7);
   EXPECT_THAT(answer.recommended.arguments, ElementsAre("area1", "slow"));
   EXPECT_EQ(answer.duration, 20.0);
-  EXPECT_NEAR(answer.duration_low, 16.710, 1e-3);
+  EXPECT_EQ(answer.duration_low, 17.0);
   EXPECT_EQ(answer.duration_high, 23.0);
   EXPECT_TRUE(answer.failed.empty());
   EXPECT_THAT(answer.depends_on, ElementsAre("mug1"));

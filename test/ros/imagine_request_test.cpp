@@ -196,6 +196,14 @@ TEST(ConversionsTest, WhatAPredictionDoesNotKnowStaysUnknown) {
   EXPECT_EQ(back.evidence.first_failed, -1);
 }
 
+TEST(ConversionsTest, DurationsThatAreNoneAreAnError) {
+  hires::Prediction prediction = ToMsg(SomePrediction());
+  prediction.durations[0] = std::nan("");
+  EXPECT_EQ(ConfigErrorOf([&] { FromMsg(prediction); }),
+            "the prediction of move_base(a): a duration is not finite; is the imagination client "
+            "of this version?");
+}
+
 TEST(ConversionsTest, AnUnknownKindOfIntervalIsAnError) {
   hires::Prediction prediction = ToMsg(SomePrediction());
   prediction.interval_kind = 7;

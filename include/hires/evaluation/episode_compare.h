@@ -18,15 +18,12 @@ struct ImaginedAction {
   std::string refusal;  ///< why it could not be imagined; empty: it was
 };
 
-/// What makes an answer from another process unusable: durations that are not finite, not in
-/// ascending order or more than there were rollouts; empty if it is sound.
-std::string DefectOf(const ImaginedAction& imagined);
-
 /// What prediction and event say together.
 enum class StepVerdict {
   kAsImagined,
   kFaster,            ///< than all but a `surprise` of what was imagined
   kSlower,            ///< likewise
+  kTooFewDurations,   ///< success as imagined; none of so few durations could have been a surprise
   kFailedAgainst,     ///< it failed, and imagination was sure of more successes than failures
   kSucceededAgainst,  ///< likewise the other way round
   kUndecided,         ///< imagination was sure of neither
@@ -46,7 +43,7 @@ struct ComparedStep {
 /// Puts both together. Success of an action is what the robot said of it; that of a rollout also
 /// asks that nothing fell. The interval is sure of what it has wholly on one side of 1/2. Durations
 /// are compared where it succeeded: the chance of so low (or high) a rank among n imagined ones is
-/// that of a further one of them, (k + 1) / (n + 1), so that few rollouts show no surprise.
+/// that of a further one of them, (k + 1) / (n + 1), so that few rollouts can show no surprise.
 ComparedStep CompareStep(const EpisodeStep& step, const ImaginedAction& imagined, double surprise);
 
 /// How a step is imagined.

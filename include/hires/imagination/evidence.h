@@ -26,10 +26,14 @@ double Confidence(const OutcomeCounts& counts, const ConfidenceCoefficients& coe
 /// there was nothing to watch.
 double RolloutConfidence(const RolloutResult& result);
 
+/// The smallest value with at least `percent` % of the values at or below it: definition 1 of
+/// [Hyndman, Fan 1996, Am. Stat. 50:361-365].
+/// @pre there are some; 0 <= percent <= 100.
+double Quantile(const std::vector<double>& ascending, int percent);
+
 /// All that is known about one parametrisation of an action from its first n rollouts.
-/// Quantiles are definition 1 of [Hyndman, Fan 1996, Am. Stat. 50:361-365]: the smallest value with
-/// at least that share of the values at or below it. So each one is a rollout that was really
-/// played, and duration.p50 is the duration of median_rollout.
+/// Each quantile is of a rollout that was really played (see Quantile), and duration.p50 is the
+/// duration of median_rollout.
 struct Evidence {
   double confidence_pooled{0.0};    ///< Eq. 6.1 on the summed counts; 0 when more than half of the
                                     ///< rollouts failed to act, else 1 if nothing was watched
@@ -56,6 +60,10 @@ struct Evidence {
   int median_rollout{-1};  ///< index of the finished rollout with the median duration, the first
                            ///< of equals; -1 when there is none
 };
+
+/// Why one of another process cannot be used: durations that are not finite, not in ascending order,
+/// or more than its rollouts; empty if it can.
+std::string DefectOf(const Evidence& evidence);
 
 /// @param results  the first n rollouts of one alternative, in index order, where n was fixed
 /// beforehand; nothing is priced.

@@ -49,6 +49,8 @@ std::string ToString(StepVerdict verdict) {
       return "faster";
     case StepVerdict::kSlower:
       return "slower";
+    case StepVerdict::kTooFewDurations:
+      return "too few durations";
     case StepVerdict::kFailedAgainst:
       return "failed against the prediction";
     case StepVerdict::kSucceededAgainst:
@@ -59,19 +61,6 @@ std::string ToString(StepVerdict verdict) {
       break;
   }
   return "not compared";
-}
-
-std::string DefectOf(const ImaginedAction& imagined) {
-  const std::vector<double>& durations = imagined.evidence.durations;
-  const bool is_sound =
-      std::all_of(durations.begin(), durations.end(),
-                  [](double duration) { return std::isfinite(duration); }) &&
-      std::is_sorted(durations.begin(), durations.end()) &&
-      durations.size() <= static_cast<std::size_t>(imagined.evidence.num_rollouts);
-  if (is_sound) return {};
-  return "the answer's durations are not finite, not in ascending order, or more than its "
-         "rollouts; "
-         "is the imagination client of this version?";
 }
 
 ComparedStep CompareStep(const EpisodeStep& step, const ImaginedAction& imagined, double surprise) {
@@ -88,6 +77,8 @@ ComparedStep CompareStep(const EpisodeStep& step, const ImaginedAction& imagined
   if (!rank) return compared;
   compared.percentile = rank->percentile;
   if (compared.verdict != StepVerdict::kAsImagined) return compared;
+  const double least_chance = 1.0 / (static_cast<double>(imagined.evidence.durations.size()) + 1.0);
+  if (least_chance >= surprise / 2.0) compared.verdict = StepVerdict::kTooFewDurations;
   if (rank->short_chance < surprise / 2.0) compared.verdict = StepVerdict::kFaster;
   if (rank->long_chance < surprise / 2.0) compared.verdict = StepVerdict::kSlower;
   return compared;

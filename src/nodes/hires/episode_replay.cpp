@@ -79,7 +79,6 @@ std::optional<ImaginedAction> AskFor(const EpisodeStep& step, const hires::Imagi
     return imagined;
   }
   imagined.evidence = FromMsg(result.predictions.front()).evidence;
-  imagined.refusal = evaluation::DefectOf(imagined);
   return imagined;
 }
 
