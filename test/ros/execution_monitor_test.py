@@ -344,13 +344,20 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.require(self.achieve(CARRY), self.codes.SUCCEEDED)
 
     def test_a_monitor_that_died_leaves_no_step_going_on(self):
+        """What somebody else has the robot do goes on."""
         self.system.behave('move_base', hang=True)
+        self.system.behave('move_torso', hang_for='torsomiddleposture')
+        other = self.system.execute('move_torso', 'torsomiddleposture')
+        self.addCleanup(other.give_up)
         self.achieve(CARRY)
         self.wait_for_step('move_base')
         self.system.kill('monitor')
         self.system.start_monitor()
         self.system.require_server()
         wait_until(lambda: 'preempted move_base' in self.system.log(), 'the robot to be stopped')
+        self.system.free('move_torso')
+        result = other.result()
+        self.assertEqual(result.code, result.SUCCEEDED, self.system.log())
 
     # Numbers.
 

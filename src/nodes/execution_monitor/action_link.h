@@ -1,13 +1,16 @@
 #pragma once
 
 #include <actionlib/client/action_client.h>
+#include <actionlib_msgs/GoalID.h>
 #include <actionlib_msgs/GoalStatusArray.h>
 #include <fmt/format.h>
 #include <ros/node_handle.h>
+#include <ros/this_node.h>
 
 #include <atomic>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -54,10 +57,13 @@ class ActionLink {
         status_(nh->subscribe<actionlib_msgs::GoalStatusArray>(
             name + "/status", 10,
             boost::function<void(const actionlib_msgs::GoalStatusArrayConstPtr&)>(
-                [this](const actionlib_msgs::GoalStatusArrayConstPtr&) {
+                [this](const actionlib_msgs::GoalStatusArrayConstPtr& status) {
                   heard_steady_ = hires::base::SteadyNow();
                   heard_ros_ = ros::Time::now().toSec();
-                }))) {}
+                  const std::lock_guard<std::mutex> lock(goals_mutex_);
+                  goals_ = status;
+                }))),
+        cancel_(nh->advertise<actionlib_msgs::GoalID>(name + "/cancel", 10)) {}
 
   /// @pre `request` is under way nowhere here.
   void Send(int request, Goal goal) {
@@ -99,8 +105,20 @@ class ActionLink {
   bool is_available() { return client_.isServerConnected() && !is_silent(); }
   bool has(int request) const { return pending_.count(request) > 0; }
 
-  /// Ends whatever goals others left with the server.
-  void CancelAllGoals() { client_.cancelAllGoals(); }
+  /// Cancels what a process of this node's name left with the server; goals of others go on.
+  /// @pre nothing is under way here.
+  /// @return false: the server cannot be told yet.
+  bool CancelLeftGoals() {
+    const actionlib_msgs::GoalStatusArrayConstPtr goals = Goals();
+    if (!is_available() || !goals || cancel_.getNumSubscribers() == 0) return false;
+    for (const actionlib_msgs::GoalStatus& goal : goals->status_list) {
+      if (!IsOfThisName(goal.goal_id) || IsOver(goal)) continue;
+      actionlib_msgs::GoalID this_alone;
+      this_alone.id = goal.goal_id.id;
+      cancel_.publish(this_alone);
+    }
+    return true;
+  }
 
  private:
   using Client = actionlib::ActionClient<Action>;
@@ -123,6 +141,22 @@ class ActionLink {
       if (handle) handle->cancel();
     }
   };
+
+  /// A client's goals are named by its node, a count and the time.
+  static bool IsOfThisName(const actionlib_msgs::GoalID& goal) {
+    const std::string beginning = ros::this_node::getName() + "-";
+    return goal.id.compare(0, beginning.size(), beginning) == 0;
+  }
+
+  static bool IsOver(const actionlib_msgs::GoalStatus& goal) {
+    using Status = actionlib_msgs::GoalStatus;
+    return goal.status != Status::PENDING && goal.status != Status::ACTIVE;
+  }
+
+  actionlib_msgs::GoalStatusArrayConstPtr Goals() const {
+    const std::lock_guard<std::mutex> lock(goals_mutex_);
+    return goals_;
+  }
 
   void Start(int request, Pending* pending) {
     pending->sent = hires::base::SteadyNow();
@@ -218,7 +252,10 @@ class ActionLink {
   std::map<int, Pending> pending_;
   double seen_{0.0};  // [s] steady, when the server was last there
   std::atomic<double> heard_steady_{0.0}, heard_ros_{0.0};  // [s], its last status
+  mutable std::mutex goals_mutex_;
+  actionlib_msgs::GoalStatusArrayConstPtr goals_;  // of the server, as it said last
   ros::Subscriber status_;
+  ros::Publisher cancel_;
 };
 
 }  // namespace hires_ros

@@ -202,10 +202,7 @@ void ExecutionMonitorNode::Tick() {
   imagination_.Tick(now);
   steps_.Tick();
   // A predecessor that crashed left the robot at work without a monitor.
-  if (!has_cleared_ && !config_.monitor.dry_run && steps_.is_available()) {
-    has_cleared_ = true;
-    if (!task_) steps_.CancelAllGoals();
-  }
+  if (!has_cleared_ && !config_.monitor.dry_run) has_cleared_ = task_ || steps_.CancelLeftGoals();
   WatchClock(now);
   if (task_ && !task_->monitor) BeginWhenReady();
   if (task_ && task_->monitor) {

@@ -227,7 +227,7 @@ class Imagination(Server):
             result.predictions.append(msg.Prediction(
                 action=msg.ActionCall(name=asked.steps[0].name, arguments=arguments), rollouts=16,
                 success_share=1.0 if is_ranked else 0.0, duration_mean=20.0, duration_sd=1.0,
-                duration_p50=20.0, duration_p95=22.0,
+                duration_p50=20.0, duration_p95=22.0, durations=[18.5] + 14 * [20.0] + [22.0],
                 failures=[] if is_ranked else [msg.FailureCount(failure('area_occupied'), 16)]))
         result.outcome = result.RANKED if is_ranked else result.ALL_FAILED
         result.recommended = 0 if is_ranked else -1

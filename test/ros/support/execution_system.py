@@ -12,7 +12,7 @@ import os
 
 import yaml
 
-from action_goal import Task, require_server
+from action_goal import ActionGoal, Task, require_server
 from blackboard_access import BlackboardAccess
 from ros_processes import Processes, executable, wait_until
 
@@ -169,6 +169,7 @@ class ExecutionSystem(BlackboardAccess):
         self._observations = Observations()
         rospy.init_node('execution_test', disable_signals=True)
         self.client = actionlib.ActionClient('achieve', msg.AchieveAction)
+        self.actions = actionlib.ActionClient('execute_action', msg.ExecuteActionAction)
         self._progress = rospy.Publisher('observation_progress', msg.ObservationProgress,
                                          queue_size=10, latch=True)
         self.require_server()
@@ -178,6 +179,12 @@ class ExecutionSystem(BlackboardAccess):
 
     def achieve(self, task, imagination=''):
         return Task(self.client, self.msg.AchieveGoal(task=task, imagination=imagination))
+
+    def execute(self, name, *arguments):
+        """An action of the robot, past the monitor."""
+        require_server(self.actions, lambda: self.nodes['middle_layer'].output())
+        action = self.msg.ActionCall(name=name, arguments=list(arguments))
+        return ActionGoal(self.actions, self.msg.ExecuteActionGoal(action=action))
 
 
 def text_of(fluent, role):
