@@ -188,10 +188,9 @@ bool ActionRunner::is_stopping() const {
 }
 
 int ActionRunner::num_thinking() const {
-  return static_cast<int>(
-      std::count_if(sessions_.begin(), sessions_.end(), [](const Session& session) {
-        return session.skill && session.skill->is_thinking();
-      }));
+  return static_cast<int>(std::count_if(
+      sessions_.begin(), sessions_.end(),
+      [](const Session& session) { return session.skill && session.skill->is_thinking(); }));
 }
 
 ActionNews ActionRunner::NewsOf(const Session& session) const {

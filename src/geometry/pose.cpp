@@ -12,9 +12,7 @@ Pose2 Pose2::Inverse() const {
   return {-(c * x + s * y), -(-s * x + c * y), WrapToPi(-yaw)};
 }
 
-bool Pose2::IsFinite() const {
-  return std::isfinite(x) && std::isfinite(y) && std::isfinite(yaw);
-}
+bool Pose2::IsFinite() const { return std::isfinite(x) && std::isfinite(y) && std::isfinite(yaw); }
 
 Pose2 operator*(const Pose2& X_AB, const Pose2& X_BC) {
   const Eigen::Vector2d p_AC = X_AB * X_BC.position();

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "hires/manipulation/arm_path.h"
-#include "skills/joint_motion.h"
 #include "hires/robot/posture.h"
+#include "skills/joint_motion.h"
 
 namespace hires::skills {
 namespace {

@@ -9,8 +9,8 @@
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 #include "hires/manipulation/arm_path.h"
-#include "skills/joint_motion.h"
 #include "hires/robot/posture.h"
+#include "skills/joint_motion.h"
 
 namespace hires::skills {
 namespace {

@@ -47,9 +47,9 @@ class OneCriterionTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     as_it_is_ = new Judges(hires::test_support::SceneCopy().path());
-    changed_ = new Judges(
-        hires::test_support::SceneCopy(hires::test_support::kStandingLine, hires::test_support::kOtherStandingLine)
-            .path());
+    changed_ = new Judges(hires::test_support::SceneCopy(hires::test_support::kStandingLine,
+                                                         hires::test_support::kOtherStandingLine)
+                              .path());
   }
   static void TearDownTestSuite() {
     delete as_it_is_;
@@ -124,9 +124,9 @@ TEST_F(OneCriterionTest, TheRecordOfTruthCountsByIt) {
   EXPECT_EQ(fate(*as_it_is_).falls, 0);
   EXPECT_FALSE(fate(*changed_).stands);
   EXPECT_EQ(fate(*changed_).falls, 1);
-  const Judges held(
-      hires::test_support::SceneCopy(hires::test_support::kStandingLine, hires::test_support::kLongHoldStandingLine)
-          .path());
+  const Judges held(hires::test_support::SceneCopy(hires::test_support::kStandingLine,
+                                                   hires::test_support::kLongHoldStandingLine)
+                        .path());
   EXPECT_EQ(fate(held).falls, 0) << "it leans, but not yet for that long";
 }
 
@@ -136,7 +136,8 @@ TEST_F(OneCriterionTest, TheRecordOfTruthCountsByIt) {
 Judges OfMill(double tilt, double hold_time) {
   const std::string line = fmt::format(
       "standing: {{tilt: {}, hold_time: {}, drop: 0.05, slide: 0.10}}", tilt, hold_time);
-  return Judges(hires::test_support::SceneCopy(hires::test_support::kStandingLine, line).path(), "peppermill1");
+  return Judges(hires::test_support::SceneCopy(hires::test_support::kStandingLine, line).path(),
+                "peppermill1");
 }
 constexpr double kNearPeak = 0.9;  // of the largest lean: it leans by that much but for a moment
 constexpr double kHold = 0.2;      // [s]

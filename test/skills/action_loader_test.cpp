@@ -82,8 +82,7 @@ TEST(ActionLoaderTest, RefusesAFileThatIsMissingOrNoLibrary) {
   EXPECT_THAT(WhyNot({"/nowhere/lib.so"}),
               AllOf(HasSubstr("library of actions '/nowhere/lib.so'"), HasSubstr("/nowhere")));
   const hires::test_support::TemporaryFolder folder;
-  EXPECT_THAT(WhyNot({folder.Write("text.so", "no library")}),
-              HasSubstr("it cannot be loaded"));
+  EXPECT_THAT(WhyNot({folder.Write("text.so", "no library")}), HasSubstr("it cannot be loaded"));
 }
 
 TEST(ActionLoaderTest, RefusesALibraryWithoutActions) {

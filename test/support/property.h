@@ -12,8 +12,8 @@
 namespace hires::test_support {
 
 /// How many cases of a property are looked at; with HIRES_LONG_TESTS in the environment, as
-/// `scripts/test --long` has it, five times as many. Every run looks at the same ones, whatever else
-/// runs in the program; RC_PARAMS looks at others, e.g. "seed=77 max_success=3000".
+/// `scripts/test --long` has it, five times as many. Every run looks at the same ones, whatever
+/// else runs in the program; RC_PARAMS looks at others, e.g. "seed=77 max_success=3000".
 struct PropertyCases {
   int count{100};
   int size{100};  ///< how large the largest one may be, as rapidcheck counts

@@ -21,9 +21,9 @@ struct MasterWatchParams {
 };
 
 /// Watches the node's own master. A roscpp node registers once and never again: when its master is
-/// replaced by a new process, the node goes on unregistered. The watch notices (other process id, other
-/// run_id, or own registration gone), puts back what the new master's parameter server lost (the
-/// node's private parameters and /use_sim_time, as they were when the watch was made, unless
+/// replaced by a new process, the node goes on unregistered. The watch notices (other process id,
+/// other run_id, or own registration gone), puts back what the new master's parameter server lost
+/// (the node's private parameters and /use_sim_time, as they were when the watch was made, unless
 /// they were set again), and shuts ROS down; Finish() then starts the program again in the
 /// same process, so that roslaunch or any other parent sees the same child.
 ///

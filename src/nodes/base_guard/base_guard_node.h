@@ -30,8 +30,8 @@ namespace hires_ros {
 
 /// The guard of the base as a process of its own, between the node that drives and the robot: a
 /// middle layer that crashes or hangs does not stop it. Velocities come in on base_guard/cmd_vel
-/// and requests to drive on base_guard/request; what goes out goes to RobotNames::base_command. What
-/// it does is published on base_guard/state (latched) and /diagnostics.
+/// and requests to drive on base_guard/request; what goes out goes to RobotNames::base_command.
+/// What it does is published on base_guard/state (latched) and /diagnostics.
 ///
 /// Its own clock is steady; messages are as old as ROS time says. Where the robot's move_base
 /// drives, a request waits until move_base's planner has the request's limits, which are taken back
