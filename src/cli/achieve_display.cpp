@@ -87,8 +87,8 @@ std::string StepTable(const evaluation::AchieveStatus& status, double begin) {
   for (const StepStatus& step : status.steps) {
     if (!IsNews(step)) continue;
     rows.push_back({std::to_string(step.plan + 1), std::to_string(step.index + 1),
-                    ToString(step.action), evaluation::ToString(step.phase),
-                    Since(step, begin), ExpectedEnd(step, begin), step.note});
+                    ToString(step.action), evaluation::ToString(step.phase), Since(step, begin),
+                    ExpectedEnd(step, begin), step.note});
   }
   return evaluation::FormatTable(rows);
 }

@@ -11,10 +11,12 @@
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "cli/achieve_command.h"
 #include "cli/experiment_command.h"
+#include "cli/list_command.h"
 #include "cli/plan_command.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
@@ -209,6 +211,35 @@ void RefuseUnknownVerb(const CLI::App& app, const std::vector<std::string>& argu
   throw base::ConfigError(base::UnknownName("verb", arguments[1], verbs));
 }
 
+/// CLI11 itself would say first what else is missing, and never what comes near.
+void RefuseUnknownOption(const CLI::App& app, const std::vector<std::string>& arguments) {
+  std::vector<const CLI::App*> path{&app};  // options of a verb may stand behind its inner verbs
+  for (std::size_t i = 1; i < arguments.size() && arguments[i] != "--"; ++i) {
+    if (path.back()->get_prefix_command()) return;  // its own parser looks at what follows
+    const std::string name = arguments[i].substr(0, arguments[i].find('='));
+    if (name.compare(0, 2, "--") != 0) {
+      const auto inner = path.back()->get_subcommands(
+          [&](const CLI::App* verb) { return verb->get_name() == name; });
+      path.insert(path.end(), inner.begin(), inner.end());
+      continue;
+    }
+    std::set<std::string> known;
+    bool is_known = false;
+    for (const CLI::App* verb : path) {
+      is_known = is_known || verb->get_option_no_throw(name) != nullptr;
+      for (const CLI::Option* option : verb->get_options()) known.insert(option->get_name());
+    }
+    if (is_known) continue;
+    throw base::ConfigError(base::UnknownName("option", name, {known.begin(), known.end()}));
+  }
+}
+
+/// For somebody who typed the program's name alone.
+int ShowVerbs(const CLI::App& app) {
+  std::cerr << app.help();
+  return kExitBadInput;
+}
+
 int RunAnyExperiment(const ExperimentOptions& options, const Backends& backends) {
   const auto cancelled = [] { return interrupted.load(); };
   if (*options.decision.verb) {
@@ -250,6 +281,7 @@ imagination::Report ImagineInThisProcess(const ImagineQuery& query,
   const imagination::RolloutSetup rollouts =
       imagination::MakeRolloutSetup(setup, start, query.seed);
   const std::vector<base::ActionCall> actions = base::Combinations(query.action);
+  RequireObjects(setup.skills->actions->catalogue(), actions, start.world);
   imagination::Report report = imagination::ImagineLocally(rollouts, actions, query.scheduler,
                                                            query.threads, on_interim, cancelled);
   report.caveats = imagination::CaveatsOf(rollouts, actions, query.validated);
@@ -272,6 +304,8 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
   AddPlanVerb(&app, &plan_options);
   BlackboardOptions blackboard_options;
   AddBlackboardVerb(&app, &blackboard_options);
+  ListOptions list_options;
+  AddListVerb(&app, &list_options);
   DoctorOptions doctor_options;
   AddDoctorVerb(&app, &doctor_options);
   std::vector<CLI::App*> others;
@@ -281,7 +315,9 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
     others.push_back(other);
   }
   try {
+    if (arguments.size() == 1) return ShowVerbs(app);
     RefuseUnknownVerb(app, arguments);
+    RefuseUnknownOption(app, arguments);
     // CLI11 takes its arguments from the back.
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
     // It has nothing to finish, and ends as any program does.
@@ -296,6 +332,7 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
     if (*plan_options.verb) {
       return RunPlanVerb(plan_options, [] { return interrupted.load(); });
     }
+    if (*list_options.verb) return RunListVerb(list_options, backends.package_folder);
     if (*blackboard_options.verb) {
       return RunBlackboardVerb(blackboard_options, backends.package_folder,
                                backends.connect_blackboard);

@@ -98,6 +98,28 @@ std::vector<base::Atom> ImagineStart::AllAtoms() const {
   return all;
 }
 
+void RequireObjects(const actions::Catalogue& catalogue,
+                    const std::vector<base::ActionCall>& actions, const world::WorldState& world) {
+  for (const base::ActionCall& action : actions) {
+    const actions::ActionSpec& spec = catalogue.Get(action.name);
+    const auto name = actions::ArgumentOf(spec, action, actions::ParameterKind::kObject);
+    if (!name) continue;
+    const world::ObjectState* object = world.Find(*name);
+    if (object == nullptr) {
+      throw base::ConfigError(
+          fmt::format("{}: {} is nowhere; say where it is, with --put {}:AREA, --object {} (on the "
+                      "tray) or --object-in-hand {}:ARM",
+                      base::ToString(action), *name, *name, *name, *name));
+    }
+    const bool is_put = spec.purpose.purpose == actions::Purpose::kPutOnArea ||
+                        spec.purpose.purpose == actions::Purpose::kPutOnTray;
+    if (is_put && object->attached_to.empty()) {
+      throw base::ConfigError(fmt::format("{}: {} is in no hand; wanted --object-in-hand {}:ARM",
+                                          base::ToString(action), *name, *name));
+    }
+  }
+}
+
 void AddStartOptions(CLI::App* app, StartOptions* o) {
   app->add_option("--from", o->from, "area where the robot stands")->required();
   app->add_option("--object", o->on_tray,

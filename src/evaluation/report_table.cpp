@@ -53,7 +53,8 @@ std::vector<std::string> Row(const imagination::Prediction& prediction, bool is_
       fmt::format("{:.1f} .. {:.1f} %", 100.0 * e.success.lower, 100.0 * e.success.upper),
       fmt::format("{:.3f}", e.confidence_mean),
       fmt::format("{}", e.falls),
-      fmt::format("{:.1f} ± {:.1f} s", e.duration.mean, e.duration.sd),
+      e.duration.mean > 0.0 ? fmt::format("{:.1f} ± {:.1f} s", e.duration.mean, e.duration.sd)
+                            : "-",
       fmt::format("{:.4f} rad", e.max_tilt.p95),
       fmt::format("{}", e.num_rollouts),
       Failures(e)};

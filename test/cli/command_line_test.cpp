@@ -292,11 +292,13 @@ TEST(CommandLineTest, MoreVerbsGetTheirOwnArguments) {
 // --------------------------------------------------------------------------------- bad input
 
 TEST(CommandLineTest, RefusesUnknownVerbsAndOptions) {
-  ExpectRefused(RunWith({}), {"subcommand"});
+  ExpectRefused(RunWith({}), {"imagine", "achieve", "doctor", "--help"});
   ExpectRefused(RunWith({"imagin"}), {"verb 'imagin' is unknown", "'imagine'"});
-  ExpectRefused(RunWith({"imagine", "--actoin", "move_base"}), {"--action"});
-  ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{"--rolouts", "3"}),
-                {"--rolouts"});
+  ExpectRefused(RunWith({"imagine", "--actoin", "move_base"}),
+                {"option '--actoin' is unknown; did you mean '--action'"});
+  ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{"--rolouts=3"}),
+                {"option '--rolouts' is unknown; did you mean '--rollouts'"});
+  ExpectRefused(RunWith({"experiment", "decision", "--truht", "same"}), {"'--truth'"});
   ExpectRefused(RunWith({"imagine", "--action", "move_base"}), {"--from", "required"});
 }
 

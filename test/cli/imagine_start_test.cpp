@@ -86,5 +86,26 @@ TEST(ImagineStartTest, RefusesWhatItCannotRead) {
   EXPECT_THAT(why_not(options), AllOf(HasSubstr("--posture"), HasSubstr("ARM:POSTURE")));
 }
 
+TEST(RequireObjectsTest, WhatAnActionIsAboutMustBeSomewhere) {
+  world::WorldState world;
+  world.objects.resize(2);
+  world.objects[0].name = "mug1";
+  world.objects[1].name = "bowl1";
+  world.objects[1].attached_to = "r_gripper_palm_link";
+  const auto error = [&](const base::ActionCall& action) {
+    return ConfigErrorOf([&] { RequireObjects(actions::OwnActions(), {action}, world); });
+  };
+  EXPECT_THAT(error({"pick_up_object", {"mug2", "rightarm1"}}),
+              AllOf(HasSubstr("mug2 is nowhere"), HasSubstr("--put mug2:AREA")));
+  EXPECT_THAT(error({"place_object", {"mug1", "rightarm1", "table"}}),
+              HasSubstr("mug1 is in no hand; wanted --object-in-hand mug1:ARM"));
+  for (const base::ActionCall& action :
+       {base::ActionCall{"pick_up_object", {"Mug1", "rightarm1"}},
+        base::ActionCall{"place_object", {"bowl1", "rightarm1", "table"}},
+        base::ActionCall{"move_base", {"door"}}}) {
+    EXPECT_NO_THROW(RequireObjects(actions::OwnActions(), {action}, world)) << action.name;
+  }
+}
+
 }  // namespace
 }  // namespace hires::cli::imagine_start_test

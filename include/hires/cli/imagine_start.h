@@ -6,6 +6,7 @@
 #include "hires/actions/catalogue.h"
 #include "hires/base/action.h"
 #include "hires/imagination/start_state.h"
+#include "hires/world/world.h"
 
 namespace CLI {
 class App;
@@ -35,5 +36,12 @@ void AddStartOptions(CLI::App* app, StartOptions* options);
 /// @throws base::ConfigError naming the option and what it wants.
 ImagineStart ReadStart(const StartOptions& options, const std::string& action,
                        const actions::Catalogue& catalogue);
+
+/// A robot that remembers an object somewhere may well be asked to take it and not find it; whoever
+/// types a start by hand has forgotten it.
+/// @throws base::ConfigError for an action with an object that is nowhere, or that it puts down and
+/// that is in no hand.
+void RequireObjects(const actions::Catalogue& catalogue,
+                    const std::vector<base::ActionCall>& actions, const world::WorldState& world);
 
 }  // namespace hires::cli

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace hires::cli {
+
+/// What was typed behind `hires list`.
+struct ListOptions {
+  std::string what, scene, world, robot, objects, domain, json;
+  std::vector<std::string> action_libraries;
+  CLI::App* verb{nullptr};
+};
+
+/// Adds the verb to the program.  @pre `options` outlives `app`.
+void AddListVerb(CLI::App* app, ListOptions* options);
+
+/// Prints names that other verbs take, from the files that these would read.
+/// @return kExitRecommended.  @throws base::ConfigError for bad input.
+int RunListVerb(const ListOptions& options, const std::string& package_folder);
+
+}  // namespace hires::cli

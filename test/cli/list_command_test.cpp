@@ -1,0 +1,152 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "hires/actions/catalogue.h"
+#include "hires/base/text.h"
+#include "hires/cli/command_line.h"
+#include "support/temporary_folder.h"
+
+namespace hires::cli::list_command_test {
+namespace {
+
+using hires::test_support::TemporaryFolder;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+struct Ended {
+  int code{0};
+  std::string out, err;
+};
+
+Ended List(std::vector<std::string> words) {
+  Backends backends;
+  backends.package_folder = HIRES_SOURCE_DIR;
+  words.insert(words.begin(), {"hires", "list"});
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  Ended ended;
+  ended.code = RunCommandLine(words, backends);
+  ended.out = testing::internal::GetCapturedStdout();
+  ended.err = testing::internal::GetCapturedStderr();
+  return ended;
+}
+
+nlohmann::json Listed(std::vector<std::string> words) {
+  words.insert(words.end(), {"--json", "-"});
+  const Ended ended = List(words);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  return nlohmann::json::parse(ended.out);
+}
+
+nlohmann::json RowOf(const nlohmann::json& rows, const std::string& column,
+                     const std::string& value) {
+  for (const auto& row : rows) {
+    if (row.at(column) == value) return row;
+  }
+  ADD_FAILURE() << "no " << column << " is " << value;
+  return {};
+}
+
+std::vector<std::string> ColumnOf(const nlohmann::json& rows, const std::string& column) {
+  std::vector<std::string> values;
+  for (const auto& row : rows) values.push_back(row.at(column));
+  return values;
+}
+
+TEST(ListCommandTest, AreasComeWithWhatTheyAreForAndWhereTheyAre) {
+  const auto rows = Listed({"areas"});
+  const auto row = RowOf(rows, "area", "preManipulationAreaNorthTable1");
+  EXPECT_EQ(row["for"], "standing");
+  EXPECT_EQ(row["frame"], "map");
+  EXPECT_EQ(RowOf(rows, "area", "placingAreaWestLeftTable1")["for"], "placing");
+  EXPECT_EQ(RowOf(rows, "area", "trayarea1")["for"], "tray");
+  const auto workshop = Listed({"areas", "--world", HIRES_SOURCE_DIR "/worlds/workshop.world"});
+  EXPECT_EQ(RowOf(workshop, "area", "atBench")["y"], 3.6);  // as the file says
+  EXPECT_EQ(RowOf(workshop, "area", "atBench")["yaw"], 1.5708);
+}
+
+TEST(ListCommandTest, ObjectsComeWithMassAndSize) {
+  const auto mill = RowOf(Listed({"objects"}), "object", "peppermill1");
+  EXPECT_EQ(mill["model"], "peppermill_thesis");
+  EXPECT_EQ(mill["mass"], 0.14);  // objects.md
+  EXPECT_EQ(mill["height"], 0.274);
+}
+
+TEST(ListCommandTest, ObjectsOfOnesOwnWorldAreThere) {
+  const TemporaryFolder folder;
+  const std::string world = folder.Write("w.world", R"(<?xml version="1.0"?><sdf version="1.7">
+    <world name="w"><model name="crate"><pose>1 0 0.1 0 0 0</pose><link name="l">
+    <inertial><mass>2</mass><inertia><ixx>0.02</ixx><iyy>0.02</iyy><izz>0.02</izz></inertia>
+    </inertial><collision name="c"><geometry><box><size>0.3 0.2 0.2</size></box></geometry>
+    </collision></link></model></world></sdf>)");
+  const auto crate = RowOf(Listed({"objects", "--world", world}), "object", "crate");
+  EXPECT_EQ(crate["from"], "world");
+  EXPECT_EQ(crate["mass"], 2.0);
+  EXPECT_EQ(crate["depth"], 0.3);
+}
+
+TEST(ListCommandTest, ActionsAreThoseOfTheCatalogue) {
+  const auto rows = Listed({"actions"});
+  EXPECT_EQ(rows.size(), actions::OwnActions().specs().size());
+  EXPECT_THAT(RowOf(rows, "action", "move_base_param")["arguments"],
+              ElementsAre("area", "motion_set"));
+}
+
+TEST(ListCommandTest, MotionSetsAndPosturesAreTheRobots) {
+  const auto sets = Listed({"motion_sets"});
+  EXPECT_EQ(RowOf(sets, "motion set", "fast")["m/s"], 0.55);  // Table 5.1
+  EXPECT_EQ(RowOf(sets, "motion set", "fast")["default"], true);
+  const auto cart = Listed({"motion_sets", "--robot", HIRES_SOURCE_DIR "/config/robots/cart.yaml"});
+  EXPECT_EQ(RowOf(cart, "motion set", "slow")["default"], true);
+  EXPECT_THAT(ColumnOf(Listed({"postures"}), "posture"),
+              AllOf(Contains("torsoupposture"), Contains("armtuckedposture")));
+  EXPECT_THAT(List({"postures", "--robot", HIRES_SOURCE_DIR "/config/robots/cart.yaml"}).out,
+              HasSubstr("no postures"));
+}
+
+TEST(ListCommandTest, FilesOfThePackageAreFound) {
+  EXPECT_THAT(ColumnOf(Listed({"robots"}), "robot"), ElementsAre("cart", "pr2"));
+  EXPECT_THAT(ColumnOf(Listed({"worlds"}), "world"), ElementsAre("restaurant", "workshop"));
+  EXPECT_THAT(ColumnOf(Listed({"scenarios"}), "scenario"), ElementsAre("serve_coffee", "topple"));
+  EXPECT_THAT(ColumnOf(Listed({"truths"}), "truth"), ElementsAre("foreign", "harsh", "same"));
+}
+
+TEST(ListCommandTest, WholeTasksComeBeforeTheirParts) {
+  const auto rows = Listed({"tasks"});
+  EXPECT_THAT(RowOf(rows, "task", "serve_coffee_to_guest")["part of"], IsEmpty());
+  EXPECT_THAT(RowOf(rows, "task", "load_tray")["part of"], Contains("carry_object_on_tray"));
+  EXPECT_EQ(rows.front()["task"], "serve_coffee_to_guest");
+  EXPECT_EQ(rows.front()["arguments"], "?guest");
+}
+
+TEST(ListCommandTest, ATableForPeopleAndAFileForMachines) {
+  const TemporaryFolder folder;
+  const std::string path = (folder.path() / "areas.json").string();
+  const Ended ended = List({"scenarios", "--json", path});
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("scenario"), HasSubstr("serve_coffee_to_guest guest1"),
+                               Not(HasSubstr("{"))));
+  EXPECT_EQ(nlohmann::json::parse(base::ReadTextFile(path)).size(), 2u);
+}
+
+TEST(ListCommandTest, WhatItCannotListIsRefused) {
+  const auto expect = [](const std::vector<std::string>& words, const std::string& text) {
+    const Ended ended = List(words);
+    EXPECT_EQ(ended.code, kExitBadInput);
+    EXPECT_EQ(ended.out, "");
+    EXPECT_THAT(ended.err, HasSubstr(text));
+  };
+  expect({"area"}, "list 'area' is unknown; did you mean 'areas'");
+  expect({}, "what is required");
+  expect({"areas", "--world", "/nowhere.world"}, "/nowhere.world");
+  expect({"tasks", "--domain", "/nowhere.lisp"}, "/nowhere.lisp: no such file");
+  expect({"areas", "--json", "/nowhere/areas.json"}, "/nowhere");
+}
+
+}  // namespace
+}  // namespace hires::cli::list_command_test
