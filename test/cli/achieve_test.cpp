@@ -6,6 +6,7 @@
 
 #include "cli/achieve_command.h"
 #include "cli/achieve_display.h"
+#include "cli/command_run.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
@@ -17,6 +18,8 @@ namespace {
 
 using execution::StepPhase;
 using hires::test_support::ConfigErrorOf;
+using hires::test_support::Ended;
+using hires::test_support::RunHires;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -160,15 +163,8 @@ TEST(AchieveDisplayTest, SaysEachWarningOnce) {
 /// `hires achieve` against an execution monitor made of one function.
 class AchieveVerbTest : public ::testing::Test {
  protected:
-  /// What it printed and its exit code.
-  struct Ended {
-    int code{0};
-    std::string out, err;
-  };
-
-  Ended Run(std::vector<std::string> words) {
+  Ended Run(const std::vector<std::string>& words) {
     Backends backends;
-    backends.package_folder = HIRES_SOURCE_DIR;
     backends.achieve_remotely = [this](const evaluation::AchieveQuery& query,
                                        const evaluation::OnAchieveStatus& on_status,
                                        const std::function<bool()>&) {
@@ -177,14 +173,7 @@ class AchieveVerbTest : public ::testing::Test {
       report_.task = query.task;
       return report_;
     };
-    words.insert(words.begin(), {"hires", "achieve"});
-    ::testing::internal::CaptureStdout();
-    ::testing::internal::CaptureStderr();
-    Ended ended;
-    ended.code = RunCommandLine(words, backends);
-    ended.out = ::testing::internal::GetCapturedStdout();
-    ended.err = ::testing::internal::GetCapturedStderr();
-    return ended;
+    return RunHires({"achieve"}, words, backends);
   }
 
   Ended RunFor(evaluation::AchieveOutcome outcome) {
@@ -311,9 +300,9 @@ TEST_F(AchieveVerbTest, BadInputIsRefusedBeforeTheRobotSetsOut) {
 }
 
 TEST(AchieveWithoutRosTest, SaysWhatIsMissing) {
-  ::testing::internal::CaptureStderr();
-  EXPECT_EQ(RunCommandLine({"hires", "achieve", "serve"}, {}), kExitBadInput);
-  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("no ROS nodes"));
+  const Ended ended = RunHires({"achieve", "serve"});
+  EXPECT_EQ(ended.code, kExitBadInput);
+  EXPECT_THAT(ended.err, HasSubstr("no ROS nodes"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cli/command_run.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
@@ -15,6 +16,8 @@
 namespace hires::cli::blackboard_command_test {
 namespace {
 
+using hires::test_support::Ended;
+using hires::test_support::RunHires;
 using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
@@ -55,28 +58,10 @@ Modifications:
 Attachments: []
 )";
 
-/// What the program printed, and how it ended.
-struct Ended {
-  int code{0};
-  std::string out, err;
-};
-
 class BlackboardCommandTest : public ::testing::Test {
  protected:
   /// `hires blackboard WORDS`.
-  Ended Run(const std::vector<std::string>& words) const {
-    std::vector<std::string> arguments{"hires", "blackboard"};
-    arguments.insert(arguments.end(), words.begin(), words.end());
-    Backends backends;
-    backends.package_folder = HIRES_SOURCE_DIR;
-    ::testing::internal::CaptureStdout();
-    ::testing::internal::CaptureStderr();
-    Ended ended;
-    ended.code = RunCommandLine(arguments, backends);
-    ended.out = ::testing::internal::GetCapturedStdout();
-    ended.err = ::testing::internal::GetCapturedStderr();
-    return ended;
-  }
+  Ended Run(const std::vector<std::string>& words) const { return RunHires({"blackboard"}, words); }
   /// The same on this test's store.
   Ended OnStore(std::vector<std::string> words) const {
     words.insert(words.end(), {"--store", store_});

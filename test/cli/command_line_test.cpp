@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/command_run.h"
 #include "evaluation/report_examples.h"
 #include "hires/base/text.h"
 #include "support/temporary_folder.h"
@@ -15,31 +16,14 @@
 namespace hires::cli::command_line_test {
 namespace {
 
+using hires::test_support::Ended;
+using hires::test_support::RunHires;
 using hires::test_support::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
-
-/// What the program printed, and how it ended.
-struct Ended {
-  int code{0};
-  std::string out, err;
-};
-
-Ended RunWith(const std::vector<std::string>& arguments, Backends backends = {}) {
-  backends.package_folder = HIRES_SOURCE_DIR;
-  std::vector<std::string> words{"hires"};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  ::testing::internal::CaptureStdout();
-  ::testing::internal::CaptureStderr();
-  Ended ended;
-  ended.code = RunCommandLine(words, backends);
-  ended.out = ::testing::internal::GetCapturedStdout();
-  ended.err = ::testing::internal::GetCapturedStderr();
-  return ended;
-}
 
 /// A small scene that loads and plays quickly: the cart in a hall.
 class SmallScene {
@@ -65,7 +49,7 @@ class SmallScene {
   Ended Imagine(const std::vector<std::string>& more) const {
     std::vector<std::string> words{"imagine", "--local", "--quiet", "--scene", path_};
     words.insert(words.end(), more.begin(), more.end());
-    return RunWith(words);
+    return RunHires(words);
   }
 
   const std::filesystem::path& folder() const { return folder_.path(); }
@@ -170,10 +154,10 @@ TEST(CommandLineTest, ExitCodesTellOutcomesApart) {
 }
 
 TEST(CommandLineTest, HelpIsNoError) {
-  const Ended ended = RunWith({"--help"});
+  const Ended ended = RunHires({"--help"});
   EXPECT_EQ(ended.code, 0);
   EXPECT_THAT(ended.out, AllOf(HasSubstr("imagine"), HasSubstr("doctor")));
-  EXPECT_THAT(RunWith({"imagine", "--help"}).out, HasSubstr("--rollouts"));
+  EXPECT_THAT(RunHires({"imagine", "--help"}).out, HasSubstr("--rollouts"));
 }
 
 TEST(CommandLineTest, ADoctorForRobotsIsAskedWithItsOptions) {
@@ -183,19 +167,19 @@ TEST(CommandLineTest, ADoctorForRobotsIsAskedWithItsOptions) {
     seen = options;
     return 7;
   };
-  const Ended ended = RunWith({"doctor", "--robot", "--names", "n.yaml", "--seconds", "0.5",
-                               "--navigation", "own", "--json", "r.json"},
-                              backends);
+  const Ended ended = RunHires({"doctor", "--robot", "--names", "n.yaml", "--seconds", "0.5",
+                                "--navigation", "own", "--json", "r.json"},
+                               {}, backends);
   EXPECT_EQ(ended.code, 7) << ended.err;
   ASSERT_TRUE(seen);
   EXPECT_EQ(seen->names, "n.yaml");
   EXPECT_EQ(seen->seconds, 0.5);
   EXPECT_EQ(seen->navigation, "own");
   EXPECT_EQ(seen->json, "r.json");
-  EXPECT_EQ(RunWith({"doctor", "--robot", "--navigation", "teleport"}, backends).code, 1);
-  EXPECT_EQ(RunWith({"doctor", "--robot", "--seconds", "0"}, backends).code, 1);
-  EXPECT_EQ(RunWith({"doctor", "--names", "n.yaml"}, backends).code, 1) << "it needs --robot";
-  EXPECT_THAT(RunWith({"doctor", "--robot"}).err, HasSubstr("this build has no ROS"));
+  EXPECT_EQ(RunHires({"doctor", "--robot", "--navigation", "teleport"}, {}, backends).code, 1);
+  EXPECT_EQ(RunHires({"doctor", "--robot", "--seconds", "0"}, {}, backends).code, 1);
+  EXPECT_EQ(RunHires({"doctor", "--names", "n.yaml"}, {}, backends).code, 1) << "it needs --robot";
+  EXPECT_THAT(RunHires({"doctor", "--robot"}).err, HasSubstr("this build has no ROS"));
 }
 
 TEST(CommandLineTest, RemoteQueriesCarryWhatWasAsked) {
@@ -206,33 +190,33 @@ TEST(CommandLineTest, RemoteQueriesCarryWhatWasAsked) {
     seen = query;
     return evaluation::test_support::TwoAlternatives();
   };
-  const Ended ended = RunWith({"imagine",
-                               "--action",
-                               "move_base_param",
-                               "--from",
-                               "home",
-                               "--arg",
-                               "a,b",
-                               "--arg",
-                               "slow",
-                               "--object",
-                               "peppermill1",
-                               "--object",
-                               "mug1",
-                               "--rollouts",
-                               "9",
-                               "--seed",
-                               "5",
-                               "--deadline",
-                               "3.5",
-                               "--ranking",
-                               "thesis",
-                               "--min-success",
-                               "0.75",
-                               "--no-early-stop",
-                               "--threads",
-                               "2"},
-                              backends);
+  const Ended ended = RunHires({"imagine",
+                                "--action",
+                                "move_base_param",
+                                "--from",
+                                "home",
+                                "--arg",
+                                "a,b",
+                                "--arg",
+                                "slow",
+                                "--object",
+                                "peppermill1",
+                                "--object",
+                                "mug1",
+                                "--rollouts",
+                                "9",
+                                "--seed",
+                                "5",
+                                "--deadline",
+                                "3.5",
+                                "--ranking",
+                                "thesis",
+                                "--min-success",
+                                "0.75",
+                                "--no-early-stop",
+                                "--threads",
+                                "2"},
+                               {}, backends);
   EXPECT_EQ(ended.code, kExitRecommended) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("ranked: slow: it says so"));
   EXPECT_EQ(seen.action.name, "move_base_param");
@@ -260,18 +244,16 @@ TEST(CommandLineTest, FilesOfOnesOwnAreSaid) {
   };
   const std::string root = HIRES_SOURCE_DIR;
   const std::vector<std::string> start{"imagine", "--action", "move_base", "--from", "home"};
-  EXPECT_EQ(RunWith(start + std::vector<std::string>{"--world", root + "/worlds/restaurant.world"},
-                    backends)
-                .code,
+  EXPECT_EQ(RunHires(start, {"--world", root + "/worlds/restaurant.world"}, backends).code,
             kExitDeadline);
   EXPECT_TRUE(seen.own_scene);
   EXPECT_FALSE(seen.own_uncertainty);
-  RunWith(start + std::vector<std::string>{"--uncertainty", "none"}, backends);
+  RunHires(start, {"--uncertainty", "none"}, backends);
   EXPECT_FALSE(seen.own_scene);
   EXPECT_TRUE(seen.own_uncertainty);
   EXPECT_EQ(seen.setup.uncertainty, "none");
   const std::string file = root + "/worlds/models/vase/model.sdf";
-  RunWith(start + std::vector<std::string>{"--object", file}, backends);
+  RunHires(start, {"--object", file}, backends);
   EXPECT_TRUE(seen.own_scene);
   EXPECT_THAT(seen.setup.extra_objects, ElementsAre(file));
   EXPECT_THAT(seen.start.on_tray, ElementsAre("vase"));
@@ -284,22 +266,22 @@ TEST(CommandLineTest, MoreVerbsGetTheirOwnArguments) {
                                    seen = words;
                                    return 7;
                                  }});
-  EXPECT_EQ(RunWith({"dance", "--long", "waltz"}, backends).code, 7);
+  EXPECT_EQ(RunHires({"dance", "--long", "waltz"}, {}, backends).code, 7);
   EXPECT_THAT(seen, ElementsAre("--long", "waltz"));
-  EXPECT_THAT(RunWith({"--help"}, backends).out, HasSubstr("does so"));
+  EXPECT_THAT(RunHires({"--help"}, {}, backends).out, HasSubstr("does so"));
 }
 
 // --------------------------------------------------------------------------------- bad input
 
 TEST(CommandLineTest, RefusesUnknownVerbsAndOptions) {
-  ExpectRefused(RunWith({}), {"imagine", "achieve", "doctor", "--help"});
-  ExpectRefused(RunWith({"imagin"}), {"verb 'imagin' is unknown", "'imagine'"});
-  ExpectRefused(RunWith({"imagine", "--actoin", "move_base"}),
+  ExpectRefused(RunHires({}), {"imagine", "achieve", "doctor", "--help"});
+  ExpectRefused(RunHires({"imagin"}), {"verb 'imagin' is unknown", "'imagine'"});
+  ExpectRefused(RunHires({"imagine", "--actoin", "move_base"}),
                 {"option '--actoin' is unknown; did you mean '--action'"});
   ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{"--rolouts=3"}),
                 {"option '--rolouts' is unknown; did you mean '--rollouts'"});
-  ExpectRefused(RunWith({"experiment", "decision", "--truht", "same"}), {"'--truth'"});
-  ExpectRefused(RunWith({"imagine", "--action", "move_base"}), {"--from", "required"});
+  ExpectRefused(RunHires({"experiment", "decision", "--truht", "same"}), {"'--truth'"});
+  ExpectRefused(RunHires({"imagine", "--action", "move_base"}), {"--from", "required"});
 }
 
 TEST(CommandLineTest, RefusesNumbersOutOfRange) {
@@ -348,11 +330,11 @@ TEST(CommandLineTest, NamesMissingFiles) {
     ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{option, "/nowhere/file.yaml"}),
                   {"/nowhere/file.yaml"});
   }
-  ExpectRefused(RunWith({"imagine", "--local", "--action", "move_base", "--from", "home",
-                         "--config", "/nowhere/client.yaml"}),
+  ExpectRefused(RunHires({"imagine", "--local", "--action", "move_base", "--from", "home",
+                          "--config", "/nowhere/client.yaml"}),
                 {"/nowhere/client.yaml: no such file"});
-  ExpectRefused(RunWith({"imagine", "--local", "--action", "move_base", "--from", "home", "--scene",
-                         "/nowhere/scene.yaml"}),
+  ExpectRefused(RunHires({"imagine", "--local", "--action", "move_base", "--from", "home",
+                          "--scene", "/nowhere/scene.yaml"}),
                 {"/nowhere/scene.yaml: no such file"});
   ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Door", "--arg", "Window",
                                  "--object", "/nowhere/mill.sdf"}),
@@ -385,13 +367,13 @@ TEST(CommandLineTest, LibrariesOfActionsAreLoadedHereAndNowhereElse) {
               AllOf(HasSubstr("library of actions '/nowhere/lib.so'"), HasSubstr("no such file")));
   std::vector<std::string> remote{"imagine"};
   remote.insert(remote.end(), words.begin(), words.end());
-  const Ended refused = RunWith(remote);
+  const Ended refused = RunHires(remote);
   EXPECT_EQ(refused.code, kExitBadInput);
   EXPECT_THAT(refused.err, AllOf(HasSubstr("--local"), HasSubstr("~action_libraries")));
 }
 
 TEST(CommandLineTest, WithoutNodesToAskItSaysSo) {
-  ExpectRefused(RunWith({"imagine", "--action", "move_base", "--from", "home"}), {"--local"});
+  ExpectRefused(RunHires({"imagine", "--action", "move_base", "--from", "home"}), {"--local"});
 }
 
 TEST(CommandLineTest, NothingEscapes) {
@@ -400,7 +382,7 @@ TEST(CommandLineTest, NothingEscapes) {
                                  const std::function<bool()>&) -> imagination::Report {
     throw std::runtime_error("the wire is cut");
   };
-  ExpectRefused(RunWith({"imagine", "--action", "move_base", "--from", "home"}, backends),
+  ExpectRefused(RunHires({"imagine", "--action", "move_base", "--from", "home"}, {}, backends),
                 {"hires: the wire is cut"});
 }
 

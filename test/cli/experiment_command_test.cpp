@@ -6,11 +6,14 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "cli/command_run.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 
 namespace hires::cli::experiment_command_test {
 namespace {
+
+using hires::test_support::RunHires;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
 
@@ -21,14 +24,7 @@ int ExitCode(const std::string& expectation, const std::vector<std::string>& mor
   yaml.replace(yaml.find("../scene.yaml"), 13, kRoot + "/config/scene.yaml");
   const std::string path = testing::TempDir() + "exit_code.yaml";
   std::ofstream(path) << yaml;
-  std::vector<std::string> arguments{"hires", "experiment", path, "--runs", "1"};
-  arguments.insert(arguments.end(), more.begin(), more.end());
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  const int code = RunCommandLine(arguments, {});
-  testing::internal::GetCapturedStdout();
-  testing::internal::GetCapturedStderr();
-  return code;
+  return RunHires({"experiment", path, "--runs", "1"}, more).code;
 }
 
 TEST(ExperimentCommandTest, ExitsByWhatTheFileExpects) {

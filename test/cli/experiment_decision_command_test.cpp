@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/command_run.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "support/temporary_folder.h"
@@ -9,27 +10,16 @@
 namespace hires::cli::experiment_decision_command_test {
 namespace {
 
+using hires::test_support::Ended;
+using hires::test_support::RunHires;
 using testing::HasSubstr;
 using testing::SizeIs;
 
 class DecisionCommandTest : public ::testing::Test {
  protected:
-  struct Ended {
-    int code;
-    std::string out, err;
-  };
   std::string File(const std::string& name) const { return (folder_.path() / name).string(); }
   static Ended Decide(const std::vector<std::string>& words) {
-    std::vector<std::string> arguments{"hires", "experiment", "decision"};
-    arguments.insert(arguments.end(), words.begin(), words.end());
-    Backends backends;
-    backends.package_folder = HIRES_SOURCE_DIR;
-    ::testing::internal::CaptureStdout();
-    ::testing::internal::CaptureStderr();
-    Ended ended{RunCommandLine(arguments, backends), "", ""};
-    ended.out = ::testing::internal::GetCapturedStdout();
-    ended.err = ::testing::internal::GetCapturedStderr();
-    return ended;
+    return RunHires({"experiment", "decision"}, words);
   }
   /// Arms that need no rollout, so that it is short.
   nlohmann::json Constants(const std::string& runs, const std::string& threads,

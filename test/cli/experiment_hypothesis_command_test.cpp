@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cli/command_run.h"
 #include "evaluation/hypothesis_examples.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
@@ -13,31 +14,20 @@
 namespace hires::cli::experiment_hypothesis_command_test {
 namespace {
 
+using hires::test_support::Ended;
+using hires::test_support::RunHires;
 using test_support::TemporaryFolder;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
 
-struct Ended {
-  int code{0};
-  std::string out, err;
-};
-
 Ended RunWith(const std::vector<std::string>& words, const evaluation::PlayHypothesis& play = {},
               const std::string& package_folder = kRoot) {
-  std::vector<std::string> arguments{"hires", "experiment", "hypothesis"};
-  arguments.insert(arguments.end(), words.begin(), words.end());
   Backends backends;
   backends.package_folder = package_folder;
   backends.play_hypothesis = play;
-  ::testing::internal::CaptureStdout();
-  ::testing::internal::CaptureStderr();
-  Ended ended;
-  ended.code = RunCommandLine(arguments, backends);
-  ended.out = ::testing::internal::GetCapturedStdout();
-  ended.err = ::testing::internal::GetCapturedStderr();
-  return ended;
+  return RunHires({"experiment", "hypothesis"}, words, backends);
 }
 
 /// Succeeds with imagination, and without in odd runs; remembers what it was asked.

@@ -3,14 +3,16 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/command_run.h"
 #include "hires/actions/catalogue.h"
 #include "hires/base/text.h"
-#include "hires/cli/command_line.h"
 #include "support/temporary_folder.h"
 
 namespace hires::cli::list_command_test {
 namespace {
 
+using hires::test_support::Ended;
+using hires::test_support::RunHires;
 using hires::test_support::TemporaryFolder;
 using testing::AllOf;
 using testing::Contains;
@@ -19,23 +21,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-struct Ended {
-  int code{0};
-  std::string out, err;
-};
-
-Ended List(std::vector<std::string> words) {
-  Backends backends;
-  backends.package_folder = HIRES_SOURCE_DIR;
-  words.insert(words.begin(), {"hires", "list"});
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  Ended ended;
-  ended.code = RunCommandLine(words, backends);
-  ended.out = testing::internal::GetCapturedStdout();
-  ended.err = testing::internal::GetCapturedStderr();
-  return ended;
-}
+Ended List(const std::vector<std::string>& words) { return RunHires({"list"}, words); }
 
 nlohmann::json Listed(std::vector<std::string> words) {
   words.insert(words.end(), {"--json", "-"});

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/command_run.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "support/temporary_folder.h"
@@ -12,6 +13,9 @@
 namespace hires::cli::plan_command_test {
 namespace {
 
+using hires::test_support::Capture;
+using hires::test_support::Ended;
+using hires::test_support::RunHires;
 using nlohmann::json;
 using test_support::TemporaryFolder;
 using ::testing::AllOf;
@@ -20,32 +24,13 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-/// What the program printed, and how it ended.
-struct Ended {
-  int code{0};
-  std::string out, err;
-};
-
-template <typename Run>
-Ended Capture(const Run& run) {
-  ::testing::internal::CaptureStdout();
-  ::testing::internal::CaptureStderr();
-  Ended ended;
-  ended.code = run();
-  ended.out = ::testing::internal::GetCapturedStdout();
-  ended.err = ::testing::internal::GetCapturedStderr();
-  return ended;
-}
-
 std::string Data(const std::string& name) {
   return HIRES_SOURCE_DIR + std::string("/test/evaluation/data/") + name;
 }
 
 /// `hires plan --domain FILE` with more words behind.
 Ended Plan(const std::string& domain, const std::vector<std::string>& more) {
-  std::vector<std::string> words{"hires", "plan", "--domain", domain};
-  words.insert(words.end(), more.begin(), more.end());
-  return Capture([&] { return RunCommandLine(words, {}); });
+  return RunHires({"plan", "--domain", domain}, more);
 }
 
 Ended Deliver(const std::string& problem, std::vector<std::string> more = {}) {
@@ -276,11 +261,11 @@ TEST(PlanCommandTest, OptionsOutOfRange) {
   ExpectRefused(Deliver("two_ways", {"--limit", "0"}), {"--limit"});
   ExpectRefused(Deliver("two_ways", {"--time", "-1"}), {"--time"});
   ExpectRefused(Deliver("two_ways", {"--json", "/nowhere/answer.json"}), {"/nowhere"});
-  ExpectRefused(Capture([] { return RunCommandLine({"hires", "plan"}, {}); }), {"--domain"});
+  ExpectRefused(RunHires({"plan"}), {"--domain"});
 }
 
 TEST(PlanCommandTest, HelpIsNoError) {
-  const Ended ended = Capture([] { return RunCommandLine({"hires", "plan", "--help"}, {}); });
+  const Ended ended = RunHires({"plan", "--help"});
   EXPECT_EQ(ended.code, 0);
   EXPECT_THAT(ended.out, AllOf(HasSubstr("--which"), HasSubstr("--format"), Not(IsEmpty())));
 }
