@@ -6,6 +6,7 @@ carries stays where it is; asked again, it goes on from there. Run alone, or by
 import os
 import re
 import sys
+import threading
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
@@ -17,6 +18,8 @@ from test_run import run_test  # noqa: E402
 # A mug stands firmly: what makes it fall is not how the plan goes on, which has no time to imagine.
 THERE = 'carry_object_on_tray mug1 counter1 table1'
 MAY_TAKE = 1.0     # [s] simulated, from the middle layer's word until the robot stands
+PIECE = 0.1        # [s] simulated, that is played at once until a step moves something
+LONGEST_START = 10.0  # [s] simulated, from its begin until it does
 WATCHED = 2.0      # [s] simulated, for which it is then watched
 ARM_JOINT = re.compile('[lr]_(shoulder|upper_arm|elbow|forearm|wrist)')
 # Hands hold on to what they hold, and the head looks around.
@@ -60,14 +63,33 @@ class PreemptTest(LoopCase):
         self.hold(True)
         self.truth.wait(lambda t: t.num_repeated > 0, 'time to stand')
 
-    def preempt_during(self, text, name):
-        """Of the first step of this name, while it moves the robot."""
-        task = self.achieve(text)
-        self.wait_for_step(task, name)
-        self.truth.wait(lambda t: is_at_work(name, t), name + ' to move')
-        # Time stands while the word goes from node to node, so that load on the machine does not
-        # count as time that the robot took.
+    def play_until_at_work(self, name):
+        """In short pieces, after each of which all that happened was heard."""
         self.stop_time()
+        begin = self.truth.now()
+        while not is_at_work(name, self.truth):
+            end = self.truth.now() + PIECE
+            self.assertLess(end, begin + LONGEST_START, name + ' does not move')
+            self.hold(False)
+            self.truth.wait(lambda t: t.now() >= end, 'time to go on')
+            self.stop_time()
+
+    def preempt_during(self, text, name):
+        """Of the first step of this name, while it moves the robot. Time stands from the first word
+        of the step on, so that load on the machine does not count as time that the robot took: not
+        until it moves, nor while the word goes from node to node."""
+        is_held = threading.Event()
+
+        def hold_when_it_begins(feedback):
+            begun = any(s.action.name == name and s.phase == self.phases.RUNNING
+                        for s in feedback.steps)
+            if begun and not is_held.is_set():
+                is_held.set()
+                self.hold(True)
+
+        task = self.achieve(text, on_feedback=hold_when_it_begins)
+        self.wait_for_step(task, name)
+        self.play_until_at_work(name)
         before = self.truth.now()
         self.assertTrue(self.running(), name + ' was over too early')
         task.cancel()
