@@ -217,13 +217,12 @@ TEST_F(ActionRunnerTest, WhatASkillSaysAfterItWasCancelledIsNotHeard) {
 
 TEST_F(ActionRunnerTest, ASlowSkillKeepsNoOtherFromItsLooks) {
   std::promise<void> gate;
-  auto seen = std::make_shared<Seen>();
   Start(1, "move_torso", std::make_unique<SlowSkill>(gate.get_future().share()));
-  Start(2, "move_base", std::make_unique<ScriptedSkill>(1, skills::Succeeded(), seen));
+  Start(2, "move_base", std::make_unique<ScriptedSkill>(1, skills::Succeeded()));
   runner_.Look(200.0, {});
   while (ended_.empty()) {  // until the driving skill has had its two looks
     runner_.Collect();
-    if (!seen->times.empty()) runner_.Look(200.1, {});
+    if (!sent_.empty()) runner_.Look(200.1, {});
   }
   EXPECT_EQ(ended_[0].id, 2);
   EXPECT_TRUE(runner_.is_thinking());
