@@ -78,13 +78,11 @@ Rows Areas(const Sources& sources) {
 }
 
 Eigen::Vector3d SizeOf(const world::ObjectModel& model) {
-  Eigen::AlignedBox3d box;
+  geometry::Aabb box;
   for (const geometry::Collision& collision : model.collisions) {
-    const geometry::Aabb bounds = geometry::BoundsOf(collision.shape, collision.X_BS);
-    box.extend(bounds.lower);
-    box.extend(bounds.upper);
+    box.Include(geometry::BoundsOf(collision.shape, collision.X_BS));
   }
-  return box.sizes();
+  return box.upper - box.lower;
 }
 
 ordered_json ObjectRow(const std::string& instance, const world::ObjectModel& model,
