@@ -22,7 +22,14 @@ class ServiceLinks {
   template <typename Service>
   bool Call(const std::string& name, Service* call) {
     ros::ServiceClient& client = clients_[name];
-    if (!client.isValid()) client = nh_.serviceClient<Service>(prefix_ + name, true);
+    if (!client.isValid()) {
+      // A server that was killed is still registered. Connecting to it can lock up roscpp for good:
+      // the thread that connects holds the lock of all links and wants the transport's, the thread
+      // that serves all sockets finds the connection refused, holds that one and wants the other. A
+      // probe has a transport of its own.
+      if (!ros::service::exists(NameOf(name), false)) return false;
+      client = nh_.serviceClient<Service>(prefix_ + name, true);
+    }
     if (client.isValid() && client.call(*call)) return true;
     client = {};  // a link whose server died may go on calling itself valid
     return false;

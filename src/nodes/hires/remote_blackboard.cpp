@@ -88,7 +88,8 @@ class RemoteBlackboard : public hires::cli::BlackboardAccess {
   template <typename Service>
   void Ask(const char* service, Service* call) {
     const std::string name = kBlackboard + std::string("/") + service;
-    if (!ros::service::call(name, *call)) {
+    // First a probe: see ServiceLinks.
+    if (!ros::service::exists(name, false) || !ros::service::call(name, *call)) {
       throw ConfigError(fmt::format(
           "{} does not answer: the Blackboard went away; see its log, or add --store FILE",
           ros::names::resolve(name)));

@@ -117,7 +117,9 @@ std::string MapCheckNode::Run() {
 
 void MapCheckNode::AskForMap() {
   nav_msgs::GetMap call;
-  if (ros::service::call(nh_.resolveName(params_.names.static_map), call)) {
+  const std::string service = nh_.resolveName(params_.names.static_map);
+  // First a probe: see ServiceLinks.
+  if (ros::service::exists(service, false) && ros::service::call(service, call)) {
     OnMap(call.response.map);
     return;
   }
