@@ -161,7 +161,7 @@ std::uint64_t BaseGuard::Applicant(double now) const {
 void BaseGuard::Wait(double now) {
   if (is_held_ || Applicant(now) == 0) return;
   base::Failure wrong = BadRequest(request_);
-  if (!wrong) wrong = WhatIsWrong(now);
+  if (!wrong) wrong = WhatForbidsDriving(now);
   if (!wrong) {
     state_ = GuardState::kPassing;
     active_ = request_;
@@ -191,7 +191,7 @@ base::Failure BaseGuard::WhyNoPose(double now) const {
   return {Code::kStalePose, {}, fmt::format("{:.2f} s, {}", age, kPoseSources[oldest])};
 }
 
-base::Failure BaseGuard::WhatIsWrong(double now) const {
+base::Failure BaseGuard::WhatForbidsDriving(double now) const {
   if (motors_halted_.value_or(false)) return Code::kMotorsHalted;
   if (hindrance_) return hindrance_;
   if (params_.needs_motors_state && !motors_halted_) return Code::kNoMotorsState;
@@ -213,7 +213,7 @@ base::Failure BaseGuard::WhatIsWrong(double now) const {
 }
 
 base::Failure BaseGuard::WhyStop(double now) const {
-  if (base::Failure wrong = WhatIsWrong(now); wrong) return wrong;
+  if (base::Failure wrong = WhatForbidsDriving(now); wrong) return wrong;
   if (now - request_time_ > params_.request_patience) {
     return Late(Code::kSilentMiddleLayer, now - request_time_);
   }

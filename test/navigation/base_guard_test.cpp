@@ -308,6 +308,7 @@ TEST(BaseGuardTest, SaysWhatNeverCame) {
     base.Drive({0.5, 0.0, 0.0});
     EXPECT_EQ(base.guard.state(), GuardState::kStanding);
     EXPECT_EQ(ToString(base.guard.failure()), missing.reason);
+    EXPECT_EQ(ToString(base.guard.WhatForbidsDriving(base.now)), missing.reason);
   }
   BaseGuard guard{BaseGuardParams{}};
   guard.OnRequest({1, {0.5, 1.0, 1.0, 1.0}, {1.0, 1.0}}, 0.0);
@@ -322,6 +323,7 @@ TEST(BaseGuardTest, WhatTheRobotDoesNotHaveIsNotMissed) {
   guard.OnOdometry({}, 0.0, 0.0);
   guard.OnTransform(PoseSource::kBaseTransform, 0.0, 0.0);
   guard.OnTransform(PoseSource::kMapTransform, 0.0, 0.0);
+  EXPECT_FALSE(guard.WhatForbidsDriving(0.0));  // also while nobody asks
   guard.OnRequest({1, {0.5, 1.0, 1.0, 1.0}, {1.0, 1.0}}, 0.0);
   guard.Update(0.0);
   EXPECT_EQ(guard.state(), GuardState::kPassing);

@@ -8,6 +8,7 @@ import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from diagnostics import diagnostics  # noqa: E402
 from execution_system import CARRY, ExecutionSystem  # noqa: E402
 from ros_processes import executable, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
@@ -26,7 +27,7 @@ class ExecutionDryRunTest(unittest.TestCase):
             system.start_fake(role)
         system.start_monitor('_dry_run:=true')
         system.connect()
-        system.diagnostics('execution_monitor', lambda values: all(
+        diagnostics(system.rospy, 'execution_monitor', lambda values: all(
             values[server] == 'there' for server in ('planner', 'imagination_client', 'translator')))
         cls.codes = system.msg.AchieveResult
         cls.phases = system.msg.StepStatus

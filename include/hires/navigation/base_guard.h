@@ -90,6 +90,10 @@ class BaseGuard {
   /// The request that wants to drive, or drives: alive and not over. 0: none.
   std::uint64_t Applicant(double now) const;
 
+  /// What keeps the base from driving, whoever wants to: no_pose, motors_halted, ...; no failure:
+  /// nothing does.
+  base::Failure WhatForbidsDriving(double now) const;
+
   /// To be called often (50 Hz), and after each command that shall pass at once.
   /// @return the velocity to send to the base now; nothing where nothing is to be sent.
   std::optional<geometry::Twist2> Update(double now);
@@ -115,7 +119,6 @@ class BaseGuard {
   std::optional<geometry::Twist2> Brake(double now);
   void Wait(double now);
   void FollowRequest();
-  base::Failure WhatIsWrong(double now) const;
   base::Failure WhyNoPose(double now) const;
   base::Failure WhyStop(double now) const;  // nothing: go on
   void Begin(base::Failure failure, double now);

@@ -252,6 +252,8 @@ void BaseGuardNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status
   status.summary(IsPeaceful(failure) ? Diagnostic::OK : Diagnostic::WARN,
                  ToText(guard_.state()) + (failure ? ": " + ToString(failure) : ""));
   status.add("request", guard_.request());
+  const hires::base::Failure forbids = guard_.WhatForbidsDriving(Now());
+  status.add("forbids driving", forbids ? ToString(forbids) : "nothing");
   status.add("stops", num_stops_);
   status.add("last stop [s]", guard_.stop_time());
   status.add("last stop [m]", guard_.stop_distance());

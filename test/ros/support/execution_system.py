@@ -131,23 +131,6 @@ class ExecutionSystem(BlackboardAccess):
             self.msg.FluentProperty(role='hasAction', type='xsd:string', text='place_object')])
         self.ask('add', self.srv.WriteFluents, fluents=[wish])
 
-    def diagnostics(self, name, condition):
-        """Values of a node's status, once they are as wanted."""
-        from diagnostic_msgs.msg import DiagnosticArray
-        found = {}
-
-        def take(message):
-            for status in message.status:
-                if status.name.startswith(name):
-                    found.update({value.key: value.value for value in status.values})
-
-        subscriber = self.rospy.Subscriber('/diagnostics', DiagnosticArray, take)
-        try:
-            wait_until(lambda: found and condition(found), 'diagnostics of ' + name)
-        finally:
-            subscriber.unregister()
-        return found
-
     # The test itself as a node.
 
     def _reaches(self, service):
@@ -178,7 +161,13 @@ class ExecutionSystem(BlackboardAccess):
         require_server(self.client, lambda: self.nodes['monitor'].output())
 
     def achieve(self, task, imagination=''):
-        return Task(self.client, self.msg.AchieveGoal(task=task, imagination=imagination))
+        def told():
+            return 'last feedback: %s\nthe monitor says:\n%s' % (
+                achieved.feedback[-1:], self.nodes['monitor'].output()[-4000:])
+
+        achieved = Task(self.client, self.msg.AchieveGoal(task=task, imagination=imagination),
+                        told=told)
+        return achieved
 
     def execute(self, name, *arguments):
         """An action of the robot, past the monitor."""
