@@ -4,8 +4,6 @@
 
 namespace hires::imagination {
 
-constexpr double kAlpha = 0.05;  ///< chance that an interval of 95 % misses what it is about
-
 /// A two-sided interval; both ends lie in the range of the variable.
 struct Interval {
   double lower{0.0};

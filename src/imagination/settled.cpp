@@ -78,8 +78,9 @@ class PairJudge {
   Suitability SuitabilityOf(Prefix results) const {
     int num_success = 0;
     for (int i = 0; i < num_rollouts_; ++i) num_success += FailureOf(results[i]) ? 0 : 1;
-    return Judge(EstimateSuccess(num_success, num_rollouts_, IntervalKind::kConfidenceSequence),
-                 criteria_.min_success);
+    return Judge(
+        EstimateSuccess(num_success, num_rollouts_, IntervalKind::kConfidenceSequence, alpha_),
+        criteria_.min_success);
   }
 
   /// Whether a is certainly cheaper.
@@ -122,7 +123,7 @@ double NumSequences(std::size_t num_alternatives, RankingRule rule) {
     case RankingRule::kRisk:
       return 3.0 * pairs;
     case RankingRule::kCost:
-      return pairs;
+      return pairs + n;
     case RankingRule::kThesis:
       break;
   }

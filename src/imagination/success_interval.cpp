@@ -20,9 +20,9 @@ struct Ends {
   double lower, upper;
 };
 
-Ends ClopperPearson(double successes, double failures) {
-  return {successes > 0.0 ? BetaQuantile(successes, failures + 1.0, kAlpha / 2.0) : 0.0,
-          failures > 0.0 ? BetaQuantile(successes + 1.0, failures, 1.0 - kAlpha / 2.0) : 1.0};
+Ends ClopperPearson(double successes, double failures, double alpha) {
+  return {successes > 0.0 ? BetaQuantile(successes, failures + 1.0, alpha / 2.0) : 0.0,
+          failures > 0.0 ? BetaQuantile(successes + 1.0, failures, 1.0 - alpha / 2.0) : 1.0};
 }
 
 double LogBeta(double a, double b) {
@@ -33,11 +33,11 @@ double LogBeta(double a, double b) {
 /// where p is out. Convex in p with its minimum, which is negative, at the observed share.
 class LogRatio {
  public:
-  LogRatio(double successes, double failures)
+  LogRatio(double successes, double failures, double alpha)
       : successes_(successes),
         failures_(failures),
         log_mixture_(LogBeta(successes + 0.5, failures + 0.5) - LogBeta(0.5, 0.5) +
-                     std::log(kAlpha)) {}
+                     std::log(alpha)) {}
 
   double operator()(double p) const {
     const double log_success = successes_ > 0.0 ? successes_ * std::log(p) : 0.0;
@@ -58,8 +58,8 @@ class LogRatio {
   double successes_, failures_, log_mixture_;
 };
 
-Ends ConfidenceSequence(double successes, double failures) {
-  const LogRatio ratio(successes, failures);
+Ends ConfidenceSequence(double successes, double failures, double alpha) {
+  const LogRatio ratio(successes, failures, alpha);
   const double share = successes / (successes + failures);
   return {successes > 0.0 ? ratio.Root(0.0, share) : 0.0,
           failures > 0.0 ? ratio.Root(1.0, share) : 1.0};
@@ -77,14 +77,15 @@ std::string ToString(IntervalKind kind) {
   return kind == IntervalKind::kClopperPearson ? "Clopper-Pearson" : "confidence sequence";
 }
 
-SuccessInterval EstimateSuccess(int num_success, int num_rollouts, IntervalKind kind) {
+SuccessInterval EstimateSuccess(int num_success, int num_rollouts, IntervalKind kind,
+                                double alpha) {
   HIRES_CHECK(num_success >= 0 && num_success <= num_rollouts,
               "there are more successes than rollouts, or fewer than none");
   if (num_rollouts == 0) return {0.0, 0.0, 1.0, 0, kind};
   const double failures = num_rollouts - num_success;
   const Ends ends = kind == IntervalKind::kClopperPearson
-                        ? ClopperPearson(num_success, failures)
-                        : ConfidenceSequence(num_success, failures);
+                        ? ClopperPearson(num_success, failures, alpha)
+                        : ConfidenceSequence(num_success, failures, alpha);
   return {static_cast<double>(num_success) / num_rollouts, ends.lower, ends.upper, num_rollouts,
           kind};
 }

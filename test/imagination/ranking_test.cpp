@@ -383,6 +383,21 @@ TEST(SettledTest, UnderCostTheFirstMustReachWhatIsWanted) {
   EXPECT_TRUE(IsSettled({Times(64, Success(299.0)), bad}, kDear));
 }
 
+TEST(SettledTest, UnderCostTheErrorOfSuccessIsSharedOutToo) {
+  constexpr auto kKind = IntervalKind::kConfidenceSequence;
+  const Results bad = Times(64, Fall(10.0));
+  int k = 32;
+  while (EstimateSuccess(k, 64, kKind).lower < kDear.min_success) ++k;
+  ASSERT_LT(EstimateSuccess(k, 64, kKind, kAlpha / 3.0).lower, kDear.min_success);
+  const auto settled_with = [&](int num_success) {
+    return IsSettled({Times(num_success, Success(10.0)) + Times(64 - num_success, Fall(10.0)), bad},
+                     kDear);
+  };
+  EXPECT_FALSE(settled_with(k));  // one pair and two alternatives share alpha
+  while (EstimateSuccess(k, 64, kKind, kAlpha / 3.0).lower < kDear.min_success) ++k;
+  EXPECT_TRUE(settled_with(k));
+}
+
 bool IsDecided(const std::vector<Results>& results, const Criteria& criteria = kRisk) {
   std::vector<const Results*> apart;
   for (const Results& of_one : results) apart.push_back(&of_one);

@@ -61,8 +61,8 @@ struct Evidence {
                            ///< of equals; -1 when there is none
 };
 
-/// Why one of another process cannot be used: durations that are not finite, not in ascending order,
-/// or more than its rollouts; empty if it can.
+/// Why one of another process cannot be used: durations that are not finite, not in ascending
+/// order, or more than its rollouts; empty if it can.
 std::string DefectOf(const Evidence& evidence);
 
 /// @param results  the first n rollouts of one alternative, in index order, where n was fixed

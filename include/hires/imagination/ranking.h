@@ -80,8 +80,9 @@ struct SettleParams {
 /// is settled.
 ///
 /// The error probability alpha is divided by the number of all sequences there are (every pair
-/// with every criterion), so it covers all alternatives and all looks together, however often this
-/// is called with growing prefixes of the same rollouts. One alternative alone is always settled.
+/// with every criterion, every alternative where one is judged alone), so it covers all
+/// alternatives and all looks together, however often this is called with growing prefixes of the
+/// same rollouts. One alternative alone is always settled.
 /// @param results  per alternative its rollouts in index order, each at least num_rollouts long.
 /// @pre num_rollouts >= 1; params within their ranges.  @throws std::logic_error if broken.
 bool Settled(const std::vector<std::vector<RolloutResult>>& results, int num_rollouts,

@@ -32,8 +32,12 @@ struct SuccessInterval {
   IntervalKind kind{IntervalKind::kConfidenceSequence};
 };
 
+constexpr double kAlpha = 0.05;  ///< chance that an interval of 95 % misses what it is about
+
+/// @param alpha  chance that the interval misses the truth, in (0, 1).
 /// @pre 0 <= num_success <= num_rollouts.  @throws std::logic_error if broken.
-SuccessInterval EstimateSuccess(int num_success, int num_rollouts, IntervalKind kind);
+SuccessInterval EstimateSuccess(int num_success, int num_rollouts, IntervalKind kind,
+                                double alpha = kAlpha);
 
 /// What an interval says about a wanted share of successes.
 enum class Suitability {
