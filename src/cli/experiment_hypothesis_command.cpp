@@ -271,9 +271,10 @@ int RunHypothesisVerb(const HypothesisOptions& options, const std::string& packa
   std::optional<loop::LoopSetup> setup;
   if (options.is_local) {
     setup.emplace(package_folder + "/config/loop.yaml");
-    setup->ReadTruth(options.truth);  // an unknown one is refused before anything is played
   }
-  const evaluation::HypothesisSetting setting = SettingOf(options, package_folder);
+  evaluation::HypothesisSetting setting = SettingOf(options, package_folder);
+  // An unknown one is refused before anything is played.
+  if (setup) setting.truth = setup->ReadTruth(options.truth).name;
   evaluation::HypothesisJournal journal(JournalPath(options), setting);
   const auto orders = OrdersFor(options, goal, journal);
   const evaluation::PlayHypothesis play_locally = [&](const auto& order, const auto& cancel) {

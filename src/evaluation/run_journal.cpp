@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
+#include "hires/base/hash.h"
+#include "hires/base/log.h"
 #include "hires/base/text.h"
 
 namespace hires::evaluation {
@@ -26,6 +28,26 @@ ordered_json ParseLine(const std::string& line, const std::string& where) {
   if (json.is_object()) return json;
   throw base::ConfigError(fmt::format(
       "{}: is no JSON object; the journal is broken, move it away or repair this line", where));
+}
+
+/// Of the program that runs now: another build has another.
+std::string ProgramHash() {
+  static const std::string hash = [] {
+    base::Hasher hasher;
+    hasher.Add(base::ReadTextFile("/proc/self/exe", 1u << 30));
+    return base::HexOf(hasher.value());
+  }();
+  return hash;
+}
+
+/// Code may have changed what a run does, though most changes do not: it is said, not refused.
+void WarnOfOtherProgram(const ordered_json& head, const std::string& path) {
+  if (head.value("program", std::string()) == ProgramHash()) return;
+  base::Log(
+      base::LogLevel::kWarn,
+      fmt::format("journal={} holds runs of another build of this program, which are taken as "
+                  "they are; move it away to play them again",
+                  path));
 }
 
 void RequireSame(const ordered_json& head, const ordered_json& wanted, const std::string& path) {
@@ -84,9 +106,15 @@ void RunJournal::Load(const ordered_json& head, const OnRun& on_run) {
   if (whole < text.size() && ftruncate(fd_, static_cast<off_t>(whole)) != 0) {
     FailWith(path_, "its broken last line cannot be cut off");
   }
-  if (whole == 0) return AppendText(LineOf(head));
+  if (whole == 0) {
+    ordered_json begun = head;
+    begun["program"] = ProgramHash();
+    return AppendText(LineOf(begun));
+  }
   const std::vector<std::string> lines = base::Split(text.substr(0, whole - 1), '\n');
-  RequireSame(ParseLine(lines[0], path_ + ": line 1"), head, path_);
+  const ordered_json begun = ParseLine(lines[0], path_ + ": line 1");
+  RequireSame(begun, head, path_);
+  WarnOfOtherProgram(begun, path_);
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const std::string where = fmt::format("{}: line {}", path_, i + 1);
     on_run(ParseLine(lines[i], where), where);

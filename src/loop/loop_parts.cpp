@@ -100,7 +100,7 @@ const imagination::ClientConfig& LoopSetup::imagination() const {
 const planning::OperatorData& LoopSetup::operators() const { return parts_->operators; }
 
 evaluation::Truth LoopSetup::Parts::ReadTruth(const std::string& name) const {
-  return evaluation::ReadTruth(evaluation::TruthPath(name, config.truths));
+  return evaluation::FindTruth(name, config.truths);
 }
 
 evaluation::Truth LoopSetup::ReadTruth(const std::string& name) const {

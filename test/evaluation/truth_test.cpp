@@ -32,6 +32,17 @@ TEST(TruthPathTest, AnUnknownNameIsRefusedWithNamesLikeIt) {
               AllOf(HasSubstr(kTruths), HasSubstr("'sane'"), HasSubstr("'same'")));
 }
 
+TEST(FindTruthTest, AFileOfOnesOwnDoesNotPassForAShippedOne) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string text = base::ReadTextFile(kTruths + "/same.yaml");
+  const std::string own = FindTruth(folder.Write("same.yaml", text), kTruths).name;
+  EXPECT_THAT(own, HasSubstr((folder.path() / "same.yaml#").string()));
+  EXPECT_EQ(TruthNote(own), own);  // and not imagination's own model
+  EXPECT_NE(FindTruth(folder.Write("same.yaml", text + "# more"), kTruths).name, own);
+  EXPECT_EQ(FindTruth("same", kTruths).name, "same");
+  EXPECT_EQ(FindTruth(kTruths + "/../truths/foreign.yaml", kTruths).name, "foreign");
+}
+
 /// What is said of the file of `same` with one text in another's place.
 class TruthFileTest : public ::testing::Test {
  protected:

@@ -13,7 +13,8 @@ class RunJournal {
   /// Told of a run that is in the file.  @param where  "runs.journal: line 3".
   using OnRun = std::function<void(const nlohmann::ordered_json& run, const std::string& where)>;
 
-  /// Begins the file, or goes on with one of the same head. One program at a time.
+  /// Begins the file, or goes on with one of the same head. One program at a time; runs of another
+  /// build of it are kept, with a warning.
   /// @param head    what the runs have in common; its field `journal` names the kind of journal.
   /// @param on_run  called for each run that is there, before this returns.
   /// @throws base::ConfigError naming file and line: it cannot be written, is in use, is no

@@ -77,8 +77,14 @@ struct Truth {
 /// @throws base::ConfigError for an unknown name, with names like it.
 std::string TruthPath(const std::string& name, const std::string& folder);
 
-/// Reads a file like config/truths/same.yaml.  @throws base::ConfigError naming file and key.
+/// Reads a file like config/truths/same.yaml; it is called as the file is, without .yaml.
+/// @throws base::ConfigError naming file and key.
 Truth ReadTruth(const std::string& path);
+
+/// The truth of that name, or of a file of one's own: that is called by its path and a hash of its
+/// text, whatever the file's name, so that nothing that was measured under it passes for another.
+/// @param name, folder  as TruthPath.  @throws base::ConfigError as TruthPath and ReadTruth.
+Truth FindTruth(const std::string& name, const std::string& folder);
 
 /// `same: imagination's own model`, or the name: to stand beside whatever was measured with it.
 std::string TruthNote(const std::string& name);

@@ -172,6 +172,9 @@ std::string DecisionText(const DecisionReport& report) {
     text += fmt::format("\nprices times {:g}\n{}", verdict.scale, ArmTable(report, verdict));
     text += RegretLine(verdict) + ComparisonTable(report, verdict);
   }
+  text +=
+      "simulated, wall, processor: of deciding, summed over tasks and threads, the same for all "
+      "prices and in no cost\n";
   return report.calibration ? text + "\n" + CalibrationText(*report.calibration) : text;
 }
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -5,6 +7,7 @@
 
 #include "evaluation/truth/controller_changes.h"
 #include "hires/base/error.h"
+#include "hires/base/hash.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/truth.h"
@@ -70,7 +73,8 @@ bool ReadIdeally(const std::string& key, ParamReader* in) {
 
 Eigen::Vector2d ReadPoint(const std::string& key, ParamReader* in) {
   const std::vector<double> xy = in->GetNumbers(key, 2);
-  if (std::abs(xy[0]) > kFarthest || std::abs(xy[1]) > kFarthest) in->Fail(key, "wanted within 1000 m");
+  if (std::abs(xy[0]) > kFarthest || std::abs(xy[1]) > kFarthest)
+    in->Fail(key, "wanted within 1000 m");
   return {xy[0], xy[1]};
 }
 
@@ -183,6 +187,19 @@ Truth ReadTruth(const std::string& path) {
   truth.localises_ideally = ReadIdeally("localisation", &in);
   ReadEvents(in.Sub("events"), &truth);
   in.RejectUnknownKeys();
+  return truth;
+}
+
+Truth FindTruth(const std::string& name, const std::string& folder) {
+  const std::string path = TruthPath(name, folder);
+  Truth truth = ReadTruth(path);
+  const auto folder_of = [](const fs::path& file) {
+    return fs::weakly_canonical(file).parent_path();
+  };
+  if (folder_of(path) == fs::weakly_canonical(folder)) return truth;
+  base::Hasher text;
+  text.Add(base::ReadTextFile(path));
+  truth.name = fmt::format("{}#{}", path, base::HexOf(text.value()).substr(0, 8));
   return truth;
 }
 

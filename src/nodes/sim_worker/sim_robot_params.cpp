@@ -20,8 +20,7 @@ void DropNoiseIfCertain(SimRobotParams* params) {
 
 /// @param path  of the file that the truths lie beside.
 hires::evaluation::Truth TruthOf(const std::string& name, const std::string& path) {
-  return hires::evaluation::ReadTruth(
-      hires::evaluation::TruthPath(name, hires::imagination::ResolvePath("truths", path)));
+  return hires::evaluation::FindTruth(name, hires::imagination::ResolvePath("truths", path));
 }
 
 void OverridePrivate(const std::string& path, SimRobotParams* params) {
