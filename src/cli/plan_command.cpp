@@ -85,6 +85,7 @@ planning::PlanRequest RequestOf(const PlanOptions& options) {
   request.max_plans = static_cast<std::size_t>(options.limit);
   if (options.depth > 0) request.max_depth = options.depth;
   if (options.trace) request.max_trace = kTraceLength;
+  request.strict = options.strict;
   return request;
 }
 
@@ -185,6 +186,12 @@ void PrintViolations(const Session& session, std::ostream* out) {
   }
 }
 
+void PrintWarnings(const Session& session) {
+  for (const std::string& warning : session.result.warnings) {
+    std::cerr << "warning, as nothing reached it: " << warning << '\n';
+  }
+}
+
 void PrintOutcome(const Session& session, std::ostream* out) {
   const planning::PlanResult& result = session.result;
   *out << fmt::format("{}: {}\n", planning::ToString(result.outcome),
@@ -203,6 +210,7 @@ void Print(const Session& session, const std::string& format) {
   std::ostream* out = format.empty() ? &std::cout : &std::cerr;
   PrintTrace(session.result.trace, out);
   PrintViolations(session, out);
+  PrintWarnings(session);
   PrintOutcome(session, out);
 }
 
@@ -252,6 +260,9 @@ void AddPlanVerb(CLI::App* app, PlanOptions* options) {
   verb->add_option("--depth", options->depth, "decompositions and steps on one path")
       ->check(CLI::Range(1, 1000000000));
   verb->add_flag("--trace", options->trace, "say why ways were given up, the latest 1000");
+  verb->add_flag("--strict", options->strict,
+                 "refuse a domain that names unknown tasks or functions, even where no way leads "
+                 "to them");
   verb->add_option("--json", options->json, "write the answer to this file as well");
   verb->add_option("--format", options->format,
                    "print the bare plan: shop2 (one operator a line) or ipc (as in IPC 2020)")

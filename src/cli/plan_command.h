@@ -26,7 +26,7 @@ struct PlanOptions {
   int depth{0};        ///< decompositions and steps on one path; 0: the planner's own limit
   double time{0.0};    ///< [s] of search; 0: no limit
   double memory{0.0};  ///< [MB] held by the search; 0: no limit
-  bool trace{false}, validate{false};
+  bool trace{false}, validate{false}, strict{false};
   CLI::App* verb{nullptr};
 };
 

@@ -36,6 +36,9 @@ std::string FirstWord(std::string_view text, const std::string& source);
 /// for a huge datum than for a small one.
 std::string Excerpt(const Datum& datum);
 
+/// "source:line:column: text".
+std::string Located(const std::string& source, Place place, const std::string& text);
+
 /// Throws "source:line:column: text" as ConfigError, for code that interprets the data.
 [[noreturn]] void FailAt(const std::string& source, Place place, const std::string& text);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -131,6 +132,9 @@ struct Domain {
   std::vector<Operator> operators;
   std::vector<Method> methods;  ///< in the order in which they are tried
   std::vector<Axiom> axioms;
+  /// Tasks that methods name and nothing handles, with what is wrong and where: no harm until one
+  /// is reached. HDDL has none, its tasks are declared.
+  std::map<std::string, std::string> unknown_tasks;
   std::vector<Datum> facts;  ///< hold in every state: HDDL's constants with their types
   /// What an HDDL domain declares (types, predicates, tasks), for the reader of its problems; else
   /// null.

@@ -31,7 +31,8 @@ class Functions {
   /// (< <= > >= = /= eq eql equal equalp), logic (not null), lists (list cons car cdr first second
   /// third fourth fifth rest last butlast nth length append reverse member assoc remove union
   /// intersection set-difference subsetp remove-duplicates), type tests (numberp symbolp listp
-  /// consp atom stringp zerop plusp minusp evenp oddp) as Common Lisp defines them.
+  /// consp atom stringp zerop plusp minusp evenp oddp) as Common Lisp defines them, and SHOP3's
+  /// print-current-state, which holds and prints nothing.
   static const Functions& Standard();
 
   /// @param min_arguments, max_arguments  Checked when a domain is read; -1: any number.
@@ -70,10 +71,13 @@ class Expression {
   /// @param terms    The table that every evaluation uses; the expression keeps terms of it.
   /// @param slot_of  Number of a variable `?x` of the surrounding clause.
   /// @param source   File, for messages.
+  /// @param unknown  takes what is wrong with each call of an unknown function, which then fails
+  ///   where it is evaluated; null: it is an error here.
   /// @throws ConfigError naming file, line and column: unknown function (with the nearest names),
   ///   wrong number of arguments, malformed form, unknown name.
   Expression(const Datum& datum, const std::function<int(const std::string&)>& slot_of,
-             const Functions& functions, TermTable* terms, const std::string& source);
+             const Functions& functions, TermTable* terms, const std::string& source,
+             std::vector<std::string>* unknown = nullptr);
   Expression(Expression&&) noexcept;
   Expression& operator=(Expression&&) noexcept;
   ~Expression();

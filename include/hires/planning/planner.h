@@ -41,6 +41,7 @@ struct PlanRequest {
   double max_cost{std::numeric_limits<double>::infinity()};  ///< dearer paths are given up
   bool decomposition{true};  ///< plans carry their nodes; otherwise steps say node -1
   bool loop_check{true};     ///< give up paths that come back to a state and task network
+  bool strict{false};  ///< an unknown task or function is an error even if it is never reached
   std::size_t max_trace{0};  ///< reasons kept, the latest ones; 0 keeps none
   StopQuestion stop;         ///< asked at least every 256 expansions or 4096 inferences
 };
@@ -70,6 +71,7 @@ struct PlanResult {
   std::vector<Plan> plans;  ///< kBest: the cheapest alone
   Progress progress;        ///< at the end; bytes: the most that were ever held
   std::vector<TraceEntry> trace;
+  std::vector<std::string> warnings;  ///< unknown tasks and functions, none of which was reached
 };
 
 /// Searches for plans with SHOP2's semantics: tasks are decomposed in the order in which their
@@ -77,9 +79,8 @@ struct PlanResult {
 /// domain, problem and request give the same result. The steps of the plans carry task, cost,
 /// bindings and node; AddReasons (reasons.h) fills in preconditions, effects and causal links. A
 /// step that matches a fact (imagined_failure action arguments...) of its state is refused.
-/// @throws ConfigError where domain and problem do not fit (unknown task, wrong number of
-/// arguments,
-///   a function that fails), naming file and line.
+/// @throws ConfigError where domain and problem do not fit (unknown task or function that is
+/// reached, wrong number of arguments, a function that fails), naming file and line.
 /// A first plan of an HDDL domain is sought without left recursion at first (planner.cpp).
 /// Source: Nau et al. 2003, J. Artif. Intell. Res. 20:379-404; order of bindings as SHOP3 4.3.
 PlanResult FindPlans(const Domain& domain, const Problem& problem, const PlanRequest& request = {},

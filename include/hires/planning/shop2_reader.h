@@ -11,9 +11,10 @@ namespace hires::planning {
 /// The only `defdomain` of a text in SHOP2's language; problems beside it are left alone.
 /// Data of the file cannot run anything. All errors are base::ConfigError and name
 /// source:line:column, the construct ("method 'serve_cup', branch 2"), what came, what was wanted
-/// and what to do: wrong forms, names of operators and methods, doubled operators, tasks that
-/// nothing handles or that come with the wrong number of arguments, adds whose variables nothing
-/// binds.
+/// and what to do: wrong forms, names of operators and methods, doubled operators, tasks that come
+/// with the wrong number of arguments, adds whose variables nothing binds. Tasks that nothing
+/// handles are noted in the domain: files as they are found have such in methods that are never
+/// reached.
 Domain ReadShop2Domain(std::string_view text, const std::string& source);
 
 /// All problems (`defproblem`, `make-problem`) of a text, in its order; a domain beside them is

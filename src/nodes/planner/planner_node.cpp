@@ -97,6 +97,7 @@ PlannerNode::PlannerNode(const planning::PlannerConfig& config,
                                boost::function<void(const ros::WallTimerEvent&)>(
                                    [this](const ros::WallTimerEvent&) { OnTick(); }));
   server_.start();
+  for (const auto& [task, text] : knowledge_.domain.unknown_tasks) Log(LogLevel::kWarn, text);
   Log(LogLevel::kInfo,
       fmt::format("domain={} operators={} methods={} problems={} threads={}",
                   knowledge_.domain.name, knowledge_.domain.operators.size(),

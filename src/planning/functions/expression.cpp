@@ -165,8 +165,9 @@ class Evaluation {
 }  // namespace
 
 Expression::Expression(const Datum& datum, const std::function<int(const std::string&)>& slot_of,
-                       const Functions& functions, TermTable* terms, const std::string& source)
-    : compiled_(CompileExpression(datum, slot_of, functions, terms, source)) {}
+                       const Functions& functions, TermTable* terms, const std::string& source,
+                       std::vector<std::string>* unknown)
+    : compiled_(CompileExpression(datum, slot_of, functions, terms, source, unknown)) {}
 
 Expression::Expression(Expression&&) noexcept = default;
 Expression& Expression::operator=(Expression&&) noexcept = default;

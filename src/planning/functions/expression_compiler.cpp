@@ -75,8 +75,13 @@ bool IsConstantSymbol(const Datum& datum) {
 class ExpressionCompiler {
  public:
   ExpressionCompiler(const std::function<int(const std::string&)>& slot_of,
-                     const Functions& functions, TermTable* terms, const std::string& source)
-      : slot_of_(slot_of), functions_(functions), terms_(terms), source_(source) {}
+                     const Functions& functions, TermTable* terms, const std::string& source,
+                     std::vector<std::string>* unknown)
+      : slot_of_(slot_of),
+        functions_(functions),
+        terms_(terms),
+        source_(source),
+        unknown_(unknown) {}
 
   using Form = Node (ExpressionCompiler::*)(const Datum&);
   static const std::map<std::string, Form, std::less<>>& Forms();
@@ -181,7 +186,7 @@ class ExpressionCompiler {
 
   Callable Resolve(const Datum& datum, const Datum& name) const {
     const Functions::Entry* entry = functions_.Find(name.text);
-    if (entry == nullptr) FailUnknown(datum, name.text);
+    if (entry == nullptr) return Unknown(datum, name.text);
     Callable callable{entry->name, entry->min_arguments, entry->max_arguments, nullptr, {}};
     const auto* test = entry->function.target<StandardPredicate>();
     if (test != nullptr) {
@@ -192,12 +197,15 @@ class ExpressionCompiler {
     return callable;
   }
 
-  [[noreturn]] void FailUnknown(const Datum& datum, const std::string& name) const {
-    std::vector<std::string> known = functions_.Names();
-    const std::vector<std::string> forms = FormNames();
-    known.insert(known.end(), forms.begin(), forms.end());
-    Fail(datum, base::UnknownName("function", Excerpt(MakeSymbol(name)), known) +
-                    "; C++ code adds more through Functions::Add");
+  /// Fails where it is called.
+  Callable Unknown(const Datum& datum, const std::string& name) const {
+    const std::string text = UnknownFunctionText(name, functions_);
+    if (unknown_ == nullptr) Fail(datum, text);
+    unknown_->push_back(Located(source_, datum.place, Excerpt(datum) + ": " + text));
+    const auto fail = [text](TermTable*, const std::vector<Term>&) -> Term {
+      throw EvaluationError(text);
+    };
+    return {name, 0, -1, nullptr, fail};
   }
 
   // ---------------------------------------------------------------- forms that apply a function
@@ -395,6 +403,7 @@ class ExpressionCompiler {
   const Functions& functions_;
   TermTable* terms_;
   const std::string& source_;
+  std::vector<std::string>* unknown_;
   std::vector<std::pair<std::string, int>> locals_;  // of the lets around, innermost last
   int num_locals_{0};
 };
@@ -432,6 +441,14 @@ std::vector<std::string> FormNames() {
   return names;
 }
 
+std::string UnknownFunctionText(const std::string& name, const Functions& functions) {
+  std::vector<std::string> known = functions.Names();
+  const std::vector<std::string> forms = FormNames();
+  known.insert(known.end(), forms.begin(), forms.end());
+  return base::UnknownName("function", Excerpt(MakeSymbol(name)), known) +
+         "; C++ code adds more through Functions::Add";
+}
+
 bool Callable::Takes(std::size_t count) const {
   const int arguments = static_cast<int>(count);
   return arguments >= min_arguments && (max_arguments < 0 || arguments <= max_arguments);
@@ -439,7 +456,8 @@ bool Callable::Takes(std::size_t count) const {
 
 std::unique_ptr<CompiledExpression> CompileExpression(
     const Datum& datum, const std::function<int(const std::string&)>& slot_of,
-    const Functions& functions, TermTable* terms, const std::string& source) {
+    const Functions& functions, TermTable* terms, const std::string& source,
+    std::vector<std::string>* unknown) {
   if (IsDeeperThan(datum, kMaxExpressionDepth)) {
     FailAt(source, datum.place,
            fmt::format("{}: an expression may nest {} lists deep, this one is deeper; split it "
@@ -450,7 +468,7 @@ std::unique_ptr<CompiledExpression> CompileExpression(
   compiled->datum = datum;
   compiled->source = source;
   compiled->true_term = terms->Symbol("t");
-  ExpressionCompiler compiler(slot_of, functions, terms, compiled->source);
+  ExpressionCompiler compiler(slot_of, functions, terms, compiled->source, unknown);
   compiled->root = compiler.Compile(compiled->datum);
   compiled->num_locals = compiler.num_locals();
   return compiled;

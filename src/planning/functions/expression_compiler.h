@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hires/planning/datum.h"
 #include "hires/planning/functions.h"
@@ -14,6 +15,10 @@ namespace hires::planning {
 /// Checks an expression and makes it ready to run; see Expression for arguments and errors.
 std::unique_ptr<CompiledExpression> CompileExpression(
     const Datum& datum, const std::function<int(const std::string&)>& slot_of,
-    const Functions& functions, TermTable* terms, const std::string& source);
+    const Functions& functions, TermTable* terms, const std::string& source,
+    std::vector<std::string>* unknown);
+
+/// "function 'f' is unknown; did you mean ...", with what may be done.
+std::string UnknownFunctionText(const std::string& name, const Functions& functions);
 
 }  // namespace hires::planning

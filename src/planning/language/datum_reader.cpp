@@ -462,8 +462,12 @@ std::string Excerpt(const Datum& datum) {
   return text;
 }
 
+std::string Located(const std::string& source, Place place, const std::string& text) {
+  return fmt::format("{}:{}:{}: {}", source, place.line, place.column, text);
+}
+
 void FailAt(const std::string& source, Place place, const std::string& text) {
-  throw base::ConfigError(fmt::format("{}:{}:{}: {}", source, place.line, place.column, text));
+  throw base::ConfigError(Located(source, place, text));
 }
 
 }  // namespace hires::planning

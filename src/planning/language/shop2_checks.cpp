@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hires/base/text.h"
+#include "hires/planning/datum_reader.h"
 #include "hires/planning/shop2_reader.h"
 #include "planning/language/shop2_parts.h"
 
@@ -41,12 +42,14 @@ class Handlers {
     for (const Method& method : domain.methods) Add(method.head, "method");
   }
 
-  void Check(const Construct& in, const TaskNetwork& network) const {
+  /// @param unknown  takes tasks that nothing handles; null: they are errors.
+  void Check(const Construct& in, const TaskNetwork& network,
+             std::map<std::string, std::string>* unknown) const {
     for (const TaskItem& item : network.items) {
       if (item.network.empty()) {
-        CheckTask(in, item);
+        CheckTask(in, item, unknown);
       } else {
-        Check(in, item.network.front());
+        Check(in, item.network.front(), unknown);
       }
     }
   }
@@ -61,10 +64,15 @@ class Handlers {
     handlers_[std::string(head.Head())].push_back({kind, &head});
   }
 
-  void CheckTask(const Construct& in, const TaskItem& item) const {
+  void CheckTask(const Construct& in, const TaskItem& item,
+                 std::map<std::string, std::string>* unknown) const {
     const std::string name(item.task.Head());
     const auto found = handlers_.find(name);
-    if (found == handlers_.end()) FailUnknown(in, name, item.place);
+    if (found == handlers_.end()) {
+      if (unknown == nullptr) Fail(in, item.place, UnknownText(name));
+      unknown->emplace(name, Located(in.source, item.place, in.name + ": " + UnknownText(name)));
+      return;
+    }
     const Arity arity = ArityOf(item.task);
     const bool fits =
         std::any_of(found->second.begin(), found->second.end(),
@@ -81,13 +89,12 @@ class Handlers {
                      CountText(ArityOf(*handler.head), "argument")));
   }
 
-  [[noreturn]] void FailUnknown(const Construct& in, const std::string& name, Place place) const {
+  std::string UnknownText(const std::string& name) const {
     const std::vector<std::string> names = NamesLike(name);
     const std::string text = names.empty() ? fmt::format("task '{}' is unknown", name)
                                            : base::UnknownName("task", name, names);
-    Fail(in, place,
-         text + (names.empty() ? "; write" : " Write") +
-             " an operator or a method for it, or correct its name");
+    return text + (names.empty() ? "; write" : " Write") +
+           " an operator or a method for it, or correct its name";
   }
 
   /// Comparing names takes time with their lengths and number, and files come from anywhere.
@@ -163,23 +170,23 @@ void CheckAdds(const Domain& domain) {
   }
 }
 
-void CheckSubtasks(const Domain& domain) {
-  const Handlers handlers(domain);
-  for (const Method& method : domain.methods) {
+void CheckSubtasks(Domain* domain) {
+  const Handlers handlers(*domain);
+  for (const Method& method : domain->methods) {
     for (std::size_t i = 0; i < method.branches.size(); ++i) {
       const std::string branch =
           method.branches.size() > 1 ? fmt::format(", branch {}", i + 1) : "";
-      handlers.Check({domain.source, fmt::format("method '{}'{}", method.head.Head(), branch)},
-                     method.branches[i].subtasks);
+      handlers.Check({domain->source, fmt::format("method '{}'{}", method.head.Head(), branch)},
+                     method.branches[i].subtasks, &domain->unknown_tasks);
     }
   }
 }
 
 }  // namespace
 
-void CheckDomain(const Domain& domain) {
-  CheckOperatorNames(domain);
-  CheckAdds(domain);
+void CheckDomain(Domain* domain) {
+  CheckOperatorNames(*domain);
+  CheckAdds(*domain);
   CheckSubtasks(domain);
 }
 
@@ -187,7 +194,7 @@ void CheckDomain(const Domain& domain) {
 
 void CheckTasks(const Problem& problem, const Domain& domain) {
   shop2::Handlers(domain).Check({problem.source, fmt::format("problem '{}'", problem.name)},
-                                problem.tasks);
+                                problem.tasks, nullptr);
 }
 
 }  // namespace hires::planning

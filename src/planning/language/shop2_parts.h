@@ -49,6 +49,6 @@ Axiom ReadAxiom(const std::string& source, const Datum& item);
 void CollectVariables(const Datum& datum, std::vector<std::string>* variables);
 
 /// Operators once each, adds bound, tasks handled.
-void CheckDomain(const Domain& domain);
+void CheckDomain(Domain* domain);
 
 }  // namespace hires::planning::shop2

@@ -78,7 +78,7 @@ Domain ReadDomain(const Datum& form, const std::string& source) {
     shop2::FailAbout(in, items, "a list of operators, methods and axioms");
   }
   for (const Datum& item : items.items) ReadItem(in, item, &domain);
-  shop2::CheckDomain(domain);
+  shop2::CheckDomain(&domain);
   return domain;
 }
 

@@ -119,6 +119,9 @@ class Compiler {
 
   void Run() {
     source_ = program_.domain_.source;
+    for (const auto& [task, text] : program_.domain_.unknown_tasks) {
+      program_.warnings_.push_back(text);
+    }
     for (const Operator& source : program_.domain_.operators) AddOperator(source);
     for (std::size_t i = 0; i < program_.domain_.methods.size(); ++i) AddMethod(i);
     for (const Axiom& source : program_.domain_.axioms) AddAxiom(source);
@@ -183,7 +186,8 @@ class Compiler {
     const auto slot_of = [scope](const std::string& name) {
       return static_cast<int>(scope->SlotOf(name));
     };
-    program_.expressions_.emplace_back(datum, slot_of, functions_, &terms_, source_);
+    program_.expressions_.emplace_back(datum, slot_of, functions_, &terms_, source_,
+                                       &program_.warnings_);
     return &program_.expressions_.back();
   }
 
@@ -380,13 +384,21 @@ class Compiler {
     if (precondition.order == Precondition::Order::kSortBy) {
       compiled.sort_key = CompileExpression(precondition.sort_key, scope);
       compiled.comparison = functions_.Find(precondition.comparison);
-      if (compiled.comparison == nullptr) {
-        throw base::ConfigError(
-            Where(source_, precondition.sort_key.place) + ": :sort-by: " +
-            base::UnknownName("function", precondition.comparison, functions_.Names()));
-      }
+      if (compiled.comparison == nullptr) compiled.comparison = UnknownComparison(precondition);
     }
     return compiled;
+  }
+
+  /// Fails where something is to be sorted by it.
+  const Functions::Entry* UnknownComparison(const Precondition& precondition) {
+    const std::string text =
+        Where(source_, precondition.sort_key.place) +
+        ": :sort-by: " + base::UnknownName("function", precondition.comparison, functions_.Names());
+    program_.warnings_.push_back(text);
+    program_.unknown_comparisons_.push_back(
+        {precondition.comparison, 2, 2,
+         [text](TermTable*, const std::vector<Term>&) -> Term { throw base::ConfigError(text); }});
+    return &program_.unknown_comparisons_.back();
   }
 
   // --- operators, methods, axioms ------------------------------------------------------------
@@ -557,6 +569,15 @@ const CompiledOperator* Program::FindOperator(Term name) const {
 
 const std::vector<const CompiledMethod*>& Program::Methods(Term name) const {
   return name.index() < methods_of_.size() ? methods_of_[name.index()] : no_methods_;
+}
+
+void Program::FailUnhandled(const std::string& name, const std::string& task) const {
+  const auto known = domain_.unknown_tasks.find(name);
+  if (known != domain_.unknown_tasks.end()) {
+    throw base::ConfigError(known->second + "; it was reached as " + task);
+  }
+  throw base::ConfigError(fmt::format("{}: task {} has no operator or method in domain '{}'",
+                                      domain_.source, task, domain_.name));
 }
 
 void Program::Fail(const Formula& condition, const std::string& what) const {

@@ -139,9 +139,13 @@ class Program {
   const Goal* goal() const { return goal_; }            ///< must hold in the end; null: nothing
   std::uint32_t goal_slots() const { return goal_slots_; }
   const std::vector<Term>& facts() const { return facts_; }
+  /// Names that nothing stands for, with their places: errors only where they are reached.
+  const std::vector<std::string>& warnings() const { return warnings_; }
   bool immediate_reductions() const { return domain_.language == Domain::Language::kShop2; }
   /// @throws ConfigError: place and text of the condition, then `what` is wrong with it.
   [[noreturn]] void Fail(const Formula& condition, const std::string& what) const;
+  /// @throws ConfigError: nothing handles the task of that name, which was reached as `task`.
+  [[noreturn]] void FailUnhandled(const std::string& name, const std::string& task) const;
   const Domain& domain() const { return domain_; }
   const Problem& problem() const { return problem_; }
 
@@ -153,6 +157,8 @@ class Program {
   std::deque<Pattern> patterns_;
   std::deque<Goal> goals_;
   std::deque<Expression> expressions_;
+  std::deque<Functions::Entry> unknown_comparisons_;
+  std::vector<std::string> warnings_;
   std::deque<CompiledNetwork> networks_;
   std::deque<CompiledOperator> operators_;
   std::deque<CompiledMethod> methods_;

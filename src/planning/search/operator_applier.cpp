@@ -55,9 +55,7 @@ const CompiledOperator& OperatorApplier::OperatorOf(Term task) const {
   const TermTable& terms = path_.terms();
   const CompiledOperator* applied = program_.FindOperator(terms.head(task));
   if (applied == nullptr) {
-    throw base::ConfigError(fmt::format("{}: step {} has no operator in domain '{}'",
-                                        program_.domain().source, terms.ToString(task),
-                                        program_.domain().name));
+    program_.FailUnhandled(std::string(terms.text(terms.head(task))), terms.ToString(task));
   }
   return *applied;
 }

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "hires/base/error.h"
 #include "planning/proof/program.h"
 #include "planning/search/search.h"
 
@@ -51,16 +52,26 @@ PlanResult FindFirstHddlPlan(const Program& program, TermTable* terms, const Pla
   return result;
 }
 
+PlanResult FindPlans(const Program& program, TermTable* terms, const PlanRequest& request) {
+  const bool is_first = request.which == Which::kFirst;
+  if (is_first && program.domain().language == Domain::Language::kHddl) {
+    return FindFirstHddlPlan(program, terms, request);
+  }
+  return Search(program, terms, request).Run();
+}
+
 }  // namespace
 
 PlanResult FindPlans(const Domain& domain, const Problem& problem, const PlanRequest& request,
                      const Functions& functions) {
   TermTable terms;
   const Program program(domain, problem, functions, &terms);
-  if (domain.language == Domain::Language::kHddl && request.which == Which::kFirst) {
-    return FindFirstHddlPlan(program, &terms, request);
+  if (request.strict && !program.warnings().empty()) {
+    throw base::ConfigError(program.warnings().front());
   }
-  return Search(program, &terms, request).Run();
+  PlanResult result = FindPlans(program, &terms, request);
+  result.warnings = program.warnings();
+  return result;
 }
 
 }  // namespace hires::planning

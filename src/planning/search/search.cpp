@@ -102,9 +102,7 @@ const std::vector<const CompiledMethod*>& Search::MethodsOf(Term task) {
   const TermTable& terms = path_.terms();
   const auto& methods = program_.Methods(terms.head(task));
   if (methods.empty()) {
-    throw base::ConfigError(fmt::format("{}: task {} has no method in domain '{}'",
-                                        program_.domain().source, terms.ToString(task),
-                                        program_.domain().name));
+    program_.FailUnhandled(std::string(terms.text(terms.head(task))), terms.ToString(task));
   }
   return methods;
 }
