@@ -30,6 +30,17 @@ std::string Written(const YAML::Node& node) {
   }
 }
 
+/// Whether maps within maps lead to something by these keys.
+bool HasPath(const YAML::Node& map, const std::vector<std::string>& keys) {
+  YAML::Node node = map;
+  for (const std::string& key : keys) {
+    const YAML::Node& here = node;
+    if (!here.IsMap() || !here[key].IsDefined()) return false;
+    node.reset(here[key]);
+  }
+  return true;
+}
+
 bool HasLeadingZero(const YAML::Node& node) {
   if (!node.IsScalar()) return false;
   const std::string digits = node.Scalar().substr(node.Scalar().find_first_not_of("+-") == 1);
@@ -175,6 +186,17 @@ std::vector<std::string> ParamReader::GetStrings(const std::string& key) {
 bool ParamReader::Has(const std::string& key) const {
   const YAML::Node& map = node_;
   return map.IsMap() && map[key].IsDefined();
+}
+
+void ParamReader::RequireKeys(const std::vector<std::string>& keys) const {
+  std::vector<std::string> missing;
+  for (const std::string& path : keys) {
+    if (!HasPath(node_, Split(path, '.'))) missing.push_back(prefix_ + path);
+  }
+  if (missing.empty()) return;
+  throw ConfigError(fmt::format("{}: {} {} missing; add {}", where_, Join(missing, ", "),
+                                missing.size() == 1 ? "is" : "are",
+                                missing.size() == 1 ? "it" : "them"));
 }
 
 ParamReader ParamReader::Sub(const std::string& key) {

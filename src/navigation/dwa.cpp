@@ -65,6 +65,11 @@ void Check(const DwaParams& p) {
   }
 }
 
+/// The place straight before or behind a base that is nearest to p_M.
+Eigen::Vector2d OnOwnLine(const geometry::Pose2& X_MB, const Eigen::Vector2d& p_M) {
+  return X_MB * Eigen::Vector2d((X_MB.Inverse() * p_M).x(), 0.0);
+}
+
 /// The same path with no two points farther apart than `spacing`.
 std::vector<Eigen::Vector2d> PointsAlong(const std::vector<geometry::Pose2>& path, double spacing) {
   std::vector<Eigen::Vector2d> points{path.front().position()};
@@ -115,6 +120,7 @@ struct DwaPlanner::Impl {
                      const geometry::Twist2& V_B);
   std::optional<Eigen::Vector2d> FindRoom(const Costmap& costmap, const geometry::Pose2& X_MB);
   bool IsWayFree(const Costmap& costmap, const geometry::Pose2& X_MB, const Eigen::Vector2d& p_MTo);
+  bool CanMoveSideways() const { return params_.max_lateral_velocity > 0.0; }
   double YawError(const geometry::Pose2& X_MB) const {
     return geometry::WrapToPi(X_MGoal_.yaw - X_MB.yaw);
   }
@@ -365,10 +371,14 @@ DwaResult DwaPlanner::Impl::MakeRoom(const Costmap& costmap, const geometry::Pos
     return Brake(costmap, X_MB, V_B);
   }
   const double change = limits_.max_linear_acceleration * params_.control_period;
-  const double speed = std::min({params_.max_lateral_velocity, limits_.max_linear_velocity,
-                                 distance / params_.control_period,
-                                 std::sqrt(2.0 * limits_.max_linear_acceleration * distance)});
-  const Eigen::Vector2d now(V_B.vx, V_B.vy), wanted = to_room / distance * speed;
+  const double creeping =
+      CanMoveSideways() ? params_.max_lateral_velocity : params_.min_linear_velocity;
+  const double speed =
+      std::min({creeping, limits_.max_linear_velocity, distance / params_.control_period,
+                std::sqrt(2.0 * limits_.max_linear_acceleration * distance)});
+  const Eigen::Vector2d now(V_B.vx, V_B.vy);
+  Eigen::Vector2d wanted = to_room / distance * speed;
+  if (!CanMoveSideways()) wanted.y() = 0.0;  // the place was chosen on its line
   const Eigen::Vector2d difference = wanted - now;
   const Eigen::Vector2d next =
       difference.norm() > change ? Eigen::Vector2d(now + difference.normalized() * change) : wanted;
@@ -392,7 +402,10 @@ std::optional<Eigen::Vector2d> DwaPlanner::Impl::FindRoom(const Costmap& costmap
   }
   std::sort(places.begin(), places.end());
   for (const auto& [distance, i, j] : places) {
-    const Eigen::Vector2d place = X_MGoal_.position() + kRoomSpacing * Eigen::Vector2d(i, j);
+    Eigen::Vector2d place = X_MGoal_.position() + kRoomSpacing * Eigen::Vector2d(i, j);
+    if (!CanMoveSideways()) place = OnOwnLine(X_MB, place);
+    if ((X_MGoal_.position() - place).norm() > radius) continue;
+    if ((X_MB.position() - place).norm() <= kRoomReached) continue;
     if (!IsWayFree(costmap, X_MB, place)) continue;
     if (FreeTurn(costmap, {place.x(), place.y(), X_MB.yaw}, &wide_sweep_)) return place;
   }

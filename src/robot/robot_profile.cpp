@@ -6,8 +6,10 @@
 
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
+#include "hires/base/log.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
+#include "robot/drive_guess.h"
 #include "robot/upper_body_reader.h"
 
 namespace hires::robot {
@@ -40,16 +42,22 @@ std::map<std::string, MotionSet> ReadMotionSets(ParamReader in) {
 
 BaseControllerParams ReadBaseController(ParamReader in) {
   BaseControllerParams params;
+  params.drive = in.Get("drive", base::OneOf({"omnidirectional", "differential"})) == "differential"
+                     ? Drive::kDifferential
+                     : Drive::kOmnidirectional;
   params.limits = ReadMotionSet(in.Sub("limits"));
-  params.max_linear_jerk = in.Get("max_linear_jerk", Between(0.0, 1e6));
   params.command_timeout = in.Get("command_timeout", Between(0.001, 60.0));
   params.stops_at_timeout = in.Get("at_timeout", base::OneOf({"ramp", "stop"})) == "stop";
-  params.command_lag = in.Get("command_lag", Between(0.0, 10.0));
-  params.loop_frequency = in.Get("loop_frequency", Between(0.0, 1e4));
-  params.loop_damping = in.Get("loop_damping", Between(0.0, 100.0));
-  params.sway_compliance = in.Get("sway_compliance", Between(0.0, 0.1));
-  params.sway_frequency = in.Get("sway_frequency", Between(0.1, 200.0));
-  params.sway_damping = in.Get("sway_damping", Between(0.0, 10.0));
+  const auto read = [&in](const char* key, const base::Bound<double>& bound, double* value) {
+    if (in.Has(key)) *value = in.Get(key, bound);
+  };
+  read("max_linear_jerk", Between(0.0, 1e6), &params.max_linear_jerk);
+  read("command_lag", Between(0.0, 10.0), &params.command_lag);
+  read("loop_frequency", Between(0.0, 1e4), &params.loop_frequency);
+  read("loop_damping", Between(0.0, 100.0), &params.loop_damping);
+  read("sway_compliance", Between(0.0, 0.1), &params.sway_compliance);
+  read("sway_frequency", Between(0.1, 200.0), &params.sway_frequency);
+  read("sway_damping", Between(0.0, 10.0), &params.sway_damping);
   return params;
 }
 
@@ -99,18 +107,23 @@ JointPositions ReadJoints(ParamReader in) {
 }
 
 RobotProfile ReadProfile(ParamReader* in) {
+  in->RequireKeys({"urdf", "base_link", "motion_sets", "default_motion_set",
+                   "base_controller.drive", "base_controller.limits",
+                   "base_controller.command_timeout", "base_controller.at_timeout"});
   RobotProfile profile;
   profile.urdf = in->GetString("urdf");
   profile.base_link = in->GetString("base_link");
-  profile.tray_link = in->GetString("tray_link");
-  profile.X_TO = ReadPose(in->Sub("object_on_tray"));
-  profile.laser_link = in->GetString("laser_link");
-  profile.footprint = ReadFootprint(in);
-  profile.footprint_padding = in->Get("footprint_padding", Between(0.0, 1.0));
+  if (in->Has("tray_link")) profile.tray_link = in->GetString("tray_link");
+  if (in->Has("object_on_tray")) profile.X_TO = ReadPose(in->Sub("object_on_tray"));
+  if (in->Has("laser_link")) profile.laser_link = in->GetString("laser_link");
+  if (in->Has("footprint")) profile.footprint = ReadFootprint(in);
+  if (in->Has("footprint_padding")) {
+    profile.footprint_padding = in->Get("footprint_padding", Between(0.0, 1.0));
+  }
   profile.motion_sets = ReadMotionSets(in->Sub("motion_sets"));
   profile.default_motion_set = base::ToLower(in->GetString("default_motion_set"));
   profile.base_controller = ReadBaseController(in->Sub("base_controller"));
-  profile.joints = ReadJoints(in->Sub("joints"));
+  if (in->Has("joints")) profile.joints = ReadJoints(in->Sub("joints"));
   if (in->Has("upper_body")) profile.upper_body = ReadUpperBody(in->Sub("upper_body"));
   in->RejectUnknownKeys();
   return profile;
@@ -155,8 +168,9 @@ void AddTo(base::Hasher* hash, const BaseControllerParams& params) {
         params.loop_damping, params.sway_compliance, params.sway_frequency, params.sway_damping}) {
     hash->Add(value);
   }
-  // Only then, so that what was measured with a base that ramps keeps its hash.
+  // Only then, so that what was measured with a base that ramps and drives sideways keeps its hash.
   if (params.stops_at_timeout) hash->Add("stops_at_timeout");
+  if (params.drive == Drive::kDifferential) hash->Add("differential");
 }
 
 std::uint64_t HashOf(const RobotProfile& profile) {
@@ -262,6 +276,12 @@ Robot LoadRobotFromUrdf(const std::string& urdf_path) {
     profile.X_TO = tray.X_TO;
   }
   profile.footprint = OutlineOf(robot.model, profile.base_link, {});
+  const DriveGuess guess = GuessDrive(robot.model);
+  profile.base_controller.drive = guess.drive;
+  base::Log(base::LogLevel::kWarn,
+            fmt::format("robot={} drive={} guessed, because it has {}; if that is wrong, write a "
+                        "profile with base_controller.drive",
+                        robot.model.name, ToString(guess.drive), guess.why));
   profile.hash = HashOf(profile);
   return robot;
 }

@@ -9,8 +9,11 @@
 namespace hires::simulation {
 namespace {
 
-/// The velocity clipped to the controller's limits, its direction kept.
-geometry::Twist2 Clipped(geometry::Twist2 v, const robot::MotionSet& limits) {
+/// What the base can follow: no sideways part where its wheels cannot; clipped to the controller's
+/// limits, the direction kept.
+geometry::Twist2 Feasible(geometry::Twist2 v, const robot::BaseControllerParams& params) {
+  if (params.drive == robot::Drive::kDifferential) v.vy = 0.0;
+  const robot::MotionSet& limits = params.limits;
   const double linear = std::hypot(v.vx, v.vy);
   const double scale = std::min({1.0, linear > 0.0 ? limits.max_linear_velocity / linear : 1.0,
                                  v.wz != 0.0 ? limits.max_angular_velocity / std::abs(v.wz) : 1.0});
@@ -42,7 +45,7 @@ BaseDrive::BaseDrive(const robot::BaseControllerParams& params, const geometry::
 void BaseDrive::Send(const geometry::Twist2& velocity, double time) {
   HIRES_CHECK(sent_.empty() || time + params_.command_lag >= sent_.back().effective,
               "a command was sent before an earlier one");
-  sent_.push_back({time + params_.command_lag, Clipped(velocity, params_.limits)});
+  sent_.push_back({time + params_.command_lag, Feasible(velocity, params_)});
 }
 
 void BaseDrive::Receive(double time) {

@@ -73,9 +73,13 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
                                   const MoveBaseParams& params) {
   const geometry::Polygon footprint =
       geometry::Padded(robot.profile.footprint, robot.profile.footprint_padding);
+  MoveBaseParams possible = params;
+  if (robot.profile.base_controller.drive == robot::Drive::kDifferential) {
+    possible.local.max_lateral_velocity = 0.0;
+  }
   return {std::make_shared<const navigation::Costmap>(map, geometry::InscribedRadius(footprint),
                                                       params.costmap),
-          std::make_shared<const robot::Robot>(robot), footprint, params};
+          std::make_shared<const robot::Robot>(robot), footprint, possible};
 }
 
 DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot& robot,
@@ -213,8 +217,51 @@ Status MoveBase::Update(const robot::Observation& observation, robot::Command* c
 }
 
 MoveBaseBlind::MoveBaseBlind(const MoveBaseBlindParams& params, const Pose2& X_MGoal,
-                             const robot::MotionSet& motion_set)
-    : params_(params), X_MGoal_(X_MGoal), motion_set_(motion_set) {}
+                             const robot::MotionSet& motion_set, robot::Drive drive)
+    : params_(params), X_MGoal_(X_MGoal), motion_set_(motion_set), drive_(drive) {}
+
+double MoveBaseBlind::LinearSpeed(double distance) const {
+  const double deceleration = std::min(params_.deceleration, motion_set_.max_linear_acceleration);
+  return std::min({ApproachSpeed(distance, deceleration, params_.reaction_time),
+                   params_.max_velocity, motion_set_.max_linear_velocity});
+}
+
+double MoveBaseBlind::TurningSpeed(double angle) const {
+  const double deceleration = std::min(params_.deceleration, motion_set_.max_linear_acceleration);
+  const double speed =
+      std::min({ApproachSpeed(std::abs(angle), deceleration, params_.reaction_time),
+                params_.max_angular_velocity, motion_set_.max_angular_velocity});
+  return std::copysign(speed, angle);
+}
+
+MoveBaseBlind::Course MoveBaseBlind::Straight(const Pose2& X_BGoal) const {
+  const double distance = std::hypot(X_BGoal.x, X_BGoal.y);
+  const double scale = distance > 0.0 ? LinearSpeed(distance) / distance : 0.0;
+  return {{scale * X_BGoal.x, scale * X_BGoal.y, TurningSpeed(X_BGoal.yaw)},
+          distance + std::abs(X_BGoal.yaw)};
+}
+
+/// Wheels that cannot drive sideways: it faces the goal or turns its back on it, whichever is
+/// nearer, drives there, and turns.
+MoveBaseBlind::Course MoveBaseBlind::TurnAndDrive(const Pose2& X_BGoal) {
+  const double distance = std::hypot(X_BGoal.x, X_BGoal.y);
+  if (distance <= params_.xy_tolerance) {
+    return {{0.0, 0.0, TurningSpeed(X_BGoal.yaw)}, std::abs(X_BGoal.yaw)};
+  }
+  const double ahead = std::atan2(X_BGoal.y, X_BGoal.x);
+  // Once chosen it is kept unless it is clearly wrong, so that noise does not change it.
+  const double most = begun_driving_ ? 0.6 * geometry::kPi : 0.5 * geometry::kPi;
+  if (std::abs(backwards_ ? geometry::WrapToPi(ahead + geometry::kPi) : ahead) > most) {
+    backwards_ = !backwards_;
+  }
+  begun_driving_ = true;
+  const double off = backwards_ ? geometry::WrapToPi(ahead + geometry::kPi) : ahead;
+  const bool is_aimed = std::abs(off) <= params_.yaw_tolerance ||
+                        std::abs(distance * std::sin(off)) <= 0.5 * params_.xy_tolerance;
+  const double speed = is_aimed ? LinearSpeed(distance) * std::cos(off) : 0.0;
+  return {{backwards_ ? -speed : speed, 0.0, TurningSpeed(off)},
+          geometry::kPi + distance + std::abs(off)};
+}
 
 Status MoveBaseBlind::Update(const robot::Observation& observation, robot::Command* command) {
   command->motion_set = motion_set_;
@@ -226,20 +273,15 @@ Status MoveBaseBlind::Update(const robot::Observation& observation, robot::Comma
                          std::abs(observation.V_B.wz) < 0.01;
     return stopped ? Succeeded() : Status{};
   }
-  if (distance + turn < nearest_ - 0.01) {
-    nearest_ = distance + turn;
+  const Course course =
+      drive_ == robot::Drive::kDifferential ? TurnAndDrive(X_BGoal) : Straight(X_BGoal);
+  if (course.remaining < nearest_ - 0.01) {
+    nearest_ = course.remaining;
     last_progress_ = observation.time;
   }
   if (observation.time - last_progress_ > params_.stuck_timeout)
     return Failed(base::FailureCode::kStuck);
-  const double deceleration = std::min(params_.deceleration, motion_set_.max_linear_acceleration);
-  const double v = std::min({ApproachSpeed(distance, deceleration, params_.reaction_time),
-                             params_.max_velocity, motion_set_.max_linear_velocity});
-  const double w = std::min({ApproachSpeed(turn, deceleration, params_.reaction_time),
-                             params_.max_angular_velocity, motion_set_.max_angular_velocity});
-  const double scale = distance > 0.0 ? v / distance : 0.0;
-  command->base_velocity =
-      geometry::Twist2{scale * X_BGoal.x, scale * X_BGoal.y, std::copysign(w, X_BGoal.yaw)};
+  command->base_velocity = course.velocity;
   return {};
 }
 

@@ -33,7 +33,8 @@ std::unique_ptr<Skill> MakeMoveBase(const SkillSet& skills, const ActionCall& ac
 std::unique_ptr<Skill> MakeMoveBaseBlind(const SkillSet& skills, const ActionCall& action) {
   return std::make_unique<MoveBaseBlind>(
       skills.blind, Lookup(skills.areas, "area", action.arguments[0]),
-      Lookup(skills.motion_sets, "motion set", MotionSetNameOf(skills, action)));
+      Lookup(skills.motion_sets, "motion set", MotionSetNameOf(skills, action)),
+      skills.driving->robot->profile.base_controller.drive);
 }
 
 std::unique_ptr<Skill> MakeMoveTorso(const SkillSet& skills, const ActionCall& action) {

@@ -173,6 +173,38 @@ TEST_P(DwaMotionSetTest, AGoalBesideAChairIsReachedFromEverywhereWithoutTouching
               longest, nearest);
 }
 
+// Who comes from north or south cannot turn beside the chair, and cannot shift away from it.
+TEST_P(DwaMotionSetTest, TwoDrivenWheelsArriveThereOrSayThatTheyCannotTurn) {
+  const geometry::Pose2 X_MGoal{4.0, 4.0, 0.0};
+  const Scene scene = BesideTheChair();
+  const Costmap costmap = scene.MakeCostmap();
+  DwaParams params;
+  params.max_lateral_velocity = 0.0;
+  const base::Rng root(62);
+  int num_arrived = 0;
+  for (int seed = 0; seed < 100; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    base::Rng rng = root.Fork(seed);
+    IdealBase base;
+    do {
+      base.X_MB = {rng.Uniform(1, 7), rng.Uniform(1, 7), rng.Uniform(-kPi, kPi)};
+    } while (costmap.FootprintCost(Rectangle(-0.6, -0.6, 0.6, 0.6), base.X_MB) >= kLethalCost);
+    DwaPlanner planner(params, PaddedFootprint());
+    planner.SetMotionSet(GetParam().limits);
+    planner.SetPath(PlanPath(costmap, base.X_MB, X_MGoal).path);
+    const Drive drive = DriveWith(&planner, costmap, base, scene.obstacles);
+    if (drive.status == DwaStatus::kNoValidTrajectory) {
+      EXPECT_LT((drive.base.X_MB.position() - X_MGoal.position()).norm(), 0.3);  // it came there
+    } else {
+      ExpectArrived(drive, X_MGoal);
+      ++num_arrived;
+    }
+    EXPECT_GT(drive.clearance, 0.0);
+    for (const Cycle& cycle : drive.cycles) ASSERT_EQ(cycle.result.velocity.vy, 0.0);
+  }
+  EXPECT_GT(num_arrived, 50);
+}
+
 TEST_P(DwaMotionSetTest, FiveMetresTakeAboutAsLongAsInTheOriginal) {
   const geometry::Pose2 X_MGoal{6.17, 2.0, kPi};  // east, and turned back as at the tables
   const Drive turned = DriveTo(EmptyScene(8, 4), {1.0, 2.0, kPi}, X_MGoal, GetParam().limits);

@@ -59,6 +59,7 @@ motion_sets:
   Brisk: {max_linear_velocity: 0.9, max_angular_velocity: 1.1, max_linear_acceleration: 1.2, max_angular_acceleration: 1.3}
 default_motion_set: brisk
 base_controller:
+  drive: differential
   limits: {max_linear_velocity: 1.5, max_angular_velocity: 2.5, max_linear_acceleration: 3.5, max_angular_acceleration: 4.5}
   max_linear_jerk: 9.0
   command_timeout: 0.3
@@ -123,6 +124,7 @@ TEST_F(RobotProfileFile, EveryFieldIsRead) {
   EXPECT_EQ(profile.default_motion_set, "brisk");
   const BaseControllerParams& base = profile.base_controller;
   EXPECT_EQ(base.limits.max_angular_acceleration, 4.5);
+  EXPECT_EQ(base.drive, Drive::kDifferential);
   EXPECT_EQ(base.max_linear_jerk, 9.0);
   EXPECT_EQ(base.command_timeout, 0.3);
   EXPECT_EQ(base.command_lag, 0.04);
@@ -154,6 +156,32 @@ TEST_F(RobotProfileFile, HashIgnoresLayoutAndPlace) {
   EXPECT_EQ(LoadRobot(moved).hash(), robot.hash());
 }
 
+TEST_F(RobotProfileFile, WhatHasADefaultMayBeLeftOut) {
+  const Robot robot = LoadRobot(Write(R"(urdf: robots/tricycle.urdf
+base_link: chassis
+motion_sets:
+  only: {max_linear_velocity: 0.9, max_angular_velocity: 1.1, max_linear_acceleration: 1.2, max_angular_acceleration: 1.3}
+default_motion_set: only
+base_controller:
+  drive: differential
+  limits: {max_linear_velocity: 1.5, max_angular_velocity: 2.5, max_linear_acceleration: 3.5, max_angular_acceleration: 4.5}
+  command_timeout: 0.3
+  at_timeout: stop
+)"));
+  EXPECT_EQ(robot.profile.tray_link, "");
+  EXPECT_EQ(robot.profile.laser_link, "");
+  EXPECT_EQ(robot.profile.footprint, OutlineOf(robot.model, "chassis", {}));
+  EXPECT_EQ(robot.profile.base_controller.loop_frequency, BaseControllerParams{}.loop_frequency);
+}
+
+TEST_F(RobotProfileFile, AllMissingKeysAreToldAtOnce) {
+  const std::string path = Write("base_link: chassis\nbase_controller: {drive: differential}\n");
+  EXPECT_THAT([&] { LoadRobot(path); },
+              ThrowsMessage<base::ConfigError>(HasSubstr(
+                  "urdf, motion_sets, default_motion_set, base_controller.limits, "
+                  "base_controller.command_timeout, base_controller.at_timeout are missing")));
+}
+
 TEST_F(RobotProfileFile, HashTellsApartEveryField) {
   const std::uint64_t hash = LoadRobot(Write(kProfile)).hash();
   const std::vector<std::pair<std::string, std::string>> changes{
@@ -169,6 +197,7 @@ TEST_F(RobotProfileFile, HashTellsApartEveryField) {
       {"max_linear_jerk: 9.0", "max_linear_jerk: 9.1"},
       {"command_timeout: 0.3", "command_timeout: 0.4"},
       {"at_timeout: ramp", "at_timeout: stop"},
+      {"drive: differential", "drive: omnidirectional"},
       {"command_lag: 0.04", "command_lag: 0.05"},
       {"loop_frequency: 20.0", "loop_frequency: 21.0"},
       {"loop_damping: 0.7", "loop_damping: 0.8"},
@@ -182,8 +211,9 @@ TEST_F(RobotProfileFile, HashTellsApartEveryField) {
 }
 
 TEST_F(RobotProfileFile, RefusesMissingAndUnknownKeys) {
-  ExpectRefused("laser_link: \"\"\n", "", {"laser_link is missing"});
-  ExpectRefused("  command_lag: 0.04\n", "", {"base_controller.command_lag is missing"});
+  ExpectRefused("base_link: chassis\n", "", {"base_link is missing; add it"});
+  ExpectRefused("  drive: differential\n", "", {"base_controller.drive is missing; add it"});
+  ExpectRefused("differential", "car", {"base_controller.drive", "'car'", "differential"});
   ExpectRefused("joints: {", "jonts: {}\njoints: {", {"'jonts' is unknown", "'joints'"});
   ExpectRefused("  loop_damping", "  loop_dampening: 1\n  loop_damping",
                 {"loop_dampening' is unknown"});
@@ -320,6 +350,7 @@ TEST(ConfiguredRobots, CartFromItsBareUrdfIsTheSameCart) {
   EXPECT_EQ(bare.profile.tray_link, cart.profile.tray_link);
   EXPECT_LT((bare.profile.X_TO.translation - cart.profile.X_TO.translation).norm(), 1e-12);
   EXPECT_EQ(bare.profile.footprint, cart.profile.footprint);
+  EXPECT_EQ(bare.profile.base_controller.drive, cart.profile.base_controller.drive);
 }
 
 }  // namespace

@@ -65,6 +65,7 @@ motion_sets:
   slow: {max_linear_velocity: 0.9, max_angular_velocity: 1.1, max_linear_acceleration: 1.2, max_angular_acceleration: 1.3}
 default_motion_set: slow
 base_controller:
+  drive: omnidirectional
   limits: {max_linear_velocity: 1.5, max_angular_velocity: 2.5, max_linear_acceleration: 3.5, max_angular_acceleration: 4.5}
   max_linear_jerk: 0.0
   command_timeout: 0.3

@@ -65,6 +65,18 @@ bool SameBits(const BaseMotion& a, const BaseMotion& b) {
          a.pitch == b.pitch && a.roll == b.roll && a.timed_out == b.timed_out;
 }
 
+TEST(BaseDriveTest, TwoDrivenWheelsIgnoreSidewaysCommands) {
+  robot::BaseControllerParams params = Ideal();
+  params.drive = robot::Drive::kDifferential;
+  Drive ordered(params), forward(params);
+  ordered.Send({0.9, 0.9, 0.4});  // the forward part alone is within the limits
+  forward.Send({0.9, 0.0, 0.4});
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_TRUE(SameBits(ordered.Step(), forward.Step())) << i;
+    ASSERT_EQ(ordered.drive.motion().V_B.vy, 0.0);
+  }
+}
+
 TEST(BaseDriveTest, RampsAtTheLimitAndThenHolds) {
   Drive drive(Ideal());
   drive.Send({0.5, 0.0, 0.0});

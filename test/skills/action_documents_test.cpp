@@ -234,10 +234,10 @@ TEST(ActionDocumentsTest, TheReadmeListsEachAction) {
   for (const auto& [name, spec] : OwnActions().specs()) {
     wanted.insert(fmt::format("| `{}` | {} |", name, ParametersInWords(spec)));
   }
-  for (const Row& row : TableOf("README.md", "| action | arguments | what it does |")) {
+  for (const Row& row : TableOf("docs/actions.md", "| action | arguments | what it does |")) {
     listed.insert(fmt::format("| {} | {} |", row.at(0), row.at(1)));
   }
-  ExpectRows("README.md", listed, wanted);
+  ExpectRows("docs/actions.md", listed, wanted);
 }
 
 std::string RowOf(const std::string& signature, const Names& failures) {

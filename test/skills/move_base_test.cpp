@@ -63,6 +63,24 @@ TEST(MoveBaseTest, ArrivesAtItsGoal) {
   }
 }
 
+TEST(MoveBaseTest, TwoDrivenWheelsAreNeverDrivenSideways) {
+  robot::Robot robot = TrayRobot();
+  robot.profile.base_controller.drive = robot::Drive::kDifferential;
+  world::World room = Room();
+  room.statics.push_back(Block("crate", {0.5, 1.0, 0.8}, {2.75, 2.0, 0.4}));
+  const auto context =
+      std::make_shared<const DrivingContext>(MakeDrivingContext(room, robot, MoveBaseParams{}));
+  for (const Pose2& goal : {kEast, Pose2{4.5, 2.4, -3.0}, Pose2{1.0, 3.0, 1.5}}) {
+    MoveBase skill(context, goal, kFast);
+    double sideways = 0.0;
+    const SkillRun run = RunSkill(&skill, {kWest, {}, false}, [&](auto*, auto* driven) {
+      sideways = std::max(sideways, std::abs(driven->V_B.vy));
+    });
+    ExpectArrivedAt(goal, run);
+    EXPECT_EQ(sideways, 0.0);
+  }
+}
+
 TEST(MoveBaseTest, KeepsToItsMotionSet) {
   const SkillRun fast = DriveIn(Room(), kWest, kEast, kFast);
   const SkillRun slow = DriveIn(Room(), kWest, kEast, kSlow);
@@ -331,10 +349,12 @@ TEST(MoveBaseTest, WhatIsSeenBelowTheArmsIsNotDrivenInto) {
 
 // ------------------------------------------------------------------------------------- blind
 
+constexpr robot::Drive kSideways = robot::Drive::kOmnidirectional;
+
 TEST(MoveBaseBlindTest, ArrivesWithinItsTolerances) {
   const MoveBaseBlindParams params;
   for (const Pose2& goal : {Pose2{1.8, 2.0, 0.0}, Pose2{0.6, 2.3, 1.2}, Pose2{1.0, 2.0, 3.1}}) {
-    MoveBaseBlind skill(params, goal, kFast);
+    MoveBaseBlind skill(params, goal, kFast, kSideways);
     const SkillRun run = RunSkill(&skill, {kWest, {}, false});
     EXPECT_EQ(run.status.progress, Progress::kSucceeded) << ToString(run.status.failure);
     EXPECT_LE(DistanceBetween(run.robot.X_MB, goal), params.xy_tolerance);
@@ -344,10 +364,35 @@ TEST(MoveBaseBlindTest, ArrivesWithinItsTolerances) {
   }
 }
 
+TEST(MoveBaseBlindTest, TwoDrivenWheelsArriveWithoutDrivingSideways) {
+  const MoveBaseBlindParams params;
+  for (const Pose2& goal : {Pose2{1.8, 2.0, 0.0}, Pose2{0.6, 2.3, 1.2}, Pose2{1.0, 2.0, 3.1},
+                            Pose2{1.0, 2.4, 0.0}, Pose2{1.02, 1.9, -3.0}, Pose2{0.2, 2.01, 0.0}}) {
+    MoveBaseBlind skill(params, goal, kFast, robot::Drive::kDifferential);
+    double sideways = 0.0;
+    const SkillRun run = RunSkill(&skill, {kWest, {}, false}, [&](auto*, auto* robot) {
+      sideways = std::max(sideways, std::abs(robot->V_B.vy));
+    });
+    EXPECT_EQ(run.status.progress, Progress::kSucceeded) << ToString(run.status.failure);
+    EXPECT_EQ(sideways, 0.0);
+    EXPECT_LE(DistanceBetween(run.robot.X_MB, goal), params.xy_tolerance);
+    EXPECT_LE(std::abs(geometry::WrapToPi(run.robot.X_MB.yaw - goal.yaw)), params.yaw_tolerance);
+    EXPECT_LE(run.fastest, params.max_velocity + 1e-9);
+    EXPECT_LE(run.fastest_turn, params.max_angular_velocity + 1e-9);
+  }
+}
+
+TEST(MoveBaseBlindTest, TwoDrivenWheelsBackOffInsteadOfTurningTwice) {
+  MoveBaseBlind skill({}, {0.4, 2.0, 0.0}, kFast, robot::Drive::kDifferential);
+  const SkillRun run = RunSkill(&skill, {{1.0, 2.0, 0.0}, {}, false});
+  EXPECT_EQ(run.status.progress, Progress::kSucceeded);
+  EXPECT_EQ(run.fastest_turn, 0.0);
+}
+
 TEST(MoveBaseBlindTest, ARobotThatReactsLateDoesNotOvershoot) {
   const MoveBaseBlindParams params;
   const Pose2 goal{1.8, 2.0, 0.0};
-  MoveBaseBlind skill(params, goal, kFast);
+  MoveBaseBlind skill(params, goal, kFast, kSideways);
   std::deque<double> on_the_way(3, 0.0);  // [m/s], one per cycle: 0.15 s
   robot::Observation seen;
   seen.X_MB = kWest;
@@ -367,14 +412,14 @@ TEST(MoveBaseBlindTest, ARobotThatReactsLateDoesNotOvershoot) {
 }
 
 TEST(MoveBaseBlindTest, TakesTheShorterTurn) {
-  MoveBaseBlind skill({}, {1.0, 2.0, -3.0}, kFast);
+  MoveBaseBlind skill({}, {1.0, 2.0, -3.0}, kFast, kSideways);
   const SkillRun run = RunSkill(&skill, {{1.0, 2.0, 3.0}, {}, false});
   EXPECT_EQ(run.status.progress, Progress::kSucceeded);
   EXPECT_LT(run.duration, 2.0);
 }
 
 TEST(MoveBaseBlindTest, ASlowerMotionSetWins) {
-  MoveBaseBlind skill({}, {1.8, 2.0, 1.0}, {0.1, 0.2, 1.4, 2.0});
+  MoveBaseBlind skill({}, {1.8, 2.0, 1.0}, {0.1, 0.2, 1.4, 2.0}, kSideways);
   const SkillRun run = RunSkill(&skill, {kWest, {}, false});
   EXPECT_EQ(run.status.progress, Progress::kSucceeded);
   EXPECT_LE(run.fastest, 0.1 + 1e-9);
@@ -382,7 +427,7 @@ TEST(MoveBaseBlindTest, ASlowerMotionSetWins) {
 }
 
 TEST(MoveBaseBlindTest, SucceedsOnlyWhenItStands) {
-  MoveBaseBlind skill({}, kWest, kFast);
+  MoveBaseBlind skill({}, kWest, kFast, kSideways);
   robot::Observation seen;
   seen.X_MB = kWest;
   seen.V_B = {0.2, 0.0, 0.0};
@@ -396,12 +441,12 @@ TEST(MoveBaseBlindTest, SucceedsOnlyWhenItStands) {
 
 TEST(MoveBaseBlindTest, IsStuckWhenItComesNoNearer) {
   const MoveBaseBlindParams params;
-  MoveBaseBlind held(params, {1.8, 2.0, 0.0}, kFast);
+  MoveBaseBlind held(params, {1.8, 2.0, 0.0}, kFast, kSideways);
   const SkillRun run = RunSkill(&held, {kWest, {}, true});
   ExpectFailed("stuck", run);
   EXPECT_NEAR(run.duration, params.stuck_timeout, 2.0 * params.period);
 
-  MoveBaseBlind later(params, {4.5, 2.0, 0.0}, kFast);
+  MoveBaseBlind later(params, {4.5, 2.0, 0.0}, kFast, kSideways);
   const SkillRun stopped = RunSkill(&later, {kWest, {}, false}, [](auto* seen, auto* robot) {
     robot->is_held = seen->time > 4.0;
   });

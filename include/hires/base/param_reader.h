@@ -41,6 +41,8 @@ class ParamReader {
   std::vector<std::string> GetStrings(const std::string& key);
 
   bool Has(const std::string& key) const;
+  /// All that are missing in one error. Keys of maps within are "path.to.key".
+  void RequireKeys(const std::vector<std::string>& keys) const;
   ParamReader Sub(const std::string& key);                   ///< a nested map
   std::vector<ParamReader> SubList(const std::string& key);  ///< a list of maps
   std::vector<std::string> Keys() const;                     ///< in the order of the file

@@ -14,7 +14,7 @@ namespace hires::navigation {
 struct DwaParams {
   double control_period{0.1};           ///< [s] 1 / controller_frequency
   double min_linear_velocity{0.1};      ///< [m/s] min_trans_vel
-  double max_lateral_velocity{0.1};     ///< [m/s] max_vel_y
+  double max_lateral_velocity{0.1};     ///< [m/s] max_vel_y; 0: a base that cannot
   double min_angular_velocity{0.3};     ///< [rad/s] min_rot_vel
   double sim_time{1.7};                 ///< [s] length of a simulated trajectory
   double sim_granularity{0.025};        ///< [m] between two checked poses

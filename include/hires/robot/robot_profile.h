@@ -20,8 +20,15 @@ struct MotionSet {
   double max_angular_acceleration{3.2};  ///< [rad/s^2]
 };
 
+/// Where a base can drive to without turning first.
+enum class Drive {
+  kOmnidirectional,  ///< forward and sideways: steered casters, mecanum or omni wheels
+  kDifferential,     ///< two driven sides: forward, backward and turning, never sideways
+};
+
 /// What the base's own controller does with velocity commands (PR2: pr2_base_controller at 1 kHz).
 struct BaseControllerParams {
+  Drive drive{Drive::kOmnidirectional};
   MotionSet limits{1.0, 2.0, 2.0, 2.0};  ///< clips commands; ramps at these accelerations
   double max_linear_jerk{0.0};           ///< [m/s^3]; 0 means that acceleration may jump
   double command_timeout{0.2};           ///< [s] without a command after which it brakes to a stop
@@ -67,10 +74,11 @@ struct Robot {
 geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_link,
                             const JointPositions& joints);
 
-/// Reads the profile and the URDF that it names. Every key must be there but `upper_body`; an empty
-/// `footprint` list asks for the hull of the collision shapes from above, joints in the driving
-/// posture.
-/// @throws base::ConfigError naming file and key.
+/// Reads the profile and the URDF that it names. These keys must be there: `urdf`, `base_link`,
+/// `motion_sets`, `default_motion_set` and of `base_controller` `drive`, `limits`,
+/// `command_timeout`, `at_timeout`; all others have the defaults above. No `footprint`, or an empty
+/// list, asks for the hull of the collision shapes from above, joints in the driving posture.
+/// @throws base::ConfigError naming file and key; all missing keys at once.
 Robot LoadRobot(const std::string& profile_path);
 
 /// A robot from a bare URDF, with what can be derived: base_link is the root; the tray is the link
@@ -78,7 +86,8 @@ Robot LoadRobot(const std::string& profile_path);
 /// above where several do, and objects stand on the middle of its top; without such a link the
 /// robot carries nothing. The footprint is the convex hull of the collision shapes seen from above
 /// (0 .. 2 m over the root), joints at rest, padded as RobotProfile's default.
-/// Motion sets and base controller are those of RobotProfile's defaults (PR2).
+/// Motion sets and base controller are those of RobotProfile's defaults (PR2); how it drives is
+/// guessed from its wheels, and logged.
 /// @throws base::ConfigError as LoadRobotModel, and if there is no collision shape in that band.
 Robot LoadRobotFromUrdf(const std::string& urdf_path);
 

@@ -20,7 +20,8 @@ struct BaseMotion {
   bool timed_out{false};  ///< braking because no command came in time
 };
 
-/// A robot's base between the velocity commands it is sent and the motion it makes: lag, clipping
+/// A robot's base between the velocity commands it is sent and the motion it makes: lag, what its
+/// wheels cannot do (a differential drive ignores sideways commands, as its own does), clipping
 /// to the controller's limits, a ramp of limited acceleration (all axes scaled alike, so that the
 /// direction of a change is kept) and jerk, a velocity loop of second order, braking on command
 /// timeout, with the ramp or at once, and the leaning of the body on its wheels. A value: copy it

@@ -90,21 +90,34 @@ struct MoveBaseBlindParams {
   double stuck_timeout{5.0};         ///< [s] without coming 0.01 m or rad nearer
 };
 
-/// Drives straight to a pose, turning on the way, without looking at obstacles: for the last
-/// stretch to furniture, under whose top the base fits. Fails with stuck.
+/// Drives straight to a pose, turning on the way (a base that cannot drive sideways: before and
+/// after), without looking at obstacles: for the last stretch to furniture, under whose top the
+/// base fits. Fails with stuck.
 class MoveBaseBlind : public Skill {
  public:
   MoveBaseBlind(const MoveBaseBlindParams& params, const geometry::Pose2& X_MGoal,
-                const robot::MotionSet& motion_set);
+                const robot::MotionSet& motion_set, robot::Drive drive);
 
   Status Update(const robot::Observation& observation, robot::Command* command) override;
   double period() const override { return params_.period; }
 
  private:
+  struct Course {
+    geometry::Twist2 velocity;  // in the base frame
+    double remaining;           // [m] + [rad] falls on the way
+  };
+  double LinearSpeed(double distance) const;
+  double TurningSpeed(double angle) const;
+  Course Straight(const geometry::Pose2& X_BGoal) const;
+  Course TurnAndDrive(const geometry::Pose2& X_BGoal);
+
   MoveBaseBlindParams params_;
   geometry::Pose2 X_MGoal_;
   robot::MotionSet motion_set_;
-  double nearest_{1e9};        // [m] + [rad] least distance so far
+  robot::Drive drive_;
+  bool begun_driving_{false};
+  bool backwards_{false};
+  double nearest_{1e9};        // [m] + [rad] least that remained so far
   double last_progress_{0.0};  // [s]
 };
 
