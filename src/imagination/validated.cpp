@@ -8,7 +8,7 @@
 #include "hires/actions/catalogue.h"
 #include "hires/base/text.h"
 #include "imagination/purpose.h"
-#include "imagination/rollout_start.h"
+#include "imagination/rollout/rollout_start.h"
 
 namespace hires::imagination {
 namespace {
@@ -95,23 +95,34 @@ std::set<std::string> MotionSetsOf(const RolloutSetup& setup,
   return used;
 }
 
-void AddSpeed(const std::string& motion_set, const std::string& what, double speed,
-              const std::string& unit, const ValidatedLimit& limit, Sentences* caveats) {
-  if (speed <= limit.at_most) return;
-  caveats->push_back(fmt::format("motion set {} {} at up to {} {}, validated are up to {} {} ({})",
-                                 motion_set, what, speed, unit, limit.at_most, unit, limit.where));
+/// One sentence about all motion sets that go beyond the limit.
+/// @param what  "drive", "turn".
+void AddSpeed(const RolloutSetup& setup, const std::set<std::string>& motion_sets,
+              double robot::MotionSet::*speed, const std::string& what, const std::string& unit,
+              const ValidatedLimit& limit, Sentences* caveats) {
+  std::vector<std::string> beyond;
+  double highest = 0.0;
+  for (const std::string& name : motion_sets) {
+    const auto set = setup.skills->motion_sets.find(name);
+    if (set == setup.skills->motion_sets.end() || set->second.*speed <= limit.at_most) continue;
+    beyond.push_back(name);
+    highest = std::max(highest, set->second.*speed);
+  }
+  if (beyond.empty()) return;
+  const bool is_one = beyond.size() == 1;
+  caveats->push_back(
+      fmt::format("motion set{} {} {}{} at up to {} {}, validated are up to {} {} ({})",
+                  is_one ? "" : "s", base::Join(beyond, ", "), what, is_one ? "s" : "", highest,
+                  unit, limit.at_most, unit, limit.where));
 }
 
 void AddSpeeds(const RolloutSetup& setup, const std::vector<ActionCall>& actions,
                const Validated& validated, Sentences* caveats) {
-  for (const std::string& name : MotionSetsOf(setup, actions)) {
-    const auto set = setup.skills->motion_sets.find(name);
-    if (set == setup.skills->motion_sets.end()) continue;
-    AddSpeed(name, "drives", set->second.max_linear_velocity, "m/s", validated.linear_speed,
-             caveats);
-    AddSpeed(name, "turns", set->second.max_angular_velocity, "rad/s", validated.angular_speed,
-             caveats);
-  }
+  const std::set<std::string> used = MotionSetsOf(setup, actions);
+  AddSpeed(setup, used, &robot::MotionSet::max_linear_velocity, "drive", "m/s",
+           validated.linear_speed, caveats);
+  AddSpeed(setup, used, &robot::MotionSet::max_angular_velocity, "turn", "rad/s",
+           validated.angular_speed, caveats);
 }
 
 void AddLevels(const RolloutSetup& setup, const std::vector<ActionCall>& actions,

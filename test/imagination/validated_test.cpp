@@ -34,6 +34,7 @@ Validated Wide() {
   validated.floor_roughness.at_most = 1.0;
   validated.linear_speed.at_most = 100.0;
   validated.angular_speed.at_most = 100.0;
+  validated.levels["planar"] = "docs/here.md";
   return validated;
 }
 
@@ -47,7 +48,17 @@ RolloutSetup OnFloor(double largest_roughness) {
 
 const std::vector<base::ActionCall> kDrive{{"move_base_param", {"east", "fast"}}};
 
-TEST(ReadValidatedTest, EveryPlaceIsADocumentOfThisPackage) {
+/// Whether the document has a section whose heading begins so.
+bool HasSection(const std::string& document, const std::string& heading) {
+  for (const std::string& line : base::Split(document, '\n')) {
+    const std::size_t text = line.find_first_not_of('#');
+    if (text == 0 || text == std::string::npos) continue;
+    if (line.substr(text).rfind(" " + heading, 0) == 0) return true;
+  }
+  return false;
+}
+
+TEST(ReadValidatedTest, EveryPlaceIsASectionOfADocumentOfThisPackage) {
   const Validated validated = Configured();
   std::vector<std::string> places{validated.floor_roughness.where, validated.linear_speed.where,
                                   validated.angular_speed.where};
@@ -55,8 +66,12 @@ TEST(ReadValidatedTest, EveryPlaceIsADocumentOfThisPackage) {
   for (const auto& [level, where] : validated.levels) places.push_back(where);
   for (const std::string& place : places) {
     for (const std::string& part : base::Split(place, ';')) {
-      const std::string file = part.substr(part.find("docs/"));
-      EXPECT_TRUE(std::filesystem::exists(kRoot + "/" + file.substr(0, file.find(',')))) << place;
+      const std::string place_of_part = part.substr(part.find("docs/"));
+      const std::size_t comma = place_of_part.find(", ");
+      ASSERT_NE(comma, std::string::npos) << place;
+      const std::string heading = place_of_part.substr(comma + 2);
+      const std::string text = base::ReadTextFile(kRoot + "/" + place_of_part.substr(0, comma));
+      EXPECT_TRUE(HasSection(text, heading.substr(0, heading.find(':')))) << place;
     }
   }
 }
@@ -77,7 +92,7 @@ TEST(ReadValidatedTest, RefusesWhatItDoesNotKnow) {
   };
   EXPECT_THAT(why("  tray:", "  trai:"), AllOf(HasSubstr("validated.yaml"), HasSubstr("'trai'")));
   EXPECT_THAT(why("levels:", "level:"), HasSubstr("levels is missing"));
-  EXPECT_THAT(why("at_most: 0.0005", "at_most: -1"), HasSubstr("floor_roughness.at_most is '-1'"));
+  EXPECT_THAT(why("at_most: 0.0 ", "at_most: -1 "), HasSubstr("floor_roughness.at_most is '-1'"));
   EXPECT_THAT(why("linear_speed:", "speeds: {}\nlinear_speed:"), HasSubstr("'speeds' is unknown"));
 }
 
