@@ -163,7 +163,7 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
                    "default: as the execution monitor is configured")
       ->check(CLI::IsMember({"domain", "thesis", "off"}));
   verb->add_option("--wait", options->wait,
-                   "[s] for the execution monitor to be there; default: 10")
+                   "[s] for the master and the execution monitor to be there; default: 10")
       ->check(CLI::Range(0.0, 1e6));
   CLI::Option* local = verb->add_flag(
       "--local", options->is_local,
@@ -205,7 +205,7 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   if (!options.is_local && !achieve) {
     throw base::ConfigError(
         "this build has no ROS nodes to ask; build with ROS and start them (roslaunch hires "
-        "topple.launch stay:=true task:=''), or play the task here: --local");
+        "topple.launch stay:=true task:=none), or play the task here: --local");
   }
   if (!options.is_local && options.task.empty()) {
     throw base::ConfigError("task: nothing came, wanted a task, as 'serve_coffee_to_guest guest1'");

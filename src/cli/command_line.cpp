@@ -18,6 +18,7 @@
 #include "cli/experiment_command.h"
 #include "cli/list_command.h"
 #include "cli/plan_command.h"
+#include "cli/save_rollout.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -40,6 +41,7 @@ bool IsInterrupted() { return interrupted; }
 /// What was typed, before it is checked against files.
 struct ImagineOptions {
   StartOptions start;
+  SaveRolloutOptions save;
   std::string action, config, scene, world, robot, objects, uncertainty, ranking, json;
   std::vector<std::string> arguments, action_libraries;
   int rollouts{0}, threads{0};
@@ -80,6 +82,7 @@ void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
   app->add_option("--scene", o->scene, "another scene file instead of config/scene.yaml");
   app->add_option("--config", o->config, "another file instead of config/imagination_client.yaml");
   app->add_option("--json", o->json, "write the answer to this file as well");
+  AddSaveRolloutOptions(app, &o->save);
   app->add_flag("--quiet", o->quiet, "no progress bar");
 }
 
@@ -184,6 +187,7 @@ void PrintReport(const imagination::Report& report, imagination::RankingRule rul
 int Imagine(const ImagineOptions& options, const Backends& backends) {
   const ImagineQuery query = MakeQuery(options, backends);
   if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  CheckSaveRollout(options.save, backends.open_rollout_bag);
   ProgressDisplay display;
   imagination::OnInterim on_interim;
   if (!options.quiet) on_interim = [&](const auto& interim) { display.Show(interim); };
@@ -199,6 +203,7 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
   if (!options.json.empty()) {
     evaluation::WriteJson(evaluation::ToJson(report, query.scheduler.criteria), options.json);
   }
+  SaveRollout(options.save, query, report, backends.open_rollout_bag, cancelled);
   return ExitCodeOf(report);
 }
 

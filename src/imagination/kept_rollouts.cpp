@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "imagination/reach_watch.h"
+#include "imagination/rollout/reach_watch.h"
 
 namespace hires::imagination {
 namespace {

@@ -163,6 +163,22 @@ hires::Detection ToMsg(const hires::perception::Detection& detection) {
   return out;
 }
 
+std::vector<geometry_msgs::TransformStamped> LinkTransforms(
+    const hires::robot::Robot& robot, const hires::robot::JointPositions& joints,
+    const ros::Time& stamp) {
+  const auto& model = robot.model;
+  const auto X_RL = hires::robot::ForwardKinematics(model, joints);
+  std::vector<geometry_msgs::TransformStamped> links;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const auto& joint = model.links[i].joint;
+    // What hangs below the base's link; that itself stands in the map.
+    if (!joint || model.links[i].name == robot.profile.base_link) continue;
+    links.push_back(MakeTransform(model.links[joint->parent].name, model.links[i].name,
+                                  X_RL[joint->parent].Inverse() * X_RL[i], stamp));
+  }
+  return links;
+}
+
 geometry_msgs::TransformStamped MakeTransform(const std::string& parent, const std::string& child,
                                               const hires::geometry::Pose3& X_PC,
                                               const ros::Time& stamp) {

@@ -1,4 +1,4 @@
-#include "imagination/load_monitor.h"
+#include "imagination/rollout/load_monitor.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

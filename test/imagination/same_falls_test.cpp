@@ -8,7 +8,7 @@
 #include "hires/imagination/rollout.h"
 #include "hires/simulation/truth_record.h"
 #include "hires/world/fall_code.h"
-#include "imagination/load_monitor.h"
+#include "imagination/rollout/load_monitor.h"
 #include "support/scenes.h"
 
 namespace hires::imagination::same_falls_test {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "hires/evaluation/experiment_hypothesis.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/report.h"
+#include "hires/imagination/rollout_recording.h"
 #include "hires/imagination/scheduler.h"
 #include "hires/imagination/validated.h"
 #include "hires/loop/loop_observer.h"
@@ -46,6 +48,11 @@ struct Verb {
 /// wrong.
 using Check = std::function<bool()>;
 
+/// A bag that a rollout of this setup is saved to.  @throws base::ConfigError if it cannot be
+/// written.
+using OpenRolloutBag = std::function<std::unique_ptr<imagination::RolloutWatcher>(
+    const std::string& path, const imagination::RolloutSetup& setup)>;
+
 /// What the program can do beyond this process; all may be empty.
 struct Backends {
   std::string package_folder;  ///< where config/, worlds/, urdf/ lie
@@ -54,6 +61,7 @@ struct Backends {
   evaluation::AchieveRemotely achieve_remotely;
   evaluation::PlayHypothesis play_hypothesis;
   loop::RecordLoop record_loop;  ///< empty: this program writes no bags
+  OpenRolloutBag open_rollout_bag;
   ExamineRobot examine_robot;
   std::vector<Verb> more_verbs;
   std::vector<Check> more_checks;

@@ -13,6 +13,7 @@
 #include "hires/geometry/pose.h"
 #include "hires/perception/detector.h"
 #include "hires/robot/observation.h"
+#include "hires/robot/robot_profile.h"
 #include "hires/sensing/readings.h"
 
 /// A robot's sensors and controllers as messages. What came and makes no sense is a
@@ -43,6 +44,11 @@ OdometryReading FromMsg(const nav_msgs::Odometry& msg);
 /// known.
 hires::perception::Detection FromMsg(const hires::Detection& msg);
 hires::Detection ToMsg(const hires::perception::Detection& detection);
+
+/// Where each link hangs, joints as they are said; the base's own pose in the map left out.
+std::vector<geometry_msgs::TransformStamped> LinkTransforms(
+    const hires::robot::Robot& robot, const hires::robot::JointPositions& joints,
+    const ros::Time& stamp);
 
 geometry_msgs::TransformStamped MakeTransform(const std::string& parent, const std::string& child,
                                               const hires::geometry::Pose3& X_PC,

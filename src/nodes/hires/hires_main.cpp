@@ -14,6 +14,7 @@
 #include "nodes/hires/remote_imagination.h"
 #include "nodes/hires/replay.h"
 #include "nodes/hires/robot_doctor_look.h"
+#include "nodes/hires/rollout_bag.h"
 #include "nodes/hires/ros_doctor.h"
 
 int main(int argc, char** argv) {
@@ -27,6 +28,7 @@ int main(int argc, char** argv) {
   backends.record_loop = [&](const std::string& path) {
     return hires_ros::MakeEpisodeWriter(path, backends.package_folder);
   };
+  backends.open_rollout_bag = hires_ros::MakeRolloutBag;
   backends.play_hypothesis = hires::cli::PlayHypothesisRun;
   backends.examine_robot = [&](const hires::cli::RobotDoctorOptions& options) {
     return hires::cli::RunRobotDoctor(options, backends.package_folder,

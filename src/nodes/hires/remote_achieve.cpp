@@ -165,8 +165,10 @@ evaluation::AchieveReport AchieveRemotely(const evaluation::AchieveQuery& query,
   int no_arguments = 0;
   ros::init(no_arguments, nullptr, "hires_achieve",
             ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
-  RequireMaster("topple.launch");
-  return Conversation(query, on_status, cancelled).Run();
+  evaluation::AchieveQuery rest = query;
+  rest.wait = AwaitPublisher(kAchieveAction + std::string("/status"), query.wait, cancelled,
+                             "topple.launch");
+  return Conversation(rest, on_status, cancelled).Run();
 }
 
 }  // namespace hires_ros

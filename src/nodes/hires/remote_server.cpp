@@ -1,9 +1,14 @@
 #include "nodes/hires/remote_server.h"
 
 #include <fmt/format.h>
+#include <ros/duration.h>
 #include <ros/master.h>
+#include <ros/names.h>
+
+#include <algorithm>
 
 #include "hires/base/error.h"
+#include "hires/base/process.h"
 
 namespace hires_ros {
 
@@ -13,6 +18,23 @@ void RequireMaster(const std::string& launch_file, const std::string& otherwise)
       "no ROS master answers at {}; start one (roslaunch hires {}){} set ROS_MASTER_URI{}",
       ros::master::getURI(), launch_file, otherwise.empty() ? ", or" : ",",
       otherwise.empty() ? "" : ", or " + otherwise));
+}
+
+double AwaitPublisher(const std::string& topic, double wait, const std::function<bool()>& cancelled,
+                      const std::string& launch_file) {
+  const double give_up = hires::base::SteadyNow() + wait;
+  const std::string name = ros::names::resolve(topic);
+  const auto is_published = [&] {
+    ros::master::V_TopicInfo topics;
+    if (!ros::master::check() || !ros::master::getTopics(topics)) return false;
+    return std::any_of(topics.begin(), topics.end(),
+                       [&](const ros::master::TopicInfo& each) { return each.name == name; });
+  };
+  while (!is_published() && !cancelled() && hires::base::SteadyNow() < give_up) {
+    ros::WallDuration(kPollPeriod).sleep();
+  }
+  RequireMaster(launch_file);
+  return std::max(0.0, give_up - hires::base::SteadyNow());
 }
 
 }  // namespace hires_ros

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace hires_ros {
@@ -10,5 +11,13 @@ constexpr double kPollPeriod = 0.02;  ///< [s] of the wall, between two looks wh
 /// @param otherwise  what else helps, after "or"; may be empty.
 /// @throws hires::base::ConfigError if no ROS master answers.
 void RequireMaster(const std::string& launch_file, const std::string& otherwise = "");
+
+/// Waits for a master, and for somebody who publishes the topic: a node that begins earlier than a
+/// robot's time is told to run would take the wall's for it.  @pre ros::init, and no node yet.
+/// @param wait  [s] at most, by the wall's clock.
+/// @return [s] that are left.
+/// @throws hires::base::ConfigError as RequireMaster, if there is still no master.
+double AwaitPublisher(const std::string& topic, double wait, const std::function<bool()>& cancelled,
+                      const std::string& launch_file);
 
 }  // namespace hires_ros

@@ -7,26 +7,13 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include "hires/ros/conversions.h"
+#include "hires/ros/robot_messages.h"
 #include "hires/ros/topic_names.h"
 
 namespace hires_ros {
 namespace {
 
 using hires::geometry::Pose3;
-
-geometry_msgs::TransformStamped Transform(const std::string& parent, const std::string& child,
-                                          const Pose3& X_PC, const ros::Time& stamp) {
-  geometry_msgs::TransformStamped out;
-  out.header.frame_id = parent;
-  out.header.stamp = stamp;
-  out.child_frame_id = child;
-  const geometry_msgs::Pose pose = ToMsg(X_PC);
-  out.transform.translation.x = pose.position.x;
-  out.transform.translation.y = pose.position.y;
-  out.transform.translation.z = pose.position.z;
-  out.transform.rotation = pose.orientation;
-  return out;
-}
 
 }  // namespace
 
@@ -92,7 +79,8 @@ void RobotBroadcaster::PublishRobot(const hires::simulation::RobotSimulator& sim
   const Pose3 X_MB = simulator.X_MB();
   const std::string& base = scene_->robot.profile.base_link;
   tf_.sendTransform(std::vector<geometry_msgs::TransformStamped>{
-      Transform("map", "odom_combined", {}, stamp), Transform("odom_combined", base, X_MB, stamp)});
+      MakeTransform("map", "odom_combined", {}, stamp),
+      MakeTransform("odom_combined", base, X_MB, stamp)});
   nav_msgs::Odometry odom;
   odom.header.frame_id = "odom_combined";
   odom.header.stamp = stamp;
@@ -113,17 +101,7 @@ void RobotBroadcaster::PublishRobot(const hires::simulation::RobotSimulator& sim
 }
 
 void RobotBroadcaster::PublishLinks(const ros::Time& stamp) {
-  const auto& model = scene_->robot.model;
-  const auto X_RL = hires::robot::ForwardKinematics(model, scene_->robot.profile.joints);
-  std::vector<geometry_msgs::TransformStamped> links;
-  for (std::size_t i = 0; i < model.links.size(); ++i) {
-    const auto& joint = model.links[i].joint;
-    // The base's own pose in the map is on /tf; what hangs below it stands still.
-    if (!joint || model.links[i].name == scene_->robot.profile.base_link) continue;
-    links.push_back(Transform(model.links[joint->parent].name, model.links[i].name,
-                              X_RL[joint->parent].Inverse() * X_RL[i], stamp));
-  }
-  static_tf_.sendTransform(links);
+  static_tf_.sendTransform(LinkTransforms(scene_->robot, scene_->robot.profile.joints, stamp));
 }
 
 }  // namespace hires_ros

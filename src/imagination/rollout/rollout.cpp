@@ -8,10 +8,10 @@
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/simulation/robot_simulator.h"
-#include "imagination/load_monitor.h"
 #include "imagination/purpose.h"
-#include "imagination/reach_watch.h"
-#include "imagination/rollout_start.h"
+#include "imagination/rollout/load_monitor.h"
+#include "imagination/rollout/reach_watch.h"
+#include "imagination/rollout/rollout_start.h"
 
 namespace hires::imagination {
 namespace {

@@ -1,4 +1,4 @@
-#include "imagination/reach_watch.h"
+#include "imagination/rollout/reach_watch.h"
 
 #include <algorithm>
 

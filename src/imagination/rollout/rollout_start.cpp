@@ -1,4 +1,4 @@
-#include "imagination/rollout_start.h"
+#include "imagination/rollout/rollout_start.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "hires/cli/command_line.h"
+#include "hires/imagination/rollout_recording.h"
+
+namespace CLI {
+class App;
+}
+
+namespace hires::cli {
+
+/// One rollout of an answer, to be looked at.
+struct SaveRolloutOptions {
+  std::string which, csv, bag;
+};
+void AddSaveRolloutOptions(CLI::App* app, SaveRolloutOptions* options);
+
+/// Before anything is imagined.  @throws base::ConfigError: no such choice, nowhere to save it to,
+/// folders that are not there, a bag that this build cannot write.
+void CheckSaveRollout(const SaveRolloutOptions& options, const OpenRolloutBag& open_bag);
+
+/// Plays the rollout again, from the files that the query names, and saves it. Says where.
+/// @throws base::ConfigError if the answer has no such rollout, or if what is played is none of
+/// those that were imagined (workers with other files).
+void SaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
+                 const imagination::Report& report, const OpenRolloutBag& open_bag,
+                 const std::function<bool()>& cancelled);
+
+}  // namespace hires::cli
