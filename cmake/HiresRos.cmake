@@ -5,6 +5,7 @@ find_package(catkin REQUIRED COMPONENTS
   geometry_msgs message_generation move_base_msgs nav_msgs rosbag roscpp roslib rosgraph_msgs
   sensor_msgs std_msgs std_srvs tf2 tf2_msgs tf2_ros topic_tools trajectory_msgs visualization_msgs xmlrpcpp)
 
+catkin_python_setup()  # python/hires; before the messages, whose Python module it shares
 file(GLOB HIRES_MSG RELATIVE ${PROJECT_SOURCE_DIR}/msg CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/msg/*.msg)
 file(GLOB HIRES_SRV RELATIVE ${PROJECT_SOURCE_DIR}/srv CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/srv/*.srv)
 file(GLOB HIRES_ACTION RELATIVE ${PROJECT_SOURCE_DIR}/action CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/action/*.action)
@@ -50,7 +51,12 @@ function(hires_node name)
   target_compile_options(${target} PRIVATE ${HIRES_ROS_OPTIONS})
   target_link_libraries(${target} PRIVATE ${library})
   install(TARGETS ${target} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+  add_dependencies(hires_run ${target})
 endfunction()
+
+# What running needs: all nodes, and the messages for those who look at topics.
+add_custom_target(hires_run)
+add_dependencies(hires_run hires_generate_messages_py)
 
 # hires_rostest(<file.test> [TIMEOUT seconds] [BESIDE_OTHERS] [WAITS] [LONG]): a rostest that ctest runs and a
 # user can run alone. Nothing else runs meanwhile, as each brings masters and worker processes of its
@@ -94,6 +100,7 @@ endfunction()
 install(DIRECTORY launch config worlds urdf
   DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION} USE_SOURCE_PERMISSIONS)
 install(DIRECTORY include/hires DESTINATION ${CATKIN_GLOBAL_INCLUDE_DESTINATION})
+catkin_install_python(PROGRAMS examples/ask_before_driving.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 # What programs of the package start themselves.
 install(PROGRAMS scripts/plot_timeline
   DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/scripts)

@@ -1,17 +1,7 @@
 """Failures in messages, as people read them."""
 
+from hires.failures import WORDS, text_of  # noqa: F401
 from hires.msg import Failure
-
-WORDS = {getattr(Failure, name): name.lower() for name in dir(Failure)
-         if name.isupper() and isinstance(getattr(Failure, name), int)}
-
-
-def text_of(failure):
-    """'area_occupied: book1, book2'; '' for no failure."""
-    if failure.code == Failure.NONE:
-        return ''
-    more = failure.detail or ', '.join(failure.subjects)
-    return WORDS[failure.code] + (': ' + more if more else '')
 
 
 def failure(text):

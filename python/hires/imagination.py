@@ -1,0 +1,144 @@
+"""The imagination client's action `imagine` as one call."""
+
+import re
+import threading
+from dataclasses import dataclass, field
+from typing import Dict, Optional, Tuple
+
+import actionlib
+import rospy
+from actionlib_msgs.msg import GoalStatus
+from hires.failures import text_of
+from hires.msg import (ActionTemplate, Atom, ImagineAction, ImagineGoal, ImagineResult, StringList)
+
+_ATOM = re.compile(r'\s*(\w+)\s*\(([^()]*)\)\s*')
+_OUTCOMES = {getattr(ImagineResult, name): name.lower()
+             for name in ('RANKED', 'RANKED_AT_DEADLINE', 'ALL_FAILED', 'NO_WORKER',
+                          'NOTHING_FINISHED', 'INVALID', 'CANCELLED', 'UNDECIDED')}
+
+
+class ImaginationError(RuntimeError):
+    """Nothing was imagined: nobody is there to ask, or the request cannot be played."""
+
+
+@dataclass(frozen=True)
+class Alternative:
+    """What imagination found about one way to act."""
+    action: str
+    arguments: Tuple[str, ...]
+    success: float                  # share of rollouts, 0 .. 1
+    interval: Tuple[float, float]   # 95 %, of the probability of success
+    rollouts: int
+    duration: float                 # [s] mean of the rollouts that came to their end; nan: none did
+    expected_cost: float            # [s] duration and price of failures; nan: no prices are known
+    failures: Dict[str, int] = field(default_factory=dict)  # words as `hires imagine` prints them
+
+    def __str__(self):
+        return '%s(%s): %.1f %% of %d (%.0f .. %.0f %%), %.1f s' % (
+            self.action, ', '.join(self.arguments), 100 * self.success, self.rollouts,
+            100 * self.interval[0], 100 * self.interval[1], self.duration)
+
+
+@dataclass(frozen=True)
+class Answer:
+    outcome: str                         # 'ranked', 'all_failed', 'undecided', ... as in Imagine.action
+    why: str                             # one sentence
+    ranking: Tuple[Alternative, ...]     # best first
+    recommended: Optional[Alternative]   # None: imagination recommends nothing
+    caveats: Tuple[str, ...]             # what speaks against trusting it
+    seed: int
+
+
+def _atom(text):
+    match = _ATOM.fullmatch(text)
+    if match is None:
+        raise ValueError("%r is no fact; write it as 'On(mug1, placingAreaNorthTable1)'" % text)
+    arguments = [word.strip() for word in match.group(2).split(',') if word.strip()]
+    return Atom(predicate=match.group(1), arguments=arguments)
+
+
+def _alternative(prediction):
+    return Alternative(
+        action=prediction.action.name, arguments=tuple(prediction.action.arguments),
+        success=prediction.success_share,
+        interval=(prediction.success_lower, prediction.success_upper),
+        rollouts=prediction.rollouts, duration=prediction.duration_mean,
+        expected_cost=prediction.expected_cost,
+        failures={text_of(entry.failure): entry.count for entry in prediction.failures})
+
+
+class Imagination:
+    """Asks the imagination client of this process's master. rospy.init_node must have been called."""
+
+    def __init__(self, action='imagine', wait=10.0):
+        """wait: seconds of the wall's clock for the client to be there."""
+        # The simple client of rospy loses answers that come before its send_goal has returned.
+        self._client = actionlib.ActionClient(action, ImagineAction)
+        self._action, self._wait = action, wait
+        self._is_connected = threading.Event()
+        # In a thread, because actionlib waits by ROS time, which may stand still.
+        threading.Thread(target=self._connect, daemon=True).start()
+
+    def _connect(self):
+        if self._client.wait_for_server():
+            self._is_connected.set()
+
+    def ask(self, action, *arguments, robot_at=None, on_tray=(), facts=(), rollouts=64, seed=1,
+            deadline=0.0, ranking='', min_success=0.0, uncertainty=''):
+        """What would happen? Each argument is a name, or a list of names to choose from; all
+        combinations are played. The state is said by robot_at (an area), on_tray (objects) and
+        facts ('On(mug1, placingAreaNorthTable1)'). Zeros and '' stand for the client's defaults.
+
+        Raises ValueError for a fact that is none, ImaginationError where nobody answers or the
+        request cannot be played; it names what is wrong.
+        """
+        goal = ImagineGoal(rollouts=rollouts, seed=seed, ranking=ranking, min_success=min_success,
+                           uncertainty=uncertainty, request_id=rospy.get_name(),
+                           deadline=rospy.Duration.from_sec(deadline))
+        choices = [[argument] if isinstance(argument, str) else list(argument)
+                   for argument in arguments]
+        goal.steps = [ActionTemplate(name=action,
+                                     alternatives=[StringList(values=names) for names in choices])]
+        goal.updated_fluents = [_atom(fact) for fact in facts]
+        if robot_at:
+            goal.updated_fluents.append(Atom(predicate='RobotAt', arguments=[robot_at]))
+        for name in on_tray:
+            goal.updated_fluents.append(Atom(predicate='On', arguments=[name, 'trayArea1']))
+        return self._answer(self._result(goal))
+
+    def _result(self, goal):
+        if not self._is_connected.wait(self._wait):
+            raise ImaginationError(
+                "nobody serves the action '%s'; start it: roslaunch hires imagination.launch" %
+                rospy.resolve_name(self._action))
+        done = threading.Event()
+
+        def on_transition(handle):
+            if handle.get_comm_state() == actionlib.CommState.DONE:
+                done.set()
+
+        handle = self._client.send_goal(goal, on_transition)
+        try:
+            while not done.wait(0.1):
+                # Without a server there will be no result.
+                if rospy.is_shutdown() or not self._client.pub_goal.get_num_connections():
+                    raise ImaginationError('the imagination client went away during the request; '
+                                           'see its log, then ask again')
+        finally:
+            if not done.is_set():
+                handle.cancel()
+        result = handle.get_result()
+        if result is None or handle.get_terminal_state() == GoalStatus.LOST:
+            raise ImaginationError('the imagination client was started anew during the request; '
+                                   'ask again')
+        return result
+
+    @staticmethod
+    def _answer(result):
+        outcome = _OUTCOMES[result.outcome]
+        if outcome == 'invalid':
+            raise ImaginationError(result.why)
+        ranking = tuple(_alternative(prediction) for prediction in result.predictions)
+        recommended = ranking[result.recommended] if result.recommended >= 0 else None
+        return Answer(outcome=outcome, why=result.why, ranking=ranking, recommended=recommended,
+                      caveats=tuple(result.caveats), seed=result.seed)
