@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A move_base that does as it is told, and its local planner as far as dynamic_reconfigure shows it.
 
-~behaviour, looked up at each goal: "arrive" says at once that it is there, "abort" gives up with
+~behaviour, looked up at each goal: "arrive" says after ~duration [s], 0, that it is there, "abort" gives up with
 ~text, "drive" sends ~speed ahead until it is told to stop, and then a zero.
 ~old_names: parameters are named as before Noetic. ~lower: {name: bound}, a value below is clamped.
 ~ignored: [name], changes of these are not taken. ~refuses: every change is an error."""
@@ -47,6 +47,7 @@ class ScriptedMoveBase:
     def execute(self, _):
         behaviour = rospy.get_param('~behaviour', 'arrive')
         if behaviour == 'arrive':
+            rospy.sleep(rospy.get_param('~duration', 0.0))
             self.action.set_succeeded(MoveBaseResult(), 'Goal reached.')
         elif behaviour == 'abort':
             self.action.set_aborted(MoveBaseResult(), rospy.get_param('~text'))
