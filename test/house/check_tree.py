@@ -470,6 +470,21 @@ def check_catkin_components(root):
             yield f"{path}: asks catkin for {component}, which package.xml does not name; add it"
 
 
+def check_version(root):
+    """One version in all places that tell it."""
+    told = {}
+    for path, pattern in (("package.xml", r"<version>([^<]+)</version>"),
+                          ("CMakeLists.txt", r"project\(hires VERSION (\S+)"),
+                          ("CHANGELOG.rst", r"^(\d+\.\d+\.\d+) ")):
+        if os.path.exists(os.path.join(root, path)):
+            match = re.search(pattern, read(root, path), re.MULTILINE)
+            if match:
+                told[path] = match.group(1)
+    for path, version in sorted(told.items()):
+        if version != told.get("package.xml", version):
+            yield f"{path}: tells version {version}, package.xml {told['package.xml']}; make them one"
+
+
 def check_scripts(root):
     for path in files_below(root, "scripts") + files_below(root, ".ci"):
         first = read(root, path).split("\n", 1)[0]
@@ -647,7 +662,7 @@ def check_instructions(root):
 CHECKS = [check_includes, check_private_headers, check_public_headers, check_hidden_headers,
           check_light_headers, check_dependencies, check_units_with_ros, check_nodes_apart, check_rooms,
           check_functions, check_headers, check_whitespace, check_packages, check_catkin_components,
-          check_scripts, check_failure_codes, check_failure_texts, check_python_texts,
+          check_version, check_scripts, check_failure_codes, check_failure_texts, check_python_texts,
           check_failure_tables, check_rostests, check_test_namespaces, check_instructions]
 
 

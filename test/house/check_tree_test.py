@@ -55,6 +55,12 @@ class CheckTreeTest(unittest.TestCase):
     def test_a_good_tree_is_left_in_peace(self):
         self.assertEqual(self.complaints({}), [])
 
+    def test_two_versions_are_found(self):
+        self.expect_one({"CHANGELOG.rst": "0.0.1 (2000-01-01)\n", "package.xml":
+                         GOOD_TREE["package.xml"].replace("<package>",
+                                                          "<package><version>0.0.2</version>")},
+                        "CHANGELOG.rst", "0.0.1", "0.0.2")
+
     def test_an_include_that_points_up_is_found(self):
         self.expect_one({"src/base/rng.cpp": '#include "hires/base/rng.h"\n#include "hires/geometry/pose.h"\n'},
                         "src/base/rng.cpp:2", "an arrow up", "lower layer")

@@ -1,4 +1,4 @@
-"""What the README shows is what its commands print. Usage: readme_test.py HIRES [--long]
+"""What README and documents show is what their commands print. Usage: readme_test.py HIRES [--long]
 
 Each console block (`$ scripts/run hires ...` and what it printed) that needs no master is run, in
 order, by the program HIRES in an empty folder that shows the package's. With --long also those that
@@ -17,7 +17,9 @@ PREFIX = "scripts/run hires "
 SAME = "... the same with "
 MEASURED = re.compile(r"[\d.]+ ms of processor time, \d+ MB|"  # and not the same twice
                       r"in [\d.]+ s, \d+ times as fast as real time")
-FEWEST = 6  # examples; a README whose blocks are not found any more must not pass
+DOCUMENTS = ("README.md", "docs/command_line.md")
+FEWEST = 7  # examples; documents whose blocks are not found any more must not pass
+LARGEST = 8192  # bytes of a README that is read; the rest is for docs/
 
 
 def console_blocks(text):
@@ -54,31 +56,36 @@ def bare(text):
     return [MEASURED.sub("...", line.rstrip()) for line in text.rstrip().splitlines()]
 
 
-def differences(program, words, shown, folder):
+def differences(program, path, words, shown, folder):
     """What is wrong, as lines; none if it prints what is shown."""
     done = subprocess.run([program] + words, cwd=folder, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True, check=False)
     printed, wanted = bare(done.stdout), bare("\n".join(shown))
     if printed == wanted:
         return []
-    return (["README.md shows of `hires %s`:" % " ".join(words)] + ["  " + w for w in wanted] +
+    return (["%s shows of `hires %s`:" % (path, " ".join(words))] + ["  " + w for w in wanted] +
             ["it prints (exit code %d):" % done.returncode] + ["  " + p for p in printed] +
             done.stderr.splitlines()[-5:])
 
 
 def main():
     program, is_long = os.path.abspath(sys.argv[1]), "--long" in sys.argv
-    with open(os.path.join(ROOT, "README.md"), encoding="utf-8") as file:
-        found = examples(file.read())
-    wrong = []
+    found, wrong = [], []
+    for path in DOCUMENTS:
+        with open(os.path.join(ROOT, path), encoding="utf-8") as file:
+            found += [(path, words, shown) for words, shown in examples(file.read())]
     if len(found) < FEWEST:
-        wrong.append("README.md: %d examples found, wanted at least %d" % (len(found), FEWEST))
+        wrong.append("%d examples found, wanted at least %d" % (len(found), FEWEST))
+    size = os.path.getsize(os.path.join(ROOT, "README.md"))
+    if size > LARGEST:
+        wrong.append("README.md has %d bytes, wanted at most %d; move some of it to docs/" %
+                     (size, LARGEST))
     with tempfile.TemporaryDirectory() as folder:
         for name in ("config", "worlds", "urdf"):
             os.symlink(os.path.join(ROOT, name), os.path.join(folder, name))
-        for words, shown in found:
+        for path, words, shown in found:
             if words[0] != "imagine" or is_long:
-                wrong += differences(program, words, shown, folder)
+                wrong += differences(program, path, words, shown, folder)
     print("\n".join(wrong) if wrong else "%d examples print what is shown" % len(found))
     return 1 if wrong else 0
 

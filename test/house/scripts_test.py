@@ -48,6 +48,21 @@ class ScriptsTest(unittest.TestCase):
         self.assertEqual(answer.returncode, 1)
         self.assertIn("unknown system", answer.stderr)
 
+    def test_setup_knows_the_parts_of_the_list(self):
+        everything, run_part = (run("scripts/setup", "--list", *part).stdout.split()
+                                for part in ([], ["run"]))
+        self.assertIn("libode-dev", run_part)
+        self.assertNotIn("libgtest-dev", run_part)
+        self.assertNotIn("rviz", run_part)
+        rest = run("scripts/setup", "--list", "show", "develop").stdout.split()
+        self.assertEqual(sorted(everything), sorted(run_part + rest))
+
+    def test_setup_refuses_a_part_that_is_none(self):
+        answer = run("scripts/setup", "--list", "runn")
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("no part 'runn'", answer.stderr)
+        self.assertIn("run show develop", answer.stderr)
+
     def test_the_build_folder_lies_outside_of_the_sources(self):
         folder = run("scripts/build", "--where", HIRES_BUILD="", XDG_CACHE_HOME="/cache").stdout
         self.assertRegex(folder, r"^/cache/hires/[0-9a-f]{12}\n$")
@@ -69,7 +84,7 @@ class ScriptsTest(unittest.TestCase):
             os.mkdir(os.path.join(folder, "devel"))
             open(os.path.join(folder, ".built"), "w", encoding="utf-8").close()
             with open(os.path.join(folder, "devel", "setup.bash"), "w", encoding="utf-8") as file:
-                file.write('export SEEN_BY_SETUP="$*" UNSET="$NEVER_SET"\n')
+                file.write('export SEEN_BY_SETUP="$*" UNSET="$NEVER_SET" ROS_PACKAGE_PATH=/build/src\n')
             return run("scripts/run", *command, HIRES_BUILD=folder, **environment)
 
     def test_run_keeps_the_arguments_of_the_command_for_the_command(self):
@@ -82,6 +97,11 @@ class ScriptsTest(unittest.TestCase):
         self.assertEqual(answer.stdout, "localhost|\n")
         answer = self.run_in_fake_build(*show, ROS_HOSTNAME="", ROS_IP="10.0.0.7")
         self.assertEqual(answer.stdout, "|10.0.0.7\n")
+
+    def test_run_keeps_the_packages_of_the_users_workspace(self):
+        answer = self.run_in_fake_build("bash", "-c", 'echo "$ROS_PACKAGE_PATH"',
+                                        ROS_PACKAGE_PATH="/robot/src:/other")
+        self.assertEqual(answer.stdout, "/build/src:/robot/src:/other\n")
 
     def test_run_ends_as_the_command_ended(self):
         self.assertEqual(self.run_in_fake_build("bash", "-c", "exit 7").returncode, 7)
