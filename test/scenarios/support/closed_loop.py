@@ -359,18 +359,28 @@ class ClosedLoop(BlackboardAccess):
         answer = self.intervene('hold', SetBool, data=is_held)
         assert answer.success, answer.message
 
-    def step_until(self, condition, what, num_ticks=4000):
+    def step_until(self, condition, what, num_ticks=4000, lag=math.inf):
         """Holds the world and lets it play on by ticks of 0.05 s until condition(truth): however slow
-        the computer, what happens next cannot come too late."""
+        the computer, what happens next cannot come too late.
+        @param lag  [s] that what is observed may be old on the Blackboard before time goes on."""
         from std_srvs.srv import Trigger
+        observed = [0.0]  # [s] up to then
+        progress = self.rospy.Subscriber(
+            'observation_progress', self.msg.ObservationProgress,
+            lambda news: observed.append(news.header.stamp.to_sec()))
         self.hold(True)
         self.truth.wait(lambda truth: truth.num_repeated > 0, 'time to stand')
         step = self.rospy.ServiceProxy('sim_robot/step', Trigger, persistent=True)
-        for _ in range(num_ticks):
-            if condition(self.truth):
-                step.close()
-                return
-            before = self.truth.now()
-            step()
-            self.truth.wait(lambda truth: truth.now() > before, 'the world to play a tick')
+        try:
+            for _ in range(num_ticks):
+                if condition(self.truth):
+                    return
+                before = self.truth.now()
+                step()
+                self.truth.wait(lambda truth: truth.now() > before, 'the world to play a tick')
+                wait_until(lambda: self.truth.now() - observed[-1] <= lag,
+                           lambda: 'observation\n' + self.output())
+        finally:
+            step.close()
+            progress.unregister()
         raise AssertionError('stepped in vain for %s\n%s' % (what, self.output()))

@@ -83,9 +83,13 @@ class LoopCase(unittest.TestCase):
         truth = self.truth.summary, self.truth.world.objects, self.truth.robot[-1].pose
         return '\n'.join(steps + task.warnings() + [self.loop.output()] + [str(t) for t in truth])
 
+    def was_warned(self, task, *words):
+        """Whether a warning with all these words has come."""
+        return any(all(word in text for word in words) for text in task.warnings())
+
     def warned(self, task, *words):
         """There was a warning with all these words."""
-        self.assertTrue(any(all(word in text for word in words) for text in task.warnings()),
+        self.assertTrue(self.was_warned(task, *words),
                         'no warning with %s among %s' % (words, task.warnings()))
 
     def wait_for_step(self, task, name, phase=None):
