@@ -145,6 +145,15 @@ class FaultsCase(unittest.TestCase):
 
 
 class ImaginationFaultsTest(FaultsCase):
+    def test_a_request_ends_when_who_asked_is_killed(self):
+        system = self.shared.take()
+        watcher, question = self.begin(system, rollouts=ENDLESS)
+        told = len(system.client.lines)
+        question.process.kill()
+        system.client.wait_for('cancelled: /hires_imagine_.*, which asked, is gone', first=told)
+        self.require_idle(watcher)
+        self.require_as_at_first(system)
+
     def test_a_killed_sim_worker_comes_back_and_the_answer_is_the_same(self):
         self.kill_part_of_worker('sim_worker')
 
@@ -339,7 +348,9 @@ class ImaginationRareFaultsTest(FaultsCase):
 
     def test_a_hung_client_can_be_given_up(self):
         system = self.shared.take()
+        told = len(system.client.lines)
         _, question = self.begin(system, rollouts=ENDLESS)
+        session = system.client.wait_for(r'session=(\d+) action', first=told).group(1)
         system.client.signal(signal.SIGSTOP)
         question.process.signal(signal.SIGINT)
         answer = question.answer()
@@ -348,6 +359,8 @@ class ImaginationRareFaultsTest(FaultsCase):
         self.assertEqual(answer.report['ranking'], [])
         self.assertIn('did not confirm', answer.report['why'])
         system.client.signal(signal.SIGCONT)
+        # Also where the cancel is lost, as who sent it has left.
+        system.client.wait_for('session=%s outcome=cancelled' % session, first=told)
         self.require_as_at_first(system)
 
     # Time.

@@ -71,6 +71,7 @@ ImaginationClientNode::ImaginationClientNode(const ImaginationClientParams& para
       server_(
           *nh, kImagineAction, [this](GoalHandle goal) { OnGoal(goal); },
           [this](GoalHandle goal) { OnCancel(goal); }, false),
+      askers_(kImagineAction, nh),
       ranking_markers_(
           nh->advertise<visualization_msgs::MarkerArray>(kImaginationMarkers, 1, true)),
       world_markers_(nh->advertise<visualization_msgs::MarkerArray>(kWorldMarkers, 1, true)) {
@@ -104,6 +105,7 @@ ImaginationClientNode::~ImaginationClientNode() {
 void ImaginationClientNode::Refuse(GoalHandle goal, const std::string& why) {
   hires::base::Log(hires::base::LogLevel::kWarn,
                    fmt::format("request={} outcome=invalid {}", goal.getGoal()->request_id, why));
+  askers_.Forget(goal.getGoalID().id);
   goal.setAborted(RefusalOf(*goal.getGoal(), why), why);
 }
 
@@ -176,6 +178,15 @@ void ImaginationClientNode::OnCancel(GoalHandle goal) {
       CarryOut(session.get(), session->scheduler->Cancel(SchedulerNow()));
     }
   }
+}
+
+/// Nobody would hear the answer; the workers are free for others.
+void ImaginationClientNode::CancelForNobody(Session* session, double now) {
+  const std::string asker = askers_.GoneFor(session->goal.getGoalID().id, now);
+  if (asker.empty() || session->scheduler->finished()) return;
+  hires::base::Log(hires::base::LogLevel::kWarn,
+                   fmt::format("session={} cancelled: {}, which asked, is gone", session->id, asker));
+  CarryOut(session, session->scheduler->Cancel(SchedulerNow()));
 }
 
 void ImaginationClientNode::Feed(Session* session, const imagination::Event& event) {
@@ -296,6 +307,7 @@ void ImaginationClientNode::OnTick() {
   for (auto& [k, worker] : workers_) worker->Look();
   const double now = hires::base::SteadyNow();
   for (auto& session : sessions_) {
+    CancelForNobody(session.get(), now);
     CarryOut(session.get(), session->scheduler->Tick(SchedulerNow()));
     if (now >= session->next_feedback) PublishFeedback(session.get(), now);
   }
@@ -325,6 +337,7 @@ void ImaginationClientNode::FinishSessions() {
 
 void ImaginationClientNode::Finish(Session* session) {
   for (auto& [k, worker] : workers_) worker->CancelSession(session->id);
+  askers_.Forget(session->goal.getGoalID().id);
   const ImagineRequest& request = *session->request;
   Keep(*session);
   auto report =

@@ -22,6 +22,7 @@
 #include "hires/imagination/start_spread.h"
 #include "hires/ros/imagine_request.h"
 #include "hires/world/map_to_world.h"
+#include "nodes/imagination_client/asker_watch.h"
 #include "nodes/imagination_client/worker_link.h"
 
 namespace hires_ros {
@@ -68,6 +69,7 @@ class ImaginationClientNode {
 
   void OnGoal(GoalHandle goal);
   void OnCancel(GoalHandle goal);
+  void CancelForNobody(Session* session, double now);
   void OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg);
   void SpreadStart(ImagineRequest* request) const;
   void OnTick();
@@ -97,6 +99,7 @@ class ImaginationClientNode {
   int next_session_{1};
   std::optional<hires::imagination::BelievedPose> believed_;
   Server server_;
+  AskerWatch askers_;
   ros::Subscriber localisation_;
   ros::Publisher ranking_markers_, world_markers_;
   diagnostic_updater::Updater updater_;
