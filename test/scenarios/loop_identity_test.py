@@ -24,7 +24,7 @@ from ros_processes import executable  # noqa: E402
 from test_run import run_test  # noqa: E402
 
 TICK = 0.05  # [s] of the robot's time
-PACE = 2.0   # the robot's time to the computer's: a tick is longer than all messages of a decision
+PACE = 1.0   # the robot's time to the computer's: a tick is longer than all messages of a decision
 LIMIT = 560.0  # [s] by the wall's clock: it ends a broken test, and measures nothing
 
 MILL = {'peppermill1': (5.47, 10.16, 0.75, 0.0)}

@@ -34,7 +34,7 @@ class NodeLossesTest(LoopCase):
         self.assertTrue(answer.success, answer.message)
 
     def assert_on_tray(self, name):
-        self.assertTrue(self.truth.stands(name), name)
+        self.truth.wait(lambda t: t.stands(name), name + ' to stand, as the simulator tells')
         self.assertGreater(self.truth.position(name)[2], ABOVE_FLOOR)
         self.assertLess(self.truth.position(name)[2], BELOW_FURNITURE)
 
