@@ -16,6 +16,7 @@
 
 #include "cli/achieve_command.h"
 #include "cli/experiment_command.h"
+#include "cli/limits_command.h"
 #include "cli/list_command.h"
 #include "cli/plan_command.h"
 #include "cli/save_rollout.h"
@@ -86,10 +87,6 @@ void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
   app->add_flag("--quiet", o->quiet, "no progress bar");
 }
 
-bool IsFile(const std::string& text) {
-  return text.find('/') != std::string::npos || text.find('.') != std::string::npos;
-}
-
 std::vector<std::string> AlternativesOf(const std::string& list) {
   std::vector<std::string> alternatives = base::Split(list, ',');
   if (std::count(alternatives.begin(), alternatives.end(), "") > 0) {
@@ -105,7 +102,7 @@ void SetStart(const ImagineOptions& o, ImagineQuery* query) {
   query->start =
       ReadStart(o.start, o.action, skills::LoadActionSet(o.action_libraries)->catalogue());
   for (std::string& object : query->start.on_tray) {
-    if (!IsFile(object)) continue;
+    if (!IsObjectFile(object)) continue;
     query->setup.extra_objects.push_back(object);
     object = world::LoadObjectModel(object).name;
   }
@@ -245,6 +242,38 @@ int ShowVerbs(const CLI::App& app) {
   return kExitBadInput;
 }
 
+/// What was typed, whatever the verb.
+struct Verbs {
+  CLI::App* imagine{nullptr};
+  ImagineOptions imagine_options;
+  AchieveOptions achieve;
+  ExperimentOptions experiment;
+  PlanOptions plan;
+  BlackboardOptions blackboard;
+  ListOptions list;
+  LimitsOptions limits;
+  DoctorOptions doctor;
+  std::vector<CLI::App*> others;  // as Backends::more_verbs
+};
+
+void AddVerbs(CLI::App* app, Verbs* verbs, const Backends& backends) {
+  verbs->imagine =
+      app->add_subcommand("imagine", "play alternatives of an action many times and rank them");
+  AddImagineOptions(verbs->imagine, &verbs->imagine_options);
+  AddLimitsVerb(app, &verbs->limits);
+  AddAchieveVerb(app, &verbs->achieve);
+  AddExperimentVerb(app, &verbs->experiment);
+  AddPlanVerb(app, &verbs->plan);
+  AddBlackboardVerb(app, &verbs->blackboard);
+  AddListVerb(app, &verbs->list);
+  AddDoctorVerb(app, &verbs->doctor);
+  for (const Verb& verb : backends.more_verbs) {
+    CLI::App* other = app->add_subcommand(verb.name, verb.help)->prefix_command();
+    other->set_help_flag();  // its own parser explains it
+    verbs->others.push_back(other);
+  }
+}
+
 int RunAnyExperiment(const ExperimentOptions& options, const Backends& backends) {
   const auto cancelled = [] { return interrupted.load(); };
   if (*options.decision.verb) {
@@ -255,6 +284,32 @@ int RunAnyExperiment(const ExperimentOptions& options, const Backends& backends)
                              cancelled);
   }
   return RunExperimentVerb(options, cancelled);
+}
+
+/// @return exit code.  @throws std::exception for bad input.
+int RunVerb(const Verbs& verbs, const Backends& backends) {
+  // It has nothing to finish, and ends as any program does.
+  if (*verbs.doctor.verb) return RunDoctorVerb(verbs.doctor, backends);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, OnInterrupt);
+  if (*verbs.imagine) return Imagine(verbs.imagine_options, backends);
+  if (*verbs.limits.verb) {
+    return RunLimitsVerb(verbs.limits, backends.package_folder, IsInterrupted);
+  }
+  if (*verbs.achieve.verb) {
+    return RunAchieveVerb(verbs.achieve, backends.package_folder, backends.achieve_remotely,
+                          IsInterrupted, backends.record_loop);
+  }
+  if (*verbs.experiment.verb) return RunAnyExperiment(verbs.experiment, backends);
+  if (*verbs.plan.verb) return RunPlanVerb(verbs.plan, IsInterrupted);
+  if (*verbs.list.verb) return RunListVerb(verbs.list, backends.package_folder);
+  if (*verbs.blackboard.verb) {
+    return RunBlackboardVerb(verbs.blackboard, backends.package_folder,
+                             backends.connect_blackboard);
+  }
+  for (std::size_t i = 0; i < verbs.others.size(); ++i) {
+    if (*verbs.others[i]) return backends.more_verbs[i].run(verbs.others[i]->remaining());
+  }
+  return kExitBadInput;
 }
 
 }  // namespace
@@ -293,65 +348,29 @@ imagination::Report ImagineInThisProcess(const ImagineQuery& query,
   return report;
 }
 
+bool IsObjectFile(const std::string& text) {
+  return text.find('/') != std::string::npos || text.find('.') != std::string::npos;
+}
+
 int RunCommandLine(const std::vector<std::string>& arguments, const Backends& backends) {
   HIRES_CHECK(!arguments.empty(), "the program's name is missing");
   CLI::App app("HIRES: imagine an action in physics before doing it", "hires");
   app.require_subcommand(1);
-  ImagineOptions imagine_options;
-  CLI::App* imagine =
-      app.add_subcommand("imagine", "play alternatives of an action many times and rank them");
-  AddImagineOptions(imagine, &imagine_options);
-  AchieveOptions achieve_options;
-  AddAchieveVerb(&app, &achieve_options);
-  ExperimentOptions experiment_options;
-  AddExperimentVerb(&app, &experiment_options);
-  PlanOptions plan_options;
-  AddPlanVerb(&app, &plan_options);
-  BlackboardOptions blackboard_options;
-  AddBlackboardVerb(&app, &blackboard_options);
-  ListOptions list_options;
-  AddListVerb(&app, &list_options);
-  DoctorOptions doctor_options;
-  AddDoctorVerb(&app, &doctor_options);
-  std::vector<CLI::App*> others;
-  for (const Verb& verb : backends.more_verbs) {
-    CLI::App* other = app.add_subcommand(verb.name, verb.help)->prefix_command();
-    other->set_help_flag();  // its own parser explains it
-    others.push_back(other);
-  }
+  Verbs verbs;
+  AddVerbs(&app, &verbs, backends);
   try {
     if (arguments.size() == 1) return ShowVerbs(app);
     RefuseUnknownVerb(app, arguments);
     RefuseUnknownOption(app, arguments);
     // CLI11 takes its arguments from the back.
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
-    // It has nothing to finish, and ends as any program does.
-    if (*doctor_options.verb) return RunDoctorVerb(doctor_options, backends);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, OnInterrupt);
-    if (*imagine) return Imagine(imagine_options, backends);
-    if (*achieve_options.verb) {
-      return RunAchieveVerb(achieve_options, backends.package_folder, backends.achieve_remotely,
-                            IsInterrupted, backends.record_loop);
-    }
-    if (*experiment_options.verb) return RunAnyExperiment(experiment_options, backends);
-    if (*plan_options.verb) {
-      return RunPlanVerb(plan_options, [] { return interrupted.load(); });
-    }
-    if (*list_options.verb) return RunListVerb(list_options, backends.package_folder);
-    if (*blackboard_options.verb) {
-      return RunBlackboardVerb(blackboard_options, backends.package_folder,
-                               backends.connect_blackboard);
-    }
-    for (std::size_t i = 0; i < others.size(); ++i) {
-      if (*others[i]) return backends.more_verbs[i].run(others[i]->remaining());
-    }
+    return RunVerb(verbs, backends);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kExitBadInput;
   } catch (const std::exception& error) {
     std::cerr << "hires: " << error.what() << '\n';
     return kExitBadInput;
   }
-  return kExitBadInput;
 }
 
 }  // namespace hires::cli

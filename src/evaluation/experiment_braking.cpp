@@ -7,7 +7,6 @@
 
 #include "evaluation/experiment_stage.h"
 #include "hires/base/rng.h"
-#include "hires/base/text.h"
 #include "hires/evaluation/experiment.h"
 #include "hires/evaluation/experiment_parallel.h"
 #include "hires/imagination/uncertainty.h"
@@ -200,15 +199,9 @@ CellSetup SetUp(const BrakingCell& cell, const ExperimentConfig& config, const S
   CellSetup setup{
       SceneFor(stage.setup, cell.way, false), SceneFor(stage.setup, cell.way, true), {}};
   for (const Goal& goal : config.goals) {
-    imagination::StartState start =
-        imagination::MakeStartState(stage.setup, goal.name, {cell.load});
-    auto& objects = start.world.objects;  // only what is on the tray matters
-    objects.erase(std::remove_if(objects.begin(), objects.end(),
-                                 [&](const world::ObjectState& object) {
-                                   return base::ToLower(object.name) != base::ToLower(cell.load);
-                                 }),
-                  objects.end());
-    setup.starts.push_back(std::move(start));
+    const geometry::Pose3 X_MG = *stage.setup.scene->world.FindFrame(goal.name);
+    setup.starts.push_back(
+        imagination::StartOnTray(stage.setup, geometry::Flatten(X_MG), {cell.load}));
   }
   return setup;
 }

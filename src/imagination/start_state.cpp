@@ -57,11 +57,11 @@ void Put(const ImaginationSetup& setup, const PutObject& put, world::WorldState*
 
 }  // namespace
 
-StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
-                          const std::vector<std::string>& objects) {
+StartState StartOnTray(const ImaginationSetup& setup, const geometry::Pose2& X_MB,
+                       const std::vector<std::string>& objects) {
   RefuseLoad(setup, objects);
   StartState start;
-  start.robot.X_MB = geometry::Flatten(AreaPose(setup, area));
+  start.robot.X_MB = X_MB;
   start.robot.joints = setup.scene->robot.profile.joints;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const double y = i == 0 ? 0.0 : (i == 1 ? -kSlotDistance : kSlotDistance);
@@ -69,6 +69,12 @@ StartState MakeStartState(const ImaginationSetup& setup, const std::string& area
         setup, objects[i],
         geometry::Lift(start.robot.X_MB) * setup.scene->X_BO * geometry::Lift({0.0, y, 0.0})));
   }
+  return start;
+}
+
+StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
+                          const std::vector<std::string>& objects) {
+  StartState start = StartOnTray(setup, geometry::Flatten(AreaPose(setup, area)), objects);
   AddInitialObjects(setup, &start.world);
   return start;
 }

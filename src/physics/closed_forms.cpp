@@ -65,9 +65,13 @@ double TippingAcceleration(const UprightCylinder& body, double gravity) {
 double SlidingAcceleration(double friction, double gravity) { return friction * gravity; }
 
 double SuddenStopTopplingSpeed(const UprightCylinder& body, double gravity) {
-  const Rocker rocker = RockerOf(body);
-  const double c = body.height / 2;
-  return std::sqrt(2.0 * gravity * (rocker.arm - c) * rocker.inertia_A) / c;
+  const double r = body.radius, h = body.height;
+  return SuddenStopTopplingSpeed(r, h / 2, (3.0 * r * r + h * h) / 12.0, gravity);
+}
+
+double SuddenStopTopplingSpeed(double support, double com_height, double gyration, double gravity) {
+  const double arm = std::hypot(support, com_height);
+  return std::sqrt(2.0 * gravity * (arm - com_height) * (gyration + arm * arm)) / com_height;
 }
 
 double OverturningPulseDuration(const UprightCylinder& body, double acceleration, double gravity) {

@@ -11,6 +11,7 @@
 #include "hires/base/text.h"
 #include "hires/world/world.h"
 #include "world/content_hash.h"
+#include "world/plain_object.h"
 #include "world/sdf_file.h"
 #include "world/sdf_model.h"
 #include "world/urdf_object.h"
@@ -196,8 +197,9 @@ ObjectModel LoadObjectModel(const std::string& path) {
   const std::string ending = base::ToLower(std::filesystem::path(path).extension().string());
   if (ending == ".urdf") return LoadUrdfObject(path, finder);
   if (ending == ".sdf") return LoadSdfObject(path, finder);
+  if (ending == ".yaml") return LoadPlainObject(path);
   throw base::ConfigError(
-      fmt::format("{}: an object file ends in .sdf or .urdf; rename or convert it", path));
+      fmt::format("{}: an object file ends in .sdf, .urdf or .yaml; rename or convert it", path));
 }
 
 }  // namespace hires::world

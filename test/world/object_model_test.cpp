@@ -104,9 +104,39 @@ TEST_F(ObjectModelTest, RefusesSdfThatIsNoObject) {
   EXPECT_THAT(ErrorOf("a.sdf", WorldText("")), HasSubstr("no <model>"));
   EXPECT_THAT(ErrorOf("a.sdf", ModelFile(StaticModel("wall", LinkWithShape(kUnitBox)))),
               AllOf(HasSubstr("model 'wall'"), HasSubstr("<static>")));
-  EXPECT_THAT(ErrorOf("a.txt", "hello"), HasSubstr("ends in .sdf or .urdf"));
+  EXPECT_THAT(ErrorOf("a.txt", "hello"), HasSubstr("ends in .sdf, .urdf or .yaml"));
   EXPECT_THAT(MessageOf<base::ConfigError>([&] { LoadObjectModel(folder_.path("none.sdf")); }),
               HasSubstr("no such file"));
+}
+
+TEST_F(ObjectModelTest, RulerAndScalesGiveACylinderOrABox) {
+  const ObjectModel bottle = LoadObjectModel(folder_.Write(
+      "bottle.yaml", "{shape: cylinder, radius: 0.04, height: 0.2, mass: 0.5, friction: 0.3}"));
+  EXPECT_EQ(bottle.name, "bottle");
+  EXPECT_EQ(bottle.mass_properties.p_BBcm, Eigen::Vector3d(0, 0, 0.1));
+  EXPECT_NEAR(bottle.mass_properties.I_BBcm(2, 2), 0.5 * 0.5 * 0.04 * 0.04, 1e-15);
+  ASSERT_EQ(bottle.collisions.size(), 1u);
+  EXPECT_EQ(geometry::BoundsOf(bottle.collisions[0].shape, bottle.collisions[0].X_BS).lower.z(), 0);
+  EXPECT_EQ(bottle.collisions[0].friction, 0.3);
+  const ObjectModel carton = LoadObjectModel(folder_.Write(
+      "carton.yaml",
+      "{shape: box, depth: 0.1, width: 0.06, height: 0.2, mass: 1.0, com_height: 0.05}"));
+  EXPECT_EQ(carton.mass_properties.p_BBcm.z(), 0.05);
+  EXPECT_EQ(std::get<geometry::Box>(carton.collisions[0].shape).size,
+            Eigen::Vector3d(0.1, 0.06, 0.2));
+  EXPECT_EQ(carton.collisions[0].friction, 1.0);
+}
+
+TEST_F(ObjectModelTest, RefusesPlainObjectsThatAreNone) {
+  const auto error_of = [&](const std::string& more) {
+    return ErrorOf("b.yaml", "{shape: cylinder, height: 0.2, mass: 0.5, " + more + "}");
+  };
+  EXPECT_THAT(error_of("width: 0.1"), AllOf(HasSubstr("b.yaml"), HasSubstr("radius")));
+  EXPECT_THAT(error_of("radius: 40"), HasSubstr("radius is '40'"));
+  EXPECT_THAT(error_of("radius: .nan"), HasSubstr("radius"));
+  EXPECT_THAT(error_of("radius: 0.04, com_height: 0.21"), HasSubstr("com_height is '0.21'"));
+  EXPECT_THAT(error_of("radius: 0.04, colour: red"), HasSubstr("colour"));
+  EXPECT_THAT(ErrorOf("c.yaml", "{shape: cone, height: 0.2, mass: 0.5}"), HasSubstr("cylinder"));
 }
 
 TEST_F(ObjectModelTest, UrdfGivesMassShapeAndFriction) {

@@ -83,6 +83,9 @@ int ExitCodeOf(const imagination::Report& report);
 /// @param arguments  the program's name first, as in argv.
 int RunCommandLine(const std::vector<std::string>& arguments, const Backends& backends);
 
+/// Whether an object is named by a file, and not by its name.
+bool IsObjectFile(const std::string& text);
+
 /// Imagines in this process, as `hires imagine --local`.
 imagination::Report ImagineInThisProcess(const ImagineQuery& query,
                                          const imagination::OnInterim& on_interim,

@@ -26,7 +26,7 @@ struct SetupConfig {
   std::string objects;                     ///< catalogue of object instances (YAML)
   std::string uncertainty;                 ///< YAML, or "none"
   bool has_base_guard{false};              ///< late commands to the base end in the guard's ramp
-  std::vector<std::string> extra_objects;  ///< object models (.sdf, .urdf) beside the catalogue's
+  std::vector<std::string> extra_objects;  ///< object models (files) beside the catalogue's
   /// Shared libraries with more actions: never from a file, as they are code.
   std::vector<std::string> action_libraries;
   skills::MoveBaseParams driving;

@@ -26,10 +26,15 @@ struct PutObject {
   geometry::Pose3 X_AO;  ///< of the object
 };
 
-/// The robot at an area with objects on its tray: the first in the middle, the next ones to its
-/// right and left, 0.13 m apart (the slots of the tray pick and place action). Loose objects of the
-/// world file stand where it says, unless they are named.
-/// @throws base::ConfigError for an unknown area or object, or more than three objects.
+/// The robot with objects on its tray, and nothing else: the first in the middle, the next ones to
+/// its right and left, 0.13 m apart (the slots of the tray pick and place action).
+/// @throws base::ConfigError for an unknown object, more than three objects, or a robot without a
+/// tray.
+StartState StartOnTray(const ImaginationSetup& setup, const geometry::Pose2& X_MB,
+                       const std::vector<std::string>& objects);
+
+/// The same at an area. Loose objects of the world file stand where it says, unless they are named.
+/// @throws base::ConfigError as StartOnTray, and for an unknown area.
 StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
                           const std::vector<std::string>& objects);
 

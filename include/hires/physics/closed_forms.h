@@ -19,6 +19,12 @@ double SlidingAcceleration(double friction, double gravity);
 /// v = sqrt(2 g (R - c) I_A / m) / c with R = hypot(r, c), I_A = I_cm + m R^2.
 double SuddenStopTopplingSpeed(const UprightCylinder& body, double gravity);
 
+/// ... of any body.
+/// @param support     r [m] from below its centre of mass to the edge that it topples over
+/// @param com_height  c [m]
+/// @param gyration    square of its radius of gyration about its centre of mass, I_cm / m [m^2]
+double SuddenStopTopplingSpeed(double support, double com_height, double gyration, double gravity);
+
 /// Shortest pulse of constant ground acceleration `a` [m/s^2] that overturns it without slip [s].
 /// From the nonlinear rocking equation I_A theta'' = -m g R sin(alpha - theta) + m a R cos(alpha -
 /// theta), integrated numerically (Runge-Kutta 4, step 1e-5 s), theta'' = 0 at rest for a below the

@@ -21,7 +21,7 @@ std::map<std::string, std::shared_ptr<const ObjectModel>> LoadCatalogueModels(
     const std::string& catalogue_path);
 
 /// The object that a user means: an instance name of the catalogue (case ignored), a folder of
-/// models/ beside the catalogue, or a path to an .sdf or .urdf file.
+/// models/ beside the catalogue, or a path as of LoadObjectModel.
 /// @throws base::ConfigError naming what is known that comes near; as LoadObjectModel.
 ObjectModel FindObjectModel(const std::string& name_or_path, const std::string& catalogue_path);
 

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "hires/geometry/pose.h"
+#include "hires/imagination/imagination_setup.h"
+#include "hires/imagination/start_state.h"
+
+namespace hires::evaluation {
+
+/// What the base is told next: to come to a velocity, by steps of a local planner.
+struct DriveStep {
+  geometry::Twist2 V_B;           ///< [m/s], [rad/s]
+  double linear_rate{0.5};        ///< [m/s^2] at which commands approach it
+  double angular_rate{0.5};       ///< [rad/s^2]
+  double hold{0.0};               ///< [s] that it is commanded for
+  bool is_silent{false};          ///< nothing is commanded: the controller's time-out strikes
+};
+using LoadDrive = std::vector<DriveStep>;
+
+/// What became of the load.
+struct DriveOutcome {
+  bool fell{false};
+  double simulated{0.0};  ///< [s]
+};
+
+/// Where drives with one load are played: an even, empty floor, the load alone on the tray.
+struct DriveStage {
+  const imagination::ImaginationSetup* setup{nullptr};
+  std::shared_ptr<const simulation::Scene> scene;
+  imagination::StartState start;
+  double command_period{0.1};  ///< [s]
+};
+
+/// @throws base::ConfigError as imagination::StartOnTray.
+DriveStage MakeDriveStage(const imagination::ImaginationSetup& setup, const std::string& object,
+                          double command_period);
+
+/// Plays the drive in one truth, until the load has fallen or nothing shakes any more.
+/// @param rng  of the truth, and of what the simulator draws.
+DriveOutcome PlayDrive(const DriveStage& stage, const LoadDrive& drive, const base::Rng& rng);
+
+}  // namespace hires::evaluation

@@ -1,0 +1,302 @@
+#include "hires/evaluation/motion_limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+#include "evaluation/limits/load_drive.h"
+#include "hires/base/check.h"
+#include "hires/base/error.h"
+#include "hires/base/hash.h"
+#include "hires/base/rng.h"
+#include "hires/evaluation/experiment_parallel.h"
+#include "hires/geometry/angles.h"
+#include "hires/navigation/braking.h"
+#include "hires/physics/closed_forms.h"
+
+namespace hires::evaluation {
+namespace {
+
+using geometry::Twist2;
+
+constexpr double kConfidence = 0.95;
+constexpr double kStep = 0.97;      // of the scale of values
+constexpr int kLastStep = 112;      // a 30th of the robot's own limit
+constexpr double kAbove = 1.1;     // times a limit, where it is checked
+constexpr int kFewTruths = 32;      // tell about where the limit lies
+constexpr double kGently = 0.5;     // [m/s^2] nothing shakes
+constexpr double kCruise = 0.5;     // [s]
+constexpr double kTurningTime = 1.0;  // [s] at full rate
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+double ValueAt(double top, int step) { return top * std::pow(kStep, step); }
+
+/// Which of the truths lose the load at a value; empty optional: cancelled.
+using FallenAt =
+    std::function<std::optional<std::vector<int>>(double value, const std::vector<int>& truths)>;
+
+/// The search along the scale: a truth that bears a value bears every smaller one.
+class Search {
+ public:
+  Search(double top, int num_truths, FallenAt fallen_at)
+      : top_(top), all_(num_truths), fallen_at_(std::move(fallen_at)) {
+    std::iota(all_.begin(), all_.end(), 0);
+  }
+
+  /// The first step at which no truth loses the load; kLastStep + 1: there is none.
+  /// @return nothing when cancelled.
+  std::optional<int> Run() {
+    const std::vector<int> few(all_.begin(), all_.begin() + std::min<std::size_t>(
+                                                                kFewTruths, all_.size()));
+    const auto first = FirstBorneBy(few, 0);
+    if (!first || *first > kLastStep) return first;
+    auto step = FirstBorneBy(all_, *first);
+    // Should a truth have lost at less what it kept at more, the scale is gone down further.
+    while (step && *step <= kLastStep && *step > *first) {
+      const auto fallen = fallen_at_(ValueAt(top_, *step), all_);
+      if (!fallen) return std::nullopt;
+      if (fallen->empty()) break;
+      ++*step;
+    }
+    return step;
+  }
+
+ private:
+  /// By halving, with the truths that have fallen so far alone.
+  std::optional<int> FirstBorneBy(const std::vector<int>& truths, int first) const {
+    auto fallen = fallen_at_(ValueAt(top_, first), truths);
+    if (!fallen || fallen->empty()) return fallen ? std::optional<int>(first) : std::nullopt;
+    int falls = first, bears = kLastStep + 1;
+    while (bears - falls > 1) {
+      const int middle = (falls + bears) / 2;
+      auto still = fallen_at_(ValueAt(top_, middle), *fallen);
+      if (!still) return std::nullopt;
+      if (still->empty()) {
+        bears = middle;
+      } else {
+        falls = middle;
+        fallen = std::move(still);
+      }
+    }
+    return bears;
+  }
+
+  const double top_;
+  std::vector<int> all_;
+  FallenAt fallen_at_;
+};
+
+/// A motion to look at: how a drive with this value looks.
+struct Motion {
+  std::string name, unit;
+  double robots_own{0.0};
+  double closed_form{kInfinity};
+  std::string stated;
+  std::function<LoadDrive(double value, double direction)> drive;
+};
+
+Twist2 Along(double direction, double speed, double turning = 0.0) {
+  return {speed * std::cos(direction), speed * std::sin(direction), turning};
+}
+
+class LimitFinder {
+ public:
+  LimitFinder(const LimitsRequest& request, const imagination::ImaginationSetup& setup,
+              const Crew& crew)
+      : request_(request),
+        setup_(setup),
+        crew_(crew),
+        controller_(setup.scene->robot.profile.base_controller),
+        stage_(MakeDriveStage(setup, request.object, request.command_period)),
+        model_(*setup.scene->world.models.at(setup.ModelOf(request.object))),
+        load_(navigation::LoadOf(model_)) {}
+
+  std::optional<LimitsReport> Find() {
+    report_.request = request_;
+    report_.model = model_.name;
+    report_.uncertainty = setup_.uncertainty->quantities.empty()
+                              ? "none"
+                              : base::HexOf(setup_.uncertainty->hash);
+    report_.num_truths = NumTruths(request_.max_fall);
+    report_.world_hash = setup_.world_hash;
+    report_.robot_hash = setup_.robot_hash;
+    report_.physics_hash = setup_.physics_hash;
+    report_.is_omnidirectional = controller_.drive == robot::Drive::kOmnidirectional;
+    report_.own_angular_acceleration = controller_.limits.max_angular_acceleration;
+    if (!Look(Speed()) || !Look(Acceleration()) || !Look(Deceleration()) || !Look(Turning()) ||
+        !Look(Together())) {
+      return std::nullopt;
+    }
+    return report_;
+  }
+
+ private:
+  /// @return false when cancelled.
+  bool Look(const Motion& motion) {
+    const auto fallen_at = [&](double value, const std::vector<int>& truths) {
+      return FallenAmong(motion, value, truths);
+    };
+    const auto step = Search(motion.robots_own, report_.num_truths, fallen_at).Run();
+    if (!step) return false;
+    const double least = ValueAt(motion.robots_own, kLastStep);
+    if (*step > kLastStep) {
+      throw base::ConfigError(fmt::format(
+          "object '{}' falls from the tray of '{}' at a {} of {:.3g} {} already, wanted one that can "
+          "be carried; put it elsewhere (tray: in the profile) or allow more with --max-fall",
+          request_.object, setup_.scene->robot.model.name, motion.name, least, motion.unit));
+    }
+    const double value = ValueAt(motion.robots_own, *step);
+    MotionLimit limit{motion.name,        motion.unit,   value,       motion.robots_own,
+                      motion.closed_form, motion.stated, std::nullopt};
+    if (request_.check_truths > 0) {
+      limit.check = Check(motion, value);
+      if (!limit.check) return false;
+    }
+    report_.limits.push_back(std::move(limit));
+    return true;
+  }
+
+  /// With truths that the search has not seen.
+  std::optional<LimitCheck> Check(const Motion& motion, double value) {
+    std::vector<int> truths(request_.check_truths);
+    std::iota(truths.begin(), truths.end(), report_.num_truths);
+    const auto at = FallenAmong(motion, value, truths);
+    if (!at) return std::nullopt;
+    LimitCheck check{static_cast<int>(at->size()), std::nullopt};
+    if (kAbove * value > motion.robots_own) return check;
+    const auto above = FallenAmong(motion, kAbove * value, truths);
+    if (!above) return std::nullopt;
+    check.falls_above = static_cast<int>(above->size());
+    return check;
+  }
+
+  std::optional<std::vector<int>> FallenAmong(const Motion& motion, double value,
+                                              const std::vector<int>& truths) {
+    std::vector<DriveOutcome> outcomes(truths.size());
+    const int num_tasks = static_cast<int>(truths.size());
+    const auto work = [&](int task, const Advance& advance) {
+      const int truth = truths[task];
+      const double direction =
+          report_.is_omnidirectional ? kDirections[truth % kDirections.size()] : 0.0;
+      outcomes[task] = PlayDrive(stage_, motion.drive(value, direction),
+                                 base::Rng(request_.seed).Fork(static_cast<std::uint64_t>(truth)));
+      advance(1.0);
+    };
+    Crew crew = crew_;
+    crew.on_progress = nullptr;
+    if (!DoInParallel(num_tasks, num_tasks, crew, work)) return std::nullopt;
+    std::vector<int> fallen;
+    for (int i = 0; i < num_tasks; ++i) {
+      report_.simulated_seconds += outcomes[i].simulated;
+      if (outcomes[i].fell) fallen.push_back(truths[i]);
+    }
+    if (crew_.on_progress) {
+      crew_.on_progress(static_cast<double>(report_.limits.size()) / kNumMotions, 0.0);
+    }
+    return fallen;
+  }
+
+  double Tips() const { return navigation::TippingAcceleration(load_, gravity()); }
+  double Slides() const { return navigation::SlidingAcceleration(load_, gravity()); }
+  double Bears() const { return std::min(Tips(), Slides()); }
+  std::string HowItGives() const { return Tips() < Slides() ? "tips" : "slides"; }
+  double gravity() const { return setup_.scene->world.gravity; }
+
+  /// Driven gently up to it; then commands cease, and the controller's time-out stops the base.
+  Motion Speed() const {
+    Motion motion{"speed", "m/s", controller_.limits.max_linear_velocity, kInfinity, {}, {}};
+    if (controller_.stops_at_timeout) {
+      const geometry::MassProperties& body = model_.mass_properties;
+      const double gyration = std::min(body.I_BBcm(0, 0), body.I_BBcm(1, 1)) / body.mass;
+      motion.closed_form = physics::SuddenStopTopplingSpeed(load_.support, load_.com_height,
+                                                            gyration, gravity());
+      motion.stated = "topples where wheels lock";
+    } else if (controller_.limits.max_linear_acceleration < Bears()) {
+      motion.stated = "the controller's own stop moves nothing";
+    }
+    motion.drive = [](double v, double direction) -> LoadDrive {
+      return {{Along(direction, v), kGently, 0.0, kCruise}, {{}, 0.0, 0.0, 0.0, true}};
+    };
+    return motion;
+  }
+
+  Motion Acceleration() const {
+    const double speed = report_.Of("speed").value;
+    return {"acceleration", "m/s^2", controller_.limits.max_linear_acceleration, Bears(),
+            HowItGives(), [speed](double a, double direction) -> LoadDrive {
+              return {{Along(direction, speed), a, 0.0, kCruise}};
+            }};
+  }
+
+  Motion Deceleration() const {
+    const double speed = report_.Of("speed").value;
+    return {"deceleration", "m/s^2", controller_.limits.max_linear_acceleration, Bears(),
+            HowItGives(), [speed](double a, double direction) -> LoadDrive {
+              return {{Along(direction, speed), kGently, 0.0, kCruise}, {{}, a, 0.0, 0.0}};
+            }};
+  }
+
+  /// On the spot, as suddenly as the controller allows; then commands cease.
+  Motion Turning() const {
+    const double reach = stage_.scene->X_BO.translation.head<2>().norm();
+    const double sudden = controller_.limits.max_angular_acceleration;
+    return {"turning", "rad/s", controller_.limits.max_angular_velocity,
+            reach > 0.0 ? std::sqrt(Bears() / reach) : kInfinity,
+            fmt::format("{} {:.2f} m from the base's centre", HowItGives(), reach),
+            [sudden](double w, double) -> LoadDrive {
+              return {{{0.0, 0.0, w}, 0.0, sudden, kTurningTime}, {{}, 0.0, 0.0, 0.0, true}};
+            }};
+  }
+
+  /// All at once: speeding up on an arc, and braking hard before anything has come to rest.
+  Motion Together() const {
+    const double v = report_.Of("speed").value, w = report_.Of("turning").value,
+                 a = report_.Of("acceleration").value, d = report_.Of("deceleration").value,
+                 sudden = controller_.limits.max_angular_acceleration;
+    return {"together", "of each", 1.0, kInfinity, {},
+            [=](double share, double direction) -> LoadDrive {
+              return {{Along(direction, share * v, share * w), share * a, share * sudden, kCruise},
+                      {{}, share * d, share * sudden, 0.0}};
+            }};
+  }
+
+  static constexpr std::array<double, 4> kDirections{0.0, 0.5 * geometry::kPi, geometry::kPi,
+                                                     -0.5 * geometry::kPi};
+  static constexpr int kNumMotions = 5;
+
+  const LimitsRequest& request_;
+  const imagination::ImaginationSetup& setup_;
+  const Crew& crew_;
+  const robot::BaseControllerParams& controller_;
+  const DriveStage stage_;
+  const world::ObjectModel& model_;
+  const navigation::StandingLoad load_;
+  LimitsReport report_;
+};
+
+}  // namespace
+
+const MotionLimit& LimitsReport::Of(const std::string& motion) const {
+  const auto found = std::find_if(limits.begin(), limits.end(),
+                                  [&](const MotionLimit& limit) { return limit.motion == motion; });
+  HIRES_CHECK(found != limits.end(), "limits are looked for in order");
+  return *found;
+}
+
+int NumTruths(double max_fall) {
+  HIRES_CHECK(max_fall > 0.0 && max_fall < 1.0, "a share lies between 0 and 1");
+  return static_cast<int>(std::ceil(std::log(1.0 - kConfidence) / std::log1p(-max_fall)));
+}
+
+std::optional<LimitsReport> FindLimits(const LimitsRequest& request,
+                                       const imagination::ImaginationSetup& setup,
+                                       const Crew& crew) {
+  return LimitFinder(request, setup, crew).Find();
+}
+
+}  // namespace hires::evaluation

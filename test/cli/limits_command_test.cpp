@@ -1,0 +1,59 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/command_run.h"
+#include "hires/base/text.h"
+#include "support/temporary_folder.h"
+
+namespace hires::cli::limits_command_test {
+namespace {
+
+using hires::test_support::Ended;
+using hires::test_support::RunHires;
+using hires::test_support::TemporaryFolder;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// Five truths, exactly nominal: quick.
+Ended Limits(std::vector<std::string> words) {
+  words.insert(words.end(), {"--max-fall", "0.5", "--uncertainty", "none"});
+  return RunHires({"limits"}, words);
+}
+
+TEST(LimitsCommandTest, PrintsATableAndWhatMoveBaseTakes) {
+  const TemporaryFolder folder;
+  const std::string json = (folder.path() / "limits.json").string(), yaml = (folder.path() / "dwa.yaml").string();
+  const Ended ended = Limits({"--object", "peppermill1", "--json", json, "--yaml", yaml});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("speed"), HasSubstr("2.65 m/s^2"), HasSubstr("robot's own"),
+                               HasSubstr("DWAPlannerROS:"), HasSubstr("none of 5 truths")));
+  const auto numbers = nlohmann::json::parse(base::ReadTextFile(json));
+  EXPECT_EQ(numbers["object"], "peppermill1");
+  EXPECT_EQ(numbers["uncertainty"], "none");
+  EXPECT_EQ(numbers["limits"].size(), 5u);
+  EXPECT_THAT(ended.out, HasSubstr(base::ReadTextFile(yaml)));
+}
+
+TEST(LimitsCommandTest, TakesAThingThatAYamlFileDescribes) {
+  const TemporaryFolder folder;
+  const std::string file = folder.Write(
+      "bottle.yaml", "{shape: cylinder, radius: 0.04, height: 0.2, mass: 0.5, friction: 0.2}");
+  const Ended ended =
+      Limits({"--object", file, "--robot", HIRES_SOURCE_DIR "/config/robots/cart.yaml"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("slides: 1.96 m/s^2"), HasSubstr("bottle on the tray")));
+}
+
+TEST(LimitsCommandTest, BadInputIsToldBeforeAnythingIsPlayed) {
+  EXPECT_THAT(Limits({"--object", "pepermill1"}).err, HasSubstr("peppermill1"));
+  EXPECT_THAT(Limits({"--object", "none.yaml"}).err, HasSubstr("none.yaml"));
+  EXPECT_THAT(Limits({"--object", "peppermill1", "--json", "/no/folder/a.json"}).err,
+              HasSubstr("/no/folder"));
+  EXPECT_EQ(Limits({}).code, 1);
+  EXPECT_EQ(RunHires({"limits"}, {"--object", "peppermill1", "--max-fall", "0"}).code, 1);
+}
+
+}  // namespace
+}  // namespace hires::cli::limits_command_test
