@@ -43,8 +43,8 @@ bool IsInterrupted() { return interrupted; }
 struct ImagineOptions {
   StartOptions start;
   SaveRolloutOptions save;
-  std::string action, config, scene, world, robot, objects, uncertainty, ranking, json;
-  std::vector<std::string> arguments, action_libraries;
+  std::string action, config, scene, world, map, robot, objects, uncertainty, ranking, json;
+  std::vector<std::string> arguments, action_libraries, areas;
   int rollouts{0}, threads{0};
   std::uint64_t seed{1};
   double deadline{-1.0}, min_success{0.0};
@@ -77,7 +77,11 @@ void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
   app->add_flag("--local", o->local, "in this process, without any ROS master");
   app->add_option("--threads", o->threads, "workers of --local; default: one per core")
       ->check(CLI::Range(1, 256));
-  app->add_option("--world", o->world, "another SDF world");
+  CLI::Option* world = app->add_option("--world", o->world, "another SDF world");
+  app->add_option("--map", o->map, "a map_server map (YAML and PGM) whose walls are the world")
+      ->excludes(world);
+  app->add_option("--area", o->areas, "one more area, NAME:x,y,yaw [m, m, rad]; may be repeated")
+      ->allow_extra_args(false);
   app->add_option("--robot", o->robot, "another robot: profile (.yaml) or URDF (.urdf)");
   app->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
   app->add_option("--scene", o->scene, "another scene file instead of config/scene.yaml");
@@ -120,9 +124,11 @@ ImagineQuery MakeQuery(const ImagineOptions& o, const Backends& backends) {
   ImagineQuery query;
   query.setup = imagination::ReadSetupConfig(o.scene.empty() ? config.scene : o.scene);
   imagination::OverridePaths(o.world, o.robot, o.objects, o.uncertainty, &query.setup);
+  query.setup.map = o.map;
+  for (const std::string& area : o.areas) query.setup.areas.push_back(ReadArea(area));
   SetStart(o, &query);
-  query.own_scene =
-      !(o.world + o.robot + o.objects + o.scene).empty() || !query.setup.extra_objects.empty();
+  query.own_scene = !(o.world + o.map + o.robot + o.objects + o.scene).empty() ||
+                    !o.areas.empty() || !query.setup.extra_objects.empty();
   query.own_uncertainty = !o.uncertainty.empty();
   query.action.name = o.action;
   for (const std::string& list : o.arguments) {

@@ -134,6 +134,16 @@ void AddStartOptions(CLI::App* app, StartOptions* o) {
       ->allow_extra_args(false);
 }
 
+imagination::NamedArea ReadArea(const std::string& text) {
+  constexpr char kWanted[] = "NAME:x,y,yaw [m, m, rad], as kitchen:3.2,1.0,1.57";
+  const auto parts = PartsOf("--area", text, 2, kWanted);
+  const std::vector<double> numbers = NumbersIn(parts[1]);
+  if (numbers.size() != 3) {
+    throw base::ConfigError(fmt::format("--area '{}': wanted {}", text, kWanted));
+  }
+  return {parts[0], {numbers[0], numbers[1], numbers[2]}};
+}
+
 ImagineStart ReadStart(const StartOptions& options, const std::string& action,
                        const actions::Catalogue& catalogue) {
   ImagineStart start;

@@ -46,9 +46,9 @@ imagination::SetupConfig SetupOf(const LimitsOptions& o, const std::string& pack
 
 evaluation::Crew CrewOf(const LimitsOptions& o, const std::function<bool()>& cancelled) {
   evaluation::Crew crew;
-  crew.threads =
-      o.threads > 0 ? o.threads
-                    : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  crew.threads = o.threads > 0
+                     ? o.threads
+                     : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   crew.cancelled = cancelled;
   if (!o.quiet && isatty(STDERR_FILENO) != 0) {
     crew.on_progress = [begin = Clock::now()](double fraction, double) {
@@ -101,8 +101,8 @@ int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folde
     if (!path.empty()) evaluation::RequireFolderOf(path);
   }
   evaluation::LimitsRequest request;
-  const imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(
-      SetupOf(options, package_folder, &request.object));
+  const imagination::ImaginationSetup setup =
+      imagination::LoadImaginationSetup(SetupOf(options, package_folder, &request.object));
   request.max_fall = options.max_fall;
   request.seed = options.seed;
   request.check_truths = options.check_truths;

@@ -10,6 +10,7 @@
 #include "hires/robot/load_robot.h"
 #include "hires/skills/action_loader.h"
 #include "hires/world/object_catalogue.h"
+#include "hires/world/occupancy_grid.h"
 #include "imagination/physics_hash.h"
 
 namespace hires::imagination {
@@ -90,10 +91,26 @@ physics::PhysicsParams ReadPhysics(ParamReader in) {
   return p;
 }
 
+constexpr double kWallHeight = 2.5;  // [m] of what a map has
+
+void AddAreas(const std::vector<NamedArea>& areas, world::World* world) {
+  for (const NamedArea& area : areas) {
+    const std::string key = base::ToLower(area.name);
+    if (!world->frames.emplace(key, geometry::Lift(area.X_MA)).second) {
+      throw base::ConfigError(fmt::format(
+          "area '{}' is there already, wanted a new name; call it otherwise", area.name));
+    }
+    world->frame_names[key] = area.name;
+  }
+}
+
 /// The world with every object model that a request may name.
 world::World LoadWorldWithObjects(const SetupConfig& config,
                                   std::map<std::string, std::string>* object_models) {
-  world::World world = world::LoadWorld(config.world);
+  world::World world = config.map.empty()
+                           ? world::LoadWorld(config.world)
+                           : world::ExtrudeMap(world::LoadMap(config.map), kWallHeight);
+  AddAreas(config.areas, &world);
   const auto add = [&](const std::string& instance,
                        const std::shared_ptr<const world::ObjectModel>& model) {
     (*object_models)[base::ToLower(instance)] = model->name;
@@ -179,9 +196,14 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   world::World world = LoadWorldWithObjects(config, &setup.object_models);
   robot::Robot robot = robot::LoadAnyRobot(config.robot);
   setup.robot_hash = PutGuardBefore(config.has_base_guard, &robot);
-  setup.skills = std::make_shared<const skills::SkillSet>(
+  skills::SkillSet skills =
       skills::MakeSkillSet(world, robot, config.driving, config.blind, config.manipulation,
-                           config.standing, skills::LoadActionSet(config.action_libraries)));
+                           config.standing, skills::LoadActionSet(config.action_libraries));
+  if (!config.map.empty()) {  // it also knows what is unknown
+    skills.driving = std::make_shared<const skills::DrivingContext>(
+        skills::MakeDrivingContext(world::LoadMap(config.map), robot, config.driving));
+  }
+  setup.skills = std::make_shared<const skills::SkillSet>(std::move(skills));
   setup.actions_hash = setup.skills->actions->hash();
   base::Hasher hasher;
   hasher.Add(world.hash);

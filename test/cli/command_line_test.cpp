@@ -94,6 +94,35 @@ TEST(CommandLineTest, ImaginesAndWritesWhatItFound) {
   EXPECT_EQ(answer.at("seed"), 1);
 }
 
+/// A map of 6 m by 3 m with a wall across that has a gap of 0.4 m, too narrow for the cart, or
+/// none.
+std::string HallMap(const TemporaryFolder& folder, bool has_wall) {
+  std::string pixels;
+  for (int row = 0; row < 30; ++row) {
+    for (int column = 0; column < 60; ++column) {
+      const bool is_rim = row == 0 || row == 29 || column == 0 || column == 59;
+      const bool is_wall = has_wall && column == 30 && (row < 13 || row > 16);
+      pixels += is_rim || is_wall ? "0 " : "254 ";
+    }
+  }
+  folder.Write("hall.pgm", "P2 60 30 255 " + pixels);
+  return folder.Write("hall.yaml",
+                      "{image: hall.pgm, resolution: 0.1, origin: [-1, -1.5, 0], "
+                      "negate: 0, occupied_thresh: 0.65, free_thresh: 0.196}");
+}
+
+TEST(CommandLineTest, AMapIsAWorldToDriveIn) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> drive{
+      "--action",   "move_base",   "--from", "dock",       "--arg",           "bench",
+      "--object",   "peppermill1", "--area", "dock:0,0,0", "--area",          "bench:3.8,0,1.57",
+      "--rollouts", "4",           "--seed", "3",          "--no-early-stop", "--map"};
+  const Ended open = Small().Imagine(drive + std::vector<std::string>{HallMap(folder, false)});
+  EXPECT_THAT(open.out, HasSubstr("succeeded in 4 of 4")) << open.err;
+  const Ended shut = Small().Imagine(drive + std::vector<std::string>{HallMap(folder, true)});
+  EXPECT_THAT(shut.out, HasSubstr("no_path 4")) << shut.err;
+}
+
 TEST(CommandLineTest, EqualSeedsGiveEqualAnswers) {
   const TemporaryFolder folder;
   const auto answer = [&](const std::string& threads) {
@@ -248,6 +277,8 @@ TEST(CommandLineTest, FilesOfOnesOwnAreSaid) {
             kExitDeadline);
   EXPECT_TRUE(seen.own_scene);
   EXPECT_FALSE(seen.own_uncertainty);
+  RunHires(start, {"--area", "bench:1,2,0.5"}, backends);
+  EXPECT_TRUE(seen.own_scene);
   RunHires(start, {"--uncertainty", "none"}, backends);
   EXPECT_FALSE(seen.own_scene);
   EXPECT_TRUE(seen.own_uncertainty);
@@ -312,6 +343,19 @@ TEST(CommandLineTest, RefusesWhatTheWorldDoesNotKnow) {
                 {"object 'pepermill1' is unknown", "'peppermill1'"});
   ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Inside", "--arg", "Window"}),
                 {"robot starts in collision", "'pillar'"});
+}
+
+TEST(CommandLineTest, RefusesAreasThatAreNone) {
+  const auto with = [](const std::vector<std::string>& more) {
+    return Small().Imagine(kDrive + more);
+  };
+  for (const char* area : {"bench", "bench:1,2", "bench:1,2,x", "bench:1,2,nan", ":1,2,3"}) {
+    ExpectRefused(with({"--area", area}), {std::string("--area '") + area, "kitchen:3.2,1.0,1.57"});
+  }
+  ExpectRefused(with({"--area", "door:1,2,3"}), {"area 'door' is there already"});
+  ExpectRefused(with({"--area", "bench:1,2,3", "--area", "Bench:1,2,3"}), {"there already"});
+  ExpectRefused(with({"--map", "/nowhere/map.yaml"}), {"/nowhere/map.yaml"});
+  ExpectRefused(with({"--map", "map.yaml", "--world", "a.world"}), {"--map"});
 }
 
 TEST(CommandLineTest, RefusesEmptyAlternatives) {

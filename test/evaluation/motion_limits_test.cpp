@@ -126,7 +126,8 @@ TEST(MotionLimitsTest, WhatIsPastedIsNoMoreThanWhatHoldsTogether) {
   EXPECT_LE(number("acc_lim_x"), share * report->Of("deceleration").value);
   EXPECT_LE(number("max_vel_theta"), share * report->Of("turning").value);
   EXPECT_EQ(number("max_vel_y"), number("max_vel_x"));
-  const auto wheels = SetupWith([](auto* controller) { controller->drive = robot::Drive::kDifferential; });
+  const auto wheels =
+      SetupWith([](auto* controller) { controller->drive = robot::Drive::kDifferential; });
   const auto two_wheels = FindLimits(Mill(0.5), wheels, {});
   ASSERT_TRUE(two_wheels);
   EXPECT_THAT(LimitsYaml(*two_wheels), testing::Not(HasSubstr("vel_y")));

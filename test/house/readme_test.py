@@ -2,7 +2,7 @@
 
 Each console block (`$ scripts/run hires ...` and what it printed) that needs no master is run, in
 order, by the program HIRES in an empty folder that shows the package's. With --long also those that
-imagine, which take minutes. `$ ... the same with OPTIONS` is the command before with more options.
+play, which take minutes. `$ ... the same with OPTIONS` is the command before with more options.
 """
 
 import os
@@ -84,7 +84,7 @@ def main():
         for name in ("config", "worlds", "urdf"):
             os.symlink(os.path.join(ROOT, name), os.path.join(folder, name))
         for path, words, shown in found:
-            if words[0] != "imagine" or is_long:
+            if words[0] not in ("imagine", "limits") or is_long:
                 wrong += differences(program, path, words, shown, folder)
     print("\n".join(wrong) if wrong else "%d examples print what is shown" % len(found))
     return 1 if wrong else 0

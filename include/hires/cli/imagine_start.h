@@ -5,6 +5,7 @@
 
 #include "hires/actions/catalogue.h"
 #include "hires/base/action.h"
+#include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/start_state.h"
 #include "hires/world/world.h"
 
@@ -36,6 +37,10 @@ void AddStartOptions(CLI::App* app, StartOptions* options);
 /// @throws base::ConfigError naming the option and what it wants.
 ImagineStart ReadStart(const StartOptions& options, const std::string& action,
                        const actions::Catalogue& catalogue);
+
+/// "kitchen:3.2,1.0,1.57": name, x and y [m], yaw [rad].
+/// @throws base::ConfigError saying what is wanted.
+imagination::NamedArea ReadArea(const std::string& text);
 
 /// A robot that remembers an object somewhere may well be asked to take it and not find it; whoever
 /// types a start by hand has forgotten it.

@@ -15,8 +15,8 @@ namespace hires::evaluation {
 
 /// What is looked for.
 struct LimitsRequest {
-  std::string object;        ///< on the tray: an instance of the catalogue, or a model
-  double max_fall{0.01};     ///< share of drives that may lose it, in (0, 1)
+  std::string object;          ///< on the tray: an instance of the catalogue, or a model
+  double max_fall{0.01};       ///< share of drives that may lose it, in (0, 1)
   double command_period{0.1};  ///< [s] between two velocities that a local planner commands
   std::uint64_t seed{1};
   int check_truths{0};  ///< new ones to play at each limit, and 10 % above
@@ -42,9 +42,9 @@ struct MotionLimit {
 /// What was found. Limits hold for all directions in which the base can drive.
 struct LimitsReport {
   LimitsRequest request;
-  std::string model;            ///< of the object
-  std::string uncertainty;      ///< "none", or hash of what was drawn from
-  int num_truths{0};            ///< at none of them it falls below the limits
+  std::string model;                ///< of the object
+  std::string uncertainty;          ///< "none", or hash of what was drawn from
+  int num_truths{0};                ///< at none of them it falls below the limits
   std::vector<MotionLimit> limits;  ///< the last one is `together`
   std::uint64_t world_hash{0}, robot_hash{0}, physics_hash{0};
   bool is_omnidirectional{false};
@@ -63,8 +63,8 @@ int NumTruths(double max_fall);
 /// Looks for limits of all motions. The same bits for any number of threads.
 /// @param setup  whose world only lends its gravity: the floor is empty.
 /// @return nothing when it was cancelled.
-/// @throws base::ConfigError: no such object, a robot without a tray, an object that cannot stand or
-/// falls while the robot stands still or drives at a 30th of what its controller allows.
+/// @throws base::ConfigError: no such object, a robot without a tray, an object that cannot stand
+/// or falls while the robot stands still or drives at a 30th of what its controller allows.
 std::optional<LimitsReport> FindLimits(const LimitsRequest& request,
                                        const imagination::ImaginationSetup& setup,
                                        const Crew& crew);

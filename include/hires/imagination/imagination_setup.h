@@ -18,14 +18,22 @@
 
 namespace hires::imagination {
 
+/// A place to stand at that is named beside the world's file.
+struct NamedArea {
+  std::string name;
+  geometry::Pose2 X_MA;
+};
+
 /// Which files and numbers a world to imagine in is made of: one YAML, config/scene.yaml. Relative
 /// paths count from that file's folder.
 struct SetupConfig {
-  std::string world;                       ///< SDF world
-  std::string robot;                       ///< robot profile (.yaml) or bare URDF (.urdf)
-  std::string objects;                     ///< catalogue of object instances (YAML)
-  std::string uncertainty;                 ///< YAML, or "none"
-  bool has_base_guard{false};              ///< late commands to the base end in the guard's ramp
+  std::string world;             ///< SDF world
+  std::string map;               ///< map_server YAML whose walls are the world instead; or empty
+  std::vector<NamedArea> areas;  ///< beside those of the world
+  std::string robot;             ///< robot profile (.yaml) or bare URDF (.urdf)
+  std::string objects;           ///< catalogue of object instances (YAML)
+  std::string uncertainty;       ///< YAML, or "none"
+  bool has_base_guard{false};    ///< late commands to the base end in the guard's ramp
   std::vector<std::string> extra_objects;  ///< object models (files) beside the catalogue's
   /// Shared libraries with more actions: never from a file, as they are code.
   std::vector<std::string> action_libraries;

@@ -71,8 +71,8 @@ struct World {
 /// supported, poses that are not finite or lie more than 1 km away.
 World LoadWorld(const std::string& sdf_path, const std::vector<std::string>& model_path = {});
 
-/// Reads a single-link object from an SDF model (.sdf, model.sdf) or a URDF (.urdf), or a cylinder or
-/// box of given size and mass (.yaml: docs/command_line.md).
+/// Reads a single-link object from an SDF model (.sdf, model.sdf) or a URDF (.urdf), or a cylinder
+/// or box of given size and mass (.yaml: docs/command_line.md).
 /// @throws base::ConfigError as LoadWorld, and as base::ParamReader.
 ObjectModel LoadObjectModel(const std::string& path);
 

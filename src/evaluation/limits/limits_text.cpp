@@ -49,11 +49,16 @@ std::string LimitsText(const LimitsReport& report) {
   }
   std::string text = FormatTable(rows);
   text += fmt::format(
-      "\nIn none of {} truths {} falls at these limits: at least {:g} % of drives keep it (95 % "
-      "confidence).\nTruths are drawn from the uncertainty that imagination has ({}); the floor is "
-      "empty.\nspeed, turning: reached gently or as the controller does, until commands cease and it "
-      "stops by itself.\n",
-      report.num_truths, report.request.object, 100.0 * (1.0 - report.request.max_fall),
+      "\n{} falls in none of {} simulated truths at these limits: at least {:g} % of such drives "
+      "keep it "
+      "(95 % confidence).\n"
+      "speed, turning: from where the base may stop by itself, as when commands cease. together: "
+      "speeding "
+      "up on an arc, and braking at once.\n"
+      "truths: same (the uncertainty that imagination has: {}), empty floor. closed form: the "
+      "model as it "
+      "is, on a base that follows exactly.\n",
+      report.request.object, report.num_truths, 100.0 * (1.0 - report.request.max_fall),
       report.uncertainty);
   if (report.wall_seconds > 0.0) {
     text += fmt::format("{:.0f} s played in {:.1f} s, {:.0f} times as fast as real time\n",
@@ -67,8 +72,8 @@ std::string LimitsYaml(const LimitsReport& report) {
   const double share = report.Of("together").value;
   const double speed = Floored(share * report.Of("speed").value);
   const double turning = Floored(share * report.Of("turning").value);
-  const double linear = Floored(
-      share * std::min(report.Of("acceleration").value, report.Of("deceleration").value));
+  const double linear =
+      Floored(share * std::min(report.Of("acceleration").value, report.Of("deceleration").value));
   const double angular = Floored(share * report.own_angular_acceleration);
   std::string text = fmt::format(
       "# {} on the tray, seed {}, at most {:g} of drives lose it\nDWAPlannerROS:\n"

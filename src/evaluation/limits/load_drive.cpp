@@ -102,8 +102,8 @@ class Driver {
   simulation::FallWatch watch_;
   const long steps_per_look_;
   long steps_{0};
-  Twist2 V_B_;                // the last that was commanded
-  double last_shake_{0.0};    // [s] of the load, or that the base was on its way to V_B_
+  Twist2 V_B_;              // the last that was commanded
+  double last_shake_{0.0};  // [s] of the load, or that the base was on its way to V_B_
 };
 
 }  // namespace

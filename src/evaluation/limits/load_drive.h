@@ -11,11 +11,11 @@ namespace hires::evaluation {
 
 /// What the base is told next: to come to a velocity, by steps of a local planner.
 struct DriveStep {
-  geometry::Twist2 V_B;           ///< [m/s], [rad/s]
-  double linear_rate{0.5};        ///< [m/s^2] at which commands approach it
-  double angular_rate{0.5};       ///< [rad/s^2]
-  double hold{0.0};               ///< [s] that it is commanded for
-  bool is_silent{false};          ///< nothing is commanded: the controller's time-out strikes
+  geometry::Twist2 V_B;      ///< [m/s], [rad/s]
+  double linear_rate{0.5};   ///< [m/s^2] at which commands approach it
+  double angular_rate{0.5};  ///< [rad/s^2]
+  double hold{0.0};          ///< [s] that it is commanded for
+  bool is_silent{false};     ///< nothing is commanded: the controller's time-out strikes
 };
 using LoadDrive = std::vector<DriveStep>;
 

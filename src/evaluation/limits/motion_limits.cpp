@@ -25,12 +25,12 @@ namespace {
 using geometry::Twist2;
 
 constexpr double kConfidence = 0.95;
-constexpr double kStep = 0.97;      // of the scale of values
-constexpr int kLastStep = 112;      // a 30th of the robot's own limit
-constexpr double kAbove = 1.1;     // times a limit, where it is checked
-constexpr int kFewTruths = 32;      // tell about where the limit lies
-constexpr double kGently = 0.5;     // [m/s^2] nothing shakes
-constexpr double kCruise = 0.5;     // [s]
+constexpr double kStep = 0.97;        // of the scale of values
+constexpr int kLastStep = 112;        // a 30th of the robot's own limit
+constexpr double kAbove = 1.1;        // times a limit, where it is checked
+constexpr int kFewTruths = 32;        // tell about where the limit lies
+constexpr double kGently = 0.5;       // [m/s^2] nothing shakes
+constexpr double kCruise = 0.5;       // [s]
 constexpr double kTurningTime = 1.0;  // [s] at full rate
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -51,8 +51,8 @@ class Search {
   /// The first step at which no truth loses the load; kLastStep + 1: there is none.
   /// @return nothing when cancelled.
   std::optional<int> Run() {
-    const std::vector<int> few(all_.begin(), all_.begin() + std::min<std::size_t>(
-                                                                kFewTruths, all_.size()));
+    const std::vector<int> few(all_.begin(),
+                               all_.begin() + std::min<std::size_t>(kFewTruths, all_.size()));
     const auto first = FirstBorneBy(few, 0);
     if (!first || *first > kLastStep) return first;
     auto step = FirstBorneBy(all_, *first);
@@ -119,9 +119,8 @@ class LimitFinder {
   std::optional<LimitsReport> Find() {
     report_.request = request_;
     report_.model = model_.name;
-    report_.uncertainty = setup_.uncertainty->quantities.empty()
-                              ? "none"
-                              : base::HexOf(setup_.uncertainty->hash);
+    report_.uncertainty =
+        setup_.uncertainty->quantities.empty() ? "none" : base::HexOf(setup_.uncertainty->hash);
     report_.num_truths = NumTruths(request_.max_fall);
     report_.world_hash = setup_.world_hash;
     report_.robot_hash = setup_.robot_hash;
@@ -146,7 +145,8 @@ class LimitFinder {
     const double least = ValueAt(motion.robots_own, kLastStep);
     if (*step > kLastStep) {
       throw base::ConfigError(fmt::format(
-          "object '{}' falls from the tray of '{}' at a {} of {:.3g} {} already, wanted one that can "
+          "object '{}' falls from the tray of '{}' at a {} of {:.3g} {} already, wanted one that "
+          "can "
           "be carried; put it elsewhere (tray: in the profile) or allow more with --max-fall",
           request_.object, setup_.scene->robot.model.name, motion.name, least, motion.unit));
     }
@@ -213,8 +213,8 @@ class LimitFinder {
     if (controller_.stops_at_timeout) {
       const geometry::MassProperties& body = model_.mass_properties;
       const double gyration = std::min(body.I_BBcm(0, 0), body.I_BBcm(1, 1)) / body.mass;
-      motion.closed_form = physics::SuddenStopTopplingSpeed(load_.support, load_.com_height,
-                                                            gyration, gravity());
+      motion.closed_form =
+          physics::SuddenStopTopplingSpeed(load_.support, load_.com_height, gyration, gravity());
       motion.stated = "topples where wheels lock";
     } else if (controller_.limits.max_linear_acceleration < Bears()) {
       motion.stated = "the controller's own stop moves nothing";
@@ -227,16 +227,24 @@ class LimitFinder {
 
   Motion Acceleration() const {
     const double speed = report_.Of("speed").value;
-    return {"acceleration", "m/s^2", controller_.limits.max_linear_acceleration, Bears(),
-            HowItGives(), [speed](double a, double direction) -> LoadDrive {
+    return {"acceleration",
+            "m/s^2",
+            controller_.limits.max_linear_acceleration,
+            Bears(),
+            HowItGives(),
+            [speed](double a, double direction) -> LoadDrive {
               return {{Along(direction, speed), a, 0.0, kCruise}};
             }};
   }
 
   Motion Deceleration() const {
     const double speed = report_.Of("speed").value;
-    return {"deceleration", "m/s^2", controller_.limits.max_linear_acceleration, Bears(),
-            HowItGives(), [speed](double a, double direction) -> LoadDrive {
+    return {"deceleration",
+            "m/s^2",
+            controller_.limits.max_linear_acceleration,
+            Bears(),
+            HowItGives(),
+            [speed](double a, double direction) -> LoadDrive {
               return {{Along(direction, speed), kGently, 0.0, kCruise}, {{}, a, 0.0, 0.0}};
             }};
   }
@@ -245,7 +253,9 @@ class LimitFinder {
   Motion Turning() const {
     const double reach = stage_.scene->X_BO.translation.head<2>().norm();
     const double sudden = controller_.limits.max_angular_acceleration;
-    return {"turning", "rad/s", controller_.limits.max_angular_velocity,
+    return {"turning",
+            "rad/s",
+            controller_.limits.max_angular_velocity,
             reach > 0.0 ? std::sqrt(Bears() / reach) : kInfinity,
             fmt::format("{} {:.2f} m from the base's centre", HowItGives(), reach),
             [sudden](double w, double) -> LoadDrive {
@@ -258,7 +268,11 @@ class LimitFinder {
     const double v = report_.Of("speed").value, w = report_.Of("turning").value,
                  a = report_.Of("acceleration").value, d = report_.Of("deceleration").value,
                  sudden = controller_.limits.max_angular_acceleration;
-    return {"together", "of each", 1.0, kInfinity, {},
+    return {"together",
+            "of each",
+            1.0,
+            kInfinity,
+            {},
             [=](double share, double direction) -> LoadDrive {
               return {{Along(direction, share * v, share * w), share * a, share * sudden, kCruise},
                       {{}, share * d, share * sudden, 0.0}};

@@ -184,8 +184,9 @@ void ImaginationClientNode::OnCancel(GoalHandle goal) {
 void ImaginationClientNode::CancelForNobody(Session* session, double now) {
   const std::string asker = askers_.GoneFor(session->goal.getGoalID().id, now);
   if (asker.empty() || session->scheduler->finished()) return;
-  hires::base::Log(hires::base::LogLevel::kWarn,
-                   fmt::format("session={} cancelled: {}, which asked, is gone", session->id, asker));
+  hires::base::Log(
+      hires::base::LogLevel::kWarn,
+      fmt::format("session={} cancelled: {}, which asked, is gone", session->id, asker));
   CarryOut(session, session->scheduler->Cancel(SchedulerNow()));
 }
 
