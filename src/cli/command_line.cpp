@@ -206,8 +206,10 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
   if (!options.json.empty()) {
     evaluation::WriteJson(evaluation::ToJson(report, query.scheduler.criteria), options.json);
   }
+  const int code = ExitCodeOf(report);
+  if (report.ranking.empty()) return code;  // nothing was played that could be saved
   SaveRollout(options.save, query, report, backends.open_rollout_bag, cancelled);
-  return ExitCodeOf(report);
+  return code;
 }
 
 /// CLI11 itself would only say that a verb is missing.

@@ -123,7 +123,8 @@ void RequireObjects(const actions::Catalogue& catalogue,
 void AddStartOptions(CLI::App* app, StartOptions* o) {
   app->add_option("--from", o->from, "area where the robot stands")->required();
   app->add_option("--object", o->on_tray,
-                  "what stands on its tray: instance, model, or .sdf/.urdf file; up to three times")
+                  "what stands on its tray: instance, model, or file (.sdf, .urdf, .yaml); up to "
+                  "three times")
       ->allow_extra_args(false);
   app->add_option("--object-in-hand", o->in_hand, "OBJECT:ARM, what an arm holds: mug1:rightArm1")
       ->allow_extra_args(false);

@@ -1,21 +1,21 @@
 #include "cli/limits_command.h"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
-#include <fstream>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "cli/experiment_command.h"
-#include "hires/base/error.h"
+#include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/motion_limits.h"
 #include "hires/evaluation/report_json.h"
+#include "hires/evaluation/timeline.h"
 #include "hires/imagination/client_config.h"
 
 namespace hires::cli {
@@ -58,15 +58,6 @@ evaluation::Crew CrewOf(const LimitsOptions& o, const std::function<bool()>& can
   return crew;
 }
 
-void WriteText(const std::string& text, const std::string& path) {
-  std::ofstream file(path);
-  file << text;
-  if (!file.flush()) {
-    throw base::ConfigError(fmt::format(
-        "{}: cannot be written; check that its folder exists and may be written", path));
-  }
-}
-
 }  // namespace
 
 void AddLimitsVerb(CLI::App* app, LimitsOptions* options) {
@@ -103,6 +94,8 @@ int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folde
   evaluation::LimitsRequest request;
   const imagination::ImaginationSetup setup =
       imagination::LoadImaginationSetup(SetupOf(options, package_folder, &request.object));
+  request.is_controller_assumed =
+      base::ToLower(std::filesystem::path(options.robot).extension().string()) == ".urdf";
   request.max_fall = options.max_fall;
   request.seed = options.seed;
   request.check_truths = options.check_truths;
@@ -116,7 +109,7 @@ int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folde
   report->wall_seconds = SecondsSince(begin);
   const std::string yaml = evaluation::LimitsYaml(*report);
   std::cout << evaluation::LimitsText(*report) << '\n' << yaml;
-  if (!options.yaml.empty()) WriteText(yaml, options.yaml);
+  if (!options.yaml.empty()) evaluation::WriteText(yaml, options.yaml);
   if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
   return kExitRecommended;
 }

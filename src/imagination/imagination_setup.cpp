@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include "hires/base/error.h"
@@ -91,16 +94,48 @@ physics::PhysicsParams ReadPhysics(ParamReader in) {
   return p;
 }
 
-constexpr double kWallHeight = 2.5;  // [m] of what a map has
+constexpr double kWallHeight = 2.5;   // [m] of what a map has
+constexpr double kFarthest = 1000.0;  // [m] of an area, as in an SDF world
 
 void AddAreas(const std::vector<NamedArea>& areas, world::World* world) {
   for (const NamedArea& area : areas) {
     const std::string key = base::ToLower(area.name);
+    if (std::max(std::abs(area.X_MA.x), std::abs(area.X_MA.y)) > kFarthest) {
+      throw base::ConfigError(
+          fmt::format("area '{}' lies at {:g}, {:g} m, wanted at most {:g} m away", area.name,
+                      area.X_MA.x, area.X_MA.y, kFarthest));
+    }
     if (!world->frames.emplace(key, geometry::Lift(area.X_MA)).second) {
       throw base::ConfigError(fmt::format(
           "area '{}' is there already, wanted a new name; call it otherwise", area.name));
     }
     world->frame_names[key] = area.name;
+  }
+}
+
+/// An object of one's own must not become what others are called.
+void RefuseTaken(const world::ObjectModel& model, const std::string& path,
+                 const world::World& world, const std::map<std::string, std::string>& instances) {
+  const bool is_plain = !model.name.empty() &&
+                        std::all_of(model.name.begin(), model.name.end(),
+                                    [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+  if (!is_plain) {
+    throw base::ConfigError(
+        fmt::format("{}: the object is called '{}', wanted letters, digits and _; rename it", path,
+                    model.name));
+  }
+  world::World one, other;
+  const auto known = world.models.find(model.name);
+  if (known != world.models.end()) {
+    one.models[model.name] = known->second;
+    other.models[model.name] = std::make_shared<const world::ObjectModel>(model);
+  }
+  const auto instance = instances.find(base::ToLower(model.name));
+  const bool is_instance = instance != instances.end() && instance->second != model.name;
+  if (is_instance || one.ComputeHash() != other.ComputeHash()) {
+    throw base::ConfigError(fmt::format(
+        "{}: the object is called '{}', as another one is in world or catalogue; rename it", path,
+        model.name));
   }
 }
 
@@ -122,6 +157,7 @@ world::World LoadWorldWithObjects(const SetupConfig& config,
   for (const std::string& path : config.extra_objects) {
     const auto model =
         std::make_shared<const world::ObjectModel>(world::FindObjectModel(path, config.objects));
+    RefuseTaken(*model, path, world, *object_models);
     add(model->name, model);
   }
   world.hash = world.ComputeHash();

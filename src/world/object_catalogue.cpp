@@ -20,7 +20,8 @@ bool IsPlainName(const std::string& name) {
 
 bool IsPath(const std::string& name) {
   const std::string ending = base::ToLower(fs::path(name).extension().string());
-  return ending == ".sdf" || ending == ".urdf" || name.find('/') != std::string::npos;
+  return ending == ".sdf" || ending == ".urdf" || ending == ".yaml" ||
+         name.find('/') != std::string::npos;
 }
 
 /// Model folders that hold an object: those with a model.sdf.

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/command_run.h"
@@ -29,7 +30,7 @@ TEST(LimitsCommandTest, PrintsATableAndWhatMoveBaseTakes) {
   const Ended ended = Limits({"--object", "peppermill1", "--json", json, "--yaml", yaml});
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_THAT(ended.out,
-              AllOf(HasSubstr("speed"), HasSubstr("2.65 m/s^2"), HasSubstr("robot's own"),
+              AllOf(HasSubstr("speed"), HasSubstr("2.646 m/s^2"), HasSubstr("robot's own"),
                     HasSubstr("DWAPlannerROS:"), HasSubstr("none of 5 simulated truths")));
   const auto numbers = nlohmann::json::parse(base::ReadTextFile(json));
   EXPECT_EQ(numbers["object"], "peppermill1");
@@ -41,12 +42,27 @@ TEST(LimitsCommandTest, PrintsATableAndWhatMoveBaseTakes) {
 TEST(LimitsCommandTest, TakesAThingThatAYamlFileDescribes) {
   const TemporaryFolder folder;
   const std::string file = folder.Write(
-      "bottle.yaml", "{shape: cylinder, radius: 0.04, height: 0.2, mass: 0.5, friction: 0.2}");
+      "my_bottle.yaml", "{shape: cylinder, radius: 0.04, height: 0.2, mass: 0.5, friction: 0.2}");
   const Ended ended =
       Limits({"--object", file, "--robot", HIRES_SOURCE_DIR "/config/robots/cart.yaml"});
   EXPECT_EQ(ended.code, 0) << ended.err;
-  EXPECT_THAT(ended.out,
-              AllOf(HasSubstr("slides: 1.96 m/s^2"), HasSubstr("bottle on the tray, seed 1")));
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("slides: 1.960 m/s^2"),
+                               HasSubstr("# my_bottle on the tray of cart")));
+}
+
+TEST(LimitsCommandTest, AFileOfThisFolderIsTaken) {
+  const TemporaryFolder folder;
+  folder.Write("my_bottle.yaml", "{shape: cylinder, radius: 0.04, height: 0.2, mass: 0.5}");
+  folder.Write("coffee_cup.yaml", "{shape: cylinder, radius: 0.04, height: 0.2, mass: 0.5}");
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const Ended ended =
+      Limits({"--object", "my_bottle.yaml", "--robot", HIRES_SOURCE_DIR "/urdf/cart.urdf"});
+  const Ended taken = Limits({"--object", "coffee_cup.yaml"});
+  std::filesystem::current_path(before);
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("ASSUMED"));  // a URDF says nothing of the controller
+  EXPECT_THAT(taken.err, AllOf(HasSubstr("coffee_cup.yaml"), HasSubstr("rename it")));
 }
 
 TEST(LimitsCommandTest, BadInputIsToldBeforeAnythingIsPlayed) {

@@ -15,9 +15,10 @@ namespace hires::evaluation {
 
 /// What is looked for.
 struct LimitsRequest {
-  std::string object;          ///< on the tray: an instance of the catalogue, or a model
-  double max_fall{0.01};       ///< share of drives that may lose it, in (0, 1)
-  double command_period{0.1};  ///< [s] between two velocities that a local planner commands
+  std::string object;                 ///< on the tray: an instance of the catalogue, or a model
+  bool is_controller_assumed{false};  ///< the robot came without a profile
+  double max_fall{0.01};              ///< share of drives that may lose it, in (0, 1)
+  double command_period{0.1};         ///< [s] between two velocities that a local planner commands
   std::uint64_t seed{1};
   int check_truths{0};  ///< new ones to play at each limit, and 10 % above
 };
@@ -39,15 +40,17 @@ struct MotionLimit {
   std::optional<LimitCheck> check;
 };
 
-/// What was found. Limits hold for all directions in which the base can drive.
+/// What was found.
 struct LimitsReport {
   LimitsRequest request;
-  std::string model;                ///< of the object
+  std::string model;  ///< of the object
+  std::string robot;
   std::string uncertainty;          ///< "none", or hash of what was drawn from
   int num_truths{0};                ///< at none of them it falls below the limits
   std::vector<MotionLimit> limits;  ///< the last one is `together`
   std::uint64_t world_hash{0}, robot_hash{0}, physics_hash{0};
   bool is_omnidirectional{false};
+  int num_directions{1};  ///< of driving, evenly around; each truth drives into one of them
   double own_angular_acceleration{0.0};  ///< [rad/s^2] at which the base begins and ends to turn
   double simulated_seconds{0.0};
   double wall_seconds{0.0};  ///< set by who asked; 0: unknown
@@ -57,7 +60,8 @@ struct LimitsReport {
 
 /// How many truths of which none may lose the load: the smallest n with (1 - max_fall)^n <= 0.05.
 /// The largest value that all n bear is then, with 95 % confidence, borne by at least 1 - max_fall
-/// of all truths, whatever they are distributed like [Wilks 1941, Ann. Math. Stat. 12:91-96].
+/// of all truths (of the mix of directions that is played), whatever they are distributed like
+/// [Wilks 1941, Ann. Math. Stat. 12:91-96]. Each motion has truths of its own.
 int NumTruths(double max_fall);
 
 /// Looks for limits of all motions. The same bits for any number of threads.

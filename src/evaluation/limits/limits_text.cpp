@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -11,10 +12,15 @@
 namespace hires::evaluation {
 namespace {
 
+/// Rounded down: never more than what was borne.
+double Floored(double value, double scale) { return std::floor(value * scale + 1e-9) / scale; }
+
 std::string Amount(double value, const MotionLimit& limit) {
   if (std::isinf(value)) return "-";
-  if (limit.motion == "together") return fmt::format("{:.0f} % {}", 100.0 * value, limit.unit);
-  return fmt::format("{:.2f} {}", value, limit.unit);
+  if (limit.motion == "together") {
+    return fmt::format("{:.0f} % {}", 100.0 * Floored(value, 1e2), limit.unit);
+  }
+  return fmt::format("{:.3f} {}", Floored(value, 1e3), limit.unit);
 }
 
 std::string ClosedForm(const MotionLimit& limit) {
@@ -27,9 +33,6 @@ std::string Falls(const LimitCheck& check) {
   return check.falls_above ? fmt::format("{} and {}", check.falls_at, *check.falls_above)
                            : fmt::format("{}", check.falls_at);
 }
-
-/// As a number to be pasted: rounded down.
-double Floored(double value) { return std::floor(value * 1e3) / 1e3; }
 
 nlohmann::ordered_json OrNull(double value) {
   return std::isinf(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
@@ -49,17 +52,24 @@ std::string LimitsText(const LimitsReport& report) {
   }
   std::string text = FormatTable(rows);
   text += fmt::format(
-      "\n{} falls in none of {} simulated truths at these limits: at least {:g} % of such drives "
-      "keep it "
-      "(95 % confidence).\n"
+      "\nAt each limit {} falls in none of {} simulated truths: at least {:g} % keep it (95 % "
+      "confidence, for each motion).\n"
       "speed, turning: from where the base may stop by itself, as when commands cease. together: "
-      "speeding "
-      "up on an arc, and braking at once.\n"
-      "truths: same (the uncertainty that imagination has: {}), empty floor. closed form: the "
-      "model as it "
-      "is, on a base that follows exactly.\n",
+      "on an "
+      "arc, speeding up, then braking, or left without commands.\n"
+      "truths: same (the uncertainty that imagination has: {}); empty floor; {}. closed form: the "
+      "model "
+      "as it is, on a base that follows exactly.\n",
       report.request.object, report.num_truths, 100.0 * (1.0 - report.request.max_fall),
-      report.uncertainty);
+      report.uncertainty,
+      report.num_directions > 1
+          ? fmt::format("driving into {} directions in turn", report.num_directions)
+          : "driving forward");
+  if (report.request.is_controller_assumed) {
+    text +=
+        "robot's own: ASSUMED, a URDF does not tell how a base is controlled; a profile does "
+        "(config/robots/cart.yaml is one).\n";
+  }
   if (report.wall_seconds > 0.0) {
     text += fmt::format("{:.0f} s played in {:.1f} s, {:.0f} times as fast as real time\n",
                         report.simulated_seconds, report.wall_seconds,
@@ -70,21 +80,28 @@ std::string LimitsText(const LimitsReport& report) {
 
 std::string LimitsYaml(const LimitsReport& report) {
   const double share = report.Of("together").value;
-  const double speed = Floored(share * report.Of("speed").value);
-  const double turning = Floored(share * report.Of("turning").value);
-  const double linear =
-      Floored(share * std::min(report.Of("acceleration").value, report.Of("deceleration").value));
-  const double angular = Floored(share * report.own_angular_acceleration);
+  const auto part = [&](double value) { return Floored(share * value, 1e3); };
+  const double speed = part(report.Of("speed").value);
+  double linear = part(std::min(report.Of("acceleration").value, report.Of("deceleration").value));
+  // The local planner's limit is one of each axis: both together are sqrt(2) times as much.
+  if (report.is_omnidirectional) linear = Floored(linear / std::sqrt(2.0), 1e3);
   std::string text = fmt::format(
-      "# {} on the tray, seed {}, at most {:g} of drives lose it\nDWAPlannerROS:\n"
-      "  max_vel_trans: {:g}\n  max_vel_x: {:g}\n  max_vel_theta: {:g}\n  acc_lim_x: {:g}\n",
-      report.request.object, report.request.seed, report.request.max_fall, speed, speed, turning,
-      linear);
-  if (report.is_omnidirectional) {
-    text += fmt::format("  max_vel_y: {:g}\n  min_vel_y: {:g}\n  acc_lim_y: {:g}\n", speed, -speed,
-                        linear);
-  }
-  return text + fmt::format("  acc_lim_theta: {:g}\n", angular);
+      "# {} on the tray of {}: in simulation at least {:g} % of drives keep it (95 % confidence),\n"
+      "# uncertainty {}, seed {}. For controller_frequency: {:g}. Before Noetic the keys are\n"
+      "# max_trans_vel, max_rot_vel, acc_lim_th. min_vel_trans and min_vel_theta must not be "
+      "larger.\n",
+      report.request.object, report.robot, 100.0 * (1.0 - report.request.max_fall),
+      report.uncertainty, report.request.seed, 1.0 / report.request.command_period);
+  if (report.request.is_controller_assumed) text += "# The base's controller is ASSUMED.\n";
+  const double sideways = report.is_omnidirectional ? speed : 0.0;
+  return text +
+         fmt::format(
+             "DWAPlannerROS:\n  max_vel_trans: {0:g}\n  max_vel_x: {0:g}\n  max_vel_y: {1:g}\n"
+             "  min_vel_y: {2:g}\n  max_vel_theta: {3:g}\n  acc_lim_x: {4:g}\n  acc_lim_y: {5:g}\n"
+             "  acc_lim_theta: {6:g}\n",
+             speed, sideways, sideways > 0.0 ? -sideways : 0.0, part(report.Of("turning").value),
+             linear, report.is_omnidirectional ? linear : 0.0,
+             part(report.own_angular_acceleration));
 }
 
 nlohmann::ordered_json ToJson(const LimitsReport& report) {
@@ -102,6 +119,10 @@ nlohmann::ordered_json ToJson(const LimitsReport& report) {
   }
   return {{"object", report.request.object},
           {"model", report.model},
+          {"robot", report.robot},
+          {"controller_assumed", report.request.is_controller_assumed},
+          {"directions", report.num_directions},
+          {"own_angular_acceleration", report.own_angular_acceleration},
           {"max_fall", report.request.max_fall},
           {"confidence", 0.95},
           {"seed", report.request.seed},

@@ -1,8 +1,11 @@
 #include "evaluation/limits/load_drive.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "hires/base/error.h"
 #include "hires/base/rng.h"
 #include "hires/imagination/uncertainty.h"
 #include "hires/simulation/fall_watch.h"
@@ -13,8 +16,12 @@ namespace {
 
 using geometry::Twist2;
 
-constexpr double kQuiet = 0.6;    // [s] that the load must not have shaken ...
-constexpr double kStill = 0.004;  // [rad] ... by more than this
+constexpr double kQuiet = 0.6;     // [s] that the load must not have shaken ...
+constexpr double kStill = 0.004;   // [rad] ... by more than this
+constexpr double kFollows = 0.05;  // [m/s], [rad/s] and ...
+constexpr double kSlips =
+    0.1;  // ... of what is commanded: so far off a base follows it, as wheels slip
+constexpr double kLongest = 60.0;  // [s] for the base to come to what is commanded
 enum DriveStreams : std::uint64_t { kDriveTruth, kDriveSimulator };
 
 /// The next command on the way to a velocity.
@@ -43,10 +50,9 @@ class Driver {
   DriveOutcome Play() {
     Advance(stage_.setup->rollout.settling_time, Twist2{});
     for (const DriveStep& step : drive_) Follow(step);
-    last_shake_ = simulator_.time();  // what comes now is not known to be quiet
-    const double end = simulator_.time() + kQuiet + stage_.setup->rollout.aftermath;
+    last_shake_ = last_move_ = simulator_.time();  // what comes now is not known to be quiet
     const bool is_silent = !drive_.empty() && drive_.back().is_silent;
-    while (!IsOver() && simulator_.time() < end) Command(is_silent);
+    while (!IsOver()) Command(is_silent);
     return {watch_.detector().falls() > 0, simulator_.time()};
   }
 
@@ -60,8 +66,30 @@ class Driver {
       V_B_ = Approach(V_B_, step, stage_.command_period);
       Command(false);
     }
+    AwaitVelocity();
     const double end = simulator_.time() + step.hold;
     while (simulator_.time() < end && !is_down()) Command(false);
+  }
+
+  /// The controller may be slower than what it is told.
+  void AwaitVelocity() {
+    const double begin = simulator_.time();
+    while (!is_down() && !FollowsCommand()) {
+      Command(false);
+      if (simulator_.time() - begin < kLongest) continue;
+      throw base::ConfigError(
+          fmt::format("the base does not come to ({:.2f}, {:.2f}) m/s and {:.2f} rad/s within "
+                      "{:.0f} s, wanted a "
+                      "controller that does; see base_controller in the robot's profile",
+                      V_B_.vx, V_B_.vy, V_B_.wz, kLongest));
+    }
+  }
+
+  bool FollowsCommand() const {
+    const Twist2& V = simulator_.base().V_B;
+    return std::hypot(V.vx - V_B_.vx, V.vy - V_B_.vy) <
+               kFollows + kSlips * std::hypot(V_B_.vx, V_B_.vy) &&
+           std::abs(V.wz - V_B_.wz) < kFollows + kSlips * std::abs(V_B_.wz);
   }
 
   /// For one period of commands.
@@ -88,13 +116,17 @@ class Driver {
     if (geometry::TiltOf(simulator_.PoseOf(0).rotation) > kStill) {
       last_shake_ = simulator_.time();
     }
-    const Twist2& V = simulator_.base().V_B;
-    const bool is_commanded = std::hypot(V.vx - V_B_.vx, V.vy - V_B_.vy) < 0.02;
-    if (!is_commanded) last_shake_ = simulator_.time();
+    if (!FollowsCommand()) last_move_ = simulator_.time();
   }
 
   bool is_down() const { return watch_.detector().falls() > 0; }
-  bool IsOver() const { return is_down() || simulator_.time() - last_shake_ > kQuiet; }
+  /// Once the base does as told nothing is added to what shakes: `aftermath` shows what becomes of
+  /// it.
+  bool IsOver() const {
+    const double quiet = simulator_.time() - std::max(last_shake_, last_move_);
+    const double done = simulator_.time() - last_move_;
+    return is_down() || quiet > kQuiet || done > kQuiet + stage_.setup->rollout.aftermath;
+  }
 
   const DriveStage& stage_;
   const LoadDrive& drive_;
@@ -103,7 +135,8 @@ class Driver {
   const long steps_per_look_;
   long steps_{0};
   Twist2 V_B_;              // the last that was commanded
-  double last_shake_{0.0};  // [s] of the load, or that the base was on its way to V_B_
+  double last_shake_{0.0};  // [s] of the load
+  double last_move_{0.0};   // [s] that the base was on its way to V_B_
 };
 
 }  // namespace

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "evaluation/limits/load_drive.h"
 #include "hires/base/check.h"
@@ -32,7 +32,10 @@ constexpr int kFewTruths = 32;        // tell about where the limit lies
 constexpr double kGently = 0.5;       // [m/s^2] nothing shakes
 constexpr double kCruise = 0.5;       // [s]
 constexpr double kTurningTime = 1.0;  // [s] at full rate
+constexpr double kLeastLimit = 0.01;  // of a controller that moves a base
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+const DriveStep kSilence{{}, 0.0, 0.0, 0.0, true};
 
 double ValueAt(double top, int step) { return top * std::pow(kStep, step); }
 
@@ -97,7 +100,8 @@ struct Motion {
   double robots_own{0.0};
   double closed_form{kInfinity};
   std::string stated;
-  std::function<LoadDrive(double value, double direction)> drive;
+  /// The load has to bear each of them.
+  std::function<std::vector<LoadDrive>(double value, double direction)> drives;
 };
 
 Twist2 Along(double direction, double speed, double turning = 0.0) {
@@ -114,11 +118,14 @@ class LimitFinder {
         controller_(setup.scene->robot.profile.base_controller),
         stage_(MakeDriveStage(setup, request.object, request.command_period)),
         model_(*setup.scene->world.models.at(setup.ModelOf(request.object))),
-        load_(navigation::LoadOf(model_)) {}
+        load_(navigation::LoadOf(model_)) {
+    RefuseIdleController();
+  }
 
   std::optional<LimitsReport> Find() {
     report_.request = request_;
     report_.model = model_.name;
+    report_.robot = setup_.scene->robot.model.name;
     report_.uncertainty =
         setup_.uncertainty->quantities.empty() ? "none" : base::HexOf(setup_.uncertainty->hash);
     report_.num_truths = NumTruths(request_.max_fall);
@@ -126,6 +133,7 @@ class LimitFinder {
     report_.robot_hash = setup_.robot_hash;
     report_.physics_hash = setup_.physics_hash;
     report_.is_omnidirectional = controller_.drive == robot::Drive::kOmnidirectional;
+    report_.num_directions = report_.is_omnidirectional ? kDirections : 1;
     report_.own_angular_acceleration = controller_.limits.max_angular_acceleration;
     if (!Look(Speed()) || !Look(Acceleration()) || !Look(Deceleration()) || !Look(Turning()) ||
         !Look(Together())) {
@@ -135,6 +143,22 @@ class LimitFinder {
   }
 
  private:
+  void RefuseIdleController() const {
+    const robot::MotionSet& own = controller_.limits;
+    for (const auto& [key, value] :
+         {std::pair("max_linear_velocity", own.max_linear_velocity),
+          std::pair("max_angular_velocity", own.max_angular_velocity),
+          std::pair("max_linear_acceleration", own.max_linear_acceleration),
+          std::pair("max_angular_acceleration", own.max_angular_acceleration)}) {
+      if (value >= kLeastLimit) continue;
+      throw base::ConfigError(
+          fmt::format("robot '{}': base_controller.limits.{} is {:g}, wanted at least {:g} for a "
+                      "base whose limits "
+                      "are looked for; change its profile",
+                      setup_.scene->robot.model.name, key, value, kLeastLimit));
+    }
+  }
+
   /// @return false when cancelled.
   bool Look(const Motion& motion) {
     const auto fallen_at = [&](double value, const std::vector<int>& truths) {
@@ -182,9 +206,11 @@ class LimitFinder {
     const auto work = [&](int task, const Advance& advance) {
       const int truth = truths[task];
       const double direction =
-          report_.is_omnidirectional ? kDirections[truth % kDirections.size()] : 0.0;
-      outcomes[task] = PlayDrive(stage_, motion.drive(value, direction),
-                                 base::Rng(request_.seed).Fork(static_cast<std::uint64_t>(truth)));
+          2.0 * geometry::kPi * (truth % report_.num_directions) / report_.num_directions;
+      outcomes[task] = PlayAll(motion.drives(value, direction),
+                               base::Rng(request_.seed)
+                                   .Fork(static_cast<std::uint64_t>(report_.limits.size()))
+                                   .Fork(static_cast<std::uint64_t>(truth)));
       advance(1.0);
     };
     Crew crew = crew_;
@@ -201,26 +227,54 @@ class LimitFinder {
     return fallen;
   }
 
+  /// In one truth, until a drive loses the load.
+  DriveOutcome PlayAll(const std::vector<LoadDrive>& drives, const base::Rng& rng) const {
+    DriveOutcome all;
+    for (const LoadDrive& drive : drives) {
+      const DriveOutcome one = PlayDrive(stage_, drive, rng);
+      all.simulated += one.simulated;
+      all.fell = one.fell;
+      if (all.fell) break;
+    }
+    return all;
+  }
+
   double Tips() const { return navigation::TippingAcceleration(load_, gravity()); }
   double Slides() const { return navigation::SlidingAcceleration(load_, gravity()); }
   double Bears() const { return std::min(Tips(), Slides()); }
   std::string HowItGives() const { return Tips() < Slides() ? "tips" : "slides"; }
   double gravity() const { return setup_.scene->world.gravity; }
 
+  /// [m/s^2] The hardest: each axis has a ramp of its own.
+  double OwnStop() const {
+    const double both = report_.is_omnidirectional ? std::sqrt(2.0) : 1.0;
+    return both * controller_.limits.max_linear_acceleration;
+  }
+  double gently() const { return std::min(kGently, controller_.limits.max_linear_acceleration); }
+  double sudden() const { return controller_.limits.max_angular_acceleration; }
+
+  /// Of what it stands on when wheels lock; infinite where it slides before it topples.
+  double SuddenStopSpeed() const {
+    if (Slides() < Tips()) return kInfinity;
+    const geometry::MassProperties& body = model_.mass_properties;
+    const double gyration = std::min(body.I_BBcm(0, 0), body.I_BBcm(1, 1)) / body.mass;
+    return physics::SuddenStopTopplingSpeed(load_.support, load_.com_height, gyration, gravity());
+  }
+  std::string HowItBearsASuddenStop() const {
+    return Slides() < Tips() ? "slides where wheels lock" : "topples where wheels lock";
+  }
+
   /// Driven gently up to it; then commands cease, and the controller's time-out stops the base.
   Motion Speed() const {
     Motion motion{"speed", "m/s", controller_.limits.max_linear_velocity, kInfinity, {}, {}};
     if (controller_.stops_at_timeout) {
-      const geometry::MassProperties& body = model_.mass_properties;
-      const double gyration = std::min(body.I_BBcm(0, 0), body.I_BBcm(1, 1)) / body.mass;
-      motion.closed_form =
-          physics::SuddenStopTopplingSpeed(load_.support, load_.com_height, gyration, gravity());
-      motion.stated = "topples where wheels lock";
-    } else if (controller_.limits.max_linear_acceleration < Bears()) {
+      motion.closed_form = SuddenStopSpeed();
+      motion.stated = HowItBearsASuddenStop();
+    } else if (OwnStop() < Bears()) {
       motion.stated = "the controller's own stop moves nothing";
     }
-    motion.drive = [](double v, double direction) -> LoadDrive {
-      return {{Along(direction, v), kGently, 0.0, kCruise}, {{}, 0.0, 0.0, 0.0, true}};
+    motion.drives = [gently = gently()](double v, double direction) -> std::vector<LoadDrive> {
+      return {{{Along(direction, v), gently, 0.0, kCruise}, kSilence}};
     };
     return motion;
   }
@@ -232,8 +286,8 @@ class LimitFinder {
             controller_.limits.max_linear_acceleration,
             Bears(),
             HowItGives(),
-            [speed](double a, double direction) -> LoadDrive {
-              return {{Along(direction, speed), a, 0.0, kCruise}};
+            [speed](double a, double direction) -> std::vector<LoadDrive> {
+              return {{{Along(direction, speed), a, 0.0, kCruise}}};
             }};
   }
 
@@ -244,43 +298,45 @@ class LimitFinder {
             controller_.limits.max_linear_acceleration,
             Bears(),
             HowItGives(),
-            [speed](double a, double direction) -> LoadDrive {
-              return {{Along(direction, speed), kGently, 0.0, kCruise}, {{}, a, 0.0, 0.0}};
+            [speed, gently = gently()](double a, double direction) -> std::vector<LoadDrive> {
+              return {{{Along(direction, speed), gently, 0.0, kCruise}, {{}, a, 0.0, 0.0}}};
             }};
   }
 
   /// On the spot, as suddenly as the controller allows; then commands cease.
   Motion Turning() const {
     const double reach = stage_.scene->X_BO.translation.head<2>().norm();
-    const double sudden = controller_.limits.max_angular_acceleration;
+    const double on_arc = reach > 0.0 ? std::sqrt(Bears() / reach) : kInfinity;
+    const double stopped =
+        controller_.stops_at_timeout && reach > 0.0 ? SuddenStopSpeed() / reach : kInfinity;
     return {"turning",
             "rad/s",
             controller_.limits.max_angular_velocity,
-            reach > 0.0 ? std::sqrt(Bears() / reach) : kInfinity,
-            fmt::format("{} {:.2f} m from the base's centre", HowItGives(), reach),
-            [sudden](double w, double) -> LoadDrive {
-              return {{{0.0, 0.0, w}, 0.0, sudden, kTurningTime}, {{}, 0.0, 0.0, 0.0, true}};
+            std::min(on_arc, stopped),
+            fmt::format("{}, {:.2f} m from the base's centre",
+                        stopped < on_arc ? HowItBearsASuddenStop() : HowItGives(), reach),
+            [sudden = sudden()](double w, double) -> std::vector<LoadDrive> {
+              return {{{{0.0, 0.0, w}, 0.0, sudden, kTurningTime}, kSilence}};
             }};
   }
 
-  /// All at once: speeding up on an arc, and braking hard before anything has come to rest.
+  /// All at once, on an arc: speeding up, and braking hard, or left without commands.
   Motion Together() const {
     const double v = report_.Of("speed").value, w = report_.Of("turning").value,
-                 a = report_.Of("acceleration").value, d = report_.Of("deceleration").value,
-                 sudden = controller_.limits.max_angular_acceleration;
+                 a = report_.Of("acceleration").value, d = report_.Of("deceleration").value;
     return {"together",
             "of each",
             1.0,
             kInfinity,
             {},
-            [=](double share, double direction) -> LoadDrive {
-              return {{Along(direction, share * v, share * w), share * a, share * sudden, kCruise},
-                      {{}, share * d, share * sudden, 0.0}};
+            [=, sudden = sudden()](double share, double direction) -> std::vector<LoadDrive> {
+              const DriveStep up{Along(direction, share * v, share * w), share * a, share * sudden,
+                                 kCruise};
+              return {{up, {{}, share * d, share * sudden, 0.0}}, {up, kSilence}};
             }};
   }
 
-  static constexpr std::array<double, 4> kDirections{0.0, 0.5 * geometry::kPi, geometry::kPi,
-                                                     -0.5 * geometry::kPi};
+  static constexpr int kDirections = 8;
   static constexpr int kNumMotions = 5;
 
   const LimitsRequest& request_;

@@ -4,6 +4,7 @@
 #include <ros/single_subscriber_publisher.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "hires/base/process.h"
 
@@ -11,6 +12,8 @@ namespace hires_ros {
 namespace {
 
 constexpr double kPatience = 2.0;  // [s] for a connection that broke to be there again
+constexpr double kRemembered =
+    600.0;  // [s] who left: its goal may be read later, not so much later
 
 }  // namespace
 
@@ -18,36 +21,35 @@ AskerWatch::AskerWatch(const std::string& action, ros::NodeHandle* nh) {
   goals_ = nh->subscribe(action + "/goal", 50, &AskerWatch::OnGoal, this);
   result_ = nh->advertise<hires::ImagineActionResult>(
       action + "/result", 50,
-      [this](const ros::SingleSubscriberPublisher& peer) { left_.erase(peer.getSubscriberName()); },
       [this](const ros::SingleSubscriberPublisher& peer) {
-        if (IsAsker(peer.getSubscriberName())) {
-          left_[peer.getSubscriberName()] = hires::base::SteadyNow();
-        }
-      });
+        ++num_links_[peer.getSubscriberName()];
+        left_.erase(peer.getSubscriberName());
+      },
+      [this](const ros::SingleSubscriberPublisher& peer) { OnLeft(peer.getSubscriberName()); });
 }
 
-bool AskerWatch::IsAsker(const std::string& node) const {
-  return std::any_of(asker_of_.begin(), asker_of_.end(),
-                     [&](const auto& goal) { return goal.second == node; });
-}
-
-void AskerWatch::Forget(const std::string& goal_id) {
-  const auto goal = asker_of_.find(goal_id);
-  if (goal == asker_of_.end()) return;
-  const std::string asker = goal->second;
-  asker_of_.erase(goal);
-  if (!IsAsker(asker)) left_.erase(asker);
+/// A link that was made again may be told of before the end of the old one.
+void AskerWatch::OnLeft(const std::string& node) {
+  if (--num_links_[node] > 0) return;
+  num_links_.erase(node);
+  const double now = hires::base::SteadyNow();
+  for (auto it = left_.begin(); it != left_.end();) {
+    it = now - it->second > kRemembered ? left_.erase(it) : std::next(it);
+  }
+  left_[node] = now;
 }
 
 void AskerWatch::OnGoal(const ros::MessageEvent<const hires::ImagineActionGoal>& event) {
-  asker_of_[event.getMessage()->goal_id.id] = event.getPublisherName();
+  asker_of_[event.getMessage()->goal_id.id] = {event.getPublisherName(), hires::base::SteadyNow()};
 }
 
 std::string AskerWatch::GoneFor(const std::string& goal_id, double now) const {
   const auto asker = asker_of_.find(goal_id);
   if (asker == asker_of_.end()) return "";
-  const auto left = left_.find(asker->second);
-  return left != left_.end() && now - left->second > kPatience ? asker->second : "";
+  const auto left = left_.find(asker->second.node);
+  if (left == left_.end()) return "";
+  const double since = std::max(left->second, asker->second.asked);
+  return now - since > kPatience ? asker->second.node : "";
 }
 
 }  // namespace hires_ros

@@ -21,14 +21,19 @@ class AskerWatch {
   /// @param now  [s] steady
   std::string GoneFor(const std::string& goal_id, double now) const;
   /// The goal is over.
-  void Forget(const std::string& goal_id);
+  void Forget(const std::string& goal_id) { asker_of_.erase(goal_id); }
 
  private:
-  bool IsAsker(const std::string& node) const;
+  struct Asker {
+    std::string node;
+    double asked{0.0};  // [s] steady
+  };
+  void OnLeft(const std::string& node);
   void OnGoal(const ros::MessageEvent<const hires::ImagineActionGoal>& event);
 
-  std::map<std::string, std::string> asker_of_;  // goal id -> node
-  std::map<std::string, double> left_;           // asker -> [s] when it ceased to listen
+  std::map<std::string, Asker> asker_of_;  // by goal id
+  std::map<std::string, int> num_links_;   // node -> that listen to results
+  std::map<std::string, double> left_;     // node -> [s] when its last link ended
   ros::Subscriber goals_;
   ros::Publisher result_;  // the server's own topic, for news of who listens
 };
