@@ -100,16 +100,11 @@ std::vector<std::string> AlternativesOf(const std::string& list) {
   return alternatives;
 }
 
-/// An object that is given as a file is loaded beside the catalogue's, and called by its model.
 void SetStart(const ImagineOptions& o, ImagineQuery* query) {
   query->setup.action_libraries = o.action_libraries;
   query->start =
       ReadStart(o.start, o.action, skills::LoadActionSet(o.action_libraries)->catalogue());
-  for (std::string& object : query->start.on_tray) {
-    if (!IsObjectFile(object)) continue;
-    query->setup.extra_objects.push_back(object);
-    object = world::LoadObjectModel(object).name;
-  }
+  for (std::string& object : query->start.on_tray) object = NameOf(object, &query->setup);
 }
 
 ImagineQuery MakeQuery(const ImagineOptions& o, const Backends& backends) {
@@ -356,8 +351,12 @@ imagination::Report ImagineInThisProcess(const ImagineQuery& query,
   return report;
 }
 
-bool IsObjectFile(const std::string& text) {
-  return text.find('/') != std::string::npos || text.find('.') != std::string::npos;
+std::string NameOf(const std::string& object, imagination::SetupConfig* setup) {
+  const bool is_file =
+      object.find('/') != std::string::npos || object.find('.') != std::string::npos;
+  if (!is_file) return object;
+  setup->extra_objects.push_back(object);
+  return world::LoadObjectModel(object).name;
 }
 
 int RunCommandLine(const std::vector<std::string>& arguments, const Backends& backends) {

@@ -27,7 +27,6 @@ double SecondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// An object that is given as a file is loaded beside the catalogue's, and called by its model.
 imagination::SetupConfig SetupOf(const LimitsOptions& o, const std::string& package_folder,
                                  std::string* object) {
   const std::string scene =
@@ -36,11 +35,7 @@ imagination::SetupConfig SetupOf(const LimitsOptions& o, const std::string& pack
           : o.scene;
   imagination::SetupConfig setup = imagination::ReadSetupConfig(scene);
   imagination::OverridePaths({}, o.robot, o.objects, o.uncertainty, &setup);
-  *object = o.object;
-  if (IsObjectFile(o.object)) {
-    setup.extra_objects.push_back(o.object);
-    *object = world::LoadObjectModel(o.object).name;
-  }
+  *object = NameOf(o.object, &setup);
   return setup;
 }
 

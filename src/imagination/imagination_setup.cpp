@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
@@ -140,11 +141,11 @@ void RefuseTaken(const world::ObjectModel& model, const std::string& path,
 }
 
 /// The world with every object model that a request may name.
+/// @param map  whose walls are the world, if there is one.
 world::World LoadWorldWithObjects(const SetupConfig& config,
+                                  const std::optional<world::OccupancyGrid>& map,
                                   std::map<std::string, std::string>* object_models) {
-  world::World world = config.map.empty()
-                           ? world::LoadWorld(config.world)
-                           : world::ExtrudeMap(world::LoadMap(config.map), kWallHeight);
+  world::World world = map ? world::ExtrudeMap(*map, kWallHeight) : world::LoadWorld(config.world);
   AddAreas(config.areas, &world);
   const auto add = [&](const std::string& instance,
                        const std::shared_ptr<const world::ObjectModel>& model) {
@@ -229,15 +230,17 @@ SetupConfig ReadSetupConfig(const std::string& path) {
 
 ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   ImaginationSetup setup;
-  world::World world = LoadWorldWithObjects(config, &setup.object_models);
+  std::optional<world::OccupancyGrid> map;
+  if (!config.map.empty()) map = world::LoadMap(config.map);
+  world::World world = LoadWorldWithObjects(config, map, &setup.object_models);
   robot::Robot robot = robot::LoadAnyRobot(config.robot);
   setup.robot_hash = PutGuardBefore(config.has_base_guard, &robot);
   skills::SkillSet skills =
       skills::MakeSkillSet(world, robot, config.driving, config.blind, config.manipulation,
                            config.standing, skills::LoadActionSet(config.action_libraries));
-  if (!config.map.empty()) {  // it also knows what is unknown
+  if (map) {  // it also knows what is unknown
     skills.driving = std::make_shared<const skills::DrivingContext>(
-        skills::MakeDrivingContext(world::LoadMap(config.map), robot, config.driving));
+        skills::MakeDrivingContext(*map, robot, config.driving));
   }
   setup.skills = std::make_shared<const skills::SkillSet>(std::move(skills));
   setup.actions_hash = setup.skills->actions->hash();

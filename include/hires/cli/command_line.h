@@ -83,8 +83,9 @@ int ExitCodeOf(const imagination::Report& report);
 /// @param arguments  the program's name first, as in argv.
 int RunCommandLine(const std::vector<std::string>& arguments, const Backends& backends);
 
-/// Whether an object is named by a file, and not by its name.
-bool IsObjectFile(const std::string& text);
+/// What an object is called that was typed by its name or as a file, which is then loaded beside
+/// the catalogue's and called by its model.  @throws base::ConfigError as world::LoadObjectModel.
+std::string NameOf(const std::string& object, imagination::SetupConfig* setup);
 
 /// Imagines in this process, as `hires imagine --local`.
 imagination::Report ImagineInThisProcess(const ImagineQuery& query,

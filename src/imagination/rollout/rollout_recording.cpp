@@ -212,9 +212,8 @@ std::string ToCsv(const RolloutRecording& recording) {
       const Eigen::Vector3d& o = X_MO.translation;
       csv += fmt::format(",{},{},{},{}", o.x(), o.y(), o.z(), geometry::TiltOf(X_MO.rotation));
     }
-    csv += fmt::format(",{}\n", EventsAt(recording, s.time).empty()
-                                    ? ""
-                                    : "\"" + EventsAt(recording, s.time) + "\"");
+    const std::string events = EventsAt(recording, s.time);
+    csv += events.empty() ? ",\n" : fmt::format(",\"{}\"\n", events);
   }
   return csv;
 }
