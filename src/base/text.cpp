@@ -30,6 +30,13 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
+/// Whether one may have been mistyped for the other: at most half of it differs, or one holds the
+/// other.
+bool IsAlike(const std::string& a, const std::string& b) {
+  if (EditDistance(a, b) <= std::max(a.size(), b.size()) / 2) return true;
+  return a.find(b) != std::string::npos || b.find(a) != std::string::npos;
+}
+
 }  // namespace
 
 std::string ToLower(std::string_view text) {
@@ -74,8 +81,17 @@ std::vector<std::string> NearestNames(const std::string& name,
 std::string UnknownName(std::string_view kind, const std::string& name,
                         const std::vector<std::string>& known) {
   if (known.empty()) return fmt::format("{} '{}' is unknown; none is defined", kind, name);
-  return fmt::format("{} '{}' is unknown; did you mean '{}'?", kind, name,
-                     Join(NearestNames(name, known), "' or '"));
+  std::vector<std::string> alike;
+  for (const std::string& candidate : NearestNames(name, known)) {
+    if (IsAlike(ToLower(name), ToLower(candidate))) alike.push_back(candidate);
+  }
+  if (!alike.empty()) {
+    return fmt::format("{} '{}' is unknown; did you mean '{}'?", kind, name, Join(alike, "' or '"));
+  }
+  constexpr std::size_t kMost = 12;
+  const auto end = known.begin() + static_cast<long>(std::min(kMost, known.size()));
+  return fmt::format("{} '{}' is unknown; known: {}{}", kind, name,
+                     Join({known.begin(), end}, ", "), known.size() > kMost ? ", ..." : "");
 }
 
 std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {

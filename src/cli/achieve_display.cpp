@@ -60,8 +60,8 @@ std::string ImaginedLine(const evaluation::ImaginedStep& step, double now, doubl
   if (step.outcome == evaluation::ImaginedOutcome::kRunning) {
     return fmt::format("{:8.1f} s  imagines  {}", step.requested - begin, what);
   }
-  return fmt::format("{:8.1f} s  imagined  {}: {}: {}", step.answered.value_or(now) - begin, what,
-                     ToString(step.outcome), step.why);
+  return fmt::format("{:8.1f} s  imagined  {}: {}{}", step.answered.value_or(now) - begin, what,
+                     ToString(step.outcome), step.why.empty() ? "" : ": " + step.why);
 }
 
 std::vector<std::string> Lines(const std::string& text) {
@@ -83,12 +83,12 @@ std::vector<std::string> NewWarnings(const evaluation::AchieveStatus& before,
 
 std::string StepTable(const evaluation::AchieveStatus& status, double begin) {
   std::vector<std::vector<std::string>> rows{
-      {"plan", "#", "step", "state", "since", "end", "note"}};
+      {"plan", "#", "state", "since", "end", "step", "note"}};
   for (const StepStatus& step : status.steps) {
     if (!IsNews(step)) continue;
     rows.push_back({std::to_string(step.plan + 1), std::to_string(step.index + 1),
-                    ToString(step.action), evaluation::ToString(step.phase), Since(step, begin),
-                    ExpectedEnd(step, begin), step.note});
+                    evaluation::ToString(step.phase), Since(step, begin), ExpectedEnd(step, begin),
+                    ToString(step.action), step.note});
   }
   return evaluation::FormatTable(rows);
 }

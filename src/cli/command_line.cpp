@@ -25,6 +25,7 @@
 #include "hires/base/text.h"
 #include "hires/cli/blackboard_command.h"
 #include "hires/cli/doctor.h"
+#include "hires/cli/whole_number.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/imagination/client_config.h"
@@ -65,7 +66,7 @@ void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
   app->add_option("--rollouts", o->rollouts, "at most so many per combination")
       ->check(CLI::Range(1, 100000));
   app->add_option("--seed", o->seed, "of all chance; equal seeds give equal answers")
-      ->check(CLI::NonNegativeNumber);
+      ->check(WholeNumber());
   app->add_option("--deadline", o->deadline, "[s] after which the best answer so far is taken")
       ->check(CLI::Range(0.0, 1e6));
   app->add_option("--ranking", o->ranking, "risk, cost or thesis");
@@ -245,6 +246,15 @@ int ShowVerbs(const CLI::App& app) {
   return kExitBadInput;
 }
 
+/// Help where it was asked for, else what is wrong with the options. @return exit code.
+int Explain(const CLI::ParseError& error, const CLI::App& app) {
+  if (error.get_exit_code() == 0) return app.exit(error);
+  std::string verb;
+  for (const CLI::App* parsed : app.get_subcommands()) verb += parsed->get_name() + ' ';
+  std::cerr << fmt::format("hires: {}; 'hires {}--help' says what is wanted\n", error.what(), verb);
+  return kExitBadInput;
+}
+
 /// What was typed, whatever the verb.
 struct Verbs {
   CLI::App* imagine{nullptr};
@@ -373,7 +383,7 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
     return RunVerb(verbs, backends);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitBadInput;
+    return Explain(error, app);
   } catch (const std::exception& error) {
     std::cerr << "hires: " << error.what() << '\n';
     return kExitBadInput;

@@ -13,6 +13,7 @@
 #include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/whole_number.h"
 #include "hires/evaluation/decision/decision_journal.h"
 #include "hires/evaluation/decision/decision_report.h"
 #include "hires/evaluation/experiment_parallel.h"
@@ -161,8 +162,7 @@ void AddDecisionVerb(CLI::App* experiment, DecisionOptions* options) {
   verb->add_option("--arms", options->arms,
                    "of imagination, always_slow, always_fast, domain_default, dissertation, "
                    "oracle, with commas between; default: all");
-  verb->add_option("--seed", options->seed, "of all chance; default: 1")
-      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--seed", options->seed, "of all chance; default: 1")->check(WholeNumber());
   verb->add_option("--threads", options->threads, "that play tasks; changes no number; default: 2")
       ->check(CLI::Range(1, 256));
   verb->add_option(

@@ -16,6 +16,7 @@
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/whole_number.h"
 #include "hires/evaluation/experiment_hypothesis_journal.h"
 #include "hires/evaluation/experiment_parallel.h"
 #include "hires/evaluation/report_json.h"
@@ -213,8 +214,7 @@ void AddHypothesisVerb(CLI::App* experiment, HypothesisOptions* options) {
   verb->add_option("--pace", options->pace,
                    "simulated seconds of the robot per second, 0: as fast as it can; default: 1")
       ->check(CLI::Range(0.0, 1000.0));
-  verb->add_option("--seed", options->seed, "of all chance; default: 1")
-      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--seed", options->seed, "of all chance; default: 1")->check(WholeNumber());
   verb->add_option("--workers", options->workers, "simulators that imagine; default: 1")
       ->check(CLI::Range(1, 64));
   verb->add_option("--resume", options->journal,

@@ -13,6 +13,7 @@
 #include "cli/experiment_command.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/whole_number.h"
 #include "hires/evaluation/motion_limits.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
@@ -70,7 +71,7 @@ void AddLimitsVerb(CLI::App* app, LimitsOptions* options) {
   verb->add_option("--uncertainty", options->uncertainty, "YAML file, or none");
   verb->add_option("--scene", options->scene, "another scene file instead of config/scene.yaml");
   verb->add_option("--seed", options->seed, "of all chance; equal seeds give equal answers")
-      ->check(CLI::NonNegativeNumber);
+      ->check(WholeNumber());
   verb->add_option("--threads", options->threads, "default: one per core; changes no number")
       ->check(CLI::Range(1, 256));
   verb->add_option("--check", options->check_truths,

@@ -170,6 +170,33 @@ std::string WhyBetter(const Evidence& best, const Evidence& next, const std::str
                                                        : WhyLater(best, next, best_key, next_key));
 }
 
+/// The quickest alternative that is good enough, too, and whose interval of success overlaps that
+/// of the best: a reader with little time might prefer it.
+const Evidence* QuickerRival(const std::vector<Evidence>& alternatives, const Evidence& best,
+                             const Criteria& criteria) {
+  const Evidence* rival = nullptr;
+  for (const Evidence& evidence : alternatives) {
+    const bool is_rival =
+        Judge(evidence.success, criteria.min_success) == Suitability::kReached &&
+        evidence.success.upper >= best.success.lower &&
+        evidence.duration.mean < (rival ? rival->duration.mean : best.duration.mean);
+    if (is_rival) rival = &evidence;
+  }
+  return rival;
+}
+
+/// What the lexical order of `risk` hides: a difference that decides may be far within chance.
+std::string WhatSpeaksAgainst(const std::vector<Evidence>& alternatives, const Evidence& best,
+                              const Criteria& criteria, const std::vector<std::string>& names) {
+  if (criteria.rule != RankingRule::kRisk) return "";
+  const Evidence* rival = QuickerRival(alternatives, best, criteria);
+  if (!rival) return "";
+  return fmt::format(
+      "; but {} is {:.2g} s quicker, and the intervals of success overlap (ranking 'cost' "
+      "weighs seconds against failures)",
+      names[rival - alternatives.data()], best.duration.mean - rival->duration.mean);
+}
+
 }  // namespace
 
 std::string WhyRecommended(const std::vector<Evidence>& alternatives, const Criteria& criteria,
@@ -182,8 +209,9 @@ std::string WhyRecommended(const std::vector<Evidence>& alternatives, const Crit
     return fmt::format("{}: the only alternative; {}", names[*best], SuccessText(winner));
   }
   const int next = Rank(alternatives, criteria)[1];
-  return fmt::format("{}: {}", names[*best],
-                     WhyBetter(winner, alternatives[next], names[next], criteria));
+  return fmt::format("{}: {}{}", names[*best],
+                     WhyBetter(winner, alternatives[next], names[next], criteria),
+                     WhatSpeaksAgainst(alternatives, winner, criteria, names));
 }
 
 }  // namespace hires::imagination

@@ -279,8 +279,8 @@ Robot LoadRobotFromUrdf(const std::string& urdf_path) {
   const DriveGuess guess = GuessDrive(robot.model);
   profile.base_controller.drive = guess.drive;
   base::Log(base::LogLevel::kWarn,
-            fmt::format("robot={} drive={} guessed, because it has {}; if that is wrong, write a "
-                        "profile with base_controller.drive",
+            fmt::format("robot={} drive={} guessed, because it has {}; its motion sets and base "
+                        "controller are ASSUMED to be a PR2's; a profile says what they are",
                         robot.model.name, ToString(guess.drive), guess.why));
   profile.hash = HashOf(profile);
   return robot;

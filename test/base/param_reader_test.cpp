@@ -199,7 +199,7 @@ TEST(ParamReaderTest, AKeyThatNobodyAskedForIsRefusedWithTheLikelyOne) {
   EXPECT_EQ(ErrorOf([&] { in.Get("num_workers", Between(1, 8)); }),
             "a.yaml: num_workers is missing; line 1; add it");
   EXPECT_EQ(ErrorOf([&] { in.RejectUnknownKeys(); }),
-            "a.yaml: key 'num_wrokers' is unknown; did you mean 'num_workers' or 'other'?; line 1");
+            "a.yaml: key 'num_wrokers' is unknown; did you mean 'num_workers'?; line 1");
 }
 
 TEST(ParamReaderTest, UnknownKeysOfNestedMapsAreRefusedToo) {

@@ -64,10 +64,20 @@ TEST(NearestNamesTest, GivesNoMoreThanThereIs) {
 }
 
 TEST(UnknownNameTest, ProposesWhatWasMeant) {
-  EXPECT_EQ(UnknownName("area", "x", {"y"}), "area 'x' is unknown; did you mean 'y'?");
+  EXPECT_EQ(UnknownName("area", "x1", {"y1"}), "area 'x1' is unknown; did you mean 'y1'?");
   EXPECT_EQ(UnknownName("area", "ab", {"ac", "b"}),
             "area 'ab' is unknown; did you mean 'ac' or 'b'?");
   EXPECT_EQ(UnknownName("area", "x", {}), "area 'x' is unknown; none is defined");
+}
+
+TEST(UnknownNameTest, WhatLooksLikeNothingKnownGetsTheListAndNoGuess) {
+  EXPECT_EQ(UnknownName("area", "x", {"kitchen", "dock"}),
+            "area 'x' is unknown; known: kitchen, dock");
+  std::vector<std::string> many;
+  for (int i = 10; i < 30; ++i) many.push_back("table" + std::to_string(i));
+  const std::string text = UnknownName("area", "moon", many);
+  EXPECT_NE(text.find("table21, ..."), std::string::npos) << text;
+  EXPECT_EQ(text.find("table22"), std::string::npos) << text;
 }
 
 /// A folder of its own that goes away with the test.

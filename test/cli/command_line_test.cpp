@@ -325,7 +325,10 @@ TEST(CommandLineTest, RefusesNumbersOutOfRange) {
   }
   ExpectRefused(with("--deadline", "-1"), {"--deadline"});
   ExpectRefused(with("--threads", "0"), {"--threads"});
-  ExpectRefused(with("--seed", "-1"), {"--seed"});
+  for (const char* seed : {"-1", "1.5", "1e3", "99999999999999999999"}) {
+    ExpectRefused(with("--seed", seed),
+                  {"hires: --seed", "no whole number", "hires imagine --help"});
+  }
   ExpectRefused(with("--ranking", "luck"), {"luck", "risk", "thesis"});
 }
 

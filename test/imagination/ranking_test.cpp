@@ -18,6 +18,7 @@ using test_support::operator+;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 using Results = std::vector<RolloutResult>;
 
@@ -217,7 +218,8 @@ TEST(WhyRecommendedTest, ConfidenceDecides) {
   const auto evidence = SumUpAll({Times(16, Success(30.0, 12)), Times(16, Success(45.0))});
   EXPECT_EQ(WhyRecommended(evidence, kRisk, kNames),
             "slow: 16 of 16 rollouts succeeded (at least 79 %) as with fast, and its confidence is "
-            "higher, 1.000 against 0.856");
+            "higher, 1.000 against 0.856; but fast is 15 s quicker, and the intervals of success "
+            "overlap (ranking 'cost' weighs seconds against failures)");
 }
 
 TEST(WhyRecommendedTest, DurationDecides) {
@@ -225,6 +227,26 @@ TEST(WhyRecommendedTest, DurationDecides) {
   EXPECT_EQ(WhyRecommended(evidence, kRisk, kNames),
             "fast: 16 of 16 rollouts succeeded (at least 79 %) as with slow and with the same "
             "confidence 1.000, but quicker, 18.000 s against 27.500 s");
+}
+
+TEST(WhyRecommendedTest, WhatDecidesWithinChanceIsToldWithTheQuickerOnes) {
+  const auto evidence =
+      SumUpAll({Times(63, Success(10.0)) + Times(1, Fall(10.0)), Times(64, Success(15.0))});
+  EXPECT_EQ(
+      WhyRecommended(evidence, kRisk, kNames),
+      "slow: 64 of 64 rollouts succeeded (at least 94 %), fast failed in 1 of 64 (object_fell "
+      "1); but fast is 5 s quicker, and the intervals of success overlap (ranking 'cost' "
+      "weighs seconds against failures)");
+}
+
+TEST(WhyRecommendedTest, OnlyGoodOnesThatCannotBeToldApartAreNamedAsQuicker) {
+  const Results clearly_worse = Times(50, Success(10.0)) + Times(14, Fall(10.0));
+  const Results not_good = Times(2, Success(10.0)) + Times(2, Fall(10.0));
+  for (const Results& other : {clearly_worse, not_good}) {
+    const auto evidence = SumUpAll({other, Times(int(other.size()), Success(15.0))});
+    EXPECT_THAT(WhyRecommended(evidence, {RankingRule::kRisk, 0.3, {}}, kNames),
+                Not(HasSubstr("quicker")));
+  }
 }
 
 TEST(WhyRecommendedTest, NothingDecides) {

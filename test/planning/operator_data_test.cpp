@@ -213,7 +213,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadSidecar{"UnknownArgumentInResource",
                    "<arm>Hand",
                    "<hand>Hand",
-                   {"argument 'hand' is unknown", "'arm'"}},
+                   {"argument 'hand' is unknown", "arm"}},
         BadSidecar{"NoResourceFitsArgument",
                    "<arm>Hand",
                    "<arm>Foot",
@@ -224,7 +224,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadSidecar{"UnknownParameter",
                    "[set]",
                    "[speed]",
-                   {"operators.drive.imagine.parameters", "argument 'speed' is unknown", "'set'"}},
+                   {"operators.drive.imagine.parameters", "argument 'speed' is unknown", "set"}},
         BadSidecar{"ParameterTwice", "[set]", "[set, Set]", {"'set' stands twice"}},
         BadSidecar{
             "NoDefault", "{set: Fast}", "{}", {"operators.drive.imagine.default.set is missing"}},

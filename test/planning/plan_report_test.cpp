@@ -60,7 +60,7 @@ TEST(PlanReportTest, WhichIsReadAndRefused) {
   EXPECT_EQ(ParseWhich("all"), Which::kAll);
   EXPECT_EQ(ParseWhich("best"), Which::kBest);
   EXPECT_EQ(ConfigErrorOf([] { ParseWhich("bset"); }),
-            "choice of plans 'bset' is unknown; did you mean 'best' or 'all' or 'first'?");
+            "choice of plans 'bset' is unknown; did you mean 'best'?");
 }
 
 }  // namespace

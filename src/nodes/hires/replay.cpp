@@ -18,6 +18,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/whole_number.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/imagination/local_imagination.h"
@@ -277,7 +278,7 @@ void AddOptions(CLI::App* app, ReplayOptions* o) {
                   "of an episode: for each step; default: 64")
       ->check(CLI::Range(1, 100000));
   app->add_option("--seed", o->episode.params.seed, "of an episode: of all chance; default: 1")
-      ->check(CLI::NonNegativeNumber);
+      ->check(hires::cli::WholeNumber());
 }
 
 int ThreadsOf(const ReplayOptions& options) {
