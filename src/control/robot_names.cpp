@@ -163,12 +163,34 @@ void ReadTopicsAndServers(ParamReader* in, RobotNames* names) {
   names->robot_description = must("robot_description");
 }
 
+/// By their goals, which are topics, actions are led.
+void LeadByGoals(std::map<std::string, std::string>* actions) {
+  for (auto& [group, name] : *actions) name += "/goal";
+}
+
+void ReadInterfaces(ParamReader* in, RobotNames* names) {
+  if (in->Has("trajectory_interface") &&
+      in->Get("trajectory_interface",
+              base::OneOf({"joint_trajectory", "follow_joint_trajectory"})) ==
+          "follow_joint_trajectory") {
+    names->trajectory_interface = TrajectoryInterface::kFollowJointTrajectory;
+    LeadByGoals(&names->trajectories);
+  }
+  if (in->Has("gripper_interface") &&
+      in->Get("gripper_interface", base::OneOf({"pr2_gripper_command", "gripper_command"})) ==
+          "gripper_command") {
+    names->gripper_interface = GripperInterface::kGripperCommand;
+    LeadByGoals(&names->grippers);
+  }
+}
+
 RobotNames ReadAll(ParamReader in) {
   RobotNames names;
   ReadFrames(in.Sub("frames"), &names);
   ReadTopicsAndServers(&in, &names);
   names.trajectories = ReadTopics(Groups(), "group of joints", in.Sub("trajectories"));
   names.grippers = ReadTopics(Arms(), "arm", in.Sub("grippers"));
+  ReadInterfaces(&in, &names);
   names.move_base = ReadMoveBase(in.Sub("move_base"));
   in.RejectUnknownKeys();
   return names;

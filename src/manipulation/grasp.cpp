@@ -16,6 +16,7 @@ using geometry::Pose3;
 constexpr double kMinTopDepth = 0.01;  // [m] that the tips have to reach down at an object's side
 constexpr double kHeightStep = 0.02;   // [m] between the heights of side grasps
 constexpr int kMaxHeights = 5;         // nearest to the centre of mass
+constexpr double kRimMargin = 0.005;   // [m] on both sides, between the open fingers and a rim
 constexpr double kMinGap = 0.005;      // [m] below this the fingers touch each other rather
 
 /// Extent of a band of an object along the axes of a frame.
@@ -61,12 +62,11 @@ double GapShare(double gap, double max_gap) {
 /// Finds grasps of one object; keeps what all of them need.
 class Finder {
  public:
-  Finder(const world::ObjectModel& object, const robot::GripperProfile& gripper,
-         const FingerShape& fingers)
+  Finder(const world::ObjectModel& object, const robot::GripperProfile& gripper)
       : object_(object),
-        fingers_(fingers),
+        fingers_(gripper.shape),
         max_gap_(gripper.max_gap),
-        max_width_(std::min(gripper.max_gap, fingers.max_gap_used)),
+        max_width_(std::min(gripper.max_gap, gripper.shape.max_gap_used)),
         bounds_(BoundsOf(object)) {}
 
   std::vector<double> SideHeights() const;
@@ -79,7 +79,7 @@ class Finder {
   double DepthInV(double width) const;
 
   const world::ObjectModel& object_;
-  const FingerShape& fingers_;
+  const robot::FingerShape& fingers_;
   double max_gap_, max_width_;
   geometry::Aabb bounds_;
 };
@@ -87,7 +87,7 @@ class Finder {
 /// From the lowest at which the fingers keep clear of the supporting face to the highest at which
 /// their pads are on the object; those nearest to the centre of mass.
 std::vector<double> Finder::SideHeights() const {
-  const double lowest = bounds_.lower.z() + fingers_.half_height + fingers_.clearance;
+  const double lowest = bounds_.lower.z() + fingers_.half_height + kGraspClearance;
   const double highest = bounds_.upper.z() - fingers_.pad_half_height;
   std::vector<double> heights;
   if (lowest > highest) return heights;
@@ -107,10 +107,10 @@ std::optional<Grasp> Finder::Side(double heading, double height) const {
   const Extent hand =
       ExtentInBand(object_, heading, height - fingers_.half_height, height + fingers_.half_height);
   // Up to the middle of the object, unless the palm would meet it first.
-  const double most = fingers_.palm_distance - fingers_.clearance;
+  const double most = fingers_.palm_distance - kGraspClearance;
   const double x = std::min(pads.middle(0), hand.lower.x() + most);
   const double depth = x + fingers_.tip_reach - pads.lower.x();
-  if (depth <= fingers_.clearance) return std::nullopt;
+  if (depth <= kGraspClearance) return std::nullopt;
   Grasp grasp;
   grasp.kind = "side";
   grasp.gap = pads.size(1);
@@ -124,14 +124,16 @@ std::optional<Grasp> Finder::Side(double heading, double height) const {
 
 /// [m] from the tool's origin towards the palm that a rim of some width fits between open fingers.
 double Finder::DepthInV(double width) const {
-  return (fingers_.open_width - width - 2.0 * fingers_.rim_margin) / fingers_.narrowing;
+  const double room = fingers_.open_width - width - 2.0 * kRimMargin;
+  if (fingers_.narrowing > 0.0) return room / fingers_.narrowing;
+  return room >= 0.0 ? fingers_.palm_distance : 0.0;  // parallel: up to the palm
 }
 
 /// Height of the tool for a grasp from above: as deep as the palm and the supporting face allow,
 /// but not beyond the centre of mass.
 double Finder::TopHeight() const {
-  const double by_palm = bounds_.upper.z() - fingers_.palm_distance + fingers_.clearance;
-  const double by_face = bounds_.lower.z() + fingers_.tip_reach + fingers_.clearance;
+  const double by_palm = bounds_.upper.z() - fingers_.palm_distance + kGraspClearance;
+  const double by_face = bounds_.lower.z() + fingers_.tip_reach + kGraspClearance;
   const double by_mass = std::min(object_.mass_properties.p_BBcm.z(), bounds_.upper.z());
   return std::max({by_palm, by_face, by_mass});
 }
@@ -151,7 +153,7 @@ std::optional<Grasp> Finder::Top(double heading) const {
   const Eigen::Quaterniond turn = geometry::RotationFromRpy(0.0, 0.0, heading);
   grasp.X_OT = {turn * Eigen::Vector3d(pads.middle(0), pads.middle(1), height),
                 turn * geometry::RotationFromRpy(0.0, 0.5 * geometry::kPi, 0.0)};
-  const double wanted = fingers_.palm_distance - fingers_.clearance + fingers_.tip_reach;
+  const double wanted = fingers_.palm_distance - kGraspClearance + fingers_.tip_reach;
   grasp.quality = HeightShare(object_, bounds_, height) * std::min(1.0, depth / wanted) *
                   GapShare(grasp.gap, max_gap_);
   return grasp;
@@ -160,9 +162,9 @@ std::optional<Grasp> Finder::Top(double heading) const {
 }  // namespace
 
 std::vector<Grasp> GraspsFor(const world::ObjectModel& object, const robot::GripperProfile& gripper,
-                             int headings, const FingerShape& fingers) {
+                             int headings) {
   HIRES_CHECK(headings >= 1, "at least one heading");
-  const Finder finder(object, gripper, fingers);
+  const Finder finder(object, gripper);
   std::vector<Grasp> grasps;
   const auto add = [&](const std::optional<Grasp>& grasp) {
     if (grasp) grasps.push_back(*grasp);

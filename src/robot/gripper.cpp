@@ -13,13 +13,17 @@ double SwingAt(const GripperProfile& gripper, double angle) {
 
 }  // namespace
 
-double GapOf(const GripperProfile& gripper, double finger_angle) {
-  const double angle = std::clamp(finger_angle, 0.0, gripper.max_finger_angle);
+double GapOf(const GripperProfile& gripper, double finger_position) {
+  if (gripper.fingers == FingerMotion::kSliding) {
+    return std::clamp(2.0 * finger_position, 0.0, gripper.max_gap);
+  }
+  const double angle = std::clamp(finger_position, 0.0, gripper.max_finger_angle);
   if (angle == gripper.max_finger_angle) return gripper.max_gap;  // not a rounding error beside it
   return gripper.max_gap * SwingAt(gripper, angle) / SwingAt(gripper, gripper.max_finger_angle);
 }
 
-double FingerAngleOf(const GripperProfile& gripper, double gap) {
+double FingerPositionOf(const GripperProfile& gripper, double gap) {
+  if (gripper.fingers == FingerMotion::kSliding) return 0.5 * std::clamp(gap, 0.0, gripper.max_gap);
   const double share = std::clamp(gap / gripper.max_gap, 0.0, 1.0);
   const double swing = share * SwingAt(gripper, gripper.max_finger_angle);
   const double angle = std::asin(swing + std::sin(gripper.finger_slant)) - gripper.finger_slant;
@@ -29,7 +33,7 @@ double FingerAngleOf(const GripperProfile& gripper, double gap) {
 void SetGap(const GripperProfile& gripper, const ArmProfile& arm, double gap,
             JointPositions* joints) {
   (*joints)[arm.gripper_joint] = std::clamp(gap, 0.0, gripper.max_gap);
-  (*joints)[arm.finger_joint] = FingerAngleOf(gripper, gap);
+  (*joints)[arm.finger_joint] = FingerPositionOf(gripper, gap);
 }
 
 void CompleteGrippers(const UpperBodyProfile& profile, JointPositions* joints) {

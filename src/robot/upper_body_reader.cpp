@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "hires/base/text.h"
+#include "hires/robot/gripper.h"
 
 namespace hires::robot {
 namespace {
@@ -68,18 +69,42 @@ ArmProfile ReadArm(ParamReader in) {
   return arm;
 }
 
+FingerShape ReadFingerShape(ParamReader in) {
+  FingerShape shape;
+  shape.tip_reach = in.Get("tip_reach", Between(0.0, 1.0));
+  shape.palm_distance = in.Get("palm_distance", Between(0.0, 1.0));
+  shape.pad_half_height = in.Get("pad_half_height", Between(0.0001, 1.0));
+  shape.half_height = in.Get("half_height", Between(0.0001, 1.0));
+  shape.max_gap_used = in.Get("max_gap_used", Between(0.001, 1.0));
+  shape.open_width = in.Get("open_width", Between(0.001, 1.0));
+  shape.narrowing = in.Get("narrowing", Between(0.0, 100.0));
+  return shape;
+}
+
+void ReadSwingingFingers(ParamReader* in, GripperProfile* gripper) {
+  gripper->max_finger_angle = in->Get("max_finger_angle", Between(0.01, 1.5));
+  gripper->finger_slant = in->Get("finger_slant", Between(-1.5, 1.5));
+  // Beyond a right angle the tips would come together again.
+  if (gripper->finger_slant + gripper->max_finger_angle > 1.57) {
+    in->Fail("finger_slant",
+             fmt::format("wanted finger_slant + max_finger_angle at most 1.57, they make {}",
+                         gripper->finger_slant + gripper->max_finger_angle));
+  }
+}
+
 GripperProfile ReadGripper(ParamReader in) {
   GripperProfile gripper;
   gripper.max_gap = in.Get("max_gap", Between(0.001, 1.0));
-  gripper.max_finger_angle = in.Get("max_finger_angle", Between(0.01, 1.5));
-  gripper.finger_slant = in.Get("finger_slant", Between(-1.5, 1.5));
   gripper.max_speed = in.Get("max_speed", Between(0.001, 10.0));
   gripper.force = in.Get("force", Positive());
-  // Beyond a right angle the tips would come together again.
-  if (gripper.finger_slant + gripper.max_finger_angle > 1.57) {
-    in.Fail("finger_slant",
-            fmt::format("wanted finger_slant + max_finger_angle at most 1.57, they make {}",
-                        gripper.finger_slant + gripper.max_finger_angle));
+  const bool is_sliding =
+      in.Has("fingers") && in.Get("fingers", base::OneOf({"swinging", "sliding"})) == "sliding";
+  if (is_sliding) {
+    gripper.fingers = FingerMotion::kSliding;
+    gripper.shape = ReadFingerShape(in.Sub("shape"));  // the default is a PR2's
+  } else {
+    ReadSwingingFingers(&in, &gripper);
+    if (in.Has("shape")) gripper.shape = ReadFingerShape(in.Sub("shape"));
   }
   return gripper;
 }
@@ -196,7 +221,13 @@ void CheckGripperJoints(const ParamReader& in, const RobotModel& model, const Ar
   }
   CheckPosition(in, "gripper_joint", gap, gripper.max_gap);
   const Joint& finger = CheckedJoint(in, "finger_joint", model, arm.finger_joint);
-  CheckPosition(in, "finger_joint", finger, gripper.max_finger_angle);
+  const bool is_sliding = gripper.fingers == FingerMotion::kSliding;
+  if (is_sliding != (finger.type == JointType::kPrismatic)) {
+    in.Fail("finger_joint", fmt::format("wanted a {} joint for {} fingers (gripper.fingers)",
+                                        is_sliding ? "prismatic" : "revolute",
+                                        is_sliding ? "sliding" : "swinging"));
+  }
+  CheckPosition(in, "finger_joint", finger, FingerPositionOf(gripper, gripper.max_gap));
 }
 
 void CheckArm(ParamReader in, const RobotModel& model, const ArmProfile& arm,
@@ -240,6 +271,11 @@ void Add(base::Hasher* hash, const std::map<std::string, std::vector<double>>& n
     hash->Add(name);
     Add(hash, positions);
   }
+}
+
+std::vector<double> Numbers(const FingerShape& shape) {
+  return {shape.tip_reach,    shape.palm_distance, shape.pad_half_height, shape.half_height,
+          shape.max_gap_used, shape.open_width,    shape.narrowing};
 }
 
 void Add(base::Hasher* hash, const ArmProfile& arm) {
@@ -312,6 +348,9 @@ void AddTo(base::Hasher* hash, const UpperBodyProfile& profile) {
   const GripperProfile& gripper = profile.gripper;
   Add(hash, std::vector<double>{gripper.max_gap, gripper.max_finger_angle, gripper.finger_slant,
                                 gripper.max_speed, gripper.force});
+  // Only then, so that what was measured with a PR2 keeps its hash.
+  if (gripper.fingers == FingerMotion::kSliding) hash->Add("sliding");
+  if (Numbers(gripper.shape) != Numbers(FingerShape{})) Add(hash, Numbers(gripper.shape));
   Add(hash,
       {profile.torso_joint, profile.head_pan_joint, profile.head_tilt_joint, profile.camera_link});
   Add(hash, profile.torso_postures);

@@ -74,7 +74,7 @@ std::vector<double> PlanarRobot::MovingPositions() const {
   const robot::UpperBodyProfile& profile = ProfileOf(*scene_);
   for (const auto& [name, arm] : profile.arms) {
     double& position = positions[drives_.Find(arm.gripper_joint)];
-    position = robot::FingerAngleOf(profile.gripper, position);
+    position = robot::FingerPositionOf(profile.gripper, position);
   }
   return positions;
 }

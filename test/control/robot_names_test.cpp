@@ -66,6 +66,19 @@ TEST(RobotNamesTest, ThePr2IsCalledWhatItIsCalled) {
               ElementsAre("acc_lim_theta", "acc_lim_th"));
 }
 
+TEST(RobotNamesTest, ControllersThatAreActionsAreLedByTheirGoals) {
+  const RobotNames fetch =
+      ReadRobotNames(std::string(HIRES_SOURCE_DIR) + "/config/robots/fetch_names.yaml");
+  EXPECT_EQ(fetch.trajectory_interface, TrajectoryInterface::kFollowJointTrajectory);
+  EXPECT_EQ(fetch.trajectories.at("rightarm1"), "arm_controller/follow_joint_trajectory/goal");
+  EXPECT_EQ(fetch.gripper_interface, GripperInterface::kGripperCommand);
+  EXPECT_THAT(fetch.grippers,
+              ElementsAre(Pair("rightarm1", "gripper_controller/gripper_action/goal")));
+  const RobotNames pr2 = ReadRobotNames(Pr2File());
+  EXPECT_EQ(pr2.trajectory_interface, TrajectoryInterface::kJointTrajectory);
+  EXPECT_EQ(pr2.gripper_interface, GripperInterface::kPr2GripperCommand);
+}
+
 TEST(RobotNamesTest, AMissingFileIsNamed) {
   EXPECT_THROW(ReadRobotNames("nowhere/names.yaml"), ConfigError);
 }
@@ -127,6 +140,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"torso_controller/command",
                 "/torso_controller/command",
                 {"trajectories.torso", "relative"}},
+        BadFile{"grippers:",
+                "gripper_interface: action\ngrippers:",
+                {"gripper_interface is 'action'", "gripper_command"}},
         BadFile{"grippers: ", "grippers: 7 # ", {"no valid YAML", "line"}}));
 
 INSTANTIATE_TEST_SUITE_P(

@@ -49,6 +49,24 @@ double LowestPoint(const world::ObjectModel& object) {
   return lowest;
 }
 
+/// Parallel jaws: an object fits between them as deep as the palm allows, whatever its width.
+TEST(GraspsForTest, ParallelFingersTakeFromAboveUpToThePalm) {
+  robot::GripperProfile jaws;
+  jaws.fingers = robot::FingerMotion::kSliding;
+  jaws.max_gap = 0.10;
+  jaws.shape = {0.03, 0.05, 0.013, 0.013, 0.09, 0.10, 0.0};
+  for (const double radius : {0.02, 0.044}) {
+    const world::ObjectModel can = Can(radius, 0.20);
+    const auto grasps = GraspsFor(can, jaws, 4);
+    const auto top = std::find_if(grasps.begin(), grasps.end(),
+                                  [](const Grasp& grasp) { return grasp.kind == "top"; });
+    ASSERT_NE(top, grasps.end()) << radius;
+    EXPECT_NEAR(top->X_OT.translation.z(), 0.20 - 0.05 + kGraspClearance, 1e-9);
+    EXPECT_NEAR(top->gap, 2.0 * radius, 0.001);
+  }
+  EXPECT_THAT(GraspsFor(Can(0.046, 0.2), jaws, 4), IsEmpty());
+}
+
 TEST(GraspsForTest, AGraspFromTheSideOfACanMeetsItsAxis) {
   for (const Grasp& grasp : GraspsFor(Can(0.035, 0.20), Gripper())) {
     if (grasp.kind != "side") continue;
@@ -67,7 +85,7 @@ TEST(GraspsForTest, AGraspFromAbovePointsDown) {
     if (grasp.kind != "top") continue;
     EXPECT_NEAR((grasp.X_OT.rotation * Eigen::Vector3d::UnitX()).z(), -1.0, 1e-12);
     EXPECT_LT(grasp.X_OT.translation.z(), 0.20);
-    EXPECT_GT(grasp.X_OT.translation.z(), 0.20 - FingerShape{}.palm_distance);
+    EXPECT_GT(grasp.X_OT.translation.z(), 0.20 - robot::FingerShape{}.palm_distance);
   }
 }
 
@@ -127,7 +145,7 @@ TEST(GraspsForTest, NoHeadingIsTheCallersFault) {
 }
 
 TEST(GraspsForCatalogueTest, EveryGraspKeepsItsPromises) {
-  const FingerShape fingers;
+  const robot::FingerShape fingers;
   for (const auto& [name, model] : Catalogue()) {
     double last = 1.0;
     const double face = LowestPoint(*model);
@@ -145,7 +163,7 @@ TEST(GraspsForCatalogueTest, EveryGraspKeepsItsPromises) {
       for (const double back : {0.0, 0.5 * grasp.approach, grasp.approach}) {
         const Pose3 X_TBack{{-back, 0.0, 0.0}, Eigen::Quaterniond::Identity()};
         const double lowest = (grasp.X_OT * X_TBack).translation.z() - reach;
-        EXPECT_GE(lowest, face + fingers.clearance - 1e-9) << name << " " << grasp.kind;
+        EXPECT_GE(lowest, face + kGraspClearance - 1e-9) << name << " " << grasp.kind;
       }
     }
   }

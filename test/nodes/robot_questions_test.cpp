@@ -38,5 +38,13 @@ TEST(MessageTypesTest, TheyAreThoseOfThePr2) {
   EXPECT_EQ(types.gripper.name, "pr2_controllers_msgs/Pr2GripperCommand");
 }
 
+TEST(MessageTypesTest, ControllersThatAreActionsAreLedByGoalsOfControlMsgs) {
+  const hires::cli::RobotMessageTypes types = MessageTypesOfRobot();
+  EXPECT_EQ(types.trajectory_goal.name, "control_msgs/FollowJointTrajectoryActionGoal");
+  EXPECT_EQ(types.trajectory_goal.md5, "cff5c1d533bf2f82dd0138d57f4304bb");
+  EXPECT_EQ(types.gripper_goal.name, "control_msgs/GripperCommandActionGoal");
+  EXPECT_EQ(types.gripper_goal.md5, "aa581f648a35ed681db2ec0bf7a82bea");
+}
+
 }  // namespace
 }  // namespace hires_ros::robot_questions_test

@@ -18,8 +18,8 @@ const GripperProfile& Gripper() { return Pr2().profile.upper_body->gripper; }
 TEST(GripperTest, EndsAreThePublishedOnes) {
   EXPECT_EQ(GapOf(Gripper(), 0.0), 0.0);
   EXPECT_EQ(GapOf(Gripper(), 0.548), 0.09);
-  EXPECT_EQ(FingerAngleOf(Gripper(), 0.0), 0.0);
-  EXPECT_NEAR(FingerAngleOf(Gripper(), 0.09), 0.548, 1e-12);
+  EXPECT_EQ(FingerPositionOf(Gripper(), 0.0), 0.0);
+  EXPECT_NEAR(FingerPositionOf(Gripper(), 0.09), 0.548, 1e-12);
   EXPECT_EQ(GapOf(Gripper(), -0.1), 0.0);
   EXPECT_EQ(GapOf(Gripper(), 0.6), 0.09);
 }
@@ -28,10 +28,21 @@ TEST(GripperTest, GapAndAngleAreEachOthersInverse) {
   double last = -1.0;
   for (int i = 0; i <= 100; ++i) {
     const double gap = 0.09 * i / 100;
-    EXPECT_GT(FingerAngleOf(Gripper(), gap), last);
-    last = FingerAngleOf(Gripper(), gap);
-    EXPECT_NEAR(GapOf(Gripper(), FingerAngleOf(Gripper(), gap)), gap, 1e-12);
+    EXPECT_GT(FingerPositionOf(Gripper(), gap), last);
+    last = FingerPositionOf(Gripper(), gap);
+    EXPECT_NEAR(GapOf(Gripper(), FingerPositionOf(Gripper(), gap)), gap, 1e-12);
   }
+}
+
+TEST(GripperTest, SlidingFingersMoveByHalfTheGapEach) {
+  GripperProfile jaws;
+  jaws.fingers = FingerMotion::kSliding;
+  jaws.max_gap = 0.10;
+  EXPECT_EQ(GapOf(jaws, 0.02), 0.04);
+  EXPECT_EQ(FingerPositionOf(jaws, 0.04), 0.02);
+  EXPECT_EQ(GapOf(jaws, -0.01), 0.0);
+  EXPECT_EQ(GapOf(jaws, 0.06), 0.10);
+  EXPECT_EQ(FingerPositionOf(jaws, 0.12), 0.05);
 }
 
 TEST(GripperTest, ItIsNearTheLinkage) {
@@ -69,7 +80,7 @@ TEST(GripperTest, CompletingMakesGapAndAngleAgree) {
   JointPositions by_gap{{"r_gripper_joint", 0.04}, {"r_gripper_l_finger_joint", 0.0}};
   CompleteGrippers(profile, &by_gap);
   EXPECT_EQ(by_gap.at("r_gripper_joint"), 0.04);
-  EXPECT_NEAR(by_gap.at("r_gripper_l_finger_joint"), FingerAngleOf(Gripper(), 0.04), 1e-12);
+  EXPECT_NEAR(by_gap.at("r_gripper_l_finger_joint"), FingerPositionOf(Gripper(), 0.04), 1e-12);
 }
 
 }  // namespace

@@ -243,6 +243,34 @@ TEST_F(UpperBodyFile, RefusesWhatIsNoArm) {
   ExpectRefused("Arm1:", "Torso:", {"groups of joints of their own"});
 }
 
+const char kSwinging[] = "{max_gap: 0.08, max_finger_angle: 0.5, finger_slant: 0.1, max_speed";
+const char kShape[] =
+    "shape: {tip_reach: 0.03, palm_distance: 0.05, pad_half_height: 0.01, half_height: 0.02, "
+    "max_gap_used: 0.07, open_width: 0.08, narrowing: 0.5}, max_speed";
+
+TEST_F(UpperBodyFile, FingersMayHaveAShapeOfTheirOwn) {
+  const Robot robot =
+      LoadWith(kSwinging,
+               std::string("{max_gap: 0.08, max_finger_angle: 0.5, finger_slant: 0.1, ") + kShape);
+  const FingerShape& shape = robot.profile.upper_body->gripper.shape;
+  EXPECT_EQ(shape.tip_reach, 0.03);
+  EXPECT_EQ(shape.palm_distance, 0.05);
+  EXPECT_EQ(shape.pad_half_height, 0.01);
+  EXPECT_EQ(shape.half_height, 0.02);
+  EXPECT_EQ(shape.max_gap_used, 0.07);
+  EXPECT_EQ(shape.open_width, 0.08);
+  EXPECT_EQ(shape.narrowing, 0.5);
+  EXPECT_NE(robot.hash(), LoadWith("urdf", "urdf").hash());
+}
+
+TEST_F(UpperBodyFile, RefusesFingersThatDoNotFitTheirJoint) {
+  ExpectRefused(kSwinging, std::string("{fingers: sliding, max_gap: 0.08, ") + kShape,
+                {"finger_joint", "wanted a prismatic joint for sliding fingers"});
+  ExpectRefused(kSwinging, "{fingers: sliding, max_gap: 0.08, max_speed",
+                {"upper_body.gripper.shape is missing"});
+  ExpectRefused(kSwinging, "{fingers: three, max_gap: 0.08, max_speed", {"three", "sliding"});
+}
+
 TEST_F(UpperBodyFile, RefusesPosturesThatCannotBe) {
   ExpectRefused("first: [1.5, 3.0]", "first: [1.5]", {"Folded.first", "2 numbers"});
   ExpectRefused("first: [1.5, 3.0]", "first: [2.5, 3.0]",

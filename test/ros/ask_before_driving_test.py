@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The Python module hires against a running imagination, and the example that drives by it: run alone,
-or by `rostest hires ask_before_driving.test`."""
+"""The Python module hires against a running imagination, and the examples that drive by it: run alone, or
+by `rostest hires ask_before_driving.test`."""
 
 import os
 import sys
@@ -10,7 +10,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 
 from imagination_system import ImaginationSystem  # noqa: E402
 from move_base_system import ROOT, MoveBaseSystem  # noqa: E402
-from ros_processes import LIMIT, wait_until  # noqa: E402
+from ros_processes import LIMIT, executable, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
 
 EXAMPLE = os.path.join(ROOT, 'examples', 'ask_before_driving.py')
@@ -40,6 +40,11 @@ class AskBeforeDrivingTest(unittest.TestCase):
                                    HOME, '--planner', 'move_base_node/DWAPlannerROS', *more])
         return process.wait(3 * LIMIT), process.output()
 
+    def run_cpp_example(self, *more):
+        process = self.system.run([executable('ask_before_driving'), AREA, '7.0', '12.2', '-1.57', HOME, *more,
+                                   '_planner:=move_base_node/DWAPlannerROS'])
+        return process.wait(3 * LIMIT), process.output()
+
     def await_max_vel_x(self, wanted, output):
         def is_so():
             values = self.navigation.values()
@@ -55,6 +60,15 @@ class AskBeforeDrivingTest(unittest.TestCase):
         code, output = self.run_example()  # nothing can fall: the faster one is as good, and faster
         self.assertEqual(code, 0, output)
         self.await_max_vel_x(FAST, output)
+
+    def test_the_example_in_cpp_does_the_same(self):
+        code, output = self.run_cpp_example('peppermill1')
+        self.assertEqual(code, 0, output)
+        self.assertIn('slow): 6', output)
+        self.await_max_vel_x(SLOW, output)
+        code, output = self.run_cpp_example('nothing_known')
+        self.assertEqual(code, 2, output)
+        self.assertIn('nothing_known', output)
 
     def test_the_answer_is_that_of_the_command_line(self):
         from imagination_system import ACTION

@@ -41,6 +41,7 @@ struct MessageType {
 struct RobotMessageTypes {
   MessageType odometry, joint_states, scan, localisation, motors_halted, map;
   MessageType base_command, trajectory, gripper;
+  MessageType trajectory_goal, gripper_goal;  ///< where controllers are actions
 };
 
 /// What a robot of these names must publish and listen to.

@@ -8,6 +8,19 @@
 
 namespace hires::control {
 
+/// How controllers of joints are told. Of an action only its goals are used: whether a motion has
+/// succeeded is judged by the joints.
+enum class TrajectoryInterface {
+  kJointTrajectory,       ///< topic of trajectory_msgs/JointTrajectory (PR2)
+  kFollowJointTrajectory  ///< action of control_msgs
+};
+
+/// How controllers of grippers are told.
+enum class GripperInterface {
+  kPr2GripperCommand,  ///< topic of pr2_controllers_msgs
+  kGripperCommand      ///< action of control_msgs; its position is the gap between the tips
+};
+
 /// What a robot calls its topics, frames, joints' groups and servers: one YAML file per kind of
 /// robot (config/robots/pr2_names.yaml). Topics and servers are relative, so that a launch file can
 /// put them elsewhere; frames are tf's.
@@ -24,8 +37,11 @@ struct RobotNames {
   std::string motors_halted;  ///< std_msgs/Bool; empty: the robot has none
   std::string robot_description;  ///< parameter
 
-  std::map<std::string, std::string> trajectories;  ///< group -> trajectory_msgs/JointTrajectory
-  std::map<std::string, std::string> grippers;  ///< arm -> pr2_controllers_msgs/Pr2GripperCommand
+  /// Group of joints -> topic of its controller; of an action its goals (".../goal").
+  std::map<std::string, std::string> trajectories;
+  TrajectoryInterface trajectory_interface{TrajectoryInterface::kJointTrajectory};
+  std::map<std::string, std::string> grippers;  ///< arm -> topic, likewise
+  GripperInterface gripper_interface{GripperInterface::kPr2GripperCommand};
 
   /// How the robot's map lies in the world; not in the file, for it is the laboratory's.
   world::MapToWorld map_to_world;

@@ -68,11 +68,20 @@ std::vector<WantedListener> ListenersOf(const hires::control::RobotNames& names,
   constexpr char kController[] =
       "start its controller (on a PR2: `rosrun pr2_controller_manager pr2_controller_manager "
       "start NAME`)";
+  using control::GripperInterface;
+  using control::TrajectoryInterface;
+  const MessageType& trajectory =
+      names.trajectory_interface == TrajectoryInterface::kFollowJointTrajectory
+          ? types.trajectory_goal
+          : types.trajectory;
   for (const auto& [group, topic] : names.trajectories) {
-    listeners.push_back({"joints " + group, Absolute(topic), types.trajectory.name, kController});
+    listeners.push_back({"joints " + group, Absolute(topic), trajectory.name, kController});
   }
+  const MessageType& gripper = names.gripper_interface == GripperInterface::kGripperCommand
+                                   ? types.gripper_goal
+                                   : types.gripper;
   for (const auto& [arm, topic] : names.grippers) {
-    listeners.push_back({"gripper of " + arm, Absolute(topic), types.gripper.name, kController});
+    listeners.push_back({"gripper of " + arm, Absolute(topic), gripper.name, kController});
   }
   return listeners;
 }

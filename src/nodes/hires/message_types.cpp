@@ -9,6 +9,7 @@
 #include <std_msgs/Bool.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
+#include "hires/ros/control_goals.h"
 #include "hires/ros/pr2_gripper_command.h"
 
 namespace hires_ros {
@@ -33,6 +34,8 @@ hires::cli::RobotMessageTypes MessageTypesOfRobot() {
   types.base_command = TypeOf<geometry_msgs::Twist>();
   types.trajectory = TypeOf<trajectory_msgs::JointTrajectory>();
   types.gripper = TypeOf<Pr2GripperCommand>();
+  types.trajectory_goal = TypeOf<FollowJointTrajectoryActionGoal>();
+  types.gripper_goal = TypeOf<GripperCommandActionGoal>();
   return types;
 }
 

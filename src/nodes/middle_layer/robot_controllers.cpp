@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "hires/ros/conversions.h"
-#include "hires/ros/pr2_gripper_command.h"
 #include "hires/ros/robot_messages.h"
 
 namespace hires_ros {
@@ -12,10 +11,10 @@ RobotControllers::RobotControllers(const hires::control::RobotNames& names,
                                    const std::string& base_topic, ros::NodeHandle* nh)
     : base_(nh->advertise<geometry_msgs::Twist>(base_topic, 10)) {
   for (const auto& [group, topic] : names.trajectories) {
-    trajectories_[group] = nh->advertise<trajectory_msgs::JointTrajectory>(topic, 10);
+    trajectories_[group] = {names.trajectory_interface, topic, nh};
   }
   for (const auto& [arm, topic] : names.grippers) {
-    grippers_[arm] = nh->advertise<Pr2GripperCommand>(topic, 10);
+    grippers_[arm] = {names.gripper_interface, topic, nh};
   }
 }
 
@@ -25,11 +24,11 @@ void RobotControllers::Send(const hires::robot::Command& command) {
     ++num_sent_;
   }
   for (const auto& [group, trajectory] : command.trajectories) {
-    trajectories_.at(group).publish(ToMsg(trajectory));
+    trajectories_.at(group).Send(trajectory);
     ++num_sent_;
   }
   for (const auto& [arm, gripper] : command.grippers) {
-    grippers_.at(arm).publish(Pr2GripperCommand{gripper.gap, gripper.max_effort});
+    grippers_.at(arm).Send(gripper);
     ++num_sent_;
   }
 }
@@ -45,12 +44,13 @@ std::string RobotControllers::Missing(const std::set<std::string>& groups) const
 
 std::string RobotControllers::MissingOf(const std::string& group) const {
   const bool is_arm = group != "torso" && group != "head";
-  const auto trajectory = trajectories_.find(group), gripper = grippers_.find(group);
+  const auto trajectory = trajectories_.find(group);
+  const auto gripper = grippers_.find(group);
   if (trajectory == trajectories_.end() || (is_arm && gripper == grippers_.end())) {
     return "a controller: the names file has none for " + group;
   }
-  if (trajectory->second.getNumSubscribers() == 0) return trajectory->second.getTopic();
-  if (is_arm && gripper->second.getNumSubscribers() == 0) return gripper->second.getTopic();
+  if (!trajectory->second.is_heard()) return trajectory->second.name();
+  if (is_arm && !gripper->second.is_heard()) return gripper->second.name();
   return "";
 }
 

@@ -10,6 +10,7 @@
 
 #include "hires/control/robot_names.h"
 #include "hires/robot/observation.h"
+#include "hires/ros/controller_topics.h"
 
 namespace hires_ros {
 
@@ -37,7 +38,8 @@ class RobotControllers {
   std::string MissingOf(const std::string& group) const;
 
   ros::Publisher base_;
-  std::map<std::string, ros::Publisher> trajectories_, grippers_;  // by group, by arm
+  std::map<std::string, TrajectoryTopic> trajectories_;  // by group
+  std::map<std::string, GripperTopic> grippers_;         // by arm
   std::uint64_t num_sent_{0};
 };
 

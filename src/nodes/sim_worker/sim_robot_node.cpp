@@ -11,6 +11,7 @@
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/robot/load_robot.h"
+#include "hires/ros/control_goals.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/pr2_gripper_command.h"
 #include "hires/ros/robot_messages.h"
@@ -21,6 +22,8 @@ namespace {
 
 using hires::base::ConfigError;
 using hires::base::LogLevel;
+using hires::control::GripperInterface;
+using hires::control::TrajectoryInterface;
 using hires::evaluation::kJointTick;
 using hires::evaluation::kSensorTick;
 using hires::robot::Command;
@@ -29,15 +32,6 @@ constexpr auto kShort = std::chrono::milliseconds(20);    // between two looks a
 constexpr auto kRepeat = std::chrono::milliseconds(100);  // an unanswered tick is sent again
 constexpr auto kLostCommand = std::chrono::seconds(2);    // announced, and has not come
 constexpr auto kLag = std::chrono::milliseconds(200);     // that is made up for; more is not
-
-std::vector<std::string> JointsOf(const hires::robot::Robot& robot, const std::string& group) {
-  if (!robot.profile.upper_body) return {};
-  const hires::robot::UpperBodyProfile& body = *robot.profile.upper_body;
-  if (group == "torso") return {body.torso_joint};
-  if (group == "head") return {body.head_pan_joint, body.head_tilt_joint};
-  const auto arm = body.arms.find(group);
-  return arm == body.arms.end() ? std::vector<std::string>{} : arm->second.joints;
-}
 
 }  // namespace
 
@@ -115,27 +109,46 @@ void SimRobotNode::Subscribe(ros::NodeHandle* nh) {
     command.base_velocity = FromMsg(msg, kSimulatedBase);
     return command;
   });
-  for (const auto& [group, topic] : params_.names.trajectories) {
-    SubscribeTo<trajectory_msgs::JointTrajectory>(
-        nh, topic,
-        [this, group = group, topic = topic](const trajectory_msgs::JointTrajectory& msg) {
-          Command command;
-          command.trajectories[group] = FromMsg(msg, JointsOf(robot_, group), topic);
-          return command;
-        });
-  }
-  for (const auto& [arm, topic] : params_.names.grippers) {
-    SubscribeTo<Pr2GripperCommand>(nh, topic, [arm = arm](const Pr2GripperCommand& msg) {
-      Command command;
-      command.grippers[arm] = {msg.position, msg.max_effort};
-      return command;
-    });
-  }
+  for (const auto& [group, topic] : params_.names.trajectories) SubscribeToGroup(nh, group, topic);
+  for (const auto& [arm, topic] : params_.names.grippers) SubscribeToGripper(nh, arm, topic);
   ack_subscriber_ = nh->subscribe<hires::LockstepAck>(
       kLockstepAck, 10,
       boost::function<void(const ros::MessageEvent<const hires::LockstepAck>&)>(
           [this](const ros::MessageEvent<const hires::LockstepAck>& event) { OnAck(event); }),
       ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
+}
+
+void SimRobotNode::SubscribeToGroup(ros::NodeHandle* nh, const std::string& group,
+                                    const std::string& topic) {
+  const auto joints = robot_.profile.upper_body
+                          ? hires::robot::JointsOfGroup(*robot_.profile.upper_body, group)
+                          : std::vector<std::string>{};
+  const auto command_of = [joints, group, topic](const trajectory_msgs::JointTrajectory& msg) {
+    Command command;
+    command.trajectories[group] = FromMsg(msg, joints, topic);
+    return command;
+  };
+  if (params_.names.trajectory_interface == TrajectoryInterface::kFollowJointTrajectory) {
+    using Goal = FollowJointTrajectoryActionGoal;
+    SubscribeTo<Goal>(nh, topic,
+                      [command_of](const Goal& goal) { return command_of(goal.trajectory); });
+  } else {
+    SubscribeTo<trajectory_msgs::JointTrajectory>(nh, topic, command_of);
+  }
+}
+
+void SimRobotNode::SubscribeToGripper(ros::NodeHandle* nh, const std::string& arm,
+                                      const std::string& topic) {
+  const auto command_of = [arm](const auto& msg) {
+    Command command;
+    command.grippers[arm] = {msg.position, msg.max_effort};
+    return command;
+  };
+  if (params_.names.gripper_interface == GripperInterface::kGripperCommand) {
+    SubscribeTo<GripperCommandActionGoal>(nh, topic, command_of);
+  } else {
+    SubscribeTo<Pr2GripperCommand>(nh, topic, command_of);
+  }
 }
 
 void SimRobotNode::OnAck(const ros::MessageEvent<const hires::LockstepAck>& event) {

@@ -56,6 +56,8 @@ class SimRobotNode {
   template <typename Message>
   void SubscribeTo(ros::NodeHandle* nh, const std::string& topic,
                    std::function<hires::robot::Command(const Message&)> convert);
+  void SubscribeToGroup(ros::NodeHandle* nh, const std::string& group, const std::string& topic);
+  void SubscribeToGripper(ros::NodeHandle* nh, const std::string& arm, const std::string& topic);
   void OnAck(const ros::MessageEvent<const hires::LockstepAck>& event);
   std::string Change(std::function<std::string()> change);  ///< waits for it; why not, or empty
 

@@ -46,7 +46,7 @@ void WorldTrackerNode::Subscribe(ros::NodeHandle* nh) {
   // A robot whose head must not be turned has no publisher for it.
   const auto head = names.trajectories.find("head");
   if (params_.sweep.enabled && head != names.trajectories.end()) {
-    head_ = nh->advertise<trajectory_msgs::JointTrajectory>(head->second, 10);
+    head_ = {names.trajectory_interface, head->second, nh};
   }
   SubscribeTo<nav_msgs::Odometry>(nh, names.odometry, kQueue,
                                   [this](const auto& msg) { sensors_.OnOdometry(msg); });
@@ -99,9 +99,7 @@ hires::control::WorldTracker::Hooks WorldTrackerNode::TrackerHooks() {
   return {[this](const sensing::RobotEstimate& now, const std::vector<robot::SeenObject>& known) {
             PublishKnown(now, known);
           },
-          [this](const robot::JointTrajectory& turn) {
-            if (head_) head_.publish(ToMsg(turn));
-          },
+          [this](const robot::JointTrajectory& turn) { head_.Send(turn); },
           [this](double time, translation::ObservedWorld observed) {
             writer_.Post(time, std::move(observed));
           },

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "hires/control/world_tracker.h"
+#include "hires/ros/controller_topics.h"
 #include "hires/ros/sensor_receiver.h"
 #include "hires/skills/action_set.h"
 #include "nodes/world_tracker/world_tracker_params.h"
@@ -54,7 +55,8 @@ class WorldTrackerNode {
   std::map<std::string, std::string> running_;  // goal id -> action
 
   std::atomic<bool> is_view_new_{false};
-  ros::Publisher known_, head_;
+  ros::Publisher known_;
+  TrajectoryTopic head_;
   std::vector<ros::Subscriber> subscribers_;
   diagnostic_updater::Updater updater_;
   ros::SteadyTimer timer_;
