@@ -174,7 +174,11 @@ std::optional<RayHit> RayScene::FirstHit(const Vector3d& from_M, const Vector3d&
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(scene_.get(), &context.base, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-  return RayHit{query.ray.tfar, instances_[query.hit.instID[0]].owner};
+  const Instance& met = instances_[query.hit.instID[0]];
+  // Normals turn with the inverse transposed of what turns directions.
+  const Eigen::Vector3f n_S(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
+  const Vector3d n_M = (met.to_shape.transpose() * n_S).cast<double>().normalized();
+  return RayHit{query.ray.tfar, met.owner, n_M};
 }
 
 bool RayScene::IsBlocked(const Vector3d& from_M, const Vector3d& direction, double max_distance,

@@ -32,6 +32,7 @@ class MeshLibrary {
 struct RayHit {
   double distance{0.0};
   int owner{0};
+  Eigen::Vector3d n_M;  ///< unit vector out of the surface
 };
 
 /// Placed shapes that rays meet, each with a number for its owner. Surfaces count from outside
