@@ -186,7 +186,7 @@ void PrintReport(const imagination::Report& report, imagination::RankingRule rul
 int Imagine(const ImagineOptions& options, const Backends& backends) {
   const ImagineQuery query = MakeQuery(options, backends);
   if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
-  CheckSaveRollout(options.save, backends.open_rollout_bag);
+  CheckSaveRollout(options.save, backends.make_rollout_bag);
   ProgressDisplay display;
   imagination::OnInterim on_interim;
   if (!options.quiet) on_interim = [&](const auto& interim) { display.Show(interim); };
@@ -204,7 +204,7 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
   }
   const int code = ExitCodeOf(report);
   if (report.ranking.empty()) return code;  // nothing was played that could be saved
-  SaveRollout(options.save, query, report, backends.open_rollout_bag, cancelled);
+  SaveRollout(options.save, query, report, backends.make_rollout_bag, cancelled);
   return code;
 }
 

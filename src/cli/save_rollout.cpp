@@ -7,21 +7,23 @@
 
 #include "hires/base/error.h"
 #include "hires/evaluation/report_json.h"
+#include "hires/evaluation/rollout_film.h"
 #include "hires/evaluation/timeline.h"
 #include "hires/imagination/imagination_setup.h"
+#include "hires/imagination/rollout_choice.h"
 
 namespace hires::cli {
 namespace {
 
+using imagination::RolloutChoice;
 using imagination::RolloutRecording;
 
-const imagination::Prediction& PredictionOf(const imagination::RolloutChoice& choice,
-                                            const imagination::Report& report) {
-  const auto rank = static_cast<std::size_t>(choice.rank);
-  if (rank <= report.ranking.size()) return report.ranking[rank - 1];
-  throw base::ConfigError(
-      fmt::format("--save-rollout: rank {} of {} alternatives; choose a lower one", choice.rank,
-                  report.ranking.size()));
+std::vector<std::string> FilesOf(const SaveRolloutOptions& options) {
+  std::vector<std::string> files;
+  for (const std::string& path : {options.csv, options.bag, options.gif, options.strip}) {
+    if (!path.empty()) files.push_back(path);
+  }
+  return files;
 }
 
 imagination::RolloutSetup SetupOf(const ImagineQuery& query) {
@@ -40,15 +42,37 @@ void RequireAmong(const imagination::Evidence& evidence, const RolloutRecording&
       recording.index));
 }
 
-void Print(const RolloutRecording& recording, const SaveRolloutOptions& options) {
-  std::cout << fmt::format("rollout {} of {}, seed {}:\n", recording.index,
-                           ToString(recording.action), recording.seed);
+imagination::PickedRollout Pick(const RolloutChoice& choice, const imagination::Report& report,
+                                const imagination::RolloutSetup& setup) {
+  const imagination::TiltOfRollout tilt_of = [&](const base::ActionCall& action, int index) {
+    return imagination::PlayRollout(setup, action, index)->max_tilt;
+  };
+  try {
+    return imagination::PickRollout(choice, report.ranking, tilt_of);
+  } catch (const base::ConfigError& error) {
+    throw base::ConfigError(std::string("--save-rollout: ") + error.what());
+  }
+}
+
+void WritePictures(const SaveRolloutOptions& options, const imagination::RolloutSetup& setup,
+                   const RolloutRecording& recording, int threads) {
+  if (options.gif.empty() && options.strip.empty()) return;
+  evaluation::FilmParams params;
+  params.threads = threads;
+  const evaluation::RolloutFilm film(setup, recording, params);
+  if (!options.gif.empty()) evaluation::WriteGif(film, options.gif);
+  if (!options.strip.empty()) {
+    evaluation::WriteStrip(film, options.strip_pictures, options.strip);
+  }
+}
+
+void Print(const RolloutRecording& recording, int rank, const SaveRolloutOptions& options) {
+  std::cout << fmt::format("rollout {} of {} (alternative {}), seed {}:\n", recording.index,
+                           ToString(recording.action), rank, recording.seed);
   for (const imagination::RolloutEvent& event : recording.events) {
     std::cout << fmt::format("{:8.2f} s  {}\n", event.time, event.text);
   }
-  for (const std::string& path : {options.csv, options.bag}) {
-    if (!path.empty()) std::cout << "saved to " << path << '\n';
-  }
+  for (const std::string& path : FilesOf(options)) std::cout << "saved to " << path << '\n';
 }
 
 }  // namespace
@@ -56,48 +80,57 @@ void Print(const RolloutRecording& recording, const SaveRolloutOptions& options)
 void AddSaveRolloutOptions(CLI::App* app, SaveRolloutOptions* o) {
   CLI::Option* which = app->add_option(
       "--save-rollout", o->which,
-      "play one rollout again and save it: worst, median, first_fall, or its number; of the first "
-      "alternative in the table, or of the third: worst@3");
+      "play one rollout again and save it: worst (of all), median, first_fall, or its number, of "
+      "the first alternative in the table; of the third: worst@3");
   app->add_option("--csv", o->csv, "with --save-rollout: to this table, for plotting")
       ->needs(which);
   app->add_option(
          "--bag", o->bag,
-         "with --save-rollout: to this bag, with the topics of a PR2 and markers, for RViz, "
-         "PlotJuggler, Foxglove")
+         "with --save-rollout: to this bag, with the topics of a PR2 and markers, for `hires "
+         "watch`, RViz, PlotJuggler, Foxglove")
       ->needs(which);
+  app->add_option("--gif", o->gif, "with --save-rollout: as moving picture from two sides")
+      ->needs(which);
+  CLI::Option* strip =
+      app->add_option("--strip", o->strip, "with --save-rollout: as PNG of moments side by side")
+          ->needs(which);
+  app->add_option("--strip-pictures", o->strip_pictures, "how many; default 6")
+      ->check(CLI::Range(2, 24))
+      ->needs(strip);
 }
 
-void CheckSaveRollout(const SaveRolloutOptions& options, const OpenRolloutBag& open_bag) {
+void CheckSaveRollout(const SaveRolloutOptions& options, const MakeRolloutBag& make_bag) {
   if (options.which.empty()) return;
   imagination::ParseRolloutChoice(options.which);
-  if (options.csv.empty() && options.bag.empty()) {
-    throw base::ConfigError("--save-rollout: nowhere to save it to; add --csv FILE or --bag FILE");
+  if (FilesOf(options).empty()) {
+    throw base::ConfigError(
+        "--save-rollout: nowhere to save it to; add --gif FILE, --strip FILE, --csv FILE or --bag "
+        "FILE");
   }
-  if (!options.bag.empty() && !open_bag) {
+  if (!options.bag.empty() && !make_bag) {
     throw base::ConfigError("--bag: this build has no ROS to write bags with; use --csv FILE");
   }
-  for (const std::string& path : {options.csv, options.bag}) {
-    if (!path.empty()) evaluation::RequireFolderOf(path);
-  }
+  for (const std::string& path : FilesOf(options)) evaluation::RequireFolderOf(path);
 }
 
 void SaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
-                 const imagination::Report& report, const OpenRolloutBag& open_bag,
+                 const imagination::Report& report, const MakeRolloutBag& make_bag,
                  const std::function<bool()>& cancelled) {
   if (options.which.empty()) return;
-  const imagination::RolloutChoice choice = imagination::ParseRolloutChoice(options.which);
-  const imagination::Prediction& prediction = PredictionOf(choice, report);
-  const int index = imagination::IndexOf(choice, prediction.evidence);
   const imagination::RolloutSetup setup = SetupOf(query);
-  const std::unique_ptr<imagination::RolloutWatcher> bag =
-      options.bag.empty() ? nullptr : open_bag(options.bag, setup);
+  const imagination::PickedRollout picked =
+      Pick(imagination::ParseRolloutChoice(options.which), report, setup);
+  const imagination::Prediction& prediction = report.ranking[picked.rank - 1];
+  const std::unique_ptr<imagination::RolloutSaver> bag =
+      options.bag.empty() ? nullptr : make_bag(options.bag, setup);
   const auto recording =
-      imagination::RecordRollout(setup, prediction.action, index, cancelled, bag.get());
+      imagination::RecordRollout(setup, prediction.action, picked.index, cancelled, bag.get());
   if (!recording) return;
   RequireAmong(prediction.evidence, *recording);
   if (!options.csv.empty()) evaluation::WriteText(imagination::ToCsv(*recording), options.csv);
-  if (bag) bag->OnEnd(*recording);
-  Print(*recording, options);
+  if (bag) bag->Save(*recording);
+  WritePictures(options, setup, *recording, query.threads);
+  Print(*recording, picked.rank, options);
 }
 
 }  // namespace hires::cli

@@ -15,19 +15,20 @@ namespace hires::cli {
 
 /// One rollout of an answer, to be looked at.
 struct SaveRolloutOptions {
-  std::string which, csv, bag;
+  std::string which, csv, bag, gif, strip;
+  int strip_pictures{6};
 };
 void AddSaveRolloutOptions(CLI::App* app, SaveRolloutOptions* options);
 
 /// Before anything is imagined.  @throws base::ConfigError: no such choice, nowhere to save it to,
 /// folders that are not there, a bag that this build cannot write.
-void CheckSaveRollout(const SaveRolloutOptions& options, const OpenRolloutBag& open_bag);
+void CheckSaveRollout(const SaveRolloutOptions& options, const MakeRolloutBag& make_bag);
 
 /// Plays the rollout again, from the files that the query names, and saves it. Says where.
 /// @throws base::ConfigError if the answer has no such rollout, or if what is played is none of
-/// those that were imagined (workers with other files).
+/// those that were imagined (workers with other files); then nothing is written.
 void SaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
-                 const imagination::Report& report, const OpenRolloutBag& open_bag,
+                 const imagination::Report& report, const MakeRolloutBag& make_bag,
                  const std::function<bool()>& cancelled);
 
 }  // namespace hires::cli

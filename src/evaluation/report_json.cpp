@@ -46,7 +46,7 @@ ordered_json RankedToJson(const imagination::Prediction& prediction) {
           {"failures", FailuresToJson(e.failures)}};
 }
 
-bool WriteText(const std::string& text, const fs::path& path) {
+bool WriteOpened(const std::string& text, const fs::path& path) {
   std::ofstream file(path);
   file << text << std::flush;
   return file.good();
@@ -57,7 +57,7 @@ bool ReplaceText(const std::string& text, const fs::path& path) {
   fs::path part = path;
   part += ".part";
   std::error_code error;
-  if (WriteText(text, part)) {
+  if (WriteOpened(text, part)) {
     fs::rename(part, path, error);
     if (!error) return true;
   }
@@ -142,7 +142,7 @@ void WriteJson(const nlohmann::ordered_json& json, const std::string& path) {
   const std::string text =
       json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
   const bool is_device = fs::exists(path) && !fs::is_regular_file(path);  // /dev/stdout, say
-  if (!(is_device ? WriteText(text, path) : ReplaceText(text, fs::weakly_canonical(path)))) {
+  if (!(is_device ? WriteOpened(text, path) : ReplaceText(text, fs::weakly_canonical(path)))) {
     throw base::ConfigError(fmt::format(
         "{}: cannot be written; check that its folder may be written and has room", path));
   }

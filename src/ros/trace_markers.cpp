@@ -212,27 +212,32 @@ MarkerArray TraceMarkers::Draw(const hires::simulation::RobotSimulator& simulato
   return markers;
 }
 
+Marker TextMarker(const std::string& name_space, const std::string& text,
+                  const Eigen::Vector3d& p_M, double above, double height) {
+  Marker marker;
+  Label(&marker, name_space, 0);
+  marker.type = Marker::TEXT_VIEW_FACING;
+  marker.action = text.empty() ? Marker::DELETE : Marker::ADD;
+  marker.pose.position = PointMsg(p_M + above * Eigen::Vector3d::UnitZ());
+  marker.pose.orientation.w = 1.0;
+  marker.scale.z = height;
+  marker.color = Colour(1, 1, 1);
+  marker.text = text;
+  return marker;
+}
+
 MarkerArray RankingMarkers(const std::vector<hires::imagination::Prediction>& ranking,
                            int recommended, const hires::geometry::Pose2& X_MB) {
-  MarkerArray markers;
-  Marker text;
-  Label(&text, "ranking", 0);
-  text.type = Marker::TEXT_VIEW_FACING;
-  text.pose.position.x = X_MB.x;
-  text.pose.position.y = X_MB.y;
-  text.pose.position.z = 2.2;
-  text.pose.orientation.w = 1.0;
-  text.scale.z = 0.22;
-  text.color = Colour(1, 1, 1);
+  std::string text;
   for (std::size_t i = 0; i < ranking.size(); ++i) {
     const auto& e = ranking[i].evidence;
-    text.text += fmt::format("{}{}: {:.0f} % (>= {:.0f} %), c {:.2f}, {:.1f} s\n",
-                             static_cast<int>(i) == recommended ? "> " : "",
-                             hires::base::ToString(ranking[i].action), 100 * e.success.share,
-                             100 * e.success.lower, e.confidence_mean, e.duration.mean);
+    text += fmt::format("{}{}: {:.0f} % (>= {:.0f} %), c {:.2f}, {:.1f} s\n",
+                        static_cast<int>(i) == recommended ? "> " : "",
+                        hires::base::ToString(ranking[i].action), 100 * e.success.share,
+                        100 * e.success.lower, e.confidence_mean, e.duration.mean);
   }
-  text.action = text.text.empty() ? Marker::DELETE : Marker::ADD;
-  markers.markers.push_back(text);
+  MarkerArray markers;
+  markers.markers.push_back(TextMarker("ranking", text, {X_MB.x, X_MB.y, 0.0}, 2.2, 0.22));
   return markers;
 }
 

@@ -1,5 +1,6 @@
 #include "hires/simulation/robot_simulator.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "hires/base/check.h"
@@ -121,6 +122,15 @@ geometry::Twist3 RobotSimulator::VelocityOf(int object) const {
 
 std::string RobotSimulator::HolderOf(int object) const {
   return planar_ ? planar_->HolderOf(object) : objects_->AtStart(object).attached_to;
+}
+
+bool RobotSimulator::IsTouched(int object) const {
+  if (!HolderOf(object).empty()) return true;
+  const physics::BodyId body = objects_->BodyOf(object);
+  const std::vector<physics::Touch>& touches = physics_->touches();
+  return std::any_of(touches.begin(), touches.end(), [&](const physics::Touch& touch) {
+    return touch.loose == body || touch.other == body;
+  });
 }
 
 bool RobotSimulator::StandsOnRobot(int object) const {

@@ -3,14 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "hires/base/text.h"
 #include "imagination/room_rollouts.h"
-#include "support/messages.h"
 
 namespace hires::imagination::rollout_recording_test {
 namespace {
 
-using hires::test_support::ConfigErrorOf;
 using hires::test_support::Room;
 using hires::test_support::RoomRollouts;
 using hires::test_support::SomeUncertainty;
@@ -31,39 +31,6 @@ RolloutRecording Record(const RolloutSetup& setup, int index) {
   const auto recording = RecordRollout(setup, kFast, index, {});
   EXPECT_TRUE(recording) << "nobody cancelled it";
   return recording.value_or(RolloutRecording());
-}
-
-TEST(ParseRolloutChoiceTest, NamesAndNumbersOfEachRank) {
-  using Kind = RolloutChoice::Kind;
-  EXPECT_EQ(ParseRolloutChoice("worst").kind, Kind::kWorst);
-  EXPECT_EQ(ParseRolloutChoice("median@2").kind, Kind::kMedian);
-  EXPECT_EQ(ParseRolloutChoice("median@2").rank, 2);
-  EXPECT_EQ(ParseRolloutChoice("first_fall").kind, Kind::kFirstFailed);
-  EXPECT_EQ(ParseRolloutChoice("37@4").index, 37);
-  EXPECT_EQ(ParseRolloutChoice("37@4").rank, 4);
-}
-
-TEST(ParseRolloutChoiceTest, AnythingElseIsRefused) {
-  for (const char* text : {"", "best", "-1", "1.5", "3@", "worst@x", "37 "}) {
-    EXPECT_THAT(ConfigErrorOf([&] { ParseRolloutChoice(text); }),
-                AllOf(HasSubstr(std::string("'") + text + "'"), HasSubstr("first_fall")))
-        << text;
-  }
-  EXPECT_THAT(ConfigErrorOf([] { ParseRolloutChoice("worst@0"); }), HasSubstr("from 1"));
-}
-
-TEST(IndexOfTest, WhatWasNotPlayedIsRefused) {
-  Evidence evidence;
-  evidence.num_rollouts = 8;
-  EXPECT_EQ(IndexOf({RolloutChoice::Kind::kIndex, 7, 1}, evidence), 7);
-  EXPECT_THAT(ConfigErrorOf([&] {
-                IndexOf({RolloutChoice::Kind::kIndex, 8, 1}, evidence);
-              }),
-              HasSubstr("no rollout 8: 8 were played"));
-  EXPECT_THAT(ConfigErrorOf([&] {
-                IndexOf({RolloutChoice::Kind::kFirstFailed, 0, 1}, evidence);
-              }),
-              HasSubstr("all succeeded"));
 }
 
 TEST(RecordRolloutTest, TwoHundredPlayedAgainAreThoseThatWereImagined) {
@@ -91,14 +58,27 @@ TEST(RecordRolloutTest, AnotherRolloutIsNotAmongThem) {
   EXPECT_FALSE(IsAmong(evidence, result));
 }
 
-TEST(RecordRolloutTest, SaysWhatHappensInItsOrder) {
-  const RolloutSetup setup = Disturbed();
-  int falls = -1;
-  for (int i = 0; falls < 0; ++i) {
-    ASSERT_LT(i, 200);
-    if (PlayRollout(setup, kFast, i)->falls > 0) falls = i;
+/// Number of the first rollout that falls.
+int FirstFall(const RolloutSetup& setup) {
+  for (int i = 0; i < 200; ++i) {
+    if (PlayRollout(setup, kFast, i)->falls > 0) return i;
   }
-  const RolloutRecording recording = Record(setup, falls);
+  ADD_FAILURE() << "none of 200 falls";
+  return 0;
+}
+
+double TimeOf(RolloutEvent::Kind kind, const RolloutRecording& recording) {
+  for (const RolloutEvent& event : recording.events) {
+    if (event.kind == kind) return event.time;
+  }
+  ADD_FAILURE() << "no event of kind " << static_cast<int>(kind);
+  return 0.0;
+}
+
+TEST(RecordRolloutTest, SaysWhatHappensInItsOrder) {
+  using Kind = RolloutEvent::Kind;
+  const RolloutSetup setup = Disturbed();
+  const RolloutRecording recording = Record(setup, FirstFall(setup));
   EXPECT_EQ(recording.objects, std::vector<std::string>{"load"});
   std::string story;
   double before = 0.0;
@@ -107,12 +87,45 @@ TEST(RecordRolloutTest, SaysWhatHappensInItsOrder) {
     before = event.time;
     story += event.text + "; ";
   }
-  EXPECT_LT(story.find("load leans"), story.find("load topples"));
-  EXPECT_THAT(story, HasSubstr("ends: object_fell"));
+  EXPECT_LT(TimeOf(Kind::kTips, recording), TimeOf(Kind::kFalls, recording));
+  EXPECT_LT(TimeOf(Kind::kTips, recording), TimeOf(Kind::kLiftsOff, recording));
+  EXPECT_EQ(TimeOf(Kind::kEnd, recording), recording.result.duration);
+  EXPECT_THAT(story, AllOf(HasSubstr("load begins to tip"), HasSubstr("load lifts off"),
+                           HasSubstr("failed: object_fell")));
 }
 
-TEST(RecordRolloutTest, TheTableHasALineForEachSample) {
+TEST(RecordRolloutTest, ACycleThatComesLateIsToldWithItsDelayBeforeTheBaseBrakes) {
+  using Kind = RolloutEvent::Kind;
+  RolloutSetup setup = RoomRollouts(Room(), "mill", R"(
+late_cycle_probability: {distribution: fixed, value: 0.05, unit: share, source: test}
+late_cycle_delay: {distribution: fixed, value: 0.5, unit: s, source: test}
+)");
+  const RolloutRecording recording = Record(setup, 0);
+  const double late = TimeOf(Kind::kLateCycle, recording),
+               braking = TimeOf(Kind::kTimedOut, recording);
+  EXPECT_GT(braking, late);
+  EXPECT_LT(braking, late + 0.5);
+  EXPECT_NE(std::find_if(recording.events.begin(), recording.events.end(),
+                         [](const RolloutEvent& e) { return e.text == "cycle late 0.50 s"; }),
+            recording.events.end());
+  for (const RolloutEvent& event : recording.events) {
+    if (event.kind == Kind::kTimedOut) {
+      EXPECT_LE(event.time, recording.result.duration);  // the end is no lack of commands
+    }
+  }
+}
+
+TEST(RecordRolloutTest, ItGoesOnForASecondAfterTheEnd) {
   const RolloutRecording recording = Record(RoomRollouts(Room(), "mill"), 0);
+  EXPECT_NEAR(recording.samples.front().time, 0.05, 1e-9);  // since the action began
+  const double after = recording.samples.back().time - recording.result.duration;
+  EXPECT_GT(after, 0.9);
+  EXPECT_LT(after, 3.1);
+}
+
+TEST(RecordRolloutTest, TheTableHasALineForEachSampleAndUnitsInItsHead) {
+  const RolloutSetup setup = Disturbed();
+  const RolloutRecording recording = Record(setup, FirstFall(setup));
   ASSERT_GT(recording.samples.size(), 100u);
   for (std::size_t i = 1; i < recording.samples.size(); ++i) {
     EXPECT_NEAR(recording.samples[i].time - recording.samples[i - 1].time, 0.05, 1e-9);
@@ -120,12 +133,19 @@ TEST(RecordRolloutTest, TheTableHasALineForEachSample) {
   const std::string csv = ToCsv(recording);
   const std::vector<std::string> lines = base::Split(csv, '\n');
   EXPECT_EQ(lines.size(), recording.samples.size() + 2);  // the header, and what ends the last
-  EXPECT_THAT(lines[0], AllOf(HasSubstr("time,x,y,z,"),
-                              HasSubstr("jerk,load.x,load.y,load.z,load.tilt,event")));
+  EXPECT_THAT(lines[0], AllOf(HasSubstr("time [s],x [m],y [m],z [m],"),
+                              HasSubstr("jerk [m/s^3],load.x [m],load.y [m],load.z [m],"
+                                        "load.tilt [rad],event")));
   const std::size_t columns = base::Split(lines[0], ',').size();
+  std::string story;
   for (std::size_t i = 1; i + 1 < lines.size(); ++i) {
-    EXPECT_EQ(base::Split(lines[i], ',').size(), columns) << lines[i];
+    // An event's own comma stands between quotation marks.
+    const std::string numbers = lines[i].substr(0, lines[i].find('"'));
+    EXPECT_EQ(base::Split(numbers, ',').size(), columns) << lines[i];
+    for (const std::string& number : base::Split(numbers, ',')) EXPECT_LT(number.size(), 14u);
+    story += lines[i];
   }
+  for (const RolloutEvent& event : recording.events) EXPECT_THAT(story, HasSubstr(event.text));
 }
 
 TEST(RecordRolloutTest, ItCanBeCancelled) {

@@ -48,9 +48,8 @@ struct Verb {
 /// wrong.
 using Check = std::function<bool()>;
 
-/// A bag that a rollout of this setup is saved to.  @throws base::ConfigError if it cannot be
-/// written.
-using OpenRolloutBag = std::function<std::unique_ptr<imagination::RolloutWatcher>(
+/// Makes what saves a rollout of this setup as a bag.
+using MakeRolloutBag = std::function<std::unique_ptr<imagination::RolloutSaver>(
     const std::string& path, const imagination::RolloutSetup& setup)>;
 
 /// What the program can do beyond this process; all may be empty.
@@ -61,7 +60,7 @@ struct Backends {
   evaluation::AchieveRemotely achieve_remotely;
   evaluation::PlayHypothesis play_hypothesis;
   loop::RecordLoop record_loop;  ///< empty: this program writes no bags
-  OpenRolloutBag open_rollout_bag;
+  MakeRolloutBag make_rollout_bag;
   ExamineRobot examine_robot;
   std::vector<Verb> more_verbs;
   std::vector<Check> more_checks;

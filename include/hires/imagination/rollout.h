@@ -62,6 +62,15 @@ struct RolloutHooks {
   /// Called once, when it is over, with the names (lower case) of what the action was about and
   /// the robot carried that is down, as world::FallDetector says.
   std::function<void(const std::vector<std::string>& down)> on_end{};
+  /// For those who watch: every world::kFallLookInterval once the load has settled, until physics
+  /// stops. Must not change anything.
+  std::function<void(const simulation::RobotSimulator&)> on_look{};
+  /// A control cycle will come late by `delay` [s].
+  std::function<void(const simulation::RobotSimulator&, double delay)> on_late_cycle{};
+  /// [s] for which physics plays on after everything was counted, so that one sees how what falls
+  /// comes to lie; nothing of that counts. With it on_sample is called until the very end (with the
+  /// tilt that was last counted), without it until the action ends.
+  double epilogue{0.0};
 };
 
 /// Plays rollout `index` of an action: samples a truth (the same for every action that is played

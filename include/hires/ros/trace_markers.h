@@ -54,6 +54,10 @@ visualization_msgs::MarkerArray RankingMarkers(
     const std::vector<hires::imagination::Prediction>& ranking, int recommended,
     const hires::geometry::Pose2& X_MB);
 
+/// Text `above` [m] a point of the map, its letters `height` [m] high; no text deletes it.
+visualization_msgs::Marker TextMarker(const std::string& name_space, const std::string& text,
+                                      const Eigen::Vector3d& p_M, double above, double height);
+
 /// Furniture, walls and areas, for display under the main master.
 visualization_msgs::MarkerArray WorldMarkers(const hires::world::World& world);
 

@@ -78,6 +78,9 @@ class RobotSimulator {
   /// It stands on, or up to 0.06 m above, a part of the robot that moves with its base.
   bool StandsOnRobot(int object) const;
 
+  /// Something touches it, or a hand holds it; as of the beginning of the last step.
+  bool IsTouched(int object) const;
+
   /// Indices of the objects that stood on a part of the robot at the start.
   const std::vector<int>& carried() const;
   /// What the hands hold: object index by arm, hands that hold nothing left out.

@@ -52,24 +52,22 @@ class Player {
   std::optional<RolloutResult> Play(const RolloutHooks& hooks) {
     if (!Settle()) return std::nullopt;
     LoadMonitor monitor(&simulator_, params_, standing_, purpose_);
-    const double start = simulator_.time();
+    const double start = next_cycle_ = start_ = simulator_.time();
     skills::Status status;
-    next_cycle_ = start;
-    long samples = 0;
     const double half_step = 0.5 * simulator_.time_step();
     const long steps_per_look = world::StepsPerLook(simulator_.time_step());
     for (long step = 0; status.progress == skills::Progress::kRunning; ++step) {
       // Periods are sums of rounded numbers: without the half step some cycles came a step late.
-      if (simulator_.time() >= next_cycle_ - half_step) status = Control(start);
+      if (simulator_.time() >= next_cycle_ - half_step) status = Control(start, hooks);
       if (status.progress != skills::Progress::kRunning) break;
       simulator_.Step();
       if (step % steps_per_look == 0) {
         monitor.Look();
         if (!IsApart()) return std::nullopt;
+        if (hooks.on_look) hooks.on_look(simulator_);
       }
       const double elapsed = simulator_.time() - start;
-      if (elapsed >= (samples + 1) * params_.sample_period - half_step) {
-        ++samples;
+      if (IsSampleDue()) {
         monitor.Look();
         result_.counts += monitor.Sample();
         if (hooks.on_sample) hooks.on_sample(simulator_, monitor.tilt());
@@ -80,10 +78,11 @@ class Player {
       if (elapsed >= params_.time_limit) status = skills::Failed(Code::kTimedOut);
     }
     result_.duration = simulator_.time() - start;
-    if (!WatchAftermath(&monitor)) return std::nullopt;
+    if (!WatchAftermath(&monitor, hooks)) return std::nullopt;
     monitor.Conclude();
     if (hooks.on_end) hooks.on_end(monitor.Down());
     Conclude(status, monitor);
+    PlayEpilogue(monitor, hooks);
     return result_;
   }
 
@@ -99,13 +98,21 @@ class Player {
     return IsApart();
   }
 
-  skills::Status Control(double start) {
+  bool IsSampleDue() {
+    const double next = (samples_ + 1) * params_.sample_period - 0.5 * simulator_.time_step();
+    if (simulator_.time() - start_ < next) return false;
+    ++samples_;
+    return true;
+  }
+
+  skills::Status Control(double start, const RolloutHooks& hooks) {
     robot::Command command;
     const skills::Status status = skill_->Update(simulator_.Observe(start), &command);
     simulator_.Send(command);
     next_cycle_ += skill_->period();
     if (control_rng_.Bernoulli(variation_.late_cycle_probability)) {
       next_cycle_ += variation_.late_cycle_delay;
+      if (hooks.on_late_cycle) hooks.on_late_cycle(simulator_, variation_.late_cycle_delay);
     }
     return status;
   }
@@ -119,15 +126,33 @@ class Player {
   bool IsApart() const { return watch_ == nullptr || watch_->Look(simulator_); }
 
   /// False if something comes near what is left out.
-  bool WatchAftermath(LoadMonitor* monitor) {
+  bool WatchAftermath(LoadMonitor* monitor, const RolloutHooks& hooks) {
     const double end = simulator_.time() + params_.aftermath;
     const long steps_per_look = world::StepsPerLook(simulator_.time_step());
     while (simulator_.time() < end && !monitor->IsSettled()) {
-      for (long i = 0; i < steps_per_look; ++i) simulator_.Step();
+      PlayUntilNextLook(steps_per_look, *monitor, hooks);
       monitor->Look();
       if (!IsApart()) return false;
     }
     return IsApart();
+  }
+
+  /// After the action, where samples are for those who watch alone.
+  void PlayUntilNextLook(long steps, const LoadMonitor& monitor, const RolloutHooks& hooks) {
+    for (long i = 0; i < steps; ++i) {
+      simulator_.Step();
+      if (hooks.epilogue > 0.0 && hooks.on_sample && IsSampleDue()) {
+        hooks.on_sample(simulator_, monitor.tilt());
+      }
+    }
+    if (hooks.on_look) hooks.on_look(simulator_);
+  }
+
+  void PlayEpilogue(const LoadMonitor& monitor, const RolloutHooks& hooks) {
+    if (monitor.is_lost()) return;
+    const double end = simulator_.time() + hooks.epilogue;
+    const long steps_per_look = world::StepsPerLook(simulator_.time_step());
+    while (simulator_.time() < end) PlayUntilNextLook(steps_per_look, monitor, hooks);
   }
 
   void Conclude(const skills::Status& status, const LoadMonitor& monitor) {
@@ -157,7 +182,8 @@ class Player {
   std::unique_ptr<skills::Skill> skill_;
   base::Rng control_rng_;
   RobotSimulator simulator_;
-  double next_cycle_{0.0};
+  double start_{0.0}, next_cycle_{0.0};  // [s]
+  long samples_{0};
   RolloutResult result_;
 };
 

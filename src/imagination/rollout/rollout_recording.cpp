@@ -3,24 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
-#include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/simulation/fall_watch.h"
 
 namespace hires::imagination {
 namespace {
 
-constexpr char kChoices[] = "worst, median, first_fall or a number from 0, and @RANK behind it";
-
-int ParseNumber(const std::string& digits, const std::string& text) {
-  int number = -1;
-  const char* end = digits.data() + digits.size();
-  const auto [rest, error] = std::from_chars(digits.data(), end, number);
-  if (error == std::errc() && rest == end && number >= 0) return number;
-  throw base::ConfigError(fmt::format("rollout '{}': wanted {}", text, kChoices));
-}
+constexpr double kEpilogue = 1.0;         // [s] of physics after all was counted
+constexpr double kShortestFlight = 0.02;  // [s] what hops for less long only rattles
+constexpr double kTippingShare = 10.0;    // times shaking_tilt: it tips, and no longer only shakes
 
 std::vector<std::string> NamesOf(const world::WorldState& state) {
   std::vector<std::string> names;
@@ -28,157 +21,216 @@ std::vector<std::string> NamesOf(const world::WorldState& state) {
   return names;
 }
 
+/// When the action begins, by the simulator's clock [s].
+double BeginOf(const RolloutSetup& setup) {
+  const double time_step = setup.physics.time_step;
+  return time_step * std::lround(setup.params.settling_time / time_step);
+}
+
 /// Notes a rollout while it is played.
 class Recorder {
  public:
-  Recorder(const RolloutParams& params, RolloutRecording* recording)
-      : params_(params), recording_(*recording) {}
+  Recorder(const RolloutSetup& setup, RolloutRecording* recording, RolloutWatcher* watcher)
+      : setup_(setup), begin_(BeginOf(setup)), recording_(*recording), watcher_(watcher) {}
 
-  void Note(const simulation::RobotSimulator& simulator) {
-    if (!recording_.samples.empty() && simulator.time() <= recording_.samples.back().time) Forget();
-    const world::WorldState world = simulator.GetWorldState();
-    if (recording_.samples.empty()) Begin(world);
+  void NoteSample(const simulation::RobotSimulator& simulator) {
     RolloutSample sample;
-    sample.time = simulator.time();
+    sample.time = TimeOf(simulator);
     sample.X_MB = simulator.X_MB();
     sample.V_B = simulator.base().V_B;
     sample.A_B = simulator.base().A_B;
     sample.joints = simulator.GetRobotState().joints;
-    for (const world::ObjectState& object : world.objects) sample.X_MO.push_back(object.X_MO);
-    NoteEvents(simulator, sample);
+    for (const world::ObjectState& object : simulator.GetWorldState().objects) {
+      sample.X_MO.push_back(object.X_MO);
+    }
     recording_.samples.push_back(std::move(sample));
+    if (watcher_ != nullptr) watcher_->OnSample(simulator);
   }
 
-  void NoteEnd(const std::vector<std::string>& down) {
-    if (!down.empty()) Say(recording_.samples.back().time, base::Join(down, ", ") + " down");
+  void Look(const simulation::RobotSimulator& simulator) {
+    const double now = TimeOf(simulator);
+    if (!has_begun_ || now <= last_look_) Begin(simulator);
+    last_look_ = now;
+    NoteBase(simulator);
+    for (std::size_t i = 0; i < objects_.size(); ++i) NoteObject(simulator, static_cast<int>(i));
+  }
+
+  void NoteLateCycle(const simulation::RobotSimulator& simulator, double delay) {
+    const double now = TimeOf(simulator);
+    if (!has_begun_ || now <= last_late_cycle_ || now < last_look_) Begin(simulator);
+    last_late_cycle_ = now;
+    Say(Kind::kLateCycle, now, fmt::format("cycle late {:.2f} s", delay));
   }
 
  private:
-  /// It begins again, with more of what stands about.
-  void Forget() {
+  using Kind = RolloutEvent::Kind;
+
+  struct Object {
+    explicit Object(const world::StandingCriterion& standing) : watch(standing) {}
+    simulation::FallWatch watch;
+    bool is_tipping_told{false}, is_flight_told{false};
+    double last_upright{0.0}, last_touched{0.0};  // [s]
+  };
+
+  double TimeOf(const simulation::RobotSimulator& simulator) const {
+    return simulator.time() - begin_;
+  }
+
+  /// It may begin again, with more of what stands about.
+  void Begin(const simulation::RobotSimulator& simulator) {
+    recording_.objects = NamesOf(simulator.GetWorldState());
     recording_.samples.clear();
     recording_.events.clear();
-  }
-
-  void Begin(const world::WorldState& world) {
-    recording_.objects = NamesOf(world);
-    leans_.assign(world.objects.size(), false);
-    lies_.assign(world.objects.size(), false);
+    objects_.assign(recording_.objects.size(), Object(setup_.standing));
+    has_begun_ = true;
     is_late_ = touches_ = false;
+    last_look_ = last_late_cycle_ = -1.0;
+    if (watcher_ != nullptr) watcher_->OnBegin();
   }
 
-  void NoteEvents(const simulation::RobotSimulator& simulator, const RolloutSample& sample) {
+  void NoteBase(const simulation::RobotSimulator& simulator) {
     const bool is_late = simulator.base().timed_out;
-    if (is_late && !is_late_) Say(sample.time, "no command in time: the base brakes by itself");
+    if (is_late && !is_late_) {
+      Say(Kind::kTimedOut, last_look_, "no command in time: the base brakes by itself");
+    }
     is_late_ = is_late;
     if (simulator.contact() && !touches_) {
       touches_ = true;
-      Say(sample.time, fmt::format("{} touches {}", simulator.contact()->robot_part,
-                                   simulator.contact()->obstacle));
-    }
-    for (std::size_t i = 0; i < sample.X_MO.size(); ++i) {
-      const double tilt = geometry::TiltOf(sample.X_MO[i].rotation);
-      NoteTilt(sample.time, i, tilt, params_.shaking_tilt, "leans by more than", &leans_);
-      NoteTilt(sample.time, i, tilt, params_.topple_tilt, "topples: over", &lies_);
+      Say(Kind::kContact, last_look_,
+          fmt::format("{} touches {}", simulator.contact()->robot_part,
+                      simulator.contact()->obstacle));
     }
   }
 
-  void NoteTilt(double time, std::size_t object, double tilt, double threshold,
-                const std::string& what, std::vector<bool>* noted) {
-    if (tilt <= threshold || (*noted)[object]) return;
-    (*noted)[object] = true;
-    Say(time, fmt::format("{} {} {} rad", recording_.objects[object], what, threshold));
+  void NoteObject(const simulation::RobotSimulator& simulator, int index) {
+    Object& object = objects_[index];
+    const std::string& name = recording_.objects[index];
+    const world::Fall fall = object.watch.Look(simulator, index);
+    const world::Departure& now = object.watch.detector().now();
+    NoteTipping(index, now.tilt);
+    NoteFlight(simulator, index);
+    if (fall != world::Fall::kNone) Say(Kind::kFalls, last_look_, name + FallText(fall, now));
   }
 
-  void Say(double time, const std::string& text) { recording_.events.push_back({time, text}); }
+  /// That it began to tip is known once it leans well beyond shaking.
+  void NoteTipping(int index, double tilt) {
+    Object& object = objects_[index];
+    if (tilt <= setup_.params.shaking_tilt) {
+      object.last_upright = last_look_;
+      object.is_tipping_told = false;
+    } else if (!object.is_tipping_told && tilt > kTippingShare * setup_.params.shaking_tilt) {
+      object.is_tipping_told = true;
+      Say(Kind::kTips, object.last_upright, recording_.objects[index] + " begins to tip");
+    }
+  }
 
-  const RolloutParams& params_;
+  void NoteFlight(const simulation::RobotSimulator& simulator, int index) {
+    Object& object = objects_[index];
+    if (simulator.IsTouched(index)) {
+      object.last_touched = last_look_;
+      object.is_flight_told = false;
+    } else if (!object.is_flight_told && last_look_ - object.last_touched >= kShortestFlight) {
+      object.is_flight_told = true;
+      Say(Kind::kLiftsOff, object.last_touched, recording_.objects[index] + " lifts off");
+    }
+  }
+
+  static std::string FallText(world::Fall fall, const world::Departure& now) {
+    switch (fall) {
+      case world::Fall::kToppled:
+        return fmt::format(" falls: leans {:.2f} rad", now.tilt);
+      case world::Fall::kDropped:
+        return fmt::format(" falls: {:.2f} m lower than it stood", now.drop);
+      case world::Fall::kSlid:
+        return fmt::format(" slides: {:.2f} m from where it stood", now.slide);
+      default:
+        return " is lost";
+    }
+  }
+
+  void Say(Kind kind, double time, const std::string& text) {
+    recording_.events.push_back({kind, time, text});
+  }
+
+  const RolloutSetup& setup_;
+  const double begin_;  // [s] of the action
   RolloutRecording& recording_;
-  std::vector<bool> leans_, lies_;
-  bool is_late_{false}, touches_{false};
+  RolloutWatcher* const watcher_;
+  std::vector<Object> objects_;
+  double last_look_{-1.0}, last_late_cycle_{-1.0};  // [s] since the action began
+  bool has_begun_{false}, is_late_{false}, touches_{false};
 };
 
 std::string Header(const RolloutRecording& recording) {
   std::string header =
-      "time,x,y,z,roll,pitch,yaw,vx,vy,wz,speed,acceleration,angular_acceleration,jerk";
+      "time [s],x [m],y [m],z [m],roll [rad],pitch [rad],yaw [rad],vx [m/s],vy [m/s],wz [rad/s],"
+      "speed [m/s],acceleration [m/s^2],angular_acceleration [rad/s^2],jerk [m/s^3]";
   for (const std::string& name : recording.objects) {
-    for (const char* column : {"x", "y", "z", "tilt"})
+    for (const char* column : {"x [m]", "y [m]", "z [m]", "tilt [rad]"}) {
       header += fmt::format(",{}.{}", name, column);
+    }
   }
   return header + ",event\n";
 }
 
-std::string EventsAt(const RolloutRecording& recording, double time) {
+/// What happened in the samples' interval that ends with sample i; behind the last all that is
+/// left.
+std::string EventsUpTo(const RolloutRecording& recording, std::size_t i) {
+  const double after = i == 0 ? -1e9 : recording.samples[i - 1].time;
+  const bool is_last = i + 1 == recording.samples.size();
   std::vector<std::string> texts;
   for (const RolloutEvent& event : recording.events) {
-    if (event.time == time) texts.push_back(event.text);
+    const bool is_later = event.time > recording.samples[i].time && !is_last;
+    if (event.time > after && !is_later) texts.push_back(event.text);
   }
   return base::Join(texts, "; ");
 }
 
+/// Nobody sends commands when the action is over.
+void DropWhatTheEndCauses(RolloutRecording* recording) {
+  auto& events = recording->events;
+  const auto is_caused = [&](const RolloutEvent& event) {
+    return event.kind == RolloutEvent::Kind::kTimedOut && event.time > recording->result.duration;
+  };
+  events.erase(std::remove_if(events.begin(), events.end(), is_caused), events.end());
+}
+
+RolloutEvent EndOf(const RolloutResult& result) {
+  const base::Failure failure = FailureOf(result);
+  std::string text = result.action_finished ? "goal reached" : "action ends";
+  if (failure) text += ", failed: " + ToString(failure);
+  return {RolloutEvent::Kind::kEnd, result.duration, text};
+}
+
 }  // namespace
-
-RolloutChoice ParseRolloutChoice(const std::string& text) {
-  const std::size_t at = text.find('@');
-  const std::string which = text.substr(0, at);
-  RolloutChoice choice;
-  if (at != std::string::npos) choice.rank = ParseNumber(text.substr(at + 1), text);
-  if (choice.rank < 1) {
-    throw base::ConfigError(fmt::format("rollout '{}': ranks count from 1", text));
-  }
-  if (which == "worst") {
-    choice.kind = RolloutChoice::Kind::kWorst;
-  } else if (which == "median") {
-    choice.kind = RolloutChoice::Kind::kMedian;
-  } else if (which == "first_fall") {
-    choice.kind = RolloutChoice::Kind::kFirstFailed;
-  } else {
-    choice.kind = RolloutChoice::Kind::kIndex;
-    choice.index = ParseNumber(which, text);
-  }
-  return choice;
-}
-
-int IndexOf(const RolloutChoice& choice, const Evidence& evidence) {
-  int index = choice.index;
-  if (choice.kind == RolloutChoice::Kind::kWorst) index = evidence.worst_rollout;
-  if (choice.kind == RolloutChoice::Kind::kMedian) index = evidence.median_rollout;
-  if (choice.kind == RolloutChoice::Kind::kFirstFailed) index = evidence.first_failed;
-  if (index >= 0 && index < evidence.num_rollouts) return index;
-  throw base::ConfigError(
-      choice.kind == RolloutChoice::Kind::kIndex
-          ? fmt::format("there is no rollout {}: {} were played, counted from 0", index,
-                        evidence.num_rollouts)
-          : fmt::format("of {} rollouts there is none such ({}); choose another",
-                        evidence.num_rollouts,
-                        choice.kind == RolloutChoice::Kind::kFirstFailed ? "all succeeded"
-                                                                         : "none finished"));
-}
 
 std::optional<RolloutRecording> RecordRollout(const RolloutSetup& setup,
                                               const base::ActionCall& action, int index,
                                               const std::function<bool()>& cancelled,
                                               RolloutWatcher* watcher) {
+  using simulation::RobotSimulator;
   RolloutRecording recording;
   recording.action = action;
   recording.index = index;
   recording.seed = setup.seed;
-  Recorder recorder(setup.params, &recording);
+  Recorder recorder(setup, &recording, watcher);
   RolloutHooks hooks;
   hooks.cancelled = cancelled;
-  hooks.on_sample = [&](const simulation::RobotSimulator& simulator, double) {
-    recorder.Note(simulator);
-    if (watcher != nullptr) watcher->OnSample(simulator);
+  hooks.on_look = [&](const RobotSimulator& simulator) { recorder.Look(simulator); };
+  hooks.on_sample = [&](const RobotSimulator& simulator, double) {
+    recorder.NoteSample(simulator);
   };
-  hooks.on_end = [&](const std::vector<std::string>& down) { recorder.NoteEnd(down); };
+  hooks.on_late_cycle = [&](const RobotSimulator& simulator, double delay) {
+    recorder.NoteLateCycle(simulator, delay);
+  };
+  hooks.epilogue = kEpilogue;
   const std::optional<RolloutResult> result = PlayRollout(setup, action, index, hooks);
   if (!result) return std::nullopt;
   recording.result = *result;
-  if (!recording.samples.empty()) {
-    const base::Failure failure = FailureOf(*result);
-    recording.events.push_back({recording.samples.back().time,
-                                failure ? "ends: " + ToString(failure) : "ends: succeeded"});
-  }
+  DropWhatTheEndCauses(&recording);
+  recording.events.push_back(EndOf(*result));
+  std::stable_sort(recording.events.begin(), recording.events.end(),
+                   [](const RolloutEvent& a, const RolloutEvent& b) { return a.time < b.time; });
   return recording;
 }
 
@@ -204,15 +256,19 @@ std::string ToCsv(const RolloutRecording& recording) {
     const Eigen::Matrix3d R = s.X_MB.rotation.toRotationMatrix();
     const double roll = std::atan2(R(2, 1), R(2, 2)),
                  pitch = -std::asin(std::clamp(R(2, 0), -1.0, 1.0));
-    csv += fmt::format("{:.3f},{},{},{},{},{},{},{},{},{},{},{},{},{}", s.time, p.x(), p.y(), p.z(),
-                       roll, pitch, geometry::YawOf(s.X_MB.rotation), s.V_B.vx, s.V_B.vy, s.V_B.wz,
-                       std::hypot(s.V_B.vx, s.V_B.vy), std::hypot(s.A_B.vx, s.A_B.vy), s.A_B.wz,
-                       JerkAt(recording.samples, i));
+    csv += fmt::format("{:.3f}", s.time);
+    for (const double value :
+         {p.x(), p.y(), p.z(), roll, pitch, geometry::YawOf(s.X_MB.rotation), s.V_B.vx, s.V_B.vy,
+          s.V_B.wz, std::hypot(s.V_B.vx, s.V_B.vy), std::hypot(s.A_B.vx, s.A_B.vy), s.A_B.wz,
+          JerkAt(recording.samples, i)}) {
+      csv += fmt::format(",{:.6g}", value);
+    }
     for (const geometry::Pose3& X_MO : s.X_MO) {
       const Eigen::Vector3d& o = X_MO.translation;
-      csv += fmt::format(",{},{},{},{}", o.x(), o.y(), o.z(), geometry::TiltOf(X_MO.rotation));
+      csv += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g}", o.x(), o.y(), o.z(),
+                         geometry::TiltOf(X_MO.rotation));
     }
-    const std::string events = EventsAt(recording, s.time);
+    const std::string events = EventsUpTo(recording, i);
     csv += events.empty() ? ",\n" : fmt::format(",\"{}\"\n", events);
   }
   return csv;

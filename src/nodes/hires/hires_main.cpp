@@ -6,6 +6,7 @@
 #include "hires/cli/command_line.h"
 #include "hires/cli/hypothesis_play.h"
 #include "hires/cli/robot_doctor.h"
+#include "hires/ros/rollout_bag.h"
 #include "nodes/hires/episode_writer.h"
 #include "nodes/hires/hypothesis_run.h"
 #include "nodes/hires/message_types.h"
@@ -14,8 +15,8 @@
 #include "nodes/hires/remote_imagination.h"
 #include "nodes/hires/replay.h"
 #include "nodes/hires/robot_doctor_look.h"
-#include "nodes/hires/rollout_bag.h"
 #include "nodes/hires/ros_doctor.h"
+#include "nodes/hires/watch.h"
 
 int main(int argc, char** argv) {
   std::vector<std::string> arguments;  // roslaunch adds names and remappings that are not ours
@@ -28,7 +29,7 @@ int main(int argc, char** argv) {
   backends.record_loop = [&](const std::string& path) {
     return hires_ros::MakeEpisodeWriter(path, backends.package_folder);
   };
-  backends.open_rollout_bag = hires_ros::MakeRolloutBag;
+  backends.make_rollout_bag = hires_ros::MakeRolloutBag;
   backends.play_hypothesis = hires::cli::PlayHypothesisRun;
   backends.examine_robot = [&](const hires::cli::RobotDoctorOptions& options) {
     return hires::cli::RunRobotDoctor(options, backends.package_folder,
@@ -46,6 +47,11 @@ int main(int argc, char** argv) {
                                  [&](const std::vector<std::string>& words) {
                                    return hires_ros::RunReplay(words, backends.package_folder);
                                  }});
+  backends.more_verbs.push_back(
+      {"watch", "look at a saved rollout in RViz, with keys to pause and seek: BAG [--no-rviz]",
+       [&](const std::vector<std::string>& words) {
+         return hires_ros::RunWatch(words, backends.package_folder);
+       }});
   backends.more_checks.push_back(hires_ros::CheckRos);
   return hires::cli::RunCommandLine(arguments, backends);
 }

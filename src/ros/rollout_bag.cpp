@@ -1,4 +1,4 @@
-#include "nodes/hires/rollout_bag.h"
+#include "hires/ros/rollout_bag.h"
 
 #include <fmt/format.h>
 #include <nav_msgs/Odometry.h>
@@ -9,7 +9,9 @@
 #include <tf2_msgs/TFMessage.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <vector>
 
 #include "hires/base/error.h"
@@ -25,10 +27,8 @@ namespace imagination = hires::imagination;
 using imagination::RolloutRecording;
 using imagination::RolloutSample;
 
-constexpr double kBegin = 1.0;  // [s] a bag has no time 0
 constexpr char kOdometryFrame[] = "odom_combined";
-
-ros::Time TimeOf(double time) { return ros::Time(kBegin + time); }
+constexpr double kEventShown = 2.0;  // [s]
 
 std_msgs::Float64 Number(double value) {
   std_msgs::Float64 message;
@@ -36,32 +36,45 @@ std_msgs::Float64 Number(double value) {
   return message;
 }
 
-class RolloutBag : public imagination::RolloutWatcher {
+class RolloutBag : public imagination::RolloutSaver {
  public:
-  RolloutBag(const std::string& path, const imagination::RolloutSetup& setup)
-      : scene_(setup.scene), markers_(1, setup.standing) {
-    try {
-      bag_.open(path, rosbag::bagmode::Write);
-    } catch (const rosbag::BagException& error) {
-      throw hires::base::ConfigError(fmt::format(
-          "--bag {}: the bag cannot be written ({}); name a file in a folder that is there", path,
-          error.what()));
-    }
-    bag_.setCompression(rosbag::compression::LZ4);
+  RolloutBag(std::string path, const imagination::RolloutSetup& setup)
+      : path_(std::move(path)), scene_(setup.scene), markers_(1, setup.standing) {}
+
+  void OnBegin() override {
+    pictures_.clear();
+    markers_.Clear();
   }
 
   void OnSample(const hires::simulation::RobotSimulator& simulator) override {
-    if (!pictures_.empty() && simulator.time() <= last_) {
-      pictures_.clear();
-      markers_.Clear();
-    }
-    last_ = simulator.time();
     markers_.Add(simulator);
     pictures_.push_back(markers_.Draw(simulator));
   }
 
-  void OnEnd(const RolloutRecording& recording) override {
-    const ros::Time begin = TimeOf(recording.samples.empty() ? 0.0 : recording.samples[0].time);
+  void Save(const RolloutRecording& recording) override {
+    const std::string unfinished = path_ + ".unfinished";
+    try {
+      bag_.open(unfinished, rosbag::bagmode::Write);
+      bag_.setCompression(rosbag::compression::LZ4);
+      Write(recording);
+      bag_.close();
+      std::filesystem::rename(unfinished, path_);
+    } catch (const std::exception& error) {  // rosbag's, and those of the file system
+      std::error_code ignored;
+      std::filesystem::remove(unfinished, ignored);
+      throw hires::base::ConfigError(
+          fmt::format("--bag {}: the bag cannot be written ({}); check folder, rights and space",
+                      path_, error.what()));
+    }
+  }
+
+ private:
+  /// Time 0 is none in ROS.
+  ros::Time TimeOf(double time) const { return ros::Time(std::max(time, begin_)); }
+
+  void Write(const RolloutRecording& recording) {
+    begin_ = recording.samples.empty() ? 0.05 : recording.samples[0].time;
+    const ros::Time begin(begin_);
     bag_.write("/world_markers", begin, WorldMarkers(scene_->world));
     tf2_msgs::TFMessage fixed;
     fixed.transforms.push_back(MakeTransform("map", kOdometryFrame, {}, begin));
@@ -69,17 +82,28 @@ class RolloutBag : public imagination::RolloutWatcher {
     for (std::size_t i = 0; i < recording.samples.size(); ++i) {
       WriteRobot(recording.samples[i]);
       WriteNumbers(recording, i);
-      bag_.write("/rollout/markers", TimeOf(recording.samples[i].time), pictures_.at(i));
+      WriteMarkers(recording, i);
     }
     for (const imagination::RolloutEvent& event : recording.events) {
       std_msgs::String text;
       text.data = event.text;
       bag_.write("/rollout/events", TimeOf(event.time), text);
     }
-    bag_.close();
   }
 
- private:
+  /// With what happened last above the robot.
+  void WriteMarkers(const RolloutRecording& recording, std::size_t i) {
+    const RolloutSample& sample = recording.samples[i];
+    visualization_msgs::MarkerArray markers = pictures_.at(i);
+    std::string text;
+    for (const imagination::RolloutEvent& event : recording.events) {
+      const double ago = sample.time - event.time;
+      if (ago >= 0.0 && ago < kEventShown) text = event.text;
+    }
+    markers.markers.push_back(TextMarker("events", text, sample.X_MB.translation, 1.8, 0.16));
+    bag_.write("/rollout/markers", TimeOf(sample.time), markers);
+  }
+
   void WriteRobot(const RolloutSample& sample) {
     const ros::Time stamp = TimeOf(sample.time);
     const hires::robot::Robot& robot = scene_->robot;
@@ -117,17 +141,18 @@ class RolloutBag : public imagination::RolloutWatcher {
     }
   }
 
+  const std::string path_;
   std::shared_ptr<const hires::simulation::Scene> scene_;
   TraceMarkers markers_;
   std::vector<visualization_msgs::MarkerArray> pictures_;  // of each sample
-  double last_{0.0};                                       // [s] of the last one
+  double begin_{0.0};                                      // [s] of the first one
   rosbag::Bag bag_;
 };
 
 }  // namespace
 
-std::unique_ptr<imagination::RolloutWatcher> MakeRolloutBag(
-    const std::string& path, const imagination::RolloutSetup& setup) {
+std::unique_ptr<imagination::RolloutSaver> MakeRolloutBag(const std::string& path,
+                                                          const imagination::RolloutSetup& setup) {
   return std::make_unique<RolloutBag>(path, setup);
 }
 
