@@ -36,7 +36,7 @@ TEXT_FOLDERS = [".ci", "action", "benchmark", "cmake", "config", "docs", "exampl
                 "launch", "msg",
                 "scripts", "src", "srv", "test", "urdf", "worlds"]
 # Given as they are: meshes, maps, and data that tests read.
-NOT_OUR_TEXT = re.compile(r"(^|/)test/data/|\.(pgm|png|jpg|stl|dae|obj|bag|db|svg)$", re.IGNORECASE)
+NOT_OUR_TEXT = re.compile(r"(^|/)test/data/|\.(pgm|png|jpg|gif|stl|dae|obj|bag|db|svg)$", re.IGNORECASE)
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 ROS_HEADER = re.compile(

@@ -18,6 +18,7 @@ namespace {
 using perception::Colour;
 using perception::Picture;
 
+constexpr int kRounds = 4;       // of Lloyd's algorithm: more change nothing that one sees
 constexpr int kColours = 255;    // and one for what does not change
 constexpr int kUnchanged = 255;  // its number
 
@@ -33,8 +34,10 @@ class Palette {
     HIRES_CHECK(map_ != nullptr, "memory for a palette");
     Choose(pictures);
     FindNearest();
-    MoveToMeans(pictures);
-    FindNearest();
+    for (int i = 0; i < kRounds; ++i) {
+      MoveToMeans(pictures);
+      FindNearest();
+    }
   }
 
   GifByteType Find(const Colour& colour) const { return nearest_[KeyOf(colour)]; }
