@@ -8,6 +8,9 @@ import sys
 import threading
 import unittest
 
+import rosbag
+import yaml
+
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from imagination_system import ImaginationSystem  # noqa: E402
@@ -48,7 +51,10 @@ class ImaginationTopicsTest(unittest.TestCase):
     def setUpClass(cls):
         cls.system = ImaginationSystem(workers=1)
         cls.addClassCleanup(cls.system.destroy)
-        cls.system.start()
+        rollouts = os.path.join(cls.system.processes.folder.name, 'rollouts')
+        cls.system.start_client(arguments=['_rollout_folder:=' + rollouts])
+        cls.system.start_host(1)
+        cls.system.wait_until_joined(1)
         # This process becomes a node of the worker's master, beside the robot.
         os.environ.update(ROS_MASTER_URI='http://127.0.0.1:%d/' % cls.system.worker_port(1),
                           ROS_IP='127.0.0.1', ROS_LOG_DIR=cls.system.processes.folder.name)
@@ -168,6 +174,36 @@ class ImaginationTopicsTest(unittest.TestCase):
             self.assertIn('frame_id: "map"', echo.output())
             if sign == 'ranking':
                 self.assertIn('premanipulationareasouthtable1', echo.output())
+
+    def imagined_rollout(self, request_id, which):
+        """What the service answers."""
+        call = self.system.run(['rosservice', 'call', '/imagined_rollout',
+                                "{request_id: '%s', which: '%s'}" % (request_id, which)])
+        self.assertEqual(call.wait(), 0, call.output())
+        return yaml.safe_load(call.output())
+
+    def test_a_rollout_of_the_last_request_is_played_again_bit_by_bit(self):
+        first = self.imagined_rollout('', 'worst')
+        self.assertTrue(first['success'], first['message'])
+        self.assertEqual(first['rollout']['seed'], 7)
+        self.assertLess(first['rollout']['index'], 60)
+        self.assertEqual(len(first['times']), len(first['events']))
+        self.assertTrue(any('goal reached' in event for event in first['events']), first['events'])
+        with rosbag.Bag(first['path']) as bag:
+            told = [message.data for _, message, _ in bag.read_messages('/rollout/events')]
+        self.assertEqual(told, first['events'])
+        with open(first['path'], 'rb') as file:
+            bits = file.read()
+        self.assertEqual(self.imagined_rollout('', 'worst'), first)
+        with open(first['path'], 'rb') as file:
+            self.assertEqual(file.read(), bits)
+
+    def test_a_rollout_that_is_not_there_is_refused_with_a_word(self):
+        for request_id, which, wanted in (('', 'wurst', 'wurst'), ('', '60', '60 were played'),
+                                          ('nobodys', 'worst', 'nobodys')):
+            answer = self.imagined_rollout(request_id, which)
+            self.assertFalse(answer['success'])
+            self.assertIn(wanted, answer['message'])
 
     def test_traces_of_a_rollout_are_shown_to_the_main_master(self):
         echo = self.system.run(['rostopic', 'echo', '-n', '1', '/worker_1/markers'])

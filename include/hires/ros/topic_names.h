@@ -6,6 +6,7 @@
 namespace hires_ros {
 
 constexpr char kImagineAction[] = "imagine";
+constexpr char kImaginedRollout[] = "imagined_rollout";  ///< service
 constexpr char kPlanAction[] = "plan";
 constexpr char kAchieveAction[] = "achieve";
 constexpr char kGenerateImagineState[] = "generate_imagine_state";  ///< service

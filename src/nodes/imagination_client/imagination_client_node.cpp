@@ -4,6 +4,7 @@
 #include <ros/package.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <cstdlib>
 #include <deque>
 
 #include "hires/base/error.h"
@@ -31,6 +32,14 @@ double SchedulerNow() {
   return ros::Time::isSimTime() ? ros::Time::now().toSec() : hires::base::SteadyNow();
 }
 
+/// Where ROS keeps what programs write.
+std::string DefaultRolloutFolder() {
+  const char* ros_home = std::getenv("ROS_HOME");
+  if (ros_home != nullptr) return std::string(ros_home) + "/hires_rollouts";
+  const char* home = std::getenv("HOME");
+  return std::string(home == nullptr ? "/tmp" : home) + "/.ros/hires_rollouts";
+}
+
 /// A record that cannot be read is the worker's failure: it gets no more work of this request.
 imagination::Event EventOf(int worker, int alternative, const WorkerLink::Played& played) {
   try {
@@ -46,7 +55,7 @@ imagination::Event EventOf(int worker, int alternative, const WorkerLink::Played
 
 ImaginationClientParams LoadImaginationClientParams() {
   RejectUnknownPrivate({"config", "workers", "world", "robot", "objects", "uncertainty", "guard",
-                        "localisation", "map_to_world", "action_libraries"});
+                        "localisation", "map_to_world", "action_libraries", "rollout_folder"});
   ImaginationClientParams params;
   params.config = imagination::ReadClientConfig(PrivateText("config").value_or(
       ros::package::getPath("hires") + "/config/imagination_client.yaml"));
@@ -59,6 +68,7 @@ ImaginationClientParams LoadImaginationClientParams() {
   params.localisation = PrivateText("localisation").value_or("");
   params.map_to_world =
       hires::world::ParseMapToWorld(PrivateText("map_to_world").value_or(""), "~map_to_world");
+  params.rollout_folder = PrivateText("rollout_folder").value_or(DefaultRolloutFolder());
   return params;
 }
 
@@ -72,6 +82,7 @@ ImaginationClientNode::ImaginationClientNode(const ImaginationClientParams& para
           *nh, kImagineAction, [this](GoalHandle goal) { OnGoal(goal); },
           [this](GoalHandle goal) { OnCancel(goal); }, false),
       askers_(kImagineAction, nh),
+      replayer_(params.rollout_folder, nh),
       ranking_markers_(
           nh->advertise<visualization_msgs::MarkerArray>(kImaginationMarkers, 1, true)),
       world_markers_(nh->advertise<visualization_msgs::MarkerArray>(kWorldMarkers, 1, true)) {
@@ -349,6 +360,8 @@ void ImaginationClientNode::Finish(Session* session) {
     report.caveats.push_back(std::move(caveat));
   }
   const hires::ImagineResult result = AnswerTo(*session->goal.getGoal(), request, setup_, report);
+  replayer_.Keep({session->goal.getGoal()->request_id, session->id, session->request,
+                  report.ranking, result.predictions});
   hires::base::Log(hires::base::LogLevel::kInfo,
                    fmt::format("session={} outcome={} {}", session->id,
                                imagination::ToString(report.outcome), report.why));

@@ -23,6 +23,7 @@
 #include "hires/ros/imagine_request.h"
 #include "hires/world/map_to_world.h"
 #include "nodes/imagination_client/asker_watch.h"
+#include "nodes/imagination_client/rollout_replayer.h"
 #include "nodes/imagination_client/worker_link.h"
 
 namespace hires_ros {
@@ -35,11 +36,12 @@ struct ImaginationClientParams {
   /// that is: the spread of start poses of what begins there. Empty: as the uncertainty says.
   std::string localisation;
   hires::world::MapToWorld map_to_world;  ///< of the localisation's map
+  std::string rollout_folder;             ///< where rollouts are saved that somebody asks for
 };
 
 /// The file in ~config (config/imagination_client.yaml where there is none); ~workers, ~world,
-/// ~robot, ~objects, ~uncertainty win over it; ~localisation and ~map_to_world.  @throws
-/// hires::base::ConfigError.
+/// ~robot, ~objects, ~uncertainty win over it; ~localisation, ~map_to_world, ~rollout_folder.
+/// @throws hires::base::ConfigError.
 ImaginationClientParams LoadImaginationClientParams();
 
 /// Answers the action `imagine`: several requests at once share the workers fairly, each has a
@@ -100,6 +102,7 @@ class ImaginationClientNode {
   std::optional<hires::imagination::BelievedPose> believed_;
   Server server_;
   AskerWatch askers_;
+  RolloutReplayer replayer_;
   ros::Subscriber localisation_;
   ros::Publisher ranking_markers_, world_markers_;
   diagnostic_updater::Updater updater_;
