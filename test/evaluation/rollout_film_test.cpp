@@ -236,7 +236,7 @@ TEST(RolloutFilmTest, AStripHasItsPicturesSideBySide) {
   image.version = PNG_IMAGE_VERSION;
   ASSERT_TRUE(png_image_begin_read_from_file(&image, path.c_str()));
   EXPECT_EQ(image.width, 3u * 120 + 2 * 4);
-  EXPECT_EQ(image.height, 90u);
+  EXPECT_EQ(image.height, 90u + kTextHeight);
   png_image_free(&image);
 }
 

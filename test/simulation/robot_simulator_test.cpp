@@ -274,6 +274,23 @@ TEST(RobotSimulatorTest, CarriedIsWhatStandsOnTheRobot) {
   EXPECT_THAT(simulator.carried(), ElementsAre(1, 4));
 }
 
+TEST(RobotSimulatorTest, TouchedIsWhatStandsOrIsHeldAndNotWhatFalls) {
+  world::ObjectState falling = OnTray("falling", "mill", {1.5, 1.0, 0.0});
+  falling.X_MO.translation.z() = 1.0;
+  world::ObjectState held = OnTray("held", "mill", kMiddle, {0.0, -0.15});
+  held.X_MO.translation.z() += 0.3;
+  held.attached_to = "tray";
+  RobotSimulator simulator(RoomScene(), {},
+                           With({falling, OnTray("standing", "mill", kMiddle), held}),
+                           StandingAt(kMiddle), base::Rng(1));
+  StepFor(&simulator, 0.2);  // 0.2 m down
+  EXPECT_FALSE(simulator.IsTouched(0));
+  EXPECT_TRUE(simulator.IsTouched(1));
+  EXPECT_TRUE(simulator.IsTouched(2));
+  StepFor(&simulator, 0.8);
+  EXPECT_TRUE(simulator.IsTouched(0));  // it lies on the floor
+}
+
 TEST(RobotSimulatorTest, RefusesJointsOfAnotherRobot) {
   robot::RobotState state = StandingAt(kMiddle);
   state.joints["l_shoulder_pan_joynt"] = 0.1;

@@ -32,7 +32,7 @@ class RolloutFilm {
   /// Both views at a sample of the recording; above what is done, below time, speed, tilt and what
   /// has just happened. @pre 0 <= sample < num_samples()
   perception::Picture FrameAt(int sample) const;
-  /// The first view alone, with the time. @pre as FrameAt
+  /// The first view alone, the time below. @pre as FrameAt
   perception::Picture CloseUpAt(int sample) const;
 
   const FilmParams& params() const;

@@ -239,9 +239,11 @@ Picture RolloutFilm::FrameAt(int sample) const {
 
 Picture RolloutFilm::CloseUpAt(int sample) const {
   HIRES_CHECK(sample >= 0 && sample < num_samples(), "a sample of the recording");
-  Picture picture = impl_->Draw(impl_->close[sample], sample);
-  WriteLine(fmt::format("{:.2f} s", impl_->recording.samples[sample].time), 6,
-            picture.height - kTextHeight, picture.width, kInk, &picture);
+  const FilmParams& params = impl_->params;
+  Picture picture(params.view_width, params.view_height + kTextHeight, kPaper);
+  Paste(impl_->Draw(impl_->close[sample], sample), 0, 0, &picture);
+  WriteLine(fmt::format("{:.2f} s", impl_->recording.samples[sample].time), 6, params.view_height,
+            picture.width, kInk, &picture);
   return picture;
 }
 
@@ -284,8 +286,8 @@ std::vector<int> MomentsOf(const RolloutRecording& recording, int count) {
 
 void WriteStrip(const RolloutFilm& film, int count, const std::string& path) {
   const std::vector<int> moments = MomentsOf(film.recording(), count);
-  const int width = film.params().view_width, height = film.params().view_height;
-  Picture strip(count * (width + kGap) - kGap, height, kPaper);
+  const int width = film.params().view_width;
+  Picture strip(count * (width + kGap) - kGap, film.params().view_height + kTextHeight, kPaper);
   InParallel(count, film.params().threads,
              [&](int k) { Paste(film.CloseUpAt(moments[k]), k * (width + kGap), 0, &strip); });
   WriteText(ToPng(strip), path);
