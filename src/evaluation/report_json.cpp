@@ -19,6 +19,15 @@ ordered_json CostToJson(const std::optional<imagination::ExpectedCost>& cost) {
   return {{"mean", cost->mean}, {"lower", cost->lower}, {"upper", cost->upper}};
 }
 
+ordered_json CausesToJson(const std::map<std::string, int>& causes) {
+  ordered_json list = ordered_json::array();
+  for (const auto& [cause, count] : causes) list.push_back({{"cause", cause}, {"count", count}});
+  return list;
+}
+
+/// null where there is no such rollout.
+ordered_json IndexToJson(int index) { return index < 0 ? ordered_json() : ordered_json(index); }
+
 ordered_json RankedToJson(const imagination::Prediction& prediction) {
   const imagination::Evidence& e = prediction.evidence;
   return {{"action", prediction.action.name},
@@ -40,10 +49,14 @@ ordered_json RankedToJson(const imagination::Prediction& prediction) {
            {{"mean", e.duration.mean},
             {"sd", e.duration.sd},
             {"p50", e.duration.p50},
-            {"p95", e.duration.p95}}},
-          {"max_tilt", {{"p50", e.max_tilt.p50}, {"p95", e.max_tilt.p95}}},
+            {"p95", e.duration.p95},
+            {"values", e.durations}}},
+          {"max_tilt", {{"p50", e.max_tilt.p50}, {"p95", e.max_tilt.p95}, {"values", e.max_tilts}}},
           {"rollouts", e.num_rollouts},
-          {"failures", FailuresToJson(e.failures)}};
+          {"failures", FailuresToJson(e.failures)},
+          {"first_causes", CausesToJson(e.first_causes)},
+          {"worst_rollout", IndexToJson(e.worst_rollout)},
+          {"median_rollout", IndexToJson(e.median_rollout)}};
 }
 
 bool WriteOpened(const std::string& text, const fs::path& path) {

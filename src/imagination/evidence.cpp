@@ -43,6 +43,19 @@ void SumUpTilts(std::vector<double> tilts, Evidence* evidence) {
   if (tilts.empty()) return;
   std::sort(tilts.begin(), tilts.end());
   evidence->max_tilt = {Quantile(tilts, 50), Quantile(tilts, 95)};
+  evidence->max_tilts = std::move(tilts);
+}
+
+/// Why these are no list of `what`, one for each of at most `most` rollouts; empty if they are.
+std::string DefectOf(const std::vector<double>& values, const std::string& what, int most) {
+  const bool is_finite =
+      std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+  if (!is_finite) return fmt::format("a {} is not finite", what);
+  if (!std::is_sorted(values.begin(), values.end())) {
+    return fmt::format("{}s are not in ascending order", what);
+  }
+  if (values.size() <= static_cast<std::size_t>(most)) return {};
+  return fmt::format("there are {} {}s of {} rollouts", values.size(), what, most);
 }
 
 /// Sums while walking over the rollouts; Finish() turns sums into shares.
@@ -129,16 +142,8 @@ double Quantile(const std::vector<double>& ascending, int percent) {
 }
 
 std::string DefectOf(const Evidence& evidence) {
-  const std::vector<double>& durations = evidence.durations;
-  const bool is_finite = std::all_of(durations.begin(), durations.end(),
-                                     [](double duration) { return std::isfinite(duration); });
-  if (!is_finite) return "a duration is not finite";
-  if (!std::is_sorted(durations.begin(), durations.end())) {
-    return "durations are not in ascending order";
-  }
-  if (durations.size() <= static_cast<std::size_t>(evidence.num_rollouts)) return {};
-  return fmt::format("there are {} durations of {} rollouts", durations.size(),
-                     evidence.num_rollouts);
+  const std::string defect = DefectOf(evidence.durations, "duration", evidence.num_rollouts);
+  return defect.empty() ? DefectOf(evidence.max_tilts, "tilt", evidence.num_rollouts) : defect;
 }
 
 Evidence SumUp(const std::vector<RolloutResult>& results) {

@@ -396,6 +396,7 @@ msg::Prediction ToMsg(const hires::imagination::Prediction& prediction) {
   out.durations = e.durations;
   out.max_tilt_p50 = e.max_tilt.p50;
   out.max_tilt_p95 = e.max_tilt.p95;
+  out.max_tilts = e.max_tilts;
   out.rollouts = e.num_rollouts;
   for (const auto& [failure, count] : e.failures) {
     out.failures.emplace_back();
@@ -429,12 +430,13 @@ hires::imagination::Prediction FromMsg(const msg::Prediction& prediction) {
   e.duration = {prediction.duration_mean, prediction.duration_sd, prediction.duration_p50,
                 prediction.duration_p95};
   e.durations = prediction.durations;
+  e.max_tilt = {prediction.max_tilt_p50, prediction.max_tilt_p95};
+  e.max_tilts = prediction.max_tilts;
   if (const std::string defect = DefectOf(e); !defect.empty()) {
     throw hires::base::ConfigError(
         fmt::format("the prediction of {}: {}; is the imagination client of this version?",
                     hires::base::ToString(out.action), defect));
   }
-  e.max_tilt = {prediction.max_tilt_p50, prediction.max_tilt_p95};
   for (const msg::FailureCount& failure : prediction.failures) {
     e.failures[FromMsg(failure.failure)] += failure.count;
   }

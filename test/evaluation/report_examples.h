@@ -23,7 +23,11 @@ inline imagination::Report TwoAlternatives() {
   slow.evidence.cost = {20.0, 16.0, 32.5};
   slow.evidence.counts = {1600, 0, 0};
   slow.evidence.duration = {20.0, 0.5, 20.0, 20.5};
+  slow.evidence.durations = {19.5, 20.0, 20.0, 20.5};
   slow.evidence.max_tilt = {0.001, 0.0021};
+  slow.evidence.max_tilts = {0.0005, 0.001, 0.002, 0.0021};
+  slow.evidence.worst_rollout = 3;
+  slow.evidence.median_rollout = 1;
   slow.evidence.num_rollouts = 4;
   imagination::Prediction fast;
   fast.action = {"move_base_param", {"east", "fast"}};
@@ -34,7 +38,11 @@ inline imagination::Report TwoAlternatives() {
   fast.evidence.counts = {1000, 100, 12};
   fast.evidence.falls = 1;
   fast.evidence.duration = {14.25, 1.5, 14.0, 16.0};
+  fast.evidence.durations = {12.5, 16.0};
   fast.evidence.max_tilt = {0.25, 1.5};
+  fast.evidence.max_tilts = {0.125, 0.25, 1.5};
+  fast.evidence.first_causes = {{"braking", 1}};
+  fast.evidence.worst_rollout = 2;
   fast.evidence.num_rollouts = 4;
   fast.evidence.failures = {{base::FailureCode::kNoPath, 2}, {base::FailureCode::kObjectFell, 1}};
   report.ranking = {slow, fast};

@@ -162,6 +162,22 @@ TEST(DefectOfTest, WhatIsNoListOfDurationsIsNamed) {
   EXPECT_EQ(defect({1.0, 2.0, 3.0}), "there are 3 durations of 2 rollouts");
 }
 
+TEST(DefectOfTest, WhatIsNoListOfTiltsIsNamed) {
+  Evidence evidence = SumUp({Success(1.0), Success(2.0)});
+  EXPECT_EQ(DefectOf(evidence), "");
+  evidence.max_tilts = {0.2, 0.1};
+  EXPECT_EQ(DefectOf(evidence), "tilts are not in ascending order");
+}
+
+TEST(SumUpTest, TiltsAreThoseOfRolloutsWithSamplesInAscendingOrder) {
+  RolloutResult steep = Success(1.0), flat = Success(2.0), unwatched = Success(3.0);
+  steep.max_tilt = 0.5;
+  flat.max_tilt = 0.125;
+  unwatched.counts = {};
+  const Evidence evidence = SumUp({steep, unwatched, flat});
+  EXPECT_THAT(evidence.max_tilts, ElementsAre(0.125, 0.5));
+}
+
 TEST(SumUpTest, QuantilesAreValuesThatOccurred) {
   std::vector<RolloutResult> results;
   for (int i = 100; i >= 1; --i) results.push_back(Success(i));

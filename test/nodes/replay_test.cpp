@@ -343,6 +343,7 @@ TEST(CompareAnswersTest, EveryFieldIsComparedAndNamed) {
       {[](auto* r) { r->predictions[0].duration_p50 = 1; }, "place 1, duration_p50: "},
       {[](auto* r) { r->predictions[0].duration_p95 = 1; }, "place 1, duration_p95: "},
       {[](auto* r) { r->predictions[0].durations = {1}; }, "place 1, durations differs"},
+      {[](auto* r) { r->predictions[0].max_tilts = {1}; }, "place 1, max_tilts differs"},
       {[](auto* r) { r->predictions[0].max_tilt_p50 = 1; }, "place 1, max_tilt_p50: "},
       {[](auto* r) { r->predictions[0].max_tilt_p95 = 1; }, "place 1, max_tilt_p95: "},
       {[](auto* r) { r->predictions[0].rollouts = 1; }, "place 1, rollouts: 8 then, 1 now"},

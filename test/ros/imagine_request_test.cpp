@@ -163,6 +163,7 @@ imagination::Prediction SomePrediction() {
   prediction.evidence.success = {0.75, 0.35, 0.97, 8, imagination::IntervalKind::kClopperPearson};
   prediction.evidence.cost = {30.0, 20.0, 90.0};
   prediction.evidence.durations = {11.0, 12.5, 12.5, 14.0};
+  prediction.evidence.max_tilts = {0.01, 0.02};
   prediction.evidence.first_causes = {{"braking", 2}, {"turning", 1}};
   prediction.evidence.worst_rollout = 5;
   prediction.evidence.first_failed = 3;
@@ -180,6 +181,7 @@ TEST(ConversionsTest, APredictionKeepsItsKindOfIntervalItsCostAndWhichRolloutsIt
   EXPECT_EQ(back.evidence.cost->upper, 90.0);
   EXPECT_EQ(back.evidence.first_causes, SomePrediction().evidence.first_causes);
   EXPECT_EQ(back.evidence.durations, SomePrediction().evidence.durations);
+  EXPECT_EQ(back.evidence.max_tilts, SomePrediction().evidence.max_tilts);
   EXPECT_EQ(back.evidence.worst_rollout, 5);
   EXPECT_EQ(back.evidence.first_failed, 3);
   EXPECT_EQ(back.evidence.median_rollout, 1);

@@ -50,6 +50,7 @@ struct Evidence {
   struct {
     double p50{0.0}, p95{0.0};
   } max_tilt;                        ///< [rad], of rollouts with samples
+  std::vector<double> max_tilts;     ///< [rad] of the same rollouts, ascending
   std::optional<ExpectedCost> cost;  ///< none: nothing is priced, or nothing was played
   int num_rollouts{0};
   std::map<base::Failure, int> failures;    ///< failure -> rollouts
@@ -61,8 +62,8 @@ struct Evidence {
                            ///< of equals; -1 when there is none
 };
 
-/// Why one of another process cannot be used: durations that are not finite, not in ascending
-/// order, or more than its rollouts; empty if it can.
+/// Why one of another process cannot be used: durations or tilts that are not finite, not in
+/// ascending order, or more than its rollouts; empty if it can.
 std::string DefectOf(const Evidence& evidence);
 
 /// @param results  the first n rollouts of one alternative, in index order, where n was fixed

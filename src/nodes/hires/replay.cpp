@@ -129,6 +129,7 @@ void ComparePredictions(const std::string& place, const hires::Prediction& then,
   out->Compare(place + "rollouts", then.rollouts, now.rollouts);
   out->CompareWhole(place + "counts", then.counts, now.counts);
   out->CompareWhole(place + "durations", then.durations, now.durations);
+  out->CompareWhole(place + "max_tilts", then.max_tilts, now.max_tilts);
   out->CompareWhole(place + "kind of interval", then.interval_kind, now.interval_kind);
   out->CompareWhole(place + "first_causes", then.first_causes, now.first_causes);
   out->CompareWhole(place + "worst rollout", then.worst, now.worst);
