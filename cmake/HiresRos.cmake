@@ -102,5 +102,5 @@ install(DIRECTORY launch config worlds urdf
 install(DIRECTORY include/hires DESTINATION ${CATKIN_GLOBAL_INCLUDE_DESTINATION})
 catkin_install_python(PROGRAMS examples/ask_before_driving.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 # What programs of the package start themselves.
-install(PROGRAMS scripts/plot_timeline
-  DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/scripts)
+install(DIRECTORY scripts/report DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/scripts
+  PATTERN __pycache__ EXCLUDE)

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "cli/achieve_display.h"
+#include "cli/experiment_hypothesis_command.h"
 #include "hires/base/error.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
@@ -22,8 +23,6 @@
 namespace hires::cli {
 namespace {
 
-constexpr char kScript[] = "/scripts/plot_timeline";
-
 /// Characters a line has on the terminal; 0: standard output is no terminal.
 int TerminalWidth() {
   winsize size{};
@@ -33,9 +32,10 @@ int TerminalWidth() {
 
 /// Before the robot sets out.
 void RequireFolders(const AchieveOptions& options) {
-  for (const std::string& path : {options.timeline, options.png, options.json, options.record}) {
+  for (const std::string& path : {options.timeline, options.record}) {
     if (!path.empty()) evaluation::RequireFolderOf(path);
   }
+  CheckReport(options.report);
 }
 
 void RequireRecorder(const AchieveOptions& options, const loop::RecordLoop& record) {
@@ -48,27 +48,39 @@ void RequireRecorder(const AchieveOptions& options, const loop::RecordLoop& reco
   if (!record) throw base::ConfigError("--record: this build has no ROS to write bags with");
 }
 
-/// The picture is drawn from a CSV file, which stays beside it when no other place was asked for.
-std::string CsvPath(const AchieveOptions& options) {
-  if (!options.timeline.empty() || options.png.empty()) return options.timeline;
-  return std::filesystem::path(options.png).replace_extension(".csv").string();
+std::string ScenarioPath(const std::string& scenario, const std::string& package_folder) {
+  const std::filesystem::path path(scenario);
+  if (path.has_parent_path() || path.extension() == ".yaml") return scenario;
+  return package_folder + "/config/scenarios/" + scenario + ".yaml";
+}
+
+std::string LoopPath(const AchieveOptions& options, const std::string& package_folder) {
+  return options.config.empty() ? package_folder + "/config/loop.yaml" : options.config;
+}
+
+/// Of what is played here; running nodes have files of their own.
+ReportOrigin OriginOf(const AchieveOptions& options, const std::string& package_folder) {
+  ReportOrigin origin;
+  origin.verb = "achieve";
+  origin.is_local = options.is_local;
+  if (!options.is_local) return origin;
+  origin.inputs = {{"scenario", ScenarioPath(options.scenario, package_folder)},
+                   {"virtual time", LoopPath(options, package_folder)}};
+  origin.hashes = {{"files", HashOfFiles(package_folder)}};
+  return origin;
 }
 
 /// @param truth  under which it was played, where this is known.
-void WriteJson(const evaluation::AchieveReport& report, const std::optional<std::string>& truth,
-               const std::string& path) {
-  nlohmann::ordered_json json = ToJson(report);
-  if (truth) json["truth"] = *truth;
-  evaluation::WriteJson(json, path);
-}
-
 void WriteFiles(const AchieveOptions& options, const std::string& package_folder,
                 const evaluation::AchieveReport& report, const std::optional<std::string>& truth) {
-  const std::string csv = CsvPath(options);
-  if (!csv.empty())
-    evaluation::WriteText(evaluation::TimelineCsv(evaluation::MakeTimeline(report)), csv);
-  if (!options.json.empty()) WriteJson(report, truth, options.json);
-  if (!options.png.empty()) evaluation::DrawTimeline(package_folder + kScript, csv, options.png);
+  if (!options.timeline.empty()) {
+    const std::string csv = evaluation::TimelineCsv(evaluation::MakeTimeline(report));
+    evaluation::WriteText(csv, options.timeline);
+  }
+  nlohmann::ordered_json json = ToJson(report);
+  if (truth) json["truth"] = *truth;
+  json["seed"] = truth ? nlohmann::ordered_json(options.seed) : nullptr;
+  WriteReport(options.report, OriginOf(options, package_folder), json);
 }
 
 std::string Plural(std::size_t count, const std::string& what) {
@@ -92,18 +104,11 @@ void PrintReport(const evaluation::AchieveReport& report, bool is_virtual) {
                            report.episode > 0 ? fmt::format(", episode {}", report.episode) : "");
 }
 
-std::string ScenarioPath(const std::string& scenario, const std::string& package_folder) {
-  const std::filesystem::path path(scenario);
-  if (path.has_parent_path() || path.extension() == ".yaml") return scenario;
-  return package_folder + "/config/scenarios/" + scenario + ".yaml";
-}
-
 loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& package_folder,
                              const evaluation::OnAchieveStatus& on_status,
                              const std::function<bool()>& cancelled,
                              loop::LoopRecording* recording) {
-  const loop::LoopSetup setup(options.config.empty() ? package_folder + "/config/loop.yaml"
-                                                     : options.config);
+  const loop::LoopSetup setup(LoopPath(options, package_folder));
   loop::LoopOrder order;
   order.scenario = ScenarioPath(options.scenario, package_folder);
   order.task = base::Join(options.task, " ");
@@ -193,8 +198,8 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
                    "with --local: write the episode to this bag, as a robot's would be; see "
                    "`hires replay`");
   verb->add_option("--timeline", options->timeline, "write what was done when to this CSV file");
-  verb->add_option("--png", options->png, "and draw it to this file");
-  verb->add_option("--json", options->json, "write everything to this file for machines");
+  verb->add_option("--png", options->report.png, "and draw it to this file");
+  AddReportOptions(verb, &options->report);
   options->verb = verb;
 }
 

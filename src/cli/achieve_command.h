@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/cli/report_output.h"
 #include "hires/evaluation/achieve.h"
 #include "hires/loop/loop_observer.h"
 
@@ -24,7 +25,8 @@ enum AchieveExitCode {
 /// What was typed behind `hires achieve`.
 struct AchieveOptions {
   std::vector<std::string> task;  ///< words
-  std::string imagination, timeline, png, json, record;
+  std::string imagination, timeline, record;
+  ReportOptions report;
   double wait{10.0};               ///< [s] for the execution monitor to be there
   bool is_local{false};            ///< in this process and in virtual time, without any node
   std::string scenario{"topple"};  ///< where the robot and everything is then: file, or its name

@@ -22,9 +22,11 @@
 #include "cli/save_rollout.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
+#include "hires/base/hash.h"
 #include "hires/base/text.h"
 #include "hires/cli/blackboard_command.h"
 #include "hires/cli/doctor.h"
+#include "hires/cli/report_output.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
@@ -44,7 +46,8 @@ bool IsInterrupted() { return interrupted; }
 struct ImagineOptions {
   StartOptions start;
   SaveRolloutOptions save;
-  std::string action, config, scene, world, map, robot, objects, uncertainty, ranking, json;
+  ReportOptions report;
+  std::string action, config, scene, world, map, robot, objects, uncertainty, ranking;
   std::vector<std::string> arguments, action_libraries, areas;
   int rollouts{0}, threads{0};
   std::uint64_t seed{1};
@@ -87,7 +90,7 @@ void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
   app->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
   app->add_option("--scene", o->scene, "another scene file instead of config/scene.yaml");
   app->add_option("--config", o->config, "another file instead of config/imagination_client.yaml");
-  app->add_option("--json", o->json, "write the answer to this file as well");
+  AddReportOptions(app, &o->report);
   AddSaveRolloutOptions(app, &o->save);
   app->add_flag("--quiet", o->quiet, "no progress bar");
 }
@@ -183,9 +186,31 @@ void PrintReport(const imagination::Report& report, imagination::RankingRule rul
   }
 }
 
+/// Running nodes have files of their own, which they and their workers compare among themselves.
+ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query) {
+  ReportOrigin origin;
+  origin.verb = "imagine";
+  origin.is_local = options.local;
+  if (!options.local || !IsWanted(options.report)) return origin;
+  const imagination::SetupConfig& files = query.setup;
+  const bool has_uncertainty = files.uncertainty != "none";
+  origin.inputs = {{"world", files.map.empty() ? files.world : ""},
+                   {"map", files.map},
+                   {"robot", files.robot},
+                   {"objects", files.objects},
+                   {"uncertainty", has_uncertainty ? files.uncertainty : ""}};
+  for (const std::string& object : files.extra_objects) origin.inputs.push_back({"object", object});
+  const imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(files);
+  origin.hashes = {{"world", base::HexOf(setup.world_hash)},
+                   {"robot", base::HexOf(setup.robot_hash)},
+                   {"physics", base::HexOf(setup.physics_hash)},
+                   {"actions", base::HexOf(setup.actions_hash)}};
+  return origin;
+}
+
 int Imagine(const ImagineOptions& options, const Backends& backends) {
   const ImagineQuery query = MakeQuery(options, backends);
-  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  CheckReport(options.report);
   CheckSaveRollout(options.save, backends.make_rollout_bag);
   ProgressDisplay display;
   imagination::OnInterim on_interim;
@@ -199,9 +224,8 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
                                          : backends.imagine_remotely(query, on_interim, cancelled);
   if (!options.quiet) display.Clear();
   PrintReport(report, query.scheduler.criteria.rule);
-  if (!options.json.empty()) {
-    evaluation::WriteJson(evaluation::ToJson(report, query.scheduler.criteria), options.json);
-  }
+  WriteReport(options.report, OriginOf(options, query),
+              evaluation::ToJson(report, query.scheduler.criteria));
   const int code = ExitCodeOf(report);
   if (report.ranking.empty()) return code;  // nothing was played that could be saved
   SaveRollout(options.save, query, report, backends.make_rollout_bag, cancelled);
@@ -264,10 +288,24 @@ struct Verbs {
   PlanOptions plan;
   BlackboardOptions blackboard;
   ListOptions list;
+  StoredReportOptions report;
   LimitsOptions limits;
   DoctorOptions doctor;
   std::vector<CLI::App*> others;  // as Backends::more_verbs
 };
+
+/// What the reports of all verbs say of the program and its call.
+void SetCall(const std::vector<std::string>& arguments, const Backends& backends, Verbs* verbs) {
+  std::vector<std::string> words = arguments;
+  words.front() = "hires";
+  for (ReportOptions* report :
+       {&verbs->imagine_options.report, &verbs->achieve.report, &verbs->experiment.report,
+        &verbs->experiment.hypothesis.report, &verbs->plan.report, &verbs->doctor.robot.report}) {
+    report->command = CommandText(words);
+    report->package_folder = backends.package_folder;
+  }
+  verbs->report.package_folder = backends.package_folder;
+}
 
 void AddVerbs(CLI::App* app, Verbs* verbs, const Backends& backends) {
   verbs->imagine =
@@ -279,6 +317,7 @@ void AddVerbs(CLI::App* app, Verbs* verbs, const Backends& backends) {
   AddPlanVerb(app, &verbs->plan);
   AddBlackboardVerb(app, &verbs->blackboard);
   AddListVerb(app, &verbs->list);
+  AddReportVerb(app, &verbs->report);
   AddDoctorVerb(app, &verbs->doctor);
   for (const Verb& verb : backends.more_verbs) {
     CLI::App* other = app->add_subcommand(verb.name, verb.help)->prefix_command();
@@ -314,6 +353,7 @@ int RunVerb(const Verbs& verbs, const Backends& backends) {
   }
   if (*verbs.experiment.verb) return RunAnyExperiment(verbs.experiment, backends);
   if (*verbs.plan.verb) return RunPlanVerb(verbs.plan, IsInterrupted);
+  if (*verbs.report.verb) return RunReportVerb(verbs.report);
   if (*verbs.list.verb) return RunListVerb(verbs.list, backends.package_folder);
   if (*verbs.blackboard.verb) {
     return RunBlackboardVerb(verbs.blackboard, backends.package_folder,
@@ -375,6 +415,7 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
   app.require_subcommand(1);
   Verbs verbs;
   AddVerbs(&app, &verbs, backends);
+  SetCall(arguments, backends, &verbs);
   try {
     if (arguments.size() == 1) return ShowVerbs(app);
     RefuseUnknownVerb(app, arguments);

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <thread>
 #include <vector>
 
@@ -16,60 +17,94 @@
 namespace hires::cli {
 namespace {
 
-bool CheckFiles(const Backends& backends) {
+using nlohmann::ordered_json;
+
+/// What was found, in the order in which it was printed.
+struct Findings {
+  bool passed{true};
+  ordered_json list = ordered_json::array();     ///< of findings
+  ordered_json physics = ordered_json::array();  ///< of bodies with their comparisons
+
+  void Add(const Finding& finding) {
+    passed = passed && finding.level != FindingLevel::kFailed;
+    std::cout << FindingText(finding) << std::flush;
+    list.push_back({{"level", ToString(finding.level)}, {"text", finding.text}});
+  }
+};
+
+Finding CheckFiles(const Backends& backends) {
   try {
     const auto client =
         imagination::ReadClientConfig(backends.package_folder + "/config/imagination_client.yaml");
     const auto setup =
         imagination::LoadImaginationSetup(imagination::ReadSetupConfig(client.scene));
-    std::cout << fmt::format(
-        "ok      world '{}' with {} bodies and {} areas, robot '{}' with {} links\n",
-        setup.scene->world.name, setup.scene->world.statics.size(),
-        setup.scene->world.frames.size(), setup.scene->robot.model.name,
-        setup.scene->robot.model.links.size());
-    return true;
+    return {FindingLevel::kOk,
+            fmt::format("world '{}' with {} bodies and {} areas, robot '{}' with {} links",
+                        setup.scene->world.name, setup.scene->world.statics.size(),
+                        setup.scene->world.frames.size(), setup.scene->robot.model.name,
+                        setup.scene->robot.model.links.size())};
   } catch (const std::exception& error) {
-    std::cout << "FAILED  " << error.what() << '\n';
-    return false;
+    return {FindingLevel::kFailed, error.what()};
   }
 }
 
-bool CheckMachine() {
+Finding CheckMachine() {
   const unsigned cores = std::thread::hardware_concurrency();
-  std::cout << fmt::format("ok      {} cores: start at most so many workers here\n", cores);
-  return cores > 0;
+  return {cores > 0 ? FindingLevel::kOk : FindingLevel::kFailed,
+          fmt::format("{} cores: start at most so many workers here", cores)};
 }
 
-bool CheckPhysics() {
+std::vector<std::string> RowOf(const physics::PhysicsCheck& check) {
+  return {
+      check.passed() ? "ok" : "FAILED",       check.name,  fmt::format("{:.5g}", check.expected),
+      fmt::format("{:.5g}", check.measured),  check.unit,  fmt::format("{:.2g}", check.error),
+      fmt::format("{:.2g}", check.tolerance), check.remark};
+}
+
+ordered_json ToJson(const physics::PhysicsCheck& check) {
+  return {{"check", check.name},      {"closed_form", check.expected}, {"measured", check.measured},
+          {"unit", check.unit},       {"error", check.error},          {"allowed", check.tolerance},
+          {"passed", check.passed()}, {"remark", check.remark}};
+}
+
+void CheckPhysics(Findings* findings) {
   const struct {
     const char* name;
     physics::UprightCylinder body;
   } mills[] = {{"pepper mill, thesis text", {0.037, 0.274, 0.140}},
                {"pepper mill, appendix", {0.035, 0.300, 0.500}},
                {"pepper mill, repository", {0.037, 0.274, 0.350}}};
-  bool passed = true;
   for (const auto& mill : mills) {
     std::vector<std::vector<std::string>> rows{
         {"", "check", "closed form", "measured", "unit", "error", "allowed", "remark"}};
+    ordered_json checks = ordered_json::array();
     for (const physics::PhysicsCheck& check : physics::RunPhysicsChecks(mill.body, mill.name)) {
-      passed = passed && check.passed();
-      rows.push_back({check.passed() ? "ok" : "FAILED", check.name,
-                      fmt::format("{:.5g}", check.expected), fmt::format("{:.5g}", check.measured),
-                      check.unit, fmt::format("{:.2g}", check.error),
-                      fmt::format("{:.2g}", check.tolerance), check.remark});
+      findings->passed = findings->passed && check.passed();
+      rows.push_back(RowOf(check));
+      checks.push_back(ToJson(check));
     }
     std::cout << '\n' << evaluation::FormatTable(rows) << std::flush;
+    findings->physics.push_back({{"body", mill.name}, {"checks", checks}});
   }
-  return passed;
 }
 
-int CheckAll(const Backends& backends, bool with_physics) {
-  bool passed = CheckMachine();
-  passed = CheckFiles(backends) && passed;
-  for (const Check& check : backends.more_checks) passed = check() && passed;
-  if (with_physics) passed = CheckPhysics() && passed;
-  std::cout << (passed ? "\nall is well\n" : "\nsomething needs attention, see FAILED above\n");
-  return passed ? kExitRecommended : kExitBadInput;
+int CheckAll(const Backends& backends, bool with_physics, const ReportOptions& report) {
+  CheckReport(report);
+  Findings findings;
+  findings.Add(CheckMachine());
+  findings.Add(CheckFiles(backends));
+  for (const Check& check : backends.more_checks) {
+    for (const Finding& finding : check()) findings.Add(finding);
+  }
+  if (with_physics) CheckPhysics(&findings);
+  std::cout << (findings.passed ? "\nall is well\n"
+                                : "\nsomething needs attention, see FAILED above\n");
+  ReportOrigin origin;
+  origin.verb = "doctor";
+  WriteReport(
+      report, origin,
+      {{"ok", findings.passed}, {"findings", findings.list}, {"physics", findings.physics}});
+  return findings.passed ? kExitRecommended : kExitBadInput;
 }
 
 }  // namespace
@@ -96,12 +131,13 @@ void AddDoctorVerb(CLI::App* app, DoctorOptions* o) {
   o->verb->add_option("--seconds", o->robot.seconds, "[s] to listen")
       ->check(CLI::Range(0.2, 600.0))
       ->needs(robot);
-  o->verb->add_option("--json", o->robot.json, "write what was found to this file as well")
-      ->needs(robot);
+  AddReportOptions(o->verb, &o->robot.report);
 }
 
 int RunDoctorVerb(const DoctorOptions& options, const Backends& backends) {
-  if (!options.is_robot) return CheckAll(backends, !options.is_without_physics);
+  if (!options.is_robot) {
+    return CheckAll(backends, !options.is_without_physics, options.robot.report);
+  }
   if (!backends.examine_robot) {
     throw base::ConfigError("this build has no ROS, so it cannot ask a robot; leave out --robot");
   }

@@ -60,6 +60,20 @@ void Print(const evaluation::ExperimentReport& report) {
   }
 }
 
+ReportOrigin OriginOf(const ExperimentOptions& options,
+                      const evaluation::ExperimentConfig& config) {
+  const auto file = [](const std::string& path) {
+    return path == "scene" || path == "none" || path == "given" ? "" : path;
+  };
+  ReportOrigin origin;
+  origin.verb = "experiment";
+  origin.inputs = {{"experiment", options.file},
+                   {"scene", config.scene},
+                   {"uncertainty", file(config.uncertainty)},
+                   {"map", options.map.empty() ? file(config.map) : options.map}};
+  return origin;
+}
+
 }  // namespace
 
 std::string ProgressText(double fraction, double elapsed) {
@@ -85,7 +99,9 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
       ->check(CLI::Range(1, 1000000));
   verb->add_option("--map", options->map, "map_server YAML: its walls instead of the world's");
   verb->add_option("--csv", options->csv, "write one line per leg, rollout or run to this file");
-  verb->add_option("--json", options->json, "write everything to this file");
+  AddReportOptions(verb, &options->report);
+  verb->add_option("--junit", options->junit,
+                   "write what the file expects, and whether it holds, as JUnit XML to this file");
   verb->add_flag("--quiet", options->quiet, "no progress bar");
   options->verb = verb;
   AddHypothesisVerb(verb, &options->hypothesis);
@@ -101,7 +117,8 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   const evaluation::ExperimentConfig config =
       evaluation::ReadExperiment(options.file, OverridesOf(options));
   CheckWritable(options.csv);
-  CheckWritable(options.json);
+  if (!options.junit.empty()) evaluation::RequireFolderOf(options.junit);
+  CheckReport(options.report);
   const evaluation::Crew crew = MakeCrew(options, cancelled);
   const std::optional<evaluation::ExperimentReport> report =
       evaluation::RunExperiment(config, crew);
@@ -109,7 +126,8 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   if (!report) return kExitCancelled;
   Print(*report);
   if (!options.csv.empty()) evaluation::WriteText(evaluation::ReportCsv(*report), options.csv);
-  if (!options.json.empty()) evaluation::WriteJson(ToJson(*report), options.json);
+  if (!options.junit.empty()) evaluation::WriteText(JunitXml(*report), options.junit);
+  WriteReport(options.report, OriginOf(options, config), ToJson(*report));
   return report->passed() ? kExitRecommended : kExitAllFailed;
 }
 

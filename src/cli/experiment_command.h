@@ -6,6 +6,7 @@
 
 #include "cli/experiment_decision_command.h"
 #include "cli/experiment_hypothesis_command.h"
+#include "hires/cli/report_output.h"
 
 namespace CLI {
 class App;
@@ -15,7 +16,8 @@ namespace hires::cli {
 
 /// What was typed behind `hires experiment`.
 struct ExperimentOptions {
-  std::string file, map, csv, json;
+  std::string file, map, csv, junit;
+  ReportOptions report;
   std::uint64_t seed{0};
   int threads{0}, runs{0};
   bool quiet{false};

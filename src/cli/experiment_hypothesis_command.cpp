@@ -30,14 +30,15 @@ using Steady = std::chrono::steady_clock;
 
 std::string JournalPath(const HypothesisOptions& options) {
   if (!options.journal.empty()) return options.journal;
-  if (!options.json.empty()) return options.json + ".journal";
+  if (!options.report.json.empty()) return options.report.json + ".journal";
   return "hypothesis_" + options.scenario + ".journal";
 }
 
 void RequireFolders(const HypothesisOptions& options) {
-  for (const std::string& path : {JournalPath(options), options.csv, options.json}) {
+  for (const std::string& path : {JournalPath(options), options.csv}) {
     if (!path.empty()) evaluation::RequireFolderOf(path);
   }
+  CheckReport(options.report);
   if (options.logs.empty()) return;
   std::error_code error;
   fs::create_directories(options.logs, error);
@@ -68,13 +69,6 @@ evaluation::HypothesisSetting SettingOf(const HypothesisOptions& options,
   setting.is_local = options.is_local;
   setting.truth = options.truth;
   return setting;
-}
-
-std::string Quoted(const std::string& word) {
-  if (word.find_first_of(" '\"$\\*?[]&;|<>()`") == std::string::npos) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
 }
 
 std::string CommandOf(const HypothesisOptions& options) {
@@ -188,11 +182,16 @@ bool PlayAll(const std::vector<evaluation::HypothesisOrder>& orders,
       });
 }
 
-void Write(const evaluation::HypothesisReport& report, const HypothesisOptions& options) {
+void Write(const evaluation::HypothesisReport& report, const HypothesisOptions& options,
+           const std::vector<ReportInput>& inputs) {
   std::cout << evaluation::HypothesisText(report);
   if (!options.csv.empty()) evaluation::WriteText(evaluation::HypothesisCsv(report), options.csv);
-  if (!options.json.empty())
-    evaluation::WriteJson(ToJson(report, CommandOf(options)), options.json);
+  ReportOrigin origin;
+  origin.verb = "experiment hypothesis";
+  origin.is_local = options.is_local;
+  origin.inputs = inputs;
+  origin.hashes = {{"files", report.setting.files}};
+  WriteReport(options.report, origin, ToJson(report, CommandOf(options)));
 }
 
 int Cancelled(const evaluation::HypothesisJournal& journal, const HypothesisOptions& options) {
@@ -233,7 +232,7 @@ void AddHypothesisVerb(CLI::App* experiment, HypothesisOptions* options) {
       ->check(CLI::Range(1, 256))
       ->needs(local);
   verb->add_option("--csv", options->csv, "write one line per run to this file");
-  verb->add_option("--json", options->json, "write everything to this file");
+  AddReportOptions(verb, &options->report);
   verb->add_option("--logs", options->logs, "keep what the system of each run said in this folder");
   verb->add_flag("--quiet", options->quiet, "no progress");
   options->verb = verb;
@@ -284,7 +283,9 @@ int RunHypothesisVerb(const HypothesisOptions& options, const std::string& packa
     return Cancelled(journal, options);
   }
   const evaluation::HypothesisReport report = evaluation::SumUpHypothesis(setting, journal.runs());
-  Write(report, options);
+  Write(report, options,
+        {{"scenario", package_folder + "/config/scenarios/" + options.scenario + ".yaml"},
+         {"what counts", path}});
   return report.with.complete + report.without.complete > 0 ? kExitRecommended : kExitAllFailed;
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "hires/cli/report_output.h"
 #include "hires/evaluation/experiment_hypothesis.h"
 #include "hires/evaluation/experiment_hypothesis_report.h"
 
@@ -15,7 +16,8 @@ namespace hires::cli {
 
 /// What was typed behind `hires experiment hypothesis`.
 struct HypothesisOptions {
-  std::string scenario, journal, csv, json, logs;
+  std::string scenario, journal, csv, logs;
+  ReportOptions report;
   int runs{20}, workers{1};
   std::uint64_t seed{1};
   double pace{1.0};

@@ -12,7 +12,6 @@
 #include "hires/base/resource_use.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
-#include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/planning/ipc_plan.h"
 #include "hires/planning/plan_json.h"
@@ -219,6 +218,8 @@ nlohmann::ordered_json SessionToJson(const Session& session) {
   for (std::size_t i = 0; i < session.violations.size(); ++i) {
     json["plans"][i]["violations"] = session.violations[i];
   }
+  json["why"] = planning::OutcomeSentence(session.result, session.request.which);
+  json["warnings"] = session.result.warnings;
   return json;
 }
 
@@ -263,7 +264,7 @@ void AddPlanVerb(CLI::App* app, PlanOptions* options) {
   verb->add_flag("--strict", options->strict,
                  "refuse a domain that names unknown tasks or functions, even where no way leads "
                  "to them");
-  verb->add_option("--json", options->json, "write the answer to this file as well");
+  AddReportOptions(verb, &options->report);
   verb->add_option("--format", options->format,
                    "print the bare plan: shop2 (one operator a line) or ipc (as in IPC 2020)")
       ->check(CLI::IsMember({"shop2", "ipc"}));
@@ -272,14 +273,17 @@ void AddPlanVerb(CLI::App* app, PlanOptions* options) {
 }
 
 int RunPlanVerb(const PlanOptions& options, const std::function<bool()>& cancelled) {
-  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  CheckReport(options.report);
   Session session = Read(options);
   session.request.stop = StopQuestionFor(options, cancelled);
   Search(&session);
-  if (options.format.empty() || !options.json.empty()) AddReasons(&session);
+  if (options.format.empty() || IsWanted(options.report)) AddReasons(&session);
   if (options.validate) Validate(&session);
   Print(session, options.format);
-  if (!options.json.empty()) evaluation::WriteJson(SessionToJson(session), options.json);
+  ReportOrigin origin;
+  origin.verb = "plan";
+  origin.inputs = {{"domain", options.domain}, {"problem", options.problem}};
+  WriteReport(options.report, origin, SessionToJson(session));
   return ExitCodeFor(session);
 }
 

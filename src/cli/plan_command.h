@@ -3,6 +3,8 @@
 #include <functional>
 #include <string>
 
+#include "hires/cli/report_output.h"
+
 namespace CLI {
 class App;
 }
@@ -19,7 +21,8 @@ enum PlanExitCode {
 
 /// What was typed behind `hires plan`.
 struct PlanOptions {
-  std::string domain, problem, name, task, json;
+  std::string domain, problem, name, task;
+  ReportOptions report;
   std::string which{"first"};
   std::string format;  ///< "shop2", "ipc"; empty: a table
   int limit{1000};     ///< plans, of `which` all

@@ -1,6 +1,7 @@
 #include "hires/evaluation/experiment_report.h"
 
 #include <fmt/format.h>
+#include <tinyxml2.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +16,7 @@ namespace hires::evaluation {
 namespace {
 
 using nlohmann::ordered_json;
+using tinyxml2::XMLPrinter;
 using Relation = Expectation::Relation;
 
 struct RelationName {
@@ -56,6 +58,18 @@ ordered_json Number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json();
 }
 
+/// Those that the report shows; what stands in them is for people.
+ordered_json TablesToJson(const std::vector<TextTable>& tables) {
+  ordered_json list = ordered_json::array();
+  for (const TextTable& table : tables) {
+    if (table.rows.size() < 2) continue;
+    list.push_back({{"title", table.title},
+                    {"heads", table.rows.front()},
+                    {"rows", std::vector(table.rows.begin() + 1, table.rows.end())}});
+  }
+  return list;
+}
+
 TextTable ChecksTable(const ExperimentReport& report) {
   TextTable table{"Expectations", {{"", "expected", "found"}}};
   for (const CheckedExpectation& check : report.checks) {
@@ -63,6 +77,52 @@ TextTable ChecksTable(const ExperimentReport& report) {
                           fmt::format("{:.5g}", check.value)});
   }
   return table;
+}
+
+int NumFailed(const ExperimentReport& report) {
+  return static_cast<int>(std::count_if(report.checks.begin(), report.checks.end(),
+                                        [](const auto& check) { return !check.holds; }));
+}
+
+void PushCounts(const ExperimentReport& report, XMLPrinter* xml) {
+  xml->PushAttribute("tests", static_cast<int>(report.checks.size()));
+  xml->PushAttribute("failures", NumFailed(report));
+  xml->PushAttribute("errors", 0);
+  xml->PushAttribute("time", fmt::format("{:.3f}", report.wall_seconds).c_str());
+}
+
+void AddProperty(const char* name, const std::string& value, XMLPrinter* xml) {
+  xml->OpenElement("property");
+  xml->PushAttribute("name", name);
+  xml->PushAttribute("value", value.c_str());
+  xml->CloseElement();
+}
+
+void AddProperties(const ExperimentReport& report, XMLPrinter* xml) {
+  xml->OpenElement("properties");
+  AddProperty("kind", report.kind, xml);
+  AddProperty("seed", std::to_string(report.seed), xml);
+  AddProperty("experiment", base::HexOf(report.experiment_hash), xml);
+  AddProperty("parameters", base::HexOf(report.params_hash), xml);
+  xml->CloseElement();
+}
+
+void AddCase(const ExperimentReport& report, const CheckedExpectation& check, XMLPrinter* xml) {
+  xml->OpenElement("testcase");
+  xml->PushAttribute("classname", ("hires." + report.name).c_str());
+  xml->PushAttribute("name", ToString(check.expectation).c_str());
+  xml->PushAttribute("time", "0");  // all of them come from the same play
+  if (!check.holds) {
+    const std::string found =
+        std::isfinite(check.value) ? fmt::format("{:.17g}", check.value) : "no number";
+    const std::string message =
+        fmt::format("wanted {}, found {}", ToString(check.expectation), found);
+    xml->OpenElement("failure");
+    xml->PushAttribute("type", "expectation");
+    xml->PushAttribute("message", message.c_str());
+    xml->CloseElement();
+  }
+  xml->CloseElement();
 }
 
 }  // namespace
@@ -155,6 +215,8 @@ ordered_json ToJson(const ExperimentReport& report) {
   }
   for (const CheckedExpectation& check : report.checks) {
     checks.push_back({{"expected", ToString(check.expectation)},
+                      {"measure", check.expectation.measure},
+                      {"bound", Number(check.expectation.bound)},
                       {"found", Number(check.value)},
                       {"holds", check.holds}});
   }
@@ -166,9 +228,25 @@ ordered_json ToJson(const ExperimentReport& report) {
           {"passed", report.passed()},
           {"measures", measures},
           {"expectations", checks},
+          {"tables", TablesToJson(report.findings.tables)},
           {"rows", report.findings.rows},
           {"simulated_seconds", report.findings.simulated_seconds},
           {"wall_seconds", report.wall_seconds}};
+}
+
+std::string JunitXml(const ExperimentReport& report) {
+  XMLPrinter xml;
+  xml.PushHeader(false, true);
+  xml.OpenElement("testsuites");
+  PushCounts(report, &xml);
+  xml.OpenElement("testsuite");
+  xml.PushAttribute("name", report.name.c_str());
+  PushCounts(report, &xml);
+  AddProperties(report, &xml);
+  for (const CheckedExpectation& check : report.checks) AddCase(report, check, &xml);
+  xml.CloseElement();
+  xml.CloseElement();
+  return std::string(xml.CStr()) + '\n';
 }
 
 }  // namespace hires::evaluation

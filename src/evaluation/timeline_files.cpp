@@ -1,22 +1,13 @@
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
-#include "hires/base/text.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
-
-extern char** environ;
 
 namespace hires::evaluation {
 namespace {
@@ -86,55 +77,26 @@ ordered_json ImaginedToJson(const ImaginedStep& step) {
           {"why", step.why}};
 }
 
-/// An open file for the output of a program, gone with this object.
-class Output {
- public:
-  Output() : file_(std::tmpfile()) {
-    if (file_ == nullptr) {
-      throw base::ConfigError(fmt::format("cannot make a temporary file: {}", strerror(errno)));
-    }
-  }
-  ~Output() { std::fclose(file_); }
-  Output(const Output&) = delete;
-  Output& operator=(const Output&) = delete;
-
-  int descriptor() const { return fileno(file_); }
-  std::string Read() {
-    std::string text(4096, '\0');
-    std::rewind(file_);
-    text.resize(std::fread(text.data(), 1, text.size(), file_));
-    while (!text.empty() && text.back() == '\n') text.pop_back();
-    return text;
-  }
-
- private:
-  std::FILE* file_;
-};
-
-/// Exit code; -1 where it could not be started or was killed.
-int RunProgram(std::vector<std::string> words, const Output& output) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, output.descriptor(), STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, output.descriptor(), STDERR_FILENO);
-  pid_t pid = 0;
-  const int failed = posix_spawnp(&pid, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) return -1;
-  int status = 0;
-  while (waitpid(pid, &status, 0) < 0) {
-    if (errno != EINTR) return -1;
-  }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+ordered_json BarToJson(const TimelineBar& bar) {
+  const bool is_step = bar.kind == TimelineBar::Kind::kStep;
+  return {{"kind", is_step ? "step" : "imagination"},
+          {"plan", bar.plan},
+          {"index", bar.index},
+          {"action", bar.action},
+          {"outcome", bar.outcome},
+          {"begin", bar.begin},
+          {"end", bar.end},
+          {"dispatch", NumberOrNull(bar.dispatch)},
+          {"note", bar.note}};
 }
 
 }  // namespace
 
 ordered_json ToJson(const AchieveReport& report) {
   ordered_json steps = ordered_json::array(), imaginations = ordered_json::array();
+  ordered_json bars = ordered_json::array();
+  const Timeline timeline = MakeTimeline(report);
+  for (const TimelineBar& bar : timeline.bars) bars.push_back(BarToJson(bar));
   for (const auto& step : report.status.steps) steps.push_back(StepToJson(step));
   for (const auto& step : report.status.imaginations) imaginations.push_back(ImaginedToJson(step));
   return {{"task", report.task},
@@ -143,10 +105,11 @@ ordered_json ToJson(const AchieveReport& report) {
           {"failure", ToJson(report.failure)},
           {"episode", report.episode},
           {"replans", report.status.replans},
-          {"duration", MakeTimeline(report).duration},
+          {"duration", timeline.duration},
           {"begin", BeginOf(report.status)},
           {"steps", steps},
           {"imaginations", imaginations},
+          {"timeline", bars},
           {"warnings", report.status.warnings}};
 }
 
@@ -161,15 +124,6 @@ void WriteText(const std::string& text, const std::string& path) {
   std::filesystem::remove(unfinished, error);
   throw base::ConfigError(
       fmt::format("{}: cannot be written; check folder, rights and space", path));
-}
-
-void DrawTimeline(const std::string& script, const std::string& csv, const std::string& png) {
-  Output output;
-  // Debian's own Python: that is where its matplotlib is.
-  const int code = RunProgram({"/usr/bin/python3", script, csv, png}, output);
-  if (code == 0) return;
-  throw base::ConfigError(fmt::format("{}: not drawn from {}: {}", png, csv,
-                                      code < 0 ? "/usr/bin/python3 cannot be run" : output.Read()));
 }
 
 }  // namespace hires::evaluation

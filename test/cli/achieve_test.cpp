@@ -282,7 +282,9 @@ TEST_F(AchieveVerbTest, WritesTimelineAndJson) {
   const std::string json = (folder_.path() / "run.json").string();
   EXPECT_EQ(Run({"serve", "--timeline", csv, "--json", json}).code, 0);
   EXPECT_THAT(base::ReadTextFile(csv), HasSubstr("step,0,0,move_base(area1),running"));
-  EXPECT_THAT(base::ReadTextFile(json), HasSubstr("\"outcome\": \"succeeded\""));
+  EXPECT_THAT(base::ReadTextFile(json),
+              AllOf(HasSubstr("\"outcome\": \"succeeded\""), HasSubstr("\"verb\": \"achieve\""),
+                    HasSubstr("\"local\": false")));
 }
 
 TEST_F(AchieveVerbTest, BadInputIsRefusedBeforeTheRobotSetsOut) {

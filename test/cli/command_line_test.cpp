@@ -21,9 +21,11 @@ using hires::test_support::RunHires;
 using hires::test_support::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 /// A small scene that loads and plays quickly: the cart in a hall.
 class SmallScene {
@@ -92,6 +94,17 @@ TEST(CommandLineTest, ImaginesAndWritesWhatItFound) {
   EXPECT_EQ(answer.at("outcome"), "ranked");
   EXPECT_EQ(answer.at("ranking").at(0).at("rollouts"), 2);
   EXPECT_EQ(answer.at("seed"), 1);
+  const auto& first = answer.at("ranking").at(0);
+  EXPECT_EQ(first.at("duration").at("values").size(), 2u);
+  EXPECT_EQ(first.at("max_tilt").at("values").size(), 2u);
+  EXPECT_EQ(first.at("median_rollout").is_number(), true);
+  const auto& head = answer.at("report");
+  EXPECT_EQ(head.at("verb"), "imagine");
+  EXPECT_EQ(head.at("local"), true);
+  EXPECT_THAT(head.at("command"), AllOf(StartsWith("hires imagine --local --quiet --scene "),
+                                        EndsWith(" --min-success 0.15")));
+  EXPECT_EQ(head.at("inputs").size(), 3u) << "world, robot, objects; no uncertainty";
+  EXPECT_EQ(head.at("hashes").size(), 4u);
 }
 
 /// A map of 6 m by 3 m with a wall across that has a gap of 0.4 m, too narrow for the cart, or
@@ -142,6 +155,7 @@ TEST(CommandLineTest, EqualSeedsGiveEqualAnswers) {
     auto json = nlohmann::json::parse(base::ReadTextFile(path));
     json.erase("wall_seconds");
     json.erase("real_time_factor");
+    json["report"].erase("command");  // says how many threads
     return json.dump();
   };
   EXPECT_EQ(answer("1"), answer("2"));
@@ -204,7 +218,7 @@ TEST(CommandLineTest, ADoctorForRobotsIsAskedWithItsOptions) {
   EXPECT_EQ(seen->names, "n.yaml");
   EXPECT_EQ(seen->seconds, 0.5);
   EXPECT_EQ(seen->navigation, "own");
-  EXPECT_EQ(seen->json, "r.json");
+  EXPECT_EQ(seen->report.json, "r.json");
   EXPECT_EQ(RunHires({"doctor", "--robot", "--navigation", "teleport"}, {}, backends).code, 1);
   EXPECT_EQ(RunHires({"doctor", "--robot", "--seconds", "0"}, {}, backends).code, 1);
   EXPECT_EQ(RunHires({"doctor", "--names", "n.yaml"}, {}, backends).code, 1) << "it needs --robot";

@@ -42,6 +42,18 @@ TEST(ExperimentCommandTest, WritesCsvAndJson) {
   const auto report = nlohmann::json::parse(base::ReadTextFile(json));
   EXPECT_EQ(report["seed"], 5);
   EXPECT_EQ(report["rows"].size(), 1u);
+  EXPECT_EQ(report["tables"][0]["heads"][0], "to");
+  EXPECT_EQ(report["report"]["verb"], "experiment");
+  EXPECT_EQ(report["report"]["inputs"].size(), 2u) << "the experiment and its scene";
+}
+
+TEST(ExperimentCommandTest, WritesWhatIsExpectedForBuildServers) {
+  const std::string path = testing::TempDir() + "legs.xml";
+  EXPECT_EQ(ExitCode("{measure: reached, at_least: 2}", {"--junit", path}), 2);
+  EXPECT_THAT(base::ReadTextFile(path),
+              testing::AllOf(testing::HasSubstr("<testsuite name=\"exit_code\" tests=\"1\""),
+                             testing::HasSubstr("found 1\"")));
+  EXPECT_EQ(ExitCode("", {"--junit", "/no/such/folder/x.xml"}), 1);
 }
 
 }  // namespace

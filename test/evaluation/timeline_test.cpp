@@ -17,8 +17,6 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using ::testing::StartsWith;
 
-const std::string kScript = HIRES_SOURCE_DIR "/scripts/plot_timeline";
-
 execution::StepStatus Step(int index, const base::ActionCall& action, double started,
                            std::optional<double> finished) {
   execution::StepStatus step;
@@ -136,32 +134,15 @@ TEST(TimelineJsonTest, HoldsStepsAndImaginations) {
   EXPECT_EQ(json["steps"][0]["arguments"][1], "slow");
   EXPECT_TRUE(json["steps"][0]["latest_start"].is_null());
   EXPECT_EQ(json["imaginations"][0]["predictions"][1]["rollouts"], 32);
+  ASSERT_EQ(json["timeline"].size(), 3u);
+  EXPECT_EQ(json["timeline"][0]["kind"], "imagination");
+  EXPECT_EQ(json["timeline"][0]["dispatch"], 20.0) << "from the task's begin";
+  EXPECT_EQ(json["timeline"][1]["kind"], "step");
+  EXPECT_TRUE(json["timeline"][1]["dispatch"].is_null());
 }
 
 TEST(WriteTextTest, AFolderThatIsMissingIsAnError) {
   EXPECT_THROW(WriteText("x", "/no/such/folder/x.csv"), base::ConfigError);
-}
-
-class DrawTimelineTest : public ::testing::Test {
- protected:
-  std::string Path(const std::string& name) const { return (folder_.path() / name).string(); }
-  const hires::test_support::TemporaryFolder folder_;
-};
-
-TEST_F(DrawTimelineTest, DrawsAPicture) {
-  WriteText(TimelineCsv(MakeTimeline(Report())), Path("run.csv"));
-  DrawTimeline(kScript, Path("run.csv"), Path("run.png"));
-  EXPECT_THAT(base::ReadTextFile(Path("run.png")), StartsWith("\x89PNG"));
-}
-
-TEST_F(DrawTimelineTest, SaysWhatTheScriptSays) {
-  const std::string other = folder_.Write("other.csv", "a,b\n1,2\n");
-  try {
-    DrawTimeline(kScript, other, Path("run.png"));
-    FAIL() << "no error";
-  } catch (const base::ConfigError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("other.csv: is no timeline"));
-  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "hires/base/action.h"
 #include "hires/cli/blackboard_command.h"
 #include "hires/cli/doctor.h"
+#include "hires/cli/finding.h"
 #include "hires/cli/imagine_start.h"
 #include "hires/evaluation/achieve.h"
 #include "hires/evaluation/experiment_hypothesis.h"
@@ -44,9 +45,8 @@ struct Verb {
   std::function<int(const std::vector<std::string>& arguments)> run;
 };
 
-/// A check of `hires doctor` that another layer adds: prints its lines, false if something is
-/// wrong.
-using Check = std::function<bool()>;
+/// A check of `hires doctor` that another layer adds.
+using Check = std::function<std::vector<Finding>()>;
 
 /// Makes what saves a rollout of this setup as a bag.
 using MakeRolloutBag = std::function<std::unique_ptr<imagination::RolloutSaver>(

@@ -3,6 +3,8 @@
 #include <functional>
 #include <string>
 
+#include "hires/cli/report_output.h"
+
 namespace CLI {
 class App;
 }
@@ -15,10 +17,10 @@ struct Backends;
 struct RobotDoctorOptions {
   std::string names;       ///< file; empty: config/robots/pr2_names.yaml
   std::string profile;     ///< file; empty: config/robots/pr2.yaml
-  std::string json;        ///< file to write as well; empty: none
   std::string navigation;  ///< move_base, own; empty: not decided, so that what the first lacks is
                            ///< a warning
   double seconds{3.0};     ///< [s] to listen
+  ReportOptions report;    ///< without --robot, too
 };
 
 /// Looks at a running robot.  @return Exit code.  @throws base::ConfigError.

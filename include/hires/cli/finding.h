@@ -18,6 +18,8 @@ struct Finding {
   std::string text;  ///< what is, and what to do; further lines are indented when printed
 };
 
+std::string ToString(FindingLevel level);  ///< "ok", "note", "warning", "failed"
+
 /// "ok      ...", "note    ...", "warn    ...", "FAILED  ...".
 std::string FindingText(const Finding& finding);
 

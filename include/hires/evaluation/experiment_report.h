@@ -72,6 +72,10 @@ std::vector<CheckedExpectation> CheckExpectations(const std::vector<Expectation>
 
 std::string ReportText(const ExperimentReport& report);  ///< for people
 std::string ReportCsv(const ExperimentReport& report);   ///< the rows, with heads
+/// The expectations as JUnit XML, as build servers read it: a suite of the experiment's name, a
+/// test case for each expectation, a `failure` in those that do not hold. Seed and hashes are the
+/// suite's properties. Equal reports give equal text but for the suite's `time`.
+std::string JunitXml(const ExperimentReport& report);
 /// The report for machines. Equal reports give equal text but for `wall_seconds`. Numbers that are
 /// not finite become null.
 nlohmann::ordered_json ToJson(const ExperimentReport& report);

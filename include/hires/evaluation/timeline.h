@@ -50,8 +50,4 @@ nlohmann::ordered_json ToJson(const AchieveReport& report);
 /// All or nothing.  @throws base::ConfigError if the file cannot be written.
 void WriteText(const std::string& text, const std::string& path);
 
-/// Has `script` draw the CSV file as PNG: bars of steps over time, imaginations above.
-/// @throws base::ConfigError with what the script said.
-void DrawTimeline(const std::string& script, const std::string& csv, const std::string& png);
-
 }  // namespace hires::evaluation

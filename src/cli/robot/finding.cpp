@@ -8,6 +8,11 @@
 
 namespace hires::cli {
 
+std::string ToString(FindingLevel level) {
+  static constexpr std::array<const char*, 4> kNames{"ok", "note", "warning", "failed"};
+  return kNames[static_cast<std::size_t>(level)];
+}
+
 std::string FindingText(const Finding& finding) {
   static constexpr std::array<const char*, 4> kHeads{"ok", "note", "warn", "FAILED"};
   const std::vector<std::string> lines = hires::base::Split(finding.text, '\n');

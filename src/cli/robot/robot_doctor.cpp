@@ -3,24 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "cli/robot/robot_doctor_hosts.h"
 #include "cli/robot/robot_doctor_judge.h"
 #include "hires/cli/command_line.h"
-#include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 
 namespace hires::cli {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr std::array<const char*, 4> kLevelNames{"ok", "note", "warning", "failed"};
-
-std::string NameOf(FindingLevel level) { return kLevelNames[static_cast<std::size_t>(level)]; }
 
 bool HasFailed(const RobotFindings& findings) {
   return std::any_of(findings.begin(), findings.end(), [](const RobotFinding& finding) {
@@ -64,7 +58,7 @@ std::string LastLine(const RobotFindings& findings) {
 }
 
 ordered_json ToJson(const RobotFinding& finding) {
-  return {{"level", NameOf(finding.level)},
+  return {{"level", ToString(finding.level)},
           {"code", finding.code},
           {"subject", finding.subject},
           {"text", finding.text},
@@ -161,13 +155,14 @@ int RunRobotDoctor(const RobotDoctorOptions& options, const std::string& package
       NeedsOf(control::ReadRobotNames(or_default(options.names, "pr2_names.yaml")), types,
               navigation::ReadBaseGuardParams(package_folder + "/config/base_guard.yaml"));
   const auto robot = robot::LoadRobot(or_default(options.profile, "pr2.yaml"));
-  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  CheckReport(options.report);
   const RobotView view = look(options.seconds, needs);
   const RobotFindings findings = JudgeRobot(options, needs, robot.profile, view);
   std::cout << RobotReport(needs, view, findings) << std::flush;
-  if (!options.json.empty()) {
-    evaluation::WriteJson(RobotJson(needs, view, findings), options.json);
-  }
+  ReportOrigin origin;
+  origin.verb = "doctor";
+  origin.is_local = false;
+  WriteReport(options.report, origin, RobotJson(needs, view, findings));
   return HasFailed(findings) ? kExitBadInput : kExitRecommended;
 }
 

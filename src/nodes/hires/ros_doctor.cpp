@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <iterator>
 #include <set>
 
@@ -329,18 +328,12 @@ std::vector<Finding> ExamineRos() {
   return findings;
 }
 
-bool CheckRos() {
-  std::vector<Finding> findings;
+std::vector<Finding> CheckRos() {
   try {
-    findings = ExamineRos();
+    return ExamineRos();
   } catch (const ConfigError& error) {
-    findings = {{FindingLevel::kFailed, error.what()}};
+    return {{FindingLevel::kFailed, error.what()}};
   }
-  for (const Finding& finding : findings) std::cout << hires::cli::FindingText(finding);
-  std::cout << std::flush;
-  return std::none_of(findings.begin(), findings.end(), [](const Finding& finding) {
-    return finding.level == FindingLevel::kFailed;
-  });
 }
 
 }  // namespace hires_ros

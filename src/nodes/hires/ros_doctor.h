@@ -59,7 +59,7 @@ Finding JudgeSpace(const std::string& folder, std::uint64_t available);
 /// @throws hires::base::ConfigError if /proc cannot be read as Linux writes it.
 std::vector<Finding> ExamineRos();
 
-/// Prints what ExamineRos() finds; false if something failed.
-bool CheckRos();
+/// What ExamineRos() finds, or why it could not look.
+std::vector<Finding> CheckRos();
 
 }  // namespace hires_ros

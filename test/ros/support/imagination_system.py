@@ -44,9 +44,9 @@ class Answer:
         self.report = report  # None if there was none
 
     def content(self):
-        """The report without what the clock had a hand in."""
+        """The report without how it was asked for and what the clock had a hand in."""
         return {key: value for key, value in self.report.items()
-                if key not in ('wall_seconds', 'real_time_factor', 'rollouts_kept')}
+                if key not in ('report', 'wall_seconds', 'real_time_factor', 'rollouts_kept')}
 
     def rollouts(self):
         return [prediction['rollouts'] for prediction in self.report['ranking']]
