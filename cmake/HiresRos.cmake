@@ -16,13 +16,10 @@ endif()
 add_action_files(DIRECTORY action FILES ${HIRES_ACTION})
 generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs sensor_msgs std_msgs)
 
-# What packages of actions are built with; the libraries in the order in which they need each other.
-set(HIRES_EXPORTED_LIBRARIES hires_skills hires_manipulation hires_perception hires_navigation hires_world
-  hires_robot hires_actions hires_geometry hires_base)
 catkin_package(
   INCLUDE_DIRS include
-  LIBRARIES ${HIRES_EXPORTED_LIBRARIES}
-  CFG_EXTRAS FindClassLoader.cmake HiresActionLibrary.cmake
+  LIBRARIES hires_core
+  CFG_EXTRAS HiresCore.cmake FindClassLoader.cmake HiresActionLibrary.cmake
   CATKIN_DEPENDS actionlib actionlib_msgs geometry_msgs message_runtime roscpp sensor_msgs std_msgs)
 
 # Code that sees ROS converts and waits; what is to be fast lies below. -O1 builds it a quarter faster.
@@ -99,8 +96,10 @@ endfunction()
 
 install(DIRECTORY launch config worlds urdf
   DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION} USE_SOURCE_PERMISSIONS)
-install(DIRECTORY include/hires DESTINATION ${CATKIN_GLOBAL_INCLUDE_DESTINATION})
 catkin_install_python(PROGRAMS examples/ask_before_driving.py DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-# What programs of the package start themselves.
+# What programs of the package start themselves, and the env-loader of launch files.
 install(DIRECTORY scripts/report DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/scripts
   PATTERN __pycache__ EXCLUDE)
+install(PROGRAMS scripts/on_host DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/scripts)
+# A PR2 that is none, to try pr2.launch with.
+install(FILES test/pr2/fake_pr2.launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/launch)

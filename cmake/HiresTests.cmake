@@ -1,6 +1,67 @@
-# One test program per layer (target <layer>_test), one ctest entry per test file (<layer>.<name>):
+# One test program per layer, one ctest entry per test file (<layer>.<name>):
 # the entry runs the suites that stand in the file. A layer is linked once, and `ctest -R`, time-outs
-# and reports are still per file.
+# and reports are still per file. The target is hires_<layer>_test, the program <layer>_test.
+
+# hires_test_folder(<folder>): what it builds is for tests alone. In a catkin workspace that is built by the
+# target `tests`, as the tests of other packages are, and not by who builds the workspace.
+function(hires_test_folder folder)
+  if(NOT EXISTS ${PROJECT_SOURCE_DIR}/${folder}/CMakeLists.txt)
+    return()
+  endif()
+  if(NOT HIRES_ROS)
+    add_subdirectory(${folder})
+    return()
+  endif()
+  add_subdirectory(${folder} EXCLUDE_FROM_ALL)
+  hires_targets_below(${PROJECT_SOURCE_DIR}/${folder} targets)
+  if(HIRES_TESTS AND targets)
+    add_dependencies(tests ${targets})
+  endif()
+endfunction()
+
+# hires_targets_below(<folder> <variable>): programs and libraries of a folder and of those below it.
+function(hires_targets_below folder variable)
+  get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
+  get_property(folders DIRECTORY ${folder} PROPERTY SUBDIRECTORIES)
+  foreach(below IN LISTS folders)
+    hires_targets_below(${below} more)
+    list(APPEND targets ${more})
+  endforeach()
+  set(${variable} ${targets} PARENT_SCOPE)
+endfunction()
+
+# hires_short_name(<target> <name>): people may say less where no other package is built beside this one;
+# in a workspace, targets of all packages share their names.
+function(hires_short_name target name)
+  if(CMAKE_SOURCE_DIR STREQUAL PROJECT_SOURCE_DIR)
+    add_custom_target(${name} DEPENDS ${target})
+  endif()
+endfunction()
+
+# hires_run_tests(): the target run_tests of catkin runs these, too, by ctest, which knows which may run side
+# by side and when to give up. As with the tests of other packages, catkin_test_results tells the verdict.
+function(hires_run_tests)
+  if(NOT HIRES_ROS)
+    return()
+  endif()
+  include(ProcessorCount)
+  ProcessorCount(processors)
+  math(EXPR halves "2 * ${processors}")
+  set(results ${CATKIN_TEST_RESULTS_DIR}/${PROJECT_NAME}/ctest.xml)
+  # A target whose name begins with _ runs when the old results are gone and the tests are built.
+  foreach(prefix "" "_")
+    add_custom_target(${prefix}run_tests_${PROJECT_NAME}
+      COMMAND ${PYTHON_EXECUTABLE} ${catkin_EXTRAS_DIR}/test/run_tests.py ${results}
+        --working-dir ${PROJECT_BINARY_DIR}
+        "${CMAKE_CTEST_COMMAND} --output-on-failure --parallel ${halves} --output-junit ${results}"
+      USES_TERMINAL VERBATIM)
+    add_dependencies(${prefix}run_tests_${PROJECT_NAME} tests)
+  endforeach()
+  add_custom_target(clean_test_results_${PROJECT_NAME} COMMAND ${PYTHON_EXECUTABLE}
+    ${catkin_EXTRAS_DIR}/test/remove_test_results.py ${CATKIN_TEST_RESULTS_DIR}/${PROJECT_NAME} VERBATIM)
+  add_dependencies(_run_tests_${PROJECT_NAME} clean_test_results_${PROJECT_NAME})
+  add_dependencies(run_tests _run_tests_${PROJECT_NAME})
+endfunction()
 
 # ctest counts half processors (scripts/common.sh, RunTests): a test takes two of them, or one if it
 # waits more than it computes.
@@ -13,7 +74,7 @@ function(hires_test layer name)
     return()
   endif()
   cmake_parse_arguments(TEST "BUSY" "TIMEOUT" "LINK" ${ARGN})
-  set(target ${layer}_test)
+  set(target hires_${layer}_test)
   if(NOT TARGET ${target})
     hires_test_program_of_layer(${layer})
   endif()
@@ -23,7 +84,7 @@ function(hires_test layer name)
       COMPILE_OPTIONS -O2 SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
   target_link_libraries(${target} PRIVATE ${TEST_LINK})
-  add_custom_target(${layer}_${name}_test DEPENDS ${target})
+  hires_short_name(${target} ${layer}_${name}_test)
   hires_test_suites(${target} ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp filter)
   add_test(NAME ${layer}.${name} COMMAND ${target} --gtest_filter=${filter})
   if(NOT TEST_TIMEOUT)
@@ -37,8 +98,10 @@ function(hires_test layer name)
 endfunction()
 
 function(hires_test_program_of_layer layer)
-  set(target ${layer}_test)
+  set(target hires_${layer}_test)
   add_executable(${target})
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME ${layer}_test)
+  hires_short_name(${target} ${layer}_test)
   # What is tested is as fast as ever; the tests' own code is built in half the time so.
   target_compile_options(${target} PRIVATE ${HIRES_WARNINGS} -O0)
   hires_compile_together(${target})
@@ -95,7 +158,7 @@ function(hires_check_test_programs)
   foreach(program IN LISTS programs)
     get_property(filters GLOBAL PROPERTY HIRES_FILTERS_${program})
     list(JOIN filters ":" filters)
-    string(REGEX REPLACE "_test$" ".all_listed" name ${program})
+    string(REGEX REPLACE "^hires_(.*)_test$" "\\1.all_listed" name ${program})
     add_test(NAME ${name} COMMAND ${program} --gtest_filter=*-${filters})
     set_tests_properties(${name} PROPERTIES TIMEOUT 120
       PASS_REGULAR_EXPRESSION "Running 0 tests from 0 test suites")

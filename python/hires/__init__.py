@@ -1,5 +1,7 @@
 """Ask HIRES from Python; messages, services and actions are in hires.msg and hires.srv.
 
+Running nodes, by the action `imagine`:
+
     import rospy
     from hires import Imagination
 
@@ -7,8 +9,17 @@
     answer = Imagination().ask('move_base_param', 'atBench', ['slow', 'fast'], robot_at='dock',
                                on_tray=['mug1'])
     print(answer.recommended or answer.why)
+
+In this process, without ROS: hires.core.
 """
 
-from hires.imagination import Alternative, Answer, Imagination, ImaginationError
+import importlib
 
 __all__ = ['Alternative', 'Answer', 'Imagination', 'ImaginationError']
+
+
+def __getattr__(name):
+    """What needs ROS is imported when it is asked for: hires.core does without."""
+    if name in __all__:
+        return getattr(importlib.import_module('hires.imagination'), name)
+    raise AttributeError("module 'hires' has no attribute %r" % name)

@@ -25,7 +25,7 @@ LAYERS = [
     ["control", "imagination"],
     ["evaluation"],
     ["loop"],
-    ["cli", "ros"],
+    ["cli", "python", "ros"],
     ["nodes"],
 ]
 RANK = {layer: rank for rank, line in enumerate(LAYERS) for layer in line}
@@ -456,6 +456,33 @@ def check_packages(root):
                "<depend> or drop it here")
 
 
+LOOKS_FOR = re.compile(r"^\s*(?:find_package\(([\w-]+)|pkg_check_modules\([^)]*?([\w-]+)\))", re.MULTILINE)
+OF_ROS_AND_THE_COMPILER = {"catkin", "hires", "Threads"}
+
+
+def check_libraries(root):
+    """What CMake looks for is in the list of packages, and nothing else is said to be looked for."""
+    told, wanted = {}, {}
+    for number, line in enumerate(read(root, "scripts/packages.txt").splitlines(), start=1):
+        told.update({name: number for name in re.findall(r"<([\w-]+)>", line.partition("#")[2])
+                     if line.partition("#")[0].strip()})
+    cmake_files = ["CMakeLists.txt"] if os.path.exists(os.path.join(root, "CMakeLists.txt")) else []
+    for folder in ("cmake", "src", "test", "benchmark"):
+        cmake_files += [path for path in files_below(root, folder)
+                        if path.endswith(("CMakeLists.txt", ".cmake"))]
+    for path in cmake_files:
+        for match in LOOKS_FOR.finditer(read(root, path)):
+            name = match.group(1) or match.group(2)
+            if name not in OF_ROS_AND_THE_COMPILER:
+                wanted.setdefault(name, path)
+    for name in sorted(wanted.keys() - told.keys()):
+        yield (f"{wanted[name]}: looks for {name}, which no package of scripts/packages.txt is said to bring; "
+               f"write <{name}> behind the one that does")
+    for name in sorted(told.keys() - wanted.keys()):
+        yield (f"scripts/packages.txt:{told[name]}: <{name}> is what no CMakeLists.txt looks for; take it out, "
+               "and the package if nothing else needs it")
+
+
 def check_catkin_components(root):
     """What CMake asks catkin for must stand in package.xml."""
     path = "cmake/HiresRos.cmake"
@@ -661,7 +688,8 @@ def check_instructions(root):
 
 CHECKS = [check_includes, check_private_headers, check_public_headers, check_hidden_headers,
           check_light_headers, check_dependencies, check_units_with_ros, check_nodes_apart, check_rooms,
-          check_functions, check_headers, check_whitespace, check_packages, check_catkin_components,
+          check_functions, check_headers, check_whitespace, check_packages, check_libraries,
+          check_catkin_components,
           check_version, check_scripts, check_failure_codes, check_failure_texts, check_python_texts,
           check_failure_tables, check_rostests, check_test_namespaces, check_instructions]
 

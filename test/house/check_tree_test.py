@@ -282,6 +282,15 @@ class CheckTreeTest(unittest.TestCase):
         self.expect_one({"scripts/packages.txt": good + "a-dev b-dev  # both\n"}, ":3", "a line")
         self.expect_one({"scripts/packages.txt": good + "libode-dev  # again\n"}, ":3", "line 2")
 
+    def test_libraries_that_are_looked_for_and_not_listed_are_found(self):
+        good = GOOD_TREE["scripts/packages.txt"]
+        for text, name in (("find_package(fcl REQUIRED)\n", "fcl"),
+                           ("  pkg_check_modules(ODE REQUIRED IMPORTED_TARGET GLOBAL ode)\n", "ode")):
+            self.expect_one({"CMakeLists.txt": text}, "CMakeLists.txt", f"<{name}>")
+            listed = {"CMakeLists.txt": text, "scripts/packages.txt": f"{good}lib-dev  # a <{name}>\n"}
+            self.assertEqual(self.complaints(listed), [])
+        self.expect_one({"scripts/packages.txt": good + "lib-dev  # a <fcl>\n"}, ":3", "<fcl>")
+
     def test_a_catkin_component_that_package_xml_lacks_is_found(self):
         self.expect_one(
             {"cmake/HiresRos.cmake": "find_package(catkin REQUIRED COMPONENTS roscpp tf2)\n"},

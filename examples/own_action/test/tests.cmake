@@ -1,8 +1,8 @@
 # What the build of hires tests of this example.
-add_executable(own_action_test test/turn_towards_test.cpp src/turn_towards.cpp)
-target_include_directories(own_action_test PRIVATE src)
-target_link_libraries(own_action_test PRIVATE hires_skills GTest::gmock_main)
-add_test(NAME examples.own_action COMMAND own_action_test)
+add_executable(hires_own_action_test test/turn_towards_test.cpp src/turn_towards.cpp)
+target_include_directories(hires_own_action_test PRIVATE src)
+target_link_libraries(hires_own_action_test PRIVATE hires_skills GTest::gmock_main)
+add_test(NAME examples.own_action COMMAND hires_own_action_test)
 
 if(HIRES_ROS)
   set(hires $<TARGET_FILE:hires_hires_node>)
@@ -17,11 +17,11 @@ set_tests_properties(examples.own_action_planned PROPERTIES TIMEOUT 60
 
 # Without any master: slow and fast are played and ranked.
 set(imagine imagine --local --quiet --seed 7 --rollouts 16
-  --config ${CMAKE_SOURCE_DIR}/config/imagination_client.yaml
+  --config ${PROJECT_SOURCE_DIR}/../../config/imagination_client.yaml
   --action turn_towards --arg sittingAreaWestTable1 --arg slow,fast
   --from preManipulationAreaEastCounter1 --object peppermill1 --actions)
 if(NOT HIRES_ROS)
-  add_test(NAME examples.own_action_imagined COMMAND ${hires} ${imagine} $<TARGET_FILE:own_action>)
+  add_test(NAME examples.own_action_imagined COMMAND ${hires} ${imagine} $<TARGET_FILE:hires_own_action>)
 else()
   # Built as a user builds it, by a CMake that knows of hires only what catkin exports.
   add_test(NAME examples.own_action_imagined COMMAND ${CMAKE_CTEST_COMMAND}
@@ -35,5 +35,5 @@ set_tests_properties(examples.own_action_imagined PROPERTIES TIMEOUT 300
   PASS_REGULAR_EXPRESSION "ranked: turn_towards.sittingareawesttable1")
 
 if(HIRES_ROS)  # the whole of it, executed by a simulated robot
-  hires_rostest(../../test/ros/own_action.test TIMEOUT 300 ARGS actions:=$<TARGET_FILE:own_action>)
+  hires_rostest(../../test/ros/own_action.test TIMEOUT 300 ARGS actions:=$<TARGET_FILE:hires_own_action>)
 endif()
