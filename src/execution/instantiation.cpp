@@ -147,6 +147,10 @@ Plan Reordered(const Plan& plan, const std::vector<int>& order) {
       }
     }
   }
+  for (auto& [before, after] : result.subtask_order) {
+    before = place[before];
+    after = place[after];
+  }
   for (PlanNode& node : result.nodes) {
     if (node.step >= 0) node.step = place[node.step];
     if (node.at_step >= 0 && node.at_step < static_cast<int>(place.size())) {

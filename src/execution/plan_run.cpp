@@ -56,6 +56,10 @@ PlanRun::PlanRun(int number, Plan plan, planning::Problem problem, const plannin
 
 void PlanRun::Derive(const planning::Domain& domain, const planning::OperatorData& operators) {
   const std::set<std::string> changing = ChangingPredicates(domain);
+  plan_.subtask_order.clear();
+  if (operators.subtask_order == planning::SubtaskOrder::kKept) {
+    plan_.subtask_order = OrderOfSubtasks(domain, problem_, plan_);
+  }
   for (int i = 0; i < size(); ++i) {
     const PlanStep& planned = plan_.steps[static_cast<std::size_t>(i)];
     StepRun& step = at(i);

@@ -84,6 +84,12 @@ PlanStep Drive(const std::string& from, const std::string& to, const std::string
   return step;
 }
 
+TEST(OperatorDataTest, TheOrderOfSubtasksIsKeptUnlessTheSidecarSaysOtherwise) {
+  EXPECT_EQ(ReadSmall().subtask_order, SubtaskOrder::kKept);
+  EXPECT_EQ(ReadSmall("subtask_order: causal_links\n" + std::string(kSidecar)).subtask_order,
+            SubtaskOrder::kCausalLinks);
+}
+
 TEST(OperatorDataTest, EveryFieldIsRead) {
   const OperatorData data = ReadSmall();
   EXPECT_THAT(data.capacities,

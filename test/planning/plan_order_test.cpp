@@ -24,10 +24,17 @@ using ::testing::Pair;
 
 using Order = std::vector<std::pair<int, int>>;
 
+/// A domain in which the order of subtasks does not count.
+Domain FreeDomainOf(const std::string& items) {
+  Domain domain = DomainOf(items);
+  domain.subtask_order = SubtaskOrder::kCausalLinks;
+  return domain;
+}
+
 Order OrderOf(const std::string& items, const std::string& facts,
               const std::vector<std::string>& steps) {
   Plan plan = FlatPlan(steps);
-  AddReasons(DomainOf(items), FlatProblem(facts, steps), &plan);
+  AddReasons(FreeDomainOf(items), FlatProblem(facts, steps), &plan);
   return PartialOrder(plan);
 }
 
@@ -106,6 +113,65 @@ TEST(PartialOrderTest, BookkeepingIsLikeOtherSteps) {
               ElementsAre(Pair(0, 1)));
 }
 
+// -------------------------------------------------------------------------- the order of subtasks
+
+const std::string kSteps =
+    "(:operator (!a) () () ()) (:operator (!b) () () ()) (:operator (!c) () () ())"
+    "(:operator (!imagine ?what) () () ()) (:method (nothing) () ())";
+
+/// The order of the first plan for the tasks; nothing touches anything.
+Order SubtaskOrderOf(const std::string& methods, const std::string& tasks) {
+  const Domain domain = DomainOf(kSteps + methods);
+  const Problem problem = hires::test_support::ProblemOf("()", tasks);
+  Plan plan = hires::test_support::FirstPlan(domain, problem);
+  AddReasons(domain, problem, &plan);
+  return PartialOrder(plan);
+}
+
+TEST(SubtaskOrderTest, OrderedTasksOfTheProblemStayOrdered) {
+  EXPECT_THAT(SubtaskOrderOf("", "((!a) (!b) (!c))"), ElementsAre(Pair(0, 1), Pair(1, 2)));
+  EXPECT_THAT(SubtaskOrderOf("", "(:unordered (!a) (!b) (!c))"), IsEmpty());
+}
+
+TEST(SubtaskOrderTest, OrderedSubtasksStayOrderedHoweverDeep) {
+  const std::string methods = "(:method (both) () ((!a) (!b))) (:method (deep) () ((both)))";
+  EXPECT_THAT(SubtaskOrderOf(methods, "((deep) (!c))"), ElementsAre(Pair(0, 1), Pair(1, 2)));
+}
+
+TEST(SubtaskOrderTest, EveryStepOfATaskWaitsForEveryStepOfTheOneBefore) {
+  const std::string methods = "(:method (both) () (:unordered (!a) (!b)))";
+  EXPECT_THAT(SubtaskOrderOf(methods, "((both) (both))"),
+              ElementsAre(Pair(0, 2), Pair(0, 3), Pair(1, 2), Pair(1, 3)));
+  // Found as (!a) (!c) (!b).
+  EXPECT_THAT(SubtaskOrderOf("", "(:unordered (:ordered (!a) (!b)) (!c))"),
+              ElementsAre(Pair(0, 2)));
+}
+
+TEST(SubtaskOrderTest, ATaskWithoutStepsPassesTheOrderOn) {
+  EXPECT_THAT(SubtaskOrderOf("", "((!a) (nothing) (nothing) (!b))"), ElementsAre(Pair(0, 1)));
+}
+
+TEST(SubtaskOrderTest, ImaginationHoldsUpNothing) {
+  EXPECT_THAT(SubtaskOrderOf("", "((!a) (!imagine !b) (!b))"), ElementsAre(Pair(0, 2)));
+}
+
+TEST(SubtaskOrderTest, ADomainMayLeaveTheOrderToCausalLinks) {
+  EXPECT_THAT(OrderOf(kItems, "()", {"(!make a)", "(!make b)"}), IsEmpty());
+  Plan plan = FlatPlan({"(!make a)", "(!make b)"});
+  AddReasons(DomainOf(kItems), FlatProblem("()", {"(!make a)", "(!make b)"}), &plan);
+  EXPECT_THAT(PartialOrder(plan), ElementsAre(Pair(0, 1)));
+}
+
+TEST(SubtaskOrderTest, APlanThatDoesNotSayHowItCameAboutIsTakenInItsOrder) {
+  const std::vector<std::string> steps{"(!make a)", "(!make b)", "(!make c)"};
+  Plan plan = FlatPlan(steps);
+  plan.nodes.clear();
+  EXPECT_THAT(OrderOfSubtasks(DomainOf(kItems), FlatProblem("()", steps), plan),
+              ElementsAre(Pair(0, 1), Pair(1, 2)));
+  EXPECT_THAT(OrderOfSubtasks(DomainOf(kItems), FlatProblem("()", {"(!make a)"}), FlatPlan(steps)),
+              ElementsAre(Pair(0, 1), Pair(1, 2)));
+}
+
 TEST(LinearExtensionTest, ThereAreAsManyAsTheOrderLeaves) {
   const auto count = [](int num_steps, const Order& order) {
     int extensions = 0;
@@ -179,7 +245,7 @@ std::set<std::string> FinalFacts(const StepReplay& replay) {
 }
 
 TEST(PartialOrderPropertyTest, EveryLinearExtensionCanBeExecutedAndEndsInTheSameState) {
-  const Domain domain = DomainOf(kRandomItems);
+  const Domain domain = FreeDomainOf(kRandomItems);
   int num_extensions = 0;
   for (int seed = 0; seed < 300; ++seed) {
     base::Rng rng(seed);
@@ -220,7 +286,7 @@ std::set<std::pair<int, int>> Closure(const Order& order, int num_steps) {
 }
 
 TEST(PartialOrderPropertyTest, NoPairFollowsFromOthers) {
-  const Domain domain = DomainOf(kRandomItems);
+  const Domain domain = FreeDomainOf(kRandomItems);
   for (int seed = 0; seed < 50; ++seed) {
     base::Rng rng(seed);
     const std::vector<std::string> steps =

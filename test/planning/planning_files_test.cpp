@@ -64,6 +64,28 @@ TEST(LoadTest, BothLanguagesAreLoaded) {
   EXPECT_THAT(LoadProblems(folder.Write("p.hddl", kHddlProblem), hddl), SizeIs(1));
 }
 
+TEST(LoadTest, TheSidecarBesideADomainSaysWhetherTheOrderOfSubtasksIsKept) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string shop2 = folder.Write("d.lisp", kShop2Domain);
+  EXPECT_EQ(LoadDomain(shop2).subtask_order, SubtaskOrder::kKept);
+  folder.Write("d.yaml", "subtask_order: causal_links\noperators: {}\n");
+  EXPECT_EQ(LoadDomain(shop2).subtask_order, SubtaskOrder::kCausalLinks);
+  folder.Write("d.yaml", "subtask_order: kept\n");
+  EXPECT_EQ(LoadDomain(shop2).subtask_order, SubtaskOrder::kKept);
+  folder.Write("d.yaml", "subtask_order: any\n");
+  EXPECT_THAT(ErrorOf([&] { LoadDomain(shop2); }),
+              AllOf(HasSubstr("d.yaml"), HasSubstr("causal_links")));
+}
+
+TEST(LoadTest, TheOrderOfHddlIsAlwaysKept) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string hddl = folder.Write("d.hddl", kHddlDomain);
+  EXPECT_EQ(LoadDomain(hddl).subtask_order, SubtaskOrder::kKept);
+  folder.Write("d.yaml", "subtask_order: causal_links\n");
+  EXPECT_THAT(ErrorOf([&] { LoadDomain(hddl); }),
+              AllOf(HasSubstr("subtask_order"), HasSubstr(":ordered-subtasks are always kept")));
+}
+
 TEST(LoadTest, LanguagesAreNotMixed) {
   const hires::test_support::TemporaryFolder folder;
   const Domain domain = LoadDomain(folder.Write("d.lisp", kShop2Domain));

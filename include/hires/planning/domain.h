@@ -122,6 +122,12 @@ struct Axiom {
 
 struct HddlVocabulary;
 
+/// What orders the steps of a plan beside their causal links.
+enum class SubtaskOrder {
+  kKept,         ///< the order that methods and problem give to their tasks
+  kCausalLinks,  ///< nothing: steps that do not touch each other may run side by side
+};
+
 /// What can be done, as a file describes it. Constant once read.
 struct Domain {
   enum class Language { kShop2, kHddl };
@@ -129,6 +135,8 @@ struct Domain {
   std::string name;
   std::string source;  ///< file, for messages
   Language language{Language::kShop2};
+  /// Always kept in HDDL; in SHOP2 as the sidecar beside the file says (LoadDomain).
+  SubtaskOrder subtask_order{SubtaskOrder::kKept};
   std::vector<Operator> operators;
   std::vector<Method> methods;  ///< in the order in which they are tried
   std::vector<Axiom> axioms;

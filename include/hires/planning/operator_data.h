@@ -74,6 +74,7 @@ struct OperatorData {
   std::map<std::string, int> capacities;           ///< units of each resource that there are
   std::map<std::string, OperatorEntry> operators;  ///< by name, without `!`
   std::vector<Leg> legs;
+  SubtaskOrder subtask_order{SubtaskOrder::kKept};  ///< of the plans that are carried out
 };
 
 /// Reads the sidecar and holds it against the domain: every operator of the domain has its entry
@@ -84,6 +85,10 @@ OperatorData LoadOperatorData(const std::string& path, const Domain& domain);
 /// The same from text; `source` stands for the file in messages.
 OperatorData ReadOperatorData(const std::string& yaml, const std::string& source,
                               const Domain& domain);
+
+/// What the sidecar says of the order of subtasks, and nothing else of it: kept, where it says
+/// nothing.  @throws ConfigError naming file and key; also where HDDL's order is not to be kept.
+SubtaskOrder LoadSubtaskOrder(const std::string& path, Domain::Language language);
 
 /// The entry of an operator, named with its `!` or without.
 /// @throws ConfigError with the nearest names if there is none.

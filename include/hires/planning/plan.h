@@ -59,6 +59,10 @@ struct Plan {
   std::vector<PlanStep> steps;
   std::vector<PlanNode> nodes;
   double cost{0.0};
+  /// Steps (before, after) that methods and problem order, where the domain keeps that
+  /// (Domain::subtask_order); what follows from others may be left out. Filled in by AddReasons,
+  /// used by PartialOrder.
+  std::vector<std::pair<int, int>> subtask_order;
 };
 
 /// Names of the tasks above a step, the root's first: "serve_coffee/move_object/put_object". Empty

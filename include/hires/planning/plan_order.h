@@ -18,9 +18,9 @@ namespace hires::planning {
 /// - one adds or deletes an atom that a link or the reads (PlanStep::reads) of the other mention:
 ///   whatever would break a link stays on its side of it,
 /// - one adds and the other deletes the same atom,
-/// - one protects an atom and the other ends a protection of it.
-/// Steps of bookkeeping (`!!`) are steps like others. The order that the methods gave to their
-/// subtasks counts for nothing here.
+/// - one protects an atom and the other ends a protection of it,
+/// - methods or problem order the tasks that they are part of (Plan::subtask_order).
+/// Steps of bookkeeping (`!!`) are steps like others.
 /// @pre AddReasons has seen the plan.
 std::vector<std::pair<int, int>> PartialOrder(const Plan& plan);
 

@@ -13,7 +13,8 @@ namespace hires::planning {
 /// @throws base::ConfigError if it begins with anything else.
 Domain::Language LanguageOf(std::string_view text, const std::string& source);
 
-/// The domain in a file of either language.
+/// The domain in a file of either language. Whether the order of its subtasks is kept is taken from
+/// its sidecar, if there is one beside it: d.yaml for d.lisp.
 /// @throws base::ConfigError naming file, line, column and remedy.
 Domain LoadDomain(const std::string& path);
 

@@ -89,6 +89,10 @@ void AddReasons(const Domain& domain, const Problem& problem, Plan* plan,
     step.adds = std::move(taken.adds);
     step.reads = EachOnce(taken.reads);
   }
+  plan->subtask_order.clear();
+  if (domain.subtask_order == SubtaskOrder::kKept) {
+    plan->subtask_order = OrderOfSubtasks(domain, problem, *plan);
+  }
 }
 
 std::vector<Datum> FactsAfter(const Domain& domain, const Problem& problem, const Plan& plan,

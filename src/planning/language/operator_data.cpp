@@ -313,8 +313,22 @@ OperatorEntry ReadEntry(ParamReader in, const Operator& op, const Domain& domain
   return entry;
 }
 
+SubtaskOrder ReadSubtaskOrder(ParamReader* in, Domain::Language language) {
+  if (!in->Has("subtask_order")) return SubtaskOrder::kKept;
+  const std::string order = in->Get("subtask_order", base::OneOf({"kept", "causal_links"}));
+  if (order == "kept") return SubtaskOrder::kKept;
+  if (language == Domain::Language::kHddl) {
+    in->Fail(
+        "subtask_order",
+        "is causal_links, but HDDL's :ordered-subtasks are always kept; leave the key out, and "
+        "write :subtasks with the :ordering that is needed");
+  }
+  return SubtaskOrder::kCausalLinks;
+}
+
 OperatorData Read(ParamReader in, const Domain& domain) {
   OperatorData data;
+  data.subtask_order = ReadSubtaskOrder(&in, domain.language);
   data.capacities = ReadCapacities(in.Sub("capacities"));
   data.legs = ReadLegs(in.SubList("legs"));
   ParamReader operators = in.Sub("operators");
@@ -359,6 +373,11 @@ OperatorData LoadOperatorData(const std::string& path, const Domain& domain) {
 OperatorData ReadOperatorData(const std::string& yaml, const std::string& source,
                               const Domain& domain) {
   return Read(ParamReader::FromString(yaml, source), domain);
+}
+
+SubtaskOrder LoadSubtaskOrder(const std::string& path, Domain::Language language) {
+  ParamReader in = ParamReader::FromFile(path);
+  return ReadSubtaskOrder(&in, language);
 }
 
 const OperatorEntry& EntryOf(const OperatorData& data, std::string_view name) {

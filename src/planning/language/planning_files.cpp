@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
+#include "hires/planning/operator_data.h"
 #include "hires/planning/shop2_reader.h"
 #include "planning/language/hddl_reader.h"
 
@@ -32,7 +35,12 @@ Domain::Language LanguageOf(std::string_view text, const std::string& source) {
 Domain LoadDomain(const std::string& path) {
   const std::string text = base::ReadTextFile(path);
   const bool is_hddl = LanguageOf(text, path) == Domain::Language::kHddl;
-  return is_hddl ? ReadHddlDomain(text, path) : ReadShop2Domain(text, path);
+  Domain domain = is_hddl ? ReadHddlDomain(text, path) : ReadShop2Domain(text, path);
+  const auto sidecar = std::filesystem::path(path).replace_extension(".yaml");
+  if (std::filesystem::exists(sidecar)) {
+    domain.subtask_order = LoadSubtaskOrder(sidecar.string(), domain.language);
+  }
+  return domain;
 }
 
 std::vector<Problem> LoadProblems(const std::string& path, const Domain& domain) {

@@ -36,6 +36,7 @@ class OrderBuilder {
     }
     for (const auto& [text, changes] : by_atom_) KeepChanges(changes);
     KeepProtections();
+    for (const auto& [before, after] : plan_.subtask_order) Keep(before, after);
     return std::move(before_);
   }
 

@@ -93,10 +93,18 @@ std::string TaskOf(const std::string& problem) { return *ToShop2Tasks(Load(probl
 
 ScriptedWorld::ScriptedWorld(Options options)
     : options_(std::move(options)),
-      monitor_(&Restaurant(), options_.operators ? options_.operators : &RestaurantData(),
-               options_.monitor),
+      monitor_(options_.planning ? options_.planning : &Restaurant(),
+               options_.operators ? options_.operators : &RestaurantData(), options_.monitor),
       now_(options_.start) {
   for (const base::Atom& atom : options_.facts) world_[KeyOf(atom)] = atom;
+}
+
+const planning::Domain& ScriptedWorld::domain() const {
+  return (options_.planning ? options_.planning : &Restaurant())->domain;
+}
+
+const planning::OperatorData& ScriptedWorld::operators() const {
+  return options_.operators ? *options_.operators : RestaurantData();
 }
 
 void ScriptedWorld::Schedule(double time, Happening happening) {
@@ -241,7 +249,7 @@ void ScriptedWorld::Do(const StartPlanning& command) {
   answer.request = command.request;
   problem.tasks = planning::ReadTasks(command.tasks, "tasks");
   planning::PlanRequest request;
-  planning::PlanResult found = FindPlans(Restaurant().domain, problem, request);
+  planning::PlanResult found = FindPlans(domain(), problem, request);
   if (found.plans.empty()) {
     answer.outcome = PlanArrived::Outcome::kNoPlan;
     answer.why = "there is no plan: every way was tried";
@@ -249,7 +257,7 @@ void ScriptedWorld::Do(const StartPlanning& command) {
     answer.plan = std::move(found.plans.front());
     if (options_.plans != Options::PlanForm::kWhole) Flatten(&answer.plan);
     if (options_.plans != Options::PlanForm::kSteps) {
-      AddReasons(Restaurant().domain, problem, &answer.plan);
+      AddReasons(domain(), problem, &answer.plan);
     } else {
       answer.plan.nodes.clear();
     }
@@ -266,21 +274,21 @@ void ScriptedWorld::CheckStart(const StartStep& command) {
   planning::PlanStep step;
   step.task = TaskOf(command.action);
   const planning::Problem problem = ProblemOf(observed_);
-  planning::StepReplay replay(Restaurant().domain, problem, planning::Functions::Standard(), true);
+  planning::StepReplay replay(domain(), problem, planning::Functions::Standard(), true);
   const planning::ReplayedStep taken = replay.Take(step);
   for (const std::string& wrong : taken.wrong) Violate("cannot be begun: " + text + ": " + wrong);
-  std::map<std::string, int> used = ResourcesOf(RestaurantData(), step);
+  std::map<std::string, int> used = ResourcesOf(operators(), step);
   for (const auto& [activity, running] : running_) {
     planning::PlanStep other;
     other.task = TaskOf(running.action);
-    for (const auto& [resource, units] : ResourcesOf(RestaurantData(), other)) {
+    for (const auto& [resource, units] : ResourcesOf(operators(), other)) {
       used[resource] += units;
     }
     const bool is_torso = command.action.name == "move_torso";
     if (is_torso && running.action.name == "move_torso") Violate("the torso moves twice");
   }
   for (const auto& [resource, units] : used) {
-    if (units > RestaurantData().capacities.at(resource)) {
+    if (units > operators().capacities.at(resource)) {
       Violate("more than there is of " + resource + ": " + text);
     }
   }
@@ -314,7 +322,7 @@ void ScriptedWorld::ApplyEffects(const RunningStep& running) {
   planning::PlanStep step;
   step.task = TaskOf(running.action);
   const planning::Problem problem = ProblemOf(world_);
-  planning::StepReplay replay(Restaurant().domain, problem, planning::Functions::Standard(), true);
+  planning::StepReplay replay(domain(), problem, planning::Functions::Standard(), true);
   const planning::ReplayedStep taken = replay.Take(step);
   if (!taken.wrong.empty()) return;  // the world is another one by now: nothing comes of it
   for (const Datum& atom : taken.deletes) world_.erase(KeyOf(ToAtom(atom)));

@@ -37,10 +37,11 @@ class ScriptedWorld {
     execution::MonitorParams monitor;
     std::vector<base::Atom> facts;
     double start{1000.0};  ///< [s] main ROS time at which the run begins
-    const planning::OperatorData* operators{nullptr};  ///< null: the restaurant's
-    double planner_delay{0.05};                        ///< [s]
-    double imagine_delay{20.0};                        ///< [s]
-    double observation_delay{0.1};                     ///< [s]
+    const planning::PlanningKnowledge* planning{nullptr};  ///< null: the restaurant's
+    const planning::OperatorData* operators{nullptr};      ///< null: the restaurant's
+    double planner_delay{0.05};                            ///< [s]
+    double imagine_delay{20.0};                            ///< [s]
+    double observation_delay{0.1};                         ///< [s]
     double stop_delay{0.3};  ///< [s] until a step that is stopped has ended
     double horizon{7200.0};  ///< [s] after which a run counts as endless
     enum class PlanForm { kWhole, kSteps, kFlat };
@@ -103,6 +104,8 @@ class ScriptedWorld {
   };
   using Happening = std::function<void()>;
 
+  const planning::Domain& domain() const;
+  const planning::OperatorData& operators() const;
   void Schedule(double time, Happening happening);
   void Tell(const execution::Event& event);
   void Obey(const execution::Command& command);
