@@ -111,15 +111,17 @@ void SetStart(const ImagineOptions& o, ImagineQuery* query) {
   for (std::string& object : query->start.on_tray) object = NameOf(object, &query->setup);
 }
 
-ImagineQuery MakeQuery(const ImagineOptions& o, const Backends& backends) {
+std::string ConfigPath(const ImagineOptions& o) {
+  return o.config.empty() ? o.report.package_folder + "/config/imagination_client.yaml" : o.config;
+}
+
+ImagineQuery MakeQuery(const ImagineOptions& o) {
   if (!o.local && !o.action_libraries.empty()) {
     throw base::ConfigError(
         "--actions is for --local; running nodes load theirs by the parameter ~action_libraries "
         "(imagination.launch actions:=FILE)");
   }
-  const std::string config_path =
-      o.config.empty() ? backends.package_folder + "/config/imagination_client.yaml" : o.config;
-  const imagination::ClientConfig config = imagination::ReadClientConfig(config_path);
+  const imagination::ClientConfig config = imagination::ReadClientConfig(ConfigPath(o));
   ImagineQuery query;
   query.setup = imagination::ReadSetupConfig(o.scene.empty() ? config.scene : o.scene);
   imagination::OverridePaths(o.world, o.robot, o.objects, o.uncertainty, &query.setup);
@@ -194,7 +196,11 @@ ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query) 
   if (!options.local || !IsWanted(options.report)) return origin;
   const imagination::SetupConfig& files = query.setup;
   const bool has_uncertainty = files.uncertainty != "none";
-  origin.inputs = {{"world", files.map.empty() ? files.world : ""},
+  const std::string config = ConfigPath(options);
+  origin.inputs = {{"settings", config},
+                   {"scene", options.scene.empty() ? imagination::ReadClientConfig(config).scene
+                                                   : options.scene},
+                   {"world", files.map.empty() ? files.world : ""},
                    {"map", files.map},
                    {"robot", files.robot},
                    {"objects", files.objects},
@@ -209,7 +215,7 @@ ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query) 
 }
 
 int Imagine(const ImagineOptions& options, const Backends& backends) {
-  const ImagineQuery query = MakeQuery(options, backends);
+  const ImagineQuery query = MakeQuery(options);
   CheckReport(options.report);
   CheckSaveRollout(options.save, backends.make_rollout_bag);
   ProgressDisplay display;

@@ -103,7 +103,7 @@ TEST(CommandLineTest, ImaginesAndWritesWhatItFound) {
   EXPECT_EQ(head.at("local"), true);
   EXPECT_THAT(head.at("command"), AllOf(StartsWith("hires imagine --local --quiet --scene "),
                                         EndsWith(" --min-success 0.15")));
-  EXPECT_EQ(head.at("inputs").size(), 3u) << "world, robot, objects; no uncertainty";
+  EXPECT_EQ(head.at("inputs").size(), 5u) << "settings, scene, world, robot, objects";
   EXPECT_EQ(head.at("hashes").size(), 4u);
 }
 
