@@ -131,6 +131,32 @@ class PageTest(unittest.TestCase):
         content.update(ranking=[], outcome='no_worker', recommended=None)
         self.assertIn('No worker could be reached', page_of(content))
 
+    def test_answers_in_which_little_happened_have_a_page(self):
+        imagined, played, planned, done = (example(verb) for verb in ('imagine', 'experiment', 'plan', 'achieve'))
+        for alternative in imagined['ranking']:
+            alternative['duration']['values'] = []  # every action failed
+            alternative['max_tilt']['values'] = [0.0, 0.0]
+            alternative['median_rollout'] = None
+        played.update(rows=[], tables=[], expectations=[])
+        planned.update(plans=[], outcome='no_plan')
+        done.update(timeline=[], imaginations=[], truth=None, seed=None)
+        for content, said in ((imagined, 'Nothing is recommended' if imagined['recommended'] is None else
+                               'Recommended'), (played, 'the file expects nothing'),
+                              (planned, 'There is no plan'), (done, 'The task is done')):
+            self.assertIn(said, page_of(content))
+
+    def test_what_a_robot_lacks_comes_first_with_its_remedy(self):
+        content = example('doctor')
+        del content['physics']
+        content['ok'] = False
+        content['findings'] = [
+            {'level': 'note', 'code': 'slow', 'subject': 'topic /tf', 'text': 'is slow', 'remedy': 'wait'},
+            {'level': 'failed', 'code': 'topic_missing', 'subject': 'topic /scan', 'text': 'is not there',
+             'remedy': 'start it'}]
+        shown = [text for _, _, text in Page(page_of(content)).fields]
+        self.assertLess(shown.index('topic /scan'), shown.index('topic /tf'))
+        self.assertIn('start it', shown)
+
     def test_pictures_become_part_of_the_page(self):
         content = example('imagine')
         with tempfile.TemporaryDirectory() as folder:
