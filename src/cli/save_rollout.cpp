@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <optional>
+#include <utility>
 
 #include "hires/base/error.h"
 #include "hires/evaluation/report_json.h"
@@ -54,25 +56,51 @@ imagination::PickedRollout Pick(const RolloutChoice& choice, const imagination::
   }
 }
 
+/// A rollout of an answer, played again.
+struct Replayed {
+  imagination::PickedRollout picked;
+  RolloutRecording recording;
+};
+
+/// Nothing if it was cancelled.
+std::optional<Replayed> Replay(const std::string& which, const imagination::Report& report,
+                               const imagination::RolloutSetup& setup,
+                               const std::function<bool()>& cancelled,
+                               imagination::RolloutWatcher* watcher) {
+  const imagination::PickedRollout picked =
+      Pick(imagination::ParseRolloutChoice(which), report, setup);
+  const imagination::Prediction& prediction = report.ranking[picked.rank - 1];
+  auto recording =
+      imagination::RecordRollout(setup, prediction.action, picked.index, cancelled, watcher);
+  if (!recording) return std::nullopt;
+  RequireAmong(prediction.evidence, *recording);
+  return Replayed{picked, std::move(*recording)};
+}
+
+/// @param beside  may be null.
 void WritePictures(const SaveRolloutOptions& options, const imagination::RolloutSetup& setup,
-                   const RolloutRecording& recording, int threads) {
+                   const RolloutRecording& recording, const RolloutRecording* beside, int threads) {
   if (options.gif.empty() && options.strip.empty()) return;
   evaluation::FilmParams params;
   params.threads = threads;
   const evaluation::RolloutFilm film(setup, recording, params);
-  if (!options.gif.empty()) evaluation::WriteGif(film, options.gif);
+  if (beside != nullptr) {
+    evaluation::WriteGif(film, evaluation::RolloutFilm(setup, *beside, params), options.gif);
+  } else if (!options.gif.empty()) {
+    evaluation::WriteGif(film, options.gif);
+  }
   if (!options.strip.empty()) {
     evaluation::WriteStrip(film, options.strip_pictures, options.strip);
   }
 }
 
-void Print(const RolloutRecording& recording, int rank, const SaveRolloutOptions& options) {
+void Print(const Replayed& replayed) {
+  const RolloutRecording& recording = replayed.recording;
   std::cout << fmt::format("rollout {} of {} (alternative {}), seed {}:\n", recording.index,
-                           ToString(recording.action), rank, recording.seed);
+                           ToString(recording.action), replayed.picked.rank, recording.seed);
   for (const imagination::RolloutEvent& event : recording.events) {
     std::cout << fmt::format("{:8.2f} s  {}\n", event.time, event.text);
   }
-  for (const std::string& path : FilesOf(options)) std::cout << "saved to " << path << '\n';
 }
 
 }  // namespace
@@ -89,8 +117,12 @@ void AddSaveRolloutOptions(CLI::App* app, SaveRolloutOptions* o) {
          "with --save-rollout: to this bag, with the topics of a PR2 and markers, for `hires "
          "watch`, RViz, PlotJuggler, Foxglove")
       ->needs(which);
-  app->add_option("--gif", o->gif, "with --save-rollout: as moving picture from two sides")
-      ->needs(which);
+  CLI::Option* gif =
+      app->add_option("--gif", o->gif, "with --save-rollout: as moving picture from two sides")
+          ->needs(which);
+  app->add_option("--beside", o->beside,
+                  "with --gif: instead of the second side another rollout, named as the first")
+      ->needs(gif);
   CLI::Option* strip =
       app->add_option("--strip", o->strip, "with --save-rollout: as PNG of moments side by side")
           ->needs(which);
@@ -102,6 +134,7 @@ void AddSaveRolloutOptions(CLI::App* app, SaveRolloutOptions* o) {
 void CheckSaveRollout(const SaveRolloutOptions& options, const MakeRolloutBag& make_bag) {
   if (options.which.empty()) return;
   imagination::ParseRolloutChoice(options.which);
+  if (!options.beside.empty()) imagination::ParseRolloutChoice(options.beside);
   if (FilesOf(options).empty()) {
     throw base::ConfigError(
         "--save-rollout: nowhere to save it to; add --gif FILE, --strip FILE, --csv FILE or --bag "
@@ -118,19 +151,19 @@ void SaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
                  const std::function<bool()>& cancelled) {
   if (options.which.empty()) return;
   const imagination::RolloutSetup setup = SetupOf(query);
-  const imagination::PickedRollout picked =
-      Pick(imagination::ParseRolloutChoice(options.which), report, setup);
-  const imagination::Prediction& prediction = report.ranking[picked.rank - 1];
   const std::unique_ptr<imagination::RolloutSaver> bag =
       options.bag.empty() ? nullptr : make_bag(options.bag, setup);
-  const auto recording =
-      imagination::RecordRollout(setup, prediction.action, picked.index, cancelled, bag.get());
-  if (!recording) return;
-  RequireAmong(prediction.evidence, *recording);
-  if (!options.csv.empty()) evaluation::WriteText(imagination::ToCsv(*recording), options.csv);
-  if (bag) bag->Save(*recording);
-  WritePictures(options, setup, *recording, query.threads);
-  Print(*recording, picked.rank, options);
+  const auto replayed = Replay(options.which, report, setup, cancelled, bag.get());
+  std::optional<Replayed> beside;
+  if (!options.beside.empty()) beside = Replay(options.beside, report, setup, cancelled, nullptr);
+  if (!replayed || beside.has_value() == options.beside.empty()) return;
+  const RolloutRecording& recording = replayed->recording;
+  if (!options.csv.empty()) evaluation::WriteText(imagination::ToCsv(recording), options.csv);
+  if (bag) bag->Save(recording);
+  WritePictures(options, setup, recording, beside ? &beside->recording : nullptr, query.threads);
+  Print(*replayed);
+  if (beside) Print(*beside);
+  for (const std::string& path : FilesOf(options)) std::cout << "saved to " << path << '\n';
 }
 
 }  // namespace hires::cli

@@ -15,7 +15,7 @@ namespace hires::cli {
 
 /// One rollout of an answer, to be looked at.
 struct SaveRolloutOptions {
-  std::string which, csv, bag, gif, strip;
+  std::string which, csv, bag, gif, beside, strip;
   int strip_pictures{6};
 };
 void AddSaveRolloutOptions(CLI::App* app, SaveRolloutOptions* options);

@@ -226,6 +226,34 @@ TEST(RolloutFilmTest, AnyNumberOfThreadsWritesTheSameFile) {
   EXPECT_LT(MeanDifference(gif.frames[0], film.FrameAt(0)), 6.0);
 }
 
+TEST(RolloutFilmTest, TwoRolloutsPlayBesideEachOtherUntilTheLongerOneEnds) {
+  const TemporaryFolder folder;
+  const RolloutSetup setup = RoomRollouts(Room(), "mill");
+  const RolloutRecording recording = Record(setup);
+  RolloutRecording shorter = recording;
+  shorter.samples.resize(recording.samples.size() / 2);
+  const RolloutFilm left(setup, shorter, Small(2)), right(setup, recording, Small(2));
+  const std::string path = (folder.path() / "both.gif").string();
+  WriteGif(left, right, path);
+  const PlayedGif gif(Content(path));
+  ASSERT_GE(gif.frames.size(), 4u);
+  EXPECT_EQ(gif.frames[0].width, 2 * 120 + 4);
+  EXPECT_EQ(gif.frames[0].height, 90 + 3 * kTextHeight);
+  const auto half = [&](std::size_t frame, int from) {  // the view, without text
+    Picture part(120, 90);
+    for (int row = 0; row < 90; ++row) {
+      for (int column = 0; column < 120; ++column) {
+        part.At(column, row) = gif.frames[frame].At(from + column, row + kTextHeight);
+      }
+    }
+    return part;
+  };
+  const std::size_t last = gif.frames.size() - 1;
+  EXPECT_EQ(half(0, 0).pixels, half(0, 124).pixels);          // the same moment
+  EXPECT_EQ(half(last, 0).pixels, half(last - 1, 0).pixels);  // the shorter one is over
+  EXPECT_NE(half(last, 0).pixels, half(last, 124).pixels);
+}
+
 TEST(RolloutFilmTest, AStripHasItsPicturesSideBySide) {
   const TemporaryFolder folder;
   const RolloutSetup setup = RoomRollouts(Room(), "mill");

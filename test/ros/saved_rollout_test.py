@@ -122,6 +122,7 @@ class SavedRolloutTest(unittest.TestCase):
                                '/no/such/folder'),
                               (('--save-rollout', 'worst', '--gif', '/no/such/folder/x.gif'),
                                '/no/such/folder'),
+                              (('--save-rollout', 'worst', '--gif', 'x.gif', '--beside', 'x'), "'x'"),
                               (('--strip', self.strip), '--save-rollout')):
             done = run(*words)
             self.assertEqual(done.returncode, 1, done.stdout)

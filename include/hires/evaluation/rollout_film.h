@@ -34,6 +34,8 @@ class RolloutFilm {
   perception::Picture FrameAt(int sample) const;
   /// The first view alone, the time below. @pre as FrameAt
   perception::Picture CloseUpAt(int sample) const;
+  /// The first view alone with all that FrameAt says, the last line below. @pre as FrameAt
+  perception::Picture StoryAt(int sample) const;
 
   const FilmParams& params() const;
   const imagination::RolloutRecording& recording() const;
@@ -46,6 +48,10 @@ class RolloutFilm {
 /// The rollout in real time, the last frame for two seconds.
 /// @throws base::ConfigError if the file cannot be written, as below.
 void WriteGif(const RolloutFilm& film, const std::string& path);
+
+/// Two rollouts beside each other, each by its first view, in real time from the same begin; the
+/// shorter one stands still at its end.  @pre both have the same params.  @throws as above.
+void WriteGif(const RolloutFilm& left, const RolloutFilm& right, const std::string& path);
 
 /// Samples at which to look at a rollout that is to be told in `count` pictures: from begin to end
 /// or, where something falls, from half a second before it

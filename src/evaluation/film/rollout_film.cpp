@@ -37,6 +37,8 @@ constexpr double kEventShown = 1.5;   // [s]
 constexpr double kTraceStep = 0.08;   // [m]
 constexpr double kLastFrame = 2.0;    // [s]
 constexpr int kGap = 4;               // [pixels] between pictures
+constexpr int kMargin = 6;            // [pixels] left of text
+constexpr int kEventColumn = 290;     // [pixels] right of the longest numbers
 
 PaintedBody Plate(const geometry::Pose3& X_MB, const Eigen::Vector3d& size, const Colour& colour) {
   PaintedBody body;
@@ -126,7 +128,9 @@ struct RolloutFilm::Impl {
   }
   double TiltAt(int sample) const;
   const RolloutEvent* EventAt(int sample) const;
-  void WriteNumbers(int sample, Picture* frame) const;
+  std::string Title() const;
+  std::string NumbersAt(int sample) const;
+  void WriteEvent(int sample, int column, int row, Picture* frame) const;
 
   const FilmParams params;
   const RolloutRecording& recording;
@@ -187,20 +191,25 @@ const RolloutEvent* RolloutFilm::Impl::EventAt(int sample) const {
   return last;
 }
 
-void RolloutFilm::Impl::WriteNumbers(int sample, Picture* frame) const {
+std::string RolloutFilm::Impl::Title() const {
+  return fmt::format("{}   rollout {}", ToString(recording.action), recording.index);
+}
+
+std::string RolloutFilm::Impl::NumbersAt(int sample) const {
   const RolloutSample& now = recording.samples[sample];
-  const int row = frame->height - kTextHeight, width = frame->width;
-  std::string numbers =
+  const std::string numbers =
       fmt::format("{:5.2f} s   {:.2f} m/s", now.time, std::hypot(now.V_B.vx, now.V_B.vy));
-  if (load) numbers += fmt::format("   tilt {:.3f} rad", TiltAt(sample));
-  WriteLine(numbers, 6, row, width, kInk, frame);
+  return load ? numbers + fmt::format("   tilt {:.3f} rad", TiltAt(sample)) : numbers;
+}
+
+void RolloutFilm::Impl::WriteEvent(int sample, int column, int row, Picture* frame) const {
   const RolloutEvent* event = EventAt(sample);
   if (event == nullptr) return;
   const bool is_end = event->kind == RolloutEvent::Kind::kEnd;
   const bool is_well = is_end && !imagination::FailureOf(recording.result);
   const bool is_bad = (is_end && !is_well) || event->kind == RolloutEvent::Kind::kFalls ||
                       event->kind == RolloutEvent::Kind::kContact;
-  WriteLine(event->text, params.view_width + kGap + 6 - 60, row, width - 4,
+  WriteLine(event->text, column, row, frame->width - 4,
             is_bad    ? kAlarm
             : is_well ? kWell
                       : kInk,
@@ -228,13 +237,24 @@ Picture RolloutFilm::FrameAt(int sample) const {
   HIRES_CHECK(sample >= 0 && sample < num_samples(), "a sample of the recording");
   const int width = impl_->params.view_width, height = impl_->params.view_height;
   Picture frame(2 * width + kGap, height + 2 * kTextHeight, kPaper);
-  WriteLine(
-      fmt::format("{}   rollout {}", ToString(impl_->recording.action), impl_->recording.index), 6,
-      0, frame.width, kInk, &frame);
+  WriteLine(impl_->Title(), kMargin, 0, frame.width, kInk, &frame);
   Paste(impl_->Draw(impl_->close[sample], sample), 0, kTextHeight, &frame);
   Paste(impl_->Draw(impl_->overview, sample), width + kGap, kTextHeight, &frame);
-  impl_->WriteNumbers(sample, &frame);
+  const std::string numbers = impl_->NumbersAt(sample);
+  WriteLine(numbers, kMargin, height + kTextHeight, width, kInk, &frame);
+  impl_->WriteEvent(sample, kEventColumn, height + kTextHeight, &frame);
   return frame;
+}
+
+Picture RolloutFilm::StoryAt(int sample) const {
+  HIRES_CHECK(sample >= 0 && sample < num_samples(), "a sample of the recording");
+  const int width = impl_->params.view_width, height = impl_->params.view_height;
+  Picture picture(width, height + 3 * kTextHeight, kPaper);
+  WriteLine(impl_->Title(), kMargin, 0, width, kInk, &picture);
+  Paste(impl_->Draw(impl_->close[sample], sample), 0, kTextHeight, &picture);
+  WriteLine(impl_->NumbersAt(sample), kMargin, height + kTextHeight, width, kInk, &picture);
+  impl_->WriteEvent(sample, kMargin, height + 2 * kTextHeight, &picture);
+  return picture;
 }
 
 Picture RolloutFilm::CloseUpAt(int sample) const {
@@ -247,17 +267,37 @@ Picture RolloutFilm::CloseUpAt(int sample) const {
   return picture;
 }
 
-void WriteGif(const RolloutFilm& film, const std::string& path) {
-  const FilmParams& params = film.params();
-  const int step = (film.num_samples() + params.most_frames - 1) / params.most_frames;
-  std::vector<int> moments;
-  for (int i = 0; i < film.num_samples(); i += step) moments.push_back(i);
-  std::vector<Picture> frames(moments.size());
-  InParallel(static_cast<int>(frames.size()), params.threads,
-             [&](int k) { frames[k] = film.FrameAt(moments[k]); });
+namespace {
+
+/// `draw` gives the frame of a sample, up to `num_samples`.
+void WriteFrames(const RolloutFilm& film, int num_samples, const std::function<Picture(int)>& draw,
+                 const std::string& path) {
+  const int most = film.params().most_frames, step = (num_samples + most - 1) / most;
+  std::vector<Picture> frames(static_cast<std::size_t>((num_samples + step - 1) / step));
+  InParallel(static_cast<int>(frames.size()), film.params().threads,
+             [&](int k) { frames[k] = draw(k * step); });
   const auto& samples = film.recording().samples;
   const double period = samples.size() < 2 ? 0.05 : samples[1].time - samples[0].time;
   WriteText(ToGif(frames, step * period, kLastFrame), path);
+}
+
+}  // namespace
+
+void WriteGif(const RolloutFilm& film, const std::string& path) {
+  WriteFrames(
+      film, film.num_samples(), [&](int sample) { return film.FrameAt(sample); }, path);
+}
+
+void WriteGif(const RolloutFilm& left, const RolloutFilm& right, const std::string& path) {
+  const auto draw = [&](int sample) {
+    const Picture one = left.StoryAt(std::min(sample, left.num_samples() - 1)),
+                  other = right.StoryAt(std::min(sample, right.num_samples() - 1));
+    Picture frame(one.width + kGap + other.width, one.height, kPaper);
+    Paste(one, 0, 0, &frame);
+    Paste(other, one.width + kGap, 0, &frame);
+    return frame;
+  };
+  WriteFrames(left, std::max(left.num_samples(), right.num_samples()), draw, path);
 }
 
 std::vector<int> MomentsOf(const RolloutRecording& recording, int count) {
