@@ -14,6 +14,10 @@ function(hires_action_library target)
     set_target_properties(hires_${target} PROPERTIES OUTPUT_NAME ${target})
     target_compile_options(hires_${target} PRIVATE ${HIRES_WARNINGS})
     target_link_libraries(hires_${target} PRIVATE hires_skills)
+    if(HIRES_ROS)  # apart from a library of the same name of another package
+      set_target_properties(hires_${target} PROPERTIES
+        LIBRARY_OUTPUT_DIRECTORY ${CATKIN_DEVEL_PREFIX}/${CATKIN_PACKAGE_BIN_DESTINATION})
+    endif()
     return()
   endif()
   hires_action_archives(archives)

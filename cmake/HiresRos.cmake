@@ -101,5 +101,8 @@ catkin_install_python(PROGRAMS examples/ask_before_driving.py DESTINATION ${CATK
 install(DIRECTORY scripts/report DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/scripts
   PATTERN __pycache__ EXCLUDE)
 install(PROGRAMS scripts/on_host DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/scripts)
-# A PR2 that is none, to try pr2.launch with.
-install(FILES test/pr2/fake_pr2.launch DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION}/launch)
+# A PR2 that is none, to try pr2.launch with; in one folder, from which they import each other.
+set(fake_pr2 ${CATKIN_PACKAGE_SHARE_DESTINATION}/test/pr2)
+install(FILES test/pr2/fake_pr2.launch test/ros/support/pr2_frames.py DESTINATION ${fake_pr2})
+install(PROGRAMS test/pr2/fake_pr2.py test/pr2/fake_move_base.py test/pr2/without_tray.py DESTINATION ${fake_pr2})
+install(DIRECTORY test/pr2/fake DESTINATION ${fake_pr2} FILES_MATCHING PATTERN "*.py")

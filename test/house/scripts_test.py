@@ -2,6 +2,7 @@
 """What the scripts say and refuse, as far as it can be seen without building or installing."""
 
 import os
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -17,7 +18,7 @@ def run(script, *arguments, **environment):
 
 class ScriptsTest(unittest.TestCase):
     def test_every_script_explains_itself(self):
-        for script in ("benchmark", "build", "demo", "format", "replay_episodes", "run", "setup",
+        for script in ("benchmark", "build", "demo", "format", "on_host", "replay_episodes", "run", "setup",
                        "test", "tidy"):
             with self.subTest(script):
                 answer = run(f"scripts/{script}", "--help")
@@ -102,6 +103,33 @@ class ScriptsTest(unittest.TestCase):
         answer = self.run_in_fake_build("bash", "-c", 'echo "$ROS_PACKAGE_PATH"',
                                         ROS_PACKAGE_PATH="/robot/src:/other")
         self.assertEqual(answer.stdout, "/build/src:/robot/src:/other\n")
+
+    def on_host(self, files, **environment):
+        """What an installed on_host runs with: files {path: text} lie beside it."""
+        with tempfile.TemporaryDirectory() as prefix:
+            scripts = os.path.join(prefix, "share", "hires", "scripts")
+            os.makedirs(scripts)
+            shutil.copy(os.path.join(ROOT, "scripts", "on_host"), scripts)
+            for path, text in files.items():
+                with open(os.path.join(prefix, path), "w", encoding="utf-8") as file:
+                    file.write("#!/bin/sh\n" + text)
+                os.chmod(file.name, 0o755)
+            return run(os.path.join(scripts, "on_host"), "sh", "-c", 'echo "$ENTERED|$ROS_IP"',
+                       **{"ROS_IP": "", "ROS_HOSTNAME": "", "HIRES_ENTER": "", **environment})
+
+    def test_on_host_enters_the_workspace_that_it_is_installed_in(self):
+        ssh = "10.0.0.1 2222 10.0.0.2 22"
+        files = {"env.sh": 'ENTERED=env exec "$@"\n'}
+        self.assertEqual(self.on_host(files, SSH_CONNECTION=ssh).stdout, "env|10.0.0.2\n")
+        self.assertEqual(self.on_host(files, SSH_CONNECTION="", ROS_IP="10.0.0.3").stdout, "env|10.0.0.3\n")
+        self.assertEqual(self.on_host({}, SSH_CONNECTION=ssh).stdout, "|10.0.0.2\n")
+        checkout = {**files, "share/hires/scripts/run": 'ENTERED=run exec "$@"\n'}
+        self.assertEqual(self.on_host(checkout, SSH_CONNECTION=ssh).stdout, "run|10.0.0.2\n")
+
+    def test_on_host_says_where_an_address_is_missing(self):
+        answer = self.on_host({}, SSH_CONNECTION="")
+        self.assertEqual(answer.returncode, 1)
+        self.assertIn("set ROS_IP", answer.stderr)
 
     def test_run_ends_as_the_command_ended(self):
         self.assertEqual(self.run_in_fake_build("bash", "-c", "exit 7").returncode, 7)

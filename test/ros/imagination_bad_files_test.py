@@ -50,7 +50,7 @@ class ImaginationBadFilesTest(unittest.TestCase):
 
     def test_workers_with_other_actions_are_named_with_their_libraries(self):
         system = self.system
-        library = os.path.join(os.path.dirname(executable('hires')), '..', 'libown_action.so')
+        library = os.path.join(os.path.dirname(executable('hires')), 'libown_action.so')
         other = system.file('libother_build.so')
         with open(library, 'rb') as file, open(other, 'wb') as copy:
             copy.write(file.read() + b'another build')
