@@ -162,6 +162,13 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
       "task", options->task,
       "'serve_coffee_to_guest guest1', or a SHOP2 task network; with --local it may be "
       "left out: the scenario's");
+  CLI::Option* list =
+      verb->add_flag("--list", options->is_list,
+                     "print the tasks of the domain with their parameters, and do none");
+  verb->add_option("--domain", options->domain,
+                   "with --list: SHOP2 or HDDL file; default: what the running execution monitor "
+                   "plans with, else the restaurant's")
+      ->needs(list);
   verb->add_option("--imagination", options->imagination,
                    "domain: as the domain says; thesis: the default also where all alternatives "
                    "fail; off; "

@@ -345,6 +345,16 @@ int RunAnyExperiment(const ExperimentOptions& options, const Backends& backends)
 }
 
 /// @return exit code.  @throws std::exception for bad input.
+/// `hires achieve --list`: the tasks of the domain that is, or would be, planned with.
+int ListTasks(const AchieveOptions& achieve, const Backends& backends) {
+  ListOptions list;
+  list.what = "tasks";
+  list.domain = achieve.domain;
+  const bool may_ask = list.domain.empty() && !achieve.is_local && backends.domain_of_monitor;
+  if (may_ask) list.domain = backends.domain_of_monitor();
+  return RunListVerb(list, backends.package_folder);
+}
+
 int RunVerb(const Verbs& verbs, const Backends& backends) {
   // It has nothing to finish, and ends as any program does.
   if (*verbs.doctor.verb) return RunDoctorVerb(verbs.doctor, backends);
@@ -353,6 +363,7 @@ int RunVerb(const Verbs& verbs, const Backends& backends) {
   if (*verbs.limits.verb) {
     return RunLimitsVerb(verbs.limits, backends.package_folder, IsInterrupted);
   }
+  if (*verbs.achieve.verb && verbs.achieve.is_list) return ListTasks(verbs.achieve, backends);
   if (*verbs.achieve.verb) {
     return RunAchieveVerb(verbs.achieve, backends.package_folder, backends.achieve_remotely,
                           IsInterrupted, backends.record_loop);

@@ -85,6 +85,7 @@ planning::PlanRequest RequestOf(const PlanOptions& options) {
   if (options.depth > 0) request.max_depth = options.depth;
   if (options.trace) request.max_trace = kTraceLength;
   request.strict = options.strict;
+  request.explain = true;
   return request;
 }
 
@@ -188,6 +189,9 @@ void PrintViolations(const Session& session, std::ostream* out) {
 void PrintWarnings(const Session& session) {
   for (const std::string& warning : session.result.warnings) {
     std::cerr << "warning, as nothing reached it: " << warning << '\n';
+  }
+  for (const std::string& warning : session.result.misspelt) {
+    std::cerr << "warning: " << warning << '\n';
   }
 }
 

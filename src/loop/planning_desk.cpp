@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "hires/base/error.h"
+#include "hires/planning/plan_report.h"
 #include "hires/planning/planner.h"
 #include "hires/planning/reasons.h"
 #include "hires/planning/request.h"
@@ -60,13 +61,14 @@ PlanArrived PlanningDesk::Search(const StartPlanning& command) const {
   try {
     const planning::Problem problem = ProblemOf(command, knowledge_.domain);
     planning::PlanRequest request;
+    request.explain = true;
     request.stop = [](const planning::Progress& progress) {
       return progress.expansions > kMaxExpansions ? planning::Stop::kTime
                                                   : planning::Stop::kContinue;
     };
     planning::PlanResult result = planning::FindPlans(knowledge_.domain, problem, request);
     answer.outcome = OutcomeOf(result.outcome);
-    answer.why = std::string(planning::ToString(result.outcome));
+    answer.why = planning::OutcomeSentence(result, request.which);
     if (answer.outcome != PlanArrived::Outcome::kFound) return answer;
     answer.plan = std::move(result.plans.front());
     planning::AddReasons(knowledge_.domain, problem, &answer.plan);

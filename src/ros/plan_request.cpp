@@ -6,6 +6,7 @@
 #include <new>
 
 #include "hires/base/error.h"
+#include "hires/base/log.h"
 #include "hires/base/resource_use.h"
 #include "hires/base/short_text.h"
 #include "hires/base/text.h"
@@ -177,6 +178,9 @@ hires::PlanResult Plan(const PlanRequest& request, const planning::Domain& domai
   const double begin = hires::base::ThreadCpuSeconds();
   planning::PlanResult found = planning::FindPlans(domain, request.problem, request.search);
   const double cpu_seconds = hires::base::ThreadCpuSeconds() - begin;
+  for (const std::string& warning : found.misspelt) {
+    hires::base::Log(hires::base::LogLevel::kWarn, warning);
+  }
   hires::PlanResult result = WithoutPlans(found, request.search.which);
   result.cpu_seconds = cpu_seconds;
   if (!AddPlans(domain, request, stop, &found, &result)) {
@@ -198,6 +202,7 @@ PlanRequest RequestOf(const hires::PlanGoal& goal, const planning::PlanningKnowl
   request.search.max_depth = config.max_depth;
   LimitOf("max_trace", goal.max_trace, kMaxTrace, "");
   request.search.max_trace = goal.max_trace;
+  request.search.explain = true;
   TimeLimitOf(goal, config);
   MemoryLimitOf(goal, config);
   request.problem = ProblemOf(goal, knowledge);

@@ -301,6 +301,25 @@ TEST_F(AchieveVerbTest, BadInputIsRefusedBeforeTheRobotSetsOut) {
   }
 }
 
+TEST_F(AchieveVerbTest, TheTasksOfADomainAreListedWithTheirParameters) {
+  const Ended ended = Run({"--list"});
+  EXPECT_EQ(ended.code, kExitAchieved) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("serve_coffee_to_guest     ?guest"));
+  const std::string domain = folder_.Write(
+      "d.lisp", "(defdomain d ((:operator (!wave) () () ()) (:method (greet ?who) () ((!wave)))))");
+  EXPECT_THAT(Run({"--list", "--domain", domain}).out, HasSubstr("greet  ?who"));
+  EXPECT_THAT(Run({"--list", "--domain", "/nowhere.lisp"}).err, HasSubstr("/nowhere.lisp"));
+  EXPECT_EQ(query_.task, "");
+}
+
+TEST_F(AchieveVerbTest, TheDomainOfTheRunningMonitorIsListed) {
+  Backends backends;
+  const std::string domain = folder_.Write(
+      "d.lisp", "(defdomain d ((:operator (!wave) () () ()) (:method (greet ?who) () ((!wave)))))");
+  backends.domain_of_monitor = [&] { return domain; };
+  EXPECT_THAT(RunHires({"achieve"}, {"--list"}, backends).out, HasSubstr("greet  ?who"));
+}
+
 TEST(AchieveWithoutRosTest, SaysWhatIsMissing) {
   const Ended ended = RunHires({"achieve", "serve"});
   EXPECT_EQ(ended.code, kExitBadInput);

@@ -12,6 +12,7 @@
 #include "hires/base/text.h"
 #include "hires/planning/operator_data.h"
 #include "hires/planning/plan_order.h"
+#include "hires/planning/plan_report.h"
 #include "hires/planning/planner.h"
 #include "hires/planning/planning_files.h"
 #include "hires/planning/reasons.h"
@@ -19,6 +20,7 @@
 #include "hires/planning/shop2_reader.h"
 #include "hires/planning/validator.h"
 #include "hires/world/world.h"
+#include "planning/check/known_names.h"
 
 // The domain in config/domains with its problems and its sidecar. The plans in test/data/planning
 // are Listings 6.1 and 6.2 of S. Rockel's dissertation, and others worked out by hand.
@@ -26,9 +28,11 @@
 namespace hires::planning::restaurant_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::ElementsAreArray;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
@@ -388,6 +392,50 @@ TEST(ClearTableTest, AClearTableNeedsNothing) {
 TEST(ClearTableTest, WhatCannotBePlacedLeavesNoPlan) {
   ExpectNoPlan(With(Load("clear_table"),
                     "(imagined_failure place_object mug1 rightarm1 placingareaeastrightcounter1)"));
+}
+
+// ------------------------------------------------------------------------------- why there is none
+
+std::string WhyNoPlan(const std::string& task) {
+  PlanRequest request;
+  request.explain = true;
+  const PlanResult result = FindPlans(Restaurant(), WithTask(Load("serve_coffee"), task), request);
+  EXPECT_EQ(result.outcome, PlanOutcome::kNoPlan) << task;
+  return OutcomeSentence(result, Which::kFirst);
+}
+
+TEST(WhyNoPlanTest, AnUnknownGuestAnAbsentObjectAndAnUnreachableAreaAreToldApart) {
+  EXPECT_THAT(WhyNoPlan("(serve_coffee_to_guest guest5)"),
+              AllOf(HasSubstr("neither a fact nor the domain knows 'guest5' (did you mean 'guest"),
+                    HasSubstr("as far as (serve_coffee_to_guest guest5): no binding satisfies "
+                              "goal 1 (at guest5 ?seat)"),
+                    HasSubstr("restaurant.lisp:")));
+  EXPECT_THAT(WhyNoPlan("(get_object unicorn)"),
+              AllOf(HasSubstr("knows 'unicorn';"), HasSubstr("(on unicorn ?area)")));
+  EXPECT_THAT(WhyNoPlan("(move_object mug1 placingareamoon)"),
+              AllOf(HasSubstr("knows 'placingareamoon'"),
+                    HasSubstr("(put_object mug1 placingareamoon): no binding satisfies goal 1 "
+                              "(place_in placingareamoon ?area ?rank)")));
+}
+
+TEST(WhyNoPlanTest, AStepThatImaginationExcludesIsNamedAsSuch) {
+  const Problem problem = With(WithTask(Load("serve_coffee"), "(drive_robot floor1)"),
+                               "(imagined_failure move_base floor1)");
+  PlanRequest request;
+  request.explain = true;
+  const std::string why = OutcomeSentence(FindPlans(Restaurant(), problem, request), Which::kFirst);
+  EXPECT_THAT(why, AllOf(HasSubstr("(!move_base floor1)"), HasSubstr("says imagined_failure")));
+}
+
+TEST(WhyNoPlanTest, NothingIsSaidUnlessItIsAskedFor) {
+  const PlanResult result =
+      FindPlans(Restaurant(), WithTask(Load("serve_coffee"), "(get_object unicorn)"));
+  EXPECT_THAT(result.deepest, IsEmpty());
+  EXPECT_THAT(result.unknown_names, IsEmpty());
+}
+
+TEST(RestaurantNamesTest, NoPredicateIsMisspelt) {
+  EXPECT_THAT(MisspeltPredicates(Restaurant(), Load("serve_coffee")), IsEmpty());
 }
 
 // ------------------------------------------------------------------------- steps at the same time

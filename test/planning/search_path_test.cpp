@@ -74,7 +74,7 @@ TEST_F(SearchPathTest, WasHereKnowsTheSameStateAndTasks) {
 }
 
 TEST_F(SearchPathTest, LeftRecursionIsTheSameTaskBelowItselfWithoutAStepBetween) {
-  Decompose(Network::kRoot, {bench_.Term("(t)")});
+  Decompose(Network::kRoot, {bench_.Term("(t)"), bench_.Term("(!a)")});  // two, as the method has
   const std::uint32_t above = path_.network().FirstReady();
   EXPECT_FALSE(path_.IsLeftRecursion(above, bench_.Term("(t)")));
   Decompose(above, {bench_.Term("(!a)"), bench_.Term("(t)")});

@@ -10,6 +10,7 @@
 #include "hires/planning/shop2_reader.h"
 #include "hires/planning/task_text.h"
 #include "hires/planning/validator.h"
+#include "planning/check/known_names.h"
 #include "planning/support/plan_text.h"
 #include "support/messages.h"
 
@@ -67,6 +68,51 @@ TEST(UnknownNamesTest, StrictlyTheyAreRefusedAnyway) {
 
 TEST(UnknownNamesTest, AProblemsOwnTasksHaveToExist) {
   EXPECT_THAT(ConfigErrorOf([] { PlanFor("((shout anna))"); }), HasSubstr("'shout' is unknown"));
+}
+
+// ------------------------------------------------------------------------- predicates, misspelt
+
+constexpr char kCups[] = R"((defdomain cups (
+(:operator (!take ?cup) ((emty ?hand)) ((empty ?hand)) ((holds ?hand ?cup)))
+(:operator (!drop ?cup) ((holds ?hand ?cup) (not (imagined_failure take))) () ((empty ?hand)))
+(:method (get ?cup) ((observe ?cup)) ((!take ?cup)))
+(:- (free ?hand) ((empty ?hand) (not (hold ?hand ?any)))))))";
+
+std::vector<std::string> MisspeltWith(const std::string& facts) {
+  return MisspeltPredicates(
+      ReadShop2Domain(kCups, "cups.lisp"),
+      ReadShop2Problems("(defproblem p cups " + facts + " ())", "p.lisp").front());
+}
+
+TEST(MisspeltPredicatesTest, WhatNothingCanEverGiveIsNamedWithItsPlaceAndWhatIsMeant) {
+  EXPECT_THAT(
+      MisspeltWith("((empty left))"),
+      ElementsAre(AllOf(HasSubstr("cups.lisp:2:"), HasSubstr("operator '!take'"),
+                        HasSubstr("(emty ...)"), HasSubstr("did you mean 'empty'?")),
+                  AllOf(HasSubstr("axiom 'free'"), HasSubstr("(hold ...)"), HasSubstr("'holds'"))));
+}
+
+TEST(MisspeltPredicatesTest, WhatTheStateOrAnEffectGivesIsSpeltAsItIsMeant) {
+  EXPECT_THAT(MisspeltWith("((emty left) (hold left mug))"), IsEmpty());
+}
+
+TEST(MisspeltPredicatesTest, AVariableThatIsAddedMayBeAnything) {
+  const Domain domain = ReadShop2Domain(
+      "(defdomain d ((:operator (!add ?facts) ((emty)) () ?facts)"
+      "(:operator (!fill) () () ((empty)))))",
+      "d.lisp");
+  EXPECT_THAT(MisspeltPredicates(domain, {}), IsEmpty());
+}
+
+TEST(MisspeltPredicatesTest, TheyAreWarnedAboutAndStrictlyRefused) {
+  const Domain domain = ReadShop2Domain(kCups, "cups.lisp");
+  const Problem problem =
+      ReadShop2Problems("(defproblem p cups ((empty left)) ())", "p.lisp").front();
+  EXPECT_THAT(FindPlans(domain, problem).misspelt,
+              ::testing::Contains(HasSubstr("did you mean 'empty'?")));
+  PlanRequest request;
+  request.strict = true;
+  EXPECT_THAT(ConfigErrorOf([&] { FindPlans(domain, problem, request); }), HasSubstr("(emty ...)"));
 }
 
 /// Of the folder of examples found in the world; numbers are its README's.

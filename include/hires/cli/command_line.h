@@ -58,6 +58,8 @@ struct Backends {
   ImagineRemotely imagine_remotely;
   ConnectBlackboard connect_blackboard;
   evaluation::AchieveRemotely achieve_remotely;
+  /// File of the domain that the running execution monitor was given; "": none runs, or none was.
+  std::function<std::string()> domain_of_monitor;
   evaluation::PlayHypothesis play_hypothesis;
   loop::RecordLoop record_loop;  ///< empty: this program writes no bags
   MakeRolloutBag make_rollout_bag;

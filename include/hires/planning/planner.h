@@ -43,7 +43,10 @@ struct PlanRequest {
   bool loop_check{true};     ///< give up paths that come back to a state and task network
   bool strict{false};  ///< an unknown task or function is an error even if it is never reached
   std::size_t max_trace{0};  ///< reasons kept, the latest ones; 0 keeps none
-  StopQuestion stop;         ///< asked at least every 256 expansions or 4096 inferences
+  /// Where there is no plan, the search is repeated to say which way led furthest and why it ended
+  /// (PlanResult::deepest); it takes about twice the time then.
+  bool explain{false};
+  StopQuestion stop;  ///< asked at least every 256 expansions or 4096 inferences
 };
 
 enum class PlanOutcome {
@@ -71,7 +74,14 @@ struct PlanResult {
   std::vector<Plan> plans;  ///< kBest: the cheapest alone
   Progress progress;        ///< at the end; bytes: the most that were ever held
   std::vector<TraceEntry> trace;
+  /// Ends of the ways that led furthest, of which there may be several equally far, at most five.
+  std::vector<TraceEntry> deepest;
+  /// Names in the tasks where these ended that neither a fact nor the domain knows: "'gest1' (did
+  /// you mean 'guest1'?)".
+  std::vector<std::string> unknown_names;
   std::vector<std::string> warnings;  ///< unknown tasks and functions, none of which was reached
+  std::vector<std::string>
+      misspelt;  ///< predicates asked for that nothing gives, with what is meant
 };
 
 /// Searches for plans with SHOP2's semantics: tasks are decomposed in the order in which their

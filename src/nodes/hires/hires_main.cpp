@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   backends.package_folder = ros::package::getPath("hires");
   backends.imagine_remotely = hires_ros::ImagineRemotely;
   backends.achieve_remotely = hires_ros::AchieveRemotely;
+  backends.domain_of_monitor = hires_ros::DomainOfMonitor;
   backends.connect_blackboard = hires_ros::ConnectBlackboard;
   backends.record_loop = [&](const std::string& path) {
     return hires_ros::MakeEpisodeWriter(path, backends.package_folder);

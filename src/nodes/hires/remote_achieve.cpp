@@ -171,4 +171,13 @@ evaluation::AchieveReport AchieveRemotely(const evaluation::AchieveQuery& query,
   return Conversation(rest, on_status, cancelled).Run();
 }
 
+std::string DomainOfMonitor() {
+  int no_arguments = 0;
+  ros::init(no_arguments, nullptr, "hires_achieve",
+            ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
+  std::string domain;
+  if (ros::master::check()) ros::param::get("execution_monitor/domain", domain);
+  return domain;
+}
+
 }  // namespace hires_ros

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include "hires/evaluation/achieve.h"
 
@@ -12,5 +13,9 @@ namespace hires_ros {
 hires::evaluation::AchieveReport AchieveRemotely(
     const hires::evaluation::AchieveQuery& query,
     const hires::evaluation::OnAchieveStatus& on_status, const std::function<bool()>& cancelled);
+
+/// The parameter ~domain of the running execution monitor; "" where there is no master, no monitor,
+/// or it was given none.
+std::string DomainOfMonitor();
 
 }  // namespace hires_ros

@@ -39,6 +39,23 @@ std::string StoppedText(const PlanResult& result, const char* why, const char* r
                      remedy);
 }
 
+/// Where the ways that led furthest ended, and what may be behind it.
+std::string WhyNone(const PlanResult& result) {
+  std::string text;
+  if (!result.unknown_names.empty()) {
+    text += fmt::format("; neither a fact nor the domain knows {}",
+                        base::Join(result.unknown_names, ", "));
+  }
+  std::string task;
+  for (const TraceEntry& end : result.deepest) {
+    const std::string at = end.task == task ? "," : fmt::format("; it got as far as {}:", end.task);
+    text += fmt::format("{} {}{}", at, end.reason,
+                        end.where.empty() ? "" : fmt::format(" ({})", end.where));
+    task = end.task;
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string OutcomeSentence(const PlanResult& result, Which which) {
@@ -46,7 +63,7 @@ std::string OutcomeSentence(const PlanResult& result, Which which) {
     case PlanOutcome::kFound:
       return FoundText(result, which);
     case PlanOutcome::kNoPlan:
-      return "there is no plan; every way was tried";
+      return "there is no plan; every way was tried" + WhyNone(result);
     case PlanOutcome::kLimitTime:
       return StoppedText(result, "stopped at the time limit", "; allow more time");
     case PlanOutcome::kLimitMemory:

@@ -3,6 +3,8 @@
 #include <utility>
 
 #include "hires/base/error.h"
+#include "hires/planning/datum_reader.h"
+#include "planning/check/known_names.h"
 #include "planning/proof/program.h"
 #include "planning/search/search.h"
 
@@ -60,17 +62,31 @@ PlanResult FindPlans(const Program& program, TermTable* terms, const PlanRequest
   return Search(program, terms, request).Run();
 }
 
+std::vector<Datum> TasksOf(const std::vector<TraceEntry>& entries) {
+  std::vector<Datum> tasks;
+  for (const TraceEntry& entry : entries) {
+    if (!entry.task.empty()) tasks.push_back(ReadData(entry.task, "task").at(0));
+  }
+  return tasks;
+}
+
 }  // namespace
 
 PlanResult FindPlans(const Domain& domain, const Problem& problem, const PlanRequest& request,
                      const Functions& functions) {
   TermTable terms;
   const Program program(domain, problem, functions, &terms);
-  if (request.strict && !program.warnings().empty()) {
-    throw base::ConfigError(program.warnings().front());
+  const std::vector<std::string> misspelt = MisspeltPredicates(domain, problem);
+  for (const auto* warnings : {&program.warnings(), &misspelt}) {
+    if (request.strict && !warnings->empty()) throw base::ConfigError(warnings->front());
   }
   PlanResult result = FindPlans(program, &terms, request);
+  if (request.explain && result.outcome == PlanOutcome::kNoPlan) {
+    result.deepest = Search(program, &terms, request, true, true).Run().deepest;
+    result.unknown_names = UnknownSymbols(TasksOf(result.deepest), domain, problem);
+  }
   result.warnings = program.warnings();
+  result.misspelt = misspelt;
   return result;
 }
 

@@ -10,12 +10,12 @@
 namespace hires::planning {
 
 Search::Search(const Program& program, TermTable* terms, const PlanRequest& request,
-               bool left_recursion)
+               bool left_recursion, bool keep_deepest)
     : program_(program),
       left_recursion_(left_recursion),
       path_(program, terms),
       limits_(request),
-      trace_(program, &path_, request.max_trace),
+      trace_(program, &path_, request.max_trace, keep_deepest),
       plans_(request, &path_),
       decomposer_(program, request.loop_check, &path_, &limits_, &trace_),
       applier_(program, request, &path_, &limits_, &plans_, &trace_),
@@ -33,6 +33,7 @@ PlanResult Search::Run() {
   result.progress.bytes = std::max(limits_.most_bytes(), result.progress.bytes);
   result.plans = plans_.Take();
   result.trace.assign(trace_.entries().begin(), trace_.entries().end());
+  result.deepest = trace_.deepest();
   return result;
 }
 

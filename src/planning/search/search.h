@@ -23,8 +23,9 @@ class Search {
   /// @param left_recursion  Whether a task may come up again below itself before a step was taken.
   ///   Without, a search ends that would never stop going down (get_to -> get_to, drive), but plans
   ///   may be missed (s -> s, b); gave_up_recursion() says whether there was such a task.
+  /// @param keep_deepest  Whether the ends of the paths that lead furthest are put into words.
   Search(const Program& program, TermTable* terms, const PlanRequest& request,
-         bool left_recursion = true);
+         bool left_recursion = true, bool keep_deepest = false);
   PlanResult Run();
   bool gave_up_recursion() const { return gave_up_recursion_; }
 

@@ -1,0 +1,181 @@
+#include "planning/check/known_names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "hires/base/error.h"
+#include "hires/base/spelling.h"
+#include "hires/planning/reference_prover.h"
+
+namespace hires::planning {
+namespace {
+
+void AddGiven(const std::vector<Effect>& effects, GivenPredicates* given) {
+  for (const Effect& effect : effects) {
+    if (effect.kind == Effect::Kind::kAtom) given->names.emplace(effect.term.Head());
+    if (effect.kind == Effect::Kind::kList) given->is_open = true;
+    AddGiven(effect.effects, given);
+  }
+}
+
+/// An atom that a condition asks for, and where.
+struct Asked {
+  std::string name;
+  std::string by;
+  Place place;
+};
+
+class Conditions {
+ public:
+  explicit Conditions(const Domain& domain) {
+    for (const Operator& op : domain.operators) {
+      const std::string by = fmt::format("operator '{}'", op.head.Head());
+      Collect(op.precondition.condition, by);
+      Collect(op.deletes, by);
+      Collect(op.adds, by);
+    }
+    for (const Method& method : domain.methods) {
+      for (const Branch& branch : method.branches) {
+        Collect(branch.precondition.condition, fmt::format("method '{}'", method.head.Head()));
+      }
+    }
+    for (const Axiom& axiom : domain.axioms) {
+      for (const Axiom::Branch& branch : axiom.branches) {
+        Collect(branch.condition, fmt::format("axiom '{}'", axiom.head.Head()));
+      }
+    }
+  }
+
+  const std::vector<Asked>& asked() const { return asked_; }
+
+ private:
+  void Collect(const Formula& formula, const std::string& by) {
+    if (formula.kind == Formula::Kind::kAtom && !formula.term.Head().empty()) {
+      asked_.push_back({std::string(formula.term.Head()), by, formula.place});
+    }
+    for (const Formula& part : formula.parts) Collect(part, by);
+  }
+
+  void Collect(const std::vector<Effect>& effects, const std::string& by) {
+    for (const Effect& effect : effects) {
+      Collect(effect.condition, by);
+      Collect(effect.effects, by);
+    }
+  }
+
+  std::vector<Asked> asked_;
+};
+
+/// Every symbol that facts and domain write.
+class Symbols {
+ public:
+  Symbols(const Domain& domain, const Problem& problem) {
+    for (const auto* facts : {&domain.facts, &problem.facts}) {
+      for (const Datum& fact : *facts) Collect(fact);
+    }
+    for (const Operator& op : domain.operators) {
+      Collect(op.head);
+      Collect(op.precondition.condition);
+      Collect(op.deletes);
+      Collect(op.adds);
+    }
+    for (const Method& method : domain.methods) {
+      Collect(method.head);
+      for (const Branch& branch : method.branches) {
+        Collect(branch.precondition.condition);
+        Collect(branch.subtasks);
+      }
+    }
+    for (const Axiom& axiom : domain.axioms) {
+      Collect(axiom.head);
+      for (const Axiom::Branch& branch : axiom.branches) Collect(branch.condition);
+    }
+  }
+
+  const std::set<std::string>& names() const { return names_; }
+
+ private:
+  void Collect(const Datum& datum) {
+    if (datum.kind == Datum::Kind::kSymbol) names_.insert(datum.text);
+    for (const Datum& item : datum.items) Collect(item);
+    for (const Datum& item : datum.tail) Collect(item);
+  }
+  void Collect(const Formula& formula) {
+    Collect(formula.term);
+    Collect(formula.expression);
+    for (const Formula& part : formula.parts) Collect(part);
+  }
+  void Collect(const std::vector<Effect>& effects) {
+    for (const Effect& effect : effects) {
+      Collect(effect.term);
+      Collect(effect.condition);
+      Collect(effect.effects);
+    }
+  }
+  void Collect(const TaskNetwork& network) {
+    for (const TaskItem& item : network.items) {
+      Collect(item.task);
+      for (const TaskNetwork& inner : item.network) Collect(inner);
+    }
+  }
+
+  std::set<std::string> names_;
+};
+
+void CollectSymbols(const Datum& datum, std::vector<std::string>* names) {
+  if (datum.kind == Datum::Kind::kSymbol && !datum.IsNil()) names->push_back(datum.text);
+  for (const Datum& item : datum.items) CollectSymbols(item, names);
+}
+
+}  // namespace
+
+std::vector<std::string> UnknownSymbols(const std::vector<Datum>& tasks, const Domain& domain,
+                                        const Problem& problem) {
+  const Symbols known(domain, problem);
+  std::vector<std::string> asked, unknown;
+  for (const Datum& task : tasks) CollectSymbols(task, &asked);
+  std::set<std::string> seen;
+  for (const std::string& name : asked) {
+    if (known.names().count(name) > 0 || !seen.insert(name).second) continue;
+    const auto meant =
+        std::find_if(known.names().begin(), known.names().end(),
+                     [&](const std::string& other) { return base::AreSpeltAlike(name, other); });
+    unknown.push_back(meant == known.names().end()
+                          ? fmt::format("'{}'", name)
+                          : fmt::format("'{}' (did you mean '{}'?)", name, *meant));
+  }
+  return unknown;
+}
+
+GivenPredicates PredicatesGiven(const Domain& domain, const Problem& problem) {
+  GivenPredicates given;
+  for (const auto* facts : {&domain.facts, &problem.facts}) {
+    for (const Datum& fact : *facts) given.names.emplace(fact.Head());
+  }
+  for (const Axiom& axiom : domain.axioms) given.names.emplace(axiom.head.Head());
+  for (const Operator& op : domain.operators) AddGiven(op.adds, &given);
+  return given;
+}
+
+std::vector<std::string> MisspeltPredicates(const Domain& domain, const Problem& problem) {
+  std::vector<std::string> warnings;
+  if (domain.language == Domain::Language::kHddl) return warnings;
+  const GivenPredicates given = PredicatesGiven(domain, problem);
+  if (given.is_open) return warnings;
+  std::set<std::string> seen = given.names;
+  const Conditions conditions(domain);
+  for (const Asked& asked : conditions.asked()) {
+    if (!seen.insert(asked.name).second) continue;
+    const auto meant = std::find_if(
+        given.names.begin(), given.names.end(),
+        [&](const std::string& name) { return base::AreSpeltAlike(asked.name, name); });
+    if (meant == given.names.end()) continue;
+    warnings.push_back(
+        fmt::format("{}{}: no fact, axiom or effect gives any ({} ...); did you mean '{}'?",
+                    At(domain.source, asked.place), asked.by, asked.name, *meant));
+  }
+  return warnings;
+}
+
+}  // namespace hires::planning

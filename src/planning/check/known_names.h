@@ -1,0 +1,31 @@
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "hires/planning/domain.h"
+
+namespace hires::planning {
+
+/// Names of all predicates that can hold at some time: by facts of domain and problem, heads of
+/// axioms, and effects. `is_open` where an effect adds what a variable stands for, which may be
+/// anything.
+struct GivenPredicates {
+  std::set<std::string> names;
+  bool is_open{false};
+};
+GivenPredicates PredicatesGiven(const Domain& domain, const Problem& problem);
+
+/// Those of the tasks' symbols that stand in no fact and nowhere in the domain, each once and with
+/// what is spelt alike: "'gest1' (did you mean 'guest1'?)".
+std::vector<std::string> UnknownSymbols(const std::vector<Datum>& tasks, const Domain& domain,
+                                        const Problem& problem);
+
+/// What conditions ask for though nothing can ever give it, where something that is spelt alike is
+/// given: "d.lisp:4:12: operator '!take': no fact, axiom or effect gives any (emty ...); did you
+/// mean 'empty'?". Each name once. A name like which there is nothing is left out: the state may
+/// bring it another time. HDDL declares its predicates, and its reader has compared them.
+std::vector<std::string> MisspeltPredicates(const Domain& domain, const Problem& problem);
+
+}  // namespace hires::planning
