@@ -214,6 +214,29 @@ ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query) 
   return origin;
 }
 
+/// The answer for machines; where a page is made of it, with pictures.
+nlohmann::ordered_json AnswerOf(const ImagineOptions& options, const ImagineQuery& query,
+                                const imagination::Report& report,
+                                const std::function<bool()>& cancelled) {
+  nlohmann::ordered_json answer = evaluation::ToJson(report, query.scheduler.criteria);
+  const std::string& html = options.report.html;
+  if (html.empty() || report.ranking.empty()) return answer;
+  const std::string& json = options.report.json;
+  const std::filesystem::path from = std::filesystem::absolute(json).parent_path();
+  try {
+    for (const Strip& strip : WriteStrips(html, query, report, cancelled)) {
+      const std::string file =
+          json.empty() ? strip.file : std::filesystem::proximate(strip.file, from).string();
+      answer["pictures"].push_back({{"caption", strip.caption}, {"file", file}});
+    }
+  } catch (const base::ConfigError& error) {
+    if (options.local) throw;
+    // The answer is theirs who have other files; the page can do without pictures.
+    std::cerr << "hires: no pictures on the page: " << error.what() << '\n';
+  }
+  return answer;
+}
+
 int Imagine(const ImagineOptions& options, const Backends& backends) {
   const ImagineQuery query = MakeQuery(options);
   CheckReport(options.report);
@@ -231,7 +254,7 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
   if (!options.quiet) display.Clear();
   PrintReport(report, query.scheduler.criteria.rule);
   WriteReport(options.report, OriginOf(options, query),
-              evaluation::ToJson(report, query.scheduler.criteria));
+              AnswerOf(options, query, report, cancelled));
   const int code = ExitCodeOf(report);
   if (report.ranking.empty()) return code;  // nothing was played that could be saved
   SaveRollout(options.save, query, report, backends.make_rollout_bag, cancelled);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 #include <utility>
@@ -19,6 +20,8 @@ namespace {
 
 using imagination::RolloutChoice;
 using imagination::RolloutRecording;
+
+constexpr int kStripPictures = 6;  // of pages; of --strip by default
 
 std::vector<std::string> FilesOf(const SaveRolloutOptions& options) {
   std::vector<std::string> files;
@@ -164,6 +167,30 @@ void SaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
   Print(*replayed);
   if (beside) Print(*beside);
   for (const std::string& path : FilesOf(options)) std::cout << "saved to " << path << '\n';
+}
+
+std::vector<Strip> WriteStrips(const std::string& html, const ImagineQuery& query,
+                               const imagination::Report& report,
+                               const std::function<bool()>& cancelled) {
+  const imagination::RolloutSetup setup = SetupOf(query);
+  const std::string stem = std::filesystem::path(html).replace_extension().string();
+  evaluation::FilmParams params;
+  params.threads = query.threads;
+  std::vector<Strip> strips;
+  for (const auto& [which, what] : {std::pair{"worst", "The worst of all"},
+                                    std::pair{"median", "The median of the first alternative"}}) {
+    const auto replayed = Replay(which, report, setup, cancelled, nullptr);
+    if (!replayed) return {};
+    const RolloutRecording& recording = replayed->recording;
+    if (recording.samples.empty()) continue;  // it could not begin
+    const std::string caption =
+        fmt::format("{}: rollout {} of {}{}{}", what, recording.index, ToString(recording.action),
+                    recording.events.empty() ? "" : "; last ",
+                    recording.events.empty() ? "" : recording.events.back().text);
+    strips.push_back({caption, fmt::format("{}_{}.png", stem, which)});
+    evaluation::WriteStrip({setup, recording, params}, kStripPictures, strips.back().file);
+  }
+  return strips;
 }
 
 }  // namespace hires::cli

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hires/cli/command_line.h"
 #include "hires/imagination/rollout_recording.h"
@@ -30,5 +31,18 @@ void CheckSaveRollout(const SaveRolloutOptions& options, const MakeRolloutBag& m
 void SaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
                  const imagination::Report& report, const MakeRolloutBag& make_bag,
                  const std::function<bool()>& cancelled);
+
+/// Pictures for a page.
+struct Strip {
+  std::string caption;
+  std::string file;  ///< PNG, beside the page
+};
+
+/// Draws the worst rollout of all and the median one of the first alternative beside the page:
+/// page.html gets page_worst.png and page_median.png. Nothing once it is cancelled.
+/// @pre something was played.  @throws base::ConfigError as SaveRollout.
+std::vector<Strip> WriteStrips(const std::string& html, const ImagineQuery& query,
+                               const imagination::Report& report,
+                               const std::function<bool()>& cancelled);
 
 }  // namespace hires::cli

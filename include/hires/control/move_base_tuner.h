@@ -52,7 +52,7 @@ class MoveBaseTuner {
   void Apply(std::uint64_t request, const std::string& set_name, const robot::MotionSet& set);
   void Restore();
 
-  /// The planner said what it has (topic <server>/parameter_updates). If that is not the set in
+  /// The planner said what it has (topic `<server>/parameter_updates`). If that is not the set in
   /// force, the planner is asked, for what it said may be old; where another program has changed
   /// limits, the phase becomes kFailed.
   void OnUpdate(const PlannerValues& values);

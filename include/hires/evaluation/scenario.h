@@ -17,7 +17,7 @@ struct ScenarioObject {
 };
 
 /// A demonstration: what is to be done, what the robot knows at first, and what is true at first.
-/// config/scenarios/<name>.yaml; the robot's simulator begins with it.
+/// `config/scenarios/<name>.yaml`; the robot's simulator begins with it.
 struct Scenario {
   std::string name;                         ///< of the file, without folder and ending
   std::string task;                         ///< as `hires achieve` takes it

@@ -25,8 +25,8 @@ class FluentView {
                           const std::function<bool(const Fluent&)>& visit) const = 0;
 };
 
-/// A query of the SPARQL subset that topic configurations use: `select [distinct] ?a ?b where
-/// {...}` with triple patterns joined by `.`, `;` and `,`, nested groups, `union`, `a`/`rdf:type`,
+/// A query of the SPARQL subset that topic configurations use: "select [distinct] ?a ?b where
+/// {...}" with triple patterns joined by ".", ";" and ",", nested groups, `union`, `a`, `rdf:type`,
 /// `rdfs:subClassOf` plain and with `+` or `*`, relations of the ontology, typed literals; prefixes
 /// upper, race, rdf, rdfs, owl, xsd and those declared by `prefix`. `rdf:type` gives the concept
 /// stated; `rdf:type/rdfs:subClassOf*` style reasoning is written out by the query.

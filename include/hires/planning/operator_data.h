@@ -58,7 +58,7 @@ struct OperatorEntry {
   std::vector<std::string> arguments;  ///< of its head, without `?`; "" for what is no variable
   Duration duration;
   /// Units of each resource held while the step runs. `<arm>` in a name stands for the value of the
-  /// argument ?arm: <arm>ManCapacity becomes leftarm1mancapacity.
+  /// argument ?arm: `<arm>ManCapacity` becomes leftarm1mancapacity.
   std::map<std::string, int> resources;
   /// Atoms that may not hold while the step runs, though they do before and after it: an arm that
   /// grasps is not at the side meanwhile. Variables of the head stand for the step's arguments,

@@ -25,13 +25,13 @@ struct ListeningSocket {
 std::vector<ListeningSocket> ParseListeningSockets(const std::string& text,
                                                    const std::string& where);
 
-/// The inode in "socket:[4711]", as links in /proc/<pid>/fd read; nothing for other files.
+/// The inode in "socket:[4711]", as links in `/proc/<pid>/fd` read; nothing for other files.
 std::optional<std::uint64_t> SocketInodeOf(const std::string& link);
 
 /// What can be seen of a process without asking it.
 struct ProcessTraits {
   std::vector<std::string> words;       ///< command line
-  std::string maps;                     ///< text of /proc/<pid>/maps
+  std::string maps;                     ///< text of `/proc/<pid>/maps`
   std::vector<std::string> open_files;  ///< paths
 };
 

@@ -48,7 +48,7 @@ struct Refusal {
 };
 
 /// Names under which a relay registers at a master what lives at the other:
-/// <prefix>/<tag>/<node>_<digits>. A master that hears a node's own name twice shuts that node
+/// `<prefix>/<tag>/<node>_<digits>`. A master that hears a node's own name twice shuts that node
 /// down, hence aliases. The digits stand for the address: a node that comes back elsewhere gets
 /// another alias, so an alias never changes its address, which would make the master send a
 /// shutdown to the process at the old one.

@@ -70,7 +70,7 @@ std::vector<std::string> LinksBelow(const RobotModel& model, const std::string& 
 
 /// Reads a URDF. Collision meshes (package:// by ROS_PACKAGE_PATH or a folder above the file,
 /// file://, or relative to the file) are loaded; a missing one is an error. Friction comes from
-/// <gazebo reference="link"> mu1 and mu2, the smaller of both; 1 where there is none.
+/// `<gazebo reference="link">` mu1 and mu2, the smaller of both; 1 where there is none.
 /// Masses must be positive and inertias positive definite; principal moments that break the
 /// triangle inequality, as invented ones of tiny frames do, are logged as one warning and kept.
 /// @throws base::ConfigError naming file, element, line and remedy.

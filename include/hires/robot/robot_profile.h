@@ -42,7 +42,7 @@ struct BaseControllerParams {
 };
 
 /// What cannot be read from a URDF: which link is what, how the base behaves, named motion sets and
-/// postures. One YAML per robot, config/robots/<name>.yaml.
+/// postures. One YAML per robot, `config/robots/<name>.yaml`.
 struct RobotProfile {
   std::string urdf;             ///< path, relative to the profile's folder
   std::string base_link;        ///< link whose pose in the plane the robot drives (base_footprint)

@@ -35,7 +35,7 @@ struct TranslatorContext {
 };
 
 /// The context of a world, a robot and a catalogue (world::LoadObjectCatalogue).
-/// @param models  added to the world's.
+/// @param catalogue  added to the world's.
 /// @param ontology  may be null.
 TranslatorContext MakeContext(
     world::World world, robot::Robot robot,
