@@ -15,7 +15,7 @@ In this process, without ROS: hires.core.
 
 import importlib
 
-__all__ = ['Alternative', 'Answer', 'Imagination', 'ImaginationError']
+__all__ = ['Alternative', 'Answer', 'Imagination', 'ImaginationError', 'SavedRollout']
 
 
 def __getattr__(name):

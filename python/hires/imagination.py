@@ -10,6 +10,7 @@ import rospy
 from actionlib_msgs.msg import GoalStatus
 from hires.failures import text_of
 from hires.msg import (ActionTemplate, Atom, ImagineAction, ImagineGoal, ImagineResult, StringList)
+from hires.srv import ImaginedRollout
 
 _ATOM = re.compile(r'\s*(\w+)\s*\(([^()]*)\)\s*')
 _OUTCOMES = {getattr(ImagineResult, name): name.lower()
@@ -47,6 +48,14 @@ class Answer:
     recommended: Optional[Alternative]   # None: imagination recommends nothing
     caveats: Tuple[str, ...]             # what speaks against trusting it
     seed: int
+
+
+@dataclass(frozen=True)
+class SavedRollout:
+    path: str                              # of the bag, on the computer of imagination_client
+    index: int                             # which rollout of its alternative
+    seed: int
+    events: Tuple[Tuple[float, str], ...]  # [s] since the action began, and what happened
 
 
 def _atom(text):
@@ -105,6 +114,25 @@ class Imagination:
         for name in on_tray:
             goal.updated_fluents.append(Atom(predicate='On', arguments=[name, 'trayArea1']))
         return self._answer(self._result(goal))
+
+    def save_rollout(self, which='worst'):
+        """Has one rollout of this node's last answer played again and saved for `hires watch`: worst
+        (of all alternatives), median, first_fall or a number, of the best alternative, or of the
+        third: 'worst@3'.
+
+        Raises ImaginationError where nobody answers or there is no such rollout.
+        """
+        name = self._action.rpartition('/')[0]
+        name = name + '/imagined_rollout' if name else 'imagined_rollout'
+        try:
+            answer = rospy.ServiceProxy(name, ImaginedRollout)(rospy.get_name(), which)
+        except rospy.ServiceException as error:
+            raise ImaginationError("nobody serves '%s' (%s); start it: roslaunch hires imagination.launch"
+                                   % (rospy.resolve_name(name), error)) from error
+        if not answer.success:
+            raise ImaginationError(answer.message)
+        return SavedRollout(path=answer.path, index=answer.rollout.index, seed=answer.rollout.seed,
+                            events=tuple(zip(answer.times, answer.events)))
 
     def _result(self, goal):
         if not self._is_connected.wait(self._wait):

@@ -73,7 +73,8 @@ class AskBeforeDrivingTest(unittest.TestCase):
     def test_the_answer_is_that_of_the_command_line(self):
         from imagination_system import ACTION
         told = self.system.ask('--min-success', '0.5', rollouts=16, early_stop=True).answer().report
-        answer = self.hires.Imagination().ask(
+        imagination = self.hires.Imagination()
+        answer = imagination.ask(
             'move_base_blind', ACTION[-1].split(','), robot_at=HOME, on_tray=['peppermill1'],
             rollouts=16, seed=7)
         self.assertEqual(answer.outcome, told['outcome'])
@@ -81,6 +82,13 @@ class AskBeforeDrivingTest(unittest.TestCase):
         self.assertEqual([(a.success, a.rollouts, a.interval[0]) for a in answer.ranking],
                          [(p['success']['share'], p['rollouts'], p['success']['lower'])
                           for p in told['ranking']])
+        saved = imagination.save_rollout('median')
+        self.assertTrue(os.path.exists(saved.path), saved)
+        self.assertEqual(saved.seed, 7)
+        self.assertLess(saved.index, 16)
+        self.assertIn('goal reached', [text for _, text in saved.events])
+        with self.assertRaisesRegex(self.hires.ImaginationError, "'wurst'.*first_fall"):
+            imagination.save_rollout('wurst')
 
     def test_bad_requests_say_what_is_wrong(self):
         imagination = self.hires.Imagination()
@@ -90,6 +98,8 @@ class AskBeforeDrivingTest(unittest.TestCase):
             imagination.ask('move_base', 'nowhere', robot_at=HOME)
         with self.assertRaisesRegex(self.hires.ImaginationError, "'/elsewhere'.*imagination.launch"):
             self.hires.Imagination('elsewhere', wait=0.2).ask('move_base', AREA, robot_at=HOME)
+        with self.assertRaisesRegex(self.hires.ImaginationError, '/some/where/imagined_rollout'):
+            self.hires.Imagination('/some/where/imagine').save_rollout()
 
 
 if __name__ == '__main__':

@@ -51,10 +51,7 @@ class ImaginationTopicsTest(unittest.TestCase):
     def setUpClass(cls):
         cls.system = ImaginationSystem(workers=1)
         cls.addClassCleanup(cls.system.destroy)
-        rollouts = os.path.join(cls.system.processes.folder.name, 'rollouts')
-        cls.system.start_client(arguments=['_rollout_folder:=' + rollouts])
-        cls.system.start_host(1)
-        cls.system.wait_until_joined(1)
+        cls.system.start()
         # This process becomes a node of the worker's master, beside the robot.
         os.environ.update(ROS_MASTER_URI='http://127.0.0.1:%d/' % cls.system.worker_port(1),
                           ROS_IP='127.0.0.1', ROS_LOG_DIR=cls.system.processes.folder.name)

@@ -117,7 +117,9 @@ class ImaginationSystem:
     def start_client(self, client_environment=None, arguments=(), **scheduler):
         self.client = self.run([
             executable('imagination_client'), '_config:=' + self.client_config(**scheduler),
-            '_workers:=%d' % self.workers, *arguments], **(client_environment or {}))
+            '_workers:=%d' % self.workers,
+            '_rollout_folder:=' + os.path.join(self.processes.folder.name, 'rollouts'),
+            *arguments], **(client_environment or {}))
         return self.client
 
     def start_host(self, k, worker_arguments=''):
