@@ -90,7 +90,7 @@ TEST(RecordRolloutTest, SaysWhatHappensInItsOrder) {
   EXPECT_LT(TimeOf(Kind::kTips, recording), TimeOf(Kind::kFalls, recording));
   EXPECT_LT(TimeOf(Kind::kTips, recording), TimeOf(Kind::kLiftsOff, recording));
   EXPECT_EQ(TimeOf(Kind::kEnd, recording), recording.result.duration);
-  EXPECT_THAT(story, AllOf(HasSubstr("load begins to tip"), HasSubstr("load lifts off"),
+  EXPECT_THAT(story, AllOf(HasSubstr("load begins to tip ("), HasSubstr("load lifts off"),
                            HasSubstr("failed: object_fell")));
 }
 
@@ -113,6 +113,20 @@ late_cycle_delay: {distribution: fixed, value: 0.5, unit: s, source: test}
       EXPECT_LE(event.time, recording.result.duration);  // the end is no lack of commands
     }
   }
+}
+
+TEST(RecordRolloutTest, WhatTipsByALateCommandSaysSo) {
+  robot::Robot robot = TrayRobot();
+  robot.profile.base_controller.stops_at_timeout = true;
+  const RolloutSetup setup = RoomRollouts(Room(), "mill", R"(
+late_cycle_probability: {distribution: fixed, value: 0.05, unit: share, source: test}
+late_cycle_delay: {distribution: fixed, value: 0.5, unit: s, source: test}
+)",
+                                          robot);
+  std::string story;
+  for (const RolloutEvent& event : Record(setup, FirstFall(setup)).events)
+    story += event.text + "; ";
+  EXPECT_THAT(story, HasSubstr("load begins to tip (late_command)"));
 }
 
 TEST(RecordRolloutTest, ItGoesOnForASecondAfterTheEnd) {

@@ -18,6 +18,16 @@ constexpr double kStillSpeed = 0.01;  // [m/s] below which an object stands stil
 
 }  // namespace
 
+std::string CauseNow(const simulation::RobotSimulator& simulator) {
+  const simulation::Disturbances& last = simulator.disturbances();
+  const double since = simulator.time() - kCauseWindow;
+  if (last.late_command >= since) return "late_command";
+  if (last.braking >= since) return "braking";
+  if (last.accelerating >= since) return "accelerating";
+  if (last.turning >= since) return "turning";
+  return "floor";
+}
+
 LoadMonitor::LoadMonitor(simulation::RobotSimulator* simulator, const RolloutParams& params,
                          const world::StandingCriterion& standing, const Purpose& purpose)
     : simulator_(simulator), params_(params), standing_(standing), purpose_(purpose) {
@@ -54,7 +64,7 @@ void LoadMonitor::Look() {
   for (Object& object : objects_) LookAt(&object);
   for (Bystander& bystander : bystanders_) bystander.watch.Look(*simulator_, bystander.index);
   max_tilt_ = std::max(max_tilt_, tilt_);
-  if (first_cause_.empty() && tilt_ > params_.shaking_tilt) first_cause_ = Cause();
+  if (first_cause_.empty() && tilt_ > params_.shaking_tilt) first_cause_ = CauseNow(*simulator_);
 }
 
 void LoadMonitor::LookAt(Object* object) {
@@ -180,16 +190,6 @@ base::Failure LoadMonitor::WhyNotHeldAnyMore() const {
     if (i != handled_ && object.was_held && !IsHeld(object)) return Code::kObjectSlipped;
   }
   return {};
-}
-
-std::string LoadMonitor::Cause() const {
-  const simulation::Disturbances& last = simulator_->disturbances();
-  const double since = simulator_->time() - kCauseWindow;
-  if (last.late_command >= since) return "late_command";
-  if (last.braking >= since) return "braking";
-  if (last.accelerating >= since) return "accelerating";
-  if (last.turning >= since) return "turning";
-  return "floor";
 }
 
 }  // namespace hires::imagination

@@ -13,6 +13,10 @@ namespace hires::imagination {
 
 struct RolloutParams;
 
+/// What happened just before now that may have disturbed a load: "late_command", "braking",
+/// "accelerating", "turning", or else "floor".
+std::string CauseNow(const simulation::RobotSimulator& simulator);
+
 /// Watches the objects that an action is about, and those that it should leave alone.
 ///
 /// Its concern are the objects that stand on the robot or are in its hands at the start, and the
@@ -87,7 +91,6 @@ class LoadMonitor {
   base::Failure WhyHandledIsNotWell() const;
   base::Failure WhyNotHeldAnyMore() const;
   geometry::Pose3 X_MGoal() const;
-  std::string Cause() const;
 
   simulation::RobotSimulator* simulator_;
   const RolloutParams& params_;

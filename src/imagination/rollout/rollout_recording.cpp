@@ -7,6 +7,7 @@
 
 #include "hires/base/text.h"
 #include "hires/simulation/fall_watch.h"
+#include "imagination/rollout/load_monitor.h"
 
 namespace hires::imagination {
 namespace {
@@ -70,6 +71,7 @@ class Recorder {
     simulation::FallWatch watch;
     bool is_tipping_told{false}, is_flight_told{false};
     double last_upright{0.0}, last_touched{0.0};  // [s]
+    std::string cause;                            // of its leaning
   };
 
   double TimeOf(const simulation::RobotSimulator& simulator) const {
@@ -107,21 +109,25 @@ class Recorder {
     const std::string& name = recording_.objects[index];
     const world::Fall fall = object.watch.Look(simulator, index);
     const world::Departure& now = object.watch.detector().now();
-    NoteTipping(index, now.tilt);
+    NoteTipping(simulator, index, now.tilt);
     NoteFlight(simulator, index);
     if (fall != world::Fall::kNone) Say(Kind::kFalls, last_look_, name + FallText(fall, now));
   }
 
   /// That it began to tip is known once it leans well beyond shaking.
-  void NoteTipping(int index, double tilt) {
+  void NoteTipping(const simulation::RobotSimulator& simulator, int index, double tilt) {
     Object& object = objects_[index];
     if (tilt <= setup_.params.shaking_tilt) {
       object.last_upright = last_look_;
+      object.cause.clear();
       object.is_tipping_told = false;
-    } else if (!object.is_tipping_told && tilt > kTippingShare * setup_.params.shaking_tilt) {
-      object.is_tipping_told = true;
-      Say(Kind::kTips, object.last_upright, recording_.objects[index] + " begins to tip");
+      return;
     }
+    if (object.cause.empty()) object.cause = CauseNow(simulator);
+    if (object.is_tipping_told || tilt <= kTippingShare * setup_.params.shaking_tilt) return;
+    object.is_tipping_told = true;
+    Say(Kind::kTips, object.last_upright,
+        fmt::format("{} begins to tip ({})", recording_.objects[index], object.cause));
   }
 
   void NoteFlight(const simulation::RobotSimulator& simulator, int index) {
