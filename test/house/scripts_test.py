@@ -18,7 +18,7 @@ def run(script, *arguments, **environment):
 
 class ScriptsTest(unittest.TestCase):
     def test_every_script_explains_itself(self):
-        for script in ("benchmark", "build", "demo", "format", "on_host", "replay_episodes", "run", "setup",
+        for script in ("benchmark", "build", "demo", "format", "on_host", "package", "replay_episodes", "run", "setup",
                        "test", "tidy"):
             with self.subTest(script):
                 answer = run(f"scripts/{script}", "--help")
@@ -50,19 +50,20 @@ class ScriptsTest(unittest.TestCase):
         self.assertIn("unknown system", answer.stderr)
 
     def test_setup_knows_the_parts_of_the_list(self):
-        everything, run_part = (run("scripts/setup", "--list", *part).stdout.split()
-                                for part in ([], ["run"]))
-        self.assertIn("libode-dev", run_part)
-        self.assertNotIn("libgtest-dev", run_part)
-        self.assertNotIn("rviz", run_part)
-        rest = run("scripts/setup", "--list", "show", "develop").stdout.split()
-        self.assertEqual(sorted(everything), sorted(run_part + rest))
+        everything, build, run_part = (run("scripts/setup", "--list", *part).stdout.split()
+                                       for part in ([], ["build"], ["run"]))
+        self.assertIn("libode-dev", build)
+        self.assertNotIn("libgtest-dev", build)
+        self.assertIn("python3-rospy", run_part)
+        self.assertEqual([name for name in run_part if name.endswith("-dev")], [])
+        rest = run("scripts/setup", "--list", "package", "show", "develop").stdout.split()
+        self.assertEqual(sorted(everything), sorted(build + run_part + rest))
 
     def test_setup_refuses_a_part_that_is_none(self):
         answer = run("scripts/setup", "--list", "runn")
         self.assertEqual(answer.returncode, 1)
         self.assertIn("no part 'runn'", answer.stderr)
-        self.assertIn("run show develop", answer.stderr)
+        self.assertIn("build run package show develop", answer.stderr)
 
     def test_the_build_folder_lies_outside_of_the_sources(self):
         folder = run("scripts/build", "--where", HIRES_BUILD="", XDG_CACHE_HOME="/cache").stdout
@@ -73,7 +74,7 @@ class ScriptsTest(unittest.TestCase):
         self.assertEqual(answer.stdout, "/elsewhere\n")
 
     def test_unknown_options_end_with_the_help_text(self):
-        for script in ("build", "run", "setup"):
+        for script in ("build", "package", "run", "setup"):
             with self.subTest(script):
                 answer = run(f"scripts/{script}", "--nonsense")
                 self.assertEqual(answer.returncode, 2)
