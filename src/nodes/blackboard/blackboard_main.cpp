@@ -4,6 +4,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/process.h"
+#include "hires/ros/launch_guard.h"
 #include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
 #include "hires/ros/xmlrpc_master_api.h"
@@ -13,6 +14,7 @@ int main(int argc, char** argv) {
   hires_ros::QuietXmlRpc();
   ros::init(argc, argv, "blackboard", ros::init_options::NoSigintHandler);
   hires_ros::ShutDownRosOnSignals();
+  if (!hires_ros::ClaimName()) return EXIT_FAILURE;
   ros::NodeHandle nh;
   hires_ros::MasterWatch master_watch;
   const hires_ros::ScopedLogSink log_sink;
@@ -25,8 +27,7 @@ int main(int argc, char** argv) {
     spinner.start();
     ros::waitForShutdown();
   } catch (const hires::base::ConfigError& error) {
-    ROS_FATAL("blackboard: %s", error.what());
-    return EXIT_FAILURE;
+    return hires_ros::EndMisconfigured("blackboard", error);
   }
   return master_watch.Finish(EXIT_SUCCESS);
 }

@@ -1,11 +1,14 @@
 #include <ros/init.h>
 #include <ros/package.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <vector>
 
 #include "hires/cli/command_line.h"
 #include "hires/cli/hypothesis_play.h"
 #include "hires/cli/robot_doctor.h"
+#include "hires/ros/launch_guard.h"
 #include "hires/ros/rollout_bag.h"
 #include "nodes/hires/episode_writer.h"
 #include "nodes/hires/hypothesis_run.h"
@@ -17,6 +20,10 @@
 #include "nodes/hires/robot_doctor_look.h"
 #include "nodes/hires/ros_doctor.h"
 #include "nodes/hires/watch.h"
+
+/// For launch files: what went well ends the launch that started it. A `required` node would end
+/// it, too, but roslaunch calls that a death.
+constexpr char kEndLaunch[] = "--end-launch";
 
 int main(int argc, char** argv) {
   std::vector<std::string> arguments;  // roslaunch adds names and remappings that are not ours
@@ -54,5 +61,10 @@ int main(int argc, char** argv) {
          return hires_ros::RunWatch(words, backends.package_folder);
        }});
   backends.more_checks.push_back(hires_ros::CheckRos);
-  return hires::cli::RunCommandLine(arguments, backends);
+  const auto end_launch = std::find(arguments.begin(), arguments.end(), kEndLaunch);
+  const bool ends_launch = end_launch != arguments.end();
+  if (ends_launch) arguments.erase(end_launch);
+  const int code = hires::cli::RunCommandLine(arguments, backends);
+  if (ends_launch && code == EXIT_SUCCESS) hires_ros::EndLaunch();
+  return code;
 }

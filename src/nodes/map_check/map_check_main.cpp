@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "hires/base/error.h"
+#include "hires/ros/launch_guard.h"
 #include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
 #include "hires/ros/xmlrpc_master_api.h"
@@ -23,8 +24,7 @@ int main(int argc, char** argv) {
       return EXIT_FAILURE;
     }
   } catch (const hires::base::ConfigError& error) {
-    ROS_FATAL("map_check: %s", error.what());
-    return EXIT_FAILURE;
+    return hires_ros::EndMisconfigured("map_check", error);
   }
   return master_watch.Finish(EXIT_SUCCESS);
 }

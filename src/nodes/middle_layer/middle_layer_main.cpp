@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "hires/base/error.h"
+#include "hires/ros/launch_guard.h"
 #include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
 #include "hires/ros/xmlrpc_master_api.h"
@@ -12,6 +13,7 @@ int main(int argc, char** argv) {
   hires_ros::QuietXmlRpc();
   ros::init(argc, argv, "middle_layer", ros::init_options::NoSigintHandler);
   hires_ros::NoteStopSignals();
+  if (!hires_ros::ClaimName()) return EXIT_FAILURE;
   ros::NodeHandle nh;
   hires_ros::MasterWatch master_watch;
   const hires_ros::ScopedLogSink log_sink;
@@ -21,8 +23,7 @@ int main(int argc, char** argv) {
                                     &nh);
     node.Run(hires_ros::IsStopWanted);
   } catch (const hires::base::ConfigError& error) {
-    ROS_FATAL("middle_layer: %s", error.what());
-    return EXIT_FAILURE;
+    return hires_ros::EndMisconfigured("middle_layer", error);
   }
   return master_watch.Finish(EXIT_SUCCESS);
 }

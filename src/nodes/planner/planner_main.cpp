@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "hires/base/error.h"
+#include "hires/ros/launch_guard.h"
 #include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
 #include "hires/ros/xmlrpc_master_api.h"
@@ -12,6 +13,7 @@ int main(int argc, char** argv) {
   hires_ros::QuietXmlRpc();
   ros::init(argc, argv, "planner", ros::init_options::NoSigintHandler);
   hires_ros::ShutDownRosOnSignals();
+  if (!hires_ros::ClaimName()) return EXIT_FAILURE;
   ros::NodeHandle nh;
   hires_ros::MasterWatch master_watch;
   const hires_ros::ScopedLogSink log_sink;
@@ -20,8 +22,7 @@ int main(int argc, char** argv) {
     hires_ros::PlannerNode node(config, hires::planning::LoadPlanningKnowledge(config), &nh);
     ros::spin();
   } catch (const hires::base::ConfigError& error) {
-    ROS_FATAL("planner: %s", error.what());
-    return EXIT_FAILURE;
+    return hires_ros::EndMisconfigured("planner", error);
   }
   return master_watch.Finish(EXIT_SUCCESS);
 }

@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "hires/base/error.h"
+#include "hires/ros/launch_guard.h"
 #include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
 #include "hires/ros/private_params.h"
@@ -41,6 +42,7 @@ int main(int argc, char** argv) {
   hires_ros::QuietXmlRpc();
   ros::init(argc, argv, "sim_worker", ros::init_options::NoSigintHandler);
   hires_ros::ShutDownRosOnSignals();
+  if (!hires_ros::ClaimName()) return EXIT_FAILURE;
   ros::NodeHandle nh;
   const hires_ros::ScopedLogSink log_sink;
   try {
@@ -50,8 +52,7 @@ int main(int argc, char** argv) {
       Work(&nh);
     }
   } catch (const hires::base::ConfigError& error) {
-    ROS_FATAL("sim_worker: %s", error.what());
-    return EXIT_FAILURE;
+    return hires_ros::EndMisconfigured("sim_worker", error);
   }
   return EXIT_SUCCESS;
 }

@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "hires/base/error.h"
+#include "hires/ros/launch_guard.h"
 #include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
 #include "hires/ros/translator_params.h"
@@ -13,6 +14,7 @@ int main(int argc, char** argv) {
   hires_ros::QuietXmlRpc();
   ros::init(argc, argv, "translator", ros::init_options::NoSigintHandler);
   hires_ros::ShutDownRosOnSignals();
+  if (!hires_ros::ClaimName()) return EXIT_FAILURE;
   ros::NodeHandle nh;
   hires_ros::MasterWatch master_watch;
   const hires_ros::ScopedLogSink log_sink;
@@ -22,8 +24,7 @@ int main(int argc, char** argv) {
                                    &nh);
     ros::spin();
   } catch (const hires::base::ConfigError& error) {
-    ROS_FATAL("translator: %s", error.what());
-    return EXIT_FAILURE;
+    return hires_ros::EndMisconfigured("translator", error);
   }
   return master_watch.Finish(EXIT_SUCCESS);
 }

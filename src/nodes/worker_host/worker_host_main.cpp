@@ -1,6 +1,7 @@
 #include <ros/ros.h>
 
 #include "hires/base/error.h"
+#include "hires/ros/launch_guard.h"
 #include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
 #include "nodes/worker_host/worker_host_node.h"
@@ -10,6 +11,7 @@ int main(int argc, char** argv) {
   hires_ros::QuietXmlRpc();
   ros::init(argc, argv, "worker_host", ros::init_options::NoSigintHandler);
   if (!hires_ros::WaitForMainMaster(&signals)) return EXIT_SUCCESS;
+  if (!hires_ros::ClaimName()) return EXIT_FAILURE;
   ros::NodeHandle nh;
   const hires_ros::ScopedLogSink log_sink;
   hires_ros::MasterWatch master_watch;
@@ -19,7 +21,6 @@ int main(int argc, char** argv) {
     if (master_watch.silent_for() > 0.0) std::_Exit(code);  // or roscpp waits for it
     return master_watch.Finish(code);
   } catch (const hires::base::ConfigError& error) {
-    ROS_FATAL("worker_host: %s", error.what());
-    return EXIT_FAILURE;
+    return hires_ros::EndMisconfigured("worker_host", error);
   }
 }

@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "hires/base/error.h"
+#include "hires/ros/launch_guard.h"
 #include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
 #include "hires/ros/xmlrpc_master_api.h"
@@ -13,6 +14,7 @@ int main(int argc, char** argv) {
   hires_ros::QuietXmlRpc();
   ros::init(argc, argv, "world_tracker", ros::init_options::NoSigintHandler);
   hires_ros::ShutDownRosOnSignals();
+  if (!hires_ros::ClaimName()) return EXIT_FAILURE;
   ros::NodeHandle nh;
   hires_ros::MasterWatch master_watch;
   const hires_ros::ScopedLogSink log_sink;
@@ -21,8 +23,7 @@ int main(int argc, char** argv) {
     hires_ros::WorldTrackerNode node(params, hires_ros::LoadTranslatorContext(params.files), &nh);
     ros::spin();
   } catch (const hires::base::ConfigError& error) {
-    ROS_FATAL("world_tracker: %s", error.what());
-    return EXIT_FAILURE;
+    return hires_ros::EndMisconfigured("world_tracker", error);
   }
   return master_watch.Finish(EXIT_SUCCESS);
 }
