@@ -45,7 +45,7 @@ TEST_F(BlackboardConfigTest, PathsCountFromTheFileAndTheStoresFromHome) {
   EXPECT_THAT(config.ontology,
               ElementsAre(folder + "/ontology/upper.ttl", folder + "/ontology/race.ttl"));
   EXPECT_THAT(config.knowledge, ElementsAre(folder + "/knowledge/restaurant.yaml"));
-  EXPECT_EQ(config.store, std::getenv("HOME") + std::string("/.ros/hires/blackboard.db"));
+  EXPECT_EQ(config.store, ExpandHome("~/.ros/hires/blackboard.db"));
   EXPECT_EQ(config.options.durability, Durability::kPower);
   EXPECT_EQ(config.options.cache_bytes, 64u << 20);
   EXPECT_EQ(config.options.max_bytes, 0u);
@@ -74,6 +74,17 @@ TEST_F(BlackboardConfigTest, TheFolderOfAStoreIsMade) {
   MakeFolderOf(":memory:");
   const std::string blocked = folder_.Write("file", "") + "/x.db";
   EXPECT_THROW(MakeFolderOf(blocked), base::ConfigError);
+}
+
+TEST(ExpandHomeTest, RosHomeTakesThePlaceOfItsDefault) {
+  const char* before = std::getenv("ROS_HOME");
+  const std::string restored = before == nullptr ? "" : before;
+  setenv("ROS_HOME", "/elsewhere", 1);
+  EXPECT_EQ(ExpandHome("~/.ros/hires/x.db"), "/elsewhere/hires/x.db");
+  EXPECT_EQ(ExpandHome("~/x.db"), std::getenv("HOME") + std::string("/x.db"));
+  setenv("ROS_HOME", "", 1);
+  EXPECT_EQ(ExpandHome("~/.ros/x.db"), std::getenv("HOME") + std::string("/.ros/x.db"));
+  before == nullptr ? unsetenv("ROS_HOME") : setenv("ROS_HOME", restored.c_str(), 1);
 }
 
 TEST(ExpandHomeTest, OnlyATildeInFrontStandsForHome) {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <optional>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -71,6 +72,26 @@ class StoreFileTest : public ::testing::Test {
   test_support::TemporaryFolder folder_;
   std::string path_ = (folder_.path() / "blackboard.db").string();
 };
+
+TEST_F(StoreFileTest, TheFileIsWholeAfterItsWriterEndedThoughAReaderHasItOpen) {
+  std::optional<Store> writer(std::in_place, path_, SmallOntology(), StoreOptions{});
+  const Store reader = Open(ReadOnly());
+  reader.Stats();
+  writer->Add({PoseAt("pose1", 1.0)}, At(1.0));
+  EXPECT_GT(std::filesystem::file_size(path_ + "-wal"), 0u);
+  writer.reset();
+  EXPECT_EQ(std::filesystem::file_size(path_ + "-wal"), 0u);
+}
+
+TEST_F(StoreFileTest, NoLogIsLeftWhereTheWriterIsTheLastToEnd) {
+  {
+    Store writer = Open();
+    const Store reader = Open(ReadOnly());
+    reader.Stats();
+    writer.Add({PoseAt("pose1", 1.0)}, At(1.0));
+  }
+  EXPECT_FALSE(std::filesystem::exists(path_ + "-wal"));
+}
 
 TEST_F(StoreFileTest, WhatWasWrittenIsThereAfterReopening) {
   {

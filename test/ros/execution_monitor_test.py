@@ -172,6 +172,13 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.assertIn('preempted move_base', self.system.log())
         self.assertGreater(result.episode, 0)
 
+    def test_a_task_whose_client_was_killed_is_preempted(self):
+        self.system.behave('move_base', hang=True)
+        verb = self.hires(CARRY)
+        self.wait_for_step('move_base')
+        verb.signal(signal.SIGKILL)
+        wait_until(lambda: 'preempted move_base' in self.system.log(), 'the robot to be stopped')
+
     def test_preempted_while_it_is_planned(self):
         self.system.nodes['planner'].signal(signal.SIGSTOP)
         self.addCleanup(self.system.nodes['planner'].signal, signal.SIGCONT)

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/knowledge/old_stores.h"
 #include "hires/knowledge/ontology.h"
 #include "hires/knowledge/store.h"
 
@@ -16,6 +17,7 @@ struct BlackboardConfig {
   std::vector<std::string> ontology;   ///< paths, Turtle
   std::string store;                   ///< path, or ":memory:"
   StoreOptions options;                ///< durability, cache, bound of the file
+  OldStoreLimits old_runs;             ///< which stores of earlier runs are kept beside it
   std::vector<std::string> knowledge;  ///< paths, loaded into an empty store
   std::vector<std::string> topics;     ///< paths, their demand topics are opened
   int threads{8};                      ///< requests answered side by side
@@ -31,8 +33,8 @@ struct BlackboardConfig {
 /// stands for the home folder.  @throws base::ConfigError naming file and key.
 BlackboardConfig ReadBlackboardConfig(const std::string& path);
 
-/// "~/x" with the home folder in place of ~; anything else as it is.
-/// @throws base::ConfigError where HOME is not set.
+/// "~/x" with the home folder in place of ~, and "~/.ros/x" with $ROS_HOME in place of ~/.ros,
+/// where that is set; anything else as it is.  @throws base::ConfigError where HOME is not set.
 std::string ExpandHome(const std::string& path);
 
 /// Makes the folder in which a store is to lie.  @throws base::ConfigError naming it.

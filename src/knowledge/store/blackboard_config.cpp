@@ -32,6 +32,14 @@ StoreOptions ReadOptions(base::ParamReader* in) {
   return options;
 }
 
+OldStoreLimits ReadOldRuns(base::ParamReader in) {
+  OldStoreLimits limits;
+  limits.max_age = in.Get("max_age", base::Between(0.0, 36'500.0));
+  limits.max_bytes = static_cast<std::uint64_t>(in.Get("max_size", base::Between(0, 100'000'000)))
+                     << 20;
+  return limits;
+}
+
 }  // namespace
 
 BlackboardConfig ReadBlackboardConfig(const std::string& path) {
@@ -42,6 +50,7 @@ BlackboardConfig ReadBlackboardConfig(const std::string& path) {
   config.store = ExpandHome(in.GetString("store"));
   if (config.store.empty()) in.Fail("store", "wanted a path, or :memory:");
   config.options = ReadOptions(&in);
+  if (in.Has("old_runs")) config.old_runs = ReadOldRuns(in.Sub("old_runs"));
   config.knowledge = PathsFrom(path, in.GetStrings("knowledge"));
   config.topics = PathsFrom(path, in.GetStrings("topics"));
   config.threads = in.Get("threads", base::Between(1, 256));
@@ -57,6 +66,10 @@ BlackboardConfig ReadBlackboardConfig(const std::string& path) {
 
 std::string ExpandHome(const std::string& path) {
   if (path.compare(0, 2, "~/") != 0) return path;
+  const char* ros_home = std::getenv("ROS_HOME");
+  if (path.compare(0, 7, "~/.ros/") == 0 && ros_home != nullptr && *ros_home != '\0') {
+    return ros_home + path.substr(6);
+  }
   const char* home = std::getenv("HOME");
   if (home == nullptr || *home == '\0') {
     throw base::ConfigError(

@@ -89,6 +89,14 @@ StoreFile::StoreFile(const std::string& path, const StoreOptions& options)
   });
 }
 
+StoreFile::~StoreFile() {
+  if (read_only_ || path_ == kInMemory) return;
+  try {
+    database_->exec("PRAGMA wal_checkpoint(TRUNCATE)");
+  } catch (const SQLite::Exception&) {  // the log stays beside the file, and is read with it
+  }
+}
+
 void StoreFile::Configure(const StoreOptions& options) {
   database_->exec(fmt::format("PRAGMA cache_size = -{}", options.cache_bytes / 1024));
   database_->exec("PRAGMA temp_store = MEMORY");

@@ -18,6 +18,9 @@ class StoreFile {
  public:
   /// @throws ConfigError naming the path and what to do.
   StoreFile(const std::string& path, const StoreOptions& options);
+  ~StoreFile();  ///< What is in the log goes into the file, also while others read it.
+  StoreFile(const StoreFile&) = delete;
+  StoreFile& operator=(const StoreFile&) = delete;
 
   SQLite::Database& database() { return *database_; }
   const std::string& path() const { return path_; }

@@ -84,6 +84,9 @@ void Fill(const knowledge::LoadSummary& summary, hires::LoadKnowledge::Response*
 Store OpenStore(const knowledge::BlackboardConfig& config,
                 const std::shared_ptr<const knowledge::Ontology>& ontology) {
   knowledge::MakeFolderOf(config.store);
+  const auto gone = knowledge::PruneOldStores(config.store, config.old_runs,
+                                              std::filesystem::file_time_type::clock::now());
+  for (const std::string& path : gone) Log(LogLevel::kInfo, "removed_old_store=" + path);
   Store store(config.store, ontology, config.options);
   LoadAtFirst(config.knowledge, &store);
   return store;

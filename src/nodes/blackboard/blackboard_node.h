@@ -75,9 +75,10 @@ class BlackboardNode {
 
   const hires::knowledge::BlackboardConfig config_;
   const std::shared_ptr<const hires::knowledge::Ontology> ontology_;
-  hires::knowledge::BlackboardReaders readers_;
   std::unique_ptr<BlackboardTopics> topics_;  ///< of the writer's thread
   std::unique_ptr<hires::knowledge::BlackboardWriter> writer_;
+  /// Closed before the writer: who closes the file last puts its log into it, which readers cannot.
+  hires::knowledge::BlackboardReaders readers_;
   std::mutex error_mutex_;
   std::string last_error_;  // guarded
   std::atomic<int> num_refused_{0};

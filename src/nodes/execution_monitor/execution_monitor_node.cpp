@@ -117,6 +117,8 @@ ExecutionMonitorNode::ExecutionMonitorNode(const execution::MonitorConfig& confi
                  const std::string& why) { OnStepEnd(key, result, why); }),
       view_(
           *nh, [this](const RemoteView::Update& update) { OnView(update); }, kViewPeriod),
+      client_watch_(
+          [this](const std::string& goal) { Post([this, goal] { OnClientGone(goal); }); }),
       server_(
           *nh, kAchieveAction, [this](GoalHandle goal) { Post([this, goal] { Accept(goal); }); },
           [this](GoalHandle goal) { Post([this, goal] { Preempt(goal); }); }, false) {
@@ -240,6 +242,7 @@ void ExecutionMonitorNode::Accept(GoalHandle goal) {
     return Refuse(goal, hires::AchieveResult::INVALID, error.what());
   }
   ++num_tasks_;
+  client_watch_.Watch(goal.getGoalID().id);
   Log(LogLevel::kInfo, fmt::format("task='{}' accepted", hires::base::Shortened(text)));
   BeginWhenReady();
 }
@@ -311,6 +314,14 @@ void ExecutionMonitorNode::Preempt(const GoalHandle& goal) {
   if (!task_ || !(task_->goal == goal)) return;
   if (task_->monitor) return Feed(execution::PreemptRequested{});
   FinishTask({execution::Finish::Outcome::kPreempted, "preempted before it was begun"});
+}
+
+void ExecutionMonitorNode::OnClientGone(const std::string& goal_id) {
+  if (!task_ || task_->goal.getGoalID().id != goal_id) return;
+  Log(LogLevel::kWarn,
+      fmt::format("task='{}' is preempted: {}, which asked for it, is gone",
+                  hires::base::Shortened(task_->goal.getGoal()->task), ClientOf(goal_id)));
+  Preempt(task_->goal);
 }
 
 void ExecutionMonitorNode::OnState(const execution::StateObserved& state) {
@@ -411,6 +422,7 @@ void ExecutionMonitorNode::FinishTask(const execution::Finish& finish) {
   PublishFeedback();
   Conclude(finish);
   task_.reset();
+  client_watch_.Watch("");
 }
 
 void ExecutionMonitorNode::Conclude(const execution::Finish& finish) {

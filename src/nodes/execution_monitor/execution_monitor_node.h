@@ -28,6 +28,7 @@
 #include "hires/planning/planner_config.h"
 #include "hires/ros/remote_view.h"
 #include "nodes/execution_monitor/action_link.h"
+#include "nodes/execution_monitor/client_watch.h"
 #include "nodes/execution_monitor/execution_imagination.h"
 #include "nodes/execution_monitor/execution_planning.h"
 #include "nodes/execution_monitor/record_writer.h"
@@ -95,6 +96,7 @@ class ExecutionMonitorNode {
   void Refuse(GoalHandle goal, std::uint8_t code, const std::string& reason);
   Task MakeTask(const GoalHandle& goal) const;
   void Preempt(const GoalHandle& goal);
+  void OnClientGone(const std::string& goal_id);
   void BeginWhenReady();
   void CatchUp();
   std::string MissingForBegin();
@@ -152,6 +154,7 @@ class ExecutionMonitorNode {
   hires::base::WorkThread catcher_;  // asks the Blackboard, which may take its time
   diagnostic_updater::Updater updater_;
   ros::Subscriber progress_subscriber_;
+  ClientWatch client_watch_;
   Server server_;
   std::thread thread_;
 };
