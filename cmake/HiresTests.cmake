@@ -51,9 +51,8 @@ function(hires_run_tests)
   # A target whose name begins with _ runs when the old results are gone and the tests are built.
   foreach(prefix "" "_")
     add_custom_target(${prefix}run_tests_${PROJECT_NAME}
-      COMMAND ${PYTHON_EXECUTABLE} ${catkin_EXTRAS_DIR}/test/run_tests.py ${results}
-        --working-dir ${PROJECT_BINARY_DIR}
-        "${CMAKE_CTEST_COMMAND} --output-on-failure --parallel ${halves} --output-junit ${results}"
+      COMMAND ${PYTHON_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/test/run_ctest.py ${results} ${PROJECT_BINARY_DIR}
+        --parallel ${halves}
       USES_TERMINAL VERBATIM)
     add_dependencies(${prefix}run_tests_${PROJECT_NAME} tests)
   endforeach()

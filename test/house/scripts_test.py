@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import tempfile
 import unittest
+import xml.etree.ElementTree as ElementTree
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), "../.."))
 
@@ -137,6 +138,26 @@ class ScriptsTest(unittest.TestCase):
 
     def test_run_wants_a_command(self):
         self.assertEqual(run("scripts/run").returncode, 2)
+
+
+class RunCtestTest(unittest.TestCase):
+    def results_of(self, tests, *arguments):
+        """The suite that test/run_ctest.py writes of a build folder with these tests {name: command}."""
+        with tempfile.TemporaryDirectory() as build:
+            with open(os.path.join(build, "CTestTestfile.cmake"), "w", encoding="utf-8") as file:
+                file.writelines(f"add_test({name} {command})\n" for name, command in tests.items())
+            path = os.path.join(build, "results", "ctest.xml")
+            answer = run("test/run_ctest.py", path, build, *arguments)
+            self.assertEqual(answer.returncode, 0, answer.stderr)
+            return ElementTree.parse(path).getroot().attrib
+
+    def test_catkin_can_read_how_many_failed(self):
+        suite = self.results_of({"good": "true", "bad": "false", "fine": "true"})
+        self.assertEqual([suite[name] for name in ("tests", "failures", "errors")], ["3", "1", "0"])
+
+    def test_no_results_are_a_failure(self):
+        suite = self.results_of({"good": "true"}, "--no-such-option=1", "--test-dir", "/nowhere/at/all")
+        self.assertEqual([suite[name] for name in ("tests", "failures", "errors")], ["1", "1", "0"])
 
 
 if __name__ == "__main__":
