@@ -100,6 +100,9 @@ function(hires_test_program_of_layer layer)
   set(target hires_${layer}_test)
   add_executable(${target})
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${layer}_test)
+  if(NOT HIRES_ROS)  # a folder in which no target is called as the program is
+    set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
+  endif()
   hires_short_name(${target} ${layer}_test)
   # What is tested is as fast as ever; the tests' own code is built in half the time so.
   target_compile_options(${target} PRIVATE ${HIRES_WARNINGS} -O0)
