@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "hires/base/error.h"
@@ -40,17 +41,20 @@ std::map<std::string, MotionSet> ReadMotionSets(ParamReader in) {
   return sets;
 }
 
-BaseControllerParams ReadBaseController(ParamReader in) {
-  BaseControllerParams params;
-  params.drive = in.Get("drive", base::OneOf({"omnidirectional", "differential"})) == "differential"
-                     ? Drive::kDifferential
-                     : Drive::kOmnidirectional;
-  params.limits = ReadMotionSet(in.Sub("limits"));
-  params.command_timeout = in.Get("command_timeout", Between(0.001, 60.0));
-  params.stops_at_timeout = in.Get("at_timeout", base::OneOf({"ramp", "stop"})) == "stop";
+/// @param params  what holds where the file says nothing.
+BaseControllerParams ReadBaseController(BaseControllerParams params, ParamReader in) {
+  if (in.Has("drive") &&
+      in.Get("drive", base::OneOf({"omnidirectional", "differential"})) == "differential") {
+    params.drive = Drive::kDifferential;
+  }
+  if (in.Has("limits")) params.limits = ReadMotionSet(in.Sub("limits"));
+  if (in.Has("at_timeout")) {
+    params.stops_at_timeout = in.Get("at_timeout", base::OneOf({"ramp", "stop"})) == "stop";
+  }
   const auto read = [&in](const char* key, const base::Bound<double>& bound, double* value) {
     if (in.Has(key)) *value = in.Get(key, bound);
   };
+  read("command_timeout", Between(0.001, 60.0), &params.command_timeout);
   read("max_linear_jerk", Between(0.0, 1e6), &params.max_linear_jerk);
   read("command_lag", Between(0.0, 10.0), &params.command_lag);
   read("loop_frequency", Between(0.0, 1e4), &params.loop_frequency);
@@ -106,13 +110,44 @@ JointPositions ReadJoints(ParamReader in) {
   return joints;
 }
 
+/// The largest of each limit: a controller that lets every motion set pass.
+MotionSet LargestOf(const std::map<std::string, MotionSet>& sets) {
+  MotionSet largest{0.0, 0.0, 0.0, 0.0};
+  for (const auto& [name, set] : sets) {
+    largest = {std::max(largest.max_linear_velocity, set.max_linear_velocity),
+               std::max(largest.max_angular_velocity, set.max_angular_velocity),
+               std::max(largest.max_linear_acceleration, set.max_linear_acceleration),
+               std::max(largest.max_angular_acceleration, set.max_angular_acceleration)};
+  }
+  return largest;
+}
+
+void ReadMotion(ParamReader* in, RobotProfile* profile) {
+  std::vector<std::string> needed{"urdf"};
+  if (in->Has("motion_sets")) {
+    profile->motion_sets = ReadMotionSets(in->Sub("motion_sets"));
+    profile->base_controller.limits = LargestOf(profile->motion_sets);
+    if (profile->motion_sets.size() == 1) {
+      profile->default_motion_set = profile->motion_sets.begin()->first;
+    } else {
+      needed.emplace_back("default_motion_set");  // several: which one counts is the file's to say
+    }
+  }
+  in->RequireKeys(needed);
+  if (in->Has("default_motion_set")) {
+    profile->default_motion_set = base::ToLower(in->GetString("default_motion_set"));
+  }
+  if (in->Has("base_controller")) {
+    profile->base_controller =
+        ReadBaseController(profile->base_controller, in->Sub("base_controller"));
+  }
+}
+
 RobotProfile ReadProfile(ParamReader* in) {
-  in->RequireKeys({"urdf", "base_link", "motion_sets", "default_motion_set",
-                   "base_controller.drive", "base_controller.limits",
-                   "base_controller.command_timeout", "base_controller.at_timeout"});
   RobotProfile profile;
+  ReadMotion(in, &profile);
   profile.urdf = in->GetString("urdf");
-  profile.base_link = in->GetString("base_link");
+  if (in->Has("base_link")) profile.base_link = in->GetString("base_link");
   if (in->Has("tray_link")) profile.tray_link = in->GetString("tray_link");
   if (in->Has("object_on_tray")) profile.X_TO = ReadPose(in->Sub("object_on_tray"));
   if (in->Has("laser_link")) profile.laser_link = in->GetString("laser_link");
@@ -120,9 +155,6 @@ RobotProfile ReadProfile(ParamReader* in) {
   if (in->Has("footprint_padding")) {
     profile.footprint_padding = in->Get("footprint_padding", Between(0.0, 1.0));
   }
-  profile.motion_sets = ReadMotionSets(in->Sub("motion_sets"));
-  profile.default_motion_set = base::ToLower(in->GetString("default_motion_set"));
-  profile.base_controller = ReadBaseController(in->Sub("base_controller"));
   if (in->Has("joints")) profile.joints = ReadJoints(in->Sub("joints"));
   if (in->Has("upper_body")) profile.upper_body = ReadUpperBody(in->Sub("upper_body"));
   in->RejectUnknownKeys();
@@ -224,6 +256,36 @@ TrayCandidate FindTray(const RobotModel& model) {
   return best;
 }
 
+void GuessTray(const RobotModel& model, RobotProfile* profile) {
+  const TrayCandidate tray = FindTray(model);
+  if (tray.link < 0) return;
+  profile->tray_link = model.links[tray.link].name;
+  profile->X_TO = tray.X_TO;
+}
+
+Drive GuessAndSayDrive(const RobotModel& model) {
+  const DriveGuess guess = GuessDrive(model);
+  base::Log(base::LogLevel::kWarn,
+            fmt::format("robot={} drive={} guessed, because it has {}; if that is wrong, write a "
+                        "profile with base_controller.drive",
+                        model.name, ToString(guess.drive), guess.why));
+  return guess.drive;
+}
+
+/// What the file leaves out is taken from the model, as for a bare URDF.
+void FillFromModel(ParamReader in, Robot* robot) {
+  RobotProfile& profile = robot->profile;
+  if (!in.Has("base_link")) profile.base_link = robot->model.links.front().name;
+  if (!in.Has("tray_link")) {
+    const Pose3 X_TO = profile.X_TO;
+    GuessTray(robot->model, &profile);
+    if (in.Has("object_on_tray")) profile.X_TO = X_TO;
+  }
+  if (!in.Has("base_controller") || !in.Sub("base_controller").Has("drive")) {
+    profile.base_controller.drive = GuessAndSayDrive(robot->model);
+  }
+}
+
 }  // namespace
 
 geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_link,
@@ -256,6 +318,7 @@ Robot LoadRobot(const std::string& profile_path) {
   robot.profile = ReadProfile(&in);
   const std::filesystem::path folder = std::filesystem::path(profile_path).parent_path();
   robot.model = LoadRobotModel((folder / robot.profile.urdf).lexically_normal().string());
+  FillFromModel(in, &robot);
   CheckProfile(in, robot.profile, robot.model);
   if (robot.profile.footprint.empty()) {
     robot.profile.footprint = OutlineOf(robot.model, robot.profile.base_link, robot.profile.joints);
@@ -270,18 +333,13 @@ Robot LoadRobotFromUrdf(const std::string& urdf_path) {
   RobotProfile& profile = robot.profile;
   profile.urdf = std::filesystem::path(urdf_path).filename().string();
   profile.base_link = robot.model.links.front().name;
-  const TrayCandidate tray = FindTray(robot.model);
-  if (tray.link >= 0) {
-    profile.tray_link = robot.model.links[tray.link].name;
-    profile.X_TO = tray.X_TO;
-  }
+  GuessTray(robot.model, &profile);
   profile.footprint = OutlineOf(robot.model, profile.base_link, {});
-  const DriveGuess guess = GuessDrive(robot.model);
-  profile.base_controller.drive = guess.drive;
+  profile.base_controller.drive = GuessAndSayDrive(robot.model);
   base::Log(base::LogLevel::kWarn,
-            fmt::format("robot={} drive={} guessed, because it has {}; its motion sets and base "
-                        "controller are ASSUMED to be a PR2's; a profile says what they are",
-                        robot.model.name, ToString(guess.drive), guess.why));
+            fmt::format("robot={} motion sets and base controller are ASSUMED to be a PR2's; a "
+                        "profile says what they are",
+                        robot.model.name));
   profile.hash = HashOf(profile);
   return robot;
 }

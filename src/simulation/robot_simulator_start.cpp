@@ -132,19 +132,20 @@ void RobotSimulator::RefuseBadStart() {
 }
 
 void RobotSimulator::RefuseInsideRobot(const world::ObjectState& object, physics::BodyId body) {
-  bool is_inside = false;
+  std::optional<Inside> inside;
   if (planar_) {  // exactly: an arm may reach over an object
     for (const physics::Touch& touch : physics_->FindTouches()) {
-      is_inside = is_inside || (touch.loose == body && touch.depth > kStartSlack &&
-                                !planar_->LinkOfBody(touch.other).empty());
+      const std::string link = planar_->LinkOfBody(touch.other);
+      const double deepest = inside ? inside->depth : kStartSlack;
+      if (touch.loose == body && touch.depth > deepest && !link.empty()) {
+        inside = Inside{link, touch.depth};
+      }
     }
   } else {
     const auto& shapes = scene_->world.models.at(object.model)->collisions;
-    is_inside = Overlap(shapes, object.X_MO, frozen_->shapes_B(), X_MB());
+    inside = FindInside(shapes, object.X_MO, frozen_->shapes_B(), X_MB());
   }
-  if (!is_inside) return;
-  throw base::ConfigError(
-      fmt::format("object '{}' starts inside the robot; put it on a free place", object.name));
+  if (inside) FailInsideRobot(object, scene_->world, *inside);
 }
 
 }  // namespace hires::simulation

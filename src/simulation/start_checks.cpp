@@ -30,6 +30,15 @@ void RefuseStiff(const char* what, double frequency, double damping, double time
       what, frequency, damping, time_step, h * h + 4.0 * damping * h, kStiffest));
 }
 
+/// [m] that the shapes of an upright model reach below its origin.
+double HeightBelowOrigin(const world::ObjectModel& model) {
+  geometry::Aabb bounds;
+  for (const geometry::Collision& shape : model.collisions) {
+    bounds.Include(geometry::BoundsOf(shape.shape, shape.X_BS));
+  }
+  return -bounds.lower.z();
+}
+
 }  // namespace
 
 bool Overlap(const std::vector<geometry::Collision>& a, const Pose3& X_MA,
@@ -48,6 +57,41 @@ bool Overlap(const std::vector<geometry::Collision>& a, const Pose3& X_MA,
     }
   }
   return false;
+}
+
+std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object, const Pose3& X_MO,
+                                 const std::vector<geometry::Collision>& robot_B,
+                                 const Pose3& X_MB) {
+  std::optional<Inside> deepest;
+  for (const geometry::Collision& part : robot_B) {
+    const geometry::Aabb around = geometry::BoundsOf(part.shape, X_MB * part.X_BS);
+    for (const geometry::Collision& shape : object) {
+      if (!Overlap({shape}, X_MO, {part}, X_MB)) continue;
+      const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, X_MO * shape.X_BS);
+      const double depth = std::min(bounds.upper.z(), around.upper.z()) -
+                           std::max(bounds.lower.z(), around.lower.z());
+      if (!deepest || depth > deepest->depth) deepest = {part.name, depth};
+    }
+  }
+  return deepest;
+}
+
+void FailInsideRobot(const world::ObjectState& object, const world::World& world,
+                     const Inside& inside) {
+  const double below = HeightBelowOrigin(*world.models.at(object.model));
+  const std::string cause =
+      below > kStartSlack
+          ? fmt::format(
+                "its model '{}' reaches {:.3f} m below its origin, and a pose is that of the "
+                "middle of the underside: raise the shapes in the model by as much",
+                object.model, below)
+          : fmt::format(
+                "its pose has z {:.3f} m: give the height of what it stands on, or put it on "
+                "a free place",
+                object.X_MO.translation.z());
+  throw base::ConfigError(
+      fmt::format("object '{}' starts inside the robot, {:.3f} m deep in '{}'; {}", object.name,
+                  inside.depth, inside.part, cause));
 }
 
 bool StandsOn(const std::vector<geometry::Collision>& robot_B,

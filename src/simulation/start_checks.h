@@ -1,6 +1,7 @@
 // Private to this layer: what a simulator's start must satisfy. All throw base::ConfigError.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,21 @@ constexpr double kStartSlack = 0.005;  ///< [m] bodies may overlap this much at 
 /// prisms, as in RobotClearance.
 bool Overlap(const std::vector<geometry::Collision>& a, const geometry::Pose3& X_MA,
              const std::vector<geometry::Collision>& b, const geometry::Pose3& X_MB);
+
+/// A shape that something starts inside of.
+struct Inside {
+  std::string part;   ///< name of that shape
+  double depth{0.0};  ///< [m] by which both heights overlap
+};
+/// The one of the robot's shapes that the object reaches into deepest, as Overlap judges.
+std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object,
+                                 const geometry::Pose3& X_MO,
+                                 const std::vector<geometry::Collision>& robot_B,
+                                 const geometry::Pose3& X_MB);
+
+/// Throws: which object is inside of which part, how deep, and what is the likely cause.
+[[noreturn]] void FailInsideRobot(const world::ObjectState& object, const world::World& world,
+                                  const Inside& inside);
 
 /// Does the object's lowest point lie on top of one of the robot's shapes?
 bool StandsOn(const std::vector<geometry::Collision>& robot_B,

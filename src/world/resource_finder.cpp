@@ -50,6 +50,16 @@ std::vector<std::string> FoldersInEnvironment(const char* variable) {
   return value == nullptr ? std::vector<std::string>{} : base::Split(value, ':');
 }
 
+/// Our own stand-ins for what nearly every Gazebo world includes (sun, ground_plane), where the
+/// user has none. ROS_PACKAGE_PATH names the package itself or the folder that holds it.
+void AppendOwn(std::vector<std::string>* folders) {
+  for (const std::string& place : FoldersInEnvironment("ROS_PACKAGE_PATH")) {
+    for (const char* below : {"worlds/gazebo", "hires/worlds/gazebo"}) {
+      folders->push_back((fs::path(place) / below).string());
+    }
+  }
+}
+
 bool IsBelow(const fs::path& path, const fs::path& folder) {
   const fs::path relative =
       fs::weakly_canonical(path).lexically_relative(fs::weakly_canonical(folder));
@@ -143,6 +153,7 @@ std::vector<std::string> ModelFoldersFor(const std::string& file,
     const std::vector<std::string> more = FoldersInEnvironment(variable);
     folders.insert(folders.end(), more.begin(), more.end());
   }
+  AppendOwn(&folders);
   return folders;
 }
 

@@ -81,6 +81,24 @@ TEST_F(ScenarioTest, ReadsEverythingInLowerCase) {
   EXPECT_FALSE(scenario.objects[1].is_told);
 }
 
+TEST_F(ScenarioTest, ARobotWithoutTorsoAndArmsAndAWorldWithoutObjectsNeedNoWord) {
+  const Scenario scenario = ReadScenario(
+      folder_.Write("bare.yaml", "task: go\nknowledge: []\nrobot: {pose: [1, 2, 3]}\n"));
+  EXPECT_EQ(scenario.torso, "");
+  EXPECT_THAT(scenario.arms, IsEmpty());
+  EXPECT_THAT(scenario.objects, IsEmpty());
+}
+
+TEST_F(ScenarioTest, AllMissingKeysAreToldAtOnce) {
+  const std::string path = folder_.Write("bare.yaml", "robot: {torso: up}\n");
+  try {
+    ReadScenario(path);
+    FAIL() << "no error";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("task, knowledge, robot.pose are missing"));
+  }
+}
+
 TEST_F(ScenarioTest, BadFilesAreErrorsThatNameTheKey) {
   EXPECT_THAT(ErrorOf("task: carry peppermill1", "task: ''"),
               AllOf(HasSubstr("some_day.yaml"), HasSubstr("wanted a task")));

@@ -159,9 +159,9 @@ TEST_F(RobotProfileFile, HashIgnoresLayoutAndPlace) {
 TEST_F(RobotProfileFile, WhatHasADefaultMayBeLeftOut) {
   const Robot robot = LoadRobot(Write(R"(urdf: robots/tricycle.urdf
 base_link: chassis
+tray_link: ""
 motion_sets:
   only: {max_linear_velocity: 0.9, max_angular_velocity: 1.1, max_linear_acceleration: 1.2, max_angular_acceleration: 1.3}
-default_motion_set: only
 base_controller:
   drive: differential
   limits: {max_linear_velocity: 1.5, max_angular_velocity: 2.5, max_linear_acceleration: 3.5, max_angular_acceleration: 4.5}
@@ -174,12 +174,34 @@ base_controller:
   EXPECT_EQ(robot.profile.base_controller.loop_frequency, BaseControllerParams{}.loop_frequency);
 }
 
+TEST_F(RobotProfileFile, TheModelTellsWhatTheFileLeavesOut) {
+  const Robot robot = LoadRobot(Write("urdf: robots/tricycle.urdf\n"));
+  const Robot bare = LoadRobotFromUrdf(folder_.path() / "robots/tricycle.urdf");
+  EXPECT_EQ(robot.hash(), bare.hash());
+  EXPECT_EQ(robot.profile.base_link, bare.profile.base_link);
+  EXPECT_EQ(robot.profile.tray_link, bare.profile.tray_link);
+  EXPECT_EQ(LoadRobot(Write("urdf: robots/tricycle.urdf\ntray_link: \"\"\n")).profile.tray_link,
+            "");
+}
+
+TEST_F(RobotProfileFile, TheControllerLetsEveryMotionSetPassUnlessTheFileSaysLess) {
+  const std::string sets = R"(urdf: robots/tricycle.urdf
+motion_sets:
+  quick: {max_linear_velocity: 0.9, max_angular_velocity: 0.5, max_linear_acceleration: 1.2, max_angular_acceleration: 1.3}
+  nimble: {max_linear_velocity: 0.2, max_angular_velocity: 1.5, max_linear_acceleration: 0.2, max_angular_acceleration: 3.3}
+default_motion_set: quick
+)";
+  const MotionSet limits = LoadRobot(Write(sets)).profile.base_controller.limits;
+  EXPECT_EQ(limits.max_linear_velocity, 0.9);
+  EXPECT_EQ(limits.max_angular_velocity, 1.5);
+  EXPECT_EQ(limits.max_linear_acceleration, 1.2);
+  EXPECT_EQ(limits.max_angular_acceleration, 3.3);
+}
+
 TEST_F(RobotProfileFile, AllMissingKeysAreToldAtOnce) {
-  const std::string path = Write("base_link: chassis\nbase_controller: {drive: differential}\n");
+  const std::string path = Write("base_link: chassis\nmotion_sets: {}\n");
   EXPECT_THAT([&] { LoadRobot(path); },
-              ThrowsMessage<base::ConfigError>(HasSubstr(
-                  "urdf, motion_sets, default_motion_set, base_controller.limits, "
-                  "base_controller.command_timeout, base_controller.at_timeout are missing")));
+              ThrowsMessage<base::ConfigError>(HasSubstr("urdf, default_motion_set are missing")));
 }
 
 TEST_F(RobotProfileFile, HashTellsApartEveryField) {
@@ -211,8 +233,7 @@ TEST_F(RobotProfileFile, HashTellsApartEveryField) {
 }
 
 TEST_F(RobotProfileFile, RefusesMissingAndUnknownKeys) {
-  ExpectRefused("base_link: chassis\n", "", {"base_link is missing; add it"});
-  ExpectRefused("  drive: differential\n", "", {"base_controller.drive is missing; add it"});
+  ExpectRefused("urdf: robots/tricycle.urdf\n", "", {"urdf is missing; add it"});
   ExpectRefused("differential", "car", {"base_controller.drive", "'car'", "differential"});
   ExpectRefused("joints: {", "jonts: {}\njoints: {", {"'jonts' is unknown", "'joints'"});
   ExpectRefused("  loop_damping", "  loop_dampening: 1\n  loop_damping",

@@ -563,7 +563,32 @@ TEST(RobotSimulatorTest, RefusesObjectsInsideOtherThings) {
   world::ObjectState in_robot = OnTray("mill1", "mill", kMiddle);
   in_robot.X_MO.translation.z() -= 0.1;
   EXPECT_THAT(WhyRefused(With({in_robot}), kMiddle),
-              HasSubstr("object 'mill1' starts inside the robot"));
+              AllOf(HasSubstr("object 'mill1' starts inside the robot, 0."),
+                    HasSubstr("m deep in '"), HasSubstr("give the height of what it stands on")));
+}
+
+TEST(RobotSimulatorTest, NamesTheOneOfSeveralObjectsThatIsInsideTheRobot) {
+  world::ObjectState sunk = OnTray("mill2", "mill", kMiddle);
+  sunk.X_MO.translation.z() -= 0.1;
+  world::ObjectState away = OnTray("mill1", "mill", kMiddle);
+  away.X_MO.translation = {1.0, 1.0, 0.0};
+  EXPECT_THAT(WhyRefused(With({away, sunk}), kMiddle), HasSubstr("object 'mill2' starts inside"));
+  EXPECT_THAT(WhyRefused(With({sunk, away}), kMiddle), HasSubstr("object 'mill2' starts inside"));
+}
+
+TEST(StartInsideTest, AModelWithItsOriginInItsMiddleIsToldAsTheCause) {
+  world::World world = Room();
+  auto model = std::make_shared<world::ObjectModel>(*world.models.at("mill"));
+  for (geometry::Collision& shape : model->collisions) shape.X_BS.translation.z() -= 0.05;
+  world.models["mill"] = model;
+  const auto scene = simulation::MakeScene(world, TrayRobot());
+  try {
+    RobotSimulator(scene, {}, With({OnTray("mill1", "mill", kMiddle)}), StandingAt(kMiddle),
+                   base::Rng(1));
+    FAIL() << "no error";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("below its origin"), HasSubstr("'mill'")));
+  }
 }
 
 TEST(RobotSimulatorTest, AcceptsAnObjectThatStandsOnATable) {

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
 #include "hires/world/world.h"
@@ -178,6 +180,18 @@ TEST_F(LoadWorldTest, ModelPathIsSearchedToo) {
   EXPECT_THAT(MessageOf<base::ConfigError>([&] { LoadWorld(path); }),
               AllOf(HasSubstr("test.world:3"), HasSubstr("model://mug"), HasSubstr("looked in"),
                     HasSubstr("GAZEBO_MODEL_PATH")));
+}
+
+TEST_F(LoadWorldTest, SunAndGroundPlaneOfGazeboWorldsAreThereAndLightIsPassedOver) {
+  const char* before = std::getenv("ROS_PACKAGE_PATH");
+  const std::string restored = before == nullptr ? "" : before;
+  setenv("ROS_PACKAGE_PATH", HIRES_SOURCE_DIR, 1);
+  const World world = Load(
+      "<include><uri>model://sun</uri></include><include><uri>model://ground_plane</uri></include>"
+      "<light type='point' name='lamp'><pose>0 0 3 0 0 0</pose></light>");
+  setenv("ROS_PACKAGE_PATH", restored.c_str(), 1);
+  EXPECT_EQ(world.floor_friction, 1.0);
+  EXPECT_TRUE(world.statics.empty());
 }
 
 TEST_F(LoadWorldTest, FloorPlaneGivesTheFrictionOfTheFloor) {

@@ -23,7 +23,7 @@ struct Scenario {
   std::string task;                         ///< as `hires achieve` takes it
   std::vector<std::string> knowledge;       ///< paths, for an empty Blackboard
   geometry::Pose2 X_MB;                     ///< the robot's base
-  std::string torso;                        ///< posture, lower case
+  std::string torso;                        ///< posture, lower case; "": the robot has no torso
   std::map<std::string, std::string> arms;  ///< arm's instance -> posture, lower case
   std::vector<ScenarioObject> objects;      ///< those that it is told of first, then the hidden
 };

@@ -74,10 +74,11 @@ struct Robot {
 geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_link,
                             const JointPositions& joints);
 
-/// Reads the profile and the URDF that it names. These keys must be there: `urdf`, `base_link`,
-/// `motion_sets`, `default_motion_set` and of `base_controller` `drive`, `limits`,
-/// `command_timeout`, `at_timeout`; all others have the defaults above. No `footprint`, or an empty
-/// list, asks for the hull of the collision shapes from above, joints in the driving posture.
+/// Reads the profile and the URDF that it names, which must be there, and so must, where there are
+/// several `motion_sets`, `default_motion_set`. Of the others, base_link, tray_link, object_on_tray
+/// and base_controller.drive are derived as below where they are left out, its limits are the
+/// largest of the motion sets, and an empty footprint is the hull from above, joints in the driving
+/// posture.
 /// @throws base::ConfigError naming file and key; all missing keys at once.
 Robot LoadRobot(const std::string& profile_path);
 

@@ -48,7 +48,8 @@ geometry::Pose3 ReadObjectPose(base::ParamReader* in) {
 
 void ReadRobot(base::ParamReader in, Scenario* scenario) {
   scenario->X_MB = ReadRobotPose(&in);
-  scenario->torso = GetName("torso", &in);
+  if (in.Has("torso")) scenario->torso = GetName("torso", &in);
+  if (!in.Has("arms")) return;
   base::ParamReader arms = in.Sub("arms");
   for (const std::string& arm : arms.Keys()) {
     scenario->arms[base::ToLower(arm)] = GetName(arm, &arms);
@@ -57,6 +58,7 @@ void ReadRobot(base::ParamReader in, Scenario* scenario) {
 
 void ReadObjects(const std::string& key, bool is_told, base::ParamReader* in,
                  std::set<std::string>* seen, Scenario* scenario) {
+  if (!in->Has(key)) return;
   for (base::ParamReader& entry : in->SubList(key)) {
     ScenarioObject object;
     object.name = GetName("name", &entry);
@@ -72,6 +74,7 @@ void ReadObjects(const std::string& key, bool is_told, base::ParamReader* in,
 
 Scenario ReadScenario(const std::string& path) {
   base::ParamReader in = base::ParamReader::FromFile(path);
+  in.RequireKeys({"task", "knowledge", "robot.pose"});
   Scenario scenario;
   scenario.name = std::filesystem::path(path).stem().string();
   scenario.task = in.GetString("task");

@@ -49,6 +49,9 @@ void SetPostures(const robot::Robot& robot, const Scenario& scenario, const std:
                  robot::JointPositions* joints) {
   if (!robot.profile.upper_body) return;  // nothing above the base moves
   const robot::UpperBodyProfile& body = *robot.profile.upper_body;
+  if (scenario.torso.empty()) {
+    throw ConfigError(where + ": robot.torso is missing; name the posture in which it begins");
+  }
   (*joints)[body.torso_joint] = Lookup(body.torso_postures, "torso posture", scenario.torso, where);
   for (const auto& [name, posture] : scenario.arms) {
     const robot::ArmProfile& arm = Lookup(body.arms, "arm", name, where);
