@@ -56,6 +56,13 @@ void ReadPut(const std::string& text, ImagineStart* start) {
   if (numbers.size() != least && numbers.size() != least + 1) {
     throw base::ConfigError(fmt::format("--put '{}': wanted {}", text, kPutWanted));
   }
+  if (is_in_map && numbers[2] < 0.0) {
+    throw base::ConfigError(
+        fmt::format("--put '{}': z is {:g} m, which is below the floor; give the height of what it "
+                    "stands on, 0 "
+                    "on the floor",
+                    text, numbers[2]));
+  }
   imagination::PutObject put;
   put.object = parts[0];
   if (!is_in_map) put.area = parts[1];

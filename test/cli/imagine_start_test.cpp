@@ -76,6 +76,9 @@ TEST(ImagineStartTest, RefusesWhatItCannotRead) {
     EXPECT_THAT(why_not(options), AllOf(HasSubstr(put), HasSubstr("OBJECT:AREA:X,Y[,YAW]"))) << put;
   }
   StartOptions options = AtDoor();
+  options.put = {"book1:1,2,-0.1"};
+  EXPECT_THAT(why_not(options), AllOf(HasSubstr("'book1:1,2,-0.1'"), HasSubstr("below the floor")));
+  options = AtDoor();
   options.in_hand = {"mug1"};
   EXPECT_THAT(why_not(options),
               AllOf(HasSubstr("--object-in-hand 'mug1'"), HasSubstr("OBJECT:ARM")));

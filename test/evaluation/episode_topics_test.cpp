@@ -82,7 +82,7 @@ TEST(EpisodeTopicsTest, WithoutWhatHelpsABagIsUsable) {
   const TopicCheck check = CheckTopics(OfPr2(), bag);
   EXPECT_TRUE(check.is_usable());
   EXPECT_THAT(check.Advice(), HasSubstr("helps:\n  /execute_action/goal"));
-  EXPECT_THAT(check.Advice(), Not(HasSubstr("rosbag record")));
+  EXPECT_THAT(check.Advice(), HasSubstr("episode_recorder.launch record:=FOLDER"));
 }
 
 TEST(EpisodeTopicsTest, AnEmptyBagLacksAllThatIsNeeded) {

@@ -185,7 +185,7 @@ std::string TopicCheck::Advice() const {
   const std::string helpful = ListOf(missing, TopicNeed::kHelps);
   if (!needed.empty()) text += "no message came on what is needed:" + needed + '\n';
   if (!helpful.empty()) text += "no message came on what helps:" + helpful + '\n';
-  if (needed.empty()) return text;
+  if (needed.empty() && helpful.empty()) return text;
   std::vector<EpisodeTopic> all = there;
   all.insert(all.end(), missing.begin(), missing.end());
   return text +
