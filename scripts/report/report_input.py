@@ -84,7 +84,7 @@ def read(path, verbs):
     answer = Answer(content, name)
     if not answer.has('/report'):
         raise ReportError('%s: has no field /report, so it is no answer of `hires`, or one of a '
-                          'version before 0.3: ask again with --json' % name)
+                          'version before 0.2: ask again with --json' % name)
     number = answer.at('/report/format', int)
     if not 1 <= number <= FORMAT:
         raise ReportError('%s: field /report/format is %d, this program reads 1 to %d; take the '

@@ -69,13 +69,15 @@ std::string UnknownName(std::string_view kind, const std::string& name,
   for (const std::string& candidate : NearestNames(name, known)) {
     if (IsAlike(ToLower(name), ToLower(candidate))) alike.push_back(candidate);
   }
-  if (!alike.empty()) {
-    return fmt::format("{} '{}' is unknown; did you mean '{}'?", kind, name, Join(alike, "' or '"));
+  const bool is_guess = !alike.empty() || known.size() == 1;
+  if (is_guess) {
+    return fmt::format("{} '{}' is unknown; did you mean '{}'?", kind, name,
+                       Join(alike.empty() ? known : alike, "' or '"));
   }
   constexpr std::size_t kMost = 12;
   const auto end = known.begin() + static_cast<long>(std::min(kMost, known.size()));
-  return fmt::format("{} '{}' is unknown; known: {}{}", kind, name,
-                     Join({known.begin(), end}, ", "), known.size() > kMost ? ", ..." : "");
+  return fmt::format("{} '{}' is unknown; did you mean one of '{}'{}?", kind, name,
+                     Join({known.begin(), end}, "', '"), known.size() > kMost ? ", ..." : "");
 }
 
 std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {

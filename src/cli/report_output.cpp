@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -39,9 +40,10 @@ class UnnamedFile {
       std::rewind(file_);
       return;
     }
+    const int why = errno;
     if (file_ != nullptr) std::fclose(file_);
     throw base::ConfigError(
-        fmt::format("cannot make a temporary file: {}; make room in /tmp", strerror(errno)));
+        fmt::format("cannot make a temporary file: {}; make room in /tmp", strerror(why)));
   }
   ~UnnamedFile() { std::fclose(file_); }
   UnnamedFile(const UnnamedFile&) = delete;
@@ -146,8 +148,12 @@ void WriteReport(const ReportOptions& options, const ReportOrigin& origin,
   ordered_json report{{"report", HeadJson(options, origin)}};
   report.update(answer);
   if (!options.json.empty()) evaluation::WriteJson(report, options.json);
-  const std::string text = report.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-  MakePictures("-", options.html, options.png, options.package_folder, text);
+  // What the answer names beside it, pictures say, is found from its own file.
+  const bool is_stored = !options.json.empty() && fs::is_regular_file(options.json);
+  const std::string text =
+      is_stored ? "" : report.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  MakePictures(is_stored ? options.json : "-", options.html, options.png, options.package_folder,
+               text);
 }
 
 void RunReportProgram(const std::string& package_folder, const std::vector<std::string>& arguments,

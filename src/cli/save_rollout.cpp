@@ -179,6 +179,8 @@ std::vector<Strip> WriteStrips(const std::string& html, const ImagineQuery& quer
   std::vector<Strip> strips;
   for (const auto& [which, what] : {std::pair{"worst", "The worst of all"},
                                     std::pair{"median", "The median of the first alternative"}}) {
+    const bool has_median = report.ranking.front().evidence.median_rollout >= 0;
+    if (which == std::string("median") && !has_median) continue;  // none came to its end
     const auto replayed = Replay(which, report, setup, cancelled, nullptr);
     if (!replayed) return {};
     const RolloutRecording& recording = replayed->recording;

@@ -170,6 +170,8 @@ std::string WhyBetter(const Evidence& best, const Evidence& next, const std::str
                                                        : WhyLater(best, next, best_key, next_key));
 }
 
+constexpr double kNoticeable = 0.1;  // [s]
+
 /// The quickest alternative that is good enough, too, and whose interval of success overlaps that
 /// of the best: a reader with little time might prefer it.
 const Evidence* QuickerRival(const std::vector<Evidence>& alternatives, const Evidence& best,
@@ -179,7 +181,7 @@ const Evidence* QuickerRival(const std::vector<Evidence>& alternatives, const Ev
     const bool is_rival =
         Judge(evidence.success, criteria.min_success) == Suitability::kReached &&
         evidence.success.upper >= best.success.lower &&
-        evidence.duration.mean < (rival ? rival->duration.mean : best.duration.mean);
+        evidence.duration.mean < (rival ? rival->duration.mean : best.duration.mean - kNoticeable);
     if (is_rival) rival = &evidence;
   }
   return rival;
@@ -192,7 +194,7 @@ std::string WhatSpeaksAgainst(const std::vector<Evidence>& alternatives, const E
   const Evidence* rival = QuickerRival(alternatives, best, criteria);
   if (!rival) return "";
   return fmt::format(
-      "; but {} is {:.2g} s quicker, and the intervals of success overlap (ranking 'cost' "
+      "; but {} is {:.1f} s quicker, and the intervals of success overlap (ranking 'cost' "
       "weighs seconds against failures)",
       names[rival - alternatives.data()], best.duration.mean - rival->duration.mean);
 }

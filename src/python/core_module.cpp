@@ -189,7 +189,7 @@ void BindRecording(py::module_* m) {
       .def_property_readonly(
           "time",
           [](const RolloutRecording& r) { return Column(r, [](auto& s) { return s.time; }); },
-          "[s] since the robot was put there; the action begins after settling.")
+          "[s] since the action began; before it the load settles.")
       .def_property_readonly(
           "position",
           [](const RolloutRecording& r) {

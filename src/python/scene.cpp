@@ -129,6 +129,7 @@ void Scene::AddMotionSet(const std::string& name, double speed, double accelerat
   CheckLimit(name, "turn_acceleration", "rad/s^2", turn_acceleration,
              most.max_angular_acceleration);
   // A copy, so that requests that are being played keep theirs.
+  const std::lock_guard lock(*mutex_);
   auto skills = std::make_shared<skills::SkillSet>(*setup_.skills);
   const robot::MotionSet set{speed, turn_speed, acceleration, turn_acceleration};
   if (!skills->motion_sets.emplace(base::ToLower(name), set).second) {
@@ -139,8 +140,12 @@ void Scene::AddMotionSet(const std::string& name, double speed, double accelerat
 }
 
 imagination::RolloutSetup Scene::SetupOf(const StartOfAction& start, std::uint64_t seed) const {
+  const imagination::ImaginationSetup setup = [this] {
+    const std::lock_guard lock(*mutex_);
+    return setup_;
+  }();
   return imagination::MakeRolloutSetup(
-      setup_, imagination::MakeStartState(setup_, AtomsOf(start), PutObjectsOf(start)), seed);
+      setup, imagination::MakeStartState(setup, AtomsOf(start), PutObjectsOf(start)), seed);
 }
 
 Answer Scene::Imagine(const StartOfAction& start, const base::ActionTemplate& action,

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -75,6 +77,9 @@ class Scene {
   imagination::RolloutSetup SetupOf(const StartOfAction& start, std::uint64_t seed) const;
 
   imagination::ClientConfig config_;
+  // Requests read in other threads what add_motion_set changes. Held by pointer, so that a scene
+  // moves.
+  std::unique_ptr<std::mutex> mutex_{std::make_unique<std::mutex>()};
   imagination::ImaginationSetup setup_;
 };
 

@@ -272,6 +272,13 @@ Drive GuessAndSayDrive(const RobotModel& model) {
   return guess.drive;
 }
 
+void SayAssumedMotion(const RobotModel& model) {
+  base::Log(base::LogLevel::kWarn,
+            fmt::format("robot={} motion sets and base controller are ASSUMED to be a PR2's; a "
+                        "profile with motion_sets says what they are",
+                        model.name));
+}
+
 /// What the file leaves out is taken from the model, as for a bare URDF.
 void FillFromModel(ParamReader in, Robot* robot) {
   RobotProfile& profile = robot->profile;
@@ -281,6 +288,7 @@ void FillFromModel(ParamReader in, Robot* robot) {
     GuessTray(robot->model, &profile);
     if (in.Has("object_on_tray")) profile.X_TO = X_TO;
   }
+  if (!in.Has("motion_sets")) SayAssumedMotion(robot->model);
   if (!in.Has("base_controller") || !in.Sub("base_controller").Has("drive")) {
     profile.base_controller.drive = GuessAndSayDrive(robot->model);
   }
@@ -336,10 +344,7 @@ Robot LoadRobotFromUrdf(const std::string& urdf_path) {
   GuessTray(robot.model, &profile);
   profile.footprint = OutlineOf(robot.model, profile.base_link, {});
   profile.base_controller.drive = GuessAndSayDrive(robot.model);
-  base::Log(base::LogLevel::kWarn,
-            fmt::format("robot={} motion sets and base controller are ASSUMED to be a PR2's; a "
-                        "profile says what they are",
-                        robot.model.name));
+  SayAssumedMotion(robot.model);
   profile.hash = HashOf(profile);
   return robot;
 }

@@ -1,7 +1,6 @@
 #include "hires/ros/controller_topics.h"
 
-#include "hires/ros/control_goals.h"
-#include "hires/ros/pr2_gripper_command.h"
+#include "hires/ros/controller_messages.h"
 #include "hires/ros/robot_messages.h"
 
 namespace hires_ros {
@@ -12,6 +11,9 @@ using hires::control::TrajectoryInterface;
 namespace {
 
 constexpr int kQueue = 10;
+// [N] more than a gripper has: controllers of control_msgs take an effort's size for its limit, so
+// that what means "no limit" to a PR2 would be one newton.
+constexpr double kNoLimit = 1000.0;
 
 }  // namespace
 
@@ -45,7 +47,7 @@ void GripperTopic::Send(const hires::robot::GripperCommand& command) const {
   if (interface_ == GripperInterface::kGripperCommand) {
     GripperCommandActionGoal goal;
     goal.position = command.gap;
-    goal.max_effort = command.max_effort;
+    goal.max_effort = command.max_effort < 0.0 ? kNoLimit : command.max_effort;
     publisher_.publish(goal);
   } else {
     publisher_.publish(Pr2GripperCommand{command.gap, command.max_effort});

@@ -4,15 +4,18 @@
 #include <ros/console.h>
 #include <ros/duration.h>
 #include <ros/master.h>
+#include <ros/package.h>
 #include <ros/this_node.h>
 #include <sys/types.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <vector>
 
 #include "hires/relay/uri.h"
 #include "hires/ros/xmlrpc_master_api.h"
@@ -21,7 +24,7 @@ namespace hires_ros {
 namespace {
 
 constexpr double kCallTimeout = 0.5;  // [s]
-constexpr double kPatience = 1.0;     // [s]
+constexpr double kPatience = 15.0;    // [s] as long as roslaunch waits for nodes that it ends
 
 /// The process that bears the name and answers.
 std::optional<int> BearerOf(const std::string& name) {
@@ -32,28 +35,49 @@ std::optional<int> BearerOf(const std::string& name) {
   return endpoint ? AskPid(*endpoint, name, kCallTimeout) : std::nullopt;
 }
 
+std::vector<std::string> CommandOf(pid_t process) {
+  std::ifstream file(fmt::format("/proc/{}/cmdline", process), std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(file, word, '\0');) words.push_back(word);
+  return words;
+}
+
 /// Of the program and of what it interprets: /usr/bin/python3 /usr/bin/roslaunch.
-bool IsRoslaunch(pid_t process) {
-  std::ifstream words(fmt::format("/proc/{}/cmdline", process), std::ios::binary);
-  std::string word;
-  for (int i = 0; i < 2 && std::getline(words, word, '\0'); ++i) {
-    if (std::filesystem::path(word).filename() == "roslaunch") return true;
-  }
-  return false;
+bool IsRoslaunch(const std::vector<std::string>& command) {
+  const auto end =
+      command.begin() + std::min<std::ptrdiff_t>(2, static_cast<std::ptrdiff_t>(command.size()));
+  return std::any_of(command.begin(), end, [](const std::string& word) {
+    return std::filesystem::path(word).filename() == "roslaunch";
+  });
+}
+
+/// Whether it was asked for a launch file of this package, and not for one that includes it: a
+/// robot's drivers are not ours to end.
+bool IsOfThisPackage(const std::vector<std::string>& command) {
+  const std::string folder = ros::package::getPath("hires") + '/';
+  return std::any_of(command.begin(), command.end(), [&](const std::string& word) {
+    return word == "hires" || word.compare(0, folder.size(), folder) == 0;
+  });
+}
+
+void EndOwnLaunch() {
+  if (IsOfThisPackage(CommandOf(getppid()))) EndLaunch();
 }
 
 }  // namespace
 
 void EndLaunch() {
   const pid_t parent = getppid();
-  if (!IsRoslaunch(parent) || kill(parent, SIGINT) != 0) return;
-  // A child that ends before roslaunch has understood would be called dead, or started again.
+  if (!IsRoslaunch(CommandOf(parent))) return;
+  std::signal(SIGINT, SIG_DFL);
+  if (kill(parent, SIGINT) != 0) return;
+  // A child that ends before roslaunch ends it would be called dead, or started again.
   ros::WallDuration(kPatience).sleep();
 }
 
 int EndMisconfigured(const std::string& node, const hires::base::ConfigError& error) {
   ROS_FATAL("%s: %s", node.c_str(), error.what());
-  EndLaunch();
+  EndOwnLaunch();
   return EXIT_FAILURE;
 }
 
@@ -67,7 +91,7 @@ bool ClaimName() {
                         "another base_port",
                         name, *bearer, ros::master::getURI())
                 .c_str());
-  EndLaunch();
+  EndOwnLaunch();
   return false;
 }
 

@@ -97,7 +97,7 @@ TEST(ListCommandTest, MotionSetsAndPosturesAreTheRobots) {
 }
 
 TEST(ListCommandTest, FilesOfThePackageAreFound) {
-  EXPECT_THAT(ColumnOf(Listed({"robots"}), "robot"), ElementsAre("cart", "pr2"));
+  EXPECT_THAT(ColumnOf(Listed({"robots"}), "robot"), ElementsAre("cart", "fetch", "pr2"));
   EXPECT_THAT(ColumnOf(Listed({"worlds"}), "world"), ElementsAre("restaurant", "workshop"));
   EXPECT_THAT(ColumnOf(Listed({"scenarios"}), "scenario"), ElementsAre("serve_coffee", "topple"));
   EXPECT_THAT(ColumnOf(Listed({"truths"}), "truth"), ElementsAre("foreign", "harsh", "same"));

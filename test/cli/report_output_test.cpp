@@ -7,6 +7,7 @@
 
 #include "cli/command_run.h"
 #include "hires/base/text.h"
+#include "hires/cli/command_line.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
@@ -120,6 +121,54 @@ TEST_F(ReportOutputTest, AStoredAnswerGivesThePageThatItCameWith) {
   EXPECT_EQ(again.code, 0) << again.err;
   EXPECT_EQ(Read("again.html"), Read("plan.html"));
   EXPECT_EQ(NumFiles(), 3u) << "nothing half written stays";
+}
+
+TEST_F(ReportOutputTest, APageShowsTheWorstAndTheMedianRolloutWhereverItLies) {
+  std::filesystem::create_directory(Path("pages"));
+  const Ended ended =
+      RunHires({"imagine", "--local", "--quiet", "--world", kRoot + "/worlds/workshop.world",
+                "--from", "dock", "--object", "peppermill1", "--action", "move_base_param", "--arg",
+                "atBench", "--arg", "fast", "--rollouts", "2"},
+               {"--json", Path("answer.json"), "--html", Path("pages/answer.html")});
+  EXPECT_NE(ended.code, kExitBadInput) << ended.err;
+  const auto pictures = ReadJson("answer.json")["pictures"];
+  ASSERT_EQ(pictures.size(), 2u);
+  EXPECT_EQ(pictures[0]["file"], "pages/answer_worst.png");
+  EXPECT_THAT(pictures[1]["caption"], HasSubstr("move_base_param(atbench, fast)"));
+  EXPECT_THAT(Read("pages/answer_median.png"), StartsWith("\x89PNG"));
+  EXPECT_THAT(Read("pages/answer.html"), HasSubstr("data:image/png;base64,"));
+}
+
+TEST_F(ReportOutputTest, AnAnswerOfFailuresHasItsPageToo) {
+  const Ended ended = RunHires({"imagine",
+                                "--local",
+                                "--quiet",
+                                "--from",
+                                "manipulationAreaSouthTable1",
+                                "--object-in-hand",
+                                "mug1:rightArm1",
+                                "--posture",
+                                "torso1:TorsoUpPosture",
+                                "--action",
+                                "place_object",
+                                "--arg",
+                                "mug1",
+                                "--arg",
+                                "rightArm1",
+                                "--arg",
+                                "placingAreaWestRightTable1",
+                                "--put",
+                                "bowl1:7.539,11.241,0.73",
+                                "--put",
+                                "book1:7.481,11.384,0.73",
+                                "--put",
+                                "book2:7.613,11.405,0.73",
+                                "--rollouts",
+                                "2"},
+                               {"--json", Path("answer.json"), "--html", Path("answer.html")});
+  EXPECT_NE(ended.code, kExitBadInput) << ended.err;
+  EXPECT_EQ(ReadJson("answer.json")["pictures"].size(), 1u) << "none came to its end";
+  EXPECT_THAT(Read("answer.html"), HasSubstr("area_occupied"));
 }
 
 TEST_F(ReportOutputTest, ATaskIsDrawnFromAStoredAnswer) {

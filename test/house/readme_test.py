@@ -17,7 +17,7 @@ PREFIX = "scripts/run hires "
 SAME = "... the same with "
 MEASURED = re.compile(r"[\d.]+ ms of processor time, \d+ MB|"  # and not the same twice
                       r"in [\d.]+ s, \d+ times as fast as real time")
-DOCUMENTS = ("README.md", "docs/command_line.md")
+DOCUMENTS = ("README.md", "docs/command_line.md", "docs/tutorial.md")
 FEWEST = 7  # examples; documents whose blocks are not found any more must not pass
 LARGEST = 8192  # bytes of a README that is read; the rest is for docs/
 
@@ -81,7 +81,7 @@ def main():
         wrong.append("README.md has %d bytes, wanted at most %d; move some of it to docs/" %
                      (size, LARGEST))
     with tempfile.TemporaryDirectory() as folder:
-        for name in ("config", "worlds", "urdf"):
+        for name in ("config", "worlds", "urdf", "examples"):
             os.symlink(os.path.join(ROOT, name), os.path.join(folder, name))
         for path, words, shown in found:
             if words[0] not in ("imagine", "limits") or is_long:

@@ -218,7 +218,7 @@ TEST(WhyRecommendedTest, ConfidenceDecides) {
   const auto evidence = SumUpAll({Times(16, Success(30.0, 12)), Times(16, Success(45.0))});
   EXPECT_EQ(WhyRecommended(evidence, kRisk, kNames),
             "slow: 16 of 16 rollouts succeeded (at least 79 %) as with fast, and its confidence is "
-            "higher, 1.000 against 0.856; but fast is 15 s quicker, and the intervals of success "
+            "higher, 1.000 against 0.856; but fast is 15.0 s quicker, and the intervals of success "
             "overlap (ranking 'cost' weighs seconds against failures)");
 }
 
@@ -235,7 +235,7 @@ TEST(WhyRecommendedTest, WhatDecidesWithinChanceIsToldWithTheQuickerOnes) {
   EXPECT_EQ(
       WhyRecommended(evidence, kRisk, kNames),
       "slow: 64 of 64 rollouts succeeded (at least 94 %), fast failed in 1 of 64 (object_fell "
-      "1); but fast is 5 s quicker, and the intervals of success overlap (ranking 'cost' "
+      "1); but fast is 5.0 s quicker, and the intervals of success overlap (ranking 'cost' "
       "weighs seconds against failures)");
 }
 

@@ -18,9 +18,15 @@ using ::testing::IsEmpty;
 
 class OldStoresTest : public ::testing::Test {
  protected:
-  /// A file of that many bytes, changed so many days ago.
+  /// A file of that many bytes with the header of a store, changed so many days ago.
   std::string Write(const std::string& name, int days, std::size_t bytes = 100) {
-    const std::string path = folder_.Write(name, std::string(bytes, 'x'));
+    std::string content(bytes, 'x');
+    content.replace(68, 4, "HIRE");
+    return WriteFile(name, days, content);
+  }
+
+  std::string WriteFile(const std::string& name, int days, const std::string& content) {
+    const std::string path = folder_.Write(name, content);
     fs::last_write_time(path, now_ - std::chrono::hours(24 * days));
     return path;
   }
@@ -61,6 +67,12 @@ TEST_F(OldStoresTest, NothingButStoresOfEarlierRunsIsTouched) {
   EXPECT_THAT(Prune({1.0, 1}), IsEmpty());
   Write("topple_run_a.db", 1000);
   EXPECT_THAT(Prune({1.0, 1}, "blackboard.db"), IsEmpty()) << "a store that is no run's";
+}
+
+TEST_F(OldStoresTest, WhatOnlyBearsSuchANameStays) {
+  WriteFile("lab_run_a.db", 1000, std::string(5000, 'x'));
+  WriteFile("lab_run_b.db", 1000, "short");
+  EXPECT_THAT(Prune({1.0, 1}), IsEmpty());
 }
 
 TEST_F(OldStoresTest, AStoreThatIsBeingWrittenStays) {

@@ -81,7 +81,7 @@ TEST(TaskTextTest, AProblemIsFoundByItsNameInAnyCase) {
   problems[1].name = "clear_table";
   EXPECT_EQ(&FindProblem(problems, "Clear_Table"), &problems[1]);
   EXPECT_EQ(ConfigErrorOf([&] { FindProblem(problems, "clear_tabel"); }),
-            "problem 'clear_tabel' is unknown; did you mean 'clear_table' or 'serve_coffee'?");
+            "problem 'clear_tabel' is unknown; did you mean 'clear_table'?");
   EXPECT_EQ(ConfigErrorOf([] { FindProblem({}, "x"); }), "problem 'x' is unknown; none is defined");
 }
 

@@ -32,7 +32,8 @@ def imagine_on_command_line(*options):
 
 
 def without_measured(answer):
-    return {name: value for name, value in answer.items() if name not in MEASURED}
+    """Nor how it came about, which only a program knows that was called by a command."""
+    return {name: value for name, value in answer.items() if name not in (*MEASURED, 'report')}
 
 
 class CoreTest(unittest.TestCase):

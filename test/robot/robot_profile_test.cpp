@@ -265,7 +265,7 @@ TEST_F(RobotProfileFile, RefusesBadFootprints) {
 
 TEST_F(RobotProfileFile, RefusesBadMotionSets) {
   ExpectRefused("default_motion_set: brisk", "default_motion_set: brusque",
-                {"default_motion_set is 'brusque'", "known: brisk"});
+                {"default_motion_set is 'brusque'", "did you mean 'brisk'"});
   ExpectRefused("max_linear_velocity: 0.9", "max_linear_velocity: -0.9",
                 {"motion_sets.Brisk.max_linear_velocity is '-0.9'", "between 0"});
   ExpectRefused("default_motion_set",

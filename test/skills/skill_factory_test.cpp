@@ -119,7 +119,7 @@ TEST(SkillFactoryUpperBodyTest, ARobotWithoutArmsHasNoneOfTheirSkills) {
 TEST(SkillFactoryUpperBodyTest, RefusesUnknownArmsPosturesAndAreas) {
   EXPECT_THAT(WhyNotInRestaurant({"move_arm_to_side", {"middleArm1"}}),
               AllOf(HasSubstr("move_arm_to_side(middleArm1)"), HasSubstr("arm 'middleArm1'"),
-                    HasSubstr("leftarm1")));
+                    HasSubstr("rightarm1")));
   EXPECT_THAT(WhyNotInRestaurant({"pick_up_object", {"mug1", "rightarm2"}}),
               AllOf(HasSubstr("arm 'rightarm2' is unknown"), HasSubstr("'rightarm1'")));
   EXPECT_THAT(WhyNotInRestaurant({"move_torso", {"torsotopposture"}}),

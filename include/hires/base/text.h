@@ -16,7 +16,7 @@ std::vector<std::string> NearestNames(const std::string& name,
                                       const std::vector<std::string>& known,
                                       std::size_t at_most = 3);
 
-/// "'x' is unknown; did you mean 'y' or 'z'?" with `kind` in front: "area 'x' is unknown; ...".
+/// "area 'x' is unknown; did you mean 'y' or 'z'?"; where nothing is like it, all that are known.
 std::string UnknownName(std::string_view kind, const std::string& name,
                         const std::vector<std::string>& known);
 

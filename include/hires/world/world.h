@@ -64,8 +64,8 @@ struct World {
 
 /// Reads an SDF world. Models with `<static>true</static>` (or one link that is fixed to the world)
 /// become StaticBody, single-link models become loose objects (one ObjectModel per distinct
-/// description), `<frame>` elements become areas. `model://name` is looked for in `models/name/` next
-/// to the world file, in `model_path` and in GAZEBO_MODEL_PATH / SDF_PATH.
+/// description), `<frame>` elements become areas. `model://name` is looked for in `models/name/`
+/// next to the world file, in `model_path` and in GAZEBO_MODEL_PATH / SDF_PATH.
 /// @throws base::ConfigError naming file, element and remedy: malformed SDF, two models of one
 /// name, missing mesh or model, loose objects with joints, unphysical inertia, shapes that are not
 /// supported, poses that are not finite or lie more than 1 km away.

@@ -1,12 +1,15 @@
 #include "hires/knowledge/old_stores.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <fstream>
 #include <ratio>
 #include <tuple>
 
 #include "hires/base/error.h"
 #include "knowledge/store/store_lock.h"
+#include "knowledge/store/store_schema.h"
 
 namespace hires::knowledge {
 namespace {
@@ -20,6 +23,19 @@ struct OldStore {
   fs::file_time_type changed;
   std::uint64_t bytes{0};
 };
+
+/// By the header of SQLite's file, whatever it is called.
+bool IsStore(const fs::path& path) {
+  constexpr std::size_t kPlace = 68;  // of the application's id, four bytes, the highest first
+  std::array<char, kPlace + 4> head{};
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(head.data(), head.size())) return false;
+  std::uint32_t id = 0;
+  for (std::size_t i = kPlace; i < head.size(); ++i) {
+    id = id << 8 | static_cast<unsigned char>(head[i]);
+  }
+  return id == static_cast<std::uint32_t>(kApplicationId);
+}
 
 bool IsOfARun(const fs::path& path) {
   return path.extension() == ".db" && path.filename().string().find("_run_") != std::string::npos;
@@ -42,6 +58,7 @@ std::vector<OldStore> StoresBeside(const fs::path& store) {
   for (const fs::directory_entry& entry : fs::directory_iterator(store.parent_path(), error)) {
     if (!IsOfARun(entry.path()) || entry.path().filename() == store.filename()) continue;
     if (!entry.is_regular_file(error) || entry.is_symlink(error)) continue;
+    if (!IsStore(entry.path())) continue;
     const fs::file_time_type changed = entry.last_write_time(error);
     if (!error) stores.push_back({entry.path(), changed, BytesOf(entry.path())});
   }

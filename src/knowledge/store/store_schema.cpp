@@ -11,8 +11,6 @@
 namespace hires::knowledge {
 namespace {
 
-constexpr int kApplicationId = 0x48495245;  // "HIRE", in the header of SQLite's file
-
 // Version 1. Rows of `validity` are only ever appended; their end is written once, over
 // placeholders of at least its size, so that no page overflows.
 constexpr const char* kTables = R"sql(

@@ -7,6 +7,8 @@
 
 namespace hires::knowledge {
 
+constexpr int kApplicationId = 0x48495245;  ///< "HIRE", in the header of SQLite's file
+
 /// The schema this program writes. Older files are brought up to it, newer ones refused.
 constexpr int kStoreSchema = 4;
 

@@ -19,8 +19,8 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/robot/load_robot.h"
 #include "hires/ros/achieve_messages.h"
+#include "hires/ros/controller_messages.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/pr2_gripper_command.h"
 #include "hires/ros/robot_messages.h"
 
 namespace hires_ros {

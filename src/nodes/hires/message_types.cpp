@@ -9,8 +9,7 @@
 #include <std_msgs/Bool.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
-#include "hires/ros/control_goals.h"
-#include "hires/ros/pr2_gripper_command.h"
+#include "hires/ros/controller_messages.h"
 
 namespace hires_ros {
 namespace {

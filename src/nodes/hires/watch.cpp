@@ -283,6 +283,10 @@ void Play(const Recording& recording, const WatchOptions& options,
 int Watch(const WatchOptions& options) {
   hires::base::StopSignals signals;  // before any thread
   const Recording recording = ReadRecording(options);
+  if (recording.messages.empty()) {
+    throw hires::base::ConfigError(options.bag +
+                                   ": has nothing to show; save a rollout with --bag");
+  }
   const OwnMaster master(&signals);
   if (signals.Wait(0.0)) return hires::cli::kExitCancelled;
   std::cout << fmt::format("ROS_MASTER_URI={}\n{}\n", master.uri(), hires::cli::kPlaybackKeys)

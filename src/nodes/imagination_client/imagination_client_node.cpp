@@ -35,7 +35,7 @@ double SchedulerNow() {
 /// Where ROS keeps what programs write.
 std::string DefaultRolloutFolder() {
   const char* ros_home = std::getenv("ROS_HOME");
-  if (ros_home != nullptr) return std::string(ros_home) + "/hires_rollouts";
+  if (ros_home != nullptr && *ros_home != '\0') return std::string(ros_home) + "/hires_rollouts";
   const char* home = std::getenv("HOME");
   return std::string(home == nullptr ? "/tmp" : home) + "/.ros/hires_rollouts";
 }

@@ -23,7 +23,7 @@ constexpr std::size_t kMostKept = 8;
 }  // namespace
 
 RolloutReplayer::RolloutReplayer(std::string folder, ros::NodeHandle* nh)
-    : folder_(std::move(folder)), spinner_(1, &queue_) {
+    : folder_(std::move(folder)), started_(ros::WallTime::now().sec), spinner_(1, &queue_) {
   ros::AdvertiseServiceOptions options =
       ros::AdvertiseServiceOptions::create<hires::ImaginedRollout>(
           kImaginedRollout,
@@ -64,8 +64,9 @@ std::string RolloutReplayer::PathFor(const AnsweredRequest& answered, int rank, 
     throw ConfigError(
         fmt::format("{}: cannot be made ({}); set ~rollout_folder", folder_, error.message()));
   }
-  return fmt::format("{}/request_{}_prediction_{}_rollout_{}.bag", folder_, answered.number, rank,
-                     index);
+  // Requests are counted anew by each start of the node: nobody's earlier bag is written over.
+  return fmt::format("{}/{}_request_{}_prediction_{}_rollout_{}.bag", folder_, started_,
+                     answered.number, rank, index);
 }
 
 bool RolloutReplayer::OnRequest(Request& request, Response& response) {

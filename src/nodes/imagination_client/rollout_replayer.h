@@ -7,6 +7,7 @@
 #include <ros/spinner.h>
 
 #include <atomic>
+#include <cstdint>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -49,6 +50,7 @@ class RolloutReplayer {
   std::string PathFor(const AnsweredRequest& answered, int rank, int index) const;
 
   const std::string folder_;
+  const std::int64_t started_;  ///< [s] since 1970
   mutable std::mutex mutex_;
   std::deque<std::shared_ptr<const AnsweredRequest>> last_;  // the latest first
   std::atomic<bool> is_stopping_{false};

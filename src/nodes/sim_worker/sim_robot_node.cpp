@@ -11,9 +11,8 @@
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/robot/load_robot.h"
-#include "hires/ros/control_goals.h"
+#include "hires/ros/controller_messages.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/pr2_gripper_command.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 

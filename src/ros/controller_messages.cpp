@@ -1,4 +1,4 @@
-#include "hires/ros/control_goals.h"
+#include "hires/ros/controller_messages.h"
 
 namespace {
 

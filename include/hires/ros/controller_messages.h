@@ -11,10 +11,16 @@
 
 namespace hires_ros {
 
-// Goals of the two actions of control_msgs by which most robots' controllers are led. That package
-// is not in Debian; a message is what goes over the wire, so name, checksum and layout are given
-// here. An action server gives a goal without an id one of its own, and takes a newer goal instead
-// of an older.
+// What controllers are told, where the message's package is not in Debian. A message is what goes
+// over the wire, so name, checksum and layout are given here. By goals of the two actions of
+// control_msgs most robots' controllers are led: an action server gives a goal without an id one of
+// its own, and takes a newer goal instead of an older.
+
+/// pr2_controllers_msgs/Pr2GripperCommand: what a PR2's gripper controller is told.
+struct Pr2GripperCommand {
+  double position{0.0};     ///< [m] gap between the finger tips
+  double max_effort{-1.0};  ///< [N]; negative: no limit
+};
 
 /// control_msgs/JointTolerance: how far a joint may be off; 0 leaves it to the controller.
 struct JointTolerance {
@@ -35,14 +41,37 @@ struct FollowJointTrajectoryActionGoal {
 struct GripperCommandActionGoal {
   std_msgs::Header header;
   actionlib_msgs::GoalID goal_id;
-  double position{0.0};     ///< [m] gap between the finger tips
-  double max_effort{-1.0};  ///< [N]; negative or 0: no limit
+  double position{0.0};    ///< [m] gap between the finger tips
+  double max_effort{0.0};  ///< [N]
 };
 
 }  // namespace hires_ros
 
 namespace ros {
 namespace message_traits {
+
+template <>
+struct IsFixedSize<hires_ros::Pr2GripperCommand> : TrueType {};
+template <>
+struct IsMessage<hires_ros::Pr2GripperCommand> : TrueType {};
+
+template <>
+struct MD5Sum<hires_ros::Pr2GripperCommand> {
+  static const char* value() { return "680acaff79486f017132a7f198d40f08"; }
+  static const char* value(const hires_ros::Pr2GripperCommand&) { return value(); }
+};
+
+template <>
+struct DataType<hires_ros::Pr2GripperCommand> {
+  static const char* value() { return "pr2_controllers_msgs/Pr2GripperCommand"; }
+  static const char* value(const hires_ros::Pr2GripperCommand&) { return value(); }
+};
+
+template <>
+struct Definition<hires_ros::Pr2GripperCommand> {
+  static const char* value() { return "float64 position\nfloat64 max_effort\n"; }
+  static const char* value(const hires_ros::Pr2GripperCommand&) { return value(); }
+};
 
 template <>
 struct IsMessage<hires_ros::FollowJointTrajectoryActionGoal> : TrueType {};
@@ -93,6 +122,16 @@ struct Definition<hires_ros::GripperCommandActionGoal> {
 }  // namespace message_traits
 
 namespace serialization {
+
+template <>
+struct Serializer<hires_ros::Pr2GripperCommand> {
+  template <typename Stream, typename Message>
+  inline static void allInOne(Stream& stream, Message message) {
+    stream.next(message.position);
+    stream.next(message.max_effort);
+  }
+  ROS_DECLARE_ALLINONE_SERIALIZER
+};
 
 template <>
 struct Serializer<hires_ros::JointTolerance> {

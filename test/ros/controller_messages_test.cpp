@@ -1,11 +1,11 @@
-#include "hires/ros/control_goals.h"
+#include "hires/ros/controller_messages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
-namespace hires_ros::control_goals_test {
+namespace hires_ros::controller_messages_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -28,7 +28,7 @@ Message Again(std::string bytes) {
 
 std::string Number(double value) { return {reinterpret_cast<const char*>(&value), sizeof(value)}; }
 
-TEST(ControlGoalsTest, AGripperCommandIsLaidOutAsPublished) {
+TEST(ControllerMessagesTest, AGripperCommandIsLaidOutAsPublished) {
   GripperCommandActionGoal goal;
   goal.position = 0.07;
   goal.max_effort = 40.0;
@@ -40,7 +40,7 @@ TEST(ControlGoalsTest, AGripperCommandIsLaidOutAsPublished) {
   EXPECT_EQ(again.max_effort, 40.0);
 }
 
-TEST(ControlGoalsTest, ATrajectoryComesBackWithItsTolerances) {
+TEST(ControllerMessagesTest, ATrajectoryComesBackWithItsTolerances) {
   FollowJointTrajectoryActionGoal goal;
   goal.goal_id.id = "goal 1";
   goal.trajectory.joint_names = {"elbow"};
@@ -60,7 +60,7 @@ TEST(ControlGoalsTest, ATrajectoryComesBackWithItsTolerances) {
   EXPECT_EQ(again.goal_time_tolerance, ros::Duration(0.5));
 }
 
-TEST(ControlGoalsTest, DefinitionsTellEveryPart) {
+TEST(ControllerMessagesTest, DefinitionsTellEveryPart) {
   const std::string trajectory = ros::message_traits::definition<FollowJointTrajectoryActionGoal>();
   for (const char* type :
        {"MSG: control_msgs/FollowJointTrajectoryGoal\n", "MSG: control_msgs/JointTolerance\n",
@@ -73,4 +73,4 @@ TEST(ControlGoalsTest, DefinitionsTellEveryPart) {
 }
 
 }  // namespace
-}  // namespace hires_ros::control_goals_test
+}  // namespace hires_ros::controller_messages_test
