@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -69,6 +70,7 @@ void EndOwnLaunch() {
 void EndLaunch() {
   const pid_t parent = getppid();
   if (!IsRoslaunch(CommandOf(parent))) return;
+  std::fflush(nullptr);  // what was printed, before a signal ends this process
   std::signal(SIGINT, SIG_DFL);
   if (kill(parent, SIGINT) != 0) return;
   // A child that ends before roslaunch ends it would be called dead, or started again.
