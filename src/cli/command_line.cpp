@@ -82,7 +82,8 @@ void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
   app->add_option("--threads", o->threads, "workers of --local; default: one per core")
       ->check(CLI::Range(1, 256));
   CLI::Option* world = app->add_option("--world", o->world, "another SDF world");
-  app->add_option("--map", o->map, "a map_server map (YAML and PGM) whose walls are the world")
+  app->add_option("--map", o->map,
+                  "a map_server map (YAML with PGM or PNG) whose walls are the world")
       ->excludes(world);
   app->add_option("--area", o->areas, "one more area, NAME:x,y,yaw [m, m, rad]; may be repeated")
       ->allow_extra_args(false);

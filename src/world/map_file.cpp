@@ -11,6 +11,7 @@
 #include "hires/base/text.h"
 #include "hires/world/occupancy_grid.h"
 #include "world/pgm.h"
+#include "world/png.h"
 
 namespace hires::world {
 namespace {
@@ -96,7 +97,8 @@ void WriteFile(const fs::path& path, const std::string& text) {
 OccupancyGrid LoadMap(const std::string& yaml_path) {
   const MapParams params = ReadMapParams(yaml_path);
   const std::string image_path = (fs::path(yaml_path).parent_path() / params.image).string();
-  const GreyImage image = ParsePgm(base::ReadTextFile(image_path, 512u << 20), image_path);
+  const std::string bytes = base::ReadTextFile(image_path, 512u << 20);
+  const GreyImage image = IsPng(bytes) ? ParsePng(bytes, image_path) : ParsePgm(bytes, image_path);
   OccupancyGrid grid{params.resolution, image.width, image.height, params.origin, {}};
   grid.cells.reserve(image.pixels.size());
   for (int row = image.height - 1; row >= 0; --row) {  // images begin at the top, grids below

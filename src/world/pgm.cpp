@@ -8,7 +8,6 @@
 namespace hires::world {
 namespace {
 
-constexpr std::int64_t kMaxPixels = 100'000'000;
 constexpr std::int64_t kMaxNumber = 1'000'000'000;
 
 bool IsSpace(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
@@ -21,7 +20,7 @@ class PgmReader {
   GreyImage Read() {
     const std::string magic = bytes_.substr(0, 2);
     if (magic != "P2" && magic != "P5") {
-      Fail("does not begin with P2 or P5; convert it to a PGM image");
+      Fail("begins neither as a PGM (P2, P5) nor as a PNG; convert it to one of these");
     }
     at_ = 2;
     GreyImage image;

@@ -6,6 +6,8 @@
 
 namespace hires::world {
 
+inline constexpr std::int64_t kMaxPixels = 100'000'000;  ///< of an image that is read
+
 /// A grey image, row by row from the top, scaled to 0 (black) .. 255 (white).
 struct GreyImage {
   int width{0};

@@ -138,8 +138,8 @@ TEST(PgmTest, FormattedImageReadsBackTheSame) {
 }
 
 TEST(PgmTest, RefusesWhatIsNoImage) {
-  EXPECT_THAT(PgmError(""), AllOf(HasSubstr("a.pgm"), HasSubstr("P2 or P5")));
-  EXPECT_THAT(PgmError("P6 1 1 255 abc"), HasSubstr("P2 or P5"));
+  EXPECT_THAT(PgmError(""), AllOf(HasSubstr("a.pgm"), HasSubstr("P2, P5")));
+  EXPECT_THAT(PgmError("P6 1 1 255 abc"), HasSubstr("P2, P5"));
   EXPECT_THAT(PgmError("P5"), HasSubstr("width"));
   EXPECT_THAT(PgmError("P51 1 255 a"), HasSubstr("width"));
   EXPECT_THAT(PgmError("P5 -1 1 255 a"), HasSubstr("no number where the width belongs"));

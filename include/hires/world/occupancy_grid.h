@@ -35,7 +35,7 @@ std::vector<geometry::Polygon> OutlinesInBand(const World& world, const WorldSta
 OccupancyGrid SliceWorld(const World& world, double z_min, double z_max, double resolution = 0.05,
                          double margin = 0.5);
 
-/// Reads a map_server YAML and its PGM (P2 or P5). Thresholds as map_server's trinary mode.
+/// Reads a map_server YAML and its PGM (P2, P5) or PNG. Thresholds as map_server's trinary mode.
 /// @throws base::ConfigError naming file, key and remedy (a missing origin included, as map_server
 /// does; rotated origins are refused).
 OccupancyGrid LoadMap(const std::string& yaml_path);
