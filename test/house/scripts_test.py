@@ -57,7 +57,7 @@ class ScriptsTest(unittest.TestCase):
         self.assertNotIn("libgtest-dev", build)
         self.assertIn("python3-rospy", run_part)
         self.assertEqual([name for name in run_part if name.endswith("-dev")], [])
-        rest = run("scripts/setup", "--list", "package", "show", "develop").stdout.split()
+        rest = run("scripts/setup", "--list", "package", "show", "develop", "long").stdout.split()
         self.assertEqual(sorted(everything), sorted(build + run_part + rest))
 
     def test_setup_refuses_a_part_that_is_none(self):
