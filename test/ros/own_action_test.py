@@ -8,15 +8,14 @@ import os
 import subprocess
 import sys
 import tempfile
-import threading
 import unittest
 
 import rospy
-from hires.msg import RobotState
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from test_run import run_test  # noqa: E402
+from true_robot import TrueRobot  # noqa: E402
 
 SEAT = (7.05, 11.43)  # [m] sittingAreaWestTable1, where guest1 sits
 FACING = 0.06         # [rad] the skill's own tolerance of 0.03, and what localisation errs
@@ -25,23 +24,16 @@ FACING = 0.06         # [rad] the skill's own tolerance of 0.03, and what locali
 class OwnActionTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.state = None
-        cls.told = threading.Event()
-        rospy.Subscriber('ground_truth/robot_state', RobotState, cls.on_state)
-
-    @classmethod
-    def on_state(cls, state):
-        cls.state = state
-        cls.told.set()
+        cls.robot = TrueRobot()
 
     def away(self):
         """[rad] by which the robot does not face the guest."""
-        pose = self.state.pose.position
+        pose = self.robot.state.pose.position
         return abs(math.remainder(
-            math.atan2(SEAT[1] - pose.y, SEAT[0] - pose.x) - self.state.yaw, 2.0 * math.pi))
+            math.atan2(SEAT[1] - pose.y, SEAT[0] - pose.x) - self.robot.state.yaw, 2.0 * math.pi))
 
     def test_the_robot_turns_towards_the_guest(self):
-        self.assertTrue(self.told.wait(60.0), 'no simulated robot')
+        self.assertTrue(self.robot.wait(60.0), 'no simulated robot')
         self.assertGreater(self.away(), 0.3)
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, 'answer.json')

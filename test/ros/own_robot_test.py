@@ -8,15 +8,14 @@ import os
 import subprocess
 import sys
 import tempfile
-import threading
 import unittest
 
 import rospy
-from hires.msg import RobotState
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from test_run import run_test  # noqa: E402
+from true_robot import TrueRobot  # noqa: E402
 
 AT_LONG_TABLE = (2.2, 2.3)  # [m] as in hall.world; the nearer one, which is imagined sooner
 NEAR = 0.35                 # [m] the drive's own tolerance of 0.2, and what localisation errs
@@ -25,22 +24,15 @@ NEAR = 0.35                 # [m] the drive's own tolerance of 0.2, and what loc
 class OwnRobotTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.state = None
-        cls.told = threading.Event()
-        rospy.Subscriber('ground_truth/robot_state', RobotState, cls.on_state)
-
-    @classmethod
-    def on_state(cls, state):
-        cls.state = state
-        cls.told.set()
+        cls.robot = TrueRobot()
 
     def away(self):
         """[m] from the table's area."""
-        pose = self.state.pose.position
+        pose = self.robot.state.pose.position
         return math.hypot(AT_LONG_TABLE[0] - pose.x, AT_LONG_TABLE[1] - pose.y)
 
     def test_the_soup_is_delivered_after_imagining_how_fast(self):
-        self.assertTrue(self.told.wait(60.0), 'no simulated robot')
+        self.assertTrue(self.robot.wait(60.0), 'no simulated robot')
         self.assertGreater(self.away(), 1.5)
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, 'answer.json')
