@@ -7,6 +7,7 @@
 #include "hires/base/atoms.h"
 #include "hires/knowledge/state_view.h"
 #include "hires/loop/imagine_answer.h"
+#include "hires/loop/record_fluent.h"
 
 namespace hires::loop {
 namespace {
@@ -98,8 +99,7 @@ void MonitorShell::Feed(const execution::Event& event) {
   planning_.CancelAll();
   imagination_.CancelAll();
   const std::string outcome = ToString(OutcomeOf(finish_->outcome));
-  records_.EndEpisode(finish_->reason.empty() ? outcome : outcome + ": " + finish_->reason,
-                      clock_.now());
+  records_.EndEpisode(EpisodeOutcome(outcome, finish_->reason), clock_.now());
 }
 
 void MonitorShell::AskForWake() {

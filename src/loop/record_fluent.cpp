@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hires/base/text.h"
+#include "hires/knowledge/name.h"
 
 namespace hires::loop {
 namespace {
@@ -44,6 +45,10 @@ knowledge::Fluent FluentOf(const execution::Record& record, double start,
     fluent.properties.push_back({role, RangeOf(role, "Thing", ontology), instance});
   }
   return fluent;
+}
+
+std::string EpisodeOutcome(const std::string& outcome, const std::string& reason) {
+  return knowledge::AsName(reason.empty() ? outcome : outcome + ": " + reason);
 }
 
 void EpisodeRecords::Begin(const std::string& name) {

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include "hires/knowledge/store.h"
+
 namespace hires::loop::record_fluent_test {
 namespace {
 
@@ -29,6 +31,18 @@ TEST(FluentOfTest, FillersHaveTheTypesOfTheOntology) {
                           knowledge::Property{"hasIndex", "xsd:integer", std::int64_t{3}},
                           knowledge::Property{"hasConfidence", "xsd:float", 0.5},
                           knowledge::Property{"hasPlan", "Plan", std::string("plan1")}));
+}
+
+TEST(EpisodeOutcomeTest, TheStoreKeepsItHoweverLongTheReason) {
+  EXPECT_EQ(EpisodeOutcome("succeeded", ""), "succeeded");
+  const std::string reason = "at\nline 3, " + std::string(980, 'x') + "\xC3\xB6" + "rest";
+  const std::string outcome = EpisodeOutcome("no_plan", reason);
+  EXPECT_THAT(outcome, ::testing::StartsWith("no_plan: at line 3, xxx"));
+  EXPECT_THAT(outcome, ::testing::EndsWith("x ..."));
+  EXPECT_LE(outcome.size(), 1000u);
+  knowledge::Store store(":memory:", std::make_shared<const knowledge::Ontology>(TheOntology()));
+  const std::int64_t episode = store.StartEpisode("x", knowledge::Episode::Label::kReal, 0, 1.0).id;
+  EXPECT_EQ(store.FinishEpisode(episode, outcome, 2.0).outcome, outcome);
 }
 
 TEST(FluentOfTest, TruthIsANumberThatIsNotZero) {

@@ -18,6 +18,7 @@ from std_msgs.msg import Bool
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from diagnostics import diagnostics  # noqa: E402
 from failures import text_of  # noqa: E402
 from ros_processes import Processes, executable, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
@@ -68,7 +69,8 @@ class BaseGuardTest(unittest.TestCase):
         config.update(PATIENCE)
         path = self.processes.write('base_guard.yaml', yaml.safe_dump(config))
         return self.processes.start(
-            [executable('base_guard'), '_config:=' + path, *arguments], self.master)
+            [executable('base_guard'), '_config:=' + path, '_diagnostic_period:=0.1', *arguments],
+            self.master)
 
     def peer(self, *arguments):
         return self.processes.start([executable('base_guard_peer'), *arguments], self.master)
@@ -83,6 +85,7 @@ class BaseGuardTest(unittest.TestCase):
 
     def drive(self, request=1):
         """A driver that wants 0.6 m/s, and the base at the speed that its request allows."""
+        diagnostics(rospy, 'base_guard', lambda v: v['forbids driving'] == 'nothing')
         self.requester = self.peer('requester', str(request))
         self.commander = self.peer('commander', '0.6', '0.0')
         self.wait_for_state(BaseGuardState.PASSING, request=request)

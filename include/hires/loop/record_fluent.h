@@ -16,6 +16,10 @@ namespace hires::loop {
 knowledge::Fluent FluentOf(const execution::Record& record, double start,
                            const knowledge::Ontology& ontology);
 
+/// What an episode's outcome says: "no_plan: there is no plan ...", on one line, as long as the
+/// Blackboard keeps it. Reasons quote files of any path and names of any number.
+std::string EpisodeOutcome(const std::string& outcome, const std::string& reason);
+
 /// What the Blackboard must be told of one record, in this order.
 struct RecordWrites {
   std::optional<knowledge::Fluent> added;

@@ -12,7 +12,9 @@
 
 #include "hires/base/error.h"
 #include "hires/base/overloaded.h"
+#include "hires/base/short_text.h"
 #include "hires/base/text.h"
+#include "hires/knowledge/name.h"
 
 namespace hires::knowledge {
 namespace {
@@ -232,6 +234,13 @@ void CheckName(const std::string& what, const std::string& name) {
     FailAt(what, "the name holds a control character; remove it");
   }
   if (!IsUtf8(name)) FailAt(what, "the name is no UTF-8 text; encode it so");
+}
+
+std::string AsName(std::string sentence) {
+  constexpr std::size_t kOfEllipsis = 4;  // bytes
+  std::replace_if(sentence.begin(), sentence.end(), IsControl, ' ');
+  if (sentence.size() <= kMaxNameBytes) return sentence;
+  return base::Shortened(sentence, kMaxNameBytes - kOfEllipsis);
 }
 
 void CheckOrder(const std::string& instance, const temporal::Bounds& start,

@@ -16,6 +16,7 @@
 #include "hires/base/text.h"
 #include "hires/knowledge/state_view.h"
 #include "hires/loop/imagine_answer.h"
+#include "hires/loop/record_fluent.h"
 #include "hires/planning/request.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/private_params.h"
@@ -416,8 +417,8 @@ void ExecutionMonitorNode::EndAll() {
 void ExecutionMonitorNode::FinishTask(const execution::Finish& finish) {
   EndAll();
   if (task_->monitor) {
-    const std::string outcome = OutcomeName(finish.outcome);
-    records_.EndEpisode(finish.reason.empty() ? outcome : outcome + ": " + finish.reason, RosNow());
+    records_.EndEpisode(hires::loop::EpisodeOutcome(OutcomeName(finish.outcome), finish.reason),
+                        RosNow());
   }
   PublishFeedback();
   Conclude(finish);
