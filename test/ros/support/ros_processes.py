@@ -196,12 +196,22 @@ class Master:
         self.process.signal(signal.SIGCONT)
         self.process.kill()
 
-    def _call(self, method, *arguments):
+    def forget_the_gone(self):
+        """Takes killed nodes off its lists. A port that was theirs is given to somebody else one day,
+        and a subscriber that still tries the dead one does not notice the new one there."""
+        state = self._call('getSystemState') or [[], [], []]
+        for topics, unregister in zip(state, ('unregisterPublisher', 'unregisterSubscriber')):
+            for topic, node in ((topic, node) for topic, nodes in topics for node in nodes):
+                uri = self.node_uri(node)
+                if uri and is_port_free(int(uri.rstrip('/').rsplit(':', 1)[1])):
+                    self._call(unregister, topic, uri, caller=node)
+
+    def _call(self, method, *arguments, caller='/test'):
         """The value, or None when there is no answer or a failure."""
         try:
             # A proxy of its own for each call: tests kill and stop masters at any time.
             with xmlrpc.client.ServerProxy(self.uri, transport=_BoundedTransport()) as proxy:
-                code, _, value = getattr(proxy, method)('/test', *arguments)
+                code, _, value = getattr(proxy, method)(caller, *arguments)
         except (OSError, xmlrpc.client.Error, xmlrpc.client.http.client.HTTPException):
             return None
         return value if code == 1 else None
@@ -234,6 +244,7 @@ class Processes:
     def __init__(self):
         self._processes = []
         self._masters = []
+        self._foreign_masters = set()  # of other tests, too
         self.folder = tempfile.TemporaryDirectory(prefix='hires_test_')
 
     def environment(self, master=None, **more):
@@ -264,6 +275,8 @@ class Processes:
     def start(self, command, master, **environment):
         process = Process(command, self.environment(master, **environment))
         self._processes.append(process)
+        if master is not None and master not in self._masters:
+            self._foreign_masters.add(master)
         return process
 
     def write(self, name, text):
@@ -276,6 +289,8 @@ class Processes:
     def stop_all(self):
         for process in reversed(self._processes):
             process.destroy()
+        for master in self._foreign_masters:
+            master.forget_the_gone()
         for master in self._masters:
             master.process.destroy()
         self.folder.cleanup()
