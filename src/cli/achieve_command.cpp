@@ -63,7 +63,7 @@ ReportOrigin OriginOf(const AchieveOptions& options, const std::string& package_
   ReportOrigin origin;
   origin.verb = "achieve";
   origin.is_local = options.is_local;
-  if (!options.is_local) return origin;
+  if (!options.is_local || !IsWanted(options.report)) return origin;
   origin.inputs = {{"scenario", ScenarioPath(options.scenario, package_folder)},
                    {"virtual time", LoopPath(options, package_folder)}};
   origin.hashes = {{"files", HashOfFiles(package_folder)}};
@@ -71,7 +71,7 @@ ReportOrigin OriginOf(const AchieveOptions& options, const std::string& package_
 }
 
 /// @param truth  under which it was played, where this is known.
-void WriteFiles(const AchieveOptions& options, const std::string& package_folder,
+void WriteFiles(const AchieveOptions& options, const ReportOrigin& origin,
                 const evaluation::AchieveReport& report, const std::optional<std::string>& truth) {
   if (!options.timeline.empty()) {
     const std::string csv = evaluation::TimelineCsv(evaluation::MakeTimeline(report));
@@ -80,7 +80,7 @@ void WriteFiles(const AchieveOptions& options, const std::string& package_folder
   nlohmann::ordered_json json = ToJson(report);
   if (truth) json["truth"] = *truth;
   json["seed"] = truth ? nlohmann::ordered_json(options.seed) : nullptr;
-  WriteReport(options.report, OriginOf(options, package_folder), json);
+  WriteReport(options.report, origin, json);
 }
 
 std::string Plural(std::size_t count, const std::string& what) {
@@ -227,6 +227,7 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   const auto show = [&](const evaluation::AchieveStatus& status) {
     std::cout << display.Show(status) << std::flush;
   };
+  const ReportOrigin origin = OriginOf(options, package_folder);
   const double begun = base::SteadyNow();
   std::optional<loop::LoopRun> local;
   const auto recording = options.record.empty() ? nullptr : record(options.record);
@@ -240,8 +241,7 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   show(report.status);  // its changes may have come with the result alone
   PrintReport(report, options.is_local);
   if (local) PrintTruth(*local, base::SteadyNow() - begun);
-  WriteFiles(options, package_folder, report,
-             local ? std::make_optional(local->truth_name) : std::nullopt);
+  WriteFiles(options, origin, report, local ? std::make_optional(local->truth_name) : std::nullopt);
   return ExitCodeFor(report.outcome);
 }
 

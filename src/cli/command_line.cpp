@@ -19,6 +19,7 @@
 #include "cli/limits_command.h"
 #include "cli/list_command.h"
 #include "cli/plan_command.h"
+#include "cli/query_scene.h"
 #include "cli/save_rollout.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
@@ -31,7 +32,6 @@
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/imagination/client_config.h"
-#include "hires/imagination/local_imagination.h"
 #include "hires/skills/action_loader.h"
 
 namespace hires::cli {
@@ -190,7 +190,7 @@ void PrintReport(const imagination::Report& report, imagination::RankingRule rul
 }
 
 /// Running nodes have files of their own, which they and their workers compare among themselves.
-ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query) {
+ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query, QueryScene* scene) {
   ReportOrigin origin;
   origin.verb = "imagine";
   origin.is_local = options.local;
@@ -207,7 +207,7 @@ ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query) 
                    {"objects", files.objects},
                    {"uncertainty", has_uncertainty ? files.uncertainty : ""}};
   for (const std::string& object : files.extra_objects) origin.inputs.push_back({"object", object});
-  const imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(files);
+  const imagination::ImaginationSetup& setup = scene->setup();
   origin.hashes = {{"world", base::HexOf(setup.world_hash)},
                    {"robot", base::HexOf(setup.robot_hash)},
                    {"physics", base::HexOf(setup.physics_hash)},
@@ -217,7 +217,7 @@ ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query) 
 
 /// The answer for machines; where a page is made of it, with pictures.
 nlohmann::ordered_json AnswerOf(const ImagineOptions& options, const ImagineQuery& query,
-                                const imagination::Report& report,
+                                QueryScene* scene, const imagination::Report& report,
                                 const std::function<bool()>& cancelled) {
   nlohmann::ordered_json answer = evaluation::ToJson(report, query.scheduler.criteria);
   const std::string& html = options.report.html;
@@ -225,7 +225,7 @@ nlohmann::ordered_json AnswerOf(const ImagineOptions& options, const ImagineQuer
   const std::string& json = options.report.json;
   const std::filesystem::path from = std::filesystem::absolute(json).parent_path();
   try {
-    for (const Strip& strip : WriteStrips(html, query, report, cancelled)) {
+    for (const Strip& strip : WriteStrips(html, query.threads, scene, report, cancelled)) {
       const std::string file =
           json.empty() ? strip.file : std::filesystem::proximate(strip.file, from).string();
       answer["pictures"].push_back({{"caption", strip.caption}, {"file", file}});
@@ -249,16 +249,17 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
   if (!options.local && !backends.imagine_remotely) {
     throw base::ConfigError("this build has no ROS nodes to ask; add --local");
   }
-  const imagination::Report report = options.local
-                                         ? ImagineInThisProcess(query, on_interim, cancelled)
-                                         : backends.imagine_remotely(query, on_interim, cancelled);
+  QueryScene scene(query);
+  const ReportOrigin origin = OriginOf(options, query, &scene);
+  const imagination::Report report =
+      options.local ? ImagineInThisProcess(query, &scene, on_interim, cancelled)
+                    : backends.imagine_remotely(query, on_interim, cancelled);
   if (!options.quiet) display.Clear();
   PrintReport(report, query.scheduler.criteria.rule);
-  WriteReport(options.report, OriginOf(options, query),
-              AnswerOf(options, query, report, cancelled));
+  WriteReport(options.report, origin, AnswerOf(options, query, &scene, report, cancelled));
   const int code = ExitCodeOf(report);
   if (report.ranking.empty()) return code;  // nothing was played that could be saved
-  SaveRollout(options.save, query, report, backends.make_rollout_bag, cancelled);
+  SaveRollout(options.save, query.threads, &scene, report, backends.make_rollout_bag, cancelled);
   return code;
 }
 
@@ -424,22 +425,6 @@ int ExitCodeOf(const imagination::Report& report) {
       return kExitCancelled;
   }
   return kExitBadInput;
-}
-
-imagination::Report ImagineInThisProcess(const ImagineQuery& query,
-                                         const imagination::OnInterim& on_interim,
-                                         const std::function<bool()>& cancelled) {
-  const imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(query.setup);
-  const imagination::StartState start =
-      imagination::MakeStartState(setup, query.start.AllAtoms(), query.start.put);
-  const imagination::RolloutSetup rollouts =
-      imagination::MakeRolloutSetup(setup, start, query.seed);
-  const std::vector<base::ActionCall> actions = base::Combinations(query.action);
-  RequireObjects(setup.skills->actions->catalogue(), actions, start.world);
-  imagination::Report report = imagination::ImagineLocally(rollouts, actions, query.scheduler,
-                                                           query.threads, on_interim, cancelled);
-  report.caveats = imagination::CaveatsOf(rollouts, actions, query.validated);
-  return report;
 }
 
 std::string NameOf(const std::string& object, imagination::SetupConfig* setup) {

@@ -67,6 +67,7 @@ ReportOrigin OriginOf(const ExperimentOptions& options,
   };
   ReportOrigin origin;
   origin.verb = "experiment";
+  if (!IsWanted(options.report)) return origin;
   origin.inputs = {{"experiment", options.file},
                    {"scene", config.scene},
                    {"uncertainty", file(config.uncertainty)},
@@ -119,6 +120,7 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   CheckWritable(options.csv);
   if (!options.junit.empty()) evaluation::RequireFolderOf(options.junit);
   CheckReport(options.report);
+  const ReportOrigin origin = OriginOf(options, config);
   const evaluation::Crew crew = MakeCrew(options, cancelled);
   const std::optional<evaluation::ExperimentReport> report =
       evaluation::RunExperiment(config, crew);
@@ -127,7 +129,7 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   Print(*report);
   if (!options.csv.empty()) evaluation::WriteText(evaluation::ReportCsv(*report), options.csv);
   if (!options.junit.empty()) evaluation::WriteText(JunitXml(*report), options.junit);
-  WriteReport(options.report, OriginOf(options, config), ToJson(*report));
+  WriteReport(options.report, origin, ToJson(*report));
   return report->passed() ? kExitRecommended : kExitAllFailed;
 }
 

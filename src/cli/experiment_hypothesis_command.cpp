@@ -182,14 +182,21 @@ bool PlayAll(const std::vector<evaluation::HypothesisOrder>& orders,
       });
 }
 
-void Write(const evaluation::HypothesisReport& report, const HypothesisOptions& options,
-           const std::vector<ReportInput>& inputs) {
-  std::cout << evaluation::HypothesisText(report);
-  if (!options.csv.empty()) evaluation::WriteText(evaluation::HypothesisCsv(report), options.csv);
+ReportOrigin OriginOf(const HypothesisOptions& options, const std::string& goal,
+                      const std::string& package_folder) {
   ReportOrigin origin;
   origin.verb = "experiment hypothesis";
   origin.is_local = options.is_local;
-  origin.inputs = inputs;
+  if (!IsWanted(options.report)) return origin;
+  origin.inputs = {{"scenario", package_folder + "/config/scenarios/" + options.scenario + ".yaml"},
+                   {"what counts", goal}};
+  return origin;
+}
+
+void Write(const evaluation::HypothesisReport& report, const HypothesisOptions& options,
+           ReportOrigin origin) {
+  std::cout << evaluation::HypothesisText(report);
+  if (!options.csv.empty()) evaluation::WriteText(evaluation::HypothesisCsv(report), options.csv);
   origin.hashes = {{"files", report.setting.files}};
   WriteReport(options.report, origin, ToJson(report, CommandOf(options)));
 }
@@ -274,6 +281,7 @@ int RunHypothesisVerb(const HypothesisOptions& options, const std::string& packa
   evaluation::HypothesisSetting setting = SettingOf(options, package_folder);
   // An unknown one is refused before anything is played.
   if (setup) setting.truth = setup->ReadTruth(options.truth).name;
+  const ReportOrigin origin = OriginOf(options, path, package_folder);
   evaluation::HypothesisJournal journal(JournalPath(options), setting);
   const auto orders = OrdersFor(options, goal, journal);
   const evaluation::PlayHypothesis play_locally = [&](const auto& order, const auto& cancel) {
@@ -283,9 +291,7 @@ int RunHypothesisVerb(const HypothesisOptions& options, const std::string& packa
     return Cancelled(journal, options);
   }
   const evaluation::HypothesisReport report = evaluation::SumUpHypothesis(setting, journal.runs());
-  Write(report, options,
-        {{"scenario", package_folder + "/config/scenarios/" + options.scenario + ".yaml"},
-         {"what counts", path}});
+  Write(report, options, origin);
   return report.with.complete + report.without.complete > 0 ? kExitRecommended : kExitAllFailed;
 }
 

@@ -278,15 +278,17 @@ void AddPlanVerb(CLI::App* app, PlanOptions* options) {
 
 int RunPlanVerb(const PlanOptions& options, const std::function<bool()>& cancelled) {
   CheckReport(options.report);
+  ReportOrigin origin;
+  origin.verb = "plan";
+  if (IsWanted(options.report)) {
+    origin.inputs = {{"domain", options.domain}, {"problem", options.problem}};
+  }
   Session session = Read(options);
   session.request.stop = StopQuestionFor(options, cancelled);
   Search(&session);
   if (options.format.empty() || IsWanted(options.report)) AddReasons(&session);
   if (options.validate) Validate(&session);
   Print(session, options.format);
-  ReportOrigin origin;
-  origin.verb = "plan";
-  origin.inputs = {{"domain", options.domain}, {"problem", options.problem}};
   WriteReport(options.report, origin, SessionToJson(session));
   return ExitCodeFor(session);
 }

@@ -96,11 +96,9 @@ ordered_json InputsJson(const std::vector<ReportInput>& inputs, const std::strin
   ordered_json list = ordered_json::array();
   for (const ReportInput& input : inputs) {
     if (input.path.empty()) continue;
-    base::Hasher hasher;
-    hasher.Add(base::ReadTextFile(input.path));
     list.push_back({{"what", input.what},
                     {"path", ShownPath(input.path, package_folder)},
-                    {"hash", base::HexOf(hasher.value())}});
+                    {"hash", input.hash}});
   }
   return list;
 }
@@ -122,6 +120,14 @@ void MakePictures(const std::string& file, const std::string& html, const std::s
 }
 
 }  // namespace
+
+ReportInput::ReportInput(std::string what, std::string path)
+    : what(std::move(what)), path(std::move(path)) {
+  if (this->path.empty()) return;
+  base::Hasher hasher;
+  hasher.Add(base::ReadTextFile(this->path));
+  hash = base::HexOf(hasher.value());
+}
 
 bool IsWanted(const ReportOptions& options) {
   return !(options.json + options.html + options.png).empty();

@@ -12,13 +12,11 @@
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/rollout_film.h"
 #include "hires/evaluation/timeline.h"
-#include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/rollout_choice.h"
 
 namespace hires::cli {
 namespace {
 
-using imagination::RolloutChoice;
 using imagination::RolloutRecording;
 
 constexpr int kStripPictures = 6;  // of pages; of --strip by default
@@ -29,34 +27,6 @@ std::vector<std::string> FilesOf(const SaveRolloutOptions& options) {
     if (!path.empty()) files.push_back(path);
   }
   return files;
-}
-
-imagination::RolloutSetup SetupOf(const ImagineQuery& query) {
-  const imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(query.setup);
-  return imagination::MakeRolloutSetup(
-      setup, imagination::MakeStartState(setup, query.start.AllAtoms(), query.start.put),
-      query.seed);
-}
-
-void RequireAmong(const imagination::Evidence& evidence, const RolloutRecording& recording) {
-  if (imagination::IsAmong(evidence, recording.result)) return;
-  throw base::ConfigError(fmt::format(
-      "--save-rollout: rollout {} played here is none of those that were imagined; the workers "
-      "have "
-      "another build or other files than this program: name them by --world, --robot, --objects",
-      recording.index));
-}
-
-imagination::PickedRollout Pick(const RolloutChoice& choice, const imagination::Report& report,
-                                const imagination::RolloutSetup& setup) {
-  const imagination::TiltOfRollout tilt_of = [&](const base::ActionCall& action, int index) {
-    return imagination::PlayRollout(setup, action, index)->max_tilt;
-  };
-  try {
-    return imagination::PickRollout(choice, report.ranking, tilt_of);
-  } catch (const base::ConfigError& error) {
-    throw base::ConfigError(std::string("--save-rollout: ") + error.what());
-  }
 }
 
 /// A rollout of an answer, played again.
@@ -70,14 +40,16 @@ std::optional<Replayed> Replay(const std::string& which, const imagination::Repo
                                const imagination::RolloutSetup& setup,
                                const std::function<bool()>& cancelled,
                                imagination::RolloutWatcher* watcher) {
-  const imagination::PickedRollout picked =
-      Pick(imagination::ParseRolloutChoice(which), report, setup);
-  const imagination::Prediction& prediction = report.ranking[picked.rank - 1];
-  auto recording =
-      imagination::RecordRollout(setup, prediction.action, picked.index, cancelled, watcher);
-  if (!recording) return std::nullopt;
-  RequireAmong(prediction.evidence, *recording);
-  return Replayed{picked, std::move(*recording)};
+  try {
+    const imagination::PickedRollout picked = imagination::PickRollout(
+        imagination::ParseRolloutChoice(which), report.ranking, imagination::TiltsIn(setup));
+    auto recording = imagination::ReplayRollout(setup, report.ranking[picked.rank - 1],
+                                                picked.index, cancelled, watcher);
+    if (!recording) return std::nullopt;
+    return Replayed{picked, std::move(*recording)};
+  } catch (const base::ConfigError& error) {
+    throw base::ConfigError(std::string("--save-rollout: ") + error.what());
+  }
 }
 
 /// @param beside  may be null.
@@ -149,11 +121,11 @@ void CheckSaveRollout(const SaveRolloutOptions& options, const MakeRolloutBag& m
   for (const std::string& path : FilesOf(options)) evaluation::RequireFolderOf(path);
 }
 
-void SaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
+void SaveRollout(const SaveRolloutOptions& options, int threads, QueryScene* scene,
                  const imagination::Report& report, const MakeRolloutBag& make_bag,
                  const std::function<bool()>& cancelled) {
   if (options.which.empty()) return;
-  const imagination::RolloutSetup setup = SetupOf(query);
+  const imagination::RolloutSetup& setup = scene->rollouts();
   const std::unique_ptr<imagination::RolloutSaver> bag =
       options.bag.empty() ? nullptr : make_bag(options.bag, setup);
   const auto replayed = Replay(options.which, report, setup, cancelled, bag.get());
@@ -163,19 +135,19 @@ void SaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
   const RolloutRecording& recording = replayed->recording;
   if (!options.csv.empty()) evaluation::WriteText(imagination::ToCsv(recording), options.csv);
   if (bag) bag->Save(recording);
-  WritePictures(options, setup, recording, beside ? &beside->recording : nullptr, query.threads);
+  WritePictures(options, setup, recording, beside ? &beside->recording : nullptr, threads);
   Print(*replayed);
   if (beside) Print(*beside);
   for (const std::string& path : FilesOf(options)) std::cout << "saved to " << path << '\n';
 }
 
-std::vector<Strip> WriteStrips(const std::string& html, const ImagineQuery& query,
+std::vector<Strip> WriteStrips(const std::string& html, int threads, QueryScene* scene,
                                const imagination::Report& report,
                                const std::function<bool()>& cancelled) {
-  const imagination::RolloutSetup setup = SetupOf(query);
+  const imagination::RolloutSetup& setup = scene->rollouts();
   const std::string stem = std::filesystem::path(html).replace_extension().string();
   evaluation::FilmParams params;
-  params.threads = query.threads;
+  params.threads = threads;
   std::vector<Strip> strips;
   for (const auto& [which, what] : {std::pair{"worst", "The worst of all"},
                                     std::pair{"median", "The median of the first alternative"}}) {

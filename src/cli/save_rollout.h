@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/query_scene.h"
 #include "hires/cli/command_line.h"
 #include "hires/imagination/rollout_recording.h"
 
@@ -25,10 +26,10 @@ void AddSaveRolloutOptions(CLI::App* app, SaveRolloutOptions* options);
 /// folders that are not there, a bag that this build cannot write.
 void CheckSaveRollout(const SaveRolloutOptions& options, const MakeRolloutBag& make_bag);
 
-/// Plays the rollout again, from the files that the query names, and saves it. Says where.
+/// Plays the rollout again in the query's scene and saves it. Says where.
 /// @throws base::ConfigError if the answer has no such rollout, or if what is played is none of
 /// those that were imagined (workers with other files); then nothing is written.
-void SaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
+void SaveRollout(const SaveRolloutOptions& options, int threads, QueryScene* scene,
                  const imagination::Report& report, const MakeRolloutBag& make_bag,
                  const std::function<bool()>& cancelled);
 
@@ -41,7 +42,7 @@ struct Strip {
 /// Draws the worst rollout of all and the median one of the first alternative beside the page:
 /// page.html gets page_worst.png and page_median.png. Nothing once it is cancelled.
 /// @pre something was played.  @throws base::ConfigError as SaveRollout.
-std::vector<Strip> WriteStrips(const std::string& html, const ImagineQuery& query,
+std::vector<Strip> WriteStrips(const std::string& html, int threads, QueryScene* scene,
                                const imagination::Report& report,
                                const std::function<bool()>& cancelled);
 

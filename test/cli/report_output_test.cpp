@@ -90,8 +90,19 @@ TEST_F(ReportOutputTest, AnInputWithOtherTextHasAnotherHash) {
   EXPECT_EQ(hash("a: 1\n"), first);
 }
 
+TEST_F(ReportOutputTest, AnInputIsHashedAsItIsBeforeTheWork) {
+  ReportOptions options = Options();
+  options.json = Path("answer.json");
+  const std::string path = folder_.Write("input.yaml", "a: 1\n");
+  const ReportOrigin before{"count", true, {{"input", path}}, {}};
+  folder_.Write("input.yaml", "a: 2\n");
+  WriteReport(options, before, {{"counted", 3}});
+  EXPECT_EQ(ReadJson("answer.json")["report"]["inputs"][0]["hash"], before.inputs[0].hash);
+  EXPECT_NE(ReportInput("input", path).hash, before.inputs[0].hash);
+}
+
 TEST_F(ReportOutputTest, WhatNobodyAskedForIsNotWritten) {
-  WriteReport(Options(), {"count", true, {{"input", "/no/such/file"}}, {}}, {{"counted", 3}});
+  WriteReport(Options(), {"count", true, {}, {}}, {{"counted", 3}});
   EXPECT_EQ(NumFiles(), 0u);
 }
 

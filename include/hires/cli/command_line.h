@@ -88,9 +88,4 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
 /// the catalogue's and called by its model.  @throws base::ConfigError as world::LoadObjectModel.
 std::string NameOf(const std::string& object, imagination::SetupConfig* setup);
 
-/// Imagines in this process, as `hires imagine --local`.
-imagination::Report ImagineInThisProcess(const ImagineQuery& query,
-                                         const imagination::OnInterim& on_interim,
-                                         const std::function<bool()>& cancelled);
-
 }  // namespace hires::cli

@@ -33,10 +33,13 @@ void AddReportOptions(CLI::App* verb, ReportOptions* options);
 /// @throws base::ConfigError naming what is not there.
 void CheckReport(const ReportOptions& options);
 
-/// A file that the answer rests on.
+/// A file that an answer will rest on, as it is before the work is done.
 struct ReportInput {
+  /// @param path  empty: there is none, it is left out.  @throws base::ConfigError: unreadable.
+  ReportInput(std::string what, std::string path);
   std::string what;  ///< "world"
-  std::string path;  ///< empty: there was none, it is left out
+  std::string path;
+  std::string hash;  ///< 16 digits
 };
 
 /// How an answer came about, for whoever wants it again.

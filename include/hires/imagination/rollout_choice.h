@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hires/imagination/report.h"
+#include "hires/imagination/rollout_recording.h"
 
 namespace hires::imagination {
 
@@ -38,5 +39,17 @@ using TiltOfRollout = std::function<double(const base::ActionCall& action, int i
 /// has one, the message names it.
 PickedRollout PickRollout(const RolloutChoice& choice, const std::vector<Prediction>& ranking,
                           const TiltOfRollout& tilt_of);
+/// Asks the rollouts of this setup.  @pre `setup` stays.
+TiltOfRollout TiltsIn(const RolloutSetup& setup);
+
+/// Plays a rollout of the prediction again: it ends as it did when it was imagined.
+/// @param watcher  of what is played; may be null.
+/// @return nothing if it was cancelled.
+/// @throws base::ConfigError if it is none of those that were imagined: workers with another build
+/// or other files than this program.
+std::optional<RolloutRecording> ReplayRollout(const RolloutSetup& setup,
+                                              const Prediction& prediction, int index,
+                                              const std::function<bool()>& cancelled,
+                                              RolloutWatcher* watcher);
 
 }  // namespace hires::imagination

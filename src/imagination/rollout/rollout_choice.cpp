@@ -121,4 +121,22 @@ PickedRollout PickRollout(const RolloutChoice& choice, const std::vector<Predict
   return PickOf(choice.rank.value_or(1), choice, ranking);
 }
 
+TiltOfRollout TiltsIn(const RolloutSetup& setup) {
+  return [&setup](const base::ActionCall& action, int index) {
+    return PlayRollout(setup, action, index)->max_tilt;
+  };
+}
+
+std::optional<RolloutRecording> ReplayRollout(const RolloutSetup& setup,
+                                              const Prediction& prediction, int index,
+                                              const std::function<bool()>& cancelled,
+                                              RolloutWatcher* watcher) {
+  auto recording = RecordRollout(setup, prediction.action, index, cancelled, watcher);
+  if (!recording || IsAmong(prediction.evidence, recording->result)) return recording;
+  throw base::ConfigError(fmt::format(
+      "rollout {} played here is none of those that were imagined; the workers have another build "
+      "or another world, robot or objects than this program: give it theirs",
+      index));
+}
+
 }  // namespace hires::imagination

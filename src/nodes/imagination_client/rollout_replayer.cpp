@@ -84,22 +84,14 @@ void RolloutReplayer::Answer(const Request& request, Response* response) {
   const auto answered = Find(request.request_id);
   const imagination::RolloutSetup& setup = answered->request->setup;
   const auto cancelled = [this] { return is_stopping_.load(); };
-  const auto picked = imagination::PickRollout(
-      choice, answered->ranking, [&](const hires::base::ActionCall& action, int index) {
-        return imagination::PlayRollout(setup, action, index)->max_tilt;
-      });
+  const auto picked =
+      imagination::PickRollout(choice, answered->ranking, imagination::TiltsIn(setup));
   const imagination::Prediction& prediction = answered->ranking[picked.rank - 1];
   response->path = PathFor(*answered, picked.rank, picked.index);
   const auto bag = MakeRolloutBag(response->path, setup);
   const auto recording =
-      imagination::RecordRollout(setup, prediction.action, picked.index, cancelled, bag.get());
+      imagination::ReplayRollout(setup, prediction, picked.index, cancelled, bag.get());
   if (!recording) throw ConfigError("the imagination client is going down");
-  if (!imagination::IsAmong(prediction.evidence, recording->result)) {
-    throw ConfigError(fmt::format(
-        "rollout {} played here is none of those that were imagined; the workers have another "
-        "build than the client",
-        picked.index));
-  }
   bag->Save(*recording);
   response->rollout = answered->predictions.at(picked.rank - 1).worst;
   response->rollout.index = picked.index;
