@@ -10,10 +10,9 @@ import time
 import unittest
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..'))
-# As README's first example.
-QUESTION = ['hires', 'imagine', '--local', '--world', '/usr/share/hires/worlds/workshop.world', '--from', 'dock',
-            '--object', 'peppermill1', '--action', 'move_base_param', '--arg', 'atBench,farCorner', '--arg',
-            'slow,fast', '--rollouts', '64', '--seed', '7']
+sys.path.insert(0, os.path.join(ROOT, 'test', 'house'))
+
+from readme_test import bare, examples  # noqa: E402
 
 
 def run(*command):
@@ -73,11 +72,14 @@ class PackageTest(unittest.TestCase):
         return run('chroot', cls.system, 'env', '-i', 'PATH=/usr/sbin:/usr/bin:/sbin:/bin', 'HOME=/root', *command)
 
     def test_the_first_table_comes_with_nothing_built_there(self):
+        with open(os.path.join(ROOT, 'README.md'), encoding='utf-8') as file:
+            words, shown = examples(file.read())[0]
+        words[words.index('--world') + 1] = '/usr/share/hires/worlds/workshop.world'
         begin = time.monotonic()
-        table = self.inside(*QUESTION)
+        answer = self.inside('hires', *words, '--quiet')
         print('package: installed in %.0f s, first table after %.0f s more' %
               (self.installed_in, time.monotonic() - begin), flush=True)
-        self.assertIn('ranked: move_base_param(atbench, slow): 64 of 64 rollouts succeeded', table)
+        self.assertEqual(bare(answer), bare('\n'.join(shown)))
 
     def test_nodes_and_python_are_found(self):
         self.assertIn('/usr/share/hires', self.inside('rospack', 'find', 'hires'))
