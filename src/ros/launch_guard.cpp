@@ -24,6 +24,8 @@
 namespace hires_ros {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr double kCallTimeout = 0.5;  // [s]
 constexpr double kPatience = 15.0;    // [s] as long as roslaunch waits for nodes that it ends
 
@@ -48,21 +50,27 @@ bool IsRoslaunch(const std::vector<std::string>& command) {
   const auto end =
       command.begin() + std::min<std::ptrdiff_t>(2, static_cast<std::ptrdiff_t>(command.size()));
   return std::any_of(command.begin(), end, [](const std::string& word) {
-    return std::filesystem::path(word).filename() == "roslaunch";
+    return fs::path(word).filename() == "roslaunch";
   });
 }
 
-/// Whether it was asked for a launch file of this package, and not for one that includes it: a
-/// robot's drivers are not ours to end.
-bool IsOfThisPackage(const std::vector<std::string>& command) {
-  const std::string folder = ros::package::getPath("hires") + '/';
+/// Whether it was asked for a launch file of this package, by whatever path, and not for one that
+/// includes it: a robot's drivers are not ours to end.
+bool LaunchesThisPackage(pid_t roslaunch) {
+  std::error_code error;  // what is no file is none of ours
+  const fs::path at = fs::read_symlink(fmt::format("/proc/{}/cwd", roslaunch), error);
+  const fs::path package = fs::canonical(ros::package::getPath("hires"), error);
+  const std::vector<std::string> command = CommandOf(roslaunch);
   return std::any_of(command.begin(), command.end(), [&](const std::string& word) {
-    return word == "hires" || word.compare(0, folder.size(), folder) == 0;
+    if (word == "hires") return true;
+    if (!fs::is_regular_file(at / word, error)) return false;
+    const fs::path below = fs::canonical(at / word, error).lexically_relative(package);
+    return !below.empty() && *below.begin() != "..";
   });
 }
 
 void EndOwnLaunch() {
-  if (IsOfThisPackage(CommandOf(getppid()))) EndLaunch();
+  if (LaunchesThisPackage(getppid())) EndLaunch();
 }
 
 }  // namespace

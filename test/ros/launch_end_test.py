@@ -11,6 +11,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 from ros_processes import Processes, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
 
+PLANNER = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'launch', 'planner.launch')
 DONE = """<launch>
   <node pkg="hires" type="hires" name="done" output="screen" required="true"
         args="list scenarios --end-launch"/>
@@ -28,9 +29,10 @@ class LaunchEndTest(unittest.TestCase):
         return self.processes.start(['roslaunch', *words], self.master)
 
     def test_a_wrong_configuration_is_said_once_and_ends_the_launch(self):
-        launch = self.launch('hires', 'planner.launch', 'domain:=/nowhere/d.lisp')
-        launch.wait()
-        self.assertEqual(launch.output().count('/nowhere/d.lisp: no such file'), 1, launch.output())
+        for words in (('hires', 'planner.launch'), (os.path.relpath(PLANNER),)):
+            launch = self.launch(*words, 'domain:=/nowhere/d.lisp')
+            launch.wait()
+            self.assertEqual(launch.output().count('/nowhere/d.lisp: no such file'), 1, launch.output())
 
     def test_a_second_launch_under_the_same_names_ends_and_the_first_goes_on(self):
         first = self.launch('hires', 'planner.launch')
