@@ -10,7 +10,8 @@ def diagnostics(rospy, name, condition):
 
     def take(message):
         for status in message.status:
-            if status.name.startswith(name):
+            # The first of a node says that it is starting up, and no more.
+            if status.name.startswith(name) and status.values:
                 found.update({value.key: value.value for value in status.values})
                 found['message'] = status.message
 
