@@ -20,6 +20,7 @@
 #include "cli/list_command.h"
 #include "cli/plan_command.h"
 #include "cli/query_scene.h"
+#include "cli/reading_display.h"
 #include "cli/save_rollout.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
@@ -407,6 +408,13 @@ int RunVerb(const Verbs& verbs, const Backends& backends) {
   return kExitBadInput;
 }
 
+bool IsQuiet(const CLI::App& app) {
+  const CLI::Option* quiet = app.get_option_no_throw("--quiet");
+  const std::vector<const CLI::App*> verbs = app.get_subcommands({});
+  return (quiet != nullptr && quiet->count() > 0) ||
+         std::any_of(verbs.begin(), verbs.end(), [](const auto* verb) { return IsQuiet(*verb); });
+}
+
 }  // namespace
 
 int ExitCodeOf(const imagination::Report& report) {
@@ -448,6 +456,7 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
     RefuseUnknownOption(app, arguments);
     // CLI11 takes its arguments from the back.
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
+    const ReadingDisplay display(IsQuiet(app));
     return RunVerb(verbs, backends);
   } catch (const CLI::ParseError& error) {
     return Explain(error, app);

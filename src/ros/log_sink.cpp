@@ -2,7 +2,12 @@
 
 #include <ros/console.h>
 
+#include <cmath>
+#include <string>
+
 #include "hires/base/log.h"
+#include "hires/base/process.h"
+#include "hires/base/progress.h"
 
 namespace hires_ros {
 
@@ -23,8 +28,16 @@ ScopedLogSink::ScopedLogSink() {
         break;
     }
   });
+  hires::base::SetProgressSink(
+      [pace = hires::base::ProgressPace(false)](const std::string& task, double share) mutable {
+        if (!pace.IsDue(task, hires::base::SteadyNow())) return;
+        ROS_INFO_STREAM(task << ": " << std::lround(100.0 * share) << " %");
+      });
 }
 
-ScopedLogSink::~ScopedLogSink() { hires::base::SetLogSink({}); }
+ScopedLogSink::~ScopedLogSink() {
+  hires::base::SetLogSink({});
+  hires::base::SetProgressSink({});
+}
 
 }  // namespace hires_ros

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <sdf/Frame.hh>
 #include <sdf/Model.hh>
 #include <sdf/World.hh>
@@ -11,6 +12,7 @@
 #include "hires/base/text.h"
 #include "hires/world/world.h"
 #include "world/content_hash.h"
+#include "world/load_world_in_parts.h"
 #include "world/plain_object.h"
 #include "world/sdf_file.h"
 #include "world/sdf_model.h"
@@ -19,27 +21,69 @@
 namespace hires::world {
 namespace {
 
-constexpr std::uint64_t kMaxModels = 5000;
+constexpr std::uint64_t kMaxModels = 10000;
+constexpr std::size_t kModelsPerPart = 64;  // some 30 MB of libsdformat's
 
 bool ComesBefore(const std::string& a, const std::string& b) {
   return base::ToLower(a) < base::ToLower(b);
 }
 
-/// Puts the parts of an SDF world together, one by one.
+/// A model of the file, as far as a world holds it.
+struct WorldModel {
+  std::string name;
+  std::string where;  ///< for messages
+  geometry::Pose3 X_MB;
+  StaticShapes shapes;                ///< of what is static
+  std::optional<ObjectModel> object;  ///< what can move, under the name that its kind should have
+};
+
+/// The model folder that an <include> names, else the model's own name.
+std::string NameOfKind(const sdf::Model& model) {
+  const sdf::ElementPtr include = model.Element()->GetIncludeElement();
+  if (include == nullptr) return model.Name();
+  const std::string uri = include->Get<std::string>("uri");
+  const std::string stem = std::filesystem::path(uri).stem().string();
+  return stem.empty() ? model.Name() : stem;
+}
+
+/// Puts an SDF world together from its parts (see ReadSdfWorld).
 class WorldBuilder {
  public:
   explicit WorldBuilder(const ResourceFinder* finder) : finder_(finder) {}
 
-  World Build(const sdf::World& in, const std::string& path) {
+  void Add(const SdfWorldPart& part, const std::string& path) {
+    const sdf::World& in = part.world;
+    if (part.is_first) SetGravity(in, path);
+    for (std::uint64_t i = 0; i < in.ModelCount(); ++i) {
+      models_[part.places[i]] = WorldModelOf(*in.ModelByIndex(i));
+    }
+    if (!part.is_first) return;
     world_.name = in.Name();
-    SetGravity(in, path);
-    CheckNumber(in, path);
-    for (std::uint64_t i = 0; i < in.ModelCount(); ++i) AddModel(*in.ModelByIndex(i));
+    areas_.clear();
     for (std::uint64_t i = 0; i < in.FrameCount(); ++i) AddFrame(*in.FrameByIndex(i));
-    return Finish();
+  }
+
+  /// Models keep the order of the file till here, as names of kinds depend on it. What comes out is
+  /// in the order of names, so that the layout of the file changes no result.
+  World Finish(const std::string& path) {
+    CheckNumber(path);
+    for (auto& [place, model] : models_) Place(std::move(model));
+    for (const Area& area : areas_) Place(area);
+    const auto by_name = [](const auto& a, const auto& b) { return ComesBefore(a.name, b.name); };
+    std::sort(world_.statics.begin(), world_.statics.end(), by_name);
+    std::sort(world_.initial.objects.begin(), world_.initial.objects.end(), by_name);
+    world_.hash = world_.ComputeHash();
+    return std::move(world_);
   }
 
  private:
+  struct Area {
+    std::string name;
+    std::string where;  ///< for messages
+    std::string model;  ///< whose part it is, or ""
+    geometry::Pose3 X_MF;
+  };
+
   void SetGravity(const sdf::World& in, const std::string& path) {
     const auto gravity = in.Gravity();
     const bool is_down = gravity.X() == 0.0 && gravity.Y() == 0.0 && gravity.Z() <= 0.0;
@@ -52,12 +96,39 @@ class WorldBuilder {
     world_.gravity = std::abs(gravity.Z());
   }
 
-  static void CheckNumber(const sdf::World& in, const std::string& path) {
-    if (in.ModelCount() <= kMaxModels && in.FrameCount() <= kMaxModels) return;
+  WorldModel WorldModelOf(const sdf::Model& model) {
+    WorldModel result;
+    result.name = model.Name();
+    result.where = Where(model);
+    result.X_MB = PoseIn(model.SemanticPose(), "", result.where);
+    if (IsStatic(model)) {
+      result.shapes = StaticShapesOf(model, result.X_MB, *finder_, &meshes_);
+      std::sort(result.shapes.collisions.begin(), result.shapes.collisions.end(),
+                [](const auto& a, const auto& b) { return a.name < b.name; });
+    } else {
+      result.object = LooseObjectOf(model, *finder_, &meshes_);
+      result.object->name = NameOfKind(model);
+    }
+    return result;
+  }
+
+  void AddFrame(const sdf::Frame& frame) {
+    Area area;
+    area.name = frame.Name();
+    area.where = fmt::format("{}: frame '{}'", PlaceOf(frame.Element()), frame.Name());
+    std::string body;
+    ThrowIfAny(frame.ResolveAttachedToBody(body), area.where);
+    area.model = body.substr(0, body.find("::"));
+    area.X_MF = PoseIn(frame.SemanticPose(), "world", area.where);
+    areas_.push_back(std::move(area));
+  }
+
+  void CheckNumber(const std::string& path) const {
+    if (models_.size() <= kMaxModels && areas_.size() <= kMaxModels) return;
     throw base::ConfigError(fmt::format(
         "{}: world '{}' has {} models and {} frames, at most {} of each are loaded; join static "
         "models",
-        path, in.Name(), in.ModelCount(), in.FrameCount(), kMaxModels));
+        path, world_.name, models_.size(), areas_.size(), kMaxModels));
   }
 
   /// Names live in one space, case ignored, as plans and knowledge spell them differently.
@@ -69,24 +140,16 @@ class WorldBuilder {
                     claimed->second));
   }
 
-  void AddModel(const sdf::Model& model) {
-    const std::string where = Where(model);
-    ClaimName(model.Name(), where);
-    const geometry::Pose3 X_MB = PoseIn(model.SemanticPose(), "", where);
-    if (IsStatic(model)) {
-      AddStatic(model, X_MB, where);
-    } else {
-      AddLoose(model, X_MB);
+  void Place(WorldModel model) {
+    ClaimName(model.name, model.where);
+    if (model.object) {
+      world_.initial.objects.push_back(
+          {model.name, Share(*std::move(model.object)), model.X_MB, {}, ""});
+      return;
     }
-  }
-
-  void AddStatic(const sdf::Model& model, const geometry::Pose3& X_MB, const std::string& where) {
-    StaticShapes shapes = StaticShapesOf(model, X_MB, *finder_, &meshes_);
-    if (shapes.floor_friction) SetFloor(*shapes.floor_friction, where);
-    if (shapes.collisions.empty()) return;  // a floor, or there to be looked at only
-    std::sort(shapes.collisions.begin(), shapes.collisions.end(),
-              [](const auto& a, const auto& b) { return a.name < b.name; });
-    world_.statics.push_back({model.Name(), X_MB, std::move(shapes.collisions)});
+    if (model.shapes.floor_friction) SetFloor(*model.shapes.floor_friction, model.where);
+    if (model.shapes.collisions.empty()) return;  // a floor, or there to be looked at only
+    world_.statics.push_back({model.name, model.X_MB, std::move(model.shapes.collisions)});
   }
 
   void SetFloor(double friction, const std::string& where) {
@@ -96,21 +159,6 @@ class WorldBuilder {
     }
     floor_ = where;
     world_.floor_friction = friction;
-  }
-
-  void AddLoose(const sdf::Model& model, const geometry::Pose3& X_MO) {
-    ObjectModel object = LooseObjectOf(model, *finder_, &meshes_);
-    object.name = NameOfKind(model);
-    world_.initial.objects.push_back({model.Name(), Share(std::move(object)), X_MO, {}, ""});
-  }
-
-  /// The model folder that an <include> names, else the model's own name.
-  static std::string NameOfKind(const sdf::Model& model) {
-    const sdf::ElementPtr include = model.Element()->GetIncludeElement();
-    if (include == nullptr) return model.Name();
-    const std::string uri = include->Get<std::string>("uri");
-    const std::string stem = std::filesystem::path(uri).stem().string();
-    return stem.empty() ? model.Name() : stem;
   }
 
   /// The key of an equal model that is there already, or of this one, added.
@@ -129,34 +177,24 @@ class WorldBuilder {
     return key;
   }
 
-  void AddFrame(const sdf::Frame& frame) {
-    const std::string where = fmt::format("{}: frame '{}'", PlaceOf(frame.Element()), frame.Name());
-    ClaimName(frame.Name(), where);
-    std::string body;
-    ThrowIfAny(frame.ResolveAttachedToBody(body), where);
-    if (world_.initial.Find(body.substr(0, body.find("::"))) != nullptr) {
+  void Place(const Area& area) {
+    ClaimName(area.name, area.where);
+    if (world_.initial.Find(area.model) != nullptr) {
       throw base::ConfigError(
           fmt::format("{}: is attached to '{}', which can move; areas stay where they are: attach "
                       "it to the world or to something <static>",
-                      where, body));
+                      area.where, area.model));
     }
-    const std::string lower = base::ToLower(frame.Name());
-    world_.frames[lower] = PoseIn(frame.SemanticPose(), "world", where);
-    world_.frame_names[lower] = frame.Name();
-  }
-
-  /// In the order of names, so that the layout of the file changes no result.
-  World Finish() {
-    const auto by_name = [](const auto& a, const auto& b) { return ComesBefore(a.name, b.name); };
-    std::sort(world_.statics.begin(), world_.statics.end(), by_name);
-    std::sort(world_.initial.objects.begin(), world_.initial.objects.end(), by_name);
-    world_.hash = world_.ComputeHash();
-    return std::move(world_);
+    const std::string lower = base::ToLower(area.name);
+    world_.frames[lower] = area.X_MF;
+    world_.frame_names[lower] = area.name;
   }
 
   const ResourceFinder* finder_;
   MeshCache meshes_;
   World world_;
+  std::map<std::size_t, WorldModel> models_;  // by place in the file
+  std::vector<Area> areas_;
   std::string floor_;                           // where the floor was found
   std::map<std::string, std::string> names_;    // lower case -> where
   std::map<std::uint64_t, std::string> kinds_;  // hash of an object model -> its key
@@ -181,13 +219,16 @@ ObjectModel LoadSdfObject(const std::string& path, const ResourceFinder& finder)
 }  // namespace
 
 World LoadWorld(const std::string& sdf_path, const std::vector<std::string>& model_path) {
+  return LoadWorldInParts(sdf_path, model_path, kModelsPerPart);
+}
+
+World LoadWorldInParts(const std::string& sdf_path, const std::vector<std::string>& model_path,
+                       std::size_t models_per_part) {
   const ResourceFinder finder(ModelFoldersFor(sdf_path, model_path));
-  const sdf::Root root = ReadSdf(sdf_path, finder);
-  if (root.WorldCount() != 1) {
-    throw base::ConfigError(
-        fmt::format("{}: has {} <world> elements, wanted 1", sdf_path, root.WorldCount()));
-  }
-  return WorldBuilder(&finder).Build(*root.WorldByIndex(0), sdf_path);
+  WorldBuilder builder(&finder);
+  ReadSdfWorld(sdf_path, finder, models_per_part,
+               [&](const SdfWorldPart& part) { builder.Add(part, sdf_path); });
+  return builder.Finish(sdf_path);
 }
 
 ObjectModel LoadObjectModel(const std::string& path) {

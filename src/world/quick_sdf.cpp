@@ -6,9 +6,7 @@
 #include <mutex>
 #include <sdf/InterfaceElements.hh>
 #include <sdf/Param.hh>
-#include <sdf/ParserConfig.hh>
 #include <sdf/parser.hh>
-#include <vector>
 
 namespace hires::world {
 namespace {
@@ -112,76 +110,14 @@ sdf::ElementPtr PutInPlace(const sdf::ElementPtr& model, const sdf::ElementPtr& 
   return placed;
 }
 
-/// Reads a file and what it includes.
-class QuickReader {
- public:
-  QuickReader(const ResourceFinder& finder, const XmlInventory& inventory)
-      : finder_(finder), inventory_(inventory) {
-    config_.SetFindCallback(
-        [this](const std::string& uri) { return finder_.FindModel(uri, uri) + kLeaveForLater; });
-    // With such a parser, libsdformat leaves <include> elements alone whose file has a foreign
-    // ending. It would be called by sdf::Root::Load; by then no <include> is left.
-    config_.RegisterCustomModelParser(
-        [](const sdf::NestedInclude&, sdf::Errors&) -> sdf::InterfaceModelPtr { return nullptr; });
-  }
+/// Ending of what is left for later by libsdformat.
+constexpr char kLeaveForLater[] = ".include";
 
-  /// nullptr when in doubt.
-  sdf::SDFPtr Read(const std::string& path) {
-    const auto file = inventory_.find(path);
-    if (file == inventory_.end() || !IsKnownVersion(file->second)) return nullptr;
-    const auto document = std::make_shared<sdf::SDF>();
-    document->Root(SchemaFor(file->second.elements)->Clone());
-    sdf::Errors errors;
-    if (!sdf::readFile(path, config_, document, errors) || !errors.empty()) return nullptr;
-    return ResolveIncludes(document->Root()) ? document : nullptr;
-  }
-
- private:
-  static constexpr const char* kLeaveForLater = ".include";
-
-  bool ResolveIncludes(const sdf::ElementPtr& parent) {
-    const std::vector<sdf::ElementPtr> children = ChildrenOf(parent);
-    const auto is_include = [](const auto& child) { return child->GetName() == "include"; };
-    if (std::any_of(children.begin(), children.end(), is_include)) {
-      return ReplaceIncludes(parent, children);
-    }
-    return std::all_of(children.begin(), children.end(),
-                       [this](const auto& child) { return ResolveIncludes(child); });
-  }
-
-  /// Keeps the order, as names of kinds of objects depend on it.
-  bool ReplaceIncludes(const sdf::ElementPtr& parent,
-                       const std::vector<sdf::ElementPtr>& children) {
-    for (const sdf::ElementPtr& child : children) parent->RemoveChild(child);
-    for (const sdf::ElementPtr& child : children) {
-      const bool is_include = child->GetName() == "include";
-      const sdf::ElementPtr wanted = is_include ? Included(child) : child;
-      if (wanted == nullptr || (!is_include && !ResolveIncludes(child))) return false;
-      Insert(wanted, parent);
-    }
-    return true;
-  }
-
-  sdf::ElementPtr Included(const sdf::ElementPtr& include) {
-    if (!IsPlain(include)) return nullptr;
-    const std::string uri = include->Get<std::string>("uri");
-    const sdf::ElementPtr model = ModelIn(finder_.FindModel(uri, uri));
-    return model == nullptr ? nullptr : PutInPlace(model, include);
-  }
-
-  sdf::ElementPtr ModelIn(const std::string& path) {
-    const auto [known, is_new] = documents_.emplace(path, nullptr);
-    if (is_new) known->second = Read(path);
-    if (known->second == nullptr) return nullptr;
-    const std::vector<sdf::ElementPtr> top = ChildrenOf(known->second->Root());
-    return top.size() == 1 && top[0]->GetName() == "model" ? top[0] : nullptr;
-  }
-
-  const ResourceFinder& finder_;
-  const XmlInventory& inventory_;
-  sdf::ParserConfig config_;
-  std::map<std::string, sdf::SDFPtr> documents_;  // of included files
-};
+/// libsdformat knows no file for a text.
+void SetFilePath(const sdf::ElementPtr& element, const std::string& path) {
+  element->SetFilePath(path);
+  for (const sdf::ElementPtr& child : ChildrenOf(element)) SetFilePath(child, path);
+}
 
 }  // namespace
 
@@ -198,9 +134,78 @@ sdf::ElementPtr SchemaFor(const std::set<std::string>& elements) {
   return schema;
 }
 
-sdf::SDFPtr ReadDocumentQuickly(const std::string& path, const ResourceFinder& finder,
-                                const XmlInventory& inventory) {
-  return QuickReader(finder, inventory).Read(path);
+QuickReader::QuickReader(const ResourceFinder& finder, const XmlInventory& inventory)
+    : finder_(finder), inventory_(inventory) {
+  config_.SetFindCallback(
+      [this](const std::string& uri) { return finder_.FindModel(uri, uri) + kLeaveForLater; });
+  // With such a parser, libsdformat leaves <include> elements alone whose file has a foreign
+  // ending. It would be called by sdf::Root::Load; by then no <include> is left.
+  config_.RegisterCustomModelParser(
+      [](const sdf::NestedInclude&, sdf::Errors&) -> sdf::InterfaceModelPtr { return nullptr; });
+}
+
+sdf::SDFPtr QuickReader::Read(const std::string& path) {
+  const auto read = [&](const sdf::SDFPtr& document, sdf::Errors* errors) {
+    return sdf::readFile(path, config_, document, *errors);
+  };
+  return ReadBy(read, path);
+}
+
+sdf::SDFPtr QuickReader::ReadPart(const std::string& text, const std::string& path) {
+  const auto read = [&](const sdf::SDFPtr& document, sdf::Errors* errors) {
+    if (!sdf::readString(text, config_, document, *errors)) return false;
+    SetFilePath(document->Root(), path);
+    return true;
+  };
+  return ReadBy(read, path);
+}
+
+sdf::SDFPtr QuickReader::ReadBy(const ReadInto& read, const std::string& path) {
+  const auto file = inventory_.find(path);
+  if (file == inventory_.end() || !IsKnownVersion(file->second)) return nullptr;
+  const auto document = std::make_shared<sdf::SDF>();
+  document->Root(SchemaFor(file->second.elements)->Clone());
+  sdf::Errors errors;
+  if (!read(document, &errors) || !errors.empty()) return nullptr;
+  return ResolveIncludes(document->Root()) ? document : nullptr;
+}
+
+bool QuickReader::ResolveIncludes(const sdf::ElementPtr& parent) {
+  const std::vector<sdf::ElementPtr> children = ChildrenOf(parent);
+  const auto is_include = [](const auto& child) { return child->GetName() == "include"; };
+  if (std::any_of(children.begin(), children.end(), is_include)) {
+    return ReplaceIncludes(parent, children);
+  }
+  return std::all_of(children.begin(), children.end(),
+                     [this](const auto& child) { return ResolveIncludes(child); });
+}
+
+/// Keeps the order, as names of kinds of objects depend on it.
+bool QuickReader::ReplaceIncludes(const sdf::ElementPtr& parent,
+                                  const std::vector<sdf::ElementPtr>& children) {
+  for (const sdf::ElementPtr& child : children) parent->RemoveChild(child);
+  for (const sdf::ElementPtr& child : children) {
+    const bool is_include = child->GetName() == "include";
+    const sdf::ElementPtr wanted = is_include ? Included(child) : child;
+    if (wanted == nullptr || (!is_include && !ResolveIncludes(child))) return false;
+    Insert(wanted, parent);
+  }
+  return true;
+}
+
+sdf::ElementPtr QuickReader::Included(const sdf::ElementPtr& include) {
+  if (!IsPlain(include)) return nullptr;
+  const std::string uri = include->Get<std::string>("uri");
+  const sdf::ElementPtr model = ModelIn(finder_.FindModel(uri, uri));
+  return model == nullptr ? nullptr : PutInPlace(model, include);
+}
+
+sdf::ElementPtr QuickReader::ModelIn(const std::string& path) {
+  const auto [known, is_new] = documents_.emplace(path, nullptr);
+  if (is_new) known->second = Read(path);
+  if (known->second == nullptr) return nullptr;
+  const std::vector<sdf::ElementPtr> top = ChildrenOf(known->second->Root());
+  return top.size() == 1 && top[0]->GetName() == "model" ? top[0] : nullptr;
 }
 
 }  // namespace hires::world

@@ -4,19 +4,23 @@
 
 #include <algorithm>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <sdf/Console.hh>
 #include <sdf/ParserConfig.hh>
+#include <sdf/World.hh>
 #include <sdf/parser.hh>
 #include <set>
 #include <sstream>
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
+#include "hires/base/progress.h"
 #include "hires/base/text.h"
 #include "hires/geometry/inertia.h"
 #include "world/console_bridge_capture.h"
 #include "world/quick_sdf.h"
+#include "world/world_parts.h"
 
 namespace hires::world {
 namespace {
@@ -176,10 +180,9 @@ sdf::ParserConfig ConfigFor(const ResourceFinder& finder) {
   return config;
 }
 
-/// The quick way. Nothing if libsdformat had anything to say: the straight way repeats it in full.
-std::optional<sdf::Root> ReadQuickly(const std::string& path, const ResourceFinder& finder,
-                                     const XmlInventory& inventory, const ConsoleCapture& console) {
-  const sdf::SDFPtr document = ReadDocumentQuickly(path, finder, inventory);
+/// Nothing if libsdformat had anything to say.
+std::optional<sdf::Root> LoadQuickly(const sdf::SDFPtr& document, const ResourceFinder& finder,
+                                     const ConsoleCapture& console) {
   if (document == nullptr || !console.IsSilent()) return std::nullopt;
   CheckInertials(document->Root());
   sdf::Root root;
@@ -211,6 +214,33 @@ sdf::Root ReadStraight(const std::string& path, const ResourceFinder& finder,
   return root;
 }
 
+/// The quick way if libsdformat is content; else the straight one repeats what it had to say.
+sdf::Root ReadWhole(const std::string& path, const ResourceFinder& finder,
+                    const XmlInventory& inventory, ConsoleCapture* console) {
+  const sdf::SDFPtr document = QuickReader(finder, inventory).Read(path);
+  if (auto root = LoadQuickly(document, finder, *console)) return std::move(*root);
+  console->Forget();
+  return ReadStraight(path, finder, *console);
+}
+
+using UsePart = std::function<void(const SdfWorldPart&)>;
+
+/// @return whether libsdformat was content with all parts.
+bool ReadInParts(const std::vector<WorldPart>& parts, const std::string& path,
+                 const ResourceFinder& finder, const XmlInventory& inventory,
+                 const ConsoleCapture& console, const UsePart& use) {
+  QuickReader reader(finder, inventory);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const auto root = LoadQuickly(reader.ReadPart(parts[i].text, path), finder, console);
+    if (!root || root->WorldCount() != 1) return false;
+    const sdf::World& world = *root->WorldByIndex(0);
+    if (world.ModelCount() != parts[i].places.size()) return false;
+    use({world, parts[i].places, i == 0});
+    base::ReportProgress("reading " + path, static_cast<double>(i + 1) / parts.size());
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string PlaceOf(const sdf::ElementPtr& element) {
@@ -230,11 +260,29 @@ sdf::Root ReadSdf(const std::string& path, const ResourceFinder& finder, const X
   ConsoleCapture console;
   const ConsoleBridgeCapture urdf_console;  // libsdformat tries what it cannot read as URDF
   const XmlInventory inventory = CheckXmlFile(path, finder, limits);
-  if (way == ReadingWay::kQuick) {
-    if (auto root = ReadQuickly(path, finder, inventory, console)) return std::move(*root);
-    console.Forget();
+  if (way == ReadingWay::kStraight) return ReadStraight(path, finder, console);
+  return ReadWhole(path, finder, inventory, &console);
+}
+
+void ReadSdfWorld(const std::string& path, const ResourceFinder& finder,
+                  std::size_t models_per_part,
+                  const std::function<void(const SdfWorldPart&)>& use) {
+  ConsoleCapture console;
+  const ConsoleBridgeCapture urdf_console;
+  const XmlLimits limits;
+  const XmlInventory inventory = CheckXmlFile(path, finder, limits);
+  const auto parts = CutWorld(base::ReadTextFile(path, limits.max_file_bytes), models_per_part);
+  if (!parts.empty() && ReadInParts(parts, path, finder, inventory, console, use)) return;
+  console.Forget();
+  const sdf::Root root = ReadWhole(path, finder, inventory, &console);
+  if (root.WorldCount() != 1) {
+    throw base::ConfigError(
+        fmt::format("{}: has {} <world> elements, wanted 1", path, root.WorldCount()));
   }
-  return ReadStraight(path, finder, console);
+  const sdf::World& world = *root.WorldByIndex(0);
+  std::vector<std::size_t> places(world.ModelCount());
+  std::iota(places.begin(), places.end(), 0);
+  use({world, places, true});
 }
 
 }  // namespace hires::world

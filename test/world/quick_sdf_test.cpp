@@ -57,7 +57,7 @@ ResourceFinder FinderFor(const std::string& path) {
 
 sdf::SDFPtr ReadQuickly(const std::string& path) {
   const ResourceFinder finder = FinderFor(path);
-  return ReadDocumentQuickly(path, finder, CheckXmlFile(path, finder));
+  return QuickReader(finder, CheckXmlFile(path, finder)).Read(path);
 }
 
 void ExpectBothWaysAgree(const std::string& path) {

@@ -2,7 +2,8 @@
 
 namespace hires_ros {
 
-/// Carries core log lines (base::Log) to rosout while it lives.
+/// Carries core log lines (base::Log), and how far long reading has come (base::ReportProgress), to
+/// rosout while it lives.
 class ScopedLogSink {
  public:
   ScopedLogSink();

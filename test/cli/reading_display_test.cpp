@@ -1,0 +1,32 @@
+#include "cli/reading_display.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+
+namespace hires::cli::reading_display_test {
+namespace {
+
+std::string ShownFrom(bool is_drawn_over) {
+  std::ostringstream out;
+  double now = 10.0;
+  const auto show = ShowReadingOn(&out, is_drawn_over, [&] { return now; });
+  show("reading hall.world", 0.1);
+  now = 11.0;
+  show("reading hall.world", 0.43);
+  now = 12.0;
+  show("reading hall.world", 1.0);
+  return out.str();
+}
+
+TEST(ReadingDisplayTest, ATerminalShowsOneLineThatIsGoneAtTheEnd) {
+  EXPECT_EQ(ShownFrom(true), "\rreading hall.world: 43 %\033[K\r\033[K");
+}
+
+TEST(ReadingDisplayTest, ALogHasALineNowAndThen) {
+  EXPECT_EQ(ShownFrom(false), "reading hall.world: 43 %\n");
+}
+
+}  // namespace
+}  // namespace hires::cli::reading_display_test
