@@ -28,6 +28,8 @@ class QuickReader {
   /// @param inventory  of the file that is read, by CheckXmlFile with the same finder.
   /// @pre both outlive this.
   QuickReader(const ResourceFinder& finder, const XmlInventory& inventory);
+  QuickReader(const QuickReader&) = delete;  // its callback knows where it is
+  QuickReader& operator=(const QuickReader&) = delete;
 
   /// Nothing (nullptr) when in doubt: an error, an <include> with more than <uri>, <name>, <pose>
   /// and <static>, a file that is no SDF of version 1.6 to 1.9.
