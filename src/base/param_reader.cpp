@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "hires/base/error.h"
+#include "hires/base/spelling.h"
 #include "hires/base/text.h"
 
 namespace hires::base {
@@ -45,6 +46,28 @@ bool HasLeadingZero(const YAML::Node& node) {
   if (!node.IsScalar()) return false;
   const std::string digits = node.Scalar().substr(node.Scalar().find_first_not_of("+-") == 1);
   return digits.size() > 1 && digits[0] == '0';
+}
+
+/// Whether letters are too many, too few or swapped. Another letter is no sign: start_x is not
+/// start_y.
+bool IsMistyped(const std::string& given, const std::string& wanted) {
+  if (given.size() != wanted.size()) return AreSpeltAlike(given, wanted);
+  return EditDistance(given, wanted) == 2 &&
+         std::is_permutation(given.begin(), given.end(), wanted.begin());
+}
+
+/// A key that is missing may stand there mistyped; then one error says so.
+/// @param read  keys that are something else.
+void RefuseMistyped(const YAML::Node& map, const std::set<std::string>& read,
+                    const std::string& missing, const std::string& where,
+                    const std::string& prefix) {
+  for (const auto& entry : map) {
+    const std::string key = entry.first.Scalar();
+    if (read.count(key) > 0 || !IsMistyped(key, missing)) continue;
+    throw ConfigError(fmt::format("{}: {}{}", where,
+                                  UnknownName("key", prefix + key, {prefix + missing}),
+                                  LineOf(entry.first)));
+  }
 }
 
 }  // namespace
@@ -113,6 +136,7 @@ YAML::Node ParamReader::Require(const std::string& key) {
   read_->keys.insert(key);
   const YAML::Node& map = node_;
   if (!Has(key)) {
+    RefuseMistyped(map, read_->keys, key, where_, prefix_);
     throw ConfigError(
         fmt::format("{}: {}{} is missing{}; add it", where_, prefix_, key, LineOf(map)));
   }
@@ -190,8 +214,12 @@ bool ParamReader::Has(const std::string& key) const {
 
 void ParamReader::RequireKeys(const std::vector<std::string>& keys) const {
   std::vector<std::string> missing;
+  std::set<std::string> read = read_->keys;
+  read.insert(keys.begin(), keys.end());
   for (const std::string& path : keys) {
-    if (!HasPath(node_, Split(path, '.'))) missing.push_back(prefix_ + path);
+    if (HasPath(node_, Split(path, '.'))) continue;
+    RefuseMistyped(node_, read, path, where_, prefix_);
+    missing.push_back(prefix_ + path);
   }
   if (missing.empty()) return;
   throw ConfigError(fmt::format("{}: {} {} missing; add {}", where_, Join(missing, ", "),

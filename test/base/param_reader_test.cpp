@@ -197,9 +197,29 @@ TEST(ParamReaderTest, AKeyThatNobodyAskedForIsRefusedWithTheLikelyOne) {
   ParamReader in = Read("num_wrokers: 4\nother: 1\n");
   in.GetString("other");
   EXPECT_EQ(ErrorOf([&] { in.Get("num_workers", Between(1, 8)); }),
-            "a.yaml: num_workers is missing; line 1; add it");
+            "a.yaml: key 'num_wrokers' is unknown; did you mean 'num_workers'?; line 1");
   EXPECT_EQ(ErrorOf([&] { in.RejectUnknownKeys(); }),
             "a.yaml: key 'num_wrokers' is unknown; did you mean 'num_workers'?; line 1");
+}
+
+TEST(ParamReaderTest, AMissingKeyThatStandsThereMistypedIsToldOnce) {
+  const auto error_of = [](const std::string& yaml, const std::string& key) {
+    return ErrorOf([&] { Read("a:\n  " + yaml).Sub("a").Get(key, Positive()); });
+  };
+  const std::string wanted = "' is unknown; did you mean 'a.mass'?; line 2";
+  for (const std::string typo : {"mas", "masss", "amss"}) {
+    EXPECT_EQ(error_of(typo + ": 0.5", "mass"), "a.yaml: key 'a." + typo + wanted);
+  }
+  EXPECT_EQ(ErrorOf([] {
+              Read("tasks: x\n").RequireKeys({"robot", "task"});
+            }),
+            "a.yaml: key 'tasks' is unknown; did you mean 'task'?; line 1");
+  // These may be keys in their own right.
+  EXPECT_THAT(error_of("start_y: 1", "start_x"), HasSubstr("a.start_x is missing"));
+  EXPECT_THAT(error_of("width: 1", "depth"), HasSubstr("a.depth is missing"));
+  ParamReader in = Read("areas: x");
+  in.GetString("areas");
+  EXPECT_THAT(ErrorOf([&] { in.GetString("area"); }), HasSubstr("area is missing"));
 }
 
 TEST(ParamReaderTest, UnknownKeysOfNestedMapsAreRefusedToo) {

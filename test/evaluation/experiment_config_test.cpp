@@ -168,7 +168,8 @@ TEST(ExperimentConfigTest, MistakesAreNamedWithTheirPlace) {
   };
   EXPECT_THAT(legs("kind: legs", "kind: lags"), HasSubstr("kind is 'lags', wanted one of 'legs'"));
   EXPECT_THAT(legs("legs: 100", "legs: 0"), HasSubstr("legs.legs is '0'"));
-  EXPECT_THAT(legs("chains: 1", "chain: 1"), HasSubstr("legs.chains is missing"));
+  EXPECT_THAT(legs("chains: 1", "chain: 1"),
+              HasSubstr("'legs.chain' is unknown; did you mean 'legs.chains'"));
   EXPECT_THAT(legs("seed: 1", "seed: 1\nsead: 1"), HasSubstr("key 'sead' is unknown"));
   EXPECT_THAT(legs("seed: 1", "seed: -1"), HasSubstr("seed is '-1'"));
   EXPECT_THAT(legs("name: NT1", "name: HOME"), HasSubstr("wanted every name once"));

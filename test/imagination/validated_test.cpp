@@ -91,7 +91,7 @@ TEST(ReadValidatedTest, RefusesWhatItDoesNotKnow) {
         [&] { ReadValidated(base::ParamReader::FromString(changed, "validated.yaml")); });
   };
   EXPECT_THAT(why("  tray:", "  trai:"), AllOf(HasSubstr("validated.yaml"), HasSubstr("'trai'")));
-  EXPECT_THAT(why("levels:", "level:"), HasSubstr("levels is missing"));
+  EXPECT_THAT(why("levels:", "level:"), HasSubstr("key 'level' is unknown; did you mean 'levels'"));
   EXPECT_THAT(why("at_most: 0.0 ", "at_most: -1 "), HasSubstr("floor_roughness.at_most is '-1'"));
   EXPECT_THAT(why("linear_speed:", "speeds: {}\nlinear_speed:"), HasSubstr("'speeds' is unknown"));
 }

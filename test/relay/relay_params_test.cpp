@@ -92,7 +92,7 @@ TEST(ReadRelayParamsTest, BadValuesAreNamedWithKeyAndLine) {
   EXPECT_THAT(ErrorOf(With("1.0", ".nan")), HasSubstr("ping_period is '.nan'"));
   EXPECT_THAT(ErrorOf(With("call_timeout: 0.5\n", "")), HasSubstr("call_timeout is missing"));
   EXPECT_THAT(ErrorOf(With("[/pause]", "/pause")), HasSubstr("local_services is '/pause'"));
-  EXPECT_THAT(ErrorOf(With("local_pubs", "local_pub")), HasSubstr("local_pubs is missing"));
+  EXPECT_THAT(ErrorOf(With("local_pubs", "local_pub")), HasSubstr("did you mean 'local_pubs'"));
   EXPECT_THAT(ErrorOf(std::string(kGood) + "speed: 3\n"), HasSubstr("key 'speed' is unknown"));
 }
 

@@ -136,6 +136,8 @@ TEST_F(ObjectModelTest, RefusesPlainObjectsThatAreNone) {
   EXPECT_THAT(error_of("radius: .nan"), HasSubstr("radius"));
   EXPECT_THAT(error_of("radius: 0.04, com_height: 0.21"), HasSubstr("com_height is '0.21'"));
   EXPECT_THAT(error_of("radius: 0.04, colour: red"), HasSubstr("colour"));
+  EXPECT_THAT(ErrorOf("m.yaml", "{shape: cylinder, radius: 0.04, height: 0.2, mas: 0.5}"),
+              HasSubstr("m.yaml: key 'mas' is unknown; did you mean 'mass'?; line 1"));
   EXPECT_THAT(ErrorOf("c.yaml", "{shape: cone, height: 0.2, mass: 0.5}"), HasSubstr("cylinder"));
 }
 
