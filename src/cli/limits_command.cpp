@@ -95,6 +95,10 @@ int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folde
   request.max_fall = options.max_fall;
   request.seed = options.seed;
   request.check_truths = options.check_truths;
+  // Whoever asks reads these while the rest is played.
+  std::cout << evaluation::ClosedFormText(evaluation::ClosedFormLimits(request.object, setup))
+            << '\n'
+            << std::flush;
   const Clock::time_point begin = Clock::now();
   auto report = evaluation::FindLimits(request, setup, CrewOf(options, cancelled));
   if (!options.quiet && isatty(STDERR_FILENO) != 0) std::cerr << "\r\033[K";

@@ -1,8 +1,13 @@
+#include "cli/limits_command.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
 
 #include "cli/command_run.h"
 #include "hires/base/text.h"
@@ -16,11 +21,49 @@ using hires::test_support::RunHires;
 using hires::test_support::TemporaryFolder;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 /// Five truths, exactly nominal: quick.
 Ended Limits(std::vector<std::string> words) {
   words.insert(words.end(), {"--max-fall", "0.5", "--uncertainty", "none"});
   return RunHires({"limits"}, words);
+}
+
+/// Standard output of its scope, as far as it was flushed.
+class FlushedOutput : private std::stringbuf {
+ public:
+  FlushedOutput() : before_(std::cout.rdbuf(this)) {}
+  ~FlushedOutput() override { std::cout.rdbuf(before_); }
+  FlushedOutput(const FlushedOutput&) = delete;
+  FlushedOutput& operator=(const FlushedOutput&) = delete;
+  const std::string& text() const { return text_; }
+
+ private:
+  int sync() override {
+    text_ = str();
+    return 0;
+  }
+  std::streambuf* before_;
+  std::string text_;
+};
+
+TEST(LimitsCommandTest, ClosedFormsAreShownBeforeTheFirstDrive) {
+  LimitsOptions options;
+  options.object = "peppermill1";
+  options.threads = 1;
+  options.quiet = true;
+  const FlushedOutput output;
+  std::optional<std::string> shown;  // when the first drive is about to begin
+  const auto cancelled = [&] {
+    if (!shown) shown = output.text();
+    return true;
+  };
+  EXPECT_EQ(RunLimitsVerb(options, HIRES_SOURCE_DIR, cancelled), kExitCancelled);
+  ASSERT_TRUE(shown);
+  EXPECT_THAT(*shown,
+              AllOf(HasSubstr("speed           0.370 m/s"), HasSubstr("acceleration  2.646 m/s^2"),
+                    HasSubstr("deceleration  2.646 m/s^2"), HasSubstr("turning       1.322 rad/s"),
+                    Not(HasSubstr("simulated"))));
 }
 
 TEST(LimitsCommandTest, PrintsATableAndWhatMoveBaseTakes) {
@@ -46,7 +89,7 @@ TEST(LimitsCommandTest, TakesAThingThatAYamlFileDescribes) {
   const Ended ended =
       Limits({"--object", file, "--robot", HIRES_SOURCE_DIR "/config/robots/cart.yaml"});
   EXPECT_EQ(ended.code, 0) << ended.err;
-  EXPECT_THAT(ended.out, AllOf(HasSubstr("slides: 1.960 m/s^2"),
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("1.960 m/s^2  2.000 m/s^2  slides"),
                                HasSubstr("# my_bottle on the tray of cart")));
 }
 

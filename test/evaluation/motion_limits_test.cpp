@@ -70,6 +70,11 @@ TEST(MotionLimitsTest, TheSpeedOfALockedWheelIsTheClosedForms) {
   EXPECT_NEAR(report->Of("turning").value, speed / reach, 2.0 * kScaleStep * speed / reach);
   const double tips = physics::TippingAcceleration(kMill, 9.81);
   EXPECT_NEAR(report->Of("deceleration").closed_form, tips, kModel * tips);
+  const std::vector<MotionBounds> bounds = ClosedFormLimits("peppermill1", SetupWith(MakeIdeal));
+  ASSERT_EQ(bounds.size(), 4u);
+  for (const MotionBounds& motion : bounds) {
+    EXPECT_EQ(motion.closed_form, report->Of(motion.motion).closed_form) << motion.motion;
+  }
 }
 
 TEST(MotionLimitsTest, AControllersOwnStopOverturnsFromWhereThePulseIsLongEnough) {

@@ -29,14 +29,18 @@ struct LimitCheck {
   std::optional<int> falls_above;  ///< at 1.1 times the limit, where the base can do that
 };
 
-/// One motion, as far as it may go.
-struct MotionLimit {
+/// What is known of a motion before anything is played.
+struct MotionBounds {
   std::string motion;       ///< speed, acceleration, deceleration, turning, together
   std::string unit;         ///< "m/s"; of `together` none: it is a share of the others
-  double value{0.0};        ///< largest on a scale of steps of 3 % at which nothing fell
-  double robots_own{0.0};   ///< limit of the base's controller; nothing above was looked at
+  double robots_own{0.0};   ///< limit of the base's controller; nothing above is looked at
   double closed_form{0.0};  ///< for the model as it is, on an even floor; infinite: no limit
   std::string stated;       ///< what the closed form speaks of: "tips", "slides", ...
+};
+
+/// One motion, as far as it may go.
+struct MotionLimit : MotionBounds {
+  double value{0.0};  ///< largest on a scale of steps of 3 % at which nothing fell
   std::optional<LimitCheck> check;
 };
 
@@ -64,15 +68,24 @@ struct LimitsReport {
 /// [Wilks 1941, Ann. Math. Stat. 12:91-96]. Each motion has truths of its own.
 int NumTruths(double max_fall);
 
+/// Closed forms of speed, acceleration, deceleration and turning, in this order: at once, as
+/// nothing is played.
+/// @throws base::ConfigError: no such object, a robot without a tray, an object that cannot stand,
+/// a controller that moves nothing.
+std::vector<MotionBounds> ClosedFormLimits(const std::string& object,
+                                           const imagination::ImaginationSetup& setup);
+
 /// Looks for limits of all motions. The same bits for any number of threads.
 /// @param setup  whose world only lends its gravity: the floor is empty.
 /// @return nothing when it was cancelled.
-/// @throws base::ConfigError: no such object, a robot without a tray, an object that cannot stand
-/// or falls while the robot stands still or drives at a 30th of what its controller allows.
+/// @throws base::ConfigError as ClosedFormLimits(), and for an object that falls while the robot
+/// stands still or drives at a 30th of what its controller allows.
 std::optional<LimitsReport> FindLimits(const LimitsRequest& request,
                                        const imagination::ImaginationSetup& setup,
                                        const Crew& crew);
 
+/// For people: the closed forms beside what the base's controller allows.
+std::string ClosedFormText(const std::vector<MotionBounds>& bounds);
 /// For people: a table, and what it rests on.
 std::string LimitsText(const LimitsReport& report);
 /// To be pasted: the parameters of move_base's DWAPlannerROS, all motions together.

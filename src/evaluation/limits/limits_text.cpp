@@ -15,17 +15,12 @@ namespace {
 /// Rounded down: never more than what was borne.
 double Floored(double value, double scale) { return std::floor(value * scale + 1e-9) / scale; }
 
-std::string Amount(double value, const MotionLimit& limit) {
+std::string Amount(double value, const MotionBounds& limit) {
   if (std::isinf(value)) return "-";
   if (limit.motion == "together") {
     return fmt::format("{:.0f} % {}", 100.0 * Floored(value, 1e2), limit.unit);
   }
   return fmt::format("{:.3f} {}", Floored(value, 1e3), limit.unit);
-}
-
-std::string ClosedForm(const MotionLimit& limit) {
-  if (std::isinf(limit.closed_form)) return limit.stated.empty() ? "-" : limit.stated;
-  return fmt::format("{}: {}", limit.stated, Amount(limit.closed_form, limit));
 }
 
 /// "3 and 41", or "3" where the base cannot do more.
@@ -40,6 +35,16 @@ nlohmann::ordered_json OrNull(double value) {
 
 }  // namespace
 
+std::string ClosedFormText(const std::vector<MotionBounds>& bounds) {
+  std::vector<std::vector<std::string>> rows{{"motion", "closed form", "robot's own", "why"}};
+  for (const MotionBounds& motion : bounds) {
+    rows.push_back({motion.motion, Amount(motion.closed_form, motion),
+                    Amount(motion.robots_own, motion), motion.stated});
+  }
+  return "closed forms: the model as it is, on an even floor and a base that follows exactly\n" +
+         FormatTable(rows);
+}
+
 std::string LimitsText(const LimitsReport& report) {
   const int num_checked = report.request.check_truths;
   std::vector<std::vector<std::string>> rows{{"motion", "limit", "robot's own", "closed form"}};
@@ -47,19 +52,18 @@ std::string LimitsText(const LimitsReport& report) {
   for (const MotionLimit& limit : report.limits) {
     const bool is_share = limit.motion == "together";
     rows.push_back({limit.motion, Amount(limit.value, limit),
-                    is_share ? "-" : Amount(limit.robots_own, limit), ClosedForm(limit)});
+                    is_share ? "-" : Amount(limit.robots_own, limit),
+                    Amount(limit.closed_form, limit)});
     if (limit.check) rows.back().push_back(Falls(*limit.check));
   }
-  std::string text = FormatTable(rows);
+  std::string text =
+      fmt::format("simulated, {} truths for each motion\n{}", report.num_truths, FormatTable(rows));
   text += fmt::format(
       "\nAt each limit {} falls in none of {} simulated truths: at least {:g} % keep it (95 % "
       "confidence, for each motion).\n"
       "speed, turning: from where the base may stop by itself, as when commands cease. together: "
-      "on an "
-      "arc, speeding up, then braking, or left without commands.\n"
-      "truths: same (the uncertainty that imagination has: {}); empty floor; {}. closed form: the "
-      "model "
-      "as it is, on a base that follows exactly.\n",
+      "on an arc, speeding up, then braking, or left without commands.\n"
+      "truths: same (the uncertainty that imagination has: {}); empty floor; {}.\n",
       report.request.object, report.num_truths, 100.0 * (1.0 - report.request.max_fall),
       report.uncertainty,
       report.num_directions > 1

@@ -16,8 +16,6 @@
 #include "hires/base/rng.h"
 #include "hires/evaluation/experiment_parallel.h"
 #include "hires/geometry/angles.h"
-#include "hires/navigation/braking.h"
-#include "hires/physics/closed_forms.h"
 
 namespace hires::evaluation {
 namespace {
@@ -32,8 +30,6 @@ constexpr int kFewTruths = 32;        // tell about where the limit lies
 constexpr double kGently = 0.5;       // [m/s^2] nothing shakes
 constexpr double kCruise = 0.5;       // [s]
 constexpr double kTurningTime = 1.0;  // [s] at full rate
-constexpr double kLeastLimit = 0.01;  // of a controller that moves a base
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 const DriveStep kSilence{{}, 0.0, 0.0, 0.0, true};
 
@@ -94,14 +90,12 @@ class Search {
   FallenAt fallen_at_;
 };
 
-/// A motion to look at: how a drive with this value looks.
-struct Motion {
-  std::string name, unit;
-  double robots_own{0.0};
-  double closed_form{kInfinity};
-  std::string stated;
-  /// The load has to bear each of them.
-  std::function<std::vector<LoadDrive>(double value, double direction)> drives;
+/// How drives with a value look. The load has to bear each of them.
+using Drives = std::function<std::vector<LoadDrive>(double value, double direction)>;
+
+/// A motion to look at.
+struct Motion : MotionBounds {
+  Drives drives;
 };
 
 Twist2 Along(double direction, double speed, double turning = 0.0) {
@@ -116,15 +110,12 @@ class LimitFinder {
         setup_(setup),
         crew_(crew),
         controller_(setup.scene->robot.profile.base_controller),
-        stage_(MakeDriveStage(setup, request.object, request.command_period)),
-        model_(*setup.scene->world.models.at(setup.ModelOf(request.object))),
-        load_(navigation::LoadOf(model_)) {
-    RefuseIdleController();
-  }
+        bounds_(ClosedFormLimits(request.object, setup)),
+        stage_(MakeDriveStage(setup, request.object, request.command_period)) {}
 
   std::optional<LimitsReport> Find() {
     report_.request = request_;
-    report_.model = model_.name;
+    report_.model = setup_.scene->world.models.at(setup_.ModelOf(request_.object))->name;
     report_.robot = setup_.scene->robot.model.name;
     report_.uncertainty =
         setup_.uncertainty->quantities.empty() ? "none" : base::HexOf(setup_.uncertainty->hash);
@@ -135,28 +126,20 @@ class LimitFinder {
     report_.is_omnidirectional = controller_.drive == robot::Drive::kOmnidirectional;
     report_.num_directions = report_.is_omnidirectional ? kDirections : 1;
     report_.own_angular_acceleration = controller_.limits.max_angular_acceleration;
-    if (!Look(Speed()) || !Look(Acceleration()) || !Look(Deceleration()) || !Look(Turning()) ||
-        !Look(Together())) {
-      return std::nullopt;
+    for (const Motion& motion : Motions()) {
+      if (!Look(motion)) return std::nullopt;
     }
     return report_;
   }
 
  private:
-  void RefuseIdleController() const {
-    const robot::MotionSet& own = controller_.limits;
-    for (const auto& [key, value] :
-         {std::pair("max_linear_velocity", own.max_linear_velocity),
-          std::pair("max_angular_velocity", own.max_angular_velocity),
-          std::pair("max_linear_acceleration", own.max_linear_acceleration),
-          std::pair("max_angular_acceleration", own.max_angular_acceleration)}) {
-      if (value >= kLeastLimit) continue;
-      throw base::ConfigError(
-          fmt::format("robot '{}': base_controller.limits.{} is {:g}, wanted at least {:g} for a "
-                      "base whose limits "
-                      "are looked for; change its profile",
-                      setup_.scene->robot.model.name, key, value, kLeastLimit));
-    }
+  std::vector<Motion> Motions() const {
+    MotionBounds together{"together", "of each", 1.0, std::numeric_limits<double>::infinity(), {}};
+    return {{bounds_.at(0), SpeedDrives()},
+            {bounds_.at(1), AccelerationDrives()},
+            {bounds_.at(2), DecelerationDrives()},
+            {bounds_.at(3), TurningDrives()},
+            {std::move(together), TogetherDrives()}};
   }
 
   /// @return false when cancelled.
@@ -172,11 +155,10 @@ class LimitFinder {
           "object '{}' falls from the tray of '{}' at a {} of {:.3g} {} already, wanted one that "
           "can "
           "be carried; put it elsewhere (tray: in the profile) or allow more with --max-fall",
-          request_.object, setup_.scene->robot.model.name, motion.name, least, motion.unit));
+          request_.object, setup_.scene->robot.model.name, motion.motion, least, motion.unit));
     }
     const double value = ValueAt(motion.robots_own, *step);
-    MotionLimit limit{motion.name,        motion.unit,   value,       motion.robots_own,
-                      motion.closed_form, motion.stated, std::nullopt};
+    MotionLimit limit{motion, value, std::nullopt};
     if (request_.check_truths > 0) {
       limit.check = Check(motion, value);
       if (!limit.check) return false;
@@ -239,102 +221,45 @@ class LimitFinder {
     return all;
   }
 
-  double Tips() const { return navigation::TippingAcceleration(load_, gravity()); }
-  double Slides() const { return navigation::SlidingAcceleration(load_, gravity()); }
-  double Bears() const { return std::min(Tips(), Slides()); }
-  std::string HowItGives() const { return Tips() < Slides() ? "tips" : "slides"; }
-  double gravity() const { return setup_.scene->world.gravity; }
-
-  /// [m/s^2] The hardest: each axis has a ramp of its own.
-  double OwnStop() const {
-    const double both = report_.is_omnidirectional ? std::sqrt(2.0) : 1.0;
-    return both * controller_.limits.max_linear_acceleration;
-  }
   double gently() const { return std::min(kGently, controller_.limits.max_linear_acceleration); }
   double sudden() const { return controller_.limits.max_angular_acceleration; }
 
-  /// Of what it stands on when wheels lock; infinite where it slides before it topples.
-  double SuddenStopSpeed() const {
-    if (Slides() < Tips()) return kInfinity;
-    const geometry::MassProperties& body = model_.mass_properties;
-    const double gyration = std::min(body.I_BBcm(0, 0), body.I_BBcm(1, 1)) / body.mass;
-    return physics::SuddenStopTopplingSpeed(load_.support, load_.com_height, gyration, gravity());
-  }
-  std::string HowItBearsASuddenStop() const {
-    return Slides() < Tips() ? "slides where wheels lock" : "topples where wheels lock";
-  }
-
   /// Driven gently up to it; then commands cease, and the controller's time-out stops the base.
-  Motion Speed() const {
-    Motion motion{"speed", "m/s", controller_.limits.max_linear_velocity, kInfinity, {}, {}};
-    if (controller_.stops_at_timeout) {
-      motion.closed_form = SuddenStopSpeed();
-      motion.stated = HowItBearsASuddenStop();
-    } else if (OwnStop() < Bears()) {
-      motion.stated = "the controller's own stop moves nothing";
-    }
-    motion.drives = [gently = gently()](double v, double direction) -> std::vector<LoadDrive> {
+  Drives SpeedDrives() const {
+    return [gently = gently()](double v, double direction) -> std::vector<LoadDrive> {
       return {{{Along(direction, v), gently, 0.0, kCruise}, kSilence}};
     };
-    return motion;
   }
 
-  Motion Acceleration() const {
-    const double speed = report_.Of("speed").value;
-    return {"acceleration",
-            "m/s^2",
-            controller_.limits.max_linear_acceleration,
-            Bears(),
-            HowItGives(),
-            [speed](double a, double direction) -> std::vector<LoadDrive> {
-              return {{{Along(direction, speed), a, 0.0, kCruise}}};
-            }};
+  Drives AccelerationDrives() const {
+    return [this](double a, double direction) -> std::vector<LoadDrive> {
+      return {{{Along(direction, Found("speed")), a, 0.0, kCruise}}};
+    };
   }
 
-  Motion Deceleration() const {
-    const double speed = report_.Of("speed").value;
-    return {"deceleration",
-            "m/s^2",
-            controller_.limits.max_linear_acceleration,
-            Bears(),
-            HowItGives(),
-            [speed, gently = gently()](double a, double direction) -> std::vector<LoadDrive> {
-              return {{{Along(direction, speed), gently, 0.0, kCruise}, {{}, a, 0.0, 0.0}}};
-            }};
+  Drives DecelerationDrives() const {
+    return [this, gently = gently()](double a, double direction) -> std::vector<LoadDrive> {
+      return {{{Along(direction, Found("speed")), gently, 0.0, kCruise}, {{}, a, 0.0, 0.0}}};
+    };
   }
 
   /// On the spot, as suddenly as the controller allows; then commands cease.
-  Motion Turning() const {
-    const double reach = stage_.scene->X_BO.translation.head<2>().norm();
-    const double on_arc = reach > 0.0 ? std::sqrt(Bears() / reach) : kInfinity;
-    const double stopped =
-        controller_.stops_at_timeout && reach > 0.0 ? SuddenStopSpeed() / reach : kInfinity;
-    return {"turning",
-            "rad/s",
-            controller_.limits.max_angular_velocity,
-            std::min(on_arc, stopped),
-            fmt::format("{}, {:.2f} m from the base's centre",
-                        stopped < on_arc ? HowItBearsASuddenStop() : HowItGives(), reach),
-            [sudden = sudden()](double w, double) -> std::vector<LoadDrive> {
-              return {{{{0.0, 0.0, w}, 0.0, sudden, kTurningTime}, kSilence}};
-            }};
+  Drives TurningDrives() const {
+    return [sudden = sudden()](double w, double) -> std::vector<LoadDrive> {
+      return {{{{0.0, 0.0, w}, 0.0, sudden, kTurningTime}, kSilence}};
+    };
   }
 
   /// All at once, on an arc: speeding up, and braking hard, or left without commands.
-  Motion Together() const {
-    const double v = report_.Of("speed").value, w = report_.Of("turning").value,
-                 a = report_.Of("acceleration").value, d = report_.Of("deceleration").value;
-    return {"together",
-            "of each",
-            1.0,
-            kInfinity,
-            {},
-            [=, sudden = sudden()](double share, double direction) -> std::vector<LoadDrive> {
-              const DriveStep up{Along(direction, share * v, share * w), share * a, share * sudden,
-                                 kCruise};
-              return {{up, {{}, share * d, share * sudden, 0.0}}, {up, kSilence}};
-            }};
+  Drives TogetherDrives() const {
+    return [this, sudden = sudden()](double share, double direction) -> std::vector<LoadDrive> {
+      const DriveStep up{Along(direction, share * Found("speed"), share * Found("turning")),
+                         share * Found("acceleration"), share * sudden, kCruise};
+      return {{up, {{}, share * Found("deceleration"), share * sudden, 0.0}}, {up, kSilence}};
+    };
   }
+
+  double Found(const std::string& motion) const { return report_.Of(motion).value; }
 
   static constexpr int kDirections = 8;
   static constexpr int kNumMotions = 5;
@@ -343,9 +268,8 @@ class LimitFinder {
   const imagination::ImaginationSetup& setup_;
   const Crew& crew_;
   const robot::BaseControllerParams& controller_;
+  const std::vector<MotionBounds> bounds_;
   const DriveStage stage_;
-  const world::ObjectModel& model_;
-  const navigation::StandingLoad load_;
   LimitsReport report_;
 };
 

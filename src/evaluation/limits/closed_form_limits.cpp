@@ -1,0 +1,111 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "hires/base/error.h"
+#include "hires/evaluation/motion_limits.h"
+#include "hires/imagination/start_state.h"
+#include "hires/navigation/braking.h"
+#include "hires/physics/closed_forms.h"
+
+namespace hires::evaluation {
+namespace {
+
+constexpr double kLeastLimit = 0.01;  // of a controller that moves a base
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void RefuseIdleController(const robot::Robot& robot) {
+  const robot::MotionSet& own = robot.profile.base_controller.limits;
+  for (const auto& [key, value] :
+       {std::pair("max_linear_velocity", own.max_linear_velocity),
+        std::pair("max_angular_velocity", own.max_angular_velocity),
+        std::pair("max_linear_acceleration", own.max_linear_acceleration),
+        std::pair("max_angular_acceleration", own.max_angular_acceleration)}) {
+    if (value >= kLeastLimit) continue;
+    throw base::ConfigError(
+        fmt::format("robot '{}': base_controller.limits.{} is {:g}, wanted at least {:g} for a "
+                    "base whose limits are looked for; change its profile",
+                    robot.model.name, key, value, kLeastLimit));
+  }
+}
+
+/// What stands on the tray of a base that follows exactly.
+class CarriedLoad {
+ public:
+  CarriedLoad(const std::string& object, const imagination::ImaginationSetup& setup)
+      : controller_(setup.scene->robot.profile.base_controller),
+        reach_(setup.scene->X_BO.translation.head<2>().norm()),
+        gravity_(setup.scene->world.gravity),
+        body_(setup.scene->world.models.at(setup.ModelOf(object))->mass_properties),
+        load_(navigation::LoadOf(*setup.scene->world.models.at(setup.ModelOf(object)))) {}
+
+  /// The controller's time-out stops the base.
+  MotionBounds Speed() const {
+    MotionBounds bounds{"speed", "m/s", controller_.limits.max_linear_velocity, kInfinity, {}};
+    if (controller_.stops_at_timeout) {
+      bounds.closed_form = SuddenStopSpeed();
+      bounds.stated = HowItBearsASuddenStop();
+    } else {
+      bounds.stated = OwnStop() < Bears() ? "the controller's own stop moves nothing"
+                                          : "no closed form for a stop by a ramp";
+    }
+    return bounds;
+  }
+
+  MotionBounds AlongALine(const std::string& motion) const {
+    return {motion, "m/s^2", controller_.limits.max_linear_acceleration, Bears(), HowItGives()};
+  }
+
+  MotionBounds Turning() const {
+    const double on_arc = reach_ > 0.0 ? std::sqrt(Bears() / reach_) : kInfinity;
+    const double stopped =
+        controller_.stops_at_timeout && reach_ > 0.0 ? SuddenStopSpeed() / reach_ : kInfinity;
+    return {"turning", "rad/s", controller_.limits.max_angular_velocity, std::min(on_arc, stopped),
+            fmt::format("{}, {:.2f} m from the base's centre",
+                        stopped < on_arc ? HowItBearsASuddenStop() : HowItGives(), reach_)};
+  }
+
+ private:
+  double Tips() const { return navigation::TippingAcceleration(load_, gravity_); }
+  double Slides() const { return navigation::SlidingAcceleration(load_, gravity_); }
+  double Bears() const { return std::min(Tips(), Slides()); }
+  std::string HowItGives() const { return Tips() < Slides() ? "tips" : "slides"; }
+
+  /// [m/s^2] The hardest: each axis has a ramp of its own.
+  double OwnStop() const {
+    const bool has_two_axes = controller_.drive == robot::Drive::kOmnidirectional;
+    return (has_two_axes ? std::sqrt(2.0) : 1.0) * controller_.limits.max_linear_acceleration;
+  }
+
+  /// Of what it stands on when wheels lock; infinite where it slides before it topples.
+  double SuddenStopSpeed() const {
+    if (Slides() < Tips()) return kInfinity;
+    const double gyration = std::min(body_.I_BBcm(0, 0), body_.I_BBcm(1, 1)) / body_.mass;
+    return physics::SuddenStopTopplingSpeed(load_.support, load_.com_height, gyration, gravity_);
+  }
+  std::string HowItBearsASuddenStop() const {
+    return Slides() < Tips() ? "slides where wheels lock" : "topples where wheels lock";
+  }
+
+  const robot::BaseControllerParams& controller_;
+  const double reach_;    // [m] of the load from the base's centre
+  const double gravity_;  // [m/s^2]
+  const geometry::MassProperties body_;
+  const navigation::StandingLoad load_;
+};
+
+}  // namespace
+
+std::vector<MotionBounds> ClosedFormLimits(const std::string& object,
+                                           const imagination::ImaginationSetup& setup) {
+  RefuseIdleController(setup.scene->robot);
+  imagination::StartOnTray(setup, {}, {object});  // refuses what cannot be carried
+  const CarriedLoad load(object, setup);
+  return {load.Speed(), load.AlongALine("acceleration"), load.AlongALine("deceleration"),
+          load.Turning()};
+}
+
+}  // namespace hires::evaluation
