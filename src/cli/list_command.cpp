@@ -59,14 +59,43 @@ std::string KindOf(translation::AreaKind kind) {
   return "";
 }
 
+/// Lower case -> as a file spells it.
+using Spelling = std::map<std::string, std::string>;
+
+void Note(const base::ParamReader& in, Spelling* spelling) {
+  for (const std::string& key : in.Keys()) (*spelling)[base::ToLower(key)] = key;
+}
+
+/// Names in a robot's profile; lookups ignore case, people type what they read.
+Spelling SpellingOf(const std::string& robot) {
+  Spelling spelling;
+  if (base::ToLower(fs::path(robot).extension().string()) == ".urdf") return spelling;
+  base::ParamReader in = base::ParamReader::FromFile(robot);
+  if (in.Has("motion_sets")) Note(in.Sub("motion_sets"), &spelling);
+  if (!in.Has("upper_body")) return spelling;
+  base::ParamReader body = in.Sub("upper_body");
+  base::ParamReader arms = body.Sub("arms");
+  Note(arms, &spelling);
+  for (const std::string& arm : arms.Keys()) Note(arms.Sub(arm).Sub("postures"), &spelling);
+  Note(body.Sub("torso").Sub("postures"), &spelling);
+  return spelling;
+}
+
+/// @param name  lower case
+std::string Spelled(const std::string& name, const Spelling& spelling) {
+  const auto found = spelling.find(name);
+  return found == spelling.end() ? name : found->second;
+}
+
 Rows Areas(const Sources& sources) {
   const world::World world = world::LoadWorld(sources.setup.world);
   const robot::Robot robot = robot::LoadAnyRobot(sources.setup.robot);
+  Spelling spelling{world.frame_names.begin(), world.frame_names.end()};
+  spelling.emplace(translation::kTrayArea, "trayArea1");  // as the ontology's knowledge spells it
   Rows rows;
   for (const translation::Area& area : translation::AreasOf(world, robot).all) {
-    const auto name = world.frame_names.find(area.name);
     const Eigen::Vector3d p = area.X_FA.translation;
-    rows.push_back({{"area", name == world.frame_names.end() ? area.name : name->second},
+    rows.push_back({{"area", Spelled(area.name, spelling)},
                     {"for", KindOf(area.kind)},
                     {"frame", area.link.empty() ? "map" : area.link},
                     {"x", Rounded(p.x())},
@@ -135,9 +164,10 @@ Rows Actions(const Sources& sources) {
 
 Rows MotionSets(const Sources& sources) {
   const robot::RobotProfile profile = robot::LoadAnyRobot(sources.setup.robot).profile;
+  const Spelling spelling = SpellingOf(sources.setup.robot);
   Rows rows;
   for (const auto& [name, set] : profile.motion_sets) {
-    rows.push_back({{"motion set", name},
+    rows.push_back({{"motion set", Spelled(name, spelling)},
                     {"default", name == profile.default_motion_set},
                     {"m/s", set.max_linear_velocity},
                     {"m/s^2", set.max_linear_acceleration},
@@ -151,12 +181,13 @@ Rows Postures(const Sources& sources) {
   const robot::RobotProfile profile = robot::LoadAnyRobot(sources.setup.robot).profile;
   Rows rows;
   if (!profile.upper_body) return rows;
+  const Spelling spelling = SpellingOf(sources.setup.robot);
   for (const auto& [name, height] : profile.upper_body->torso_postures) {
-    rows.push_back({{"posture", name}, {"of", "torso1"}});
+    rows.push_back({{"posture", Spelled(name, spelling)}, {"of", "torso1"}});
   }
   for (const auto& [arm, description] : profile.upper_body->arms) {
     for (const auto& [name, variants] : description.postures) {
-      rows.push_back({{"posture", name}, {"of", arm}});
+      rows.push_back({{"posture", Spelled(name, spelling)}, {"of", Spelled(arm, spelling)}});
     }
   }
   return rows;
@@ -178,16 +209,18 @@ Rows Robots(const Sources& sources) {
   for (const fs::path& file : FilesIn(sources, "config/robots", ".yaml")) {
     if (!base::ParamReader::FromFile(file).Has("urdf")) continue;  // names of topics
     const robot::RobotProfile profile = robot::LoadRobot(file).profile;
+    const Spelling spelling = SpellingOf(file.string());
     std::vector<std::string> arms, motion_sets;
     if (profile.upper_body) {
-      for (const auto& [arm, description] : profile.upper_body->arms) arms.push_back(arm);
+      for (const auto& [arm, description] : profile.upper_body->arms)
+        arms.push_back(Spelled(arm, spelling));
     }
-    for (const auto& [name, set] : profile.motion_sets) motion_sets.push_back(name);
-    rows.push_back({{"robot", file.stem().string()},
+    for (const auto& [name, set] : profile.motion_sets)
+      motion_sets.push_back(Spelled(name, spelling));
+    rows.push_back({{"robot", file.string()},
                     {"tray", profile.tray_link},
                     {"arms", arms},
-                    {"motion sets", motion_sets},
-                    {"file", file.string()}});
+                    {"motion sets", motion_sets}});
   }
   return rows;
 }
@@ -196,11 +229,10 @@ Rows Worlds(const Sources& sources) {
   Rows rows;
   for (const fs::path& file : FilesIn(sources, "worlds", ".world")) {
     const world::World world = world::LoadWorld(file);
-    rows.push_back({{"world", file.stem().string()},
+    rows.push_back({{"world", file.string()},
                     {"areas", world.frames.size()},
                     {"fixed bodies", world.statics.size()},
-                    {"loose objects", world.initial.objects.size()},
-                    {"file", file.string()}});
+                    {"loose objects", world.initial.objects.size()}});
   }
   return rows;
 }

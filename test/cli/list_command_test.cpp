@@ -51,7 +51,7 @@ TEST(ListCommandTest, AreasComeWithWhatTheyAreForAndWhereTheyAre) {
   EXPECT_EQ(row["for"], "standing");
   EXPECT_EQ(row["frame"], "map");
   EXPECT_EQ(RowOf(rows, "area", "placingAreaWestLeftTable1")["for"], "placing");
-  EXPECT_EQ(RowOf(rows, "area", "trayarea1")["for"], "tray");
+  EXPECT_EQ(RowOf(rows, "area", "trayArea1")["for"], "tray");
   const auto workshop = Listed({"areas", "--world", HIRES_SOURCE_DIR "/worlds/workshop.world"});
   EXPECT_EQ(RowOf(workshop, "area", "atBench")["y"], 3.6);  // as the file says
   EXPECT_EQ(RowOf(workshop, "area", "atBench")["yaw"], 1.5708);
@@ -91,16 +91,40 @@ TEST(ListCommandTest, MotionSetsAndPosturesAreTheRobots) {
   const auto cart = Listed({"motion_sets", "--robot", HIRES_SOURCE_DIR "/config/robots/cart.yaml"});
   EXPECT_EQ(RowOf(cart, "motion set", "slow")["default"], true);
   EXPECT_THAT(ColumnOf(Listed({"postures"}), "posture"),
-              AllOf(Contains("torsoupposture"), Contains("armtuckedposture")));
+              AllOf(Contains("TorsoUpPosture"), Contains("ArmTuckedPosture")));
+  EXPECT_EQ(RowOf(Listed({"postures"}), "posture", "ArmCarryPosture")["of"], "leftArm1");
   EXPECT_THAT(List({"postures", "--robot", HIRES_SOURCE_DIR "/config/robots/cart.yaml"}).out,
               HasSubstr("no postures"));
 }
 
 TEST(ListCommandTest, FilesOfThePackageAreFound) {
-  EXPECT_THAT(ColumnOf(Listed({"robots"}), "robot"), ElementsAre("cart", "fetch", "pr2"));
-  EXPECT_THAT(ColumnOf(Listed({"worlds"}), "world"), ElementsAre("restaurant", "workshop"));
+  const std::string robots = HIRES_SOURCE_DIR "/config/robots/",
+                    worlds = HIRES_SOURCE_DIR "/worlds/";
+  EXPECT_THAT(ColumnOf(Listed({"robots"}), "robot"),
+              ElementsAre(robots + "cart.yaml", robots + "fetch.yaml", robots + "pr2.yaml"));
+  EXPECT_THAT(ColumnOf(Listed({"worlds"}), "world"),
+              ElementsAre(worlds + "restaurant.world", worlds + "workshop.world"));
   EXPECT_THAT(ColumnOf(Listed({"scenarios"}), "scenario"), ElementsAre("serve_coffee", "topple"));
   EXPECT_THAT(ColumnOf(Listed({"truths"}), "truth"), ElementsAre("foreign", "harsh", "same"));
+}
+
+TEST(ListCommandTest, WhatItListsIsTaken) {
+  const std::string robot = Listed({"robots"}).front()["robot"];
+  EXPECT_EQ(List({"motion_sets", "--robot", robot}).code, 0);
+  const std::string world = Listed({"worlds"}).front()["world"];
+  EXPECT_EQ(List({"areas", "--world", world}).code, 0);
+}
+
+TEST(ListCommandTest, NamesAreSpeltAsInTheRobotsFile) {
+  const TemporaryFolder folder;
+  const std::string robot =
+      folder.Write("my.yaml", "urdf: " HIRES_SOURCE_DIR
+                              "/urdf/cart.urdf\n"
+                              "motion_sets:\n"
+                              "  veryFast: {max_linear_velocity: 1.0, max_angular_velocity: 1.0,\n"
+                              "    max_linear_acceleration: 1.0, max_angular_acceleration: 1.0}\n");
+  EXPECT_THAT(ColumnOf(Listed({"motion_sets", "--robot", robot}), "motion set"),
+              ElementsAre("veryFast"));
 }
 
 TEST(ListCommandTest, WholeTasksComeBeforeTheirParts) {
