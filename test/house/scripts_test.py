@@ -19,8 +19,8 @@ def run(script, *arguments, **environment):
 
 class ScriptsTest(unittest.TestCase):
     def test_every_script_explains_itself(self):
-        for script in ("benchmark", "build", "demo", "format", "on_host", "package", "replay_episodes", "run", "setup",
-                       "test", "tidy"):
+        for script in ("benchmark", "build", "check_limits", "demo", "format", "on_host", "package",
+                       "replay_episodes", "run", "setup", "test", "tidy"):
             with self.subTest(script):
                 answer = run(f"scripts/{script}", "--help")
                 self.assertEqual(answer.returncode, 0, answer.stderr)
