@@ -84,7 +84,7 @@ class BaseGuardTest(unittest.TestCase):
 
     def drive(self, request=1):
         """A driver that wants 0.6 m/s, and the base at the speed that its request allows."""
-        diagnostics(rospy, 'base_guard', lambda v: v['forbids driving'] == 'nothing')
+        diagnostics(rospy, 'base_guard', lambda v: v.get('forbids driving') == 'nothing')
         self.requester = self.peer('requester', str(request))
         self.commander = self.peer('commander', '0.6', '0.0')
         self.wait_for_state(BaseGuardState.PASSING, request=request)

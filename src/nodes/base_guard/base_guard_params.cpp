@@ -30,7 +30,7 @@ bool ReadNavigation(const hires::control::RobotNames& names) {
 }  // namespace
 
 BaseGuardNodeParams LoadBaseGuardParams() {
-  RejectUnknownPrivate({"config", "names", "navigation", "journal"});
+  RejectUnknownPrivate({"config", "names", "navigation", "journal", "diagnostic_period"});
   BaseGuardNodeParams params;
   params.guard = hires::navigation::ReadBaseGuardParams(ConfigOr("/config/base_guard.yaml"));
   params.names = LoadRobotNames();
