@@ -69,7 +69,8 @@ class BaseGuardTest(unittest.TestCase):
         config.update(PATIENCE)
         path = self.processes.write('base_guard.yaml', yaml.safe_dump(config))
         return self.processes.start(
-            [executable('base_guard'), '_config:=' + path, *arguments], self.master)
+            [executable('base_guard'), '_config:=' + path, '_diagnostic_period:=0.1', *arguments],
+            self.master)
 
     def peer(self, *arguments):
         return self.processes.start([executable('base_guard_peer'), *arguments], self.master)

@@ -3,6 +3,7 @@
 when what they were started for is done. Run by `rostest hires launch_end.test`."""
 
 import os
+import signal
 import sys
 import unittest
 
@@ -42,6 +43,8 @@ class LaunchEndTest(unittest.TestCase):
         self.assertEqual(second.output().count('bears this name'), 1, second.output())
         self.assertTrue(first.is_running())
         self.assertNotIn('new node registered', first.output())
+        first.signal(signal.SIGINT)  # its nodes are no children of this test
+        first.wait()
 
     def test_what_is_done_ends_the_launch_without_a_word_of_death(self):
         launch = self.launch(self.processes.write('done.launch', DONE))
