@@ -58,6 +58,10 @@ class SavedRollout:
     events: Tuple[Tuple[float, str], ...]  # [s] since the action began, and what happened
 
 
+def _names(one_or_several):
+    return [one_or_several] if isinstance(one_or_several, str) else list(one_or_several)
+
+
 def _atom(text):
     match = _ATOM.fullmatch(text)
     if match is None:
@@ -96,7 +100,7 @@ class Imagination:
             deadline=0.0, ranking='', min_success=0.0, uncertainty=''):
         """What would happen? Each argument is a name, or a list of names to choose from; all
         combinations are played. The state is said by robot_at (an area), on_tray (objects) and
-        facts ('On(mug1, placingAreaNorthTable1)'). Zeros and '' stand for the client's defaults.
+        facts ('On(mug1, placingAreaNorthTable1)'), one or a list of them. Zeros and '' stand for the client's defaults.
 
         Raises ValueError for a fact that is none, ImaginationError where nobody answers or the
         request cannot be played; it names what is wrong.
@@ -104,14 +108,12 @@ class Imagination:
         goal = ImagineGoal(rollouts=rollouts, seed=seed, ranking=ranking, min_success=min_success,
                            uncertainty=uncertainty, request_id=rospy.get_name(),
                            deadline=rospy.Duration.from_sec(deadline))
-        choices = [[argument] if isinstance(argument, str) else list(argument)
-                   for argument in arguments]
-        goal.steps = [ActionTemplate(name=action,
-                                     alternatives=[StringList(values=names) for names in choices])]
-        goal.updated_fluents = [_atom(fact) for fact in facts]
+        goal.steps = [ActionTemplate(name=action, alternatives=[
+            StringList(values=_names(argument)) for argument in arguments])]
+        goal.updated_fluents = [_atom(fact) for fact in _names(facts)]
         if robot_at:
             goal.updated_fluents.append(Atom(predicate='RobotAt', arguments=[robot_at]))
-        for name in on_tray:
+        for name in _names(on_tray):
             goal.updated_fluents.append(Atom(predicate='On', arguments=[name, 'trayArea1']))
         return self._answer(self._result(goal))
 

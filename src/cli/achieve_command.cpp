@@ -9,6 +9,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <tuple>
 
 #include "cli/achieve_display.h"
 #include "cli/experiment_hypothesis_command.h"
@@ -18,7 +19,6 @@
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
 #include "hires/evaluation/truth.h"
-#include "hires/loop/task_loop.h"
 
 namespace hires::cli {
 namespace {
@@ -65,7 +65,12 @@ ReportOrigin OriginOf(const AchieveOptions& options, const std::string& package_
   origin.is_local = options.is_local;
   if (!options.is_local || !IsWanted(options.report)) return origin;
   origin.inputs = {{"scenario", ScenarioPath(options.scenario, package_folder)},
-                   {"virtual time", LoopPath(options, package_folder)}};
+                   {"virtual time", LoopPath(options, package_folder)},
+                   {"world", options.files.world},
+                   {"robot", options.files.robot},
+                   {"objects", options.files.objects},
+                   {"domain", options.files.domain},
+                   {"operators", options.files.operators}};
   origin.hashes = {{"files", HashOfFiles(package_folder)}};
   return origin;
 }
@@ -108,7 +113,7 @@ loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& p
                              const evaluation::OnAchieveStatus& on_status,
                              const std::function<bool()>& cancelled,
                              loop::LoopRecording* recording) {
-  const loop::LoopSetup setup(LoopPath(options, package_folder));
+  const loop::LoopSetup setup(LoopPath(options, package_folder), options.files);
   loop::LoopOrder order;
   order.scenario = ScenarioPath(options.scenario, package_folder);
   order.task = base::Join(options.task, " ");
@@ -151,6 +156,16 @@ int ExitCodeFor(evaluation::AchieveOutcome outcome) {
   }
 }
 
+void AddFiles(CLI::App* verb, CLI::Option* local, loop::LoopFiles* files) {
+  const std::tuple<const char*, std::string*, const char*> options[] = {
+      {"--world", &files->world, "with --local: SDF file instead of the configuration's"},
+      {"--robot", &files->robot, "with --local: profile or URDF, likewise"},
+      {"--objects", &files->objects, "with --local: catalogue of objects, likewise"},
+      {"--operators", &files->operators,
+       "with --local: YAML beside the domain, likewise; default: that of its name"}};
+  for (const auto& [name, file, what] : options) verb->add_option(name, *file, what)->needs(local);
+}
+
 }  // namespace
 
 void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
@@ -162,13 +177,11 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
       "task", options->task,
       "'serve_coffee_to_guest guest1', or a SHOP2 task network; with --local it may be "
       "left out: the scenario's");
-  CLI::Option* list =
-      verb->add_flag("--list", options->is_list,
-                     "print the tasks of the domain with their parameters, and do none");
-  verb->add_option("--domain", options->domain,
-                   "with --list: SHOP2 or HDDL file; default: what the running execution monitor "
-                   "plans with, else the restaurant's")
-      ->needs(list);
+  verb->add_flag("--list", options->is_list,
+                 "print the tasks of the domain with their parameters, and do none");
+  verb->add_option("--domain", options->files.domain,
+                   "SHOP2 or HDDL file; with --list, default: what the running execution monitor "
+                   "plans with, else the restaurant's; with --local: to plan with");
   verb->add_option("--imagination", options->imagination,
                    "domain: as the domain says; thesis: the default also where all alternatives "
                    "fail; off; "
@@ -184,6 +197,7 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
   verb->add_option("--scenario", options->scenario,
                    "with --local: file, or its name in config/scenarios; default: topple")
       ->needs(local);
+  AddFiles(verb, local, &options->files);
   verb->add_option(
           "--config", options->config,
           "with --local: file like config/loop.yaml, its default: what takes how long in "
@@ -214,6 +228,11 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
                    const evaluation::AchieveRemotely& achieve,
                    const std::function<bool()>& cancelled, const loop::RecordLoop& record) {
   RequireRecorder(options, record);
+  if (!options.files.domain.empty() && !options.is_local) {
+    throw base::ConfigError(
+        "--domain is for --list and --local; the running execution monitor has its own "
+        "(closed_loop.launch domain:=FILE)");
+  }
   if (!options.is_local && !achieve) {
     throw base::ConfigError(
         "this build has no ROS nodes to ask; build with ROS and start them (roslaunch hires "

@@ -7,6 +7,7 @@
 #include "hires/cli/report_output.h"
 #include "hires/evaluation/achieve.h"
 #include "hires/loop/loop_observer.h"
+#include "hires/loop/task_loop.h"
 
 namespace CLI {
 class App;
@@ -27,10 +28,11 @@ struct AchieveOptions {
   std::vector<std::string> task;  ///< words
   std::string imagination, timeline, record;
   ReportOptions report;
-  double wait{10.0};     ///< [s] for the execution monitor to be there
-  bool is_list{false};   ///< says which tasks there are, and does none
-  std::string domain;    ///< of which; empty: the running monitor's, else the restaurant's
-  bool is_local{false};  ///< in this process and in virtual time, without any node
+  double wait{10.0};    ///< [s] for the execution monitor to be there
+  bool is_list{false};  ///< says which tasks there are, and does none
+  /// `domain` of the list: empty: the running monitor's, else the restaurant's.
+  loop::LoopFiles files;
+  bool is_local{false};            ///< in this process and in virtual time, without any node
   std::string scenario{"topple"};  ///< where the robot and everything is then: file, or its name
   std::string config;              ///< of virtual time; empty: config/loop.yaml
   std::string truth{"same"};       ///< what robot and world are really like: file, or its name

@@ -224,12 +224,15 @@ nlohmann::ordered_json AnswerOf(const ImagineOptions& options, const ImagineQuer
   const std::string& html = options.report.html;
   if (html.empty() || report.ranking.empty()) return answer;
   const std::string& json = options.report.json;
-  const std::filesystem::path from = std::filesystem::absolute(json).parent_path();
+  const auto shown = [&](const std::string& file) {  // from the JSON, or as it is
+    return json.empty()
+               ? file
+               : std::filesystem::proximate(file, std::filesystem::absolute(json).parent_path())
+                     .string();
+  };
   try {
     for (const Strip& strip : WriteStrips(html, query.threads, scene, report, cancelled)) {
-      const std::string file =
-          json.empty() ? strip.file : std::filesystem::proximate(strip.file, from).string();
-      answer["pictures"].push_back({{"caption", strip.caption}, {"file", file}});
+      answer["pictures"].push_back({{"caption", strip.caption}, {"file", shown(strip.file)}});
     }
   } catch (const base::ConfigError& error) {
     if (options.local) throw;
@@ -375,7 +378,7 @@ int RunAnyExperiment(const ExperimentOptions& options, const Backends& backends)
 int ListTasks(const AchieveOptions& achieve, const Backends& backends) {
   ListOptions list;
   list.what = "tasks";
-  list.domain = achieve.domain;
+  list.domain = achieve.files.domain;
   const bool may_ask = list.domain.empty() && !achieve.is_local && backends.domain_of_monitor;
   if (may_ask) list.domain = backends.domain_of_monitor();
   return RunListVerb(list, backends.package_folder);

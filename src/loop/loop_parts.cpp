@@ -1,5 +1,7 @@
 #include "loop/loop_parts.h"
 
+#include <filesystem>
+
 #include "hires/base/param_reader.h"
 
 namespace hires::loop {
@@ -58,9 +60,19 @@ translation::TranslatorContext ContextOf(const imagination::ImaginationSetup& wo
   return context;
 }
 
+void Override(const LoopFiles& files, LoopConfig* config) {
+  imagination::OverridePaths(files.world, files.robot, files.objects, {}, &config->scene);
+  if (!files.domain.empty()) {
+    config->execution.domain = files.domain;
+    config->execution.operators =
+        std::filesystem::path(files.domain).replace_extension(".yaml").string();
+  }
+  if (!files.operators.empty()) config->execution.operators = files.operators;
+}
+
 }  // namespace
 
-LoopConfig ReadLoopConfig(const std::string& path) {
+LoopConfig ReadLoopConfig(const std::string& path, const LoopFiles& files) {
   ParamReader in = ParamReader::FromFile(path);
   const auto file = [&](const char* key) { return ResolvePath(in.GetString(key), path); };
   LoopConfig config;
@@ -75,11 +87,12 @@ LoopConfig ReadLoopConfig(const std::string& path) {
   config.planning_time = in.Get("planning_time", Between(0.0, 60.0));
   config.messages = ReadMessages(in.Sub("messages"));
   in.RejectUnknownKeys();
+  Override(files, &config);
   return config;
 }
 
-LoopSetup::Parts::Parts(const std::string& path)
-    : config(ReadLoopConfig(path)),
+LoopSetup::Parts::Parts(const std::string& path, const LoopFiles& files)
+    : config(ReadLoopConfig(path, files)),
       world(imagination::LoadImaginationSetup(config.scene)),
       ontology(std::make_shared<const knowledge::Ontology>(
           knowledge::Ontology::FromFiles(config.execution.ontology))),
@@ -87,7 +100,8 @@ LoopSetup::Parts::Parts(const std::string& path)
       planning(LoadPlanning(config.execution.domain)),
       operators(planning::LoadOperatorData(config.execution.operators, planning.domain)) {}
 
-LoopSetup::LoopSetup(const std::string& config) : parts_(std::make_unique<const Parts>(config)) {}
+LoopSetup::LoopSetup(const std::string& config, const LoopFiles& files)
+    : parts_(std::make_unique<const Parts>(config, files)) {}
 
 LoopSetup::~LoopSetup() = default;
 

@@ -41,10 +41,10 @@ struct LoopConfig {
 };
 
 /// @throws base::ConfigError naming file and key.
-LoopConfig ReadLoopConfig(const std::string& path);
+LoopConfig ReadLoopConfig(const std::string& path, const LoopFiles& files);
 
 struct LoopSetup::Parts {
-  explicit Parts(const std::string& path);
+  Parts(const std::string& path, const LoopFiles& files);
   evaluation::Truth ReadTruth(const std::string& name) const;  ///< as LoopSetup's
 
   LoopConfig config;

@@ -27,7 +27,7 @@ MiddleLayer::MiddleLayer(const ImaginationSetup& setup, const sensing::FrameName
                          Hooks hooks)
     : setup_(setup),
       hooks_(std::move(hooks)),
-      senses_(setup, frames),
+      senses_(setup, frames, setup.scene->surroundings),
       observations_(&senses_.state(), ObstaclesOf(setup, scan)),
       looked_(0.0),
       runner_(setup.scene->robot, runner,

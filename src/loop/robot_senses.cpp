@@ -21,14 +21,15 @@ sensing::FrameNames FramesOf(const robot::Robot& robot) {
   return {"map", "odom", robot.profile.base_link};
 }
 
-RobotSenses::RobotSenses(const ImaginationSetup& setup, const sensing::FrameNames& frames)
+RobotSenses::RobotSenses(const ImaginationSetup& setup, const sensing::FrameNames& frames,
+                         std::shared_ptr<const perception::Surroundings> surroundings)
     : names_(frames),
       base_link_(setup.scene->robot.profile.base_link),
       camera_link_(CameraOf(setup.scene->robot)),
       frames_(std::make_shared<FrameRecord>(setup.sensing.robot_state.history)),
       state_(RobotOf(setup), frames, setup.sensing.robot_state, {}, frames_) {
-  if (!setup.scene->surroundings) return;
-  objects_ = std::make_unique<sensing::ObjectEstimator>(setup.scene->surroundings, RobotOf(setup),
+  if (!surroundings) return;
+  objects_ = std::make_unique<sensing::ObjectEstimator>(std::move(surroundings), RobotOf(setup),
                                                         setup.sensing.memory, &state_);
 }
 

@@ -18,7 +18,9 @@ sensing::FrameNames FramesOf(const robot::Robot& robot);
 class RobotSenses {
  public:
   /// @param frames  what the robot calls map, odometry and base.
-  RobotSenses(const imagination::ImaginationSetup& setup, const sensing::FrameNames& frames);
+  /// @param surroundings  of what is told and seen of objects; null: nothing is.
+  RobotSenses(const imagination::ImaginationSetup& setup, const sensing::FrameNames& frames,
+              std::shared_ptr<const perception::Surroundings> surroundings);
 
   /// Takes in all but the laser.
   void Hear(const SensorNews& news);
@@ -26,7 +28,7 @@ class RobotSenses {
   void See(double stamp, const std::vector<perception::Detection>& seen);
 
   const sensing::RobotStateEstimator& state() const { return state_; }
-  /// Null if the robot sees no objects.
+  /// Null without surroundings.
   sensing::ObjectEstimator* objects() const { return objects_.get(); }
 
  private:

@@ -1,5 +1,7 @@
 #include "hires/loop/task_loop.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "hires/base/error.h"
@@ -41,11 +43,16 @@ StepFinished FinishedAs(int activity, ActionEnd end, const base::Failure& failur
 }
 
 LoopOrder Completed(const LoopOrder& order, const evaluation::Scenario& scenario,
-                    const planning::Domain& domain) {
+                    const LoopSetup::Parts& parts) {
   LoopOrder complete = order;
   if (complete.task.empty()) complete.task = scenario.task;
   planning::Problem problem;
-  planning::SetTasks(complete.task, domain, &problem);
+  try {
+    planning::SetTasks(complete.task, parts.planning.domain, &problem);
+  } catch (const base::ConfigError& error) {
+    throw base::ConfigError(
+        fmt::format("{} (domain {})", error.what(), parts.config.execution.domain));
+  }
   return complete;
 }
 
@@ -67,7 +74,7 @@ class Play {
   Play(const LoopSetup::Parts& parts, const LoopOrder& order, const evaluation::Scenario& scenario,
        const LoopObserver& observer)
       : observer_(observer),
-        order_(Completed(order, scenario, parts.planning.domain)),
+        order_(Completed(order, scenario, parts)),
         truth_(parts.ReadTruth(order.truth)),
         clock_(kStart),
         lines_(parts.config.messages, base::Rng(order.seed), &clock_),

@@ -11,6 +11,12 @@ using robot::SeenObject;
 using sensing::RobotEstimate;
 using translation::ObservedWorld;
 
+/// A robot without a camera has none; what others say of objects it keeps track of, too.
+std::shared_ptr<const perception::Surroundings> SurroundingsOf(const simulation::Scene& scene) {
+  return scene.surroundings ? scene.surroundings
+                            : std::make_shared<const perception::Surroundings>(scene.world);
+}
+
 }  // namespace
 
 Tracker::Tracker(const imagination::ImaginationSetup& setup,
@@ -23,7 +29,7 @@ Tracker::Tracker(const imagination::ImaginationSetup& setup,
       clock_(*clock),
       blackboard_(*blackboard),
       hooks_(std::move(hooks)),
-      senses_(setup, frames),
+      senses_(setup, frames, SurroundingsOf(*setup.scene)),
       tracker_(&senses_.state(), senses_.objects(), control::HeadSweep(context.robot, params.sweep),
                true,
                {[this](const RobotEstimate& now, const std::vector<SeenObject>& known) {

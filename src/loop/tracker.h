@@ -31,7 +31,7 @@ class Tracker {
     std::function<void(double time)> observed_until;          ///< what was written
   };
 
-  /// @pre setup, context, clock and blackboard outlive this; the robot sees objects.
+  /// @pre setup, context, clock and blackboard outlive this.
   Tracker(const imagination::ImaginationSetup& setup, const translation::TranslatorContext& context,
           const sensing::FrameNames& frames, const TrackerParams& params, VirtualClock* clock,
           Blackboard* blackboard, Hooks hooks);

@@ -1,5 +1,6 @@
 // `hires.core`: the ROS-free part of HIRES for Python. What a name means stands in its docstring,
 // and in docs/own_code.md.
+#include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -109,6 +110,12 @@ py::tuple PairOf(double first, double second) { return py::make_tuple(first, sec
 
 void BindAlternative(py::module_* m) {
   py::class_<Prediction>(*m, "Alternative", "What imagination found about one way to act.")
+      .def("__repr__",
+           [](const Prediction& p) {
+             return fmt::format("Alternative({}: success {:.3f} of {} rollouts)",
+                                ToString(p.action), p.evidence.success.share,
+                                p.evidence.num_rollouts);
+           })
       .def_property_readonly("action", [](const Prediction& p) { return p.action.name; })
       .def_property_readonly(
           "arguments", [](const Prediction& p) { return py::tuple(py::cast(p.action.arguments)); })

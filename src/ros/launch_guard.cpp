@@ -26,6 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr char kSimulated[] = "HIRES_SIMULATED_ROBOT";
 constexpr double kCallTimeout = 0.5;  // [s]
 constexpr double kPatience = 15.0;    // [s] as long as roslaunch waits for nodes that it ends
 
@@ -55,8 +56,10 @@ bool IsRoslaunch(const std::vector<std::string>& command) {
 }
 
 /// Whether it was asked for a launch file of this package, by whatever path, and not for one that
-/// includes it: a robot's drivers are not ours to end.
+/// includes it: a robot's drivers are not ours to end. Where the robot is simulated, the launch
+/// file says that there are none.
 bool LaunchesThisPackage(pid_t roslaunch) {
+  if (std::getenv(kSimulated) != nullptr) return true;
   std::error_code error;  // what is no file is none of ours
   const fs::path at = fs::read_symlink(fmt::format("/proc/{}/cwd", roslaunch), error);
   const fs::path package = fs::canonical(ros::package::getPath("hires"), error);

@@ -48,6 +48,13 @@ Eigen::Vector2d ReadOrigin(base::ParamReader* in) {
 }
 
 MapParams ReadMapParams(const std::string& yaml_path) {
+  const std::string extension = base::ToLower(fs::path(yaml_path).extension().string());
+  if (extension == ".png" || extension == ".pgm") {
+    throw base::ConfigError(fmt::format(
+        "{}: is a map's picture; name the YAML file of map_server that says where it lies, with "
+        "image, resolution, origin, negate, occupied_thresh and free_thresh",
+        yaml_path));
+  }
   base::ParamReader in = base::ParamReader::FromFile(yaml_path);
   MapParams params;
   params.image = in.GetString("image");

@@ -213,7 +213,8 @@ double VirtualSecondsIn(const std::string& text) {
 }
 
 TEST_F(AchieveVerbTest, WhatIsOfVirtualTimeAloneIsRefusedWithoutIt) {
-  for (const std::string option : {"--scenario", "--config", "--seed", "--truth", "--threads"}) {
+  for (const std::string option : {"--scenario", "--config", "--seed", "--truth", "--threads",
+                                   "--world", "--robot", "--objects", "--domain", "--operators"}) {
     const Ended ended = Run({"serve guest1", option, "1"});
     EXPECT_EQ(ended.code, kExitNotAchieved) << option;
     EXPECT_THAT(ended.err, AllOf(HasSubstr(option), HasSubstr("--local")));
@@ -233,6 +234,32 @@ TEST_F(AchieveVerbTest, AnotherVirtualTimeIsTakenFromAnotherFile) {
   const std::string task = "carry_object_on_tray mug7 counter1 table1";
   const double usual = VirtualSecondsIn(Run({"--local", task}).out);
   EXPECT_NEAR(VirtualSecondsIn(Run({"--local", "--config", path, task}).out), usual + 7.0, 0.11);
+}
+
+TEST_F(AchieveVerbTest, ARobotWithoutCameraInAWorldOfItsOwnDoesATaskOfItsOwn) {
+  ASSERT_EQ(setenv("ROS_PACKAGE_PATH", HIRES_SOURCE_DIR, 1), 0);  // of model://sun
+  const std::string own = HIRES_SOURCE_DIR "/examples/own_robot/";
+  const std::vector<std::string> files{"--local",
+                                       "--imagination",
+                                       "off",
+                                       "--scenario",
+                                       own + "scenario.yaml",
+                                       "--world",
+                                       own + "hall.world",
+                                       "--robot",
+                                       own + "courier.yaml",
+                                       "--objects",
+                                       own + "objects.yaml"};
+  auto with_domain = files;
+  with_domain.insert(with_domain.end(), {"--domain", own + "delivery.lisp"});
+  const Ended ended = Run(with_domain);
+  EXPECT_EQ(ended.code, kExitAchieved) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("deliver soup1 atRoundTable: succeeded"),
+                               HasSubstr("fallen: nothing")));
+  EXPECT_THAT(Run(files).err, AllOf(HasSubstr("task 'deliver' is unknown"),
+                                    HasSubstr("config/domains/restaurant.lisp")));
+  with_domain.insert(with_domain.end(), {"--operators", own + "knowledge.yaml"});
+  EXPECT_THAT(Run(with_domain).err, HasSubstr("knowledge.yaml"));
 }
 
 TEST_F(AchieveVerbTest, TheTaskMayBeOneWordOrSeveral) {

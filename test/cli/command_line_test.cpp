@@ -107,6 +107,15 @@ TEST(CommandLineTest, ImaginesAndWritesWhatItFound) {
   EXPECT_EQ(head.at("hashes").size(), 4u);
 }
 
+TEST(CommandLineTest, APageIsWrittenWithoutJsonBesideIt) {
+  const TemporaryFolder folder;
+  const std::string page = (folder.path() / "page.html").string();
+  const Ended ended =
+      Small().Imagine(kDrive + std::vector<std::string>{"--html", page, "--min-success", "0.15"});
+  EXPECT_EQ(ended.code, kExitRecommended) << ended.err;
+  EXPECT_THAT(base::ReadTextFile(page), AllOf(HasSubstr("move_base(window)"), HasSubstr("<img")));
+}
+
 /// A map of 6 m by 3 m with a wall across that has a gap of 0.4 m, too narrow for the cart, or
 /// none.
 std::string HallMap(const TemporaryFolder& folder, bool has_wall) {

@@ -56,6 +56,8 @@ class CoreTest(unittest.TestCase):
                          tuple(told['ranking'][told['recommended']]['arguments']))
         for way, ranked in zip(self.answer.ranking, told['ranking']):
             self.assertEqual(way.success, ranked['success']['share'])
+            self.assertEqual(repr(way), 'Alternative(move_base_param(%s): success %.3f of 8 rollouts)' % (
+                ', '.join(way.arguments), way.success))
             self.assertEqual(way.interval, (ranked['success']['lower'], ranked['success']['upper']))
             self.assertEqual(way.confidence, ranked['confidence']['pooled'])
             self.assertEqual(way.tilt, (ranked['max_tilt']['p50'], ranked['max_tilt']['p95']))

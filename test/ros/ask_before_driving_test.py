@@ -75,7 +75,7 @@ class AskBeforeDrivingTest(unittest.TestCase):
         told = self.system.ask('--min-success', '0.5', rollouts=16, early_stop=True).answer().report
         imagination = self.hires.Imagination()
         answer = imagination.ask(
-            'move_base_blind', ACTION[-1].split(','), robot_at=HOME, on_tray=['peppermill1'],
+            'move_base_blind', ACTION[-1].split(','), robot_at=HOME, on_tray='peppermill1',
             rollouts=16, seed=7)
         self.assertEqual(answer.outcome, told['outcome'])
         self.assertEqual(answer.why, told['why'])

@@ -20,6 +20,17 @@ DONE = """<launch>
 """
 
 
+OWN = """<launch>
+  <include file="$(find hires)/launch/closed_loop.launch">
+    <arg name="scenario" value="topple"/>
+    <arg name="task" value="none"/>
+    <arg name="knowledge" value="$(find hires)/config/knowledge/restaurant.yaml"/>
+    <arg name="domain" value="%s"/>
+  </include>
+</launch>
+"""
+
+
 class LaunchEndTest(unittest.TestCase):
     def setUp(self):
         self.processes = Processes()
@@ -34,6 +45,11 @@ class LaunchEndTest(unittest.TestCase):
             launch = self.launch(*words, 'domain:=/nowhere/d.lisp')
             launch.wait()
             self.assertEqual(launch.output().count('/nowhere/d.lisp: no such file'), 1, launch.output())
+
+    def test_so_it_is_in_a_launch_file_of_somebody_else_where_the_robot_is_simulated(self):
+        launch = self.launch(self.processes.write('own.launch', OWN % '/nowhere/d.lisp'))
+        launch.wait()
+        self.assertIn('/nowhere/d.lisp: no such file', launch.output())
 
     def test_a_second_launch_under_the_same_names_ends_and_the_first_goes_on(self):
         first = self.launch('hires', 'planner.launch')

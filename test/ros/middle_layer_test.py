@@ -50,7 +50,7 @@ class MiddleLayerTest(unittest.TestCase):
         self.system.end_processes()
         self.system.start_robot(**robot)
         self.system.start_middle_layer()
-        self.system.require_server()
+        self.system.require_ready()
 
     def begin_at_counter(self):
         """Ready to grasp the mug, which stands before the robot."""

@@ -45,7 +45,7 @@ class OtherRobotTest(unittest.TestCase):
         self.system.tell({'mug1': ('coffee_cup', *MUG)})
         self.system.start_robot(scenario=self.system.processes.write('counter.yaml', AT_COUNTER))
         self.system.start_middle_layer('cmd_vel:=base_controller/command', **FILES)
-        self.system.require_server()
+        self.system.require_ready()
         self.held = None
 
         def note(state):

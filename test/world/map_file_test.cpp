@@ -16,6 +16,7 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::ThrowsMessage;
 
 const char kYaml[] =
     "image: m.pgm\nresolution: 0.1\norigin: [1.0, 2.0, 0.0]\nnegate: 0\n"
@@ -52,6 +53,14 @@ TEST_F(MapFileTest, ThresholdsAreMapServersTrinaryOnes) {
   negated.replace(negated.find("negate: 0"), 9, "negate: 1");
   EXPECT_THAT(Load(negated).cells, ElementsAre(Cell::kFree, Cell::kUnknown, Cell::kUnknown,
                                                Cell::kOccupied, Cell::kOccupied, Cell::kOccupied));
+}
+
+TEST_F(MapFileTest, ThePictureItselfIsNoMap) {
+  for (const char* name : {"flat.png", "flat.PGM"}) {
+    EXPECT_THAT([&] { LoadMap(folder_.Write(name, "P2 1 1 255 0")); },
+                ThrowsMessage<base::ConfigError>(
+                    AllOf(HasSubstr(name), HasSubstr("name the YAML file of map_server"))));
+  }
 }
 
 TEST_F(MapFileTest, SavedMapsReadBackTheSame) {

@@ -15,11 +15,18 @@
 
 namespace hires::loop {
 
+/// Files instead of those that the configuration names; empty: its own.
+struct LoopFiles {
+  std::string world, robot, objects;
+  std::string domain;     ///< SHOP2 or HDDL
+  std::string operators;  ///< empty with a domain: the one beside it, d.yaml for d.lisp
+};
+
 /// Everything constant that tasks in one process need, loaded once and shared by all of them.
 class LoopSetup {
  public:
   /// @param config  a file like config/loop.yaml.  @throws base::ConfigError naming file and key.
-  explicit LoopSetup(const std::string& config);
+  explicit LoopSetup(const std::string& config, const LoopFiles& files = {});
   ~LoopSetup();
   LoopSetup(const LoopSetup&) = delete;
   LoopSetup& operator=(const LoopSetup&) = delete;

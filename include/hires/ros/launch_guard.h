@@ -12,7 +12,7 @@ void EndLaunch();
 /// What the main() of a node returns when its configuration is wrong: says so, and ends the launch
 /// that would start the node again and again, to fail in the same way, if it is one of this
 /// package: a launch file that includes one of ours goes on, for it may have started a robot's
-/// drivers.
+/// drivers, unless the robot is the simulated one of closed_loop.launch.
 int EndMisconfigured(const std::string& node, const hires::base::ConfigError& error);
 
 /// Whether this node's name is free at its master: no other process that answers bears it. Where it

@@ -55,8 +55,8 @@ void RequireBagFile(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
     throw ConfigError(fmt::format(
-        "{}: no such bag; name a file that `rosbag record` wrote, e.g. `rosbag record -O "
-        "imagine.bag /imagine/goal /imagine/result`",
+        "{}: no such bag; name a file that `rosbag record` (for `hires replay`) or `hires imagine "
+        "--save-rollout worst --bag FILE` (for `hires watch`) wrote",
         path));
   }
   std::string begin(4, '\0');

@@ -245,10 +245,13 @@ void MiddleLayerNode::Tend() {
 
 void MiddleLayerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const std::string missing = inputs_.Missing();
-  if (missing.empty()) {
-    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "ready");
-  } else {
+  if (!missing.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "nothing comes on " + missing);
+  } else if (lockstep_ && !lockstep_->is_awaited()) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
+                   "the robot does not wait for " + lockstep_->topic());
+  } else {
+    status.summary(diagnostic_msgs::DiagnosticStatus::OK, "ready");
   }
   status.add("bad messages", inputs_.num_bad());
   status.add("running", hires::base::Join(runner_.Running(), "; "));
