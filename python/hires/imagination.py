@@ -100,7 +100,8 @@ class Imagination:
             deadline=0.0, ranking='', min_success=0.0, uncertainty=''):
         """What would happen? Each argument is a name, or a list of names to choose from; all
         combinations are played. The state is said by robot_at (an area), on_tray (objects) and
-        facts ('On(mug1, placingAreaNorthTable1)'), one or a list of them. Zeros and '' stand for the client's defaults.
+        facts ('On(mug1, placingAreaNorthTable1)'), one or a list of them. Zeros and '' stand for the
+        client's defaults.
 
         Raises ValueError for a fact that is none, ImaginationError where nobody answers or the
         request cannot be played; it names what is wrong.

@@ -18,7 +18,7 @@ from std_msgs.msg import Bool
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
-from diagnostics import diagnostics  # noqa: E402
+from diagnostics import wait_for_guard  # noqa: E402
 from failures import text_of  # noqa: E402
 from ros_processes import Processes, executable, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
@@ -85,7 +85,7 @@ class BaseGuardTest(unittest.TestCase):
 
     def drive(self, request=1):
         """A driver that wants 0.6 m/s, and the base at the speed that its request allows."""
-        diagnostics(rospy, 'base_guard', lambda v: v.get('forbids driving') == 'nothing')
+        wait_for_guard(rospy)
         self.requester = self.peer('requester', str(request))
         self.commander = self.peer('commander', '0.6', '0.0')
         self.wait_for_state(BaseGuardState.PASSING, request=request)

@@ -18,7 +18,7 @@ sys.path.insert(0, os.path.join(HERE, 'support'))
 from failures import text_of  # noqa: E402
 from move_base_system import FAST, ROOT, SLOW, MoveBaseSystem, config_text  # noqa: E402
 from action_goal import ActionGoal  # noqa: E402
-from diagnostics import diagnostics  # noqa: E402
+from diagnostics import wait_for_guard, wait_for_middle_layer  # noqa: E402
 from robot_system import SKILL_LIMIT  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
@@ -143,12 +143,8 @@ class MoveBaseModeTest(unittest.TestCase):
                       client.pub_cancel.get_num_connections() > 0 and
                       client.result_sub.get_num_connections() > 0 and
                       self.base.hears_who_asks(), 'the middle layer')
-        diagnostics(self.rospy, 'middle_layer', lambda v: v['message'] == 'ready')
-        self.wait_for_guard()
-
-    def wait_for_guard(self):
-        """One that has only just begun may not have heard the robot yet."""
-        diagnostics(self.rospy, 'base_guard', lambda v: v['forbids driving'] == 'nothing')
+        wait_for_middle_layer(self.rospy)
+        wait_for_guard(self.rospy)
 
     def wait_for(self, condition, what):
         """With what everybody said where it is in vain."""
@@ -266,7 +262,7 @@ class MoveBaseModeTest(unittest.TestCase):
         self.system.await_values(FAST)
         self.rospy.set_param('/move_base_node/behaviour', 'abort')
         self.rospy.set_param('/move_base_node/text', 'no')
-        self.wait_for_guard()
+        wait_for_guard(self.rospy)
         self.require(self.execute(), self.codes.FAILED, '^unreachable$')
 
     def test_a_killed_move_base_is_named_and_gets_its_own_values_when_it_is_back(self):

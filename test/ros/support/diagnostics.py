@@ -3,6 +3,17 @@
 from ros_processes import wait_until
 
 
+def wait_for_guard(rospy):
+    """Until the base guard would let somebody drive: one that has only just begun may not have heard the
+    robot yet."""
+    diagnostics(rospy, 'base_guard', lambda v: v['forbids driving'] == 'nothing')
+
+
+def wait_for_middle_layer(rospy):
+    """Until it hears of the robot all that it needs."""
+    diagnostics(rospy, 'middle_layer', lambda v: v['message'] == 'ready')
+
+
 def diagnostics(rospy, name, condition):
     """Values of the node's status, and its `message`, once they are as wanted."""
     from diagnostic_msgs.msg import DiagnosticArray

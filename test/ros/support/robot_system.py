@@ -12,7 +12,7 @@ import os
 import threading
 
 from action_goal import ActionGoal
-from diagnostics import diagnostics
+from diagnostics import wait_for_middle_layer
 from ros_processes import LIMIT, Processes, executable, wait_until
 
 SKILL_LIMIT = 300.0  # [s] by the wall's clock: it ends a broken test, and measures nothing
@@ -125,7 +125,7 @@ class RobotSystem:
     def require_ready(self):
         """In lockstep an action is refused until the robot waits for its controllers' answers."""
         self.require_server()
-        diagnostics(self.rospy, 'middle_layer', lambda v: v['message'] == 'ready')
+        wait_for_middle_layer(self.rospy)
 
     def _has_server(self):
         # Goal and cancel have a listener, and status, feedback and result come from it.
