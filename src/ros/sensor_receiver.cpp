@@ -14,6 +14,7 @@ namespace {
 namespace sensing = hires::sensing;
 
 constexpr double kWarningPeriod = 1.0;  // [s] for each topic
+constexpr double kFramePatience = 0.2;  // [s] that the transform of what is stated may be late
 
 }  // namespace
 
@@ -49,6 +50,7 @@ void SensorReceiver::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_stati
   const TransformBuffer::News news = tree_->Take(msg, are_static);
   num_bad_ += static_cast<int>(news.warnings.size());
   for (const std::string& warning : news.warnings) Warn(kTransforms, warning);
+  for (const std::string& doubt : news.doubts) Tell(kTransforms, "doubtful", doubt);
   for (const double stamp : news.stamps) Note(kTransforms, state_.OnTransforms(stamp));
 }
 
@@ -63,26 +65,45 @@ void SensorReceiver::OnDetections(const hires::Detections& msg) {
 }
 
 void SensorReceiver::OnKnownObjects(const hires::WorldState& msg) {
-  if (sensing::BareFrame(msg.header.frame_id) == names_.map_frame) {
+  if (!msg.header.frame_id.empty()) {
     stated_ = std::make_unique<hires::WorldState>(msg);
     return;
   }
   ++num_bad_;
   Warn(kKnownObjects,
-       fmt::format("frame_id is '{}', wanted '{}'", msg.header.frame_id, names_.map_frame));
+       fmt::format("frame_id is empty, wanted '{}' or a frame that tf connects with it",
+                   names_.map_frame));
 }
 
 sensing::LookNews SensorReceiver::Update(const sensing::RobotEstimate& now) {
   if (!objects_) return {};
-  if (const auto stated = std::move(stated_)) {
-    const auto then = state_.At(stated->header.stamp.toSec());
-    for (const std::string& why : objects_->OnStated(FromMsg(*stated), then.value_or(now))) {
-      Warn(kKnownObjects, why);
-    }
-  }
+  if (stated_) TakeStated(now);
   sensing::LookNews news = objects_->Update(now);
   for (const std::string& why : news.warnings) Warn(kDetections, why);
   return news;
+}
+
+/// Poses in another frame than the map's become such in the world, by where the robot was then.
+void SensorReceiver::TakeStated(const sensing::RobotEstimate& now) {
+  const auto then = state_.At(stated_->header.stamp.toSec()).value_or(now);
+  const std::string frame = sensing::BareFrame(stated_->header.frame_id);
+  hires::world::WorldState world = FromMsg(*stated_);
+  if (frame != names_.map_frame) {
+    const sensing::FramePose X_BF = state_.InBase(frame, then);
+    const bool may_come = X_BF.status == sensing::FrameStatus::kNotThen;
+    if (may_come && now.time < stated_->header.stamp.toSec() + kFramePatience) return;
+    if (!X_BF.is_found()) {
+      stated_.reset();
+      ++num_bad_;
+      return Warn(kKnownObjects,
+                  fmt::format("wanted poses in '{}', or in a frame that leads there: {}",
+                              names_.map_frame, tree_->WhyNot(names_.map_frame, frame, then.time)));
+    }
+    const auto X_WF = hires::geometry::Lift(then.X_WB) * X_BF.X_PC;
+    for (auto& object : world.objects) object.X_MO = X_WF * object.X_MO;
+  }
+  stated_.reset();
+  for (const std::string& why : objects_->OnStated(world, then)) Warn(kKnownObjects, why);
 }
 
 std::string SensorReceiver::NameOf(sensing::Missing missing) const {
@@ -108,11 +129,16 @@ void SensorReceiver::Note(const std::string& topic, const sensing::Receipt& rece
 }
 
 void SensorReceiver::Warn(const std::string& topic, const std::string& text) {
+  Tell(topic, "dropped", text);
+}
+
+void SensorReceiver::Tell(const std::string& topic, const std::string& what,
+                          const std::string& why) {
   const auto warned = warned_.find(topic);
   if (warned != warned_.end() && hires::base::SteadyNow() - warned->second < kWarningPeriod) return;
   warned_[topic] = hires::base::SteadyNow();
   hires::base::Log(hires::base::LogLevel::kWarn,
-                   fmt::format("topic={} dropped why={}", topic, text));
+                   fmt::format("topic={} {} why={}", topic, what, why));
 }
 
 }  // namespace hires_ros

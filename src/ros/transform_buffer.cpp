@@ -54,6 +54,8 @@ TransformBuffer::News TransformBuffer::Take(const tf2_msgs::TFMessage& msg, bool
       continue;
     }
     if (!are_static && IsRepeated(transform)) continue;
+    const std::string torn_apart = WhyTornApart(transform);
+    if (!torn_apart.empty()) news.doubts.push_back(torn_apart);
     if (!buffer_.setTransform(transform, "", are_static)) continue;  // too old
     const double stamp = are_static ? kForever : transform.header.stamp.toSec();
     const bool is_new =
@@ -69,6 +71,59 @@ bool TransformBuffer::IsRepeated(const geometry_msgs::TransformStamped& msg) {
   const bool is_repeated = !msg.header.stamp.isZero() && newest == msg.header.stamp;
   newest = msg.header.stamp;
   return is_repeated;
+}
+
+/// A frame may be hung elsewhere once, as what is taken up by a hand; one that is hung back has two
+/// publishers.
+std::string TransformBuffer::WhyTornApart(const geometry_msgs::TransformStamped& msg) {
+  const std::string child = BareFrame(msg.child_frame_id), parent = BareFrame(msg.header.frame_id);
+  const std::string before = ParentOf(child);
+  if (before.empty() || before == parent) return "";
+  std::set<std::string>& left = left_[child];
+  left.insert(before);
+  if (left.count(parent) == 0) return "";
+  return fmt::format(
+      "frame '{}' hangs below '{}' and below '{}' by turns: two nodes publish it; end one of them",
+      child, before, parent);
+}
+
+/// Nothing for one that is unknown or at the top.
+std::string TransformBuffer::ParentOf(const std::string& frame) const {
+  std::string parent;
+  if (IsKnown(frame)) buffer_._getParent(frame, ros::Time(0), parent);
+  return parent;
+}
+
+/// The frame and those above it: "base < odom < map".
+std::string TransformBuffer::LineOf(const std::string& frame) const {
+  std::string line = frame;
+  std::set<std::string> seen{frame};
+  for (std::string above = ParentOf(frame); !above.empty(); above = ParentOf(above)) {
+    line += " < " + above;
+    if (!seen.insert(above).second) break;
+  }
+  return line;
+}
+
+std::string TransformBuffer::WhyNot(const std::string& parent, const std::string& child,
+                                    double time) const {
+  const auto newest = NewestOf(parent, child);
+  switch (Find(parent, child, time).status) {
+    case FrameStatus::kFound:
+      return "";
+    case FrameStatus::kUnknown:
+      return fmt::format("tf does not know frame '{}'", IsKnown(parent) ? child : parent);
+    case FrameStatus::kNotThen:
+      return fmt::format("tf knows where '{}' is in '{}', but not at {:.3f} s{}", child, parent,
+                         time, newest ? fmt::format("; its newest is of {:.3f} s", *newest) : "");
+    case FrameStatus::kInLoop:
+      return fmt::format("the transforms above '{}' or '{}' lead in a circle ({}; {})", child,
+                         parent, LineOf(child), LineOf(parent));
+    case FrameStatus::kNotConnected:
+      break;
+  }
+  return fmt::format("tf does not connect '{}' with '{}' (it knows {}; {})", child, parent,
+                     LineOf(child), LineOf(parent));
 }
 
 bool TransformBuffer::IsKnown(const std::string& frame) const {
@@ -89,6 +144,8 @@ FramePose TransformBuffer::Find(const std::string& parent, const std::string& ch
     return {FrameStatus::kFound, FromMsg(pose)};
   } catch (const tf2::ExtrapolationException&) {
     return {FrameStatus::kNotThen, {}};
+  } catch (const tf2::LookupException&) {  // both are known, but a walk up does not end
+    return {FrameStatus::kInLoop, {}};
   } catch (const tf2::TransformException&) {
     return {FrameStatus::kNotConnected, {}};
   }
@@ -107,6 +164,7 @@ std::optional<double> TransformBuffer::NewestOf(const std::string& parent,
 void TransformBuffer::ForgetMoving() {
   buffer_.clear();
   newest_.clear();
+  left_.clear();
 }
 
 }  // namespace hires_ros

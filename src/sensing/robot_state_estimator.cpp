@@ -40,19 +40,22 @@ OdometryReading Between(const OdometryReading& from, const OdometryReading& to, 
       {a.vx + share * (b.vx - a.vx), a.vy + share * (b.vy - a.vy), a.wz + share * (b.wz - a.wz)}};
 }
 
-/// The velocity of a frame B that is fixed to C.
-Twist2 MovedTo(const Pose2& X_CB, const Twist2& V_C) {
-  const double vx = V_C.vx - V_C.wz * X_CB.y, vy = V_C.vy + V_C.wz * X_CB.x;
-  const double c = std::cos(X_CB.yaw), s = std::sin(X_CB.yaw);
-  return {c * vx + s * vy, -s * vx + c * vy, V_C.wz};
-}
-
 }  // namespace
 
 Receipt ReceiptOf(FrameStatus status, const std::string& frame) {
-  if (status == FrameStatus::kFound) return {};
-  const bool is_unknown = status == FrameStatus::kUnknown;
-  return {is_unknown ? Reception::kUnknownFrame : Reception::kNotConnected, frame};
+  switch (status) {
+    case FrameStatus::kFound:
+      return {};
+    case FrameStatus::kUnknown:
+      return {Reception::kUnknownFrame, frame};
+    case FrameStatus::kNotConnected:
+      return {Reception::kNotConnected, frame};
+    case FrameStatus::kNotThen:
+      return {Reception::kNotThen, frame};
+    case FrameStatus::kInLoop:
+      return {Reception::kInLoop, frame};
+  }
+  return {Reception::kUnknownFrame, frame};
 }
 
 bool StateParams::operator==(const StateParams& other) const {
@@ -87,6 +90,17 @@ std::string ToString(const Receipt& receipt) {
     case Reception::kNotConnected:
       return fmt::format(
           "frame '{}' is not connected with the robot's frames; publish the transform between",
+          receipt.subject);
+    case Reception::kNotThen:
+      return fmt::format(
+          "where frame '{}' was at header.stamp is not known to tf, only at other times; publish "
+          "its "
+          "transforms more often, and look whether the clocks of the computers agree",
+          receipt.subject);
+    case Reception::kInLoop:
+      return fmt::format(
+          "the transforms above frame '{}' lead in a circle; end the node that publishes one of "
+          "them",
           receipt.subject);
   }
   return "";
@@ -183,7 +197,8 @@ FramePose RobotStateEstimator::ChildToBase(const std::string& child, double stam
 
 /// Whether the odometry's frame leads to the one that localisation corrects.
 Receipt RobotStateEstimator::CheckFrame(const std::string& frame) const {
-  if (raw_frame_ == frames_.odometry || !base_in_odometry_.empty()) return {};
+  const bool leads_on = !base_in_odometry_.empty() || is_base_corrected_;
+  if (raw_frame_ == frames_.odometry || leads_on) return {};
   if (tree_->NewestOf(frames_.odometry, raw_frame_)) return {};
   return ReceiptOf(tree_->Find(frames_.odometry, raw_frame_, *now()).status, frame);
 }
@@ -210,21 +225,35 @@ Receipt RobotStateEstimator::OnTransforms(double stamp) {
       base_in_odometry_.Insert(time, geometry::Flatten(X_OB.X_PC));
     }
   }
-  const auto newest = tree_->NewestOf(frames_.map, frames_.odometry);
-  if (!newest) return {};
-  const double time = std::min(stamp, *newest);
-  const FramePose found = tree_->Find(frames_.map, frames_.odometry, time);
+  if (const auto newest = tree_->NewestOf(frames_.map, frames_.odometry)) {
+    return TakeCorrection(frames_.odometry, *newest, stamp);
+  }
+  if (const auto newest = tree_->NewestOf(frames_.map, frames_.base)) {
+    return TakeCorrection(frames_.base, *newest, stamp);
+  }
+  return {};
+}
+
+/// @param frame   that the map leads to: the odometry's, or where the tree does not know it the
+/// base.
+/// @param newest  [s] moment that is known of it.
+Receipt RobotStateEstimator::TakeCorrection(const std::string& frame, double newest, double stamp) {
+  const double time = std::min(stamp, newest);
+  const FramePose found = tree_->Find(frames_.map, frame, time);
   if (!found.is_found()) return Late();
-  const Pose2 X_MO = geometry::Flatten(found.X_PC);
+  const Pose2 X_MF = geometry::Flatten(found.X_PC);
+  const bool is_of_base = frame == frames_.base;
+  if (is_of_base != is_base_corrected_) corrections_.Clear();
+  is_base_corrected_ = is_of_base;
   X_MOfixed_.reset();
-  if (*newest == kForever) {
-    X_MOfixed_ = X_MO;
+  if (newest == kForever) {
+    if (!is_of_base) X_MOfixed_ = X_MF;
     return {};
   }
   if (IsLate(time)) return Late();
-  if (IsAhead(time)) return Ahead(frames_.map + " -> " + frames_.odometry);
+  if (IsAhead(time)) return Ahead(frames_.map + " -> " + frame);
   const double lead = std::max(time - now().value_or(time), 0.0);
-  const bool is_new = corrections_.Insert(time, {X_MO, time - std::min(lead, LeastLead()), lead});
+  const bool is_new = corrections_.Insert(time, {X_MF, time - std::min(lead, LeastLead()), lead});
   if (!now()) corrections_.KeepBetween(time - params_.history, kForever);
   return {is_new ? Reception::kTaken : Reception::kRepeated, {}};
 }
@@ -255,6 +284,7 @@ std::optional<Pose2> RobotStateEstimator::OdometryOrigin(double time) const {
   }
   const auto* told = base_in_odometry_.Before(time);
   if (told == nullptr) told = base_in_odometry_.After(time);
+  if (told == nullptr && is_base_corrected_) return Pose2{};  // the tree knows neither frame
   const auto then = told ? RawAt(told->stamp, kNear) : std::nullopt;
   if (!then) return std::nullopt;
   return told->value * then->X_OB.Inverse();
@@ -277,10 +307,23 @@ std::optional<Pose2> RobotStateEstimator::CorrectionAt(double time) const {
   if (!is_fresh) return std::nullopt;
   const auto* before = corrections_.Before(time);
   const auto* after = corrections_.After(time);
-  if (before == nullptr) return after->value.X_MO;
-  if (after == nullptr || before->stamp == time) return before->value.X_MO;
+  const auto X_MObefore = before ? OffsetOf(before->value, before->stamp) : std::nullopt;
+  const auto X_MOafter = after ? OffsetOf(after->value, after->stamp) : std::nullopt;
+  if (!X_MObefore) return X_MOafter;
+  if (!X_MOafter || before->stamp == time) return X_MObefore;
   const double share = (time - before->stamp) / (after->stamp - before->stamp);
-  return Between(before->value.X_MO, after->value.X_MO, share);
+  return Between(*X_MObefore, *X_MOafter, share);
+}
+
+/// Where the odometry's frame is in the map, by a correction; one of the base tells it together
+/// with the odometry of its time, and nothing before that came.
+std::optional<Pose2> RobotStateEstimator::OffsetOf(const Correction& correction,
+                                                   double stamp) const {
+  if (!is_base_corrected_) return correction.X_MF;
+  const auto raw = RawAt(stamp, kNear);
+  const auto X_OR = raw_frame_ == frames_.odometry ? Pose2{} : OdometryOrigin(stamp);
+  if (!raw || !X_OR) return std::nullopt;
+  return correction.X_MF * (*X_OR * raw->X_OB).Inverse();
 }
 
 Missing RobotStateEstimator::MissingAt(double time) const {

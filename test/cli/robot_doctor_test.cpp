@@ -198,6 +198,59 @@ TEST(JudgeRobotTest, SilenceOfANodeThatCannotBeReachedPointsToItsComputer) {
   EXPECT_THAT(findings[0].remedy, HasSubstr("what is said of host pr2"));
 }
 
+TEST(JudgeRobotTest, FramesMayLeadToEachOtherOverOthers) {
+  RobotView view = HealthyView();
+  view.frames["odom_combined"] = {{"world"}, 0.02, false};
+  view.frames["map"] = {{"world"}, 9.0, true};
+  view.frames["base_footprint"] = {{"sled"}, 9.0, true};
+  view.frames["sled"] = {{"odom_combined"}, 0.02, false};
+  EXPECT_THAT(Codes(view), IsEmpty());
+  view.frames["sled"].age = 1.0;
+  const RobotFindings stale = JudgeFrames(Needs(), Profile(), view);
+  ASSERT_THAT(CodesOf(stale), ElementsAre("frame_stale"));
+  EXPECT_EQ(stale[0].subject, "frame sled");
+  EXPECT_THAT(stale[0].text, HasSubstr("odom_combined -> sled is 1.00 s old"));
+}
+
+/// A localisation that puts the odometry below the base.
+TEST(JudgeRobotTest, OneStaleLinkOfBothWaysIsSaidOnce) {
+  RobotView view = HealthyView();
+  view.frames["base_footprint"] = {{"map"}, 1.0, false};
+  view.frames["odom_combined"] = {{"base_footprint"}, 0.0, false};
+  EXPECT_THAT(Codes(view), ElementsAre("frame_stale"));
+}
+
+TEST(JudgeRobotTest, FramesThatDoNotMeetAreNamedWithWhatIsAboveThem) {
+  RobotView view = HealthyView();
+  view.frames["odom_combined"] = {{"venue"}, 0.0, false};
+  const RobotFindings findings = JudgeFrames(Needs(), Profile(), view);
+  ASSERT_THAT(CodesOf(findings), ElementsAre("frame_missing"));
+  EXPECT_EQ(findings[0].text,
+            "hangs in odom_combined < venue, which does not lead to map (in map)");
+}
+
+TEST(JudgeRobotTest, LinksInACircleLeadNowhere) {
+  RobotView view = HealthyView();
+  view.frames["odom_combined"] = {{"base_footprint"}, 0.0, false};
+  const RobotFindings findings = JudgeFrames(Needs(), Profile(), view);
+  ASSERT_THAT(CodesOf(findings), ElementsAre("frame_missing"));
+  EXPECT_THAT(findings[0].text, HasSubstr("odom_combined < base_footprint, which does not lead"));
+}
+
+TEST(JudgeRobotTest, ABaseThatTheTreeHasInTheMapNeedsNoOdometryThere) {
+  RobotView view = HealthyView();
+  view.frames.erase("odom_combined");
+  view.frames["base_footprint"] = {{"ceiling"}, 0.0, false};
+  view.frames["ceiling"] = {{"map"}, 9.0, true};
+  const RobotFindings findings = JudgeFrames(Needs(), Profile(), view);
+  ASSERT_THAT(CodesOf(findings), ElementsAre("frame_missing"));
+  EXPECT_EQ(findings[0].level, FindingLevel::kWarning);
+  EXPECT_THAT(findings[0].text, HasSubstr("base_footprint < ceiling < map says alone"));
+  view.frames["base_footprint"].age = 1.0;
+  EXPECT_THAT(CodesOf(JudgeFrames(Needs(), Profile(), view)),
+              ElementsAre("frame_stale", "frame_missing"));
+}
+
 TEST(JudgeRobotTest, WithoutAnyTransformThereIsOneFindingForAllFrames) {
   RobotView view = HealthyView();
   view.frames.clear();

@@ -138,9 +138,13 @@ class DoctorRobotTest(unittest.TestCase):
     def test_another_frame_than_the_one_that_was_named_is_told(self):
         self.start('robot', odometry_frame='odom')
         report = self.ask('--navigation', 'own')
-        self.require_found(report, [('frame_missing', 'frame odom_combined'),
-                                    ('frame_missing', 'frame base_footprint')])
-        self.assertIn('hangs below odom, wanted is odom_combined', report.output)
+        self.require_found(report, [('frame_missing', 'frame odom_combined')])
+        self.assertEqual(report.found()['frame_missing', 'frame odom_combined']['level'], 'warning')
+        self.assertIn('base_footprint < odom < map says alone', report.output)
+
+    def test_frames_may_lead_to_each_other_over_others(self):
+        self.start('robot', between=['hall', 'world'])
+        self.require_found(self.ask('--navigation', 'own'), [])
 
     def test_a_planner_that_cannot_be_set_and_drives_past_the_guard_is_named(self):
         self.start('robot')

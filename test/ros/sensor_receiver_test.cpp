@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "hires/ros/conversions.h"
 #include "hires/ros/robot_messages.h"
 #include "support/sight_scenes.h"
@@ -76,9 +78,7 @@ TEST_F(SensorReceiverTest, BadMessagesAreCountedAndLeftOut) {
   look.header.frame_id = "head_mount_kinect_ir_link";
   sensors_.OnDetections(look);  // without a time
   EXPECT_EQ(sensors_.num_bad(), 3);
-  hires::WorldState known;
-  known.header.frame_id = "odom_combined";
-  sensors_.OnKnownObjects(known);
+  sensors_.OnKnownObjects({});  // without a frame
   EXPECT_EQ(sensors_.num_bad(), 4);
   EXPECT_EQ(sensors_.state().MissingNow(), Missing::kOdometry);
 }
@@ -107,6 +107,97 @@ TEST_F(SensorReceiverTest, DetectionsInTheMapAndWhatAnotherNodeRemembersBecomeOb
   EXPECT_EQ(objects[1].name, "mug1");
   EXPECT_NEAR(objects[1].X_MO.translation.x(), 2.0, 1e-9);
   EXPECT_EQ(sensors_.num_bad(), 0);
+}
+
+/// Objects and detections in a frame three links away, turned and tilted.
+class ConnectedFrameTest : public SensorReceiverTest {
+ protected:
+  /// map -> hall (3, 1, 0; yaw 90 deg) -> table (2, 0, 0.7) -> board (0, 0, 0.1; roll 90 deg): the
+  /// board is at (3, 3, 0.8) in the map, its z axis along the map's x, its x axis along y.
+  void TellBoard() {
+    using hires::geometry::RotationFromRpy;
+    Fixed("map", "hall", {{3.0, 1.0, 0.0}, RotationFromRpy(0.0, 0.0, M_PI / 2)});
+    Fixed("hall", "table", {{2.0, 0.0, 0.7}, Eigen::Quaterniond::Identity()});
+    Fixed("table", "board", {{0.0, 0.0, 0.1}, RotationFromRpy(M_PI / 2, 0.0, 0.0)});
+  }
+  void Fixed(const std::string& parent, const std::string& child,
+             const hires::geometry::Pose3& X_PC) {
+    tf2_msgs::TFMessage msg;
+    msg.transforms.push_back(MakeTransform(parent, child, X_PC, ros::Time(0.5)));
+    sensors_.OnTransforms(msg, true);
+  }
+  void State(const std::string& frame, double stamp) {
+    hires::world::WorldState state;
+    state.objects.push_back(
+        {"jug1", "jug", {{0.5, 0.0, 0.25}, Eigen::Quaterniond::Identity()}, {}, ""});
+    hires::WorldState known = ToMsg(state);
+    known.header.frame_id = frame;
+    known.header.stamp.fromSec(stamp);
+    sensors_.OnKnownObjects(known);
+  }
+  std::vector<hires::robot::SeenObject> KnownAt(double time) {
+    const auto now = sensors_.state().At(time);
+    EXPECT_TRUE(now);
+    if (!now) return {};
+    sensors_.Update(*now);
+    return sensors_.objects()->memory().Known(now->Body());
+  }
+};
+
+TEST_F(ConnectedFrameTest, WhatAnotherNodeStatesThereIsPutIntoTheMap) {
+  TellBoard();
+  All(1.0);
+  State("/board", 1.0);
+  const auto objects = KnownAt(1.0);
+  ASSERT_THAT(objects, SizeIs(1));
+  EXPECT_LT((objects[0].X_MO.translation - Eigen::Vector3d(3.25, 3.5, 0.8)).norm(), 1e-9);
+  EXPECT_EQ(sensors_.num_bad(), 0);
+}
+
+TEST_F(ConnectedFrameTest, ALookThereIsPutIntoTheMap) {
+  TellBoard();
+  All(1.0);
+  hires::Detections look;
+  look.header.stamp.fromSec(1.0);
+  look.header.frame_id = "board";
+  look.detections.emplace_back();
+  look.detections[0].label = "mug";
+  look.detections[0].instance = "mug1";
+  look.detections[0].pose =
+      ToMsg(hires::geometry::Pose3{{0.5, 0.0, 0.25}, Eigen::Quaterniond::Identity()});
+  sensors_.OnDetections(look);
+  const auto objects = KnownAt(1.0);
+  ASSERT_THAT(objects, SizeIs(1));
+  EXPECT_LT((objects[0].X_MO.translation - Eigen::Vector3d(3.25, 3.5, 0.8)).norm(), 1e-9);
+}
+
+TEST_F(ConnectedFrameTest, WhatIsStatedInAFrameThatLeadsNowhereIsLeftOut) {
+  All(1.0);
+  Fixed("moon", "crater", {});
+  for (const char* frame : {"crater", "nowhere"}) {
+    State(frame, 1.0);
+    const int num_bad = sensors_.num_bad();
+    EXPECT_THAT(KnownAt(1.0), SizeIs(0)) << frame;
+    EXPECT_EQ(sensors_.num_bad(), num_bad + 1) << frame;
+  }
+}
+
+TEST_F(ConnectedFrameTest, ATransformThatComesAMomentLateIsWaitedFor) {
+  All(1.0);
+  Transform("map", "cart", 0.9);
+  State("cart", 1.0);
+  EXPECT_THAT(KnownAt(1.0), SizeIs(0));
+  EXPECT_EQ(sensors_.num_bad(), 0);
+  Transform("map", "cart", 1.1);
+  All(1.1);
+  EXPECT_THAT(KnownAt(1.1), SizeIs(1));
+  State("cart", 1.3);  // and no other comes
+  All(1.3);
+  KnownAt(1.3);
+  EXPECT_EQ(sensors_.num_bad(), 0);
+  All(1.5);
+  KnownAt(1.5);
+  EXPECT_EQ(sensors_.num_bad(), 1);
 }
 
 TEST(DetectionMessageTest, SurvivesBothWays) {

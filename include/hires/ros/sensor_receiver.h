@@ -21,7 +21,7 @@ namespace hires_ros {
 
 /// Hands what a robot's sensors say to the estimators of its state and of objects: conversion
 /// alone, for the middle layer and the tracker alike. What is wrong with a message becomes one
-/// warning a second for each topic.
+/// warning a second for each topic. Frames may be any that tf connects with the robot.
 class SensorReceiver {
  public:
   /// @param surroundings  what the camera looks at; null: the robot sees no objects.
@@ -51,6 +51,8 @@ class SensorReceiver {
 
  private:
   void Note(const std::string& topic, const hires::sensing::Receipt& receipt);
+  void Tell(const std::string& topic, const std::string& what, const std::string& why);
+  void TakeStated(const hires::sensing::RobotEstimate& now);
 
   hires::control::RobotNames names_;
   std::shared_ptr<TransformBuffer> tree_;

@@ -11,7 +11,8 @@ enum class FrameStatus {
   kFound,
   kUnknown,       ///< one of the frames was never received
   kNotConnected,  ///< both are known, and nothing leads from one to the other
-  kNotThen        ///< they are connected, but not known at that time
+  kNotThen,       ///< they are connected, but not known at that time
+  kInLoop         ///< above one of the frames the links lead in a circle
 };
 
 struct FramePose {
@@ -37,5 +38,8 @@ class FrameTree {
 
 /// The frame without the slash that old nodes put in front.
 std::string BareFrame(const std::string& frame);
+
+/// The velocity of a frame B that is fixed to C, in B's axes; V_C is in C's.
+geometry::Twist2 MovedTo(const geometry::Pose2& X_CB, const geometry::Twist2& V_C);
 
 }  // namespace hires::sensing

@@ -35,7 +35,9 @@ enum class Reception {
   kNoStamp,       ///< its time is 0 or no number
   kNotFinite,     ///< `subject` is no number
   kUnknownFrame,  ///< the frame `subject` was never received
-  kNotConnected   ///< nothing leads from the frame `subject` to the robot's
+  kNotConnected,  ///< nothing leads from the frame `subject` to the robot's
+  kNotThen,       ///< where the frame `subject` was at that time is unknown
+  kInLoop         ///< the links above the frame `subject` lead in a circle
 };
 
 struct Receipt {
@@ -85,7 +87,8 @@ struct RobotEstimate {
 /// Odometry may count in any frame. One that the tree connects is converted; one that nothing
 /// connects (a PR2's wheels count in `odom`, and a filter joins them with the IMU in
 /// `odom_combined`) is put where the tree has the base in the odometry's frame, and leads on from
-/// there.
+/// there. Where the tree does not know the odometry's frame at all and map -> base instead (a
+/// camera on the ceiling), that is the correction: of the odometry of its time.
 ///
 /// Odometry that goes back by more than 4 s, or by more than 1 s and stays there, is a clock that
 /// began again: all that was before is forgotten.
@@ -139,9 +142,9 @@ class RobotStateEstimator {
 
  private:
   struct Correction {
-    geometry::Pose2 X_MO;
-    double heard;  ///< [s] about when it came
-    double lead;   ///< [s] its stamp was newer than the odometry when it was read
+    geometry::Pose2 X_MF;  ///< of the odometry's frame, or of the base by itself
+    double heard;          ///< [s] about when it came
+    double lead;           ///< [s] its stamp was newer than the odometry when it was read
   };
   bool HasClockRestarted(double stamp);
   void Restart();
@@ -153,6 +156,8 @@ class RobotStateEstimator {
   std::optional<OdometryReading> RawAt(double time, double reach) const;
   std::optional<geometry::Pose2> OdometryOrigin(double time) const;
   double LeastLead() const;
+  Receipt TakeCorrection(const std::string& frame, double newest, double stamp);
+  std::optional<geometry::Pose2> OffsetOf(const Correction& correction, double stamp) const;
   std::optional<geometry::Pose2> CorrectionAt(double time) const;
   std::optional<geometry::Pose3> LinkInBase(const std::string& link,
                                             const robot::JointPositions& posture) const;
@@ -166,6 +171,7 @@ class RobotStateEstimator {
   History<OdometryReading> raw_;               // base in that frame
   History<geometry::Pose2> base_in_odometry_;  // by the tree
   History<Correction> corrections_;
+  bool is_base_corrected_{false};             // corrections are of the base, not of the odometry
   std::optional<geometry::Pose2> X_MOfixed_;  // where map and odometry never move
   JointHistory joints_;
   int num_behind_{0};  // readings of the odometry in a row that seem to come from another clock

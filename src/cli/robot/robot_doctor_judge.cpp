@@ -109,29 +109,104 @@ RobotFindings JudgeTopic(const WantedTopic& wanted, const RobotView& view) {
 
 // ---------------------------------------------------------------- frames
 
-RobotFindings JudgeLink(const std::string& child, const std::string& parent, const char* remedy,
-                        double max_age, const RobotView& view) {
+/// A frame and those above it, up to `to` if that is among them.
+std::vector<std::string> LineOf(const std::string& frame, const std::string& to,
+                                const RobotView& view) {
+  std::vector<std::string> line{frame};
+  while (line.back() != to) {
+    const auto found = view.frames.find(line.back());
+    if (found == view.frames.end()) break;
+    const std::set<std::string>& parents = found->second.parents;
+    const std::string above = parents.count(to) > 0 ? to : *parents.begin();
+    if (std::find(line.begin(), line.end(), above) != line.end()) break;  // a circle
+    line.push_back(above);
+  }
+  return line;
+}
+
+/// The links from a frame to another, each by its child, over the nearest frame that both hang
+/// below; nothing if there is none.
+std::optional<std::vector<std::string>> LinksBetween(const std::string& parent,
+                                                     const std::string& child,
+                                                     const RobotView& view) {
+  const std::vector<std::string> up = LineOf(child, parent, view);
+  const std::vector<std::string> down = LineOf(parent, child, view);
+  const auto top = std::find_first_of(up.begin(), up.end(), down.begin(), down.end());
+  if (top == up.end()) return std::nullopt;
+  std::vector<std::string> links(up.begin(), top);
+  links.insert(links.end(), down.begin(), std::find(down.begin(), down.end(), *top));
+  return links;
+}
+
+bool IsKnown(const std::string& frame, const RobotView& view) {
+  return view.frames.count(frame) > 0 ||
+         std::any_of(view.frames.begin(), view.frames.end(),
+                     [&](const auto& other) { return other.second.parents.count(frame) > 0; });
+}
+
+RobotFindings JudgeChain(const std::string& child, const std::string& parent, const char* remedy,
+                         double max_age, const RobotView& view) {
   const std::string subject = "frame " + child;
-  const auto frame = view.frames.find(child);
-  if (frame == view.frames.end()) {
+  if (!IsKnown(child, view)) {
     return {{FindingLevel::kFailed, "frame_missing", subject,
              fmt::format("no transform {} -> {} came within {:.1f} s", parent, child, view.seconds),
              remedy}};
   }
-  const SeenFrame& seen = frame->second;
-  if (seen.parents.count(parent) == 0) {
-    return {{FindingLevel::kFailed, "frame_missing", subject,
-             fmt::format("hangs below {}, wanted is {}", Listed(seen.parents), parent),
-             "say in the names file (frames) what this robot calls its frames"}};
+  const auto links = LinksBetween(parent, child, view);
+  if (!links) {
+    return {
+        {FindingLevel::kFailed, "frame_missing", subject,
+         fmt::format("hangs in {}, which does not lead to {} (in {})",
+                     Join(LineOf(child, parent, view), " < "), parent,
+                     Join(LineOf(parent, child, view), " < ")),
+         "publish the transform that is missing between, or say in the names file (frames) what "
+         "this robot calls its frames"}};
   }
-  if (!seen.is_static && seen.age > max_age) {
-    return {{FindingLevel::kFailed, "frame_stale", subject,
-             fmt::format("the newest transform {} -> {} is {:.2f} s old, wanted are {:.1f} s or "
-                         "less",
-                         parent, child, seen.age, max_age),
-             "look whether its node still runs, and at its computer's clock and load"}};
+  RobotFindings findings;
+  for (const std::string& link : *links) {
+    const SeenFrame& seen = view.frames.at(link);
+    if (seen.is_static || seen.age <= max_age) continue;
+    findings.push_back({FindingLevel::kFailed, "frame_stale", "frame " + link,
+                        fmt::format("the newest transform {} -> {} is {:.2f} s old, wanted are "
+                                    "{:.1f} s or less",
+                                    Listed(seen.parents), link, seen.age, max_age),
+                        "look whether its node still runs, and at its computer's clock and load"});
   }
-  return {};
+  return findings;
+}
+
+/// Whether tf puts the base into the map by itself, and knows nothing of the odometry's frame.
+bool IsPlacedWithoutOdometry(const hires::control::RobotNames& names, const RobotView& view) {
+  return !IsKnown(names.odometry_frame, view) && IsKnown(names.base_frame, view) &&
+         LinksBetween(names.map_frame, names.base_frame, view);
+}
+
+RobotFindings JudgePlace(const hires::control::RobotNames& names, double max_age,
+                         const RobotView& view) {
+  if (IsPlacedWithoutOdometry(names, view)) {
+    RobotFindings findings = JudgeChain(names.base_frame, names.map_frame, "", max_age, view);
+    findings.push_back(
+        {FindingLevel::kWarning, "frame_missing", "frame " + names.odometry_frame,
+         fmt::format("no transform leads to it; where the robot is, {} says alone",
+                     Join(LineOf(names.base_frame, names.map_frame, view), " < ")),
+         "nothing, if odometry is not in tf; else say in the names file (frames) what "
+         "this robot calls its frame"});
+    return findings;
+  }
+  RobotFindings findings =
+      JudgeChain(names.odometry_frame, names.map_frame,
+                 "start amcl, and give the first pose (RViz: 2D Pose Estimate)", max_age, view);
+  for (RobotFinding& finding :
+       JudgeChain(names.base_frame, names.odometry_frame,
+                  "start what fuses odometry (on a PR2: robot_pose_ekf), or name the frames in the "
+                  "names file",
+                  max_age, view)) {
+    const auto is_same = [&](const RobotFinding& other) {
+      return other.subject == finding.subject;
+    };
+    if (std::none_of(findings.begin(), findings.end(), is_same)) findings.push_back(finding);
+  }
+  return findings;
 }
 
 RobotFindings FramesWithTwoParents(const RobotView& view) {
@@ -283,15 +358,7 @@ RobotFindings JudgeFrames(const RobotNeeds& needs, const RobotProfile& profile,
              "mend first what is said above of hosts and topics; then start robot_state_publisher "
              "and amcl"}};
   }
-  RobotFindings findings = JudgeLink(names.odometry_frame, names.map_frame,
-                                     "start amcl, and give the first pose (RViz: 2D Pose Estimate)",
-                                     needs.max_frame_age, view);
-  Append(
-      JudgeLink(names.base_frame, names.odometry_frame,
-                "start what fuses odometry (on a PR2: robot_pose_ekf), or name the frames in the "
-                "names file",
-                needs.max_frame_age, view),
-      &findings);
+  RobotFindings findings = JudgePlace(names, needs.max_frame_age, view);
   Append(FramesWithTwoParents(view), &findings);
   Append(MissingLinks(profile, view), &findings);
   return findings;

@@ -122,7 +122,19 @@ void BaseGuardNode::OnCommand(const geometry_msgs::Twist& msg) {
 }
 
 void BaseGuardNode::OnOdometry(const nav_msgs::Odometry& msg) {
-  guard_.OnOdometry(FlatTwist(msg.twist.twist), StampOf(msg.header.stamp), Now());
+  guard_.OnOdometry(VelocityOfBase(msg), StampOf(msg.header.stamp), Now());
+}
+
+/// Odometry may tell of another part of the robot, where tf knows how that sits on the base.
+hires::geometry::Twist2 BaseGuardNode::VelocityOfBase(const nav_msgs::Odometry& msg) const {
+  const hires::geometry::Twist2 V_C = FlatTwist(msg.twist.twist);
+  const std::string child = hires::sensing::BareFrame(msg.child_frame_id);
+  const std::string& base = params_.names.base_frame;
+  if (child.empty() || child == base) return V_C;
+  const auto newest = tree_.NewestOf(child, base);
+  if (!newest) return V_C;
+  const auto X_CB = tree_.Find(child, base, *newest);
+  return X_CB.is_found() ? hires::sensing::MovedTo(hires::geometry::Flatten(X_CB.X_PC), V_C) : V_C;
 }
 
 void BaseGuardNode::OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg) {
@@ -140,8 +152,13 @@ void BaseGuardNode::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static
   last_transforms_ = now;
   tree_.Take(msg, are_static);
   const hires::control::RobotNames& names = params_.names;
-  OnLink(PoseSource::kMapTransform, tree_.NewestOf(names.map_frame, names.odometry_frame));
-  OnLink(PoseSource::kBaseTransform, tree_.NewestOf(names.odometry_frame, names.base_frame));
+  const auto map = tree_.NewestOf(names.map_frame, names.odometry_frame);
+  const auto base = tree_.NewestOf(names.odometry_frame, names.base_frame);
+  // Where tf does not know the odometry's frame, it may lead from map to base all the same.
+  const bool is_apart = !map && !base;
+  const auto whole = is_apart ? tree_.NewestOf(names.map_frame, names.base_frame) : std::nullopt;
+  OnLink(PoseSource::kMapTransform, is_apart ? whole : map);
+  OnLink(PoseSource::kBaseTransform, is_apart ? whole : base);
 }
 
 /// @param stamp  [s] of the newest that is known of the link; infinity: it never moves.

@@ -55,6 +55,7 @@ class BaseGuardNode {
   void OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg);
   void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
   void OnLink(hires::navigation::PoseSource source, std::optional<double> stamp);
+  hires::geometry::Twist2 VelocityOfBase(const nav_msgs::Odometry& msg) const;
   void OnPlannerUpdate(const dynamic_reconfigure::Config& msg);
 
   double Now() const;  ///< [s] steady, since the node began

@@ -7,6 +7,7 @@
 #include <ros/service.h>
 
 #include <cmath>
+#include <utility>
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
@@ -14,6 +15,7 @@
 #include "hires/robot/load_robot.h"
 #include "hires/ros/load_robot_names.h"
 #include "hires/ros/private_params.h"
+#include "hires/ros/robot_topics.h"
 #include "hires/world/world.h"
 
 namespace hires_ros {
@@ -24,7 +26,9 @@ using hires::world::Cell;
 using hires::world::OccupancyGrid;
 
 constexpr double kOccupied = 65, kFree = 19.6;  // [%] map_server's thresholds
-constexpr double kPatience = 5.0;               // [s] for a latched map, before static_map is asked
+constexpr double kPatience = 5.0;  // [s] for a latched map, before static_map is asked, and for the
+                                   // transform of its frame
+constexpr double kMostTilt = 1e-3;  // [rad] of a map's frame
 
 Cell CellOf(int value) {
   if (value > kOccupied) return Cell::kOccupied;
@@ -77,6 +81,31 @@ OccupancyGrid FromMsg(const nav_msgs::OccupancyGrid& map) {
   return grid;
 }
 
+MapPlace PlaceOf(const std::string& frame, const hires::control::RobotNames& names,
+                 const TransformBuffer& tree) {
+  const std::string map = hires::sensing::BareFrame(frame);
+  if (map == names.map_frame) return {names.map_to_world, ""};
+  const std::string where = fmt::format("map: it is in frame '{}', wanted '{}' or a frame that tf ",
+                                        map, names.map_frame);
+  const auto newest = tree.NewestOf(names.map_frame, map);
+  if (!newest) {
+    return {{},
+            where + fmt::format("connects with it: {}; publish the transform between them, or say "
+                                "in the names file (frames: map) what this robot calls its map",
+                                tree.WhyNot(names.map_frame, map, 0.0))};
+  }
+  const auto found = tree.Find(names.map_frame, map, *newest);
+  const double tilt = hires::geometry::TiltOf(found.X_PC.rotation);
+  if (!(tilt <= kMostTilt)) {
+    return {{},
+            where + fmt::format("has level in it: it is tilted by {:.3f} rad; correct the "
+                                "transform",
+                                tilt)};
+  }
+  const auto X_MF = hires::geometry::Flatten(found.X_PC);
+  return {hires::world::MapToWorld{names.map_to_world.ToWorld(X_MF), names.map_to_world.scale}, ""};
+}
+
 double LaserHeight(const std::string& robot_path) {
   const hires::robot::Robot robot = hires::robot::LoadAnyRobot(robot_path);
   const auto laser = robot.model.FindLink(robot.profile.laser_link);
@@ -110,6 +139,7 @@ std::string MapCheckNode::Run() {
       has_asked = true;
       AskForMap();
     }
+    if (new_map_) Compare();
     updater_.update();
   }
   return misfit_;
@@ -130,9 +160,30 @@ void MapCheckNode::AskForMap() {
 }
 
 void MapCheckNode::OnMap(const nav_msgs::OccupancyGrid& map) {
+  new_map_ = map;
+  came_ = ros::WallTime::now();
+}
+
+void MapCheckNode::ListenToTransforms() {
+  for (const bool are_static : {false, true}) {
+    transforms_.push_back(nh_.subscribe<tf2_msgs::TFMessage>(
+        are_static ? kStaticTransforms : kTransforms, 100,
+        boost::function<void(const tf2_msgs::TFMessage&)>(
+            [this, are_static](const tf2_msgs::TFMessage& msg) { tree_.Take(msg, are_static); })));
+  }
+}
+
+/// As soon as it is known where the map's frame lies.
+void MapCheckNode::Compare() {
+  const MapPlace place = PlaceOf(new_map_->header.frame_id, params_.names, tree_);
+  if (!place.map_to_world) {
+    if (transforms_.empty()) ListenToTransforms();
+    if ((ros::WallTime::now() - came_).toSec() > kPatience) misfit_ = place.why_not;
+    return;
+  }
+  const nav_msgs::OccupancyGrid map = *std::exchange(new_map_, std::nullopt);
   try {
-    fit_ =
-        hires::world::RequireMapFits(FromMsg(map), slice_, params_.names.map_to_world, params_.fit);
+    fit_ = hires::world::RequireMapFits(FromMsg(map), slice_, *place.map_to_world, params_.fit);
     hires::base::Log(hires::base::LogLevel::kInfo,
                      fmt::format("map=fits score={:.2f} explained={:.2f} found={:.2f}", fit_->score,
                                  fit_->explained, fit_->found));

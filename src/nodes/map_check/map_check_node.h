@@ -6,8 +6,10 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hires/control/robot_names.h"
+#include "hires/ros/transform_buffer.h"
 #include "hires/world/map_to_world.h"
 
 namespace hires_ros {
@@ -28,6 +30,17 @@ MapCheckParams LoadMapCheckParams();
 /// resolution that is not positive, an origin that is turned (map_server refuses such maps too).
 hires::world::OccupancyGrid FromMsg(const nav_msgs::OccupancyGrid& map);
 
+/// How the frame of a map lies in the world, or why that is not known.
+struct MapPlace {
+  std::optional<hires::world::MapToWorld> map_to_world;
+  std::string why_not;  ///< for people
+};
+
+/// A map may be in any frame that tf connects with the one in which the robot is localised, and
+/// that lies level in it.
+MapPlace PlaceOf(const std::string& frame, const hires::control::RobotNames& names,
+                 const TransformBuffer& tree);
+
 /// Height of the robot's laser over the floor [m], in its driving posture.
 /// @throws hires::base::ConfigError for a robot without one.
 double LaserHeight(const std::string& robot_path);
@@ -46,12 +59,18 @@ class MapCheckNode {
  private:
   void OnMap(const nav_msgs::OccupancyGrid& map);
   void AskForMap();
+  void Compare();
+  void ListenToTransforms();
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const MapCheckParams params_;
   const hires::world::OccupancyGrid slice_;
   ros::NodeHandle nh_;
   ros::Subscriber subscriber_;
+  TransformBuffer tree_;
+  std::vector<ros::Subscriber> transforms_;  // where a map is in another frame than the robot's
+  std::optional<nav_msgs::OccupancyGrid> new_map_;  // not compared yet
+  ros::WallTime came_;                              // when
   diagnostic_updater::Updater updater_;
   std::optional<hires::world::MapFit> fit_;
   std::string misfit_;

@@ -7,9 +7,10 @@ says so. It has no physics: it says the same all the time.
 
 Faults of the robot: without (topics, commands, joints, frames, parameters), types ({topic: type}),
 offset ({topic or frame: seconds added to stamps}), rate ({topic: Hz}), silent (topics that are
-advertised and never sent), halted, odometry_frame (name), more_parents ({frame: parent}), served_map
-(a service instead of the topic), clock (seconds by which all clocks of this process are ahead),
-tells_no_time (its HTTP answers have no date, as those of roscpp).
+advertised and never sent), halted, odometry_frame (name), between (frames from map to it),
+more_parents ({frame: parent}), served_map (a service instead of the topic), clock (seconds by which
+all clocks of this process are ahead), tells_no_time (its HTTP answers have no date, as those of
+roscpp).
 Of move_base: without (action, planner, updates), drives (topic of its velocities), parameters,
 goal_type, clock, tells_no_time."""
 
@@ -134,7 +135,8 @@ class Robot:
 
     def send_frames(self):
         odometry = SPEC.get('odometry_frame', 'odom_combined')
-        frames = [('map', odometry), (odometry, 'base_footprint')]
+        line = ['map', *SPEC.get('between', []), odometry, 'base_footprint']
+        frames = list(zip(line, line[1:]))
         frames += [(parent, child) for child, parent in SPEC.get('more_parents', {}).items()]
         self.tf.publish([transform(parent, child) for parent, child in frames if not lacks(child)])
 
