@@ -15,6 +15,8 @@ using robot::SeenObject;
 
 constexpr double kAbove = 0.05;        // [m] over an area: where small things are
 constexpr double kShortestTurn = 0.2;  // [s]
+constexpr double kArrived = 0.03;      // [rad] of each joint
+constexpr double kPatience = 2.0;      // [s] that a turn may come late: commands travel, heads lag
 
 double PositionOf(const robot::JointPositions& joints, const std::string& joint) {
   const auto position = joints.find(joint);
@@ -44,6 +46,7 @@ void HeadSweep::SetPlaces(std::vector<std::string> places, translation::Areas ar
 }
 
 void HeadSweep::SetBusy(bool is_busy, double time) {
+  if (is_busy) turn_.reset();
   if (is_busy_ && !is_busy) free_from_ = time + params_.hands_off;
   is_busy_ = is_busy;
 }
@@ -79,14 +82,30 @@ std::optional<JointTrajectory> HeadSweep::Update(const sensing::BodyReading& bod
     point = p_M;
     earliest = time;
   }
-  if (!point || is_busy_ || body.time < free_from_) return std::nullopt;
+  if (IsTurning(body) || !point || is_busy_ || body.time < free_from_) return std::nullopt;
   const auto aim = skills::AimHead(*robot_, body.X_MB, body.joints, *point);
   looked_at_[oldest] = body.time;  // or cannot be looked at from here
   if (!aim) return std::nullopt;
   target_ = oldest;
-  const JointTrajectory turn = Turn(body.joints, *aim);
-  free_from_ = body.time + turn.duration() + params_.dwell;
-  return turn;
+  turn_ = Turn(body.joints, *aim);
+  given_up_at_ = body.time + turn_->duration() + kPatience;
+  return turn_;
+}
+
+/// The looks at a place are counted from when the head has arrived, not from when it should have:
+/// else a head that obeys late is sent on before the camera has seen anything.
+bool HeadSweep::IsTurning(const sensing::BodyReading& body) {
+  if (!turn_) return false;
+  bool has_arrived = true;
+  for (std::size_t i = 0; i < turn_->joints.size(); ++i) {
+    const double off =
+        PositionOf(body.joints, turn_->joints[i]) - turn_->points.back().positions[i];
+    has_arrived = has_arrived && std::abs(off) <= kArrived;
+  }
+  if (!has_arrived && body.time < given_up_at_) return true;
+  turn_.reset();
+  if (has_arrived) free_from_ = body.time + params_.dwell;
+  return false;
 }
 
 JointTrajectory HeadSweep::Turn(const robot::JointPositions& from,

@@ -70,6 +70,34 @@ TEST_F(HeadSweepTest, AfterTheTurnTheCameraSeesTheTarget) {
   EXPECT_TRUE(view.Contains(RestaurantContext().areas.Require(sweep.target()).X_FA.translation));
 }
 
+TEST_F(HeadSweepTest, AHeadThatObeysLateRestsAsLongAllTheSame) {
+  HeadSweep sweep = Make();
+  const auto first = sweep.Update(body_, true, known_);
+  ASSERT_TRUE(first);
+  body_.time += first->duration() + 1.0;  // the command is under way
+  EXPECT_FALSE(sweep.Update(body_, true, known_));
+  for (std::size_t i = 0; i < first->joints.size(); ++i) {
+    body_.joints[first->joints[i]] = first->points.back().positions[i];
+  }
+  const double arrived = body_.time;
+  while (!sweep.Update(body_, false, known_) && body_.time < arrived + 60.0) body_.time += 0.01;
+  EXPECT_GE(body_.time - arrived, params_.dwell - 1e-9);
+  EXPECT_LE(body_.time - arrived, params_.dwell + 0.02) << "the other place waits";
+}
+
+TEST_F(HeadSweepTest, AHeadThatNeverObeysIsAskedForSomethingElse) {
+  HeadSweep sweep = Make();
+  const auto first = sweep.Update(body_, true, known_);
+  ASSERT_TRUE(first);
+  const std::string target = sweep.target();
+  const double asked = body_.time;
+  do body_.time += 0.1;
+  while (!sweep.Update(body_, false, known_) && body_.time < asked + 60.0);
+  EXPECT_GT(body_.time - asked, first->duration());
+  EXPECT_LT(body_.time - asked, first->duration() + 5.0);
+  EXPECT_NE(sweep.target(), target);
+}
+
 TEST_F(HeadSweepTest, AnActionThatUsesTheHeadHasIt) {
   HeadSweep sweep = Make();
   sweep.SetBusy(true, 0.0);

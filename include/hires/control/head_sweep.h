@@ -19,7 +19,7 @@ struct SweepParams {
   bool enabled{true};
   double range{3.2};      ///< [m] from the camera to what is worth looking at
   double period{4.0};     ///< [s] after which a place is looked at again
-  double dwell{1.0};      ///< [s] that the head rests on a place: some looks
+  double dwell{1.0};      ///< [s] that the head rests on a place once it has arrived: some looks
   double speed{1.0};      ///< [rad/s] of the head
   double hands_off{2.0};  ///< [s] after an action that uses the head
 };
@@ -52,6 +52,7 @@ class HeadSweep {
                                          const std::vector<robot::SeenObject>& known) const;
   robot::JointTrajectory Turn(const robot::JointPositions& from,
                               const std::vector<double>& to) const;
+  bool IsTurning(const sensing::BodyReading& body);
 
   std::shared_ptr<const robot::Robot> robot_;
   SweepParams params_;
@@ -59,6 +60,8 @@ class HeadSweep {
   translation::Areas areas_;
   std::map<std::string, double> looked_at_;  // place -> [s]
   std::string target_;
+  std::optional<robot::JointTrajectory> turn_;  // until the head has arrived
+  double given_up_at_{0.0};                     // [s] then it counts as held by something else
   bool is_busy_{false};
   double free_from_{0.0};  // [s] the head is others' until then, or rests on the target
 };

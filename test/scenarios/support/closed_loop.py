@@ -32,6 +32,7 @@ RESTAURANT = os.path.join(CONFIG, 'knowledge', 'restaurant.yaml')
 IMAGINE_PLACING = os.path.join(CONFIG, 'knowledge', 'imagine_placing.yaml')
 SERVE = 'serve_coffee_to_guest guest1'
 TASK_LIMIT = 300.0  # [s] by the wall's clock: it ends a broken test, and measures nothing
+FEEDBACK_PERIOD = 0.05  # [s] by the wall's clock: its words say that the monitor keeps up
 MARK = 'HIRES_TEST_LOOP'
 
 # Of the execution monitor, in main ROS time: what programs may take to do their work. They do not
@@ -203,6 +204,7 @@ class ClosedLoop(BlackboardAccess):
             config['monitor'][name] *= self.pace
         config['monitor'].update(monitor)
         config['imagining']['rollouts'] = self.rollouts
+        config['feedback_period'] = FEEDBACK_PERIOD
         return self.processes.write('execution_monitor.yaml', yaml.safe_dump(config))
 
     def _write_tracker_config(self):
@@ -359,10 +361,11 @@ class ClosedLoop(BlackboardAccess):
         answer = self.intervene('hold', SetBool, data=is_held)
         assert answer.success, answer.message
 
-    def step_until(self, condition, what, num_ticks=4000, lag=math.inf):
+    def step_until(self, condition, what, num_ticks=4000, lag=math.inf, words=None):
         """Holds the world and lets it play on by ticks of 0.05 s until condition(truth): however slow
         the computer, what happens next cannot come too late.
-        @param lag  [s] that what is observed may be old on the Blackboard before time goes on."""
+        @param lag    [s] that what is observed may be old on the Blackboard before time goes on.
+        @param words  how many have come of who must keep up: after each tick one more is waited for."""
         from std_srvs.srv import Trigger
         observed = [0.0]  # [s] up to then
         progress = self.rospy.Subscriber(
@@ -376,10 +379,13 @@ class ClosedLoop(BlackboardAccess):
                 if condition(self.truth):
                     return
                 before = self.truth.now()
+                heard = words() if words else 0
                 step()
                 self.truth.wait(lambda truth: truth.now() > before, 'the world to play a tick')
                 wait_until(lambda: self.truth.now() - observed[-1] <= lag,
                            lambda: 'observation\n' + self.output())
+                if words:
+                    wait_until(lambda: words() > heard, lambda: 'a word\n' + self.output())
         finally:
             step.close()
             progress.unregister()
