@@ -109,6 +109,7 @@ void ActionRunner::Collect() {
 
 void ActionRunner::TakeTurn(Session* session, const SkillTurn& turn) {
   session->phase = turn.phase;
+  session->drive = turn.drive;
   if (!turn.error.empty()) {
     base::Log(base::LogLevel::kError,
               fmt::format("action={} error=\"{}\"", base::ToString(session->action), turn.error));
@@ -131,6 +132,7 @@ void ActionRunner::BreakOff(Session* session, ActionEnd end, const Failure& fail
   session->end = end;
   session->failure = failure;
   session->phase = "stopping";
+  session->drive.reset();
   if (hooks_.broken_off) hooks_.broken_off(NewsOf(*session));
   session->stop = std::make_unique<Stop>(robot_, session->groups, stop_);
   KeepStopping(session);
@@ -195,7 +197,7 @@ int ActionRunner::num_thinking() const {
 
 ActionNews ActionRunner::NewsOf(const Session& session) const {
   return {session.id, session.start ? now_ - *session.start : 0.0, session.phase,
-          session.groups.count("base") > 0};
+          session.groups.count("base") > 0, session.drive};
 }
 
 std::vector<ActionNews> ActionRunner::News() const {

@@ -42,6 +42,7 @@ SkillTurn SkillThread::Update(const robot::Observation& observation) {
   try {
     turn.status = skill_->Update(observation, &turn.command);
     turn.phase = skill_->phase();
+    turn.drive = skill_->drive_view();
   } catch (const std::exception& error) {  // one skill's fault must not end the others
     turn.status.progress = skills::Progress::kFailed;
     turn.command = {};

@@ -17,11 +17,10 @@
 namespace hires::navigation {
 namespace {
 
-constexpr double kWindowHalfWidth = 3.0;  // [m] the original's local costmap is 6 m x 6 m
-constexpr double kKeptBehind = 1.0;       // [m] of the path already driven
-constexpr double kRoomSpacing = 0.025;    // [m] between places tried for turning
-constexpr double kRoomReached = 0.01;     // [m]
-constexpr double kRoomShare = 0.9;        // of the goal's tolerance, so that stopping keeps within
+constexpr double kKeptBehind = 1.0;     // [m] of the path already driven
+constexpr double kRoomSpacing = 0.025;  // [m] between places tried for turning
+constexpr double kRoomReached = 0.01;   // [m]
+constexpr double kRoomShare = 0.9;      // of the goal's tolerance, so that stopping keeps within
 
 // [m] Kept free around the footprint where possible: poses between two checked ones may lie a
 // quarter of a cell nearer to things, and a base does not follow to the millimetre.
@@ -202,7 +201,7 @@ DwaResult DwaPlanner::Impl::Drive(const Costmap& costmap, const geometry::Pose2&
 }
 
 bool DwaPlanner::Impl::PrepareGrids(const Costmap& costmap, const geometry::Pose2& X_MB) {
-  window_.Centre(costmap, X_MB.position(), kWindowHalfWidth);
+  window_.Centre(costmap, X_MB.position(), kLocalHalfWidth);
   std::vector<int> on_path;
   Eigen::Vector2d local_goal = X_MGoal_.position();
   for (std::size_t i = first_; i < path_.size(); ++i) {
@@ -229,7 +228,7 @@ double DwaPlanner::Impl::Duration() const {
   const double speed = limits_.max_linear_velocity;
   const double stopping = params_.control_period + params_.stop_time_buffer +
                           TimeToStop(speed, limits_.max_linear_acceleration);
-  const double in_window = 0.8 * (kWindowHalfWidth - params_.forward_point_distance);
+  const double in_window = 0.8 * (kLocalHalfWidth - params_.forward_point_distance);
   const double longest = speed > 0.0 ? in_window / speed : params_.sim_time;
   return std::max(params_.sim_time, std::min(stopping, longest));
 }
@@ -432,7 +431,7 @@ DwaPlanner& DwaPlanner::operator=(const DwaPlanner& other) {
 }
 DwaPlanner::~DwaPlanner() = default;
 
-void DwaPlanner::SetPath(std::vector<geometry::Pose2> path) {
+void DwaPlanner::SetPath(const std::vector<geometry::Pose2>& path) {
   HIRES_CHECK(!path.empty(), "a path has at least its goal");
   impl_->SetPath(path);
 }

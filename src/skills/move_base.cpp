@@ -130,8 +130,7 @@ void MoveBase::Begin(const robot::Observation& observation) {
   for (const double radius : {geometry::CircumscribedRadius(footprint_), half_width}) {
     costmap_ =
         std::make_shared<const navigation::Costmap>(context_->costmap->WithInscribedRadius(radius));
-    const std::optional<navigation::Costmap> now = CostmapNow(observation);
-    const auto way = navigation::PlanPath(now ? *now : *costmap_, observation.X_MB, X_MGoal_,
+    const auto way = navigation::PlanPath(*CostmapNow(observation), observation.X_MB, X_MGoal_,
                                           context_->params.planner);
     if (way.status == navigation::PathStatus::kFound) return;
   }
@@ -151,8 +150,8 @@ std::optional<Status> MoveBase::Plan(const navigation::Costmap& costmap, const P
     case navigation::PathStatus::kFound:
       break;
   }
-  local_.SetPath(std::move(result.path));
-  has_path_ = true;
+  path_ = std::make_shared<const std::vector<Pose2>>(std::move(result.path));
+  local_.SetPath(*path_);
   return std::nullopt;
 }
 
@@ -180,23 +179,33 @@ Status MoveBase::Recover(const navigation::Costmap& costmap,
   return {};
 }
 
-/// The map as it must be now, if it is not the one that is known: with what is seen, and free where
-/// the robot stands. What is seen below its arms stays: it may be driven into.
-std::optional<navigation::Costmap> MoveBase::CostmapNow(
+/// The map as it must be now: with what is seen, and free where the robot stands. What is seen
+/// below its arms stays: it may be driven into.
+std::shared_ptr<const navigation::Costmap> MoveBase::CostmapNow(
     const robot::Observation& observation) const {
   std::optional<navigation::Costmap> now = WithRoom(*costmap_, observation.X_MB, footprint_);
-  if (observation.obstacles_M.empty()) return now;
-  now = (now ? *now : *costmap_).WithObstacles(observation.obstacles_M);
-  if (auto roomier = WithRoom(*now, observation.X_MB, context_->footprint)) now = roomier;
-  return now;
+  if (!observation.obstacles_M.empty()) {
+    now = (now ? *now : *costmap_).WithObstacles(observation.obstacles_M);
+    auto roomier = WithRoom(*now, observation.X_MB, context_->footprint);
+    if (roomier) now = std::move(roomier);
+  }
+  if (!now) return costmap_;
+  return std::make_shared<const navigation::Costmap>(std::move(*now));
+}
+
+std::optional<DriveView> MoveBase::drive_view() const {
+  if (!path_) return std::nullopt;
+  return DriveView{path_, now_, X_MBNow_};
 }
 
 Status MoveBase::Update(const robot::Observation& observation, robot::Command* command) {
   command->motion_set = motion_set_;
   if (!has_begun_) Begin(observation);
-  const std::optional<navigation::Costmap> now = CostmapNow(observation);
-  const navigation::Costmap& costmap = now ? *now : *costmap_;
-  if (!has_path_) {
+  now_.reset();  // so that a rollout holds one copy of the map, not two
+  now_ = CostmapNow(observation);
+  X_MBNow_ = observation.X_MB;
+  const navigation::Costmap& costmap = *now_;
+  if (!path_) {
     if (const auto failed = Plan(costmap, observation.X_MB)) return *failed;
     X_MMoved_ = observation.X_MB;
     last_valid_ = last_plan_ = last_moved_ = observation.time;

@@ -215,6 +215,34 @@ TEST_F(ActionRunnerTest, WhatASkillSaysAfterItWasCancelledIsNotHeard) {
   for (const Command& command : sent_) EXPECT_LT(command.base_velocity->vx, 1.0);
 }
 
+/// Drives along a path that it tells.
+class ShowingSkill : public ScriptedSkill {
+ public:
+  using ScriptedSkill::ScriptedSkill;
+  std::optional<skills::DriveView> drive_view() const override {
+    skills::DriveView view;
+    view.path = path;
+    return view;
+  }
+  std::shared_ptr<const std::vector<geometry::Pose2>> path =
+      std::make_shared<const std::vector<geometry::Pose2>>(3);
+};
+
+TEST_F(ActionRunnerTest, WhatASkillDrivesByIsToldUntilItIsBrokenOff) {
+  auto skill = std::make_unique<ShowingSkill>(1000, Status{});
+  const auto path = skill->path;
+  Start(1, "move_base", std::move(skill));
+  Start(2, "move_torso", Endless());
+  EXPECT_FALSE(runner_.News()[0].drive) << "it has not begun";
+  Look(200.0);
+  ASSERT_TRUE(runner_.News()[0].drive);
+  EXPECT_EQ(runner_.News()[0].drive->path, path);
+  EXPECT_FALSE(runner_.News()[1].drive);
+  runner_.Cancel(1);
+  EXPECT_TRUE(runner_.is_stopping());
+  EXPECT_FALSE(runner_.News()[0].drive);
+}
+
 TEST_F(ActionRunnerTest, ASlowSkillKeepsNoOtherFromItsLooks) {
   std::promise<void> gate;
   Start(1, "move_torso", std::make_unique<SlowSkill>(gate.get_future().share()));

@@ -6,6 +6,7 @@ end of the node. In lockstep, as fast as it goes. Run alone, or by `rostest hire
 
 import math
 import os
+import re
 import signal
 import sys
 import unittest
@@ -21,8 +22,11 @@ from test_run import run_test  # noqa: E402
 EAST_TABLE_2 = (11.78, 11.49, 3.14)
 START = (12.5, 11.8, 3.14)
 TORSO_MIDDLE = 0.2  # [m]
-TOPPLE = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..',
-                                      'config', 'scenarios', 'topple.yaml'))
+ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..'))
+TOPPLE = os.path.join(ROOT, 'config', 'scenarios', 'topple.yaml')
+WEST_TABLE_2 = (9.0, 11.49, 0.0)
+TABLE_2 = (10.28, 11.49)  # its centre
+TABLE_EDGE = 0.7  # [m]; it stands along the axes
 XY_TOLERANCE, YAW_TOLERANCE = 0.2, 0.17  # config/scene.yaml
 STOPPING = 0.08  # [m] the base rolls on a little after it counts as arrived
 
@@ -33,6 +37,55 @@ def distance(state, pose):
 
 def speed(state):
     return math.hypot(state.twist.linear.x, state.twist.linear.y)
+
+
+class DriveWatch:
+    """What is shown of drives from now on: paths and costmaps in order."""
+
+    def __init__(self, rospy):
+        from nav_msgs.msg import OccupancyGrid, Path
+        self.paths, self.costmaps = [], []
+        self._subscribers = [
+            rospy.Subscriber('navigation/plan', Path, self.paths.append),
+            rospy.Subscriber('navigation/local_costmap', OccupancyGrid, self.costmaps.append)]
+        wait_until(lambda: all(s.get_num_connections() for s in self._subscribers),
+                   'what is shown of drives')
+
+    def stop(self):
+        for subscriber in self._subscribers:
+            subscriber.unregister()
+
+    def has_begun(self):
+        return bool(self.paths and self.costmaps)
+
+    def is_over(self):
+        return (self.has_begun() and not self.paths[-1].poses and
+                self.costmaps[-1].data == (-1,))
+
+
+def cells_of(grid):
+    """(x, y of the centre [m], value) of a grid along the axes."""
+    resolution, origin = grid.info.resolution, grid.info.origin.position
+    for index, value in enumerate(grid.data):
+        row, column = divmod(index, grid.info.width)
+        yield (origin.x + (column + 0.5) * resolution, origin.y + (row + 0.5) * resolution, value)
+
+
+def documented_topics(section):
+    """{topic: type} that a table of docs/ros_api.md says a node publishes."""
+    with open(os.path.join(ROOT, 'docs', 'ros_api.md'), encoding='utf-8') as page:
+        text = page.read().split('\n## %s\n' % section)[1].split('\n## ')[0]
+    topics = {}
+    for row in re.findall(r'^\|(.*)\|$', text, re.MULTILINE):
+        names, kind, types = row.split('|')[:3]
+        kinds = [word.strip() for word in kind.split(',') if word.strip() != 'latched']
+        names, types = re.findall(r'`([\w/{},~]+)`', names), re.findall(r'`(\w+/\w+)`', types)
+        names = [name for name in names if not name.startswith('~')]
+        for index, name in enumerate(names):
+            if (kinds * len(names))[index] == 'publishes':
+                for side in ('l', 'r'):
+                    topics['/' + name.lstrip('/').replace('{l,r}', side)] = (types * len(names))[index]
+    return topics
 
 
 class MiddleLayerTest(unittest.TestCase):
@@ -89,11 +142,69 @@ class MiddleLayerTest(unittest.TestCase):
 
     # Driving
 
+    def watch_drive(self):
+        watch = DriveWatch(self.system.rospy)
+        self.addCleanup(watch.stop)
+        return watch
+
+    def require_path(self, path, start, goal):
+        """From where the robot stood to its goal, in the map."""
+        self.assertEqual(path.header.frame_id, 'map')
+        first, last = path.poses[0].pose, path.poses[-1].pose
+        self.assertLess(math.hypot(first.position.x - start[0], first.position.y - start[1]), 0.05)
+        self.assertLess(math.hypot(last.position.x - goal[0], last.position.y - goal[1]),
+                        XY_TOLERANCE)
+        yaw = 2.0 * math.atan2(last.orientation.z, last.orientation.w)
+        self.assertLess(abs(math.remainder(yaw - goal[2], 2.0 * math.pi)), YAW_TOLERANCE)
+
+    def require_table_2(self, costmap):
+        """Obstacles are where the table is, to a cell, and not west and east of it; chairs stand to
+        its north and south."""
+        self.assertEqual(costmap.header.frame_id, 'map')
+        half, cell = TABLE_EDGE / 2, costmap.info.resolution
+        inside = outside = 0
+        for x, y, value in cells_of(costmap):
+            if abs(y - TABLE_2[1]) > half - cell:
+                continue
+            off = abs(x - TABLE_2[0])
+            if off < half - cell:
+                inside += 1
+                self.assertEqual(value, 100, (x, y))
+            elif half + cell < off < half + 10 * cell:
+                outside += 1
+                self.assertTrue(0 <= value < 100, (x, y, value))
+        self.assertGreaterEqual(inside, 100)
+        self.assertGreaterEqual(outside, 100)
+
+    def test_shows_its_path_and_costmap_until_it_is_broken_off(self):
+        watch = self.watch_drive()
+        goal = self.execute_until(lambda s: distance(s, START) > 0.5, 'the robot to be on its way',
+                                  'move_base', 'preManipulationAreaWestTable2')
+        wait_until(watch.has_begun, 'path and costmap')
+        self.require_path(watch.paths[0], START, WEST_TABLE_2)
+        self.require_table_2(watch.costmaps[0])
+        self.preempt(goal)
+        wait_until(watch.is_over, 'no path and no costmap')
+
+    def test_publishes_only_what_is_documented(self):
+        types = self.system.main.topic_types()
+        published = {topic: types[topic] for topic, nodes in self.system.main.publishers().items()
+                     if '/middle_layer' in nodes and topic != '/rosout' and
+                     not topic.startswith('/execute_action/')}
+        documented = documented_topics('middle_layer')
+        # This robot's base has no guard and no multiplexer before it.
+        documented['/base_controller/command'] = documented['/navigation/cmd_vel']
+        self.assertEqual({topic: documented.get(topic) for topic in published}, published)
+        self.assertLessEqual({'/navigation/plan', '/navigation/local_costmap'}, set(published))
+
     def test_drives_to_an_area_round_obstacles(self):
+        watch = self.watch_drive()
         goal = self.system.execute('move_base', 'preManipulationAreaEastTable2')
         result = self.require(goal.result(), self.codes.SUCCEEDED)
         self.require_arrival(EAST_TABLE_2, XY_TOLERANCE + STOPPING)
         self.assertGreater(result.duration, 1.0)
+        wait_until(watch.is_over, 'no path and no costmap')
+        self.require_path(watch.paths[0], START, EAST_TABLE_2)
 
     def test_motion_sets_bound_the_speed(self):
         fastest = {}

@@ -164,6 +164,43 @@ TEST(MoveBaseTest, SeesObstaclesThatAreNotInTheMap) {
   EXPECT_GT(nearest, 0.0);
 }
 
+TEST(MoveBaseTest, ShowsThePathAndTheCostmapThatItDrivesBy) {
+  MoveBase skill(ContextOf(Room()), kEast, kFast);
+  EXPECT_FALSE(skill.drive_view()) << "it has not looked yet";
+  const geometry::Polygon crate{{2.5, 1.5}, {3.0, 1.5}, {3.0, 2.5}, {2.5, 2.5}};
+  int num_seen = 0;
+  std::shared_ptr<const std::vector<Pose2>> path;
+  const SkillRun run = RunSkill(&skill, {kWest, {}, false}, [&](auto* seen, auto*) {
+    if (num_seen++ > 0) path = skill.drive_view()->path;
+    if (num_seen > 10) seen->obstacles_M = {crate};
+  });
+  ExpectArrivedAt(kEast, run);
+  ASSERT_TRUE(path);
+  EXPECT_LE(DistanceBetween(path->front(), kWest), 1e-12);
+  EXPECT_LE(DistanceBetween(path->back(), kEast), 1e-12);
+  EXPECT_EQ(skill.drive_view()->path, path) << "nothing made it plan again";
+  const navigation::Costmap& costmap = *skill.drive_view()->costmap;
+  EXPECT_EQ(costmap.CostBelow(crate), navigation::kLethalCost);
+  EXPECT_LT(DistanceBetween(skill.drive_view()->X_MB, run.robot.X_MB), 0.1);
+}
+
+TEST(MoveBaseTest, ShowsANewPathWhenItPlansAgain) {
+  MoveBase skill(ContextOf(Room()), kEast, kFast);
+  const Pose2 aside{1.0, 3.2, 0.0};
+  Pose2 planned_from;
+  RunSkill(&skill, {kWest, {}, true}, [&](auto* seen, auto* robot) {
+    if (seen->time > 2.0) robot->X_MB = aside;
+    if (skill.drive_view()) planned_from = skill.drive_view()->path->front();
+  });
+  EXPECT_LE(DistanceBetween(planned_from, aside), 1e-12) << "held, it plans again from there";
+}
+
+TEST(MoveBaseTest, ShowsNoPathWhereThereIsNone) {
+  MoveBase skill(ContextOf(Room()), {40.0, 2.0, 0.0}, kFast);
+  ExpectFailed("goal_blocked", RunSkill(&skill, {kWest, {}, false}));
+  EXPECT_FALSE(skill.drive_view());
+}
+
 /// Four bars round the robot, close enough that it can neither drive nor turn.
 std::vector<geometry::Polygon> CageRound(const Pose2& X_MB) {
   const auto bar = [&](double x_min, double y_min, double x_max, double y_max) {

@@ -24,7 +24,8 @@ struct ActionNews {
   int id{0};
   double elapsed{0.0};  ///< [s] since its first look
   std::string phase;
-  bool has_base{false};  ///< it is among the groups that the action needs
+  bool has_base{false};                      ///< it is among the groups that the action needs
+  std::optional<skills::DriveView> drive{};  ///< what it drives by, until it is broken off
 };
 
 struct RunnerParams {
@@ -102,6 +103,7 @@ class ActionRunner {
     std::optional<double> start;  // [s] of the first look
     double next{0.0};             // [s] when the skill is due
     std::string phase;
+    std::optional<skills::DriveView> drive;
     std::unique_ptr<SkillThread> skill;
     std::unique_ptr<Stop> stop;         // it is being broken off
     ActionEnd end{ActionEnd::kFailed};  // how it will have ended when it stands

@@ -16,6 +16,7 @@ struct SkillTurn {
   skills::Status status;
   robot::Command command;
   std::string phase;
+  std::optional<skills::DriveView> drive;
   std::string error;  ///< it threw this; empty otherwise
 };
 

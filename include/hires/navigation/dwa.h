@@ -38,6 +38,10 @@ struct DwaParams {
   int vtheta_samples{20};
 };
 
+/// [m] The local planner sees the costmap so far to each side; the original's local costmap is
+/// 6 m x 6 m.
+constexpr double kLocalHalfWidth = 3.0;
+
 enum class DwaStatus { kDriving, kGoalReached, kNoValidTrajectory };
 
 struct DwaResult {
@@ -62,16 +66,16 @@ class DwaPlanner {
   ~DwaPlanner();
 
   /// A new goal: its last pose. @pre not empty.
-  void SetPath(std::vector<geometry::Pose2> path);
+  void SetPath(const std::vector<geometry::Pose2>& path);
   void SetMotionSet(const robot::MotionSet& limits);  ///< @pre finite, >= 0
 
   /// One control cycle.
   /// kDriving: drive at the velocity given; if every way on leads to contact, it brakes within the
   /// limits.
   /// kNoValidTrajectory: the robot stands and every way leads to contact, or braking within the
-  /// limits is not enough, or the robot touches something, or its path is out of sight (3 m); the
-  /// caller stops at once and decides how to recover.
-  /// kGoalReached: the robot stands still within both tolerances.
+  /// limits is not enough, or the robot touches something, or its path is out of sight
+  /// (kLocalHalfWidth); the caller stops at once and decides how to recover. kGoalReached: the
+  /// robot stands still within both tolerances.
   /// @param X_MB  where the robot stands; @param V_B  its velocity in the base frame.
   /// @pre SetPath was called.
   DwaResult Update(const Costmap& costmap, const geometry::Pose2& X_MB,

@@ -15,6 +15,8 @@ constexpr char kBlackboardChanges[] = "blackboard/changes";
 constexpr char kImaginedChanges[] = "blackboard/imagined_changes";
 constexpr char kObservationProgress[] = "observation_progress";  ///< what of it was observed
 constexpr char kImaginationMarkers[] = "imagination_markers";    ///< ranking, latched
+constexpr char kDrivePlan[] = "navigation/plan";                 ///< path of a drive, latched
+constexpr char kLocalCostmap[] = "navigation/local_costmap";     ///< round the robot, latched
 constexpr char kWorldMarkers[] = "world_markers";                ///< furniture, areas, latched
 
 /// What a worker owns under its master and what crosses to the main one: "/worker_3/rollout".

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "hires/navigation/a_star.h"
 #include "hires/navigation/costmap.h"
@@ -56,12 +57,14 @@ class MoveBase : public Skill {
 
   Status Update(const robot::Observation& observation, robot::Command* command) override;
   double period() const override { return context_->params.local.control_period; }
+  std::optional<DriveView> drive_view() const override;
 
  private:
   void Begin(const robot::Observation& observation);
   std::optional<Status> Plan(const navigation::Costmap& costmap, const geometry::Pose2& X_MB);
   bool NoteMotion(const robot::Observation& observation);
-  std::optional<navigation::Costmap> CostmapNow(const robot::Observation& observation) const;
+  std::shared_ptr<const navigation::Costmap> CostmapNow(
+      const robot::Observation& observation) const;
   Status Recover(const navigation::Costmap& costmap, const robot::Observation& observation);
 
   std::shared_ptr<const DrivingContext> context_;
@@ -71,7 +74,9 @@ class MoveBase : public Skill {
   geometry::Polygon footprint_;
   navigation::DwaPlanner local_;
   bool has_begun_{false};
-  bool has_path_{false};
+  std::shared_ptr<const std::vector<geometry::Pose2>> path_;  // null: not planned yet
+  std::shared_ptr<const navigation::Costmap> now_;            // costmap at the last look
+  geometry::Pose2 X_MBNow_;                                   // and where the robot was
   double last_valid_{0.0};    // [s] when a valid trajectory was last found
   double last_plan_{0.0};     // [s]
   geometry::Pose2 X_MMoved_;  // where it last counted as having moved

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "hires/base/failure.h"
 #include "hires/robot/observation.h"
 #include "hires/robot/robot_profile.h"
+#include "hires/skills/drive_view.h"
 
 namespace hires::skills {
 
@@ -34,6 +36,9 @@ class Skill {
 
   /// What it is at, for people: "approach", "close_gripper"; empty where there is nothing to tell.
   virtual std::string phase() const { return ""; }
+
+  /// What it drives by; nothing where it does not drive along a path of its own.
+  virtual std::optional<DriveView> drive_view() const { return std::nullopt; }
 };
 
 }  // namespace hires::skills

@@ -49,6 +49,7 @@ MiddleLayerNode::MiddleLayerNode(const MiddleLayerParams& params,
       setup_(std::move(setup)),
       runner_(setup_.scene->robot, params.runner, RunnerHooks()),
       goals_({params.start_patience, params.feedback_period, params.dry_run}, GoalHooks(), nh),
+      display_(params.names.map_frame, params.names.map_to_world, nh),
       inputs_(setup_, params.names, params.scan,
               {[this](const std::string& topic, double stamp) { OnArrived(topic, stamp); },
                [this] {
@@ -152,6 +153,13 @@ void MiddleLayerNode::PublishFeedback() {
     if (entry.has_base && driving_->is_overridden()) entry.phase = "overridden";
   }
   goals_.PublishFeedback(news);
+  ShowDrive(news);
+}
+
+void MiddleLayerNode::ShowDrive(const std::vector<ActionNews>& news) {
+  const auto driving = std::find_if(
+      news.begin(), news.end(), [](const ActionNews& entry) { return entry.drive.has_value(); });
+  display_.Show(std::max(looked_, 0.0), driving == news.end() ? std::nullopt : driving->drive);
 }
 
 /// @pre not in a dry run: no action runs then.

@@ -9,11 +9,13 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "hires/control/action_runner.h"
 #include "hires/imagination/imagination_setup.h"
 #include "nodes/middle_layer/action_goals.h"
 #include "nodes/middle_layer/base_driving.h"
+#include "nodes/middle_layer/drive_display.h"
 #include "nodes/middle_layer/lockstep_client.h"
 #include "nodes/middle_layer/middle_layer_params.h"
 #include "nodes/middle_layer/robot_controllers.h"
@@ -66,6 +68,7 @@ class MiddleLayerNode {
 
   void Send(const hires::robot::Command& command);
   void PublishFeedback();
+  void ShowDrive(const std::vector<hires::control::ActionNews>& news);
   void Tend();  ///< what is due by the clocks
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -75,6 +78,7 @@ class MiddleLayerNode {
   std::unique_ptr<BaseDriving> driving_;         // likewise
   hires::control::ActionRunner runner_;
   ActionGoals goals_;
+  DriveDisplay display_;
   std::unique_ptr<LockstepClient> lockstep_;  // null without lockstep
   RobotInputs inputs_;
   double looked_{-1.0};           // [s] stamp of the last look
