@@ -118,6 +118,7 @@ loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& p
   order.scenario = ScenarioPath(options.scenario, package_folder);
   order.task = base::Join(options.task, " ");
   order.imagination = options.imagination;
+  order.dry_run = options.is_dry_run;
   order.truth = options.truth;
   order.seed = static_cast<std::uint64_t>(options.seed);
   order.threads = options.threads;
@@ -202,6 +203,10 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
           "--config", options->config,
           "with --local: file like config/loop.yaml, its default: what takes how long in "
           "virtual time, and which messages are late or lost; its paths count from its folder")
+      ->needs(local);
+  verb->add_flag("--dry-run", options->is_dry_run,
+                 "with --local: plan and imagine, print what the robot would do and when, begin "
+                 "nothing; of running nodes the execution monitor decides (~dry_run)")
       ->needs(local);
   verb->add_option("--seed", options->seed,
                    "with --local: of the hidden truth, all noise and imagination; default: 1")

@@ -4,6 +4,7 @@
 
 #include "execution/alternatives.h"
 #include "execution/imagination_desk.h"
+#include "execution/imagined_step.h"
 #include "execution/records.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
@@ -14,26 +15,6 @@ namespace hires::execution {
 namespace {
 
 using temporal::kForever;
-
-/// Where imagination has nothing to say.
-std::string OutcomeText(ImagineAnswered::Outcome outcome) {
-  switch (outcome) {
-    case ImagineAnswered::Outcome::kNoWorker:
-      return "no worker is there to imagine it";
-    case ImagineAnswered::Outcome::kNothingFinished:
-      return "nothing was finished in time";
-    case ImagineAnswered::Outcome::kUndecided:
-      return "imagination could not decide";
-    case ImagineAnswered::Outcome::kUnavailable:
-      return "imagination is not available";
-    case ImagineAnswered::Outcome::kInvalid:
-      return "it cannot be imagined";
-    case ImagineAnswered::Outcome::kRanked:
-    case ImagineAnswered::Outcome::kAllFailed:
-      break;
-  }
-  return "no alternative is expected to succeed";
-}
 
 }  // namespace
 
@@ -52,8 +33,7 @@ void ImaginationDesk::OnAnswer(const ImagineAnswered& answer) {
     return TakeRanked(&*question);
   }
   if (answer.outcome == Outcome::kAllFailed) return TakeFailed(&*question, answer);
-  question->why_not = OutcomeText(answer.outcome);
-  if (!answer.why.empty()) question->why_not += ": " + answer.why;
+  question->why_not = WhyNothing(answer);
   question->is_hopeless = answer.outcome == Outcome::kInvalid;
   if (answer.outcome == Outcome::kUndecided) question->undecided = answer;
   if (!question->is_hopeless && !question->undecided)
@@ -75,16 +55,7 @@ void ImaginationDesk::TakeRanked(Question* question) {
     question->is_hopeless = true;
     return;
   }
-  planning::Duration duration{answer.duration_low, answer.duration_high, answer.duration};
-  if (!(0.0 < duration.min && duration.min <= duration.max)) duration = {0.0, kForever, {}};
-  if (answer.duration > 0.0) duration.expected = answer.duration;
-  const auto conflict = session_.progress().network().Tighten(question->target, duration);
-  if (conflict) {
-    session_.outbox().Warning(
-        fmt::format("how long {} lasts as imagined does not fit the plan and is not "
-                    "used: {}",
-                    base::ToString(best), *conflict));
-  }
+  ExpectAsImagined(answer, question->target, &session_);
   StepRun& step = run.at(question->step);
   step.phase = StepPhase::kDone;
   step.note = fmt::format("recommended: {}; {}", base::ToString(best), answer.why);
@@ -96,7 +67,7 @@ void ImaginationDesk::TakeRanked(Question* question) {
 }
 
 void ImaginationDesk::TakeFailed(Question* question, const ImagineAnswered& answer) {
-  question->why_not = OutcomeText(answer.outcome) + (answer.why.empty() ? "" : ": " + answer.why);
+  question->why_not = WhyNothing(answer);
   question->is_hopeless = true;
   if (session_.params().imagination == MonitorParams::ImaginePolicy::kThesis) return;
   std::vector<base::ActionCall> failed;

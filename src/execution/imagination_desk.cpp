@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "execution/alternatives.h"
+#include "execution/imagined_step.h"
 
 namespace hires::execution {
 namespace {
@@ -105,20 +106,6 @@ void ImaginationDesk::Cancel(Question* question) {
 
 // ----------------------------------------------------------------------------------------- asking
 
-/// The present state with the effects of what runs and of what comes before the step in the plan.
-Facts ImaginationDesk::Projected(int target) const {
-  const PlanRun& run = session_.progress().run();
-  Facts facts = session_.state().facts();
-  for (const int active : run.Active()) {
-    const StepRun& step = run.at(active);
-    ApplyEffects(run.planned(active), step.disturbance, step.before, &facts);
-  }
-  for (int i = 0; i < target; ++i) {
-    if (run.at(i).IsWaiting()) ApplyEffects(run.planned(i), run.at(i).disturbance, &facts);
-  }
-  return facts;
-}
-
 std::set<std::string> ImaginationDesk::StartOf(const Facts& projected) const {
   std::set<std::string> start;
   for (const auto& [text, atom] : projected.all()) {
@@ -136,7 +123,7 @@ double ImaginationDesk::DeadlineOf(const Question& question) {
 }
 
 void ImaginationDesk::Ask(Question* question) {
-  const Facts projected = Projected(question->target);
+  const Facts projected = ProjectedTo(session_, question->target);
   question->start = StartOf(projected);
   question->known = session_.state().instances();
   question->request = session_.outbox().NewRequest();
@@ -173,7 +160,7 @@ void ImaginationDesk::AskAgain(Question* question, const std::string& why) {
 /// Whether the step will start in another state than the one that was imagined, and not just while
 /// observations follow each other.
 bool ImaginationDesk::HasChanged(Question* question) {
-  if (StartOf(Projected(question->target)) == question->start) {
+  if (StartOf(ProjectedTo(session_, question->target)) == question->start) {
     question->differs.reset();
     return false;
   }

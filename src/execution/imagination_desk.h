@@ -64,7 +64,6 @@ class ImaginationDesk {
   Question* FindTarget(int step);
   bool IsWorthAsking(const Question& question);
   void TakeOver(std::vector<Question>* old, Question* question);
-  Facts Projected(int target) const;
   std::set<std::string> StartOf(const Facts& projected) const;
   bool HasChanged(Question* question);
   void Ask(Question* question);

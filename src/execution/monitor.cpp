@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "execution/duration_desk.h"
 #include "execution/imagination_desk.h"
 #include "execution/plan_quest.h"
 #include "execution/repair.h"
@@ -35,7 +36,7 @@ struct Monitor::Impl {
   void On(const StateObserved& event) { session.state().Observe(event); }
   void On(const ObservedUntil& event) { session.state().ObserveUntil(event.time); }
   void On(const GeometryChanged& event) { desk.OnChanged(event); }
-  void On(const ImagineAnswered& event) { desk.OnAnswer(event); }
+  void On(const ImagineAnswered& event);
   void On(const PreemptRequested&);
   void On(const ClockTicked&) {}
 
@@ -52,6 +53,7 @@ struct Monitor::Impl {
   Session session;
   StepWatch watch{&session};
   ImaginationDesk desk{&session};
+  DurationDesk durations{&session};
   StepDispatch dispatch{&session, &desk};
   PlanQuest quest{&session};
   Repair repair{&session, &quest};
@@ -80,6 +82,11 @@ void Monitor::Impl::On(const TaskRequested& event) {
   }
   repair.BeginTask(problem);
   quest.Begin({{std::move(problem), event.task}}, session.state().facts());
+}
+
+void Monitor::Impl::On(const ImagineAnswered& event) {
+  desk.OnAnswer(event);
+  durations.OnAnswer(event);
 }
 
 void Monitor::Impl::On(const PreemptRequested&) {
@@ -146,10 +153,12 @@ void Monitor::Impl::Execute() {
   dispatch.Run();
 }
 
-/// As soon as all is known that would have been asked.
+/// As soon as all is known that would have been asked, and how long what comes of it lasts.
 void Monitor::Impl::EndDryRun() {
   if (!desk.IsAnswered()) return;
   desk.SettleAll();
+  durations.Update();
+  if (!durations.IsAnswered()) return;
   Conclude(Finish::Outcome::kDryRun, "planned and imagined; nothing was begun");
 }
 
@@ -184,6 +193,7 @@ void Monitor::Impl::Mend() {
 void Monitor::Impl::Conclude(Finish::Outcome outcome, const std::string& reason,
                              const base::Failure& failure) {
   desk.Close();
+  durations.Close();
   quest.Cancel();
   repair.Cancel();
   if (session.progress().has_plan()) {
@@ -223,8 +233,8 @@ std::vector<Command> Monitor::Handle(const Event& event, double now) {
 std::optional<double> Monitor::WakeAt() const {
   if (impl_->stage == Impl::Stage::kIdle) return std::nullopt;
   std::optional<double> wake;
-  for (const std::optional<double>& at :
-       {impl_->watch.WakeAt(), impl_->desk.WakeAt(), impl_->quest.WakeAt()}) {
+  for (const std::optional<double>& at : {impl_->watch.WakeAt(), impl_->desk.WakeAt(),
+                                          impl_->durations.WakeAt(), impl_->quest.WakeAt()}) {
     if (at) wake = std::min(wake.value_or(*at), *at);
   }
   return wake;

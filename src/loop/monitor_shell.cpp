@@ -22,6 +22,7 @@ execution::MonitorParams ParamsOf(const LoopSetup::Parts& parts, const LoopOrder
   if (!order.imagination.empty()) {
     params.imagination = execution::ReadImaginePolicy(order.imagination);
   }
+  params.dry_run = params.dry_run || order.dry_run;
   return params;
 }
 

@@ -221,6 +221,17 @@ TEST_F(AchieveVerbTest, WhatIsOfVirtualTimeAloneIsRefusedWithoutIt) {
   }
 }
 
+TEST_F(AchieveVerbTest, ADryRunInThisProgramPrintsThePlanAndBeginsNothing) {
+  const Ended ended = Run({"--local", "--dry-run", "--imagination", "off"});
+  EXPECT_EQ(ended.code, kExitAchieved) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("would begin"), HasSubstr("nothing was begun"),
+                               HasSubstr("move_base(premanipulationareaeastcounter1)")));
+  EXPECT_LT(VirtualSecondsIn(ended.out), 10.0);
+  const Ended refused = Run({"serve guest1", "--dry-run"});
+  EXPECT_EQ(refused.code, kExitNotAchieved);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("--dry-run"), HasSubstr("--local")));
+}
+
 TEST_F(AchieveVerbTest, AnotherVirtualTimeIsTakenFromAnotherFile) {
   const std::string config = HIRES_SOURCE_DIR "/config/";
   YAML::Node loop = YAML::LoadFile(config + "loop.yaml");

@@ -16,6 +16,7 @@ using test_support::FactsOf;
 using test_support::Ranked;
 using test_support::ScriptedWorld;
 using test_support::TaskOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -45,6 +46,30 @@ const StepStatus* DriveOf(const std::vector<StepStatus>& steps) {
   return drive;
 }
 
+const StepStatus* FirstDriveOf(const std::vector<StepStatus>& steps) {
+  const auto drive = std::find_if(steps.begin(), steps.end(), [](const StepStatus& step) {
+    return step.action.name == "move_base" && step.phase == StepPhase::kWaiting;
+  });
+  return drive == steps.end() ? nullptr : &*drive;
+}
+
+/// It can only be about how long it lasts.
+bool IsOneAlternative(const StartImagination& request) {
+  return base::Combinations(request.action).size() == 1;
+}
+
+std::vector<StartImagination> AskedHow(const ScriptedWorld& world) {
+  std::vector<StartImagination> asked = world.imaginations();
+  asked.erase(std::remove_if(asked.begin(), asked.end(), IsOneAlternative), asked.end());
+  return asked;
+}
+
+std::vector<std::string> TextsOf(const std::vector<base::Atom>& atoms) {
+  std::vector<std::string> texts;
+  for (const base::Atom& atom : atoms) texts.push_back(base::ToLower(ToString(atom)));
+  return texts;
+}
+
 ImagineAnswered Slow(const std::string& area) {
   return Ranked({"move_base_param", {area, "slow"}}, 24.0);
 }
@@ -61,7 +86,8 @@ ScriptedWorld::Options SlowDryRun() {
 TEST(DryRunTest, ThePlanEndsWithTheRecommendedAlternativeAndNothingIsBegun) {
   ScriptedWorld world(SlowDryRun());
   ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
-  EXPECT_NEAR(world.now(), 1020.05, 1e-6) << "as soon as the answer is there, after 20 s";
+  EXPECT_NEAR(world.now(), 1040.05, 1e-6)
+      << "as soon as the answers are there, after 20 s each: how to drive, how long the rest lasts";
   const auto steps = world.monitor().Steps();
   const StepStatus* drive = DriveOf(steps);
   ASSERT_NE(drive, nullptr);
@@ -107,7 +133,7 @@ TEST(DryRunTest, APlanThatIsImaginedToFailIsMendedAsInEarnest) {
   };
   ScriptedWorld world(options);
   ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
-  EXPECT_THAT(world.imaginations(), SizeIs(2));
+  EXPECT_THAT(AskedHow(world), SizeIs(2));
   EXPECT_THAT(DriveOf(world.monitor().Steps())->action.arguments,
               ElementsAre("premanipulationareasouthtable1", "slow"));
 }
@@ -131,7 +157,9 @@ TEST(DryRunTest, NobodyWhoImaginesIsSaidAtOnceWithTheDefault) {
   };
   ScriptedWorld world(options);
   ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
-  EXPECT_THAT(world.imaginations(), SizeIs(1));
+  EXPECT_THAT(AskedHow(world), SizeIs(1));
+  EXPECT_THAT(FirstDriveOf(world.monitor().Steps())->note,
+              HasSubstr("how long it lasts is not known: no worker is there to imagine it"));
   EXPECT_THAT(DriveOf(world.monitor().Steps())->note,
               HasSubstr("no worker is there to imagine it"));
   EXPECT_THAT(world.warnings(), ElementsAre(HasSubstr("without imagination")));
@@ -142,7 +170,8 @@ TEST(DryRunTest, SilenceEndsAtTheLongestWait) {
   options.imagine = [](const StartImagination&, int) { return std::nullopt; };
   ScriptedWorld world(options);
   ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
-  EXPECT_NEAR(world.now(), 1000.05 + options.monitor.max_wait, 1.0);
+  EXPECT_NEAR(world.now(), 1000.05 + 2.0 * options.monitor.max_wait, 1.0)
+      << "how to drive, how long the rest lasts";
 }
 
 TEST(DryRunTest, WithoutImaginationThePlanAloneIsShown) {
@@ -154,10 +183,67 @@ TEST(DryRunTest, WithoutImaginationThePlanAloneIsShown) {
   EXPECT_EQ(DriveOf(world.monitor().Steps())->action.arguments.back(), "fast");
 }
 
-TEST(DryRunTest, APlanWithoutImaginationIsShownAtOnce) {
-  ScriptedWorld world(DryRun("serve_coffee"));
+TEST(DryRunTest, ADriveFromAnywhereLastsAsLongAsImagined) {
+  auto options = SlowDryRun();
+  options.imagine = [](const StartImagination& request, int) {
+    if (IsOneAlternative(request)) return Ranked(base::Combinations(request.action)[0], 12.5);
+    return Slow("premanipulationareanorthtable1");
+  };
+  ScriptedWorld world(options);
+  ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
+  ASSERT_THAT(world.imaginations(), SizeIs(2)) << "what restaurant.yaml knows is not asked";
+  const StartImagination& asked = world.imaginations()[1];
+  EXPECT_EQ(ToString(asked.action), "move_base(premanipulationareaeastcounter1)");
+  EXPECT_EQ(asked.deadline, std::numeric_limits<double>::infinity());
+  EXPECT_THAT(TextsOf(asked.state), Contains("hasarmposture(rightarm1, armtuckedposture)"))
+      << "as it will be when the drive begins";
+  const auto steps = world.monitor().Steps();
+  const StepStatus* first = FirstDriveOf(steps);
+  ASSERT_NE(first, nullptr);
+  EXPECT_EQ(asked.step, first->index);
+  EXPECT_NEAR(first->expected_finish - first->expected_start, 12.5, 1e-6);
+  EXPECT_EQ(first->note, "lasts 12.5 s as imagined");
+  EXPECT_NEAR(DriveOf(steps)->expected_finish - DriveOf(steps)->expected_start, 24.0, 1e-6);
+}
+
+TEST(DryRunTest, ADriveThatIsImaginedToFailChangesNoPlan) {
+  auto options = SlowDryRun();
+  options.imagine = [](const StartImagination& request, int) {
+    if (IsOneAlternative(request)) return AllFail(request, base::FailureCode::kNoPath);
+    return Slow("premanipulationareanorthtable1");
+  };
+  ScriptedWorld world(options);
+  ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
+  EXPECT_THAT(world.plannings(), SizeIs(1)) << "in earnest it would not be imagined";
+  const auto steps = world.monitor().Steps();
+  EXPECT_EQ(FirstDriveOf(steps)->note,
+            "how long it lasts is not known: no alternative is expected to succeed: "
+            "every alternative fails");
+}
+
+TEST(DryRunTest, OfAPlanWithoutImaginationDurationsAloneAreAsked) {
+  auto options = DryRun("serve_coffee");
+  options.imagine = [](const StartImagination& request, int) {
+    return Ranked(base::Combinations(request.action)[0], 12.5);
+  };
+  ScriptedWorld world(options);
   ExpectNothingBegun(world, world.Run(TaskOf("serve_coffee")));
-  EXPECT_NEAR(world.now(), 1000.05, 1e-6);
+  EXPECT_NEAR(world.now(), 1020.05, 1e-6);
+  EXPECT_THAT(AskedHow(world), IsEmpty());
+  const auto steps = world.monitor().Steps();
+  const StepStatus* first = FirstDriveOf(steps);
+  ASSERT_NE(first, nullptr);
+  EXPECT_NEAR(first->expected_finish - first->expected_start, 12.5, 1e-6);
+}
+
+TEST(DryRunTest, InEarnestNoDurationIsAsked) {
+  auto options = SlowDryRun();
+  options.monitor.dry_run = false;
+  ScriptedWorld world(options);
+  EXPECT_EQ(world.Run(TaskOf("carry_object")).outcome, Finish::Outcome::kSucceeded);
+  for (const StartImagination& request : world.imaginations()) {
+    EXPECT_FALSE(IsOneAlternative(request)) << ToString(request.action);
+  }
 }
 
 TEST(DryRunTest, ItCanBePreempted) {

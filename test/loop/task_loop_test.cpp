@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
@@ -90,6 +91,37 @@ TEST(TaskLoopTest, ItEndsWhenItsTimeIsOver) {
   const LoopRun run = PlayTask(TheSetup(), order);
   EXPECT_TRUE(run.is_timed_out);
   EXPECT_NEAR(run.virtual_seconds, 5.0, 0.1);
+}
+
+const execution::StepStatus* FirstDriveOf(const LoopRun& run) {
+  const auto& steps = run.report.status.steps;
+  const auto drive = std::find_if(steps.begin(), steps.end(),
+                                  [](const auto& step) { return step.action.name == "move_base"; });
+  return drive == steps.end() ? nullptr : &*drive;
+}
+
+TEST(TaskLoopTest, ADryRunsFirstDriveLastsAsLongAsThePlayedOne) {
+  LoopOrder order = Topple("", 2);
+  order.dry_run = true;
+  const LoopRun dry = PlayTask(TheSetup(), order);
+  ASSERT_EQ(dry.report.outcome, AchieveOutcome::kDryRun) << dry.report.reason;
+  order = Topple("off", 2);
+  order.time_limit = 40.0;  // of the whole task no more is wanted
+  const LoopRun played = PlayTask(TheSetup(), order);
+  const execution::StepStatus *planned = FirstDriveOf(dry), *driven = FirstDriveOf(played);
+  ASSERT_NE(planned, nullptr);
+  ASSERT_NE(driven, nullptr);
+  ASSERT_TRUE(driven->finished);
+  EXPECT_FALSE(planned->started) << "nothing was begun";
+  const auto& asked = dry.report.status.imaginations.back();
+  EXPECT_EQ(ToString(asked.action), "move_base(premanipulationareaeastcounter1)");
+  const auto& duration = asked.predictions.at(0).evidence.duration;
+  EXPECT_GT(duration.mean, 5.0);
+  EXPECT_NEAR(planned->expected_finish - planned->expected_start, duration.mean, 1e-6);
+  // What begins and ends a step takes the monitor up to a tick each.
+  const double spread = 3.0 * duration.sd + 0.2;
+  EXPECT_NEAR(*driven->finished - *driven->started, duration.mean, spread);
+  EXPECT_LT(spread, 0.5 * duration.mean) << "or everything would fit";
 }
 
 TEST(TaskLoopTest, ATaskThatMakesNoSenseIsRefused) {

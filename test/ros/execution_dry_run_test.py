@@ -54,7 +54,14 @@ class ExecutionDryRunTest(unittest.TestCase):
         self.assertIn('imagined', drive.note)
         actions = [s for s in result.steps if s.action.name != 'imagine']
         self.assertEqual({s.phase for s in actions}, {self.phases.WAITING})
-        self.assertEqual([i.outcome for i in result.imaginations], ['ranked'])
+        asked = [(i.action.name, i.outcome) for i in result.imaginations]
+        self.assertEqual(asked, [('move_base_param', 'ranked'), ('move_base', 'ranked')])
+
+    def test_a_drive_from_anywhere_lasts_as_long_as_imagined(self):
+        result = self.require(self.system.achieve(CARRY), self.codes.DRY_RUN)
+        first = [s for s in result.steps if s.action.name == 'move_base'][0]
+        self.assertAlmostEqual(first.expected_finish - first.expected_start, 20.0)
+        self.assertEqual(first.note, 'lasts 20.0 s as imagined')
 
     def test_where_everything_is_imagined_to_fail_there_is_no_plan(self):
         self.system.behave('imagine', answer='all_failed')

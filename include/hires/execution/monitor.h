@@ -147,8 +147,9 @@ struct MonitorParams {
   enum class ImaginePolicy { kDomain, kThesis, kOff };
   ImaginePolicy imagination{ImaginePolicy::kDomain};  ///< kOff: `!imagine` steps take the default
   /// Plans and imagines from the state that is, repairs the plan where all alternatives of a step
-  /// are imagined to fail, and ends instead of beginning a step. Answers have all the time of
-  /// `max_wait`.
+  /// are imagined to fail, and ends instead of beginning a step. Then those steps are imagined,
+  /// too, that can be and of which the operators' data do not say how long they are expected to
+  /// last. Answers have all the time of `max_wait`.
   bool dry_run{false};
   int max_replans{10};             ///< of one task before giving up
   double effect_timeout{3.0};      ///< [s] after a step's end until its effects must be observed,

@@ -54,6 +54,7 @@ struct LoopOrder {
   std::uint64_t seed{1};     ///< of the hidden truth, of all noise and of imagination
   int rollouts{0};           ///< per combination of alternatives; 0: as the monitor is configured
   int threads{1};            ///< that play rollouts; their number changes nothing
+  bool dry_run{false};       ///< planned and imagined alone (execution::MonitorParams)
   double time_limit{900.0};  ///< [s] of virtual time
 };
 
