@@ -66,7 +66,7 @@ MoveBaseDrive::MoveBaseDrive(std::shared_ptr<MoveBaseServer> server,
       driving_(std::move(driving)),
       X_MGoal_(X_MGoal),
       motion_set_(motion_set),
-      rest_(blind, X_MGoal, motion_set, driving_->robot->profile.base_controller.drive) {}
+      rest_(blind, X_MGoal, motion_set, driving_->robot->profile.base_controller) {}
 
 MoveBaseDrive::~MoveBaseDrive() {
   if (stage_ == Stage::kDriving) server_->Cancel();

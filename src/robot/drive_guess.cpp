@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "hires/base/check.h"
 #include "hires/base/text.h"
 
 namespace hires::robot {
@@ -14,23 +17,55 @@ namespace {
 
 constexpr double kHorizontal = 0.1;  // largest upward part of a wheel's axis
 constexpr double kParallel = 0.99;   // least cosine between two axes
+constexpr double kOnAxle = 0.01;  // [m] by which a link may lie off the axle and still be over it
 
-struct Wheels {
-  std::vector<std::string> fixed;     // joints that keep their direction
-  std::vector<Eigen::Vector3d> axes;  // of those, in the root frame
-  std::vector<std::string> casters;
+// [rad] What a car's wheels are turned by at most where nothing says it; less than the second is no
+// steering, and more than the third would have the car turn on the spot.
+constexpr double kUsualSteering = 0.5;
+constexpr double kLeastSteering = 0.02;
+constexpr double kMostSteering = 1.4;
+
+struct FixedWheel {
+  std::string joint;
+  Eigen::Vector3d axis, centre;  // in the root frame
 };
 
-/// Whether something below the root turns the wheel's axle about the vertical.
-bool IsSteered(const RobotModel& model, const std::vector<geometry::Pose3>& X_R, int link) {
+struct SteeredWheel {
+  std::string joint;
+  double largest_angle{0.0};  // [rad] that it can be turned to both sides
+  bool has_limits{false};
+  Eigen::Vector3d centre;  // of the joint that steers, in the root frame
+};
+
+struct Wheels {
+  std::vector<FixedWheel> fixed;  // keep their direction
+  std::vector<std::string> casters;
+  std::vector<SteeredWheel> steered;  // those of the casters
+};
+
+/// The joint below the root that turns a wheel's axle about the vertical: index of its link.
+std::optional<int> SwivelAbove(const RobotModel& model, const std::vector<geometry::Pose3>& X_R,
+                               int link) {
   for (int above = link; model.links[above].joint; above = model.links[above].joint->parent) {
     const Joint& joint = *model.links[above].joint;
     const bool can_turn =
         joint.type == JointType::kContinuous || joint.type == JointType::kRevolute;
     if (can_turn && std::abs((X_R[above].rotation * joint.axis).z()) > 1.0 - kHorizontal)
-      return true;
+      return above;
   }
-  return false;
+  return std::nullopt;
+}
+
+/// A swivel that something turns; nothing for a caster that trails.
+std::optional<SteeredWheel> SteeredBy(const Joint& swivel, const geometry::Pose3& X_RS) {
+  const bool has_limits = swivel.type == JointType::kRevolute && swivel.limits;
+  if (!has_limits && base::ToLower(swivel.name).find("steer") == std::string::npos) {
+    return std::nullopt;
+  }
+  const double angle =
+      has_limits ? std::min(-swivel.limits->lower, swivel.limits->upper) : kUsualSteering;
+  if (angle < kLeastSteering) return std::nullopt;
+  return SteeredWheel{swivel.name, std::min(angle, kMostSteering), has_limits, X_RS.translation};
 }
 
 Wheels WheelsOf(const RobotModel& model) {
@@ -41,11 +76,12 @@ Wheels WheelsOf(const RobotModel& model) {
     if (!joint || joint->type != JointType::kContinuous) continue;
     const Eigen::Vector3d axis = X_R[i].rotation * joint->axis;
     if (std::abs(axis.z()) > kHorizontal) continue;
-    if (IsSteered(model, X_R, static_cast<int>(i))) {
+    if (const auto swivel = SwivelAbove(model, X_R, static_cast<int>(i))) {
       wheels.casters.push_back(joint->name);
+      const auto steered = SteeredBy(*model.links[*swivel].joint, X_R[*swivel]);
+      if (steered) wheels.steered.push_back(*steered);
     } else {
-      wheels.fixed.push_back(joint->name);
-      wheels.axes.push_back(axis);
+      wheels.fixed.push_back({joint->name, axis, X_R[i].translation});
     }
   }
   return wheels;
@@ -53,34 +89,95 @@ Wheels WheelsOf(const RobotModel& model) {
 
 /// Two wheels with the same axle direction, or nothing.
 std::optional<std::pair<std::size_t, std::size_t>> ParallelPair(const Wheels& wheels) {
-  for (std::size_t i = 0; i < wheels.axes.size(); ++i) {
+  for (std::size_t i = 0; i < wheels.fixed.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (std::abs(wheels.axes[i].dot(wheels.axes[j])) > kParallel) return std::make_pair(j, i);
+      if (std::abs(wheels.fixed[i].axis.dot(wheels.fixed[j].axis)) > kParallel) {
+        return std::make_pair(j, i);
+      }
     }
   }
   return std::nullopt;
 }
 
+/// Names of the wheels that keep their direction.
+std::string FixedNames(const Wheels& wheels) {
+  std::vector<std::string> names;
+  for (const FixedWheel& wheel : wheels.fixed) names.push_back(wheel.joint);
+  return base::Join(names, ", ");
+}
+
+double TurningRadius(const SteeredWheel& wheel, const Eigen::Vector3d& along,
+                     const Eigen::Vector3d& p_RA) {
+  const Eigen::Vector3d p_AW = wheel.centre - p_RA;
+  const double across = std::abs(p_AW.dot(along));
+  const double ahead = std::abs(p_AW.dot(Eigen::Vector3d::UnitZ().cross(along)));
+  return ahead / std::tan(wheel.largest_angle) + across;
+}
+
+/// A car, if some of the steered wheels lie off the axle of the pair.
+std::optional<DriveGuess> GuessCar(const Wheels& wheels, std::size_t first, std::size_t second) {
+  const Eigen::Vector3d along = wheels.fixed[first].axis.normalized();
+  const Eigen::Vector3d p_RA = 0.5 * (wheels.fixed[first].centre + wheels.fixed[second].centre);
+  const SteeredWheel* widest = nullptr;
+  for (const SteeredWheel& wheel : wheels.steered) {
+    const double ahead = (wheel.centre - p_RA).dot(Eigen::Vector3d::UnitZ().cross(along));
+    if (std::abs(ahead) <= kOnAxle) continue;
+    if (!widest || TurningRadius(wheel, along, p_RA) > TurningRadius(*widest, along, p_RA)) {
+      widest = &wheel;
+    }
+  }
+  if (!widest) return std::nullopt;
+  const double radius = TurningRadius(*widest, along, p_RA);
+  std::string why = fmt::format(
+      "parallel wheels ({}, {}) and steered ones; min_turning_radius={:.2f} m from the {:.2f} rad "
+      "{} "
+      "{}",
+      wheels.fixed[first].joint, wheels.fixed[second].joint, radius, widest->largest_angle,
+      widest->has_limits ? "of" : "ASSUMED of", widest->joint);
+  if (p_RA.head<2>().norm() > kOnAxle) {
+    why += fmt::format(
+        "; but the axle lies at x {:.2f} m, y {:.2f} m of the root link, which is taken to be over "
+        "it: a profile names one that is, base_link",
+        p_RA.x(), p_RA.y());
+  }
+  return DriveGuess{Drive::kCarLike, radius, why};
+}
+
+const std::map<Drive, std::string>& Names() {
+  static const std::map<Drive, std::string> names{{Drive::kOmnidirectional, "omnidirectional"},
+                                                  {Drive::kDifferential, "differential"},
+                                                  {Drive::kCarLike, "car_like"}};
+  return names;
+}
+
 }  // namespace
 
-std::string ToString(Drive drive) {
-  return drive == Drive::kDifferential ? "differential" : "omnidirectional";
+std::string ToString(Drive drive) { return Names().at(drive); }
+
+Drive DriveOf(const std::string& name) {
+  const auto found = std::find_if(Names().begin(), Names().end(),
+                                  [&](const auto& entry) { return entry.second == name; });
+  HIRES_CHECK(found != Names().end(), "a drive has one of three names");
+  return found->first;
 }
 
 DriveGuess GuessDrive(const RobotModel& model) {
   const Wheels wheels = WheelsOf(model);
   if (const auto pair = ParallelPair(wheels)) {
-    return {Drive::kDifferential, fmt::format("parallel wheels: {}, {}", wheels.fixed[pair->first],
-                                              wheels.fixed[pair->second])};
+    if (auto car = GuessCar(wheels, pair->first, pair->second)) return *car;
+    return {Drive::kDifferential, 0.0,
+            fmt::format("parallel wheels: {}, {}", wheels.fixed[pair->first].joint,
+                        wheels.fixed[pair->second].joint)};
   }
   if (wheels.fixed.size() >= 3) {
-    return {Drive::kOmnidirectional,
-            "three wheels in three directions: " + base::Join(wheels.fixed, ", ")};
+    return {Drive::kOmnidirectional, 0.0,
+            "three wheels in three directions: " + FixedNames(wheels)};
   }
   if (wheels.fixed.empty() && wheels.casters.size() >= 3) {
-    return {Drive::kOmnidirectional, "steered casters alone: " + base::Join(wheels.casters, ", ")};
+    return {Drive::kOmnidirectional, 0.0,
+            "steered casters alone: " + base::Join(wheels.casters, ", ")};
   }
-  return {Drive::kDifferential, "no wheels (continuous joints) that could drive it sideways"};
+  return {Drive::kDifferential, 0.0, "no wheels (continuous joints) that could drive it sideways"};
 }
 
 }  // namespace hires::robot

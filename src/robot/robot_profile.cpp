@@ -41,11 +41,27 @@ std::map<std::string, MotionSet> ReadMotionSets(ParamReader in) {
   return sets;
 }
 
+void ReadDrive(ParamReader* in, BaseControllerParams* params) {
+  params->drive = DriveOf(
+      in->Get("drive", base::OneOf({ToString(Drive::kOmnidirectional),
+                                    ToString(Drive::kDifferential), ToString(Drive::kCarLike)})));
+  if (params->drive == Drive::kCarLike) {
+    in->RequireKeys({"min_turning_radius"});
+    params->min_turning_radius = in->Get("min_turning_radius", Between(0.01, 1000.0));
+  } else if (in->Has("min_turning_radius")) {
+    in->Fail(
+        "min_turning_radius",
+        fmt::format("wanted none where the drive is {}, which turns on the spot; leave it out, "
+                    "or write `drive: car_like`",
+                    ToString(params->drive)));
+  }
+}
+
 /// @param params  what holds where the file says nothing.
 BaseControllerParams ReadBaseController(BaseControllerParams params, ParamReader in) {
-  if (in.Has("drive") &&
-      in.Get("drive", base::OneOf({"omnidirectional", "differential"})) == "differential") {
-    params.drive = Drive::kDifferential;
+  if (in.Has("drive")) ReadDrive(&in, &params);
+  if (!in.Has("drive") && in.Has("min_turning_radius")) {
+    in.Fail("min_turning_radius", "wanted `drive: car_like` beside it; add that");
   }
   if (in.Has("limits")) params.limits = ReadMotionSet(in.Sub("limits"));
   if (in.Has("at_timeout")) {
@@ -202,7 +218,8 @@ void AddTo(base::Hasher* hash, const BaseControllerParams& params) {
   }
   // Only then, so that what was measured with a base that ramps and drives sideways keeps its hash.
   if (params.stops_at_timeout) hash->Add("stops_at_timeout");
-  if (params.drive == Drive::kDifferential) hash->Add("differential");
+  if (params.drive != Drive::kOmnidirectional) hash->Add(ToString(params.drive));
+  if (params.drive == Drive::kCarLike) hash->Add(params.min_turning_radius);
 }
 
 std::uint64_t HashOf(const RobotProfile& profile) {
@@ -263,13 +280,14 @@ void GuessTray(const RobotModel& model, RobotProfile* profile) {
   profile->X_TO = tray.X_TO;
 }
 
-Drive GuessAndSayDrive(const RobotModel& model) {
+void GuessAndSayDrive(const RobotModel& model, BaseControllerParams* params) {
   const DriveGuess guess = GuessDrive(model);
   base::Log(base::LogLevel::kWarn,
             fmt::format("robot={} drive={} guessed, because it has {}; if that is wrong, write a "
                         "profile with base_controller.drive",
                         model.name, ToString(guess.drive), guess.why));
-  return guess.drive;
+  params->drive = guess.drive;
+  params->min_turning_radius = guess.min_turning_radius;
 }
 
 void SayAssumedMotion(const RobotModel& model) {
@@ -290,7 +308,7 @@ void FillFromModel(ParamReader in, Robot* robot) {
   }
   if (!in.Has("motion_sets")) SayAssumedMotion(robot->model);
   if (!in.Has("base_controller") || !in.Sub("base_controller").Has("drive")) {
-    profile.base_controller.drive = GuessAndSayDrive(robot->model);
+    GuessAndSayDrive(robot->model, &profile.base_controller);
   }
 }
 
@@ -343,7 +361,7 @@ Robot LoadRobotFromUrdf(const std::string& urdf_path) {
   profile.base_link = robot.model.links.front().name;
   GuessTray(robot.model, &profile);
   profile.footprint = OutlineOf(robot.model, profile.base_link, {});
-  profile.base_controller.drive = GuessAndSayDrive(robot.model);
+  GuessAndSayDrive(robot.model, &profile.base_controller);
   SayAssumedMotion(robot.model);
   profile.hash = HashOf(profile);
   return robot;

@@ -9,10 +9,19 @@
 namespace hires::simulation {
 namespace {
 
-/// What the base can follow: no sideways part where its wheels cannot; clipped to the controller's
-/// limits, the direction kept.
+/// The rate of turning that is left of `wz` at a speed [m/s]: all, but for a car-like base, which
+/// does not turn more sharply than its steering allows.
+double Steered(double wz, double speed, const robot::BaseControllerParams& params) {
+  if (params.drive != robot::Drive::kCarLike) return wz;
+  const double most = std::abs(speed) / params.min_turning_radius;
+  return std::clamp(wz, -most, most);
+}
+
+/// What the base can follow: no sideways part where its wheels cannot, no turning but on an arc
+/// where it steers like a car; clipped to the controller's limits, the direction kept.
 geometry::Twist2 Feasible(geometry::Twist2 v, const robot::BaseControllerParams& params) {
-  if (params.drive == robot::Drive::kDifferential) v.vy = 0.0;
+  if (params.drive != robot::Drive::kOmnidirectional) v.vy = 0.0;
+  v.wz = Steered(v.wz, v.vx, params);
   const robot::MotionSet& limits = params.limits;
   const double linear = std::hypot(v.vx, v.vy);
   const double scale = std::min({1.0, linear > 0.0 ? limits.max_linear_velocity / linear : 1.0,
@@ -90,6 +99,16 @@ void BaseDrive::StepAxis(Axis* axis, double grip, double dt) const {
   axis->velocity += dt * axis->acceleration;
 }
 
+/// Between two commands, too: a ramp from an arc forward to one backward would turn on the spot
+/// halfway, and a loop that oscillates would overshoot the arc.
+void BaseDrive::KeepToArc(const Axis& yaw_before, double dt) {
+  yaw_.ramp = Steered(yaw_.ramp, x_.ramp, params_);
+  const double most = Steered(yaw_.velocity, x_.velocity, params_);
+  if (most == yaw_.velocity) return;
+  yaw_.velocity = most;
+  yaw_.acceleration = (most - yaw_before.velocity) / dt;
+}
+
 /// Wheels that lose their grip still roll as the ramp asks for, but the base does not follow.
 void BaseDrive::SlideAxes(const Axes& before, double traction, double dt) {
   const double linear = std::hypot(x_.acceleration, y_.acceleration);
@@ -136,6 +155,7 @@ void BaseDrive::Step(double time, double dt, double slip, double traction) {
   }
   const Axes before{x_, y_, yaw_};
   for (Axis* axis : {&x_, &y_, &yaw_}) StepAxis(axis, 1.0 - slip, dt);
+  if (params_.drive == robot::Drive::kCarLike) KeepToArc(before[2], dt);
   if (traction < std::numeric_limits<double>::infinity()) SlideAxes(before, traction, dt);
   if (push_) AddPush(dt);
   motion_.V_B = {x_.velocity, y_.velocity, yaw_.velocity};

@@ -226,8 +226,9 @@ Status MoveBase::Update(const robot::Observation& observation, robot::Command* c
 }
 
 MoveBaseBlind::MoveBaseBlind(const MoveBaseBlindParams& params, const Pose2& X_MGoal,
-                             const robot::MotionSet& motion_set, robot::Drive drive)
-    : params_(params), X_MGoal_(X_MGoal), motion_set_(motion_set), drive_(drive) {}
+                             const robot::MotionSet& motion_set,
+                             const robot::BaseControllerParams& base)
+    : params_(params), X_MGoal_(X_MGoal), motion_set_(motion_set), drive_(base.drive) {}
 
 double MoveBaseBlind::LinearSpeed(double distance) const {
   const double deceleration = std::min(params_.deceleration, motion_set_.max_linear_acceleration);

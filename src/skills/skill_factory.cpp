@@ -34,7 +34,7 @@ std::unique_ptr<Skill> MakeMoveBaseBlind(const SkillSet& skills, const ActionCal
   return std::make_unique<MoveBaseBlind>(
       skills.blind, Lookup(skills.areas, "area", action.arguments[0]),
       Lookup(skills.motion_sets, "motion set", MotionSetNameOf(skills, action)),
-      skills.driving->robot->profile.base_controller.drive);
+      skills.driving->robot->profile.base_controller);
 }
 
 std::unique_ptr<Skill> MakeMoveTorso(const SkillSet& skills, const ActionCall& action) {

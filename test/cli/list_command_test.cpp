@@ -101,7 +101,8 @@ TEST(ListCommandTest, FilesOfThePackageAreFound) {
   const std::string robots = HIRES_SOURCE_DIR "/config/robots/",
                     worlds = HIRES_SOURCE_DIR "/worlds/";
   EXPECT_THAT(ColumnOf(Listed({"robots"}), "robot"),
-              ElementsAre(robots + "cart.yaml", robots + "fetch.yaml", robots + "pr2.yaml"));
+              ElementsAre(robots + "car.yaml", robots + "cart.yaml", robots + "fetch.yaml",
+                          robots + "pr2.yaml"));
   EXPECT_THAT(ColumnOf(Listed({"worlds"}), "world"),
               ElementsAre(worlds + "restaurant.world", worlds + "workshop.world"));
   EXPECT_THAT(ColumnOf(Listed({"scenarios"}), "scenario"), ElementsAre("serve_coffee", "topple"));

@@ -143,6 +143,29 @@ TEST(MotionLimitsTest, WhatIsPastedIsNoMoreThanWhatHoldsTogether) {
               AllOf(HasSubstr("max_vel_y: 0\n"), HasSubstr("min_vel_y: 0\n")));
 }
 
+TEST(MotionLimitsTest, ACarTurnsRoundItsSmallestCircle) {
+  constexpr double kRadius = 0.5;
+  const auto setup = SetupWith([](robot::BaseControllerParams* controller) {
+    MakeIdeal(controller);
+    controller->drive = robot::Drive::kCarLike;
+    controller->min_turning_radius = kRadius;
+    controller->limits.max_linear_velocity = 3.0;
+    controller->limits.max_angular_velocity = 7.0;
+  });
+  const auto report = FindLimits(Mill(0.5), setup, {});
+  ASSERT_TRUE(report);
+  const auto& p_BO = setup.scene->X_BO.translation;
+  const double arm = std::hypot(p_BO.x(), kRadius + std::abs(p_BO.y()));
+  const double turning = physics::SuddenStopTopplingSpeed(kMill, 9.81) / arm;
+  EXPECT_EQ(report->Of("turning").robots_own, 3.0 / kRadius);
+  EXPECT_NEAR(report->Of("turning").closed_form, turning, kModel * turning);
+  EXPECT_NEAR(report->Of("turning").value, turning, 2.0 * kScaleStep * turning);
+  EXPECT_THAT(LimitsYaml(*report),
+              AllOf(HasSubstr("TebLocalPlannerROS:"), HasSubstr("max_vel_y: 0\n"),
+                    HasSubstr("min_turning_radius: 0.5\n")));
+  EXPECT_EQ(report->num_directions, 1);
+}
+
 TEST(MotionLimitsTest, EndsWhenItIsCancelled) {
   EXPECT_FALSE(FindLimits(Mill(0.3), SetupWith(nullptr, ""), {2, [] { return true; }, {}}));
 }

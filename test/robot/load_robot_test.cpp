@@ -17,6 +17,17 @@ TEST(LoadAnyRobotTest, ProfileAndBareUrdfGiveTheSameCart) {
   EXPECT_EQ(bare.profile.tray_link, cart.profile.tray_link);
 }
 
+TEST(LoadAnyRobotTest, ACarsUrdfTellsHowItSteers) {
+  const Robot car = LoadAnyRobot(kRoot + "/config/robots/car.yaml");
+  const Robot bare = LoadAnyRobot(kRoot + "/urdf/car.urdf");
+  EXPECT_EQ(bare.profile.tray_link, car.profile.tray_link);
+  EXPECT_EQ(bare.profile.base_link, car.profile.base_link);
+  EXPECT_EQ(bare.profile.base_controller.drive, Drive::kCarLike);
+  EXPECT_EQ(car.profile.base_controller.drive, Drive::kCarLike);
+  EXPECT_NEAR(bare.profile.base_controller.min_turning_radius,
+              car.profile.base_controller.min_turning_radius, 0.01);
+}
+
 TEST(ReadUrdfOfTest, ProfileAndBareUrdfGiveTheSameText) {
   for (const char* path : {"/config/robots/cart.yaml", "/urdf/cart.urdf"}) {
     const Robot robot = LoadAnyRobot(kRoot + path);

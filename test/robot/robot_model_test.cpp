@@ -221,7 +221,8 @@ TEST_P(MovingOneJoint, MovesItsDescendantsAndNothingElse) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Robots, MovingOneJoint,
-                         ::testing::Values("/urdf/pr2_tray.urdf", "/urdf/cart.urdf"));
+                         ::testing::Values("/urdf/pr2_tray.urdf", "/urdf/cart.urdf",
+                                           "/urdf/car.urdf"));
 
 TEST(FrozenCollisions, NamesAndPlacesEveryShape) {
   const RobotModel model = Small();

@@ -240,6 +240,31 @@ TEST_F(RobotProfileFile, RefusesMissingAndUnknownKeys) {
                 {"loop_dampening' is unknown"});
 }
 
+TEST_F(RobotProfileFile, ACarLikeDriveHasATurningRadius) {
+  const auto car = [&](const std::string& radius) {
+    return WriteWith("drive: differential", "drive: car_like" + radius);
+  };
+  const Robot robot = LoadRobot(car("\n  min_turning_radius: 0.8"));
+  EXPECT_EQ(robot.profile.base_controller.drive, Drive::kCarLike);
+  EXPECT_EQ(robot.profile.base_controller.min_turning_radius, 0.8);
+  EXPECT_NE(LoadRobot(car("\n  min_turning_radius: 0.9")).hash(), robot.hash());
+  EXPECT_EQ(LoadRobot(Write(kProfile)).profile.base_controller.min_turning_radius, 0.0);
+}
+
+TEST_F(RobotProfileFile, RefusesTurningRadiiThatMeanNothing) {
+  ExpectRefused("drive: differential", "drive: car_like",
+                {"base_controller.min_turning_radius is missing"});
+  for (const char* radius : {"0", "-0.8", "wide", ".nan"}) {
+    ExpectRefused("drive: differential",
+                  std::string("drive: car_like\n  min_turning_radius: ") + radius,
+                  {"base_controller.min_turning_radius", "wanted"});
+  }
+  ExpectRefused("drive: differential", "drive: differential\n  min_turning_radius: 0.8",
+                {"base_controller.min_turning_radius", "differential", "car_like"});
+  ExpectRefused("drive: differential", "min_turning_radius: 0.8",
+                {"base_controller.min_turning_radius", "`drive: car_like`"});
+}
+
 TEST_F(RobotProfileFile, RefusesLinksThatAreNotThere) {
   ExpectRefused("base_link: chassis", "base_link: chasis",
                 {"base_link is 'chasis'", "did you mean 'chassis'", "line 2"});

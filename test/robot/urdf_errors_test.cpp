@@ -212,7 +212,7 @@ TEST(UrdfWarnings, ImpossibleInertiaIsKeptAndTold) {
 }
 
 TEST(UrdfWarnings, OurRobotsLoadWithoutAny) {
-  for (const char* file : {"/urdf/pr2_tray.urdf", "/urdf/cart.urdf"}) {
+  for (const char* file : {"/urdf/pr2_tray.urdf", "/urdf/cart.urdf", "/urdf/car.urdf"}) {
     const LogCatcher log;
     LoadRobotModel(std::string(HIRES_SOURCE_DIR) + file);
     EXPECT_THAT(log.lines, IsEmpty()) << file;

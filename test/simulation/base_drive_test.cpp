@@ -77,6 +77,58 @@ TEST(BaseDriveTest, TwoDrivenWheelsIgnoreSidewaysCommands) {
   }
 }
 
+robot::BaseControllerParams CarLike(double radius) {
+  robot::BaseControllerParams params = Ideal();
+  params.drive = robot::Drive::kCarLike;
+  params.min_turning_radius = radius;
+  return params;
+}
+
+TEST(BaseDriveTest, ACarDrivesItsSmallestCircleAndNoSmallerOne) {
+  Drive car(CarLike(0.5));
+  car.Send({0.5, 0.4, 2.0});  // 0.25 m would be its radius
+  car.StepFor(2.0);
+  EXPECT_NEAR(car.drive.motion().V_B.wz, 1.0, 1e-9);
+  EXPECT_EQ(car.drive.motion().V_B.vy, 0.0);
+  const geometry::Pose2 X_MB = car.drive.motion().X_MB;
+  const Eigen::Vector2d centre = X_MB * Eigen::Vector2d(0.0, 0.5);
+  car.StepFor(1.5);
+  EXPECT_NEAR((car.drive.motion().X_MB.position() - centre).norm(), 0.5, 1e-4);
+
+  Drive standing(CarLike(0.5));
+  standing.Send({0.0, 0.0, 1.0});
+  EXPECT_EQ(standing.StepFor(1.0).X_MB.yaw, 0.0);
+  Drive wide(CarLike(0.5));  // where its steering is not hard over nothing changes
+  robot::BaseControllerParams two_wheels = CarLike(0.5);
+  two_wheels.drive = robot::Drive::kDifferential;
+  Drive differential(two_wheels);
+  wide.Send({0.5, 0.0, 0.9});
+  differential.Send({0.5, 0.0, 0.9});
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(SameBits(wide.Step(), differential.Step())) << i;
+}
+
+TEST(BaseDriveTest, ACarKeepsToItsArcsBetweenRandomCommandsToo) {
+  for (int seed = 1; seed <= 20; ++seed) {
+    base::Rng rng(seed);
+    robot::BaseControllerParams params = CarLike(rng.Uniform(0.3, 2.0));
+    params.loop_frequency = seed % 2 == 0 ? 0.0 : 20.0;
+    params.loop_damping = 0.4;
+    params.max_linear_jerk = seed % 3 == 0 ? 8.0 : 0.0;
+    Drive car(params);
+    int num_hard_over = 0;
+    for (int i = 0; i < 5000; ++i) {
+      if (i % 100 == 0) {
+        car.Send({rng.Uniform(-1.0, 1.0), rng.Uniform(-1.0, 1.0), rng.Uniform(-2.0, 2.0)});
+      }
+      const Twist2 v = car.Step(0.1).V_B;
+      ASSERT_LE(std::abs(v.wz), std::abs(v.vx) / params.min_turning_radius + 1e-9);
+      ASSERT_EQ(v.vy, 0.0);
+      num_hard_over += std::abs(v.wz) > 0.99 * std::abs(v.vx) / params.min_turning_radius ? 1 : 0;
+    }
+    EXPECT_GT(num_hard_over, 100) << "seed " << seed;
+  }
+}
+
 TEST(BaseDriveTest, RampsAtTheLimitAndThenHolds) {
   Drive drive(Ideal());
   drive.Send({0.5, 0.0, 0.0});

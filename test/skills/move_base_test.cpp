@@ -386,7 +386,13 @@ TEST(MoveBaseTest, WhatIsSeenBelowTheArmsIsNotDrivenInto) {
 
 // ------------------------------------------------------------------------------------- blind
 
-constexpr robot::Drive kSideways = robot::Drive::kOmnidirectional;
+const robot::BaseControllerParams kSideways;
+
+robot::BaseControllerParams TwoDrivenWheels() {
+  robot::BaseControllerParams base;
+  base.drive = robot::Drive::kDifferential;
+  return base;
+}
 
 TEST(MoveBaseBlindTest, ArrivesWithinItsTolerances) {
   const MoveBaseBlindParams params;
@@ -405,7 +411,7 @@ TEST(MoveBaseBlindTest, TwoDrivenWheelsArriveWithoutDrivingSideways) {
   const MoveBaseBlindParams params;
   for (const Pose2& goal : {Pose2{1.8, 2.0, 0.0}, Pose2{0.6, 2.3, 1.2}, Pose2{1.0, 2.0, 3.1},
                             Pose2{1.0, 2.4, 0.0}, Pose2{1.02, 1.9, -3.0}, Pose2{0.2, 2.01, 0.0}}) {
-    MoveBaseBlind skill(params, goal, kFast, robot::Drive::kDifferential);
+    MoveBaseBlind skill(params, goal, kFast, TwoDrivenWheels());
     double sideways = 0.0;
     const SkillRun run = RunSkill(&skill, {kWest, {}, false}, [&](auto*, auto* robot) {
       sideways = std::max(sideways, std::abs(robot->V_B.vy));
@@ -420,7 +426,7 @@ TEST(MoveBaseBlindTest, TwoDrivenWheelsArriveWithoutDrivingSideways) {
 }
 
 TEST(MoveBaseBlindTest, TwoDrivenWheelsBackOffInsteadOfTurningTwice) {
-  MoveBaseBlind skill({}, {0.4, 2.0, 0.0}, kFast, robot::Drive::kDifferential);
+  MoveBaseBlind skill({}, {0.4, 2.0, 0.0}, kFast, TwoDrivenWheels());
   const SkillRun run = RunSkill(&skill, {{1.0, 2.0, 0.0}, {}, false});
   EXPECT_EQ(run.status.progress, Progress::kSucceeded);
   EXPECT_EQ(run.fastest_turn, 0.0);

@@ -55,6 +55,7 @@ struct LimitsReport {
   std::uint64_t world_hash{0}, robot_hash{0}, physics_hash{0};
   bool is_omnidirectional{false};
   int num_directions{1};  ///< of driving, evenly around; each truth drives into one of them
+  double min_turning_radius{0.0};        ///< [m] of a car-like base; 0: it turns on the spot
   double own_angular_acceleration{0.0};  ///< [rad/s^2] at which the base begins and ends to turn
   double simulated_seconds{0.0};
   double wall_seconds{0.0};  ///< set by who asked; 0: unknown
@@ -88,7 +89,8 @@ std::optional<LimitsReport> FindLimits(const LimitsRequest& request,
 std::string ClosedFormText(const std::vector<MotionBounds>& bounds);
 /// For people: a table, and what it rests on.
 std::string LimitsText(const LimitsReport& report);
-/// To be pasted: the parameters of move_base's DWAPlannerROS, all motions together.
+/// To be pasted: the parameters of move_base's DWAPlannerROS, or for a car-like base
+/// TebLocalPlannerROS, which plans with a turning radius; all motions together.
 std::string LimitsYaml(const LimitsReport& report);
 nlohmann::ordered_json ToJson(const LimitsReport& report);
 

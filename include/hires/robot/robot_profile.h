@@ -20,15 +20,20 @@ struct MotionSet {
   double max_angular_acceleration{3.2};  ///< [rad/s^2]
 };
 
-/// Where a base can drive to without turning first.
+/// Where a base can drive to without turning first. Of one that cannot drive sideways the base_link
+/// lies over the middle of the axle that keeps its direction.
 enum class Drive {
   kOmnidirectional,  ///< forward and sideways: steered casters, mecanum or omni wheels
   kDifferential,     ///< two driven sides: forward, backward and turning, never sideways
+  kCarLike,          ///< Ackermann steering: forward and backward, turning only while it drives
 };
 
 /// What the base's own controller does with velocity commands (PR2: pr2_base_controller at 1 kHz).
 struct BaseControllerParams {
   Drive drive{Drive::kOmnidirectional};
+  /// [m] of the circle that base_link drives on with the steering hard over. > 0 where the drive is
+  /// kCarLike, else 0.
+  double min_turning_radius{0.0};
   MotionSet limits{1.0, 2.0, 2.0, 2.0};  ///< clips commands; ramps at these accelerations
   double max_linear_jerk{0.0};           ///< [m/s^3]; 0 means that acceleration may jump
   double command_timeout{0.2};           ///< [s] without a command after which it brakes to a stop
@@ -87,8 +92,8 @@ Robot LoadRobot(const std::string& profile_path);
 /// above where several do, and objects stand on the middle of its top; without such a link the
 /// robot carries nothing. The footprint is the convex hull of the collision shapes seen from above
 /// (0 .. 2 m over the root), joints at rest, padded as RobotProfile's default.
-/// Motion sets and base controller are those of RobotProfile's defaults (PR2); how it drives is
-/// guessed from its wheels, and logged.
+/// Motion sets and base controller are those of RobotProfile's defaults (PR2); how it drives, and
+/// how sharply a car-like one turns, is guessed from its wheels, and logged.
 /// @throws base::ConfigError as LoadRobotModel, and if there is no collision shape in that band.
 Robot LoadRobotFromUrdf(const std::string& urdf_path);
 

@@ -21,11 +21,11 @@ struct BaseMotion {
 };
 
 /// A robot's base between the velocity commands it is sent and the motion it makes: lag, what its
-/// wheels cannot do (a differential drive ignores sideways commands, as its own does), clipping
-/// to the controller's limits, a ramp of limited acceleration (all axes scaled alike, so that the
-/// direction of a change is kept) and jerk, a velocity loop of second order, braking on command
-/// timeout, with the ramp or at once, and the leaning of the body on its wheels. A value: copy it
-/// to save it.
+/// wheels cannot do (a differential drive ignores sideways commands, as its own does; a car-like
+/// one turns by |v| / min_turning_radius at most, at every moment), clipping to the controller's
+/// limits, a ramp of limited acceleration (all axes scaled alike, so that the direction of a change
+/// is kept) and jerk, a velocity loop of second order, braking on command timeout, with the ramp or
+/// at once, and the leaning of the body on its wheels. A value: copy it to save it.
 class BaseDrive {
  public:
   BaseDrive(const robot::BaseControllerParams& params, const geometry::Pose2& X_MB);
@@ -69,6 +69,7 @@ class BaseDrive {
   void StandAtOnce();
   void StepRamp(const geometry::Twist2& target, double dt);
   void StepAxis(Axis* axis, double grip, double dt) const;
+  void KeepToArc(const Axis& yaw_before, double dt);
   void SlideAxes(const Axes& before, double traction, double dt);
   void AddPush(double dt);
   geometry::Twist2 Acceleration() const;

@@ -101,7 +101,7 @@ struct MoveBaseBlindParams {
 class MoveBaseBlind : public Skill {
  public:
   MoveBaseBlind(const MoveBaseBlindParams& params, const geometry::Pose2& X_MGoal,
-                const robot::MotionSet& motion_set, robot::Drive drive);
+                const robot::MotionSet& motion_set, const robot::BaseControllerParams& base);
 
   Status Update(const robot::Observation& observation, robot::Command* command) override;
   double period() const override { return params_.period; }

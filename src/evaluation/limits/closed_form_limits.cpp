@@ -37,7 +37,7 @@ class CarriedLoad {
  public:
   CarriedLoad(const std::string& object, const imagination::ImaginationSetup& setup)
       : controller_(setup.scene->robot.profile.base_controller),
-        reach_(setup.scene->X_BO.translation.head<2>().norm()),
+        turning_arm_(TurningArm(setup.scene->X_BO.translation.head<2>(), controller_)),
         gravity_(setup.scene->world.gravity),
         body_(setup.scene->world.models.at(setup.ModelOf(object))->mass_properties),
         load_(navigation::LoadOf(*setup.scene->world.models.at(setup.ModelOf(object)))) {}
@@ -60,15 +60,38 @@ class CarriedLoad {
   }
 
   MotionBounds Turning() const {
-    const double on_arc = reach_ > 0.0 ? std::sqrt(Bears() / reach_) : kInfinity;
+    const double arm = turning_arm_;
+    const double on_arc = arm > 0.0 ? std::sqrt(Bears() / arm) : kInfinity;
     const double stopped =
-        controller_.stops_at_timeout && reach_ > 0.0 ? SuddenStopSpeed() / reach_ : kInfinity;
-    return {"turning", "rad/s", controller_.limits.max_angular_velocity, std::min(on_arc, stopped),
-            fmt::format("{}, {:.2f} m from the base's centre",
-                        stopped < on_arc ? HowItBearsASuddenStop() : HowItGives(), reach_)};
+        controller_.stops_at_timeout && arm > 0.0 ? SuddenStopSpeed() / arm : kInfinity;
+    return {
+        "turning", "rad/s", OwnTurning(), std::min(on_arc, stopped),
+        fmt::format(
+            "{}, {:.2f} m from {}", stopped < on_arc ? HowItBearsASuddenStop() : HowItGives(), arm,
+            IsCar(controller_) ? "the middle of the smallest circle" : "the base's centre")};
   }
 
  private:
+  static bool IsCar(const robot::BaseControllerParams& controller) {
+    return controller.drive == robot::Drive::kCarLike;
+  }
+  /// [m] From what the load turns about: a base that turns on the spot, or the middle of the circle
+  /// that a car drives, on the side from which the load is farther.
+  static double TurningArm(const Eigen::Vector2d& p_BO,
+                           const robot::BaseControllerParams& controller) {
+    return IsCar(controller)
+               ? std::hypot(p_BO.x(), controller.min_turning_radius + std::abs(p_BO.y()))
+               : p_BO.norm();
+  }
+  /// [rad/s] A car turns as fast as it drives round its smallest circle.
+  double OwnTurning() const {
+    const robot::MotionSet& limits = controller_.limits;
+    return IsCar(controller_)
+               ? std::min(limits.max_angular_velocity,
+                          limits.max_linear_velocity / controller_.min_turning_radius)
+               : limits.max_angular_velocity;
+  }
+
   double Tips() const { return navigation::TippingAcceleration(load_, gravity_); }
   double Slides() const { return navigation::SlidingAcceleration(load_, gravity_); }
   double Bears() const { return std::min(Tips(), Slides()); }
@@ -91,8 +114,8 @@ class CarriedLoad {
   }
 
   const robot::BaseControllerParams& controller_;
-  const double reach_;    // [m] of the load from the base's centre
-  const double gravity_;  // [m/s^2]
+  const double turning_arm_;  // [m]
+  const double gravity_;      // [m/s^2]
   const geometry::MassProperties body_;
   const navigation::StandingLoad load_;
 };

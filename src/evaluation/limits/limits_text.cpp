@@ -29,6 +29,15 @@ std::string Falls(const LimitCheck& check) {
                            : fmt::format("{}", check.falls_at);
 }
 
+/// The planner of a base that steers like a car; it turns less sharply where it drives slowly.
+std::string CarYaml(double speed, double turning, double linear, double angular, double radius) {
+  return fmt::format(
+      "TebLocalPlannerROS:\n  max_vel_x: {0:g}\n  max_vel_x_backwards: {0:g}\n  max_vel_y: 0\n"
+      "  max_vel_theta: {1:g}\n  acc_lim_x: {2:g}\n  acc_lim_theta: {3:g}\n"
+      "  min_turning_radius: {4:g}\n",
+      speed, turning, linear, angular, radius);
+}
+
 nlohmann::ordered_json OrNull(double value) {
   return std::isinf(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
 }
@@ -91,12 +100,20 @@ std::string LimitsYaml(const LimitsReport& report) {
   if (report.is_omnidirectional) linear = Floored(linear / std::sqrt(2.0), 1e3);
   std::string text = fmt::format(
       "# {} on the tray of {}: in simulation at least {:g} % of drives keep it (95 % confidence),\n"
-      "# uncertainty {}, seed {}. For controller_frequency: {:g}. Before Noetic the keys are\n"
-      "# max_trans_vel, max_rot_vel, acc_lim_th. min_vel_trans and min_vel_theta must not be "
-      "larger.\n",
+      "# uncertainty {}, seed {}. For controller_frequency: {:g}.",
       report.request.object, report.robot, 100.0 * (1.0 - report.request.max_fall),
       report.uncertainty, report.request.seed, 1.0 / report.request.command_period);
+  text +=
+      report.min_turning_radius > 0.0
+          ? "\n"
+          : " Before Noetic the keys are\n"
+            "# max_trans_vel, max_rot_vel, acc_lim_th. min_vel_trans and min_vel_theta must not "
+            "be larger.\n";
   if (report.request.is_controller_assumed) text += "# The base's controller is ASSUMED.\n";
+  if (report.min_turning_radius > 0.0) {
+    return text + CarYaml(speed, part(report.Of("turning").value), linear,
+                          part(report.own_angular_acceleration), report.min_turning_radius);
+  }
   const double sideways = report.is_omnidirectional ? speed : 0.0;
   return text +
          fmt::format(

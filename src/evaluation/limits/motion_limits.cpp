@@ -125,6 +125,7 @@ class LimitFinder {
     report_.physics_hash = setup_.physics_hash;
     report_.is_omnidirectional = controller_.drive == robot::Drive::kOmnidirectional;
     report_.num_directions = report_.is_omnidirectional ? kDirections : 1;
+    report_.min_turning_radius = controller_.min_turning_radius;
     report_.own_angular_acceleration = controller_.limits.max_angular_acceleration;
     for (const Motion& motion : Motions()) {
       if (!Look(motion)) return std::nullopt;
@@ -243,10 +244,12 @@ class LimitFinder {
     };
   }
 
-  /// On the spot, as suddenly as the controller allows; then commands cease.
+  /// On the spot, or round the smallest circle of a car, as suddenly as the controller allows; then
+  /// commands cease.
   Drives TurningDrives() const {
-    return [sudden = sudden()](double w, double) -> std::vector<LoadDrive> {
-      return {{{{0.0, 0.0, w}, 0.0, sudden, kTurningTime}, kSilence}};
+    return [sudden = sudden(), radius = controller_.min_turning_radius](
+               double w, double) -> std::vector<LoadDrive> {
+      return {{{{radius * w, 0.0, w}, radius * sudden, sudden, kTurningTime}, kSilence}};
     };
   }
 
