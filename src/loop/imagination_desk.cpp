@@ -133,11 +133,20 @@ void ImaginationDesk::Move(const execution::MoveDeadline& command) {
 
 void ImaginationDesk::Cancel(const execution::CancelImagination& command) {
   const SessionPtr session = Find(command.request);
-  if (session) End(session, ImaginedOutcome::kCancelled);
+  if (session) BreakOff(session);
 }
 
 void ImaginationDesk::CancelAll() {
-  while (!sessions_.empty()) End(sessions_.begin()->second, ImaginedOutcome::kCancelled);
+  while (!sessions_.empty()) BreakOff(sessions_.begin()->second);
+}
+
+/// Nobody wants the answer; what was played for it was played all the same.
+void ImaginationDesk::BreakOff(const SessionPtr& session) {
+  if (session->scheduler) {
+    session->scheduler->Cancel(clock_.now());
+    Book(session);
+  }
+  End(session, ImaginedOutcome::kCancelled);
 }
 
 /// @throws nothing: what cannot be imagined is answered so.
@@ -240,7 +249,8 @@ void ImaginationDesk::Finished(const SessionPtr& session, const Assign& assign, 
                                                index, rollout});
 }
 
-void ImaginationDesk::Finish(const SessionPtr& session) {
+/// What was played, and what it came to.  @pre the scheduler has finished.
+Report ImaginationDesk::Book(const SessionPtr& session) {
   ImaginedStep& step = steps_[session->step];
   const double took = clock_.now() - step.requested;
   std::set<std::pair<int, int>> kept;
@@ -255,6 +265,12 @@ void ImaginationDesk::Finish(const SessionPtr& session) {
   step.wall_seconds = took;
   step.simulated_seconds = report.played_seconds();
   step.predictions = report.ranking;
+  return report;
+}
+
+void ImaginationDesk::Finish(const SessionPtr& session) {
+  ImaginedStep& step = steps_[session->step];
+  const Report report = Book(session);
   step.recommended = report.recommended;
   step.why = report.why;
   // What cuts it short is its time alone: whoever cancels it wants no answer.

@@ -14,6 +14,7 @@
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/kept_rollouts.h"
+#include "hires/imagination/report.h"
 #include "hires/imagination/scheduler.h"
 #include "loop/blackboard.h"
 #include "loop/rollout_pool.h"
@@ -67,7 +68,9 @@ class ImaginationDesk {
   const Played& Rollout(const SessionPtr& session, int alternative, int index);
   void Finished(const SessionPtr& session, const imagination::Assign& assign, int index,
                 const Played& played);
+  imagination::Report Book(const SessionPtr& session);
   void Finish(const SessionPtr& session);
+  void BreakOff(const SessionPtr& session);
   void Refuse(const SessionPtr& session, execution::ImagineAnswered::Outcome outcome,
               const std::string& why);
   void End(const SessionPtr& session, evaluation::ImaginedOutcome outcome);

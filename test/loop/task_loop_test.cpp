@@ -85,6 +85,27 @@ TEST(TaskLoopTest, WhoeverCancelsHasARobotThatStands) {
   EXPECT_LT(run.virtual_seconds, 20.0);
 }
 
+TEST(TaskLoopTest, WhatWasPlayedForACancelledImaginationCounts) {
+  LoopOrder order = Topple("");
+  order.rollouts = 32;
+  int num_asked = 0;
+  const LoopRun run = PlayTask(TheSetup(), order, {}, [&] { return ++num_asked > 15; });  // 3 s
+  ASSERT_EQ(run.report.outcome, AchieveOutcome::kPreempted);
+  ASSERT_EQ(run.report.status.imaginations.size(), 1u);
+  const evaluation::ImaginedStep& imagined = run.report.status.imaginations[0];
+  ASSERT_EQ(imagined.outcome, ImaginedOutcome::kCancelled);
+  ASSERT_EQ(imagined.predictions.size(), 2u);
+  EXPECT_EQ(imagined.recommended, -1) << "nobody wants to know";
+  int num_rollouts = 0;
+  for (const auto& prediction : imagined.predictions)
+    num_rollouts += prediction.evidence.num_rollouts;
+  EXPECT_GE(num_rollouts, 16);
+  EXPECT_LT(num_rollouts, 64) << "it was cut short";
+  EXPECT_GT(imagined.simulated_seconds, 10.0 * num_rollouts) << "a drive takes longer";
+  EXPECT_GT(imagined.wall_seconds, 1.0);
+  EXPECT_LT(imagined.wall_seconds, 3.5);
+}
+
 TEST(TaskLoopTest, ItEndsWhenItsTimeIsOver) {
   LoopOrder order = Topple("off");
   order.time_limit = 5.0;

@@ -203,6 +203,25 @@ class ExecutionMonitorTest(unittest.TestCase):
         task.cancel()
         self.require(task, self.codes.PREEMPTED)
 
+    def test_what_was_imagined_for_a_request_that_is_cancelled_counts(self):
+        self.system.behave('imagine', answer='hang')
+        self.system.behave('move_base', hang=True)
+        task = self.achieve(CARRY)
+        wait_until(lambda: 'imagine move_base_param' in self.system.log(), 'imagination')
+        self.wait_for_step('move_base')
+        self.system.behave('imagine', answer='ranked', recommend='slow')  # of the next request
+        self.system.put('mug2', 'placingAreaNorthLeftTable2')  # the drive will begin in another state
+        wait_until(lambda: 'imagining ended' in self.system.log(), 'the end of the first request')
+        task.wait_for_feedback(lambda f: len(f.imaginations) > 1 and f.imaginations[1].outcome,
+                               'an answer')
+        self.system.free('move_base')
+        result = self.require(task, self.codes.SUCCEEDED)
+        first, second = result.imaginations
+        self.assertEqual((first.outcome, second.outcome), ('cancelled', 'ranked'))
+        self.assertEqual([p.rollouts for p in first.predictions], [16, 16])
+        self.assertEqual((first.simulated_seconds, first.wall_seconds), (30.0, 1.5))
+        self.assertEqual((first.recommended, first.why), (-1, ''))
+
     def test_a_robot_that_does_not_stop_does_not_hold_the_task_for_ever(self):
         self.system.behave('move_base', hang=True, deaf=True)
         task = self.achieve(CARRY)

@@ -33,13 +33,12 @@ hires::ImaginationStatus StatusOf(const execution::StartImagination& command, do
   return status;
 }
 
-/// Numbers for people; the final states are left out, as no reader needs them there.
-void SetPredictions(const hires::ImagineResult& result, hires::ImaginationStatus* status) {
+/// What was played, in numbers for people; the final states are left out, as no reader needs them
+/// there.
+void SetPlayed(const hires::ImagineResult& result, hires::ImaginationStatus* status) {
   status->wall_seconds = result.wall_seconds;
   status->simulated_seconds = result.simulated_seconds - result.simulated_seconds_kept;
   status->predictions = result.predictions;
-  status->recommended = result.recommended;
-  status->why = result.why;
   for (hires::Prediction& prediction : status->predictions) {
     prediction.final_world = {};
     prediction.final_robot = {};
@@ -156,13 +155,21 @@ std::vector<int> ImagineRequests::Overdue(double now) const {
 void ImagineRequests::OnEnd(int key, const hires::ImagineResultConstPtr& result,
                             const std::string& why) {
   const auto found = requests_.find(key);
-  if (found == requests_.end()) return;
+  if (found == requests_.end()) return OnCancelled(key, result);
   Request& request = found->second;
   if (!result) {
     return Refuse(key, request.is_late ? Outcome::kNothingFinished : Outcome::kUnavailable, why);
   }
-  SetPredictions(*result, &request.status);
+  SetPlayed(*result, &request.status);
+  request.status.recommended = result->recommended;
+  request.status.why = result->why;
   Answer(key, AnswerOf(request.command.request, *result, request.state, request.is_late));
+}
+
+/// Nobody wants the answer; what was played for it was played all the same.
+void ImagineRequests::OnCancelled(int key, const hires::ImagineResultConstPtr& result) {
+  const auto finished = finished_.find(key);
+  if (result && finished != finished_.end()) SetPlayed(*result, &finished->second);
 }
 
 void ImagineRequests::Refuse(int key, Outcome outcome, const std::string& why) {

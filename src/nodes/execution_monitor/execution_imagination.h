@@ -39,7 +39,8 @@ class ImagineRequests {
   void CancelAll(double now);  ///< No answer comes any more.
   void Tick(double now);
 
-  /// Of all requests since the last Clear(), in their order; `dispatch` is not filled in.
+  /// Of all requests since the last Clear(), in their order; `dispatch` is not filled in. What was
+  /// played for one that was cancelled is known once its server has ended it.
   std::vector<hires::ImaginationStatus> Statuses() const;
   void Clear() { finished_.clear(); }
   bool is_available() { return link_.is_available(); }
@@ -67,6 +68,7 @@ class ImagineRequests {
   void Translate(int key, const hires::execution::StartImagination& command);
   void OnTranslated(int key, bool is_answered, const State& state);
   void OnEnd(int key, const hires::ImagineResultConstPtr& result, const std::string& why);
+  void OnCancelled(int key, const hires::ImagineResultConstPtr& result);
   void Refuse(int key, hires::execution::ImagineAnswered::Outcome outcome, const std::string& why);
   void Answer(int key, const hires::execution::ImagineAnswered& answer);
   void Finish(int key, const std::string& outcome, double now);

@@ -215,23 +215,33 @@ class Imagination(Server):
         if wanted['answer'] == 'hang':
             cancelled.wait()
             result.outcome = result.CANCELLED
-            return goal.set_canceled(result)
+            result.predictions = self.predictions(asked, wanted)
+            goal.set_canceled(result)
+            return log('imagining ended')
         if wanted['answer'] == 'no_worker':
             result.outcome = result.NO_WORKER
             return goal.set_aborted(result)
         is_ranked = wanted['answer'] == 'ranked'
-        last = asked.steps[0].alternatives[-1].values
-        best = wanted.get('recommend', last[0])
-        for value in sorted(last, key=lambda v: v != best):
-            arguments = [a.values[0] for a in asked.steps[0].alternatives[:-1]] + [value]
-            result.predictions.append(msg.Prediction(
-                action=msg.ActionCall(name=asked.steps[0].name, arguments=arguments), rollouts=16,
-                success_share=1.0 if is_ranked else 0.0, duration_mean=20.0, duration_sd=1.0,
-                duration_p50=20.0, duration_p95=22.0, durations=[18.5] + 14 * [20.0] + [22.0],
-                failures=[] if is_ranked else [msg.FailureCount(failure('area_occupied'), 16)]))
+        result.predictions = self.predictions(asked, wanted)
         result.outcome = result.RANKED if is_ranked else result.ALL_FAILED
         result.recommended = 0 if is_ranked else -1
         goal.set_succeeded(result)
+
+    @staticmethod
+    def predictions(asked, wanted):
+        """Of each alternative 16 rollouts, what is recommended first."""
+        does_fail = wanted['answer'] == 'all_failed'
+        last = asked.steps[0].alternatives[-1].values
+        best = wanted.get('recommend', last[0])
+        return [msg.Prediction(
+            action=msg.ActionCall(
+                name=asked.steps[0].name,
+                arguments=[a.values[0] for a in asked.steps[0].alternatives[:-1]] + [value]),
+            rollouts=16, success_share=0.0 if does_fail else 1.0, duration_mean=20.0,
+            duration_sd=1.0, duration_p50=20.0, duration_p95=22.0,
+            durations=[18.5] + 14 * [20.0] + [22.0],
+            failures=[msg.FailureCount(failure('area_occupied'), 16)] if does_fail else [])
+                for value in sorted(last, key=lambda v: v != best)]
 
 
 def translate(request):

@@ -100,6 +100,10 @@ class ExecutionSystem(BlackboardAccess):
         name, arguments = step.rstrip(')').split('(')
         getattr(self._observations, name)(*arguments.split(', '))
 
+    def put(self, thing, area):
+        """It is seen there."""
+        self._observations.on(thing, area)
+
     def say_observed_until(self, time, sequence=0):
         """As a tracker does when the Blackboard has come to that number."""
         message = self.msg.ObservationProgress(sequence=sequence)
