@@ -1,0 +1,269 @@
+#include "hires/navigation/hybrid_a_star.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <queue>
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+
+#include "hires/base/check.h"
+#include "hires/geometry/angles.h"
+#include "navigation/centre_distances.h"
+
+namespace hires::navigation {
+namespace {
+
+using geometry::Pose2;
+
+constexpr double kPlaceSize = 0.1;      // [m] of the squares that the search tells apart
+constexpr double kLeastStep = 0.15;     // [m] of an arc: it leaves its square, on the diagonal too
+constexpr double kCurveFactor = 1.02;   // of equally long ways the straighter one
+constexpr double kSteeringCost = 0.02;  // [m] of turning the wheels, so that a way does not wobble
+
+/// Of a way that the search has found: its end, and what leads there.
+struct Node {
+  Pose2 X_MB;
+  double cost{0.0};  // [m]
+  int parent{-1};
+  std::vector<CarArc> arcs;  // from the parent
+  bool is_goal{false};
+};
+
+/// Lowest estimate first; of equal ones the one nearer to the goal, then the one found first.
+struct OpenNode {
+  double estimate, to_goal;
+  int node;
+  bool operator<(const OpenNode& other) const {
+    return std::tie(other.estimate, other.to_goal, other.node) < std::tie(estimate, to_goal, node);
+  }
+};
+
+/// The first pose is driven to as the second one is: nothing changes there.
+std::vector<CarPose> PathAlong(const Pose2& X_MStart, const std::vector<CarArc>& arcs,
+                               double spacing) {
+  std::vector<CarPose> path{{X_MStart}};
+  AppendPoses(X_MStart, arcs, spacing, &path);
+  if (path.size() > 1) {
+    path.front().curvature = path[1].curvature;
+    path.front().is_backward = path[1].is_backward;
+  }
+  return path;
+}
+
+class CarSearch {
+ public:
+  CarSearch(const Costmap& costmap, geometry::Polygon footprint, const Pose2& X_MGoal,
+            double radius, const CarPathParams& params, const CentreDistances& distances)
+      : costmap_(costmap),
+        footprint_(std::move(footprint)),
+        X_MGoal_(X_MGoal),
+        params_(params),
+        cost_weight_(params.costs.cost_factor / params.costs.neutral_cost),
+        step_(std::max(kLeastStep, radius * HeadingStep())),
+        curvatures_{0.0, 0.5 / radius, -0.5 / radius, 1.0 / radius, -1.0 / radius},
+        ways_(radius),
+        distances_(distances) {}
+
+  /// @return the node at the goal.
+  std::optional<int> Run(const Pose2& X_MStart) {
+    Add({X_MStart, 0.0, -1, {}, false});
+    while (!open_.empty() && num_expansions_ < params_.max_expansions) {
+      const int next = open_.top().node;
+      open_.pop();
+      if (nodes_[next].is_goal) return next;
+      if (best_.at(KeyOf(nodes_[next])) != next) continue;  // reached more cheaply since
+      Expand(next);
+    }
+    return std::nullopt;
+  }
+
+  bool IsFree(const Pose2& X_MB) const {
+    return costmap_.FootprintCost(footprint_, X_MB) < kLethalCost;
+  }
+
+  std::vector<CarPose> PathTo(int goal) const {
+    std::vector<int> way;
+    for (int node = goal; node >= 0; node = nodes_[node].parent) way.push_back(node);
+    std::vector<CarArc> arcs;
+    for (auto node = way.rbegin(); node != way.rend(); ++node) {
+      arcs.insert(arcs.end(), nodes_[*node].arcs.begin(), nodes_[*node].arcs.end());
+    }
+    return PathAlong(nodes_[way.back()].X_MB, arcs, params_.spacing);
+  }
+
+  double CostOf(int node) const { return nodes_[node].cost; }
+  int num_expansions() const { return num_expansions_; }
+
+ private:
+  double HeadingStep() const { return 2.0 * geometry::kPi / params_.num_headings; }
+
+  /// Square, heading, and whether it came there backward: what the search tells apart.
+  std::uint64_t KeyOf(const Node& node) const {
+    const auto count = [](double value, double size) {
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value / size)));
+    };
+    const std::uint64_t x = count(node.X_MB.x - costmap_.origin().x(), kPlaceSize) & 0xffffff;
+    const std::uint64_t y = count(node.X_MB.y - costmap_.origin().y(), kPlaceSize) & 0xffffff;
+    const auto heading = static_cast<std::uint64_t>(
+        (std::lround(node.X_MB.yaw / HeadingStep()) + 2 * params_.num_headings) %
+        params_.num_headings);
+    const std::uint64_t back = !node.arcs.empty() && node.arcs.back().length < 0.0 ? 1 : 0;
+    return ((x << 24 | y) << 15 | (heading & 0x3fff) << 1) | back;
+  }
+
+  void Expand(int from) {
+    const double to_goal = Heuristic(nodes_[from]);
+    // The farther the goal, the less likely it is that nothing stands on the way there.
+    if (num_expansions_ % (1 + static_cast<int>(to_goal)) == 0) TryToReachGoal(from);
+    ++num_expansions_;
+    for (const double length : {step_, -step_}) {
+      for (const double curvature : curvatures_) Try(from, {{length, curvature}}, false);
+    }
+  }
+
+  void TryToReachGoal(int from) {
+    std::vector<CarArc> arcs = ways_.Shortest(nodes_[from].X_MB, X_MGoal_);
+    if (arcs.empty() && from != 0) return;
+    Try(from, std::move(arcs), true);
+  }
+
+  void Try(int from, std::vector<CarArc> arcs, bool is_goal) {
+    const std::optional<double> cost = CostAlong(nodes_[from], arcs);
+    if (!cost) return;
+    const Pose2 end = is_goal ? X_MGoal_ : EndOf(nodes_[from].X_MB, arcs.front());
+    Add({{end.x, end.y, geometry::WrapToPi(end.yaw)},
+         nodes_[from].cost + *cost,
+         from,
+         std::move(arcs),
+         is_goal});
+  }
+
+  void Add(Node node) {
+    const double to_goal = node.is_goal ? 0.0 : Heuristic(node);
+    if (!std::isfinite(to_goal) || node.cost >= cost_of_goal_) return;
+    const int id = static_cast<int>(nodes_.size());
+    if (node.is_goal) {
+      cost_of_goal_ = node.cost;
+    } else {
+      const auto [known, is_new] = best_.emplace(KeyOf(node), id);
+      if (!is_new && nodes_[known->second].cost <= node.cost) return;
+      known->second = id;
+    }
+    open_.push({node.cost + to_goal, to_goal, id});
+    nodes_.push_back(std::move(node));
+  }
+
+  /// [m] Nothing where the footprint would touch something.
+  std::optional<double> CostAlong(const Node& from, const std::vector<CarArc>& arcs) {
+    scratch_.clear();
+    AppendPoses(from.X_MB, arcs, params_.spacing, &scratch_);
+    double cost = 0.0;
+    const CarArc* last = from.arcs.empty() ? nullptr : &from.arcs.back();
+    std::size_t pose = 0;
+    for (const CarArc& arc : arcs) {
+      cost += CostOfBeginning(arc, last);
+      const int pieces =
+          std::max(1, static_cast<int>(std::ceil(std::abs(arc.length) / params_.spacing)));
+      for (int i = 0; i < pieces; ++i, ++pose) {
+        const Pose2& X_MB = scratch_[pose].X_MB;
+        if (!IsFree(X_MB)) return std::nullopt;
+        int column = 0, row = 0;
+        costmap_.CellOf(X_MB.position(), &column, &row);
+        cost += FactorOf(arc) * std::abs(arc.length) / pieces *
+                (1.0 + cost_weight_ * costmap_.cost(column, row));
+      }
+      last = &arc;
+    }
+    return cost;
+  }
+
+  /// [m] What the way to the goal will cost: that of the shortest one where nothing stands, or as a
+  /// point round what stands there. The shortest way is not always the cheapest, so it may be too
+  /// much; but one without reversals would let it look at thousands of ways before it believes that
+  /// they are needed.
+  double Heuristic(const Node& from) const {
+    return std::max(CostWhereNothingStands(from.X_MB), distances_.At(from.X_MB.position()));
+  }
+
+  double CostWhereNothingStands(const Pose2& X_MB) const {
+    double cost = 0.0;
+    const CarArc* last = nullptr;
+    const std::vector<CarArc> arcs = ways_.Shortest(X_MB, X_MGoal_);
+    for (const CarArc& arc : arcs) {
+      cost += CostOfBeginning(arc, last) + FactorOf(arc) * std::abs(arc.length);
+      last = &arc;
+    }
+    return cost;
+  }
+
+  double CostOfBeginning(const CarArc& arc, const CarArc* last) const {
+    if (!last) return 0.0;
+    return ((arc.length < 0.0) != (last->length < 0.0) ? params_.reversal : 0.0) +
+           (arc.curvature != last->curvature ? kSteeringCost : 0.0);
+  }
+
+  double FactorOf(const CarArc& arc) const {
+    return (arc.length < 0.0 ? params_.backward_factor : 1.0) *
+           (arc.curvature == 0.0 ? 1.0 : kCurveFactor);
+  }
+
+  const Costmap& costmap_;
+  geometry::Polygon footprint_;
+  Pose2 X_MGoal_;
+  CarPathParams params_;
+  double cost_weight_;
+  double step_;  // [m] of an arc
+  std::array<double, 5> curvatures_;
+  ReedsSheppWays ways_;
+  const CentreDistances& distances_;
+  std::vector<Node> nodes_;
+  std::unordered_map<std::uint64_t, int> best_;  // cheapest node of each place
+  std::priority_queue<OpenNode> open_;
+  std::vector<CarPose> scratch_;
+  double cost_of_goal_{std::numeric_limits<double>::infinity()};
+  int num_expansions_{0};
+};
+
+}  // namespace
+
+std::vector<CarPose> ShortestCarPath(const Pose2& X_MStart, const Pose2& X_MGoal,
+                                     double min_turning_radius, const CarPathParams& params) {
+  const ReedsSheppWays ways(params.steering_reserve * min_turning_radius);
+  return PathAlong(X_MStart, ways.Shortest(X_MStart, X_MGoal), params.spacing);
+}
+
+CarPathResult PlanCarPath(const Costmap& costmap, const geometry::Polygon& footprint,
+                          const Pose2& X_MStart, const Pose2& X_MGoal, double min_turning_radius,
+                          const CarPathParams& params) {
+  HIRES_CHECK(
+      min_turning_radius > 0.0 && params.steering_reserve >= 1.0 && params.spacing > 0.0 &&
+          params.num_headings > 0 && params.costs.neutral_cost > 0.0,
+      "a car's path needs a turning radius, and steps, headings and costs that are positive");
+  CarPathResult result;
+  const double radius = params.steering_reserve * min_turning_radius;
+  const CentreDistances distances(costmap, X_MGoal.position(), X_MStart.position(), params.costs);
+  for (const double clearance : {params.clearance, 0.0}) {
+    CarSearch search(costmap, geometry::Padded(footprint, clearance), X_MGoal, radius, params,
+                     distances);
+    result.status = !search.IsFree(X_MStart)  ? PathStatus::kStartBlocked
+                    : !search.IsFree(X_MGoal) ? PathStatus::kGoalBlocked
+                                              : PathStatus::kNoPath;
+    if (result.status != PathStatus::kNoPath) continue;
+    const std::optional<int> goal = search.Run(X_MStart);
+    result.num_expansions += search.num_expansions();
+    if (!goal) continue;
+    result.status = PathStatus::kFound;
+    result.path = search.PathTo(*goal);
+    result.path.back().X_MB = X_MGoal;
+    result.cost = search.CostOf(*goal);
+    break;
+  }
+  return result;
+}
+
+}  // namespace hires::navigation
