@@ -8,6 +8,7 @@
 #include "hires/base/check.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
+#include "hires/navigation/hybrid_a_star.h"
 
 namespace hires::control {
 namespace {
@@ -143,23 +144,36 @@ Status MoveBaseDrive::BeginRest(const robot::Observation& seen, robot::Command* 
   return rest_.Update(seen, command);
 }
 
-/// Whether the outline passes over free floor on the straight way to the goal.
+/// The way that MoveBaseBlind drives: straight, or as a car does.
+std::vector<Pose2> MoveBaseDrive::WayFrom(const Pose2& X_MB, double resolution) const {
+  std::vector<Pose2> way;
+  const robot::BaseControllerParams& base = driving_->robot->profile.base_controller;
+  if (base.drive == robot::Drive::kCarLike) {
+    for (const auto& pose : navigation::ShortestCarPath(X_MB, X_MGoal_, base.min_turning_radius)) {
+      way.push_back(pose.X_MB);
+    }
+    return way;
+  }
+  const Pose2 X_BGoal = X_MB.Inverse() * X_MGoal_;
+  const double reach = geometry::CircumscribedRadius(driving_->footprint);
+  const double length = LengthOf(X_BGoal) + reach * std::abs(X_BGoal.yaw);
+  const int steps = std::max(1, static_cast<int>(std::ceil(length / resolution)));
+  for (int i = 1; i <= steps; ++i) {
+    const double share = static_cast<double>(i) / steps;
+    way.push_back(X_MB * Pose2{share * X_BGoal.x, share * X_BGoal.y, share * X_BGoal.yaw});
+  }
+  return way;
+}
+
+/// Whether the outline passes over free floor on the way to the goal.
 bool MoveBaseDrive::IsWayFree(const robot::Observation& seen) const {
   // Where the robot stands it can stand, whatever the map says.
   const Costmap costmap = driving_->costmap->WithObstacles(seen.obstacles_M)
                               .WithRoomFor(geometry::Transformed(seen.X_MB, driving_->footprint));
-  const Pose2 X_BGoal = seen.X_MB.Inverse() * X_MGoal_;
-  const double reach = geometry::CircumscribedRadius(driving_->footprint);
-  const double way = LengthOf(X_BGoal) + reach * std::abs(X_BGoal.yaw);
-  const int steps = std::max(1, static_cast<int>(std::ceil(way / costmap.resolution())));
-  for (int i = 1; i <= steps; ++i) {
-    const double share = static_cast<double>(i) / steps;
-    const Pose2 X_MB = seen.X_MB * Pose2{share * X_BGoal.x, share * X_BGoal.y, share * X_BGoal.yaw};
-    if (costmap.FootprintCost(driving_->footprint, X_MB) >= navigation::kLethalCost) {
-      return false;
-    }
-  }
-  return true;
+  const std::vector<Pose2> way = WayFrom(seen.X_MB, costmap.resolution());
+  return std::all_of(way.begin(), way.end(), [&](const Pose2& X_MB) {
+    return costmap.FootprintCost(driving_->footprint, X_MB) < navigation::kLethalCost;
+  });
 }
 
 bool IsForMoveBase(const skills::SkillSet& skills, const base::ActionCall& action) {

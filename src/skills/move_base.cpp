@@ -11,6 +11,7 @@ namespace {
 
 using geometry::Pose2;
 
+constexpr int kMostWays = 8;        // of a car that comes to rest out of tolerance
 constexpr double kMapMargin = 2.0;  // [m] free floor around the outermost body or area
 
 /// [m] The map covers all bodies and this much more: far enough that all areas lie well inside.
@@ -31,6 +32,31 @@ double MapMargin(const world::World& world) {
   return outside + kMapMargin;
 }
 
+/// Follows what a car's planner found, as the local planner of other robots is set up.
+std::optional<navigation::CarFollower> MakeFollower(const DrivingContext& context,
+                                                    const geometry::Polygon& footprint,
+                                                    const robot::MotionSet& motion_set) {
+  const robot::BaseControllerParams& base = context.robot->profile.base_controller;
+  if (base.drive != robot::Drive::kCarLike) return std::nullopt;
+  const navigation::DwaParams& local = context.params.local;
+  navigation::CarFollowerParams params;
+  params.control_period = local.control_period;
+  params.xy_goal_tolerance = local.xy_goal_tolerance;
+  params.yaw_goal_tolerance = local.yaw_goal_tolerance;
+  params.stopped_linear_velocity = local.stopped_linear_velocity;
+  navigation::CarFollower follower(params, footprint, base.min_turning_radius);
+  follower.SetMotionSet(motion_set);
+  return follower;
+}
+
+/// The motion set as far as a blind drive uses it.
+robot::MotionSet Slowed(robot::MotionSet motion_set, const MoveBaseBlindParams& params) {
+  motion_set.max_linear_velocity = std::min(motion_set.max_linear_velocity, params.max_velocity);
+  motion_set.max_angular_velocity =
+      std::min(motion_set.max_angular_velocity, params.max_angular_velocity);
+  return motion_set;
+}
+
 double RobotHeight(const robot::Robot& robot) {
   geometry::Aabb bounds;
   for (const geometry::Collision& shape :
@@ -38,13 +64,6 @@ double RobotHeight(const robot::Robot& robot) {
     bounds.Include(geometry::BoundsOf(shape.shape, shape.X_BS));
   }
   return bounds.upper.z();
-}
-
-/// The speed from which a deceleration that sets in after a reaction time still ends at the goal:
-/// distance = v t + v^2 / 2a, solved for v.
-double ApproachSpeed(double distance, double deceleration, double reaction_time) {
-  const double lost = deceleration * reaction_time;
-  return std::sqrt(lost * lost + 2.0 * deceleration * distance) - lost;
 }
 
 /// In whole steps: arms in no known posture, measured and never quite the same, give the same
@@ -74,7 +93,7 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
   const geometry::Polygon footprint =
       geometry::Padded(robot.profile.footprint, robot.profile.footprint_padding);
   MoveBaseParams possible = params;
-  if (robot.profile.base_controller.drive == robot::Drive::kDifferential) {
+  if (robot.profile.base_controller.drive != robot::Drive::kOmnidirectional) {
     possible.local.max_lateral_velocity = 0.0;
   }
   return {std::make_shared<const navigation::Costmap>(map, geometry::InscribedRadius(footprint),
@@ -112,7 +131,8 @@ MoveBase::MoveBase(std::shared_ptr<const DrivingContext> context, const Pose2& X
       motion_set_(motion_set),
       costmap_(context_->costmap),
       footprint_(context_->footprint),
-      local_(context_->params.local, footprint_) {
+      local_(context_->params.local, footprint_),
+      car_(MakeFollower(*context_, footprint_, motion_set)) {
   local_.SetMotionSet(motion_set);
 }
 
@@ -123,6 +143,10 @@ void MoveBase::Begin(const robot::Observation& observation) {
   has_begun_ = true;
   footprint_ = FootprintOf(*context_, observation.joints);
   if (footprint_ == context_->footprint) return;
+  if (car_) {  // it plans with the footprint itself, at every heading
+    car_ = MakeFollower(*context_, footprint_, motion_set_);
+    return;
+  }
   local_ = navigation::DwaPlanner(context_->params.local, footprint_);
   local_.SetMotionSet(motion_set_);
   double half_width = 0.0;
@@ -137,10 +161,29 @@ void MoveBase::Begin(const robot::Observation& observation) {
   costmap_ = context_->costmap;
 }
 
+navigation::PathStatus MoveBase::FindPath(const navigation::Costmap& costmap, const Pose2& X_MB) {
+  if (!car_) {
+    auto found = navigation::PlanPath(costmap, X_MB, X_MGoal_, context_->params.planner);
+    if (found.status != navigation::PathStatus::kFound) return found.status;
+    path_ = std::make_shared<const std::vector<Pose2>>(std::move(found.path));
+    local_.SetPath(*path_);
+    return found.status;
+  }
+  navigation::CarPathParams params;
+  params.costs = context_->params.planner;
+  auto found =
+      navigation::PlanCarPath(costmap, footprint_, X_MB, X_MGoal_,
+                              context_->robot->profile.base_controller.min_turning_radius, params);
+  if (found.status != navigation::PathStatus::kFound) return found.status;
+  std::vector<Pose2> poses;
+  for (const navigation::CarPose& pose : found.path) poses.push_back(pose.X_MB);
+  path_ = std::make_shared<const std::vector<Pose2>>(std::move(poses));
+  car_->SetPath(std::move(found.path));
+  return found.status;
+}
+
 std::optional<Status> MoveBase::Plan(const navigation::Costmap& costmap, const Pose2& X_MB) {
-  navigation::PathResult result =
-      navigation::PlanPath(costmap, X_MB, X_MGoal_, context_->params.planner);
-  switch (result.status) {
+  switch (FindPath(costmap, X_MB)) {
     case navigation::PathStatus::kStartBlocked:
       return Failed(base::FailureCode::kStartBlocked);
     case navigation::PathStatus::kGoalBlocked:
@@ -150,8 +193,6 @@ std::optional<Status> MoveBase::Plan(const navigation::Costmap& costmap, const P
     case navigation::PathStatus::kFound:
       break;
   }
-  path_ = std::make_shared<const std::vector<Pose2>>(std::move(result.path));
-  local_.SetPath(*path_);
   return std::nullopt;
 }
 
@@ -210,7 +251,9 @@ Status MoveBase::Update(const robot::Observation& observation, robot::Command* c
     X_MMoved_ = observation.X_MB;
     last_valid_ = last_plan_ = last_moved_ = observation.time;
   }
-  const navigation::DwaResult result = local_.Update(costmap, observation.X_MB, observation.V_B);
+  const navigation::DwaResult result =
+      car_ ? car_->Update(&costmap, observation.X_MB, observation.V_B)
+           : local_.Update(costmap, observation.X_MB, observation.V_B);
   command->base_velocity = result.velocity;
   if (result.status == navigation::DwaStatus::kGoalReached) return Succeeded();
   if (result.status == navigation::DwaStatus::kNoValidTrajectory) {
@@ -228,18 +271,32 @@ Status MoveBase::Update(const robot::Observation& observation, robot::Command* c
 MoveBaseBlind::MoveBaseBlind(const MoveBaseBlindParams& params, const Pose2& X_MGoal,
                              const robot::MotionSet& motion_set,
                              const robot::BaseControllerParams& base)
-    : params_(params), X_MGoal_(X_MGoal), motion_set_(motion_set), drive_(base.drive) {}
+    : params_(params),
+      X_MGoal_(X_MGoal),
+      motion_set_(motion_set),
+      drive_(base.drive),
+      min_turning_radius_(base.min_turning_radius) {
+  if (drive_ != robot::Drive::kCarLike) return;
+  navigation::CarFollowerParams following;
+  following.control_period = params.period;
+  following.xy_goal_tolerance = params.xy_tolerance;
+  following.yaw_goal_tolerance = params.yaw_tolerance;
+  following.deceleration = params.deceleration;
+  following.reaction_time = params.reaction_time;
+  car_.emplace(following, geometry::Polygon{}, min_turning_radius_);
+  car_->SetMotionSet(Slowed(motion_set, params));
+}
 
 double MoveBaseBlind::LinearSpeed(double distance) const {
   const double deceleration = std::min(params_.deceleration, motion_set_.max_linear_acceleration);
-  return std::min({ApproachSpeed(distance, deceleration, params_.reaction_time),
+  return std::min({navigation::ApproachSpeed(distance, deceleration, params_.reaction_time),
                    params_.max_velocity, motion_set_.max_linear_velocity});
 }
 
 double MoveBaseBlind::TurningSpeed(double angle) const {
   const double deceleration = std::min(params_.deceleration, motion_set_.max_linear_acceleration);
   const double speed =
-      std::min({ApproachSpeed(std::abs(angle), deceleration, params_.reaction_time),
+      std::min({navigation::ApproachSpeed(std::abs(angle), deceleration, params_.reaction_time),
                 params_.max_angular_velocity, motion_set_.max_angular_velocity});
   return std::copysign(speed, angle);
 }
@@ -273,6 +330,36 @@ MoveBaseBlind::Course MoveBaseBlind::TurnAndDrive(const Pose2& X_BGoal) {
           geometry::kPi + distance + std::abs(off)};
 }
 
+void MoveBaseBlind::PlanWay(const Pose2& X_MB) {
+  car_->SetPath(navigation::ShortestCarPath(X_MB, X_MGoal_, min_turning_radius_));
+  ++num_ways_;
+  nearest_ = 1e9;
+}
+
+/// Steering like a car. Where it came to rest out of tolerance it is given a new way, some times.
+MoveBaseBlind::Course MoveBaseBlind::Steer(const robot::Observation& observation) {
+  if (num_ways_ == 0) PlanWay(observation.X_MB);
+  auto result = car_->Update(nullptr, observation.X_MB, observation.V_B);
+  if (result.status == navigation::DwaStatus::kNoValidTrajectory && num_ways_ < kMostWays) {
+    PlanWay(observation.X_MB);
+    result = car_->Update(nullptr, observation.X_MB, observation.V_B);
+  }
+  return {result.velocity, car_->remaining()};
+}
+
+MoveBaseBlind::Course MoveBaseBlind::CourseTo(const robot::Observation& observation,
+                                              const Pose2& X_BGoal) {
+  switch (drive_) {
+    case robot::Drive::kCarLike:
+      return Steer(observation);
+    case robot::Drive::kDifferential:
+      return TurnAndDrive(X_BGoal);
+    case robot::Drive::kOmnidirectional:
+      break;
+  }
+  return Straight(X_BGoal);
+}
+
 Status MoveBaseBlind::Update(const robot::Observation& observation, robot::Command* command) {
   command->motion_set = motion_set_;
   const Pose2 X_BGoal = observation.X_MB.Inverse() * X_MGoal_;
@@ -283,8 +370,7 @@ Status MoveBaseBlind::Update(const robot::Observation& observation, robot::Comma
                          std::abs(observation.V_B.wz) < 0.01;
     return stopped ? Succeeded() : Status{};
   }
-  const Course course =
-      drive_ == robot::Drive::kDifferential ? TurnAndDrive(X_BGoal) : Straight(X_BGoal);
+  const Course course = CourseTo(observation, X_BGoal);
   if (course.remaining < nearest_ - 0.01) {
     nearest_ = course.remaining;
     last_progress_ = observation.time;

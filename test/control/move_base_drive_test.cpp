@@ -71,7 +71,7 @@ class MoveBaseDriveTest : public ::testing::Test {
     return ToString(status.failure);
   }
 
-  const skills::SkillSet skills_ = RoomSkills();
+  skills::SkillSet skills_ = RoomSkills();
   const std::shared_ptr<FakeServer> server_ = std::make_shared<FakeServer>();
   const MoveBaseDriveParams params_;
   std::vector<geometry::Polygon> obstacles_M_;
@@ -186,6 +186,24 @@ TEST_F(MoveBaseDriveTest, TheLastStretchIsNotDrivenIntoWhatIsSeen) {
   Begin();
   EXPECT_THAT(ReasonAfter({State::kArrived, ""}, {4.1, 2.0, 0.0}), HasSubstr("unreachable: "));
   EXPECT_FALSE(command_.base_velocity);
+}
+
+TEST_F(MoveBaseDriveTest, ACarsLastStretchIsLookedAtAsItIsDriven) {
+  robot::Robot car = hires::test_support::TrayRobot();
+  car.profile.base_controller.drive = robot::Drive::kCarLike;
+  car.profile.base_controller.min_turning_radius = 0.8;
+  skills_ = skills::MakeSkillSet(hires::test_support::Room(), car, {}, {});
+  const Pose2 beside{4.5, 2.3, 0.0};
+  Begin();
+  server_->news = {State::kArrived, "Goal reached."};
+  EXPECT_EQ(Look(9.0, beside).progress, Progress::kRunning);
+  EXPECT_EQ(command_.base_velocity->vy, 0.0);
+  EXPECT_NE(command_.base_velocity->vx, 0.0);
+  // Straight to the side nothing would stand; it has to drive to and fro.
+  obstacles_M_ = {{{5.0, 1.5}, {5.1, 1.5}, {5.1, 2.7}, {5.0, 2.7}},
+                  {{3.9, 1.5}, {4.0, 1.5}, {4.0, 2.7}, {3.9, 2.7}}};
+  Begin();
+  EXPECT_THAT(ReasonAfter({State::kArrived, ""}, beside), HasSubstr("unreachable: "));
 }
 
 TEST_F(MoveBaseDriveTest, TheGoalIsTakenBackWhereTheActionIsBrokenOff) {

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "hires/imagination/evidence.h"
 #include "hires/imagination/rollout_recording.h"
 #include "hires/robot/load_robot.h"
@@ -36,6 +38,75 @@ TEST(DifferentialRobotTest, ItNeverMovesSideways) {
   EXPECT_GT(num_samples, 50 * HIRES_NUM_ROLLOUTS);
   EXPECT_GT(num_turning, HIRES_NUM_ROLLOUTS / 2) << "it has to steer by turning";
   EXPECT_GT(num_arrived, HIRES_NUM_ROLLOUTS * 95 / 100);
+}
+
+// ------------------------------------------------------------------------- steered like a car
+
+constexpr double kRadius = 0.6;
+constexpr int kNumDrives = HIRES_NUM_ROLLOUTS / 5;
+
+RolloutSetup CarRollouts() {
+  robot::Robot car = hires::test_support::TrayRobot();
+  car.profile.base_controller.drive = robot::Drive::kCarLike;
+  car.profile.base_controller.min_turning_radius = kRadius;
+  car.profile.base_controller.command_lag = 0.05;
+  car.profile.base_controller.loop_frequency = 20.0;
+  car.profile.base_controller.loop_damping = 0.8;
+  return RoomRollouts(Room(), "mill", SomeUncertainty(), car);
+}
+
+TEST(CarLikeRobotTest, ItCarriesItsLoadOnArcsThatItCanSteer) {
+  const RolloutSetup setup = CarRollouts();
+  for (const char* area : {"east", "corner"}) {
+    int num_arrived = 0, num_hard_over = 0;
+    for (int index = 0; index < kNumDrives; ++index) {
+      const auto recording = RecordRollout(setup, {"move_base_param", {area, "slow"}}, index, {});
+      ASSERT_TRUE(recording);
+      num_arrived += FailureOf(recording->result) ? 0 : 1;
+      for (const RolloutSample& sample : recording->samples) {
+        ASSERT_EQ(sample.V_B.vy, 0.0) << "rollout " << index << " at " << sample.time << " s";
+        const double sharpest = std::abs(sample.V_B.vx) / kRadius;
+        ASSERT_LE(std::abs(sample.V_B.wz), sharpest + 1e-9)
+            << "rollout " << index << " at " << sample.time << " s";
+        num_hard_over += std::abs(sample.V_B.wz) > 0.8 * sharpest && sharpest > 0.1 ? 1 : 0;
+      }
+    }
+    EXPECT_GE(num_arrived, kNumDrives * 95 / 100) << area;
+    EXPECT_GT(num_hard_over, kNumDrives) << area << ": it has to steer";
+  }
+}
+
+TEST(CarLikeRobotTest, ProfileAndBareUrdfAreDrivenBothWays) {
+  for (const char* path : {"/config/robots/car.yaml", "/urdf/car.urdf"}) {
+    const RolloutSetup setup =
+        RoomRollouts(Room(), "", "none", robot::LoadAnyRobot(HIRES_SOURCE_DIR + std::string(path)));
+    for (const char* speed : {"fast", "slow"}) {
+      const auto result = PlayRollout(setup, {"move_base_param", {"corner", speed}}, 0);
+      EXPECT_TRUE(result->action_finished) << path << " " << speed;
+      EXPECT_FALSE(FailureOf(*result)) << path << " " << speed;
+    }
+    EXPECT_TRUE(PlayRollout(setup, {"move_base_blind", {"corner"}}, 0)->action_finished) << path;
+  }
+}
+
+TEST(CarLikeRobotTest, WorkersPlayTheSameBits) {
+  const RolloutSetup setup = CarRollouts();
+  const base::ActionCall drive{"move_base_param", {"corner", "fast"}};
+  constexpr int kNumPlayed = 6;
+  std::vector<RolloutResult> alone(kNumPlayed), beside(kNumPlayed);
+  for (int i = 0; i < kNumPlayed; ++i) alone[i] = *PlayRollout(setup, drive, i);
+  const auto play = [&](int first) {
+    for (int i = first; i < kNumPlayed; i += 2) beside[i] = *PlayRollout(setup, drive, i);
+  };
+  std::thread other(play, 1);
+  play(0);
+  other.join();
+  for (int i = 0; i < kNumPlayed; ++i) {
+    EXPECT_TRUE(SameOutcome(alone[i], beside[i])) << i;
+    EXPECT_EQ(alone[i].duration, beside[i].duration) << i;
+    EXPECT_EQ(alone[i].final_robot.X_MB.x, beside[i].final_robot.X_MB.x) << i;
+    EXPECT_EQ(alone[i].final_robot.X_MB.yaw, beside[i].final_robot.X_MB.yaw) << i;
+  }
 }
 
 // ---------------------------------------------------------------------------- an arm that is no

@@ -81,6 +81,68 @@ TEST(MoveBaseTest, TwoDrivenWheelsAreNeverDrivenSideways) {
   }
 }
 
+constexpr double kRadius = 0.6;
+
+/// The test's robot on a car's wheels.
+std::shared_ptr<const DrivingContext> CarIn(const world::World& world) {
+  robot::Robot robot = TrayRobot();
+  robot.profile.base_controller.drive = robot::Drive::kCarLike;
+  robot.profile.base_controller.min_turning_radius = kRadius;
+  return std::make_shared<const DrivingContext>(MakeDrivingContext(world, robot, {}));
+}
+
+SkillRun DriveCarIn(const world::World& world, const Pose2& from, const Pose2& to,
+                    const robot::MotionSet& motion_set = kFast) {
+  MoveBase skill(CarIn(world), to, motion_set);
+  return RunSkill(&skill, {from, {}, false}, [&](auto*, auto* driven) {
+    EXPECT_EQ(driven->V_B.vy, 0.0);
+    EXPECT_LE(std::abs(driven->V_B.wz), std::abs(driven->V_B.vx) / kRadius + 1e-9);
+    EXPECT_LE(std::abs(driven->V_B.wz), motion_set.max_angular_velocity + 1e-9);
+  });
+}
+
+TEST(MoveBaseTest, ACarArrivesOnArcsThatItCanSteer) {
+  world::World room = Room();
+  room.statics.push_back(Block("crate", {0.5, 1.0, 0.8}, {2.75, 2.0, 0.4}));
+  for (const Pose2& goal : {kEast, Pose2{4.5, 2.4, -3.0}, Pose2{1.0, 3.0, 1.5}, kWest}) {
+    const SkillRun fast = DriveCarIn(room, kWest, goal);
+    ExpectArrivedAt(goal, fast);
+    EXPECT_LE(fast.fastest, kFast.max_linear_velocity + 1e-9);
+    const SkillRun slow = DriveCarIn(room, kWest, goal, kSlow);
+    ExpectArrivedAt(goal, slow);
+    EXPECT_LE(slow.fastest, kSlow.max_linear_velocity + 1e-9);
+  }
+}
+
+TEST(MoveBaseTest, ACarSaysWhyThereIsNoWay) {
+  world::World room = Room();
+  room.statics.push_back(Block("crate", {1.0, 1.0, 0.8}, {4.5, 2.0, 0.4}));
+  ExpectFailed("goal_blocked", DriveCarIn(room, kWest, kEast));
+  ExpectFailed("start_blocked", DriveCarIn(room, kEast, kWest));
+  world::World divided = Room();
+  divided.statics.push_back(Block("fence", {0.1, 4.0, 0.8}, {2.75, 2.0, 0.4}));
+  ExpectFailed("no_path", DriveCarIn(divided, kWest, kEast));
+}
+
+TEST(MoveBaseTest, ACarSeesObstaclesThatAreNotInTheMap) {
+  MoveBase skill(CarIn(Room()), kEast, kFast);
+  const geometry::Polygon crate{{2.5, 1.5}, {3.0, 1.5}, {3.0, 2.5}, {2.5, 2.5}};
+  double nearest = 1e9;
+  const SkillRun run = RunSkill(&skill, {kWest, {}, false}, [&](auto* seen, auto* robot) {
+    if (robot->X_MB.x > 1.3) seen->obstacles_M = {crate};
+    nearest = std::min(
+        nearest, geometry::Distance(
+                     geometry::Transformed(robot->X_MB, TrayRobot().profile.footprint), crate));
+  });
+  ExpectArrivedAt(kEast, run);
+  EXPECT_GT(nearest, 0.0);
+}
+
+TEST(MoveBaseTest, AHeldCarOscillates) {
+  MoveBase skill(CarIn(Room()), kEast, kFast);
+  ExpectFailed("oscillating", RunSkill(&skill, {kWest, {}, true}));
+}
+
 TEST(MoveBaseTest, KeepsToItsMotionSet) {
   const SkillRun fast = DriveIn(Room(), kWest, kEast, kFast);
   const SkillRun slow = DriveIn(Room(), kWest, kEast, kSlow);
@@ -423,6 +485,28 @@ TEST(MoveBaseBlindTest, TwoDrivenWheelsArriveWithoutDrivingSideways) {
     EXPECT_LE(run.fastest, params.max_velocity + 1e-9);
     EXPECT_LE(run.fastest_turn, params.max_angular_velocity + 1e-9);
   }
+}
+
+TEST(MoveBaseBlindTest, ACarArrivesOnArcsThatItCanSteer) {
+  const MoveBaseBlindParams params;
+  robot::BaseControllerParams car;
+  car.drive = robot::Drive::kCarLike;
+  car.min_turning_radius = kRadius;
+  for (const Pose2& goal :
+       {Pose2{1.8, 2.0, 0.0}, Pose2{0.6, 2.3, 1.2}, Pose2{1.0, 2.0, 3.1}, Pose2{1.0, 2.05, 0.0}}) {
+    MoveBaseBlind skill(params, goal, kFast, car);
+    const SkillRun run = RunSkill(&skill, {kWest, {}, false}, [&](auto*, auto* driven) {
+      EXPECT_EQ(driven->V_B.vy, 0.0);
+      EXPECT_LE(std::abs(driven->V_B.wz), std::abs(driven->V_B.vx) / kRadius + 1e-9);
+    });
+    EXPECT_EQ(run.status.progress, Progress::kSucceeded) << ToString(run.status.failure);
+    EXPECT_LE(DistanceBetween(run.robot.X_MB, goal), params.xy_tolerance);
+    EXPECT_LE(std::abs(geometry::WrapToPi(run.robot.X_MB.yaw - goal.yaw)), params.yaw_tolerance);
+    EXPECT_LE(run.fastest, params.max_velocity + 1e-9);
+    EXPECT_LE(run.fastest_turn, params.max_angular_velocity + 1e-9);
+  }
+  MoveBaseBlind held(params, {1.8, 2.0, 0.0}, kFast, car);
+  ExpectFailed("stuck", RunSkill(&held, {kWest, {}, true}));
 }
 
 TEST(MoveBaseBlindTest, TwoDrivenWheelsBackOffInsteadOfTurningTwice) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hires/base/action.h"
 #include "hires/skills/move_base.h"
@@ -80,6 +81,7 @@ class MoveBaseDrive : public skills::Skill {
   skills::Status Follow(const robot::Observation& seen, robot::Command* command);
   skills::Status BeginRest(const robot::Observation& seen, robot::Command* command);
   bool IsWayFree(const robot::Observation& seen) const;
+  std::vector<geometry::Pose2> WayFrom(const geometry::Pose2& X_MB, double resolution) const;
 
   std::shared_ptr<MoveBaseServer> server_;
   std::function<bool()> may_drive_;

@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "hires/navigation/a_star.h"
+#include "hires/navigation/car_follower.h"
 #include "hires/navigation/costmap.h"
 #include "hires/navigation/dwa.h"
+#include "hires/navigation/hybrid_a_star.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/skills/skill.h"
 
@@ -48,8 +50,8 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
 
 /// Drives to a pose in the map round all known obstacles: A* on the inflated costmap, dynamic
 /// window approach for control, as move_base does, with room for the arms as they are when it
-/// begins. Fails with start_blocked, goal_blocked, no_path, no_valid_trajectory or
-/// oscillating.
+/// begins. A base that steers like a car: hybrid A*, and a follower of arcs. Fails with
+/// start_blocked, goal_blocked, no_path, no_valid_trajectory or oscillating.
 class MoveBase : public Skill {
  public:
   MoveBase(std::shared_ptr<const DrivingContext> context, const geometry::Pose2& X_MGoal,
@@ -62,6 +64,7 @@ class MoveBase : public Skill {
  private:
   void Begin(const robot::Observation& observation);
   std::optional<Status> Plan(const navigation::Costmap& costmap, const geometry::Pose2& X_MB);
+  navigation::PathStatus FindPath(const navigation::Costmap& costmap, const geometry::Pose2& X_MB);
   bool NoteMotion(const robot::Observation& observation);
   std::shared_ptr<const navigation::Costmap> CostmapNow(
       const robot::Observation& observation) const;
@@ -73,6 +76,7 @@ class MoveBase : public Skill {
   std::shared_ptr<const navigation::Costmap> costmap_;  // the map, inflated for this drive
   geometry::Polygon footprint_;
   navigation::DwaPlanner local_;
+  std::optional<navigation::CarFollower> car_;  // drives instead, where the base steers like a car
   bool has_begun_{false};
   std::shared_ptr<const std::vector<geometry::Pose2>> path_;  // null: not planned yet
   std::shared_ptr<const navigation::Costmap> now_;            // costmap at the last look
@@ -95,9 +99,9 @@ struct MoveBaseBlindParams {
   double stuck_timeout{5.0};         ///< [s] without coming 0.01 m or rad nearer
 };
 
-/// Drives straight to a pose, turning on the way (a base that cannot drive sideways: before and
-/// after), without looking at obstacles: for the last stretch to furniture, under whose top the
-/// base fits. Fails with stuck.
+/// Drives straight to a pose, turning on the way (two driven wheels: before and after; a car: on
+/// Reeds and Shepp's shortest way, forward and backward), without looking at obstacles: for the
+/// last stretch to furniture, under whose top the base fits. Fails with stuck.
 class MoveBaseBlind : public Skill {
  public:
   MoveBaseBlind(const MoveBaseBlindParams& params, const geometry::Pose2& X_MGoal,
@@ -115,11 +119,17 @@ class MoveBaseBlind : public Skill {
   double TurningSpeed(double angle) const;
   Course Straight(const geometry::Pose2& X_BGoal) const;
   Course TurnAndDrive(const geometry::Pose2& X_BGoal);
+  Course Steer(const robot::Observation& observation);
+  void PlanWay(const geometry::Pose2& X_MB);
+  Course CourseTo(const robot::Observation& observation, const geometry::Pose2& X_BGoal);
 
   MoveBaseBlindParams params_;
   geometry::Pose2 X_MGoal_;
   robot::MotionSet motion_set_;
   robot::Drive drive_;
+  double min_turning_radius_;
+  std::optional<navigation::CarFollower> car_;  // where the base steers like one
+  int num_ways_{0};                             // that it has been given
   bool begun_driving_{false};
   bool backwards_{false};
   double nearest_{1e9};        // [m] + [rad] least that remained so far
