@@ -132,50 +132,54 @@ class CarSearch {
     Try(from, std::move(arcs), true);
   }
 
+  /// Adds where the arcs lead to, unless a cheaper way there is known or the footprint would touch
+  /// something; what takes long is looked at last.
   void Try(int from, std::vector<CarArc> arcs, bool is_goal) {
-    const std::optional<double> cost = CostAlong(nodes_[from], arcs);
-    if (!cost) return;
-    const Pose2 end = is_goal ? X_MGoal_ : EndOf(nodes_[from].X_MB, arcs.front());
-    Add({{end.x, end.y, geometry::WrapToPi(end.yaw)},
-         nodes_[from].cost + *cost,
-         from,
-         std::move(arcs),
-         is_goal});
+    scratch_.clear();
+    AppendPoses(nodes_[from].X_MB, arcs, params_.spacing, &scratch_);
+    Node node{is_goal ? X_MGoal_ : scratch_.back().X_MB,
+              nodes_[from].cost + CostAlong(nodes_[from], arcs), from, std::move(arcs), is_goal};
+    node.X_MB.yaw = geometry::WrapToPi(node.X_MB.yaw);
+    if (IsBeaten(node)) return;
+    const bool is_free = std::all_of(scratch_.begin(), scratch_.end(),
+                                     [this](const CarPose& pose) { return IsFree(pose.X_MB); });
+    if (is_free) Add(std::move(node));
+  }
+
+  bool IsBeaten(const Node& node) const {
+    if (node.cost >= cost_of_goal_) return true;
+    if (node.is_goal) return false;
+    const auto known = best_.find(KeyOf(node));
+    return known != best_.end() && nodes_[known->second].cost <= node.cost;
   }
 
   void Add(Node node) {
     const double to_goal = node.is_goal ? 0.0 : Heuristic(node);
-    if (!std::isfinite(to_goal) || node.cost >= cost_of_goal_) return;
+    if (!std::isfinite(to_goal)) return;
     const int id = static_cast<int>(nodes_.size());
     if (node.is_goal) {
       cost_of_goal_ = node.cost;
     } else {
-      const auto [known, is_new] = best_.emplace(KeyOf(node), id);
-      if (!is_new && nodes_[known->second].cost <= node.cost) return;
-      known->second = id;
+      best_[KeyOf(node)] = id;
     }
     open_.push({node.cost + to_goal, to_goal, id});
     nodes_.push_back(std::move(node));
   }
 
-  /// [m] Nothing where the footprint would touch something.
-  std::optional<double> CostAlong(const Node& from, const std::vector<CarArc>& arcs) {
-    scratch_.clear();
-    AppendPoses(from.X_MB, arcs, params_.spacing, &scratch_);
+  /// [m] Of the arcs that `scratch_` has the poses of.
+  double CostAlong(const Node& from, const std::vector<CarArc>& arcs) const {
     double cost = 0.0;
     const CarArc* last = from.arcs.empty() ? nullptr : &from.arcs.back();
     std::size_t pose = 0;
     for (const CarArc& arc : arcs) {
       cost += CostOfBeginning(arc, last);
-      const int pieces =
-          std::max(1, static_cast<int>(std::ceil(std::abs(arc.length) / params_.spacing)));
+      const int pieces = NumPieces(arc, params_.spacing);
+      const double each = FactorOf(arc) * std::abs(arc.length) / pieces;
       for (int i = 0; i < pieces; ++i, ++pose) {
-        const Pose2& X_MB = scratch_[pose].X_MB;
-        if (!IsFree(X_MB)) return std::nullopt;
         int column = 0, row = 0;
-        costmap_.CellOf(X_MB.position(), &column, &row);
-        cost += FactorOf(arc) * std::abs(arc.length) / pieces *
-                (1.0 + cost_weight_ * costmap_.cost(column, row));
+        costmap_.CellOf(scratch_[pose].X_MB.position(), &column, &row);
+        if (!costmap_.Inside(column, row)) return std::numeric_limits<double>::infinity();
+        cost += each * (1.0 + cost_weight_ * costmap_.cost(column, row));
       }
       last = &arc;
     }

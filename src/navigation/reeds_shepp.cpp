@@ -24,12 +24,16 @@ Pose2 EndOf(const Pose2& X_MA, const CarArc& arc, double share) {
   return PoseAfter(X_MA, {along, 0.0, along * arc.curvature}, share * std::abs(arc.length));
 }
 
+int NumPieces(const CarArc& arc, double spacing) {
+  HIRES_CHECK(spacing > 0.0, "poses along a way keep a distance");
+  return std::max(1, static_cast<int>(std::ceil(std::abs(arc.length) / spacing)));
+}
+
 void AppendPoses(const Pose2& X_MA, const std::vector<CarArc>& arcs, double spacing,
                  std::vector<CarPose>* poses) {
-  HIRES_CHECK(spacing > 0.0, "poses along a way keep a distance");
   Pose2 X_MBegin = X_MA;
   for (const CarArc& arc : arcs) {
-    const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(arc.length) / spacing)));
+    const int pieces = NumPieces(arc, spacing);
     for (int i = 1; i <= pieces; ++i) {
       poses->push_back(
           {EndOf(X_MBegin, arc, static_cast<double>(i) / pieces), arc.curvature, arc.length < 0.0});

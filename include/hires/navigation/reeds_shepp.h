@@ -23,8 +23,11 @@ struct CarArc {
 /// Where an arc from X_MA ends; one that is driven to share `share` of its length.
 geometry::Pose2 EndOf(const geometry::Pose2& X_MA, const CarArc& arc, double share = 1.0);
 
-/// Appends the poses along the arcs that begin at X_MA, which itself is left out: even distances of
-/// at most `spacing` [m] on each arc, the ends of all arcs included. @pre spacing > 0
+/// Into how many equal pieces of at most `spacing` [m] an arc is cut, >= 1. @pre spacing > 0
+int NumPieces(const CarArc& arc, double spacing);
+
+/// Appends the poses along the arcs that begin at X_MA, which itself is left out: the ends of the
+/// NumPieces of each. @pre spacing > 0
 void AppendPoses(const geometry::Pose2& X_MA, const std::vector<CarArc>& arcs, double spacing,
                  std::vector<CarPose>* poses);
 
