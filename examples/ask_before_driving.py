@@ -16,7 +16,7 @@ import dynamic_reconfigure.client
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from geometry_msgs.msg import Point, Pose, Quaternion
-from hires import Imagination
+from hires import Imagination, init_node
 from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
 
 LIMITS = {'slow': {'max_vel_x': 0.30, 'acc_lim_x': 1.4}, 'fast': {'max_vel_x': 0.55, 'acc_lim_x': 2.5}}
@@ -41,7 +41,7 @@ def main():
     parser.add_argument('--object', action='append', default=[])
     parser.add_argument('--planner', default='move_base/DWAPlannerROS')
     arguments = parser.parse_args(rospy.myargv()[1:])
-    rospy.init_node('ask_before_driving', anonymous=True)
+    init_node('ask_before_driving', anonymous=True)
     answer = Imagination().ask('move_base_param', arguments.area, list(LIMITS),
                                robot_at=arguments.begin, on_tray=arguments.object)
     print(*answer.ranking, answer.why, sep='\n')

@@ -2,10 +2,9 @@
 
 Running nodes, by the action `imagine`:
 
-    import rospy
-    from hires import Imagination
+    from hires import Imagination, init_node
 
-    rospy.init_node('my_robot')
+    init_node('my_robot')  # rospy's own would wait without end for a master that is not there
     answer = Imagination().ask('move_base_param', 'atBench', ['slow', 'fast'], robot_at='dock',
                                on_tray=['mug1'])
     print(answer.recommended or answer.why)
@@ -15,7 +14,8 @@ In this process, without ROS: hires.core.
 
 import importlib
 
-__all__ = ['Alternative', 'Answer', 'Imagination', 'ImaginationError', 'SavedRollout']
+__all__ = ['Alternative', 'Answer', 'Imagination', 'ImaginationError', 'SavedRollout',
+           'init_node']
 
 
 def __getattr__(name):

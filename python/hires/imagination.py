@@ -1,5 +1,6 @@
 """The imagination client's action `imagine` as one call."""
 
+import os
 import re
 import threading
 from dataclasses import dataclass, field
@@ -80,8 +81,23 @@ def _alternative(prediction):
         failures={text_of(entry.failure): entry.count for entry in prediction.failures})
 
 
+def init_node(name, **options):
+    """As rospy.init_node, which waits without end for a master that is not there.
+
+    Raises ImaginationError where no master answers.
+    """
+    try:
+        rospy.get_master().getPid()
+    except OSError as error:
+        raise ImaginationError(
+            'no master answers at %s (%s); start one (roslaunch hires imagination.launch), or set '
+            'ROS_MASTER_URI to the one that runs' %
+            (os.environ.get('ROS_MASTER_URI', 'http://localhost:11311'), error)) from error
+    rospy.init_node(name, **options)
+
+
 class Imagination:
-    """Asks the imagination client of this process's master. rospy.init_node must have been called."""
+    """Asks the imagination client of this process's master. init_node must have been called."""
 
     def __init__(self, action='imagine', wait=10.0):
         """wait: seconds of the wall's clock for the client to be there."""
