@@ -92,6 +92,7 @@ planning::PlanRequest RequestOf(const PlanOptions& options) {
 Session Read(const PlanOptions& options) {
   Session session;
   session.domain = planning::LoadDomain(options.domain);
+  planning::CheckSidecar(options.domain, session.domain);
   const std::string& file = options.problem.empty() ? options.domain : options.problem;
   session.problem = ChooseProblem(planning::LoadProblems(file, session.domain), options);
   if (!options.task.empty()) ReplaceTasks(options.task, session.domain, &session.problem);

@@ -77,6 +77,20 @@ TEST(LoadTest, TheSidecarBesideADomainSaysWhetherTheOrderOfSubtasksIsKept) {
               AllOf(HasSubstr("d.yaml"), HasSubstr("causal_links")));
 }
 
+TEST(CheckSidecarTest, ASidecarThatCannotBeExecutedIsRefusedWithFileAndKey) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string path = folder.Write("d.lisp", kShop2Domain);
+  const Domain domain = LoadDomain(path);
+  const auto error = [&] { return ErrorOf([&] { CheckSidecar(path, domain); }); };
+  EXPECT_NO_THROW(CheckSidecar(path, domain)) << "there is none";
+  folder.Write("d.yaml", "subtask_order: causal_links\n");
+  EXPECT_NO_THROW(CheckSidecar(path, domain)) << "for planning alone";
+  folder.Write("d.yaml", "operators: {go: {duration: {mni: 3}}}\n");
+  EXPECT_THAT(error(), HasSubstr("d.yaml"));
+  folder.Write("d.yaml", "operators: {\n");
+  EXPECT_THAT(error(), AllOf(HasSubstr("d.yaml"), HasSubstr("line 2")));
+}
+
 TEST(LoadTest, TheOrderOfHddlIsAlwaysKept) {
   const hires::test_support::TemporaryFolder folder;
   const std::string hddl = folder.Write("d.hddl", kHddlDomain);

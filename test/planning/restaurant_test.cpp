@@ -405,13 +405,16 @@ std::string WhyNoPlan(const std::string& task) {
 }
 
 TEST(WhyNoPlanTest, AnUnknownGuestAnAbsentObjectAndAnUnreachableAreaAreToldApart) {
-  EXPECT_THAT(WhyNoPlan("(serve_coffee_to_guest guest5)"),
-              AllOf(HasSubstr("neither a fact nor the domain knows 'guest5' (did you mean 'guest"),
-                    HasSubstr("as far as (serve_coffee_to_guest guest5): no binding satisfies "
-                              "goal 1 (at guest5 ?seat)"),
-                    HasSubstr("restaurant.lisp:")));
+  EXPECT_THAT(
+      WhyNoPlan("(serve_coffee_to_guest guest5)"),
+      AllOf(HasSubstr("); neither a fact nor the domain knows 'guest5' (did you mean 'guest"),
+            HasSubstr("every way was tried; it got as far as (serve_coffee_to_guest guest5): no "
+                      "binding satisfies "
+                      "goal 1 (at guest5 ?seat)"),
+            HasSubstr("restaurant.lisp:")));
   EXPECT_THAT(WhyNoPlan("(get_object unicorn)"),
-              AllOf(HasSubstr("knows 'unicorn';"), HasSubstr("(on unicorn ?area)")));
+              AllOf(HasSubstr("; neither a fact nor the domain knows 'unicorn'"),
+                    HasSubstr("(on unicorn ?area)")));
   EXPECT_THAT(WhyNoPlan("(move_object mug1 placingareamoon)"),
               AllOf(HasSubstr("knows 'placingareamoon'"),
                     HasSubstr("(put_object mug1 placingareamoon): no binding satisfies goal 1 "

@@ -18,6 +18,11 @@ Domain::Language LanguageOf(std::string_view text, const std::string& source);
 /// @throws base::ConfigError naming file, line, column and remedy.
 Domain LoadDomain(const std::string& path);
 
+/// Looks at the sidecar beside the domain, if there is one, as those who carry plans out will; one
+/// that says nothing but the order of subtasks is for planning alone.
+/// @throws ConfigError as LoadOperatorData.
+void CheckSidecar(const std::string& domain_path, const Domain& domain);
+
 /// The problems in a file of the language of `domain`: one in HDDL, one or more in SHOP2. Their
 /// tasks are checked against the domain.
 /// @throws base::ConfigError as above, also where file and domain are of different languages.

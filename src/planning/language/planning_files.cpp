@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "hires/base/error.h"
+#include "hires/base/param_reader.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
 #include "hires/planning/operator_data.h"
@@ -16,6 +17,12 @@ namespace {
 
 std::string NameOf(Domain::Language language) {
   return language == Domain::Language::kShop2 ? "SHOP2's language" : "HDDL";
+}
+
+/// Empty where there is none.
+std::string SidecarOf(const std::string& domain_path) {
+  const auto path = std::filesystem::path(domain_path).replace_extension(".yaml");
+  return std::filesystem::exists(path) ? path.string() : "";
 }
 
 }  // namespace
@@ -36,11 +43,17 @@ Domain LoadDomain(const std::string& path) {
   const std::string text = base::ReadTextFile(path);
   const bool is_hddl = LanguageOf(text, path) == Domain::Language::kHddl;
   Domain domain = is_hddl ? ReadHddlDomain(text, path) : ReadShop2Domain(text, path);
-  const auto sidecar = std::filesystem::path(path).replace_extension(".yaml");
-  if (std::filesystem::exists(sidecar)) {
-    domain.subtask_order = LoadSubtaskOrder(sidecar.string(), domain.language);
-  }
+  const std::string sidecar = SidecarOf(path);
+  if (!sidecar.empty()) domain.subtask_order = LoadSubtaskOrder(sidecar, domain.language);
   return domain;
+}
+
+void CheckSidecar(const std::string& domain_path, const Domain& domain) {
+  const std::string sidecar = SidecarOf(domain_path);
+  if (sidecar.empty()) return;
+  const auto only_order = std::vector<std::string>{"subtask_order"};
+  if (base::ParamReader::FromFile(sidecar).Keys() == only_order) return;
+  LoadOperatorData(sidecar, domain);
 }
 
 std::vector<Problem> LoadProblems(const std::string& path, const Domain& domain) {

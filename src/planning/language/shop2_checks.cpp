@@ -193,8 +193,10 @@ void CheckDomain(Domain* domain) {
 }  // namespace shop2
 
 void CheckTasks(const Problem& problem, const Domain& domain) {
-  shop2::Handlers(domain).Check({problem.source, fmt::format("problem '{}'", problem.name)},
-                                problem.tasks, nullptr);
+  // A task that was typed belongs to no problem.
+  const std::string where =
+      problem.name.empty() ? "the task" : fmt::format("problem '{}'", problem.name);
+  shop2::Handlers(domain).Check({problem.source, where}, problem.tasks, nullptr);
 }
 
 }  // namespace hires::planning

@@ -39,19 +39,19 @@ std::string StoppedText(const PlanResult& result, const char* why, const char* r
                      remedy);
 }
 
-/// Where the ways that led furthest ended, and what may be behind it.
+/// Where the ways that led furthest ended, and then what may be behind it: a name that nothing
+/// knows may also be one that does not matter.
 std::string WhyNone(const PlanResult& result) {
-  std::string text;
-  if (!result.unknown_names.empty()) {
-    text += fmt::format("; neither a fact nor the domain knows {}",
-                        base::Join(result.unknown_names, ", "));
-  }
-  std::string task;
+  std::string text, task;
   for (const TraceEntry& end : result.deepest) {
     const std::string at = end.task == task ? "," : fmt::format("; it got as far as {}:", end.task);
     text += fmt::format("{} {}{}", at, end.reason,
                         end.where.empty() ? "" : fmt::format(" ({})", end.where));
     task = end.task;
+  }
+  if (!result.unknown_names.empty()) {
+    text += fmt::format("; neither a fact nor the domain knows {}",
+                        base::Join(result.unknown_names, ", "));
   }
   return text;
 }
