@@ -75,9 +75,13 @@ std::string UnknownName(std::string_view kind, const std::string& name,
                        Join(alike.empty() ? known : alike, "' or '"));
   }
   constexpr std::size_t kMost = 12;
-  const auto end = known.begin() + static_cast<long>(std::min(kMost, known.size()));
-  return fmt::format("{} '{}' is unknown; did you mean one of '{}'{}?", kind, name,
-                     Join({known.begin(), end}, "', '"), known.size() > kMost ? ", ..." : "");
+  if (known.size() <= kMost) {
+    return fmt::format("{} '{}' is unknown; did you mean one of '{}'?", kind, name,
+                       Join(known, "', '"));
+  }
+  // Of many the first ones of the alphabet would tell nothing.
+  return fmt::format("{} '{}' is unknown; did you mean one of '{}', ...?", kind, name,
+                     Join(NearestNames(name, known, kMost), "', '"));
 }
 
 std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {

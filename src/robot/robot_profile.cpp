@@ -343,7 +343,14 @@ Robot LoadRobot(const std::string& profile_path) {
   Robot robot;
   robot.profile = ReadProfile(&in);
   const std::filesystem::path folder = std::filesystem::path(profile_path).parent_path();
-  robot.model = LoadRobotModel((folder / robot.profile.urdf).lexically_normal().string());
+  const std::string urdf = (folder / robot.profile.urdf).lexically_normal().string();
+  if (!std::filesystem::exists(urdf)) {
+    in.Fail("urdf",
+            fmt::format("wanted a file that is there, but {} is not; write its path as seen "
+                        "from the profile's folder",
+                        urdf));
+  }
+  robot.model = LoadRobotModel(urdf);
   FillFromModel(in, &robot);
   CheckProfile(in, robot.profile, robot.model);
   if (robot.profile.footprint.empty()) {

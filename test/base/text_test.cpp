@@ -78,6 +78,11 @@ TEST(UnknownNameTest, WhatLooksLikeNothingKnownGetsTheListAndNoGuess) {
   const std::string text = UnknownName("area", "moon", many);
   EXPECT_NE(text.find("'table21', ...?"), std::string::npos) << text;
   EXPECT_EQ(text.find("table22"), std::string::npos) << text;
+  many.insert(many.begin(), "a_place_that_is_far_away");
+  many.push_back("spoon_");
+  const std::string nearest = UnknownName("area", "fork", many);
+  EXPECT_NE(nearest.find("one of 'spoon_', 'table10'"), std::string::npos) << nearest;
+  EXPECT_EQ(nearest.find("a_place"), std::string::npos) << nearest;
 }
 
 /// A folder of its own that goes away with the test.

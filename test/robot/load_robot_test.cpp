@@ -1,9 +1,12 @@
 #include "hires/robot/load_robot.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "support/messages.h"
+#include "support/temporary_folder.h"
 
 namespace hires::robot::load_robot_test {
 namespace {
@@ -35,6 +38,14 @@ TEST(ReadUrdfOfTest, ProfileAndBareUrdfGiveTheSameText) {
               base::ReadTextFile(kRoot + "/urdf/cart.urdf"))
         << path;
   }
+}
+
+TEST(LoadAnyRobotTest, AUrdfThatIsMissingNamesTheProfile) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string profile = folder.Write("cart.yaml", "urdf: nowhere/cart.urdf\n");
+  EXPECT_THAT(hires::test_support::ConfigErrorOf([&] { LoadAnyRobot(profile); }),
+              testing::AllOf(testing::HasSubstr(profile + ": urdf is 'nowhere/cart.urdf'"),
+                             testing::HasSubstr("from the profile's folder")));
 }
 
 TEST(LoadAnyRobotTest, AFileThatIsMissingIsAnErrorOfItsKind) {
