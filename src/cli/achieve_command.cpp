@@ -16,6 +16,7 @@
 #include "hires/base/error.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
+#include "hires/cli/whole_number.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
 #include "hires/evaluation/truth.h"
@@ -190,7 +191,7 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
       ->check(CLI::IsMember({"domain", "thesis", "off"}));
   verb->add_option("--wait", options->wait,
                    "[s] for the master and the execution monitor to be there; default: 10")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(NumberBetween(0.0, 1e6));
   CLI::Option* local = verb->add_flag(
       "--local", options->is_local,
       "play robot, world and all that plans, imagines and acts in this program, in virtual "
@@ -210,7 +211,7 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
       ->needs(local);
   verb->add_option("--seed", options->seed,
                    "with --local: of the hidden truth, all noise and imagination; default: 1")
-      ->check(CLI::Range(0, 2'147'483'647))
+      ->check(NumberBetween(0, 2'147'483'647))
       ->needs(local);
   verb->add_option("--truth", options->truth,
                    "with --local: file, or its name in config/truths: what robot and world are "
@@ -218,7 +219,7 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
       ->needs(local);
   verb->add_option("--threads", options->threads,
                    "with --local: that play rollouts; the answer is the same for any; default: 2")
-      ->check(CLI::Range(1, 256))
+      ->check(NumberBetween(1, 256))
       ->needs(local);
   verb->add_option("--record", options->record,
                    "with --local: write the episode to this bag, as a robot's would be; see "

@@ -9,6 +9,7 @@
 #include "cli/blackboard_text.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/cli/whole_number.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/evaluation/timeline.h"
@@ -187,7 +188,7 @@ void AddFilter(CLI::App* verb, BlackboardOptions* o) {
   verb->add_flag("--imagined", o->imagined, "imagined ones, too");
   verb->add_option("--sparql", o->sparql, "select ?instance where {...}");
   verb->add_option("--limit", o->limit, "at most so many; default: all")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 40));
+      ->check(NumberBetween(1, 1ull << 40));
 }
 
 }  // namespace

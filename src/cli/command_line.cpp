@@ -68,20 +68,20 @@ void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
                   "alternatives of one argument, separated by commas; once per argument, in order")
       ->allow_extra_args(false);
   app->add_option("--rollouts", o->rollouts, "at most so many per combination")
-      ->check(CLI::Range(1, 100000));
+      ->check(NumberBetween(1, 100000));
   app->add_option("--seed", o->seed, "of all chance; equal seeds give equal answers")
       ->check(WholeNumber());
   app->add_option("--deadline", o->deadline, "[s] after which the best answer so far is taken")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(NumberBetween(0.0, 1e6));
   app->add_option("--ranking", o->ranking, "risk, cost or thesis");
   app->add_option("--min-success", o->min_success,
                   "share of successes that the lower end of the interval must reach")
-      ->check(CLI::Range(0.001, 0.999));
+      ->check(NumberBetween(0.001, 0.999));
   app->add_option("--uncertainty", o->uncertainty, "YAML file, or none");
   app->add_flag("--no-early-stop", o->play_all, "play all rollouts even if the answer is decided");
   app->add_flag("--local", o->local, "in this process, without any ROS master");
   app->add_option("--threads", o->threads, "workers of --local; default: one per core")
-      ->check(CLI::Range(1, 256));
+      ->check(NumberBetween(1, 256));
   CLI::Option* world = app->add_option("--world", o->world, "another SDF world");
   app->add_option("--map", o->map,
                   "a map_server map (YAML with PGM or PNG) whose walls are the world")
@@ -172,12 +172,27 @@ class ProgressDisplay {
   std::chrono::steady_clock::time_point next_line_{};
 };
 
+/// A goal that is never free is no question of chance: most likely the area lies in furniture.
+void PrintBlockedGoals(const std::vector<imagination::Prediction>& ranking) {
+  for (const imagination::Prediction& prediction : ranking) {
+    const imagination::Evidence& evidence = prediction.evidence;
+    const base::Failure blocked = base::FailureCode::kGoalBlocked;
+    const auto found = evidence.failures.find(blocked);
+    if (found == evidence.failures.end() || found->second < evidence.num_rollouts) continue;
+    std::cout << fmt::format(
+        "{}: {}: in every rollout something stands where the robot should come to, or it is too "
+        "narrow for its base; correct the area or choose another one\n",
+        ToString(blocked), ToString(prediction.action));
+  }
+}
+
 void PrintReport(const imagination::Report& report, imagination::RankingRule rule) {
   if (!report.ranking.empty()) {
     const bool with_cost = rule == imagination::RankingRule::kCost;
     std::cout << evaluation::RankingTable(report.ranking, report.recommended, with_cost) << '\n';
   }
   std::cout << fmt::format("{}: {}\n", evaluation::OutcomeName(report), report.why);
+  PrintBlockedGoals(report.ranking);
   for (const std::string& caveat : report.caveats) std::cout << "caveat: " << caveat << '\n';
   if (report.kept.rollouts > 0) {
     std::cout << fmt::format("{} rollouts, {:.0f} s, are those of an earlier request\n",
@@ -187,6 +202,25 @@ void PrintReport(const imagination::Report& report, imagination::RankingRule rul
     std::cout << fmt::format("{:.0f} s imagined in {:.1f} s, {:.0f} times as fast as real time\n",
                              report.played_seconds(), report.wall_seconds,
                              report.played_seconds() / report.wall_seconds);
+  }
+}
+
+/// A name that nothing has, but whose kin the catalogue knows, is played as a model of that kind.
+void PrintKin(const ImagineQuery& query, QueryScene* scene) {
+  const imagination::ImaginationSetup& setup = scene->setup();
+  std::set<std::string> objects(query.start.on_tray.begin(), query.start.on_tray.end());
+  for (const imagination::PutObject& put : query.start.put) objects.insert(put.object);
+  for (const base::Atom& atom : query.start.atoms) {
+    if (atom.predicate == "On") objects.insert(atom.arguments[0]);
+    if (atom.predicate == "Holding") objects.insert(atom.arguments[1]);
+  }
+  for (const std::string& object : objects) {
+    const std::string model = setup.ModelOf(object);
+    const bool is_named = setup.object_models.count(base::ToLower(object)) > 0 ||
+                          base::ToLower(model) == base::ToLower(object);
+    if (is_named) continue;
+    std::cout << fmt::format(
+        "object '{}' is not in the catalogue; as its like there, it is a '{}'\n", object, model);
   }
 }
 
@@ -245,7 +279,7 @@ nlohmann::ordered_json AnswerOf(const ImagineOptions& options, const ImagineQuer
 int Imagine(const ImagineOptions& options, const Backends& backends) {
   const ImagineQuery query = MakeQuery(options);
   CheckReport(options.report);
-  CheckSaveRollout(options.save, backends.make_rollout_bag);
+  CheckSaveRollout(options.save, query, backends.make_rollout_bag);
   ProgressDisplay display;
   imagination::OnInterim on_interim;
   if (!options.quiet) on_interim = [&](const auto& interim) { display.Show(interim); };
@@ -255,6 +289,7 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
   }
   QueryScene scene(query);
   const ReportOrigin origin = OriginOf(options, query, &scene);
+  if (options.local) PrintKin(query, &scene);
   const imagination::Report report =
       options.local ? ImagineInThisProcess(query, &scene, on_interim, cancelled)
                     : backends.imagine_remotely(query, on_interim, cancelled);

@@ -10,6 +10,7 @@
 
 #include "hires/base/error.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/whole_number.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/imagination/client_config.h"
 #include "hires/physics/physics_checks.h"
@@ -129,7 +130,7 @@ void AddDoctorVerb(CLI::App* app, DoctorOptions* o) {
       ->check(CLI::IsMember({"move_base", "own"}))
       ->needs(robot);
   o->verb->add_option("--seconds", o->robot.seconds, "[s] to listen")
-      ->check(CLI::Range(0.2, 600.0))
+      ->check(NumberBetween(0.2, 600.0))
       ->needs(robot);
   AddReportOptions(o->verb, &o->robot.report);
 }

@@ -12,6 +12,7 @@
 
 #include "hires/base/error.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/whole_number.h"
 #include "hires/evaluation/experiment.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
@@ -93,11 +94,11 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
       "experiment", "play an experiment of config/experiments and check what it expects");
   verb->add_option("file", options->file, "YAML file of the experiment");
   verb->add_option("--threads", options->threads, "default: one per core; changes no number")
-      ->check(CLI::Range(1, 256));
+      ->check(NumberBetween(1, 256));
   verb->add_option("--seed", options->seed, "instead of the file's");
   verb->add_option("--runs", options->runs,
                    "instead of the file's number of legs, pairs, chains or runs")
-      ->check(CLI::Range(1, 1000000));
+      ->check(NumberBetween(1, 1000000));
   verb->add_option("--map", options->map, "map_server YAML: its walls instead of the world's");
   verb->add_option("--csv", options->csv, "write one line per leg, rollout or run to this file");
   AddReportOptions(verb, &options->report);

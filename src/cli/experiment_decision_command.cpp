@@ -158,13 +158,14 @@ void AddDecisionVerb(CLI::App* experiment, DecisionOptions* options) {
   verb->add_option("--truth", options->truth,
                    "what robot and world are really like, a name of config/truths or a file; "
                    "default: same, the model of imagination itself");
-  verb->add_option("--runs", options->runs, "tasks; default: 400")->check(CLI::Range(1, 1000000));
+  verb->add_option("--runs", options->runs, "tasks; default: 400")
+      ->check(NumberBetween(1, 1000000));
   verb->add_option("--arms", options->arms,
                    "of imagination, always_slow, always_fast, domain_default, dissertation, "
                    "oracle, with commas between; default: all");
   verb->add_option("--seed", options->seed, "of all chance; default: 1")->check(WholeNumber());
   verb->add_option("--threads", options->threads, "that play tasks; changes no number; default: 2")
-      ->check(CLI::Range(1, 256));
+      ->check(NumberBetween(1, 256));
   verb->add_option(
       "--resume", options->journal,
       "keep what was played in this file, and go on with what is there; default: "

@@ -216,13 +216,13 @@ void AddHypothesisVerb(CLI::App* experiment, HypothesisOptions* options) {
                                               "without imagination, on equal hidden truths");
   verb->add_option("--scenario", options->scenario, "topple or serve_coffee")->required();
   verb->add_option("--runs", options->runs, "with imagination, and as many without; default: 20")
-      ->check(CLI::Range(1, 100000));
+      ->check(NumberBetween(1, 100000));
   verb->add_option("--pace", options->pace,
                    "simulated seconds of the robot per second, 0: as fast as it can; default: 1")
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(NumberBetween(0.0, 1000.0));
   verb->add_option("--seed", options->seed, "of all chance; default: 1")->check(WholeNumber());
   verb->add_option("--workers", options->workers, "simulators that imagine; default: 1")
-      ->check(CLI::Range(1, 64));
+      ->check(NumberBetween(1, 64));
   verb->add_option("--resume", options->journal,
                    "keep finished runs in this file, and go on with those that are there; default: "
                    "beside --json, else hypothesis_<scenario>.journal here");
@@ -236,7 +236,7 @@ void AddHypothesisVerb(CLI::App* experiment, HypothesisOptions* options) {
       ->needs(local);
   verb->add_option("--threads", options->threads,
                    "with --local: that play runs; changes no number; default: 2")
-      ->check(CLI::Range(1, 256))
+      ->check(NumberBetween(1, 256))
       ->needs(local);
   verb->add_option("--csv", options->csv, "write one line per run to this file");
   AddReportOptions(verb, &options->report);

@@ -149,6 +149,12 @@ imagination::NamedArea ReadArea(const std::string& text) {
   if (numbers.size() != 3) {
     throw base::ConfigError(fmt::format("--area '{}': wanted {}", text, kWanted));
   }
+  if (std::abs(numbers[2]) > 2.0 * M_PI) {
+    throw base::ConfigError(
+        fmt::format("--area '{}': yaw is in radians, wanted between -2 pi and 2 pi; {:g} degrees "
+                    "are {:.5g}",
+                    text, numbers[2], numbers[2] * M_PI / 180.0));
+  }
   return {parts[0], {numbers[0], numbers[1], numbers[2]}};
 }
 

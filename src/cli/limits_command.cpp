@@ -66,17 +66,17 @@ void AddLimitsVerb(CLI::App* app, LimitsOptions* options) {
   verb->add_option("--robot", options->robot, "another robot: profile (.yaml) or URDF (.urdf)");
   verb->add_option("--max-fall", options->max_fall,
                    "share of drives that may lose the object; default: 0.01")
-      ->check(CLI::Range(0.001, 0.5));
+      ->check(NumberBetween(0.001, 0.5));
   verb->add_option("--objects", options->objects, "another catalogue of objects (YAML)");
   verb->add_option("--uncertainty", options->uncertainty, "YAML file, or none");
   verb->add_option("--scene", options->scene, "another scene file instead of config/scene.yaml");
   verb->add_option("--seed", options->seed, "of all chance; equal seeds give equal answers")
       ->check(WholeNumber());
   verb->add_option("--threads", options->threads, "default: one per core; changes no number")
-      ->check(CLI::Range(1, 256));
+      ->check(NumberBetween(1, 256));
   verb->add_option("--check", options->check_truths,
                    "play so many new truths at each limit, and 10 % above it")
-      ->check(CLI::Range(1, 100000));
+      ->check(NumberBetween(1, 100000));
   verb->add_option("--yaml", options->yaml, "write move_base's parameters to this file as well");
   verb->add_option("--json", options->json, "write all numbers to this file");
   verb->add_flag("--quiet", options->quiet, "no progress bar");

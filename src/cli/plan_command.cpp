@@ -12,6 +12,7 @@
 #include "hires/base/resource_use.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/whole_number.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/planning/ipc_plan.h"
 #include "hires/planning/plan_json.h"
@@ -259,12 +260,12 @@ void AddPlanVerb(CLI::App* app, PlanOptions* options) {
   verb->add_option("--which", options->which, "first, all, best (the cheapest); default: first")
       ->check(CLI::IsMember({"first", "all", "best"}));
   verb->add_option("--limit", options->limit, "plans, of --which all; default: 1000")
-      ->check(CLI::Range(1, 1000000000));
-  verb->add_option("--time", options->time, "[s] of search")->check(CLI::Range(0.001, 1e9));
+      ->check(NumberBetween(1, 1000000000));
+  verb->add_option("--time", options->time, "[s] of search")->check(NumberBetween(0.001, 1e9));
   verb->add_option("--memory", options->memory, "[MB] held by the search")
-      ->check(CLI::Range(0.001, 1e9));
+      ->check(NumberBetween(0.001, 1e9));
   verb->add_option("--depth", options->depth, "decompositions and steps on one path")
-      ->check(CLI::Range(1, 1000000000));
+      ->check(NumberBetween(1, 1000000000));
   verb->add_flag("--trace", options->trace, "say why ways were given up, the latest 1000");
   verb->add_flag("--strict", options->strict,
                  "refuse a domain that names unknown tasks or functions, even where no way leads "

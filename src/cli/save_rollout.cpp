@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "hires/base/error.h"
+#include "hires/cli/whole_number.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/rollout_film.h"
 #include "hires/evaluation/timeline.h"
@@ -27,6 +28,17 @@ std::vector<std::string> FilesOf(const SaveRolloutOptions& options) {
     if (!path.empty()) files.push_back(path);
   }
   return files;
+}
+
+/// @throws base::ConfigError for one that no answer to the query has.
+void RequireRollout(const std::string& option, const std::string& which,
+                    const ImagineQuery& query) {
+  try {
+    imagination::RequireRollout(imagination::ParseRolloutChoice(which),
+                                base::Combinations(query.action).size(), query.scheduler.rollouts);
+  } catch (const base::ConfigError& error) {
+    throw base::ConfigError(fmt::format("{} {}: {}", option, which, error.what()));
+  }
 }
 
 /// A rollout of an answer, played again.
@@ -102,14 +114,15 @@ void AddSaveRolloutOptions(CLI::App* app, SaveRolloutOptions* o) {
       app->add_option("--strip", o->strip, "with --save-rollout: as PNG of moments side by side")
           ->needs(which);
   app->add_option("--strip-pictures", o->strip_pictures, "how many; default 6")
-      ->check(CLI::Range(2, 24))
+      ->check(NumberBetween(2, 24))
       ->needs(strip);
 }
 
-void CheckSaveRollout(const SaveRolloutOptions& options, const MakeRolloutBag& make_bag) {
+void CheckSaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
+                      const MakeRolloutBag& make_bag) {
   if (options.which.empty()) return;
-  imagination::ParseRolloutChoice(options.which);
-  if (!options.beside.empty()) imagination::ParseRolloutChoice(options.beside);
+  RequireRollout("--save-rollout", options.which, query);
+  if (!options.beside.empty()) RequireRollout("--beside", options.beside, query);
   if (FilesOf(options).empty()) {
     throw base::ConfigError(
         "--save-rollout: nowhere to save it to; add --gif FILE, --strip FILE, --csv FILE or --bag "

@@ -22,9 +22,11 @@ struct SaveRolloutOptions {
 };
 void AddSaveRolloutOptions(CLI::App* app, SaveRolloutOptions* options);
 
-/// Before anything is imagined.  @throws base::ConfigError: no such choice, nowhere to save it to,
+/// Before anything is imagined.  @throws base::ConfigError: no such choice, a rollout
+/// or an alternative that the query does not have, nowhere to save it to,
 /// folders that are not there, a bag that this build cannot write.
-void CheckSaveRollout(const SaveRolloutOptions& options, const MakeRolloutBag& make_bag);
+void CheckSaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
+                      const MakeRolloutBag& make_bag);
 
 /// Plays the rollout again in the query's scene and saves it. Says where.
 /// @throws base::ConfigError if the answer has no such rollout, or if what is played is none of

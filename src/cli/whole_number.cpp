@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <CLI/TypeTools.hpp>
 #include <algorithm>
+#include <cmath>
 
 namespace hires::cli {
 
@@ -18,6 +20,18 @@ CLI::Validator WholeNumber() {
                            std::string(kMostDigits, '9'));
       },
       "WHOLE NUMBER");
+}
+
+CLI::Validator NumberBetween(double low, double high) {
+  return CLI::Validator(
+      [low, high](const std::string& text) {
+        double number = 0.0;
+        const bool is_number = CLI::detail::lexical_cast(text, number) && std::isfinite(number);
+        if (is_number && number >= low && number <= high) return std::string();
+        return fmt::format("'{}' is {}; wanted a number from {:g} to {:g}", text,
+                           is_number ? "out of range" : "not a number", low, high);
+      },
+      fmt::format("{:g} to {:g}", low, high));
 }
 
 }  // namespace hires::cli

@@ -24,9 +24,28 @@ const T& Lookup(const std::map<std::string, T>& known, const char* kind, const s
   throw base::ConfigError(base::UnknownName(kind, name, names));
 }
 
+/// No robot could drive to a place of which the map says nothing.
+/// @throws base::ConfigError naming the area and how far the map reaches.
+void RequireOnMap(const navigation::Costmap& map, const std::string& area,
+                  const geometry::Pose2& X_MA) {
+  int column = 0, row = 0;
+  map.CellOf(X_MA.position(), &column, &row);
+  if (map.Inside(column, row)) return;
+  const Eigen::Vector2d lower = map.origin();
+  const Eigen::Vector2d upper =
+      lower + map.resolution() * Eigen::Vector2d(map.width(), map.height());
+  throw base::ConfigError(fmt::format(
+      "area '{}' lies at {:g}, {:g} m, off the map, which reaches from {:g} to {:g} m in x and "
+      "from "
+      "{:g} to {:g} m in y; wanted a goal on the map: correct the area or take another map",
+      area, X_MA.x, X_MA.y, lower.x(), upper.x(), lower.y(), upper.y()));
+}
+
 std::unique_ptr<Skill> MakeMoveBase(const SkillSet& skills, const ActionCall& action) {
+  const geometry::Pose2& X_MGoal = Lookup(skills.areas, "area", action.arguments[0]);
+  RequireOnMap(*skills.driving->costmap, action.arguments[0], X_MGoal);
   return std::make_unique<MoveBase>(
-      skills.driving, Lookup(skills.areas, "area", action.arguments[0]),
+      skills.driving, X_MGoal,
       Lookup(skills.motion_sets, "motion set", MotionSetNameOf(skills, action)));
 }
 

@@ -174,7 +174,8 @@ TEST(CommandLineTest, AllFailingHasItsOwnCode) {
   const Ended ended = Small().Imagine({"--action", "move_base", "--from", "Door", "--arg", "Inside",
                                        "--rollouts", "2", "--min-success", "0.85"});
   EXPECT_EQ(ended.code, kExitAllFailed) << ended.err;
-  EXPECT_THAT(ended.out, AllOf(HasSubstr("all_failed"), HasSubstr("goal_blocked 2")));
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("all_failed"), HasSubstr("goal_blocked 2"),
+                               HasSubstr("goal_blocked: move_base(inside): in every rollout")));
 }
 
 TEST(CommandLineTest, TwoRolloutsDecideNothing) {
@@ -182,6 +183,16 @@ TEST(CommandLineTest, TwoRolloutsDecideNothing) {
   EXPECT_EQ(ended.code, kExitUndecided) << ended.err;
   EXPECT_THAT(ended.out, AllOf(HasSubstr("undecided: nothing is recommended yet"),
                                HasSubstr("rollouts decide"), HasSubstr("Clopper-Pearson")));
+}
+
+TEST(CommandLineTest, AModelThatWasTakenFromKinIsSaid) {
+  const std::vector<std::string> drive{"--action", "move_base",  "--from", "Door",    "--arg",
+                                       "Window",   "--rollouts", "2",      "--object"};
+  EXPECT_THAT(Small().Imagine(drive + std::vector<std::string>{"peppermill7"}).out,
+              HasSubstr("object 'peppermill7' is not in the catalogue; as its like there, it is a "
+                        "'peppermill_thesis'"));
+  EXPECT_THAT(Small().Imagine(drive + std::vector<std::string>{"Peppermill1"}).out,
+              Not(HasSubstr("not in the catalogue")));
 }
 
 TEST(CommandLineTest, WhatWasNotValidatedIsSaid) {
@@ -346,6 +357,8 @@ TEST(CommandLineTest, RefusesNumbersOutOfRange) {
   for (const char* rollouts : {"0", "-3", "1000000", "many", "2.5"}) {
     ExpectRefused(with("--rollouts", rollouts), {"--rollouts", rollouts});
   }
+  ExpectRefused(with("--rollouts", "many"), {"'many' is not a number; wanted a number from 1 to"});
+  ExpectRefused(with("--rollouts", "0"), {"'0' is out of range; wanted a number from 1 to 100000"});
   ExpectRefused(with("--deadline", "-1"), {"--deadline"});
   ExpectRefused(with("--threads", "0"), {"--threads"});
   for (const char* seed : {"-1", "1.5", "1e3", "99999999999999999999"}) {
@@ -369,6 +382,25 @@ TEST(CommandLineTest, RefusesWhatTheWorldDoesNotKnow) {
                 {"object 'pepermill1' is unknown", "'peppermill1'"});
   ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Inside", "--arg", "Window"}),
                 {"robot starts in collision", "'pillar'"});
+}
+
+TEST(CommandLineTest, AGoalOffTheMapIsSaidBeforeAnythingIsPlayed) {
+  const TemporaryFolder folder;
+  ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "dock", "--arg", "bench,barn",
+                                 "--area", "dock:0,0,0", "--area", "bench:3.8,0,0", "--area",
+                                 "barn:40,2,0", "--map", HallMap(folder, false)}),
+                {"area 'barn' lies at 40, 2 m, off the map", "from -1 to 5 m in x",
+                 "from -1.5 to 1.5 m in y"});
+}
+
+TEST(CommandLineTest, ARolloutThatNoAnswerHasIsRefusedBeforeAnythingIsPlayed) {
+  const auto with = [](const std::string& which, const std::vector<std::string>& more = {}) {
+    return Small().Imagine(
+        kDrive + std::vector<std::string>{"--save-rollout", which, "--gif", "w.gif"} + more);
+  };
+  ExpectRefused(with("worst@9"), {"--save-rollout worst@9: rank 9 of 1 alternatives"});
+  ExpectRefused(with("2"), {"--save-rollout 2: there is no rollout 2: at most 2", "--rollouts"});
+  ExpectRefused(with("worst", {"--beside", "median@2"}), {"--beside median@2: rank 2 of 1"});
 }
 
 TEST(CommandLineTest, RefusesAreasThatAreNone) {

@@ -89,6 +89,17 @@ TEST(ImagineStartTest, RefusesWhatItCannotRead) {
   EXPECT_THAT(why_not(options), AllOf(HasSubstr("--posture"), HasSubstr("ARM:POSTURE")));
 }
 
+TEST(ReadAreaTest, ReadsOneTurnOfYawAndRefusesDegrees) {
+  EXPECT_EQ(ReadArea("kitchen:3.2,1.0,-1.57").X_MA.yaw, -1.57);
+  EXPECT_NO_THROW(ReadArea("kitchen:3.2,1.0,6.28"));
+  for (const auto& [text, radians] :
+       {std::pair("kitchen:3.2,1.0,90", "90 degrees are 1.5708"),
+        std::pair("kitchen:3.2,1.0,-180", "-180 degrees are -3.1416")}) {
+    EXPECT_THAT(ConfigErrorOf([&] { ReadArea(text); }),
+                AllOf(HasSubstr(text), HasSubstr("yaw is in radians"), HasSubstr(radians)));
+  }
+}
+
 TEST(RequireObjectsTest, WhatAnActionIsAboutMustBeSomewhere) {
   world::WorldState world;
   world.objects.resize(2);

@@ -251,6 +251,14 @@ TEST(PlanCommandTest, FilesThatAreMissingOrOfTheOtherLanguage) {
                 {"lamp_problem.hddl"});
 }
 
+TEST(PlanCommandTest, ASidecarThatNothingCouldBeCarriedOutWith) {
+  const TemporaryFolder folder;
+  const std::string domain =
+      folder.Write("delivery.lisp", base::ReadTextFile(Data("delivery.lisp")));
+  folder.Write("delivery.yaml", "capacities: {}\nlegs: []\noperators: {walk: {}}\n");
+  ExpectRefused(Plan(domain, {"--name", "two_ways"}), {"delivery.yaml", "operators."});
+}
+
 TEST(PlanCommandTest, TasksThatNobodyKnowsOrThatAreNoTasks) {
   ExpectRefused(Deliver("two_ways", {"--task", "delivr parcel anna"}), {"--task", "'deliver'"});
   ExpectRefused(Deliver("two_ways", {"--task", "(deliver parcel"}), {"--task:1:1"});
@@ -262,7 +270,8 @@ TEST(PlanCommandTest, OptionsOutOfRange) {
   ExpectRefused(Deliver("two_ways", {"--which", "any"}), {"--which", "first"});
   ExpectRefused(Deliver("two_ways", {"--format", "pddl"}), {"--format", "shop2"});
   ExpectRefused(Deliver("two_ways", {"--limit", "0"}), {"--limit"});
-  ExpectRefused(Deliver("two_ways", {"--time", "-1"}), {"--time"});
+  ExpectRefused(Deliver("two_ways", {"--time", "-1"}), {"--time", "'-1' is out of range"});
+  ExpectRefused(Deliver("two_ways", {"--time", "abc"}), {"--time", "'abc' is not a number"});
   ExpectRefused(Deliver("two_ways", {"--json", "/nowhere/answer.json"}), {"/nowhere"});
   ExpectRefused(RunHires({"plan"}), {"--domain"});
 }

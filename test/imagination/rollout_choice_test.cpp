@@ -50,6 +50,17 @@ TEST(ParseRolloutChoiceTest, NamesAndNumbersOfEachRank) {
   EXPECT_EQ(ParseRolloutChoice("37@4").rank, 4);
 }
 
+TEST(RequireRolloutTest, RefusesWhatNoAnswerCanHave) {
+  const auto error = [](const std::string& text) {
+    return ConfigErrorOf([&] { RequireRollout(ParseRolloutChoice(text), 4, 8); });
+  };
+  for (const char* text : {"worst", "median@4", "7", "7@4"}) {
+    EXPECT_NO_THROW(RequireRollout(ParseRolloutChoice(text), 4, 8)) << text;
+  }
+  EXPECT_THAT(error("worst@5"), HasSubstr("rank 5 of 4 alternatives"));
+  EXPECT_THAT(error("8"), AllOf(HasSubstr("no rollout 8"), HasSubstr("--rollouts")));
+}
+
 TEST(ParseRolloutChoiceTest, AnythingElseIsRefused) {
   for (const char* text : {"", "best", "-1", "1.5", "3@", "worst@x", "37 "}) {
     EXPECT_THAT(ConfigErrorOf([&] { ParseRolloutChoice(text); }),

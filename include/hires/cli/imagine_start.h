@@ -38,7 +38,7 @@ void AddStartOptions(CLI::App* app, StartOptions* options);
 ImagineStart ReadStart(const StartOptions& options, const std::string& action,
                        const actions::Catalogue& catalogue);
 
-/// "kitchen:3.2,1.0,1.57": name, x and y [m], yaw [rad].
+/// "kitchen:3.2,1.0,1.57": name, x and y [m], yaw [rad] of one turn at most.
 /// @throws base::ConfigError saying what is wanted.
 imagination::NamedArea ReadArea(const std::string& text);
 

@@ -8,4 +8,8 @@ namespace hires::cli {
 /// numbers, and its conversion turns -3 into a large number.
 CLI::Validator WholeNumber();
 
+/// A number from `low` to `high`, both included. CLI11's own check says of what is no number that
+/// it is out of range.
+CLI::Validator NumberBetween(double low, double high);
+
 }  // namespace hires::cli

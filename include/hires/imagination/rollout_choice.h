@@ -23,6 +23,11 @@ struct RolloutChoice {
 /// @throws base::ConfigError naming what came and what was wanted.
 RolloutChoice ParseRolloutChoice(const std::string& text);
 
+/// Refuses before anything is played what no answer could have.
+/// @param num_rollouts  at most so many of each alternative.
+/// @throws base::ConfigError for a rank beyond the alternatives or a number beyond the rollouts.
+void RequireRollout(const RolloutChoice& choice, std::size_t num_alternatives, int num_rollouts);
+
 struct PickedRollout {
   int rank{1};   ///< of its alternative, from 1
   int index{0};  ///< within the alternative

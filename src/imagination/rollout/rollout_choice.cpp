@@ -59,12 +59,15 @@ std::string WhyNot(const RolloutChoice& choice, const Evidence& evidence) {
   return fmt::format("none of {} rollouts finished", evidence.num_rollouts);
 }
 
+void RequireRank(int rank, std::size_t num_alternatives) {
+  if (rank <= static_cast<int>(num_alternatives)) return;
+  throw base::ConfigError(
+      fmt::format("rank {} of {} alternatives; choose a lower one", rank, num_alternatives));
+}
+
 PickedRollout PickOf(int rank, const RolloutChoice& choice,
                      const std::vector<Prediction>& ranking) {
-  if (rank > static_cast<int>(ranking.size())) {
-    throw base::ConfigError(
-        fmt::format("rank {} of {} alternatives; choose a lower one", rank, ranking.size()));
-  }
+  RequireRank(rank, ranking.size());
   const Evidence& evidence = ranking[rank - 1].evidence;
   const int index = IndexIn(choice, evidence);
   if (index >= 0) return {rank, index};
@@ -113,6 +116,15 @@ RolloutChoice ParseRolloutChoice(const std::string& text) {
     choice.index = ParseNumber(which, text);
   }
   return choice;
+}
+
+void RequireRollout(const RolloutChoice& choice, std::size_t num_alternatives, int num_rollouts) {
+  if (choice.rank) RequireRank(*choice.rank, num_alternatives);
+  if (choice.kind != Kind::kIndex || choice.index < num_rollouts) return;
+  throw base::ConfigError(fmt::format(
+      "there is no rollout {}: at most {} of each alternative are played, counted from 0; choose a "
+      "lower one or raise --rollouts",
+      choice.index, num_rollouts));
 }
 
 PickedRollout PickRollout(const RolloutChoice& choice, const std::vector<Prediction>& ranking,

@@ -258,7 +258,7 @@ void AddOptions(CLI::App* app, ReplayOptions* o) {
   CLI::Option* local =
       app->add_flag("--local", o->local, "in this process, with the package's own scene");
   app->add_option("--threads", o->threads, "workers of --local; default: one per core")
-      ->check(CLI::Range(1, 256))
+      ->check(cli::NumberBetween(1, 256))
       ->needs(local);
   app->add_option("--actions", o->action_libraries,
                   "library with more actions (.so), for --local; nodes have ~action_libraries")
@@ -277,7 +277,7 @@ void AddOptions(CLI::App* app, ReplayOptions* o) {
                   "of an episode: 'x y yaw scale' of its map in the world; default: they are one");
   app->add_option("--rollouts", o->episode.params.rollouts,
                   "of an episode: for each step; default: 64")
-      ->check(CLI::Range(1, 100000));
+      ->check(cli::NumberBetween(1, 100000));
   app->add_option("--seed", o->episode.params.seed, "of an episode: of all chance; default: 1")
       ->check(hires::cli::WholeNumber());
 }
