@@ -143,6 +143,15 @@ TEST(MotionLimitsTest, WhatIsPastedIsNoMoreThanWhatHoldsTogether) {
               AllOf(HasSubstr("max_vel_y: 0\n"), HasSubstr("min_vel_y: 0\n")));
 }
 
+TEST(MotionLimitsTest, TurningDoesNotPushWhatStandsOverTheBasesCentre) {
+  imagination::ImaginationSetup setup = SetupWith(MakeIdeal);
+  simulation::Scene scene = *setup.scene;
+  scene.X_BO.translation.head<2>().setZero();
+  setup.scene = std::make_shared<const simulation::Scene>(scene);
+  EXPECT_NE(ClosedFormLimits("peppermill1", setup)[3].stated.find("turning does not push it"),
+            std::string::npos);
+}
+
 TEST(MotionLimitsTest, ACarTurnsRoundItsSmallestCircle) {
   constexpr double kRadius = 0.5;
   const auto setup = SetupWith([](robot::BaseControllerParams* controller) {

@@ -17,6 +17,8 @@ namespace {
 constexpr double kLeastLimit = 0.01;  // of a controller that moves a base
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+constexpr double kLeastShownArm = 0.005;  // [m] two decimals show less as 0.00
+
 void RefuseIdleController(const robot::Robot& robot) {
   const robot::MotionSet& own = robot.profile.base_controller.limits;
   for (const auto& [key, value] :
@@ -49,7 +51,7 @@ class CarriedLoad {
       bounds.closed_form = SuddenStopSpeed();
       bounds.stated = HowItBearsASuddenStop();
     } else {
-      bounds.stated = OwnStop() < Bears() ? "the controller's own stop moves nothing"
+      bounds.stated = OwnStop() < Bears() ? "the load stands through the controller's own stop"
                                           : "no closed form for a stop by a ramp";
     }
     return bounds;
@@ -64,11 +66,13 @@ class CarriedLoad {
     const double on_arc = arm > 0.0 ? std::sqrt(Bears() / arm) : kInfinity;
     const double stopped =
         controller_.stops_at_timeout && arm > 0.0 ? SuddenStopSpeed() / arm : kInfinity;
-    return {
-        "turning", "rad/s", OwnTurning(), std::min(on_arc, stopped),
-        fmt::format(
-            "{}, {:.2f} m from {}", stopped < on_arc ? HowItBearsASuddenStop() : HowItGives(), arm,
-            IsCar(controller_) ? "the middle of the smallest circle" : "the base's centre")};
+    return {"turning", "rad/s", OwnTurning(), std::min(on_arc, stopped),
+            arm < kLeastShownArm
+                ? "stands over what the base turns about, so turning does not push it"
+                : fmt::format("{}, {:.2f} m from {}",
+                              stopped < on_arc ? HowItBearsASuddenStop() : HowItGives(), arm,
+                              IsCar(controller_) ? "the middle of the smallest circle"
+                                                 : "the base's centre")};
   }
 
  private:
