@@ -15,12 +15,26 @@ using robot::SeenObject;
 
 constexpr double kAbove = 0.05;        // [m] over an area: where small things are
 constexpr double kShortestTurn = 0.2;  // [s]
+constexpr double kAround = 0.15;       // [m] to each side, in view when a place is looked at
 constexpr double kArrived = 0.03;      // [rad] of each joint
 constexpr double kPatience = 2.0;      // [s] that a turn may come late: commands travel, heads lag
 
 double PositionOf(const robot::JointPositions& joints, const std::string& joint) {
   const auto position = joints.find(joint);
   return position == joints.end() ? 0.0 : position->second;
+}
+
+/// Whether the place is well in view: something at the picture's edge cannot be missed there
+/// (sensing::ObjectMemory), and would be looked past for good.
+bool IsLookedAt(const perception::CameraView& view, const Eigen::Vector3d& p_M) {
+  for (const double beside : {-kAround, 0.0, kAround}) {
+    for (const double above : {-kAround, 0.0, kAround}) {
+      if (!view.Contains(p_M + view.X_MC.rotation * Eigen::Vector3d(0.0, beside, above))) {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -73,7 +87,7 @@ std::optional<JointTrajectory> HeadSweep::Update(const sensing::BodyReading& bod
   for (const std::string& place : places_) {
     const auto p_M = PointOf(place, known);
     if (!p_M || (*p_M - view.X_MC.translation).norm() > params_.range) continue;
-    if (has_looked && view.Contains(*p_M)) looked_at_[place] = body.time;
+    if (has_looked && IsLookedAt(view, *p_M)) looked_at_[place] = body.time;
     const auto looked = looked_at_.find(place);
     const double time =
         looked == looked_at_.end() ? -std::numeric_limits<double>::infinity() : looked->second;

@@ -123,6 +123,18 @@ TEST_F(HeadSweepTest, AnObjectOnTheTrayIsLookedAtWhereItIs) {
   EXPECT_FALSE(targets.empty());
 }
 
+TEST_F(HeadSweepTest, AtThePicturesEdgeNothingWasLookedAt) {
+  HeadSweep sweep = Make();
+  sweep.SetPlaces({"mug1"}, RestaurantContext().areas);
+  const auto view = perception::ViewOf(*RestaurantContext().robot, body_.X_MB, body_.joints);
+  const double edge = 0.45 * view.height;  // of half the height: in view, and not wholly
+  const Eigen::Vector3d p_C(1.5 * std::cos(edge), 0.0, -1.5 * std::sin(edge));
+  const Eigen::Vector3d p_M = view.X_MC * p_C - Eigen::Vector3d(0.0, 0.0, 0.05);
+  ASSERT_TRUE(view.Contains(p_M + Eigen::Vector3d(0.0, 0.0, 0.05)));
+  known_.push_back({"mug1", "coffee_cup", {p_M, Eigen::Quaterniond::Identity()}, 0.0, ""});
+  EXPECT_TRUE(sweep.Update(body_, true, known_)) << "it is looked at, as it may not have been seen";
+}
+
 TEST_F(HeadSweepTest, WithoutPlacesOrWhenSwitchedOffTheHeadRests) {
   HeadSweep idle(RestaurantContext().robot, params_);
   EXPECT_TRUE(Play(&idle, 5.0).empty());
