@@ -95,7 +95,7 @@ Status MoveBaseDrive::Update(const robot::Observation& seen, robot::Command* com
     case Stage::kRest:
       break;
   }
-  return rest_.Update(seen, command);
+  return DriveRest(seen, command);
 }
 
 Status MoveBaseDrive::Begin(const robot::Observation& seen) {
@@ -137,11 +137,22 @@ Status MoveBaseDrive::BeginRest(const robot::Observation& seen, robot::Command* 
   if (distance > params_.max_rest || turn > params_.max_rest_turn) {
     return Failed({Code::kGoalMissed, {}, fmt::format("{:.2f} m, {:.2f} rad", distance, turn)});
   }
-  if (!IsWayFree(seen)) {
+  return DriveRest(seen, command);
+}
+
+/// Looks along each way before it is driven: the first one, and those that a car takes anew where
+/// it came to rest out of tolerance.
+Status MoveBaseDrive::DriveRest(const robot::Observation& seen, robot::Command* command) {
+  const bool is_first = !std::exchange(has_looked_, true);
+  const int ways = rest_.num_ways();
+  const Status status = rest_.Update(seen, command);
+  if ((is_first || rest_.num_ways() > ways) && !IsWayFree(seen)) {
+    command->base_velocity.reset();
+    const double distance = LengthOf(seen.X_MB.Inverse() * X_MGoal_);
     const auto words = fmt::format("something stands on the last {:.2f} m", distance);
     return Failed({Code::kUnreachable, {}, words});
   }
-  return rest_.Update(seen, command);
+  return status;
 }
 
 /// The way that MoveBaseBlind drives: straight, or as a car does.

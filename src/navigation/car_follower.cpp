@@ -227,7 +227,7 @@ DwaResult CarFollower::Update(const Costmap* costmap, const geometry::Pose2& X_M
   const bool is_lost = IsLost();
   geometry::Twist2 velocity = is_ending_ || is_lost ? Braked(V_B) : Velocity(V_B);
   const bool is_blocked = costmap && !IsFree(*costmap, X_MB, velocity);
-  if ((is_lost || is_blocked) && IsStopped(V_B)) return {DwaStatus::kNoValidTrajectory, {}, 0};
+  if ((is_lost || is_blocked) && IsStopped(V_B)) return AtRest(X_MB);
   if (is_blocked) velocity = Braked(V_B);
   return {DwaStatus::kDriving, velocity, 1};
 }

@@ -239,6 +239,14 @@ std::optional<DriveView> MoveBase::drive_view() const {
   return DriveView{path_, now_, X_MBNow_};
 }
 
+bool MoveBase::IsAtGoal(const robot::Observation& observation) const {
+  const navigation::DwaParams& params = context_->params.local;
+  const Pose2 X_BGoal = observation.X_MB.Inverse() * X_MGoal_;
+  return std::hypot(X_BGoal.x, X_BGoal.y) <= params.xy_goal_tolerance &&
+         std::abs(geometry::WrapToPi(X_BGoal.yaw)) <= params.yaw_goal_tolerance &&
+         std::abs(observation.V_B.vx) <= params.stopped_linear_velocity;
+}
+
 Status MoveBase::Update(const robot::Observation& observation, robot::Command* command) {
   command->motion_set = motion_set_;
   if (!has_begun_) Begin(observation);
@@ -247,6 +255,10 @@ Status MoveBase::Update(const robot::Observation& observation, robot::Command* c
   X_MBNow_ = observation.X_MB;
   const navigation::Costmap& costmap = *now_;
   if (!path_) {
+    if (car_ && IsAtGoal(observation)) {  // else it would drive to and fro for a few cm
+      command->base_velocity = geometry::Twist2{};
+      return Succeeded();
+    }
     if (const auto failed = Plan(costmap, observation.X_MB)) return *failed;
     X_MMoved_ = observation.X_MB;
     last_valid_ = last_plan_ = last_moved_ = observation.time;

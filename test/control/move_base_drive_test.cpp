@@ -206,6 +206,22 @@ TEST_F(MoveBaseDriveTest, ACarsLastStretchIsLookedAtAsItIsDriven) {
   EXPECT_THAT(ReasonAfter({State::kArrived, ""}, beside), HasSubstr("unreachable: "));
 }
 
+TEST_F(MoveBaseDriveTest, AWayThatACarTakesAnewIsLookedAtToo) {
+  robot::Robot car = hires::test_support::TrayRobot();
+  car.profile.base_controller.drive = robot::Drive::kCarLike;
+  car.profile.base_controller.min_turning_radius = 0.8;
+  skills_ = skills::MakeSkillSet(hires::test_support::Room(), car, {}, {});
+  Begin();
+  server_->news = {State::kArrived, "Goal reached."};
+  ASSERT_EQ(Look(9.0, {4.5, 2.3, 0.0}).progress, Progress::kRunning);
+  obstacles_M_ = {{{5.1, 1.5}, {5.2, 1.5}, {5.2, 2.9}, {5.1, 2.9}},
+                  {{3.8, 1.5}, {3.9, 1.5}, {3.9, 2.9}, {3.8, 2.9}}};
+  const skills::Status pushed = Look(9.1, {4.5, 1.5, 0.0});  // off its way, where it stands
+  EXPECT_EQ(pushed.progress, Progress::kFailed);
+  EXPECT_EQ(pushed.failure.code, base::FailureCode::kUnreachable);
+  EXPECT_FALSE(command_.base_velocity);
+}
+
 TEST_F(MoveBaseDriveTest, TheGoalIsTakenBackWhereTheActionIsBrokenOff) {
   Begin();
   drive_.reset();

@@ -114,6 +114,15 @@ TEST(MoveBaseTest, ACarArrivesOnArcsThatItCanSteer) {
   }
 }
 
+TEST(MoveBaseTest, ACarThatStandsWithinToleranceIsThere) {
+  MoveBase skill(CarIn(Room()), kEast, kFast);
+  robot::Observation seen;
+  seen.X_MB = kEast * Pose2{0.0, 0.1, 0.05};
+  robot::Command command;
+  EXPECT_EQ(skill.Update(seen, &command).progress, Progress::kSucceeded);
+  EXPECT_EQ(command.base_velocity->vx, 0.0);
+}
+
 TEST(MoveBaseTest, ACarSaysWhyThereIsNoWay) {
   world::World room = Room();
   room.statics.push_back(Block("crate", {1.0, 1.0, 0.8}, {4.5, 2.0, 0.4}));

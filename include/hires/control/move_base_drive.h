@@ -80,6 +80,7 @@ class MoveBaseDrive : public skills::Skill {
   skills::Status Begin(const robot::Observation& seen);
   skills::Status Follow(const robot::Observation& seen, robot::Command* command);
   skills::Status BeginRest(const robot::Observation& seen, robot::Command* command);
+  skills::Status DriveRest(const robot::Observation& seen, robot::Command* command);
   bool IsWayFree(const robot::Observation& seen) const;
   std::vector<geometry::Pose2> WayFrom(const geometry::Pose2& X_MB, double resolution) const;
 
@@ -91,7 +92,8 @@ class MoveBaseDrive : public skills::Skill {
   robot::MotionSet motion_set_;
   skills::MoveBaseBlind rest_;
   Stage stage_{Stage::kWaiting};
-  double sent_{0.0};  // [s]
+  double sent_{0.0};        // [s]
+  bool has_looked_{false};  // along its first way
 };
 
 /// Whether the robot's own move_base may do an action, as its description says. The straight last

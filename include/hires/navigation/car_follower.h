@@ -43,11 +43,10 @@ class CarFollower {
   void SetMotionSet(const robot::MotionSet& limits);  ///< @pre finite, >= 0
 
   /// One control cycle.
-  /// kDriving: drive at the velocity given, which no limit and no arc is too sharp for. If
-  /// something stands on the way ahead, it brakes within the limits. kNoValidTrajectory: it stands
-  /// and something is in its way, or it has lost its way, or came to rest at its end out of
-  /// tolerance: it needs a new one. kGoalReached: it stands at the end of its way, within both
-  /// tolerances of the goal.
+  /// kDriving: drive at the velocity given, which no arc is too sharp for. If something stands on
+  /// the way ahead, it brakes within the limits. kNoValidTrajectory: it stands out of tolerance
+  /// with something in its way, or off its way, or at its end: it needs a new one. kGoalReached: it
+  /// stands so, or at the end of its way, within both tolerances of the goal.
   /// @param costmap  nothing: it drives without looking.
   /// @pre SetPath was called.
   DwaResult Update(const Costmap* costmap, const geometry::Pose2& X_MB,

@@ -25,7 +25,8 @@ struct CarPathParams {
   double backward_factor{1.5};   ///< a metre backward costs as much as so many forward
   double reversal{0.5};          ///< [m] that stopping and driving the other way costs
   int num_headings{72};          ///< that the search tells apart
-  int max_expansions{10000};     ///< after which there counts as being no path
+  int max_expansions{10000};     ///< with clearance, and as many without, after which there counts
+                                 ///< as being no path
 };
 
 /// A way that a base which steers like a car can drive, forward and backward, from one pose to

@@ -65,6 +65,7 @@ class MoveBase : public Skill {
   void Begin(const robot::Observation& observation);
   std::optional<Status> Plan(const navigation::Costmap& costmap, const geometry::Pose2& X_MB);
   navigation::PathStatus FindPath(const navigation::Costmap& costmap, const geometry::Pose2& X_MB);
+  bool IsAtGoal(const robot::Observation& observation) const;
   bool NoteMotion(const robot::Observation& observation);
   std::shared_ptr<const navigation::Costmap> CostmapNow(
       const robot::Observation& observation) const;
@@ -109,6 +110,8 @@ class MoveBaseBlind : public Skill {
 
   Status Update(const robot::Observation& observation, robot::Command* command) override;
   double period() const override { return params_.period; }
+  /// Of a car: so many ways it has planned; one more whenever it came to rest out of tolerance.
+  int num_ways() const { return num_ways_; }
 
  private:
   struct Course {
