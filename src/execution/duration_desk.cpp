@@ -35,10 +35,20 @@ void DurationDesk::Update() {
   if (plan_ == run.number()) return;
   Close();
   plan_ = run.number();
-  if (session_.params().imagination == MonitorParams::ImaginePolicy::kOff) return;
+  const bool is_off = session_.params().imagination == MonitorParams::ImaginePolicy::kOff;
   for (int i = 0; i < run.size(); ++i) {
-    if (IsUnknown(i)) Ask(i);
+    if (!IsUnknown(i)) continue;
+    is_off ? SayUnknown(i, "imagination is off") : Ask(i);
   }
+}
+
+void DurationDesk::SayUnknown(int step, const std::string& why) {
+  session_.progress().run().at(step).note = "how long it lasts is not known: " + why;
+  session_.progress().Changed();
+}
+
+void DurationDesk::SayWhatIsUnknown() {
+  for (const Question& question : questions_) SayUnknown(question.step, "no answer came in time");
 }
 
 void DurationDesk::Ask(int step) {
@@ -63,10 +73,13 @@ void DurationDesk::OnAnswer(const ImagineAnswered& answer) {
   questions_.erase(question);
   const bool is_known =
       answer.outcome == ImagineAnswered::Outcome::kRanked && answer.duration > 0.0;
-  if (is_known) ExpectAsImagined(answer, step, &session_);
+  if (!is_known) {
+    const bool is_ranked = answer.outcome == ImagineAnswered::Outcome::kRanked;
+    return SayUnknown(step, is_ranked ? "imagination did not say" : WhyNothing(answer));
+  }
+  ExpectAsImagined(answer, step, &session_);
   session_.progress().run().at(step).note =
-      is_known ? fmt::format("lasts {:.1f} s as imagined", answer.duration)
-               : "how long it lasts is not known: " + WhyNothing(answer);
+      fmt::format("lasts {:.1f} s as imagined", answer.duration);
   session_.progress().Changed();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "execution/session.h"
@@ -18,6 +19,8 @@ class DurationDesk {
   void Update();
   void OnAnswer(const ImagineAnswered& answer);
   void Close();  ///< nothing is asked any more
+  /// In the notes of steps about which no answer came.
+  void SayWhatIsUnknown();
   /// Whether no answer is awaited any more. @pre Update was called for the present plan.
   bool IsAnswered() const;
   std::optional<double> WakeAt() const;
@@ -30,6 +33,7 @@ class DurationDesk {
   };
 
   bool IsUnknown(int step) const;
+  void SayUnknown(int step, const std::string& why);
   void Ask(int step);
 
   Session& session_;

@@ -159,10 +159,12 @@ void Monitor::Impl::EndDryRun() {
   desk.SettleAll();
   durations.Update();
   if (!durations.IsAnswered()) return;
+  durations.SayWhatIsUnknown();
   Conclude(Finish::Outcome::kDryRun, "planned and imagined; nothing was begun");
 }
 
 void Monitor::Impl::TakeUpViolation() {
+  durations.Close();  // they were asked of the plan that is mended now
   const std::string useless = repair.Begin(*session.TakeViolation());
   if (!useless.empty()) {
     return Conclude(Finish::Outcome::kFailed, useless, repair.failure());

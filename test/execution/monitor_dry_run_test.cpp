@@ -172,6 +172,8 @@ TEST(DryRunTest, SilenceEndsAtTheLongestWait) {
   ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
   EXPECT_NEAR(world.now(), 1000.05 + 2.0 * options.monitor.max_wait, 1.0)
       << "how to drive, how long the rest lasts";
+  EXPECT_THAT(FirstDriveOf(world.monitor().Steps())->note,
+              HasSubstr("how long it lasts is not known: no answer came in time"));
 }
 
 TEST(DryRunTest, WithoutImaginationThePlanAloneIsShown) {
@@ -181,6 +183,8 @@ TEST(DryRunTest, WithoutImaginationThePlanAloneIsShown) {
   ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
   EXPECT_THAT(world.imaginations(), IsEmpty());
   EXPECT_EQ(DriveOf(world.monitor().Steps())->action.arguments.back(), "fast");
+  EXPECT_THAT(FirstDriveOf(world.monitor().Steps())->note,
+              HasSubstr("how long it lasts is not known: imagination is off"));
 }
 
 TEST(DryRunTest, ADriveFromAnywhereLastsAsLongAsImagined) {
