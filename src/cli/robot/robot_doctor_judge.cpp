@@ -115,7 +115,7 @@ std::vector<std::string> LineOf(const std::string& frame, const std::string& to,
   std::vector<std::string> line{frame};
   while (line.back() != to) {
     const auto found = view.frames.find(line.back());
-    if (found == view.frames.end()) break;
+    if (found == view.frames.end() || found->second.parents.empty()) break;
     const std::set<std::string>& parents = found->second.parents;
     const std::string above = parents.count(to) > 0 ? to : *parents.begin();
     if (std::find(line.begin(), line.end(), above) != line.end()) break;  // a circle

@@ -88,13 +88,15 @@ MapPlace PlaceOf(const std::string& frame, const hires::control::RobotNames& nam
   const std::string where = fmt::format("map: it is in frame '{}', wanted '{}' or a frame that tf ",
                                         map, names.map_frame);
   const auto newest = tree.NewestOf(names.map_frame, map);
-  if (!newest) {
+  // Each link may be known, but not all of them at one time yet.
+  const auto found =
+      newest ? tree.Find(names.map_frame, map, *newest) : hires::sensing::FramePose{};
+  if (!newest || !found.is_found()) {
     return {{},
             where + fmt::format("connects with it: {}; publish the transform between them, or say "
                                 "in the names file (frames: map) what this robot calls its map",
-                                tree.WhyNot(names.map_frame, map, 0.0))};
+                                tree.WhyNot(names.map_frame, map, newest.value_or(0.0)))};
   }
-  const auto found = tree.Find(names.map_frame, map, *newest);
   const double tilt = hires::geometry::TiltOf(found.X_PC.rotation);
   if (!(tilt <= kMostTilt)) {
     return {{},
