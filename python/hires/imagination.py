@@ -1,12 +1,14 @@
 """The imagination client's action `imagine` as one call."""
 
-import os
 import re
 import threading
+import xmlrpc.client
 from dataclasses import dataclass, field
 from typing import Dict, Optional, Tuple
+from xml.parsers.expat import ExpatError
 
 import actionlib
+import rosgraph
 import rospy
 from actionlib_msgs.msg import GoalStatus
 from hires.failures import text_of
@@ -88,11 +90,10 @@ def init_node(name, **options):
     """
     try:
         rospy.get_master().getPid()
-    except OSError as error:
+    except (OSError, xmlrpc.client.Error, ExpatError) as error:
         raise ImaginationError(
             'no master answers at %s (%s); start one (roslaunch hires imagination.launch), or set '
-            'ROS_MASTER_URI to the one that runs' %
-            (os.environ.get('ROS_MASTER_URI', 'http://localhost:11311'), error)) from error
+            'ROS_MASTER_URI to the one that runs' % (rosgraph.get_master_uri(), error)) from error
     rospy.init_node(name, **options)
 
 
