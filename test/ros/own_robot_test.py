@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The example of a robot, world, objects, domain and knowledge of one's own: its task is planned, imagined and
-done, and then the robot really stands at the table with the soup on it. Run by `rostest hires own_robot.test`."""
+done, and then the robot really stands at the table with the soup on it. Run by `rostest hires own_robot.test`,
+and with a robot that steers like a car by `own_robot_car.test`."""
 
 import json
 import math
