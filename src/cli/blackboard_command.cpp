@@ -188,7 +188,7 @@ void AddFilter(CLI::App* verb, BlackboardOptions* o) {
   verb->add_flag("--imagined", o->imagined, "imagined ones, too");
   verb->add_option("--sparql", o->sparql, "select ?instance where {...}");
   verb->add_option("--limit", o->limit, "at most so many; default: all")
-      ->check(NumberBetween(1, 1ull << 40));
+      ->check(NumberBetween(1, 2'147'483'647));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <CLI/TypeTools.hpp>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace hires::cli {
 
@@ -22,16 +23,35 @@ CLI::Validator WholeNumber() {
       "WHOLE NUMBER");
 }
 
-CLI::Validator NumberBetween(double low, double high) {
+namespace {
+
+// Bounds as people write them: 1000000, not 1e+06.
+std::string Plain(double bound) {
+  return bound == std::floor(bound) ? fmt::format("{:.0f}", bound) : fmt::format("{:g}", bound);
+}
+
+CLI::Validator Between(double low, double high, bool is_whole) {
   return CLI::Validator(
-      [low, high](const std::string& text) {
+      [=](const std::string& text) {
         double number = 0.0;
         const bool is_number = CLI::detail::lexical_cast(text, number) && std::isfinite(number);
-        if (is_number && number >= low && number <= high) return std::string();
-        return fmt::format("'{}' is {}; wanted a number from {:g} to {:g}", text,
-                           is_number ? "out of range" : "not a number", low, high);
+        std::int64_t whole = 0;
+        const bool is_right_kind =
+            is_number && (!is_whole || CLI::detail::lexical_cast(text, whole));
+        if (is_right_kind && number >= low && number <= high) return std::string();
+        return fmt::format("'{}' is {}; wanted a {} from {} to {}", text,
+                           !is_number       ? "not a number"
+                           : !is_right_kind ? "not a whole number"
+                                            : "out of range",
+                           is_whole ? "whole number" : "number", Plain(low), Plain(high));
       },
-      fmt::format("{:g} to {:g}", low, high));
+      fmt::format("{} to {}", Plain(low), Plain(high)));
 }
+
+}  // namespace
+
+CLI::Validator NumberBetween(double low, double high) { return Between(low, high, false); }
+
+CLI::Validator NumberBetween(int low, int high) { return Between(low, high, true); }
 
 }  // namespace hires::cli

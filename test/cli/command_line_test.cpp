@@ -357,8 +357,11 @@ TEST(CommandLineTest, RefusesNumbersOutOfRange) {
   for (const char* rollouts : {"0", "-3", "1000000", "many", "2.5"}) {
     ExpectRefused(with("--rollouts", rollouts), {"--rollouts", rollouts});
   }
-  ExpectRefused(with("--rollouts", "many"), {"'many' is not a number; wanted a number from 1 to"});
-  ExpectRefused(with("--rollouts", "0"), {"'0' is out of range; wanted a number from 1 to 100000"});
+  ExpectRefused(with("--rollouts", "many"),
+                {"'many' is not a number; wanted a whole number from 1 to"});
+  ExpectRefused(with("--rollouts", "0"),
+                {"'0' is out of range; wanted a whole number from 1 to 100000"});
+  ExpectRefused(with("--rollouts", "2.5"), {"'2.5' is not a whole number; wanted a whole number"});
   ExpectRefused(with("--deadline", "-1"), {"--deadline"});
   ExpectRefused(with("--threads", "0"), {"--threads"});
   for (const char* seed : {"-1", "1.5", "1e3", "99999999999999999999"}) {

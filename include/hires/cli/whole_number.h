@@ -11,5 +11,7 @@ CLI::Validator WholeNumber();
 /// A number from `low` to `high`, both included. CLI11's own check says of what is no number that
 /// it is out of range.
 CLI::Validator NumberBetween(double low, double high);
+/// Of options that count: whole numbers alone, which CLI11 would only say it "could not convert".
+CLI::Validator NumberBetween(int low, int high);
 
 }  // namespace hires::cli
