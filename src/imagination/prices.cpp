@@ -6,6 +6,7 @@
 
 #include "hires/base/check.h"
 #include "hires/base/text.h"
+#include "hires/imagination/success_interval.h"
 #include "imagination/confidence_sequence.h"
 
 namespace hires::imagination {
