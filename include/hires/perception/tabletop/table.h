@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "hires/base/rng.h"
+#include "hires/geometry/polygon.h"
+#include "hires/perception/tabletop/point_cloud.h"
+
+namespace hires::perception {
+
+/// The plane of a table in the camera's frame, seen from above.
+struct Table {
+  /// [m] above the plane; negative below it.
+  double HeightOf(const Eigen::Vector3d& p_C) const { return normal.dot(p_C) + offset; }
+  /// Along the plane [m], for what is seen from above.
+  Eigen::Vector2d FromAbove(const Eigen::Vector3d& p_C) const {
+    return {along_x.dot(p_C), along_y.dot(p_C)};
+  }
+
+  Eigen::Vector3d normal{Eigen::Vector3d::UnitY() * -1.0};  ///< of length 1, upwards
+  double offset{0.0};                                       ///< [m] height of the camera above it
+  Eigen::Vector3d along_x{Eigen::Vector3d::UnitX()};        ///< of length 1, as is the next;
+  Eigen::Vector3d along_y{-Eigen::Vector3d::UnitZ()};       ///< with the normal right-handed
+  geometry::Polygon outline{};  ///< convex, of its measured points, FromAbove [m]
+};
+
+struct TableParams {
+  int num_samples{300};         ///< planes through three points that are tried
+  double tolerance{2.0};        ///< [DepthNoise] from the plane, of points that vote for it
+  double min_share{0.05};       ///< of all measured points, at least on a table
+  double max_inclination{0.2};  ///< [rad] against `up`, where that is known
+};
+
+/// The plane with the most points of which the camera is on the upper side (RANSAC [Fischler,
+/// Bolles 1981], then least squares). Where two tables are seen, the larger one in the picture.
+/// @param up_C  upwards as far as somebody knows, of length 1; without it, any plane is a table.
+/// @return nothing where no plane holds `min_share` of the points.
+std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<Eigen::Vector3d>& up_C,
+                               const TableParams& params, base::Rng rng);
+
+}  // namespace hires::perception

@@ -1,0 +1,231 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "hires/perception/tabletop/segmentation.h"
+#include "perception/support/depth_picture.h"
+#include "perception/tabletop/convex_parts.h"
+
+namespace hires::perception::tabletop_test {
+namespace {
+
+using Eigen::Vector3d;
+using test_support::DepthPicture;
+
+constexpr double kTableHeight = 0.75;
+
+/// A table of 1.2 m by 0.8 m and things on it, seen by a camera 0.6 m above it.
+class TableScene {
+ public:
+  explicit TableScene(double width = 0.8) {
+    Put(geometry::Box{{width, 1.2, 0.04}}, {0.0, 0.0, -0.02});
+  }
+  /// Of what stands on the table at z = 0.
+  TableScene& Put(const geometry::Shape& shape, const Vector3d& p_T, double yaw = 0.0) {
+    scene_.Add(library_, shape,
+               geometry::Pose3{p_T + Vector3d(0.0, 0.0, kTableHeight),
+                               Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()))},
+               num_bodies_++);
+    return *this;
+  }
+  TableScene& PutBox(const Vector3d& size, double x, double y, double z = 0.0, double yaw = 0.0) {
+    return Put(geometry::Box{size}, {x, y, z + size.z() / 2.0}, yaw);
+  }
+  PointCloud Seen(int seed = 1) {
+    scene_.Commit();
+    return DepthPicture(scene_, camera(), base::Rng(seed));
+  }
+  static PinholeCamera camera() {
+    return LookAt({-0.7, 0.0, kTableHeight + 0.6}, {0.0, 0.0, kTableHeight}, 320, 240, 1.0);
+  }
+  static Vector3d Up() {  // the camera's optical frame: x right, y down, z forward
+    const Vector3d up_C = camera().X_MC.rotation.conjugate() * Vector3d::UnitZ();
+    return {-up_C.y(), -up_C.z(), up_C.x()};
+  }
+
+ private:
+  MeshLibrary library_;
+  RayScene scene_;
+  int num_bodies_ = 0;
+};
+
+/// Label of most of the points within `reach` of a point on the table.
+int LabelAround(const PointCloud& cloud, const Segmentation& out, const Vector3d& p_T,
+                double reach = 0.02) {
+  const Vector3d p_M = p_T + Vector3d(0.0, 0.0, kTableHeight);
+  const Vector3d p = TableScene::camera().X_MC.Inverse() * p_M;
+  const Eigen::Vector3f p_C(-p.y(), -p.z(), p.x());
+  std::map<int, int> votes;
+  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+    if (IsMeasured(cloud.points[i]) && (cloud.points[i] - p_C).norm() < reach)
+      ++votes[out.labels[i]];
+  const auto most = std::max_element(
+      votes.begin(), votes.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == votes.end() ? -1 : most->first;
+}
+
+Segmentation Segment(const PointCloud& cloud) {
+  return SegmentTabletop(cloud, TableScene::Up(), {}, base::Rng(1));
+}
+
+TEST(FindTableTest, ThePlaneIsFoundBesideWhatStandsOnIt) {
+  TableScene scene;
+  scene.PutBox({0.3, 0.4, 0.2}, 0.1, 0.0);
+  const auto table = FindTable(scene.Seen(), std::nullopt, {}, base::Rng(1));
+  ASSERT_TRUE(table.has_value());
+  EXPECT_LT(std::acos(table->normal.dot(TableScene::Up())), 0.003);
+  EXPECT_NEAR(table->offset, 0.6, 0.001);
+  EXPECT_FALSE(geometry::Contains(table->outline, table->FromAbove(-0.6 * table->normal)))
+      << "the table begins 0.3 m in front of the camera's foot";
+}
+
+TEST(FindTableTest, WhatIsNoTableIsNotFound) {
+  PointCloud cloud;
+  EXPECT_FALSE(FindTable(cloud, std::nullopt, {}, base::Rng(1)));
+  cloud.points.assign(1000, Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+  EXPECT_FALSE(FindTable(cloud, std::nullopt, {}, base::Rng(1)));
+  cloud.points.assign(1000, Eigen::Vector3f(0.0F, 0.0F, 1.0F));
+  EXPECT_FALSE(FindTable(cloud, std::nullopt, {}, base::Rng(1))) << "one point, often";
+  base::Rng rng(1);
+  for (auto& p : cloud.points)
+    p = Eigen::Vector3d(rng.Uniform(-0.5, 0.5), rng.Uniform(-0.5, 0.5), 1.0).cast<float>();
+  EXPECT_TRUE(FindTable(cloud, std::nullopt, {}, base::Rng(1)));
+  EXPECT_FALSE(FindTable(cloud, -Vector3d::UnitY(), {}, base::Rng(1))) << "a wall";
+}
+
+/// Surfels on a grid of 5 mm whose height is a function of x, seen from above.
+template <typename Height>
+SurfelCloud Profile(Height height, double noise = 0.0) {
+  PointCloud cloud;
+  base::Rng rng(1);
+  for (double x = -0.1; x < 0.1; x += 0.002) {
+    for (double y = -0.1; y < 0.1; y += 0.002) {
+      cloud.points.push_back(
+          Vector3d(x, y, 1.0 - height(x) + rng.Normal(0.0, noise)).cast<float>());
+    }
+  }
+  std::vector<int> all(cloud.points.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+  return MakeSurfels(cloud, all, {});
+}
+
+int NumParts(const SurfelCloud& surfels) {
+  const std::vector<int> part = FindConvexParts(surfels, {});
+  return static_cast<int>(std::set<int>(part.begin(), part.end()).size());
+}
+
+TEST(ConvexPartsTest, OnlyAConcaveEdgeDivides) {
+  EXPECT_EQ(NumParts(Profile([](double) { return 0.0; }, 0.001)), 1) << "a plane";
+  EXPECT_EQ(NumParts(Profile([](double x) { return -std::abs(x); }, 0.001)), 1) << "a roof";
+  EXPECT_EQ(NumParts(Profile([](double x) { return std::abs(x); }, 0.001)), 2) << "a valley";
+  EXPECT_EQ(NumParts(Profile([](double x) { return 0.13 - std::sqrt(0.13 * 0.13 - x * x); })), 1)
+      << "a bowl bends slowly";
+}
+
+TEST(ConvexPartsTest, NothingMakesNoParts) {
+  EXPECT_TRUE(FindConvexParts(MakeSurfels({}, {}, {}), {}).empty());
+}
+
+TEST(SegmentTabletopTest, ThingsAreToldFromTheTableAndFromEachOther) {
+  TableScene scene;
+  scene.PutBox({0.08, 0.08, 0.15}, 0.0, -0.2).PutBox({0.1, 0.1, 0.05}, 0.0, 0.2);
+  scene.Put(geometry::Cylinder{0.04, 0.12}, {0.15, 0.0, 0.06});
+  const PointCloud cloud = scene.Seen();
+  const Segmentation out = Segment(cloud);
+  EXPECT_EQ(out.num_things, 3);
+  const std::set<int> labels{LabelAround(cloud, out, {0.0, -0.2, 0.15}),
+                             LabelAround(cloud, out, {0.0, 0.2, 0.05}),
+                             LabelAround(cloud, out, {0.15, 0.0, 0.12})};
+  EXPECT_EQ(labels, (std::set<int>{2, 3, 4}));
+  EXPECT_EQ(LabelAround(cloud, out, {-0.2, 0.0, 0.0}), kLabelTable);
+  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+    ASSERT_TRUE(IsMeasured(cloud.points[i]) || out.labels[i] == kLabelNone);
+}
+
+TEST(SegmentTabletopTest, AThingOnAnotherIsAThing) {
+  TableScene scene;
+  scene.PutBox({0.25, 0.25, 0.08}, 0.0, 0.0).PutBox({0.12, 0.15, 0.08}, 0.05, 0.0, 0.08, 0.5);
+  const PointCloud cloud = scene.Seen();
+  const Segmentation out = Segment(cloud);
+  EXPECT_EQ(out.num_things, 2);
+  EXPECT_NE(LabelAround(cloud, out, {0.05, 0.0, 0.16}), LabelAround(cloud, out, {-0.1, 0.1, 0.08}));
+}
+
+TEST(SegmentTabletopTest, WhatGoesOnBehindSomethingIsOne) {
+  TableScene scene;
+  scene.PutBox({0.1, 0.4, 0.1}, 0.1, 0.0).PutBox({0.05, 0.06, 0.3}, -0.1, 0.0);
+  const PointCloud cloud = scene.Seen();
+  const Segmentation out = Segment(cloud);
+  EXPECT_EQ(out.num_things, 2);
+  EXPECT_EQ(LabelAround(cloud, out, {0.1, -0.15, 0.1}), LabelAround(cloud, out, {0.1, 0.15, 0.1}));
+}
+
+TEST(SegmentTabletopTest, TwoAlikeWithAGapBetweenThemAreTwo) {
+  TableScene scene;
+  scene.PutBox({0.1, 0.1, 0.1}, 0.1, -0.1).PutBox({0.1, 0.1, 0.1}, 0.1, 0.1);
+  EXPECT_EQ(Segment(scene.Seen()).num_things, 2) << "their faces go on, but one looks between them";
+}
+
+/// A tub of 16 thin walls.
+void PutTub(TableScene* scene, double radius, double height) {
+  constexpr int kWalls = 16;
+  constexpr double kHalfTurn = EIGEN_PI;
+  for (int i = 0; i < kWalls; ++i) {
+    const double angle = 2.0 * kHalfTurn * i / kWalls;
+    scene->Put(geometry::Box{{0.004, 2.02 * radius * std::tan(kHalfTurn / kWalls), height}},
+               {radius * std::cos(angle), radius * std::sin(angle), height / 2.0}, angle);
+  }
+}
+
+TEST(SegmentTabletopTest, AVesselIsOneWithItsFloor) {
+  TableScene scene;
+  PutTub(&scene, 0.12, 0.08);
+  const PointCloud cloud = scene.Seen();
+  const Segmentation out = Segment(cloud);
+  EXPECT_EQ(out.num_things, 1);
+  EXPECT_EQ(LabelAround(cloud, out, {0.03, 0.0, 0.0}), kLabelFirstThing) << "its floor";
+  EXPECT_EQ(LabelAround(cloud, out, {-0.2, 0.0, 0.0}), kLabelTable) << "before it";
+}
+
+TEST(SegmentTabletopTest, WhatStandsInAVesselIsAThing) {
+  TableScene scene;
+  PutTub(&scene, 0.15, 0.06);
+  scene.Put(geometry::Cylinder{0.035, 0.16}, {0.0, 0.0, 0.08});
+  const PointCloud cloud = scene.Seen();
+  const Segmentation out = Segment(cloud);
+  EXPECT_NE(LabelAround(cloud, out, {0.0, 0.0, 0.16}), LabelAround(cloud, out, {0.15, 0.0, 0.05}));
+}
+
+TEST(SegmentTabletopTest, AnEmptyTableHasNoThings) {
+  const Segmentation out = Segment(TableScene().Seen());
+  EXPECT_TRUE(out.table.has_value());
+  EXPECT_EQ(out.num_things, 0);
+  const Segmentation nothing = Segment({});
+  EXPECT_FALSE(nothing.table.has_value());
+  EXPECT_TRUE(nothing.labels.empty());
+}
+
+TEST(SegmentTabletopTest, WhatIsBesideTheTableIsNoThingOnIt) {
+  TableScene scene(0.4);
+  scene.PutBox({0.1, 0.1, 0.9}, 0.4, 0.0, -0.75);
+  EXPECT_EQ(Segment(scene.Seen()).num_things, 0);
+}
+
+// The cloud's order is not used: who drives with a camera that gives lists of points gets the same.
+TEST(SegmentTabletopTest, AnUnorganisedCloudIsDividedAlike) {
+  TableScene scene;
+  scene.PutBox({0.25, 0.25, 0.08}, 0.0, 0.0).PutBox({0.12, 0.15, 0.08}, 0.05, 0.0, 0.08, 0.5);
+  const PointCloud cloud = scene.Seen();
+  PointCloud list;
+  for (auto it = cloud.points.rbegin(); it != cloud.points.rend(); ++it)
+    if (IsMeasured(*it)) list.points.push_back(*it);
+  list.width = static_cast<int>(list.points.size());
+  const Segmentation out = Segment(list), again = Segment(list);
+  EXPECT_EQ(out.num_things, 2);
+  EXPECT_EQ(out.labels, again.labels);
+}
+
+}  // namespace
+}  // namespace hires::perception::tabletop_test
