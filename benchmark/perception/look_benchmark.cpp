@@ -52,6 +52,22 @@ void BM_Look(benchmark::State& state) {  // shapes of the robot, a scene, and wh
 }
 BENCHMARK(BM_Look)->Arg(1)->Arg(8)->Arg(20)->Unit(benchmark::kMicrosecond);
 
+void BM_RangePicture(benchmark::State& state) {  // 640 x 480 pixels of the head's camera
+  const robot::Robot pr2 = robot::LoadRobot(HIRES_SOURCE_DIR "/config/robots/pr2.yaml");
+  const auto surroundings = std::make_shared<Surroundings>(Restaurant());
+  robot::JointPositions posture = pr2.profile.joints;
+  posture[pr2.profile.upper_body->head_tilt_joint] = 0.5;
+  const geometry::Pose2 X_MB{7.73, 10.3, geometry::kPi / 2};
+  const LineOfSight sight(surroundings, Mugs(8), ShapesOf(pr2, X_MB, posture));
+  PinholeCamera camera;
+  camera.X_MC = ViewOf(pr2, X_MB, posture).X_MC;
+  camera.width = 640;
+  camera.height = 480;
+  camera.focal_length = 577.3;  // 58 degrees
+  for (auto _ : state) benchmark::DoNotOptimize(sight.Look(camera, 5.0));
+}
+BENCHMARK(BM_RangePicture)->Unit(benchmark::kMillisecond);
+
 void BM_LaserScan(benchmark::State& state) {  // 640 beams of the PR2's base laser
   const auto surroundings = std::make_shared<Surroundings>(Restaurant());
   const LineOfSight sight(surroundings, Mugs(20));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -138,6 +139,48 @@ std::optional<Hit> LineOfSight::FirstHit(const Vector3d& from_M, const Vector3d&
     first = Hit{hit->distance, impl_->owner_names[hit->owner]};
   }
   return first;
+}
+
+RangePicture LineOfSight::Look(const PinholeCamera& camera, double max_range) const {
+  RangePicture out;
+  out.width = camera.width;
+  out.height = camera.height;
+  out.names = impl_->world().static_names;
+  const int num_statics = static_cast<int>(out.names.size());
+  out.names.insert(out.names.end(), impl_->owner_names.begin(), impl_->owner_names.end());
+  const int floor = static_cast<int>(out.names.size());
+  out.names.emplace_back("floor");
+  const Vector3d from_M = camera.X_MC.translation;
+  const Vector3d forward = camera.X_MC.rotation * Vector3d::UnitX();
+  const int num_pixels = out.width * out.height;
+  out.depth.reserve(num_pixels);
+  out.incidence.reserve(num_pixels);
+  out.owner.reserve(num_pixels);
+  std::vector<Eigen::Vector3f> directions;
+  std::vector<RayHit> hits;
+  for (int begin = 0; begin < num_pixels; begin += RayScene::kPacket) {
+    directions.clear();
+    hits.clear();
+    for (int i = begin; i < std::min(begin + RayScene::kPacket, num_pixels); ++i) {
+      const Vector3d direction =
+          camera.DirectionAt(i % out.width + 0.5, i / out.width + 0.5);  // NOLINT: whole rows
+      const double to_floor = DistanceToFloor(from_M, direction);
+      directions.push_back(direction.cast<float>());
+      hits.push_back(to_floor < max_range ? RayHit{to_floor, floor, Vector3d::UnitZ()}
+                                          : RayHit{max_range, RangePicture::kNothing, -direction});
+    }
+    impl_->world().statics.FirstHits(from_M, directions, 0, &hits);
+    impl_->loose.FirstHits(from_M, directions, num_statics, &hits);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const Vector3d direction = directions[i].cast<double>();
+      const bool is_there = hits[i].owner != RangePicture::kNothing;
+      out.depth.push_back(is_there ? static_cast<float>(hits[i].distance * direction.dot(forward))
+                                   : std::numeric_limits<float>::infinity());
+      out.incidence.push_back(static_cast<float>(std::abs(direction.dot(hits[i].n_M))));
+      out.owner.push_back(hits[i].owner);
+    }
+  }
+  return out;
 }
 
 }  // namespace hires::perception

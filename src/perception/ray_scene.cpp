@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "hires/base/check.h"
 #include "hires/base/log.h"
 #include "perception/shape_mesh.h"
 
@@ -115,7 +116,7 @@ RTCScene MeshLibrary::Find(const geometry::Shape& shape) const {
 struct RayScene::Context {
   RTCIntersectContext base;  // first: Embree knows this part alone
   const std::vector<Instance>* instances{nullptr};
-  Eigen::Vector3f direction;
+  Eigen::Vector3f directions[RayScene::kPacket];  // by the ray's number
   int except_owner{-1};
 };
 
@@ -144,30 +145,39 @@ void RayScene::Add(const MeshLibrary& library, const geometry::Shape& shape,
 void RayScene::Commit() { rtcCommitScene(scene_.get()); }
 
 void RayScene::Accept(const RTCFilterFunctionNArguments* arguments) {
-  if (arguments->valid[0] != -1) return;
   const auto* context = reinterpret_cast<const Context*>(arguments->context);
-  const unsigned instance = RTCHitN_instID(arguments->hit, arguments->N, 0, 0);
-  const Eigen::Vector3f normal(RTCHitN_Ng_x(arguments->hit, arguments->N, 0),
-                               RTCHitN_Ng_y(arguments->hit, arguments->N, 0),
-                               RTCHitN_Ng_z(arguments->hit, arguments->N, 0));
-  const Instance& met = (*context->instances)[instance];
-  const bool is_from_inside = normal.dot(met.to_shape * context->direction) >= 0.0f;
-  if (is_from_inside || met.owner == context->except_owner) arguments->valid[0] = 0;
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (arguments->valid[i] != -1) continue;
+    const unsigned instance = RTCHitN_instID(arguments->hit, n, i, 0);
+    const Eigen::Vector3f normal(RTCHitN_Ng_x(arguments->hit, n, i),
+                                 RTCHitN_Ng_y(arguments->hit, n, i),
+                                 RTCHitN_Ng_z(arguments->hit, n, i));
+    const Instance& met = (*context->instances)[instance];
+    const Eigen::Vector3f& direction = context->directions[RTCRayN_id(arguments->ray, n, i)];
+    const bool is_from_inside = normal.dot(met.to_shape * direction) >= 0.0f;
+    if (is_from_inside || met.owner == context->except_owner) arguments->valid[i] = 0;
+  }
 }
 
-RayScene::Context RayScene::MakeContext(const Vector3d& direction, int except_owner) const {
+RayScene::Context RayScene::MakeContext(int except_owner) const {
   Context context;
   rtcInitIntersectContext(&context.base);
   context.base.filter = &RayScene::Accept;
   context.instances = &instances_;
-  context.direction = direction.cast<float>();
   context.except_owner = except_owner;
   return context;
 }
 
+// Normals turn with the inverse transposed of what turns directions.
+Vector3d RayScene::NormalInMap(const Instance& met, const Eigen::Vector3f& n_S) {
+  return (met.to_shape.transpose() * n_S).cast<double>().normalized();
+}
+
 std::optional<RayHit> RayScene::FirstHit(const Vector3d& from_M, const Vector3d& direction,
                                          double max_distance, int except_owner) const {
-  Context context = MakeContext(direction, except_owner);
+  Context context = MakeContext(except_owner);
+  context.directions[0] = direction.cast<float>();
   RTCRayHit query{};
   query.ray = MakeRay(from_M, direction, max_distance);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -175,15 +185,45 @@ std::optional<RayHit> RayScene::FirstHit(const Vector3d& from_M, const Vector3d&
   rtcIntersect1(scene_.get(), &context.base, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   const Instance& met = instances_[query.hit.instID[0]];
-  // Normals turn with the inverse transposed of what turns directions.
-  const Eigen::Vector3f n_S(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
-  const Vector3d n_M = (met.to_shape.transpose() * n_S).cast<double>().normalized();
-  return RayHit{query.ray.tfar, met.owner, n_M};
+  return RayHit{query.ray.tfar, met.owner,
+                NormalInMap(met, {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z})};
+}
+
+void RayScene::FirstHits(const Vector3d& from_M, const std::vector<Eigen::Vector3f>& directions,
+                         int owner_offset, std::vector<RayHit>* hits) const {
+  HIRES_CHECK(directions.size() <= kPacket && hits->size() == directions.size(),
+              "rays of a packet");
+  Context context = MakeContext(-1);
+  context.base.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  alignas(32) int valid[kPacket] = {};
+  RTCRayHit8 query{};
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    valid[i] = -1;
+    context.directions[i] = directions[i];
+    query.ray.org_x[i] = static_cast<float>(from_M.x());
+    query.ray.org_y[i] = static_cast<float>(from_M.y());
+    query.ray.org_z[i] = static_cast<float>(from_M.z());
+    query.ray.dir_x[i] = directions[i].x();
+    query.ray.dir_y[i] = directions[i].y();
+    query.ray.dir_z[i] = directions[i].z();
+    query.ray.tfar[i] = static_cast<float>((*hits)[i].distance);
+    query.ray.mask[i] = 0xffffffffu;
+    query.ray.id[i] = static_cast<unsigned>(i);
+    query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  rtcIntersect8(valid, scene_.get(), &context.base, &query);
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    if (query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+    const Instance& met = instances_[query.hit.instID[0][i]];
+    (*hits)[i] = {query.ray.tfar[i], owner_offset + met.owner,
+                  NormalInMap(met, {query.hit.Ng_x[i], query.hit.Ng_y[i], query.hit.Ng_z[i]})};
+  }
 }
 
 bool RayScene::IsBlocked(const Vector3d& from_M, const Vector3d& direction, double max_distance,
                          int except_owner) const {
-  Context context = MakeContext(direction, except_owner);
+  Context context = MakeContext(except_owner);
+  context.directions[0] = direction.cast<float>();
   RTCRay ray = MakeRay(from_M, direction, max_distance);
   rtcOccluded1(scene_.get(), &context.base, &ray);
   return ray.tfar < 0.0f;

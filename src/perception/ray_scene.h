@@ -52,6 +52,14 @@ class RayScene {
   bool IsBlocked(const Eigen::Vector3d& from_M, const Eigen::Vector3d& direction,
                  double max_distance, int except_owner = -1) const;
 
+  static constexpr int kPacket = 8;
+  /// Rays from one point that go side by side, which costs less than one after the other.
+  /// @param hits  of each ray what was met nearer before, as its `distance`; replaced where this
+  /// scene is met nearer still.
+  /// @pre at most kPacket directions, each of length 1.
+  void FirstHits(const Eigen::Vector3d& from_M, const std::vector<Eigen::Vector3f>& directions,
+                 int owner_offset, std::vector<RayHit>* hits) const;
+
  private:
   struct Instance {
     int owner{0};
@@ -59,7 +67,8 @@ class RayScene {
   };
   struct Context;
   static void Accept(const RTCFilterFunctionNArguments* arguments);
-  Context MakeContext(const Eigen::Vector3d& direction, int except_owner) const;
+  Context MakeContext(int except_owner) const;
+  static Eigen::Vector3d NormalInMap(const Instance& met, const Eigen::Vector3f& n_S);
 
   ScenePointer scene_;
   std::vector<ScenePointer> own_;  // meshes that no library has

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
@@ -199,6 +200,42 @@ TEST_F(SightTest, WhatIsNotThereIsJudgedAsIfItWere) {
             without.VisibleShareAt(view_, "mug", objects[0].X_MO));
   EXPECT_EQ(with.VisibleShare(view_, "mug1"),
             with.VisibleShareAt(view_, "mug", objects[0].X_MO, "mug1"));
+}
+
+// Two roads: packets of rays, and one ray after the other.
+TEST_F(SightTest, APictureSaysOfEachPixelWhatItsRayMeets) {
+  geometry::Collision forearm =
+      test_support::Shape("l_forearm_link", geometry::Box{{0.1, 0.1, 0.1}}, {0.6, 0.2, 0.9});
+  const LineOfSight sight(
+      surroundings_,
+      {Thing("mug1", "mug", At(1.5, 0.0, 0.9)), Thing("jug1", "jug", At(1.8, -0.2, 0.9)),
+       Thing("screen1", "screen", At(2.5, 0.5, 0.7))},
+      {forearm});
+  const PinholeCamera camera = LookAt({0.0, 0.0, 1.0}, {1.5, 0.0, 0.8}, 65, 49, 1.0);
+  constexpr double kMaxRange = 2.8;  // before the wall's upper part
+  const RangePicture picture = sight.Look(camera, kMaxRange);
+  const Vector3d forward = camera.X_MC.rotation * Vector3d::UnitX();
+  std::set<std::string> met;
+  for (int row = 0; row < camera.height; ++row) {
+    for (int column = 0; column < camera.width; ++column) {
+      const int i = row * camera.width + column;
+      const Vector3d direction = camera.DirectionAt(column + 0.5, row + 0.5);
+      const auto hit = sight.FirstHit({0.0, 0.0, 1.0}, direction);
+      ASSERT_TRUE(hit.has_value());
+      if (hit->distance > kMaxRange) {
+        ASSERT_EQ(picture.owner[i], RangePicture::kNothing);
+        ASSERT_EQ(picture.depth[i], std::numeric_limits<float>::infinity());
+        continue;
+      }
+      ASSERT_EQ(picture.names[picture.owner[i]], hit->name) << column << ", " << row;
+      ASSERT_NEAR(picture.depth[i], hit->distance * direction.dot(forward), 1e-5);
+      if (hit->name == "floor") {
+        ASSERT_NEAR(picture.incidence[i], -direction.z(), 1e-6);
+      }
+      met.insert(hit->name);
+    }
+  }
+  EXPECT_THAT(met, testing::ElementsAre("floor", "jug1", "l_forearm_link", "mug1", "screen1"));
 }
 
 TEST_F(SightTest, TheSameLookGivesTheSameBits) {

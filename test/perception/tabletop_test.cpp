@@ -4,15 +4,15 @@
 #include <map>
 #include <set>
 
+#include "hires/perception/depth_sensor.h"
+#include "hires/perception/line_of_sight.h"
 #include "hires/perception/tabletop/segmentation.h"
-#include "perception/support/depth_picture.h"
 #include "perception/tabletop/convex_parts.h"
 
 namespace hires::perception::tabletop_test {
 namespace {
 
 using Eigen::Vector3d;
-using test_support::DepthPicture;
 
 constexpr double kTableHeight = 0.75;
 
@@ -24,31 +24,36 @@ class TableScene {
   }
   /// Of what stands on the table at z = 0.
   TableScene& Put(const geometry::Shape& shape, const Vector3d& p_T, double yaw = 0.0) {
-    scene_.Add(library_, shape,
-               geometry::Pose3{p_T + Vector3d(0.0, 0.0, kTableHeight),
-                               Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()))},
-               num_bodies_++);
+    world::StaticBody body;
+    body.name = "thing" + std::to_string(world_.statics.size());
+    body.X_MB.translation = p_T + Vector3d(0.0, 0.0, kTableHeight);
+    body.X_MB.rotation = Eigen::AngleAxisd(yaw, Vector3d::UnitZ());
+    body.collisions.emplace_back();
+    body.collisions.back().shape = shape;
+    world_.statics.push_back(body);
     return *this;
   }
   TableScene& PutBox(const Vector3d& size, double x, double y, double z = 0.0, double yaw = 0.0) {
     return Put(geometry::Box{size}, {x, y, z + size.z() / 2.0}, yaw);
   }
-  PointCloud Seen(int seed = 1) {
-    scene_.Commit();
-    return DepthPicture(scene_, camera(), base::Rng(seed));
+  PointCloud Seen(int seed = 1) const {
+    DepthSensorParams sensor;
+    sensor.min_range = 0.4;
+    sensor.max_range = 1.4;  // before the floor, a larger plane than a small table
+    const LineOfSight sight(std::make_shared<Surroundings>(world_), {});
+    base::Rng rng(seed);
+    return Measure(sight.Look(camera(), 5.0), camera(), sensor, &rng);
   }
   static PinholeCamera camera() {
     return LookAt({-0.7, 0.0, kTableHeight + 0.6}, {0.0, 0.0, kTableHeight}, 320, 240, 1.0);
   }
-  static Vector3d Up() {  // the camera's optical frame: x right, y down, z forward
+  static Vector3d Up() {  // in the optical frame: x right, y down, z forward
     const Vector3d up_C = camera().X_MC.rotation.conjugate() * Vector3d::UnitZ();
     return {-up_C.y(), -up_C.z(), up_C.x()};
   }
 
  private:
-  MeshLibrary library_;
-  RayScene scene_;
-  int num_bodies_ = 0;
+  world::World world_;
 };
 
 /// Label of most of the points within `reach` of a point on the table.

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "hires/perception/camera_view.h"
+#include "hires/perception/pinhole_camera.h"
+#include "hires/perception/range_picture.h"
 #include "hires/perception/surroundings.h"
 
 namespace hires::perception {
@@ -52,6 +54,9 @@ class LineOfSight {
   /// The same with the name of what is hit.
   std::optional<Hit> FirstHit(const Eigen::Vector3d& from_M,
                               const Eigen::Vector3d& direction) const;
+  /// What each pixel of a camera looks at, by rays side by side (packets of eight).
+  /// @param max_range  [m] from the camera; beyond it is nothing.
+  RangePicture Look(const PinholeCamera& camera, double max_range) const;
 
  private:
   struct Impl;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "hires/perception/depth_sensor.h"
 #include "perception/tabletop/convex_parts.h"
 #include "perception/tabletop/part_joining.h"
 #include "perception/tabletop/surfels.h"

@@ -7,6 +7,8 @@
 #include <map>
 #include <vector>
 
+#include "hires/perception/depth_sensor.h"
+
 namespace hires::perception {
 namespace {
 

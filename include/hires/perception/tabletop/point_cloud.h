@@ -16,9 +16,4 @@ struct PointCloud {
 
 inline bool IsMeasured(const Eigen::Vector3f& p_C) { return p_C.allFinite(); }
 
-/// Standard deviation [m] of a structured-light camera's depth along its axis, `z` [m] away.
-/// [Nguyen, Izadi, Lovell 2012, "Modeling Kinect Sensor Noise for Improved 3D Reconstruction and
-/// Tracking", 3DIMPVT, Eq. 3, for surfaces that face the camera]
-inline double DepthNoise(double z) { return 0.0012 + 0.0019 * (z - 0.4) * (z - 0.4); }
-
 }  // namespace hires::perception
