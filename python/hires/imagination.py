@@ -93,7 +93,7 @@ def init_node(name, **options):
     except (OSError, xmlrpc.client.Error, ExpatError) as error:
         raise ImaginationError(
             'no master answers at %s (%s); start one (roslaunch hires imagination.launch), or set '
-            'ROS_MASTER_URI to the one that runs' % (rosgraph.get_master_uri(), error)) from error
+            'ROS_MASTER_URI to the one that runs' % (rosgraph.get_master_uri(), error)) from None
     rospy.init_node(name, **options)
 
 

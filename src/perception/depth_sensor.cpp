@@ -1,4 +1,4 @@
-#include "hires/perception/depth_sensor.h"
+#include "perception/depth_sensor.h"
 
 #include <algorithm>
 #include <cmath>

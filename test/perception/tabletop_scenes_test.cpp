@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "hires/perception/tabletop/segmentation.h"
 #include "perception/support/segmentation_score.h"
+#include "perception/tabletop/segmentation.h"
 
 namespace hires::perception::tabletop_scenes_test {
 namespace {
@@ -27,13 +27,15 @@ TEST(SegmentationScoreTest, IsAsWorkedByHand) {
 /// Kinds of scenes, of the Object Segmentation Database.
 class TabletopScenesTest : public testing::TestWithParam<int> {};
 
-// benchmark/perception/tabletop_peers prints the numbers beside those of two other ways; here it
-// must stay above the better of the two in each kind: 0.978, 0.958, 0.881, 0.840.
+// Weighted overlap of PCL 1.13, run on the same scenes: Euclidean clusters (0.02 m, at least 100
+// points) 0.978, 0.511, 0.808, 0.840; LCCP (voxels of 0.005 m, seeds of 0.02 m, 10 degrees; coarser
+// ones do worse) 0.985, 0.962, 0.883, 0.835. The bound is the better of the two. SegmentationParams
+// were chosen on these scenes, too.
 TEST_P(TabletopScenesTest, ThingsAreToldApartBetterThanByPeers) {
   const std::string folder = std::string(HIRES_SHARED_DATA) + "/tabletop/learn";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
   const auto& kind = test_support::kTabletopKinds[GetParam()];
-  constexpr double kBound[] = {0.978, 0.958, 0.881, 0.840};
+  constexpr double kBound[] = {0.985, 0.962, 0.883, 0.840};
   SegmentationScore all;
   for (int index = kind.first; index <= kind.last; ++index) {
     const auto scene = test_support::ReadTabletopScene(folder, index);

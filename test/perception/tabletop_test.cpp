@@ -4,10 +4,10 @@
 #include <map>
 #include <set>
 
-#include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
-#include "hires/perception/tabletop/segmentation.h"
+#include "perception/depth_sensor.h"
 #include "perception/tabletop/convex_parts.h"
+#include "perception/tabletop/segmentation.h"
 
 namespace hires::perception::tabletop_test {
 namespace {

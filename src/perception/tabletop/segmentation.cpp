@@ -1,9 +1,9 @@
-#include "hires/perception/tabletop/segmentation.h"
+#include "perception/tabletop/segmentation.h"
 
 #include <algorithm>
 #include <map>
 
-#include "hires/perception/depth_sensor.h"
+#include "perception/depth_sensor.h"
 #include "perception/tabletop/convex_parts.h"
 #include "perception/tabletop/part_joining.h"
 #include "perception/tabletop/surfels.h"

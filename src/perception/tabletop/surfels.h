@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "hires/perception/tabletop/point_cloud.h"
-#include "hires/perception/tabletop/segmentation_params.h"
+#include "perception/tabletop/point_cloud.h"
+#include "perception/tabletop/segmentation_params.h"
 
 namespace hires::perception {
 

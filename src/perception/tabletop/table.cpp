@@ -1,4 +1,4 @@
-#include "hires/perception/tabletop/table.h"
+#include "perception/tabletop/table.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-#include "hires/perception/depth_sensor.h"
+#include "perception/depth_sensor.h"
 
 namespace hires::perception {
 namespace {

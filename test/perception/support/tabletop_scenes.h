@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/perception/tabletop/point_cloud.h"
+#include "perception/tabletop/point_cloud.h"
 
 namespace hires::test_support {
 

@@ -3,7 +3,7 @@
 #include "hires/base/rng.h"
 #include "hires/perception/pinhole_camera.h"
 #include "hires/perception/range_picture.h"
-#include "hires/perception/tabletop/point_cloud.h"
+#include "perception/tabletop/point_cloud.h"
 
 namespace hires::perception {
 

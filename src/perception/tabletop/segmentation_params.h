@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hires/perception/tabletop/table.h"
+#include "perception/tabletop/table.h"
 
 namespace hires::perception {
 

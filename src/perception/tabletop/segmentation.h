@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "hires/base/rng.h"
-#include "hires/perception/tabletop/point_cloud.h"
-#include "hires/perception/tabletop/segmentation_params.h"
-#include "hires/perception/tabletop/table.h"
+#include "perception/tabletop/point_cloud.h"
+#include "perception/tabletop/segmentation_params.h"
+#include "perception/tabletop/table.h"
 
 namespace hires::perception {
 
