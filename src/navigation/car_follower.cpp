@@ -216,6 +216,7 @@ DwaResult CarFollower::AtRest(const geometry::Pose2& X_MB) const {
 DwaResult CarFollower::Update(const Costmap* costmap, const geometry::Pose2& X_MB,
                               const geometry::Twist2& V_B) {
   HIRES_CHECK(!path_.empty(), "a path was set");
+  is_blocked_ = false;
   FindPlace(X_MB);
   if (along_[EndOfLeg()] - place_ <= kAtEnd) is_ending_ = true;
   if (is_ending_ && IsStopped(V_B)) {
@@ -226,9 +227,9 @@ DwaResult CarFollower::Update(const Costmap* costmap, const geometry::Pose2& X_M
   }
   const bool is_lost = IsLost();
   geometry::Twist2 velocity = is_ending_ || is_lost ? Braked(V_B) : Velocity(V_B);
-  const bool is_blocked = costmap && !IsFree(*costmap, X_MB, velocity);
-  if ((is_lost || is_blocked) && IsStopped(V_B)) return AtRest(X_MB);
-  if (is_blocked) velocity = Braked(V_B);
+  is_blocked_ = costmap && !IsFree(*costmap, X_MB, velocity);
+  if ((is_lost || is_blocked_) && IsStopped(V_B)) return AtRest(X_MB);
+  if (is_blocked_) velocity = Braked(V_B);
   return {DwaStatus::kDriving, velocity, 1};
 }
 

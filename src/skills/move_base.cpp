@@ -11,7 +11,7 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr int kMostWays = 8;        // of a car that comes to rest out of tolerance
+constexpr int kMostWays = 8;        // of a car that comes to rest out of tolerance each time
 constexpr double kMapMargin = 2.0;  // [m] free floor around the outermost body or area
 
 /// [m] The map covers all bodies and this much more: far enough that all areas lie well inside.
@@ -214,8 +214,13 @@ Status MoveBase::Recover(const navigation::Costmap& costmap,
     return Failed(base::FailureCode::kNoValidTrajectory);
   }
   if (observation.time - last_plan_ >= context_->params.replanning_period) {
+    // A car with nothing in its way came to rest out of tolerance: the next way may end so, too.
+    const bool has_missed = car_ && !car_->is_blocked();
+    if (has_missed && num_missed_ + 1 == kMostWays) return Failed(base::FailureCode::kOscillating);
     last_plan_ = observation.time;
-    Plan(costmap, observation.X_MB);  // what blocks the way may go: patience decides, not one plan
+    // What blocks the way may go: patience decides, not one plan.
+    const bool is_planned = !Plan(costmap, observation.X_MB);
+    if (has_missed && is_planned) ++num_missed_;
   }
   return {};
 }

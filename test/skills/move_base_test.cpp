@@ -152,6 +152,20 @@ TEST(MoveBaseTest, AHeldCarOscillates) {
   ExpectFailed("oscillating", RunSkill(&skill, {kWest, {}, true}));
 }
 
+TEST(MoveBaseTest, ACarThatMissesItsGoalEachTimeOscillates) {
+  for (const double aside : {0.3, 0.6}) {  // [m] out of tolerance, and off its way
+    MoveBase skill(CarIn(Room()), kEast, kFast);
+    int num_missed = 0;
+    const auto slip = [&](auto*, auto* robot) {
+      if (DistanceBetween(robot->X_MB, kEast) > 0.1) return;
+      robot->X_MB.y += aside;
+      ++num_missed;
+    };
+    ExpectFailed("oscillating", RunSkill(&skill, {kWest, {}, false}, slip, 600.0));
+    EXPECT_EQ(num_missed, 8);
+  }
+}
+
 TEST(MoveBaseTest, KeepsToItsMotionSet) {
   const SkillRun fast = DriveIn(Room(), kWest, kEast, kFast);
   const SkillRun slow = DriveIn(Room(), kWest, kEast, kSlow);

@@ -53,6 +53,8 @@ class CarFollower {
                    const geometry::Twist2& V_B);
 
   double remaining() const;  ///< [m] of the path, at the last update
+  /// At the last update, by what stands in its way.
+  bool is_blocked() const { return is_blocked_; }
 
  private:
   std::size_t EndOfLeg() const;
@@ -83,6 +85,7 @@ class CarFollower {
   double lateral_{0.0};          // [m] of the base to the left of the path
   double heading_{0.0};          // [rad] of the base off the path's
   bool is_ending_{false};        // it brakes at the end of its leg
+  bool is_blocked_{false};
 };
 
 }  // namespace hires::navigation

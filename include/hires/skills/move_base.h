@@ -50,8 +50,9 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
 
 /// Drives to a pose in the map round all known obstacles: A* on the inflated costmap, dynamic
 /// window approach for control, as move_base does, with room for the arms as they are when it
-/// begins. A base that steers like a car: hybrid A*, and a follower of arcs. Fails with
-/// start_blocked, goal_blocked, no_path, no_valid_trajectory or oscillating.
+/// begins. A base that steers like a car: hybrid A*, and a follower of arcs; where it came
+/// to rest out of tolerance it is given a new way, some times, and oscillates after these. Fails
+/// with start_blocked, goal_blocked, no_path, no_valid_trajectory or oscillating.
 class MoveBase : public Skill {
  public:
   MoveBase(std::shared_ptr<const DrivingContext> context, const geometry::Pose2& X_MGoal,
@@ -87,6 +88,7 @@ class MoveBase : public Skill {
   geometry::Pose2 X_MMoved_;  // where it last counted as having moved
   double last_moved_{0.0};    // [s]
   int oscillations_{0};
+  int num_missed_{0};  // ways that a car was given because the one before ended out of tolerance
 };
 
 struct MoveBaseBlindParams {
