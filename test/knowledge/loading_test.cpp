@@ -69,6 +69,26 @@ TEST_F(LoadingTest, APoseOfTheStoreMayBeSpelledInAnotherCase) {
   EXPECT_EQ(store_.Stats().instances, 2u);
 }
 
+TEST_F(LoadingTest, WhatTheStoreRefusesIsSaidWithItsFileAndTheNearestName) {
+  KnowledgeFile file = ReadKnowledge(
+      "!Fluent\nClass_Instance: [Posse, p1]\nStartTime: [0, 0]\nFinishTime: [0, 0]\n"
+      "Properties: []\n",
+      "/home/me/rooms.yaml");
+  const auto error = [&] {
+    try {
+      LoadFile(file);
+    } catch (const base::ConfigError& refused) {
+      return std::string(refused.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_EQ(error(),
+            "/home/me/rooms.yaml: fluent 'p1': concept 'Posse' is unknown; did you mean 'Pose'?");
+  file.source.clear();
+  EXPECT_THAT(error(), ::testing::StartsWith("fluent 'p1'"));
+  EXPECT_EQ(store_.last_sequence(), 0u);
+}
+
 TEST_F(LoadingTest, APoseNobodyKnowsIsNamedAndNothingGoesIn) {
   try {
     LoadFile({{PoseAt("p1", 1.0)}, {Shift("p9", 0.5)}, {}});

@@ -37,6 +37,7 @@ struct KnowledgeFile {
   std::vector<Fluent> fluents;
   std::vector<PoseModification> modifications;
   std::vector<DemandTopic> topics;
+  std::string source{};  ///< the file, for messages; empty: none
 };
 
 /// Times are finite seconds, or .inf and -.inf; [0, 0] is -infinity in StartTime, infinity in

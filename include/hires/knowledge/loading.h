@@ -19,16 +19,13 @@ struct LoadSummary {
   std::vector<std::string> topics;              ///< demand topics that the file asks for
 };
 
-/// The fluents of a file as they go into the store: moved as its modifications say. Poses that a
-/// modification names and the file does not bring are those that the store holds.
-/// @throws base::ConfigError as ApplyModifications; a pose that is in neither is named.
-std::vector<Fluent> FluentsToLoad(const KnowledgeFile& file, base::Rng rng, const Store& store);
-
-/// @param changes  What adding FluentsToLoad changed.
-LoadSummary Summarize(const KnowledgeFile& file, std::size_t num_fluents,
-                      const std::vector<Change>& changes);
-
-/// Adds what the file says, all of it or nothing. Its topics are not opened.
-LoadSummary Load(const KnowledgeFile& file, base::Rng rng, const Assertion& by, Store* store);
+/// Adds what the file says, all of it or nothing: poses moved as its modifications say. Poses that
+/// a modification names and the file does not bring are those that the store holds. Topics are not
+/// opened.
+/// @param changes  may be null: what it changed.
+/// @throws base::ConfigError naming the file: what Store::Add refuses, or ApplyModifications; a
+/// pose that is in neither is named.
+LoadSummary Load(const KnowledgeFile& file, base::Rng rng, const Assertion& by, Store* store,
+                 std::vector<Change>* changes = nullptr);
 
 }  // namespace hires::knowledge

@@ -39,6 +39,7 @@ class FileReader {
 
   KnowledgeFile Finish() {
     CheckModifications(file_.modifications, [&](std::size_t i) { return modified_at_[i]; });
+    file_.source = source_;
     return std::move(file_);
   }
 

@@ -1,7 +1,9 @@
 #include "hires/knowledge/loading.h"
 
 #include <set>
+#include <utility>
 
+#include "hires/base/error.h"
 #include "hires/base/text.h"
 
 namespace hires::knowledge {
@@ -12,8 +14,6 @@ void AddFromStore(const std::string& instance, const Store& store, std::set<std:
   if (!present->insert(base::ToLower(instance)).second) return;
   if (std::optional<Fluent> fluent = store.Find(instance)) fluents->push_back(std::move(*fluent));
 }
-
-}  // namespace
 
 std::vector<Fluent> FluentsToLoad(const KnowledgeFile& file, base::Rng rng, const Store& store) {
   std::vector<Fluent> fluents = file.fluents;
@@ -39,9 +39,20 @@ LoadSummary Summarize(const KnowledgeFile& file, std::size_t num_fluents,
   return summary;
 }
 
-LoadSummary Load(const KnowledgeFile& file, base::Rng rng, const Assertion& by, Store* store) {
-  const std::vector<Fluent> fluents = FluentsToLoad(file, rng, *store);
-  return Summarize(file, fluents.size(), store->Add(fluents, by));
+}  // namespace
+
+LoadSummary Load(const KnowledgeFile& file, base::Rng rng, const Assertion& by, Store* store,
+                 std::vector<Change>* changes) {
+  try {
+    const std::vector<Fluent> fluents = FluentsToLoad(file, rng, *store);
+    std::vector<Change> made = store->Add(fluents, by);
+    const LoadSummary summary = Summarize(file, fluents.size(), made);
+    if (changes != nullptr) *changes = std::move(made);
+    return summary;
+  } catch (const base::ConfigError& error) {
+    if (file.source.empty()) throw;
+    throw base::ConfigError(file.source + ": " + error.what());
+  }
 }
 
 }  // namespace hires::knowledge

@@ -293,10 +293,11 @@ void BlackboardNode::OnLoad(const hires::LoadKnowledge::Request& asked,
   by.time = TimeOr(by.time);
   writer_->Run([&](Store* store) {
     topics_->Check(file.topics);
-    const auto fluents = knowledge::FluentsToLoad(file, hires::base::Rng(asked.seed), *store);
-    const std::vector<Change> changes = store->Add(fluents, by);
+    std::vector<Change> changes;
+    const knowledge::LoadSummary summary =
+        knowledge::Load(file, hires::base::Rng(asked.seed), by, store, &changes);
     for (const knowledge::DemandTopic& topic : file.topics) topics_->Open(topic, *store);
-    Fill(knowledge::Summarize(file, fluents.size(), changes), answer);
+    Fill(summary, answer);
     answer->sequence = store->last_sequence();
     return changes;
   });
