@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "hires/base/error.h"
+#include "hires/base/log.h"
 #include "hires/evaluation/scenario.h"
+#include "hires/evaluation/scenario_names.h"
 #include "hires/planning/request.h"
 #include "loop/loop_parts.h"
 #include "loop/middle_layer.h"
@@ -220,6 +222,10 @@ LoopRun PlayTask(const LoopSetup& setup, const LoopOrder& order,
                  const evaluation::OnAchieveStatus& on_status,
                  const std::function<bool()>& cancelled, const LoopObserver& observer) {
   const evaluation::Scenario scenario = evaluation::ReadScenario(order.scenario);
+  const std::string& task = order.task.empty() ? scenario.task : order.task;
+  for (const auto& misfit : evaluation::NamesThatDoNotFit(scenario, order.scenario, task)) {
+    base::Log(base::LogLevel::kWarn, misfit);
+  }
   return Play(setup.parts(), order, scenario, observer).Run(on_status, cancelled);
 }
 

@@ -6,6 +6,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/evaluation/scenario_names.h"
 #include "hires/knowledge/blackboard_config.h"
 #include "hires/knowledge/fluent_yaml.h"
 #include "hires/knowledge/live_view.h"
@@ -117,6 +118,55 @@ TEST_F(ScenarioTest, BadFilesAreErrorsThatNameTheKey) {
               HasSubstr("knowledge"));
 }
 
+/// What does not fit between a scenario with one object and a file of knowledge.
+class ScenarioNamesTest : public ::testing::Test {
+ protected:
+  static std::string FluentText(const std::string& head, const std::string& property) {
+    return "!Fluent\nClass_Instance: [" + head + "]\nStartTime: [0, 0]\nFinishTime: [0, 0]\n" +
+           "Properties:\n  - [" + property + "]\n---\n";
+  }
+  std::vector<std::string> Misfits(const std::string& area, const std::string& object,
+                                   const std::string& task) {
+    folder_.Write("known.yaml", FluentText("Area, dock", "hasPose, Pose, poseDock") +
+                                    FluentText("RobotAt, at1", "hasArea, Area, " + area) +
+                                    FluentText("Mug, mug1", "hasPose, Pose, poseMug1") +
+                                    FluentText("\"On\", onMug1", "hasPhysicalEntity, Mug, mug1"));
+    const std::string path =
+        folder_.Write("day.yaml",
+                      "task: go\nknowledge: [known.yaml]\nrobot: {pose: [0, 0, 0]}\nobjects:\n"
+                      "  - {name: " +
+                          object + ", pose: [0, 0, 0, 0]}\n");
+    return NamesThatDoNotFit(ReadScenario(path), path, task);
+  }
+  std::string In(const std::string& file) { return (folder_.path() / file).string() + ": "; }
+
+  const hires::test_support::TemporaryFolder folder_;
+};
+
+TEST_F(ScenarioNamesTest, NamesThatFitInAnyCaseAreNotSpokenOf) {
+  EXPECT_THAT(Misfits("DOCK", "MUG1", "((bring Mug1 dock))"), IsEmpty());
+}
+
+TEST_F(ScenarioNamesTest, AnAreaThatTheKnowledgeDoesNotDefineIsNamedWithTheNearest) {
+  EXPECT_THAT(Misfits("dokc", "mug1", "go"),
+              ElementsAre(In("known.yaml") + "fluent 'at1' of RobotAt: area 'dokc' is unknown; did "
+                                             "you mean 'dock'?"));
+}
+
+TEST_F(ScenarioNamesTest, AnObjectThatIsToldOfAndNotKnownIsNamedWithTheNearest) {
+  EXPECT_THAT(Misfits("dock", "mugg1", "go"),
+              ElementsAre(In("day.yaml") + "objects: in the knowledge files object 'mugg1' is "
+                                           "unknown; did you mean 'mug1'? Or move it to `hidden`"));
+}
+
+TEST_F(ScenarioNamesTest, AKnownObjectThatTheScenarioLacksIsSaidWhereTheTaskIsAboutIt) {
+  EXPECT_THAT(Misfits("dock", "mugg1", "((bring MUG1 dock))"),
+              ::testing::Contains(In("day.yaml") +
+                                  "task: the knowledge files say where it is, but among the "
+                                  "scenario's objects object 'mug1' is unknown; did you mean "
+                                  "'mugg1'?"));
+}
+
 /// Of the scenarios that come with the package.
 class ShippedScenarioTest : public ::testing::TestWithParam<const char*> {
  protected:
@@ -169,6 +219,11 @@ TEST_P(ShippedScenarioTest, TheRobotKnowsOfWhatItIsToldAndNothingElse) {
   } else {
     EXPECT_THAT(wishes, IsEmpty());
   }
+}
+
+TEST_P(ShippedScenarioTest, ItsNamesFit) {
+  const std::string path = kRoot + "/config/scenarios/" + GetParam();
+  EXPECT_THAT(NamesThatDoNotFit(scenario_, path, scenario_.task), IsEmpty());
 }
 
 TEST_P(ShippedScenarioTest, ItsLaunchFileHasTheSameTaskAndKnowledge) {

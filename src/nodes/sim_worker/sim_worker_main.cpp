@@ -3,6 +3,8 @@
 #include <cstdlib>
 
 #include "hires/base/error.h"
+#include "hires/base/log.h"
+#include "hires/evaluation/scenario_names.h"
 #include "hires/ros/launch_guard.h"
 #include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
@@ -21,8 +23,18 @@ void Work(ros::NodeHandle* nh) {
   ros::spin();
 }
 
+/// The Blackboard, which reads the knowledge files as well, does not know of the scenario.
+void WarnOfNames(const std::string& path) {
+  if (path.empty()) return;
+  const auto scenario = hires::evaluation::ReadScenario(path);
+  for (const auto& misfit : NamesThatDoNotFit(scenario, path, scenario.task)) {
+    hires::base::Log(hires::base::LogLevel::kWarn, misfit);
+  }
+}
+
 void PlayRobot(ros::NodeHandle* nh) {
   const hires_ros::SimRobotParams params = hires_ros::LoadSimRobotParams();
+  WarnOfNames(params.scenario);
   hires_ros::SimRobotNode node(params, LoadImaginationSetup(params.setup), nh);
   ros::spin();
 }
