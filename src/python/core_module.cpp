@@ -10,6 +10,7 @@
 #include "hires/base/error.h"
 #include "hires/evaluation/report_json.h"
 #include "python/answer.h"
+#include "python/arguments.h"
 #include "python/scene.h"
 
 namespace py = pybind11;
@@ -369,4 +370,6 @@ PYBIND11_MODULE(core, m) {
   BindAnswer(&m);
   BindRecording(&m);
   BindScene(&m);
+  hires::python::NameWrongArguments(m.attr("Scene"),
+                                    {"__init__", "add_motion_set", "imagine", "record"});
 }

@@ -116,6 +116,34 @@ class CoreTest(unittest.TestCase):
         with self.assertRaisesRegex(core.ConfigError, 'world and map'):
             core.Scene(world=WORLD, map='a.yaml')
 
+    def test_an_argument_of_a_wrong_type_is_named_with_what_came_and_what_was_wanted(self):
+        def told(call, *words, **arguments):
+            with self.assertRaises(TypeError) as caught:
+                call(*words, **arguments)
+            return str(caught.exception)
+        way = ('move_base_param', 'atBench', 'slow')
+        for argument, value, message in (
+                ('rollouts', '8', "imagine: rollouts is '8' (str), wanted a whole number of at most 2147483647"),
+                ('rollouts', 2.5, 'imagine: rollouts is 2.5 (float), wanted a whole number of at most 2147483647'),
+                ('seed', -1, 'imagine: seed is -1 (int), wanted a whole number from 0 on'),
+                ('deadline', 'soon', "imagine: deadline is 'soon' (str), wanted a number"),
+                ('on_tray', 'mug1', "imagine: on_tray is 'mug1' (str), wanted a list of texts"),
+                ('facts', None, 'imagine: facts is None (NoneType), wanted a list of texts'),
+                ('robot_at', None, 'imagine: robot_at is None (NoneType), wanted a text'),
+                ('put', {'mug1': (1, 2)}, "imagine: put is {'mug1': (1, 2)} (dict), wanted {object: (x, y, z, yaw)}"),
+                ('rolouts', 8, "imagine: argument 'rolouts' is unknown; did you mean 'rollouts'?")):
+            with self.subTest(message):
+                self.assertEqual(told(self.scene.imagine, *way, **{**START, argument: value}), message)
+        self.assertEqual(told(self.scene.imagine, 'move_base_param', 'atBench', 3, **START),
+                         'imagine: argument 3 is 3 (int), wanted a text, or a list of texts to choose from')
+        self.assertEqual(told(self.scene.record, 'move_base_param', 'atBench', ['slow'], **START),
+                         "record: argument 3 is ['slow'] (list), wanted a text")
+        self.assertEqual(told(self.scene.add_motion_set, 'new', speed='fast', acceleration=1.0),
+                         "add_motion_set: speed is 'fast' (str), wanted a number")
+        self.assertEqual(told(core.Scene, world=WORLD, objects='vase.sdf'),
+                         "Scene: objects is 'vase.sdf' (str), wanted a list of texts")
+        self.assertIn('imagine(self: hires.core.Scene, action: str', core.Scene.imagine.__doc__)
+
     def test_other_threads_of_python_run_meanwhile_and_may_interrupt(self):
         def interrupt():
             # Until the rollouts' own threads are there; without the interpreter's lock it could not look.
