@@ -256,6 +256,23 @@ class BaseGuardTest(unittest.TestCase):
         self.motors.publish(True)
         wait_until(lambda: found(1, 'standing: motors_halted'), 'a diagnosis of standing')
 
+    def test_odometry_of_a_part_that_tf_does_not_know_is_said_once(self):
+        self.drive()  # tf knows the base
+        self.robot.kill()
+        odometry = rospy.Publisher('base_odometry/odom', Odometry, queue_size=1)
+
+        def is_told():
+            msg = Odometry(child_frame_id='/measuring_wheel')
+            msg.header.stamp = rospy.Time.now()
+            odometry.publish(msg)
+            return [status for status in self.diagnostics
+                    if status.level == 1 and 'unknown frame measuring_wheel' in status.message]
+        wait_until(is_told, lambda: 'a diagnosis; the guard said:\n' + self.guard.output())
+        self.diagnostics.clear()
+        wait_until(is_told, 'another diagnosis, after more of the same odometry')
+        text = "child_frame_id is 'measuring_wheel', which tf does not connect with base_footprint"
+        self.assertEqual(self.guard.output().count(text), 1, self.guard.output())
+
     # What it refuses.
 
     def require_refusal(self, *texts, **arguments):

@@ -125,16 +125,36 @@ void BaseGuardNode::OnOdometry(const nav_msgs::Odometry& msg) {
   guard_.OnOdometry(VelocityOfBase(msg), StampOf(msg.header.stamp), Now());
 }
 
-/// Odometry may tell of another part of the robot, where tf knows how that sits on the base.
-hires::geometry::Twist2 BaseGuardNode::VelocityOfBase(const nav_msgs::Odometry& msg) const {
+/// Odometry may tell of another part of the robot, where tf knows how that sits on the base. Where
+/// tf does not, it is taken for the base's: how fast it goes is right all the same, unless it
+/// turns.
+hires::geometry::Twist2 BaseGuardNode::VelocityOfBase(const nav_msgs::Odometry& msg) {
   const hires::geometry::Twist2 V_C = FlatTwist(msg.twist.twist);
   const std::string child = hires::sensing::BareFrame(msg.child_frame_id);
   const std::string& base = params_.names.base_frame;
+  loose_frame_.clear();
   if (child.empty() || child == base) return V_C;
-  const auto newest = tree_.NewestOf(child, base);
-  if (!newest) return V_C;
-  const auto X_CB = tree_.Find(child, base, *newest);
-  return X_CB.is_found() ? hires::sensing::MovedTo(hires::geometry::Flatten(X_CB.X_PC), V_C) : V_C;
+  if (const auto newest = tree_.NewestOf(child, base)) {
+    const auto X_CB = tree_.Find(child, base, *newest);
+    if (X_CB.is_found()) return hires::sensing::MovedTo(hires::geometry::Flatten(X_CB.X_PC), V_C);
+  }
+  TellOfLooseFrame(child);
+  return V_C;
+}
+
+void BaseGuardNode::TellOfLooseFrame(const std::string& frame) {
+  // Before tf told of the base, it is no wonder.
+  if (newest_.count(PoseSource::kBaseTransform) == 0 &&
+      static_sources_.count(PoseSource::kBaseTransform) == 0) {
+    return;
+  }
+  loose_frame_ = frame;
+  if (!told_frames_.insert(frame).second) return;
+  hires::base::Log(
+      LogLevel::kWarn,
+      fmt::format("{}: child_frame_id is '{}', which tf does not connect with {}; its velocity is "
+                  "taken for the base's. Publish that transform, or correct base_frame in ~names",
+                  params_.names.odometry, frame, params_.names.base_frame));
 }
 
 void BaseGuardNode::OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg) {
@@ -268,6 +288,9 @@ void BaseGuardNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status
   const hires::base::Failure& failure = guard_.failure();
   status.summary(IsPeaceful(failure) ? Diagnostic::OK : Diagnostic::WARN,
                  ToText(guard_.state()) + (failure ? ": " + ToString(failure) : ""));
+  if (!loose_frame_.empty()) {
+    status.mergeSummary(Diagnostic::WARN, "odometry of the unknown frame " + loose_frame_);
+  }
   status.add("request", guard_.request());
   const hires::base::Failure forbids = guard_.WhatForbidsDriving(Now());
   status.add("forbids driving", forbids ? ToString(forbids) : "nothing");

@@ -55,7 +55,8 @@ class BaseGuardNode {
   void OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg);
   void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
   void OnLink(hires::navigation::PoseSource source, std::optional<double> stamp);
-  hires::geometry::Twist2 VelocityOfBase(const nav_msgs::Odometry& msg) const;
+  hires::geometry::Twist2 VelocityOfBase(const nav_msgs::Odometry& msg);
+  void TellOfLooseFrame(const std::string& frame);
   void OnPlannerUpdate(const dynamic_reconfigure::Config& msg);
 
   double Now() const;  ///< [s] steady, since the node began
@@ -74,6 +75,8 @@ class BaseGuardNode {
   std::map<hires::navigation::PoseSource, double> newest_;  // [s] stamp of what is known of a link
   std::set<hires::navigation::PoseSource> static_sources_;  // transforms that never age
   ros::Time last_transforms_;                               // when some came
+  std::string loose_frame_;            // of the odometry, that nothing connects with the base
+  std::set<std::string> told_frames_;  // of which that was logged
 
   std::unique_ptr<hires::control::MoveBaseTuner> tuner_;  // where move_base drives
   hires::BaseRequest request_;                            // the last that came
