@@ -36,10 +36,10 @@ class TableScene {
   TableScene& PutBox(const Vector3d& size, double x, double y, double z = 0.0, double yaw = 0.0) {
     return Put(geometry::Box{size}, {x, y, z + size.z() / 2.0}, yaw);
   }
-  PointCloud Seen(int seed = 1) const {
+  PointCloud Seen(int seed = 1, double max_range = 1.4) const {
     DepthSensorParams sensor;
     sensor.min_range = 0.4;
-    sensor.max_range = 1.4;  // before the floor, a larger plane than a small table
+    sensor.max_range = max_range;  // 1.4: before the floor, a larger plane than a small table
     const LineOfSight sight(std::make_shared<Surroundings>(world_), {});
     base::Rng rng(seed);
     return Measure(sight.Look(camera(), 5.0), camera(), sensor, &rng);
@@ -51,6 +51,7 @@ class TableScene {
     const Vector3d up_C = camera().X_MC.rotation.conjugate() * Vector3d::UnitZ();
     return {-up_C.y(), -up_C.z(), up_C.x()};
   }
+  static CameraStand Stand() { return {Up(), kTableHeight + 0.6}; }
 
  private:
   world::World world_;
@@ -72,7 +73,7 @@ int LabelAround(const PointCloud& cloud, const Segmentation& out, const Vector3d
 }
 
 Segmentation Segment(const PointCloud& cloud) {
-  return SegmentTabletop(cloud, TableScene::Up(), {}, base::Rng(1));
+  return SegmentTabletop(cloud, TableScene::Stand(), {}, base::Rng(1));
 }
 
 TEST(FindTableTest, ThePlaneIsFoundBesideWhatStandsOnIt) {
@@ -97,7 +98,26 @@ TEST(FindTableTest, WhatIsNoTableIsNotFound) {
   for (auto& p : cloud.points)
     p = Eigen::Vector3d(rng.Uniform(-0.5, 0.5), rng.Uniform(-0.5, 0.5), 1.0).cast<float>();
   EXPECT_TRUE(FindTable(cloud, std::nullopt, {}, base::Rng(1)));
-  EXPECT_FALSE(FindTable(cloud, -Vector3d::UnitY(), {}, base::Rng(1))) << "a wall";
+  EXPECT_FALSE(FindTable(cloud, CameraStand{-Vector3d::UnitY(), 1.0}, {}, base::Rng(1)))
+      << "a wall";
+}
+
+// The floor is the larger plane, and what is beside the table or high above it is no thing on it.
+TEST(FindTableTest, TheFloorIsNoTableForWhoKnowsHowTheCameraStands) {
+  TableScene scene(0.5);
+  scene.PutBox({0.05, 0.05, 0.1}, 0.0, 0.0);
+  scene.PutBox({0.3, 2.0, 2.0}, 0.9, 0.0, -kTableHeight);
+  const PointCloud cloud = scene.Seen(1, 3.0);
+  const auto blind = FindTable(cloud, std::nullopt, {}, base::Rng(1));
+  ASSERT_TRUE(blind.has_value());
+  EXPECT_GT(blind->offset, 1.0) << "the floor is what this test is about";
+  const Segmentation out = Segment(cloud);
+  ASSERT_TRUE(out.table.has_value());
+  EXPECT_NEAR(out.table->offset, 0.6, 0.003);
+  EXPECT_EQ(out.num_things, 1);
+  EXPECT_EQ(LabelAround(cloud, out, {0.0, 0.0, 0.1}), kLabelFirstThing);
+  EXPECT_FALSE(FindTable(cloud, CameraStand{TableScene::Up(), 4.0}, {}, base::Rng(1)))
+      << "nothing level is 0.3 m to 1.3 m high";
 }
 
 /// Surfels on a grid of 5 mm whose height is a function of x, seen from above.

@@ -14,6 +14,17 @@ namespace {
 // Fork of the caller's stream.
 enum Stream { kTableStream, kPartsStream };
 
+// Within the outline, or so near to one of its edges.
+bool IsNear(const geometry::Polygon& outline, const Eigen::Vector2d& p, double distance) {
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d along = (outline[(i + 1) % outline.size()] - outline[i]).normalized();
+    const Eigen::Vector2d to_p = p - outline[i];
+    if (along.y() * to_p.x() - along.x() * to_p.y() > distance) return false;
+  }
+  return true;
+}
+
+// What may stand on the table, and what is the table.
 std::vector<int> LabelTable(const PointCloud& cloud, const Table& table,
                             const SegmentationParams& params, std::vector<int>* labels) {
   std::vector<int> above;
@@ -22,7 +33,8 @@ std::vector<int> LabelTable(const PointCloud& cloud, const Table& table,
     const Eigen::Vector3d p = cloud.points[i].cast<double>();
     const double height = table.HeightOf(p);
     if (height > params.surface_tolerance * DepthNoise(p.z())) {
-      above.push_back(static_cast<int>(i));
+      if (height < params.max_above && IsNear(table.outline, table.FromAbove(p), params.max_beside))
+        above.push_back(static_cast<int>(i));
     } else if (height > -params.max_below &&
                geometry::Contains(table.outline, table.FromAbove(p))) {
       (*labels)[i] = kLabelTable;
@@ -58,11 +70,11 @@ std::vector<int> WithoutBeside(const SurfelCloud& all, const Table& table, std::
 
 }  // namespace
 
-Segmentation SegmentTabletop(const PointCloud& cloud, const std::optional<Eigen::Vector3d>& up_C,
+Segmentation SegmentTabletop(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                              const SegmentationParams& params, const base::Rng& rng) {
   Segmentation out;
   out.labels.assign(cloud.points.size(), kLabelNone);
-  out.table = FindTable(cloud, up_C, params.table, rng.Fork(kTableStream));
+  out.table = FindTable(cloud, stand, params.table, rng.Fork(kTableStream));
   if (!out.table) return out;
   const std::vector<int> above = LabelTable(cloud, *out.table, params, &out.labels);
   const SurfelCloud surfels = MakeSurfels(cloud, above, params.surfels);

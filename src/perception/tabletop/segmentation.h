@@ -23,8 +23,8 @@ struct Segmentation {
 /// Tells things on a table from it and from each other, without knowing them: what is above the
 /// plane is divided along concave edges (FindConvexParts) and joined where one thing is seen in two
 /// parts (JoinParts).
-/// @param up_C  as FindTable takes it.
-Segmentation SegmentTabletop(const PointCloud& cloud, const std::optional<Eigen::Vector3d>& up_C,
+/// @param stand  as FindTable takes it.
+Segmentation SegmentTabletop(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                              const SegmentationParams& params, const base::Rng& rng);
 
 }  // namespace hires::perception

@@ -41,6 +41,8 @@ struct SegmentationParams {
   double surface_tolerance{
       3.0};                ///< [DepthNoise] above the plane from which on a point is a thing's
   double max_below{0.03};  ///< [m] below the plane down to which a point is the table's
+  double max_above{0.6};   ///< [m] above the plane; what is higher is no thing on it
+  double max_beside{0.1};  ///< [m] beside the table's outline, likewise
 };
 
 }  // namespace hires::perception

@@ -44,6 +44,14 @@ std::optional<Plane> PlaneThrough(const Eigen::Vector3d& a, const Eigen::Vector3
   return plane;
 }
 
+bool MayBeTable(const Plane& plane, const std::optional<CameraStand>& stand,
+                const TableParams& params) {
+  if (!stand) return true;
+  const double height = stand->height - plane.offset;
+  return plane.normal.dot(stand->up_C) >= std::cos(params.max_inclination) &&
+         height >= params.min_height && height <= params.max_height;
+}
+
 Plane LeastSquares(const std::vector<Eigen::Vector3d>& points, const Plane& plane,
                    double tolerance) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -65,8 +73,8 @@ Plane LeastSquares(const std::vector<Eigen::Vector3d>& points, const Plane& plan
 }
 
 std::optional<Plane> BestSample(const std::vector<Eigen::Vector3d>& points,
-                                const std::optional<Eigen::Vector3d>& up_C,
-                                const TableParams& params, base::Rng* rng) {
+                                const std::optional<CameraStand>& stand, const TableParams& params,
+                                base::Rng* rng) {
   const std::size_t step = std::max<std::size_t>(1, points.size() / kVoters);
   std::optional<Plane> best;
   int best_votes = 0;
@@ -74,7 +82,7 @@ std::optional<Plane> BestSample(const std::vector<Eigen::Vector3d>& points,
     const auto pick = [&] { return points[rng->Index(static_cast<int>(points.size()))]; };
     const Eigen::Vector3d a = pick(), b = pick(), c = pick();
     const auto plane = PlaneThrough(a, b, c);
-    if (!plane || (up_C && plane->normal.dot(*up_C) < std::cos(params.max_inclination))) continue;
+    if (!plane || !MayBeTable(*plane, stand, params)) continue;
     int votes = 0;
     for (std::size_t k = 0; k < points.size(); k += step)
       votes += Supports(*plane, points[k], params.tolerance);
@@ -125,11 +133,11 @@ geometry::Polygon OutlineOf(const std::vector<Eigen::Vector2d>& points) {
 
 }  // namespace
 
-std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<Eigen::Vector3d>& up_C,
+std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                                const TableParams& params, base::Rng rng) {
   const std::vector<Eigen::Vector3d> points = MeasuredPoints(cloud);
   if (points.size() < 3) return std::nullopt;
-  const auto best = BestSample(points, up_C, params, &rng);
+  const auto best = BestSample(points, stand, params, &rng);
   if (!best) return std::nullopt;
   Plane plane = *best;
   for (int i = 0; i < kRefinements; ++i) plane = LeastSquares(points, plane, params.tolerance);

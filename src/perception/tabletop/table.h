@@ -25,18 +25,26 @@ struct Table {
   geometry::Polygon outline{};  ///< convex, of its measured points, FromAbove [m]
 };
 
+/// How the camera stands, where somebody knows it.
+struct CameraStand {
+  Eigen::Vector3d up_C{-Eigen::Vector3d::UnitY()};  ///< of length 1
+  double height{0.0};                               ///< [m] above the floor
+};
+
 struct TableParams {
   int num_samples{300};         ///< planes through three points that are tried
   double tolerance{2.0};        ///< [DepthNoise] from the plane, of points that vote for it
   double min_share{0.05};       ///< of all measured points, at least on a table
-  double max_inclination{0.2};  ///< [rad] against `up`, where that is known
+  double max_inclination{0.2};  ///< [rad] against what is level, where that is known
+  double min_height{0.3};       ///< [m] of a table above the floor, where that is known
+  double max_height{1.3};       ///< [m] likewise
 };
 
 /// The plane with the most points of which the camera is on the upper side (RANSAC [Fischler,
 /// Bolles 1981], then least squares). Where two tables are seen, the larger one in the picture.
-/// @param up_C  upwards as far as somebody knows, of length 1; without it, any plane is a table.
+/// @param stand  without it, any plane is a table, the floor too.
 /// @return nothing where no plane holds `min_share` of the points.
-std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<Eigen::Vector3d>& up_C,
+std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                                const TableParams& params, base::Rng rng);
 
 }  // namespace hires::perception
