@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hires/base/check.h"
+#include "hires/perception/pinhole_camera.h"
 
 namespace hires::perception {
 
@@ -30,6 +31,24 @@ CameraView ViewFrom(const robot::Robot& robot, const geometry::Pose3& X_MC) {
   const robot::UpperBodyProfile& body = *robot.profile.upper_body;
   return {X_MC, body.camera_width, body.camera_height, body.camera_min_range,
           body.camera_max_range};
+}
+
+std::optional<std::string> FindOpticalLink(const robot::RobotModel& model,
+                                           const std::string& link) {
+  constexpr double kSame = 1e-4;  // [m] or [rad]: as well as URDFs write a right angle
+  const std::optional<int> camera = model.FindLink(link);
+  const geometry::Pose3 X_CO = OpticalFrame();
+  for (const robot::Link& child : model.links) {
+    if (!camera || !child.joint || child.joint->parent != *camera ||
+        child.joint->type != robot::JointType::kFixed) {
+      continue;
+    }
+    const geometry::Pose3& X_CL = child.joint->X_PJ;
+    if (X_CL.translation.norm() < kSame && X_CL.rotation.angularDistance(X_CO.rotation) < kSame) {
+      return child.name;
+    }
+  }
+  return std::nullopt;
 }
 
 std::vector<geometry::Collision> ShapesOf(const robot::Robot& robot, const geometry::Pose2& X_MB,

@@ -1,4 +1,4 @@
-#include "perception/depth_sensor.h"
+#include "hires/perception/depth_sensor.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,7 +78,7 @@ PointCloud Measure(const RangePicture& picture, const PinholeCamera& camera,
         cloud.points.emplace_back(Eigen::Vector3f::Constant(kUnmeasured));
         continue;
       }
-      const double measured = z + along * DepthNoise(z, incidence);
+      const double measured = z + along * params.depth_noise * DepthNoise(z, incidence);
       const Eigen::Vector3d ray((column + 0.5 - camera.width / 2.0) / camera.focal_length,
                                 (row + 0.5 - camera.height / 2.0) / camera.focal_length, 1.0);
       cloud.points.push_back((measured * ray).cast<float>());

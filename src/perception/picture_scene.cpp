@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hires/base/check.h"
+#include "perception/colours.h"
 #include "perception/ray_scene.h"
 
 namespace hires::perception {
@@ -21,14 +22,6 @@ const Vector3d kTileColours[] = {{188, 186, 180}, {174, 172, 167}};
 
 Vector3d ToVector(const Colour& colour) {
   return {1.0 * colour[0], 1.0 * colour[1], 1.0 * colour[2]};
-}
-
-Colour ToColour(const Vector3d& colour) {
-  Colour out;
-  for (int i = 0; i < 3; ++i) {
-    out[i] = static_cast<std::uint8_t>(std::lround(std::clamp(colour[i], 0.0, 255.0)));
-  }
-  return out;
 }
 
 /// What a ray meets first, the floor included.

@@ -61,6 +61,14 @@ TEST_F(Pr2ViewTest, TurnsWithBaseAndHead) {
   EXPECT_LT((down.X_MC.rotation * Eigen::Vector3d::UnitX()).z(), -0.4);
 }
 
+TEST_F(Pr2ViewTest, AnOpticalLinkIsTheOneThatLiesAndIsTurnedSo) {
+  EXPECT_EQ(FindOpticalLink(pr2_.model, "head_mount_kinect_ir_link"),
+            "head_mount_kinect_ir_optical_frame");
+  EXPECT_EQ(FindOpticalLink(pr2_.model, "thermal_cam_frame"), "thermal_cam_optical_frame");
+  EXPECT_FALSE(FindOpticalLink(pr2_.model, "base_laser_link"));
+  EXPECT_FALSE(FindOpticalLink(pr2_.model, "nose"));
+}
+
 TEST_F(Pr2ViewTest, TheHeadDoesNotHideWhatLiesBeforeIt) {
   robot::JointPositions posture = pr2_.profile.joints;
   posture[pr2_.profile.upper_body->head_tilt_joint] = 0.3;

@@ -1,4 +1,4 @@
-#include "perception/depth_sensor.h"
+#include "hires/perception/depth_sensor.h"
 
 #include <gtest/gtest.h>
 
@@ -102,6 +102,14 @@ TEST(DepthSensorTest, NothingIsMeasuredTooNearTooFarOrAtAGrazingAngle) {
   DepthSensorParams strict;
   strict.max_incidence = 0.0;
   EXPECT_TRUE(is_empty(Measured(WallAndPlate(kCamera, 3.0, 2.0), strict)));
+}
+
+TEST(DepthSensorTest, WithoutNoiseDepthsAreExact) {
+  DepthSensorParams params;
+  params.depth_noise = params.lateral_noise = 0.0;
+  const PointCloud cloud = Measured(WallAndPlate(kCamera, 2.0, 1.0), params);
+  EXPECT_NEAR(At(cloud, 10, 60).z(), 2.0, 1e-6);
+  EXPECT_NEAR(At(cloud, 80, 60).z(), 1.0, 1e-6);
 }
 
 TEST(DepthSensorTest, TheSameSeedGivesTheSameBits) {

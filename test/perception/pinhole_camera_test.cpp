@@ -45,6 +45,13 @@ TEST(PinholeCameraTest, TheHorizonIsLevelAndUpIsUp) {
   EXPECT_GT(low->y(), high->y());
 }
 
+TEST(OpticalFrameTest, LooksAlongZWithXToTheRightAndYDown) {
+  const geometry::Pose3 X_CO = OpticalFrame();
+  EXPECT_TRUE((X_CO * Vector3d(0, 0, 2)).isApprox(Vector3d(2, 0, 0), 1e-12));
+  EXPECT_TRUE((X_CO * Vector3d(1, 0, 0)).isApprox(Vector3d(0, -1, 0), 1e-12));
+  EXPECT_TRUE((X_CO * Vector3d(0, 1, 0)).isApprox(Vector3d(0, 0, -1), 1e-12));
+}
+
 TEST(PinholeCameraTest, StraightDownHasNoHorizon) {
   EXPECT_THROW(LookAt({0, 0, 2}, {0, 0, 0}, 10, 10, 0.8), std::logic_error);
 }

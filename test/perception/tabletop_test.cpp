@@ -4,8 +4,8 @@
 #include <map>
 #include <set>
 
+#include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
-#include "perception/depth_sensor.h"
 #include "perception/tabletop/convex_parts.h"
 #include "perception/tabletop/segmentation.h"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "hires/geometry/pose.h"
@@ -27,6 +29,10 @@ CameraView ViewOf(const robot::Robot& robot, const geometry::Pose2& X_MB,
 
 /// The same camera in another pose, e.g. one that a message names.  @pre as ViewOf
 CameraView ViewFrom(const robot::Robot& robot, const geometry::Pose3& X_MC);
+
+/// The link that the robot's model has for the optical frame of the camera at `link`: fixed to it,
+/// turned as OpticalFrame says and in the same place; nothing if it has none.
+std::optional<std::string> FindOpticalLink(const robot::RobotModel& model, const std::string& link);
 
 /// All shapes of the robot in the map, named by their links: what may hide things from it.
 /// @throws base::ConfigError as robot::ForwardKinematics.

@@ -21,6 +21,14 @@ struct PinholeCamera {
   std::optional<Eigen::Vector2d> Project(const Eigen::Vector3d& p_M) const;
 };
 
+/// The optical frame (REP 103: z forward, x right, y down in the picture) in the frame of its
+/// camera C.
+geometry::Pose3 OpticalFrame();
+
+/// A camera of that field of view at the map's origin.
+/// @param field_of_view  [rad] from the left border to the right one, 0 .. pi.
+PinholeCamera CameraOf(int width, int height, double field_of_view);
+
 /// A camera at `eye_M` that has `target_M` in the middle of its picture and the horizon level.
 /// @param field_of_view  [rad] from the left border to the right one, 0 .. pi.
 /// @pre eye and target differ, and one is not above the other.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "perception/depth_sensor.h"
+#include "hires/perception/depth_sensor.h"
 #include "perception/tabletop/convex_parts.h"
 #include "perception/tabletop/part_joining.h"
 #include "perception/tabletop/surfels.h"

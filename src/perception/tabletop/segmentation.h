@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "hires/base/rng.h"
-#include "perception/tabletop/point_cloud.h"
+#include "hires/perception/point_cloud.h"
 #include "perception/tabletop/segmentation_params.h"
 #include "perception/tabletop/table.h"
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "perception/tabletop/point_cloud.h"
+#include "hires/perception/point_cloud.h"
 #include "perception/tabletop/segmentation_params.h"
 
 namespace hires::perception {

@@ -7,7 +7,7 @@
 #include <map>
 #include <vector>
 
-#include "perception/depth_sensor.h"
+#include "hires/perception/depth_sensor.h"
 
 namespace hires::perception {
 namespace {

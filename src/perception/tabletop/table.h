@@ -5,7 +5,7 @@
 
 #include "hires/base/rng.h"
 #include "hires/geometry/polygon.h"
-#include "perception/tabletop/point_cloud.h"
+#include "hires/perception/point_cloud.h"
 
 namespace hires::perception {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "perception/tabletop/point_cloud.h"
+#include "hires/perception/point_cloud.h"
 
 namespace hires::test_support {
 

@@ -2,8 +2,8 @@
 
 #include "hires/base/rng.h"
 #include "hires/perception/pinhole_camera.h"
+#include "hires/perception/point_cloud.h"
 #include "hires/perception/range_picture.h"
-#include "perception/tabletop/point_cloud.h"
 
 namespace hires::perception {
 
@@ -17,6 +17,7 @@ double DepthNoise(double z, double incidence = 0.0);
 struct DepthSensorParams {
   double min_range{0.8};      ///< [m] along its axis: data sheet of the Asus Xtion PRO LIVE
   double max_range{3.5};      ///< [m] likewise
+  double depth_noise{1.0};    ///< times DepthNoise; 0: depths are exact
   double lateral_noise{0.8};  ///< [pixels] sd by which edges flicker: Nguyen et al., Eq. 2
   double edge{0.03};          ///< [m] step of depth that counts as one
   double max_incidence{1.4};  ///< [rad] more grazing surfaces give nothing: Nguyen et al., Fig. 4
