@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
+#include "hires/perception/segmentation.h"
 #include "perception/support/segmentation_score.h"
-#include "perception/tabletop/segmentation.h"
 
 namespace hires::perception::tabletop_scenes_test {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
+#include "hires/perception/segmentation.h"
 #include "perception/tabletop/convex_parts.h"
-#include "perception/tabletop/segmentation.h"
 
 namespace hires::perception::tabletop_test {
 namespace {

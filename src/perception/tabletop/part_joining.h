@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "hires/base/rng.h"
+#include "hires/perception/table.h"
 #include "perception/tabletop/surfels.h"
-#include "perception/tabletop/table.h"
 
 namespace hires::perception {
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "hires/perception/table.h"
 #include "perception/tabletop/surfels.h"
-#include "perception/tabletop/table.h"
 
 namespace hires::perception {
 

@@ -1,4 +1,4 @@
-#include "perception/tabletop/segmentation.h"
+#include "hires/perception/segmentation.h"
 
 #include <algorithm>
 #include <map>

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "hires/perception/point_cloud.h"
-#include "perception/tabletop/segmentation_params.h"
+#include "hires/perception/segmentation_params.h"
 
 namespace hires::perception {
 

@@ -1,10 +1,9 @@
-#include "perception/tabletop/table.h"
+#include "hires/perception/table.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <vector>
 
 #include "hires/perception/depth_sensor.h"
@@ -15,6 +14,7 @@ namespace {
 constexpr int kVoters = 6000;  // points that judge a sample; all of them refine the best one
 constexpr int kRefinements = 3;
 constexpr double kOutlineCell = 0.02;  // [m]
+constexpr int kMostCells = 2000;       // along each axis; larger tables have larger cells
 constexpr double kMinPiece = 0.1;      // of the largest piece
 
 struct Plane {
@@ -93,41 +93,74 @@ std::optional<Plane> BestSample(const std::vector<Eigen::Vector3d>& points,
   return best;
 }
 
-using Grid = std::map<std::pair<int, int>, std::vector<Eigen::Vector2d>>;
+/// Points of a plane in square cells, and which of the cells hang together.
+class Pieces {
+ public:
+  explicit Pieces(const std::vector<Eigen::Vector2d>& points);
+  /// Whether a point is in a piece that is not small, and may be a corner of the hull: those of a
+  /// cell between four others, one at each of its corners, cannot.
+  bool IsAtBorder(std::size_t point) const;
 
-// What hangs together in the grid with its first cell; taken out of it.
-std::vector<Eigen::Vector2d> TakeConnected(Grid* grid) {
-  std::vector<Eigen::Vector2d> points;
-  std::vector<std::pair<int, int>> open{grid->begin()->first};
-  while (!open.empty()) {
-    const auto cell = open.back();
-    open.pop_back();
-    const auto it = grid->find(cell);
-    if (it == grid->end()) continue;
-    points.insert(points.end(), it->second.begin(), it->second.end());
-    grid->erase(it);
-    for (int k = 0; k < 9; ++k) open.emplace_back(cell.first + k % 3 - 1, cell.second + k / 3 - 1);
+ private:
+  void Spread(int first, int piece);
+
+  int columns_, rows_;              // with an empty cell at each border
+  std::vector<int> cell_;           // of each point
+  std::vector<int> count_, piece_;  // of each cell; piece 0: no point is there
+  std::vector<int> sizes_{0};       // points of each piece
+  int largest_{0};                  // of them
+};
+
+Pieces::Pieces(const std::vector<Eigen::Vector2d>& points) {
+  Eigen::Array2d lower = points.front(), upper = lower;
+  for (const Eigen::Vector2d& p : points) {
+    lower = lower.min(p.array());
+    upper = upper.max(p.array());
   }
-  return points;
+  const double edge = std::max(kOutlineCell, (upper - lower).maxCoeff() / kMostCells);
+  columns_ = static_cast<int>((upper - lower).x() / edge) + 3;
+  rows_ = static_cast<int>((upper - lower).y() / edge) + 3;
+  count_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
+  piece_ = count_;
+  for (const Eigen::Vector2d& p : points) {
+    const Eigen::Array2i cell = ((p.array() - lower) / edge).cast<int>() + 1;
+    cell_.push_back(cell.y() * columns_ + cell.x());
+    ++count_[cell_.back()];
+  }
+  for (std::size_t i = 0; i < count_.size(); ++i) {
+    if (count_[i] == 0 || piece_[i] != 0) continue;
+    sizes_.push_back(0);
+    Spread(static_cast<int>(i), static_cast<int>(sizes_.size()) - 1);
+  }
+  largest_ = *std::max_element(sizes_.begin(), sizes_.end());
+}
+
+void Pieces::Spread(int first, int piece) {
+  std::vector<int> open{first};
+  while (!open.empty()) {
+    const int cell = open.back();
+    open.pop_back();
+    if (count_[cell] == 0 || piece_[cell] != 0) continue;
+    piece_[cell] = piece;
+    sizes_[piece] += count_[cell];
+    for (int k = 0; k < 9; ++k) open.push_back(cell + (k / 3 - 1) * columns_ + k % 3 - 1);
+  }
+}
+
+bool Pieces::IsAtBorder(std::size_t point) const {
+  const int cell = cell_[point];
+  const auto is_kept = [&](int c) { return sizes_[piece_[c]] > kMinPiece * largest_; };
+  return is_kept(cell) && !(is_kept(cell - columns_ - 1) && is_kept(cell - columns_ + 1) &&
+                            is_kept(cell + columns_ - 1) && is_kept(cell + columns_ + 1));
 }
 
 // Around all pieces of the plane that are not small: things hide what is between them, while other
 // furniture beside the table crosses the plane in small ones.
 geometry::Polygon OutlineOf(const std::vector<Eigen::Vector2d>& points) {
-  Grid grid;
-  for (const Eigen::Vector2d& p : points) {
-    const Eigen::Vector2i cell = (p / kOutlineCell).array().floor().cast<int>();
-    grid[{cell.x(), cell.y()}].push_back(p);
-  }
-  std::vector<std::vector<Eigen::Vector2d>> pieces;
-  std::size_t largest = 0;
-  while (!grid.empty()) {
-    pieces.push_back(TakeConnected(&grid));
-    largest = std::max(largest, pieces.back().size());
-  }
+  const Pieces pieces(points);
   std::vector<Eigen::Vector2d> kept;
-  for (const auto& piece : pieces)
-    if (piece.size() > kMinPiece * largest) kept.insert(kept.end(), piece.begin(), piece.end());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (pieces.IsAtBorder(i)) kept.push_back(points[i]);
   return geometry::ConvexHull(std::move(kept));
 }
 

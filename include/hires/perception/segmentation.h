@@ -5,8 +5,8 @@
 
 #include "hires/base/rng.h"
 #include "hires/perception/point_cloud.h"
-#include "perception/tabletop/segmentation_params.h"
-#include "perception/tabletop/table.h"
+#include "hires/perception/segmentation_params.h"
+#include "hires/perception/table.h"
 
 namespace hires::perception {
 

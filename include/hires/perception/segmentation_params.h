@@ -1,6 +1,6 @@
 #pragma once
 
-#include "perception/tabletop/table.h"
+#include "hires/perception/table.h"
 
 namespace hires::perception {
 

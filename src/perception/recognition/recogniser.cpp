@@ -1,0 +1,196 @@
+#include "hires/perception/recogniser.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "hires/base/error.h"
+#include "hires/perception/depth_sensor.h"
+#include "perception/recognition/model_fit.h"
+#include "perception/recognition/model_view.h"
+
+namespace hires::perception {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::Pose3;
+
+constexpr std::size_t kFitPoints = 200;  // of a thing that a model is fitted to
+constexpr std::size_t kMostViewed = 6;   // shapes whose fit is best are looked at
+constexpr double kBelowTop = 0.98;       // of a thing's points, below its top
+constexpr double kMinSize = 0.005;       // [m] of an unknown thing's box
+
+/// Table T in the cloud's frame C: z upwards from its plane.
+Pose3 FrameOf(const Table& table) {
+  Eigen::Matrix3d rotation;
+  rotation << table.along_x, table.along_y, table.normal;
+  return {-table.offset * table.normal, Eigen::Quaterniond(rotation)};
+}
+
+struct Thing {
+  int label{0};
+  std::vector<Vector3d> p_T{};  ///< of all its points
+  ThingPoints sample{};
+  PixelWindow window{};
+};
+
+/// A shape of the catalogue where it fits the thing best.
+struct Candidate {
+  const ModelShape* shape{nullptr};
+  ModelPose pose{};
+  ModelView view{};
+};
+
+std::vector<Thing> ThingsOf(const LabelledPicture& seen, int num_things, const Pose3& X_CT) {
+  std::vector<Thing> things(num_things);
+  const Pose3 X_TC = X_CT.Inverse();
+  const Eigen::Matrix3d R_TC = X_TC.rotation.toRotationMatrix();
+  for (std::size_t i = 0; i < seen.labels.size(); ++i) {
+    if (seen.labels[i] < kLabelFirstThing) continue;
+    Thing& thing = things[seen.labels[i] - kLabelFirstThing];
+    thing.label = seen.labels[i];
+    const Vector3d p_C = seen.cloud.points[i].cast<double>();
+    thing.p_T.push_back(R_TC * p_C + X_TC.translation);
+    thing.sample.sd.push_back(DepthNoise(p_C.z()));
+    thing.window.Include(seen.picture.Project(p_C));
+  }
+  for (Thing& thing : things) {  // every n-th
+    const std::size_t step = thing.p_T.size() / kFitPoints + 1;
+    for (std::size_t i = 0; i < thing.p_T.size(); i += step) {
+      thing.sample.p_T.push_back(thing.p_T[i]);
+      thing.sample.sd[i / step] = thing.sample.sd[i];
+    }
+    thing.sample.sd.resize(thing.sample.p_T.size());
+  }
+  return things;
+}
+
+Pose3 PoseOf(const Candidate& candidate, const Pose3& X_CT) {
+  return X_CT * geometry::Lift(candidate.pose.X_TO, candidate.shape->foot);
+}
+
+Detection Unknown(const Thing& thing, const Pose3& X_CT) {
+  const Footprint print = FootprintOf(thing.p_T);
+  std::vector<double> heights;
+  for (const Vector3d& p : thing.p_T) heights.push_back(p.z());
+  const auto top = heights.begin() + static_cast<long>(kBelowTop * (heights.size() - 1));
+  std::nth_element(heights.begin(), top, heights.end());
+  Detection detection;
+  detection.label = kUnknownLabel;
+  detection.X_CO = X_CT * geometry::Lift(print.X_TF);
+  detection.size = Vector3d(print.length, print.width, *top).cwiseMax(kMinSize);
+  return detection;
+}
+
+}  // namespace
+
+struct Recogniser::Impl {
+  std::vector<Candidate> Compare(const LabelledPicture& seen, const Thing& thing,
+                                 const Pose3& X_CT) const;
+  Detection Detect(const LabelledPicture& seen, const Thing& thing, const Pose3& X_CT) const;
+  void Name(const std::vector<Candidate>& candidates, Detection* detection) const;
+
+  RecogniserParams params;
+  std::vector<ModelShape> shapes;
+};
+
+/// @return the shapes that fit, best view first.
+std::vector<Candidate> Recogniser::Impl::Compare(const LabelledPicture& seen, const Thing& thing,
+                                                 const Pose3& X_CT) const {
+  const Footprint footprint = FootprintOf(thing.sample.p_T);
+  std::vector<Candidate> candidates;
+  for (const ModelShape& shape : shapes)
+    candidates.push_back({&shape, FitModel(shape, thing.sample, footprint), {}});
+  std::stable_sort(
+      candidates.begin(), candidates.end(),
+      [](const Candidate& a, const Candidate& b) { return a.pose.misfit < b.pose.misfit; });
+  candidates.resize(std::min(candidates.size(), kMostViewed));
+  for (Candidate& one : candidates)
+    one.view = CompareView(seen, thing.label, thing.window, *one.shape->field, PoseOf(one, X_CT));
+  std::stable_sort(
+      candidates.begin(), candidates.end(),
+      [](const Candidate& a, const Candidate& b) { return a.view.quality > b.view.quality; });
+  return candidates;
+}
+
+/// Each shape weighs exp(sharpness * quality), as does the unknown one of the least quality that
+/// counts; models of one shape share its confidence.
+void Recogniser::Impl::Name(const std::vector<Candidate>& candidates, Detection* detection) const {
+  const auto weight = [&](double quality) {
+    return std::exp(params.sharpness * (quality - params.min_quality));
+  };
+  double sum = weight(params.min_quality);
+  for (const Candidate& one : candidates) sum += weight(one.view.quality);
+  std::vector<LabelConfidence> names;
+  for (const Candidate& one : candidates) {
+    const auto& models = one.shape->models;
+    for (const KnownModel& known : models)
+      names.push_back({known.label, weight(one.view.quality) / sum / models.size()});
+  }
+  detection->confidence = names.front().confidence;
+  names.erase(names.begin());
+  names.push_back({kUnknownLabel, weight(params.min_quality) / sum});
+  std::stable_sort(names.begin(), names.end(),
+                   [](const auto& a, const auto& b) { return a.confidence > b.confidence; });
+  constexpr double kWorthSaying = 0.01;
+  for (const LabelConfidence& name : names)
+    if (name.confidence >= kWorthSaying) detection->alternatives.push_back(name);
+}
+
+Detection Recogniser::Impl::Detect(const LabelledPicture& seen, const Thing& thing,
+                                   const Pose3& X_CT) const {
+  const std::vector<Candidate> candidates = Compare(seen, thing, X_CT);
+  Detection detection;
+  if (candidates.empty() || candidates.front().view.quality < params.min_quality) {
+    detection = Unknown(thing, X_CT);
+  } else {
+    const Candidate& best = candidates.front();
+    const KnownModel& known = best.shape->models.front();
+    detection.label = known.label;
+    detection.category = known.category;
+    detection.X_CO = PoseOf(best, X_CT);
+    detection.visible_share = best.view.visible_share;
+    detection.size = best.shape->field->bounds().upper - best.shape->field->bounds().lower;
+    Name(candidates, &detection);
+  }
+  detection.num_points = static_cast<int>(thing.p_T.size());
+  return detection;
+}
+
+Recogniser::Recogniser(const std::vector<KnownModel>& catalogue, const RecogniserParams& params) {
+  std::set<std::string> labels;
+  std::vector<KnownModel> usable;
+  for (const KnownModel& known : catalogue) {
+    if (!labels.insert(known.label).second) {
+      throw base::ConfigError(
+          fmt::format("the catalogue has two models that are called '{}'; give one of them another "
+                      "label",
+                      known.label));
+    }
+    geometry::Aabb bounds;
+    for (const geometry::Collision& one : known.model->collisions)
+      bounds.Include(geometry::BoundsOf(one.shape, one.X_BS));
+    if ((bounds.upper - bounds.lower).maxCoeff() <= params.max_extent) usable.push_back(known);
+  }
+  impl_ = std::make_unique<Impl>(Impl{params, ShapesOfCatalogue(usable)});
+}
+Recogniser::~Recogniser() = default;
+Recogniser::Recogniser(Recogniser&&) noexcept = default;
+Recogniser& Recogniser::operator=(Recogniser&&) noexcept = default;
+
+Recognition Recogniser::Recognise(const PointCloud& cloud, const std::optional<CameraStand>& stand,
+                                  const base::Rng& rng) const {
+  Recognition out;
+  out.segmentation = SegmentTabletop(cloud, stand, impl_->params.segmentation, rng);
+  const auto picture = PictureOf(cloud);
+  if (!out.segmentation.table || !picture) return out;
+  const LabelledPicture seen{cloud, *picture, out.segmentation.labels};
+  const Pose3 X_CT = FrameOf(*out.segmentation.table);
+  for (const Thing& thing : ThingsOf(seen, out.segmentation.num_things, X_CT))
+    out.detections.push_back(impl_->Detect(seen, thing, X_CT));
+  return out;
+}
+
+}  // namespace hires::perception

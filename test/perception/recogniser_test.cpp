@@ -1,0 +1,238 @@
+#include "hires/perception/recogniser.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "hires/base/error.h"
+#include "hires/geometry/angles.h"
+#include "perception/recognition/cloud_picture.h"
+#include "perception/recognition/distance_field.h"
+#include "perception/recognition/model_fit.h"
+#include "perception/shape_mesh.h"
+#include "perception/support/random_tables.h"
+#include "perception/support/recognition_score.h"
+
+namespace hires::perception::recogniser_test {
+namespace {
+
+using Eigen::Vector3d;
+
+std::vector<geometry::Collision> Body(const geometry::Shape& shape,
+                                      const Vector3d& p_BS = {0, 0, 0}) {
+  geometry::Collision one;
+  one.shape = shape;
+  one.X_BS.translation = p_BS;
+  return {one};
+}
+
+TEST(DistanceFieldTest, DistancesAreThoseOfTheClosedForms) {
+  const DistanceField ball(Body(geometry::Sphere{0.05}));
+  const DistanceField can(Body(geometry::Cylinder{0.04, 0.1}));
+  const DistanceField box(Body(geometry::Box{{0.1, 0.06, 0.2}}));
+  base::Rng rng(1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3d p(rng.Uniform(-0.07, 0.07), rng.Uniform(-0.06, 0.06), rng.Uniform(-0.12, 0.12));
+    const double to_ball = p.norm() - 0.05;
+    if (const auto value = ball.At(p); value && std::abs(to_ball) < 0.03) {
+      EXPECT_NEAR(value->distance, to_ball, 2e-4);
+      EXPECT_GT(value->gradient.normalized().dot(p.normalized()), 0.99);
+    }
+    // Beside the faces; at edges the grid rounds off.
+    const double to_can = p.head<2>().norm() - 0.04;
+    if (const auto value = can.At(p); value && std::abs(p.z()) < 0.02 && std::abs(to_can) < 0.02) {
+      EXPECT_NEAR(value->distance, to_can, 1e-4);
+    }
+    const double to_box = std::abs(p.x()) - 0.05;
+    if (const auto value = box.At(p);
+        value && std::abs(p.y()) < 0.005 && std::abs(p.z()) < 0.05 && std::abs(to_box) < 0.02) {
+      EXPECT_NEAR(value->distance, to_box, 1e-6);
+    }
+  }
+  EXPECT_FALSE(ball.At({0.2, 0.0, 0.0}));
+}
+
+TEST(DistanceFieldTest, AMeshIsAsTheShapeThatItStandsFor) {
+  auto mesh = std::make_shared<geometry::TriangleMesh>(UnitBoxMesh());
+  for (Vector3d& vertex : mesh->vertices) vertex = vertex.cwiseProduct(Vector3d(0.1, 0.06, 0.2));
+  const DistanceField box(Body(geometry::Box{{0.1, 0.06, 0.2}}));
+  const DistanceField same(Body(std::shared_ptr<const geometry::TriangleMesh>(mesh)));
+  base::Rng rng(1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3d p(rng.Uniform(-0.08, 0.08), rng.Uniform(-0.06, 0.06), rng.Uniform(-0.13, 0.13));
+    EXPECT_NEAR(same.At(p)->distance, box.At(p)->distance, 1e-6) << p.transpose();
+  }
+}
+
+TEST(DistanceFieldTest, RaysMeetTheSurfaceWhereItIs) {
+  const DistanceField can(Body(geometry::Cylinder{0.04, 0.1}, {0.0, 0.0, 0.05}));
+  EXPECT_NEAR(can.Meet({1.0, 0.0, 0.05}, {-1.0, 0.0, 0.0}).value(), 0.96, 1e-3);
+  EXPECT_NEAR(can.Meet({0.01, 0.0, 1.0}, {0.0, 0.0, -1.0}).value(), 0.9, 1e-3);
+  EXPECT_FALSE(can.Meet({1.0, 0.05, 0.05}, {-1.0, 0.0, 0.0})) << "passes beside it";
+  EXPECT_FALSE(can.Meet({1.0, 0.0, 0.05}, {1.0, 0.0, 0.0})) << "looks away";
+}
+
+TEST(ShapesOfCatalogueTest, ModelsOfOneGeometryAreOneShape) {
+  const test_support::RandomTables tables(HIRES_SOURCE_DIR);
+  std::map<std::string, std::string> first_of;
+  for (const ModelShape& shape : ShapesOfCatalogue(tables.catalogue()))
+    for (const KnownModel& known : shape.models) first_of[known.label] = shape.models[0].label;
+  EXPECT_EQ(first_of.size(), tables.catalogue().size());
+  EXPECT_EQ(first_of.at("coffee_cup_hot"), "coffee_cup");
+  EXPECT_EQ(first_of.at("peppermill_thesis"), "peppermill_repository");
+  EXPECT_EQ(first_of.at("vase"), "peppermill_appendix");
+  EXPECT_EQ(first_of.at("spoon"), "knife");
+  EXPECT_EQ(first_of.at("fork"), "fork");
+}
+
+TEST(CloudPictureTest, ThePixelsOfAnOrganisedCloudAreItsOwn) {
+  const test_support::RandomTable table = test_support::RandomTables(HIRES_SOURCE_DIR).Make(1);
+  const CloudPicture picture = PictureOf(table.cloud).value();
+  EXPECT_EQ(picture.width, 640);
+  EXPECT_NEAR(picture.focal_length.x(), 577.3, 1.0);
+  EXPECT_NEAR(picture.middle.x(), 319.5, 0.1);
+  for (std::size_t i = 0; i < table.cloud.points.size(); i += 997) {
+    if (!IsMeasured(table.cloud.points[i])) continue;
+    const Eigen::Vector2d pixel = picture.Project(table.cloud.points[i].cast<double>());
+    EXPECT_NEAR(pixel.x(), static_cast<double>(i % 640), 0.1);
+    EXPECT_NEAR(pixel.y(), static_cast<double>(i / 640), 0.1);
+  }
+}
+
+class RecogniserTest : public testing::Test {
+ protected:
+  const test_support::RandomTables tables_{HIRES_SOURCE_DIR};
+  const Recogniser recogniser_{tables_.catalogue()};
+
+  Recognition Recognise(const PointCloud& cloud, const CameraStand& stand) const {
+    return recogniser_.Recognise(cloud, stand, base::Rng(1));
+  }
+};
+
+// RecogniserParams and the steps of the fit were chosen on the scenes 1000 to 1239.
+TEST_F(RecogniserTest, RandomTablesAreSeenAsTheyAre) {
+  test_support::RecognitionScore score(tables_.catalogue());
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const test_support::RandomTable table = tables_.Make(seed);
+    score.Add(table, Recognise(table.cloud, table.stand));
+  }
+  RecordProperty("score", score.Text());
+  EXPECT_GT(score.num_large, 150);
+  EXPECT_GE(score.found, 0.98 * score.num_large) << score.Text();
+  EXPECT_GE(score.named, 0.95 * score.num_known) << score.Text();
+  EXPECT_GE(score.unknown_as_such, 0.95 * score.num_unknown) << score.Text();
+  EXPECT_LT(score.MedianError(), 0.005) << score.Text();
+  EXPECT_LE(score.surplus, 0.02 * score.num_detections) << score.Text();
+}
+
+TEST_F(RecogniserTest, ModelsOfOneShapeShareTheirConfidence) {
+  for (std::uint64_t seed = 1; seed < 100; ++seed) {
+    const test_support::RandomTable table = tables_.Make(seed);
+    for (const Detection& seen : Recognise(table.cloud, table.stand).detections) {
+      if (seen.label != "coffee_cup" || seen.alternatives.empty()) continue;
+      EXPECT_EQ(seen.alternatives[0].label, "coffee_cup_hot");
+      EXPECT_DOUBLE_EQ(seen.alternatives[0].confidence, seen.confidence);
+      EXPECT_GT(seen.confidence, 0.4);
+      EXPECT_LE(seen.confidence, 0.5);
+      double sum = seen.confidence;
+      for (const LabelConfidence& other : seen.alternatives) sum += other.confidence;
+      EXPECT_GT(sum, 0.9);
+      EXPECT_LE(sum, 1.0 + 1e-9);
+      return;
+    }
+  }
+  FAIL() << "no cup stood on any table";
+}
+
+TEST_F(RecogniserTest, AnUnknownThingHasABoxAroundWhatIsSeenOfIt) {
+  int num_boxes = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const test_support::RandomTable table = tables_.Make(seed);
+    const Recognition out = Recognise(table.cloud, table.stand);
+    for (const Detection& seen : out.detections) {
+      if (seen.label != kUnknownLabel) continue;
+      const auto truth = std::find_if(
+          table.things.begin(), table.things.end(), [&](const test_support::TableThing& thing) {
+            return !thing.is_known && thing.visible_share > 0.95 &&
+                   (thing.X_CO.translation - seen.X_CO.translation).norm() < 0.1;
+          });
+      if (truth == table.things.end()) continue;
+      ++num_boxes;
+      EXPECT_NEAR(seen.size.z(), truth->size.z(), 0.01) << seed;
+      EXPECT_LT(seen.size.x(), truth->size.head<2>().norm() + 0.02) << seed;
+      EXPECT_GE(seen.size.x(), seen.size.y());
+      EXPECT_LT((truth->X_CO.translation - seen.X_CO.translation).norm(), 0.08) << seed;
+    }
+  }
+  EXPECT_GT(num_boxes, 10);
+}
+
+constexpr std::uint64_t kCrowded = 10;
+
+TEST_F(RecogniserTest, TheOrderOfPointsAndTheCamerasPixelsMatterLittle) {
+  const test_support::RandomTable table = tables_.Make(kCrowded);
+  ASSERT_GT(table.things.size(), 4u);
+  const Recognition organised = Recognise(table.cloud, table.stand);
+  PointCloud heap;
+  for (std::size_t i = 0; i < table.cloud.points.size(); ++i) {  // every third, from the end
+    const Eigen::Vector3f& p = table.cloud.points[table.cloud.points.size() - 1 - i];
+    if (i % 3 == 0 && IsMeasured(p)) heap.points.push_back(p);
+  }
+  heap.width = static_cast<int>(heap.points.size());
+  const Recognition unordered = Recognise(heap, table.stand);
+  int num_same = 0;
+  for (const Detection& one : organised.detections) {
+    num_same += std::any_of(unordered.detections.begin(), unordered.detections.end(),
+                            [&](const Detection& other) {
+                              return other.label == one.label &&
+                                     (other.X_CO.translation - one.X_CO.translation).norm() < 0.01;
+                            });
+  }
+  EXPECT_GE(num_same, static_cast<int>(organised.detections.size()) - 1);
+}
+
+TEST_F(RecogniserTest, WhereNothingIsNothingIsSeen) {
+  PointCloud cloud;
+  EXPECT_TRUE(Recognise(cloud, {}).detections.empty());
+  cloud.points.assign(640 * 480,
+                      Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
+  cloud.width = 640;
+  cloud.height = 480;
+  EXPECT_TRUE(Recognise(cloud, {}).detections.empty());
+  for (Eigen::Vector3f& p : cloud.points) p = {0.0F, 0.0F, -1.0F};
+  EXPECT_TRUE(Recognise(cloud, {}).detections.empty()) << "behind the camera";
+  EXPECT_TRUE(Recogniser({})
+                  .Recognise(tables_.Make(1).cloud, tables_.Make(1).stand, base::Rng(1))
+                  .detections[0]
+                  .label == kUnknownLabel)
+      << "who knows nothing recognises nothing";
+}
+
+TEST_F(RecogniserTest, TheSameBitsEachTime) {
+  const test_support::RandomTable table = tables_.Make(3);
+  const Recognition first = Recognise(table.cloud, table.stand);
+  const Recognition second = Recognise(table.cloud, table.stand);
+  ASSERT_EQ(first.detections.size(), second.detections.size());
+  for (std::size_t i = 0; i < first.detections.size(); ++i) {
+    EXPECT_EQ(first.detections[i].label, second.detections[i].label);
+    EXPECT_EQ(first.detections[i].X_CO.translation, second.detections[i].X_CO.translation);
+    EXPECT_EQ(first.detections[i].confidence, second.detections[i].confidence);
+  }
+}
+
+TEST(RecogniserConfigTest, TwoModelsOfOneLabelAreRefused) {
+  const test_support::RandomTables tables(HIRES_SOURCE_DIR);
+  std::vector<KnownModel> catalogue{tables.catalogue()[0], tables.catalogue()[0]};
+  try {
+    Recogniser recogniser(catalogue);
+    FAIL();
+  } catch (const base::ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find(catalogue[0].label), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace hires::perception::recogniser_test
