@@ -105,4 +105,16 @@ std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
   return text.str();
 }
 
+void ReplaceTextFile(const std::string& path, const std::string& text) {
+  const std::string unfinished = path + ".unfinished";
+  std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
+  file << text;
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(unfinished, path, error);
+  if (file && !error) return;
+  std::filesystem::remove(unfinished, error);
+  throw ConfigError(fmt::format("{}: cannot be written; check folder, rights and space", path));
+}
+
 }  // namespace hires::base

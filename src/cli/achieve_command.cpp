@@ -81,7 +81,7 @@ void WriteFiles(const AchieveOptions& options, const ReportOrigin& origin,
                 const evaluation::AchieveReport& report, const std::optional<std::string>& truth) {
   if (!options.timeline.empty()) {
     const std::string csv = evaluation::TimelineCsv(evaluation::MakeTimeline(report));
-    evaluation::WriteText(csv, options.timeline);
+    base::ReplaceTextFile(options.timeline, csv);
   }
   nlohmann::ordered_json json = ToJson(report);
   if (truth) json["truth"] = *truth;

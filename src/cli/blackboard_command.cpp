@@ -142,7 +142,7 @@ int RunExport(const BlackboardOptions& options, BlackboardAccess* blackboard) {
   if (options.output.empty()) {
     std::cout << text;
   } else {
-    evaluation::WriteText(text, options.output);
+    base::ReplaceTextFile(options.output, text);
   }
   return 0;
 }

@@ -21,6 +21,7 @@
 #include "cli/plan_command.h"
 #include "cli/query_scene.h"
 #include "cli/reading_display.h"
+#include "cli/recognise_command.h"
 #include "cli/save_rollout.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
@@ -358,6 +359,7 @@ struct Verbs {
   PlanOptions plan;
   BlackboardOptions blackboard;
   ListOptions list;
+  RecogniseOptions recognise;
   StoredReportOptions report;
   LimitsOptions limits;
   DoctorOptions doctor;
@@ -387,6 +389,7 @@ void AddVerbs(CLI::App* app, Verbs* verbs, const Backends& backends) {
   AddPlanVerb(app, &verbs->plan);
   AddBlackboardVerb(app, &verbs->blackboard);
   AddListVerb(app, &verbs->list);
+  AddRecogniseVerb(app, &verbs->recognise);
   AddReportVerb(app, &verbs->report);
   AddDoctorVerb(app, &verbs->doctor);
   for (const Verb& verb : backends.more_verbs) {
@@ -436,6 +439,7 @@ int RunVerb(const Verbs& verbs, const Backends& backends) {
   if (*verbs.plan.verb) return RunPlanVerb(verbs.plan, IsInterrupted);
   if (*verbs.report.verb) return RunReportVerb(verbs.report);
   if (*verbs.list.verb) return RunListVerb(verbs.list, backends.package_folder);
+  if (*verbs.recognise.verb) return RunRecogniseVerb(verbs.recognise, backends.package_folder);
   if (*verbs.blackboard.verb) {
     return RunBlackboardVerb(verbs.blackboard, backends.package_folder,
                              backends.connect_blackboard);

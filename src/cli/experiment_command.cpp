@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "hires/base/error.h"
+#include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/experiment.h"
@@ -128,8 +129,8 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
   Print(*report);
-  if (!options.csv.empty()) evaluation::WriteText(evaluation::ReportCsv(*report), options.csv);
-  if (!options.junit.empty()) evaluation::WriteText(JunitXml(*report), options.junit);
+  if (!options.csv.empty()) base::ReplaceTextFile(options.csv, evaluation::ReportCsv(*report));
+  if (!options.junit.empty()) base::ReplaceTextFile(options.junit, JunitXml(*report));
   WriteReport(options.report, origin, ToJson(*report));
   return report->passed() ? kExitRecommended : kExitAllFailed;
 }

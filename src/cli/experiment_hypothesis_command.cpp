@@ -196,7 +196,7 @@ ReportOrigin OriginOf(const HypothesisOptions& options, const std::string& goal,
 void Write(const evaluation::HypothesisReport& report, const HypothesisOptions& options,
            ReportOrigin origin) {
   std::cout << evaluation::HypothesisText(report);
-  if (!options.csv.empty()) evaluation::WriteText(evaluation::HypothesisCsv(report), options.csv);
+  if (!options.csv.empty()) base::ReplaceTextFile(options.csv, evaluation::HypothesisCsv(report));
   origin.hashes = {{"files", report.setting.files}};
   WriteReport(options.report, origin, ToJson(report, CommandOf(options)));
 }

@@ -118,7 +118,7 @@ std::optional<evaluation::HypothesisRun> PlayHypothesisRun(
   const std::string order_path = order.folder + "/order.json";
   const std::string record_path = order.folder + "/record.json";
   const std::string log_path = order.folder + "/run.log";
-  evaluation::WriteText(HypothesisOrderText(order), order_path);
+  base::ReplaceTextFile(order_path, HypothesisOrderText(order));
   fs::remove(record_path);
   base::ProcessOptions options;
   options.command = {fs::read_symlink("/proc/self/exe").string(), kHypothesisRunVerb, order_path,

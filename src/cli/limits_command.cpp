@@ -109,7 +109,7 @@ int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folde
   report->wall_seconds = SecondsSince(begin);
   const std::string yaml = evaluation::LimitsYaml(*report);
   std::cout << evaluation::LimitsText(*report) << '\n' << yaml;
-  if (!options.yaml.empty()) evaluation::WriteText(yaml, options.yaml);
+  if (!options.yaml.empty()) base::ReplaceTextFile(options.yaml, yaml);
   if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
   return kExitRecommended;
 }

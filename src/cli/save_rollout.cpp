@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "hires/base/error.h"
+#include "hires/base/text.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/rollout_film.h"
@@ -146,7 +147,7 @@ void SaveRollout(const SaveRolloutOptions& options, int threads, QueryScene* sce
   if (!options.beside.empty()) beside = Replay(options.beside, report, setup, cancelled, nullptr);
   if (!replayed || beside.has_value() == options.beside.empty()) return;
   const RolloutRecording& recording = replayed->recording;
-  if (!options.csv.empty()) evaluation::WriteText(imagination::ToCsv(recording), options.csv);
+  if (!options.csv.empty()) base::ReplaceTextFile(options.csv, imagination::ToCsv(recording));
   if (bag) bag->Save(recording);
   WritePictures(options, setup, recording, beside ? &beside->recording : nullptr, threads);
   Print(*replayed);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
+#include "hires/base/text.h"
 
 namespace hires::evaluation {
 namespace {
@@ -63,19 +64,6 @@ bool WriteOpened(const std::string& text, const fs::path& path) {
   std::ofstream file(path);
   file << text << std::flush;
   return file.good();
-}
-
-/// Writes beside the file first, so that an earlier one stays whole until the new one is.
-bool ReplaceText(const std::string& text, const fs::path& path) {
-  fs::path part = path;
-  part += ".part";
-  std::error_code error;
-  if (WriteOpened(text, part)) {
-    fs::rename(part, path, error);
-    if (!error) return true;
-  }
-  fs::remove(part, error);
-  return false;
 }
 
 }  // namespace
@@ -155,9 +143,10 @@ void WriteJson(const nlohmann::ordered_json& json, const std::string& path) {
   const std::string text =
       json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
   const bool is_device = fs::exists(path) && !fs::is_regular_file(path);  // /dev/stdout, say
-  if (!(is_device ? WriteOpened(text, path) : ReplaceText(text, fs::weakly_canonical(path)))) {
-    throw base::ConfigError(fmt::format(
-        "{}: cannot be written; check that its folder may be written and has room", path));
+  if (!is_device) {
+    base::ReplaceTextFile(fs::weakly_canonical(path), text);
+  } else if (!WriteOpened(text, path)) {
+    throw base::ConfigError(fmt::format("{}: cannot be written", path));
   }
 }
 

@@ -113,17 +113,4 @@ ordered_json ToJson(const AchieveReport& report) {
           {"warnings", report.status.warnings}};
 }
 
-void WriteText(const std::string& text, const std::string& path) {
-  const std::string unfinished = path + ".unfinished";
-  std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
-  file << text;
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(unfinished, path, error);
-  if (file && !error) return;
-  std::filesystem::remove(unfinished, error);
-  throw base::ConfigError(
-      fmt::format("{}: cannot be written; check folder, rights and space", path));
-}
-
 }  // namespace hires::evaluation

@@ -47,7 +47,4 @@ std::string TimelineCsv(const Timeline& timeline);
 /// Everything for machines.
 nlohmann::ordered_json ToJson(const AchieveReport& report);
 
-/// All or nothing.  @throws base::ConfigError if the file cannot be written.
-void WriteText(const std::string& text, const std::string& path);
-
 }  // namespace hires::evaluation

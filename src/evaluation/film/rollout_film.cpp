@@ -278,7 +278,7 @@ void WriteFrames(const RolloutFilm& film, int num_samples, const std::function<P
              [&](int k) { frames[k] = draw(k * step); });
   const auto& samples = film.recording().samples;
   const double period = samples.size() < 2 ? 0.05 : samples[1].time - samples[0].time;
-  WriteText(ToGif(frames, step * period, kLastFrame), path);
+  base::ReplaceTextFile(path, ToGif(frames, step * period, kLastFrame));
 }
 
 }  // namespace
@@ -330,7 +330,7 @@ void WriteStrip(const RolloutFilm& film, int count, const std::string& path) {
   Picture strip(count * (width + kGap) - kGap, film.params().view_height + kTextHeight, kPaper);
   InParallel(count, film.params().threads,
              [&](int k) { Paste(film.CloseUpAt(moments[k]), k * (width + kGap), 0, &strip); });
-  WriteText(ToPng(strip), path);
+  base::ReplaceTextFile(path, ToPng(strip));
 }
 
 }  // namespace hires::evaluation

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hires/perception/point_cloud.h"
+
+namespace hires::perception {
+
+/// Reads x, y and z of a file of the Point Cloud Data format, version 0.7 or older: text, binary or
+/// compressed; other fields are passed over, and so is the viewpoint: what counts is the frame that
+/// the points are in. A file that says height > 1 is organised.
+/// @throws base::ConfigError naming the file, and the line or field: no such file, not of this
+/// format, lacking x, y or z, shorter than it says, of an absurd size.
+PointCloud ReadPcd(const std::string& path);
+
+/// Writes the points with a field `label`, binary; a file of that name is replaced only when the
+/// new one is whole.
+/// @param labels  of each point.
+/// @throws base::ConfigError if the file cannot be written.
+void WriteLabelledPcd(const PointCloud& cloud, const std::vector<int>& labels,
+                      const std::string& path);
+
+}  // namespace hires::perception

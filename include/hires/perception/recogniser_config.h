@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hires/perception/recogniser.h"
+
+namespace hires::perception {
+
+struct RecogniserConfig {
+  std::vector<KnownModel> catalogue{};  ///< by label
+  RecogniserParams params{};
+};
+
+/// Reads a file like config/recogniser.yaml, and the models that it leads to.
+/// @param objects  another catalogue than the file says; empty: the file's.
+/// @throws base::ConfigError naming file and key.
+RecogniserConfig ReadRecogniserConfig(const std::string& path, const std::string& objects = "");
+
+}  // namespace hires::perception
