@@ -11,6 +11,7 @@
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
 #include "robot/drive_guess.h"
+#include "robot/extra_sensors_reader.h"
 #include "robot/upper_body_reader.h"
 
 namespace hires::robot {
@@ -173,6 +174,7 @@ RobotProfile ReadProfile(ParamReader* in) {
   }
   if (in->Has("joints")) profile.joints = ReadJoints(in->Sub("joints"));
   if (in->Has("upper_body")) profile.upper_body = ReadUpperBody(in->Sub("upper_body"));
+  if (in->Has("sensors")) profile.sensors = ReadExtraSensors(in->Sub("sensors"));
   in->RejectUnknownKeys();
   return profile;
 }
@@ -200,6 +202,7 @@ void CheckProfile(ParamReader in, const RobotProfile& profile, const RobotModel&
     in.Fail("joints", error.what());
   }
   if (profile.upper_body) CheckUpperBody(in.Sub("upper_body"), *profile.upper_body, model);
+  if (in.Has("sensors")) CheckExtraSensors(in.Sub("sensors"), profile.sensors, model);
 }
 
 void AddTo(base::Hasher* hash, const MotionSet& set) {

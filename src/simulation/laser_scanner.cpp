@@ -1,32 +1,88 @@
 #include "hires/simulation/laser_scanner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "hires/base/check.h"
 
 namespace hires::simulation {
+namespace {
 
-std::vector<double> ScanLaser(const RobotSimulator& simulator, const LaserParams& params,
-                              base::Rng* rng) {
-  const auto& surroundings = simulator.scene().surroundings;
-  HIRES_CHECK(surroundings, "only a robot with an upper body has surroundings to scan");
-  HIRES_CHECK(params.num_beams >= 2, "a laser has two beams at least");
-  const perception::LineOfSight sight(surroundings, simulator.GetWorldState().objects);
-  const geometry::Pose3 X_ML = simulator.X_MLink(params.link);
+constexpr int kRays = 8;              // across a beam
+constexpr double kOneSurface = 0.03;  // [m] by which neighbouring rays may differ on one surface
+
+Eigen::Vector3d DirectionOf(const geometry::Pose3& X_ML, double angle) {
+  return X_ML.rotation * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
+}
+
+/// What one echo, or two, are measured as.  @param ranges  of the rays; sorted here.
+double MixedRange(std::array<double, kRays> ranges, double mixing_depth) {
+  std::sort(ranges.begin(), ranges.end());
+  int num_near = 1;
+  while (num_near < kRays && ranges[num_near] - ranges[num_near - 1] <= kOneSurface) ++num_near;
+  const auto mean = [&](int begin, int end) {
+    double sum = 0.0;
+    for (int i = begin; i < end; ++i) sum += ranges[i];
+    return sum / (end - begin);
+  };
+  const double near = mean(0, num_near);
+  if (num_near == kRays) return near;
+  const double far = mean(num_near, kRays);
+  if (far - near <= mixing_depth) return mean(0, kRays);
+  return 2 * num_near >= kRays ? near : far;
+}
+
+double RangeOf(const perception::LineOfSight& sight, const geometry::Pose3& X_ML, double angle,
+               const LaserParams& params) {
+  if (params.beam_width == 0.0) return sight.Cast(X_ML.translation, DirectionOf(X_ML, angle));
+  std::array<double, kRays> ranges;
+  for (int i = 0; i < kRays; ++i) {
+    const double aside = params.beam_width * ((i + 0.5) / kRays - 0.5);
+    ranges[i] = sight.Cast(X_ML.translation, DirectionOf(X_ML, angle + aside));
+  }
+  return MixedRange(ranges, params.mixing_depth);
+}
+
+void RequireSurroundings(const RobotSimulator& simulator) {
+  HIRES_CHECK(simulator.scene().surroundings,
+              "only a robot with an upper body has surroundings to scan");
+}
+
+std::vector<geometry::Collision> ShapesOf(const RobotSimulator& simulator) {
+  const robot::RobotState state = simulator.GetRobotState();
+  return perception::ShapesOf(simulator.scene().robot, state.X_MB, state.joints);
+}
+
+}  // namespace
+
+double AngleOf(const LaserParams& params, int beam) {
   const double step = (params.angle_max - params.angle_min) / (params.num_beams - 1);
+  return params.angle_min + beam * step;
+}
+
+std::vector<double> ScanLaserFrom(const geometry::Pose3& X_ML, const RobotSimulator& simulator,
+                                  const LaserParams& params, base::Rng* rng) {
+  RequireSurroundings(simulator);
+  HIRES_CHECK(params.num_beams >= 2, "a laser has two beams at least");
+  const perception::LineOfSight sight(
+      simulator.scene().surroundings, simulator.GetWorldState().objects,
+      params.sees_robot ? ShapesOf(simulator) : std::vector<geometry::Collision>{});
   std::vector<double> ranges;
   ranges.reserve(params.num_beams);
   for (int i = 0; i < params.num_beams; ++i) {
-    const double angle = params.angle_min + i * step;
-    const Eigen::Vector3d direction =
-        X_ML.rotation * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
     const double noise = rng->Normal(0.0, params.noise);  // drawn whatever is hit
-    const double range = sight.Cast(X_ML.translation, direction);
+    const double range = RangeOf(sight, X_ML, AngleOf(params, i), params);
     ranges.push_back(range > params.range_max ? INFINITY
                                               : std::max(range + noise, params.range_min));
   }
   return ranges;
+}
+
+std::vector<double> ScanLaser(const RobotSimulator& simulator, const LaserParams& params,
+                              base::Rng* rng) {
+  RequireSurroundings(simulator);
+  return ScanLaserFrom(simulator.X_MLink(params.link), simulator, params, rng);
 }
 
 }  // namespace hires::simulation

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "arm_scene.h"
@@ -66,6 +67,54 @@ TEST(LaserScannerTest, NoiseHasItsDeviation) {
   double squares = 0.0;
   for (int i = 0; i < 640; ++i) squares += (noisy[i] - exact[i]) * (noisy[i] - exact[i]);
   EXPECT_NEAR(std::sqrt(squares / 640), 0.005, 4.0 * 0.005 / std::sqrt(2.0 * 640));
+}
+
+/// A tower of radius 0.037 m, its axis 1 m before the laser, whose left edge the first beam meets
+/// with one half; the wall is 2.725 m ahead.
+std::vector<double> ScanOfAnEdge(LaserParams params) {
+  world::ObjectState tower;
+  tower.name = "tower1";
+  tower.model = "tower";
+  tower.X_MO.translation = {4.275, 2.0, 0.0002};
+  params.noise = 0.0;
+  params.num_beams = 2;
+  params.angle_min = std::asin(0.037);
+  params.angle_max = 0.2;
+  params.beam_width = 0.0133;
+  base::Rng rng(1);
+  return ScanLaser(*InTheRoom({tower}), params, &rng);
+}
+
+TEST(LaserScannerTest, ABeamOverAnEdgeMeasuresInBetween) {
+  LaserParams params;
+  params.mixing_depth = 3.0;
+  const double near = std::sqrt(1.0 - 0.037 * 0.037), far = 2.725 / std::cos(std::asin(0.037));
+  const std::vector<double> ranges = ScanOfAnEdge(params);
+  EXPECT_NEAR(ranges[0], 0.5 * (near + far), 0.02);
+  EXPECT_NEAR(ranges[1], 2.725 / std::cos(0.2), 0.002) << "beside the edge nothing is mixed";
+}
+
+TEST(LaserScannerTest, EchoesThatAreFarApartAreNotMixed) {
+  const double near = std::sqrt(1.0 - 0.037 * 0.037), far = 2.725 / std::cos(std::asin(0.037));
+  const double range = ScanOfAnEdge({})[0];
+  EXPECT_LT(std::min(std::abs(range - near), std::abs(range - far)), 0.02) << range;
+}
+
+TEST(LaserScannerTest, SeesTheRobotOnlyWhereItIsTold) {
+  LaserParams params;  // on the tray, looking around itself: torso behind it
+  params.link = "base_tray_laser_link";
+  params.noise = 0.0;
+  params.angle_min = -3.1415;
+  params.angle_max = 3.1415;
+  const auto simulator = InTheRoom({});
+  base::Rng rng(1);
+  const auto nearest = [&] {
+    const std::vector<double> ranges = ScanLaser(*simulator, params, &rng);
+    return *std::min_element(ranges.begin(), ranges.end());
+  };
+  EXPECT_GT(nearest(), 1.0);
+  params.sees_robot = true;
+  EXPECT_LT(nearest(), 0.6);
 }
 
 TEST(LaserScannerTest, RefusesARobotWithoutSurroundings) {

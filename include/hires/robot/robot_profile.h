@@ -7,6 +7,7 @@
 
 #include "hires/geometry/polygon.h"
 #include "hires/geometry/pose.h"
+#include "hires/robot/extra_sensors.h"
 #include "hires/robot/robot_model.h"
 #include "hires/robot/upper_body.h"
 
@@ -63,7 +64,8 @@ struct RobotProfile {
   BaseControllerParams base_controller;
   JointPositions joints;                       ///< posture while driving
   std::optional<UpperBodyProfile> upper_body;  ///< empty: nothing above the base moves
-  std::uint64_t hash{0};                       ///< of all fields but `urdf`
+  ExtraSensors sensors;                        ///< which rollouts do not play
+  std::uint64_t hash{0};                       ///< of all fields but `urdf` and `sensors`
 };
 
 /// A robot ready for use: model and profile that agree (links exist, joints within limits).

@@ -16,14 +16,33 @@ struct LaserParams {
   double angle_min{-2.2689}, angle_max{2.2689};  ///< [rad] of the first and the last beam
   double range_min{0.08}, range_max{10.0};       ///< [m]
   double noise{0.005};                           ///< [m] sd of each range
+  /// [rad] across. A beam that meets two surfaces mixes them; 0: beams are lines.
+  double beam_width{0.0};
+  double mixing_depth{0.75};  ///< [m] by which echoes differ that are told apart
+  bool sees_robot{false};     ///< its own links; a beam leaves the link that it begins in
 };
 
 /// Ranges [m] in the order of the angles: infinite where nothing is within range_max, and what is
-/// nearer than range_min as range_min. The robot does not see itself. Beams leave from the true
-/// pose of the link, leaning included, so that a beam may end on the floor.
+/// nearer than range_min as range_min. Beams leave from the true pose of the link, leaning
+/// included, so that a beam may end on the floor.
+///
+/// Of a beam that has a width, eight rays across it are followed. Where they meet a near and a far
+/// surface, both echoes come as one if they lie within mixing_depth: their range is the mean,
+/// weighted by rays, so that points hang in the air behind edges. Else the stronger echo counts.
+/// [Hebert, Krotkov 1992, "3D measurements from imaging laser radars: how good are they?", Image
+/// and Vision Computing 10(3), section on mixed pixels; that Hokuyos have them: Cooper, Raquet,
+/// Patton 2018, "Range Information Characterization of the Hokuyo UST-20LX LIDAR Sensor", Photonics
+/// 5(2):12]
 /// @pre the robot has an upper body (Scene::surroundings); num_beams >= 2
 /// @throws base::ConfigError for an unknown link.
 std::vector<double> ScanLaser(const RobotSimulator& simulator, const LaserParams& params,
                               base::Rng* rng);
+
+/// The same for a laser in another pose than its link's in the simulator: one that nods.
+std::vector<double> ScanLaserFrom(const geometry::Pose3& X_ML, const RobotSimulator& simulator,
+                                  const LaserParams& params, base::Rng* rng);
+
+/// [rad] of a beam, by its number.
+double AngleOf(const LaserParams& params, int beam);
 
 }  // namespace hires::simulation
