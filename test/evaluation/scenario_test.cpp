@@ -28,6 +28,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
+using ::testing::Pair;
 using ::testing::SizeIs;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
@@ -61,6 +62,15 @@ class ScenarioTest : public ::testing::Test {
 
   const hires::test_support::TemporaryFolder folder_;
 };
+
+TEST_F(ScenarioTest, ObjectsMayHaveATemperature) {
+  Read("0.5]}", "0.5], temperature: 338.15}");
+  const std::string path = (folder_.path() / "some_day.yaml").string();
+  EXPECT_THAT(TemperaturesOf(path), ElementsAre(Pair("mug1", 338.15)));
+  EXPECT_THAT(TemperaturesOf(""), IsEmpty());
+  EXPECT_THAT(ErrorOf("0.5]}", "0.5], temperature: 65}"),
+              AllOf(HasSubstr("temperature is '65'"), HasSubstr("between 200 and 600")));
+}
 
 TEST_F(ScenarioTest, ReadsEverythingInLowerCase) {
   const Scenario scenario = Read();

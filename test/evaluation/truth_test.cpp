@@ -62,10 +62,22 @@ TEST_F(TruthFileTest, AnEngineThatDoesNotExistIsRefusedWithThoseThatDo) {
 }
 
 TEST_F(TruthFileTest, ABadKeyIsNamed) {
-  EXPECT_THAT(ErrorAfter("sensing: fitted", "sensing: pictures"), HasSubstr("sensing is"));
+  EXPECT_THAT(ErrorAfter("sensing: fitted", "sensing: clouds"),
+              AllOf(HasSubstr("sensing is 'clouds'"), HasSubstr("pictures")));
   EXPECT_THAT(ErrorAfter("localisation:", "lokalisation:"), HasSubstr("localisation"));
   EXPECT_THAT(ErrorAfter("changes: {}", "changes: {object_mas: {}}"),
               AllOf(HasSubstr("uncertainty.changes"), HasSubstr("'object_mass'")));
+}
+
+TEST_F(TruthFileTest, SensingIsReadAsItsWord) {
+  const auto sensing = [this](const std::string& word) {
+    std::string text = base::ReadTextFile(kTruths + "/same.yaml");
+    text.replace(text.find("sensing: fitted"), 15, "sensing: " + word);
+    return ReadTruth(folder_.Write("truth.yaml", text)).sensing;
+  };
+  EXPECT_EQ(sensing("fitted"), Sensing::kFitted);
+  EXPECT_EQ(sensing("ideal"), Sensing::kIdeal);
+  EXPECT_EQ(sensing("pictures"), Sensing::kPictures);
 }
 
 TEST_F(TruthFileTest, EachBadEventIsNamed) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,10 +11,11 @@ namespace hires::evaluation {
 
 /// One loose object where it really stands.
 struct ScenarioObject {
-  std::string name;      ///< instance, lower case, e.g. mug1
-  std::string model;     ///< kind; empty: the one that the object catalogue names
-  geometry::Pose3 X_MO;  ///< of the model's origin, the middle of its underside
-  bool is_told{true};    ///< false: the knowledge files say nothing of it
+  std::string name;                     ///< instance, lower case, e.g. mug1
+  std::string model;                    ///< kind; empty: the one that the object catalogue names
+  geometry::Pose3 X_MO;                 ///< of the model's origin, the middle of its underside
+  bool is_told{true};                   ///< false: the knowledge files say nothing of it
+  std::optional<double> temperature{};  ///< [K]; none: as warm as the room
 };
 
 /// A demonstration: what is to be done, what the robot knows at first, and what is true at first.
@@ -32,5 +34,9 @@ struct Scenario {
 /// knows robot and catalogue checks them.
 /// @throws base::ConfigError naming file and key.
 Scenario ReadScenario(const std::string& path);
+
+/// [K] by object, of those that have a temperature of their own; empty for an empty path.
+/// @throws base::ConfigError as ReadScenario.
+std::map<std::string, double> TemperaturesOf(const std::string& scenario);
 
 }  // namespace hires::evaluation

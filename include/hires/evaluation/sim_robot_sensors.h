@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "hires/base/param_reader.h"
 #include "hires/base/rng.h"
+#include "hires/evaluation/sim_robot_cameras.h"
+#include "hires/evaluation/sim_robot_lasers.h"
 #include "hires/evaluation/sim_robot_world.h"
 #include "hires/perception/detector.h"
 #include "hires/simulation/laser_scanner.h"
@@ -14,13 +17,10 @@
 
 namespace hires::evaluation {
 
-/// Simulated time [ms] from one tick of the robot's sensors to the next.
-inline constexpr long kSensorTick = 50;
-/// Simulated time [ms] from one word of its joints and wheels to the next.
-inline constexpr long kJointTick = 10;
-
 /// Lets the world go on by kJointTick; the record looks for falls meanwhile.
-void PlayJointTick(SimRobotWorld* world, simulation::TruthRecord* truth);
+/// @param at_look  is called after each look (world::kFallLookInterval), if there is one.
+void PlayJointTick(SimRobotWorld* world, simulation::TruthRecord* truth,
+                   const std::function<void()>& at_look = {});
 
 /// What the robot has besides wheels and joints.
 struct SimSensorParams {
@@ -28,17 +28,23 @@ struct SimSensorParams {
   double min_visible_share{0.3};  ///< of an object's surface towards the camera
   double detection_period{0.5};   ///< [s], a multiple of the tick
   Recogniser recogniser;          ///< what it does wrong beside its noise
+  SimCameraParams cameras;
+  SimLaserParams lasers;
 };
 
-/// The blocks `laser` and `detector` of a file like config/sim_robot.yaml.
+/// The blocks of the sensors of a file like config/sim_robot.yaml.
 /// @throws base::ConfigError naming file and key.
 SimSensorParams ReadSimSensorParams(base::ParamReader in);
 
+/// Nothing errs by chance, and beams are lines.
+void DropNoise(SimSensorParams* params);
+
 /// How they are under this truth.
+/// @throws base::ConfigError for one whose objects are recognised in clouds: nothing does that yet.
 SimSensorParams SensorsOf(const Truth& truth, SimSensorParams params);
 
-/// Base laser and head camera of the robot that stands in for a real one. Their noise is a stream
-/// of its own for each moment: asked twice, they say the same twice.
+/// Sensors beside wheels and joints of the robot that stands in for a real one. Their noise is a
+/// stream of its own for each moment: asked twice, they say the same twice.
 class SimRobotSensors {
  public:
   /// @param seed  of all noise.
@@ -55,7 +61,11 @@ class SimRobotSensors {
   std::optional<std::vector<perception::Detection>> Look(const SimRobotWorld& world,
                                                          const SensorReadings& readings);
 
+  SimRobotCameras& cameras() { return cameras_; }
+  const SimRobotLasers& lasers() const { return lasers_; }
+
  private:
+  std::vector<perception::Detection> Detect(const SimRobotWorld& world) const;
   void Misjudge(std::vector<perception::Detection>* seen, base::Rng rng) const;
   bool IsLookDue(const SimRobotWorld& world, const SensorReadings& readings) const;
 
@@ -65,6 +75,8 @@ class SimRobotSensors {
   std::optional<long> last_look_;                         // [ms] of the camera
   const base::Rng scan_rng_, detector_rng_, missed_rng_;  // forked for each moment
   const base::Rng bias_rng_;                              // forked for each object
+  SimRobotCameras cameras_;
+  SimRobotLasers lasers_;
 };
 
 }  // namespace hires::evaluation

@@ -11,10 +11,19 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/sensing/readings.h"
 #include "hires/simulation/robot_simulator.h"
+#include "hires/world/standing.h"
 
 namespace hires::evaluation {
 
 class BumpSchedule;
+
+/// Simulated time [ms] from one tick of the robot's sensors to the next.
+inline constexpr long kSensorTick = 50;
+/// Simulated time [ms] from one word of its joints and wheels to the next.
+inline constexpr long kJointTick = 10;
+/// Simulated time [ms] from one look for falls to the next, of world::kFallLookInterval.
+inline constexpr long kLookTick = static_cast<long>(1000.0 * world::kFallLookInterval + 0.5);
+static_assert(kJointTick % kLookTick == 0, "what sensors say is the end of a look");
 
 /// Where the robot and all loose objects are at first.
 /// @param scenario  file; empty: the world's own objects, the robot at `area`.
@@ -53,6 +62,7 @@ class SimRobotWorld {
   long milliseconds() const { return milliseconds_; }  ///< since the start
   const simulation::RobotSimulator& simulator() const { return *simulator_; }
   const std::shared_ptr<const simulation::Scene>& scene() const { return setup_->scene; }
+  const geometry::Pose2& X_OB() const { return X_OB_; }  ///< by odometry, as Sense says it
   /// How the camera's recogniser errs.
   double detection_noise() const { return variation_.detection_noise; }          ///< [m]
   double detection_noise_yaw() const { return variation_.detection_noise_yaw; }  ///< [rad]

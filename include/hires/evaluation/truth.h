@@ -40,6 +40,13 @@ struct LocalisationWalk {
   double time{10.0};   ///< [s] after which 1/e of an error is left
 };
 
+/// How laser, camera and encoders err, and what tells which objects are seen.
+enum class Sensing {
+  kFitted,   ///< they err as drawn, and the detector knows what it sees
+  kIdeal,    ///< they do not err
+  kPictures  ///< they err as drawn, and objects are recognised in the camera's clouds
+};
+
 /// What a recogniser does wrong beside its noise.
 struct Recogniser {
   double bias{0.0};      ///< [m] sd, along x and y of each object, the same at every look
@@ -62,7 +69,7 @@ struct Truth {
   /// Quantities that are drawn from something else than `uncertainty` says.
   std::map<std::string, imagination::Distribution> changes;
   std::vector<Correlation> correlations;
-  bool senses_ideally{false};     ///< laser, camera and encoders do not err
+  Sensing sensing{Sensing::kFitted};
   bool localises_ideally{false};  ///< nor does localisation
 
   // What imagination does not model at all.

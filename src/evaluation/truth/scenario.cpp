@@ -10,9 +10,10 @@
 namespace hires::evaluation {
 namespace {
 
-constexpr double kFar = 1000.0;  // [m] worlds are not larger
-constexpr double kHigh = 100.0;  // [m]
-constexpr double kTurn = 6.3;    // [rad]
+constexpr double kFar = 1000.0;                       // [m] worlds are not larger
+constexpr double kHigh = 100.0;                       // [m]
+constexpr double kTurn = 6.3;                         // [rad]
+constexpr double kColdest = 200.0, kHottest = 600.0;  // [K] what is less is meant in Celsius
 
 std::string GetName(const std::string& key, base::ParamReader* in) {
   const std::string name = base::ToLower(in->GetString(key));
@@ -66,6 +67,9 @@ void ReadObjects(const std::string& key, bool is_told, base::ParamReader* in,
     if (entry.Has("model")) object.model = GetName("model", &entry);
     object.X_MO = ReadObjectPose(&entry);
     object.is_told = is_told;
+    if (entry.Has("temperature")) {
+      object.temperature = entry.Get("temperature", base::Between(kColdest, kHottest));
+    }
     scenario->objects.push_back(object);
   }
 }
@@ -86,6 +90,15 @@ Scenario ReadScenario(const std::string& path) {
   ReadObjects("hidden", false, &in, &seen, &scenario);
   in.RejectUnknownKeys();
   return scenario;
+}
+
+std::map<std::string, double> TemperaturesOf(const std::string& scenario) {
+  std::map<std::string, double> temperatures;
+  if (scenario.empty()) return temperatures;
+  for (const ScenarioObject& object : ReadScenario(scenario).objects) {
+    if (object.temperature) temperatures[object.name] = *object.temperature;
+  }
+  return temperatures;
 }
 
 }  // namespace hires::evaluation

@@ -3,9 +3,10 @@
 #include <cmath>
 #include <utility>
 
+#include "evaluation/truth/sensor_period.h"
+#include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/simulation/scan_ghosts.h"
-#include "hires/world/standing.h"
 
 namespace hires::evaluation {
 namespace {
@@ -13,54 +14,58 @@ namespace {
 using base::Between;
 using base::ParamReader;
 
-constexpr double kStillHead = 0.02;                                                 // [rad/s]
-constexpr long kLook = static_cast<long>(1000.0 * world::kFallLookInterval + 0.5);  // [ms]
-static_assert(kJointTick % kLook == 0, "what sensors say is the end of a look");
+constexpr double kStillHead = 0.02;  // [rad/s]
 enum SensorStreams : std::uint64_t {
   kScanStream = 100,
   kDetectorStream,
   kMissedStream,
-  kBiasStream
+  kBiasStream,
+  kCameraStream,
+  kLaserStream
 };
 
-simulation::LaserParams ReadLaser(ParamReader in) {
-  simulation::LaserParams params;
-  params.num_beams = in.Get("beams", Between(2, 10000));
-  params.angle_min = in.Get("angle_min", Between(-3.1415, 3.1415));
-  params.angle_max = in.Get("angle_max", Between(-3.1415, 3.1415));
-  if (params.angle_max <= params.angle_min) in.Fail("angle_max", "wanted more than angle_min");
-  params.range_min = in.Get("range_min", Between(0.0, 10.0));
-  params.range_max = in.Get("range_max", Between(0.1, 100.0));
-  params.noise = in.Get("noise", Between(0.0, 1.0));
-  return params;
-}
-
 void ReadDetector(ParamReader in, SimSensorParams* params) {
-  constexpr double kTickSeconds = 0.001 * kSensorTick;
-  params->detection_period = in.Get("period", Between(kTickSeconds, 60.0));
-  const double ticks = params->detection_period / kTickSeconds;
-  if (std::abs(ticks - std::round(ticks)) > 1e-6) in.Fail("period", "wanted a multiple of 0.05 s");
+  params->detection_period = ReadPeriod("period", kSensorTick, &in);
   params->min_visible_share = in.Get("min_visible_share", Between(0.0, 1.0));
 }
 
 }  // namespace
 
-void PlayJointTick(SimRobotWorld* world, simulation::TruthRecord* truth) {
-  for (long looked = 0; looked < kJointTick; looked += kLook) {
-    world->Advance(kLook);
+void PlayJointTick(SimRobotWorld* world, simulation::TruthRecord* truth,
+                   const std::function<void()>& at_look) {
+  for (long looked = 0; looked < kJointTick; looked += kLookTick) {
+    world->Advance(kLookTick);
     truth->Look(world->simulator());
+    if (at_look) at_look();
   }
 }
 
 SimSensorParams ReadSimSensorParams(ParamReader in) {
   SimSensorParams params;
-  params.laser = ReadLaser(in.Sub("laser"));
+  ParamReader laser = in.Sub("laser");
+  params.laser = ReadLaser(&laser);
   ReadDetector(in.Sub("detector"), &params);
+  params.cameras = ReadSimCameraParams(&in);
+  params.lasers = ReadSimLaserParams(&in);
   return params;
 }
 
+void DropNoise(SimSensorParams* params) {
+  params->laser.noise = 0.0;
+  for (simulation::LaserParams* laser : {&params->lasers.tray, &params->lasers.tilting}) {
+    laser->noise = laser->beam_width = 0.0;
+  }
+  params->cameras.depth.depth_noise = params->cameras.depth.lateral_noise = 0.0;
+  params->cameras.heat.noise = 0.0;
+}
+
 SimSensorParams SensorsOf(const Truth& truth, SimSensorParams params) {
-  if (truth.senses_ideally) params.laser.noise = 0.0;
+  if (truth.sensing == Sensing::kPictures) {
+    throw base::ConfigError("truth '" + truth.name +
+                            "': sensing is 'pictures', for which a recogniser of objects in clouds "
+                            "is missing; write 'fitted' or 'ideal'");
+  }
+  if (truth.sensing == Sensing::kIdeal) DropNoise(&params);
   params.recogniser = truth.recogniser;
   return params;
 }
@@ -73,7 +78,9 @@ SimRobotSensors::SimRobotSensors(const SimSensorParams& params, std::uint64_t se
       scan_rng_(base::Rng(seed).Fork(kScanStream)),
       detector_rng_(base::Rng(seed).Fork(kDetectorStream)),
       missed_rng_(base::Rng(seed).Fork(kMissedStream)),
-      bias_rng_(base::Rng(seed).Fork(kBiasStream)) {
+      bias_rng_(base::Rng(seed).Fork(kBiasStream)),
+      cameras_(params.cameras, base::Rng(seed).Fork(kCameraStream), scene_),
+      lasers_(params.lasers, base::Rng(seed).Fork(kLaserStream), scene_) {
   laser_.link = scene_->robot.profile.laser_link;
 }
 
@@ -104,11 +111,19 @@ bool SimRobotSensors::IsLookDue(const SimRobotWorld& world, const SensorReadings
   return true;
 }
 
+/// A recogniser of what is really measured would be asked here, about cameras_.See(world,
+/// readings).
 std::optional<std::vector<perception::Detection>> SimRobotSensors::Look(
     const SimRobotWorld& world, const SensorReadings& readings) {
   if (!IsLookDue(world, readings)) return std::nullopt;
   last_look_ = world.milliseconds();
-  // The camera is where the robot really is; what it sees is told in its own frame.
+  auto seen = Detect(world);
+  Misjudge(&seen, missed_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds())));
+  return seen;
+}
+
+/// The camera is where the robot really is; what it sees is told in its own frame.
+std::vector<perception::Detection> SimRobotSensors::Detect(const SimRobotWorld& world) const {
   const simulation::RobotSimulator& simulator = world.simulator();
   const robot::Robot& robot = scene_->robot;
   const auto objects = simulator.GetWorldState().objects;
@@ -120,9 +135,7 @@ std::optional<std::vector<perception::Detection>> SimRobotSensors::Look(
   const perception::DetectorParams detector{params_.min_visible_share, world.detection_noise(),
                                             world.detection_noise_yaw()};
   base::Rng rng = detector_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
-  auto seen = perception::Detect(sight, view, objects, detector, &rng);
-  Misjudge(&seen, missed_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds())));
-  return seen;
+  return perception::Detect(sight, view, objects, detector, &rng);
 }
 
 /// Some are missed; the others are all off, each in its own way.

@@ -23,14 +23,14 @@ constexpr const char* kOfLocalisation[] = {"localisation_x",         "localisati
                                            "localisation_noise_yaw", "ghost_rate"};
 
 bool ChangesWhatIsDrawn(const Truth& truth) {
-  return truth.uncertainty || !truth.changes.empty() || truth.senses_ideally ||
+  return truth.uncertainty || !truth.changes.empty() || truth.sensing == Sensing::kIdeal ||
          truth.localises_ideally;
 }
 
 Uncertainty UncertaintyOf(const Truth& truth, const Uncertainty& imagined) {
   Uncertainty drawn = truth.uncertainty ? *truth.uncertainty : imagined;
   for (const auto& [name, distribution] : truth.changes) drawn.quantities[name] = distribution;
-  if (truth.senses_ideally) {
+  if (truth.sensing == Sensing::kIdeal) {
     for (const char* name : kOfSensors) drawn.quantities.erase(name);
   }
   if (truth.localises_ideally) {

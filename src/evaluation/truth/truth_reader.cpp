@@ -64,8 +64,11 @@ void ReadUncertainty(ParamReader in, const std::string& path, Truth* truth) {
   ReadCorrelations(&in, truth);
 }
 
-bool ReadIdeally(const std::string& key, ParamReader* in) {
-  return in->Get(key, base::OneOf({"fitted", "ideal"})) == "ideal";
+Sensing ReadSensing(ParamReader* in) {
+  const std::string word = in->Get("sensing", base::OneOf({"fitted", "ideal", "pictures"}));
+  return word == "ideal"      ? Sensing::kIdeal
+         : word == "pictures" ? Sensing::kPictures
+                              : Sensing::kFitted;
 }
 
 // Events
@@ -183,8 +186,8 @@ Truth ReadTruth(const std::string& path) {
   in.Get("level", base::OneOf({"planar"}));
   ReadControllerChanges(in.Sub("controller"), &truth);
   ReadUncertainty(in.Sub("uncertainty"), path, &truth);
-  truth.senses_ideally = ReadIdeally("sensing", &in);
-  truth.localises_ideally = ReadIdeally("localisation", &in);
+  truth.sensing = ReadSensing(&in);
+  truth.localises_ideally = in.Get("localisation", base::OneOf({"fitted", "ideal"})) == "ideal";
   ReadEvents(in.Sub("events"), &truth);
   in.RejectUnknownKeys();
   return truth;

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "hires/base/param_reader.h"
+
+namespace hires::evaluation {
+
+/// A period [s] of a sensor that speaks at ticks of `tick` [ms] alone, up to a minute.
+/// @throws base::ConfigError for what is no multiple of the tick.
+double ReadPeriod(const std::string& key, long tick, base::ParamReader* in);
+
+}  // namespace hires::evaluation
