@@ -163,6 +163,30 @@ void ReadTopicsAndServers(ParamReader* in, RobotNames* names) {
   names->robot_description = must("robot_description");
 }
 
+/// All may be left out, and the block with them.
+SensorNames ReadSensors(ParamReader in) {
+  SensorNames names;
+  std::set<std::string> taken;
+  for (const auto& [key, name] : {std::pair("depth_cloud", &names.depth_cloud),
+                                  {"depth_image", &names.depth_image},
+                                  {"depth_info", &names.depth_info},
+                                  {"colour_image", &names.colour_image},
+                                  {"colour_info", &names.colour_info},
+                                  {"thermal_image", &names.thermal_image},
+                                  {"thermal_colours", &names.thermal_colours},
+                                  {"thermal_info", &names.thermal_info},
+                                  {"tilt_scan", &names.tilt_scan},
+                                  {"tilt_cloud", &names.tilt_cloud},
+                                  {"tray_scan", &names.tray_scan}}) {
+    if (!in.Has(key)) continue;
+    *name = ReadName(key, Emptiness::kAllowed, &in);
+    if (!name->empty() && !taken.insert(*name).second) {
+      in.Fail(key, "which is another one's already");
+    }
+  }
+  return names;
+}
+
 /// By their goals, which are topics, actions are led.
 void LeadByGoals(std::map<std::string, std::string>* actions) {
   for (auto& [group, name] : *actions) name += "/goal";
@@ -192,6 +216,7 @@ RobotNames ReadAll(ParamReader in) {
   names.grippers = ReadTopics(Arms(), "arm", in.Sub("grippers"));
   ReadInterfaces(&in, &names);
   names.move_base = ReadMoveBase(in.Sub("move_base"));
+  if (in.Has("sensors")) names.sensors = ReadSensors(in.Sub("sensors"));
   in.RejectUnknownKeys();
   return names;
 }

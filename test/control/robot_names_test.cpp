@@ -40,6 +40,25 @@ std::string ErrorOf(const std::string& yaml) {
   return "no error";
 }
 
+TEST(RobotNamesTest, SensorsMayBeLeftOutOneByOneOrAll) {
+  EXPECT_EQ(ReadRobotNames(Pr2File()).sensors.depth_cloud,
+            "head_mount_kinect/depth_registered/points");
+  EXPECT_EQ(ReadRobotNames(Pr2File()).sensors.tray_scan, "tray_laser_scan");
+  const RobotNames names = ParseRobotNames(Changed("  tilt_scan: tilt_scan\n", ""), "n.yaml");
+  EXPECT_EQ(names.sensors.tilt_scan, "");
+  EXPECT_EQ(names.sensors.tilt_cloud, "tilt_scan_cloud");
+  const std::string fetch = HIRES_SOURCE_DIR "/config/robots/fetch_names.yaml";
+  EXPECT_EQ(ReadRobotNames(fetch).sensors.depth_cloud, "");
+}
+
+TEST(RobotNamesTest, ABadNameOfASensorIsTold) {
+  EXPECT_THAT(ErrorOf(Changed("tilt_scan: tilt_scan", "tilt_scan: /tilt")),
+              AllOf(HasSubstr("sensors.tilt_scan is '/tilt'"), HasSubstr("relative")));
+  EXPECT_THAT(ErrorOf(Changed("tilt_scan: tilt_scan", "tilt_scan: tray_laser_scan")),
+              AllOf(HasSubstr("sensors.tray_scan"), HasSubstr("another one's")));
+  EXPECT_THAT(ErrorOf(Changed("  tilt_scan:", "  tlit_scan:")), HasSubstr("sensors.tlit_scan"));
+}
+
 TEST(RobotNamesTest, ThePr2IsCalledWhatItIsCalled) {
   const RobotNames names = ReadRobotNames(Pr2File());
   EXPECT_EQ(names.map_frame, "map");

@@ -21,6 +21,22 @@ enum class GripperInterface {
   kGripperCommand      ///< action of control_msgs; its position is the gap between the tips
 };
 
+/// Topics of sensors that nothing here needs for driving and grasping; empty: the robot has none,
+/// or does not say it.
+struct SensorNames {
+  std::string depth_cloud;      ///< sensor_msgs/PointCloud2, organised, with colours
+  std::string depth_image;      ///< sensor_msgs/Image, 16UC1 in mm (REP 118)
+  std::string depth_info;       ///< sensor_msgs/CameraInfo
+  std::string colour_image;     ///< sensor_msgs/Image, rgb8
+  std::string colour_info;      ///< sensor_msgs/CameraInfo
+  std::string thermal_image;    ///< sensor_msgs/Image, mono16 in centikelvin
+  std::string thermal_colours;  ///< sensor_msgs/Image, rgb8: for people
+  std::string thermal_info;     ///< sensor_msgs/CameraInfo
+  std::string tilt_scan;        ///< sensor_msgs/LaserScan
+  std::string tilt_cloud;       ///< sensor_msgs/PointCloud2: one for each sweep
+  std::string tray_scan;        ///< sensor_msgs/LaserScan
+};
+
 /// What a robot calls its topics, frames, joints' groups and servers: one YAML file per kind of
 /// robot (config/robots/pr2_names.yaml). Topics and servers are relative, so that a launch file can
 /// put them elsewhere; frames are tf's.
@@ -42,6 +58,8 @@ struct RobotNames {
   TrajectoryInterface trajectory_interface{TrajectoryInterface::kJointTrajectory};
   std::map<std::string, std::string> grippers;  ///< arm -> topic, likewise
   GripperInterface gripper_interface{GripperInterface::kPr2GripperCommand};
+
+  SensorNames sensors;
 
   /// How the robot's map lies in the world; not in the file, for it is the laboratory's.
   world::MapToWorld map_to_world;

@@ -246,7 +246,8 @@ void SimRobotNode::AdvanceOneTick() {
   for (long done = 0; done < kSensorTick; done += kJointTick) {
     if (done > 0) publisher_.PublishFast(world_, world_.Sense());
     if (done == 0 || !params_.lockstep) Listen();
-    hires::evaluation::PlayJointTick(&world_, &truth_);
+    hires::evaluation::PlayJointTick(&world_, &truth_,
+                                     [this] { publisher_.PublishLook(world_, readings_); });
   }
   simulated_ = 0.001 * static_cast<double>(world_.milliseconds());
 }

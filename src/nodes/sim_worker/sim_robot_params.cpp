@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "hires/evaluation/scenario.h"
 #include "hires/ros/load_robot_names.h"
 #include "hires/ros/private_params.h"
 
@@ -13,9 +14,9 @@ namespace {
 using hires::base::Between;
 using hires::base::ParamReader;
 
-/// Nothing uncertain means that the laser tells the truth, too.
+/// Nothing uncertain means that the sensors tell the truth, too.
 void DropNoiseIfCertain(SimRobotParams* params) {
-  if (params->setup.uncertainty == "none") params->sensors.laser.noise = 0.0;
+  if (params->setup.uncertainty == "none") hires::evaluation::DropNoise(&params->sensors);
 }
 
 /// @param path  of the file that the truths lie beside.
@@ -41,6 +42,7 @@ void OverridePrivate(const std::string& path, SimRobotParams* params) {
   Override("pace", PrivateNumber("pace"), Between(0.0, 1000.0), &params->pace);
   params->lockstep = PrivateBool("lockstep").value_or(params->lockstep);
   params->hold = PrivateBool("hold").value_or(params->hold);
+  params->sensors.cameras.temperatures = hires::evaluation::TemperaturesOf(params->scenario);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <nav_msgs/Odometry.h>
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/JointState.h>
-#include <sensor_msgs/LaserScan.h>
 #include <tf2_msgs/TFMessage.h>
 #include <visualization_msgs/MarkerArray.h>
 
@@ -15,6 +14,7 @@
 #include "hires/ros/conversions.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
+#include "hires/ros/sensor_messages.h"
 #include "hires/ros/topic_names.h"
 #include "hires/skills/manipulation_context.h"
 #include "hires/world/occupancy_grid.h"
@@ -42,6 +42,8 @@ SimRobotPublisher::SimRobotPublisher(const SimRobotParams& params,
       scene_(setup.scene),
       sensors_(hires::evaluation::SensorsOf(params.truth, params.sensors), params.seed,
                world.scene()),
+      cameras_(params.names.sensors, scene_->robot, &sensors_.cameras(), nh),
+      lasers_(params.names, scene_->robot, &sensors_.lasers(), nh),
       clock_(nh->advertise<rosgraph_msgs::Clock>("/clock", kQueue)),
       odometry_(nh->advertise<nav_msgs::Odometry>(params.names.odometry, kQueue)),
       joints_(nh->advertise<sensor_msgs::JointState>(params.names.joint_states, kQueue)),
@@ -92,7 +94,7 @@ std::vector<std::string> SimRobotPublisher::PublishTick(
     const hires::simulation::TruthRecord& truth) {
   const ros::Time stamp = StampOf(world);
   std::vector<std::string> sensors{kTransforms, params_.names.joint_states, params_.names.odometry};
-  PublishTransforms(readings, stamp);
+  PublishTransforms(world, readings, stamp);
   PublishLocalisation(readings, stamp);
   if (sensors_.has_laser()) {
     PublishScan(world, readings, stamp);
@@ -102,11 +104,19 @@ std::vector<std::string> SimRobotPublisher::PublishTick(
     PublishDetections(*seen, stamp);
     sensors.push_back(kDetections);
   }
+  cameras_.Publish(world, stamp);
+  lasers_.PublishTick(world, stamp);
   PublishTruth(world, truth, stamp);
   return sensors;
 }
 
-void SimRobotPublisher::PublishTransforms(const hires::evaluation::SensorReadings& readings,
+void SimRobotPublisher::PublishLook(const hires::evaluation::SimRobotWorld& world,
+                                    const hires::evaluation::SensorReadings& readings) {
+  lasers_.PublishLook(world, readings, StampOf(world));
+}
+
+void SimRobotPublisher::PublishTransforms(const hires::evaluation::SimRobotWorld& world,
+                                          const hires::evaluation::SensorReadings& readings,
                                           const ros::Time& stamp) {
   const hires::robot::Robot& robot = scene_->robot;
   tf2_msgs::TFMessage correction, links;
@@ -116,8 +126,9 @@ void SimRobotPublisher::PublishTransforms(const hires::evaluation::SensorReading
   tf_.publish(correction);
   links.transforms.push_back(MakeTransform(params_.names.odometry_frame, robot.profile.base_link,
                                            hires::geometry::Lift(readings.odometry.X_OB), stamp));
-  const auto X_RL = hires::robot::ForwardKinematics(
-      robot.model, hires::robot::PostureOf(robot, readings.joints.positions));
+  hires::robot::JointPositions joints = readings.joints.positions;
+  lasers_.AddTilt(world, &joints);
+  const auto X_RL = hires::robot::ForwardKinematics(robot.model, PostureOf(robot, joints));
   for (std::size_t i = 0; i < robot.model.links.size(); ++i) {
     const auto& joint = robot.model.links[i].joint;
     if (!joint || robot.model.links[i].name == robot.profile.base_link) continue;
@@ -142,17 +153,9 @@ void SimRobotPublisher::PublishScan(const hires::evaluation::SimRobotWorld& worl
                                     const ros::Time& stamp) {
   const std::vector<double> ranges = sensors_.Scan(world, readings);
   const hires::simulation::LaserParams& laser = sensors_.laser();
-  sensor_msgs::LaserScan scan;
+  sensor_msgs::LaserScan scan = ToMsg(laser, ranges, kScanTime);
   scan.header.stamp = stamp;
   scan.header.frame_id = laser.link;
-  scan.angle_min = static_cast<float>(laser.angle_min);
-  scan.angle_max = static_cast<float>(laser.angle_max);
-  scan.angle_increment =
-      static_cast<float>((laser.angle_max - laser.angle_min) / (laser.num_beams - 1));
-  scan.scan_time = kScanTime;
-  scan.range_min = static_cast<float>(laser.range_min);
-  scan.range_max = static_cast<float>(laser.range_max);
-  scan.ranges.assign(ranges.begin(), ranges.end());
   scan_.publish(scan);
 }
 

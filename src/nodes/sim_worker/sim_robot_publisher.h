@@ -13,6 +13,8 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/ros/trace_markers.h"
 #include "hires/simulation/truth_record.h"
+#include "nodes/sim_worker/sim_robot_camera_publisher.h"
+#include "nodes/sim_worker/sim_robot_laser_publisher.h"
 #include "nodes/sim_worker/sim_robot_params.h"
 
 namespace hires_ros {
@@ -31,19 +33,25 @@ class SimRobotPublisher {
                    const hires::evaluation::SensorReadings& readings);
 
   /// What comes with every tick of 0.05 s, before the fast ones of the same moment: transforms,
-  /// localisation, laser, and the detector when it is due. Called again, it publishes the same
-  /// again.
+  /// localisation, laser, and detector and cameras when they are due. Called again, it publishes
+  /// the same again.
   /// @return topics that have a message of this stamp, fast ones included.
   std::vector<std::string> PublishTick(const hires::evaluation::SimRobotWorld& world,
                                        const hires::evaluation::SensorReadings& readings,
                                        const hires::simulation::TruthRecord& truth);
+
+  /// What comes between two ticks: scans of the laser that nods. For each look for falls.
+  /// @param readings  of the last tick.
+  void PublishLook(const hires::evaluation::SimRobotWorld& world,
+                   const hires::evaluation::SensorReadings& readings);
 
   void PublishClock(const hires::evaluation::SimRobotWorld& world);
   static ros::Time StampOf(
       const hires::evaluation::SimRobotWorld& world);  ///< begins at 1 s; 0 means "no time yet"
 
  private:
-  void PublishTransforms(const hires::evaluation::SensorReadings& readings, const ros::Time& stamp);
+  void PublishTransforms(const hires::evaluation::SimRobotWorld& world,
+                         const hires::evaluation::SensorReadings& readings, const ros::Time& stamp);
   void PublishLocalisation(const hires::evaluation::SensorReadings& readings,
                            const ros::Time& stamp);
   void PublishScan(const hires::evaluation::SimRobotWorld& world,
@@ -57,6 +65,8 @@ class SimRobotPublisher {
   const SimRobotParams params_;
   std::shared_ptr<const hires::simulation::Scene> scene_;
   hires::evaluation::SimRobotSensors sensors_;
+  SimRobotCameraPublisher cameras_;
+  SimRobotLaserPublisher lasers_;
   ros::Publisher clock_, odometry_, joints_, amcl_, scan_, detections_, map_, world_markers_,
       markers_, true_world_, true_robot_, truth_, tf_;
   TraceMarkers trace_;

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <ros/publisher.h>
+
+namespace hires_ros {
+
+/// Whether anybody listens; not to a topic that was never advertised.
+inline bool IsHeard(const ros::Publisher& publisher) {
+  return publisher && publisher.getNumSubscribers() > 0;
+}
+
+}  // namespace hires_ros

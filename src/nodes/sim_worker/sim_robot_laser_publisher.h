@@ -1,0 +1,44 @@
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+
+#include <optional>
+#include <string>
+
+#include "hires/control/robot_names.h"
+#include "hires/evaluation/sim_robot_lasers.h"
+
+namespace hires_ros {
+
+/// Says what the simulated robot's nodding laser and that of its tray measure, while somebody
+/// listens. The nodding joint is in tf alone: no skill and no rollout knows it.
+class SimRobotLaserPublisher {
+ public:
+  /// @param lasers  outlives this.
+  SimRobotLaserPublisher(const hires::control::RobotNames& names, const hires::robot::Robot& robot,
+                         const hires::evaluation::SimRobotLasers* lasers, ros::NodeHandle* nh);
+
+  /// The tray's scan: for each tick.
+  void PublishTick(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
+
+  /// The nodding laser's, if one is due: for each look between two ticks.
+  /// @param readings  of the last tick.
+  void PublishLook(const hires::evaluation::SimRobotWorld& world,
+                   const hires::evaluation::SensorReadings& readings, const ros::Time& stamp);
+
+  /// Turns the joints of a tick to what tf tells of them.
+  void AddTilt(const hires::evaluation::SimRobotWorld& world,
+               hires::robot::JointPositions* joints) const;
+
+ private:
+  void PublishTilt(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
+
+  const hires::evaluation::SimRobotLasers& lasers_;
+  const hires::robot::Robot& robot_;
+  const std::string odometry_frame_;
+  std::optional<hires::evaluation::SweepCloud> sweep_;
+  ros::Publisher tray_scan_, tilt_scan_, tilt_cloud_, tf_;
+};
+
+}  // namespace hires_ros
