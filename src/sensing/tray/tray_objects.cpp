@@ -1,0 +1,185 @@
+#include "sensing/tray/tray_objects.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "hires/base/check.h"
+#include "hires/geometry/angles.h"
+#include "sensing/tray/beam_outline.h"
+
+namespace hires::sensing {
+namespace {
+
+using Eigen::Vector2d;
+using geometry::Polygon;
+using geometry::Pose3;
+
+/// Only what ends on the tray counts as a range; the rest goes on for ever.
+TrayBeams BeamsOf(const ScanReading& scan, const Pose3& X_TL, const Polygon& tray_T,
+                  const TrayParams& params) {
+  const geometry::Pose2 flat = geometry::Flatten(X_TL);
+  const Vector2d middle =
+      std::accumulate(tray_T.begin(), tray_T.end(), Vector2d(0.0, 0.0)) / tray_T.size();
+  Polygon wider_T = tray_T;
+  for (Vector2d& corner : wider_T) corner += params.outside * (corner - middle).normalized();
+  TrayBeams beams{flat.position(), {}};
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    const double angle = flat.yaw + scan.angle_min + static_cast<double>(i) * scan.angle_increment;
+    TrayBeam beam{{std::cos(angle), std::sin(angle)}, kEndless};
+    const double range = scan.ranges[i];
+    if (range >= scan.range_min && range <= params.max_range &&  // no NaN
+        geometry::Contains(wider_T, beams.p_TL + range * beam.direction_T)) {
+      beam.range = range;
+    }
+    beams.beams.push_back(beam);
+  }
+  return beams;
+}
+
+/// The box about the points whose sides they lie on best, turned in steps of half a degree: the
+/// smallest sum of distances to the next side. The smallest area would not do, which is the same
+/// for many boxes about two sides of a thing [Zhang, Xu, Dong, Dolan 2017, "Efficient L-Shape
+/// Fitting for Vehicle Detection Using Laser Scanners", IEEE IV].
+void Enclose(TrayThing* thing) {
+  constexpr int kSteps = 180;  // of a quarter turn
+  double least = kEndless;
+  for (int k = 0; k < kSteps; ++k) {
+    const double yaw = geometry::kPi / 2 * k / kSteps;
+    const Vector2d x(std::cos(yaw), std::sin(yaw)), y(-x.y(), x.x());
+    Vector2d lower = Vector2d::Constant(kEndless), upper = -lower;
+    for (const Vector2d& p : thing->points_T) {
+      lower = lower.cwiseMin(Vector2d(p.dot(x), p.dot(y)));
+      upper = upper.cwiseMax(Vector2d(p.dot(x), p.dot(y)));
+    }
+    double sum = 0.0;
+    for (const Vector2d& p : thing->points_T) {
+      const Vector2d p_B(p.dot(x), p.dot(y));
+      sum += (p_B - lower).cwiseMin(upper - p_B).minCoeff();
+    }
+    if (sum >= least) continue;
+    least = sum;
+    const Vector2d size = upper - lower, middle = (lower + upper) / 2;
+    const Vector2d p_TB = middle.x() * x + middle.y() * y;
+    const bool is_long = size.x() >= size.y();
+    thing->X_TB = {p_TB.x(), p_TB.y(), is_long ? yaw : yaw + geometry::kPi / 2};
+    thing->size = is_long ? size : Vector2d(size.y(), size.x());
+  }
+}
+
+/// Groups of beams whose ends are linked by steps of at most `gap`.
+std::vector<TrayThing> ThingsOf(const TrayBeams& beams, const std::vector<int>& which,
+                                const TrayParams& params) {
+  std::vector<TrayThing> things;
+  std::vector<int> left = which;
+  while (!left.empty()) {
+    std::vector<int> group{left.front()};
+    left.erase(left.begin());
+    for (std::size_t next = 0; next < group.size(); ++next) {
+      const Vector2d p = beams.EndOf(group[next]);
+      const auto far = std::stable_partition(left.begin(), left.end(), [&](int beam) {
+        return (beams.EndOf(beam) - p).norm() > params.gap;
+      });
+      group.insert(group.end(), far, left.end());
+      left.erase(far, left.end());
+    }
+    if (static_cast<int>(group.size()) < params.min_beams) continue;
+    std::sort(group.begin(), group.end());
+    TrayThing& thing = things.emplace_back();
+    for (const int beam : group) thing.points_T.push_back(beams.EndOf(beam));
+    Enclose(&thing);
+  }
+  return things;
+}
+
+Slice SliceOf(const BelievedOnTray& object, double height, double thickness) {
+  Slice slice;
+  for (const geometry::Collision& shape_O : object.shapes_O) {
+    const auto outline = geometry::OutlineInBand(shape_O.shape, object.X_TO * shape_O.X_BS,
+                                                 height - thickness / 2, height + thickness / 2);
+    if (outline) slice.push_back(*outline);
+  }
+  return slice;
+}
+
+bool Fits(const BeamFit& fit, const TrayParams& params) {
+  return static_cast<int>(fit.on.size()) >= params.min_beams && fit.ShareOn() >= params.matching;
+}
+
+/// Beams that end on the tray and on no object yet.
+class FreeBeams {
+ public:
+  explicit FreeBeams(const TrayBeams& beams) {
+    for (std::size_t i = 0; i < beams.beams.size(); ++i) {
+      if (beams.beams[i].range < kEndless) free_.insert(static_cast<int>(i));
+    }
+  }
+  void Take(const std::vector<int>& beams) {
+    for (const int beam : beams) free_.erase(beam);
+  }
+  std::vector<int> All() const { return {free_.begin(), free_.end()}; }
+
+ private:
+  std::set<int> free_;
+};
+
+/// Whether one of the things left is the object, elsewhere: then the one that fits best, and which
+/// beams end on it.
+bool FindMoved(const TrayBeams& beams, const std::vector<TrayThing>& things, const Slice& slice,
+               const TrayParams& params, TrayObject* object, std::vector<int>* near) {
+  const Eigen::Vector3d believed = object->X_TO.translation;
+  double best = 0.0;
+  for (const TrayThing& thing : things) {
+    const Vector2d shift = FitShift(thing.points_T, beams.p_TL, slice);
+    const Slice moved = Shifted(slice, shift);
+    const BeamFit fit = FitBeams(beams, moved, params.tolerance);
+    // A part of another thing may look like it: then too many beams are left.
+    const bool is_whole = thing.num_beams() - static_cast<int>(fit.on.size()) < params.min_beams;
+    if (!is_whole || !Fits(fit, params) || fit.ShareOn() <= best) continue;
+    best = fit.ShareOn();
+    *near = BeamsNear(beams, moved, params.tolerance);
+    object->X_TO.translation = believed + Eigen::Vector3d(shift.x(), shift.y(), 0.0);
+  }
+  return best > 0.0;
+}
+
+}  // namespace
+
+TrayReading ReadTray(const ScanReading& scan, const Pose3& X_TL, const Polygon& tray_T,
+                     const std::vector<BelievedOnTray>& believed, const TrayParams& params) {
+  constexpr double kLevel = 0.05;  // [rad]
+  HIRES_CHECK(geometry::TiltOf(X_TL.rotation) <= kLevel, "the tray's laser leans over the tray");
+  const TrayBeams beams = BeamsOf(scan, X_TL, tray_T, params);
+  FreeBeams free(beams);
+  TrayReading reading;
+  reading.things = ThingsOf(beams, free.All(), params);
+  std::vector<Slice> slices;
+  for (const BelievedOnTray& one : believed) {
+    TrayObject& object = reading.objects.emplace_back();
+    object.name = one.name;
+    object.X_TO = one.X_TO;
+    slices.push_back(SliceOf(one, X_TL.translation.z(), params.thickness));
+    const BeamFit fit = FitBeams(beams, slices.back(), params.tolerance);
+    const auto num_on = static_cast<int>(fit.on.size());
+    if (num_on + fit.num_through < params.min_beams) continue;  // not to be seen
+    object.state = Fits(fit, params) ? TrayState::kInPlace : TrayState::kMissing;
+    if (object.state != TrayState::kInPlace) continue;
+    object.num_beams = num_on;
+    free.Take(BeamsNear(beams, slices.back(), params.tolerance));
+  }
+  for (std::size_t i = 0; i < believed.size(); ++i) {
+    TrayObject& object = reading.objects[i];
+    std::vector<int> near;
+    if (object.state == TrayState::kMissing &&
+        FindMoved(beams, ThingsOf(beams, free.All(), params), slices[i], params, &object, &near)) {
+      object.state = TrayState::kMoved;
+      object.num_beams = static_cast<int>(near.size());
+      free.Take(near);
+    }
+  }
+  reading.surplus = ThingsOf(beams, free.All(), params);
+  return reading;
+}
+
+}  // namespace hires::sensing
