@@ -4,6 +4,8 @@
 #include <set>
 #include <utility>
 
+#include "sensing/unmapped.h"
+
 namespace hires::sensing {
 
 using geometry::Polygon;
@@ -32,30 +34,15 @@ std::vector<Polygon> ScanObstacles::Find(const ScanReading& scan, const Pose2& X
     const Eigen::Vector2d p_B =
         X_BL * Eigen::Vector2d(range * std::cos(angle), range * std::sin(angle));
     const Eigen::Vector2d p_M = X_MB * p_B;
-    if (geometry::Contains(footprint_, p_B) || IsExplained(p_M)) continue;
+    if (geometry::Contains(footprint_, p_B) || IsExplained(*map_, p_M, params_.tolerance)) {
+      continue;
+    }
     cells.emplace(std::lround(std::floor(p_M.x() / params_.cell)),
                   std::lround(std::floor(p_M.y() / params_.cell)));
   }
   std::vector<Polygon> squares;
-  for (const auto& [column, row] : cells) {
-    const double x = column * params_.cell, y = row * params_.cell, edge = params_.cell;
-    squares.push_back({{x, y}, {x + edge, y}, {x + edge, y + edge}, {x, y + edge}});
-  }
+  for (const auto& [column, row] : cells) squares.push_back(SquareOf(column, row, params_.cell));
   return squares;
-}
-
-/// What lies beyond the map's border is left out.
-bool ScanObstacles::IsExplained(const Eigen::Vector2d& p_M) const {
-  int column = 0, row = 0;
-  map_->CellOf(p_M, &column, &row);
-  if (!map_->Inside(column, row)) return true;
-  const int reach = static_cast<int>(std::ceil(params_.tolerance / map_->resolution()));
-  for (int y = row - reach; y <= row + reach; ++y) {
-    for (int x = column - reach; x <= column + reach; ++x) {
-      if (map_->Inside(x, y) && map_->cost(x, y) == navigation::kLethalCost) return true;
-    }
-  }
-  return false;
 }
 
 }  // namespace hires::sensing

@@ -40,8 +40,6 @@ class ScanObstacles {
                                       const geometry::Pose2& X_BL) const;
 
  private:
-  bool IsExplained(const Eigen::Vector2d& p_M) const;
-
   std::shared_ptr<const navigation::Costmap> map_;
   geometry::Polygon footprint_;
   ScanParams params_;

@@ -1,0 +1,62 @@
+#include <benchmark/benchmark.h>
+
+#include "sensing/ground/ground_obstacles.h"
+#include "sensing/tray/tray_objects.h"
+#include "support/scenes.h"
+#include "support/sight_scenes.h"
+#include "support/tilt_sweep.h"
+
+namespace hires::sensing {
+namespace {
+
+/// How long a sweep of 640 x 100 points takes, before a chair and a box in a room.
+void BM_GroundObstacles(benchmark::State& state) {
+  const geometry::Pose2 X_MB{3.0, 2.0, 0.0};
+  const geometry::Pose3 X_BL = test_support::At(0.1, 0.0, 1.2);
+  world::World room = test_support::Room();
+  const GroundObstacles finder(
+      std::make_shared<const navigation::Costmap>(world::SliceWorld(room, 0.1, 0.9), 0.25,
+                                                  navigation::CostmapParams{}),
+      test_support::TrayRobot().profile.footprint, {}, {}, 1.4);
+  room.statics.push_back(test_support::Block("seat", {0.4, 0.4, 0.04}, {4.2, 2.3, 0.47}));
+  room.statics.push_back(test_support::Block("box", {0.4, 0.6, 0.3}, {4.5, 1.0, 0.15}));
+  const perception::LineOfSight sight(std::make_shared<perception::Surroundings>(room), {});
+  base::Rng rng(1);
+  const perception::PointCloud cloud =
+      test_support::TiltSweep{}.Measure(sight, geometry::Lift(X_MB) * X_BL, &rng);
+  std::size_t num_squares = 0;
+  for (auto _ : state) {
+    num_squares = finder.Find(cloud, Eigen::Vector3d::Zero(), X_BL, X_MB, &rng).obstacles_M.size();
+  }
+  state.counters["squares"] = static_cast<double>(num_squares);
+}
+BENCHMARK(BM_GroundObstacles)->Unit(benchmark::kMillisecond);
+
+/// How long 640 beams over a tray with three mugs take, all of which are believed there.
+void BM_TrayObjects(benchmark::State& state) {
+  const auto models = test_support::EmptyRoom();
+  const geometry::Pose3 X_TL = test_support::At(-0.1, 0.0, 0.02);
+  const geometry::Polygon tray_T{{-0.1, -0.32}, {0.15, -0.32}, {0.15, 0.32}, {-0.1, 0.32}};
+  std::vector<world::ObjectState> mugs;
+  std::vector<BelievedOnTray> believed;
+  for (int i = 0; i < 3; ++i) {
+    mugs.push_back(test_support::Thing("mug" + std::to_string(i), "mug",
+                                       test_support::At(0.05, 0.13 * (i - 1), 0.0)));
+    believed.push_back({mugs[i].name, mugs[i].X_MO, models->Model("mug").collisions});
+  }
+  const perception::LineOfSight sight(models, mugs);
+  ScanReading scan{-1.4, 2.8 / 639, 0.04, {}};
+  base::Rng rng(1);
+  for (int i = 0; i < 640; ++i) {
+    const double angle = scan.angle_min + i * scan.angle_increment;
+    const double range = sight.Cast(X_TL.translation, {std::cos(angle), std::sin(angle), 0.0});
+    scan.ranges.push_back(static_cast<float>(range + rng.Normal(0.0, 0.005)));
+  }
+  std::size_t num_things = 0;
+  for (auto _ : state) num_things = ReadTray(scan, X_TL, tray_T, believed, {}).things.size();
+  state.counters["things"] = static_cast<double>(num_things);
+}
+BENCHMARK(BM_TrayObjects)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace hires::sensing
