@@ -7,6 +7,7 @@
 #include "hires/perception/detector.h"
 #include "hires/perception/picture_scene.h"
 #include "hires/world/object_catalogue.h"
+#include "perception/heat/warm_objects.h"
 
 namespace hires::perception {
 namespace {
@@ -88,6 +89,23 @@ void BM_MeasuredCloud(benchmark::State& state) {  // what the sensor makes of it
   for (auto _ : state) benchmark::DoNotOptimize(Measure(picture, head.camera, {}, &rng));
 }
 BENCHMARK(BM_MeasuredCloud)->Unit(benchmark::kMillisecond);
+
+void BM_WarmObjects(benchmark::State& state) {  // which of eight mugs are warm; half of them are
+  const HeadCamera head;
+  const RangePicture picture = head.Sight().Look(head.camera, 5.0);
+  std::map<std::string, double> temperatures;
+  std::vector<std::string> names;
+  for (const world::ObjectState& mug : head.mugs) {
+    temperatures[mug.name] = names.size() % 2 == 0 ? 340.0 : 293.15;
+    names.push_back(mug.name);
+  }
+  base::Rng rng(4);
+  const HeatPicture heat = MeasureHeat(picture, temperatures, {}, &rng);
+  std::size_t num_regions = 0;
+  for (auto _ : state) num_regions = ReadHeat(heat, picture, names, {}).regions.size();
+  state.counters["regions"] = static_cast<double>(num_regions);
+}
+BENCHMARK(BM_WarmObjects)->Unit(benchmark::kMillisecond);
 
 void BM_ColourPicture(benchmark::State& state) {  // the same view in colours, with shadows
   const HeadCamera head;
