@@ -4,7 +4,7 @@
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
 #include "hires/world/world.h"
-#include "perception/self/self_filter.h"
+#include "hires/perception/self_filter.h"
 
 namespace hires::perception {
 namespace {

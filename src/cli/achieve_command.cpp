@@ -121,6 +121,7 @@ loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& p
   order.imagination = options.imagination;
   order.dry_run = options.is_dry_run;
   order.truth = options.truth;
+  order.sensing = options.sensing;
   order.seed = static_cast<std::uint64_t>(options.seed);
   order.threads = options.threads;
   if (recording == nullptr) return loop::PlayTask(setup, order, on_status, cancelled);
@@ -216,6 +217,11 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
   verb->add_option("--truth", options->truth,
                    "with --local: file, or its name in config/truths: what robot and world are "
                    "really like; default: same, imagination's own model")
+      ->needs(local);
+  verb->add_option("--sensing", options->sensing,
+                   "with --local: fitted, ideal or pictures (objects are recognised in what the "
+                   "depth camera measures), in place of what the truth says")
+      ->check(CLI::IsMember({"fitted", "ideal", "pictures"}))
       ->needs(local);
   verb->add_option("--threads", options->threads,
                    "with --local: that play rollouts; the answer is the same for any; default: 2")

@@ -36,6 +36,7 @@ struct AchieveOptions {
   bool is_local{false};            ///< in this process and in virtual time, without any node
   std::string scenario{"topple"};  ///< where the robot and everything is then: file, or its name
   std::string config;              ///< of virtual time; empty: config/loop.yaml
+  std::string sensing;             ///< in place of the truth's; empty: as it says
   std::string truth{"same"};       ///< what robot and world are really like: file, or its name
   int seed{1}, threads{2};
   CLI::App* verb{nullptr};

@@ -37,10 +37,8 @@ Eigen::Array2d ExtentOf(const geometry::Polygon& outline) {
 
 ordered_json TableToJson(const perception::Table& table, long num_points) {
   ordered_json outline = ordered_json::array();
-  for (const Eigen::Vector2d& corner : table.outline) {
-    outline.push_back(ToJson(corner.x() * table.along_x + corner.y() * table.along_y -
-                             table.offset * table.normal));
-  }
+  for (const Eigen::Vector2d& corner : table.outline)
+    outline.push_back(ToJson(table.Lift(corner)));
   return {{"normal", ToJson(table.normal)},
           {"distance", table.offset},
           {"points", num_points},

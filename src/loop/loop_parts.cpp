@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "hires/base/param_reader.h"
+#include "hires/perception/recogniser_config.h"
 
 namespace hires::loop {
 namespace {
@@ -82,6 +83,7 @@ LoopConfig ReadLoopConfig(const std::string& path, const LoopFiles& files) {
   ReadMiddleLayer(file("middle_layer"), &config);
   config.sensors = evaluation::ReadSimSensorParams(ParamReader::FromFile(file("sim_robot")));
   config.tracker = ReadTracker(file("world_tracker"));
+  config.recogniser = file("recogniser");
   config.truths = file("truths");
   config.pace = ReadPace(in.Sub("imagination"));
   config.planning_time = in.Get("planning_time", Between(0.0, 60.0));
@@ -115,6 +117,14 @@ const planning::OperatorData& LoopSetup::operators() const { return parts_->oper
 
 evaluation::Truth LoopSetup::Parts::ReadTruth(const std::string& name) const {
   return evaluation::FindTruth(name, config.truths);
+}
+
+evaluation::SimSensorParams LoopSetup::Parts::SensorsUnder(const evaluation::Truth& truth) const {
+  evaluation::SimSensorParams sensors = evaluation::SensorsOf(truth, config.sensors);
+  if (!sensors.sees_pictures) return sensors;
+  const auto known = perception::ReadRecogniserConfig(config.recogniser, config.scene.objects);
+  sensors.eye = std::make_shared<const perception::Recogniser>(known.catalogue, known.params);
+  return sensors;
 }
 
 evaluation::Truth LoopSetup::ReadTruth(const std::string& name) const {

@@ -35,6 +35,7 @@ struct LoopConfig {
   evaluation::SimSensorParams sensors;
   TrackerParams tracker;
   ImaginationPace pace;
+  std::string recogniser;      ///< file: what is known of things on tables
   std::string truths;          ///< folder of what robot and world may really be like
   double planning_time{0.05};  ///< [s] that a search takes
   LoopMessages messages;
@@ -46,6 +47,8 @@ LoopConfig ReadLoopConfig(const std::string& path, const LoopFiles& files);
 struct LoopSetup::Parts {
   Parts(const std::string& path, const LoopFiles& files);
   evaluation::Truth ReadTruth(const std::string& name) const;  ///< as LoopSetup's
+  /// Sensors of the robot under a truth, with what it recognises things by.
+  evaluation::SimSensorParams SensorsUnder(const evaluation::Truth& truth) const;
 
   LoopConfig config;
   imagination::ImaginationSetup world;

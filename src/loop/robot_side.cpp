@@ -15,7 +15,7 @@ RobotSide::RobotSide(const LoopSetup::Parts& parts, const imagination::StartStat
     : clock_(*clock),
       hooks_(std::move(hooks)),
       world_(parts.world, start, seed, truth),
-      sensors_(evaluation::SensorsOf(truth, parts.config.sensors), seed, world_.scene()),
+      sensors_(parts.SensorsUnder(truth), seed, world_.scene()),
       truth_(parts.world.standing) {}
 
 void RobotSide::Begin() {

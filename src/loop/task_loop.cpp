@@ -77,7 +77,7 @@ class Play {
        const LoopObserver& observer)
       : observer_(observer),
         order_(Completed(order, scenario, parts)),
-        truth_(parts.ReadTruth(order.truth)),
+        truth_(WithSensing(parts.ReadTruth(order.truth), order.sensing)),
         clock_(kStart),
         lines_(parts.config.messages, base::Rng(order.seed), &clock_),
         blackboard_(parts.ontology),

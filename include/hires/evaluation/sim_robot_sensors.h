@@ -12,6 +12,7 @@
 #include "hires/evaluation/sim_robot_lasers.h"
 #include "hires/evaluation/sim_robot_world.h"
 #include "hires/perception/detector.h"
+#include "hires/perception/tabletop_recogniser.h"
 #include "hires/simulation/laser_scanner.h"
 #include "hires/simulation/truth_record.h"
 
@@ -28,6 +29,8 @@ struct SimSensorParams {
   double min_visible_share{0.3};  ///< of an object's surface towards the camera
   double detection_period{0.5};   ///< [s], a multiple of the tick
   Recogniser recogniser;          ///< what it does wrong beside its noise
+  bool sees_pictures{false};      ///< objects are recognised in what the depth camera measures ...
+  std::shared_ptr<const perception::Recogniser> eye;  ///< ... by this one; null: by another program
   SimCameraParams cameras;
   SimLaserParams lasers;
 };
@@ -40,7 +43,6 @@ SimSensorParams ReadSimSensorParams(base::ParamReader in);
 void DropNoise(SimSensorParams* params);
 
 /// How they are under this truth.
-/// @throws base::ConfigError for one whose objects are recognised in clouds: nothing does that yet.
 SimSensorParams SensorsOf(const Truth& truth, SimSensorParams params);
 
 /// Sensors beside wheels and joints of the robot that stands in for a real one. Their noise is a
@@ -57,7 +59,7 @@ class SimRobotSensors {
   std::vector<double> Scan(const SimRobotWorld& world, const SensorReadings& readings) const;
 
   /// What the camera's recogniser sees, where it is time to look and the head is still; poses in
-  /// the camera's frame. Nothing: it does not look.
+  /// the camera's frame. Nothing: it does not look, or where pictures are seen, sees no table.
   std::optional<std::vector<perception::Detection>> Look(const SimRobotWorld& world,
                                                          const SensorReadings& readings);
 
@@ -66,6 +68,8 @@ class SimRobotSensors {
 
  private:
   std::vector<perception::Detection> Detect(const SimRobotWorld& world) const;
+  std::optional<std::vector<perception::Detection>> Recognise(const SimRobotWorld& world,
+                                                              const SensorReadings& readings);
   void Misjudge(std::vector<perception::Detection>* seen, base::Rng rng) const;
   bool IsLookDue(const SimRobotWorld& world, const SensorReadings& readings) const;
 
@@ -77,6 +81,7 @@ class SimRobotSensors {
   const base::Rng bias_rng_;                              // forked for each object
   SimRobotCameras cameras_;
   SimRobotLasers lasers_;
+  std::optional<perception::TabletopRecogniser> eye_;
 };
 
 }  // namespace hires::evaluation

@@ -93,6 +93,10 @@ Truth ReadTruth(const std::string& path);
 /// @param name, folder  as TruthPath.  @throws base::ConfigError as TruthPath and ReadTruth.
 Truth FindTruth(const std::string& name, const std::string& folder);
 
+/// Another way of sensing than the truth's own; its name says so. Empty: as it is.
+/// @throws base::ConfigError for none of fitted, ideal, pictures.
+Truth WithSensing(Truth truth, const std::string& sensing);
+
 /// `same: imagination's own model`, or the name: to stand beside whatever was measured with it.
 std::string TruthNote(const std::string& name);
 

@@ -17,6 +17,10 @@ struct Table {
   Eigen::Vector2d FromAbove(const Eigen::Vector3d& p_C) const {
     return {along_x.dot(p_C), along_y.dot(p_C)};
   }
+  /// The point of the plane that is seen there from above.
+  Eigen::Vector3d Lift(const Eigen::Vector2d& p) const {
+    return p.x() * along_x + p.y() * along_y - offset * normal;
+  }
 
   Eigen::Vector3d normal{Eigen::Vector3d::UnitY() * -1.0};  ///< of length 1, upwards
   double offset{0.0};                                       ///< [m] height of the camera above it

@@ -60,11 +60,7 @@ void DropNoise(SimSensorParams* params) {
 }
 
 SimSensorParams SensorsOf(const Truth& truth, SimSensorParams params) {
-  if (truth.sensing == Sensing::kPictures) {
-    throw base::ConfigError("truth '" + truth.name +
-                            "': sensing is 'pictures', for which a recogniser of objects in clouds "
-                            "is missing; write 'fitted' or 'ideal'");
-  }
+  params.sees_pictures = truth.sensing == Sensing::kPictures;
   if (truth.sensing == Sensing::kIdeal) DropNoise(&params);
   params.recogniser = truth.recogniser;
   return params;
@@ -82,6 +78,7 @@ SimRobotSensors::SimRobotSensors(const SimSensorParams& params, std::uint64_t se
       cameras_(params.cameras, base::Rng(seed).Fork(kCameraStream), scene_),
       lasers_(params.lasers, base::Rng(seed).Fork(kLaserStream), scene_) {
   laser_.link = scene_->robot.profile.laser_link;
+  if (params.sees_pictures && params.eye) eye_.emplace(params.eye, perception::SelfFilterParams());
 }
 
 std::vector<double> SimRobotSensors::Scan(const SimRobotWorld& world,
@@ -111,12 +108,11 @@ bool SimRobotSensors::IsLookDue(const SimRobotWorld& world, const SensorReadings
   return true;
 }
 
-/// A recogniser of what is really measured would be asked here, about cameras_.See(world,
-/// readings).
 std::optional<std::vector<perception::Detection>> SimRobotSensors::Look(
     const SimRobotWorld& world, const SensorReadings& readings) {
   if (!IsLookDue(world, readings)) return std::nullopt;
   last_look_ = world.milliseconds();
+  if (params_.sees_pictures) return eye_ ? Recognise(world, readings) : std::nullopt;
   auto seen = Detect(world);
   Misjudge(&seen, missed_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds())));
   return seen;
@@ -136,6 +132,20 @@ std::vector<perception::Detection> SimRobotSensors::Detect(const SimRobotWorld& 
                                             world.detection_noise_yaw()};
   base::Rng rng = detector_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
   return perception::Detect(sight, view, objects, detector, &rng);
+}
+
+/// The robot knows its own place, in the middle of its map, by what it believes alone.
+std::optional<std::vector<perception::Detection>> SimRobotSensors::Recognise(
+    const SimRobotWorld& world, const SensorReadings& readings) {
+  const SeenCloud seen = cameras_.See(world, readings);
+  const robot::JointPositions posture = robot::PostureOf(scene_->robot, readings.joints.positions);
+  const auto shapes_M = perception::ShapesOf(scene_->robot, readings.X_MB, posture);
+  const base::Rng rng = detector_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
+  auto view = eye_->Look(seen.cloud, seen.X_MC * perception::OpticalFrame(), shapes_M, rng);
+  if (!view) return std::nullopt;
+  for (perception::Detection& detection : view->detections)
+    detection.X_CO = perception::OpticalFrame() * detection.X_CO;
+  return std::move(view->detections);
 }
 
 /// Some are missed; the others are all off, each in its own way.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "evaluation/truth/controller_changes.h"
@@ -64,11 +65,12 @@ void ReadUncertainty(ParamReader in, const std::string& path, Truth* truth) {
   ReadCorrelations(&in, truth);
 }
 
+const std::map<std::string, Sensing> kSensing{{"fitted", Sensing::kFitted},
+                                              {"ideal", Sensing::kIdeal},
+                                              {"pictures", Sensing::kPictures}};
+
 Sensing ReadSensing(ParamReader* in) {
-  const std::string word = in->Get("sensing", base::OneOf({"fitted", "ideal", "pictures"}));
-  return word == "ideal"      ? Sensing::kIdeal
-         : word == "pictures" ? Sensing::kPictures
-                              : Sensing::kFitted;
+  return kSensing.at(in->Get("sensing", base::OneOf({"fitted", "ideal", "pictures"})));
 }
 
 // Events
@@ -176,6 +178,16 @@ std::string TruthPath(const std::string& name, const std::string& folder) {
                             "; or give a path");
   }
   return folder + "/" + wanted + ".yaml";
+}
+
+Truth WithSensing(Truth truth, const std::string& sensing) {
+  if (sensing.empty()) return truth;
+  const auto found = kSensing.find(sensing);
+  if (found == kSensing.end())
+    throw base::ConfigError(base::UnknownName("sensing", sensing, {"fitted", "ideal", "pictures"}));
+  if (truth.sensing != found->second) truth.name += ", sensing " + sensing;
+  truth.sensing = found->second;
+  return truth;
 }
 
 Truth ReadTruth(const std::string& path) {

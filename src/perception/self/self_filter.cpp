@@ -1,4 +1,4 @@
-#include "perception/self/self_filter.h"
+#include "hires/perception/self_filter.h"
 
 #include <algorithm>
 #include <limits>
