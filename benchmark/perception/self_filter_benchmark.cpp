@@ -3,8 +3,8 @@
 #include "hires/geometry/angles.h"
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
-#include "hires/world/world.h"
 #include "hires/perception/self_filter.h"
+#include "hires/world/world.h"
 
 namespace hires::perception {
 namespace {

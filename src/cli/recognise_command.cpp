@@ -37,8 +37,7 @@ Eigen::Array2d ExtentOf(const geometry::Polygon& outline) {
 
 ordered_json TableToJson(const perception::Table& table, long num_points) {
   ordered_json outline = ordered_json::array();
-  for (const Eigen::Vector2d& corner : table.outline)
-    outline.push_back(ToJson(table.Lift(corner)));
+  for (const Eigen::Vector2d& corner : table.outline) outline.push_back(ToJson(table.Lift(corner)));
   return {{"normal", ToJson(table.normal)},
           {"distance", table.offset},
           {"points", num_points},

@@ -161,6 +161,24 @@ Aabb BoundsOf(const Shape& shape, const Pose3& X_WS) {
       shape);
 }
 
+int TurnSymmetry(const std::vector<Collision>& collisions_B) {
+  constexpr double kSame = 1e-4;  // [m], and of unit vectors
+  int symmetry = kRound;
+  for (const Collision& one : collisions_B) {
+    const Eigen::Matrix3d R_BS = one.X_BS.rotation.toRotationMatrix();
+    const bool is_on_axis = one.X_BS.translation.head<2>().norm() < kSame;
+    const bool is_upright = std::abs(R_BS(2, 2)) > 1.0 - kSame;
+    int own = 1;
+    if (is_on_axis && std::holds_alternative<Sphere>(one.shape)) own = kRound;
+    if (is_on_axis && is_upright && std::holds_alternative<Cylinder>(one.shape)) own = kRound;
+    if (const Box* box = std::get_if<Box>(&one.shape); box && is_on_axis && is_upright)
+      own = std::abs(box->size.x() - box->size.y()) < kSame ? 4 : 2;
+    symmetry = std::min(symmetry, own);
+  }
+  // Squares that are turned against each other have the symmetry of two alone, or none at all.
+  return symmetry == 4 && collisions_B.size() > 1 ? 2 : symmetry;
+}
+
 std::optional<Polygon> OutlineInBand(const Shape& shape, const Pose3& X_WS, double z_min,
                                      double z_max) {
   HIRES_CHECK(z_min <= z_max, "a band ends below its beginning");

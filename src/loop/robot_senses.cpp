@@ -33,8 +33,8 @@ RobotSenses::RobotSenses(const ImaginationSetup& setup, const sensing::FrameName
                                                         setup.sensing.memory, &state_);
 }
 
-void RobotSenses::See(double stamp, const std::vector<perception::Detection>& seen) {
-  if (objects_) objects_->OnLook({stamp, camera_link_, seen});
+void RobotSenses::See(double stamp, const perception::Sighting& seen) {
+  if (objects_) objects_->OnLook({stamp, camera_link_, seen.detections, seen.table});
 }
 
 void RobotSenses::Hear(const SensorNews& news) {

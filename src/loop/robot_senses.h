@@ -25,7 +25,7 @@ class RobotSenses {
   /// Takes in all but the laser.
   void Hear(const SensorNews& news);
   /// What the camera saw at a moment that is not told of yet.
-  void See(double stamp, const std::vector<perception::Detection>& seen);
+  void See(double stamp, const perception::Sighting& seen);
 
   const sensing::RobotStateEstimator& state() const { return state_; }
   /// Null without surroundings.

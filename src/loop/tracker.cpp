@@ -48,7 +48,7 @@ void Tracker::Hear(const SensorNews& news) {
   tracker_.Process();
 }
 
-void Tracker::See(double stamp, const std::vector<perception::Detection>& seen) {
+void Tracker::See(double stamp, const perception::Sighting& seen) {
   senses_.See(stamp, seen);
   tracker_.Process();
 }

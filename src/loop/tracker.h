@@ -37,7 +37,7 @@ class Tracker {
           Blackboard* blackboard, Hooks hooks);
 
   void Hear(const SensorNews& news);
-  void See(double stamp, const std::vector<perception::Detection>& seen);
+  void See(double stamp, const perception::Sighting& seen);
   void OnView() { is_view_new_ = true; }  ///< the Blackboard says something else
   /// What runs now: the head is others' while one of them may use it.
   void OnActions(const std::map<int, base::ActionCall>& running);

@@ -128,12 +128,12 @@ bool ObjectEstimator::Remember(const Look& look, double now, LookNews* news) {
     Drop("the posture of the robot when the picture was taken is unknown", news);
     return true;
   }
-  std::vector<perception::Detection> detections = look.detections;
-  const FrameStatus status = PutInCamera(look.frame, *then, &detections);
+  Look seen = look;
+  const FrameStatus status = PutInCamera(*then, &seen);
   if (status == FrameStatus::kNotThen && now < look.stamp + kFramePatience) return false;
   if (status == FrameStatus::kFound) {
     Feel(then->Body(), news);
-    memory_.Look(then->Body(), detections);
+    memory_.Look(then->Body(), seen.detections, seen.table);
     ++news->num_looks;
     news->newest_look = std::max(news->newest_look, look.stamp);
   } else {
@@ -143,14 +143,14 @@ bool ObjectEstimator::Remember(const Look& look, double now, LookNews* news) {
 }
 
 /// Turns poses in a frame into poses in the camera's; those that are in it keep their bits.
-FrameStatus ObjectEstimator::PutInCamera(const std::string& frame, const RobotEstimate& then,
-                                         std::vector<perception::Detection>* detections) const {
+FrameStatus ObjectEstimator::PutInCamera(const RobotEstimate& then, Look* look) const {
   const std::string& camera = robot_->profile.upper_body->camera_link;
-  if (BareFrame(frame) == camera) return FrameStatus::kFound;
-  const FramePose X_BF = state_->InBase(frame, then);
+  if (BareFrame(look->frame) == camera) return FrameStatus::kFound;
+  const FramePose X_BF = state_->InBase(look->frame, then);
   if (!X_BF.is_found()) return X_BF.status;
   const Pose3 X_CF = state_->InBase(camera, then).X_PC.Inverse() * X_BF.X_PC;
-  for (perception::Detection& detection : *detections) detection.X_CO = X_CF * detection.X_CO;
+  for (perception::Detection& detection : look->detections) detection.X_CO = X_CF * detection.X_CO;
+  for (Eigen::Vector3d& corner : look->table) corner = X_CF * corner;
   return FrameStatus::kFound;
 }
 

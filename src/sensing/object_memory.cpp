@@ -9,6 +9,9 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/geometry/angles.h"
+#include "hires/geometry/polygon.h"
+#include "sensing/anchoring.h"
 
 namespace hires::sensing {
 namespace {
@@ -58,6 +61,19 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// What a thing without a name may be: its label, and what is as likely but for a third.
+std::vector<std::string> KindsOf(const Detection& detection) {
+  constexpr double kAsLikely = 1.0 / 3.0;
+  std::vector<std::string> kinds;
+  const auto add = [&](const std::string& label) {
+    if (label != perception::kUnknownLabel) kinds.push_back(label);
+  };
+  add(detection.label);
+  for (const perception::LabelConfidence& other : detection.alternatives)
+    if (other.confidence >= kAsLikely * detection.confidence) add(other.label);
+  return kinds;
+}
+
 }  // namespace
 
 bool MemoryParams::operator==(const MemoryParams& other) const {
@@ -65,7 +81,8 @@ bool MemoryParams::operator==(const MemoryParams& other) const {
     return std::make_tuple(p.expected_share, p.expected_margin, p.looks_to_vanish, p.blending,
                            p.moved_distance, p.moved_angle, p.grasp_distance, p.closed_gap,
                            p.gap_below, p.gap_above, p.open_gap, p.opening, p.still_gap,
-                           p.still_time, p.hand_distance, p.instance_distance);
+                           p.still_time, p.hand_distance, p.instance_distance, p.instance_margin,
+                           p.looks_to_appear);
   };
   return numbers(*this) == numbers(other);
 }
@@ -182,7 +199,7 @@ bool ObjectMemory::FeelHand(const Links& links, const std::string& name, Hand* h
         std::min(hand->grasp_gap + params_.opening, max_gap - 0.5 * params_.open_gap);
     if (!is_lost && gap <= most) return false;
     hand->holds.clear();
-    is_lost ? Lose(held) : LetGo(links, held, body.time);
+    is_lost ? Lose(links, held) : LetGo(links, held, body.time);
     return true;
   }
   if (body.time - hand->since < params_.still_time) return false;
@@ -256,10 +273,11 @@ void ObjectMemory::LetGo(const Links& links, const std::string& name, double tim
   PlaceAt(links, X_MO, &object);
 }
 
-void ObjectMemory::Lose(const std::string& name) {
+void ObjectMemory::Lose(const Links& links, const std::string& name) {
   if (Hand* hand = HandOf(name)) hand->holds.clear();
+  const RememberedObject& object = objects_.at(name);
+  vanished_[name] = {object.model, PlaceOf(links, object)};
   objects_.erase(name);
-  vanished_[name] = true;
 }
 
 ObjectMemory::Hand* ObjectMemory::HandOf(const std::string& object) {
@@ -286,13 +304,43 @@ void ObjectMemory::PlaceAt(const Links& links, const Pose3& X_MO, RememberedObje
 // ---- Looking.
 
 void ObjectMemory::Check(const Detection& detection) const {
-  surroundings_->Model(detection.label);
+  if (detection.instance || detection.label != perception::kUnknownLabel)
+    surroundings_->Model(detection.label);
   if (detection.X_CO.IsFinite()) return;
   throw base::ConfigError(fmt::format("detection of '{}': its pose is not finite",
                                       detection.instance.value_or(detection.label)));
 }
 
-void ObjectMemory::Look(const BodyReading& body, const std::vector<Detection>& detections) {
+/// What a detection is given to; no name: to nobody.
+struct ObjectMemory::Named {
+  std::string name{}, model{};
+  bool is_ambiguous{false};
+};
+
+struct ObjectMemory::LookedAt {
+  Pose3 X_MO(std::size_t i) const { return view.X_MC * detections[i].X_CO; }
+  bool Covers(const Eigen::Vector3d& p_M) const;
+
+  const CameraView& view;
+  const std::vector<Detection>& detections;
+  std::vector<Eigen::Vector3d> table_M;
+};
+
+/// Whether something that stands there was looked at.
+bool ObjectMemory::LookedAt::Covers(const Eigen::Vector3d& p_M) const {
+  constexpr double kBeside = 0.06;  // [m] above or below the table: localisation and camera err
+  if (table_M.size() < 3) return table_M.empty();
+  geometry::Polygon outline;
+  double height = 0.0;
+  for (const Eigen::Vector3d& corner : table_M) {
+    outline.push_back(corner.head<2>());
+    height += corner.z() / table_M.size();
+  }
+  return std::abs(p_M.z() - height) < kBeside && geometry::Contains(outline, p_M.head<2>());
+}
+
+void ObjectMemory::Look(const BodyReading& body, const std::vector<Detection>& detections,
+                        const std::vector<Eigen::Vector3d>& table_C) {
   for (const Detection& detection : detections) Check(detection);
   const Links links(*robot_, body);
   const CameraView view = perception::ViewOf(*robot_, body.X_MB, body.joints);
@@ -302,47 +350,149 @@ void ObjectMemory::Look(const BodyReading& body, const std::vector<Detection>& d
   }
   const LineOfSight sight(surroundings_, expected,
                           perception::ShapesOf(*robot_, body.X_MB, body.joints));
-  const std::vector<std::string> names = NamesOf(links, view, detections);
-  Miss(sight, view, links, detections, names);
+  LookedAt look{view, detections, {}};
+  for (const Eigen::Vector3d& corner : table_C) look.table_M.push_back(view.X_MC * corner);
+  std::vector<Named> named = NamesOf(links, look);
+  num_ambiguous_ = static_cast<int>(
+      std::count_if(named.begin(), named.end(), [](const Named& n) { return n.is_ambiguous; }));
+  Miss(sight, links, look, named);
+  Appear(links, look, &named);
   for (std::size_t i = 0; i < detections.size(); ++i) {
-    if (names[i].empty()) continue;
-    See(links, names[i], detections[i].label, view.X_MC * detections[i].X_CO, body.time);
+    if (named[i].name.empty()) continue;
+    Pose3 X_MO = look.X_MO(i);
+    if (!detections[i].instance) X_MO = TurnedAlike(links, named[i].name, named[i].model, X_MO);
+    See(links, named[i].name, named[i].model, X_MO, body.time);
   }
 }
 
-/// Whether a thing of that kind, seen at X_MO, may be the object.
-bool ObjectMemory::MayBe(const Links& links, const RememberedObject& object,
-                         const std::string& label, const Pose3& X_MO) const {
-  const Pose3 X_Mexpected = links.X_ML(object.link) * object.X_LO;
-  return object.model == label &&
-         (X_Mexpected.translation - X_MO.translation).norm() <= params_.instance_distance;
+Eigen::Vector3d ObjectMemory::PlaceOf(const Links& links, const RememberedObject& object) const {
+  return (links.X_ML(object.link) * object.X_LO).translation;
 }
 
-/// The instances that are seen, in the order of `detections`; empty where that is not certain.
-std::vector<std::string> ObjectMemory::NamesOf(const Links& links, const CameraView& view,
-                                               const std::vector<Detection>& detections) const {
-  std::vector<std::string> names;
-  for (const Detection& one : detections) names.push_back(base::ToLower(one.instance.value_or("")));
-  const std::vector<std::string> given = names;
-  std::vector<std::vector<std::size_t>> nearby;  // detections without a name, for each candidate
-  std::vector<std::string> candidates;
-  std::vector<int> num_candidates(detections.size(), 0);
-  for (const auto& [name, object] : objects_) {
-    if (Contains(given, name)) continue;
-    candidates.push_back(name);
-    nearby.emplace_back();
-    for (std::size_t i = 0; i < detections.size(); ++i) {
-      if (!given[i].empty()) continue;
-      if (!MayBe(links, object, detections[i].label, view.X_MC * detections[i].X_CO)) continue;
-      nearby.back().push_back(i);
-      ++num_candidates[i];
+/// Whether a thing that has no name, seen at X_MO, may be the object.
+bool ObjectMemory::MayBe(const Links& links, const RememberedObject& object,
+                         const Detection& detection, const Pose3& X_MO) const {
+  return Contains(KindsOf(detection), object.model) &&
+         (PlaceOf(links, object) - X_MO.translation).norm() <= params_.instance_distance;
+}
+
+std::vector<ObjectMemory::Named> ObjectMemory::NamesOf(const Links& links,
+                                                       const LookedAt& look) const {
+  std::vector<Named> named(look.detections.size());
+  std::vector<std::size_t> nameless;
+  std::vector<std::string> given;
+  std::vector<SeenThing> things;
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    const Detection& one = look.detections[i];
+    named[i] = {base::ToLower(one.instance.value_or("")), one.label, false};
+    if (one.instance) {
+      given.push_back(named[i].name);
+    } else {
+      nameless.push_back(i);
+      things.push_back({KindsOf(one), look.X_MO(i).translation});
     }
   }
-  for (std::size_t k = 0; k < candidates.size(); ++k) {
-    const bool is_certain = nearby[k].size() == 1 && num_candidates[nearby[k][0]] == 1;
-    if (is_certain) names[nearby[k][0]] = candidates[k];
+  std::vector<std::string> names;
+  std::vector<Anchor> anchors;
+  for (const auto& [name, object] : objects_) {
+    if (Contains(given, name)) continue;
+    names.push_back(name);
+    anchors.push_back({object.model, PlaceOf(links, object)});
   }
-  return names;
+  const Anchoring found =
+      AnchorThings(things, anchors, params_.instance_distance, params_.instance_margin);
+  for (std::size_t k = 0; k < nameless.size(); ++k) {
+    named[nameless[k]].is_ambiguous = found.is_ambiguous[k];
+    if (found.anchor[k] < 0) continue;
+    named[nameless[k]].name = names[found.anchor[k]];
+    named[nameless[k]].model = anchors[found.anchor[k]].kind;
+  }
+  return named;
+}
+
+/// Counts for how long things have been seen that are none of the known.
+void ObjectMemory::Appear(const Links& links, const LookedAt& look, std::vector<Named>* named) {
+  std::vector<Newcomer> seen;
+  for (std::size_t i = 0; i < named->size(); ++i) {
+    const Detection& one = look.detections[i];
+    const Pose3 X_MO = look.X_MO(i);
+    if (one.instance || !(*named)[i].name.empty() || (*named)[i].is_ambiguous) continue;
+    if (KindsOf(one).empty()) continue;
+    const bool may_be_known = std::any_of(objects_.begin(), objects_.end(), [&](const auto& known) {
+      const auto has_it = [&](const Named& n) { return n.name == known.first; };
+      return std::none_of(named->begin(), named->end(), has_it) &&
+             MayBe(links, known.second, one, X_MO);
+    });
+    if (may_be_known) continue;
+    Newcomer newcomer{one.label, X_MO.translation, 1, static_cast<int>(i)};
+    for (const Newcomer& before : newcomers_) {
+      const bool is_same = (before.p_M - newcomer.p_M).norm() <= params_.moved_distance;
+      if (is_same) newcomer.num_looks = std::max(newcomer.num_looks, before.num_looks + 1);
+    }
+    seen.push_back(newcomer);
+  }
+  newcomers_ = seen;
+  NameNewcomers(look, named);
+}
+
+/// Things that were seen for long enough are vanished ones that were moved, or new.
+void ObjectMemory::NameNewcomers(const LookedAt& look, std::vector<Named>* named) {
+  constexpr double kAnywhere = 100.0;  // [m]
+  std::vector<const Newcomer*> ripe;
+  std::vector<SeenThing> things;
+  for (const Newcomer& newcomer : newcomers_) {
+    if (newcomer.num_looks < params_.looks_to_appear) continue;
+    ripe.push_back(&newcomer);
+    things.push_back({KindsOf(look.detections[newcomer.detection]), newcomer.p_M});
+  }
+  std::vector<std::string> names;
+  std::vector<Anchor> anchors;
+  for (const auto& [name, vanished] : vanished_) {
+    names.push_back(name);
+    anchors.push_back({vanished.model, vanished.p_M});
+  }
+  const Anchoring found = AnchorThings(things, anchors, kAnywhere, params_.instance_margin);
+  for (std::size_t k = 0; k < ripe.size(); ++k) {
+    Named& one = (*named)[ripe[k]->detection];
+    one.is_ambiguous = found.is_ambiguous[k];
+    num_ambiguous_ += one.is_ambiguous;
+    if (one.is_ambiguous) continue;
+    const int anchor = found.anchor[k];
+    one.name = anchor < 0 ? FreeName(one.model) : names[anchor];
+    if (anchor >= 0) one.model = anchors[anchor].kind;
+    objects_[one.name].model = one.model;  // so that the next one gets another name
+  }
+}
+
+/// As others of that kind are called, with the first number that is free.
+std::string ObjectMemory::FreeName(const std::string& kind) const {
+  std::string stem = base::ToLower(kind);
+  for (const auto& [name, object] : objects_) {
+    if (object.model == kind) stem = name.substr(0, name.find_last_not_of("0123456789") + 1);
+  }
+  for (int number = 1;; ++number) {
+    const std::string name = stem + std::to_string(number);
+    if (objects_.count(name) == 0 && vanished_.count(name) == 0) return name;
+  }
+}
+
+/// Turned by as little as its shape allows against how it was remembered: nobody sees how a round
+/// thing is turned, nor which side of a box is its front.
+Pose3 ObjectMemory::TurnedAlike(const Links& links, const std::string& name,
+                                const std::string& model, Pose3 X_MO) const {
+  const int symmetry = geometry::TurnSymmetry(surroundings_->Model(model).collisions);
+  const auto known = objects_.find(name);
+  const bool is_known = known != objects_.end() && !known->second.name.empty();
+  const Pose3 X_ML = is_known ? links.X_ML(known->second.link) : Pose3();
+  const double before =
+      is_known ? geometry::YawOf(X_ML.rotation * known->second.X_LO.rotation) : 0.0;
+  double turn = before - geometry::YawOf(X_MO.rotation);
+  if (symmetry != geometry::kRound) {
+    const double step = 2.0 * geometry::kPi / symmetry;
+    turn = step * std::round(turn / step);
+  }
+  X_MO.rotation = X_MO.rotation * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ());
+  return X_MO;
 }
 
 /// Whether enough of the object is in view where it is believed, and also to both sides of that.
@@ -359,22 +509,21 @@ bool ObjectMemory::MustBeSeen(const LineOfSight& sight, const CameraView& view, 
 }
 
 /// Counts the objects that should have been detected.
-void ObjectMemory::Miss(const LineOfSight& sight, const CameraView& view, const Links& links,
-                        const std::vector<Detection>& detections,
-                        const std::vector<std::string>& names) {
+void ObjectMemory::Miss(const LineOfSight& sight, const Links& links, const LookedAt& look,
+                        const std::vector<Named>& named) {
   std::vector<std::string> gone;
   for (auto& [name, object] : objects_) {
-    if (Contains(names, name)) continue;
     bool may_be_seen = false;
-    for (std::size_t i = 0; i < detections.size(); ++i) {
-      may_be_seen = may_be_seen || (names[i].empty() && MayBe(links, object, detections[i].label,
-                                                              view.X_MC * detections[i].X_CO));
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      may_be_seen =
+          may_be_seen || named[i].name == name ||
+          (named[i].name.empty() && MayBe(links, object, look.detections[i], look.X_MO(i)));
     }
-    if (may_be_seen) continue;
-    if (!MustBeSeen(sight, view, links, object)) continue;
+    if (may_be_seen || !look.Covers(PlaceOf(links, object))) continue;
+    if (!MustBeSeen(sight, look.view, links, object)) continue;
     if (++object.num_missed >= params_.looks_to_vanish) gone.push_back(name);
   }
-  for (const std::string& name : gone) Lose(name);
+  for (const std::string& name : gone) Lose(links, name);
 }
 
 void ObjectMemory::See(const Links& links, const std::string& name, const std::string& label,

@@ -37,7 +37,7 @@ TEST(SensingParamsTest, EachNumberMattersAndIsNamedWhenItIsBad) {
       ++count;
     }
   }
-  EXPECT_EQ(count, 20);
+  EXPECT_EQ(count, 22);
 }
 
 }  // namespace

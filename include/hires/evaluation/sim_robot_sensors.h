@@ -60,16 +60,16 @@ class SimRobotSensors {
 
   /// What the camera's recogniser sees, where it is time to look and the head is still; poses in
   /// the camera's frame. Nothing: it does not look, or where pictures are seen, sees no table.
-  std::optional<std::vector<perception::Detection>> Look(const SimRobotWorld& world,
-                                                         const SensorReadings& readings);
+  std::optional<perception::Sighting> Look(const SimRobotWorld& world,
+                                           const SensorReadings& readings);
 
   SimRobotCameras& cameras() { return cameras_; }
   const SimRobotLasers& lasers() const { return lasers_; }
 
  private:
   std::vector<perception::Detection> Detect(const SimRobotWorld& world) const;
-  std::optional<std::vector<perception::Detection>> Recognise(const SimRobotWorld& world,
-                                                              const SensorReadings& readings);
+  std::optional<perception::Sighting> Recognise(const SimRobotWorld& world,
+                                                const SensorReadings& readings);
   void Misjudge(std::vector<perception::Detection>* seen, base::Rng rng) const;
   bool IsLookDue(const SimRobotWorld& world, const SensorReadings& readings) const;
 

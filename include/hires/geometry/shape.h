@@ -49,6 +49,11 @@ struct Aabb {
 /// The smallest box along W's axes around the shape; round shapes count as round.
 Aabb BoundsOf(const Shape& shape, const Pose3& X_WS);
 
+/// How often a body comes to lie on itself while it turns once about its z axis; kRound: always.
+/// Meshes count as lying on themselves after a whole turn alone.
+int TurnSymmetry(const std::vector<Collision>& collisions_B);
+inline constexpr int kRound = 1 << 20;
+
 /// Convex outline, seen from above, of the part of the shape within z_min..z_max of frame W;
 /// nothing if no part lies there. Round shapes become polygons of 24 corners around them
 /// (circumscribed). A mesh gives the hull of its surface's part in the band.

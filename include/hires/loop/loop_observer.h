@@ -21,7 +21,7 @@ struct SensorNews {
   /// With the moments at which the laser, the localisation and the camera speak, too.
   bool is_tick{false};
   std::vector<double> scan;  ///< [m]; empty: the robot has no laser
-  std::optional<std::vector<perception::Detection>> seen;
+  std::optional<perception::Sighting> seen;
 };
 
 /// Told of all that passes between the parts of a loop, as topics would carry it between nodes, in

@@ -47,15 +47,15 @@ class LoopSetup {
 
 /// One task that is to be played.
 struct LoopOrder {
-  std::string scenario;      ///< file: who stands where, and what the robot is told
-  std::string task;          ///< empty: the scenario's
-  std::string truth;         ///< of config/truths, or a file; empty: same
-  std::string sensing;       ///< fitted, ideal, pictures: in place of the truth's; empty: as it says
-  std::string imagination;   ///< domain, thesis, off; empty: as the execution monitor is configured
-  std::uint64_t seed{1};     ///< of the hidden truth, of all noise and of imagination
-  int rollouts{0};           ///< per combination of alternatives; 0: as the monitor is configured
-  int threads{1};            ///< that play rollouts; their number changes nothing
-  bool dry_run{false};       ///< planned and imagined alone (execution::MonitorParams)
+  std::string scenario;     ///< file: who stands where, and what the robot is told
+  std::string task;         ///< empty: the scenario's
+  std::string truth;        ///< of config/truths, or a file; empty: same
+  std::string sensing;      ///< fitted, ideal, pictures: in place of the truth's; empty: as it says
+  std::string imagination;  ///< domain, thesis, off; empty: as the execution monitor is configured
+  std::uint64_t seed{1};    ///< of the hidden truth, of all noise and of imagination
+  int rollouts{0};          ///< per combination of alternatives; 0: as the monitor is configured
+  int threads{1};           ///< that play rollouts; their number changes nothing
+  bool dry_run{false};      ///< planned and imagined alone (execution::MonitorParams)
   double time_limit{900.0};  ///< [s] of virtual time
 };
 

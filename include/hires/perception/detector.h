@@ -16,6 +16,9 @@ struct DetectorParams {
   double yaw_noise{0.02};         ///< [rad] sd, about the object's own z axis
 };
 
+/// Label of what is none of the known kinds.
+inline constexpr char kUnknownLabel[] = "unknown";
+
 struct LabelConfidence {
   std::string label;
   double confidence{0.0};  ///< 0 .. 1
@@ -33,6 +36,13 @@ struct Detection {
   std::vector<LabelConfidence> alternatives{};    ///< what else it may be
   Eigen::Vector3d size{Eigen::Vector3d::Zero()};  ///< [m] of the box around it; 0: not told
   int num_points{0};                              ///< of the cloud that it was seen as
+};
+
+/// What a recogniser says of one picture.
+struct Sighting {
+  std::vector<Detection> detections{};
+  std::vector<Eigen::Vector3d> table{};  ///< corners of what was looked at, counter-clockwise from
+                                         ///< above, in the detections' frame; empty: all in view
 };
 
 /// Stands in for a camera and a recogniser: which of the true objects are seen, and where.

@@ -20,9 +20,6 @@ struct KnownModel {
   std::shared_ptr<const world::ObjectModel> model;
 };
 
-/// Label of what is none of the known kinds.
-inline constexpr char kUnknownLabel[] = "unknown";
-
 struct RecogniserParams {
   SegmentationParams segmentation{};
   double min_quality{0.8};  ///< of what is recognised: 1 the picture is just what it would be
@@ -54,6 +51,8 @@ class Recogniser {
   /// @param stand  as FindTable takes it.
   Recognition Recognise(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                         const base::Rng& rng) const;
+  /// The same on a table that is known.
+  Recognition RecogniseOn(const Table& table, const PointCloud& cloud, const base::Rng& rng) const;
 
  private:
   struct Impl;

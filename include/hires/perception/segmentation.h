@@ -27,4 +27,8 @@ struct Segmentation {
 Segmentation SegmentTabletop(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                              const SegmentationParams& params, const base::Rng& rng);
 
+/// The same on a table that is known.
+Segmentation SegmentOn(const Table& table, const PointCloud& cloud,
+                       const SegmentationParams& params, const base::Rng& rng);
+
 }  // namespace hires::perception

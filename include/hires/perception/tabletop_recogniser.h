@@ -9,11 +9,10 @@
 
 namespace hires::perception {
 
-/// What a recogniser saw at a moment, in the cloud's frame.
+/// What a recogniser saw at a moment.
 struct TabletopView {
-  std::vector<Detection> detections{};
-  std::vector<Eigen::Vector3d> table{};  ///< corners of its outline, as far as it is seen
-  int num_own_points{0};                 ///< of the robot itself, which were cut out
+  Sighting sighting{};    ///< in the cloud's frame
+  int num_own_points{0};  ///< of the robot itself, which were cut out
 };
 
 /// A recogniser on a robot: it cuts the robot itself out of the cloud and knows how the camera
@@ -23,13 +22,19 @@ class TabletopRecogniser {
   TabletopRecogniser(std::shared_ptr<const Recogniser> recogniser, const SelfFilterParams& params);
 
   /// @param X_FC      the cloud's frame in any frame F whose z axis points upwards from the floor.
-  /// @param shapes_F  of robot and load.
-  /// @return nothing where no table is seen, or no point was measured.
+  /// @param robot_F   shapes of the robot.
+  /// @param tray_F    the plate of its tray, one of them, if it has one: a small table of its own.
+  /// @return nothing where neither table nor tray is seen.
   std::optional<TabletopView> Look(PointCloud cloud, const geometry::Pose3& X_FC,
-                                   const std::vector<geometry::Collision>& shapes_F,
+                                   std::vector<geometry::Collision> robot_F,
+                                   const std::optional<geometry::Collision>& tray_F,
                                    const base::Rng& rng);
 
  private:
+  Recognition OnTray(const geometry::Collision& tray_F, const geometry::Pose3& X_FC,
+                     const std::vector<geometry::Collision>& others_C, PointCloud cloud,
+                     const base::Rng& rng);
+
   std::shared_ptr<const Recogniser> recogniser_;
   SelfFilter self_;
 };

@@ -18,6 +18,8 @@ struct Look {
   double stamp{0.0};  ///< [s] of the picture
   std::string frame;
   std::vector<perception::Detection> detections;  ///< empty: it looked and saw nothing
+  std::vector<Eigen::Vector3d> table{};  ///< corners of what was looked at, counter-clockwise from
+                                         ///< above; empty: all that is in view
 };
 
 /// What others say of an object: where it is in the frame of a link, or in the world.
@@ -76,8 +78,7 @@ class ObjectEstimator {
   void FollowClock();
   void Feel(const BodyReading& body, LookNews* news);
   bool Remember(const Look& look, double now, LookNews* news);
-  FrameStatus PutInCamera(const std::string& frame, const RobotEstimate& then,
-                          std::vector<perception::Detection>* detections) const;
+  FrameStatus PutInCamera(const RobotEstimate& then, Look* look) const;
   void Drop(const std::string& why, LookNews* news);
 
   std::shared_ptr<const perception::Surroundings> surroundings_;

@@ -34,6 +34,8 @@ struct MemoryParams {
   double hand_distance{0.08};    ///< [m] between where a held object should be and where it is seen
   double instance_distance{0.1};  ///< [m] from where an object is expected within which a thing of
                                   ///< its kind, that has no name, is taken for it
+  double instance_margin{0.03};   ///< [m] by which the best way to name all things must be better
+  int looks_to_appear{3};         ///< in a row in which a thing that is none of the known is seen
   bool operator==(const MemoryParams& other) const;
 };
 
@@ -59,9 +61,11 @@ struct RememberedObject {
 /// place where it should be was free to look at in several looks in a row, and it was not detected;
 /// one that slipped out of the hand at once.
 ///
-/// A detection whose recogniser does not know the instance is that of the remembered object of its
-/// kind near it, if there is one such object and one such detection; else it says only that
-/// something of the kind is there, so that what is remembered there does not count as missed.
+/// Things whose recogniser knows their kind alone are given to the remembered objects of their
+/// kinds near them, all at once (AnchorThings); where another way is nearly as good they say only
+/// that something of the kind is there, so that what is remembered there does not count as missed.
+/// What stays alone in several looks is a vanished object of its kind that was moved, or else one
+/// that nobody knew: it gets the first free name (mug3).
 class ObjectMemory {
  public:
   ObjectMemory(std::shared_ptr<const perception::Surroundings> surroundings,
@@ -83,13 +87,18 @@ class ObjectMemory {
   /// pose that is no number.
   void Check(const perception::Detection& detection) const;
   /// One look of the robot's camera; an empty list says that nothing was seen.
+  /// @param table_C  corners in the camera's frame of what was looked at, counter-clockwise from
+  ///                 above: nothing that is elsewhere is missed. Empty: all that is in view.
   /// @pre the robot has a camera.
   /// @throws base::ConfigError as Feel and Check; nothing is remembered of such a look.
-  void Look(const BodyReading& body, const std::vector<perception::Detection>& detections);
+  void Look(const BodyReading& body, const std::vector<perception::Detection>& detections,
+            const std::vector<Eigen::Vector3d>& table_C = {});
 
   const std::map<std::string, RememberedObject>& objects() const { return objects_; }
   /// Objects whose place was looked at in vain, or that slipped away: until they are seen again.
   std::vector<std::string> Vanished() const;
+  /// Things of the last look that may be either of several objects.
+  int num_ambiguous() const { return num_ambiguous_; }
   /// Everything that is known to be somewhere, in the map; what is held is attached to its palm.
   std::vector<robot::SeenObject> Known(const BodyReading& body) const;
 
@@ -108,18 +117,24 @@ class ObjectMemory {
   bool IsInHand(const Links& links, const RememberedObject& object,
                 const geometry::Pose3& X_MO) const;
   void LetGo(const Links& links, const std::string& name, double time);
-  void Lose(const std::string& name);
-  std::vector<std::string> NamesOf(const Links& links, const perception::CameraView& view,
-                                   const std::vector<perception::Detection>& detections) const;
-  bool MayBe(const Links& links, const RememberedObject& object, const std::string& label,
-             const geometry::Pose3& X_MO) const;
+  void Lose(const Links& links, const std::string& name);
+  struct Named;
+  struct LookedAt;
+  Eigen::Vector3d PlaceOf(const Links& links, const RememberedObject& object) const;
+  std::vector<Named> NamesOf(const Links& links, const LookedAt& look) const;
+  bool MayBe(const Links& links, const RememberedObject& object,
+             const perception::Detection& detection, const geometry::Pose3& X_MO) const;
+  void Appear(const Links& links, const LookedAt& look, std::vector<Named>* named);
+  void NameNewcomers(const LookedAt& look, std::vector<Named>* named);
+  std::string FreeName(const std::string& kind) const;
+  geometry::Pose3 TurnedAlike(const Links& links, const std::string& name, const std::string& model,
+                              geometry::Pose3 X_MO) const;
   void See(const Links& links, const std::string& name, const std::string& label,
            const geometry::Pose3& X_MO, double time);
   bool MustBeSeen(const perception::LineOfSight& sight, const perception::CameraView& view,
                   const Links& links, const RememberedObject& object) const;
-  void Miss(const perception::LineOfSight& sight, const perception::CameraView& view,
-            const Links& links, const std::vector<perception::Detection>& detections,
-            const std::vector<std::string>& names);
+  void Miss(const perception::LineOfSight& sight, const Links& links, const LookedAt& look,
+            const std::vector<Named>& named);
   void PlaceAt(const Links& links, const geometry::Pose3& X_MO, RememberedObject* object) const;
   bool IsOverTray(const Links& links, const geometry::Pose3& X_MO) const;
   Hand* HandOf(const std::string& object);
@@ -129,8 +144,21 @@ class ObjectMemory {
   MemoryParams params_;
   std::optional<geometry::Aabb> tray_T_;  ///< plate, in the tray's frame
   std::map<std::string, RememberedObject> objects_;
-  std::map<std::string, bool> vanished_;  ///< name -> true; by name
-  std::map<std::string, Hand> hands_;     ///< by arm
+  struct LastPlace {
+    std::string model;
+    Eigen::Vector3d p_M;  ///< where it was last
+  };
+  /// A thing that is none of the known.
+  struct Newcomer {
+    std::string kind;
+    Eigen::Vector3d p_M;
+    int num_looks{0};   ///< in a row
+    int detection{-1};  ///< of this look
+  };
+  std::map<std::string, LastPlace> vanished_;  ///< by name
+  std::vector<Newcomer> newcomers_;
+  int num_ambiguous_{0};
+  std::map<std::string, Hand> hands_;  ///< by arm
 };
 
 }  // namespace hires::sensing

@@ -24,6 +24,15 @@ enum SensorStreams : std::uint64_t {
   kLaserStream
 };
 
+/// A tray's plate is larger than its rims.
+bool IsWider(const geometry::Collision& shape, const std::optional<geometry::Collision>& than) {
+  const auto area = [](const geometry::Collision& one) {
+    const geometry::Aabb bounds = geometry::BoundsOf(one.shape, one.X_BS);
+    return (bounds.upper - bounds.lower).head<2>().prod();
+  };
+  return !than || area(shape) > area(*than);
+}
+
 void ReadDetector(ParamReader in, SimSensorParams* params) {
   params->detection_period = ReadPeriod("period", kSensorTick, &in);
   params->min_visible_share = in.Get("min_visible_share", Between(0.0, 1.0));
@@ -108,14 +117,14 @@ bool SimRobotSensors::IsLookDue(const SimRobotWorld& world, const SensorReadings
   return true;
 }
 
-std::optional<std::vector<perception::Detection>> SimRobotSensors::Look(
-    const SimRobotWorld& world, const SensorReadings& readings) {
+std::optional<perception::Sighting> SimRobotSensors::Look(const SimRobotWorld& world,
+                                                          const SensorReadings& readings) {
   if (!IsLookDue(world, readings)) return std::nullopt;
   last_look_ = world.milliseconds();
   if (params_.sees_pictures) return eye_ ? Recognise(world, readings) : std::nullopt;
   auto seen = Detect(world);
   Misjudge(&seen, missed_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds())));
-  return seen;
+  return perception::Sighting{std::move(seen), {}};
 }
 
 /// The camera is where the robot really is; what it sees is told in its own frame.
@@ -135,17 +144,23 @@ std::vector<perception::Detection> SimRobotSensors::Detect(const SimRobotWorld& 
 }
 
 /// The robot knows its own place, in the middle of its map, by what it believes alone.
-std::optional<std::vector<perception::Detection>> SimRobotSensors::Recognise(
-    const SimRobotWorld& world, const SensorReadings& readings) {
+std::optional<perception::Sighting> SimRobotSensors::Recognise(const SimRobotWorld& world,
+                                                               const SensorReadings& readings) {
   const SeenCloud seen = cameras_.See(world, readings);
   const robot::JointPositions posture = robot::PostureOf(scene_->robot, readings.joints.positions);
-  const auto shapes_M = perception::ShapesOf(scene_->robot, readings.X_MB, posture);
+  const robot::Robot& robot = scene_->robot;
+  const auto shapes_M = perception::ShapesOf(robot, readings.X_MB, posture);
   const base::Rng rng = detector_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
-  auto view = eye_->Look(seen.cloud, seen.X_MC * perception::OpticalFrame(), shapes_M, rng);
+  std::optional<geometry::Collision> tray_M;
+  for (const geometry::Collision& shape : shapes_M)
+    if (shape.name == robot.profile.tray_link && IsWider(shape, tray_M)) tray_M = shape;
+  auto view = eye_->Look(seen.cloud, seen.X_MC * perception::OpticalFrame(), shapes_M, tray_M, rng);
   if (!view) return std::nullopt;
-  for (perception::Detection& detection : view->detections)
-    detection.X_CO = perception::OpticalFrame() * detection.X_CO;
-  return std::move(view->detections);
+  const geometry::Pose3 X_CO = perception::OpticalFrame();
+  for (perception::Detection& detection : view->sighting.detections)
+    detection.X_CO = X_CO * detection.X_CO;
+  for (Eigen::Vector3d& corner : view->sighting.table) corner = X_CO * corner;
+  return std::move(view->sighting);
 }
 
 /// Some are missed; the others are all off, each in its own way.

@@ -65,9 +65,8 @@ void ReadUncertainty(ParamReader in, const std::string& path, Truth* truth) {
   ReadCorrelations(&in, truth);
 }
 
-const std::map<std::string, Sensing> kSensing{{"fitted", Sensing::kFitted},
-                                              {"ideal", Sensing::kIdeal},
-                                              {"pictures", Sensing::kPictures}};
+const std::map<std::string, Sensing> kSensing{
+    {"fitted", Sensing::kFitted}, {"ideal", Sensing::kIdeal}, {"pictures", Sensing::kPictures}};
 
 Sensing ReadSensing(ParamReader* in) {
   return kSensing.at(in->Get("sensing", base::OneOf({"fitted", "ideal", "pictures"})));

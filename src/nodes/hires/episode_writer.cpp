@@ -143,7 +143,7 @@ void EpisodeWriter::OnSensed(const loop::SensorNews& news) {
     Write("localisation", news.stamp, pose);
   }
   WriteTransform(names.odometry_frame, names.base_frame, news.readings.odometry.X_OB, news.stamp);
-  if (news.seen) OnSeen(news.stamp, *news.seen);
+  if (news.seen) OnSeen(news.stamp, news.seen->detections);
   Write("joint_states", news.stamp, ToMsg(news.readings.joints, stamp));
   nav_msgs::Odometry odometry;
   odometry.header.stamp = stamp;

@@ -101,7 +101,7 @@ std::vector<std::string> SimRobotPublisher::PublishTick(
     sensors.push_back(params_.names.base_scan);
   }
   if (const auto seen = sensors_.Look(world, readings)) {
-    PublishDetections(*seen, stamp);
+    PublishDetections(seen->detections, stamp);
     sensors.push_back(kDetections);
   }
   cameras_.Publish(world, stamp);

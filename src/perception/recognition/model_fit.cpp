@@ -14,7 +14,6 @@ using Eigen::Vector3d;
 using geometry::Pose2;
 
 constexpr double kSameSize = 5e-4;  // [m]
-constexpr double kOnAxis = 1e-4;    // [m], and cosine from 1
 // Distances [m] at which points begin to count less, step by step; first with few of the points.
 constexpr double kCoarse[] = {0.03, 0.03, 0.02, 0.012};
 constexpr double kFine[] = {0.008, 0.005, 0.005, 0.004, 0.004};
@@ -24,16 +23,6 @@ constexpr double kAbove = 0.03;          // [m] above a model no point of it is 
 constexpr double kMostAbove = 0.1;       // ... but this share
 constexpr double kDamping = 1e-3;
 constexpr double kLever = 0.05;  // [m] by which a turn counts as a way
-
-bool IsRound(const world::ObjectModel& model) {
-  return std::all_of(model.collisions.begin(), model.collisions.end(),
-                     [](const geometry::Collision& one) {
-                       if (one.X_BS.translation.head<2>().norm() > kOnAxis) return false;
-                       if (std::holds_alternative<geometry::Sphere>(one.shape)) return true;
-                       return std::holds_alternative<geometry::Cylinder>(one.shape) &&
-                              std::abs((one.X_BS.rotation * Vector3d::UnitZ()).z()) > 1.0 - kOnAxis;
-                     });
-}
 
 // By the distances at the nodes of a coarse grid around both.
 bool AreAlike(const ModelShape& a, const ModelShape& b) {
@@ -183,7 +172,7 @@ std::vector<ModelShape> ShapesOfCatalogue(const std::vector<KnownModel>& catalog
     ModelShape shape;
     shape.models = {known};
     shape.field = std::make_shared<DistanceField>(known.model->collisions);
-    shape.is_round = IsRound(*known.model);
+    shape.is_round = geometry::TurnSymmetry(known.model->collisions) == geometry::kRound;
     shape.foot = -shape.field->bounds().lower.z();
     const auto alike = std::find_if(shapes.begin(), shapes.end(),
                                     [&](const ModelShape& one) { return AreAlike(one, shape); });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "hires/base/error.h"
 #include "hires/perception/depth_sensor.h"
@@ -91,6 +92,7 @@ struct Recogniser::Impl {
                                  const Pose3& X_CT) const;
   Detection Detect(const LabelledPicture& seen, const Thing& thing, const Pose3& X_CT) const;
   void Name(const std::vector<Candidate>& candidates, Detection* detection) const;
+  Recognition Named(const PointCloud& cloud, Segmentation segmentation) const;
 
   RecogniserParams params;
   std::vector<ModelShape> shapes;
@@ -159,6 +161,18 @@ Detection Recogniser::Impl::Detect(const LabelledPicture& seen, const Thing& thi
   return detection;
 }
 
+Recognition Recogniser::Impl::Named(const PointCloud& cloud, Segmentation segmentation) const {
+  Recognition out;
+  out.segmentation = std::move(segmentation);
+  const auto picture = PictureOf(cloud);
+  if (!out.segmentation.table || !picture) return out;
+  const LabelledPicture seen{cloud, *picture, out.segmentation.labels};
+  const Pose3 X_CT = FrameOf(*out.segmentation.table);
+  for (const Thing& thing : ThingsOf(seen, out.segmentation.num_things, X_CT))
+    out.detections.push_back(Detect(seen, thing, X_CT));
+  return out;
+}
+
 Recogniser::Recogniser(const std::vector<KnownModel>& catalogue, const RecogniserParams& params) {
   std::set<std::string> labels;
   std::vector<KnownModel> usable;
@@ -182,15 +196,12 @@ Recogniser& Recogniser::operator=(Recogniser&&) noexcept = default;
 
 Recognition Recogniser::Recognise(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                                   const base::Rng& rng) const {
-  Recognition out;
-  out.segmentation = SegmentTabletop(cloud, stand, impl_->params.segmentation, rng);
-  const auto picture = PictureOf(cloud);
-  if (!out.segmentation.table || !picture) return out;
-  const LabelledPicture seen{cloud, *picture, out.segmentation.labels};
-  const Pose3 X_CT = FrameOf(*out.segmentation.table);
-  for (const Thing& thing : ThingsOf(seen, out.segmentation.num_things, X_CT))
-    out.detections.push_back(impl_->Detect(seen, thing, X_CT));
-  return out;
+  return impl_->Named(cloud, SegmentTabletop(cloud, stand, impl_->params.segmentation, rng));
+}
+
+Recognition Recogniser::RecogniseOn(const Table& table, const PointCloud& cloud,
+                                    const base::Rng& rng) const {
+  return impl_->Named(cloud, SegmentOn(table, cloud, impl_->params.segmentation, rng));
 }
 
 }  // namespace hires::perception

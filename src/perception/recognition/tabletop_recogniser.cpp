@@ -1,5 +1,7 @@
 #include "hires/perception/tabletop_recogniser.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace hires::perception {
@@ -8,20 +10,53 @@ TabletopRecogniser::TabletopRecogniser(std::shared_ptr<const Recogniser> recogni
                                        const SelfFilterParams& params)
     : recogniser_(std::move(recogniser)), self_(params) {}
 
-std::optional<TabletopView> TabletopRecogniser::Look(
-    PointCloud cloud, const geometry::Pose3& X_FC,
-    const std::vector<geometry::Collision>& shapes_F, const base::Rng& rng) {
+/// The robot's own tray cannot be found by its points: they are the robot's. Its plate says where
+/// it is.
+Recognition TabletopRecogniser::OnTray(const geometry::Collision& tray_F,
+                                       const geometry::Pose3& X_FC,
+                                       const std::vector<geometry::Collision>& others_C,
+                                       PointCloud cloud, const base::Rng& rng) {
+  self_.Cut(others_C, &cloud);
   const geometry::Pose3 X_CF = X_FC.Inverse();
-  std::vector<geometry::Collision> shapes_C = shapes_F;
-  for (geometry::Collision& shape : shapes_C) shape.X_BS = X_CF * shape.X_BS;
+  const geometry::Aabb plate = geometry::BoundsOf(tray_F.shape, tray_F.X_BS);
+  Table table;
+  table.normal = X_CF.rotation * Eigen::Vector3d::UnitZ();
+  table.offset = X_FC.translation.z() - plate.upper.z();
+  table.along_x = table.normal.unitOrthogonal();
+  table.along_y = table.normal.cross(table.along_x);
+  const Eigen::Vector3d &low = plate.lower, &high = plate.upper;
+  for (const auto& [x, y] : {std::pair(low.x(), low.y()), std::pair(high.x(), low.y()),
+                             std::pair(high.x(), high.y()), std::pair(low.x(), high.y())}) {
+    table.outline.push_back(table.FromAbove(X_CF * Eigen::Vector3d(x, y, high.z())));
+  }
+  return recogniser_->RecogniseOn(table, cloud, rng);
+}
+
+std::optional<TabletopView> TabletopRecogniser::Look(
+    PointCloud cloud, const geometry::Pose3& X_FC, std::vector<geometry::Collision> robot_F,
+    const std::optional<geometry::Collision>& tray_F, const base::Rng& rng) {
+  const geometry::Pose3 X_CF = X_FC.Inverse();
+  std::vector<geometry::Collision> robot_C = robot_F, others_C;
+  for (geometry::Collision& shape : robot_C) shape.X_BS = X_CF * shape.X_BS;
   TabletopView view;
-  view.num_own_points = self_.Cut(shapes_C, &cloud);
+  std::optional<Table> seen;
+  const auto take = [&](Recognition found) {
+    if (!found.segmentation.table) return;
+    auto& all = view.sighting.detections;
+    std::move(found.detections.begin(), found.detections.end(), std::back_inserter(all));
+    seen = found.segmentation.table;
+  };
+  if (tray_F) {
+    for (const geometry::Collision& shape : robot_C)
+      if (shape.name != tray_F->name) others_C.push_back(shape);
+    take(OnTray(*tray_F, X_FC, others_C, cloud, rng));
+  }
+  view.num_own_points = self_.Cut(robot_C, &cloud);
   const CameraStand stand{X_CF.rotation * Eigen::Vector3d::UnitZ(), X_FC.translation.z()};
-  Recognition seen = recogniser_->Recognise(cloud, stand, rng);
-  if (!seen.segmentation.table) return std::nullopt;
-  view.detections = std::move(seen.detections);
-  const Table& table = *seen.segmentation.table;
-  for (const Eigen::Vector2d& corner : table.outline) view.table.push_back(table.Lift(corner));
+  take(recogniser_->Recognise(cloud, stand, rng));
+  if (!seen) return std::nullopt;
+  for (const Eigen::Vector2d& corner : seen->outline)
+    view.sighting.table.push_back(seen->Lift(corner));
   return view;
 }
 

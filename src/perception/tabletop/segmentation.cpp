@@ -70,25 +70,30 @@ std::vector<int> WithoutBeside(const SurfelCloud& all, const Table& table, std::
 
 }  // namespace
 
-Segmentation SegmentTabletop(const PointCloud& cloud, const std::optional<CameraStand>& stand,
-                             const SegmentationParams& params, const base::Rng& rng) {
+Segmentation SegmentOn(const Table& table, const PointCloud& cloud,
+                       const SegmentationParams& params, const base::Rng& rng) {
   Segmentation out;
   out.labels.assign(cloud.points.size(), kLabelNone);
-  out.table = FindTable(cloud, stand, params.table, rng.Fork(kTableStream));
-  if (!out.table) return out;
-  const std::vector<int> above = LabelTable(cloud, *out.table, params, &out.labels);
+  out.table = table;
+  const std::vector<int> above = LabelTable(cloud, table, params, &out.labels);
   const SurfelCloud surfels = MakeSurfels(cloud, above, params.surfels);
-  const JoinedParts parts =
-      JoinParts(cloud, *out.table, surfels,
-                WithoutBeside(surfels, *out.table, FindConvexParts(surfels, params.parts)),
-                params.joining, rng.Fork(kPartsStream));
+  const JoinedParts parts = JoinParts(
+      cloud, table, surfels, WithoutBeside(surfels, table, FindConvexParts(surfels, params.parts)),
+      params.joining, rng.Fork(kPartsStream));
   for (const int i : above) {
     const int part = parts.part[surfels.of_point[i]];
     if (part >= 0) out.labels[i] = kLabelFirstThing + part;
     out.num_things = std::max(out.num_things, part + 1);
   }
-  LabelFloors(cloud, *out.table, parts.openings, &out.labels);
+  LabelFloors(cloud, table, parts.openings, &out.labels);
   return out;
+}
+
+Segmentation SegmentTabletop(const PointCloud& cloud, const std::optional<CameraStand>& stand,
+                             const SegmentationParams& params, const base::Rng& rng) {
+  const auto table = FindTable(cloud, stand, params.table, rng.Fork(kTableStream));
+  if (table) return SegmentOn(*table, cloud, params, rng);
+  return {std::nullopt, std::vector<int>(cloud.points.size(), kLabelNone), 0};
 }
 
 }  // namespace hires::perception
