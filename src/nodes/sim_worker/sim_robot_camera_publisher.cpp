@@ -68,8 +68,14 @@ void SimRobotCameraPublisher::PublishDepth(const hires::evaluation::SimRobotWorl
   const bool wants_cloud = IsHeard(depth_cloud_);
   hires::perception::PointCloud cloud;
   hires::perception::Picture colours;
-  if (wants_cloud || IsHeard(depth_image_)) cloud = cameras_.Cloud(world);
-  if (wants_cloud || IsHeard(colour_image_)) colours = cameras_.Colours(world);
+  if (wants_cloud || IsHeard(depth_image_)) {
+    cloud = cameras_.Cloud(world);
+    ++num_drawn_;
+  }
+  if (wants_cloud || IsHeard(colour_image_)) {
+    colours = cameras_.Colours(world);
+    ++num_drawn_;
+  }
   const auto send = [&](const auto& msg, const ros::Publisher& publisher) {
     Send(msg, depth_frame_, stamp, publisher);
   };
@@ -89,6 +95,7 @@ void SimRobotCameraPublisher::PublishHeat(const hires::evaluation::SimRobotWorld
   if (IsHeard(thermal_info_)) send(ToMsg(cameras_.heat_camera()), thermal_info_);
   if (!IsHeard(thermal_image_) && !IsHeard(thermal_colours_)) return;
   const hires::perception::HeatPicture heat = cameras_.Heat(world);
+  ++num_drawn_;
   if (IsHeard(thermal_image_)) send(ToMsg(heat), thermal_image_);
   if (IsHeard(thermal_colours_)) send(ToMsg(cameras_.InColours(heat)), thermal_colours_);
 }

@@ -4,6 +4,7 @@
 #include <ros/publisher.h>
 #include <tf2_ros/static_transform_broadcaster.h>
 
+#include <atomic>
 #include <optional>
 #include <string>
 
@@ -24,6 +25,8 @@ class SimRobotCameraPublisher {
 
   void Publish(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
 
+  long num_drawn() const { return num_drawn_; }  ///< clouds and pictures so far; any thread may ask
+
  private:
   void PublishDepth(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
   void PublishHeat(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
@@ -31,6 +34,7 @@ class SimRobotCameraPublisher {
 
   hires::evaluation::SimRobotCameras& cameras_;
   std::optional<tf2_ros::StaticTransformBroadcaster> static_tf_;  // if there is a frame to tell
+  std::atomic<long> num_drawn_{0};
   std::string depth_frame_, heat_frame_;
   ros::Publisher depth_cloud_, depth_image_, depth_info_, colour_image_, colour_info_;
   ros::Publisher thermal_image_, thermal_colours_, thermal_info_;

@@ -324,6 +324,7 @@ void SimRobotNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("pace", params_.pace);
   status.add("lockstep", params_.lockstep);
   status.add("waits given up", num_waits_given_up_.load());
+  status.add("pictures drawn", publisher_.num_drawn());
 }
 
 }  // namespace hires_ros

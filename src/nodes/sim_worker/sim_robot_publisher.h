@@ -46,6 +46,7 @@ class SimRobotPublisher {
                    const hires::evaluation::SensorReadings& readings);
 
   void PublishClock(const hires::evaluation::SimRobotWorld& world);
+  long num_drawn() const { return cameras_.num_drawn(); }  ///< pictures; any thread may ask
   static ros::Time StampOf(
       const hires::evaluation::SimRobotWorld& world);  ///< begins at 1 s; 0 means "no time yet"
 
