@@ -1,4 +1,4 @@
-#include "hires/evaluation/sim_robot_lasers.h"
+#include "hires/evaluation/truth/sim_robot_lasers.h"
 
 #include <gtest/gtest.h>
 

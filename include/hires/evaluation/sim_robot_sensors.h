@@ -8,9 +8,9 @@
 
 #include "hires/base/param_reader.h"
 #include "hires/base/rng.h"
-#include "hires/evaluation/sim_robot_cameras.h"
-#include "hires/evaluation/sim_robot_lasers.h"
 #include "hires/evaluation/sim_robot_world.h"
+#include "hires/evaluation/truth/sim_robot_cameras.h"
+#include "hires/evaluation/truth/sim_robot_lasers.h"
 #include "hires/perception/detector.h"
 #include "hires/perception/tabletop_recogniser.h"
 #include "hires/simulation/laser_scanner.h"

@@ -1,4 +1,4 @@
-#include "hires/evaluation/sim_robot_cameras.h"
+#include "hires/evaluation/truth/sim_robot_cameras.h"
 
 #include <cmath>
 #include <utility>

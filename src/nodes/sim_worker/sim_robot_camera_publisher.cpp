@@ -2,8 +2,8 @@
 
 #include "hires/perception/camera_view.h"
 #include "hires/ros/robot_messages.h"
-#include "hires/ros/sensor_messages.h"
 #include "nodes/sim_worker/is_heard.h"
+#include "nodes/sim_worker/sensor_messages.h"
 
 namespace hires_ros {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "hires/control/robot_names.h"
-#include "hires/evaluation/sim_robot_lasers.h"
+#include "hires/evaluation/truth/sim_robot_lasers.h"
 
 namespace hires_ros {
 

@@ -14,10 +14,10 @@
 #include "hires/ros/conversions.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
-#include "hires/ros/sensor_messages.h"
 #include "hires/ros/topic_names.h"
 #include "hires/skills/manipulation_context.h"
 #include "hires/world/occupancy_grid.h"
+#include "nodes/sim_worker/sensor_messages.h"
 
 namespace hires_ros {
 namespace {

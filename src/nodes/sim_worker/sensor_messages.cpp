@@ -1,4 +1,4 @@
-#include "hires/ros/sensor_messages.h"
+#include "nodes/sim_worker/sensor_messages.h"
 
 #include <boost/predef/other/endian.h>
 #include <sensor_msgs/image_encodings.h>
