@@ -10,7 +10,7 @@
 ;   (RobotAt area)*                        (HasTorsoPosture posture)*
 ;   (HasArmPosture arm posture)* per arm   (Holding arm object-or-nothing)* per arm
 ;   (On object area)* per object           (At guest sitting-area)
-;   (Type concept instance)
+;   (Type concept instance)                (HasTemperature object degrees)* per object, in Celsius
 ; Switches, absent by default:
 ;   (imagine place_object)      placing is imagined before the robot drives there
 ;   (observe pick_up_object)    the robot looks at an area before it picks from it
@@ -111,6 +111,13 @@
   ()
   0)
 
+; A word of the plan to people, not to the robot: what it does next rests on a guess.
+(:operator (!!temperature_unknown ?object)
+  ()
+  ()
+  ()
+  0)
+
 ;;; 2. Methods -----------------------------------------------------------------------------------
 ; Torso and arms are told one after the other. That costs no time: nothing orders these steps but
 ; their preconditions, so that they run side by side where they can. `:unordered` would allow the
@@ -125,6 +132,23 @@
   serve
   (:sort-by ?rank ((At ?guest ?seat) (coffee_to_serve ?mug ?rank)))
   ((move_object ?mug ?seat)))
+
+; The same with a coffee that is hot. Of one whose temperature nobody knows the plan says so, and it
+; is served where no other is hot; a cold one never is.
+(:method (serve_hot_coffee_to_guest ?guest)
+  served
+  ((At ?guest ?seat) (place_in ?seat ?area ?rank) (Type coffee ?mug) (On ?mug ?area)
+   (not (cold ?mug)))
+  ((leave_manipulation_pose))
+
+  hot
+  (:sort-by ?rank ((At ?guest ?seat) (coffee_to_serve ?mug ?rank) (hot ?mug)))
+  ((move_object ?mug ?seat))
+
+  temperature_unknown
+  (:sort-by ?rank ((At ?guest ?seat) (coffee_to_serve ?mug ?rank)
+                   (not (HasTemperature ?mug ?degrees))))
+  ((!!temperature_unknown ?mug) (move_object ?mug ?seat)))
 
 ; Carries what stands on the table to the counter, one thing after the other.
 (:method (clear_table ?table ?counter)
@@ -352,6 +376,10 @@
 (:- (coffee_to_serve ?mug 3)
   ((Type coffee ?mug) (On ?mug ?area) (hasPlacingArea ?counter ?area ?rank)
    (Type counter ?counter)))
+
+; From what temperature on, in degrees Celsius, a coffee is hot.
+(:- (hot ?object) ((HasTemperature ?object ?degrees) (call >= ?degrees 45)))
+(:- (cold ?object) ((HasTemperature ?object ?degrees) (call < ?degrees 45)))
 
 ; The right arm works; the left one when the right is full or known to fail.
 (:- (arm_for ?object ?arm)

@@ -80,6 +80,7 @@ class Reader {
                                                     "Type",
                                                     "Instance",
                                                     "At",
+                                                    "HasTemperature",
                                                     "Connected",
                                                     "hasPlacingArea",
                                                     "hasPlacingAreaLeft",

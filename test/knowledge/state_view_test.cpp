@@ -158,6 +158,13 @@ TEST(StateAtomsTest, GuestsAndWays) {
               ElementsAre("At(guest1, seat1)", "Connected(a, b, c)"));
 }
 
+TEST(StateAtomsTest, TemperaturesAreNumbersInCelsius) {
+  EXPECT_THAT(Said(ViewOf({MakeFluent(
+                  "HasTemperature", "hasTemperatureMug1",
+                  {{"hasPhysicalEntity", "Mug", "mug1"}, {"hasDegrees", "xsd:float", 62.5}})})),
+              ElementsAre("HasTemperature(mug1, 62.5)"));
+}
+
 TEST(StateAtomsTest, WishesAndFailuresThatWereImagined) {
   EXPECT_THAT(
       Said(ViewOf({MakeFluent("ImagineWish", "w1", {{"hasAction", "xsd:string", "place_object"}}),

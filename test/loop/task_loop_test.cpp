@@ -68,6 +68,16 @@ TEST(TaskLoopTest, WhatIsImaginedIsDoneAndTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(Bits(PlayTask(TheSetup(), order)), Bits(run));
 }
 
+TEST(TaskLoopTest, OfTwoMugsThatAreKnownByTheirTemperaturesTheHotOneIsServed) {
+  LoopOrder order;
+  order.scenario = kConfig + "scenarios/hot_coffee.yaml";
+  const LoopRun run = PlayTask(TheSetup(), order);
+  ASSERT_EQ(run.report.outcome, AchieveOutcome::kSucceeded) << run.report.reason;
+  EXPECT_TRUE(StandsOnTable1(run, "mug2"));
+  EXPECT_GT(run.truth.objects.at("mug2").X_MO.translation.x(), 7.0);
+  EXPECT_NEAR(run.truth.objects.at("mug1").X_MO.translation.x(), 5.37, 0.02);  // on the counter
+}
+
 TEST(TaskLoopTest, AnotherSeedIsAnotherTruth) {
   const auto bits = [](std::uint64_t seed) {
     LoopOrder order = Topple("off", seed);

@@ -37,8 +37,9 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
-const char* const kProblems[] = {"serve_coffee", "serve_coffee_imagined",
-                                 "serve_coffee_south_failed", "carry_object", "clear_table"};
+const char* const kProblems[] = {
+    "serve_coffee",     "serve_coffee_imagined", "serve_coffee_south_failed",
+    "serve_hot_coffee", "carry_object",          "clear_table"};
 
 using Steps = std::vector<std::string>;
 
@@ -253,6 +254,27 @@ TEST(ServeCoffeeTest, AnotherCoffeeIsServedWhenTheFirstCannotBeGrasped) {
                                "(Type coffee mug2) (imagined_failure pick_up_object mug1 rightarm1)"
                                "(imagined_failure pick_up_object mug1 leftarm1)");
   EXPECT_THAT(FirstSteps(problem), Contains("(!pick_up_object mug2 rightarm1)"));
+}
+
+TEST(ServeHotCoffeeTest, OfTwoMugsTheHotOneIsServedWhicheverItIs) {
+  Problem swapped =
+      Without(Load("serve_hot_coffee"), "(HasTemperature mug1 21) (HasTemperature mug2 62.5)");
+  swapped = With(swapped, "(HasTemperature mug1 45) (HasTemperature mug2 44.9)");
+  EXPECT_THAT(FirstSteps(swapped), ElementsAreArray(Golden("serve_coffee")));
+}
+
+TEST(ServeHotCoffeeTest, AMugOfUnknownTemperatureIsServedWhereNoneIsHotAndThePlanSaysSo) {
+  const Problem unknown = Without(Load("serve_hot_coffee"), "(HasTemperature mug2 62.5)");
+  EXPECT_THAT(FirstSteps(unknown), ElementsAreArray(Joined({"(!!temperature_unknown mug2)"},
+                                                           Golden("serve_hot_coffee"))));
+  const Problem one_is_hot = Without(Load("serve_hot_coffee"), "(HasTemperature mug1 21)");
+  EXPECT_THAT(FirstSteps(one_is_hot), ElementsAreArray(Golden("serve_hot_coffee")));
+}
+
+TEST(ServeHotCoffeeTest, AColdCoffeeIsNeverServed) {
+  Problem cold = Without(Load("serve_hot_coffee"), "(HasTemperature mug2 62.5)");
+  cold = With(cold, "(HasTemperature mug2 30)");
+  ExpectNoPlan(cold);
 }
 
 TEST(ServeCoffeeTest, TheLeftArmWorksWhenTheRightOneCannotGrasp) {
