@@ -50,6 +50,10 @@ std::vector<std::string> WorldTracker::OnView(const translation::TranslatorConte
   return doubts;
 }
 
+void WorldTracker::OnTemperatures(const std::map<std::string, double>& degrees) {
+  for (const auto& [object, temperature] : degrees) temperatures_[object] = temperature;
+}
+
 void WorldTracker::OnActions(const actions::Catalogue& catalogue,
                              const std::vector<std::string>& names) {
   const bool is_busy = std::any_of(names.begin(), names.end(), [&](const std::string& name) {
@@ -108,6 +112,7 @@ translation::ObservedWorld WorldTracker::Observed(
         {object.name, object.model, object.X_MO, {}, object.attached_to});
   }
   observed.vanished = memory.Vanished();
+  observed.temperatures = temperatures_;
   return observed;
 }
 

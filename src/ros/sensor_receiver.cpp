@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "hires/base/log.h"
 #include "hires/base/process.h"
 #include "hires/ros/conversions.h"
@@ -62,6 +64,24 @@ void SensorReceiver::OnDetections(const hires::Detections& msg) {
     ++num_bad_;
     Warn(kDetections, why);
   }
+}
+
+std::map<std::string, double> SensorReceiver::TemperaturesOf(const hires::ObjectTemperatures& msg) {
+  constexpr double kColdest = -273.15;  // [degrees Celsius]
+  std::map<std::string, double> degrees;
+  for (const hires::ObjectTemperature& object : msg.objects) {
+    if (!std::isfinite(object.temperature) || object.temperature < kColdest ||
+        object.object.empty()) {
+      ++num_bad_;
+      Warn(kObjectTemperatures,
+           fmt::format("object '{}': temperature is {}, wanted a name, and degrees Celsius from "
+                       "{} on; it is left out",
+                       object.object, object.temperature, kColdest));
+    } else if (object.mixed_with.empty()) {
+      degrees[object.object] = object.temperature;
+    }
+  }
+  return degrees;
 }
 
 void SensorReceiver::OnKnownObjects(const hires::WorldState& msg) {

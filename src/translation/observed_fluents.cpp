@@ -81,6 +81,7 @@ class Comparison {
     CompareRobotPose();
     for (const world::ObjectState& object : observed_.state.world.objects) CompareObject(object);
     for (const std::string& object : observed_.vanished) ForgetPose(object);
+    for (const auto& [object, degrees] : observed_.temperatures) Warm(object, degrees);
     CompareSymbols();
     return std::move(update_);
   }
@@ -212,6 +213,35 @@ class Comparison {
     if (stated) update_.removed.push_back(stated->instance);
   }
 
+  // ---- Temperatures.
+
+  /// Nothing is said of an object that nobody knows, nor where the ontology knows no temperatures.
+  void Warm(const std::string& object, double degrees) {
+    if (!std::isfinite(degrees)) {
+      throw base::ConfigError(fmt::format("object '{}': its temperature is not finite", object));
+    }
+    const Fluent* thing = ViewWith(&said_, &new_things_).Find(object);
+    if (thing == nullptr || ontology_.Find("HasTemperature") == knowledge::Ontology::kUnknown) {
+      return;
+    }
+    Fluent fluent;
+    fluent.concept_name = "HasTemperature";
+    fluent.instance = NameFor("hasTemperature", thing->instance);
+    said_.OfConcept("HasTemperature", [&](const Fluent& said) {
+      if (SameName(LinkOf(said, "hasPhysicalEntity"), object)) fluent = said;
+      return true;
+    });
+    for (const knowledge::Property& property : fluent.properties) {
+      const auto* said = std::get_if<double>(&property.filler);
+      if (said != nullptr && std::abs(*said - degrees) <= params_.temperature) return;
+    }
+    fluent.start = Fluent().start;  // from when on is the assertion's to say
+    fluent.finish = Fluent().finish;
+    fluent.properties = {{"hasPhysicalEntity", thing->concept_name, thing->instance},
+                         {"hasDegrees", "xsd:float", std::round(10.0 * degrees) / 10.0}};
+    update_.added.push_back(fluent);
+  }
+
   // ---- Symbols.
 
   bool IsSpokenOf(const std::string& object) const {
@@ -291,6 +321,7 @@ ChangeParams ReadChangeParams(base::ParamReader in) {
   params.angle = in.Get("angle", Between(0.0, 3.2));
   params.robot_position = in.Get("robot_position", Between(0.0, 5.0));
   params.robot_angle = in.Get("robot_angle", Between(0.0, 3.2));
+  params.temperature = in.Get("temperature", Between(0.0, 100.0));
   return params;
 }
 

@@ -74,6 +74,14 @@ class WorldTrackerTest : public testing::Test {
   WorldTracker tracker_;
 };
 
+TEST_F(WorldTrackerTest, TemperaturesHoldUntilNewerOnesCome) {
+  tracker_.OnTemperatures({{"mug1", 62.5}, {"mug2", 21.0}});
+  tracker_.OnTemperatures({{"mug1", 60.0}});
+  for (int i = 1; i <= 20; ++i) Tell(1.0 + 0.05 * i);
+  EXPECT_THAT(observed_.temperatures,
+              ElementsAre(testing::Pair("mug1", 60.0), testing::Pair("mug2", 21.0)));
+}
+
 TEST_F(WorldTrackerTest, EachMomentIsTakenOnceAndInOrderOnceItIsSettled) {
   for (int i = 1; i <= 20; ++i) Tell(1.0 + 0.05 * i);
   ASSERT_THAT(observed_at_, testing::Not(IsEmpty()));

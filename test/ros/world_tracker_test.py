@@ -64,6 +64,7 @@ class WorldTrackerTest(unittest.TestCase):
             transforms=p('/tf', self.types['transforms'], **latch),
             joints=p('joint_states', self.types['joints'], **latch),
             detections=p('detections', self.msg.Detections, **latch),
+            temperatures=p('object_temperatures', self.msg.ObjectTemperatures, **latch),
             goal=p('execute_action/goal', self.msg.ExecuteActionActionGoal, **latch),
             result=p('execute_action/result', self.msg.ExecuteActionActionResult, **latch))
         self.known, self.turns, self.progress = [], [], []
@@ -355,6 +356,20 @@ class WorldTrackerTest(unittest.TestCase):
             send()
             return any(text in line for line in self.tracker.lines)
         wait_until(is_told, 'the warning: ' + text)
+
+    def test_how_warm_objects_are_is_said_unless_it_is_ambiguous_or_no_number(self):
+        def told(name, degrees, *mixed_with):
+            return self.msg.ObjectTemperature(object=name, temperature=degrees, num_pixels=100,
+                                              mixed_with=list(mixed_with))
+        temperatures = self.msg.ObjectTemperatures(
+            objects=[told('mug2', 62.5), told('mug1', 50.0, 'peppermill1'),
+                     told('peppermill1', math.nan)])
+        self.until_warned(lambda: self.publishers['temperatures'].publish(temperatures),
+                          "object 'peppermill1': temperature is nan")
+        self.expect('hasTemperatureMug2', 'hasDegrees', 62.5)
+        self.assertEqual(self.value('hasTemperatureMug2', 'hasPhysicalEntity'), 'mug2')
+        self.assertEqual(self.query(instance='hasTemperatureMug1'), [])
+        self.assertEqual(self.query(instance='hasTemperaturePeppermill1'), [])
 
     def test_what_is_told_to_be_on_the_blackboard_is_there(self):
         self.at_table()

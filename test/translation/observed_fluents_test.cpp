@@ -225,6 +225,26 @@ TEST_F(ObservedFluentsTest, WhatIsSaidStandsForTheAtomsOfWhatWasObserved) {
   }
 }
 
+TEST_F(ObservedFluentsTest, TemperaturesAreSaidOfWhatIsKnownAndAgainWhereTheyChange) {
+  Tell();
+  observed_.temperatures = {{"mug2", 62.54}, {"unheard_of", 30.0}};
+  EXPECT_THAT(Names(Tell().added), testing::ElementsAre("hasTemperatureMug2"));
+  EXPECT_THAT(State(), Contains("HasTemperature(mug2, 62.5)"));
+  observed_.temperatures["mug2"] = 61.6;  // less than 1 K
+  EXPECT_TRUE(Changes().empty());
+  observed_.temperatures["mug2"] = 61.2;
+  Tell();
+  EXPECT_THAT(State(), Contains("HasTemperature(mug2, 61.2)"));
+  EXPECT_THAT(State(), Not(Contains("HasTemperature(mug2, 62.5)")));
+}
+
+TEST_F(ObservedFluentsTest, ATemperatureIsSaidOfAThingThatIsSeenForTheFirstTime) {
+  See("book1", 7.48, 11.28, 0.73, "book");
+  observed_.temperatures = {{"book1", 19.0}};
+  EXPECT_THAT(Names(Tell().added), Contains("hasTemperatureBook1"));
+  EXPECT_THAT(State(), Contains("HasTemperature(book1, 19)"));
+}
+
 TEST_F(ObservedFluentsTest, PosesThatAreNoNumbersAndUnknownModelsAreErrors) {
   See("mug1", std::nan(""), 0.0, 0.0);
   EXPECT_THROW(Changes(), base::ConfigError);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,6 +46,8 @@ class WorldTracker {
   /// @return what could not be believed, and why.
   std::vector<std::string> OnView(const translation::TranslatorContext& context,
                                   const knowledge::FluentView& fluents);
+  /// What a thermal camera says of objects, in degrees Celsius; holds until something newer comes.
+  void OnTemperatures(const std::map<std::string, double>& degrees);
   /// What runs now: the head is others' while one of these actions may use it.
   void OnActions(const actions::Catalogue& catalogue, const std::vector<std::string>& names);
 
@@ -66,9 +69,10 @@ class WorldTracker {
   HeadSweep sweep_;
   const bool lockstep_;
   const Hooks hooks_;
-  double time_;       // [s] of the last moment
-  double published_;  // [s] when known objects were told of
-  int restarts_{0};   // of the clock
+  double time_;                                 // [s] of the last moment
+  double published_;                            // [s] when known objects were told of
+  std::map<std::string, double> temperatures_;  // [degrees Celsius] by object
+  int restarts_{0};                             // of the clock
   sensing::Missing lack_{sensing::Missing::kNothing};
   std::uint64_t num_moments_{0}, num_looks_{0}, num_dropped_{0};
 };

@@ -9,8 +9,9 @@ constexpr char kSimulatedBase[] = "base_controller/command";
 constexpr char kTransforms[] = "/tf";
 constexpr char kStaticTransforms[] = "/tf_static";
 
-constexpr char kDetections[] = "detections";       ///< what the head's camera recognises
-constexpr char kKnownObjects[] = "known_objects";  ///< what is remembered of it
+constexpr char kDetections[] = "detections";  ///< what the head's camera recognises
+constexpr char kObjectTemperatures[] = "object_temperatures";  ///< what a thermal camera says
+constexpr char kKnownObjects[] = "known_objects";              ///< what is remembered of it
 constexpr char kExecuteAction[] = "execute_action";
 
 /// Between the node that drives and the guard of the base.

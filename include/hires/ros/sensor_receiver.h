@@ -1,6 +1,7 @@
 #pragma once
 
 #include <hires/Detections.h>
+#include <hires/ObjectTemperatures.h>
 #include <hires/WorldState.h>
 #include <nav_msgs/Odometry.h>
 #include <sensor_msgs/JointState.h>
@@ -35,6 +36,9 @@ class SensorReceiver {
   void OnJoints(const sensor_msgs::JointState& msg);
   void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
   void OnDetections(const hires::Detections& msg);
+  /// [degrees Celsius] by object, of those that are sure; the others are left out, and warned of
+  /// where they are wrong.
+  std::map<std::string, double> TemperaturesOf(const hires::ObjectTemperatures& msg);
   /// What another node remembers; taken into account with the next Update.
   void OnKnownObjects(const hires::WorldState& msg);
 

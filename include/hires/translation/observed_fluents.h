@@ -15,6 +15,7 @@ namespace hires::translation {
 struct ObservedWorld {
   GeometricState state;               ///< robot, and objects that were seen, in the map
   std::vector<std::string> vanished;  ///< looked for and not found where they were, lower case
+  std::map<std::string, double> temperatures{};  ///< [degrees Celsius] last measured, by object
 };
 
 /// How much must change before it is said.
@@ -23,6 +24,7 @@ struct ChangeParams {
   double angle{0.05};           ///< [rad]
   double robot_position{0.10};  ///< [m] of the base
   double robot_angle{0.10};     ///< [rad]
+  double temperature{1.0};      ///< [K] of an object
 };
 
 /// The block `changes` of config/world_tracker.yaml.  @throws base::ConfigError naming the key.
@@ -44,7 +46,8 @@ struct FluentUpdate {
 /// what is held, in the base's of what stands on the tray, so that driving does not change them);
 /// BoundingBox of objects; and the object itself where it is new, of the concept that `concepts`
 /// names for its model, else that of the model's name (wine_glass is a WineGlass), else
-/// TabletopObject. A vanished object has neither place nor pose any more.
+/// TabletopObject; HasTemperature of objects that are known. A vanished object has neither place
+/// nor pose any more.
 /// @param said      what the Blackboard says now.
 /// @param concepts  model -> concept.
 /// @pre the context has an ontology.

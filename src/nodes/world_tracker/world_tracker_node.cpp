@@ -58,6 +58,9 @@ void WorldTrackerNode::Subscribe(ros::NodeHandle* nh) {
                                    [this](const auto& msg) { sensors_.OnTransforms(msg, true); });
   SubscribeTo<hires::Detections>(nh, kDetections, 100,
                                  [this](const auto& msg) { sensors_.OnDetections(msg); });
+  SubscribeTo<hires::ObjectTemperatures>(nh, kObjectTemperatures, 100, [this](const auto& msg) {
+    tracker_.OnTemperatures(sensors_.TemperaturesOf(msg));
+  });
   subscribers_.push_back(nh->subscribe(action + "/goal", 10, &Self::OnGoal, this, hints));
   subscribers_.push_back(nh->subscribe(action + "/result", 10, &Self::OnResult, this, hints));
 }
