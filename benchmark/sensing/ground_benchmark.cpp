@@ -17,7 +17,7 @@ void BM_GroundObstacles(benchmark::State& state) {
   const GroundObstacles finder(
       std::make_shared<const navigation::Costmap>(world::SliceWorld(room, 0.1, 0.9), 0.25,
                                                   navigation::CostmapParams{}),
-      test_support::TrayRobot().profile.footprint, {}, {}, 1.4);
+      test_support::TrayRobot().profile.footprint, {}, {});
   room.statics.push_back(test_support::Block("seat", {0.4, 0.4, 0.04}, {4.2, 2.3, 0.47}));
   room.statics.push_back(test_support::Block("box", {0.4, 0.6, 0.3}, {4.5, 1.0, 0.15}));
   const perception::LineOfSight sight(std::make_shared<perception::Surroundings>(room), {});
@@ -26,7 +26,7 @@ void BM_GroundObstacles(benchmark::State& state) {
       test_support::TiltSweep{}.Measure(sight, geometry::Lift(X_MB) * X_BL, &rng);
   std::size_t num_squares = 0;
   for (auto _ : state) {
-    num_squares = finder.Find(cloud, Eigen::Vector3d::Zero(), X_BL, X_MB, &rng).obstacles_M.size();
+    num_squares = finder.Find(cloud, X_BL, X_MB, 1.4, &rng).obstacles_M.size();
   }
   state.counters["squares"] = static_cast<double>(num_squares);
 }

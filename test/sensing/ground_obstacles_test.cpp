@@ -29,7 +29,7 @@ constexpr double kRobotHeight = 1.4;
 GroundObstacles Finder() {
   const auto map = std::make_shared<const navigation::Costmap>(
       world::SliceWorld(test_support::Room(), 0.1, 0.9), 0.25, navigation::CostmapParams{});
-  return {map, test_support::TrayRobot().profile.footprint, {}, {}, kRobotHeight};
+  return {map, test_support::TrayRobot().profile.footprint, {}, {}};
 }
 
 /// The room, and what else stands in it.
@@ -49,7 +49,7 @@ struct Site {
     const perception::LineOfSight sight(std::make_shared<perception::Surroundings>(world), {});
     const test_support::TiltSweep sweep{320, 80, noise, 10.0};
     const auto cloud = sweep.Measure(sight, geometry::Lift(kRobot) * X_FB * kLaser, rng);
-    return Finder().Find(cloud, Vector3d::Zero(), kLaser, kRobot, rng);
+    return Finder().Find(cloud, kLaser, kRobot, kRobotHeight, rng);
   }
   GroundReading Read() const {
     base::Rng rng(1);
@@ -191,23 +191,23 @@ TEST(GroundObstaclesTest, TheSameSeedGivesTheSameBits) {
 TEST(GroundObstaclesTest, WithoutAFloorInSightTheBasesOwnIsTaken) {
   base::Rng rng(1);
   const perception::PointCloud nothing;
-  const GroundReading none = Finder().Find(nothing, Vector3d::Zero(), kLaser, kRobot, &rng);
+  const GroundReading none = Finder().Find(nothing, kLaser, kRobot, kRobotHeight, &rng);
   EXPECT_FALSE(none.floor.is_seen);
   EXPECT_THAT(none.obstacles_M, IsEmpty());
   // Four points of a thing 0.5 m high, 1 m before the robot.
   perception::PointCloud thing{4, 1, std::vector<Eigen::Vector3f>(4, {0.9f, 0.02f, -0.7f})};
-  const GroundReading found = Finder().Find(thing, Vector3d::Zero(), kLaser, kRobot, &rng);
+  const GroundReading found = Finder().Find(thing, kLaser, kRobot, kRobotHeight, &rng);
   EXPECT_FALSE(found.floor.is_seen);
   ASSERT_EQ(found.obstacles_M.size(), 1u);
   EXPECT_TRUE(geometry::Contains(found.obstacles_M[0], {4.0, 2.02}));
   thing.points.resize(2);
-  EXPECT_THAT(Finder().Find(thing, Vector3d::Zero(), kLaser, kRobot, &rng).obstacles_M, IsEmpty());
+  EXPECT_THAT(Finder().Find(thing, kLaser, kRobot, kRobotHeight, &rng).obstacles_M, IsEmpty());
 }
 
 TEST(GroundObstaclesTest, PointsOverTheFootprintAreTheRobotsOwn) {
   base::Rng rng(1);
   const perception::PointCloud own{4, 1, std::vector<Eigen::Vector3f>(4, {0.1f, 0.1f, -0.7f})};
-  EXPECT_THAT(Finder().Find(own, Vector3d::Zero(), kLaser, kRobot, &rng).obstacles_M, IsEmpty());
+  EXPECT_THAT(Finder().Find(own, kLaser, kRobot, kRobotHeight, &rng).obstacles_M, IsEmpty());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <hires/Detection.h>
 #include <nav_msgs/Odometry.h>
 #include <sensor_msgs/JointState.h>
+#include <sensor_msgs/PointCloud2.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "hires/geometry/pose.h"
 #include "hires/perception/detector.h"
+#include "hires/perception/point_cloud.h"
 #include "hires/robot/observation.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/sensing/readings.h"
@@ -39,6 +41,11 @@ JointReading FromMsg(const sensor_msgs::JointState& msg);
 sensor_msgs::JointState ToMsg(const JointReading& joints, const ros::Time& stamp);
 
 OdometryReading FromMsg(const nav_msgs::Odometry& msg);
+
+/// Its fields x, y and z, of any layout in little-endian single precision; others are passed over.
+/// @throws hires::base::ConfigError naming the field that is missing or of another type, or sizes
+/// that do not fit.
+hires::perception::PointCloud FromMsg(const sensor_msgs::PointCloud2& msg);
 
 /// A confidence of 0, which the recogniser did not tell, counts as 1; an empty instance as not
 /// known.

@@ -1,26 +1,32 @@
 #include "nodes/middle_layer/robot_inputs.h"
 
+#include "hires/base/error.h"
+#include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 
 namespace hires_ros {
 namespace {
 
-hires::sensing::ScanObstacles ObstaclesOf(const hires::imagination::ImaginationSetup& setup,
-                                          const hires::sensing::ScanParams& params) {
+constexpr std::uint64_t kFloorSeed = 1;  // the search for the floor; any will do
+
+hires::geometry::Polygon FootprintOf(const hires::imagination::ImaginationSetup& setup) {
   const hires::robot::RobotProfile& profile = setup.scene->robot.profile;
-  return {setup.skills->driving->costmap,
-          hires::geometry::Padded(profile.footprint, profile.footprint_padding), params};
+  return hires::geometry::Padded(profile.footprint, profile.footprint_padding);
 }
 
 }  // namespace
 
 RobotInputs::RobotInputs(const hires::imagination::ImaginationSetup& setup,
                          const hires::control::RobotNames& names,
-                         const hires::sensing::ScanParams& scan, Hooks hooks, ros::NodeHandle* nh)
+                         const hires::sensing::ScanParams& scan,
+                         const hires::sensing::GroundWatchParams& ground, Hooks hooks,
+                         ros::NodeHandle* nh)
     : names_(names),
       hooks_(std::move(hooks)),
       sensors_({setup.scene, &setup.scene->robot}, setup.scene->surroundings, names, setup.sensing),
-      observations_(&sensors_.state(), ObstaclesOf(setup, scan)) {
+      observations_(&sensors_.state(), {setup.skills->driving->costmap, FootprintOf(setup), scan}),
+      ground_(&sensors_.state(), {setup.scene, &setup.scene->robot}, setup.skills->driving->costmap,
+              FootprintOf(setup), scan, ground, hires::base::Rng(kFloorSeed)) {
   Subscribe(nh);
 }
 
@@ -37,6 +43,9 @@ void RobotInputs::Subscribe(ros::NodeHandle* nh) {
                                          ros::VoidConstPtr(), hints));
   add(nh->subscribe<tf2_msgs::TFMessage>(kStaticTransforms, 100, on_transforms(true)));
   add(nh->subscribe(names_.base_scan, 10, &RobotInputs::OnScan, this, hints));
+  if (!names_.tilt_cloud.empty()) {
+    add(nh->subscribe(names_.tilt_cloud, 2, &RobotInputs::OnCloud, this, hints));
+  }
   add(nh->subscribe(kDetections, 10, &RobotInputs::OnDetections, this, hints));
   add(nh->subscribe(kKnownObjects, 10, &SensorReceiver::OnKnownObjects, &sensors_, hints));
 }
@@ -68,6 +77,16 @@ void RobotInputs::OnScan(const sensor_msgs::LaserScan& msg) {
   hooks_.arrived(names_.base_scan, stamp);
 }
 
+void RobotInputs::OnCloud(const sensor_msgs::PointCloud2& msg) {
+  try {
+    const auto receipt =
+        ground_.OnCloud(msg.header.stamp.toSec(), msg.header.frame_id, FromMsg(msg));
+    if (receipt.is_bad()) sensors_.Warn(names_.tilt_cloud, hires::sensing::ToString(receipt));
+  } catch (const hires::base::ConfigError& error) {
+    sensors_.Warn(names_.tilt_cloud, error.what());
+  }
+}
+
 void RobotInputs::OnDetections(const hires::Detections& msg) {
   sensors_.OnDetections(msg);
   hooks_.arrived(kDetections, msg.header.stamp.toSec());
@@ -77,6 +96,11 @@ hires::robot::Observation RobotInputs::ObservationOf(const hires::sensing::Robot
   hires::robot::Observation seen = observations_.Observe(now);
   const hires::sensing::Receipt& scan = observations_.scan_receipt();
   if (scan.is_bad()) sensors_.Warn(names_.base_scan, hires::sensing::ToString(scan));
+  const auto& on_the_floor = ground_.Obstacles(now);
+  seen.obstacles_M.insert(seen.obstacles_M.end(), on_the_floor.begin(), on_the_floor.end());
+  if (ground_.receipt().is_bad()) {
+    sensors_.Warn(names_.tilt_cloud, hires::sensing::ToString(ground_.receipt()));
+  }
   sensors_.Update(now);
   if (sensors_.objects()) seen.objects = sensors_.objects()->memory().Known(now.Body());
   return seen;

@@ -4,6 +4,7 @@
 #include <nav_msgs/Odometry.h>
 #include <ros/node_handle.h>
 #include <sensor_msgs/LaserScan.h>
+#include <sensor_msgs/PointCloud2.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <functional>
@@ -12,6 +13,7 @@
 
 #include "hires/imagination/imagination_setup.h"
 #include "hires/ros/sensor_receiver.h"
+#include "hires/sensing/ground_watch.h"
 #include "hires/sensing/observation_maker.h"
 #include "hires/sensing/scan_obstacles.h"
 
@@ -28,7 +30,7 @@ class RobotInputs {
 
   RobotInputs(const hires::imagination::ImaginationSetup& setup,
               const hires::control::RobotNames& names, const hires::sensing::ScanParams& scan,
-              Hooks hooks, ros::NodeHandle* nh);
+              const hires::sensing::GroundWatchParams& ground, Hooks hooks, ros::NodeHandle* nh);
 
   const hires::sensing::RobotStateEstimator& state() const { return sensors_.state(); }
 
@@ -45,12 +47,14 @@ class RobotInputs {
   void OnJoints(const sensor_msgs::JointState& msg);
   void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
   void OnScan(const sensor_msgs::LaserScan& msg);
+  void OnCloud(const sensor_msgs::PointCloud2& msg);
   void OnDetections(const hires::Detections& msg);
 
   const hires::control::RobotNames names_;
   const Hooks hooks_;
   SensorReceiver sensors_;
   hires::sensing::ObservationMaker observations_;
+  hires::sensing::GroundWatch ground_;
   int num_restarts_{0};  // of the robot's clock
   std::vector<ros::Subscriber> subscribers_;
 };

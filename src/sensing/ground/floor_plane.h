@@ -4,16 +4,9 @@
 #include <vector>
 
 #include "hires/base/rng.h"
+#include "hires/sensing/ground_watch.h"
 
 namespace hires::sensing {
-
-struct FloorParams {
-  double max_tilt{0.03};    ///< [rad] of the floor against the base: what is steeper is no floor
-  double max_offset{0.03};  ///< [m] of the floor below or above the base's origin
-  double inlier{0.015};     ///< [m] a point this near to a plane is of it
-  double min_share{0.3};    ///< of the points that may be floor, in the plane
-  int min_points{100};      ///< in the plane
-};
 
 /// The plane z = slope . (x, y) + offset in the frame of the base.
 struct FloorPlane {

@@ -21,16 +21,12 @@ struct Cell {
 
 GroundObstacles::GroundObstacles(std::shared_ptr<const navigation::Costmap> map,
                                  geometry::Polygon footprint, const ScanParams& scan,
-                                 const GroundParams& params, double robot_height)
-    : map_(std::move(map)),
-      footprint_(std::move(footprint)),
-      scan_(scan),
-      params_(params),
-      robot_height_(robot_height) {}
+                                 const GroundParams& params)
+    : map_(std::move(map)), footprint_(std::move(footprint)), scan_(scan), params_(params) {}
 
-GroundReading GroundObstacles::Find(const perception::PointCloud& cloud, const Vector3d& p_CE,
+GroundReading GroundObstacles::Find(const perception::PointCloud& cloud,
                                     const geometry::Pose3& X_BC, const geometry::Pose2& X_MB,
-                                    base::Rng* rng) const {
+                                    double robot_height, base::Rng* rng) const {
   const Eigen::Matrix3d R_BC = X_BC.rotation.toRotationMatrix();
   std::vector<Vector3d> points_B;
   points_B.reserve(cloud.points.size());
@@ -42,20 +38,22 @@ GroundReading GroundObstacles::Find(const perception::PointCloud& cloud, const V
   }
   GroundReading reading;
   reading.floor = FindFloor(points_B, params_.floor, rng);
-  reading.obstacles_M = Squares(Marks(points_B, X_BC * p_CE, reading.floor), X_MB);
+  reading.obstacles_M =
+      Squares(Marks(points_B, X_BC.translation, reading.floor, robot_height), X_MB);
   return reading;
 }
 
 /// Points that stand out, and where beams go through the floor.
 std::vector<Vector3d> GroundObstacles::Marks(const std::vector<Vector3d>& points_B,
-                                             const Vector3d& p_BE, const FloorPlane& floor) const {
-  const double eye = floor.HeightOf(p_BE);
+                                             const Vector3d& p_BC, const FloorPlane& floor,
+                                             double robot_height) const {
+  const double eye = floor.HeightOf(p_BC);
   std::vector<Vector3d> marks_B;
   for (const Vector3d& p_B : points_B) {
     const double height = floor.HeightOf(p_B);
-    if (height >= params_.min_height && height <= robot_height_) marks_B.push_back(p_B);
+    if (height >= params_.min_height && height <= robot_height) marks_B.push_back(p_B);
     if (height <= -params_.min_depth && eye > 0.0) {
-      marks_B.emplace_back(p_BE + eye / (eye - height) * (p_B - p_BE));
+      marks_B.emplace_back(p_BC + eye / (eye - height) * (p_B - p_BC));
     }
   }
   return marks_B;

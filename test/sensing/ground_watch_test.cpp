@@ -1,0 +1,139 @@
+#include "hires/sensing/ground_watch.h"
+
+#include <gmock/gmock.h>
+
+#include "hires/base/error.h"
+#include "hires/base/param_reader.h"
+#include "hires/perception/camera_view.h"
+#include "support/fake_frame_tree.h"
+#include "support/scenes.h"
+#include "support/sight_scenes.h"
+#include "support/tilt_sweep.h"
+
+namespace hires::sensing::ground_watch_test {
+namespace {
+
+using geometry::Pose2;
+using geometry::Pose3;
+using test_support::At;
+using testing::IsEmpty;
+using testing::Not;
+
+const Pose3 kLaser = At(0.1, 0.0, 1.3);  // in the base
+
+/// A robot with a laser over its torso, in a room with a box that the map does not have.
+class GroundWatchTest : public testing::Test {
+ protected:
+  explicit GroundWatchTest(const GroundWatchParams& params = {})
+      : watch_(&state_, robot_,
+               std::make_shared<const navigation::Costmap>(
+                   world::SliceWorld(test_support::Room(), 0.1, 0.9), 0.25,
+                   navigation::CostmapParams{}),
+               robot_->profile.footprint, {}, params, base::Rng(1)) {
+    tree_->TellFixed("base", "laser", kLaser);
+  }
+  void Stand(double time, const Pose2& X_MB) {
+    tree_->Tell("map", "odom", time, {});
+    state_.OnTransforms(time);
+    state_.OnOdometry(time, "odom", "", {X_MB, {}});
+    state_.OnJoints(time, {{{"a", 1.0}}, {{"a", 0.5}}});
+  }
+  /// A sweep in the laser's frame, in which the robot sees itself.
+  perception::PointCloud Sweep(const Pose2& X_MB) {
+    world::World room = test_support::Room();
+    room.statics.push_back(test_support::Block("box", {0.3, 0.3, 0.3}, {4.5, 2.0, 0.15}));
+    const perception::LineOfSight sight(std::make_shared<perception::Surroundings>(room), {},
+                                        perception::ShapesOf(*robot_, X_MB, {}));
+    base::Rng rng(2);
+    return test_support::TiltSweep{320, 80}.Measure(sight, geometry::Lift(X_MB) * kLaser, &rng);
+  }
+  std::vector<geometry::Polygon> Obstacles(double time) {
+    return watch_.Obstacles(*state_.At(time));
+  }
+  static void ExpectTheBoxAndNothingElse(const std::vector<geometry::Polygon>& squares) {
+    EXPECT_THAT(squares, Not(IsEmpty()));
+    const geometry::Polygon box{{4.35, 1.85}, {4.65, 1.85}, {4.65, 2.15}, {4.35, 2.15}};
+    for (const geometry::Polygon& square : squares) {
+      EXPECT_LT(geometry::Distance(square, box), 0.02) << square[0].transpose();
+    }
+  }
+
+  std::shared_ptr<test_support::FakeFrameTree> tree_ =
+      std::make_shared<test_support::FakeFrameTree>();
+  /// Its mast stands out of its footprint, before the laser.
+  std::shared_ptr<const robot::Robot> robot_ = [] {
+    robot::Robot robot = test_support::TrayRobot();
+    robot.model.links[0].collisions.push_back(
+        test_support::Shape("arm", geometry::Box{{0.1, 0.1, 0.1}}, {0.7, 0.3, 0.8}));
+    return std::make_shared<const robot::Robot>(robot);
+  }();
+  RobotStateEstimator state_{robot_, {"map", "odom", "base"}, {}, {}, tree_};
+  GroundWatch watch_;
+};
+
+TEST_F(GroundWatchTest, WhatStandsOnTheFloorIsSeenWithoutTheRobotsOwnArm) {
+  Stand(1.0, {3.0, 2.0, 0.0});
+  EXPECT_TRUE(watch_.OnCloud(1.0, "laser", Sweep({3.0, 2.0, 0.0})).is_taken());
+  ExpectTheBoxAndNothingElse(Obstacles(1.0));
+  EXPECT_FALSE(watch_.receipt().is_bad());
+}
+
+TEST_F(GroundWatchTest, ACloudIsPutWhereTheRobotWasWhenItWasTaken) {
+  Stand(1.0, {3.0, 2.0, 0.0});
+  watch_.OnCloud(1.0, "laser", Sweep({3.0, 2.0, 0.0}));
+  Stand(1.1, {3.1, 2.0, 0.1});
+  ExpectTheBoxAndNothingElse(Obstacles(1.1));
+}
+
+class GroundWatchByEyeTest : public GroundWatchTest {
+ protected:
+  GroundWatchByEyeTest()
+      : GroundWatchTest([] {
+          GroundWatchParams params;
+          params.eye = "laser";
+          return params;
+        }()) {}
+};
+
+TEST_F(GroundWatchByEyeTest, ACloudInAnotherFrameIsLookedAtFromTheEye) {
+  Stand(1.0, {3.0, 2.0, 0.0});
+  perception::PointCloud cloud = Sweep({3.0, 2.0, 0.0});
+  for (Eigen::Vector3f& p : cloud.points) p += kLaser.translation.cast<float>();
+  watch_.OnCloud(1.0, "base", std::move(cloud));
+  ExpectTheBoxAndNothingElse(Obstacles(1.0));
+}
+
+TEST_F(GroundWatchTest, WhatWasSeenIsForgottenAfterAWhile) {
+  Stand(1.0, {3.0, 2.0, 0.0});
+  watch_.OnCloud(1.0, "laser", Sweep({3.0, 2.0, 0.0}));
+  EXPECT_THAT(Obstacles(1.0), Not(IsEmpty()));
+  for (double time = 1.05; time < 6.2; time += 0.05) Stand(time, {3.0, 2.0, 0.0});
+  EXPECT_THAT(Obstacles(5.9), Not(IsEmpty()));
+  EXPECT_THAT(Obstacles(6.1), IsEmpty());
+}
+
+TEST_F(GroundWatchTest, ACloudOfAFrameNobodyKnowsOrWithoutAStampIsDroppedByName) {
+  Stand(1.0, {3.0, 2.0, 0.0});
+  EXPECT_EQ(watch_.OnCloud(0.0, "laser", {}).what, Reception::kNoStamp);
+  watch_.OnCloud(1.0, "submarine", Sweep({3.0, 2.0, 0.0}));
+  EXPECT_THAT(Obstacles(1.0), IsEmpty());
+  EXPECT_TRUE(watch_.receipt().is_bad());
+  EXPECT_EQ(watch_.receipt().subject, "submarine");
+}
+
+TEST(GroundWatchParamsTest, TheShippedOnesAreTheDefaultsAndABadOneIsNamed) {
+  auto in = base::ParamReader::FromFile(HIRES_SOURCE_DIR "/config/middle_layer.yaml");
+  const GroundWatchParams params = ReadGroundWatchParams(in.Sub("ground"));
+  EXPECT_EQ(params.ground.min_height, GroundParams{}.min_height);
+  EXPECT_EQ(params.self.padding, perception::SelfFilterParams{}.padding);
+  const auto bad = base::ParamReader::FromString("max_tilt: 3.0\n", "test.yaml");
+  try {
+    ReadGroundWatchParams(bad);
+    FAIL() << "was taken";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("max_tilt"));
+  }
+}
+
+}  // namespace
+}  // namespace hires::sensing::ground_watch_test
