@@ -2,7 +2,8 @@
 
 #include "hires/evaluation/sim_robot_sensors.h"
 
-/// What the sensors of the simulated robot cost that other programs look through, in the restaurant.
+/// What the sensors of the simulated robot cost that other programs look through, in the
+/// restaurant.
 namespace hires::evaluation {
 namespace {
 

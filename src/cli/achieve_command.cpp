@@ -169,6 +169,31 @@ void AddFiles(CLI::App* verb, CLI::Option* local, loop::LoopFiles* files) {
   for (const auto& [name, file, what] : options) verb->add_option(name, *file, what)->needs(local);
 }
 
+/// How a task is played in one process.
+void AddLocalOptions(CLI::App* verb, CLI::Option* local, AchieveOptions* options) {
+  verb->add_flag("--dry-run", options->is_dry_run,
+                 "with --local: plan and imagine, print what the robot would do and when, begin "
+                 "nothing; of running nodes the execution monitor decides (~dry_run)")
+      ->needs(local);
+  verb->add_option("--seed", options->seed,
+                   "with --local: of the hidden truth, all noise and imagination; default: 1")
+      ->check(NumberBetween(0, 2'147'483'647))
+      ->needs(local);
+  verb->add_option("--truth", options->truth,
+                   "with --local: file, or its name in config/truths: what robot and world are "
+                   "really like; default: same, imagination's own model")
+      ->needs(local);
+  verb->add_option("--sensing", options->sensing,
+                   "with --local: fitted, ideal or pictures (objects are recognised in what the "
+                   "depth camera measures), in place of what the truth says")
+      ->check(CLI::IsMember({"fitted", "ideal", "pictures"}))
+      ->needs(local);
+  verb->add_option("--threads", options->threads,
+                   "with --local: that play rollouts; the answer is the same for any; default: 2")
+      ->check(NumberBetween(1, 256))
+      ->needs(local);
+}
+
 }  // namespace
 
 void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
@@ -206,27 +231,7 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
           "with --local: file like config/loop.yaml, its default: what takes how long in "
           "virtual time, and which messages are late or lost; its paths count from its folder")
       ->needs(local);
-  verb->add_flag("--dry-run", options->is_dry_run,
-                 "with --local: plan and imagine, print what the robot would do and when, begin "
-                 "nothing; of running nodes the execution monitor decides (~dry_run)")
-      ->needs(local);
-  verb->add_option("--seed", options->seed,
-                   "with --local: of the hidden truth, all noise and imagination; default: 1")
-      ->check(NumberBetween(0, 2'147'483'647))
-      ->needs(local);
-  verb->add_option("--truth", options->truth,
-                   "with --local: file, or its name in config/truths: what robot and world are "
-                   "really like; default: same, imagination's own model")
-      ->needs(local);
-  verb->add_option("--sensing", options->sensing,
-                   "with --local: fitted, ideal or pictures (objects are recognised in what the "
-                   "depth camera measures), in place of what the truth says")
-      ->check(CLI::IsMember({"fitted", "ideal", "pictures"}))
-      ->needs(local);
-  verb->add_option("--threads", options->threads,
-                   "with --local: that play rollouts; the answer is the same for any; default: 2")
-      ->check(NumberBetween(1, 256))
-      ->needs(local);
+  AddLocalOptions(verb, local, options);
   verb->add_option("--record", options->record,
                    "with --local: write the episode to this bag, as a robot's would be; see "
                    "`hires replay`");
