@@ -157,7 +157,6 @@ void ReadTopicsAndServers(ParamReader* in, RobotNames* names) {
   names->joint_states = must("joint_states");
   names->localisation = must("localisation");
   names->base_scan = must("base_scan");
-  if (in->Has("tilt_cloud")) names->tilt_cloud = may("tilt_cloud");
   names->map = must("map");
   names->static_map = may("static_map");
   names->motors_halted = may("motors_halted");

@@ -69,7 +69,6 @@ TEST(RobotNamesTest, ThePr2IsCalledWhatItIsCalled) {
   EXPECT_EQ(names.joint_states, "joint_states");
   EXPECT_EQ(names.localisation, "amcl_pose");
   EXPECT_EQ(names.base_scan, "base_scan");
-  EXPECT_EQ(names.tilt_cloud, "tilt_scan_cloud");
   EXPECT_EQ(names.map, "map");
   EXPECT_EQ(names.static_map, "static_map");
   EXPECT_EQ(names.motors_halted, "pr2_ethercat/motors_halted");
@@ -181,11 +180,6 @@ INSTANTIATE_TEST_SUITE_P(
                       BadFile{"[max_vel_x]", "max_vel_x", {"max_linear_velocity", "list"}},
                       BadFile{"[max_vel_x]", "[max vel]", {"'max vel' is no parameter's name"}},
                       BadFile{"[max_vel_x]", "[a, a]", {"'a' stands twice"}}));
-
-TEST(RobotNamesTest, TheCloudOfTheFloorMayBeLeftOut) {
-  EXPECT_EQ(ParseRobotNames(Changed("tilt_cloud: tilt_scan_cloud", ""), "x").tilt_cloud, "");
-  EXPECT_EQ(ParseRobotNames(Changed("tilt_scan_cloud", "''"), "x").tilt_cloud, "");
-}
 
 TEST(RobotNamesTest, ARobotMayHaveNoSwitchForItsMotorsAndNoMapServer) {
   EXPECT_EQ(ParseRobotNames(Changed("pr2_ethercat/motors_halted", "''"), "x").motors_halted, "");

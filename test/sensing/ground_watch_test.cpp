@@ -126,7 +126,7 @@ TEST(GroundWatchParamsTest, TheShippedOnesAreTheDefaultsAndABadOneIsNamed) {
   const GroundWatchParams params = ReadGroundWatchParams(in.Sub("ground"));
   EXPECT_EQ(params.ground.min_height, GroundParams{}.min_height);
   EXPECT_EQ(params.self.padding, perception::SelfFilterParams{}.padding);
-  const auto bad = base::ParamReader::FromString("max_tilt: 3.0\n", "test.yaml");
+  const auto bad = base::ParamReader::FromString("enabled: true\nmax_tilt: 3.0\n", "test.yaml");
   try {
     ReadGroundWatchParams(bad);
     FAIL() << "was taken";

@@ -43,15 +43,14 @@ struct SensorNames {
 struct RobotNames {
   std::string map_frame, odometry_frame, base_frame;  ///< REP 105
 
-  std::string base_command;  ///< geometry_msgs/Twist
-  std::string odometry;      ///< nav_msgs/Odometry
-  std::string joint_states;  ///< sensor_msgs/JointState
-  std::string localisation;  ///< geometry_msgs/PoseWithCovarianceStamped; its covariance counts
-  std::string base_scan;     ///< sensor_msgs/LaserScan
-  std::string tilt_cloud;    ///< sensor_msgs/PointCloud2 that shows the floor; empty: there is none
-  std::string map;           ///< nav_msgs/OccupancyGrid, latched
-  std::string static_map;    ///< nav_msgs/GetMap, where no map is latched; empty: none
-  std::string motors_halted;      ///< std_msgs/Bool; empty: the robot has none
+  std::string base_command;   ///< geometry_msgs/Twist
+  std::string odometry;       ///< nav_msgs/Odometry
+  std::string joint_states;   ///< sensor_msgs/JointState
+  std::string localisation;   ///< geometry_msgs/PoseWithCovarianceStamped; its covariance counts
+  std::string base_scan;      ///< sensor_msgs/LaserScan
+  std::string map;            ///< nav_msgs/OccupancyGrid, latched
+  std::string static_map;     ///< nav_msgs/GetMap, where no map is latched; empty: none
+  std::string motors_halted;  ///< std_msgs/Bool; empty: the robot has none
   std::string robot_description;  ///< parameter
 
   /// Group of joints -> topic of its controller; of an action its goals (".../goal").

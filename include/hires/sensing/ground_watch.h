@@ -28,6 +28,7 @@ struct GroundParams {
 };
 
 struct GroundWatchParams {
+  bool is_enabled{false};  ///< else nobody listens to the clouds
   GroundParams ground{};
   perception::SelfFilterParams self{};
   std::string eye{};  ///< frame where clouds are seen from; empty: the clouds' own

@@ -27,10 +27,10 @@ RobotInputs::RobotInputs(const hires::imagination::ImaginationSetup& setup,
       observations_(&sensors_.state(), {setup.skills->driving->costmap, FootprintOf(setup), scan}),
       ground_(&sensors_.state(), {setup.scene, &setup.scene->robot}, setup.skills->driving->costmap,
               FootprintOf(setup), scan, ground, hires::base::Rng(kFloorSeed)) {
-  Subscribe(nh);
+  Subscribe(ground.is_enabled && !names.sensors.tilt_cloud.empty(), nh);
 }
 
-void RobotInputs::Subscribe(ros::NodeHandle* nh) {
+void RobotInputs::Subscribe(bool is_floor_watched, ros::NodeHandle* nh) {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   const auto add = [&](ros::Subscriber subscriber) { subscribers_.push_back(subscriber); };
   add(nh->subscribe(names_.odometry, 100, &RobotInputs::OnOdometry, this, hints));
@@ -43,8 +43,8 @@ void RobotInputs::Subscribe(ros::NodeHandle* nh) {
                                          ros::VoidConstPtr(), hints));
   add(nh->subscribe<tf2_msgs::TFMessage>(kStaticTransforms, 100, on_transforms(true)));
   add(nh->subscribe(names_.base_scan, 10, &RobotInputs::OnScan, this, hints));
-  if (!names_.tilt_cloud.empty()) {
-    add(nh->subscribe(names_.tilt_cloud, 2, &RobotInputs::OnCloud, this, hints));
+  if (is_floor_watched) {
+    add(nh->subscribe(names_.sensors.tilt_cloud, 2, &RobotInputs::OnCloud, this, hints));
   }
   add(nh->subscribe(kDetections, 10, &RobotInputs::OnDetections, this, hints));
   add(nh->subscribe(kKnownObjects, 10, &SensorReceiver::OnKnownObjects, &sensors_, hints));
@@ -81,9 +81,10 @@ void RobotInputs::OnCloud(const sensor_msgs::PointCloud2& msg) {
   try {
     const auto receipt =
         ground_.OnCloud(msg.header.stamp.toSec(), msg.header.frame_id, FromMsg(msg));
-    if (receipt.is_bad()) sensors_.Warn(names_.tilt_cloud, hires::sensing::ToString(receipt));
+    if (receipt.is_bad())
+      sensors_.Warn(names_.sensors.tilt_cloud, hires::sensing::ToString(receipt));
   } catch (const hires::base::ConfigError& error) {
-    sensors_.Warn(names_.tilt_cloud, error.what());
+    sensors_.Warn(names_.sensors.tilt_cloud, error.what());
   }
 }
 
@@ -99,7 +100,7 @@ hires::robot::Observation RobotInputs::ObservationOf(const hires::sensing::Robot
   const auto& on_the_floor = ground_.Obstacles(now);
   seen.obstacles_M.insert(seen.obstacles_M.end(), on_the_floor.begin(), on_the_floor.end());
   if (ground_.receipt().is_bad()) {
-    sensors_.Warn(names_.tilt_cloud, hires::sensing::ToString(ground_.receipt()));
+    sensors_.Warn(names_.sensors.tilt_cloud, hires::sensing::ToString(ground_.receipt()));
   }
   sensors_.Update(now);
   if (sensors_.objects()) seen.objects = sensors_.objects()->memory().Known(now.Body());

@@ -42,7 +42,7 @@ class RobotInputs {
   int num_bad() const { return sensors_.num_bad(); }  ///< messages, or parts of them
 
  private:
-  void Subscribe(ros::NodeHandle* nh);
+  void Subscribe(bool is_floor_watched, ros::NodeHandle* nh);
   void OnOdometry(const nav_msgs::Odometry& msg);
   void OnJoints(const sensor_msgs::JointState& msg);
   void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);

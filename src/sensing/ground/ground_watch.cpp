@@ -13,6 +13,7 @@ using base::Between;
 
 GroundWatchParams ReadGroundWatchParams(base::ParamReader in) {
   GroundWatchParams params;
+  params.is_enabled = in.GetBool("enabled");
   params.ground.floor.max_tilt = in.Get("max_tilt", Between(0.0, 0.3));
   params.ground.floor.max_offset = in.Get("max_offset", Between(0.0, 0.3));
   params.ground.min_height = in.Get("min_height", Between(0.005, 0.5));
