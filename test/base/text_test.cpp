@@ -131,6 +131,16 @@ TEST_F(ReadTextFileTest, FoldersAndDevicesAreNoFiles) {
               ThrowsMessage<ConfigError>(HasSubstr("no regular file")));
 }
 
+TEST_F(ReadTextFileTest, AFileIsReplacedWholeOrNotAtAll) {
+  const std::string path = Write("a.txt", "before");
+  ReplaceTextFile(path, std::string("a\0b", 3));
+  EXPECT_EQ(ReadTextFile(path), std::string("a\0b", 3));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1)
+      << "nothing unfinished is left";
+  EXPECT_THAT([] { ReplaceTextFile("/no/such/folder/x.csv", "x"); },
+              ThrowsMessage<ConfigError>(HasSubstr("/no/such/folder/x.csv: cannot be written")));
+}
+
 TEST_F(ReadTextFileTest, AForbiddenFileIsNamed) {
   const std::string path = Write("secret.txt", "a");
   std::filesystem::permissions(path, std::filesystem::perms::none);

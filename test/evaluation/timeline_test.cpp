@@ -141,9 +141,5 @@ TEST(TimelineJsonTest, HoldsStepsAndImaginations) {
   EXPECT_TRUE(json["timeline"][1]["dispatch"].is_null());
 }
 
-TEST(WriteTextTest, AFolderThatIsMissingIsAnError) {
-  EXPECT_THROW(WriteText("x", "/no/such/folder/x.csv"), base::ConfigError);
-}
-
 }  // namespace
 }  // namespace hires::evaluation::timeline_test
