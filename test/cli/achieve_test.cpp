@@ -342,7 +342,7 @@ TEST_F(AchieveVerbTest, BadInputIsRefusedBeforeTheRobotSetsOut) {
 TEST_F(AchieveVerbTest, TheTasksOfADomainAreListedWithTheirParameters) {
   const Ended ended = Run({"--list"});
   EXPECT_EQ(ended.code, kExitAchieved) << ended.err;
-  EXPECT_THAT(ended.out, HasSubstr("serve_coffee_to_guest     ?guest"));
+  EXPECT_THAT(ended.out, HasSubstr("serve_coffee_to_guest      ?guest"));
   const std::string domain = folder_.Write(
       "d.lisp", "(defdomain d ((:operator (!wave) () () ()) (:method (greet ?who) () ((!wave)))))");
   EXPECT_THAT(Run({"--list", "--domain", domain}).out, HasSubstr("greet  ?who"));

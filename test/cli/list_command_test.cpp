@@ -105,7 +105,8 @@ TEST(ListCommandTest, FilesOfThePackageAreFound) {
                           robots + "pr2.yaml"));
   EXPECT_THAT(ColumnOf(Listed({"worlds"}), "world"),
               ElementsAre(worlds + "restaurant.world", worlds + "workshop.world"));
-  EXPECT_THAT(ColumnOf(Listed({"scenarios"}), "scenario"), ElementsAre("serve_coffee", "topple"));
+  EXPECT_THAT(ColumnOf(Listed({"scenarios"}), "scenario"),
+              ElementsAre("hot_coffee", "serve_coffee", "topple"));
   EXPECT_THAT(ColumnOf(Listed({"truths"}), "truth"), ElementsAre("foreign", "harsh", "same"));
 }
 
@@ -142,7 +143,7 @@ TEST(ListCommandTest, ATableForPeopleAndAFileForMachines) {
   const Ended ended = List({"scenarios", "--json", path});
   EXPECT_THAT(ended.out, AllOf(HasSubstr("scenario"), HasSubstr("serve_coffee_to_guest guest1"),
                                Not(HasSubstr("{"))));
-  EXPECT_EQ(nlohmann::json::parse(base::ReadTextFile(path)).size(), 2u);
+  EXPECT_EQ(nlohmann::json::parse(base::ReadTextFile(path)).size(), 3u);
 }
 
 TEST(ListCommandTest, WhatItCannotListIsRefused) {

@@ -23,6 +23,7 @@
 #include "hires/knowledge/loading.h"
 #include "hires/knowledge/store.h"
 #include "hires/navigation/base_guard.h"
+#include "hires/perception/recogniser_config.h"
 #include "hires/planning/operator_data.h"
 #include "hires/planning/planner_config.h"
 #include "hires/planning/planning_files.h"
@@ -83,6 +84,7 @@ const std::map<std::string, Reader>& Readers() {
       {"base_guard.yaml", [](const std::string& path) { navigation::ReadBaseGuardParams(path); }},
       {"scenarios", [](const std::string& path) { evaluation::ReadScenario(path); }},
       {"episode.yaml", [](const std::string& path) { evaluation::ReadEpisodeConfig(path); }},
+      {"recogniser.yaml", [](const std::string& path) { perception::ReadRecogniserConfig(path); }},
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
       {"relay.yaml",
        [](const std::string& path) {

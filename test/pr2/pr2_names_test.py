@@ -127,7 +127,8 @@ class Pr2NamesTest(unittest.TestCase):
     @staticmethod
     def is_own(topic):
         return topic.startswith(('/execute_action/', '/achieve/', '/imagine/', '/plan/',
-                                 '/worker_', '/base_guard/', '/blackboard/', '/clock'))
+                                 '/worker_', '/base_guard/', '/blackboard/', '/clock',
+                                 '/object_temperatures'))
 
     def test_types_are_those_of_a_pr2(self):
         types = self.lab.main.topic_types()

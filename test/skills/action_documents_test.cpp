@@ -90,6 +90,7 @@ TEST(ActionDocumentsTest, LispHasAnOperatorForEachAction) {
 
 TEST(ActionDocumentsTest, LispHasNoOperatorThatNobodyCanDo) {
   for (const planning::Operator& one : TheDomain().operators) {
+    if (one.head.Head().substr(0, 2) == "!!") continue;  // bookkeeping, which nobody does
     const std::string name = NameOf(one);
     const ActionSpec* spec = OwnActions().Find(name);
     EXPECT_TRUE(name == kImagine || (spec != nullptr && spec->is_operator))
