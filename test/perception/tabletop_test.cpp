@@ -104,7 +104,7 @@ TEST(FindTableTest, WhatIsNoTableIsNotFound) {
 
 // The floor is the larger plane, and what is beside the table or high above it is no thing on it.
 TEST(FindTableTest, TheFloorIsNoTableForWhoKnowsHowTheCameraStands) {
-  TableScene scene(0.5);
+  TableScene scene(0.3);
   scene.PutBox({0.05, 0.05, 0.1}, 0.0, 0.0);
   scene.PutBox({0.3, 2.0, 2.0}, 0.9, 0.0, -kTableHeight);
   const PointCloud cloud = scene.Seen(1, 3.0);
