@@ -28,7 +28,8 @@ def diagnostics(rospy, name, condition):
 
     subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, take)
     try:
-        wait_until(lambda: found and condition(found), 'diagnostics of ' + name)
+        wait_until(lambda: found and condition(found), lambda: 'diagnostics of %s; connected to %d, heard %s'
+                   % (name, subscriber.get_num_connections(), found))
     finally:
         subscriber.unregister()
     return found
