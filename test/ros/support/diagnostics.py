@@ -15,9 +15,18 @@ def wait_for_middle_layer(rospy):
 
 
 def diagnostics(rospy, name, condition):
-    """Values of the node's status, and its `message`, once they are as wanted."""
+    """Values of the node's status, and its `message`, once they are as wanted. What an earlier node
+    of this name left behind at the master has to be forgotten there."""
     from diagnostic_msgs.msg import DiagnosticArray
     found = {}
+
+    def is_registered():
+        publishers = dict(rospy.get_master().getSystemState()[2][0])
+        return '/' + name in publishers.get('/diagnostics', [])
+
+    # rospy takes the last list of publishers it gets for the newest. One that is told of the node while
+    # its own registration is still on the way gets the older list later, and never connects.
+    wait_until(is_registered, name + ' to be registered for /diagnostics')
 
     def take(message):
         for status in message.status:
