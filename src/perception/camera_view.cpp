@@ -51,6 +51,15 @@ std::optional<std::string> FindOpticalLink(const robot::RobotModel& model,
   return std::nullopt;
 }
 
+void AddShapesOf(const robot::Link& link, const geometry::Pose3& X_FL,
+                 std::vector<geometry::Collision>* shapes_F) {
+  for (const geometry::Collision& collision_L : link.collisions) {
+    geometry::Collision& collision_F = shapes_F->emplace_back(collision_L);
+    collision_F.name = link.name;
+    collision_F.X_BS = X_FL * collision_L.X_BS;
+  }
+}
+
 std::vector<geometry::Collision> ShapesOf(const robot::Robot& robot, const geometry::Pose2& X_MB,
                                           const robot::JointPositions& posture) {
   const auto base = robot.model.FindLink(robot.profile.base_link);
@@ -58,13 +67,8 @@ std::vector<geometry::Collision> ShapesOf(const robot::Robot& robot, const geome
   const auto X_RL = robot::ForwardKinematics(robot.model, posture);
   const geometry::Pose3 X_MR = geometry::Lift(X_MB) * X_RL[*base].Inverse();
   std::vector<geometry::Collision> shapes_M;
-  for (std::size_t link = 0; link < X_RL.size(); ++link) {
-    for (const geometry::Collision& collision_L : robot.model.links[link].collisions) {
-      geometry::Collision& collision_M = shapes_M.emplace_back(collision_L);
-      collision_M.name = robot.model.links[link].name;
-      collision_M.X_BS = X_MR * X_RL[link] * collision_L.X_BS;
-    }
-  }
+  for (std::size_t link = 0; link < X_RL.size(); ++link)
+    AddShapesOf(robot.model.links[link], X_MR * X_RL[link], &shapes_M);
   return shapes_M;
 }
 

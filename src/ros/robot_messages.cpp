@@ -206,6 +206,33 @@ hires::Detection ToMsg(const hires::perception::Detection& detection) {
   return out;
 }
 
+std::optional<hires::perception::Sighting> FromMsg(const hires::Detections& msg) {
+  if (msg.is_blind) return std::nullopt;
+  hires::perception::Sighting seen;
+  for (const hires::Detection& detection : msg.detections)
+    seen.detections.push_back(FromMsg(detection));
+  for (const geometry_msgs::Point& corner : msg.table)
+    seen.table.emplace_back(corner.x, corner.y, corner.z);
+  return seen;
+}
+
+hires::Detections ToMsg(const std::optional<hires::perception::Sighting>& seen,
+                        const std_msgs::Header& header) {
+  hires::Detections out;
+  out.header = header;
+  out.is_blind = !seen;
+  if (!seen) return out;
+  for (const hires::perception::Detection& detection : seen->detections)
+    out.detections.push_back(ToMsg(detection));
+  for (const Eigen::Vector3d& corner : seen->table) {
+    out.table.emplace_back();
+    out.table.back().x = corner.x();
+    out.table.back().y = corner.y();
+    out.table.back().z = corner.z();
+  }
+  return out;
+}
+
 std::vector<geometry_msgs::TransformStamped> LinkTransforms(
     const hires::robot::Robot& robot, const hires::robot::JointPositions& joints,
     const ros::Time& stamp) {

@@ -58,8 +58,10 @@ void SensorReceiver::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_stati
 
 void SensorReceiver::OnDetections(const hires::Detections& msg) {
   if (!objects_) return;
-  sensing::Look look{msg.header.stamp.toSec(), msg.header.frame_id, {}};
-  for (const auto& detection : msg.detections) look.detections.push_back(FromMsg(detection));
+  auto seen = FromMsg(msg);
+  if (!seen) return;
+  sensing::Look look{msg.header.stamp.toSec(), msg.header.frame_id, std::move(seen->detections),
+                     std::move(seen->table)};
   for (const std::string& why : objects_->OnLook(std::move(look))) {
     ++num_bad_;
     Warn(kDetections, why);

@@ -16,6 +16,15 @@ constexpr double kFramePatience = 0.2;  // [s] that the transform of a look's fr
 constexpr double kNever = -1e9;         // [s]
 constexpr std::size_t kMaxLooks = 100;  // that wait
 
+/// Empty: it is one, or none was told.
+std::string WhyNoTable(const std::vector<Eigen::Vector3d>& corners) {
+  const bool is_finite = std::all_of(corners.begin(), corners.end(),
+                                     [](const Eigen::Vector3d& p) { return p.allFinite(); });
+  if (is_finite && (corners.empty() || corners.size() >= 3)) return "";
+  return fmt::format("table has {} corners{}, wanted none or at least 3, all of them finite",
+                     corners.size(), is_finite ? "" : " that are not finite");
+}
+
 }  // namespace
 
 ObjectEstimator::ObjectEstimator(std::shared_ptr<const perception::Surroundings> surroundings,
@@ -37,6 +46,7 @@ std::vector<std::string> ObjectEstimator::OnLook(Look look) {
   if (!(look.stamp > 0.0)) return {ToString(Receipt{Reception::kNoStamp, {}})};
   if (look.frame.empty()) return {ToString(Receipt{Reception::kUnknownFrame, {}})};
   if (state_->IsAhead(look.stamp)) return {ToString(state_->Ahead("header.stamp"))};
+  if (const std::string why = WhyNoTable(look.table); !why.empty()) return {why};
   std::vector<std::string> left_out;
   std::vector<perception::Detection> sound;
   for (perception::Detection& detection : look.detections) {

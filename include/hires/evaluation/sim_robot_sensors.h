@@ -58,6 +58,10 @@ class SimRobotSensors {
   /// [m] of each beam, obstacles that are not there included.  @pre has_laser().
   std::vector<double> Scan(const SimRobotWorld& world, const SensorReadings& readings) const;
 
+  bool sees_pictures() const { return params_.sees_pictures; }
+  /// Whether it is time to look and the head is still; the next look comes a period later. Asked
+  /// twice at one moment, it says the same twice.
+  bool BeginLook(const SimRobotWorld& world, const SensorReadings& readings);
   /// What the camera's recogniser sees, where it is time to look and the head is still; poses in
   /// the camera's frame. Nothing: it does not look, or where pictures are seen, sees no table.
   std::optional<perception::Sighting> Look(const SimRobotWorld& world,

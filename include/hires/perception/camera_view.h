@@ -38,5 +38,8 @@ std::optional<std::string> FindOpticalLink(const robot::RobotModel& model, const
 /// @throws base::ConfigError as robot::ForwardKinematics.
 std::vector<geometry::Collision> ShapesOf(const robot::Robot& robot, const geometry::Pose2& X_MB,
                                           const robot::JointPositions& posture);
+/// Adds the shapes of a link that stands at X_FL in any frame F.
+void AddShapesOf(const robot::Link& link, const geometry::Pose3& X_FL,
+                 std::vector<geometry::Collision>* shapes_F);
 
 }  // namespace hires::perception

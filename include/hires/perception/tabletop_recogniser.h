@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "hires/perception/recogniser.h"
@@ -22,13 +23,13 @@ class TabletopRecogniser {
   TabletopRecogniser(std::shared_ptr<const Recogniser> recogniser, const SelfFilterParams& params);
 
   /// @param X_FC      the cloud's frame in any frame F whose z axis points upwards from the floor.
-  /// @param robot_F   shapes of the robot.
-  /// @param tray_F    the plate of its tray, one of them, if it has one: a small table of its own.
+  /// @param robot_F   shapes of the robot, each called as its link (AddShapesOf).
+  /// @param tray_link  whose widest shape is the plate of its tray: a small table of its own;
+  ///                   empty, or not among the shapes: it has none.
   /// @return nothing where neither table nor tray is seen.
   std::optional<TabletopView> Look(PointCloud cloud, const geometry::Pose3& X_FC,
-                                   std::vector<geometry::Collision> robot_F,
-                                   const std::optional<geometry::Collision>& tray_F,
-                                   const base::Rng& rng);
+                                   const std::vector<geometry::Collision>& robot_F,
+                                   const std::string& tray_link, const base::Rng& rng);
 
  private:
   Recognition OnTray(const geometry::Collision& tray_F, const geometry::Pose3& X_FC,

@@ -2,12 +2,13 @@
 
 #include <geometry_msgs/TransformStamped.h>
 #include <geometry_msgs/Twist.h>
-#include <hires/Detection.h>
+#include <hires/Detections.h>
 #include <nav_msgs/Odometry.h>
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,12 @@ hires::perception::PointCloud FromMsg(const sensor_msgs::PointCloud2& msg);
 /// known.
 hires::perception::Detection FromMsg(const hires::Detection& msg);
 hires::Detection ToMsg(const hires::perception::Detection& detection);
+
+/// @return nothing of one who could not look.
+std::optional<hires::perception::Sighting> FromMsg(const hires::Detections& msg);
+/// @param seen  nothing: it could not look.
+hires::Detections ToMsg(const std::optional<hires::perception::Sighting>& seen,
+                        const std_msgs::Header& header);
 
 /// Where each link hangs, joints as they are said; the base's own pose in the map left out.
 std::vector<geometry_msgs::TransformStamped> LinkTransforms(

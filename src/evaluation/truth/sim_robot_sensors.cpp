@@ -24,15 +24,6 @@ enum SensorStreams : std::uint64_t {
   kLaserStream
 };
 
-/// A tray's plate is larger than its rims.
-bool IsWider(const geometry::Collision& shape, const std::optional<geometry::Collision>& than) {
-  const auto area = [](const geometry::Collision& one) {
-    const geometry::Aabb bounds = geometry::BoundsOf(one.shape, one.X_BS);
-    return (bounds.upper - bounds.lower).head<2>().prod();
-  };
-  return !than || area(shape) > area(*than);
-}
-
 void ReadDetector(ParamReader in, SimSensorParams* params) {
   params->detection_period = ReadPeriod("period", kSensorTick, &in);
   params->min_visible_share = in.Get("min_visible_share", Between(0.0, 1.0));
@@ -117,10 +108,15 @@ bool SimRobotSensors::IsLookDue(const SimRobotWorld& world, const SensorReadings
   return true;
 }
 
+bool SimRobotSensors::BeginLook(const SimRobotWorld& world, const SensorReadings& readings) {
+  if (!IsLookDue(world, readings)) return false;
+  last_look_ = world.milliseconds();
+  return true;
+}
+
 std::optional<perception::Sighting> SimRobotSensors::Look(const SimRobotWorld& world,
                                                           const SensorReadings& readings) {
-  if (!IsLookDue(world, readings)) return std::nullopt;
-  last_look_ = world.milliseconds();
+  if (!BeginLook(world, readings)) return std::nullopt;
   if (params_.sees_pictures) return eye_ ? Recognise(world, readings) : std::nullopt;
   auto seen = Detect(world);
   Misjudge(&seen, missed_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds())));
@@ -151,10 +147,8 @@ std::optional<perception::Sighting> SimRobotSensors::Recognise(const SimRobotWor
   const robot::Robot& robot = scene_->robot;
   const auto shapes_M = perception::ShapesOf(robot, readings.X_MB, posture);
   const base::Rng rng = detector_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
-  std::optional<geometry::Collision> tray_M;
-  for (const geometry::Collision& shape : shapes_M)
-    if (shape.name == robot.profile.tray_link && IsWider(shape, tray_M)) tray_M = shape;
-  auto view = eye_->Look(seen.cloud, seen.X_MC * perception::OpticalFrame(), shapes_M, tray_M, rng);
+  auto view = eye_->Look(seen.cloud, seen.X_MC * perception::OpticalFrame(), shapes_M,
+                         robot.profile.tray_link, rng);
   if (!view) return std::nullopt;
   const geometry::Pose3 X_CO = perception::OpticalFrame();
   for (perception::Detection& detection : view->sighting.detections)

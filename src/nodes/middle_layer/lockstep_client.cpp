@@ -16,7 +16,11 @@ LockstepClient::LockstepClient(ros::NodeHandle* nh, std::function<void()> due)
 void LockstepClient::OnTick(const hires::LockstepTick& msg) {
   awaited_ = msg.awaited;
   // A tick is repeated where the answer is late, or went before the robot listened.
-  if (tick_ && tick_->header.stamp == msg.header.stamp) return;
+  if (tick_ && tick_->header.stamp == msg.header.stamp) {
+    if (is_taken_) return;
+    tick_->sensors = msg.sensors;  // one that would have said something may have ended meanwhile
+    return due_();
+  }
   if (acked_ && acked_->header.stamp == msg.header.stamp) {
     ack_.publish(*acked_);
     return;

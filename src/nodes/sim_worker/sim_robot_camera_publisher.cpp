@@ -57,13 +57,12 @@ std::string SimRobotCameraPublisher::OpticalFrameOf(const hires::robot::Robot& r
   return frame;
 }
 
-void SimRobotCameraPublisher::Publish(const hires::evaluation::SimRobotWorld& world,
-                                      const ros::Time& stamp) {
+void SimRobotCameraPublisher::PublishDepthIfDue(const hires::evaluation::SimRobotWorld& world,
+                                                const ros::Time& stamp) {
   if (cameras_.IsDepthDue(world)) PublishDepth(world, stamp);
-  if (cameras_.IsHeatDue(world)) PublishHeat(world, stamp);
 }
 
-void SimRobotCameraPublisher::PublishDepth(const hires::evaluation::SimRobotWorld& world,
+bool SimRobotCameraPublisher::PublishDepth(const hires::evaluation::SimRobotWorld& world,
                                            const ros::Time& stamp) {
   const bool wants_cloud = IsHeard(depth_cloud_);
   hires::perception::PointCloud cloud;
@@ -85,10 +84,12 @@ void SimRobotCameraPublisher::PublishDepth(const hires::evaluation::SimRobotWorl
   for (const ros::Publisher& info : {depth_info_, colour_info_}) {
     if (IsHeard(info)) send(ToMsg(cameras_.depth_camera()), info);
   }
+  return wants_cloud;
 }
 
-void SimRobotCameraPublisher::PublishHeat(const hires::evaluation::SimRobotWorld& world,
-                                          const ros::Time& stamp) {
+void SimRobotCameraPublisher::PublishHeatIfDue(const hires::evaluation::SimRobotWorld& world,
+                                               const ros::Time& stamp) {
+  if (!cameras_.IsHeatDue(world)) return;
   const auto send = [&](const auto& msg, const ros::Publisher& publisher) {
     Send(msg, heat_frame_, stamp, publisher);
   };

@@ -23,13 +23,15 @@ class SimRobotCameraPublisher {
                           const hires::robot::Robot& robot,
                           hires::evaluation::SimRobotCameras* cameras, ros::NodeHandle* nh);
 
-  void Publish(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
+  void PublishDepthIfDue(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
+  /// Whether it is due or not.
+  /// @return whether somebody gets the cloud.
+  bool PublishDepth(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
+  void PublishHeatIfDue(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
 
   long num_drawn() const { return num_drawn_; }  ///< clouds and pictures so far; any thread may ask
 
  private:
-  void PublishDepth(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
-  void PublishHeat(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
   std::string OpticalFrameOf(const hires::robot::Robot& robot, const std::string& link);
 
   hires::evaluation::SimRobotCameras& cameras_;

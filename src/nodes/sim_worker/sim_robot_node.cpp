@@ -325,6 +325,7 @@ void SimRobotNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status)
   status.add("lockstep", params_.lockstep);
   status.add("waits given up", num_waits_given_up_.load());
   status.add("pictures drawn", publisher_.num_drawn());
+  if (publisher_.sees_pictures()) status.add("looks recognised", publisher_.num_recognised());
 }
 
 }  // namespace hires_ros

@@ -36,6 +36,8 @@ void OverridePrivate(const std::string& path, SimRobotParams* params) {
   override_text("area", &params->area);
   const std::string truth = PrivateText("truth").value_or("");
   if (!truth.empty()) params->truth = TruthOf(truth, path);
+  params->truth =
+      hires::evaluation::WithSensing(params->truth, PrivateText("sensing").value_or(""));
   int seed = static_cast<int>(params->seed);
   Override("seed", PrivateInt("seed"), Between(0, std::numeric_limits<int>::max()), &seed);
   params->seed = static_cast<std::uint64_t>(seed);
@@ -68,7 +70,8 @@ SimRobotParams ReadSimRobotParams(const std::string& path) {
 
 SimRobotParams LoadSimRobotParams() {
   RejectUnknownPrivate({"role", "config", "world", "robot", "objects", "uncertainty", "truth",
-                        "scenario", "area", "seed", "pace", "lockstep", "hold", "names"});
+                        "sensing", "scenario", "area", "seed", "pace", "lockstep", "hold",
+                        "names"});
   const std::string path =
       PrivateText("config").value_or(ros::package::getPath("hires") + "/config/sim_robot.yaml");
   SimRobotParams params = ReadSimRobotParams(path);

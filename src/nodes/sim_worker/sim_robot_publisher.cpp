@@ -49,7 +49,6 @@ SimRobotPublisher::SimRobotPublisher(const SimRobotParams& params,
       joints_(nh->advertise<sensor_msgs::JointState>(params.names.joint_states, kQueue)),
       amcl_(nh->advertise<geometry_msgs::PoseWithCovarianceStamped>(params.names.localisation, 10)),
       scan_(nh->advertise<sensor_msgs::LaserScan>(params.names.base_scan, 10)),
-      detections_(nh->advertise<hires::Detections>(kDetections, kQueue)),
       map_(nh->advertise<nav_msgs::OccupancyGrid>(params.names.map, 1, true)),
       world_markers_(nh->advertise<visualization_msgs::MarkerArray>(kWorldMarkers, 1, true)),
       markers_(nh->advertise<visualization_msgs::MarkerArray>("robot_markers", 10)),
@@ -58,6 +57,14 @@ SimRobotPublisher::SimRobotPublisher(const SimRobotParams& params,
       truth_(nh->advertise<hires::GroundTruth>("ground_truth/summary", 10, true)),
       tf_(nh->advertise<tf2_msgs::TFMessage>(kTransforms, kQueue)),
       trace_(kShownIndex, setup.standing) {
+  if (sensors_.sees_pictures()) {
+    recogniser_ = nh->subscribe<hires::Detections>(
+        kDetections, 1,
+        boost::function<void(const hires::Detections&)>(
+            [this](const hires::Detections&) { ++num_recognised_; }));
+  } else {
+    detections_ = nh->advertise<hires::Detections>(kDetections, kQueue);
+  }
   world_markers_.publish(WorldMarkers(scene_->world));
   PublishMap();
 }
@@ -100,11 +107,8 @@ std::vector<std::string> SimRobotPublisher::PublishTick(
     PublishScan(world, readings, stamp);
     sensors.push_back(params_.names.base_scan);
   }
-  if (const auto seen = sensors_.Look(world, readings)) {
-    PublishDetections(seen->detections, stamp);
-    sensors.push_back(kDetections);
-  }
-  cameras_.Publish(world, stamp);
+  if (PublishLookOf(world, readings, stamp)) sensors.push_back(kDetections);
+  cameras_.PublishHeatIfDue(world, stamp);
   lasers_.PublishTick(world, stamp);
   PublishTruth(world, truth, stamp);
   return sensors;
@@ -159,15 +163,22 @@ void SimRobotPublisher::PublishScan(const hires::evaluation::SimRobotWorld& worl
   scan_.publish(scan);
 }
 
-void SimRobotPublisher::PublishDetections(const std::vector<hires::perception::Detection>& seen,
-                                          const ros::Time& stamp) {
-  hires::Detections detections;
-  detections.header.stamp = stamp;
-  detections.header.frame_id = scene_->robot.profile.upper_body->camera_link;
-  for (const hires::perception::Detection& detection : seen) {
-    detections.detections.push_back(ToMsg(detection));
+/// @return whether somebody is going to tell of what is seen now.
+bool SimRobotPublisher::PublishLookOf(const hires::evaluation::SimRobotWorld& world,
+                                      const hires::evaluation::SensorReadings& readings,
+                                      const ros::Time& stamp) {
+  if (sensors_.sees_pictures()) {
+    if (!sensors_.BeginLook(world, readings)) return false;
+    return cameras_.PublishDepth(world, stamp) && recogniser_.getNumPublishers() > 0;
   }
-  detections_.publish(detections);
+  cameras_.PublishDepthIfDue(world, stamp);
+  const auto seen = sensors_.Look(world, readings);
+  if (!seen) return false;
+  std_msgs::Header header;
+  header.stamp = stamp;
+  header.frame_id = scene_->robot.profile.upper_body->camera_link;
+  detections_.publish(ToMsg(seen, header));
+  return true;
 }
 
 void SimRobotPublisher::PublishTruth(const hires::evaluation::SimRobotWorld& world,

@@ -3,7 +3,9 @@
 #include <hires/GroundTruth.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
+#include <ros/subscriber.h>
 
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -46,7 +48,10 @@ class SimRobotPublisher {
                    const hires::evaluation::SensorReadings& readings);
 
   void PublishClock(const hires::evaluation::SimRobotWorld& world);
+  /// Where objects are recognised by another program in the clouds.
+  bool sees_pictures() const { return sensors_.sees_pictures(); }
   long num_drawn() const { return cameras_.num_drawn(); }  ///< pictures; any thread may ask
+  long num_recognised() const { return num_recognised_; }  ///< answers to them; likewise
   static ros::Time StampOf(
       const hires::evaluation::SimRobotWorld& world);  ///< begins at 1 s; 0 means "no time yet"
 
@@ -57,8 +62,8 @@ class SimRobotPublisher {
                            const ros::Time& stamp);
   void PublishScan(const hires::evaluation::SimRobotWorld& world,
                    const hires::evaluation::SensorReadings& readings, const ros::Time& stamp);
-  void PublishDetections(const std::vector<hires::perception::Detection>& seen,
-                         const ros::Time& stamp);
+  bool PublishLookOf(const hires::evaluation::SimRobotWorld& world,
+                     const hires::evaluation::SensorReadings& readings, const ros::Time& stamp);
   void PublishTruth(const hires::evaluation::SimRobotWorld& world,
                     const hires::simulation::TruthRecord& truth, const ros::Time& stamp);
   void PublishMap();
@@ -70,6 +75,8 @@ class SimRobotPublisher {
   SimRobotLaserPublisher lasers_;
   ros::Publisher clock_, odometry_, joints_, amcl_, scan_, detections_, map_, world_markers_,
       markers_, true_world_, true_robot_, truth_, tf_;
+  ros::Subscriber recogniser_;  // its answers, where pictures are seen
+  std::atomic<long> num_recognised_{0};
   TraceMarkers trace_;
 };
 

@@ -5,6 +5,26 @@
 #include <utility>
 
 namespace hires::perception {
+namespace {
+
+/// A tray's plate is larger than its rims.
+std::optional<geometry::Collision> PlateOf(const std::string& tray_link,
+                                           const std::vector<geometry::Collision>& robot_F) {
+  std::optional<geometry::Collision> plate;
+  double widest = 0.0;  // [m2]
+  for (const geometry::Collision& shape : robot_F) {
+    if (shape.name != tray_link) continue;
+    const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, shape.X_BS);
+    const double area = (bounds.upper - bounds.lower).head<2>().prod();
+    if (!plate || area > widest) {
+      plate = shape;
+      widest = area;
+    }
+  }
+  return plate;
+}
+
+}  // namespace
 
 TabletopRecogniser::TabletopRecogniser(std::shared_ptr<const Recogniser> recogniser,
                                        const SelfFilterParams& params)
@@ -33,8 +53,8 @@ Recognition TabletopRecogniser::OnTray(const geometry::Collision& tray_F,
 }
 
 std::optional<TabletopView> TabletopRecogniser::Look(
-    PointCloud cloud, const geometry::Pose3& X_FC, std::vector<geometry::Collision> robot_F,
-    const std::optional<geometry::Collision>& tray_F, const base::Rng& rng) {
+    PointCloud cloud, const geometry::Pose3& X_FC, const std::vector<geometry::Collision>& robot_F,
+    const std::string& tray_link, const base::Rng& rng) {
   const geometry::Pose3 X_CF = X_FC.Inverse();
   std::vector<geometry::Collision> robot_C = robot_F, others_C;
   for (geometry::Collision& shape : robot_C) shape.X_BS = X_CF * shape.X_BS;
@@ -46,7 +66,7 @@ std::optional<TabletopView> TabletopRecogniser::Look(
     std::move(found.detections.begin(), found.detections.end(), std::back_inserter(all));
     seen = found.segmentation.table;
   };
-  if (tray_F) {
+  if (const auto tray_F = PlateOf(tray_link, robot_F)) {
     for (const geometry::Collision& shape : robot_C)
       if (shape.name != tray_F->name) others_C.push_back(shape);
     take(OnTray(*tray_F, X_FC, others_C, cloud, rng));
