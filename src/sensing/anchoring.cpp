@@ -90,9 +90,12 @@ Anchoring AnchorThings(const std::vector<SeenThing>& things, const std::vector<A
   for (std::size_t i = 0; i < things.size(); ++i) {
     const auto& kinds = things[i].kinds;
     for (std::size_t k = 0; k < anchors.size(); ++k) {
-      const double distance = (things[i].p_M - anchors[k].p_M).norm();
-      const bool may_be = std::find(kinds.begin(), kinds.end(), anchors[k].kind) != kinds.end();
-      costs[i][k] = may_be && distance <= reach ? distance : kImpossible;
+      const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const SeenKind& one) {
+        return one.kind == anchors[k].kind;
+      });
+      const bool may_be = kind != kinds.end();
+      const double cost = (things[i].p_M - anchors[k].p_M).norm() + (may_be ? kind->doubt : 0.0);
+      costs[i][k] = may_be && cost <= reach ? cost : kImpossible;
     }
   }
   const Assignment best = Assigner(costs).Run();

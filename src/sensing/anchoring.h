@@ -6,9 +6,14 @@
 
 namespace hires::sensing {
 
+struct SeenKind {
+  std::string kind{};
+  double doubt{0.0};  ///< [m] by which an instance of it counts as farther away than it is
+};
+
 /// A thing that a recogniser sees and of which it knows the kind alone.
 struct SeenThing {
-  std::vector<std::string> kinds{};  ///< that it may be, the likeliest first
+  std::vector<SeenKind> kinds{};  ///< that it may be
   Eigen::Vector3d p_M{Eigen::Vector3d::Zero()};
 };
 
@@ -23,9 +28,9 @@ struct Anchoring {
   std::vector<bool> is_ambiguous{};  ///< of each thing: another assignment is nearly as good
 };
 
-/// Which thing is which instance: the assignment with the least sum of distances (global nearest
-/// neighbour), in which a thing that is farther than `reach` from all instances of its kinds stays
-/// alone. A pair without which the best sum is hardly worse is not certain.
+/// Which thing is which instance: the assignment with the least sum of distances and doubts (global
+/// nearest neighbour), in which a thing that is farther than `reach` from all instances of its
+/// kinds stays alone. A pair without which the best sum is hardly worse is not certain.
 /// @param reach   [m]
 /// @param margin  [m] by which the best sum must be better.
 Anchoring AnchorThings(const std::vector<SeenThing>& things, const std::vector<Anchor>& anchors,

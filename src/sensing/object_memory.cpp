@@ -61,18 +61,25 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// What a thing without a name may be: its label, and what is as likely but for a third.
-std::vector<std::string> KindsOf(const Detection& detection) {
-  constexpr double kAsLikely = 1.0 / 3.0;
-  std::vector<std::string> kinds;
-  const auto add = [&](const std::string& label) {
-    if (label != perception::kUnknownLabel) kinds.push_back(label);
+/// What a thing without a name may be, each with a doubt that grows as its odds against the label
+/// shrink: a mill of which little is seen, and which looks more like a bottle, is the mill that was
+/// there before rather than a bottle that took its place.
+/// @param least  share of the label's confidence below which a kind is left out.
+std::vector<SeenKind> KindsOf(const Detection& detection, double least) {
+  constexpr double kDoubt = 0.02;  // [m] for odds of 1 : e
+  std::vector<SeenKind> kinds;
+  const auto add = [&](const std::string& label, double confidence) {
+    const double share = std::min(1.0, confidence / detection.confidence);
+    if (label == perception::kUnknownLabel || !(share >= least)) return;
+    kinds.push_back({label, -kDoubt * std::log(share)});
   };
-  add(detection.label);
-  for (const perception::LabelConfidence& other : detection.alternatives)
-    if (other.confidence >= kAsLikely * detection.confidence) add(other.label);
+  add(detection.label, detection.confidence);
+  for (const auto& other : detection.alternatives) add(other.label, other.confidence);
   return kinds;
 }
+
+constexpr double kHardly = 0.0;          // whatever a recogniser finds worth saying
+constexpr double kAsLikely = 1.0 / 3.0;  // of what nothing else speaks for
 
 }  // namespace
 
@@ -306,9 +313,19 @@ void ObjectMemory::PlaceAt(const Links& links, const Pose3& X_MO, RememberedObje
 void ObjectMemory::Check(const Detection& detection) const {
   if (detection.instance || detection.label != perception::kUnknownLabel)
     surroundings_->Model(detection.label);
-  if (detection.X_CO.IsFinite()) return;
-  throw base::ConfigError(fmt::format("detection of '{}': its pose is not finite",
-                                      detection.instance.value_or(detection.label)));
+  const std::string what =
+      fmt::format("detection of '{}': ", detection.instance.value_or(detection.label));
+  if (!detection.X_CO.IsFinite()) throw base::ConfigError(what + "its pose is not finite");
+  if (!(detection.confidence > 0.0 && detection.confidence <= 1.0)) {
+    throw base::ConfigError(
+        what + fmt::format("confidence is {}, wanted 0 (not told) .. 1", detection.confidence));
+  }
+  for (const perception::LabelConfidence& other : detection.alternatives) {
+    if (other.confidence >= 0.0 && other.confidence <= 1.0) continue;
+    throw base::ConfigError(what +
+                            fmt::format("confidence of alternative '{}' is {}, wanted 0 .. 1",
+                                        other.label, other.confidence));
+  }
 }
 
 /// What a detection is given to; no name: to nobody.
@@ -369,11 +386,15 @@ Eigen::Vector3d ObjectMemory::PlaceOf(const Links& links, const RememberedObject
   return (links.X_ML(object.link) * object.X_LO).translation;
 }
 
-/// Whether a thing that has no name, seen at X_MO, may be the object.
+/// Whether a thing that has no name, seen at X_MO, may be the object. One that no model explains
+/// may be whatever is expected there.
 bool ObjectMemory::MayBe(const Links& links, const RememberedObject& object,
                          const Detection& detection, const Pose3& X_MO) const {
-  return Contains(KindsOf(detection), object.model) &&
-         (PlaceOf(links, object) - X_MO.translation).norm() <= params_.instance_distance;
+  if ((PlaceOf(links, object) - X_MO.translation).norm() > params_.instance_distance) return false;
+  if (detection.label == perception::kUnknownLabel) return true;
+  const auto kinds = KindsOf(detection, kHardly);
+  return std::any_of(kinds.begin(), kinds.end(),
+                     [&](const SeenKind& one) { return one.kind == object.model; });
 }
 
 std::vector<ObjectMemory::Named> ObjectMemory::NamesOf(const Links& links,
@@ -389,7 +410,7 @@ std::vector<ObjectMemory::Named> ObjectMemory::NamesOf(const Links& links,
       given.push_back(named[i].name);
     } else {
       nameless.push_back(i);
-      things.push_back({KindsOf(one), look.X_MO(i).translation});
+      things.push_back({KindsOf(one, kHardly), look.X_MO(i).translation});
     }
   }
   std::vector<std::string> names;
@@ -417,7 +438,7 @@ void ObjectMemory::Appear(const Links& links, const LookedAt& look, std::vector<
     const Detection& one = look.detections[i];
     const Pose3 X_MO = look.X_MO(i);
     if (one.instance || !(*named)[i].name.empty() || (*named)[i].is_ambiguous) continue;
-    if (KindsOf(one).empty()) continue;
+    if (one.label == perception::kUnknownLabel) continue;
     const bool may_be_known = std::any_of(objects_.begin(), objects_.end(), [&](const auto& known) {
       const auto has_it = [&](const Named& n) { return n.name == known.first; };
       return std::none_of(named->begin(), named->end(), has_it) &&
@@ -443,7 +464,7 @@ void ObjectMemory::NameNewcomers(const LookedAt& look, std::vector<Named>* named
   for (const Newcomer& newcomer : newcomers_) {
     if (newcomer.num_looks < params_.looks_to_appear) continue;
     ripe.push_back(&newcomer);
-    things.push_back({KindsOf(look.detections[newcomer.detection]), newcomer.p_M});
+    things.push_back({KindsOf(look.detections[newcomer.detection], kAsLikely), newcomer.p_M});
   }
   std::vector<std::string> names;
   std::vector<Anchor> anchors;

@@ -23,10 +23,10 @@ double LeastSum(const std::vector<SeenThing>& things, const std::vector<Anchor>&
     if (i == things.size()) return 0.0;
     double least = kReach + best(i + 1);
     for (std::size_t k = 0; k < anchors.size(); ++k) {
-      const auto& kinds = things[i].kinds;
-      const double d = (things[i].p_M - anchors[k].p_M).norm();
+      double d = std::numeric_limits<double>::infinity();
+      for (const SeenKind& one : things[i].kinds)
+        if (one.kind == anchors[k].kind) d = one.doubt + (things[i].p_M - anchors[k].p_M).norm();
       if (is_taken[k] || d > kReach) continue;
-      if (std::find(kinds.begin(), kinds.end(), anchors[k].kind) == kinds.end()) continue;
       if (forbidden == std::pair<int, int>(static_cast<int>(i), static_cast<int>(k))) continue;
       is_taken[k] = true;
       least = std::min(least, d + best(i + 1));
@@ -47,8 +47,9 @@ TEST(AnchorThingsTest, TheBestAssignmentIsTheOneThatTryingAllFinds) {
     };
     std::vector<SeenThing> things(rng.Index(6));
     for (SeenThing& thing : things) {
-      thing.kinds = {kinds[rng.Index(2)]};
-      if (rng.Bernoulli(0.3)) thing.kinds = kinds;
+      const std::size_t first = rng.Index(2);
+      thing.kinds = {{kinds[first], 0.0}};
+      if (rng.Bernoulli(0.3)) thing.kinds.push_back({kinds[1 - first], rng.Uniform(0.0, 0.05)});
       thing.p_M = place();
     }
     std::vector<Anchor> anchors(rng.Index(6));
@@ -84,13 +85,13 @@ TEST(AnchorThingsTest, NeighboursThatMovedTogetherKeepTheirNames) {
   // Each is nearer to the other's place than to its own but for the last: one by one they would be
   // taken for each other.
   const std::vector<Anchor> anchors{{"mug", {0.0, 0.0, 0.0}}, {"mug", {0.09, 0.0, 0.0}}};
-  const std::vector<SeenThing> things{{{"mug"}, {0.14, 0.0, 0.0}}, {{"mug"}, {0.05, 0.0, 0.0}}};
+  const std::vector<SeenThing> things{{{{"mug"}}, {0.14, 0.0, 0.0}}, {{{"mug"}}, {0.05, 0.0, 0.0}}};
   EXPECT_EQ(AnchorThings(things, anchors, kReach, kMargin).anchor, (std::vector<int>{1, 0}));
 }
 
 TEST(AnchorThingsTest, WhatIsAsNearToBothIsSaidToBeEither) {
   const std::vector<Anchor> anchors{{"mug", {0.0, 0.05, 0.0}}, {"mug", {0.0, -0.05, 0.0}}};
-  const Anchoring out = AnchorThings({{{"mug"}, {0.0, 0.005, 0.0}}}, anchors, kReach, kMargin);
+  const Anchoring out = AnchorThings({{{{"mug"}}, {0.0, 0.005, 0.0}}}, anchors, kReach, kMargin);
   EXPECT_EQ(out.anchor[0], -1);
   EXPECT_TRUE(out.is_ambiguous[0]);
 }
