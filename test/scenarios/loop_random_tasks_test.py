@@ -26,6 +26,8 @@ def numbers_given():
 
 
 class LoopRandomTasksTest(LoopCase):
+    SETTINGS = dict(sensing='pictures') if 'pictures' in sys.argv[1:] else {}
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()

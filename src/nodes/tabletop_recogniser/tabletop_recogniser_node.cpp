@@ -92,7 +92,7 @@ void TabletopRecogniserNode::Try() {
   const bool is_too_old = X_BC.status == sensing::FrameStatus::kNotThen && newest && *newest > time;
   if (is_too_old) return Refuse("older than what is kept of tf: " + why);
   if (X_BC.status == sensing::FrameStatus::kInLoop) return Refuse(why);
-  waits_for_ = why;
+  waits_for_ = fmt::format("of '{}' in '{}': {}", frame, params_.base_frame, why);
 }
 
 std::vector<hires::geometry::Collision> TabletopRecogniserNode::RobotShapes(double time) {
@@ -159,7 +159,7 @@ void TabletopRecogniserNode::Diagnose(diagnostic_updater::DiagnosticStatusWrappe
   } else if (!refused_.empty()) {
     status.summary(DiagnosticStatus::WARN, "dropped a cloud: " + refused_);
   } else if (!waits_for_.empty()) {
-    status.summary(DiagnosticStatus::WARN, "waits for a transform: " + waits_for_);
+    status.summary(DiagnosticStatus::WARN, "waits for the transform " + waits_for_);
   } else if (!uncut_.empty()) {
     status.summary(DiagnosticStatus::WARN,
                    "recognises, but may take parts of the robot for things: tf does not know " +

@@ -222,6 +222,10 @@ class Master:
         publishers = dict(state[0])
         return publishers if topic is None else publishers.get(topic, [])
 
+    def subscribers(self, topic):
+        """Nodes that listen to `topic`."""
+        return dict((self._call('getSystemState') or [[], [], []])[1]).get(topic, [])
+
     def services(self):
         return dict((self._call('getSystemState') or [[], [], []])[2])
 

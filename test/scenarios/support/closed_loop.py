@@ -43,6 +43,7 @@ WORKING_TIMES = ('effect_timeout', 'observation_delay', 'break_delay', 'stop_tim
 # In the order of their start.
 NODES = ('sim_robot', 'middle_layer', 'world_tracker', 'translator', 'blackboard', 'planner',
          'imagination_client', 'execution_monitor')
+RECOGNISER = 'tabletop_recogniser'
 
 
 def scenario_of(robot, objects, hidden=()):
@@ -165,9 +166,10 @@ class Truth:
 class ClosedLoop(BlackboardAccess):
     """@param seed   of the robot's hidden truth and of all chance.
     @param pace      [s] of the simulated robot per second.
-    @param rollouts  of an imagination, per combination of alternatives."""
+    @param rollouts  of an imagination, per combination of alternatives.
+    @param sensing   pictures: objects are recognised in the camera's clouds, by a node of its own."""
 
-    def __init__(self, seed=1, pace=10.0, rollouts=8, workers=1, uncertainty=None):
+    def __init__(self, seed=1, pace=10.0, rollouts=8, workers=1, uncertainty=None, sensing=None):
         self.processes = Processes()
         self.main = self.processes.master()
         self.main.set_param('/use_sim_time', True)
@@ -179,6 +181,7 @@ class ClosedLoop(BlackboardAccess):
         self.rollouts = rollouts
         self.workers = workers
         self.uncertainty = uncertainty
+        self.sensing = sensing
         self.base_port = free_port_block(workers + 1) - 1
         self.nodes = {}
         self.truth = None
@@ -227,7 +230,8 @@ class ClosedLoop(BlackboardAccess):
         if name == 'sim_robot':
             return ['_role:=robot', '_scenario:=' + self.scenario, '_seed:=%d' % self.seed,
                     '_pace:=%g' % self.pace, '_lockstep:=true'] + (
-                        ['_uncertainty:=' + self.uncertainty] if self.uncertainty else [])
+                        ['_uncertainty:=' + self.uncertainty] if self.uncertainty else []) + (
+                            ['_sensing:=' + self.sensing] if self.sensing else [])
         if name == 'middle_layer':
             return ['_lockstep:=true', 'navigation/cmd_vel:=base_controller/command']
         if name == 'world_tracker':
@@ -277,11 +281,13 @@ class ClosedLoop(BlackboardAccess):
                 self.start_worker(index)
         for name in NODES:
             self.start_node(name)
+        if self.sensing == 'pictures':
+            self.start_node(RECOGNISER)
         self.require_server()
 
     def end_nodes(self):
         """All but the workers."""
-        for name in reversed(NODES):
+        for name in (RECOGNISER, *reversed(NODES)):
             if name in self.nodes:
                 self.nodes.pop(name).destroy()
                 if self.rospy.has_param('/' + name):
