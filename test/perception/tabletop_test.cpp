@@ -120,6 +120,25 @@ TEST(FindTableTest, TheFloorIsNoTableForWhoKnowsHowTheCameraStands) {
       << "nothing level is 0.3 m to 1.3 m high";
 }
 
+// A plane that leans is as high as a table below the camera, and lies on the floor where its points
+// are.
+TEST(FindTableTest, TheFloorIsNoTableForALeaningPlaneEither) {
+  constexpr double kEye = 1.35;  // [m] above the floor
+  PointCloud cloud;
+  base::Rng noise(1);
+  for (double x = 1.2; x < 3.4; x += 0.02) {
+    for (double y = -1.0; y < 1.0; y += 0.02) {
+      const double z = noise.Normal(0.0, 0.003 * x * x);
+      cloud.points.push_back(Vector3d(-y, kEye - z, x).cast<float>());
+    }
+  }
+  cloud.width = static_cast<int>(cloud.points.size());
+  for (int seed = 1; seed <= 20; ++seed) {
+    EXPECT_FALSE(FindTable(cloud, CameraStand{-Vector3d::UnitY(), kEye}, {}, base::Rng(seed)))
+        << seed;
+  }
+}
+
 /// Surfels on a grid of 5 mm whose height is a function of x, seen from above.
 template <typename Height>
 SurfelCloud Profile(Height height, double noise = 0.0) {

@@ -44,12 +44,24 @@ std::optional<Plane> PlaneThrough(const Eigen::Vector3d& a, const Eigen::Vector3
   return plane;
 }
 
-bool MayBeTable(const Plane& plane, const std::optional<CameraStand>& stand,
-                const TableParams& params) {
-  if (!stand) return true;
-  const double height = stand->height - plane.offset;
-  return plane.normal.dot(stand->up_C) >= std::cos(params.max_inclination) &&
-         height >= params.min_height && height <= params.max_height;
+/// Where the floor is known, only what is as high as tables are (the pass-through filter of the
+/// dissertation, section 4.4). Heights of planes would not do: one that leans is as high as a table
+/// below the camera, and lies on the floor where its points are.
+std::vector<Eigen::Vector3d> AtTableHeight(const std::vector<Eigen::Vector3d>& points,
+                                           const std::optional<CameraStand>& stand,
+                                           const TableParams& params) {
+  if (!stand) return points;
+  std::vector<Eigen::Vector3d> kept;
+  for (const Eigen::Vector3d& p : points) {
+    const double height = stand->height + stand->up_C.dot(p);
+    if (height >= params.min_height && height <= params.max_height) kept.push_back(p);
+  }
+  return kept;
+}
+
+bool IsLevel(const Plane& plane, const std::optional<CameraStand>& stand,
+             const TableParams& params) {
+  return !stand || plane.normal.dot(stand->up_C) >= std::cos(params.max_inclination);
 }
 
 Plane LeastSquares(const std::vector<Eigen::Vector3d>& points, const Plane& plane,
@@ -82,7 +94,7 @@ std::optional<Plane> BestSample(const std::vector<Eigen::Vector3d>& points,
     const auto pick = [&] { return points[rng->Index(static_cast<int>(points.size()))]; };
     const Eigen::Vector3d a = pick(), b = pick(), c = pick();
     const auto plane = PlaneThrough(a, b, c);
-    if (!plane || !MayBeTable(*plane, stand, params)) continue;
+    if (!plane || !IsLevel(*plane, stand, params)) continue;
     int votes = 0;
     for (std::size_t k = 0; k < points.size(); k += step)
       votes += Supports(*plane, points[k], params.tolerance);
@@ -168,12 +180,14 @@ geometry::Polygon OutlineOf(const std::vector<Eigen::Vector2d>& points) {
 
 std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                                const TableParams& params, base::Rng rng) {
-  const std::vector<Eigen::Vector3d> points = MeasuredPoints(cloud);
+  const std::vector<Eigen::Vector3d> measured = MeasuredPoints(cloud);
+  const std::vector<Eigen::Vector3d> points = AtTableHeight(measured, stand, params);
   if (points.size() < 3) return std::nullopt;
   const auto best = BestSample(points, stand, params, &rng);
   if (!best) return std::nullopt;
   Plane plane = *best;
   for (int i = 0; i < kRefinements; ++i) plane = LeastSquares(points, plane, params.tolerance);
+  if (!IsLevel(plane, stand, params)) return std::nullopt;
   Table table;
   table.normal = plane.normal;
   table.offset = plane.offset;
@@ -182,7 +196,7 @@ std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<Came
   std::vector<Eigen::Vector2d> on_it;
   for (const Eigen::Vector3d& p : points)
     if (Supports(plane, p, params.tolerance)) on_it.push_back(table.FromAbove(p));
-  if (on_it.size() < 3 || on_it.size() < params.min_share * points.size()) return std::nullopt;
+  if (on_it.size() < 3 || on_it.size() < params.min_share * measured.size()) return std::nullopt;
   table.outline = OutlineOf(on_it);
   return table;
 }
