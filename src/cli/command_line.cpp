@@ -404,6 +404,12 @@ int RunAnyExperiment(const ExperimentOptions& options, const Backends& backends)
   if (*options.decision.verb) {
     return RunDecisionVerb(options.decision, backends.package_folder, cancelled);
   }
+  if (*options.recognition.verb) {
+    return RunRecognitionVerb(options.recognition, backends.package_folder, cancelled);
+  }
+  if (*options.torso_poses.verb) {
+    return RunTorsoPosesVerb(options.torso_poses, backends.package_folder, cancelled);
+  }
   if (*options.hypothesis.verb) {
     return RunHypothesisVerb(options.hypothesis, backends.package_folder, backends.play_hypothesis,
                              cancelled);

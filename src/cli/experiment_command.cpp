@@ -39,21 +39,6 @@ evaluation::ExperimentOverrides OverridesOf(const ExperimentOptions& options) {
   return overrides;
 }
 
-evaluation::Crew MakeCrew(const ExperimentOptions& options,
-                          const std::function<bool()>& cancelled) {
-  evaluation::Crew crew;
-  crew.threads = options.threads > 0
-                     ? options.threads
-                     : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  crew.cancelled = cancelled;
-  if (!options.quiet && isatty(STDERR_FILENO) != 0) {
-    crew.on_progress = [](double fraction, double elapsed) {
-      std::cerr << '\r' << ProgressText(fraction, elapsed) << "\033[K" << std::flush;
-    };
-  }
-  return crew;
-}
-
 void Print(const evaluation::ExperimentReport& report) {
   std::cout << evaluation::ReportText(report) << '\n';
   if (report.wall_seconds > 0.0) {
@@ -78,6 +63,19 @@ ReportOrigin OriginOf(const ExperimentOptions& options,
 }
 
 }  // namespace
+
+evaluation::Crew MakeCrew(int threads, bool is_quiet, const std::function<bool()>& cancelled) {
+  evaluation::Crew crew;
+  crew.threads =
+      threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  crew.cancelled = cancelled;
+  if (!is_quiet && isatty(STDERR_FILENO) != 0) {
+    crew.on_progress = [](double fraction, double elapsed) {
+      std::cerr << '\r' << ProgressText(fraction, elapsed) << "\033[K" << std::flush;
+    };
+  }
+  return crew;
+}
 
 std::string ProgressText(double fraction, double elapsed) {
   constexpr int kBar = 24;
@@ -109,13 +107,15 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
   options->verb = verb;
   AddHypothesisVerb(verb, &options->hypothesis);
   AddDecisionVerb(verb, &options->decision);
+  AddRecognitionVerb(verb, &options->recognition);
+  AddTorsoPosesVerb(verb, &options->torso_poses);
 }
 
 int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool()>& cancelled) {
   if (options.file.empty()) {
     throw base::ConfigError(
-        "experiment: wanted a YAML file, such as config/experiments/paired.yaml, or `hypothesis` "
-        "or `decision` (see hires experiment hypothesis --help)");
+        "experiment: wanted a YAML file, such as config/experiments/paired.yaml, or `hypothesis`, "
+        "`decision`, `recognition` or `torso_poses` (see hires experiment hypothesis --help)");
   }
   const evaluation::ExperimentConfig config =
       evaluation::ReadExperiment(options.file, OverridesOf(options));
@@ -123,7 +123,7 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   if (!options.junit.empty()) evaluation::RequireFolderOf(options.junit);
   CheckReport(options.report);
   const ReportOrigin origin = OriginOf(options, config);
-  const evaluation::Crew crew = MakeCrew(options, cancelled);
+  const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   const std::optional<evaluation::ExperimentReport> report =
       evaluation::RunExperiment(config, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";

@@ -6,7 +6,10 @@
 
 #include "cli/experiment_decision_command.h"
 #include "cli/experiment_hypothesis_command.h"
+#include "cli/experiment_recognition_command.h"
+#include "cli/experiment_torso_poses_command.h"
 #include "hires/cli/report_output.h"
+#include "hires/evaluation/experiment.h"
 
 namespace CLI {
 class App;
@@ -21,12 +24,14 @@ struct ExperimentOptions {
   std::uint64_t seed{0};
   int threads{0}, runs{0};
   bool quiet{false};
-  CLI::App* verb{nullptr};       ///< tells what was given
-  HypothesisOptions hypothesis;  ///< of `hires experiment hypothesis`
-  DecisionOptions decision;      ///< of `hires experiment decision`
+  CLI::App* verb{nullptr};         ///< tells what was given
+  HypothesisOptions hypothesis;    ///< of `hires experiment hypothesis`
+  DecisionOptions decision;        ///< of `hires experiment decision`
+  RecognitionOptions recognition;  ///< of `hires experiment recognition`
+  TorsoPosesOptions torso_poses;   ///< of `hires experiment torso_poses`
 };
 
-/// Adds the verb to the program, with `hypothesis` and `decision` below it.  @pre `options`
+/// Adds the verb to the program, with `hypothesis`, `decision` and so on below it.  @pre `options`
 /// outlives `app`.
 void AddExperimentVerb(CLI::App* app, ExperimentOptions* options);
 
@@ -34,6 +39,10 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options);
 /// @return kExitRecommended when all that the file expects holds, kExitAllFailed when not,
 /// kExitCancelled.  @throws base::ConfigError for bad input, before anything is played.
 int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool()>& cancelled);
+
+/// @param threads  0: one for each core.
+/// @param is_quiet  no bar of progress; there is none either where standard error is no terminal.
+evaluation::Crew MakeCrew(int threads, bool is_quiet, const std::function<bool()>& cancelled);
 
 /// " 52 %, 12 s left", for terminals.
 std::string ProgressText(double fraction, double elapsed);

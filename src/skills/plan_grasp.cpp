@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "hires/geometry/angles.h"
+#include "hires/skills/grasp_quality.h"
 #include "skills/posture_skills.h"
 #include "skills/reach.h"
 #include "skills/reach_search.h"
@@ -139,6 +140,17 @@ GraspPlan PlanGrasp(const ManipulationContext& context, const std::string& arm,
                     std::uint64_t seed) {
   return GraspSearch(context, arm, observation, object, seed)
       .Find(ShoulderOf(context, arm, observation));
+}
+
+std::optional<double> GraspQuality(const ManipulationContext& context, const std::string& arm,
+                                   const Observation& observation, const world::ObjectState& object,
+                                   std::uint64_t seed) {
+  Observation seen = observation;
+  if (FindSeen(seen, object.name) == nullptr)
+    seen.objects.push_back({object.name, object.model, object.X_MO, seen.time, ""});
+  const GraspPlan plan = PlanGrasp(context, arm, seen, object, seed);
+  if (plan.failure) return std::nullopt;
+  return plan.grasp.quality;
 }
 
 }  // namespace hires::skills

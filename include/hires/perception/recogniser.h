@@ -54,6 +54,9 @@ class Recogniser {
   /// The same on a table that is known.
   Recognition RecogniseOn(const Table& table, const PointCloud& cloud, const base::Rng& rng) const;
 
+  /// Whether nothing that measures distances tells the two kinds apart; each is alike itself.
+  bool AreAlike(const std::string& label, const std::string& other) const;
+
  private:
   struct Impl;
   std::unique_ptr<const Impl> impl_;

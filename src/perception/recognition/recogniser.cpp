@@ -204,4 +204,15 @@ Recognition Recogniser::RecogniseOn(const Table& table, const PointCloud& cloud,
   return impl_->Named(cloud, SegmentOn(table, cloud, impl_->params.segmentation, rng));
 }
 
+bool Recogniser::AreAlike(const std::string& label, const std::string& other) const {
+  const auto is_in = [](const ModelShape& shape, const std::string& wanted) {
+    return std::any_of(shape.models.begin(), shape.models.end(),
+                       [&](const KnownModel& one) { return one.label == wanted; });
+  };
+  return label == other ||
+         std::any_of(impl_->shapes.begin(), impl_->shapes.end(), [&](const ModelShape& shape) {
+           return is_in(shape, label) && is_in(shape, other);
+         });
+}
+
 }  // namespace hires::perception

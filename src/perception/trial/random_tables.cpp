@@ -1,16 +1,17 @@
-#include "perception/support/random_tables.h"
+#include "hires/perception/random_tables.h"
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "hires/base/error.h"
 #include "hires/geometry/angles.h"
+#include "hires/perception/camera_view.h"
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
-#include "hires/robot/load_robot.h"
 #include "hires/world/object_catalogue.h"
 
-namespace hires::test_support {
+namespace hires::perception {
 namespace {
 
 using base::Rng;
@@ -18,11 +19,14 @@ using Eigen::Vector3d;
 using geometry::Pose3;
 
 constexpr int kMostThings = 8;
+constexpr double kLargest = 0.6;       // [m]
 constexpr double kUnknownShare = 0.2;  // of things
 constexpr double kUnlike = 0.015;  // [m] by which an unknown one differs from all known, at least
 constexpr double kGap = 0.02;      // [m] between things, at least
 constexpr double kTorso[] = {0.0115, 0.16, 0.31};  // [m] down, half way, up
 const Vector3d kTable(1.6, 0.8, 0.71);             // [m] as the model table_160x80
+constexpr double kFieldOfView = 1.0123;            // [rad] from left to right
+constexpr double kSight = 5.0;                     // [m]
 constexpr double kMostHidden = 0.6;  // of the surface of each thing towards the camera
 
 geometry::Aabb BoundsOf(const world::ObjectModel& model) {
@@ -46,22 +50,35 @@ geometry::Polygon OutlineOf(const world::ObjectModel& model, const geometry::Pos
                                       {b.lower.x() - kGap / 2, b.upper.y() + kGap / 2}});
 }
 
+/// What is on a table and who looks at it, before anything is measured.
+struct Scene {
+  std::vector<world::ObjectState> objects{};
+  std::shared_ptr<const Surroundings> surroundings{};
+  PinholeCamera camera{};
+  CameraView view{};
+};
+
 }  // namespace
 
 struct RandomTables::Impl {
   world::ObjectModel Unknown(Rng* rng) const;
   void Furnish(Rng* rng, world::World* world, RandomTable* table) const;
+  Scene Lay(Rng* rng, RandomTable* table) const;
 
   robot::Robot robot;
-  std::vector<perception::KnownModel> known;
+  std::vector<KnownModel> known;
 };
 
-RandomTables::RandomTables(const std::string& source) : impl_(std::make_unique<Impl>()) {
-  impl_->robot = robot::LoadRobot(source + "/config/robots/pr2.yaml");
-  const std::string catalogue = source + "/worlds/objects.yaml";
+RandomTables::RandomTables(robot::Robot robot, const std::string& objects)
+    : impl_(std::make_unique<Impl>()) {
+  if (!robot.profile.upper_body) {
+    throw base::ConfigError("robot '" + robot.model.name +
+                            "' has no camera on a head (upper_body in its profile)");
+  }
+  impl_->robot = std::move(robot);
   std::set<std::string> labels;
-  for (const auto& [instance, model] : world::LoadCatalogueModels(catalogue)) {
-    if (SortedSize(*model).z() < 0.6 && labels.insert(model->name).second)
+  for (const auto& [instance, model] : world::LoadCatalogueModels(objects)) {
+    if (SortedSize(*model).z() < kLargest && labels.insert(model->name).second)
       catalogue_.push_back({model->name, "", model});
   }
   impl_->known = catalogue_;
@@ -82,7 +99,7 @@ world::ObjectModel RandomTables::Impl::Unknown(Rng* rng) const {
       model.collisions[0].shape = geometry::Cylinder{rng->Uniform(0.02, 0.11), height};
     }
     const Vector3d size = SortedSize(model);
-    if (std::all_of(known.begin(), known.end(), [&](const perception::KnownModel& one) {
+    if (std::all_of(known.begin(), known.end(), [&](const KnownModel& one) {
           return (SortedSize(*one.model) - size).cwiseAbs().maxCoeff() > kUnlike;
         })) {
       return model;
@@ -125,65 +142,83 @@ void RandomTables::Impl::Furnish(Rng* rng, world::World* world, RandomTable* tab
   }
 }
 
-RandomTable RandomTables::Make(std::uint64_t seed) const {
-  RandomTable table;
-  Rng rng = Rng(seed).Fork(0);
+/// A table with things, and a camera on it from in front of its long side, over which things are
+/// 0.4 m to 1.5 m deep.
+Scene RandomTables::Impl::Lay(Rng* rng, RandomTable* table) const {
   world::World world;
   world.statics.emplace_back();
   world.statics.back().name = "table";
   world.statics.back().X_MB.translation.z() = kTable.z() / 2.0;
   world.statics.back().collisions.emplace_back();
   world.statics.back().collisions.back().shape = geometry::Box{kTable};
-  impl_->Furnish(&rng, &world, &table);
+  Furnish(rng, &world, table);
 
-  table.torso = rng.Index(3);
-  robot::JointPositions posture = impl_->robot.profile.joints;
-  posture[impl_->robot.profile.upper_body->torso_joint] = kTorso[table.torso];
-  // In front of the table's long side, on which things are 0.4 m to 1.5 m deep.
-  const geometry::Pose2 X_MB{rng.Uniform(-0.4, 0.4), rng.Uniform(-1.4, -0.8), geometry::kPi / 2};
-  const Vector3d eye = perception::ViewOf(impl_->robot, X_MB, posture).X_MC.translation;
-  const Vector3d middle(rng.Uniform(-0.2, 0.2), rng.Uniform(-0.1, 0.1), kTable.z());
-  perception::PinholeCamera camera = perception::LookAt(eye, middle, 640, 480, 1.0123);
-  table.distance = (eye - middle).norm();
+  table->torso = rng->Index(3);
+  robot::JointPositions posture = robot.profile.joints;
+  posture[robot.profile.upper_body->torso_joint] = kTorso[table->torso];
+  const geometry::Pose2 X_MB{rng->Uniform(-0.4, 0.4), rng->Uniform(-1.4, -0.8), geometry::kPi / 2};
+  const Vector3d eye = ViewOf(robot, X_MB, posture).X_MC.translation;
+  const Vector3d middle(rng->Uniform(-0.2, 0.2), rng->Uniform(-0.1, 0.1), kTable.z());
+  table->distance = (eye - middle).norm();
 
-  const auto surroundings = std::make_shared<perception::Surroundings>(world);
-  std::vector<world::ObjectState> objects = world.initial.objects;
-  const Pose3 X_CM = (camera.X_MC * perception::OpticalFrame()).Inverse();
-  perception::CameraView view = perception::ViewFrom(impl_->robot, camera.X_MC);
-  view.width = 1.0123;
-  view.height = 2.0 * std::atan(std::tan(view.width / 2.0) * 0.75);
-  for (bool is_settled = false; !is_settled;) {  // what is hidden too much is not there
+  Scene scene;
+  scene.objects = world.initial.objects;
+  scene.surroundings = std::make_shared<const Surroundings>(world);
+  scene.camera = LookAt(eye, middle, 640, 480, kFieldOfView);
+  scene.view = ViewFrom(robot, scene.camera.X_MC);
+  scene.view.width = kFieldOfView;
+  scene.view.height = 2.0 * std::atan(std::tan(scene.view.width / 2.0) * 0.75);
+  return scene;
+}
+
+/// What is hidden too much is not there.
+void TakeHiddenAway(Scene* scene, RandomTable* table) {
+  for (bool is_settled = false; !is_settled;) {
     is_settled = true;
-    const perception::LineOfSight sight(surroundings, objects);
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-      table.things[i].visible_share = sight.VisibleShare(view, objects[i].name);
-      if (table.things[i].visible_share >= 1.0 - kMostHidden) continue;
-      objects.erase(objects.begin() + static_cast<long>(i));
-      table.things.erase(table.things.begin() + static_cast<long>(i));
+    const LineOfSight sight(scene->surroundings, scene->objects);
+    for (std::size_t i = 0; i < scene->objects.size(); ++i) {
+      table->things[i].visible_share = sight.VisibleShare(scene->view, scene->objects[i].name);
+      if (table->things[i].visible_share >= 1.0 - kMostHidden) continue;
+      scene->objects.erase(scene->objects.begin() + static_cast<long>(i));
+      table->things.erase(table->things.begin() + static_cast<long>(i));
       is_settled = false;
       break;
     }
   }
-  const perception::LineOfSight sight(surroundings, objects);
-  const perception::RangePicture picture = sight.Look(camera, 5.0);
-  for (std::size_t i = 0; i < objects.size(); ++i) table.things[i].X_CO = X_CM * objects[i].X_MO;
+}
+
+/// Whose surface each pixel shows.
+void NoteOwners(const RangePicture& picture, RandomTable* table) {
   std::vector<int> thing_of(picture.names.size(), -1);
   for (std::size_t i = 0; i < picture.names.size(); ++i)
-    for (std::size_t k = 0; k < table.things.size(); ++k)
-      if (picture.names[i] == table.things[k].name) thing_of[i] = static_cast<int>(k);
-  table.owner.assign(picture.owner.size(), -1);
-  const perception::DepthSensorParams sensor;
+    for (std::size_t k = 0; k < table->things.size(); ++k)
+      if (picture.names[i] == table->things[k].name) thing_of[i] = static_cast<int>(k);
+  table->owner.assign(picture.owner.size(), -1);
+  const DepthSensorParams sensor;
   for (std::size_t i = 0; i < picture.owner.size(); ++i) {
-    if (picture.owner[i] == perception::RangePicture::kNothing) continue;
-    table.owner[i] = thing_of[picture.owner[i]];
+    if (picture.owner[i] == RangePicture::kNothing) continue;
+    table->owner[i] = thing_of[picture.owner[i]];
     const bool in_range =
         picture.depth[i] >= sensor.min_range && picture.depth[i] <= sensor.max_range;
-    if (table.owner[i] >= 0 && in_range) ++table.things[table.owner[i]].num_points;
+    if (table->owner[i] >= 0 && in_range) ++table->things[table->owner[i]].num_points;
   }
+}
+
+RandomTable RandomTables::Make(std::uint64_t seed) const {
+  RandomTable table;
+  Rng rng = Rng(seed).Fork(0);
+  Scene scene = impl_->Lay(&rng, &table);
+  TakeHiddenAway(&scene, &table);
+  const Pose3 X_CM = (scene.camera.X_MC * OpticalFrame()).Inverse();
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    table.things[i].X_CO = X_CM * scene.objects[i].X_MO;
+  const RangePicture picture =
+      LineOfSight(scene.surroundings, scene.objects).Look(scene.camera, kSight);
+  NoteOwners(picture, &table);
   Rng noise = Rng(seed).Fork(1);
-  table.cloud = perception::Measure(picture, camera, sensor, &noise);
-  table.stand = {X_CM.rotation * Vector3d::UnitZ(), eye.z()};
+  table.cloud = Measure(picture, scene.camera, {}, &noise);
+  table.stand = {X_CM.rotation * Vector3d::UnitZ(), scene.camera.X_MC.translation.z()};
   return table;
 }
 
-}  // namespace hires::test_support
+}  // namespace hires::perception

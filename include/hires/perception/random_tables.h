@@ -10,7 +10,7 @@
 #include "hires/perception/recogniser.h"
 #include "hires/robot/robot_profile.h"
 
-namespace hires::test_support {
+namespace hires::perception {
 
 /// A thing on a random table, as it really is.
 struct TableThing {
@@ -23,29 +23,33 @@ struct TableThing {
 };
 
 struct RandomTable {
-  perception::PointCloud cloud{};
-  perception::CameraStand stand{};
+  PointCloud cloud{};
+  CameraStand stand{};
   std::vector<TableThing> things{};
   std::vector<int> owner{};  ///< of each pixel, index of `things`; -1: something else
   double distance{0.0};      ///< [m] from the camera to the table's middle
   int torso{0};              ///< 0 down, 1 half way, 2 up
 };
 
-/// Tables of the restaurant with one to eight things that a PR2 looks at through its head's camera.
+/// Tables of the restaurant with one to eight things that a robot looks at through its head's
+/// camera, to try a recogniser on: four of five are of the catalogue, the others boxes and
+/// cylinders unlike all of it; none is hidden by more than 60 % of its surface towards the camera.
+/// Noise is that of DepthSensorParams.
 class RandomTables {
  public:
-  /// @param config  folder of the package that has robots and objects.
-  explicit RandomTables(const std::string& source);
+  /// @param robot    one with an upper body.
+  /// @param objects  path of a catalogue of objects; kinds larger than 0.6 m are left out.
+  RandomTables(robot::Robot robot, const std::string& objects);
   ~RandomTables();
 
-  /// Whatever the generator is given, the scene of a seed is the same.
+  /// The scene of a seed is always the same.
   RandomTable Make(std::uint64_t seed) const;
-  const std::vector<perception::KnownModel>& catalogue() const { return catalogue_; }
+  const std::vector<KnownModel>& catalogue() const { return catalogue_; }
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
-  std::vector<perception::KnownModel> catalogue_;
+  std::vector<KnownModel> catalogue_;
 };
 
-}  // namespace hires::test_support
+}  // namespace hires::perception

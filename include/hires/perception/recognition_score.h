@@ -1,0 +1,69 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/perception/random_tables.h"
+
+namespace hires::perception {
+
+/// What became of a thing that stood on a table.
+struct ThingVerdict {
+  std::string kind{};         ///< the first label of its geometry; unknown, if it is
+  double distance{0.0};       ///< [m] from the camera to its foot
+  int torso{0};               ///< as RandomTable
+  double visible_share{0.0};  ///< of its surface towards the camera, 0 .. 1
+  int num_points{0};
+  std::string called{};               ///< likewise; empty: not found
+  double error{0.0};                  ///< [m] of its pose, of one that is called rightly and known
+  std::optional<double> turned_by{};  ///< [rad] likewise; nothing: it looks the same all around
+
+  bool is_known() const { return kind != kUnknownLabel; }
+  bool is_found() const { return !called.empty(); }
+  bool is_right() const { return called == kind; }
+};
+
+/// How what was recognised on tables agrees with what stood there. A thing is found if a detection
+/// has more of its points than of anything else's; it is called rightly if by the name of any model
+/// of its geometry. Things of fewer than 400 pixels do not count.
+class RecognitionScore {
+ public:
+  explicit RecognitionScore(const std::vector<KnownModel>& catalogue);
+
+  void Add(const RandomTable& table, const Recognition& seen);
+  /// What another one has, behind what this one has.
+  void Append(const RecognitionScore& other);
+
+  const std::vector<ThingVerdict>& things() const { return things_; }
+  int num_detections() const { return num_detections_; }
+  int num_surplus() const { return num_surplus_; }  ///< of nothing, or of a thing found otherwise
+
+ private:
+  struct Kind {
+    std::vector<std::string> labels;  // of one geometry
+    int symmetry;                     // TurnSymmetry
+  };
+  const Kind* FindKind(const std::string& label) const;
+  std::string KindOf(const std::string& label) const;
+  void JudgePose(const TableThing& thing, const Detection& seen, ThingVerdict* verdict) const;
+
+  std::vector<Kind> kinds_;
+  std::vector<ThingVerdict> things_;
+  int num_detections_{0}, num_surplus_{0};
+};
+
+/// Sums of verdicts.
+struct RecognitionSums {
+  int num_things{0}, num_found{0};
+  int num_known{0}, num_named{0};  ///< of those found; rightly
+  int num_unknown{0}, num_unknown_so_called{0};
+  double median_error{0.0}, largest_error{0.0};  ///< [m] of what is named rightly; 95th percentile
+  double median_turn{0.0};                       ///< [rad] of what does not look the same all round
+};
+RecognitionSums SumsOf(const std::vector<ThingVerdict>& things);
+
+/// One line for people, with what was confused.
+std::string Text(const RecognitionScore& score);
+
+}  // namespace hires::perception

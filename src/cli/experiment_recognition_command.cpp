@@ -1,0 +1,54 @@
+#include "cli/experiment_recognition_command.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "cli/experiment_command.h"
+#include "hires/cli/command_line.h"
+#include "hires/cli/whole_number.h"
+#include "hires/evaluation/recognition_experiment.h"
+#include "hires/evaluation/report_json.h"
+#include "hires/evaluation/timeline.h"
+#include "hires/imagination/imagination_setup.h"
+#include "hires/robot/load_robot.h"
+
+namespace hires::cli {
+
+void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* o) {
+  CLI::App* verb = experiment->add_subcommand(
+      "recognition", "how well things on random tables are recognised, over distance and torso");
+  verb->add_option("--tables", o->tables, "how many; each has 1 to 8 things")
+      ->check(NumberBetween(1, 1000000));
+  verb->add_option("--seed", o->seed, "of the first table; each next one has the next");
+  verb->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
+  verb->add_option("--config", o->config, "another file instead of config/recogniser.yaml");
+  verb->add_option("--json", o->json, "write the numbers to this file");
+  verb->add_option("--threads", o->threads, "default: one per core; changes no number but times")
+      ->check(NumberBetween(1, 256));
+  verb->add_flag("--quiet", o->quiet, "no progress bar");
+  o->verb = verb;
+}
+
+int RunRecognitionVerb(const RecognitionOptions& options, const std::string& package_folder,
+                       const std::function<bool()>& cancelled) {
+  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  evaluation::RecognitionOrder order;
+  order.tables = options.tables;
+  order.seed = options.seed;
+  const auto scene = imagination::ReadSetupConfig(package_folder + "/config/scene.yaml");
+  order.robot = robot::LoadAnyRobot(scene.robot);
+  order.objects = options.objects.empty() ? scene.objects : options.objects;
+  order.recogniser = perception::ReadRecogniserConfig(
+      options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config,
+      order.objects);
+  const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
+  const auto report = evaluation::TryRecogniser(order, crew);
+  if (crew.on_progress) std::cerr << "\r\033[K";
+  if (!report) return kExitCancelled;
+  std::cout << evaluation::ReportText(*report);
+  if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
+  return evaluation::MeetsGoals(*report) ? kExitRecommended : kExitAllFailed;
+}
+
+}  // namespace hires::cli

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace hires::cli {
+
+/// What was typed behind `hires experiment recognition`.
+struct RecognitionOptions {
+  std::string config, objects, json;
+  int tables{500}, threads{0};
+  std::uint64_t seed{2000};
+  bool quiet{false};
+  CLI::App* verb{nullptr};
+};
+
+/// Adds `recognition` below the verb `experiment`.  @pre `options` outlives `experiment`.
+void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* options);
+
+/// @return kExitRecommended when all goals are met, kExitAllFailed when one is not,
+/// kExitCancelled.  @throws base::ConfigError for bad input, before anything is played.
+int RunRecognitionVerb(const RecognitionOptions& options, const std::string& package_folder,
+                       const std::function<bool()>& cancelled);
+
+}  // namespace hires::cli

@@ -1,0 +1,138 @@
+#include "hires/perception/recognition_score.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "hires/geometry/angles.h"
+#include "perception/recognition/model_fit.h"
+
+namespace hires::perception {
+namespace {
+
+constexpr int kLarge = 400;  // points
+
+/// For each thing the detection with the most of its points, where the thing has most of that one's
+/// points; -1: none.
+std::vector<int> DetectionOfThing(const RandomTable& table, const Recognition& seen, int* surplus) {
+  std::vector<std::map<int, int>> votes(seen.detections.size());
+  for (std::size_t i = 0; i < table.owner.size(); ++i) {
+    const int label = seen.segmentation.table ? seen.segmentation.labels[i] : kLabelNone;
+    if (label >= kLabelFirstThing) ++votes[label - kLabelFirstThing][table.owner[i]];
+  }
+  std::vector<int> of_thing(table.things.size(), -1);
+  for (std::size_t d = 0; d < votes.size(); ++d) {
+    const auto most = std::max_element(votes[d].begin(), votes[d].end(),
+                                       [](auto& a, auto& b) { return a.second < b.second; });
+    if (most->first < 0) {
+      ++*surplus;
+      continue;
+    }
+    int& known = of_thing[most->first];
+    if (known >= 0) ++*surplus;
+    if (known < 0 || votes[known][most->first] < most->second) known = static_cast<int>(d);
+  }
+  return of_thing;
+}
+
+/// 0 of no values.
+double Quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const auto at = values.begin() + static_cast<long>(share * (values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+}  // namespace
+
+RecognitionScore::RecognitionScore(const std::vector<KnownModel>& catalogue) {
+  for (const ModelShape& shape : ShapesOfCatalogue(catalogue)) {
+    kinds_.push_back({{}, geometry::TurnSymmetry(shape.models.front().model->collisions)});
+    for (const KnownModel& known : shape.models) kinds_.back().labels.push_back(known.label);
+  }
+}
+
+const RecognitionScore::Kind* RecognitionScore::FindKind(const std::string& label) const {
+  for (const Kind& kind : kinds_)
+    if (std::find(kind.labels.begin(), kind.labels.end(), label) != kind.labels.end()) return &kind;
+  return nullptr;
+}
+
+std::string RecognitionScore::KindOf(const std::string& label) const {
+  const Kind* kind = FindKind(label);
+  return kind != nullptr ? kind->labels.front() : label;
+}
+
+void RecognitionScore::JudgePose(const TableThing& thing, const Detection& seen,
+                                 ThingVerdict* verdict) const {
+  verdict->error = (seen.X_CO.translation - thing.X_CO.translation).norm();
+  const int symmetry = FindKind(thing.model)->symmetry;
+  if (symmetry == geometry::kRound) return;
+  const double turn = geometry::YawOf(thing.X_CO.rotation.conjugate() * seen.X_CO.rotation);
+  const double step = 2.0 * geometry::kPi / symmetry;
+  verdict->turned_by = std::abs(turn - step * std::round(turn / step));
+}
+
+void RecognitionScore::Add(const RandomTable& table, const Recognition& seen) {
+  num_detections_ += static_cast<int>(seen.detections.size());
+  const std::vector<int> of_thing = DetectionOfThing(table, seen, &num_surplus_);
+  for (std::size_t k = 0; k < table.things.size(); ++k) {
+    const TableThing& thing = table.things[k];
+    if (thing.num_points < kLarge) continue;
+    ThingVerdict verdict;
+    verdict.kind = thing.is_known ? KindOf(thing.model) : kUnknownLabel;
+    verdict.distance = thing.X_CO.translation.norm();
+    verdict.torso = table.torso;
+    verdict.visible_share = thing.visible_share;
+    verdict.num_points = thing.num_points;
+    if (of_thing[k] >= 0) {
+      const Detection& detection = seen.detections[of_thing[k]];
+      verdict.called = KindOf(detection.label);
+      if (verdict.is_right() && thing.is_known) JudgePose(thing, detection, &verdict);
+    }
+    things_.push_back(verdict);
+  }
+}
+
+void RecognitionScore::Append(const RecognitionScore& other) {
+  things_.insert(things_.end(), other.things_.begin(), other.things_.end());
+  num_detections_ += other.num_detections_;
+  num_surplus_ += other.num_surplus_;
+}
+
+RecognitionSums SumsOf(const std::vector<ThingVerdict>& things) {
+  RecognitionSums sums;
+  std::vector<double> errors, turns;
+  for (const ThingVerdict& thing : things) {
+    ++sums.num_things;
+    if (!thing.is_found()) continue;
+    ++sums.num_found;
+    ++(thing.is_known() ? sums.num_known : sums.num_unknown);
+    if (!thing.is_right()) continue;
+    ++(thing.is_known() ? sums.num_named : sums.num_unknown_so_called);
+    if (thing.is_known()) errors.push_back(thing.error);
+    if (thing.turned_by) turns.push_back(*thing.turned_by);
+  }
+  sums.median_error = Quantile(errors, 0.5);
+  sums.largest_error = Quantile(errors, 0.95);
+  sums.median_turn = Quantile(turns, 0.5);
+  return sums;
+}
+
+std::string Text(const RecognitionScore& score) {
+  const RecognitionSums sums = SumsOf(score.things());
+  std::string text = fmt::format(
+      "found {} of {}, named {} of {}, unknown as such {} of {}, surplus {} of {}, median error "
+      "{:.1f} mm",
+      sums.num_found, sums.num_things, sums.num_named, sums.num_known, sums.num_unknown_so_called,
+      sums.num_unknown, score.num_surplus(), score.num_detections(), 1e3 * sums.median_error);
+  for (const ThingVerdict& thing : score.things()) {
+    if (thing.is_found() && !thing.is_right())
+      text += fmt::format("; {} called {}", thing.kind, thing.called);
+  }
+  return text;
+}
+
+}  // namespace hires::perception
