@@ -85,11 +85,11 @@ constexpr double kAsLikely = 1.0 / 3.0;  // of what nothing else speaks for
 
 bool MemoryParams::operator==(const MemoryParams& other) const {
   const auto numbers = [](const MemoryParams& p) {
-    return std::make_tuple(p.expected_share, p.expected_margin, p.looks_to_vanish, p.blending,
-                           p.moved_distance, p.moved_angle, p.grasp_distance, p.closed_gap,
-                           p.gap_below, p.gap_above, p.open_gap, p.opening, p.still_gap,
-                           p.still_time, p.hand_distance, p.instance_distance, p.instance_margin,
-                           p.looks_to_appear);
+    return std::make_tuple(p.expected_share, p.expected_margin, p.expected_size,
+                           p.expected_distance, p.looks_to_vanish, p.blending, p.moved_distance,
+                           p.moved_angle, p.grasp_distance, p.closed_gap, p.gap_below, p.gap_above,
+                           p.open_gap, p.opening, p.still_gap, p.still_time, p.hand_distance,
+                           p.instance_distance, p.instance_margin, p.looks_to_appear);
   };
   return numbers(*this) == numbers(other);
 }
@@ -516,15 +516,32 @@ Pose3 ObjectMemory::TurnedAlike(const Links& links, const std::string& name,
   return X_MO;
 }
 
+/// [sr] of an object's box, seen from the camera; exact from afar.
+double ObjectMemory::SizeInView(const CameraView& view, const std::string& model,
+                                const Pose3& X_MO) const {
+  const geometry::Aabb box = BoundsOf(surroundings_->Model(model).collisions);
+  const Eigen::Vector3d way_O =
+      X_MO.Inverse() * view.X_MC.translation - 0.5 * (box.lower + box.upper);
+  const Eigen::Array3d size = box.upper - box.lower;
+  const Eigen::Array3d faces(size.y() * size.z(), size.x() * size.z(), size.x() * size.y());
+  return (faces * way_O.normalized().array().abs()).sum() / way_O.squaredNorm();
+}
+
 /// Whether enough of the object is in view where it is believed, and also to both sides of that.
-bool ObjectMemory::MustBeSeen(const LineOfSight& sight, const CameraView& view, const Links& links,
+bool ObjectMemory::MustBeSeen(const LineOfSight& sight, const LookedAt& look, const Links& links,
                               const RememberedObject& object) const {
+  const CameraView& view = look.view;
   const Pose3 X_MO = links.X_ML(object.link) * object.X_LO;
+  const bool is_by_cloud = !look.table_M.empty();
+  const double distance = (X_MO.translation - view.X_MC.translation).norm();
+  if (is_by_cloud && distance > params_.expected_distance) return false;
+  const double least_size = is_by_cloud ? params_.expected_size : 0.0;
+  const double size = SizeInView(view, object.model, X_MO);
   const Eigen::Vector3d left_M = view.X_MC.rotation * Eigen::Vector3d::UnitY();
   for (const double beside : {0.0, params_.expected_margin, -params_.expected_margin}) {
     const Pose3 X_MBeside{X_MO.translation + beside * left_M, X_MO.rotation};
     const double share = sight.VisibleShareAt(view, object.model, X_MBeside, object.name);
-    if (share < params_.expected_share) return false;
+    if (share < params_.expected_share || share * size < least_size) return false;
   }
   return true;
 }
@@ -541,7 +558,7 @@ void ObjectMemory::Miss(const LineOfSight& sight, const Links& links, const Look
           (named[i].name.empty() && MayBe(links, object, look.detections[i], look.X_MO(i)));
     }
     if (may_be_seen || !look.Covers(PlaceOf(links, object))) continue;
-    if (!MustBeSeen(sight, look.view, links, object)) continue;
+    if (!MustBeSeen(sight, look, links, object)) continue;
     if (++object.num_missed >= params_.looks_to_vanish) gone.push_back(name);
   }
   for (const std::string& name : gone) Lose(links, name);

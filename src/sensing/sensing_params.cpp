@@ -20,6 +20,8 @@ StateParams ReadState(ParamReader in) {
 MemoryParams ReadMemory(ParamReader in) {
   MemoryParams params;
   params.expected_share = in.Get("expected_share", Between(0.05, 1.0));
+  params.expected_size = in.Get("expected_size", Between(0.0, 1.0));
+  params.expected_distance = in.Get("expected_distance", Between(0.1, 100.0));
   params.expected_margin = in.Get("expected_margin", Between(0.0, 0.5));
   params.looks_to_vanish = in.Get("looks_to_vanish", Between(1, 1000));
   params.blending = in.Get("blending", Between(0.01, 1.0));

@@ -117,7 +117,7 @@ TEST(FindTableTest, TheFloorIsNoTableForWhoKnowsHowTheCameraStands) {
   EXPECT_EQ(out.num_things, 1);
   EXPECT_EQ(LabelAround(cloud, out, {0.0, 0.0, 0.1}), kLabelFirstThing);
   EXPECT_FALSE(FindTable(cloud, CameraStand{TableScene::Up(), 4.0}, {}, base::Rng(1)))
-      << "nothing level is 0.3 m to 1.3 m high";
+      << "nothing level is as high as tables";
 }
 
 // A plane that leans is as high as a table below the camera, and lies on the floor where its points

@@ -462,6 +462,39 @@ TEST_F(NamelessTest, WhatIsNotOnTheTableThatWasLookedAtIsNotMissed) {
   EXPECT_THAT(Names(), ElementsAre("mug1")) << "mug2 stood on it";
 }
 
+TEST_F(NamelessTest, WhatIsTooFarForACloudIsNotMissedInIt) {
+  Look({Thing("mug1", "mug", At(2.6, 0.1, 0.7))});
+  const Pose3 X_CM = ViewOf(Pr2(), body_.X_MB, body_.joints).X_MC.Inverse();
+  const std::vector<Eigen::Vector3d> table{
+      X_CM * Eigen::Vector3d(2.2, -0.5, 0.7), X_CM * Eigen::Vector3d(2.9, -0.5, 0.7),
+      X_CM * Eigen::Vector3d(2.9, 0.5, 0.7), X_CM * Eigen::Vector3d(2.2, 0.5, 0.7)};
+  for (int i = 0; i < 5; ++i) {
+    body_.time += 0.5;
+    memory_.Look(body_, {}, table);
+  }
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  for (int i = 0; i < 3; ++i) Look({});
+  EXPECT_TRUE(Names().empty()) << "a look that sees everything in view";
+}
+
+TEST_F(NamelessTest, WhatLooksLikeSomethingElseForAWhileIsStillWhatItWas) {
+  Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
+  Detection seen;
+  seen.label = "jug";
+  seen.X_CO = ViewOf(Pr2(), body_.X_MB, body_.joints).X_MC.Inverse() * At(1.5, 0.1, 0.7);
+  seen.confidence = 0.8;
+  seen.alternatives = {{"mug", 0.1}, {perception::kUnknownLabel, 0.1}};
+  const auto look = [&] {
+    body_.time += 0.5;
+    memory_.Look(body_, {seen});
+  };
+  for (int i = 0; i < 5; ++i) look();
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  seen.alternatives.clear();
+  for (int i = 0; i < 5; ++i) look();
+  EXPECT_THAT(Names(), ElementsAre("jug1")) << "when there is no doubt, it is another thing";
+}
+
 TEST_F(NamelessTest, ATurnThatNobodyCanSeeIsNone) {
   Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
   Pose3 turned = At(1.5, 0.1, 0.7);

@@ -37,7 +37,7 @@ TEST(SensingParamsTest, EachNumberMattersAndIsNamedWhenItIsBad) {
       ++count;
     }
   }
-  EXPECT_EQ(count, 22);
+  EXPECT_EQ(count, 24);
 }
 
 }  // namespace

@@ -18,20 +18,23 @@ struct MemoryParams {
                                  ///< missed in a look that does not detect it
   double expected_margin{0.06};  ///< [m] so far beside where it is believed it must be free, too:
                                  ///< what hides it was seen from elsewhere, or by another error
-  int looks_to_vanish{3};        ///< in a row in which it was missed
-  double blending{0.3};          ///< weight of a new sight of an object that stands still
-  double moved_distance{0.04};   ///< [m] beyond which it has moved, and the new sight alone counts
-  double moved_angle{0.3};       ///< [rad] likewise
-  double grasp_distance{0.12};   ///< [m] from between the finger tips to an object that they hold
-  double closed_gap{0.005};      ///< [m] a gripper that has closed so far holds nothing
-  double gap_below{0.02};        ///< [m] that a gap may be narrower than what it holds
-  double gap_above{0.012};       ///< [m] that it may be wider: what is held may stand aslant
-                                 ///< between the fingers, whose gap errs by up to 3 mm itself
-  double open_gap{0.0025};       ///< [m] from its limit a gripper is open and holds nothing
-  double opening{0.006};         ///< [m] by which a gap opens when it lets go
-  double still_gap{0.0015};      ///< [m] that a gap may change and count as still
-  double still_time{0.15};       ///< [s] after which it is
-  double hand_distance{0.08};    ///< [m] between where a held object should be and where it is seen
+  double expected_size{0.0012};  ///< [sr] of what is free of it, as seen by the camera: a look that
+                                 ///< tells its table may overlook smaller things ...
+  double expected_distance{2.0};  ///< [m] ... and those that are farther away
+  int looks_to_vanish{3};         ///< in a row in which it was missed
+  double blending{0.3};           ///< weight of a new sight of an object that stands still
+  double moved_distance{0.04};    ///< [m] beyond which it has moved, and the new sight alone counts
+  double moved_angle{0.3};        ///< [rad] likewise
+  double grasp_distance{0.12};    ///< [m] from between the finger tips to an object that they hold
+  double closed_gap{0.005};       ///< [m] a gripper that has closed so far holds nothing
+  double gap_below{0.02};         ///< [m] that a gap may be narrower than what it holds
+  double gap_above{0.012};        ///< [m] that it may be wider: what is held may stand aslant
+                                  ///< between the fingers, whose gap errs by up to 3 mm itself
+  double open_gap{0.0025};        ///< [m] from its limit a gripper is open and holds nothing
+  double opening{0.006};          ///< [m] by which a gap opens when it lets go
+  double still_gap{0.0015};       ///< [m] that a gap may change and count as still
+  double still_time{0.15};        ///< [s] after which it is
+  double hand_distance{0.08};  ///< [m] between where a held object should be and where it is seen
   double instance_distance{0.1};  ///< [m] from where an object is expected within which a thing of
                                   ///< its kind, that has no name, is taken for it
   double instance_margin{0.03};   ///< [m] by which the best way to name all things must be better
@@ -131,8 +134,10 @@ class ObjectMemory {
                               geometry::Pose3 X_MO) const;
   void See(const Links& links, const std::string& name, const std::string& label,
            const geometry::Pose3& X_MO, double time);
-  bool MustBeSeen(const perception::LineOfSight& sight, const perception::CameraView& view,
-                  const Links& links, const RememberedObject& object) const;
+  double SizeInView(const perception::CameraView& view, const std::string& model,
+                    const geometry::Pose3& X_MO) const;
+  bool MustBeSeen(const perception::LineOfSight& sight, const LookedAt& look, const Links& links,
+                  const RememberedObject& object) const;
   void Miss(const perception::LineOfSight& sight, const Links& links, const LookedAt& look,
             const std::vector<Named>& named);
   void PlaceAt(const Links& links, const geometry::Pose3& X_MO, RememberedObject* object) const;
