@@ -13,6 +13,7 @@
 ;   (Type concept instance)                (HasTemperature object degrees)* per object, in Celsius
 ; Switches, absent by default:
 ;   (imagine place_object)      placing is imagined before the robot drives there
+;   (imagine place_object_at)   the same, and imagination chooses the spot on the area
 ;   (observe pick_up_object)    the robot looks at an area before it picks from it
 ; What imagination or execution found to fail; the planner refuses such a step:
 ;   (imagined_failure action arguments...)
@@ -83,6 +84,12 @@
   ((Holding ?arm ?object)))
 
 (:operator (!place_object ?object ?arm ?area)
+  ((Holding ?arm ?object) (different ?object nothing) (RobotAt ?ma) (Connected ?area ?ma ?pma)
+   (HasArmPosture ?arm armtosideposture) (HasTorsoPosture torsoupposture))
+  ((Holding ?arm ?object))
+  ((Holding ?arm nothing) (On ?object ?area)))
+
+(:operator (!place_object_at ?object ?arm ?area ?spot)
   ((Holding ?arm ?object) (different ?object nothing) (RobotAt ?ma) (Connected ?area ?ma ?pma)
    (HasArmPosture ?arm armtosideposture) (HasTorsoPosture torsoupposture))
   ((Holding ?arm ?object))
@@ -238,6 +245,15 @@
   (:sort-by ?rank ((place_in ?where ?area ?rank)))
   ((put_object_on_area ?object ?area)))
 
+; With the switch (imagine place_object_at) spots of the area are imagined; `any` stands in the plan
+; until the answer takes its place. Spots known to fail are left out.
+(:method (put_object_on_area ?object ?area)
+  ((imagine place_object_at) (Holding ?arm ?object) (Connected ?area ?ma ?pma)
+   (setof ?spot (may_place_at ?object ?arm ?area ?spot) ?spots) (preferred_spot ?spots ?chosen))
+  ((!imagine !place_object_at (?object) (?arm) (?area) ?spots)
+   (assume_manipulation_pose ?ma ?pma ?arm)
+   (!place_object_at ?object ?arm ?area ?chosen) (leave_manipulation_pose)))
+
 (:method (put_object_on_area ?object ?area)
   ((Holding ?arm ?object) (Connected ?area ?ma ?pma))
   ((imagine_placing ?object ?arm ?area) (assume_manipulation_pose ?ma ?pma ?arm)
@@ -250,7 +266,7 @@
   ((!imagine !place_object (?object) (?arm) (?area)))
 
   trusted
-  ((not (imagine place_object)))
+  ((not (imagine place_object)) (not (imagine place_object_at)))
   ())
 
 (:method (drive_robot ?area)
@@ -398,6 +414,16 @@
 (:- (placing_fails ?object ?arm ?area)
   ((imagined_failure !place_object ?object ?arm ?area)))
 
+(:- (may_place_at ?object ?arm ?area ?spot)
+  ((spot ?spot) (not (imagined_failure place_object_at ?object ?arm ?area ?spot))
+   (not (imagined_failure !place_object_at ?object ?arm ?area ?spot))))
+
+(:- (preferred_spot ?spots ?spot)
+  any
+  ((eval (member 'any '?spots)) (same ?spot any))
+  another
+  ((assign ?spot (first '?spots))))
+
 ; An action may be named with its exclamation mark or without.
 (:- (failed ?name ?marked_name ?x ?y) ((imagined_failure ?name ?x ?y)))
 (:- (failed ?name ?marked_name ?x ?y) ((imagined_failure ?marked_name ?x ?y)))
@@ -463,7 +489,14 @@
 (:- (other_arm leftarm1 rightarm1) ())
 (:- (other_arm rightarm1 leftarm1) ())
 
-; In the order in which they are listed for imagination.
+; Spots and motion sets, in the order in which they are listed for imagination.
+(:- (spot any) ())
+(:- (spot middle) ())
+(:- (spot left) ())
+(:- (spot right) ())
+(:- (spot front) ())
+(:- (spot back) ())
+
 (:- (motion_set slow) ())
 (:- (motion_set fast) ())
 

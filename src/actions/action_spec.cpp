@@ -62,6 +62,8 @@ const char* ToString(ParameterKind kind) {
       return "object";
     case ParameterKind::kAreaOrObject:
       return "area or object";
+    case ParameterKind::kSpot:
+      return "spot";
   }
   return "";
 }

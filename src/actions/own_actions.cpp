@@ -116,6 +116,8 @@ Catalogue MakeOwnActions() {
   catalogue.Add(PickUp("pick_up_object", {Object(), Arm()}));
   catalogue.Add(PickUp("pick_up_from_tray", {Arm(), Object()}));
   catalogue.Add(Place("place_object", {Object(), Arm(), Area()}, Purpose::kPutOnArea, "?area"));
+  catalogue.Add(Place("place_object_at", {Object(), Arm(), Area(), {"spot", Kind::kSpot}},
+                      Purpose::kPutOnArea, "?area"));
   catalogue.Add(Place("place_on_tray", {Arm(), Object()}, Purpose::kPutOnTray, "trayarea1"));
   return catalogue;
 }

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
+#include "hires/base/error.h"
+#include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 
 namespace hires::skills {
@@ -44,6 +47,20 @@ Polygon Circle(const Vector2d& centre, double radius) {
     circle.push_back(centre + outside * Vector2d(std::cos(angle), std::sin(angle)));
   }
   return circle;
+}
+
+/// In shares of the way from the middle to the edge.
+const std::map<std::string, Vector2d>& Spots() {
+  static const std::map<std::string, Vector2d> spots{
+      {"middle", {0.0, 0.0}},       {"front", {1.0, 0.0}},      {"back", {-1.0, 0.0}},
+      {"left", {0.0, 1.0}},         {"right", {0.0, -1.0}},     {"front_left", {1.0, 1.0}},
+      {"front_right", {1.0, -1.0}}, {"back_left", {-1.0, 1.0}}, {"back_right", {-1.0, -1.0}}};
+  return spots;
+}
+
+/// [m] that the middle of an upright object may be off the middle of an area, along each axis.
+double RoomOf(const PlaceParams& params, double radius) {
+  return std::max(0.0, params.area_half_width - radius);
 }
 
 /// Keeps the candidates that are free; notes who takes up the others.
@@ -101,8 +118,31 @@ FreeSpots FindFreeSpots(const PlaceParams& params, const world::World& world,
                         const world::ObjectModel& object, const Pose3& X_MA,
                         const std::vector<world::ObjectState>& others) {
   const double radius = RadiusOf(object);
-  const double room = std::max(0.0, params.area_half_width - radius);
-  return KeepFree(Grid(room, params.spot_spacing), radius, params.clearance,
+  return KeepFree(Grid(RoomOf(params, radius), params.spot_spacing), radius, params.clearance,
+                  NeighboursIn(world, X_MA, others));
+}
+
+std::vector<std::string> SpotNames() {
+  std::vector<std::string> names;
+  for (const auto& entry : Spots()) names.push_back(entry.first);
+  return names;
+}
+
+std::optional<Vector2d> ParseSpot(const std::string& name) {
+  const std::string lower = base::ToLower(name);
+  if (lower == kAnySpot) return std::nullopt;
+  const auto found = Spots().find(lower);
+  if (found != Spots().end()) return found->second;
+  std::vector<std::string> known = SpotNames();
+  known.insert(known.begin(), kAnySpot);
+  throw base::ConfigError(base::UnknownName("spot", name, known));
+}
+
+FreeSpots FindStatedSpot(const PlaceParams& params, const world::World& world,
+                         const world::ObjectModel& object, const Pose3& X_MA,
+                         const std::vector<world::ObjectState>& others, const Vector2d& spot) {
+  const double radius = RadiusOf(object);
+  return KeepFree({RoomOf(params, radius) * spot}, radius, params.clearance,
                   NeighboursIn(world, X_MA, others));
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,27 @@ struct FreeSpots {
 FreeSpots FindFreeSpots(const PlaceParams& params, const world::World& world,
                         const world::ObjectModel& object, const geometry::Pose3& X_MA,
                         const std::vector<world::ObjectState>& others);
+
+/// Any free place of an area will do, the nearest to its middle first.
+constexpr char kAnySpot[] = "any";
+
+/// Names of the spots that every area has: "middle", and one at each edge and corner, by the axes
+/// of the area's frame: "front" (+x), "back", "left" (+y), "right", "front_left", ... The choice is
+/// one of names, as plans and the Blackboard know no metres, and the same on the robot as in a
+/// rollout.
+std::vector<std::string> SpotNames();
+
+/// Where a spot lies in the area's frame, each coordinate -1, 0 or 1 times as far from the middle
+/// as the object may go; nothing for kAnySpot.
+/// @throws base::ConfigError naming what came, with names like it.
+std::optional<Eigen::Vector2d> ParseSpot(const std::string& name);
+
+/// That spot, if it is free as FindFreeSpots means it; the object at the edge lies just within the
+/// square.
+FreeSpots FindStatedSpot(const PlaceParams& params, const world::World& world,
+                         const world::ObjectModel& object, const geometry::Pose3& X_MA,
+                         const std::vector<world::ObjectState>& others,
+                         const Eigen::Vector2d& spot);
 
 /// The tray's places in order (middle, right, left of X_MSlot, along its y axis) that are free of
 /// `others`.

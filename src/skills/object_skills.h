@@ -5,6 +5,7 @@
 
 #include "hires/skills/activity.h"
 #include "hires/skills/manipulation_context.h"
+#include "skills/free_spot.h"
 #include "skills/hand_stages.h"
 #include "skills/reach.h"
 
@@ -56,9 +57,12 @@ class PickUpObject : public StagedSkill {
 ///   out_of_view, timed_out
 class PlaceObject : public StagedSkill {
  public:
-  /// On an area of the world.  @throws base::ConfigError for an unknown arm or area.
+  /// On an area of the world.
+  /// @param spot  of the area (ParseSpot), which alone is tried.
+  /// @throws base::ConfigError for an unknown arm, area or spot.
   PlaceObject(std::shared_ptr<const ManipulationContext> context, const base::ActionCall& action,
-              const std::string& object, const std::string& arm, const std::string& area);
+              const std::string& object, const std::string& arm, const std::string& area,
+              const std::string& spot = kAnySpot);
   /// On the robot's tray.  @throws base::ConfigError also for a robot without tray.
   PlaceObject(std::shared_ptr<const ManipulationContext> context, const base::ActionCall& action,
               const std::string& object, const std::string& arm);
@@ -72,6 +76,9 @@ class PlaceObject : public StagedSkill {
   void AppendChecking();
   /// Where it is put: an area's frame, or the middle of the tray.
   geometry::Pose3 X_MGoal(const robot::Observation& observation) const;
+  /// Where the object may be put, around X_MA.
+  FreeSpots SpotsFor(const world::ObjectModel& model, const geometry::Pose3& X_MA,
+                     const std::vector<world::ObjectState>& others) const;
   Beginning Plan(const robot::Observation& observation);
   Beginning ReturnAndLook(const robot::Observation& observation) const;
   base::Failure WhyNotStanding(const robot::Observation& observation) const;
@@ -79,6 +86,7 @@ class PlaceObject : public StagedSkill {
   std::shared_ptr<const ManipulationContext> context_;
   std::string object_, arm_;                // lower case
   std::optional<geometry::Pose3> X_MArea_;  // nothing: on the tray
+  std::optional<Eigen::Vector2d> spot_;     // the only one of the area that is wanted
   std::uint64_t seed_;
   PlacePlan plan_;
   double looked_since_{0.0};  // [s]

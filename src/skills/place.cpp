@@ -3,7 +3,6 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/skills/head_aim.h"
-#include "skills/free_spot.h"
 #include "skills/hand_stages.h"
 #include "skills/joint_motion.h"
 #include "skills/look_skills.h"
@@ -30,12 +29,14 @@ std::vector<world::ObjectState> Others(const Observation& seen, const std::strin
 }  // namespace
 
 PlaceObject::PlaceObject(SharedContext context, const base::ActionCall& action,
-                         const std::string& object, const std::string& arm, const std::string& area)
+                         const std::string& object, const std::string& arm, const std::string& area,
+                         const std::string& spot)
     : StagedSkill(context->params.period),
       context_(std::move(context)),
       object_(base::ToLower(object)),
       arm_(KnownArm(*context_, arm)),
       X_MArea_(AreaFrame(*context_->world, area)),
+      spot_(ParseSpot(spot)),
       seed_(SeedOf(context_->params, action)),
       lean_(context_->standing) {
   AppendStages();
@@ -59,6 +60,15 @@ Pose3 PlaceObject::X_MGoal(const Observation& observation) const {
   return X_MArea_ ? *X_MArea_ : TrayFrame(*context_, observation);
 }
 
+FreeSpots PlaceObject::SpotsFor(const world::ObjectModel& model, const Pose3& X_MA,
+                                const std::vector<world::ObjectState>& others) const {
+  const PlaceParams& params = context_->params.place;
+  const world::World& world = *context_->world;
+  if (!X_MArea_) return FindFreeSlots(params, world, model, X_MA, others);
+  if (spot_) return FindStatedSpot(params, world, model, X_MA, others, *spot_);
+  return FindFreeSpots(params, world, model, X_MA, others);
+}
+
 Beginning PlaceObject::Plan(const Observation& observation) {
   if (base::Failure unknown = WhyNotKnown(*context_, observation); unknown) {
     return CannotBegin(unknown);
@@ -66,11 +76,8 @@ Beginning PlaceObject::Plan(const Observation& observation) {
   const robot::SeenObject* held = FindSeen(observation, object_);
   if (held == nullptr) return CannotBegin(Code::kObjectSlipped);
   const world::ObjectModel& model = *context_->world->models.at(held->model);
-  const PlaceParams& params = context_->params.place;
-  const std::vector<world::ObjectState> others = Others(observation, object_);
   const Pose3 X_MA = X_MGoal(observation);
-  const FreeSpots spots = X_MArea_ ? FindFreeSpots(params, *context_->world, model, X_MA, others)
-                                   : FindFreeSlots(params, *context_->world, model, X_MA, others);
+  const FreeSpots spots = SpotsFor(model, X_MA, Others(observation, object_));
   plan_ = PlanPlacing(*context_, arm_, observation, *held, X_MA, spots, seed_);
   return plan_.failure ? CannotBegin(plan_.failure) : NothingToDo();
 }

@@ -91,6 +91,12 @@ std::unique_ptr<Skill> MakePlace(const SkillSet& skills, const ActionCall& actio
                                        action.arguments[1], action.arguments[2]);
 }
 
+std::unique_ptr<Skill> MakePlaceAt(const SkillSet& skills, const ActionCall& action) {
+  return std::make_unique<PlaceObject>(skills.manipulation, action, action.arguments[0],
+                                       action.arguments[1], action.arguments[2],
+                                       action.arguments[3]);
+}
+
 std::unique_ptr<Skill> MakePlaceOnTray(const SkillSet& skills, const ActionCall& action) {
   return std::make_unique<PlaceObject>(skills.manipulation, action, action.arguments[1],
                                        action.arguments[0]);
@@ -115,6 +121,7 @@ const std::map<std::string, SkillMaker>& Makers() {
       {"observe_objects_on_area", MakeObserve},
       {"pick_up_object", MakePickUp},
       {"place_object", MakePlace},
+      {"place_object_at", MakePlaceAt},
       {"place_on_tray", MakePlaceOnTray},
       {"pick_up_from_tray", MakePickUpFromTray},
   };

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "hires/imagination/evidence.h"
+#include "hires/imagination/local_imagination.h"
 #include "hires/imagination/rollout.h"
 #include "imagination/restaurant_rollouts.h"
 #include "support/messages.h"
@@ -39,6 +40,29 @@ StartState MugOnCounter() {
 }
 
 // ---------------------------------------------------------------------------- what comes out
+
+/// The area's back is taken, so of two spots imagination must take the one in front, though it was
+/// asked for last.
+TEST(ArmRolloutTest, ASpotThatSomethingTakesUpIsNotChosen) {
+  const world::World& world = Restaurant().scene->world;
+  const geometry::Pose3 X_MA = *world.FindFrame(kPlacingArea);
+  const geometry::Pose3 X_MBowl = X_MA * geometry::Lift(geometry::Pose2{-0.10, 0.0, 0.0});
+  const RolloutSetup setup = Rollouts(MugBeforeTable({{"bowl1", "", X_MBowl}}));
+  const auto at = [](const std::string& spot) {
+    return base::ActionCall{"place_object_at", {"mug1", "rightArm1", kPlacingArea, spot}};
+  };
+  SchedulerParams params;
+  params.rollouts = 2;
+  params.criteria.min_success = 0.1;
+  const Report report = ImagineLocally(setup, {at("back"), at("front")}, params, 2);
+  ASSERT_EQ(report.ranking.size(), 2u);
+  EXPECT_EQ(report.recommended, 0) << report.why;
+  EXPECT_TRUE(report.ranking[0].action == at("front")) << report.why;
+  EXPECT_EQ(report.ranking[0].evidence.success.share, 1.0);
+  EXPECT_EQ(report.ranking[1].evidence.success.share, 0.0);
+  EXPECT_EQ(report.ranking[1].evidence.failures.begin()->first.code,
+            base::FailureCode::kAreaOccupied);
+}
 
 TEST(ArmRolloutTest, AMugIsPutOnAFreeTable) {
   const RolloutResult result = Play(Rollouts(MugBeforeTable()), kPlace);

@@ -38,8 +38,9 @@ using ::testing::SizeIs;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
 const char* const kProblems[] = {
-    "serve_coffee",     "serve_coffee_imagined", "serve_coffee_south_failed",
-    "serve_hot_coffee", "carry_object",          "clear_table"};
+    "serve_coffee",       "serve_coffee_imagined", "serve_coffee_south_failed",
+    "serve_coffee_spots", "serve_hot_coffee",      "carry_object",
+    "clear_table"};
 
 using Steps = std::vector<std::string>;
 
@@ -223,6 +224,24 @@ TEST(ServeCoffeeTest, WithPlacingImaginedAndFailingItGoesNorthToo) {
                   "(!imagine !place_object (mug1) (rightarm1) (placingareawestlefttable1))");
   EXPECT_THAT(FirstSteps(With(Load("serve_coffee_imagined"), kSouth)), ElementsAreArray(expected));
   ExpectNoPlan(With(With(Load("serve_coffee_imagined"), kSouth), kNorth));
+}
+
+TEST(ServeCoffeeTest, SpotsThatAreKnownToFailAreNotImaginedAgain) {
+  const auto failed = [](const std::string& area, const std::string& spot) {
+    return "(imagined_failure place_object_at mug1 rightarm1 " + area + " " + spot + ")";
+  };
+  const std::string south = "placingareawestrighttable1";
+  Problem problem = With(Load("serve_coffee_spots"), failed(south, "any"));
+  problem = With(problem, failed(south, "left"));
+  const Steps steps = FirstSteps(problem);
+  EXPECT_THAT(steps, Contains("(!imagine !place_object_at (mug1) (rightarm1) (" + south +
+                              ") (middle right front back))"));
+  EXPECT_THAT(steps, Contains("(!place_object_at mug1 rightarm1 " + south + " middle)"));
+  for (const char* spot : {"middle", "right", "front", "back"}) {
+    problem = With(problem, failed(south, spot));
+  }
+  EXPECT_THAT(FirstSteps(problem),
+              Contains("(!place_object_at mug1 rightarm1 placingareawestlefttable1 any)"));
 }
 
 TEST(ServeCoffeeTest, OtherGuestsAreServedAtTheirSeats) {
@@ -591,7 +610,7 @@ TEST(RestaurantSidecarTest, EveryActionThatIsImaginedHasItsDefaults) {
       if (step.task.Head() == "!imagine") imagined.insert(step.task.items.at(1).text);
     }
   }
-  EXPECT_THAT(imagined, ElementsAre("!move_base_param", "!place_object"));
+  EXPECT_THAT(imagined, ElementsAre("!move_base_param", "!place_object", "!place_object_at"));
   for (const std::string& action : imagined) {
     EXPECT_TRUE(EntryOf(Sidecar(), action).imagine.has_value()) << action;
   }

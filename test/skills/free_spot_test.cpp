@@ -58,6 +58,35 @@ TEST(RadiusOfTest, AnOutlineTurnsWithItsObject) {
   EXPECT_NEAR(highest - lowest, 0.11, 1e-6);
 }
 
+FreeSpots At(const std::string& spot, const std::vector<world::ObjectState>& others) {
+  return FindStatedSpot({}, Shelf(), *Shelf().models.at("mill"), X_MA(), others, *ParseSpot(spot));
+}
+
+TEST(StatedSpotTest, LiesAsFarOutAsTheObjectMayGo) {
+  const double room = PlaceParams().area_half_width - 0.037;
+  const FreeSpots corner = At("Back_Left", {});
+  ASSERT_EQ(corner.spots_A.size(), 1u);
+  EXPECT_LT((corner.spots_A[0] - Eigen::Vector3d(-room, room, 0.0)).norm(), 1e-6);
+  ASSERT_EQ(At("middle", {}).spots_A.size(), 1u);
+  EXPECT_LT(At("middle", {}).spots_A[0].norm(), 1e-12);
+}
+
+TEST(StatedSpotTest, IsOccupiedByTheOneThatStandsThereAndNoOtherSpotIsTakenInstead) {
+  const std::vector<world::ObjectState> others{Stands("mill1", "mill", 0.10, 0.0)};
+  EXPECT_THAT(At("front", others).spots_A, IsEmpty());
+  EXPECT_THAT(At("front", others).occupants, ElementsAre("mill1"));
+  EXPECT_EQ(At("back", others).spots_A.size(), 1u);
+}
+
+TEST(StatedSpotTest, EverySpotButTheFreeChoiceHasAPlaceOfItsOwn) {
+  EXPECT_FALSE(ParseSpot("ANY"));
+  const std::vector<std::string> names = SpotNames();
+  ASSERT_EQ(names.size(), 9u);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) EXPECT_NE(*ParseSpot(names[i]), *ParseSpot(names[j]));
+  }
+}
+
 TEST(FreeSpotsTest, AnEmptyAreaOffersItsMiddleFirst) {
   const FreeSpots free = Spots({});
   EXPECT_THAT(free.occupants, IsEmpty());

@@ -94,7 +94,8 @@ base::ActionCall SampleOf(const actions::ActionSpec& spec) {
                                             {Kind::kArmPosture, "ArmUnTuckedPosture"},
                                             {Kind::kArm, "leftArm1"},
                                             {Kind::kObject, "mug1"},
-                                            {Kind::kAreaOrObject, "mug1"}};
+                                            {Kind::kAreaOrObject, "mug1"},
+                                            {Kind::kSpot, "front_left"}};
   base::ActionCall call{spec.name, {}};
   for (const auto& parameter : spec.parameters)
     call.arguments.push_back(samples.at(parameter.kind));
@@ -126,6 +127,10 @@ TEST(SkillFactoryUpperBodyTest, RefusesUnknownArmsPosturesAndAreas) {
               AllOf(HasSubstr("torso posture 'torsotopposture'"), HasSubstr("torsoupposture")));
   EXPECT_THAT(WhyNotInRestaurant({"tuck_arms", {"armcarryposture", "armtuckedposture"}}),
               AllOf(HasSubstr("goal of an arm 'armcarryposture'"), HasSubstr("armtuckedposture")));
+  EXPECT_THAT(WhyNotInRestaurant(
+                  {"place_object_at", {"mug1", "rightarm1", "placingAreaWestRightTable1", "frnt"}}),
+              AllOf(HasSubstr("place_object_at("), HasSubstr("spot 'frnt' is unknown"),
+                    HasSubstr("'front'")));
   EXPECT_THAT(WhyNotInRestaurant({"place_object", {"mug1", "rightarm1", "placingAreaMoon1"}}),
               HasSubstr("area 'placingAreaMoon1' is unknown"));
   EXPECT_THAT(WhyNotInRestaurant({"observe_objects_on_area", {"mug1"}}),

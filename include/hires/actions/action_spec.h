@@ -18,7 +18,8 @@ enum class ParameterKind {
   kArmPosture,    ///< likewise
   kArm,           ///< an arm by its instance: leftarm1
   kObject,        ///< an object by its instance
-  kAreaOrObject   ///< one of the two
+  kAreaOrObject,  ///< one of the two
+  kSpot           ///< where on an area something is put, by a name that every area knows
 };
 const char* ToString(ParameterKind kind);  ///< "area", "motion set"
 
