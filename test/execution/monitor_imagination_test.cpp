@@ -120,6 +120,22 @@ TEST(ToppleTest, TheRecommendedMotionSetIsDriven) {
               ElementsAreArray({Texts{"premanipulationareanorthtable1"}, Texts{"slow", "fast"}}));
 }
 
+TEST(ImaginationTest, TheRecommendedSpotIsPlacedAt) {
+  auto options = For("serve_coffee_spots");
+  options.imagine = [](const StartImagination&, int) {
+    return Ranked({"place_object_at", {"mug1", "rightarm1", "placingareawestrighttable1", "left"}},
+                  11.0);
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "serve_coffee_spots");
+  ASSERT_THAT(world.imaginations(), SizeIs(1));
+  EXPECT_THAT(world.imaginations()[0].action.alternatives.back(),
+              ElementsAreArray({"any", "middle", "left", "right", "front", "back"}));
+  const std::string at = "place_object_at(mug1, rightarm1, placingareawestrighttable1, ";
+  EXPECT_GT(world.StartOf(at + "left)"), 0.0);
+  EXPECT_LT(world.StartOf(at + "any)"), 0.0);
+}
+
 TEST(ToppleTest, TheDeadlineIsWhenTheDriveIsExpectedAndMovesWithThePlan) {
   auto options = For("carry_object");
   options.imagine = [](const StartImagination&, int) { return std::nullopt; };
