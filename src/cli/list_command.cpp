@@ -133,7 +133,7 @@ Rows Objects(const Sources& sources) {
   }
   const world::World world = world::LoadWorld(sources.setup.world);
   for (const world::ObjectState& object : world.initial.objects) {
-    rows.push_back(ObjectRow(object.name, *world.models.at(object.model), "world"));
+    rows.push_back(ObjectRow(object.name, *world.ModelOf(object), "world"));
   }
   return rows;
 }

@@ -65,10 +65,10 @@ std::optional<BrakingLimits> BrakingFor(const Robot& robot, const world::World& 
   if (!has_eyes) return std::nullopt;
   std::vector<navigation::StandingLoad> loads;
   for (const robot::SeenObject& object : OnTray(robot, seen)) {
-    const auto model = world.models.find(object.model);
-    if (model == world.models.end()) return std::nullopt;
+    const auto model = world.FindModel(object.model);
+    if (!model) return std::nullopt;
     try {
-      loads.push_back(navigation::LoadOf(*model->second));
+      loads.push_back(navigation::LoadOf(*model));
     } catch (const base::ConfigError&) {
       return std::nullopt;
     }

@@ -124,8 +124,8 @@ std::vector<BrakingPlay> BrakingCells(const BrakingConfig& braking, const Stage&
   const robot::BaseControllerParams& controller = scene.robot.profile.base_controller;
   std::vector<BrakingPlay> plays;
   for (const std::string& load : braking.loads) {
-    const world::ObjectModel& model = *scene.world.models.at(stage.setup.ModelOf(load));
-    const navigation::StandingLoad standing = navigation::LoadOf(model);
+    const auto model = scene.world.RequireModel(stage.setup.ModelOf(load));
+    const navigation::StandingLoad standing = navigation::LoadOf(*model);
     const auto limits = navigation::LimitsFor(
         {standing}, {controller, scene.X_BO.translation.z(), scene.world.gravity},
         braking.guard.braking);

@@ -271,6 +271,7 @@ std::string ImaginationSetup::ModelOf(const std::string& instance_or_model) cons
   if (instance != object_models.end()) return instance->second;
   const std::string kin = translator.FindModel(instance_or_model);
   if (!kin.empty()) return kin;
+  if (scene->world.FindModel(instance_or_model)) return instance_or_model;  // it says its box
   std::vector<std::string> known;
   for (const auto& [name, model] : object_models) known.push_back(name);
   for (const auto& [name, model] : scene->world.models) {

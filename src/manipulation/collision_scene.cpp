@@ -120,16 +120,9 @@ int CollisionScene::Impl::LinkIndex(const world::ObjectState& object) const {
 
 void CollisionScene::Impl::AddObject(const world::ObjectState& object,
                                      const std::vector<Eigen::Isometry3d>& X_ML) {
-  const auto model = fixed->world->models.find(object.model);
-  if (model == fixed->world->models.end()) {
-    std::vector<std::string> known;
-    for (const auto& [name, value] : fixed->world->models) known.push_back(name);
-    throw base::ConfigError(fmt::format("object '{}' in world '{}': {}", object.name,
-                                        fixed->world->name,
-                                        base::UnknownName("model", object.model, known)));
-  }
+  const auto model = fixed->world->ModelOf(object);
   const std::string what = fmt::format("object '{}'", object.name);
-  for (const geometry::Collision& collision : model->second->collisions) {
+  for (const geometry::Collision& collision : model->collisions) {
     Thing thing = MakeThing(object.name, collision, object.X_MO, fixed->params.padding, what);
     if (object.attached_to.empty()) {
       loose.push_back(std::move(thing));

@@ -2,6 +2,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/world/unknown_box.h"
 #include "perception/shape_mesh.h"
 #include "perception/surroundings_impl.h"
 
@@ -30,6 +31,13 @@ Surroundings::~Surroundings() = default;
 const Surroundings::Impl::Model& Surroundings::Impl::Require(const std::string& model) const {
   const auto found = models.find(model);
   if (found != models.end()) return found->second;
+  if (world::SaysUnknownBox(model)) {
+    const std::lock_guard<std::mutex> lock(boxes_mutex);
+    const auto box = boxes.find(model);
+    if (box != boxes.end()) return box->second;
+    const auto made = std::make_shared<const world::ObjectModel>(world::MakeUnknownBox(model));
+    return boxes.emplace(model, Model{made, SurfacePattern(made->collisions)}).first->second;
+  }
   std::vector<std::string> known;
   for (const auto& [name, unused] : models) known.push_back(name);
   throw base::ConfigError(base::UnknownName("object model", model, known));

@@ -193,7 +193,8 @@ void TraceMarkers::DrawBodies(const hires::simulation::RobotSimulator& simulator
     draw(part, simulator.X_MB(), Colour(0.55, 0.6, 0.7, 0.8));
   }
   for (const auto& object : simulator.GetWorldState().objects) {
-    for (const auto& part : scene.world.models.at(object.model)->collisions) {
+    const auto model = scene.world.RequireModel(object.model);
+    for (const auto& part : model->collisions) {
       draw(part, object.X_MO, Colour(0.8, 0.45, 0.15));
     }
   }

@@ -44,8 +44,8 @@ void HeadCamera::Remember(const std::vector<robot::SeenObject>& objects, const P
   for (const robot::SeenObject& object : objects) {
     if (IsHeld(object.name)) continue;
     const Pose3 X_BO = geometry::Lift(X_MBbelieved).Inverse() * object.X_MO;
-    const auto& shapes = scene_->world.models.at(object.model)->collisions;
-    const bool rides_along = StandsOn(scene_->base_shapes_B, shapes, X_BO);
+    const auto model = scene_->world.RequireModel(object.model);
+    const bool rides_along = StandsOn(scene_->base_shapes_B, model->collisions, X_BO);
     state_.memory.Believe(object.name, object.model,
                           rides_along ? scene_->robot.profile.base_link : "",
                           rides_along ? X_BO : object.X_MO);

@@ -17,6 +17,7 @@ LooseObjects::LooseObjects(const world::World& world, const Variation& variation
 
 void LooseObjects::AddRigid(const world::ObjectState& object, const Pose3& X_BO) {
   objects_.push_back(object);
+  models_.push_back(world_.RequireModel(object.model));
   names_.push_back(object.name);
   bodies_.push_back(-1);
   X_BO_start_.push_back(X_BO);
@@ -31,9 +32,7 @@ void LooseObjects::AddLoose(const world::ObjectState& object, const Pose3& X_BO,
                          Varied(model.collisions, variation_), {object.X_MO, object.V_MO});
 }
 
-const world::ObjectModel& LooseObjects::ModelOf(int object) const {
-  return *world_.models.at(AtStart(object).model);
-}
+const world::ObjectModel& LooseObjects::ModelOf(int object) const { return *models_.at(object); }
 
 Pose3 LooseObjects::PoseOf(int object, const Pose3& X_MB) const {
   if (bodies_[object] < 0) return X_MB * X_BO_start_[object];

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,7 @@ class LooseObjects {
   Variation variation_;
   physics::PhysicsWorld* physics_;
   std::vector<world::ObjectState> objects_;  // poses as at the start
+  std::vector<std::shared_ptr<const world::ObjectModel>> models_;
   std::vector<std::string> names_;
   std::vector<physics::BodyId> bodies_;      // -1: not loose
   std::vector<geometry::Pose3> X_BO_start_;  // in the base frame

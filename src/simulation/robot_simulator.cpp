@@ -45,7 +45,7 @@ void RobotSimulator::Send(const robot::Command& command) {
 
 void RobotSimulator::Remember(const std::vector<robot::SeenObject>& objects) {
   for (const robot::SeenObject& object : objects) {
-    RefuseUnknownModel({object.name, object.model, object.X_MO, {}, ""}, scene_->world);
+    scene_->world.ModelOf({object.name, object.model, object.X_MO, {}, ""});
     RefusePose("remembered object '" + object.name + "'", object.X_MO);
   }
   if (camera_) camera_->Remember(objects, base().X_MB);

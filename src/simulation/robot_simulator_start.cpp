@@ -69,11 +69,10 @@ void RobotSimulator::AddObjects(const std::vector<world::ObjectState>& objects,
 
 /// @param X_BO  where the base would be nominally. What it carries and holds moves along with it.
 void RobotSimulator::AddObject(world::ObjectState object, Pose3 X_BO, LevelOfDetail level) {
-  RefuseUnknownModel(object, scene_->world);
+  const auto model = scene_->world.ModelOf(object);
   RefuseUnknownHolder(object, scene_->robot.model);
   const bool is_held = !object.attached_to.empty();
-  const auto& shapes = scene_->world.models.at(object.model)->collisions;
-  const bool is_carried = !is_held && StandsOn(frozen_->shapes_B(), shapes, X_BO);
+  const bool is_carried = !is_held && StandsOn(frozen_->shapes_B(), model->collisions, X_BO);
   if (is_carried) X_BO.translation.head<2>() += variation_.object_offset;
   if (is_held) {
     const Pose3 X_BL = X_MB().Inverse() * frozen_->X_MLink(X_MB(), object.attached_to);
@@ -142,8 +141,8 @@ void RobotSimulator::RefuseInsideRobot(const world::ObjectState& object, physics
       }
     }
   } else {
-    const auto& shapes = scene_->world.models.at(object.model)->collisions;
-    inside = FindInside(shapes, object.X_MO, frozen_->shapes_B(), X_MB());
+    const auto model = scene_->world.RequireModel(object.model);
+    inside = FindInside(model->collisions, object.X_MO, frozen_->shapes_B(), X_MB());
   }
   if (inside) FailInsideRobot(object, scene_->world, *inside);
 }

@@ -78,7 +78,7 @@ std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object,
 
 void FailInsideRobot(const world::ObjectState& object, const world::World& world,
                      const Inside& inside) {
-  const double below = HeightBelowOrigin(*world.models.at(object.model));
+  const double below = HeightBelowOrigin(*world.RequireModel(object.model));
   const std::string cause =
       below > kStartSlack
           ? fmt::format(
@@ -161,32 +161,24 @@ void RefuseStiff(const robot::BaseControllerParams& params, double time_step) {
   RefuseStiff("sway", params.sway_frequency, params.sway_damping, time_step);
 }
 
-void RefuseUnknownModel(const world::ObjectState& object, const world::World& world) {
-  if (world.models.count(object.model) == 1) return;
-  std::vector<std::string> known;
-  for (const auto& entry : world.models) known.push_back(entry.first);
-  throw base::ConfigError(
-      fmt::format("object '{}': {}", object.name, base::UnknownName("model", object.model, known)));
-}
-
 void RefuseTogether(const world::ObjectState& object, const world::ObjectState& earlier,
                     const world::World& world) {
   if (base::ToLower(object.name) == base::ToLower(earlier.name)) {
     throw base::ConfigError(
         fmt::format("object '{}' is there twice; name each instance once", object.name));
   }
-  const auto& shapes = world.models.at(object.model)->collisions;
-  const auto& others = world.models.at(earlier.model)->collisions;
-  if (Overlap(shapes, object.X_MO, others, earlier.X_MO)) {
+  const auto model = world.RequireModel(object.model);
+  const auto other = world.RequireModel(earlier.model);
+  if (Overlap(model->collisions, object.X_MO, other->collisions, earlier.X_MO)) {
     throw base::ConfigError(fmt::format("object '{}' starts inside '{}'; put it on a free place",
                                         object.name, earlier.name));
   }
 }
 
 void RefuseInStatics(const world::ObjectState& object, const world::World& world) {
-  const auto& shapes = world.models.at(object.model)->collisions;
+  const auto model = world.RequireModel(object.model);
   for (const world::StaticBody& body : world.statics) {
-    if (!Overlap(shapes, object.X_MO, body.collisions, body.X_MB)) continue;
+    if (!Overlap(model->collisions, object.X_MO, body.collisions, body.X_MB)) continue;
     throw base::ConfigError(fmt::format("object '{}' starts inside '{}'; put it on a free place",
                                         object.name, body.name));
   }

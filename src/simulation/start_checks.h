@@ -40,7 +40,6 @@ bool StandsOn(const std::vector<geometry::Collision>& robot_B,
 void RefusePose(const std::string& what, const geometry::Pose3& X);
 /// Pose and velocity.
 void RefuseObject(const world::ObjectState& object);
-void RefuseUnknownModel(const world::ObjectState& object, const world::World& world);
 void RefuseUnknownHolder(const world::ObjectState& object, const robot::RobotModel& robot);
 /// A joint's name that is not the robot's means that another robot is spoken of.
 void RefuseUnknownJoints(const robot::JointPositions& joints, const robot::RobotModel& robot);

@@ -30,11 +30,11 @@ std::vector<Neighbour> NeighboursIn(const world::World& world, const Pose3& X_MA
                                     const std::vector<world::ObjectState>& others) {
   std::vector<Neighbour> neighbours;
   for (const world::ObjectState& other : others) {
-    const auto model = world.models.find(other.model);
-    if (model == world.models.end()) continue;
+    const auto model = world.FindModel(other.model);
+    if (!model) continue;
     const Pose3 X_AO = X_MA.Inverse() * other.X_MO;
     if (std::abs(X_AO.translation.z()) > kSameLevel) continue;
-    neighbours.push_back({other.name, OutlineOf(*model->second, X_AO)});
+    neighbours.push_back({other.name, OutlineOf(*model, X_AO)});
   }
   return neighbours;
 }

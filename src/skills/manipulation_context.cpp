@@ -131,7 +131,7 @@ geometry::Pose3 LinkPose(const robot::Robot& robot, const geometry::Pose2& X_MB,
 
 base::Failure WhyNotKnown(const ManipulationContext& context, const robot::Observation& seen) {
   for (const robot::SeenObject& object : seen.objects) {
-    if (context.world->models.count(object.model) > 0) continue;
+    if (context.world->FindModel(object.model)) continue;
     return {base::FailureCode::kUnknownModel, {object.model}};
   }
   return {};

@@ -34,8 +34,8 @@ std::vector<Grasp> UsefulGrasps(const ArmPlanner& planner, const world::ObjectSt
   const Eigen::Vector3d way = object.X_MO.translation - p_MShoulder;
   const double straight_ahead = std::atan2(way.y(), way.x());
   std::vector<std::pair<double, Grasp>> scored;
-  for (const Grasp& grasp : manipulation::GraspsFor(*context.world->models.at(object.model),
-                                                    context.upper_body().gripper)) {
+  const auto model = context.world->RequireModel(object.model);
+  for (const Grasp& grasp : manipulation::GraspsFor(*model, context.upper_body().gripper)) {
     if (TiltBesideBody(planner, grasp) > context.params.path.max_held_tilt) continue;
     const double heading = HeadingOf((object.X_MO * grasp.X_OT).rotation);
     const double turn = std::abs(geometry::WrapToPi(heading - straight_ahead)) / geometry::kPi;

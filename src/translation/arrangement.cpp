@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <memory>
 #include <optional>
 #include <set>
 
@@ -160,10 +162,9 @@ class Arrangement {
   }
 
   const world::ObjectModel& ModelOf(const std::string& object) const {
-    const std::string model = context_.ModelOf(object);
-    const auto found = context_.world->models.find(model);
-    if (found != context_.world->models.end()) return *found->second;
-    throw base::ConfigError(fmt::format("object '{}': the world has no model '{}'", object, model));
+    std::shared_ptr<const world::ObjectModel>& model = models_[object];
+    if (!model) model = context_.world->ModelOf({object, context_.ModelOf(object), {}, {}, ""});
+    return *model;
   }
 
   void Add(const std::string& object, const Pose3& X_MO, const std::string& attached_to = "") {
@@ -328,6 +329,7 @@ class Arrangement {
 
   const TranslatorContext& context_;
   const knowledge::FluentView* fluents_;
+  mutable std::map<std::string, std::shared_ptr<const world::ObjectModel>> models_;  // asked for
   const WantedState& wanted_;
   const Body& body_;
   world::WorldState world_;

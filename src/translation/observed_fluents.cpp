@@ -10,6 +10,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/knowledge/state_view.h"
+#include "hires/world/unknown_box.h"
 #include "translation/body.h"
 #include "translation/place.h"
 #include "translation/stated_pose.h"
@@ -145,10 +146,14 @@ class Comparison {
     Fluent thing;
     thing.instance = object.name;
     const auto named = concepts_.find(base::ToLower(object.model));
-    thing.concept_name = named == concepts_.end() ? Joined(object.model) : named->second;
     if (named != concepts_.end()) {
       ontology_.Require(named->second);
-    } else if (ontology_.Find(thing.concept_name) == knowledge::Ontology::kUnknown) {
+      thing.concept_name = named->second;
+      return thing;
+    }
+    thing.concept_name =
+        world::SaysUnknownBox(object.model) ? kUnknownConcept : Joined(object.model);
+    if (ontology_.Find(thing.concept_name) == knowledge::Ontology::kUnknown) {
       thing.concept_name = "TabletopObject";
     }
     return thing;
@@ -174,12 +179,7 @@ class Comparison {
                          const std::string& pose, bool is_new) {
     const std::string linked = LinkOf(owner, "hasBoundingBox");
     if (!linked.empty() && said_.Find(linked)) return linked;
-    const auto model = context_.world->models.find(object.model);
-    if (model == context_.world->models.end()) {
-      throw base::ConfigError(
-          fmt::format("object '{}': the world has no model '{}'", object.name, object.model));
-    }
-    const geometry::Aabb bounds = BoundsOf(*model->second);
+    const geometry::Aabb bounds = BoundsOf(*context_.world->ModelOf(object));
     const Eigen::Vector3d size = bounds.upper - bounds.lower;
     Fluent box;
     box.concept_name = "BoundingBox";

@@ -8,6 +8,9 @@
 
 namespace hires::translation {
 
+/// Of things that no recogniser knows; fluents say their boxes.
+inline constexpr const char* kUnknownConcept = "UnknownObject";
+
 /// A pose as a Pose fluent states it.
 struct StatedPose {
   std::string instance;  ///< of the Pose, as it is spelled

@@ -8,6 +8,7 @@
 #include "hires/geometry/angles.h"
 #include "hires/robot/gripper.h"
 #include "hires/translation/classification.h"
+#include "hires/world/unknown_box.h"
 #include "translation/arrangement.h"
 #include "translation/body.h"
 #include "translation/stated_pose.h"
@@ -105,10 +106,28 @@ void CloseGrippers(const TranslatorContext& context, const WantedState& wanted,
   const robot::UpperBodyProfile& body = *context.robot->profile.upper_body;
   for (const auto& [object, name] : wanted.holders) {
     const world::ObjectState* held = world.Find(object);
-    const double width = WidthOf(*context.world->models.at(held->model));
+    const double width = WidthOf(*context.world->RequireModel(held->model));
     robot::SetGap(body.gripper, body.arms.at(name), width, joints);
   }
   robot::CompleteGrippers(body, joints);
+}
+
+/// Things of unknown kind are as large as fluents say. One whose box is not told, or is none, stays
+/// without a model.
+void AddUnknownThings(const knowledge::FluentView& view, TranslatorContext* context) {
+  if (context->ontology->Find(kUnknownConcept) == knowledge::Ontology::kUnknown) return;
+  view.OfConcept(kUnknownConcept, [&](const knowledge::Fluent& thing) {
+    const knowledge::Fluent* box = view.Find(LinkOf(thing, "hasBoundingBox"));
+    if (box == nullptr) return true;
+    const auto x = NumberOf(*box, "hasXSize"), y = NumberOf(*box, "hasYSize"),
+               z = NumberOf(*box, "hasZSize");
+    if (!x || !y || !z) return true;
+    try {
+      context->object_models[base::ToLower(thing.instance)] = world::UnknownBoxModel({*x, *y, *z});
+    } catch (const base::ConfigError&) {  // no size that a box can have
+    }
+    return true;
+  });
 }
 
 }  // namespace
@@ -119,6 +138,7 @@ std::string TranslatorContext::FindModel(const std::string& instance) const {
   if (own != object_models.end()) return own->second;
   const std::string kind = WithoutNumber(lower);
   for (const auto& [name, model] : object_models) {
+    if (world::SaysUnknownBox(model)) continue;  // what is unknown is like nothing else
     if (WithoutNumber(name) == kind) return model;
   }
   for (const auto& [name, model] : world->models) {
@@ -138,6 +158,7 @@ std::string TranslatorContext::ModelOf(const std::string& instance) const {
 
 TranslatorContext WithKnowledge(TranslatorContext context, const knowledge::FluentView& view) {
   context.areas = WithKnowledge(std::move(context.areas), view, *context.ontology);
+  AddUnknownThings(view, &context);
   return context;
 }
 

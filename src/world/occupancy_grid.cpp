@@ -39,15 +39,6 @@ void AppendStatic(const StaticBody& body, double z_min, double z_max,
   }
 }
 
-const ObjectModel& ModelOf(const World& world, const ObjectState& object) {
-  const auto found = world.models.find(object.model);
-  if (found != world.models.end()) return *found->second;
-  std::vector<std::string> known;
-  for (const auto& [name, model] : world.models) known.push_back(name);
-  throw base::ConfigError(fmt::format("world '{}', object '{}': {}", world.name, object.name,
-                                      base::UnknownName("model", object.model, known)));
-}
-
 /// Where the convex polygon lies within the strip y_min..y_max: x from .. to; from > to if nowhere.
 struct Span {
   double from{std::numeric_limits<double>::infinity()};
@@ -195,7 +186,8 @@ std::vector<geometry::Polygon> OutlinesInBand(const World& world, const WorldSta
   for (const StaticBody& body : world.statics) AppendStatic(body, z_min, z_max, &outlines);
   if (objects == nullptr) return outlines;
   for (const ObjectState& object : objects->objects) {
-    for (const geometry::Collision& collision : ModelOf(world, object).collisions) {
+    const auto model = world.ModelOf(object);
+    for (const geometry::Collision& collision : model->collisions) {
       AppendOutlines(collision, object.X_MO, z_min, z_max, &outlines);
     }
   }

@@ -1,10 +1,14 @@
 #include "hires/world/world.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "hires/base/check.h"
+#include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
+#include "hires/world/unknown_box.h"
 #include "world/content_hash.h"
 
 namespace hires::world {
@@ -46,6 +50,34 @@ std::vector<std::string> World::FrameNames() const {
     names.push_back(as_in_file == frame_names.end() ? lower : as_in_file->second);
   }
   return names;
+}
+
+std::shared_ptr<const ObjectModel> World::FindModel(const std::string& model) const {
+  const auto found = models.find(model);
+  if (found != models.end()) return found->second;
+  if (!SaysUnknownBox(model)) return nullptr;
+  try {
+    return std::make_shared<const ObjectModel>(MakeUnknownBox(model));
+  } catch (const base::ConfigError&) {
+    return nullptr;
+  }
+}
+
+std::shared_ptr<const ObjectModel> World::RequireModel(const std::string& model) const {
+  if (auto found = FindModel(model)) return found;
+  if (SaysUnknownBox(model)) SizeOfUnknownBox(model);  // says what is wrong with it
+  std::vector<std::string> known;
+  for (const auto& [one, description] : models) known.push_back(one);
+  throw base::ConfigError(base::UnknownName("object model", model, known));
+}
+
+std::shared_ptr<const ObjectModel> World::ModelOf(const ObjectState& object) const {
+  try {
+    return RequireModel(object.model);
+  } catch (const base::ConfigError& error) {
+    throw base::ConfigError(
+        fmt::format("object '{}' in world '{}': {}", object.name, name, error.what()));
+  }
 }
 
 std::uint64_t World::ComputeHash() const {

@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "hires/world/unknown_box.h"
 #include "support/scenes.h"
 
 namespace hires::simulation::loose_objects_test {
@@ -60,6 +61,14 @@ TEST_F(LooseObjectsTest, LooseOnesAreWherePhysicsHasThemOthersWhereTheBaseIs) {
   EXPECT_FALSE(objects_->IsLoose(2));
   EXPECT_EQ(objects_->PoseOf(2, kBase).translation, (kBase * kInBase).translation);
   EXPECT_EQ(objects_->VelocityOf(2).linear, Eigen::Vector3d::Zero());
+}
+
+TEST_F(LooseObjectsTest, ABoxThatAModelSaysIsAsHeavyAsItIsLarge) {
+  world::ObjectState box = MillAt("unknown1", 5.0);
+  box.model = "unknown_0.120x0.080x0.200";
+  objects_->AddLoose(box, kInBase, false);
+  EXPECT_NEAR(objects_->Graspable().back().mass, 2.0 * world::kUnknownDensity * 0.12 * 0.08 * 0.2,
+              1e-12);
 }
 
 TEST_F(LooseObjectsTest, HaveTheMassAndFrictionOfTheVariation) {

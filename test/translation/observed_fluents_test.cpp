@@ -95,6 +95,28 @@ TEST_F(ObservedFluentsTest, WhatIsKnownAlreadyIsNotSaidAgain) {
   EXPECT_TRUE(update.removed.empty());
 }
 
+TEST_F(ObservedFluentsTest, AThingOfUnknownKindIsToldWithItsBoxAndReadBack) {
+  See("unknown1", 5.40, 10.26, 0.75, "unknown_0.120x0.080x0.200");
+  Tell();
+  const knowledge::LiveView view(store_);
+  ASSERT_NE(view.Find("unknown1"), nullptr);
+  EXPECT_EQ(view.Find("unknown1")->concept_name, "UnknownObject");
+  EXPECT_THAT(State(), Contains(StartsWith("On(unknown1, ")));
+  const TranslatorContext known = WithKnowledge(RestaurantContext(), view);
+  EXPECT_EQ(known.ModelOf("unknown1"), "unknown_0.120x0.080x0.200");
+  EXPECT_EQ(known.FindModel("unknown2"), "") << "what is unknown is like nothing else";
+}
+
+TEST_F(ObservedFluentsTest, ABoxThatCannotBeIsRefusedWithTheThingsName) {
+  See("unknown1", 5.40, 10.26, 0.75, "unknown_0.120x0.080x0.000");
+  try {
+    Changes();
+    FAIL();
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("object 'unknown1'"));
+  }
+}
+
 TEST_F(ObservedFluentsTest, NoiseAtABorderDoesNotFlap) {
   Tell();
   See("mug1", 5.644, 10.26, 0.75);  // the area ends at 5.645

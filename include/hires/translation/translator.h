@@ -42,7 +42,8 @@ TranslatorContext MakeContext(
     const std::map<std::string, std::shared_ptr<const world::ObjectModel>>& catalogue,
     std::shared_ptr<const knowledge::Ontology> ontology);
 
-/// The context with what fluents say of areas.  @pre it has an ontology.
+/// The context with what fluents say of areas, and of the boxes of things of unknown kind (concept
+/// UnknownObject).  @pre it has an ontology.
 TranslatorContext WithKnowledge(TranslatorContext context, const knowledge::FluentView& view);
 
 /// Where fluents say that an object is.

@@ -30,7 +30,7 @@ struct StaticBody {
 
 struct ObjectState {
   std::string name;         ///< instance, "peppermill1"
-  std::string model;        ///< key of World::models
+  std::string model;        ///< as World::FindModel knows it
   geometry::Pose3 X_MO;     ///< object in map
   geometry::Twist3 V_MO;    ///< in map axes
   std::string attached_to;  ///< robot link that holds it rigidly, or empty
@@ -59,6 +59,13 @@ struct World {
 
   std::optional<geometry::Pose3> FindFrame(const std::string& name) const;
   std::vector<std::string> FrameNames() const;
+  /// The kind of thing of that name: one of `models`, or the box that the name says
+  /// (unknown_box.h). Null if it is neither.
+  std::shared_ptr<const ObjectModel> FindModel(const std::string& model) const;
+  /// @throws base::ConfigError naming the models that come near, or what is wrong with the box.
+  std::shared_ptr<const ObjectModel> RequireModel(const std::string& model) const;
+  /// What the object is made of. @throws base::ConfigError as RequireModel, naming the object.
+  std::shared_ptr<const ObjectModel> ModelOf(const ObjectState& object) const;
   std::uint64_t ComputeHash() const;
 };
 

@@ -51,7 +51,7 @@ PaintedBody Plate(const geometry::Pose3& X_MB, const Eigen::Vector3d& size, cons
 
 PaintedBody BodyOf(const simulation::Scene& scene, const std::string& model,
                    const geometry::Pose3& X_MO, const Colour& colour) {
-  return {scene.world.models.at(model)->collisions, X_MO, colour, false};
+  return {scene.world.RequireModel(model)->collisions, X_MO, colour, false};
 }
 
 /// Furniture, walls, and where the action leads.

@@ -41,8 +41,8 @@ class CarriedLoad {
       : controller_(setup.scene->robot.profile.base_controller),
         turning_arm_(TurningArm(setup.scene->X_BO.translation.head<2>(), controller_)),
         gravity_(setup.scene->world.gravity),
-        body_(setup.scene->world.models.at(setup.ModelOf(object))->mass_properties),
-        load_(navigation::LoadOf(*setup.scene->world.models.at(setup.ModelOf(object)))) {}
+        body_(setup.scene->world.RequireModel(setup.ModelOf(object))->mass_properties),
+        load_(navigation::LoadOf(*setup.scene->world.RequireModel(setup.ModelOf(object)))) {}
 
   /// The controller's time-out stops the base.
   MotionBounds Speed() const {

@@ -115,7 +115,7 @@ class LimitFinder {
 
   std::optional<LimitsReport> Find() {
     report_.request = request_;
-    report_.model = setup_.scene->world.models.at(setup_.ModelOf(request_.object))->name;
+    report_.model = setup_.scene->world.RequireModel(setup_.ModelOf(request_.object))->name;
     report_.robot = setup_.scene->robot.model.name;
     report_.uncertainty =
         setup_.uncertainty->quantities.empty() ? "none" : base::HexOf(setup_.uncertainty->hash);

@@ -72,7 +72,7 @@ std::vector<geometry::Collision> RobotIn(const SimRobotWorld& world) {
 std::vector<PaintedBody> MovingIn(const SimRobotWorld& world) {
   std::vector<PaintedBody> bodies{{RobotIn(world), {}, kRobot, false}};
   for (const world::ObjectState& object : world.simulator().GetWorldState().objects) {
-    bodies.push_back({world.scene()->world.models.at(object.model)->collisions, object.X_MO,
+    bodies.push_back({world.scene()->world.ModelOf(object)->collisions, object.X_MO,
                       ColourOf(object.model), false});
   }
   return bodies;

@@ -44,7 +44,7 @@ double RadiusOf(const simulation::Scene& scene, const robot::JointPositions& joi
 }
 
 double RadiusOf(const RolloutSetup& setup, const world::ObjectState& object) {
-  return RadiusOf(setup.scene->world.models.at(object.model)->collisions);
+  return RadiusOf(setup.scene->world.RequireModel(object.model)->collisions);
 }
 
 Disc DiscOf(const RolloutSetup& setup, const world::ObjectState& object) {
@@ -83,7 +83,7 @@ bool IsWithin(const RolloutReach& reach, const RolloutSetup& setup, const base::
               const world::ObjectState& object) {
   const bool is_own = !object.attached_to.empty() || IsNamedBy(action, object.name);
   if (reach.is_everything || is_own || !IsAtRest(object)) return true;
-  if (setup.scene->world.models.count(object.model) == 0) return true;  // refused by name
+  if (!setup.scene->world.FindModel(object.model)) return true;  // refused by name
   return reach.Touches(DiscOf(setup, object));
 }
 
@@ -113,7 +113,7 @@ void ReachWatch::BeginAgain() {
       left_out_.push_back(DiscOf(setup_, object));
       continue;
     }
-    const bool is_known = setup_.scene->world.models.count(object.model) > 0;
+    const bool is_known = setup_.scene->world.FindModel(object.model) != nullptr;
     radii_.push_back(is_known ? RadiusOf(setup_, object) : 0.0);
     narrowed_.world_state.objects.push_back(object);
   }
