@@ -138,7 +138,7 @@ std::vector<BrakingPlay> BrakingCells(const BrakingConfig& braking, const Stage&
         cell.standing = standing;
         cell.limits = limits;
         StateStop(braking, controller, &cell);
-        Predict(model, scene.world.gravity, &cell);
+        Predict(*model, scene.world.gravity, &cell);
         plays.push_back({std::move(cell), {}, std::nullopt});
       }
     }

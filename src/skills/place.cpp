@@ -75,14 +75,9 @@ Beginning PlaceObject::Plan(const Observation& observation) {
   }
   const robot::SeenObject* held = FindSeen(observation, object_);
   if (held == nullptr) return CannotBegin(Code::kObjectSlipped);
-  const world::ObjectModel& model = *context_->world->models.at(held->model);
-  const Pose3 X_MA = X_MGoal(observation);
-  const FreeSpots spots = SpotsFor(model, X_MA, Others(observation, object_));
   const auto model = context_->world->RequireModel(held->model);
-  const PlaceParams& params = context_->params.place;
-  const std::vector<world::ObjectState> others = Others(observation, object_);
-  const FreeSpots spots = X_MArea_ ? FindFreeSpots(params, *context_->world, *model, X_MA, others)
-                                   : FindFreeSlots(params, *context_->world, *model, X_MA, others);
+  const Pose3 X_MA = X_MGoal(observation);
+  const FreeSpots spots = SpotsFor(*model, X_MA, Others(observation, object_));
   plan_ = PlanPlacing(*context_, arm_, observation, *held, X_MA, spots, seed_);
   return plan_.failure ? CannotBegin(plan_.failure) : NothingToDo();
 }
