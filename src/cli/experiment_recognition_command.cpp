@@ -7,7 +7,7 @@
 #include "cli/experiment_command.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
-#include "hires/evaluation/recognition_experiment.h"
+#include "hires/evaluation/recognition/recognition_experiment.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
 #include "hires/imagination/imagination_setup.h"

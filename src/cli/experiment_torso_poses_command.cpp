@@ -7,8 +7,8 @@
 #include "cli/experiment_command.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
+#include "hires/evaluation/recognition/torso_poses.h"
 #include "hires/evaluation/report_json.h"
-#include "hires/evaluation/torso_poses.h"
 
 namespace hires::cli {
 

@@ -87,5 +87,29 @@ TEST(PointCloudMessageTest, WhatDoesNotFitIsNamed) {
   ExpectRefused(big, "big-endian");
 }
 
+TEST(DetectionsMessageTest, WhatIsSeenComesBackAndBlindnessIsNoSight) {
+  std_msgs::Header header;
+  header.frame_id = "camera";
+  hires::perception::Sighting seen;
+  seen.detections.emplace_back();
+  seen.detections[0].label = "mug";
+  seen.detections[0].confidence = 0.75;
+  seen.detections[0].alternatives = {{"cup", 0.25}};
+  seen.detections[0].size = {0.08, 0.1, 0.12};
+  seen.detections[0].num_points = 700;
+  seen.table = {{0.0, 0.0, 1.0}, {1.0, 0.0, 1.0}, {1.0, 2.0, 1.5}};
+  const hires::Detections msg = ToMsg(seen, header);
+  EXPECT_EQ(msg.header.frame_id, "camera");
+  const auto back = FromMsg(msg);
+  ASSERT_TRUE(back && back->detections.size() == 1);
+  EXPECT_EQ(back->table, seen.table);
+  EXPECT_EQ(back->detections[0].label, "mug");
+  EXPECT_EQ(back->detections[0].confidence, 0.75);
+  EXPECT_EQ(back->detections[0].alternatives[0].label, "cup");
+  EXPECT_EQ(back->detections[0].size, seen.detections[0].size);
+  EXPECT_EQ(back->detections[0].num_points, 700);
+  EXPECT_FALSE(FromMsg(ToMsg(std::optional<hires::perception::Sighting>(), header)));
+}
+
 }  // namespace
 }  // namespace hires_ros::robot_messages_test

@@ -83,6 +83,19 @@ TEST_F(SensorReceiverTest, BadMessagesAreCountedAndLeftOut) {
   EXPECT_EQ(sensors_.state().MissingNow(), Missing::kOdometry);
 }
 
+TEST_F(SensorReceiverTest, OneThatCouldNotLookIsNoLook) {
+  All(1.0);
+  hires::Detections look;
+  look.header.stamp.fromSec(1.0);
+  look.header.frame_id = "map";
+  look.is_blind = 1;
+  sensors_.OnDetections(look);
+  EXPECT_EQ(sensors_.Update(*sensors_.state().At(1.0)).num_looks, 0);
+  look.is_blind = 0;
+  sensors_.OnDetections(look);
+  EXPECT_EQ(sensors_.Update(*sensors_.state().At(1.0)).num_looks, 1);
+}
+
 TEST_F(SensorReceiverTest, DetectionsInTheMapAndWhatAnotherNodeRemembersBecomeObjects) {
   All(1.0);
   hires::Detections look;

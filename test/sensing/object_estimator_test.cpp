@@ -187,6 +187,12 @@ TEST_F(ObjectEstimatorTest, ABadDetectionIsLeftOutAndTheOthersAreTaken) {
 TEST_F(ObjectEstimatorTest, ALookWithoutATimeOrOfAnotherClockIsRefused) {
   EXPECT_THAT(objects_.OnLook({0.0, camera_, {}}), ElementsAre(HasSubstr("header.stamp is 0")));
   EXPECT_THAT(objects_.OnLook({5000.0, camera_, {}}), ElementsAre(HasSubstr("ahead")));
+  EXPECT_THAT(objects_.OnLook({time_, camera_, {}, {{0, 0, 1}, {1, 0, 1}}}),
+              ElementsAre(HasSubstr("table has 2 corners, wanted none or at least 3")));
+  perception::Detection doubtful = Mug(At(1.5, 0.1, 0.0));
+  doubtful.confidence = 1.5;
+  EXPECT_THAT(objects_.OnLook({time_, camera_, {doubtful}}),
+              ElementsAre(HasSubstr("confidence is 1.5, wanted 0 (not told) .. 1")));
 }
 
 TEST_F(ObjectEstimatorTest, WhatIsStatedOfALinkNobodyHasIsRefusedByName) {

@@ -1,4 +1,4 @@
-#include "hires/evaluation/recognition_experiment.h"
+#include "hires/evaluation/recognition/recognition_experiment.h"
 
 #include <chrono>
 

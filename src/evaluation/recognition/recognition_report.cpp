@@ -7,7 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "hires/evaluation/recognition_experiment.h"
+#include "hires/evaluation/recognition/recognition_experiment.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/evaluation/statistics.h"
 #include "hires/geometry/angles.h"

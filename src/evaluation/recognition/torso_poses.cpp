@@ -1,4 +1,4 @@
-#include "hires/evaluation/torso_poses.h"
+#include "hires/evaluation/recognition/torso_poses.h"
 
 #include <algorithm>
 #include <set>

@@ -3,9 +3,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "hires/evaluation/recognition/torso_poses.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/evaluation/statistics.h"
-#include "hires/evaluation/torso_poses.h"
 
 namespace hires::evaluation {
 namespace {
