@@ -40,6 +40,8 @@ HANDLING = (('look_at', 'mug1'),
             ('pick_up_object', 'mug1', 'rightArm1'),
             ('place_object', 'mug1', 'rightArm1', 'placingAreaEastRightCounter1'),
             ('pick_up_object', 'mug1', 'rightArm1'),
+            ('place_object_at', 'mug1', 'rightArm1', 'placingAreaEastRightCounter1', 'middle'),
+            ('pick_up_object', 'mug1', 'rightArm1'),
             ('move_base_blind', 'preManipulationAreaEastCounter1'),
             ('place_on_tray', 'rightArm1', 'mug1'),
             # As the domain has it: arms do not stick out while the robot drives. What stands on the
