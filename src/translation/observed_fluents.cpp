@@ -174,13 +174,15 @@ class Comparison {
     return pose.instance;
   }
 
-  /// A box that is there already is left alone: objects do not change their size.
+  /// A box that is there already is left alone: only what is measured changes its size.
   std::string CompareBox(const Fluent& owner, const world::ObjectState& object,
                          const std::string& pose, bool is_new) {
     const std::string linked = LinkOf(owner, "hasBoundingBox");
-    if (!linked.empty() && said_.Find(linked)) return linked;
+    const Fluent* said = linked.empty() ? nullptr : said_.Find(linked);
+    if (said != nullptr && !world::SaysUnknownBox(object.model)) return linked;
     const geometry::Aabb bounds = BoundsOf(*context_.world->ModelOf(object));
     const Eigen::Vector3d size = bounds.upper - bounds.lower;
+    if (said != nullptr && SaysSize(*said, size)) return linked;
     Fluent box;
     box.concept_name = "BoundingBox";
     box.instance = linked.empty() ? NameFor("boundingBox", owner.instance) : linked;
@@ -191,6 +193,15 @@ class Comparison {
     update_.added.push_back(box);
     if (linked.empty() && !is_new) Link(owner, "hasBoundingBox", "BoundingBox", box.instance);
     return box.instance;
+  }
+
+  static bool SaysSize(const Fluent& box, const Eigen::Vector3d& size) {
+    constexpr double kSame = 0.0005;  // [m] boxes are told to a millimetre
+    const auto says = [&](const char* role, double edge) {
+      const auto said = NumberOf(box, role);
+      return said && std::abs(*said - edge) <= kSame;
+    };
+    return says("hasXSize", size.x()) && says("hasYSize", size.y()) && says("hasZSize", size.z());
   }
 
   void Link(const Fluent& owner, const std::string& role, const std::string& type,

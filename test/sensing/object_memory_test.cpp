@@ -550,6 +550,128 @@ TEST_F(NamelessTest, OverRandomHistoriesWhatDoesNotMoveKeepsItsName) {
   EXPECT_LT(num_ambiguous, 100) << "of 2400 looks; one as near to two that vanished is either";
 }
 
+/// Looks at things of unknown kind, of which boxes alone are measured.
+class UnknownThingTest : public NamelessTest {
+ protected:
+  struct Seen {
+    Pose3 X_MO;
+    Eigen::Vector3d size;
+    std::string label = perception::kUnknownLabel;
+  };
+  void See(const std::vector<Seen>& things) {
+    body_.time += 0.5;
+    const Pose3 X_CM = ViewOf(Pr2(), body_.X_MB, body_.joints).X_MC.Inverse();
+    std::vector<Detection> detections;
+    for (const Seen& thing : things) {
+      Detection detection;
+      detection.label = thing.label;
+      detection.X_CO = X_CM * thing.X_MO;
+      detection.size = thing.size;
+      detections.push_back(detection);
+    }
+    memory_.Look(body_, detections);
+  }
+  const std::string& ModelOf(const std::string& name) const {
+    return memory_.objects().at(name).model;
+  }
+  Pose3 Turned(double y, double yaw) const {
+    Pose3 X_MO = At(1.5, y, 0.7);
+    X_MO.rotation = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ());
+    return X_MO;
+  }
+  const Eigen::Vector3d size_{0.12, 0.08, 0.2};
+};
+
+TEST_F(UnknownThingTest, AThingThatNoModelExplainsGetsNameAndBoxAfterSomeLooks) {
+  for (int i = 0; i < 2; ++i) See({{At(1.5, 0.1, 0.7), size_}});
+  EXPECT_THAT(Names(), IsEmpty());
+  See({{At(1.5, 0.1, 0.7), size_}});
+  EXPECT_THAT(Names(), ElementsAre("unknown1"));
+  EXPECT_EQ(ModelOf("unknown1"), "unknown_0.120x0.080x0.200");
+  EXPECT_LT((Remembered("unknown1").translation - Eigen::Vector3d(1.5, 0.1, 0.7)).norm(), 1e-9);
+  for (int i = 0; i < 3; ++i) See({{At(1.5, 0.1, 0.7), size_}, {At(1.5, -0.3, 0.7), size_}});
+  EXPECT_THAT(Names(), ElementsAre("unknown1", "unknown2"));
+  for (int i = 0; i < 3; ++i) See({{At(1.5, -0.3, 0.7), size_}});
+  EXPECT_THAT(Names(), ElementsAre("unknown2")) << "it vanishes as others do";
+}
+
+TEST_F(UnknownThingTest, WhatIsExpectedThereIsNoNewThing) {
+  Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
+  for (int i = 0; i < 5; ++i) See({{At(1.5, 0.14, 0.7), size_}});
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+}
+
+TEST_F(UnknownThingTest, ABoxTurnedByAQuarterIsTheSameBox) {
+  for (int i = 0; i < 3; ++i) See({{Turned(0.1, 0.3), size_}});
+  const Pose3 before = Remembered("unknown1");
+  for (int i = 0; i < 3; ++i) See({{Turned(0.1, 0.3 + geometry::kPi / 2), {0.08, 0.12, 0.2}}});
+  EXPECT_EQ(ModelOf("unknown1"), "unknown_0.120x0.080x0.200");
+  EXPECT_NEAR(Remembered("unknown1").rotation.angularDistance(before.rotation), 0.0, 1e-6);
+}
+
+TEST_F(UnknownThingTest, ABoxIsMeasuredAnewByLooksInARowAlone) {
+  for (int i = 0; i < 3; ++i) See({{At(1.5, 0.1, 0.7), size_}});
+  for (int i = 0; i < 5; ++i) {
+    See({{At(1.5, 0.1, 0.7), {0.16, 0.08, 0.2}}});
+    See({{At(1.5, 0.1, 0.7), {0.16, 0.08, 0.2}}});
+    See({{At(1.5, 0.1, 0.7), {0.13, 0.08, 0.2}}});
+  }
+  EXPECT_EQ(ModelOf("unknown1"), "unknown_0.120x0.080x0.200");
+  for (int i = 0; i < 3; ++i) See({{At(1.5, 0.1, 0.7), {0.16, 0.08, 0.2}}});
+  EXPECT_EQ(ModelOf("unknown1"), "unknown_0.160x0.080x0.200");
+  EXPECT_THAT(Names(), ElementsAre("unknown1"));
+}
+
+TEST_F(UnknownThingTest, WhatTurnsOutToBeSomethingKnownIsThat) {
+  for (int i = 0; i < 3; ++i) See({{At(1.5, 0.1, 0.7), size_}});
+  for (int i = 0; i < 3; ++i) See({{At(1.5, 0.11, 0.7), {0.08, 0.08, 0.1}, "mug"}});
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  EXPECT_THAT(memory_.Vanished(), ElementsAre("unknown1"));
+}
+
+TEST_F(UnknownThingTest, WhatHidesItDoesNotTakeItsPlace) {
+  for (int i = 0; i < 3; ++i) See({{At(1.8, 0.1, 0.7), size_}});
+  const auto screen = Thing("screen1", "screen", At(1.3, 0.0, 0.6));
+  for (int i = 0; i < 5; ++i) Look({screen});
+  EXPECT_THAT(Names(), ElementsAre("screen1", "unknown1"));
+}
+
+TEST_F(UnknownThingTest, TheHandAboveTheTableIsNoThingOnIt) {
+  PutArm("rightarm1", "armuntuckedposture");
+  Pose3 below{X_ML("r_gripper_tool_frame").translation, {}};
+  below.translation.z() -= 0.3;
+  for (int i = 0; i < 5; ++i) See({{below, size_}});
+  EXPECT_THAT(Names(), IsEmpty());
+  below.translation.y() += 0.5;
+  for (int i = 0; i < 3; ++i) See({{below, size_}});
+  EXPECT_THAT(Names(), ElementsAre("unknown1"));
+}
+
+TEST_F(UnknownThingTest, NobodyNamesWhatWasNotMeasured) {
+  for (int i = 0; i < 5; ++i) See({{At(1.5, 0.1, 0.7), Eigen::Vector3d::Zero()}});
+  EXPECT_THAT(Names(), IsEmpty());
+  EXPECT_THROW(See({{At(1.5, 0.1, 0.7), {0.1, -0.1, 0.1}}}), base::ConfigError);
+  EXPECT_THROW(See({{At(1.5, 0.1, 0.7), {0.1, 11.0, 0.1}}}), base::ConfigError);
+  EXPECT_THROW(See({{At(1.5, 0.1, 0.7), {NAN, 0.1, 0.1}}}), base::ConfigError);
+}
+
+TEST_F(UnknownThingTest, AHandTakesItByItsBox) {
+  PutArm("rightarm1", "armuntuckedposture");
+  SetGap("rightarm1", 0.09);
+  const Eigen::Vector3d tool = X_ML("r_gripper_tool_frame").translation;
+  memory_.Believe("unknown1", "unknown_0.060x0.060x0.200", "",
+                  {tool - Eigen::Vector3d(0.0, 0.0, 0.1), Eigen::Quaterniond::Identity()});
+  Rest();
+  SetGap("rightarm1", 0.06);
+  EXPECT_TRUE(Rest());
+  EXPECT_TRUE(memory_.objects().at("unknown1").is_held);
+  Pose3 below{tool, {}};  // a recogniser takes all things for standing on the table
+  below.translation.z() -= 0.18;
+  for (int i = 0; i < 5; ++i) See({{below, {0.06, 0.06, 0.3}}});
+  EXPECT_TRUE(memory_.objects().at("unknown1").is_held);
+  EXPECT_EQ(ModelOf("unknown1"), "unknown_0.060x0.060x0.200");
+}
+
 TEST_F(ObjectMemoryTest, AHandThatClosesAfterTheClockBeganAgainTakesHold) {
   body_.time = 1000.0;
   PutArm("rightarm1", "armuntuckedposture");

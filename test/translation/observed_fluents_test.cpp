@@ -107,6 +107,17 @@ TEST_F(ObservedFluentsTest, AThingOfUnknownKindIsToldWithItsBoxAndReadBack) {
   EXPECT_EQ(known.FindModel("unknown2"), "") << "what is unknown is like nothing else";
 }
 
+TEST_F(ObservedFluentsTest, ABoxThatIsMeasuredAnewIsToldAnew) {
+  See("unknown1", 5.40, 10.26, 0.75, "unknown_0.120x0.080x0.200");
+  Tell();
+  EXPECT_TRUE(Changes().empty());
+  See("unknown1", 5.40, 10.26, 0.75, "unknown_0.160x0.080x0.200");
+  Tell();
+  EXPECT_TRUE(Changes().empty());
+  const TranslatorContext known = WithKnowledge(RestaurantContext(), knowledge::LiveView(store_));
+  EXPECT_EQ(known.ModelOf("unknown1"), "unknown_0.160x0.080x0.200");
+}
+
 TEST_F(ObservedFluentsTest, ABoxThatCannotBeIsRefusedWithTheThingsName) {
   See("unknown1", 5.40, 10.26, 0.75, "unknown_0.120x0.080x0.000");
   try {

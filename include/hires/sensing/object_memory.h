@@ -52,6 +52,7 @@ struct RememberedObject {
   geometry::Pose3 X_LO;     ///< in the frame of `link`
   double time{0.0};         ///< [s] when it was seen last
   int num_missed{0};        ///< looks in a row
+  int num_resized{0};       ///< looks in a row that measured another box of a thing of unknown kind
 };
 
 /// What the robot knows of loose objects from looking and from its fingers: where they are, what it
@@ -69,6 +70,10 @@ struct RememberedObject {
 /// that something of the kind is there, so that what is remembered there does not count as missed.
 /// What stays alone in several looks is a vanished object of its kind that was moved, or else one
 /// that nobody knew: it gets the first free name (mug3).
+///
+/// What no model explains, and is not where something is expected, is remembered by its box: its
+/// model says it (world::UnknownBoxModel), its name is unknown1, unknown2, ... It has no identity
+/// beyond its place; where something known turns out to be in its place, it was that.
 class ObjectMemory {
  public:
   ObjectMemory(std::shared_ptr<const perception::Surroundings> surroundings,
@@ -87,7 +92,7 @@ class ObjectMemory {
   /// @throws base::ConfigError as robot::ForwardKinematics, where the place of a hand matters.
   bool Feel(const BodyReading& body);
   /// @throws base::ConfigError for what Look would refuse: a label that is no model of the world, a
-  /// pose that is no number.
+  /// pose that is no number, a box beyond 10 m.
   void Check(const perception::Detection& detection) const;
   /// One look of the robot's camera; an empty list says that nothing was seen.
   /// @param table_C  corners in the camera's frame of what was looked at, counter-clockwise from
@@ -127,8 +132,13 @@ class ObjectMemory {
   std::vector<Named> NamesOf(const Links& links, const LookedAt& look) const;
   bool MayBe(const Links& links, const RememberedObject& object,
              const perception::Detection& detection, const geometry::Pose3& X_MO) const;
+  bool MayBeNew(const Links& links, const perception::Detection& detection,
+                const geometry::Pose3& X_MO) const;
   void Appear(const Links& links, const LookedAt& look, std::vector<Named>* named);
   void NameNewcomers(const LookedAt& look, std::vector<Named>* named);
+  void Reveal(const Links& links, const LookedAt& look, const std::vector<Named>& named);
+  std::string BoxOf(const std::string& name, const perception::Detection& detection,
+                    geometry::Pose3* X_MO);
   std::string FreeName(const std::string& kind) const;
   geometry::Pose3 TurnedAlike(const Links& links, const std::string& name, const std::string& model,
                               geometry::Pose3 X_MO) const;
