@@ -120,6 +120,45 @@ TEST(FindTableTest, TheFloorIsNoTableForWhoKnowsHowTheCameraStands) {
       << "nothing level is as high as tables";
 }
 
+// A wall crosses every plane, in a strip as long as it is, and goes on below it.
+TEST(FindTableTest, AWallBehindTheTableIsNoPartOfIt) {
+  constexpr double kEye = 1.5;                 // [m] above the floor
+  for (const double wall : {1.9, 2.4, 3.1}) {  // [m] before the camera; the table ends at 1.9
+    PointCloud cloud;
+    base::Rng noise(1);
+    const auto see = [&](double x, double y, double z) {
+      const double depth = 1.0 + noise.Normal(0.0, DepthNoise(x)) / x;
+      cloud.points.push_back((depth * Vector3d(-y, kEye - z, x)).cast<float>());
+    };
+    for (double y = -0.7; y < 0.7; y += 0.015)
+      for (double x = 1.3; x < 1.9; x += 0.015) see(x, y, kTableHeight);
+    for (double y = -1.6; y < 1.6; y += 0.01)
+      for (double z = 0.5; z < 1.3; z += 0.01) see(wall, y, z);
+    cloud.width = static_cast<int>(cloud.points.size());
+    const auto table = FindTable(cloud, CameraStand{-Vector3d::UnitY(), kEye}, {}, base::Rng(1));
+    ASSERT_TRUE(table.has_value()) << wall;
+    const auto is_on = [&](double x, double y) {
+      return geometry::Contains(table->outline,
+                                table->FromAbove(Vector3d(-y, kEye - kTableHeight, x)));
+    };
+    EXPECT_TRUE(is_on(1.4, 0.6) && is_on(1.8, -0.6)) << wall;
+    EXPECT_FALSE(is_on(wall - 0.02, 1.0) || is_on(wall + 0.03, 0.0) || is_on(2.0, 0.0)) << wall;
+  }
+}
+
+TEST(FindTableTest, AWallAloneIsNoTable) {
+  PointCloud cloud;
+  base::Rng noise(1);
+  for (double y = -1.0; y < 1.0; y += 0.01) {
+    for (double z = 0.0; z < 1.6; z += 0.01)
+      cloud.points.push_back(Vector3d(y, 1.0 - z, 3.0 + noise.Normal(0.0, 0.02)).cast<float>());
+  }
+  for (int seed = 1; seed <= 20; ++seed) {
+    EXPECT_FALSE(FindTable(cloud, CameraStand{-Vector3d::UnitY(), 1.0}, {}, base::Rng(seed)))
+        << seed;
+  }
+}
+
 // A plane that leans is as high as a table below the camera, and lies on the floor where its points
 // are.
 TEST(FindTableTest, TheFloorIsNoTableForALeaningPlaneEither) {

@@ -36,16 +36,18 @@ struct CameraStand {
 };
 
 struct TableParams {
-  int num_samples{300};         ///< planes through three points that are tried
-  double tolerance{2.0};        ///< [DepthNoise] from the plane, of points that vote for it
-  double min_share{0.05};       ///< of all measured points, at least on a table
+  int num_samples{300};    ///< planes through three points that are tried at least; ten times as
+                           ///< many where the best one holds few points
+  double tolerance{2.0};   ///< [DepthNoise] from the plane, of points that vote for it
+  double min_share{0.05};  ///< of all measured points, at least on a table
   double max_inclination{0.2};  ///< [rad] against what is level, where that is known
   double min_height{0.55};      ///< [m] of a table above the floor, where that is known
   double max_height{1.3};       ///< [m] likewise
 };
 
-/// The plane with the most points of which the camera is on the upper side (RANSAC [Fischler,
-/// Bolles 1981], then least squares). Where two tables are seen, the larger one in the picture.
+/// The plane with the most points, less those just below it, as a wall that crosses it has, of
+/// which the camera is on the upper side (RANSAC [Fischler, Bolles 1981], then least squares).
+/// Where two tables are seen, the larger one in the picture.
 /// @param stand  without it, any plane is a table, the floor too.
 /// @return nothing where no plane holds `min_share` of the points.
 std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<CameraStand>& stand,

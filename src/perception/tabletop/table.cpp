@@ -13,9 +13,13 @@ namespace {
 
 constexpr int kVoters = 6000;  // points that judge a sample; all of them refine the best one
 constexpr int kRefinements = 3;
+constexpr double kMostSamples = 10.0;  // times num_samples, while no plane holds enough points
 constexpr double kOutlineCell = 0.02;  // [m]
 constexpr int kMostCells = 2000;       // along each axis; larger tables have larger cells
 constexpr double kMinPiece = 0.1;      // of the largest piece
+constexpr int kMinOver = 3;     // times as many points in a cell's plane as below it: a table
+                                // hides what is below it, a wall goes on there
+constexpr double kBelow = 3.0;  // tolerances down to which they are counted
 
 struct Plane {
   Eigen::Vector3d normal;
@@ -24,6 +28,12 @@ struct Plane {
 
 bool Supports(const Plane& plane, const Eigen::Vector3d& p, double tolerance) {
   return std::abs(plane.normal.dot(p) + plane.offset) < tolerance * DepthNoise(p.z());
+}
+
+/// Whether it lies so little below the plane that a wall which crosses it there has points on both.
+bool IsJustBelow(const Plane& plane, const Eigen::Vector3d& p, double tolerance) {
+  const double height = (plane.normal.dot(p) + plane.offset) / (tolerance * DepthNoise(p.z()));
+  return height <= -1.0 && height > -kBelow;
 }
 
 std::vector<Eigen::Vector3d> MeasuredPoints(const PointCloud& cloud) {
@@ -84,38 +94,58 @@ Plane LeastSquares(const std::vector<Eigen::Vector3d>& points, const Plane& plan
                                 : Plane{-normal, normal.dot(mean)};
 }
 
+/// How many samples have three points of a plane among them for certain, if this share of all
+/// points are on it [Fischler, Bolles 1981, section II.B].
+int SamplesFor(double share, const TableParams& params) {
+  constexpr double kMissed = 0.01;
+  const double needed = std::log(kMissed) / std::log1p(-std::pow(std::min(share, 0.999), 3.0));
+  return static_cast<int>(
+      std::clamp(needed, 1.0 * params.num_samples, kMostSamples * params.num_samples));
+}
+
 std::optional<Plane> BestSample(const std::vector<Eigen::Vector3d>& points,
                                 const std::optional<CameraStand>& stand, const TableParams& params,
                                 base::Rng* rng) {
   const std::size_t step = std::max<std::size_t>(1, points.size() / kVoters);
   std::optional<Plane> best;
   int best_votes = 0;
-  for (int i = 0; i < params.num_samples; ++i) {
+  int num_samples = static_cast<int>(kMostSamples) * params.num_samples;
+  for (int i = 0; i < num_samples; ++i) {
     const auto pick = [&] { return points[rng->Index(static_cast<int>(points.size()))]; };
     const Eigen::Vector3d a = pick(), b = pick(), c = pick();
     const auto plane = PlaneThrough(a, b, c);
     if (!plane || !IsLevel(*plane, stand, params)) continue;
     int votes = 0;
     for (std::size_t k = 0; k < points.size(); k += step)
-      votes += Supports(*plane, points[k], params.tolerance);
+      votes += Supports(*plane, points[k], params.tolerance) -
+               IsJustBelow(*plane, points[k], params.tolerance);
     if (votes <= best_votes) continue;
     best_votes = votes;
     best = plane;
+    num_samples = SamplesFor(best_votes * static_cast<double>(step) / points.size(), params);
   }
   return best;
 }
 
-/// Points of a plane in square cells, and which of the cells hang together.
+/// Points of a plane in square cells, and which of the cells hang together. Cells in which
+/// something goes on below the plane belong to none.
 class Pieces {
  public:
-  explicit Pieces(const std::vector<Eigen::Vector2d>& points);
-  /// Whether a point is in a piece that is not small, and may be a corner of the hull: those of a
-  /// cell between four others, one at each of its corners, cannot.
+  Pieces(const std::vector<Eigen::Vector2d>& points, const std::vector<Eigen::Vector2d>& below);
+  /// Whether a point is in a piece that is not small.
+  bool IsKept(std::size_t point) const { return IsCellKept(cell_[point]); }
+  /// Whether it may be a corner of the hull, too: those of a cell between four others, one at each
+  /// of its corners, cannot.
   bool IsAtBorder(std::size_t point) const;
 
  private:
+  bool IsCellKept(int cell) const { return sizes_[piece_[cell]] > kMinPiece * largest_; }
+  int CellOf(const Eigen::Vector2d& p) const;  // -1: beside all of them
+  void DropSteepCells(const std::vector<Eigen::Vector2d>& below);
   void Spread(int first, int piece);
 
+  Eigen::Array2d lower_;
+  double edge_;                     // [m]
   int columns_, rows_;              // with an empty cell at each border
   std::vector<int> cell_;           // of each point
   std::vector<int> count_, piece_;  // of each cell; piece 0: no point is there
@@ -123,28 +153,44 @@ class Pieces {
   int largest_{0};                  // of them
 };
 
-Pieces::Pieces(const std::vector<Eigen::Vector2d>& points) {
-  Eigen::Array2d lower = points.front(), upper = lower;
+Pieces::Pieces(const std::vector<Eigen::Vector2d>& points,
+               const std::vector<Eigen::Vector2d>& below) {
+  lower_ = points.front();
+  Eigen::Array2d upper = lower_;
   for (const Eigen::Vector2d& p : points) {
-    lower = lower.min(p.array());
+    lower_ = lower_.min(p.array());
     upper = upper.max(p.array());
   }
-  const double edge = std::max(kOutlineCell, (upper - lower).maxCoeff() / kMostCells);
-  columns_ = static_cast<int>((upper - lower).x() / edge) + 3;
-  rows_ = static_cast<int>((upper - lower).y() / edge) + 3;
+  edge_ = std::max(kOutlineCell, (upper - lower_).maxCoeff() / kMostCells);
+  columns_ = static_cast<int>((upper - lower_).x() / edge_) + 3;
+  rows_ = static_cast<int>((upper - lower_).y() / edge_) + 3;
   count_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
   piece_ = count_;
   for (const Eigen::Vector2d& p : points) {
-    const Eigen::Array2i cell = ((p.array() - lower) / edge).cast<int>() + 1;
-    cell_.push_back(cell.y() * columns_ + cell.x());
+    cell_.push_back(CellOf(p));
     ++count_[cell_.back()];
   }
+  DropSteepCells(below);
   for (std::size_t i = 0; i < count_.size(); ++i) {
     if (count_[i] == 0 || piece_[i] != 0) continue;
     sizes_.push_back(0);
     Spread(static_cast<int>(i), static_cast<int>(sizes_.size()) - 1);
   }
   largest_ = *std::max_element(sizes_.begin(), sizes_.end());
+}
+
+int Pieces::CellOf(const Eigen::Vector2d& p) const {
+  const Eigen::Array2d cell = ((p.array() - lower_) / edge_).floor() + 1.0;
+  if ((cell < 0.0).any() || cell.x() >= columns_ || cell.y() >= rows_) return -1;
+  return static_cast<int>(cell.y()) * columns_ + static_cast<int>(cell.x());
+}
+
+void Pieces::DropSteepCells(const std::vector<Eigen::Vector2d>& below) {
+  std::vector<int> count_below(count_.size(), 0);
+  for (const Eigen::Vector2d& p : below)
+    if (const int cell = CellOf(p); cell >= 0) ++count_below[cell];
+  for (std::size_t i = 0; i < count_.size(); ++i)
+    if (kMinOver * count_below[i] > count_[i]) count_[i] = 0;
 }
 
 void Pieces::Spread(int first, int piece) {
@@ -161,19 +207,46 @@ void Pieces::Spread(int first, int piece) {
 
 bool Pieces::IsAtBorder(std::size_t point) const {
   const int cell = cell_[point];
-  const auto is_kept = [&](int c) { return sizes_[piece_[c]] > kMinPiece * largest_; };
-  return is_kept(cell) && !(is_kept(cell - columns_ - 1) && is_kept(cell - columns_ + 1) &&
-                            is_kept(cell + columns_ - 1) && is_kept(cell + columns_ + 1));
+  return IsCellKept(cell) && !(IsCellKept(cell - columns_ - 1) && IsCellKept(cell - columns_ + 1) &&
+                               IsCellKept(cell + columns_ - 1) && IsCellKept(cell + columns_ + 1));
 }
 
-// Around all pieces of the plane that are not small: things hide what is between them, while other
-// furniture beside the table crosses the plane in small ones.
-geometry::Polygon OutlineOf(const std::vector<Eigen::Vector2d>& points) {
-  const Pieces pieces(points);
-  std::vector<Eigen::Vector2d> kept;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (pieces.IsAtBorder(i)) kept.push_back(points[i]);
-  return geometry::ConvexHull(std::move(kept));
+/// What of the plane is the table: all pieces of it that are not small, as things hide what is
+/// between them, while other furniture beside the table crosses the plane in small ones.
+struct TableTop {
+  std::vector<Eigen::Vector3d> points, border;
+};
+
+TableTop TopOf(const std::vector<Eigen::Vector3d>& points, const Table& table, double tolerance) {
+  const Plane plane{table.normal, table.offset};
+  std::vector<Eigen::Vector3d> on_it;
+  std::vector<Eigen::Vector2d> from_above, below;
+  for (const Eigen::Vector3d& p : points) {
+    if (Supports(plane, p, tolerance)) {
+      on_it.push_back(p);
+      from_above.push_back(table.FromAbove(p));
+    } else if (IsJustBelow(plane, p, tolerance)) {
+      below.push_back(table.FromAbove(p));
+    }
+  }
+  TableTop top;
+  if (on_it.empty()) return top;
+  const Pieces pieces(from_above, below);
+  for (std::size_t i = 0; i < on_it.size(); ++i) {
+    if (!pieces.IsKept(i)) continue;
+    top.points.push_back(on_it[i]);
+    if (pieces.IsAtBorder(i)) top.border.push_back(on_it[i]);
+  }
+  return top;
+}
+
+Table TableIn(const Plane& plane) {
+  Table table;
+  table.normal = plane.normal;
+  table.offset = plane.offset;
+  table.along_x = plane.normal.unitOrthogonal();
+  table.along_y = table.normal.cross(table.along_x);
+  return table;
 }
 
 }  // namespace
@@ -187,17 +260,14 @@ std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<Came
   if (!best) return std::nullopt;
   Plane plane = *best;
   for (int i = 0; i < kRefinements; ++i) plane = LeastSquares(points, plane, params.tolerance);
+  const TableTop top = TopOf(points, TableIn(plane), params.tolerance);
+  if (top.border.size() < 3 || top.points.size() < params.min_share * measured.size())
+    return std::nullopt;
+  plane = LeastSquares(top.points, plane, params.tolerance);
   if (!IsLevel(plane, stand, params)) return std::nullopt;
-  Table table;
-  table.normal = plane.normal;
-  table.offset = plane.offset;
-  table.along_x = plane.normal.unitOrthogonal();
-  table.along_y = table.normal.cross(table.along_x);
-  std::vector<Eigen::Vector2d> on_it;
-  for (const Eigen::Vector3d& p : points)
-    if (Supports(plane, p, params.tolerance)) on_it.push_back(table.FromAbove(p));
-  if (on_it.size() < 3 || on_it.size() < params.min_share * measured.size()) return std::nullopt;
-  table.outline = OutlineOf(on_it);
+  Table table = TableIn(plane);
+  for (const Eigen::Vector3d& p : top.border) table.outline.push_back(table.FromAbove(p));
+  table.outline = geometry::ConvexHull(std::move(table.outline));
   return table;
 }
 
