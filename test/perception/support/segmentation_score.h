@@ -1,8 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <vector>
+
+#include "hires/perception/point_cloud.h"
+#include "hires/perception/table.h"
 
 namespace hires::test_support {
 
@@ -51,6 +55,25 @@ inline SegmentationScore ScoreOf(const std::vector<int>& truth, const std::vecto
     score.Add({size, size * overlap, inside, outside});
   }
   return score;
+}
+
+/// A plane is the table's if so many of the points that people labelled as the table are so near to
+/// it.
+constexpr double kTableTolerance = 0.02;  // [m]
+constexpr double kMinTableShare = 0.9;
+
+/// Of the points that people labelled as the table, the share within `distance` [m] of its plane; 0
+/// if there are none.
+/// @param truth  as ScoreOf takes it.
+inline double ShareOfTableNear(const perception::Table& table, double distance,
+                               const perception::PointCloud& cloud, const std::vector<int>& truth) {
+  double near = 0.0, all = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (truth[i] == 0 || truth[i] >= 20 || !perception::IsMeasured(cloud.points[i])) continue;
+    near += std::abs(table.HeightOf(cloud.points[i].cast<double>())) <= distance;
+    ++all;
+  }
+  return all > 0.0 ? near / all : 0.0;
 }
 
 }  // namespace hires::test_support

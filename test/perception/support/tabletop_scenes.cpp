@@ -33,8 +33,7 @@ std::vector<Value> ReadGrey(const std::string& path, png_uint_32 format) {
 
 }  // namespace
 
-TabletopScene ReadTabletopScene(const std::string& folder, int index) {
-  const std::string stem = folder + "/learn" + std::to_string(index);
+TabletopScene ReadTabletopScene(const std::string& stem) {
   const auto depth = ReadGrey<std::uint16_t>(stem + "_depth.png", PNG_FORMAT_LINEAR_Y);
   const auto labels = ReadGrey<std::uint8_t>(stem + "_label.png", PNG_FORMAT_GRAY);
   TabletopScene scene;

@@ -22,7 +22,9 @@ inline const std::vector<TabletopKind> kTabletopKinds{{"boxes", 0, 16},
                                                       {"one hides another", 25, 32},
                                                       {"round things", 33, 44}};
 
+/// @param stem  of the scene's pictures: folder/learn12 for learn12_depth.png and
+/// learn12_label.png.
 /// @throws std::runtime_error that names the file which cannot be read.
-TabletopScene ReadTabletopScene(const std::string& folder, int index);
+TabletopScene ReadTabletopScene(const std::string& stem);
 
 }  // namespace hires::test_support
