@@ -60,6 +60,12 @@ class ScriptsTest(unittest.TestCase):
         rest = run("scripts/setup", "--list", "package", "show", "develop", "long").stdout.split()
         self.assertEqual(sorted(everything), sorted(build + run_part + rest))
 
+    def test_setup_brings_large_peers_only_when_asked(self):
+        everything, peers = (run("scripts/setup", "--list", *part).stdout.split()
+                             for part in ([], ["peers"]))
+        self.assertIn("libpcl-dev", peers)
+        self.assertEqual([name for name in peers if name in everything], [])
+
     def test_setup_refuses_a_part_that_is_none(self):
         answer = run("scripts/setup", "--list", "runn")
         self.assertEqual(answer.returncode, 1)
