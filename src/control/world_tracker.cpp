@@ -24,10 +24,11 @@ world::WorldState WorldOf(const std::vector<robot::SeenObject>& known) {
 }
 
 WorldTracker::WorldTracker(const sensing::RobotStateEstimator* state,
-                           sensing::ObjectEstimator* objects, HeadSweep sweep, bool lockstep,
-                           Hooks hooks)
+                           sensing::ObjectEstimator* objects, sensing::FloorWatch* floor,
+                           HeadSweep sweep, bool lockstep, Hooks hooks)
     : state_(*state),
       objects_(*objects),
+      floor_(floor),
       sweep_(std::move(sweep)),
       lockstep_(lockstep),
       hooks_(std::move(hooks)),
@@ -43,6 +44,7 @@ std::vector<std::string> WorldTracker::OnView(const translation::TranslatorConte
   const translation::TranslatorContext now = translation::WithKnowledge(context, fluents);
   std::vector<sensing::StatedObject> stated;
   for (const auto& object : translation::StatedObjects(now, fluents)) {
+    if (StandsOnFloor(object.name)) continue;  // its own words
     stated.push_back({object.name, object.model, object.link, object.X_LO});
   }
   std::vector<std::string> doubts = objects_.OnStated(stated);
@@ -89,7 +91,8 @@ void WorldTracker::Handle(double time) {
   const sensing::LookNews news = objects_.Update(now);
   for (const std::string& why : news.warnings) hooks_.warn(why);
   num_looks_ += static_cast<std::uint64_t>(news.num_looks);
-  const auto known = objects_.memory().Known(now.Body());
+  if (floor_ != nullptr) floor_->Update(time);
+  const auto known = Known(now);
   const bool is_due = news.has_changed_hands || time - published_ >= kKnownPeriod;
   if (news.num_looks > 0 || (is_due && !lockstep_)) {
     published_ = time;
@@ -100,18 +103,42 @@ void WorldTracker::Handle(double time) {
   hooks_.observed(time, Observed(now, known));
 }
 
+/// Whether the floor's watch knows of a thing of that name, if only that it is gone.
+bool WorldTracker::StandsOnFloor(const std::string& name) const {
+  if (floor_ == nullptr) return false;
+  const auto& gone = floor_->vanished();
+  return std::find(gone.begin(), gone.end(), name) != gone.end() ||
+         std::any_of(floor_->things().begin(), floor_->things().end(),
+                     [&](const robot::SeenObject& thing) { return thing.name == name; });
+}
+
+/// Things on tables and on the floor, by name.
+std::vector<robot::SeenObject> WorldTracker::Known(const sensing::RobotEstimate& now) const {
+  std::vector<robot::SeenObject> known = objects_.memory().Known(now.Body());
+  if (floor_ == nullptr || floor_->things().empty()) return known;
+  known.insert(known.end(), floor_->things().begin(), floor_->things().end());
+  std::stable_sort(known.begin(), known.end(),
+                   [](const auto& a, const auto& b) { return a.name < b.name; });
+  return known;
+}
+
 translation::ObservedWorld WorldTracker::Observed(
     const sensing::RobotEstimate& now, const std::vector<robot::SeenObject>& known) const {
   const sensing::ObjectMemory& memory = objects_.memory();
   translation::ObservedWorld observed;
   observed.state.robot = {now.X_WB, now.V_B, now.posture};
   for (const robot::SeenObject& object : known) {
-    const sensing::RememberedObject& remembered = memory.objects().at(object.name);
-    if (!remembered.is_observed && !remembered.is_held) continue;  // others' word
+    const auto remembered = memory.objects().find(object.name);
+    const bool is_hearsay = remembered != memory.objects().end() &&
+                            !remembered->second.is_observed && !remembered->second.is_held;
+    if (is_hearsay) continue;
     observed.state.world.objects.push_back(
         {object.name, object.model, object.X_MO, {}, object.attached_to});
   }
   observed.vanished = memory.Vanished();
+  if (floor_ != nullptr)
+    observed.vanished.insert(observed.vanished.end(), floor_->vanished().begin(),
+                             floor_->vanished().end());
   observed.temperatures = temperatures_;
   return observed;
 }

@@ -85,6 +85,32 @@ Polygon ConvexHull(std::vector<Eigen::Vector2d> points) {
   return hull;
 }
 
+Rectangle SmallestRectangle(const Polygon& polygon) {
+  HIRES_CHECK(polygon.size() >= 3, "a polygon has three corners");
+  Rectangle best;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Eigen::Vector2d along = polygon[(i + 1) % polygon.size()] - polygon[i];
+    const Pose2 X_PE{0.0, 0.0, std::atan2(along.y(), along.x())};
+    const Polygon turned = Transformed(X_PE.Inverse(), polygon);
+    Eigen::Vector2d lower = turned[0], upper = turned[0];
+    for (const Eigen::Vector2d& p : turned) {
+      lower = lower.cwiseMin(p);
+      upper = upper.cwiseMax(p);
+    }
+    const Eigen::Vector2d size = upper - lower, middle = 0.5 * (lower + upper);
+    if (size.prod() >= least) continue;
+    least = size.prod();
+    best = {X_PE * Pose2{middle.x(), middle.y(), 0.0}, size};
+  }
+  return best;
+}
+
+Polygon CornersOf(const Rectangle& rectangle) {
+  const Eigen::Vector2d h = 0.5 * rectangle.size;
+  return Transformed(rectangle.X_PR, {-h, {h.x(), -h.y()}, h, {-h.x(), h.y()}});
+}
+
 Polygon Transformed(const Pose2& X_AB, const Polygon& polygon_B) {
   const double c = std::cos(X_AB.yaw), s = std::sin(X_AB.yaw);
   Polygon polygon_A;

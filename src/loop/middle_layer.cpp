@@ -61,10 +61,7 @@ void MiddleLayer::Cancel(int activity) { runner_.Cancel(activity); }
 
 void MiddleLayer::Hear(const SensorNews& news, const simulation::LaserParams& laser) {
   if (!news.scan.empty()) {
-    const double increment = (laser.angle_max - laser.angle_min) / (laser.num_beams - 1);
-    observations_.OnScan(
-        news.stamp, laser.link,
-        {laser.angle_min, increment, laser.range_min, {news.scan.begin(), news.scan.end()}});
+    observations_.OnScan(news.stamp, laser.link, ReadingOf(news, laser));
   }
   senses_.Hear(news);
 }

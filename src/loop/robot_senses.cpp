@@ -21,6 +21,11 @@ sensing::FrameNames FramesOf(const robot::Robot& robot) {
   return {"map", "odom", robot.profile.base_link};
 }
 
+sensing::ScanReading ReadingOf(const SensorNews& news, const simulation::LaserParams& laser) {
+  const double increment = (laser.angle_max - laser.angle_min) / (laser.num_beams - 1);
+  return {laser.angle_min, increment, laser.range_min, {news.scan.begin(), news.scan.end()}};
+}
+
 RobotSenses::RobotSenses(const ImaginationSetup& setup, const sensing::FrameNames& frames,
                          std::shared_ptr<const perception::Surroundings> surroundings)
     : names_(frames),

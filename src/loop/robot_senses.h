@@ -6,12 +6,17 @@
 #include "hires/loop/loop_observer.h"
 #include "hires/sensing/object_estimator.h"
 #include "hires/sensing/robot_state_estimator.h"
+#include "hires/sensing/scan_obstacles.h"
+#include "hires/simulation/laser_scanner.h"
 #include "loop/frame_record.h"
 
 namespace hires::loop {
 
 /// The robot's frames by the names that its own messages have.
 sensing::FrameNames FramesOf(const robot::Robot& robot);
+
+/// The scan of these news. @pre there is one.
+sensing::ScanReading ReadingOf(const SensorNews& news, const simulation::LaserParams& laser);
 
 /// One listener's estimates of the robot's state and of objects: middle layer and tracker have each
 /// their own, as they have in processes of their own.

@@ -168,11 +168,10 @@ class Play {
     Tell(observer_.sensed, news);
     middle_layer_.Hear(news, robot_.laser());
     SensorNews rest = news;
-    rest.scan.clear();
     if (const auto seen = std::exchange(rest.seen, std::nullopt)) {
       lines_.looks.Send([this, stamp = news.stamp, seen = *seen] { tracker_.See(stamp, seen); });
     }
-    lines_.sensors.Send([this, rest = std::move(rest)] { tracker_.Hear(rest); });
+    lines_.sensors.Send([this, rest = std::move(rest)] { tracker_.Hear(rest, robot_.laser()); });
   }
 
   void Look(double stamp) { middle_layer_.Look(stamp); }

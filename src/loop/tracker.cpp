@@ -17,6 +17,16 @@ std::shared_ptr<const perception::Surroundings> SurroundingsOf(const simulation:
                             : std::make_shared<const perception::Surroundings>(scene.world);
 }
 
+std::optional<sensing::FloorWatch> FloorOf(const imagination::ImaginationSetup& setup,
+                                           const sensing::RobotStateEstimator& state,
+                                           const sensing::FloorWatchParams& params) {
+  const robot::RobotProfile& profile = setup.scene->robot.profile;
+  if (!params.is_enabled || profile.laser_link.empty()) return std::nullopt;
+  return sensing::FloorWatch(&state, {setup.scene, &setup.scene->world},
+                             geometry::Padded(profile.footprint, profile.footprint_padding),
+                             params);
+}
+
 }  // namespace
 
 Tracker::Tracker(const imagination::ImaginationSetup& setup,
@@ -30,8 +40,9 @@ Tracker::Tracker(const imagination::ImaginationSetup& setup,
       blackboard_(*blackboard),
       hooks_(std::move(hooks)),
       senses_(setup, frames, SurroundingsOf(*setup.scene)),
-      tracker_(&senses_.state(), senses_.objects(), control::HeadSweep(context.robot, params.sweep),
-               true,
+      floor_(FloorOf(setup, senses_.state(), params.floor)),
+      tracker_(&senses_.state(), senses_.objects(), floor_ ? &*floor_ : nullptr,
+               control::HeadSweep(context.robot, params.sweep), true,
                {[this](const RobotEstimate& now, const std::vector<SeenObject>& known) {
                   hooks_.known(now.time, control::WorldOf(known));
                 },
@@ -43,7 +54,8 @@ Tracker::Tracker(const imagination::ImaginationSetup& setup,
                     tracker_.OnView(context_, blackboard_.view());
                 }}) {}
 
-void Tracker::Hear(const SensorNews& news) {
+void Tracker::Hear(const SensorNews& news, const simulation::LaserParams& laser) {
+  if (floor_ && !news.scan.empty()) floor_->OnScan(news.stamp, laser.link, ReadingOf(news, laser));
   senses_.Hear(news);
   tracker_.Process();
 }

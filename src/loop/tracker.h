@@ -19,7 +19,8 @@ struct TrackerParams {
   control::SweepParams sweep;
   translation::ChangeParams changes;
   std::map<std::string, std::string> concepts;  ///< model -> concept
-  double write_period{0.05};                    ///< [s] between two writes
+  sensing::FloorWatchParams floor;
+  double write_period{0.05};  ///< [s] between two writes
 };
 
 /// The world tracker in one process with its robot and its Blackboard.
@@ -36,7 +37,8 @@ class Tracker {
           const sensing::FrameNames& frames, const TrackerParams& params, VirtualClock* clock,
           Blackboard* blackboard, Hooks hooks);
 
-  void Hear(const SensorNews& news);
+  /// @param laser  that the scan is of.
+  void Hear(const SensorNews& news, const simulation::LaserParams& laser);
   void See(double stamp, const perception::Sighting& seen);
   void OnView() { is_view_new_ = true; }  ///< the Blackboard says something else
   /// What runs now: the head is others' while one of them may use it.
@@ -54,6 +56,7 @@ class Tracker {
   Blackboard& blackboard_;
   const Hooks hooks_;
   RobotSenses senses_;
+  std::optional<sensing::FloorWatch> floor_;  // of a robot with a laser
   control::WorldTracker tracker_;
   bool is_view_new_{true};
   std::int64_t episode_{0};

@@ -9,6 +9,7 @@
 #include "hires/actions/catalogue.h"
 #include "hires/control/head_sweep.h"
 #include "hires/knowledge/sparql.h"
+#include "hires/sensing/floor_watch.h"
 #include "hires/sensing/object_estimator.h"
 #include "hires/sensing/robot_state_estimator.h"
 #include "hires/translation/observed_fluents.h"
@@ -34,9 +35,10 @@ class WorldTracker {
 
   /// @param lockstep  tells of known objects with looks alone, so that a node that waits for them
   ///                  after each look sees the same however messages interleave.
-  /// @pre `state` and `objects` outlive this.
+  /// @param floor  what stands on the floor; null: nobody watches it.
+  /// @pre `state`, `objects` and `floor` outlive this.
   WorldTracker(const sensing::RobotStateEstimator* state, sensing::ObjectEstimator* objects,
-               HeadSweep sweep, bool lockstep, Hooks hooks);
+               sensing::FloorWatch* floor, HeadSweep sweep, bool lockstep, Hooks hooks);
 
   /// All moments that have become known; after each message.
   void Process();
@@ -61,11 +63,14 @@ class WorldTracker {
  private:
   std::optional<double> NextMoment() const;
   void Handle(double time);
+  bool StandsOnFloor(const std::string& name) const;
+  std::vector<robot::SeenObject> Known(const sensing::RobotEstimate& now) const;
   translation::ObservedWorld Observed(const sensing::RobotEstimate& now,
                                       const std::vector<robot::SeenObject>& known) const;
 
   const sensing::RobotStateEstimator& state_;
   sensing::ObjectEstimator& objects_;
+  sensing::FloorWatch* const floor_;
   HeadSweep sweep_;
   const bool lockstep_;
   const Hooks hooks_;

@@ -14,6 +14,18 @@ using Polygon = std::vector<Eigen::Vector2d>;
 /// @pre at least three points that do not lie on one line.
 Polygon ConvexHull(std::vector<Eigen::Vector2d> points);
 
+/// A rectangle, by the pose of its middle and its edges along x and y [m].
+struct Rectangle {
+  Pose2 X_PR;
+  Eigen::Vector2d size{0.0, 0.0};
+};
+
+/// The rectangle of least area around a convex polygon; one of its edges lies along one of the
+/// polygon's [Freeman, Shapira 1975].
+Rectangle SmallestRectangle(const Polygon& polygon);
+
+Polygon CornersOf(const Rectangle& rectangle);
+
 Polygon Transformed(const Pose2& X_AB, const Polygon& polygon_B);
 
 /// Moves every corner away from the origin by `padding` in x and y, as costmap_2d pads footprints.

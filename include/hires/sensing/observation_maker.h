@@ -6,6 +6,7 @@
 #include "hires/robot/observation.h"
 #include "hires/sensing/robot_state_estimator.h"
 #include "hires/sensing/scan_obstacles.h"
+#include "hires/sensing/scan_queue.h"
 
 namespace hires::sensing {
 
@@ -23,19 +24,11 @@ class ObservationMaker {
   /// now, where the robot was when it was taken.
   robot::Observation Observe(const RobotEstimate& now);
   /// What became of the last scan that was looked at.
-  const Receipt& scan_receipt() const { return scan_receipt_; }
+  const Receipt& scan_receipt() const { return scans_.receipt(); }
 
  private:
-  struct Scan {
-    std::string frame;
-    ScanReading reading;
-  };
-  void FindObstacles(const RobotEstimate& now);
-
-  const RobotStateEstimator* state_;
   ScanObstacles find_obstacles_;
-  History<Scan> scans_;  // not looked at yet
-  Receipt scan_receipt_;
+  ScanQueue scans_;
   std::vector<geometry::Polygon> obstacles_M_;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "hires/perception/surroundings.h"
@@ -25,8 +26,9 @@ struct Scene {
   RobotClearance base_clearance;  ///< of those
   /// What the robot's camera looks at; null without an upper body.
   std::shared_ptr<const perception::Surroundings> surroundings;
-  sensing::MemoryParams memory;  ///< of what that camera sees
-  FloorPlaces floor;             ///< what the floor has that no map tells; imagination: nothing
+  sensing::MemoryParams memory;        ///< of what that camera sees
+  std::optional<double> laser_height;  ///< [m] of the base's laser above the floor; none: no laser
+  FloorPlaces floor;  ///< what the floor has that no map tells; imagination: nothing
 };
 
 /// Collision shapes in the base frame with the joints frozen in `posture`.

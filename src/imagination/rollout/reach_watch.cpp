@@ -4,6 +4,7 @@
 
 #include "hires/base/text.h"
 #include "hires/robot/posture.h"
+#include "imagination/rollout/floor_objects.h"
 
 namespace hires::imagination {
 namespace {
@@ -84,6 +85,7 @@ bool IsWithin(const RolloutReach& reach, const RolloutSetup& setup, const base::
   const bool is_own = !object.attached_to.empty() || IsNamedBy(action, object.name);
   if (reach.is_everything || is_own || !IsAtRest(object)) return true;
   if (!setup.scene->world.FindModel(object.model)) return true;  // refused by name
+  if (IsInLaserPlane(*setup.scene, object)) return true;         // seen from afar
   return reach.Touches(DiscOf(setup, object));
 }
 

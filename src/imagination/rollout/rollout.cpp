@@ -9,6 +9,7 @@
 #include "hires/base/log.h"
 #include "hires/simulation/robot_simulator.h"
 #include "imagination/purpose.h"
+#include "imagination/rollout/floor_objects.h"
 #include "imagination/rollout/load_monitor.h"
 #include "imagination/rollout/reach_watch.h"
 #include "imagination/rollout/rollout_start.h"
@@ -44,7 +45,8 @@ class Player {
         skill_(std::move(skill)),
         control_rng_(rng.Fork(kControl)),
         simulator_(setup.scene, variation, setup.world_state, setup.robot_state,
-                   rng.Fork(kSimulator), setup.physics, LevelFor(*setup.skills, action)) {
+                   rng.Fork(kSimulator), setup.physics, LevelFor(*setup.skills, action)),
+        floor_(*setup.scene, setup.world_state.objects) {
     simulator_.Remember(KnownAtStart(setup, variation, simulator_));
   }
 
@@ -107,7 +109,10 @@ class Player {
 
   skills::Status Control(double start, const RolloutHooks& hooks) {
     robot::Command command;
-    const skills::Status status = skill_->Update(simulator_.Observe(start), &command);
+    robot::Observation seen = simulator_.Observe(start);
+    for (geometry::Polygon& outline : floor_.SeenBy(simulator_, seen.X_MB))
+      seen.obstacles_M.push_back(std::move(outline));
+    const skills::Status status = skill_->Update(seen, &command);
     simulator_.Send(command);
     next_cycle_ += skill_->period();
     if (control_rng_.Bernoulli(variation_.late_cycle_probability)) {
@@ -182,6 +187,7 @@ class Player {
   std::unique_ptr<skills::Skill> skill_;
   base::Rng control_rng_;
   RobotSimulator simulator_;
+  FloorObjects floor_;
   double start_{0.0}, next_cycle_{0.0};  // [s]
   long samples_{0};
   RolloutResult result_;

@@ -17,6 +17,16 @@ namespace translation = hires::translation;
 
 constexpr int kQueue = 6000;  // a minute of what comes at 100 Hz
 
+std::optional<sensing::FloorWatch> FloorOf(const translation::TranslatorContext& context,
+                                           const sensing::RobotStateEstimator& state,
+                                           const WorldTrackerParams& params) {
+  const robot::RobotProfile& profile = context.robot->profile;
+  if (!params.floor.is_enabled || params.files.names.base_scan.empty()) return std::nullopt;
+  return sensing::FloorWatch(&state, context.world,
+                             hires::geometry::Padded(profile.footprint, profile.footprint_padding),
+                             params.floor);
+}
+
 }  // namespace
 
 WorldTrackerNode::WorldTrackerNode(const WorldTrackerParams& params,
@@ -26,7 +36,8 @@ WorldTrackerNode::WorldTrackerNode(const WorldTrackerParams& params,
       actions_(hires::skills::LoadActionSet(params.action_libraries)),
       sensors_(context_.robot, std::make_shared<const perception::Surroundings>(*context_.world),
                params.files.names, params.sensing),
-      tracker_(&sensors_.state(), sensors_.objects(),
+      floor_(FloorOf(context_, sensors_.state(), params)),
+      tracker_(&sensors_.state(), sensors_.objects(), floor_ ? &*floor_ : nullptr,
                hires::control::HeadSweep(context_.robot, params.sweep), params.lockstep,
                TrackerHooks()),
       known_(nh->advertise<hires::WorldState>(kKnownObjects, 10, true)),
@@ -56,6 +67,10 @@ void WorldTrackerNode::Subscribe(ros::NodeHandle* nh) {
                                    [this](const auto& msg) { sensors_.OnTransforms(msg, false); });
   SubscribeTo<tf2_msgs::TFMessage>(nh, kStaticTransforms, 100,
                                    [this](const auto& msg) { sensors_.OnTransforms(msg, true); });
+  if (floor_) {
+    SubscribeTo<sensor_msgs::LaserScan>(nh, names.base_scan, kQueue,
+                                        [this](const auto& msg) { OnScan(msg); });
+  }
   SubscribeTo<hires::Detections>(nh, kDetections, 100,
                                  [this](const auto& msg) { sensors_.OnDetections(msg); });
   SubscribeTo<hires::ObjectTemperatures>(nh, kObjectTemperatures, 100, [this](const auto& msg) {
@@ -78,6 +93,14 @@ void WorldTrackerNode::SubscribeTo(ros::NodeHandle* nh, const std::string& topic
         tracker_.Process();
       }),
       ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
+}
+
+void WorldTrackerNode::OnScan(const sensor_msgs::LaserScan& msg) {
+  const auto receipt =
+      floor_->OnScan(msg.header.stamp.toSec(), msg.header.frame_id,
+                     {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges});
+  for (const sensing::Receipt& one : {receipt, floor_->receipt()})
+    if (one.is_bad()) sensors_.Warn(params_.files.names.base_scan, sensing::ToString(one));
 }
 
 void WorldTrackerNode::OnGoal(const hires::ExecuteActionActionGoal& msg) {
@@ -147,6 +170,7 @@ void WorldTrackerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& sta
   status.add("looks outdated", sensors_.objects()->num_outdated());
   status.add("bad messages", sensors_.num_bad());
   status.add("objects remembered", sensors_.objects()->memory().objects().size());
+  if (floor_) status.add("things on the floor", floor_->things().size());
   status.add("objects vanished", sensors_.objects()->memory().Vanished().size());
   status.add("head looks at", tracker_.sweep().target());
   status.add("fluents written", writer_.num_written());

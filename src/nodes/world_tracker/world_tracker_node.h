@@ -7,12 +7,14 @@
 #include <nav_msgs/Odometry.h>
 #include <ros/node_handle.h>
 #include <sensor_msgs/JointState.h>
+#include <sensor_msgs/LaserScan.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +39,7 @@ class WorldTrackerNode {
   template <typename Message>
   void SubscribeTo(ros::NodeHandle* nh, const std::string& topic, int queue,
                    std::function<void(const Message&)> take);
+  void OnScan(const sensor_msgs::LaserScan& msg);
   void OnGoal(const hires::ExecuteActionActionGoal& msg);
   void OnResult(const hires::ExecuteActionActionResult& msg);
 
@@ -51,6 +54,7 @@ class WorldTrackerNode {
   const hires::translation::TranslatorContext context_;
   const std::shared_ptr<const hires::skills::ActionSet> actions_;
   SensorReceiver sensors_;
+  std::optional<hires::sensing::FloorWatch> floor_;  // of a robot with a laser
   hires::control::WorldTracker tracker_;
   std::map<std::string, std::string> running_;  // goal id -> action
 

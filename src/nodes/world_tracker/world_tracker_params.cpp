@@ -15,6 +15,7 @@ WorldTrackerParams ReadWorldTrackerParams(const std::string& path) {
   params.changes = hires::translation::ReadChangeParams(in.Sub("changes"));
   params.concepts = hires::translation::ReadConcepts(in.Sub("concepts"));
   params.sweep = hires::control::ReadSweepParams(in.Sub("sweep"));
+  params.floor = hires::sensing::ReadFloorWatchParams(in.Sub("floor"));
   params.write_period = in.Get("write_period", Between(0.0, 10.0));
   params.lockstep = in.GetBool("lockstep");
   in.RejectUnknownKeys();

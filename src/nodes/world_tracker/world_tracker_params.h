@@ -6,6 +6,7 @@
 
 #include "hires/control/head_sweep.h"
 #include "hires/ros/translator_params.h"
+#include "hires/sensing/floor_watch.h"
 #include "hires/sensing/sensing_params.h"
 #include "hires/translation/observed_fluents.h"
 
@@ -20,6 +21,7 @@ struct WorldTrackerParams {
   std::map<std::string, std::string>
       concepts;  ///< model -> concept, for objects that are not in the Blackboard
   hires::control::SweepParams sweep;
+  hires::sensing::FloorWatchParams floor;
   double write_period{0.05};  ///< [s] between writes to the Blackboard
   /// Tells of known objects with looks alone, so that a node that waits for them after each look
   /// sees the same however messages interleave.

@@ -9,6 +9,11 @@
 #include "sensing/memory/memory_parts.h"
 
 namespace hires::sensing {
+namespace {
+
+constexpr double kFloor = 0.3;  // [m] up to which an object stands on it
+
+}  // namespace
 
 using geometry::Pose3;
 using perception::CameraView;
@@ -123,6 +128,8 @@ void ObjectMemory::Miss(const LineOfSight& sight, const Links& links, const Look
           (named[i].name.empty() && MayBe(links, object, look.detections[i], look.X_MO(i)));
     }
     if (may_be_seen || !look.Covers(PlaceOf(links, object))) continue;
+    // What stands on the floor and is of no kind no recogniser of things looks for.
+    if (world::SaysUnknownBox(object.model) && PlaceOf(links, object).z() < kFloor) continue;
     if (!MustBeSeen(sight, look, links, object)) continue;
     if (++object.num_missed >= params_.looks_to_vanish) gone.push_back(name);
   }

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "hires/sensing/history.h"
+#include "hires/sensing/robot_state_estimator.h"
+#include "hires/sensing/scan_obstacles.h"
+
+namespace hires::sensing {
+
+/// Scans that wait until the robot's state at their time is known.
+class ScanQueue {
+ public:
+  /// A scan, and where the robot and its laser were when it was taken.
+  struct Placed {
+    double stamp{0.0};  ///< [s]
+    ScanReading reading;
+    geometry::Pose2 X_MB, X_BL;
+  };
+
+  /// @param state  outlives this.
+  explicit ScanQueue(const RobotStateEstimator* state) : state_(state) {}
+
+  /// @param frame  of the laser.
+  Receipt OnScan(double stamp, const std::string& frame, ScanReading reading);
+  /// The newest scan up to a time [s], once; older ones are dropped with it. Nothing where nobody
+  /// knows where it was taken.
+  std::optional<Placed> Take(double time);
+  /// What became of the last scan that was taken.
+  const Receipt& receipt() const { return receipt_; }
+
+ private:
+  struct Scan {
+    std::string frame;
+    ScanReading reading;
+  };
+
+  const RobotStateEstimator* state_;
+  History<Scan> scans_;
+  Receipt receipt_;
+};
+
+}  // namespace hires::sensing
