@@ -147,15 +147,19 @@ TEST(FindTableTest, AWallBehindTheTableIsNoPartOfIt) {
 }
 
 TEST(FindTableTest, AWallAloneIsNoTable) {
-  PointCloud cloud;
-  base::Rng noise(1);
-  for (double y = -1.0; y < 1.0; y += 0.01) {
-    for (double z = 0.0; z < 1.6; z += 0.01)
-      cloud.points.push_back(Vector3d(y, 1.0 - z, 3.0 + noise.Normal(0.0, 0.02)).cast<float>());
-  }
-  for (int seed = 1; seed <= 20; ++seed) {
-    EXPECT_FALSE(FindTable(cloud, CameraStand{-Vector3d::UnitY(), 1.0}, {}, base::Rng(seed)))
-        << seed;
+  for (const double lowest : {0.0, 0.75, 1.0}) {  // [m] above the floor, that the camera sees
+    PointCloud cloud;
+    base::Rng noise(1);
+    for (double y = -1.0; y < 1.0; y += 0.01) {
+      for (double z = lowest; z < lowest + 0.6; z += 0.01) {
+        const double depth = 1.0 + noise.Normal(0.0, DepthNoise(3.0)) / 3.0;
+        cloud.points.push_back((depth * Vector3d(-y, 1.5 - z, 3.0)).cast<float>());
+      }
+    }
+    for (int seed = 1; seed <= 10; ++seed) {
+      EXPECT_FALSE(FindTable(cloud, CameraStand{-Vector3d::UnitY(), 1.5}, {}, base::Rng(seed)))
+          << lowest << ", " << seed;
+    }
   }
 }
 

@@ -45,9 +45,9 @@ struct TableParams {
   double max_height{1.3};       ///< [m] likewise
 };
 
-/// The plane with the most points, less those just below it, as a wall that crosses it has, of
-/// which the camera is on the upper side (RANSAC [Fischler, Bolles 1981], then least squares).
-/// Where two tables are seen, the larger one in the picture.
+/// The plane with the most points of which the camera is on the upper side (RANSAC [Fischler,
+/// Bolles 1981], then least squares); those just beside it speak against it, as a wall that crosses
+/// it has as many. Where two tables are seen, the larger one in the picture.
 /// @param stand  without it, any plane is a table, the floor too.
 /// @return nothing where no plane holds `min_share` of the points.
 std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<CameraStand>& stand,

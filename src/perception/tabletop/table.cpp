@@ -17,9 +17,9 @@ constexpr double kMostSamples = 10.0;  // times num_samples, while no plane hold
 constexpr double kOutlineCell = 0.02;  // [m]
 constexpr int kMostCells = 2000;       // along each axis; larger tables have larger cells
 constexpr double kMinPiece = 0.1;      // of the largest piece
-constexpr int kMinOver = 3;     // times as many points in a cell's plane as below it: a table
-                                // hides what is below it, a wall goes on there
-constexpr double kBelow = 3.0;  // tolerances down to which they are counted
+constexpr int kMinOver = 3;      // times as many points in a cell's plane as below it: a table
+                                 // hides what is below it, a wall goes on there
+constexpr double kBeside = 3.0;  // tolerances up to which points are beside a plane
 
 struct Plane {
   Eigen::Vector3d normal;
@@ -30,10 +30,12 @@ bool Supports(const Plane& plane, const Eigen::Vector3d& p, double tolerance) {
   return std::abs(plane.normal.dot(p) + plane.offset) < tolerance * DepthNoise(p.z());
 }
 
-/// Whether it lies so little below the plane that a wall which crosses it there has points on both.
-bool IsJustBelow(const Plane& plane, const Eigen::Vector3d& p, double tolerance) {
+/// -1, 1 where it lies so little below or above the plane that a wall which crosses it there has as
+/// many points on it, else 0.
+int SideOf(const Plane& plane, const Eigen::Vector3d& p, double tolerance) {
   const double height = (plane.normal.dot(p) + plane.offset) / (tolerance * DepthNoise(p.z()));
-  return height <= -1.0 && height > -kBelow;
+  if (std::abs(height) < 1.0 || std::abs(height) >= kBeside) return 0;
+  return height < 0.0 ? -1 : 1;
 }
 
 std::vector<Eigen::Vector3d> MeasuredPoints(const PointCloud& cloud) {
@@ -115,10 +117,14 @@ std::optional<Plane> BestSample(const std::vector<Eigen::Vector3d>& points,
     const Eigen::Vector3d a = pick(), b = pick(), c = pick();
     const auto plane = PlaneThrough(a, b, c);
     if (!plane || !IsLevel(*plane, stand, params)) continue;
-    int votes = 0;
-    for (std::size_t k = 0; k < points.size(); k += step)
-      votes += Supports(*plane, points[k], params.tolerance) -
-               IsJustBelow(*plane, points[k], params.tolerance);
+    int votes = 0, below = 0, above = 0;
+    for (std::size_t k = 0; k < points.size(); k += step) {
+      votes += Supports(*plane, points[k], params.tolerance);
+      const int side = SideOf(*plane, points[k], params.tolerance);
+      below += side < 0;
+      above += side > 0;
+    }
+    votes -= std::max(below, above);
     if (votes <= best_votes) continue;
     best_votes = votes;
     best = plane;
@@ -225,7 +231,7 @@ TableTop TopOf(const std::vector<Eigen::Vector3d>& points, const Table& table, d
     if (Supports(plane, p, tolerance)) {
       on_it.push_back(p);
       from_above.push_back(table.FromAbove(p));
-    } else if (IsJustBelow(plane, p, tolerance)) {
+    } else if (SideOf(plane, p, tolerance) < 0) {
       below.push_back(table.FromAbove(p));
     }
   }
