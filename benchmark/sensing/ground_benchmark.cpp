@@ -1,7 +1,7 @@
 #include <benchmark/benchmark.h>
 
+#include "hires/sensing/tray_objects.h"
 #include "sensing/ground/ground_obstacles.h"
-#include "sensing/tray/tray_objects.h"
 #include "support/scenes.h"
 #include "support/sight_scenes.h"
 #include "support/tilt_sweep.h"

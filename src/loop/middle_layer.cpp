@@ -61,7 +61,7 @@ void MiddleLayer::Cancel(int activity) { runner_.Cancel(activity); }
 
 void MiddleLayer::Hear(const SensorNews& news, const simulation::LaserParams& laser) {
   if (!news.scan.empty()) {
-    observations_.OnScan(news.stamp, laser.link, ReadingOf(news, laser));
+    observations_.OnScan(news.stamp, laser.link, ReadingOf(news.scan, laser));
   }
   senses_.Hear(news);
 }

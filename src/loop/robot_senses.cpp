@@ -21,9 +21,10 @@ sensing::FrameNames FramesOf(const robot::Robot& robot) {
   return {"map", "odom", robot.profile.base_link};
 }
 
-sensing::ScanReading ReadingOf(const SensorNews& news, const simulation::LaserParams& laser) {
+sensing::ScanReading ReadingOf(const std::vector<double>& ranges,
+                               const simulation::LaserParams& laser) {
   const double increment = (laser.angle_max - laser.angle_min) / (laser.num_beams - 1);
-  return {laser.angle_min, increment, laser.range_min, {news.scan.begin(), news.scan.end()}};
+  return {laser.angle_min, increment, laser.range_min, {ranges.begin(), ranges.end()}};
 }
 
 RobotSenses::RobotSenses(const ImaginationSetup& setup, const sensing::FrameNames& frames,
@@ -49,6 +50,9 @@ void RobotSenses::Hear(const SensorNews& news) {
     state_.OnTransforms(news.stamp);
   }
   if (news.seen) See(news.stamp, *news.seen);
+  if (news.tray && objects_) {
+    objects_->OnTrayScan(news.stamp, news.tray->frame, news.tray->reading);
+  }
   state_.OnJoints(news.stamp, readings.joints);
   state_.OnOdometry(news.stamp, names_.odometry, base_link_, readings.odometry);
 }

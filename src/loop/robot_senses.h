@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "hires/imagination/imagination_setup.h"
 #include "hires/loop/loop_observer.h"
@@ -15,8 +16,9 @@ namespace hires::loop {
 /// The robot's frames by the names that its own messages have.
 sensing::FrameNames FramesOf(const robot::Robot& robot);
 
-/// The scan of these news. @pre there is one.
-sensing::ScanReading ReadingOf(const SensorNews& news, const simulation::LaserParams& laser);
+/// @param ranges  [m] of the laser's beams.
+sensing::ScanReading ReadingOf(const std::vector<double>& ranges,
+                               const simulation::LaserParams& laser);
 
 /// One listener's estimates of the robot's state and of objects: middle layer and tracker have each
 /// their own, as they have in processes of their own.
@@ -27,7 +29,7 @@ class RobotSenses {
   RobotSenses(const imagination::ImaginationSetup& setup, const sensing::FrameNames& frames,
               std::shared_ptr<const perception::Surroundings> surroundings);
 
-  /// Takes in all but the laser.
+  /// Takes in all but the laser of the base.
   void Hear(const SensorNews& news);
   /// What the camera saw at a moment that is not told of yet.
   void See(double stamp, const perception::Sighting& seen);

@@ -1,11 +1,13 @@
 #include "loop/robot_side.h"
 
+#include <cmath>
 #include <utility>
 
 namespace hires::loop {
 namespace {
 
 constexpr double kBegin = 1.0;  // [s] 0 means "no time yet"
+const long kTrayPeriod = std::lround(1000.0 * sensing::ObjectEstimator::kScanPeriod);  // [ms]
 
 }  // namespace
 
@@ -34,6 +36,10 @@ void RobotSide::Tick() {
   news.is_tick = true;
   if (sensors_.has_laser()) news.scan = sensors_.Scan(world_, news.readings);
   news.seen = sensors_.Look(world_, news.readings);
+  const evaluation::SimRobotLasers& lasers = sensors_.lasers();
+  if (lasers.has_tray_laser() && world_.milliseconds() % kTrayPeriod == 0) {
+    news.tray = TrayScan{lasers.tray().link, ReadingOf(lasers.TrayScan(world_), lasers.tray())};
+  }
   hooks_.hear(news);
   hooks_.look(news.stamp);
   for (const robot::Command& command : std::exchange(commands_, {})) world_.Apply(command);

@@ -55,7 +55,8 @@ Tracker::Tracker(const imagination::ImaginationSetup& setup,
                 }}) {}
 
 void Tracker::Hear(const SensorNews& news, const simulation::LaserParams& laser) {
-  if (floor_ && !news.scan.empty()) floor_->OnScan(news.stamp, laser.link, ReadingOf(news, laser));
+  if (floor_ && !news.scan.empty())
+    floor_->OnScan(news.stamp, laser.link, ReadingOf(news.scan, laser));
   senses_.Hear(news);
   tracker_.Process();
 }

@@ -68,6 +68,17 @@ void SensorReceiver::OnDetections(const hires::Detections& msg) {
   }
 }
 
+void SensorReceiver::OnTrayScan(const sensor_msgs::LaserScan& msg) {
+  if (!objects_) return;
+  const auto problems =
+      objects_->OnTrayScan(msg.header.stamp.toSec(), msg.header.frame_id,
+                           {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges});
+  for (const std::string& why : problems) {
+    ++num_bad_;
+    Warn(names_.sensors.tray_scan, why);
+  }
+}
+
 std::map<std::string, double> SensorReceiver::TemperaturesOf(const hires::ObjectTemperatures& msg) {
   constexpr double kColdest = -273.15;  // [degrees Celsius]
   std::map<std::string, double> degrees;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "hires/base/error.h"
 
@@ -15,6 +17,8 @@ using geometry::Pose3;
 constexpr double kFramePatience = 0.2;  // [s] that the transform of a look's frame may be late
 constexpr double kNever = -1e9;         // [s]
 constexpr std::size_t kMaxLooks = 100;  // that wait
+constexpr double kScanWait = 1.0;       // [s] of a scan for the other sensors
+constexpr double kSameMoment = 1e-6;    // [s]
 
 /// Empty: it is one, or none was told.
 std::string WhyNoTable(const std::vector<Eigen::Vector3d>& corners) {
@@ -23,6 +27,19 @@ std::string WhyNoTable(const std::vector<Eigen::Vector3d>& corners) {
   if (is_finite && (corners.empty() || corners.size() >= 3)) return "";
   return fmt::format("table has {} corners{}, wanted none or at least 3, all of them finite",
                      corners.size(), is_finite ? "" : " that are not finite");
+}
+
+/// Empty: it is one.
+std::string WhyNoScan(const ScanReading& scan) {
+  if (scan.ranges.empty()) return "it has no ranges, wanted one for each beam";
+  const bool is_finite = std::isfinite(scan.angle_min) && std::isfinite(scan.angle_increment);
+  if (!is_finite || scan.angle_increment == 0.0) {
+    return fmt::format(
+        "angle_min is {}, angle_increment {}, wanted finite angles, the second not 0",
+        scan.angle_min, scan.angle_increment);
+  }
+  if (scan.range_min >= 0.0) return "";
+  return fmt::format("range_min is {}, wanted 0 or more", scan.range_min);
 }
 
 }  // namespace
@@ -66,6 +83,23 @@ std::vector<std::string> ObjectEstimator::OnLook(Look look) {
   return left_out;
 }
 
+std::vector<std::string> ObjectEstimator::OnTrayScan(double stamp, const std::string& frame,
+                                                     ScanReading scan) {
+  FollowClock();
+  std::vector<std::string> problems = std::exchange(scan_problems_, {});
+  if (!(stamp > 0.0)) {
+    problems.push_back(ToString(Receipt{Reception::kNoStamp, {}}));
+  } else if (state_->IsAhead(stamp)) {
+    problems.push_back(ToString(state_->Ahead("header.stamp")));
+  } else if (const std::string why = WhyNoScan(scan); !why.empty()) {
+    problems.push_back(why);
+  } else if (stamp > scanned_) {
+    scans_.Insert(stamp, {frame, std::move(scan)});
+    scans_.KeepBetween(stamp - kScanWait, stamp + kScanWait);
+  }
+  return problems;
+}
+
 std::vector<std::string> ObjectEstimator::OnStated(const std::vector<StatedObject>& stated) {
   std::vector<std::string> refused;
   std::vector<std::string> names;
@@ -105,7 +139,8 @@ void ObjectEstimator::FollowClock() {
   if (restarts_ == state_->num_restarts()) return;
   restarts_ = state_->num_restarts();
   looks_.clear();
-  felt_ = hands_changed_ = kNever;
+  scans_.Clear();
+  felt_ = hands_changed_ = scanned_ = kNever;
 }
 
 void ObjectEstimator::Feel(const BodyReading& body, LookNews* news) {
@@ -124,7 +159,33 @@ LookNews ObjectEstimator::Update(const RobotEstimate& now) {
     one = Remember(one->look, now.time, &news) ? looks_.erase(one) : std::next(one);
   }
   Feel(now.Body(), &news);
+  ScanTray(now.time);
   return news;
+}
+
+/// Uses the scans up to this moment; those of before a hand changed say nothing of now.
+void ObjectEstimator::ScanTray(double now) {
+  while (!scans_.empty() && scans_.front().stamp <= now) {
+    const double stamp = scans_.front().stamp;
+    const bool is_due = stamp >= scanned_ + kScanPeriod - kSameMoment && stamp > hands_changed_;
+    const std::string why = is_due ? Use(stamp, scans_.front().value) : "";
+    if (!why.empty()) scan_problems_ = {why};
+    scans_.KeepBetween(std::nextafter(stamp, stamp + kScanWait), stamp + 1e9);
+  }
+}
+
+/// @return why it was not used; empty: it was.
+std::string ObjectEstimator::Use(double stamp, const TrayScan& scan) {
+  scanned_ = stamp;
+  const auto then = state_->At(stamp);
+  if (!then || !state_->IsPostureKnown(stamp)) {
+    return "the posture of the robot when the tray was scanned is unknown";
+  }
+  const FramePose X_BL = state_->InBase(scan.frame, *then);
+  if (!X_BL.is_found()) return ToString(ReceiptOf(X_BL.status, scan.frame));
+  std::string why = memory_.ScanTray(then->Body(), scan.reading, X_BL.X_PC);
+  num_scans_ += why.empty() ? 1 : 0;
+  return why;
 }
 
 /// @return whether the look is done with; else it waits for its frame.

@@ -39,6 +39,8 @@ MemoryParams ReadMemory(ParamReader in) {
   params.instance_distance = in.Get("instance_distance", Between(0.0, 1.0));
   params.instance_margin = in.Get("instance_margin", Between(0.0, 1.0));
   params.looks_to_appear = in.Get("looks_to_appear", Between(1, 1000));
+  params.scans_to_vanish = in.Get("scans_to_vanish", Between(1, 1000));
+  params.scans_to_appear = in.Get("scans_to_appear", Between(1, 1000));
   return params;
 }
 

@@ -305,6 +305,59 @@ TEST_F(ObjectEstimatorTest, LooksThatComeInAnyOrderAreRememberedInTheOrderOfTime
   ExpectMugAt({4.0, 2.5, 0.7});
 }
 
+// ---- The tray.
+
+TEST_F(ObjectEstimatorTest, ScansOfTheTrayAreUsedTenTimesASecondWhenTheirTimeIsKnown) {
+  const ScanReading empty{-1.4, 2.8 / 639, 0.08, std::vector<float>(640, 5.0F)};
+  const std::string laser = "base_tray_laser_link";
+  const Pose3 X_MT = InWorld("base_tray_link");
+  world::WorldState stated;
+  stated.objects.push_back({"Mug1", "mug", X_MT * At(0.15, 0.0, 0.0), {}, ""});
+  objects_.OnStated(stated, *state_.At(time_));
+  See("map", {Mug(X_MT * At(0.15, 0.0, 0.0))});
+  Tick();
+  ASSERT_EQ(objects_.memory().objects().at("mug1").link, "base_footprint");
+  EXPECT_THAT(objects_.OnTrayScan(time_ + 0.05, laser, empty), IsEmpty());
+  Update();
+  EXPECT_EQ(objects_.num_scans(), 0) << "the robot's state of that time is not known yet";
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_THAT(objects_.OnTrayScan(time_ + 0.05, laser, empty), IsEmpty());
+    Tick();
+  }
+  EXPECT_EQ(objects_.num_scans(), 5);
+  EXPECT_THAT(objects_.memory().Vanished(), ElementsAre("mug1"));
+}
+
+TEST_F(ObjectEstimatorTest, BadScansOfTheTrayAreNamed) {
+  const ScanReading good{-1.4, 2.8 / 639, 0.08, std::vector<float>(640, 5.0F)};
+  const std::string laser = "base_tray_laser_link";
+  ScanReading bad = good;
+  bad.ranges.clear();
+  EXPECT_THAT(objects_.OnTrayScan(time_, laser, bad), ElementsAre(HasSubstr("no ranges")));
+  bad = good;
+  bad.angle_increment = 0.0;
+  EXPECT_THAT(objects_.OnTrayScan(time_, laser, bad), ElementsAre(HasSubstr("angle_increment")));
+  bad = good;
+  bad.range_min = std::nan("");
+  EXPECT_THAT(objects_.OnTrayScan(time_, laser, bad), ElementsAre(HasSubstr("range_min is nan")));
+  EXPECT_THAT(objects_.OnTrayScan(0.0, laser, good), ElementsAre(HasSubstr("stamp")));
+  EXPECT_THAT(objects_.OnTrayScan(time_ + 100.0, laser, good), SizeIs(1));
+  // What can be told only when it is used comes with the next one.
+  const auto after = [&](const std::string& frame) {
+    Tick();
+    Tick();
+    EXPECT_THAT(objects_.OnTrayScan(time_, frame, good), IsEmpty());
+    Update();
+    Tick();
+    Tick();
+    return objects_.OnTrayScan(time_, laser, good);
+  };
+  EXPECT_THAT(after("nowhere"), ElementsAre(HasSubstr("nowhere")));
+  Update();
+  EXPECT_THAT(after("head_tilt_link"), ElementsAre(HasSubstr("leans")));
+  EXPECT_THAT(Known(), IsEmpty());
+}
+
 TEST_F(ObjectEstimatorTest, ARobotWithoutACameraSaysSo) {
   const auto cart = std::make_shared<const robot::Robot>(test_support::TrayRobot());
   ObjectEstimator blind(EmptyRoom(), cart, {}, &state_);

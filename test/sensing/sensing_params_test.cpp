@@ -37,7 +37,7 @@ TEST(SensingParamsTest, EachNumberMattersAndIsNamedWhenItIsBad) {
       ++count;
     }
   }
-  EXPECT_EQ(count, 24);
+  EXPECT_EQ(count, 26);
 }
 
 }  // namespace

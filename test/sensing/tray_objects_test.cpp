@@ -1,4 +1,4 @@
-#include "sensing/tray/tray_objects.h"
+#include "hires/sensing/tray_objects.h"
 
 #include <gmock/gmock.h>
 

@@ -11,8 +11,15 @@
 #include "hires/evaluation/achieve.h"
 #include "hires/evaluation/sim_robot_world.h"
 #include "hires/perception/detector.h"
+#include "hires/sensing/scan_obstacles.h"
 
 namespace hires::loop {
+
+/// What the laser over the tray measures.
+struct TrayScan {
+  std::string frame;
+  sensing::ScanReading reading;
+};
 
 /// What the robot's sensors say at one moment, as one who listens to them gets it.
 struct SensorNews {
@@ -22,6 +29,7 @@ struct SensorNews {
   bool is_tick{false};
   std::vector<double> scan;  ///< [m]; empty: the robot has no laser
   std::optional<perception::Sighting> seen;
+  std::optional<TrayScan> tray;
 };
 
 /// Told of all that passes between the parts of a loop, as topics would carry it between nodes, in

@@ -5,6 +5,7 @@
 #include <hires/WorldState.h>
 #include <nav_msgs/Odometry.h>
 #include <sensor_msgs/JointState.h>
+#include <sensor_msgs/LaserScan.h>
 
 #include <functional>
 #include <map>
@@ -36,6 +37,7 @@ class SensorReceiver {
   void OnJoints(const sensor_msgs::JointState& msg);
   void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
   void OnDetections(const hires::Detections& msg);
+  void OnTrayScan(const sensor_msgs::LaserScan& msg);
   /// [degrees Celsius] by object, of those that are sure; the others are left out, and warned of
   /// where they are wrong.
   std::map<std::string, double> TemperaturesOf(const hires::ObjectTemperatures& msg);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/sensing/history.h"
 #include "hires/sensing/object_memory.h"
 #include "hires/sensing/robot_state_estimator.h"
 #include "hires/world/world.h"
@@ -51,6 +52,13 @@ class ObjectEstimator {
   /// @return what was left out, and why: the look, or some of its detections.
   std::vector<std::string> OnLook(Look look);
 
+  /// Takes a scan of the laser over the tray, to be used when the robot's state is known so far;
+  /// of several within kScanPeriod the first alone is.
+  /// @param frame  of the laser.
+  /// @return what is wrong: with this scan, or with earlier ones that could not be used since.
+  std::vector<std::string> OnTrayScan(double stamp, const std::string& frame, ScanReading scan);
+  static constexpr double kScanPeriod = 0.1;  ///< [s]
+
   /// All that others say now; what they do not say any more is believed no longer.
   /// @return what could not be believed, and why.
   std::vector<std::string> OnStated(const std::vector<StatedObject>& stated);
@@ -69,6 +77,7 @@ class ObjectEstimator {
   const ObjectMemory& memory() const { return memory_; }
   int num_outdated() const { return num_outdated_; }  ///< looks that came too late
   int num_dropped() const { return num_dropped_; }    ///< whose posture or frame was unknown
+  int num_scans() const { return num_scans_; }        ///< of the tray that were used
 
  private:
   struct Waiting {
@@ -80,14 +89,24 @@ class ObjectEstimator {
   bool Remember(const Look& look, double now, LookNews* news);
   FrameStatus PutInCamera(const RobotEstimate& then, Look* look) const;
   void Drop(const std::string& why, LookNews* news);
+  struct TrayScan {
+    std::string frame;
+    ScanReading reading;
+  };
+  void ScanTray(double now);
+  std::string Use(double stamp, const TrayScan& scan);
 
   std::shared_ptr<const perception::Surroundings> surroundings_;
   std::shared_ptr<const robot::Robot> robot_;
   const RobotStateEstimator* state_;
   ObjectMemory memory_;
-  std::deque<Waiting> looks_;   // oldest first
-  double felt_{-1e9};           // [s] when hands were felt last
-  double hands_changed_{-1e9};  // [s] when one took or let go of something
+  std::deque<Waiting> looks_;  // oldest first
+  History<TrayScan> scans_;    // not used yet
+  double scanned_{-1e9};       // [s] stamp of the last that was used
+  int num_scans_{0};
+  std::vector<std::string> scan_problems_;  // not told of yet
+  double felt_{-1e9};                       // [s] when hands were felt last
+  double hands_changed_{-1e9};              // [s] when one took or let go of something
   int num_outdated_{0}, num_dropped_{0};
   int restarts_{0};  // of the clock, so far
 };

@@ -10,6 +10,7 @@
 #include "hires/robot/observation.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/sensing/body_reading.h"
+#include "hires/sensing/tray_objects.h"
 
 namespace hires::sensing {
 
@@ -39,6 +40,8 @@ struct MemoryParams {
                                   ///< its kind, that has no name, is taken for it
   double instance_margin{0.03};   ///< [m] by which the best way to name all things must be better
   int looks_to_appear{3};         ///< in a row in which a thing that is none of the known is seen
+  int scans_to_vanish{5};         ///< of the tray in a row that look through what should be there
+  int scans_to_appear{20};        ///< in a row that see a thing there that nobody knows
   bool operator==(const MemoryParams& other) const;
 };
 
@@ -53,6 +56,15 @@ struct RememberedObject {
   double time{0.0};         ///< [s] when it was seen last
   int num_missed{0};        ///< looks in a row
   int num_resized{0};       ///< looks in a row that measured another box of a thing of unknown kind
+  int num_looked_through{0};  ///< scans of the tray in a row that saw nothing in its place
+};
+
+/// A scan of the tray and what it says.
+struct TrayView {
+  double time{0.0};      ///< [s]
+  geometry::Pose3 X_BT;  ///< the tray in the robot's base
+  double height{0.0};    ///< [m] of the scan over the tray's frame
+  TrayReading reading;
 };
 
 /// What the robot knows of loose objects from looking and from its fingers: where they are, what it
@@ -74,6 +86,10 @@ struct RememberedObject {
 /// What no model explains, and is not where something is expected, is remembered by its box: its
 /// model says it (world::UnknownBoxModel), its name is unknown1, unknown2, ... It has no identity
 /// beyond its place; where something known turns out to be in its place, it was that.
+///
+/// A laser over the tray says where what stands there is, what is gone, and that something is there
+/// that nobody knows. It tells nothing of heights and leaning, nor who something is: none of its
+/// scans counts as a sight of what is known (RememberedObject::time).
 class ObjectMemory {
  public:
   ObjectMemory(std::shared_ptr<const perception::Surroundings> surroundings,
@@ -101,6 +117,23 @@ class ObjectMemory {
   /// @throws base::ConfigError as Feel and Check; nothing is remembered of such a look.
   void Look(const BodyReading& body, const std::vector<perception::Detection>& detections,
             const std::vector<Eigen::Vector3d>& table_C = {});
+
+  /// One scan of the laser over the tray. What stands in its place is put where its beams say, what
+  /// stands elsewhere on the tray goes there, and what several scans in a row look through has
+  /// vanished. A thing that no object explains is remembered as one of unknown kind: as wide as it
+  /// is seen and some, as deep as it is wide or kDepthOnTray where one side alone is seen,
+  /// kHeightOnTray high.
+  /// Where something hides its place, and where the robot's own parts or what it holds are in the
+  /// scan, nothing is concluded.
+  /// @param X_BL  the laser in the robot's base.
+  /// @return why it was not used; empty: it was.
+  /// @throws base::ConfigError as Feel.
+  std::string ScanTray(const BodyReading& body, const ScanReading& scan,
+                       const geometry::Pose3& X_BL);
+  static constexpr double kDepthOnTray = 0.08;   ///< [m]
+  static constexpr double kHeightOnTray = 0.15;  ///< [m]
+  /// The last scan of the tray that was used.
+  const std::optional<TrayView>& tray() const { return tray_; }
 
   const std::map<std::string, RememberedObject>& objects() const { return objects_; }
   /// Objects whose place was looked at in vain, or that slipped away: until they are seen again.
@@ -134,6 +167,11 @@ class ObjectMemory {
              const perception::Detection& detection, const geometry::Pose3& X_MO) const;
   bool MayBeNew(const Links& links, const perception::Detection& detection,
                 const geometry::Pose3& X_MO) const;
+  std::vector<BelievedOnTray> BelievedOn(const Links& links, const geometry::Pose3& X_MT) const;
+  std::vector<geometry::Polygon> OwnOutlines(const Links& links, const geometry::Pose3& X_MT,
+                                             double height) const;
+  void Agree(const Links& links, const TrayView& view, const geometry::Pose3& X_MT);
+  void AppearOnTray(const TrayView& view, const geometry::Pose3& X_TL);
   void Appear(const Links& links, const LookedAt& look, std::vector<Named>* named);
   void NameNewcomers(const LookedAt& look, std::vector<Named>* named);
   void Reveal(const Links& links, const LookedAt& look, const std::vector<Named>& named);
@@ -172,6 +210,12 @@ class ObjectMemory {
   };
   std::map<std::string, LastPlace> vanished_;  ///< by name
   std::vector<Newcomer> newcomers_;
+  struct NewOnTray {
+    Eigen::Vector2d p_T;
+    int num_scans{0};  ///< in a row
+  };
+  std::vector<NewOnTray> new_on_tray_;
+  std::optional<TrayView> tray_;
   int num_ambiguous_{0};
   std::map<std::string, Hand> hands_;  ///< by arm
 };

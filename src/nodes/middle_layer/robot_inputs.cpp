@@ -46,6 +46,9 @@ void RobotInputs::Subscribe(bool is_floor_watched, ros::NodeHandle* nh) {
   if (is_floor_watched) {
     add(nh->subscribe(names_.sensors.tilt_cloud, 2, &RobotInputs::OnCloud, this, hints));
   }
+  if (!names_.sensors.tray_scan.empty()) {
+    add(nh->subscribe(names_.sensors.tray_scan, 10, &RobotInputs::OnTrayScan, this, hints));
+  }
   add(nh->subscribe(kDetections, 10, &RobotInputs::OnDetections, this, hints));
   add(nh->subscribe(kKnownObjects, 10, &SensorReceiver::OnKnownObjects, &sensors_, hints));
 }
@@ -86,6 +89,11 @@ void RobotInputs::OnCloud(const sensor_msgs::PointCloud2& msg) {
   } catch (const hires::base::ConfigError& error) {
     sensors_.Warn(names_.sensors.tilt_cloud, error.what());
   }
+}
+
+void RobotInputs::OnTrayScan(const sensor_msgs::LaserScan& msg) {
+  sensors_.OnTrayScan(msg);
+  hooks_.arrived(names_.sensors.tray_scan, msg.header.stamp.toSec());
 }
 
 void RobotInputs::OnDetections(const hires::Detections& msg) {

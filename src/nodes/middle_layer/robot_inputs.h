@@ -48,6 +48,7 @@ class RobotInputs {
   void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
   void OnScan(const sensor_msgs::LaserScan& msg);
   void OnCloud(const sensor_msgs::PointCloud2& msg);
+  void OnTrayScan(const sensor_msgs::LaserScan& msg);
   void OnDetections(const hires::Detections& msg);
 
   const hires::control::RobotNames names_;

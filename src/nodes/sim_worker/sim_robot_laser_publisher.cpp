@@ -47,13 +47,14 @@ void SimRobotLaserPublisher::AddTilt(const hires::evaluation::SimRobotWorld& wor
   (*joints)[robot_.profile.sensors.tilting_laser->joint] = lasers_.TiltPhase(world).angle;
 }
 
-void SimRobotLaserPublisher::PublishTick(const hires::evaluation::SimRobotWorld& world,
+bool SimRobotLaserPublisher::PublishTick(const hires::evaluation::SimRobotWorld& world,
                                          const ros::Time& stamp) {
-  if (!IsHeard(tray_scan_)) return;
+  if (!IsHeard(tray_scan_)) return false;
   sensor_msgs::LaserScan scan = ToMsg(lasers_.tray(), lasers_.TrayScan(world), kTickTime);
   scan.header.frame_id = lasers_.tray().link;
   scan.header.stamp = stamp;
   tray_scan_.publish(scan);
+  return true;
 }
 
 void SimRobotLaserPublisher::PublishLook(const hires::evaluation::SimRobotWorld& world,

@@ -19,8 +19,8 @@ class SimRobotLaserPublisher {
   SimRobotLaserPublisher(const hires::control::RobotNames& names, const hires::robot::Robot& robot,
                          const hires::evaluation::SimRobotLasers* lasers, ros::NodeHandle* nh);
 
-  /// The tray's scan: for each tick.
-  void PublishTick(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
+  /// The tray's scan: for each tick.  @return whether somebody hears it.
+  bool PublishTick(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
 
   /// The nodding laser's, if one is due: for each look between two ticks.
   /// @param readings  of the last tick.

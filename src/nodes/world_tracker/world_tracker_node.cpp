@@ -5,6 +5,7 @@
 #include "hires/ros/robot_topics.h"
 #include "hires/ros/topic_names.h"
 #include "hires/skills/action_loader.h"
+#include "nodes/world_tracker/tray_markers.h"
 
 namespace hires_ros {
 namespace {
@@ -71,6 +72,11 @@ void WorldTrackerNode::Subscribe(ros::NodeHandle* nh) {
     SubscribeTo<sensor_msgs::LaserScan>(nh, names.base_scan, kQueue,
                                         [this](const auto& msg) { OnScan(msg); });
   }
+  if (!names.sensors.tray_scan.empty() && !context_.robot->profile.tray_link.empty()) {
+    tray_markers_ = nh->advertise<visualization_msgs::MarkerArray>("tray_markers", 2);
+    SubscribeTo<sensor_msgs::LaserScan>(nh, names.sensors.tray_scan, 100,
+                                        [this](const auto& msg) { sensors_.OnTrayScan(msg); });
+  }
   SubscribeTo<hires::Detections>(nh, kDetections, 100,
                                  [this](const auto& msg) { sensors_.OnDetections(msg); });
   SubscribeTo<hires::ObjectTemperatures>(nh, kObjectTemperatures, 100, [this](const auto& msg) {
@@ -91,6 +97,7 @@ void WorldTrackerNode::SubscribeTo(ros::NodeHandle* nh, const std::string& topic
       boost::function<void(const Message&)>([this, take = std::move(take)](const Message& msg) {
         take(msg);
         tracker_.Process();
+        ShowTray();
       }),
       ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
 }
@@ -149,6 +156,14 @@ void WorldTrackerNode::PublishKnown(const sensing::RobotEstimate& now,
   known_.publish(msg);
 }
 
+void WorldTrackerNode::ShowTray() {
+  const sensing::ObjectEstimator& objects = *sensors_.objects();
+  if (objects.num_scans() == num_shown_) return;
+  num_shown_ = objects.num_scans();
+  if (tray_markers_.getNumSubscribers() == 0) return;
+  tray_markers_.publish(TrayMarkers(*objects.memory().tray(), params_.files.names.base_frame));
+}
+
 // How it is ------------------------------------------------------------------------------------
 
 void WorldTrackerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -171,6 +186,11 @@ void WorldTrackerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& sta
   status.add("bad messages", sensors_.num_bad());
   status.add("objects remembered", sensors_.objects()->memory().objects().size());
   if (floor_) status.add("things on the floor", floor_->things().size());
+  if (tray_markers_) {
+    const auto& tray = sensors_.objects()->memory().tray();
+    status.add("scans of the tray", sensors_.objects()->num_scans());
+    status.add("things on the tray", tray ? tray->reading.things.size() : 0);
+  }
   status.add("objects vanished", sensors_.objects()->memory().Vanished().size());
   status.add("head looks at", tracker_.sweep().target());
   status.add("fluents written", writer_.num_written());

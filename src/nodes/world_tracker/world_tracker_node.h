@@ -40,6 +40,7 @@ class WorldTrackerNode {
   void SubscribeTo(ros::NodeHandle* nh, const std::string& topic, int queue,
                    std::function<void(const Message&)> take);
   void OnScan(const sensor_msgs::LaserScan& msg);
+  void ShowTray();
   void OnGoal(const hires::ExecuteActionActionGoal& msg);
   void OnResult(const hires::ExecuteActionActionResult& msg);
 
@@ -59,7 +60,8 @@ class WorldTrackerNode {
   std::map<std::string, std::string> running_;  // goal id -> action
 
   std::atomic<bool> is_view_new_{false};
-  ros::Publisher known_;
+  ros::Publisher known_, tray_markers_;
+  int num_shown_{0};  // scans of the tray so far
   TrajectoryTopic head_;
   std::vector<ros::Subscriber> subscribers_;
   diagnostic_updater::Updater updater_;

@@ -144,7 +144,7 @@ void ObjectMemory::See(const Links& links, const std::string& name, const std::s
   object.name = name;
   object.model = label;
   object.time = time;
-  object.num_missed = 0;
+  object.num_missed = object.num_looked_through = 0;
   const Pose3 X_LO = links.X_ML(object.link).Inverse() * X_MO;
   const double moved = (X_LO.translation - object.X_LO.translation).norm();
   const double turned = X_LO.rotation.angularDistance(object.X_LO.rotation);

@@ -12,7 +12,8 @@ constexpr double kEndless = std::numeric_limits<double>::infinity();  ///< [m]
 /// One beam of a planar laser, in the tray's plane.
 struct TrayBeam {
   Eigen::Vector2d direction_T{1.0, 0.0};  ///< of length 1
-  double range{kEndless};                 ///< [m]; kEndless: nothing on the tray
+  double range{kEndless};                 ///< [m]; NaN: says nothing
+  bool is_on_tray{false};                 ///< where it ends
 };
 
 struct TrayBeams {
@@ -40,15 +41,24 @@ struct BeamFit {
 };
 
 /// @param tolerance  [m] along the beam.
-BeamFit FitBeams(const TrayBeams& beams, const Slice& slice, double tolerance);
+/// @param is_filled  what ends within the outline is on it, too.
+BeamFit FitBeams(const TrayBeams& beams, const Slice& slice, double tolerance,
+                 bool is_filled = false);
 
 /// Beams that end as near as `tolerance` [m] to the thing's outline, also where they graze it.
-std::vector<int> BeamsNear(const TrayBeams& beams, const Slice& slice, double tolerance);
+/// @param is_filled  as above.
+std::vector<int> BeamsNear(const TrayBeams& beams, const Slice& slice, double tolerance,
+                           bool is_filled = false);
 
-/// The shift of the slice that lays its outline through the points best, beginning behind them as
-/// seen from the laser; by repeated nearest points.
+/// The shift that puts the slice behind the points, as seen from the laser: where to begin FitShift
+/// with what may be anywhere.  @pre as FitShift.
+Eigen::Vector2d ShiftBehind(const std::vector<Eigen::Vector2d>& points_T,
+                            const Eigen::Vector2d& p_TL, const Slice& slice);
+
+/// The shift of the slice that lays its outline through the points best, by repeated nearest
+/// points.
 /// @pre there are points, and the slice has an outline.
-Eigen::Vector2d FitShift(const std::vector<Eigen::Vector2d>& points_T, const Eigen::Vector2d& p_TL,
-                         const Slice& slice);
+Eigen::Vector2d FitShift(const std::vector<Eigen::Vector2d>& points_T, const Slice& slice,
+                         Eigen::Vector2d begin, int max_steps);
 
 }  // namespace hires::sensing

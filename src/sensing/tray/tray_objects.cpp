@@ -1,7 +1,8 @@
-#include "sensing/tray/tray_objects.h"
+#include "hires/sensing/tray_objects.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <set>
 
@@ -16,9 +17,21 @@ using Eigen::Vector2d;
 using geometry::Polygon;
 using geometry::Pose3;
 
-/// Only what ends on the tray counts as a range; the rest goes on for ever.
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+/// Which beams end near the robot's own parts; those beside them may be split there.
+std::vector<bool> OwnBeams(const TrayBeams& beams, const Slice& own_T, double padding, int beside) {
+  std::vector<bool> is_own(beams.beams.size(), false);
+  if (own_T.empty()) return is_own;
+  for (const int i : BeamsNear(beams, own_T, padding, true)) {
+    const int last = std::min(static_cast<int>(is_own.size()) - 1, i + beside);
+    for (int j = std::max(0, i - beside); j <= last; ++j) is_own[j] = true;
+  }
+  return is_own;
+}
+
 TrayBeams BeamsOf(const ScanReading& scan, const Pose3& X_TL, const Polygon& tray_T,
-                  const TrayParams& params) {
+                  const Slice& own_T, const TrayParams& params) {
   const geometry::Pose2 flat = geometry::Flatten(X_TL);
   const Vector2d middle =
       std::accumulate(tray_T.begin(), tray_T.end(), Vector2d(0.0, 0.0)) / tray_T.size();
@@ -27,13 +40,17 @@ TrayBeams BeamsOf(const ScanReading& scan, const Pose3& X_TL, const Polygon& tra
   TrayBeams beams{flat.position(), {}};
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const double angle = flat.yaw + scan.angle_min + static_cast<double>(i) * scan.angle_increment;
-    TrayBeam beam{{std::cos(angle), std::sin(angle)}, kEndless};
     const double range = scan.ranges[i];
-    if (range >= scan.range_min && range <= params.max_range &&  // no NaN
-        geometry::Contains(wider_T, beams.p_TL + range * beam.direction_T)) {
-      beam.range = range;
-    }
-    beams.beams.push_back(beam);
+    beams.beams.push_back(
+        {{std::cos(angle), std::sin(angle)}, range > scan.range_min ? range : kNothing, false});
+    TrayBeam& beam = beams.beams.back();
+    beam.is_on_tray = beam.range <= params.max_range &&
+                      geometry::Contains(wider_T, beams.EndOf(static_cast<int>(i)));
+  }
+  const int beside = static_cast<int>(std::ceil(params.edge / std::abs(scan.angle_increment)));
+  const std::vector<bool> is_own = OwnBeams(beams, own_T, params.padding, beside);
+  for (std::size_t i = 0; i < is_own.size(); ++i) {
+    if (is_own[i]) beams.beams[i] = {beams.beams[i].direction_T, kNothing, false};
   }
   return beams;
 }
@@ -93,16 +110,6 @@ std::vector<TrayThing> ThingsOf(const TrayBeams& beams, const std::vector<int>& 
   return things;
 }
 
-Slice SliceOf(const BelievedOnTray& object, double height, double thickness) {
-  Slice slice;
-  for (const geometry::Collision& shape_O : object.shapes_O) {
-    const auto outline = geometry::OutlineInBand(shape_O.shape, object.X_TO * shape_O.X_BS,
-                                                 height - thickness / 2, height + thickness / 2);
-    if (outline) slice.push_back(*outline);
-  }
-  return slice;
-}
-
 bool Fits(const BeamFit& fit, const TrayParams& params) {
   return static_cast<int>(fit.on.size()) >= params.min_beams && fit.ShareOn() >= params.matching;
 }
@@ -112,7 +119,7 @@ class FreeBeams {
  public:
   explicit FreeBeams(const TrayBeams& beams) {
     for (std::size_t i = 0; i < beams.beams.size(); ++i) {
-      if (beams.beams[i].range < kEndless) free_.insert(static_cast<int>(i));
+      if (beams.beams[i].is_on_tray) free_.insert(static_cast<int>(i));
     }
   }
   void Take(const std::vector<int>& beams) {
@@ -131,7 +138,9 @@ bool FindMoved(const TrayBeams& beams, const std::vector<TrayThing>& things, con
   const Eigen::Vector3d believed = object->X_TO.translation;
   double best = 0.0;
   for (const TrayThing& thing : things) {
-    const Vector2d shift = FitShift(thing.points_T, beams.p_TL, slice);
+    constexpr int kMaxSteps = 100;
+    const Vector2d shift =
+        FitShift(thing.points_T, slice, ShiftBehind(thing.points_T, beams.p_TL, slice), kMaxSteps);
     const Slice moved = Shifted(slice, shift);
     const BeamFit fit = FitBeams(beams, moved, params.tolerance);
     // A part of another thing may look like it: then too many beams are left.
@@ -144,34 +153,53 @@ bool FindMoved(const TrayBeams& beams, const std::vector<TrayThing>& things, con
   return best > 0.0;
 }
 
+/// What stands where it is believed, but for some millimetres: to where its beams say.
+void Refine(const TrayBeams& beams, const std::vector<int>& near, const Slice& slice,
+            const TrayParams& params, TrayObject* object) {
+  constexpr int kMaxSteps = 10;  // that little is left of a small shift
+  std::vector<Vector2d> points_T;
+  for (const int beam : near) points_T.push_back(beams.EndOf(beam));
+  const Vector2d shift = FitShift(points_T, slice, Vector2d::Zero(), kMaxSteps);
+  if (!Fits(FitBeams(beams, Shifted(slice, shift), params.tolerance), params)) return;
+  object->X_TO.translation += Eigen::Vector3d(shift.x(), shift.y(), 0.0);
+}
+
+/// Where it is believed, if it is not somewhere else.
+TrayObject Judge(const TrayBeams& beams, const BelievedOnTray& believed, const Slice& slice,
+                 const TrayParams& params, FreeBeams* free) {
+  TrayObject object{believed.name, TrayState::kUnknown, believed.X_TO, 0};
+  const BeamFit fit = FitBeams(beams, slice, params.tolerance, believed.is_box);
+  const auto num_on = static_cast<int>(fit.on.size());
+  if (num_on + fit.num_through < params.min_beams) return object;  // not to be seen
+  object.state = Fits(fit, params) ? TrayState::kInPlace : TrayState::kMissing;
+  if (object.state != TrayState::kInPlace) return object;
+  object.num_beams = num_on;
+  const std::vector<int> near = BeamsNear(beams, slice, params.tolerance, believed.is_box);
+  free->Take(near);
+  if (!believed.is_box && !near.empty()) Refine(beams, near, slice, params, &object);
+  return object;
+}
+
 }  // namespace
 
 TrayReading ReadTray(const ScanReading& scan, const Pose3& X_TL, const Polygon& tray_T,
-                     const std::vector<BelievedOnTray>& believed, const TrayParams& params) {
-  constexpr double kLevel = 0.05;  // [rad]
-  HIRES_CHECK(geometry::TiltOf(X_TL.rotation) <= kLevel, "the tray's laser leans over the tray");
-  const TrayBeams beams = BeamsOf(scan, X_TL, tray_T, params);
+                     const std::vector<BelievedOnTray>& believed, const TrayParams& params,
+                     const std::vector<Polygon>& own_T) {
+  HIRES_CHECK(geometry::TiltOf(X_TL.rotation) <= kLevelLaser,
+              "the tray's laser leans over the tray");
+  const TrayBeams beams = BeamsOf(scan, X_TL, tray_T, own_T, params);
   FreeBeams free(beams);
   TrayReading reading;
   reading.things = ThingsOf(beams, free.All(), params);
   std::vector<Slice> slices;
   for (const BelievedOnTray& one : believed) {
-    TrayObject& object = reading.objects.emplace_back();
-    object.name = one.name;
-    object.X_TO = one.X_TO;
-    slices.push_back(SliceOf(one, X_TL.translation.z(), params.thickness));
-    const BeamFit fit = FitBeams(beams, slices.back(), params.tolerance);
-    const auto num_on = static_cast<int>(fit.on.size());
-    if (num_on + fit.num_through < params.min_beams) continue;  // not to be seen
-    object.state = Fits(fit, params) ? TrayState::kInPlace : TrayState::kMissing;
-    if (object.state != TrayState::kInPlace) continue;
-    object.num_beams = num_on;
-    free.Take(BeamsNear(beams, slices.back(), params.tolerance));
+    slices.push_back(SliceAt(X_TL.translation.z(), params.thickness, one.shapes_O, one.X_TO));
+    reading.objects.push_back(Judge(beams, one, slices.back(), params, &free));
   }
   for (std::size_t i = 0; i < believed.size(); ++i) {
     TrayObject& object = reading.objects[i];
     std::vector<int> near;
-    if (object.state == TrayState::kMissing &&
+    if (object.state == TrayState::kMissing && !believed[i].is_box &&
         FindMoved(beams, ThingsOf(beams, free.All(), params), slices[i], params, &object, &near)) {
       object.state = TrayState::kMoved;
       object.num_beams = static_cast<int>(near.size());
@@ -180,6 +208,17 @@ TrayReading ReadTray(const ScanReading& scan, const Pose3& X_TL, const Polygon& 
   }
   reading.surplus = ThingsOf(beams, free.All(), params);
   return reading;
+}
+
+std::vector<Polygon> SliceAt(double height, double thickness,
+                             const std::vector<geometry::Collision>& shapes_O, const Pose3& X_TO) {
+  std::vector<Polygon> slice;
+  for (const geometry::Collision& shape_O : shapes_O) {
+    const auto outline = geometry::OutlineInBand(shape_O.shape, X_TO * shape_O.X_BS,
+                                                 height - thickness / 2, height + thickness / 2);
+    if (outline) slice.push_back(*outline);
+  }
+  return slice;
 }
 
 }  // namespace hires::sensing

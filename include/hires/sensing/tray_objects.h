@@ -17,6 +17,8 @@ struct TrayParams {
   double matching{0.6};     ///< of the beams that reach a thing's outline, on it
   double outside{0.02};     ///< [m] over the tray's edge that a point may be
   double thickness{0.005};  ///< [m] of the slice of things that the scan meets
+  double padding{0.03};  ///< [m] a beam that ends this near to the robot's own parts says nothing
+  double edge{0.0133};   ///< [rad] nor do those so far beside it: a beam may be split
 };
 
 /// Beams that end near each other, and the box whose sides their ends lie on best.
@@ -32,6 +34,8 @@ struct BelievedOnTray {
   std::string name;
   geometry::Pose3 X_TO;
   std::vector<geometry::Collision> shapes_O;
+  bool is_box{false};  ///< its box alone is known: what ends anywhere in it is it, and it is looked
+                       ///< for nowhere else
 };
 
 enum class TrayState {
@@ -44,7 +48,7 @@ enum class TrayState {
 struct TrayObject {
   std::string name;
   TrayState state{TrayState::kUnknown};
-  geometry::Pose3 X_TO;  ///< as believed, or where it has moved to
+  geometry::Pose3 X_TO;  ///< as believed, or where the beams that end on it say; never turned
   int num_beams{0};      ///< that end on it
 };
 
@@ -54,14 +58,26 @@ struct TrayReading {
   std::vector<TrayThing> surplus;   ///< what no believed object explains
 };
 
+/// [rad] by which the laser may lean over the tray.
+inline constexpr double kLevelLaser = 0.05;
+
 /// What a planar laser over the tray (frame T) says of what stands on it, and how that fits to what
 /// is believed. An object is known again by its outline at the scan's height alone: of two that
-/// look alike there, a moved one may be taken for the other.
+/// look alike there, a moved one may be taken for the other. A range that is no number, or not
+/// more than the laser's least, says nothing of its direction; an infinite one that nothing is
+/// there.
 /// @param X_TL    the laser; it must be level with the tray.
 /// @param tray_T  the tray's outline.
-/// @throws std::logic_error for a laser that leans by more than 0.05 rad.
+/// @param own_T   outlines, in the scan's height, of the robot's parts and of what it holds.
+/// @throws std::logic_error for a laser that leans by more than kLevelLaser.
 TrayReading ReadTray(const ScanReading& scan, const geometry::Pose3& X_TL,
                      const geometry::Polygon& tray_T, const std::vector<BelievedOnTray>& believed,
-                     const TrayParams& params);
+                     const TrayParams& params, const std::vector<geometry::Polygon>& own_T = {});
+
+/// Outlines, in frame T, of the parts of shapes that lie within half of `thickness` [m] of a
+/// height.
+std::vector<geometry::Polygon> SliceAt(double height, double thickness,
+                                       const std::vector<geometry::Collision>& shapes_O,
+                                       const geometry::Pose3& X_TO);
 
 }  // namespace hires::sensing
