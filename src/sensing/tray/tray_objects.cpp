@@ -153,13 +153,16 @@ bool FindMoved(const TrayBeams& beams, const std::vector<TrayThing>& things, con
   return best > 0.0;
 }
 
-/// What stands where it is believed, but for some millimetres: to where its beams say.
+/// What stands where it is believed, but for some millimetres: to where its beams say, if that is
+/// farther than they err.
 void Refine(const TrayBeams& beams, const std::vector<int>& near, const Slice& slice,
             const TrayParams& params, TrayObject* object) {
-  constexpr int kMaxSteps = 10;  // that little is left of a small shift
+  constexpr int kMaxSteps = 10;   // that little is left of a small shift
+  constexpr double kErr = 0.003;  // [m]
   std::vector<Vector2d> points_T;
   for (const int beam : near) points_T.push_back(beams.EndOf(beam));
   const Vector2d shift = FitShift(points_T, slice, Vector2d::Zero(), kMaxSteps);
+  if (shift.norm() < kErr) return;
   if (!Fits(FitBeams(beams, Shifted(slice, shift), params.tolerance), params)) return;
   object->X_TO.translation += Eigen::Vector3d(shift.x(), shift.y(), 0.0);
 }
