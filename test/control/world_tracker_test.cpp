@@ -32,7 +32,7 @@ std::shared_ptr<const robot::Robot> Pr2() {
 class WorldTrackerTest : public testing::Test {
  protected:
   explicit WorldTrackerTest(bool lockstep = true)
-      : tracker_(&state_, &objects_, HeadSweep(Pr2(), {}), lockstep,
+      : tracker_(&state_, &objects_, nullptr, HeadSweep(Pr2(), {}), lockstep,
                  {[this](const sensing::RobotEstimate& now, const auto& known) {
                     known_at_.push_back(now.time);
                     names_.clear();
