@@ -1,5 +1,8 @@
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+
+#include "hires/sensing/object_memory.h"
 #include "hires/sensing/tray_objects.h"
 #include "sensing/ground/ground_obstacles.h"
 #include "support/scenes.h"
@@ -57,6 +60,41 @@ void BM_TrayObjects(benchmark::State& state) {
   state.counters["things"] = static_cast<double>(num_things);
 }
 BENCHMARK(BM_TrayObjects)->Unit(benchmark::kMillisecond);
+
+/// How long it takes a PR2 to make use of a scan of its tray, on which two mugs and a jug stand
+/// that it remembers a few millimetres beside.
+void BM_TrayMemory(benchmark::State& state) {
+  const auto models = test_support::EmptyRoom();
+  const auto pr2 = std::make_shared<const robot::Robot>(
+      robot::LoadRobot(HIRES_SOURCE_DIR "/config/robots/pr2.yaml"));
+  BodyReading body{1.0, {}, pr2->profile.joints};
+  const auto X_RL = robot::ForwardKinematics(pr2->model, body.joints);
+  const geometry::Pose3 X_BR = X_RL[*pr2->model.FindLink(pr2->profile.base_link)].Inverse();
+  const geometry::Pose3 X_BT = X_BR * X_RL[*pr2->model.FindLink("base_tray_link")];
+  const geometry::Pose3 X_BL = X_BR * X_RL[*pr2->model.FindLink("base_tray_laser_link")];
+  ObjectMemory fresh(models, pr2);
+  std::vector<world::ObjectState> truth;
+  for (int i = 0; i < 3; ++i) {
+    truth.push_back(test_support::Thing("thing" + std::to_string(i), i == 1 ? "jug" : "mug",
+                                        X_BT * test_support::At(0.17, 0.17 * (i - 1), 0.0002)));
+    fresh.Believe(truth[i].name, truth[i].model, pr2->profile.base_link,
+                  X_BT * test_support::At(0.175, 0.17 * (i - 1) + 0.004, 0.0002));
+  }
+  const perception::LineOfSight sight(models, truth);
+  ScanReading scan{-1.4, 2.8 / 639, 0.08, {}};
+  base::Rng rng(1);
+  for (int i = 0; i < 640; ++i) {
+    const double angle = scan.angle_min + i * scan.angle_increment;
+    const double range = sight.Cast(X_BL.translation, {std::cos(angle), std::sin(angle), 0.0});
+    scan.ranges.push_back(static_cast<float>(range + rng.Normal(0.0, 0.005)));
+  }
+  for (auto _ : state) {
+    ObjectMemory memory = fresh;
+    benchmark::DoNotOptimize(memory.ScanTray(body, scan, X_BL));
+    state.counters["things"] = static_cast<double>(memory.tray()->reading.things.size());
+  }
+}
+BENCHMARK(BM_TrayMemory)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace hires::sensing

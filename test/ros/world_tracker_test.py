@@ -38,12 +38,14 @@ class WorldTrackerTest(unittest.TestCase):
         from geometry_msgs.msg import Pose, TransformStamped
         from hires import msg, srv
         from nav_msgs.msg import Odometry
-        from sensor_msgs.msg import JointState
+        from sensor_msgs.msg import JointState, LaserScan
         from tf2_msgs.msg import TFMessage
         from trajectory_msgs.msg import JointTrajectory
+        from visualization_msgs.msg import MarkerArray
         cls.rospy, cls.msg, cls.srv = rospy, msg, srv
         cls.types = dict(base_odometry=Odometry, joints=JointState, transforms=TFMessage,
-                         transform=TransformStamped, trajectory=JointTrajectory, pose=Pose)
+                         transform=TransformStamped, trajectory=JointTrajectory, pose=Pose,
+                         scan=LaserScan, markers=MarkerArray)
         rospy.init_node('world_tracker_test', disable_signals=True)
         cls.robot = Robot(os.path.join(ROOT, 'urdf', 'pr2_tray.urdf'))
 
@@ -64,6 +66,7 @@ class WorldTrackerTest(unittest.TestCase):
             transforms=p('/tf', self.types['transforms'], **latch),
             joints=p('joint_states', self.types['joints'], **latch),
             detections=p('detections', self.msg.Detections, **latch),
+            tray=p('tray_laser_scan', self.types['scan'], **latch),
             temperatures=p('object_temperatures', self.msg.ObjectTemperatures, **latch),
             goal=p('execute_action/goal', self.msg.ExecuteActionActionGoal, **latch),
             result=p('execute_action/result', self.msg.ExecuteActionActionResult, **latch))
@@ -307,6 +310,61 @@ class WorldTrackerTest(unittest.TestCase):
         self.expect('poseMug3', 'hasX', None)
         self.look(mug)
         self.expect('onMug3', 'hasArea', 'placingareawestrighttable1')
+
+    def scan_tray(self, mug=None, frame='base_tray_laser_link'):
+        """What the tray's laser measures of nothing but a mug of radius 0.04 at (x, y) from it."""
+        scan = self.types['scan']()
+        scan.header.stamp, scan.header.frame_id = self.rospy.Time.from_sec(self.t), frame
+        scan.angle_min, scan.angle_increment = -1.4, 2.8 / 639
+        scan.range_min, scan.range_max = 0.08, 10.0
+        for i in range(640):
+            angle = scan.angle_min + i * scan.angle_increment
+            ahead = mug[0] * math.cos(angle) + mug[1] * math.sin(angle) if mug else 0.0
+            root = 0.0016 - (mug[0] ** 2 + mug[1] ** 2 - ahead ** 2) if mug else -1.0
+            scan.ranges.append(ahead - math.sqrt(root) if root > 0.0 and ahead > 0.0 else math.inf)
+        self.publishers['tray'].publish(scan)
+
+    def test_the_trays_laser_tells_what_is_there_and_what_is_gone(self):
+        markers = []
+        subscriber = self.rospy.Subscriber('tray_markers', self.types['markers'],
+                                           self.note(markers))
+        self.addCleanup(subscriber.unregister)
+        wait_until(lambda: subscriber.get_num_connections() > 0, 'the markers')
+
+        def scanned(condition, mug):
+            def comes_true():
+                self.tick()
+                self.scan_tray(mug)
+                return condition()
+            wait_until(comes_true, 'what scans say')
+        laser = self.link('base_tray_laser_link')
+        mug = laser @ translation(0.15, -0.1, -0.0198)
+        self.look({'mug3': ('coffee_cup', mug)})
+        self.expect('onMug3', 'hasArea', 'trayarea1')
+        self.assertEqual(self.value('poseMug3', 'hasFrame'), 'base_footprint')
+        there = numpy.linalg.inv(self.link('base_footprint')) @ laser @ translation(0.17, 0.12, 0.0)
+
+        def is_there():
+            x, y = self.value('poseMug3', 'hasX'), self.value('poseMug3', 'hasY')
+            return x is not None and math.dist((x, y), there[:2, 3]) < 0.01
+        scanned(is_there, (0.17, 0.12))
+        scanned(lambda: markers and 'mug3' in [m.text for m in markers[-1].markers], (0.17, 0.12))
+        last = markers[-1].markers
+        self.assertEqual({m.ns for m in last}, {'clusters', 'boxes', 'names'})
+        self.assertEqual({m.header.frame_id for m in last}, {'base_footprint'})
+        self.assertTrue(all(0.0 < m.lifetime.to_sec() < 1.0 for m in last))
+        points = [p for m in last if m.ns == 'clusters' for p in m.points]
+        self.assertGreater(len(points), 50)
+        scanned(lambda: self.value('onMug3', 'hasArea') is None, None)
+        self.assertIsNone(self.value('poseMug3', 'hasX'))
+        scanned(lambda: self.value('onUnknown1', 'hasArea') == 'trayarea1', (0.12, 0.0))
+        self.until_warned(lambda: self.publishers['tray'].publish(self.types['scan']()),
+                          'tray_laser_scan')
+
+        def submarine():
+            self.tick()
+            self.scan_tray(None, 'submarine')
+        self.until_warned(submarine, "frame 'submarine' is unknown to tf")
 
     def test_an_object_that_fell_is_on_nothing(self):
         self.at_table()

@@ -146,6 +146,11 @@ TEST(FreeSlotsTest, TheTrayHasItsMiddleThenRightThenLeft) {
   const FreeSpots two = slots({Stands("mill1", "mill", 0.01, 0.0)});
   EXPECT_EQ(two.spots_A.size(), 2u);
   EXPECT_THAT(two.occupants, ElementsAre("mill1"));
+  // What the tray's laser sees there and nobody knows takes up its place, too.
+  const FreeSpots one = slots({Stands("mill1", "mill", 0.01, 0.0),
+                               Stands("unknown1", "unknown_0.085x0.085x0.150", 0.0, -0.12)});
+  EXPECT_THAT(one.spots_A, ElementsAre(Eigen::Vector3d(0.0, 0.13, 0.0)));
+  EXPECT_THAT(one.occupants, ElementsAre("mill1", "unknown1"));
 }
 
 }  // namespace
