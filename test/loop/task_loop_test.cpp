@@ -13,11 +13,9 @@ namespace {
 
 using evaluation::AchieveOutcome;
 using evaluation::ImaginedOutcome;
-using testing::EndsWith;
 using testing::HasSubstr;
 
 const std::string kConfig = HIRES_SOURCE_DIR "/config/";
-const std::string kData = HIRES_SOURCE_DIR "/test/data/loop/";
 
 const LoopSetup& TheSetup() {
   static const LoopSetup setup(kConfig + "loop.yaml");
@@ -78,48 +76,6 @@ TEST(TaskLoopTest, OfTwoMugsThatAreKnownByTheirTemperaturesTheHotOneIsServed) {
   EXPECT_TRUE(StandsOnTable1(run, "mug2"));
   EXPECT_GT(run.truth.objects.at("mug2").X_MO.translation.x(), 7.0);
   EXPECT_NEAR(run.truth.objects.at("mug1").X_MO.translation.x(), 5.37, 0.02);  // on the counter
-}
-
-// The restaurant's catalogue has two kinds of mill of one shape; the recogniser names the other
-// one.
-TEST(TaskLoopTest, ATaskIsDoneByWhatTheCameraMeasuresAloneBesideThingsThatNobodyTold) {
-  LoopOrder order = Topple("off");
-  order.sensing = "pictures";
-  order.scenario = kData + "surprises.yaml";
-  order.truth = kData + "moved_chair.yaml";
-  const LoopRun run = PlayTask(TheSetup(), order);
-  EXPECT_EQ(run.report.outcome, AchieveOutcome::kSucceeded) << run.report.reason;
-  EXPECT_THAT(run.truth_name, EndsWith(", sensing pictures"));
-  EXPECT_TRUE(StandsOnTable1(run, "peppermill1"));
-  EXPECT_EQ(run.truth.contact, "");
-  for (const char* other : {"box1", "mug9"})
-    EXPECT_TRUE(run.truth.objects.at(other).stands) << other;
-  order.sensing = "guessed";
-  EXPECT_THROW(PlayTask(TheSetup(), order), base::ConfigError);
-}
-
-// A chair stands across the way. Before the robot sees it, imagination drives where the chair is;
-// after that, it drives around it as long as the robot will.
-TEST(TaskLoopTest, AChairThatWasMovedIsInTheWorldsThatAreImagined) {
-  LoopOrder order = Topple("", 1);
-  order.truth = kData + "moved_chair.yaml";
-  const LoopRun run = PlayTask(TheSetup(), order);
-  ASSERT_EQ(run.report.outcome, AchieveOutcome::kSucceeded) << run.report.reason;
-  EXPECT_EQ(run.truth.contact, "");
-  const auto& steps = run.report.status.steps;
-  const auto drive = std::find_if(steps.begin(), steps.end(), [](const auto& step) {
-    return step.action.name == "move_base_param";
-  });
-  ASSERT_NE(drive, steps.end());
-  std::vector<double> imagined;  // [s] for what it did in the end
-  for (const evaluation::ImaginedStep& answer : run.report.status.imaginations) {
-    for (const imagination::Prediction& one : answer.predictions)
-      if (one.action == drive->action) imagined.push_back(one.evidence.duration.mean);
-  }
-  ASSERT_GE(imagined.size(), 2u);
-  const double driven = *drive->finished - *drive->started;
-  EXPECT_NEAR(imagined.back(), driven, 0.15 * driven);
-  EXPECT_LT(imagined.front(), 0.8 * imagined.back());
 }
 
 TEST(TaskLoopTest, AnotherSeedIsAnotherTruth) {

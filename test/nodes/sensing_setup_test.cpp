@@ -34,7 +34,7 @@ TEST(SensingSetupTest, TrackerMiddleLayerAndRolloutsRememberByTheSameNumbers) {
   }
   root["uncertainty"] = "none";
   for (auto entry : root["sensing"]["memory"]) {
-    const bool is_count = entry.first.Scalar().find("looks_to_") == 0;
+    const bool is_count = entry.first.Scalar().find("s_to_") != std::string::npos;
     entry.second = is_count ? "5" : std::to_string(0.9 * entry.second.as<double>());
   }
   root["sensing"]["robot_state"]["stale_after"] = 0.25;

@@ -1,0 +1,69 @@
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "hires/base/error.h"
+#include "hires/loop/task_loop.h"
+
+namespace hires::loop::task_surprises_test {
+namespace {
+
+using evaluation::AchieveOutcome;
+using testing::EndsWith;
+
+const std::string kConfig = HIRES_SOURCE_DIR "/config/";
+const std::string kData = HIRES_SOURCE_DIR "/test/data/loop/";
+
+const LoopSetup& TheSetup() {
+  static const LoopSetup setup(kConfig + "loop.yaml");
+  return setup;
+}
+
+// The restaurant's catalogue has two kinds of mill of one shape; the recogniser names the other
+// one.
+TEST(TaskSurprisesTest, ATaskIsDoneByWhatTheCameraMeasuresAloneBesideThingsThatNobodyTold) {
+  LoopOrder order;
+  order.scenario = kData + "surprises.yaml";
+  order.truth = kData + "moved_chair.yaml";
+  order.sensing = "pictures";
+  order.imagination = "off";
+  const LoopRun run = PlayTask(TheSetup(), order);
+  EXPECT_EQ(run.report.outcome, AchieveOutcome::kSucceeded) << run.report.reason;
+  EXPECT_THAT(run.truth_name, EndsWith(", sensing pictures"));
+  const simulation::ObjectFate& mill = run.truth.objects.at("peppermill1");
+  EXPECT_TRUE(mill.stands && std::abs(mill.X_MO.translation.z() - 0.73) < 0.02);
+  EXPECT_EQ(run.truth.contact, "");
+  for (const char* other : {"box1", "mug9"})
+    EXPECT_TRUE(run.truth.objects.at(other).stands) << other;
+  order.sensing = "guessed";
+  EXPECT_THROW(PlayTask(TheSetup(), order), base::ConfigError);
+}
+
+// A chair stands across the way. Before the robot sees it, imagination drives where the chair is;
+// after that, it drives around it as long as the robot will.
+TEST(TaskSurprisesTest, AChairThatWasMovedIsInTheWorldsThatAreImagined) {
+  LoopOrder order;
+  order.scenario = kConfig + "scenarios/topple.yaml";
+  order.truth = kData + "moved_chair.yaml";
+  order.rollouts = 8;  // the fewest that can decide
+  const LoopRun run = PlayTask(TheSetup(), order);
+  ASSERT_EQ(run.report.outcome, AchieveOutcome::kSucceeded) << run.report.reason;
+  EXPECT_EQ(run.truth.contact, "");
+  const auto& steps = run.report.status.steps;
+  const auto drive = std::find_if(steps.begin(), steps.end(), [](const auto& step) {
+    return step.action.name == "move_base_param";
+  });
+  ASSERT_NE(drive, steps.end());
+  std::vector<double> imagined;  // [s] for what it did in the end
+  for (const evaluation::ImaginedStep& answer : run.report.status.imaginations) {
+    for (const imagination::Prediction& one : answer.predictions)
+      if (one.action == drive->action) imagined.push_back(one.evidence.duration.mean);
+  }
+  ASSERT_GE(imagined.size(), 2u);
+  const double driven = *drive->finished - *drive->started;
+  EXPECT_NEAR(imagined.back(), driven, 0.15 * driven);
+  EXPECT_LT(imagined.front(), 0.8 * imagined.back());
+}
+
+}  // namespace
+}  // namespace hires::loop::task_surprises_test
