@@ -15,6 +15,7 @@
 ;   (imagine place_object)      placing is imagined before the robot drives there
 ;   (imagine place_object_at)   the same, and imagination chooses the spot on the area
 ;   (observe pick_up_object)    the robot looks at an area before it picks from it
+;   (imagine observe_objects_at)  the same, and imagination chooses from where it looks
 ; What imagination or execution found to fail; the planner refuses such a step:
 ;   (imagined_failure action arguments...)
 ;
@@ -72,8 +73,18 @@
   ((HasArmPosture leftarm1 ?left) (HasArmPosture rightarm1 ?right))
   ((HasArmPosture leftarm1 armcarryposture) (HasArmPosture rightarm1 armcarryposture)))
 
+; Always possible; but whatever stands there: who takes or places something does not do it meanwhile,
+; and stays on its side of the look.
 (:operator (!observe_objects_on_area ?area)
-  ((RobotAt ?ma) (Connected ?area ?ma ?pma))
+  ((RobotAt ?ma) (Connected ?area ?ma ?pma)
+   (forall (?object) ((On ?object ?area)) ((On ?object ?area))))
+  ()
+  ())
+
+; The same from another height and place beside the area where the robot stands; it comes back.
+(:operator (!observe_objects_at ?area ?standing_area ?torso ?place)
+  ((RobotAt ?standing_area) (Connected ?area ?standing_area ?pma) (HasTorsoPosture torsoupposture)
+   (forall (?object) ((On ?object ?area)) ((On ?object ?area))))
   ()
   ())
 
@@ -231,9 +242,21 @@
   ((assume_manipulation_pose ?ma ?pma ?arm) (look_before_grasp ?area)
    (!pick_up_object ?object ?arm)))
 
+; With the switch (imagine observe_objects_at) poses of torso and base are imagined; the robot's own
+; stands in the plan until the answer takes its place. When all are known to fail, the robot looks
+; from where it stands, and what it sees there decides.
 (:method (look_before_grasp ?area)
-  look
-  ((observe pick_up_object))
+  from_the_best_pose
+  ((imagine observe_objects_at) (Connected ?area ?ma ?pma)
+   (setof (?torso ?place) (may_look_from ?area ?ma ?torso ?place) ?poses)
+   (setof ?torso (may_look_from ?area ?ma ?torso ?any_place) ?torsos)
+   (setof ?place (may_look_from ?area ?ma ?any_torso ?place) ?places)
+   (assign ?chosen_torso (first (first '?poses))) (assign ?chosen_place (second (first '?poses))))
+  ((!imagine !observe_objects_at (?area) (?ma) ?torsos ?places)
+   (!observe_objects_at ?area ?ma ?chosen_torso ?chosen_place))
+
+  from_where_it_stands
+  ((or (imagine observe_objects_at) (observe pick_up_object)))
   ((!observe_objects_on_area ?area))
 
   trust
@@ -424,6 +447,11 @@
   another
   ((assign ?spot (first '?spots))))
 
+(:- (may_look_from ?area ?ma ?torso ?place)
+  ((torso_posture ?torso) (base_place ?place)
+   (not (imagined_failure observe_objects_at ?area ?ma ?torso ?place))
+   (not (imagined_failure !observe_objects_at ?area ?ma ?torso ?place))))
+
 ; An action may be named with its exclamation mark or without.
 (:- (failed ?name ?marked_name ?x ?y) ((imagined_failure ?name ?x ?y)))
 (:- (failed ?name ?marked_name ?x ?y) ((imagined_failure ?marked_name ?x ?y)))
@@ -489,13 +517,22 @@
 (:- (other_arm leftarm1 rightarm1) ())
 (:- (other_arm rightarm1 leftarm1) ())
 
-; Spots and motion sets, in the order in which they are listed for imagination.
+; Spots, poses to look from and motion sets, in the order in which they are listed for imagination.
 (:- (spot any) ())
 (:- (spot middle) ())
 (:- (spot left) ())
 (:- (spot right) ())
 (:- (spot front) ())
 (:- (spot back) ())
+
+(:- (torso_posture torsoupposture) ())
+(:- (torso_posture torsomiddleposture) ())
+(:- (torso_posture torsodownposture) ())
+
+(:- (base_place default) ())
+(:- (base_place left) ())
+(:- (base_place right) ())
+(:- (base_place behind) ())
 
 (:- (motion_set slow) ())
 (:- (motion_set fast) ())

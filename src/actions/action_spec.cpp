@@ -64,6 +64,8 @@ const char* ToString(ParameterKind kind) {
       return "area or object";
     case ParameterKind::kSpot:
       return "spot";
+    case ParameterKind::kBasePlace:
+      return "base place";
   }
   return "";
 }

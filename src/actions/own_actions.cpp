@@ -83,6 +83,18 @@ ActionSpec LookAt() {
   return spec;
 }
 
+/// Who looks from another place drives there straight, comes back, and moves the torso to and fro.
+ActionSpec ObserveAt() {
+  ActionSpec spec =
+      Look("observe_objects_at", Area(), {Code::kObjectNotSeen, Code::kOutOfView, Code::kStuck});
+  spec.parameters.push_back({"standing_area", Kind::kArea});
+  spec.parameters.push_back({"torso", Kind::kTorsoPosture});
+  spec.parameters.push_back({"place", Kind::kBasePlace});
+  spec.groups = {kBaseGroup, kTorsoGroup, kHeadGroup};
+  spec.driving = Driving::kStraight;
+  return spec;
+}
+
 void AddDriving(Catalogue* catalogue) {
   const std::vector<Code> failures{Code::kStartBlocked, Code::kGoalBlocked, Code::kNoPath,
                                    Code::kNoValidTrajectory, Code::kOscillating};
@@ -113,6 +125,7 @@ Catalogue MakeOwnActions() {
   AddPostures(&catalogue);
   catalogue.Add(LookAt());
   catalogue.Add(Look("observe_objects_on_area", Area(), {Code::kOutOfView}));
+  catalogue.Add(ObserveAt());
   catalogue.Add(PickUp("pick_up_object", {Object(), Arm()}));
   catalogue.Add(PickUp("pick_up_from_tray", {Arm(), Object()}));
   catalogue.Add(Place("place_object", {Object(), Arm(), Area()}, Purpose::kPutOnArea, "?area"));

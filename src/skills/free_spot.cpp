@@ -17,7 +17,6 @@ using Eigen::Vector3d;
 using geometry::Polygon;
 using geometry::Pose3;
 
-constexpr double kSameLevel = 0.30;      // [m] above or below a support: stands somewhere else
 constexpr int kCorners = 24;             // of a circle
 constexpr double kSlotClearance = 0.01;  // [m] between things on the tray, whose places are close
 

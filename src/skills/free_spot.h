@@ -17,6 +17,9 @@ geometry::Polygon OutlineOf(const world::ObjectModel& model, const geometry::Pos
 /// [m] of the circle round an upright object's origin that its outline fits in.
 double RadiusOf(const world::ObjectModel& model);
 
+/// [m] What is farther above or below a support stands somewhere else.
+constexpr double kSameLevel = 0.30;
+
 /// Places that an object may be put at.
 struct FreeSpots {
   std::vector<Eigen::Vector3d> spots_A;  ///< best first; empty: none is free
@@ -25,7 +28,7 @@ struct FreeSpots {
 
 /// Free places on the square round the origin of A (an area's frame, z on its top), nearest to the
 /// origin first: the object lies wholly within the square, `clearance` away from everything seen
-/// there. Objects that stand more than 0.3 m below or above A do not count.
+/// there. Objects that stand more than kSameLevel below or above A do not count.
 FreeSpots FindFreeSpots(const PlaceParams& params, const world::World& world,
                         const world::ObjectModel& object, const geometry::Pose3& X_MA,
                         const std::vector<world::ObjectState>& others);

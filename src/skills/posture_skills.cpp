@@ -253,19 +253,26 @@ Beginning MoveArmTo(Context context, const ArmMove& move, const Observation& obs
       std::make_unique<JointMotion>(context, GroupTrajectories{{move.arm, trajectory}}, move.end));
 }
 
+double TorsoHeight(const ManipulationContext& context, const std::string& posture) {
+  return Named(context.upper_body().torso_postures, "torso posture", posture);
+}
+
+Stage TorsoStage(Context context, const std::string& name, double height) {
+  return {
+      name,
+      [context, height](const Observation& seen) {
+        const std::string& joint = context->upper_body().torso_joint;
+        return Begin(std::make_unique<JointMotion>(
+            context, GroupTrajectories{{"torso", TrajectoryFrom(*context, seen, {joint}, {{height}},
+                                                                context->params.speed)}}));
+      },
+      {}};
+}
+
 MoveTorso::MoveTorso(Context context, const base::ActionCall& /*action*/,
                      const std::string& posture)
     : StagedSkill(context->params.period) {
-  const double height = Named(context->upper_body().torso_postures, "torso posture", posture);
-  Append({"move_torso",
-          [context, height](const Observation& seen) {
-            const std::string& joint = context->upper_body().torso_joint;
-            return Begin(std::make_unique<JointMotion>(
-                context,
-                GroupTrajectories{{"torso", TrajectoryFrom(*context, seen, {joint}, {{height}},
-                                                           context->params.speed)}}));
-          },
-          {}});
+  Append(TorsoStage(context, "move_torso", TorsoHeight(*context, posture)));
 }
 
 TuckArms::TuckArms(Context context, const base::ActionCall& action, const std::string& left_goal,

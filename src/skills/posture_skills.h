@@ -47,6 +47,13 @@ class MoveArmsToCarryPosture : public StagedSkill {
                          const base::ActionCall& action);
 };
 
+/// [m] of a posture of the torso.  @throws base::ConfigError for one that it does not have.
+double TorsoHeight(const ManipulationContext& context, const std::string& posture);
+
+/// A stage that brings the torso to a height. Fails with timed_out.
+Stage TorsoStage(std::shared_ptr<const ManipulationContext> context, const std::string& name,
+                 double height);
+
 /// Where an arm's joints are for a posture (lower-case name): the holding variant while it holds
 /// something.  @throws base::ConfigError if the arm does not have it.
 const std::vector<double>& PosturePositions(const robot::ArmProfile& arm,

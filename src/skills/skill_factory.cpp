@@ -7,6 +7,7 @@
 #include "hires/base/text.h"
 #include "skills/look_skills.h"
 #include "skills/object_skills.h"
+#include "skills/observe_at.h"
 #include "skills/posture_skills.h"
 
 namespace hires::skills {
@@ -49,11 +50,19 @@ std::unique_ptr<Skill> MakeMoveBase(const SkillSet& skills, const ActionCall& ac
       Lookup(skills.motion_sets, "motion set", MotionSetNameOf(skills, action)));
 }
 
+/// What drives straight to a pose, without looking at obstacles.
+DriveTo BlindDrive(const SkillSet& skills, const ActionCall& action) {
+  const robot::MotionSet& motion_set =
+      Lookup(skills.motion_sets, "motion set", MotionSetNameOf(skills, action));
+  return [params = skills.blind, motion_set,
+          robot = skills.driving->robot](const geometry::Pose2& X_MGoal) {
+    return std::make_unique<MoveBaseBlind>(params, X_MGoal, motion_set,
+                                           robot->profile.base_controller);
+  };
+}
+
 std::unique_ptr<Skill> MakeMoveBaseBlind(const SkillSet& skills, const ActionCall& action) {
-  return std::make_unique<MoveBaseBlind>(
-      skills.blind, Lookup(skills.areas, "area", action.arguments[0]),
-      Lookup(skills.motion_sets, "motion set", MotionSetNameOf(skills, action)),
-      skills.driving->robot->profile.base_controller);
+  return BlindDrive(skills, action)(Lookup(skills.areas, "area", action.arguments[0]));
 }
 
 std::unique_ptr<Skill> MakeMoveTorso(const SkillSet& skills, const ActionCall& action) {
@@ -79,6 +88,13 @@ std::unique_ptr<Skill> MakeLookAt(const SkillSet& skills, const ActionCall& acti
 
 std::unique_ptr<Skill> MakeObserve(const SkillSet& skills, const ActionCall& action) {
   return std::make_unique<ObserveObjectsOnArea>(skills.manipulation, action.arguments[0]);
+}
+
+std::unique_ptr<Skill> MakeObserveAt(const SkillSet& skills, const ActionCall& action) {
+  const ObserveObjectsAt::Pose pose{Lookup(skills.areas, "area", action.arguments[1]),
+                                    action.arguments[2], action.arguments[3]};
+  return std::make_unique<ObserveObjectsAt>(skills.manipulation, BlindDrive(skills, action),
+                                            action.arguments[0], pose);
 }
 
 std::unique_ptr<Skill> MakePickUp(const SkillSet& skills, const ActionCall& action) {
@@ -119,6 +135,7 @@ const std::map<std::string, SkillMaker>& Makers() {
       {"move_arms_to_carryposture", MakeMoveArmsToCarry},
       {"look_at", MakeLookAt},
       {"observe_objects_on_area", MakeObserve},
+      {"observe_objects_at", MakeObserveAt},
       {"pick_up_object", MakePickUp},
       {"place_object", MakePlace},
       {"place_object_at", MakePlaceAt},

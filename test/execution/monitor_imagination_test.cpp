@@ -136,6 +136,26 @@ TEST(ImaginationTest, TheRecommendedSpotIsPlacedAt) {
   EXPECT_LT(world.StartOf(at + "any)"), 0.0);
 }
 
+TEST(ImaginationTest, ThePoseThatSeesBestIsLookedFromAndThePlanGoesOn) {
+  auto options = For("serve_coffee_looking");
+  const std::string area = "placingareaeastrightcounter1", at = "manipulationareaeastcounter1";
+  options.imagine = [&](const StartImagination&, int) {
+    return Ranked({"observe_objects_at", {area, at, "torsodownposture", "left"}}, 40.0);
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "serve_coffee_looking");
+  ASSERT_THAT(world.imaginations(), SizeIs(1));
+  const auto& asked = world.imaginations()[0].action.alternatives;
+  EXPECT_THAT(asked,
+              ElementsAreArray({Texts{area}, Texts{at},
+                                Texts{"torsoupposture", "torsomiddleposture", "torsodownposture"},
+                                Texts{"default", "left", "right", "behind"}}));
+  Texts expected = Golden("serve_coffee");
+  expected.insert(expected.begin() + 6,
+                  "observe_objects_at(" + area + ", " + at + ", torsodownposture, left)");
+  EXPECT_THAT(world.Begun(), ElementsAreArray(expected)) << LogOf(world);
+}
+
 TEST(ToppleTest, TheDeadlineIsWhenTheDriveIsExpectedAndMovesWithThePlan) {
   auto options = For("carry_object");
   options.imagine = [](const StartImagination&, int) { return std::nullopt; };

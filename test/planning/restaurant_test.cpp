@@ -37,10 +37,14 @@ using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
-const char* const kProblems[] = {
-    "serve_coffee",       "serve_coffee_imagined", "serve_coffee_south_failed",
-    "serve_coffee_spots", "serve_hot_coffee",      "carry_object",
-    "clear_table"};
+const char* const kProblems[] = {"serve_coffee",
+                                 "serve_coffee_imagined",
+                                 "serve_coffee_south_failed",
+                                 "serve_coffee_spots",
+                                 "serve_coffee_looking",
+                                 "serve_hot_coffee",
+                                 "carry_object",
+                                 "clear_table"};
 
 using Steps = std::vector<std::string>;
 
@@ -242,6 +246,33 @@ TEST(ServeCoffeeTest, SpotsThatAreKnownToFailAreNotImaginedAgain) {
   }
   EXPECT_THAT(FirstSteps(problem),
               Contains("(!place_object_at mug1 rightarm1 placingareawestlefttable1 any)"));
+}
+
+TEST(ServeCoffeeTest,
+     PosesThatAreKnownToFailAreNotLookedFromAndWithoutOneItLooksFromWhereItStands) {
+  const std::string at = "placingareaeastrightcounter1 manipulationareaeastcounter1 ";
+  const auto without = [&](Problem problem, const std::vector<std::string>& torsos,
+                           const std::vector<std::string>& places) {
+    for (const std::string& torso : torsos) {
+      for (const std::string& place : places) {
+        problem =
+            With(problem, "(imagined_failure observe_objects_at " + at + torso + " " + place + ")");
+      }
+    }
+    return problem;
+  };
+  const Steps all_places{"default", "left", "right", "behind"};
+  Problem problem = without(Load("serve_coffee_looking"), {"torsoupposture"}, all_places);
+  problem = without(problem, {"torsomiddleposture"}, {"default"});
+  EXPECT_THAT(FirstSteps(problem),
+              AllOf(Contains("(!imagine !observe_objects_at (placingareaeastrightcounter1) "
+                             "(manipulationareaeastcounter1) (torsomiddleposture torsodownposture) "
+                             "(left right behind default))"),
+                    Contains("(!observe_objects_at " + at + "torsomiddleposture left)")));
+  problem = without(problem, {"torsomiddleposture"}, {"left", "right", "behind"});
+  problem = without(problem, {"torsodownposture"}, all_places);
+  EXPECT_THAT(FirstSteps(problem),
+              ElementsAreArray(FirstSteps(With(Load("serve_coffee"), "(observe pick_up_object)"))));
 }
 
 TEST(ServeCoffeeTest, OtherGuestsAreServedAtTheirSeats) {
@@ -511,6 +542,22 @@ TEST(RestaurantOrderTest, TorsoAndArmsMoveAtTheSameTimeAndNothingElseInServingCo
   EXPECT_THAT(free, ElementsAre(Pair(3, 4), Pair(3, 5), Pair(9, 10), Pair(12, 13)));
 }
 
+TEST(RestaurantOrderTest, TheRobotLooksBeforeItTakesSomethingAway) {
+  for (const Problem& problem :
+       {With(Load("serve_coffee"), "(observe pick_up_object)"), Load("serve_coffee_looking")}) {
+    const Plan plan = FirstPlan(problem);
+    const auto before = Closure(plan);
+    const auto index_of = [&](const std::string& start) {
+      const Steps steps = StepsOf(plan);
+      return std::find_if(steps.begin(), steps.end(),
+                          [&](const std::string& step) { return step.rfind(start, 0) == 0; }) -
+             steps.begin();
+    };
+    EXPECT_TRUE(before[index_of("(!observe_objects")][index_of("(!pick_up_object")]);
+    EXPECT_TRUE(before[index_of("(!move_base_blind")][index_of("(!observe_objects")]);
+  }
+}
+
 TEST(RestaurantOrderTest, StepsThatMayRunTogetherNeverClaimMoreThanThereIs) {
   for (const char* name : kProblems) {
     const Plan plan = FirstPlan(Load(name));
@@ -610,7 +657,8 @@ TEST(RestaurantSidecarTest, EveryActionThatIsImaginedHasItsDefaults) {
       if (step.task.Head() == "!imagine") imagined.insert(step.task.items.at(1).text);
     }
   }
-  EXPECT_THAT(imagined, ElementsAre("!move_base_param", "!place_object", "!place_object_at"));
+  EXPECT_THAT(imagined, ElementsAre("!move_base_param", "!observe_objects_at", "!place_object",
+                                    "!place_object_at"));
   for (const std::string& action : imagined) {
     EXPECT_TRUE(EntryOf(Sidecar(), action).imagine.has_value()) << action;
   }

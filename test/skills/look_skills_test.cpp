@@ -1,11 +1,14 @@
 #include "skills/look_skills.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "hires/geometry/angles.h"
 #include "hires/robot/posture.h"
+#include "hires/skills/base_place.h"
 #include "hires/skills/head_aim.h"
 #include "restaurant.h"
 
@@ -105,6 +108,76 @@ TEST(ObserveObjectsOnAreaTest, AnAreaAcrossTheRoomIsOutOfView) {
   EXPECT_EQ(ToString(rehearsal.Play({"observe_objects_on_area", {"placingAreaNorthLeftTable2"}})
                          .status.failure),
             "out_of_view");
+}
+
+/// A mug on the counter with something so much higher before it [m].
+std::vector<world::ObjectState> MugBehind(double height) {
+  world::ObjectState screen = On("mug1", kCounter, 0.10);
+  screen.name = "screen";
+  screen.model = fmt::format("unknown_0.030x0.200x{:.3f}", height);
+  return {On("mug1", kCounter, -0.08), screen};
+}
+
+/// The robot knows of the mug, and looks for it from somewhere.
+Played LookFrom(const std::string& torso, const std::string& place, double height,
+                robot::RobotState* now = nullptr) {
+  const std::vector<world::ObjectState> objects = MugBehind(height);
+  Rehearsal rehearsal(AtCounter(), objects);
+  rehearsal.simulator().Remember({{"mug1", objects[0].model, objects[0].X_MO, 0.0, ""}});
+  const Played played =
+      rehearsal.Play({"observe_objects_at", {kCounter, kAtCounter, torso, place}});
+  if (now != nullptr) *now = rehearsal.simulator().GetRobotState();
+  return played;
+}
+
+void ExpectAsBefore(const robot::RobotState& now) {
+  const robot::RobotState before = AtCounter();
+  EXPECT_LT((now.X_MB.position() - before.X_MB.position()).norm(), 0.035);
+  EXPECT_LT(std::abs(geometry::WrapToPi(now.X_MB.yaw - before.X_MB.yaw)), 0.035);
+  const std::string& torso = UpperBody().torso_joint;
+  EXPECT_NEAR(now.joints.at(torso), before.joints.at(torso), 0.01);
+}
+
+TEST(ObserveObjectsAtTest, TheRobotStandsAfterwardsAsItStoodBefore) {
+  robot::RobotState now;
+  const Played played = LookFrom("torsomiddleposture", "left", 0.05, &now);
+  EXPECT_EQ(ToString(played.status.failure), "");
+  EXPECT_THAT(played.phases, ::testing::IsSupersetOf({"drive", "torso", "sweep", "return_base"}));
+  ExpectAsBefore(now);
+  double farthest = 0.0;
+  for (const robot::Command& command : played.commands)
+    if (command.base_velocity) farthest = std::max(farthest, std::abs(command.base_velocity->vy));
+  EXPECT_GT(farthest, 0.1) << "it went to the side";
+}
+
+TEST(ObserveObjectsAtTest, WhatIsHiddenFromAPoseIsNotSeenThereAndTheRobotComesBackAllTheSame) {
+  robot::RobotState now;
+  const Played hidden = LookFrom("torsodownposture", "behind", 0.24, &now);
+  EXPECT_EQ(ToString(hidden.status.failure), "object_not_seen: mug1");
+  ExpectAsBefore(now);
+  EXPECT_EQ(ToString(LookFrom("torsoupposture", "default", 0.24).status.failure), "");
+}
+
+TEST(ObserveObjectsAtTest, WhatIsGoneIsNotSeenAndWhereNothingIsExpectedLookingIsEnough) {
+  const base::ActionCall look{"observe_objects_at",
+                              {kCounter, kAtCounter, "torsoupposture", "default"}};
+  Rehearsal gone(AtCounter(), {});
+  const world::ObjectState mug = On("mug1", kCounter);
+  gone.simulator().Remember({{"mug1", mug.model, mug.X_MO, 0.0, ""}});
+  EXPECT_EQ(ToString(gone.Play(look).status.failure), "object_not_seen: mug1");
+  Rehearsal empty(AtCounter(), {});
+  const world::ObjectState elsewhere = On("mug2", "placingAreaWestLeftTable1");
+  empty.simulator().Remember({{"mug2", elsewhere.model, elsewhere.X_MO, 0.0, ""}});
+  EXPECT_EQ(ToString(empty.Play(look).status.failure), "");
+}
+
+TEST(AtBasePlaceTest, IsMeantInTheFrameOfTheStand) {
+  const geometry::Pose2 X_MStand{1.0, 2.0, geometry::kPi / 2};
+  const geometry::Pose2 left = AtBasePlace(X_MStand, "Left"),
+                        behind = AtBasePlace(X_MStand, "behind");
+  EXPECT_LT((left.position() - Eigen::Vector2d(0.8, 2.0)).norm(), 1e-12);
+  EXPECT_LT((behind.position() - Eigen::Vector2d(1.0, 1.8)).norm(), 1e-12);
+  EXPECT_EQ(left.yaw, X_MStand.yaw);
 }
 
 /// A wide square close by needs several looks; every part has been in view at rest afterwards.

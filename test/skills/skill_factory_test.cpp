@@ -95,7 +95,8 @@ base::ActionCall SampleOf(const actions::ActionSpec& spec) {
                                             {Kind::kArm, "leftArm1"},
                                             {Kind::kObject, "mug1"},
                                             {Kind::kAreaOrObject, "mug1"},
-                                            {Kind::kSpot, "front_left"}};
+                                            {Kind::kSpot, "front_left"},
+                                            {Kind::kBasePlace, "Behind"}};
   base::ActionCall call{spec.name, {}};
   for (const auto& parameter : spec.parameters)
     call.arguments.push_back(samples.at(parameter.kind));
@@ -131,6 +132,10 @@ TEST(SkillFactoryUpperBodyTest, RefusesUnknownArmsPosturesAndAreas) {
                   {"place_object_at", {"mug1", "rightarm1", "placingAreaWestRightTable1", "frnt"}}),
               AllOf(HasSubstr("place_object_at("), HasSubstr("spot 'frnt' is unknown"),
                     HasSubstr("'front'")));
+  EXPECT_THAT(WhyNotInRestaurant({"observe_objects_at",
+                                  {"placingAreaWestRightTable1", "manipulationAreaSouthTable1",
+                                   "torsoupposture", "lefft"}}),
+              AllOf(HasSubstr("base place 'lefft' is unknown"), HasSubstr("'left'")));
   EXPECT_THAT(WhyNotInRestaurant({"place_object", {"mug1", "rightarm1", "placingAreaMoon1"}}),
               HasSubstr("area 'placingAreaMoon1' is unknown"));
   EXPECT_THAT(WhyNotInRestaurant({"observe_objects_on_area", {"mug1"}}),

@@ -19,7 +19,8 @@ enum class ParameterKind {
   kArm,           ///< an arm by its instance: leftarm1
   kObject,        ///< an object by its instance
   kAreaOrObject,  ///< one of the two
-  kSpot           ///< where on an area something is put, by a name that every area knows
+  kSpot,          ///< where on an area something is put, by a name that every area knows
+  kBasePlace      ///< where beside an area of the base the robot stands, likewise
 };
 const char* ToString(ParameterKind kind);  ///< "area", "motion set"
 

@@ -10,6 +10,7 @@
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
 #include "hires/perception/tabletop_recogniser.h"
+#include "hires/skills/base_place.h"
 #include "hires/skills/grasp_quality.h"
 #include "hires/skills/head_aim.h"
 
@@ -21,14 +22,6 @@ using geometry::Pose2;
 using geometry::Pose3;
 using robot::JointPositions;
 
-/// Moved by so much in the frame of the default place [m]; the dissertation found its by trying and
-/// does not print them.
-struct Base {
-  const char* name;
-  double ahead, left;
-};
-constexpr Base kBases[] = {
-    {"default", 0.0, 0.0}, {"left", 0.0, 0.2}, {"right", 0.0, -0.2}, {"behind", -0.2, 0.0}};
 constexpr const char* kTorsos[] = {"torsodownposture", "torsomiddleposture", "torsoupposture"};
 constexpr const char* kArms = "armtosideposture";
 constexpr double kAround = 0.05;  // [m] of the area's middle that things stand, each way
@@ -92,8 +85,7 @@ std::vector<std::string> PoseStage::KindNames() const {
 robot::Observation PoseStage::Stand(int torso, int base) const {
   const robot::UpperBodyProfile& body = *robot_.profile.upper_body;
   robot::Observation robot;
-  const Pose3 X_SB = geometry::Lift(Pose2{kBases[base].ahead, kBases[base].left, 0.0});
-  robot.X_MB = geometry::Flatten(X_MStand_ * X_SB);
+  robot.X_MB = skills::AtBasePlace(geometry::Flatten(X_MStand_), skills::BasePlaces()[base].name);
   robot.joints = robot_.profile.joints;
   robot.joints[body.torso_joint] = Find(body.torso_postures, kTorsos[torso], "posture");
   for (const auto& [name, arm] : body.arms) {
@@ -176,11 +168,11 @@ std::optional<TorsoPosesReport> PlayTorsoPoses(const TorsoPosesOrder& order, con
   const PoseStage stage(order);
   TorsoPosesReport report;
   for (const char* torso : kTorsos) report.torsos.emplace_back(torso);
-  for (const Base& base : kBases) report.bases.emplace_back(base.name);
+  for (const skills::BasePlace& place : skills::BasePlaces()) report.bases.push_back(place.name);
   report.kinds = stage.KindNames();
   report.looks = order.looks;
   const int per_base = stage.num_kinds() * order.looks;
-  const int per_torso = per_base * static_cast<int>(std::size(kBases));
+  const int per_torso = per_base * static_cast<int>(report.bases.size());
   report.trials.resize(static_cast<std::size_t>(per_torso) * std::size(kTorsos));
   const auto work = [&](int task, const Advance& advance) {
     report.trials[task] = stage.Try(task / per_torso, task % per_torso / per_base,
