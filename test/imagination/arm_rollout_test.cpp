@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 #include <thread>
 
+#include "hires/geometry/angles.h"
 #include "hires/imagination/evidence.h"
 #include "hires/imagination/local_imagination.h"
 #include "hires/imagination/rollout.h"
@@ -62,6 +64,41 @@ TEST(ArmRolloutTest, ASpotThatSomethingTakesUpIsNotChosen) {
   EXPECT_EQ(report.ranking[1].evidence.success.share, 0.0);
   EXPECT_EQ(report.ranking[1].evidence.failures.begin()->first.code,
             base::FailureCode::kAreaOccupied);
+}
+
+/// A menu card stands before the mug: from the place where the robot stands nothing of it is seen,
+/// from its left more than enough. With the torso down the counter is too near for the camera.
+TEST(ArmRolloutTest, ThePoseThatSeesWhatIsExpectedIsChosenAndTheOthersSayWhyNot) {
+  constexpr char kCounter[] = "placingAreaEastRightCounter1",
+                 kStand[] = "manipulationAreaEastCounter1";
+  const auto on_counter = [&](const std::string& object, double x, double y, double yaw) {
+    return PutObject{object, "", geometry::Lift({x, y, yaw}, 0.75)};
+  };
+  const StartState start =
+      MakeStartState(Restaurant(), ReadyAt(kStand),
+                     {on_counter("mug1", 5.39, 10.075, 0.0),
+                      on_counter("menucard1", 5.50, 10.16, geometry::kPi / 2)});
+  const auto from = [&](const std::string& torso, const std::string& place) {
+    return base::ActionCall{"observe_objects_at", {kCounter, kStand, torso, place}};
+  };
+  SchedulerParams params;
+  params.rollouts = 2;
+  params.criteria.min_success = 0.1;
+  const Report report =
+      ImagineLocally(Rollouts(start),
+                     {from("torsoupposture", "default"), from("torsodownposture", "default"),
+                      from("torsoupposture", "left")},
+                     params, 2);
+  ASSERT_EQ(report.ranking.size(), 3u);
+  EXPECT_EQ(report.recommended, 0) << report.why;
+  EXPECT_TRUE(report.ranking[0].action == from("torsoupposture", "left")) << report.why;
+  EXPECT_EQ(report.ranking[0].evidence.success.share, 1.0);
+  std::set<std::string> failures;
+  for (const int other : {1, 2}) {
+    EXPECT_EQ(report.ranking[other].evidence.success.share, 0.0);
+    failures.insert(ToString(report.ranking[other].evidence.failures.begin()->first));
+  }
+  EXPECT_THAT(failures, ::testing::ElementsAre("object_not_seen: mug1", "out_of_view"));
 }
 
 TEST(ArmRolloutTest, AMugIsPutOnAFreeTable) {
