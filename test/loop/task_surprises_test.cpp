@@ -82,7 +82,8 @@ TEST(TaskSurprisesTest, ThePoseThatIsImaginedToSeeBestIsLookedFrom) {
   EXPECT_EQ(ToString(look->failure), "");
   const auto& all = run.report.status.imaginations;
   const auto answer = std::find_if(all.rbegin(), all.rend(), [](const auto& one) {
-    return one.outcome == ImaginedOutcome::kRanked && one.action.name == "observe_objects_at";
+    return one.outcome == evaluation::ImaginedOutcome::kRanked &&
+           one.action.name == "observe_objects_at";
   });
   ASSERT_NE(answer, all.rend());
   EXPECT_EQ(answer->predictions.size(), 12u);
