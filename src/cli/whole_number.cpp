@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/TypeTools.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

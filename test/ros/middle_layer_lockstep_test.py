@@ -37,6 +37,8 @@ POSTURES = (('move_torso', 'torsoMiddlePosture'),
             ('tuck_arms', 'armUnTuckedPosture', 'armUnTuckedPosture'))
 HANDLING = (('look_at', 'mug1'),
             ('observe_objects_on_area', 'placingAreaEastRightCounter1'),
+            ('observe_objects_at', 'placingAreaEastRightCounter1', 'manipulationAreaEastCounter1',
+             'torsoMiddlePosture', 'left'),
             ('pick_up_object', 'mug1', 'rightArm1'),
             ('place_object', 'mug1', 'rightArm1', 'placingAreaEastRightCounter1'),
             ('pick_up_object', 'mug1', 'rightArm1'),
