@@ -38,7 +38,8 @@ void BM_Surroundings(benchmark::State& state) {  // what is made once for a worl
 }
 BENCHMARK(BM_Surroundings)->Unit(benchmark::kMillisecond);
 
-void BM_Look(benchmark::State& state) {  // shapes of the robot, a scene, and what is seen in it
+/// Shapes of the robot, a scene, and what is seen in it.
+void Look(benchmark::State& state, const DetectorParams& params) {
   const robot::Robot pr2 = robot::LoadRobot(HIRES_SOURCE_DIR "/config/robots/pr2.yaml");
   const auto surroundings = std::make_shared<Surroundings>(Restaurant());
   const auto mugs = Mugs(static_cast<int>(state.range(0)));
@@ -49,11 +50,21 @@ void BM_Look(benchmark::State& state) {  // shapes of the robot, a scene, and wh
   std::size_t num_seen = 0;
   for (auto _ : state) {
     const LineOfSight sight(surroundings, mugs, ShapesOf(pr2, X_MB, posture));
-    num_seen = Detect(sight, ViewOf(pr2, X_MB, posture), mugs, {}, &rng).size();
+    num_seen = Detect(sight, ViewOf(pr2, X_MB, posture), mugs, params, &rng).size();
   }
   state.counters["seen"] = static_cast<double>(num_seen);
 }
+
+void BM_Look(benchmark::State& state) { Look(state, {}); }
 BENCHMARK(BM_Look)->Arg(1)->Arg(8)->Arg(20)->Unit(benchmark::kMicrosecond);
+
+void BM_LookThatErrs(benchmark::State& state) {  // as the recogniser was found to
+  DetectorParams params;
+  params.errors = std::make_shared<const DetectorErrors>(
+      ReadDetectorErrors(HIRES_SOURCE_DIR "/config/detector.yaml"));
+  Look(state, params);
+}
+BENCHMARK(BM_LookThatErrs)->Arg(1)->Arg(8)->Arg(20)->Unit(benchmark::kMicrosecond);
 
 /// The head's camera, 640 x 480 pixels of 58 degrees, looks at a table with mugs.
 struct HeadCamera {

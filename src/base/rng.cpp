@@ -46,4 +46,6 @@ int Rng::Index(int size) {
   return boost::random::uniform_int_distribution<int>(0, size - 1)(engine_);
 }
 
+Rng Rng::Split() { return Rng(engine_()); }
+
 }  // namespace hires::base

@@ -12,7 +12,7 @@
 #include <tuple>
 
 #include "cli/achieve_display.h"
-#include "cli/experiment_hypothesis_command.h"
+#include "cli/experiment/experiment_hypothesis_command.h"
 #include "hires/base/error.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"

@@ -49,7 +49,7 @@ struct ImagineOptions {
   StartOptions start;
   SaveRolloutOptions save;
   ReportOptions report;
-  std::string action, config, scene, world, map, robot, objects, uncertainty, ranking;
+  std::string action, config, scene, world, map, robot, objects, uncertainty, ranking, sensing;
   std::vector<std::string> arguments, action_libraries, areas;
   int rollouts{0}, threads{0};
   std::uint64_t seed{1};
@@ -79,6 +79,10 @@ void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
                   "share of successes that the lower end of the interval must reach")
       ->check(NumberBetween(0.001, 0.999));
   app->add_option("--uncertainty", o->uncertainty, "YAML file, or none");
+  app->add_option("--sensing", o->sensing,
+                  "with --local, by what rollouts see: fitted (a quick detector that errs as the "
+                  "recogniser was found to), pictures (the recogniser itself; slow)")
+      ->check(CLI::IsMember({"fitted", "pictures"}));
   app->add_flag("--no-early-stop", o->play_all, "play all rollouts even if the answer is decided");
   app->add_flag("--local", o->local, "in this process, without any ROS master");
   app->add_option("--threads", o->threads, "workers of --local; default: one per core")
@@ -114,6 +118,16 @@ void SetStart(const ImagineOptions& o, ImagineQuery* query) {
   for (std::string& object : query->start.on_tray) object = NameOf(object, &query->setup);
 }
 
+void SetSensing(const ImagineOptions& o, imagination::SetupConfig* setup) {
+  if (o.sensing.empty()) return;
+  if (!o.local) {
+    throw base::ConfigError(
+        "--sensing is for --local; running nodes see as `recogniser` of their scene file says");
+  }
+  setup->recogniser =
+      o.sensing == "pictures" ? o.report.package_folder + "/config/recogniser.yaml" : "none";
+}
+
 std::string ConfigPath(const ImagineOptions& o) {
   return o.config.empty() ? o.report.package_folder + "/config/imagination_client.yaml" : o.config;
 }
@@ -129,6 +143,7 @@ ImagineQuery MakeQuery(const ImagineOptions& o) {
   query.setup = imagination::ReadSetupConfig(o.scene.empty() ? config.scene : o.scene);
   imagination::OverridePaths(o.world, o.robot, o.objects, o.uncertainty, &query.setup);
   query.setup.map = o.map;
+  SetSensing(o, &query.setup);
   for (const std::string& area : o.areas) query.setup.areas.push_back(ReadArea(area));
   SetStart(o, &query);
   query.own_scene = !(o.world + o.map + o.robot + o.objects + o.scene).empty() ||
@@ -403,6 +418,9 @@ int RunAnyExperiment(const ExperimentOptions& options, const Backends& backends)
   const auto cancelled = [] { return interrupted.load(); };
   if (*options.decision.verb) {
     return RunDecisionVerb(options.decision, backends.package_folder, cancelled);
+  }
+  if (*options.detector.verb) {
+    return RunDetectorFitVerb(options.detector, backends.package_folder, cancelled);
   }
   if (*options.recognition.verb) {
     return RunRecognitionVerb(options.recognition, backends.package_folder, cancelled);

@@ -108,6 +108,7 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
   AddHypothesisVerb(verb, &options->hypothesis);
   AddDecisionVerb(verb, &options->decision);
   AddRecognitionVerb(verb, &options->recognition);
+  AddDetectorFitVerb(verb, &options->detector);
   AddTorsoPosesVerb(verb, &options->torso_poses);
 }
 
@@ -115,7 +116,8 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   if (options.file.empty()) {
     throw base::ConfigError(
         "experiment: wanted a YAML file, such as config/experiments/paired.yaml, or `hypothesis`, "
-        "`decision`, `recognition` or `torso_poses` (see hires experiment hypothesis --help)");
+        "`decision`, `recognition`, `detector` or `torso_poses` (see hires experiment hypothesis "
+        "--help)");
   }
   const evaluation::ExperimentConfig config =
       evaluation::ReadExperiment(options.file, OverridesOf(options));

@@ -4,10 +4,11 @@
 #include <functional>
 #include <string>
 
-#include "cli/experiment_decision_command.h"
-#include "cli/experiment_hypothesis_command.h"
-#include "cli/experiment_recognition_command.h"
-#include "cli/experiment_torso_poses_command.h"
+#include "cli/experiment/experiment_decision_command.h"
+#include "cli/experiment/experiment_detector_command.h"
+#include "cli/experiment/experiment_hypothesis_command.h"
+#include "cli/experiment/experiment_recognition_command.h"
+#include "cli/experiment/experiment_torso_poses_command.h"
 #include "hires/cli/report_output.h"
 #include "hires/evaluation/experiment.h"
 
@@ -28,6 +29,7 @@ struct ExperimentOptions {
   HypothesisOptions hypothesis;    ///< of `hires experiment hypothesis`
   DecisionOptions decision;        ///< of `hires experiment decision`
   RecognitionOptions recognition;  ///< of `hires experiment recognition`
+  DetectorFitOptions detector;     ///< of `hires experiment detector`
   TorsoPosesOptions torso_poses;   ///< of `hires experiment torso_poses`
 };
 

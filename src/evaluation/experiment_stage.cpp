@@ -65,7 +65,8 @@ Stage MakeStage(const ExperimentConfig& config) {
   }
   AddGoals(config.goals, &world, &skills);
   world.hash = world.ComputeHash();
-  setup.scene = simulation::MakeScene(std::move(world), setup.scene->robot, setup.scene->memory);
+  setup.scene = simulation::MakeScene(std::move(world), setup.scene->robot, setup.scene->memory,
+                                      setup.scene->sight);
   setup.skills = std::make_shared<const skills::SkillSet>(std::move(skills));
   stage.objects = config.objects;
   stage.xy_tolerance = scene.driving.local.xy_goal_tolerance;

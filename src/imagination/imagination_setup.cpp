@@ -11,6 +11,7 @@
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
+#include "hires/perception/recogniser_config.h"
 #include "hires/robot/load_robot.h"
 #include "hires/skills/action_loader.h"
 #include "hires/world/object_catalogue.h"
@@ -165,6 +166,23 @@ world::World LoadWorldWithObjects(const SetupConfig& config,
   return world;
 }
 
+/// @param hasher  what the robot sees by is added to it.
+simulation::Sight LoadSight(const SetupConfig& config, base::Hasher* hasher) {
+  simulation::Sight sight;
+  if (config.detector != "none") {
+    sight.errors = std::make_shared<const perception::DetectorErrors>(
+        perception::ReadDetectorErrors(config.detector));
+    hasher->Add(perception::ToYaml(*sight.errors));
+  }
+  if (config.recogniser != "none") {
+    const auto known = perception::ReadRecogniserConfig(config.recogniser, config.objects);
+    sight.recogniser =
+        std::make_shared<const perception::Recogniser>(known.catalogue, known.params);
+    hasher->Add(base::ReadTextFile(config.recogniser, 1u << 20));
+  }
+  return sight;
+}
+
 /// With the guard late commands end in its ramp, whatever the base's controller would do.
 /// @return the robot's hash: client and worker must agree about the guard, too.
 std::uint64_t PutGuardBefore(bool is_there, robot::Robot* robot) {
@@ -203,6 +221,8 @@ SetupConfig ReadSetupConfig(const std::string& path) {
   config.robot = ResolvePath(in.GetString("robot"), path);
   config.objects = ResolvePath(in.GetString("objects"), path);
   config.uncertainty = ResolvePath(in.GetString("uncertainty"), path);
+  config.detector = ResolvePath(in.GetString("detector"), path);
+  config.recogniser = ResolvePath(in.GetString("recogniser"), path);
   config.has_base_guard = in.GetBool("base_guard");
   config.driving = ReadDriving(in.Sub("driving"));
   config.blind = ReadBlind(in.Sub("blind_driving"));
@@ -247,9 +267,10 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   base::Hasher hasher;
   hasher.Add(world.hash);
   hasher.Add(config.params_hash);
-  setup.world_hash = hasher.value();
   setup.physics_hash = PhysicsHash(config.physics, config.rollout, config.standing);
-  setup.scene = simulation::MakeScene(std::move(world), std::move(robot), config.sensing.memory);
+  setup.scene = simulation::MakeScene(std::move(world), std::move(robot), config.sensing.memory,
+                                      LoadSight(config, &hasher));
+  setup.world_hash = hasher.value();
   setup.sensing = config.sensing;
   // The scene keeps them; the translator only looks.
   setup.translator.object_models = setup.object_models;

@@ -72,6 +72,8 @@ const std::vector<Quantity>& Quantities() {
       {"detection_noise", "m", 0, 0.2, [](Variation& v) -> double& { return v.detection_noise; }},
       {"detection_noise_yaw", "rad", 0, 1,
        [](Variation& v) -> double& { return v.detection_noise_yaw; }},
+      {"recognition_errors", "factor", 0, 10,
+       [](Variation& v) -> double& { return v.recognition_errors; }},
       {"grasp_x", "m", -0.05, 0.05, [](Variation& v) -> double& { return v.grasp_offset.x(); }},
       {"grasp_z", "m", -0.05, 0.05, [](Variation& v) -> double& { return v.grasp_offset.y(); }},
       {"grasp_turn", "rad", -0.5, 0.5, [](Variation& v) -> double& { return v.grasp_turn; }},

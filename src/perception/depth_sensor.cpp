@@ -87,4 +87,12 @@ PointCloud Measure(const RangePicture& picture, const PinholeCamera& camera,
   return cloud;
 }
 
+PointCloud Measure(const LineOfSight& sight, const PinholeCamera& camera,
+                   const DepthSensorParams& params, base::Rng* rng) {
+  // Rays through the picture's corners go farthest.
+  const double across = 0.5 * std::hypot(camera.width, camera.height) / camera.focal_length;
+  const double farthest = params.max_range * std::hypot(1.0, across);
+  return Measure(sight.Look(camera, farthest), camera, params, rng);
+}
+
 }  // namespace hires::perception

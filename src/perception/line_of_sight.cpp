@@ -33,8 +33,8 @@ struct LineOfSight::Impl {
   const Surroundings::Impl& world() const { return *surroundings->impl_; }
   int FindObject(const std::string& name) const;
   bool IsFree(const Vector3d& from_M, const Vector3d& to_M, int except) const;
-  double ShareSeen(const CameraView& view, const std::vector<SurfacePoint>& surface,
-                   const geometry::Pose3& X_MO, int except) const;
+  VisiblePart PartSeen(const CameraView& view, const std::vector<SurfacePoint>& surface,
+                       const geometry::Pose3& X_MO, int except) const;
 
   std::shared_ptr<const Surroundings> surroundings;
   std::vector<world::ObjectState> objects;
@@ -59,18 +59,24 @@ bool LineOfSight::Impl::IsFree(const Vector3d& from_M, const Vector3d& to_M, int
          !world().statics.IsBlocked(from_M, direction, distance);
 }
 
-double LineOfSight::Impl::ShareSeen(const CameraView& view,
-                                    const std::vector<SurfacePoint>& surface,
-                                    const geometry::Pose3& X_MO, int except) const {
+VisiblePart LineOfSight::Impl::PartSeen(const CameraView& view,
+                                        const std::vector<SurfacePoint>& surface,
+                                        const geometry::Pose3& X_MO, int except) const {
   const Vector3d p_MC = view.X_MC.translation;
   double facing = 0.0, seen = 0.0;
+  VisiblePart part;
   for (const SurfacePoint& point : surface) {
     const Vector3d p_M = X_MO * point.p_O;
-    if ((X_MO.rotation * point.n_O).dot(p_MC - p_M) <= 0.0) continue;
+    const Vector3d way = p_MC - p_M;
+    const double facing_way = (X_MO.rotation * point.n_O).dot(way);
+    if (facing_way <= 0.0) continue;
     facing += point.area;
-    if (view.Contains(p_M) && IsFree(p_MC, p_M, except)) seen += point.area;
+    if (!view.Contains(p_M) || !IsFree(p_MC, p_M, except)) continue;
+    seen += point.area;
+    part.size += point.area * facing_way / (way.squaredNorm() * way.norm());
   }
-  return facing > 0.0 ? seen / facing : 0.0;
+  if (facing > 0.0) part.share = seen / facing;
+  return part;
 }
 
 LineOfSight::LineOfSight(std::shared_ptr<const Surroundings> surroundings,
@@ -102,18 +108,20 @@ LineOfSight::~LineOfSight() = default;
 LineOfSight::LineOfSight(LineOfSight&&) noexcept = default;
 LineOfSight& LineOfSight::operator=(LineOfSight&&) noexcept = default;
 
-double LineOfSight::VisibleShare(const CameraView& view, const std::string& object) const {
+VisiblePart LineOfSight::Visible(const CameraView& view, const std::string& object) const {
   const int index = impl_->FindObject(object);
   HIRES_CHECK(index >= 0, "object '" + object + "' is not among those in sight's world");
   const world::ObjectState& state = impl_->objects[index];
-  return impl_->ShareSeen(view, impl_->surroundings->Surface(state.model), state.X_MO, index);
+  return impl_->PartSeen(view, impl_->surroundings->Surface(state.model), state.X_MO, index);
 }
 
 double LineOfSight::VisibleShareAt(const CameraView& view, const std::string& model,
                                    const geometry::Pose3& X_MO, const std::string& except) const {
-  return impl_->ShareSeen(view, impl_->surroundings->Surface(model), X_MO,
-                          impl_->FindObject(except));
+  return impl_->PartSeen(view, impl_->surroundings->Surface(model), X_MO, impl_->FindObject(except))
+      .share;
 }
+
+const Surroundings& LineOfSight::surroundings() const { return *impl_->surroundings; }
 
 bool LineOfSight::Sees(const CameraView& view, const Vector3d& p_M,
                        const std::string& except) const {

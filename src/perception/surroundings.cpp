@@ -47,6 +47,10 @@ const world::ObjectModel& Surroundings::Model(const std::string& model) const {
   return *impl_->Require(model).description;
 }
 
+bool Surroundings::Has(const std::string& model) const {
+  return impl_->models.count(model) > 0 || world::SaysUnknownBox(model);
+}
+
 const std::vector<SurfacePoint>& Surroundings::Surface(const std::string& model) const {
   return impl_->Require(model).surface;
 }

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "hires/base/text.h"
+#include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
 #include "simulation/start_checks.h"
 #include "simulation/varied.h"
@@ -13,8 +14,9 @@ namespace {
 using geometry::Pose2;
 using geometry::Pose3;
 
-constexpr double kLookPeriod = 0.5;  // [s] between two looks of the camera
-constexpr double kStillHead = 0.02;  // [rad/s] faster than this pictures blur
+constexpr double kLookPeriod = 0.5;                       // [s] between two looks of the camera
+constexpr double kStillHead = 0.02;                       // [rad/s] faster than this pictures blur
+constexpr int kPictureWidth = 640, kPictureHeight = 480;  // [pixels] of the Asus Xtion
 
 sensing::ObjectMemory EmptyMemory(const std::shared_ptr<const Scene>& scene) {
   return {scene->surroundings, std::shared_ptr<const robot::Robot>(scene, &scene->robot),
@@ -28,7 +30,10 @@ HeadCamera::HeadCamera(std::shared_ptr<const Scene> scene, const Variation& vari
     : scene_(std::move(scene)),
       variation_(variation),
       robot_(robot),
-      state_{rng, EmptyMemory(scene_)} {}
+      state_{rng, EmptyMemory(scene_)} {
+  if (scene_->sight.recogniser)
+    eye_.emplace(scene_->sight.recogniser, perception::SelfFilterParams());
+}
 
 sensing::BodyReading HeadCamera::FeltBody(double time, const Pose2& X_MBbelieved) const {
   return {time, X_MBbelieved, robot_->Joints()};
@@ -65,18 +70,51 @@ bool HeadCamera::MayLook(double time) const {
   return time - state_.last_look >= kLookPeriod && !robot_->IsHeadFaster(kStillHead);
 }
 
-void HeadCamera::Look(double time, const Pose2& X_MB,
-                      const std::vector<world::ObjectState>& objects) {
-  state_.last_look = time;
-  const robot::Robot& robot = scene_->robot;
-  const Pose3 X_MC = robot_->X_MLink(robot.profile.upper_body->camera_link);
-  const perception::CameraView view = perception::ViewFrom(robot, X_MC);
-  const perception::LineOfSight sight(scene_->surroundings, objects, robot_->ShapesInMap());
+perception::Sighting HeadCamera::Detect(const perception::LineOfSight& sight, const Pose3& X_MC,
+                                        const std::vector<world::ObjectState>& objects) {
   perception::DetectorParams params;
   params.position_noise = variation_.detection_noise;
   params.yaw_noise = variation_.detection_noise_yaw;
-  const auto detections = perception::Detect(sight, view, objects, params, &state_.rng);
-  state_.memory.Look(FeltBody(time, BelievedPose(X_MB, variation_, &state_.rng)), detections);
+  params.errors = scene_->sight.errors;
+  params.errors_factor = variation_.recognition_errors;
+  params.errors_seed = state_.rng.seed();
+  const perception::CameraView view = perception::ViewFrom(scene_->robot, X_MC);
+  return {perception::Detect(sight, view, objects, params, &state_.rng), {}};
+}
+
+/// The camera is where it really is; what the robot makes of its cloud stands where it believes
+/// itself and its joints to be.
+perception::Sighting HeadCamera::Recognise(const perception::LineOfSight& sight, const Pose3& X_MC,
+                                           const sensing::BodyReading& body, base::Rng rng) {
+  const robot::Robot& robot = scene_->robot;
+  const robot::UpperBodyProfile& upper = *robot.profile.upper_body;
+  perception::PinholeCamera camera =
+      perception::CameraOf(kPictureWidth, kPictureHeight, upper.camera_width);
+  camera.X_MC = X_MC;
+  perception::DepthSensorParams sensor;
+  sensor.min_range = upper.camera_min_range;
+  sensor.max_range = upper.camera_max_range;
+  sensor.depth_noise *= variation_.recognition_errors;
+  sensor.lateral_noise *= variation_.recognition_errors;
+  const Pose3 X_CO = perception::OpticalFrame();
+  auto seen =
+      eye_->Look(Measure(sight, camera, sensor, &rng),
+                 perception::ViewOf(robot, body.X_MB, body.joints).X_MC * X_CO,
+                 perception::ShapesOf(robot, body.X_MB, body.joints), robot.profile.tray_link, rng);
+  return seen ? perception::SeenFrom(X_CO, std::move(seen->sighting)) : perception::Sighting();
+}
+
+void HeadCamera::Look(double time, const Pose2& X_MB,
+                      const std::vector<world::ObjectState>& objects) {
+  state_.last_look = time;
+  const Pose3 X_MC = robot_->X_MLink(scene_->robot.profile.upper_body->camera_link);
+  const perception::LineOfSight sight(scene_->surroundings, objects, robot_->ShapesInMap());
+  perception::Sighting seen;
+  if (!eye_) seen = Detect(sight, X_MC, objects);
+  const sensing::BodyReading body = FeltBody(time, BelievedPose(X_MB, variation_, &state_.rng));
+  if (eye_) seen = Recognise(sight, X_MC, body, state_.rng.Split());
+  if (eye_ && seen.table.empty()) return;  // no table is in sight: it says nothing of things
+  state_.memory.Look(body, seen.detections, seen.table);
 }
 
 std::vector<robot::SeenObject> HeadCamera::Known(double time, const Pose2& X_MBbelieved) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hires/base/rng.h"
+#include "hires/perception/tabletop_recogniser.h"
 #include "hires/robot/observation.h"
 #include "hires/sensing/object_memory.h"
 #include "hires/simulation/scene.h"
@@ -48,12 +49,17 @@ class HeadCamera {
   void Restore(const State& state) { state_ = state; }
 
  private:
+  perception::Sighting Detect(const perception::LineOfSight& sight, const geometry::Pose3& X_MC,
+                              const std::vector<world::ObjectState>& objects);
+  perception::Sighting Recognise(const perception::LineOfSight& sight, const geometry::Pose3& X_MC,
+                                 const sensing::BodyReading& body, base::Rng rng);
   bool IsHeld(const std::string& name) const;  // as far as the robot knows
   sensing::BodyReading FeltBody(double time, const geometry::Pose2& X_MBbelieved) const;
 
   std::shared_ptr<const Scene> scene_;
   Variation variation_;
   const PlanarRobot* robot_;
+  std::optional<perception::TabletopRecogniser> eye_;  // where the scene has a recogniser
   State state_;
 };
 

@@ -41,7 +41,7 @@ std::vector<geometry::Collision> FrozenShapes(const robot::Robot& robot,
 }
 
 std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot,
-                                       const sensing::MemoryParams& memory) {
+                                       const sensing::MemoryParams& memory, const Sight& sight) {
   const robot::RobotProfile& profile = robot.profile;
   const auto X_RL = robot::ForwardKinematics(robot.model, profile.joints);
   const geometry::Pose3 X_BR = PoseOfLink(robot.model, X_RL, profile.base_link).Inverse();
@@ -68,6 +68,7 @@ std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot,
                                              std::move(base_clearance),
                                              std::move(surroundings),
                                              memory,
+                                             sight,
                                              laser_height,
                                              {}});
 }

@@ -44,6 +44,7 @@ class SmallScene {
     scene["robot"] = root + "/config/robots/cart.yaml";
     scene["objects"] = root + "/worlds/objects.yaml";
     scene["uncertainty"] = "none";
+    scene["detector"] = "none";
     path_ = folder_.Write("scene.yaml", YAML::Dump(scene));
   }
 

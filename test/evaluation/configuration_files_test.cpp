@@ -69,6 +69,7 @@ const std::map<std::string, Reader>& Readers() {
        }},
       {"truths", [](const std::string& path) { evaluation::ReadTruth(path); }},
       {"uncertainty.yaml", [](const std::string& path) { imagination::LoadUncertainty(path); }},
+      {"detector.yaml", [](const std::string& path) { perception::ReadDetectorErrors(path); }},
       {"planner.yaml",
        [](const std::string& path) {
          planning::LoadPlanningKnowledge(planning::ReadPlannerConfig(path));

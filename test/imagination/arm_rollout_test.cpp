@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <thread>
@@ -10,6 +11,7 @@
 #include "hires/imagination/evidence.h"
 #include "hires/imagination/local_imagination.h"
 #include "hires/imagination/rollout.h"
+#include "hires/perception/recogniser_config.h"
 #include "imagination/restaurant_rollouts.h"
 #include "support/messages.h"
 
@@ -139,6 +141,29 @@ TEST(ArmRolloutTest, WhatIsPickedUpIsHeld) {
   EXPECT_EQ(result.outcome, Outcome::kSucceeded) << ToString(result.failure);
   EXPECT_EQ(result.final_world.Find("mug1")->attached_to, "r_gripper_palm_link");
   EXPECT_GT(result.counts.notopple, 0) << "it stands at first";
+}
+
+/// With a recogniser that looks at pictures instead of the quick detector.
+TEST(ArmRolloutTest, AMugIsPickedUpByWhatTheCameraMeasures) {
+  const std::string config = HIRES_SOURCE_DIR "/config/recogniser.yaml";
+  const auto by = [&](std::vector<perception::KnownModel> known) {
+    RolloutSetup setup = Rollouts(MugOnCounter());
+    auto scene = std::make_shared<simulation::Scene>(*setup.scene);
+    scene->sight.recogniser = std::make_shared<const perception::Recogniser>(
+        known, perception::ReadRecogniserConfig(config).params);
+    setup.scene = scene;
+    return Play(setup, kPick);
+  };
+  std::vector<perception::KnownModel> known = perception::ReadRecogniserConfig(config).catalogue;
+  const RolloutResult result = by(known), again = by(known);
+  EXPECT_EQ(result.outcome, Outcome::kSucceeded) << ToString(result.failure);
+  EXPECT_EQ(result.final_world.Find("mug1")->attached_to, "r_gripper_palm_link");
+  EXPECT_EQ(result.duration, again.duration);
+  EXPECT_EQ(result.final_world.Find("mug1")->X_MO.translation,
+            again.final_world.Find("mug1")->X_MO.translation);
+  const auto is_cup = [](const auto& one) { return one.label.find("cup") != std::string::npos; };
+  known.erase(std::remove_if(known.begin(), known.end(), is_cup), known.end());
+  EXPECT_NE(by(known).outcome, Outcome::kSucceeded) << "nothing like a mug is known";
 }
 
 TEST(ArmRolloutTest, WhatIsNotThereCannotBePickedUp) {

@@ -51,6 +51,7 @@ struct SceneFile {
     root["robot"] = Root() + "/config/robots/cart.yaml";
     root["objects"] = folder.Write("objects.yaml", "mill1: mill\nMill2: mill\n");
     root["uncertainty"] = "none";
+    root["detector"] = "none";
     folder.Write("models/mill/model.config",
                  "<?xml version=\"1.0\"?><model><name>mill</name><sdf version=\"1.7\">model.sdf"
                  "</sdf></model>");
@@ -174,7 +175,7 @@ TEST(SetupConfigTest, RefusesWhatIsNoMap) {
 }
 
 TEST(SetupConfigTest, NamesFilesThatAreMissing) {
-  for (const char* key : {"world", "robot", "objects", "uncertainty"}) {
+  for (const char* key : {"world", "robot", "objects", "uncertainty", "detector", "recogniser"}) {
     SceneFile file;
     file.root[key] = std::string("missing_") + key + ".yaml";
     EXPECT_THAT(file.WhyRefused(), HasSubstr(std::string("missing_") + key)) << key;
@@ -273,6 +274,14 @@ TEST(SetupHashTest, WorldObjectsAndParametersMatter) {
   SceneFile coarser;
   coarser.root["driving"]["map_resolution"] = 0.07;
   EXPECT_NE(coarser.Load().world_hash, setup.world_hash);
+
+  SceneFile erring, looking;
+  erring.root["detector"] = Root() + "/config/detector.yaml";
+  EXPECT_NE(erring.Load().world_hash, setup.world_hash);
+  EXPECT_TRUE(erring.Load().scene->sight.errors);
+  looking.root["recogniser"] = Root() + "/config/recogniser.yaml";
+  EXPECT_NE(looking.Load().world_hash, setup.world_hash);
+  EXPECT_TRUE(looking.Load().scene->sight.recogniser);
 
   SceneFile stricter;  // another meaning of a fall is another physics, in the same world
   stricter.root["standing"]["tilt"] = 0.4;

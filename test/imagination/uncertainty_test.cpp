@@ -230,6 +230,8 @@ TEST(UncertaintyTest, EveryQuantityMovesItsNumberAlone) {
       {"detection_noise", "m", 0.021, [](const Variation& v) { return v.detection_noise; }},
       {"detection_noise_yaw", "rad", 0.22,
        [](const Variation& v) { return v.detection_noise_yaw; }},
+      {"recognition_errors", "factor", 1.4,
+       [](const Variation& v) { return v.recognition_errors; }},
       {"encoder_noise", "rad", 0.023, [](const Variation& v) { return v.encoder_noise; }},
   };
   for (const Slot& slot : slots) {

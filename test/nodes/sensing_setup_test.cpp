@@ -33,6 +33,7 @@ TEST(SensingSetupTest, TrackerMiddleLayerAndRolloutsRememberByTheSameNumbers) {
     root[file] = kConfig + root[file].Scalar();
   }
   root["uncertainty"] = "none";
+  root["detector"] = "none";
   for (auto entry : root["sensing"]["memory"]) {
     const bool is_count = entry.first.Scalar().find("s_to_") != std::string::npos;
     entry.second = is_count ? "5" : std::to_string(0.9 * entry.second.as<double>());

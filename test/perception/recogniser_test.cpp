@@ -163,7 +163,7 @@ TEST_F(RecogniserTest, AnUnknownThingHasABoxAroundWhatIsSeenOfIt) {
       if (seen.label != kUnknownLabel) continue;
       const auto truth =
           std::find_if(table.things.begin(), table.things.end(), [&](const TableThing& thing) {
-            return !thing.is_known && thing.visible_share > 0.95 &&
+            return !thing.is_known && thing.view.part.share > 0.95 &&
                    (thing.X_CO.translation - seen.X_CO.translation).norm() < 0.1;
           });
       if (truth == table.things.end()) continue;

@@ -20,6 +20,8 @@ class Rng {
   bool Bernoulli(double probability);          ///< @pre probability in [0, 1]
   int Index(int size);                         ///< uniform in 0 .. size - 1.  @pre size >= 1
 
+  Rng Split();  ///< a stream of its own, for one draw of this one
+
   std::uint64_t seed() const { return seed_; }
 
  private:

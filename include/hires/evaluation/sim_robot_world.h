@@ -66,6 +66,7 @@ class SimRobotWorld {
   /// How the camera's recogniser errs.
   double detection_noise() const { return variation_.detection_noise; }          ///< [m]
   double detection_noise_yaw() const { return variation_.detection_noise_yaw; }  ///< [rad]
+  double recognition_errors() const { return variation_.recognition_errors; }    ///< factor
 
   // What tests and demonstrations do to it. All answer with why not, or empty.
   std::string Push(const geometry::Pose2& offset);  ///< new base in the old base frame

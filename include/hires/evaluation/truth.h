@@ -42,7 +42,7 @@ struct LocalisationWalk {
 
 /// How laser, camera and encoders err, and what tells which objects are seen.
 enum class Sensing {
-  kFitted,   ///< they err as drawn, and the detector knows what it sees
+  kFitted,   ///< they err as drawn, the detector as its recogniser was found to
   kIdeal,    ///< they do not err
   kPictures  ///< they err as drawn, and objects are recognised in the camera's clouds
 };

@@ -33,7 +33,9 @@ struct SetupConfig {
   std::string robot;             ///< robot profile (.yaml) or bare URDF (.urdf)
   std::string objects;           ///< catalogue of object instances (YAML)
   std::string uncertainty;       ///< YAML, or "none"
-  bool has_base_guard{false};    ///< late commands to the base end in the guard's ramp
+  std::string detector;          ///< how the camera's recogniser errs (YAML), or "none"
+  std::string recogniser;      ///< that one itself (YAML), which then looks at pictures; or "none"
+  bool has_base_guard{false};  ///< late commands to the base end in the guard's ramp
   std::vector<std::string> extra_objects;  ///< object models (files) beside the catalogue's
   /// Shared libraries with more actions: never from a file, as they are code.
   std::vector<std::string> action_libraries;

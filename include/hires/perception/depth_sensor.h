@@ -1,6 +1,7 @@
 #pragma once
 
 #include "hires/base/rng.h"
+#include "hires/perception/line_of_sight.h"
 #include "hires/perception/pinhole_camera.h"
 #include "hires/perception/point_cloud.h"
 #include "hires/perception/range_picture.h"
@@ -31,6 +32,10 @@ struct DepthSensorParams {
 /// @return organised, in the optical frame.
 /// @pre the picture is the camera's.
 PointCloud Measure(const RangePicture& picture, const PinholeCamera& camera,
+                   const DepthSensorParams& params, base::Rng* rng);
+
+/// The same of what the camera looks at.
+PointCloud Measure(const LineOfSight& sight, const PinholeCamera& camera,
                    const DepthSensorParams& params, base::Rng* rng);
 
 }  // namespace hires::perception

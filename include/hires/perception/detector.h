@@ -1,11 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "hires/base/rng.h"
+#include "hires/perception/detector_errors.h"
 #include "hires/perception/line_of_sight.h"
 
 namespace hires::perception {
@@ -14,6 +17,10 @@ struct DetectorParams {
   double min_visible_share{0.3};  ///< of its surface that faces the camera
   double position_noise{0.005};   ///< [m] sd of each coordinate
   double yaw_noise{0.02};         ///< [rad] sd, about the object's own z axis
+  /// Besides that noise it errs as a recogniser was found to do; null: it does not.
+  std::shared_ptr<const DetectorErrors> errors{};
+  double errors_factor{1.0};     ///< of these: 0 does not err
+  std::uint64_t errors_seed{0};  ///< of what stays the same at every look at a thing
 };
 
 /// Label of what is none of the known kinds.
@@ -49,7 +56,7 @@ struct Sighting {
 /// @param objects  true poses; held ones included; all of them known to `sight`.
 /// @param rng      the same number of draws for every object, seen or not, so that what hides one
 ///                 leaves the noise of the others alone.
-/// @return in the order of `objects`.
+/// @return in the order of `objects`. What is called by a wrong name, or unknown, has no instance.
 std::vector<Detection> Detect(const LineOfSight& sight, const CameraView& true_view,
                               const std::vector<world::ObjectState>& objects,
                               const DetectorParams& params, base::Rng* rng);

@@ -18,6 +18,12 @@ struct Hit {
   std::string name;      ///< static body, object, shape of the robot, or "floor"
 };
 
+/// What a camera sees of an object.
+struct VisiblePart {
+  double share{0.0};  ///< of its surface that faces the camera, 0 .. 1
+  double size{0.0};   ///< [sr] of what is seen
+};
+
 /// Whether nothing stands between the camera and things that it looks at: rays against static
 /// bodies, the floor z = 0, loose objects and, where wanted, the robot's own links. Made again for
 /// each look, which is cheap; constant, so several threads may ask.
@@ -39,7 +45,10 @@ class LineOfSight {
   /// Share of the object's surface towards the camera that the camera sees, 0..1: by a fixed
   /// pattern of points on its hull, weighted by area. Points outside of the view are not seen. The
   /// object does not hide itself.  @pre the object is one of those given.
-  double VisibleShare(const CameraView& view, const std::string& object) const;
+  double VisibleShare(const CameraView& view, const std::string& object) const {
+    return Visible(view, object).share;
+  }
+  VisiblePart Visible(const CameraView& view, const std::string& object) const;
   /// The same for an object that may not be there: what would be seen of it at X_MO. `except` (an
   /// object's name) is looked through.
   /// @throws base::ConfigError for a model that the world does not have.
@@ -48,6 +57,7 @@ class LineOfSight {
   /// Whether a point in space is in view and not hidden; `except` is looked through.
   bool Sees(const CameraView& view, const Eigen::Vector3d& p_M,
             const std::string& except = "") const;
+  const Surroundings& surroundings() const;
   /// Distance along a ray to the first hit [m]; infinite without one.
   /// @param direction  of any length above 0.
   double Cast(const Eigen::Vector3d& from_M, const Eigen::Vector3d& direction) const;

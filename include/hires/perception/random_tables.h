@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hires/base/rng.h"
+#include "hires/perception/detector_errors.h"
 #include "hires/perception/pinhole_camera.h"
 #include "hires/perception/point_cloud.h"
 #include "hires/perception/recogniser.h"
@@ -18,8 +19,15 @@ struct TableThing {
   bool is_known{true};                            ///< in the catalogue
   geometry::Pose3 X_CO{};                         ///< in the cloud's frame
   Eigen::Vector3d size{Eigen::Vector3d::Zero()};  ///< [m] of its box, along its own axes
-  int num_points{0};  ///< pixels of the picture without noise that it covers, within range
-  double visible_share{0.0};
+  int num_points{0};   ///< pixels of the picture without noise that it covers, within range
+  ThingInView view{};  ///< by the quick detector's means, which know no pixels
+};
+
+/// What random tables are like.
+struct TableVariety {
+  double farthest{1.4};     ///< [m] of the robot's base from the table's middle; nearest: 0.8
+  double most_hidden{0.6};  ///< of the surface of each thing towards the camera
+  double gap{0.02};         ///< [m] between things, at least
 };
 
 struct RandomTable {
@@ -33,17 +41,16 @@ struct RandomTable {
 
 /// Tables of the restaurant with one to eight things that a robot looks at through its head's
 /// camera, to try a recogniser on: four of five are of the catalogue, the others boxes and
-/// cylinders unlike all of it; none is hidden by more than 60 % of its surface towards the camera.
-/// Noise is that of DepthSensorParams.
+/// cylinders unlike all of it. Noise is that of DepthSensorParams.
 class RandomTables {
  public:
   /// @param robot    one with an upper body.
   /// @param objects  path of a catalogue of objects; kinds larger than 0.6 m are left out.
-  RandomTables(robot::Robot robot, const std::string& objects);
+  RandomTables(robot::Robot robot, const std::string& objects, const TableVariety& variety = {});
   ~RandomTables();
 
-  /// The scene of a seed is always the same.
-  RandomTable Make(std::uint64_t seed) const;
+  /// The scene of a seed is always the same; each look at it has noise of its own.
+  RandomTable Make(std::uint64_t seed, int look = 0) const;
   const std::vector<KnownModel>& catalogue() const { return catalogue_; }
 
  private:

@@ -10,12 +10,16 @@ namespace hires::perception {
 
 /// What became of a thing that stood on a table.
 struct ThingVerdict {
-  std::string kind{};         ///< the first label of its geometry; unknown, if it is
-  double distance{0.0};       ///< [m] from the camera to its foot
-  int torso{0};               ///< as RandomTable
-  double visible_share{0.0};  ///< of its surface towards the camera, 0 .. 1
+  std::string kind{};    ///< the first label of its geometry; unknown, if it is
+  double distance{0.0};  ///< [m] from the camera to its foot
+  int torso{0};          ///< as RandomTable
+  ThingInView view{};
   int num_points{0};
-  std::string called{};               ///< likewise; empty: not found
+  std::string called{};    ///< likewise; empty: not found
+  bool is_merged{false};   ///< ... because it was taken for a part of another thing
+  double confidence{0.0};  ///< in what it is called
+  double doubt{0.0};       ///< confidence in what it is, where it is called otherwise
+  Eigen::Vector3d offset{Eigen::Vector3d::Zero()};  ///< [m] of its pose, along SightFrame's columns
   double error{0.0};                  ///< [m] of its pose, of one that is called rightly and known
   std::optional<double> turned_by{};  ///< [rad] likewise; nothing: it looks the same all around
 
@@ -26,16 +30,18 @@ struct ThingVerdict {
 
 /// How what was recognised on tables agrees with what stood there. A thing is found if a detection
 /// has more of its points than of anything else's; it is called rightly if by the name of any model
-/// of its geometry. Things of fewer than 400 pixels do not count.
+/// of its geometry. Things of too few pixels do not count.
 class RecognitionScore {
  public:
-  explicit RecognitionScore(const std::vector<KnownModel>& catalogue);
+  explicit RecognitionScore(const std::vector<KnownModel>& catalogue, int min_points = 400);
 
   void Add(const RandomTable& table, const Recognition& seen);
   /// What another one has, behind what this one has.
   void Append(const RecognitionScore& other);
 
   const std::vector<ThingVerdict>& things() const { return things_; }
+  /// All labels of that geometry; one of no known kind has its own.
+  std::vector<std::string> LabelsLike(const std::string& label) const;
   int num_detections() const { return num_detections_; }
   int num_surplus() const { return num_surplus_; }  ///< of nothing, or of a thing found otherwise
 
@@ -46,8 +52,11 @@ class RecognitionScore {
   };
   const Kind* FindKind(const std::string& label) const;
   std::string KindOf(const std::string& label) const;
-  void JudgePose(const TableThing& thing, const Detection& seen, ThingVerdict* verdict) const;
+  void JudgePose(const RandomTable& table, const TableThing& thing, const Detection& seen,
+                 ThingVerdict* verdict) const;
+  void JudgeName(const Detection& seen, ThingVerdict* verdict) const;
 
+  int min_points_;
   std::vector<Kind> kinds_;
   std::vector<ThingVerdict> things_;
   int num_detections_{0}, num_surplus_{0};

@@ -30,6 +30,7 @@ class Surroundings {
 
   /// @throws base::ConfigError naming the models that come near.
   const world::ObjectModel& Model(const std::string& model) const;
+  bool Has(const std::string& model) const;
   /// Points that lie within another shape of the model are left out.
   /// @throws base::ConfigError as Model.
   const std::vector<SurfacePoint>& Surface(const std::string& model) const;

@@ -16,6 +16,9 @@ struct TabletopView {
   int num_own_points{0};  ///< of the robot itself, which were cut out
 };
 
+/// What was seen in a frame B, in another frame A.
+Sighting SeenFrom(const geometry::Pose3& X_AB, Sighting seen_B);
+
 /// A recogniser on a robot: it cuts the robot itself out of the cloud and knows how the camera
 /// stands, so that no floor is taken for a table.
 class TabletopRecogniser {

@@ -15,12 +15,12 @@
 namespace hires::sensing {
 
 struct MemoryParams {
-  double expected_share{0.6};    ///< of an object's surface that must be free before it counts as
-                                 ///< missed in a look that does not detect it
-  double expected_margin{0.06};  ///< [m] so far beside where it is believed it must be free, too:
-                                 ///< what hides it was seen from elsewhere, or by another error
-  double expected_size{0.0012};  ///< [sr] of what is free of it, as seen by the camera: a look that
-                                 ///< tells its table may overlook smaller things ...
+  double expected_share{0.6};     ///< of an object's surface that must be free before it counts as
+                                  ///< missed in a look that does not detect it
+  double expected_margin{0.06};   ///< [m] so far beside where it is believed it must be free, too:
+                                  ///< what hides it was seen from elsewhere, or by another error
+  double expected_size{0.0012};   ///< [sr] of what is free of it, as seen by the camera: smaller
+                                  ///< things may be overlooked ...
   double expected_distance{2.0};  ///< [m] ... and those that are farther away
   int looks_to_vanish{3};         ///< in a row in which it was missed
   double blending{0.3};           ///< weight of a new sight of an object that stands still

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "hires/perception/detector_errors.h"
+#include "hires/perception/recogniser.h"
 #include "hires/perception/surroundings.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/sensing/object_memory.h"
@@ -12,6 +14,14 @@
 #include "hires/world/world.h"
 
 namespace hires::simulation {
+
+/// What recognises objects for the robot's camera.
+struct Sight {
+  /// How a quick detector errs that stands in for a recogniser; null: by noise alone.
+  std::shared_ptr<const perception::DetectorErrors> errors;
+  /// A recogniser that looks at what the camera measures, instead; null: the quick detector.
+  std::shared_ptr<const perception::Recogniser> recogniser;
+};
 
 /// A constant world with a constant robot in it, shared by all simulators of it.
 struct Scene {
@@ -26,7 +36,8 @@ struct Scene {
   RobotClearance base_clearance;  ///< of those
   /// What the robot's camera looks at; null without an upper body.
   std::shared_ptr<const perception::Surroundings> surroundings;
-  sensing::MemoryParams memory;        ///< of what that camera sees
+  sensing::MemoryParams memory;  ///< of what that camera sees
+  Sight sight;
   std::optional<double> laser_height;  ///< [m] of the base's laser above the floor; none: no laser
   FloorPlaces floor;  ///< what the floor has that no map tells; imagination: nothing
 };
@@ -38,6 +49,7 @@ std::vector<geometry::Collision> FrozenShapes(const robot::Robot& robot,
 
 /// @throws base::ConfigError if robot and profile do not fit.
 std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot,
-                                       const sensing::MemoryParams& memory = {});
+                                       const sensing::MemoryParams& memory = {},
+                                       const Sight& sight = {});
 
 }  // namespace hires::simulation

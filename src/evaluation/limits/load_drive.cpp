@@ -147,7 +147,8 @@ DriveStage MakeDriveStage(const imagination::ImaginationSetup& setup, const std:
   stage.setup = &setup;
   world::World floor = setup.scene->world;
   floor.statics.clear();
-  stage.scene = simulation::MakeScene(std::move(floor), setup.scene->robot, setup.scene->memory);
+  stage.scene = simulation::MakeScene(std::move(floor), setup.scene->robot, setup.scene->memory,
+                                      setup.scene->sight);
   stage.start = imagination::StartOnTray(setup, {}, {object});
   stage.command_period = command_period;
   return stage;

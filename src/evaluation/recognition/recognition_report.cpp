@@ -54,7 +54,7 @@ std::vector<Part> PartsOf(const std::vector<ThingVerdict>& things) {
                            [&](const ThingVerdict& thing) { return thing.torso == torso; }));
   }
   parts.push_back(PartOf(things, "more than 30 % hidden",
-                         [](const ThingVerdict& thing) { return thing.visible_share < 0.7; }));
+                         [](const ThingVerdict& thing) { return thing.view.part.share < 0.7; }));
   parts.push_back(PartOf(things, "fewer than 1000 points",
                          [](const ThingVerdict& thing) { return thing.num_points < 1000; }));
   parts.erase(std::remove_if(parts.begin(), parts.end(),

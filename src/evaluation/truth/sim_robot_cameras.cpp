@@ -52,12 +52,6 @@ bool IsDue(const SimRobotWorld& world, double period) {
   return world.milliseconds() % std::lround(1000.0 * period) == 0;
 }
 
-/// How far a ray through the picture's corner is at that depth.
-double FarthestOf(const PinholeCamera& camera, double depth) {
-  const double across = 0.5 * std::hypot(camera.width, camera.height) / camera.focal_length;
-  return depth * std::hypot(1.0, across);
-}
-
 Colour ColourOf(const std::string& kind) {
   base::Hasher hash;
   hash.Add(kind);
@@ -114,12 +108,8 @@ bool SimRobotCameras::IsHeatDue(const SimRobotWorld& world) const {
   return has_thermal_camera() && IsDue(world, params_.heat_period);
 }
 
-perception::RangePicture SimRobotCameras::Look(const SimRobotWorld& world,
-                                               const PinholeCamera& camera,
-                                               double max_range) const {
-  const perception::LineOfSight sight(scene_->surroundings,
-                                      world.simulator().GetWorldState().objects, RobotIn(world));
-  return sight.Look(camera, max_range);
+perception::LineOfSight SimRobotCameras::Sight(const SimRobotWorld& world) const {
+  return {scene_->surroundings, world.simulator().GetWorldState().objects, RobotIn(world)};
 }
 
 perception::PointCloud SimRobotCameras::Cloud(const SimRobotWorld& world) const {
@@ -131,7 +121,7 @@ perception::PointCloud SimRobotCameras::Cloud(const SimRobotWorld& world) const 
   sensor.min_range = body.camera_min_range;
   sensor.max_range = body.camera_max_range;
   base::Rng rng = depth_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
-  return Measure(Look(world, camera, FarthestOf(camera, sensor.max_range)), camera, sensor, &rng);
+  return Measure(Sight(world), camera, sensor, &rng);
 }
 
 SeenCloud SimRobotCameras::See(const SimRobotWorld& world, const SensorReadings& readings) const {
@@ -161,7 +151,8 @@ perception::HeatPicture SimRobotCameras::Heat(const SimRobotWorld& world) const 
   PinholeCamera camera = heat_camera_;
   camera.X_MC = world.simulator().X_MLink(scene_->robot.profile.sensors.thermal_camera_link);
   base::Rng rng = heat_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
-  return MeasureHeat(Look(world, camera, kHeatRange), params_.temperatures, params_.heat, &rng);
+  return MeasureHeat(Sight(world).Look(camera, kHeatRange), params_.temperatures, params_.heat,
+                     &rng);
 }
 
 perception::Picture SimRobotCameras::InColours(const perception::HeatPicture& heat) const {

@@ -133,8 +133,9 @@ std::vector<perception::Detection> SimRobotSensors::Detect(const SimRobotWorld& 
                                       perception::ShapesOf(robot, truth.X_MB, truth.joints));
   const auto view =
       perception::ViewFrom(robot, simulator.X_MLink(robot.profile.upper_body->camera_link));
-  const perception::DetectorParams detector{params_.min_visible_share, world.detection_noise(),
-                                            world.detection_noise_yaw()};
+  const perception::DetectorParams detector{params_.min_visible_share,   world.detection_noise(),
+                                            world.detection_noise_yaw(), scene_->sight.errors,
+                                            world.recognition_errors(),  detector_rng_.seed()};
   base::Rng rng = detector_rng_.Fork(static_cast<std::uint64_t>(world.milliseconds()));
   return perception::Detect(sight, view, objects, detector, &rng);
 }
@@ -150,11 +151,7 @@ std::optional<perception::Sighting> SimRobotSensors::Recognise(const SimRobotWor
   auto view = eye_->Look(seen.cloud, seen.X_MC * perception::OpticalFrame(), shapes_M,
                          robot.profile.tray_link, rng);
   if (!view) return std::nullopt;
-  const geometry::Pose3 X_CO = perception::OpticalFrame();
-  for (perception::Detection& detection : view->sighting.detections)
-    detection.X_CO = X_CO * detection.X_CO;
-  for (Eigen::Vector3d& corner : view->sighting.table) corner = X_CO * corner;
-  return std::move(view->sighting);
+  return perception::SeenFrom(perception::OpticalFrame(), std::move(view->sighting));
 }
 
 /// Some are missed; the others are all off, each in its own way.

@@ -17,7 +17,8 @@ using simulation::Scene;
 
 constexpr double kNearRobot = 1.0;  // [m]
 constexpr double kLargestScore = 3.0;
-constexpr const char* kOfSensors[] = {"detection_noise", "detection_noise_yaw", "encoder_noise"};
+constexpr const char* kOfSensors[] = {"detection_noise", "detection_noise_yaw",
+                                      "recognition_errors", "encoder_noise"};
 constexpr const char* kOfLocalisation[] = {"localisation_x",         "localisation_y",
                                            "localisation_yaw",       "localisation_noise",
                                            "localisation_noise_yaw", "ghost_rate"};
@@ -75,7 +76,7 @@ std::shared_ptr<const Scene> SceneOf(const Truth& truth, const Scene& imagined, 
   robot::Robot robot = imagined.robot;
   ChangeController(truth, &robot.profile.base_controller);
   auto scene = std::make_shared<Scene>(
-      *simulation::MakeScene(std::move(world), std::move(robot), imagined.memory));
+      *simulation::MakeScene(std::move(world), std::move(robot), imagined.memory, imagined.sight));
   scene->floor = truth.floor;
   return scene;
 }

@@ -26,6 +26,12 @@ std::optional<geometry::Collision> PlateOf(const std::string& tray_link,
 
 }  // namespace
 
+Sighting SeenFrom(const geometry::Pose3& X_AB, Sighting seen_B) {
+  for (Detection& detection : seen_B.detections) detection.X_CO = X_AB * detection.X_CO;
+  for (Eigen::Vector3d& corner : seen_B.table) corner = X_AB * corner;
+  return seen_B;
+}
+
 TabletopRecogniser::TabletopRecogniser(std::shared_ptr<const Recogniser> recogniser,
                                        const SelfFilterParams& params)
     : recogniser_(std::move(recogniser)), self_(params) {}

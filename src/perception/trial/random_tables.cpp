@@ -22,12 +22,10 @@ constexpr int kMostThings = 8;
 constexpr double kLargest = 0.6;       // [m]
 constexpr double kUnknownShare = 0.2;  // of things
 constexpr double kUnlike = 0.015;  // [m] by which an unknown one differs from all known, at least
-constexpr double kGap = 0.02;      // [m] between things, at least
 constexpr double kTorso[] = {0.0115, 0.16, 0.31};  // [m] down, half way, up
 const Vector3d kTable(1.6, 0.8, 0.71);             // [m] as the model table_160x80
 constexpr double kFieldOfView = 1.0123;            // [rad] from left to right
 constexpr double kSight = 5.0;                     // [m]
-constexpr double kMostHidden = 0.6;  // of the surface of each thing towards the camera
 
 geometry::Aabb BoundsOf(const world::ObjectModel& model) {
   geometry::Aabb bounds;
@@ -42,12 +40,14 @@ Vector3d SortedSize(const world::ObjectModel& model) {
   return size;
 }
 
-geometry::Polygon OutlineOf(const world::ObjectModel& model, const geometry::Pose2& X_MO) {
+/// @param margin  [m] around it.
+geometry::Polygon OutlineOf(const world::ObjectModel& model, const geometry::Pose2& X_MO,
+                            double margin) {
   const geometry::Aabb b = BoundsOf(model);
-  return geometry::Transformed(X_MO, {{b.lower.x() - kGap / 2, b.lower.y() - kGap / 2},
-                                      {b.upper.x() + kGap / 2, b.lower.y() - kGap / 2},
-                                      {b.upper.x() + kGap / 2, b.upper.y() + kGap / 2},
-                                      {b.lower.x() - kGap / 2, b.upper.y() + kGap / 2}});
+  return geometry::Transformed(X_MO, {{b.lower.x() - margin, b.lower.y() - margin},
+                                      {b.upper.x() + margin, b.lower.y() - margin},
+                                      {b.upper.x() + margin, b.upper.y() + margin},
+                                      {b.lower.x() - margin, b.upper.y() + margin}});
 }
 
 /// What is on a table and who looks at it, before anything is measured.
@@ -66,16 +66,19 @@ struct RandomTables::Impl {
   Scene Lay(Rng* rng, RandomTable* table) const;
 
   robot::Robot robot;
+  TableVariety variety;
   std::vector<KnownModel> known;
 };
 
-RandomTables::RandomTables(robot::Robot robot, const std::string& objects)
+RandomTables::RandomTables(robot::Robot robot, const std::string& objects,
+                           const TableVariety& variety)
     : impl_(std::make_unique<Impl>()) {
   if (!robot.profile.upper_body) {
     throw base::ConfigError("robot '" + robot.model.name +
                             "' has no camera on a head (upper_body in its profile)");
   }
   impl_->robot = std::move(robot);
+  impl_->variety = variety;
   std::set<std::string> labels;
   for (const auto& [instance, model] : world::LoadCatalogueModels(objects)) {
     if (SortedSize(*model).z() < kLargest && labels.insert(model->name).second)
@@ -123,7 +126,7 @@ void RandomTables::Impl::Furnish(Rng* rng, world::World* world, RandomTable* tab
       const geometry::Pose2 X_MO{rng->Uniform(-0.5, 0.5) * (kTable.x() - 0.3),
                                  rng->Uniform(-0.5, 0.5) * (kTable.y() - 0.3),
                                  rng->Uniform(-geometry::kPi, geometry::kPi)};
-      const geometry::Polygon outline = OutlineOf(model, X_MO);
+      const geometry::Polygon outline = OutlineOf(model, X_MO, 0.5 * variety.gap);
       if (std::any_of(outlines.begin(), outlines.end(), [&](const geometry::Polygon& other) {
             return geometry::Distance(outline, other) <= 0.0;
           })) {
@@ -156,7 +159,8 @@ Scene RandomTables::Impl::Lay(Rng* rng, RandomTable* table) const {
   table->torso = rng->Index(3);
   robot::JointPositions posture = robot.profile.joints;
   posture[robot.profile.upper_body->torso_joint] = kTorso[table->torso];
-  const geometry::Pose2 X_MB{rng->Uniform(-0.4, 0.4), rng->Uniform(-1.4, -0.8), geometry::kPi / 2};
+  const geometry::Pose2 X_MB{rng->Uniform(-0.4, 0.4), rng->Uniform(-variety.farthest, -0.8),
+                             geometry::kPi / 2};
   const Vector3d eye = ViewOf(robot, X_MB, posture).X_MC.translation;
   const Vector3d middle(rng->Uniform(-0.2, 0.2), rng->Uniform(-0.1, 0.1), kTable.z());
   table->distance = (eye - middle).norm();
@@ -172,13 +176,14 @@ Scene RandomTables::Impl::Lay(Rng* rng, RandomTable* table) const {
 }
 
 /// What is hidden too much is not there.
-void TakeHiddenAway(Scene* scene, RandomTable* table) {
+void TakeHiddenAway(double most_hidden, Scene* scene, RandomTable* table) {
   for (bool is_settled = false; !is_settled;) {
     is_settled = true;
     const LineOfSight sight(scene->surroundings, scene->objects);
     for (std::size_t i = 0; i < scene->objects.size(); ++i) {
-      table->things[i].visible_share = sight.VisibleShare(scene->view, scene->objects[i].name);
-      if (table->things[i].visible_share >= 1.0 - kMostHidden) continue;
+      const VisiblePart part = sight.Visible(scene->view, scene->objects[i].name);
+      table->things[i].view = LookAtThing(sight, scene->view, scene->objects, i, part);
+      if (part.share >= 1.0 - most_hidden) continue;
       scene->objects.erase(scene->objects.begin() + static_cast<long>(i));
       table->things.erase(table->things.begin() + static_cast<long>(i));
       is_settled = false;
@@ -204,18 +209,18 @@ void NoteOwners(const RangePicture& picture, RandomTable* table) {
   }
 }
 
-RandomTable RandomTables::Make(std::uint64_t seed) const {
+RandomTable RandomTables::Make(std::uint64_t seed, int look) const {
   RandomTable table;
   Rng rng = Rng(seed).Fork(0);
   Scene scene = impl_->Lay(&rng, &table);
-  TakeHiddenAway(&scene, &table);
+  TakeHiddenAway(impl_->variety.most_hidden, &scene, &table);
   const Pose3 X_CM = (scene.camera.X_MC * OpticalFrame()).Inverse();
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     table.things[i].X_CO = X_CM * scene.objects[i].X_MO;
   const RangePicture picture =
       LineOfSight(scene.surroundings, scene.objects).Look(scene.camera, kSight);
   NoteOwners(picture, &table);
-  Rng noise = Rng(seed).Fork(1);
+  Rng noise = Rng(seed).Fork(1 + static_cast<std::uint64_t>(look));
   table.cloud = Measure(picture, scene.camera, {}, &noise);
   table.stand = {X_CM.rotation * Vector3d::UnitZ(), scene.camera.X_MC.translation.z()};
   return table;

@@ -12,16 +12,29 @@
 namespace hires::perception {
 namespace {
 
-constexpr int kLarge = 400;  // points
+/// For each detection, how many of its points each thing has; -1: something else.
+using Votes = std::vector<std::map<int, int>>;
 
-/// For each thing the detection with the most of its points, where the thing has most of that one's
-/// points; -1: none.
-std::vector<int> DetectionOfThing(const RandomTable& table, const Recognition& seen, int* surplus) {
-  std::vector<std::map<int, int>> votes(seen.detections.size());
+Votes VotesOf(const RandomTable& table, const Recognition& seen) {
+  Votes votes(seen.detections.size());
   for (std::size_t i = 0; i < table.owner.size(); ++i) {
     const int label = seen.segmentation.table ? seen.segmentation.labels[i] : kLabelNone;
     if (label >= kLabelFirstThing) ++votes[label - kLabelFirstThing][table.owner[i]];
   }
+  return votes;
+}
+
+/// Whether half of a thing's points are those of one detection.
+bool IsTaken(const Votes& votes, int thing, int num_points) {
+  return std::any_of(votes.begin(), votes.end(), [&](const std::map<int, int>& one) {
+    const auto found = one.find(thing);
+    return found != one.end() && 2 * found->second > num_points;
+  });
+}
+
+/// For each thing the detection with the most of its points, where the thing has most of that one's
+/// points; -1: none.
+std::vector<int> DetectionOfThing(const RandomTable& table, const Votes& votes, int* surplus) {
   std::vector<int> of_thing(table.things.size(), -1);
   for (std::size_t d = 0; d < votes.size(); ++d) {
     const auto most = std::max_element(votes[d].begin(), votes[d].end(),
@@ -32,7 +45,7 @@ std::vector<int> DetectionOfThing(const RandomTable& table, const Recognition& s
     }
     int& known = of_thing[most->first];
     if (known >= 0) ++*surplus;
-    if (known < 0 || votes[known][most->first] < most->second) known = static_cast<int>(d);
+    if (known < 0 || votes[known].at(most->first) < most->second) known = static_cast<int>(d);
   }
   return of_thing;
 }
@@ -47,7 +60,8 @@ double Quantile(std::vector<double> values, double share) {
 
 }  // namespace
 
-RecognitionScore::RecognitionScore(const std::vector<KnownModel>& catalogue) {
+RecognitionScore::RecognitionScore(const std::vector<KnownModel>& catalogue, int min_points)
+    : min_points_(min_points) {
   for (const ModelShape& shape : ShapesOfCatalogue(catalogue)) {
     kinds_.push_back({{}, geometry::TurnSymmetry(shape.models.front().model->collisions)});
     for (const KnownModel& known : shape.models) kinds_.back().labels.push_back(known.label);
@@ -65,9 +79,25 @@ std::string RecognitionScore::KindOf(const std::string& label) const {
   return kind != nullptr ? kind->labels.front() : label;
 }
 
-void RecognitionScore::JudgePose(const TableThing& thing, const Detection& seen,
-                                 ThingVerdict* verdict) const {
-  verdict->error = (seen.X_CO.translation - thing.X_CO.translation).norm();
+std::vector<std::string> RecognitionScore::LabelsLike(const std::string& label) const {
+  const Kind* kind = FindKind(label);
+  return kind != nullptr ? kind->labels : std::vector<std::string>{label};
+}
+
+void RecognitionScore::JudgeName(const Detection& seen, ThingVerdict* verdict) const {
+  verdict->called = KindOf(seen.label);
+  verdict->confidence = seen.confidence;
+  if (verdict->is_right()) return;
+  for (const LabelConfidence& other : seen.alternatives)
+    if (KindOf(other.label) == verdict->kind)
+      verdict->doubt = std::max(verdict->doubt, other.confidence);
+}
+
+void RecognitionScore::JudgePose(const RandomTable& table, const TableThing& thing,
+                                 const Detection& seen, ThingVerdict* verdict) const {
+  const Eigen::Vector3d error = seen.X_CO.translation - thing.X_CO.translation;
+  verdict->error = error.norm();
+  verdict->offset = SightFrame(thing.X_CO.translation, table.stand.up_C).transpose() * error;
   const int symmetry = FindKind(thing.model)->symmetry;
   if (symmetry == geometry::kRound) return;
   const double turn = geometry::YawOf(thing.X_CO.rotation.conjugate() * seen.X_CO.rotation);
@@ -77,20 +107,23 @@ void RecognitionScore::JudgePose(const TableThing& thing, const Detection& seen,
 
 void RecognitionScore::Add(const RandomTable& table, const Recognition& seen) {
   num_detections_ += static_cast<int>(seen.detections.size());
-  const std::vector<int> of_thing = DetectionOfThing(table, seen, &num_surplus_);
+  const Votes votes = VotesOf(table, seen);
+  const std::vector<int> of_thing = DetectionOfThing(table, votes, &num_surplus_);
   for (std::size_t k = 0; k < table.things.size(); ++k) {
     const TableThing& thing = table.things[k];
-    if (thing.num_points < kLarge) continue;
+    if (thing.num_points < min_points_) continue;
     ThingVerdict verdict;
     verdict.kind = thing.is_known ? KindOf(thing.model) : kUnknownLabel;
     verdict.distance = thing.X_CO.translation.norm();
     verdict.torso = table.torso;
-    verdict.visible_share = thing.visible_share;
+    verdict.view = thing.view;
     verdict.num_points = thing.num_points;
     if (of_thing[k] >= 0) {
       const Detection& detection = seen.detections[of_thing[k]];
-      verdict.called = KindOf(detection.label);
-      if (verdict.is_right() && thing.is_known) JudgePose(thing, detection, &verdict);
+      JudgeName(detection, &verdict);
+      if (verdict.is_right() && thing.is_known) JudgePose(table, thing, detection, &verdict);
+    } else {
+      verdict.is_merged = IsTaken(votes, static_cast<int>(k), thing.num_points);
     }
     things_.push_back(verdict);
   }

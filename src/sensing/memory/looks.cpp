@@ -102,16 +102,14 @@ bool ObjectMemory::MustBeSeen(const LineOfSight& sight, const LookedAt& look, co
                               const RememberedObject& object) const {
   const CameraView& view = look.view;
   const Pose3 X_MO = links.X_ML(object.link) * object.X_LO;
-  const bool is_by_cloud = !look.table_M.empty();
   const double distance = (X_MO.translation - view.X_MC.translation).norm();
-  if (is_by_cloud && distance > params_.expected_distance) return false;
-  const double least_size = is_by_cloud ? params_.expected_size : 0.0;
+  if (distance > params_.expected_distance) return false;
   const double size = SizeInView(view, object.model, X_MO);
   const Eigen::Vector3d left_M = view.X_MC.rotation * Eigen::Vector3d::UnitY();
   for (const double beside : {0.0, params_.expected_margin, -params_.expected_margin}) {
     const Pose3 X_MBeside{X_MO.translation + beside * left_M, X_MO.rotation};
     const double share = sight.VisibleShareAt(view, object.model, X_MBeside, object.name);
-    if (share < params_.expected_share || share * size < least_size) return false;
+    if (share < params_.expected_share || share * size < params_.expected_size) return false;
   }
   return true;
 }

@@ -68,8 +68,7 @@ class SimRobotCameras {
   perception::Picture InColours(const perception::HeatPicture& heat) const;
 
  private:
-  perception::RangePicture Look(const SimRobotWorld& world, const perception::PinholeCamera& camera,
-                                double max_range) const;
+  perception::LineOfSight Sight(const SimRobotWorld& world) const;
 
   const SimCameraParams params_;
   const base::Rng depth_rng_, heat_rng_;  // forked for each moment

@@ -1,4 +1,4 @@
-#include "cli/experiment_torso_poses_command.h"
+#include "cli/experiment/experiment_torso_poses_command.h"
 
 #include <CLI/CLI.hpp>
 #include <iostream>

@@ -1,4 +1,4 @@
-#include "cli/experiment_decision_command.h"
+#include "cli/experiment/experiment_decision_command.h"
 
 #include <fmt/format.h>
 

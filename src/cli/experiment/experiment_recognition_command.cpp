@@ -1,4 +1,4 @@
-#include "cli/experiment_recognition_command.h"
+#include "cli/experiment/experiment_recognition_command.h"
 
 #include <CLI/CLI.hpp>
 #include <iostream>

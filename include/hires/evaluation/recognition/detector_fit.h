@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/evaluation/experiment.h"
+#include "hires/perception/detector_errors.h"
+#include "hires/perception/recogniser_config.h"
+#include "hires/perception/recognition_score.h"
+#include "hires/robot/robot_profile.h"
+
+namespace hires::evaluation {
+
+/// How a recogniser errs on random tables (perception::RandomTables): farther away, more hidden and
+/// more crowded than those of RecognitionOrder, and each looked at twice.
+struct DetectorFitOrder {
+  int tables{1000};
+  int held_out{500};         ///< more tables, to try the fit on
+  std::uint64_t seed{5000};  ///< of the first table; each next one has the next
+  robot::Robot robot;
+  std::string objects;  ///< path of the catalogue that things are drawn from
+  perception::RecogniserConfig recogniser;
+};
+
+/// Two looks at one thing.
+struct TwoLooks {
+  perception::ThingVerdict first, second;
+};
+
+/// How well the fit says what happens on tables that it was not made from.
+struct FitCheck {
+  std::string part;  ///< of the things
+  int num_looks{0};
+  int num_found{0}, num_named{0};           ///< as it happened
+  double found{0.0}, named{0.0};            ///< as many were expected by the fit
+  double median_error{0.0}, expected{0.0};  ///< [m] medians, of those named rightly
+  double beyond{0.0};                       ///< share of these beyond the fit's 95 % quantile
+};
+
+struct DetectorFitReport {
+  int tables{0}, held_out{0};
+  std::uint64_t seed{0};
+  std::string objects, recogniser;  ///< names of what was tried
+  int num_things{0};                ///< looks at, of the fit
+  int num_found{0}, num_named{0}, num_merged{0};
+  perception::DetectorErrors errors;
+  std::vector<FitCheck> checks;
+  /// Per look of the held-out tables: log likelihood of the fit less that of constant shares.
+  double gain_found{0.0}, gain_named{0.0};
+};
+
+/// @throws base::ConfigError where nothing was found or nothing named rightly.
+perception::DetectorErrors FitDetector(const std::vector<TwoLooks>& things,
+                                       const perception::RecognitionScore& kinds);
+
+/// The same bits for any number of threads.
+/// @return nothing when it was cancelled.  @throws base::ConfigError for a robot without a camera,
+/// and as FitDetector.
+std::optional<DetectorFitReport> FitDetector(const DetectorFitOrder& order, const Crew& crew);
+
+std::string ReportText(const DetectorFitReport& report);
+nlohmann::ordered_json ToJson(const DetectorFitReport& report);
+/// A file like config/detector.yaml, with a head that says where it comes from.
+std::string ToYaml(const DetectorFitReport& report);
+
+}  // namespace hires::evaluation

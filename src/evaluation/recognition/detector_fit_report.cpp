@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "hires/evaluation/recognition/detector_fit.h"
+#include "hires/evaluation/report_table.h"
+
+namespace hires::evaluation {
+namespace {
+
+using nlohmann::ordered_json;
+using perception::DetectorErrors;
+using perception::Regression;
+
+double Percent(double number, int of) { return of > 0 ? 100.0 * number / of : 0.0; }
+
+std::string WeightsText(const DetectorErrors& errors) {
+  const std::pair<const char*, const Regression*> all[]{{"found (log odds)", &errors.found},
+                                                        {"named rightly (log odds)", &errors.named},
+                                                        {"position (log m)", &errors.position.log},
+                                                        {"turn (log rad)", &errors.turn.log}};
+  std::vector<std::vector<std::string>> rows{{"regression"}};
+  for (const char* name : perception::kRegressorNames) rows.front().emplace_back(name);
+  rows.front().emplace_back("repeats");
+  for (const auto& [name, one] : all) {
+    rows.push_back({name});
+    for (Eigen::Index i = 0; i < one->weight.size(); ++i)
+      rows.back().push_back(fmt::format("{:+.2f} ({:.2f})", one->weight[i], one->error[i]));
+    rows.back().push_back(fmt::format("{:.2f}", one->repeats));
+  }
+  return FormatTable(rows);
+}
+
+std::string ChecksText(const std::vector<FitCheck>& checks) {
+  std::vector<std::vector<std::string>> rows{{"held-out looks at", "number", "found [%]",
+                                              "by the fit", "named rightly [%]", "by the fit",
+                                              "median [mm]", "by the fit", "beyond its 95 % [%]"}};
+  for (const FitCheck& one : checks) {
+    rows.push_back({one.part, std::to_string(one.num_looks),
+                    fmt::format("{:.1f}", Percent(one.num_found, one.num_looks)),
+                    fmt::format("{:.1f}", Percent(one.found, one.num_looks)),
+                    fmt::format("{:.1f}", Percent(one.num_named, one.num_found)),
+                    fmt::format("{:.1f}", Percent(one.named, one.num_found)),
+                    fmt::format("{:.2f}", 1e3 * one.median_error),
+                    fmt::format("{:.2f}", 1e3 * one.expected),
+                    fmt::format("{:.1f}", 100.0 * one.beyond)});
+  }
+  return FormatTable(rows);
+}
+
+std::string SourceText(const DetectorFitReport& report) {
+  return fmt::format(
+      "{} random tables from seed {} on, each looked at twice: {} looks at things, {} found, {} "
+      "named rightly, {} seen as one with a neighbour",
+      report.tables, report.seed, report.num_things, report.num_found, report.num_named,
+      report.num_merged);
+}
+
+std::string GainText(const DetectorFitReport& report) {
+  return fmt::format(
+      "log likelihood per look against shares that are the same for all: found {:+.3f}, named "
+      "{:+.3f}",
+      report.gain_found, report.gain_named);
+}
+
+}  // namespace
+
+std::string ReportText(const DetectorFitReport& report) {
+  std::string text = SourceText(report) + "; weights with their standard errors\n\n" +
+                     WeightsText(report.errors) + "\n";
+  text += fmt::format(
+      "spread of lengths: position {:.2f}, turn {:.2f}; direction away {:.2f}, "
+      "across {:.2f}, up {:.2f}\n",
+      report.errors.position.spread, report.errors.turn.spread, report.errors.direction.x(),
+      report.errors.direction.y(), report.errors.direction.z());
+  text += fmt::format("confidence in wrong names {:.2f}, in what it is {:.2f}\n\n",
+                      report.errors.confidence, report.errors.doubt);
+  text += fmt::format("{} other tables:\n\n", report.held_out) + ChecksText(report.checks) + "\n";
+  return text + GainText(report) + "\n";
+}
+
+ordered_json ToJson(const DetectorFitReport& report) {
+  ordered_json checks = ordered_json::array();
+  for (const FitCheck& one : report.checks) {
+    checks.push_back({{"part", one.part},
+                      {"looks", one.num_looks},
+                      {"found", one.num_found},
+                      {"found_by_fit", one.found},
+                      {"named", one.num_named},
+                      {"named_by_fit", one.named},
+                      {"median_error", one.median_error},
+                      {"median_error_by_fit", one.expected},
+                      {"beyond_95", one.beyond}});
+  }
+  return {{"schema", "hires/detector_fit"},
+          {"version", 1},
+          {"tables", report.tables},
+          {"seed", report.seed},
+          {"looks", report.num_things},
+          {"found", report.num_found},
+          {"named", report.num_named},
+          {"merged", report.num_merged},
+          {"held_out_tables", report.held_out},
+          {"checks", checks},
+          {"gain_found", report.gain_found},
+          {"gain_named", report.gain_named},
+          {"errors", perception::ToYaml(report.errors)}};
+}
+
+std::string ToYaml(const DetectorFitReport& report) {
+  std::string checks;
+  for (const FitCheck& one : report.checks) {
+    checks += fmt::format(
+        "#   {}: {} looks, found {:.1f} % (fit {:.1f}), named {:.1f} % (fit {:.1f}), median {:.2f} "
+        "mm (fit {:.2f})\n",
+        one.part, one.num_looks, Percent(one.num_found, one.num_looks),
+        Percent(one.found, one.num_looks), Percent(one.num_named, one.num_found),
+        Percent(one.named, one.num_found), 1e3 * one.median_error, 1e3 * one.expected);
+  }
+  return fmt::format(
+             "# How the head camera's recogniser errs. Written by `hires experiment detector`, not "
+             "by hand.\n"
+             "# {},\n# {}.\n# {}.\n# {} other tables:\n{}"
+             "# Regressors: docs/sources_perception.md.\n",
+             report.objects, report.recogniser, SourceText(report), report.held_out, checks) +
+         perception::ToYaml(report.errors);
+}
+
+}  // namespace hires::evaluation
