@@ -181,13 +181,22 @@ TEST_F(ObjectMemoryTest, WhatMayBeHiddenBySomethingCloseBesideDoesNotVanish) {
   // The mug was seen first, the screen by another error of localisation: it may stand before it.
   const auto screen = Thing("screen1", "screen", At(1.3, -0.4, 0.6));  // up to y 0.1 m
   const Eigen::Vector3d p_MC = ViewOf(Pr2(), body_.X_MB, body_.joints).X_MC.translation;
-  const double edge = p_MC.y() + (0.1 - p_MC.y()) * (1.8 - p_MC.x()) / (1.3 - p_MC.x());
-  memory_.Believe("mug1", "mug", "", At(1.8, edge + 0.05, 0.7));  // 0.04 m is its radius
+  const double edge = p_MC.y() + (0.1 - p_MC.y()) * (1.6 - p_MC.x()) / (1.3 - p_MC.x());
+  memory_.Believe("mug1", "mug", "", At(1.6, edge + 0.05, 0.7));  // 0.04 m is its radius
   for (int i = 0; i < 5; ++i) Look({screen});
   EXPECT_THAT(Names(), ElementsAre("mug1", "screen1"));
-  memory_.Believe("mug1", "mug", "", At(1.8, edge + 0.15, 0.7));
+  memory_.Believe("mug1", "mug", "", At(1.6, edge + 0.15, 0.7));
   for (int i = 0; i < 5; ++i) Look({screen});
   EXPECT_THAT(Names(), ElementsAre("screen1")) << "nothing hides that place";
+}
+
+TEST_F(ObjectMemoryTest, WhatIsFarAwayMayBeOverlooked) {
+  memory_.Believe("mug1", "mug", "", At(2.2, 0.0, 0.7));
+  for (int i = 0; i < 5; ++i) Look({});
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  memory_.Believe("mug2", "mug", "", At(1.6, 0.0, 0.7));
+  for (int i = 0; i < 5; ++i) Look({});
+  EXPECT_THAT(Names(), ElementsAre("mug1")) << "nobody overlooks what is near";
 }
 
 TEST_F(ObjectMemoryTest, TheOwnArmBeforeAnObjectDoesNotMakeItVanish) {
@@ -473,8 +482,6 @@ TEST_F(NamelessTest, WhatIsTooFarForACloudIsNotMissedInIt) {
     memory_.Look(body_, {}, table);
   }
   EXPECT_THAT(Names(), ElementsAre("mug1"));
-  for (int i = 0; i < 3; ++i) Look({});
-  EXPECT_TRUE(Names().empty()) << "a look that sees everything in view";
 }
 
 TEST_F(NamelessTest, WhatLooksLikeSomethingElseForAWhileIsStillWhatItWas) {
