@@ -146,6 +146,33 @@ TEST(FindTableTest, AWallBehindTheTableIsNoPartOfIt) {
   }
 }
 
+// Seen from afar it hides what of the wall is below its plane, as far as the sensor tells planes.
+TEST(FindTableTest, AWallWhoseFootTheTableHidesIsNoPartOfIt) {
+  constexpr double kEye = 1.5, kEdge = 2.75, kWall = kEdge + 0.09;  // [m]
+  PointCloud cloud;
+  base::Rng noise(1);
+  const auto see = [&](double x, double y, double z) {
+    const double depth = 1.0 + noise.Normal(0.0, DepthNoise(x)) / x;
+    cloud.points.push_back((depth * Vector3d(-y, kEye - z, x)).cast<float>());
+  };
+  for (double y = -1.4; y < 1.4; y += 0.006) {
+    for (double x = kEdge - 0.7; x < kEdge; x += 0.015) see(x, y, kTableHeight);
+    const double hidden = kTableHeight - (kEye - kTableHeight) * (kWall / kEdge - 1.0);
+    for (double z = hidden; z < 1.4; z += 0.006) see(kWall, y, z);
+  }
+  cloud.width = static_cast<int>(cloud.points.size());
+  const Segmentation out =
+      SegmentTabletop(cloud, CameraStand{-Vector3d::UnitY(), kEye}, {}, base::Rng(1));
+  ASSERT_TRUE(out.table.has_value());
+  const auto is_on = [&](double x, double y) {
+    return geometry::Contains(out.table->outline,
+                              out.table->FromAbove(Vector3d(-y, kEye - kTableHeight, x)));
+  };
+  EXPECT_TRUE(is_on(kEdge - 0.6, 1.3) && is_on(kEdge - 0.1, -1.3));
+  EXPECT_FALSE(is_on(kEdge + 0.06, 0.0));
+  EXPECT_EQ(out.num_things, 0);
+}
+
 TEST(FindTableTest, AWallAloneIsNoTable) {
   for (const double lowest : {0.0, 0.75, 1.0}) {  // [m] above the floor, that the camera sees
     PointCloud cloud;

@@ -19,6 +19,8 @@ constexpr int kMostCells = 2000;       // along each axis; larger tables have la
 constexpr double kMinPiece = 0.1;      // of the largest piece
 constexpr int kMinOver = 3;      // times as many points in a cell's plane as below it: a table
                                  // hides what is below it, a wall goes on there
+constexpr int kMinUnder = 2;     // likewise as above it: a wall goes on there, and so does a thing,
+                                 // whose cells a table can do without
 constexpr double kBeside = 3.0;  // tolerances up to which points are beside a plane
 
 struct Plane {
@@ -134,10 +136,12 @@ std::optional<Plane> BestSample(const std::vector<Eigen::Vector3d>& points,
 }
 
 /// Points of a plane in square cells, and which of the cells hang together. Cells in which
-/// something goes on below the plane belong to none.
+/// something goes on below the plane, or above it, belong to none: a table that is seen from afar
+/// hides the foot of the wall behind it.
 class Pieces {
  public:
-  Pieces(const std::vector<Eigen::Vector2d>& points, const std::vector<Eigen::Vector2d>& below);
+  Pieces(const std::vector<Eigen::Vector2d>& points, const std::vector<Eigen::Vector2d>& below,
+         const std::vector<Eigen::Vector2d>& above);
   /// Whether a point is in a piece that is not small.
   bool IsKept(std::size_t point) const { return IsCellKept(cell_[point]); }
   /// Whether it may be a corner of the hull, too: those of a cell between four others, one at each
@@ -147,7 +151,7 @@ class Pieces {
  private:
   bool IsCellKept(int cell) const { return sizes_[piece_[cell]] > kMinPiece * largest_; }
   int CellOf(const Eigen::Vector2d& p) const;  // -1: beside all of them
-  void DropSteepCells(const std::vector<Eigen::Vector2d>& below);
+  void DropSteepCells(const std::vector<Eigen::Vector2d>& beside, int least);
   void Spread(int first, int piece);
 
   Eigen::Array2d lower_;
@@ -160,7 +164,8 @@ class Pieces {
 };
 
 Pieces::Pieces(const std::vector<Eigen::Vector2d>& points,
-               const std::vector<Eigen::Vector2d>& below) {
+               const std::vector<Eigen::Vector2d>& below,
+               const std::vector<Eigen::Vector2d>& above) {
   lower_ = points.front();
   Eigen::Array2d upper = lower_;
   for (const Eigen::Vector2d& p : points) {
@@ -176,7 +181,8 @@ Pieces::Pieces(const std::vector<Eigen::Vector2d>& points,
     cell_.push_back(CellOf(p));
     ++count_[cell_.back()];
   }
-  DropSteepCells(below);
+  DropSteepCells(below, kMinOver);
+  DropSteepCells(above, kMinUnder);
   for (std::size_t i = 0; i < count_.size(); ++i) {
     if (count_[i] == 0 || piece_[i] != 0) continue;
     sizes_.push_back(0);
@@ -191,12 +197,13 @@ int Pieces::CellOf(const Eigen::Vector2d& p) const {
   return static_cast<int>(cell.y()) * columns_ + static_cast<int>(cell.x());
 }
 
-void Pieces::DropSteepCells(const std::vector<Eigen::Vector2d>& below) {
-  std::vector<int> count_below(count_.size(), 0);
-  for (const Eigen::Vector2d& p : below)
-    if (const int cell = CellOf(p); cell >= 0) ++count_below[cell];
+/// @param least  times as many points in a cell's plane as beside it.
+void Pieces::DropSteepCells(const std::vector<Eigen::Vector2d>& beside, int least) {
+  std::vector<int> count_beside(count_.size(), 0);
+  for (const Eigen::Vector2d& p : beside)
+    if (const int cell = CellOf(p); cell >= 0) ++count_beside[cell];
   for (std::size_t i = 0; i < count_.size(); ++i)
-    if (kMinOver * count_below[i] > count_[i]) count_[i] = 0;
+    if (least * count_beside[i] > count_[i]) count_[i] = 0;
 }
 
 void Pieces::Spread(int first, int piece) {
@@ -226,18 +233,18 @@ struct TableTop {
 TableTop TopOf(const std::vector<Eigen::Vector3d>& points, const Table& table, double tolerance) {
   const Plane plane{table.normal, table.offset};
   std::vector<Eigen::Vector3d> on_it;
-  std::vector<Eigen::Vector2d> from_above, below;
+  std::vector<Eigen::Vector2d> from_above, below, above;
   for (const Eigen::Vector3d& p : points) {
     if (Supports(plane, p, tolerance)) {
       on_it.push_back(p);
       from_above.push_back(table.FromAbove(p));
-    } else if (SideOf(plane, p, tolerance) < 0) {
-      below.push_back(table.FromAbove(p));
+    } else if (const int side = SideOf(plane, p, tolerance); side != 0) {
+      (side < 0 ? below : above).push_back(table.FromAbove(p));
     }
   }
   TableTop top;
   if (on_it.empty()) return top;
-  const Pieces pieces(from_above, below);
+  const Pieces pieces(from_above, below, above);
   for (std::size_t i = 0; i < on_it.size(); ++i) {
     if (!pieces.IsKept(i)) continue;
     top.points.push_back(on_it[i]);
