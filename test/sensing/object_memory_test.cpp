@@ -564,6 +564,7 @@ class UnknownThingTest : public NamelessTest {
     Pose3 X_MO;
     Eigen::Vector3d size;
     std::string label = perception::kUnknownLabel;
+    int num_points = 0;
   };
   void See(const std::vector<Seen>& things) {
     body_.time += 0.5;
@@ -574,6 +575,7 @@ class UnknownThingTest : public NamelessTest {
       detection.label = thing.label;
       detection.X_CO = X_CM * thing.X_MO;
       detection.size = thing.size;
+      detection.num_points = thing.num_points;
       detections.push_back(detection);
     }
     memory_.Look(body_, detections);
@@ -606,6 +608,27 @@ TEST_F(UnknownThingTest, WhatIsExpectedThereIsNoNewThing) {
   Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
   for (int i = 0; i < 5; ++i) See({{At(1.5, 0.14, 0.7), size_}});
   EXPECT_THAT(Names(), ElementsAre("mug1"));
+  for (int i = 0; i < 5; ++i) See({{At(1.5, 0.14, 0.7), size_, perception::kUnknownLabel, 5000}});
+  EXPECT_THAT(Names(), ElementsAre("mug1")) << "looks do not overrule what was told";
+}
+
+TEST_F(UnknownThingTest, LooksThatShowMoreOfItKnowBetterWhatKindItIs) {
+  const auto look = [&](const std::string& label, int num_points) {
+    See({{At(1.5, 0.1, 0.7), size_, label, num_points}});
+  };
+  const std::string unknown = perception::kUnknownLabel;
+  for (int i = 0; i < 3; ++i) look("mug", 300);
+  for (int i = 0; i < 5; ++i) look(unknown, 300);
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  look("mug", 400);
+  for (int i = 0; i < 5; ++i) look(unknown, 400);
+  EXPECT_THAT(Names(), ElementsAre("mug1")) << "the best look counts, not the first";
+  for (int i = 0; i < 2; ++i) look(unknown, 3000);
+  EXPECT_THAT(Names(), ElementsAre("mug1")) << "not yet";
+  look(unknown, 3000);
+  EXPECT_THAT(Names(), ElementsAre("unknown1"));
+  EXPECT_EQ(ModelOf("unknown1"), "unknown_0.120x0.080x0.200");
+  EXPECT_THAT(memory_.Vanished(), ElementsAre("mug1"));
 }
 
 TEST_F(UnknownThingTest, ABoxTurnedByAQuarterIsTheSameBox) {

@@ -57,6 +57,7 @@ struct RememberedObject {
   int num_missed{0};        ///< looks in a row
   int num_resized{0};       ///< looks in a row that measured another box of a thing of unknown kind
   int num_looked_through{0};  ///< scans of the tray in a row that saw nothing in its place
+  int num_points{0};  ///< most that a look showed of it, where looks alone tell its kind; else 0
 };
 
 /// A scan of the tray and what it says.
@@ -85,7 +86,9 @@ struct TrayView {
 ///
 /// What no model explains, and is not where something is expected, is remembered by its box: its
 /// model says it (world::UnknownBoxModel), its name is unknown1, unknown2, ... It has no identity
-/// beyond its place; where something known turns out to be in its place, it was that.
+/// beyond its place; where something known turns out to be in its place, it was that. And where
+/// looks alone said of what kind a thing is, several in a row that show more of it, and find that
+/// no model explains it, know better: from afar a box may look like a book.
 ///
 /// A laser over the tray says where what stands there is, what is gone, and that something is there
 /// that nobody knows. It tells nothing of heights and leaning, nor who something is: none of its
@@ -200,6 +203,7 @@ class ObjectMemory {
   struct LastPlace {
     std::string model;
     Eigen::Vector3d p_M;  ///< where it was last
+    int num_points;       ///< as remembered of it
   };
   /// A thing that is none of the known.
   struct Newcomer {

@@ -83,6 +83,9 @@ void ObjectMemory::Look(const BodyReading& body, const std::vector<Detection>& d
       named[i].model = BoxOf(named[i].name, detections[i], &X_MO);
     if (!detections[i].instance) X_MO = TurnedAlike(links, named[i].name, named[i].model, X_MO);
     See(links, named[i].name, named[i].model, X_MO, body.time);
+    RememberedObject& object = objects_.at(named[i].name);
+    if (object.num_points > 0 && detections[i].label == object.model)
+      object.num_points = std::max(object.num_points, detections[i].num_points);
   }
 }
 

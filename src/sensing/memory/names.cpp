@@ -46,11 +46,12 @@ constexpr double kAsLikely = 1.0 / 3.0;  // of what nothing else speaks for
 }  // namespace
 
 /// Whether a thing that has no name, seen at X_MO, may be the object. One that no model explains
-/// may be whatever is expected there.
+/// may be whatever is expected there, unless looks that showed less of it said what that is.
 bool ObjectMemory::MayBe(const Links& links, const RememberedObject& object,
                          const Detection& detection, const Pose3& X_MO) const {
   if ((PlaceOf(links, object) - X_MO.translation).norm() > params_.instance_distance) return false;
-  if (detection.label == perception::kUnknownLabel) return true;
+  if (detection.label == perception::kUnknownLabel)
+    return object.num_points == 0 || detection.num_points <= object.num_points;
   const auto kinds = KindsOf(detection, kHardly);
   return std::any_of(kinds.begin(), kinds.end(),
                      [&](const SeenKind& one) { return one.kind == object.model; });
@@ -156,9 +157,12 @@ void ObjectMemory::NameNewcomers(const LookedAt& look, std::vector<Named>* named
     const int anchor = found.anchor[k];
     one.name = anchor < 0 ? FreeName(one.model) : names[anchor];
     if (anchor >= 0) one.model = anchors[anchor].kind;
-    if (one.model == perception::kUnknownLabel)
-      one.model = world::UnknownBoxModel(look.detections[ripe[k]->detection].size);
-    objects_[one.name].model = one.model;  // so that the next one gets another name
+    const Detection& seen = look.detections[ripe[k]->detection];
+    if (one.model == perception::kUnknownLabel) one.model = world::UnknownBoxModel(seen.size);
+    RememberedObject& object = objects_[one.name];
+    object.model = one.model;  // so that the next one gets another name
+    object.num_points =
+        anchor < 0 ? std::max(1, seen.num_points) : vanished_.at(one.name).num_points;
   }
 }
 

@@ -130,7 +130,7 @@ void ObjectMemory::DisbelieveAllBut(const std::vector<std::string>& names) {
 void ObjectMemory::Lose(const Links& links, const std::string& name) {
   if (Hand* hand = HandOf(name)) hand->holds.clear();
   const RememberedObject& object = objects_.at(name);
-  vanished_[name] = {object.model, PlaceOf(links, object)};
+  vanished_[name] = {object.model, PlaceOf(links, object), object.num_points};
   objects_.erase(name);
 }
 
