@@ -76,16 +76,35 @@ ReportOrigin OriginOf(const AchieveOptions& options, const std::string& package_
   return origin;
 }
 
-/// @param truth  under which it was played, where this is known.
+/// How things really stand in the end, and what the robot touched: no robot knows it.
+nlohmann::ordered_json EndOf(const loop::LoopRun& run) {
+  nlohmann::ordered_json things = nlohmann::ordered_json::object();
+  for (const auto& [name, fate] : run.truth.objects) {
+    const Eigen::Vector3d& p = fate.X_MO.translation;
+    things[name] = {{"position", {p.x(), p.y(), p.z()}},  // [m] in the map
+                    {"stands", fate.stands},
+                    {"held_by", fate.attached_to},
+                    {"falls", fate.falls}};
+  }
+  return {{"virtual_seconds", run.virtual_seconds},
+          {"touched", run.truth.contact},
+          {"objects", things}};
+}
+
+/// @param local  what was played here, if it was.
 void WriteFiles(const AchieveOptions& options, const ReportOrigin& origin,
-                const evaluation::AchieveReport& report, const std::optional<std::string>& truth) {
+                const evaluation::AchieveReport& report,
+                const std::optional<loop::LoopRun>& local) {
   if (!options.timeline.empty()) {
     const std::string csv = evaluation::TimelineCsv(evaluation::MakeTimeline(report));
     base::ReplaceTextFile(options.timeline, csv);
   }
   nlohmann::ordered_json json = ToJson(report);
-  if (truth) json["truth"] = *truth;
-  json["seed"] = truth ? nlohmann::ordered_json(options.seed) : nullptr;
+  if (local) {
+    json["truth"] = local->truth_name;
+    json["in_truth"] = EndOf(*local);
+  }
+  json["seed"] = local ? nlohmann::ordered_json(options.seed) : nullptr;
   WriteReport(options.report, origin, json);
 }
 
@@ -277,7 +296,7 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   show(report.status);  // its changes may have come with the result alone
   PrintReport(report, options.is_local);
   if (local) PrintTruth(*local, base::SteadyNow() - begun);
-  WriteFiles(options, origin, report, local ? std::make_optional(local->truth_name) : std::nullopt);
+  WriteFiles(options, origin, report, local);
   return ExitCodeFor(report.outcome);
 }
 

@@ -2,6 +2,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <regex>
 
 #include "cli/achieve_command.h"
@@ -187,11 +188,18 @@ class AchieveVerbTest : public ::testing::Test {
 };
 
 TEST_F(AchieveVerbTest, ATaskIsPlayedInThisProgramWithoutAnyNode) {
-  const Ended ended = Run({"--local", "carry_object_on_tray mug7 counter1 table1"});
+  const std::string json = (folder_.path() / "run.json").string();
+  const Ended ended = Run({"--local", "carry_object_on_tray mug7 counter1 table1", "--json", json});
   EXPECT_EQ(ended.code, kExitNoWay) << ended.err << "nobody knows mug7";
   EXPECT_THAT(ended.out, HasSubstr("carry_object_on_tray mug7 counter1 table1: no_plan"));
   EXPECT_THAT(ended.out, HasSubstr("in truth (same: imagination's own model): fallen: nothing"));
   EXPECT_TRUE(query_.task.empty()) << "nobody else was asked";
+  const auto end = nlohmann::json::parse(base::ReadTextFile(json)).at("in_truth");
+  EXPECT_EQ(end.at("touched"), "");
+  const auto mill = end.at("objects").at("peppermill1");  // of the scenario topple
+  EXPECT_NEAR(mill.at("position").at(0).get<double>(), 5.47, 0.01);
+  EXPECT_EQ(mill.at("falls"), 0);
+  EXPECT_TRUE(mill.at("stands").get<bool>());
 }
 
 TEST_F(AchieveVerbTest, WhatCannotBePlayedIsNamed) {
