@@ -40,6 +40,14 @@ class RandomTask:
         there = {name: pose for name, pose in self.objects.items() if name not in self.missing}
         return scenario_of(self.robot, there, self.hidden)
 
+    def is_done(self, there):
+        """@param there  names of what stands on the areas that the task is about."""
+        if self.kind == 'serve':
+            return bool(set(there) & set(self.coffees))
+        if self.kind == 'carry':
+            return self.goal_object in there
+        return set(there) & set(self.objects) == set(self.objects) - self.missing
+
     def _draw_guests(self, chance):
         seats = chance.sample(sorted(SEATS), chance.randint(1, len(SEATS)))
         return {'guest%d' % (i + 1): seat for i, seat in enumerate(seats)}

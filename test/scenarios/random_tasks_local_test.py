@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+"""Tasks drawn at random are done by pictures alone, each in a process of its own that needs no master:
+two beside each other. Usage: random_tasks_local_test.py HIRES plain|surprised FIRST LAST
+`surprised`: beside things that nobody told the robot of (support/surprises.py). Prints a table."""
+
+import json
+import multiprocessing.pool
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import yaml
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, os.path.join(HERE, 'support'))
+
+from closed_loop import IMAGINE_PLACING  # noqa: E402
+from random_tasks import RandomTask  # noqa: E402
+from restaurant import is_over  # noqa: E402
+from surprises import MOVED_CHAIR, surprises  # noqa: E402
+
+BESIDE_EACH_OTHER = 2
+REACH = 0.02  # [m] beyond the edge of an area
+ROW = '%-4s %-46s %-10s %8s  %-12s %-34s %s'
+
+
+class Played:
+    """What became of one task, in truth."""
+
+    def __init__(self, task, answer):
+        self.task = task
+        self.outcome, self.reason = answer['outcome'], answer['reason']
+        truth = answer['in_truth']
+        self.seconds, self.touched = truth['virtual_seconds'], truth['touched']
+        things = truth['objects']
+        self.fallen = sorted(name for name, end in things.items() if end['falls'] > 0)
+        self.there = sorted(
+            name for name, end in things.items() if end['stands'] and
+            any(is_over(area, *end['position'], slack=REACH) for area in task.goal_areas))
+
+    def row(self):
+        there = 'there: ' + ', '.join(self.there)
+        return ROW % (self.task.seed, self.task.task, self.outcome, '%.1f' % self.seconds,
+                      ', '.join(self.fallen) or '-', self.touched or '-',
+                      '; '.join(filter(None, (there, self.reason))))
+
+    def is_good(self):
+        return (self.outcome == 'succeeded' and not self.fallen and not self.touched and
+                self.task.is_done(self.there))
+
+
+def play(seed):
+    task = RandomTask(seed)
+    with tempfile.TemporaryDirectory() as folder:
+        paths = {name: os.path.join(folder, name) for name in ('known.yaml', 'all.yaml', 'end.json')}
+        with open(paths['known.yaml'], 'w') as file:
+            file.write(task.knowledge())
+        scenario = dict(task.scenario(), task=task.task, knowledge=[paths['known.yaml']])
+        words = ['--sensing', 'pictures', '--seed', str(seed), '--threads', '1']
+        if task.is_placing_imagined:
+            scenario['knowledge'].append(IMAGINE_PLACING)
+        if VARIANT == 'surprised':
+            scenario['hidden'] += surprises(task)
+            words += ['--truth', MOVED_CHAIR]
+        with open(paths['all.yaml'], 'w') as file:
+            yaml.safe_dump(scenario, file)
+        done = subprocess.run(
+            [PROGRAM, 'achieve', '--local', '--scenario', paths['all.yaml'], '--json',
+             paths['end.json'], *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if not os.path.exists(paths['end.json']):
+            raise AssertionError('seed %d: %s' % (seed, done.stdout[-2000:]))
+        with open(paths['end.json']) as file:
+            return Played(task, json.load(file))
+
+
+class RandomTasksLocalTest(unittest.TestCase):
+
+    def test_each_task_is_done_and_nothing_falls_or_is_touched(self):
+        print(ROW % ('seed', 'task', 'outcome', 'sim. s', 'fallen', 'touched', ''), flush=True)
+        with multiprocessing.pool.ThreadPool(BESIDE_EACH_OTHER) as pool:
+            for played in pool.imap(play, SEEDS):
+                print(played.row(), flush=True)
+                with self.subTest(seed=played.task.seed, task=played.task.task):
+                    self.assertTrue(played.is_good(), played.row())
+
+
+if __name__ == '__main__':
+    if len(sys.argv) != 5 or sys.argv[2] not in ('plain', 'surprised'):
+        sys.exit(__doc__)
+    PROGRAM, VARIANT = sys.argv[1:3]
+    SEEDS = range(int(sys.argv[3]), int(sys.argv[4]) + 1)
+    unittest.main(argv=sys.argv[:1])

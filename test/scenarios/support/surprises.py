@@ -1,0 +1,42 @@
+"""What nobody tells the robot of and what its task is not about: on the counter, where things are
+taken from and put, stand a box of no known kind and another, cold mug; and a guest has got up and
+left a chair in the way. The same task gives the same surprises."""
+
+import os
+import random
+
+from closed_loop import CONFIG
+from random_tasks import APART
+from restaurant import FRAMES
+
+# The truth in which that chair stands there.
+MOVED_CHAIR = os.path.join(CONFIG, '..', 'test', 'data', 'loop', 'moved_chair.yaml')
+THINGS = (('box1', 'unknown_0.110x0.070x0.180'), ('mug9', 'coffee_cup'))
+AREA = 'placingareaeastrightcounter1'
+AHEAD, BEHIND, ALONG = 0.06, -0.1, 0.5  # [m] off the middle of the area
+TURN = 3.0  # [rad]
+TRIES = 300
+
+
+def surprises(task):
+    """For the `hidden` of a scenario; a thing for which there is no room is left out."""
+    chance = random.Random('surprise %d' % task.seed)
+    taken = [*task.objects.values(), *task.hidden.values()]
+    things = []
+    for name, model in THINGS:
+        pose = _free_pose(chance, taken)
+        if pose is not None:
+            taken.append(pose)
+            things.append({'name': name, 'model': model, 'pose': pose})
+    return things
+
+
+def _free_pose(chance, taken):
+    x, y, z, _ = FRAMES[AREA]
+    for _ in range(TRIES):
+        pose = [round(x + chance.uniform(BEHIND, AHEAD), 3),
+                round(y + chance.uniform(-ALONG, ALONG), 3), z,
+                round(chance.uniform(-TURN, TURN), 2)]
+        if all(max(abs(pose[0] - p[0]), abs(pose[1] - p[1])) > APART for p in taken):
+            return pose
+    return None
