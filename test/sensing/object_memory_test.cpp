@@ -612,6 +612,15 @@ TEST_F(UnknownThingTest, WhatIsExpectedThereIsNoNewThing) {
   EXPECT_THAT(Names(), ElementsAre("mug1")) << "looks do not overrule what was told";
 }
 
+TEST_F(UnknownThingTest, APartOfWhatIsKnownIsNoThing) {
+  const Seen mug{At(1.5, 0.1, 0.7), {0.08, 0.08, 0.1}, "mug"};
+  Look({Thing("mug1", "mug", mug.X_MO)});
+  for (int i = 0; i < 5; ++i) See({mug, {At(1.5, 0.13, 0.7), {0.06, 0.02, 0.1}}});
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  for (int i = 0; i < 3; ++i) See({mug, {At(1.5, 0.18, 0.7), {0.06, 0.02, 0.1}}});
+  EXPECT_THAT(Names(), ElementsAre("mug1", "unknown1")) << "beside it";
+}
+
 TEST_F(UnknownThingTest, LooksThatShowMoreOfItKnowBetterWhatKindItIs) {
   const auto look = [&](const std::string& label, int num_points) {
     See({{At(1.5, 0.1, 0.7), size_, label, num_points}});

@@ -170,6 +170,8 @@ class ObjectMemory {
              const perception::Detection& detection, const geometry::Pose3& X_MO) const;
   bool MayBeNew(const Links& links, const perception::Detection& detection,
                 const geometry::Pose3& X_MO) const;
+  bool LiesIn(const Links& links, const RememberedObject& object,
+              const geometry::Pose3& X_MO) const;
   std::vector<BelievedOnTray> BelievedOn(const Links& links, const geometry::Pose3& X_MT) const;
   std::vector<geometry::Polygon> OwnOutlines(const Links& links, const geometry::Pose3& X_MT,
                                              double height) const;

@@ -93,7 +93,8 @@ std::vector<ObjectMemory::Named> ObjectMemory::NamesOf(const Links& links,
   return named;
 }
 
-/// What has no name and no kind may be the hand above the table, or what it holds.
+/// What has no name and no kind may be the hand above the table, or what it holds; or a part of
+/// something known that is seen in pieces, as behind an arm.
 bool ObjectMemory::MayBeNew(const Links& links, const Detection& detection,
                             const Pose3& X_MO) const {
   if (detection.label != perception::kUnknownLabel) return true;
@@ -104,7 +105,19 @@ bool ObjectMemory::MayBeNew(const Links& links, const Detection& detection,
     const Eigen::Vector3d way = links.X_ML(tool).translation - X_MO.translation;
     if (way.head<2>().norm() <= reach) return false;
   }
-  return true;
+  return std::none_of(objects_.begin(), objects_.end(), [&](const auto& known) {
+    return MayBe(links, known.second, detection, X_MO) && LiesIn(links, known.second, X_MO);
+  });
+}
+
+/// Whether the origin of a thing is within an object, seen from above.
+bool ObjectMemory::LiesIn(const Links& links, const RememberedObject& object,
+                          const Pose3& X_MO) const {
+  const geometry::Aabb box = BoundsOf(surroundings_->Model(object.model).collisions);
+  const Pose3 X_OM = (links.X_ML(object.link) * object.X_LO).Inverse();
+  const Eigen::Array2d p_O = (X_OM * X_MO.translation).head<2>();
+  return (p_O >= box.lower.head<2>().array() - kBesideBox).all() &&
+         (p_O <= box.upper.head<2>().array() + kBesideBox).all();
 }
 
 /// Counts for how long things have been seen that are none of the known.
