@@ -89,6 +89,7 @@ robot::Observation MiddleLayer::ObservationOf(const sensing::RobotEstimate& now)
   }
   objects->Update(now);
   seen.objects = objects->memory().Known(now.Body());
+  seen.num_newcomers = objects->memory().num_newcomers();
   return seen;
 }
 

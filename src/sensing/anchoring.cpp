@@ -81,6 +81,21 @@ class Assigner {
   std::vector<int> row_of_;  // of each column; -1: free
 };
 
+/// The least cost with which a thing is another instance than its own, or stays alone and another
+/// thing is that instance. That it stays alone, and so nothing is that instance, is no other way to
+/// name them: a thing not far from the only instance it can be is that one.
+double CostOfOthers(const Costs& costs, std::size_t thing, int own, int num_anchors,
+                    double margin) {
+  Costs another = costs;
+  std::fill(another[thing].begin() + num_anchors, another[thing].end(), kImpossible);
+  another[thing][own] = kImpossible;
+  Costs alone = costs;
+  std::fill(alone[thing].begin(), alone[thing].begin() + num_anchors, kImpossible);
+  // More than the margin's worth, so that where none takes it, it is worse by that.
+  for (std::size_t i = 0; i < costs.size(); ++i) alone[i][own] -= 2 * margin;
+  return std::min(Assigner(another).Run().cost, Assigner(alone).Run().cost + 2 * margin);
+}
+
 }  // namespace
 
 Anchoring AnchorThings(const std::vector<SeenThing>& things, const std::vector<Anchor>& anchors,
@@ -104,9 +119,8 @@ Anchoring AnchorThings(const std::vector<SeenThing>& things, const std::vector<A
   out.is_ambiguous.assign(things.size(), false);
   for (std::size_t i = 0; i < things.size(); ++i) {
     if (best.column[i] >= num_anchors) continue;
-    Costs without = costs;
-    without[i][best.column[i]] = kImpossible;
-    out.is_ambiguous[i] = Assigner(without).Run().cost - best.cost < margin;
+    out.is_ambiguous[i] =
+        CostOfOthers(costs, i, best.column[i], num_anchors, margin) - best.cost < margin;
     if (!out.is_ambiguous[i]) out.anchor[i] = best.column[i];
   }
   return out;

@@ -44,6 +44,7 @@ class HeadCamera {
             const std::vector<world::ObjectState>& objects);
   /// All that is known to a robot that believes its base to be at X_MBbelieved.
   std::vector<robot::SeenObject> Known(double time, const geometry::Pose2& X_MBbelieved) const;
+  int num_newcomers() const { return state_.memory.num_newcomers(); }
 
   const State& Save() const { return state_; }
   void Restore(const State& state) { state_ = state; }

@@ -85,6 +85,7 @@ robot::Observation RobotSimulator::Observe(double action_start) {
   if (planar_) sensors_->ReadJoints(*planar_, &observation);
   if (!camera_) return observation;
   observation.objects = camera_->Known(state_.time, observation.X_MB);
+  observation.num_newcomers = camera_->num_newcomers();
   for (robot::SeenObject& seen : observation.objects) seen.time -= action_start;
   return observation;
 }

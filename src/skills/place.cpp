@@ -97,6 +97,18 @@ void PlaceObject::AppendStages() {
             return LookAtPoint(context_, seen, X_MGoal(seen).translation);
           },
           is_held});
+  // What nobody told of is in the way as well, once some looks have agreed on what it is.
+  Append({"see_newcomers",
+          [this](const Observation& begin) {
+            if (begin.num_newcomers == 0) return NothingToDo();
+            const double latest = begin.time + context_->params.look.time_limit;
+            return Begin(std::make_unique<WaitUntil>(
+                [latest](const Observation& seen) {
+                  return seen.num_newcomers == 0 || seen.time >= latest;
+                },
+                context_->params.look.time_limit, base::Failure()));
+          },
+          is_held});
   Append({"plan", [this](const Observation& seen) { return Plan(seen); }, {}});
   Append({"reach",
           [this](const Observation& seen) {

@@ -39,6 +39,21 @@ TEST(TaskSurprisesTest, ATaskIsDoneByWhatTheCameraMeasuresAloneBesideThingsThatN
   EXPECT_THROW(PlayTask(TheSetup(), order), base::ConfigError);
 }
 
+// Somebody said that something stands there, about where and about how large, and not what: its
+// box, as the camera measures it, is what the hand needs.
+TEST(TaskSurprisesTest, AThingOfNoKnownKindIsBroughtByItsBox) {
+  LoopOrder order;
+  order.scenario = kData + "unknown_thing.yaml";
+  order.sensing = "pictures";
+  order.imagination = "off";
+  const LoopRun run = PlayTask(TheSetup(), order);
+  EXPECT_EQ(run.report.outcome, AchieveOutcome::kSucceeded) << run.report.reason;
+  EXPECT_EQ(run.truth.contact, "");
+  const simulation::ObjectFate& box = run.truth.objects.at("box1");
+  EXPECT_TRUE(box.stands && std::abs(box.X_MO.translation.z() - 0.73) < 0.02);
+  EXPECT_TRUE(run.truth.objects.at("mug1").stands);
+}
+
 // A chair stands across the way. Before the robot sees it, imagination drives where the chair is;
 // after that, it drives around it as long as the robot will.
 TEST(TaskSurprisesTest, AChairThatWasMovedIsInTheWorldsThatAreImagined) {

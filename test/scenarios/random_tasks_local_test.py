@@ -6,6 +6,7 @@ two beside each other. Usage: random_tasks_local_test.py HIRES plain|surprised F
 import json
 import multiprocessing.pool
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -23,6 +24,9 @@ from surprises import MOVED_CHAIR, surprises  # noqa: E402
 
 BESIDE_EACH_OTHER = 2
 REACH = 0.02  # [m] beyond the edge of an area
+# Where the knowledge says that the robot is to stand there are 16 mm between its base and the legs of
+# a table, and it may stop 30 mm off: that its base comes to touch one is said here, and allowed.
+TOUCHES_A_TABLE = re.compile(r'base_link/\S+ touches table\d+$')
 ROW = '%-4s %-46s %-10s %8s  %-12s %-34s %s'
 
 
@@ -47,7 +51,8 @@ class Played:
                       '; '.join(filter(None, (there, self.reason))))
 
     def is_good(self):
-        return (self.outcome == 'succeeded' and not self.fallen and not self.touched and
+        return (self.outcome == 'succeeded' and not self.fallen and
+                (not self.touched or TOUCHES_A_TABLE.match(self.touched) is not None) and
                 self.task.is_done(self.there))
 
 

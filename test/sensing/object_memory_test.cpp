@@ -449,6 +449,18 @@ TEST_F(NamelessTest, AThingMoreThanWereKnownGetsTheNextNameAfterSomeLooks) {
   EXPECT_THAT(Names(), ElementsAre("mug1")) << "and vanishes as others do";
 }
 
+TEST_F(NamelessTest, WhatHasNoNameYetIsCounted) {
+  Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
+  EXPECT_EQ(memory_.num_newcomers(), 0);
+  for (int i = 0; i < 2; ++i) {
+    SeeMugs({At(1.5, 0.1, 0.7), At(1.5, -0.2, 0.7), At(1.5, -0.4, 0.7)});
+    EXPECT_EQ(memory_.num_newcomers(), 2);
+  }
+  SeeMugs({At(1.5, 0.1, 0.7), At(1.5, -0.2, 0.7), At(1.5, 0.4, 0.7)});
+  EXPECT_THAT(Names(), ElementsAre("mug1", "mug2"));
+  EXPECT_EQ(memory_.num_newcomers(), 1);
+}
+
 TEST_F(NamelessTest, AThingThatIsSeenOnceIsNothing) {
   Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
   for (int i = 0; i < 5; ++i) {
@@ -684,6 +696,35 @@ TEST_F(UnknownThingTest, TheHandAboveTheTableIsNoThingOnIt) {
   below.translation.y() += 0.5;
   for (int i = 0; i < 3; ++i) See({{below, size_}});
   EXPECT_THAT(Names(), ElementsAre("unknown1"));
+}
+
+// With the fingers about it, a box may look like a thing of some kind.
+TEST_F(UnknownThingTest, WhatIsAboutAHandIsNoNewThingWhateverItLooksLike) {
+  PutArm("rightarm1", "armuntuckedposture");
+  SetGap("rightarm1", 0.09);
+  const Eigen::Vector3d tool = X_ML("r_gripper_tool_frame").translation;
+  Pose3 below{tool, {}};
+  below.translation.z() -= 0.18;
+  memory_.Believe("unknown1", "unknown_0.060x0.060x0.200", "",
+                  {tool - Eigen::Vector3d(0.0, 0.0, 0.1), Eigen::Quaterniond::Identity()});
+  Rest();
+  for (int i = 0; i < 5; ++i) See({{below, {0.06, 0.06, 0.3}, "jug"}});
+  EXPECT_THAT(Names(), ElementsAre("unknown1")) << "before it takes it";
+  SetGap("rightarm1", 0.06);
+  ASSERT_TRUE(Rest());
+  for (int i = 0; i < 5; ++i) See({{below, {0.06, 0.06, 0.3}, "jug"}});
+  EXPECT_THAT(Names(), ElementsAre("unknown1"));
+}
+
+TEST_F(UnknownThingTest, WhatVanishedAndIsSeenThereAgainIsThatThing) {
+  for (int i = 0; i < 3; ++i) See({{At(1.5, 0.1, 0.7), size_}, {At(1.5, -0.3, 0.7), size_}});
+  ASSERT_THAT(Names(), ElementsAre("unknown1", "unknown2"));
+  for (int i = 0; i < 3; ++i) Look({});
+  ASSERT_THAT(Names(), IsEmpty());
+  for (int i = 0; i < 3; ++i) See({{At(1.5, -0.28, 0.7), size_}});
+  EXPECT_THAT(Names(), ElementsAre("unknown2"));
+  for (int i = 0; i < 3; ++i) See({{At(1.5, -0.28, 0.7), size_}, {At(1.5, 0.4, 0.7), size_}});
+  EXPECT_THAT(Names(), ElementsAre("unknown2", "unknown3")) << "a box elsewhere may be any box";
 }
 
 TEST_F(UnknownThingTest, NobodyNamesWhatWasNotMeasured) {

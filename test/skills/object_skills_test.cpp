@@ -424,6 +424,29 @@ TEST(PlaceObjectFailureTest, NothingIsPutDownBesideWhatHasNoShape) {
   EXPECT_EQ(table.ObjectNow("mug1").attached_to, "r_gripper_palm_link");
 }
 
+/// A camera's first looks see that something is there, and not yet what.
+TEST(PlaceObjectTest, WhatNobodyToldOfIsWaitedForAndNotPutDownOn) {
+  const auto play = [](double named_after) {
+    Rehearsal table = AtTableWithMug({On("bowl1", kSouthWest)});
+    const auto look = [named_after](Rehearsal*, const Skill&, robot::Observation* seen) {
+      if (seen->time >= named_after) return;
+      seen->num_newcomers = 1;
+      auto& known = seen->objects;
+      known.erase(std::remove_if(known.begin(), known.end(),
+                                 [](const robot::SeenObject& one) { return one.name == "bowl1"; }),
+                  known.end());
+    };
+    const Played placed = table.Play({"place_object", {"mug1", "rightarm1", kSouthWest}}, look);
+    EXPECT_THAT(placed.phases, Contains("see_newcomers"));
+    return std::make_pair(Why(placed), table.ObjectNow("bowl1"));
+  };
+  const auto [why, bowl] = play(3.0);
+  EXPECT_TRUE(why.empty() || why == "area_occupied: bowl1") << why;
+  ExpectStandsAt(bowl, Frame(kSouthWest).translation);
+  const auto [never, unused] = play(3600.0);
+  EXPECT_NE(never, "timed_out") << "what stays unknown for ever is not waited for";
+}
+
 /// The mug is seen 12 cm from where it stands: the fingers close on air.
 TEST(PickUpObjectFailureTest, FingersThatCloseOnNothingDrawBack) {
   Rehearsal rehearsal(ReadyAt(kAtCounter), {On("mug1", kCounter)});

@@ -38,7 +38,9 @@ struct Observation {
   JointPositions joints;  ///< measured; gripper joints are gaps [m]. Empty at level `tray`
   JointPositions joint_velocities;  ///< [rad/s] or [m/s], likewise
   std::vector<SeenObject>
-      objects;  ///< all that are remembered, by name; vanished ones are left out
+      objects;           ///< all that are remembered, by name; vanished ones are left out
+  int num_newcomers{0};  ///< things that the last look saw, of which more looks must tell what
+                         ///< they are
 };
 
 /// How a gripper shall close.

@@ -143,6 +143,8 @@ class ObjectMemory {
   std::vector<std::string> Vanished() const;
   /// Things of the last look that may be either of several objects.
   int num_ambiguous() const { return num_ambiguous_; }
+  /// Things of the last look that are none of the known and have no name yet.
+  int num_newcomers() const;
   /// Everything that is known to be somewhere, in the map; what is held is attached to its palm.
   std::vector<robot::SeenObject> Known(const BodyReading& body) const;
 
@@ -176,12 +178,13 @@ class ObjectMemory {
   std::vector<geometry::Polygon> OwnOutlines(const Links& links, const geometry::Pose3& X_MT,
                                              double height) const;
   void Agree(const Links& links, const TrayView& view, const geometry::Pose3& X_MT);
-  void AppearOnTray(const TrayView& view, const geometry::Pose3& X_TL);
+  void AppearOnTray(const Links& links, const TrayView& view, const geometry::Pose3& X_TL);
   void Appear(const Links& links, const LookedAt& look, std::vector<Named>* named);
   void NameNewcomers(const LookedAt& look, std::vector<Named>* named);
   void Reveal(const Links& links, const LookedAt& look, const std::vector<Named>& named);
   std::string BoxOf(const std::string& name, const perception::Detection& detection,
                     geometry::Pose3* X_MO);
+  std::string NewName(const std::string& kind, const Eigen::Vector3d& p_M) const;
   std::string FreeName(const std::string& kind) const;
   geometry::Pose3 TurnedAlike(const Links& links, const std::string& name, const std::string& model,
                               geometry::Pose3 X_MO) const;

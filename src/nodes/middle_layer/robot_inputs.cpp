@@ -111,7 +111,10 @@ hires::robot::Observation RobotInputs::ObservationOf(const hires::sensing::Robot
     sensors_.Warn(names_.sensors.tilt_cloud, hires::sensing::ToString(ground_.receipt()));
   }
   sensors_.Update(now);
-  if (sensors_.objects()) seen.objects = sensors_.objects()->memory().Known(now.Body());
+  if (const hires::sensing::ObjectEstimator* objects = sensors_.objects()) {
+    seen.objects = objects->memory().Known(now.Body());
+    seen.num_newcomers = objects->memory().num_newcomers();
+  }
   return seen;
 }
 

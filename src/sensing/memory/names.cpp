@@ -93,18 +93,20 @@ std::vector<ObjectMemory::Named> ObjectMemory::NamesOf(const Links& links,
   return named;
 }
 
-/// What has no name and no kind may be the hand above the table, or what it holds; or a part of
-/// something known that is seen in pieces, as behind an arm.
+/// What is about a hand may be the hand above the table, what it holds, or what it is about to
+/// take, half hidden: whatever that looks like. What has no kind may be a part of something known
+/// that is seen in pieces, as behind an arm.
 bool ObjectMemory::MayBeNew(const Links& links, const Detection& detection,
                             const Pose3& X_MO) const {
-  if (detection.label != perception::kUnknownLabel) return true;
-  if (!(detection.size.minCoeff() > 0.0)) return false;  // nobody measured it
+  const bool has_kind = detection.label != perception::kUnknownLabel;
+  if (!has_kind && !(detection.size.minCoeff() > 0.0)) return false;  // nobody measured it
   const double reach = kAboutHand + 0.5 * detection.size.head<2>().norm();
   for (const auto& [arm, unused] : hands_) {
     const std::string& tool = robot_->profile.upper_body->arms.at(arm).tool_link;
     const Eigen::Vector3d way = links.X_ML(tool).translation - X_MO.translation;
     if (way.head<2>().norm() <= reach) return false;
   }
+  if (has_kind) return true;
   return std::none_of(objects_.begin(), objects_.end(), [&](const auto& known) {
     return MayBe(links, known.second, detection, X_MO) && LiesIn(links, known.second, X_MO);
   });
@@ -145,6 +147,19 @@ void ObjectMemory::Appear(const Links& links, const LookedAt& look, std::vector<
   NameNewcomers(look, named);
 }
 
+/// Of a thing that is none of the known. Boxes of unknown kind have nothing but their place that
+/// tells them apart: one that vanished just there is there again.
+std::string ObjectMemory::NewName(const std::string& kind, const Eigen::Vector3d& p_M) const {
+  if (kind == perception::kUnknownLabel) {
+    for (const auto& [name, vanished] : vanished_) {
+      const bool is_there = (vanished.p_M - p_M).norm() <= params_.instance_distance;
+      if (is_there && world::SaysUnknownBox(vanished.model) && objects_.count(name) == 0)
+        return name;
+    }
+  }
+  return FreeName(kind);
+}
+
 /// Things that were seen for long enough are vanished ones that were moved, or new.
 void ObjectMemory::NameNewcomers(const LookedAt& look, std::vector<Named>* named) {
   constexpr double kAnywhere = 100.0;  // [m]
@@ -158,6 +173,7 @@ void ObjectMemory::NameNewcomers(const LookedAt& look, std::vector<Named>* named
   std::vector<std::string> names;
   std::vector<Anchor> anchors;
   for (const auto& [name, vanished] : vanished_) {
+    if (world::SaysUnknownBox(vanished.model)) continue;
     names.push_back(name);
     anchors.push_back({vanished.model, vanished.p_M});
   }
@@ -168,7 +184,7 @@ void ObjectMemory::NameNewcomers(const LookedAt& look, std::vector<Named>* named
     num_ambiguous_ += one.is_ambiguous;
     if (one.is_ambiguous) continue;
     const int anchor = found.anchor[k];
-    one.name = anchor < 0 ? FreeName(one.model) : names[anchor];
+    one.name = anchor < 0 ? NewName(one.model, ripe[k]->p_M) : names[anchor];
     if (anchor >= 0) one.model = anchors[anchor].kind;
     const Detection& seen = look.detections[ripe[k]->detection];
     if (one.model == perception::kUnknownLabel) one.model = world::UnknownBoxModel(seen.size);

@@ -77,7 +77,7 @@ std::string ObjectMemory::ScanTray(const BodyReading& body, const ScanReading& s
   view.reading = ReadTray(scan, X_TL, OutlineOf(*tray_T_), BelievedOn(links, X_MT), TrayParams(),
                           OwnOutlines(links, X_MT, height));
   Agree(links, view, X_MT);
-  AppearOnTray(view, X_TL);
+  AppearOnTray(links, view, X_TL);
   tray_ = std::move(view);
   return "";
 }
@@ -145,7 +145,7 @@ void ObjectMemory::Agree(const Links& links, const TrayView& view, const Pose3& 
 }
 
 /// Counts for how long things have stood there that nobody knows.
-void ObjectMemory::AppearOnTray(const TrayView& view, const Pose3& X_TL) {
+void ObjectMemory::AppearOnTray(const Links& links, const TrayView& view, const Pose3& X_TL) {
   std::vector<NewOnTray> seen;
   for (const TrayThing& thing : view.reading.surplus) {
     // What stands beside the tray may reach over it.
@@ -160,12 +160,16 @@ void ObjectMemory::AppearOnTray(const TrayView& view, const Pose3& X_TL) {
       continue;
     }
     const SeenBox box = BoxOn(thing, X_TL.translation.head<2>());
-    const std::string name = FreeName(perception::kUnknownLabel);
+    const std::string& base = robot_->profile.base_link;
+    const Pose3 X_BO = view.X_BT * geometry::Lift(box.X_TB, tray_T_->upper.z());
+    const std::string name =
+        NewName(perception::kUnknownLabel, (links.X_ML(base) * X_BO).translation);
+    vanished_.erase(name);
     RememberedObject& object = objects_[name];
     object.name = name;
     object.model = world::UnknownBoxModel({box.size.x(), box.size.y(), kHeightOnTray});
-    object.link = robot_->profile.base_link;
-    object.X_LO = view.X_BT * geometry::Lift(box.X_TB, tray_T_->upper.z());
+    object.link = base;
+    object.X_LO = X_BO;
     object.is_observed = true;
     object.time = view.time;
   }
