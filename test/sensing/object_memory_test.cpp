@@ -7,6 +7,7 @@
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
 #include "hires/robot/gripper.h"
+#include "hires/world/unknown_box.h"
 #include "support/sight_scenes.h"
 
 namespace hires::sensing::object_memory_test {
@@ -650,6 +651,21 @@ TEST_F(UnknownThingTest, LooksThatShowMoreOfItKnowBetterWhatKindItIs) {
   EXPECT_THAT(Names(), ElementsAre("unknown1"));
   EXPECT_EQ(ModelOf("unknown1"), "unknown_0.120x0.080x0.200");
   EXPECT_THAT(memory_.Vanished(), ElementsAre("mug1"));
+}
+
+TEST_F(UnknownThingTest, LooksThatShowLessOfItDoNotSayWhatKindItIs) {
+  const auto look = [&](const std::string& label, int num_points) {
+    See({{Turned(0.1, 0.3), size_, label, num_points}});
+  };
+  memory_.Believe("unknown1", world::UnknownBoxModel(size_), "", Turned(0.1, 0.0));
+  for (int i = 0; i < 3; ++i) look(perception::kUnknownLabel, 3000);
+  const Pose3 before = Remembered("unknown1");
+  for (int i = 0; i < 5; ++i) See({{At(1.5, 0.1, 0.7), {0.08, 0.08, 0.1}, "mug", 900}});
+  EXPECT_THAT(Names(), ElementsAre("unknown1"));
+  EXPECT_EQ(ModelOf("unknown1"), "unknown_0.120x0.080x0.200");
+  EXPECT_NEAR(Remembered("unknown1").rotation.angularDistance(before.rotation), 0.0, 1e-6);
+  for (int i = 0; i < 3; ++i) look("mug", 4000);
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
 }
 
 TEST_F(UnknownThingTest, ABoxTurnedByAQuarterIsTheSameBox) {

@@ -57,7 +57,8 @@ struct RememberedObject {
   int num_missed{0};        ///< looks in a row
   int num_resized{0};       ///< looks in a row that measured another box of a thing of unknown kind
   int num_looked_through{0};  ///< scans of the tray in a row that saw nothing in its place
-  int num_points{0};  ///< most that a look showed of it, where looks alone tell its kind; else 0
+  int num_points{0};  ///< most that a look showed of it, where looks alone tell its kind, or find
+                      ///< none; else 0
 };
 
 /// A scan of the tray and what it says.
@@ -182,8 +183,8 @@ class ObjectMemory {
   void Appear(const Links& links, const LookedAt& look, std::vector<Named>* named);
   void NameNewcomers(const LookedAt& look, std::vector<Named>* named);
   void Reveal(const Links& links, const LookedAt& look, const std::vector<Named>& named);
-  std::string BoxOf(const std::string& name, const perception::Detection& detection,
-                    geometry::Pose3* X_MO);
+  std::string BoxOf(const Links& links, const std::string& name,
+                    const perception::Detection& detection, geometry::Pose3* X_MO);
   std::string NewName(const std::string& kind, const Eigen::Vector3d& p_M) const;
   std::string FreeName(const std::string& kind) const;
   geometry::Pose3 TurnedAlike(const Links& links, const std::string& name, const std::string& model,

@@ -80,7 +80,7 @@ void ObjectMemory::Look(const BodyReading& body, const std::vector<Detection>& d
     if (named[i].name.empty()) continue;
     Pose3 X_MO = look.X_MO(i);
     if (!detections[i].instance && world::SaysUnknownBox(named[i].model))
-      named[i].model = BoxOf(named[i].name, detections[i], &X_MO);
+      named[i].model = BoxOf(links, named[i].name, detections[i], &X_MO);
     if (!detections[i].instance) X_MO = TurnedAlike(links, named[i].name, named[i].model, X_MO);
     See(links, named[i].name, named[i].model, X_MO, body.time);
     RememberedObject& object = objects_.at(named[i].name);

@@ -46,12 +46,15 @@ constexpr double kAsLikely = 1.0 / 3.0;  // of what nothing else speaks for
 }  // namespace
 
 /// Whether a thing that has no name, seen at X_MO, may be the object. One that no model explains
-/// may be whatever is expected there, unless looks that showed less of it said what that is.
+/// may be whatever is expected there, unless looks that showed less of it said what that is; and
+/// where looks that showed more of it found no model, a look that does is mistaken.
 bool ObjectMemory::MayBe(const Links& links, const RememberedObject& object,
                          const Detection& detection, const Pose3& X_MO) const {
   if ((PlaceOf(links, object) - X_MO.translation).norm() > params_.instance_distance) return false;
   if (detection.label == perception::kUnknownLabel)
     return object.num_points == 0 || detection.num_points <= object.num_points;
+  if (world::SaysUnknownBox(object.model))
+    return detection.num_points > 0 && detection.num_points < object.num_points;
   const auto kinds = KindsOf(detection, kHardly);
   return std::any_of(kinds.begin(), kinds.end(),
                      [&](const SeenKind& one) { return one.kind == object.model; });
@@ -71,6 +74,13 @@ std::vector<ObjectMemory::Named> ObjectMemory::NamesOf(const Links& links,
     } else {
       nameless.push_back(i);
       things.push_back({KindsOf(one, kHardly), look.X_MO(i).translation});
+      const bool has_kind = one.label != perception::kUnknownLabel;
+      const bool is_known_better =
+          std::any_of(objects_.begin(), objects_.end(), [&](const auto& known) {
+            return world::SaysUnknownBox(known.second.model) &&
+                   MayBe(links, known.second, one, look.X_MO(i));
+          });
+      if (has_kind && is_known_better) things.back().kinds.push_back({perception::kUnknownLabel});
     }
   }
   std::vector<std::string> names;
@@ -220,8 +230,15 @@ void ObjectMemory::Reveal(const Links& links, const LookedAt& look,
 /// another.
 /// @param X_MO  comes as it was measured, and leaves turned so that x and y are the remembered
 /// ones.
-std::string ObjectMemory::BoxOf(const std::string& name, const Detection& detection, Pose3* X_MO) {
+std::string ObjectMemory::BoxOf(const Links& links, const std::string& name,
+                                const Detection& detection, Pose3* X_MO) {
   RememberedObject& object = objects_.at(name);
+  if (detection.label !=
+      perception::kUnknownLabel) {  // taken for something else: no box of its own
+    X_MO->rotation = (links.X_ML(object.link) * object.X_LO).rotation;
+    return object.model;
+  }
+  object.num_points = std::max(object.num_points, detection.num_points);
   const Eigen::Vector3d before = world::SizeOfUnknownBox(object.model);
   Eigen::Vector3d size = detection.size;
   const Eigen::Vector3d turned(size.y(), size.x(), size.z());
