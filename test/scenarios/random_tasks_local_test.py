@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Tasks drawn at random are done by pictures alone, each in a process of its own that needs no master:
 two beside each other. Usage: random_tasks_local_test.py HIRES plain|surprised FIRST LAST
-`surprised`: beside things that nobody told the robot of (support/surprises.py). Prints a table."""
+`surprised`: beside things that nobody told the robot of (support/surprises.py), as are the two
+scenarios of config/scenarios. Prints a table."""
 
 import json
 import multiprocessing.pool
@@ -17,9 +18,9 @@ import yaml
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, 'support'))
 
-from closed_loop import IMAGINE_PLACING  # noqa: E402
+from closed_loop import CONFIG, IMAGINE_PLACING  # noqa: E402
 from random_tasks import RandomTask  # noqa: E402
-from restaurant import is_over  # noqa: E402
+from restaurant import FURNITURE, SEATS, is_over  # noqa: E402
 from surprises import MOVED_CHAIR, surprises  # noqa: E402
 
 BESIDE_EACH_OTHER = 2
@@ -56,27 +57,52 @@ class Played:
                 self.task.is_done(self.there))
 
 
-def play(seed):
-    task = RandomTask(seed)
+class ShippedTask:
+    """A scenario of config/scenarios, with what the test asks of a random task."""
+    seed = 1
+
+    def __init__(self, name, goal_areas):
+        folder = os.path.join(CONFIG, 'scenarios')
+        with open(os.path.join(folder, name + '.yaml')) as file:
+            self.given = yaml.safe_load(file)
+        self.given['knowledge'] = [os.path.join(folder, path) for path in self.given['knowledge']]
+        self.task, self.goal_areas = self.given['task'], goal_areas
+        self.objects = {thing['name']: thing['pose'] for thing in self.given['objects']}
+        self.hidden = {thing['name']: thing['pose'] for thing in self.given['hidden']}
+
+    def files(self, _):
+        return dict(self.given)
+
+    def is_done(self, there):
+        return bool(set(there) & set(self.objects))
+
+
+class DrawnTask(RandomTask):
+
+    def files(self, folder):
+        """The scenario, beside its knowledge in a file of its own."""
+        path = os.path.join(folder, 'known.yaml')
+        with open(path, 'w') as file:
+            file.write(self.knowledge())
+        knowledge = [path, IMAGINE_PLACING] if self.is_placing_imagined else [path]
+        return dict(self.scenario(), task=self.task, knowledge=knowledge)
+
+
+def play(task):
     with tempfile.TemporaryDirectory() as folder:
-        paths = {name: os.path.join(folder, name) for name in ('known.yaml', 'all.yaml', 'end.json')}
-        with open(paths['known.yaml'], 'w') as file:
-            file.write(task.knowledge())
-        scenario = dict(task.scenario(), task=task.task, knowledge=[paths['known.yaml']])
-        words = ['--sensing', 'pictures', '--seed', str(seed), '--threads', '1']
-        if task.is_placing_imagined:
-            scenario['knowledge'].append(IMAGINE_PLACING)
+        scenario = task.files(folder)
+        words = ['--sensing', 'pictures', '--seed', str(task.seed), '--threads', '1']
         if VARIANT == 'surprised':
-            scenario['hidden'] += surprises(task)
+            scenario['hidden'] = scenario['hidden'] + surprises(task)
             words += ['--truth', MOVED_CHAIR]
-        with open(paths['all.yaml'], 'w') as file:
+        path, end = os.path.join(folder, 'all.yaml'), os.path.join(folder, 'end.json')
+        with open(path, 'w') as file:
             yaml.safe_dump(scenario, file)
-        done = subprocess.run(
-            [PROGRAM, 'achieve', '--local', '--scenario', paths['all.yaml'], '--json',
-             paths['end.json'], *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        if not os.path.exists(paths['end.json']):
-            raise AssertionError('seed %d: %s' % (seed, done.stdout[-2000:]))
-        with open(paths['end.json']) as file:
+        done = subprocess.run([PROGRAM, 'achieve', '--local', '--scenario', path, '--json', end, *words],
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        if not os.path.exists(end):
+            raise AssertionError('seed %d, %s: %s' % (task.seed, task.task, done.stdout[-2000:]))
+        with open(end) as file:
             return Played(task, json.load(file))
 
 
@@ -85,7 +111,7 @@ class RandomTasksLocalTest(unittest.TestCase):
     def test_each_task_is_done_and_nothing_falls_or_is_touched(self):
         print(ROW % ('seed', 'task', 'outcome', 'sim. s', 'fallen', 'touched', ''), flush=True)
         with multiprocessing.pool.ThreadPool(BESIDE_EACH_OTHER) as pool:
-            for played in pool.imap(play, SEEDS):
+            for played in pool.imap(play, TASKS):
                 print(played.row(), flush=True)
                 with self.subTest(seed=played.task.seed, task=played.task.task):
                     self.assertTrue(played.is_good(), played.row())
@@ -95,5 +121,8 @@ if __name__ == '__main__':
     if len(sys.argv) != 5 or sys.argv[2] not in ('plain', 'surprised'):
         sys.exit(__doc__)
     PROGRAM, VARIANT = sys.argv[1:3]
-    SEEDS = range(int(sys.argv[3]), int(sys.argv[4]) + 1)
+    TASKS = [DrawnTask(seed) for seed in range(int(sys.argv[3]), int(sys.argv[4]) + 1)]
+    if VARIANT == 'surprised':
+        TASKS += [ShippedTask('topple', FURNITURE['table1']),
+                  ShippedTask('serve_coffee', SEATS['sittingareawesttable1'])]
     unittest.main(argv=sys.argv[:1])
