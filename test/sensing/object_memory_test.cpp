@@ -408,6 +408,19 @@ TEST_F(NamelessTest, AThingNearTheOneObjectOfItsKindIsThatObject) {
   EXPECT_EQ(memory_.objects().at("mug1").time, body_.time);
 }
 
+TEST_F(NamelessTest, WhatAHandLiftsIsNotSeenToStandOnTheTable) {
+  Grasp();
+  const Pose3 held = Remembered("mug1");
+  Pose3 below = held;  // a recogniser takes all things for standing on the table
+  below.translation += Eigen::Vector3d(0.01, 0.0, -0.06);
+  for (int i = 0; i < 5; ++i) SeeMugs({below});
+  EXPECT_TRUE(memory_.objects().at("mug1").is_held);
+  const Eigen::Vector3d p_M = Remembered("mug1").translation;
+  EXPECT_NEAR(p_M.z(), held.translation.z(), 1e-9) << "how high it is in the hand, the grasp told";
+  EXPECT_GT(p_M.x() - held.translation.x(), 0.008) << "where it is sideways, looks tell";
+  EXPECT_LT(Remembered("mug1").rotation.angularDistance(held.rotation), 1e-6);
+}
+
 TEST_F(NamelessTest, AThingBetweenTwoObjectsOfItsKindIsNoneOfThem) {
   Look({Thing("mug1", "mug", At(1.5, 0.08, 0.7)), Thing("mug2", "mug", At(1.5, -0.08, 0.7))});
   const double before = body_.time;

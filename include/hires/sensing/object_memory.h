@@ -189,6 +189,8 @@ class ObjectMemory {
   std::string FreeName(const std::string& kind) const;
   geometry::Pose3 TurnedAlike(const Links& links, const std::string& name, const std::string& model,
                               geometry::Pose3 X_MO) const;
+  geometry::Pose3 AsHeld(const Links& links, const std::string& name,
+                         const geometry::Pose3& X_MO) const;
   void See(const Links& links, const std::string& name, const std::string& label,
            const geometry::Pose3& X_MO, double time);
   double SizeInView(const perception::CameraView& view, const std::string& model,

@@ -113,6 +113,16 @@ bool ObjectMemory::IsInHand(const Links& links, const RememberedObject& object,
   return false;
 }
 
+/// Where a thing that is seen at X_MO is if a hand holds it: as high and turned as in the hand.
+/// What knows kinds by their shape takes all it sees for standing on the table below.
+Pose3 ObjectMemory::AsHeld(const Links& links, const std::string& name, const Pose3& X_MO) const {
+  const auto known = objects_.find(name);
+  if (known == objects_.end() || !known->second.is_held) return X_MO;
+  Pose3 X_MHeld = links.X_ML(known->second.link) * known->second.X_LO;
+  X_MHeld.translation.head<2>() = X_MO.translation.head<2>();
+  return IsInHand(links, known->second, X_MHeld) ? X_MHeld : X_MO;
+}
+
 void ObjectMemory::LetGo(const Links& links, const std::string& name, double time) {
   RememberedObject& object = objects_.at(name);
   const Pose3 X_MO = links.X_ML(object.link) * object.X_LO;

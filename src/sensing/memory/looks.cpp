@@ -81,7 +81,10 @@ void ObjectMemory::Look(const BodyReading& body, const std::vector<Detection>& d
     Pose3 X_MO = look.X_MO(i);
     if (!detections[i].instance && world::SaysUnknownBox(named[i].model))
       named[i].model = BoxOf(links, named[i].name, detections[i], &X_MO);
-    if (!detections[i].instance) X_MO = TurnedAlike(links, named[i].name, named[i].model, X_MO);
+    if (!detections[i].instance) {
+      X_MO = TurnedAlike(links, named[i].name, named[i].model, X_MO);
+      X_MO = AsHeld(links, named[i].name, X_MO);
+    }
     See(links, named[i].name, named[i].model, X_MO, body.time);
     RememberedObject& object = objects_.at(named[i].name);
     if (object.num_points > 0 && detections[i].label == object.model)
