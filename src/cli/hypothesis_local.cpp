@@ -21,8 +21,8 @@ loop::LoopOrder LoopOrderOf(const evaluation::HypothesisOrder& order,
 std::vector<evaluation::WantedPlace> PlacesIn(const loop::LoopSetup& setup,
                                               const evaluation::HypothesisGoal& goal) {
   const imagination::ImaginationSetup& world = setup.world();
-  const double half_width = world.skills->manipulation->params.place.area_half_width;
-  return evaluation::PlacesOf(goal, world.scene->world, half_width);
+  const double area_edge = world.skills->manipulation->params.place.area_edge;
+  return evaluation::PlacesOf(goal, world.scene->world, area_edge);
 }
 
 }  // namespace

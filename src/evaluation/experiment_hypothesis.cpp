@@ -189,7 +189,7 @@ const std::vector<JudgeRule>& AllJudgeRules() {
 }
 
 std::vector<WantedPlace> PlacesOf(const HypothesisGoal& goal, const world::World& world,
-                                  double half_width) {
+                                  double area_edge) {
   std::vector<WantedPlace> places;
   for (const std::string& area : goal.areas) {
     const auto X_MA = world.FindFrame(area);
@@ -197,7 +197,7 @@ std::vector<WantedPlace> PlacesOf(const HypothesisGoal& goal, const world::World
       throw base::ConfigError(fmt::format("world '{}': {}", world.name,
                                           base::UnknownName("area", area, world.FrameNames())));
     }
-    places.push_back({area, *X_MA, half_width});
+    places.push_back({area, *X_MA, world::Inset(world.ExtentOf(area), area_edge)});
   }
   return places;
 }
@@ -205,8 +205,7 @@ std::vector<WantedPlace> PlacesOf(const HypothesisGoal& goal, const world::World
 bool StandsAt(const WantedPlace& place, const simulation::ObjectFate& object) {
   if (!object.stands || !object.attached_to.empty()) return false;
   const Eigen::Vector3d p_AO = (place.X_MA.Inverse() * object.X_MO).translation;
-  return p_AO.head<2>().cwiseAbs().maxCoeff() <= place.half_width &&
-         std::abs(p_AO.z()) <= kTouching;
+  return place.extent_A.contains(p_AO.head<2>().eval()) && std::abs(p_AO.z()) <= kTouching;
 }
 
 void Judge(const HypothesisGoal& goal, const std::vector<WantedPlace>& places,

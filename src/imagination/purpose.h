@@ -11,10 +11,10 @@ namespace hires::imagination {
 struct Purpose {
   using Kind = actions::Purpose;
   Kind kind{Kind::kNone};
-  std::string object;             ///< lower case; empty for kNone
-  std::string arm;                ///< that takes it or puts it down, lower case
-  std::string area;               ///< kPutOnArea: where, lower case
-  double area_half_width{0.175};  ///< [m] of the square round its place that it must stand on
+  std::string object;     ///< lower case; empty for kNone
+  std::string arm;        ///< that takes it or puts it down, lower case
+  std::string area;       ///< kPutOnArea: where, lower case
+  double area_edge{0.0};  ///< [m] inside the area's extent where it must not stand
 };
 
 /// As the action's description says; kNone for what the catalogue does not know, and where

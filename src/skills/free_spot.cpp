@@ -57,11 +57,6 @@ const std::map<std::string, Vector2d>& Spots() {
   return spots;
 }
 
-/// [m] that the middle of an upright object may be off the middle of an area, along each axis.
-double RoomOf(const PlaceParams& params, double radius) {
-  return std::max(0.0, params.area_half_width - radius);
-}
-
 /// Keeps the candidates that are free; notes who takes up the others.
 FreeSpots KeepFree(const std::vector<Vector2d>& candidates_A, double radius, double clearance,
                    const std::vector<Neighbour>& neighbours) {
@@ -81,12 +76,16 @@ FreeSpots KeepFree(const std::vector<Vector2d>& candidates_A, double radius, dou
   return free;
 }
 
-/// A grid over a square, nearest to its middle first; equally near ones in a fixed order.
-std::vector<Vector2d> Grid(double half_width, double spacing) {
-  const int n = static_cast<int>(std::floor(half_width / spacing + 1e-9));
+/// A grid over a room, nearest to the origin first; equally near ones in a fixed order.
+std::vector<Vector2d> Grid(const Eigen::AlignedBox2d& room, double spacing) {
+  const auto steps = [spacing](double length) {
+    return static_cast<int>(std::floor(length / spacing + 1e-9));
+  };
   std::vector<Vector2d> grid;
-  for (int i = -n; i <= n; ++i) {
-    for (int j = -n; j <= n; ++j) grid.emplace_back(i * spacing, j * spacing);
+  for (int i = -steps(-room.min().x()); i <= steps(room.max().x()); ++i) {
+    for (int j = -steps(-room.min().y()); j <= steps(room.max().y()); ++j) {
+      grid.emplace_back(i * spacing, j * spacing);
+    }
   }
   std::stable_sort(grid.begin(), grid.end(), [](const Vector2d& a, const Vector2d& b) {
     return a.squaredNorm() < b.squaredNorm() - 1e-12;
@@ -113,12 +112,18 @@ double RadiusOf(const world::ObjectModel& model) {
          std::cos(geometry::kPi / kCorners);
 }
 
+PlacingArea AreaIn(const world::World& world, const std::string& area, const PlaceParams& params) {
+  const auto X_MA = world.FindFrame(area);
+  if (!X_MA) throw base::ConfigError(base::UnknownName("area", area, world.FrameNames()));
+  return {*X_MA, world::Inset(world.ExtentOf(area), params.area_edge)};
+}
+
 FreeSpots FindFreeSpots(const PlaceParams& params, const world::World& world,
-                        const world::ObjectModel& object, const Pose3& X_MA,
+                        const world::ObjectModel& object, const PlacingArea& area,
                         const std::vector<world::ObjectState>& others) {
   const double radius = RadiusOf(object);
-  return KeepFree(Grid(RoomOf(params, radius), params.spot_spacing), radius, params.clearance,
-                  NeighboursIn(world, X_MA, others));
+  return KeepFree(Grid(world::Inset(area.extent_A, radius), params.spot_spacing), radius,
+                  params.clearance, NeighboursIn(world, area.X_MA, others));
 }
 
 std::vector<std::string> SpotNames() {
@@ -138,11 +143,15 @@ std::optional<Vector2d> ParseSpot(const std::string& name) {
 }
 
 FreeSpots FindStatedSpot(const PlaceParams& params, const world::World& world,
-                         const world::ObjectModel& object, const Pose3& X_MA,
+                         const world::ObjectModel& object, const PlacingArea& area,
                          const std::vector<world::ObjectState>& others, const Vector2d& spot) {
   const double radius = RadiusOf(object);
-  return KeepFree({RoomOf(params, radius) * spot}, radius, params.clearance,
-                  NeighboursIn(world, X_MA, others));
+  const Eigen::AlignedBox2d room = world::Inset(area.extent_A, radius);
+  const auto along = [&](int axis) {
+    return spot[axis] * (spot[axis] < 0.0 ? -room.min()[axis] : room.max()[axis]);
+  };
+  return KeepFree({{along(0), along(1)}}, radius, params.clearance,
+                  NeighboursIn(world, area.X_MA, others));
 }
 
 FreeSpots FindFreeSlots(const PlaceParams& params, const world::World& world,

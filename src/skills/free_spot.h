@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,11 +27,19 @@ struct FreeSpots {
   std::vector<std::string> occupants;    ///< names of what takes up the others, sorted
 };
 
-/// Free places on the square round the origin of A (an area's frame, z on its top), nearest to the
-/// origin first: the object lies wholly within the square, `clearance` away from everything seen
-/// there. Objects that stand more than kSameLevel below or above A do not count.
+/// Where things can be put: a frame with z on a top, and how far the place goes round it.
+struct PlacingArea {
+  geometry::Pose3 X_MA;
+  Eigen::AlignedBox2d extent_A;  ///< [m] without its edges
+};
+/// @throws base::ConfigError for an area that the world does not have, with names like it.
+PlacingArea AreaIn(const world::World& world, const std::string& area, const PlaceParams& params);
+
+/// Free places of an area, nearest to its origin first: the object lies wholly within the extent,
+/// `clearance` away from everything seen there. Objects that stand more than kSameLevel below or
+/// above A do not count.
 FreeSpots FindFreeSpots(const PlaceParams& params, const world::World& world,
-                        const world::ObjectModel& object, const geometry::Pose3& X_MA,
+                        const world::ObjectModel& object, const PlacingArea& area,
                         const std::vector<world::ObjectState>& others);
 
 /// Any free place of an area will do, the nearest to its middle first.
@@ -48,9 +57,9 @@ std::vector<std::string> SpotNames();
 std::optional<Eigen::Vector2d> ParseSpot(const std::string& name);
 
 /// That spot, if it is free as FindFreeSpots means it; the object at the edge lies just within the
-/// square.
+/// extent.
 FreeSpots FindStatedSpot(const PlaceParams& params, const world::World& world,
-                         const world::ObjectModel& object, const geometry::Pose3& X_MA,
+                         const world::ObjectModel& object, const PlacingArea& area,
                          const std::vector<world::ObjectState>& others,
                          const Eigen::Vector2d& spot);
 

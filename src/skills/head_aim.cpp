@@ -28,6 +28,18 @@ Eigen::Vector2d MissingTurn(const perception::CameraView& view, const Vector3d& 
   return {std::atan2(p_C.y(), p_C.x()), -std::atan2(p_C.z(), std::hypot(p_C.x(), p_C.y()))};
 }
 
+/// From `lowest` to `highest`, both there and 0 between them, evenly on each side of it.
+std::vector<double> Steps(double lowest, double highest, double spacing) {
+  const auto number = [spacing](double length) {
+    return std::max(1, static_cast<int>(std::ceil(length / spacing)));
+  };
+  std::vector<double> steps;
+  const int below = number(-lowest), above = number(highest);
+  for (int i = -below; i < 0; ++i) steps.push_back(-i * lowest / below);
+  for (int i = 0; i <= above; ++i) steps.push_back(i * highest / above);
+  return steps;
+}
+
 /// Rests for `dwell` after a motion.
 class LookAndRest : public Activity {
  public:
@@ -94,13 +106,12 @@ bool IsLookedAt(const perception::CameraView& view, const Vector3d& p_M, double 
   return inner.Contains(p_M);
 }
 
-std::vector<Vector3d> PointsOfSquare(const geometry::Pose3& X_MF, double half_width,
-                                     double spacing) {
-  const int n = std::max(1, static_cast<int>(std::ceil(half_width / spacing)));
+std::vector<Vector3d> PointsOn(const geometry::Pose3& X_MF, const Eigen::AlignedBox2d& extent_F,
+                               double spacing) {
   std::vector<Vector3d> points;
-  for (int i = -n; i <= n; ++i) {
-    for (int j = -n; j <= n; ++j) {
-      points.push_back(X_MF * Vector3d(i * half_width / n, j * half_width / n, 0.0));
+  for (const double x : Steps(extent_F.min().x(), extent_F.max().x(), spacing)) {
+    for (const double y : Steps(extent_F.min().y(), extent_F.max().y(), spacing)) {
+      points.push_back(X_MF * Vector3d(x, y, 0.0));
     }
   }
   // The middle first, then outwards: one look often does.

@@ -3,6 +3,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/skills/head_aim.h"
+#include "skills/free_spot.h"
 #include "skills/joint_motion.h"
 
 namespace hires::skills {
@@ -14,11 +15,6 @@ using Context = std::shared_ptr<const ManipulationContext>;
 const char kPlacingArea[] = "placingarea";
 
 }  // namespace
-
-geometry::Pose3 AreaFrame(const world::World& world, const std::string& area) {
-  if (const auto X_MF = world.FindFrame(area)) return *X_MF;
-  throw base::ConfigError(base::UnknownName("area", area, world.FrameNames()));
-}
 
 Stage LookStage(Context context, const std::string& name, PointToLookAt point) {
   return {name,
@@ -37,9 +33,9 @@ std::vector<Eigen::Vector3d> NearbyPlaces(const ManipulationContext& context,
     if (name.rfind(kPlacingArea, 0) != 0) continue;
     const double distance = (X_MF.translation.head<2>() - X_MB.position()).norm();
     if (distance > look.search_distance) continue;
-    const auto square =
-        PointsOfSquare(X_MF, context.params.place.area_half_width, look.part_spacing);
-    points.insert(points.end(), square.begin(), square.end());
+    const PlacingArea area = AreaIn(*context.world, name, context.params.place);
+    const auto on_area = PointsOn(X_MF, area.extent_A, look.part_spacing);
+    points.insert(points.end(), on_area.begin(), on_area.end());
   }
   return points;
 }
@@ -59,12 +55,12 @@ LookAt::LookAt(Context context, const std::string& target) : StagedSkill(context
 
 ObserveObjectsOnArea::ObserveObjectsOnArea(Context context, const std::string& area)
     : StagedSkill(context->params.period) {
-  const geometry::Pose3 X_MF = AreaFrame(*context->world, area);
+  const PlacingArea looked_at = AreaIn(*context->world, area, context->params.place);
   Append({"sweep",
-          [context, X_MF](const Observation&) {
+          [context, looked_at](const Observation&) {
             return Begin(std::make_unique<SweepPoints>(
-                context, PointsOfSquare(X_MF, context->params.place.area_half_width,
-                                        context->params.look.part_spacing)));
+                context,
+                PointsOn(looked_at.X_MA, looked_at.extent_A, context->params.look.part_spacing)));
           },
           {}});
 }

@@ -16,16 +16,13 @@ class LookAt : public StagedSkill {
   LookAt(std::shared_ptr<const ManipulationContext> context, const std::string& target);
 };
 
-/// The head sweeps an area's square until every part of it has been in view of the resting camera.
+/// The head sweeps an area until every part of it has been in view of the resting camera.
 /// Succeeds whatever is seen: that is in Observation::objects. Fails as LookAt.
 class ObserveObjectsOnArea : public StagedSkill {
  public:
   /// @throws base::ConfigError for an unknown area.
   ObserveObjectsOnArea(std::shared_ptr<const ManipulationContext> context, const std::string& area);
 };
-
-/// The frame of an area.  @throws base::ConfigError with names like it.
-geometry::Pose3 AreaFrame(const world::World& world, const std::string& area);
 
 /// A stage that looks at a point that is known when it begins; nothing known: nothing to do.
 using PointToLookAt = std::function<std::optional<Eigen::Vector3d>(const robot::Observation&)>;

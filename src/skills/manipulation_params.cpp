@@ -48,7 +48,7 @@ PickParams ReadPick(ParamReader in) {
 
 PlaceParams ReadPlace(ParamReader in) {
   PlaceParams p;
-  p.area_half_width = in.Get("area_half_width", Between(0.01, 2.0));
+  p.area_edge = in.Get("area_edge", Between(0.0, 1.0));
   p.spot_spacing = in.Get("spot_spacing", Between(0.005, 0.5));
   p.clearance = in.Get("clearance", Between(0.0, 0.5));
   p.max_spots = in.Get("max_spots", Between(1, 1000));

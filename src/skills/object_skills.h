@@ -76,17 +76,17 @@ class PlaceObject : public StagedSkill {
   void AppendChecking();
   /// Where it is put: an area's frame, or the middle of the tray.
   geometry::Pose3 X_MGoal(const robot::Observation& observation) const;
-  /// Where the object may be put, around X_MA.
-  FreeSpots SpotsFor(const world::ObjectModel& model, const geometry::Pose3& X_MA,
+  /// Where the object may be put, around X_MGoal.
+  FreeSpots SpotsFor(const world::ObjectModel& model, const geometry::Pose3& X_MGoal,
                      const std::vector<world::ObjectState>& others) const;
   Beginning Plan(const robot::Observation& observation);
   Beginning ReturnAndLook(const robot::Observation& observation) const;
   base::Failure WhyNotStanding(const robot::Observation& observation) const;
 
   std::shared_ptr<const ManipulationContext> context_;
-  std::string object_, arm_;                // lower case
-  std::optional<geometry::Pose3> X_MArea_;  // nothing: on the tray
-  std::optional<Eigen::Vector2d> spot_;     // the only one of the area that is wanted
+  std::string object_, arm_;             // lower case
+  std::optional<PlacingArea> area_;      // nothing: on the tray
+  std::optional<Eigen::Vector2d> spot_;  // the only one of the area that is wanted
   std::uint64_t seed_;
   PlacePlan plan_;
   double looked_since_{0.0};  // [s]

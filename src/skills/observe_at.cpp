@@ -46,7 +46,7 @@ ObserveObjectsAt::ObserveObjectsAt(std::shared_ptr<const ManipulationContext> co
     : StagedSkill(context->params.period),
       context_(std::move(context)),
       drive_(std::move(drive)),
-      X_MArea_(AreaFrame(*context_->world, area)),
+      area_(AreaIn(*context_->world, area, context_->params.place)),
       X_MStand_(pose.X_MStand) {
   const double height = TorsoHeight(*context_, pose.torso);
   Append({"note_expected", [this](const Observation& seen) { return NoteExpected(seen); }, {}});
@@ -65,10 +65,9 @@ ObserveObjectsAt::ObserveObjectsAt(std::shared_ptr<const ManipulationContext> co
 Beginning ObserveObjectsAt::NoteExpected(const Observation& observation) {
   const auto height = observation.joints.find(context_->upper_body().torso_joint);
   if (height != observation.joints.end()) height_before_ = height->second;
-  const double half_width = context_->params.place.area_half_width;
   for (const robot::SeenObject& object : observation.objects) {
-    const Eigen::Vector3d p_A = X_MArea_.Inverse() * object.X_MO.translation;
-    const bool is_over = std::abs(p_A.x()) <= half_width && std::abs(p_A.y()) <= half_width;
+    const Eigen::Vector3d p_A = area_.X_MA.Inverse() * object.X_MO.translation;
+    const bool is_over = area_.extent_A.contains(p_A.head<2>().eval());
     const bool stands = object.attached_to.empty() && std::abs(p_A.z()) <= kSameLevel;
     if (is_over && stands) expected_.push_back(object.name);
   }
@@ -78,8 +77,7 @@ Beginning ObserveObjectsAt::NoteExpected(const Observation& observation) {
 Beginning ObserveObjectsAt::Sweep(const Observation& observation) {
   looks_since_ = observation.time;
   return Begin(std::make_unique<SweepPoints>(
-      context_, PointsOfSquare(X_MArea_, context_->params.place.area_half_width,
-                               context_->params.look.part_spacing)));
+      context_, PointsOn(area_.X_MA, area_.extent_A, context_->params.look.part_spacing)));
 }
 
 bool ObserveObjectsAt::HasSeen(const Observation& observation, const std::string& object) const {

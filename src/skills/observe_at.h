@@ -8,6 +8,7 @@
 
 #include "hires/skills/activity.h"
 #include "hires/skills/manipulation_context.h"
+#include "skills/free_spot.h"
 
 namespace hires::skills {
 
@@ -15,7 +16,7 @@ namespace hires::skills {
 using DriveTo = std::function<std::unique_ptr<Skill>(const geometry::Pose2& X_MB)>;
 
 /// Looks at an area from a stated pose of base and torso, and stands afterwards as it stood before:
-/// the base on its place, the torso at its height. What is remembered to stand on the square that
+/// the base on its place, the torso at its height. What is remembered to stand on the area that
 /// is looked at must be seen again; nothing remembered there: as ObserveObjectsOnArea. Fails with
 ///   object_not_seen: name  it is hidden from there, overlooked, or gone
 ///   out_of_view, timed_out, stuck
@@ -45,7 +46,7 @@ class ObserveObjectsAt : public StagedSkill {
 
   std::shared_ptr<const ManipulationContext> context_;
   DriveTo drive_;
-  geometry::Pose3 X_MArea_;
+  PlacingArea area_;
   geometry::Pose2 X_MStand_;
   double height_before_{0.0};          // [m] of the torso
   std::vector<std::string> expected_;  // objects

@@ -35,7 +35,7 @@ PlaceObject::PlaceObject(SharedContext context, const base::ActionCall& action,
       context_(std::move(context)),
       object_(base::ToLower(object)),
       arm_(KnownArm(*context_, arm)),
-      X_MArea_(AreaFrame(*context_->world, area)),
+      area_(AreaIn(*context_->world, area, context_->params.place)),
       spot_(ParseSpot(spot)),
       seed_(SeedOf(context_->params, action)),
       lean_(context_->standing) {
@@ -57,16 +57,16 @@ PlaceObject::PlaceObject(SharedContext context, const base::ActionCall& action,
 }
 
 Pose3 PlaceObject::X_MGoal(const Observation& observation) const {
-  return X_MArea_ ? *X_MArea_ : TrayFrame(*context_, observation);
+  return area_ ? area_->X_MA : TrayFrame(*context_, observation);
 }
 
-FreeSpots PlaceObject::SpotsFor(const world::ObjectModel& model, const Pose3& X_MA,
+FreeSpots PlaceObject::SpotsFor(const world::ObjectModel& model, const Pose3& X_MGoal,
                                 const std::vector<world::ObjectState>& others) const {
   const PlaceParams& params = context_->params.place;
   const world::World& world = *context_->world;
-  if (!X_MArea_) return FindFreeSlots(params, world, model, X_MA, others);
-  if (spot_) return FindStatedSpot(params, world, model, X_MA, others, *spot_);
-  return FindFreeSpots(params, world, model, X_MA, others);
+  if (!area_) return FindFreeSlots(params, world, model, X_MGoal, others);
+  if (spot_) return FindStatedSpot(params, world, model, *area_, others, *spot_);
+  return FindFreeSpots(params, world, model, *area_, others);
 }
 
 Beginning PlaceObject::Plan(const Observation& observation) {

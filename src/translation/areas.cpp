@@ -81,7 +81,12 @@ Areas AreasOf(const world::World& world, const robot::Robot& robot) {
     area.name = name;
     area.kind = KindByName(name);
     area.X_FA = X_MF;
-    if (area.kind == AreaKind::kPlacing) area.size = Eigen::Vector2d::Constant(kPlacingSize);
+    if (area.kind == AreaKind::kPlacing) {
+      const Eigen::AlignedBox2d extent_F = world.ExtentOf(name);
+      area.X_FA.translation =
+          X_MF * Eigen::Vector3d(extent_F.center().x(), extent_F.center().y(), 0);
+      area.size = extent_F.sizes();
+    }
     areas.all.push_back(area);
   }
   if (!robot.profile.tray_link.empty() && !areas.Find(kTrayArea)) {

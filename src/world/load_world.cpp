@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <locale>
 #include <optional>
 #include <sdf/Frame.hh>
 #include <sdf/Model.hh>
 #include <sdf/World.hh>
 #include <set>
+#include <sstream>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -22,6 +24,7 @@ namespace hires::world {
 namespace {
 
 constexpr std::uint64_t kMaxModels = 10000;
+constexpr char kExtent[] = "hires:extent";
 constexpr std::size_t kModelsPerPart = 64;  // some 30 MB of libsdformat's
 
 bool ComesBefore(const std::string& a, const std::string& b) {
@@ -44,6 +47,25 @@ std::string NameOfKind(const sdf::Model& model) {
   const std::string uri = include->Get<std::string>("uri");
   const std::string stem = std::filesystem::path(uri).stem().string();
   return stem.empty() ? model.Name() : stem;
+}
+
+/// What a <frame> says of where things stand on it.
+std::optional<Eigen::AlignedBox2d> ExtentIn(sdf::Element& frame, const std::string& where) {
+  if (!frame.HasElement(kExtent)) return std::nullopt;
+  const std::string text = frame.GetElement(kExtent)->Get<std::string>();
+  std::istringstream in(text);
+  in.imbue(std::locale::classic());
+  Eigen::AlignedBox2d extent;
+  in >> extent.min().x() >> extent.min().y() >> extent.max().x() >> extent.max().y();
+  const bool is_read = !in.fail() && (in >> std::ws).eof();
+  const double farthest = is_read ? std::max(-extent.min().minCoeff(), extent.max().maxCoeff()) : 0;
+  if (is_read && extent.contains(Eigen::Vector2d::Zero()) && farthest <= kMaxDistance) {
+    return extent;
+  }
+  throw base::ConfigError(
+      fmt::format("{}: <{}> is '{}', wanted 'xmin ymin xmax ymax' [m] round the frame's origin: "
+                  "minima of at most 0, maxima of at least 0, none farther than {} m",
+                  where, kExtent, text, kMaxDistance));
 }
 
 /// Puts an SDF world together from its parts (see ReadSdfWorld).
@@ -82,6 +104,7 @@ class WorldBuilder {
     std::string where;  ///< for messages
     std::string model;  ///< whose part it is, or ""
     geometry::Pose3 X_MF;
+    std::optional<Eigen::AlignedBox2d> extent;
   };
 
   void SetGravity(const sdf::World& in, const std::string& path) {
@@ -120,6 +143,7 @@ class WorldBuilder {
     ThrowIfAny(frame.ResolveAttachedToBody(body), area.where);
     area.model = body.substr(0, body.find("::"));
     area.X_MF = PoseIn(frame.SemanticPose(), "world", area.where);
+    area.extent = ExtentIn(*frame.Element(), area.where);
     areas_.push_back(std::move(area));
   }
 
@@ -188,6 +212,7 @@ class WorldBuilder {
     const std::string lower = base::ToLower(area.name);
     world_.frames[lower] = area.X_MF;
     world_.frame_names[lower] = area.name;
+    if (area.extent) world_.extents[lower] = *area.extent;
   }
 
   const ResourceFinder* finder_;

@@ -43,6 +43,12 @@ std::optional<geometry::Pose3> World::FindFrame(const std::string& name) const {
   return found->second;
 }
 
+Eigen::AlignedBox2d World::ExtentOf(const std::string& area) const {
+  const auto said = extents.find(base::ToLower(area));
+  if (said != extents.end()) return said->second;
+  return {Eigen::Vector2d::Constant(-kAreaSize / 2), Eigen::Vector2d::Constant(kAreaSize / 2)};
+}
+
 std::vector<std::string> World::FrameNames() const {
   std::vector<std::string> names;
   for (const auto& [lower, pose] : frames) {
@@ -92,12 +98,25 @@ std::uint64_t World::ComputeHash() const {
     hasher.Add(lower);
     AddTo(&hasher, X_MF);
   }
+  hasher.Add(static_cast<std::uint64_t>(extents.size()));
+  for (const auto& [lower, extent] : extents) {
+    hasher.Add(lower);
+    for (const double edge :
+         {extent.min().x(), extent.min().y(), extent.max().x(), extent.max().y()}) {
+      hasher.Add(edge);
+    }
+  }
   hasher.Add(static_cast<std::uint64_t>(models.size()));
   for (const auto& [model_name, model] : models) {
     hasher.Add(model_name);
     AddTo(&hasher, *model);
   }
   return hasher.value();
+}
+
+Eigen::AlignedBox2d Inset(const Eigen::AlignedBox2d& extent, double edge) {
+  return {(extent.min().array() + edge).min(0.0).matrix(),
+          (extent.max().array() - edge).max(0.0).matrix()};
 }
 
 World WithModel(World world, ObjectModel model) {

@@ -33,7 +33,8 @@ simulation::ObjectFate Standing(double x = 0.0, double y = 0.0, double z = kTop)
   return object;
 }
 
-const WantedPlace kPlace{"placingareawest", geometry::Lift({4.0, 2.0, 0.0}, kTop), 0.14};
+const Eigen::AlignedBox2d kSquare(Eigen::Vector2d(-0.14, -0.14), Eigen::Vector2d(0.14, 0.14));
+const WantedPlace kPlace{"placingareawest", geometry::Lift({4.0, 2.0, 0.0}, kTop), kSquare};
 
 TEST(StandsAtTest, NeedsToStandOverTheSquareAndLetGo) {
   EXPECT_TRUE(StandsAt(kPlace, Standing()));
@@ -51,7 +52,7 @@ TEST(StandsAtTest, NeedsToStandOverTheSquareAndLetGo) {
 }
 
 TEST(StandsAtTest, ThePlaceMayBeTurned) {
-  const WantedPlace turned{"turned", geometry::Lift({4.0, 2.0, M_PI / 4}, kTop), 0.14};
+  const WantedPlace turned{"turned", geometry::Lift({4.0, 2.0, M_PI / 4}, kTop), kSquare};
   EXPECT_TRUE(StandsAt(turned, Standing(0.19, 0.0))) << "0.14 times the square root of 2 is 0.198";
   EXPECT_FALSE(StandsAt(turned, Standing(0.139, 0.139)));
 }
@@ -148,10 +149,12 @@ TEST(PlacesOfTest, AnUnknownAreaIsNamed) {
   room.frame_names["placingareawest"] = "placingAreaWest";
   HypothesisGoal goal;
   goal.areas = {"placingareawest"};
-  ASSERT_THAT(PlacesOf(goal, room, 0.1), SizeIs(1));
-  EXPECT_EQ(PlacesOf(goal, room, 0.1)[0].half_width, 0.1);
+  ASSERT_THAT(PlacesOf(goal, room, 0.075), SizeIs(1));
+  EXPECT_NEAR(PlacesOf(goal, room, 0.075)[0].extent_A.max().y(), 0.1, 1e-12);
+  room.extents["placingareawest"] = kSquare;
+  EXPECT_NEAR(PlacesOf(goal, room, 0.02)[0].extent_A.max().y(), 0.12, 1e-12) << "as the world says";
   goal.areas = {"placingareawset"};
-  EXPECT_THAT(ErrorOf([&] { PlacesOf(goal, room, 0.1); }),
+  EXPECT_THAT(ErrorOf([&] { PlacesOf(goal, room, 0.035); }),
               AllOf(HasSubstr("room"), HasSubstr("did you mean 'placingAreaWest'")));
 }
 
@@ -172,7 +175,7 @@ TEST(HypothesisScenariosTest, NoScenarioBeginsWithSuccess) {
       EXPECT_EQ(truth.objects.count(object), 1U) << scenario << ": " << object;
     }
     HypothesisRun run;
-    Judge(goal, PlacesOf(goal, world, 0.14), truth, &run);
+    Judge(goal, PlacesOf(goal, world, 0.035), truth, &run);
     EXPECT_THAT(run.broken_rules, ElementsAre("not_there")) << scenario;
   }
 }

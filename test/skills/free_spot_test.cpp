@@ -38,8 +38,12 @@ world::ObjectState Stands(const std::string& name, const std::string& model, dou
   return object;
 }
 
+PlacingArea SquareOf(const PlaceParams& params) {
+  return {X_MA(), world::Inset(world::World().ExtentOf(""), params.area_edge)};
+}
+
 FreeSpots Spots(const std::vector<world::ObjectState>& others, const PlaceParams& params = {}) {
-  return FindFreeSpots(params, Shelf(), *Shelf().models.at("mill"), X_MA(), others);
+  return FindFreeSpots(params, Shelf(), *Shelf().models.at("mill"), SquareOf(params), others);
 }
 
 TEST(RadiusOfTest, ARoundObjectHasItsOwnRadius) {
@@ -59,11 +63,12 @@ TEST(RadiusOfTest, AnOutlineTurnsWithItsObject) {
 }
 
 FreeSpots At(const std::string& spot, const std::vector<world::ObjectState>& others) {
-  return FindStatedSpot({}, Shelf(), *Shelf().models.at("mill"), X_MA(), others, *ParseSpot(spot));
+  return FindStatedSpot({}, Shelf(), *Shelf().models.at("mill"), SquareOf({}), others,
+                        *ParseSpot(spot));
 }
 
 TEST(StatedSpotTest, LiesAsFarOutAsTheObjectMayGo) {
-  const double room = PlaceParams().area_half_width - 0.037;
+  const double room = 0.14 - 0.037;
   const FreeSpots corner = At("Back_Left", {});
   ASSERT_EQ(corner.spots_A.size(), 1u);
   EXPECT_LT((corner.spots_A[0] - Eigen::Vector3d(-room, room, 0.0)).norm(), 1e-6);
@@ -97,8 +102,25 @@ TEST(FreeSpotsTest, AnEmptyAreaOffersItsMiddleFirst) {
 TEST(FreeSpotsTest, TheObjectLiesWhollyWithinTheSquare) {
   const PlaceParams params;
   for (const Eigen::Vector3d& p_A : Spots({}).spots_A) {
-    EXPECT_LE(p_A.head<2>().cwiseAbs().maxCoeff() + 0.037, params.area_half_width + 1e-9);
+    EXPECT_LE(p_A.head<2>().cwiseAbs().maxCoeff() + 0.037, 0.14 + 1e-9);
   }
+}
+
+// As long as the counter's: the far end is used when the middle is full, and is one of the spots.
+TEST(FreeSpotsTest, ALongAreaGoesOnWhereASquareEnds) {
+  const PlacingArea area{X_MA(), {Eigen::Vector2d(-0.14, -0.44), Eigen::Vector2d(0.14, 0.14)}};
+  const world::ObjectModel& mill = *Shelf().models.at("mill");
+  const std::vector<world::ObjectState> others{Stands("book1", "book", 0.0, 0.06),
+                                               Stands("book2", "book", 0.0, -0.06)};
+  const FreeSpots free = FindFreeSpots({}, Shelf(), mill, area, others);
+  ASSERT_FALSE(free.spots_A.empty());
+  for (const Eigen::Vector3d& p_A : free.spots_A) {
+    EXPECT_LT(p_A.y(), -0.06);
+    EXPECT_TRUE(world::Inset(area.extent_A, 0.037 - 1e-9).contains(p_A.head<2>().eval()));
+  }
+  const FreeSpots right = FindStatedSpot({}, Shelf(), mill, area, others, *ParseSpot("right"));
+  ASSERT_EQ(right.spots_A.size(), 1u);
+  EXPECT_NEAR(right.spots_A[0].y(), -0.44 + 0.037, 1e-6);
 }
 
 TEST(FreeSpotsTest, SpotsKeepClearOfEveryNeighbourAndComeNearestFirst) {
@@ -132,7 +154,7 @@ TEST(FreeSpotsTest, WhatStandsOnAnotherLevelOrFarAwayIsNoNeighbour) {
 
 TEST(FreeSpotsTest, AnObjectAsWideAsTheAreaHasItsMiddleOnly) {
   PlaceParams params;
-  params.area_half_width = 0.03;
+  params.area_edge = 0.145;
   EXPECT_EQ(Spots({}, params).spots_A.size(), 1u);
 }
 

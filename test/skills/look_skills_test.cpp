@@ -31,6 +31,10 @@ robot::RobotState AtCounter() {
   return RobotAt(kAtCounter, "torsoupposture", "armtuckedposture", "armtosideposture");
 }
 
+Eigen::AlignedBox2d Square(double half_width) {
+  return {Eigen::Vector2d::Constant(-half_width), Eigen::Vector2d::Constant(half_width)};
+}
+
 const robot::Robot& Pr2() { return TheRestaurant().scene->robot; }
 
 /// [rad] between the camera's axis and a point.
@@ -185,7 +189,7 @@ TEST(SweepPointsTest, LooksUntilEveryPartHasBeenInView) {
   const std::shared_ptr<const ManipulationContext>& context = TheRestaurant().skills.manipulation;
   const robot::RobotState robot = AtCounter();
   const geometry::Pose3 X_MF{{5.1, 10.1, 0.75}, Eigen::Quaterniond::Identity()};
-  const std::vector<Vector3d> points = PointsOfSquare(X_MF, 0.6, 0.2);
+  const std::vector<Vector3d> points = PointsOn(X_MF, Square(0.6), 0.2);
   SweepPoints sweep(context, points);
   std::vector<bool> seen_at_rest(points.size(), false);
   robot::Observation seen;
@@ -213,9 +217,17 @@ TEST(SweepPointsTest, LooksUntilEveryPartHasBeenInView) {
   EXPECT_THAT(seen_at_rest, ::testing::Each(true));
 }
 
-TEST(PointsOfSquareTest, CoverTheSquareWithItsRimsTheMiddleFirst) {
+TEST(PointsOnTest, ALongAreaIsCoveredToItsEnds) {
+  const auto points = PointsOn({{1.0, 2.0, 0.7}, Eigen::Quaterniond::Identity()},
+                               {Eigen::Vector2d(-0.14, -0.44), Eigen::Vector2d(0.14, 0.14)}, 0.07);
+  EXPECT_EQ(points.size(), 5u * 10u);  // 7 steps to the far end, 2 to each near one
+  EXPECT_LT((points.front() - Vector3d(1.0, 2.0, 0.7)).norm(), 1e-12);
+  EXPECT_NEAR((points.back() - Vector3d(1.0, 2.0, 0.7)).norm(), std::hypot(0.14, 0.44), 1e-12);
+}
+
+TEST(PointsOnTest, CoverTheSquareWithItsRimsTheMiddleFirst) {
   const auto points =
-      PointsOfSquare({{1.0, 2.0, 0.7}, Eigen::Quaterniond::Identity()}, 0.175, 0.07);
+      PointsOn({{1.0, 2.0, 0.7}, Eigen::Quaterniond::Identity()}, Square(0.175), 0.07);
   EXPECT_EQ(points.size(), 49u);  // 7 x 7, 0.058 apart
   EXPECT_LT((points.front() - Vector3d(1.0, 2.0, 0.7)).norm(), 1e-12);
   EXPECT_NEAR((points.back() - Vector3d(1.0, 2.0, 0.7)).norm(), 0.175 * std::sqrt(2.0), 1e-12);

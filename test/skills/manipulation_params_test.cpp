@@ -41,7 +41,7 @@ TEST(ManipulationParamsTest, TheFilesNumbersAreTheDefaults) {
   EXPECT_EQ(read.gripper.min_held_gap, defaults.gripper.min_held_gap);
   EXPECT_EQ(read.look.sightings, defaults.look.sightings);
   EXPECT_EQ(read.pick.max_grasps, defaults.pick.max_grasps);
-  EXPECT_EQ(read.place.area_half_width, defaults.place.area_half_width);
+  EXPECT_EQ(read.place.area_edge, defaults.place.area_edge);
   EXPECT_EQ(read.place.clearance, defaults.place.clearance);
   EXPECT_EQ(read.path.max_iterations, defaults.path.max_iterations);
   EXPECT_EQ(read.path.max_held_tilt, defaults.path.max_held_tilt);

@@ -144,7 +144,8 @@ TEST(PlaceObjectTest, TakesTheFreeSpotNextToTheMiddle) {
   const Eigen::Vector3d away =
       crowded.ObjectNow("mug1").X_MO.translation - Frame("placingAreaWestRightTable1").translation;
   EXPECT_GT(away.x(), 0.07);  // the bowl's rim is at -0.002; 0.05 for fingers, 0.04 for the mug
-  EXPECT_LT(away.head<2>().cwiseAbs().maxCoeff() + 0.04, 0.15);  // area_half_width, and 0.01
+  EXPECT_LT(away.head<2>().cwiseAbs().maxCoeff() + 0.04,
+            0.15);  // the area without its edge, and 0.01
   EXPECT_LT((crowded.ObjectNow("bowl1").X_MO.translation - objects.back().X_MO.translation).norm(),
             0.005);
 }

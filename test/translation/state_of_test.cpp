@@ -9,6 +9,7 @@
 #include "hires/translation/classification.h"
 #include "support/restaurant_translation.h"
 #include "support/scenes.h"
+#include "translation/stated_pose.h"
 
 namespace hires::translation::state_of_test {
 namespace {
@@ -69,6 +70,21 @@ TEST(AreasTest, KindsAndSizesAreThoseOfTheKnowledge) {
   EXPECT_EQ(areas.Require("floorareatamsrestaurant1").kind, AreaKind::kRoom);
   EXPECT_EQ(areas.Require("home").kind, AreaKind::kStanding);
   EXPECT_THROW(areas.Require("hom"), base::ConfigError);
+}
+
+// The world tells skills and rollouts, the knowledge tells the planner's state: the same rectangle.
+TEST(AreasTest, WhatTheWorldSaysOfAPlaceIsWhatTheKnowledgeSays) {
+  const knowledge::LiveView view = ViewWith({});
+  const auto& extents = RestaurantContext().world->extents;
+  ASSERT_FALSE(extents.empty());
+  for (const auto& [name, extent_F] : extents) {
+    const Area& area = RestaurantContext().areas.Require(name);
+    EXPECT_LT((area.size - extent_F.sizes()).norm(), 1e-12) << name;
+    const knowledge::Fluent* pose = view.Find("poseBoundingBox" + name);
+    ASSERT_NE(pose, nullptr) << name;
+    EXPECT_NEAR(*NumberOf(*pose, "hasX"), area.X_FA.translation.x(), 1e-9) << name;
+    EXPECT_NEAR(*NumberOf(*pose, "hasY"), area.X_FA.translation.y(), 1e-9) << name;
+  }
 }
 
 TEST(AreasTest, TheTrayIsTheRobotsShape) {

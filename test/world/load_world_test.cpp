@@ -216,6 +216,33 @@ TEST_F(LoadWorldTest, FramesAreAreasWhateverTheirCase) {
   EXPECT_FALSE(world.FindFrame("other").has_value());
 }
 
+TEST_F(LoadWorldTest, AFrameMaySayWhereThingsStandOnIt) {
+  const World world = Load(
+      "<frame name='Long' attached_to='world'><hires:extent>-0.1 -0.5 0.2\n 0.3 </hires:extent>"
+      "</frame><frame name='square' attached_to='world'/>");
+  EXPECT_EQ(world.ExtentOf("LONG").min(), Eigen::Vector2d(-0.1, -0.5));
+  EXPECT_EQ(world.ExtentOf("LONG").max(), Eigen::Vector2d(0.2, 0.3));
+  EXPECT_EQ(world.ExtentOf("square").max(), Eigen::Vector2d(0.175, 0.175));
+  EXPECT_EQ(Inset(world.ExtentOf("long"), 0.15).min(), Eigen::Vector2d(0.0, -0.35));
+  const auto with = [](const std::string& extent) {
+    return "<frame name='f' attached_to='world'>" + extent + "</frame>";
+  };
+  EXPECT_NE(Load(with("<hires:extent>-1 -1 1 1</hires:extent>")).hash, Load(with("")).hash);
+  EXPECT_NE(Load(with("<hires:extent>-1 -1 1 1</hires:extent>")).hash,
+            Load(with("<hires:extent>-1 -1 1 2</hires:extent>")).hash);
+}
+
+TEST_F(LoadWorldTest, RefusesExtentsThatAreNoRectangleRoundTheirFrame) {
+  for (const std::string bad : {"", "1 2 3", "-1 -1 1 1 1", "0.1 -1 1 1", "-1 -1 1 -0.5",
+                                "-1 -1 nan 1", "-1 -1 2000 1", "-1 -1 wide 1"}) {
+    EXPECT_THAT(ErrorOf("<frame name='f' attached_to='world'><hires:extent>" + bad +
+                        "</hires:extent></frame>"),
+                AllOf(HasSubstr("test.world"), HasSubstr("frame 'f'"), HasSubstr("'" + bad + "'"),
+                      HasSubstr("xmin ymin xmax ymax")))
+        << bad;
+  }
+}
+
 TEST_F(LoadWorldTest, HashDoesNotDependOnLayout) {
   const std::string a = LooseCube("a"), b = StaticModel("b", LinkWithShape(kUnitBox));
   const std::string frames[2] = {"<frame name='f' attached_to='world'/>",

@@ -91,19 +91,19 @@ enum class JudgeRule {
 std::string ToString(JudgeRule rule);
 const std::vector<JudgeRule>& AllJudgeRules();
 
-/// A place that the task is content with: a square round its middle, on top of furniture.
+/// A place that the task is content with: on top of furniture.
 struct WantedPlace {
   std::string name;  ///< lower case
   geometry::Pose3 X_MA;
-  double half_width{0.14};  ///< [m]
+  Eigen::AlignedBox2d extent_A;  ///< [m]
 };
-/// @param half_width  [m] as rollouts are judged: skills::PlaceParams::area_half_width.
+/// @param area_edge  [m] as rollouts are judged: skills::PlaceParams::area_edge.
 /// @throws base::ConfigError for an area that the world does not have, with names like it.
 std::vector<WantedPlace> PlacesOf(const HypothesisGoal& goal, const world::World& world,
-                                  double half_width);
+                                  double area_edge);
 
 /// Whether the object stands there: as the fall detector says, its origin (on its underside) over
-/// the square and within 0.02 m of the place's height.
+/// the extent and within 0.02 m of the place's height.
 bool StandsAt(const WantedPlace& place, const simulation::ObjectFate& object);
 
 /// Success, verdict, broken rules, falls and contact of the run.

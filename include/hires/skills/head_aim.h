@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
@@ -25,9 +25,11 @@ Beginning LookAtPoint(std::shared_ptr<const ManipulationContext> context,
 /// Whether a camera looks at a point and not just past its rim.
 bool IsLookedAt(const perception::CameraView& view, const Eigen::Vector3d& p_M, double margin);
 
-/// Points of a horizontal square round the origin of F, `spacing` apart, rims included.
-std::vector<Eigen::Vector3d> PointsOfSquare(const geometry::Pose3& X_MF, double half_width,
-                                            double spacing);
+/// Points of an area round the origin of F, at most `spacing` apart, rims included, nearest to the
+/// origin first.
+/// @pre the extent holds the origin.
+std::vector<Eigen::Vector3d> PointsOn(const geometry::Pose3& X_MF,
+                                      const Eigen::AlignedBox2d& extent_F, double spacing);
 
 /// Looks at points one after the other until the resting head has had every one in view. Fails with
 /// out_of_view if one cannot be brought into view.

@@ -41,7 +41,7 @@ struct PickParams {
 };
 
 struct PlaceParams {
-  double area_half_width{0.14};  ///< [m] of an area's square round its frame, edges left out
+  double area_edge{0.035};       ///< [m] inside an area's extent where nothing is put
   double spot_spacing{0.025};    ///< [m] between spots that are considered
   double clearance{0.05};        ///< [m] from an object's outline to the next: room for fingers
   int max_spots{6};              ///< tried in thought before giving up

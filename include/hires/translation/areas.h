@@ -39,11 +39,10 @@ struct Areas {
 };
 
 constexpr char kTrayArea[] = "trayarea1";
-constexpr double kPlacingSize = 0.35;  ///< [m] of a placing area of which no box is known
 
 /// Areas from the world's frames, told apart by the words that their names begin with:
 /// `placingArea`, `sittingArea`, `floorArea`; all others are for standing. A robot with a tray has
-/// trayArea1: what of the tray's shapes lies highest. Placing areas are squares of kPlacingSize.
+/// trayArea1: what of the tray's shapes lies highest. Placing areas have the world's extents.
 Areas AreasOf(const world::World& world, const robot::Robot& robot);
 
 /// The same with what the Blackboard knows: kinds by concept (PlacingArea and below, FloorArea,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -44,21 +45,27 @@ struct WorldState {
   ObjectState* Find(const std::string& name);
 };
 
+constexpr double kAreaSize = 0.35;  ///< [m] of an area that the world says no extent of
+
 /// What does not change about a world, shared by all that use it. Names keep the case of the file
 /// and compare without regard to it.
 struct World {
   std::string name;
   double gravity{9.81};  ///< [m/s^2], along -z
   double floor_friction{1.0};
-  std::vector<StaticBody> statics;                 ///< the floor z = 0 is implied
-  std::map<std::string, geometry::Pose3> frames;   ///< areas, X_MF; lower-case keys
-  std::map<std::string, std::string> frame_names;  ///< lower case -> as in the file
+  std::vector<StaticBody> statics;                     ///< the floor z = 0 is implied
+  std::map<std::string, geometry::Pose3> frames;       ///< areas, X_MF; lower-case keys
+  std::map<std::string, std::string> frame_names;      ///< lower case -> as in the file
+  std::map<std::string, Eigen::AlignedBox2d> extents;  ///< as ExtentOf, of areas that say one
   std::map<std::string, std::shared_ptr<const ObjectModel>> models;  ///< by name
   WorldState initial;
   std::uint64_t hash{0};  ///< of everything but `initial`; independent of the file's layout
 
   std::optional<geometry::Pose3> FindFrame(const std::string& name) const;
   std::vector<std::string> FrameNames() const;
+  /// Where things stand on an area, in the x and y of its frame [m]: what the world says of it,
+  /// else the square of kAreaSize round its origin.
+  Eigen::AlignedBox2d ExtentOf(const std::string& area) const;
   /// The kind of thing of that name: one of `models`, or the box that the name says
   /// (unknown_box.h). Null if it is neither.
   std::shared_ptr<const ObjectModel> FindModel(const std::string& model) const;
@@ -71,8 +78,10 @@ struct World {
 
 /// Reads an SDF world. Models with `<static>true</static>` (or one link that is fixed to the world)
 /// become StaticBody, single-link models become loose objects (one ObjectModel per distinct
-/// description), `<frame>` elements become areas. `model://name` is looked for in `models/name/`
-/// next to the world file, in `model_path` and in GAZEBO_MODEL_PATH / SDF_PATH.
+/// description), `<frame>` elements become areas, and
+/// `<hires:extent>xmin ymin xmax ymax</hires:extent>` in one says where things stand on it.
+/// `model://name` is looked for in `models/name/` next to the world file, in `model_path` and in
+/// GAZEBO_MODEL_PATH / SDF_PATH.
 /// @throws base::ConfigError naming file, element and remedy: malformed SDF, two models of one
 /// name, missing mesh or model, loose objects with joints, unphysical inertia, shapes that are not
 /// supported, poses that are not finite or lie more than 1 km away.
@@ -82,6 +91,9 @@ World LoadWorld(const std::string& sdf_path, const std::vector<std::string>& mod
 /// or box of given size and mass (.yaml: docs/command_line.md).
 /// @throws base::ConfigError as LoadWorld, and as base::ParamReader.
 ObjectModel LoadObjectModel(const std::string& path);
+
+/// An extent without its outermost `edge` [m]; it goes on holding the origin.
+Eigen::AlignedBox2d Inset(const Eigen::AlignedBox2d& extent, double edge);
 
 /// The same world with one more kind of object; replaces a model of the same name.
 World WithModel(World world, ObjectModel model);

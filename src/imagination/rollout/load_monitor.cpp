@@ -174,14 +174,20 @@ Pose3 LoadMonitor::X_MGoal() const {
   return scene.world.FindFrame(purpose_.area).value_or(Pose3());
 }
 
+/// The tray's middle has the square of an area that nothing is said of.
+Eigen::AlignedBox2d LoadMonitor::ExtentOfGoal() const {
+  const std::string area = purpose_.kind == Purpose::Kind::kPutOnTray ? "" : purpose_.area;
+  return world::Inset(simulator_->scene().world.ExtentOf(area), purpose_.area_edge);
+}
+
 base::Failure LoadMonitor::WhyNotStanding(const Object& object) const {
   if (IsHeld(object)) return Code::kObjectNotReleased;
   const Fall fall = object.watch.detector().fall();
   if (fall != Fall::kNone) return CodeOf(object, fall);
   const Eigen::Vector3d p_GO = (X_MGoal().Inverse() * simulator_->PoseOf(object.index)).translation;
   if (p_GO.z() < -standing_.drop) return Code::kObjectFell;  // it stands on something lower
-  const double away = p_GO.head<2>().cwiseAbs().maxCoeff();
-  return away > purpose_.area_half_width ? Code::kObjectSlipped : base::Failure();
+  const bool is_there = ExtentOfGoal().contains(p_GO.head<2>().eval());
+  return is_there ? base::Failure() : Code::kObjectSlipped;
 }
 
 base::Failure LoadMonitor::WhyNotHeldAnyMore() const {

@@ -91,6 +91,7 @@ class LoadMonitor {
   base::Failure WhyHandledIsNotWell() const;
   base::Failure WhyNotHeldAnyMore() const;
   geometry::Pose3 X_MGoal() const;
+  Eigen::AlignedBox2d ExtentOfGoal() const;
 
   simulation::RobotSimulator* simulator_;
   const RolloutParams& params_;

@@ -25,7 +25,7 @@ enum Streams : std::uint64_t { kVariation, kSimulator, kControl };
 Purpose PurposeIn(const RolloutSetup& setup, const base::ActionCall& action) {
   Purpose purpose = PurposeOf(setup.skills->actions->catalogue(), action);
   if (setup.skills->manipulation) {
-    purpose.area_half_width = setup.skills->manipulation->params.place.area_half_width;
+    purpose.area_edge = setup.skills->manipulation->params.place.area_edge;
   }
   return purpose;
 }

@@ -238,7 +238,7 @@ HypothesisRun PlayInSystem(const HypothesisOrder& order, int port,
       fmt::format("{}/config/scenarios/{}.yaml", package_folder, order.scenario));
   const auto scene = hires::imagination::ReadSetupConfig(package_folder + "/config/scene.yaml");
   const auto places = evaluation::PlacesOf(order.goal, hires::world::LoadWorld(scene.world),
-                                           scene.manipulation.place.area_half_width);
+                                           scene.manipulation.place.area_edge);
   EnterSystem(order, port);
   hires::base::ChildProcess system(LaunchOptions(order, scenario, port, package_folder));
   Limits limits(order, &system, stop);
