@@ -1,17 +1,19 @@
 #include "perception/tabletop/convex_parts.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <queue>
 
 namespace hires::perception {
 namespace {
 
 // What one region knows of a neighbour; the sum over all pairs of surfels that border on each
-// other.
+// other. The neighbour knows the same: at `twin` in its own list.
 struct Border {
   int other{0};
   int num_pairs{0};
   double concavity{0.0};
+  int twin{0};
   double Mean() const { return concavity / num_pairs; }
 };
 
@@ -40,21 +42,28 @@ class Regions {
   const std::vector<Border>& borders(int root) const { return borders_[root]; }
 
  private:
-  Border* Find(int region, int other);
+  int Find(int region, int other) const;
+  int FindInShorter(int a, int b) const;
+  void Erase(int region, int index);
   void Merge(int a, int b);
   void Push(int region, const Border& border);
   bool AreThere(int a, int b) const { return parent_[a] == a && parent_[b] == b; }
-  const Border* Between(int a, int b);
+  const Border* Between(int a, int b) const;
 
   std::vector<std::vector<Border>> borders_;
   std::vector<int> parent_;
   std::vector<int> size_;
-  std::vector<int> slot_;  // of a neighbour in the list that is being merged into; -1: not there
-  std::vector<std::vector<std::pair<int, int>>>
-      flat_;  // by the size of both, while these are joined
+  // By the size of both, while these are joined: the smaller number above the larger, so that they
+  // are sorted by one comparison.
+  std::vector<std::vector<std::uint64_t>> flat_;
   bool is_flat_phase_{true};
   std::priority_queue<Candidate> queue_;
 };
+
+std::uint64_t PairOf(int a, int b) {
+  const auto [lower, upper] = std::minmax(a, b);
+  return static_cast<std::uint64_t>(lower) << 32 | static_cast<std::uint32_t>(upper);
+}
 
 // How far the normals lean towards each other, as a share of a sharp edge.
 double Concavity(const Surfel& a, const Surfel& b, double sharp) {
@@ -66,13 +75,23 @@ Regions::Regions(const SurfelCloud& all, double sharp)
     : borders_(all.surfels.size()),
       parent_(all.surfels.size()),
       size_(all.surfels.size(), 1),
-      slot_(all.surfels.size(), -1),
       flat_(all.surfels.size() + 1) {
-  for (std::size_t i = 0; i < all.surfels.size(); ++i) {
-    parent_[i] = static_cast<int>(i);
-    for (const int j : all.neighbours[i]) {
-      borders_[i].push_back({j, 1, Concavity(all.surfels[i], all.surfels[j], sharp)});
-      if (j > static_cast<int>(i)) Push(static_cast<int>(i), borders_[i].back());
+  const int n = static_cast<int>(all.surfels.size());
+  for (int i = 0; i < n; ++i) {
+    parent_[i] = i;
+    borders_[i].reserve(all.neighbours[i].size());
+    for (const int j : all.neighbours[i]) borders_[i].push_back({j, 1, 0.0, 0});
+  }
+  for (int i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < borders_[i].size(); ++k) {
+      Border& border = borders_[i][k];
+      if (border.other < i) continue;
+      border.twin = Find(border.other, i);
+      border.concavity = Concavity(all.surfels[i], all.surfels[border.other], sharp);
+      Border& back = borders_[border.other][border.twin];
+      back.twin = static_cast<int>(k);
+      back.concavity = border.concavity;
+      Push(i, border);
     }
   }
 }
@@ -80,7 +99,7 @@ Regions::Regions(const SurfelCloud& all, double sharp)
 void Regions::Push(int region, const Border& border) {
   if (is_flat_phase_) {
     if (border.concavity == 0.0)
-      flat_[size_[region] + size_[border.other]].push_back(std::minmax(region, border.other));
+      flat_[size_[region] + size_[border.other]].push_back(PairOf(region, border.other));
     return;
   }
   queue_.push({border.Mean(), size_[region] + size_[border.other], std::min(region, border.other),
@@ -92,67 +111,77 @@ int Regions::RootOf(int surfel) const {
   return surfel;
 }
 
-Border* Regions::Find(int region, int other) {
-  for (Border& border : borders_[region])
-    if (border.other == other) return &border;
-  return nullptr;
+// Where in a region's list; -1: they do not border on each other.
+int Regions::Find(int region, int other) const {
+  const std::vector<Border>& borders = borders_[region];
+  for (std::size_t i = 0; i < borders.size(); ++i)
+    if (borders[i].other == other) return static_cast<int>(i);
+  return -1;
 }
 
-void Erase(std::vector<Border>* borders, int other) {
-  const auto it = std::find_if(borders->begin(), borders->end(),
-                               [&](const Border& border) { return border.other == other; });
-  *it = borders->back();
-  borders->pop_back();
+// Where b stands in a's list.
+int Regions::FindInShorter(int a, int b) const {
+  if (borders_[a].size() <= borders_[b].size()) return Find(a, b);
+  const int index = Find(b, a);
+  return index < 0 ? -1 : borders_[b][index].twin;
+}
+
+// Of a region's list alone; the last one takes its place.
+void Regions::Erase(int region, int index) {
+  std::vector<Border>& borders = borders_[region];
+  const Border& last = borders[index] = borders.back();
+  borders_[last.other][last.twin].twin = index;
+  borders.pop_back();
 }
 
 void Regions::Merge(int a, int b) {
   const bool a_has_more = borders_[a].size() >= borders_[b].size();
   const int into = a_has_more ? a : b, from = a_has_more ? b : a;
-  Erase(&borders_[into], from);
+  Erase(into, FindInShorter(into, from));
   size_[into] += size_[from];
   std::vector<Border>& kept = borders_[into];
-  for (std::size_t i = 0; i < kept.size(); ++i) slot_[kept[i].other] = static_cast<int>(i);
   for (const Border& border : borders_[from]) {
     if (border.other == into) continue;
-    Border* back = Find(border.other, from);
-    const int slot = slot_[border.other];
+    const int slot = FindInShorter(into, border.other);
     if (slot < 0) {
+      borders_[border.other][border.twin].other = into;
+      borders_[border.other][border.twin].twin = static_cast<int>(kept.size());
       kept.push_back(border);
-      back->other = into;
       Push(into, border);
     } else {
       kept[slot].concavity += border.concavity;
       kept[slot].num_pairs += border.num_pairs;
-      Erase(&borders_[border.other], from);
-      *Find(border.other, into) = {into, kept[slot].num_pairs, kept[slot].concavity};
+      Border& back = borders_[border.other][kept[slot].twin];
+      back.concavity = kept[slot].concavity;
+      back.num_pairs = kept[slot].num_pairs;
+      Erase(border.other, border.twin);
       Push(into, kept[slot]);
     }
   }
-  for (const Border& border : kept) slot_[border.other] = -1;
   borders_[from].clear();
   parent_[from] = into;
 }
 
-// Looked for in the shorter list.
-const Border* Regions::Between(int a, int b) {
-  return borders_[a].size() < borders_[b].size() ? Find(a, b) : Find(b, a);
+const Border* Regions::Between(int a, int b) const {
+  const int index = FindInShorter(a, b);
+  return index < 0 ? nullptr : &borders_[a][index];
 }
 
 void Regions::JoinFlat() {
   for (std::size_t size = 0; size < flat_.size(); ++size) {
-    std::sort(flat_[size].begin(), flat_[size].end());  // joining adds to lists further on alone
-    for (const auto& [a, b] : flat_[size]) {
+    std::vector<std::uint64_t> pairs = std::move(flat_[size]);  // joining adds to others alone
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    for (const std::uint64_t pair : pairs) {
+      const int a = static_cast<int>(pair >> 32), b = static_cast<int>(pair & 0xffffffff);
       if (!AreThere(a, b)) continue;
-      const Border* border = Between(a, b);
-      if (border == nullptr || border->concavity > 0.0) continue;
       const int size_now = size_[a] + size_[b];
       if (size_now != static_cast<int>(size)) {  // a region has grown: it is not yet its turn
-        flat_[size_now].emplace_back(a, b);
-      } else {
+        flat_[size_now].push_back(pair);
+      } else if (const Border* border = Between(a, b); border && border->concavity == 0.0) {
         Merge(a, b);
       }
     }
-    flat_[size].clear();
   }
   is_flat_phase_ = false;
   for (std::size_t region = 0; region < borders_.size(); ++region)

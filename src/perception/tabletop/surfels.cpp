@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstdint>
-#include <unordered_map>
+#include <vector>
 
 #include "hires/base/check.h"
 
@@ -22,38 +22,84 @@ std::uint64_t KeyOf(const Cell& cell) {
   return part(cell.x()) << 42 | part(cell.y()) << 21 | part(cell.z());
 }
 
+/// Numbers for cells, in the order in which they are first met: a hash table without deletion,
+/// whose places follow each other in memory.
+class CellNumbers {
+ public:
+  /// @param most  cells that there can be.
+  explicit CellNumbers(std::size_t most) {
+    while ((std::size_t{1} << bits_) < 2 * most) ++bits_;
+    keys_.assign(std::size_t{1} << bits_, kFree);
+    numbers_.resize(keys_.size());
+  }
+  /// The cell's number, new or old.
+  int Of(const Cell& cell) {
+    const std::uint64_t key = KeyOf(cell);
+    const std::size_t place = PlaceOf(key);
+    if (keys_[place] == kFree) {
+      keys_[place] = key;
+      numbers_[place] = count_++;
+    }
+    return numbers_[place];
+  }
+  /// -1: never met.
+  int Find(const Cell& cell) const {
+    const std::size_t place = PlaceOf(KeyOf(cell));
+    return keys_[place] == kFree ? -1 : numbers_[place];
+  }
+  int count() const { return count_; }
+
+ private:
+  static constexpr std::uint64_t kFree = ~std::uint64_t{0};  // no key has all of its bits set
+
+  std::size_t PlaceOf(std::uint64_t key) const {
+    constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;  // 2^64 / golden ratio [Knuth, TAOCP 6.4]
+    const std::size_t mask = keys_.size() - 1;
+    std::size_t place = key * kGolden >> (64 - bits_);
+    while (keys_[place] != kFree && keys_[place] != key) place = (place + 1) & mask;
+    return place;
+  }
+
+  int bits_{4}, count_{0};
+  std::vector<std::uint64_t> keys_;
+  std::vector<int> numbers_;
+};
+
 void GroupPoints(const PointCloud& cloud, const std::vector<int>& indices, double cell,
                  SurfelCloud* out) {
-  std::unordered_map<std::uint64_t, int> of_cell;
+  CellNumbers cells(indices.size());
   out->of_point.assign(cloud.points.size(), -1);
   for (const int i : indices) {
     const Eigen::Vector3d p = cloud.points[i].cast<double>();
-    const auto [it, is_new] =
-        of_cell.emplace(KeyOf(CellOf(p, cell)), static_cast<int>(out->surfels.size()));
-    if (is_new) out->surfels.emplace_back();
-    Surfel& surfel = out->surfels[it->second];
+    const int number = cells.Of(CellOf(p, cell));
+    if (number == static_cast<int>(out->surfels.size())) out->surfels.emplace_back();
+    Surfel& surfel = out->surfels[number];
     surfel.p_C += p;
     ++surfel.num_points;
-    out->of_point[i] = it->second;
+    out->of_point[i] = number;
   }
   for (Surfel& surfel : out->surfels) surfel.p_C /= surfel.num_points;
 }
 
 void FindNeighbours(double radius, SurfelCloud* out) {
   const std::vector<Surfel>& surfels = out->surfels;
-  std::unordered_map<std::uint64_t, std::vector<int>> cells;
-  for (std::size_t i = 0; i < surfels.size(); ++i)
-    cells[KeyOf(CellOf(surfels[i].p_C, radius))].push_back(static_cast<int>(i));
-  out->neighbours.resize(surfels.size());
+  CellNumbers numbers(surfels.size());
+  std::vector<std::vector<int>> cells;
   for (std::size_t i = 0; i < surfels.size(); ++i) {
-    const Cell cell = CellOf(surfels[i].p_C, radius);
+    const int number = numbers.Of(CellOf(surfels[i].p_C, radius));
+    if (number == static_cast<int>(cells.size())) cells.emplace_back();
+    cells[number].push_back(static_cast<int>(i));
+  }
+  out->neighbours.resize(surfels.size());
+  for (const std::vector<int>& members : cells) {
+    const Cell cell = CellOf(surfels[members.front()].p_C, radius);
     for (int k = 0; k < 27; ++k) {
-      const auto it = cells.find(KeyOf(cell + Cell(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
-      if (it == cells.end()) continue;
-      for (const int j : it->second) {
-        if (j != static_cast<int>(i) &&
-            (surfels[i].p_C - surfels[j].p_C).squaredNorm() < radius * radius) {
-          out->neighbours[i].push_back(j);
+      const int beside = numbers.Find(cell + Cell(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1));
+      if (beside < 0) continue;
+      for (const int i : members) {
+        for (const int j : cells[beside]) {
+          if (j != i && (surfels[i].p_C - surfels[j].p_C).squaredNorm() < radius * radius)
+            out->neighbours[i].push_back(j);
         }
       }
     }

@@ -28,24 +28,21 @@ struct Plane {
   double offset;
 };
 
-bool Supports(const Plane& plane, const Eigen::Vector3d& p, double tolerance) {
-  return std::abs(plane.normal.dot(p) + plane.offset) < tolerance * DepthNoise(p.z());
+struct Point {
+  Eigen::Vector3d p;
+  double tolerance;  // [m] by which it may be off a plane that it is on
+};
+
+bool Supports(const Plane& plane, const Point& point) {
+  return std::abs(plane.normal.dot(point.p) + plane.offset) < point.tolerance;
 }
 
 /// -1, 1 where it lies so little below or above the plane that a wall which crosses it there has as
 /// many points on it, else 0.
-int SideOf(const Plane& plane, const Eigen::Vector3d& p, double tolerance) {
-  const double height = (plane.normal.dot(p) + plane.offset) / (tolerance * DepthNoise(p.z()));
+int SideOf(const Plane& plane, const Point& point) {
+  const double height = (plane.normal.dot(point.p) + plane.offset) / point.tolerance;
   if (std::abs(height) < 1.0 || std::abs(height) >= kBeside) return 0;
   return height < 0.0 ? -1 : 1;
-}
-
-std::vector<Eigen::Vector3d> MeasuredPoints(const PointCloud& cloud) {
-  std::vector<Eigen::Vector3d> points;
-  points.reserve(cloud.points.size());
-  for (const Eigen::Vector3f& point : cloud.points)
-    if (IsMeasured(point)) points.push_back(point.cast<double>());
-  return points;
 }
 
 // With the camera, at the origin, above it.
@@ -61,16 +58,30 @@ std::optional<Plane> PlaneThrough(const Eigen::Vector3d& a, const Eigen::Vector3
 /// Where the floor is known, only what is as high as tables are (the pass-through filter of the
 /// dissertation, section 4.4). Heights of planes would not do: one that leans is as high as a table
 /// below the camera, and lies on the floor where its points are.
-std::vector<Eigen::Vector3d> AtTableHeight(const std::vector<Eigen::Vector3d>& points,
-                                           const std::optional<CameraStand>& stand,
-                                           const TableParams& params) {
-  if (!stand) return points;
-  std::vector<Eigen::Vector3d> kept;
-  for (const Eigen::Vector3d& p : points) {
-    const double height = stand->height + stand->up_C.dot(p);
-    if (height >= params.min_height && height <= params.max_height) kept.push_back(p);
+bool IsAtTableHeight(const Eigen::Vector3d& p, const std::optional<CameraStand>& stand,
+                     const TableParams& params) {
+  if (!stand) return true;
+  const double height = stand->height + stand->up_C.dot(p);
+  return height >= params.min_height && height <= params.max_height;
+}
+
+struct Candidates {
+  std::vector<Point> points{};
+  std::size_t num_measured{0};  // the others are not as high as tables are
+};
+
+Candidates CandidatesOf(const PointCloud& cloud, const std::optional<CameraStand>& stand,
+                        const TableParams& params) {
+  Candidates out;
+  out.points.reserve(cloud.points.size());
+  for (const Eigen::Vector3f& point : cloud.points) {
+    if (!IsMeasured(point)) continue;
+    ++out.num_measured;
+    const Eigen::Vector3d p = point.cast<double>();
+    if (IsAtTableHeight(p, stand, params))
+      out.points.push_back({p, params.tolerance * DepthNoise(p.z())});
   }
-  return kept;
+  return out;
 }
 
 bool IsLevel(const Plane& plane, const std::optional<CameraStand>& stand,
@@ -78,13 +89,13 @@ bool IsLevel(const Plane& plane, const std::optional<CameraStand>& stand,
   return !stand || plane.normal.dot(stand->up_C) >= std::cos(params.max_inclination);
 }
 
-Plane LeastSquares(const std::vector<Eigen::Vector3d>& points, const Plane& plane,
-                   double tolerance) {
+Plane LeastSquares(const std::vector<Point>& points, const Plane& plane) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   double n = 0.0;
-  for (const Eigen::Vector3d& p : points) {
-    if (!Supports(plane, p, tolerance)) continue;
+  for (const Point& point : points) {
+    if (!Supports(plane, point)) continue;
+    const Eigen::Vector3d& p = point.p;
     mean += p;
     moments += p * p.transpose();
     n += 1.0;
@@ -107,22 +118,24 @@ int SamplesFor(double share, const TableParams& params) {
       std::clamp(needed, 1.0 * params.num_samples, kMostSamples * params.num_samples));
 }
 
-std::optional<Plane> BestSample(const std::vector<Eigen::Vector3d>& points,
+std::optional<Plane> BestSample(const std::vector<Point>& points,
                                 const std::optional<CameraStand>& stand, const TableParams& params,
                                 base::Rng* rng) {
   const std::size_t step = std::max<std::size_t>(1, points.size() / kVoters);
+  std::vector<Point> voters;
+  for (std::size_t k = 0; k < points.size(); k += step) voters.push_back(points[k]);
   std::optional<Plane> best;
   int best_votes = 0;
   int num_samples = static_cast<int>(kMostSamples) * params.num_samples;
   for (int i = 0; i < num_samples; ++i) {
-    const auto pick = [&] { return points[rng->Index(static_cast<int>(points.size()))]; };
+    const auto pick = [&] { return points[rng->Index(static_cast<int>(points.size()))].p; };
     const Eigen::Vector3d a = pick(), b = pick(), c = pick();
     const auto plane = PlaneThrough(a, b, c);
     if (!plane || !IsLevel(*plane, stand, params)) continue;
     int votes = 0, below = 0, above = 0;
-    for (std::size_t k = 0; k < points.size(); k += step) {
-      votes += Supports(*plane, points[k], params.tolerance);
-      const int side = SideOf(*plane, points[k], params.tolerance);
+    for (const Point& voter : voters) {
+      votes += Supports(*plane, voter);
+      const int side = SideOf(*plane, voter);
       below += side < 0;
       above += side > 0;
     }
@@ -227,19 +240,20 @@ bool Pieces::IsAtBorder(std::size_t point) const {
 /// What of the plane is the table: all pieces of it that are not small, as things hide what is
 /// between them, while other furniture beside the table crosses the plane in small ones.
 struct TableTop {
-  std::vector<Eigen::Vector3d> points, border;
+  std::vector<Point> points{};
+  std::vector<Eigen::Vector3d> border{};
 };
 
-TableTop TopOf(const std::vector<Eigen::Vector3d>& points, const Table& table, double tolerance) {
+TableTop TopOf(const std::vector<Point>& points, const Table& table) {
   const Plane plane{table.normal, table.offset};
-  std::vector<Eigen::Vector3d> on_it;
+  std::vector<Point> on_it;
   std::vector<Eigen::Vector2d> from_above, below, above;
-  for (const Eigen::Vector3d& p : points) {
-    if (Supports(plane, p, tolerance)) {
-      on_it.push_back(p);
-      from_above.push_back(table.FromAbove(p));
-    } else if (const int side = SideOf(plane, p, tolerance); side != 0) {
-      (side < 0 ? below : above).push_back(table.FromAbove(p));
+  for (const Point& point : points) {
+    if (Supports(plane, point)) {
+      on_it.push_back(point);
+      from_above.push_back(table.FromAbove(point.p));
+    } else if (const int side = SideOf(plane, point); side != 0) {
+      (side < 0 ? below : above).push_back(table.FromAbove(point.p));
     }
   }
   TableTop top;
@@ -248,7 +262,7 @@ TableTop TopOf(const std::vector<Eigen::Vector3d>& points, const Table& table, d
   for (std::size_t i = 0; i < on_it.size(); ++i) {
     if (!pieces.IsKept(i)) continue;
     top.points.push_back(on_it[i]);
-    if (pieces.IsAtBorder(i)) top.border.push_back(on_it[i]);
+    if (pieces.IsAtBorder(i)) top.border.push_back(on_it[i].p);
   }
   return top;
 }
@@ -266,17 +280,17 @@ Table TableIn(const Plane& plane) {
 
 std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                                const TableParams& params, base::Rng rng) {
-  const std::vector<Eigen::Vector3d> measured = MeasuredPoints(cloud);
-  const std::vector<Eigen::Vector3d> points = AtTableHeight(measured, stand, params);
+  const Candidates candidates = CandidatesOf(cloud, stand, params);
+  const std::vector<Point>& points = candidates.points;
   if (points.size() < 3) return std::nullopt;
   const auto best = BestSample(points, stand, params, &rng);
   if (!best) return std::nullopt;
   Plane plane = *best;
-  for (int i = 0; i < kRefinements; ++i) plane = LeastSquares(points, plane, params.tolerance);
-  const TableTop top = TopOf(points, TableIn(plane), params.tolerance);
-  if (top.border.size() < 3 || top.points.size() < params.min_share * measured.size())
+  for (int i = 0; i < kRefinements; ++i) plane = LeastSquares(points, plane);
+  const TableTop top = TopOf(points, TableIn(plane));
+  if (top.border.size() < 3 || top.points.size() < params.min_share * candidates.num_measured)
     return std::nullopt;
-  plane = LeastSquares(top.points, plane, params.tolerance);
+  plane = LeastSquares(top.points, plane);
   if (!IsLevel(plane, stand, params)) return std::nullopt;
   Table table = TableIn(plane);
   for (const Eigen::Vector3d& p : top.border) table.outline.push_back(table.FromAbove(p));
