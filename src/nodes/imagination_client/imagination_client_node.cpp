@@ -24,7 +24,8 @@ namespace {
 
 namespace imagination = hires::imagination;
 
-constexpr double kTickPeriod = 0.02;  // [s]
+constexpr double kTickPeriod = 0.02;  // [s] while something is imagined
+constexpr double kRestPeriod = 0.2;   // [s] otherwise, to see workers come and go
 
 /// The scheduler's clock: the deadline is in ROS time where that is simulated; the wall's ROS time
 /// may jump, so there the steady clock counts.
@@ -98,7 +99,8 @@ ImaginationClientNode::ImaginationClientNode(const ImaginationClientParams& para
   world_markers_.publish(WorldMarkers(setup_.scene->world));
   updater_.setHardwareID("imagination");
   updater_.add("workers", this, &ImaginationClientNode::Diagnose);
-  timer_ = nh->createWallTimer(ros::WallDuration(kTickPeriod),
+  SetPace();
+  timer_ = nh->createWallTimer(ros::WallDuration(period_),
                                boost::function<void(const ros::WallTimerEvent&)>(
                                    [this](const ros::WallTimerEvent&) { OnTick(); }));
   server_.start();
@@ -128,6 +130,7 @@ void ImaginationClientNode::OnGoal(GoalHandle goal) {
     Refuse(goal, hires::base::Shortened(error.what()));
     return;
   }
+  SetPace();
   Session* session = sessions_.back().get();
   hires::base::Log(
       hires::base::LogLevel::kInfo,
@@ -324,7 +327,15 @@ void ImaginationClientNode::OnTick() {
     if (now >= session->next_feedback) PublishFeedback(session.get(), now);
   }
   FinishSessions();
+  SetPace();
   updater_.update();
+}
+
+void ImaginationClientNode::SetPace() {
+  const double period = sessions_.empty() ? kRestPeriod : kTickPeriod;
+  if (period == period_) return;
+  period_ = period;
+  timer_.setPeriod(ros::WallDuration(period));
 }
 
 void ImaginationClientNode::PublishFeedback(Session* session, double now) {

@@ -75,6 +75,7 @@ class ImaginationClientNode {
   void OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg);
   void SpreadStart(ImagineRequest* request) const;
   void OnTick();
+  void SetPace();  ///< ticks are rare while nothing is asked
   void OnWorkerEvent(int worker, const WorkerLink::Event& event);
   std::unique_ptr<Session> MakeSession(GoalHandle goal);
   void Refuse(GoalHandle goal, const std::string& why);
@@ -107,6 +108,7 @@ class ImaginationClientNode {
   ros::Publisher ranking_markers_, world_markers_;
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;
+  double period_{0.0};  // [s] of it
 };
 
 }  // namespace hires_ros

@@ -21,7 +21,8 @@ namespace planning = hires::planning;
 using hires::base::Log;
 using hires::base::LogLevel;
 
-constexpr double kTickPeriod = 0.005;  // [s]
+constexpr double kTickPeriod = 0.005;  // [s] while something is searched
+constexpr double kRestPeriod = 1.0;    // [s] otherwise, for the diagnostics
 // What a thread may take to see that it is cancelled; the client is answered then in any
 // case.
 constexpr double kPatience = 0.03;  // [s]
@@ -93,7 +94,8 @@ PlannerNode::PlannerNode(const planning::PlannerConfig& config,
           false) {
   updater_.setHardwareID("planner");
   updater_.add("searches", this, &PlannerNode::Diagnose);
-  timer_ = nh->createWallTimer(ros::WallDuration(kTickPeriod),
+  SetPace();
+  timer_ = nh->createWallTimer(ros::WallDuration(period_),
                                boost::function<void(const ros::WallTimerEvent&)>(
                                    [this](const ros::WallTimerEvent&) { OnTick(); }));
   server_.start();
@@ -127,6 +129,7 @@ void PlannerNode::Accept(GoalHandle goal) {
   }
   pool_->Submit(session.job);
   sessions_.push_back(std::move(session));
+  SetPace();
 }
 
 hires::PlanResult PlannerNode::AnswerFor(PlanJob* job) const {
@@ -151,7 +154,15 @@ void PlannerNode::OnTick() {
     if (now >= session->next_feedback) PublishFeedback(&*session, now);
     session = AnswerOverdue(&*session, now) ? sessions_.erase(session) : std::next(session);
   }
+  SetPace();
   updater_.update();
+}
+
+void PlannerNode::SetPace() {
+  const double period = sessions_.empty() ? kRestPeriod : kTickPeriod;
+  if (period == period_) return;
+  period_ = period;
+  timer_.setPeriod(ros::WallDuration(period));
 }
 
 void PlannerNode::OnAnswered(PlanAnswered answered) {

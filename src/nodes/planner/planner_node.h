@@ -44,6 +44,7 @@ class PlannerNode {
   void OnGoal(GoalHandle goal);
   void OnCancel(GoalHandle goal);
   void OnTick();
+  void SetPace();  ///< ticks are rare while nothing is asked
   void Accept(GoalHandle goal);
   hires::PlanResult AnswerFor(PlanJob* job) const;  ///< on a thread of the pool
   void OnAnswered(PlanAnswered answered);
@@ -62,6 +63,7 @@ class PlannerNode {
   Server server_;
   diagnostic_updater::Updater updater_;
   ros::WallTimer timer_;
+  double period_{0.0};  // [s] of it
 };
 
 }  // namespace hires_ros
