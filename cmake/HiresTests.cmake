@@ -65,14 +65,15 @@ endfunction()
 # ctest counts half processors (scripts/common.sh, RunTests): a test takes two of them, or one if it
 # waits more than it computes.
 
-# hires_test(<layer> <file without _test.cpp> [LINK more libraries ...] [TIMEOUT seconds] [BUSY])
+# hires_test(<layer> <file without _test.cpp> [LINK more libraries ...] [TIMEOUT seconds] [BUSY] [LONG])
+# LONG: it is always built, but run only with HIRES_LONG_TESTS, as `scripts/test --long` sets it.
 # BUSY: the test's own code has so much to do that it is optimised, and compiled by itself. Call it in test/<layer>/CMakeLists.txt; the program links its layer and test/support. The target
 # <layer>_<name>_test builds the program that the file is part of.
 function(hires_test layer name)
   if(NOT HIRES_TESTS)
     return()
   endif()
-  cmake_parse_arguments(TEST "BUSY" "TIMEOUT" "LINK" ${ARGN})
+  cmake_parse_arguments(TEST "BUSY;LONG" "TIMEOUT" "LINK" ${ARGN})
   set(target hires_${layer}_test)
   if(NOT TARGET ${target})
     hires_test_program_of_layer(${layer})
@@ -85,6 +86,9 @@ function(hires_test layer name)
   target_link_libraries(${target} PRIVATE ${TEST_LINK})
   hires_short_name(${target} ${layer}_${name}_test)
   hires_test_suites(${target} ${CMAKE_CURRENT_SOURCE_DIR}/${name}_test.cpp filter)
+  if(TEST_LONG AND NOT HIRES_LONG_TESTS)
+    return()
+  endif()
   add_test(NAME ${layer}.${name} COMMAND ${target} --gtest_filter=${filter})
   if(NOT TEST_TIMEOUT)
     set(TEST_TIMEOUT 120)

@@ -8,6 +8,7 @@
 #include "hires/perception/line_of_sight.h"
 #include "hires/perception/segmentation.h"
 #include "perception/tabletop/convex_parts.h"
+#include "perception/tabletop/surfels.h"
 
 namespace hires::perception::tabletop_test {
 namespace {
@@ -339,6 +340,26 @@ TEST(SegmentTabletopTest, AnUnorganisedCloudIsDividedAlike) {
   const Segmentation out = Segment(list), again = Segment(list);
   EXPECT_EQ(out.num_things, 2);
   EXPECT_EQ(out.labels, again.labels);
+}
+
+// Of a wall of 0.3 m x 0.3 m, one point a millimetre.
+TEST(SurfelTest, CellsGrowWhereThereWouldBeTooManySurfels) {
+  PointCloud cloud{300, 300, {}};
+  std::vector<int> all;
+  for (int i = 0; i < 300 * 300; ++i) {
+    cloud.points.emplace_back(1e-3F * (i % 300) + 5e-4F, 1e-3F * (i / 300) + 5e-4F, 1.0F);
+    all.push_back(i);
+  }
+  SurfelParams params;
+  params.cell = 0.005;
+  params.max_cell = 0.01;
+  const auto count = [&](int many) {
+    params.many = many;
+    return MakeSurfels(cloud, all, params).surfels.size();
+  };
+  EXPECT_EQ(count(60 * 60), 60u * 60u);
+  EXPECT_NEAR(static_cast<double>(count(40 * 40)), 40.0 * 40.0, 2.0 * 40.0);
+  EXPECT_EQ(count(10), 30u * 30u);
 }
 
 }  // namespace

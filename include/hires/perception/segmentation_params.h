@@ -5,7 +5,9 @@
 namespace hires::perception {
 
 struct SurfelParams {
-  double cell{0.005};           ///< [m] edge of the grid's cells
+  double cell{0.005};           ///< [m] edge of the grid's cells ...
+  int many{8000};               ///< ... which grow where there would be more surfels than that
+  double max_cell{0.007};       ///< [m] at the most
   double normal_radius{0.010};  ///< [m] of the neighbourhood that a normal is fitted to
   double border_radius{0.012};  ///< [m] surfels that are nearer border on each other
 };

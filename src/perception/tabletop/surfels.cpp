@@ -1,6 +1,7 @@
 #include "perception/tabletop/surfels.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -134,6 +135,11 @@ SurfelCloud MakeSurfels(const PointCloud& cloud, const std::vector<int>& indices
   HIRES_CHECK(params.border_radius >= params.normal_radius, "normals need a surfel's neighbours");
   SurfelCloud out;
   GroupPoints(cloud, indices, params.cell, &out);
+  const double crowding = static_cast<double>(out.surfels.size()) / params.many;
+  if (crowding > 1.0) {  // of a surface, by the square of the edge
+    out.surfels.clear();
+    GroupPoints(cloud, indices, std::min(params.cell * std::sqrt(crowding), params.max_cell), &out);
+  }
   FindNeighbours(params.border_radius, &out);
   for (std::size_t i = 0; i < out.surfels.size(); ++i)
     out.surfels[i].normal = FitNormal(out, static_cast<int>(i), params.normal_radius);

@@ -5,7 +5,7 @@
 #include "hires/base/error.h"
 #include "hires/loop/task_loop.h"
 
-namespace hires::loop::task_surprises_test {
+namespace hires::loop::surprises_on_the_way_test {
 namespace {
 
 using evaluation::AchieveOutcome;
@@ -22,7 +22,7 @@ const LoopSetup& TheSetup() {
 // Somebody said that something stands there, about where and about how large, and not what: its
 // box, as the camera measures it, is what the hand needs. Nobody told of another mug and of a chair
 // that stands in the way.
-TEST(TaskSurprisesTest, AThingOfNoKnownKindIsBroughtByItsBox) {
+TEST(SurprisesOnTheWayTest, AThingOfNoKnownKindIsBroughtByItsBox) {
   LoopOrder order;
   order.scenario = kData + "unknown_thing.yaml";
   order.truth = kData + "moved_chair.yaml";
@@ -42,7 +42,7 @@ TEST(TaskSurprisesTest, AThingOfNoKnownKindIsBroughtByItsBox) {
 
 // A chair stands across the way. Before the robot sees it, imagination drives where the chair is;
 // after that, it drives around it as long as the robot will.
-TEST(TaskSurprisesTest, AChairThatWasMovedIsInTheWorldsThatAreImagined) {
+TEST(SurprisesOnTheWayTest, AChairThatWasMovedIsInTheWorldsThatAreImagined) {
   LoopOrder order;
   order.scenario = kConfig + "scenarios/topple.yaml";
   order.truth = kData + "moved_chair.yaml";
@@ -67,31 +67,5 @@ TEST(TaskSurprisesTest, AChairThatWasMovedIsInTheWorldsThatAreImagined) {
   EXPECT_LT(imagined.front(), 0.8 * imagined.back());
 }
 
-// The robot's own pose at the counter, and the default of the plan, would see nothing of the mug.
-TEST(TaskSurprisesTest, ThePoseThatIsImaginedToSeeBestIsLookedFrom) {
-  LoopOrder order;
-  order.scenario = kData + "hidden_mug.yaml";
-  order.rollouts = 8;
-  order.threads = 2;
-  order.time_limit = 40.0;  // of the whole task no more is wanted
-  const LoopRun run = PlayTask(TheSetup(), order);
-  EXPECT_EQ(run.truth.contact, "");
-  const auto& steps = run.report.status.steps;
-  const auto look = std::find_if(steps.begin(), steps.end(), [](const auto& step) {
-    return step.action.name == "observe_objects_at" && step.finished;
-  });
-  ASSERT_NE(look, steps.end()) << run.report.reason;
-  EXPECT_EQ(ToString(look->failure), "");
-  const auto& all = run.report.status.imaginations;
-  const auto answer = std::find_if(all.rbegin(), all.rend(), [&](const auto& one) {
-    return one.outcome == evaluation::ImaginedOutcome::kRanked &&
-           one.action.name == "observe_objects_at" && *one.answered <= *look->started;
-  });
-  ASSERT_NE(answer, all.rend());
-  EXPECT_EQ(answer->predictions.size(), 12u);
-  EXPECT_EQ(ToString(look->action), ToString(answer->predictions.at(answer->recommended).action));
-  EXPECT_NE(look->action.arguments.back(), "default");
-}
-
 }  // namespace
-}  // namespace hires::loop::task_surprises_test
+}  // namespace hires::loop::surprises_on_the_way_test
