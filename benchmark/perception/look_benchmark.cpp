@@ -6,8 +6,8 @@
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/detector.h"
 #include "hires/perception/picture_scene.h"
+#include "hires/perception/warm_objects.h"
 #include "hires/world/object_catalogue.h"
-#include "perception/heat/warm_objects.h"
 
 namespace hires::perception {
 namespace {

@@ -11,6 +11,7 @@
 ;   (HasArmPosture arm posture)* per arm   (Holding arm object-or-nothing)* per arm
 ;   (On object area)* per object           (At guest sitting-area)
 ;   (Type concept instance)                (HasTemperature object degrees)* per object, in Celsius
+;   (TemperatureKnown object)              its temperature was measured
 ; Switches, absent by default:
 ;   (imagine place_object)      placing is imagined before the robot drives there
 ;   (imagine place_object_at)   the same, and imagination chooses the spot on the area
@@ -88,6 +89,14 @@
   ()
   ())
 
+; Looks at the area until the thermal camera has told how warm the object is, of which nobody knows.
+; What it will tell is not known before; that it changes something about it says the deleted atom.
+(:operator (!measure_temperature ?object ?area)
+  ((On ?object ?area) (RobotAt ?ma) (Connected ?area ?ma ?pma)
+   (not (HasTemperature ?object ?any)))
+  ((forall (?degrees) ((HasTemperature ?object ?degrees)) ((HasTemperature ?object ?degrees))))
+  ((TemperatureKnown ?object)))
+
 (:operator (!pick_up_object ?object ?arm)
   ((On ?object ?area) (RobotAt ?ma) (Connected ?area ?ma ?pma)
    (Holding ?arm nothing) (HasArmPosture ?arm armtosideposture) (HasTorsoPosture torsoupposture))
@@ -129,9 +138,10 @@
   ()
   0)
 
-; A word of the plan to people, not to the robot: what it does next rests on a guess.
-(:operator (!!temperature_unknown ?object)
-  ()
+; From here on the plan only guesses that the object is hot. It does not come to that: as soon as the
+; temperature is known this step cannot be done, and what is left of the task is planned again.
+(:operator (!!temperature_unknown ?object ?area)
+  ((On ?object ?area) (TemperatureKnown ?object) (not (HasTemperature ?object ?degrees)))
   ()
   ()
   0)
@@ -151,12 +161,12 @@
   (:sort-by ?rank ((At ?guest ?seat) (coffee_to_serve ?mug ?rank)))
   ((move_object ?mug ?seat)))
 
-; The same with a coffee that is hot. Of one whose temperature nobody knows the plan says so, and it
-; is served where no other is hot; a cold one never is.
+; The same with a coffee that is hot. Where none is known to be, the robot looks how warm the next one
+; is whose temperature nobody knows; a cold one is never served.
 (:method (serve_hot_coffee_to_guest ?guest)
   served
   ((At ?guest ?seat) (place_in ?seat ?area ?rank) (Type coffee ?mug) (On ?mug ?area)
-   (not (cold ?mug)))
+   (hot ?mug))
   ((leave_manipulation_pose))
 
   hot
@@ -165,8 +175,10 @@
 
   temperature_unknown
   (:sort-by ?rank ((At ?guest ?seat) (coffee_to_serve ?mug ?rank)
-                   (not (HasTemperature ?mug ?degrees))))
-  ((!!temperature_unknown ?mug) (move_object ?mug ?seat)))
+                   (not (HasTemperature ?mug ?degrees))
+                   (On ?mug ?area) (Connected ?area ?ma ?pma) (arm_for ?mug ?arm)))
+  ((assume_manipulation_pose ?ma ?pma ?arm) (!measure_temperature ?mug ?area)
+   (!!temperature_unknown ?mug ?area) (move_object ?mug ?seat)))
 
 ; Carries what stands on the table to the counter, one thing after the other.
 (:method (clear_table ?table ?counter)
@@ -418,7 +430,6 @@
 
 ; From what temperature on, in degrees Celsius, a coffee is hot.
 (:- (hot ?object) ((HasTemperature ?object ?degrees) (call >= ?degrees 45)))
-(:- (cold ?object) ((HasTemperature ?object ?degrees) (call < ?degrees 45)))
 
 ; The right arm works; the left one when the right is full or known to fail.
 (:- (arm_for ?object ?arm)

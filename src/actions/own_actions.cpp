@@ -95,6 +95,14 @@ ActionSpec ObserveAt() {
   return spec;
 }
 
+/// Who looks, and promises that the thermal camera will have told something then.
+ActionSpec MeasureTemperature() {
+  ActionSpec spec = Look("measure_temperature", Object(), {Code::kOutOfView});
+  spec.parameters.push_back(Area());
+  spec.effects = {{"TemperatureKnown", {"?object"}}};
+  return spec;
+}
+
 void AddDriving(Catalogue* catalogue) {
   const std::vector<Code> failures{Code::kStartBlocked, Code::kGoalBlocked, Code::kNoPath,
                                    Code::kNoValidTrajectory, Code::kOscillating};
@@ -126,6 +134,7 @@ Catalogue MakeOwnActions() {
   catalogue.Add(LookAt());
   catalogue.Add(Look("observe_objects_on_area", Area(), {Code::kOutOfView}));
   catalogue.Add(ObserveAt());
+  catalogue.Add(MeasureTemperature());
   catalogue.Add(PickUp("pick_up_object", {Object(), Arm()}));
   catalogue.Add(PickUp("pick_up_from_tray", {Arm(), Object()}));
   catalogue.Add(Place("place_object", {Object(), Arm(), Area()}, Purpose::kPutOnArea, "?area"));

@@ -53,7 +53,9 @@ std::vector<std::string> WorldTracker::OnView(const translation::TranslatorConte
 }
 
 void WorldTracker::OnTemperatures(const std::map<std::string, double>& degrees) {
-  for (const auto& [object, temperature] : degrees) temperatures_[object] = temperature;
+  for (const auto& [object, temperature] : degrees) {
+    if (!IsHearsay(object)) temperatures_[object] = temperature;
+  }
 }
 
 void WorldTracker::OnActions(const actions::Catalogue& catalogue,
@@ -112,6 +114,14 @@ bool WorldTracker::StandsOnFloor(const std::string& name) const {
                      [&](const robot::SeenObject& thing) { return thing.name == name; });
 }
 
+/// Whether it is only said to be somewhere.
+bool WorldTracker::IsHearsay(const std::string& name) const {
+  const auto& objects = objects_.memory().objects();
+  const auto remembered = objects.find(name);
+  return remembered != objects.end() && !remembered->second.is_observed &&
+         !remembered->second.is_held;
+}
+
 /// Things on tables and on the floor, by name.
 std::vector<robot::SeenObject> WorldTracker::Known(const sensing::RobotEstimate& now) const {
   std::vector<robot::SeenObject> known = objects_.memory().Known(now.Body());
@@ -128,10 +138,7 @@ translation::ObservedWorld WorldTracker::Observed(
   translation::ObservedWorld observed;
   observed.state.robot = {now.X_WB, now.V_B, now.posture};
   for (const robot::SeenObject& object : known) {
-    const auto remembered = memory.objects().find(object.name);
-    const bool is_hearsay = remembered != memory.objects().end() &&
-                            !remembered->second.is_observed && !remembered->second.is_held;
-    if (is_hearsay) continue;
+    if (IsHearsay(object.name)) continue;
     observed.state.world.objects.push_back(
         {object.name, object.model, object.X_MO, {}, object.attached_to});
   }

@@ -50,6 +50,7 @@ class PlanProgress {
   void Blame(int step, const base::Failure& loss);
   /// The step is over as its activity told; `phase` says what now.
   void End(int step, StepPhase phase, const std::string& result, const base::Failure& failure);
+  void Pass(int step);     ///< a step that is no action of the robot: done at once
   void Confirm(int step);  ///< its effects have been seen
   bool IsAnyActive() const;
 

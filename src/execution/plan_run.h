@@ -22,7 +22,7 @@ struct StepRun {
   enum class Kind {
     kAction,
     kImagine,      ///< `!imagine`: asks, and takes the robot no time
-    kBookkeeping,  ///< `!!`: done as soon as its turn comes
+    kBookkeeping,  ///< `!!`: done as soon as its turn comes and what it rests on holds
   };
   Kind kind{Kind::kAction};
   base::ActionCall action;

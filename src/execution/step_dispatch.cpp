@@ -26,26 +26,30 @@ bool StepDispatch::Advance(int index) {
   StepRun& step = session_.progress().run().at(index);
   if (step.kind == StepRun::Kind::kImagine || !step.IsWaiting()) return false;
   if (!session_.progress().run().AreDone(step.after)) return false;
-  if (step.kind == StepRun::Kind::kBookkeeping) {
-    step.phase = StepPhase::kDone;
-    session_.state().Note(session_.progress().run().planned(index));
-    return true;
-  }
   if (step.phase == StepPhase::kWaiting) {
     step.phase = StepPhase::kReady;
     step.ready = session_.now();
+  }
+  if (step.kind == StepRun::Kind::kBookkeeping) {
+    if (!Holds(step)) return false;
+    session_.progress().Pass(index);
+    session_.state().Note(session_.progress().run().planned(index));
+    return true;
   }
   if (CanRun(index) && desk_.MayStart(index)) Start(index);
   return false;
 }
 
+/// Whether what it rests on is observed.
+bool StepDispatch::Holds(const StepRun& step) const {
+  return std::all_of(step.expectations.begin(), step.expectations.end(),
+                     [&](const Expectation& expectation) {
+                       return session_.state().facts().Holds(expectation.literal, expectation.text);
+                     });
+}
+
 bool StepDispatch::CanRun(int index) const {
-  const StepRun& step = session_.progress().run().at(index);
-  const bool holds = std::all_of(
-      step.expectations.begin(), step.expectations.end(), [&](const Expectation& expectation) {
-        return session_.state().facts().Holds(expectation.literal, expectation.text);
-      });
-  return holds && HasResources(index) && IsUndisturbed(index);
+  return Holds(session_.progress().run().at(index)) && HasResources(index) && IsUndisturbed(index);
 }
 
 bool StepDispatch::HasResources(int index) const {

@@ -14,6 +14,7 @@ class StepDispatch {
 
  private:
   bool Advance(int step);  ///< true if bookkeeping made others possible
+  bool Holds(const StepRun& step) const;
   bool CanRun(int step) const;
   bool HasResources(int step) const;
   bool IsUndisturbed(int step) const;

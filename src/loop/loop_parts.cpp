@@ -84,6 +84,7 @@ LoopConfig ReadLoopConfig(const std::string& path, const LoopFiles& files) {
   ReadMiddleLayer(file("middle_layer"), &config);
   config.sensors = evaluation::ReadSimSensorParams(ParamReader::FromFile(file("sim_robot")));
   config.tracker = ReadTracker(file("world_tracker"));
+  config.tracker.warm = perception::ReadWarmParams(ParamReader::FromFile(file("heat_reader")));
   config.recogniser = file("recogniser");
   config.truths = file("truths");
   config.pace = ReadPace(in.Sub("imagination"));

@@ -12,12 +12,12 @@ const long kTrayPeriod = std::lround(1000.0 * sensing::ObjectEstimator::kScanPer
 }  // namespace
 
 RobotSide::RobotSide(const LoopSetup::Parts& parts, const imagination::StartState& start,
-                     const evaluation::Truth& truth, std::uint64_t seed, VirtualClock* clock,
-                     Hooks hooks)
+                     const evaluation::Truth& truth, const evaluation::SimSensorParams& sensors,
+                     std::uint64_t seed, VirtualClock* clock, Hooks hooks)
     : clock_(*clock),
       hooks_(std::move(hooks)),
       world_(parts.world, start, seed, truth),
-      sensors_(parts.SensorsUnder(truth), seed, world_.scene()),
+      sensors_(sensors, seed, world_.scene()),
       truth_(parts.world.standing) {}
 
 void RobotSide::Begin() {
@@ -40,6 +40,7 @@ void RobotSide::Tick() {
   if (lasers.has_tray_laser() && world_.milliseconds() % kTrayPeriod == 0) {
     news.tray = TrayScan{lasers.tray().link, ReadingOf(lasers.TrayScan(world_), lasers.tray())};
   }
+  if (hooks_.hears_heat && news.seen) news.heat = sensors_.LookForHeat(world_, news.readings);
   hooks_.hear(news);
   hooks_.look(news.stamp);
   for (const robot::Command& command : std::exchange(commands_, {})) world_.Apply(command);

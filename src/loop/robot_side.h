@@ -18,11 +18,13 @@ class RobotSide {
   struct Hooks {
     std::function<void(const SensorNews&)> hear;  ///< at the time of its stamp
     std::function<void(double stamp)> look;       ///< all sensors of a tick have spoken
+    bool hears_heat{false};  ///< the thermal camera takes pictures, with those of the other one
   };
 
-  /// @pre all outlive this.
+  /// @param sensors  under this truth.  @pre all outlive this.
   RobotSide(const LoopSetup::Parts& parts, const imagination::StartState& start,
-            const evaluation::Truth& truth, std::uint64_t seed, VirtualClock* clock, Hooks hooks);
+            const evaluation::Truth& truth, const evaluation::SimSensorParams& sensors,
+            std::uint64_t seed, VirtualClock* clock, Hooks hooks);
 
   void Begin();
   /// Carried out at the end of this tick, or at the next one.

@@ -58,6 +58,12 @@ LoopOrder Completed(const LoopOrder& order, const evaluation::Scenario& scenario
   return complete;
 }
 
+evaluation::SimSensorParams SensorsIn(const std::string& scenario,
+                                      evaluation::SimSensorParams sensors) {
+  sensors.cameras.temperatures = evaluation::TemperaturesOf(scenario);
+  return sensors;
+}
+
 /// What is on its way between them.
 struct Lines {
   Lines(const LoopMessages& messages, const base::Rng& rng, VirtualClock* clock)
@@ -82,10 +88,10 @@ class Play {
         lines_(parts.config.messages, base::Rng(order.seed), &clock_),
         blackboard_(parts.ontology),
         pool_(order.threads),
-        robot_(parts, evaluation::StartOf(parts.world, order.scenario, ""), truth_, order.seed,
-               &clock_,
+        robot_(parts, evaluation::StartOf(parts.world, order.scenario, ""), truth_,
+               SensorsIn(order.scenario, parts.SensorsUnder(truth_)), order.seed, &clock_,
                {[this](const SensorNews& news) { Hear(news); },
-                [this](double stamp) { Look(stamp); }}),
+                [this](double stamp) { Look(stamp); }, true}),
         middle_layer_(parts.world, FramesOf(parts.world.scene->robot), parts.config.runner,
                       parts.config.scan,
                       {[this](const robot::Command& command) { Send(command); },
@@ -171,6 +177,7 @@ class Play {
     if (const auto seen = std::exchange(rest.seen, std::nullopt)) {
       lines_.looks.Send([this, stamp = news.stamp, seen = *seen] { tracker_.See(stamp, seen); });
     }
+    if (news.heat) lines_.looks.Send([this, heat = news.heat] { tracker_.See(*heat); });
     lines_.sensors.Send([this, rest = std::move(rest)] { tracker_.Hear(rest, robot_.laser()); });
   }
 

@@ -39,12 +39,14 @@ Tracker::Tracker(const imagination::ImaginationSetup& setup,
       clock_(*clock),
       blackboard_(*blackboard),
       hooks_(std::move(hooks)),
-      senses_(setup, frames, SurroundingsOf(*setup.scene)),
+      surroundings_(SurroundingsOf(*setup.scene)),
+      senses_(setup, frames, surroundings_),
       floor_(FloorOf(setup, senses_.state(), params.floor)),
       tracker_(&senses_.state(), senses_.objects(), floor_ ? &*floor_ : nullptr,
                control::HeadSweep(context.robot, params.sweep), true,
                {[this](const RobotEstimate& now, const std::vector<SeenObject>& known) {
-                  hooks_.known(now.time, control::WorldOf(known));
+                  known_ = control::WorldOf(known);
+                  hooks_.known(now.time, known_);
                 },
                 [this](const robot::JointTrajectory& turn) { hooks_.turn(turn); },
                 [this](double time, ObservedWorld observed) { Post(time, std::move(observed)); },
@@ -64,6 +66,11 @@ void Tracker::Hear(const SensorNews& news, const simulation::LaserParams& laser)
 void Tracker::See(double stamp, const perception::Sighting& seen) {
   senses_.See(stamp, seen);
   tracker_.Process();
+}
+
+void Tracker::See(const perception::HeatView& heat) {
+  tracker_.OnTemperatures(perception::SureDegrees(
+      perception::ReadHeat(heat, surroundings_, known_.objects, params_.warm)));
 }
 
 void Tracker::OnActions(const std::map<int, base::ActionCall>& running) {

@@ -2,10 +2,12 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "hires/control/world_tracker.h"
+#include "hires/perception/warm_objects.h"
 #include "hires/skills/action_set.h"
 #include "hires/world/world.h"
 #include "loop/blackboard.h"
@@ -17,6 +19,7 @@ namespace hires::loop {
 /// How what is observed becomes what the Blackboard says.
 struct TrackerParams {
   control::SweepParams sweep;
+  perception::WarmParams warm;
   translation::ChangeParams changes;
   std::map<std::string, std::string> concepts;  ///< model -> concept
   sensing::FloorWatchParams floor;
@@ -40,6 +43,8 @@ class Tracker {
   /// @param laser  that the scan is of.
   void Hear(const SensorNews& news, const simulation::LaserParams& laser);
   void See(double stamp, const perception::Sighting& seen);
+  /// Measures what is known in the picture of a thermal camera.
+  void See(const perception::HeatView& heat);
   void OnView() { is_view_new_ = true; }  ///< the Blackboard says something else
   /// What runs now: the head is others' while one of them may use it.
   void OnActions(const std::map<int, base::ActionCall>& running);
@@ -55,9 +60,11 @@ class Tracker {
   VirtualClock& clock_;
   Blackboard& blackboard_;
   const Hooks hooks_;
+  const std::shared_ptr<const perception::Surroundings> surroundings_;
   RobotSenses senses_;
   std::optional<sensing::FloorWatch> floor_;  // of a robot with a laser
   control::WorldTracker tracker_;
+  world::WorldState known_;  // as it was told last
   bool is_view_new_{true};
   std::int64_t episode_{0};
 

@@ -19,11 +19,16 @@ bool CameraView::Contains(const Eigen::Vector3d& p_M) const {
 CameraView ViewOf(const robot::Robot& robot, const geometry::Pose2& X_MB,
                   const robot::JointPositions& posture) {
   HIRES_CHECK(robot.profile.upper_body, "robot '" + robot.model.name + "' has no camera");
-  const auto camera = robot.model.FindLink(robot.profile.upper_body->camera_link);
+  return ViewFrom(robot, X_MLink(robot, X_MB, posture, robot.profile.upper_body->camera_link));
+}
+
+geometry::Pose3 X_MLink(const robot::Robot& robot, const geometry::Pose2& X_MB,
+                        const robot::JointPositions& posture, const std::string& link) {
+  const auto wanted = robot.model.FindLink(link);
   const auto base = robot.model.FindLink(robot.profile.base_link);
-  HIRES_CHECK(camera && base, "robot '" + robot.model.name + "' lacks its camera or base link");
+  HIRES_CHECK(wanted && base, "robot '" + robot.model.name + "' lacks '" + link + "' or its base");
   const auto X_RL = robot::ForwardKinematics(robot.model, posture);
-  return ViewFrom(robot, geometry::Lift(X_MB) * X_RL[*base].Inverse() * X_RL[*camera]);
+  return geometry::Lift(X_MB) * X_RL[*base].Inverse() * X_RL[*wanted];
 }
 
 CameraView ViewFrom(const robot::Robot& robot, const geometry::Pose3& X_MC) {

@@ -97,6 +97,11 @@ std::unique_ptr<Skill> MakeObserveAt(const SkillSet& skills, const ActionCall& a
                                             action.arguments[0], pose);
 }
 
+/// The thermal camera measures by itself what the head is turned to.
+std::unique_ptr<Skill> MakeMeasureTemperature(const SkillSet& skills, const ActionCall& action) {
+  return std::make_unique<ObserveObjectsOnArea>(skills.manipulation, action.arguments[1]);
+}
+
 std::unique_ptr<Skill> MakePickUp(const SkillSet& skills, const ActionCall& action) {
   return std::make_unique<PickUpObject>(skills.manipulation, action, action.arguments[0],
                                         action.arguments[1], PickUpObject::From::kFurniture);
@@ -136,6 +141,7 @@ const std::map<std::string, SkillMaker>& Makers() {
       {"look_at", MakeLookAt},
       {"observe_objects_on_area", MakeObserve},
       {"observe_objects_at", MakeObserveAt},
+      {"measure_temperature", MakeMeasureTemperature},
       {"pick_up_object", MakePickUp},
       {"place_object", MakePlace},
       {"place_object_at", MakePlaceAt},

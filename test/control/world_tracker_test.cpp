@@ -82,6 +82,20 @@ TEST_F(WorldTrackerTest, TemperaturesHoldUntilNewerOnesCome) {
               ElementsAre(testing::Pair("mug1", 60.0), testing::Pair("mug2", 21.0)));
 }
 
+TEST_F(WorldTrackerTest, OfAnObjectThatIsOnlySaidToBeSomewhereNoTemperatureIsTaken) {
+  objects_.OnStated({{"mug1", "mug", "", At(1.5, 0.1, 0.7)}});
+  for (int i = 1; i <= 20; ++i) Tell(1.0 + 0.05 * i);
+  tracker_.OnTemperatures({{"mug1", 21.0}});
+  Tell(2.05);
+  EXPECT_THAT(observed_.temperatures, IsEmpty());
+  See(2.1);
+  for (int i = 22; i <= 24; ++i) Tell(1.0 + 0.05 * i);
+  tracker_.OnTemperatures({{"mug1", 62.5}});
+  Tell(2.25);
+  Tell(2.3);
+  EXPECT_THAT(observed_.temperatures, ElementsAre(testing::Pair("mug1", 62.5)));
+}
+
 TEST_F(WorldTrackerTest, EachMomentIsTakenOnceAndInOrderOnceItIsSettled) {
   for (int i = 1; i <= 20; ++i) Tell(1.0 + 0.05 * i);
   ASSERT_THAT(observed_at_, testing::Not(IsEmpty()));

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -21,6 +22,7 @@ using test_support::LogOf;
 using test_support::ScriptedWorld;
 using test_support::Slow;
 using test_support::SouthFails;
+using test_support::StepScript;
 using test_support::TaskOf;
 using ::testing::AllOf;
 using ::testing::ElementsAreArray;
@@ -80,6 +82,70 @@ TEST(MonitorTest, TwoMugsAreClearedInOneTask) {
   ScriptedWorld world(For("clear_table"));
   ExpectSuccess(&world, "clear_table");
   EXPECT_THAT(world.Begun(), ElementsAreArray(Golden("clear_table")));
+}
+
+/// Two mugs of coffee, of which nobody knows how warm they are.
+ScriptedWorld::Options MugsOfUnknownTemperature() {
+  auto options = For("serve_hot_coffee");
+  auto& facts = options.facts;
+  facts.erase(
+      std::remove_if(facts.begin(), facts.end(),
+                     [](const base::Atom& atom) { return atom.predicate == "hastemperature"; }),
+      facts.end());
+  return options;
+}
+
+bool IsStartOf(const Command& command, const std::string& action) {
+  const auto* start = std::get_if<StartStep>(&command);
+  return start != nullptr && start->action.name == action;
+}
+
+TEST(MonitorTest, WhatIsMeasuredWhileItIsMeasuredMendsThePlan) {
+  ScriptedWorld world(MugsOfUnknownTemperature());
+  world.When([](const Command& c) { return IsStartOf(c, "measure_temperature"); },
+             [](ScriptedWorld* w) {
+               for (const auto& [mug, degrees] : {std::pair("mug1", "21"), {"mug2", "62.5"}})
+                 w->Set({}, {{"hastemperature", {mug, degrees}}, {"temperatureknown", {mug}}});
+               w->Observe(1.0);
+             });
+  ExpectSuccess(&world, "serve_hot_coffee");
+  EXPECT_EQ(world.CountOf("begin measure_temperature"), 1) << LogOf(world);
+  EXPECT_TRUE(world.Holds({"on", {"mug2", "placingareawestrighttable1"}})) << LogOf(world);
+  EXPECT_THAT(world.warnings(), SizeIs(1));
+}
+
+TEST(MonitorTest, WhatIsKnownOnTheWayIsNotMeasured) {
+  ScriptedWorld world(MugsOfUnknownTemperature());
+  world.When([](const Command& c) { return IsStartOf(c, "move_base"); },
+             [](ScriptedWorld* w) {
+               w->Set({}, {{"hastemperature", {"mug2", "50"}}, {"temperatureknown", {"mug2"}}});
+               w->Observe(1.0);
+             });
+  ExpectSuccess(&world, "serve_hot_coffee");
+  EXPECT_EQ(world.CountOf("begin measure_temperature"), 0) << LogOf(world);
+  EXPECT_TRUE(world.Holds({"on", {"mug2", "placingareawestrighttable1"}})) << LogOf(world);
+}
+
+/// Here the world makes true what the planner only guessed.
+TEST(MonitorTest, ABookkeepingStepBetweenOthersIsDoneInItsTurn) {
+  ScriptedWorld world(MugsOfUnknownTemperature());
+  ExpectSuccess(&world, "serve_hot_coffee");
+  EXPECT_THAT(world.warnings(), IsEmpty());
+  EXPECT_EQ(world.plannings().size(), 1u);
+}
+
+TEST(MonitorTest, WhereNothingIsMeasuredTheTaskFailsAndSaysWhat) {
+  auto options = MugsOfUnknownTemperature();
+  options.step = [](const base::ActionCall& action, int) {
+    StepScript script;
+    script.has_effects = action.name != "measure_temperature";
+    return script;
+  };
+  ScriptedWorld world(options);
+  const Finish finish = world.Run(TaskOf("serve_hot_coffee"));
+  EXPECT_EQ(finish.outcome, Finish::Outcome::kFailed);
+  EXPECT_THAT(finish.reason, HasSubstr("temperatureknown"));
+  EXPECT_EQ(world.CountOf("begin pick_up_object"), 0) << LogOf(world);
 }
 
 TEST(MonitorTest, ATaskThatIsNoneIsRefusedWithWhatIsWrong) {

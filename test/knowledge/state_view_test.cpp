@@ -162,7 +162,7 @@ TEST(StateAtomsTest, TemperaturesAreNumbersInCelsius) {
   EXPECT_THAT(Said(ViewOf({MakeFluent(
                   "HasTemperature", "hasTemperatureMug1",
                   {{"hasPhysicalEntity", "Mug", "mug1"}, {"hasDegrees", "xsd:float", 62.5}})})),
-              ElementsAre("HasTemperature(mug1, 62.5)"));
+              ElementsAre("HasTemperature(mug1, 62.5)", "TemperatureKnown(mug1)"));
 }
 
 TEST(StateAtomsTest, WishesAndFailuresThatWereImagined) {

@@ -1,10 +1,11 @@
-#include "perception/heat/warm_objects.h"
+#include "hires/perception/warm_objects.h"
 
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "hires/base/error.h"
 #include "hires/geometry/angles.h"
 #include "hires/perception/line_of_sight.h"
 #include "support/sight_scenes.h"
@@ -144,6 +145,54 @@ TEST(WarmObjectsTest, RandomMugsAreAsWarmAsTheyAreHoweverRecognised) {
   }
   EXPECT_GT(num_warm, 50);
   EXPECT_GT(num_cold, 50);
+}
+
+/// A picture of these things, each as warm as told, by a camera that looks along x.
+HeatView Pictured(const std::shared_ptr<const Surroundings>& room,
+                  const std::vector<world::ObjectState>& things,
+                  const std::map<std::string, double>& temperatures) {
+  HeatView view;
+  view.camera = {At(0.0, 0.0, 0.85), 640, 480, 320.0};
+  base::Rng rng(5);
+  view.heat = MeasureHeat(LineOfSight(room, things).Look(view.camera, 5.0), temperatures, {}, &rng);
+  return view;
+}
+
+TEST(WarmObjectsTest, OfKnownObjectsThoseAreMeasuredThatAreInPictureNearAndNotHiddenOrCarried) {
+  const auto room = test_support::EmptyRoom();
+  std::vector<world::ObjectState> known{
+      Thing("near", "mug", At(1.0, 0.0, 0.8)), Thing("far", "mug", At(2.5, 0.5, 0.8)),
+      Thing("hidden", "mug", At(1.2, 0.0, 0.8)), Thing("behind", "mug", At(-1.0, 0.0, 0.8)),
+      Thing("carried", "mug", At(1.0, 0.3, 0.8))};
+  known.back().attached_to = "palm";
+  const HeatView view = Pictured(room, known, {{"near", 335.65}, {"carried", 330.0}});
+  WarmParams params;
+  params.max_range = 2.0;
+  const auto degrees = SureDegrees(ReadHeat(view, room, known, params));
+  ASSERT_THAT(degrees, SizeIs(1));
+  EXPECT_NEAR(degrees.at("near"), 62.5, 0.1);
+  params.max_range = 4.0;
+  EXPECT_THAT(SureDegrees(ReadHeat(view, room, known, params)), SizeIs(2));
+}
+
+TEST(WarmObjectsTest, WhoMayBeTheWarmOneOfTwoIsNotSure) {
+  HeatReading reading;
+  reading.objects = {{"mug1", 335.65, 336.0, 100, {"mug2"}}, {"mug2", 293.15, 294.0, 100, {}}};
+  EXPECT_THAT(SureDegrees(reading),
+              ElementsAre(testing::Pair("mug2", testing::DoubleNear(20.0, 1e-9))));
+}
+
+TEST(WarmObjectsTest, ParametersAreReadAndUnknownOnesRefused) {
+  const auto read = [](const std::string& text) {
+    return ReadWarmParams(base::ParamReader::FromString(text, "heat"));
+  };
+  const std::string good = "{threshold: 310, min_pixels: 20, min_share: 0.3, max_range: 2}";
+  EXPECT_EQ(read(good).threshold, 310.0);
+  EXPECT_EQ(read(good).max_range, 2.0);
+  EXPECT_THROW(read("{threshold: 310, min_pixels: 20, min_share: 3, max_range: 2}"),
+               base::ConfigError);
+  EXPECT_THROW(read("{threshold: 310, min_pixels: 20, min_share: 0.3, max_range: 2, x: 1}"),
+               base::ConfigError);
 }
 
 }  // namespace

@@ -422,8 +422,14 @@ class WorldTrackerTest(unittest.TestCase):
         temperatures = self.msg.ObjectTemperatures(
             objects=[told('mug2', 62.5), told('mug1', 50.0, 'peppermill1'),
                      told('peppermill1', math.nan)])
+        self.at_table()
+        self.rest()
         self.until_warned(lambda: self.publishers['temperatures'].publish(temperatures),
                           "object 'peppermill1': temperature is nan")
+        self.rest()
+        self.assertEqual(self.query(instance='hasTemperatureMug2'), [], 'nobody has seen it yet')
+        self.look({'mug2': ('coffee_cup', translation(7.48, 11.28, 0.73))}, times=2)
+        self.publishers['temperatures'].publish(temperatures)
         self.expect('hasTemperatureMug2', 'hasDegrees', 62.5)
         self.assertEqual(self.value('hasTemperatureMug2', 'hasPhysicalEntity'), 'mug2')
         self.assertEqual(self.query(instance='hasTemperatureMug1'), [])

@@ -49,6 +49,7 @@ class WorldTracker {
   std::vector<std::string> OnView(const translation::TranslatorContext& context,
                                   const knowledge::FluentView& fluents);
   /// What a thermal camera says of objects, in degrees Celsius; holds until something newer comes.
+  /// Objects that are only said to be somewhere are left out: what is warm there may be another.
   void OnTemperatures(const std::map<std::string, double>& degrees);
   /// What runs now: the head is others' while one of these actions may use it.
   void OnActions(const actions::Catalogue& catalogue, const std::vector<std::string>& names);
@@ -64,6 +65,7 @@ class WorldTracker {
   std::optional<double> NextMoment() const;
   void Handle(double time);
   bool StandsOnFloor(const std::string& name) const;
+  bool IsHearsay(const std::string& name) const;
   std::vector<robot::SeenObject> Known(const sensing::RobotEstimate& now) const;
   translation::ObservedWorld Observed(const sensing::RobotEstimate& now,
                                       const std::vector<robot::SeenObject>& known) const;

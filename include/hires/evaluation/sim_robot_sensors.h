@@ -67,6 +67,10 @@ class SimRobotSensors {
   std::optional<perception::Sighting> Look(const SimRobotWorld& world,
                                            const SensorReadings& readings);
 
+  /// What the thermal camera sees at the same time; null unless pictures are seen and there is one.
+  std::shared_ptr<const perception::HeatView> LookForHeat(const SimRobotWorld& world,
+                                                          const SensorReadings& readings) const;
+
   SimRobotCameras& cameras() { return cameras_; }
   const SimRobotLasers& lasers() const { return lasers_; }
 

@@ -11,6 +11,7 @@
 #include "hires/evaluation/achieve.h"
 #include "hires/evaluation/sim_robot_world.h"
 #include "hires/perception/detector.h"
+#include "hires/perception/warm_objects.h"
 #include "hires/sensing/scan_obstacles.h"
 
 namespace hires::loop {
@@ -30,6 +31,7 @@ struct SensorNews {
   std::vector<double> scan;  ///< [m]; empty: the robot has no laser
   std::optional<perception::Sighting> seen;
   std::optional<TrayScan> tray;
+  std::shared_ptr<const perception::HeatView> heat;  ///< null: no picture was taken
 };
 
 /// Told of all that passes between the parts of a loop, as topics would carry it between nodes, in

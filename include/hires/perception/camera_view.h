@@ -27,6 +27,12 @@ struct CameraView {
 CameraView ViewOf(const robot::Robot& robot, const geometry::Pose2& X_MB,
                   const robot::JointPositions& posture);
 
+/// A link of the robot in the map.
+/// @pre the robot has that link.
+/// @throws base::ConfigError as robot::ForwardKinematics.
+geometry::Pose3 X_MLink(const robot::Robot& robot, const geometry::Pose2& X_MB,
+                        const robot::JointPositions& posture, const std::string& link);
+
 /// The same camera in another pose, e.g. one that a message names.  @pre as ViewOf
 CameraView ViewFrom(const robot::Robot& robot, const geometry::Pose3& X_MC);
 

@@ -155,6 +155,17 @@ perception::HeatPicture SimRobotCameras::Heat(const SimRobotWorld& world) const 
                      &rng);
 }
 
+perception::HeatView SimRobotCameras::SeeHeat(const SimRobotWorld& world,
+                                              const SensorReadings& readings) const {
+  const robot::Robot& robot = scene_->robot;
+  const robot::JointPositions posture = robot::PostureOf(robot, readings.joints.positions);
+  perception::HeatView view{Heat(world), heat_camera_,
+                            perception::ShapesOf(robot, readings.X_MB, posture)};
+  view.camera.X_MC =
+      perception::X_MLink(robot, readings.X_MB, posture, robot.profile.sensors.thermal_camera_link);
+  return view;
+}
+
 perception::Picture SimRobotCameras::InColours(const perception::HeatPicture& heat) const {
   return perception::Coloured(heat, params_.coldest, params_.hottest);
 }

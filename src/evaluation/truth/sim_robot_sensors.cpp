@@ -154,6 +154,12 @@ std::optional<perception::Sighting> SimRobotSensors::Recognise(const SimRobotWor
   return perception::SeenFrom(perception::OpticalFrame(), std::move(view->sighting));
 }
 
+std::shared_ptr<const perception::HeatView> SimRobotSensors::LookForHeat(
+    const SimRobotWorld& world, const SensorReadings& readings) const {
+  if (!sees_pictures() || !cameras_.has_thermal_camera()) return nullptr;
+  return std::make_shared<const perception::HeatView>(cameras_.SeeHeat(world, readings));
+}
+
 /// Some are missed; the others are all off, each in its own way.
 void SimRobotSensors::Misjudge(std::vector<perception::Detection>* seen, base::Rng rng) const {
   const Recogniser& recogniser = params_.recogniser;

@@ -56,6 +56,7 @@ std::vector<AtomRule> MakeRules() {
       {"HasTemperature",
        "HasTemperature",
        {{PartKind::kFirst, "hasPhysicalEntity"}, {PartKind::kFirst, "hasDegrees"}}},
+      {"TemperatureKnown", "HasTemperature", {{PartKind::kFirst, "hasPhysicalEntity"}}},
       {"Connected",
        "Connected",
        {{PartKind::kFirst, "hasPlacingArea"},

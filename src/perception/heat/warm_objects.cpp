@@ -1,10 +1,11 @@
-#include "perception/heat/warm_objects.h"
+#include "hires/perception/warm_objects.h"
 
 #include <algorithm>
 #include <map>
 #include <opencv2/imgproc.hpp>
 
 #include "hires/base/check.h"
+#include "hires/perception/line_of_sight.h"
 
 namespace hires::perception {
 namespace {
@@ -113,7 +114,26 @@ ObjectHeat HeatOf(const HeatPicture& heat, const std::string& name, const Pixels
   return object;
 }
 
+/// Whether its origin is; what is cut off by the border shows too little of itself.
+bool IsInPicture(const PinholeCamera& camera, const world::ObjectState& object, double max_range) {
+  const Eigen::Vector3d& p_M = object.X_MO.translation;
+  if ((p_M - camera.X_MC.translation).norm() > max_range) return false;
+  const auto pixel = camera.Project(p_M);
+  return pixel && pixel->x() >= 0.0 && pixel->x() < camera.width && pixel->y() >= 0.0 &&
+         pixel->y() < camera.height;
+}
+
 }  // namespace
+
+WarmParams ReadWarmParams(base::ParamReader in) {
+  WarmParams params;
+  params.threshold = in.Get("threshold", base::Between(200.0, 600.0));
+  params.min_pixels = in.Get("min_pixels", base::Between(1, 100000));
+  params.min_share = in.Get("min_share", base::Between(0.0, 1.0));
+  params.max_range = in.Get("max_range", base::Between(0.1, 100.0));
+  in.RejectUnknownKeys();
+  return params;
+}
 
 HeatReading ReadHeat(const HeatPicture& heat, const RangePicture& seen,
                      const std::vector<std::string>& objects, const WarmParams& params) {
@@ -144,6 +164,28 @@ HeatReading ReadHeat(const HeatPicture& heat, const RangePicture& seen,
   }
   for (Region& one : regions) reading.regions.push_back(std::move(one.region));
   return reading;
+}
+
+HeatReading ReadHeat(const HeatView& view, const std::shared_ptr<const Surroundings>& surroundings,
+                     const std::vector<world::ObjectState>& known, const WarmParams& params) {
+  std::vector<std::string> names;
+  for (const world::ObjectState& object : known) {
+    const bool is_carried = !object.attached_to.empty();
+    if (!is_carried && IsInPicture(view.camera, object, params.max_range)) {
+      names.push_back(object.name);
+    }
+  }
+  if (names.empty()) return {};
+  const LineOfSight sight(surroundings, known, view.robot_M);
+  return ReadHeat(view.heat, sight.Look(view.camera, params.max_range), names, params);
+}
+
+std::map<std::string, double> SureDegrees(const HeatReading& reading) {
+  std::map<std::string, double> degrees;
+  for (const ObjectHeat& object : reading.objects) {
+    if (!object.is_ambiguous()) degrees[object.name] = object.temperature - kZeroCelsius;
+  }
+  return degrees;
 }
 
 }  // namespace hires::perception

@@ -43,13 +43,16 @@ WORKING_TIMES = ('effect_timeout', 'observation_delay', 'break_delay', 'stop_tim
 # In the order of their start.
 NODES = ('sim_robot', 'middle_layer', 'world_tracker', 'translator', 'blackboard', 'planner',
          'imagination_client', 'execution_monitor')
-RECOGNISER = 'tabletop_recogniser'
+RECOGNISER, HEAT_READER = 'tabletop_recogniser', 'heat_reader'
 
 
-def scenario_of(robot, objects, hidden=()):
-    """What is true at first, as config/scenarios has it; poses are [x, y, z, yaw]."""
+def scenario_of(robot, objects, hidden=(), temperatures=()):
+    """What is true at first, as config/scenarios has it; poses are [x, y, z, yaw], temperatures of
+    objects [K] by name."""
+    warm = {name: {'temperature': kelvin} for name, kelvin in dict(temperatures).items()}
     return {'task': 'of a test', 'knowledge': [], 'robot': robot,
-            'objects': [{'name': name, 'pose': list(pose)} for name, pose in objects.items()],
+            'objects': [{'name': name, 'pose': list(pose), **warm.get(name, {})}
+                        for name, pose in objects.items()],
             'hidden': [{'name': name, 'pose': list(pose)} for name, pose in dict(hidden).items()]}
 
 
@@ -167,7 +170,8 @@ class ClosedLoop(BlackboardAccess):
     """@param seed   of the robot's hidden truth and of all chance.
     @param pace      [s] of the simulated robot per second.
     @param rollouts  of an imagination, per combination of alternatives.
-    @param sensing   pictures: objects are recognised in the camera's clouds, by a node of its own."""
+    @param sensing   pictures: objects are recognised in the camera's clouds, and measured
+                     in the thermal camera's pictures, by a node of its own each."""
 
     def __init__(self, seed=1, pace=10.0, rollouts=8, workers=1, uncertainty=None, sensing=None):
         self.processes = Processes()
@@ -283,11 +287,12 @@ class ClosedLoop(BlackboardAccess):
             self.start_node(name)
         if self.sensing == 'pictures':
             self.start_node(RECOGNISER)
+            self.start_node(HEAT_READER)
         self.require_server()
 
     def end_nodes(self):
         """All but the workers."""
-        for name in (RECOGNISER, *reversed(NODES)):
+        for name in (HEAT_READER, RECOGNISER, *reversed(NODES)):
             if name in self.nodes:
                 self.nodes.pop(name).destroy()
                 if self.rospy.has_param('/' + name):

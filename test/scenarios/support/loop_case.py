@@ -42,10 +42,10 @@ class LoopCase(unittest.TestCase):
         cls.codes = cls.loop.msg.AchieveResult
         cls.phases = cls.loop.msg.StepStatus
 
-    def begin(self, robot, objects, hidden=(), knowledge=(RESTAURANT,), **monitor):
+    def begin(self, robot, objects, hidden=(), knowledge=(RESTAURANT,), temperatures=(), **monitor):
         """The whole system in this situation, once the Blackboard has seen it.
         @param monitor  as of ClosedLoop.start."""
-        self.loop.start(scenario_of(robot, objects, hidden), knowledge, **monitor)
+        self.loop.start(scenario_of(robot, objects, hidden, temperatures), knowledge, **monitor)
         self.truth = self.loop.truth
         self.truth.wait(lambda truth: True, 'the simulated robot\n' + self.loop.output())
         self.wait_for_belief(robot)

@@ -11,6 +11,7 @@
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/heat_picture.h"
 #include "hires/perception/picture_scene.h"
+#include "hires/perception/warm_objects.h"
 
 namespace hires::evaluation {
 
@@ -64,6 +65,9 @@ class SimRobotCameras {
   /// The same view in colours, one for each kind of thing (of twelve).  @pre has_depth_camera()
   perception::Picture Colours(const SimRobotWorld& world);
   perception::HeatPicture Heat(const SimRobotWorld& world) const;  ///< @pre has_thermal_camera()
+  /// The same with where the robot believes that its camera and its links are.
+  /// @param readings  of the same moment.  @pre has_thermal_camera()
+  perception::HeatView SeeHeat(const SimRobotWorld& world, const SensorReadings& readings) const;
   /// For people.
   perception::Picture InColours(const perception::HeatPicture& heat) const;
 

@@ -1,0 +1,203 @@
+#include "nodes/heat_reader/heat_reader_node.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "hires/base/error.h"
+#include "hires/base/log.h"
+#include "hires/base/process.h"
+#include "hires/base/text.h"
+#include "hires/perception/camera_view.h"
+#include "hires/ros/conversions.h"
+#include "hires/ros/robot_topics.h"
+#include "hires/ros/topic_names.h"
+#include "nodes/heat_reader/heat_messages.h"
+
+namespace hires_ros {
+namespace {
+
+namespace perception = hires::perception;
+namespace sensing = hires::sensing;
+using hires::geometry::Pose3;
+
+constexpr double kWarningPeriod = 1.0;  // [s]
+constexpr double kStaleObjects = 10.0;  // [s] that the tracker's last words may be older
+constexpr std::uint32_t kTransformQueue = 6000;
+
+}  // namespace
+
+HeatReaderNode::HeatReaderNode(const HeatReaderParams& params, ros::NodeHandle* nh)
+    : params_(params),
+      nh_(*nh),
+      surroundings_(std::make_shared<const perception::Surroundings>(*params.world)) {
+  for (const bool are_static : {false, true}) {
+    transforms_.push_back(nh->subscribe<tf2_msgs::TFMessage>(
+        are_static ? kStaticTransforms : kTransforms, kTransformQueue,
+        boost::function<void(const tf2_msgs::TFMessage&)>(
+            [this, are_static](const tf2_msgs::TFMessage& msg) { OnTransforms(msg, are_static); }),
+        ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
+  }
+  const ros::SubscriberStatusCallback on_listener = [this](const ros::SingleSubscriberPublisher&) {
+    ListenWhereHeard();
+  };
+  temperatures_ = nh->advertise<hires::ObjectTemperatures>(kObjectTemperatures, 10, on_listener);
+  updater_.setHardwareID("heat_reader");
+  updater_.add("heat", this, &HeatReaderNode::Diagnose);
+  timer_ = nh->createSteadyTimer(ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) {
+    ListenWhereHeard();
+    updater_.update();
+  });
+}
+
+/// Pictures are large: whoever does not need them does not ask for them.
+void HeatReaderNode::ListenWhereHeard() {
+  const bool is_heard = temperatures_.getNumSubscribers() > 0;
+  if (is_heard && inputs_.empty()) {
+    const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
+    inputs_.push_back(nh_.subscribe<sensor_msgs::CameraInfo>(
+        params_.names.sensors.thermal_info, 1,
+        [this](const sensor_msgs::CameraInfoConstPtr& msg) {
+          info_ = msg;
+          Try();
+        },
+        ros::VoidConstPtr(), hints));
+    inputs_.push_back(nh_.subscribe<hires::WorldState>(
+        kKnownObjects, 1,
+        [this](const hires::WorldStateConstPtr& msg) {
+          known_ = msg;
+          Try();
+        },
+        ros::VoidConstPtr(), hints));
+    inputs_.push_back(nh_.subscribe(params_.names.sensors.thermal_image, 1,
+                                    &HeatReaderNode::OnPicture, this, hints));
+  } else if (!is_heard && !inputs_.empty()) {
+    inputs_.clear();
+    waiting_.reset();
+  }
+}
+
+void HeatReaderNode::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static) {
+  tree_.Take(msg, are_static);
+  Try();
+}
+
+void HeatReaderNode::OnPicture(const sensor_msgs::ImageConstPtr& msg) {
+  ++num_pictures_;
+  waiting_ = msg;
+  Try();
+}
+
+void HeatReaderNode::Try() {
+  if (!waiting_) return;
+  const std_msgs::Header& header = waiting_->header;
+  const std::string frame = sensing::BareFrame(header.frame_id), map = params_.names.map_frame;
+  if (header.stamp.isZero()) return Refuse("header.stamp is 0, wanted the picture's time");
+  if (frame.empty()) return Refuse("header.frame_id is empty, wanted the camera's optical frame");
+  waits_for_ = WhyUnknown(header);
+  if (!waits_for_.empty()) return;
+  const double time = header.stamp.toSec();
+  const sensing::FramePose X_MO = tree_.Find(map, frame, time);
+  if (X_MO.is_found()) return Read(X_MO.X_PC * perception::OpticalFrame().Inverse());
+  const std::string why = tree_.WhyNot(map, frame, time);
+  const auto newest = tree_.NewestOf(map, frame);
+  const bool is_too_old = X_MO.status == sensing::FrameStatus::kNotThen && newest && *newest > time;
+  if (is_too_old) return Refuse("older than what is kept of tf: " + why);
+  if (X_MO.status == sensing::FrameStatus::kInLoop) return Refuse(why);
+  waits_for_ = fmt::format("the transform of '{}' in '{}': {}", frame, map, why);
+}
+
+/// What is not known yet of camera and objects; empty: nothing is missing.
+std::string HeatReaderNode::WhyUnknown(const std_msgs::Header& header) const {
+  if (!info_) return nh_.resolveName(params_.names.sensors.thermal_info);
+  if (!known_) return nh_.resolveName(kKnownObjects);
+  const double age = (header.stamp - known_->header.stamp).toSec();
+  if (age <= kStaleObjects) return "";
+  return fmt::format("{}, whose last is {:.1f} s older than the picture, wanted {:g} s at most",
+                     nh_.resolveName(kKnownObjects), age, kStaleObjects);
+}
+
+/// What the map says, where the world has it.
+Pose3 HeatReaderNode::InWorld(const Pose3& X_MF) const {
+  const hires::world::MapToWorld& map_to_world = params_.names.map_to_world;
+  Pose3 X_WF = hires::geometry::Lift(map_to_world.X_WM) * X_MF;
+  X_WF.translation.head<2>() = map_to_world.ToWorld(Eigen::Vector2d(X_MF.translation.head<2>()));
+  return X_WF;
+}
+
+std::vector<hires::geometry::Collision> HeatReaderNode::RobotShapes(double time) {
+  std::vector<hires::geometry::Collision> shapes_W;
+  unplaced_.clear();
+  for (const hires::robot::Link& link : params_.robot->model.links) {
+    if (link.collisions.empty()) continue;
+    const sensing::FramePose X_ML = tree_.Find(params_.names.map_frame, link.name, time);
+    if (X_ML.is_found()) {
+      perception::AddShapesOf(link, InWorld(X_ML.X_PC), &shapes_W);
+    } else {
+      unplaced_.push_back(link.name);
+    }
+  }
+  return shapes_W;
+}
+
+void HeatReaderNode::Read(const Pose3& X_MC) {
+  const sensor_msgs::ImageConstPtr msg = std::exchange(waiting_, nullptr);
+  perception::HeatReading reading;
+  try {
+    perception::HeatView view{HeatFromMsg(*msg), CameraFromMsg(*info_),
+                              RobotShapes(msg->header.stamp.toSec())};
+    if (view.heat.width != view.camera.width || view.heat.height != view.camera.height) {
+      return Refuse(fmt::format("the picture has {} x {} pixels, its camera_info says {} x {}",
+                                view.heat.width, view.heat.height, view.camera.width,
+                                view.camera.height));
+    }
+    view.camera.X_MC = InWorld(X_MC);
+    reading = perception::ReadHeat(view, surroundings_, FromMsg(*known_).objects, params_.warm);
+  } catch (const hires::base::ConfigError& error) {
+    return Refuse(error.what());
+  }
+  temperatures_.publish(ToMsg(reading, msg->header));
+  num_objects_ = reading.objects.size();
+  num_regions_ = reading.regions.size();
+  refused_.clear();
+  ++num_read_;
+}
+
+void HeatReaderNode::Refuse(const std::string& why) {
+  waiting_.reset();
+  ++num_refused_;
+  waits_for_.clear();
+  refused_ = why;
+  if (hires::base::SteadyNow() - last_warning_ < kWarningPeriod) return;
+  last_warning_ = hires::base::SteadyNow();
+  hires::base::Log(
+      hires::base::LogLevel::kWarn,
+      fmt::format("topic={} dropped why={}", params_.names.sensors.thermal_image, why));
+}
+
+void HeatReaderNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
+  using diagnostic_msgs::DiagnosticStatus;
+  if (inputs_.empty()) {
+    status.summary(DiagnosticStatus::OK, "rests: nobody listens");
+  } else if (num_pictures_ == 0) {
+    status.summary(DiagnosticStatus::WARN,
+                   "waits for pictures on " + nh_.resolveName(params_.names.sensors.thermal_image));
+  } else if (!refused_.empty()) {
+    status.summary(DiagnosticStatus::WARN, "dropped a picture: " + refused_);
+  } else if (!waits_for_.empty()) {
+    status.summary(DiagnosticStatus::WARN, "waits for " + waits_for_);
+  } else if (!unplaced_.empty()) {
+    status.summary(DiagnosticStatus::WARN,
+                   "reads, but may take parts of the robot for things: tf does not know " +
+                       hires::base::Join(unplaced_, ", "));
+  } else {
+    status.summary(DiagnosticStatus::OK, "reads");
+  }
+  status.add("pictures", num_pictures_);
+  status.add("read", num_read_);
+  status.add("dropped", num_refused_);
+  status.add("objects measured", num_objects_);
+  status.add("warm regions", num_regions_);
+}
+
+}  // namespace hires_ros
