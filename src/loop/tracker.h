@@ -18,7 +18,6 @@ namespace hires::loop {
 struct TrackerParams {
   control::SweepParams sweep;
   translation::ChangeParams changes;
-  std::map<std::string, std::string> concepts;  ///< model -> concept
   sensing::FloorWatchParams floor;
   double write_period{0.05};  ///< [s] between two writes
 };

@@ -135,6 +135,20 @@ TEST_F(RecogniserTest, RandomTablesAreSeenAsTheyAre) {
   EXPECT_LE(score.num_surplus(), 0.02 * score.num_detections()) << Text(score);
 }
 
+TEST_F(RecogniserTest, ACategoryIsSaidWhereAllModelsOfAShapeHaveIt) {
+  std::map<std::string, std::string> category_of;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const RandomTable table = tables_.Make(seed);
+    for (const Detection& seen : Recognise(table.cloud, table.stand).detections)
+      category_of[seen.label] = seen.category;
+  }
+  EXPECT_EQ(category_of.at("coffee_cup"), "Mug") << "hot or not";
+  EXPECT_EQ(category_of.at("peppermill_repository"), "Peppermill");
+  EXPECT_EQ(category_of.at("peppermill_appendix"), "") << "a vase looks so";
+  EXPECT_EQ(category_of.at("knife"), "") << "a spoon looks so";
+  EXPECT_EQ(category_of.at("fork"), "Fork");
+}
+
 TEST_F(RecogniserTest, ModelsOfOneShapeShareTheirConfidence) {
   for (std::uint64_t seed = 1; seed < 100; ++seed) {
     const RandomTable table = tables_.Make(seed);

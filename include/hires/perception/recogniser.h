@@ -16,7 +16,7 @@ namespace hires::perception {
 /// A kind of thing that a recogniser knows.
 struct KnownModel {
   std::string label;
-  std::string category;  ///< concept of the ontology
+  std::string category;  ///< concept of the ontology; empty: none is known
   std::shared_ptr<const world::ObjectModel> model;
 };
 

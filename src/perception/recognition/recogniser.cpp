@@ -72,6 +72,14 @@ Pose3 PoseOf(const Candidate& candidate, const Pose3& X_CT) {
   return X_CT * geometry::Lift(candidate.pose.X_TO, candidate.shape->foot);
 }
 
+/// That of all its models; none where they differ: nothing that is seen tells them apart.
+std::string CategoryOf(const ModelShape& shape) {
+  const std::string& first = shape.models.front().category;
+  const bool is_one = std::all_of(shape.models.begin(), shape.models.end(),
+                                  [&](const KnownModel& one) { return one.category == first; });
+  return is_one ? first : "";
+}
+
 Detection Unknown(const Thing& thing, const Pose3& X_CT) {
   const Footprint print = FootprintOf(thing.p_T);
   std::vector<double> heights;
@@ -149,9 +157,8 @@ Detection Recogniser::Impl::Detect(const LabelledPicture& seen, const Thing& thi
     detection = Unknown(thing, X_CT);
   } else {
     const Candidate& best = candidates.front();
-    const KnownModel& known = best.shape->models.front();
-    detection.label = known.label;
-    detection.category = known.category;
+    detection.label = best.shape->models.front().label;
+    detection.category = CategoryOf(*best.shape);
     detection.X_CO = PoseOf(best, X_CT);
     detection.visible_share = best.view.visible_share;
     detection.size = best.shape->field->bounds().upper - best.shape->field->bounds().lower;

@@ -82,7 +82,7 @@ RandomTables::RandomTables(robot::Robot robot, const std::string& objects,
   std::set<std::string> labels;
   for (const auto& [instance, model] : world::LoadCatalogueModels(objects)) {
     if (SortedSize(*model).z() < kLargest && labels.insert(model->name).second)
-      catalogue_.push_back({model->name, "", model});
+      catalogue_.push_back({model->name, model->concept_name, model});
   }
   impl_->known = catalogue_;
 }
