@@ -27,6 +27,9 @@ struct RecogniserParams {
   double max_extent{0.6};   ///< [m] larger models are no things on tables
 };
 
+/// Those whose box has no edge longer than that [m]: what a recogniser compares things with.
+std::vector<KnownModel> NoLargerThan(double max_extent, const std::vector<KnownModel>& catalogue);
+
 struct Recognition {
   Segmentation segmentation{};
   std::vector<Detection> detections{};  ///< in the cloud's frame; of the labels 2, 3, ...

@@ -180,9 +180,19 @@ Recognition Recogniser::Impl::Named(const PointCloud& cloud, Segmentation segmen
   return out;
 }
 
+std::vector<KnownModel> NoLargerThan(double max_extent, const std::vector<KnownModel>& catalogue) {
+  std::vector<KnownModel> usable;
+  for (const KnownModel& known : catalogue) {
+    geometry::Aabb bounds;
+    for (const geometry::Collision& one : known.model->collisions)
+      bounds.Include(geometry::BoundsOf(one.shape, one.X_BS));
+    if ((bounds.upper - bounds.lower).maxCoeff() <= max_extent) usable.push_back(known);
+  }
+  return usable;
+}
+
 Recogniser::Recogniser(const std::vector<KnownModel>& catalogue, const RecogniserParams& params) {
   std::set<std::string> labels;
-  std::vector<KnownModel> usable;
   for (const KnownModel& known : catalogue) {
     if (!labels.insert(known.label).second) {
       throw base::ConfigError(
@@ -190,12 +200,9 @@ Recogniser::Recogniser(const std::vector<KnownModel>& catalogue, const Recognise
                       "label",
                       known.label));
     }
-    geometry::Aabb bounds;
-    for (const geometry::Collision& one : known.model->collisions)
-      bounds.Include(geometry::BoundsOf(one.shape, one.X_BS));
-    if ((bounds.upper - bounds.lower).maxCoeff() <= params.max_extent) usable.push_back(known);
   }
-  impl_ = std::make_unique<Impl>(Impl{params, ShapesOfCatalogue(usable)});
+  impl_ = std::make_unique<Impl>(
+      Impl{params, ShapesOfCatalogue(NoLargerThan(params.max_extent, catalogue))});
 }
 Recogniser::~Recogniser() = default;
 Recogniser::Recogniser(Recogniser&&) noexcept = default;
