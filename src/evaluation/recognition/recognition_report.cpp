@@ -162,7 +162,7 @@ std::string ReportText(const RecognitionReport& report) {
     text += fmt::format("{} x {} {}\n", count, names.first,
                         names.second.empty() ? "not found" : "called " + names.second);
   }
-  return text + fmt::format("{:.0f} ms of a core for each cloud\n", 1e3 * report.seconds);
+  return text + fmt::format("{:.0f} ms of processor time for each cloud\n", 1e3 * report.seconds);
 }
 
 ordered_json ToJson(const RecognitionReport& report) {
