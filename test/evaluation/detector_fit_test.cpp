@@ -164,6 +164,12 @@ TEST(DetectorFitTest, AnyNumberOfThreadsFitsTheSameAndItsFileIsRead) {
   EXPECT_THAT(ReportText(*one), HasSubstr("2 other tables:"));
 }
 
+TEST(DetectorFitTest, TheShippedFitIsOfWhatIsShipped) {
+  const std::string hash = FitHashOf(SmallOrder());
+  EXPECT_THAT(base::ReadTextFile(kSource + "/config/detector.yaml", 1u << 20), HasSubstr(hash))
+      << "fit it anew: hires experiment detector --output config/detector.yaml";
+}
+
 TEST(DetectorFitTest, AnyChangeOfWhatAFitDependsOnIsSeenInItsHash) {
   const DetectorFitOrder order = SmallOrder();
   const std::string hash = FitHashOf(order);
