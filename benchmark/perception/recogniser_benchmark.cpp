@@ -10,7 +10,8 @@ namespace {
 
 RandomTables Tables() {
   const std::string source = HIRES_SOURCE_DIR;
-  return {robot::LoadRobot(source + "/config/robots/pr2.yaml"), source + "/worlds/objects.yaml"};
+  return {robot::LoadRobot(source + "/config/robots/pr2.yaml"),
+          ReadRecogniserConfig(source + "/config/recogniser.yaml")};
 }
 
 /// A cloud of 640 x 480 points of a table with one to eight things, of 20 kinds; by table.

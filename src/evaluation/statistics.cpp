@@ -78,6 +78,22 @@ double ShareOfDrawnFlips(const std::vector<double>& sizes, double bound, base::R
 
 }  // namespace
 
+Interval BootstrapInterval(const std::vector<double>& values, base::Rng rng) {
+  constexpr int kResamples = 10000;
+  if (values.empty()) return {};
+  const int num = static_cast<int>(values.size());
+  std::vector<double> means(kResamples, 0.0);
+  for (double& mean : means) {
+    for (int i = 0; i < num; ++i) mean += values[rng.Index(num)];
+    mean /= num;
+  }
+  std::sort(means.begin(), means.end());
+  const auto at = [&](double share) {
+    return means[static_cast<std::size_t>(std::lround(share * (kResamples - 1)))];
+  };
+  return {Mean(values), at(kTail), at(1.0 - kTail)};
+}
+
 double Mean(const std::vector<double>& values) {
   if (values.empty()) return 0.0;
   double sum = 0.0;

@@ -12,6 +12,37 @@ namespace {
 
 constexpr int kRoundCorners = 24;
 constexpr double kTinyCorner = 1e-9;  // [m]
+constexpr double kAlike = 5e-4;       // [m]
+
+bool IsSamePlace(const Pose3& a, const Pose3& b) {
+  constexpr double kTurn = 1e-3;  // [rad]
+  return (a.translation - b.translation).cwiseAbs().maxCoeff() <= kAlike &&
+         a.rotation.angularDistance(b.rotation) <= kTurn;
+}
+
+bool IsSame(double a, double b) { return std::abs(a - b) <= kAlike; }
+bool IsSame(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return (a - b).cwiseAbs().maxCoeff() <= kAlike;
+}
+
+bool IsSameForm(const Shape& a, const Shape& b) {
+  using Mesh = std::shared_ptr<const TriangleMesh>;
+  const auto differ = [](const auto&, const auto&) { return false; };
+  return std::visit(
+      base::Overloaded{
+          differ, [](const Box& one, const Box& other) { return IsSame(one.size, other.size); },
+          [](const Sphere& one, const Sphere& other) { return IsSame(one.radius, other.radius); },
+          [](const Cylinder& one, const Cylinder& other) {
+            return IsSame(one.radius, other.radius) && IsSame(one.length, other.length);
+          },
+          [](const Mesh& one, const Mesh& other) {
+            const auto is_same = [](const auto& p, const auto& q) { return IsSame(p, q); };
+            return one->triangles == other->triangles &&
+                   std::equal(one->vertices.begin(), one->vertices.end(), other->vertices.begin(),
+                              other->vertices.end(), is_same);
+          }},
+      a, b);
+}
 
 /// Corners of a regular polygon around the circle.
 void AddCircumscribed(double radius, double z, std::vector<Eigen::Vector3d>* corners) {
@@ -177,6 +208,13 @@ int TurnSymmetry(const std::vector<Collision>& collisions_B) {
   }
   // Squares that are turned against each other have the symmetry of two alone, or none at all.
   return symmetry == 4 && collisions_B.size() > 1 ? 2 : symmetry;
+}
+
+bool AreAlike(const std::vector<Collision>& a, const std::vector<Collision>& b) {
+  return std::equal(
+      a.begin(), a.end(), b.begin(), b.end(), [](const Collision& one, const Collision& other) {
+        return IsSamePlace(one.X_BS, other.X_BS) && IsSameForm(one.shape, other.shape);
+      });
 }
 
 std::optional<Polygon> OutlineInBand(const Shape& shape, const Pose3& X_WS, double z_min,

@@ -26,7 +26,7 @@ TrackerParams ReadTracker(const std::string& path) {
   TrackerParams params;
   params.sweep = control::ReadSweepParams(in.Sub("sweep"));
   params.changes = translation::ReadChangeParams(in.Sub("changes"));
-  params.concepts = translation::ReadConcepts(in.Sub("concepts"));
+  translation::RefuseConcepts(in);
   params.floor = sensing::ReadFloorWatchParams(in.Sub("floor"));
   params.write_period = in.Get("write_period", Between(0.0, 10.0));
   return params;

@@ -90,9 +90,9 @@ void Tracker::Write() {
   is_write_due_ = false;
   written_ = clock_.now();
   const Posted posted = *std::exchange(posted_, std::nullopt);
-  const translation::FluentUpdate update = translation::ChangesFrom(
-      translation::WithKnowledge(context_, blackboard_.view()), blackboard_.view(), posted.observed,
-      params_.changes, params_.concepts);
+  const translation::FluentUpdate update =
+      translation::ChangesFrom(translation::WithKnowledge(context_, blackboard_.view()),
+                               blackboard_.view(), posted.observed, params_.changes);
   blackboard_.Write(update.added, update.updated, update.removed,
                     {knowledge::Source::kObservation, episode_, clock_.now()});
   hooks_.observed_until(posted.time);

@@ -21,7 +21,6 @@ struct TrackerParams {
   control::SweepParams sweep;
   perception::WarmParams warm;
   translation::ChangeParams changes;
-  std::map<std::string, std::string> concepts;  ///< model -> concept
   sensing::FloorWatchParams floor;
   double write_period{0.05};  ///< [s] between two writes
 };

@@ -20,6 +20,7 @@ namespace {
 
 using base::Atom;
 using knowledge::Fluent;
+using ConceptId = knowledge::Ontology::ConceptId;
 
 bool SameName(const std::string& a, const std::string& b) {
   return base::ToLower(a) == base::ToLower(b);
@@ -68,14 +69,12 @@ class ViewWith : public knowledge::FluentView {
 class Comparison {
  public:
   Comparison(const TranslatorContext& context, const knowledge::FluentView& said,
-             const ObservedWorld& observed, const ChangeParams& params,
-             const std::map<std::string, std::string>& concepts)
+             const ObservedWorld& observed, const ChangeParams& params)
       : context_(context),
         ontology_(*context.ontology),
         said_(said),
         observed_(observed),
         params_(params),
-        concepts_(concepts),
         body_(*context.robot, observed.state.robot) {}
 
   FluentUpdate Make() {
@@ -145,18 +144,38 @@ class Comparison {
   Fluent NewThing(const world::ObjectState& object) const {
     Fluent thing;
     thing.instance = object.name;
-    const auto named = concepts_.find(base::ToLower(object.model));
-    if (named != concepts_.end()) {
-      ontology_.Require(named->second);
-      thing.concept_name = named->second;
-      return thing;
-    }
-    thing.concept_name =
-        world::SaysUnknownBox(object.model) ? kUnknownConcept : Joined(object.model);
-    if (ontology_.Find(thing.concept_name) == knowledge::Ontology::kUnknown) {
-      thing.concept_name = "TabletopObject";
-    }
+    thing.concept_name = world::SaysUnknownBox(object.model)
+                             ? kUnknownConcept
+                             : ontology_.Name(ConceptSeenOf(object.model));
     return thing;
+  }
+
+  ConceptId ConceptOf(const world::ObjectModel& model) const {
+    if (!model.concept_name.empty()) return ontology_.Require(model.concept_name);
+    const ConceptId named = ontology_.Find(Joined(model.name));
+    return named != knowledge::Ontology::kUnknown ? named : ontology_.Require("TabletopObject");
+  }
+
+  /// Of a thing that was recognised as a model: nobody sees which of the models of its form it is.
+  ConceptId ConceptSeenOf(const std::string& model) const {
+    const auto seen = context_.world->RequireModel(model);
+    ConceptId known = ConceptOf(*seen);
+    for (const auto& [name, other] : context_.world->models) {
+      const bool is_kind = !world::SaysUnknownBox(name);
+      if (is_kind && geometry::AreAlike(seen->collisions, other->collisions))
+        known = CommonConcept(known, ConceptOf(*other));
+    }
+    return known;
+  }
+
+  /// The lowest that both are below; of several such the first by name.
+  ConceptId CommonConcept(ConceptId a, ConceptId b) const {
+    ConceptId lowest = ontology_.Require("Thing");
+    for (const ConceptId above : ontology_.Above(a)) {
+      if (ontology_.IsA(b, above) && above != lowest && ontology_.IsA(above, lowest))
+        lowest = above;
+    }
+    return lowest;
   }
 
   /// @return the instance of the pose.
@@ -317,7 +336,6 @@ class Comparison {
   const knowledge::FluentView& said_;
   const ObservedWorld& observed_;
   const ChangeParams& params_;
-  const std::map<std::string, std::string>& concepts_;
   const Body body_;
   std::vector<Fluent> new_things_;
   FluentUpdate update_;
@@ -336,19 +354,18 @@ ChangeParams ReadChangeParams(base::ParamReader in) {
   return params;
 }
 
-std::map<std::string, std::string> ReadConcepts(base::ParamReader in) {
-  std::map<std::string, std::string> concepts;
-  for (const std::string& model : in.Keys()) {
-    concepts[base::ToLower(model)] = in.GetString(model);
+void RefuseConcepts(const base::ParamReader& in) {
+  if (in.Has("concepts")) {
+    in.Fail("concepts",
+            "which is said in the block of that name of the catalogue of objects "
+            "(worlds/objects.yaml); move it there");
   }
-  return concepts;
 }
 
 FluentUpdate ChangesFrom(const TranslatorContext& context, const knowledge::FluentView& said,
-                         const ObservedWorld& observed, const ChangeParams& params,
-                         const std::map<std::string, std::string>& concepts) {
+                         const ObservedWorld& observed, const ChangeParams& params) {
   HIRES_CHECK(context.ontology, "fluents cannot be compared without an ontology");
-  return Comparison(context, said, observed, params, concepts).Make();
+  return Comparison(context, said, observed, params).Make();
 }
 
 }  // namespace hires::translation

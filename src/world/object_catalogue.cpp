@@ -66,6 +66,35 @@ std::string FindModelFile(const std::string& name, const std::string& catalogue_
                                       base::UnknownName("folder", wanted, known)));
 }
 
+constexpr char kConcepts[] = "concepts";  // what the file says besides instances
+
+/// Folder (lower case) -> concept; a catalogue may say none.
+std::map<std::string, std::string> LoadConcepts(const std::string& catalogue_path,
+                                                const std::map<std::string, std::string>& folders) {
+  std::map<std::string, std::string> concepts;
+  base::ParamReader in = base::ParamReader::FromFile(catalogue_path);
+  if (!in.Has(kConcepts)) return concepts;
+  base::ParamReader block = in.Sub(kConcepts);
+  for (const std::string& folder : block.Keys()) {
+    if (folders.count(base::ToLower(folder)) == 0) {
+      std::vector<std::string> known;
+      for (const auto& one : folders) known.push_back(one.second);
+      block.Fail(folder, base::UnknownName("folder", folder, known));
+    }
+    concepts[base::ToLower(folder)] = block.GetString(folder);
+  }
+  return concepts;
+}
+
+/// @param file  the model.sdf of a folder.
+ObjectModel LoadWithConcept(const std::string& file,
+                            const std::map<std::string, std::string>& concepts) {
+  ObjectModel model = LoadObjectModel(file);
+  const auto found = concepts.find(base::ToLower(fs::path(file).parent_path().filename().string()));
+  if (found != concepts.end()) model.concept_name = found->second;
+  return model;
+}
+
 }  // namespace
 
 std::map<std::string, std::string> LoadObjectCatalogue(const std::string& path) {
@@ -73,6 +102,7 @@ std::map<std::string, std::string> LoadObjectCatalogue(const std::string& path) 
   std::map<std::string, std::string> catalogue;
   std::map<std::string, std::string> seen;  // lower case -> as in the file
   for (const std::string& name : in.Keys()) {
+    if (name == kConcepts) continue;
     const std::string folder = in.GetString(name);
     if (!IsPlainName(folder)) in.Fail(name, "wanted the name of a folder in models/");
     const auto [other, is_new] = seen.emplace(base::ToLower(name), name);
@@ -87,9 +117,10 @@ std::map<std::string, std::string> LoadObjectCatalogue(const std::string& path) 
 
 ObjectModel FindObjectModel(const std::string& name_or_path, const std::string& catalogue_path) {
   if (IsPath(name_or_path)) return LoadObjectModel(name_or_path);
-  return LoadObjectModel(FindModelFile(name_or_path, catalogue_path,
-                                       LoadObjectCatalogue(catalogue_path),
-                                       FoldersByLowerName(ModelsBeside(catalogue_path))));
+  const auto folders = FoldersByLowerName(ModelsBeside(catalogue_path));
+  return LoadWithConcept(
+      FindModelFile(name_or_path, catalogue_path, LoadObjectCatalogue(catalogue_path), folders),
+      LoadConcepts(catalogue_path, folders));
 }
 
 std::map<std::string, std::shared_ptr<const ObjectModel>> LoadCatalogueModels(
@@ -97,11 +128,13 @@ std::map<std::string, std::shared_ptr<const ObjectModel>> LoadCatalogueModels(
   const std::map<std::string, std::string> catalogue = LoadObjectCatalogue(catalogue_path);
   const std::map<std::string, std::string> folders =
       FoldersByLowerName(ModelsBeside(catalogue_path));
+  const std::map<std::string, std::string> concepts = LoadConcepts(catalogue_path, folders);
   std::map<std::string, std::shared_ptr<const ObjectModel>> by_file, by_instance;
   for (const auto& [instance, folder] : catalogue) {
     const std::string file = FindModelFile(instance, catalogue_path, catalogue, folders);
     std::shared_ptr<const ObjectModel>& model = by_file[file];
-    if (model == nullptr) model = std::make_shared<const ObjectModel>(LoadObjectModel(file));
+    if (model == nullptr)
+      model = std::make_shared<const ObjectModel>(LoadWithConcept(file, concepts));
     by_instance[instance] = model;
   }
   return by_instance;

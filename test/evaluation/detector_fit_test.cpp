@@ -145,7 +145,6 @@ DetectorFitOrder SmallOrder() {
   order.tables = 4;
   order.held_out = 2;
   order.robot = robot::LoadRobot(kSource + "/config/robots/pr2.yaml");
-  order.objects = kSource + "/worlds/objects.yaml";
   order.recogniser = TheRecogniser();
   return order;
 }
@@ -163,6 +162,32 @@ TEST(DetectorFitTest, AnyNumberOfThreadsFitsTheSameAndItsFileIsRead) {
   EXPECT_EQ(perception::ToYaml(perception::ReadDetectorErrors(path)),
             perception::ToYaml(one->errors));
   EXPECT_THAT(ReportText(*one), HasSubstr("2 other tables:"));
+}
+
+TEST(DetectorFitTest, TheShippedFitIsOfWhatIsShipped) {
+  const std::string hash = FitHashOf(SmallOrder());
+  EXPECT_THAT(base::ReadTextFile(kSource + "/config/detector.yaml", 1u << 20), HasSubstr(hash))
+      << "fit it anew: hires experiment detector --output config/detector.yaml";
+}
+
+TEST(DetectorFitTest, AnyChangeOfWhatAFitDependsOnIsSeenInItsHash) {
+  const DetectorFitOrder order = SmallOrder();
+  const std::string hash = FitHashOf(order);
+  EXPECT_EQ(FitHashOf(SmallOrder()), hash);
+  DetectorFitOrder other = order;
+  other.recogniser.params.min_quality += 0.01;
+  EXPECT_NE(FitHashOf(other), hash) << "of the recogniser's parameters";
+  other = order;
+  other.recogniser.params.segmentation.joining.min_gap += 0.001;
+  EXPECT_NE(FitHashOf(other), hash) << "of the segmentation's";
+  other = order;
+  world::ObjectModel model = *other.recogniser.catalogue.front().model;
+  model.collisions.front().X_BS.translation.z() += 0.001;
+  other.recogniser.catalogue.front().model = std::make_shared<const world::ObjectModel>(model);
+  EXPECT_NE(FitHashOf(other), hash) << "of a model's shape";
+  other = order;
+  other.robot.profile.upper_body->camera_max_range -= 0.1;
+  EXPECT_NE(FitHashOf(other), hash) << "of the robot's profile";
 }
 
 TEST(DetectorFitTest, ItIsCancelled) {

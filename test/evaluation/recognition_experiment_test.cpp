@@ -24,7 +24,6 @@ RecognitionOrder SmallOrder() {
   RecognitionOrder order;
   order.tables = 5;
   order.robot = robot::LoadRobot(kSource + "/config/robots/pr2.yaml");
-  order.objects = kSource + "/worlds/objects.yaml";
   order.recogniser = perception::ReadRecogniserConfig(kSource + "/config/recogniser.yaml");
   return order;
 }
@@ -45,6 +44,23 @@ TEST(RecognitionExperimentTest, AnyNumberOfThreadsGivesTheSameNumbers) {
   EXPECT_GT(things.num_things, 8);
   EXPECT_GT(things.num_named, 5);
   EXPECT_EQ(ToJson(*one).at("parts").at(0).at("found").at("all"), things.num_things);
+}
+
+TEST(RecognitionExperimentTest, OwnLabelsLeftOutKindsAndTheMountAreCountedApart) {
+  RecognitionOrder order = SmallOrder();
+  order.tables = 12;
+  const auto report = TryRecogniser(order, CrewOf(2));
+  ASSERT_TRUE(report);
+  const auto sums = perception::SumsOf(report->score.things());
+  EXPECT_LT(sums.num_own_label, sums.num_named) << "of things that look alike one label is told";
+  EXPECT_LE(sums.num_named, sums.num_known_found);
+  EXPECT_GT(sums.median_error_B, 2.0 * sums.median_error);
+  EXPECT_GE(report->left_out.size(), 6u);
+  for (const auto& thing : report->left_out) {
+    EXPECT_EQ(thing.kind, perception::kUnknownLabel);
+    EXPECT_NE(thing.called, thing.model);
+  }
+  EXPECT_NE(ReportText(*report).find("kinds left out of the catalogue"), std::string::npos);
 }
 
 TEST(RecognitionExperimentTest, OneThatRecognisesNothingMissesItsGoals) {

@@ -86,6 +86,42 @@ TEST(SimRobotCamerasTest, TheCloudIsWhereOpenCvProjectsThingsWithinHalfAPixel) {
             0);
 }
 
+/// Mean of what the plate's points are off in the map, as the robot places them, in x [m].
+double PlateError(SimRobotWorld& world, const SimRobotCameras& cameras) {
+  const SeenCloud seen = cameras.See(world, world.Sense());
+  const geometry::Pose3 X_MO = seen.X_MC * perception::OpticalFrame();
+  double sum = 0.0;
+  int num = 0;
+  for (const Eigen::Vector3f& p_O : seen.cloud.points) {
+    if (!perception::IsMeasured(p_O)) continue;
+    const double x = (X_MO * p_O.cast<double>().eval()).x();
+    if (std::abs(x - 2.0) > 0.2) continue;
+    sum += x - 1.999;  // the plate's face
+    ++num;
+  }
+  return num > 0 ? sum / num : std::nan("");
+}
+
+TEST(SimRobotCamerasTest, ATruthWithABiasShowsThingsOffByItTheSameAtEveryLook) {
+  SimRobotWorld world(PlateSetup(), PlateStart(), 1);
+  Truth truth;
+  truth.sensing = Sensing::kPictures;
+  SimSensorParams quiet;
+  DropNoise(&quiet);
+  EXPECT_NEAR(PlateError(world, CamerasIn(world, SensorsOf(truth, quiet).cameras)), 0.0, 1e-4);
+  truth.recogniser.bias = 0.02;
+  const SimCameraParams biased = SensorsOf(truth, quiet).cameras;
+  double squares = 0.0;
+  constexpr int kSeeds = 40;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const SimRobotCameras cameras = CamerasIn(world, biased, seed);
+    const double error = PlateError(world, cameras);
+    EXPECT_EQ(PlateError(world, cameras), error);
+    squares += error * error / kSeeds;
+  }
+  EXPECT_NEAR(std::sqrt(squares), truth.recogniser.bias, 0.3 * truth.recogniser.bias);
+}
+
 TEST(SimRobotCamerasTest, ThePictureIsWhereOpenCvProjectsThings) {
   const SimRobotWorld world(PlateSetup(), PlateStart(), 1);
   SimRobotCameras cameras = CamerasIn(world, {});

@@ -8,6 +8,28 @@
 namespace hires::evaluation::statistics_test {
 namespace {
 
+TEST(BootstrapIntervalTest, ItHoldsTheMeanAndStaysWithinTheValues) {
+  EXPECT_EQ(BootstrapInterval({}, base::Rng(1)).upper, 0.0);
+  const Interval same = BootstrapInterval({0.5, 0.5, 0.5}, base::Rng(1));
+  EXPECT_EQ(same.lower, 0.5);
+  EXPECT_EQ(same.upper, 0.5);
+  std::vector<double> sure(20, 1.0);
+  sure[0] = 0.4;
+  const Interval high = BootstrapInterval(sure, base::Rng(1));
+  EXPECT_NEAR(high.estimate, 0.97, 1e-12);
+  EXPECT_EQ(high.upper, 1.0) << "the value is left out by a third of the resamples";
+  EXPECT_NEAR(high.lower, 0.91, 1e-9) << "three times 0.4 in 20 draws: 97.5 % have no more";
+}
+
+TEST(BootstrapIntervalTest, OfManyNormalValuesItIsTheNormalOne) {
+  base::Rng rng(2);
+  std::vector<double> values(1000);
+  for (double& value : values) value = rng.Normal(3.0, 2.0);
+  const Interval boot = BootstrapInterval(values, base::Rng(1)), mean = MeanInterval(values);
+  EXPECT_NEAR(boot.lower, mean.lower, 0.01);
+  EXPECT_NEAR(boot.upper, mean.upper, 0.01);
+}
+
 TEST(MeanTest, OfNothingIsZero) {
   EXPECT_EQ(Mean({}), 0.0);
   EXPECT_EQ(Deviation({}), 0.0);

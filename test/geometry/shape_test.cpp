@@ -272,6 +272,29 @@ TEST(OutlineInBandTest, ABandUpsideDownIsTheCallersFault) {
   EXPECT_THROW(OutlineInBand(Sphere{0.5}, {}, 0.2, 0.1), std::logic_error);
 }
 
+TEST(AreAlikeTest, ShapesSizesAndPlacesDecideWithinHalfAMillimetre) {
+  const auto body = [](const Shape& shape, double z = 0.0) {
+    Collision one;
+    one.shape = shape;
+    one.X_BS.translation.z() = z;
+    return std::vector<Collision>{one};
+  };
+  const auto can = body(Cylinder{0.035, 0.3}, 0.15);
+  EXPECT_TRUE(AreAlike(can, body(Cylinder{0.0354, 0.2996}, 0.1504)));
+  EXPECT_FALSE(AreAlike(can, body(Cylinder{0.036, 0.3}, 0.15)));
+  EXPECT_FALSE(AreAlike(can, body(Cylinder{0.035, 0.3}, 0.151)));
+  EXPECT_FALSE(AreAlike(can, body(Box{{0.07, 0.07, 0.3}}, 0.15)));
+  EXPECT_FALSE(AreAlike(can, {}));
+  auto twice = can;
+  twice.push_back(can.front());
+  EXPECT_FALSE(AreAlike(can, twice));
+  TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  const auto one = std::make_shared<const TriangleMesh>(mesh);
+  mesh.vertices[2].y() = 1.01;
+  EXPECT_TRUE(AreAlike(body(one), body(std::make_shared<const TriangleMesh>(*one))));
+  EXPECT_FALSE(AreAlike(body(one), body(std::make_shared<const TriangleMesh>(mesh))));
+}
+
 TEST(CollisionTest, GripsAndDoesNotBounceFromBirth) {
   const Collision collision;
   EXPECT_EQ(collision.friction, 1.0);

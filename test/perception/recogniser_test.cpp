@@ -12,6 +12,7 @@
 #include "hires/perception/random_tables.h"
 #include "hires/perception/recognition_score.h"
 #include "hires/robot/load_robot.h"
+#include "hires/world/world.h"
 #include "perception/recognition/cloud_picture.h"
 #include "perception/recognition/distance_field.h"
 #include "perception/recognition/model_fit.h"
@@ -32,7 +33,8 @@ std::vector<geometry::Collision> Body(const geometry::Shape& shape,
 
 RandomTables Tables() {
   const std::string source = HIRES_SOURCE_DIR;
-  return {robot::LoadRobot(source + "/config/robots/pr2.yaml"), source + "/worlds/objects.yaml"};
+  return {robot::LoadRobot(source + "/config/robots/pr2.yaml"),
+          ReadRecogniserConfig(source + "/config/recogniser.yaml")};
 }
 
 TEST(DistanceFieldTest, DistancesAreThoseOfTheClosedForms) {
@@ -94,6 +96,67 @@ TEST(ShapesOfCatalogueTest, ModelsOfOneGeometryAreOneShape) {
   EXPECT_EQ(first_of.at("fork"), "fork");
 }
 
+TEST(RandomTablesTest, TheTableIsTheRestaurants) {
+  const auto world = world::LoadWorld(HIRES_SOURCE_DIR "/worlds/restaurant.world");
+  const auto table = std::find_if(world.statics.begin(), world.statics.end(),
+                                  [](const auto& body) { return body.name == "table6"; });
+  ASSERT_NE(table, world.statics.end());
+  const auto& box = std::get<geometry::Box>(table->collisions.front().shape);
+  EXPECT_LT((box.size - TableVariety().table).norm(), 1e-9);
+}
+
+TEST(RandomTablesTest, TorsoAndCameraAreThoseOfTheRobotsProfile) {
+  const std::string source = HIRES_SOURCE_DIR;
+  robot::Robot robot = robot::LoadRobot(source + "/config/robots/pr2.yaml");
+  const RecogniserConfig known = ReadRecogniserConfig(source + "/config/recogniser.yaml");
+  const auto farthest = [](const RandomTable& table) {
+    float far = 0.0F;
+    for (const auto& p : table.cloud.points)
+      if (IsMeasured(p)) far = std::max(far, p.z());
+    return far;
+  };
+  std::map<int, double> height_of;
+  std::uint64_t up = 0;
+  for (std::uint64_t seed = 1; height_of.size() < 3; ++seed) {
+    const RandomTable table = RandomTables(robot, known).Make(seed);
+    height_of[table.torso] = table.X_BC.translation.z();
+    if (table.torso == 2) up = seed;
+  }
+  const auto& postures = robot.profile.upper_body->torso_postures;
+  // The head nods by another angle at each table, which moves the camera a little.
+  EXPECT_NEAR(height_of[2] - height_of[0],
+              postures.at("torsoupposture") - postures.at("torsodownposture"), 0.03);
+  EXPECT_NEAR(height_of[1] - height_of[0],
+              postures.at("torsomiddleposture") - postures.at("torsodownposture"), 0.03);
+  const float before = farthest(RandomTables(robot, known).Make(up));
+  robot.profile.upper_body->camera_max_range = 0.9 * before;
+  EXPECT_LE(farthest(RandomTables(robot, known).Make(up)), 0.92 * before);
+  robot.profile.upper_body->torso_postures.erase("torsoupposture");
+  EXPECT_THROW(RandomTables(robot, known), base::ConfigError);
+}
+
+TEST(RandomTablesTest, TheRobotBelievesItsCameraToSitAsFarOffAsIsSaid) {
+  const std::string source = HIRES_SOURCE_DIR;
+  TableVariety exact;
+  exact.mount_angle = exact.mount_position = 0.0;
+  const RandomTable sure =
+      RandomTables(robot::LoadRobot(source + "/config/robots/pr2.yaml"),
+                   ReadRecogniserConfig(source + "/config/recogniser.yaml"), exact)
+          .Make(1);
+  EXPECT_LT((sure.X_BC.translation - sure.X_BCknown.translation).norm(), 1e-12);
+  const RandomTables tables = Tables();
+  double ways = 0.0, turns = 0.0;  // squared, of single axes
+  constexpr int kTables = 30;
+  for (std::uint64_t seed = 1; seed <= kTables; ++seed) {
+    const RandomTable table = tables.Make(seed);
+    const geometry::Pose3 error = table.X_BC.Inverse() * table.X_BCknown;
+    ways += error.translation.squaredNorm() / (3.0 * kTables);
+    turns += std::pow(Eigen::AngleAxisd(error.rotation).angle(), 2) / (3.0 * kTables);
+  }
+  EXPECT_NEAR(std::sqrt(ways), TableVariety().mount_position, 0.0012) << "three sd of 90 draws";
+  EXPECT_NEAR(std::sqrt(turns), TableVariety().mount_angle, 0.0012);
+}
+
 TEST(CloudPictureTest, ThePixelsOfAnOrganisedCloudAreItsOwn) {
   const RandomTable table = Tables().Make(1);
   const CloudPicture picture = PictureOf(table.cloud).value();
@@ -120,10 +183,12 @@ class RecogniserTest : public testing::Test {
 
 // RecogniserParams and the steps of the fit were chosen on the scenes 1000 to 1239.
 TEST_F(RecogniserTest, RandomTablesAreSeenAsTheyAre) {
+  const robot::Robot robot = robot::LoadRobot(HIRES_SOURCE_DIR "/config/robots/pr2.yaml");
+  const auto recogniser = std::make_shared<const Recogniser>(tables_.catalogue());
   RecognitionScore score(tables_.catalogue());
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const RandomTable table = tables_.Make(seed);
-    score.Add(table, Recognise(table.cloud, table.stand));
+    score.Add(table, LookAtTable(recogniser, table, robot, base::Rng(1)));
   }
   RecordProperty("score", Text(score));
   const RecognitionSums sums = SumsOf(score.things());
@@ -133,6 +198,20 @@ TEST_F(RecogniserTest, RandomTablesAreSeenAsTheyAre) {
   EXPECT_GE(sums.num_unknown_so_called, 0.95 * sums.num_unknown) << Text(score);
   EXPECT_LT(sums.median_error, 0.005) << Text(score);
   EXPECT_LE(score.num_surplus(), 0.02 * score.num_detections()) << Text(score);
+}
+
+TEST_F(RecogniserTest, ACategoryIsSaidWhereAllModelsOfAShapeHaveIt) {
+  std::map<std::string, std::string> category_of;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const RandomTable table = tables_.Make(seed);
+    for (const Detection& seen : Recognise(table.cloud, table.stand).detections)
+      category_of[seen.label] = seen.category;
+  }
+  EXPECT_EQ(category_of.at("coffee_cup"), "Mug") << "hot or not";
+  EXPECT_EQ(category_of.at("peppermill_repository"), "Peppermill");
+  EXPECT_EQ(category_of.at("peppermill_appendix"), "") << "a vase looks so";
+  EXPECT_EQ(category_of.at("knife"), "") << "a spoon looks so";
+  EXPECT_EQ(category_of.at("fork"), "Fork");
 }
 
 TEST_F(RecogniserTest, ModelsOfOneShapeShareTheirConfidence) {

@@ -20,9 +20,6 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-const std::map<std::string, std::string> kConcepts = {{"coffee_cup", "Mug"},
-                                                      {"peppermill_thesis", "Peppermill"}};
-
 /// A Blackboard that believes every word.
 class ObservedFluentsTest : public testing::Test {
  protected:
@@ -34,7 +31,7 @@ class ObservedFluentsTest : public testing::Test {
   }
 
   FluentUpdate Changes() const {
-    return ChangesFrom(RestaurantContext(), knowledge::LiveView(store_), observed_, {}, kConcepts);
+    return ChangesFrom(RestaurantContext(), knowledge::LiveView(store_), observed_);
   }
 
   /// Says what is new; what remains to be said after that must be nothing.
@@ -105,6 +102,33 @@ TEST_F(ObservedFluentsTest, AThingOfUnknownKindIsToldWithItsBoxAndReadBack) {
   const TranslatorContext known = WithKnowledge(RestaurantContext(), view);
   EXPECT_EQ(known.ModelOf("unknown1"), "unknown_0.120x0.080x0.200");
   EXPECT_EQ(known.FindModel("unknown2"), "") << "what is unknown is like nothing else";
+}
+
+TEST_F(ObservedFluentsTest, ANewThingIsNoMoreThanAllModelsOfItsFormAre) {
+  See("mug7", 7.48, 11.28, 0.73, "coffee_cup");
+  See("mill7", 7.48, 11.08, 0.73, "peppermill_repository");
+  See("mill8", 7.48, 10.88, 0.73, "peppermill_appendix");
+  See("knife7", 7.28, 11.08, 0.73, "knife");
+  See("fork7", 7.28, 10.88, 0.73, "fork");
+  See("block7", 7.28, 11.28, 0.73, "block");
+  Tell();
+  const knowledge::LiveView view(store_);
+  EXPECT_EQ(view.Find("mug7")->concept_name, "Mug") << "hot ones look so, and are mugs";
+  EXPECT_EQ(view.Find("mill7")->concept_name, "Peppermill") << "as the one of the thesis";
+  EXPECT_EQ(view.Find("mill8")->concept_name, "Kitchenware") << "the vase looks so";
+  EXPECT_EQ(view.Find("knife7")->concept_name, "Kitchenware") << "the spoon looks so";
+  EXPECT_EQ(view.Find("fork7")->concept_name, "Fork");
+  EXPECT_EQ(view.Find("block7")->concept_name, "TabletopObject") << "no concept of the ontology";
+}
+
+TEST(ConceptsTest, ABlockOfConceptsIsRefusedWithItsNewHome) {
+  const auto in = base::ParamReader::FromString("concepts: {coffee_cup: Mug}", "tracker.yaml");
+  try {
+    RefuseConcepts(in);
+    FAIL() << "was taken";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("worlds/objects.yaml"));
+  }
 }
 
 TEST_F(ObservedFluentsTest, ABoxThatIsMeasuredAnewIsToldAnew) {

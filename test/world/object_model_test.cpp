@@ -227,6 +227,17 @@ TEST_F(CatalogueTest, NamesFoldersAndPathsLeadToTheSameModel) {
   }
 }
 
+TEST_F(CatalogueTest, ModelsKnowTheConceptThatStandsForTheirFolder) {
+  EXPECT_EQ(FindObjectModel("mug1", path_).concept_name, "") << "the file names none";
+  Catalogue("mug1: coffee_cup\nconcepts: {Coffee_Cup: Mug}\n");
+  EXPECT_EQ(LoadObjectCatalogue(path_).size(), 1u) << "the block is no instance";
+  EXPECT_EQ(FindObjectModel("mug1", path_).concept_name, "Mug");
+  EXPECT_EQ(LoadCatalogueModels(path_).at("mug1")->concept_name, "Mug");
+  Catalogue("mug1: coffee_cup\nconcepts: {coffee_mug: Mug}\n");
+  EXPECT_THAT(MessageOf<base::ConfigError>([&] { LoadCatalogueModels(path_); }),
+              AllOf(HasSubstr("coffee_mug"), HasSubstr("'coffee_cup'")));
+}
+
 TEST_F(CatalogueTest, UnknownNamesGetTheNearestOnes) {
   const auto error_of = [&](const std::string& name) {
     return MessageOf<base::ConfigError>([&] { FindObjectModel(name, path_); });

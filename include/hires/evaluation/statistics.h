@@ -21,6 +21,10 @@ struct Interval {
 /// deviation. Without differences everything is 0; a single one has an unbounded interval.
 Interval MeanInterval(const std::vector<double>& differences);
 
+/// Mean with the 2.5 % and 97.5 % percentiles of the means of 10 000 resamples [Efron 1979, Ann.
+/// Stat. 7:1-26]: never beyond the values. Without values everything is 0.
+Interval BootstrapInterval(const std::vector<double>& values, base::Rng rng);
+
 /// Exact interval of a share [Clopper, Pearson 1934, Biometrika 26:404-413].
 /// @pre 0 <= num_hits <= num_all.  @throws std::logic_error if broken. (0 of 0 gives 0 .. 1.)
 Interval ShareInterval(int num_hits, int num_all);

@@ -47,7 +47,8 @@ enum class Sensing {
   kPictures  ///< they err as drawn, and objects are recognised in the camera's clouds
 };
 
-/// What a recogniser does wrong beside its noise.
+/// What a recogniser does wrong beside its noise. With `pictures` the recogniser is real and misses
+/// what it misses; `bias` and `bias_yaw` are how the camera sits otherwise than the robot believes.
 struct Recogniser {
   double bias{0.0};      ///< [m] sd, along x and y of each object, the same at every look
   double bias_yaw{0.0};  ///< [rad] likewise

@@ -54,6 +54,10 @@ Aabb BoundsOf(const Shape& shape, const Pose3& X_WS);
 int TurnSymmetry(const std::vector<Collision>& collisions_B);
 inline constexpr int kRound = 1 << 20;
 
+/// Whether two bodies are made of the same shapes in the same places, one by one, within 0.5 mm; of
+/// one form that is made in two ways it says no.
+bool AreAlike(const std::vector<Collision>& a, const std::vector<Collision>& b);
+
 /// Convex outline, seen from above, of the part of the shape within z_min..z_max of frame W;
 /// nothing if no part lies there. Round shapes become polygons of 24 corners around them
 /// (circumscribed). A mesh gives the hull of its surface's part in the band.

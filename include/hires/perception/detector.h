@@ -38,7 +38,7 @@ struct Detection {
   std::string label;                    ///< kind: a key of World::models
   geometry::Pose3 X_CO;  ///< in the camera's frame: the localisation error is not the detector's
   double visible_share{0.0};
-  std::string category{};
+  std::string category{};  ///< concept of the ontology; empty: models that look so differ in it
   double confidence{1.0};                         ///< 0 .. 1
   std::vector<LabelConfidence> alternatives{};    ///< what else it may be
   Eigen::Vector3d size{Eigen::Vector3d::Zero()};  ///< [m] of the box around it; 0: not told

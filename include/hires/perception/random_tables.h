@@ -8,7 +8,8 @@
 #include "hires/perception/detector_errors.h"
 #include "hires/perception/pinhole_camera.h"
 #include "hires/perception/point_cloud.h"
-#include "hires/perception/recogniser.h"
+#include "hires/perception/recogniser_config.h"
+#include "hires/perception/tabletop_recogniser.h"
 #include "hires/robot/robot_profile.h"
 
 namespace hires::perception {
@@ -28,11 +29,17 @@ struct TableVariety {
   double farthest{1.4};     ///< [m] of the robot's base from the table's middle; nearest: 0.8
   double most_hidden{0.6};  ///< of the surface of each thing towards the camera
   double gap{0.02};         ///< [m] between things, at least
+  Eigen::Vector3d table{1.6, 0.8, 0.71};  ///< [m] long, wide, high: the restaurant's table_160x80
+  /// How wrong the robot is about where its camera sits: sd of each axis [rad], [m]; assumed.
+  double mount_angle{0.005}, mount_position{0.005};
 };
 
 struct RandomTable {
   PointCloud cloud{};
-  CameraStand stand{};
+  CameraStand stand{};                         ///< as the robot believes it
+  geometry::Pose3 X_BC{};                      ///< cloud in the robot's base, as it is
+  geometry::Pose3 X_BCknown{};                 ///< ... and as the robot believes it
+  std::vector<geometry::Collision> robot_B{};  ///< as ShapesOf
   std::vector<TableThing> things{};
   std::vector<int> owner{};  ///< of each pixel, index of `things`; -1: something else
   double distance{0.0};      ///< [m] from the camera to the table's middle
@@ -44,19 +51,24 @@ struct RandomTable {
 /// cylinders unlike all of it. Noise is that of DepthSensorParams.
 class RandomTables {
  public:
-  /// @param robot    one with an upper body.
-  /// @param objects  path of a catalogue of objects; kinds larger than 0.6 m are left out.
-  RandomTables(robot::Robot robot, const std::string& objects, const TableVariety& variety = {});
+  /// @param robot  one with an upper body, whose profile says the camera and three or more torso
+  ///               postures: torsodownposture, torsomiddleposture, torsoupposture.
+  /// @param known  what stands there: its catalogue without what is too large for it.
+  RandomTables(robot::Robot robot, const RecogniserConfig& known, const TableVariety& variety = {});
   ~RandomTables();
 
   /// The scene of a seed is always the same; each look at it has noise of its own.
   RandomTable Make(std::uint64_t seed, int look = 0) const;
-  const std::vector<KnownModel>& catalogue() const { return catalogue_; }
+  const std::vector<KnownModel>& catalogue() const;
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
-  std::vector<KnownModel> catalogue_;
 };
+
+/// As the robot does it: its own shapes are cut out, and of the camera it knows what it believes.
+/// @return in the cloud's frame; without table and detections where no table is seen.
+TabletopView LookAtTable(std::shared_ptr<const Recogniser> recogniser, const RandomTable& table,
+                         const robot::Robot& robot, const base::Rng& rng);
 
 }  // namespace hires::perception

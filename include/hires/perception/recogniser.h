@@ -16,7 +16,7 @@ namespace hires::perception {
 /// A kind of thing that a recogniser knows.
 struct KnownModel {
   std::string label;
-  std::string category;  ///< concept of the ontology
+  std::string category;  ///< concept of the ontology; empty: none is known
   std::shared_ptr<const world::ObjectModel> model;
 };
 
@@ -26,6 +26,9 @@ struct RecogniserParams {
   double sharpness{60.0};   ///< by what power a better quality speaks for a kind
   double max_extent{0.6};   ///< [m] larger models are no things on tables
 };
+
+/// Those whose box has no edge longer than that [m]: what a recogniser compares things with.
+std::vector<KnownModel> NoLargerThan(double max_extent, const std::vector<KnownModel>& catalogue);
 
 struct Recognition {
   Segmentation segmentation{};

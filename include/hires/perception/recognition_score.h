@@ -10,17 +10,20 @@ namespace hires::perception {
 
 /// What became of a thing that stood on a table.
 struct ThingVerdict {
+  std::string model{};   ///< its own label
   std::string kind{};    ///< the first label of its geometry; unknown, if it is
   double distance{0.0};  ///< [m] from the camera to its foot
   int torso{0};          ///< as RandomTable
   ThingInView view{};
   int num_points{0};
   std::string called{};    ///< likewise; empty: not found
+  std::string label{};     ///< by what label, of those that look so
   bool is_merged{false};   ///< ... because it was taken for a part of another thing
   double confidence{0.0};  ///< in what it is called
   double doubt{0.0};       ///< confidence in what it is, where it is called otherwise
   Eigen::Vector3d offset{Eigen::Vector3d::Zero()};  ///< [m] of its pose, along SightFrame's columns
   double error{0.0};                  ///< [m] of its pose, of one that is called rightly and known
+  double error_B{0.0};                ///< [m] likewise in the robot's base, with its camera's mount
   std::optional<double> turned_by{};  ///< [rad] likewise; nothing: it looks the same all around
 
   bool is_known() const { return kind != kUnknownLabel; }
@@ -35,7 +38,8 @@ class RecognitionScore {
  public:
   explicit RecognitionScore(const std::vector<KnownModel>& catalogue, int min_points = 400);
 
-  void Add(const RandomTable& table, const Recognition& seen);
+  /// @param seen  as LookAtTable gives it.
+  void Add(const RandomTable& table, const TabletopView& seen);
   /// What another one has, behind what this one has.
   void Append(const RecognitionScore& other);
 
@@ -65,10 +69,13 @@ class RecognitionScore {
 /// Sums of verdicts.
 struct RecognitionSums {
   int num_things{0}, num_found{0};
-  int num_known{0}, num_named{0};  ///< of those found; rightly
-  int num_unknown{0}, num_unknown_so_called{0};
-  double median_error{0.0}, largest_error{0.0};  ///< [m] of what is named rightly; 95th percentile
-  double median_turn{0.0};                       ///< [rad] of what does not look the same all round
+  int num_known{0}, num_known_found{0};
+  int num_named{0};      ///< rightly, up to equal geometry
+  int num_own_label{0};  ///< ... by their own label
+  int num_unknown{0}, num_unknown_found{0}, num_unknown_so_called{0};
+  double median_error{0.0}, error_95{0.0};  ///< [m] of what is named rightly, by the sensor alone
+  double median_error_B{0.0}, error_B_95{0.0};  ///< [m] ... with the error of the camera's mount
+  double median_turn{0.0};                      ///< [rad] of what does not look the same all round
 };
 RecognitionSums SumsOf(const std::vector<ThingVerdict>& things);
 

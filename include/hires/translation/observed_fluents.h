@@ -29,8 +29,9 @@ struct ChangeParams {
 
 /// The block `changes` of config/world_tracker.yaml.  @throws base::ConfigError naming the key.
 ChangeParams ReadChangeParams(base::ParamReader in);
-/// The block `concepts` likewise: model in lower case -> concept.
-std::map<std::string, std::string> ReadConcepts(base::ParamReader in);
+/// Models' concepts stand in the catalogue of objects alone.
+/// @throws base::ConfigError for a file that still has a block `concepts`.
+void RefuseConcepts(const base::ParamReader& in);
 
 /// What the Blackboard must be told; empty lists: nothing new.
 struct FluentUpdate {
@@ -44,17 +45,16 @@ struct FluentUpdate {
 /// The smallest change that makes the Blackboard say what was observed, as docs/ontology.md has it:
 /// RobotAt, postures, Holding, On; Pose of the robot and of objects (in the frame of the palm of
 /// what is held, in the base's of what stands on the tray, so that driving does not change them);
-/// BoundingBox of objects; and the object itself where it is new, of the concept that `concepts`
-/// names for its model, else that of the model's name (wine_glass is a WineGlass), else
-/// TabletopObject; HasTemperature of objects that are known. A vanished object has neither place
-/// nor pose any more.
-/// @param said      what the Blackboard says now.
-/// @param concepts  model -> concept.
+/// BoundingBox of objects; and the object itself where it is new, of the concept that the
+/// catalogue names for its model (world::ObjectModel), else that of the model's name (wine_glass is
+/// a WineGlass), else TabletopObject; where models of other concepts have the same form, the lowest
+/// concept above them all, as nobody sees which of them it is; HasTemperature of objects that are
+/// known. A vanished object has neither place nor pose any more.
+/// @param said  what the Blackboard says now.
 /// @pre the context has an ontology.
 /// @throws base::ConfigError for an object that the ontology or the world does not know, a pose or
 /// joint that is no number.
 FluentUpdate ChangesFrom(const TranslatorContext& context, const knowledge::FluentView& said,
-                         const ObservedWorld& observed, const ChangeParams& params = {},
-                         const std::map<std::string, std::string>& concepts = {});
+                         const ObservedWorld& observed, const ChangeParams& params = {});
 
 }  // namespace hires::translation

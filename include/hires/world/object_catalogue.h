@@ -9,14 +9,17 @@
 namespace hires::world {
 
 /// Reads which model folder each instance name stands for ("peppermill1: peppermill_thesis").
-/// Keys are as in the file; they compare without regard to case.
+/// Keys are as in the file; they compare without regard to case. The key `concepts` is no instance:
+/// its block says which concept of the ontology a model folder is ("peppermill_thesis:
+/// Peppermill"); models read by the functions below know it.
 /// @throws base::ConfigError: no map of text to text, two names that differ in case only, a value
 /// that is no plain folder name.
 std::map<std::string, std::string> LoadObjectCatalogue(const std::string& path);
 
 /// The model of each instance of the catalogue. A model that several instances name is read once
 /// and shared.
-/// @throws base::ConfigError as LoadObjectCatalogue and FindObjectModel.
+/// @throws base::ConfigError as LoadObjectCatalogue and FindObjectModel; for a concept of a folder
+/// that is not there.
 std::map<std::string, std::shared_ptr<const ObjectModel>> LoadCatalogueModels(
     const std::string& catalogue_path);
 

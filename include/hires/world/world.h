@@ -20,6 +20,7 @@ struct ObjectModel {
   std::string name;
   geometry::MassProperties mass_properties;
   std::vector<geometry::Collision> collisions;
+  std::string concept_name{};  ///< of the ontology, as the catalogue says; empty: it says none
 };
 
 /// A body that never moves: wall, table, chair.

@@ -59,15 +59,15 @@ int RunDetectorFitVerb(const DetectorFitOptions& options, const std::string& pac
   order.seed = options.seed;
   const auto scene = imagination::ReadSetupConfig(package_folder + "/config/scene.yaml");
   order.robot = robot::LoadAnyRobot(scene.robot);
-  order.objects = options.objects.empty() ? scene.objects : options.objects;
+  const std::string objects = options.objects.empty() ? scene.objects : options.objects;
   const std::string config =
       options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config;
-  order.recogniser = perception::ReadRecogniserConfig(config, order.objects);
+  order.recogniser = perception::ReadRecogniserConfig(config, objects);
   const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   auto report = evaluation::FitDetector(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
-  report->objects = NameAndHash(order.objects);
+  report->objects = NameAndHash(objects);
   report->recogniser = NameAndHash(config);
   std::cout << evaluation::ReportText(*report);
   if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);

@@ -38,10 +38,9 @@ int RunRecognitionVerb(const RecognitionOptions& options, const std::string& pac
   order.seed = options.seed;
   const auto scene = imagination::ReadSetupConfig(package_folder + "/config/scene.yaml");
   order.robot = robot::LoadAnyRobot(scene.robot);
-  order.objects = options.objects.empty() ? scene.objects : options.objects;
   order.recogniser = perception::ReadRecogniserConfig(
       options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config,
-      order.objects);
+      options.objects.empty() ? scene.objects : options.objects);
   const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   const auto report = evaluation::TryRecogniser(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";

@@ -120,9 +120,12 @@ std::string ToYaml(const DetectorFitReport& report) {
   return fmt::format(
              "# How the head camera's recogniser errs. Written by `hires experiment detector`, not "
              "by hand.\n"
-             "# {},\n# {}.\n# {}.\n# {} other tables:\n{}"
+             "# {},\n# {}.\n"
+             "# Models, robot, parameters, sensor: {}; another one means that it is out of date.\n"
+             "# {}.\n# {} other tables:\n{}"
              "# Regressors: docs/sources_perception.md.\n",
-             report.objects, report.recogniser, SourceText(report), report.held_out, checks) +
+             report.objects, report.recogniser, report.hash, SourceText(report), report.held_out,
+             checks) +
          perception::ToYaml(report.errors);
 }
 

@@ -13,14 +13,13 @@ using perception::RecognitionScore;
 using perception::ThingVerdict;
 using Look = const ThingVerdict&;
 
-constexpr perception::TableVariety kVariety{2.6, 0.7, 0.0};
-
 /// @return by table.
 std::optional<std::vector<std::vector<TwoLooks>>> LookTwice(const DetectorFitOrder& order,
                                                             const Crew& crew) {
   const int num_tables = order.tables + order.held_out;
-  const perception::RandomTables tables(order.robot, order.objects, kVariety);
-  const perception::Recogniser recogniser(order.recogniser.catalogue, order.recogniser.params);
+  const perception::RandomTables tables(order.robot, order.recogniser, FitVariety());
+  const auto recogniser = std::make_shared<const perception::Recogniser>(order.recogniser.catalogue,
+                                                                         order.recogniser.params);
   std::vector<std::vector<TwoLooks>> seen(num_tables);
   const auto work = [&](int task, const Advance& advance) {
     const std::uint64_t own = order.seed + static_cast<std::uint64_t>(task);
@@ -29,7 +28,7 @@ std::optional<std::vector<std::vector<TwoLooks>>> LookTwice(const DetectorFitOrd
     for (int look = 0; look < 2; ++look) {
       const perception::RandomTable table = tables.Make(own, look);
       const base::Rng rng = base::Rng(own).Fork(static_cast<std::uint64_t>(look));
-      scores[look].Add(table, recogniser.Recognise(table.cloud, table.stand, rng));
+      scores[look].Add(table, perception::LookAtTable(recogniser, table, order.robot, rng));
     }
     for (std::size_t i = 0; i < scores[0].things().size(); ++i)
       seen[task].push_back({scores[0].things()[i], scores[1].things()[i]});
@@ -108,6 +107,15 @@ double GainOf(const FitCases& cases, const FitCases& fitted_on, const perception
 
 }  // namespace
 
+/// Farther away, more hidden and nearer to each other than those of the recognition experiment.
+perception::TableVariety FitVariety() {
+  perception::TableVariety variety;
+  variety.farthest = 2.6;
+  variety.most_hidden = 0.7;
+  variety.gap = 0.0;
+  return variety;
+}
+
 std::optional<DetectorFitReport> FitDetector(const DetectorFitOrder& order, const Crew& crew) {
   const auto seen = LookTwice(order, crew);
   if (!seen) return std::nullopt;
@@ -121,6 +129,7 @@ std::optional<DetectorFitReport> FitDetector(const DetectorFitOrder& order, cons
   report.tables = order.tables;
   report.held_out = order.held_out;
   report.seed = order.seed;
+  report.hash = FitHashOf(order);
   report.errors = FitDetector(all, kinds);
   for (const TwoLooks& thing : all) {
     for (const ThingVerdict* look : {&thing.first, &thing.second}) {

@@ -9,6 +9,7 @@
 #include "hires/geometry/angles.h"
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
+#include "hires/perception/recognition_score.h"
 #include "hires/perception/tabletop_recogniser.h"
 #include "hires/skills/base_place.h"
 #include "hires/skills/grasp_quality.h"
@@ -25,7 +26,6 @@ using robot::JointPositions;
 constexpr const char* kTorsos[] = {"torsodownposture", "torsomiddleposture", "torsoupposture"};
 constexpr const char* kArms = "armtosideposture";
 constexpr double kAround = 0.05;  // [m] of the area's middle that things stand, each way
-constexpr double kLargest = 0.6;  // [m] of a thing that is one on a table
 
 template <typename Map>
 const typename Map::mapped_type& Find(const Map& map, const std::string& key, const char* what) {
@@ -53,7 +53,7 @@ class PoseStage {
   const TorsoPosesOrder& order_;
   const robot::Robot& robot_;
   Pose3 X_MStand_, X_MArea_;
-  std::vector<const perception::KnownModel*> kinds_;
+  std::vector<perception::KnownModel> kinds_;
   std::shared_ptr<const perception::Recogniser> recogniser_;
 };
 
@@ -68,17 +68,17 @@ PoseStage::PoseStage(const TorsoPosesOrder& order)
     throw base::ConfigError("torso_poses: robot '" + robot_.model.name +
                             "' has no arms and no camera (upper_body in its profile)");
   }
-  for (const perception::KnownModel& known : order.recogniser.catalogue) {
-    geometry::Aabb bounds;
-    for (const geometry::Collision& one : known.model->collisions)
-      bounds.Include(geometry::BoundsOf(one.shape, one.X_BS));
-    if ((bounds.upper - bounds.lower).maxCoeff() < kLargest) kinds_.push_back(&known);
+  // One of each form: others of it would be the same thing again.
+  const perception::RecognitionScore kinds(order.recogniser.catalogue);
+  for (const perception::KnownModel& known :
+       perception::NoLargerThan(order.recogniser.params.max_extent, order.recogniser.catalogue)) {
+    if (kinds.LabelsLike(known.label).front() == known.label) kinds_.push_back(known);
   }
 }
 
 std::vector<std::string> PoseStage::KindNames() const {
   std::vector<std::string> names;
-  for (const perception::KnownModel* kind : kinds_) names.push_back(kind->label);
+  for (const perception::KnownModel& kind : kinds_) names.push_back(kind.label);
   return names;
 }
 
@@ -102,17 +102,18 @@ world::ObjectState PoseStage::Put(int kind, int look) const {
                 .Fork(static_cast<std::uint64_t>(look));
   world::ObjectState object;
   object.name = "thing";
-  object.model = kinds_[kind]->model->name;
+  object.model = kinds_[kind].model->name;
   const double x = rng.Uniform(-kAround, kAround), y = rng.Uniform(-kAround, kAround);
   object.X_MO = X_MArea_ * geometry::Lift(Pose2{x, y, rng.Uniform(-geometry::kPi, geometry::kPi)});
   return object;
 }
 
-/// Through the head's camera, turned to the thing; the robot's own arms may be in the way.
+/// Through the head's camera, turned to the area's middle, as one who does not know yet where on it
+/// things stand; the robot's own arms may be in the way.
 void PoseStage::Recognise(robot::Observation robot, const world::ObjectState& object,
                           const Rng& rng, PoseTrial* trial) const {
   const robot::UpperBodyProfile& body = *robot_.profile.upper_body;
-  const auto head = skills::AimHead(robot_, robot.X_MB, robot.joints, object.X_MO.translation);
+  const auto head = skills::AimHead(robot_, robot.X_MB, robot.joints, X_MArea_.translation);
   if (!head) return;  // it cannot be looked at from here
   robot.joints[body.head_pan_joint] = head->at(0);
   robot.joints[body.head_tilt_joint] = head->at(1);

@@ -19,7 +19,7 @@ double Quality(const PoseTrial& trial) { return trial.grasp.value_or(0.0); }
 
 using Pose = std::pair<int, int>;  // torso, base
 
-/// Each thing counts once: the mean over its looks.
+/// Each form counts once: the mean over its looks.
 std::vector<double> ByKind(const TorsoPosesReport& report, const std::vector<Pose>& poses,
                            const Indicator& measure) {
   std::vector<double> means;
@@ -46,7 +46,7 @@ std::string IntervalText(const Interval& value) {
 }
 
 Interval IntervalOf(const TorsoPosesReport& report, int torso, int base, const Indicator& measure) {
-  return MeanInterval(ByKind(report, PosesOf(report, torso, base), measure));
+  return BootstrapInterval(ByKind(report, PosesOf(report, torso, base), measure), base::Rng(1));
 }
 
 /// Of a measure at some poses less at others, thing by thing.
@@ -55,7 +55,7 @@ Interval DifferenceOf(const TorsoPosesReport& report, const std::vector<Pose>& f
   std::vector<double> one = ByKind(report, first, measure);
   const std::vector<double> other = ByKind(report, second, measure);
   for (std::size_t i = 0; i < one.size(); ++i) one[i] -= other[i];
-  return MeanInterval(one);
+  return BootstrapInterval(one, base::Rng(1));
 }
 
 int NumGrasps(const TorsoPosesReport& report, const std::vector<Pose>& poses) {
@@ -99,8 +99,8 @@ std::string ReportText(const TorsoPosesReport& report) {
                     fmt::format("{:.0f}", 100.0 * NumGrasps(report, {{torso, base}}) / trials)});
   }
   std::string text = fmt::format(
-      "{} kinds of things, {} looks at each from each pose; simulated; means over kinds with 95 % "
-      "intervals [Student]\n\n{}\n",
+      "{} forms of things, {} looks at each from each pose; simulated; means over forms with 95 % "
+      "intervals [bootstrap, percentiles]\n\n{}\n",
       report.kinds.size(), report.looks, FormatTable(rows));
   std::vector<std::vector<std::string>> kinds{{"thing"}};
   for (const std::string& torso : report.torsos) kinds[0].push_back("recognition " + torso);

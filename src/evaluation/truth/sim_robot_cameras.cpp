@@ -20,7 +20,7 @@ using perception::PaintedBody;
 using perception::PinholeCamera;
 
 constexpr double kHeatRange = 100.0;  // [m] of the thermal camera
-constexpr std::uint64_t kDepthStream = 0, kHeatStream = 1;
+constexpr std::uint64_t kDepthStream = 0, kHeatStream = 1, kMountStream = 2;
 constexpr Colour kRobot{112, 136, 172};
 constexpr Colour kOfThings[] = {{200, 48, 40},   {40, 110, 190},  {70, 160, 70},  {230, 170, 40},
                                 {140, 70, 160},  {240, 240, 235}, {30, 150, 150}, {120, 80, 50},
@@ -72,6 +72,19 @@ std::vector<PaintedBody> MovingIn(const SimRobotWorld& world) {
   return bodies;
 }
 
+/// @return the eye in the camera's frame.
+geometry::Pose3 DrawMount(const SimCameraParams& params, base::Rng rng) {
+  if (params.mount_bias <= 0.0 && params.mount_bias_yaw <= 0.0) return {};
+  const Eigen::Vector3d pivot(1.2, 0.0, 0.0);  // [m]
+  const auto draw = [&] { return rng.Normal(0.0, params.mount_bias); };
+  const double x = draw(), y = draw(), z = draw();
+  const double yaw = rng.Normal(0.0, params.mount_bias_yaw);
+  geometry::Pose3 X_CE;
+  X_CE.rotation = geometry::RotationFromRpy(0.0, 0.0, yaw);
+  X_CE.translation = Eigen::Vector3d(x, y, z) + pivot - X_CE.rotation * pivot;
+  return X_CE;
+}
+
 }  // namespace
 
 SimCameraParams ReadSimCameraParams(ParamReader* in) {
@@ -90,6 +103,7 @@ SimRobotCameras::SimRobotCameras(const SimCameraParams& params, const base::Rng&
       heat_camera_(
           perception::CameraOf(params.heat_width, params.heat_height, params.heat_field_of_view)) {
   if (!has_depth_camera()) return;
+  X_CE_ = DrawMount(params, rng.Fork(kMountStream));
   depth_camera_ = perception::CameraOf(params.depth_width, params.depth_height,
                                        scene_->robot.profile.upper_body->camera_width);
 }
@@ -112,11 +126,15 @@ perception::LineOfSight SimRobotCameras::Sight(const SimRobotWorld& world) const
   return {scene_->surroundings, world.simulator().GetWorldState().objects, RobotIn(world)};
 }
 
+geometry::Pose3 SimRobotCameras::TrueEye(const SimRobotWorld& world) const {
+  return world.simulator().X_MLink(scene_->robot.profile.upper_body->camera_link) * X_CE_;
+}
+
 perception::PointCloud SimRobotCameras::Cloud(const SimRobotWorld& world) const {
   HIRES_CHECK(has_depth_camera(), "the robot has no depth camera");
   const robot::UpperBodyProfile& body = *scene_->robot.profile.upper_body;
   PinholeCamera camera = depth_camera_;
-  camera.X_MC = world.simulator().X_MLink(body.camera_link);
+  camera.X_MC = TrueEye(world);
   perception::DepthSensorParams sensor = params_.depth;
   sensor.min_range = body.camera_min_range;
   sensor.max_range = body.camera_max_range;
@@ -142,7 +160,7 @@ perception::Picture SimRobotCameras::Colours(const SimRobotWorld& world) {
     paint_ = std::make_unique<perception::PictureScene>(std::move(fixed), movable);
   }
   PinholeCamera camera = depth_camera_;
-  camera.X_MC = world.simulator().X_MLink(scene_->robot.profile.upper_body->camera_link);
+  camera.X_MC = TrueEye(world);
   return paint_->Draw(camera, MovingIn(world));
 }
 

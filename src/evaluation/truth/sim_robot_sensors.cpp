@@ -63,6 +63,8 @@ SimSensorParams SensorsOf(const Truth& truth, SimSensorParams params) {
   params.sees_pictures = truth.sensing == Sensing::kPictures;
   if (truth.sensing == Sensing::kIdeal) DropNoise(&params);
   params.recogniser = truth.recogniser;
+  params.cameras.mount_bias = truth.recogniser.bias;
+  params.cameras.mount_bias_yaw = truth.recogniser.bias_yaw;
   return params;
 }
 

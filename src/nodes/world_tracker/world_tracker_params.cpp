@@ -13,7 +13,7 @@ WorldTrackerParams ReadWorldTrackerParams(const std::string& path) {
   ReadTranslatorFiles(path, &in, &params.files);
   params.sensing = hires::imagination::ReadSetupConfig(params.files.scene).sensing;
   params.changes = hires::translation::ReadChangeParams(in.Sub("changes"));
-  params.concepts = hires::translation::ReadConcepts(in.Sub("concepts"));
+  hires::translation::RefuseConcepts(in);
   params.sweep = hires::control::ReadSweepParams(in.Sub("sweep"));
   params.floor = hires::sensing::ReadFloorWatchParams(in.Sub("floor"));
   params.write_period = in.Get("write_period", Between(0.0, 10.0));

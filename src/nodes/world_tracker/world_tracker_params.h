@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -18,8 +17,6 @@ struct WorldTrackerParams {
   std::vector<std::string> action_libraries;  ///< with more actions: which of them use the head
   hires::sensing::SensingParams sensing;      ///< of the scene
   hires::translation::ChangeParams changes;
-  std::map<std::string, std::string>
-      concepts;  ///< model -> concept, for objects that are not in the Blackboard
   hires::control::SweepParams sweep;
   hires::sensing::FloorWatchParams floor;
   double write_period{0.05};  ///< [s] between writes to the Blackboard

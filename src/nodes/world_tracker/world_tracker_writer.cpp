@@ -98,8 +98,7 @@ ObservationWriter::Written ObservationWriter::Write(const translation::ObservedW
   translation::FluentUpdate update;
   try {
     update = view_.Read([&](const knowledge::FluentView& view) {
-      return translation::ChangesFrom(ContextNow(view), view, observed, params_.changes,
-                                      params_.concepts);
+      return translation::ChangesFrom(ContextNow(view), view, observed, params_.changes);
     });
   } catch (const hires::base::ConfigError& error) {
     Fail(error.what());

@@ -72,6 +72,14 @@ Pose3 PoseOf(const Candidate& candidate, const Pose3& X_CT) {
   return X_CT * geometry::Lift(candidate.pose.X_TO, candidate.shape->foot);
 }
 
+/// That of all its models; none where they differ: nothing that is seen tells them apart.
+std::string CategoryOf(const ModelShape& shape) {
+  const std::string& first = shape.models.front().category;
+  const bool is_one = std::all_of(shape.models.begin(), shape.models.end(),
+                                  [&](const KnownModel& one) { return one.category == first; });
+  return is_one ? first : "";
+}
+
 Detection Unknown(const Thing& thing, const Pose3& X_CT) {
   const Footprint print = FootprintOf(thing.p_T);
   std::vector<double> heights;
@@ -149,9 +157,8 @@ Detection Recogniser::Impl::Detect(const LabelledPicture& seen, const Thing& thi
     detection = Unknown(thing, X_CT);
   } else {
     const Candidate& best = candidates.front();
-    const KnownModel& known = best.shape->models.front();
-    detection.label = known.label;
-    detection.category = known.category;
+    detection.label = best.shape->models.front().label;
+    detection.category = CategoryOf(*best.shape);
     detection.X_CO = PoseOf(best, X_CT);
     detection.visible_share = best.view.visible_share;
     detection.size = best.shape->field->bounds().upper - best.shape->field->bounds().lower;
@@ -173,9 +180,19 @@ Recognition Recogniser::Impl::Named(const PointCloud& cloud, Segmentation segmen
   return out;
 }
 
+std::vector<KnownModel> NoLargerThan(double max_extent, const std::vector<KnownModel>& catalogue) {
+  std::vector<KnownModel> usable;
+  for (const KnownModel& known : catalogue) {
+    geometry::Aabb bounds;
+    for (const geometry::Collision& one : known.model->collisions)
+      bounds.Include(geometry::BoundsOf(one.shape, one.X_BS));
+    if ((bounds.upper - bounds.lower).maxCoeff() <= max_extent) usable.push_back(known);
+  }
+  return usable;
+}
+
 Recogniser::Recogniser(const std::vector<KnownModel>& catalogue, const RecogniserParams& params) {
   std::set<std::string> labels;
-  std::vector<KnownModel> usable;
   for (const KnownModel& known : catalogue) {
     if (!labels.insert(known.label).second) {
       throw base::ConfigError(
@@ -183,12 +200,9 @@ Recogniser::Recogniser(const std::vector<KnownModel>& catalogue, const Recognise
                       "label",
                       known.label));
     }
-    geometry::Aabb bounds;
-    for (const geometry::Collision& one : known.model->collisions)
-      bounds.Include(geometry::BoundsOf(one.shape, one.X_BS));
-    if ((bounds.upper - bounds.lower).maxCoeff() <= params.max_extent) usable.push_back(known);
   }
-  impl_ = std::make_unique<Impl>(Impl{params, ShapesOfCatalogue(usable)});
+  impl_ = std::make_unique<Impl>(
+      Impl{params, ShapesOfCatalogue(NoLargerThan(params.max_extent, catalogue))});
 }
 Recogniser::~Recogniser() = default;
 Recogniser::Recogniser(Recogniser&&) noexcept = default;

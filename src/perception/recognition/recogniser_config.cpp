@@ -1,6 +1,5 @@
 #include "hires/perception/recogniser_config.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -46,20 +45,11 @@ RecogniserConfig ReadRecogniserConfig(const std::string& path, const std::string
   std::map<std::string, KnownModel> known;
   for (const auto& [instance, model] :
        world::LoadCatalogueModels(objects.empty() ? listed : objects)) {
-    known[base::ToLower(model->name)] = {model->name, "", model};
+    known[base::ToLower(model->name)] = {model->name, model->concept_name, model};
   }
-  ParamReader categories = in.Sub("categories");
-  for (const std::string& label : categories.Keys()) {
-    const auto found = known.find(base::ToLower(label));
-    const std::string category = categories.GetString(label);
-    if (found != known.end()) {
-      found->second.category = category;
-    } else if (objects.empty()) {
-      std::vector<std::string> labels;
-      for (const auto& one : known) labels.push_back(one.second.label);
-      categories.Fail(label, base::UnknownName("model", label, labels));
-    }
-  }
+  if (in.Has("categories"))
+    in.Fail("categories", "which is said in the block `concepts` of the catalogue of objects (" +
+                              listed + "); move it there");
   ReadTable(in.Sub("table"), &config.params.segmentation.table);
   ReadThings(in.Sub("things"), &config.params.segmentation);
   ReadRecognition(in.Sub("recognition"), &config.params);

@@ -24,6 +24,13 @@ std::optional<geometry::Collision> PlateOf(const std::string& tray_link,
   return plate;
 }
 
+/// @param num_before  detections that others of the labels do not count.
+void NoteThings(const std::vector<int>& labels, int num_before, std::vector<int>* thing_of) {
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    if (labels[i] >= kLabelFirstThing) (*thing_of)[i] = num_before + labels[i] - kLabelFirstThing;
+  }
+}
+
 }  // namespace
 
 Sighting SeenFrom(const geometry::Pose3& X_AB, Sighting seen_B) {
@@ -65,10 +72,12 @@ std::optional<TabletopView> TabletopRecogniser::Look(
   std::vector<geometry::Collision> robot_C = robot_F, others_C;
   for (geometry::Collision& shape : robot_C) shape.X_BS = X_CF * shape.X_BS;
   TabletopView view;
+  view.thing_of.assign(cloud.points.size(), -1);
   std::optional<Table> seen;
   const auto take = [&](Recognition found) {
     if (!found.segmentation.table) return;
     auto& all = view.sighting.detections;
+    NoteThings(found.segmentation.labels, static_cast<int>(all.size()), &view.thing_of);
     std::move(found.detections.begin(), found.detections.end(), std::back_inserter(all));
     seen = found.segmentation.table;
   };

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <iterator>
+#include <utility>
 
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
 #include "hires/perception/camera_view.h"
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
-#include "hires/world/object_catalogue.h"
 
 namespace hires::perception {
 namespace {
@@ -19,13 +19,12 @@ using Eigen::Vector3d;
 using geometry::Pose3;
 
 constexpr int kMostThings = 8;
-constexpr double kLargest = 0.6;       // [m]
 constexpr double kUnknownShare = 0.2;  // of things
 constexpr double kUnlike = 0.015;  // [m] by which an unknown one differs from all known, at least
-constexpr double kTorso[] = {0.0115, 0.16, 0.31};  // [m] down, half way, up
-const Vector3d kTable(1.6, 0.8, 0.71);             // [m] as the model table_160x80
-constexpr double kFieldOfView = 1.0123;            // [rad] from left to right
-constexpr double kSight = 5.0;                     // [m]
+constexpr const char* kTorso[] = {"torsodownposture", "torsomiddleposture", "torsoupposture"};
+constexpr int kWidth = 640, kHeight = 480;        // [pixels]
+constexpr std::uint64_t kMountStream = 1u << 20;  // beyond those of looks
+constexpr double kSight = 5.0;                    // [m]
 
 geometry::Aabb BoundsOf(const world::ObjectModel& model) {
   geometry::Aabb bounds;
@@ -54,9 +53,24 @@ geometry::Polygon OutlineOf(const world::ObjectModel& model, const geometry::Pos
 struct Scene {
   std::vector<world::ObjectState> objects{};
   std::shared_ptr<const Surroundings> surroundings{};
+  std::vector<geometry::Collision> robot_M{};
   PinholeCamera camera{};
   CameraView view{};
+
+  LineOfSight Sight() const { return {surroundings, objects, robot_M}; }
 };
+
+/// Turns pan and tilt until the camera's axis goes through a point.
+void TurnHead(const robot::Robot& robot, const geometry::Pose2& X_MB, const Vector3d& p_M,
+              robot::JointPositions* posture) {
+  constexpr int kRounds = 8;  // the camera moves with the head; each is ten times nearer
+  const robot::UpperBodyProfile& body = *robot.profile.upper_body;
+  for (int round = 0; round < kRounds; ++round) {
+    const Vector3d p_C = ViewOf(robot, X_MB, *posture).X_MC.Inverse() * p_M;
+    (*posture)[body.head_pan_joint] += std::atan2(p_C.y(), p_C.x());
+    (*posture)[body.head_tilt_joint] -= std::atan2(p_C.z(), p_C.head<2>().norm());
+  }
+}
 
 }  // namespace
 
@@ -70,22 +84,23 @@ struct RandomTables::Impl {
   std::vector<KnownModel> known;
 };
 
-RandomTables::RandomTables(robot::Robot robot, const std::string& objects,
+RandomTables::RandomTables(robot::Robot robot, const RecogniserConfig& known,
                            const TableVariety& variety)
     : impl_(std::make_unique<Impl>()) {
   if (!robot.profile.upper_body) {
     throw base::ConfigError("robot '" + robot.model.name +
                             "' has no camera on a head (upper_body in its profile)");
   }
+  for (const char* torso : kTorso) {
+    if (robot.profile.upper_body->torso_postures.count(torso) > 0) continue;
+    throw base::ConfigError("robot '" + robot.model.name + "' has no posture '" + torso +
+                            "' (torso in its profile); add it");
+  }
   impl_->robot = std::move(robot);
   impl_->variety = variety;
-  std::set<std::string> labels;
-  for (const auto& [instance, model] : world::LoadCatalogueModels(objects)) {
-    if (SortedSize(*model).z() < kLargest && labels.insert(model->name).second)
-      catalogue_.push_back({model->name, "", model});
-  }
-  impl_->known = catalogue_;
+  impl_->known = NoLargerThan(known.params.max_extent, known.catalogue);
 }
+const std::vector<KnownModel>& RandomTables::catalogue() const { return impl_->known; }
 RandomTables::~RandomTables() = default;
 
 /// A box or a cylinder that is no known thing, however it is turned.
@@ -123,8 +138,8 @@ void RandomTables::Impl::Furnish(Rng* rng, world::World* world, RandomTable* tab
     thing.model = model.name;
     thing.size = BoundsOf(model).upper - BoundsOf(model).lower;
     for (int attempt = 0; attempt < 30; ++attempt) {
-      const geometry::Pose2 X_MO{rng->Uniform(-0.5, 0.5) * (kTable.x() - 0.3),
-                                 rng->Uniform(-0.5, 0.5) * (kTable.y() - 0.3),
+      const geometry::Pose2 X_MO{rng->Uniform(-0.5, 0.5) * (variety.table.x() - 0.3),
+                                 rng->Uniform(-0.5, 0.5) * (variety.table.y() - 0.3),
                                  rng->Uniform(-geometry::kPi, geometry::kPi)};
       const geometry::Polygon outline = OutlineOf(model, X_MO, 0.5 * variety.gap);
       if (std::any_of(outlines.begin(), outlines.end(), [&](const geometry::Polygon& other) {
@@ -137,7 +152,7 @@ void RandomTables::Impl::Furnish(Rng* rng, world::World* world, RandomTable* tab
       world::ObjectState state;
       state.name = thing.name;
       state.model = model.name;
-      state.X_MO = geometry::Lift(X_MO, kTable.z());
+      state.X_MO = geometry::Lift(X_MO, variety.table.z());
       world->initial.objects.push_back(state);
       table->things.push_back(thing);
       break;
@@ -151,27 +166,32 @@ Scene RandomTables::Impl::Lay(Rng* rng, RandomTable* table) const {
   world::World world;
   world.statics.emplace_back();
   world.statics.back().name = "table";
-  world.statics.back().X_MB.translation.z() = kTable.z() / 2.0;
+  world.statics.back().X_MB.translation.z() = variety.table.z() / 2.0;
   world.statics.back().collisions.emplace_back();
-  world.statics.back().collisions.back().shape = geometry::Box{kTable};
+  world.statics.back().collisions.back().shape = geometry::Box{variety.table};
   Furnish(rng, &world, table);
 
-  table->torso = rng->Index(3);
+  table->torso = rng->Index(static_cast<int>(std::size(kTorso)));
+  const robot::UpperBodyProfile& body = *robot.profile.upper_body;
   robot::JointPositions posture = robot.profile.joints;
-  posture[robot.profile.upper_body->torso_joint] = kTorso[table->torso];
+  posture[body.torso_joint] = body.torso_postures.at(kTorso[table->torso]);
   const geometry::Pose2 X_MB{rng->Uniform(-0.4, 0.4), rng->Uniform(-variety.farthest, -0.8),
                              geometry::kPi / 2};
-  const Vector3d eye = ViewOf(robot, X_MB, posture).X_MC.translation;
-  const Vector3d middle(rng->Uniform(-0.2, 0.2), rng->Uniform(-0.1, 0.1), kTable.z());
-  table->distance = (eye - middle).norm();
+  const Vector3d middle(rng->Uniform(-0.2, 0.2), rng->Uniform(-0.1, 0.1), variety.table.z());
+  TurnHead(robot, X_MB, middle, &posture);
 
   Scene scene;
   scene.objects = world.initial.objects;
   scene.surroundings = std::make_shared<const Surroundings>(world);
-  scene.camera = LookAt(eye, middle, 640, 480, kFieldOfView);
-  scene.view = ViewFrom(robot, scene.camera.X_MC);
-  scene.view.width = kFieldOfView;
-  scene.view.height = 2.0 * std::atan(std::tan(scene.view.width / 2.0) * 0.75);
+  scene.robot_M = ShapesOf(robot, X_MB, posture);
+  scene.view = ViewOf(robot, X_MB, posture);
+  scene.camera = CameraOf(kWidth, kHeight, body.camera_width);
+  scene.camera.X_MC = scene.view.X_MC;
+  table->distance = (scene.view.X_MC.translation - middle).norm();
+  const Pose3 X_BM = geometry::Lift(X_MB).Inverse();
+  table->X_BC = X_BM * scene.camera.X_MC * OpticalFrame();
+  table->robot_B = scene.robot_M;
+  for (geometry::Collision& shape : table->robot_B) shape.X_BS = X_BM * shape.X_BS;
   return scene;
 }
 
@@ -179,7 +199,7 @@ Scene RandomTables::Impl::Lay(Rng* rng, RandomTable* table) const {
 void TakeHiddenAway(double most_hidden, Scene* scene, RandomTable* table) {
   for (bool is_settled = false; !is_settled;) {
     is_settled = true;
-    const LineOfSight sight(scene->surroundings, scene->objects);
+    const LineOfSight sight = scene->Sight();
     for (std::size_t i = 0; i < scene->objects.size(); ++i) {
       const VisiblePart part = sight.Visible(scene->view, scene->objects[i].name);
       table->things[i].view = LookAtThing(sight, scene->view, scene->objects, i, part);
@@ -193,13 +213,12 @@ void TakeHiddenAway(double most_hidden, Scene* scene, RandomTable* table) {
 }
 
 /// Whose surface each pixel shows.
-void NoteOwners(const RangePicture& picture, RandomTable* table) {
+void NoteOwners(const RangePicture& picture, const DepthSensorParams& sensor, RandomTable* table) {
   std::vector<int> thing_of(picture.names.size(), -1);
   for (std::size_t i = 0; i < picture.names.size(); ++i)
     for (std::size_t k = 0; k < table->things.size(); ++k)
       if (picture.names[i] == table->things[k].name) thing_of[i] = static_cast<int>(k);
   table->owner.assign(picture.owner.size(), -1);
-  const DepthSensorParams sensor;
   for (std::size_t i = 0; i < picture.owner.size(); ++i) {
     if (picture.owner[i] == RangePicture::kNothing) continue;
     table->owner[i] = thing_of[picture.owner[i]];
@@ -207,6 +226,16 @@ void NoteOwners(const RangePicture& picture, RandomTable* table) {
         picture.depth[i] >= sensor.min_range && picture.depth[i] <= sensor.max_range;
     if (table->owner[i] >= 0 && in_range) ++table->things[table->owner[i]].num_points;
   }
+}
+
+/// The same at all looks from one stand.
+Pose3 MountError(const TableVariety& variety, Rng* rng) {
+  const auto draw = [&](double sd) {
+    const double x = rng->Normal(0.0, sd), y = rng->Normal(0.0, sd), z = rng->Normal(0.0, sd);
+    return Vector3d(x, y, z);
+  };
+  const Vector3d turn = draw(variety.mount_angle);
+  return {draw(variety.mount_position), geometry::RotationFromRpy(turn.x(), turn.y(), turn.z())};
 }
 
 RandomTable RandomTables::Make(std::uint64_t seed, int look) const {
@@ -217,13 +246,28 @@ RandomTable RandomTables::Make(std::uint64_t seed, int look) const {
   const Pose3 X_CM = (scene.camera.X_MC * OpticalFrame()).Inverse();
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     table.things[i].X_CO = X_CM * scene.objects[i].X_MO;
-  const RangePicture picture =
-      LineOfSight(scene.surroundings, scene.objects).Look(scene.camera, kSight);
-  NoteOwners(picture, &table);
+  const RangePicture picture = scene.Sight().Look(scene.camera, kSight);
+  DepthSensorParams sensor;
+  sensor.min_range = scene.view.min_range;
+  sensor.max_range = scene.view.max_range;
+  NoteOwners(picture, sensor, &table);
   Rng noise = Rng(seed).Fork(1 + static_cast<std::uint64_t>(look));
-  table.cloud = Measure(picture, scene.camera, {}, &noise);
-  table.stand = {X_CM.rotation * Vector3d::UnitZ(), scene.camera.X_MC.translation.z()};
+  table.cloud = Measure(picture, scene.camera, sensor, &noise);
+  Rng mount = Rng(seed).Fork(kMountStream);
+  table.X_BCknown = table.X_BC * MountError(impl_->variety, &mount);
+  table.stand = {table.X_BCknown.rotation.conjugate() * Vector3d::UnitZ(),
+                 table.X_BCknown.translation.z()};
   return table;
+}
+
+TabletopView LookAtTable(std::shared_ptr<const Recogniser> recogniser, const RandomTable& table,
+                         const robot::Robot& robot, const base::Rng& rng) {
+  TabletopRecogniser eye(std::move(recogniser), {});
+  auto view = eye.Look(table.cloud, table.X_BCknown, table.robot_B, robot.profile.tray_link, rng);
+  if (view) return std::move(*view);
+  TabletopView nothing;
+  nothing.thing_of.assign(table.cloud.points.size(), -1);
+  return nothing;
 }
 
 }  // namespace hires::perception

@@ -15,12 +15,10 @@ namespace {
 /// For each detection, how many of its points each thing has; -1: something else.
 using Votes = std::vector<std::map<int, int>>;
 
-Votes VotesOf(const RandomTable& table, const Recognition& seen) {
-  Votes votes(seen.detections.size());
-  for (std::size_t i = 0; i < table.owner.size(); ++i) {
-    const int label = seen.segmentation.table ? seen.segmentation.labels[i] : kLabelNone;
-    if (label >= kLabelFirstThing) ++votes[label - kLabelFirstThing][table.owner[i]];
-  }
+Votes VotesOf(const RandomTable& table, const TabletopView& seen) {
+  Votes votes(seen.sighting.detections.size());
+  for (std::size_t i = 0; i < table.owner.size(); ++i)
+    if (seen.thing_of[i] >= 0) ++votes[seen.thing_of[i]][table.owner[i]];
   return votes;
 }
 
@@ -37,6 +35,7 @@ bool IsTaken(const Votes& votes, int thing, int num_points) {
 std::vector<int> DetectionOfThing(const RandomTable& table, const Votes& votes, int* surplus) {
   std::vector<int> of_thing(table.things.size(), -1);
   for (std::size_t d = 0; d < votes.size(); ++d) {
+    if (votes[d].empty()) continue;
     const auto most = std::max_element(votes[d].begin(), votes[d].end(),
                                        [](auto& a, auto& b) { return a.second < b.second; });
     if (most->first < 0) {
@@ -86,6 +85,7 @@ std::vector<std::string> RecognitionScore::LabelsLike(const std::string& label) 
 
 void RecognitionScore::JudgeName(const Detection& seen, ThingVerdict* verdict) const {
   verdict->called = KindOf(seen.label);
+  verdict->label = seen.label;
   verdict->confidence = seen.confidence;
   if (verdict->is_right()) return;
   for (const LabelConfidence& other : seen.alternatives)
@@ -97,7 +97,10 @@ void RecognitionScore::JudgePose(const RandomTable& table, const TableThing& thi
                                  const Detection& seen, ThingVerdict* verdict) const {
   const Eigen::Vector3d error = seen.X_CO.translation - thing.X_CO.translation;
   verdict->error = error.norm();
-  verdict->offset = SightFrame(thing.X_CO.translation, table.stand.up_C).transpose() * error;
+  verdict->error_B =
+      (table.X_BCknown * seen.X_CO.translation - table.X_BC * thing.X_CO.translation).norm();
+  const Eigen::Vector3d up_C = table.X_BC.rotation.conjugate() * Eigen::Vector3d::UnitZ();
+  verdict->offset = SightFrame(thing.X_CO.translation, up_C).transpose() * error;
   const int symmetry = FindKind(thing.model)->symmetry;
   if (symmetry == geometry::kRound) return;
   const double turn = geometry::YawOf(thing.X_CO.rotation.conjugate() * seen.X_CO.rotation);
@@ -105,21 +108,22 @@ void RecognitionScore::JudgePose(const RandomTable& table, const TableThing& thi
   verdict->turned_by = std::abs(turn - step * std::round(turn / step));
 }
 
-void RecognitionScore::Add(const RandomTable& table, const Recognition& seen) {
-  num_detections_ += static_cast<int>(seen.detections.size());
+void RecognitionScore::Add(const RandomTable& table, const TabletopView& seen) {
+  num_detections_ += static_cast<int>(seen.sighting.detections.size());
   const Votes votes = VotesOf(table, seen);
   const std::vector<int> of_thing = DetectionOfThing(table, votes, &num_surplus_);
   for (std::size_t k = 0; k < table.things.size(); ++k) {
     const TableThing& thing = table.things[k];
     if (thing.num_points < min_points_) continue;
     ThingVerdict verdict;
+    verdict.model = thing.model;
     verdict.kind = thing.is_known ? KindOf(thing.model) : kUnknownLabel;
     verdict.distance = thing.X_CO.translation.norm();
     verdict.torso = table.torso;
     verdict.view = thing.view;
     verdict.num_points = thing.num_points;
     if (of_thing[k] >= 0) {
-      const Detection& detection = seen.detections[of_thing[k]];
+      const Detection& detection = seen.sighting.detections[of_thing[k]];
       JudgeName(detection, &verdict);
       if (verdict.is_right() && thing.is_known) JudgePose(table, thing, detection, &verdict);
     } else {
@@ -137,19 +141,26 @@ void RecognitionScore::Append(const RecognitionScore& other) {
 
 RecognitionSums SumsOf(const std::vector<ThingVerdict>& things) {
   RecognitionSums sums;
-  std::vector<double> errors, turns;
+  std::vector<double> errors, errors_B, turns;
   for (const ThingVerdict& thing : things) {
     ++sums.num_things;
+    ++(thing.is_known() ? sums.num_known : sums.num_unknown);
     if (!thing.is_found()) continue;
     ++sums.num_found;
-    ++(thing.is_known() ? sums.num_known : sums.num_unknown);
+    ++(thing.is_known() ? sums.num_known_found : sums.num_unknown_found);
     if (!thing.is_right()) continue;
     ++(thing.is_known() ? sums.num_named : sums.num_unknown_so_called);
-    if (thing.is_known()) errors.push_back(thing.error);
+    if (thing.is_known()) {
+      sums.num_own_label += thing.label == thing.model ? 1 : 0;
+      errors.push_back(thing.error);
+      errors_B.push_back(thing.error_B);
+    }
     if (thing.turned_by) turns.push_back(*thing.turned_by);
   }
   sums.median_error = Quantile(errors, 0.5);
-  sums.largest_error = Quantile(errors, 0.95);
+  sums.error_95 = Quantile(errors, 0.95);
+  sums.median_error_B = Quantile(errors_B, 0.5);
+  sums.error_B_95 = Quantile(errors_B, 0.95);
   sums.median_turn = Quantile(turns, 0.5);
   return sums;
 }

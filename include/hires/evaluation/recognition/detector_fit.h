@@ -21,8 +21,7 @@ struct DetectorFitOrder {
   int held_out{500};         ///< more tables, to try the fit on
   std::uint64_t seed{5000};  ///< of the first table; each next one has the next
   robot::Robot robot;
-  std::string objects;  ///< path of the catalogue that things are drawn from
-  perception::RecogniserConfig recogniser;
+  perception::RecogniserConfig recogniser;  ///< things are drawn from its catalogue
 };
 
 /// Two looks at one thing.
@@ -44,6 +43,7 @@ struct DetectorFitReport {
   int tables{0}, held_out{0};
   std::uint64_t seed{0};
   std::string objects, recogniser;  ///< names of what was tried
+  std::string hash;                 ///< FitHashOf
   int num_things{0};                ///< looks at, of the fit
   int num_found{0}, num_named{0}, num_merged{0};
   perception::DetectorErrors errors;
@@ -51,6 +51,13 @@ struct DetectorFitReport {
   /// Per look of the held-out tables: log likelihood of the fit less that of constant shares.
   double gain_found{0.0}, gain_named{0.0};
 };
+
+/// What tables of the fit are like.
+perception::TableVariety FitVariety();
+
+/// Of all that a fit depends on but the code: models, robot, parameters of the recogniser and the
+/// sensor, and what tables are like. A fit of another hash is out of date.
+std::string FitHashOf(const DetectorFitOrder& order);
 
 /// @throws base::ConfigError where nothing was found or nothing named rightly.
 perception::DetectorErrors FitDetector(const std::vector<TwoLooks>& things,

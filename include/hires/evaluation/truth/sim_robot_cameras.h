@@ -27,6 +27,10 @@ struct SimCameraParams {
   perception::HeatSensorParams heat;
   double coldest{288.15}, hottest{343.15};     ///< [K] at the ends of the scale of colours
   std::map<std::string, double> temperatures;  ///< [K] by object; not of the file: the scenario's
+  /// Sd [m], [rad] by which the depth camera sits otherwise than the robot believes: drawn once,
+  /// along x, y and z, and about the upright of a point 1.2 m in front of it, so that what stands
+  /// there is off by so much. Not of the file: the truth's.
+  double mount_bias{0.0}, mount_bias_yaw{0.0};
 };
 
 /// The blocks `depth_camera` and `thermal_camera` of a file like config/sim_robot.yaml.
@@ -40,7 +44,8 @@ struct SeenCloud {
 };
 
 /// Depth camera on the head, with colours, and thermal camera. What they see is where everything
-/// really is, the robot's own links included; of depth and colour the eye is the same. Noise is a
+/// really is, the robot's own links included; of depth and colour the eye is the same, and may sit
+/// otherwise than the robot believes. Noise is a
 /// stream of its own for each moment: asked twice, they say the same twice. Pictures are made when
 /// asked for.
 class SimRobotCameras {
@@ -73,11 +78,13 @@ class SimRobotCameras {
 
  private:
   perception::LineOfSight Sight(const SimRobotWorld& world) const;
+  geometry::Pose3 TrueEye(const SimRobotWorld& world) const;
 
   const SimCameraParams params_;
   const base::Rng depth_rng_, heat_rng_;  // forked for each moment
   const std::shared_ptr<const simulation::Scene> scene_;
   perception::PinholeCamera depth_camera_, heat_camera_;
+  geometry::Pose3 X_CE_;  // the true eye in the frame where the robot believes it
   std::unique_ptr<perception::PictureScene> paint_;  // made when first asked for
 };
 
