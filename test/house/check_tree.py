@@ -31,6 +31,9 @@ LAYERS = [
 RANK = {layer: rank for rank, line in enumerate(LAYERS) for layer in line}
 LAYERS_WITH_ROS = {"ros", "nodes"}
 
+# Who publishes ground_truth/..., and who compares with it.
+MAY_NAME_TRUTH = ("src/nodes/sim_worker/", "src/nodes/hires/")
+
 CODE_FOLDERS = ["include/hires", "src", "test", "benchmark"]
 TEXT_FOLDERS = [".ci", "action", "benchmark", "cmake", "config", "docs", "examples", "include",
                 "launch", "msg",
@@ -686,12 +689,24 @@ def check_instructions(root):
                 yield f"{path}:{number}: there is no {file}; name what took its place"
 
 
+def check_ground_truth(root):
+    """What decides must not know what is true: it would prove nothing by being right."""
+    for path in [p for folder in ("include", "src", "launch") for p in files_below(root, folder)]:
+        if path.startswith(MAY_NAME_TRUTH):
+            continue
+        for number, line in enumerate(read(root, path).splitlines(), start=1):
+            if "ground_truth" in line:
+                yield (f"{path}:{number}: names the topic of the truth; only the simulated robot and the "
+                       f"command line may, and tests")
+
+
 CHECKS = [check_includes, check_private_headers, check_public_headers, check_hidden_headers,
           check_light_headers, check_dependencies, check_units_with_ros, check_nodes_apart, check_rooms,
           check_functions, check_headers, check_whitespace, check_packages, check_libraries,
           check_catkin_components,
           check_version, check_scripts, check_failure_codes, check_failure_texts, check_python_texts,
-          check_failure_tables, check_rostests, check_test_namespaces, check_instructions]
+          check_failure_tables, check_rostests, check_test_namespaces, check_instructions,
+          check_ground_truth]
 
 
 def complaints_about(root):

@@ -382,6 +382,18 @@ class CheckTreeTest(unittest.TestCase):
         self.assertEqual(self.complaints({**self.TABLE, "docs/a.md": table % "busy"}), [])
         self.expect_one({**self.TABLE, "docs/a.md": table % "lost"}, "docs/a.md:3", "'lost'")
 
+    def test_only_the_simulated_robot_and_the_command_line_name_the_truth(self):
+        listening = {"planner.cpp": 'nh.subscribe("ground_truth/world_state", 1, &Note);\n'}
+        for folder in ("src/nodes/sim_worker", "src/nodes/hires"):
+            self.assertEqual(self.truths_in(folder, listening), [])
+        found = self.truths_in("src/nodes/planner", listening)
+        self.assertEqual(len(found), 1)
+        self.assertIn("src/nodes/planner/planner.cpp:1: names the topic of the truth", found[0])
+
+    def truths_in(self, folder, files):
+        changes = {os.path.join(folder, name): text for name, text in files.items()}
+        return [c for c in self.complaints(changes) if "truth" in c]
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -20,8 +20,10 @@ constexpr double kTableHeight = 0.75;
 /// A table of 1.2 m by 0.8 m and things on it, seen by a camera 0.6 m above it.
 class TableScene {
  public:
-  explicit TableScene(double width = 0.8) {
-    Put(geometry::Box{{width, 1.2, 0.04}}, {0.0, 0.0, -0.02});
+  explicit TableScene(double width = 0.8) : TableScene(width, -0.6, 0.6) {}
+  /// The table from `right` to `left` along y.
+  TableScene(double width, double right, double left) {
+    Put(geometry::Box{{width, left - right, 0.04}}, {0.0, 0.5 * (left + right), -0.02});
   }
   /// Of what stands on the table at z = 0.
   TableScene& Put(const geometry::Shape& shape, const Vector3d& p_T, double yaw = 0.0) {
@@ -119,6 +121,37 @@ TEST(FindTableTest, TheFloorIsNoTableForWhoKnowsHowTheCameraStands) {
   EXPECT_EQ(LabelAround(cloud, out, {0.0, 0.0, 0.1}), kLabelFirstThing);
   EXPECT_FALSE(FindTable(cloud, CameraStand{TableScene::Up(), 4.0}, {}, base::Rng(1)))
       << "nothing level is as high as tables";
+}
+
+/// Two tables with a gap between them, the right one 0.05 m lower, and a box on each.
+TableScene TwoTables(double left_length, double right_length, double gap) {
+  TableScene scene(0.6, 0.5 * gap, 0.5 * gap + left_length);
+  scene.PutBox({0.6, right_length, 0.04}, 0.0, -0.5 * (gap + right_length), -0.05 - 0.04);
+  scene.PutBox({0.1, 0.1, 0.15}, 0.0, 0.25).PutBox({0.1, 0.1, 0.15}, 0.0, -0.25, -0.05);
+  return scene;
+}
+
+TEST(FindTableTest, OfTwoTablesTheLargerOneIsFoundWithItsThingsAlone) {
+  for (const double gap : {0.12, 0.16}) {
+    for (int seed = 1; seed <= 5; ++seed) {
+      const PointCloud left = TwoTables(0.40, 0.30, gap).Seen(seed);
+      const PointCloud right = TwoTables(0.30, 0.40, gap).Seen(seed);
+      const auto segment = [&](const PointCloud& cloud) {
+        return SegmentTabletop(cloud, TableScene::Stand(), {}, base::Rng(seed));
+      };
+      const Segmentation of_left = segment(left), of_right = segment(right);
+      ASSERT_TRUE(of_left.table && of_right.table) << gap << " " << seed;
+      EXPECT_NEAR(of_left.table->offset, 0.60, 0.003) << gap << " " << seed;
+      EXPECT_NEAR(of_right.table->offset, 0.65, 0.003) << gap << " " << seed;
+      EXPECT_EQ(of_left.num_things, 1) << gap << " " << seed;
+      EXPECT_EQ(of_right.num_things, 1) << gap << " " << seed;
+      EXPECT_EQ(LabelAround(left, of_left, {0.0, 0.25, 0.15}), kLabelFirstThing);
+      EXPECT_EQ(LabelAround(right, of_right, {0.0, -0.25, 0.10}), kLabelFirstThing);
+      EXPECT_EQ(LabelAround(left, of_left, {0.0, -0.25, 0.10}), kLabelNone);
+      EXPECT_EQ(LabelAround(right, of_right, {0.0, 0.25, 0.15}), kLabelNone);
+      EXPECT_EQ(segment(left).labels, of_left.labels) << "the same bits each time";
+    }
+  }
 }
 
 // A wall crosses every plane, in a strip as long as it is, and goes on below it.

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """The node that recognises what stands on tables, as a real process with clouds made here: what it says
-of a box on a table, of no table, and of clouds and transforms that are wrong, late or old. Run alone, or
+of a box on a table, of two tables and of none, and of clouds and transforms that are wrong, late or old. Run alone, or
 by `rostest hires tabletop_recogniser.test`."""
 
 import math
 import os
 import sys
 import threading
+import time
 import unittest
 
 import numpy
@@ -19,14 +20,22 @@ from test_run import run_test  # noqa: E402
 
 CLOUD = 'head_mount_kinect/depth_registered/points'
 CAMERA = 'camera_optical'
+BODY = 'camera_body'     # x forward, y left, z up
 EYE = (0.0, 0.0, 1.3)    # [m] above the floor
 DOWN = 0.8               # [rad] that it looks down
 TABLE_TOP = 0.7          # [m]
 TABLE = ((0.35, 1.1), (-0.5, 0.5), (TABLE_TOP - 0.03, TABLE_TOP))  # [m] x, y, z from .. to
 BOX = ((0.66, 0.80), (-0.05, 0.13), (TABLE_TOP, TABLE_TOP + 0.21))
 FLOOR = ((-9.0, 9.0), (-9.0, 9.0), (-0.1, 0.0))
-FAR_TABLE = ((1.35, 1.7), (-0.4, 0.4), (0.52, 0.55))
+# Two tables side by side, a box on each; the left one is a little higher and larger.
+LEFT_TABLE = ((0.45, 1.1), (0.06, 0.55), (0.72, 0.75))
+RIGHT_TABLE = ((0.45, 1.1), (-0.51, -0.06), (0.67, 0.70))
+LEFT_BOX = ((0.70, 0.80), (0.24, 0.36), (0.75, 0.91))
+RIGHT_BOX = ((0.70, 0.80), (-0.36, -0.24), (0.70, 0.86))
+WALL = ((1.2, 1.3), (-9.0, 9.0), (0.0, 9.0))
 MAX_RANGE = 3.5          # [m]
+OK, WARN = 0, 1          # of diagnostic_msgs/DiagnosticStatus
+MAX_AGE = 3.0            # [s] as config/recogniser.yaml has it
 
 
 def camera_rotation():
@@ -65,6 +74,7 @@ class TabletopRecogniserTest(unittest.TestCase):
         os.environ.update(ROS_MASTER_URI=cls.main.uri, ROS_IP='127.0.0.1')
         os.environ.pop('ROS_HOSTNAME', None)
         import rospy
+        from geometry_msgs.msg import Quaternion
         from hires.msg import Detections
         from sensor_msgs.msg import PointCloud2
         from tf2_msgs.msg import TFMessage
@@ -81,7 +91,9 @@ class TabletopRecogniserTest(unittest.TestCase):
         cls.fixed = rospy.Publisher('/tf_static', TFMessage, queue_size=10, latch=True)
         cls.moving = rospy.Publisher('/tf', TFMessage, queue_size=100)
         rospy.Subscriber('detections', Detections, cls._note, queue_size=100)
-        cls.fixed.publish(TFMessage([cls.transform(CAMERA, 0.0)]))
+        body = cls.transform(BODY, 0.0)
+        body.transform.rotation = Quaternion(0.0, math.sin(0.5 * DOWN), 0.0, math.cos(0.5 * DOWN))
+        cls.fixed.publish(TFMessage([cls.transform(CAMERA, 0.0), body]))
         wait_until(lambda: cls.clouds.get_num_connections() > 0 and
                    cls.moving.get_num_connections() > 0 and cls.fixed.get_num_connections() > 0,
                    lambda: 'the node to listen\n' + cls.node.output())
@@ -124,10 +136,11 @@ class TabletopRecogniserTest(unittest.TestCase):
         message.data = points.tobytes()
         return message
 
-    stamp = 1000.0  # [s] of the newest cloud
+    stamp = 0.0  # [s] of the newest cloud
 
     def next_stamp(self):
-        TabletopRecogniserTest.stamp += 1.0
+        """Now; later than all before."""
+        TabletopRecogniserTest.stamp = max(time.time(), self.stamp + 0.001)
         return self.stamp
 
     def answer_to(self, message):
@@ -203,16 +216,34 @@ class TabletopRecogniserTest(unittest.TestCase):
         self.assertEqual((seen.is_blind, len(seen.detections)), (False, 0))
         self.assertGreaterEqual(len(seen.table), 3)
 
-    def test_of_two_tables_no_thing_is_invented(self):
-        self.require_box(self.look([FLOOR, TABLE, FAR_TABLE, BOX]))
+    def test_of_two_tables_the_larger_ones_things_are_told_and_no_others(self):
+        seen = self.look([FLOOR, LEFT_TABLE, RIGHT_TABLE, LEFT_BOX, RIGHT_BOX])
+        self.assertEqual([d.label for d in seen.detections], ['unknown'])
+        p = seen.detections[0].pose.position
+        in_base = camera_rotation() @ (p.x, p.y, p.z) + EYE
+        numpy.testing.assert_allclose(in_base, (0.75, 0.30, 0.75), atol=0.02)
+        corners = numpy.array([(c.x, c.y, c.z) for c in seen.table]) @ camera_rotation().T + EYE
+        numpy.testing.assert_allclose(corners[:, 2], 0.75, atol=0.01)
+        self.assertGreater(corners[:, 1].min(), 0.0)
+
+    def require_nothing(self, points, words, level, frame=CAMERA):
+        """That no table and no thing is told of, and what the node says of that cloud."""
+        self.look([FLOOR, TABLE, BOX])
+        seen = self.answer_to(self.cloud(points, self.next_stamp(), frame))
+        self.assertEqual((seen.is_blind, len(seen.detections), len(seen.table)), (True, 0, 0))
+        self.assertEqual(self.say(words)['level'], level)
 
     def test_where_no_table_is_seen_nothing_is_said(self):
-        for name, points in {'floor': points_of([FLOOR]),
-                             'nothing': numpy.full((240, 320, 3), numpy.nan, '<f4'),
-                             'no points': numpy.zeros((0, 0, 3), '<f4')}.items():
+        for name, boxes in {'floor': [FLOOR], 'floor and wall': [FLOOR, WALL]}.items():
             with self.subTest(cloud=name):
-                seen = self.answer_to(self.cloud(points, self.next_stamp()))
-                self.assertEqual((seen.is_blind, len(seen.detections), len(seen.table)), (True, 0, 0))
+                self.require_nothing(points_of(boxes), 'sees no table', OK)
+
+    def test_a_cloud_in_which_nothing_was_measured_is_warned_of(self):
+        self.require_nothing(numpy.full((240, 320, 3), numpy.nan, '<f4'),
+                             'no point of the cloud was measured', WARN)
+
+    def test_a_cloud_without_points_is_warned_of(self):
+        self.require_nothing(numpy.zeros((0, 0, 3), '<f4'), 'the cloud has no points', WARN)
 
     # What is wrong.
 
@@ -260,10 +291,45 @@ class TabletopRecogniserTest(unittest.TestCase):
 
     def test_a_cloud_older_than_what_is_kept_of_tf_is_dropped(self):
         from tf2_msgs.msg import TFMessage
-        for second in range(3):
-            self.moving.publish(TFMessage([self.transform('old_camera', 5000.0 + second)]))
-        message = self.cloud(points_of([FLOOR, TABLE, BOX]), 4000.0, 'old_camera')
+        now = time.time()
+        for back in (0.2, 0.1, 0.0):
+            self.moving.publish(TFMessage([self.transform('old_camera', now - back)]))
+        message = self.cloud(points_of([FLOOR, TABLE, BOX]), now - 1.0, 'old_camera')
         self.refuse(message, 'older than what is kept of tf')
+
+    def test_a_cloud_that_is_old_is_dropped_though_its_frame_is_known(self):
+        message = self.cloud(points_of([FLOOR, TABLE, BOX]), time.time() - 300.0)
+        self.refuse(message, 's old, wanted 3 at most')
+        self.assertGreaterEqual(int(self.say('recognises')['dropped, too old']), 1)
+
+    def test_a_cloud_that_comes_again_when_it_is_old_is_dropped(self):
+        message = self.cloud(points_of([FLOOR, TABLE, BOX]), self.next_stamp())
+        self.answer_to(message)
+        time.sleep(MAX_AGE)
+        self.refuse(message, 's old, wanted 3 at most')
+
+    def test_clouds_of_the_future_are_dropped(self):
+        for ahead in (5.0, 2.4e9):
+            with self.subTest(ahead=ahead):
+                message = self.cloud(points_of([FLOOR, TABLE, BOX]), time.time() + ahead)
+                self.refuse(message, 's in the future, wanted 0.5 at most')
+        self.assertGreaterEqual(int(self.say('recognises')['dropped, ahead of time']), 2)
+
+    def test_a_cloud_whose_transform_does_not_come_is_dropped_in_the_end(self):
+        message = self.cloud(points_of([FLOOR, TABLE, BOX]), self.next_stamp(), 'never_told_camera')
+        self.refuse(message, 's old for the transform of \'never_told_camera\'')
+        self.assertGreaterEqual(int(self.say('recognises')['dropped, without transform']), 1)
+
+    # A camera's body has its x axis forward; clouds are to be in its optical frame.
+
+    def test_of_a_cloud_labelled_with_the_cameras_body_nothing_is_invented(self):
+        self.require_nothing(points_of([FLOOR, TABLE, BOX]), 'sees no table', OK, BODY)
+
+    def test_a_cloud_with_x_forward_is_dropped(self):
+        optical = points_of([FLOOR, TABLE, BOX])
+        forward = numpy.stack([optical[..., 2], -optical[..., 0], -optical[..., 1]], axis=-1)
+        message = self.cloud(forward.astype('<f4'), self.next_stamp(), BODY)
+        self.refuse(message, 'points lie behind the camera; wanted an optical frame')
 
     def test_who_is_not_heard_does_not_ask_for_clouds(self):
         self.assertEqual(self.listeners_at_rest, [])

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/perception/cloud_age.h"
 #include "hires/perception/recogniser.h"
 
 namespace hires::perception {
@@ -10,6 +11,7 @@ namespace hires::perception {
 struct RecogniserConfig {
   std::vector<KnownModel> catalogue{};  ///< by label
   RecogniserParams params{};
+  CloudAgeParams age{};  ///< of clouds that come from a running camera; files have no age
 };
 
 /// Reads a file like config/recogniser.yaml, and the models that it leads to.

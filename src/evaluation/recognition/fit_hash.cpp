@@ -48,8 +48,8 @@ void FitHash::Add(const perception::SegmentationParams& params) {
   const auto& [num_samples, tolerance, min_share, max_inclination, min_height, max_height] = table;
   Add({static_cast<double>(num_samples), tolerance, min_share, max_inclination, min_height,
        max_height});
-  const auto& [cell, normal_radius, border_radius] = surfels;
-  Add({cell, normal_radius, border_radius});
+  const auto& [cell, many, max_cell, normal_radius, border_radius] = surfels;
+  Add({cell, static_cast<double>(many), max_cell, normal_radius, border_radius});
   const auto& [max_concavity, sharp, min_points] = parts;
   Add({max_concavity, sharp, static_cast<double>(min_points)});
   const auto& [min_inward, rim_tolerance, min_same_width, max_rim_gap, min_inner_share, min_floor,

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "hires/base/error.h"
@@ -22,7 +24,10 @@ namespace sensing = hires::sensing;
 
 constexpr std::uint64_t kSeed = 1;      // of the planes that are tried; any will do
 constexpr double kWarningPeriod = 1.0;  // [s]
+constexpr double kMaxBehind = 0.1;      // of the points; a camera measures none behind itself
 constexpr std::uint32_t kTransformQueue = 6000;
+constexpr std::array<const char*, 4> kFaultNames{"malformed", "too old", "ahead of time",
+                                                 "without transform"};  // as Fault
 
 }  // namespace
 
@@ -49,6 +54,7 @@ TabletopRecogniserNode::TabletopRecogniserNode(const TabletopRecogniserParams& p
   updater_.add("recognition", this, &TabletopRecogniserNode::Diagnose);
   timer_ = nh->createSteadyTimer(ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) {
     ListenWhereHeard();
+    Try();  // what waits grows old, also where no transforms come
     updater_.update();
   });
 }
@@ -71,28 +77,64 @@ void TabletopRecogniserNode::OnTransforms(const tf2_msgs::TFMessage& msg, bool a
 }
 
 void TabletopRecogniserNode::OnCloud(const sensor_msgs::PointCloud2ConstPtr& msg) {
-  if (msg->header.stamp == last_.header.stamp && !last_.header.stamp.isZero()) return Tell();
-  ++num_clouds_;
-  if (waiting_ && waiting_->header.stamp != msg->header.stamp) ++num_replaced_;
+  const ros::Time& stamp = msg->header.stamp;
+  if (waiting_ && waiting_->header.stamp != stamp) {
+    ++num_replaced_;
+    waits_for_.clear();
+  }
   waiting_ = msg;
+  if (stamp == last_.header.stamp && !stamp.isZero()) {
+    if (RefuseIfUntimely()) return;
+    waiting_.reset();
+    return Tell();
+  }
+  ++num_clouds_;
   Try();
+}
+
+bool TabletopRecogniserNode::RefuseIfUntimely() {
+  const perception::CloudAgeParams& limits = params_.recogniser.age;
+  const double stamp = waiting_->header.stamp.toSec(), now = ros::Time::now().toSec();
+  const perception::CloudAge age = perception::AgeOf(stamp, now, limits);
+  if (age == perception::CloudAge::kTimely) return false;
+  if (age == perception::CloudAge::kAhead) {
+    Refuse(Fault::kAhead,
+           fmt::format("its stamp lies {:.1f} s in the future, wanted {:g} at most; synchronise "
+                       "the clocks of the computers",
+                       stamp - now, limits.max_ahead));
+  } else if (waits_for_.empty()) {
+    Refuse(Fault::kTooOld, fmt::format("it is {:.1f} s old, wanted {:g} at most; play bags with "
+                                       "--clock and use_sim_time",
+                                       now - stamp, limits.max_age));
+  } else {
+    Refuse(Fault::kNoTransform,
+           fmt::format("it waited until it was {:.1f} s old for {}", now - stamp, waits_for_));
+  }
+  return true;
 }
 
 void TabletopRecogniserNode::Try() {
   if (!waiting_) return;
   const std_msgs::Header& header = waiting_->header;
   const std::string frame = sensing::BareFrame(header.frame_id);
-  if (header.stamp.isZero()) return Refuse("header.stamp is 0, wanted the picture's time");
-  if (frame.empty()) return Refuse("header.frame_id is empty, wanted the camera's optical frame");
+  if (header.stamp.isZero())
+    return Refuse(Fault::kMalformed, "header.stamp is 0, wanted the picture's time");
+  if (frame.empty())
+    return Refuse(Fault::kMalformed, "header.frame_id is empty, wanted the camera's optical frame");
+  if (ros::Time::now().isZero()) {
+    waits_for_ = "the time on /clock";
+    return;
+  }
+  if (RefuseIfUntimely()) return;
   const double time = header.stamp.toSec();
   const sensing::FramePose X_BC = tree_.Find(params_.base_frame, frame, time);
   if (X_BC.is_found()) return Recognise(X_BC.X_PC);
   const std::string why = tree_.WhyNot(params_.base_frame, frame, time);
   const auto newest = tree_.NewestOf(params_.base_frame, frame);
   const bool is_too_old = X_BC.status == sensing::FrameStatus::kNotThen && newest && *newest > time;
-  if (is_too_old) return Refuse("older than what is kept of tf: " + why);
-  if (X_BC.status == sensing::FrameStatus::kInLoop) return Refuse(why);
-  waits_for_ = fmt::format("of '{}' in '{}': {}", frame, params_.base_frame, why);
+  if (is_too_old) return Refuse(Fault::kNoTransform, "older than what is kept of tf: " + why);
+  if (X_BC.status == sensing::FrameStatus::kInLoop) return Refuse(Fault::kNoTransform, why);
+  waits_for_ = fmt::format("the transform of '{}' in '{}': {}", frame, params_.base_frame, why);
 }
 
 std::vector<hires::geometry::Collision> TabletopRecogniserNode::RobotShapes(double time) {
@@ -117,9 +159,19 @@ void TabletopRecogniserNode::Recognise(const hires::geometry::Pose3& X_BC) {
   try {
     cloud = FromMsg(*msg);
   } catch (const hires::base::ConfigError& error) {
-    return Refuse(error.what());
+    return Refuse(Fault::kMalformed, error.what());
   }
   num_points_ = static_cast<int>(cloud.points.size());
+  num_measured_ = static_cast<int>(
+      std::count_if(cloud.points.begin(), cloud.points.end(), perception::IsMeasured));
+  const auto num_behind = std::count_if(cloud.points.begin(), cloud.points.end(),
+                                        [](const Eigen::Vector3f& p) { return p.z() <= 0.0F; });
+  if (num_behind > kMaxBehind * num_measured_) {
+    return Refuse(Fault::kMalformed,
+                  fmt::format("{} of {} points lie behind the camera; wanted an optical frame "
+                              "(x right, y down, z forward), '{}' is none",
+                              num_behind, num_measured_, msg->header.frame_id));
+  }
   const auto seen = recogniser_.Look(std::move(cloud), X_BC, RobotShapes(msg->header.stamp.toSec()),
                                      params_.robot->profile.tray_link,
                                      hires::base::Rng(kSeed).Fork(msg->header.stamp.toNSec()));
@@ -139,9 +191,9 @@ void TabletopRecogniserNode::Tell() {
   if (markers_.getNumSubscribers() > 0) markers_.publish(RecognitionMarkers(last_));
 }
 
-void TabletopRecogniserNode::Refuse(const std::string& why) {
+void TabletopRecogniserNode::Refuse(Fault fault, const std::string& why) {
   waiting_.reset();
-  ++num_refused_;
+  ++num_refused_[static_cast<std::size_t>(fault)];
   waits_for_.clear();
   refused_ = why;
   if (hires::base::SteadyNow() - last_warning_ < kWarningPeriod) return;
@@ -159,22 +211,30 @@ void TabletopRecogniserNode::Diagnose(diagnostic_updater::DiagnosticStatusWrappe
   } else if (!refused_.empty()) {
     status.summary(DiagnosticStatus::WARN, "dropped a cloud: " + refused_);
   } else if (!waits_for_.empty()) {
-    status.summary(DiagnosticStatus::WARN, "waits for the transform " + waits_for_);
+    status.summary(DiagnosticStatus::WARN, "waits for " + waits_for_);
+  } else if (num_points_ == 0) {
+    status.summary(DiagnosticStatus::WARN, "sees nothing: the cloud has no points");
+  } else if (num_measured_ == 0) {
+    status.summary(DiagnosticStatus::WARN, "sees nothing: no point of the cloud was measured");
+  } else if (last_.is_blind) {
+    status.summary(DiagnosticStatus::OK, "sees no table");
   } else if (!uncut_.empty()) {
     status.summary(DiagnosticStatus::WARN,
                    "recognises, but may take parts of the robot for things: tf does not know " +
                        hires::base::Join(uncut_, ", "));
-  } else if (last_.is_blind) {
-    status.summary(DiagnosticStatus::OK, "sees no table");
   } else {
     status.summary(DiagnosticStatus::OK, "recognises");
   }
   status.add("clouds", num_clouds_);
   status.add("recognised", num_recognised_);
-  status.add("dropped", num_refused_);
+  static_assert(kFaultNames.size() == kNumFaults);
+  for (std::size_t i = 0; i < kNumFaults; ++i)
+    status.add(fmt::format("dropped, {}", kFaultNames[i]), num_refused_[i]);
   status.add("replaced by newer ones", num_replaced_);
   status.add("points", num_points_);
+  status.add("points that were measured", num_measured_);
   status.add("points of the robot itself", num_own_points_);
+  status.add("links that tf does not know", hires::base::Join(uncut_, ", "));
   status.add("things", last_.detections.size());
   status.add("time for a cloud [s]", seconds_);
   status.add("kinds", params_.recogniser.catalogue.size());

@@ -6,6 +6,7 @@
 #include <sensor_msgs/PointCloud2.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <array>
 #include <chrono>
 #include <optional>
 #include <string>
@@ -20,21 +21,26 @@ namespace hires_ros {
 /// Tells what stands on tables in the clouds of a depth camera. tf says where the camera and the
 /// robot's own links are at the stamp of a cloud. Works while somebody listens, on the newest cloud
 /// that came; each gets one answer, also where no table is seen, and what it says depends on cloud
-/// and transforms alone. A cloud that comes again is answered again, by the same.
+/// and transforms alone. A cloud that comes again is answered again, by the same. One that is not
+/// of now, or that its frame does not fit, is dropped with the reason, and gets no answer.
 class TabletopRecogniserNode {
  public:
   TabletopRecogniserNode(const TabletopRecogniserParams& params, ros::NodeHandle* nh);
 
  private:
   using Steady = std::chrono::steady_clock;
+  /// Why a cloud is dropped.
+  enum class Fault { kMalformed, kTooOld, kAhead, kNoTransform };
+  static constexpr std::size_t kNumFaults = 4;
 
   void ListenWhereHeard();
   void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
   void OnCloud(const sensor_msgs::PointCloud2ConstPtr& msg);
-  void Try();  ///< recognises in the cloud that waits, if its transform is there
+  void Try();               ///< recognises in the cloud that waits, if its transform is there
+  bool RefuseIfUntimely();  ///< the cloud that waits; whether it did
   void Recognise(const hires::geometry::Pose3& X_BC);
   std::vector<hires::geometry::Collision> RobotShapes(double time);
-  void Refuse(const std::string& why);
+  void Refuse(Fault fault, const std::string& why);
   void Tell();
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -47,10 +53,11 @@ class TabletopRecogniserNode {
 
   std::string waits_for_, refused_;  // why the last cloud was not recognised; or empty
   std::vector<std::string> uncut_;   // links that tf did not know
-  long num_clouds_{0}, num_recognised_{0}, num_refused_{0}, num_replaced_{0};
-  int num_own_points_{0}, num_points_{0};  // of the last cloud
-  double seconds_{0.0};                    // [s] that it took
-  double last_warning_{-1e9};              // [s] steady
+  long num_clouds_{0}, num_recognised_{0}, num_replaced_{0};
+  std::array<long, kNumFaults> num_refused_{};               // by fault
+  int num_own_points_{0}, num_points_{0}, num_measured_{0};  // of the last cloud
+  double seconds_{0.0};                                      // [s] that it took
+  double last_warning_{-1e9};                                // [s] steady
 
   ros::Publisher detections_, markers_;
   std::optional<ros::Subscriber> clouds_;  // while somebody listens

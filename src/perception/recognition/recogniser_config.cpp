@@ -32,6 +32,11 @@ void ReadRecognition(ParamReader in, RecogniserParams* params) {
   params->sharpness = in.Get("sharpness", Between(0.0, 1000.0));
 }
 
+void ReadAge(ParamReader in, CloudAgeParams* age) {
+  age->max_age = in.Get("max_age", Between(0.1, 60.0));
+  age->max_ahead = in.Get("max_ahead", Between(0.0, 10.0));
+}
+
 std::string BesideFile(const std::string& file, const std::string& path) {
   return (std::filesystem::path(file).parent_path() / path).lexically_normal().string();
 }
@@ -53,6 +58,7 @@ RecogniserConfig ReadRecogniserConfig(const std::string& path, const std::string
   ReadTable(in.Sub("table"), &config.params.segmentation.table);
   ReadThings(in.Sub("things"), &config.params.segmentation);
   ReadRecognition(in.Sub("recognition"), &config.params);
+  ReadAge(in.Sub("clouds"), &config.age);
   in.RejectUnknownKeys();
   for (auto& one : known) config.catalogue.push_back(std::move(one.second));
   return config;

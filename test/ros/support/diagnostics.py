@@ -15,7 +15,7 @@ def wait_for_middle_layer(rospy):
 
 
 def diagnostics(rospy, name, condition):
-    """Values of the node's status, and its `message`, once they are as wanted. What an earlier node
+    """Values of the node's status, its `message` and `level`, once they are as wanted. What an earlier node
     of this name left behind at the master has to be forgotten there."""
     from diagnostic_msgs.msg import DiagnosticArray
     found = {}
@@ -33,7 +33,7 @@ def diagnostics(rospy, name, condition):
             # The first of a node says that it is starting up, and no more.
             if status.name.startswith(name) and status.values:
                 found.update({value.key: value.value for value in status.values})
-                found['message'] = status.message
+                found.update(message=status.message, level=status.level)
 
     subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, take)
     try:
