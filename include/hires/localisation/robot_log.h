@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "hires/geometry/pose.h"
@@ -21,6 +22,7 @@ struct RobotLog {
     double time{0.0};
     geometry::Pose2 X_BL;  ///< laser in base
     robot::ScanReading reading;
+    std::optional<geometry::Pose2> X_OB;  ///< odometry at that time, where the log says so itself
   };
 
   std::vector<Odometry> odometry;
