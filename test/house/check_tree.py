@@ -21,7 +21,7 @@ LAYERS = [
     ["world", "planning"],
     ["physics", "navigation", "manipulation", "perception", "execution", "translation",
      "localisation"],
-    ["sensing"],
+    ["sensing", "mapping"],
     ["simulation", "skills"],
     ["control", "imagination"],
     ["evaluation"],
