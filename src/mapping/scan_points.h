@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hires/localisation/robot_log.h"
+#include "hires/robot/readings.h"
 
 namespace hires::mapping {
 
