@@ -48,7 +48,7 @@ void BM_TrayObjects(benchmark::State& state) {
     believed.push_back({mugs[i].name, mugs[i].X_MO, models->Model("mug").collisions});
   }
   const perception::LineOfSight sight(models, mugs);
-  ScanReading scan{-1.4, 2.8 / 639, 0.04, {}};
+  robot::ScanReading scan{-1.4, 2.8 / 639, 0.04, {}};
   base::Rng rng(1);
   for (int i = 0; i < 640; ++i) {
     const double angle = scan.angle_min + i * scan.angle_increment;
@@ -81,7 +81,7 @@ void BM_TrayMemory(benchmark::State& state) {
                   X_BT * test_support::At(0.175, 0.17 * (i - 1) + 0.004, 0.0002));
   }
   const perception::LineOfSight sight(models, truth);
-  ScanReading scan{-1.4, 2.8 / 639, 0.08, {}};
+  robot::ScanReading scan{-1.4, 2.8 / 639, 0.08, {}};
   base::Rng rng(1);
   for (int i = 0; i < 640; ++i) {
     const double angle = scan.angle_min + i * scan.angle_increment;

@@ -18,6 +18,7 @@
 #include "cli/experiment_command.h"
 #include "cli/limits_command.h"
 #include "cli/list_command.h"
+#include "cli/map_command.h"
 #include "cli/plan_command.h"
 #include "cli/query_scene.h"
 #include "cli/reading_display.h"
@@ -374,6 +375,7 @@ struct Verbs {
   PlanOptions plan;
   BlackboardOptions blackboard;
   ListOptions list;
+  MapOptions map;
   RecogniseOptions recognise;
   StoredReportOptions report;
   LimitsOptions limits;
@@ -405,6 +407,7 @@ void AddVerbs(CLI::App* app, Verbs* verbs, const Backends& backends) {
   AddBlackboardVerb(app, &verbs->blackboard);
   AddListVerb(app, &verbs->list);
   AddRecogniseVerb(app, &verbs->recognise);
+  AddMapVerb(app, &verbs->map);
   AddReportVerb(app, &verbs->report);
   AddDoctorVerb(app, &verbs->doctor);
   for (const Verb& verb : backends.more_verbs) {
@@ -464,6 +467,7 @@ int RunVerb(const Verbs& verbs, const Backends& backends) {
   if (*verbs.report.verb) return RunReportVerb(verbs.report);
   if (*verbs.list.verb) return RunListVerb(verbs.list, backends.package_folder);
   if (*verbs.recognise.verb) return RunRecogniseVerb(verbs.recognise, backends.package_folder);
+  if (*verbs.map.verb) return RunMapVerb(verbs.map);
   if (*verbs.blackboard.verb) {
     return RunBlackboardVerb(verbs.blackboard, backends.package_folder,
                              backends.connect_blackboard);

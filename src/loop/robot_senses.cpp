@@ -21,8 +21,8 @@ sensing::FrameNames FramesOf(const robot::Robot& robot) {
   return {"map", "odom", robot.profile.base_link};
 }
 
-sensing::ScanReading ReadingOf(const std::vector<double>& ranges,
-                               const simulation::LaserParams& laser) {
+robot::ScanReading ReadingOf(const std::vector<double>& ranges,
+                             const simulation::LaserParams& laser) {
   const double increment = (laser.angle_max - laser.angle_min) / (laser.num_beams - 1);
   return {laser.angle_min, increment, laser.range_min, {ranges.begin(), ranges.end()}};
 }

@@ -17,8 +17,8 @@ namespace hires::loop {
 sensing::FrameNames FramesOf(const robot::Robot& robot);
 
 /// @param ranges  [m] of the laser's beams.
-sensing::ScanReading ReadingOf(const std::vector<double>& ranges,
-                               const simulation::LaserParams& laser);
+robot::ScanReading ReadingOf(const std::vector<double>& ranges,
+                             const simulation::LaserParams& laser);
 
 /// One listener's estimates of the robot's state and of objects: middle layer and tracker have each
 /// their own, as they have in processes of their own.

@@ -57,7 +57,7 @@ bool NameBefore(const Words::value_type& a, const Words::value_type& b) {
 }
 
 /// Adds what joints say of which there is no word yet.
-void AddWords(double stamp, const JointReading& reading, Words* words) {
+void AddWords(double stamp, const robot::JointReading& reading, Words* words) {
   Words said;
   said.reserve(reading.positions.size());
   InOrder velocities(reading.velocities);
@@ -87,7 +87,7 @@ Word Between(const robot::Joint* joint, const Word& from, const Word& to, double
 }
 
 /// @pre names come in ascending order
-void Take(const std::string& name, const Word& word, JointReading* reading) {
+void Take(const std::string& name, const Word& word, robot::JointReading* reading) {
   reading->positions.emplace_hint(reading->positions.end(), name, word.position);
   if (word.velocity) {
     reading->velocities.emplace_hint(reading->velocities.end(), name, *word.velocity);
@@ -112,8 +112,8 @@ bool JointHistory::IsOurs(const robot::Joint* joint) const {
   return joint == nullptr ? !robot_->profile.upper_body : joint->mimics.empty();
 }
 
-bool JointHistory::Insert(double stamp, const JointReading& reading) {
-  JointReading ours;
+bool JointHistory::Insert(double stamp, const robot::JointReading& reading) {
+  robot::JointReading ours;
   InOrder joints(joints_);
   for (const auto& [name, position] : reading.positions) {
     const auto* joint = joints.Find(name);
@@ -128,7 +128,7 @@ bool JointHistory::Insert(double stamp, const JointReading& reading) {
     ours.velocities.emplace_hint(ours.velocities.end(), name, velocity);
   }
   for (const auto& [name, unused] : ours.positions) names_.insert(name);
-  JointReading* same = history_.Find(stamp);
+  robot::JointReading* same = history_.Find(stamp);
   if (same == nullptr) return history_.Insert(stamp, std::move(ours));
   const std::size_t before = same->positions.size();
   same->positions.merge(ours.positions);
@@ -164,7 +164,7 @@ double JointHistory::DistanceTo(double time) const {
   return distance;
 }
 
-JointReading JointHistory::At(double time, double max_gap) const {
+robot::JointReading JointHistory::At(double time, double max_gap) const {
   Words before, after;
   const auto place = std::partition_point(history_.begin(), history_.end(),
                                           [&](const auto& entry) { return entry.stamp <= time; });
@@ -176,7 +176,7 @@ JointReading JointHistory::At(double time, double max_gap) const {
   for (auto entry = place; entry != history_.end() && after.size() < names_.size(); ++entry) {
     AddWords(entry->stamp, entry->value, &after);
   }
-  JointReading reading;
+  robot::JointReading reading;
   InOrder joints(joints_);
   const auto between = [&](const std::string& name, const Word& last, const Word& next) {
     if (last.stamp >= time || next.stamp - last.stamp > max_gap) return last;

@@ -30,7 +30,7 @@ std::string WhyNoTable(const std::vector<Eigen::Vector3d>& corners) {
 }
 
 /// Empty: it is one.
-std::string WhyNoScan(const ScanReading& scan) {
+std::string WhyNoScan(const robot::ScanReading& scan) {
   if (scan.ranges.empty()) return "it has no ranges, wanted one for each beam";
   const bool is_finite = std::isfinite(scan.angle_min) && std::isfinite(scan.angle_increment);
   if (!is_finite || scan.angle_increment == 0.0) {
@@ -84,7 +84,7 @@ std::vector<std::string> ObjectEstimator::OnLook(Look look) {
 }
 
 std::vector<std::string> ObjectEstimator::OnTrayScan(double stamp, const std::string& frame,
-                                                     ScanReading scan) {
+                                                     robot::ScanReading scan) {
   FollowClock();
   std::vector<std::string> problems = std::exchange(scan_problems_, {});
   if (!(stamp > 0.0)) {

@@ -7,7 +7,8 @@ namespace hires::sensing {
 ObservationMaker::ObservationMaker(const RobotStateEstimator* state, ScanObstacles obstacles)
     : find_obstacles_(std::move(obstacles)), scans_(state) {}
 
-Receipt ObservationMaker::OnScan(double stamp, const std::string& frame, ScanReading reading) {
+Receipt ObservationMaker::OnScan(double stamp, const std::string& frame,
+                                 robot::ScanReading reading) {
   return scans_.OnScan(stamp, frame, std::move(reading));
 }
 

@@ -33,7 +33,8 @@ Pose2 Between(const Pose2& from, const Pose2& to, double share) {
           geometry::WrapToPi(from.yaw + share * geometry::WrapToPi(to.yaw - from.yaw))};
 }
 
-OdometryReading Between(const OdometryReading& from, const OdometryReading& to, double share) {
+robot::OdometryReading Between(const robot::OdometryReading& from, const robot::OdometryReading& to,
+                               double share) {
   const Twist2 &a = from.V_B, &b = to.V_B;
   return {
       Between(from.X_OB, to.X_OB, share),
@@ -165,7 +166,8 @@ void RobotStateEstimator::ForgetOld() {
 // ---- What comes in.
 
 Receipt RobotStateEstimator::OnOdometry(double stamp, const std::string& frame,
-                                        const std::string& child, const OdometryReading& reading) {
+                                        const std::string& child,
+                                        const robot::OdometryReading& reading) {
   if (!IsStamp(stamp)) return {Reception::kNoStamp, {}};
   if (!reading.X_OB.IsFinite()) return {Reception::kNotFinite, "pose"};
   if (!IsFinite(reading.V_B)) return {Reception::kNotFinite, "twist"};
@@ -179,7 +181,8 @@ Receipt RobotStateEstimator::OnOdometry(double stamp, const std::string& frame,
   const Pose2 X_CB = geometry::Flatten(offset.X_PC);
   const bool is_base = X_CB.x == 0.0 && X_CB.y == 0.0 && X_CB.yaw == 0.0;  // bits stay as they came
   const bool is_new = raw_.Insert(
-      stamp, is_base ? reading : OdometryReading{reading.X_OB * X_CB, MovedTo(X_CB, reading.V_B)});
+      stamp,
+      is_base ? reading : robot::OdometryReading{reading.X_OB * X_CB, MovedTo(X_CB, reading.V_B)});
   ForgetOld();
   return is_new ? CheckFrame(frame) : Receipt{Reception::kRepeated, {}};
 }
@@ -203,7 +206,7 @@ Receipt RobotStateEstimator::CheckFrame(const std::string& frame) const {
   return ReceiptOf(tree_->Find(frames_.odometry, raw_frame_, *now()).status, frame);
 }
 
-Receipt RobotStateEstimator::OnJoints(double stamp, const JointReading& reading) {
+Receipt RobotStateEstimator::OnJoints(double stamp, const robot::JointReading& reading) {
   if (!IsStamp(stamp)) return {Reception::kNoStamp, {}};
   for (const auto* numbers : {&reading.positions, &reading.velocities}) {
     for (const auto& [name, number] : *numbers) {
@@ -261,7 +264,7 @@ Receipt RobotStateEstimator::TakeCorrection(const std::string& frame, double new
 // ---- What is known.
 
 /// @param reach  [s] from a reading with which `time` makes do where it does not lie between two.
-std::optional<OdometryReading> RobotStateEstimator::RawAt(double time, double reach) const {
+std::optional<robot::OdometryReading> RobotStateEstimator::RawAt(double time, double reach) const {
   const auto* before = raw_.Before(time);
   const auto* after = raw_.After(time);
   if (before && before->stamp == time) return before->value;
@@ -360,14 +363,14 @@ std::optional<double> RobotStateEstimator::LocalisedUntil() const {
 
 std::optional<RobotEstimate> RobotStateEstimator::At(double time) const {
   if (MissingAt(time) != Missing::kNothing) return std::nullopt;
-  const OdometryReading raw = *RawAt(time, kNear);
+  const robot::OdometryReading raw = *RawAt(time, kNear);
   RobotEstimate estimate;
   estimate.time = time;
   estimate.X_OB = raw_frame_ == frames_.odometry ? raw.X_OB : *OdometryOrigin(time) * raw.X_OB;
   estimate.X_MB = *CorrectionAt(time) * estimate.X_OB;
   estimate.X_WB = map_to_world_.ToWorld(estimate.X_MB);
   estimate.V_B = raw.V_B;
-  JointReading joints = joints_.At(time, params_.stale_after);
+  robot::JointReading joints = joints_.At(time, params_.stale_after);
   estimate.joints = std::move(joints.positions);
   estimate.joint_velocities = std::move(joints.velocities);
   estimate.posture = joints_.PostureOf(estimate.joints);

@@ -24,7 +24,7 @@ ScanObstacles::ScanObstacles(std::shared_ptr<const navigation::Costmap> map, Pol
                              const ScanParams& params)
     : map_(std::move(map)), footprint_(std::move(footprint)), params_(params) {}
 
-std::vector<Polygon> ScanObstacles::Find(const ScanReading& scan, const Pose2& X_MB,
+std::vector<Polygon> ScanObstacles::Find(const robot::ScanReading& scan, const Pose2& X_MB,
                                          const Pose2& X_BL) const {
   std::set<std::pair<long, long>> cells;
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {

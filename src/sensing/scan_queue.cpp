@@ -12,7 +12,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-Receipt ScanQueue::OnScan(double stamp, const std::string& frame, ScanReading reading) {
+Receipt ScanQueue::OnScan(double stamp, const std::string& frame, robot::ScanReading reading) {
   if (!(stamp > 0.0)) return {Reception::kNoStamp, {}};
   if (state_->IsAhead(stamp)) return state_->Ahead("header.stamp");
   const bool is_new = scans_.Insert(stamp, {frame, std::move(reading)});

@@ -28,5 +28,15 @@ TEST(ReadingDisplayTest, ALogHasALineNowAndThen) {
   EXPECT_EQ(ShownFrom(false), "reading hall.world: 43 %\n");
 }
 
+TEST(ReadingDisplayTest, LongWorkTellsWhatIsLeft) {
+  std::ostringstream out;
+  double now = 10.0;
+  const auto show = ShowReadingOn(&out, false, [&] { return now; });
+  show("mapping drive.log", 0.0);
+  now = 14.0;
+  show("mapping drive.log", 0.25);
+  EXPECT_EQ(out.str(), "mapping drive.log: 25 %, 12 s left\n");
+}
+
 }  // namespace
 }  // namespace hires::cli::reading_display_test

@@ -71,7 +71,7 @@ class FloorWatchTest : public testing::Test {
       state_.OnTransforms(time_);
       state_.OnOdometry(time_, "odom", "", {X_MB_, {}});
       state_.OnJoints(time_, {{{"a", 1.0}}, {{"a", 0.5}}});
-      ScanReading scan{-0.5 * M_PI, M_PI / 360.0, 0.08, {}};
+      robot::ScanReading scan{-0.5 * M_PI, M_PI / 360.0, 0.08, {}};
       for (int k = 0; k <= 360; ++k) {
         const double range = RangeTo(standing, X_MB_, scan.angle_min + k * scan.angle_increment);
         scan.ranges.push_back(static_cast<float>(range + rng_.Normal(0.0, 0.01)));

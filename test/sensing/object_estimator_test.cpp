@@ -308,7 +308,7 @@ TEST_F(ObjectEstimatorTest, LooksThatComeInAnyOrderAreRememberedInTheOrderOfTime
 // ---- The tray.
 
 TEST_F(ObjectEstimatorTest, ScansOfTheTrayAreUsedTenTimesASecondWhenTheirTimeIsKnown) {
-  const ScanReading empty{-1.4, 2.8 / 639, 0.08, std::vector<float>(640, 5.0F)};
+  const robot::ScanReading empty{-1.4, 2.8 / 639, 0.08, std::vector<float>(640, 5.0F)};
   const std::string laser = "base_tray_laser_link";
   const Pose3 X_MT = InWorld("base_tray_link");
   world::WorldState stated;
@@ -329,9 +329,9 @@ TEST_F(ObjectEstimatorTest, ScansOfTheTrayAreUsedTenTimesASecondWhenTheirTimeIsK
 }
 
 TEST_F(ObjectEstimatorTest, BadScansOfTheTrayAreNamed) {
-  const ScanReading good{-1.4, 2.8 / 639, 0.08, std::vector<float>(640, 5.0F)};
+  const robot::ScanReading good{-1.4, 2.8 / 639, 0.08, std::vector<float>(640, 5.0F)};
   const std::string laser = "base_tray_laser_link";
-  ScanReading bad = good;
+  robot::ScanReading bad = good;
   bad.ranges.clear();
   EXPECT_THAT(objects_.OnTrayScan(time_, laser, bad), ElementsAre(HasSubstr("no ranges")));
   bad = good;

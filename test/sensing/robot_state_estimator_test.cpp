@@ -517,7 +517,7 @@ TEST_F(FramesTest, OtherFramesHangOnTheBaseOrOnTheMap) {
 
 /// A PR2's joint_states has 45 joints: those of its finger tips follow others.
 TEST_F(FramesTest, JointsThatFollowOthersOrThatNobodyKnowsAreLeftOut) {
-  JointReading reading{robot_->profile.joints, {}};
+  robot::JointReading reading{robot_->profile.joints, {}};
   reading.positions["l_gripper_r_finger_tip_joint"] = 0.1;
   reading.velocities["l_gripper_r_finger_tip_joint"] = 0.1;
   reading.positions["gadget_joint"] = 1.0;
@@ -551,7 +551,7 @@ TEST_F(FramesTest, AJointThatTurnsWithoutEndTakesTheShorterWay) {
 
 TEST_F(FramesTest, AnAngleThatWasMeasuredLeadsOverTheGapOfTheDrivingPosture) {
   const robot::ArmProfile& arm = robot_->profile.upper_body->arms.at("rightarm1");
-  JointReading reading{robot_->profile.joints, {}};
+  robot::JointReading reading{robot_->profile.joints, {}};
   reading.positions.erase(arm.gripper_joint);
   reading.positions[arm.finger_joint] = 0.3;
   RobotStateEstimator state(robot_, {"lab", "odom_combined", "base_footprint"}, {}, {}, tree_);

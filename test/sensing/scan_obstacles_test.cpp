@@ -22,7 +22,7 @@ std::shared_ptr<const navigation::Costmap> RoomMap() {
 }
 
 /// A single beam, straight ahead.
-ScanReading Beam(double range) { return {0.0, 0.01, 0.08, {static_cast<float>(range)}}; }
+robot::ScanReading Beam(double range) { return {0.0, 0.01, 0.08, {static_cast<float>(range)}}; }
 
 class ScanObstaclesTest : public ::testing::Test {
  protected:

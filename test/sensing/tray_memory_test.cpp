@@ -47,11 +47,11 @@ class TrayMemoryTest : public testing::Test {
     memory_.Believe(object.name, object.model, "base_footprint",
                     geometry::Lift(body_.X_MB).Inverse() * object.X_MO);
   }
-  ScanReading Measure(const std::vector<world::ObjectState>& truth) {
+  robot::ScanReading Measure(const std::vector<world::ObjectState>& truth) {
     const LineOfSight sight(surroundings_, truth,
                             perception::ShapesOf(*Pr2(), body_.X_MB, body_.joints));
     const Pose3 X_MLaser = X_ML("base_tray_laser_link");
-    ScanReading scan{-1.4, 2.8 / 639, 0.08, {}};
+    robot::ScanReading scan{-1.4, 2.8 / 639, 0.08, {}};
     for (int i = 0; i < 640; ++i) {
       const double angle = scan.angle_min + i * scan.angle_increment;
       const Eigen::Vector3d ahead(std::cos(angle), std::sin(angle), 0.0);
@@ -61,7 +61,7 @@ class TrayMemoryTest : public testing::Test {
     }
     return scan;
   }
-  std::string Use(const ScanReading& scan) {
+  std::string Use(const robot::ScanReading& scan) {
     body_.time += 0.1;
     return memory_.ScanTray(body_, scan, X_BL());
   }
@@ -206,7 +206,7 @@ TEST_F(TrayMemoryTest, RandomLoadsStayWhatTheyAre) {
 
 TEST_F(TrayMemoryTest, ALaserThatMeasuresNothingSaysNothing) {
   Believe(Put("mug1", 0.15, 0.0));
-  ScanReading scan = Measure({});
+  robot::ScanReading scan = Measure({});
   for (const float range : {std::numeric_limits<float>::quiet_NaN(), 0.0F, -1.0F}) {
     std::fill(scan.ranges.begin(), scan.ranges.end(), range);
     for (int i = 0; i < 20; ++i) EXPECT_EQ(Use(scan), "");
@@ -241,7 +241,7 @@ TEST_F(TrayMemoryTest, WhatTheCameraNamesIsUnknownNoMore) {
 }
 
 TEST_F(TrayMemoryTest, AScanOfAnotherLaserIsRefused) {
-  const ScanReading scan = Measure({});
+  const robot::ScanReading scan = Measure({});
   Pose3 leaning = X_BL();
   leaning.rotation = leaning.rotation * geometry::RotationFromRpy(0.0, 0.3, 0.0);
   EXPECT_THAT(memory_.ScanTray(body_, scan, leaning), HasSubstr("leans by 0.300 rad"));

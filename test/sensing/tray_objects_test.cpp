@@ -38,10 +38,11 @@ std::shared_ptr<const perception::Surroundings> Things() {
 }
 
 /// 640 beams with the noise of a Hokuyo.
-ScanReading Scan(const std::shared_ptr<const perception::Surroundings>& models,
-                 const std::vector<world::ObjectState>& objects, double noise, base::Rng* rng) {
+robot::ScanReading Scan(const std::shared_ptr<const perception::Surroundings>& models,
+                        const std::vector<world::ObjectState>& objects, double noise,
+                        base::Rng* rng) {
   const perception::LineOfSight sight(models, objects);
-  ScanReading scan{-1.4, 2.8 / 639, 0.04, {}};
+  robot::ScanReading scan{-1.4, 2.8 / 639, 0.04, {}};
   for (int i = 0; i < 640; ++i) {
     const double angle = scan.angle_min + i * scan.angle_increment;
     const double range = sight.Cast(kLaser.translation, {std::cos(angle), std::sin(angle), 0.0});
@@ -153,7 +154,7 @@ TEST_F(TrayObjectsTest, TwoThingsThatTouchAreToldApartByWhatIsBelieved) {
 TEST_F(TrayObjectsTest, WhatIsBesideTheTrayOrNoMeasurementIsNothing) {
   const auto beside = Read({Put("mug1", "mug", 0.21, 0.0)}, {});
   EXPECT_THAT(beside.things, IsEmpty());
-  ScanReading nothing{-1.4, 0.01, 0.04, std::vector<float>(280)};
+  robot::ScanReading nothing{-1.4, 0.01, 0.04, std::vector<float>(280)};
   std::fill(nothing.ranges.begin(), nothing.ranges.end(), std::numeric_limits<float>::quiet_NaN());
   EXPECT_THAT(ReadTray(nothing, kLaser, kTray, {}, {}).things, IsEmpty());
 }

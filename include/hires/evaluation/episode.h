@@ -60,8 +60,8 @@ class EpisodeBuilder {
                  double period);
 
   void OnOdometry(double stamp, const std::string& frame, const std::string& child,
-                  const sensing::OdometryReading& reading);
-  void OnJoints(double stamp, const sensing::JointReading& reading);
+                  const robot::OdometryReading& reading);
+  void OnJoints(double stamp, const robot::JointReading& reading);
   void OnTransforms(double stamp);
   void OnLook(sensing::Look look);
   void OnKnownObjects(double stamp, const world::WorldState& known);

@@ -9,7 +9,7 @@
 #include "hires/base/rng.h"
 #include "hires/evaluation/truth.h"
 #include "hires/imagination/imagination_setup.h"
-#include "hires/sensing/readings.h"
+#include "hires/robot/readings.h"
 #include "hires/simulation/robot_simulator.h"
 #include "hires/world/standing.h"
 
@@ -36,8 +36,8 @@ simulation::LevelOfDetail LevelFor(const simulation::Scene& scene);
 
 /// What the robot's own sensors say at one moment.
 struct SensorReadings {
-  sensing::OdometryReading odometry;
-  sensing::JointReading joints;
+  robot::OdometryReading odometry;
+  robot::JointReading joints;
   geometry::Pose2 X_MB;                     ///< where its localisation says that it stands
   geometry::Pose2 X_MO;                     ///< where its odometry began, by the same
   std::vector<geometry::Polygon> ghosts_M;  ///< seen by the laser, though not there

@@ -19,7 +19,7 @@ namespace hires::loop {
 /// What the laser over the tray measures.
 struct TrayScan {
   std::string frame;
-  sensing::ScanReading reading;
+  robot::ScanReading reading;
 };
 
 /// What the robot's sensors say at one moment, as one who listens to them gets it.

@@ -16,8 +16,8 @@
 #include "hires/perception/detector.h"
 #include "hires/perception/point_cloud.h"
 #include "hires/robot/observation.h"
+#include "hires/robot/readings.h"
 #include "hires/robot/robot_profile.h"
-#include "hires/sensing/readings.h"
 
 /// A robot's sensors and controllers as messages. What came and makes no sense is a
 /// hires::base::ConfigError naming topic and field.
@@ -35,13 +35,13 @@ hires::robot::JointTrajectory FromMsg(const trajectory_msgs::JointTrajectory& ms
                                       const std::vector<std::string>& known,
                                       const std::string& where);
 
-using hires::sensing::JointReading;
-using hires::sensing::OdometryReading;
+using hires::robot::JointReading;
+using hires::robot::OdometryReading;
 
-JointReading FromMsg(const sensor_msgs::JointState& msg);
-sensor_msgs::JointState ToMsg(const JointReading& joints, const ros::Time& stamp);
+robot::JointReading FromMsg(const sensor_msgs::JointState& msg);
+sensor_msgs::JointState ToMsg(const robot::JointReading& joints, const ros::Time& stamp);
 
-OdometryReading FromMsg(const nav_msgs::Odometry& msg);
+robot::OdometryReading FromMsg(const nav_msgs::Odometry& msg);
 
 /// Its fields x, y and z, of any layout in little-endian single precision; others are passed over.
 /// @throws hires::base::ConfigError naming the field that is missing or of another type, or sizes

@@ -43,7 +43,7 @@ class FloorWatch {
   FloorWatch(const RobotStateEstimator* state, std::shared_ptr<const world::World> world,
              geometry::Polygon footprint, const FloorWatchParams& params);
 
-  Receipt OnScan(double stamp, const std::string& frame, ScanReading reading);
+  Receipt OnScan(double stamp, const std::string& frame, robot::ScanReading reading);
   /// Takes in the newest scan up to a time [s].
   /// @return whether other things are there than before.
   bool Update(double time);

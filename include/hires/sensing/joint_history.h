@@ -6,9 +6,9 @@
 #include <set>
 #include <string>
 
+#include "hires/robot/readings.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/sensing/history.h"
-#include "hires/sensing/readings.h"
 
 namespace hires::sensing {
 
@@ -20,7 +20,7 @@ class JointHistory {
   explicit JointHistory(std::shared_ptr<const robot::Robot> robot);
 
   /// @return whether it said anything new.  @pre all numbers are finite
-  bool Insert(double stamp, const JointReading& reading);
+  bool Insert(double stamp, const robot::JointReading& reading);
   void KeepBetween(double from, double to);
   void Clear();
 
@@ -33,7 +33,7 @@ class JointHistory {
 
   /// Each joint between the two readings around `time`, as long as they are at most `max_gap` [s]
   /// apart; else as in the earlier one, or in the later one where nothing came before.
-  JointReading At(double time, double max_gap) const;
+  robot::JointReading At(double time, double max_gap) const;
   /// How the whole robot stands, see robot::PostureOf; names that its model does not know, or whose
   /// joint is fixed, are left out.
   robot::JointPositions PostureOf(const robot::JointPositions& measured) const;
@@ -45,8 +45,8 @@ class JointHistory {
 
   std::shared_ptr<const robot::Robot> robot_;
   Joints joints_;  // of the robot
-  History<JointReading> history_;
-  JointReading older_;           // the last words about joints before the history begins
+  History<robot::JointReading> history_;
+  robot::JointReading older_;    // the last words about joints before the history begins
   std::set<std::string> names_;  // of all joints that were ever told of
 };
 

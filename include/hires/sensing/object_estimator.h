@@ -56,7 +56,8 @@ class ObjectEstimator {
   /// of several within kScanPeriod the first alone is.
   /// @param frame  of the laser.
   /// @return what is wrong: with this scan, or with earlier ones that could not be used since.
-  std::vector<std::string> OnTrayScan(double stamp, const std::string& frame, ScanReading scan);
+  std::vector<std::string> OnTrayScan(double stamp, const std::string& frame,
+                                      robot::ScanReading scan);
   static constexpr double kScanPeriod = 0.1;  ///< [s]
 
   /// All that others say now; what they do not say any more is believed no longer.
@@ -91,7 +92,7 @@ class ObjectEstimator {
   void Drop(const std::string& why, LookNews* news);
   struct TrayScan {
     std::string frame;
-    ScanReading reading;
+    robot::ScanReading reading;
   };
   void ScanTray(double now);
   std::string Use(double stamp, const TrayScan& scan);

@@ -132,7 +132,7 @@ class ObjectMemory {
   /// @param X_BL  the laser in the robot's base.
   /// @return why it was not used; empty: it was.
   /// @throws base::ConfigError as Feel.
-  std::string ScanTray(const BodyReading& body, const ScanReading& scan,
+  std::string ScanTray(const BodyReading& body, const robot::ScanReading& scan,
                        const geometry::Pose3& X_BL);
   static constexpr double kDepthOnTray = 0.08;   ///< [m]
   static constexpr double kHeightOnTray = 0.15;  ///< [m]

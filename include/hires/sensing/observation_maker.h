@@ -18,7 +18,7 @@ class ObservationMaker {
   ObservationMaker(const RobotStateEstimator* state, ScanObstacles obstacles);
 
   /// @param frame  of the laser.
-  Receipt OnScan(double stamp, const std::string& frame, ScanReading reading);
+  Receipt OnScan(double stamp, const std::string& frame, robot::ScanReading reading);
 
   /// What is seen at that moment; `time` is its stamp. Obstacles are those of the last scan up to
   /// now, where the robot was when it was taken.

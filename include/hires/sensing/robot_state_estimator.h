@@ -102,8 +102,8 @@ class RobotStateEstimator {
   /// @param frame  in which the pose is; `child`, whose it is, and in which the velocity is. No
   ///               child is the base.
   Receipt OnOdometry(double stamp, const std::string& frame, const std::string& child,
-                     const OdometryReading& reading);
-  Receipt OnJoints(double stamp, const JointReading& reading);
+                     const robot::OdometryReading& reading);
+  Receipt OnJoints(double stamp, const robot::JointReading& reading);
   /// The tree has learnt something about this moment; infinity: about frames that never move.
   Receipt OnTransforms(double stamp);
 
@@ -153,7 +153,7 @@ class RobotStateEstimator {
   Receipt Late() const;
   FramePose ChildToBase(const std::string& child, double stamp) const;
   Receipt CheckFrame(const std::string& frame) const;
-  std::optional<OdometryReading> RawAt(double time, double reach) const;
+  std::optional<robot::OdometryReading> RawAt(double time, double reach) const;
   std::optional<geometry::Pose2> OdometryOrigin(double time) const;
   double LeastLead() const;
   Receipt TakeCorrection(const std::string& frame, double newest, double stamp);
@@ -168,7 +168,7 @@ class RobotStateEstimator {
   world::MapToWorld map_to_world_;
   std::shared_ptr<FrameTree> tree_;
   std::string raw_frame_;                      // of the odometry
-  History<OdometryReading> raw_;               // base in that frame
+  History<robot::OdometryReading> raw_;        // base in that frame
   History<geometry::Pose2> base_in_odometry_;  // by the tree
   History<Correction> corrections_;
   bool is_base_corrected_{false};             // corrections are of the base, not of the odometry

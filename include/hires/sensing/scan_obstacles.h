@@ -7,6 +7,7 @@
 #include "hires/base/param_reader.h"
 #include "hires/geometry/polygon.h"
 #include "hires/navigation/costmap.h"
+#include "hires/robot/readings.h"
 
 namespace hires::sensing {
 
@@ -19,14 +20,6 @@ struct ScanParams {
 /// The block `scan` of config/middle_layer.yaml.  @throws base::ConfigError naming the key.
 ScanParams ReadScanParams(base::ParamReader in);
 
-/// A planar laser scan in the laser's frame.
-struct ScanReading {
-  double angle_min{0.0};        ///< [rad]
-  double angle_increment{0.0};  ///< [rad]
-  double range_min{0.0};        ///< [m] shorter ones are no measurement
-  std::vector<float> ranges;    ///< [m]
-};
-
 /// Tells what a scan shows beyond the map.
 class ScanObstacles {
  public:
@@ -36,7 +29,7 @@ class ScanObstacles {
                 const ScanParams& params);
 
   /// Squares in the map around the points that the map does not explain, each cell once.
-  std::vector<geometry::Polygon> Find(const ScanReading& scan, const geometry::Pose2& X_MB,
+  std::vector<geometry::Polygon> Find(const robot::ScanReading& scan, const geometry::Pose2& X_MB,
                                       const geometry::Pose2& X_BL) const;
 
  private:

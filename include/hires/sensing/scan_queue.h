@@ -15,7 +15,7 @@ class ScanQueue {
   /// A scan, and where the robot and its laser were when it was taken.
   struct Placed {
     double stamp{0.0};  ///< [s]
-    ScanReading reading;
+    robot::ScanReading reading;
     geometry::Pose2 X_MB, X_BL;
   };
 
@@ -23,7 +23,7 @@ class ScanQueue {
   explicit ScanQueue(const RobotStateEstimator* state) : state_(state) {}
 
   /// @param frame  of the laser.
-  Receipt OnScan(double stamp, const std::string& frame, ScanReading reading);
+  Receipt OnScan(double stamp, const std::string& frame, robot::ScanReading reading);
   /// The newest scan up to a time [s], once; older ones are dropped with it. Nothing where nobody
   /// knows where it was taken.
   std::optional<Placed> Take(double time);
@@ -33,7 +33,7 @@ class ScanQueue {
  private:
   struct Scan {
     std::string frame;
-    ScanReading reading;
+    robot::ScanReading reading;
   };
 
   const RobotStateEstimator* state_;

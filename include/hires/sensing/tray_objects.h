@@ -70,7 +70,7 @@ inline constexpr double kLevelLaser = 0.05;
 /// @param tray_T  the tray's outline.
 /// @param own_T   outlines, in the scan's height, of the robot's parts and of what it holds.
 /// @throws std::logic_error for a laser that leans by more than kLevelLaser.
-TrayReading ReadTray(const ScanReading& scan, const geometry::Pose3& X_TL,
+TrayReading ReadTray(const robot::ScanReading& scan, const geometry::Pose3& X_TL,
                      const geometry::Polygon& tray_T, const std::vector<BelievedOnTray>& believed,
                      const TrayParams& params, const std::vector<geometry::Polygon>& own_T = {});
 

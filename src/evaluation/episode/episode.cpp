@@ -63,13 +63,13 @@ EpisodeBuilder::EpisodeBuilder(const imagination::ImaginationSetup& setup,
 }
 
 void EpisodeBuilder::OnOdometry(double stamp, const std::string& frame, const std::string& child,
-                                const sensing::OdometryReading& reading) {
+                                const robot::OdometryReading& reading) {
   Note("odometry", state_.OnOdometry(stamp, frame, child, reading));
   FollowClock();
   Sample();
 }
 
-void EpisodeBuilder::OnJoints(double stamp, const sensing::JointReading& reading) {
+void EpisodeBuilder::OnJoints(double stamp, const robot::JointReading& reading) {
   Note("joint states", state_.OnJoints(stamp, reading));
   Sample();
 }

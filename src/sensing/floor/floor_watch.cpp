@@ -71,7 +71,7 @@ FloorWatch::FloorWatch(const RobotStateEstimator* state, std::shared_ptr<const w
       map_(MapOf(*world, params.height)),
       scans_(state) {}
 
-Receipt FloorWatch::OnScan(double stamp, const std::string& frame, ScanReading reading) {
+Receipt FloorWatch::OnScan(double stamp, const std::string& frame, robot::ScanReading reading) {
   return scans_.OnScan(stamp, frame, std::move(reading));
 }
 
@@ -100,7 +100,7 @@ FloorWatch::Key FloorWatch::KeyOf(const Vector2d& p_M) const {
 
 /// @return whether cells were taken or given up.
 bool FloorWatch::Count(const ScanQueue::Placed& scan, double elapsed) {
-  const ScanReading& reading = scan.reading;
+  const robot::ScanReading& reading = scan.reading;
   std::map<Key, int> hit;
   for (std::size_t i = 0; i < reading.ranges.size(); ++i) {
     const double range = reading.ranges[i];
@@ -128,7 +128,7 @@ bool FloorWatch::Count(const ScanQueue::Placed& scan, double elapsed) {
 bool FloorWatch::Forget(const ScanQueue::Placed& scan, double elapsed,
                         const std::map<Key, int>& hit) {
   bool has_changed = false;
-  const ScanReading& reading = scan.reading;
+  const robot::ScanReading& reading = scan.reading;
   const geometry::Pose2 X_LM = (scan.X_MB * scan.X_BL).Inverse();
   for (auto at = cells_.begin(); at != cells_.end();) {
     Cell& cell = at->second;

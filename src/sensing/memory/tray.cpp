@@ -56,7 +56,7 @@ SeenBox BoxOn(const TrayThing& thing, const Vector2d& p_TL) {
 
 }  // namespace
 
-std::string ObjectMemory::ScanTray(const BodyReading& body, const ScanReading& scan,
+std::string ObjectMemory::ScanTray(const BodyReading& body, const robot::ScanReading& scan,
                                    const Pose3& X_BL) {
   if (!tray_T_) return fmt::format("robot '{}' has no tray (tray_link)", robot_->model.name);
   const Links links(*robot_, body);

@@ -30,7 +30,7 @@ std::vector<bool> OwnBeams(const TrayBeams& beams, const Slice& own_T, double pa
   return is_own;
 }
 
-TrayBeams BeamsOf(const ScanReading& scan, const Pose3& X_TL, const Polygon& tray_T,
+TrayBeams BeamsOf(const robot::ScanReading& scan, const Pose3& X_TL, const Polygon& tray_T,
                   const Slice& own_T, const TrayParams& params) {
   const geometry::Pose2 flat = geometry::Flatten(X_TL);
   const Vector2d middle =
@@ -185,7 +185,7 @@ TrayObject Judge(const TrayBeams& beams, const BelievedOnTray& believed, const S
 
 }  // namespace
 
-TrayReading ReadTray(const ScanReading& scan, const Pose3& X_TL, const Polygon& tray_T,
+TrayReading ReadTray(const robot::ScanReading& scan, const Pose3& X_TL, const Polygon& tray_T,
                      const std::vector<BelievedOnTray>& believed, const TrayParams& params,
                      const std::vector<Polygon>& own_T) {
   HIRES_CHECK(geometry::TiltOf(X_TL.rotation) <= kLevelLaser,

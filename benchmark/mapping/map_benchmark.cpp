@@ -1,0 +1,88 @@
+#include <benchmark/benchmark.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "hires/mapping/mapper.h"
+#include "support/simulated_drive.h"
+
+// What does a scan cost, and how far off are trajectory and walls? Counters are of the drive with
+// the seed that is the last argument; see docs/notes_navigation.md.
+namespace hires::mapping {
+namespace {
+
+using test_support::SimulatedDriveParams;
+
+struct Course {
+  const char* map;
+  std::vector<Eigen::Vector2d> places;
+};
+const Course kCourses[] = {{"map_sim_origin.yaml",
+                            {{1.5, 7.5},
+                             {6.4, 7.5},
+                             {6.4, 12.0},
+                             {11.4, 12.0},
+                             {11.4, 7.5},
+                             {1.5, 7.5},
+                             {1.5, 12.0},
+                             {1.5, 7.5},
+                             {11.4, 7.5},
+                             {11.4, 12.0},
+                             {6.4, 12.0},
+                             {6.4, 7.5}}},
+                           {"map_pr2_origin.yaml",
+                            {{6.0, 12.0},
+                             {11.4, 12.0},
+                             {11.4, 7.0},
+                             {2.0, 7.0},
+                             {35.0, 7.0},
+                             {11.4, 7.0},
+                             {11.4, 12.0},
+                             {6.0, 12.0}}}};
+
+SimulatedDriveParams ParamsOf(int kind) {
+  SimulatedDriveParams params;
+  if (kind == 1) {  // a short laser
+    params.beams = 181;
+    params.range_noise = 0.03;
+    params.range_max = 8.0;
+  } else if (kind == 2) {  // bad odometry
+    params.scale_error = 0.05;
+    params.veer_error = 0.05;
+  } else if (kind == 3) {  // worse
+    params.scale_error = 0.1;
+    params.veer_error = 0.1;
+    params.step_error = 0.3;
+  }
+  return params;
+}
+
+void BM_Map(benchmark::State& state) {
+  const Course& course = kCourses[state.range(0)];
+  const std::string file = std::string(HIRES_SOURCE_DIR) + "/../shared/data/" + course.map;
+  if (!std::filesystem::exists(file)) {
+    state.SkipWithError("the original maps are not there");
+    return;
+  }
+  const world::OccupancyGrid world = world::LoadMap(file);
+  const test_support::SimulatedDrive drive = test_support::DriveThrough(
+      world, course.places, ParamsOf(static_cast<int>(state.range(1))), base::Rng(state.range(2)));
+  MapResult result;
+  for (auto _ : state) result = MakeMap(drive.log);
+  geometry::Pose2 X_WM;
+  const double scans = static_cast<double>(drive.log.scans.size());
+  state.counters["rms_mm"] =
+      1000.0 * test_support::TrajectoryRms(result.trajectory, drive.truth, &X_WM);
+  state.counters["wall_mm"] = 1000.0 * test_support::MedianWallError(result.grid, world, X_WM);
+  state.counters["loops"] = result.num_loops;
+  state.SetItemsProcessed(static_cast<std::int64_t>(scans * state.iterations()));
+}
+BENCHMARK(BM_Map)
+    ->ArgNames({"course", "kind", "seed"})
+    ->ArgsProduct({{0, 1}, {0, 1, 2, 3}, {11, 12, 13, 14, 15}})
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace hires::mapping

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+
+#include "hires/localisation/robot_log.h"
+
+namespace hires::localisation {
+
+/// Reads a log of the CARMEN toolkit, as most public logs of lasers and odometry are:
+///   ODOM x y theta tv rv accel                                              ipc host logger
+///   FLASER n r_1 .. r_n  x y theta (laser)  x y theta (odometry)            ipc host logger
+///   ROBOTLASER1 type start_angle fov resolution max_range accuracy mode
+///     n r_1 .. r_n  m remissions  x y theta (laser)  x y theta (robot)
+///     tv rv forward side turn_axis                                          ipc host logger
+/// `#` begins a comment; lines of other kinds (RLASER, SYNC, TRUEPOS, ...) are passed over.
+///
+/// Times are those of `ipc` [s], when a reading was made, on one clock for all kinds; `logger`
+/// tells when the line was written. Readings that come up to 1 s too late are put in order, with a
+/// warning.
+///
+/// FLASER does not tell its angles. As CARMEN's own reader (readlog.c) takes it, the first beam
+/// points to -90 degrees, and the others follow in whole shares of the half circle; where n is
+/// even, the last beam, at +90 degrees, is missing: 1 degree for n = 180 and 181, 0.5 for 360 and
+/// 361. GMapping takes the same steps but sets the middle one of n = 180 straight ahead.
+/// Its `range_max` is PARAM robot_front_laser_max, else 80 m, as CARMEN assumes.
+///
+/// Where the laser sits on the robot follows from the two poses of its line. If that changes
+/// between lines, a mapper has corrected the log: then PARAM robot_frontlaser_offset says it (0
+/// where it is missing, CARMEN's default), with a warning.
+///
+/// Odometry is that of the lines ODOM; without any, that of the scans, with velocities from
+/// differences. A log that has FLASER and ROBOTLASER1 gives the scans of what comes first.
+/// What is no number, negative or below range_min is kept in a scan as NaN.
+///
+/// @throws base::ConfigError naming file and line, what came and what was wanted: no such file,
+/// words missing or too many, no number, a time that jumps back by more than 1 s, absurd sizes, no
+/// scan and no odometry at all.
+RobotLog ReadCarmenLog(const std::string& path);
+
+/// Writes lines `t x y z qx qy qz qw` (TUM format); a file of that name is replaced only when the
+/// new one is whole.
+/// @throws base::ConfigError if the file cannot be written.
+void WriteTumTrajectory(const TimedPath& path, const std::string& file);
+
+}  // namespace hires::localisation

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "hires/geometry/pose.h"
+#include "hires/robot/readings.h"
+
+namespace hires::localisation {
+
+/// What a robot recorded while it drove, each kind in the order of time. Times [s] share one clock.
+struct RobotLog {
+  struct Odometry {
+    double time{0.0};
+    robot::OdometryReading reading;
+  };
+  struct Inertia {
+    double time{0.0};
+    robot::ImuReading reading;
+  };
+  struct Scan {
+    double time{0.0};
+    geometry::Pose2 X_BL;  ///< laser in base
+    robot::ScanReading reading;
+    std::optional<geometry::Pose2> X_OB;  ///< odometry at that time, where the log says so itself
+  };
+
+  std::vector<Odometry> odometry;
+  std::vector<Inertia> inertia;
+  std::vector<Scan> scans;
+};
+
+/// A pose at a time [s].
+struct TimedPose {
+  double time{0.0};
+  geometry::Pose2 X_MB;
+};
+using TimedPath = std::vector<TimedPose>;
+
+}  // namespace hires::localisation

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "hires/localisation/robot_log.h"
+#include "hires/world/occupancy_grid.h"
+
+namespace hires::mapping {
+
+/// The defaults serve lasers of 5 to 80 m on robots that drive indoors.
+struct MapperParams {
+  double resolution{0.05};    ///< [m] cell of the map that is drawn
+  double max_range{30.0};     ///< [m] what is farther away is not used
+  double keyframe_step{0.3};  ///< [m], [rad] by which keyframes are apart
+  int local_keyframes{20};    ///< latest ones that a scan is matched with
+  double odometry_sd{0.05};   ///< [m / m], [rad / rad] of a step
+  double surface_sd{0.03};    ///< [m] of a measured point about its wall
+  double loop_radius{4.0};    ///< [m] around the robot in which places seen before are tried
+  double loop_length{10.0};   ///< [m] driven in between that makes a place one seen before
+  double min_fit{0.6};        ///< share of a scan's points that a loop must explain
+};
+
+struct MapResult {
+  world::OccupancyGrid grid;           ///< free what beams passed, occupied where they ended
+  localisation::TimedPath trajectory;  ///< one pose for each scan that was added
+  int num_keyframes{0};
+  int num_loops{0};       ///< places seen again that tie the map together
+  int num_lost{0};        ///< scans that fitted nothing and stand where odometry says
+  int odometry_jumps{0};  ///< steps faster than any robot, taken as none
+};
+
+/// Makes a map of what a laser saw on a drive: scans are matched with the latest keyframes
+/// (points to walls, odometry as prior), places seen before are recognised by their scans, and a
+/// graph of poses is made to agree with all of it. Map M is the odometry's frame at the first scan,
+/// with the robot in its origin. Nothing is drawn by chance: the same log gives the same map.
+class Mapper {
+ public:
+  explicit Mapper(const MapperParams& params = {});
+  ~Mapper();
+  Mapper(Mapper&&) noexcept;
+
+  /// @pre times do not go back.  A pose that jumps (a reset) counts as no motion.
+  void AddOdometry(const localisation::RobotLog::Odometry& odometry);
+
+  /// A scan without X_OB waits for the odometry after it. One that measured nothing gets the pose
+  /// that odometry tells.  @pre times do not go back.
+  void AddScan(const localisation::RobotLog::Scan& scan);
+
+  /// What is known after the scans so far, those that still waited for odometry included; may be
+  /// asked several times.
+  /// @throws base::ConfigError if the map would have more than 100 million cells.
+  MapResult Result();
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The whole of a log at once.
+/// @param task  what people are told who wait for it (base/progress.h).
+/// @throws base::ConfigError if it has no scan that measured anything, or as Mapper::Result.
+MapResult MakeMap(const localisation::RobotLog& log, const MapperParams& params = {},
+                  const std::string& task = "mapping");
+
+}  // namespace hires::mapping

@@ -1,0 +1,364 @@
+#include "hires/localisation/log_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string_view>
+#include <vector>
+
+#include "hires/base/check.h"
+#include "hires/base/error.h"
+#include "hires/base/log.h"
+#include "hires/base/progress.h"
+#include "hires/base/short_text.h"
+#include "hires/base/text.h"
+#include "hires/geometry/angles.h"
+
+namespace hires::localisation {
+namespace {
+
+using geometry::Pose2;
+
+constexpr std::size_t kMostLogBytes = std::size_t{1} << 30;
+constexpr int kMostLogLines = 20'000'000;
+constexpr int kMostRanges = 100'000;       // of a scan; remissions, too
+constexpr double kMostTime = 1e11;         // [s]
+constexpr double kMostCoordinate = 1e6;    // [m], [rad]
+constexpr double kLatest = 1.0;            // [s] by which a line may come too late
+constexpr double kCarmenMaxRange = 80.0;   // [m] what CARMEN assumes of FLASER
+constexpr double kCarmenMinRange = 0.01;   // [m] its accuracy there; 0 is no measurement
+constexpr double kSameMounting = 0.05;     // [m], [rad] between two lines
+constexpr double kFarthestMounting = 3.0;  // [m] from the base
+constexpr int kWordsOfTime = 3;            // ipc_timestamp hostname logger_timestamp
+
+class CarmenReader {
+ public:
+  explicit CarmenReader(const std::string& path)
+      : path_(path), text_(base::ReadTextFile(path, kMostLogBytes)) {}
+  RobotLog Read();
+
+ private:
+  [[noreturn]] void Fail(const std::string& what) const {
+    throw base::ConfigError(fmt::format("{}: line {}: {}", path_, line_, what));
+  }
+  void Warn(const std::string& what) const {
+    base::Log(base::LogLevel::kWarn, fmt::format("{}: {}", path_, what));
+  }
+
+  void SplitLine(std::string_view line);
+  void TakeLine();
+  void TakeParam();
+  void TakeOdometry();
+  void TakeFrontLaser();
+  void TakeRobotLaser();
+  bool IsOfTheFirstKind();
+  void TakePoses(std::size_t first, RobotLog::Scan* scan);
+  void AddScan(RobotLog::Scan scan);
+  void PassOver();
+
+  void WantWords(std::size_t count, const std::string& form) const;
+  double Number(std::size_t index, const char* what, double least, double most) const;
+  std::size_t Count(std::size_t index, const char* what) const;
+  Pose2 Pose(std::size_t index, const char* what) const;
+  double Time() const;
+  double InOrder(double time, double* last);
+  std::vector<float> Ranges(std::size_t first, std::size_t count, double range_min) const;
+
+  void Finish();
+  void SayWhatWasPassedOver() const;
+  void MountCorrectedLaser();
+  void TakeOdometryOfScans();
+
+  std::string path_, text_;
+  std::vector<std::string_view> words_;  // of the line that is read
+  int line_{0};
+  RobotLog log_;
+  std::string laser_kind_;             // FLASER or ROBOTLASER1, whichever came first
+  std::set<std::string> passed_over_;  // kinds of lines nobody here knows
+  double range_max_{kCarmenMaxRange};  // of FLASER
+  double laser_offset_{0.0};           // PARAM robot_frontlaser_offset
+  bool is_corrected_{false};           // the laser's place on the robot changes
+  double last_odometry_{-kMostTime}, last_scan_{-kMostTime};  // latest times so far
+  int late_lines_{0};
+  double latest_{0.0};  // [s] the worst of them
+};
+
+RobotLog CarmenReader::Read() {
+  const std::string task = "reading " + path_;
+  for (std::size_t begin = 0; begin < text_.size();) {
+    if (++line_ > kMostLogLines)
+      Fail(fmt::format("is one line more than the {} that are read", kMostLogLines));
+    const std::size_t end = std::min(text_.find('\n', begin), text_.size());
+    SplitLine(std::string_view(text_).substr(begin, end - begin));
+    if (!words_.empty()) TakeLine();
+    begin = end + 1;
+    if (line_ % 1000 == 0) base::ReportProgress(task, static_cast<double>(end) / text_.size());
+  }
+  base::ReportProgress(task, 1.0);
+  Finish();
+  return std::move(log_);
+}
+
+void CarmenReader::SplitLine(std::string_view line) {
+  constexpr std::string_view kWhite = " \t\r";
+  words_.clear();
+  for (std::size_t begin = line.find_first_not_of(kWhite); begin != std::string_view::npos;) {
+    if (words_.empty() && line[begin] == '#') return;
+    const std::size_t end = std::min(line.find_first_of(kWhite, begin), line.size());
+    words_.push_back(line.substr(begin, end - begin));
+    begin = line.find_first_not_of(kWhite, end);
+  }
+}
+
+void CarmenReader::TakeLine() {
+  if (words_[0] == "ODOM") {
+    TakeOdometry();
+  } else if (words_[0] == "FLASER") {
+    if (IsOfTheFirstKind()) TakeFrontLaser();
+  } else if (words_[0] == "ROBOTLASER1") {
+    if (IsOfTheFirstKind()) TakeRobotLaser();
+  } else if (words_[0] == "PARAM") {
+    TakeParam();
+  } else if (words_[0] != "SYNC" && words_[0] != "RLASER") {
+    PassOver();
+  }
+}
+
+void CarmenReader::PassOver() {
+  const std::string name(words_[0]);
+  if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }))
+    Fail("is no text; wanted a CARMEN log: is the file still packed?");
+  const bool is_name = std::all_of(name.begin(), name.end(), [](char c) {
+    return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+  });
+  if (!is_name || name.size() > 40 || name[0] < 'A') {
+    Fail(
+        fmt::format("'{}' begins no line of a CARMEN log; wanted ODOM, FLASER, ROBOTLASER1, PARAM "
+                    "or another message in capitals",
+                    base::Shortened(name, 40)));
+  }
+  if (passed_over_.size() < 100) passed_over_.insert(name);
+}
+
+/// Only these two matter; a log has dozens of parameters, of any form.
+void CarmenReader::TakeParam() {
+  if (words_.size() < 3) return;
+  if (words_[1] == "robot_frontlaser_offset") {
+    laser_offset_ = Number(2, "robot_frontlaser_offset", -kFarthestMounting, kFarthestMounting);
+  } else if (words_[1] == "robot_front_laser_max") {
+    range_max_ = Number(2, "robot_front_laser_max", kCarmenMinRange, 1e4);
+  }
+}
+
+void CarmenReader::TakeOdometry() {
+  WantWords(7, "ODOM x y theta tv rv accel");
+  RobotLog::Odometry odometry;
+  odometry.reading.X_OB = Pose(1, "odometry");
+  odometry.reading.V_B.vx = Number(4, "tv", -kMostCoordinate, kMostCoordinate);
+  odometry.reading.V_B.wz = Number(5, "rv", -kMostCoordinate, kMostCoordinate);
+  odometry.time = InOrder(Time(), &last_odometry_);
+  log_.odometry.push_back(odometry);
+}
+
+bool CarmenReader::IsOfTheFirstKind() {
+  if (laser_kind_.empty()) laser_kind_ = words_[0];
+  if (laser_kind_ == words_[0]) return true;
+  passed_over_.insert(std::string(words_[0]));
+  return false;
+}
+
+void CarmenReader::TakeFrontLaser() {
+  const std::size_t n = Count(1, "number of ranges");
+  WantWords(8 + n, "FLASER n, n ranges, x y theta of laser and odometry");
+  RobotLog::Scan scan;
+  scan.reading.angle_min = -geometry::kPi / 2.0;
+  scan.reading.angle_increment = n < 2 ? 0.0 : geometry::kPi / static_cast<double>(n - n % 2);
+  scan.reading.range_min = kCarmenMinRange;
+  scan.reading.range_max = range_max_;
+  scan.reading.ranges = Ranges(2, n, kCarmenMinRange);
+  TakePoses(2 + n, &scan);
+  AddScan(std::move(scan));
+}
+
+void CarmenReader::TakeRobotLaser() {
+  const std::size_t n = Count(8, "number of ranges");
+  const std::size_t m = Count(9 + n, "number of remissions");
+  WantWords(21 + n + m,
+            "ROBOTLASER1 type start_angle fov resolution max_range accuracy mode, n, n ranges, m, "
+            "m remissions, x y theta of laser and robot, tv rv forward side turn_axis");
+  RobotLog::Scan scan;
+  scan.reading.angle_min = Number(2, "start_angle", -2.0 * geometry::kPi, 2.0 * geometry::kPi);
+  scan.reading.angle_increment = Number(4, "angular resolution", -geometry::kPi, geometry::kPi);
+  if (scan.reading.angle_increment == 0.0 && n > 1)
+    Fail("angular resolution is 0; wanted the angle between two beams [rad]");
+  scan.reading.range_min = kCarmenMinRange;
+  scan.reading.range_max = Number(5, "max_range", 0.0, 1e6);
+  scan.reading.ranges = Ranges(9, n, kCarmenMinRange);
+  TakePoses(10 + n + m, &scan);
+  AddScan(std::move(scan));
+}
+
+/// Of laser and odometry, one behind the other.
+void CarmenReader::TakePoses(std::size_t first, RobotLog::Scan* scan) {
+  const Pose2 X_OL = Pose(first, "pose of the laser");
+  scan->X_OB = Pose(first + 3, "odometry");
+  scan->X_BL = scan->X_OB->Inverse() * X_OL;
+}
+
+void CarmenReader::AddScan(RobotLog::Scan scan) {
+  scan.time = InOrder(Time(), &last_scan_);
+  const Pose2& first = log_.scans.empty() ? scan.X_BL : log_.scans.front().X_BL;
+  const bool is_same = (scan.X_BL.position() - first.position()).norm() <= kSameMounting &&
+                       std::abs(geometry::WrapToPi(scan.X_BL.yaw - first.yaw)) <= kSameMounting;
+  if (!is_same || scan.X_BL.position().norm() > kFarthestMounting) is_corrected_ = true;
+  log_.scans.push_back(std::move(scan));
+}
+
+/// @param count  of the words before those of the time.
+void CarmenReader::WantWords(std::size_t count, const std::string& form) const {
+  if (words_.size() == count + kWordsOfTime) return;
+  Fail(fmt::format("{} has {} words; wanted {}: {}, ipc_timestamp hostname logger_timestamp",
+                   words_[0], words_.size(), count + kWordsOfTime, form));
+}
+
+double CarmenReader::Number(std::size_t index, const char* what, double least, double most) const {
+  const std::string_view word = words_[index];
+  double number = 0.0;
+  const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  const bool is_number = error == std::errc() && rest == word.data() + word.size();
+  if (!is_number || !(number >= least && number <= most)) {
+    Fail(fmt::format("{} is '{}'; wanted a number from {} to {}", what,
+                     base::Shortened(std::string(word), 40), least, most));
+  }
+  return number;
+}
+
+std::size_t CarmenReader::Count(std::size_t index, const char* what) const {
+  if (index >= words_.size()) Fail(fmt::format("{} ends before its {}", words_[0], what));
+  const std::string_view word = words_[index];
+  std::size_t number = 0;
+  const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  if (error != std::errc() || rest != word.data() + word.size() || number > kMostRanges) {
+    Fail(fmt::format("{} is '{}'; wanted a whole number from 0 to {}", what,
+                     base::Shortened(std::string(word), 40), kMostRanges));
+  }
+  return number;
+}
+
+Pose2 CarmenReader::Pose(std::size_t index, const char* what) const {
+  const auto coordinate = [&](std::size_t i, const char* name) {
+    return Number(i, fmt::format("{} of the {}", name, what).c_str(), -kMostCoordinate,
+                  kMostCoordinate);
+  };
+  return {coordinate(index, "x"), coordinate(index + 1, "y"),
+          geometry::WrapToPi(coordinate(index + 2, "theta"))};
+}
+
+/// Of the readings; the last three words say it.
+double CarmenReader::Time() const {
+  Number(words_.size() - 1, "logger_timestamp", -kMostTime, kMostTime);
+  return Number(words_.size() - 3, "ipc_timestamp", -kMostTime, kMostTime);
+}
+
+double CarmenReader::InOrder(double time, double* last) {
+  const double late = *last - time;
+  if (late > kLatest) {
+    Fail(
+        fmt::format("ipc_timestamp {:.6f} is {:.3f} s before that of an earlier {}; wanted times "
+                    "that grow: if the log is of several drives, cut it here",
+                    time, late, words_[0]));
+  }
+  if (late > 0.0) {
+    ++late_lines_;
+    latest_ = std::max(latest_, late);
+  }
+  *last = std::max(*last, time);
+  return time;
+}
+
+std::vector<float> CarmenReader::Ranges(std::size_t first, std::size_t count,
+                                        double range_min) const {
+  constexpr float kInvalid = std::numeric_limits<float>::quiet_NaN();
+  std::vector<float> ranges(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string_view word = words_[first + i];
+    const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), ranges[i]);
+    if (error == std::errc::result_out_of_range) {
+      ranges[i] = kInvalid;  // 1e-60, 1e60
+    } else if (error != std::errc() || rest != word.data() + word.size()) {
+      Fail(fmt::format("range {} is '{}'; wanted a number [m]", i + 1,
+                       base::Shortened(std::string(word), 40)));
+    }
+    if (!(ranges[i] >= range_min)) ranges[i] = kInvalid;
+  }
+  return ranges;
+}
+
+void CarmenReader::Finish() {
+  if (log_.scans.empty() && log_.odometry.empty()) {
+    throw base::ConfigError(
+        fmt::format("{}: has no line FLASER, ROBOTLASER1 or ODOM; wanted a CARMEN log", path_));
+  }
+  if (late_lines_ > 0) {
+    Warn(fmt::format("{} lines are older than one before them, by up to {:.3f} s; put in order",
+                     late_lines_, latest_));
+  }
+  const auto earlier = [](const auto& a, const auto& b) { return a.time < b.time; };
+  std::stable_sort(log_.odometry.begin(), log_.odometry.end(), earlier);
+  std::stable_sort(log_.scans.begin(), log_.scans.end(), earlier);
+  if (is_corrected_) MountCorrectedLaser();
+  if (log_.odometry.empty()) TakeOdometryOfScans();
+  SayWhatWasPassedOver();
+}
+
+void CarmenReader::MountCorrectedLaser() {
+  Warn(
+      fmt::format("the laser's place on the robot is not the same in all lines, as where a mapper "
+                  "has corrected the log; taken is {} m before the base (PARAM "
+                  "robot_frontlaser_offset)",
+                  laser_offset_));
+  for (RobotLog::Scan& scan : log_.scans) scan.X_BL = {laser_offset_, 0.0, 0.0};
+}
+
+void CarmenReader::TakeOdometryOfScans() {
+  for (const RobotLog::Scan& scan : log_.scans) {
+    RobotLog::Odometry odometry{scan.time, {*scan.X_OB, {}}};
+    if (!log_.odometry.empty()) {
+      const RobotLog::Odometry& last = log_.odometry.back();
+      const double passed = scan.time - last.time;
+      const Pose2 step = last.reading.X_OB.Inverse() * *scan.X_OB;
+      odometry.reading.V_B = passed > 0.0 ? geometry::Twist2{step.x / passed, step.y / passed,
+                                                             geometry::WrapToPi(step.yaw) / passed}
+                                          : last.reading.V_B;
+    }
+    log_.odometry.push_back(odometry);
+  }
+}
+
+void CarmenReader::SayWhatWasPassedOver() const {
+  if (passed_over_.empty()) return;
+  const std::vector<std::string> names(passed_over_.begin(), passed_over_.end());
+  base::Log(base::LogLevel::kInfo,
+            fmt::format("{}: passed over lines of {}", path_, base::Join(names, ", ")));
+}
+
+}  // namespace
+
+RobotLog ReadCarmenLog(const std::string& path) { return CarmenReader(path).Read(); }
+
+void WriteTumTrajectory(const TimedPath& path, const std::string& file) {
+  std::string text;
+  for (const TimedPose& pose : path) {
+    HIRES_CHECK(std::isfinite(pose.time) && pose.X_MB.IsFinite(), "a trajectory is of numbers");
+    const double half = pose.X_MB.yaw / 2.0;
+    text += fmt::format("{:.6f} {:.6f} {:.6f} 0 0 0 {:.9f} {:.9f}\n", pose.time, pose.X_MB.x,
+                        pose.X_MB.y, std::sin(half), std::cos(half));
+  }
+  base::ReplaceTextFile(file, text);
+}
+
+}  // namespace hires::localisation

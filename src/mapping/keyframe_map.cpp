@@ -1,0 +1,159 @@
+#include "mapping/keyframe_map.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "hires/geometry/angles.h"
+
+namespace hires::mapping {
+namespace {
+
+using geometry::Pose2;
+
+constexpr double kGoodFit = 0.5;         // with less, a wider search is tried
+constexpr double kLostFit = 0.2;         // with less, a scan fits nothing
+constexpr double kBetterFit = 0.1;       // by which the wider search has to win
+constexpr int kChainHalf = 10;           // keyframes to either side of a place seen before
+constexpr int kLoopEvery = 2;            // keyframes
+constexpr double kNeedsNoWitness = 0.5;  // [m] of correction
+constexpr double kSettles = 0.3;         // [m] by which refining may move what was searched
+constexpr double kSameHeading = 1.0;     // [rad]
+constexpr double kDrift = 0.05;          // [m / m] of a map that is not tied together
+constexpr double kYawDrift = 0.004;      // [rad / m]
+const Eigen::Vector3d kEdgeFloor(0.01, 0.01, 0.003);  // [m], [m], [rad] sd of the best match
+
+double AngleBetween(const Pose2& a, const Pose2& b) {
+  return std::abs(geometry::WrapToPi(a.yaw - b.yaw));
+}
+double DistanceBetween(const Pose2& a, const Pose2& b) {
+  return (a.position() - b.position()).norm();
+}
+
+/// What the match of `to` with places about `from` says of the two.
+PoseGraph::Edge EdgeOf(int from, int to, const Pose2& X_MF, const ScanMatch& match) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // map to `from`
+  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-X_MF.yaw).toRotationMatrix();
+  // Where nothing is known at all, 1 m and 0.3 rad.
+  const Eigen::Matrix3d information =
+      match.information + Eigen::Vector3d(1.0, 1.0, 10.0).asDiagonal().toDenseMatrix();
+  Eigen::Matrix3d covariance = turn * information.inverse() * turn.transpose();
+  covariance.diagonal() += kEdgeFloor.cwiseAbs2();
+  return {from, to, X_MF.Inverse() * match.X_MB, covariance.inverse()};
+}
+
+}  // namespace
+
+std::optional<ScanMatch> KeyframeMap::Match(const SurfacePoints& few,
+                                            const PosePrior& prior) const {
+  if (!local_ || few.empty()) return std::nullopt;
+  ScanMatch match = RefineMatch(*local_, few, prior.X_MB, prior, params_.surface_sd);
+  if (match.fit < kGoodFit) {
+    const SearchWindow window{0.3 + prior.position_sd, 0.15 + prior.yaw_sd};
+    const Pose2 found = SearchMatch(*local_, few, prior.X_MB, window);
+    const ScanMatch other = RefineMatch(*local_, few, found, std::nullopt, params_.surface_sd);
+    if (other.fit > match.fit + kBetterFit) match = other;
+  }
+  return match.fit < kLostFit ? std::nullopt : std::make_optional(match);
+}
+
+bool KeyframeMap::IsDue(const Pose2& X_MB) const {
+  if (!local_) return true;
+  const Pose2& last = graph_.pose(size() - 1);
+  return DistanceBetween(X_MB, last) >= params_.keyframe_step ||
+         AngleBetween(X_MB, last) >= params_.keyframe_step;
+}
+
+Pose2 KeyframeMap::Add(SurfacePoints points, SurfacePoints few, const ScanMatch& match,
+                       double way) {
+  const int k = graph_.AddPose(match.X_MB);
+  keyframes_.push_back({std::move(points), std::move(few), way});
+  if (k > 0) graph_.AddEdge(EdgeOf(k - 1, k, graph_.pose(k - 1), match));
+  if (k % kLoopEvery == 0) CloseLoop();
+  RebuildLocalMap();
+  return graph_.pose(k);
+}
+
+std::vector<PlacedPoints> KeyframeMap::Placed(int first, int last) const {
+  std::vector<PlacedPoints> placed;
+  for (int i = std::max(0, first); i <= last; ++i)
+    placed.push_back({&keyframes_[i].points, graph_.pose(i)});
+  return placed;
+}
+
+void KeyframeMap::RebuildLocalMap() {
+  const std::vector<PlacedPoints> placed = Placed(size() - params_.local_keyframes, size() - 1);
+  const bool is_empty = std::all_of(placed.begin(), placed.end(),
+                                    [](const auto& scan) { return scan.points->empty(); });
+  local_.reset();
+  if (!is_empty) local_.emplace(placed);
+}
+
+void KeyframeMap::CloseLoop() {
+  const int k = size() - 1;
+  std::optional<int> tried;
+  // The laser looks ahead: who comes back the same way sees the same walls.
+  for (const bool same_heading : {true, false}) {
+    const std::optional<int> place = PlaceSeenBefore(same_heading);
+    if (!place || place == tried) continue;
+    tried = place;
+    const std::optional<ScanMatch> match = MatchWithPlace(*place);
+    if (!match || !IsWitnessed(graph_.pose(k), match->X_MB)) continue;
+    PoseGraph::Edge edge = EdgeOf(*place, k, graph_.pose(*place), *match);
+    edge.may_be_wrong = true;
+    graph_.AddEdge(edge);
+    ++num_loops_;
+    way_at_loop_ = keyframes_[k].way;
+    graph_.Optimise();
+    return;
+  }
+}
+
+/// The keyframe nearest to the last one, of those far enough back on the way.
+std::optional<int> KeyframeMap::PlaceSeenBefore(bool same_heading) const {
+  const int k = size() - 1;
+  std::optional<int> nearest;
+  double best = params_.loop_radius + kDrift * (keyframes_[k].way - way_at_loop_);
+  for (int j = 0; j < k; ++j) {
+    if (keyframes_[k].way - keyframes_[j].way < params_.loop_length) break;
+    if (same_heading && AngleBetween(graph_.pose(j), graph_.pose(k)) > kSameHeading) continue;
+    const double distance = DistanceBetween(graph_.pose(j), graph_.pose(k));
+    if (distance >= best) continue;
+    best = distance;
+    nearest = j;
+  }
+  return nearest;
+}
+
+/// The last keyframe by the scans around a place, which it may be off by the more the longer the
+/// map was not tied together.
+std::optional<ScanMatch> KeyframeMap::MatchWithPlace(int place) const {
+  const int k = size() - 1;
+  const double unsure = keyframes_[k].way - way_at_loop_;  // [m]
+  const SearchWindow window{std::min(0.3 + kDrift * unsure, 4.0),
+                            std::min(0.1 + kYawDrift * unsure, 0.4)};
+  int last = std::min(place + kChainHalf, k - 1);
+  while (keyframes_[k].way - keyframes_[last].way < params_.loop_length / 2.0) --last;
+  const SurfaceMap map(Placed(place - kChainHalf, last));
+  const SurfacePoints& few = keyframes_[k].few;
+  const Pose2 found = SearchMatch(map, few, graph_.pose(k), window);
+  const ScanMatch match = RefineMatch(map, few, found, std::nullopt, params_.surface_sd);
+  const bool is_good =
+      match.fit >= params_.min_fit && DistanceBetween(match.X_MB, found) < kSettles;
+  return is_good ? std::make_optional(match) : std::nullopt;
+}
+
+/// A large correction is believed once the next one agrees with it: rooms may be alike.
+bool KeyframeMap::IsWitnessed(const Pose2& X_before, const Pose2& X_after) {
+  if (DistanceBetween(X_before, X_after) < kNeedsNoWitness) return true;
+  const int k = size() - 1;
+  const Pose2 step = X_after * X_before.Inverse();
+  const bool agrees = asked_ && k - asked_->keyframe <= 3 * kLoopEvery &&
+                      DistanceBetween(asked_->step * X_before, X_after) < 0.25 &&
+                      AngleBetween(asked_->step, step) < 0.1;
+  asked_ = Correction{step, k};
+  return agrees;
+}
+
+}  // namespace hires::mapping

@@ -1,0 +1,208 @@
+#include "hires/mapping/mapper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "hires/base/check.h"
+#include "hires/base/error.h"
+#include "hires/base/progress.h"
+#include "hires/geometry/angles.h"
+#include "mapping/draw_grid.h"
+#include "mapping/keyframe_map.h"
+#include "mapping/odometry_track.h"
+
+namespace hires::mapping {
+namespace {
+
+using geometry::Pose2;
+using localisation::RobotLog;
+
+constexpr double kMatchSpacing = 0.05;  // [m] between points that are matched
+constexpr double kFastestRobot = 5.0;   // [m/s]
+constexpr double kAnyStep = 0.5;        // [m] more, as clocks are not exact
+constexpr double kJumpSd = 0.3;         // [m], [rad] after a jump of the odometry
+constexpr double kUntoldSd = 0.1;       // [m], [rad] between scans without odometry
+constexpr double kDrawnStep = 0.05;     // [m], [rad] between scans that are drawn
+
+bool IsFarFrom(const Pose2& a, const Pose2& b, double step) {
+  return (a.position() - b.position()).norm() > step ||
+         std::abs(geometry::WrapToPi(a.yaw - b.yaw)) > step;
+}
+
+/// What odometry tells, where the laser tells nothing.
+ScanMatch ByOdometry(const PosePrior& prior) {
+  ScanMatch match;
+  match.X_MB = prior.X_MB;
+  const Eigen::Vector3d sd(prior.position_sd, prior.position_sd, prior.yaw_sd);
+  match.information.diagonal() = sd.cwiseAbs2().cwiseInverse();
+  return match;
+}
+
+}  // namespace
+
+class Mapper::Impl {
+ public:
+  explicit Impl(const MapperParams& params) : params_(params), keyframes_(params) {}
+
+  void AddOdometry(const RobotLog::Odometry& odometry) {
+    track_.Add(odometry.time, odometry.reading.X_OB);
+    TakeThoseThatNeedNotWait();
+  }
+  void AddScan(const RobotLog::Scan& scan) {
+    HIRES_CHECK(scan.time >= last_time_, "times of scans do not go back");
+    last_time_ = scan.time;
+    waiting_.push_back(scan);
+    TakeThoseThatNeedNotWait();
+  }
+  MapResult Result();
+
+ private:
+  /// Where a scan was made, from the keyframe before it.
+  struct Record {
+    double time{0.0};
+    int keyframe{0};
+    Pose2 X_KB;
+  };
+
+  /// What odometry is added to.
+  struct Anchor {
+    Pose2 X_MB;
+    std::optional<Pose2> X_OB;
+    double sd{0.0};  // [m], [rad] by which the robot may have moved beside
+  };
+
+  void TakeThoseThatNeedNotWait();
+  void TakeFirstWaiting();
+  void TakeScan(const RobotLog::Scan& scan);
+  PosePrior Predict(const RobotLog::Scan& scan);
+  void Keep(const RobotLog::Scan& scan);
+  Pose2 PoseAt(std::size_t record) const;
+
+  MapperParams params_;
+  OdometryTrack track_;
+  std::deque<RobotLog::Scan> waiting_;  // for odometry
+  double last_time_{std::numeric_limits<double>::lowest()};
+
+  KeyframeMap keyframes_;
+  Anchor anchor_;
+  Pose2 X_MB_;                 // at the last scan
+  std::optional<Pose2> X_OB_;  // odometry there
+  double time_{0.0}, way_{0.0};
+
+  std::vector<Record> records_;             // of all scans
+  std::vector<RobotLog::Scan> drawn_;       // those that show something new
+  std::vector<std::size_t> drawn_records_;  // which they are
+  int num_lost_{0}, odometry_jumps_{0};
+};
+
+void Mapper::Impl::TakeThoseThatNeedNotWait() {
+  while (!waiting_.empty() && (waiting_.front().X_OB || track_.Reaches(waiting_.front().time)))
+    TakeFirstWaiting();
+}
+
+void Mapper::Impl::TakeFirstWaiting() {
+  RobotLog::Scan scan = std::move(waiting_.front());
+  waiting_.pop_front();
+  if (!scan.X_OB) scan.X_OB = track_.At(scan.time);
+  TakeScan(scan);
+}
+
+void Mapper::Impl::TakeScan(const RobotLog::Scan& scan) {
+  const PosePrior prior = Predict(scan);
+  SurfacePoints points = PointsOf(scan, params_.max_range);
+  SurfacePoints few = Thinned(points, kMatchSpacing);
+  const std::optional<ScanMatch> match = keyframes_.Match(few, prior);
+  if (!match && keyframes_.size() > 0) ++num_lost_;
+  X_MB_ = match ? match->X_MB : prior.X_MB;
+  const bool is_due = !points.empty() && keyframes_.IsDue(X_MB_);
+  if (keyframes_.size() == 0 || is_due) {
+    X_MB_ =
+        keyframes_.Add(std::move(points), std::move(few), match ? *match : ByOdometry(prior), way_);
+    anchor_ = {X_MB_, scan.X_OB, 0.0};
+  }
+  Keep(scan);
+}
+
+/// From the anchor on, not from the last scan: where walls tell nothing, as along a corridor, the
+/// noise of many matches would add up to more than the odometry's error.
+PosePrior Mapper::Impl::Predict(const RobotLog::Scan& scan) {
+  const bool is_told = X_OB_ && scan.X_OB;
+  const double step = is_told ? (X_OB_->Inverse() * *scan.X_OB).position().norm() : 0.0;
+  const bool is_jump = step > kFastestRobot * (scan.time - time_) + kAnyStep;
+  if (is_jump) ++odometry_jumps_;
+  if (is_jump || !is_told) anchor_ = {X_MB_, scan.X_OB, is_jump ? kJumpSd : kUntoldSd};
+  if (!is_jump) way_ += step;
+  X_OB_ = scan.X_OB;
+  time_ = scan.time;
+  const Pose2 since = is_told ? anchor_.X_OB->Inverse() * *scan.X_OB : Pose2{};
+  const double way = since.position().norm();
+  return {anchor_.X_MB * since, 0.003 + params_.odometry_sd * way + anchor_.sd,
+          0.002 + params_.odometry_sd * (std::abs(since.yaw) + 0.2 * way) + anchor_.sd};
+}
+
+void Mapper::Impl::Keep(const RobotLog::Scan& scan) {
+  const int keyframe = keyframes_.size() - 1;
+  records_.push_back({scan.time, keyframe, keyframes_.pose(keyframe).Inverse() * X_MB_});
+  if (!drawn_.empty() && !IsFarFrom(X_MB_, PoseAt(drawn_records_.back()), kDrawnStep)) return;
+  drawn_.push_back(scan);
+  drawn_records_.push_back(records_.size() - 1);
+}
+
+Pose2 Mapper::Impl::PoseAt(std::size_t i) const {
+  return keyframes_.pose(records_[i].keyframe) * records_[i].X_KB;
+}
+
+MapResult Mapper::Impl::Result() {
+  while (!waiting_.empty()) TakeFirstWaiting();
+  MapResult result;
+  for (std::size_t i = 0; i < records_.size(); ++i)
+    result.trajectory.push_back({records_[i].time, PoseAt(i)});
+  std::vector<const RobotLog::Scan*> scans;
+  std::vector<Pose2> poses;
+  for (std::size_t i = 0; i < drawn_.size(); ++i) {
+    scans.push_back(&drawn_[i]);
+    poses.push_back(PoseAt(drawn_records_[i]));
+  }
+  result.grid = DrawGrid(scans, poses, params_.resolution, params_.max_range);
+  result.num_keyframes = keyframes_.size();
+  result.num_loops = keyframes_.num_loops();
+  result.num_lost = num_lost_;
+  result.odometry_jumps = odometry_jumps_;
+  return result;
+}
+
+Mapper::Mapper(const MapperParams& params) : impl_(std::make_unique<Impl>(params)) {}
+Mapper::~Mapper() = default;
+Mapper::Mapper(Mapper&&) noexcept = default;
+
+void Mapper::AddOdometry(const RobotLog::Odometry& odometry) { impl_->AddOdometry(odometry); }
+void Mapper::AddScan(const RobotLog::Scan& scan) { impl_->AddScan(scan); }
+MapResult Mapper::Result() { return impl_->Result(); }
+
+MapResult MakeMap(const RobotLog& log, const MapperParams& params, const std::string& task) {
+  const bool has_met = std::any_of(log.scans.begin(), log.scans.end(), [&](const auto& scan) {
+    return !PointsOf(scan, params.max_range).empty();
+  });
+  if (!has_met) {
+    throw base::ConfigError(
+        "no scan of the log measured anything; wanted a drive on which a laser met walls");
+  }
+  Mapper mapper(params);
+  auto odometry = log.odometry.begin();
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    for (; odometry != log.odometry.end() && odometry->time <= log.scans[i].time; ++odometry)
+      mapper.AddOdometry(*odometry);
+    mapper.AddScan(log.scans[i]);
+    base::ReportProgress(task, static_cast<double>(i) / log.scans.size());
+  }
+  for (; odometry != log.odometry.end(); ++odometry) mapper.AddOdometry(*odometry);
+  MapResult result = mapper.Result();
+  base::ReportProgress(task, 1.0);
+  return result;
+}
+
+}  // namespace hires::mapping

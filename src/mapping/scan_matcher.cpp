@@ -1,0 +1,141 @@
+#include "mapping/scan_matcher.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "hires/geometry/angles.h"
+
+namespace hires::mapping {
+namespace {
+
+using geometry::Pose2;
+
+constexpr int kMostIterations = 20;
+constexpr double kFits = 0.1;             // [m] from a point to its wall
+constexpr double kRobust = 3.0;           // sd from which on a distance counts less
+constexpr double kMatchConverged = 1e-4;  // [m], [rad]
+constexpr double kCentreBonus = 0.05;     // of nearness, over the window
+constexpr std::size_t kMostSearchPoints = 150;
+
+/// Normal equations of all points and the prior about a pose.
+struct Equations {
+  Eigen::Matrix3d hessian{Eigen::Matrix3d::Zero()};
+  Eigen::Vector3d gradient{Eigen::Vector3d::Zero()};
+  int num_fitting{0}, num_facing{0};
+};
+
+void AddPrior(const PosePrior& prior, const Pose2& X_MB, Equations* equations) {
+  const Eigen::Vector3d weights(1.0 / (prior.position_sd * prior.position_sd),
+                                1.0 / (prior.position_sd * prior.position_sd),
+                                1.0 / (prior.yaw_sd * prior.yaw_sd));
+  const Eigen::Vector3d error(X_MB.x - prior.X_MB.x, X_MB.y - prior.X_MB.y,
+                              geometry::WrapToPi(X_MB.yaw - prior.X_MB.yaw));
+  equations->hessian += weights.asDiagonal();
+  equations->gradient += weights.cwiseProduct(error);
+}
+
+Equations EquationsAt(const SurfaceMap& map, const SurfacePoints& points, const Pose2& X_MB,
+                      double surface_sd) {
+  Equations equations;
+  const double c = std::cos(X_MB.yaw), s = std::sin(X_MB.yaw);
+  Eigen::Matrix2d R;
+  R << c, -s, s, c;
+  for (const SurfacePoint& point : points) {
+    if (!point.has_normal()) continue;
+    ++equations.num_facing;
+    const Eigen::Vector2d r = R * point.p, p = r + X_MB.position();
+    const SurfaceMap::Piece* piece = map.Nearest(p, R * point.n);
+    if (piece == nullptr) continue;
+    const double distance = piece->n.dot(p - piece->p);
+    if (std::abs(distance) < kFits) ++equations.num_fitting;
+    const double sds = std::abs(distance) / surface_sd;
+    const double weight = (sds <= kRobust ? 1.0 : kRobust / sds) / (surface_sd * surface_sd);
+    const Eigen::Vector3d J(piece->n.x(), piece->n.y(),
+                            piece->n.dot(Eigen::Vector2d(-r.y(), r.x())));
+    equations.hessian += weight * J * J.transpose();
+    equations.gradient += weight * distance * J;
+  }
+  return equations;
+}
+
+SurfacePoints EveryFew(const SurfacePoints& points) {
+  const std::size_t step = 1 + points.size() / kMostSearchPoints;
+  SurfacePoints few;
+  for (std::size_t i = 0; i < points.size(); i += step) few.push_back(points[i]);
+  return few;
+}
+
+/// Poses of a grid around a guess, compared by how near the points lie to the map.
+class GridSearch {
+ public:
+  GridSearch(const SurfaceMap& map, const SurfacePoints& points) : map_(map), points_(points) {}
+
+  Pose2 Around(const Pose2& guess, const SearchWindow& window, double step, double yaw_step) {
+    Pose2 best = guess;
+    double best_score = -1.0;
+    const int n = static_cast<int>(std::ceil(window.reach / step));
+    const int n_yaw = static_cast<int>(std::ceil(window.yaw / yaw_step));
+    std::vector<Eigen::Vector2d> turned(points_.size());
+    for (int k = -n_yaw; k <= n_yaw; ++k) {
+      const double yaw = guess.yaw + k * yaw_step;
+      const Pose2 turn{guess.x, guess.y, yaw};
+      for (std::size_t i = 0; i < points_.size(); ++i) turned[i] = turn * points_[i].p;
+      for (int row = -n; row <= n; ++row) {
+        for (int column = -n; column <= n; ++column) {
+          const Eigen::Vector2d shift(column * step, row * step);
+          const double off = (shift.squaredNorm() / (window.reach * window.reach) +
+                              std::pow(k * yaw_step / window.yaw, 2)) /
+                             3.0;
+          const double score = Score(turned, shift) * (1.0 - kCentreBonus * off);
+          if (score <= best_score) continue;
+          best_score = score;
+          best = {guess.x + shift.x(), guess.y + shift.y(), geometry::WrapToPi(yaw)};
+        }
+      }
+    }
+    return best;
+  }
+
+ private:
+  double Score(const std::vector<Eigen::Vector2d>& turned, const Eigen::Vector2d& shift) const {
+    int sum = 0;
+    for (const Eigen::Vector2d& p : turned) sum += map_.Nearness(p + shift);
+    return sum;
+  }
+
+  const SurfaceMap& map_;
+  const SurfacePoints& points_;
+};
+
+}  // namespace
+
+ScanMatch RefineMatch(const SurfaceMap& map, const SurfacePoints& points, const Pose2& guess,
+                      const std::optional<PosePrior>& prior, double surface_sd) {
+  ScanMatch match;
+  match.X_MB = guess;
+  for (int i = 0; i < kMostIterations; ++i) {
+    Equations equations = EquationsAt(map, points, match.X_MB, surface_sd);
+    match.fit = equations.num_facing == 0
+                    ? 0.0
+                    : static_cast<double>(equations.num_fitting) / equations.num_facing;
+    if (prior) AddPrior(*prior, match.X_MB, &equations);
+    match.information = equations.hessian;
+    // A direction that nothing tells of stays as it is.
+    const Eigen::Matrix3d damped = equations.hessian + 1e-3 * Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d step = -damped.ldlt().solve(equations.gradient);
+    match.X_MB = {match.X_MB.x + step.x(), match.X_MB.y + step.y(),
+                  geometry::WrapToPi(match.X_MB.yaw + step.z())};
+    if (step.cwiseAbs().maxCoeff() < kMatchConverged) break;
+  }
+  return match;
+}
+
+Pose2 SearchMatch(const SurfaceMap& map, const SurfacePoints& points, const Pose2& guess,
+                  const SearchWindow& window) {
+  const SurfacePoints few = EveryFew(points);
+  GridSearch search(map, few);
+  const Pose2 coarse = search.Around(guess, window, 0.1, 0.02);
+  return search.Around(coarse, {0.1, 0.02}, 0.05, 0.01);
+}
+
+}  // namespace hires::mapping

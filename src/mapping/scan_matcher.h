@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+
+#include "mapping/surface_map.h"
+
+namespace hires::mapping {
+
+/// What odometry tells of a pose before the laser is asked.
+struct PosePrior {
+  geometry::Pose2 X_MB;
+  double position_sd{0.0};  ///< [m]
+  double yaw_sd{0.0};       ///< [rad]
+};
+
+struct ScanMatch {
+  geometry::Pose2 X_MB;
+  double fit{0.0};  ///< share of the points with normals that lie within 0.1 m on a piece of wall
+  /// Inverse of the covariance of x, y [m] in map and yaw [rad]; prior included.
+  Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};
+};
+
+/// From `guess`, by Gauss-Newton on the distances of points to pieces of wall.
+/// @param surface_sd  [m] of a point about its wall.
+ScanMatch RefineMatch(const SurfaceMap& map, const SurfacePoints& points,
+                      const geometry::Pose2& guess, const std::optional<PosePrior>& prior,
+                      double surface_sd);
+
+/// What is tried around a guess.
+struct SearchWindow {
+  double reach{0.2};  ///< [m] to either side, along both axes
+  double yaw{0.1};    ///< [rad] to either side
+};
+
+/// The pose in the window at which the points lie nearest to what the map shows: all poses of a
+/// grid of 0.1 m, then finer. A pose at the window's edge is as good as that in its middle only if
+/// its points lie nearer by 5 %.
+geometry::Pose2 SearchMatch(const SurfaceMap& map, const SurfacePoints& points,
+                            const geometry::Pose2& guess, const SearchWindow& window);
+
+}  // namespace hires::mapping

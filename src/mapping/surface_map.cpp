@@ -1,0 +1,125 @@
+#include "mapping/surface_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace hires::mapping {
+namespace {
+
+constexpr double kPieceCell = 0.1;    // [m]
+constexpr double kFacesAlike = 0.7;   // cosine between normals
+constexpr double kNearnessSd = 0.06;  // [m]
+constexpr int kNearnessCells = 3;     // to either side
+constexpr double kBorder = 0.5;       // [m] around all points
+
+/// The quarter of the circle that a normal points to: two sides of a thin wall, and two walls of a
+/// corner, are kept apart.
+int QuarterOf(const Eigen::Vector2d& n) {
+  if (std::abs(n.x()) >= std::abs(n.y())) return n.x() > 0.0 ? 0 : 2;
+  return n.y() > 0.0 ? 1 : 3;
+}
+
+using NearnessStamp = std::array<std::uint8_t, (2 * kNearnessCells + 1) * (2 * kNearnessCells + 1)>;
+
+NearnessStamp MakeStamp() {
+  NearnessStamp stamp{};
+  std::size_t i = 0;
+  for (int dy = -kNearnessCells; dy <= kNearnessCells; ++dy) {
+    for (int dx = -kNearnessCells; dx <= kNearnessCells; ++dx, ++i) {
+      const double d = SurfaceMap::kNearnessCell * std::hypot(dx, dy) / kNearnessSd;
+      stamp[i] = static_cast<std::uint8_t>(std::lround(255.0 * std::exp(-0.5 * d * d)));
+    }
+  }
+  return stamp;
+}
+
+}  // namespace
+
+SurfaceMap::SurfaceMap(const std::vector<PlacedPoints>& scans) {
+  Eigen::Array2d lower = Eigen::Array2d::Constant(std::numeric_limits<double>::max());
+  Eigen::Array2d upper = -lower;
+  for (const PlacedPoints& scan : scans) {
+    for (const SurfacePoint& point : *scan.points) {
+      const Eigen::Array2d p = (scan.X_MB * point.p).array();
+      lower = lower.min(p);
+      upper = upper.max(p);
+    }
+  }
+  if (upper.x() < lower.x()) return;
+  lower_ = lower - kBorder;
+  const Eigen::Array2d size = upper - lower + 2.0 * kBorder;
+  width_ = static_cast<int>(std::ceil(size.x() / kNearnessCell));
+  height_ = static_cast<int>(std::ceil(size.y() / kNearnessCell));
+  piece_width_ = static_cast<int>(std::ceil(size.x() / kPieceCell));
+  piece_height_ = static_cast<int>(std::ceil(size.y() / kPieceCell));
+  nearness_.assign(static_cast<std::size_t>(width_) * height_, 0);
+  piece_of_.assign(std::size_t{4} * piece_width_ * piece_height_, -1);
+  for (const PlacedPoints& scan : scans) {
+    const geometry::Pose2 turn{0.0, 0.0, scan.X_MB.yaw};
+    for (const SurfacePoint& point : *scan.points) {
+      const Eigen::Vector2d p = scan.X_MB * point.p;
+      Stamp(p);
+      if (point.has_normal()) AddPiece(p, turn * point.n);
+    }
+  }
+  for (Piece& piece : pieces_) {
+    piece.p /= piece.num_points;
+    piece.n.normalize();
+  }
+}
+
+void SurfaceMap::AddPiece(const Eigen::Vector2d& p, const Eigen::Vector2d& n) {
+  const Eigen::Vector2d at = (p - lower_) / kPieceCell;
+  const std::size_t cell =
+      static_cast<std::size_t>(at.y()) * piece_width_ + static_cast<std::size_t>(at.x());
+  std::int32_t& index = piece_of_[4 * cell + QuarterOf(n)];
+  if (index < 0) {
+    index = static_cast<std::int32_t>(pieces_.size());
+    pieces_.emplace_back();
+  }
+  pieces_[index].p += p;
+  pieces_[index].n += n;
+  ++pieces_[index].num_points;
+}
+
+void SurfaceMap::Stamp(const Eigen::Vector2d& p) {
+  static const NearnessStamp kStamp = MakeStamp();
+  const Eigen::Vector2d at = (p - lower_) / kNearnessCell;
+  const int column = static_cast<int>(at.x()), row = static_cast<int>(at.y());
+  std::uint8_t& middle = nearness_[static_cast<std::size_t>(row) * width_ + column];
+  if (middle == 255) return;  // stamped before
+  std::size_t i = 0;
+  for (int dy = -kNearnessCells; dy <= kNearnessCells; ++dy) {
+    for (int dx = -kNearnessCells; dx <= kNearnessCells; ++dx, ++i) {
+      std::uint8_t& cell = nearness_[static_cast<std::size_t>(row + dy) * width_ + column + dx];
+      cell = std::max(cell, kStamp[i]);
+    }
+  }
+}
+
+const SurfaceMap::Piece* SurfaceMap::Nearest(const Eigen::Vector2d& p,
+                                             const Eigen::Vector2d& n) const {
+  const Eigen::Vector2d at = (p - lower_) / kPieceCell;
+  const int column = static_cast<int>(std::floor(at.x())),
+            row = static_cast<int>(std::floor(at.y()));
+  const Piece* nearest = nullptr;
+  double best = std::numeric_limits<double>::max();
+  for (int r = std::max(0, row - 1); r <= std::min(piece_height_ - 1, row + 1); ++r) {
+    for (int c = std::max(0, column - 1); c <= std::min(piece_width_ - 1, column + 1); ++c) {
+      const std::size_t cell = 4 * (static_cast<std::size_t>(r) * piece_width_ + c);
+      for (int quarter = 0; quarter < 4; ++quarter) {
+        const std::int32_t index = piece_of_[cell + quarter];
+        if (index < 0 || pieces_[index].n.dot(n) < kFacesAlike) continue;
+        const double distance = (pieces_[index].p - p).squaredNorm();
+        if (distance >= best) continue;
+        best = distance;
+        nearest = &pieces_[index];
+      }
+    }
+  }
+  return nearest;
+}
+
+}  // namespace hires::mapping

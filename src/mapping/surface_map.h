@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hires/geometry/pose.h"
+#include "mapping/scan_points.h"
+
+namespace hires::mapping {
+
+/// Points of a keyframe and where it stands.
+struct PlacedPoints {
+  const SurfacePoints* points{nullptr};
+  geometry::Pose2 X_MB;
+};
+
+/// What several scans met, as small pieces of wall: in each cell of 0.1 m the mean of the points
+/// that face one way and of their normals; and how near any point of the plane is to it.
+class SurfaceMap {
+ public:
+  struct Piece {
+    Eigen::Vector2d p{Eigen::Vector2d::Zero()};  ///< [m] mean of the points
+    Eigen::Vector2d n{Eigen::Vector2d::Zero()};  ///< unit normal towards where it was seen from
+    int num_points{0};
+  };
+
+  explicit SurfaceMap(const std::vector<PlacedPoints>& scans);
+
+  /// The nearest piece that faces as `n` within the cells around; nullptr if there is none.
+  const Piece* Nearest(const Eigen::Vector2d& p, const Eigen::Vector2d& n) const;
+
+  /// 255 on a measured point, less within 0.15 m of one, 0 elsewhere.
+  int Nearness(const Eigen::Vector2d& p) const {
+    const Eigen::Vector2d at = (p - lower_) / kNearnessCell;
+    const int column = static_cast<int>(std::floor(at.x()));
+    const int row = static_cast<int>(std::floor(at.y()));
+    const bool is_within = column >= 0 && row >= 0 && column < width_ && row < height_;
+    return is_within ? nearness_[static_cast<std::size_t>(row) * width_ + column] : 0;
+  }
+  static constexpr double kNearnessCell = 0.05;  ///< [m]
+
+ private:
+  void AddPiece(const Eigen::Vector2d& p, const Eigen::Vector2d& n);
+  void Stamp(const Eigen::Vector2d& p);
+
+  Eigen::Vector2d lower_{Eigen::Vector2d::Zero()};
+  int width_{0}, height_{0};  // cells of nearness
+  std::vector<std::uint8_t> nearness_;
+  int piece_width_{0}, piece_height_{0};  // cells of pieces
+  std::vector<std::int32_t> piece_of_;    // by cell and quarter that it faces; -1: none
+  std::vector<Piece> pieces_;
+};
+
+}  // namespace hires::mapping

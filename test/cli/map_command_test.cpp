@@ -1,0 +1,114 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "cli/command_run.h"
+#include "hires/world/occupancy_grid.h"
+#include "support/temporary_folder.h"
+
+namespace hires::cli::map_command_test {
+namespace {
+
+using hires::test_support::Ended;
+using hires::test_support::RunHires;
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+/// A robot drives 2 m ahead in a room from (-2, -2) to (5, 2); its odometry tells 5 % more.
+std::string DriveAhead() {
+  std::string text = "# CARMEN log\nPARAM robot_front_laser_max 20 nohost 0\n";
+  for (int k = 0; k <= 40; ++k) {
+    const double x = 0.05 * k, told = 1.05 * x;
+    text += "FLASER 181";
+    for (int i = 0; i < 181; ++i) {
+      const double angle = (i - 90) * std::acos(-1.0) / 180.0;
+      const double ahead = std::cos(angle) > 1e-6 ? (5.0 - x) / std::cos(angle) : 100.0;
+      const double beside =
+          std::abs(std::sin(angle)) > 1e-6 ? 2.0 / std::abs(std::sin(angle)) : 100.0;
+      text += fmt::format(" {:.2f}", std::min(ahead, beside));
+    }
+    text += fmt::format(" {0} 0 0 {0} 0 0 {1:.2f} nohost {1:.2f}\n", told, 100.0 + 0.1 * k);
+  }
+  return text;
+}
+
+class MapCommandTest : public testing::Test {
+ protected:
+  std::string Path(const std::string& name) const { return (folder_.path() / name).string(); }
+  Ended Map(const std::vector<std::string>& words) const { return RunHires({"map"}, words); }
+
+  const hires::test_support::TemporaryFolder folder_;
+};
+
+TEST_F(MapCommandTest, MapAndTrajectoryAreWritten) {
+  const std::string log = folder_.Write("drive.log", DriveAhead());
+  const Ended ended = Map({log, "--output", Path("room.yaml"), "--trajectory", Path("path.tum"),
+                           "--json", Path("map.json")});
+  ASSERT_EQ(ended.code, kExitRecommended) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("41 scans over 2.0"));
+  const world::OccupancyGrid grid = world::LoadMap(Path("room.yaml"));
+  const auto at = [&](double x, double y) {
+    return grid.at(static_cast<int>((x - grid.origin.x()) / grid.resolution),
+                   static_cast<int>((y - grid.origin.y()) / grid.resolution));
+  };
+  EXPECT_EQ(at(1.0, 0.5), world::Cell::kFree);
+  EXPECT_GE(grid.origin.x(), -0.6) << "what is behind was not seen";
+  const json told = json::parse(std::ifstream(Path("map.json")));
+  EXPECT_EQ(told["schema"], "hires/map");
+  EXPECT_EQ(told["scans"], 41);
+  EXPECT_NEAR(told["length"].get<double>(), 2.0, 0.03) << "not 2.1, as odometry says";
+  std::ifstream path(Path("path.tum"));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(path, line);) lines.push_back(line);
+  ASSERT_EQ(lines.size(), 41u);
+  EXPECT_EQ(lines[0], "100.000000 0.000000 0.000000 0 0 0 0.000000000 1.000000000");
+}
+
+TEST_F(MapCommandTest, CellsAreAsLargeAsAsked) {
+  const std::string log = folder_.Write("drive.log", DriveAhead());
+  const Ended ended = Map(
+      {log, "--output", Path("room"), "--resolution", "0.1", "--max-range", "3", "--json", "-"});
+  ASSERT_EQ(ended.code, kExitRecommended) << ended.err;
+  EXPECT_EQ(world::LoadMap(Path("room.yaml")).resolution, 0.1);
+  EXPECT_EQ(json::parse(ended.out)["map"], Path("room.yaml"));
+}
+
+TEST_F(MapCommandTest, BadInputIsRefused) {
+  const auto refused = [&](const std::vector<std::string>& words, const std::string& said) {
+    const Ended ended = Map(words);
+    EXPECT_EQ(ended.code, kExitBadInput) << said;
+    EXPECT_THAT(ended.err, HasSubstr(said));
+    EXPECT_EQ(ended.out, "");
+  };
+  const std::string out = Path("room.yaml");
+  const std::string log = folder_.Write("drive.log", DriveAhead());
+  refused({}, "log");
+  refused({log}, "--output");
+  refused({Path("none.log"), "--output", out}, "none.log: no such file");
+  refused({Path("drive.bag"), "--output", out}, "drive.bag: is a bag, which this program does not");
+  refused({log, "--output", Path("room.pgm")}, "room.pgm: is the name of a picture");
+  refused({log, "--output", Path("none/room.yaml")}, "none");
+  refused({log, "--output", out, "--trajectory", Path("none/path")}, "none");
+  refused({log, "--output", out, "--json", Path("none/map.json")}, "none");
+  refused({log, "--output", out, "--resolution", "0"}, "--resolution");
+  refused({log, "--output", out, "--resolution", "fine"}, "--resolution");
+  refused({log, "--output", out, "--max-range", "-1"}, "--max-range");
+  refused({folder_.Write("odom.log", "ODOM 0 0 0 0 0 0 1 nohost 1\n"), "--output", out},
+          "odom.log: has no scan; wanted lines FLASER");
+  refused({folder_.Write("blind.log", "FLASER 2 nan 0 0 0 0 0 0 0 1 nohost 1\n"), "--output", out},
+          "no scan of the log measured anything");
+  refused({folder_.Write("cut.log", "FLASER 2 1 1 0 0 0 0\n"), "--output", out},
+          "cut.log: line 1: FLASER has 8 words; wanted 13");
+  refused({folder_.Write("page.log", "<html>\n"), "--output", out}, "page.log: line 1: '<html>'");
+  refused({log, "--output", out, "--trajectry", "x"}, "--trajectory");
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+}  // namespace
+}  // namespace hires::cli::map_command_test

@@ -1,0 +1,243 @@
+#include "hires/localisation/log_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "hires/base/error.h"
+#include "hires/base/log.h"
+#include "hires/geometry/angles.h"
+#include "support/temporary_folder.h"
+
+namespace hires::localisation::log_file_test {
+namespace {
+
+using geometry::kPi;
+using geometry::Pose2;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+const char* const kTime = " 976052857.337530 nohost 0.009023\n";
+
+/// FLASER of `n` ranges, laser and odometry at the same place.
+std::string FrontLaser(int n, const std::string& time = kTime) {
+  std::string line = "FLASER " + std::to_string(n);
+  for (int i = 0; i < n; ++i) line += " 2.5";
+  return line + " 1 2 0.5 1 2 0.5" + time;
+}
+
+std::string At(double time) { return " " + std::to_string(time) + " nohost 0.1\n"; }
+std::string OdomAt(double time) { return "ODOM 1 2 0 0 0 0" + At(time); }
+
+class LogFileTest : public testing::Test {
+ protected:
+  LogFileTest() {
+    base::SetLogSink([this](base::LogLevel level, const std::string& line) {
+      if (level == base::LogLevel::kWarn) warnings_ += line + "\n";
+    });
+  }
+  ~LogFileTest() override { base::SetLogSink({}); }
+
+  RobotLog Read(const std::string& text) const {
+    return ReadCarmenLog(folder_.Write("drive.log", text));
+  }
+  std::string ErrorOf(const std::string& text) const {
+    try {
+      Read(text);
+    } catch (const base::ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const test_support::TemporaryFolder folder_;
+  std::string warnings_;
+};
+
+TEST_F(LogFileTest, OdometryAndScansAreReadWithTheirTimes) {
+  const RobotLog log = Read(
+      "# message_name [message contents] ipc_timestamp ipc_hostname logger_timestamp\n"
+      "PARAM robot_frontlaser_offset 0.0 nohost 0\nSYNC begin 1 nohost 1\n\n"
+      "ODOM 1.5 -2 0.25 0.4 -0.1 0 10.5 nohost 0.1\r\n"
+      "RLASER 1 2 0 0 0 0 0 0 10.55 nohost 0.15\n"
+      "FLASER 3 1.0 2.0 3.0 1.7 -2 0 1.5 -2 0 10.6 nohost 0.2\n");
+  ASSERT_EQ(log.odometry.size(), 1u);
+  EXPECT_EQ(log.odometry[0].time, 10.5);
+  EXPECT_EQ(log.odometry[0].reading.X_OB.y, -2.0);
+  EXPECT_EQ(log.odometry[0].reading.X_OB.yaw, 0.25);
+  EXPECT_EQ(log.odometry[0].reading.V_B.vx, 0.4);
+  EXPECT_EQ(log.odometry[0].reading.V_B.wz, -0.1);
+  ASSERT_EQ(log.scans.size(), 1u);
+  EXPECT_EQ(log.scans[0].time, 10.6);
+  EXPECT_EQ(log.scans[0].reading.ranges, (std::vector<float>{1.0F, 2.0F, 3.0F}));
+  EXPECT_NEAR(log.scans[0].X_BL.x, 0.2, 1e-12);
+  EXPECT_NEAR(log.scans[0].X_BL.y, 0.0, 1e-12);
+  EXPECT_EQ(log.scans[0].X_OB->x, 1.5);
+  EXPECT_EQ(log.scans[0].reading.range_max, 80.0);
+  EXPECT_EQ(warnings_, "");
+}
+
+TEST_F(LogFileTest, MountingIsInTheFrameOfTheBase) {
+  const RobotLog log = Read("FLASER 1 1 10 20.3 3.0 10 20 1.5707963267948966 5 nohost 1\n");
+  EXPECT_NEAR(log.scans.at(0).X_BL.x, 0.3, 1e-9);
+  EXPECT_NEAR(log.scans[0].X_BL.y, 0.0, 1e-9);
+  EXPECT_NEAR(log.scans[0].X_BL.yaw, 3.0 - kPi / 2, 1e-9);
+}
+
+TEST_F(LogFileTest, FrontLaserSeesHalfACircleInWholeSteps) {
+  const auto scan = [&](int n) { return Read(FrontLaser(n)).scans.at(0).reading; };
+  for (const int n : {180, 181}) {
+    EXPECT_EQ(scan(n).angle_min, -kPi / 2) << n;
+    EXPECT_NEAR(scan(n).angle_increment, kPi / 180, 1e-15) << n;
+  }
+  for (const int n : {360, 361}) EXPECT_NEAR(scan(n).angle_increment, kPi / 360, 1e-15) << n;
+  EXPECT_NEAR(scan(5).angle_increment, kPi / 4, 1e-15);
+  EXPECT_EQ(scan(1).angle_increment, 0.0);
+  EXPECT_TRUE(scan(0).ranges.empty());
+}
+
+TEST_F(LogFileTest, RobotLaserTellsItsAnglesItself) {
+  const RobotLog log =
+      Read("ROBOTLASER1 4 -2.35 4.7 2.35 30 0.01 0 3 1 2 3 2 7 8 1.1 0 0 1 0 0 0.5 0.1 1 1 9" +
+           At(12.5));
+  ASSERT_EQ(log.scans.size(), 1u);
+  const robot::ScanReading& scan = log.scans[0].reading;
+  EXPECT_EQ(scan.angle_min, -2.35);
+  EXPECT_EQ(scan.angle_increment, 2.35);
+  EXPECT_EQ(scan.range_max, 30.0);
+  EXPECT_EQ(scan.ranges, (std::vector<float>{1.0F, 2.0F, 3.0F}));
+  EXPECT_NEAR(log.scans[0].X_BL.x, 0.1, 1e-12);
+  EXPECT_EQ(log.scans[0].time, 12.5);
+}
+
+TEST_F(LogFileTest, WhatIsNoMeasurementIsKeptAsSuch) {
+  const RobotLog log = Read("FLASER 7 nan -1 0 -nan inf 81.91 1e60 0 0 0 0 0 0" + At(1.0));
+  const std::vector<float>& ranges = log.scans.at(0).reading.ranges;
+  ASSERT_EQ(ranges.size(), 7u);
+  for (const int i : {0, 1, 2, 3, 6}) EXPECT_TRUE(std::isnan(ranges[i])) << i;
+  EXPECT_TRUE(std::isinf(ranges[4])) << "nothing was met";
+  EXPECT_EQ(ranges[5], 81.91F);
+}
+
+TEST_F(LogFileTest, LongestRangeIsTheOneTheLogTells) {
+  const RobotLog log = Read("PARAM robot_front_laser_max 8.1 nohost 0\n" + FrontLaser(2));
+  EXPECT_EQ(log.scans.at(0).reading.range_max, 8.1);
+}
+
+TEST_F(LogFileTest, ScansBringTheOdometryWhereNobodyElseDoes) {
+  const RobotLog log = Read("FLASER 1 1 0 0 0 0 0 0" + At(1.0) + "FLASER 1 1 0.5 0 0 0.5 0 0" +
+                            At(2.0) + "FLASER 1 1 0.5 0 0.2 0.5 0 0.2" + At(2.0));
+  ASSERT_EQ(log.odometry.size(), 3u);
+  EXPECT_EQ(log.odometry[0].reading.V_B.vx, 0.0);
+  EXPECT_EQ(log.odometry[1].reading.V_B.vx, 0.5);
+  EXPECT_EQ(log.odometry[2].reading.V_B.vx, 0.5) << "no time has passed";
+  EXPECT_EQ(log.odometry[2].reading.X_OB.yaw, 0.2);
+}
+
+TEST_F(LogFileTest, LinesALittleLateAreOrderedAndToldOf) {
+  const RobotLog log = Read(OdomAt(5.0) + OdomAt(4.5) + OdomAt(5.0) + FrontLaser(1, At(1.0)));
+  ASSERT_EQ(log.odometry.size(), 3u);
+  EXPECT_EQ(log.odometry[0].time, 4.5);
+  EXPECT_THAT(warnings_, HasSubstr("1 lines are older than one before them, by up to 0.500 s"));
+}
+
+TEST_F(LogFileTest, CorrectedLogHasItsLaserWhereAParameterSays) {
+  const std::string lines = "FLASER 1 1 0 0 0 0 0 0" + At(1.0) + "FLASER 1 1 5 0 0 4 0 0" + At(2.0);
+  const RobotLog log = Read("PARAM robot_frontlaser_offset 0.25 nohost 0\n" + lines);
+  EXPECT_THAT(warnings_, HasSubstr("not the same in all lines"));
+  for (const RobotLog::Scan& scan : log.scans) {
+    EXPECT_EQ(scan.X_BL.x, 0.25);
+    EXPECT_EQ(scan.X_BL.yaw, 0.0);
+  }
+  EXPECT_EQ(log.odometry[1].reading.X_OB.x, 4.0) << "odometry stays as it was";
+}
+
+TEST_F(LogFileTest, OneKindOfScansIsTaken) {
+  const RobotLog log =
+      Read(FrontLaser(2, At(1.0)) + "ROBOTLASER1 0 0 0 0.1 9 0 0 1 5 0 0 0 0 0 0 0 0 0 0 0 0" +
+           At(1.0) + "IMU 1 2 3" + At(1.0));
+  EXPECT_EQ(log.scans.size(), 1u);
+}
+
+TEST_F(LogFileTest, BadInputIsRefusedWithItsLine) {
+  const auto refused = [&](const std::string& text, const std::string& said) {
+    EXPECT_THAT(ErrorOf(text), HasSubstr(said)) << text.substr(0, 100);
+  };
+  EXPECT_THAT(ErrorOf("\nODOM 1 2" + At(1.0)), HasSubstr("drive.log: line 2: ODOM has 6 words"));
+  refused("", "has no line FLASER, ROBOTLASER1 or ODOM");
+  refused("# HIRES\n", "has no line FLASER");
+  refused("PARAM robot_length 0.7 nohost 0\n", "has no line FLASER");
+  refused("HIRES lets a robot imagine\n\nmore\n", "line 3: 'more' begins no line of a CARMEN log");
+  refused("{\"a\": 1}\n", "'{\"a\":' begins no line");
+  refused(std::string("\x1f\x8b\0\n", 4), "line 1: is no text; wanted a CARMEN log: is the file");
+  refused("ODOM 1 2 0 0 0 0 10.0 nohost\n", "ODOM has 9 words; wanted 10");
+  refused("ODOM 1 2 0 0 0 0 7 10.0 nohost 1\n", "ODOM has 11 words; wanted 10");
+  refused("ODOM x 2 0 0 0 0" + At(1.0), "x of the odometry is 'x'; wanted a number");
+  refused("ODOM 1 nan 0 0 0 0" + At(1.0), "y of the odometry is 'nan'");
+  refused("ODOM 1 2 inf 0 0 0" + At(1.0), "theta of the odometry is 'inf'");
+  refused("ODOM 1e9 2 0 0 0 0" + At(1.0), "x of the odometry is '1e9'");
+  refused("ODOM 1 2 0 fast 0 0" + At(1.0), "tv is 'fast'");
+  refused("ODOM 1 2 0 0 0,5 0" + At(1.0), "rv is '0,5'");
+  refused("ODOM 1 2 0 0 0 0 soon nohost 1\n", "ipc_timestamp is 'soon'");
+  refused("ODOM 1 2 0 0 0 0 nan nohost 1\n", "ipc_timestamp is 'nan'");
+  refused("ODOM 1 2 0 0 0 0 1 nohost late\n", "logger_timestamp is 'late'");
+  refused(OdomAt(5.0) + OdomAt(3.9), "line 2: ipc_timestamp 3.900000 is 1.100 s before");
+  refused(FrontLaser(2, At(9.0)) + OdomAt(3.0) + FrontLaser(2, At(3.0)), "line 3: ipc_timestamp");
+  refused("PARAM robot_frontlaser_offset far nohost 0\n", "robot_frontlaser_offset is 'far'");
+  refused("PARAM robot_front_laser_max 0 nohost 0\n", "robot_front_laser_max is '0'");
+}
+
+TEST_F(LogFileTest, BadScansAreRefused) {
+  const auto refused = [&](const std::string& text, const std::string& said) {
+    EXPECT_THAT(ErrorOf(text), HasSubstr(said)) << text.substr(0, 100);
+  };
+  refused("FLASER\n", "FLASER ends before its number of ranges");
+  refused("FLASER many 1\n", "number of ranges is 'many'; wanted a whole number");
+  refused("FLASER -1 1\n", "number of ranges is '-1'");
+  refused("FLASER 2.5 1\n", "number of ranges is '2.5'");
+  refused("FLASER 100001 1\n",
+          "number of ranges is '100001'; wanted a whole number from 0 to 1000");
+  refused("FLASER 99999999999999999999 1\n", "number of ranges is '9999");
+  refused("FLASER 3 1 2 0 0 0 0 0 0" + At(1.0), "FLASER has 13 words; wanted 14");
+  refused("FLASER 1 1 2 0 0 0 0 0 0" + At(1.0), "FLASER has 13 words; wanted 12");
+  refused("FLASER 1 1m 0 0 0 0 0 0" + At(1.0), "range 1 is '1m'; wanted a number [m]");
+  refused("FLASER 1 1 0 0 nan 0 0 0" + At(1.0), "theta of the pose of the laser is 'nan'");
+  const std::string poses = " 0 0 0 0 0 0 0 0 0 0 0" + At(1.0);
+  refused("ROBOTLASER1 4 0 3\n", "ROBOTLASER1 ends before its number of ranges");
+  refused("ROBOTLASER1 4 0 3 1 9 0 0 2 1\n", "ends before its number of remissions");
+  refused("ROBOTLASER1 4 x 3 1 9 0 0 2 1 1 0" + poses, "start_angle is 'x'");
+  refused("ROBOTLASER1 4 0 3 0 9 0 0 2 1 1 0" + poses, "angular resolution is 0");
+  refused("ROBOTLASER1 4 0 3 1 -9 0 0 2 1 1 0" + poses, "max_range is '-9'");
+  refused("ROBOTLASER1 4 0 3 1 9 0 0 2 1 1 2" + poses, "ROBOTLASER1 has 26 words; wanted 28");
+  EXPECT_EQ(ErrorOf("ROBOTLASER1 4 0 3 1 9 0 0 2 1 1 0" + poses), "");
+}
+
+TEST_F(LogFileTest, MissingFilesAreNamed) {
+  const std::string none = (folder_.path() / "none.log").string();
+  try {
+    ReadCarmenLog(none);
+    FAIL() << "was read";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), StartsWith(none));
+  }
+}
+
+TEST_F(LogFileTest, TrajectoriesAreWrittenAsOthersReadThem) {
+  const std::string file = (folder_.path() / "path.tum").string();
+  WriteTumTrajectory({{976052857.33753, {1.0, -2.0, 0.0}}, {976052858.0, {1.5, 0.0, kPi / 2}}},
+                     file);
+  std::ifstream in(file);
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  EXPECT_EQ(text,
+            "976052857.337530 1.000000 -2.000000 0 0 0 0.000000000 1.000000000\n"
+            "976052858.000000 1.500000 0.000000 0 0 0 0.707106781 0.707106781\n");
+  EXPECT_THROW(WriteTumTrajectory({}, (folder_.path() / "none" / "path.tum").string()),
+               base::ConfigError);
+  EXPECT_THROW(WriteTumTrajectory({{0.0, {std::nan(""), 0.0, 0.0}}}, file), std::logic_error);
+}
+
+}  // namespace
+}  // namespace hires::localisation::log_file_test

@@ -1,0 +1,198 @@
+#include "hires/mapping/mapper.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <limits>
+
+#include "hires/base/error.h"
+#include "support/simulated_drive.h"
+
+namespace hires::mapping::mapper_test {
+namespace {
+
+using localisation::RobotLog;
+using test_support::DriveThrough;
+using test_support::MedianWallError;
+using test_support::SimulatedDrive;
+using test_support::SimulatedDriveParams;
+using test_support::TrajectoryRms;
+
+/// 12 m x 8 m, with a wall from below that leaves a door of 3 m, and a pillar.
+world::OccupancyGrid TwoRooms() {
+  world::OccupancyGrid grid{0.05, 240, 160, {0.0, 0.0}, {}};
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      const bool is_border = row < 2 || column < 2 || row >= 158 || column >= 238;
+      const bool is_wall = column >= 120 && column < 123 && row < 100;
+      const bool is_pillar = column >= 180 && column < 188 && row >= 60 && row < 66;
+      grid.cells.push_back(is_border || is_wall || is_pillar ? world::Cell::kOccupied
+                                                             : world::Cell::kFree);
+    }
+  }
+  return grid;
+}
+
+const std::vector<Eigen::Vector2d> kThroughBothRooms{
+    {2.0, 2.0},  {2.0, 6.0}, {8.0, 6.5}, {8.0, 1.5}, {11.0, 1.5},
+    {11.0, 6.5}, {5.0, 6.5}, {2.0, 6.0}, {2.0, 2.0}, {4.5, 2.0}};
+
+SimulatedDrive TwoRoomsDrive(const SimulatedDriveParams& params = {}, int seed = 1) {
+  return DriveThrough(TwoRooms(), kThroughBothRooms, params, base::Rng(seed));
+}
+
+localisation::TimedPath OdometryOf(const SimulatedDrive& drive) {
+  localisation::TimedPath path;
+  for (const auto& odometry : drive.log.odometry) {
+    if (path.size() < drive.truth.size() && odometry.time == drive.truth[path.size()].time)
+      path.push_back({odometry.time, odometry.reading.X_OB});
+  }
+  return path;
+}
+
+/// Holds a map against the world that was driven through.
+void ExpectTrue(const MapResult& result, const SimulatedDrive& drive,
+                const world::OccupancyGrid& world) {
+  geometry::Pose2 X_WM;
+  EXPECT_LE(TrajectoryRms(result.trajectory, drive.truth, &X_WM), 0.05);
+  EXPECT_LE(MedianWallError(result.grid, world, X_WM), 0.03);
+}
+
+TEST(MapperTest, RoomsAreMappedWhereTheyAre) {
+  for (int seed = 1; seed <= 3; ++seed) {
+    const SimulatedDrive drive = TwoRoomsDrive({}, seed);
+    const MapResult result = MakeMap(drive.log);
+    ExpectTrue(result, drive, TwoRooms());
+    EXPECT_GT(TrajectoryRms(OdometryOf(drive), drive.truth), 0.05) << "else nothing is shown";
+    EXPECT_GT(result.num_loops, 0);
+    EXPECT_EQ(result.num_lost, 0);
+    EXPECT_EQ(result.odometry_jumps, 0);
+    EXPECT_EQ(result.trajectory.front().X_MB.position().norm(), 0.0);
+  }
+}
+
+struct Course {
+  const char* map;
+  std::vector<Eigen::Vector2d> places;
+};
+const Course kLaboratory{"/map_sim_origin.yaml",
+                         {{1.5, 7.5},
+                          {6.4, 7.5},
+                          {6.4, 12.0},
+                          {11.4, 12.0},
+                          {11.4, 7.5},
+                          {1.5, 7.5},
+                          {1.5, 12.0},
+                          {1.5, 7.5},
+                          {11.4, 7.5},
+                          {11.4, 12.0},
+                          {6.4, 12.0},
+                          {6.4, 7.5}}};
+const Course kCorridor{"/map_pr2_origin.yaml",
+                       {{6.0, 12.0},
+                        {11.4, 12.0},
+                        {11.4, 7.0},
+                        {2.0, 7.0},
+                        {35.0, 7.0},
+                        {11.4, 7.0},
+                        {11.4, 12.0},
+                        {6.0, 12.0}}};
+
+TEST(MapperTest, OriginalMapsAreMappedAgain) {
+  for (const Course& course : {kLaboratory, kCorridor}) {
+    const std::string file = std::string(HIRES_SHARED_DATA) + course.map;
+    if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+    const world::OccupancyGrid world = world::LoadMap(file);
+    SimulatedDriveParams params;
+    for (const double error : {0.02, 0.05}) {
+      SCOPED_TRACE(course.map + std::to_string(error));
+      params.scale_error = error;
+      const SimulatedDrive drive = DriveThrough(world, course.places, params, base::Rng(5));
+      ExpectTrue(MakeMap(drive.log), drive, world);
+    }
+  }
+}
+
+TEST(MapperTest, SameLogGivesTheSameMap) {
+  const SimulatedDrive drive = TwoRoomsDrive();
+  const MapResult one = MakeMap(drive.log), other = MakeMap(drive.log);
+  EXPECT_EQ(one.grid.cells, other.grid.cells);
+  ASSERT_EQ(one.trajectory.size(), other.trajectory.size());
+  for (std::size_t i = 0; i < one.trajectory.size(); ++i) {
+    EXPECT_EQ(one.trajectory[i].X_MB.x, other.trajectory[i].X_MB.x);
+    EXPECT_EQ(one.trajectory[i].X_MB.yaw, other.trajectory[i].X_MB.yaw);
+  }
+}
+
+TEST(MapperTest, LaserMayLookBackward) {
+  SimulatedDriveParams params;
+  params.X_BL = {-0.2, 0.1, geometry::kPi};
+  const SimulatedDrive drive = TwoRoomsDrive(params);
+  ExpectTrue(MakeMap(drive.log), drive, TwoRooms());
+}
+
+TEST(MapperTest, OdometryThatIsResetIsNoMotion) {
+  SimulatedDrive drive = TwoRoomsDrive();
+  const geometry::Pose2 X_NO{10.0, -5.0, 1.0};  // of the new frame
+  auto& odometry = drive.log.odometry;
+  for (std::size_t i = odometry.size() / 2; i < odometry.size(); ++i)
+    odometry[i].reading.X_OB = X_NO * odometry[i].reading.X_OB;
+  // Between two readings across the reset nothing is known.
+  for (RobotLog::Scan& scan : drive.log.scans) {
+    for (const auto& reading : odometry)
+      if (reading.time == scan.time) scan.X_OB = reading.reading.X_OB;
+  }
+  const MapResult result = MakeMap(drive.log);
+  EXPECT_EQ(result.odometry_jumps, 1);
+  ExpectTrue(result, drive, TwoRooms());
+}
+
+TEST(MapperTest, BlindScansStandWhereOdometrySays) {
+  SimulatedDrive drive = TwoRoomsDrive();
+  for (std::size_t i = 200; i < 225; ++i)
+    for (float& range : drive.log.scans[i].reading.ranges)
+      range = i % 2 == 0 ? std::numeric_limits<float>::quiet_NaN() : 0.0F;
+  const MapResult result = MakeMap(drive.log);
+  EXPECT_EQ(result.num_lost, 25);
+  ExpectTrue(result, drive, TwoRooms());
+}
+
+TEST(MapperTest, SilenceOfTenSecondsIsBridged) {
+  SimulatedDrive drive = TwoRoomsDrive();
+  const auto is_silent = [](const auto& reading) { return reading.time > 20 && reading.time < 30; };
+  const auto forget = [&](auto* readings) {
+    readings->erase(std::remove_if(readings->begin(), readings->end(), is_silent), readings->end());
+  };
+  forget(&drive.log.scans);
+  forget(&drive.truth);
+  forget(&drive.log.odometry);
+  ExpectTrue(MakeMap(drive.log), drive, TwoRooms());
+}
+
+TEST(MapperTest, ScanWaitsForTheOdometryAfterIt) {
+  const SimulatedDrive drive = TwoRoomsDrive();
+  Mapper mapper;
+  for (const RobotLog::Scan& scan : drive.log.scans) mapper.AddScan(scan);
+  for (const RobotLog::Odometry& odometry : drive.log.odometry) mapper.AddOdometry(odometry);
+  const MapResult late = mapper.Result();
+  EXPECT_EQ(late.grid.cells, MakeMap(drive.log).grid.cells);
+}
+
+TEST(MapperTest, LogsWithoutMeasurementsAreRefused) {
+  EXPECT_THROW(MakeMap({}), base::ConfigError);
+  SimulatedDrive drive = TwoRoomsDrive();
+  for (RobotLog::Scan& scan : drive.log.scans)
+    std::fill(scan.reading.ranges.begin(), scan.reading.ranges.end(), 30.0F);
+  EXPECT_THROW(MakeMap(drive.log), base::ConfigError);
+}
+
+TEST(MapperTest, TimesThatGoBackAreTheCallersError) {
+  Mapper mapper;
+  mapper.AddScan({2.0, {}, {}, {}});
+  EXPECT_THROW(mapper.AddScan({1.0, {}, {}, {}}), std::logic_error);
+  mapper.AddOdometry({2.0, {}});
+  EXPECT_THROW(mapper.AddOdometry({1.0, {}}), std::logic_error);
+}
+
+}  // namespace
+}  // namespace hires::mapping::mapper_test

@@ -1,0 +1,141 @@
+#include <gtest/gtest.h>
+
+#include "hires/base/error.h"
+#include "hires/geometry/angles.h"
+#include "mapping/draw_grid.h"
+#include "mapping/odometry_track.h"
+#include "mapping/pose_graph.h"
+#include "mapping/scan_matcher.h"
+
+namespace hires::mapping::mapping_parts_test {
+namespace {
+
+using geometry::kPi;
+using geometry::Pose2;
+using localisation::RobotLog;
+
+RobotLog::Scan ScanOf(const std::vector<float>& ranges, double angle_min, double increment) {
+  RobotLog::Scan scan;
+  scan.reading.angle_min = angle_min;
+  scan.reading.angle_increment = increment;
+  scan.reading.ranges = ranges;
+  scan.reading.range_max = 30.0;
+  return scan;
+}
+
+/// Of a laser in the origin that looks at two walls, x = 3 and y = 2.
+RobotLog::Scan CornerScan(const Pose2& X_MB = {}) {
+  std::vector<float> ranges;
+  for (int i = 0; i <= 90; ++i) {
+    const double angle = X_MB.yaw + i * kPi / 180.0;
+    const double to_x = std::cos(angle) > 1e-9 ? (3.0 - X_MB.x) / std::cos(angle) : 100.0;
+    const double to_y = std::sin(angle) > 1e-9 ? (2.0 - X_MB.y) / std::sin(angle) : 100.0;
+    ranges.push_back(static_cast<float>(std::min(to_x, to_y)));
+  }
+  return ScanOf(ranges, 0.0, kPi / 180.0);
+}
+
+TEST(ScanPointsTest, WallsFaceTheLaser) {
+  const SurfacePoints points = PointsOf(CornerScan(), 30.0);
+  ASSERT_EQ(points.size(), 91u);
+  EXPECT_NEAR(points[10].p.x(), 3.0, 1e-6);
+  EXPECT_NEAR(points[10].n.x(), -1.0, 1e-6);
+  EXPECT_NEAR(points[80].n.y(), -1.0, 1e-6);
+}
+
+TEST(ScanPointsTest, WhatIsNoMeasurementIsNoPoint) {
+  const float nan = std::nanf("");
+  const SurfacePoints points = PointsOf(
+      ScanOf({nan, 0.0F, -1.0F, 30.0F, 25.0F, 1.0F, std::numeric_limits<float>::infinity()}, 0.0,
+             0.1),
+      20.0);
+  ASSERT_EQ(points.size(), 1u);
+  EXPECT_FALSE(points[0].has_normal());
+}
+
+TEST(ScanMatcherTest, PoseIsFoundAgainFromBesideIt) {
+  const SurfacePoints seen = PointsOf(CornerScan(), 30.0);
+  const SurfaceMap map(std::vector<PlacedPoints>{{&seen, {}}});
+  const Pose2 X_MB{0.2, -0.1, 0.05};
+  const SurfacePoints points = PointsOf(CornerScan(X_MB), 30.0);
+  const Pose2 searched = SearchMatch(map, points, {}, {0.4, 0.2});
+  const ScanMatch match = RefineMatch(map, points, searched, std::nullopt, 0.03);
+  EXPECT_NEAR(match.X_MB.x, X_MB.x, 0.005);
+  EXPECT_NEAR(match.X_MB.y, X_MB.y, 0.005);
+  EXPECT_NEAR(match.X_MB.yaw, X_MB.yaw, 0.002);
+  EXPECT_GT(match.fit, 0.9);
+}
+
+TEST(ScanMatcherTest, AlongAWallThePriorDecides) {
+  std::vector<float> ranges;
+  for (int i = -30; i <= 30; ++i)
+    ranges.push_back(static_cast<float>(2.0 / std::cos(i * kPi / 180.0)));
+  const SurfacePoints wall = PointsOf(ScanOf(ranges, -kPi / 6.0, kPi / 180.0), 30.0);
+  const SurfaceMap map(std::vector<PlacedPoints>{{&wall, {}}});
+  const PosePrior prior{{0.05, 0.3, 0.0}, 0.05, 0.02};
+  const ScanMatch match = RefineMatch(map, wall, prior.X_MB, prior, 0.03);
+  EXPECT_NEAR(match.X_MB.x, 0.0, 0.003) << "the wall stands ahead";
+  EXPECT_NEAR(match.X_MB.y, 0.3, 0.003) << "and runs from right to left";
+  EXPECT_LT(match.information(1, 1), 0.1 * match.information(0, 0));
+}
+
+PoseGraph::Edge Ahead(int from, int to) {
+  return {from, to, {1.0, 0.0, kPi / 2.0}, Eigen::Matrix3d::Identity() * 100.0};
+}
+
+TEST(PoseGraphTest, ErrorOfALoopIsSpreadOverIt) {
+  PoseGraph graph;  // a square that odometry closes badly
+  for (int i = 0; i < 4; ++i) graph.AddPose({0.1 * i, 0.2 * i, 1.5 * i});
+  for (int i = 0; i < 4; ++i) graph.AddEdge(Ahead(i, (i + 1) % 4));
+  graph.Optimise(50);
+  const std::vector<Pose2> square{
+      {0.0, 0.0, 0.0}, {1.0, 0.0, kPi / 2}, {1.0, 1.0, kPi}, {0.0, 1.0, -kPi / 2}};
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(graph.pose(i).x, square[i].x, 1e-6) << i;
+    EXPECT_NEAR(graph.pose(i).y, square[i].y, 1e-6) << i;
+    EXPECT_NEAR(geometry::WrapToPi(graph.pose(i).yaw - square[i].yaw), 0.0, 1e-6) << i;
+  }
+}
+
+TEST(PoseGraphTest, WrongLoopIsOverruled) {
+  PoseGraph graph;
+  for (int i = 0; i < 20; ++i) graph.AddPose({1.0 * i, 0.0, 0.0});
+  for (int i = 0; i < 19; ++i)
+    graph.AddEdge({i, i + 1, {1.0, 0.0, 0.0}, Eigen::Matrix3d::Identity() * 1e4});
+  graph.AddEdge({0, 19, {5.0, 0.0, 0.0}, Eigen::Matrix3d::Identity() * 1e4, true});
+  graph.Optimise();
+  EXPECT_NEAR(graph.pose(19).x, 19.0, 0.05);
+}
+
+TEST(OdometryTrackTest, PosesBetweenReadingsAreInterpolated) {
+  OdometryTrack track;
+  EXPECT_FALSE(track.At(1.0).has_value());
+  track.Add(1.0, {0.0, 0.0, 3.0});
+  track.Add(2.0, {1.0, 0.0, -3.0});
+  EXPECT_EQ(track.At(0.5)->x, 0.0);
+  EXPECT_NEAR(track.At(1.5)->x, 0.5, 1e-12);
+  EXPECT_NEAR(std::abs(track.At(1.5)->yaw), kPi, 1e-9) << "the short way round";
+  EXPECT_EQ(track.At(5.0)->x, 1.0);
+  EXPECT_THROW(track.Add(1.5, {}), std::logic_error);
+}
+
+TEST(DrawGridTest, BeamsClearTheirWayAndEndInWalls) {
+  const RobotLog::Scan scan = ScanOf({1.02F, 50.0F}, 0.0, kPi / 2.0);
+  const world::OccupancyGrid grid = DrawGrid({&scan}, {{0.05, 0.05, 0.0}}, 0.1, 30.0);
+  const auto at = [&](double x, double y) {
+    return grid.at(static_cast<int>(std::floor((x - grid.origin.x()) / 0.1 + 1e-9)),
+                   static_cast<int>(std::floor((y - grid.origin.y()) / 0.1 + 1e-9)));
+  };
+  for (double x = 0.05; x < 0.95; x += 0.1) EXPECT_EQ(at(x, 0.05), world::Cell::kFree) << x;
+  EXPECT_EQ(at(1.05, 0.05), world::Cell::kOccupied);
+  EXPECT_EQ(at(1.15, 0.05), world::Cell::kUnknown);
+  EXPECT_EQ(at(0.05, 0.45), world::Cell::kUnknown) << "what met nothing tells nothing";
+}
+
+TEST(DrawGridTest, AbsurdSizesAreRefused) {
+  const RobotLog::Scan scan = ScanOf({1.0F}, 0.0, 0.1);
+  EXPECT_THROW(DrawGrid({&scan, &scan}, {{}, {1e5, 1e5, 0.0}}, 0.05, 30.0), base::ConfigError);
+}
+
+}  // namespace
+}  // namespace hires::mapping::mapping_parts_test

@@ -1,0 +1,219 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "hires/base/check.h"
+#include "hires/base/rng.h"
+#include "hires/geometry/angles.h"
+#include "hires/localisation/robot_log.h"
+#include "hires/world/occupancy_grid.h"
+
+/// Logs of robots that drive through a grid, for tests of what is made of such logs. The occupied
+/// cells are the world; rays pass what is unknown.
+namespace hires::test_support {
+
+struct SimulatedDriveParams {
+  double speed{0.5};             ///< [m/s]
+  double turn_rate{0.6};         ///< [rad/s] on the spot, between legs
+  double odometry_period{0.05};  ///< [s]
+  int odometry_per_scan{4};      ///< readings
+  double scale_error{0.03};      ///< of way and turn, one draw each for the drive
+  double veer_error{0.02};       ///< [rad/m] sd of one draw for the drive
+  double step_error{0.05};       ///< of each step, drawn for it
+  double range_noise{0.02};      ///< [m]
+  double range_max{30.0};        ///< [m]
+  int beams{361};                ///< over 180 degrees
+  geometry::Pose2 X_BL{0.27, 0.0, 0.0};
+};
+
+struct SimulatedDrive {
+  localisation::RobotLog log;
+  localisation::TimedPath truth;  ///< base in the grid's frame, one pose for each scan
+};
+
+/// [m] along a ray to the first occupied cell; infinite if there is none within `range_max`.
+inline double RangeInGrid(const world::OccupancyGrid& grid, const Eigen::Vector2d& from,
+                          double angle, double range_max) {
+  const Eigen::Vector2d at = (from - grid.origin) / grid.resolution;
+  const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+  int cell[2], step[2];
+  double next[2], between[2];
+  for (int axis = 0; axis < 2; ++axis) {
+    cell[axis] = static_cast<int>(std::floor(at[axis]));
+    step[axis] = direction[axis] > 0.0 ? 1 : -1;
+    between[axis] = 1.0 / std::max(1e-12, std::abs(direction[axis]));
+    next[axis] =
+        (step[axis] > 0 ? cell[axis] + 1 - at[axis] : at[axis] - cell[axis]) * between[axis];
+  }
+  double range = 0.0;
+  while (range * grid.resolution < range_max) {
+    if (cell[0] < 0 || cell[1] < 0 || cell[0] >= grid.width || cell[1] >= grid.height) break;
+    if (grid.at(cell[0], cell[1]) == world::Cell::kOccupied) return range * grid.resolution;
+    const int axis = next[0] < next[1] ? 0 : 1;
+    range = next[axis];
+    next[axis] += between[axis];
+    cell[axis] += step[axis];
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+inline robot::ScanReading ScanInGrid(const world::OccupancyGrid& grid, const geometry::Pose2& X_ML,
+                                     const SimulatedDriveParams& params, base::Rng* rng) {
+  robot::ScanReading scan;
+  scan.angle_min = -geometry::kPi / 2.0;
+  scan.angle_increment = geometry::kPi / (params.beams - 1);
+  scan.range_min = 0.02;
+  scan.range_max = params.range_max;
+  for (int i = 0; i < params.beams; ++i) {
+    const double angle = X_ML.yaw + scan.angle_min + i * scan.angle_increment;
+    const double range = RangeInGrid(grid, X_ML.position(), angle, params.range_max);
+    const double noise = rng->Normal(0.0, params.range_noise);
+    scan.ranges.push_back(std::isinf(range) ? static_cast<float>(params.range_max)
+                                            : static_cast<float>(std::max(0.0, range + noise)));
+  }
+  return scan;
+}
+
+/// Moves the robot and writes its log.
+class SimulatedDriver {
+ public:
+  SimulatedDriver(const world::OccupancyGrid& grid, const geometry::Pose2& X_MB,
+                  const SimulatedDriveParams& params, base::Rng rng)
+      : grid_(grid), params_(params), rng_(rng), X_MB_(X_MB) {
+    way_scale_ = 1.0 + rng_.Normal(0.0, params_.scale_error);
+    turn_scale_ = 1.0 + rng_.Normal(0.0, params_.scale_error);
+    veer_ = rng_.Normal(0.0, params_.veer_error);
+    Record();
+  }
+
+  /// Turns towards a place and goes there straight.
+  void GoTo(const Eigen::Vector2d& place) {
+    const Eigen::Vector2d way = place - X_MB_.position();
+    const double turn = geometry::WrapToPi(std::atan2(way.y(), way.x()) - X_MB_.yaw);
+    const double turn_step = params_.turn_rate * params_.odometry_period;
+    const int turns = static_cast<int>(std::ceil(std::abs(turn) / turn_step));
+    for (int i = 0; i < turns; ++i) Step({0.0, 0.0, turn / turns});
+    const int steps =
+        static_cast<int>(std::ceil(way.norm() / (params_.speed * params_.odometry_period)));
+    for (int i = 0; i < steps; ++i) Step({way.norm() / steps, 0.0, 0.0});
+  }
+
+  const SimulatedDrive& drive() const { return drive_; }
+
+ private:
+  void Step(const geometry::Pose2& step) {
+    X_MB_ = X_MB_ * step;
+    const auto erring = [&](double value) {
+      return value * (1.0 + rng_.Normal(0.0, params_.step_error));
+    };
+    X_OB_ = X_OB_ * geometry::Pose2{erring(step.x) * way_scale_, 0.0,
+                                    erring(step.yaw) * turn_scale_ + veer_ * step.x};
+    time_ += params_.odometry_period;
+    Record();
+  }
+
+  void Record() {
+    drive_.log.odometry.push_back({time_, {X_OB_, {}}});
+    if (drive_.log.odometry.size() % params_.odometry_per_scan != 1) return;
+    localisation::RobotLog::Scan scan;
+    scan.time = time_;
+    scan.X_BL = params_.X_BL;
+    scan.reading = ScanInGrid(grid_, X_MB_ * params_.X_BL, params_, &rng_);
+    drive_.log.scans.push_back(scan);
+    drive_.truth.push_back({time_, X_MB_});
+  }
+
+  const world::OccupancyGrid& grid_;
+  SimulatedDriveParams params_;
+  base::Rng rng_;
+  geometry::Pose2 X_MB_, X_OB_;
+  double way_scale_{1.0}, turn_scale_{1.0}, veer_{0.0}, time_{0.0};
+  SimulatedDrive drive_;
+};
+
+/// From the first place to the last one, straight from each to the next.
+inline SimulatedDrive DriveThrough(const world::OccupancyGrid& grid,
+                                   const std::vector<Eigen::Vector2d>& places,
+                                   const SimulatedDriveParams& params, base::Rng rng) {
+  HIRES_CHECK(places.size() >= 2, "a drive has a beginning and an end");
+  const Eigen::Vector2d way = places[1] - places[0];
+  SimulatedDriver driver(grid, {places[0].x(), places[0].y(), std::atan2(way.y(), way.x())}, params,
+                         rng);
+  for (std::size_t i = 1; i < places.size(); ++i) driver.GoTo(places[i]);
+  return driver.drive();
+}
+
+/// Root mean square [m] of the distances between a trajectory and the truth, after the rigid motion
+/// that fits them best.
+inline double TrajectoryRms(const localisation::TimedPath& path,
+                            const localisation::TimedPath& truth, geometry::Pose2* X_TP = nullptr) {
+  HIRES_CHECK(path.size() == truth.size() && !path.empty(), "one pose for each scan");
+  Eigen::Vector2d mean_p = Eigen::Vector2d::Zero(), mean_t = mean_p;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    mean_p += path[i].X_MB.position() / static_cast<double>(path.size());
+    mean_t += truth[i].X_MB.position() / static_cast<double>(path.size());
+  }
+  double sine = 0.0, cosine = 0.0;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const Eigen::Vector2d p = path[i].X_MB.position() - mean_p;
+    const Eigen::Vector2d t = truth[i].X_MB.position() - mean_t;
+    cosine += p.dot(t);
+    sine += p.x() * t.y() - p.y() * t.x();
+  }
+  geometry::Pose2 X{0.0, 0.0, std::atan2(sine, cosine)};
+  const Eigen::Vector2d shift = mean_t - X * mean_p;
+  X.x = shift.x();
+  X.y = shift.y();
+  double squares = 0.0;
+  for (std::size_t i = 0; i < path.size(); ++i)
+    squares += (X * path[i].X_MB.position() - truth[i].X_MB.position()).squaredNorm();
+  if (X_TP != nullptr) *X_TP = X;
+  return std::sqrt(squares / static_cast<double>(path.size()));
+}
+
+/// [m] from a point to the nearest face between an occupied cell and one that is not, as far as
+/// 0.5 m away.
+inline double DistanceToWall(const world::OccupancyGrid& grid, const Eigen::Vector2d& p) {
+  const double r = grid.resolution;
+  const Eigen::Vector2d at = (p - grid.origin) / r;
+  const int reach = static_cast<int>(std::ceil(0.5 / r));
+  const auto is_occupied = [&](int c, int row) {
+    return c >= 0 && row >= 0 && c < grid.width && row < grid.height &&
+           grid.at(c, row) == world::Cell::kOccupied;
+  };
+  double nearest = 0.5;
+  const int column = static_cast<int>(std::floor(at.x())),
+            row = static_cast<int>(std::floor(at.y()));
+  for (int y = row - reach; y <= row + reach; ++y) {
+    for (int x = column - reach; x <= column + reach; ++x) {
+      const double beside_x = std::max({x - at.x(), 0.0, at.x() - x - 1});
+      const double beside_y = std::max({y - at.y(), 0.0, at.y() - y - 1});
+      for (const int face : {0, 1}) {  // left and lower ones
+        if (is_occupied(x, y) == (face == 0 ? is_occupied(x - 1, y) : is_occupied(x, y - 1)))
+          continue;
+        const double distance =
+            face == 0 ? std::hypot(at.x() - x, beside_y) : std::hypot(beside_x, at.y() - y);
+        nearest = std::min(nearest, distance * r);
+      }
+    }
+  }
+  return nearest;
+}
+
+/// Median [m] of the distances of a map's occupied cells (centres) from the world's walls.
+inline double MedianWallError(const world::OccupancyGrid& map, const world::OccupancyGrid& world,
+                              const geometry::Pose2& X_WM) {
+  std::vector<double> errors;
+  for (int row = 0; row < map.height; ++row)
+    for (int column = 0; column < map.width; ++column)
+      if (map.at(column, row) == world::Cell::kOccupied)
+        errors.push_back(DistanceToWall(world, X_WM * map.CentreOf(column, row)));
+  HIRES_CHECK(!errors.empty(), "the map has walls");
+  std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
+  return errors[errors.size() / 2];
+}
+
+}  // namespace hires::test_support
