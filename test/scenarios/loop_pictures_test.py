@@ -62,6 +62,29 @@ class LoopPicturesTest(LoopCase):
         silent = [topic for topic in shown if not self.loop.main.publishers(topic)]
         self.assertEqual(silent, [], name)
 
+    def require_truth_unheard(self):
+        """By others than this test."""
+        me = self.loop.rospy.get_name()
+        truths = [topic for topic in self.loop.main.publishers() if 'ground_truth' in topic]
+        self.assertEqual(len(truths), 3, truths)
+        for topic in truths:
+            self.assertEqual(self.loop.main.subscribers(topic), [me], topic)
+
+    def listeners_to_truth(self):
+        """Who else listens to it, looked for when another step has begun; a list that goes on."""
+        found, looked = [], []
+
+        def look(feedback):
+            begun = sum(step.started == step.started for step in feedback.steps)
+            if looked[-1:] == [begun]:
+                return
+            looked.append(begun)
+            for topic in self.loop.main.publishers():
+                if 'ground_truth' in topic:
+                    found.extend(node for node in self.loop.main.subscribers(topic)
+                                 if node != self.loop.rospy.get_name())
+        return look, looked, found
+
     def listen_to_recognition(self):
         """Names that are shown over recognised things, once there are some."""
         from visualization_msgs.msg import MarkerArray
@@ -91,21 +114,21 @@ class LoopPicturesTest(LoopCase):
     def test_the_mill_gets_to_the_table_and_nobody_looks_at_the_truth(self):
         self.begin(AT_COUNTER, MILL)
         names, has_names = self.listen_to_recognition()
-        task = self.achieve(CARRY)
+        look, looked, found = self.listeners_to_truth()
+        task = self.achieve(CARRY, on_feedback=look)
         self.wait_for_step(task, 'pick_up_object')
         for display in ('hyperreality', 'topple', 'serve_coffee'):
             self.require_displays(display)
-        me = self.loop.rospy.get_name()
-        truths = [topic for topic in self.loop.main.publishers() if 'ground_truth' in topic]
-        self.assertEqual(len(truths), 3, truths)
-        for topic in truths:
-            self.assertEqual(self.loop.main.subscribers(topic), [me], topic)
+        self.require_truth_unheard()
         self.assertEqual(self.loop.main.publishers('/detections'), ['/' + RECOGNISER])
         self.assertTrue(has_names.wait(60.0), 'nothing is shown of what is recognised')
         for text, lifetime in names:
             self.assertRegex(text, r'^\w+ \d+ %$')
             self.assertGreater(lifetime, 0.0)
         self.require(task, self.codes.SUCCEEDED)
+        self.require_truth_unheard()
+        self.assertEqual(found, [])
+        self.assertGreater(len(looked), 3, 'after each step it is looked again')
         self.wait_until_it_stands()
         self.assert_on_table1('peppermill1')
         self.assert_stands_upright('peppermill1', TABLE_TOP)

@@ -66,6 +66,8 @@ class LoopRandomTasksTest(LoopCase):
         story = lambda: self.story(task, result)  # noqa: E731
         self.assertIn(result.code, ENDS, story())
         self.assertTrue(result.code == 0 or result.reason, story())
+        if self.SETTINGS and drawn.can_be_done():
+            self.assertEqual(result.code, self.codes.SUCCEEDED, story())
         false = [claim for claim, verdict in self.claims.verdicts if verdict == FALSE]
         self.assertEqual(false, [], story())
         if result.code == self.codes.SUCCEEDED:

@@ -40,6 +40,12 @@ class RandomTask:
         there = {name: pose for name, pose in self.objects.items() if name not in self.missing}
         return scenario_of(self.robot, there, self.hidden)
 
+    def can_be_done(self):
+        """Whether what is missing leaves what the task needs."""
+        if self.kind == 'serve':
+            return not set(self.coffees) <= self.missing
+        return self.kind != 'carry' or self.goal_object not in self.missing
+
     def is_done(self, there):
         """@param there  names of what stands on the areas that the task is about."""
         if self.kind == 'serve':

@@ -1,6 +1,7 @@
 """What nobody tells the robot of and what its task is not about: on the counter, where things are
-taken from and put, stand a box of no known kind and another, cold mug; and a guest has got up and
-left a chair in the way. The same task gives the same surprises."""
+taken from and put, stand a box of no known kind and another, cold mug; a second box stands on the
+table that the task is about; and a guest has got up and left a chair in the way. The same task gives
+the same surprises."""
 
 import os
 import random
@@ -11,9 +12,11 @@ from restaurant import FRAMES
 
 # The truth in which that chair stands there.
 MOVED_CHAIR = os.path.join(CONFIG, '..', 'test', 'data', 'loop', 'moved_chair.yaml')
-THINGS = (('box1', 'unknown_0.110x0.070x0.180'), ('mug9', 'coffee_cup'))
-AREA = 'placingareaeastrightcounter1'
-AHEAD, BEHIND, ALONG = 0.06, -0.1, 0.5  # [m] off the middle of the area
+ON_COUNTER = (('box1', 'unknown_0.110x0.070x0.180'), ('mug9', 'coffee_cup'))
+AT_GOAL = ('box2', 'unknown_0.110x0.070x0.180')
+COUNTER = 'placingareaeastrightcounter1'
+AHEAD, BEHIND, ALONG = 0.06, -0.1, 0.5  # [m] off the middle of the counter's area
+ON_TABLE = 0.06  # [m] off the middle of a table's area
 TURN = 3.0  # [rad]
 TRIES = 300
 
@@ -23,19 +26,27 @@ def surprises(task):
     chance = random.Random('surprise %d' % task.seed)
     taken = [*task.objects.values(), *task.hidden.values()]
     things = []
-    for name, model in THINGS:
-        pose = _free_pose(chance, taken)
-        if pose is not None:
-            taken.append(pose)
-            things.append({'name': name, 'model': model, 'pose': pose})
+
+    def put(name, model, areas):
+        for area in areas:
+            pose = _free_pose(chance, taken, area)
+            if pose is not None:
+                taken.append(pose)
+                return things.append({'name': name, 'model': model, 'pose': pose})
+    for name, model in ON_COUNTER:
+        put(name, model, [COUNTER])
+    if COUNTER not in task.goal_areas:
+        put(*AT_GOAL, chance.sample(task.goal_areas, len(task.goal_areas)))
     return things
 
 
-def _free_pose(chance, taken):
-    x, y, z, _ = FRAMES[AREA]
+def _free_pose(chance, taken, area):
+    x, y, z, _ = FRAMES[area]
+    along_x, along_y = (((BEHIND, AHEAD), ALONG) if area == COUNTER else
+                        ((-ON_TABLE, ON_TABLE), ON_TABLE))
     for _ in range(TRIES):
-        pose = [round(x + chance.uniform(BEHIND, AHEAD), 3),
-                round(y + chance.uniform(-ALONG, ALONG), 3), z,
+        pose = [round(x + chance.uniform(*along_x), 3),
+                round(y + chance.uniform(-along_y, along_y), 3), z,
                 round(chance.uniform(-TURN, TURN), 2)]
         if all(max(abs(pose[0] - p[0]), abs(pose[1] - p[1])) > APART for p in taken):
             return pose
