@@ -106,7 +106,7 @@ TEST(ListCommandTest, FilesOfThePackageAreFound) {
   EXPECT_THAT(ColumnOf(Listed({"worlds"}), "world"),
               ElementsAre(worlds + "restaurant.world", worlds + "workshop.world"));
   EXPECT_THAT(ColumnOf(Listed({"scenarios"}), "scenario"),
-              ElementsAre("hot_coffee", "serve_coffee", "topple"));
+              ElementsAre("coffee_spots", "hot_coffee", "serve_coffee", "topple"));
   EXPECT_THAT(ColumnOf(Listed({"truths"}), "truth"), ElementsAre("foreign", "harsh", "same"));
 }
 

@@ -246,7 +246,8 @@ TEST_P(ShippedScenarioTest, ItsLaunchFileHasTheSameTaskAndKnowledge) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedScenarioTest,
-                         ::testing::Values("topple.yaml", "serve_coffee.yaml", "hot_coffee.yaml"));
+                         ::testing::Values("topple.yaml", "serve_coffee.yaml", "hot_coffee.yaml",
+                                           "coffee_spots.yaml"));
 
 }  // namespace
 }  // namespace hires::evaluation::scenario_test
