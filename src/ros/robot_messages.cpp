@@ -118,8 +118,8 @@ JointTrajectory FromMsg(const trajectory_msgs::JointTrajectory& msg,
   return out;
 }
 
-robot::JointReading FromMsg(const sensor_msgs::JointState& msg) {
-  robot::JointReading out;
+hires::robot::JointReading FromMsg(const sensor_msgs::JointState& msg) {
+  hires::robot::JointReading out;
   for (std::size_t i = 0; i < msg.name.size(); ++i) {
     if (i < msg.position.size()) out.positions[msg.name[i]] = msg.position[i];
     if (i < msg.velocity.size()) out.velocities[msg.name[i]] = msg.velocity[i];
@@ -127,7 +127,7 @@ robot::JointReading FromMsg(const sensor_msgs::JointState& msg) {
   return out;
 }
 
-sensor_msgs::JointState ToMsg(const robot::JointReading& joints, const ros::Time& stamp) {
+sensor_msgs::JointState ToMsg(const hires::robot::JointReading& joints, const ros::Time& stamp) {
   sensor_msgs::JointState out;
   out.header.stamp = stamp;
   for (const auto& [name, position] : joints.positions) {
@@ -139,7 +139,7 @@ sensor_msgs::JointState ToMsg(const robot::JointReading& joints, const ros::Time
   return out;
 }
 
-robot::OdometryReading FromMsg(const nav_msgs::Odometry& msg) {
+hires::robot::OdometryReading FromMsg(const nav_msgs::Odometry& msg) {
   const geometry_msgs::Twist& twist = msg.twist.twist;
   return {hires::geometry::Flatten(FromMsg(msg.pose.pose)),
           {twist.linear.x, twist.linear.y, twist.angular.z}};

@@ -35,13 +35,10 @@ hires::robot::JointTrajectory FromMsg(const trajectory_msgs::JointTrajectory& ms
                                       const std::vector<std::string>& known,
                                       const std::string& where);
 
-using hires::robot::JointReading;
-using hires::robot::OdometryReading;
+hires::robot::JointReading FromMsg(const sensor_msgs::JointState& msg);
+sensor_msgs::JointState ToMsg(const hires::robot::JointReading& joints, const ros::Time& stamp);
 
-robot::JointReading FromMsg(const sensor_msgs::JointState& msg);
-sensor_msgs::JointState ToMsg(const robot::JointReading& joints, const ros::Time& stamp);
-
-robot::OdometryReading FromMsg(const nav_msgs::Odometry& msg);
+hires::robot::OdometryReading FromMsg(const nav_msgs::Odometry& msg);
 
 /// Its fields x, y and z, of any layout in little-endian single precision; others are passed over.
 /// @throws hires::base::ConfigError naming the field that is missing or of another type, or sizes
