@@ -1,6 +1,5 @@
 #include "hires/loop/task_loop.h"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -8,7 +7,6 @@
 
 #include "hires/base/error.h"
 #include "hires/evaluation/timeline.h"
-#include "support/temporary_folder.h"
 
 namespace hires::loop::task_loop_test {
 namespace {
@@ -68,55 +66,6 @@ TEST(TaskLoopTest, WhatIsImaginedIsDoneAndTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(run.report.status.imaginations.back().outcome, ImaginedOutcome::kRanked);
   order.threads = 2;
   EXPECT_EQ(Bits(PlayTask(TheSetup(), order)), Bits(run));
-}
-
-/// The scenario hot_coffee with other temperatures [K], which none but the world is told of.
-LoopRun ServeHotCoffee(const std::string& sensing, double mug1, double mug2) {
-  const std::string knowledge = kConfig + "knowledge/";
-  const test_support::TemporaryFolder folder;
-  LoopOrder order;
-  order.scenario = folder.Write(
-      "hot_coffee.yaml",
-      fmt::format("task: serve_hot_coffee_to_guest guest1\n"
-                  "knowledge: [{0}restaurant.yaml, {0}two_coffees.yaml]\n"
-                  "robot:\n"
-                  "  pose: [12.5, 9.8, 2.0]\n"
-                  "  torso: torsodownposture\n"
-                  "  arms: {{leftarm1: armuntuckedposture, rightarm1: armuntuckedposture}}\n"
-                  "objects:\n"
-                  "  - {{name: mug1, pose: [5.37, 10.26, 0.75, 0.0], temperature: {1}}}\n"
-                  "  - {{name: mug2, pose: [5.37, 9.94, 0.75, 0.0], temperature: {2}}}\n",
-                  knowledge, mug1, mug2));
-  order.sensing = sensing;
-  return PlayTask(TheSetup(), order);
-}
-
-void ExpectServed(const LoopRun& run, const std::string& served, const std::string& left) {
-  ASSERT_EQ(run.report.outcome, AchieveOutcome::kSucceeded) << run.report.reason;
-  EXPECT_TRUE(StandsOnTable1(run, served));
-  EXPECT_GT(run.truth.objects.at(served).X_MO.translation.x(), 7.0);
-  EXPECT_NEAR(run.truth.objects.at(left).X_MO.translation.x(), 5.37, 0.02);  // on the counter
-}
-
-TEST(TaskLoopTest, OfTwoMugsThatOneIsServedThatTheThermalCameraSeesToBeHot) {
-  LoopOrder order;
-  order.scenario = kConfig + "scenarios/hot_coffee.yaml";
-  order.sensing = "pictures";
-  ExpectServed(PlayTask(TheSetup(), order), "mug2", "mug1");
-  ExpectServed(ServeHotCoffee("pictures", 335.65, 293.15), "mug1", "mug2");
-}
-
-TEST(TaskLoopTest, OfTwoMugsThatAreBothSeenToBeColdNoneIsServed) {
-  const LoopRun run = ServeHotCoffee("pictures", 293.15, 303.15);
-  EXPECT_EQ(run.report.outcome, AchieveOutcome::kNoPlan) << run.report.reason;
-}
-
-TEST(TaskLoopTest, WhereNobodyMeasuresHowWarmTheyAreTheTaskFailsAndSaysWhy) {
-  const LoopRun run = ServeHotCoffee("fitted", 293.15, 335.65);
-  EXPECT_EQ(run.report.outcome, AchieveOutcome::kFailed);
-  EXPECT_THAT(run.report.reason, HasSubstr("temperatureknown"));
-  for (const char* mug : {"mug1", "mug2"})
-    EXPECT_NEAR(run.truth.objects.at(mug).X_MO.translation.x(), 5.37, 0.02) << mug;
 }
 
 TEST(TaskLoopTest, AnotherSeedIsAnotherTruth) {

@@ -2,6 +2,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "hires/imagination/imagination_setup.h"
+#include "hires/world/object_catalogue.h"
 #include "nodes/middle_layer/middle_layer_params.h"
 #include "nodes/world_tracker/world_tracker_params.h"
 #include "support/restaurant_translation.h"
@@ -54,6 +55,13 @@ TEST(SensingSetupTest, TrackerMiddleLayerAndRolloutsRememberByTheSameNumbers) {
 
 TEST(WorldTrackerConfigTest, TheFilesThatThePackageComesWithAreRead) {
   EXPECT_NO_THROW(ReadWorldTrackerParams(HIRES_SOURCE_DIR "/config/world_tracker.yaml"));
+  const auto models = hires::world::LoadCatalogueModels(HIRES_SOURCE_DIR "/worlds/objects.yaml");
+  EXPECT_EQ(models.at("mug1")->concept_name, "Mug");
+  for (const auto& [instance, model] : models) {
+    if (model->concept_name.empty()) continue;
+    EXPECT_NO_THROW(hires::test_support::RestaurantContext().ontology->Require(model->concept_name))
+        << instance;
+  }
   const auto translator = ReadTranslatorParams(HIRES_SOURCE_DIR "/config/translator.yaml");
   EXPECT_EQ(LoadTranslatorContext(translator).world->hash,
             hires::test_support::RestaurantContext().world->hash);

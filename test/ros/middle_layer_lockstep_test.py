@@ -37,6 +37,7 @@ POSTURES = (('move_torso', 'torsoMiddlePosture'),
             ('tuck_arms', 'armUnTuckedPosture', 'armUnTuckedPosture'))
 HANDLING = (('look_at', 'mug1'),
             ('observe_objects_on_area', 'placingAreaEastRightCounter1'),
+            ('measure_temperature', 'mug1', 'placingAreaEastRightCounter1'),
             ('observe_objects_at', 'placingAreaEastRightCounter1', 'manipulationAreaEastCounter1',
              'torsoMiddlePosture', 'left'),
             ('pick_up_object', 'mug1', 'rightArm1'),

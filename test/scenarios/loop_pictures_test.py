@@ -6,6 +6,7 @@ tells it, or any other node that decides, what is true. Run alone, or by
 import os
 import sys
 import threading
+import unittest
 
 import yaml
 
@@ -133,6 +134,7 @@ class LoopPicturesTest(LoopCase):
         self.assert_on_table1('peppermill1')
         self.assert_stands_upright('peppermill1', TABLE_TOP)
 
+    @unittest.skipUnless(os.environ.get('HIRES_LONG_TESTS'), 'takes a minute and a half')
     def test_of_two_mugs_the_one_that_is_seen_to_be_hot_gets_to_the_guest(self):
         self.begin(AT_COUNTER, {**MUG, 'mug2': (5.37, 9.94, 0.75, 0.0)}, temperatures={'mug1': 335.65},
                    knowledge=(RESTAURANT, os.path.join(CONFIG, 'knowledge', 'two_coffees.yaml')))
