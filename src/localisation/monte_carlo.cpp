@@ -48,6 +48,10 @@ namespace {
 
 constexpr double kFarthest = 1e6;       // [m] poses beyond are no poses
 constexpr double kExplainedRate = 0.3;  // at which the share of explained beams is averaged
+// While particles are spread over several places, the one nearest to the robot may be 0.3 m and 10
+// degrees off and fit worse than luckier ones elsewhere; a scan then counts as so few beams that
+// several scans decide.
+constexpr double kBeamsWhileUndecided = 2.0;
 constexpr double kAnyRange = 30.0;  // [m] where neither scan nor parameters name a longest range
 
 bool IsPose(const Pose2& X) {
@@ -206,10 +210,18 @@ class MonteCarloLocalisation::Belief {
     Weigh(beams, range_max);
     effective_size_ = EffectiveSize(particles_);
     // Too many to look for clusters: drawing sifts them.
-    const bool is_global = particles_.size() > static_cast<std::size_t>(params_.max_particles);
+    const bool is_global = IsGlobal();
     if (!is_global) summary_ = Summarise(particles_);
     if (is_global || ++num_since_drawn_ >= params_.resample_interval) Draw();
     if (is_global) summary_ = Summarise(particles_);
+  }
+
+  bool IsGlobal() const {
+    return particles_.size() > static_cast<std::size_t>(params_.max_particles);
+  }
+
+  bool IsUndecided() const {
+    return IsGlobal() || summary_.num_clusters != 1 || summary_.best_spread > params_.lost_spread;
   }
 
   void Move(const Pose2& X_AB) {
@@ -232,7 +244,9 @@ class MonteCarloLocalisation::Belief {
     std::vector<float> sums;
     SumOverBeams(particles_, beams, map_->field, *table_, &sums);
     const double count = static_cast<double>(beams.size());
-    const double power = std::min(1.0, params_.independent_beams / count);
+    const double most = params_.independent_beams;
+    const double counted = IsUndecided() ? std::min(most, kBeamsWhileUndecided) : most;
+    const double power = std::min(1.0, counted / count);
     const double best = *std::max_element(sums.begin(), sums.end());
     double fit = 0.0, total = 0.0;
     for (std::size_t i = 0; i < sums.size(); ++i) {
@@ -255,8 +269,9 @@ class MonteCarloLocalisation::Belief {
 
   void Draw() {
     num_since_drawn_ = 0;
-    const KldParams kld{params_.kld_err, params_.kld_z, params_.min_particles,
-                        params_.max_particles};
+    // Of several places none may die out by chance.
+    const int least = IsUndecided() ? params_.max_particles : params_.min_particles;
+    const KldParams kld{params_.kld_err, params_.kld_z, least, params_.max_particles};
     particles_ = Resample(particles_, kld, &rng_);
     const double share = slow_ > 0.0 ? std::max(0.0, 1.0 - fast_ / slow_) : 0.0;
     if (share == 0.0 || map_->free_cells.empty()) return;

@@ -47,7 +47,9 @@ struct PoseEstimate {
 /// The weight of a particle is the product of its beams' likelihoods to the power of
 /// min(1, independent_beams / beams), a proper likelihood that is tempered, and not AMCL's sum of
 /// their cubes, which is none: so 30 and 60 beams make it equally sure, and how sure is one
-/// parameter that can be measured.
+/// parameter that can be measured. While it is undecided between places, or spread over more than
+/// lost_spread, a scan counts as 2 beams at most and max_particles are kept, so that the true place
+/// is not lost to a lucky one.
 ///
 /// Random particles come back in when scans begin to fit worse than they used to (recovery_alpha);
 /// "fit" is the geometric mean over the beams, so it does not depend on how many there are.

@@ -44,7 +44,7 @@ struct MonteCarloParams {
   double scan_timeout{5.0};  ///< [s] without a scan that can be used, after which it says so
 };
 
-/// The block `localisation` of config/localisation.yaml.  @throws base::ConfigError naming the key
+/// The block `localisation`.  @throws base::ConfigError naming the key
 MonteCarloParams ReadMonteCarloParams(base::ParamReader in);
 
 }  // namespace hires::localisation
