@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "hires/geometry/pose.h"
+#include "hires/robot/readings.h"
+#include "localisation/scan_outcome.h"
+
+namespace hires::localisation {
+
+struct BeamParams {
+  int most{60};            ///< beams of a scan that are used
+  double min_range{-1.0};  ///< [m] shorter ones are left out; negative: as the scan says
+  double max_range{-1.0};  ///< [m] as long or longer ones met nothing; negative: as the scan says
+};
+
+/// Where beams ended, in the robot's base [m].
+struct Beams {
+  std::vector<float> x, y;
+  std::size_t size() const { return x.size(); }
+};
+
+/// Beams that measured something, evenly spread over all that did.
+/// @return kUpdated, or why there are none.
+ScanOutcome SelectBeams(const robot::ScanReading& scan, const geometry::Pose2& X_BL,
+                        const BeamParams& params, Beams* beams);
+
+/// [m] from where on nothing was met; `otherwise` where neither scan nor parameters say it.
+double RangeMax(const robot::ScanReading& scan, const BeamParams& params, double otherwise);
+
+}  // namespace hires::localisation

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hires/base/rng.h"
+#include "hires/geometry/pose.h"
+#include "hires/robot/readings.h"
+#include "hires/world/occupancy_grid.h"
+#include "localisation/monte_carlo_params.h"
+#include "localisation/scan_outcome.h"
+
+namespace hires::localisation {
+
+enum class LocalisationStatus {
+  kGood,
+  kAmbiguous,    ///< several places fit
+  kUnexplained,  ///< lost: the map explains too little of what the laser sees
+  kSpread,       ///< lost: it may be anywhere within more than lost_spread
+  kNoScan        ///< no scan that could be used came, or none for too long
+};
+std::string ToString(LocalisationStatus status);  ///< a word for files and people
+
+/// What the filter believes.
+struct PoseEstimate {
+  geometry::Pose2 X_MB;  ///< mean of the heaviest cluster, moved on with the odometry since
+  /// [m^2, m rad, rad^2] of x, y, yaw around that mean, of all particles in clusters that count: so
+  /// it is large where two places fit. As of the last scan that was used.
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
+  int num_particles{0};
+  double effective_size{0.0};  ///< 1 / sum of squared weights, after the last scan that was used
+  int num_clusters{0};         ///< that hold at least 5 % of the weight
+  double best_share{0.0};      ///< of the weight, that the heaviest cluster has
+  double explained{0.0};       ///< share of the last scan's beams that end near an obstacle
+  LocalisationStatus status{LocalisationStatus::kNoScan};
+};
+
+/// Where a robot is in a map, by its laser and its odometry: Monte Carlo localisation with a
+/// likelihood field and an adaptive number of particles, as AMCL does it [Fox 2003, IJRR
+/// 22:985-1003; Thrun, Burgard, Fox 2005, Probabilistic Robotics, 6.4 and 8.3].
+///
+/// A belief is a value: a copy goes on like the original, bit for bit, and shares the map with it.
+/// Chance comes from the stream handed in; there is no clock, no thread and nothing global.
+///
+/// The weight of a particle is the product of its beams' likelihoods to the power of
+/// min(1, independent_beams / beams), a proper likelihood that is tempered, and not AMCL's sum of
+/// their cubes, which is none: so 30 and 60 beams make it equally sure, and how sure is one
+/// parameter that can be measured. While it is undecided between places, or spread over more than
+/// lost_spread, a scan counts as 2 beams at most and max_particles are kept, so that the true place
+/// is not lost to a lucky one.
+///
+/// Random particles come back in when scans begin to fit worse than they used to (recovery_alpha);
+/// "fit" is the geometric mean over the beams, so it does not depend on how many there are.
+class MonteCarloLocalisation {
+ public:
+  /// Begins at params.initial_pose.  @throws base::ConfigError if the map suits no such parameters.
+  /// @pre width and height >= 1, width * height cells, resolution > 0
+  MonteCarloLocalisation(const world::OccupancyGrid& map, const MonteCarloParams& params,
+                         base::Rng rng);
+  MonteCarloLocalisation(const MonteCarloLocalisation& other);
+  MonteCarloLocalisation& operator=(const MonteCarloLocalisation& other);
+  MonteCarloLocalisation(MonteCarloLocalisation&&) noexcept;
+  MonteCarloLocalisation& operator=(MonteCarloLocalisation&&) noexcept;
+  ~MonteCarloLocalisation();
+
+  /// Somebody says where the robot is now; the next scan is used even if it does not move.
+  /// @param covariance  [m^2, m rad, rad^2] of x, y, yaw.
+  /// @throws base::ConfigError where these are no numbers or the covariance is none.
+  void SetPose(const geometry::Pose2& X_MB, const Eigen::Matrix3d& covariance);
+
+  /// It may be on any free cell.  @throws base::ConfigError for a map without free cells.
+  void GlobalLocalisation();
+
+  /// A scan, with where odometry and laser were at its time. Times [s] rise; one that goes back, or
+  /// odometry that jumps, leaves the belief alone and is where odometry goes on from.
+  ScanOutcome Update(double time, const geometry::Pose2& X_OB, const robot::ScanReading& scan,
+                     const geometry::Pose2& X_BL);
+
+  /// @param time  [s] now; later than the last scan by more than scan_timeout is kNoScan.
+  PoseEstimate Estimate(double time) const;
+
+  /// Odometry's frame in the map: X_MO * X_OB is where the robot is until the next scan is used.
+  geometry::Pose2 CorrectedOdometry() const;
+
+  /// What it believes in, for displays.
+  std::vector<geometry::Pose2> ParticlePoses() const;
+
+ private:
+  class Belief;
+  std::unique_ptr<Belief> belief_;
+};
+
+}  // namespace hires::localisation

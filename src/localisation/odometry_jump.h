@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cmath>
+
+#include "hires/geometry/angles.h"
+#include "hires/geometry/pose.h"
+
+namespace hires::localisation {
+
+/// Whether odometry that says `X_AB` after `duration` [s] was reset, since no robot with these
+/// limits [m/s], [rad/s] drives so fast. A slack of 0.1 m and 0.1 rad allows for rounding and slip.
+inline bool IsOdometryJump(const geometry::Pose2& X_AB, double duration, double max_linear_speed,
+                           double max_angular_speed) {
+  constexpr double kSlack = 0.1;
+  return std::hypot(X_AB.x, X_AB.y) > max_linear_speed * duration + kSlack ||
+         std::abs(geometry::WrapToPi(X_AB.yaw)) > max_angular_speed * duration + kSlack;
+}
+
+}  // namespace hires::localisation

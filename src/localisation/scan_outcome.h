@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+namespace hires::localisation {
+
+/// What became of a scan.
+enum class ScanOutcome {
+  kUpdated,          ///< the belief stands on it
+  kNotMoved,         ///< the robot has hardly moved since the last scan that was used
+  kNoRanges,         ///< the scan is empty
+  kBadAngles,        ///< no increment, no number, or more than one turn
+  kNothingMeasured,  ///< no range is a number between the shortest and the longest
+  kNothingMet,       ///< all ranges are as long as can be: free space, or a laser that sees nothing
+  kNotFinite,        ///< time, odometry or the laser's place is no number
+  kTimeWentBack,     ///< a clock began again: goes on from this odometry, the belief stays
+  kOdometryJumped    ///< faster than a robot drives: goes on from this odometry, the belief stays
+};
+
+/// For people.
+std::string ToString(ScanOutcome outcome);
+
+/// Whether something is wrong with the scan or its odometry.
+bool IsBad(ScanOutcome outcome);
+
+}  // namespace hires::localisation
