@@ -143,7 +143,7 @@ TEST(ListCommandTest, ATableForPeopleAndAFileForMachines) {
   const Ended ended = List({"scenarios", "--json", path});
   EXPECT_THAT(ended.out, AllOf(HasSubstr("scenario"), HasSubstr("serve_coffee_to_guest guest1"),
                                Not(HasSubstr("{"))));
-  EXPECT_EQ(nlohmann::json::parse(base::ReadTextFile(path)).size(), 3u);
+  EXPECT_EQ(nlohmann::json::parse(base::ReadTextFile(path)).size(), 4u);
 }
 
 TEST(ListCommandTest, WhatItCannotListIsRefused) {

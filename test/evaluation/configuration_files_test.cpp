@@ -24,6 +24,7 @@
 #include "hires/knowledge/store.h"
 #include "hires/navigation/base_guard.h"
 #include "hires/perception/recogniser_config.h"
+#include "hires/perception/warm_objects.h"
 #include "hires/planning/operator_data.h"
 #include "hires/planning/planner_config.h"
 #include "hires/planning/planning_files.h"
@@ -86,6 +87,10 @@ const std::map<std::string, Reader>& Readers() {
       {"scenarios", [](const std::string& path) { evaluation::ReadScenario(path); }},
       {"episode.yaml", [](const std::string& path) { evaluation::ReadEpisodeConfig(path); }},
       {"recogniser.yaml", [](const std::string& path) { perception::ReadRecogniserConfig(path); }},
+      {"heat_reader.yaml",
+       [](const std::string& path) {
+         perception::ReadWarmParams(base::ParamReader::FromFile(path));
+       }},
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
       {"relay.yaml",
        [](const std::string& path) {

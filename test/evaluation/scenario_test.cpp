@@ -226,6 +226,8 @@ TEST_P(ShippedScenarioTest, TheRobotKnowsOfWhatItIsToldAndNothingElse) {
   }
   if (scenario_.name == "serve_coffee") {
     EXPECT_THAT(wishes, ElementsAre("imagine(place_object)"));
+  } else if (scenario_.name == "coffee_spots") {
+    EXPECT_THAT(wishes, ElementsAre("imagine(place_object_at)"));
   } else {
     EXPECT_THAT(wishes, IsEmpty());
   }
