@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "hires/mapping/mapper.h"
 #include "support/simulated_drive.h"
@@ -13,33 +12,6 @@ namespace hires::mapping {
 namespace {
 
 using test_support::SimulatedDriveParams;
-
-struct Course {
-  const char* map;
-  std::vector<Eigen::Vector2d> places;
-};
-const Course kCourses[] = {{"map_sim_origin.yaml",
-                            {{1.5, 7.5},
-                             {6.4, 7.5},
-                             {6.4, 12.0},
-                             {11.4, 12.0},
-                             {11.4, 7.5},
-                             {1.5, 7.5},
-                             {1.5, 12.0},
-                             {1.5, 7.5},
-                             {11.4, 7.5},
-                             {11.4, 12.0},
-                             {6.4, 12.0},
-                             {6.4, 7.5}}},
-                           {"map_pr2_origin.yaml",
-                            {{6.0, 12.0},
-                             {11.4, 12.0},
-                             {11.4, 7.0},
-                             {2.0, 7.0},
-                             {35.0, 7.0},
-                             {11.4, 7.0},
-                             {11.4, 12.0},
-                             {6.0, 12.0}}}};
 
 SimulatedDriveParams ParamsOf(int kind) {
   SimulatedDriveParams params;
@@ -59,7 +31,7 @@ SimulatedDriveParams ParamsOf(int kind) {
 }
 
 void BM_Map(benchmark::State& state) {
-  const Course& course = kCourses[state.range(0)];
+  const test_support::Course course = test_support::OriginalCourses().at(state.range(0));
   const std::string file = std::string(HIRES_SOURCE_DIR) + "/../shared/data/" + course.map;
   if (!std::filesystem::exists(file)) {
     state.SkipWithError("the original maps are not there");

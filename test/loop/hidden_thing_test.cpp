@@ -3,17 +3,15 @@
 #include <algorithm>
 
 #include "hires/loop/task_loop.h"
+#include "loop/support/task_setup.h"
 
 namespace hires::loop::hidden_thing_test {
 namespace {
 
-const std::string kConfig = HIRES_SOURCE_DIR "/config/";
-const std::string kData = HIRES_SOURCE_DIR "/test/data/loop/";
+using test_support::kConfig;
+using test_support::TheSetup;
 
-const LoopSetup& TheSetup() {
-  static const LoopSetup setup(kConfig + "loop.yaml");
-  return setup;
-}
+const std::string kData = HIRES_SOURCE_DIR "/test/data/loop/";
 
 // The robot's own pose at the counter, and the default of the plan, would see nothing of the mug.
 TEST(HiddenThingTest, ThePoseThatIsImaginedToSeeBestIsLookedFrom) {

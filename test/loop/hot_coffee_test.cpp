@@ -1,28 +1,18 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "hires/loop/task_loop.h"
+#include "loop/support/task_setup.h"
 #include "support/temporary_folder.h"
 
 namespace hires::loop::hot_coffee_test {
 namespace {
 
 using evaluation::AchieveOutcome;
+using test_support::kConfig;
+using test_support::StandsOnTable1;
+using test_support::TheSetup;
 using testing::HasSubstr;
-
-const std::string kConfig = HIRES_SOURCE_DIR "/config/";
-
-const LoopSetup& TheSetup() {
-  static const LoopSetup setup(kConfig + "loop.yaml");
-  return setup;
-}
-
-bool StandsOnTable1(const LoopRun& run, const std::string& object) {
-  const simulation::ObjectFate& fate = run.truth.objects.at(object);
-  return fate.stands && std::abs(fate.X_MO.translation.z() - 0.73) < 0.02;
-}
 
 /// The scenario hot_coffee with other temperatures [K], which none but the world is told of.
 LoopRun ServeHotCoffee(const std::string& sensing, double mug1, double mug2) {

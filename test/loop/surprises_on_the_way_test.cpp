@@ -4,20 +4,17 @@
 
 #include "hires/base/error.h"
 #include "hires/loop/task_loop.h"
+#include "loop/support/task_setup.h"
 
 namespace hires::loop::surprises_on_the_way_test {
 namespace {
 
 using evaluation::AchieveOutcome;
+using test_support::kConfig;
+using test_support::TheSetup;
 using testing::EndsWith;
 
-const std::string kConfig = HIRES_SOURCE_DIR "/config/";
 const std::string kData = HIRES_SOURCE_DIR "/test/data/loop/";
-
-const LoopSetup& TheSetup() {
-  static const LoopSetup setup(kConfig + "loop.yaml");
-  return setup;
-}
 
 // Somebody said that something stands there, about where and about how large, and not what: its
 // box, as the camera measures it, is what the hand needs. Nobody told of another mug and of a chair

@@ -7,20 +7,17 @@
 
 #include "hires/base/error.h"
 #include "hires/evaluation/timeline.h"
+#include "loop/support/task_setup.h"
 
 namespace hires::loop::task_loop_test {
 namespace {
 
 using evaluation::AchieveOutcome;
 using evaluation::ImaginedOutcome;
+using test_support::kConfig;
+using test_support::StandsOnTable1;
+using test_support::TheSetup;
 using testing::HasSubstr;
-
-const std::string kConfig = HIRES_SOURCE_DIR "/config/";
-
-const LoopSetup& TheSetup() {
-  static const LoopSetup setup(kConfig + "loop.yaml");
-  return setup;
-}
 
 LoopOrder Topple(const std::string& imagination, std::uint64_t seed = 1) {
   LoopOrder order;
@@ -41,11 +38,6 @@ std::string Bits(const LoopRun& run) {
   json["contact"] = run.truth.contact;
   json["seconds"] = run.virtual_seconds;
   return json.dump();
-}
-
-bool StandsOnTable1(const LoopRun& run, const std::string& object) {
-  const simulation::ObjectFate& fate = run.truth.objects.at(object);
-  return fate.stands && std::abs(fate.X_MO.translation.z() - 0.73) < 0.02;
 }
 
 TEST(TaskLoopTest, ATaskIsDoneWithoutImagining) {

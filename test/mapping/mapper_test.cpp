@@ -71,36 +71,9 @@ TEST(MapperTest, RoomsAreMappedWhereTheyAre) {
   }
 }
 
-struct Course {
-  const char* map;
-  std::vector<Eigen::Vector2d> places;
-};
-const Course kLaboratory{"/map_sim_origin.yaml",
-                         {{1.5, 7.5},
-                          {6.4, 7.5},
-                          {6.4, 12.0},
-                          {11.4, 12.0},
-                          {11.4, 7.5},
-                          {1.5, 7.5},
-                          {1.5, 12.0},
-                          {1.5, 7.5},
-                          {11.4, 7.5},
-                          {11.4, 12.0},
-                          {6.4, 12.0},
-                          {6.4, 7.5}}};
-const Course kCorridor{"/map_pr2_origin.yaml",
-                       {{6.0, 12.0},
-                        {11.4, 12.0},
-                        {11.4, 7.0},
-                        {2.0, 7.0},
-                        {35.0, 7.0},
-                        {11.4, 7.0},
-                        {11.4, 12.0},
-                        {6.0, 12.0}}};
-
 TEST(MapperTest, OriginalMapsAreMappedAgain) {
-  for (const Course& course : {kLaboratory, kCorridor}) {
-    const std::string file = std::string(HIRES_SHARED_DATA) + course.map;
+  for (const test_support::Course& course : test_support::OriginalCourses()) {
+    const std::string file = std::string(HIRES_SHARED_DATA) + "/" + course.map;
     if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
     const world::OccupancyGrid world = world::LoadMap(file);
     SimulatedDriveParams params;

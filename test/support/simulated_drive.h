@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "hires/base/check.h"
@@ -214,6 +215,39 @@ inline double MedianWallError(const world::OccupancyGrid& map, const world::Occu
   HIRES_CHECK(!errors.empty(), "the map has walls");
   std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
   return errors[errors.size() / 2];
+}
+
+/// A drive through one of the original maps: its YAML in the folder of original data, and places
+/// [m] in it.
+struct Course {
+  std::string map;
+  std::vector<Eigen::Vector2d> places;
+};
+
+/// The laboratory's rooms, and the corridor beside them.
+inline std::vector<Course> OriginalCourses() {
+  return {{"map_sim_origin.yaml",
+           {{1.5, 7.5},
+            {6.4, 7.5},
+            {6.4, 12.0},
+            {11.4, 12.0},
+            {11.4, 7.5},
+            {1.5, 7.5},
+            {1.5, 12.0},
+            {1.5, 7.5},
+            {11.4, 7.5},
+            {11.4, 12.0},
+            {6.4, 12.0},
+            {6.4, 7.5}}},
+          {"map_pr2_origin.yaml",
+           {{6.0, 12.0},
+            {11.4, 12.0},
+            {11.4, 7.0},
+            {2.0, 7.0},
+            {35.0, 7.0},
+            {11.4, 7.0},
+            {11.4, 12.0},
+            {6.0, 12.0}}}};
 }
 
 }  // namespace hires::test_support
