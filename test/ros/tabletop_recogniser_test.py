@@ -305,7 +305,7 @@ class TabletopRecogniserTest(unittest.TestCase):
     def test_a_cloud_that_comes_again_when_it_is_old_is_dropped(self):
         message = self.cloud(points_of([FLOOR, TABLE, BOX]), self.next_stamp())
         self.answer_to(message)
-        time.sleep(MAX_AGE)
+        wait_until(lambda: time.time() > message.header.stamp.to_sec() + MAX_AGE, 'it to be old')
         self.refuse(message, 's old, wanted 3 at most')
 
     def test_clouds_of_the_future_are_dropped(self):
