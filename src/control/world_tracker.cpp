@@ -5,6 +5,7 @@
 
 #include "hires/base/action.h"
 #include "hires/translation/task_places.h"
+#include "hires/world/unknown_box.h"
 
 namespace hires::control {
 namespace {
@@ -12,6 +13,15 @@ namespace {
 constexpr double kKnownPeriod = 0.1;  // [s] at most, between words about known objects
 constexpr double kNever = -1e9;       // [s]
 constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr double kAbout = 0.2;  // [m] about an object, where all that is seen is the object
+
+/// Whether a thing on the floor is an object that lies or stands there.
+bool Explains(const robot::SeenObject& object, const robot::SeenObject& thing) {
+  const Eigen::Vector3d size = world::SizeOfUnknownBox(thing.model);
+  const Eigen::Vector3d p_TO = thing.X_MO.Inverse() * object.X_MO.translation;
+  const Eigen::Vector2d farthest = p_TO.head<2>().cwiseAbs() + 0.5 * size.head<2>();
+  return object.attached_to.empty() && p_TO.z() < size.z() && farthest.norm() <= kAbout;
+}
 
 }  // namespace
 
@@ -122,11 +132,20 @@ bool WorldTracker::IsHearsay(const std::string& name) const {
          !remembered->second.is_held;
 }
 
-/// Things on tables and on the floor, by name.
+/// Things on tables and on the floor, by name. A thing on the floor that an object explains, which
+/// fell there, is left out.
 std::vector<robot::SeenObject> WorldTracker::Known(const sensing::RobotEstimate& now) const {
   std::vector<robot::SeenObject> known = objects_.memory().Known(now.Body());
   if (floor_ == nullptr || floor_->things().empty()) return known;
-  known.insert(known.end(), floor_->things().begin(), floor_->things().end());
+  std::vector<robot::SeenObject> things = floor_->things();
+  things.erase(std::remove_if(things.begin(), things.end(),
+                              [&](const robot::SeenObject& thing) {
+                                return std::any_of(
+                                    known.begin(), known.end(),
+                                    [&](const auto& object) { return Explains(object, thing); });
+                              }),
+               things.end());
+  known.insert(known.end(), things.begin(), things.end());
   std::stable_sort(known.begin(), known.end(),
                    [](const auto& a, const auto& b) { return a.name < b.name; });
   return known;
@@ -143,9 +162,16 @@ translation::ObservedWorld WorldTracker::Observed(
         {object.name, object.model, object.X_MO, {}, object.attached_to});
   }
   observed.vanished = memory.Vanished();
-  if (floor_ != nullptr)
+  if (floor_ != nullptr) {
     observed.vanished.insert(observed.vanished.end(), floor_->vanished().begin(),
                              floor_->vanished().end());
+    for (const robot::SeenObject& thing : floor_->things()) {
+      const bool is_told =
+          std::any_of(known.begin(), known.end(),
+                      [&](const robot::SeenObject& one) { return one.name == thing.name; });
+      if (!is_told) observed.vanished.push_back(thing.name);
+    }
+  }
   observed.temperatures = temperatures_;
   return observed;
 }

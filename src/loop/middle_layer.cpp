@@ -40,7 +40,12 @@ MiddleLayer::MiddleLayer(const ImaginationSetup& setup, const sensing::FrameName
                  const std::lock_guard<std::mutex> lock(mutex_);
                  ++num_answers_;
                  woken_.notify_one();
-               }}) {}
+               }}) {
+  if (!setup.sensing.ground.is_enabled) return;
+  ground_.emplace(&senses_.state(),
+                  std::shared_ptr<const robot::Robot>(setup.scene, &setup.scene->robot),
+                  setup.skills->driving->costmap, setup.sensing.ground);
+}
 
 void MiddleLayer::Start(int activity, const ActionCall& action, double time_limit) {
   base::Failure refusal;
@@ -63,6 +68,8 @@ void MiddleLayer::Hear(const SensorNews& news, const simulation::LaserParams& la
   if (!news.scan.empty()) {
     observations_.OnScan(news.stamp, laser.link, ReadingOf(news.scan, laser));
   }
+  if (news.sweep && ground_)
+    ground_->OnCloud(news.sweep->stamp, news.sweep->frame, news.sweep->cloud);
   senses_.Hear(news);
 }
 
@@ -80,6 +87,10 @@ void MiddleLayer::Look(double stamp) {
 
 robot::Observation MiddleLayer::ObservationOf(const sensing::RobotEstimate& now) {
   robot::Observation seen = observations_.Observe(now);
+  if (ground_) {
+    const auto& on_the_floor = ground_->Obstacles(now);
+    seen.obstacles_M.insert(seen.obstacles_M.end(), on_the_floor.begin(), on_the_floor.end());
+  }
   sensing::ObjectEstimator* objects = senses_.objects();
   if (objects == nullptr) return seen;
   if (known_) {

@@ -4,9 +4,11 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "hires/control/action_runner.h"
+#include "hires/sensing/ground_watch.h"
 #include "hires/sensing/observation_maker.h"
 #include "hires/sensing/scan_obstacles.h"
 #include "hires/simulation/laser_scanner.h"
@@ -56,6 +58,7 @@ class MiddleLayer {
   const Hooks hooks_;
   RobotSenses senses_;
   sensing::ObservationMaker observations_;
+  std::optional<sensing::GroundWatch> ground_;
   std::optional<Known> known_;  // not taken into account yet
   double looked_;               // [s]
   std::map<int, base::ActionCall> running_;

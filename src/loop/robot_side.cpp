@@ -18,7 +18,11 @@ RobotSide::RobotSide(const LoopSetup::Parts& parts, const imagination::StartStat
       hooks_(std::move(hooks)),
       world_(parts.world, start, seed, truth),
       sensors_(sensors, seed, world_.scene()),
-      truth_(parts.world.standing) {}
+      truth_(parts.world.standing) {
+  const evaluation::SimRobotLasers& lasers = sensors_.lasers();
+  if (!hooks_.sweep_frame.empty() && lasers.has_tilting_laser())
+    gathering_.emplace(lasers.num_scans_of_a_sweep());
+}
 
 void RobotSide::Begin() {
   truth_.Look(world_.simulator());
@@ -41,6 +45,8 @@ void RobotSide::Tick() {
     news.tray = TrayScan{lasers.tray().link, ReadingOf(lasers.TrayScan(world_), lasers.tray())};
   }
   if (hooks_.hears_heat && news.seen) news.heat = sensors_.LookForHeat(world_, news.readings);
+  news.sweep = std::exchange(sweep_, nullptr);
+  readings_ = news.readings;
   hooks_.hear(news);
   hooks_.look(news.stamp);
   for (const robot::Command& command : std::exchange(commands_, {})) world_.Apply(command);
@@ -58,8 +64,24 @@ void RobotSide::Advance() {
       const double stamp = news.stamp;
       clock_.At(stamp, [this, news = std::move(news)] { hooks_.hear(news); });
     }
-    evaluation::PlayJointTick(&world_, &truth_);
+    if (gathering_) {
+      evaluation::PlayJointTick(&world_, &truth_, [this] { Sweep(); });
+    } else {
+      evaluation::PlayJointTick(&world_, &truth_);
+    }
   }
+}
+
+/// The laser that nods measures, if it is its time; a sweep that is over is told of with the next
+/// tick.
+void RobotSide::Sweep() {
+  const evaluation::SimRobotLasers& lasers = sensors_.lasers();
+  if (!lasers.IsTiltDue(world_)) return;
+  auto cloud = gathering_->Add(lasers.TiltPhase(world_), lasers.tilting(), lasers.TiltScan(world_),
+                               lasers.X_OTilt(world_, readings_));
+  if (!cloud) return;
+  sweep_ =
+      std::make_shared<const SweepNews>(SweepNews{Stamp(), hooks_.sweep_frame, std::move(*cloud)});
 }
 
 }  // namespace hires::loop

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "hires/simulation/truth_record.h"
@@ -18,7 +21,8 @@ class RobotSide {
   struct Hooks {
     std::function<void(const SensorNews&)> hear;  ///< at the time of its stamp
     std::function<void(double stamp)> look;       ///< all sensors of a tick have spoken
-    bool hears_heat{false};  ///< the thermal camera takes pictures, with those of the other one
+    bool hears_heat{false};   ///< the thermal camera takes pictures, with those of the other one
+    std::string sweep_frame;  ///< of clouds of the laser that nods: the odometry's; empty: none
   };
 
   /// @param sensors  under this truth.  @pre all outlive this.
@@ -37,6 +41,7 @@ class RobotSide {
   double Stamp() const;
   void Tick();
   void Advance();
+  void Sweep();
 
   VirtualClock& clock_;
   const Hooks hooks_;
@@ -44,6 +49,9 @@ class RobotSide {
   evaluation::SimRobotSensors sensors_;
   simulation::TruthRecord truth_;
   std::vector<robot::Command> commands_;
+  evaluation::SensorReadings readings_;  // of the last tick
+  std::optional<evaluation::SweepCloud> gathering_;
+  std::shared_ptr<const SweepNews> sweep_;  // over and not told of yet
 };
 
 }  // namespace hires::loop

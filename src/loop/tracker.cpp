@@ -20,11 +20,13 @@ std::shared_ptr<const perception::Surroundings> SurroundingsOf(const simulation:
 std::optional<sensing::FloorWatch> FloorOf(const imagination::ImaginationSetup& setup,
                                            const sensing::RobotStateEstimator& state,
                                            const sensing::FloorWatchParams& params) {
-  const robot::RobotProfile& profile = setup.scene->robot.profile;
-  if (!params.is_enabled || profile.laser_link.empty()) return std::nullopt;
-  return sensing::FloorWatch(&state, {setup.scene, &setup.scene->world},
-                             geometry::Padded(profile.footprint, profile.footprint_padding),
-                             params);
+  const robot::Robot& robot = setup.scene->robot;
+  sensing::GroundWatchParams ground = setup.sensing.ground;
+  ground.is_enabled = ground.is_enabled && robot.profile.sensors.tilting_laser;
+  if (!params.is_enabled || (robot.profile.laser_link.empty() && !ground.is_enabled))
+    return std::nullopt;
+  return sensing::FloorWatch(&state, {setup.scene, &setup.scene->world}, {setup.scene, &robot},
+                             params, ground);
 }
 
 }  // namespace
@@ -59,6 +61,8 @@ Tracker::Tracker(const imagination::ImaginationSetup& setup,
 void Tracker::Hear(const SensorNews& news, const simulation::LaserParams& laser) {
   if (floor_ && !news.scan.empty())
     floor_->OnScan(news.stamp, laser.link, ReadingOf(news.scan, laser));
+  if (floor_ && floor_->hears_clouds() && news.sweep)
+    floor_->OnCloud(news.sweep->stamp, news.sweep->frame, news.sweep->cloud);
   senses_.Hear(news);
   tracker_.Process();
 }

@@ -61,7 +61,7 @@ class Tracker {
   const Hooks hooks_;
   const std::shared_ptr<const perception::Surroundings> surroundings_;
   RobotSenses senses_;
-  std::optional<sensing::FloorWatch> floor_;  // of a robot with a laser
+  std::optional<sensing::FloorWatch> floor_;  // of a robot with a laser, or clouds of the floor
   control::WorldTracker tracker_;
   world::WorldState known_;  // as it was told last
   bool is_view_new_{true};

@@ -11,12 +11,12 @@ namespace hires::sensing {
 using geometry::Polygon;
 using geometry::Pose2;
 
-ScanParams ReadScanParams(base::ParamReader in) {
+ScanParams ReadScanKeys(base::ParamReader* in) {
   using base::Between;
   ScanParams params;
-  params.tolerance = in.Get("tolerance", Between(0.0, 1.0));
-  params.range = in.Get("range", Between(0.1, 30.0));
-  params.cell = in.Get("cell", Between(0.01, 0.5));
+  params.tolerance = in->Get("tolerance", Between(0.0, 1.0));
+  params.range = in->Get("range", Between(0.1, 30.0));
+  params.cell = in->Get("cell", Between(0.01, 0.5));
   return params;
 }
 

@@ -47,7 +47,8 @@ MemoryParams ReadMemory(ParamReader in) {
 }  // namespace
 
 SensingParams ReadSensingParams(ParamReader in) {
-  return {ReadState(in.Sub("robot_state")), ReadMemory(in.Sub("memory"))};
+  return {ReadState(in.Sub("robot_state")), ReadMemory(in.Sub("memory")),
+          ReadGroundWatchParams(in.Sub("ground"))};
 }
 
 }  // namespace hires::sensing

@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "hires/perception/camera_view.h"
 #include "hires/robot/load_robot.h"
 #include "support/fake_frame_tree.h"
+#include "support/scenes.h"
 #include "support/sight_scenes.h"
 
 namespace hires::control::world_tracker_test {
@@ -31,8 +33,9 @@ std::shared_ptr<const robot::Robot> Pr2() {
 /// A PR2 whose sensors speak at 20 Hz, and a mug before it.
 class WorldTrackerTest : public testing::Test {
  protected:
-  explicit WorldTrackerTest(bool lockstep = true)
-      : tracker_(&state_, &objects_, nullptr, HeadSweep(Pr2(), {}), lockstep,
+  explicit WorldTrackerTest(bool lockstep = true, bool sees_floor = false)
+      : floor_(FloorFor(sees_floor)),
+        tracker_(&state_, &objects_, floor_.get(), HeadSweep(Pr2(), {}), lockstep,
                  {[this](const sensing::RobotEstimate& now, const auto& known) {
                     known_at_.push_back(now.time);
                     names_.clear();
@@ -47,18 +50,25 @@ class WorldTrackerTest : public testing::Test {
     joints_ = Pr2()->profile.joints;
     joints_["head_tilt_joint"] = 0.5;
   }
+  std::unique_ptr<sensing::FloorWatch> FloorFor(bool sees_floor) const {
+    if (!sees_floor) return nullptr;
+    return std::make_unique<sensing::FloorWatch>(
+        &state_, std::make_shared<world::World>(test_support::Room()), Pr2(),
+        sensing::FloorWatchParams{}, sensing::GroundWatchParams{});
+  }
   void Tell(double time, bool with_joints = true) {
-    tree_->Tell("map", "odom_combined", time, {});
+    tree_->Tell("map", "odom_combined", time, X_MO_);
     state_.OnTransforms(time);
     state_.OnOdometry(time, "odom_combined", "base_footprint", {});
     if (with_joints) state_.OnJoints(time, {joints_, {}});
     tracker_.Process();
   }
-  void See(double time) {
+  /// A mug 1.5 m before the robot.
+  void See(double time, double height = 0.7) {
     perception::Detection mug;
     mug.instance = "mug1";
     mug.label = "mug";
-    mug.X_CO = perception::ViewOf(*Pr2(), {}, joints_).X_MC.Inverse() * At(1.5, 0.1, 0.7);
+    mug.X_CO = perception::ViewOf(*Pr2(), {}, joints_).X_MC.Inverse() * At(1.5, 0.1, height);
     objects_.OnLook({time, Pr2()->profile.upper_body->camera_link, {mug}});
     tracker_.Process();
   }
@@ -68,9 +78,11 @@ class WorldTrackerTest : public testing::Test {
   RobotStateEstimator state_{Pr2(), {"map", "odom_combined", "base_footprint"}, {}, {}, tree_};
   ObjectEstimator objects_{EmptyRoom(), Pr2(), {}, &state_};
   robot::JointPositions joints_;
+  geometry::Pose3 X_MO_;
   std::vector<double> known_at_, observed_at_;
   std::vector<std::string> names_, warnings_;
   translation::ObservedWorld observed_;
+  std::unique_ptr<sensing::FloorWatch> floor_;  // or null
   WorldTracker tracker_;
 };
 
@@ -158,6 +170,42 @@ TEST_F(WorldTrackerTest, WhatWaitedWhileItWasHeldUpIsMadeUseOfInWhateverOrderTop
     EXPECT_EQ(observed_at_.size(), num_told) << order[0] << order[1] << order[2];
     EXPECT_EQ(tracker_.num_dropped(), 0u) << order[0] << order[1] << order[2];
   } while (std::next_permutation(order.begin(), order.end()));
+}
+
+class FloorTrackerTest : public WorldTrackerTest {
+ protected:
+  FloorTrackerTest() : WorldTrackerTest(true, true) { X_MO_ = At(2.0, 2.0, 0.0); }
+  /// Shows the floor before the robot, and something on it where See sees a mug.
+  void Sweep(double time) {
+    perception::PointCloud cloud{0, 1, {}};
+    for (float x = 0.8F; x < 2.4F; x += 0.02F) {
+      for (float y = -0.6F; y < 0.6F; y += 0.02F) {
+        const bool is_thing = std::hypot(x - 1.5F, y - 0.1F) < 0.05F;
+        cloud.points.emplace_back(x, y, is_thing ? 0.08F : 0.0F);
+      }
+    }
+    cloud.width = static_cast<int>(cloud.points.size());
+    floor_->OnCloud(time, "base_footprint", cloud);
+  }
+};
+
+TEST_F(FloorTrackerTest, WhatFellToTheFloorIsNoOtherThingThere) {
+  double time = 1.0;
+  const auto pass = [&](double seconds) {
+    for (const double end = time + seconds; time < end;) Tell(time += 0.05);
+  };
+  pass(1.0);
+  for (int i = 0; i < 2; ++i) {
+    Sweep(time);
+    pass(2.3);
+  }
+  See(time);
+  pass(0.5);
+  EXPECT_THAT(names_, ElementsAre("mug1", "obstacle1")) << "it stands on a table";
+  See(time, 0.0);
+  pass(0.5);
+  EXPECT_THAT(names_, ElementsAre("mug1"));
+  EXPECT_THAT(observed_.vanished, testing::Contains("obstacle1"));
 }
 
 class FreeTrackerTest : public WorldTrackerTest {

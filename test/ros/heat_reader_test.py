@@ -17,6 +17,7 @@ from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
 
 IMAGE, INFO = 'thermal_cam/image_raw', 'thermal_cam/camera_info'
+CONFIG = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'config')
 CAMERA = 'thermal_optical'
 EYE = (6.4, 9.94, 1.15)            # [m] in front of the counter, looking west, level
 WEST = (-0.5, -0.5, 0.5, 0.5)      # x, y, z, w of its optical axes
@@ -50,7 +51,10 @@ class HeatReaderTest(unittest.TestCase):
         from tf2_msgs.msg import TFMessage
         cls.rospy = rospy
         rospy.init_node('heat_reader_test', disable_signals=True)
-        cls.node = cls.processes.start([executable('heat_reader')], cls.main)
+        with open(os.path.join(CONFIG, 'heat_reader.yaml')) as file:
+            text = file.read().replace('period: 1.0', 'period: 0.05')
+        cls.node = cls.processes.start([executable('heat_reader'), '_config:=' + cls.processes.write(
+            'heat_reader.yaml', text)], cls.main)
         cls.changed = threading.Condition()
         cls.answers = []
         # Before anybody listens to what it says it does not ask for pictures.
@@ -154,6 +158,14 @@ class HeatReaderTest(unittest.TestCase):
         self.assertEqual(self.answer_to(self.image(picture('mug2'))), {'mug1': 20.0, 'mug2': 62.5})
         self.assertEqual(self.answer_to(self.image(picture('mug1'))), {'mug1': 62.5, 'mug2': 20.0})
         self.assertIn('tf does not know', self.say('reads')['message'])  # no robot is there
+
+    def test_a_picture_that_comes_too_early_is_left_out(self):
+        self.assertEqual(self.answer_to(self.image(picture('mug2'))), {'mug1': 20.0, 'mug2': 62.5})
+        early, late = self.image(picture('mug1')), self.image(picture('mug1'))
+        early.header.stamp -= self.rospy.Duration.from_sec(0.07)  # 0.03 s after the other
+        self.images.publish(early)
+        self.answer_to(late)
+        self.assertFalse([a for a in self.answers if a.header.stamp == early.header.stamp])
 
     def test_a_picture_without_known_objects_is_answered_by_none(self):
         self.know({'mug1': (9.0, 9.94, 0.75)})  # behind the camera

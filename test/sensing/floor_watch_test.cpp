@@ -2,12 +2,16 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "hires/base/error.h"
+#include "hires/world/unknown_box.h"
 #include "support/fake_frame_tree.h"
 #include "support/scenes.h"
+#include "support/sight_scenes.h"
+#include "support/tilt_sweep.h"
 
 namespace hires::sensing::floor_watch_test {
 namespace {
@@ -59,7 +63,7 @@ class FloorWatchTest : public testing::Test {
     return std::make_shared<const world::World>(Room());
   }
   FloorWatch Make(const FloorWatchParams& params = {}) const {
-    return {&state_, TheRoom(), robot_->profile.footprint, params};
+    return {&state_, TheRoom(), robot_, params};
   }
   /// Scans at 20 Hz, of what stands there and no walls.
   /// @return how often something changed.
@@ -154,7 +158,7 @@ TEST_F(FloorWatchTest, NoBoxReachesIntoWhatIsKnown) {
   world->statics.push_back(pillar);
   FloorWatchParams params;
   params.tolerance = 0.05;
-  watch_ = FloorWatch(&state_, world, robot_->profile.footprint, params);
+  watch_ = FloorWatch(&state_, world, robot_, params);
   Watch(6.0, {Square(4.0, 2.2, 0.06), Square(4.0, 1.8, 0.06), Square(4.0, 2.0, 0.04)});
   ASSERT_THAT(Names(), ElementsAre("obstacle1", "obstacle2"));
   for (const robot::SeenObject& thing : watch_.things())
@@ -171,6 +175,113 @@ TEST_F(FloorWatchTest, WallsOfTheWorldAndScansWithoutASenseAreNothing) {
   watch_.OnScan(time_ + 0.03, "nose", {0.0, 0.01, 0.08, {1.0F}});
   EXPECT_FALSE(watch_.Update(time_ + 0.03));
   EXPECT_EQ(watch_.OnScan(0.0, "base", {}).what, Reception::kNoStamp);
+}
+
+/// A robot with a laser that nods over its torso, and no other.
+class FloorByCloudsTest : public testing::Test {
+ protected:
+  FloorByCloudsTest() {
+    GroundWatchParams ground;
+    ground.is_enabled = true;
+    ground.eye = "";
+    watch_.emplace(&state_, std::make_shared<const world::World>(Room()), robot_,
+                   FloorWatchParams{}, ground);
+    tree_->TellFixed("base", "laser", kLaser);
+  }
+  /// Sweeps, one each 2.3 s.
+  /// @return how often something changed.
+  int Sweep(int num, const std::vector<world::StaticBody>& standing) {
+    int changes = 0;
+    world::World room = Room();
+    for (const world::StaticBody& body : standing) room.statics.push_back(body);
+    const perception::LineOfSight sight(std::make_shared<perception::Surroundings>(room), {});
+    for (int i = 0; i < num; ++i) {
+      for (int tick = 0; tick < 23; ++tick) Stand(time_ += 0.1);
+      watch_->OnCloud(
+          time_, "laser",
+          test_support::TiltSweep{}.Measure(sight, geometry::Lift(X_MB_) * kLaser, &rng_));
+      changes += watch_->Update(time_);
+    }
+    return changes;
+  }
+  void Stand(double time) {
+    tree_->Tell("map", "odom", time, {});
+    state_.OnTransforms(time);
+    state_.OnOdometry(time, "odom", "", {X_MB_, {}});
+    state_.OnJoints(time, {{{"a", 1.0}}, {{"a", 0.5}}});
+  }
+  const std::vector<robot::SeenObject>& Things() const { return watch_->things(); }
+
+  const geometry::Pose3 kLaser = test_support::At(0.1, 0.0, 1.2);
+  std::shared_ptr<FakeFrameTree> tree_ = std::make_shared<FakeFrameTree>();
+  std::shared_ptr<const robot::Robot> robot_ = std::make_shared<const robot::Robot>(TrayRobot());
+  RobotStateEstimator state_{robot_, {"map", "odom", "base"}, {}, {}, tree_};
+  std::optional<FloorWatch> watch_;
+  Pose2 X_MB_{2.5, 2.0, 0.0};
+  base::Rng rng_{5};
+  double time_{1.0};
+};
+
+using test_support::Block;
+
+// Lower than the laser of a base looks.
+TEST_F(FloorByCloudsTest, ALowBoxIsAsHighAndAsLargeAsItIsSeen) {
+  const auto box = Block("box", {0.3, 0.4, 0.15}, {4.0, 2.2, 0.075});
+  Sweep(1, {box});
+  EXPECT_THAT(Things(), IsEmpty()) << "one look is not enough";
+  Sweep(1, {box});
+  ASSERT_EQ(Things().size(), 1u);
+  EXPECT_EQ(Things()[0].name, "obstacle1");
+  const Eigen::Vector3d p_M = Things()[0].X_MO.translation;
+  EXPECT_NEAR((p_M - Eigen::Vector3d(4.0, 2.2, 0.0)).norm(), 0.0, 0.05) << p_M.transpose();
+  const Eigen::Vector3d size = world::SizeOfUnknownBox(Things()[0].model);
+  EXPECT_NEAR(std::min(size.x(), size.y()), 0.3, 0.06);
+  EXPECT_NEAR(std::max(size.x(), size.y()), 0.4, 0.06);
+  EXPECT_NEAR(size.z(), 0.15, 0.02);
+  EXPECT_LE(Sweep(6, {box}), 1) << "what stands still is told once";
+  EXPECT_EQ(Things().size(), 1u);
+}
+
+TEST_F(FloorByCloudsTest, WhatIsGoneIsForgottenWhereTheFloorIsSeen) {
+  const auto box = Block("box", {0.3, 0.4, 0.15}, {4.0, 2.2, 0.075});
+  Sweep(3, {box});
+  Sweep(1, {});
+  EXPECT_EQ(Things().size(), 1u) << "one look is not enough";
+  Sweep(1, {});
+  EXPECT_THAT(Things(), IsEmpty());
+  EXPECT_THAT(watch_->vanished(), ElementsAre("obstacle1"));
+}
+
+TEST_F(FloorByCloudsTest, WhatIsHiddenStays) {
+  const auto box = Block("box", {0.2, 0.2, 0.15}, {4.6, 2.0, 0.075});
+  Sweep(3, {box});
+  ASSERT_EQ(Things().size(), 1u);
+  const std::string model = Things()[0].model;
+  Sweep(3, {Block("person", {0.2, 0.8, 1.6}, {3.6, 2.0, 0.8})});
+  const auto still = std::find_if(Things().begin(), Things().end(),
+                                  [&](const auto& thing) { return thing.model == model; });
+  ASSERT_NE(still, Things().end());
+  EXPECT_NEAR(still->X_MO.translation.x(), 4.6, 0.1);
+}
+
+TEST_F(FloorByCloudsTest, WhatHangsInTheAirAndWhatIsFlatStandsNowhere) {
+  Sweep(4, {Block("held", {0.1, 0.1, 0.2}, {3.5, 2.0, 0.9}),
+            Block("rug", {1.0, 1.0, 0.01}, {4.2, 2.0, 0.005})});
+  EXPECT_THAT(Things(), IsEmpty());
+}
+
+// What is told lower would be driven over where drives are imagined, and not by the robot.
+TEST_F(FloorByCloudsTest, AThingThatIsHardlyHighEnoughIsToldAsHighAsDrivesNeed) {
+  Sweep(3, {Block("step", {0.4, 0.4, 0.06}, {4.0, 2.0, 0.03})});
+  ASSERT_EQ(Things().size(), 1u);
+  EXPECT_EQ(world::SizeOfUnknownBox(Things()[0].model).z(), 0.1);
+}
+
+TEST_F(FloorByCloudsTest, ACloudOfAFrameThatNobodyKnowsIsNothingAndNamed) {
+  Sweep(2, {});
+  watch_->OnCloud(time_, "submarine", perception::PointCloud{1, 1, {{1.0F, 0.0F, 0.0F}}});
+  EXPECT_FALSE(watch_->Update(time_));
+  EXPECT_EQ(watch_->cloud_receipt().subject, "submarine");
 }
 
 TEST(FloorWatchParamsTest, AreReadAndCheckedByName) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sensing/unmapped.h"
 #include "support/scenes.h"
 #include "support/sight_scenes.h"
 #include "support/tilt_sweep.h"
@@ -57,6 +58,13 @@ struct Site {
   }
 };
 
+std::vector<Polygon> SquaresOf(const GroundReading& reading) {
+  std::vector<Polygon> squares;
+  for (const GroundSpot& spot : reading.spots)
+    squares.push_back(SquareOf(spot.cell.first, spot.cell.second, ScanParams{}.cell));
+  return squares;
+}
+
 Vector2d MiddleOf(const Polygon& square) { return (square[0] + square[2]) / 2; }
 
 double DistanceTo(const std::vector<Polygon>& outlines, const Polygon& square) {
@@ -72,7 +80,7 @@ TEST(GroundObstaclesTest, AnEmptyRoomHasAFloorAndNoObstacle) {
   EXPECT_TRUE(reading.floor.is_seen);
   EXPECT_NEAR(reading.floor.offset, 0.0, 0.001);
   EXPECT_NEAR(reading.floor.slope.norm(), 0.0, 0.001);
-  EXPECT_THAT(reading.obstacles_M, IsEmpty());  // its walls are the map's
+  EXPECT_THAT(SquaresOf(reading), IsEmpty());  // its walls are the map's
 }
 
 TEST(GroundObstaclesTest, AChairIsSquaresWhereItStands) {
@@ -82,8 +90,8 @@ TEST(GroundObstaclesTest, AChairIsSquaresWhereItStands) {
   }
   site.Add({0.45, 0.45, 0.04}, {4.2, 2.3, 0.47});
   const GroundReading reading = site.Read();
-  EXPECT_THAT(reading.obstacles_M, Not(IsEmpty()));
-  for (const Polygon& square : reading.obstacles_M) {
+  EXPECT_THAT(SquaresOf(reading), Not(IsEmpty()));
+  for (const Polygon& square : SquaresOf(reading)) {
     EXPECT_LT(DistanceTo(site.outlines, square), 0.02);
   }
 }
@@ -91,21 +99,21 @@ TEST(GroundObstaclesTest, AChairIsSquaresWhereItStands) {
 TEST(GroundObstaclesTest, AStepUpAndAThickCableAreObstaclesAndAThinOneIsNone) {
   Site step;
   step.Add({0.5, 3.0, 0.06}, {4.5, 2.0, 0.03});
-  EXPECT_THAT(step.Read().obstacles_M, Not(IsEmpty()));
+  EXPECT_THAT(SquaresOf(step.Read()), Not(IsEmpty()));
   Site cable;
   cable.Add({1.0, 0.045, 0.045}, {4.0, 2.2, 0.0225});
-  EXPECT_THAT(cable.Read().obstacles_M, Not(IsEmpty()));
+  EXPECT_THAT(SquaresOf(cable.Read()), Not(IsEmpty()));
   Site thin;  // robots of this size drive over it, and it drowns in the noise
   thin.Add({1.0, 0.008, 0.008}, {4.0, 2.2, 0.004});
-  EXPECT_THAT(thin.Read().obstacles_M, IsEmpty());
+  EXPECT_THAT(SquaresOf(thin.Read()), IsEmpty());
 }
 
 TEST(GroundObstaclesTest, WhatHangsHigherThanTheRobotIsNone) {
   Site site;
   site.Add({0.5, 0.5, 0.1}, {4.2, 2.0, 1.55});
-  EXPECT_THAT(site.Read().obstacles_M, IsEmpty());
+  EXPECT_THAT(SquaresOf(site.Read()), IsEmpty());
   site.Add({0.5, 0.5, 0.1}, {4.2, 2.0, 1.30});
-  EXPECT_THAT(site.Read().obstacles_M, Not(IsEmpty()));
+  EXPECT_THAT(SquaresOf(site.Read()), Not(IsEmpty()));
 }
 
 /// A platform of 0.3 m with a gap across; the robot stands on it, and the floor of the world is the
@@ -119,7 +127,7 @@ TEST(GroundObstaclesTest, AHoleIsAnObstacleWhereItOpens) {
   ASSERT_TRUE(reading.floor.is_seen);
   EXPECT_NEAR(reading.floor.offset, 0.0, 0.003);
   int num_in_gap = 0;
-  for (const Polygon& square : reading.obstacles_M) {
+  for (const Polygon& square : SquaresOf(reading)) {
     const double x = MiddleOf(square).x();
     if (x > 3.97 && x < 4.53) ++num_in_gap;
     // Beyond both edges there is floor; where the platform ends to the sides there is none either.
@@ -143,7 +151,7 @@ TEST(GroundObstaclesTest, WhatLeansTheBaseIsFoundAndTakenOff) {
     EXPECT_NEAR(reading.floor.slope.x(), pitch, 0.002) << seed;
     EXPECT_NEAR(reading.floor.slope.y(), -roll, 0.002) << seed;
     EXPECT_NEAR(reading.floor.offset, -X_FB.translation.z(), 0.003) << seed;
-    EXPECT_THAT(reading.obstacles_M, IsEmpty()) << seed;
+    EXPECT_THAT(SquaresOf(reading), IsEmpty()) << seed;
   }
 }
 
@@ -163,14 +171,15 @@ TEST(GroundObstaclesTest, RandomThingsAreFoundAndNothingElse) {
     X_FB.rotation =
         geometry::RotationFromRpy(rng.Uniform(-0.01, 0.01), rng.Uniform(-0.01, 0.01), 0.0);
     const GroundReading reading = site.Read(X_FB, &rng);
-    for (const Polygon& square : reading.obstacles_M) {
+    const std::vector<Polygon> squares = SquaresOf(reading);
+    for (const Polygon& square : squares) {
       // The base leans and the robot does not know that: 0.01 rad of 1.2 m.
       ASSERT_LT(DistanceTo(site.outlines, square), 0.03) << "seed " << seed;
     }
     for (const Polygon& outline : site.outlines) {
-      const bool is_found = std::any_of(
-          reading.obstacles_M.begin(), reading.obstacles_M.end(),
-          [&](const Polygon& square) { return geometry::Distance(outline, square) < 0.03; });
+      const bool is_found = std::any_of(squares.begin(), squares.end(), [&](const Polygon& square) {
+        return geometry::Distance(outline, square) < 0.03;
+      });
       ASSERT_TRUE(is_found) << "seed " << seed;
       ++num_things;
     }
@@ -185,7 +194,7 @@ TEST(GroundObstaclesTest, TheSameSeedGivesTheSameBits) {
   const GroundReading one = site.Read({}, &first), other = site.Read({}, &second);
   EXPECT_EQ(one.floor.offset, other.floor.offset);
   EXPECT_EQ(one.floor.slope, other.floor.slope);
-  EXPECT_EQ(one.obstacles_M, other.obstacles_M);
+  EXPECT_EQ(SquaresOf(one), SquaresOf(other));
 }
 
 TEST(GroundObstaclesTest, WithoutAFloorInSightTheBasesOwnIsTaken) {
@@ -193,21 +202,21 @@ TEST(GroundObstaclesTest, WithoutAFloorInSightTheBasesOwnIsTaken) {
   const perception::PointCloud nothing;
   const GroundReading none = Finder().Find(nothing, kLaser, kRobot, kRobotHeight, &rng);
   EXPECT_FALSE(none.floor.is_seen);
-  EXPECT_THAT(none.obstacles_M, IsEmpty());
+  EXPECT_THAT(SquaresOf(none), IsEmpty());
   // Four points of a thing 0.5 m high, 1 m before the robot.
   perception::PointCloud thing{4, 1, std::vector<Eigen::Vector3f>(4, {0.9f, 0.02f, -0.7f})};
   const GroundReading found = Finder().Find(thing, kLaser, kRobot, kRobotHeight, &rng);
   EXPECT_FALSE(found.floor.is_seen);
-  ASSERT_EQ(found.obstacles_M.size(), 1u);
-  EXPECT_TRUE(geometry::Contains(found.obstacles_M[0], {4.0, 2.02}));
+  ASSERT_EQ(SquaresOf(found).size(), 1u);
+  EXPECT_TRUE(geometry::Contains(SquaresOf(found)[0], {4.0, 2.02}));
   thing.points.resize(2);
-  EXPECT_THAT(Finder().Find(thing, kLaser, kRobot, kRobotHeight, &rng).obstacles_M, IsEmpty());
+  EXPECT_THAT(SquaresOf(Finder().Find(thing, kLaser, kRobot, kRobotHeight, &rng)), IsEmpty());
 }
 
 TEST(GroundObstaclesTest, PointsOverTheFootprintAreTheRobotsOwn) {
   base::Rng rng(1);
   const perception::PointCloud own{4, 1, std::vector<Eigen::Vector3f>(4, {0.1f, 0.1f, -0.7f})};
-  EXPECT_THAT(Finder().Find(own, kLaser, kRobot, kRobotHeight, &rng).obstacles_M, IsEmpty());
+  EXPECT_THAT(SquaresOf(Finder().Find(own, kLaser, kRobot, kRobotHeight, &rng)), IsEmpty());
 }
 
 }  // namespace

@@ -24,13 +24,18 @@ const Pose3 kLaser = At(0.1, 0.0, 1.3);  // in the base
 /// A robot with a laser over its torso, in a room with a box that the map does not have.
 class GroundWatchTest : public testing::Test {
  protected:
-  explicit GroundWatchTest(const GroundWatchParams& params = {})
+  explicit GroundWatchTest(const std::string& eye = "")
       : watch_(&state_, robot_,
                std::make_shared<const navigation::Costmap>(
                    world::SliceWorld(test_support::Room(), 0.1, 0.9), 0.25,
                    navigation::CostmapParams{}),
-               robot_->profile.footprint, {}, params, base::Rng(1)) {
+               Seen(eye)) {
     tree_->TellFixed("base", "laser", kLaser);
+  }
+  static GroundWatchParams Seen(const std::string& eye) {
+    GroundWatchParams params;
+    params.eye = eye;
+    return params;
   }
   void Stand(double time, const Pose2& X_MB) {
     tree_->Tell("map", "odom", time, {});
@@ -87,12 +92,7 @@ TEST_F(GroundWatchTest, ACloudIsPutWhereTheRobotWasWhenItWasTaken) {
 
 class GroundWatchByEyeTest : public GroundWatchTest {
  protected:
-  GroundWatchByEyeTest()
-      : GroundWatchTest([] {
-          GroundWatchParams params;
-          params.eye = "laser";
-          return params;
-        }()) {}
+  GroundWatchByEyeTest() : GroundWatchTest("laser") {}
 };
 
 TEST_F(GroundWatchByEyeTest, ACloudInAnotherFrameIsLookedAtFromTheEye) {
@@ -122,11 +122,10 @@ TEST_F(GroundWatchTest, ACloudOfAFrameNobodyKnowsOrWithoutAStampIsDroppedByName)
 }
 
 TEST(GroundWatchParamsTest, TheShippedOnesAreTheDefaultsAndABadOneIsNamed) {
-  auto in = base::ParamReader::FromFile(HIRES_SOURCE_DIR "/config/middle_layer.yaml");
-  const GroundWatchParams params = ReadGroundWatchParams(in.Sub("ground"));
-  EXPECT_EQ(params.ground.min_height, GroundParams{}.min_height);
-  EXPECT_EQ(params.self.padding, perception::SelfFilterParams{}.padding);
-  const auto bad = base::ParamReader::FromString("enabled: true\nmax_tilt: 3.0\n", "test.yaml");
+  auto in = base::ParamReader::FromFile(HIRES_SOURCE_DIR "/config/scene.yaml");
+  EXPECT_TRUE(ReadGroundWatchParams(in.Sub("sensing").Sub("ground")) == GroundWatchParams());
+  const auto bad = base::ParamReader::FromString(
+      "enabled: true\ntolerance: 0.1\nrange: 2\ncell: 0.1\nmax_tilt: 3.0\n", "test.yaml");
   try {
     ReadGroundWatchParams(bad);
     FAIL() << "was taken";

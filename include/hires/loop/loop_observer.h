@@ -11,6 +11,7 @@
 #include "hires/evaluation/achieve.h"
 #include "hires/evaluation/sim_robot_world.h"
 #include "hires/perception/detector.h"
+#include "hires/perception/point_cloud.h"
 #include "hires/perception/warm_objects.h"
 #include "hires/sensing/scan_obstacles.h"
 
@@ -20,6 +21,13 @@ namespace hires::loop {
 struct TrayScan {
   std::string frame;
   robot::ScanReading reading;
+};
+
+/// What a sweep of the laser that nods measured.
+struct SweepNews {
+  double stamp{0.0};  ///< [s] of its end
+  std::string frame;
+  perception::PointCloud cloud;
 };
 
 /// What the robot's sensors say at one moment, as one who listens to them gets it.
@@ -32,6 +40,7 @@ struct SensorNews {
   std::optional<perception::Sighting> seen;
   std::optional<TrayScan> tray;
   std::shared_ptr<const perception::HeatView> heat;  ///< null: no picture was taken
+  std::shared_ptr<const SweepNews> sweep;            ///< null: none ended since the last moment
 };
 
 /// Told of all that passes between the parts of a loop, as topics would carry it between nodes, in

@@ -21,6 +21,7 @@ struct WarmParams {
   int min_pixels{30};        ///< of a region, and of an object
   double min_share{0.2};     ///< of an object's pixels in a region, before the region is its
   double max_range{4.0};     ///< [m] from the camera to an object that is measured
+  double period{1.0};        ///< [s] at least between two pictures that are read
 };
 /// @throws base::ConfigError naming file and key.
 WarmParams ReadWarmParams(base::ParamReader in);

@@ -7,6 +7,7 @@
 #include "hires/base/rng.h"
 #include "hires/perception/point_cloud.h"
 #include "hires/perception/self_filter.h"
+#include "hires/sensing/ground_reading.h"
 #include "hires/sensing/robot_state_estimator.h"
 #include "hires/sensing/scan_obstacles.h"
 
@@ -28,14 +29,17 @@ struct GroundParams {
 };
 
 struct GroundWatchParams {
-  bool is_enabled{false};  ///< else nobody listens to the clouds
+  bool is_enabled{true};  ///< else nobody listens to the clouds
   GroundParams ground{};
   perception::SelfFilterParams self{};
-  std::string eye{};  ///< frame where clouds are seen from; empty: the clouds' own
-  double keep{5.0};   ///< [s] after which what a cloud showed is forgotten
+  std::string eye{
+      "laser_tilt_mount_link"};  ///< frame where clouds are seen from; empty: the clouds' own
+  double keep{5.0};              ///< [s] after which what a cloud showed is forgotten
+  ScanParams scan{};             ///< how far and how finely clouds are looked at
+  bool operator==(const GroundWatchParams& other) const;
 };
 
-/// The block `ground` of config/middle_layer.yaml.  @throws base::ConfigError naming the key.
+/// The block `sensing: ground` of config/scene.yaml.  @throws base::ConfigError naming the key.
 GroundWatchParams ReadGroundWatchParams(base::ParamReader in);
 
 class GroundObstacles;
@@ -45,25 +49,28 @@ class GroundObstacles;
 class GroundWatch {
  public:
   /// @param state      outlives this.
+  /// @param robot      points over its footprint are its own.
   /// @param map        what is known to stand there.
-  /// @param footprint  of the robot, in its base: points over it are the robot's own.
-  /// @param rng        for the search for the floor.
   GroundWatch(const RobotStateEstimator* state, std::shared_ptr<const robot::Robot> robot,
-              std::shared_ptr<const navigation::Costmap> map, geometry::Polygon footprint,
-              const ScanParams& scan, const GroundWatchParams& params, base::Rng rng);
+              std::shared_ptr<const navigation::Costmap> map, const GroundWatchParams& params);
   ~GroundWatch();
   GroundWatch(GroundWatch&&) noexcept;
 
   /// @param stamp  of the cloud; of a sweep, of its end.
   Receipt OnCloud(double stamp, const std::string& frame, perception::PointCloud cloud);
 
-  /// Squares in the map, of the last cloud up to now, where the robot was when it was taken.
+  /// Looks at the newest cloud up to now.  @return whether there was one, and it could be.
+  bool Update(const RobotEstimate& now);
+  /// Of the last cloud that was looked at, where the robot was when it was taken.
+  const GroundReading& reading() const { return reading_; }
+  double cell() const { return params_.scan.cell; }  ///< [m] edge of the reading's
+  /// Squares in the map, of the last cloud up to now.
   const std::vector<geometry::Polygon>& Obstacles(const RobotEstimate& now);
   /// What became of the last cloud that was looked at.
   const Receipt& receipt() const { return receipt_; }
 
  private:
-  void Look(double stamp, const std::string& frame, perception::PointCloud cloud);
+  bool Look(double stamp, const std::string& frame, perception::PointCloud cloud);
 
   struct Cloud {
     double stamp{0.0};
@@ -78,6 +85,7 @@ class GroundWatch {
   base::Rng rng_;
   std::optional<Cloud> waiting_;  // not looked at yet
   double seen_{0.0};              // [s] stamp of what obstacles_M_ are of
+  GroundReading reading_;
   std::vector<geometry::Polygon> obstacles_M_;
   Receipt receipt_;
 };

@@ -17,8 +17,10 @@ struct ScanParams {
   double cell{0.05};       ///< [m] edge of the squares that stand for what was seen
 };
 
-/// The block `scan` of config/middle_layer.yaml.  @throws base::ConfigError naming the key.
-ScanParams ReadScanParams(base::ParamReader in);
+/// The block `scan` of config/middle_layer.yaml, or a part of another.
+/// @throws base::ConfigError naming the key.
+ScanParams ReadScanKeys(base::ParamReader* in);
+inline ScanParams ReadScanParams(base::ParamReader in) { return ReadScanKeys(&in); }
 
 /// Tells what a scan shows beyond the map.
 class ScanObstacles {

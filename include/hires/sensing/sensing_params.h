@@ -1,5 +1,6 @@
 #pragma once
 
+#include "hires/sensing/ground_watch.h"
 #include "hires/sensing/object_memory.h"
 #include "hires/sensing/robot_state_estimator.h"
 
@@ -14,8 +15,9 @@ namespace hires::sensing {
 struct SensingParams {
   StateParams robot_state;
   MemoryParams memory;
+  GroundWatchParams ground;
   bool operator==(const SensingParams& other) const {
-    return robot_state == other.robot_state && memory == other.memory;
+    return robot_state == other.robot_state && memory == other.memory && ground == other.ground;
   }
 };
 

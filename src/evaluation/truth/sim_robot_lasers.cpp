@@ -77,6 +77,10 @@ bool SimRobotLasers::IsTiltDue(const SimRobotWorld& world) const {
          world.milliseconds() % std::lround(1000.0 * params_.tilt_period) == 0;
 }
 
+int SimRobotLasers::num_scans_of_a_sweep() const {
+  return static_cast<int>(std::floor(nodding().sweep_time / params_.tilt_period + 1e-6));
+}
+
 robot::TiltPhase SimRobotLasers::TiltPhase(const SimRobotWorld& world) const {
   HIRES_CHECK(has_tilting_laser(), "the robot has no laser that nods");
   return robot::PhaseAt(nodding(), 0.001 * static_cast<double>(world.milliseconds()));

@@ -84,6 +84,9 @@ void HeatReaderNode::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_stati
 
 void HeatReaderNode::OnPicture(const sensor_msgs::ImageConstPtr& msg) {
   ++num_pictures_;
+  // A clock that began again is no picture too early.
+  const double since = (msg->header.stamp - read_).toSec();
+  if (since > 0.0 && since < params_.warm.period) return;
   waiting_ = msg;
   Try();
 }
@@ -157,6 +160,7 @@ void HeatReaderNode::Read(const Pose3& X_MC) {
     return Refuse(error.what());
   }
   temperatures_.publish(ToMsg(reading, msg->header));
+  read_ = msg->header.stamp;
   num_objects_ = reading.objects.size();
   num_regions_ = reading.regions.size();
   refused_.clear();

@@ -47,6 +47,7 @@ class HeatReaderNode {
 
   std::string waits_for_, refused_;    // why the last picture was not read; or empty
   std::vector<std::string> unplaced_;  // links that tf did not know
+  ros::Time read_;                     // stamp of the picture that was read last
   long num_pictures_{0}, num_read_{0}, num_refused_{0};
   std::size_t num_objects_{0}, num_regions_{0};  // in the last picture
   double last_warning_{-1e9};                    // [s] steady

@@ -50,7 +50,7 @@ MiddleLayerNode::MiddleLayerNode(const MiddleLayerParams& params,
       runner_(setup_.scene->robot, params.runner, RunnerHooks()),
       goals_({params.start_patience, params.feedback_period, params.dry_run}, GoalHooks(), nh),
       display_(params.names.map_frame, params.names.map_to_world, nh),
-      inputs_(setup_, params.names, params.scan, params.ground,
+      inputs_(setup_, params.names, params.scan,
               {[this](const std::string& topic, double stamp) { OnArrived(topic, stamp); },
                [this] {
                  looked_ = -1.0;

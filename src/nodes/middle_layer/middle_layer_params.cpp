@@ -41,7 +41,6 @@ MiddleLayerParams Read(const std::string& path, std::optional<bool> is_guard_the
   params.runner.stale_after = params.setup.sensing.robot_state.stale_after;
   params.runner.stop = hires::control::ReadStopParams(in.Sub("stopping"));
   params.scan = hires::sensing::ReadScanParams(in.Sub("scan"));
-  params.ground = hires::sensing::ReadGroundWatchParams(in.Sub("ground"));
   params.guard = ReadGuard(in.Sub("guard"), params.setup.has_base_guard, path);
   params.override = ReadOverride(in.Sub("override"));
   params.navigation =

@@ -6,7 +6,6 @@
 #include "hires/control/robot_names.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/navigation/braking.h"
-#include "hires/sensing/ground_watch.h"
 #include "hires/sensing/scan_obstacles.h"
 
 namespace hires_ros {
@@ -24,7 +23,6 @@ struct MiddleLayerParams {
   hires::control::RobotNames names;
   hires::control::RunnerParams runner;
   hires::sensing::ScanParams scan;
-  hires::sensing::GroundWatchParams ground;
   GuardParams guard;
   hires::control::OverrideParams override;
   hires::control::MoveBaseDriveParams navigation;

@@ -7,8 +7,6 @@
 namespace hires_ros {
 namespace {
 
-constexpr std::uint64_t kFloorSeed = 1;  // the search for the floor; any will do
-
 hires::geometry::Polygon FootprintOf(const hires::imagination::ImaginationSetup& setup) {
   const hires::robot::RobotProfile& profile = setup.scene->robot.profile;
   return hires::geometry::Padded(profile.footprint, profile.footprint_padding);
@@ -18,19 +16,20 @@ hires::geometry::Polygon FootprintOf(const hires::imagination::ImaginationSetup&
 
 RobotInputs::RobotInputs(const hires::imagination::ImaginationSetup& setup,
                          const hires::control::RobotNames& names,
-                         const hires::sensing::ScanParams& scan,
-                         const hires::sensing::GroundWatchParams& ground, Hooks hooks,
-                         ros::NodeHandle* nh)
+                         const hires::sensing::ScanParams& scan, Hooks hooks, ros::NodeHandle* nh)
     : names_(names),
       hooks_(std::move(hooks)),
       sensors_({setup.scene, &setup.scene->robot}, setup.scene->surroundings, names, setup.sensing),
-      observations_(&sensors_.state(), {setup.skills->driving->costmap, FootprintOf(setup), scan}),
-      ground_(&sensors_.state(), {setup.scene, &setup.scene->robot}, setup.skills->driving->costmap,
-              FootprintOf(setup), scan, ground, hires::base::Rng(kFloorSeed)) {
-  Subscribe(ground.is_enabled && !names.sensors.tilt_cloud.empty(), nh);
+      observations_(&sensors_.state(), {setup.skills->driving->costmap, FootprintOf(setup), scan}) {
+  if (setup.sensing.ground.is_enabled && !names.sensors.tilt_cloud.empty()) {
+    ground_.emplace(&sensors_.state(),
+                    std::shared_ptr<const hires::robot::Robot>(setup.scene, &setup.scene->robot),
+                    setup.skills->driving->costmap, setup.sensing.ground);
+  }
+  Subscribe(nh);
 }
 
-void RobotInputs::Subscribe(bool is_floor_watched, ros::NodeHandle* nh) {
+void RobotInputs::Subscribe(ros::NodeHandle* nh) {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   const auto add = [&](ros::Subscriber subscriber) { subscribers_.push_back(subscriber); };
   add(nh->subscribe(names_.odometry, 100, &RobotInputs::OnOdometry, this, hints));
@@ -43,7 +42,7 @@ void RobotInputs::Subscribe(bool is_floor_watched, ros::NodeHandle* nh) {
                                          ros::VoidConstPtr(), hints));
   add(nh->subscribe<tf2_msgs::TFMessage>(kStaticTransforms, 100, on_transforms(true)));
   add(nh->subscribe(names_.base_scan, 10, &RobotInputs::OnScan, this, hints));
-  if (is_floor_watched) {
+  if (ground_) {
     add(nh->subscribe(names_.sensors.tilt_cloud, 2, &RobotInputs::OnCloud, this, hints));
   }
   if (!names_.sensors.tray_scan.empty()) {
@@ -83,7 +82,7 @@ void RobotInputs::OnScan(const sensor_msgs::LaserScan& msg) {
 void RobotInputs::OnCloud(const sensor_msgs::PointCloud2& msg) {
   try {
     const auto receipt =
-        ground_.OnCloud(msg.header.stamp.toSec(), msg.header.frame_id, FromMsg(msg));
+        ground_->OnCloud(msg.header.stamp.toSec(), msg.header.frame_id, FromMsg(msg));
     if (receipt.is_bad())
       sensors_.Warn(names_.sensors.tilt_cloud, hires::sensing::ToString(receipt));
   } catch (const hires::base::ConfigError& error) {
@@ -105,10 +104,11 @@ hires::robot::Observation RobotInputs::ObservationOf(const hires::sensing::Robot
   hires::robot::Observation seen = observations_.Observe(now);
   const hires::sensing::Receipt& scan = observations_.scan_receipt();
   if (scan.is_bad()) sensors_.Warn(names_.base_scan, hires::sensing::ToString(scan));
-  const auto& on_the_floor = ground_.Obstacles(now);
-  seen.obstacles_M.insert(seen.obstacles_M.end(), on_the_floor.begin(), on_the_floor.end());
-  if (ground_.receipt().is_bad()) {
-    sensors_.Warn(names_.sensors.tilt_cloud, hires::sensing::ToString(ground_.receipt()));
+  if (ground_) {
+    const auto& on_the_floor = ground_->Obstacles(now);
+    seen.obstacles_M.insert(seen.obstacles_M.end(), on_the_floor.begin(), on_the_floor.end());
+    if (ground_->receipt().is_bad())
+      sensors_.Warn(names_.sensors.tilt_cloud, hires::sensing::ToString(ground_->receipt()));
   }
   sensors_.Update(now);
   if (const hires::sensing::ObjectEstimator* objects = sensors_.objects()) {

@@ -30,7 +30,7 @@ class RobotInputs {
 
   RobotInputs(const hires::imagination::ImaginationSetup& setup,
               const hires::control::RobotNames& names, const hires::sensing::ScanParams& scan,
-              const hires::sensing::GroundWatchParams& ground, Hooks hooks, ros::NodeHandle* nh);
+              Hooks hooks, ros::NodeHandle* nh);
 
   const hires::sensing::RobotStateEstimator& state() const { return sensors_.state(); }
 
@@ -42,7 +42,7 @@ class RobotInputs {
   int num_bad() const { return sensors_.num_bad(); }  ///< messages, or parts of them
 
  private:
-  void Subscribe(bool is_floor_watched, ros::NodeHandle* nh);
+  void Subscribe(ros::NodeHandle* nh);
   void OnOdometry(const nav_msgs::Odometry& msg);
   void OnJoints(const sensor_msgs::JointState& msg);
   void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
@@ -55,8 +55,8 @@ class RobotInputs {
   const Hooks hooks_;
   SensorReceiver sensors_;
   hires::sensing::ObservationMaker observations_;
-  hires::sensing::GroundWatch ground_;
-  int num_restarts_{0};  // of the robot's clock
+  std::optional<hires::sensing::GroundWatch> ground_;  // of a robot that sees the floor
+  int num_restarts_{0};                                // of the robot's clock
   std::vector<ros::Subscriber> subscribers_;
 };
 

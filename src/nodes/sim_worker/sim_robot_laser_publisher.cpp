@@ -2,8 +2,6 @@
 
 #include <tf2_msgs/TFMessage.h>
 
-#include <cmath>
-
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 #include "nodes/sim_worker/is_heard.h"
@@ -30,8 +28,7 @@ SimRobotLaserPublisher::SimRobotLaserPublisher(const hires::control::RobotNames&
     tray_scan_ = nh->advertise<sensor_msgs::LaserScan>(topics.tray_scan, kScanQueue);
   }
   if (!lasers_.has_tilting_laser()) return;
-  const double sweep_time = robot.profile.sensors.tilting_laser->sweep_time;
-  sweep_.emplace(static_cast<int>(std::floor(sweep_time / lasers_.tilt_period() + 1e-6)));
+  sweep_.emplace(lasers_.num_scans_of_a_sweep());
   tf_ = nh->advertise<tf2_msgs::TFMessage>(kTransforms, kScanQueue);
   if (!topics.tilt_scan.empty()) {
     tilt_scan_ = nh->advertise<sensor_msgs::LaserScan>(topics.tilt_scan, kScanQueue);

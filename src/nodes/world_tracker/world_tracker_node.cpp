@@ -1,5 +1,6 @@
 #include "nodes/world_tracker/world_tracker_node.h"
 
+#include "hires/base/error.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
@@ -21,11 +22,12 @@ constexpr int kQueue = 6000;  // a minute of what comes at 100 Hz
 std::optional<sensing::FloorWatch> FloorOf(const translation::TranslatorContext& context,
                                            const sensing::RobotStateEstimator& state,
                                            const WorldTrackerParams& params) {
-  const robot::RobotProfile& profile = context.robot->profile;
-  if (!params.floor.is_enabled || params.files.names.base_scan.empty()) return std::nullopt;
-  return sensing::FloorWatch(&state, context.world,
-                             hires::geometry::Padded(profile.footprint, profile.footprint_padding),
-                             params.floor);
+  const hires::control::RobotNames& names = params.files.names;
+  sensing::GroundWatchParams ground = params.sensing.ground;
+  ground.is_enabled = ground.is_enabled && !names.sensors.tilt_cloud.empty();
+  if (!params.floor.is_enabled || (names.base_scan.empty() && !ground.is_enabled))
+    return std::nullopt;
+  return sensing::FloorWatch(&state, context.world, context.robot, params.floor, ground);
 }
 
 }  // namespace
@@ -68,9 +70,13 @@ void WorldTrackerNode::Subscribe(ros::NodeHandle* nh) {
                                    [this](const auto& msg) { sensors_.OnTransforms(msg, false); });
   SubscribeTo<tf2_msgs::TFMessage>(nh, kStaticTransforms, 100,
                                    [this](const auto& msg) { sensors_.OnTransforms(msg, true); });
-  if (floor_) {
+  if (floor_ && !names.base_scan.empty()) {
     SubscribeTo<sensor_msgs::LaserScan>(nh, names.base_scan, kQueue,
                                         [this](const auto& msg) { OnScan(msg); });
+  }
+  if (floor_ && floor_->hears_clouds()) {
+    SubscribeTo<sensor_msgs::PointCloud2>(nh, names.sensors.tilt_cloud, 2,
+                                          [this](const auto& msg) { OnCloud(msg); });
   }
   if (!names.sensors.tray_scan.empty() && !context_.robot->profile.tray_link.empty()) {
     tray_markers_ = nh->advertise<visualization_msgs::MarkerArray>("tray_markers", 2);
@@ -108,6 +114,18 @@ void WorldTrackerNode::OnScan(const sensor_msgs::LaserScan& msg) {
                      {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges});
   for (const sensing::Receipt& one : {receipt, floor_->receipt()})
     if (one.is_bad()) sensors_.Warn(params_.files.names.base_scan, sensing::ToString(one));
+}
+
+void WorldTrackerNode::OnCloud(const sensor_msgs::PointCloud2& msg) {
+  const std::string& topic = params_.files.names.sensors.tilt_cloud;
+  try {
+    const auto receipt =
+        floor_->OnCloud(msg.header.stamp.toSec(), msg.header.frame_id, FromMsg(msg));
+    for (const sensing::Receipt& one : {receipt, floor_->cloud_receipt()})
+      if (one.is_bad()) sensors_.Warn(topic, sensing::ToString(one));
+  } catch (const hires::base::ConfigError& error) {
+    sensors_.Warn(topic, error.what());
+  }
 }
 
 void WorldTrackerNode::OnGoal(const hires::ExecuteActionActionGoal& msg) {

@@ -8,6 +8,7 @@
 #include <ros/node_handle.h>
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/LaserScan.h>
+#include <sensor_msgs/PointCloud2.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <atomic>
@@ -40,6 +41,7 @@ class WorldTrackerNode {
   void SubscribeTo(ros::NodeHandle* nh, const std::string& topic, int queue,
                    std::function<void(const Message&)> take);
   void OnScan(const sensor_msgs::LaserScan& msg);
+  void OnCloud(const sensor_msgs::PointCloud2& msg);
   void ShowTray();
   void OnGoal(const hires::ExecuteActionActionGoal& msg);
   void OnResult(const hires::ExecuteActionActionResult& msg);
@@ -55,7 +57,8 @@ class WorldTrackerNode {
   const hires::translation::TranslatorContext context_;
   const std::shared_ptr<const hires::skills::ActionSet> actions_;
   SensorReceiver sensors_;
-  std::optional<hires::sensing::FloorWatch> floor_;  // of a robot with a laser
+  std::optional<hires::sensing::FloorWatch>
+      floor_;  // of a robot with a laser, or clouds of the floor
   hires::control::WorldTracker tracker_;
   std::map<std::string, std::string> running_;  // goal id -> action
 

@@ -131,6 +131,7 @@ WarmParams ReadWarmParams(base::ParamReader in) {
   params.min_pixels = in.Get("min_pixels", base::Between(1, 100000));
   params.min_share = in.Get("min_share", base::Between(0.0, 1.0));
   params.max_range = in.Get("max_range", base::Between(0.1, 100.0));
+  params.period = in.Get("period", base::Between(0.0, 60.0));
   in.RejectUnknownKeys();
   return params;
 }

@@ -7,15 +7,11 @@
 #include "hires/geometry/polygon.h"
 #include "hires/navigation/costmap.h"
 #include "hires/perception/point_cloud.h"
+#include "hires/sensing/ground_reading.h"
 #include "hires/sensing/scan_obstacles.h"
 #include "sensing/ground/floor_plane.h"
 
 namespace hires::sensing {
-
-struct GroundReading {
-  FloorPlane floor;
-  std::vector<geometry::Polygon> obstacles_M;  ///< squares, each cell once
-};
 
 /// Tells what a cloud shows on the way beyond the map: what stands out of the floor, up to the
 /// robot's height, and holes in it. A hole lies where the beams that end below the floor go through
@@ -38,11 +34,13 @@ class GroundObstacles {
                      const geometry::Pose2& X_MB, double robot_height, base::Rng* rng) const;
 
  private:
-  std::vector<Eigen::Vector3d> Marks(const std::vector<Eigen::Vector3d>& points_B,
-                                     const Eigen::Vector3d& p_BC, const FloorPlane& floor,
-                                     double robot_height) const;
-  std::vector<geometry::Polygon> Squares(const std::vector<Eigen::Vector3d>& marks_B,
-                                         const geometry::Pose2& X_MB) const;
+  struct Points {
+    std::vector<Eigen::Vector3d> marks_B;  // z: height over the floor
+    std::vector<Eigen::Vector2d> floor_B;
+  };
+  Points Sorted(const std::vector<Eigen::Vector3d>& points_B, const Eigen::Vector3d& p_BC,
+                const FloorPlane& floor, double robot_height) const;
+  void Count(const Points& points, const geometry::Pose2& X_MB, GroundReading* reading) const;
 
   std::shared_ptr<const navigation::Costmap> map_;
   geometry::Polygon footprint_;

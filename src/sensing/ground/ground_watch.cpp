@@ -1,19 +1,28 @@
 #include "hires/sensing/ground_watch.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "hires/base/param_reader.h"
 #include "hires/perception/camera_view.h"
 #include "sensing/ground/ground_obstacles.h"
+#include "sensing/unmapped.h"
 
 namespace hires::sensing {
 
 using base::Between;
 
+namespace {
+
+constexpr std::uint64_t kSeed = 1;  // of the search for the floor; any will do
+
+}  // namespace
+
 GroundWatchParams ReadGroundWatchParams(base::ParamReader in) {
   GroundWatchParams params;
   params.is_enabled = in.GetBool("enabled");
+  params.scan = ReadScanKeys(&in);
   params.ground.floor.max_tilt = in.Get("max_tilt", Between(0.0, 0.3));
   params.ground.floor.max_offset = in.Get("max_offset", Between(0.0, 0.3));
   params.ground.min_height = in.Get("min_height", Between(0.005, 0.5));
@@ -27,17 +36,30 @@ GroundWatchParams ReadGroundWatchParams(base::ParamReader in) {
   return params;
 }
 
+bool GroundWatchParams::operator==(const GroundWatchParams& other) const {
+  const auto all = [](const GroundWatchParams& p) {
+    const FloorParams& floor = p.ground.floor;
+    return std::tie(p.is_enabled, floor.max_tilt, floor.max_offset, floor.inlier, floor.min_share,
+                    floor.min_points, p.ground.min_height, p.ground.min_depth, p.ground.min_points,
+                    p.self.padding, p.self.jump, p.eye, p.keep, p.scan.tolerance, p.scan.range,
+                    p.scan.cell);
+  };
+  return all(*this) == all(other);
+}
+
 GroundWatch::GroundWatch(const RobotStateEstimator* state,
                          std::shared_ptr<const robot::Robot> robot,
                          std::shared_ptr<const navigation::Costmap> map,
-                         geometry::Polygon footprint, const ScanParams& scan,
-                         const GroundWatchParams& params, base::Rng rng)
+                         const GroundWatchParams& params)
     : state_(state),
       robot_(std::move(robot)),
-      find_(new GroundObstacles(std::move(map), std::move(footprint), scan, params.ground)),
+      find_(new GroundObstacles(
+          std::move(map),
+          geometry::Padded(robot_->profile.footprint, robot_->profile.footprint_padding),
+          params.scan, params.ground)),
       self_(params.self),
       params_(params),
-      rng_(rng) {}
+      rng_(kSeed) {}
 GroundWatch::~GroundWatch() = default;
 GroundWatch::GroundWatch(GroundWatch&&) noexcept = default;
 
@@ -48,11 +70,17 @@ Receipt GroundWatch::OnCloud(double stamp, const std::string& frame, perception:
   return {};
 }
 
+bool GroundWatch::Update(const RobotEstimate& now) {
+  if (!waiting_ || waiting_->stamp > now.time) return false;
+  const Cloud cloud = *std::exchange(waiting_, std::nullopt);
+  return Look(cloud.stamp, cloud.frame, cloud.points);
+}
+
 const std::vector<geometry::Polygon>& GroundWatch::Obstacles(const RobotEstimate& now) {
-  if (waiting_ && waiting_->stamp <= now.time) {
-    const Cloud cloud = std::move(*waiting_);
-    waiting_.reset();
-    Look(cloud.stamp, cloud.frame, cloud.points);
+  if (Update(now)) {
+    obstacles_M_.clear();
+    for (const GroundSpot& spot : reading_.spots)
+      obstacles_M_.push_back(SquareOf(spot.cell.first, spot.cell.second, params_.scan.cell));
   }
   // A stamp of later is of a clock that has begun again.
   if (now.time - seen_ > params_.keep || seen_ > now.time) obstacles_M_.clear();
@@ -60,17 +88,17 @@ const std::vector<geometry::Polygon>& GroundWatch::Obstacles(const RobotEstimate
 }
 
 /// Moves the cloud to where it was seen from, cuts the robot out of it, and looks at the floor.
-void GroundWatch::Look(double stamp, const std::string& frame, perception::PointCloud cloud) {
+bool GroundWatch::Look(double stamp, const std::string& frame, perception::PointCloud cloud) {
   const auto then = state_->At(stamp);
   if (!then) {
     receipt_ = {Reception::kNotThen, frame};
-    return;
+    return false;
   }
   const FramePose X_BC = state_->InBase(frame, *then);
   const FramePose X_BE = params_.eye.empty() ? X_BC : state_->InBase(params_.eye, *then);
   receipt_ = ReceiptOf(X_BC.status, frame);
   if (X_BC.is_found()) receipt_ = ReceiptOf(X_BE.status, params_.eye);
-  if (!X_BC.is_found() || !X_BE.is_found()) return;
+  if (!X_BC.is_found() || !X_BE.is_found()) return false;
   const geometry::Pose3 X_BS{X_BE.X_PC.translation, X_BC.X_PC.rotation};
   const Eigen::Vector3f p_SC = ((X_BS.Inverse() * X_BC.X_PC).translation).cast<float>();
   for (Eigen::Vector3f& point : cloud.points) point += p_SC;
@@ -81,8 +109,9 @@ void GroundWatch::Look(double stamp, const std::string& frame, perception::Point
     shape.X_BS = X_BS.Inverse() * shape.X_BS;
   }
   self_.Cut(shapes, &cloud);
-  obstacles_M_ = find_->Find(cloud, X_BS, then->X_WB, height, &rng_).obstacles_M;
+  reading_ = find_->Find(cloud, X_BS, then->X_WB, height, &rng_);
   seen_ = stamp;
+  return true;
 }
 
 }  // namespace hires::sensing

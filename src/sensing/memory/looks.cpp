@@ -9,11 +9,6 @@
 #include "sensing/memory/memory_parts.h"
 
 namespace hires::sensing {
-namespace {
-
-constexpr double kFloor = 0.3;  // [m] up to which an object stands on it
-
-}  // namespace
 
 using geometry::Pose3;
 using perception::CameraView;

@@ -8,6 +8,8 @@
 
 namespace hires::sensing {
 
+inline constexpr double kFloor = 0.3;  ///< [m] up to which an object stands on it
+
 geometry::Aabb BoundsOf(const std::vector<geometry::Collision>& collisions);
 bool Contains(const std::vector<std::string>& names, const std::string& name);
 

@@ -39,6 +39,7 @@ class SimRobotLasers {
   const simulation::LaserParams& tray() const { return params_.tray; }
   const simulation::LaserParams& tilting() const { return params_.tilting; }
   double tilt_period() const { return params_.tilt_period; }
+  int num_scans_of_a_sweep() const;  ///< @pre has_tilting_laser()
 
   std::vector<double> TrayScan(const SimRobotWorld& world) const;  ///< [m]  @pre has_tray_laser()
 
