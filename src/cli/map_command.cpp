@@ -42,14 +42,6 @@ void RefuseBag(const std::string& log) {
                   log));
 }
 
-/// [m]
-double LengthOf(const localisation::TimedPath& path) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < path.size(); ++i)
-    length += (path[i].X_MB.position() - path[i - 1].X_MB.position()).norm();
-  return length;
-}
-
 long CountOf(const world::OccupancyGrid& grid, world::Cell cell) {
   return std::count(grid.cells.begin(), grid.cells.end(), cell);
 }
@@ -70,7 +62,7 @@ ordered_json ToJson(const MapResult& result, const MapOptions& options, const st
             {"occupied", CountOf(grid, world::Cell::kOccupied)},
             {"unknown", CountOf(grid, world::Cell::kUnknown)}}},
           {"scans", result.trajectory.size()},
-          {"length", LengthOf(result.trajectory)},
+          {"length", localisation::LengthOf(result.trajectory)},
           {"keyframes", result.num_keyframes},
           {"loops", result.num_loops},
           {"lost", result.num_lost},
@@ -82,7 +74,7 @@ std::string Summary(const MapResult& result, const std::string& map) {
   std::string text = fmt::format(
       "{} scans over {:.1f} m in {:.0f} s; places seen before tie the map together {} times\n"
       "{}: {} x {} cells of {} m\n",
-      result.trajectory.size(), LengthOf(result.trajectory), duration, result.num_loops, map,
+      result.trajectory.size(), localisation::LengthOf(result.trajectory), duration, result.num_loops, map,
       result.grid.width, result.grid.height, result.grid.resolution);
   if (result.num_lost > 0)
     text += fmt::format("{} scans fitted nothing and stand where odometry says\n", result.num_lost);

@@ -2,21 +2,12 @@
 
 #include <algorithm>
 
-#include "hires/geometry/angles.h"
-
 namespace hires::localisation {
 namespace {
 
 using geometry::Pose2;
 
 constexpr double kNear = 0.5;  // [s]
-
-Pose2 Between(const RobotLog::Odometry& before, const RobotLog::Odometry& after, double time) {
-  const Pose2 &a = before.reading.X_OB, &b = after.reading.X_OB;
-  const double share = (time - before.time) / (after.time - before.time);
-  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y),
-          geometry::WrapToPi(a.yaw + share * geometry::WrapToPi(b.yaw - a.yaw))};
-}
 
 std::optional<Pose2> OdometryOf(const RobotLog& log, const RobotLog::Scan& scan) {
   if (scan.X_OB) return scan.X_OB;
@@ -25,7 +16,7 @@ std::optional<Pose2> OdometryOf(const RobotLog& log, const RobotLog::Scan& scan)
       [](const RobotLog::Odometry& odometry, double t) { return odometry.time < t; });
   const bool has_after = after != log.odometry.end(), has_before = after != log.odometry.begin();
   if (has_after && after->time == scan.time) return after->reading.X_OB;
-  if (has_after && has_before) return Between(*(after - 1), *after, scan.time);
+  if (has_after && has_before) return OdometryBetween(*(after - 1), *after, scan.time);
   if (has_after && after->time - scan.time <= kNear) return after->reading.X_OB;
   if (has_before && scan.time - (after - 1)->time <= kNear) return (after - 1)->reading.X_OB;
   return std::nullopt;
