@@ -197,6 +197,7 @@ TEST_F(LocaliseCommandTest, JumpOfTheOdometryIsToldAndSurvived) {
   const Ended ended = Localise(Log(drive), at_start_);
   ASSERT_EQ(ended.code, kExitRecommended) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("not used    odometry jumped 1"));
+  EXPECT_THAT(ended.out, Not(HasSubstr("found elsewhere")));
   EXPECT_LT(ErrorsOf(Trajectory(), drive.truth, 4.0).worst, 0.25);
 }
 

@@ -297,6 +297,39 @@ TEST(LocaliseLogTest, TrajectoryOfADriveComesCloseToTheTruth) {
   EXPECT_LT(off, 0.15);
 }
 
+TEST(LocaliseLogTest, OdometryBetweenReadingsIsThatOfEvenMotion) {
+  const RobotLog::Odometry before{1.0, {{1.0, 2.0, 3.0}, {}}}, after{3.0, {{2.0, 2.0, -3.0}, {}}};
+  const Pose2 at = OdometryBetween(before, after, 1.5);
+  EXPECT_NEAR(at.x, 1.25, 1e-12);
+  EXPECT_NEAR(at.y, 2.0, 1e-12);
+  EXPECT_NEAR(WrapToPi(at.yaw - 3.0), 0.25 * (2.0 * geometry::kPi - 6.0), 1e-12);
+  EXPECT_THROW(OdometryBetween(before, before, 1.0), std::logic_error);
+}
+
+TEST(LocaliseLogTest, RobotThatWasFoundInTheWrongRoomFirstIsToldToBeElsewhere) {
+  int num_relocated = 0, num_wrong_before = 0;
+  for (int seed = 801; seed <= 812; ++seed) {
+    const SimulatedDrive drive = Drive(seed);
+    MonteCarloLocalisation filter(TwoRooms(), {}, base::Rng(seed));
+    filter.GlobalLocalisation();
+    const LocalisedLog found = LocaliseLog(drive.log, filter, "localising");
+    if (found.last.status != LocalisationStatus::kGood || found.path.empty()) continue;
+    const auto off = [&](const TimedPose& pose) {
+      const auto at = std::find_if(drive.truth.begin(), drive.truth.end(),
+                                   [&](const TimedPose& t) { return t.time == pose.time; });
+      return (pose.X_MB.position() - at->X_MB.position()).norm();
+    };
+    if (off(found.path.back()) > 0.15) continue;
+    num_relocated += found.num_relocations > 0;
+    if (off(found.path.front()) < 1.0) continue;
+    ++num_wrong_before;
+    EXPECT_GT(found.num_relocations, 0) << seed;
+    EXPECT_GT(found.relocated_after.value_or(0.0), *found.localised_after) << seed;
+  }
+  EXPECT_GT(num_wrong_before, 0) << "nothing was tested";
+  EXPECT_GE(num_relocated, num_wrong_before);
+}
+
 TEST(LocaliseLogTest, ScansWithoutOdometryAreCounted) {
   SimulatedDrive drive = Drive(3);
   drive.log.odometry.clear();
