@@ -1,7 +1,7 @@
 // What does one update of Monte Carlo localisation with 1000 particles cost, and that of a new map?
 #include <benchmark/benchmark.h>
 
-#include "localisation/monte_carlo.h"
+#include "hires/localisation/monte_carlo.h"
 #include "support/simulated_drive.h"
 
 namespace hires::localisation {

@@ -18,6 +18,7 @@
 #include "cli/experiment_command.h"
 #include "cli/limits_command.h"
 #include "cli/list_command.h"
+#include "cli/localise_command.h"
 #include "cli/map_command.h"
 #include "cli/plan_command.h"
 #include "cli/query_scene.h"
@@ -376,6 +377,7 @@ struct Verbs {
   BlackboardOptions blackboard;
   ListOptions list;
   MapOptions map;
+  LocaliseOptions localise;
   RecogniseOptions recognise;
   StoredReportOptions report;
   LimitsOptions limits;
@@ -408,6 +410,7 @@ void AddVerbs(CLI::App* app, Verbs* verbs, const Backends& backends) {
   AddListVerb(app, &verbs->list);
   AddRecogniseVerb(app, &verbs->recognise);
   AddMapVerb(app, &verbs->map);
+  AddLocaliseVerb(app, &verbs->localise);
   AddReportVerb(app, &verbs->report);
   AddDoctorVerb(app, &verbs->doctor);
   for (const Verb& verb : backends.more_verbs) {
@@ -468,6 +471,7 @@ int RunVerb(const Verbs& verbs, const Backends& backends) {
   if (*verbs.list.verb) return RunListVerb(verbs.list, backends.package_folder);
   if (*verbs.recognise.verb) return RunRecogniseVerb(verbs.recognise, backends.package_folder);
   if (*verbs.map.verb) return RunMapVerb(verbs.map);
+  if (*verbs.localise.verb) return RunLocaliseVerb(verbs.localise, backends.package_folder);
   if (*verbs.blackboard.verb) {
     return RunBlackboardVerb(verbs.blackboard, backends.package_folder,
                              backends.connect_blackboard);

@@ -4,13 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
 #include "cli/experiment_command.h"
+#include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
@@ -21,12 +21,6 @@
 
 namespace hires::cli {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 imagination::SetupConfig SetupOf(const LimitsOptions& o, const std::string& package_folder,
                                  std::string* object) {
@@ -47,8 +41,9 @@ evaluation::Crew CrewOf(const LimitsOptions& o, const std::function<bool()>& can
                      : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   crew.cancelled = cancelled;
   if (!o.quiet && isatty(STDERR_FILENO) != 0) {
-    crew.on_progress = [begin = Clock::now()](double fraction, double) {
-      std::cerr << '\r' << ProgressText(fraction, SecondsSince(begin)) << "\033[K" << std::flush;
+    crew.on_progress = [begin = base::SteadyNow()](double fraction, double) {
+      std::cerr << '\r' << ProgressText(fraction, base::SteadyNow() - begin) << "\033[K"
+                << std::flush;
     };
   }
   return crew;
@@ -99,14 +94,14 @@ int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folde
   std::cout << evaluation::ClosedFormText(evaluation::ClosedFormLimits(request.object, setup))
             << '\n'
             << std::flush;
-  const Clock::time_point begin = Clock::now();
+  const double begin = base::SteadyNow();
   auto report = evaluation::FindLimits(request, setup, CrewOf(options, cancelled));
   if (!options.quiet && isatty(STDERR_FILENO) != 0) std::cerr << "\r\033[K";
   if (!report) {
     std::cerr << "hires limits: cancelled; nothing is written\n";
     return kExitCancelled;
   }
-  report->wall_seconds = SecondsSince(begin);
+  report->wall_seconds = base::SteadyNow() - begin;
   const std::string yaml = evaluation::LimitsYaml(*report);
   std::cout << evaluation::LimitsText(*report) << '\n' << yaml;
   if (!options.yaml.empty()) base::ReplaceTextFile(options.yaml, yaml);

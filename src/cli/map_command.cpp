@@ -8,6 +8,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "cli/drive_log.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
@@ -34,22 +35,6 @@ std::string MapFile(const std::string& output) {
   return extension == ".yaml" ? output : output + ".yaml";
 }
 
-void RefuseBag(const std::string& log) {
-  if (base::ToLower(std::filesystem::path(log).extension().string()) != ".bag") return;
-  throw base::ConfigError(
-      fmt::format("{}: is a bag, which this program does not read yet; wanted a CARMEN log (lines "
-                  "FLASER and ODOM, or ROBOTLASER1)",
-                  log));
-}
-
-/// [m]
-double LengthOf(const localisation::TimedPath& path) {
-  double length = 0.0;
-  for (std::size_t i = 1; i < path.size(); ++i)
-    length += (path[i].X_MB.position() - path[i - 1].X_MB.position()).norm();
-  return length;
-}
-
 long CountOf(const world::OccupancyGrid& grid, world::Cell cell) {
   return std::count(grid.cells.begin(), grid.cells.end(), cell);
 }
@@ -70,7 +55,7 @@ ordered_json ToJson(const MapResult& result, const MapOptions& options, const st
             {"occupied", CountOf(grid, world::Cell::kOccupied)},
             {"unknown", CountOf(grid, world::Cell::kUnknown)}}},
           {"scans", result.trajectory.size()},
-          {"length", LengthOf(result.trajectory)},
+          {"length", localisation::LengthOf(result.trajectory)},
           {"keyframes", result.num_keyframes},
           {"loops", result.num_loops},
           {"lost", result.num_lost},
@@ -82,8 +67,8 @@ std::string Summary(const MapResult& result, const std::string& map) {
   std::string text = fmt::format(
       "{} scans over {:.1f} m in {:.0f} s; places seen before tie the map together {} times\n"
       "{}: {} x {} cells of {} m\n",
-      result.trajectory.size(), LengthOf(result.trajectory), duration, result.num_loops, map,
-      result.grid.width, result.grid.height, result.grid.resolution);
+      result.trajectory.size(), localisation::LengthOf(result.trajectory), duration,
+      result.num_loops, map, result.grid.width, result.grid.height, result.grid.resolution);
   if (result.num_lost > 0)
     text += fmt::format("{} scans fitted nothing and stand where odometry says\n", result.num_lost);
   if (result.odometry_jumps > 0)
@@ -117,11 +102,7 @@ int RunMapVerb(const MapOptions& options) {
   const std::string map = MapFile(options.output);
   for (const std::string& file : {map, options.trajectory, options.json})
     if (!file.empty() && file != "-") evaluation::RequireFolderOf(file);
-  RefuseBag(options.log);
-  const localisation::RobotLog log = localisation::ReadCarmenLog(options.log);
-  if (log.scans.empty())
-    throw base::ConfigError(
-        fmt::format("{}: has no scan; wanted lines FLASER or ROBOTLASER1", options.log));
+  const localisation::RobotLog log = ReadDrive(options.log);
   mapping::MapperParams params;
   params.resolution = options.resolution;
   params.max_range = options.max_range;

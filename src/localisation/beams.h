@@ -4,7 +4,7 @@
 
 #include "hires/geometry/pose.h"
 #include "hires/robot/readings.h"
-#include "localisation/scan_outcome.h"
+#include "hires/localisation/scan_outcome.h"
 
 namespace hires::localisation {
 

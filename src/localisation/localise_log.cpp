@@ -1,22 +1,17 @@
-#include "localisation/localise_log.h"
+#include "hires/localisation/localise_log.h"
 
 #include <algorithm>
+#include <utility>
 
-#include "hires/geometry/angles.h"
+#include "hires/base/progress.h"
 
 namespace hires::localisation {
 namespace {
 
 using geometry::Pose2;
 
-constexpr double kNear = 0.5;  // [s]
-
-Pose2 Between(const RobotLog::Odometry& before, const RobotLog::Odometry& after, double time) {
-  const Pose2 &a = before.reading.X_OB, &b = after.reading.X_OB;
-  const double share = (time - before.time) / (after.time - before.time);
-  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y),
-          geometry::WrapToPi(a.yaw + share * geometry::WrapToPi(b.yaw - a.yaw))};
-}
+constexpr double kNear = 0.5;       // [s]
+constexpr double kRelocated = 1.0;  // [m]
 
 std::optional<Pose2> OdometryOf(const RobotLog& log, const RobotLog::Scan& scan) {
   if (scan.X_OB) return scan.X_OB;
@@ -25,34 +20,80 @@ std::optional<Pose2> OdometryOf(const RobotLog& log, const RobotLog::Scan& scan)
       [](const RobotLog::Odometry& odometry, double t) { return odometry.time < t; });
   const bool has_after = after != log.odometry.end(), has_before = after != log.odometry.begin();
   if (has_after && after->time == scan.time) return after->reading.X_OB;
-  if (has_after && has_before) return Between(*(after - 1), *after, scan.time);
+  if (has_after && has_before) return OdometryBetween(*(after - 1), *after, scan.time);
   if (has_after && after->time - scan.time <= kNear) return after->reading.X_OB;
   if (has_before && scan.time - (after - 1)->time <= kNear) return (after - 1)->reading.X_OB;
   return std::nullopt;
 }
 
-bool IsLocalised(LocalisationStatus status) { return status == LocalisationStatus::kGood; }
+class LogLocaliser {
+ public:
+  LogLocaliser(const RobotLog& log, MonteCarloLocalisation filter)
+      : log_(log), filter_(std::move(filter)) {}
+
+  void Take(const RobotLog::Scan& scan);
+  LocalisedLog Result();
+
+ private:
+  /// From the estimate before to that at `time`.
+  void TakeEstimate(double time, ScanOutcome outcome, const Pose2& X_OB);
+
+  double SinceFirst(double time) const { return time - log_.scans.front().time; }
+
+  const RobotLog& log_;
+  MonteCarloLocalisation filter_;
+  LocalisedLog localised_;
+  std::optional<Pose2> X_OB_;  // at the scan before
+  int num_judged_{0};
+};
+
+void LogLocaliser::Take(const RobotLog::Scan& scan) {
+  const std::optional<Pose2> X_OB = OdometryOf(log_, scan);
+  if (!X_OB) {
+    ++localised_.num_without_odometry;
+    return;
+  }
+  const ScanOutcome outcome = filter_.Update(scan.time, *X_OB, scan.reading, scan.X_BL);
+  TakeEstimate(scan.time, outcome, *X_OB);
+  const PoseEstimate& estimate = localised_.last;
+  ++localised_.outcomes[outcome];
+  ++localised_.statuses[estimate.status];
+  if (!IsBad(outcome)) {
+    ++num_judged_;
+    localised_.explained += estimate.explained;
+  }
+  if (estimate.status != LocalisationStatus::kGood) return;
+  if (!localised_.localised_after) localised_.localised_after = SinceFirst(scan.time);
+  localised_.path.push_back({scan.time, estimate.X_MB});
+}
+
+void LogLocaliser::TakeEstimate(double time, ScanOutcome outcome, const Pose2& X_OB) {
+  const Pose2 step = X_OB_ ? X_OB_->Inverse() * X_OB : Pose2{};
+  const Pose2 expected = localised_.last.X_MB * step;
+  X_OB_ = X_OB;
+  localised_.last = filter_.Estimate(time);
+  if (outcome != ScanOutcome::kUpdated || !localised_.localised_after) return;
+  if ((localised_.last.X_MB.position() - expected.position()).norm() <= kRelocated) return;
+  ++localised_.num_relocations;
+  localised_.relocated_after = SinceFirst(time);
+}
+
+LocalisedLog LogLocaliser::Result() {
+  if (num_judged_ > 0) localised_.explained /= num_judged_;
+  return std::move(localised_);
+}
 
 }  // namespace
 
-LocalisedLog LocaliseLog(const RobotLog& log, MonteCarloLocalisation filter) {
-  LocalisedLog localised;
-  for (const RobotLog::Scan& scan : log.scans) {
-    const std::optional<Pose2> X_OB = OdometryOf(log, scan);
-    if (!X_OB) {
-      ++localised.num_without_odometry;
-      continue;
-    }
-    const ScanOutcome outcome = filter.Update(scan.time, *X_OB, scan.reading, scan.X_BL);
-    const PoseEstimate estimate = filter.Estimate(scan.time);
-    ++localised.outcomes[outcome];
-    ++localised.statuses[estimate.status];
-    localised.last = estimate;
-    if (!IsLocalised(estimate.status)) continue;
-    if (!localised.localised_after) localised.localised_after = scan.time - log.scans.front().time;
-    localised.path.push_back({scan.time, estimate.X_MB});
+LocalisedLog LocaliseLog(const RobotLog& log, MonteCarloLocalisation filter,
+                         const std::string& task) {
+  LogLocaliser localiser(log, std::move(filter));
+  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+    localiser.Take(log.scans[i]);
+    base::ReportProgress(task, static_cast<double>(i) / log.scans.size());
   }
-  return localised;
+  base::ReportProgress(task, 1.0);
+  return localiser.Result();
 }
 
 }  // namespace hires::localisation

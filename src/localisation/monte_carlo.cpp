@@ -1,4 +1,4 @@
-#include "localisation/monte_carlo.h"
+#include "hires/localisation/monte_carlo.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "localisation/monte_carlo_params.h"
+#include "hires/localisation/monte_carlo_params.h"
 
 namespace hires::localisation {
 namespace {

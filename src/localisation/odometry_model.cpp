@@ -1,4 +1,4 @@
-#include "localisation/odometry_model.h"
+#include "hires/localisation/odometry_model.h"
 
 #include <algorithm>
 #include <cmath>

@@ -21,11 +21,7 @@ class OdometryTrack {
   bool Reaches(double time) const { return !readings_.empty() && readings_.back().time >= time; }
 
  private:
-  struct Reading {
-    double time{0.0};
-    geometry::Pose2 X_OB;
-  };
-  std::deque<Reading> readings_;
+  std::deque<localisation::RobotLog::Odometry> readings_;
 };
 
 }  // namespace hires::mapping

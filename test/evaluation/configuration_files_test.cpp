@@ -22,6 +22,7 @@
 #include "hires/knowledge/fluent_yaml.h"
 #include "hires/knowledge/loading.h"
 #include "hires/knowledge/store.h"
+#include "hires/localisation/monte_carlo_params.h"
 #include "hires/navigation/base_guard.h"
 #include "hires/perception/recogniser_config.h"
 #include "hires/perception/warm_objects.h"
@@ -90,6 +91,10 @@ const std::map<std::string, Reader>& Readers() {
       {"heat_reader.yaml",
        [](const std::string& path) {
          perception::ReadWarmParams(base::ParamReader::FromFile(path));
+       }},
+      {"localisation.yaml",
+       [](const std::string& path) {
+         localisation::ReadMonteCarloParams(base::ParamReader::FromFile(path));
        }},
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
       {"relay.yaml",

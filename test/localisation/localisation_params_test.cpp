@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "hires/base/error.h"
-#include "localisation/monte_carlo_params.h"
+#include "hires/localisation/monte_carlo_params.h"
 #include "localisation/odometry_filter.h"
 
 namespace hires::localisation::localisation_params_test {

@@ -217,6 +217,63 @@ inline double MedianWallError(const world::OccupancyGrid& map, const world::Occu
   return errors[errors.size() / 2];
 }
 
+/// 12 m x 8 m, with a wall from below that leaves a door of 3 m, and a pillar: like no turn of
+/// itself.
+inline world::OccupancyGrid TwoRooms() {
+  world::OccupancyGrid grid{0.05, 240, 160, {0.0, 0.0}, {}};
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      const bool is_border = row < 2 || column < 2 || row >= 158 || column >= 238;
+      const bool is_wall = column >= 120 && column < 123 && row < 100;
+      const bool is_pillar = column >= 180 && column < 188 && row >= 60 && row < 66;
+      grid.cells.push_back(is_border || is_wall || is_pillar ? world::Cell::kOccupied
+                                                             : world::Cell::kFree);
+    }
+  }
+  return grid;
+}
+
+/// With a shelf in the left room, which is seen from everywhere in it.
+inline world::OccupancyGrid RoomsWithShelf() {
+  world::OccupancyGrid grid = TwoRooms();
+  for (int row = 56; row < 90; ++row)
+    for (int column = 70; column < 90; ++column)
+      grid.cells[row * grid.width + column] = world::Cell::kOccupied;
+  return grid;
+}
+
+/// Through both rooms and back, twice past the door.
+inline std::vector<Eigen::Vector2d> CourseThroughTwoRooms() {
+  return {{2.0, 2.0},  {2.0, 6.0}, {8.0, 6.5}, {8.0, 1.5}, {11.0, 1.5},
+          {11.0, 6.5}, {5.0, 6.5}, {2.0, 6.0}, {2.0, 2.0}, {4.5, 2.0}};
+}
+
+/// With boxes of 0.4 m beside a course, 0.7 to 2.5 m from its middle.
+inline world::OccupancyGrid WithBoxes(world::OccupancyGrid grid,
+                                      const std::vector<Eigen::Vector2d>& course, int count,
+                                      base::Rng rng) {
+  const auto distance = [&](const Eigen::Vector2d& p) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i < course.size(); ++i) {
+      const Eigen::Vector2d leg = course[i] - course[i - 1], off = p - course[i - 1];
+      const double share = std::clamp(off.dot(leg) / leg.squaredNorm(), 0.0, 1.0);
+      nearest = std::min(nearest, (off - share * leg).norm());
+    }
+    return nearest;
+  };
+  const int edge = static_cast<int>(0.4 / grid.resolution + 0.5);
+  while (count > 0) {
+    const int left = rng.Index(grid.width - edge), lower = rng.Index(grid.height - edge);
+    const double beside = distance(grid.CentreOf(left + edge / 2, lower + edge / 2));
+    if (beside < 0.7 || beside > 2.5) continue;
+    --count;
+    for (int row = lower; row < lower + edge; ++row)
+      for (int column = left; column < left + edge; ++column)
+        grid.cells[static_cast<std::size_t>(row) * grid.width + column] = world::Cell::kOccupied;
+  }
+  return grid;
+}
+
 /// A drive through one of the original maps: its YAML in the folder of original data, and places
 /// [m] in it.
 struct Course {

@@ -30,11 +30,18 @@ struct RobotLog {
   std::vector<Scan> scans;
 };
 
+/// Where odometry saw the base between two readings: straight and turning evenly, in proportion to
+/// time.  @pre before.time < after.time
+geometry::Pose2 OdometryBetween(const RobotLog::Odometry& before, const RobotLog::Odometry& after,
+                                double time);
+
 /// A pose at a time [s].
 struct TimedPose {
   double time{0.0};
   geometry::Pose2 X_MB;
 };
 using TimedPath = std::vector<TimedPose>;
+
+double LengthOf(const TimedPath& path);  ///< [m]
 
 }  // namespace hires::localisation

@@ -2,9 +2,10 @@
 
 #include <map>
 #include <optional>
+#include <string>
 
+#include "hires/localisation/monte_carlo.h"
 #include "hires/localisation/robot_log.h"
-#include "localisation/monte_carlo.h"
 
 namespace hires::localisation {
 
@@ -15,12 +16,20 @@ struct LocalisedLog {
   std::map<ScanOutcome, int> outcomes;         ///< how many scans became what
   std::map<LocalisationStatus, int> statuses;  ///< at the end of how many scans it was what
   int num_without_odometry{0};                 ///< scans that no odometry is near
-  PoseEstimate last;                           ///< after the last scan
-  std::optional<double> localised_after;       ///< [s] from the first scan; nothing: never
+  /// How often it first knew a place and then found the robot more than 1 m from there: before that
+  /// the path may be wrong.
+  int num_relocations{0};
+  double explained{0.0};  ///< mean over the scans that were judged: share of beams that end near an
+                          ///< obstacle of the map
+  PoseEstimate last;      ///< after the last scan
+  std::optional<double> localised_after;  ///< [s] from the first scan; nothing: never
+  std::optional<double> relocated_after;  ///< [s] the last time; nothing: never
 };
 
 /// Lets a filter hear all scans of a log, each with the odometry of its time: as the log itself
 /// says it, else between the readings around it, or the nearest one within 0.5 s.
-LocalisedLog LocaliseLog(const RobotLog& log, MonteCarloLocalisation filter);
+/// @param task  what is done, for those who wait: "localising drive.log".
+LocalisedLog LocaliseLog(const RobotLog& log, MonteCarloLocalisation filter,
+                         const std::string& task);
 
 }  // namespace hires::localisation

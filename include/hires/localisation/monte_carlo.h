@@ -7,10 +7,10 @@
 
 #include "hires/base/rng.h"
 #include "hires/geometry/pose.h"
+#include "hires/localisation/monte_carlo_params.h"
+#include "hires/localisation/scan_outcome.h"
 #include "hires/robot/readings.h"
 #include "hires/world/occupancy_grid.h"
-#include "localisation/monte_carlo_params.h"
-#include "localisation/scan_outcome.h"
 
 namespace hires::localisation {
 

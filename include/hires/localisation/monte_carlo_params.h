@@ -4,7 +4,7 @@
 
 #include "hires/base/param_reader.h"
 #include "hires/geometry/pose.h"
-#include "localisation/odometry_model.h"
+#include "hires/localisation/odometry_model.h"
 
 namespace hires::localisation {
 
@@ -44,7 +44,7 @@ struct MonteCarloParams {
   double scan_timeout{5.0};  ///< [s] without a scan that can be used, after which it says so
 };
 
-/// The block `localisation`.  @throws base::ConfigError naming the key
+/// config/localisation.yaml.  @throws base::ConfigError naming the key
 MonteCarloParams ReadMonteCarloParams(base::ParamReader in);
 
 }  // namespace hires::localisation
