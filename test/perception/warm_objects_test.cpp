@@ -186,13 +186,15 @@ TEST(WarmObjectsTest, ParametersAreReadAndUnknownOnesRefused) {
   const auto read = [](const std::string& text) {
     return ReadWarmParams(base::ParamReader::FromString(text, "heat"));
   };
-  const std::string good = "{threshold: 310, min_pixels: 20, min_share: 0.3, max_range: 2, period: 1}";
+  const std::string good =
+      "{threshold: 310, min_pixels: 20, min_share: 0.3, max_range: 2, period: 1}";
   EXPECT_EQ(read(good).threshold, 310.0);
   EXPECT_EQ(read(good).max_range, 2.0);
   EXPECT_THROW(read("{threshold: 310, min_pixels: 20, min_share: 3, max_range: 2, period: 1}"),
                base::ConfigError);
-  EXPECT_THROW(read("{threshold: 310, min_pixels: 20, min_share: 0.3, max_range: 2, period: 1, x: 1}"),
-               base::ConfigError);
+  EXPECT_THROW(
+      read("{threshold: 310, min_pixels: 20, min_share: 0.3, max_range: 2, period: 1, x: 1}"),
+      base::ConfigError);
 }
 
 }  // namespace

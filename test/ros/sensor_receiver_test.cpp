@@ -32,7 +32,8 @@ class SensorReceiverTest : public ::testing::Test {
     sensors_.OnOdometry(msg);
   }
   void Joints(double stamp) {
-    sensors_.OnJoints(ToMsg(hires::robot::JointReading{Pr2()->profile.joints, {}}, ros::Time(stamp)));
+    sensors_.OnJoints(
+        ToMsg(hires::robot::JointReading{Pr2()->profile.joints, {}}, ros::Time(stamp)));
   }
   void Transform(const std::string& parent, const std::string& child, double stamp) {
     tf2_msgs::TFMessage msg;
