@@ -68,8 +68,7 @@ void MiddleLayer::Hear(const SensorNews& news, const simulation::LaserParams& la
   if (!news.scan.empty()) {
     observations_.OnScan(news.stamp, laser.link, ReadingOf(news.scan, laser));
   }
-  if (news.sweep && ground_)
-    ground_->OnCloud(news.sweep->stamp, news.sweep->frame, news.sweep->cloud);
+  if (news.sweep && ground_) ground_->OnCloud(news.stamp, senses_.frames().odometry, *news.sweep);
   senses_.Hear(news);
 }
 

@@ -34,6 +34,7 @@ class RobotSenses {
   /// What the camera saw at a moment that is not told of yet.
   void See(double stamp, const perception::Sighting& seen);
 
+  const sensing::FrameNames& frames() const { return names_; }
   const sensing::RobotStateEstimator& state() const { return state_; }
   /// Null without surroundings.
   sensing::ObjectEstimator* objects() const { return objects_.get(); }

@@ -20,7 +20,7 @@ RobotSide::RobotSide(const LoopSetup::Parts& parts, const imagination::StartStat
       sensors_(sensors, seed, world_.scene()),
       truth_(parts.world.standing) {
   const evaluation::SimRobotLasers& lasers = sensors_.lasers();
-  if (!hooks_.sweep_frame.empty() && lasers.has_tilting_laser())
+  if (hooks_.hears_clouds && lasers.has_tilting_laser())
     gathering_.emplace(lasers.num_scans_of_a_sweep());
 }
 
@@ -79,9 +79,7 @@ void RobotSide::Sweep() {
   if (!lasers.IsTiltDue(world_)) return;
   auto cloud = gathering_->Add(lasers.TiltPhase(world_), lasers.tilting(), lasers.TiltScan(world_),
                                lasers.X_OTilt(world_, readings_));
-  if (!cloud) return;
-  sweep_ =
-      std::make_shared<const SweepNews>(SweepNews{Stamp(), hooks_.sweep_frame, std::move(*cloud)});
+  if (cloud) sweep_ = std::make_shared<const perception::PointCloud>(std::move(*cloud));
 }
 
 }  // namespace hires::loop

@@ -3,7 +3,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "hires/simulation/truth_record.h"
@@ -21,8 +20,8 @@ class RobotSide {
   struct Hooks {
     std::function<void(const SensorNews&)> hear;  ///< at the time of its stamp
     std::function<void(double stamp)> look;       ///< all sensors of a tick have spoken
-    bool hears_heat{false};   ///< the thermal camera takes pictures, with those of the other one
-    std::string sweep_frame;  ///< of clouds of the laser that nods: the odometry's; empty: none
+    bool hears_heat{false};    ///< the thermal camera takes pictures, with those of the other one
+    bool hears_clouds{false};  ///< of the laser that nods
   };
 
   /// @param sensors  under this truth.  @pre all outlive this.
@@ -51,7 +50,7 @@ class RobotSide {
   std::vector<robot::Command> commands_;
   evaluation::SensorReadings readings_;  // of the last tick
   std::optional<evaluation::SweepCloud> gathering_;
-  std::shared_ptr<const SweepNews> sweep_;  // over and not told of yet
+  std::shared_ptr<const perception::PointCloud> sweep_;  // over and not told of yet
 };
 
 }  // namespace hires::loop

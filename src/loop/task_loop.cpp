@@ -64,12 +64,6 @@ evaluation::SimSensorParams SensorsIn(const std::string& scenario,
   return sensors;
 }
 
-/// Of clouds that show the floor; empty: nobody hears them.
-std::string SweepFrame(const LoopSetup::Parts& parts) {
-  const imagination::ImaginationSetup& setup = parts.world;
-  return setup.sensing.ground.is_enabled ? FramesOf(setup.scene->robot).odometry : "";
-}
-
 /// What is on its way between them.
 struct Lines {
   Lines(const LoopMessages& messages, const base::Rng& rng, VirtualClock* clock)
@@ -94,10 +88,11 @@ class Play {
         lines_(parts.config.messages, base::Rng(order.seed), &clock_),
         blackboard_(parts.ontology),
         pool_(order.threads),
-        robot_(parts, evaluation::StartOf(parts.world, order.scenario, ""), truth_,
-               SensorsIn(order.scenario, parts.SensorsUnder(truth_)), order.seed, &clock_,
-               {[this](const SensorNews& news) { Hear(news); },
-                [this](double stamp) { Look(stamp); }, true, SweepFrame(parts)}),
+        robot_(
+            parts, evaluation::StartOf(parts.world, order.scenario, ""), truth_,
+            SensorsIn(order.scenario, parts.SensorsUnder(truth_)), order.seed, &clock_,
+            {[this](const SensorNews& news) { Hear(news); }, [this](double stamp) { Look(stamp); },
+             true, parts.world.sensing.ground.is_enabled}),
         middle_layer_(parts.world, FramesOf(parts.world.scene->robot), parts.config.runner,
                       parts.config.scan,
                       {[this](const robot::Command& command) { Send(command); },

@@ -133,6 +133,27 @@ double LineOfSight::Cast(const Vector3d& from_M, const Vector3d& direction) cons
   return hit ? hit->distance : kInfinity;
 }
 
+std::vector<double> LineOfSight::Cast(const Vector3d& from_M,
+                                      const std::vector<Vector3d>& directions) const {
+  std::vector<double> distances;
+  distances.reserve(directions.size());
+  std::vector<Eigen::Vector3f> packet;
+  std::vector<RayHit> hits;
+  for (std::size_t begin = 0; begin < directions.size(); begin += RayScene::kPacket) {
+    packet.clear();
+    hits.clear();
+    const std::size_t end = std::min(begin + RayScene::kPacket, directions.size());
+    for (std::size_t i = begin; i < end; ++i) {
+      packet.push_back(directions[i].cast<float>());
+      hits.push_back({DistanceToFloor(from_M, directions[i]), 0, Vector3d::UnitZ()});
+    }
+    impl_->world().statics.FirstHits(from_M, packet, 0, &hits);
+    impl_->loose.FirstHits(from_M, packet, 0, &hits);
+    for (const RayHit& hit : hits) distances.push_back(hit.distance);
+  }
+  return distances;
+}
+
 std::optional<Hit> LineOfSight::FirstHit(const Vector3d& from_M, const Vector3d& direction) const {
   HIRES_CHECK(direction.norm() > 0.0, "a ray needs a direction");
   const Vector3d ray = direction.normalized();

@@ -1,7 +1,6 @@
 #include "hires/simulation/laser_scanner.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "hires/base/check.h"
@@ -16,9 +15,10 @@ Eigen::Vector3d DirectionOf(const geometry::Pose3& X_ML, double angle) {
   return X_ML.rotation * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
 }
 
-/// What one echo, or two, are measured as.  @param ranges  of the rays; sorted here.
-double MixedRange(std::array<double, kRays> ranges, double mixing_depth) {
-  std::sort(ranges.begin(), ranges.end());
+/// What one echo, or two, are measured as.
+/// @param ranges  of kRays rays; sorted here.
+double MixedRange(double* ranges, double mixing_depth) {
+  std::sort(ranges, ranges + kRays);
   int num_near = 1;
   while (num_near < kRays && ranges[num_near] - ranges[num_near - 1] <= kOneSurface) ++num_near;
   const auto mean = [&](int begin, int end) {
@@ -33,15 +33,26 @@ double MixedRange(std::array<double, kRays> ranges, double mixing_depth) {
   return 2 * num_near >= kRays ? near : far;
 }
 
-double RangeOf(const perception::LineOfSight& sight, const geometry::Pose3& X_ML, double angle,
-               const LaserParams& params) {
-  if (params.beam_width == 0.0) return sight.Cast(X_ML.translation, DirectionOf(X_ML, angle));
-  std::array<double, kRays> ranges;
-  for (int i = 0; i < kRays; ++i) {
-    const double aside = params.beam_width * ((i + 0.5) / kRays - 0.5);
-    ranges[i] = sight.Cast(X_ML.translation, DirectionOf(X_ML, angle + aside));
+/// [m] of each beam, without noise.
+std::vector<double> RangesOf(const perception::LineOfSight& sight, const geometry::Pose3& X_ML,
+                             const LaserParams& params) {
+  std::vector<double> ranges;
+  if (params.beam_width == 0.0) {
+    for (int i = 0; i < params.num_beams; ++i)
+      ranges.push_back(sight.Cast(X_ML.translation, DirectionOf(X_ML, AngleOf(params, i))));
+    return ranges;
   }
-  return MixedRange(ranges, params.mixing_depth);
+  std::vector<Eigen::Vector3d> rays;
+  for (int i = 0; i < params.num_beams; ++i) {
+    for (int k = 0; k < kRays; ++k) {
+      const double aside = params.beam_width * ((k + 0.5) / kRays - 0.5);
+      rays.push_back(DirectionOf(X_ML, AngleOf(params, i) + aside));
+    }
+  }
+  std::vector<double> met = sight.Cast(X_ML.translation, rays);
+  for (int i = 0; i < params.num_beams; ++i)
+    ranges.push_back(MixedRange(&met[i * kRays], params.mixing_depth));
+  return ranges;
 }
 
 void RequireSurroundings(const RobotSimulator& simulator) {
@@ -68,13 +79,10 @@ std::vector<double> ScanLaserFrom(const geometry::Pose3& X_ML, const RobotSimula
   const perception::LineOfSight sight(
       simulator.scene().surroundings, simulator.GetWorldState().objects,
       params.sees_robot ? ShapesOf(simulator) : std::vector<geometry::Collision>{});
-  std::vector<double> ranges;
-  ranges.reserve(params.num_beams);
-  for (int i = 0; i < params.num_beams; ++i) {
+  std::vector<double> ranges = RangesOf(sight, X_ML, params);
+  for (double& range : ranges) {
     const double noise = rng->Normal(0.0, params.noise);  // drawn whatever is hit
-    const double range = RangeOf(sight, X_ML, AngleOf(params, i), params);
-    ranges.push_back(range > params.range_max ? INFINITY
-                                              : std::max(range + noise, params.range_min));
+    range = range > params.range_max ? INFINITY : std::max(range + noise, params.range_min);
   }
   return ranges;
 }

@@ -23,13 +23,6 @@ struct TrayScan {
   robot::ScanReading reading;
 };
 
-/// What a sweep of the laser that nods measured.
-struct SweepNews {
-  double stamp{0.0};  ///< [s] of its end
-  std::string frame;
-  perception::PointCloud cloud;
-};
-
 /// What the robot's sensors say at one moment, as one who listens to them gets it.
 struct SensorNews {
   double stamp{0.0};  ///< [s]
@@ -40,7 +33,9 @@ struct SensorNews {
   std::optional<perception::Sighting> seen;
   std::optional<TrayScan> tray;
   std::shared_ptr<const perception::HeatView> heat;  ///< null: no picture was taken
-  std::shared_ptr<const SweepNews> sweep;            ///< null: none ended since the last moment
+  /// Of a sweep of the laser that nods, in the odometry's frame; null: none ended since the last
+  /// tick.
+  std::shared_ptr<const perception::PointCloud> sweep;
 };
 
 /// Told of all that passes between the parts of a loop, as topics would carry it between nodes, in

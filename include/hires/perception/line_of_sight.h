@@ -61,7 +61,11 @@ class LineOfSight {
   /// Distance along a ray to the first hit [m]; infinite without one.
   /// @param direction  of any length above 0.
   double Cast(const Eigen::Vector3d& from_M, const Eigen::Vector3d& direction) const;
-  /// The same with the name of what is hit.
+  /// The same for rays that go side by side, which costs a tenth.
+  /// @param directions  each of length 1.
+  std::vector<double> Cast(const Eigen::Vector3d& from_M,
+                           const std::vector<Eigen::Vector3d>& directions) const;
+  /// Likewise for one, with the name of what is hit.
   std::optional<Hit> FirstHit(const Eigen::Vector3d& from_M,
                               const Eigen::Vector3d& direction) const;
   /// What each pixel of a camera looks at, by rays side by side (packets of eight).

@@ -59,6 +59,8 @@ void RobotInputs::OnOdometry(const nav_msgs::Odometry& msg) {
     hooks_.clock_restarted();
   }
   hooks_.arrived(names_.odometry, msg.header.stamp.toSec());
+  // Nobody waits for clouds that nobody hears.
+  if (!ground_) hooks_.arrived(names_.sensors.tilt_cloud, msg.header.stamp.toSec());
 }
 
 void RobotInputs::OnJoints(const sensor_msgs::JointState& msg) {
@@ -88,6 +90,7 @@ void RobotInputs::OnCloud(const sensor_msgs::PointCloud2& msg) {
   } catch (const hires::base::ConfigError& error) {
     sensors_.Warn(names_.sensors.tilt_cloud, error.what());
   }
+  hooks_.arrived(names_.sensors.tilt_cloud, msg.header.stamp.toSec());
 }
 
 void RobotInputs::OnTrayScan(const sensor_msgs::LaserScan& msg) {

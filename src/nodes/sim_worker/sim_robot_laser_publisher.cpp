@@ -2,6 +2,8 @@
 
 #include <tf2_msgs/TFMessage.h>
 
+#include <utility>
+
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 #include "nodes/sim_worker/is_heard.h"
@@ -22,8 +24,11 @@ SimRobotLaserPublisher::SimRobotLaserPublisher(const hires::control::RobotNames&
                                                const hires::robot::Robot& robot,
                                                const hires::evaluation::SimRobotLasers* lasers,
                                                ros::NodeHandle* nh)
-    : lasers_(*lasers), robot_(robot), odometry_frame_(names.odometry_frame) {
-  const hires::control::SensorNames& topics = names.sensors;
+    : lasers_(*lasers),
+      robot_(robot),
+      names_(names.sensors),
+      odometry_frame_(names.odometry_frame) {
+  const hires::control::SensorNames& topics = names_;
   if (lasers_.has_tray_laser() && !topics.tray_scan.empty()) {
     tray_scan_ = nh->advertise<sensor_msgs::LaserScan>(topics.tray_scan, kScanQueue);
   }
@@ -44,14 +49,27 @@ void SimRobotLaserPublisher::AddTilt(const hires::evaluation::SimRobotWorld& wor
   (*joints)[robot_.profile.sensors.tilting_laser->joint] = lasers_.TiltPhase(world).angle;
 }
 
-bool SimRobotLaserPublisher::PublishTick(const hires::evaluation::SimRobotWorld& world,
-                                         const ros::Time& stamp) {
-  if (!IsHeard(tray_scan_)) return false;
-  sensor_msgs::LaserScan scan = ToMsg(lasers_.tray(), lasers_.TrayScan(world), kTickTime);
-  scan.header.frame_id = lasers_.tray().link;
-  scan.header.stamp = stamp;
-  tray_scan_.publish(scan);
-  return true;
+std::vector<std::string> SimRobotLaserPublisher::PublishTick(
+    const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp) {
+  std::vector<std::string> topics;
+  if (IsHeard(tray_scan_)) {
+    sensor_msgs::LaserScan scan = ToMsg(lasers_.tray(), lasers_.TrayScan(world), kTickTime);
+    scan.header.frame_id = lasers_.tray().link;
+    scan.header.stamp = stamp;
+    tray_scan_.publish(scan);
+    topics.push_back(names_.tray_scan);
+  }
+  // A tick may be told of again.
+  if ((sent_ && *sent_ != stamp) || !IsHeard(tilt_cloud_)) cloud_ = std::nullopt;
+  if (cloud_) {
+    sensor_msgs::PointCloud2 msg = ToMsg(*cloud_);
+    msg.header.frame_id = odometry_frame_;
+    msg.header.stamp = stamp;
+    tilt_cloud_.publish(msg);
+    sent_ = stamp;
+    topics.push_back(names_.tilt_cloud);
+  }
+  return topics;
 }
 
 void SimRobotLaserPublisher::PublishLook(const hires::evaluation::SimRobotWorld& world,
@@ -66,13 +84,11 @@ void SimRobotLaserPublisher::PublishLook(const hires::evaluation::SimRobotWorld&
   PublishTilt(world, stamp);
   if (IsHeard(tilt_scan_)) tilt_scan_.publish(scan);
   if (!wants_cloud) return;
-  const auto cloud = sweep_->Add(lasers_.TiltPhase(world), lasers_.tilting(), ranges,
-                                 lasers_.X_OTilt(world, readings));
+  auto cloud = sweep_->Add(lasers_.TiltPhase(world), lasers_.tilting(), ranges,
+                           lasers_.X_OTilt(world, readings));
   if (!cloud) return;
-  sensor_msgs::PointCloud2 msg = ToMsg(*cloud);
-  msg.header.frame_id = odometry_frame_;
-  msg.header.stamp = stamp;
-  tilt_cloud_.publish(msg);
+  cloud_ = std::move(cloud);
+  sent_ = std::nullopt;
 }
 
 /// Ticks have their own; between them the joint may turn back, which tf would not know.

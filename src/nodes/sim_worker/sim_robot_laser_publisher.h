@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hires/control/robot_names.h"
 #include "hires/evaluation/truth/sim_robot_lasers.h"
@@ -19,8 +20,10 @@ class SimRobotLaserPublisher {
   SimRobotLaserPublisher(const hires::control::RobotNames& names, const hires::robot::Robot& robot,
                          const hires::evaluation::SimRobotLasers* lasers, ros::NodeHandle* nh);
 
-  /// The tray's scan: for each tick.  @return whether somebody hears it.
-  bool PublishTick(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
+  /// The tray's scan, and the cloud of a sweep that is over: for each tick.
+  /// @return the topics on which that was sent.
+  std::vector<std::string> PublishTick(const hires::evaluation::SimRobotWorld& world,
+                                       const ros::Time& stamp);
 
   /// The nodding laser's, if one is due: for each look between two ticks.
   /// @param readings  of the last tick.
@@ -36,8 +39,12 @@ class SimRobotLaserPublisher {
 
   const hires::evaluation::SimRobotLasers& lasers_;
   const hires::robot::Robot& robot_;
+  const hires::control::SensorNames names_;
   const std::string odometry_frame_;
   std::optional<hires::evaluation::SweepCloud> sweep_;
+  std::optional<hires::perception::PointCloud>
+      cloud_;                      // in the odometry's frame, of the last sweep
+  std::optional<ros::Time> sent_;  // when that was sent
   ros::Publisher tray_scan_, tilt_scan_, tilt_cloud_, tf_;
 };
 

@@ -109,7 +109,7 @@ std::vector<std::string> SimRobotPublisher::PublishTick(
   }
   if (PublishLookOf(world, readings, stamp)) sensors.push_back(kDetections);
   cameras_.PublishHeatIfDue(world, stamp);
-  if (lasers_.PublishTick(world, stamp)) sensors.push_back(params_.names.sensors.tray_scan);
+  for (const std::string& topic : lasers_.PublishTick(world, stamp)) sensors.push_back(topic);
   PublishTruth(world, truth, stamp);
   return sensors;
 }
