@@ -81,6 +81,7 @@ class Reader {
                                                     "Instance",
                                                     "At",
                                                     "HasTemperature",
+                                                    "TemperatureKnown",
                                                     "Connected",
                                                     "hasPlacingArea",
                                                     "hasPlacingAreaLeft",

@@ -283,6 +283,18 @@ TEST(StateOfTest, AnInstanceTheCatalogueLacksIsLikeItsKin) {
   EXPECT_EQ(RestaurantContext().FindModel("teapot1"), "");
 }
 
+TEST(StateOfTest, WhatIsKnownOfAnObjectBesideItsPlaceChangesNothing) {
+  const auto state = [](const std::vector<base::Atom>& more) {
+    std::vector<base::Atom> atoms{kAtStart, {"On", {"mug1", "trayArea1"}}};
+    atoms.insert(atoms.end(), more.begin(), more.end());
+    return StateOf(RestaurantContext(), nullptr, atoms).world.objects;
+  };
+  const auto plain = state({});
+  const auto warm = state({{"HasTemperature", {"mug1", "62.5"}}, {"TemperatureKnown", {"mug1"}}});
+  ASSERT_EQ(plain.size(), warm.size());
+  EXPECT_EQ(plain[0].X_MO.translation, warm[0].X_MO.translation);
+}
+
 TEST(StateOfTest, ErrorsNameTheAtomAndWhatComesNear) {
   EXPECT_THAT(ErrorOf({}), HasSubstr("RobotAt(area) is missing"));
   EXPECT_THAT(ErrorOf({{"RobotAt", {"hime"}}}),

@@ -71,6 +71,7 @@ class GroundWatch {
 
  private:
   bool Look(double stamp, const std::string& frame, perception::PointCloud cloud);
+  void DropOwn(double stamp);
 
   struct Cloud {
     double stamp{0.0};

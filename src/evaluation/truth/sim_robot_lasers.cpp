@@ -1,10 +1,12 @@
 #include "hires/evaluation/truth/sim_robot_lasers.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "evaluation/truth/sensor_period.h"
 #include "hires/base/check.h"
+#include "hires/geometry/angles.h"
 #include "hires/robot/posture.h"
 
 namespace hires::evaluation {
@@ -15,6 +17,26 @@ using base::ParamReader;
 using geometry::Pose3;
 
 constexpr std::uint64_t kTrayStream = 0, kTiltStream = 1;
+
+// As a PR2's driver filters its nodding laser (laser_filters, ScanShadowsFilter).
+constexpr double kVeilAngle = 0.1745;  // [rad] between a beam and the way to the next point
+constexpr int kVeiled = 20;            // [beams] to each side of such a pair, behind its nearer end
+
+/// Takes out what may be no surface: where a beam was split between an edge and what is behind it,
+/// points lie along the beam. Infinite: nothing was measured.
+void TakeOutVeils(double beam_step, std::vector<double>* ranges) {
+  const std::vector<double> measured = *ranges;
+  const int n = static_cast<int>(measured.size());
+  for (int i = 0; i + 1 < n; ++i) {
+    const double a = measured[i], b = measured[i + 1];
+    if (!std::isfinite(a) || !std::isfinite(b)) continue;
+    const double angle = std::atan2(b * std::sin(beam_step), a - b * std::cos(beam_step));
+    if (angle > kVeilAngle && angle < geometry::kPi - kVeilAngle) continue;
+    const double nearer = std::min(a, b);
+    for (int k = std::max(0, i - kVeiled); k <= std::min(n - 1, i + 1 + kVeiled); ++k)
+      if (measured[k] > nearer) (*ranges)[k] = INFINITY;
+  }
+}
 
 simulation::LaserParams ReadMixingLaser(ParamReader* in) {
   simulation::LaserParams params = ReadLaser(in);
@@ -120,10 +142,12 @@ std::optional<perception::PointCloud> SweepCloud::Add(const robot::TiltPhase& ph
     return std::exchange(gathered_, {});
   }
   ++num_scans_;
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    if (!std::isfinite(ranges[i])) continue;
+  std::vector<double> sure = ranges;
+  TakeOutVeils(AngleOf(laser, 1) - AngleOf(laser, 0), &sure);
+  for (std::size_t i = 0; i < sure.size(); ++i) {
+    if (!std::isfinite(sure[i])) continue;
     const double angle = AngleOf(laser, static_cast<int>(i));
-    const Eigen::Vector3d p_L(ranges[i] * std::cos(angle), ranges[i] * std::sin(angle), 0.0);
+    const Eigen::Vector3d p_L(sure[i] * std::cos(angle), sure[i] * std::sin(angle), 0.0);
     gathered_.points.emplace_back((X_OL * p_L).cast<float>());
   }
   return std::nullopt;

@@ -166,8 +166,7 @@ bool FloorWatch::IsPassed(const Swept& swept, const GroundReading& reading) cons
         edge * (Vector2d(cell.first, cell.second).array() + 0.5).matrix() - eye_M;
     const double along = to_floor.dot(to_cell) / away;
     const double beside = (to_floor.x() * to_cell.y() - to_floor.y() * to_cell.x()) / away;
-    return std::abs(beside) <= edge && along >= away - 0.5 * edge &&
-           along <= farthest + 0.5 * edge;
+    return std::abs(beside) <= edge && along >= away - 0.5 * edge && along <= farthest + 0.5 * edge;
   });
 }
 

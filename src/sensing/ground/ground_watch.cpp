@@ -16,6 +16,8 @@ using base::Between;
 namespace {
 
 constexpr std::uint64_t kSeed = 1;  // of the search for the floor; any will do
+constexpr double kSweep = 2.0;      // [s] that a cloud may have been put together from
+constexpr double kStep = 0.1;       // [s] in which arms move less than the padding
 
 }  // namespace
 
@@ -110,8 +112,31 @@ bool GroundWatch::Look(double stamp, const std::string& frame, perception::Point
   }
   self_.Cut(shapes, &cloud);
   reading_ = find_->Find(cloud, X_BS, then->X_WB, height, &rng_);
+  DropOwn(stamp);
   seen_ = stamp;
   return true;
+}
+
+/// Drops what hangs where the robot itself was while the cloud was put together: at the end of a
+/// sweep its arms may be elsewhere.
+void GroundWatch::DropOwn(double stamp) {
+  const double margin = params_.self.padding + params_.scan.cell;
+  std::vector<GroundSpot>& spots = reading_.spots;
+  for (double time = stamp - kSweep; time <= stamp && !spots.empty(); time += kStep) {
+    const auto then = state_->At(time);
+    if (!then) continue;
+    for (const geometry::Collision& shape_M :
+         perception::ShapesOf(*robot_, then->X_WB, then->posture)) {
+      const geometry::Aabb box = geometry::BoundsOf(shape_M.shape, shape_M.X_BS);
+      const auto is_own = [&](const GroundSpot& spot) {
+        const Eigen::Vector3d low(spot.p_M.x(), spot.p_M.y(), spot.lowest);
+        const Eigen::Vector3d high(spot.p_M.x(), spot.p_M.y(), spot.highest);
+        return (low.array() >= box.lower.array() - margin).all() &&
+               (high.array() <= box.upper.array() + margin).all();
+      };
+      spots.erase(std::remove_if(spots.begin(), spots.end(), is_own), spots.end());
+    }
+  }
 }
 
 }  // namespace hires::sensing

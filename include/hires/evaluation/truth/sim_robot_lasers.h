@@ -61,7 +61,8 @@ class SimRobotLasers {
   const std::shared_ptr<const simulation::Scene> scene_;
 };
 
-/// Gathers the scans of each sweep of a nodding laser to one cloud.
+/// Gathers the scans of each sweep of a nodding laser to one cloud, without points that may veil an
+/// edge, as a PR2 does.
 class SweepCloud {
  public:
   /// @param num_scans  that a whole sweep has at least.
