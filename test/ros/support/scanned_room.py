@@ -1,0 +1,71 @@
+"""A room, what a laser sees in it, and a robot that drives there with wheels that err."""
+
+import math
+
+import numpy
+
+RESOLUTION, WIDTH, HEIGHT = 0.05, 200, 140  # [m], cells: 10 m x 7 m
+BOXES = ((0.0, 5.0, 1.0, 7.0), (7.5, 0.0, 10.0, 0.8), (4.0, 6.0, 5.2, 7.0), (8.8, 4.5, 10.0, 5.5),
+         (5.0, 3.3, 5.4, 3.6))              # x, y of two corners [m]
+LASER_X = 0.275                             # [m] before the base
+ANGLES = numpy.linspace(-2.25, 2.25, 181)   # [rad]
+RANGE_MAX = 12.0                            # [m]
+
+
+def room():
+    """Occupied cells, [row, column]."""
+    grid = numpy.zeros((HEIGHT, WIDTH), bool)
+    grid[[0, -1], :] = grid[:, [0, -1]] = True
+    for box in BOXES:
+        x0, y0, x1, y1 = (int(round(side / RESOLUTION)) for side in box)
+        grid[y0:y1, x0:x1] = True
+    return grid
+
+
+class Laser:
+    def __init__(self):
+        self._grid = room()
+        self._chance = numpy.random.RandomState(5)
+        self._steps = numpy.arange(0.0, RANGE_MAX, 0.02)
+
+    def ranges(self, pose):
+        """Of a base at that x, y, yaw; errors of 1 cm."""
+        x, y, yaw = pose
+        x, y = x + LASER_X * math.cos(yaw), y + LASER_X * math.sin(yaw)
+        bearing = (yaw + ANGLES)[:, None]
+        column = ((x + self._steps * numpy.cos(bearing)) / RESOLUTION).astype(int)
+        row = ((y + self._steps * numpy.sin(bearing)) / RESOLUTION).astype(int)
+        hits = self._grid[row.clip(0, HEIGHT - 1), column.clip(0, WIDTH - 1)]
+        return self._steps[hits.argmax(axis=1)] + self._chance.normal(0.0, 0.01, len(ANGLES))
+
+
+def moved(pose, forward, turn):
+    x, y, yaw = pose
+    middle = yaw + 0.5 * turn
+    return x + forward * math.cos(middle), y + forward * math.sin(middle), wrapped(yaw + turn)
+
+
+def wrapped(angle):
+    return math.remainder(angle, 2.0 * math.pi)
+
+
+def after(first, second):
+    """The pose `second`, which is seen from the pose `first`."""
+    c, s = math.cos(first[2]), math.sin(first[2])
+    return (first[0] + c * second[0] - s * second[1], first[1] + s * second[0] + c * second[1],
+            wrapped(first[2] + second[2]))
+
+
+class Robot:
+    """Drives round the pillar in the middle; its odometry says too much, and turns too far."""
+    START = (5.0, 1.8, 0.0)
+
+    def __init__(self):
+        self.pose, self.odometry = self.START, (0.0, 0.0, 0.0)
+
+    def drive(self):
+        self.move(0.1, 0.1 / 1.7)
+
+    def move(self, forward, turn):
+        self.pose = moved(self.pose, forward, turn)
+        self.odometry = moved(self.odometry, 1.03 * forward, 1.05 * turn)
