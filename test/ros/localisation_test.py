@@ -12,18 +12,14 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 
 from diagnostics import diagnostics  # noqa: E402
 from ros_processes import Processes, executable, wait_until  # noqa: E402
-from scanned_room import (ANGLES, HEIGHT, LASER_X, RANGE_MAX, RESOLUTION, WIDTH, Laser, Robot,  # noqa: E402
-                          after, room, wrapped)
+from scanned_room import (ANGLES, BASE, Laser, Robot, after, laser_transform, map_message,  # noqa: E402
+                          pose_message, room, scan_message, transform_message, wrapped, yaw_of)
 from test_run import run_test  # noqa: E402
 
-LASER, ODOMETRY, BASE = 'base_laser_link', 'odom_combined', 'base_footprint'
+ODOMETRY = 'odom_combined'
 PERIOD = 0.2      # [s] between scans
 TOLERANCE = 0.1   # [s] transform_tolerance of config/localisation.yaml
 NAN = float('nan')
-
-
-def yaw_of(rotation):
-    return 2.0 * math.atan2(rotation.z, rotation.w)
 
 
 class Node:
@@ -85,7 +81,7 @@ class LocalisationTest(unittest.TestCase):
         cls.told = rospy.Publisher('/initialpose', PoseWithCovarianceStamped, queue_size=10)
         cls.scans = rospy.Publisher('/base_scan', LaserScan, queue_size=1000)
         cls.publishers = [cls.clock, cls.moving, cls.fixed, cls.maps, cls.told, cls.scans]
-        cls.fixed.publish(TFMessage([cls.transform(BASE, LASER, (LASER_X, 0.0, 0.0), 0.0)]))
+        cls.fixed.publish(TFMessage([laser_transform()]))
         cls.laser = Laser()
 
     now = 1000.0  # [s]
@@ -94,55 +90,23 @@ class LocalisationTest(unittest.TestCase):
         LocalisationTest.now += 100.0
         self.robot = Robot()
 
-    @classmethod
-    def transform(cls, parent, child, pose, stamp):
-        from geometry_msgs.msg import TransformStamped
-        message = TransformStamped()
-        message.header.stamp = cls.rospy.Time.from_sec(stamp)
-        message.header.frame_id, message.child_frame_id = parent, child
-        where, turn = message.transform.translation, message.transform.rotation
-        where.x, where.y = pose[:2]
-        turn.z, turn.w = math.sin(pose[2] / 2.0), math.cos(pose[2] / 2.0)
-        return message
-
     # What goes in.
 
-    def map(self, occupied=None):
-        from nav_msgs.msg import OccupancyGrid
-        message = OccupancyGrid()
-        message.header.frame_id = 'map'
-        message.info.width, message.info.height, message.info.resolution = WIDTH, HEIGHT, RESOLUTION
-        message.info.origin.orientation.w = 1.0
-        cells = room() if occupied is None else occupied
-        message.data = [100 if cell else 0 for cell in cells.flat]
-        return message
-
-    def pose(self, pose, variance=0.04):
-        from geometry_msgs.msg import PoseWithCovarianceStamped
-        message = PoseWithCovarianceStamped()
-        message.header.stamp = self.rospy.Time.from_sec(self.now)
-        message.header.frame_id = 'map'
-        message.pose.pose.position.x, message.pose.pose.position.y = pose[:2]
-        message.pose.pose.orientation.z = math.sin(pose[2] / 2.0)
-        message.pose.pose.orientation.w = math.cos(pose[2] / 2.0)
-        for index in (0, 7, 35):
-            message.pose.covariance[index] = variance
-        return message
+    def pose(self, pose):
+        return pose_message(pose, self.now)
 
     def scan(self):
-        from sensor_msgs.msg import LaserScan
-        message = LaserScan(angle_min=ANGLES[0], angle_increment=ANGLES[1] - ANGLES[0], angle_max=ANGLES[-1],
-                            range_min=0.02, range_max=RANGE_MAX, ranges=self.laser.ranges(self.robot.pose))
-        message.header.stamp = self.rospy.Time.from_sec(self.now)
-        message.header.frame_id = LASER
-        return message
+        return scan_message(self.laser, self.robot.pose, self.now)
+
+    def odometry(self):
+        return transform_message(ODOMETRY, BASE, self.robot.odometry, self.now)
 
     def tick(self):
         """Time goes on, and odometry with it."""
         from tf2_msgs.msg import TFMessage
         LocalisationTest.now = round(self.now + PERIOD, 3)
         self.clock.publish(self.rospy.Time.from_sec(self.now))
-        self.moving.publish(TFMessage([self.transform(ODOMETRY, BASE, self.robot.odometry, self.now)]))
+        self.moving.publish(TFMessage([self.odometry()]))
 
     def step(self, *nodes):
         """One scan, until each node has said where the robot was then; those poses."""
@@ -177,7 +141,7 @@ class LocalisationTest(unittest.TestCase):
 
     def begin(self, *nodes):
         self.tick()
-        self.maps.publish(self.map())
+        self.maps.publish(map_message())
         for node in nodes:
             node.process.wait_for('map=used')
         self.told.publish(self.pose(self.robot.START))
@@ -261,8 +225,8 @@ class LocalisationTest(unittest.TestCase):
         known = len(node.process.lines)
         other = room()
         other[20:24, 180:184] = True
-        self.maps.publish(self.map())  # the same again is no other one
-        self.maps.publish(self.map(other))
+        self.maps.publish(map_message())  # the same again is no other one
+        self.maps.publish(map_message(other))
         node.process.wait_for('pose=set', first=known)
         self.assertEqual(sum('map=used' in line for line in node.process.lines), 2)
         self.assertLess(max(self.drive(10, node))[0], 0.15)
@@ -320,7 +284,7 @@ class LocalisationTest(unittest.TestCase):
         scan = self.scan()
         self.scans.publish(scan)
         self.say(node, lambda v: v['message'].startswith("waits for the transform of 'base_footprint'"))
-        self.moving.publish(TFMessage([self.transform(ODOMETRY, BASE, self.robot.odometry, self.now)]))
+        self.moving.publish(TFMessage([self.odometry()]))
         stamp = (scan.header.stamp + self.rospy.Duration.from_sec(TOLERANCE)).to_nsec()
         wait_until(lambda: stamp in node.transforms, 'the scan to be used')
 
@@ -373,13 +337,13 @@ class LocalisationTest(unittest.TestCase):
             self.maps.publish(message)
             self.assertIn('map', self.dropped(node, words)['dropped last'])
         grid = room()
-        refuse('has no free cell', self.map(grid | True))
-        refuse('has no occupied cell', self.map(grid & False))
-        refuse('0 x 0 cells', type(self.map())(header=self.map().header))
-        elsewhere = self.map()
+        refuse('has no free cell', map_message(grid | True))
+        refuse('has no occupied cell', map_message(grid & False))
+        refuse('0 x 0 cells', type(map_message())(header=map_message().header))
+        elsewhere = map_message()
         elsewhere.header.frame_id = 'attic'
         refuse("header.frame_id is 'attic', wanted 'map'", elsewhere)
-        server = self.rospy.Service('/static_map', GetMap, lambda _: GetMapResponse(self.map()))
+        server = self.rospy.Service('/static_map', GetMap, lambda _: GetMapResponse(map_message()))
         self.addCleanup(server.shutdown)
         node.process.wait_for('map=used')
         self.told.publish(self.pose(Robot.START))

@@ -13,11 +13,11 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 from diagnostics import diagnostics  # noqa: E402
 from pr2_frames import quaternion, rotation  # noqa: E402
 from ros_processes import Processes, executable, wait_until  # noqa: E402
-from scanned_room import Robot, wrapped  # noqa: E402
+from scanned_room import BASE, Robot, odometry_message, wrapped, yaw_of  # noqa: E402
 from test_run import run_test  # noqa: E402
 
 PERIOD = 0.02   # [s] of wheels and unit
-BASE, UNIT, UPSIDE_DOWN = 'base_footprint', 'imu_link', 'imu_upside_down'
+UNIT, UPSIDE_DOWN = 'imu_link', 'imu_upside_down'
 Z, MOUNTED = (0, 0, 1), {UNIT: rotation((0, 0, 1), 0.5), UPSIDE_DOWN: rotation((1, 0, 0), math.pi)}
 NAN = float('nan')
 
@@ -88,15 +88,7 @@ class OdometryFilterTest(unittest.TestCase):
         self.robot.pose = (0.0, 0.0, 0.0)
 
     def odometry(self):
-        from nav_msgs.msg import Odometry
-        message = Odometry(child_frame_id=BASE)
-        message.header.stamp = self.rospy.Time.from_sec(self.now)
-        message.header.frame_id = 'odom'
-        x, y, yaw = self.robot.odometry
-        pose = message.pose.pose
-        pose.position.x, pose.position.y = x, y
-        pose.orientation.z, pose.orientation.w = math.sin(yaw / 2.0), math.cos(yaw / 2.0)
-        return message
+        return odometry_message(self.robot.odometry, self.now)
 
     def inertia(self, frame=UNIT):
         """Its zero is anywhere."""
@@ -131,7 +123,7 @@ class OdometryFilterTest(unittest.TestCase):
     @staticmethod
     def said(node):
         pose = node.poses[max(node.poses)].pose.pose
-        return (pose.position.x, pose.position.y, 2.0 * math.atan2(pose.orientation.z, pose.orientation.w))
+        return (pose.position.x, pose.position.y, yaw_of(pose.orientation))
 
     def errors(self, pose):
         return (math.dist(pose[:2], self.robot.pose[:2]), abs(wrapped(pose[2] - self.robot.pose[2])))
