@@ -305,6 +305,15 @@ class LocalisationTest(unittest.TestCase):
             # The first scans may overtake the clock, and are from another time then.
             wait_until(lambda: self._is_answered(node), lambda: 'an answer\n' + node.process.output())
             self.assertLess(self.drive(10, node)[-1][0], 0.15)
+            self.say(node, lambda v: v['message'] == 'good')
+
+    def test_odometry_that_begins_again_at_zero_is_gone_along_with(self):
+        node = self.begun()
+        self.drive(10, node)
+        self.robot.odometry = (0.0, 30.0, 2.0)
+        self.step(node)
+        self.dropped(node, 'odometry jumped: it goes on from this odometry')
+        self.assertLess(max(self.drive(20, node))[0], 0.15)
 
     def _is_answered(self, node):
         self.tick()

@@ -29,12 +29,22 @@ using localisation::ScanOutcome;
 
 constexpr char kInitialPose[] = "initialpose";
 constexpr char kAmclPose[] = "amcl_pose";
-constexpr double kWarningPeriod = 1.0;     // [s] for each topic
 constexpr double kPatience = 5.0;          // [s] for a latched map, before static_map is asked
 constexpr std::size_t kMostWaiting = 100;  // scans: 2.5 s at 40 Hz
 
 hires::robot::ScanReading FromMsg(const sensor_msgs::LaserScan& msg) {
   return {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges, msg.range_max};
+}
+
+/// @pre outcome is bad
+std::string WhyBad(ScanOutcome outcome, const sensor_msgs::LaserScan& scan) {
+  const std::string name = localisation::ToString(outcome);
+  if (outcome == ScanOutcome::kTimeWentBack || outcome == ScanOutcome::kOdometryJumped) {
+    return name + ": it goes on from this odometry, and keeps what it believes";
+  }
+  return fmt::format("{}: {} ranges, angle_min {:g}, angle_increment {:g} rad, {:g} to {:g} m",
+                     name, scan.ranges.size(), scan.angle_min, scan.angle_increment, scan.range_min,
+                     scan.range_max);
 }
 
 geometry_msgs::PoseArray ToMsg(const std::vector<hires::geometry::Pose2>& poses,
@@ -182,7 +192,7 @@ bool LocalisationNode::OnNoMotionUpdate(Empty::Request&, Empty::Response&) {
 
 void LocalisationNode::OnTransforms(const TransformBuffer::News& news) {
   for (const std::string& warning : news.warnings) Refuse(kTransforms, warning);
-  for (const std::string& doubt : news.doubts) Warn(kTransforms, "doubtful", doubt);
+  for (const std::string& doubt : news.doubts) warnings_.Tell(kTransforms, "doubtful", doubt);
   Try(false);
 }
 
@@ -255,8 +265,8 @@ void LocalisationNode::Try(bool are_all_tried) {
     for (; i > 0; --i) {
       const Mount earlier = MountOf(*waiting_.front());
       waiting_.pop_front();
-      Refuse(params_.names.base_scan,
-             "tf knows all of a later scan already, but of this one not " + earlier.waits_for());
+      Refuse(params_.names.base_scan, "tf knows all of a later scan already, but of this one not " +
+                                          earlier.waits_for() + earlier.why_never());
     }
     const sensor_msgs::LaserScanConstPtr scan = waiting_.front();
     waiting_.pop_front();
@@ -295,12 +305,7 @@ void LocalisationNode::Use(const sensor_msgs::LaserScan& scan, const Mount& moun
   const ScanOutcome outcome = filter_->Update(
       scan.header.stamp.toSec(), hires::geometry::Flatten(*mount.X_OB.X_PC), reading, *X_BL);
   ++num_outcomes_[localisation::ToString(outcome)];
-  if (localisation::IsBad(outcome)) {
-    Refuse(params_.names.base_scan,
-           fmt::format("{}: {} ranges, angle_min {:g}, angle_increment {:g} rad, {:g} to {:g} m",
-                       localisation::ToString(outcome), scan.ranges.size(), scan.angle_min,
-                       scan.angle_increment, scan.range_min, scan.range_max));
-  }
+  if (localisation::IsBad(outcome)) Refuse(params_.names.base_scan, WhyBad(outcome, scan));
   const bool is_new = outcome == ScanOutcome::kUpdated;
   is_updated_ = is_updated_ || is_new;
   // The odometry goes on below the map, also where the laser sees nothing.
@@ -329,16 +334,7 @@ void LocalisationNode::Publish(const ros::Time& stamp, bool is_new) {
 void LocalisationNode::Refuse(const std::string& topic, const std::string& why) {
   ++num_dropped_[topic];
   last_drop_ = topic + ": " + why;
-  Warn(topic, "dropped", why);
-}
-
-void LocalisationNode::Warn(const std::string& topic, const std::string& what,
-                            const std::string& why) {
-  const double now = hires::base::SteadyNow();
-  const auto warned = warned_.find(topic);
-  if (warned != warned_.end() && now - warned->second < kWarningPeriod) return;
-  warned_[topic] = now;
-  hires::base::Log(LogLevel::kWarn, fmt::format("topic={} {} why={}", topic, what, why));
+  warnings_.Tell(topic, "dropped", why);
 }
 
 void LocalisationNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {

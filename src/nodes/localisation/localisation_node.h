@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 
+#include "hires/base/topic_warnings.h"
 #include "hires/localisation/monte_carlo.h"
 #include "hires/ros/place/pose_messages.h"
 #include "hires/ros/place/transform_listener.h"
@@ -59,7 +60,6 @@ class LocalisationNode {
   void Publish(const ros::Time& stamp, bool is_new);
 
   void Refuse(const std::string& topic, const std::string& why);
-  void Warn(const std::string& topic, const std::string& what, const std::string& why);
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
   void DiagnoseBelief(diagnostic_updater::DiagnosticStatusWrapper& status);
 
@@ -77,7 +77,7 @@ class LocalisationNode {
   std::string last_drop_;                     // the last message that was dropped, and why
   std::map<std::string, long> num_outcomes_;  // of scans that the filter heard
   std::map<std::string, long> num_dropped_;   // by topic
-  std::map<std::string, double> warned_;      // topic -> steady [s]
+  hires::base::TopicWarnings warnings_;
   long num_scans_{0};
 
   ros::Publisher pose_, particles_, transform_;

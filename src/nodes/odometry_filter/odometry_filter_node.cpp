@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "hires/base/error.h"
-#include "hires/base/log.h"
 #include "hires/base/process.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/place/pose_messages.h"
@@ -23,9 +22,14 @@ using hires::localisation::FilterOutcome;
 
 constexpr char kOdometry[] = "odom";
 constexpr char kInertia[] = "imu_data";
-constexpr double kWarningPeriod = 1.0;       // [s] for each topic
 constexpr std::size_t kMostUnplaced = 1000;  // readings: 10 s at 100 Hz
 constexpr double kJumpBack = 1.0;  // [s] by which time goes back where its clock began again
+
+/// Whether a reading of which that became is used in some way.
+bool IsUsed(FilterOutcome outcome) {
+  return outcome != FilterOutcome::kNotFinite && outcome != FilterOutcome::kLate &&
+         outcome != FilterOutcome::kTooMany;
+}
 
 void RequireStamp(const std_msgs::Header& header) {
   if (header.stamp.isZero()) throw ConfigError("header.stamp is 0, wanted the reading's time");
@@ -39,7 +43,8 @@ OdometryFilterNode::OdometryFilterNode(const OdometryFilterNodeParams& params, r
       transforms_(nh,
                   [this](const TransformBuffer::News& news) {
                     for (const std::string& warning : news.warnings) Drop(kTransforms, warning);
-                    for (const std::string& doubt : news.doubts) Warn(kTransforms, doubt);
+                    for (const std::string& doubt : news.doubts)
+                      warnings_.Tell(kTransforms, "doubtful", doubt);
                     if (!unplaced_.empty()) Advance();
                   }),
       filter_(params.config.filter) {
@@ -168,21 +173,14 @@ void OdometryFilterNode::Filter(const Waiting& odometry) {
 void OdometryFilterNode::Note(const std::string& topic, FilterOutcome outcome) {
   const std::string name = hires::localisation::ToString(outcome);
   ++counts_[topic][name];
-  if (outcome != FilterOutcome::kTaken) Warn(topic, name);
+  if (outcome != FilterOutcome::kTaken)
+    warnings_.Tell(topic, IsUsed(outcome) ? "used" : "dropped", name);
 }
 
 void OdometryFilterNode::Drop(const std::string& topic, const std::string& why) {
   ++counts_[topic]["dropped"];
   last_drop_ = topic + ": " + why;
-  Warn(topic, why);
-}
-
-void OdometryFilterNode::Warn(const std::string& topic, const std::string& why) {
-  const double now = hires::base::SteadyNow();
-  const auto warned = warned_.find(topic);
-  if (warned != warned_.end() && now - warned->second < kWarningPeriod) return;
-  warned_[topic] = now;
-  hires::base::Log(hires::base::LogLevel::kWarn, fmt::format("topic={} why={}", topic, why));
+  warnings_.Tell(topic, "dropped", why);
 }
 
 void OdometryFilterNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {

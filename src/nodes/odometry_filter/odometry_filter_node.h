@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/base/topic_warnings.h"
 #include "hires/localisation/odometry_filter.h"
 #include "hires/ros/place/transform_listener.h"
 #include "nodes/odometry_filter/odometry_filter_params.h"
@@ -38,7 +39,6 @@ class OdometryFilterNode {
   void Filter(const Waiting& odometry);
   void Note(const std::string& topic, hires::localisation::FilterOutcome outcome);
   void Drop(const std::string& topic, const std::string& why);
-  void Warn(const std::string& topic, const std::string& why);
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const OdometryFilterNodeParams params_;
@@ -50,7 +50,7 @@ class OdometryFilterNode {
   ros::Time newest_odometry_, newest_inertia_;  // stamps that came last
   double odometry_came_{-1e9}, inertia_came_{-1e9};            // [s] steady
   std::map<std::string, std::map<std::string, long>> counts_;  // topic -> outcome -> readings
-  std::map<std::string, double> warned_;                       // topic -> steady [s]
+  hires::base::TopicWarnings warnings_;
   std::string last_drop_;
 
   ros::Publisher pose_, transform_;
