@@ -26,7 +26,6 @@ namespace {
 using geometry::Pose2;
 using localisation::LocalisedLog;
 using nlohmann::ordered_json;
-using world::Cell;
 using world::OccupancyGrid;
 
 /// What the verb was given, and what came of it.
@@ -46,21 +45,8 @@ struct Answer {
 
 OccupancyGrid ReadMap(const std::string& file) {
   OccupancyGrid map = world::LoadMap(file);
-  const auto has = [&](Cell cell) {
-    return std::find(map.cells.begin(), map.cells.end(), cell) != map.cells.end();
-  };
-  if (!has(Cell::kFree)) {
-    throw base::ConfigError(fmt::format(
-        "{}: has no free cell, so the robot can be nowhere; is free space marked as unknown "
-        "(free_thresh)?",
-        file));
-  }
-  if (!has(Cell::kOccupied)) {
-    throw base::ConfigError(fmt::format(
-        "{}: has no occupied cell, so no laser tells where the robot is; are obstacles marked as "
-        "unknown (occupied_thresh)?",
-        file));
-  }
+  const std::string why = localisation::WhyUseless(map);
+  if (!why.empty()) throw base::ConfigError(file + ": " + why);
   return map;
 }
 
@@ -237,10 +223,9 @@ void AddLocaliseVerb(CLI::App* app, LocaliseOptions* o) {
 int RunLocaliseVerb(const LocaliseOptions& options, const std::string& package_folder) {
   for (const std::string& file : {options.trajectory, options.json})
     if (!file.empty() && file != "-") evaluation::RequireFolderOf(file);
-  const Answer answer = Localise(
-      options,
-      localisation::ReadMonteCarloParams(base::ParamReader::FromFile(
-          options.config.empty() ? package_folder + "/config/localisation.yaml" : options.config)));
+  const auto config = localisation::ReadLocalisationConfig(base::ParamReader::FromFile(
+      options.config.empty() ? package_folder + "/config/localisation.yaml" : options.config));
+  const Answer answer = Localise(options, config.filter);
   if (!answer.localised.path.empty())
     localisation::WriteTumTrajectory(answer.localised.path, options.trajectory);
   if (options.json == "-") {

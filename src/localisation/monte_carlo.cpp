@@ -91,6 +91,21 @@ std::string ToString(LocalisationStatus status) {
   return "unknown";
 }
 
+std::string WhyUseless(const world::OccupancyGrid& map) {
+  const auto has = [&](world::Cell cell) {
+    return std::find(map.cells.begin(), map.cells.end(), cell) != map.cells.end();
+  };
+  if (!has(world::Cell::kFree)) {
+    return "has no free cell, so the robot can be nowhere; is free space marked as unknown "
+           "(free_thresh)?";
+  }
+  if (!has(world::Cell::kOccupied)) {
+    return "has no occupied cell, so no laser tells where the robot is; are obstacles marked as "
+           "unknown (occupied_thresh)?";
+  }
+  return "";
+}
+
 class MonteCarloLocalisation::Belief {
  public:
   Belief(const world::OccupancyGrid& grid, const MonteCarloParams& params, base::Rng rng)
@@ -127,6 +142,8 @@ class MonteCarloLocalisation::Belief {
     summary_ = SummariseAsOne(particles_);
   }
 
+  void UseNextScan() { is_forced_ = true; }
+
   ScanOutcome Update(double time, const Pose2& X_OB, const robot::ScanReading& scan,
                      const Pose2& X_BL) {
     if (!std::isfinite(time) || !IsPose(X_OB)) return ScanOutcome::kNotFinite;
@@ -147,7 +164,7 @@ class MonteCarloLocalisation::Belief {
   PoseEstimate Estimate(double time) const {
     PoseEstimate estimate;
     estimate.X_MB = seen_ ? CorrectedOdometry() * seen_->X_OB : summary_.X_MB;
-    estimate.covariance = summary_.covariance;
+    estimate.covariance = 0.5 * (summary_.covariance + summary_.covariance.transpose());
     estimate.num_particles = static_cast<int>(particles_.size());
     estimate.effective_size = effective_size_;
     estimate.num_clusters = summary_.num_clusters;
@@ -349,6 +366,8 @@ void MonteCarloLocalisation::SetPose(const Pose2& X_MB, const Eigen::Matrix3d& c
 }
 
 void MonteCarloLocalisation::GlobalLocalisation() { belief_->GlobalLocalisation(); }
+
+void MonteCarloLocalisation::UseNextScan() { belief_->UseNextScan(); }
 
 ScanOutcome MonteCarloLocalisation::Update(double time, const Pose2& X_OB,
                                            const robot::ScanReading& scan, const Pose2& X_BL) {

@@ -61,17 +61,27 @@ void ReadOurs(base::ParamReader* in, MonteCarloParams* params) {
   params->scan_timeout = in->Get("scan_timeout", Between(0.1, 3600.0));
 }
 
+LiveScanParams ReadLive(base::ParamReader in) {
+  LiveScanParams params;
+  params.tf_broadcast = in.GetBool("tf_broadcast");
+  params.transform_tolerance = in.Get("transform_tolerance", Between(0.0, 10.0));
+  params.max_age = in.Get("max_age", Between(0.1, 3600.0));
+  params.max_ahead = in.Get("max_ahead", Between(0.0, 10.0));
+  return params;
+}
+
 }  // namespace
 
-MonteCarloParams ReadMonteCarloParams(base::ParamReader in) {
-  MonteCarloParams params;
-  ReadParticles(&in, &params);
-  ReadLaser(&in, &params);
-  ReadOdometry(&in, &params.odometry);
-  ReadInitial(&in, &params);
-  ReadOurs(&in, &params);
+LocalisationConfig ReadLocalisationConfig(base::ParamReader in) {
+  LocalisationConfig config;
+  ReadParticles(&in, &config.filter);
+  ReadLaser(&in, &config.filter);
+  ReadOdometry(&in, &config.filter.odometry);
+  ReadInitial(&in, &config.filter);
+  ReadOurs(&in, &config.filter);
+  config.node = ReadLive(in.Sub("node"));
   in.RejectUnknownKeys();
-  return params;
+  return config;
 }
 
 }  // namespace hires::localisation

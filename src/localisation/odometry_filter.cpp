@@ -1,4 +1,4 @@
-#include "localisation/odometry_filter.h"
+#include "hires/localisation/odometry_filter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,9 +34,10 @@ Pose2 ShareOf(const Pose2& X_AB, double share) {
 
 }  // namespace
 
-OdometryFilterParams ReadOdometryFilterParams(base::ParamReader in) {
+OdometryFilterConfig ReadOdometryFilterConfig(base::ParamReader in) {
   using base::Between;
-  OdometryFilterParams params;
+  OdometryFilterConfig config;
+  OdometryFilterParams& params = config.filter;
   params.position_per_metre = in.Get("position_per_metre", Between(0.0, 1.0));
   params.position_per_radian = in.Get("position_per_radian", Between(0.0, 1.0));
   params.yaw_per_metre = in.Get("yaw_per_metre", Between(0.0, 1.0));
@@ -49,8 +50,12 @@ OdometryFilterParams ReadOdometryFilterParams(base::ParamReader in) {
   params.max_angular_speed = in.Get("max_angular_speed", Between(0.01, 100.0));
   params.jump_position_sd = in.Get("jump_position_sd", Between(0.0, 100.0));
   params.jump_yaw_sd = in.Get("jump_yaw_sd", Between(0.0, 10.0));
+  base::ParamReader node = in.Sub("node");
+  config.node.tf_broadcast = node.GetBool("tf_broadcast");
+  config.node.imu_used = node.GetBool("imu_used");
+  config.node.imu_wait = node.Get("imu_wait", Between(0.0, 10.0));
   in.RejectUnknownKeys();
-  return params;
+  return config;
 }
 
 std::string ToString(FilterOutcome outcome) {

@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "hires/base/log.h"
-#include "hires/base/process.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
@@ -15,7 +13,6 @@ namespace {
 
 namespace sensing = hires::sensing;
 
-constexpr double kWarningPeriod = 1.0;  // [s] for each topic
 constexpr double kFramePatience = 0.2;  // [s] that the transform of what is stated may be late
 
 }  // namespace
@@ -52,7 +49,7 @@ void SensorReceiver::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_stati
   const TransformBuffer::News news = tree_->Take(msg, are_static);
   num_bad_ += static_cast<int>(news.warnings.size());
   for (const std::string& warning : news.warnings) Warn(kTransforms, warning);
-  for (const std::string& doubt : news.doubts) Tell(kTransforms, "doubtful", doubt);
+  for (const std::string& doubt : news.doubts) warnings_.Tell(kTransforms, "doubtful", doubt);
   for (const double stamp : news.stamps) Note(kTransforms, state_.OnTransforms(stamp));
 }
 
@@ -162,16 +159,7 @@ void SensorReceiver::Note(const std::string& topic, const sensing::Receipt& rece
 }
 
 void SensorReceiver::Warn(const std::string& topic, const std::string& text) {
-  Tell(topic, "dropped", text);
-}
-
-void SensorReceiver::Tell(const std::string& topic, const std::string& what,
-                          const std::string& why) {
-  const auto warned = warned_.find(topic);
-  if (warned != warned_.end() && hires::base::SteadyNow() - warned->second < kWarningPeriod) return;
-  warned_[topic] = hires::base::SteadyNow();
-  hires::base::Log(hires::base::LogLevel::kWarn,
-                   fmt::format("topic={} {} why={}", topic, what, why));
+  warnings_.Tell(topic, "dropped", text);
 }
 
 }  // namespace hires_ros

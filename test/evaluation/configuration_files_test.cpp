@@ -23,6 +23,7 @@
 #include "hires/knowledge/loading.h"
 #include "hires/knowledge/store.h"
 #include "hires/localisation/monte_carlo_params.h"
+#include "hires/localisation/odometry_filter.h"
 #include "hires/navigation/base_guard.h"
 #include "hires/perception/recogniser_config.h"
 #include "hires/perception/warm_objects.h"
@@ -94,7 +95,11 @@ const std::map<std::string, Reader>& Readers() {
        }},
       {"localisation.yaml",
        [](const std::string& path) {
-         localisation::ReadMonteCarloParams(base::ParamReader::FromFile(path));
+         localisation::ReadLocalisationConfig(base::ParamReader::FromFile(path));
+       }},
+      {"odometry_filter.yaml",
+       [](const std::string& path) {
+         localisation::ReadOdometryFilterConfig(base::ParamReader::FromFile(path));
        }},
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
       {"relay.yaml",

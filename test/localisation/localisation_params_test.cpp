@@ -3,7 +3,7 @@
 
 #include "hires/base/error.h"
 #include "hires/localisation/monte_carlo_params.h"
-#include "localisation/odometry_filter.h"
+#include "hires/localisation/odometry_filter.h"
 
 namespace hires::localisation::localisation_params_test {
 namespace {
@@ -48,6 +48,11 @@ explained_distance: 0.3
 lost_explained: 0.4
 lost_spread: 1.0
 scan_timeout: 5.0
+node:
+  tf_broadcast: false
+  transform_tolerance: 0.2
+  max_age: 4.0
+  max_ahead: 0.25
 )";
 
 const std::string kFilter = R"(
@@ -63,24 +68,29 @@ max_linear_speed: 2.0
 max_angular_speed: 6.0
 jump_position_sd: 0.2
 jump_yaw_sd: 0.3
+node:
+  tf_broadcast: false
+  imu_used: true
+  imu_wait: 0.02
 )";
 
 std::string With(std::string text, const std::string& line, const std::string& instead) {
   return text.replace(text.find(line), line.size(), instead);
 }
 
-std::string MonteCarloError(const std::string& text) {
+std::string ConfigErrorOf(const std::string& text) {
   try {
-    ReadMonteCarloParams(ParamReader::FromString(text, "test.yaml"));
+    ReadLocalisationConfig(ParamReader::FromString(text, "test.yaml"));
   } catch (const base::ConfigError& error) {
     return error.what();
   }
   return "";
 }
 
-TEST(MonteCarloParamsTest, ValuesOfABlockAreRead) {
-  const MonteCarloParams params =
-      ReadMonteCarloParams(ParamReader::FromString(kMonteCarlo, "test.yaml"));
+TEST(LocalisationConfigTest, ValuesOfABlockAreRead) {
+  const LocalisationConfig config =
+      ReadLocalisationConfig(ParamReader::FromString(kMonteCarlo, "test.yaml"));
+  const MonteCarloParams& params = config.filter;
   EXPECT_EQ(params.max_particles, 2000);
   EXPECT_EQ(params.resample_interval, 2);
   EXPECT_EQ(params.laser_max_range, 12.0);
@@ -88,30 +98,42 @@ TEST(MonteCarloParamsTest, ValuesOfABlockAreRead) {
   EXPECT_EQ(params.odometry.alpha4, 0.4);
   EXPECT_EQ(params.initial_pose.y, -2.0);
   EXPECT_EQ(params.initial_variance, Eigen::Vector3d(0.25, 0.16, 0.07));
+  EXPECT_FALSE(config.node.tf_broadcast);
+  EXPECT_EQ(config.node.transform_tolerance, 0.2);
+  EXPECT_EQ(config.node.max_age, 4.0);
+  EXPECT_EQ(config.node.max_ahead, 0.25);
 }
 
-TEST(MonteCarloParamsTest, KeysThatAreMissingUnknownOrOutOfBoundsAreNamed) {
-  EXPECT_THAT(MonteCarloError(With(kMonteCarlo, "kld_z: 0.99\n", "")), HasSubstr("kld_z"));
-  EXPECT_THAT(MonteCarloError(kMonteCarlo + "beam_skip: 1\n"), HasSubstr("beam_skip"));
-  EXPECT_THAT(MonteCarloError(With(kMonteCarlo, "laser_sigma_hit: 0.2", "laser_sigma_hit: 0.0")),
+TEST(LocalisationConfigTest, KeysThatAreMissingUnknownOrOutOfBoundsAreNamed) {
+  EXPECT_THAT(ConfigErrorOf(With(kMonteCarlo, "kld_z: 0.99\n", "")), HasSubstr("kld_z"));
+  EXPECT_THAT(ConfigErrorOf(kMonteCarlo + "beam_skip: 1\n"), HasSubstr("beam_skip"));
+  EXPECT_THAT(ConfigErrorOf(With(kMonteCarlo, "laser_sigma_hit: 0.2", "laser_sigma_hit: 0.0")),
               HasSubstr("laser_sigma_hit"));
-  EXPECT_THAT(MonteCarloError(With(kMonteCarlo, "diff-corrected", "tracked")),
+  EXPECT_THAT(ConfigErrorOf(With(kMonteCarlo, "diff-corrected", "tracked")),
               HasSubstr("odom_model_type"));
-  EXPECT_THAT(MonteCarloError(With(kMonteCarlo, "max_particles: 2000", "max_particles: 50")),
+  EXPECT_THAT(ConfigErrorOf(With(kMonteCarlo, "max_particles: 2000", "max_particles: 50")),
               HasSubstr("max_particles"));
+  EXPECT_THAT(ConfigErrorOf(With(kMonteCarlo, "max_ahead", "max_future")),
+              HasSubstr("node.max_ahead"));
 }
 
-TEST(OdometryFilterParamsTest, ValuesOfABlockAreRead) {
-  const OdometryFilterParams params =
-      ReadOdometryFilterParams(ParamReader::FromString(kFilter, "test.yaml"));
-  EXPECT_EQ(params.yaw_per_radian, 4e-3);
-  EXPECT_EQ(params.jump_position_sd, 0.2);
-  EXPECT_EQ(params.jump_yaw_sd, 0.3);
+TEST(OdometryFilterConfigTest, ValuesOfABlockAreRead) {
+  const OdometryFilterConfig config =
+      ReadOdometryFilterConfig(ParamReader::FromString(kFilter, "test.yaml"));
+  EXPECT_EQ(config.filter.yaw_per_radian, 4e-3);
+  EXPECT_EQ(config.filter.jump_position_sd, 0.2);
+  EXPECT_EQ(config.filter.jump_yaw_sd, 0.3);
+  EXPECT_FALSE(config.node.tf_broadcast);
+  EXPECT_TRUE(config.node.imu_used);
+  EXPECT_EQ(config.node.imu_wait, 0.02);
 }
 
-TEST(OdometryFilterParamsTest, UnknownKeysAreRefused) {
-  EXPECT_THROW(ReadOdometryFilterParams(ParamReader::FromString(kFilter + "gps: 1\n", "test.yaml")),
+TEST(OdometryFilterConfigTest, UnknownKeysAreRefused) {
+  EXPECT_THROW(ReadOdometryFilterConfig(ParamReader::FromString("gps: 1\n" + kFilter, "test.yaml")),
                base::ConfigError);
+  EXPECT_THROW(
+      ReadOdometryFilterConfig(ParamReader::FromString(kFilter + "  gps: 1\n", "test.yaml")),
+      base::ConfigError);
 }
 
 }  // namespace

@@ -258,6 +258,12 @@ TEST_F(BadScanTest, RobotThatStandsDoesNotCountScansTwice) {
   EXPECT_FALSE(IsBad(ScanOutcome::kNotMoved));
 }
 
+TEST_F(BadScanTest, RobotThatStandsUsesAScanThatIsAskedFor) {
+  filter_.UseNextScan();
+  EXPECT_EQ(Update(1.5), ScanOutcome::kUpdated);
+  EXPECT_EQ(Update(1.6), ScanOutcome::kNotMoved);
+}
+
 TEST_F(BadScanTest, SilenceOfTheLaserIsToldAfterTheTimeout) {
   EXPECT_NE(filter_.Estimate(5.9).status, LocalisationStatus::kNoScan);
   EXPECT_EQ(filter_.Estimate(6.1).status, LocalisationStatus::kNoScan);

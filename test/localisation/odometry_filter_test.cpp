@@ -1,4 +1,4 @@
-#include "localisation/odometry_filter.h"
+#include "hires/localisation/odometry_filter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "hires/base/error.h"
 #include "hires/ros/robot_messages.h"
 #include "nodes/map_check/map_check_node.h"
@@ -9,52 +7,7 @@
 namespace hires_ros::map_check_test {
 namespace {
 
-using hires::world::Cell;
 using ::testing::HasSubstr;
-
-nav_msgs::OccupancyGrid SmallMap() {
-  nav_msgs::OccupancyGrid map;
-  map.info.width = 3;
-  map.info.height = 2;
-  map.info.resolution = 0.05f;
-  map.info.origin.position.x = -1.0;
-  map.info.origin.position.y = 2.0;
-  map.info.origin.orientation.w = 1.0;
-  map.data = {0, 100, -1, 19, 50, 66};
-  return map;
-}
-
-std::string ErrorOf(const nav_msgs::OccupancyGrid& map) {
-  try {
-    FromMsg(map);
-  } catch (const hires::base::ConfigError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(MapCheckTest, AMessageIsTheGridThatItSays) {
-  const auto grid = FromMsg(SmallMap());
-  EXPECT_EQ(grid.width, 3);
-  EXPECT_EQ(grid.height, 2);
-  EXPECT_NEAR(grid.resolution, 0.05, 1e-8);
-  EXPECT_EQ(grid.origin, Eigen::Vector2d(-1.0, 2.0));
-  EXPECT_THAT(grid.cells, testing::ElementsAre(Cell::kFree, Cell::kOccupied, Cell::kUnknown,
-                                               Cell::kFree, Cell::kUnknown, Cell::kOccupied));
-}
-
-TEST(MapCheckTest, AMapThatIsNoneIsRefused) {
-  nav_msgs::OccupancyGrid map = SmallMap();
-  map.data.pop_back();
-  EXPECT_THAT(ErrorOf(map), HasSubstr("3 x 2 cells and 5 values"));
-  EXPECT_THAT(ErrorOf({}), HasSubstr("0 x 0 cells"));
-  map = SmallMap();
-  map.info.resolution = 0.0f;
-  EXPECT_THAT(ErrorOf(map), HasSubstr("resolution is 0"));
-  map = SmallMap();
-  map.info.origin.orientation.z = 0.1;
-  EXPECT_THAT(ErrorOf(map), HasSubstr("origin is turned"));
-}
 
 /// map -> venue (1, 2; yaw 90 deg) -> lab_map (3, 0; yaw 0): lab_map's origin is at (1, 5) in the
 /// map.

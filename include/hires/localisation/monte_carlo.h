@@ -23,11 +23,15 @@ enum class LocalisationStatus {
 };
 std::string ToString(LocalisationStatus status);  ///< a word for files and people
 
+/// Why a robot cannot be localised in a map, whatever it sees: it has no free cell, or no occupied
+/// one. Empty: it may be.
+std::string WhyUseless(const world::OccupancyGrid& map);
+
 /// What the filter believes.
 struct PoseEstimate {
   geometry::Pose2 X_MB;  ///< mean of the heaviest cluster, moved on with the odometry since
-  /// [m^2, m rad, rad^2] of x, y, yaw around that mean, of all particles in clusters that count: so
-  /// it is large where two places fit. As of the last scan that was used.
+  /// Symmetric, [m^2, m rad, rad^2] of x, y, yaw around that mean, of all particles in clusters
+  /// that count: so it is large where two places fit. As of the last scan that was used.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   int num_particles{0};
   double effective_size{0.0};  ///< 1 / sum of squared weights, after the last scan that was used
@@ -72,6 +76,9 @@ class MonteCarloLocalisation {
 
   /// It may be on any free cell.  @throws base::ConfigError for a map without free cells.
   void GlobalLocalisation();
+
+  /// The next scan is used even if the robot does not move.
+  void UseNextScan();
 
   /// A scan, with where odometry and laser were at its time. Times [s] rise; one that goes back, or
   /// odometry that jumps, leaves the belief alone and is where odometry goes on from.

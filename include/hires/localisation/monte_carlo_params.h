@@ -44,7 +44,21 @@ struct MonteCarloParams {
   double scan_timeout{5.0};  ///< [s] without a scan that can be used, after which it says so
 };
 
-/// config/localisation.yaml.  @throws base::ConfigError naming the key
-MonteCarloParams ReadMonteCarloParams(base::ParamReader in);
+/// What the node `localisation` alone needs, for it hears scans while they are made.
+struct LiveScanParams {
+  bool tf_broadcast{true};          ///< tells tf where the odometry's frame is in the map
+  double transform_tolerance{0.1};  ///< [s] by which that transform is dated after its scan
+  double max_age{3.0};              ///< [s] of a scan, whether it came late or waited for tf
+  double max_ahead{0.5};            ///< [s] that its stamp may lie in the future
+};
+
+/// config/localisation.yaml
+struct LocalisationConfig {
+  MonteCarloParams filter;
+  LiveScanParams node;
+};
+
+/// @throws base::ConfigError naming the key
+LocalisationConfig ReadLocalisationConfig(base::ParamReader in);
 
 }  // namespace hires::localisation

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/base/topic_warnings.h"
 #include "hires/control/robot_names.h"
 #include "hires/ros/transform_buffer.h"
 #include "hires/sensing/object_estimator.h"
@@ -57,7 +58,6 @@ class SensorReceiver {
 
  private:
   void Note(const std::string& topic, const hires::sensing::Receipt& receipt);
-  void Tell(const std::string& topic, const std::string& what, const std::string& why);
   void TakeStated(const hires::sensing::RobotEstimate& now);
 
   hires::control::RobotNames names_;
@@ -65,7 +65,7 @@ class SensorReceiver {
   hires::sensing::RobotStateEstimator state_;
   std::unique_ptr<hires::sensing::ObjectEstimator> objects_;
   std::unique_ptr<hires::WorldState> stated_;  // by another node, not taken into account yet
-  std::map<std::string, double> warned_;       // topic -> steady [s]
+  hires::base::TopicWarnings warnings_;
   int num_bad_{0};
 };
 

@@ -23,21 +23,14 @@ using hires::geometry::Pose3;
 
 constexpr double kWarningPeriod = 1.0;  // [s]
 constexpr double kStaleObjects = 10.0;  // [s] that the tracker's last words may be older
-constexpr std::uint32_t kTransformQueue = 6000;
 
 }  // namespace
 
 HeatReaderNode::HeatReaderNode(const HeatReaderParams& params, ros::NodeHandle* nh)
     : params_(params),
       nh_(*nh),
-      surroundings_(std::make_shared<const perception::Surroundings>(*params.world)) {
-  for (const bool are_static : {false, true}) {
-    transforms_.push_back(nh->subscribe<tf2_msgs::TFMessage>(
-        are_static ? kStaticTransforms : kTransforms, kTransformQueue,
-        boost::function<void(const tf2_msgs::TFMessage&)>(
-            [this, are_static](const tf2_msgs::TFMessage& msg) { OnTransforms(msg, are_static); }),
-        ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
-  }
+      surroundings_(std::make_shared<const perception::Surroundings>(*params.world)),
+      transforms_(nh, [this](const TransformBuffer::News&) { Try(); }) {
   const ros::SubscriberStatusCallback on_listener = [this](const ros::SingleSubscriberPublisher&) {
     ListenWhereHeard();
   };
@@ -77,11 +70,6 @@ void HeatReaderNode::ListenWhereHeard() {
   }
 }
 
-void HeatReaderNode::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static) {
-  tree_.Take(msg, are_static);
-  Try();
-}
-
 void HeatReaderNode::OnPicture(const sensor_msgs::ImageConstPtr& msg) {
   ++num_pictures_;
   // A clock that began again is no picture too early.
@@ -99,15 +87,10 @@ void HeatReaderNode::Try() {
   if (frame.empty()) return Refuse("header.frame_id is empty, wanted the camera's optical frame");
   waits_for_ = WhyUnknown(header);
   if (!waits_for_.empty()) return;
-  const double time = header.stamp.toSec();
-  const sensing::FramePose X_MO = tree_.Find(map, frame, time);
-  if (X_MO.is_found()) return Read(X_MO.X_PC * perception::OpticalFrame().Inverse());
-  const std::string why = tree_.WhyNot(map, frame, time);
-  const auto newest = tree_.NewestOf(map, frame);
-  const bool is_too_old = X_MO.status == sensing::FrameStatus::kNotThen && newest && *newest > time;
-  if (is_too_old) return Refuse("older than what is kept of tf: " + why);
-  if (X_MO.status == sensing::FrameStatus::kInLoop) return Refuse(why);
-  waits_for_ = fmt::format("the transform of '{}' in '{}': {}", frame, map, why);
+  const Placement placed = PlaceAt(transforms_.tree(), map, frame, header.stamp.toSec());
+  if (placed.X_PC) return Read(*placed.X_PC * perception::OpticalFrame().Inverse());
+  if (!placed.why_never.empty()) return Refuse(placed.why_never);
+  waits_for_ = placed.waits_for;
 }
 
 /// What is not known yet of camera and objects; empty: nothing is missing.
@@ -133,7 +116,8 @@ std::vector<hires::geometry::Collision> HeatReaderNode::RobotShapes(double time)
   unplaced_.clear();
   for (const hires::robot::Link& link : params_.robot->model.links) {
     if (link.collisions.empty()) continue;
-    const sensing::FramePose X_ML = tree_.Find(params_.names.map_frame, link.name, time);
+    const sensing::FramePose X_ML =
+        transforms_.tree().Find(params_.names.map_frame, link.name, time);
     if (X_ML.is_found()) {
       perception::AddShapesOf(link, InWorld(X_ML.X_PC), &shapes_W);
     } else {

@@ -6,13 +6,12 @@
 #include <ros/node_handle.h>
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
-#include <tf2_msgs/TFMessage.h>
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "hires/ros/transform_buffer.h"
+#include "hires/ros/place/transform_listener.h"
 #include "nodes/heat_reader/heat_reader_params.h"
 
 namespace hires_ros {
@@ -27,7 +26,6 @@ class HeatReaderNode {
 
  private:
   void ListenWhereHeard();
-  void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
   void OnPicture(const sensor_msgs::ImageConstPtr& msg);
   void Try();  ///< reads the picture that waits, if all else is there
   std::string WhyUnknown(const std_msgs::Header& header) const;
@@ -40,7 +38,7 @@ class HeatReaderNode {
   const HeatReaderParams params_;
   ros::NodeHandle nh_;
   const std::shared_ptr<const hires::perception::Surroundings> surroundings_;
-  TransformBuffer tree_;
+  TransformListener transforms_;
   sensor_msgs::ImageConstPtr waiting_;  // or null
   sensor_msgs::CameraInfoConstPtr info_;
   hires::WorldStateConstPtr known_;
@@ -54,7 +52,6 @@ class HeatReaderNode {
 
   ros::Publisher temperatures_;
   std::vector<ros::Subscriber> inputs_;  // while somebody listens
-  std::vector<ros::Subscriber> transforms_;
   diagnostic_updater::Updater updater_;
   ros::SteadyTimer timer_;
 };

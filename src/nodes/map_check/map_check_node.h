@@ -25,11 +25,6 @@ struct MapCheckParams {
 /// @throws hires::base::ConfigError.
 MapCheckParams LoadMapCheckParams();
 
-/// 0 is free, 100 occupied, -1 unknown; in between map_server's thresholds count.
-/// @throws hires::base::ConfigError: no cells, another number of cells than its size says, a
-/// resolution that is not positive, an origin that is turned (map_server refuses such maps too).
-hires::world::OccupancyGrid FromMsg(const nav_msgs::OccupancyGrid& map);
-
 /// How the frame of a map lies in the world, or why that is not known.
 struct MapPlace {
   std::optional<hires::world::MapToWorld> map_to_world;

@@ -25,7 +25,6 @@ namespace sensing = hires::sensing;
 constexpr std::uint64_t kSeed = 1;      // of the planes that are tried; any will do
 constexpr double kWarningPeriod = 1.0;  // [s]
 constexpr double kMaxBehind = 0.1;      // of the points; a camera measures none behind itself
-constexpr std::uint32_t kTransformQueue = 6000;
 constexpr std::array<const char*, 4> kFaultNames{"malformed", "too old", "ahead of time",
                                                  "without transform"};  // as Fault
 
@@ -37,14 +36,8 @@ TabletopRecogniserNode::TabletopRecogniserNode(const TabletopRecogniserParams& p
       nh_(*nh),
       recogniser_(std::make_shared<const perception::Recogniser>(params.recogniser.catalogue,
                                                                  params.recogniser.params),
-                  perception::SelfFilterParams()) {
-  for (const bool are_static : {false, true}) {
-    transforms_.push_back(nh->subscribe<tf2_msgs::TFMessage>(
-        are_static ? kStaticTransforms : kTransforms, kTransformQueue,
-        boost::function<void(const tf2_msgs::TFMessage&)>(
-            [this, are_static](const tf2_msgs::TFMessage& msg) { OnTransforms(msg, are_static); }),
-        ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
-  }
+                  perception::SelfFilterParams()),
+      transforms_(nh, [this](const TransformBuffer::News&) { Try(); }) {
   const ros::SubscriberStatusCallback on_listener = [this](const ros::SingleSubscriberPublisher&) {
     ListenWhereHeard();
   };
@@ -69,11 +62,6 @@ void TabletopRecogniserNode::ListenWhereHeard() {
     clouds_.reset();
     waiting_.reset();
   }
-}
-
-void TabletopRecogniserNode::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static) {
-  tree_.Take(msg, are_static);
-  Try();
 }
 
 void TabletopRecogniserNode::OnCloud(const sensor_msgs::PointCloud2ConstPtr& msg) {
@@ -126,15 +114,11 @@ void TabletopRecogniserNode::Try() {
     return;
   }
   if (RefuseIfUntimely()) return;
-  const double time = header.stamp.toSec();
-  const sensing::FramePose X_BC = tree_.Find(params_.base_frame, frame, time);
-  if (X_BC.is_found()) return Recognise(X_BC.X_PC);
-  const std::string why = tree_.WhyNot(params_.base_frame, frame, time);
-  const auto newest = tree_.NewestOf(params_.base_frame, frame);
-  const bool is_too_old = X_BC.status == sensing::FrameStatus::kNotThen && newest && *newest > time;
-  if (is_too_old) return Refuse(Fault::kNoTransform, "older than what is kept of tf: " + why);
-  if (X_BC.status == sensing::FrameStatus::kInLoop) return Refuse(Fault::kNoTransform, why);
-  waits_for_ = fmt::format("the transform of '{}' in '{}': {}", frame, params_.base_frame, why);
+  const Placement placed =
+      PlaceAt(transforms_.tree(), params_.base_frame, frame, header.stamp.toSec());
+  if (placed.X_PC) return Recognise(*placed.X_PC);
+  if (!placed.why_never.empty()) return Refuse(Fault::kNoTransform, placed.why_never);
+  waits_for_ = placed.waits_for;
 }
 
 std::vector<hires::geometry::Collision> TabletopRecogniserNode::RobotShapes(double time) {
@@ -142,7 +126,7 @@ std::vector<hires::geometry::Collision> TabletopRecogniserNode::RobotShapes(doub
   uncut_.clear();
   for (const hires::robot::Link& link : params_.robot->model.links) {
     if (link.collisions.empty()) continue;
-    const sensing::FramePose X_BL = tree_.Find(params_.base_frame, link.name, time);
+    const sensing::FramePose X_BL = transforms_.tree().Find(params_.base_frame, link.name, time);
     if (X_BL.is_found()) {
       perception::AddShapesOf(link, X_BL.X_PC, &shapes_B);
     } else {

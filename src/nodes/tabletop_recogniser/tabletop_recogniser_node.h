@@ -4,7 +4,6 @@
 #include <hires/Detections.h>
 #include <ros/node_handle.h>
 #include <sensor_msgs/PointCloud2.h>
-#include <tf2_msgs/TFMessage.h>
 
 #include <array>
 #include <chrono>
@@ -13,7 +12,7 @@
 #include <vector>
 
 #include "hires/perception/tabletop_recogniser.h"
-#include "hires/ros/transform_buffer.h"
+#include "hires/ros/place/transform_listener.h"
 #include "nodes/tabletop_recogniser/tabletop_recogniser_params.h"
 
 namespace hires_ros {
@@ -34,7 +33,6 @@ class TabletopRecogniserNode {
   static constexpr std::size_t kNumFaults = 4;
 
   void ListenWhereHeard();
-  void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
   void OnCloud(const sensor_msgs::PointCloud2ConstPtr& msg);
   void Try();               ///< recognises in the cloud that waits, if its transform is there
   bool RefuseIfUntimely();  ///< the cloud that waits; whether it did
@@ -47,7 +45,7 @@ class TabletopRecogniserNode {
   const TabletopRecogniserParams params_;
   ros::NodeHandle nh_;
   hires::perception::TabletopRecogniser recogniser_;
-  TransformBuffer tree_;
+  TransformListener transforms_;
   sensor_msgs::PointCloud2ConstPtr waiting_;  // for its transform; or null
   hires::Detections last_;                    // answer
 
@@ -61,7 +59,6 @@ class TabletopRecogniserNode {
 
   ros::Publisher detections_, markers_;
   std::optional<ros::Subscriber> clouds_;  // while somebody listens
-  std::vector<ros::Subscriber> transforms_;
   diagnostic_updater::Updater updater_;
   ros::SteadyTimer timer_;
 };

@@ -28,8 +28,22 @@ struct OdometryFilterParams {
   double jump_yaw_sd{0.1};           ///< [rad] odometry or time, beside what it was off before
 };
 
-/// The block `odometry_filter`.  @throws base::ConfigError naming the key
-OdometryFilterParams ReadOdometryFilterParams(base::ParamReader in);
+/// What the node `odometry_filter` alone needs.
+struct LiveOdometryParams {
+  bool tf_broadcast{true};  ///< tells tf where the base is in the odometry's frame
+  bool imu_used{true};
+  double imu_wait{0.05};  ///< [s] of odometry's time that inertial readings may come after the
+                          ///< odometry of their time
+};
+
+/// config/odometry_filter.yaml
+struct OdometryFilterConfig {
+  OdometryFilterParams filter;
+  LiveOdometryParams node;
+};
+
+/// @throws base::ConfigError naming the key
+OdometryFilterConfig ReadOdometryFilterConfig(base::ParamReader in);
 
 /// What became of a reading.
 enum class FilterOutcome {

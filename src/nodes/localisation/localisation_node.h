@@ -1,0 +1,90 @@
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <nav_msgs/OccupancyGrid.h>
+#include <ros/node_handle.h>
+#include <sensor_msgs/LaserScan.h>
+#include <std_srvs/Empty.h>
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "hires/base/topic_warnings.h"
+#include "hires/localisation/monte_carlo.h"
+#include "hires/ros/place/pose_messages.h"
+#include "hires/ros/place/transform_listener.h"
+#include "nodes/localisation/localisation_params.h"
+
+namespace hires_ros {
+
+/// Tells where the robot is in a map, by its base laser and what tf says of its odometry: the
+/// interface of AMCL. Scans are used in the order of their stamps, each once tf says where odometry
+/// and laser were then, so the same messages give the same poses, bit for bit. What cannot be used
+/// is dropped with the reason, and the poses go on without it.
+class LocalisationNode {
+ public:
+  LocalisationNode(const LocalisationNodeParams& params, ros::NodeHandle* nh);
+
+ private:
+  using Empty = std_srvs::Empty;
+  /// Odometry and laser at the time of a scan.
+  struct Mount {
+    Placement X_OB, X_BL;
+    bool is_known() const { return X_OB.X_PC && X_BL.X_PC; }
+    std::string waits_for() const;
+    std::string why_never() const;
+  };
+
+  void Listen(ros::NodeHandle* nh);
+  void OnMap(const nav_msgs::OccupancyGrid& msg);
+  void BeginWith(const hires::world::OccupancyGrid& map);
+  void AskForMap();  ///< where none was latched
+  void OnInitialPose(const geometry_msgs::PoseWithCovarianceStamped& msg);
+  void SetPose(const UncertainPose& pose);
+  bool OnGlobalLocalisation(Empty::Request& request, Empty::Response& response);
+  bool OnNoMotionUpdate(Empty::Request& request, Empty::Response& response);
+
+  void OnTransforms(const TransformBuffer::News& news);
+  void OnScan(const sensor_msgs::LaserScanConstPtr& msg);
+  std::string WhyMalformed(const std_msgs::Header& header) const;
+  std::string WhyUntimely(const ros::Time& stamp) const;
+  Mount MountOf(const sensor_msgs::LaserScan& scan) const;
+  /// Uses the scans that wait, as far as all else is there. There may be many, and more transforms:
+  /// each of these looks at the first scan alone, `are_all_tried` is for what comes less often.
+  void Try(bool are_all_tried);
+  void DropUseless();
+  void Use(const sensor_msgs::LaserScan& scan, const Mount& mount);
+  void Publish(const ros::Time& stamp, bool is_new);
+
+  void Refuse(const std::string& topic, const std::string& why);
+  void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+  void DiagnoseBelief(diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  const LocalisationNodeParams params_;
+  ros::NodeHandle nh_;
+  TransformListener transforms_;
+  std::optional<nav_msgs::OccupancyGrid> map_;                         // that is used
+  std::optional<hires::localisation::MonteCarloLocalisation> filter_;  // once there is a map
+  std::optional<UncertainPose> told_;  // the pose, before there was a map
+  bool is_updated_{false};             // by a scan since it began
+  double begun_;                       // [s] steady
+  std::deque<sensor_msgs::LaserScanConstPtr> waiting_;
+
+  std::string waits_for_;
+  std::string last_drop_;                     // the last message that was dropped, and why
+  std::map<std::string, long> num_outcomes_;  // of scans that the filter heard
+  std::map<std::string, long> num_dropped_;   // by topic
+  hires::base::TopicWarnings warnings_;
+  long num_scans_{0};
+
+  ros::Publisher pose_, particles_, transform_;
+  std::vector<ros::Subscriber> inputs_;
+  std::vector<ros::ServiceServer> services_;
+  diagnostic_updater::Updater updater_;
+  ros::SteadyTimer timer_;
+};
+
+}  // namespace hires_ros

@@ -1,0 +1,370 @@
+#!/usr/bin/env python3
+"""The node that tells where a robot is in a map, as a real process: a robot that drives through a room and
+scans it, told where it begins, or not, or carried away; and maps, poses, scans and clocks that are wrong. Run
+alone, or by `rostest hires localisation.test`."""
+
+import math
+import os
+import sys
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
+
+from diagnostics import diagnostics  # noqa: E402
+from ros_processes import Processes, executable, wait_until  # noqa: E402
+from scanned_room import (ANGLES, BASE, Laser, Robot, after, laser_transform, map_message,  # noqa: E402
+                          pose_message, room, scan_message, transform_message, wrapped, yaw_of)
+from test_run import run_test  # noqa: E402
+
+ODOMETRY = 'odom_combined'
+PERIOD = 0.2      # [s] between scans
+TOLERANCE = 0.1   # [s] transform_tolerance of config/localisation.yaml
+NAN = float('nan')
+
+
+class Node:
+    """One process with what it says; names of its own, and common inputs."""
+    count = 0
+
+    def __init__(self, test, *arguments):
+        Node.count += 1
+        self.space = '/n%d' % Node.count
+        self.name = self.space + '/localisation'
+        self.poses, self.transforms = [], {}
+        rospy = test.rospy
+        from geometry_msgs.msg import PoseWithCovarianceStamped
+        from tf2_msgs.msg import TFMessage
+        listeners = [rospy.Subscriber(self.space + '/amcl_pose', PoseWithCovarianceStamped, self.poses.append,
+                                      queue_size=100),
+                     rospy.Subscriber('/tf', TFMessage, self._take, queue_size=100)]
+        self.process = test.processes.start(
+            [executable('localisation'), '__ns:=' + self.space, 'base_scan:=/base_scan', 'map:=/map',
+             'initialpose:=/initialpose', 'static_map:=/static_map'] + list(arguments), test.main)
+        test.addCleanup(self.process.kill)
+        for listener in listeners:
+            test.addCleanup(listener.unregister)
+        for publisher in test.publishers:
+            wait_until(lambda: any(c.endpoint_id == self.name for c in publisher.impl.connections),
+                       lambda: '%s to listen to %s\n%s' % (self.name, publisher.name, self.process.output()))
+        wait_until(lambda: all(any(c.callerid_pub == self.name for c in listener.impl.connections)
+                               for listener in listeners),
+                   lambda: '%s to be heard\n%s' % (self.name, self.process.output()))
+
+    def _take(self, message):
+        if message._connection_header['callerid'] != self.name:
+            return
+        for transform in message.transforms:
+            self.transforms[transform.header.stamp.to_nsec()] = transform
+
+
+class LocalisationTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.processes = Processes()
+        cls.addClassCleanup(cls.processes.stop_all)
+        cls.main = cls.processes.master()
+        os.environ.update(ROS_MASTER_URI=cls.main.uri, ROS_IP='127.0.0.1')
+        os.environ.pop('ROS_HOSTNAME', None)
+        import rospy
+        from geometry_msgs.msg import PoseWithCovarianceStamped
+        from nav_msgs.msg import OccupancyGrid
+        from rosgraph_msgs.msg import Clock
+        from sensor_msgs.msg import LaserScan
+        from tf2_msgs.msg import TFMessage
+        cls.rospy = rospy
+        rospy.init_node('localisation_test', disable_signals=True)
+        cls.main.set_param('/use_sim_time', True)  # of the nodes; this one goes by the wall's clock
+        cls.clock = rospy.Publisher('/clock', Clock, queue_size=100)
+        cls.moving = rospy.Publisher('/tf', TFMessage, queue_size=1000)
+        cls.fixed = rospy.Publisher('/tf_static', TFMessage, queue_size=10, latch=True)
+        cls.maps = rospy.Publisher('/map', OccupancyGrid, queue_size=10)
+        cls.told = rospy.Publisher('/initialpose', PoseWithCovarianceStamped, queue_size=10)
+        cls.scans = rospy.Publisher('/base_scan', LaserScan, queue_size=1000)
+        cls.publishers = [cls.clock, cls.moving, cls.fixed, cls.maps, cls.told, cls.scans]
+        cls.fixed.publish(TFMessage([laser_transform()]))
+        cls.laser = Laser()
+
+    now = 1000.0  # [s]
+
+    def setUp(self):
+        LocalisationTest.now += 100.0
+        self.robot = Robot()
+
+    # What goes in.
+
+    def pose(self, pose):
+        return pose_message(pose, self.now)
+
+    def scan(self):
+        return scan_message(self.laser, self.robot.pose, self.now)
+
+    def odometry(self):
+        return transform_message(ODOMETRY, BASE, self.robot.odometry, self.now)
+
+    def tick(self):
+        """Time goes on, and odometry with it."""
+        from tf2_msgs.msg import TFMessage
+        LocalisationTest.now = round(self.now + PERIOD, 3)
+        self.clock.publish(self.rospy.Time.from_sec(self.now))
+        self.moving.publish(TFMessage([self.odometry()]))
+
+    def step(self, *nodes):
+        """One scan, until each node has said where the robot was then; those poses."""
+        self.tick()
+        scan = self.scan()
+        self.scans.publish(scan)
+        stamp = (scan.header.stamp + self.rospy.Duration.from_sec(TOLERANCE)).to_nsec()
+        wait_until(lambda: all(stamp in node.transforms for node in nodes), lambda: 'an answer to a scan\n' +
+                   '\n'.join(node.process.output() for node in nodes))
+        return [self.seen(node.transforms[stamp]) for node in nodes]
+
+    def seen(self, transform):
+        where = transform.transform
+        X_MO = (where.translation.x, where.translation.y, yaw_of(where.rotation))
+        return after(X_MO, self.robot.odometry)
+
+    def drive(self, count, *nodes):
+        """(m, rad) by which the first node was off after each scan."""
+        errors = []
+        for _ in range(count):
+            self.robot.drive()
+            pose = self.step(*nodes)[0]
+            errors.append((math.hypot(pose[0] - self.robot.pose[0], pose[1] - self.robot.pose[1]),
+                           abs(wrapped(pose[2] - self.robot.pose[2]))))
+        return errors
+
+    def begun(self, *arguments):
+        """A node that knows where the robot is."""
+        node = Node(self, *arguments)
+        self.begin(node)
+        return node
+
+    def begin(self, *nodes):
+        self.tick()
+        self.maps.publish(map_message())
+        for node in nodes:
+            node.process.wait_for('map=used')
+        self.told.publish(self.pose(self.robot.START))
+        for node in nodes:
+            node.process.wait_for('pose=set')
+        self.step(*nodes)
+
+    def say(self, node, condition):
+        """Its diagnostics, once they are as wanted."""
+        return diagnostics(self.rospy, node.name[1:], condition)
+
+    def dropped(self, node, words):
+        return self.say(node, lambda v: words in v['dropped last'])
+
+    # What it does.
+
+    def test_a_robot_that_was_told_where_it_is_is_followed(self):
+        node = self.begun()
+        errors = self.drive(107, node)  # once round
+        print('worst %.3f m, %.3f rad' % tuple(map(max, zip(*errors))))
+        self.assertLess(max(error[0] for error in errors), 0.15)
+        self.assertLess(max(error[1] for error in errors), 0.06)
+        drifted = after(Robot.START, self.robot.odometry)
+        self.assertGreater(math.dist(drifted[:2], self.robot.pose[:2]), 0.5, 'odometry would do it, too')
+        self.assertEqual(self.say(node, lambda v: v['message'] == 'good')['level'], 0)
+        pose = node.poses[-1]
+        self.assertEqual(pose.header.frame_id, 'map')
+        covariance = pose.pose.covariance
+        planar = {6 * row + column for row in (0, 1, 5) for column in (0, 1, 5)}
+        self.assertTrue(all((value != 0.0) == (i in planar) for i, value in enumerate(covariance)), covariance)
+        for index in (0, 7, 35):
+            self.assertTrue(0.0 < covariance[index] < 0.02, covariance)
+        self.assertEqual(covariance[1], covariance[6])
+
+    def test_a_robot_that_stands_keeps_its_transform_and_is_looked_at_again_when_asked(self):
+        from std_srvs.srv import Empty
+        node = self.begun()
+        wait_until(lambda: node.poses, 'the first pose')
+        before = len(node.poses)
+        for _ in range(5):
+            self.step(node)
+        self.assertEqual(len(node.poses), before)
+        self.rospy.ServiceProxy(node.space + '/request_nomotion_update', Empty)()
+        self.step(node)
+        wait_until(lambda: len(node.poses) == before + 1, 'a pose that was asked for')
+
+    def test_a_robot_that_may_be_anywhere_finds_itself(self):
+        from std_srvs.srv import Empty
+        node = self.begun()
+        self.rospy.ServiceProxy(node.space + '/global_localization', Empty)()
+        errors = self.drive(80, node)
+        print('at first %.2f m, at last %.3f m, %.3f rad' % (errors[0][0], *errors[-1]))
+        self.assertGreater(max(error[0] for error in errors[:5]), 0.5, 'it knew all the time')
+        self.assertLess(errors[-1][0], 0.15)
+        self.assertLess(errors[-1][1], 0.06)
+        self.say(node, lambda v: v['message'] == 'good')
+
+    def test_a_robot_that_was_carried_away_is_lost(self):
+        node = self.begun()
+        self.drive(5, node)
+        self.say(node, lambda v: v['message'] == 'good')
+        self.robot.pose = (1.0, 1.0, 2.5)
+        for _ in range(10):
+            self.step(node)
+        self.assertEqual(self.say(node, lambda v: v['message'].startswith('lost'))['level'], 2)
+
+    def test_the_same_messages_give_the_same_bits(self):
+        nodes = [Node(self, '_seed:=3'), Node(self, '_seed:=3'), Node(self, '_seed:=4')]
+        self.begin(*nodes)
+        self.drive(40, *nodes)
+        first, second, other = ([(p.header.stamp.to_nsec(), p.pose) for p in node.poses] for node in nodes)
+        self.assertGreater(len(first), 10)
+        self.assertEqual(first, second)
+        self.assertEqual([stamp for stamp, _ in first], [stamp for stamp, _ in other])
+        self.assertNotEqual(first, other)
+        self.assertEqual(nodes[0].transforms, nodes[1].transforms)
+
+    def test_another_map_is_begun_with_where_the_robot_was(self):
+        node = self.begun()
+        self.drive(10, node)
+        known = len(node.process.lines)
+        other = room()
+        other[20:24, 180:184] = True
+        self.maps.publish(map_message())  # the same again is no other one
+        self.maps.publish(map_message(other))
+        node.process.wait_for('pose=set', first=known)
+        self.assertEqual(sum('map=used' in line for line in node.process.lines), 2)
+        self.assertLess(max(self.drive(10, node))[0], 0.15)
+
+    def test_particles_are_shown_to_those_who_look(self):
+        from geometry_msgs.msg import PoseArray
+        node = self.begun()
+        shown = []
+        listener = self.rospy.Subscriber(node.space + '/particlecloud', PoseArray, shown.append)
+        self.addCleanup(listener.unregister)
+        wait_until(lambda: listener.get_num_connections() > 0, 'the particles')
+        self.drive(4, node)
+        wait_until(lambda: shown and len(shown[-1].poses) >= 500, 'particles')
+        self.assertEqual(shown[-1].header.frame_id, 'map')
+
+    # What is wrong.
+
+    def test_scans_that_are_wrong_are_dropped_with_the_reason(self):
+        node = self.begun()
+
+        def refuse(words, **change):
+            self.robot.drive()
+            self.tick()
+            scan = self.scan()
+            for key, value in change.items():
+                if key in ('stamp', 'frame_id'):
+                    setattr(scan.header, key, value)
+                else:
+                    setattr(scan, key, value)
+            self.scans.publish(scan)
+            if 'frame_id' in change and change['frame_id']:
+                self.step(node)  # it waits until a later one can be used
+            self.assertIn('base_scan', self.dropped(node, words)['dropped last'])
+
+        def at(stamp):
+            return self.rospy.Time.from_sec(stamp)
+        refuse('header.stamp is 0', stamp=self.rospy.Time(0))
+        refuse('header.frame_id is empty', frame_id='')
+        refuse("tf does not know frame 'nobodys_laser'", frame_id='nobodys_laser')
+        refuse('in the future', stamp=at(self.now + 50.0))
+        refuse('s old, wanted 3', stamp=at(self.now - 50.0))
+        refuse('no ranges: 0 ranges', ranges=[])
+        refuse('nothing measured', ranges=[NAN] * len(ANGLES))
+        refuse('nothing met', ranges=[float('inf')] * len(ANGLES))
+        refuse('bad angles', angle_increment=NAN)
+        self.assertLess(self.drive(5, node)[-1][0], 0.15)
+        self.say(node, lambda v: v['message'] == 'good')
+
+    def test_scans_without_odometry_wait_for_it(self):
+        from tf2_msgs.msg import TFMessage
+        node = self.begun()
+        self.robot.drive()
+        LocalisationTest.now += PERIOD
+        self.clock.publish(self.rospy.Time.from_sec(self.now))
+        scan = self.scan()
+        self.scans.publish(scan)
+        self.say(node, lambda v: v['message'].startswith("waits for the transform of 'base_footprint'"))
+        self.moving.publish(TFMessage([self.odometry()]))
+        stamp = (scan.header.stamp + self.rospy.Duration.from_sec(TOLERANCE)).to_nsec()
+        wait_until(lambda: stamp in node.transforms, 'the scan to be used')
+
+    def test_silence_of_the_laser_is_told(self):
+        node = self.begun()
+        LocalisationTest.now += 10.0
+        self.clock.publish(self.rospy.Time.from_sec(self.now))
+        self.say(node, lambda v: v['message'].startswith('no scan'))
+        self.step(node)
+        self.say(node, lambda v: v['message'] == 'good')
+
+    def test_a_clock_that_begins_again_is_gone_along_with(self):
+        node = self.begun()
+        self.drive(10, node)
+        for now in (100.0, self.now + 100.0):  # back, and on
+            LocalisationTest.now = now
+            self.tick()
+            # The first scans may overtake the clock, and are from another time then.
+            wait_until(lambda: self._is_answered(node), lambda: 'an answer\n' + node.process.output())
+            self.assertLess(self.drive(10, node)[-1][0], 0.15)
+            self.say(node, lambda v: v['message'] == 'good')
+
+    def test_odometry_that_begins_again_at_zero_is_gone_along_with(self):
+        node = self.begun()
+        self.drive(10, node)
+        self.robot.odometry = (0.0, 30.0, 2.0)
+        self.step(node)
+        self.dropped(node, 'odometry jumped: it goes on from this odometry')
+        self.assertLess(max(self.drive(20, node))[0], 0.15)
+
+    def _is_answered(self, node):
+        self.tick()
+        before = len(node.transforms)
+        self.scans.publish(self.scan())
+        return len(node.transforms) > before
+
+    def test_poses_that_are_none_are_refused(self):
+        node = self.begun()
+
+        def refuse(words, change):
+            message = self.pose(Robot.START)
+            change(message)
+            self.told.publish(message)
+            self.assertIn('initialpose', self.dropped(node, words)['dropped last'])
+        refuse("header.frame_id is 'odom', wanted 'map'", lambda m: setattr(m.header, 'frame_id', 'odom'))
+        refuse('position is nan', lambda m: setattr(m.pose.pose.position, 'x', NAN))
+        refuse('has length 0, wanted 1', lambda m: setattr(m.pose.pose.orientation, 'w', 0.0))
+        refuse('covariance', lambda m: m.pose.covariance.__setitem__(0, NAN))
+        refuse('covariance', lambda m: m.pose.covariance.__setitem__(0, -1.0))
+        self.assertLess(self.drive(5, node)[-1][0], 0.15)
+
+    def test_maps_that_are_none_are_refused_and_static_map_is_asked(self):
+        from nav_msgs.srv import GetMap, GetMapResponse
+        node = Node(self)
+        self.tick()
+        self.say(node, lambda v: v['message'] == 'waits for a map on /map')
+
+        def refuse(words, message):
+            self.maps.publish(message)
+            self.assertIn('map', self.dropped(node, words)['dropped last'])
+        grid = room()
+        refuse('has no free cell', map_message(grid | True))
+        refuse('has no occupied cell', map_message(grid & False))
+        refuse('0 x 0 cells', type(map_message())(header=map_message().header))
+        elsewhere = map_message()
+        elsewhere.header.frame_id = 'attic'
+        refuse("header.frame_id is 'attic', wanted 'map'", elsewhere)
+        server = self.rospy.Service('/static_map', GetMap, lambda _: GetMapResponse(map_message()))
+        self.addCleanup(server.shutdown)
+        node.process.wait_for('map=used')
+        self.told.publish(self.pose(Robot.START))
+        node.process.wait_for('pose=set')
+        self.step(node)
+        self.assertLess(self.drive(5, node)[-1][0], 0.15)
+
+    def test_parameters_that_nobody_knows_end_it(self):
+        node = self.processes.start([executable('localisation'), '__name:=mistaken', '_sed:=3'], self.main)
+        self.assertNotEqual(node.wait(), 0)
+        self.assertIn("'sed'", node.output())
+
+
+if __name__ == '__main__':
+    run_test('localisation', LocalisationTest)

@@ -1,0 +1,63 @@
+#include "hires/ros/place/map_messages.h"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "hires/base/error.h"
+
+namespace hires_ros::map_messages_test {
+namespace {
+
+using hires::world::Cell;
+using ::testing::HasSubstr;
+
+nav_msgs::OccupancyGrid SmallMap() {
+  nav_msgs::OccupancyGrid map;
+  map.info.width = 3;
+  map.info.height = 2;
+  map.info.resolution = 0.05f;
+  map.info.origin.position.x = -1.0;
+  map.info.origin.position.y = 2.0;
+  map.info.origin.orientation.w = 1.0;
+  map.data = {0, 100, -1, 19, 50, 66};
+  return map;
+}
+
+std::string ErrorOf(const nav_msgs::OccupancyGrid& map) {
+  try {
+    FromMsg(map);
+  } catch (const hires::base::ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(MapMessagesTest, AMessageIsTheGridThatItSays) {
+  const auto grid = FromMsg(SmallMap());
+  EXPECT_EQ(grid.width, 3);
+  EXPECT_EQ(grid.height, 2);
+  EXPECT_NEAR(grid.resolution, 0.05, 1e-8);
+  EXPECT_EQ(grid.origin, Eigen::Vector2d(-1.0, 2.0));
+  EXPECT_THAT(grid.cells, testing::ElementsAre(Cell::kFree, Cell::kOccupied, Cell::kUnknown,
+                                               Cell::kFree, Cell::kUnknown, Cell::kOccupied));
+}
+
+TEST(MapMessagesTest, AMapThatIsNoneIsRefused) {
+  nav_msgs::OccupancyGrid map = SmallMap();
+  map.data.pop_back();
+  EXPECT_THAT(ErrorOf(map), HasSubstr("3 x 2 cells and 5 values"));
+  EXPECT_THAT(ErrorOf({}), HasSubstr("0 x 0 cells"));
+  map = SmallMap();
+  map.info.resolution = 0.0f;
+  EXPECT_THAT(ErrorOf(map), HasSubstr("resolution is 0"));
+  map = SmallMap();
+  map.info.origin.orientation.z = 0.1;
+  EXPECT_THAT(ErrorOf(map), HasSubstr("origin is turned"));
+  map = SmallMap();
+  map.info.origin.position.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(ErrorOf(map), HasSubstr("origin is not finite"));
+}
+
+}  // namespace
+}  // namespace hires_ros::map_messages_test
