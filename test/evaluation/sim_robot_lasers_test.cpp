@@ -107,6 +107,31 @@ TEST(SweepCloudTest, ASweepThatWasNotSeenWholeGivesNoCloud) {
   EXPECT_FALSE(Swept(3, 0.0));
 }
 
+// Between an edge and the wall behind it a beam that meets both measures neither.
+TEST(SweepCloudTest, PointsThatVeilAnEdgeAreLeftOut) {
+  SweepCloud sweep(1);
+  simulation::LaserParams laser;
+  laser.num_beams = 101;
+  laser.angle_min = -0.22;
+  laser.angle_max = 0.22;
+  std::vector<double> ranges(101, 2.0);
+  std::fill(ranges.begin(), ranges.begin() + 50, 1.0);
+  ranges[50] = 1.25;
+  ranges[51] = 1.75;
+  sweep.Add({0.0, 0, true}, laser, ranges, {});
+  const auto cloud = sweep.Add({0.0, 0, false}, laser, ranges, {});
+  ASSERT_TRUE(cloud);
+  int near = 0, far = 0;
+  for (const Eigen::Vector3f& p : cloud->points) {
+    const float range = p.norm();
+    near += std::abs(range - 1.0F) < 1e-5F ? 1 : 0;
+    far += std::abs(range - 2.0F) < 1e-5F ? 1 : 0;
+  }
+  EXPECT_EQ(near, 50) << "the edge itself stays";
+  EXPECT_GE(far, 25);
+  EXPECT_EQ(near + far, static_cast<int>(cloud->points.size()));
+}
+
 TEST(SweepCloudTest, EachSweepBeginsAnew) {
   SweepCloud sweep(2);
   simulation::LaserParams laser;

@@ -84,6 +84,7 @@ void ForEveryParameter(const YAML::Node& root,
                        const std::function<void(const std::string&, YAML::Node)>& visit) {
   const std::function<void(const std::string&, YAML::Node)> descend = [&](const std::string& path,
                                                                           YAML::Node node) {
+    if (path == "sensing.ground.eye") return;  // a name: any will do
     if (!node.IsMap()) return visit(path, node);
     for (auto entry : node) descend(path + "." + entry.first.Scalar(), entry.second);
   };

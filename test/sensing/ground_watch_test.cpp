@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "hires/base/error.h"
 #include "hires/base/param_reader.h"
 #include "hires/perception/camera_view.h"
@@ -88,6 +90,30 @@ TEST_F(GroundWatchTest, ACloudIsPutWhereTheRobotWasWhenItWasTaken) {
   watch_.OnCloud(1.0, "laser", Sweep({3.0, 2.0, 0.0}));
   Stand(1.1, {3.1, 2.0, 0.1});
   ExpectTheBoxAndNothingElse(Obstacles(1.1));
+}
+
+// A sweep takes 1.8 s, in which the robot moves its arms, or drives on.
+TEST_F(GroundWatchTest, WhatHangsWhereTheRobotWasDuringTheSweepIsItsOwn) {
+  const Pose2 X_MB{3.0, 2.0, 0.0};
+  const auto sweep = [&] {
+    perception::PointCloud cloud = Sweep(X_MB);
+    for (int i = 0; i < 20; ++i) {  // of the mast, 0.3 m to the right
+      const Eigen::Vector3d p_B(0.7, -0.04 + 0.004 * i, 0.8);
+      cloud.points.push_back((kLaser.Inverse() * p_B).cast<float>());
+    }
+    cloud.width = static_cast<int>(cloud.points.size());
+    cloud.height = 1;
+    return cloud;
+  };
+  Stand(1.0, X_MB);
+  watch_.OnCloud(1.0, "laser", sweep());
+  const auto still = Obstacles(1.0);
+  EXPECT_TRUE(std::any_of(still.begin(), still.end(), [](const auto& square) {
+    return geometry::Contains(square, {3.71, 2.01});
+  })) << "where the robot never was, something hangs there";
+  for (int i = 1; i <= 20; ++i) Stand(1.0 + 0.1 * i, {3.0, 2.0 - 0.3 * (20 - i) / 20.0, 0.0});
+  watch_.OnCloud(3.0, "laser", sweep());
+  ExpectTheBoxAndNothingElse(Obstacles(3.0));
 }
 
 class GroundWatchByEyeTest : public GroundWatchTest {
