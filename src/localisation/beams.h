@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "hires/geometry/pose.h"
-#include "hires/robot/readings.h"
 #include "hires/localisation/scan_outcome.h"
+#include "hires/robot/readings.h"
 
 namespace hires::localisation {
 
