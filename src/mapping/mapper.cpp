@@ -58,6 +58,10 @@ class Mapper::Impl {
     waiting_.push_back(scan);
     TakeThoseThatNeedNotWait();
   }
+  std::optional<localisation::TimedPose> newest() const;
+  MapCounts counts() const {
+    return {keyframes_.size(), keyframes_.num_loops(), num_lost_, odometry_jumps_};
+  }
   MapResult Result();
 
  private:
@@ -156,9 +160,14 @@ Pose2 Mapper::Impl::PoseAt(std::size_t i) const {
   return keyframes_.pose(records_[i].keyframe) * records_[i].X_KB;
 }
 
+std::optional<localisation::TimedPose> Mapper::Impl::newest() const {
+  if (records_.empty()) return std::nullopt;
+  return localisation::TimedPose{records_.back().time, PoseAt(records_.size() - 1)};
+}
+
 MapResult Mapper::Impl::Result() {
   while (!waiting_.empty()) TakeFirstWaiting();
-  MapResult result;
+  MapResult result{counts(), {}, {}};
   for (std::size_t i = 0; i < records_.size(); ++i)
     result.trajectory.push_back({records_[i].time, PoseAt(i)});
   std::vector<const RobotLog::Scan*> scans;
@@ -168,10 +177,6 @@ MapResult Mapper::Impl::Result() {
     poses.push_back(PoseAt(drawn_records_[i]));
   }
   result.grid = DrawGrid(scans, poses, params_.resolution, params_.max_range);
-  result.num_keyframes = keyframes_.size();
-  result.num_loops = keyframes_.num_loops();
-  result.num_lost = num_lost_;
-  result.odometry_jumps = odometry_jumps_;
   return result;
 }
 
@@ -181,6 +186,8 @@ Mapper::Mapper(Mapper&&) noexcept = default;
 
 void Mapper::AddOdometry(const RobotLog::Odometry& odometry) { impl_->AddOdometry(odometry); }
 void Mapper::AddScan(const RobotLog::Scan& scan) { impl_->AddScan(scan); }
+std::optional<localisation::TimedPose> Mapper::newest() const { return impl_->newest(); }
+MapCounts Mapper::counts() const { return impl_->counts(); }
 MapResult Mapper::Result() { return impl_->Result(); }
 
 MapResult MakeMap(const RobotLog& log, const MapperParams& params, const std::string& task) {

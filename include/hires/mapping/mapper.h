@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "hires/localisation/robot_log.h"
@@ -21,13 +22,16 @@ struct MapperParams {
   double min_fit{0.6};        ///< share of a scan's points that a loop must explain
 };
 
-struct MapResult {
-  world::OccupancyGrid grid;           ///< free what beams passed, occupied where they ended
-  localisation::TimedPath trajectory;  ///< one pose for each scan that was added
+struct MapCounts {
   int num_keyframes{0};
   int num_loops{0};       ///< places seen again that tie the map together
   int num_lost{0};        ///< scans that fitted nothing and stand where odometry says
   int odometry_jumps{0};  ///< steps faster than any robot, taken as none
+};
+
+struct MapResult : MapCounts {
+  world::OccupancyGrid grid;           ///< free what beams passed, occupied where they ended
+  localisation::TimedPath trajectory;  ///< one pose for each scan that was added
 };
 
 /// Makes a map of what a laser saw on a drive: scans are matched with the latest keyframes
@@ -46,6 +50,11 @@ class Mapper {
   /// A scan without X_OB waits for the odometry after it. One that measured nothing gets the pose
   /// that odometry tells.  @pre times do not go back.
   void AddScan(const localisation::RobotLog::Scan& scan);
+
+  /// Where the last scan was made, of those that wait for no odometry: the end of the trajectory,
+  /// without its cost. Nothing before the first one.
+  std::optional<localisation::TimedPose> newest() const;
+  MapCounts counts() const;
 
   /// What is known after the scans so far, those that still waited for odometry included; may be
   /// asked several times.
