@@ -151,7 +151,7 @@ TEST(MapperTest, ScanWaitsForTheOdometryAfterIt) {
   EXPECT_EQ(late.grid.cells, MakeMap(drive.log).grid.cells);
 }
 
-TEST(MapperTest, NewestPoseAndCountsNeedNoDrawing) {
+TEST(MapperTest, NewestPoseCountsAndSketchAreThoseOfTheResult) {
   const SimulatedDrive drive = TwoRoomsDrive();
   Mapper mapper;
   EXPECT_FALSE(mapper.newest());
@@ -169,6 +169,7 @@ TEST(MapperTest, NewestPoseAndCountsNeedNoDrawing) {
     EXPECT_EQ(newest->X_MB.yaw, last.yaw);
     EXPECT_EQ(counts.num_keyframes, result.num_keyframes);
     EXPECT_EQ(counts.num_loops, result.num_loops);
+    EXPECT_EQ(Draw(mapper.sketch()).cells, result.grid.cells);
   }
   EXPECT_GT(mapper.counts().num_loops, 0);
 }

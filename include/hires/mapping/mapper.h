@@ -34,6 +34,17 @@ struct MapResult : MapCounts {
   localisation::TimedPath trajectory;  ///< one pose for each scan that was added
 };
 
+/// What a map is drawn from, apart from the mapper: another thread may draw it.
+struct MapSketch {
+  std::vector<std::shared_ptr<const localisation::RobotLog::Scan>> scans;  ///< show something new
+  std::vector<geometry::Pose2> X_MBs;                                      ///< one for each
+  double resolution{0.05}, max_range{30.0};                                ///< [m]
+};
+
+/// Takes time in proportion to all beams and their lengths.
+/// @throws base::ConfigError if the map would have more than 100 million cells.
+world::OccupancyGrid Draw(const MapSketch& sketch);
+
 /// Makes a map of what a laser saw on a drive: scans are matched with the latest keyframes
 /// (points to walls, odometry as prior), places seen before are recognised by their scans, and a
 /// graph of poses is made to agree with all of it. Map M is the odometry's frame at the first scan,
@@ -55,10 +66,11 @@ class Mapper {
   /// without its cost. Nothing before the first one.
   std::optional<localisation::TimedPose> newest() const;
   MapCounts counts() const;
+  MapSketch sketch() const;  ///< of the same scans
 
   /// What is known after the scans so far, those that still waited for odometry included; may be
   /// asked several times.
-  /// @throws base::ConfigError if the map would have more than 100 million cells.
+  /// @throws base::ConfigError  as Draw.
   MapResult Result();
 
  private:

@@ -64,6 +64,7 @@ LocalisationNode::LocalisationNode(const LocalisationNodeParams& params, ros::No
   timer_ = nh->createSteadyTimer(ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) {
     if (!map_ && hires::base::SteadyNow() - begun_ > kPatience) AskForMap();
     scans_.DropUseless();     // what waits grows old, also where nothing comes
+    scans_.Try(true);         // the clock may have come after all else
     updater_.force_update();  // also while simulated time stands still
   });
 }
