@@ -18,7 +18,22 @@ ScanOutcome CheckAngles(const robot::ScanReading& scan) {
   return is_good ? ScanOutcome::kUpdated : ScanOutcome::kBadAngles;
 }
 
+bool IsMeasured(double range, double shortest, double longest) {
+  return range > 0.0 && range >= shortest && range < longest;
+}
+
 }  // namespace
+
+ScanOutcome Examine(const robot::ScanReading& scan, double shortest, double longest) {
+  const ScanOutcome angles = CheckAngles(scan);
+  if (angles != ScanOutcome::kUpdated) return angles;
+  bool is_any_far = false;
+  for (const double range : scan.ranges) {
+    if (IsMeasured(range, shortest, longest)) return ScanOutcome::kUpdated;
+    is_any_far = is_any_far || range >= longest;
+  }
+  return is_any_far ? ScanOutcome::kNothingMet : ScanOutcome::kNothingMeasured;
+}
 
 std::string ToString(ScanOutcome outcome) {
   switch (outcome) {
@@ -56,21 +71,14 @@ double RangeMax(const robot::ScanReading& scan, const BeamParams& params, double
 ScanOutcome SelectBeams(const robot::ScanReading& scan, const geometry::Pose2& X_BL,
                         const BeamParams& params, Beams* beams) {
   *beams = {};
-  const ScanOutcome angles = CheckAngles(scan);
-  if (angles != ScanOutcome::kUpdated) return angles;
-  if (!X_BL.IsFinite()) return ScanOutcome::kNotFinite;
   const double shortest = params.min_range >= 0.0 ? params.min_range : scan.range_min;
   const double longest = RangeMax(scan, params, INFINITY);
+  const ScanOutcome outcome = Examine(scan, shortest, longest);
+  if (outcome != ScanOutcome::kUpdated) return outcome;
+  if (!X_BL.IsFinite()) return ScanOutcome::kNotFinite;
   std::vector<std::size_t> measured;
-  bool is_any_far = false;
-  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
-    const double range = scan.ranges[i];
-    if (range > 0.0 && range >= shortest && range < longest) measured.push_back(i);
-    is_any_far = is_any_far || range >= longest;
-  }
-  if (measured.empty()) {
-    return is_any_far ? ScanOutcome::kNothingMet : ScanOutcome::kNothingMeasured;
-  }
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i)
+    if (IsMeasured(scan.ranges[i], shortest, longest)) measured.push_back(i);
   const std::size_t count = std::min<std::size_t>(params.most, measured.size());
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = measured[(2 * k + 1) * measured.size() / (2 * count)];

@@ -61,16 +61,16 @@ void ReadOurs(base::ParamReader* in, MonteCarloParams* params) {
   params->scan_timeout = in->Get("scan_timeout", Between(0.1, 3600.0));
 }
 
-LiveScanParams ReadLive(base::ParamReader in) {
+}  // namespace
+
+LiveScanParams ReadLiveScanParams(base::ParamReader* in) {
   LiveScanParams params;
-  params.tf_broadcast = in.GetBool("tf_broadcast");
-  params.transform_tolerance = in.Get("transform_tolerance", Between(0.0, 10.0));
-  params.max_age = in.Get("max_age", Between(0.1, 3600.0));
-  params.max_ahead = in.Get("max_ahead", Between(0.0, 10.0));
+  params.tf_broadcast = in->GetBool("tf_broadcast");
+  params.transform_tolerance = in->Get("transform_tolerance", Between(0.0, 10.0));
+  params.max_age = in->Get("max_age", Between(0.1, 3600.0));
+  params.max_ahead = in->Get("max_ahead", Between(0.0, 10.0));
   return params;
 }
-
-}  // namespace
 
 LocalisationConfig ReadLocalisationConfig(base::ParamReader in) {
   LocalisationConfig config;
@@ -79,7 +79,8 @@ LocalisationConfig ReadLocalisationConfig(base::ParamReader in) {
   ReadOdometry(&in, &config.filter.odometry);
   ReadInitial(&in, &config.filter);
   ReadOurs(&in, &config.filter);
-  config.node = ReadLive(in.Sub("node"));
+  base::ParamReader node = in.Sub("node");
+  config.node = ReadLiveScanParams(&node);
   in.RejectUnknownKeys();
   return config;
 }

@@ -58,6 +58,11 @@ class Mapper::Impl {
     waiting_.push_back(scan);
     TakeThoseThatNeedNotWait();
   }
+  std::optional<localisation::TimedPose> newest() const;
+  MapCounts counts() const {
+    return {keyframes_.size(), keyframes_.num_loops(), num_lost_, odometry_jumps_};
+  }
+  MapSketch sketch() const;
   MapResult Result();
 
  private:
@@ -93,9 +98,9 @@ class Mapper::Impl {
   std::optional<Pose2> X_OB_;  // odometry there
   double time_{0.0}, way_{0.0};
 
-  std::vector<Record> records_;             // of all scans
-  std::vector<RobotLog::Scan> drawn_;       // those that show something new
-  std::vector<std::size_t> drawn_records_;  // which they are
+  std::vector<Record> records_;                               // of all scans
+  std::vector<std::shared_ptr<const RobotLog::Scan>> drawn_;  // those that show something new
+  std::vector<std::size_t> drawn_records_;                    // which they are
   int num_lost_{0}, odometry_jumps_{0};
 };
 
@@ -148,7 +153,7 @@ void Mapper::Impl::Keep(const RobotLog::Scan& scan) {
   const int keyframe = keyframes_.size() - 1;
   records_.push_back({scan.time, keyframe, keyframes_.pose(keyframe).Inverse() * X_MB_});
   if (!drawn_.empty() && !IsFarFrom(X_MB_, PoseAt(drawn_records_.back()), kDrawnStep)) return;
-  drawn_.push_back(scan);
+  drawn_.push_back(std::make_shared<const RobotLog::Scan>(scan));
   drawn_records_.push_back(records_.size() - 1);
 }
 
@@ -156,23 +161,30 @@ Pose2 Mapper::Impl::PoseAt(std::size_t i) const {
   return keyframes_.pose(records_[i].keyframe) * records_[i].X_KB;
 }
 
+std::optional<localisation::TimedPose> Mapper::Impl::newest() const {
+  if (records_.empty()) return std::nullopt;
+  return localisation::TimedPose{records_.back().time, PoseAt(records_.size() - 1)};
+}
+
+MapSketch Mapper::Impl::sketch() const {
+  MapSketch sketch{drawn_, {}, params_.resolution, params_.max_range};
+  for (const std::size_t record : drawn_records_) sketch.X_MBs.push_back(PoseAt(record));
+  return sketch;
+}
+
 MapResult Mapper::Impl::Result() {
   while (!waiting_.empty()) TakeFirstWaiting();
-  MapResult result;
+  MapResult result{counts(), {}, {}};
   for (std::size_t i = 0; i < records_.size(); ++i)
     result.trajectory.push_back({records_[i].time, PoseAt(i)});
-  std::vector<const RobotLog::Scan*> scans;
-  std::vector<Pose2> poses;
-  for (std::size_t i = 0; i < drawn_.size(); ++i) {
-    scans.push_back(&drawn_[i]);
-    poses.push_back(PoseAt(drawn_records_[i]));
-  }
-  result.grid = DrawGrid(scans, poses, params_.resolution, params_.max_range);
-  result.num_keyframes = keyframes_.size();
-  result.num_loops = keyframes_.num_loops();
-  result.num_lost = num_lost_;
-  result.odometry_jumps = odometry_jumps_;
+  result.grid = Draw(sketch());
   return result;
+}
+
+world::OccupancyGrid Draw(const MapSketch& sketch) {
+  std::vector<const RobotLog::Scan*> scans;
+  for (const auto& scan : sketch.scans) scans.push_back(scan.get());
+  return DrawGrid(scans, sketch.X_MBs, sketch.resolution, sketch.max_range);
 }
 
 Mapper::Mapper(const MapperParams& params) : impl_(std::make_unique<Impl>(params)) {}
@@ -181,6 +193,9 @@ Mapper::Mapper(Mapper&&) noexcept = default;
 
 void Mapper::AddOdometry(const RobotLog::Odometry& odometry) { impl_->AddOdometry(odometry); }
 void Mapper::AddScan(const RobotLog::Scan& scan) { impl_->AddScan(scan); }
+std::optional<localisation::TimedPose> Mapper::newest() const { return impl_->newest(); }
+MapCounts Mapper::counts() const { return impl_->counts(); }
+MapSketch Mapper::sketch() const { return impl_->sketch(); }
 MapResult Mapper::Result() { return impl_->Result(); }
 
 MapResult MakeMap(const RobotLog& log, const MapperParams& params, const std::string& task) {

@@ -24,6 +24,7 @@
 #include "hires/knowledge/store.h"
 #include "hires/localisation/monte_carlo_params.h"
 #include "hires/localisation/odometry_filter.h"
+#include "hires/mapping/mapping_config.h"
 #include "hires/navigation/base_guard.h"
 #include "hires/perception/recogniser_config.h"
 #include "hires/perception/warm_objects.h"
@@ -96,6 +97,10 @@ const std::map<std::string, Reader>& Readers() {
       {"localisation.yaml",
        [](const std::string& path) {
          localisation::ReadLocalisationConfig(base::ParamReader::FromFile(path));
+       }},
+      {"mapping.yaml",
+       [](const std::string& path) {
+         mapping::ReadMappingConfig(base::ParamReader::FromFile(path));
        }},
       {"odometry_filter.yaml",
        [](const std::string& path) {

@@ -151,6 +151,29 @@ TEST(MapperTest, ScanWaitsForTheOdometryAfterIt) {
   EXPECT_EQ(late.grid.cells, MakeMap(drive.log).grid.cells);
 }
 
+TEST(MapperTest, NewestPoseCountsAndSketchAreThoseOfTheResult) {
+  const SimulatedDrive drive = TwoRoomsDrive();
+  Mapper mapper;
+  EXPECT_FALSE(mapper.newest());
+  for (const RobotLog::Odometry& odometry : drive.log.odometry) mapper.AddOdometry(odometry);
+  for (std::size_t i = 0; i < drive.log.scans.size(); ++i) {
+    mapper.AddScan(drive.log.scans[i]);
+    if (i % 100 != 0 && i + 1 != drive.log.scans.size()) continue;
+    const MapCounts counts = mapper.counts();
+    const auto newest = mapper.newest();
+    const MapResult result = mapper.Result();
+    ASSERT_TRUE(newest);
+    EXPECT_EQ(newest->time, result.trajectory.back().time);
+    const geometry::Pose2 last = result.trajectory.back().X_MB;
+    EXPECT_EQ(newest->X_MB.position(), last.position());
+    EXPECT_EQ(newest->X_MB.yaw, last.yaw);
+    EXPECT_EQ(counts.num_keyframes, result.num_keyframes);
+    EXPECT_EQ(counts.num_loops, result.num_loops);
+    EXPECT_EQ(Draw(mapper.sketch()).cells, result.grid.cells);
+  }
+  EXPECT_GT(mapper.counts().num_loops, 0);
+}
+
 TEST(MapperTest, LogsWithoutMeasurementsAreRefused) {
   EXPECT_THROW(MakeMap({}), base::ConfigError);
   SimulatedDrive drive = TwoRoomsDrive();

@@ -33,6 +33,21 @@ std::string ErrorOf(const nav_msgs::OccupancyGrid& map) {
   return "";
 }
 
+TEST(MapMessagesTest, AGridComesBackFromItsMessage) {
+  const auto grid = FromMsg(SmallMap());
+  std_msgs::Header header;
+  header.frame_id = "map";
+  header.stamp = ros::Time(7.0);
+  const nav_msgs::OccupancyGrid map = ToMsg(grid, header);
+  EXPECT_EQ(map.header.frame_id, "map");
+  EXPECT_EQ(map.info.map_load_time, ros::Time(7.0));
+  EXPECT_THAT(map.data, testing::ElementsAre(0, 100, -1, 0, -1, 100));
+  const auto other = FromMsg(map);
+  EXPECT_EQ(other.cells, grid.cells);
+  EXPECT_EQ(other.width, grid.width);
+  EXPECT_EQ(other.origin, grid.origin);
+}
+
 TEST(MapMessagesTest, AMessageIsTheGridThatItSays) {
   const auto grid = FromMsg(SmallMap());
   EXPECT_EQ(grid.width, 3);

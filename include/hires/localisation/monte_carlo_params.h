@@ -4,6 +4,7 @@
 
 #include "hires/base/param_reader.h"
 #include "hires/geometry/pose.h"
+#include "hires/localisation/live_scan_params.h"
 #include "hires/localisation/odometry_model.h"
 
 namespace hires::localisation {
@@ -42,14 +43,6 @@ struct MonteCarloParams {
   double lost_explained{0.4};      ///< share of explained beams below which it is lost
   double lost_spread{1.0};   ///< [m] standard deviation of the position above which it is lost
   double scan_timeout{5.0};  ///< [s] without a scan that can be used, after which it says so
-};
-
-/// What the node `localisation` alone needs, for it hears scans while they are made.
-struct LiveScanParams {
-  bool tf_broadcast{true};          ///< tells tf where the odometry's frame is in the map
-  double transform_tolerance{0.1};  ///< [s] by which that transform is dated after its scan
-  double max_age{3.0};              ///< [s] of a scan, whether it came late or waited for tf
-  double max_ahead{0.5};            ///< [s] that its stamp may lie in the future
 };
 
 /// config/localisation.yaml

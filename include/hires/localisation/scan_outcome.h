@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "hires/robot/readings.h"
+
 namespace hires::localisation {
 
 /// What became of a scan.
@@ -16,6 +18,10 @@ enum class ScanOutcome {
   kTimeWentBack,     ///< a clock began again: goes on from this odometry, the belief stays
   kOdometryJumped    ///< faster than a robot drives: goes on from this odometry, the belief stays
 };
+
+/// What a scan measured between two ranges [m]: kUpdated where there is any, kNoRanges, kBadAngles,
+/// kNothingMeasured or kNothingMet.
+ScanOutcome Examine(const robot::ScanReading& scan, double shortest, double longest);
 
 /// For people.
 std::string ToString(ScanOutcome outcome);

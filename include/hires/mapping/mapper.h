@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "hires/localisation/robot_log.h"
@@ -21,14 +22,28 @@ struct MapperParams {
   double min_fit{0.6};        ///< share of a scan's points that a loop must explain
 };
 
-struct MapResult {
-  world::OccupancyGrid grid;           ///< free what beams passed, occupied where they ended
-  localisation::TimedPath trajectory;  ///< one pose for each scan that was added
+struct MapCounts {
   int num_keyframes{0};
   int num_loops{0};       ///< places seen again that tie the map together
   int num_lost{0};        ///< scans that fitted nothing and stand where odometry says
   int odometry_jumps{0};  ///< steps faster than any robot, taken as none
 };
+
+struct MapResult : MapCounts {
+  world::OccupancyGrid grid;           ///< free what beams passed, occupied where they ended
+  localisation::TimedPath trajectory;  ///< one pose for each scan that was added
+};
+
+/// What a map is drawn from, apart from the mapper: another thread may draw it.
+struct MapSketch {
+  std::vector<std::shared_ptr<const localisation::RobotLog::Scan>> scans;  ///< show something new
+  std::vector<geometry::Pose2> X_MBs;                                      ///< one for each
+  double resolution{0.05}, max_range{30.0};                                ///< [m]
+};
+
+/// Takes time in proportion to all beams and their lengths.
+/// @throws base::ConfigError if the map would have more than 100 million cells.
+world::OccupancyGrid Draw(const MapSketch& sketch);
 
 /// Makes a map of what a laser saw on a drive: scans are matched with the latest keyframes
 /// (points to walls, odometry as prior), places seen before are recognised by their scans, and a
@@ -47,9 +62,15 @@ class Mapper {
   /// that odometry tells.  @pre times do not go back.
   void AddScan(const localisation::RobotLog::Scan& scan);
 
+  /// Where the last scan was made, of those that wait for no odometry: the end of the trajectory,
+  /// without its cost. Nothing before the first one.
+  std::optional<localisation::TimedPose> newest() const;
+  MapCounts counts() const;
+  MapSketch sketch() const;  ///< of the same scans
+
   /// What is known after the scans so far, those that still waited for odometry included; may be
   /// asked several times.
-  /// @throws base::ConfigError if the map would have more than 100 million cells.
+  /// @throws base::ConfigError  as Draw.
   MapResult Result();
 
  private:

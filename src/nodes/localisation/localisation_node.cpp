@@ -12,7 +12,6 @@
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/process.h"
-#include "hires/localisation/laser_mount.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/place/map_messages.h"
 #include "hires/ros/robot_messages.h"
@@ -29,23 +28,7 @@ using localisation::ScanOutcome;
 
 constexpr char kInitialPose[] = "initialpose";
 constexpr char kAmclPose[] = "amcl_pose";
-constexpr double kPatience = 5.0;          // [s] for a latched map, before static_map is asked
-constexpr std::size_t kMostWaiting = 100;  // scans: 2.5 s at 40 Hz
-
-hires::robot::ScanReading FromMsg(const sensor_msgs::LaserScan& msg) {
-  return {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges, msg.range_max};
-}
-
-/// @pre outcome is bad
-std::string WhyBad(ScanOutcome outcome, const sensor_msgs::LaserScan& scan) {
-  const std::string name = localisation::ToString(outcome);
-  if (outcome == ScanOutcome::kTimeWentBack || outcome == ScanOutcome::kOdometryJumped) {
-    return name + ": it goes on from this odometry, and keeps what it believes";
-  }
-  return fmt::format("{}: {} ranges, angle_min {:g}, angle_increment {:g} rad, {:g} to {:g} m",
-                     name, scan.ranges.size(), scan.angle_min, scan.angle_increment, scan.range_min,
-                     scan.range_max);
-}
+constexpr double kPatience = 5.0;  // [s] for a latched map, before static_map is asked
 
 geometry_msgs::PoseArray ToMsg(const std::vector<hires::geometry::Pose2>& poses,
                                const std_msgs::Header& header) {
@@ -59,18 +42,14 @@ geometry_msgs::PoseArray ToMsg(const std::vector<hires::geometry::Pose2>& poses,
 
 }  // namespace
 
-std::string LocalisationNode::Mount::waits_for() const {
-  return X_OB.waits_for.empty() ? X_BL.waits_for : X_OB.waits_for;
-}
-
-std::string LocalisationNode::Mount::why_never() const {
-  return X_OB.why_never.empty() ? X_BL.why_never : X_OB.why_never;
-}
-
 LocalisationNode::LocalisationNode(const LocalisationNodeParams& params, ros::NodeHandle* nh)
     : params_(params),
       nh_(*nh),
       transforms_(nh, [this](const TransformBuffer::News& news) { OnTransforms(news); }),
+      scans_(
+          transforms_.tree(), params.names, params.config.node,
+          [this](const PlacedScan& scan) { Use(scan); },
+          [this](const std::string& why) { Refuse(params_.names.base_scan, why); }),
       begun_(hires::base::SteadyNow()) {
   const std::string& told = params.names.localisation;
   pose_ = nh->advertise<geometry_msgs::PoseWithCovarianceStamped>(told.empty() ? kAmclPose : told,
@@ -78,12 +57,14 @@ LocalisationNode::LocalisationNode(const LocalisationNodeParams& params, ros::No
   particles_ = nh->advertise<geometry_msgs::PoseArray>("particlecloud", 2);
   if (params.config.node.tf_broadcast)
     transform_ = nh->advertise<tf2_msgs::TFMessage>(kTransforms, 100);
+  scans_.Need("a map on " + nh->resolveName(params.names.map));
   Listen(nh);
   updater_.setHardwareID("localisation");
   updater_.add("localisation", this, &LocalisationNode::Diagnose);
   timer_ = nh->createSteadyTimer(ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) {
     if (!map_ && hires::base::SteadyNow() - begun_ > kPatience) AskForMap();
-    DropUseless();            // what waits grows old, also where nothing comes
+    scans_.DropUseless();     // what waits grows old, also where nothing comes
+    scans_.Try(true);         // the clock may have come after all else
     updater_.force_update();  // also while simulated time stands still
   });
 }
@@ -92,8 +73,8 @@ void LocalisationNode::Listen(ros::NodeHandle* nh) {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
   inputs_.push_back(nh->subscribe(params_.names.map, 1, &LocalisationNode::OnMap, this, hints));
   inputs_.push_back(nh->subscribe(kInitialPose, 10, &LocalisationNode::OnInitialPose, this, hints));
-  inputs_.push_back(
-      nh->subscribe(params_.names.base_scan, kMostWaiting, &LocalisationNode::OnScan, this, hints));
+  inputs_.push_back(nh->subscribe(params_.names.base_scan, PlacedScans::kMostWaiting,
+                                  &LocalisationNode::OnScan, this, hints));
   services_.push_back(
       nh->advertiseService("global_localization", &LocalisationNode::OnGlobalLocalisation, this));
   services_.push_back(
@@ -118,10 +99,11 @@ void LocalisationNode::OnMap(const nav_msgs::OccupancyGrid& msg) {
     if (!why.empty()) return Refuse(topic, why);
     BeginWith(map);
     map_ = msg;
+    scans_.Need("");
   } catch (const ConfigError& error) {
     return Refuse(topic, error.what());
   }
-  Try(true);
+  scans_.Try(true);
 }
 
 /// In another map than before it goes on from where it was.
@@ -193,119 +175,25 @@ bool LocalisationNode::OnNoMotionUpdate(Empty::Request&, Empty::Response&) {
 void LocalisationNode::OnTransforms(const TransformBuffer::News& news) {
   for (const std::string& warning : news.warnings) Refuse(kTransforms, warning);
   for (const std::string& doubt : news.doubts) warnings_.Tell(kTransforms, "doubtful", doubt);
-  Try(false);
+  scans_.Try(false);
 }
 
 void LocalisationNode::OnScan(const sensor_msgs::LaserScanConstPtr& msg) {
   ++num_scans_;
-  const std::string why = WhyMalformed(msg->header);
-  if (!why.empty()) return Refuse(params_.names.base_scan, why);
-  waiting_.push_back(msg);
-  DropUseless();
-  Try(true);
-  if (waiting_.size() <= kMostWaiting) return;
-  waiting_.pop_front();
-  Refuse(params_.names.base_scan,
-         fmt::format("{} newer scans wait as well, for {}", kMostWaiting, waits_for_));
+  scans_.Add(msg);
 }
 
-std::string LocalisationNode::WhyMalformed(const std_msgs::Header& header) const {
-  if (header.stamp.isZero()) return "header.stamp is 0, wanted the scan's time";
-  if (hires::sensing::BareFrame(header.frame_id).empty())
-    return "header.frame_id is empty, wanted the laser's frame";
-  return "";
-}
-
-std::string LocalisationNode::WhyUntimely(const ros::Time& stamp) const {
-  const localisation::LiveScanParams& limits = params_.config.node;
-  const double age = (ros::Time::now() - stamp).toSec();
-  if (age < -limits.max_ahead) {
-    return fmt::format(
-        "its stamp lies {:.1f} s in the future, wanted {:g} at most; synchronise the clocks of the "
-        "computers",
-        -age, limits.max_ahead);
-  }
-  if (age <= limits.max_age) return "";
-  if (waits_for_.empty()) {
-    return fmt::format(
-        "it is {:.1f} s old, wanted {:g} at most; play bags with --clock and "
-        "use_sim_time",
-        age, limits.max_age);
-  }
-  return fmt::format("it waited until it was {:.1f} s old for {}", age, waits_for_);
-}
-
-LocalisationNode::Mount LocalisationNode::MountOf(const sensor_msgs::LaserScan& scan) const {
-  const hires::control::RobotNames& names = params_.names;
-  const TransformBuffer& tree = transforms_.tree();
-  const double time = scan.header.stamp.toSec();
-  return {PlaceAt(tree, names.odometry_frame, names.base_frame, time),
-          PlaceAt(tree, names.base_frame, hires::sensing::BareFrame(scan.header.frame_id), time)};
-}
-
-void LocalisationNode::Try(bool are_all_tried) {
-  if (waiting_.empty()) return;
-  if (ros::Time::now().isZero()) {
-    waits_for_ = "the time on /clock";
-    return;
-  }
-  if (!filter_) {
-    waits_for_ = "a map on " + nh_.resolveName(params_.names.map);
-    return;
-  }
-  for (std::size_t i = 0; i < waiting_.size();) {
-    const Mount mount = MountOf(*waiting_[i]);
-    if (!mount.is_known()) {
-      if (i == 0) waits_for_ = mount.waits_for();
-      if (!are_all_tried) return;
-      ++i;
-      continue;
-    }
-    // What is known of a later scan will not become known of an earlier one.
-    for (; i > 0; --i) {
-      const Mount earlier = MountOf(*waiting_.front());
-      waiting_.pop_front();
-      Refuse(params_.names.base_scan, "tf knows all of a later scan already, but of this one not " +
-                                          earlier.waits_for() + earlier.why_never());
-    }
-    const sensor_msgs::LaserScanConstPtr scan = waiting_.front();
-    waiting_.pop_front();
-    waits_for_.clear();
-    Use(*scan, mount);
-  }
-}
-
-/// Those that can no longer be used, whatever comes.
-void LocalisationNode::DropUseless() {
-  if (ros::Time::now().isZero()) return;
-  for (auto scan = waiting_.begin(); scan != waiting_.end();) {
-    std::string why = WhyUntimely((*scan)->header.stamp);
-    if (why.empty()) why = MountOf(**scan).why_never();
-    if (why.empty()) {
-      ++scan;
-      continue;
-    }
-    scan = waiting_.erase(scan);
-    Refuse(params_.names.base_scan, why);
-  }
-  if (waiting_.empty()) waits_for_.clear();
-}
-
-void LocalisationNode::Use(const sensor_msgs::LaserScan& scan, const Mount& mount) {
-  hires::robot::ScanReading reading = FromMsg(scan);
-  const auto X_BL = localisation::LevelLaser(*mount.X_BL.X_PC, &reading);
-  if (!X_BL) {
-    return Refuse(
-        params_.names.base_scan,
-        fmt::format("its laser '{}' is tilted by {:.2f} rad in '{}', wanted a level one, "
-                    "or one upside down, within {:g} rad",
-                    scan.header.frame_id, hires::geometry::TiltOf(mount.X_BL.X_PC->rotation),
-                    params_.names.base_frame, localisation::kMostLaserTilt));
-  }
-  const ScanOutcome outcome = filter_->Update(
-      scan.header.stamp.toSec(), hires::geometry::Flatten(*mount.X_OB.X_PC), reading, *X_BL);
+void LocalisationNode::Use(const PlacedScan& scan) {
+  const ScanOutcome outcome =
+      filter_->Update(scan.header.stamp.toSec(), scan.X_OB, scan.reading, scan.X_BL);
   ++num_outcomes_[localisation::ToString(outcome)];
-  if (localisation::IsBad(outcome)) Refuse(params_.names.base_scan, WhyBad(outcome, scan));
+  if (outcome == ScanOutcome::kTimeWentBack || outcome == ScanOutcome::kOdometryJumped) {
+    Refuse(params_.names.base_scan, localisation::ToString(outcome) +
+                                        ": it goes on from this odometry, and keeps what it "
+                                        "believes");
+  } else if (localisation::IsBad(outcome)) {
+    Refuse(params_.names.base_scan, WhyBad(outcome, scan.reading));
+  }
   const bool is_new = outcome == ScanOutcome::kUpdated;
   is_updated_ = is_updated_ || is_new;
   // The odometry goes on below the map, also where the laser sees nothing.
@@ -342,8 +230,8 @@ void LocalisationNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& sta
   if (!filter_) {
     status.summary(DiagnosticStatus::WARN,
                    "waits for a map on " + nh_.resolveName(params_.names.map));
-  } else if (!waits_for_.empty()) {
-    status.summary(DiagnosticStatus::WARN, "waits for " + waits_for_);
+  } else if (!scans_.waits_for().empty()) {
+    status.summary(DiagnosticStatus::WARN, "waits for " + scans_.waits_for());
   } else if (!is_updated_) {
     status.summary(DiagnosticStatus::WARN,
                    "waits for scans on " + nh_.resolveName(params_.names.base_scan));
@@ -358,7 +246,7 @@ void LocalisationNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& sta
 void LocalisationNode::DiagnoseBelief(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
   const auto estimate = filter_->Estimate(ros::Time::now().toSec());
-  if (is_updated_ && waits_for_.empty()) {
+  if (is_updated_ && scans_.waits_for().empty()) {
     switch (estimate.status) {
       case LocalisationStatus::kGood:
         status.summary(DiagnosticStatus::OK, "good");

@@ -7,13 +7,13 @@
 #include <sensor_msgs/LaserScan.h>
 #include <std_srvs/Empty.h>
 
-#include <deque>
 #include <map>
 #include <optional>
 #include <string>
 
 #include "hires/base/topic_warnings.h"
 #include "hires/localisation/monte_carlo.h"
+#include "hires/ros/place/placed_scans.h"
 #include "hires/ros/place/pose_messages.h"
 #include "hires/ros/place/transform_listener.h"
 #include "nodes/localisation/localisation_params.h"
@@ -30,13 +30,6 @@ class LocalisationNode {
 
  private:
   using Empty = std_srvs::Empty;
-  /// Odometry and laser at the time of a scan.
-  struct Mount {
-    Placement X_OB, X_BL;
-    bool is_known() const { return X_OB.X_PC && X_BL.X_PC; }
-    std::string waits_for() const;
-    std::string why_never() const;
-  };
 
   void Listen(ros::NodeHandle* nh);
   void OnMap(const nav_msgs::OccupancyGrid& msg);
@@ -49,14 +42,7 @@ class LocalisationNode {
 
   void OnTransforms(const TransformBuffer::News& news);
   void OnScan(const sensor_msgs::LaserScanConstPtr& msg);
-  std::string WhyMalformed(const std_msgs::Header& header) const;
-  std::string WhyUntimely(const ros::Time& stamp) const;
-  Mount MountOf(const sensor_msgs::LaserScan& scan) const;
-  /// Uses the scans that wait, as far as all else is there. There may be many, and more transforms:
-  /// each of these looks at the first scan alone, `are_all_tried` is for what comes less often.
-  void Try(bool are_all_tried);
-  void DropUseless();
-  void Use(const sensor_msgs::LaserScan& scan, const Mount& mount);
+  void Use(const PlacedScan& scan);
   void Publish(const ros::Time& stamp, bool is_new);
 
   void Refuse(const std::string& topic, const std::string& why);
@@ -66,14 +52,13 @@ class LocalisationNode {
   const LocalisationNodeParams params_;
   ros::NodeHandle nh_;
   TransformListener transforms_;
+  PlacedScans scans_;
   std::optional<nav_msgs::OccupancyGrid> map_;                         // that is used
   std::optional<hires::localisation::MonteCarloLocalisation> filter_;  // once there is a map
   std::optional<UncertainPose> told_;  // the pose, before there was a map
   bool is_updated_{false};             // by a scan since it began
   double begun_;                       // [s] steady
-  std::deque<sensor_msgs::LaserScanConstPtr> waiting_;
 
-  std::string waits_for_;
   std::string last_drop_;                     // the last message that was dropped, and why
   std::map<std::string, long> num_outcomes_;  // of scans that the filter heard
   std::map<std::string, long> num_dropped_;   // by topic

@@ -20,6 +20,18 @@ Cell CellOf(int value) {
   return value >= 0 && value < kFree ? Cell::kFree : Cell::kUnknown;
 }
 
+std::int8_t ValueOf(Cell cell) {
+  switch (cell) {
+    case Cell::kFree:
+      return 0;
+    case Cell::kOccupied:
+      return 100;
+    case Cell::kUnknown:
+      break;
+  }
+  return -1;
+}
+
 void RequireSound(const nav_msgs::OccupancyGrid& map) {
   const auto& info = map.info;
   const std::size_t wanted = static_cast<std::size_t>(info.width) * info.height;
@@ -55,6 +67,21 @@ OccupancyGrid FromMsg(const nav_msgs::OccupancyGrid& map) {
   grid.cells.reserve(map.data.size());
   for (const int value : map.data) grid.cells.push_back(CellOf(value));
   return grid;
+}
+
+nav_msgs::OccupancyGrid ToMsg(const OccupancyGrid& grid, const std_msgs::Header& header) {
+  nav_msgs::OccupancyGrid map;
+  map.header = header;
+  map.info.map_load_time = header.stamp;
+  map.info.resolution = static_cast<float>(grid.resolution);
+  map.info.width = static_cast<std::uint32_t>(grid.width);
+  map.info.height = static_cast<std::uint32_t>(grid.height);
+  map.info.origin.position.x = grid.origin.x();
+  map.info.origin.position.y = grid.origin.y();
+  map.info.origin.orientation.w = 1.0;
+  map.data.reserve(grid.cells.size());
+  for (const Cell cell : grid.cells) map.data.push_back(ValueOf(cell));
+  return map;
 }
 
 }  // namespace hires_ros

@@ -12,4 +12,8 @@ namespace hires_ros {
 /// maps too).
 hires::world::OccupancyGrid FromMsg(const nav_msgs::OccupancyGrid& map);
 
+/// Cells are 0, 100 or -1; the stamp is also that of the map's loading.
+nav_msgs::OccupancyGrid ToMsg(const hires::world::OccupancyGrid& grid,
+                              const std_msgs::Header& header);
+
 }  // namespace hires_ros
