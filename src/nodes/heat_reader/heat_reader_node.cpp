@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "hires/base/error.h"
-#include "hires/base/log.h"
-#include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/perception/camera_view.h"
 #include "hires/ros/conversions.h"
@@ -21,7 +19,6 @@ namespace perception = hires::perception;
 namespace sensing = hires::sensing;
 using hires::geometry::Pose3;
 
-constexpr double kWarningPeriod = 1.0;  // [s]
 constexpr double kStaleObjects = 10.0;  // [s] that the tracker's last words may be older
 
 }  // namespace
@@ -156,11 +153,7 @@ void HeatReaderNode::Refuse(const std::string& why) {
   ++num_refused_;
   waits_for_.clear();
   refused_ = why;
-  if (hires::base::SteadyNow() - last_warning_ < kWarningPeriod) return;
-  last_warning_ = hires::base::SteadyNow();
-  hires::base::Log(
-      hires::base::LogLevel::kWarn,
-      fmt::format("topic={} dropped why={}", params_.names.sensors.thermal_image, why));
+  warnings_.Tell(params_.names.sensors.thermal_image, "dropped", why);
 }
 
 void HeatReaderNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/base/topic_warnings.h"
 #include "hires/ros/place/transform_listener.h"
 #include "nodes/heat_reader/heat_reader_params.h"
 
@@ -48,7 +49,7 @@ class HeatReaderNode {
   ros::Time read_;                     // stamp of the picture that was read last
   long num_pictures_{0}, num_read_{0}, num_refused_{0};
   std::size_t num_objects_{0}, num_regions_{0};  // in the last picture
-  double last_warning_{-1e9};                    // [s] steady
+  hires::base::TopicWarnings warnings_;
 
   ros::Publisher temperatures_;
   std::vector<ros::Subscriber> inputs_;  // while somebody listens

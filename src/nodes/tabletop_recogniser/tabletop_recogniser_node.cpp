@@ -8,8 +8,6 @@
 #include <utility>
 
 #include "hires/base/error.h"
-#include "hires/base/log.h"
-#include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/perception/camera_view.h"
 #include "hires/ros/robot_messages.h"
@@ -22,9 +20,8 @@ namespace {
 namespace perception = hires::perception;
 namespace sensing = hires::sensing;
 
-constexpr std::uint64_t kSeed = 1;      // of the planes that are tried; any will do
-constexpr double kWarningPeriod = 1.0;  // [s]
-constexpr double kMaxBehind = 0.1;      // of the points; a camera measures none behind itself
+constexpr std::uint64_t kSeed = 1;  // of the planes that are tried; any will do
+constexpr double kMaxBehind = 0.1;  // of the points; a camera measures none behind itself
 constexpr std::array<const char*, 4> kFaultNames{"malformed", "too old", "ahead of time",
                                                  "without transform"};  // as Fault
 
@@ -180,10 +177,7 @@ void TabletopRecogniserNode::Refuse(Fault fault, const std::string& why) {
   ++num_refused_[static_cast<std::size_t>(fault)];
   waits_for_.clear();
   refused_ = why;
-  if (hires::base::SteadyNow() - last_warning_ < kWarningPeriod) return;
-  last_warning_ = hires::base::SteadyNow();
-  hires::base::Log(hires::base::LogLevel::kWarn,
-                   fmt::format("topic={} dropped why={}", params_.cloud, why));
+  warnings_.Tell(params_.cloud, "dropped", why);
 }
 
 void TabletopRecogniserNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {

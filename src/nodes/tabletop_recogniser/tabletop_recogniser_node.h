@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/base/topic_warnings.h"
 #include "hires/perception/tabletop_recogniser.h"
 #include "hires/ros/place/transform_listener.h"
 #include "nodes/tabletop_recogniser/tabletop_recogniser_params.h"
@@ -55,7 +56,7 @@ class TabletopRecogniserNode {
   std::array<long, kNumFaults> num_refused_{};               // by fault
   int num_own_points_{0}, num_points_{0}, num_measured_{0};  // of the last cloud
   double seconds_{0.0};                                      // [s] that it took
-  double last_warning_{-1e9};                                // [s] steady
+  hires::base::TopicWarnings warnings_;
 
   ros::Publisher detections_, markers_;
   std::optional<ros::Subscriber> clouds_;  // while somebody listens
