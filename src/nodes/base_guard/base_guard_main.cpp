@@ -1,27 +1,15 @@
 #include <ros/ros.h>
 
-#include <cstdlib>
-
-#include "hires/base/error.h"
-#include "hires/ros/launch_guard.h"
-#include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
-#include "hires/ros/xmlrpc_master_api.h"
+#include "hires/ros/run_node.h"
 #include "nodes/base_guard/base_guard_node.h"
 
 int main(int argc, char** argv) {
-  hires_ros::QuietXmlRpc();
-  ros::init(argc, argv, "base_guard", ros::init_options::NoSigintHandler);
-  hires_ros::NoteStopSignals();
-  if (!hires_ros::ClaimName()) return EXIT_FAILURE;
-  ros::NodeHandle nh;
-  hires_ros::MasterWatch master_watch;
-  const hires_ros::ScopedLogSink log_sink;
-  try {
-    hires_ros::BaseGuardNode node(hires_ros::LoadBaseGuardParams(), &nh);
-    node.Run(hires_ros::IsStopWanted);
-  } catch (const hires::base::ConfigError& error) {
-    return hires_ros::EndMisconfigured("base_guard", error);
-  }
-  return master_watch.Finish(EXIT_SUCCESS);
+  return hires_ros::RunNode(
+      "base_guard", argc, argv,
+      [](ros::NodeHandle* nh) {
+        hires_ros::BaseGuardNode node(hires_ros::LoadBaseGuardParams(), nh);
+        node.Run(hires_ros::IsStopWanted);
+      },
+      hires_ros::OnStopSignal::kNote);
 }

@@ -1,29 +1,13 @@
 #include <ros/ros.h>
 
-#include <cstdlib>
-
-#include "hires/base/error.h"
-#include "hires/ros/launch_guard.h"
-#include "hires/ros/log_sink.h"
-#include "hires/ros/master_watch.h"
-#include "hires/ros/xmlrpc_master_api.h"
+#include "hires/ros/run_node.h"
 #include "nodes/execution_monitor/execution_monitor_node.h"
 
 int main(int argc, char** argv) {
-  hires_ros::QuietXmlRpc();
-  ros::init(argc, argv, "execution_monitor", ros::init_options::NoSigintHandler);
-  hires_ros::ShutDownRosOnSignals();
-  if (!hires_ros::ClaimName()) return EXIT_FAILURE;
-  ros::NodeHandle nh;
-  hires_ros::MasterWatch master_watch;
-  const hires_ros::ScopedLogSink log_sink;
-  try {
+  return hires_ros::RunNode("execution_monitor", argc, argv, [](ros::NodeHandle* nh) {
     const auto config = hires_ros::LoadExecutionMonitorParams();
     const auto knowledge = hires_ros::LoadExecutionKnowledge(config);
-    hires_ros::ExecutionMonitorNode node(config, knowledge, &nh);
+    hires_ros::ExecutionMonitorNode node(config, knowledge, nh);
     ros::spin();
-  } catch (const hires::base::ConfigError& error) {
-    return hires_ros::EndMisconfigured("execution_monitor", error);
-  }
-  return master_watch.Finish(EXIT_SUCCESS);
+  });
 }

@@ -1,29 +1,17 @@
 #include <ros/ros.h>
 
-#include <cstdlib>
-
-#include "hires/base/error.h"
-#include "hires/ros/launch_guard.h"
-#include "hires/ros/log_sink.h"
 #include "hires/ros/master_watch.h"
-#include "hires/ros/xmlrpc_master_api.h"
+#include "hires/ros/run_node.h"
 #include "nodes/middle_layer/middle_layer_node.h"
 
 int main(int argc, char** argv) {
-  hires_ros::QuietXmlRpc();
-  ros::init(argc, argv, "middle_layer", ros::init_options::NoSigintHandler);
-  hires_ros::NoteStopSignals();
-  if (!hires_ros::ClaimName()) return EXIT_FAILURE;
-  ros::NodeHandle nh;
-  hires_ros::MasterWatch master_watch;
-  const hires_ros::ScopedLogSink log_sink;
-  try {
-    const auto params = hires_ros::LoadMiddleLayerParams();
-    hires_ros::MiddleLayerNode node(params, hires::imagination::LoadImaginationSetup(params.setup),
-                                    &nh);
-    node.Run(hires_ros::IsStopWanted);
-  } catch (const hires::base::ConfigError& error) {
-    return hires_ros::EndMisconfigured("middle_layer", error);
-  }
-  return master_watch.Finish(EXIT_SUCCESS);
+  return hires_ros::RunNode(
+      "middle_layer", argc, argv,
+      [](ros::NodeHandle* nh) {
+        const auto params = hires_ros::LoadMiddleLayerParams();
+        hires_ros::MiddleLayerNode node(params,
+                                        hires::imagination::LoadImaginationSetup(params.setup), nh);
+        node.Run(hires_ros::IsStopWanted);
+      },
+      hires_ros::OnStopSignal::kNote);
 }

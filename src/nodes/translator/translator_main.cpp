@@ -1,30 +1,14 @@
 #include <ros/ros.h>
 
-#include <cstdlib>
-
-#include "hires/base/error.h"
-#include "hires/ros/launch_guard.h"
-#include "hires/ros/log_sink.h"
-#include "hires/ros/master_watch.h"
+#include "hires/ros/run_node.h"
 #include "hires/ros/translator_params.h"
-#include "hires/ros/xmlrpc_master_api.h"
 #include "nodes/translator/translator_node.h"
 
 int main(int argc, char** argv) {
-  hires_ros::QuietXmlRpc();
-  ros::init(argc, argv, "translator", ros::init_options::NoSigintHandler);
-  hires_ros::ShutDownRosOnSignals();
-  if (!hires_ros::ClaimName()) return EXIT_FAILURE;
-  ros::NodeHandle nh;
-  hires_ros::MasterWatch master_watch;
-  const hires_ros::ScopedLogSink log_sink;
-  try {
+  return hires_ros::RunNode("translator", argc, argv, [](ros::NodeHandle* nh) {
     const auto params = hires_ros::LoadTranslatorParams();
     hires_ros::TranslatorNode node(hires_ros::LoadTranslatorContext(params), params.names.map_frame,
-                                   &nh);
+                                   nh);
     ros::spin();
-  } catch (const hires::base::ConfigError& error) {
-    return hires_ros::EndMisconfigured("translator", error);
-  }
-  return master_watch.Finish(EXIT_SUCCESS);
+  });
 }

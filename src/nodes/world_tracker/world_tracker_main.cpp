@@ -1,29 +1,13 @@
 #include <ros/ros.h>
 
-#include <cstdlib>
-
-#include "hires/base/error.h"
-#include "hires/ros/launch_guard.h"
-#include "hires/ros/log_sink.h"
-#include "hires/ros/master_watch.h"
-#include "hires/ros/xmlrpc_master_api.h"
+#include "hires/ros/run_node.h"
 #include "nodes/world_tracker/world_tracker_node.h"
 #include "nodes/world_tracker/world_tracker_params.h"
 
 int main(int argc, char** argv) {
-  hires_ros::QuietXmlRpc();
-  ros::init(argc, argv, "world_tracker", ros::init_options::NoSigintHandler);
-  hires_ros::ShutDownRosOnSignals();
-  if (!hires_ros::ClaimName()) return EXIT_FAILURE;
-  ros::NodeHandle nh;
-  hires_ros::MasterWatch master_watch;
-  const hires_ros::ScopedLogSink log_sink;
-  try {
+  return hires_ros::RunNode("world_tracker", argc, argv, [](ros::NodeHandle* nh) {
     const auto params = hires_ros::LoadWorldTrackerParams();
-    hires_ros::WorldTrackerNode node(params, hires_ros::LoadTranslatorContext(params.files), &nh);
+    hires_ros::WorldTrackerNode node(params, hires_ros::LoadTranslatorContext(params.files), nh);
     ros::spin();
-  } catch (const hires::base::ConfigError& error) {
-    return hires_ros::EndMisconfigured("world_tracker", error);
-  }
-  return master_watch.Finish(EXIT_SUCCESS);
+  });
 }
