@@ -216,6 +216,9 @@ void ReadPlace(const std::string& path, ParamReader* in, const ExperimentOverrid
   config->uncertainty_changes = ReadUncertaintyChanges(in->Sub("uncertainty_changes"));
   config->map = in->GetString("map");
   config->wall_height = in->Get("wall_height", Between(0.1, 100.0));
+  if (in->Has("self_localisation")) config->self_localisation = in->GetString("self_localisation");
+  if (config->self_localisation != "none")
+    config->self_localisation = imagination::ResolvePath(config->self_localisation, path);
   if (!overrides.map.empty()) {
     config->map = overrides.map;
   } else if (config->map == "given") {

@@ -163,6 +163,7 @@ Findings SumUpLegs(const ExperimentConfig& config, const Stage& stage, const Cha
   Findings findings;
   const LegTally empty(stage.xy_tolerance, stage.yaw_tolerance);
   LegTally all = empty;
+  std::vector<PlaceError> places;
   std::map<std::string, LegTally> by_goal;
   for (const Goal& goal : config.goals) by_goal.emplace(goal.name, empty);
   TextTable problems{
@@ -173,6 +174,7 @@ Findings SumUpLegs(const ExperimentConfig& config, const Stage& stage, const Cha
       const Leg& leg = chains[c][i];
       const int chain = static_cast<int>(c), number = static_cast<int>(i);
       all.Add(leg);
+      places.insert(places.end(), leg.places.begin(), leg.places.end());
       by_goal.at(leg.to).Add(leg);
       findings.simulated_seconds += leg.result.simulated;
       findings.rows.push_back(RowOf(chain, number, leg));
@@ -190,6 +192,11 @@ Findings SumUpLegs(const ExperimentConfig& config, const Stage& stage, const Cha
   table.rows.push_back(all.Row("all"));
   findings.measures = MeasuresOf(all, by_goal);
   findings.tables = {std::move(table), std::move(problems)};
+  if (stage.setup.scene->self_localisation) {
+    const std::vector<Measure> measures = PlaceMeasures(places);
+    findings.measures.insert(findings.measures.end(), measures.begin(), measures.end());
+    findings.tables.push_back(PlaceTable(places));
+  }
   return findings;
 }
 

@@ -2,6 +2,7 @@
 
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
+#include "hires/simulation/self_localisation.h"
 #include "hires/world/occupancy_grid.h"
 
 namespace hires::evaluation {
@@ -67,6 +68,11 @@ Stage MakeStage(const ExperimentConfig& config) {
   world.hash = world.ComputeHash();
   setup.scene = simulation::MakeScene(std::move(world), setup.scene->robot, setup.scene->memory,
                                       setup.scene->sight);
+  if (config.self_localisation != "none") {
+    setup.scene = simulation::FindingItsPlace(
+        *setup.scene, simulation::LoadSelfLocalisation(config.self_localisation),
+        setup.scene->world);
+  }
   setup.skills = std::make_shared<const skills::SkillSet>(std::move(skills));
   stage.objects = config.objects;
   stage.xy_tolerance = scene.driving.local.xy_goal_tolerance;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
@@ -144,6 +145,10 @@ class MonteCarloLocalisation::Belief {
 
   void UseNextScan() { is_forced_ = true; }
 
+  void Reseed(base::Rng rng) { rng_ = std::move(rng); }
+
+  bool WouldUse(const Pose2& X_OB) const { return !used_ || IsDue(used_->X_OB.Inverse() * X_OB); }
+
   ScanOutcome Update(double time, const Pose2& X_OB, const robot::ScanReading& scan,
                      const Pose2& X_BL) {
     if (!std::isfinite(time) || !IsPose(X_OB)) return ScanOutcome::kNotFinite;
@@ -154,8 +159,7 @@ class MonteCarloLocalisation::Belief {
     if (outcome != ScanOutcome::kUpdated) return outcome;
     last_scan_ = time;
     const Pose2 moved = used_->X_OB.Inverse() * X_OB;
-    const bool is_due = is_forced_ || std::hypot(moved.x, moved.y) >= params_.update_min_d ||
-                        std::abs(geometry::WrapToPi(moved.yaw)) >= params_.update_min_a;
+    const bool is_due = IsDue(moved);
     if (is_due) Use(beams, moved, RangeMax(scan, beam_params_, kAnyRange));
     JudgeExplained(beams);
     return is_due ? ScanOutcome::kUpdated : ScanOutcome::kNotMoved;
@@ -218,6 +222,11 @@ class MonteCarloLocalisation::Belief {
     return duration < 0.0 ? ScanOutcome::kTimeWentBack
            : is_jump      ? ScanOutcome::kOdometryJumped
                           : ScanOutcome::kUpdated;
+  }
+
+  bool IsDue(const Pose2& moved) const {
+    return is_forced_ || std::hypot(moved.x, moved.y) >= params_.update_min_d ||
+           std::abs(geometry::WrapToPi(moved.yaw)) >= params_.update_min_a;
   }
 
   void Use(const Beams& beams, const Pose2& moved, double range_max) {
@@ -368,6 +377,10 @@ void MonteCarloLocalisation::SetPose(const Pose2& X_MB, const Eigen::Matrix3d& c
 void MonteCarloLocalisation::GlobalLocalisation() { belief_->GlobalLocalisation(); }
 
 void MonteCarloLocalisation::UseNextScan() { belief_->UseNextScan(); }
+
+void MonteCarloLocalisation::Reseed(base::Rng rng) { belief_->Reseed(std::move(rng)); }
+
+bool MonteCarloLocalisation::WouldUse(const Pose2& X_OB) const { return belief_->WouldUse(X_OB); }
 
 ScanOutcome MonteCarloLocalisation::Update(double time, const Pose2& X_OB,
                                            const robot::ScanReading& scan, const Pose2& X_BL) {

@@ -66,7 +66,7 @@ void MiddleLayer::Cancel(int activity) { runner_.Cancel(activity); }
 
 void MiddleLayer::Hear(const SensorNews& news, const simulation::LaserParams& laser) {
   if (!news.scan.empty()) {
-    observations_.OnScan(news.stamp, laser.link, ReadingOf(news.scan, laser));
+    observations_.OnScan(news.stamp, laser.link, simulation::ReadingOf(news.scan, laser));
   }
   if (news.sweep && ground_) ground_->OnCloud(news.stamp, senses_.frames().odometry, *news.sweep);
   senses_.Hear(news);

@@ -21,12 +21,6 @@ sensing::FrameNames FramesOf(const robot::Robot& robot) {
   return {"map", "odom", robot.profile.base_link};
 }
 
-robot::ScanReading ReadingOf(const std::vector<double>& ranges,
-                             const simulation::LaserParams& laser) {
-  const double increment = (laser.angle_max - laser.angle_min) / (laser.num_beams - 1);
-  return {laser.angle_min, increment, laser.range_min, {ranges.begin(), ranges.end()}};
-}
-
 RobotSenses::RobotSenses(const ImaginationSetup& setup, const sensing::FrameNames& frames,
                          std::shared_ptr<const perception::Surroundings> surroundings)
     : names_(frames),

@@ -16,10 +16,6 @@ namespace hires::loop {
 /// The robot's frames by the names that its own messages have.
 sensing::FrameNames FramesOf(const robot::Robot& robot);
 
-/// @param ranges  [m] of the laser's beams.
-robot::ScanReading ReadingOf(const std::vector<double>& ranges,
-                             const simulation::LaserParams& laser);
-
 /// One listener's estimates of the robot's state and of objects: middle layer and tracker have each
 /// their own, as they have in processes of their own.
 class RobotSenses {

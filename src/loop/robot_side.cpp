@@ -42,7 +42,8 @@ void RobotSide::Tick() {
   news.seen = sensors_.Look(world_, news.readings);
   const evaluation::SimRobotLasers& lasers = sensors_.lasers();
   if (lasers.has_tray_laser() && world_.milliseconds() % kTrayPeriod == 0) {
-    news.tray = TrayScan{lasers.tray().link, ReadingOf(lasers.TrayScan(world_), lasers.tray())};
+    news.tray =
+        TrayScan{lasers.tray().link, simulation::ReadingOf(lasers.TrayScan(world_), lasers.tray())};
   }
   if (hooks_.hears_heat && news.seen) news.heat = sensors_.LookForHeat(world_, news.readings);
   news.sweep = std::exchange(sweep_, nullptr);

@@ -60,7 +60,7 @@ Tracker::Tracker(const imagination::ImaginationSetup& setup,
 
 void Tracker::Hear(const SensorNews& news, const simulation::LaserParams& laser) {
   if (floor_ && !news.scan.empty())
-    floor_->OnScan(news.stamp, laser.link, ReadingOf(news.scan, laser));
+    floor_->OnScan(news.stamp, laser.link, simulation::ReadingOf(news.scan, laser));
   if (floor_ && floor_->hears_clouds() && news.sweep)
     floor_->OnCloud(news.stamp, senses_.frames().odometry, *news.sweep);
   senses_.Hear(news);

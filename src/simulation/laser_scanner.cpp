@@ -67,6 +67,11 @@ std::vector<geometry::Collision> ShapesOf(const RobotSimulator& simulator) {
 
 }  // namespace
 
+robot::ScanReading ReadingOf(const std::vector<double>& ranges, const LaserParams& params) {
+  const double increment = (params.angle_max - params.angle_min) / (params.num_beams - 1);
+  return {params.angle_min, increment, params.range_min, {ranges.begin(), ranges.end()}};
+}
+
 double AngleOf(const LaserParams& params, int beam) {
   const double step = (params.angle_max - params.angle_min) / (params.num_beams - 1);
   return params.angle_min + beam * step;

@@ -10,14 +10,18 @@
 namespace hires::simulation {
 
 RobotSensors::RobotSensors(std::shared_ptr<const Scene> scene, const Variation& variation,
-                           const base::Rng& rng)
+                           const geometry::Pose2& X_MB, const base::Rng& rng)
     : scene_(std::move(scene)),
       variation_(variation),
-      state_{rng.Fork(2), GhostObstacles(rng.Fork(3)), rng.Fork(4)} {}
+      state_{rng.Fork(2), GhostObstacles(rng.Fork(3)), rng.Fork(4), std::nullopt} {
+  if (scene_->self_localisation)
+    state_.localiser.emplace(scene_->self_localisation, X_MB, rng.Fork(6));
+}
 
 void RobotSensors::ReadBase(double time, const BaseMotion& motion,
                             robot::Observation* observation) {
-  observation->X_MB = BelievedPose(motion.X_MB, variation_, &state_.rng);
+  observation->X_MB = state_.localiser ? state_.localiser->X_MB()
+                                       : BelievedPose(motion.X_MB, variation_, &state_.rng);
   observation->V_B = motion.V_B;
   state_.ghosts.Update(motion.X_MB, variation_.ghost_rate, time);
   observation->obstacles_M = state_.ghosts.OutlinesInMap();

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "hires/base/rng.h"
 #include "hires/robot/observation.h"
 #include "hires/simulation/base_drive.h"
 #include "hires/simulation/scene.h"
+#include "hires/simulation/self_localisation.h"
 #include "hires/simulation/variation.h"
 #include "simulation/ghost_obstacles.h"
 #include "simulation/planar_robot.h"
@@ -19,14 +21,18 @@ class RobotSensors {
     base::Rng rng;
     GhostObstacles ghosts;
     base::Rng encoder_rng;
+    std::optional<SelfLocaliser> localiser;  // where the robot finds its place by itself
   };
 
-  /// @param rng  of the simulator; its forks 2, 3 and 4 are used.
+  /// @param X_MB  of the base at first.
+  /// @param rng   of the simulator; its forks 2, 3, 4 and 6 are used.
   RobotSensors(std::shared_ptr<const Scene> scene, const Variation& variation,
-               const base::Rng& rng);
+               const geometry::Pose2& X_MB, const base::Rng& rng);
 
   /// Of the base at `time`: where it is believed to be, its velocity, obstacles.
   void ReadBase(double time, const BaseMotion& motion, robot::Observation* observation);
+  /// Who finds the place, if the robot does; asked before ReadBase, that it may scan.
+  SelfLocaliser* localiser() { return state_.localiser ? &*state_.localiser : nullptr; }
   /// Of torso, head, arms and hands.
   void ReadJoints(const PlanarRobot& robot, robot::Observation* observation);
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hires/base/check.h"
+#include "hires/simulation/laser_scanner.h"
 #include "simulation/frozen_robot.h"
 #include "simulation/head_camera.h"
 #include "simulation/loose_objects.h"
@@ -81,6 +82,7 @@ void RobotSimulator::Sense() {
 robot::Observation RobotSimulator::Observe(double action_start) {
   robot::Observation observation;
   observation.time = state_.time - action_start;
+  FindPlace();
   sensors_->ReadBase(state_.time, base(), &observation);
   if (planar_) sensors_->ReadJoints(*planar_, &observation);
   if (!camera_) return observation;
@@ -88,6 +90,28 @@ robot::Observation RobotSimulator::Observe(double action_start) {
   observation.num_newcomers = camera_->num_newcomers();
   for (robot::SeenObject& seen : observation.objects) seen.time -= action_start;
   return observation;
+}
+
+/// Wheels and inertial unit tell of all ways, the laser where a scan is of use.
+void RobotSimulator::FindPlace() {
+  SelfLocaliser* localiser = sensors_->localiser();
+  if (localiser == nullptr) return;
+  localiser->Drive(state_.time, base().X_MB);
+  if (!localiser->wants_scan()) return;
+  LaserParams laser = localiser->params().laser;
+  laser.link = scene_->robot.profile.laser_link;
+  const std::vector<double> ranges = ScanLaser(*this, laser, localiser->scan_rng());
+  const Pose3 X_BL = geometry::Lift(base().X_MB).Inverse() * X_MLink(laser.link);
+  localiser->Hear(ReadingOf(ranges, laser), geometry::Flatten(X_BL));
+}
+
+const SelfLocaliser* RobotSimulator::self_localiser() const { return sensors_->localiser(); }
+
+void RobotSimulator::BelieveAs(const RobotSimulator& before) {
+  SelfLocaliser* localiser = sensors_->localiser();
+  if (localiser == nullptr) return;
+  *localiser = *before.self_localiser();
+  localiser->PutAt(state_.time, base().X_MB);
 }
 
 std::optional<RobotContact> RobotSimulator::FindContact() const {

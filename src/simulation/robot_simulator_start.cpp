@@ -46,7 +46,7 @@ RobotSimulator::RobotSimulator(std::shared_ptr<const Scene> scene, const Variati
   base_ = std::make_unique<MovingBase>(robot.profile, scene_->floor, variation,
                                        robot_state.X_MB * variation.start_offset, time_step(), rng);
   frozen_ = std::make_unique<FrozenRobot>(scene_, robot_state.joints);
-  sensors_ = std::make_unique<RobotSensors>(scene_, variation, rng);
+  sensors_ = std::make_unique<RobotSensors>(scene_, variation, base().X_MB, rng);
   AddFurniture(scene_->world, physics_.get());
   AddObjects(world_state.objects, geometry::Lift(robot_state.X_MB), level);
   if (level == LevelOfDetail::kTray) {

@@ -70,6 +70,7 @@ std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot,
                                              memory,
                                              sight,
                                              laser_height,
+                                             nullptr,
                                              {}});
 }
 

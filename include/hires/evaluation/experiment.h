@@ -82,12 +82,15 @@ std::size_t WayBack(const DurationsConfig& durations, std::size_t row);
 
 /// One experiment, as its YAML file says. Relative paths in it count from the file's folder.
 struct ExperimentConfig {
-  std::string name;                  ///< the file's, without folder and ending
-  std::string scene;                 ///< path of a scene file, see imagination::SetupConfig
-  std::string uncertainty;           ///< "scene" (the scene's own), "none", or path
-  std::string uncertainty_changes;   ///< YAML: quantities that replace or join those
-  std::string map{"none"};           ///< "none": the scene's world; "given": by --map; or path
-  double wall_height{2.5};           ///< [m] of the occupied cells of the map
+  std::string name;                 ///< the file's, without folder and ending
+  std::string scene;                ///< path of a scene file, see imagination::SetupConfig
+  std::string uncertainty;          ///< "scene" (the scene's own), "none", or path
+  std::string uncertainty_changes;  ///< YAML: quantities that replace or join those
+  std::string map{"none"};          ///< "none": the scene's world; "given": by --map; or path
+  double wall_height{2.5};          ///< [m] of the occupied cells of the map
+  /// "none": the robot is told where it is, off as drawn; or path of a file like
+  /// config/self_localisation.yaml: it finds its place by itself
+  std::string self_localisation{"none"};
   std::vector<Goal> goals;           ///< at least two
   std::vector<std::string> objects;  ///< on the tray
   std::uint64_t seed{1};

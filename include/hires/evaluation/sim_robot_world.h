@@ -38,8 +38,10 @@ simulation::LevelOfDetail LevelFor(const simulation::Scene& scene);
 struct SensorReadings {
   robot::OdometryReading odometry;
   robot::JointReading joints;
-  geometry::Pose2 X_MB;                     ///< where its localisation says that it stands
-  geometry::Pose2 X_MO;                     ///< where its odometry began, by the same
+  geometry::Pose2 X_MB;  ///< where its localisation says that it stands
+  geometry::Pose2 X_MO;  ///< where its odometry began, by the same
+  /// [m^2, m rad, rad^2] of x, y, yaw, as localisation has it; one that is told says 0.
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   std::vector<geometry::Polygon> ghosts_M;  ///< seen by the laser, though not there
 };
 

@@ -10,6 +10,7 @@
 #include "hires/geometry/pose.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/simulation/floor_places.h"
+#include "hires/simulation/self_localisation.h"
 
 namespace hires::evaluation {
 
@@ -47,6 +48,13 @@ enum class Sensing {
   kPictures  ///< they err as drawn, and objects are recognised in the camera's clouds
 };
 
+/// What tells the robot where it is.
+enum class Localisation {
+  kFitted,  ///< the truth, off as drawn
+  kIdeal,   ///< the truth
+  kFilter   ///< itself, by its wheels, inertial unit and laser
+};
+
 /// What a recogniser does wrong beside its noise. With `pictures` the recogniser is real and misses
 /// what it misses; `bias` and `bias_yaw` are how the camera sits otherwise than the robot believes.
 struct Recogniser {
@@ -71,7 +79,9 @@ struct Truth {
   std::map<std::string, imagination::Distribution> changes;
   std::vector<Correlation> correlations;
   Sensing sensing{Sensing::kFitted};
-  bool localises_ideally{false};  ///< nor does localisation
+  Localisation localisation{Localisation::kFitted};
+  /// With `filter`: how; null with the others.
+  std::shared_ptr<const simulation::SelfLocalisationParams> self_localisation;
 
   // What imagination does not model at all.
   simulation::FloorPlaces floor;

@@ -80,6 +80,13 @@ class MonteCarloLocalisation {
   /// The next scan is used even if the robot does not move.
   void UseNextScan();
 
+  /// Chance comes from another stream from now on: a copy becomes a filter of its own.
+  void Reseed(base::Rng rng);
+
+  /// Whether it would use a scan of that moment: the base moved by update_min_d or update_min_a
+  /// since the last one, or a scan is wanted anyway.
+  bool WouldUse(const geometry::Pose2& X_OB) const;
+
   /// A scan, with where odometry and laser were at its time. Times [s] rise; one that goes back, or
   /// odometry that jumps, leaves the belief alone and is where odometry goes on from.
   ScanOutcome Update(double time, const geometry::Pose2& X_OB, const robot::ScanReading& scan,

@@ -1,26 +1,13 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "hires/base/rng.h"
+#include "hires/robot/readings.h"
+#include "hires/simulation/laser_params.h"
 #include "hires/simulation/robot_simulator.h"
 
 namespace hires::simulation {
-
-/// A planar laser: beams in the x-y plane of its link. The defaults are those of the PR2's base
-/// laser in the original simulation.
-struct LaserParams {
-  std::string link{"base_laser_link"};
-  int num_beams{640};
-  double angle_min{-2.2689}, angle_max{2.2689};  ///< [rad] of the first and the last beam
-  double range_min{0.08}, range_max{10.0};       ///< [m]
-  double noise{0.005};                           ///< [m] sd of each range
-  /// [rad] across. A beam that meets two surfaces mixes them; 0: beams are lines.
-  double beam_width{0.0};
-  double mixing_depth{0.75};  ///< [m] by which echoes differ that are told apart
-  bool sees_robot{false};     ///< its own links; a beam leaves the link that it begins in
-};
 
 /// Ranges [m] in the order of the angles: infinite where nothing is within range_max, and what is
 /// nearer than range_min as range_min. Beams leave from the true pose of the link, leaning
@@ -41,6 +28,9 @@ std::vector<double> ScanLaser(const RobotSimulator& simulator, const LaserParams
 /// The same for a laser in another pose than its link's in the simulator: one that nods.
 std::vector<double> ScanLaserFrom(const geometry::Pose3& X_ML, const RobotSimulator& simulator,
                                   const LaserParams& params, base::Rng* rng);
+
+/// What was measured, as its driver tells it.  @param ranges  [m] of the laser's beams.
+robot::ScanReading ReadingOf(const std::vector<double>& ranges, const LaserParams& params);
 
 /// [rad] of a beam, by its number.
 double AngleOf(const LaserParams& params, int beam);

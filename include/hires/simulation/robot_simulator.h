@@ -24,6 +24,7 @@ class LooseObjects;
 class MovingBase;
 class PlanarRobot;
 class RobotSensors;
+class SelfLocaliser;
 
 /// How much of the robot moves.
 enum class LevelOfDetail {
@@ -66,6 +67,13 @@ class RobotSimulator {
 
   /// What the robot believes and sees; draws sensor noise. `time` counts from `action_start`.
   robot::Observation Observe(double action_start);
+
+  /// Where the robot believes that it is, if it finds its place by itself; else null. As of the
+  /// last Observe.
+  const SelfLocaliser* self_localiser() const;
+  /// Goes on believing what the robot believed in another simulator, from which it was lifted.
+  /// @pre both or none find their place by themselves
+  void BelieveAs(const RobotSimulator& before);
 
   const BaseMotion& base() const;
   geometry::Pose3 X_MB() const;             ///< of the base, leaning and floor included
@@ -120,6 +128,7 @@ class RobotSimulator {
   void RefuseInsideRobot(const world::ObjectState& object, physics::BodyId body);
   std::optional<RobotContact> FindContact() const;
   void Sense();
+  void FindPlace();
 
   std::shared_ptr<const Scene> scene_;
   Variation variation_;

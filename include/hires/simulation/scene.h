@@ -15,6 +15,8 @@
 
 namespace hires::simulation {
 
+class SelfLocalisation;
+
 /// What recognises objects for the robot's camera.
 struct Sight {
   /// How a quick detector errs that stands in for a recogniser; null: by noise alone.
@@ -39,6 +41,8 @@ struct Scene {
   sensing::MemoryParams memory;  ///< of what that camera sees
   Sight sight;
   std::optional<double> laser_height;  ///< [m] of the base's laser above the floor; none: no laser
+  /// How the robot finds its place by itself; null: it is told, with an error as drawn.
+  std::shared_ptr<const SelfLocalisation> self_localisation;
   FloorPlaces floor;  ///< what the floor has that no map tells; imagination: nothing
 };
 

@@ -74,6 +74,7 @@ std::string SimRobotWorld::Rebuild(WorldState world, const robot::RobotState& ro
         setup_->scene, variation, world, robot, simulator_rng_.Fork(kFirstRebuilt + num_rebuilt_),
         setup_->physics, LevelFor(*setup_->scene));
     simulator->Send(RestOfMotions(world));
+    simulator->BelieveAs(*simulator_);
     simulator_ = std::move(simulator);
   } catch (const base::ConfigError& error) {
     return error.what();

@@ -39,7 +39,7 @@ void TakeOutVeils(double beam_step, std::vector<double>* ranges) {
 }
 
 simulation::LaserParams ReadMixingLaser(ParamReader* in) {
-  simulation::LaserParams params = ReadLaser(in);
+  simulation::LaserParams params = simulation::ReadLaser(in);
   params.beam_width = in->Get("beam_width", Between(0.0, 0.1));
   params.mixing_depth = in->Get("mixing_depth", Between(0.0, 100.0));
   params.sees_robot = true;
@@ -47,18 +47,6 @@ simulation::LaserParams ReadMixingLaser(ParamReader* in) {
 }
 
 }  // namespace
-
-simulation::LaserParams ReadLaser(ParamReader* in) {
-  simulation::LaserParams params;
-  params.num_beams = in->Get("beams", Between(2, 10000));
-  params.angle_min = in->Get("angle_min", Between(-3.1415, 3.1415));
-  params.angle_max = in->Get("angle_max", Between(-3.1415, 3.1415));
-  if (params.angle_max <= params.angle_min) in->Fail("angle_max", "wanted more than angle_min");
-  params.range_min = in->Get("range_min", Between(0.0, 10.0));
-  params.range_max = in->Get("range_max", Between(0.1, 100.0));
-  params.noise = in->Get("noise", Between(0.0, 1.0));
-  return params;
-}
 
 SimLaserParams ReadSimLaserParams(ParamReader* in) {
   SimLaserParams params;

@@ -43,7 +43,7 @@ void PlayJointTick(SimRobotWorld* world, simulation::TruthRecord* truth,
 SimSensorParams ReadSimSensorParams(ParamReader in) {
   SimSensorParams params;
   ParamReader laser = in.Sub("laser");
-  params.laser = ReadLaser(&laser);
+  params.laser = simulation::ReadLaser(&laser);
   ReadDetector(in.Sub("detector"), &params);
   params.cameras = ReadSimCameraParams(&in);
   params.lasers = ReadSimLaserParams(&in);

@@ -198,6 +198,10 @@ void SimRobotWorld::DeliverLate() {
 SensorReadings SimRobotWorld::Sense() {
   const robot::Observation seen = simulator_->Observe(0.0);
   SensorReadings readings;
+  if (const simulation::SelfLocaliser* own = simulator_->self_localiser()) {
+    X_OB_ = own->X_OB();
+    readings.covariance = own->Estimate().covariance;
+  }
   readings.X_MB = walk_.sd > 0.0 || walk_.sd_yaw > 0.0 ? seen.X_MB * walk_error_ : seen.X_MB;
   readings.X_MO = readings.X_MB * X_OB_.Inverse();
   readings.odometry = {X_OB_, seen.V_B};

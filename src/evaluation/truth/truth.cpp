@@ -25,7 +25,7 @@ constexpr const char* kOfLocalisation[] = {"localisation_x",         "localisati
 
 bool ChangesWhatIsDrawn(const Truth& truth) {
   return truth.uncertainty || !truth.changes.empty() || truth.sensing == Sensing::kIdeal ||
-         truth.localises_ideally;
+         truth.localisation != Localisation::kFitted;
 }
 
 Uncertainty UncertaintyOf(const Truth& truth, const Uncertainty& imagined) {
@@ -34,7 +34,7 @@ Uncertainty UncertaintyOf(const Truth& truth, const Uncertainty& imagined) {
   if (truth.sensing == Sensing::kIdeal) {
     for (const char* name : kOfSensors) drawn.quantities.erase(name);
   }
-  if (truth.localises_ideally) {
+  if (truth.localisation != Localisation::kFitted) {
     for (const char* name : kOfLocalisation) drawn.quantities.erase(name);
   }
   return drawn;
@@ -42,7 +42,7 @@ Uncertainty UncertaintyOf(const Truth& truth, const Uncertainty& imagined) {
 
 bool ChangesTheScene(const Truth& truth) {
   return truth.stops_at_timeout || !truth.controller.empty() || !truth.floor.sills.empty() ||
-         !truth.floor.patches.empty() || !truth.moved.empty();
+         !truth.floor.patches.empty() || !truth.moved.empty() || truth.self_localisation;
 }
 
 world::StaticBody* FindStatic(const Truth& truth, const std::string& name, world::World* world) {
@@ -78,7 +78,8 @@ std::shared_ptr<const Scene> SceneOf(const Truth& truth, const Scene& imagined, 
   auto scene = std::make_shared<Scene>(
       *simulation::MakeScene(std::move(world), std::move(robot), imagined.memory, imagined.sight));
   scene->floor = truth.floor;
-  return scene;
+  if (!truth.self_localisation) return scene;
+  return simulation::FindingItsPlace(*scene, *truth.self_localisation, imagined.world);
 }
 
 double BoundedScore(base::Rng* rng) {

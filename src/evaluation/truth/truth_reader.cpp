@@ -68,8 +68,21 @@ void ReadUncertainty(ParamReader in, const std::string& path, Truth* truth) {
 const std::map<std::string, Sensing> kSensing{
     {"fitted", Sensing::kFitted}, {"ideal", Sensing::kIdeal}, {"pictures", Sensing::kPictures}};
 
+const std::map<std::string, Localisation> kLocalisation{{"fitted", Localisation::kFitted},
+                                                        {"ideal", Localisation::kIdeal},
+                                                        {"filter", Localisation::kFilter}};
+
 Sensing ReadSensing(ParamReader* in) {
   return kSensing.at(in->Get("sensing", base::OneOf({"fitted", "ideal", "pictures"})));
+}
+
+void ReadLocalisation(const std::string& path, ParamReader* in, Truth* truth) {
+  truth->localisation =
+      kLocalisation.at(in->Get("localisation", base::OneOf({"fitted", "ideal", "filter"})));
+  if (truth->localisation != Localisation::kFilter) return;
+  const std::string file = imagination::ResolvePath(in->GetString("self_localisation"), path);
+  truth->self_localisation = std::make_shared<const simulation::SelfLocalisationParams>(
+      simulation::LoadSelfLocalisation(file));
 }
 
 // Events
@@ -198,7 +211,7 @@ Truth ReadTruth(const std::string& path) {
   ReadControllerChanges(in.Sub("controller"), &truth);
   ReadUncertainty(in.Sub("uncertainty"), path, &truth);
   truth.sensing = ReadSensing(&in);
-  truth.localises_ideally = in.Get("localisation", base::OneOf({"fitted", "ideal"})) == "ideal";
+  ReadLocalisation(path, &in, &truth);
   ReadEvents(in.Sub("events"), &truth);
   in.RejectUnknownKeys();
   return truth;

@@ -12,6 +12,7 @@
 #include "hires/perception/detector.h"
 #include "hires/robot/posture.h"
 #include "hires/ros/conversions.h"
+#include "hires/ros/place/pose_messages.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 #include "hires/ros/topic_names.h"
@@ -145,11 +146,10 @@ void SimRobotPublisher::PublishTransforms(const hires::evaluation::SimRobotWorld
 
 void SimRobotPublisher::PublishLocalisation(const hires::evaluation::SensorReadings& readings,
                                             const ros::Time& stamp) {
-  geometry_msgs::PoseWithCovarianceStamped pose;
-  pose.header.stamp = stamp;
-  pose.header.frame_id = params_.names.map_frame;
-  pose.pose.pose = ToMsg(hires::geometry::Lift(readings.X_MB));
-  amcl_.publish(pose);
+  std_msgs::Header header;
+  header.stamp = stamp;
+  header.frame_id = params_.names.map_frame;
+  amcl_.publish(ToMsg(UncertainPose{readings.X_MB, readings.covariance}, header));
 }
 
 void SimRobotPublisher::PublishScan(const hires::evaluation::SimRobotWorld& world,

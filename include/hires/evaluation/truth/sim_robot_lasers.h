@@ -12,9 +12,6 @@
 
 namespace hires::evaluation {
 
-/// Beams, angles, ranges and noise of a block of config/sim_robot.yaml.
-simulation::LaserParams ReadLaser(base::ParamReader* in);
-
 /// The lasers of the robot that stands in for a real one, beside that of its base. They see the
 /// robot itself, as real ones do. Their links are the profile's.
 struct SimLaserParams {

@@ -1,0 +1,206 @@
+#include "hires/simulation/self_localisation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "hires/base/text.h"
+#include "hires/evaluation/sim_robot_world.h"
+#include "hires/geometry/angles.h"
+#include "support/messages.h"
+#include "support/scenes.h"
+#include "support/temporary_folder.h"
+
+namespace hires::evaluation::self_localisation_test {
+namespace {
+
+using geometry::Pose2;
+using hires::test_support::ConfigErrorOf;
+using simulation::SelfLocalisationParams;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+const std::string kConfig = HIRES_SOURCE_DIR "/config";
+
+/// A room with a cupboard, so that its halves differ.
+world::World RoomWithCupboard() {
+  world::World room = hires::test_support::Room();
+  room.statics.push_back(hires::test_support::Block("cupboard", {0.6, 0.4, 1.0}, {3.5, 3.8, 0.5}));
+  room.hash = room.ComputeHash();
+  return room;
+}
+
+imagination::ImaginationSetup SetupOfRoom() {
+  static const auto scene =
+      simulation::MakeScene(RoomWithCupboard(), robot::LoadRobot(kConfig + "/robots/pr2.yaml"));
+  imagination::ImaginationSetup setup;
+  setup.scene = scene;
+  setup.uncertainty = std::make_shared<const imagination::Uncertainty>(
+      imagination::UncertaintyFromText("none", "test"));
+  return setup;
+}
+
+imagination::StartState Start() {
+  imagination::StartState start;
+  start.robot.X_MB = {2.5, 1.0, 0.0};
+  return start;
+}
+
+SelfLocalisationParams ShippedParams() {
+  return simulation::LoadSelfLocalisation(kConfig + "/self_localisation.yaml");
+}
+
+Truth TruthWith(const SelfLocalisationParams& params) {
+  Truth truth;
+  truth.localisation = Localisation::kFilter;
+  truth.self_localisation = std::make_shared<const SelfLocalisationParams>(params);
+  return truth;
+}
+
+double Apart(const Pose2& a, const Pose2& b) { return (a.position() - b.position()).norm(); }
+
+struct Course {
+  double worst{0.0};           // [m] of the belief
+  double worst_odometry{0.0};  // [m] of odometry alone, from where it began
+  std::vector<SensorReadings> told;
+};
+
+/// To the left in circles of radius 0.75 m, for so many seconds.
+Course DriveInCircles(double seconds, SimRobotWorld* world) {
+  Course course;
+  const Pose2 X_MO = world->simulator().base().X_MB * world->Sense().odometry.X_OB.Inverse();
+  const int ticks = static_cast<int>(std::lround(20.0 * seconds));
+  for (int tick = 0; tick < ticks; ++tick) {
+    robot::Command command;
+    command.base_velocity = geometry::Twist2{0.3, 0.0, 0.4};
+    world->Apply(command);
+    world->Advance(kSensorTick);
+    course.told.push_back(world->Sense());
+    const Pose2& X_MB = world->simulator().base().X_MB;
+    const SensorReadings& told = course.told.back();
+    course.worst = std::max(course.worst, Apart(told.X_MB, X_MB));
+    course.worst_odometry = std::max(course.worst_odometry, Apart(X_MO * told.odometry.X_OB, X_MB));
+  }
+  return course;
+}
+
+TEST(SelfLocalisationTest, LaserAndFilterKeepThePlaceThatWheelsLose) {
+  SelfLocalisationParams params = ShippedParams();
+  params.casters.wear = 0.1;  // far more than is shipped
+  for (const int seed : {1, 2, 3, 4, 5}) {
+    SimRobotWorld world(SetupOfRoom(), Start(), seed, TruthWith(params));
+    const Course course = DriveInCircles(16.0, &world);
+    EXPECT_FALSE(world.simulator().contact());
+    EXPECT_LT(course.worst, 0.12) << seed;
+    EXPECT_GT(course.worst_odometry, 0.02) << seed;
+  }
+}
+
+TEST(SelfLocalisationTest, ItTellsHowSureItIsAndOneThatIsToldDoesNot) {
+  SimRobotWorld finds(SetupOfRoom(), Start(), 1, TruthWith(ShippedParams()));
+  SimRobotWorld is_told(SetupOfRoom(), Start(), 1);
+  const SensorReadings found = DriveInCircles(2.0, &finds).told.back();
+  EXPECT_GT(found.covariance(0, 0), 1e-8);
+  EXPECT_LT(found.covariance(0, 0), 0.1);
+  EXPECT_EQ(DriveInCircles(2.0, &is_told).told.back().covariance, Eigen::Matrix3d::Zero());
+}
+
+TEST(SelfLocalisationTest, TheSameSeedBelievesTheSameBitForBitAndTwiceAtOneMoment) {
+  SimRobotWorld a(SetupOfRoom(), Start(), 7, TruthWith(ShippedParams()));
+  SimRobotWorld b(SetupOfRoom(), Start(), 7, TruthWith(ShippedParams()));
+  SimRobotWorld c(SetupOfRoom(), Start(), 8, TruthWith(ShippedParams()));
+  const Course of_a = DriveInCircles(5.0, &a), of_b = DriveInCircles(5.0, &b);
+  EXPECT_EQ(of_a.told.back().X_MB.x, of_b.told.back().X_MB.x);
+  EXPECT_EQ(of_a.told.back().odometry.X_OB.yaw, of_b.told.back().odometry.X_OB.yaw);
+  EXPECT_NE(of_a.told.back().X_MB.x, DriveInCircles(5.0, &c).told.back().X_MB.x);
+  EXPECT_EQ(a.Sense().X_MB.x, of_a.told.back().X_MB.x);
+}
+
+TEST(SelfLocalisationTest, ASimulatorThatIsRestoredBelievesOnBitForBit) {
+  const auto setup = SetupOf(TruthWith(ShippedParams()), SetupOfRoom(), {}, base::Rng(1));
+  simulation::RobotSimulator simulator(setup.scene, {}, {}, Start().robot, base::Rng(1), {},
+                                       simulation::LevelOfDetail::kPlanar);
+  const auto drive_on = [&] {
+    Pose2 X_MB;
+    for (int tick = 0; tick < 40; ++tick) {
+      robot::Command command;
+      command.base_velocity = geometry::Twist2{0.4, 0.0, 0.2};
+      simulator.Send(command);
+      for (int step = 0; step < 50; ++step) simulator.Step();
+      X_MB = simulator.Observe(0.0).X_MB;
+    }
+    return X_MB;
+  };
+  drive_on();
+  const auto snapshot = simulator.Save();
+  const Pose2 first = drive_on();
+  simulator.Restore(*snapshot);
+  const Pose2 again = drive_on();
+  EXPECT_EQ(first.x, again.x);
+  EXPECT_EQ(first.yaw, again.yaw);
+}
+
+/// Nobody tells it; its laser does.
+TEST(SelfLocalisationTest, ARobotThatIsCarriedAwayBelievesOnAndBecomesUnsure) {
+  SimRobotWorld world(SetupOfRoom(), Start(), 3, TruthWith(ShippedParams()));
+  DriveInCircles(4.0, &world);
+  const Pose2 before = world.Sense().X_MB;
+  const Pose2 X_MBthere{2.5, 2.5, geometry::kPi};
+  ASSERT_EQ(world.Push(world.simulator().base().X_MB.Inverse() * X_MBthere), "");
+  EXPECT_LT(Apart(world.Sense().X_MB, before), 0.01);
+  bool was_lost = false;
+  for (int i = 0; i < 8; ++i) {
+    DriveInCircles(1.0, &world);
+    const auto status = world.simulator().self_localiser()->Estimate().status;
+    was_lost |= status != localisation::LocalisationStatus::kGood;
+  }
+  EXPECT_TRUE(was_lost);
+}
+
+TEST(SelfLocalisationTest, ARobotWithoutALaserCannotFindItsPlace) {
+  imagination::ImaginationSetup setup = SetupOfRoom();
+  setup.scene = hires::test_support::RoomScene();
+  EXPECT_THAT(ConfigErrorOf([&] { SetupOf(TruthWith(ShippedParams()), setup, {}, base::Rng(1)); }),
+              AllOf(HasSubstr("localisation: fitted"), HasSubstr("laser_link")));
+}
+
+class SelfLocalisationFileTest : public ::testing::Test {
+ protected:
+  std::string ErrorAfter(const std::string& from, const std::string& to) {
+    for (const char* name : {"localisation.yaml", "odometry_filter.yaml"})
+      folder_.Write(name, base::ReadTextFile(kConfig + "/" + name));
+    std::string text = base::ReadTextFile(kConfig + "/self_localisation.yaml");
+    const std::size_t at = text.find(from);
+    if (at == std::string::npos) return "the file has no " + from;
+    const std::string path = folder_.Write("own.yaml", text.replace(at, from.size(), to));
+    return ConfigErrorOf([&] { simulation::LoadSelfLocalisation(path); });
+  }
+  hires::test_support::TemporaryFolder folder_;
+};
+
+TEST_F(SelfLocalisationFileTest, WhatIsWrongIsSaidWithFileAndKey) {
+  EXPECT_THAT(ErrorAfter("wear: 0.01", "wear: -1"),
+              AllOf(HasSubstr("own.yaml"), HasSubstr("casters.wear")));
+  EXPECT_THAT(ErrorAfter("y: 0.2246", "y: far"), HasSubstr("y"));
+  EXPECT_THAT(ErrorAfter("walk: 0.0012", "wander: 0.0012"), HasSubstr("gyro"));
+  EXPECT_THAT(ErrorAfter("filter: localisation.yaml", "filter: none.yaml"), HasSubstr("none.yaml"));
+  EXPECT_THAT(ErrorAfter("angle_max: 2.2689", "angle_max: -3.0"), HasSubstr("angle_min"));
+}
+
+TEST_F(SelfLocalisationFileTest, ATruthThatFiltersNamesTheFile) {
+  std::string text = base::ReadTextFile(kConfig + "/truths/same.yaml");
+  const std::string from = "localisation: fitted";
+  text.replace(text.find(from), from.size(), "localisation: filter");
+  const std::string path = folder_.Write("truth.yaml", text);
+  EXPECT_THAT(ConfigErrorOf([&] { ReadTruth(path); }), HasSubstr("self_localisation"));
+  folder_.Write("truth.yaml", text + "self_localisation: " + kConfig + "/self_localisation.yaml\n");
+  const Truth truth = ReadTruth(path);
+  EXPECT_EQ(truth.localisation, Localisation::kFilter);
+  EXPECT_EQ(truth.self_localisation->casters.casters_B.size(), 4U);
+}
+
+}  // namespace
+}  // namespace hires::evaluation::self_localisation_test
