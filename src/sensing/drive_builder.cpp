@@ -189,6 +189,7 @@ void DriveBuilder::PlaceAt(const Pose3& X_BL, RobotLog::Scan scan) {
 
 void DriveBuilder::PlaceRest() {
   for (WaitingScan& waiting : waiting_) {
+    if (Place(&waiting)) continue;  // it stood behind one of another frame
     const bool is_named = !base_frame_.empty() && !waiting.frame.empty();
     const FramePose found =
         is_named ? tree_.Find(base_frame_, waiting.frame, kUnbounded) : FramePose{};
