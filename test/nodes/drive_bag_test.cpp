@@ -425,6 +425,29 @@ TEST_F(DriveBagTest, LaserWhosePlaceNobodySaysIsNamed) {
                              HasSubstr("--laser \"x y yaw\" [m, m, rad]")));
 }
 
+TEST_F(DriveBagTest, LaserMayHangOnAChainOfFixedAndMovingFrames) {
+  Style style;
+  style.mount = "";
+  const RobotLog log = ShortLog();
+  Write(log, style, [&](rosbag::Bag* bag) {
+    const Pose3 X_BT{{0.2, 0.0, 0.5}, hires::geometry::RotationFromRpy(0.0, 0.0, M_PI / 2.0)};
+    bag->write("/tf_static", ros::Time(kBegin), LinkOf("base_link", "torso", kBegin, X_BT));
+    for (const double time : {kBegin, kBegin + 0.5}) {
+      const double along = time - kBegin;  // [m] the torso's x, which is y of the base
+      bag->write(
+          "/tf", ros::Time(time),
+          LinkOf("torso", "laser", time, {{along, 0.0, 0.0}, Eigen::Quaterniond::Identity()}));
+    }
+  });
+  const RobotLog read = Read();
+  ASSERT_EQ(read.scans.size(), 10u);
+  EXPECT_NEAR(read.scans[2].X_BL.x, 0.2, 1e-6);
+  EXPECT_NEAR(read.scans[2].X_BL.y, 0.2, 1e-6) << "between two moments that are known";
+  EXPECT_NEAR(read.scans[2].X_BL.yaw, M_PI / 2.0, 1e-6);
+  EXPECT_NEAR(read.scans[9].X_BL.y, 0.5, 1e-6) << "the newest at the end";
+  EXPECT_THAT(told_, IsEmpty());
+}
+
 TEST_F(DriveBagTest, TiltedLaserIsRefused) {
   Style style;
   style.X_BL.rotation = hires::geometry::RotationFromRpy(0.0, 0.5, 0.0);
@@ -543,7 +566,9 @@ TEST_F(DriveBagTest, BrokenReadingsAreLeftOutAndCounted) {
     odometry = OdometryOf(kBegin + 0.55, {});
     odometry.pose.pose.orientation = {};
     bag->write("/odom", now, odometry);
-    bag->write("/tf", now, LinkOf("base_link", "laser", kBegin, {{NAN, 0.0, 0.0}, {}}));
+    bag->write(
+        "/tf", now,
+        LinkOf("base_link", "laser", kBegin, {{NAN, 0.0, 0.0}, Eigen::Quaterniond::Identity()}));
   });
   EXPECT_EQ(Read().scans.size(), 10u);
   for (const char* said :
