@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
 
 #include "cli/drive_log.h"
 #include "hires/base/error.h"
@@ -50,34 +47,6 @@ OccupancyGrid ReadMap(const std::string& file) {
   return map;
 }
 
-/// Of "x y yaw", or with commas.
-Pose2 PoseIn(const std::string& text) {
-  constexpr char kWanted[] =
-      "wanted three numbers in quotes, \"x y yaw\" [m, m, rad] of the base in the map";
-  std::string spaced = text;
-  std::replace(spaced.begin(), spaced.end(), ',', ' ');
-  std::istringstream words(spaced);
-  std::vector<double> numbers;
-  for (std::string word; words >> word;) {
-    double number = 0.0;
-    if (!CLI::detail::lexical_cast(word, number) || !std::isfinite(number)) {
-      throw base::ConfigError(
-          fmt::format("--initial '{}': '{}' is no number; {}", text, word, kWanted));
-    }
-    numbers.push_back(number);
-  }
-  if (numbers.size() != 3) {
-    throw base::ConfigError(
-        fmt::format("--initial '{}': has {} numbers; {}", text, numbers.size(), kWanted));
-  }
-  if (std::abs(numbers[2]) > 2.0 * M_PI) {
-    throw base::ConfigError(fmt::format(
-        "--initial '{}': yaw is in radians, wanted between -2 pi and 2 pi; {:g} degrees are {:.5g}",
-        text, numbers[2], numbers[2] * M_PI / 180.0));
-  }
-  return {numbers[0], numbers[1], numbers[2]};
-}
-
 void RefuseOutside(const Pose2& X_MB, const OccupancyGrid& map, const std::string& file) {
   const Eigen::Vector2d size(map.width * map.resolution, map.height * map.resolution);
   const Eigen::Vector2d upper = map.origin + size, p = X_MB.position();
@@ -116,7 +85,7 @@ ordered_json ToJson(const Answer& answer, const LocaliseOptions& options) {
     statuses[localisation::ToString(status)] = count;
   return {{"schema", "hires/localisation"},
           {"version", 1},
-          {"log", options.log},
+          {"log", options.drive.log},
           {"map", options.map},
           {"trajectory", localised.path.empty() ? "" : options.trajectory},
           {"seed", options.seed},
@@ -175,25 +144,27 @@ std::string Summary(const Answer& answer, const LocaliseOptions& options) {
          Line("seed", std::to_string(options.seed));
 }
 
-Answer Localise(const LocaliseOptions& options, const localisation::MonteCarloParams& defaults) {
+Answer Localise(const LocaliseOptions& options, const localisation::MonteCarloParams& defaults,
+                const ReadDriveBag& read_bag) {
   const OccupancyGrid map = ReadMap(options.map);
   Answer answer;
   localisation::MonteCarloParams params = defaults;
   if (options.initial) {
-    answer.initial = PoseIn(*options.initial);
+    answer.initial = PoseIn(*options.initial, "--initial", "of the base in the map");
     RefuseOutside(*answer.initial, map, options.map);
     params.initial_pose = *answer.initial;
   }
   localisation::MonteCarloLocalisation filter(map, params, base::Rng(options.seed));
-  const localisation::RobotLog log = ReadDrive(options.log);
+  const localisation::RobotLog log = ReadDrive(options.drive, read_bag);
   if (!answer.initial) filter.GlobalLocalisation();
   answer.num_scans = log.scans.size();
   answer.duration = log.scans.back().time - log.scans.front().time;
-  answer.localised = localisation::LocaliseLog(log, std::move(filter), "localising " + options.log);
+  answer.localised =
+      localisation::LocaliseLog(log, std::move(filter), "localising " + options.drive.log);
   if (answer.localised.outcomes.count(localisation::ScanOutcome::kUpdated) == 0) {
     throw base::ConfigError(
         fmt::format("{}: no scan could be used ({}); wanted a drive on which a laser met walls",
-                    options.log, BadScans(answer.localised)));
+                    options.drive.log, BadScans(answer.localised)));
   }
   return answer;
 }
@@ -202,7 +173,7 @@ Answer Localise(const LocaliseOptions& options, const localisation::MonteCarloPa
 
 void AddLocaliseVerb(CLI::App* app, LocaliseOptions* o) {
   CLI::App* verb = app->add_subcommand("localise", "where in a map a recorded drive went");
-  verb->add_option("log", o->log, "CARMEN log: lines FLASER and ODOM, or ROBOTLASER1")->required();
+  AddDriveOptions(verb, &o->drive);
   verb->add_option("--map", o->map, "a map_server map (YAML with PGM or PNG)")->required();
   verb->add_option("--initial", o->initial,
                    "\"x y yaw\" [m, m, rad] of the base in the map when the log begins, give or "
@@ -220,12 +191,13 @@ void AddLocaliseVerb(CLI::App* app, LocaliseOptions* o) {
   o->verb = verb;
 }
 
-int RunLocaliseVerb(const LocaliseOptions& options, const std::string& package_folder) {
+int RunLocaliseVerb(const LocaliseOptions& options, const std::string& package_folder,
+                    const ReadDriveBag& read_bag) {
   for (const std::string& file : {options.trajectory, options.json})
     if (!file.empty() && file != "-") evaluation::RequireFolderOf(file);
   const auto config = localisation::ReadLocalisationConfig(base::ParamReader::FromFile(
       options.config.empty() ? package_folder + "/config/localisation.yaml" : options.config));
-  const Answer answer = Localise(options, config.filter);
+  const Answer answer = Localise(options, config.filter, read_bag);
   if (!answer.localised.path.empty())
     localisation::WriteTumTrajectory(answer.localised.path, options.trajectory);
   if (options.json == "-") {

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "cli/drive_log.h"
+
 namespace CLI {
 class App;
 }
@@ -12,7 +14,8 @@ namespace hires::cli {
 
 /// What was typed behind `hires localise`.
 struct LocaliseOptions {
-  std::string log, map, trajectory, config, json;
+  DriveOptions drive;
+  std::string map, trajectory, config, json;
   std::optional<std::string> initial;  ///< "x y yaw"
   std::uint64_t seed{1};
   bool is_quiet{false};
@@ -24,7 +27,9 @@ void AddLocaliseVerb(CLI::App* app, LocaliseOptions* options);
 
 /// Tells where in a map a robot was during a recorded drive.
 /// @return kExitRecommended, kExitUndecided where it does not know in the end.
+/// @param read_bag  may be empty; then bags are refused.
 /// @throws base::ConfigError for bad input.
-int RunLocaliseVerb(const LocaliseOptions& options, const std::string& package_folder);
+int RunLocaliseVerb(const LocaliseOptions& options, const std::string& package_folder,
+                    const ReadDriveBag& read_bag);
 
 }  // namespace hires::cli

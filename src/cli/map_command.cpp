@@ -43,7 +43,7 @@ ordered_json ToJson(const MapResult& result, const MapOptions& options, const st
   const world::OccupancyGrid& grid = result.grid;
   return {{"schema", "hires/map"},
           {"version", 1},
-          {"log", options.log},
+          {"log", options.drive.log},
           {"map", map},
           {"trajectory", options.trajectory},
           {"resolution", grid.resolution},
@@ -81,7 +81,7 @@ std::string Summary(const MapResult& result, const std::string& map) {
 
 void AddMapVerb(CLI::App* app, MapOptions* o) {
   CLI::App* verb = app->add_subcommand("map", "a map of what a laser saw on a recorded drive");
-  verb->add_option("log", o->log, "CARMEN log: lines FLASER and ODOM, or ROBOTLASER1")->required();
+  AddDriveOptions(verb, &o->drive);
   verb->add_option("--output", o->output,
                    "the map's YAML file, as map_server reads it; its picture comes beside it")
       ->required();
@@ -98,15 +98,15 @@ void AddMapVerb(CLI::App* app, MapOptions* o) {
   o->verb = verb;
 }
 
-int RunMapVerb(const MapOptions& options) {
+int RunMapVerb(const MapOptions& options, const ReadDriveBag& read_bag) {
   const std::string map = MapFile(options.output);
   for (const std::string& file : {map, options.trajectory, options.json})
     if (!file.empty() && file != "-") evaluation::RequireFolderOf(file);
-  const localisation::RobotLog log = ReadDrive(options.log);
+  const localisation::RobotLog log = ReadDrive(options.drive, read_bag);
   mapping::MapperParams params;
   params.resolution = options.resolution;
   params.max_range = options.max_range;
-  const MapResult result = mapping::MakeMap(log, params, "mapping " + options.log);
+  const MapResult result = mapping::MakeMap(log, params, "mapping " + options.drive.log);
   world::SaveMap(result.grid, map);
   if (!options.trajectory.empty())
     localisation::WriteTumTrajectory(result.trajectory, options.trajectory);

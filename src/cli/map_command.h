@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "cli/drive_log.h"
+
 namespace CLI {
 class App;
 }
@@ -10,7 +12,8 @@ namespace hires::cli {
 
 /// What was typed behind `hires map`.
 struct MapOptions {
-  std::string log, output, trajectory, json;
+  DriveOptions drive;
+  std::string output, trajectory, json;
   double resolution{0.05};  ///< [m]
   double max_range{30.0};   ///< [m]
   bool is_quiet{false};
@@ -21,7 +24,8 @@ struct MapOptions {
 void AddMapVerb(CLI::App* app, MapOptions* options);
 
 /// Makes a map of a log, and tells where the robot was.
+/// @param read_bag  may be empty; then bags are refused.
 /// @return kExitRecommended.  @throws base::ConfigError for bad input.
-int RunMapVerb(const MapOptions& options);
+int RunMapVerb(const MapOptions& options, const ReadDriveBag& read_bag);
 
 }  // namespace hires::cli

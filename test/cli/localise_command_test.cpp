@@ -238,7 +238,12 @@ TEST_F(LocaliseCommandTest, BadInputIsRefused) {
   refused(Localise(log, {"--config", Path("none.yaml")}), "none.yaml");
   refused(Localise(log, {"--inital", "0 0 0"}), "--initial");
   refused(Localise(Path("none.log")), "none.log: no such file");
-  refused(Localise(Path("drive.bag")), "drive.bag: is a bag, which this program does not");
+  refused(Localise(Path("drive.bag")),
+          "drive.bag: is a bag, which this program does not read "
+          "because it was built without ROS");
+  refused(Localise(folder_.Write("drive.rec", "#ROSBAG V2.0\n")), "drive.rec: is a bag");
+  refused(Localise(log, {"--scan", "/scan"}), "--scan: is for bags, and " + log + " is none");
+  refused(Localise(log, {"--laser", "0 0 0"}), "--laser: is for bags");
 
   refused(Localise(log, {"--initial", "2 2"}), "--initial '2 2': has 2 numbers; wanted three");
   refused(Localise(log, {"--initial", "2 2 north"}), "'north' is no number");

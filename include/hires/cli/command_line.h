@@ -17,7 +17,9 @@
 #include "hires/imagination/rollout_recording.h"
 #include "hires/imagination/scheduler.h"
 #include "hires/imagination/validated.h"
+#include "hires/localisation/robot_log.h"
 #include "hires/loop/loop_observer.h"
+#include "hires/sensing/drive_builder.h"
 
 namespace hires::cli {
 
@@ -52,6 +54,10 @@ using Check = std::function<std::vector<Finding>()>;
 using MakeRolloutBag = std::function<std::unique_ptr<imagination::RolloutSaver>(
     const std::string& path, const imagination::RolloutSetup& setup)>;
 
+/// Reads a drive from a bag.  @throws base::ConfigError naming the bag and what is wrong with it.
+using ReadDriveBag = std::function<localisation::RobotLog(const std::string& path,
+                                                          const sensing::DriveSource& source)>;
+
 /// What the program can do beyond this process; all may be empty.
 struct Backends {
   std::string package_folder;  ///< where config/, worlds/, urdf/ lie
@@ -64,6 +70,7 @@ struct Backends {
   loop::RecordLoop record_loop;  ///< empty: this program writes no bags
   MakeRolloutBag make_rollout_bag;
   ExamineRobot examine_robot;
+  ReadDriveBag read_drive_bag;  ///< empty: this program reads no bags
   std::vector<Verb> more_verbs;
   std::vector<Check> more_checks;
 };

@@ -5,10 +5,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -55,8 +58,8 @@ void RequireBagFile(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
     throw ConfigError(fmt::format(
-        "{}: no such bag; name a file that `rosbag record` (for `hires replay`) or `hires imagine "
-        "--save-rollout worst --bag FILE` (for `hires watch`) wrote",
+        "{}: no such bag; name a file that `rosbag record` (for `hires replay`, `map`, `localise`) "
+        "or `hires imagine --save-rollout worst --bag FILE` (for `hires watch`) wrote",
         path));
   }
   std::string begin(4, '\0');
@@ -76,10 +79,155 @@ void RequireBagFile(const std::string& path) {
       path, what, path));
 }
 
+std::uint64_t NumberAt(const std::string& bytes, std::size_t at, std::size_t size) {
+  std::uint64_t number = 0;  // least significant byte first
+  for (std::size_t i = size; i > 0; --i)
+    number = number << 8 | static_cast<unsigned char>(bytes[at + i - 1]);
+  return number;
+}
+
+/// Walks through a bag of format 2.0 before rosbag does, which believes what stands in it: a wrong
+/// length or offset makes it read beyond its buffers.
+class BagCheck {
+ public:
+  explicit BagCheck(const std::string& path) : path_(path), file_(path, std::ios::binary) {
+    file_.seekg(0, std::ios::end);
+    size_ = static_cast<std::uint64_t>(file_.tellg());
+  }
+
+  /// @throws ConfigError for what no recorder writes.
+  void Run() {
+    const std::string line = Read(0, std::min<std::uint64_t>(size_, kFirstLine.size()));
+    if (line != kFirstLine) return;  // rosbag itself refuses what it does not know
+    for (std::uint64_t at = kFirstLine.size(); at < size_;) {
+      at = TakeRecord(at);
+      if (index_at_ == 0) return;  // there is no index, which rosbag says
+    }
+    const bool ends_well = index_at_ == size_ || records_.count(index_at_) > 0;
+    if (!ends_well) Fail("its index is not where its header says");
+    for (const std::uint64_t chunk : indexed_) {
+      if (chunks_.count(chunk) == 0) Fail("its index names a chunk that is not there");
+    }
+  }
+
+ private:
+  using Fields = std::map<std::string, std::string>;
+  static constexpr std::uint64_t kMostHeader = 1 << 20;  // [bytes]
+  static constexpr std::uint64_t kMostChunk = 1 << 29;   // [bytes]
+  static inline const std::string kFirstLine = "#ROSBAG V2.0\n";
+  enum Op { kMessage = 2, kFileHeader = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6 };
+
+  [[noreturn]] void Fail(const std::string& what) const { FailBroken(path_, what); }
+
+  std::string Read(std::uint64_t at, std::uint64_t size) {
+    if (at > size_ || size > size_ - at) Fail("it ends too early");
+    std::string bytes(size, '\0');
+    file_.clear();
+    file_.seekg(static_cast<std::streamoff>(at));
+    if (!file_.read(bytes.data(), static_cast<std::streamsize>(size))) Fail("it cannot be read");
+    return bytes;
+  }
+
+  /// Of `size` bytes: a length each, then name=value.
+  Fields FieldsOf(const std::string& bytes, std::size_t at, std::size_t size) const {
+    Fields fields;
+    for (const std::size_t end = at + size; at < end;) {
+      if (end - at < 4) Fail("a header ends too early");
+      const std::size_t length = NumberAt(bytes, at, 4);
+      at += 4;
+      const std::size_t equals = bytes.find('=', at);
+      if (length > end - at || equals >= at + length) Fail("a header's field is no field");
+      fields[bytes.substr(at, equals - at)] = bytes.substr(equals + 1, at + length - equals - 1);
+      at += length;
+    }
+    return fields;
+  }
+
+  std::uint64_t NumberOf(const Fields& fields, const std::string& name, std::size_t size) const {
+    const auto field = fields.find(name);
+    if (field == fields.end() || field->second.size() != size)
+      Fail(fmt::format("a header's {} has not {} bytes", name, size));
+    return NumberAt(field->second, 0, size);
+  }
+
+  static bool IsPacked(const Fields& chunk) {
+    const auto compression = chunk.find("compression");
+    return compression == chunk.end() || compression->second != "none";
+  }
+
+  /// @return where the next one begins.
+  std::uint64_t TakeRecord(std::uint64_t at) {
+    const std::uint64_t header_size = NumberAt(Read(at, 4), 0, 4);
+    if (header_size > kMostHeader) Fail("a header claims to be larger than 1 MB");
+    const Fields fields = FieldsOf(Read(at + 4, header_size), 0, header_size);
+    const std::uint64_t data_at = at + 8 + header_size;
+    const std::uint64_t data_size = NumberAt(Read(data_at - 4, 4), 0, 4);
+    if (data_size > size_ - data_at) Fail("it ends too early");
+    records_.insert(at);
+    switch (NumberOf(fields, "op", 1)) {
+      case kFileHeader:
+        index_at_ = NumberOf(fields, "index_pos", 8);
+        break;
+      case kChunk:
+        chunks_.insert(at);
+        if (std::max(data_size, NumberOf(fields, "size", 4)) > kMostChunk)
+          Fail("a chunk claims to be larger than 512 MB");
+        chunk_ = IsPacked(fields) ? "" : Read(data_at, data_size);
+        chunk_size_ = chunk_.empty() ? NumberOf(fields, "size", 4) : data_size;
+        break;
+      case kIndex:
+        CheckIndex(Read(data_at, data_size), NumberOf(fields, "count", 4));
+        break;
+      case kChunkInfo:
+        indexed_.push_back(NumberOf(fields, "chunk_pos", 8));
+        break;
+    }
+    return data_at + data_size;
+  }
+
+  /// Of the chunk before it: time and place of each message of a connection.
+  void CheckIndex(const std::string& entries, std::uint64_t count) const {
+    constexpr std::size_t kEntry = 12, kTime = 8;
+    if (entries.size() != count * kEntry) Fail("an index is not as long as it says");
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t at = NumberAt(entries, i * kEntry + kTime, 4);
+      if (at + 8 > chunk_size_) Fail("a message begins beyond its chunk");
+      if (!chunk_.empty()) CheckMessage(at);
+    }
+  }
+
+  void CheckMessage(std::size_t at) const {
+    const auto size_at = [&](std::size_t place) {
+      if (place + 4 > chunk_.size()) Fail("a message ends beyond its chunk");
+      const std::size_t size = NumberAt(chunk_, place, 4);
+      if (size > chunk_.size() - place - 4) Fail("a message ends beyond its chunk");
+      return size;
+    };
+    // Where a connection's record comes first, the message follows.
+    for (Fields fields; fields.empty() || NumberOf(fields, "op", 1) != kMessage;) {
+      const std::size_t header_size = size_at(at);
+      fields = FieldsOf(chunk_, at + 4, header_size);
+      at += 4 + header_size;
+      at += 4 + size_at(at);
+    }
+  }
+
+  const std::string& path_;
+  std::ifstream file_;
+  std::uint64_t size_{0};               // [bytes]
+  std::uint64_t index_at_{0};           // by the file's header
+  std::set<std::uint64_t> records_;     // where they begin
+  std::set<std::uint64_t> chunks_;      // likewise
+  std::vector<std::uint64_t> indexed_;  // chunks by the index
+  std::string chunk_;                   // read last; "" where it is compressed
+  std::uint64_t chunk_size_{0};         // [bytes] unpacked
+};
+
 }  // namespace
 
 void OpenBag(const std::string& path, rosbag::Bag* bag) {
   RequireBagFile(path);
+  BagCheck(path).Run();
   try {
     bag->open(path, rosbag::bagmode::Read);
   } catch (const rosbag::BagUnindexedException&) {

@@ -15,7 +15,8 @@ struct BagTopic : hires::evaluation::BagTopic {
   std::string md5sum;
 };
 
-/// @throws hires::base::ConfigError: no such bag, no bag, or one without an index.
+/// @throws hires::base::ConfigError: no such bag, no bag, one without an index, or with lengths and
+/// offsets that lead out of it.
 void OpenBag(const std::string& path, rosbag::Bag* bag);
 
 std::vector<BagTopic> TopicsOfBag(const rosbag::Bag& bag);

@@ -10,6 +10,7 @@
 #include "hires/cli/robot_doctor.h"
 #include "hires/ros/launch_guard.h"
 #include "hires/ros/rollout_bag.h"
+#include "nodes/hires/drive_bag.h"
 #include "nodes/hires/episode_writer.h"
 #include "nodes/hires/hypothesis_run.h"
 #include "nodes/hires/message_types.h"
@@ -39,6 +40,7 @@ int main(int argc, char** argv) {
   };
   backends.make_rollout_bag = hires_ros::MakeRolloutBag;
   backends.play_hypothesis = hires::cli::PlayHypothesisRun;
+  backends.read_drive_bag = hires_ros::ReadDriveBag;
   backends.examine_robot = [&](const hires::cli::RobotDoctorOptions& options) {
     return hires::cli::RunRobotDoctor(options, backends.package_folder,
                                       hires_ros::MessageTypesOfRobot(), hires_ros::LookAtRobot);
