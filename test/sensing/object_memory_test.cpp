@@ -240,10 +240,25 @@ TEST_F(ObjectMemoryTest, WhatWasSeenBesideTheFingersIsBetweenThemWhenTheyHoldIt)
   memory_.Believe("mug1", "mug", "", beside);
   SetGap("rightarm1", 0.08);
   ASSERT_TRUE(Rest());
-  EXPECT_NEAR((Remembered("mug1").translation - tool).head<2>().norm(), 0.04, 1e-9);
+  const Eigen::Vector3d off = Remembered("mug1").translation - tool;
+  EXPECT_NEAR(off.head<2>().lpNorm<Eigen::Infinity>(), 0.04, 1e-9) << "at the side of its box";
   memory_.Look(body_, {{"mug1", "mug",
                         ViewOf(Pr2(), body_.X_MB, body_.joints).X_MC.Inverse() * beside, 1.0}});
   EXPECT_TRUE(memory_.objects().at("mug1").is_held) << "seen within reach of the fingers";
+}
+
+TEST_F(ObjectMemoryTest, WhatFingersCloseOnIsInTheMiddleBetweenThem) {
+  PutArm("rightarm1", "armuntuckedposture");
+  const Pose3 X_MT = X_ML("r_gripper_tool_frame");
+  Pose3 aside;  // the eye erred by 9 mm across and 4 mm along the fingers
+  aside.translation = X_MT * Eigen::Vector3d(0.004, 0.009, 0.0) - Eigen::Vector3d(0.0, 0.0, 0.05);
+  memory_.Believe("mug1", "mug", "", aside);
+  SetGap("rightarm1", 0.079);
+  ASSERT_TRUE(Rest());
+  const Eigen::Vector3d middle = Remembered("mug1").translation + Eigen::Vector3d(0.0, 0.0, 0.05);
+  const Eigen::Vector3d p_TO = X_MT.Inverse() * middle;
+  EXPECT_NEAR(p_TO.x(), 0.004, 1e-6);
+  EXPECT_NEAR(p_TO.y(), 0.0, 1e-6);
 }
 
 TEST_F(ObjectMemoryTest, AnObjectThatStandsAslantInTheHandIsHeld) {

@@ -88,11 +88,16 @@ void ObjectMemory::Take(const Links& links, const robot::ArmProfile& arm, const 
                         Hand* hand) {
   RememberedObject& object = objects_.at(name);
   Pose3 X_MO = links.X_ML(object.link) * object.X_LO;
-  // The fingers touch it: where it was seen beside them, it was seen badly.
-  const Eigen::Vector3d p_MT = links.X_ML(arm.tool_link).translation;
+  const Pose3 X_MT = links.X_ML(arm.tool_link);
   const geometry::Aabb bounds = BoundsOf(surroundings_->Model(object.model).collisions);
-  const Eigen::Vector3d p_OT = X_MO.Inverse() * p_MT;
-  X_MO.translation += p_MT - X_MO * p_OT.cwiseMax(bounds.lower).cwiseMin(bounds.upper).eval();
+  // Fingers close at the same pace and take what they hold between them to the middle.
+  const Eigen::Vector3d across_M = X_MT.rotation * Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d middle_M = X_MO * (0.5 * (bounds.lower + bounds.upper)).eval();
+  X_MO.translation -= across_M.dot(middle_M - X_MT.translation) * across_M;
+  // And they touch it: where it was seen beside them, it was seen badly.
+  const Eigen::Vector3d p_OT = X_MO.Inverse() * X_MT.translation;
+  X_MO.translation +=
+      X_MT.translation - X_MO * p_OT.cwiseMax(bounds.lower).cwiseMin(bounds.upper).eval();
   object.link = arm.palm_link;
   object.X_LO = links.X_ML(arm.palm_link).Inverse() * X_MO;
   object.is_held = object.is_observed = true;
