@@ -79,6 +79,51 @@ Segmentation Segment(const PointCloud& cloud) {
   return SegmentTabletop(cloud, TableScene::Stand(), {}, base::Rng(1));
 }
 
+/// The plate of 0.4 m by 0.3 m in the middle of the table, believed `higher` [m] and turned by
+/// `tilt` [rad] about the camera's x axis.
+Table PlateBelieved(double higher, double tilt) {
+  Table plate;
+  plate.normal = Eigen::AngleAxisd(tilt, Vector3d::UnitX()) * TableScene::Up();
+  const Vector3d p = TableScene::camera().X_MC.Inverse() * Vector3d(0.0, 0.0, kTableHeight);
+  const Vector3d middle_C(-p.y(), -p.z(), p.x());
+  plate.offset = -plate.normal.dot(middle_C) - higher;
+  plate.along_x = Vector3d::UnitX();
+  plate.along_y = plate.normal.cross(plate.along_x);
+  const Eigen::Vector2d middle = plate.FromAbove(middle_C);
+  for (const auto& [x, y] :
+       {std::pair(-0.2, -0.15), std::pair(0.2, -0.15), std::pair(0.2, 0.15), std::pair(-0.2, 0.15)})
+    plate.outline.push_back(middle + Eigen::Vector2d(x, y));
+  return plate;
+}
+
+/// A camera that sits 5 mm and 0.3 degrees otherwise than it is believed to.
+TEST(PlateInTest, APlateThatIsBelievedElsewhereIsWhereTheCloudHasIt) {
+  TableScene scene;
+  scene.PutBox({0.1, 0.08, 0.12}, 0.05, 0.0);  // a tenth of it is covered
+  const PointCloud cloud = scene.Seen();
+  const Table truth = PlateBelieved(0.0, 0.0);
+  for (const double higher : {-0.02, -0.008, 0.0, 0.008, 0.02}) {
+    for (const double tilt : {-0.015, 0.0, 0.015}) {
+      const Table found = PlateIn(cloud, PlateBelieved(higher, tilt), {});
+      EXPECT_LT(std::acos(std::min(1.0, found.normal.dot(truth.normal))), 0.006)
+          << higher << ", " << tilt;
+      for (const Eigen::Vector2d& corner : found.outline)
+        EXPECT_NEAR(truth.HeightOf(found.Lift(corner)), 0.0, 0.002) << higher << ", " << tilt;
+    }
+  }
+}
+
+TEST(PlateInTest, WhatIsFartherOffThanACalibrationIsLeftAsItWasBelieved) {
+  const PointCloud cloud = TableScene().Seen();
+  for (const double higher : {-0.06, 0.06}) {
+    const Table believed = PlateBelieved(higher, 0.0);
+    EXPECT_EQ(PlateIn(cloud, believed, {}).offset, believed.offset);
+  }
+  const Table believed = PlateBelieved(0.0, 0.0);
+  EXPECT_EQ(PlateIn({}, believed, {}).offset, believed.offset);
+  EXPECT_EQ(PlateIn({}, believed, {}).outline, believed.outline);
+}
+
 TEST(FindTableTest, ThePlaneIsFoundBesideWhatStandsOnIt) {
   TableScene scene;
   scene.PutBox({0.3, 0.4, 0.2}, 0.1, 0.0);

@@ -54,8 +54,8 @@ class Recogniser {
   /// @param stand  as FindTable takes it.
   Recognition Recognise(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                         const base::Rng& rng) const;
-  /// The same on a table that is known.
-  Recognition RecogniseOn(const Table& table, const PointCloud& cloud, const base::Rng& rng) const;
+  /// The same on a plate whose place is known about, as PlateIn takes it.
+  Recognition RecogniseOn(const Table& plate, const PointCloud& cloud, const base::Rng& rng) const;
 
   /// Whether nothing that measures distances tells the two kinds apart; each is alike itself.
   bool AreAlike(const std::string& label, const std::string& other) const;

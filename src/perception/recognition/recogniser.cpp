@@ -213,9 +213,10 @@ Recognition Recogniser::Recognise(const PointCloud& cloud, const std::optional<C
   return impl_->Named(cloud, SegmentTabletop(cloud, stand, impl_->params.segmentation, rng));
 }
 
-Recognition Recogniser::RecogniseOn(const Table& table, const PointCloud& cloud,
+Recognition Recogniser::RecogniseOn(const Table& plate, const PointCloud& cloud,
                                     const base::Rng& rng) const {
-  return impl_->Named(cloud, SegmentOn(table, cloud, impl_->params.segmentation, rng));
+  const SegmentationParams& params = impl_->params.segmentation;
+  return impl_->Named(cloud, SegmentOn(PlateIn(cloud, plate, params.table), cloud, params, rng));
 }
 
 bool Recogniser::AreAlike(const std::string& label, const std::string& other) const {

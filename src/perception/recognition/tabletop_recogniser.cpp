@@ -43,8 +43,8 @@ TabletopRecogniser::TabletopRecogniser(std::shared_ptr<const Recogniser> recogni
                                        const SelfFilterParams& params)
     : recogniser_(std::move(recogniser)), self_(params) {}
 
-/// The robot's own tray cannot be found by its points: they are the robot's. Its plate says where
-/// it is.
+/// The robot's own tray cannot be found by its points alone: they are the robot's. Its plate says
+/// about where it is, the cloud where it is seen.
 Recognition TabletopRecogniser::OnTray(const geometry::Collision& tray_F,
                                        const geometry::Pose3& X_FC,
                                        const std::vector<geometry::Collision>& others_C,

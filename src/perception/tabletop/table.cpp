@@ -17,10 +17,13 @@ constexpr double kMostSamples = 10.0;  // times num_samples, while no plane hold
 constexpr double kOutlineCell = 0.02;  // [m]
 constexpr int kMostCells = 2000;       // along each axis; larger tables have larger cells
 constexpr double kMinPiece = 0.1;      // of the largest piece
-constexpr int kMinOver = 3;      // times as many points in a cell's plane as below it: a table
-                                 // hides what is below it, a wall goes on there
-constexpr int kMinUnder = 2;     // likewise as above it: a wall goes on there, and so does a thing,
-                                 // whose cells a table can do without
+constexpr int kMinOver = 3;   // times as many points in a cell's plane as below it: a table
+                              // hides what is below it, a wall goes on there
+constexpr int kMinUnder = 2;  // likewise as above it: a wall goes on there, and so does a thing,
+                              // whose cells a table can do without
+constexpr double kPlateReach = 0.03;  // [m] by which a plate's place may err upwards or downwards
+constexpr double kPlateTilt = 0.05;   // [rad] by which it may lean otherwise
+constexpr std::size_t kPlatePoints = 200;
 constexpr double kBeside = 3.0;  // tolerances up to which points are beside a plane
 
 struct Plane {
@@ -267,6 +270,28 @@ TableTop TopOf(const std::vector<Point>& points, const Table& table) {
   return top;
 }
 
+/// Those over the plate's outline, and as high.
+std::vector<Point> PointsAbout(const Table& plate, const PointCloud& cloud,
+                               const TableParams& params) {
+  std::vector<Point> points;
+  for (const Eigen::Vector3f& point : cloud.points) {
+    if (!IsMeasured(point)) continue;
+    const Eigen::Vector3d p = point.cast<double>();
+    if (std::abs(plate.HeightOf(p)) > kPlateReach) continue;
+    if (!geometry::Contains(plate.outline, plate.FromAbove(p))) continue;
+    points.push_back({p, params.tolerance * DepthNoise(p.z())});
+  }
+  return points;
+}
+
+double MedianHeight(const std::vector<Point>& points, const Table& plate) {
+  std::vector<double> heights;
+  for (const Point& point : points) heights.push_back(plate.HeightOf(point.p));
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  return *middle;
+}
+
 Table TableIn(const Plane& plane) {
   Table table;
   table.normal = plane.normal;
@@ -296,6 +321,21 @@ std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<Came
   for (const Eigen::Vector3d& p : top.border) table.outline.push_back(table.FromAbove(p));
   table.outline = geometry::ConvexHull(std::move(table.outline));
   return table;
+}
+
+Table PlateIn(const PointCloud& cloud, Table expected, const TableParams& params) {
+  const std::vector<Point> points = PointsAbout(expected, cloud, params);
+  if (points.size() < kPlatePoints) return expected;
+  Plane plane{expected.normal, expected.offset - MedianHeight(points, expected)};
+  for (int i = 0; i < kRefinements; ++i) plane = LeastSquares(points, plane);
+  const auto num_on_it = static_cast<std::size_t>(std::count_if(
+      points.begin(), points.end(), [&](const Point& point) { return Supports(plane, point); }));
+  if (2 * num_on_it < points.size() || plane.normal.dot(expected.normal) < std::cos(kPlateTilt))
+    return expected;
+  Table plate = TableIn(plane);
+  for (const Eigen::Vector2d& corner : expected.outline)
+    plate.outline.push_back(plate.FromAbove(expected.Lift(corner)));
+  return plate;
 }
 
 }  // namespace hires::perception
