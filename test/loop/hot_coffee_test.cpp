@@ -42,8 +42,10 @@ void ExpectServed(const LoopRun& run, const std::string& served, const std::stri
   EXPECT_NEAR(run.truth.objects.at(left).X_MO.translation.x(), 5.37, 0.02);  // on the counter
 }
 
+/// The first by name is the cold one: whoever takes that without looking serves the wrong one.
+/// loop_pictures_test.py plays it the other way round, with nodes.
 TEST(HotCoffeeTest, OfTwoMugsThatOneIsServedThatTheThermalCameraSeesToBeHot) {
-  ExpectServed(ServeHotCoffee("pictures", 335.65, 293.15), "mug1", "mug2");
+  ExpectServed(ServeHotCoffee("pictures", 293.15, 335.65), "mug2", "mug1");
 }
 
 TEST(HotCoffeeTest, OfTwoMugsThatAreBothSeenToBeColdNoneIsServed) {

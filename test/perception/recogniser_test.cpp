@@ -233,27 +233,52 @@ TEST_F(RecogniserTest, ModelsOfOneShapeShareTheirConfidence) {
   FAIL() << "no cup stood on any table";
 }
 
+/// Bounds are what 80 tables show, and what a hand needs that grasps the box: of a thing in full
+/// view the middle is 7 mm off at most, and the sides are up to 17 mm too long (noise at rims,
+/// corners that are rounded off) and hardly too short (2 mm).
 TEST_F(RecogniserTest, AnUnknownThingHasABoxAroundWhatIsSeenOfIt) {
-  int num_boxes = 0;
+  int num_full = 0, num_hidden = 0, num_called_known = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const RandomTable table = tables_.Make(seed);
     const Recognition out = Recognise(table.cloud, table.stand);
+    std::map<const TableThing*, int> num_boxes_of;
     for (const Detection& seen : out.detections) {
       if (seen.label != kUnknownLabel) continue;
+      const auto way = [&](const TableThing& thing) {
+        return (thing.X_CO.translation - seen.X_CO.translation).norm();
+      };
       const auto truth =
-          std::find_if(table.things.begin(), table.things.end(), [&](const TableThing& thing) {
-            return !thing.is_known && thing.view.part.share > 0.95 &&
-                   (thing.X_CO.translation - seen.X_CO.translation).norm() < 0.1;
-          });
-      if (truth == table.things.end()) continue;
-      ++num_boxes;
-      EXPECT_NEAR(seen.size.z(), truth->size.z(), 0.01) << seed;
-      EXPECT_LT(seen.size.x(), truth->size.head<2>().norm() + 0.02) << seed;
+          std::min_element(table.things.begin(), table.things.end(),
+                           [&](const auto& a, const auto& b) { return way(a) < way(b); });
+      ASSERT_NE(truth, table.things.end()) << seed;
+      SCOPED_TRACE(truth->name + " on table " + std::to_string(seed));
+      EXPECT_FALSE(truth->is_known);
+      ++num_boxes_of[&*truth];
       EXPECT_GE(seen.size.x(), seen.size.y());
-      EXPECT_LT((truth->X_CO.translation - seen.X_CO.translation).norm(), 0.08) << seed;
+      const Vector3d size(truth->size.head<2>().maxCoeff(), truth->size.head<2>().minCoeff(),
+                          truth->size.z());
+      const Vector3d longer = seen.size - size;
+      if (truth->view.part.share > 0.95) {
+        ++num_full;
+        EXPECT_LT(way(*truth), 0.01);
+        EXPECT_GT(longer.head<2>().minCoeff(), -0.005);
+        EXPECT_LT(longer.head<2>().maxCoeff(), 0.02);
+        EXPECT_NEAR(longer.z(), 0.0, 0.006);
+      } else {  // the box ends where something hides the rest
+        ++num_hidden;
+        EXPECT_LT(way(*truth), 0.04);
+        EXPECT_LT(longer.maxCoeff(), 0.02);
+      }
+    }
+    for (const TableThing& thing : table.things) {
+      if (thing.is_known || thing.view.part.share <= 0.95) continue;
+      EXPECT_LE(num_boxes_of[&thing], 1) << thing.name << " on table " << seed;
+      num_called_known += num_boxes_of[&thing] == 0;
     }
   }
-  EXPECT_GT(num_boxes, 10);
+  EXPECT_GE(num_full, 30);
+  EXPECT_GE(num_hidden, 3);
+  EXPECT_LE(num_called_known, 1) << "one is as large as a mill";
 }
 
 constexpr std::uint64_t kCrowded = 10;

@@ -551,51 +551,37 @@ TEST_F(NamelessTest, ATurnThatNobodyCanSeeIsNone) {
   EXPECT_NEAR(Remembered("mug1").rotation.angularDistance(At(1.5, 0.1, 0.7).rotation), 0.0, 1e-6);
 }
 
-/// Mugs that stand about, are added, taken away and moved while others are looked at, in all
-/// orders.
-TEST_F(NamelessTest, OverRandomHistoriesWhatDoesNotMoveKeepsItsName) {
-  int num_ambiguous = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    base::Rng rng(seed);
-    ObjectMemory memory(surroundings_, std::make_shared<const robot::Robot>(Pr2()));
-    std::map<int, double> standing;  // by slot: looks since it came; slots are 0.15 m apart
-    std::map<int, std::string> name_of;
-    const Pose3 X_CM = ViewOf(Pr2(), body_.X_MB, body_.joints).X_MC.Inverse();
-    for (int look = 0; look < 60; ++look) {
-      body_.time += 0.5;
-      if (look % 5 == 0) {  // somebody adds one or takes one away
-        const int slot = rng.Index(6);
-        if (standing.erase(slot) == 0) standing[slot] = 0.0;
-        name_of.erase(slot);
-      }
-      std::vector<Detection> detections;
-      for (auto& [slot, age] : standing) {
-        ++age;
-        Detection one;
-        one.label = "mug";
-        one.X_CO = X_CM * At(1.5 + rng.Normal(0.0, 0.004),
-                             -0.4 + 0.15 * slot + rng.Normal(0.0, 0.004), 0.7);
-        detections.insert(detections.begin() + rng.Index(static_cast<int>(detections.size()) + 1),
-                          one);
-      }
-      memory.Look(body_, detections);
-      std::map<int, int> in_slot;
-      for (const auto& [name, object] : memory.objects()) {
-        const int slot = static_cast<int>(std::lround((object.X_LO.translation.y() + 0.4) / 0.15));
-        EXPECT_EQ(++in_slot[slot], 1) << "two instances on one thing, seed " << seed;
-        const auto before = name_of.find(slot);
-        if (standing.count(slot) == 0) continue;
-        EXPECT_TRUE(before == name_of.end() || before->second == name)
-            << name << " was " << before->second << ", seed " << seed;
-        if (standing[slot] > 3.0) name_of[slot] = name;
-      }
-      for (const auto& [slot, age] : standing)
-        EXPECT_TRUE(age < 4.0 || in_slot[slot] == 1 || memory.num_ambiguous() > 0)
-            << "slot " << slot << ", seed " << seed;
-      num_ambiguous += memory.num_ambiguous();
-    }
+TEST_F(NamelessTest, WhatHasNoNameYetHidesWhatIsBehindIt) {
+  const auto mug = Thing("mug1", "mug", At(1.5, 0.1, 0.7));
+  Look({mug});
+  const Pose3 X_CM = ViewOf(Pr2(), body_.X_MB, body_.joints).X_MC.Inverse();
+  Detection jug;
+  jug.label = "jug";
+  jug.X_CO = X_CM * At(1.34, 0.09, 0.7);
+  for (int i = 0; i < 3; ++i) {
+    body_.time += 0.5;
+    memory_.Look(body_, {jug});
   }
-  EXPECT_LT(num_ambiguous, 100) << "of 2400 looks; one as near to two that vanished is either";
+  EXPECT_THAT(Names(), ElementsAre("jug1", "mug1"));
+}
+
+TEST_F(NamelessTest, WhatHasNoNameYetIsNotItsNeighbourThatOneLookOverlooks) {
+  Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
+  SeeMugs({At(1.5, 0.1, 0.7), At(1.5, 0.0, 0.7)});
+  SeeMugs({At(1.5, 0.001, 0.7)});
+  EXPECT_NEAR(Remembered("mug1").translation.y(), 0.1, 1e-9);
+}
+
+TEST_F(NamelessTest, OneLookThatTakesANewThingForAnotherKindDoesNotNameIt) {
+  Detection seen;
+  seen.X_CO = ViewOf(Pr2(), body_.X_MB, body_.joints).X_MC.Inverse() * At(1.5, 0.1, 0.7);
+  for (const char* label : {"mug", "mug", "jug", "mug", "mug"}) {
+    EXPECT_THAT(Names(), IsEmpty());
+    seen.label = label;
+    body_.time += 0.5;
+    memory_.Look(body_, {seen});
+  }
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
 }
 
 /// Looks at things of unknown kind, of which boxes alone are measured.

@@ -61,11 +61,28 @@ void ObjectMemory::Look(const BodyReading& body, const std::vector<Detection>& d
   for (const robot::SeenObject& seen : Known(body)) {
     expected.push_back({seen.name, seen.model, seen.X_MO, {}, seen.attached_to});
   }
-  const LineOfSight sight(surroundings_, expected,
-                          perception::ShapesOf(*robot_, body.X_MB, body.joints));
   LookedAt look{view, detections, {}};
   for (const Eigen::Vector3d& corner : table_C) look.table_M.push_back(view.X_MC * corner);
   std::vector<Named> named = NamesOf(links, look);
+  // What is seen hides what is behind it before it has a name, but nothing in whose place it is.
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    const Detection& one = detections[i];
+    const bool is_unknown = one.label == perception::kUnknownLabel;
+    const bool has_shape = !is_unknown || one.size.minCoeff() > 0.0;
+    const Pose3 X_MO = look.X_MO(i);
+    const bool may_be_known = std::any_of(objects_.begin(), objects_.end(), [&](const auto& known) {
+      const double way = (PlaceOf(links, known.second) - X_MO.translation).norm();
+      return known.first == named[i].name || way <= params_.instance_distance;
+    });
+    if (!has_shape || may_be_known) continue;
+    expected.push_back({fmt::format("newcomer {}", i),
+                        is_unknown ? world::UnknownBoxModel(one.size) : one.label,
+                        X_MO,
+                        {},
+                        ""});
+  }
+  const LineOfSight sight(surroundings_, expected,
+                          perception::ShapesOf(*robot_, body.X_MB, body.joints));
   num_ambiguous_ = static_cast<int>(
       std::count_if(named.begin(), named.end(), [](const Named& n) { return n.is_ambiguous; }));
   Miss(sight, links, look, named);

@@ -92,11 +92,17 @@ std::vector<ObjectMemory::Named> ObjectMemory::NamesOf(const Links& links,
     names.push_back(name);
     anchors.push_back({KindOf(object.model), PlaceOf(links, object)});
   }
+  // What has no name yet is not its neighbour, in the one look that overlooks that one.
+  for (const Newcomer& newcomer : newcomers_) {
+    if (newcomer.num_looks >= params_.looks_to_appear) continue;
+    names.emplace_back();
+    anchors.push_back({newcomer.kind, newcomer.p_M});
+  }
   const Anchoring found =
       AnchorThings(things, anchors, params_.instance_distance, params_.instance_margin);
   for (std::size_t k = 0; k < nameless.size(); ++k) {
     named[nameless[k]].is_ambiguous = found.is_ambiguous[k];
-    if (found.anchor[k] < 0) continue;
+    if (found.anchor[k] < 0 || names[found.anchor[k]].empty()) continue;
     named[nameless[k]].name = names[found.anchor[k]];
     named[nameless[k]].model = objects_.at(names[found.anchor[k]]).model;
   }
@@ -149,8 +155,11 @@ void ObjectMemory::Appear(const Links& links, const LookedAt& look, std::vector<
     if (may_be_known) continue;
     Newcomer newcomer{one.label, X_MO.translation, 1, static_cast<int>(i)};
     for (const Newcomer& before : newcomers_) {
-      const bool is_same = (before.p_M - newcomer.p_M).norm() <= params_.moved_distance;
-      if (is_same) newcomer.num_looks = std::max(newcomer.num_looks, before.num_looks + 1);
+      if ((before.p_M - newcomer.p_M).norm() > params_.moved_distance) continue;
+      // One look alone may mistake its kind: the last two before it gets a name have to agree.
+      const bool agrees = before.kind == newcomer.kind;
+      const int num_looks = std::min(before.num_looks + 1, params_.looks_to_appear - !agrees);
+      newcomer.num_looks = std::max(newcomer.num_looks, num_looks);
     }
     seen.push_back(newcomer);
   }
