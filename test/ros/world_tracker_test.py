@@ -12,6 +12,7 @@ import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from diagnostics import diagnostics  # noqa: E402
 from pr2_frames import Robot, planar, quaternion, translation  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
@@ -365,6 +366,17 @@ class WorldTrackerTest(unittest.TestCase):
             self.tick()
             self.scan_tray(None, 'submarine')
         self.until_warned(submarine, "frame 'submarine' is unknown to tf")
+
+    def test_what_may_be_either_of_two_objects_is_told_to_be_ambiguous(self):
+        def shift(x):
+            return translation(7.60 + x, 11.25, 0.73)
+        self.at_table()
+        self.look({'mug3': ('coffee_cup', shift(-0.08)), 'mug4': ('coffee_cup', shift(0.08))})
+        self.look({'': ('coffee_cup', shift(0.0))}, 2)
+        ambiguous = 'things ambiguous in the last look'
+        diagnostics(self.rospy, 'world_tracker', lambda v: v[ambiguous] == '1')
+        self.look({'': ('coffee_cup', shift(0.07))})
+        diagnostics(self.rospy, 'world_tracker', lambda v: v[ambiguous] == '0')
 
     def test_an_object_that_fell_is_on_nothing(self):
         self.at_table()
