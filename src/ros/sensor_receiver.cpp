@@ -153,9 +153,12 @@ std::string SensorReceiver::NameOf(sensing::Missing missing) const {
 }
 
 void SensorReceiver::Note(const std::string& topic, const sensing::Receipt& receipt) {
-  if (!receipt.is_bad()) return;
+  if (receipt.is_bad()) Refuse(topic, sensing::ToString(receipt));
+}
+
+void SensorReceiver::Refuse(const std::string& topic, const std::string& why) {
   ++num_bad_;
-  Warn(topic, sensing::ToString(receipt));
+  Warn(topic, why);
 }
 
 void SensorReceiver::Warn(const std::string& topic, const std::string& text) {

@@ -12,6 +12,7 @@ import numpy
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from diagnostics import diagnostics  # noqa: E402
 from pr2_frames import Robot, planar, quaternion, translation  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
@@ -38,14 +39,14 @@ class WorldTrackerTest(unittest.TestCase):
         from geometry_msgs.msg import Pose, TransformStamped
         from hires import msg, srv
         from nav_msgs.msg import Odometry
-        from sensor_msgs.msg import JointState, LaserScan
+        from sensor_msgs.msg import JointState, LaserScan, PointCloud2, PointField
         from tf2_msgs.msg import TFMessage
         from trajectory_msgs.msg import JointTrajectory
         from visualization_msgs.msg import MarkerArray
         cls.rospy, cls.msg, cls.srv = rospy, msg, srv
         cls.types = dict(base_odometry=Odometry, joints=JointState, transforms=TFMessage,
                          transform=TransformStamped, trajectory=JointTrajectory, pose=Pose,
-                         scan=LaserScan, markers=MarkerArray)
+                         scan=LaserScan, markers=MarkerArray, cloud=PointCloud2, field=PointField)
         rospy.init_node('world_tracker_test', disable_signals=True)
         cls.robot = Robot(os.path.join(ROOT, 'urdf', 'pr2_tray.urdf'))
 
@@ -67,6 +68,7 @@ class WorldTrackerTest(unittest.TestCase):
             joints=p('joint_states', self.types['joints'], **latch),
             detections=p('detections', self.msg.Detections, **latch),
             tray=p('tray_laser_scan', self.types['scan'], **latch),
+            cloud=p('tilt_scan_cloud', self.types['cloud'], **latch),
             temperatures=p('object_temperatures', self.msg.ObjectTemperatures, **latch),
             goal=p('execute_action/goal', self.msg.ExecuteActionActionGoal, **latch),
             result=p('execute_action/result', self.msg.ExecuteActionActionResult, **latch))
@@ -365,6 +367,76 @@ class WorldTrackerTest(unittest.TestCase):
             self.tick()
             self.scan_tray(None, 'submarine')
         self.until_warned(submarine, "frame 'submarine' is unknown to tf")
+
+    def cloud(self, points, frame='base_footprint', stamp=None):
+        """What the tilting laser's sweep has measured until now; `points` [m]: N x 3, in the frame."""
+        cloud = self.types['cloud']()
+        cloud.header.stamp = self.rospy.Time.from_sec(self.t if stamp is None else stamp)
+        cloud.header.frame_id = frame
+        cloud.height, cloud.width, cloud.point_step = 1, len(points), 12
+        cloud.row_step = cloud.point_step * cloud.width
+        cloud.fields = [self.types['field'](name, 4 * i, 7, 1) for i, name in enumerate('xyz')]
+        cloud.data = numpy.asarray(points, numpy.float32).tobytes()
+        return cloud
+
+    def floor_with_box(self):
+        """The floor ahead of the robot, and a box 0.2 m wide and high 1.2 m ahead that hides some."""
+        x, y = numpy.meshgrid(numpy.arange(0.6, 2.0, 0.025), numpy.arange(-0.8, 0.8, 0.025))
+        floor = numpy.stack([x, y, numpy.zeros_like(x)], -1).reshape(-1, 3)
+        hidden = (floor[:, 0] > 1.1) & (numpy.abs(floor[:, 1]) < 0.15)
+        y, z = numpy.meshgrid(numpy.arange(-0.1, 0.1, 0.02), numpy.arange(0.02, 0.2, 0.02))
+        front = numpy.stack([numpy.full_like(y, 1.1), y, z], -1).reshape(-1, 3)
+        x, y = numpy.meshgrid(numpy.arange(1.1, 1.3, 0.02), numpy.arange(-0.1, 0.1, 0.02))
+        top = numpy.stack([x, y, numpy.full_like(x, 0.2)], -1).reshape(-1, 3)
+        return numpy.concatenate([floor[~hidden], front, top])
+
+    def test_clouds_that_cannot_be_are_told_of_and_two_that_can_show_what_stands_there(self):
+        self.rest()
+        good = self.floor_with_box()
+        self.publishers['cloud'].publish(self.cloud(numpy.full_like(good, math.nan)))
+        self.rest()
+        big = self.cloud(good)
+        big.is_bigendian = True
+
+        def after_tick(cloud):
+            def send():
+                self.tick()
+                self.publishers['cloud'].publish(cloud())
+            return send
+
+        def bad_messages():
+            return int(diagnostics(self.rospy, 'world_tracker', lambda v: True)['bad messages'])
+        for cloud, why in ((lambda: big, 'big-endian'),
+                           (lambda: self.cloud(good, stamp=0.0), 'header.stamp is 0'),
+                           (lambda: self.cloud(good, 'submarine'),
+                            "frame 'submarine' is unknown to tf")):
+            before = bad_messages()
+            self.until_warned(after_tick(cloud), why)
+            diagnostics(self.rospy, 'world_tracker', lambda v: int(v['bad messages']) > before)
+        self.look({})
+        self.assertEqual([name for name in self.names() if name.startswith('obstacle')], [])
+
+        for number in range(2):
+            self.tick()
+            self.publishers['cloud'].publish(self.cloud(good))
+            self.rest(3)
+        self.wait(lambda: 'obstacle1' in self.names() or self.tick({}), 'the obstacle')
+        diagnostics(self.rospy, 'world_tracker', lambda v: v['things on the floor'] == '1')
+        p = self.names()['obstacle1'].pose.position
+        x, y, yaw = self.base
+        self.assertAlmostEqual(p.x, x + 1.2 * math.cos(yaw), delta=0.05)
+        self.assertAlmostEqual(p.y, y + 1.2 * math.sin(yaw), delta=0.05)
+
+    def test_what_may_be_either_of_two_objects_is_told_to_be_ambiguous(self):
+        def shift(x):
+            return translation(7.60 + x, 11.25, 0.73)
+        self.at_table()
+        self.look({'mug3': ('coffee_cup', shift(-0.08)), 'mug4': ('coffee_cup', shift(0.08))})
+        self.look({'': ('coffee_cup', shift(0.0))}, 2)
+        ambiguous = 'things ambiguous in the last look'
+        diagnostics(self.rospy, 'world_tracker', lambda v: v[ambiguous] == '1')
+        self.look({'': ('coffee_cup', shift(0.07))})
+        diagnostics(self.rospy, 'world_tracker', lambda v: v[ambiguous] == '0')
 
     def test_an_object_that_fell_is_on_nothing(self):
         self.at_table()

@@ -405,7 +405,7 @@ class History {
       const std::string name = NameAt(thing);
       if (!thing.name.empty() && !thing.is_adrift) CheckName(thing, name);
       EXPECT_TRUE(thing.num_in_row < kSettled || quiet_ < 2 * kSettled || !name.empty() ||
-                  memory_.num_ambiguous() + memory_.num_newcomers() > 0)
+                  memory_.num_newcomers() > 0)
           << thing.kind << Told();
     }
   }

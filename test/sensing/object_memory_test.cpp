@@ -442,6 +442,10 @@ TEST_F(NamelessTest, AThingBetweenTwoObjectsOfItsKindIsNoneOfThem) {
   for (int i = 0; i < 4; ++i) SeeMugs({At(1.5, 0.0, 0.7)});
   EXPECT_THAT(Names(), ElementsAre("mug1", "mug2")) << "one of them is there: none is missed";
   EXPECT_EQ(memory_.objects().at("mug1").time, before);
+  EXPECT_EQ(memory_.num_ambiguous(), 1);
+  EXPECT_EQ(memory_.num_newcomers(), 1) << "another look may tell";
+  SeeMugs({At(1.5, 0.07, 0.7)});
+  EXPECT_EQ(memory_.num_newcomers(), 0);
 }
 
 TEST_F(NamelessTest, TwoThingsNearOneObjectAreNotTold) {

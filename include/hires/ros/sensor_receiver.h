@@ -48,6 +48,8 @@ class SensorReceiver {
   /// Objects as they are known at this moment; warns of looks that were dropped.
   hires::sensing::LookNews Update(const hires::sensing::RobotEstimate& now);
   void Warn(const std::string& topic, const std::string& text);
+  /// Warns of a message that is not used, and counts it.
+  void Refuse(const std::string& topic, const std::string& why);
 
   const hires::sensing::RobotStateEstimator& state() const { return state_; }
   /// Null if the robot sees no objects.

@@ -144,7 +144,8 @@ class ObjectMemory {
   std::vector<std::string> Vanished() const;
   /// Things of the last look that may be either of several objects.
   int num_ambiguous() const { return num_ambiguous_; }
-  /// Things of the last look that are none of the known and have no name yet.
+  /// Things of the last look of which more looks must tell what they are: none of the known, and
+  /// without a name yet, or ambiguous.
   int num_newcomers() const;
   /// Everything that is known to be somewhere, in the map; what is held is attached to its palm.
   std::vector<robot::SeenObject> Known(const BodyReading& body) const;

@@ -77,7 +77,7 @@ void RobotInputs::OnScan(const sensor_msgs::LaserScan& msg) {
   const double stamp = msg.header.stamp.toSec();
   const auto receipt = observations_.OnScan(
       stamp, msg.header.frame_id, {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges});
-  if (receipt.is_bad()) sensors_.Warn(names_.base_scan, hires::sensing::ToString(receipt));
+  if (receipt.is_bad()) sensors_.Refuse(names_.base_scan, hires::sensing::ToString(receipt));
   hooks_.arrived(names_.base_scan, stamp);
 }
 
@@ -86,9 +86,9 @@ void RobotInputs::OnCloud(const sensor_msgs::PointCloud2& msg) {
     const auto receipt =
         ground_->OnCloud(msg.header.stamp.toSec(), msg.header.frame_id, FromMsg(msg));
     if (receipt.is_bad())
-      sensors_.Warn(names_.sensors.tilt_cloud, hires::sensing::ToString(receipt));
+      sensors_.Refuse(names_.sensors.tilt_cloud, hires::sensing::ToString(receipt));
   } catch (const hires::base::ConfigError& error) {
-    sensors_.Warn(names_.sensors.tilt_cloud, error.what());
+    sensors_.Refuse(names_.sensors.tilt_cloud, error.what());
   }
   hooks_.arrived(names_.sensors.tilt_cloud, msg.header.stamp.toSec());
 }

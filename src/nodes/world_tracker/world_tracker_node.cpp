@@ -113,7 +113,7 @@ void WorldTrackerNode::OnScan(const sensor_msgs::LaserScan& msg) {
       floor_->OnScan(msg.header.stamp.toSec(), msg.header.frame_id,
                      {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges});
   for (const sensing::Receipt& one : {receipt, floor_->receipt()})
-    if (one.is_bad()) sensors_.Warn(params_.files.names.base_scan, sensing::ToString(one));
+    if (one.is_bad()) sensors_.Refuse(params_.files.names.base_scan, sensing::ToString(one));
 }
 
 void WorldTrackerNode::OnCloud(const sensor_msgs::PointCloud2& msg) {
@@ -122,9 +122,9 @@ void WorldTrackerNode::OnCloud(const sensor_msgs::PointCloud2& msg) {
     const auto receipt =
         floor_->OnCloud(msg.header.stamp.toSec(), msg.header.frame_id, FromMsg(msg));
     for (const sensing::Receipt& one : {receipt, floor_->cloud_receipt()})
-      if (one.is_bad()) sensors_.Warn(topic, sensing::ToString(one));
+      if (one.is_bad()) sensors_.Refuse(topic, sensing::ToString(one));
   } catch (const hires::base::ConfigError& error) {
-    sensors_.Warn(topic, error.what());
+    sensors_.Refuse(topic, error.what());
   }
 }
 
@@ -210,6 +210,7 @@ void WorldTrackerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& sta
     status.add("things on the tray", tray ? tray->reading.things.size() : 0);
   }
   status.add("objects vanished", sensors_.objects()->memory().Vanished().size());
+  status.add("things ambiguous in the last look", sensors_.objects()->memory().num_ambiguous());
   status.add("head looks at", tracker_.sweep().target());
   status.add("fluents written", writer_.num_written());
   status.add("failed writes", writer_.num_failures());

@@ -168,9 +168,10 @@ std::vector<std::string> ObjectMemory::Vanished() const {
 }
 
 int ObjectMemory::num_newcomers() const {
-  return static_cast<int>(std::count_if(
-      newcomers_.begin(), newcomers_.end(),
-      [this](const Newcomer& one) { return one.num_looks < params_.looks_to_appear; }));
+  return num_ambiguous_ + static_cast<int>(std::count_if(
+                              newcomers_.begin(), newcomers_.end(), [this](const Newcomer& one) {
+                                return one.num_looks < params_.looks_to_appear;
+                              }));
 }
 
 std::vector<robot::SeenObject> ObjectMemory::Known(const BodyReading& body) const {
