@@ -14,7 +14,7 @@
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
-#include "hires/evaluation/experiment.h"
+#include "hires/evaluation/experiment/experiment.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
 

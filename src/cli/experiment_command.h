@@ -10,7 +10,7 @@
 #include "cli/experiment/experiment_recognition_command.h"
 #include "cli/experiment/experiment_torso_poses_command.h"
 #include "hires/cli/report_output.h"
-#include "hires/evaluation/experiment.h"
+#include "hires/evaluation/experiment/experiment.h"
 
 namespace CLI {
 class App;

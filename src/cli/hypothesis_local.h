@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "hires/evaluation/experiment_hypothesis.h"
+#include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/loop/task_loop.h"
 
 namespace hires::cli {

@@ -2,7 +2,7 @@
 
 #include <ros/package.h>
 
-#include "hires/ros/private_params.h"
+#include "hires/ros/node/private_params.h"
 #include "hires/world/map_to_world.h"
 
 namespace hires_ros {

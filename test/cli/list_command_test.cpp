@@ -107,7 +107,8 @@ TEST(ListCommandTest, FilesOfThePackageAreFound) {
               ElementsAre(worlds + "restaurant.world", worlds + "workshop.world"));
   EXPECT_THAT(ColumnOf(Listed({"scenarios"}), "scenario"),
               ElementsAre("coffee_spots", "hot_coffee", "serve_coffee", "topple"));
-  EXPECT_THAT(ColumnOf(Listed({"truths"}), "truth"), ElementsAre("foreign", "harsh", "same"));
+  EXPECT_THAT(ColumnOf(Listed({"truths"}), "truth"),
+              ElementsAre("filter", "foreign", "harsh", "same"));
 }
 
 TEST(ListCommandTest, WhatItListsIsTaken) {

@@ -9,8 +9,8 @@
 
 #include "hires/evaluation/decision/decision.h"
 #include "hires/evaluation/episode_topics.h"
-#include "hires/evaluation/experiment.h"
-#include "hires/evaluation/experiment_hypothesis.h"
+#include "hires/evaluation/experiment/experiment.h"
+#include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/evaluation/scenario.h"
 #include "hires/evaluation/truth.h"
 #include "hires/execution/monitor_config.h"
@@ -33,6 +33,7 @@
 #include "hires/planning/planning_files.h"
 #include "hires/relay/relay_params.h"
 #include "hires/robot/robot_profile.h"
+#include "hires/simulation/self_localisation.h"
 #include "hires/world/object_catalogue.h"
 
 namespace hires::configuration_files_test {
@@ -107,6 +108,8 @@ const std::map<std::string, Reader>& Readers() {
          localisation::ReadOdometryFilterConfig(base::ParamReader::FromFile(path));
        }},
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
+      {"self_localisation.yaml",
+       [](const std::string& path) { simulation::LoadSelfLocalisation(path); }},
       {"relay.yaml",
        [](const std::string& path) {
          relay::ReadRelayParams(base::ParamReader::FromFile(path),

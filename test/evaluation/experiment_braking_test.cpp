@@ -1,5 +1,3 @@
-#include "hires/evaluation/experiment_braking.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,10 +5,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "evaluation/experiment_stage.h"
+#include "evaluation/experiment/stage.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/experiment.h"
+#include "hires/evaluation/experiment/braking.h"
+#include "hires/evaluation/experiment/experiment.h"
 
 namespace hires::evaluation::experiment_braking_test {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/experiment.h"
+#include "hires/evaluation/experiment/experiment.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/world/world.h"
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluation/durations/duration_fit.h"
-#include "evaluation/experiment_kinds.h"
+#include "evaluation/experiment/kinds.h"
 
 namespace hires::evaluation::experiment_durations_test {
 namespace {

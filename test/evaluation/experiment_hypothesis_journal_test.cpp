@@ -1,5 +1,3 @@
-#include "hires/evaluation/experiment_hypothesis_journal.h"
-
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -7,6 +5,7 @@
 
 #include "evaluation/hypothesis_examples.h"
 #include "hires/base/text.h"
+#include "hires/evaluation/experiment/hypothesis_journal.h"
 #include "support/temporary_folder.h"
 
 namespace hires::evaluation::experiment_hypothesis_journal_test {

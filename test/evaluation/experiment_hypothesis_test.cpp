@@ -1,5 +1,3 @@
-#include "hires/evaluation/experiment_hypothesis.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 
 #include "evaluation/hypothesis_examples.h"
 #include "hires/base/text.h"
+#include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/evaluation/scenario.h"
 #include "hires/imagination/imagination_setup.h"
 #include "support/temporary_folder.h"

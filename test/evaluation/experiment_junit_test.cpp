@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-#include "hires/evaluation/experiment_report.h"
+#include "hires/evaluation/experiment/report.h"
 
 namespace hires::evaluation::experiment_junit_test {
 namespace {

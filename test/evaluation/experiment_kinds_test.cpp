@@ -1,11 +1,11 @@
-#include "evaluation/experiment_kinds.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+
+#include "evaluation/experiment/kinds.h"
 
 namespace hires::evaluation::experiment_kinds_test {
 namespace {

@@ -1,10 +1,10 @@
-#include "hires/evaluation/experiment_parallel.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <stdexcept>
 #include <vector>
+
+#include "hires/evaluation/experiment/parallel.h"
 
 namespace hires::evaluation::experiment_parallel_test {
 namespace {

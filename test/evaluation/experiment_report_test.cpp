@@ -1,5 +1,3 @@
-#include "hires/evaluation/experiment_report.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
+#include "hires/evaluation/experiment/report.h"
 
 namespace hires::evaluation::experiment_report_test {
 namespace {

@@ -1,4 +1,4 @@
-#include "hires/evaluation/experiment.h"
+#include "hires/evaluation/experiment/experiment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "evaluation/experiment_chain.h"
+#include "evaluation/experiment/chain.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "hires/base/error.h"
-#include "hires/evaluation/experiment_hypothesis.h"
-#include "hires/evaluation/experiment_hypothesis_report.h"
+#include "hires/evaluation/experiment/hypothesis.h"
+#include "hires/evaluation/experiment/hypothesis_report.h"
 
 namespace hires::evaluation {
 

@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "evaluation/experiment_chain.h"
-#include "hires/evaluation/experiment.h"
-#include "hires/evaluation/experiment_braking.h"
+#include "evaluation/experiment/chain.h"
+#include "hires/evaluation/experiment/braking.h"
+#include "hires/evaluation/experiment/experiment.h"
 #include "hires/imagination/rollout.h"
 #include "hires/simulation/truth_record.h"
 #include "hires/translation/classification.h"

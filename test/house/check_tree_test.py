@@ -122,8 +122,8 @@ class CheckTreeTest(unittest.TestCase):
 
     def test_a_unit_that_asks_for_parameters_of_ros_is_left_in_peace(self):
         self.assertEqual(self.complaints(
-            {"include/hires/ros/private_params.h": "#pragma once\n",
-             "src/nodes/planner/params.cpp": '#include "hires/ros/private_params.h"\n'}), [])
+            {"include/hires/ros/node/private_params.h": "#pragma once\n",
+             "src/nodes/planner/params.cpp": '#include "hires/ros/node/private_params.h"\n'}), [])
 
     def test_names_of_topics_may_stand_where_topics_are(self):
         self.assertEqual(self.complaints(

@@ -11,7 +11,7 @@
 #include "hires/cli/finding.h"
 #include "hires/cli/imagine_start.h"
 #include "hires/evaluation/achieve.h"
-#include "hires/evaluation/experiment_hypothesis.h"
+#include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/report.h"
 #include "hires/imagination/rollout_recording.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "hires/evaluation/episode_steps.h"
-#include "hires/evaluation/experiment.h"
+#include "hires/evaluation/experiment/experiment.h"
 #include "hires/imagination/evidence.h"
 
 namespace hires::evaluation {

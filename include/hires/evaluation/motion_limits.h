@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/evaluation/experiment.h"
+#include "hires/evaluation/experiment/experiment.h"
 #include "hires/imagination/imagination_setup.h"
 
 // How fast, how suddenly and how sharply a robot may drive so that what stands on its tray stays

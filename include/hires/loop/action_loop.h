@@ -7,7 +7,7 @@
 
 #include "hires/base/action.h"
 #include "hires/evaluation/decision/decision.h"
-#include "hires/evaluation/experiment_hypothesis.h"
+#include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/evaluation/truth.h"
 #include "hires/imagination/start_state.h"
 #include "hires/loop/task_loop.h"

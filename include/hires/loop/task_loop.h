@@ -6,7 +6,7 @@
 #include <string>
 
 #include "hires/evaluation/achieve.h"
-#include "hires/evaluation/experiment_hypothesis.h"
+#include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/evaluation/truth.h"
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"

@@ -16,7 +16,7 @@
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/decision/decision_journal.h"
 #include "hires/evaluation/decision/decision_report.h"
-#include "hires/evaluation/experiment_parallel.h"
+#include "hires/evaluation/experiment/parallel.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/loop/action_loop.h"
 

@@ -17,8 +17,8 @@
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
-#include "hires/evaluation/experiment_hypothesis_journal.h"
-#include "hires/evaluation/experiment_parallel.h"
+#include "hires/evaluation/experiment/hypothesis_journal.h"
+#include "hires/evaluation/experiment/parallel.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "hires/cli/report_output.h"
-#include "hires/evaluation/experiment_hypothesis.h"
-#include "hires/evaluation/experiment_hypothesis_report.h"
+#include "hires/evaluation/experiment/hypothesis.h"
+#include "hires/evaluation/experiment/hypothesis_report.h"
 
 namespace CLI {
 class App;

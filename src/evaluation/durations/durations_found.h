@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "evaluation/durations/duration_fit.h"
-#include "evaluation/experiment_kinds.h"
+#include "evaluation/experiment/kinds.h"
 
 // What the experiment `durations` found, under both readings of the published names of routes.
 namespace hires::evaluation {

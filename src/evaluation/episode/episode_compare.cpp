@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "hires/base/error.h"
-#include "hires/evaluation/experiment_parallel.h"
+#include "hires/evaluation/experiment/parallel.h"
 
 namespace hires::evaluation {
 namespace {

@@ -14,7 +14,7 @@
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/rng.h"
-#include "hires/evaluation/experiment_parallel.h"
+#include "hires/evaluation/experiment/parallel.h"
 #include "hires/geometry/angles.h"
 
 namespace hires::evaluation {

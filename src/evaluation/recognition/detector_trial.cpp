@@ -3,7 +3,7 @@
 
 #include "evaluation/recognition/fit_cases.h"
 #include "evaluation/recognition/regression.h"
-#include "hires/evaluation/experiment_parallel.h"
+#include "hires/evaluation/experiment/parallel.h"
 
 namespace hires::evaluation {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "hires/base/resource_use.h"
-#include "hires/evaluation/experiment_parallel.h"
+#include "hires/evaluation/experiment/parallel.h"
 
 namespace hires::evaluation {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/experiment_parallel.h"
+#include "hires/evaluation/experiment/parallel.h"
 #include "hires/geometry/angles.h"
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"

@@ -1,7 +1,7 @@
 #include <ros/ros.h>
 
-#include "hires/ros/master_watch.h"
-#include "hires/ros/run_node.h"
+#include "hires/ros/node/master_watch.h"
+#include "hires/ros/node/run_node.h"
 #include "nodes/base_guard/base_guard_node.h"
 
 int main(int argc, char** argv) {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "hires/ros/run_node.h"
+#include "hires/ros/node/run_node.h"
 #include "nodes/blackboard/blackboard_node.h"
 
 int main(int argc, char** argv) {

@@ -15,7 +15,7 @@
 #include "hires/knowledge/fluent_yaml.h"
 #include "hires/knowledge/loading.h"
 #include "hires/ros/blackboard_messages.h"
-#include "hires/ros/private_params.h"
+#include "hires/ros/node/private_params.h"
 #include "hires/ros/topic_names.h"
 
 namespace hires_ros {

@@ -12,7 +12,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
-#include "hires/ros/private_params.h"
+#include "hires/ros/node/private_params.h"
 
 namespace hires_ros {
 namespace {

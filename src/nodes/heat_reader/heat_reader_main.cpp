@@ -1,6 +1,6 @@
 #include <ros/ros.h>
 
-#include "hires/ros/run_node.h"
+#include "hires/ros/node/run_node.h"
 #include "nodes/heat_reader/heat_reader_node.h"
 #include "nodes/heat_reader/heat_reader_params.h"
 

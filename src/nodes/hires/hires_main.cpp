@@ -8,7 +8,7 @@
 #include "hires/cli/command_line.h"
 #include "hires/cli/hypothesis_play.h"
 #include "hires/cli/robot_doctor.h"
-#include "hires/ros/launch_guard.h"
+#include "hires/ros/node/launch_guard.h"
 #include "hires/ros/rollout_bag.h"
 #include "nodes/hires/drive_bag.h"
 #include "nodes/hires/episode_writer.h"

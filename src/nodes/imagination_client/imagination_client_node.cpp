@@ -15,7 +15,7 @@
 #include "hires/imagination/report.h"
 #include "hires/imagination/rollout.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/private_params.h"
+#include "hires/ros/node/private_params.h"
 #include "hires/ros/topic_names.h"
 #include "hires/ros/trace_markers.h"
 

@@ -13,8 +13,8 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/robot/load_robot.h"
 #include "hires/ros/load_robot_names.h"
+#include "hires/ros/node/private_params.h"
 #include "hires/ros/place/map_messages.h"
-#include "hires/ros/private_params.h"
 #include "hires/ros/robot_topics.h"
 #include "hires/world/world.h"
 

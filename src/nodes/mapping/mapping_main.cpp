@@ -1,6 +1,6 @@
 #include <ros/ros.h>
 
-#include "hires/ros/run_node.h"
+#include "hires/ros/node/run_node.h"
 #include "nodes/mapping/mapping_node.h"
 #include "nodes/mapping/mapping_params.h"
 

@@ -1,6 +1,6 @@
 #include <ros/ros.h>
 
-#include "hires/ros/run_node.h"
+#include "hires/ros/node/run_node.h"
 #include "nodes/odometry_filter/odometry_filter_node.h"
 #include "nodes/odometry_filter/odometry_filter_params.h"
 

@@ -4,7 +4,7 @@
 
 #include "hires/base/param_reader.h"
 #include "hires/ros/load_robot_names.h"
-#include "hires/ros/private_params.h"
+#include "hires/ros/node/private_params.h"
 
 namespace hires_ros {
 

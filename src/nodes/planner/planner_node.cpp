@@ -10,8 +10,8 @@
 #include "hires/base/process.h"
 #include "hires/base/short_text.h"
 #include "hires/planning/planner.h"
+#include "hires/ros/node/private_params.h"
 #include "hires/ros/plan_request.h"
-#include "hires/ros/private_params.h"
 #include "hires/ros/topic_names.h"
 
 namespace hires_ros {

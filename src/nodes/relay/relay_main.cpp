@@ -1,8 +1,8 @@
 #include <ros/ros.h>
 
 #include "hires/base/error.h"
-#include "hires/ros/log_sink.h"
-#include "hires/ros/master_watch.h"
+#include "hires/ros/node/log_sink.h"
+#include "hires/ros/node/master_watch.h"
 #include "nodes/relay/relay_node.h"
 
 int main(int argc, char** argv) {

@@ -4,7 +4,7 @@
 #include <ros/publisher.h>
 
 #include "hires/relay/relay.h"
-#include "hires/ros/master_watch.h"
+#include "hires/ros/node/master_watch.h"
 #include "hires/ros/xmlrpc_master_api.h"
 
 namespace hires_ros {

@@ -1,6 +1,6 @@
 #include <ros/ros.h>
 
-#include "hires/ros/run_node.h"
+#include "hires/ros/node/run_node.h"
 #include "nodes/tabletop_recogniser/tabletop_recogniser_node.h"
 #include "nodes/tabletop_recogniser/tabletop_recogniser_params.h"
 

@@ -1,6 +1,6 @@
 #include <ros/ros.h>
 
-#include "hires/ros/run_node.h"
+#include "hires/ros/node/run_node.h"
 #include "hires/ros/translator_params.h"
 #include "nodes/translator/translator_node.h"
 

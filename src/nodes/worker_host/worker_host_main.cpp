@@ -1,9 +1,9 @@
 #include <ros/ros.h>
 
 #include "hires/base/error.h"
-#include "hires/ros/launch_guard.h"
-#include "hires/ros/log_sink.h"
-#include "hires/ros/master_watch.h"
+#include "hires/ros/node/launch_guard.h"
+#include "hires/ros/node/log_sink.h"
+#include "hires/ros/node/master_watch.h"
 #include "nodes/worker_host/worker_host_node.h"
 
 int main(int argc, char** argv) {

@@ -1,6 +1,6 @@
 #include <ros/ros.h>
 
-#include "hires/ros/run_node.h"
+#include "hires/ros/node/run_node.h"
 #include "nodes/world_tracker/world_tracker_node.h"
 #include "nodes/world_tracker/world_tracker_params.h"
 

@@ -2,7 +2,7 @@
 
 #include "hires/imagination/imagination_setup.h"
 #include "hires/ros/load_robot_names.h"
-#include "hires/ros/private_params.h"
+#include "hires/ros/node/private_params.h"
 
 namespace hires_ros {
 

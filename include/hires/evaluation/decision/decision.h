@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hires/base/failure.h"
-#include "hires/evaluation/experiment_hypothesis.h"
+#include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/scheduler.h"
 

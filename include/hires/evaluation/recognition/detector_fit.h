@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/evaluation/experiment.h"
+#include "hires/evaluation/experiment/experiment.h"
 #include "hires/perception/detector_errors.h"
 #include "hires/perception/recogniser_config.h"
 #include "hires/perception/recognition_score.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/evaluation/experiment.h"
+#include "hires/evaluation/experiment/experiment.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/perception/recogniser_config.h"
 

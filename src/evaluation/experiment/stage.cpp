@@ -1,0 +1,108 @@
+#include "evaluation/experiment/stage.h"
+
+#include "hires/base/hash.h"
+#include "hires/base/text.h"
+#include "hires/simulation/self_localisation.h"
+#include "hires/world/occupancy_grid.h"
+
+namespace hires::evaluation {
+namespace {
+
+using imagination::ImaginationSetup;
+using imagination::Uncertainty;
+
+void ChangeUncertainty(const std::string& changes, const std::string& where,
+                       ImaginationSetup* setup) {
+  Uncertainty changed = *setup->uncertainty;
+  const Uncertainty more = imagination::ParseUncertainty(changes, where);
+  for (const auto& [name, distribution] : more.quantities) {
+    changed.quantities[name] = distribution;
+  }
+  setup->uncertainty = std::make_shared<const Uncertainty>(std::move(changed));
+}
+
+/// Walls where the map is occupied, and no furniture; the robot drives by the same map.
+void ReplaceByMap(const ExperimentConfig& config, const skills::MoveBaseParams& driving,
+                  world::World* world, skills::SkillSet* skills, const robot::Robot& robot) {
+  const world::OccupancyGrid map = world::LoadMap(config.map);
+  world::World walls = world::ExtrudeMap(map, config.wall_height);
+  world->statics = std::move(walls.statics);
+  skills->driving = std::make_shared<const skills::DrivingContext>(
+      skills::MakeDrivingContext(map, robot, driving));
+}
+
+void AddGoals(const std::vector<Goal>& goals, world::World* world, skills::SkillSet* skills) {
+  for (const Goal& goal : goals) {
+    const std::string key = base::ToLower(goal.name);
+    world->frames[key] = geometry::Lift(goal.X_MG);
+    world->frame_names[key] = goal.name;
+    skills->areas[key] = goal.X_MG;
+  }
+}
+
+std::uint64_t HashOf(const ImaginationSetup& setup) {
+  base::Hasher hasher;
+  hasher.Add(setup.world_hash);
+  hasher.Add(setup.scene->world.hash);  // differs from that of the scene file where there is a map
+  hasher.Add(setup.robot_hash);
+  hasher.Add(setup.physics_hash);
+  imagination::AddTo(&hasher, setup.uncertainty->quantities);
+  return hasher.value();
+}
+
+}  // namespace
+
+Stage MakeStage(const ExperimentConfig& config) {
+  imagination::SetupConfig scene = imagination::ReadSetupConfig(config.scene);
+  if (config.uncertainty != "scene") scene.uncertainty = config.uncertainty;
+  Stage stage;
+  ImaginationSetup& setup = stage.setup;
+  setup = imagination::LoadImaginationSetup(scene);
+  ChangeUncertainty(config.uncertainty_changes, config.name + ": uncertainty_changes", &setup);
+  world::World world = setup.scene->world;
+  skills::SkillSet skills = *setup.skills;
+  if (config.map != "none") {
+    ReplaceByMap(config, scene.driving, &world, &skills, setup.scene->robot);
+  }
+  AddGoals(config.goals, &world, &skills);
+  world.hash = world.ComputeHash();
+  setup.scene = simulation::MakeScene(std::move(world), setup.scene->robot, setup.scene->memory,
+                                      setup.scene->sight);
+  if (config.self_localisation != "none") {
+    setup.scene = simulation::FindingItsPlace(
+        *setup.scene, simulation::LoadSelfLocalisation(config.self_localisation),
+        setup.scene->world);
+  }
+  setup.skills = std::make_shared<const skills::SkillSet>(std::move(skills));
+  stage.objects = config.objects;
+  stage.xy_tolerance = scene.driving.local.xy_goal_tolerance;
+  stage.yaw_tolerance = scene.driving.local.yaw_goal_tolerance;
+  stage.params_hash = HashOf(setup);
+  return stage;
+}
+
+imagination::RolloutSetup SetupAt(const Stage& stage, const std::string& goal, std::uint64_t seed) {
+  return imagination::MakeRolloutSetup(
+      stage.setup, imagination::MakeStartState(stage.setup, goal, stage.objects), seed);
+}
+
+base::ActionCall DriveTo(const std::string& goal, const std::string& motion_set) {
+  return {"move_base_param", {goal, motion_set}};
+}
+
+Uncertainty Without(Uncertainty uncertainty, const std::set<std::string>& names) {
+  for (const std::string& name : names) uncertainty.quantities.erase(name);
+  return uncertainty;
+}
+
+Uncertainty OneTruth(Uncertainty uncertainty, const base::Rng& rng) {
+  for (auto& [name, distribution] : uncertainty.quantities) {
+    base::Hasher stream;  // one for each quantity: common random numbers
+    stream.Add(name);
+    base::Rng own = rng.Fork(stream.value());
+    distribution = {imagination::Distribution::Kind::kFixed, distribution.Sample(&own), 0.0};
+  }
+  return uncertainty;
+}
+
+}  // namespace hires::evaluation

@@ -1,0 +1,229 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "evaluation/experiment/kinds.h"
+#include "hires/base/text.h"
+#include "hires/evaluation/experiment/parallel.h"
+#include "hires/imagination/evidence.h"
+
+namespace hires::evaluation {
+namespace {
+
+using imagination::OutcomeCounts;
+
+/// One motion set, over all its chains.
+struct LoopTotals {
+  OutcomeCounts counts;       // at 20 Hz
+  OutcomeCounts counts_10hz;  // every other sample
+  double duration{0.0};       // [s]
+  int legs{0}, failed{0}, falls{0}, put_back{0}, restarted{0};
+};
+
+LoopTotals TotalsOf(const Chains& chains) {
+  LoopTotals totals;
+  for (const std::vector<Leg>& chain : chains) {
+    for (const Leg& leg : chain) {
+      totals.counts += leg.result.counts;
+      totals.counts_10hz += leg.counts_10hz;
+      totals.duration += leg.result.duration;
+      totals.falls += leg.result.falls;
+      totals.failed += !leg.result.action_finished;
+      totals.put_back += leg.was_put_back;
+      totals.restarted += leg.was_restarted;
+      ++totals.legs;
+    }
+  }
+  return totals;
+}
+
+/// The three kinds of samples, by name.
+struct CountedEvent {
+  const char* name;
+  int OutcomeCounts::*count;
+};
+constexpr CountedEvent kEvents[] = {{"notopple", &OutcomeCounts::notopple},
+                                    {"shaking", &OutcomeCounts::shaking},
+                                    {"topple", &OutcomeCounts::topple}};
+
+double Likelihood(const OutcomeCounts& counts, const CountedEvent& event) {
+  return static_cast<double>(counts.*event.count) / counts.total();
+}
+
+double Ratio(const OutcomeCounts& first, const OutcomeCounts& second, const CountedEvent& event) {
+  return Likelihood(first, event) / Likelihood(second, event);
+}
+
+/// What is compared: the same two sets, counted in one way.
+struct Pair {
+  std::string title;
+  OutcomeCounts first, second;
+};
+
+TextTable CountsTable(const ToppleLoopConfig& loop, const std::vector<Pair>& pairs) {
+  TextTable table{"Samples, as Table 6.5", {{"", "samples"}}};
+  for (const CountedEvent& event : kEvents) table.rows[0].push_back(event.name);
+  table.rows[0].push_back("confidence");
+  for (const Pair& pair : pairs) {
+    for (int s = 0; s < 2; ++s) {
+      const OutcomeCounts& counts = s == 0 ? pair.first : pair.second;
+      std::vector<std::string> row{pair.title + ", " + loop.motion_sets[s],
+                                   fmt::format("{}", counts.total())};
+      for (const CountedEvent& event : kEvents)
+        row.push_back(fmt::format("{}", counts.*event.count));
+      row.push_back(fmt::format("{:.3f}", imagination::Confidence(counts)));
+      table.rows.push_back(std::move(row));
+    }
+  }
+  return table;
+}
+
+TextTable LikelihoodTable(const ToppleLoopConfig& loop, const std::vector<Pair>& pairs) {
+  TextTable table{"Likelihood L per event, as Table 6.6",
+                  {{"", "event", "L " + loop.motion_sets[0], "L " + loop.motion_sets[1], "ratio"}}};
+  for (const Pair& pair : pairs) {
+    for (const CountedEvent& event : kEvents) {
+      table.rows.push_back({pair.title, event.name,
+                            fmt::format("{:.4f}", Likelihood(pair.first, event)),
+                            fmt::format("{:.4f}", Likelihood(pair.second, event)),
+                            fmt::format("{:.2f}", Ratio(pair.first, pair.second, event))});
+    }
+  }
+  return table;
+}
+
+/// "43.8 s", or "never".
+std::string Every(double duration, double count) {
+  return count > 0.0 ? fmt::format("{:.2f} s", duration / count) : "never";
+}
+
+TextTable RunTable(const ToppleLoopConfig& loop, const std::vector<LoopTotals>& totals) {
+  TextTable table{
+      "Runs",
+      {{"", "duration", "legs", "failed", "falls", "a fall every", "a topple sample every",
+        "a shaking sample every", "put back between legs", "robot put to goal"}}};
+  for (int s = 0; s < 2; ++s) {
+    const LoopTotals& t = totals[s];
+    table.rows.push_back(
+        {loop.motion_sets[s], fmt::format("{:.0f} s", t.duration), fmt::format("{}", t.legs),
+         fmt::format("{}", t.failed), fmt::format("{}", t.falls), Every(t.duration, t.falls),
+         Every(t.duration, t.counts_10hz.topple), Every(t.duration, t.counts_10hz.shaking),
+         fmt::format("{}", t.put_back), fmt::format("{}", t.restarted)});
+  }
+  for (const std::string& set : loop.motion_sets) {
+    const ToppleReference& reference = loop.references.at(set);
+    table.rows.push_back({"reference, " + set, fmt::format("{:.0f} s", reference.duration), "", "",
+                          "", "", Every(reference.duration, reference.counts.topple),
+                          Every(reference.duration, reference.counts.shaking), "", ""});
+  }
+  return table;
+}
+
+std::vector<Measure> MeasuresOf(const ToppleLoopConfig& loop,
+                                const std::vector<LoopTotals>& totals) {
+  std::vector<Measure> measures;
+  for (const CountedEvent& event : kEvents) {
+    const std::string name = std::string(event.name) + "_ratio";
+    measures.push_back({name, Ratio(totals[0].counts, totals[1].counts, event)});
+    measures.push_back(
+        {name + "_10hz", Ratio(totals[0].counts_10hz, totals[1].counts_10hz, event)});
+  }
+  for (int s = 0; s < 2; ++s) {
+    const std::string& set = loop.motion_sets[s];
+    measures.push_back({"confidence_" + set, imagination::Confidence(totals[s].counts)});
+    measures.push_back({"falls_" + set, static_cast<double>(totals[s].falls)});
+    measures.push_back(
+        {"failed_share_" + set, static_cast<double>(totals[s].failed) / totals[s].legs});
+    measures.push_back({"duration_" + set, totals[s].duration});
+    for (const CountedEvent& event : kEvents) {
+      measures.push_back(
+          {std::string(event.name) + "_share_" + set, Likelihood(totals[s].counts, event)});
+    }
+  }
+  return measures;
+}
+
+nlohmann::ordered_json RowOf(const std::string& motion_set, int chain, int number, const Leg& leg) {
+  return {{"motion_set", motion_set},
+          {"chain", chain},
+          {"leg", number},
+          {"from", leg.from},
+          {"to", leg.to},
+          {"failure", base::ToString(leg.result.failure.code)},
+          {"subjects", base::Join(leg.result.failure.subjects, " ")},
+          {"touched", leg.touched},
+          {"action_finished", leg.result.action_finished},
+          {"duration", leg.result.duration},
+          {"notopple", leg.result.counts.notopple},
+          {"shaking", leg.result.counts.shaking},
+          {"topple", leg.result.counts.topple},
+          {"falls", leg.result.falls},
+          {"max_tilt", leg.result.max_tilt},
+          {"first_cause", leg.result.first_cause},
+          {"put_back_after", leg.was_put_back},
+          {"restarted", leg.was_restarted}};
+}
+
+void AddRows(const std::string& motion_set, const Chains& chains, Findings* findings) {
+  for (std::size_t c = 0; c < chains.size(); ++c) {
+    for (std::size_t i = 0; i < chains[c].size(); ++i) {
+      findings->rows.push_back(
+          RowOf(motion_set, static_cast<int>(c), static_cast<int>(i), chains[c][i]));
+      findings->simulated_seconds += chains[c][i].result.simulated;
+    }
+  }
+}
+
+/// Round and round, from the first goal of the route, until the time is over.
+std::vector<Leg> PlayOneChain(const ToppleLoopConfig& loop, Chain chain, const Crew& crew,
+                              const Advance& advance) {
+  // A leg that cannot even start takes no time: so many in a row end the chain.
+  const std::size_t most_without_time = 2 * loop.route.size();
+  std::size_t without_time = 0;
+  std::vector<Leg> legs;
+  double duration = 0.0;
+  for (std::size_t next = 1; duration < loop.duration / loop.chains; ++next) {
+    auto leg = chain.Drive(loop.route[next % loop.route.size()], crew.cancelled);
+    if (!leg) break;
+    without_time = leg->result.duration > 0.0 ? 0 : without_time + 1;
+    duration += leg->result.duration;
+    advance(leg->result.duration);
+    legs.push_back(*std::move(leg));
+    if (without_time >= most_without_time) break;
+  }
+  return legs;
+}
+
+}  // namespace
+
+std::optional<std::vector<Chains>> PlayToppleLoop(const ToppleLoopConfig& loop,
+                                                  const ExperimentConfig& config,
+                                                  const std::shared_ptr<const Stage>& stage,
+                                                  const Crew& crew) {
+  std::vector<Chains> by_set(2, Chains(loop.chains));
+  const auto play = [&](int task, const Advance& advance) {
+    const int set = task % 2, number = task / 2;
+    const std::uint64_t seed = base::Rng(config.seed).Fork(number).seed();
+    Chain chain(stage, loop.route.front(),
+                {loop.motion_sets[set], seed, true, loop.one_truth_per_chain});
+    by_set[set][number] = PlayOneChain(loop, std::move(chain), crew, advance);
+  };
+  if (!DoInParallel(2 * loop.chains, 2.0 * loop.duration, crew, play)) return std::nullopt;
+  return by_set;
+}
+
+Findings SumUpToppleLoop(const ToppleLoopConfig& loop, const std::vector<Chains>& by_set) {
+  Findings findings;
+  const std::vector<LoopTotals> totals{TotalsOf(by_set[0]), TotalsOf(by_set[1])};
+  const std::vector<Pair> pairs{{"20 Hz", totals[0].counts, totals[1].counts},
+                                {"10 Hz", totals[0].counts_10hz, totals[1].counts_10hz},
+                                {"reference", loop.references.at(loop.motion_sets[0]).counts,
+                                 loop.references.at(loop.motion_sets[1]).counts}};
+  findings.tables = {CountsTable(loop, pairs), LikelihoodTable(loop, pairs),
+                     RunTable(loop, totals)};
+  findings.measures = MeasuresOf(loop, totals);
+  for (int s = 0; s < 2; ++s) AddRows(loop.motion_sets[s], by_set[s], &findings);
+  return findings;
+}
+
+}  // namespace hires::evaluation
