@@ -37,7 +37,7 @@ class LoopRandomTasksTest(LoopCase):
     def run_task(self, seed):
         drawn = RandomTask(seed)
         self.loop.seed = seed
-        knowledge = [self.loop.processes.write('knowledge_%d.yaml' % seed, drawn.knowledge())]
+        knowledge = [self.loop.processes.write('knowledge_%d.yaml' % seed, drawn.knowledge(not self.SETTINGS))]
         if drawn.is_placing_imagined:
             knowledge.append(IMAGINE_PLACING)
         self.begin(drawn.robot, drawn.objects, drawn.hidden, knowledge)

@@ -89,7 +89,7 @@ class DrawnTask(RandomTask):
         """The scenario, beside its knowledge in a file of its own."""
         path = os.path.join(folder, 'known.yaml')
         with open(path, 'w') as file:
-            file.write(self.knowledge())
+            file.write(self.knowledge(is_exact=False))
         knowledge = [path, IMAGINE_PLACING] if self.is_placing_imagined else [path]
         return dict(self.scenario(), task=self.task, knowledge=knowledge)
 

@@ -1,6 +1,7 @@
 """Tasks at random: what is to be done, where everything stands at first, what nobody tells the
 robot, and what it is told and is not so. The same seed gives the same task."""
 
+import math
 import random
 
 from restaurant import FRAMES, FURNITURE, SEATS, area_under, knowledge_of
@@ -16,6 +17,9 @@ TORSOS = ('torsodownposture', 'torsomiddleposture', 'torsoupposture')
 ARMS = (('armtuckedposture', 'armtuckedposture'), ('armuntuckedposture', 'armuntuckedposture'),
         ('armtuckedposture', 'armtosideposture'), ('armtosideposture', 'armtosideposture'))
 APART = 0.16  # [m] between objects
+TOLD_OFF = (0.03, 0.08)  # [m] between where a thing stands and where it is told to stand
+TOLD_APART = 0.1         # [m] between things as they are told to stand
+ELSEWHERE = 0.2          # how often it is told on another spot of the area
 TRIES = 100
 
 
@@ -32,19 +36,45 @@ class RandomTask:
         self.robot, self.start = self._draw_robot(chance)
         self.is_placing_imagined = chance.random() < 0.5
 
-    def knowledge(self):
-        """Text of a file."""
-        return knowledge_of(self.objects, self.coffees, self.guests)
-
-    def scenario(self):
-        there = {name: pose for name, pose in self.objects.items() if name not in self.missing}
-        return scenario_of(self.robot, there, self.hidden)
+    def knowledge(self, is_exact=True):
+        """Text of a file.
+        @param is_exact  whether things are told to stand just where they do."""
+        told = self.objects if is_exact else self._tell_about_where()
+        return knowledge_of(told, self.coffees, self.guests)
 
     def can_be_done(self):
         """Whether what is missing leaves what the task needs."""
         if self.kind == 'serve':
             return not set(self.coffees) <= self.missing
         return self.kind != 'carry' or self.goal_object not in self.missing
+
+    def _tell_about_where(self):
+        """As somebody says it who was there: some centimetres off, now and then on another spot of the
+        same area, turned anyhow."""
+        chance = random.Random('told %d' % self.seed)
+        told = {}
+        for name, pose in self.objects.items():
+            told[name] = self._told_pose(chance, pose, list(told.values()))
+        return told
+
+    def _told_pose(self, chance, pose, told):
+        area, yaw = area_under(*pose[:3]), round(chance.uniform(-math.pi, math.pi), 2)
+        is_elsewhere = chance.random() < ELSEWHERE
+        for _ in range(TRIES):
+            off, way = chance.uniform(*TOLD_OFF), chance.uniform(-math.pi, math.pi)
+            if is_elsewhere:
+                x, y = (middle + chance.uniform(-0.12, 0.12) for middle in FRAMES[area][:2])
+            else:
+                x, y = pose[0] + off * math.cos(way), pose[1] + off * math.sin(way)
+            found = (round(x, 3), round(y, 3), pose[2], yaw)
+            if area_under(*found[:3]) == area and all(
+                    max(abs(x - p[0]), abs(y - p[1])) > TOLD_APART for p in told):
+                return found
+        return pose[:3] + (yaw,)
+
+    def scenario(self):
+        there = {name: pose for name, pose in self.objects.items() if name not in self.missing}
+        return scenario_of(self.robot, there, self.hidden)
 
     def is_done(self, there):
         """@param there  names of what stands on the areas that the task is about."""
