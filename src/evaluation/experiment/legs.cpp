@@ -192,7 +192,7 @@ Findings SumUpLegs(const ExperimentConfig& config, const Stage& stage, const Cha
   table.rows.push_back(all.Row("all"));
   findings.measures = MeasuresOf(all, by_goal);
   findings.tables = {std::move(table), std::move(problems)};
-  if (!config.self_localisation.empty()) {
+  if (config.self_localisation != "none") {
     const std::vector<Measure> measures = PlaceMeasures(places);
     findings.measures.insert(findings.measures.end(), measures.begin(), measures.end());
     findings.tables.push_back(PlaceTable(places));

@@ -110,7 +110,7 @@ std::vector<std::string> ProgramArguments() {
   return arguments;
 }
 
-void OnStopSignal(int) { ros::requestShutdown(); }
+void ShutDownOnSignal(int) { ros::requestShutdown(); }
 
 volatile std::sig_atomic_t stop_wanted = 0;
 
@@ -192,7 +192,7 @@ void RestartProgram() {
   execv(path.data(), argv.data());
 }
 
-void ShutDownRosOnSignals() { OnStopSignals(OnStopSignal, 0); }
+void ShutDownRosOnSignals() { OnStopSignals(ShutDownOnSignal, 0); }
 void NoteStopSignals() { OnStopSignals(WantStop, SA_RESTART); }
 bool IsStopWanted() { return stop_wanted != 0; }
 
