@@ -37,6 +37,7 @@ MemoryParams ReadMemory(ParamReader in) {
   params.still_time = in.Get("still_time", Between(0.0, 5.0));
   params.hand_distance = in.Get("hand_distance", Between(0.01, 1.0));
   params.instance_distance = in.Get("instance_distance", Between(0.0, 1.0));
+  params.told_distance = in.Get("told_distance", Between(0.0, 10.0));
   params.instance_margin = in.Get("instance_margin", Between(0.0, 1.0));
   params.looks_to_appear = in.Get("looks_to_appear", Between(1, 1000));
   params.scans_to_vanish = in.Get("scans_to_vanish", Between(1, 1000));

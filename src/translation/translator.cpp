@@ -141,8 +141,10 @@ std::string TranslatorContext::FindModel(const std::string& instance) const {
     if (world::SaysUnknownBox(model)) continue;  // what is unknown is like nothing else
     if (WithoutNumber(name) == kind) return model;
   }
-  for (const auto& [name, model] : world->models) {
-    if (base::ToLower(name) == lower) return name;
+  for (const std::string& said : {lower, kind}) {  // a newcomer is called by its kind: coke_can1
+    for (const auto& [name, model] : world->models) {
+      if (base::ToLower(name) == said) return name;
+    }
   }
   return "";
 }

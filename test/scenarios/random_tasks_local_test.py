@@ -139,7 +139,7 @@ class RandomTasksLocalTest(unittest.TestCase):
             on_table += AT_GOAL[0] in names
         print('surprises: all on the counter in %d tasks; on tables in %d of %d' %
               (len(TASKS), on_table, len(with_table)), flush=True)
-        self.assertGreaterEqual(on_table, 0.9 * len(with_table))
+        self.assertGreaterEqual(on_table, len(with_table) - max(1, len(with_table) // 10))
 
 
 if __name__ == '__main__':

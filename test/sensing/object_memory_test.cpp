@@ -471,6 +471,30 @@ TEST_F(NamelessTest, AThingThatVanishedIsTheOneThatAppearsElsewhere) {
   EXPECT_NEAR(Remembered("mug1").translation.y(), -0.4, 1e-9);
 }
 
+TEST_F(NamelessTest, WhatWasToldAndNeverSeenIsTheThingNearby) {
+  memory_.Believe("mug1", "mug", "", At(1.5, -1.15, 0.7));  // out of view, so it is not missed
+  for (int i = 0; i < 2; ++i) SeeMugs({At(1.5, -0.75, 0.7)});
+  EXPECT_FALSE(memory_.objects().at("mug1").is_observed) << "not yet seen for long enough";
+  SeeMugs({At(1.5, -0.75, 0.7)});
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  EXPECT_NEAR(Remembered("mug1").translation.y(), -0.75, 1e-9);
+}
+
+TEST_F(NamelessTest, WhatWasToldToBeFarAwayIsNotTheThingSeenHere) {
+  memory_.Believe("mug1", "mug", "", At(1.5, -1.35, 0.7));
+  for (int i = 0; i < 3; ++i) SeeMugs({At(1.5, -0.75, 0.7)});
+  EXPECT_THAT(Names(), ElementsAre("mug1", "mug2"));
+  EXPECT_FALSE(memory_.objects().at("mug1").is_observed);
+}
+
+TEST_F(NamelessTest, WhatWasSeenIsNotTheThingNearby) {
+  Look({Thing("mug1", "mug", At(1.5, -0.7, 0.7))});
+  body_.X_MB.yaw = 0.3;  // mug1 is out of view
+  for (int i = 0; i < 3; ++i) SeeMugs({At(1.5, -0.3, 0.7)});
+  EXPECT_THAT(Names(), ElementsAre("mug1", "mug2"));
+  EXPECT_NEAR(Remembered("mug1").translation.y(), -0.7, 1e-9);
+}
+
 TEST_F(NamelessTest, AThingMoreThanWereKnownGetsTheNextNameAfterSomeLooks) {
   Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
   for (int i = 0; i < 2; ++i) SeeMugs({At(1.5, 0.1, 0.7), At(1.5, -0.2, 0.7)});

@@ -283,6 +283,10 @@ TEST(StateOfTest, AnInstanceTheCatalogueLacksIsLikeItsKin) {
   EXPECT_EQ(RestaurantContext().FindModel("teapot1"), "");
 }
 
+TEST(StateOfTest, AnInstanceNamedByItsModelIsOne) {
+  EXPECT_EQ(RestaurantContext().ModelOf("peppermill_repository1"), "peppermill_repository");
+}
+
 TEST(StateOfTest, WhatIsKnownOfAnObjectBesideItsPlaceChangesNothing) {
   const auto state = [](const std::vector<base::Atom>& more) {
     std::vector<base::Atom> atoms{kAtStart, {"On", {"mug1", "trayArea1"}}};

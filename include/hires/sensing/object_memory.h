@@ -38,6 +38,7 @@ struct MemoryParams {
   double hand_distance{0.08};  ///< [m] between where a held object should be and where it is seen
   double instance_distance{0.1};  ///< [m] from where an object is expected within which a thing of
                                   ///< its kind, that has no name, is taken for it
+  double told_distance{0.5};      ///< [m] likewise, in several looks, of what nobody has seen yet
   double instance_margin{0.03};   ///< [m] by which the best way to name all things must be better
   int looks_to_appear{3};         ///< in a row in which a thing that is none of the known is seen
   int scans_to_vanish{5};         ///< of the tray in a row that look through what should be there
@@ -82,8 +83,9 @@ struct TrayView {
 /// Things whose recogniser knows their kind alone are given to the remembered objects of their
 /// kinds near them, all at once (AnchorThings); where another way is nearly as good they say only
 /// that something of the kind is there, so that what is remembered there does not count as missed.
-/// What stays alone in several looks is a vanished object of its kind that was moved, or else one
-/// that nobody knew: it gets the first free name (mug3).
+/// What stays alone in several looks is a vanished object of its kind that was moved, or one that
+/// was never seen and is said to be not far away, or else one that nobody knew: it gets the first
+/// free name (mug3).
 ///
 /// What no model explains, and is not where something is expected, is remembered by its box: its
 /// model says it (world::UnknownBoxModel), its name is unknown1, unknown2, ... It has no identity
@@ -151,6 +153,13 @@ class ObjectMemory {
   std::vector<robot::SeenObject> Known(const BodyReading& body) const;
 
  private:
+  /// A thing that is none of the known.
+  struct Newcomer {
+    std::string kind;
+    Eigen::Vector3d p_M;
+    int num_looks{0};   ///< in a row
+    int detection{-1};  ///< of this look
+  };
   struct Hand {
     double gap{-1.0};   ///< [m] at which it has been still; negative: not felt yet
     double since{0.0};  ///< [s]
@@ -182,7 +191,9 @@ class ObjectMemory {
   void Agree(const Links& links, const TrayView& view, const geometry::Pose3& X_MT);
   void AppearOnTray(const Links& links, const TrayView& view, const geometry::Pose3& X_TL);
   void Appear(const Links& links, const LookedAt& look, std::vector<Named>* named);
-  void NameNewcomers(const LookedAt& look, std::vector<Named>* named);
+  std::vector<std::string> ToldNear(const Links& links, const Newcomer& newcomer,
+                                    const std::vector<Named>& named) const;
+  void NameNewcomers(const Links& links, const LookedAt& look, std::vector<Named>* named);
   void Reveal(const Links& links, const LookedAt& look, const std::vector<Named>& named);
   std::string BoxOf(const Links& links, const std::string& name,
                     const perception::Detection& detection, geometry::Pose3* X_MO);
@@ -213,13 +224,6 @@ class ObjectMemory {
     std::string model;
     Eigen::Vector3d p_M;  ///< where it was last
     int num_points;       ///< as remembered of it
-  };
-  /// A thing that is none of the known.
-  struct Newcomer {
-    std::string kind;
-    Eigen::Vector3d p_M;
-    int num_looks{0};   ///< in a row
-    int detection{-1};  ///< of this look
   };
   std::map<std::string, LastPlace> vanished_;  ///< by name
   std::vector<Newcomer> newcomers_;

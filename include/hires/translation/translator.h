@@ -28,7 +28,8 @@ struct TranslatorContext {
   ClassifyParams classify;            ///< when a symbol holds
 
   /// The catalogue's, or that of its kin: an instance that differs from one of the catalogue in its
-  /// number only (mug3 is what mug1 is), or a model by its own name. Empty: unknown.
+  /// number only (mug3 is what mug1 is), or a model by its own name, with or without a number.
+  /// Empty: unknown.
   std::string FindModel(const std::string& instance) const;
   /// @throws base::ConfigError with the names that come near.
   std::string ModelOf(const std::string& instance) const;

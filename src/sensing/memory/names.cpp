@@ -164,7 +164,7 @@ void ObjectMemory::Appear(const Links& links, const LookedAt& look, std::vector<
     seen.push_back(newcomer);
   }
   newcomers_ = seen;
-  NameNewcomers(look, named);
+  NameNewcomers(links, look, named);
 }
 
 /// Of a thing that is none of the known. Boxes of unknown kind have nothing but their place that
@@ -180,8 +180,24 @@ std::string ObjectMemory::NewName(const std::string& kind, const Eigen::Vector3d
   return FreeName(kind);
 }
 
-/// Things that were seen for long enough are vanished ones that were moved, or new.
-void ObjectMemory::NameNewcomers(const LookedAt& look, std::vector<Named>* named) {
+/// What is known by hearsay alone, was not seen this time either, and is said to stand so near that
+/// the newcomer may be it: who says where things are errs more than who sees them.
+std::vector<std::string> ObjectMemory::ToldNear(const Links& links, const Newcomer& newcomer,
+                                                const std::vector<Named>& named) const {
+  std::vector<std::string> names;
+  for (const auto& [name, object] : objects_) {
+    const auto has_it = [&name = name](const Named& one) { return one.name == name; };
+    if (object.is_observed || std::any_of(named.begin(), named.end(), has_it)) continue;
+    if ((PlaceOf(links, object) - newcomer.p_M).norm() <= params_.told_distance)
+      names.push_back(name);
+  }
+  return names;
+}
+
+/// Things that were seen for long enough are known ones that were moved or stand elsewhere than was
+/// told, or new.
+void ObjectMemory::NameNewcomers(const Links& links, const LookedAt& look,
+                                 std::vector<Named>* named) {
   constexpr double kAnywhere = 100.0;  // [m]
   std::vector<const Newcomer*> ripe;
   std::vector<SeenThing> things;
@@ -197,6 +213,14 @@ void ObjectMemory::NameNewcomers(const LookedAt& look, std::vector<Named>* named
     names.push_back(name);
     anchors.push_back({vanished.model, vanished.p_M});
   }
+  for (const Newcomer* newcomer : ripe) {
+    for (const std::string& name : ToldNear(links, *newcomer, *named)) {
+      const RememberedObject& object = objects_.at(name);
+      if (Contains(names, name) || world::SaysUnknownBox(object.model)) continue;
+      names.push_back(name);
+      anchors.push_back({object.model, PlaceOf(links, object)});
+    }
+  }
   const Anchoring found = AnchorThings(things, anchors, kAnywhere, params_.instance_margin);
   for (std::size_t k = 0; k < ripe.size(); ++k) {
     Named& one = (*named)[ripe[k]->detection];
@@ -210,8 +234,9 @@ void ObjectMemory::NameNewcomers(const LookedAt& look, std::vector<Named>* named
     if (one.model == perception::kUnknownLabel) one.model = world::UnknownBoxModel(seen.size);
     RememberedObject& object = objects_[one.name];
     object.model = one.model;  // so that the next one gets another name
-    object.num_points =
-        anchor < 0 ? std::max(1, seen.num_points) : vanished_.at(one.name).num_points;
+    const auto vanished = vanished_.find(one.name);
+    if (vanished != vanished_.end()) object.num_points = vanished->second.num_points;
+    if (anchor < 0) object.num_points = std::max(1, seen.num_points);
   }
 }
 

@@ -50,8 +50,8 @@ bool MemoryParams::operator==(const MemoryParams& other) const {
                            p.expected_distance, p.looks_to_vanish, p.blending, p.moved_distance,
                            p.moved_angle, p.grasp_distance, p.closed_gap, p.gap_below, p.gap_above,
                            p.open_gap, p.opening, p.still_gap, p.still_time, p.hand_distance,
-                           p.instance_distance, p.instance_margin, p.looks_to_appear,
-                           p.scans_to_vanish, p.scans_to_appear);
+                           p.instance_distance, p.told_distance, p.instance_margin,
+                           p.looks_to_appear, p.scans_to_vanish, p.scans_to_appear);
   };
   return numbers(*this) == numbers(other);
 }
