@@ -169,6 +169,7 @@ world::World LoadWorldWithObjects(const SetupConfig& config,
 /// @param hasher  what the robot sees by is added to it.
 simulation::Sight LoadSight(const SetupConfig& config, base::Hasher* hasher) {
   simulation::Sight sight;
+  sight.scans = config.scans;
   if (config.detector != "none") {
     sight.errors = std::make_shared<const perception::DetectorErrors>(
         perception::ReadDetectorErrors(config.detector));
@@ -223,6 +224,7 @@ SetupConfig ReadSetupConfig(const std::string& path) {
   config.uncertainty = ResolvePath(in.GetString("uncertainty"), path);
   config.detector = ResolvePath(in.GetString("detector"), path);
   config.recogniser = ResolvePath(in.GetString("recogniser"), path);
+  const std::string layer = ResolvePath(in.GetString("obstacle_layer"), path);
   config.has_base_guard = in.GetBool("base_guard");
   config.driving = ReadDriving(in.Sub("driving"));
   config.blind = ReadBlind(in.Sub("blind_driving"));
@@ -245,7 +247,25 @@ SetupConfig ReadSetupConfig(const std::string& path) {
     hasher.Add(in.Sub(section).Canonical());
   }
   config.params_hash = hasher.value();
+  if (layer != "none") AddObstacleLayer(layer, &config);
   return config;
+}
+
+void AddObstacleLayer(const std::string& path, SetupConfig* config) {
+  ParamReader in = ParamReader::FromFile(path);
+  navigation::ObstacleLayerParams& layer = config->driving.obstacle_layer.emplace();
+  layer.obstacle_range = in.Get("obstacle_range", Between(0.1, 10.0));
+  layer.raytrace_range = in.Get("raytrace_range", Between(0.1, 10.0));
+  layer.keep = in.Get("keep", Between(0.0, 3600.0));
+  ParamReader laser = in.Sub("laser");
+  simulation::ScanParams& scans = config->scans.emplace();
+  scans.laser = simulation::ReadLaser(&laser);
+  scans.period = laser.Get("period", Between(0.05, 10.0));
+  in.RejectUnknownKeys();
+  base::Hasher hasher;
+  hasher.Add(config->params_hash);
+  hasher.Add(in.Canonical());
+  config->params_hash = hasher.value();
 }
 
 ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {

@@ -231,6 +231,20 @@ Costmap Costmap::WithObstacles(const std::vector<geometry::Polygon>& outlines_M)
   return extended;
 }
 
+Costmap Costmap::WithObstaclesAt(const std::vector<Eigen::Vector2d>& points_M) const {
+  Costmap extended = *this;
+  std::vector<std::pair<int, int>> added;
+  for (const Eigen::Vector2d& point : points_M) {
+    int column = 0, row = 0;
+    CellOf(point, &column, &row);
+    if (!Inside(column, row) || extended.cost(column, row) >= kLethalCost) continue;
+    extended.costs_[static_cast<std::size_t>(row) * width_ + column] = kLethalCost;
+    added.emplace_back(column, row);
+  }
+  extended.Inflate(added);
+  return extended;
+}
+
 Costmap Costmap::WithRoomFor(const geometry::Polygon& outline_M) const {
   Costmap roomier = *this;
   ForEachSpan(outline_M, *this, [&](int row, int first, int last) {
@@ -259,7 +273,16 @@ Costmap Costmap::WithInscribedRadius(double inscribed_radius) const {
   return {grid, inscribed_radius, params};
 }
 
+/// Where a cell's left neighbour is a new obstacle, too, that one is nearer to all that lies left,
+/// and likewise on the other sides: of a wall's cells all but those at its ends inflate one line
+/// each.
 void Costmap::Inflate(const std::vector<std::pair<int, int>>& cells) {
+  std::vector<std::uint8_t> is_new(costs_.size(), 0);
+  for (const auto& [column, row] : cells)
+    is_new[static_cast<std::size_t>(row) * width_ + column] = 1;
+  const auto has = [&](int column, int row) {
+    return Inside(column, row) && is_new[static_cast<std::size_t>(row) * width_ + column] != 0;
+  };
   const double radius = std::max(params_.inflation_radius, inscribed_radius_);
   const int reach = static_cast<int>(std::min(radius / resolution_, 1e4));
   const int edge = 2 * reach + 1;
@@ -271,8 +294,11 @@ void Costmap::Inflate(const std::vector<std::pair<int, int>>& cells) {
     }
   }
   for (const auto& [column, row] : cells) {
-    const int first = std::max(column - reach, 0), last = std::min(column + reach, width_ - 1);
-    for (int y = std::max(row - reach, 0); y <= std::min(row + reach, height_ - 1); ++y) {
+    const int first = has(column - 1, row) ? column : std::max(column - reach, 0);
+    const int last = has(column + 1, row) ? column : std::min(column + reach, width_ - 1);
+    const int lowest = has(column, row - 1) ? row : std::max(row - reach, 0);
+    const int highest = has(column, row + 1) ? row : std::min(row + reach, height_ - 1);
+    for (int y = lowest; y <= highest; ++y) {
       const std::uint8_t* from =
           &stamp[static_cast<std::size_t>(y - row + reach) * edge + (first - column + reach)];
       std::uint8_t* to = &costs_[static_cast<std::size_t>(y) * width_ + first];

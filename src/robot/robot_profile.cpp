@@ -317,6 +317,14 @@ void FillFromModel(ParamReader in, Robot* robot) {
 
 }  // namespace
 
+std::optional<double> LaserHeight(const Robot& robot) {
+  const RobotProfile& profile = robot.profile;
+  if (profile.laser_link.empty()) return std::nullopt;
+  const auto X_RL = ForwardKinematics(robot.model, profile.joints);
+  const Pose3& X_RB = X_RL[*robot.model.FindLink(profile.base_link)];
+  return (X_RB.Inverse() * X_RL[*robot.model.FindLink(profile.laser_link)]).translation.z();
+}
+
 geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_link,
                             const JointPositions& joints) {
   const Pose3 X_RB = ForwardKinematics(model, joints)[*model.FindLink(base_link)];

@@ -13,12 +13,17 @@ Receipt ObservationMaker::OnScan(double stamp, const std::string& frame,
 }
 
 robot::Observation ObservationMaker::Observe(const RobotEstimate& now) {
-  if (const auto scan = scans_.Take(now.time))
+  if (auto scan = scans_.Take(now.time)) {
     obstacles_M_ = find_obstacles_.Find(scan->reading, scan->X_MB, scan->X_BL);
+    scan_ = std::make_shared<const robot::PlacedScan>(
+        robot::PlacedScan{std::move(scan->reading), scan->X_OB, scan->X_BL});
+  }
   robot::Observation seen;
   seen.time = now.time;
   seen.X_MB = now.X_WB;
+  seen.X_OB = now.X_OB;
   seen.V_B = now.V_B;
+  seen.scan = scan_;
   seen.obstacles_M = obstacles_M_;
   seen.joints = now.joints;
   seen.joint_velocities = now.joint_velocities;

@@ -30,7 +30,7 @@ std::optional<ScanQueue::Placed> ScanQueue::Take(double time) {
   const FramePose X_BL = state_->InBase(scan.frame, *then);
   receipt_ = ReceiptOf(X_BL.status, scan.frame);
   if (!X_BL.is_found()) return std::nullopt;
-  return Placed{stamp, scan.reading, then->X_WB, geometry::Flatten(X_BL.X_PC)};
+  return Placed{stamp, scan.reading, then->X_WB, then->X_OB, geometry::Flatten(X_BL.X_PC)};
 }
 
 }  // namespace hires::sensing

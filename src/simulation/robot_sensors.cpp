@@ -8,12 +8,21 @@
 #include "simulation/varied.h"
 
 namespace hires::simulation {
+namespace {
+
+constexpr double kSlack = 1e-6;  // [s] between times that are multiples of a step
+
+}  // namespace
 
 RobotSensors::RobotSensors(std::shared_ptr<const Scene> scene, const Variation& variation,
                            const geometry::Pose2& X_MB, const base::Rng& rng)
-    : scene_(std::move(scene)),
-      variation_(variation),
-      state_{rng.Fork(2), GhostObstacles(rng.Fork(3)), rng.Fork(4), std::nullopt} {
+    : scene_(std::move(scene)), variation_(variation), state_{rng.Fork(2),
+                                                              GhostObstacles(rng.Fork(3)),
+                                                              rng.Fork(4),
+                                                              std::nullopt,
+                                                              rng.Fork(7),
+                                                              0.0,
+                                                              nullptr} {
   if (scene_->self_localisation)
     state_.localiser.emplace(scene_->self_localisation, X_MB, rng.Fork(6));
 }
@@ -22,9 +31,25 @@ void RobotSensors::ReadBase(double time, const BaseMotion& motion,
                             robot::Observation* observation) {
   observation->X_MB = state_.localiser ? state_.localiser->X_MB()
                                        : BelievedPose(motion.X_MB, variation_, &state_.rng);
+  observation->X_OB = state_.localiser ? state_.localiser->X_OB() : motion.X_MB;
   observation->V_B = motion.V_B;
+  observation->scan = state_.scan;
   state_.ghosts.Update(motion.X_MB, variation_.ghost_rate, time);
   observation->obstacles_M = state_.ghosts.OutlinesInMap();
+}
+
+base::Rng* RobotSensors::ScanDue(double time) {
+  const auto& scans = scene_->sight.scans;
+  if (!scans || time < state_.next_scan) return nullptr;
+  state_.next_scan = time + scans->period - kSlack;
+  return &state_.scan_rng;
+}
+
+void RobotSensors::ReadScan(robot::ScanReading reading, const geometry::Pose2& X_BL,
+                            robot::Observation* observation) {
+  state_.scan = std::make_shared<const robot::PlacedScan>(
+      robot::PlacedScan{std::move(reading), observation->X_OB, X_BL});
+  observation->scan = state_.scan;
 }
 
 void RobotSensors::ReadJoints(const PlanarRobot& robot, robot::Observation* observation) {

@@ -22,10 +22,13 @@ class RobotSensors {
     GhostObstacles ghosts;
     base::Rng encoder_rng;
     std::optional<SelfLocaliser> localiser;  // where the robot finds its place by itself
+    base::Rng scan_rng;
+    double next_scan{0.0};                          // [s]
+    std::shared_ptr<const robot::PlacedScan> scan;  // the last; null: none yet
   };
 
   /// @param X_MB  of the base at first.
-  /// @param rng   of the simulator; its forks 2, 3, 4 and 6 are used.
+  /// @param rng   of the simulator; its forks 2, 3, 4, 6 and 7 are used.
   RobotSensors(std::shared_ptr<const Scene> scene, const Variation& variation,
                const geometry::Pose2& X_MB, const base::Rng& rng);
 
@@ -33,6 +36,11 @@ class RobotSensors {
   void ReadBase(double time, const BaseMotion& motion, robot::Observation* observation);
   /// Who finds the place, if the robot does; asked before ReadBase, that it may scan.
   SelfLocaliser* localiser() { return state_.localiser ? &*state_.localiser : nullptr; }
+  /// Whether skills are to see a new scan at `time`, and what to draw its noise from.
+  base::Rng* ScanDue(double time);
+  /// @param observation  of ReadBase; gets the scan, and so do later ones until the next is due.
+  void ReadScan(robot::ScanReading reading, const geometry::Pose2& X_BL,
+                robot::Observation* observation);
   /// Of torso, head, arms and hands.
   void ReadJoints(const PlanarRobot& robot, robot::Observation* observation);
 

@@ -84,12 +84,21 @@ robot::Observation RobotSimulator::Observe(double action_start) {
   observation.time = state_.time - action_start;
   FindPlace();
   sensors_->ReadBase(state_.time, base(), &observation);
+  if (base::Rng* noise = sensors_->ScanDue(state_.time)) Scan(noise, &observation);
   if (planar_) sensors_->ReadJoints(*planar_, &observation);
   if (!camera_) return observation;
   observation.objects = camera_->Known(state_.time, observation.X_MB);
   observation.num_newcomers = camera_->num_newcomers();
   for (robot::SeenObject& seen : observation.objects) seen.time -= action_start;
   return observation;
+}
+
+void RobotSimulator::Scan(base::Rng* noise, robot::Observation* observation) {
+  LaserParams laser = scene_->sight.scans->laser;
+  laser.link = scene_->robot.profile.laser_link;
+  const std::vector<double> ranges = ScanLaser(*this, laser, noise);
+  const Pose3 X_BL = geometry::Lift(base().X_MB).Inverse() * X_MLink(laser.link);
+  sensors_->ReadScan(ReadingOf(ranges, laser), geometry::Flatten(X_BL), observation);
 }
 
 /// Wheels and inertial unit tell of all ways, the laser where a scan is of use.

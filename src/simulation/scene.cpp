@@ -50,10 +50,7 @@ std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot,
   if (!profile.tray_link.empty()) {
     X_BO = X_BR * PoseOfLink(robot.model, X_RL, profile.tray_link) * profile.X_TO;
   }
-  std::optional<double> laser_height;
-  if (!profile.laser_link.empty()) {
-    laser_height = (X_BR * PoseOfLink(robot.model, X_RL, profile.laser_link)).translation.z();
-  }
+  const std::optional<double> laser_height = robot::LaserHeight(robot);
   RobotClearance clearance(shapes_B, world);
   std::vector<geometry::Collision> base_B = ShapesOfTheBase(robot, shapes_B);
   RobotClearance base_clearance(base_B, world);

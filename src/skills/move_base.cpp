@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hires/base/error.h"
 #include "hires/geometry/angles.h"
 #include "skills/posture_skills.h"
 
@@ -86,26 +87,68 @@ std::optional<navigation::Costmap> WithRoom(const navigation::Costmap& map, cons
   return map.WithRoomFor(outline_M);
 }
 
-}  // namespace
-
-DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::Robot& robot,
-                                  const MoveBaseParams& params) {
+DrivingContext ContextOf(const world::OccupancyGrid& map, const robot::Robot& robot,
+                         const MoveBaseParams& params) {
   const geometry::Polygon footprint =
       geometry::Padded(robot.profile.footprint, robot.profile.footprint_padding);
   MoveBaseParams possible = params;
   if (robot.profile.base_controller.drive != robot::Drive::kOmnidirectional) {
     possible.local.max_lateral_velocity = 0.0;
   }
-  return {std::make_shared<const navigation::Costmap>(map, geometry::InscribedRadius(footprint),
-                                                      params.costmap),
-          std::make_shared<const robot::Robot>(robot), footprint, possible};
+  DrivingContext context;
+  context.costmap = std::make_shared<const navigation::Costmap>(
+      map, geometry::InscribedRadius(footprint), params.costmap);
+  context.robot = std::make_shared<const robot::Robot>(robot);
+  context.footprint = footprint;
+  context.params = possible;
+  return context;
+}
+
+double LaserPlane(const robot::Robot& robot) {
+  const auto height = robot::LaserHeight(robot);
+  if (height) return *height;
+  throw base::ConfigError(
+      "obstacle_layer: the robot has no base laser; name one in its profile (laser_link), or say "
+      "`obstacle_layer: none` in the scene");
+}
+
+/// @param seen  has what is in the laser's plane, `map` everything, in the same cells.
+MapByPlane ByPlane(const world::OccupancyGrid& seen, const world::OccupancyGrid& map,
+                   const DrivingContext& context) {
+  MapByPlane by_plane;
+  world::OccupancyGrid beyond = map;
+  for (int row = 0; row < seen.height; ++row) {
+    for (int column = 0; column < seen.width; ++column) {
+      if (seen.at(column, row) != world::Cell::kOccupied) continue;
+      by_plane.in_plane_M.push_back(seen.CentreOf(column, row));
+      beyond.cells[static_cast<std::size_t>(row) * map.width + column] = world::Cell::kFree;
+    }
+  }
+  by_plane.beyond = std::make_shared<const navigation::Costmap>(
+      beyond, geometry::InscribedRadius(context.footprint), context.params.costmap);
+  return by_plane;
+}
+
+}  // namespace
+
+DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::Robot& robot,
+                                  const MoveBaseParams& params) {
+  DrivingContext context = ContextOf(map, robot, params);
+  if (params.obstacle_layer) context.by_plane = ByPlane(map, map, context);
+  return context;
 }
 
 DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot& robot,
                                   const MoveBaseParams& params) {
-  return MakeDrivingContext(world::SliceWorld(world, params.min_obstacle_height, RobotHeight(robot),
-                                              params.map_resolution, MapMargin(world)),
-                            robot, params);
+  const double margin = MapMargin(world);
+  const world::OccupancyGrid map = world::SliceWorld(
+      world, params.min_obstacle_height, RobotHeight(robot), params.map_resolution, margin);
+  DrivingContext context = ContextOf(map, robot, params);
+  if (!params.obstacle_layer) return context;
+  const double plane = LaserPlane(robot);
+  context.by_plane =
+      ByPlane(world::SliceWorld(world, plane, plane, params.map_resolution, margin), map, context);
+  return context;
 }
 
 geometry::Polygon FootprintOf(const DrivingContext& context,
@@ -134,6 +177,10 @@ MoveBase::MoveBase(std::shared_ptr<const DrivingContext> context, const Pose2& X
       local_(context_->params.local, footprint_),
       car_(MakeFollower(*context_, footprint_, motion_set)) {
   local_.SetMotionSet(motion_set);
+  if (context_->by_plane) {
+    sensed_.emplace(&*context_->by_plane, *context_->params.obstacle_layer, footprint_,
+                    context_->params.costmap.inflation_radius);
+  }
 }
 
 /// A robot whose arms are not in the driving posture needs more room: to turn anywhere on its way,
@@ -154,9 +201,11 @@ void MoveBase::Begin(const robot::Observation& observation) {
   for (const double radius : {geometry::CircumscribedRadius(footprint_), half_width}) {
     costmap_ =
         std::make_shared<const navigation::Costmap>(context_->costmap->WithInscribedRadius(radius));
-    const auto way = navigation::PlanPath(*CostmapNow(observation), observation.X_MB, X_MGoal_,
-                                          context_->params.planner);
-    if (way.status == navigation::PathStatus::kFound) return;
+    const auto way = navigation::PlanPath(*Completed(costmap_, observation), observation.X_MB,
+                                          X_MGoal_, context_->params.planner);
+    if (way.status != navigation::PathStatus::kFound) continue;
+    if (sensed_) sensed_->SetInscribedRadius(radius);
+    return;
   }
   costmap_ = context_->costmap;
 }
@@ -182,8 +231,15 @@ navigation::PathStatus MoveBase::FindPath(const navigation::Costmap& costmap, co
   return found.status;
 }
 
-std::optional<Status> MoveBase::Plan(const navigation::Costmap& costmap, const Pose2& X_MB) {
-  switch (FindPath(costmap, X_MB)) {
+/// Round what the laser sees, if that leaves a way: where map and marks lie beside each other, for
+/// a localisation errs, narrow places are closed that are not.
+std::optional<Status> MoveBase::Plan(const robot::Observation& observation) {
+  const auto map = sensed_ ? Completed(costmap_, observation) : now_;
+  if (sensed_ && FindPath(map->WithObstaclesAt(sensed_->Marks(observation)), observation.X_MB) ==
+                     navigation::PathStatus::kFound) {
+    return std::nullopt;
+  }
+  switch (FindPath(*map, observation.X_MB)) {
     case navigation::PathStatus::kStartBlocked:
       return Failed(base::FailureCode::kStartBlocked);
     case navigation::PathStatus::kGoalBlocked:
@@ -208,8 +264,7 @@ bool MoveBase::NoteMotion(const robot::Observation& observation) {
   return observation.time - last_moved_ <= context_->params.oscillation_timeout;
 }
 
-Status MoveBase::Recover(const navigation::Costmap& costmap,
-                         const robot::Observation& observation) {
+Status MoveBase::Recover(const robot::Observation& observation) {
   if (observation.time - last_valid_ > context_->params.controller_patience) {
     return Failed(base::FailureCode::kNoValidTrajectory);
   }
@@ -219,24 +274,31 @@ Status MoveBase::Recover(const navigation::Costmap& costmap,
     if (has_missed && num_missed_ + 1 == kMostWays) return Failed(base::FailureCode::kOscillating);
     last_plan_ = observation.time;
     // What blocks the way may go: patience decides, not one plan.
-    const bool is_planned = !Plan(costmap, observation.X_MB);
+    const bool is_planned = !Plan(observation);
     if (has_missed && is_planned) ++num_missed_;
   }
   return {};
 }
 
-/// The map as it must be now: with what is seen, and free where the robot stands. What is seen
-/// below its arms stays: it may be driven into.
-std::shared_ptr<const navigation::Costmap> MoveBase::CostmapNow(
+/// A map as it must be now: with what is seen, and free where the robot stands. What is seen below
+/// its arms stays: it may be driven into.
+std::shared_ptr<const navigation::Costmap> MoveBase::Completed(
+    const std::shared_ptr<const navigation::Costmap>& map,
     const robot::Observation& observation) const {
-  std::optional<navigation::Costmap> now = WithRoom(*costmap_, observation.X_MB, footprint_);
+  std::optional<navigation::Costmap> now = WithRoom(*map, observation.X_MB, footprint_);
   if (!observation.obstacles_M.empty()) {
-    now = (now ? *now : *costmap_).WithObstacles(observation.obstacles_M);
+    now = (now ? *now : *map).WithObstacles(observation.obstacles_M);
     auto roomier = WithRoom(*now, observation.X_MB, context_->footprint);
     if (roomier) now = std::move(roomier);
   }
-  if (!now) return costmap_;
+  if (!now) return map;
   return std::make_shared<const navigation::Costmap>(std::move(*now));
+}
+
+void MoveBase::Look(const robot::Observation& observation) {
+  now_.reset();  // so that a rollout holds one copy of the map, not two
+  now_ = Completed(sensed_ ? sensed_->Look(observation) : costmap_, observation);
+  X_MBNow_ = observation.X_MB;
 }
 
 std::optional<DriveView> MoveBase::drive_view() const {
@@ -255,32 +317,29 @@ bool MoveBase::IsAtGoal(const robot::Observation& observation) const {
 Status MoveBase::Update(const robot::Observation& observation, robot::Command* command) {
   command->motion_set = motion_set_;
   if (!has_begun_) Begin(observation);
-  now_.reset();  // so that a rollout holds one copy of the map, not two
-  now_ = CostmapNow(observation);
-  X_MBNow_ = observation.X_MB;
-  const navigation::Costmap& costmap = *now_;
+  Look(observation);
   if (!path_) {
     if (car_ && IsAtGoal(observation)) {  // else it would drive to and fro for a few cm
       command->base_velocity = geometry::Twist2{};
       return Succeeded();
     }
-    if (const auto failed = Plan(costmap, observation.X_MB)) return *failed;
+    if (const auto failed = Plan(observation)) return *failed;
     X_MMoved_ = observation.X_MB;
     last_valid_ = last_plan_ = last_moved_ = observation.time;
   }
   const navigation::DwaResult result =
-      car_ ? car_->Update(&costmap, observation.X_MB, observation.V_B)
-           : local_.Update(costmap, observation.X_MB, observation.V_B);
+      car_ ? car_->Update(now_.get(), observation.X_MB, observation.V_B)
+           : local_.Update(*now_, observation.X_MB, observation.V_B);
   command->base_velocity = result.velocity;
   if (result.status == navigation::DwaStatus::kGoalReached) return Succeeded();
   if (result.status == navigation::DwaStatus::kNoValidTrajectory) {
-    return Recover(costmap, observation);
+    return Recover(observation);
   }
   last_valid_ = observation.time;
   if (!NoteMotion(observation)) {
     if (++oscillations_ > 1) return Failed(base::FailureCode::kOscillating);
     last_moved_ = observation.time;
-    if (const auto failed = Plan(costmap, observation.X_MB)) return *failed;
+    if (const auto failed = Plan(observation)) return *failed;
   }
   return {};
 }

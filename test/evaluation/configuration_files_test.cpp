@@ -110,6 +110,11 @@ const std::map<std::string, Reader>& Readers() {
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
       {"self_localisation.yaml",
        [](const std::string& path) { simulation::LoadSelfLocalisation(path); }},
+      {"obstacle_layer.yaml",
+       [](const std::string& path) {
+         imagination::SetupConfig config;
+         imagination::AddObstacleLayer(path, &config);
+       }},
       {"relay.yaml",
        [](const std::string& path) {
          relay::ReadRelayParams(base::ParamReader::FromFile(path),

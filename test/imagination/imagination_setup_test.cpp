@@ -139,8 +139,8 @@ TEST(SetupConfigTest, NumbersMustMakeSense) {
 }
 
 TEST(SetupConfigTest, EverySectionIsNeeded) {
-  for (const char* key : {"world", "robot", "objects", "uncertainty", "driving", "blind_driving",
-                          "physics", "rollout"}) {
+  for (const char* key : {"world", "robot", "objects", "uncertainty", "obstacle_layer", "driving",
+                          "blind_driving", "physics", "rollout"}) {
     SceneFile file;
     file.root.remove(key);
     EXPECT_THAT(file.WhyRefused(),
@@ -149,6 +149,33 @@ TEST(SetupConfigTest, EverySectionIsNeeded) {
   SceneFile file;
   file.root["driving"]["costmap"].remove("inflation_radius");
   EXPECT_THAT(file.WhyRefused(), HasSubstr("driving.costmap.inflation_radius is missing"));
+}
+
+TEST(SetupConfigTest, AnObstacleLayerIsReadFromItsFileAndMatters) {
+  const std::string path = Root() + "/config/obstacle_layer.yaml";
+  SceneFile file;
+  EXPECT_FALSE(file.Read().driving.obstacle_layer);
+  const std::uint64_t without = file.Read().params_hash;
+  file.root["obstacle_layer"] = path;
+  EXPECT_EQ(file.Read().driving.obstacle_layer->raytrace_range, 3.0);
+  EXPECT_EQ(file.Read().scans->laser.num_beams, 120);
+  EXPECT_NE(file.Read().params_hash, without);
+
+  YAML::Node layer = YAML::LoadFile(path);
+  const auto why_refused = [&] {
+    file.root["obstacle_layer"] = file.folder.Write("layer.yaml", YAML::Dump(layer));
+    return ConfigErrorOf([&] { file.Read(); });
+  };
+  layer["keep"] = -1;
+  EXPECT_THAT(why_refused(), AllOf(HasSubstr("layer.yaml"), HasSubstr("keep is '-1'")));
+  layer["keep"] = 10;
+  layer["laser"]["period"] = 0;
+  EXPECT_THAT(why_refused(), HasSubstr("laser.period is '0'"));
+  layer["laser"].remove("period");
+  EXPECT_THAT(why_refused(), HasSubstr("laser.period is missing"));
+  layer["laser"]["period"] = 0.4;
+  layer["decay"] = 1;
+  EXPECT_THAT(why_refused(), HasSubstr("key 'decay' is unknown"));
 }
 
 TEST(SetupConfigTest, RefusesTypos) {
@@ -176,7 +203,8 @@ TEST(SetupConfigTest, RefusesWhatIsNoMap) {
 }
 
 TEST(SetupConfigTest, NamesFilesThatAreMissing) {
-  for (const char* key : {"world", "robot", "objects", "uncertainty", "detector", "recogniser"}) {
+  for (const char* key :
+       {"world", "robot", "objects", "uncertainty", "detector", "recogniser", "obstacle_layer"}) {
     SceneFile file;
     file.root[key] = std::string("missing_") + key + ".yaml";
     EXPECT_THAT(file.WhyRefused(), HasSubstr(std::string("missing_") + key)) << key;

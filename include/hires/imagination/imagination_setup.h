@@ -40,6 +40,7 @@ struct SetupConfig {
   /// Shared libraries with more actions: never from a file, as they are code.
   std::vector<std::string> action_libraries;
   skills::MoveBaseParams driving;
+  std::optional<simulation::ScanParams> scans;  ///< that drives go by, with an obstacle layer
   skills::MoveBaseBlindParams blind;
   skills::ManipulationParams manipulation;
   sensing::SensingParams sensing;
@@ -53,6 +54,10 @@ struct SetupConfig {
 /// @throws base::ConfigError naming file and key; also if the aftermath of a rollout ends before
 /// the hold time of a fall does.
 SetupConfig ReadSetupConfig(const std::string& path);
+
+/// Has drives go by what the base's laser sees, as a file like config/obstacle_layer.yaml says.
+/// @throws base::ConfigError naming file and key.
+void AddObstacleLayer(const std::string& path, SetupConfig* config);
 
 /// A path that stands in the file `config_path`: relative ones count from that file's folder.
 std::string ResolvePath(const std::string& path, const std::string& config_path);

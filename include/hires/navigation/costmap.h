@@ -57,6 +57,10 @@ class Costmap {
   /// area with them), inflated. Costs a copy of the map and work around the outlines only.
   Costmap WithObstacles(const std::vector<geometry::Polygon>& outlines_M) const;
 
+  /// The same map with obstacles in the cells that hold these points, inflated; points beyond it
+  /// are left out.
+  Costmap WithObstaclesAt(const std::vector<Eigen::Vector2d>& points_M) const;
+
   /// The same map for a robot that stands there: all cells that share area with a convex outline
   /// cost less than kInscribedCost. Nothing else changes, so that only ways out are opened.
   Costmap WithRoomFor(const geometry::Polygon& outline_M) const;

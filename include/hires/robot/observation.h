@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "hires/geometry/pose.h"
+#include "hires/robot/readings.h"
 #include "hires/robot/robot_model.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/robot/trajectory.h"
@@ -33,7 +35,9 @@ struct SeenObject {
 struct Observation {
   double time{0.0};                            ///< [s] since the action began
   geometry::Pose2 X_MB;                        ///< where the robot believes to stand
+  geometry::Pose2 X_OB;                        ///< odometry: drifts, but does not jump
   geometry::Twist2 V_B;                        ///< odometry, in the base frame
+  std::shared_ptr<const PlacedScan> scan;      ///< of the base's laser, the last; null: none
   std::vector<geometry::Polygon> obstacles_M;  ///< outlines seen now that are not in the map
   JointPositions joints;  ///< measured; gripper joints are gaps [m]. Empty at level `tray`
   JointPositions joint_velocities;  ///< [rad/s] or [m/s], likewise

@@ -33,4 +33,11 @@ struct ScanReading {
   double range_max{0.0};        ///< [m] what is as long or longer met nothing; 0: nobody said
 };
 
+/// A scan, and where the robot was by its odometry when it was taken.
+struct PlacedScan {
+  ScanReading reading;
+  geometry::Pose2 X_OB;  ///< base in the frame of the odometry
+  geometry::Pose2 X_BL;  ///< laser in the base
+};
+
 }  // namespace hires::robot

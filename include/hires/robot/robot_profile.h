@@ -81,6 +81,10 @@ struct Robot {
 geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_link,
                             const JointPositions& joints);
 
+/// [m] of the base's laser above base_link, joints in the driving posture; none: it has no laser.
+/// @throws base::ConfigError as ForwardKinematics.
+std::optional<double> LaserHeight(const Robot& robot);
+
 /// Reads the profile and the URDF that it names, which must be there, and so must, where there are
 /// several `motion_sets`, `default_motion_set`. Of the others, base_link, tray_link, object_on_tray
 /// and base_controller.drive are derived as below where they are left out, its limits are the

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ class ObservationMaker {
   ScanObstacles find_obstacles_;
   ScanQueue scans_;
   std::vector<geometry::Polygon> obstacles_M_;
+  std::shared_ptr<const robot::PlacedScan> scan_;
 };
 
 }  // namespace hires::sensing

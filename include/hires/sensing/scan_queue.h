@@ -16,7 +16,7 @@ class ScanQueue {
   struct Placed {
     double stamp{0.0};  ///< [s]
     robot::ScanReading reading;
-    geometry::Pose2 X_MB, X_BL;
+    geometry::Pose2 X_MB, X_OB, X_BL;
   };
 
   /// @param state  outlives this.

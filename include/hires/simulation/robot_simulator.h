@@ -129,6 +129,7 @@ class RobotSimulator {
   std::optional<RobotContact> FindContact() const;
   void Sense();
   void FindPlace();
+  void Scan(base::Rng* noise, robot::Observation* observation);
 
   std::shared_ptr<const Scene> scene_;
   Variation variation_;

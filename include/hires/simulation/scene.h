@@ -10,6 +10,7 @@
 #include "hires/robot/robot_profile.h"
 #include "hires/sensing/object_memory.h"
 #include "hires/simulation/floor_places.h"
+#include "hires/simulation/laser_params.h"
 #include "hires/simulation/robot_clearance.h"
 #include "hires/world/world.h"
 
@@ -17,12 +18,19 @@ namespace hires::simulation {
 
 class SelfLocalisation;
 
-/// What recognises objects for the robot's camera.
+/// Scans of the base's laser that skills get to see.
+struct ScanParams {
+  LaserParams laser;   ///< its link is that of the robot's profile
+  double period{0.2};  ///< [s]
+};
+
+/// What the robot's senses are played by.
 struct Sight {
   /// How a quick detector errs that stands in for a recogniser; null: by noise alone.
   std::shared_ptr<const perception::DetectorErrors> errors;
   /// A recogniser that looks at what the camera measures, instead; null: the quick detector.
   std::shared_ptr<const perception::Recogniser> recogniser;
+  std::optional<ScanParams> scans;  ///< none: skills see no scan
 };
 
 /// A constant world with a constant robot in it, shared by all simulators of it.

@@ -10,6 +10,7 @@
 #include "hires/navigation/dwa.h"
 #include "hires/navigation/hybrid_a_star.h"
 #include "hires/robot/robot_profile.h"
+#include "hires/skills/local_costmap.h"
 #include "hires/skills/skill.h"
 
 namespace hires::skills {
@@ -25,6 +26,8 @@ struct MoveBaseParams {
   double oscillation_timeout{10.0};  ///< [s] without ...
   double oscillation_distance{0.5};  ///< [m] ... this much motion (or its half in rad) before
                                      ///< planning again; twice in a row: giving up
+  /// Local control goes by what the base's laser sees now; none: by the map.
+  std::optional<navigation::ObstacleLayerParams> obstacle_layer;
 };
 
 /// What a driving skill knows about where it drives; constant, shared by all skills of a scene.
@@ -33,6 +36,8 @@ struct DrivingContext {
   std::shared_ptr<const robot::Robot> robot;
   geometry::Polygon footprint;  ///< padded; of the posture for driving
   MoveBaseParams params;
+
+  std::optional<MapByPlane> by_plane;  ///< with an obstacle layer
 };
 
 /// The footprint of a robot that does not have its arms where they are for driving: the padded
@@ -42,9 +47,10 @@ geometry::Polygon FootprintOf(const DrivingContext& context, const robot::JointP
 
 /// A costmap of everything that stands between the lowest obstacle that matters and the robot's
 /// top.
+/// @throws base::ConfigError for a robot without a base laser where local control asks for one.
 DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot& robot,
                                   const MoveBaseParams& params);
-/// ... from a recorded map.
+/// ... from a recorded map, which has what a laser in its plane sees.
 DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::Robot& robot,
                                   const MoveBaseParams& params);
 
@@ -64,24 +70,27 @@ class MoveBase : public Skill {
 
  private:
   void Begin(const robot::Observation& observation);
-  std::optional<Status> Plan(const navigation::Costmap& costmap, const geometry::Pose2& X_MB);
+  std::optional<Status> Plan(const robot::Observation& observation);
   navigation::PathStatus FindPath(const navigation::Costmap& costmap, const geometry::Pose2& X_MB);
   bool IsAtGoal(const robot::Observation& observation) const;
   bool NoteMotion(const robot::Observation& observation);
-  std::shared_ptr<const navigation::Costmap> CostmapNow(
+  std::shared_ptr<const navigation::Costmap> Completed(
+      const std::shared_ptr<const navigation::Costmap>& map,
       const robot::Observation& observation) const;
-  Status Recover(const navigation::Costmap& costmap, const robot::Observation& observation);
+  void Look(const robot::Observation& observation);
+  Status Recover(const robot::Observation& observation);
 
   std::shared_ptr<const DrivingContext> context_;
   geometry::Pose2 X_MGoal_;
   robot::MotionSet motion_set_;
   std::shared_ptr<const navigation::Costmap> costmap_;  // the map, inflated for this drive
+  std::optional<LocalCostmap> sensed_;                  // none: it drives by the map alone
   geometry::Polygon footprint_;
   navigation::DwaPlanner local_;
   std::optional<navigation::CarFollower> car_;  // drives instead, where the base steers like a car
   bool has_begun_{false};
   std::shared_ptr<const std::vector<geometry::Pose2>> path_;  // null: not planned yet
-  std::shared_ptr<const navigation::Costmap> now_;            // costmap at the last look
+  std::shared_ptr<const navigation::Costmap> now_;            // what it drove by at the last look
   geometry::Pose2 X_MBNow_;                                   // and where the robot was
   double last_valid_{0.0};    // [s] when a valid trajectory was last found
   double last_plan_{0.0};     // [s]

@@ -219,6 +219,8 @@ void ReadPlace(const std::string& path, ParamReader* in, const ExperimentOverrid
   if (in->Has("self_localisation")) config->self_localisation = in->GetString("self_localisation");
   if (config->self_localisation != "none")
     config->self_localisation = imagination::ResolvePath(config->self_localisation, path);
+  if (in->Has("obstacle_layer"))
+    config->obstacle_layer = imagination::ResolvePath(in->GetString("obstacle_layer"), path);
   if (!overrides.map.empty()) {
     config->map = overrides.map;
   } else if (config->map == "given") {

@@ -55,6 +55,8 @@ std::uint64_t HashOf(const ImaginationSetup& setup) {
 Stage MakeStage(const ExperimentConfig& config) {
   imagination::SetupConfig scene = imagination::ReadSetupConfig(config.scene);
   if (config.uncertainty != "scene") scene.uncertainty = config.uncertainty;
+  if (config.obstacle_layer != "scene")
+    imagination::AddObstacleLayer(config.obstacle_layer, &scene);
   Stage stage;
   ImaginationSetup& setup = stage.setup;
   setup = imagination::LoadImaginationSetup(scene);

@@ -91,6 +91,8 @@ struct ExperimentConfig {
   /// "none": the robot is told where it is, off as drawn; or path of a file like
   /// config/self_localisation.yaml: it finds its place by itself
   std::string self_localisation{"none"};
+  /// "scene": as the scene has it, or path of a file like config/obstacle_layer.yaml
+  std::string obstacle_layer{"scene"};
   std::vector<Goal> goals;           ///< at least two
   std::vector<std::string> objects;  ///< on the tray
   std::uint64_t seed{1};

@@ -1,0 +1,190 @@
+// Driving by what the base's laser sees: MoveBase with an obstacle layer.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "hires/base/error.h"
+#include "hires/geometry/angles.h"
+#include "hires/geometry/polygon.h"
+#include "hires/skills/move_base.h"
+#include "skills/point_robot.h"
+#include "support/scenes.h"
+
+namespace hires::skills::obstacle_layer_test {
+namespace {
+
+using geometry::Pose2;
+using test_support::PointRobot;
+using test_support::RunSkill;
+using test_support::SkillRun;
+
+const robot::MotionSet kSlow{0.30, 1.0, 1.4, 2.0};
+const Pose2 kWest{1.0, 2.0, 0.0}, kEast{4.5, 2.0, 0.0};
+const Pose2 X_BL{0.27, 0.0, 0.0};
+constexpr double kPlane = 0.25;  // [m] of the laser above the floor
+
+robot::Robot RobotWithLaser() {
+  robot::Robot robot = hires::test_support::TrayRobot();
+  robot::Link laser;
+  laser.name = "laser";
+  laser.joint = robot::Joint();
+  laser.joint->name = "laser_joint";
+  laser.joint->parent = 0;
+  laser.joint->X_PJ.translation = {X_BL.x, X_BL.y, kPlane};
+  robot.model.links.push_back(laser);
+  robot.profile.laser_link = "laser";
+  return robot;
+}
+
+/// A room with a wall across it that leaves a door 0.8 m wide; the padded robot is 0.6 m wide.
+world::World RoomWithDoor() {
+  world::World room = hires::test_support::Room();
+  room.statics.push_back(
+      hires::test_support::Block("left_of_door", {0.1, 1.6, 1.0}, {2.75, 3.2, 0.5}));
+  room.statics.push_back(
+      hires::test_support::Block("right_of_door", {0.1, 1.6, 1.0}, {2.75, 0.8, 0.5}));
+  return room;
+}
+
+/// Distance [m] along a ray to an outline; infinite where it passes.
+double RangeTo(const geometry::Polygon& outline, const Eigen::Vector2d& from,
+               const Eigen::Vector2d& direction) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d a = outline[i], edge = outline[(i + 1) % outline.size()] - a;
+    const double across = direction.x() * edge.y() - direction.y() * edge.x();
+    if (std::abs(across) < 1e-12) continue;
+    const Eigen::Vector2d to = a - from;
+    const double range = (to.x() * edge.y() - to.y() * edge.x()) / across;
+    const double share = (to.x() * direction.y() - to.y() * direction.x()) / across;
+    if (range >= 0.0 && share >= 0.0 && share <= 1.0) nearest = std::min(nearest, range);
+  }
+  return nearest;
+}
+
+std::shared_ptr<const robot::PlacedScan> ScanIn(const world::World& world, const Pose2& X_WB,
+                                                const Pose2& X_OB) {
+  const auto outlines = world::OutlinesInBand(world, nullptr, kPlane, kPlane);
+  robot::PlacedScan scan;
+  scan.X_OB = X_OB;
+  scan.X_BL = X_BL;
+  scan.reading = {-2.0, 0.02, 0.05, {}, 10.0};
+  const Pose2 X_WL = X_WB * X_BL;
+  for (int i = 0; i <= 200; ++i) {
+    const double angle = X_WL.yaw + scan.reading.angle_min + i * scan.reading.angle_increment;
+    double range = std::numeric_limits<double>::infinity();
+    for (const geometry::Polygon& outline : outlines)
+      range =
+          std::min(range, RangeTo(outline, X_WL.position(), {std::cos(angle), std::sin(angle)}));
+    scan.reading.ranges.push_back(static_cast<float>(range));
+  }
+  return std::make_shared<const robot::PlacedScan>(std::move(scan));
+}
+
+std::shared_ptr<const DrivingContext> ContextOf(const world::World& world, bool has_layer) {
+  MoveBaseParams params;
+  if (has_layer) params.obstacle_layer.emplace();
+  return std::make_shared<const DrivingContext>(
+      MakeDrivingContext(world, RobotWithLaser(), params));
+}
+
+struct Drive {
+  SkillRun run;
+  bool has_touched{false};
+};
+
+/// @param X_WM  the map in the world: where the robot believes to be is off by its inverse.
+Drive DriveOff(const world::World& world, const Pose2& X_WM, bool has_layer) {
+  Drive drive;
+  MoveBase skill(ContextOf(world, has_layer), kEast, kSlow);
+  const auto outlines = world::OutlinesInBand(world, nullptr, 0.08, 1.0);
+  const geometry::Polygon footprint = RobotWithLaser().profile.footprint;
+  drive.run = RunSkill(&skill, {X_WM.Inverse() * kWest, {}, false}, [&](auto* seen, auto* robot) {
+    const Pose2 X_WB = X_WM * robot->X_MB;
+    seen->X_OB = robot->X_MB;
+    seen->scan = ScanIn(world, X_WB, seen->X_OB);
+    const geometry::Polygon body = geometry::Transformed(X_WB, footprint);
+    for (const geometry::Polygon& outline : outlines) {
+      if (geometry::Distance(body, outline) <= 0.0) drive.has_touched = true;
+    }
+  });
+  return drive;
+}
+
+TEST(ObstacleLayerDriveTest, ALocalisationThatErrsMovesNoDoor) {
+  const world::World room = RoomWithDoor();
+  for (const double off : {0.17, -0.17}) {
+    const Drive by_map = DriveOff(room, {0.0, off, 0.0}, false);
+    const Drive by_laser = DriveOff(room, {0.0, off, 0.0}, true);
+    EXPECT_TRUE(by_map.has_touched) << "else this shows nothing";
+    EXPECT_FALSE(by_laser.has_touched) << off;
+    EXPECT_EQ(by_laser.run.status.progress, Progress::kSucceeded)
+        << ToString(by_laser.run.status.failure);
+  }
+}
+
+TEST(ObstacleLayerDriveTest, AMapThatIsRightIsDrivenAsByTheLaser) {
+  const Drive by_laser = DriveOff(RoomWithDoor(), {}, true);
+  EXPECT_FALSE(by_laser.has_touched);
+  EXPECT_EQ(by_laser.run.status.progress, Progress::kSucceeded);
+}
+
+/// What a drive goes by after one look.
+navigation::Costmap LookedAt(const world::World& known, const world::World& true_world,
+                             bool has_scan = true) {
+  MoveBase skill(ContextOf(known, true), kEast, kSlow);
+  robot::Observation seen;
+  seen.X_MB = seen.X_OB = kWest;
+  if (has_scan) seen.scan = ScanIn(true_world, kWest, kWest);
+  robot::Command command;
+  skill.Update(seen, &command);
+  return *skill.drive_view()->costmap;
+}
+
+int CostAt(const navigation::Costmap& map, const Eigen::Vector2d& point) {
+  int column = 0, row = 0;
+  map.CellOf(point, &column, &row);
+  return map.cost(column, row);
+}
+
+TEST(ObstacleLayerDriveTest, WhatIsGoneIsFreeAndWhatCameIsThere) {
+  world::World before = hires::test_support::Room(), after = hires::test_support::Room();
+  before.statics.push_back(hires::test_support::Block("crate", {0.4, 0.4, 0.5}, {2.4, 2.5, 0.25}));
+  after.statics.push_back(hires::test_support::Block("crate", {0.4, 0.4, 0.5}, {2.4, 1.2, 0.25}));
+  const navigation::Costmap costmap = LookedAt(before, after);
+  EXPECT_LT(CostAt(costmap, {2.21, 2.5}), navigation::kInscribedCost) << "its old face";
+  EXPECT_EQ(CostAt(costmap, {2.21, 1.2}), navigation::kLethalCost) << "its new one";
+}
+
+TEST(ObstacleLayerDriveTest, WhatIsAboveTheLasersPlaneIsAsTheMapHasIt) {
+  world::World room = hires::test_support::Room();
+  room.statics.push_back(
+      hires::test_support::Block("table_top", {0.8, 0.8, 0.05}, {2.6, 2.8, 0.7}));
+  EXPECT_EQ(CostAt(LookedAt(room, room), {2.6, 2.8}), navigation::kLethalCost)
+      << "beams pass below it";
+}
+
+TEST(ObstacleLayerDriveTest, WhereNothingIsSeenTheMapIsTrusted) {
+  world::World room = hires::test_support::Room();
+  room.statics.push_back(hires::test_support::Block("crate", {0.4, 0.4, 0.5}, {2.4, 2.5, 0.25}));
+  EXPECT_EQ(CostAt(LookedAt(room, room, false), {2.21, 2.5}), navigation::kLethalCost);
+}
+
+TEST(ObstacleLayerDriveTest, ARobotWithoutALaserIsRefused) {
+  MoveBaseParams params;
+  params.obstacle_layer.emplace();
+  EXPECT_THAT(
+      [&] {
+        MakeDrivingContext(hires::test_support::Room(), hires::test_support::TrayRobot(), params);
+      },
+      testing::ThrowsMessage<base::ConfigError>(testing::AllOf(
+          testing::HasSubstr("obstacle_layer: none"), testing::HasSubstr("laser_link"))));
+}
+
+}  // namespace
+}  // namespace hires::skills::obstacle_layer_test
