@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Tasks drawn at random are done by pictures alone, each in a process of its own that needs no master:
-two beside each other. Usage: random_tasks_local_test.py HIRES plain|surprised FIRST LAST
-`surprised`: beside things that nobody told the robot of (support/surprises.py). In both the camera sits
-otherwise than the robot believes, and the two scenarios of config/scenarios are played, too. Prints a
-table."""
+two beside each other. Usage: random_tasks_local_test.py HIRES plain|surprised|off FIRST LAST
+`surprised`: beside things that nobody told the robot of (support/surprises.py). `off`: the same, and the
+camera sits otherwise than the robot believes, by 5 mm and 5 mrad. The two scenarios of config/scenarios
+are played, too. Prints a table."""
 
 import json
 import multiprocessing.pool
@@ -24,16 +24,17 @@ from random_tasks import RandomTask  # noqa: E402
 from restaurant import FURNITURE, SEATS, is_over  # noqa: E402
 from surprises import AT_GOAL, COUNTER, MOVED_CHAIR, ON_COUNTER, surprises  # noqa: E402
 
-CAMERA_OFF = os.path.join(CONFIG, '..', 'test', 'data', 'loop', 'camera_off.yaml')
+CHAIR_AND_CAMERA_OFF = os.path.join(os.path.dirname(MOVED_CHAIR), 'moved_chair_camera_off.yaml')
+TRUTHS = {'plain': 'same', 'surprised': MOVED_CHAIR, 'off': CHAIR_AND_CAMERA_OFF}
 BESIDE_EACH_OTHER = 2
 REACH = 0.02  # [m] beyond the edge of an area
 # Where the knowledge says that the robot is to stand there are 16 mm between its base and the legs of
 # a table, and it may stop 30 mm off: that its base comes to touch one is said here, and allowed to few.
 TOUCHES_A_TABLE = re.compile(r'base_link/\S+ touches table\d+$')
 MOST_TOUCHES = 0.1  # of all tasks
-# A hand that is 0.09 m open leaves 5 mm on either side of a mug, which is what the camera is off, and
-# things are told some centimetres off: that a task is lost now and then is said, and allowed to few.
-MOST_LOST = 0.1  # of all tasks
+# A hand that is 0.09 m open leaves 5 mm on either side of a mug, so where the camera is off by as much
+# some are knocked over: that is said, and allowed to few.
+MOST_LOST = {'plain': 0.0, 'surprised': 0.0, 'off': 0.2}  # of all tasks
 ROW = '%-4s %-46s %-10s %8s  %-12s %-34s %s'
 
 
@@ -100,9 +101,8 @@ class DrawnTask(RandomTask):
 def play(task):
     with tempfile.TemporaryDirectory() as folder:
         scenario = task.files(folder)
-        truth = MOVED_CHAIR if VARIANT == 'surprised' else CAMERA_OFF
-        words = ['--truth', truth, '--sensing', 'pictures', '--seed', str(task.seed), '--threads', '1']
-        if VARIANT == 'surprised':
+        words = ['--truth', TRUTHS[VARIANT], '--sensing', 'pictures', '--seed', str(task.seed), '--threads', '1']
+        if VARIANT != 'plain':
             scenario['hidden'] = scenario['hidden'] + surprises(task)
         path, end = os.path.join(folder, 'all.yaml'), os.path.join(folder, 'end.json')
         with open(path, 'w') as file:
@@ -127,11 +127,11 @@ class RandomTasksLocalTest(unittest.TestCase):
                 lost += [] if played.is_good() else [played.row()]
         print('done: %d of %d; touched a table with the base: %d' %
               (len(TASKS) - len(lost), len(TASKS), num_touches), flush=True)
-        self.assertLessEqual(len(lost), max(1, int(MOST_LOST * len(TASKS))), '\n'.join(lost))
+        self.assertLessEqual(len(lost), int(MOST_LOST[VARIANT] * len(TASKS)), '\n'.join(lost))
         self.assertLessEqual(num_touches, max(1, int(MOST_TOUCHES * len(TASKS))))
 
     def test_each_task_has_its_surprises(self):
-        if VARIANT != 'surprised':
+        if VARIANT == 'plain':
             self.skipTest('only where there are surprises')
         with_table = [task for task in TASKS if COUNTER not in task.goal_areas]
         on_table = 0  # there is not always room
@@ -147,7 +147,7 @@ class RandomTasksLocalTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    if len(sys.argv) != 5 or sys.argv[2] not in ('plain', 'surprised'):
+    if len(sys.argv) != 5 or sys.argv[2] not in TRUTHS:
         sys.exit(__doc__)
     PROGRAM, VARIANT = sys.argv[1:3]
     TASKS = [DrawnTask(seed) for seed in range(int(sys.argv[3]), int(sys.argv[4]) + 1)]

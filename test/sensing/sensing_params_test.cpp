@@ -38,7 +38,7 @@ TEST(SensingParamsTest, EachNumberMattersAndIsNamedWhenItIsBad) {
       ++count;
     }
   }
-  EXPECT_EQ(count, 37);
+  EXPECT_EQ(count, 38);
 }
 
 }  // namespace

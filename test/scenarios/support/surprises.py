@@ -11,7 +11,7 @@ from random_tasks import APART
 from restaurant import FRAMES
 
 # The truth in which that chair stands there.
-MOVED_CHAIR = os.path.join(CONFIG, '..', 'test', 'data', 'loop', 'moved_chair_camera_off.yaml')
+MOVED_CHAIR = os.path.join(CONFIG, '..', 'test', 'data', 'loop', 'moved_chair.yaml')
 ON_COUNTER = (('box1', 'unknown_0.110x0.070x0.180'), ('mug9', 'coffee_cup'))
 AT_GOAL = ('box2', 'unknown_0.110x0.070x0.180')
 COUNTER = 'placingareaeastrightcounter1'
