@@ -59,6 +59,19 @@ TEST_F(ObservationMakerTest, AScanIsPutWhereTheRobotWasWhenItWasTaken) {
   EXPECT_TRUE(geometry::Contains(seen.obstacles_M[0], {4.02, 2.0}));
 }
 
+TEST_F(ObservationMakerTest, SkillsSeeTheLastScanAndWhereItWasTaken) {
+  Sense(1.0, {3.0, 2.0, 0.0});
+  EXPECT_FALSE(Observe(1.0).scan) << "none has come";
+  maker_.OnScan(1.0, "base", Beam(1.02));
+  Sense(1.1, {3.1, 2.0, 0.0});
+  const auto seen = Observe(1.1);
+  ASSERT_TRUE(seen.scan);
+  EXPECT_NEAR(seen.scan->X_OB.x, 3.0, 1e-12) << "by the odometry of its time";
+  EXPECT_NEAR(seen.X_OB.x, 3.1, 1e-12);
+  EXPECT_FLOAT_EQ(seen.scan->reading.ranges[0], 1.02f);
+  EXPECT_EQ(Observe(1.1).scan, seen.scan) << "the same until another comes";
+}
+
 TEST_F(ObservationMakerTest, AScanOfLaterDoesNotDriveOutTheOneOfNow) {
   Sense(1.0, {3.0, 2.0, 0.0});
   maker_.OnScan(1.0, "base", Beam(1.02));

@@ -69,6 +69,53 @@ TEST(LaserScannerTest, NoiseHasItsDeviation) {
   EXPECT_NEAR(std::sqrt(squares / 640), 0.005, 4.0 * 0.005 / std::sqrt(2.0 * 640));
 }
 
+/// Who plays skills with scans in a room.
+class SkillsScanTest : public testing::Test {
+ protected:
+  static std::shared_ptr<const Scene> SceneWithScans() {
+    Sight sight;
+    sight.scans.emplace();
+    sight.scans->laser.num_beams = 60;
+    sight.scans->laser.noise = 0.01;
+    sight.scans->period = 0.2;
+    return MakeScene(test_support::Room(), Pr2(), {}, sight);
+  }
+  std::unique_ptr<RobotSimulator> Begin() const {
+    return std::make_unique<RobotSimulator>(scene_, Variation(), world::WorldState{},
+                                            test_support::StandingAt({3.0, 2.0, 0.5}),
+                                            base::Rng(1));
+  }
+  static std::shared_ptr<const robot::PlacedScan> ScanAfter(RobotSimulator* simulator, int steps) {
+    for (int i = 0; i < steps; ++i) simulator->Step();
+    return simulator->Observe(0.0).scan;
+  }
+
+  std::shared_ptr<const Scene> scene_ = SceneWithScans();
+};
+
+TEST_F(SkillsScanTest, ScansComeAtTheirPeriod) {
+  const auto simulator = Begin();
+  const auto first = ScanAfter(simulator.get(), 0);
+  ASSERT_TRUE(first);
+  ASSERT_EQ(first->reading.ranges.size(), 60u);
+  EXPECT_NEAR(first->X_BL.x, 0.275, 1e-3);
+  const Eigen::Vector2d p = geometry::Pose2{3.0, 2.0, 0.5} * first->X_BL.position();
+  EXPECT_NEAR(first->reading.ranges[0], ToWall(p, 0.5 - 2.2689), 0.05);
+  EXPECT_EQ(ScanAfter(simulator.get(), 100), first) << "0.1 s later it is still the last";
+  EXPECT_NE(ScanAfter(simulator.get(), 100), first);
+  EXPECT_FALSE(InTheRoom({})->Observe(0.0).scan) << "a scene without scans has none";
+}
+
+TEST_F(SkillsScanTest, ARestoredSimulatorScansTheSame) {
+  const auto simulator = Begin();
+  ScanAfter(simulator.get(), 100);
+  const auto saved = simulator->Save();
+  const auto before = ScanAfter(simulator.get(), 100);
+  const auto other = Begin();
+  other->Restore(*saved);
+  EXPECT_EQ(ScanAfter(other.get(), 100)->reading.ranges, before->reading.ranges);
+}
+
 /// A tower of radius 0.037 m, its axis 1 m before the laser, whose left edge the first beam meets
 /// with one half; the wall is 2.725 m ahead.
 std::vector<double> ScanOfAnEdge(LaserParams params) {
