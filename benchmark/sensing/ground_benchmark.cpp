@@ -29,7 +29,7 @@ void BM_GroundObstacles(benchmark::State& state) {
       test_support::TiltSweep{}.Measure(sight, geometry::Lift(X_MB) * X_BL, &rng);
   std::size_t num_squares = 0;
   for (auto _ : state) {
-    num_squares = finder.Find(cloud, X_BL, X_MB, 1.4, &rng).obstacles_M.size();
+    num_squares = finder.Find(cloud, X_BL, X_MB, 1.4, &rng).spots.size();
   }
   state.counters["squares"] = static_cast<double>(num_squares);
 }
