@@ -14,6 +14,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
+#include "hires/world/unknown_box.h"
 #include "translation/place.h"
 #include "translation/stated_pose.h"
 
@@ -93,13 +94,13 @@ Pose3 RestedOnTray(const Pose3& X_MA, const world::ObjectModel& model, const Pos
 
 /// How `object` must be shifted, seen from above, so that it is not in `other`; zero where it is
 /// not. What overlaps by less than `slack` in height stands on the other.
-Eigen::Vector2d ShiftOutOf(const world::ObjectModel& other, const Pose3& X_MOther,
-                           const world::ObjectModel& object, const Pose3& X_MO) {
+Eigen::Vector2d ShiftOutOf(const std::vector<geometry::Collision>& other, const Pose3& X_MOther,
+                           const std::vector<geometry::Collision>& object, const Pose3& X_MO) {
   constexpr double kSlack = 0.005;  // [m]
   Eigen::Vector2d longest = Eigen::Vector2d::Zero();
-  for (const geometry::Collision& first : object.collisions) {
+  for (const geometry::Collision& first : object) {
     const Pose3 X_MF = X_MO * first.X_BS;
-    for (const geometry::Collision& second : other.collisions) {
+    for (const geometry::Collision& second : other) {
       const Pose3 X_MS = X_MOther * second.X_BS;
       const geometry::Aabb a = geometry::BoundsOf(first.shape, X_MF);
       const geometry::Aabb b = geometry::BoundsOf(second.shape, X_MS);
@@ -114,6 +115,16 @@ Eigen::Vector2d ShiftOutOf(const world::ObjectModel& other, const Pose3& X_MOthe
     }
   }
   return longest;
+}
+
+/// Whether a box that was seen is a part of the furniture, such as the back of a chair that rises
+/// beside a table: it is in it, and no top carries it. The world has that furniture already.
+bool IsSeenFurniture(const world::World& world, const world::ObjectModel& box, const Pose3& X_MO) {
+  if (IsCarried(world, X_MO.translation, 0.0)) return false;
+  return std::any_of(
+      world.statics.begin(), world.statics.end(), [&](const world::StaticBody& body) {
+        return !ShiftOutOf(body.collisions, body.X_MB, box.collisions, X_MO).isZero(0.0);
+      });
 }
 
 /// Pose in the tool's frame of an object whose z axis points along `up_T`, grasped at a height in
@@ -218,7 +229,11 @@ class Arrangement {
       const bool is_named =
           wanted_.holders.count(stated.name) > 0 || wanted_.places.count(stated.name) > 0;
       if (is_named || !stated.link.empty()) continue;
-      Add(stated.name, Rested(*context_.world, ModelOf(stated.name), stated.X_LO));
+      const world::ObjectModel& model = ModelOf(stated.name);
+      const Pose3 X_MO = Rested(*context_.world, model, stated.X_LO);
+      if (world::SaysUnknownBox(model.name) && IsSeenFurniture(*context_.world, model, X_MO))
+        continue;
+      Add(stated.name, X_MO);
     }
   }
 
@@ -251,8 +266,8 @@ class Arrangement {
   /// Whether they had to be parted. What the robot holds stays in its hand.
   bool Part(world::ObjectState* one, world::ObjectState* other, double apart) const {
     if (!one->attached_to.empty() && !other->attached_to.empty()) return false;
-    const Eigen::Vector2d shift =
-        ShiftOutOf(ModelOf(other->name), other->X_MO, ModelOf(one->name), one->X_MO);
+    const Eigen::Vector2d shift = ShiftOutOf(ModelOf(other->name).collisions, other->X_MO,
+                                             ModelOf(one->name).collisions, one->X_MO);
     if (shift.isZero(0.0)) return false;
     const Eigen::Vector2d whole = (shift.norm() + apart) * shift.normalized();
     const double share = !one->attached_to.empty() ? 0.0 : !other->attached_to.empty() ? 1.0 : 0.5;

@@ -253,6 +253,34 @@ TEST(StateOfTest, ObjectsThatOnlyFluentsKnowStayWhereTheyWereSeen) {
   EXPECT_EQ(Object(state, "peppermill1").model, "peppermill_thesis");
 }
 
+/// Says of a thing of unknown kind, which is called unknown1, how large it is and where it stands.
+std::vector<knowledge::Fluent> BoxAt(double x, double y, double z, const Eigen::Vector3d& size) {
+  knowledge::Fluent thing, box;
+  thing.concept_name = "UnknownObject";
+  thing.instance = "unknown1";
+  thing.properties = {{"hasPose", "Pose", "poseUnknown1"},
+                      {"hasBoundingBox", "BoundingBox", "boundingBoxUnknown1"}};
+  box.concept_name = "BoundingBox";
+  box.instance = "boundingBoxUnknown1";
+  box.properties = {{"hasXSize", "xsd:float", size.x()},
+                    {"hasYSize", "xsd:float", size.y()},
+                    {"hasZSize", "xsd:float", size.z()}};
+  return {thing, box, PoseAt("poseUnknown1", x, y, z)};
+}
+
+TEST(StateOfTest, ABoxSeenInFurnitureThatNothingCarriesIsThatFurniture) {
+  const auto is_there = [](double x, double y, double z, const Eigen::Vector3d& size) {
+    const auto view = ViewWith(BoxAt(x, y, z, size));
+    const TranslatorContext known = WithKnowledge(RestaurantContext(), view);
+    return StateOf(known, &view, {kAtStart}).world.Find("unknown1") != nullptr;
+  };
+  const Eigen::Vector3d strip(0.06, 0.41, 0.17);
+  EXPECT_FALSE(is_there(8.49, 11.42, 0.73, strip)) << "the back of chair2, as high as the table";
+  EXPECT_TRUE(is_there(8.75, 11.42, 0.73, strip)) << "in no furniture: somebody holds it, perhaps";
+  EXPECT_TRUE(is_there(7.48, 11.62, 0.73, strip)) << "the table carries it";
+  EXPECT_TRUE(is_there(7.48, 11.62, 0.68, strip)) << "likewise, seen too low: it is put on top";
+}
+
 TEST(StateOfTest, WhatWasOnTheRobotAndIsNamedByNoAtomIsLeftOut) {
   const auto view = ViewWith({PoseAt("poseMug1", 0.15, 0.0, 0.0, "r_gripper_palm_link")});
   EXPECT_EQ(Build({}, &view).world.Find("mug1"), nullptr);

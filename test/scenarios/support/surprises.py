@@ -1,14 +1,14 @@
 """What nobody tells the robot of and what its task is not about: on the counter, where things are
 taken from and put, stand a box of no known kind and another, cold mug; a second box stands on the
-table that the task is about; and a guest has got up and left a chair in the way. The same task gives
-the same surprises."""
+table that the task is about, if it is not the last part with room; and a guest has got up and left a
+chair in the way. The same task gives the same surprises."""
 
 import os
 import random
 
 from closed_loop import CONFIG
 from random_tasks import APART
-from restaurant import FRAMES
+from restaurant import FRAMES, is_over
 
 # The truth in which that chair stands there.
 MOVED_CHAIR = os.path.join(CONFIG, '..', 'test', 'data', 'loop', 'moved_chair.yaml')
@@ -17,6 +17,7 @@ AT_GOAL = ('box2', 'unknown_0.110x0.070x0.180')
 COUNTER = 'placingareaeastrightcounter1'
 AHEAD, BEHIND, ALONG = 0.06, -0.1, 0.5  # [m] off the middle of the counter's area
 ON_TABLE = 0.06  # [m] off the middle of a table's area
+FULL = 2  # things that leave no room on a quarter of a table
 TURN = 3.0  # [rad]
 TRIES = 300
 
@@ -35,9 +36,16 @@ def surprises(task):
                 return things.append({'name': name, 'model': model, 'pose': pose})
     for name, model in ON_COUNTER:
         put(name, model, [COUNTER])
-    if COUNTER not in task.goal_areas:
-        put(*AT_GOAL, chance.sample(task.goal_areas, len(task.goal_areas)))
+    areas = _areas_with_room(task)
+    if COUNTER not in task.goal_areas and len(areas) > 1:
+        put(*AT_GOAL, chance.sample(areas, len(areas)))
     return things
+
+
+def _areas_with_room(task):
+    poses = task.hidden.values()
+    return [area for area in task.goal_areas
+            if sum(is_over(area, *pose[:3]) for pose in poses) < FULL]
 
 
 def _free_pose(chance, taken, area):
