@@ -425,6 +425,9 @@ int RunAnyExperiment(const ExperimentOptions& options, const Backends& backends)
   if (*options.decision.verb) {
     return RunDecisionVerb(options.decision, backends.package_folder, cancelled);
   }
+  if (*options.pose_error.verb) {
+    return RunPoseErrorVerb(options.pose_error, backends.package_folder, cancelled);
+  }
   if (*options.detector.verb) {
     return RunDetectorFitVerb(options.detector, backends.package_folder, cancelled);
   }

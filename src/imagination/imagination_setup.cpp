@@ -13,6 +13,7 @@
 #include "hires/base/text.h"
 #include "hires/perception/recogniser_config.h"
 #include "hires/robot/load_robot.h"
+#include "hires/simulation/pose_error.h"
 #include "hires/skills/action_loader.h"
 #include "hires/world/object_catalogue.h"
 #include "hires/world/occupancy_grid.h"
@@ -184,6 +185,39 @@ simulation::Sight LoadSight(const SetupConfig& config, base::Hasher* hasher) {
   return sight;
 }
 
+/// How the robot errs about its place that is said to be in this world.
+/// @param hasher  that is added to it.
+std::shared_ptr<const simulation::Scene> WithPlace(std::shared_ptr<const simulation::Scene> scene,
+                                                   const SetupConfig& config,
+                                                   base::Hasher* hasher) {
+  if (config.localisation == "drawn") return scene;
+  if (!scene->laser_height) {
+    throw base::ConfigError(fmt::format(
+        "localisation: {} is for a robot with a base laser (laser_link of its profile), this one "
+        "has none; wanted drawn",
+        config.localisation));
+  }
+  const std::string hash =
+      simulation::PlaceHash(config.self_localisation, scene->world, *scene->laser_height);
+  hasher->Add(config.localisation + hash);
+  if (config.localisation == "filter") {
+    return simulation::FindingItsPlace(
+        *scene, simulation::LoadSelfLocalisation(config.self_localisation), scene->world);
+  }
+  const simulation::PoseErrorFile file = simulation::ReadPoseError(config.localisation_error);
+  if (file.hash != hash) {
+    throw base::ConfigError(fmt::format(
+        "{}: fitted_to is {}, wanted {}: it is of another world, laser or filter than {} and the "
+        "scene have; write it anew with `hires experiment localisation`, or set localisation: "
+        "drawn",
+        config.localisation_error, file.hash, hash, config.self_localisation));
+  }
+  hasher->Add(simulation::ToYaml(file));
+  auto told = std::make_shared<simulation::Scene>(*scene);
+  told->pose_error = std::make_shared<const simulation::PoseErrorParams>(file.params);
+  return told;
+}
+
 /// With the guard late commands end in its ramp, whatever the base's controller would do.
 /// @return the robot's hash: client and worker must agree about the guard, too.
 std::uint64_t PutGuardBefore(bool is_there, robot::Robot* robot) {
@@ -224,6 +258,9 @@ SetupConfig ReadSetupConfig(const std::string& path) {
   config.uncertainty = ResolvePath(in.GetString("uncertainty"), path);
   config.detector = ResolvePath(in.GetString("detector"), path);
   config.recogniser = ResolvePath(in.GetString("recogniser"), path);
+  config.localisation = in.Get("localisation", base::OneOf({"drawn", "fitted", "filter"}));
+  config.self_localisation = ResolvePath(in.GetString("self_localisation"), path);
+  config.localisation_error = ResolvePath(in.GetString("localisation_error"), path);
   const std::string layer = ResolvePath(in.GetString("obstacle_layer"), path);
   config.has_base_guard = in.GetBool("base_guard");
   config.driving = ReadDriving(in.Sub("driving"));
@@ -290,6 +327,7 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   setup.physics_hash = PhysicsHash(config.physics, config.rollout, config.standing);
   setup.scene = simulation::MakeScene(std::move(world), std::move(robot), config.sensing.memory,
                                       LoadSight(config, &hasher));
+  setup.scene = WithPlace(std::move(setup.scene), config, &hasher);
   setup.world_hash = hasher.value();
   setup.sensing = config.sensing;
   // The scene keeps them; the translator only looks.

@@ -14,6 +14,26 @@ namespace {
 
 constexpr int kMostCells = 255;  // whose square fits into 16 bits
 
+/// Obstacles without what no beam gets to: cells that obstacles surround. Else a pose from which
+/// beams end within a thick wall would be as good as the right one, and robots would take
+/// themselves to be nearer to the walls ahead of them than they are.
+world::OccupancyGrid FacesOf(const world::OccupancyGrid& grid) {
+  world::OccupancyGrid faces = grid;
+  const auto is_occupied = [&](int column, int row) {
+    const bool is_outside = column < 0 || row < 0 || column >= grid.width || row >= grid.height;
+    return is_outside || grid.at(column, row) == world::Cell::kOccupied;
+  };
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      bool is_within = true;
+      for (int k = 0; k < 9; ++k) is_within &= is_occupied(column + k % 3 - 1, row + k / 3 - 1);
+      if (is_within)
+        faces.cells[static_cast<std::size_t>(row) * grid.width + column] = world::Cell::kFree;
+    }
+  }
+  return faces;
+}
+
 std::int32_t MostSquared(double cells) {
   return static_cast<std::int32_t>(std::ceil(cells * cells - 1e-6));
 }
@@ -39,7 +59,7 @@ LikelihoodField::LikelihoodField(const world::OccupancyGrid& grid, double max_di
         max_distance, cells, kMostCells, kMostCells * grid.resolution));
   }
   most_ = MostSquared(cells);
-  const std::vector<std::int32_t> squared = SquaredDistances(grid, most_);
+  const std::vector<std::int32_t> squared = SquaredDistances(FacesOf(grid), most_);
   squared_.assign(static_cast<std::size_t>(stride_) * (grid.height + 2), most_);
   for (int row = 0; row < grid.height; ++row) {
     std::copy_n(squared.begin() + static_cast<std::ptrdiff_t>(row) * grid.width, grid.width,

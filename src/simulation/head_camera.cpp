@@ -44,8 +44,8 @@ bool HeadCamera::IsHeld(const std::string& name) const {
   return known != state_.memory.objects().end() && known->second.is_held;
 }
 
-void HeadCamera::Remember(const std::vector<robot::SeenObject>& objects, const Pose2& X_MB) {
-  const Pose2 X_MBbelieved = BiasedPose(X_MB, variation_);
+void HeadCamera::Remember(const std::vector<robot::SeenObject>& objects,
+                          const Pose2& X_MBbelieved) {
   for (const robot::SeenObject& object : objects) {
     if (IsHeld(object.name)) continue;
     const Pose3 X_BO = geometry::Lift(X_MBbelieved).Inverse() * object.X_MO;
@@ -62,8 +62,8 @@ void HeadCamera::KnowHeld(const std::string& name, const std::string& model,
   state_.memory.Believe(name, model, link, X_LO);
 }
 
-void HeadCamera::Feel(double time, const Pose2& X_MB) {
-  state_.memory.Feel(FeltBody(time, BiasedPose(X_MB, variation_)));
+void HeadCamera::Feel(double time, const Pose2& X_MBbelieved) {
+  state_.memory.Feel(FeltBody(time, X_MBbelieved));
 }
 
 bool HeadCamera::MayLook(double time) const {
@@ -104,14 +104,15 @@ perception::Sighting HeadCamera::Recognise(const perception::LineOfSight& sight,
   return seen ? perception::SeenFrom(X_CO, std::move(seen->sighting)) : perception::Sighting();
 }
 
-void HeadCamera::Look(double time, const Pose2& X_MB,
+void HeadCamera::Look(double time, const Pose2& X_MB, const std::optional<Pose2>& error,
                       const std::vector<world::ObjectState>& objects) {
   state_.last_look = time;
   const Pose3 X_MC = robot_->X_MLink(scene_->robot.profile.upper_body->camera_link);
   const perception::LineOfSight sight(scene_->surroundings, objects, robot_->ShapesInMap());
   perception::Sighting seen;
   if (!eye_) seen = Detect(sight, X_MC, objects);
-  const sensing::BodyReading body = FeltBody(time, BelievedPose(X_MB, variation_, &state_.rng));
+  const sensing::BodyReading body =
+      FeltBody(time, error ? X_MB * *error : BelievedPose(X_MB, variation_, &state_.rng));
   if (eye_) seen = Recognise(sight, X_MC, body, state_.rng.Split());
   if (eye_ && seen.table.empty()) return;  // no table is in sight: it says nothing of things
   state_.memory.Look(body, seen.detections, seen.table);

@@ -30,17 +30,20 @@ class HeadCamera {
              const PlanarRobot* robot, const base::Rng& rng);
 
   /// What the robot knows though it has not looked, in the map as it believes it. What its hands
-  /// hold it knows by itself. @param X_MB  the base in truth.
-  void Remember(const std::vector<robot::SeenObject>& objects, const geometry::Pose2& X_MB);
+  /// hold it knows by itself.
+  void Remember(const std::vector<robot::SeenObject>& objects,
+                const geometry::Pose2& X_MBbelieved);
   /// A hand holds an object at the start.
   void KnowHeld(const std::string& name, const std::string& model, const std::string& link,
                 const geometry::Pose3& X_LO);
 
   /// How the robot's body stands tells where things are that it carries.
-  void Feel(double time, const geometry::Pose2& X_MB);
+  void Feel(double time, const geometry::Pose2& X_MBbelieved);
   bool MayLook(double time) const;  ///< the last look is long ago and the head is still
+  /// @param X_MB  the base in truth.
+  /// @param error  the believed base in it; none: as drawn, with noise.
   /// @param objects  all loose ones in truth.
-  void Look(double time, const geometry::Pose2& X_MB,
+  void Look(double time, const geometry::Pose2& X_MB, const std::optional<geometry::Pose2>& error,
             const std::vector<world::ObjectState>& objects);
   /// All that is known to a robot that believes its base to be at X_MBbelieved.
   std::vector<robot::SeenObject> Known(double time, const geometry::Pose2& X_MBbelieved) const;

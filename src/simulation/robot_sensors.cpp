@@ -20,22 +20,35 @@ RobotSensors::RobotSensors(std::shared_ptr<const Scene> scene, const Variation& 
                                                               GhostObstacles(rng.Fork(3)),
                                                               rng.Fork(4),
                                                               std::nullopt,
+                                                              std::nullopt,
                                                               rng.Fork(7),
                                                               0.0,
                                                               nullptr} {
   if (scene_->self_localisation)
     state_.localiser.emplace(scene_->self_localisation, X_MB, rng.Fork(6));
+  else if (scene_->pose_error)
+    state_.told.emplace(*scene_->pose_error, X_MB, rng.Fork(6));
 }
 
 void RobotSensors::ReadBase(double time, const BaseMotion& motion,
                             robot::Observation* observation) {
+  if (state_.told) state_.told->Drive(motion.X_MB);
   observation->X_MB = state_.localiser ? state_.localiser->X_MB()
+                      : state_.told    ? state_.told->X_MBelieved()
                                        : BelievedPose(motion.X_MB, variation_, &state_.rng);
-  observation->X_OB = state_.localiser ? state_.localiser->X_OB() : motion.X_MB;
+  observation->X_OB = state_.localiser ? state_.localiser->X_OB()
+                      : state_.told    ? state_.told->X_OB()
+                                       : motion.X_MB;
   observation->V_B = motion.V_B;
   observation->scan = state_.scan;
   state_.ghosts.Update(motion.X_MB, variation_.ghost_rate, time);
   observation->obstacles_M = state_.ghosts.OutlinesInMap();
+}
+
+std::optional<geometry::Pose2> RobotSensors::place_error() const {
+  if (state_.localiser) return state_.localiser->X_MBtrue().Inverse() * state_.localiser->X_MB();
+  if (state_.told) return state_.told->error();
+  return std::nullopt;
 }
 
 base::Rng* RobotSensors::ScanDue(double time) {

@@ -6,6 +6,7 @@
 #include "hires/base/rng.h"
 #include "hires/robot/observation.h"
 #include "hires/simulation/base_drive.h"
+#include "hires/simulation/pose_error.h"
 #include "hires/simulation/scene.h"
 #include "hires/simulation/self_localisation.h"
 #include "hires/simulation/variation.h"
@@ -22,6 +23,7 @@ class RobotSensors {
     GhostObstacles ghosts;
     base::Rng encoder_rng;
     std::optional<SelfLocaliser> localiser;  // where the robot finds its place by itself
+    std::optional<PoseErrorWalk> told;       // where it is told as if it did
     base::Rng scan_rng;
     double next_scan{0.0};                          // [s]
     std::shared_ptr<const robot::PlacedScan> scan;  // the last; null: none yet
@@ -36,6 +38,8 @@ class RobotSensors {
   void ReadBase(double time, const BaseMotion& motion, robot::Observation* observation);
   /// Who finds the place, if the robot does; asked before ReadBase, that it may scan.
   SelfLocaliser* localiser() { return state_.localiser ? &*state_.localiser : nullptr; }
+  /// The believed base in the true one as of the last reading, unless it errs as drawn.
+  std::optional<geometry::Pose2> place_error() const;
   /// Whether skills are to see a new scan at `time`, and what to draw its noise from.
   base::Rng* ScanDue(double time);
   /// @param observation  of ReadBase; gets the scan, and so do later ones until the next is due.

@@ -49,7 +49,7 @@ void RobotSimulator::Remember(const std::vector<robot::SeenObject>& objects) {
     scene_->world.ModelOf({object.name, object.model, object.X_MO, {}, ""});
     RefusePose("remembered object '" + object.name + "'", object.X_MO);
   }
-  if (camera_) camera_->Remember(objects, base().X_MB);
+  if (camera_) camera_->Remember(objects, Believed());
 }
 
 void RobotSimulator::Push(const std::optional<geometry::Twist2>& acceleration) {
@@ -74,9 +74,13 @@ void RobotSimulator::Step() {
 
 /// What makes the robot know more of objects.
 void RobotSimulator::Sense() {
-  camera_->Feel(state_.time, base().X_MB);
+  camera_->Feel(state_.time, Believed());
   if (!camera_->MayLook(state_.time)) return;
-  camera_->Look(state_.time, base().X_MB, GetWorldState().objects);
+  camera_->Look(state_.time, base().X_MB, place_error(), GetWorldState().objects);
+}
+
+geometry::Pose2 RobotSimulator::Believed() const {
+  return base().X_MB * place_error().value_or(variation_.localisation_bias);
 }
 
 robot::Observation RobotSimulator::Observe(double action_start) {
@@ -115,6 +119,10 @@ void RobotSimulator::FindPlace() {
 }
 
 const SelfLocaliser* RobotSimulator::self_localiser() const { return sensors_->localiser(); }
+
+std::optional<geometry::Pose2> RobotSimulator::place_error() const {
+  return sensors_->place_error();
+}
 
 void RobotSimulator::BelieveAs(const RobotSimulator& before) {
   SelfLocaliser* localiser = sensors_->localiser();

@@ -68,6 +68,7 @@ std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot,
                                              sight,
                                              laser_height,
                                              nullptr,
+                                             nullptr,
                                              {}});
 }
 

@@ -42,15 +42,11 @@ Pose3 VariedGrasp(const Pose3& X_BL, const Pose3& X_BO, const Variation& variati
   return X_BL * X_LO;
 }
 
-Pose2 BiasedPose(const Pose2& X_MB, const Variation& variation) {
-  return X_MB * variation.localisation_bias;
-}
-
 Pose2 BelievedPose(const Pose2& X_MB, const Variation& variation, base::Rng* rng) {
   const Pose2 noise{rng->Normal(0.0, variation.localisation_noise),
                     rng->Normal(0.0, variation.localisation_noise),
                     rng->Normal(0.0, variation.localisation_noise_yaw)};
-  return BiasedPose(X_MB, variation) * noise;
+  return X_MB * variation.localisation_bias * noise;
 }
 
 }  // namespace hires::simulation

@@ -22,9 +22,7 @@ std::vector<geometry::Collision> Varied(std::vector<geometry::Collision> shapes,
 geometry::Pose3 VariedGrasp(const geometry::Pose3& X_BL, const geometry::Pose3& X_BO,
                             const Variation& variation);
 
-/// Where the robot believes its base to be that is at X_MB: without noise ...
-geometry::Pose2 BiasedPose(const geometry::Pose2& X_MB, const Variation& variation);
-/// ... and with it.
+/// Where the robot believes its base to be that is at X_MB.
 geometry::Pose2 BelievedPose(const geometry::Pose2& X_MB, const Variation& variation,
                              base::Rng* rng);
 

@@ -33,6 +33,7 @@
 #include "hires/planning/planning_files.h"
 #include "hires/relay/relay_params.h"
 #include "hires/robot/robot_profile.h"
+#include "hires/simulation/pose_error.h"
 #include "hires/simulation/self_localisation.h"
 #include "hires/world/object_catalogue.h"
 
@@ -110,6 +111,8 @@ const std::map<std::string, Reader>& Readers() {
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
       {"self_localisation.yaml",
        [](const std::string& path) { simulation::LoadSelfLocalisation(path); }},
+      {"localisation_error.yaml",
+       [](const std::string& path) { simulation::ReadPoseError(path); }},
       {"obstacle_layer.yaml",
        [](const std::string& path) {
          imagination::SetupConfig config;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <utility>
 
+#include "hires/simulation/pose_error.h"
 #include "imagination/physics_hash.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
@@ -176,6 +177,49 @@ TEST(SetupConfigTest, AnObstacleLayerIsReadFromItsFileAndMatters) {
   layer["laser"]["period"] = 0.4;
   layer["decay"] = 1;
   EXPECT_THAT(why_refused(), HasSubstr("key 'decay' is unknown"));
+}
+
+TEST(SetupConfigTest, WhatTellsTheRobotItsPlaceIsReadAndMatters) {
+  SceneFile file;
+  const ImaginationSetup drawn = file.Load();
+  EXPECT_FALSE(drawn.scene->self_localisation);
+  EXPECT_FALSE(drawn.scene->pose_error);
+  const std::string shipped = Root() + "/config/self_localisation.yaml";
+  file.root["self_localisation"] = shipped;
+  file.root["robot"] = Root() + "/config/robots/pr2.yaml";  // which has a laser
+  const std::uint64_t without = file.Load().world_hash;
+  file.root["localisation"] = "filter";
+  const ImaginationSetup filter = file.Load();
+  EXPECT_TRUE(filter.scene->self_localisation);
+  EXPECT_NE(filter.world_hash, without);
+
+  const std::string hash =
+      simulation::PlaceHash(shipped, filter.scene->world, *filter.scene->laser_height);
+  file.root["localisation"] = "fitted";
+  const auto write = [&](const std::string& of) {
+    file.root["localisation_error"] = file.folder.Write("error.yaml", simulation::ToYaml({{}, of}));
+  };
+  write(hash);
+  const ImaginationSetup fitted = file.Load();
+  EXPECT_TRUE(fitted.scene->pose_error);
+  EXPECT_FALSE(fitted.scene->self_localisation);
+  EXPECT_NE(fitted.world_hash, filter.world_hash);
+  write("0123456789abcdef");
+  EXPECT_THAT(file.WhyRefused(),
+              AllOf(HasSubstr("error.yaml: fitted_to is 0123456789abcdef, wanted " + hash),
+                    HasSubstr("hires experiment localisation")));
+  file.root["localisation"] = "amcl";
+  EXPECT_THAT(file.WhyRefused(), HasSubstr("localisation is 'amcl'"));
+}
+
+TEST(SetupConfigTest, ARobotWithoutALaserIsToldItsPlace) {
+  SceneFile file;
+  file.root["localisation"] = "filter";
+  YAML::Node robot = YAML::LoadFile(Root() + "/config/robots/cart.yaml");
+  robot["urdf"] = Root() + "/urdf/cart.urdf";
+  robot["laser_link"] = "";
+  file.root["robot"] = file.folder.Write("blind.yaml", YAML::Dump(robot));
+  EXPECT_THAT(file.WhyRefused(), AllOf(HasSubstr("laser_link"), HasSubstr("drawn")));
 }
 
 TEST(SetupConfigTest, RefusesTypos) {

@@ -50,7 +50,7 @@ enum class Sensing {
 
 /// What tells the robot where it is.
 enum class Localisation {
-  kFitted,  ///< the truth, off as drawn
+  kFitted,  ///< the truth, off as imagination has it (`localisation` of the scene)
   kIdeal,   ///< the truth
   kFilter   ///< itself, by its wheels, inertial unit and laser
 };

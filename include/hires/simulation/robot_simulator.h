@@ -71,6 +71,8 @@ class RobotSimulator {
   /// Where the robot believes that it is, if it finds its place by itself; else null. As of the
   /// last Observe.
   const SelfLocaliser* self_localiser() const;
+  /// The believed base in the true one as of the last Observe; nothing: it errs as drawn.
+  std::optional<geometry::Pose2> place_error() const;
   /// Goes on believing what the robot believed in another simulator, from which it was lifted.
   /// @pre both or none find their place by themselves
   void BelieveAs(const RobotSimulator& before);
@@ -127,6 +129,7 @@ class RobotSimulator {
   void RefuseBadStart();
   void RefuseInsideRobot(const world::ObjectState& object, physics::BodyId body);
   std::optional<RobotContact> FindContact() const;
+  geometry::Pose2 Believed() const;  // base in the map, without the noise of what is drawn
   void Sense();
   void FindPlace();
   void Scan(base::Rng* noise, robot::Observation* observation);

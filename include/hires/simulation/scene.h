@@ -17,6 +17,7 @@
 namespace hires::simulation {
 
 class SelfLocalisation;
+struct PoseErrorParams;
 
 /// Scans of the base's laser that skills get to see.
 struct ScanParams {
@@ -49,8 +50,10 @@ struct Scene {
   sensing::MemoryParams memory;  ///< of what that camera sees
   Sight sight;
   std::optional<double> laser_height;  ///< [m] of the base's laser above the floor; none: no laser
-  /// How the robot finds its place by itself; null: it is told, with an error as drawn.
+  /// How the robot finds its place by itself; null: it is told.
   std::shared_ptr<const SelfLocalisation> self_localisation;
+  /// How what it is told errs, where it does not find its place by itself; null: as drawn.
+  std::shared_ptr<const PoseErrorParams> pose_error;
   FloorPlaces floor;  ///< what the floor has that no map tells; imagination: nothing
 };
 

@@ -13,6 +13,7 @@
 #include "hires/localisation/odometry_filter.h"
 #include "hires/simulation/laser_params.h"
 #include "hires/simulation/scene.h"
+#include "hires/world/occupancy_grid.h"
 #include "hires/world/world.h"
 
 namespace hires::simulation {
@@ -82,6 +83,11 @@ struct SelfLocalisationParams {
 /// A file like config/self_localisation.yaml; the files that it names are found beside it.
 /// @throws base::ConfigError naming file and key.
 SelfLocalisationParams LoadSelfLocalisation(const std::string& path);
+
+/// The map in which the robot looks for its place: a slice of the world in the laser's plane.
+/// @param laser_height  [m] of the base's laser above the floor.
+world::OccupancyGrid MapIn(const SelfLocalisationParams& params, const world::World& world,
+                           double laser_height);
 
 /// The same for all robots in one world: parameters, and a filter that knows the map. Constant.
 class SelfLocalisation {

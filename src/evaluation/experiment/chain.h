@@ -20,7 +20,7 @@ struct Leg {
   double distance{0.0};   ///< [m] from the goal, where it really stands in the end
   double yaw_error{0.0};  ///< [rad] the same, not negative
   double clearance{0.0};  ///< [m] the smallest to anything, at most kFarClearance; at 20 Hz
-  std::vector<PlaceError> places;          ///< at 20 Hz, where the robot finds its place by itself
+  PlaceTrail places;      ///< at 20 Hz, where the robot finds its place by itself
   imagination::OutcomeCounts counts_10hz;  ///< every other sample
   bool was_put_back{false};   ///< afterwards something carried was put back to its place
   bool was_restarted{false};  ///< afterwards the robot was put to the goal, as it could not go on

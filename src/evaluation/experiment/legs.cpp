@@ -163,7 +163,7 @@ Findings SumUpLegs(const ExperimentConfig& config, const Stage& stage, const Cha
   Findings findings;
   const LegTally empty(stage.xy_tolerance, stage.yaw_tolerance);
   LegTally all = empty;
-  std::vector<PlaceError> places;
+  PlaceTrail places;
   std::map<std::string, LegTally> by_goal;
   for (const Goal& goal : config.goals) by_goal.emplace(goal.name, empty);
   TextTable problems{

@@ -68,8 +68,11 @@ Stage MakeStage(const ExperimentConfig& config) {
   }
   AddGoals(config.goals, &world, &skills);
   world.hash = world.ComputeHash();
-  setup.scene = simulation::MakeScene(std::move(world), setup.scene->robot, setup.scene->memory,
-                                      setup.scene->sight);
+  auto with_goals = std::make_shared<simulation::Scene>(*simulation::MakeScene(
+      std::move(world), setup.scene->robot, setup.scene->memory, setup.scene->sight));
+  with_goals->self_localisation = setup.scene->self_localisation;
+  with_goals->pose_error = setup.scene->pose_error;
+  setup.scene = std::move(with_goals);
   if (config.self_localisation != "none") {
     setup.scene = simulation::FindingItsPlace(
         *setup.scene, simulation::LoadSelfLocalisation(config.self_localisation),

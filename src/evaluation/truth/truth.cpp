@@ -42,7 +42,8 @@ Uncertainty UncertaintyOf(const Truth& truth, const Uncertainty& imagined) {
 
 bool ChangesTheScene(const Truth& truth) {
   return truth.stops_at_timeout || !truth.controller.empty() || !truth.floor.sills.empty() ||
-         !truth.floor.patches.empty() || !truth.moved.empty() || truth.self_localisation;
+         !truth.floor.patches.empty() || !truth.moved.empty() ||
+         truth.localisation != Localisation::kFitted;
 }
 
 world::StaticBody* FindStatic(const Truth& truth, const std::string& name, world::World* world) {
@@ -78,6 +79,10 @@ std::shared_ptr<const Scene> SceneOf(const Truth& truth, const Scene& imagined, 
   auto scene = std::make_shared<Scene>(
       *simulation::MakeScene(std::move(world), std::move(robot), imagined.memory, imagined.sight));
   scene->floor = truth.floor;
+  if (truth.localisation == Localisation::kFitted) {
+    scene->self_localisation = imagined.self_localisation;
+    scene->pose_error = imagined.pose_error;
+  }
   if (!truth.self_localisation) return scene;
   return simulation::FindingItsPlace(*scene, *truth.self_localisation, imagined.world);
 }

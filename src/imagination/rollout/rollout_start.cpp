@@ -56,9 +56,9 @@ simulation::Variation DrawTruth(const RolloutSetup& setup, const base::Rng& rng)
 std::vector<robot::SeenObject> KnownAtStart(const RolloutSetup& setup,
                                             const simulation::Variation& variation,
                                             const simulation::RobotSimulator& simulator) {
+  const geometry::Pose2 error = simulator.place_error().value_or(variation.localisation_bias);
   const geometry::Pose3 X_BelievedTrue =
-      geometry::Lift(setup.robot_state.X_MB * variation.start_offset *
-                     variation.localisation_bias) *
+      geometry::Lift(setup.robot_state.X_MB * variation.start_offset * error) *
       geometry::Lift(setup.robot_state.X_MB).Inverse();
   std::vector<robot::SeenObject> known;
   const auto& objects = setup.world_state.objects;

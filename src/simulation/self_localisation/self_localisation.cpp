@@ -16,8 +16,7 @@ enum Streams : std::uint64_t { kWheels, kGyro, kScans, kFilter, kStart };
 
 localisation::MonteCarloLocalisation FilterIn(const SelfLocalisationParams& params,
                                               const world::World& world, double laser_height) {
-  const world::OccupancyGrid map =
-      world::SliceWorld(world, laser_height - kSlice, laser_height + kSlice, params.map_resolution);
+  const world::OccupancyGrid map = MapIn(params, world, laser_height);
   const std::string why = localisation::WhyUseless(map);
   if (!why.empty()) throw base::ConfigError("the world in the plane of the base's laser " + why);
   return {map, params.filter, base::Rng(0)};
@@ -30,6 +29,12 @@ Pose2 StartError(const SelfLocalisationParams& params, base::Rng rng) {
 }
 
 }  // namespace
+
+world::OccupancyGrid MapIn(const SelfLocalisationParams& params, const world::World& world,
+                           double laser_height) {
+  return world::SliceWorld(world, laser_height - kSlice, laser_height + kSlice,
+                           params.map_resolution);
+}
 
 SelfLocalisation::SelfLocalisation(const SelfLocalisationParams& params, const world::World& world,
                                    double laser_height)

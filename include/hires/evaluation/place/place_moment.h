@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "hires/geometry/pose.h"
+
+namespace hires::evaluation {
+
+/// Where a robot is that finds its place by itself, and where it takes itself to be, at one moment.
+struct PlaceMoment {
+  geometry::Pose2 X_MB;         ///< really
+  geometry::Pose2 X_MBelieved;  ///< as it believes
+  geometry::Pose2 X_OB;         ///< as its odometry says
+  /// The truth lies in the ellipsoid of x, y and yaw that holds 95 % by the filter's covariance.
+  bool is_inside{false};
+
+  geometry::Pose2 error() const { return X_MB.Inverse() * X_MBelieved; }
+  /// Of the odometry in the map; another one than before means that the laser corrected.
+  geometry::Pose2 X_MO() const { return X_MBelieved * X_OB.Inverse(); }
+};
+
+/// One drive, moment by moment.
+using PlaceTrail = std::vector<PlaceMoment>;
+
+}  // namespace hires::evaluation
