@@ -73,6 +73,15 @@ skills::MoveBaseParams ReadDriving(ParamReader in) {
   return p;
 }
 
+skills::LostParams ReadLost(ParamReader in) {
+  skills::LostParams p;
+  p.max_position_sd = in.Get("max_position_sd", Between(0.01, 100.0));
+  p.patience = in.Get("patience", Between(0.0, 3600.0));
+  p.turning = in.Get("turning", Between(0.0, 4.0));
+  p.room = in.Get("room", Between(0.0, 10.0));
+  return p;
+}
+
 skills::MoveBaseBlindParams ReadBlind(ParamReader in) {
   skills::MoveBaseBlindParams p;
   p.period = in.Get("period", Between(0.005, 1.0));
@@ -265,6 +274,7 @@ SetupConfig ReadSetupConfig(const std::string& path) {
   config.has_base_guard = in.GetBool("base_guard");
   config.driving = ReadDriving(in.Sub("driving"));
   config.blind = ReadBlind(in.Sub("blind_driving"));
+  config.driving.lost = config.blind.lost = ReadLost(in.Sub("lost"));
   config.manipulation = skills::ReadManipulationParams(in.Sub("manipulation"));
   config.sensing = sensing::ReadSensingParams(in.Sub("sensing"));
   config.physics = ReadPhysics(in.Sub("physics"));
@@ -283,6 +293,8 @@ SetupConfig ReadSetupConfig(const std::string& path) {
   for (const char* section : {"driving", "blind_driving", "manipulation", "sensing"}) {
     hasher.Add(in.Sub(section).Canonical());
   }
+  // Who is told its place as drawn is never lost.
+  if (config.localisation != "drawn") hasher.Add(in.Sub("lost").Canonical());
   config.params_hash = hasher.value();
   if (layer != "none") AddObstacleLayer(layer, &config);
   return config;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hires/geometry/angles.h"
+#include "hires/geometry/covariance.h"
 
 namespace hires::localisation {
 namespace {
@@ -38,19 +39,13 @@ Eigen::Matrix3d CovarianceOf(const Particles& particles, const Clusters& cluster
   return sum / total;
 }
 
-/// [m] along the direction in which the position is least certain.
-double LargestDeviation(const Eigen::Matrix3d& covariance) {
-  const double xx = covariance(0, 0), yy = covariance(1, 1), xy = covariance(0, 1);
-  return std::sqrt(0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy));
-}
-
 BeliefSummary SummariseClusters(const Particles& particles, const Clusters& clusters) {
   BeliefSummary summary;
   for (double weight : clusters.weights) summary.num_clusters += weight >= kClusterThatCounts;
   summary.best_share = clusters.weights.front();
   summary.X_MB = MeanOf(particles, clusters, 0);
   const Eigen::Matrix3d best = CovarianceOf(particles, clusters, 1, summary.X_MB);
-  summary.best_spread = LargestDeviation(best);
+  summary.best_spread = geometry::LargestSd(best(0, 0), best(0, 1), best(1, 1));
   // Where no cluster counts, the belief is all over the map.
   const int most = static_cast<int>(clusters.weights.size());
   const int counted = summary.num_clusters > 0 ? summary.num_clusters : most;

@@ -53,6 +53,7 @@ constexpr double kExplainedRate = 0.3;  // at which the share of explained beams
 // degrees off and fit worse than luckier ones elsewhere; a scan then counts as so few beams that
 // several scans decide.
 constexpr double kBeamsWhileUndecided = 2.0;
+constexpr double kKeptShare = 0.1;  // of the belief, that stays where it was when it looks everywhere
 constexpr double kAnyRange = 30.0;  // [m] where neither scan nor parameters name a longest range
 
 bool IsPose(const Pose2& X) {
@@ -138,8 +139,7 @@ class MonteCarloLocalisation::Belief {
           "(free_thresh of the map's YAML)?");
     }
     Begin();
-    const int count = std::max(params_.global_particles, params_.max_particles);
-    for (int i = 0; i < count; ++i) particles_.Add(map_->AnyFreePose(&rng_), 1.0 / count);
+    AddEverywhere(1.0);
     summary_ = SummariseAsOne(particles_);
   }
 
@@ -162,6 +162,7 @@ class MonteCarloLocalisation::Belief {
     const bool is_due = IsDue(moved);
     if (is_due) Use(beams, moved, RangeMax(scan, beam_params_, kAnyRange));
     JudgeExplained(beams);
+    if (IsLostForLong(time)) LookEverywhere();
     return is_due ? ScanOutcome::kUpdated : ScanOutcome::kNotMoved;
   }
 
@@ -175,6 +176,12 @@ class MonteCarloLocalisation::Belief {
     estimate.best_share = summary_.best_share;
     estimate.explained = explained_;
     estimate.status = StatusAt(time);
+    estimate.num_relocations = num_relocations_;
+    if (estimate.status == LocalisationStatus::kUnexplained) {
+      const double most = params_.lost_spread * params_.lost_spread;
+      for (int axis = 0; axis < 3; ++axis)
+        estimate.covariance(axis, axis) = std::max(estimate.covariance(axis, axis), most);
+    }
     return estimate;
   }
 
@@ -189,6 +196,36 @@ class MonteCarloLocalisation::Belief {
   }
 
  private:
+  /// @param weight  of all of them
+  void AddEverywhere(double weight) {
+    const int count = std::max(params_.global_particles, params_.max_particles);
+    for (int i = 0; i < count; ++i) particles_.Add(map_->AnyFreePose(&rng_), weight / count);
+  }
+
+  /// Whether scans have said for long enough that it is lost. While it is still looking for its
+  /// place, the mean of all places explains nothing.
+  bool IsLostForLong(double time) {
+    const bool is_looking = IsGlobal() || summary_.best_spread > params_.lost_spread;
+    if (params_.relocate_after < 0.0 || is_looking || map_->free_cells.empty() || IsExplained())
+      unexplained_since_.reset();
+    else if (!unexplained_since_)
+      unexplained_since_ = time;
+    return unexplained_since_ && time - *unexplained_since_ >= params_.relocate_after;
+  }
+
+  void LookEverywhere() {
+    const Particles before = particles_;
+    const auto last_scan = last_scan_;
+    Begin();
+    for (std::size_t i = 0; i < before.size(); ++i)
+      particles_.Add(before.pose(i), kKeptShare * before.weight[i]);
+    AddEverywhere(1.0 - kKeptShare);
+    summary_ = SummariseAsOne(particles_);
+    last_scan_ = last_scan;
+    unexplained_since_.reset();
+    ++num_relocations_;
+  }
+
   /// A new belief, of a robot that stands where odometry saw it last.
   void Begin() {
     particles_ = {};
@@ -324,6 +361,8 @@ class MonteCarloLocalisation::Belief {
     explained_mean_ = mean + kExplainedRate * (explained_ - mean);
   }
 
+  bool IsExplained() const { return explained_mean_.value_or(1.0) >= params_.lost_explained; }
+
   LocalisationStatus StatusAt(double time) const {
     if (!last_scan_ || time - *last_scan_ > params_.scan_timeout) {
       return LocalisationStatus::kNoScan;
@@ -331,9 +370,7 @@ class MonteCarloLocalisation::Belief {
     if (summary_.best_spread > params_.lost_spread || summary_.num_clusters == 0) {
       return LocalisationStatus::kSpread;
     }
-    if (explained_mean_.value_or(1.0) < params_.lost_explained) {
-      return LocalisationStatus::kUnexplained;
-    }
+    if (!IsExplained()) return LocalisationStatus::kUnexplained;
     return summary_.num_clusters > 1 ? LocalisationStatus::kAmbiguous : LocalisationStatus::kGood;
   }
 
@@ -352,6 +389,8 @@ class MonteCarloLocalisation::Belief {
   double slow_{0.0}, fast_{0.0};  // how well scans fit; 0: none came
   double explained_{0.0};
   std::optional<double> explained_mean_;
+  std::optional<double> unexplained_since_;  // [s]
+  int num_relocations_{0};
   std::shared_ptr<const std::vector<float>> table_;
   double table_range_{0.0};
 };

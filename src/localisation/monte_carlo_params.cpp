@@ -58,6 +58,7 @@ void ReadOurs(base::ParamReader* in, MonteCarloParams* params) {
   params->explained_distance = in->Get("explained_distance", Between(0.01, 10.0));
   params->lost_explained = in->Get("lost_explained", Between(0.0, 1.0));
   params->lost_spread = in->Get("lost_spread", Between(0.01, 1000.0));
+  params->relocate_after = in->Get("relocate_after", Between(-1.0, 3600.0));
   params->scan_timeout = in->Get("scan_timeout", Between(0.1, 3600.0));
 }
 

@@ -68,6 +68,7 @@ void MiddleLayer::Hear(const SensorNews& news, const simulation::LaserParams& la
   if (!news.scan.empty()) {
     observations_.OnScan(news.stamp, laser.link, simulation::ReadingOf(news.scan, laser));
   }
+  if (news.is_tick) observations_.OnLocalised(news.readings.covariance);
   if (news.sweep && ground_) ground_->OnCloud(news.stamp, senses_.frames().odometry, *news.sweep);
   senses_.Hear(news);
 }

@@ -77,10 +77,6 @@ std::string Defect(const DriveRequest& request) {
   return "";
 }
 
-double LargestSd(double xx, double xy, double yy) {
-  return std::sqrt(0.5 * (xx + yy) + std::hypot(0.5 * (xx - yy), xy));
-}
-
 BaseGuard::BaseGuard(const BaseGuardParams& params) : params_(params) {}
 
 void BaseGuard::OnCommand(const geometry::Twist2& V_B, double now) {

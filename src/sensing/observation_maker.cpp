@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "hires/geometry/covariance.h"
+
 namespace hires::sensing {
 
 ObservationMaker::ObservationMaker(const RobotStateEstimator* state, ScanObstacles obstacles)
@@ -10,6 +12,10 @@ ObservationMaker::ObservationMaker(const RobotStateEstimator* state, ScanObstacl
 Receipt ObservationMaker::OnScan(double stamp, const std::string& frame,
                                  robot::ScanReading reading) {
   return scans_.OnScan(stamp, frame, std::move(reading));
+}
+
+void ObservationMaker::OnLocalised(const Eigen::Matrix3d& covariance) {
+  position_sd_ = geometry::LargestSd(covariance(0, 0), covariance(0, 1), covariance(1, 1));
 }
 
 robot::Observation ObservationMaker::Observe(const RobotEstimate& now) {
@@ -21,6 +27,7 @@ robot::Observation ObservationMaker::Observe(const RobotEstimate& now) {
   robot::Observation seen;
   seen.time = now.time;
   seen.X_MB = now.X_WB;
+  seen.position_sd = position_sd_;
   seen.X_OB = now.X_OB;
   seen.V_B = now.V_B;
   seen.scan = scan_;

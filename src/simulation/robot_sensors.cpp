@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "hires/geometry/covariance.h"
 #include "simulation/varied.h"
 
 namespace hires::simulation {
@@ -36,6 +37,11 @@ void RobotSensors::ReadBase(double time, const BaseMotion& motion,
   observation->X_MB = state_.localiser ? state_.localiser->X_MB()
                       : state_.told    ? state_.told->X_MBelieved()
                                        : BelievedPose(motion.X_MB, variation_, &state_.rng);
+  if (state_.localiser) {
+    const Eigen::Matrix3d covariance = state_.localiser->Estimate().covariance;
+    observation->position_sd =
+        geometry::LargestSd(covariance(0, 0), covariance(0, 1), covariance(1, 1));
+  }
   observation->X_OB = state_.localiser ? state_.localiser->X_OB()
                       : state_.told    ? state_.told->X_OB()
                                        : motion.X_MB;

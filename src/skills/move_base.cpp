@@ -175,7 +175,8 @@ MoveBase::MoveBase(std::shared_ptr<const DrivingContext> context, const Pose2& X
       costmap_(context_->costmap),
       footprint_(context_->footprint),
       local_(context_->params.local, footprint_),
-      car_(MakeFollower(*context_, footprint_, motion_set)) {
+      car_(MakeFollower(*context_, footprint_, motion_set)),
+      lost_(context_->params.lost) {
   local_.SetMotionSet(motion_set);
   if (context_->by_plane) {
     sensed_.emplace(&*context_->by_plane, *context_->params.obstacle_layer, footprint_,
@@ -314,8 +315,36 @@ bool MoveBase::IsAtGoal(const robot::Observation& observation) const {
          std::abs(observation.V_B.vx) <= params.stopped_linear_velocity;
 }
 
+/// The laser alone tells whether there is room: where the map has things is not known now.
+geometry::Twist2 MoveBase::LookAround(const robot::Observation& observation) {
+  if (!sensed_ || car_) return {};
+  sensed_->Look(observation);
+  const LostParams& params = context_->params.lost;
+  const double reach = geometry::CircumscribedRadius(footprint_) + params.room;
+  const auto is_near = [&](const Eigen::Vector2d& p_M) {
+    return (p_M - observation.X_MB.position()).norm() < reach;
+  };
+  const auto marks = sensed_->Marks(observation);
+  if (std::any_of(marks.begin(), marks.end(), is_near)) return {};
+  for (const geometry::Polygon& obstacle : observation.obstacles_M)
+    if (std::any_of(obstacle.begin(), obstacle.end(), is_near)) return {};
+  return {0.0, 0.0, std::min(params.turning, motion_set_.max_angular_velocity)};
+}
+
 Status MoveBase::Update(const robot::Observation& observation, robot::Command* command) {
   command->motion_set = motion_set_;
+  switch (lost_.Look(observation)) {
+    case LostWatch::State::kGivenUp:
+      return Failed(lost_.Why(observation));
+    case LostWatch::State::kLost:
+      command->base_velocity = LookAround(observation);
+      return {};
+    case LostWatch::State::kFound:
+      path_.reset();
+      break;
+    case LostWatch::State::kSure:
+      break;
+  }
   if (!has_begun_) Begin(observation);
   Look(observation);
   if (!path_) {
@@ -351,7 +380,8 @@ MoveBaseBlind::MoveBaseBlind(const MoveBaseBlindParams& params, const Pose2& X_M
       X_MGoal_(X_MGoal),
       motion_set_(motion_set),
       drive_(base.drive),
-      min_turning_radius_(base.min_turning_radius) {
+      min_turning_radius_(base.min_turning_radius),
+      lost_(params.lost) {
   if (drive_ != robot::Drive::kCarLike) return;
   navigation::CarFollowerParams following;
   following.control_period = params.period;
@@ -438,6 +468,14 @@ MoveBaseBlind::Course MoveBaseBlind::CourseTo(const robot::Observation& observat
 
 Status MoveBaseBlind::Update(const robot::Observation& observation, robot::Command* command) {
   command->motion_set = motion_set_;
+  const LostWatch::State place = lost_.Look(observation);
+  if (place == LostWatch::State::kGivenUp) return Failed(lost_.Why(observation));
+  if (place == LostWatch::State::kLost || place == LostWatch::State::kFound) {
+    command->base_velocity = geometry::Twist2{};
+    num_ways_ = 0;
+    nearest_ = 1e9;  // from wherever it will be found
+    return {};
+  }
   const Pose2 X_BGoal = observation.X_MB.Inverse() * X_MGoal_;
   const double distance = std::hypot(X_BGoal.x, X_BGoal.y), turn = std::abs(X_BGoal.yaw);
   if (distance <= params_.xy_tolerance && turn <= params_.yaw_tolerance) {

@@ -211,5 +211,23 @@ TEST(ExperimentConfigTest, MistakesOfTheOtherKindsAreNamedToo) {
               HasSubstr("durations.postures_at is 'house', wanted one of 'EC1'"));
 }
 
+TEST(ExperimentConfigTest, WhatBefallsARobotIsReadAndRefusedWithItsKey) {
+  const ExperimentConfig carried = ReadExperiment(kFolder + "lost_carried.yaml");
+  EXPECT_TRUE(carried.is_carried);
+  const ExperimentConfig wet = ReadExperiment(kFolder + "lost_wet.yaml");
+  ASSERT_EQ(wet.wet.size(), 3U);
+  EXPECT_EQ(wet.wet[0].radius, 1.0);
+  const ExperimentConfig moved = ReadExperiment(kFolder + "lost_moved.yaml");
+  ASSERT_EQ(moved.moved.size(), 6U);
+  EXPECT_EQ(moved.moved[0].body, "chair1");
+  EXPECT_THAT(ReadExperiment(kFolder + "lost_corridor.yaml").world, HasSubstr("corridor.world"));
+  EXPECT_THAT(ErrorAfter("lost_carried.yaml", "self_localisation: ../self_localisation.yaml",
+                         "self_localisation: none"),
+              HasSubstr("self_localisation"));
+  EXPECT_THAT(ErrorAfter("lost_wet.yaml", "radius: 0.8", "radius: 0"), HasSubstr("radius"));
+  EXPECT_THAT(ErrorAfter("lost_wet.yaml", "spin: 0.5", "slip: 0.5"), HasSubstr("spin"));
+  EXPECT_THAT(ErrorAfter("lost_moved.yaml", "0.5]", "far]"), HasSubstr("moved[0].by"));
+}
+
 }  // namespace
 }  // namespace hires::evaluation::experiment_config_test

@@ -160,6 +160,31 @@ TEST(SelfLocalisationTest, ARobotThatIsCarriedAwayBelievesOnAndBecomesUnsure) {
   EXPECT_TRUE(was_lost);
 }
 
+TEST(SelfLocalisationTest, ARobotThatIsCarriedFromAnotherPlaceTakesItselfToBeThere) {
+  SelfLocalisationParams params = ShippedParams();
+  params.mistaken_for = {{2.5, 1.2, 0.0}, {1.0, 3.0, 0.5}};  // the first is too near to be meant
+  SimRobotWorld world(SetupOfRoom(), Start(), 3, TruthWith(params));
+  EXPECT_LT(Apart(world.simulator().self_localiser()->X_MB(), {1.0, 3.0, 0.0}), 0.2);
+  SimRobotWorld again(SetupOfRoom(), Start(), 3, TruthWith(ShippedParams()));
+  EXPECT_LT(Apart(again.simulator().self_localiser()->X_MB(), Start().robot.X_MB), 0.2);
+}
+
+TEST(SelfLocalisationTest, WheelsSpinOnAWetFloorAndTheLaserMakesUpForIt) {
+  SelfLocalisationParams params = ShippedParams();
+  params.wet.push_back({{2.5, 1.75}, 2.0, 0.5});
+  double worst_dry = 0.0, worst_wet = 0.0, worst_believed = 0.0;
+  for (const int seed : {1, 2, 3}) {
+    SimRobotWorld wet(SetupOfRoom(), Start(), seed, TruthWith(params));
+    SimRobotWorld dry(SetupOfRoom(), Start(), seed, TruthWith(ShippedParams()));
+    const Course on_wet = DriveInCircles(8.0, &wet);
+    worst_dry = std::max(worst_dry, DriveInCircles(8.0, &dry).worst_odometry);
+    worst_wet = std::max(worst_wet, on_wet.worst_odometry);
+    worst_believed = std::max(worst_believed, on_wet.worst);
+  }
+  EXPECT_GT(worst_wet, 5.0 * worst_dry);
+  EXPECT_LT(worst_believed, 0.5 * worst_wet);
+}
+
 TEST(SelfLocalisationTest, ARobotWithoutALaserCannotFindItsPlace) {
   imagination::ImaginationSetup setup = SetupOfRoom();
   setup.scene = hires::test_support::RoomScene();

@@ -47,6 +47,7 @@ max_angular_speed: 6.0
 explained_distance: 0.3
 lost_explained: 0.4
 lost_spread: 1.0
+relocate_after: 3.0
 scan_timeout: 5.0
 node:
   tf_broadcast: false

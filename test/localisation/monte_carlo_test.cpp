@@ -277,7 +277,58 @@ TEST(MonteCarloTest, RobotInAnotherPlaceThanItBelievesIsCalledLost) {
   MonteCarloLocalisation filter(TwoRooms(), params, base::Rng(1));
   const std::vector<Step> steps = StepsOf(drive.log);
   for (int i = 0; i < 5; ++i) Hear(steps[i], &filter);
-  EXPECT_EQ(filter.Estimate(steps[4].time).status, LocalisationStatus::kUnexplained);
+  const PoseEstimate estimate = filter.Estimate(steps[4].time);
+  EXPECT_EQ(estimate.status, LocalisationStatus::kUnexplained);
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_GE(estimate.covariance(axis, axis), params.lost_spread * params.lost_spread)
+        << "who looks at the covariance alone has to see it, too";
+}
+
+/// Of drives that begin elsewhere than the filter is sure to be: how many end right.
+int CountFoundAgain(double relocate_after, int* num_relocations) {
+  int found = 0;
+  for (int seed = 1; seed <= 10; ++seed) {
+    const SimulatedDrive drive = Drive(seed, RoomsWithShelf());
+    MonteCarloParams params = ParamsAt({7.0, 1.0, 0.4});
+    params.initial_variance = {1e-3, 1e-3, 1e-3};
+    params.recovery_alpha_slow = params.recovery_alpha_fast = 0.0;
+    params.relocate_after = relocate_after;
+    MonteCarloLocalisation filter(RoomsWithShelf(), params, base::Rng(seed));
+    for (const Step& step : StepsOf(drive.log)) Hear(step, &filter);
+    const PoseEstimate last = filter.Estimate(drive.truth.back().time);
+    const double off = (last.X_MB.position() - drive.truth.back().X_MB.position()).norm();
+    found += off < 0.15 && last.status == LocalisationStatus::kGood;
+    *num_relocations += last.num_relocations;
+  }
+  return found;
+}
+
+TEST(MonteCarloTest, ARobotThatWasCarriedLooksEverywhereAndIsFound) {
+  int num_relocations = 0;
+  EXPECT_GE(CountFoundAgain(3.0, &num_relocations), 9);
+  EXPECT_GE(num_relocations, 10);
+  num_relocations = 0;
+  EXPECT_EQ(CountFoundAgain(-1.0, &num_relocations), 0);
+  EXPECT_EQ(num_relocations, 0);
+}
+
+/// People stand all round for a while: the place was right, and is kept.
+TEST(MonteCarloTest, ARobotThatSeesNothingOfItsMapForAWhileKeepsItsPlace) {
+  const SimulatedDrive drive = Drive(1, RoomsWithShelf());
+  MonteCarloLocalisation filter(RoomsWithShelf(), ParamsAt(drive.truth.front().X_MB), base::Rng(1));
+  const std::vector<Step> steps = StepsOf(drive.log);
+  bool was_lost = false;
+  for (const Step& step : steps) {
+    robot::ScanReading scan = step.scan->reading;
+    if (step.time > 10.0 && step.time < 18.0)
+      for (float& range : scan.ranges) range = std::min(range, 0.5f);
+    filter.Update(step.time, step.X_OB, scan, step.scan->X_BL);
+    was_lost = was_lost || filter.Estimate(step.time).status != LocalisationStatus::kGood;
+  }
+  const PoseEstimate last = filter.Estimate(steps.back().time);
+  EXPECT_TRUE(was_lost);
+  EXPECT_EQ(last.status, LocalisationStatus::kGood);
+  EXPECT_LT((last.X_MB.position() - drive.truth.back().X_MB.position()).norm(), 0.15);
 }
 
 TEST(MonteCarloTest, PosesAndMapsThatAreNoneAreRefused) {

@@ -376,14 +376,6 @@ TEST(BaseGuardTest, WhoIsSilentOrOverIsNoApplicant) {
   EXPECT_EQ(base.guard.Applicant(base.now), 0u);
 }
 
-TEST(LocalisationTest, TheWorstDirectionCounts) {
-  EXPECT_NEAR(LargestSd(0.04, 0.0, 0.01), 0.2, 1e-12);
-  EXPECT_NEAR(LargestSd(0.02, 0.02, 0.02), 0.2, 1e-12);  // 0.04 along the diagonal, 0 across
-  EXPECT_EQ(LargestSd(0.0, 0.0, 0.0), 0.0);
-  EXPECT_TRUE(std::isnan(LargestSd(-1.0, 0.0, -1.0)));
-  EXPECT_TRUE(std::isnan(LargestSd(kNan, 0.0, 1.0)));
-}
-
 TEST(DriveRequestTest, DefectsAreNamed) {
   DriveRequest request{1, {0.5, 1.0, 1.0, 1.0}, {1.0, 2.0}};
   EXPECT_EQ(Defect(request), "");

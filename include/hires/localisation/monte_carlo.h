@@ -31,7 +31,8 @@ std::string WhyUseless(const world::OccupancyGrid& map);
 struct PoseEstimate {
   geometry::Pose2 X_MB;  ///< mean of the heaviest cluster, moved on with the odometry since
   /// Symmetric, [m^2, m rad, rad^2] of x, y, yaw around that mean, of all particles in clusters
-  /// that count: so it is large where two places fit. As of the last scan that was used.
+  /// that count: so it is large where two places fit. As of the last scan that was used; while the
+  /// status is kUnexplained at least what lost_spread says, for then they know nothing.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   int num_particles{0};
   double effective_size{0.0};  ///< 1 / sum of squared weights, after the last scan that was used
@@ -39,6 +40,7 @@ struct PoseEstimate {
   double best_share{0.0};      ///< of the weight, that the heaviest cluster has
   double explained{0.0};       ///< share of the last scan's beams that end near an obstacle
   LocalisationStatus status{LocalisationStatus::kNoScan};
+  int num_relocations{0};  ///< so often it looked everywhere by itself
 };
 
 /// Where a robot is in a map, by its laser and its odometry: Monte Carlo localisation with a
@@ -56,7 +58,10 @@ struct PoseEstimate {
 /// is not lost to a lucky one.
 ///
 /// Random particles come back in when scans begin to fit worse than they used to (recovery_alpha);
-/// "fit" is the geometric mean over the beams, so it does not depend on how many there are.
+/// "fit" is the geometric mean over the beams, so it does not depend on how many there are. Where
+/// scans have been unexplained for relocate_after, it looks everywhere: most of its belief goes to
+/// all free cells, a tenth stays where it was, so that a right place that was not recognised
+/// (people all round, say) can win once more.
 class MonteCarloLocalisation {
  public:
   /// Begins at params.initial_pose.  @throws base::ConfigError if the map suits no such parameters.

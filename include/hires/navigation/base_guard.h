@@ -41,9 +41,6 @@ struct DriveRequest {
   robot::MotionSet limits{0.0, 0.0, 0.0, 0.0};  ///< velocities are clipped to its speeds
   BrakingLimits braking{0.0, 0.0};              ///< what the load survives; 0: unknown
 };
-/// Standard deviation [m] of a position in its worst direction, from its covariance [m^2]; no
-/// number where it is not.
-double LargestSd(double xx, double xy, double yy);
 
 /// What is wrong with a request, in words for people; empty if it can be used.
 std::string Defect(const DriveRequest& request);

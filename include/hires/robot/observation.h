@@ -35,6 +35,7 @@ struct SeenObject {
 struct Observation {
   double time{0.0};                            ///< [s] since the action began
   geometry::Pose2 X_MB;                        ///< where the robot believes to stand
+  double position_sd{0.0};                     ///< [m] of X_MB, in the worst direction; 0: not told
   geometry::Pose2 X_OB;                        ///< odometry: drifts, but does not jump
   geometry::Twist2 V_B;                        ///< odometry, in the base frame
   std::shared_ptr<const PlacedScan> scan;      ///< of the base's laser, the last; null: none

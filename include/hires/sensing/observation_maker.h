@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +22,10 @@ class ObservationMaker {
   /// @param frame  of the laser.
   Receipt OnScan(double stamp, const std::string& frame, robot::ScanReading reading);
 
+  /// How sure localisation is of its place from now on.
+  /// @param covariance  [m^2, m rad, rad^2] of x, y, yaw
+  void OnLocalised(const Eigen::Matrix3d& covariance);
+
   /// What is seen at that moment; `time` is its stamp. Obstacles are those of the last scan up to
   /// now, where the robot was when it was taken.
   robot::Observation Observe(const RobotEstimate& now);
@@ -32,6 +37,7 @@ class ObservationMaker {
   ScanQueue scans_;
   std::vector<geometry::Polygon> obstacles_M_;
   std::shared_ptr<const robot::PlacedScan> scan_;
+  double position_sd_{0.0};  // [m]
 };
 
 }  // namespace hires::sensing

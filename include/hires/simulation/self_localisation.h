@@ -67,6 +67,14 @@ struct GyroParams {
   double bias_walk{0.0};  ///< [rad/s / sqrt(s)] sd by which that wanders
 };
 
+/// A round part of the floor on which wheels spin: they tell of more way than there was.
+struct WetPatch {
+  Eigen::Vector2d at_M{Eigen::Vector2d::Zero()};  ///< [m]
+  double radius{0.0};                             ///< [m]
+  double spin{0.0};                               ///< told way by true one, less 1: sd, drawn anew
+                                                  ///< whenever the base comes onto it
+};
+
 /// What a robot needs that finds its place by itself.
 struct SelfLocalisationParams {
   localisation::MonteCarloParams filter;
@@ -78,7 +86,14 @@ struct SelfLocalisationParams {
   double start_sd{0.0};        ///< [m] by which x and y of the start are off that it is told ...
   double start_sd_yaw{0.0};    ///< [rad] ... and its heading
   double map_resolution{0.0};  ///< [m]
+
+  /// Places of the map: the robot was carried, and takes itself to be at one of these that is at
+  /// least kCarriedAway from where it starts. None: near its start, as the deviations above say.
+  std::vector<geometry::Pose2> mistaken_for;
+  std::vector<WetPatch> wet;
 };
+
+constexpr double kCarriedAway = 1.0;  ///< [m]
 
 /// A file like config/self_localisation.yaml; the files that it names are found beside it.
 /// @throws base::ConfigError naming file and key.
@@ -140,6 +155,7 @@ class SelfLocaliser {
 
  private:
   double now() const { return time_ + offset_; }
+  geometry::Pose2 Spun(const geometry::Pose2& X_AB);
 
   std::shared_ptr<const SelfLocalisation> common_;
   base::Rng gyro_rng_, scan_rng_;
@@ -150,6 +166,9 @@ class SelfLocaliser {
   geometry::Pose2 X_MBtrue_;
   geometry::Pose2 X_OB_;
   double heading_{0.0}, bias_;     // [rad], [rad/s] of the unit
+  base::Rng floor_rng_;
+  double spin_{0.0};  // of the wet patch that it is on
+  bool is_on_wet_{false};
   std::optional<double> scanned_;  // [s] now()
 };
 

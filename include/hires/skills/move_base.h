@@ -11,6 +11,7 @@
 #include "hires/navigation/hybrid_a_star.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/skills/local_costmap.h"
+#include "hires/skills/lost_watch.h"
 #include "hires/skills/skill.h"
 
 namespace hires::skills {
@@ -28,6 +29,7 @@ struct MoveBaseParams {
                                      ///< planning again; twice in a row: giving up
   /// Local control goes by what the base's laser sees now; none: by the map.
   std::optional<navigation::ObstacleLayerParams> obstacle_layer;
+  LostParams lost;
 };
 
 /// What a driving skill knows about where it drives; constant, shared by all skills of a scene.
@@ -57,8 +59,10 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
 /// Drives to a pose in the map round all known obstacles: A* on the inflated costmap, dynamic
 /// window approach for control, as move_base does, with room for the arms as they are when it
 /// begins. A base that steers like a car: hybrid A*, and a follower of arcs; where it came
-/// to rest out of tolerance it is given a new way, some times, and oscillates after these. Fails
-/// with start_blocked, goal_blocked, no_path, no_valid_trajectory or oscillating.
+/// to rest out of tolerance it is given a new way, some times, and oscillates after these. While the
+/// robot is lost it stops and turns to look around, if the base can turn on the spot and an obstacle
+/// layer shows room for that; found again, it plans anew. Fails with start_blocked, goal_blocked,
+/// no_path, no_valid_trajectory, oscillating or localisation_lost.
 class MoveBase : public Skill {
  public:
   MoveBase(std::shared_ptr<const DrivingContext> context, const geometry::Pose2& X_MGoal,
@@ -66,9 +70,11 @@ class MoveBase : public Skill {
 
   Status Update(const robot::Observation& observation, robot::Command* command) override;
   double period() const override { return context_->params.local.control_period; }
+  std::string phase() const override { return lost_.is_lost() ? "lost" : ""; }
   std::optional<DriveView> drive_view() const override;
 
  private:
+  geometry::Twist2 LookAround(const robot::Observation& observation);
   void Begin(const robot::Observation& observation);
   std::optional<Status> Plan(const robot::Observation& observation);
   navigation::PathStatus FindPath(const navigation::Costmap& costmap, const geometry::Pose2& X_MB);
@@ -88,6 +94,7 @@ class MoveBase : public Skill {
   geometry::Polygon footprint_;
   navigation::DwaPlanner local_;
   std::optional<navigation::CarFollower> car_;  // drives instead, where the base steers like a car
+  LostWatch lost_;
   bool has_begun_{false};
   std::shared_ptr<const std::vector<geometry::Pose2>> path_;  // null: not planned yet
   std::shared_ptr<const navigation::Costmap> now_;            // what it drove by at the last look
@@ -109,11 +116,13 @@ struct MoveBaseBlindParams {
   double xy_tolerance{0.03};         ///< [m]
   double yaw_tolerance{0.03};        ///< [rad]
   double stuck_timeout{5.0};         ///< [s] without coming 0.01 m or rad nearer
+  LostParams lost;
 };
 
 /// Drives straight to a pose, turning on the way (two driven wheels: before and after; a car: on
 /// Reeds and Shepp's shortest way, forward and backward), without looking at obstacles: for the
-/// last stretch to furniture, under whose top the base fits. Fails with stuck.
+/// last stretch to furniture, under whose top the base fits. While the robot is lost it stands.
+/// Fails with stuck or localisation_lost.
 class MoveBaseBlind : public Skill {
  public:
   MoveBaseBlind(const MoveBaseBlindParams& params, const geometry::Pose2& X_MGoal,
@@ -144,6 +153,7 @@ class MoveBaseBlind : public Skill {
   double min_turning_radius_;
   std::optional<navigation::CarFollower> car_;  // where the base steers like one
   int num_ways_{0};                             // that it has been given
+  LostWatch lost_;
   bool begun_driving_{false};
   bool backwards_{false};
   double nearest_{1e9};        // [m] + [rad] least that remained so far

@@ -57,7 +57,7 @@ std::optional<imagination::RolloutResult> Chain::Play(const std::string& goal, L
     leg->clearance =
         std::min(leg->clearance, clearance.Clearance(simulator.base().X_MB, leg->clearance));
     if (const simulation::SelfLocaliser* own = simulator.self_localiser())
-      leg->places.push_back(MomentOf(*own));
+      leg->places.push_back(MomentOf(*own, stage_->setup.skills->driving->params.lost));
     if (++samples % 2 == 0) leg->counts_10hz += imagination::SampleOf(tilt, setup_.params);
   };
   down_.clear();

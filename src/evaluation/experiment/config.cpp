@@ -206,9 +206,36 @@ std::string ReadUncertaintyChanges(ParamReader in) {
   return in.Canonical();
 }
 
+/// Of a robot that finds its place by itself.
+void ReadMishaps(ParamReader* in, ExperimentConfig* config) {
+  if (in->Has("carried")) config->is_carried = in->GetBool("carried");
+  if (in->Has("moved")) {
+    for (ParamReader& body : in->SubList("moved")) {
+      const std::string name = body.GetString("body");
+      const std::vector<double> by = body.GetNumbers("by", 3);
+      config->moved.push_back({name, {by[0], by[1], by[2]}});
+    }
+  }
+  if (in->Has("wet")) {
+    for (ParamReader& patch : in->SubList("wet")) {
+      constexpr double kFarthest = 1000.0;  // [m]
+      const double x = patch.Get("x", Between(-kFarthest, kFarthest));
+      const double y = patch.Get("y", Between(-kFarthest, kFarthest));
+      const double radius = patch.Get("radius", Between(0.01, kFarthest));
+      config->wet.push_back({{x, y}, radius, patch.Get("spin", Between(0.0, 10.0))});
+    }
+  }
+  const bool has_any = config->is_carried || !config->moved.empty() || !config->wet.empty();
+  if (has_any && config->self_localisation == "none")
+    in->Fail("self_localisation",
+             "is none: only a robot that finds its place by itself can be carried, have an old map, or "
+             "slip; wanted a file like config/self_localisation.yaml");
+}
+
 void ReadPlace(const std::string& path, ParamReader* in, const ExperimentOverrides& overrides,
                ExperimentConfig* config) {
   config->scene = imagination::ResolvePath(in->GetString("scene"), path);
+  if (in->Has("world")) config->world = imagination::ResolvePath(in->GetString("world"), path);
   config->uncertainty = in->GetString("uncertainty");
   if (config->uncertainty != "scene") {
     config->uncertainty = imagination::ResolvePath(config->uncertainty, path);
@@ -219,6 +246,7 @@ void ReadPlace(const std::string& path, ParamReader* in, const ExperimentOverrid
   if (in->Has("self_localisation")) config->self_localisation = in->GetString("self_localisation");
   if (config->self_localisation != "none")
     config->self_localisation = imagination::ResolvePath(config->self_localisation, path);
+  ReadMishaps(in, config);
   if (in->Has("obstacle_layer"))
     config->obstacle_layer = imagination::ResolvePath(in->GetString("obstacle_layer"), path);
   if (!overrides.map.empty()) {

@@ -164,6 +164,7 @@ Findings SumUpLegs(const ExperimentConfig& config, const Stage& stage, const Cha
   const LegTally empty(stage.xy_tolerance, stage.yaw_tolerance);
   LegTally all = empty;
   PlaceTrail places;
+  LostTally lost;
   std::map<std::string, LegTally> by_goal;
   for (const Goal& goal : config.goals) by_goal.emplace(goal.name, empty);
   TextTable problems{
@@ -175,6 +176,7 @@ Findings SumUpLegs(const ExperimentConfig& config, const Stage& stage, const Cha
       const int chain = static_cast<int>(c), number = static_cast<int>(i);
       all.Add(leg);
       places.insert(places.end(), leg.places.begin(), leg.places.end());
+      lost.Add(leg.places);
       by_goal.at(leg.to).Add(leg);
       findings.simulated_seconds += leg.result.simulated;
       findings.rows.push_back(RowOf(chain, number, leg));
@@ -193,9 +195,10 @@ Findings SumUpLegs(const ExperimentConfig& config, const Stage& stage, const Cha
   findings.measures = MeasuresOf(all, by_goal);
   findings.tables = {std::move(table), std::move(problems)};
   if (config.self_localisation != "none") {
-    const std::vector<Measure> measures = PlaceMeasures(places);
-    findings.measures.insert(findings.measures.end(), measures.begin(), measures.end());
+    for (const auto& measures : {PlaceMeasures(places), lost.Measures()})
+      findings.measures.insert(findings.measures.end(), measures.begin(), measures.end());
     findings.tables.push_back(PlaceTable(places));
+    findings.tables.push_back(lost.Table());
   }
   return findings;
 }

@@ -6,11 +6,13 @@
 #include <cmath>
 
 #include "hires/geometry/angles.h"
+#include "hires/geometry/covariance.h"
 #include "hires/imagination/evidence.h"
 
 namespace hires::evaluation {
 namespace {
 
+constexpr double kRate = 20.0;     // [Hz] of moments
 constexpr double kInside = 7.815;  // 95 % of chi squared with three degrees of freedom
 
 /// What all moments have in common.
@@ -46,7 +48,7 @@ struct Summary {
 
 }  // namespace
 
-PlaceMoment MomentOf(const simulation::SelfLocaliser& localiser) {
+PlaceMoment MomentOf(const simulation::SelfLocaliser& localiser, const skills::LostParams& lost) {
   const localisation::PoseEstimate estimate = localiser.Estimate();
   const geometry::Pose2& X_MB = localiser.X_MBtrue();
   const Eigen::Vector3d off(estimate.X_MB.x - X_MB.x, estimate.X_MB.y - X_MB.y,
@@ -54,7 +56,9 @@ PlaceMoment MomentOf(const simulation::SelfLocaliser& localiser) {
   const Eigen::LDLT<Eigen::Matrix3d> covariance(estimate.covariance);
   const double squared = off.dot(covariance.solve(off));
   const bool is_inside = covariance.isPositive() && covariance.rcond() > 0.0 && squared <= kInside;
-  return {X_MB, estimate.X_MB, localiser.X_OB(), is_inside};
+  const Eigen::Matrix3d& P = estimate.covariance;
+  const bool is_sure = geometry::LargestSd(P(0, 0), P(0, 1), P(1, 1)) <= lost.max_position_sd;
+  return {X_MB, estimate.X_MB, localiser.X_OB(), is_inside, !is_sure};
 }
 
 TextTable PlaceTable(const PlaceTrail& moments) {
@@ -80,6 +84,61 @@ std::vector<Measure> PlaceMeasures(const PlaceTrail& moments) {
   return {{"place_median", all.distance.median},   {"place_95", all.distance.most},
           {"place_largest", all.distance.largest}, {"place_rms", all.rms},
           {"place_yaw_largest", all.yaw.largest},  {"place_inside", all.inside}};
+}
+
+void LostTally::Add(const PlaceTrail& drive) {
+  ++num_drives_;
+  num_moments_ += static_cast<long>(drive.size());
+  std::optional<std::size_t> first_wrong, last_wrong;
+  bool is_noticed = false;
+  for (std::size_t i = 0; i < drive.size(); ++i) {
+    const PlaceMoment& moment = drive[i];
+    const bool is_wrong =
+        (moment.X_MBelieved.position() - moment.X_MB.position()).norm() > kElsewhere;
+    num_lost_ += moment.is_lost;
+    num_wrong_and_sure_ += is_wrong && !moment.is_lost;
+    if (is_wrong && !first_wrong) first_wrong = i;
+    if (is_wrong) last_wrong = i;
+    is_noticed = is_noticed || (first_wrong && moment.is_lost);
+  }
+  if (!first_wrong) return;
+  ++num_astray_;
+  num_noticed_ += is_noticed;
+  const bool is_right = *last_wrong + 1 < drive.size();
+  if (is_right) until_found_.push_back(static_cast<double>(*last_wrong + 1 - *first_wrong) / kRate);
+  num_found_ += is_right && !drive.back().is_lost;
+  num_deceived_ += !is_right && !drive.back().is_lost;
+}
+
+TextTable LostTally::Table() const {
+  const auto share = [&](long count) {
+    return fmt::format("{:.1f} %", num_moments_ > 0 ? 100.0 * count / num_moments_ : NAN);
+  };
+  std::vector<double> sorted = until_found_;
+  std::sort(sorted.begin(), sorted.end());
+  const std::string times =
+      sorted.empty() ? ""
+                     : fmt::format("{:.1f} / {:.1f} s", imagination::Quantile(sorted, 50),
+                                   sorted.back());
+  return {fmt::format("Drives on which the robot took itself to be elsewhere, {:g} m or more off; "
+                      "lost: it stood or looked around",
+                      kElsewhere),
+          {{"drives", "astray", "noticed", "found", "deceived", "until found, median / longest",
+            "lost", "wrong and sure"},
+           {fmt::format("{}", num_drives_), fmt::format("{}", num_astray_),
+            fmt::format("{}", num_noticed_), fmt::format("{}", num_found_),
+            fmt::format("{}", num_deceived_), times, share(num_lost_),
+            share(num_wrong_and_sure_)}}};
+}
+
+std::vector<Measure> LostTally::Measures() const {
+  const double moments = static_cast<double>(num_moments_);
+  return {{"astray", static_cast<double>(num_astray_)},
+          {"noticed", static_cast<double>(num_noticed_)},
+          {"found", static_cast<double>(num_found_)},
+          {"deceived", static_cast<double>(num_deceived_)},
+          {"lost_share", static_cast<double>(num_lost_) / moments},
+          {"wrong_and_sure_share", static_cast<double>(num_wrong_and_sure_) / moments}};
 }
 
 }  // namespace hires::evaluation

@@ -1,5 +1,8 @@
 #include "evaluation/experiment/stage.h"
 
+#include <algorithm>
+
+#include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
 #include "hires/simulation/self_localisation.h"
@@ -40,6 +43,33 @@ void AddGoals(const std::vector<Goal>& goals, world::World* world, skills::Skill
   }
 }
 
+/// The world as it was when the map was made.
+world::World AsMapped(world::World world, const ExperimentConfig& config) {
+  std::vector<std::string> names;
+  for (const world::StaticBody& body : world.statics) names.push_back(body.name);
+  for (const OldPlace& moved : config.moved) {
+    const auto body = std::find_if(world.statics.begin(), world.statics.end(),
+                                   [&](const auto& other) { return other.name == moved.body; });
+    if (body == world.statics.end())
+      throw base::ConfigError(config.name + ": moved: " +
+                              base::UnknownName("static body", moved.body, names));
+    body->X_MB.translation += Eigen::Vector3d(moved.by.x, moved.by.y, 0.0);
+    body->X_MB.rotation =
+        geometry::RotationFromRpy(0.0, 0.0, moved.by.yaw) * body->X_MB.rotation;
+  }
+  world.hash = world.ComputeHash();
+  return world;
+}
+
+/// How the robot finds its place, and what befalls it.
+simulation::SelfLocalisationParams Befallen(const ExperimentConfig& config) {
+  auto params = simulation::LoadSelfLocalisation(config.self_localisation);
+  if (config.is_carried)
+    for (const Goal& goal : config.goals) params.mistaken_for.push_back(goal.X_MG);
+  params.wet = config.wet;
+  return params;
+}
+
 std::uint64_t HashOf(const ImaginationSetup& setup) {
   base::Hasher hasher;
   hasher.Add(setup.world_hash);
@@ -54,6 +84,7 @@ std::uint64_t HashOf(const ImaginationSetup& setup) {
 
 Stage MakeStage(const ExperimentConfig& config) {
   imagination::SetupConfig scene = imagination::ReadSetupConfig(config.scene);
+  if (config.world != "scene") scene.world = config.world;
   if (config.uncertainty != "scene") scene.uncertainty = config.uncertainty;
   if (config.obstacle_layer != "scene")
     imagination::AddObstacleLayer(config.obstacle_layer, &scene);
@@ -66,6 +97,12 @@ Stage MakeStage(const ExperimentConfig& config) {
   if (config.map != "none") {
     ReplaceByMap(config, scene.driving, &world, &skills, setup.scene->robot);
   }
+  std::optional<world::World> mapped;
+  if (!config.moved.empty()) {
+    mapped = AsMapped(world, config);
+    skills.driving = std::make_shared<const skills::DrivingContext>(
+        skills::MakeDrivingContext(*mapped, setup.scene->robot, scene.driving));
+  }
   AddGoals(config.goals, &world, &skills);
   world.hash = world.ComputeHash();
   auto with_goals = std::make_shared<simulation::Scene>(*simulation::MakeScene(
@@ -75,8 +112,8 @@ Stage MakeStage(const ExperimentConfig& config) {
   setup.scene = std::move(with_goals);
   if (config.self_localisation != "none") {
     setup.scene = simulation::FindingItsPlace(
-        *setup.scene, simulation::LoadSelfLocalisation(config.self_localisation),
-        setup.scene->world);
+        *setup.scene, Befallen(config),
+        mapped ? *mapped : setup.scene->world);
   }
   setup.skills = std::make_shared<const skills::SkillSet>(std::move(skills));
   stage.objects = config.objects;

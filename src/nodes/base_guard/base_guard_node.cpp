@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "hires/base/log.h"
+#include "hires/geometry/covariance.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
@@ -159,7 +160,7 @@ void BaseGuardNode::TellOfLooseFrame(const std::string& frame) {
 
 void BaseGuardNode::OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg) {
   const auto& covariance = msg.pose.covariance;  // of x, y, z, roll, pitch, yaw; row by row
-  guard_.OnLocalisation(hires::navigation::LargestSd(covariance[0], covariance[1], covariance[7]),
+  guard_.OnLocalisation(hires::geometry::LargestSd(covariance[0], covariance[1], covariance[7]),
                         std::sqrt(covariance[35]));
 }
 

@@ -194,10 +194,25 @@ void LocalisationNode::Use(const PlacedScan& scan) {
   } else if (localisation::IsBad(outcome)) {
     Refuse(params_.names.base_scan, WhyBad(outcome, scan.reading));
   }
-  const bool is_new = outcome == ScanOutcome::kUpdated;
-  is_updated_ = is_updated_ || is_new;
+  is_updated_ = is_updated_ || outcome == ScanOutcome::kUpdated;
+  const bool is_new = NoteLost(scan.header.stamp.toSec()) || outcome == ScanOutcome::kUpdated;
   // The odometry goes on below the map, also where the laser sees nothing.
   if (is_updated_ && outcome != ScanOutcome::kNotFinite) Publish(scan.header.stamp, is_new);
+}
+
+/// Whether it is lost since this scan, or not any more: that is told also where the robot stands.
+bool LocalisationNode::NoteLost(double stamp) {
+  const auto estimate = filter_->Estimate(stamp);
+  const bool is_lost = estimate.status == LocalisationStatus::kUnexplained ||
+                       estimate.status == LocalisationStatus::kSpread;
+  if (is_lost == is_lost_) return false;
+  is_lost_ = is_lost;
+  hires::base::Log(
+      is_lost ? LogLevel::kWarn : LogLevel::kInfo,
+      fmt::format("place={} x={:.3f} y={:.3f} yaw={:.3f} explained={:.2f} relocations={}",
+                  is_lost ? "lost" : "found", estimate.X_MB.x, estimate.X_MB.y, estimate.X_MB.yaw,
+                  estimate.explained, estimate.num_relocations));
+  return true;
 }
 
 void LocalisationNode::Publish(const ros::Time& stamp, bool is_new) {
@@ -257,8 +272,8 @@ void LocalisationNode::DiagnoseBelief(diagnostic_updater::DiagnosticStatusWrappe
         break;
       case LocalisationStatus::kUnexplained:
         status.summary(DiagnosticStatus::ERROR,
-                       "lost: the map explains too little of what the laser sees; tell where the "
-                       "robot is (initialpose), or call global_localization and drive");
+                       "lost: the map explains too little of what the laser sees; it looks everywhere "
+                       "after relocate_after, or tell where the robot is (initialpose)");
         break;
       case LocalisationStatus::kSpread:
         status.summary(DiagnosticStatus::ERROR,
@@ -282,6 +297,7 @@ void LocalisationNode::DiagnoseBelief(diagnostic_updater::DiagnosticStatusWrappe
   status.add("places", estimate.num_clusters);
   status.add("share of the best place", estimate.best_share);
   status.add("beams explained", estimate.explained);
+  status.add("looked everywhere", estimate.num_relocations);
 }
 
 }  // namespace hires_ros

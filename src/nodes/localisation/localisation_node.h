@@ -43,6 +43,7 @@ class LocalisationNode {
   void OnTransforms(const TransformBuffer::News& news);
   void OnScan(const sensor_msgs::LaserScanConstPtr& msg);
   void Use(const PlacedScan& scan);
+  bool NoteLost(double stamp);
   void Publish(const ros::Time& stamp, bool is_new);
 
   void Refuse(const std::string& topic, const std::string& why);
@@ -57,6 +58,7 @@ class LocalisationNode {
   std::optional<hires::localisation::MonteCarloLocalisation> filter_;  // once there is a map
   std::optional<UncertainPose> told_;  // the pose, before there was a map
   bool is_updated_{false};             // by a scan since it began
+  bool is_lost_{false};                // as was told last
   double begun_;                       // [s] steady
 
   std::string last_drop_;                     // the last message that was dropped, and why

@@ -42,6 +42,8 @@ void RobotInputs::Subscribe(ros::NodeHandle* nh) {
                                          ros::VoidConstPtr(), hints));
   add(nh->subscribe<tf2_msgs::TFMessage>(kStaticTransforms, 100, on_transforms(true)));
   add(nh->subscribe(names_.base_scan, 10, &RobotInputs::OnScan, this, hints));
+  if (!names_.localisation.empty())
+    add(nh->subscribe(names_.localisation, 10, &RobotInputs::OnLocalisation, this, hints));
   if (ground_) {
     add(nh->subscribe(names_.sensors.tilt_cloud, 2, &RobotInputs::OnCloud, this, hints));
   }
@@ -79,6 +81,14 @@ void RobotInputs::OnScan(const sensor_msgs::LaserScan& msg) {
       stamp, msg.header.frame_id, {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges});
   if (receipt.is_bad()) sensors_.Refuse(names_.base_scan, hires::sensing::ToString(receipt));
   hooks_.arrived(names_.base_scan, stamp);
+}
+
+/// A robot that is not sure of its place stops. That its numbers are none makes it unsure, too.
+void RobotInputs::OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg) {
+  const auto& of = msg.pose.covariance;  // of x, y, z, roll, pitch, yaw; row by row
+  Eigen::Matrix3d covariance;
+  covariance << of[0], of[1], of[5], of[6], of[7], of[11], of[30], of[31], of[35];
+  observations_.OnLocalised(covariance);
 }
 
 void RobotInputs::OnCloud(const sensor_msgs::PointCloud2& msg) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <hires/Detections.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/node_handle.h>
@@ -47,6 +48,7 @@ class RobotInputs {
   void OnJoints(const sensor_msgs::JointState& msg);
   void OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static);
   void OnScan(const sensor_msgs::LaserScan& msg);
+  void OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg);
   void OnCloud(const sensor_msgs::PointCloud2& msg);
   void OnTrayScan(const sensor_msgs::LaserScan& msg);
   void OnDetections(const hires::Detections& msg);

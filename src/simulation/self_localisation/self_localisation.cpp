@@ -12,7 +12,7 @@ namespace {
 using geometry::Pose2;
 
 constexpr double kSlice = 0.02;  // [m] above and below the laser's plane
-enum Streams : std::uint64_t { kWheels, kGyro, kScans, kFilter, kStart };
+enum Streams : std::uint64_t { kWheels, kGyro, kScans, kFilter, kStart, kCarried, kFloor };
 
 localisation::MonteCarloLocalisation FilterIn(const SelfLocalisationParams& params,
                                               const world::World& world, double laser_height) {
@@ -20,6 +20,14 @@ localisation::MonteCarloLocalisation FilterIn(const SelfLocalisationParams& para
   const std::string why = localisation::WhyUseless(map);
   if (!why.empty()) throw base::ConfigError("the world in the plane of the base's laser " + why);
   return {map, params.filter, base::Rng(0)};
+}
+
+/// Where a robot was before it was carried to X_MB.
+Pose2 MistakenFor(const SelfLocalisationParams& params, const Pose2& X_MB, base::Rng rng) {
+  std::vector<Pose2> places;
+  for (const Pose2& place : params.mistaken_for)
+    if ((place.position() - X_MB.position()).norm() >= kCarriedAway) places.push_back(place);
+  return places.empty() ? X_MB : places[rng.Index(static_cast<int>(places.size()))];
 }
 
 /// Of the start that the robot is told.
@@ -63,14 +71,26 @@ SelfLocaliser::SelfLocaliser(std::shared_ptr<const SelfLocalisation> common, con
       odometry_(params().odometry),
       filter_(common_->filter()),
       X_MBtrue_(X_MB),
-      bias_(gyro_rng_.Normal(0.0, params().gyro.bias)) {
+      bias_(gyro_rng_.Normal(0.0, params().gyro.bias)),
+      floor_rng_(rng.Fork(kFloor)) {
   const double variance = params().start_sd * params().start_sd;
   const double variance_yaw = params().start_sd_yaw * params().start_sd_yaw;
   filter_.Reseed(rng.Fork(kFilter));
-  filter_.SetPose(X_MB * StartError(params(), rng.Fork(kStart)),
+  filter_.SetPose(MistakenFor(params(), X_MB, rng.Fork(kCarried)) * StartError(params(), rng.Fork(kStart)),
                   Eigen::Vector3d(variance, variance, variance_yaw).asDiagonal());
   odometry_.OnInertia(now(), {});
   odometry_.OnOdometry(now(), {});
+}
+
+/// A motion as the wheels make it: on a wet patch they spin.
+Pose2 SelfLocaliser::Spun(const Pose2& X_AB) {
+  const WetPatch* under = nullptr;
+  for (const WetPatch& patch : params().wet)
+    if ((X_MBtrue_.position() - patch.at_M).norm() <= patch.radius) under = &patch;
+  if (under != nullptr && !is_on_wet_) spin_ = floor_rng_.Normal(0.0, under->spin);
+  is_on_wet_ = under != nullptr;
+  if (!is_on_wet_) return X_AB;
+  return {(1.0 + spin_) * X_AB.x, (1.0 + spin_) * X_AB.y, (1.0 + spin_) * X_AB.yaw};
 }
 
 void SelfLocaliser::Drive(double time, const Pose2& X_MB) {
@@ -79,7 +99,7 @@ void SelfLocaliser::Drive(double time, const Pose2& X_MB) {
   time_ = time;
   const Pose2 X_AB = X_MBtrue_.Inverse() * X_MB;
   X_MBtrue_ = X_MB;
-  wheels_.Roll(X_AB);
+  wheels_.Roll(Spun(X_AB));
   const double root = std::sqrt(dt);
   const double turned = X_AB.yaw + bias_ * dt + gyro_rng_.Normal(0.0, params().gyro.walk * root);
   bias_ += gyro_rng_.Normal(0.0, params().gyro.bias_walk * root);

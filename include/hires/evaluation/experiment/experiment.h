@@ -12,6 +12,7 @@
 #include "hires/evaluation/experiment/report.h"
 #include "hires/geometry/pose.h"
 #include "hires/imagination/rollout_result.h"
+#include "hires/simulation/self_localisation.h"
 
 namespace hires::evaluation {
 
@@ -80,10 +81,17 @@ const char* ToString(DurationsConfig::Planner planner);
 /// @throws std::logic_error if there is none.
 std::size_t WayBack(const DurationsConfig& durations, std::size_t row);
 
+/// A static body of the world that stood elsewhere when the robot's map was made.
+struct OldPlace {
+  std::string body;
+  geometry::Pose2 by;  ///< from where it stands to where it stood, about the body's own origin
+};
+
 /// One experiment, as its YAML file says. Relative paths in it count from the file's folder.
 struct ExperimentConfig {
   std::string name;                 ///< the file's, without folder and ending
   std::string scene;                ///< path of a scene file, see imagination::SetupConfig
+  std::string world{"scene"};       ///< "scene" (the scene's own), or path of an SDF world
   std::string uncertainty;          ///< "scene" (the scene's own), "none", or path
   std::string uncertainty_changes;  ///< YAML: quantities that replace or join those
   std::string map{"none"};          ///< "none": the scene's world; "given": by --map; or path
@@ -91,6 +99,11 @@ struct ExperimentConfig {
   /// "none": the robot is told where it is, off as drawn; or path of a file like
   /// config/self_localisation.yaml: it finds its place by itself
   std::string self_localisation{"none"};
+  /// What befalls such a robot: it is carried from another goal before each leg without a word;
+  /// furniture was moved since its map was made; patches of the floor are wet.
+  bool is_carried{false};
+  std::vector<OldPlace> moved;
+  std::vector<simulation::WetPatch> wet;
   /// "scene": as the scene has it, or path of a file like config/obstacle_layer.yaml
   std::string obstacle_layer{"scene"};
   std::vector<Goal> goals;           ///< at least two

@@ -13,6 +13,7 @@ struct PlaceMoment {
   geometry::Pose2 X_OB;         ///< as its odometry says
   /// The truth lies in the ellipsoid of x, y and yaw that holds 95 % by the filter's covariance.
   bool is_inside{false};
+  bool is_lost{false};  ///< it is not sure enough to drive
 
   geometry::Pose2 error() const { return X_MB.Inverse() * X_MBelieved; }
   /// Of the odometry in the map; another one than before means that the laser corrected.
