@@ -7,7 +7,9 @@
 
 namespace hires::localisation {
 
-/// How far each place of a map is from the nearest obstacle, for lookups without a branch. What is
+/// How far each place of a map is from the nearest face of an obstacle, where beams can end, for
+/// lookups without a branch: of a thick wall the cells within are as far from it as they lie deep.
+/// What is
 /// kept is the square of the distance in cells: a whole number, so it is exact in 16 bits, and a
 /// table of a few kB gives whatever depends on it.
 ///

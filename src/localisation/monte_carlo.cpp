@@ -176,7 +176,7 @@ class MonteCarloLocalisation::Belief {
     estimate.best_share = summary_.best_share;
     estimate.explained = explained_;
     estimate.status = StatusAt(time);
-    estimate.num_relocations = num_relocations_;
+    estimate.num_searches = num_searches_;
     if (estimate.status == LocalisationStatus::kUnexplained) {
       const double most = params_.lost_spread * params_.lost_spread;
       for (int axis = 0; axis < 3; ++axis)
@@ -223,7 +223,7 @@ class MonteCarloLocalisation::Belief {
     summary_ = SummariseAsOne(particles_);
     last_scan_ = last_scan;
     unexplained_since_.reset();
-    ++num_relocations_;
+    ++num_searches_;
   }
 
   /// A new belief, of a robot that stands where odometry saw it last.
@@ -390,7 +390,7 @@ class MonteCarloLocalisation::Belief {
   double explained_{0.0};
   std::optional<double> explained_mean_;
   std::optional<double> unexplained_since_;  // [s]
-  int num_relocations_{0};
+  int num_searches_{0};
   std::shared_ptr<const std::vector<float>> table_;
   double table_range_{0.0};
 };

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <vector>
 
 #include "hires/base/text.h"
+#include "hires/evaluation/experiment/experiment.h"
 #include "hires/evaluation/sim_robot_world.h"
 #include "hires/geometry/angles.h"
 #include "support/messages.h"
@@ -190,6 +192,33 @@ TEST(SelfLocalisationTest, ARobotWithoutALaserCannotFindItsPlace) {
   setup.scene = hires::test_support::RoomScene();
   EXPECT_THAT(ConfigErrorOf([&] { SetupOf(TruthWith(ShippedParams()), setup, {}, base::Rng(1)); }),
               AllOf(HasSubstr("localisation: fitted"), HasSubstr("laser_link")));
+}
+
+std::map<std::string, double> MeasuresOf(const std::string& experiment, int legs) {
+  ExperimentOverrides overrides;
+  overrides.runs = legs;
+  const auto report =
+      RunExperiment(ReadExperiment(kConfig + "/experiments/" + experiment, overrides), {});
+  std::map<std::string, double> measures;
+  for (const Measure& measure : report.value().findings.measures) measures[measure.name] = measure.value;
+  return measures;
+}
+
+TEST(LostTest, ACarriedRobotNoticesIsFoundAndMostlyArrives) {
+  const auto measures = MeasuresOf("lost_carried.yaml", 12);
+  EXPECT_EQ(measures.at("astray"), 12.0);
+  EXPECT_EQ(measures.at("noticed"), 12.0);
+  EXPECT_EQ(measures.at("deceived"), 0.0);
+  EXPECT_EQ(measures.at("contacts"), 0.0);
+  EXPECT_GE(measures.at("found"), 8.0);
+  EXPECT_GE(measures.at("reached"), 8.0);
+}
+
+TEST(LostTest, BetweenEndsThatLookAlikeNothingIsNoticed) {
+  const auto measures = MeasuresOf("lost_corridor.yaml", 2);
+  EXPECT_GE(measures.at("astray"), 1.0);
+  EXPECT_EQ(measures.at("noticed"), 0.0);
+  EXPECT_EQ(measures.at("deceived"), measures.at("astray"));
 }
 
 class SelfLocalisationFileTest : public ::testing::Test {

@@ -56,6 +56,20 @@ TEST(DistanceTransformTest, GridWithoutCellsIsRefused) {
   EXPECT_ANY_THROW(SquaredDistances(OccupancyGrid{}, 1));
 }
 
+/// No beam ends within a thick wall: a robot that takes itself to be nearer to it than it is has to
+/// see that it errs.
+TEST(LikelihoodFieldTest, WithinAThickWallItsFaceIsWhatIsNear) {
+  OccupancyGrid grid = FreeGrid(30, 20);
+  for (int row = 0; row < 20; ++row)
+    for (int column = 10; column < 21; ++column) grid.cells[row * 30 + column] = Cell::kOccupied;
+  const LikelihoodField field(grid, 2.0);
+  EXPECT_EQ(field.DistanceAt(1.05, 1.05), 0.0);
+  EXPECT_EQ(field.DistanceAt(2.05, 1.05), 0.0);
+  EXPECT_NEAR(field.DistanceAt(1.25, 1.05), 0.2, 1e-9);
+  EXPECT_NEAR(field.DistanceAt(1.55, 1.05), 0.5, 1e-9);
+  EXPECT_NEAR(field.DistanceAt(0.85, 1.05), 0.2, 1e-9);
+}
+
 TEST(LikelihoodFieldTest, DistancesAreThoseBetweenCellCentres) {
   OccupancyGrid grid = FreeGrid(20, 10);
   grid.origin = {-1.0, 2.0};

@@ -285,7 +285,7 @@ TEST(MonteCarloTest, RobotInAnotherPlaceThanItBelievesIsCalledLost) {
 }
 
 /// Of drives that begin elsewhere than the filter is sure to be: how many end right.
-int CountFoundAgain(double relocate_after, int* num_relocations) {
+int CountFoundAgain(double relocate_after, int* num_searches) {
   int found = 0;
   for (int seed = 1; seed <= 10; ++seed) {
     const SimulatedDrive drive = Drive(seed, RoomsWithShelf());
@@ -298,18 +298,18 @@ int CountFoundAgain(double relocate_after, int* num_relocations) {
     const PoseEstimate last = filter.Estimate(drive.truth.back().time);
     const double off = (last.X_MB.position() - drive.truth.back().X_MB.position()).norm();
     found += off < 0.15 && last.status == LocalisationStatus::kGood;
-    *num_relocations += last.num_relocations;
+    *num_searches += last.num_searches;
   }
   return found;
 }
 
 TEST(MonteCarloTest, ARobotThatWasCarriedLooksEverywhereAndIsFound) {
-  int num_relocations = 0;
-  EXPECT_GE(CountFoundAgain(3.0, &num_relocations), 9);
-  EXPECT_GE(num_relocations, 10);
-  num_relocations = 0;
-  EXPECT_EQ(CountFoundAgain(-1.0, &num_relocations), 0);
-  EXPECT_EQ(num_relocations, 0);
+  int num_searches = 0;
+  EXPECT_GE(CountFoundAgain(3.0, &num_searches), 9);
+  EXPECT_GE(num_searches, 10);
+  num_searches = 0;
+  EXPECT_EQ(CountFoundAgain(-1.0, &num_searches), 0);
+  EXPECT_EQ(num_searches, 0);
 }
 
 /// People stand all round for a while: the place was right, and is kept.

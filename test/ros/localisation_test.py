@@ -199,14 +199,44 @@ class LocalisationTest(unittest.TestCase):
         self.assertLess(errors[-1][1], 0.06)
         self.say(node, lambda v: v['message'] == 'good')
 
-    def test_a_robot_that_was_carried_away_is_lost(self):
+    def test_a_robot_that_was_carried_away_is_lost_says_so_and_is_found(self):
         node = self.begun()
         self.drive(5, node)
         self.say(node, lambda v: v['message'] == 'good')
-        self.robot.pose = (1.0, 1.0, 2.5)
+        robot = Robot()
+        robot.odometry = self.robot.odometry
+        for _ in range(50):  # half round
+            robot.move(0.1, 0.1 / 1.7)
+        self.robot.pose = robot.pose
         for _ in range(10):
             self.step(node)
         self.assertEqual(self.say(node, lambda v: v['message'].startswith('lost'))['level'], 2)
+        node.process.wait_for('place=lost')
+        # It stands, and tells whoever drives by its covariance.
+        wait_until(lambda: min(node.poses[-1].pose.covariance[i] for i in (0, 7, 35)) >= 1.0, 'a pose that is lost')
+        errors = self.drive(100, node)
+        node.process.wait_for('place=found')
+        print('found, %.3f m off at last' % errors[-1][0])
+        self.assertLess(errors[-1][0], 0.15)
+        self.assertLess(node.poses[-1].pose.covariance[0], 0.1)
+
+    def test_a_laser_that_hangs_upside_down_is_turned_over(self):
+        from geometry_msgs.msg import Quaternion
+        from tf2_msgs.msg import TFMessage
+        turned = laser_transform()
+        turned.child_frame_id = 'turned_laser'
+        turned.transform.rotation = Quaternion(x=1.0, w=0.0)
+        self.fixed.publish(TFMessage([laser_transform(), turned]))
+        node = self.begun()
+        plain = self.scan
+
+        def upside_down():
+            scan = plain()
+            scan.header.frame_id = 'turned_laser'
+            scan.ranges = list(reversed(scan.ranges))
+            return scan
+        self.scan = upside_down
+        self.assertLess(max(error[0] for error in self.drive(30, node)), 0.15)
 
     def test_the_same_messages_give_the_same_bits(self):
         nodes = [Node(self, '_seed:=3'), Node(self, '_seed:=3'), Node(self, '_seed:=4')]
@@ -245,6 +275,8 @@ class LocalisationTest(unittest.TestCase):
     # What is wrong.
 
     def test_scans_that_are_wrong_are_dropped_with_the_reason(self):
+        from geometry_msgs.msg import Quaternion
+        from tf2_msgs.msg import TFMessage
         node = self.begun()
 
         def refuse(words, **change):
@@ -271,7 +303,13 @@ class LocalisationTest(unittest.TestCase):
         refuse('no ranges: 0 ranges', ranges=[])
         refuse('nothing measured', ranges=[NAN] * len(ANGLES))
         refuse('nothing met', ranges=[float('inf')] * len(ANGLES))
+        refuse('nothing measured', ranges=[0.0] * len(ANGLES))
         refuse('bad angles', angle_increment=NAN)
+        tilted = laser_transform()
+        tilted.child_frame_id = 'tilted_laser'
+        tilted.transform.rotation = Quaternion(y=math.sin(0.2), w=math.cos(0.2))  # into the ground
+        self.fixed.publish(TFMessage([laser_transform(), tilted]))
+        refuse('tilted', frame_id='tilted_laser')
         self.assertLess(self.drive(5, node)[-1][0], 0.15)
         self.say(node, lambda v: v['message'] == 'good')
 

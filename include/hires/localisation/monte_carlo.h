@@ -40,7 +40,7 @@ struct PoseEstimate {
   double best_share{0.0};      ///< of the weight, that the heaviest cluster has
   double explained{0.0};       ///< share of the last scan's beams that end near an obstacle
   LocalisationStatus status{LocalisationStatus::kNoScan};
-  int num_relocations{0};  ///< so often it looked everywhere by itself
+  int num_searches{0};  ///< so often it looked everywhere by itself
 };
 
 /// Where a robot is in a map, by its laser and its odometry: Monte Carlo localisation with a

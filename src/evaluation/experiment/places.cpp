@@ -13,7 +13,7 @@ namespace hires::evaluation {
 namespace {
 
 constexpr double kRate = 20.0;     // [Hz] of moments
-constexpr double kInside = 7.815;  // 95 % of chi squared with three degrees of freedom
+constexpr double kInside = 5.991;  // 95 % of chi squared with two degrees of freedom
 
 /// What all moments have in common.
 struct Summary {
@@ -51,9 +51,8 @@ struct Summary {
 PlaceMoment MomentOf(const simulation::SelfLocaliser& localiser, const skills::LostParams& lost) {
   const localisation::PoseEstimate estimate = localiser.Estimate();
   const geometry::Pose2& X_MB = localiser.X_MBtrue();
-  const Eigen::Vector3d off(estimate.X_MB.x - X_MB.x, estimate.X_MB.y - X_MB.y,
-                            geometry::WrapToPi(estimate.X_MB.yaw - X_MB.yaw));
-  const Eigen::LDLT<Eigen::Matrix3d> covariance(estimate.covariance);
+  const Eigen::Vector2d off = estimate.X_MB.position() - X_MB.position();
+  const Eigen::LDLT<Eigen::Matrix2d> covariance(estimate.covariance.topLeftCorner<2, 2>());
   const double squared = off.dot(covariance.solve(off));
   const bool is_inside = covariance.isPositive() && covariance.rcond() > 0.0 && squared <= kInside;
   const Eigen::Matrix3d& P = estimate.covariance;
@@ -76,7 +75,7 @@ TextTable PlaceTable(const PlaceTrail& moments) {
   position.push_back(fmt::format("{:.1f} %", 100.0 * all.inside));
   yaw.emplace_back("");
   return {fmt::format("How far off the robot took itself to be, {} moments", moments.size()),
-          {{"", "median", "95 %", "largest", "rms", "in the 95 % ellipsoid"}, position, yaw}};
+          {{"", "median", "95 %", "largest", "rms", "in the 95 % ellipse"}, position, yaw}};
 }
 
 std::vector<Measure> PlaceMeasures(const PlaceTrail& moments) {

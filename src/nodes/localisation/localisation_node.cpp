@@ -209,9 +209,9 @@ bool LocalisationNode::NoteLost(double stamp) {
   is_lost_ = is_lost;
   hires::base::Log(
       is_lost ? LogLevel::kWarn : LogLevel::kInfo,
-      fmt::format("place={} x={:.3f} y={:.3f} yaw={:.3f} explained={:.2f} relocations={}",
+      fmt::format("place={} x={:.3f} y={:.3f} yaw={:.3f} explained={:.2f} searches={}",
                   is_lost ? "lost" : "found", estimate.X_MB.x, estimate.X_MB.y, estimate.X_MB.yaw,
-                  estimate.explained, estimate.num_relocations));
+                  estimate.explained, estimate.num_searches));
   return true;
 }
 
@@ -297,7 +297,7 @@ void LocalisationNode::DiagnoseBelief(diagnostic_updater::DiagnosticStatusWrappe
   status.add("places", estimate.num_clusters);
   status.add("share of the best place", estimate.best_share);
   status.add("beams explained", estimate.explained);
-  status.add("looked everywhere", estimate.num_relocations);
+  status.add("looked everywhere", estimate.num_searches);
 }
 
 }  // namespace hires_ros

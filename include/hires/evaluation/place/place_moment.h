@@ -11,7 +11,7 @@ struct PlaceMoment {
   geometry::Pose2 X_MB;         ///< really
   geometry::Pose2 X_MBelieved;  ///< as it believes
   geometry::Pose2 X_OB;         ///< as its odometry says
-  /// The truth lies in the ellipsoid of x, y and yaw that holds 95 % by the filter's covariance.
+  /// The truth lies in the ellipse of x and y that holds 95 % by the filter's covariance.
   bool is_inside{false};
   bool is_lost{false};  ///< it is not sure enough to drive
 
