@@ -215,8 +215,8 @@ TEST(LostTest, ACarriedRobotNoticesIsFoundAndMostlyArrives) {
 }
 
 TEST(LostTest, BetweenEndsThatLookAlikeNothingIsNoticed) {
-  const auto measures = MeasuresOf("lost_corridor.yaml", 2);
-  EXPECT_GE(measures.at("astray"), 1.0);
+  const auto measures = MeasuresOf("lost_corridor.yaml", 40);
+  EXPECT_GE(measures.at("astray"), 20.0);  // each second leg; the others are at their goal, it seems
   EXPECT_EQ(measures.at("noticed"), 0.0);
   EXPECT_EQ(measures.at("deceived"), measures.at("astray"));
 }
