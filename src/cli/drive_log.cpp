@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "hires/base/error.h"
+#include "hires/base/log.h"
 #include "hires/base/text.h"
+#include "hires/localisation/filtered_log.h"
 #include "hires/localisation/log_file.h"
 
 namespace hires::cli {
@@ -33,6 +35,7 @@ void RefuseBagOptions(const DriveOptions& options) {
   const std::pair<const char*, const std::string&> of_bags[] = {
       {"--scan", source.scan},
       {"--odometry", source.odometry},
+      {"--imu", source.imu},
       {"--odometry-frame", source.odometry_frame},
       {"--base-frame", source.base_frame},
       {"--laser", options.laser}};
@@ -57,6 +60,21 @@ sensing::DriveSource SourceOf(const DriveOptions& options) {
   return source;
 }
 
+/// The drive with its odometry corrected by its inertial unit, if it has one.
+localisation::RobotLog WithInertia(localisation::RobotLog drive, const std::string& log,
+                                   const std::string& package_folder) {
+  if (drive.inertia.empty()) return drive;
+  const auto config = localisation::ReadOdometryFilterConfig(
+      base::ParamReader::FromFile(package_folder + "/config/odometry_filter.yaml"));
+  const int num_resets = localisation::FilterOdometry(config.filter, &drive);
+  if (num_resets > 0) {
+    base::Log(
+        base::LogLevel::kWarn,
+        fmt::format("{}: odometry was reset {} times, which counts as no motion", log, num_resets));
+  }
+  return drive;
+}
+
 }  // namespace
 
 void AddDriveOptions(CLI::App* verb, DriveOptions* o) {
@@ -69,6 +87,9 @@ void AddDriveOptions(CLI::App* verb, DriveOptions* o) {
   verb->add_option("--odometry", o->source.odometry,
                    "topic of nav_msgs/Odometry in a bag, or /tf; needed where there are several; "
                    "/tf where there is none");
+  verb->add_option("--imu", o->source.imu,
+                   "topic of sensor_msgs/Imu in a bag, whose heading then corrects the odometry's; "
+                   "without it, none is used");
   verb->add_option("--odometry-frame", o->source.odometry_frame,
                    "with /tf: frame in which the base moves smoothly; default: odom or "
                    "odom_combined");
@@ -108,10 +129,11 @@ geometry::Pose2 PoseIn(const std::string& text, const std::string& option,
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-localisation::RobotLog ReadDrive(const DriveOptions& options, const ReadDriveBag& read_bag) {
+localisation::RobotLog ReadDrive(const DriveOptions& options, const std::string& package_folder,
+                                 const ReadDriveBag& read_bag) {
   const std::string& log = options.log;
   if (IsBag(log)) {
-    if (read_bag) return read_bag(log, SourceOf(options));
+    if (read_bag) return WithInertia(read_bag(log, SourceOf(options)), log, package_folder);
     throw base::ConfigError(
         fmt::format("{}: is a bag, which this program does not read because it was built without "
                     "ROS; take `hires` of a build with ROS, or a CARMEN log (lines FLASER and "

@@ -30,9 +30,12 @@ void AddDriveOptions(CLI::App* verb, DriveOptions* options);
 geometry::Pose2 PoseIn(const std::string& text, const std::string& option, const std::string& what);
 
 /// A CARMEN log or a bag with at least one scan. A bag is what is called .bag, or begins as one.
-/// @param read_bag  may be empty; then bags are refused.
+/// Its odometry is corrected by its inertial unit, where the options name one that can be used.
+/// @param package_folder  in whose config/odometry_filter.yaml stands how.
+/// @param read_bag        may be empty; then bags are refused.
 /// @throws base::ConfigError as localisation::ReadCarmenLog and `read_bag`, for options of bags
 /// with a CARMEN log, and for logs without scans.
-localisation::RobotLog ReadDrive(const DriveOptions& options, const ReadDriveBag& read_bag);
+localisation::RobotLog ReadDrive(const DriveOptions& options, const std::string& package_folder,
+                                 const ReadDriveBag& read_bag);
 
 }  // namespace hires::cli

@@ -145,7 +145,7 @@ std::string Summary(const Answer& answer, const LocaliseOptions& options) {
 }
 
 Answer Localise(const LocaliseOptions& options, const localisation::MonteCarloParams& defaults,
-                const ReadDriveBag& read_bag) {
+                const std::string& package_folder, const ReadDriveBag& read_bag) {
   const OccupancyGrid map = ReadMap(options.map);
   Answer answer;
   localisation::MonteCarloParams params = defaults;
@@ -155,7 +155,7 @@ Answer Localise(const LocaliseOptions& options, const localisation::MonteCarloPa
     params.initial_pose = *answer.initial;
   }
   localisation::MonteCarloLocalisation filter(map, params, base::Rng(options.seed));
-  const localisation::RobotLog log = ReadDrive(options.drive, read_bag);
+  const localisation::RobotLog log = ReadDrive(options.drive, package_folder, read_bag);
   if (!answer.initial) filter.GlobalLocalisation();
   answer.num_scans = log.scans.size();
   answer.duration = log.scans.back().time - log.scans.front().time;
@@ -197,7 +197,7 @@ int RunLocaliseVerb(const LocaliseOptions& options, const std::string& package_f
     if (!file.empty() && file != "-") evaluation::RequireFolderOf(file);
   const auto config = localisation::ReadLocalisationConfig(base::ParamReader::FromFile(
       options.config.empty() ? package_folder + "/config/localisation.yaml" : options.config));
-  const Answer answer = Localise(options, config.filter, read_bag);
+  const Answer answer = Localise(options, config.filter, package_folder, read_bag);
   if (!answer.localised.path.empty())
     localisation::WriteTumTrajectory(answer.localised.path, options.trajectory);
   if (options.json == "-") {

@@ -98,11 +98,12 @@ void AddMapVerb(CLI::App* app, MapOptions* o) {
   o->verb = verb;
 }
 
-int RunMapVerb(const MapOptions& options, const ReadDriveBag& read_bag) {
+int RunMapVerb(const MapOptions& options, const std::string& package_folder,
+               const ReadDriveBag& read_bag) {
   const std::string map = MapFile(options.output);
   for (const std::string& file : {map, options.trajectory, options.json})
     if (!file.empty() && file != "-") evaluation::RequireFolderOf(file);
-  const localisation::RobotLog log = ReadDrive(options.drive, read_bag);
+  const localisation::RobotLog log = ReadDrive(options.drive, package_folder, read_bag);
   mapping::MapperParams params;
   params.resolution = options.resolution;
   params.max_range = options.max_range;

@@ -26,6 +26,7 @@ void AddMapVerb(CLI::App* app, MapOptions* options);
 /// Makes a map of a log, and tells where the robot was.
 /// @param read_bag  may be empty; then bags are refused.
 /// @return kExitRecommended.  @throws base::ConfigError for bad input.
-int RunMapVerb(const MapOptions& options, const ReadDriveBag& read_bag);
+int RunMapVerb(const MapOptions& options, const std::string& package_folder,
+               const ReadDriveBag& read_bag);
 
 }  // namespace hires::cli

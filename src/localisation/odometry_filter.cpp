@@ -153,7 +153,7 @@ FilterOutcome OdometryFilter::OnInertia(double time, const robot::ImuReading& re
   const std::optional<double> before =
       waiting_.empty() ? inertia_time_ : std::optional<double>(waiting_.back().time);
   const bool is_gap = before && time - *before > params_.imu_timeout;
-  waiting_.push_back({time, reading.yaw});
+  waiting_.push_back({time, reading.yaw, newest_zero_});
   if (waiting_.size() > kMostWaiting) {
     waiting_.pop_front();
     return FilterOutcome::kTooMany;
@@ -188,8 +188,9 @@ void OdometryFilter::UseHeading(const Inertia& inertia) {
   const double innovation = WrapToPi(inertia.yaw - state_[2] - state_[3]);
   const bool is_restarted =
       std::abs(innovation) > std::max(kSuddenTurn, kDeviations * std::sqrt(expected_variance));
-  const bool is_first = !inertia_time_ || is_restarted;
+  const bool is_first = !inertia_time_ || inertia.zero != known_zero_ || is_restarted;
   inertia_time_ = inertia.time;
+  known_zero_ = inertia.zero;
   if (is_first) {  // the zero is what the heading lacks, as uncertain as both
     state_[3] = WrapToPi(inertia.yaw - state_[2]);
     P_.row(3) = -P_.row(2);

@@ -25,6 +25,7 @@ constexpr double kLongAgo = -kUnbounded;
 constexpr double kLatest = 1.0;          // [s] by which a reading may come too late
 constexpr double kLongestGap = 2.0;      // [s] of the odometry that is bridged
 constexpr double kMostCoordinate = 1e6;  // [m]
+constexpr double kMostRate = 100.0;      // [rad/s]
 constexpr std::size_t kMostRanges = 200'000'000;
 constexpr char kUnplaced[] = "scans of a laser whose place in the base is not known then";
 
@@ -63,7 +64,8 @@ DriveBuilder::DriveBuilder(std::string recording, DriveSource source, bool is_fr
       odometry_frame_(BareFrame(source_.odometry_frame)),
       base_frame_(BareFrame(source_.base_frame)),
       last_odometry_(kLongAgo),
-      last_scan_(kLongAgo) {}
+      last_scan_(kLongAgo),
+      last_inertia_(kLongAgo) {}
 
 void DriveBuilder::InOrder(double time, const std::string& what, double* last) {
   const double late = *last - time;
@@ -116,6 +118,18 @@ void DriveBuilder::OnOdometry(double stamp, const std::string& base_frame,
     return LeaveOut("readings of the odometry with another child_frame_id than the first");
   InOrder(stamp, "odometry", &last_odometry_);
   log_.odometry.push_back({stamp, reading});
+}
+
+void DriveBuilder::OnInertia(double stamp, const std::string& frame, const UnitReading& reading) {
+  if (!HasMoment(stamp)) return LeaveOut("readings of the inertial unit without a stamp");
+  const bool is_usable =
+      reading.R_WI ? reading.R_WI->coeffs().allFinite() : reading.w_I.norm() < kMostRate;
+  if (!is_usable) {
+    return LeaveOut(fmt::format(
+        "readings of the inertial unit that are no numbers within {:g} rad/s", kMostRate));
+  }
+  InOrder(stamp, "the inertial unit", &last_inertia_);
+  waiting_inertia_.push_back({stamp, BareFrame(frame), reading});
 }
 
 void DriveBuilder::OnTransforms() {
@@ -203,6 +217,27 @@ void DriveBuilder::PlaceRest() {
   waiting_.clear();
 }
 
+void DriveBuilder::PlaceInertia() {
+  std::map<std::string, FramePose> units;  // in the base
+  for (const auto& [time, frame, reading] : waiting_inertia_) {
+    if (units.count(frame) == 0) {
+      const double newest = tree_.NewestOf(base_frame_, frame).value_or(kUnbounded);
+      units[frame] = frame == base_frame_ ? FramePose{FrameStatus::kFound, {}}
+                                          : tree_.Find(base_frame_, frame, newest);
+    }
+    const FramePose& X_BI = units[frame];
+    if (frame.empty() || !X_BI.is_found()) {
+      LeaveOut("readings of an inertial unit whose place in the base is not known");
+      continue;
+    }
+    const Eigen::Quaterniond& R_BI = X_BI.X_PC.rotation;
+    RobotLog::Inertia inertia{time, {}, (R_BI * reading.w_I).z()};
+    if (reading.R_WI) inertia.yaw = geometry::YawOf(*reading.R_WI * R_BI.inverse());
+    log_.inertia.push_back(inertia);
+  }
+  waiting_inertia_.clear();
+}
+
 void DriveBuilder::RequireOdometry() const {
   if (!log_.odometry.empty()) return;
   if (!is_from_tf_) {
@@ -266,7 +301,9 @@ std::string DriveBuilder::LeftOutText() const {
 RobotLog DriveBuilder::Take() {
   PlaceWaiting();
   PlaceRest();
-  const int twice = PutInOrder(&log_.scans) + PutInOrder(&log_.odometry);
+  PlaceInertia();
+  const int twice =
+      PutInOrder(&log_.scans) + PutInOrder(&log_.odometry) + PutInOrder(&log_.inertia);
   if (twice > 0) left_out_["readings with the stamp of another one"] += twice;
   RequireOdometry();
   LeaveOutBeyondOdometry();

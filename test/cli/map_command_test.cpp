@@ -93,6 +93,7 @@ TEST_F(MapCommandTest, BadInputIsRefused) {
   refused({Path("none.log"), "--output", out}, "none.log: no such file");
   refused({Path("drive.bag"), "--output", out}, "drive.bag: is a bag, which this program does not");
   refused({log, "--output", out, "--odometry", "/odom"}, "--odometry: is for bags");
+  refused({log, "--output", out, "--imu", "/imu"}, "--imu: is for bags");
   refused({log, "--output", Path("room.pgm")}, "room.pgm: is the name of a picture");
   refused({log, "--output", Path("none/room.yaml")}, "none");
   refused({log, "--output", out, "--trajectory", Path("none/path")}, "none");

@@ -166,6 +166,29 @@ TEST(OdometryFilterTest, UnitTellsTheHeadingAfterAJumpOfTheWheels) {
   EXPECT_NEAR(filter.X_FB().yaw, 0.1, 1e-3);
 }
 
+TEST(OdometryFilterTest, NewZeroOfTheUnitTurnsNothing) {
+  OdometryFilter filter({});
+  const std::vector<Event> wheels = Wheels(100);
+  for (std::size_t i = 0; i < wheels.size(); ++i) {
+    if (i == 50) filter.BeginNewZero();
+    filter.OnInertia(wheels[i].time, {wheels[i].X_OB.yaw + (i < 50 ? 0.0 : 0.2), 0.0});
+    Hear(wheels[i], &filter);
+  }
+  ExpectPose(filter.X_FB(), wheels.back().X_OB, 1e-9);
+}
+
+TEST(OdometryFilterTest, NewZeroIsKnownAlsoWhereItsFirstReadingIsDropped) {
+  OdometryFilter filter({});
+  filter.OnInertia(0.0, {0.0, 0.0});
+  filter.OnOdometry(0.0, {Pose2{}, {}});
+  filter.BeginNewZero();
+  filter.OnInertia(0.1, {0.2, 0.0});  // from before the jump
+  filter.OnOdometry(0.15, {Pose2{9.0, 9.0, 0.0}, {}});
+  filter.OnInertia(0.2, {0.2, 0.0});
+  filter.OnOdometry(0.2, {Pose2{9.0, 9.0, 0.0}, {}});
+  EXPECT_NEAR(filter.X_FB().yaw, 0.0, 1e-9);
+}
+
 TEST(OdometryFilterTest, TimeThatGoesBackKeepsTheEstimateAndAddsVariance) {
   OdometryFilter filter = After(Wheels(100));
   const Pose2 before = filter.X_FB();

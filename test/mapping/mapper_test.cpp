@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "hires/base/error.h"
+#include "hires/localisation/filtered_log.h"
 #include "support/simulated_drive.h"
 
 namespace hires::mapping::mapper_test {
@@ -41,15 +42,6 @@ SimulatedDrive TwoRoomsDrive(const SimulatedDriveParams& params = {}, int seed =
   return DriveThrough(TwoRooms(), kThroughBothRooms, params, base::Rng(seed));
 }
 
-localisation::TimedPath OdometryOf(const SimulatedDrive& drive) {
-  localisation::TimedPath path;
-  for (const auto& odometry : drive.log.odometry) {
-    if (path.size() < drive.truth.size() && odometry.time == drive.truth[path.size()].time)
-      path.push_back({odometry.time, odometry.reading.X_OB});
-  }
-  return path;
-}
-
 /// Holds a map against the world that was driven through.
 void ExpectTrue(const MapResult& result, const SimulatedDrive& drive,
                 const world::OccupancyGrid& world) {
@@ -63,7 +55,8 @@ TEST(MapperTest, RoomsAreMappedWhereTheyAre) {
     const SimulatedDrive drive = TwoRoomsDrive({}, seed);
     const MapResult result = MakeMap(drive.log);
     ExpectTrue(result, drive, TwoRooms());
-    EXPECT_GT(TrajectoryRms(OdometryOf(drive), drive.truth), 0.05) << "else nothing is shown";
+    EXPECT_GT(TrajectoryRms(test_support::OdometryAt(drive.truth, drive.log), drive.truth), 0.05)
+        << "else nothing is shown";
     EXPECT_GT(result.num_loops, 0);
     EXPECT_EQ(result.num_lost, 0);
     EXPECT_EQ(result.odometry_jumps, 0);
@@ -118,6 +111,28 @@ TEST(MapperTest, OdometryThatIsResetIsNoMotion) {
   const MapResult result = MakeMap(drive.log);
   EXPECT_EQ(result.odometry_jumps, 1);
   ExpectTrue(result, drive, TwoRooms());
+}
+
+/// Where odometry turns too far by a tenth, and the laser does not see how far.
+TEST(MapperTest, RatesOfAnInertialUnitMakeTheMapTruer) {
+  const world::OccupancyGrid hall = test_support::LargeHall();
+  SimulatedDriveParams params = test_support::ExactOdometry();
+  params.range_max = 5.0;
+  for (int seed = 1; seed <= 2; ++seed) {
+    SimulatedDrive drive =
+        DriveThrough(hall, test_support::CourseThroughLargeHall(), params, base::Rng(seed));
+    RobotLog with = drive.log;
+    with.inertia = test_support::RatesOf(drive.log, 0.01, {}, base::Rng(seed));
+    test_support::ScaleTurns(1.1, &drive.log);
+    with.odometry = drive.log.odometry;
+    localisation::FilterOdometry({}, &with);
+    geometry::Pose2 X_WM;
+    const MapResult wheels = MakeMap(drive.log), joined = MakeMap(with);
+    EXPECT_GT(TrajectoryRms(wheels.trajectory, drive.truth, &X_WM), 0.4);
+    EXPECT_GT(MedianWallError(wheels.grid, hall, X_WM), 0.1);
+    EXPECT_LT(TrajectoryRms(joined.trajectory, drive.truth, &X_WM), 0.15);
+    EXPECT_LT(MedianWallError(joined.grid, hall, X_WM), 0.05);
+  }
 }
 
 TEST(MapperTest, BlindScansStandWhereOdometrySays) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nav_msgs/Odometry.h>
 #include <rosbag/bag.h>
+#include <sensor_msgs/Imu.h>
 #include <sensor_msgs/LaserScan.h>
 #include <sensor_msgs/MultiEchoLaserScan.h>
 #include <std_msgs/String.h>
@@ -112,10 +113,21 @@ tf2_msgs::TFMessage LinkOf(const std::string& parent, const std::string& child, 
   return msg;
 }
 
+/// Of a unit that tells its rate alone.
+sensor_msgs::Imu RateOf(double time, double rate, const std::string& frame = "base_link") {
+  sensor_msgs::Imu msg;
+  msg.header.stamp = ros::Time(time);
+  msg.header.frame_id = frame;
+  msg.orientation_covariance[0] = -1.0;
+  msg.angular_velocity.z = rate;
+  return msg;
+}
+
 /// A drive's stamps as whole milliseconds after kBegin, and numbers as messages have them.
 RobotLog AsMessagesHaveIt(RobotLog log) {
   const auto stamp = [](double time) { return kBegin + std::round(time * 1e3) / 1e3; };
   for (RobotLog::Odometry& odometry : log.odometry) odometry.time = stamp(odometry.time);
+  for (RobotLog::Inertia& inertia : log.inertia) inertia.time = stamp(inertia.time);
   for (RobotLog::Scan& scan : log.scans) {
     scan.time = stamp(scan.time);
     scan.reading.angle_min = static_cast<float>(scan.reading.angle_min);
@@ -363,6 +375,123 @@ TEST(NearestEchoTest, IsTheShortestThatCounts) {
   EXPECT_EQ(hires::sensing::NearestEcho({kInf}, 0.1F), kInf);
   EXPECT_TRUE(std::isnan(hires::sensing::NearestEcho({}, 0.1F)));
   EXPECT_TRUE(std::isnan(hires::sensing::NearestEcho({kNan, 0.05F}, 0.1F)));
+}
+
+// ---------------------------------------------------------------- inertial units
+
+TEST_F(DriveBagTest, InertialUnitIsReadWhereItIsNamed) {
+  Write(ShortLog(), {}, [](rosbag::Bag* bag) {
+    const Pose3 X_BI{{0.0, 0.0, 0.2}, hires::geometry::RotationFromRpy(M_PI, 0.0, 0.0)};
+    bag->write("/tf_static", ros::Time(kBegin), LinkOf("base_link", "imu_link", kBegin, X_BI));
+    for (int i = 0; i < 50; ++i) {
+      const double time = kBegin + 0.02 * i;
+      bag->write("/imu", ros::Time(time), RateOf(time, -0.3, "imu_link"));
+    }
+    sensor_msgs::Imu msg = RateOf(kBegin + 0.985, 0.0);
+    msg.orientation_covariance[0] = 0.0;
+    msg.orientation = Turn(hires::geometry::RotationFromRpy(0.0, 0.0, 0.7));
+    bag->write("/imu", msg.header.stamp, msg);
+  });
+  EXPECT_THAT(Read().inertia, IsEmpty());
+  DriveSource source;
+  source.imu = "imu";
+  const RobotLog log = Read(source);
+  EXPECT_THAT(told_, IsEmpty());
+  ASSERT_EQ(log.inertia.size(), 51u);
+  EXPECT_NEAR(log.inertia[3].yaw_rate, 0.3, 1e-6) << "it hangs upside down";
+  EXPECT_FALSE(log.inertia[3].yaw);
+  EXPECT_NEAR(log.inertia[50].yaw.value(), 0.7, 1e-6);
+  source.imu = "/imuu";
+  EXPECT_THAT(Error(source), HasSubstr("--imu: topic '/imuu' is unknown"));
+  source.imu = "/odom";
+  EXPECT_THAT(Error(source), HasSubstr("--imu /odom: has type nav_msgs/Odometry and 10 messages; "
+                                       "wanted sensor_msgs/Imu"));
+}
+
+TEST_F(DriveBagTest, InertialUnitMayAccompanyOdometryOfTransforms) {
+  Style style;
+  style.odometry = "";
+  Write(ShortLog(), style, [](rosbag::Bag* bag) {
+    bag->write("/imu", ros::Time(kBegin + 0.5), RateOf(kBegin + 0.5, 0.3));
+  });
+  DriveSource source;
+  source.imu = "/imu";
+  EXPECT_EQ(Read(source).inertia.size(), 1u);
+}
+
+TEST_F(DriveBagTest, BrokenReadingsOfTheInertialUnitAreLeftOutAndCounted) {
+  Write(ShortLog(), {}, [](rosbag::Bag* bag) {
+    const ros::Time now(kBegin + 0.5);
+    const auto write = [&](const sensor_msgs::Imu& msg) { bag->write("/imu", now, msg); };
+    write(RateOf(kBegin + 0.5, 0.1));
+    write(RateOf(0.0, 0.1));
+    write(RateOf(kBegin + 0.51, kNan));
+    sensor_msgs::Imu msg = RateOf(kBegin + 0.52, 0.1);
+    msg.angular_velocity_covariance[0] = -1.0;
+    write(msg);
+    msg = RateOf(kBegin + 0.53, 0.1);
+    msg.orientation_covariance[0] = 0.0;
+    write(msg);
+    msg.orientation.w = kNan;
+    write(msg);
+    write(RateOf(kBegin + 0.54, 0.1, "imu_link"));
+    write(RateOf(kBegin + 0.5, 0.2));
+  });
+  DriveSource source;
+  source.imu = "/imu";
+  const RobotLog log = Read(source);
+  ASSERT_EQ(log.inertia.size(), 1u);
+  EXPECT_NEAR(log.inertia[0].yaw_rate, 0.1, 1e-9);
+  for (const char* said :
+       {"left out 1 readings of the inertial unit without a stamp",
+        "left out 1 readings of the inertial unit that are no numbers within 100 rad/s",
+        "left out 1 readings of the inertial unit without orientation and rate",
+        "left out 2 readings of the inertial unit whose quaternion turns nothing",
+        "left out 1 readings of an inertial unit whose place in the base is not known",
+        "left out 1 readings with the stamp of another one"})
+    EXPECT_THAT(told_, HasSubstr(said));
+}
+
+TEST_F(DriveBagTest, TimeOfTheInertialUnitThatJumpsBackIsRefused) {
+  Write(ShortLog(), {}, [](rosbag::Bag* bag) {
+    bag->write("/imu", ros::Time(kBegin + 2.0), RateOf(kBegin + 2.0, 0.1));
+    bag->write("/imu", ros::Time(kBegin + 3.0), RateOf(kBegin - 5.0, 0.1));
+  });
+  EXPECT_NO_THROW(Read()) << "nobody asked for the unit";
+  DriveSource source;
+  source.imu = "/imu";
+  EXPECT_THAT(Error(source), HasSubstr("header.stamp 95.000000 of the inertial unit is 7.000 s"));
+}
+
+/// Odometry turns too far by a tenth where the laser sees nothing.
+TEST_F(DriveBagTest, InertialUnitMakesTrajectoriesTruer) {
+  hires::test_support::SimulatedDriveParams params = hires::test_support::ExactOdometry();
+  params.range_max = 5.0;
+  const hires::world::OccupancyGrid hall = hires::test_support::LargeHall();
+  hires::test_support::SimulatedDrive drive = hires::test_support::DriveThrough(
+      hall, hires::test_support::CourseThroughLargeHall(), params, hires::base::Rng(1));
+  drive.log.inertia = hires::test_support::RatesOf(drive.log, 0.01, {}, hires::base::Rng(1));
+  hires::test_support::ScaleTurns(1.1, &drive.log);
+  const RobotLog log = AsMessagesHaveIt(drive.log);
+  Write(log, {}, [&](rosbag::Bag* bag) {
+    for (const RobotLog::Inertia& inertia : log.inertia)
+      bag->write("/imu", ros::Time(inertia.time), RateOf(inertia.time, inertia.yaw_rate));
+  });
+  const auto error_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"map",          path_,           "--output",    Path("map.yaml"),
+                                   "--trajectory", Path("map.tum"), "--max-range", "5"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Ended ended = Run(words);
+    EXPECT_EQ(ended.code, cli::kExitRecommended) << ended.err;
+    EXPECT_THAT(ended.err, Not(HasSubstr("left out")));
+    const std::vector<double> numbers = Numbers("map.tum");
+    hires::localisation::TimedPath path;
+    for (std::size_t i = 0; i + 7 < numbers.size(); i += 8)
+      path.push_back({numbers[i], {numbers[i + 1], numbers[i + 2], 0.0}});
+    return hires::test_support::TrajectoryRms(path, drive.truth);
+  };
+  EXPECT_GT(error_of({}), 0.4);
+  EXPECT_LT(error_of({"--imu", "/imu"}), 0.15);
 }
 
 // ---------------------------------------------------------------- which topics
@@ -631,10 +760,13 @@ TEST_F(DriveBagTest, AnyBytesGiveADriveOrAnError) {
       bag->write("/tf_static", ros::Time(kBegin), LinkOf("base_link", "laser", kBegin, {}));
       for (const RobotLog::Scan& scan : ShortLog().scans) {
         bag->write("/odom", ros::Time(scan.time), OdometryOf(scan.time, {}));
+        bag->write("/imu", ros::Time(scan.time), RateOf(scan.time, 0.1));
         bag->write("/scan", ros::Time(scan.time), ScanOf(scan));
       }
     });
-    ASSERT_EQ(Read().scans.size(), 10u);
+    DriveSource source;
+    source.imu = "/imu";
+    ASSERT_EQ(Read(source).inertia.size(), 10u);
     const std::string bytes = Bytes();
     hires::base::Rng rng(11);
     testing::internal::CaptureStderr();  // warnings
@@ -646,7 +778,7 @@ TEST_F(DriveBagTest, AnyBytesGiveADriveOrAnError) {
       }
       folder_.Write("drive.bag", changed);
       SCOPED_TRACE(run);
-      EXPECT_NO_THROW(Error());
+      EXPECT_NO_THROW(Error(source));
     }
     testing::internal::GetCapturedStderr();
   }

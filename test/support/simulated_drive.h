@@ -147,6 +147,62 @@ inline SimulatedDrive DriveThrough(const world::OccupancyGrid& grid,
   return driver.drive();
 }
 
+/// Of a drive whose odometry errs in nothing.
+inline SimulatedDriveParams ExactOdometry() {
+  SimulatedDriveParams params;
+  params.scale_error = params.veer_error = params.step_error = 0.0;
+  return params;
+}
+
+/// How an inertial unit's rate errs; as `gyro` of config/self_localisation.yaml.
+struct RateErrors {
+  double walk{0.0012};  ///< [rad / root s] by which its integral wanders
+  double bias{0.0005};  ///< [rad/s]
+};
+
+/// Each `period` [s] the rate of a drive whose odometry errs in nothing.
+inline std::vector<localisation::RobotLog::Inertia> RatesOf(const localisation::RobotLog& exact,
+                                                            double period, const RateErrors& errors,
+                                                            base::Rng rng) {
+  std::vector<localisation::RobotLog::Inertia> readings;
+  const auto& odometry = exact.odometry;
+  std::size_t next = 1;
+  for (int i = 0; next < odometry.size(); ++i) {
+    const double time = odometry.front().time + i * period;
+    while (next < odometry.size() && odometry[next].time < time) ++next;
+    if (next == odometry.size()) break;
+    const double turn =
+        geometry::WrapToPi(odometry[next].reading.X_OB.yaw - odometry[next - 1].reading.X_OB.yaw);
+    const double rate = turn / (odometry[next].time - odometry[next - 1].time);
+    readings.push_back(
+        {time, {}, rate + errors.bias + rng.Normal(0.0, errors.walk / std::sqrt(period))});
+  }
+  return readings;
+}
+
+/// Lets odometry tell turns that are `factor` times the real ones.
+inline void ScaleTurns(double factor, localisation::RobotLog* log) {
+  geometry::Pose2 before = log->odometry.front().reading.X_OB, X_OB = before;
+  for (localisation::RobotLog::Odometry& odometry : log->odometry) {
+    geometry::Pose2 step = before.Inverse() * odometry.reading.X_OB;
+    step.yaw = factor * geometry::WrapToPi(step.yaw);
+    before = odometry.reading.X_OB;
+    X_OB = X_OB * step;
+    odometry.reading.X_OB = X_OB;
+  }
+}
+
+/// Where odometry says that the base was, at the times of the truth.
+inline localisation::TimedPath OdometryAt(const localisation::TimedPath& truth,
+                                          const localisation::RobotLog& log) {
+  localisation::TimedPath path;
+  for (const localisation::RobotLog::Odometry& odometry : log.odometry) {
+    if (path.size() < truth.size() && odometry.time == truth[path.size()].time)
+      path.push_back({odometry.time, odometry.reading.X_OB});
+  }
+  return path;
+}
+
 /// Root mean square [m] of the distances between a trajectory and the truth, after the rigid motion
 /// that fits them best.
 inline double TrajectoryRms(const localisation::TimedPath& path,
@@ -240,6 +296,24 @@ inline world::OccupancyGrid RoomsWithShelf() {
     for (int column = 70; column < 90; ++column)
       grid.cells[row * grid.width + column] = world::Cell::kOccupied;
   return grid;
+}
+
+/// 24 m x 16 m, with a pillar near a corner: a laser of 5 m sees nothing in the middle.
+inline world::OccupancyGrid LargeHall() {
+  world::OccupancyGrid grid{0.05, 480, 320, {0.0, 0.0}, {}};
+  for (int row = 0; row < grid.height; ++row) {
+    for (int column = 0; column < grid.width; ++column) {
+      const bool is_border = row < 2 || column < 2 || row >= 318 || column >= 478;
+      const bool is_pillar = column >= 80 && column < 90 && row >= 20 && row < 26;
+      grid.cells.push_back(is_border || is_pillar ? world::Cell::kOccupied : world::Cell::kFree);
+    }
+  }
+  return grid;
+}
+
+/// Turns in the middle, where odometry alone tells how far.
+inline std::vector<Eigen::Vector2d> CourseThroughLargeHall() {
+  return {{2.0, 2.0}, {12.0, 8.0}, {2.0, 14.0}, {22.0, 14.0}};
 }
 
 /// Through both rooms and back, twice past the door.

@@ -76,6 +76,8 @@ class OdometryFilter {
 
   FilterOutcome OnOdometry(double time, const robot::OdometryReading& reading);
   FilterOutcome OnInertia(double time, const robot::ImuReading& reading);
+  /// Inertial readings that come from now on count from another zero than those before.
+  void BeginNewZero() { ++newest_zero_; }
 
   bool has_estimate() const { return odometry_.has_value(); }
   double time() const { return time_; }  ///< [s] of the newest odometry
@@ -91,6 +93,7 @@ class OdometryFilter {
   };
   struct Inertia {
     double time, yaw;
+    int zero;  // which of the unit's zeros it counts from
   };
   void Begin(double time, const geometry::Pose2& X_OB);
   void DropWaitingBefore(double time);
@@ -106,6 +109,7 @@ class OdometryFilter {
   geometry::Twist2 V_B_;
   std::optional<Odometry> odometry_;
   std::optional<double> inertia_time_;  // of the newest one used since the unit's zero is known
+  int newest_zero_{0}, known_zero_{0};
   std::deque<Inertia> waiting_;
 };
 

@@ -16,7 +16,8 @@ struct RobotLog {
   };
   struct Inertia {
     double time{0.0};
-    robot::ImuReading reading;
+    std::optional<double> yaw;  ///< [rad] of the base, from the unit's zero; not all units tell it
+    double yaw_rate{0.0};       ///< [rad/s] of the base; what counts where there is no yaw
   };
   struct Scan {
     double time{0.0};

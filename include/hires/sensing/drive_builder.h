@@ -16,23 +16,32 @@ namespace hires::sensing {
 struct DriveSource {
   std::string scan;            ///< topic of the laser
   std::string odometry;        ///< topic of the odometry; /tf: transforms tell it
+  std::string imu;             ///< topic of the inertial unit; empty: none is used
   std::string odometry_frame;  ///< for odometry of transforms; empty: odom or odom_combined
   std::string base_frame;      ///< empty: that of the odometry's messages; of transforms
                                ///< base_footprint or base_link, whichever is connected first
   std::optional<geometry::Pose2> X_BL;  ///< laser in base, in place of what the transforms say
 };
 
-/// Makes a log of what a robot said while it drove: scans, odometry, and where frames are.
+/// What an inertial unit says, in its own frame I.
+struct UnitReading {
+  std::optional<Eigen::Quaterniond> R_WI;        ///< W is level, of any heading; may be unknown
+  Eigen::Vector3d w_I{Eigen::Vector3d::Zero()};  ///< [rad/s] rate; what counts where R_WI is not
+};
+
+/// Makes a log of what a robot said while it drove: scans, odometry, readings of its inertial unit,
+/// and where frames are.
 ///
 /// Stamps [s] are those in the messages. Readings up to 1 s late are put in order, of two with one
 /// stamp the first one stays. A scan waits until the transforms tell where its laser was at its
 /// stamp; what still waits at the end takes the newest they know. A laser that hangs upside down is
-/// turned over, as localisation::LevelLaser does.
+/// turned over, as localisation::LevelLaser does. How an inertial unit is mounted does not change:
+/// the newest that the transforms tell will do.
 ///
 /// Left out, counted, and told as warnings: readings without stamp, with numbers that are none, of
-/// another base; scans with angles that are none, of a tilted laser, from before its place was
-/// known, from before the first or after the last odometry, and from within a gap of the odometry
-/// of more than 2 s.
+/// another base, of an inertial unit of which the transforms tell nothing; scans with angles that
+/// are none, of a tilted laser, from before its place was known, from before the first or after the
+/// last odometry, and from within a gap of the odometry of more than 2 s.
 class DriveBuilder {
  public:
   /// @param recording   for messages: "drive.bag".
@@ -52,6 +61,10 @@ class DriveBuilder {
   void OnOdometry(double stamp, const std::string& base_frame,
                   const robot::OdometryReading& reading);
 
+  /// @param frame  of the unit.
+  /// @throws base::ConfigError if the time jumps back by more than 1 s.
+  void OnInertia(double stamp, const std::string& frame, const UnitReading& reading);
+
   void OnTransforms();  ///< the tree knows more
 
   /// Counts what could not be handed over: "scans of another version of their type".
@@ -68,6 +81,11 @@ class DriveBuilder {
     std::string frame;
     localisation::RobotLog::Scan scan;
   };
+  struct WaitingInertia {
+    double time;
+    std::string frame;
+    UnitReading reading;
+  };
   void ChooseFrames();
   void TakeOdometryOfTransforms();
   void PlaceWaiting();
@@ -75,6 +93,7 @@ class DriveBuilder {
   bool Place(WaitingScan* waiting);
   void PlaceAt(const geometry::Pose3& X_BL, localisation::RobotLog::Scan scan);
   void PlaceRest();
+  void PlaceInertia();
   void InOrder(double time, const std::string& what, double* last);
   void RequireOdometry() const;
   void LeaveOutBeyondOdometry();
@@ -87,9 +106,10 @@ class DriveBuilder {
   const FrameTree& tree_;
   std::string odometry_frame_, base_frame_;  // once they are known
   std::deque<WaitingScan> waiting_;
+  std::vector<WaitingInertia> waiting_inertia_;
   std::string unplaced_frame_;  // of a laser whose place nobody told
   localisation::RobotLog log_;
-  double last_odometry_, last_scan_;  // [s] latest times so far
+  double last_odometry_, last_scan_, last_inertia_;  // [s] latest times so far
   int num_late_{0};
   std::size_t num_scans_{0}, num_ranges_{0};
   std::map<std::string, int> left_out_;

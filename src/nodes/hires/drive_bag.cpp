@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nav_msgs/Odometry.h>
 #include <rosbag/view.h>
+#include <sensor_msgs/Imu.h>
 #include <sensor_msgs/LaserScan.h>
 #include <sensor_msgs/MultiEchoLaserScan.h>
 #include <tf2_msgs/TFMessage.h>
@@ -16,6 +17,7 @@
 #include "hires/base/log.h"
 #include "hires/base/progress.h"
 #include "hires/base/text.h"
+#include "hires/ros/conversions.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/transform_buffer.h"
 #include "nodes/hires/bag_file.h"
@@ -27,10 +29,12 @@ using hires::base::ConfigError;
 using hires::robot::ScanReading;
 using hires::sensing::DriveBuilder;
 using hires::sensing::DriveSource;
+using hires::sensing::UnitReading;
 using Types = std::vector<std::string>;
 
 const Types kScanTypes{"sensor_msgs/LaserScan", "sensor_msgs/MultiEchoLaserScan"};
 const Types kOdometryTypes{"nav_msgs/Odometry"};
+const Types kInertiaTypes{"sensor_msgs/Imu"};
 const Types kTransformTypes{"tf2_msgs/TFMessage", "tf/tfMessage"};
 constexpr char kTf[] = "/tf", kTfStatic[] = "/tf_static";
 constexpr double kLeastTurn = 0.1;  // length of a quaternion that means something
@@ -100,6 +104,7 @@ class Choice {
 struct DriveTopics {
   std::string scan;
   std::string odometry;  ///< kTf: transforms tell it
+  std::string imu;       ///< empty: none is used
 };
 
 DriveTopics TopicsOf(const std::string& path, const std::vector<BagTopic>& topics,
@@ -115,10 +120,12 @@ DriveTopics TopicsOf(const std::string& path, const std::vector<BagTopic>& topic
     throw ConfigError(fmt::format("{}: has no scan: no topic of {} with messages; {}", path,
                                   scan.types(), ListOfTopics(topics)));
   }
+  if (!source.imu.empty())
+    chosen.imu = Choice(path, topics, "--imu", kInertiaTypes).Choose(source.imu);
   const bool is_tf_wanted = FromRoot(source.odometry) == kTf;
   if (!is_tf_wanted) chosen.odometry = odometry.Choose(source.odometry);
   if (!chosen.odometry.empty()) return chosen;
-  if (has_tf) return {chosen.scan, kTf};
+  if (has_tf) return {chosen.scan, kTf, chosen.imu};
   throw ConfigError(fmt::format(
       "{}: has no odometry: {} with messages; {}", path,
       is_tf_wanted ? "no topic /tf of tf2_msgs/TFMessage"
@@ -150,6 +157,7 @@ class DriveReader {
   void Take(const rosbag::MessageInstance& message) {
     const std::string& topic = message.getTopic();
     if (topic == topics_.scan) return TakeScan(message);
+    if (topic == topics_.imu) return TakeInertia(message);
     if (topic == kTf || topic == kTfStatic) return TakeTransforms(message, topic == kTfStatic);
     TakeOdometry(message);
   }
@@ -174,6 +182,26 @@ class DriveReader {
       return builder_.LeaveOut("readings of the odometry whose quaternion turns nothing");
     builder_.OnOdometry(odometry->header.stamp.toSec(), odometry->child_frame_id,
                         FromMsg(*odometry));
+  }
+
+  /// What a unit does not measure has a covariance that begins with -1 (REP-145).
+  void TakeInertia(const rosbag::MessageInstance& message) {
+    const auto inertia = message.instantiate<sensor_msgs::Imu>();
+    if (!inertia)
+      return builder_.LeaveOut("readings of the inertial unit of another type, or version of it");
+    const geometry_msgs::Vector3& rate = inertia->angular_velocity;
+    UnitReading reading{{}, {rate.x, rate.y, rate.z}};
+    const bool has_orientation = !(inertia->orientation_covariance[0] < 0.0);
+    if (has_orientation && !IsRotation(inertia->orientation))
+      return builder_.LeaveOut("readings of the inertial unit whose quaternion turns nothing");
+    if (!has_orientation && inertia->angular_velocity_covariance[0] < 0.0)
+      return builder_.LeaveOut("readings of the inertial unit without orientation and rate");
+    if (has_orientation) {
+      geometry_msgs::Pose pose;
+      pose.orientation = inertia->orientation;
+      reading.R_WI = FromMsg(pose).rotation;
+    }
+    builder_.OnInertia(inertia->header.stamp.toSec(), inertia->header.frame_id, reading);
   }
 
   /// A message may have a frame at several moments: each is told.
@@ -221,7 +249,8 @@ hires::localisation::RobotLog ReadDriveBag(const std::string& path, const DriveS
     OpenBag(path, &bag);
     const DriveTopics topics = TopicsOf(path, TopicsOfBag(bag), source);
     DriveReader reader(path, source, topics);
-    rosbag::View view(bag, rosbag::TopicQuery({topics.scan, topics.odometry, kTf, kTfStatic}));
+    rosbag::View view(
+        bag, rosbag::TopicQuery({topics.scan, topics.odometry, topics.imu, kTf, kTfStatic}));
     const double size = view.size();
     std::size_t count = 0;
     for (const rosbag::MessageInstance& message : view) {
