@@ -1,6 +1,6 @@
 // A robot that was carried away without a word: does it notice, is it found again, and how often is
-// it sure of a wrong place? And one that was not, among things that the map lacks: how often does it
-// take itself to be lost? See docs/notes_navigation.md.
+// it sure of a wrong place? And one that was not, among things that the map lacks: how often does
+// it take itself to be lost? See docs/notes_navigation.md.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -82,8 +82,8 @@ void BM_Carried(benchmark::State& state) {
         const SimulatedDrive whole =
             test_support::DriveThrough(world, room.course, {}, base::Rng(seed));
         const SimulatedDrive drive =
-            turns ? test_support::DriveThrough(world, Turning(room.course[seed % room.course.size()]),
-                                               {}, base::Rng(seed))
+            turns ? test_support::DriveThrough(
+                        world, Turning(room.course[seed % room.course.size()]), {}, base::Rng(seed))
                   : whole;
         MonteCarloParams params;
         params.initial_variance = {1e-3, 1e-3, 4e-4};

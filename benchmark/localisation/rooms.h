@@ -23,7 +23,8 @@ inline world::OccupancyGrid RoomWithoutCorner() {
       const bool is_border = row < 2 || column < 2 || row >= 198 || column >= 198;
       const bool is_corner = column >= 90 && row >= 100;
       const bool is_table = column >= 40 && column < 56 && row >= 50 && row < 62;
-      grid.cells.push_back(is_border || is_corner || is_table ? world::Cell::kOccupied : world::Cell::kFree);
+      grid.cells.push_back(is_border || is_corner || is_table ? world::Cell::kOccupied
+                                                              : world::Cell::kFree);
     }
   }
   return grid;

@@ -301,9 +301,9 @@ TEST_F(LocaliseCommandTest, ConfigurationIsReadAndItsErrorsAreNamed) {
                                     with("scan_timeout", "scan_timeout: 5.0\nbeam_skip: 1")});
   EXPECT_THAT(sure.err, HasSubstr("beam_skip"));
   const Ended never_good = Localise(log, {"--initial", "2 2 1.5708", "--json", "-", "--config",
-                                          with("lost_explained", "lost_explained: 1.0")});
+                                          with("lost_spread", "lost_spread: 0.01")});
   EXPECT_EQ(never_good.code, kExitUndecided) << never_good.err;
-  EXPECT_EQ(json::parse(never_good.out)["status"], "unexplained");
+  EXPECT_EQ(json::parse(never_good.out)["status"], "spread");
 }
 
 }  // namespace

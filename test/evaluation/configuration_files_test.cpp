@@ -111,8 +111,7 @@ const std::map<std::string, Reader>& Readers() {
       {"robots", [](const std::string& path) { robot::LoadRobot(path); }},
       {"self_localisation.yaml",
        [](const std::string& path) { simulation::LoadSelfLocalisation(path); }},
-      {"localisation_error.yaml",
-       [](const std::string& path) { simulation::ReadPoseError(path); }},
+      {"localisation_error.yaml", [](const std::string& path) { simulation::ReadPoseError(path); }},
       {"obstacle_layer.yaml",
        [](const std::string& path) {
          imagination::SetupConfig config;

@@ -28,8 +28,7 @@ TEST(LostTallyTest, TellsWhatBecameOfDrivesThatWentAstray) {
   const PlaceTrail right{Moment(0.02), Moment(0.1), Moment(0.4, true), Moment(0.02)};
   const PlaceTrail found{Moment(3.0), Moment(3.0, true), Moment(0.1, true), Moment(0.1)};
   const PlaceTrail deceived{Moment(0.1), Moment(2.0), Moment(2.0), Moment(2.0)};
-  const PlaceTrail still_lost{Moment(2.0), Moment(2.0, true), Moment(2.0, true),
-                              Moment(0.1, true)};
+  const PlaceTrail still_lost{Moment(2.0), Moment(2.0, true), Moment(2.0, true), Moment(0.1, true)};
   const auto measures = MeasuresOf({right, found, deceived, still_lost, {}});
   EXPECT_EQ(measures.at("astray"), 3.0);
   EXPECT_EQ(measures.at("noticed"), 2.0);

@@ -200,7 +200,8 @@ std::map<std::string, double> MeasuresOf(const std::string& experiment, int legs
   const auto report =
       RunExperiment(ReadExperiment(kConfig + "/experiments/" + experiment, overrides), {});
   std::map<std::string, double> measures;
-  for (const Measure& measure : report.value().findings.measures) measures[measure.name] = measure.value;
+  for (const Measure& measure : report.value().findings.measures)
+    measures[measure.name] = measure.value;
   return measures;
 }
 
@@ -216,7 +217,8 @@ TEST(LostTest, ACarriedRobotNoticesIsFoundAndMostlyArrives) {
 
 TEST(LostTest, BetweenEndsThatLookAlikeNothingIsNoticed) {
   const auto measures = MeasuresOf("lost_corridor.yaml", 40);
-  EXPECT_GE(measures.at("astray"), 20.0);  // each second leg; the others are at their goal, it seems
+  EXPECT_GE(measures.at("astray"),
+            20.0);  // each second leg; the others are at their goal, it seems
   EXPECT_EQ(measures.at("noticed"), 0.0);
   EXPECT_EQ(measures.at("deceived"), measures.at("astray"));
 }

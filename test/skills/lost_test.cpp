@@ -137,8 +137,8 @@ TEST(LostTest, ItLooksAroundOnlyWhereTheLaserShowsRoom) {
 TEST(LostTest, SomethingOnTheFloorBesideItKeepsItFromTurning) {
   MoveBase skill(WithObstacleLayer(), kEast, kFast);
   robot::Observation seen = Seen(0.0, kUnsure, 2.0);
-  seen.obstacles_M = {geometry::Transformed(
-      kMiddle, {{0.45, 0.0}, {0.55, 0.0}, {0.55, 0.1}, {0.45, 0.1}})};
+  seen.obstacles_M = {
+      geometry::Transformed(kMiddle, {{0.45, 0.0}, {0.55, 0.0}, {0.55, 0.1}, {0.45, 0.1}})};
   robot::Command command;
   skill.Update(seen, &command);
   EXPECT_EQ(command.base_velocity.value().wz, 0.0);

@@ -227,9 +227,10 @@ void ReadMishaps(ParamReader* in, ExperimentConfig* config) {
   }
   const bool has_any = config->is_carried || !config->moved.empty() || !config->wet.empty();
   if (has_any && config->self_localisation == "none")
-    in->Fail("self_localisation",
-             "is none: only a robot that finds its place by itself can be carried, have an old map, or "
-             "slip; wanted a file like config/self_localisation.yaml");
+    in->Fail(
+        "self_localisation",
+        "is none: only a robot that finds its place by itself can be carried, have an old map, or "
+        "slip; wanted a file like config/self_localisation.yaml");
 }
 
 void ReadPlace(const std::string& path, ParamReader* in, const ExperimentOverrides& overrides,

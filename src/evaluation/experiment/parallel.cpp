@@ -80,10 +80,12 @@ class Watch {
     if (std::holds_alternative<ThreadEnded>(event)) ++num_ended_;
   }
 
-  void Show() {
+  /// @param is_last  whatever was shown before, and when
+  void Show(bool is_last = false) {
     constexpr auto kPeriod = std::chrono::milliseconds(200);
     const Clock::time_point now = Clock::now();
-    if (!crew_.on_progress || now < shown_ + kPeriod || total_units_ <= 0.0) return;
+    if (!crew_.on_progress || total_units_ <= 0.0) return;
+    if (now < shown_ + kPeriod && !is_last) return;
     shown_ = now;
     crew_.on_progress(std::min(1.0, units_ / total_units_),
                       std::chrono::duration<double>(now - start_).count());
@@ -119,6 +121,7 @@ bool DoInParallel(int num_tasks, double total_units, const Crew& crew,
     }
   }
   watch.ThrowFirstError();
+  watch.Show(true);
   return !(crew.cancelled && crew.cancelled());
 }
 

@@ -116,18 +116,18 @@ TextTable LostTally::Table() const {
   std::vector<double> sorted = until_found_;
   std::sort(sorted.begin(), sorted.end());
   const std::string times =
-      sorted.empty() ? ""
-                     : fmt::format("{:.1f} / {:.1f} s", imagination::Quantile(sorted, 50),
-                                   sorted.back());
-  return {fmt::format("Drives on which the robot took itself to be elsewhere, {:g} m or more off; "
-                      "lost: it stood or looked around",
-                      kElsewhere),
-          {{"drives", "astray", "noticed", "found", "deceived", "until found, median / longest",
-            "lost", "wrong and sure"},
-           {fmt::format("{}", num_drives_), fmt::format("{}", num_astray_),
-            fmt::format("{}", num_noticed_), fmt::format("{}", num_found_),
-            fmt::format("{}", num_deceived_), times, share(num_lost_),
-            share(num_wrong_and_sure_)}}};
+      sorted.empty()
+          ? ""
+          : fmt::format("{:.1f} / {:.1f} s", imagination::Quantile(sorted, 50), sorted.back());
+  return {
+      fmt::format("Drives on which the robot took itself to be elsewhere, {:g} m or more off; "
+                  "lost: it stood or looked around",
+                  kElsewhere),
+      {{"drives", "astray", "noticed", "found", "deceived", "until found, median / longest", "lost",
+        "wrong and sure"},
+       {fmt::format("{}", num_drives_), fmt::format("{}", num_astray_),
+        fmt::format("{}", num_noticed_), fmt::format("{}", num_found_),
+        fmt::format("{}", num_deceived_), times, share(num_lost_), share(num_wrong_and_sure_)}}};
 }
 
 std::vector<Measure> LostTally::Measures() const {

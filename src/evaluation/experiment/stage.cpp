@@ -51,11 +51,10 @@ world::World AsMapped(world::World world, const ExperimentConfig& config) {
     const auto body = std::find_if(world.statics.begin(), world.statics.end(),
                                    [&](const auto& other) { return other.name == moved.body; });
     if (body == world.statics.end())
-      throw base::ConfigError(config.name + ": moved: " +
-                              base::UnknownName("static body", moved.body, names));
+      throw base::ConfigError(config.name +
+                              ": moved: " + base::UnknownName("static body", moved.body, names));
     body->X_MB.translation += Eigen::Vector3d(moved.by.x, moved.by.y, 0.0);
-    body->X_MB.rotation =
-        geometry::RotationFromRpy(0.0, 0.0, moved.by.yaw) * body->X_MB.rotation;
+    body->X_MB.rotation = geometry::RotationFromRpy(0.0, 0.0, moved.by.yaw) * body->X_MB.rotation;
   }
   world.hash = world.ComputeHash();
   return world;
@@ -111,9 +110,8 @@ Stage MakeStage(const ExperimentConfig& config) {
   with_goals->pose_error = setup.scene->pose_error;
   setup.scene = std::move(with_goals);
   if (config.self_localisation != "none") {
-    setup.scene = simulation::FindingItsPlace(
-        *setup.scene, Befallen(config),
-        mapped ? *mapped : setup.scene->world);
+    setup.scene = simulation::FindingItsPlace(*setup.scene, Befallen(config),
+                                              mapped ? *mapped : setup.scene->world);
   }
   setup.skills = std::make_shared<const skills::SkillSet>(std::move(skills));
   stage.objects = config.objects;

@@ -9,15 +9,31 @@ namespace {
 
 constexpr std::uint64_t kPlayed = 77;  // stream of the held-out seeds
 
-/// As a whole: its share of the progress is one of `of`.
-Crew Part(const Crew& crew, int index, int of) {
-  Crew part = crew;
-  if (!crew.on_progress) return part;
-  part.on_progress = [=](double fraction, double elapsed) {
-    crew.on_progress((index + fraction) / of, elapsed);
-  };
-  return part;
-}
+/// Experiments one after the other, whose progress is told as that of one.
+class Parts {
+ public:
+  Parts(const Crew& crew, int count) : crew_(crew), count_(count) {}
+
+  /// Of the next one; lives no longer than this.
+  Crew Next() {
+    const int index = num_begun_++;
+    before_ += last_;
+    last_ = 0.0;
+    Crew part = crew_;
+    if (!crew_.on_progress) return part;
+    part.on_progress = [this, index](double fraction, double elapsed) {
+      last_ = elapsed;
+      crew_.on_progress((index + fraction) / count_, before_ + elapsed);
+    };
+    return part;
+  }
+
+ private:
+  const Crew& crew_;
+  const int count_;
+  int num_begun_{0};
+  double before_{0.0}, last_{0.0};  // [s]
+};
 
 void RequireFilter(const ExperimentConfig& drives) {
   if (std::get_if<LegsConfig>(&drives.kind) == nullptr) {
@@ -35,13 +51,12 @@ void RequireFilter(const ExperimentConfig& drives) {
 /// The trails of all legs of the series from `first` to `last`, each of one seed more.
 std::optional<std::vector<PlaceTrail>> Trails(const PoseErrorOrder& order, int first, int last,
                                               const std::shared_ptr<const Stage>& stage,
-                                              const Crew& crew) {
+                                              Parts* parts) {
   std::vector<PlaceTrail> trails;
   for (int i = first; i < last; ++i) {
     ExperimentConfig series = order.drives;
     series.seed += static_cast<std::uint64_t>(i);
-    auto chains = PlayLegs(std::get<LegsConfig>(series.kind), series, stage,
-                           Part(crew, i, order.series + order.held_out));
+    auto chains = PlayLegs(std::get<LegsConfig>(series.kind), series, stage, parts->Next());
     if (!chains) return std::nullopt;
     for (std::vector<Leg>& chain : *chains)
       for (Leg& leg : chain) trails.push_back(std::move(leg.places));
@@ -56,9 +71,10 @@ std::optional<PoseErrorReport> FitPoseError(const PoseErrorOrder& order, const C
   const auto stage = std::make_shared<const Stage>(MakeStage(order.drives));
   const simulation::SelfLocalisationParams params =
       simulation::LoadSelfLocalisation(order.drives.self_localisation);
-  const auto trails = Trails(order, 0, order.series, stage, crew);
+  Parts parts(crew, order.series + order.held_out);
+  const auto trails = Trails(order, 0, order.series, stage, &parts);
   if (!trails) return std::nullopt;
-  const auto held_out = Trails(order, order.series, order.series + order.held_out, stage, crew);
+  const auto held_out = Trails(order, order.series, order.series + order.held_out, stage, &parts);
   if (!held_out) return std::nullopt;
   PoseErrorReport report;
   report.drives = order.drives.name;

@@ -76,8 +76,9 @@ SelfLocaliser::SelfLocaliser(std::shared_ptr<const SelfLocalisation> common, con
   const double variance = params().start_sd * params().start_sd;
   const double variance_yaw = params().start_sd_yaw * params().start_sd_yaw;
   filter_.Reseed(rng.Fork(kFilter));
-  filter_.SetPose(MistakenFor(params(), X_MB, rng.Fork(kCarried)) * StartError(params(), rng.Fork(kStart)),
-                  Eigen::Vector3d(variance, variance, variance_yaw).asDiagonal());
+  filter_.SetPose(
+      MistakenFor(params(), X_MB, rng.Fork(kCarried)) * StartError(params(), rng.Fork(kStart)),
+      Eigen::Vector3d(variance, variance, variance_yaw).asDiagonal());
   odometry_.OnInertia(now(), {});
   odometry_.OnOdometry(now(), {});
 }

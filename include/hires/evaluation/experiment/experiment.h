@@ -132,7 +132,8 @@ std::string KindName(const ExperimentConfig& config);
 struct Crew {
   int threads{1};
   std::function<bool()> cancelled;  ///< asked a few times per simulated second; may be empty
-  /// Called a few times a second with the share that is done and the time since the start [s].
+  /// Called a few times a second, and at the end, with the share that is done and the time since
+  /// the start [s].
   std::function<void(double fraction, double elapsed)> on_progress;
 };
 
