@@ -104,7 +104,8 @@ TEST(ListCommandTest, FilesOfThePackageAreFound) {
               ElementsAre(robots + "car.yaml", robots + "cart.yaml", robots + "fetch.yaml",
                           robots + "pr2.yaml"));
   EXPECT_THAT(ColumnOf(Listed({"worlds"}), "world"),
-              ElementsAre(worlds + "restaurant.world", worlds + "workshop.world"));
+              ElementsAre(worlds + "corridor.world", worlds + "restaurant.world",
+                          worlds + "workshop.world"));
   EXPECT_THAT(ColumnOf(Listed({"scenarios"}), "scenario"),
               ElementsAre("coffee_spots", "hot_coffee", "serve_coffee", "topple"));
   EXPECT_THAT(ColumnOf(Listed({"truths"}), "truth"),

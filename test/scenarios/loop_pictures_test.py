@@ -14,6 +14,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 
 from closed_loop import CONFIG, HEAT_READER, RECOGNISER, RESTAURANT  # noqa: E402
 from loop_case import AT_COUNTER, MUG, TABLE_TOP, LoopCase  # noqa: E402
+from ros_processes import wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
 
 MILL = {'peppermill1': (5.47, 10.16, 0.75, 0.0)}
@@ -58,8 +59,9 @@ class LoopPicturesTest(LoopCase):
         shown = {topic: kind for topic, kind in shown_by(displays_of(name)).items()
                  if not topic.startswith('/worker_') or topic.startswith('/worker_1/')}
         self.assertIn('/worker_1/markers', shown)
-        types = self.loop.main.topic_types()
-        self.assertEqual({topic: types.get(topic) for topic in shown}, shown, name)
+        # The worker's come once the relay has heard of it.
+        wait_until(lambda: shown.items() <= self.loop.main.topic_types().items(),
+                   lambda: '%s to have all that %s shows: %s' % (self.loop.main.topic_types(), name, shown))
         silent = [topic for topic in shown if not self.loop.main.publishers(topic)]
         self.assertEqual(silent, [], name)
 

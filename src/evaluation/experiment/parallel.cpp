@@ -121,8 +121,9 @@ bool DoInParallel(int num_tasks, double total_units, const Crew& crew,
     }
   }
   watch.ThrowFirstError();
+  if (crew.cancelled && crew.cancelled()) return false;
   watch.Show(true);
-  return !(crew.cancelled && crew.cancelled());
+  return true;
 }
 
 }  // namespace hires::evaluation
