@@ -27,6 +27,7 @@
 #include "hires/base/check.h"
 #include "hires/geometry/angles.h"
 #include "hires/localisation/monte_carlo.h"
+#include "localisation/likelihood_field.h"
 #include "rooms.h"
 #include "support/simulated_drive.h"
 
@@ -223,24 +224,6 @@ COccupancyGridMap2D::Ptr MrptMap(const world::OccupancyGrid& grid,
   return map;
 }
 
-/// Without the cells that occupied ones, or the map's border, surround.
-world::OccupancyGrid WallFaces(const world::OccupancyGrid& grid) {
-  world::OccupancyGrid faces = grid;
-  const auto is_occupied = [&](int column, int row) {
-    const bool is_outside = column < 0 || row < 0 || column >= grid.width || row >= grid.height;
-    return is_outside || grid.at(column, row) == world::Cell::kOccupied;
-  };
-  for (int row = 0; row < grid.height; ++row) {
-    for (int column = 0; column < grid.width; ++column) {
-      bool is_within = true;
-      for (int k = 0; k < 9; ++k) is_within &= is_occupied(column + k % 3 - 1, row + k / 3 - 1);
-      if (is_within)
-        faces.cells[static_cast<std::size_t>(row) * grid.width + column] = world::Cell::kFree;
-    }
-  }
-  return faces;
-}
-
 struct Place {
   bool is_judging;
   int boxes;
@@ -300,8 +283,7 @@ std::vector<Tally> Mrpts(const Place& place, const MrptSetting& setting) {
   const std::vector<Room> rooms = RoomsOf(place);
   std::vector<COccupancyGridMap2D::Ptr> maps;
   for (const Room& room : rooms)
-    maps.push_back(
-        MrptMap(setting.has_faces ? WallFaces(room.grid) : room.grid, setting.likelihood));
+    maps.push_back(MrptMap(setting.has_faces ? FacesOf(room.grid) : room.grid, setting.likelihood));
   std::vector<Tally> tallies(kRepetitions);
   for (int n = -1; n < kRepetitions; ++n) {
     const int k = std::max(0, n), seed = SeedOf(place, k);

@@ -14,9 +14,12 @@ namespace {
 
 constexpr int kMostCells = 255;  // whose square fits into 16 bits
 
-/// Obstacles without what no beam gets to: cells that obstacles surround. Else a pose from which
-/// beams end within a thick wall would be as good as the right one, and robots would take
-/// themselves to be nearer to the walls ahead of them than they are.
+std::int32_t MostSquared(double cells) {
+  return static_cast<std::int32_t>(std::ceil(cells * cells - 1e-6));
+}
+
+}  // namespace
+
 world::OccupancyGrid FacesOf(const world::OccupancyGrid& grid) {
   world::OccupancyGrid faces = grid;
   const auto is_occupied = [&](int column, int row) {
@@ -33,12 +36,6 @@ world::OccupancyGrid FacesOf(const world::OccupancyGrid& grid) {
   }
   return faces;
 }
-
-std::int32_t MostSquared(double cells) {
-  return static_cast<std::int32_t>(std::ceil(cells * cells - 1e-6));
-}
-
-}  // namespace
 
 LikelihoodField::LikelihoodField(const world::OccupancyGrid& grid, double max_distance)
     : resolution_(grid.resolution),

@@ -7,11 +7,15 @@
 
 namespace hires::localisation {
 
+/// Obstacles without what no beam gets to: cells that obstacles surround. Else a pose from which
+/// beams end within a thick wall would be as good as the right one, and robots would take
+/// themselves to be nearer to the walls ahead of them than they are.
+world::OccupancyGrid FacesOf(const world::OccupancyGrid& grid);
+
 /// How far each place of a map is from the nearest face of an obstacle, where beams can end, for
 /// lookups without a branch: of a thick wall the cells within are as far from it as they lie deep.
-/// What is
-/// kept is the square of the distance in cells: a whole number, so it is exact in 16 bits, and a
-/// table of a few kB gives whatever depends on it.
+/// What is kept is the square of the distance in cells: a whole number, so it is exact in 16 bits,
+/// and a table of a few kB gives whatever depends on it.
 ///
 /// A place is a cell by `Cell(...)` of coordinates in cells; all that lies outside of the map is
 /// one border cell, as far from obstacles as can be.

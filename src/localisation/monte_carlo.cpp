@@ -53,8 +53,8 @@ constexpr double kExplainedRate = 0.3;  // at which the share of explained beams
 // degrees off and fit worse than luckier ones elsewhere; a scan then counts as so few beams that
 // several scans decide.
 constexpr double kBeamsWhileUndecided = 2.0;
-constexpr double kKeptShare =
-    0.1;  // of the belief, that stays where it was when it looks everywhere
+// Of the belief, that stays where it was when it looks everywhere.
+constexpr double kKeptShare = 0.1;
 constexpr double kAnyRange = 30.0;  // [m] where neither scan nor parameters name a longest range
 
 bool IsPose(const Pose2& X) {
@@ -215,7 +215,7 @@ class MonteCarloLocalisation::Belief {
   }
 
   void LookEverywhere() {
-    const Particles before = particles_;
+    const Particles before = std::move(particles_);
     const auto last_scan = last_scan_;
     Begin();
     for (std::size_t i = 0; i < before.size(); ++i)

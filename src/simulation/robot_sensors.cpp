@@ -33,18 +33,20 @@ RobotSensors::RobotSensors(std::shared_ptr<const Scene> scene, const Variation& 
 
 void RobotSensors::ReadBase(double time, const BaseMotion& motion,
                             robot::Observation* observation) {
-  if (state_.told) state_.told->Drive(motion.X_MB);
-  observation->X_MB = state_.localiser ? state_.localiser->X_MB()
-                      : state_.told    ? state_.told->X_MBelieved()
-                                       : BelievedPose(motion.X_MB, variation_, &state_.rng);
   if (state_.localiser) {
+    observation->X_MB = state_.localiser->X_MB();
+    observation->X_OB = state_.localiser->X_OB();
     const Eigen::Matrix3d covariance = state_.localiser->Estimate().covariance;
     observation->position_sd =
         geometry::LargestSd(covariance(0, 0), covariance(0, 1), covariance(1, 1));
+  } else if (state_.told) {
+    state_.told->Drive(motion.X_MB);
+    observation->X_MB = state_.told->X_MBelieved();
+    observation->X_OB = state_.told->X_OB();
+  } else {
+    observation->X_MB = BelievedPose(motion.X_MB, variation_, &state_.rng);
+    observation->X_OB = motion.X_MB;
   }
-  observation->X_OB = state_.localiser ? state_.localiser->X_OB()
-                      : state_.told    ? state_.told->X_OB()
-                                       : motion.X_MB;
   observation->V_B = motion.V_B;
   observation->scan = state_.scan;
   state_.ghosts.Update(motion.X_MB, variation_.ghost_rate, time);

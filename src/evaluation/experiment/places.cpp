@@ -23,8 +23,7 @@ struct Summary {
     double squares = 0.0;
     int num_inside = 0;
     for (const PlaceMoment& moment : moments) {
-      const Eigen::Vector2d off = moment.X_MBelieved.position() - moment.X_MB.position();
-      distances.push_back(off.norm());
+      distances.push_back(moment.off().norm());
       yaws.push_back(std::abs(geometry::WrapToPi(moment.X_MBelieved.yaw - moment.X_MB.yaw)));
       squares += distances.back() * distances.back();
       num_inside += moment.is_inside;
@@ -92,8 +91,7 @@ void LostTally::Add(const PlaceTrail& drive) {
   bool is_noticed = false;
   for (std::size_t i = 0; i < drive.size(); ++i) {
     const PlaceMoment& moment = drive[i];
-    const bool is_wrong =
-        (moment.X_MBelieved.position() - moment.X_MB.position()).norm() > kElsewhere;
+    const bool is_wrong = moment.off().norm() > kElsewhere;
     num_lost_ += moment.is_lost;
     num_wrong_and_sure_ += is_wrong && !moment.is_lost;
     if (is_wrong && !first_wrong) first_wrong = i;

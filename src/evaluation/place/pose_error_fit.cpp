@@ -109,8 +109,7 @@ void AddAlike(const PlaceTrail& trail, double apart, Alike* alike) {
   for (std::size_t i = 0; i < trail.size(); ++i) {
     while (j < trail.size() && ways[j] < ways[i] + apart) ++j;
     if (j == trail.size()) return;
-    const Eigen::Vector2d a = trail[i].X_MBelieved.position() - trail[i].X_MB.position();
-    const Eigen::Vector2d b = trail[j].X_MBelieved.position() - trail[j].X_MB.position();
+    const Eigen::Vector2d a = trail[i].off(), b = trail[j].off();
     alike->product += a.dot(b);
     alike->first += a.squaredNorm();
     alike->second += b.squaredNorm();

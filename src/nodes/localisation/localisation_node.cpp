@@ -207,11 +207,10 @@ bool LocalisationNode::NoteLost(double stamp) {
                        estimate.status == LocalisationStatus::kSpread;
   if (is_lost == is_lost_) return false;
   is_lost_ = is_lost;
-  hires::base::Log(
-      is_lost ? LogLevel::kWarn : LogLevel::kInfo,
-      fmt::format("place={} x={:.3f} y={:.3f} yaw={:.3f} explained={:.2f} searches={}",
-                  is_lost ? "lost" : "found", estimate.X_MB.x, estimate.X_MB.y, estimate.X_MB.yaw,
-                  estimate.explained, estimate.num_searches));
+  hires::base::Log(is_lost ? LogLevel::kWarn : LogLevel::kInfo,
+                   fmt::format("place={} x={:.3f} y={:.3f} yaw={:.3f} explained={:.2f} searches={}",
+                               is_lost ? "lost" : "found", estimate.X_MB.x, estimate.X_MB.y,
+                               estimate.X_MB.yaw, estimate.explained, estimate.num_searches));
   return true;
 }
 
@@ -271,9 +270,10 @@ void LocalisationNode::DiagnoseBelief(diagnostic_updater::DiagnosticStatusWrappe
                        fmt::format("uncertain: {} places fit", estimate.num_clusters));
         break;
       case LocalisationStatus::kUnexplained:
-        status.summary(DiagnosticStatus::ERROR,
-                       "lost: the map explains too little of what the laser sees; it looks everywhere "
-                       "after relocate_after, or tell where the robot is (initialpose)");
+        status.summary(
+            DiagnosticStatus::ERROR,
+            "lost: the map explains too little of what the laser sees; it looks everywhere "
+            "after relocate_after, or tell where the robot is (initialpose)");
         break;
       case LocalisationStatus::kSpread:
         status.summary(DiagnosticStatus::ERROR,

@@ -15,6 +15,8 @@ struct PlaceMoment {
   bool is_inside{false};
   bool is_lost{false};  ///< it is not sure enough to drive
 
+  /// [m] from where it is to where it takes itself to be, in the map.
+  Eigen::Vector2d off() const { return X_MBelieved.position() - X_MB.position(); }
   geometry::Pose2 error() const { return X_MB.Inverse() * X_MBelieved; }
   /// Of the odometry in the map; another one than before means that the laser corrected.
   geometry::Pose2 X_MO() const { return X_MBelieved * X_OB.Inverse(); }
