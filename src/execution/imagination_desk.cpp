@@ -114,12 +114,16 @@ std::set<std::string> ImaginationDesk::StartOf(const Facts& projected) const {
   return start;
 }
 
+/// Where the robot waits for the answer, one is due before its patience ends: what was played by then
+/// says more than nothing.
+/// @pre it was asked.
 double ImaginationDesk::DeadlineOf(const Question& question) {
-  const bool is_patient = question.on_late == planning::OnLate::kWait || session_.params().dry_run;
-  if (is_patient) return kForever;
-  const double latest =
-      question.limit.value_or(session_.progress().network().LatestStart(question.target));
-  return std::max(session_.now(), latest - session_.params().arrival_margin);
+  const MonitorParams& params = session_.params();
+  const bool is_patient = question.on_late == planning::OnLate::kWait || params.dry_run;
+  const double latest = is_patient ? *question.asked + params.max_wait
+                                   : question.limit.value_or(session_.progress().network().LatestStart(
+                                         question.target));
+  return std::max(session_.now(), latest - params.arrival_margin);
 }
 
 void ImaginationDesk::Ask(Question* question) {
@@ -127,8 +131,8 @@ void ImaginationDesk::Ask(Question* question) {
   question->start = StartOf(projected);
   question->known = session_.state().instances();
   question->request = session_.outbox().NewRequest();
-  question->deadline = DeadlineOf(*question);
   if (!question->asked) question->asked = session_.now();
+  question->deadline = DeadlineOf(*question);
   question->retry.reset();
   question->differs.reset();
   StepRun& step = session_.progress().run().at(question->step);

@@ -207,13 +207,27 @@ planning::OperatorData Waiting() {
 TEST(ToppleTest, WhereTheDomainSaysSoTheRobotWaits) {
   const planning::OperatorData waiting = Waiting();
   auto options = For("carry_object");
+  options.monitor.arrival_margin = 0.5;
   options.operators = &waiting;
   options.imagine = [](const StartImagination&, int) { return Slow(); };
   options.imagine_delay = 150.0;
   ScriptedWorld world(options);
   ExpectSuccess(&world, "carry_object");
   EXPECT_NEAR(world.StartOf(kDrive + std::string("slow)")), 150.05, 1e-6);
-  EXPECT_EQ(world.imaginations().at(0).deadline, temporal::kForever);
+  // By the time its patience ends, what was played until then is due.
+  EXPECT_NEAR(world.imaginations().at(0).deadline, 1000.05 + options.monitor.max_wait - 0.5, 1e-6);
+  EXPECT_THAT(world.warnings(), IsEmpty());
+}
+
+TEST(ToppleTest, WhatWasPlayedBeforePatienceEndsIsTaken) {
+  const planning::OperatorData waiting = Waiting();
+  auto options = For("carry_object");
+  options.operators = &waiting;
+  options.imagine = [](const StartImagination&, int) { return Slow(); };
+  options.imagine_delay = options.monitor.max_wait - 0.2;  // as a client that answers at the deadline
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_GT(world.StartOf(kDrive + std::string("slow)")), options.monitor.max_wait - 1.0);
   EXPECT_THAT(world.warnings(), IsEmpty());
 }
 

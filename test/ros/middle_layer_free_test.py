@@ -9,6 +9,7 @@ import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
+from diagnostics import diagnostics  # noqa: E402
 from failures import text_of  # noqa: E402
 from robot_system import RobotSystem  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
@@ -105,6 +106,7 @@ class MiddleLayerFreeTest(unittest.TestCase):
 
     def test_without_sensors_an_action_fails(self):
         self.begin_without('base_odometry/odom:=nowhere')
+        diagnostics(self.system.rospy, 'middle_layer', lambda v: v['controller without a listener'] == '')
         result = self.system.execute('move_torso', 'torsoUpPosture').result()
         self.assertEqual((result.code, text_of(result.failure)), (self.codes.FAILED, 'stale_observation'))
 

@@ -253,8 +253,11 @@ void MiddleLayerNode::Tend() {
 
 void MiddleLayerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   const std::string missing = inputs_.Missing();
+  const std::string deaf = controllers_ ? controllers_->Missing() : "";
   if (!missing.empty()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "nothing comes on " + missing);
+  } else if (!deaf.empty()) {
+    status.summary(diagnostic_msgs::DiagnosticStatus::WARN, "nobody listens to " + deaf);
   } else if (lockstep_ && !lockstep_->is_awaited()) {
     status.summary(diagnostic_msgs::DiagnosticStatus::WARN,
                    "the robot does not wait for " + lockstep_->topic());
@@ -266,6 +269,7 @@ void MiddleLayerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& stat
   status.add("ended", goals_.num_ended());
   status.add("lockstep", params_.lockstep);
   status.add("dry run", params_.dry_run);
+  status.add("controller without a listener", deaf);
   status.add("request to the guard", driving_ ? driving_->request() : 0);
   status.add("overridden", driving_ && driving_->is_overridden());
   status.add("world hash", hires::base::HexOf(setup_.world_hash));

@@ -42,6 +42,12 @@ std::string RobotControllers::Missing(const std::set<std::string>& groups) const
   return "";
 }
 
+std::string RobotControllers::Missing() const {
+  std::set<std::string> groups{"base"};
+  for (const auto& entry : trajectories_) groups.insert(entry.first);
+  return Missing(groups);
+}
+
 std::string RobotControllers::MissingOf(const std::string& group) const {
   const bool is_arm = group != "torso" && group != "head";
   const auto trajectory = trajectories_.find(group);

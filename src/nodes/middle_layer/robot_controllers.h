@@ -27,6 +27,8 @@ class RobotControllers {
   /// A controller that is needed and does not listen; empty: all are there.
   /// @param groups  as actions::GroupsOf.
   std::string Missing(const std::set<std::string>& groups) const;
+  /// The same of all groups that the names tell controllers for.
+  std::string Missing() const;
 
   bool is_base_there() const { return base_.getNumSubscribers() > 0; }
   std::string base_topic() const { return base_.getTopic(); }
