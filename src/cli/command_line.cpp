@@ -24,6 +24,7 @@
 #include "cli/query_scene.h"
 #include "cli/reading_display.h"
 #include "cli/recognise_command.h"
+#include "cli/reproduce/reproduce_command.h"
 #include "cli/save_rollout.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
@@ -379,6 +380,7 @@ struct Verbs {
   MapOptions map;
   LocaliseOptions localise;
   RecogniseOptions recognise;
+  ReproduceOptions reproduce;
   StoredReportOptions report;
   LimitsOptions limits;
   DoctorOptions doctor;
@@ -391,7 +393,8 @@ void SetCall(const std::vector<std::string>& arguments, const Backends& backends
   words.front() = "hires";
   for (ReportOptions* report :
        {&verbs->imagine_options.report, &verbs->achieve.report, &verbs->experiment.report,
-        &verbs->experiment.hypothesis.report, &verbs->plan.report, &verbs->doctor.robot.report}) {
+        &verbs->experiment.hypothesis.report, &verbs->plan.report, &verbs->doctor.robot.report,
+        &verbs->reproduce.report}) {
     report->command = CommandText(words);
     report->package_folder = backends.package_folder;
   }
@@ -411,6 +414,7 @@ void AddVerbs(CLI::App* app, Verbs* verbs, const Backends& backends) {
   AddRecogniseVerb(app, &verbs->recognise);
   AddMapVerb(app, &verbs->map);
   AddLocaliseVerb(app, &verbs->localise);
+  AddReproduceVerb(app, &verbs->reproduce);
   AddReportVerb(app, &verbs->report);
   AddDoctorVerb(app, &verbs->doctor);
   for (const Verb& verb : backends.more_verbs) {
@@ -471,6 +475,9 @@ int RunVerb(const Verbs& verbs, const Backends& backends) {
   if (*verbs.experiment.verb) return RunAnyExperiment(verbs.experiment, backends);
   if (*verbs.plan.verb) return RunPlanVerb(verbs.plan, IsInterrupted);
   if (*verbs.report.verb) return RunReportVerb(verbs.report);
+  if (*verbs.reproduce.verb) {
+    return RunReproduceVerb(verbs.reproduce, backends.package_folder, IsInterrupted);
+  }
   if (*verbs.list.verb) return RunListVerb(verbs.list, backends.package_folder);
   if (*verbs.recognise.verb) return RunRecogniseVerb(verbs.recognise, backends.package_folder);
   if (*verbs.map.verb)

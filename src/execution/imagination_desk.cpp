@@ -114,15 +114,16 @@ std::set<std::string> ImaginationDesk::StartOf(const Facts& projected) const {
   return start;
 }
 
-/// Where the robot waits for the answer, one is due before its patience ends: what was played by then
-/// says more than nothing.
+/// Where the robot waits for the answer, one is due before its patience ends: what was played by
+/// then says more than nothing.
 /// @pre it was asked.
 double ImaginationDesk::DeadlineOf(const Question& question) {
   const MonitorParams& params = session_.params();
   const bool is_patient = question.on_late == planning::OnLate::kWait || params.dry_run;
-  const double latest = is_patient ? *question.asked + params.max_wait
-                                   : question.limit.value_or(session_.progress().network().LatestStart(
-                                         question.target));
+  const double latest =
+      is_patient
+          ? *question.asked + params.max_wait
+          : question.limit.value_or(session_.progress().network().LatestStart(question.target));
   return std::max(session_.now(), latest - params.arrival_margin);
 }
 

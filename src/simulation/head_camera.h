@@ -31,8 +31,7 @@ class HeadCamera {
 
   /// What the robot knows though it has not looked, in the map as it believes it. What its hands
   /// hold it knows by itself.
-  void Remember(const std::vector<robot::SeenObject>& objects,
-                const geometry::Pose2& X_MBbelieved);
+  void Remember(const std::vector<robot::SeenObject>& objects, const geometry::Pose2& X_MBbelieved);
   /// A hand holds an object at the start.
   void KnowHeld(const std::string& name, const std::string& model, const std::string& link,
                 const geometry::Pose3& X_LO);

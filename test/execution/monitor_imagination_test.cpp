@@ -224,7 +224,8 @@ TEST(ToppleTest, WhatWasPlayedBeforePatienceEndsIsTaken) {
   auto options = For("carry_object");
   options.operators = &waiting;
   options.imagine = [](const StartImagination&, int) { return Slow(); };
-  options.imagine_delay = options.monitor.max_wait - 0.2;  // as a client that answers at the deadline
+  options.imagine_delay =
+      options.monitor.max_wait - 0.2;  // as a client that answers at the deadline
   ScriptedWorld world(options);
   ExpectSuccess(&world, "carry_object");
   EXPECT_GT(world.StartOf(kDrive + std::string("slow)")), options.monitor.max_wait - 1.0);

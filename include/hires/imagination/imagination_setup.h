@@ -34,12 +34,12 @@ struct SetupConfig {
   std::string objects;           ///< catalogue of object instances (YAML)
   std::string uncertainty;       ///< YAML, or "none"
   std::string detector;          ///< how the camera's recogniser errs (YAML), or "none"
-  std::string recogniser;      ///< that one itself (YAML), which then looks at pictures; or "none"
+  std::string recogniser;  ///< that one itself (YAML), which then looks at pictures; or "none"
   /// What tells the robot of a rollout where it is: "drawn" (off as the uncertainty says), "fitted"
   /// (its error goes as `localisation_error` says), "filter" (itself, as `self_localisation` says).
   std::string localisation{"drawn"};
   std::string self_localisation, localisation_error;  ///< YAML; read where they are needed
-  bool has_base_guard{false};  ///< late commands to the base end in the guard's ramp
+  bool has_base_guard{false};              ///< late commands to the base end in the guard's ramp
   std::vector<std::string> extra_objects;  ///< object models (files) beside the catalogue's
   /// Shared libraries with more actions: never from a file, as they are code.
   std::vector<std::string> action_libraries;

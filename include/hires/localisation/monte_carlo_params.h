@@ -41,7 +41,7 @@ struct MonteCarloParams {
   double max_angular_speed{6.0};   ///< [rad/s]
   double explained_distance{0.2};  ///< [m] beams that end so near to an obstacle are explained
   double lost_explained{0.5};      ///< share of explained beams below which it is lost
-  double lost_spread{1.0};   ///< [m] standard deviation of the position above which it is lost
+  double lost_spread{1.0};  ///< [m] standard deviation of the position above which it is lost
   /// [s] of scans that say that it is lost, after which it looks everywhere; negative: never
   double relocate_after{3.0};
   double scan_timeout{5.0};  ///< [s] without a scan that can be used, after which it says so

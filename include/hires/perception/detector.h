@@ -39,7 +39,7 @@ struct Detection {
   geometry::Pose3 X_CO;  ///< in the camera's frame: the localisation error is not the detector's
   double visible_share{0.0};
   std::string category{};  ///< concept of the ontology; empty: models that look so differ in it
-  double confidence{1.0};                         ///< 0 .. 1
+  double confidence{1.0};  ///< 0 .. 1
   std::vector<LabelConfidence> alternatives{};    ///< what else it may be
   Eigen::Vector3d size{Eigen::Vector3d::Zero()};  ///< [m] of the box around it; 0: not told
   int num_points{0};                              ///< of the cloud that it was seen as

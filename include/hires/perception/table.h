@@ -53,9 +53,9 @@ struct TableParams {
 std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                                const TableParams& params, base::Rng rng);
 
-/// A plate whose place is known to some centimetres, where the cloud has it: the plane of the points
-/// about it (their median, then least squares), as kinematics errs by more than a thing is high that
-/// lies flat. Its outline moves along.
+/// A plate whose place is known to some centimetres, where the cloud has it: the plane of the
+/// points about it (their median, then least squares), as kinematics errs by more than a thing is
+/// high that lies flat. Its outline moves along.
 /// @return the plate as expected where too few points are about it, or they lie otherwise by more
 ///         than a calibration does.
 Table PlateIn(const PointCloud& cloud, Table expected, const TableParams& params);

@@ -165,7 +165,7 @@ class SelfLocaliser {
   double time_{0.0}, offset_{0.0};  // [s] of the simulator's clock, and what came before it
   geometry::Pose2 X_MBtrue_;
   geometry::Pose2 X_OB_;
-  double heading_{0.0}, bias_;     // [rad], [rad/s] of the unit
+  double heading_{0.0}, bias_;  // [rad], [rad/s] of the unit
   base::Rng floor_rng_;
   double spin_{0.0};  // of the wet patch that it is on
   bool is_on_wet_{false};

@@ -59,10 +59,10 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
 /// Drives to a pose in the map round all known obstacles: A* on the inflated costmap, dynamic
 /// window approach for control, as move_base does, with room for the arms as they are when it
 /// begins. A base that steers like a car: hybrid A*, and a follower of arcs; where it came
-/// to rest out of tolerance it is given a new way, some times, and oscillates after these. While the
-/// robot is lost it stops and turns to look around, if the base can turn on the spot and an obstacle
-/// layer shows room for that; found again, it plans anew. Fails with start_blocked, goal_blocked,
-/// no_path, no_valid_trajectory, oscillating or localisation_lost.
+/// to rest out of tolerance it is given a new way, some times, and oscillates after these. While
+/// the robot is lost it stops and turns to look around, if the base can turn on the spot and an
+/// obstacle layer shows room for that; found again, it plans anew. Fails with start_blocked,
+/// goal_blocked, no_path, no_valid_trajectory, oscillating or localisation_lost.
 class MoveBase : public Skill {
  public:
   MoveBase(std::shared_ptr<const DrivingContext> context, const geometry::Pose2& X_MGoal,
