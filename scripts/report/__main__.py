@@ -13,7 +13,7 @@ import importlib.util
 import os
 import sys
 
-NEEDED = {'jinja2': 'python3-jinja2', 'matplotlib': 'python3-matplotlib'}
+NEEDED = {'jinja2': 'python3-jinja2', 'matplotlib': 'python3-matplotlib', 'scipy': 'python3-scipy'}
 
 
 def end(code, text):

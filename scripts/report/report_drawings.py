@@ -23,7 +23,7 @@ STYLE = {'svg.fonttype': 'none', 'svg.hashsalt': 'hires', 'font.family': 'DejaVu
          'axes.spines.right': False, 'axes.spines.left': False}
 
 
-def _figure(rows, row_height, width=WIDTH):
+def figure_of_rows(rows, row_height, width=WIDTH):
     figure = Figure(figsize=(width, 0.62 + row_height * rows))
     axes = figure.add_axes([0.022, 0.46 / figure.get_figheight(), 0.94,
                             1.0 - 0.54 / figure.get_figheight()])
@@ -33,50 +33,50 @@ def _figure(rows, row_height, width=WIDTH):
     return figure, axes
 
 
-def _svg(figure, name, label):
+def svg(figure, name, label):
     """The picture as a part of the page: its ids are its own, and no other file is named in it."""
     text = io.StringIO()
     figure.savefig(text, format='svg', metadata={'Date': None, 'Creator': None, 'Format': None, 'Type': None})
-    svg = text.getvalue()
-    svg = re.sub(r'<metadata>.*?</metadata>\s*', '', svg[svg.index('<svg'):], flags=re.DOTALL)
-    svg = re.sub(r'\bid="', 'id="%s-' % name, svg)
-    svg = re.sub(r'(url\(#|xlink:href="#)', r'\g<1>%s-' % name, svg)
-    svg = re.sub(r'<svg ', '<svg role="img" aria-label="%s" ' % escape(label), svg, count=1)
-    svg = re.sub(r' (?:width|height)="[\d.]+pt"', '', svg, count=2)
-    return Markup(re.sub(r'[ \t]+\n', '\n', svg))
+    drawn = text.getvalue()
+    drawn = re.sub(r'<metadata>.*?</metadata>\s*', '', drawn[drawn.index('<svg'):], flags=re.DOTALL)
+    drawn = re.sub(r'\bid="', 'id="%s-' % name, drawn)
+    drawn = re.sub(r'(url\(#|xlink:href="#)', r'\g<1>%s-' % name, drawn)
+    drawn = re.sub(r'<svg ', '<svg role="img" aria-label="%s" ' % escape(label), drawn, count=1)
+    drawn = re.sub(r' (?:width|height)="[\d.]+pt"', '', drawn, count=2)
+    return Markup(re.sub(r'[ \t]+\n', '\n', drawn))
 
 
-def _draws(function):
+def styled(function):
     """Under this module's style, whatever a user's own is."""
-    def styled(*arguments, **options):
+    def with_style(*arguments, **options):
         with matplotlib.rc_context():
             matplotlib.rcdefaults()
             matplotlib.rcParams.update(STYLE)
             return function(*arguments, **options)
-    return styled
+    return with_style
 
 
 def _shortened(text, most):
     return text if len(text) <= most else text[:most - 3] + '...'
 
 
-def _label_row(axes, y, text, most=68):
+def label_row(axes, y, text, most=68):
     axes.annotate(_shortened(text, most), (0, y), xycoords=('axes fraction', 'data'), xytext=(0, 5),
                   textcoords='offset points', va='bottom', fontsize=8.5)
 
 
-@_draws
+@styled
 def intervals(name, label, rows, percent=True, wanted=None):
     """A line for each interval, a dot at its estimate.
     @param rows  (text, estimate, lower, upper, whether it stands out).
     @param wanted  (value, text) of a line across all."""
     rows = rows[:MOST_ROWS]
-    figure, axes = _figure(len(rows), 0.42)
+    figure, axes = figure_of_rows(len(rows), 0.42)
     factor = 100.0 if percent else 1.0
     for i, (text, estimate, lower, upper, stands_out) in enumerate(rows):
         y = len(rows) - 1 - i
         colour = BEST if stands_out else OTHER
-        _label_row(axes, y, text)
+        label_row(axes, y, text)
         axes.plot([factor * lower, factor * upper], [y, y], color=colour, linewidth=4.5,
                   solid_capstyle='butt')
         axes.plot([factor * estimate], [y], 'o', color=INK, markersize=5, zorder=3, clip_on=False)
@@ -88,7 +88,7 @@ def intervals(name, label, rows, percent=True, wanted=None):
         axes.set_xlim(0, 100)
     axes.set_ylim(-0.65, len(rows) - 0.2)
     axes.set_xlabel(label)
-    return _svg(figure, name, label)
+    return svg(figure, name, label)
 
 
 def _edges(rows, logarithmic):
@@ -112,7 +112,7 @@ def _use_logarithm(axes, edges):
     axes.xaxis.set_minor_locator(NullLocator())
 
 
-@_draws
+@styled
 def spreads(name, label, rows, logarithmic=False):
     """A histogram for each row over one axis; full height is the row's fullest bin.
     @param rows  (text, values, marks, whether it stands out); marks are drawn across their row.
@@ -120,7 +120,7 @@ def spreads(name, label, rows, logarithmic=False):
     rows = [row for row in rows if row[1]][:MOST_ROWS]
     if not rows:
         return None
-    figure, axes = _figure(len(rows), 0.68)
+    figure, axes = figure_of_rows(len(rows), 0.68)
     edges = _edges(rows, logarithmic)
     for i, (text, values, marks, stands_out) in enumerate(rows):
         y = len(rows) - 1 - i
@@ -138,25 +138,25 @@ def spreads(name, label, rows, logarithmic=False):
     axes.set_xlim(edges[0], edges[-1])
     axes.set_ylim(-0.1, len(rows) - 0.02)
     axes.set_xlabel(label)
-    return _svg(figure, name, label)
+    return svg(figure, name, label)
 
 
-@_draws
+@styled
 def counts(name, label, rows):
     """A bar for each count.  @param rows  (text, count, whether it stands out)."""
     if not rows:
         return None
     rows = rows[:MOST_ROWS]
-    figure, axes = _figure(len(rows), 0.42)
+    figure, axes = figure_of_rows(len(rows), 0.42)
     for i, (text, count, stands_out) in enumerate(rows):
         y = len(rows) - 1 - i
-        _label_row(axes, y, '%s: %d' % (text, count))
+        label_row(axes, y, '%s: %d' % (text, count))
         axes.barh(y, count, height=0.24, color=BEST if stands_out else OTHER)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlim(0, 1.02 * max(1, max(row[1] for row in rows)))
     axes.set_ylim(-0.4, len(rows) - 0.2)
     axes.set_xlabel(label)
-    return _svg(figure, name, label)
+    return svg(figure, name, label)
 
 
 def _colour(bar, imagined):
@@ -169,11 +169,11 @@ def _colour(bar, imagined):
 
 def _timeline(bars, duration):
     imagined = {(bar['plan'], bar['index']) for bar in bars if bar['kind'] == 'imagination'}
-    figure, axes = _figure(len(bars), 0.36, 8.6)
+    figure, axes = figure_of_rows(len(bars), 0.36, 8.6)
     for i, bar in enumerate(bars):
         y = len(bars) - 1 - i
         head = 'imagine ' if bar['kind'] == 'imagination' else ''
-        _label_row(axes, y, '%s%s: %s, %.1f s' % (head, _shortened(bar['action'], 80), bar['outcome'],
+        label_row(axes, y, '%s%s: %s, %.1f s' % (head, _shortened(bar['action'], 80), bar['outcome'],
                                                   bar['end'] - bar['begin']), most=120)
         axes.barh(y, max(bar['end'] - bar['begin'], 0.002 * duration), left=bar['begin'], height=0.26,
                   color=_colour(bar, imagined))
@@ -190,14 +190,14 @@ def _timeline(bars, duration):
     return figure
 
 
-@_draws
+@styled
 def timeline(name, label, bars, duration):
     """What was done when, after the dissertation's Fig. 6.13: imaginations above, a dotted line where
     the step begins that one was about."""
-    return _svg(_timeline(bars, duration), name, label) if bars else None
+    return svg(_timeline(bars, duration), name, label) if bars else None
 
 
-@_draws
+@styled
 def timeline_png(bars, duration):
     """The same as PNG bytes."""
     picture = io.BytesIO()

@@ -28,9 +28,11 @@ class Answer:
         return self._find(pointer) is not None
 
     def at(self, pointer, kind):
-        """A field of that type, `kind` being one of str, bool, int, float, list, dict.
+        """A field of that type, `kind` being one of str, bool, int, float, list, dict, or None for any.
         @raise ReportError if it is missing or another."""
         value = self._find(pointer)
+        if kind is None and value is not None:
+            return value
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
         fits = is_number and math.isfinite(value) if kind is float else (
             isinstance(value, kind) and isinstance(value, bool) == (kind is bool))

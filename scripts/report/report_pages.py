@@ -9,6 +9,7 @@ import jinja2
 import report_drawings as drawings
 from report_input import ReportError, folder_of
 from report_numbers import Numbers, action_name
+from report_reproduce import reproduce
 
 GOOD, OPEN, BAD = 'good', 'open', 'bad'
 
@@ -256,7 +257,7 @@ def doctor(answer):
 
 
 PAGES = {'imagine': imagine, 'experiment': experiment, 'experiment hypothesis': hypothesis,
-         'achieve': achieve, 'plan': plan, 'doctor': doctor}
+         'achieve': achieve, 'plan': plan, 'doctor': doctor, 'reproduce': reproduce}
 
 
 def pictures(answer, path):

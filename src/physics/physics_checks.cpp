@@ -63,6 +63,13 @@ class Ground {
     world_.SetState(body_, state);
   }
 
+  /// @param angular  [rad/s] in the map.
+  void SpinBody(const Vector3d& angular) {
+    BodyState state = world_.GetState(body_);
+    state.V_WB.angular = angular;
+    world_.SetState(body_, state);
+  }
+
   void SetGroundSpeed(double speed) {
     BodyState state = world_.GetState(ground_);
     state.V_WB.linear = speed * direction_;
@@ -73,6 +80,7 @@ class Ground {
     for (int i = 0; i < num_steps; ++i) world_.Step();
   }
 
+  Vector3d axis() const { return world_.GetState(body_).X_WB.rotation * Vector3d::UnitZ(); }
   double tilt() const { return geometry::TiltOf(world_.GetState(body_).X_WB.rotation); }
   Vector3d place() const {  ///< of the body's centre against the ground [m]
     return world_.GetState(body_).X_WB.translation - world_.GetState(ground_).X_WB.translation;
@@ -218,6 +226,29 @@ PhysicsCheck CheckFreeFall(const UprightCylinder& body) {
   return Compare("free fall of 1 s", "m", kGravity / 2, start - ground.place().z(), 0.002);
 }
 
+/// The axis of a spinning cylinder that nothing turns goes round the angular momentum L at the rate
+/// |L| / I_x [Goldstein, Classical Mechanics, section 5.6]; so the rate tells I_z / I_x, for which
+/// a solid cylinder has 6 r^2 / (3 r^2 + h^2) (dissertation, Eq. 5.4).
+PhysicsCheck CheckPrecession(const UprightCylinder& body) {
+  constexpr double kSpin = 3.0, kNod = 0.1;  // [rad/s] about the axis, and across it
+  constexpr int kSteps = 1000;
+  const double square = body.radius * body.radius;
+  const double ratio = 6.0 * square / (3.0 * square + body.height * body.height);
+  Ground ground(body, 0.0, 1.0, 0.0, 20.0);  // it falls meanwhile
+  ground.SpinBody({kNod, 0.0, kSpin});
+  const Vector3d momentum = Vector3d(kNod, 0.0, ratio * kSpin).normalized();  // times I_x
+  const Vector3d across = momentum.unitOrthogonal();
+  const auto angle = [&] {
+    const Vector3d axis = ground.axis();
+    return std::atan2(axis.dot(momentum.cross(across)), axis.dot(across));
+  };
+  const double start = angle();
+  ground.Step(kSteps);
+  const double rate = geometry::WrapToPi(angle() - start) / (kSteps * kTimeStep);
+  return Compare("ratio of the moments of inertia I_z / I_x, by free precession", "1", ratio,
+                 std::sqrt(std::max(0.0, rate * rate - kNod * kNod)) / kSpin, 0.01);
+}
+
 PhysicsCheck CheckStoppingDistance(const UprightCylinder& body) {
   constexpr double kSpeed = 1.0;  // [m/s]
   const double expected = kSpeed * kSpeed / (2.0 * kSlidingFriction * kGravity);
@@ -271,6 +302,7 @@ std::vector<PhysicsCheck> RunPhysicsChecks(const UprightCylinder& body,
                                    CheckPulse(body, 1.05, 0.05)};
   for (const double x : {1.2, 1.5, 2.0, 3.0, 5.0}) checks.push_back(CheckPulse(body, x, 0.02));
   checks.push_back(CheckFreeFall(body));
+  checks.push_back(CheckPrecession(body));
   checks.push_back(CheckStoppingDistance(body));
   checks.push_back(CheckRestitution(body));
   for (PhysicsCheck& check : CheckRest(body)) checks.push_back(std::move(check));

@@ -133,6 +133,9 @@ DurationsConfig ThereAndBack() {
 TEST(DurationsTest, BothReadingsStandInEveryTableAndTheWorseOneCounts) {
   const Findings findings =
       SumUpDurations(ThereAndBack(), {{{Lasting(18.0), Lasting(20.0)}, {Lasting(13.0)}}});
+  EXPECT_DOUBLE_EQ(ValueOf(findings, "mean_fast_a_b"), 19.0);
+  EXPECT_DOUBLE_EQ(ValueOf(findings, "sigma_fast_a_b"), 1.0);
+  EXPECT_DOUBLE_EQ(ValueOf(findings, "mean_fast_b_a"), 13.0);
   EXPECT_DOUBLE_EQ(ValueOf(findings, "mean_error_simulated_from_to"), 8.0);
   EXPECT_DOUBLE_EQ(ValueOf(findings, "mean_error_simulated_to_from"), 2.0);
   EXPECT_DOUBLE_EQ(ValueOf(findings, "mean_error_real_from_to"), 8.5);
@@ -160,6 +163,8 @@ TEST(DurationsTest, AnActionThatNeverSucceedsIsNoNumberAndStaysOne) {
   failed.action_finished = false;
   const Findings findings = SumUpDurations(ThereAndBack(), {{{failed}, {Lasting(20.0)}}});
   EXPECT_EQ(ValueOf(findings, "failed"), 1.0);
+  EXPECT_TRUE(std::isnan(ValueOf(findings, "mean_fast_a_b")));
+  EXPECT_TRUE(std::isnan(ValueOf(findings, "sigma_fast_a_b")));
   EXPECT_TRUE(std::isnan(ValueOf(findings, "mean_error_real_from_to")));
   EXPECT_TRUE(std::isnan(ValueOf(findings, "predicted_error_worse")));
 }

@@ -13,7 +13,7 @@ namespace {
 void ExpectAllPass(const UprightCylinder& body, const char* name) {
   PhysicsWorld::TakeSolverMessages();
   const std::vector<PhysicsCheck> checks = RunPhysicsChecks(body, name);
-  EXPECT_EQ(checks.size(), 14u);
+  EXPECT_EQ(checks.size(), 15u);
   for (const PhysicsCheck& check : checks) {
     EXPECT_TRUE(check.passed()) << check.name << ": expected " << check.expected << " "
                                 << check.unit << ", measured " << check.measured << ", error "

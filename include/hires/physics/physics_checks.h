@@ -20,7 +20,7 @@ struct PhysicsCheck {
 };
 
 /// Runs all closed-form comparisons (tipping, sliding, sudden stop, pulse, free fall,
-/// stopping distance, restitution, rest) for one cylinder. Takes seconds.
+/// precession, stopping distance, restitution, rest) for one cylinder. Takes seconds.
 std::vector<PhysicsCheck> RunPhysicsChecks(const UprightCylinder& body,
                                            const std::string& body_name);
 

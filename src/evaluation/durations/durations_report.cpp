@@ -48,6 +48,23 @@ TextTable TableOfMeans(const FoundDurations& found) {
   return table;
 }
 
+/// "fast_EC1_ET2", for names of measures.
+std::string KeyOf(const DurationsConfig::Row& row) {
+  return fmt::format("{}_{}_{}", DurationName(row), row.from, row.to);
+}
+
+/// What each row found with the first planner.
+void AddMeans(const FoundDurations& found, Findings* findings) {
+  const std::vector<DurationsConfig::Row>& rows = found.durations().rows;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const TimedRuns& timed = found.At(0, r);
+    const double sigma = timed.durations.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                                 : Deviation(timed.durations);
+    findings->measures.push_back({"mean_" + KeyOf(rows[r]), timed.mean()});
+    findings->measures.push_back({"sigma_" + KeyOf(rows[r]), sigma});
+  }
+}
+
 /// Absolute errors of an action's means as they were played.
 struct PlayedErrors {
   double mean{0.0}, largest{0.0};
@@ -163,6 +180,7 @@ Findings SumUpDurations(const DurationsConfig& durations, const DurationPlays& p
   AddRuns(durations, plays, &findings);
   findings.measures.push_back({"slower_routes", static_cast<double>(NumSlowerRoutes(found))});
   findings.tables.push_back(TableOfMeans(found));
+  AddMeans(found, &findings);
   AddPlayedErrors(found, &findings);
   AddDurationPredictions(found, &findings);
   return findings;

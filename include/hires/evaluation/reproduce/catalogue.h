@@ -1,0 +1,89 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace hires::evaluation {
+
+/// One call of `hires` whose answer holds results of the dissertation.
+struct Play {
+  std::string name;
+  /// Behind `hires`. {package}: folder of config/, worlds/, urdf/; {answer}: the JSON file to
+  /// write; {folder}: one of its own, for journals; {other} and {other/folder}: answer and folder
+  /// of the play of that name, which then is played before.
+  std::vector<std::string> command;
+  std::vector<std::string> inputs;  ///< files and folders below {package} that it depends on
+  double seconds{0.0};              ///< [s] wall time on two cores, to foretell how long it takes
+  std::vector<int> done_codes;      ///< exit codes at which the answer is whole
+};
+
+/// How near a number of ours has to come to the published one.
+struct Acceptance {
+  enum class Kind {
+    kWithin,   ///< |ours - published| <= bound
+    kFactor,   ///< published / bound <= ours <= published * bound; both above 0
+    kAtLeast,  ///< ours >= bound; what is published is a saying, such as "more than twice"
+    kAtMost
+  };
+  Kind kind{Kind::kWithin};
+  double bound{0.0};
+};
+
+/// Where a number stands.
+struct AnswerField {
+  std::string play;
+  std::string pointer;  ///< JSON pointer into the play's answer; true and false are 1 and 0 there
+};
+std::string ToString(const AnswerField& field);  ///< "durations:/measures/failed"
+
+/// A number of ours beside that of the dissertation.
+struct ComparedValue {
+  std::string name;  ///< "fast EC1/ET2"
+  std::string unit;
+  AnswerField at;
+  std::optional<AnswerField> over;  ///< the number is divided by this one
+  std::optional<double> published;  ///< nothing: a saying alone
+  Acceptance acceptance;
+  /// Whether a number of ours beyond the published one, as accepted, counts as better: a higher
+  /// speed does, a longer duration does not.
+  bool may_be_better{false};
+};
+
+/// A table, figure, listing or section of the dissertation.
+struct CatalogueItem {
+  std::string name;     ///< "Table 6.5"
+  std::string section;  ///< "6.3.2", "A.2"
+  std::string title;
+  std::vector<std::string> plays;     ///< whose answers it shows
+  std::vector<std::string> drawings;  ///< by their names in scripts/report, PLAY:DRAWING
+  std::vector<ComparedValue> values;
+  /// A picture of the package that stands beside a published one without numbers; or empty.
+  std::string picture;
+  std::string holds;  ///< what it says where all values are as accepted, or there are none
+  std::string fails;  ///< why, where they are not
+};
+
+struct Catalogue {
+  std::vector<Play> plays;
+  std::vector<CatalogueItem> items;
+};
+
+/// @throws base::ConfigError naming file, entry and field: plays that are unknown, named twice or
+/// need each other in a circle; items named twice; values without acceptance.
+Catalogue ReadCatalogue(const std::string& path);
+
+/// Items that were asked for, in the catalogue's order.
+/// @param wanted  "all", a section with all below it ("6", "6.3", "A"), or an item's name
+/// ("table 6.5").
+/// @throws base::ConfigError for what nothing is called.
+std::vector<CatalogueItem> ItemsOf(const Catalogue& catalogue,
+                                   const std::vector<std::string>& wanted);
+
+/// What has to be played for these items, each after those whose answers it takes.
+std::vector<Play> PlaysFor(const Catalogue& catalogue, const std::vector<CatalogueItem>& items);
+
+/// Names of the plays whose answers a play's command takes.
+std::vector<std::string> NeededBy(const Play& play);
+
+}  // namespace hires::evaluation

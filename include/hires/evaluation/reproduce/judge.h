@@ -1,0 +1,55 @@
+#pragma once
+
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hires/evaluation/reproduce/catalogue.h"
+
+namespace hires::evaluation {
+
+enum class Verdict {
+  kReproduced,     ///< all numbers are as accepted
+  kBetter,         ///< likewise, and those that may be better than published are
+  kNotReproduced,  ///< a number is not as accepted, or is none
+  kShown,     ///< nothing to compare: a picture or a description stands beside the published one
+  kNotPlayed  ///< an answer that it needs is missing
+};
+const char* ToString(Verdict verdict);  ///< "not reproduced"
+
+struct JudgedValue {
+  ComparedValue value;
+  std::optional<double> found;  ///< nothing: the answer has null there
+  bool holds{false};
+  bool is_better{false};
+};
+
+struct JudgedItem {
+  CatalogueItem item;
+  Verdict verdict{Verdict::kNotPlayed};
+  std::vector<JudgedValue> values;
+  std::string reason;
+};
+
+/// Whether ours is as accepted.  @param found  NaN never is.
+bool IsAccepted(const ComparedValue& value, double found);
+std::string ToString(const Acceptance& acceptance);  ///< "within 3", "by a factor of 1.5 at most"
+
+/// @param answers  of the plays that were played, by name.
+/// @param missing  why the others were not, by name.
+/// @throws base::ConfigError if an answer has no such field, or something else than a number or
+/// null there.
+JudgedItem Judge(const CatalogueItem& item,
+                 const std::map<std::string, nlohmann::ordered_json>& answers,
+                 const std::map<std::string, std::string>& missing);
+
+/// A line for each item: verdict, and how many numbers are as accepted; below, why some are not
+/// reproduced or not played.
+std::string VerdictTable(const std::vector<JudgedItem>& items);
+
+/// [{"item", "section", "title", "verdict", "reason", "plays", "drawings", "picture", "values"}].
+nlohmann::ordered_json ToJson(const std::vector<JudgedItem>& items);
+
+}  // namespace hires::evaluation

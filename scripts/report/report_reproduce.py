@@ -1,0 +1,167 @@
+"""The page of `hires reproduce`: what each table and figure of the dissertation came to, with pictures."""
+
+import base64
+import os
+
+import report_drawings as drawings
+import report_plots as plots
+from report_input import Answer, ReportError
+
+GOOD, OPEN = 'good', 'open'
+MARKS = {'reproduced': 'ok', 'better': 'ok', 'not reproduced': 'failed', 'shown': 'nothing', 'not played': 'warning'}
+PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+
+
+class Item:
+    """One table or figure: where it stands, and what its drawings need."""
+
+    def __init__(self, answer, place):
+        self.answer = answer
+        self.place = place
+
+    def id(self, drawing):
+        """A name for the picture's parts that no other picture has."""
+        return 'i%s-%s' % (self.place.split('/')[-1], ''.join(c if c.isalnum() else '-' for c in drawing))
+
+    def play(self, name):
+        """The answer of a play."""
+        content = self.answer.at('/plays/%s/answer' % name, None)
+        return Answer(content, '%s: play %s' % (self.answer.name, name))
+
+    def values(self):
+        """(name, published or None, found or None, whether accepted) of its numbers."""
+        rows = []
+        for value in self.answer.items(self.place + '/values'):
+            number = {field: self.answer.at('%s/%s' % (value, field), float)
+                      if self.answer.has('%s/%s' % (value, field)) else None for field in ('published', 'found')}
+            unit = self.answer.at(value + '/unit', str)
+            rows.append((self.answer.at(value + '/name', str) + (' [%s]' % unit if unit else ''),
+                         number['published'], number['found'], self.answer.at(value + '/holds', bool)))
+        return rows
+
+
+def _durations_of(answer, key):
+    """Durations [s] of the runs of one row, 'fast EC1 ET2', that came to an end."""
+    name, start, goal = key.split()
+    values = []
+    for row in answer.items('/rows'):
+        who = answer.at(row + '/motion_set', str) or answer.at(row + '/action', str)
+        is_row = (who, answer.at(row + '/from', str), answer.at(row + '/to', str)) == (name, start, goal)
+        if is_row and answer.at(row + '/planner', str) == 'scene' and answer.at(row + '/action_finished', bool):
+            values.append(answer.at(row + '/duration', float))
+    return values
+
+
+def _normality(item, play, argument):
+    values = _durations_of(item.play(play), argument)
+    picture = plots.normality(item.id(argument), 'duration [s]', values)
+    return picture, '%s: %s.' % (argument.replace(' ', ', ', 1).replace(' ', ' to '),
+                                 plots.normality_text(plots.normality_of(values)))
+
+
+def _numbers(item, _, argument):
+    """All numbers of the item beside the published ones; only those whose name begins with the argument."""
+    rows = [row for row in item.values() if row[0].startswith(argument)]
+    return (plots.compared(item.id('numbers' + argument), 'published (ring) and ours (dot)', rows),
+            'Ring: published. Dot: ours; red where it is not as accepted.')
+
+
+def _shares(item, _, argument):
+    rows = [row for row in item.values() if row[0].startswith(argument)]
+    return (plots.compared(item.id('shares' + argument), 'published (ring) and ours (dot), logarithmic', rows,
+                           logarithmic=True),
+            'Ring: published. Dot: ours; red where it is not as accepted.')
+
+
+def _torso_poses(item, play, argument):
+    answer = item.play(play)
+    rows = []
+    for pose in answer.items('/poses'):
+        field = '%s/%s/' % (pose, argument)
+        torso = answer.at(pose + '/torso', str)
+        rows.append(('%s, %s' % (torso, answer.at(pose + '/base', str)), answer.at(field + 'estimate', float),
+                     answer.at(field + 'lower', float), answer.at(field + 'upper', float), 'down' in torso))
+    what = argument.replace('_', ' ')
+    return (drawings.intervals(item.id(argument), what, rows, percent=False),
+            '%s over forms of things, 95 %% intervals. Dark: torso down.' % what.capitalize())
+
+
+def _timeline(item, play, _):
+    answer = item.play(play)
+    kinds = {'kind': str, 'plan': int, 'index': int, 'action': str, 'outcome': str, 'begin': float, 'end': float}
+    bars = []
+    for place in answer.items('/timeline'):
+        bar = {field: answer.at('%s/%s' % (place, field), kind) for field, kind in kinds.items()}
+        bar['dispatch'] = answer.at(place + '/dispatch', float) if answer.has(place + '/dispatch') else None
+        bars.append(bar)
+    return (drawings.timeline(item.id('timeline'), 'what was done when', bars, answer.at('/duration', float)),
+            'Imaginations above, steps below. Dotted line: when an imagined step began.')
+
+
+def _arms(item, play, _):
+    answer = item.play(play)
+    rows = []
+    for title, wanted in (('with imagination', True), ('without imagination', False)):
+        values = [answer.at(run + '/duration', float) for run in answer.items('/list')
+                  if answer.at(run + '/complete', bool) and answer.at(run + '/imagination', bool) == wanted]
+        rows.append((title, values, [], wanted))
+    return drawings.spreads(item.id('arms'), 'duration of runs that came to an end [s]', rows), ''
+
+
+DRAWINGS = {'normality': _normality, 'numbers': _numbers, 'shares': _shares, 'torso_poses': _torso_poses,
+            'timeline': _timeline, 'arms': _arms}
+BROAD = {'normality', 'timeline'}
+
+
+def pictures_of(answer, place):
+    """(picture, caption, whether it is broad) of an item's drawings; none where a play is missing.
+    @raise ReportError for a drawing that is unknown."""
+    item = Item(answer, place)
+    found = []
+    for drawing in answer.items(place + '/drawings'):
+        play, name, argument = (answer.at(drawing, str).split(':', 2) + [''])[:3]
+        if not answer.has('/plays/' + play):
+            continue
+        if name not in DRAWINGS:
+            raise ReportError('%s: field %s: there is no drawing %r; there are %s' %
+                              (answer.name, drawing, name, ', '.join(sorted(DRAWINGS))))
+        found.append((*DRAWINGS[name](item, play, argument), name in BROAD))
+    return [picture for picture in found if picture[0]]
+
+
+def photograph(answer, place):
+    """The package's own PNG picture of an item as text, or None."""
+    name = answer.at(place + '/picture', str)
+    if not name:
+        return None
+    path = os.path.join(PACKAGE, name)
+    try:
+        with open(path, 'rb') as file:
+            data = file.read()
+    except OSError as error:
+        raise ReportError('%s: field %s/picture: %s: %s' % (answer.name, place, path, error.strerror)) from error
+    if not data.startswith(b'\x89PNG'):
+        raise ReportError('%s: field %s/picture: %s is no PNG picture' % (answer.name, place, path))
+    return base64.b64encode(data).decode('ascii')
+
+
+def reproduce(answer):
+    """What the template needs."""
+    items = answer.items('/items')
+    verdicts = [answer.at(item + '/verdict', str) for item in items]
+    judged = [verdict for verdict in verdicts if verdict not in ('shown', 'not played')]
+    good = [verdict for verdict in judged if verdict in ('reproduced', 'better')]
+    chapters = {}
+    for item in items:
+        chapters.setdefault(answer.at(item + '/section', str).split('.')[0], []).append(item)
+    return {
+        'headline': '%d of %d results with numbers are reproduced or better' % (len(good), len(judged)),
+        'state': GOOD if len(good) == len(judged) and 'not played' not in verdicts else OPEN,
+        'chapters': [('Appendix ' + name if name.isalpha() else 'Chapter ' + name, chapters[name])
+                     for name in sorted(chapters)],
+        'mark': lambda item: MARKS.get(answer.at(item + '/verdict', str), 'nothing'),
+        'drawn': lambda item: pictures_of(answer, item),
+        'photograph': lambda item: photograph(answer, item),
+        'counted': [(verdict, verdicts.count(verdict)) for verdict in MARKS if verdict in verdicts],
+        'anchor': lambda item: 'item-' + item.split('/')[-1],
+    }

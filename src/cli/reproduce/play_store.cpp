@@ -1,0 +1,101 @@
+#include "cli/reproduce/play_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <vector>
+
+#include "hires/base/error.h"
+#include "hires/base/hash.h"
+#include "hires/base/text.h"
+
+namespace hires::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+void MakeFolder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) {
+    throw base::ConfigError(fmt::format(
+        "{}: cannot be made: {}; name another folder with --results", path, error.message()));
+  }
+}
+
+/// A file, or all files below a folder, in the order of their names.
+std::vector<std::string> FilesOf(const std::string& path) {
+  if (!fs::is_directory(path)) return {path};
+  std::vector<std::string> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path)) {
+    if (entry.is_regular_file()) files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string NoteOf(const std::string& folder) { return folder + "/played.json"; }
+
+}  // namespace
+
+std::string HashOfFile(const std::string& path) {
+  base::Hasher hasher;
+  hasher.Add(base::ReadTextFile(path, std::size_t{1} << 30));
+  return base::HexOf(hasher.value());
+}
+
+PlayStore::PlayStore(std::string folder, std::string package, std::string build)
+    : folder_(std::move(folder)), package_(std::move(package)), build_(std::move(build)) {
+  MakeFolder(folder_);
+}
+
+std::string PlayStore::KeyOf(const evaluation::Play& play) {
+  const auto known = keys_.find(play.name);
+  if (known != keys_.end()) return known->second;
+  base::Hasher hasher;
+  hasher.Add(HIRES_VERSION);
+  for (const std::string& word : play.command) hasher.Add(word);
+  for (const std::string& input : play.inputs) {
+    for (const std::string& file : FilesOf(package_ + "/" + input)) {
+      hasher.Add(fs::path(file).lexically_relative(package_).string());
+      hasher.Add(base::ReadTextFile(file, std::size_t{1} << 30));
+    }
+  }
+  for (const std::string& other : evaluation::NeededBy(play)) hasher.Add(keys_.at(other));
+  return keys_[play.name] = base::HexOf(hasher.value());
+}
+
+std::string PlayStore::FolderOf(const evaluation::Play& play) {
+  const std::string folder = folder_ + "/" + play.name + "-" + KeyOf(play);
+  MakeFolder(folder);
+  return folder;
+}
+
+std::optional<PlayStore::Stored> PlayStore::Find(const evaluation::Play& play) {
+  const std::string note = NoteOf(FolderOf(play));
+  if (!fs::exists(note) || !fs::exists(AnswerOf(play))) return std::nullopt;
+  const auto content = ordered_json::parse(base::ReadTextFile(note), nullptr, false);
+  if (!content.is_object() || !content.contains("build") || !content["build"].is_string() ||
+      !content.contains("wall_seconds") || !content["wall_seconds"].is_number()) {
+    throw base::ConfigError(fmt::format(
+        "{}: is broken; wanted build and wall_seconds; delete its folder, and it is played again",
+        note));
+  }
+  return Stored{AnswerOf(play), content["build"], content["wall_seconds"]};
+}
+
+void PlayStore::Keep(const evaluation::Play& play, double seconds) {
+  const ordered_json note{{"play", play.name}, {"build", build_}, {"wall_seconds", seconds}};
+  base::ReplaceTextFile(NoteOf(FolderOf(play)), note.dump(1) + "\n");
+}
+
+void PlayStore::Forget(const evaluation::Play& play) {
+  std::error_code ignored;  // what remains is found by MakeFolder or the next play
+  fs::remove_all(folder_ + "/" + play.name + "-" + KeyOf(play), ignored);
+}
+
+}  // namespace hires::cli

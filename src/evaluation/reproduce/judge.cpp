@@ -1,0 +1,189 @@
+#include "hires/evaluation/reproduce/judge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "hires/base/error.h"
+#include "hires/evaluation/report_table.h"
+
+namespace hires::evaluation {
+namespace {
+
+using nlohmann::ordered_json;
+
+using Answers = std::map<std::string, ordered_json>;
+
+std::optional<double> NumberAt(const AnswerField& field, const Answers& answers) {
+  const ordered_json& answer = answers.at(field.play);
+  const ordered_json::json_pointer pointer(field.pointer);
+  const bool is_there = answer.contains(pointer);
+  if (is_there && answer.at(pointer).is_null()) return std::nullopt;
+  if (is_there && answer.at(pointer).is_boolean()) {
+    return answer.at(pointer).get<bool>() ? 1.0 : 0.0;
+  }
+  if (is_there && answer.at(pointer).is_number()) return answer.at(pointer).get<double>();
+  throw base::ConfigError(
+      fmt::format("{}: the answer has {} there; wanted a number: the catalogue asks for another "
+                  "field than this version writes",
+                  ToString(field), is_there ? answer.at(pointer).dump().substr(0, 40) : "nothing"));
+}
+
+/// Nothing where it is divided by 0.
+std::optional<double> NumberOf(const ComparedValue& value, const Answers& answers) {
+  const std::optional<double> number = NumberAt(value.at, answers);
+  if (!value.over || !number) return number;
+  const std::optional<double> divisor = NumberAt(*value.over, answers);
+  if (!divisor || *divisor == 0.0) return std::nullopt;
+  return *number / *divisor;
+}
+
+JudgedValue JudgeValue(const ComparedValue& value, const Answers& answers) {
+  JudgedValue judged{value, NumberOf(value, answers), false, false};
+  if (!judged.found) return judged;
+  judged.holds = IsAccepted(value, *judged.found);
+  if (value.may_be_better && judged.holds) {
+    judged.is_better = value.acceptance.kind == Acceptance::Kind::kAtLeast
+                           ? *judged.found > *value.published
+                           : *judged.found < *value.published;
+  }
+  return judged;
+}
+
+Verdict VerdictOf(const std::vector<JudgedValue>& values) {
+  if (values.empty()) return Verdict::kShown;
+  bool may_be_better = false, are_better = true;
+  for (const JudgedValue& judged : values) {
+    if (!judged.holds) return Verdict::kNotReproduced;
+    may_be_better = may_be_better || judged.value.may_be_better;
+    are_better = are_better && (!judged.value.may_be_better || judged.is_better);
+  }
+  return may_be_better && are_better ? Verdict::kBetter : Verdict::kReproduced;
+}
+
+int NumHolding(const std::vector<JudgedValue>& values) {
+  return static_cast<int>(std::count_if(values.begin(), values.end(),
+                                        [](const JudgedValue& judged) { return judged.holds; }));
+}
+
+ordered_json ValueJson(const JudgedValue& judged) {
+  const auto number = [](const std::optional<double>& value) {
+    return value ? ordered_json(*value) : ordered_json();
+  };
+  return {{"name", judged.value.name},
+          {"unit", judged.value.unit},
+          {"at", ToString(judged.value.at)},
+          {"over", judged.value.over ? ordered_json(ToString(*judged.value.over)) : ordered_json()},
+          {"published", number(judged.value.published)},
+          {"found", number(judged.found)},
+          {"accepted", ToString(judged.value.acceptance)},
+          {"holds", judged.holds},
+          {"better", judged.is_better}};
+}
+
+ordered_json ItemJson(const JudgedItem& judged) {
+  ordered_json values = ordered_json::array();
+  for (const JudgedValue& value : judged.values) values.push_back(ValueJson(value));
+  return {{"item", judged.item.name},
+          {"section", judged.item.section},
+          {"title", judged.item.title},
+          {"verdict", ToString(judged.verdict)},
+          {"reason", judged.reason},
+          {"plays", judged.item.plays},
+          {"drawings", judged.item.drawings},
+          {"picture", judged.item.picture},
+          {"values", values}};
+}
+
+}  // namespace
+
+const char* ToString(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kReproduced:
+      return "reproduced";
+    case Verdict::kBetter:
+      return "better";
+    case Verdict::kNotReproduced:
+      return "not reproduced";
+    case Verdict::kShown:
+      return "shown";
+    case Verdict::kNotPlayed:
+      return "not played";
+  }
+  return "";
+}
+
+bool IsAccepted(const ComparedValue& value, double found) {
+  const double bound = value.acceptance.bound;
+  switch (value.acceptance.kind) {
+    case Acceptance::Kind::kWithin:
+      return std::abs(found - value.published.value()) <= bound;
+    case Acceptance::Kind::kFactor:
+      return found > 0.0 && found <= bound * value.published.value() &&
+             found * bound >= value.published.value();
+    case Acceptance::Kind::kAtLeast:
+      return found >= bound;
+    case Acceptance::Kind::kAtMost:
+      return found <= bound;
+  }
+  return false;
+}
+
+std::string ToString(const Acceptance& acceptance) {
+  switch (acceptance.kind) {
+    case Acceptance::Kind::kWithin:
+      return fmt::format("within {:.6g}", acceptance.bound);
+    case Acceptance::Kind::kFactor:
+      return fmt::format("by a factor of {:.6g} at most", acceptance.bound);
+    case Acceptance::Kind::kAtLeast:
+      return fmt::format("at least {:.6g}", acceptance.bound);
+    case Acceptance::Kind::kAtMost:
+      return fmt::format("at most {:.6g}", acceptance.bound);
+  }
+  return "";
+}
+
+JudgedItem Judge(const CatalogueItem& item, const std::map<std::string, ordered_json>& answers,
+                 const std::map<std::string, std::string>& missing) {
+  JudgedItem judged;
+  judged.item = item;
+  for (const std::string& play : item.plays) {
+    if (answers.count(play) > 0) continue;
+    const auto why = missing.find(play);
+    judged.reason =
+        fmt::format("{}: {}", play, why == missing.end() ? "not asked for" : why->second);
+    return judged;
+  }
+  for (const ComparedValue& value : item.values) {
+    judged.values.push_back(JudgeValue(value, answers));
+  }
+  judged.verdict = VerdictOf(judged.values);
+  judged.reason = judged.verdict == Verdict::kNotReproduced ? item.fails : item.holds;
+  return judged;
+}
+
+std::string VerdictTable(const std::vector<JudgedItem>& items) {
+  std::vector<std::vector<std::string>> rows{
+      {"section", "what", "verdict", "as accepted", "title"}};
+  std::string reasons;
+  for (const JudgedItem& judged : items) {
+    const std::size_t all = judged.values.size();
+    rows.push_back({judged.item.section, judged.item.name, ToString(judged.verdict),
+                    all == 0 ? "" : fmt::format("{} of {}", NumHolding(judged.values), all),
+                    judged.item.title});
+    const bool is_open =
+        judged.verdict == Verdict::kNotReproduced || judged.verdict == Verdict::kNotPlayed;
+    if (is_open) reasons += fmt::format("\n{}: {}\n", judged.item.name, judged.reason);
+  }
+  return FormatTable(rows) + reasons;
+}
+
+ordered_json ToJson(const std::vector<JudgedItem>& items) {
+  ordered_json list = ordered_json::array();
+  for (const JudgedItem& judged : items) list.push_back(ItemJson(judged));
+  return list;
+}
+
+}  // namespace hires::evaluation

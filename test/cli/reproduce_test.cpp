@@ -1,0 +1,141 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "cli/command_run.h"
+#include "cli/reproduce/play_runner.h"
+#include "cli/reproduce/play_store.h"
+#include "hires/base/text.h"
+#include "support/messages.h"
+#include "support/temporary_folder.h"
+
+namespace hires::cli::reproduce_test {
+namespace {
+
+using evaluation::Play;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Key;
+
+/// Plays are played by a shell: `sh -c WORDS`.
+class ReproduceTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directory(Path("package"));
+    folder_.Write("package/input.yaml", "a: 1\n");
+  }
+  std::string Path(const std::string& name) const { return (folder_.path() / name).string(); }
+  PlayStore Store(const std::string& build = "b1") const {
+    return PlayStore(Path("results"), Path("package"), build);
+  }
+  static Play Shell(const std::string& name, const std::string& script) {
+    Play play;
+    play.name = name;
+    play.command = {"-c", script};
+    play.inputs = {"input.yaml"};
+    play.seconds = 1.0;
+    play.done_codes = {0, 2};
+    return play;
+  }
+  PlaysDone PlayThem(
+      std::vector<Play> plays, bool again = false,
+      const std::function<bool()>& cancelled = [] { return false; }) const {
+    PlaysOrder order;
+    order.plays = std::move(plays);
+    order.program = "/bin/sh";
+    order.package = Path("package");
+    order.again = again;
+    order.cancelled = cancelled;
+    PlayStore store = Store();
+    return PlayAll(order, &store);
+  }
+  std::string Counted() const { return base::ReadTextFile(Path("count")); }
+
+  const test_support::TemporaryFolder folder_;
+};
+
+TEST_F(ReproduceTest, WhatHasAnAnswerIsNotPlayedAgain) {
+  const std::vector<Play> plays{
+      Shell("one", "printf x >> " + Path("count") + "; echo '{\"x\": 1}' > {answer}; exit 2")};
+  const PlaysDone first = PlayThem(plays), second = PlayThem(plays);
+  EXPECT_EQ(Counted(), "x");
+  EXPECT_TRUE(first.answers.at("one").is_new);
+  EXPECT_FALSE(second.answers.at("one").is_new);
+  EXPECT_EQ(second.answers.at("one").content.at("x"), 1);
+  PlayThem(plays, true);
+  EXPECT_EQ(Counted(), "xx");
+  folder_.Write("package/input.yaml", "a: 2\n");
+  PlayThem(plays);
+  EXPECT_EQ(Counted(), "xxx") << "it rests on another file now";
+}
+
+TEST_F(ReproduceTest, AnAnswerOfAnotherBuildSaysSo) {
+  const Play play = Shell("one", "echo 1 > {answer}");
+  PlayThem({play});
+  PlayStore other = Store("b2");
+  other.KeyOf(play);
+  ASSERT_TRUE(other.Find(play));
+  EXPECT_EQ(other.Find(play)->build, "b1");
+}
+
+TEST_F(ReproduceTest, APlayThatFailsIsToldAndTheOthersGoOn) {
+  const PlaysDone done = PlayThem(
+      {Shell("killed", "kill -9 $$"),
+       Shell("wrong", "echo 1 > {answer}; echo no such world; exit 1"), Shell("silent", "exit 0"),
+       Shell("needs", "cat {wrong} > {answer}"), Shell("good", "echo '{}' > {answer}")});
+  EXPECT_THAT(done.answers, ElementsAre(Key("good")));
+  EXPECT_THAT(done.missing.at("killed"), HasSubstr("signal 9"));
+  EXPECT_THAT(done.missing.at("wrong"),
+              AllOf(HasSubstr("exit code 1"), HasSubstr("no such world")));
+  EXPECT_THAT(done.missing.at("silent"), HasSubstr("exit code 0"));
+  EXPECT_THAT(done.missing.at("needs"), HasSubstr("needs the answer of 'wrong'"));
+}
+
+TEST_F(ReproduceTest, APlayTakesTheAnswerOfAnother) {
+  const PlaysDone done =
+      PlayThem({Shell("first", "echo '{\"x\": 7}' > {answer}; echo 8 > {folder}/beside"),
+                Shell("second", "cp {first} {answer}; test 8 = $(cat {first/folder}/beside)")});
+  EXPECT_EQ(done.answers.at("second").content.at("x"), 7);
+}
+
+TEST_F(ReproduceTest, InterruptedItKeepsWhatIsDone) {
+  const std::string begun = Path("begun");
+  const std::vector<Play> plays{Shell("quick", "echo 1 > {answer}"),
+                                Shell("endless", "touch " + begun + "; while :; do :; done"),
+                                Shell("never", "echo 1 > {answer}")};
+  const PlaysDone done = PlayThem(plays, false, [&] { return std::filesystem::exists(begun); });
+  EXPECT_TRUE(done.is_cancelled);
+  EXPECT_THAT(done.answers, ElementsAre(Key("quick")));
+  EXPECT_THAT(done.missing, Contains(Key("endless")));
+}
+
+TEST_F(ReproduceTest, ABrokenNoteIsNamed) {
+  const Play play = Shell("one", "echo 1 > {answer}");
+  PlayThem({play});
+  PlayStore store = Store();
+  folder_.Write("results/one-" + store.KeyOf(play) + "/played.json", "{");
+  EXPECT_THAT(test_support::ConfigErrorOf([&] { store.Find(play); }),
+              AllOf(HasSubstr("played.json"), HasSubstr("delete its folder")));
+}
+
+TEST_F(ReproduceTest, TheVerbListsPlaysAndJudges) {
+  const auto run = [&](const std::vector<std::string>& words) {
+    return test_support::RunHires({"reproduce"}, words);
+  };
+  const std::string results = Path("r");
+  EXPECT_THAT(run({"5.1", "--list", "--results", results}).out, HasSubstr("Fig. 5.1"));
+  EXPECT_THAT(run({"9.9", "--results", results}).err, HasSubstr("'9.9' is unknown"));
+  const test_support::Ended shown =
+      run({"5.1", "--results", results, "--json", Path("r.json"), "--quiet"});
+  EXPECT_EQ(shown.code, 0);
+  EXPECT_THAT(shown.out, HasSubstr("5 shown"));
+  const auto answer = nlohmann::json::parse(base::ReadTextFile(Path("r.json")));
+  EXPECT_EQ(answer.at("/report/verb"_json_pointer), "reproduce");
+  EXPECT_EQ(answer.at("/verdicts/shown"_json_pointer), 5);
+}
+
+}  // namespace
+}  // namespace hires::cli::reproduce_test

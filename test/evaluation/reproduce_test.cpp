@@ -1,0 +1,220 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "hires/evaluation/reproduce/catalogue.h"
+#include "hires/evaluation/reproduce/judge.h"
+#include "support/messages.h"
+#include "support/temporary_folder.h"
+
+namespace hires::evaluation::reproduce_test {
+namespace {
+
+using nlohmann::ordered_json;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const std::string kPlays = R"(
+plays:
+  - {name: loop, seconds: 3, inputs: [config], command: "experiment loop --json {answer}"}
+  - {name: looked, seconds: 1, inputs: [], command: "look {loop} --json {answer}", done_codes: ["0", "2"]}
+)";
+
+std::string Item(const std::string& value, const std::string& plays = "[loop]") {
+  return "items:\n  - {item: Table 1, section: \"6.3.1\", title: t, plays: " + plays +
+         ", holds: yes, fails: \"no, slower\", values: [" + value + "]}\n";
+}
+
+class CatalogueTest : public ::testing::Test {
+ protected:
+  Catalogue Read(const std::string& text) {
+    return ReadCatalogue(folder_.Write("catalogue.yaml", text));
+  }
+  std::string ErrorOf(const std::string& text) {
+    return test_support::ConfigErrorOf([&] { Read(text); });
+  }
+
+  const test_support::TemporaryFolder folder_;
+};
+
+TEST_F(CatalogueTest, PlaysComeAfterThoseWhoseAnswersTheyTake) {
+  const Catalogue catalogue = Read(R"(
+plays:
+  - {name: looked, seconds: 1, inputs: [], command: "look {loop/folder} {loop} --json {answer}"}
+  - {name: loop, seconds: 3, inputs: [config], command: "experiment loop --json {answer}"}
+  - {name: other, seconds: 3, inputs: [], command: "other --json {answer}"}
+items:
+  - {item: Fig. 1, section: A.2, title: t, plays: [looked], holds: yes, drawings: ["looked:lines"]}
+)");
+  EXPECT_THAT(NeededBy(catalogue.plays[0]), ElementsAre("loop", "loop"));
+  std::vector<std::string> order;
+  for (const Play& play : PlaysFor(catalogue, catalogue.items)) order.push_back(play.name);
+  EXPECT_THAT(order, ElementsAre("loop", "looked"));
+}
+
+TEST_F(CatalogueTest, ItemsAreAskedForBySectionOrName) {
+  const Catalogue catalogue = Read(kPlays + R"(
+items:
+  - {item: Table 6.1, section: "6.1", title: t, holds: x}
+  - {item: Table 6.5, section: "6.3.2", title: t, holds: x}
+  - {item: Fig. 6.13, section: "6.3.3", title: t, holds: x}
+  - {item: Fig. A.2, section: "A.2", title: t, holds: x}
+)");
+  const auto names = [&](const std::vector<std::string>& wanted) {
+    std::vector<std::string> found;
+    for (const CatalogueItem& item : ItemsOf(catalogue, wanted)) found.push_back(item.name);
+    return found;
+  };
+  EXPECT_THAT(names({"6.3"}), ElementsAre("Table 6.5", "Fig. 6.13"));
+  EXPECT_THAT(names({"a", "table 6.5"}), ElementsAre("Table 6.5", "Fig. A.2"));
+  EXPECT_EQ(names({"all"}).size(), 4u);
+  EXPECT_THAT(test_support::ConfigErrorOf([&] { names({"6.4"}); }),
+              AllOf(HasSubstr("'6.4' is unknown"), HasSubstr("6.1")));
+}
+
+TEST_F(CatalogueTest, WhatIsWrongIsNamed) {
+  EXPECT_THAT(
+      ErrorOf("plays: [{name: a, seconds: 1, inputs: [], command: \"list areas\"}]\nitems: []"),
+      HasSubstr("wanted --json {answer}"));
+  EXPECT_THAT(
+      ErrorOf("plays: [{name: a, seconds: 1, inputs: [], command: \"a {b} {answer}\"}]\nitems: []"),
+      HasSubstr("play 'b' is unknown"));
+  EXPECT_THAT(
+      ErrorOf("plays: [{name: a, seconds: 1, inputs: [], command: \"a {a} {answer}\"}]\nitems: []"),
+      HasSubstr("in a circle: a -> a"));
+  EXPECT_THAT(ErrorOf(kPlays + Item("{name: v, at: /x, published: 1}")),
+              AllOf(HasSubstr("accepted by 0 rules"), HasSubstr("catalogue.yaml")));
+  EXPECT_THAT(ErrorOf(kPlays + Item("{name: v, at: /x, published: 1, within: 1, factor: 2}")),
+              HasSubstr("accepted by 2 rules"));
+  EXPECT_THAT(ErrorOf(kPlays + Item("{name: v, at: /x, within: 1}")),
+              HasSubstr("nothing published to be near to"));
+  EXPECT_THAT(ErrorOf(kPlays + Item("{name: v, at: /x, published: 1, factor: 0.5}")),
+              HasSubstr("factor is '0.5', below 1"));
+  EXPECT_THAT(ErrorOf(kPlays + Item("{name: v, at: x, published: 1, within: 1}")),
+              HasSubstr("wanted a JSON pointer"));
+  EXPECT_THAT(ErrorOf(kPlays + Item("{name: v, at: \"looked:/x\", published: 1, within: 1}")),
+              HasSubstr("the play 'looked', which is none of the item's"));
+  EXPECT_THAT(
+      ErrorOf(kPlays + Item("{name: v, at: /x, published: 1, within: 1, may_be_better: true}")),
+      HasSubstr("to say what is better"));
+  EXPECT_THAT(ErrorOf(kPlays + Item("{name: v, at: /x, published: 1, within: 1, wihtin: 2}")),
+              HasSubstr("wihtin"));
+  EXPECT_THAT(
+      ErrorOf(kPlays + "items:\n  - {item: T, section: s, title: t, holds: x, plays: [lop]}\n"),
+      HasSubstr("did you mean 'loop'"));
+  EXPECT_THAT(ErrorOf(kPlays + "items:\n  - {item: T, section: s, title: t, holds: x}\n"
+                               "  - {item: t, section: s, title: t, holds: x}\n"),
+              HasSubstr("named twice"));
+  EXPECT_THAT(ErrorOf(kPlays +
+                      "items:\n  - {item: T, section: s, title: t, holds: x, drawings: [lines]}\n"),
+              HasSubstr("wanted PLAY:DRAWING"));
+}
+
+ComparedValue Value(Acceptance::Kind kind, double bound, std::optional<double> published) {
+  ComparedValue value;
+  value.name = "v";
+  value.at = {"loop", "/x"};
+  value.published = published;
+  value.acceptance = {kind, bound};
+  return value;
+}
+
+TEST(AcceptanceTest, BoundsBelongToIt) {
+  const ComparedValue within = Value(Acceptance::Kind::kWithin, 0.5, 2.0);
+  EXPECT_TRUE(IsAccepted(within, 2.5));
+  EXPECT_TRUE(IsAccepted(within, 1.5));
+  EXPECT_FALSE(IsAccepted(within, 2.51));
+  const ComparedValue factor = Value(Acceptance::Kind::kFactor, 2.0, 3.0);
+  EXPECT_TRUE(IsAccepted(factor, 6.0));
+  EXPECT_TRUE(IsAccepted(factor, 1.5));
+  EXPECT_FALSE(IsAccepted(factor, 1.4));
+  EXPECT_FALSE(IsAccepted(factor, 6.1));
+  EXPECT_FALSE(IsAccepted(factor, 0.0));
+  EXPECT_TRUE(IsAccepted(Value(Acceptance::Kind::kAtLeast, 1.0, {}), 1.0));
+  EXPECT_FALSE(IsAccepted(Value(Acceptance::Kind::kAtMost, 1.0, {}), 1.1));
+  for (const ComparedValue& value : {within, factor, Value(Acceptance::Kind::kAtMost, 1.0, {})}) {
+    EXPECT_FALSE(IsAccepted(value, std::numeric_limits<double>::quiet_NaN()));
+  }
+}
+
+CatalogueItem ItemOf(std::vector<ComparedValue> values) {
+  CatalogueItem item;
+  item.name = "Table 1";
+  item.plays = {"loop"};
+  item.values = std::move(values);
+  item.holds = "as there";
+  item.fails = "slower";
+  return item;
+}
+
+Verdict VerdictOn(std::vector<ComparedValue> values, const ordered_json& answer) {
+  return Judge(ItemOf(std::move(values)), {{"loop", answer}}, {}).verdict;
+}
+
+TEST(ReproducedJudgeTest, AVerdictIsThatOfItsWorstNumber) {
+  const ComparedValue near = Value(Acceptance::Kind::kWithin, 0.5, 2.0);
+  ComparedValue fast = Value(Acceptance::Kind::kAtLeast, 1.0, 1.0);
+  fast.may_be_better = true;
+  EXPECT_EQ(VerdictOn({near}, {{"x", 2.1}}), Verdict::kReproduced);
+  EXPECT_EQ(VerdictOn({near}, {{"x", 3.0}}), Verdict::kNotReproduced);
+  EXPECT_EQ(VerdictOn({near}, {{"x", nullptr}}), Verdict::kNotReproduced)
+      << "no number holds nothing";
+  EXPECT_EQ(VerdictOn({near, fast}, {{"x", 2.1}}), Verdict::kBetter);
+  EXPECT_EQ(VerdictOn({fast}, {{"x", 1.0}}), Verdict::kReproduced) << "no better than published";
+  EXPECT_EQ(VerdictOn({near, fast}, {{"x", 5.0}}), Verdict::kNotReproduced);
+  EXPECT_EQ(VerdictOn({}, {{"x", 5.0}}), Verdict::kShown);
+}
+
+TEST(ReproducedJudgeTest, AReasonStandsBesideEachVerdict) {
+  const ComparedValue near = Value(Acceptance::Kind::kWithin, 0.5, 2.0);
+  EXPECT_EQ(Judge(ItemOf({near}), {{"loop", {{"x", 2.0}}}}, {}).reason, "as there");
+  EXPECT_EQ(Judge(ItemOf({near}), {{"loop", {{"x", 9.0}}}}, {}).reason, "slower");
+  const JudgedItem missing = Judge(ItemOf({near}), {}, {{"loop", "signal 9 (Killed)"}});
+  EXPECT_EQ(missing.verdict, Verdict::kNotPlayed);
+  EXPECT_EQ(missing.reason, "loop: signal 9 (Killed)");
+}
+
+TEST(ReproducedJudgeTest, NumbersMayBeDividedAndTruthsCount) {
+  ComparedValue ratio = Value(Acceptance::Kind::kWithin, 0.0, 2.0);
+  ratio.over = AnswerField{"loop", "/y"};
+  EXPECT_EQ(VerdictOn({ratio}, {{"x", 3.0}, {"y", 1.5}}), Verdict::kReproduced);
+  EXPECT_EQ(VerdictOn({ratio}, {{"x", 3.0}, {"y", 0.0}}), Verdict::kNotReproduced);
+  EXPECT_EQ(VerdictOn({Value(Acceptance::Kind::kAtLeast, 1.0, {})}, {{"x", true}}),
+            Verdict::kReproduced);
+}
+
+TEST(ReproducedJudgeTest, AFieldThatIsNotThereIsAnError) {
+  const ComparedValue near = Value(Acceptance::Kind::kWithin, 0.5, 2.0);
+  EXPECT_THAT(test_support::ConfigErrorOf([&] {
+                VerdictOn({near}, {{"z", 1.0}});
+              }),
+              AllOf(HasSubstr("loop:/x"), HasSubstr("nothing there")));
+  EXPECT_THAT(test_support::ConfigErrorOf([&] {
+                VerdictOn({near}, {{"x", "two"}});
+              }),
+              HasSubstr("wanted a number"));
+}
+
+TEST(ShippedCatalogueTest, NoTableOrFigureOfTheChaptersIsMissing) {
+  const Catalogue catalogue = ReadCatalogue(HIRES_SOURCE_DIR "/config/reproduce.yaml");
+  std::vector<std::string> missing;
+  const auto require = [&](const std::string& name) {
+    const bool is_there = std::any_of(catalogue.items.begin(), catalogue.items.end(),
+                                      [&](const CatalogueItem& item) { return item.name == name; });
+    if (!is_there) missing.push_back(name);
+  };
+  for (int i = 1; i <= 18; ++i) require("Fig. 5." + std::to_string(i));
+  for (int i = 1; i <= 13; ++i) require("Fig. 6." + std::to_string(i));
+  for (int i = 1; i <= 30; ++i) require("Fig. A." + std::to_string(i));
+  require("Table 5.1");
+  for (int i = 1; i <= 7; ++i) require("Table 6." + std::to_string(i));
+  for (int i = 1; i <= 4; ++i) require("List. 5." + std::to_string(i));
+  for (const char* name : {"List. 6.1", "List. 6.2", "List. A.1", "List. A.2"}) require(name);
+  EXPECT_THAT(missing, ElementsAre());
+}
+
+}  // namespace
+}  // namespace hires::evaluation::reproduce_test
