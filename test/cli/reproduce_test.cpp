@@ -26,16 +26,17 @@ class ReproduceTest : public ::testing::Test {
   void SetUp() override {
     std::filesystem::create_directory(Path("package"));
     folder_.Write("package/input.yaml", "a: 1\n");
+    folder_.Write("package/catalogue.yaml", "plays: []\n");
   }
   std::string Path(const std::string& name) const { return (folder_.path() / name).string(); }
   PlayStore Store(const std::string& build = "b1") const {
-    return PlayStore(Path("results"), Path("package"), build);
+    return PlayStore({Path("results"), Path("package"), Path("package/catalogue.yaml"), build});
   }
   static Play Shell(const std::string& name, const std::string& script) {
     Play play;
     play.name = name;
     play.command = {"-c", script};
-    play.inputs = {"input.yaml"};
+    play.inputs = {"."};
     play.seconds = 1.0;
     play.done_codes = {0, 2};
     return play;
@@ -67,6 +68,9 @@ TEST_F(ReproduceTest, WhatHasAnAnswerIsNotPlayedAgain) {
   EXPECT_EQ(second.answers.at("one").content.at("x"), 1);
   PlayThem(plays, true);
   EXPECT_EQ(Counted(), "xx");
+  folder_.Write("package/catalogue.yaml", "plays: [1]\n");
+  PlayThem(plays);
+  EXPECT_EQ(Counted(), "xx") << "other bounds ask for no other answer";
   folder_.Write("package/input.yaml", "a: 2\n");
   PlayThem(plays);
   EXPECT_EQ(Counted(), "xxx") << "it rests on another file now";

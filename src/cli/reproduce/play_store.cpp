@@ -48,10 +48,7 @@ std::string HashOfFile(const std::string& path) {
   return base::HexOf(hasher.value());
 }
 
-PlayStore::PlayStore(std::string folder, std::string package, std::string build)
-    : folder_(std::move(folder)), package_(std::move(package)), build_(std::move(build)) {
-  MakeFolder(folder_);
-}
+PlayStore::PlayStore(Place place) : place_(std::move(place)) { MakeFolder(place_.folder); }
 
 std::string PlayStore::KeyOf(const evaluation::Play& play) {
   const auto known = keys_.find(play.name);
@@ -60,8 +57,9 @@ std::string PlayStore::KeyOf(const evaluation::Play& play) {
   hasher.Add(HIRES_VERSION);
   for (const std::string& word : play.command) hasher.Add(word);
   for (const std::string& input : play.inputs) {
-    for (const std::string& file : FilesOf(package_ + "/" + input)) {
-      hasher.Add(fs::path(file).lexically_relative(package_).string());
+    for (const std::string& file : FilesOf(place_.package + "/" + input)) {
+      if (fs::equivalent(file, place_.catalogue)) continue;
+      hasher.Add(fs::path(file).lexically_relative(place_.package).string());
       hasher.Add(base::ReadTextFile(file, std::size_t{1} << 30));
     }
   }
@@ -70,7 +68,7 @@ std::string PlayStore::KeyOf(const evaluation::Play& play) {
 }
 
 std::string PlayStore::FolderOf(const evaluation::Play& play) {
-  const std::string folder = folder_ + "/" + play.name + "-" + KeyOf(play);
+  const std::string folder = place_.folder + "/" + play.name + "-" + KeyOf(play);
   MakeFolder(folder);
   return folder;
 }
@@ -89,13 +87,13 @@ std::optional<PlayStore::Stored> PlayStore::Find(const evaluation::Play& play) {
 }
 
 void PlayStore::Keep(const evaluation::Play& play, double seconds) {
-  const ordered_json note{{"play", play.name}, {"build", build_}, {"wall_seconds", seconds}};
+  const ordered_json note{{"play", play.name}, {"build", place_.build}, {"wall_seconds", seconds}};
   base::ReplaceTextFile(NoteOf(FolderOf(play)), note.dump(1) + "\n");
 }
 
 void PlayStore::Forget(const evaluation::Play& play) {
   std::error_code ignored;  // what remains is found by MakeFolder or the next play
-  fs::remove_all(folder_ + "/" + play.name + "-" + KeyOf(play), ignored);
+  fs::remove_all(place_.folder + "/" + play.name + "-" + KeyOf(play), ignored);
 }
 
 }  // namespace hires::cli

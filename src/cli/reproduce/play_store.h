@@ -15,11 +15,14 @@ std::string HashOfFile(const std::string& path);
 /// Answers of plays in a folder, each with what it rests on, so that nothing is played twice.
 class PlayStore {
  public:
-  /// @param folder   made where it is missing.
-  /// @param package  where config/, worlds/ and urdf/ lie.
-  /// @param build    tells apart the programs that play.
+  struct Place {
+    std::string folder;     ///< of the answers; made where it is missing
+    std::string package;    ///< where config/, worlds/ and urdf/ lie
+    std::string catalogue;  ///< rests on answers, and no answer on it
+    std::string build;      ///< tells apart the programs that play
+  };
   /// @throws base::ConfigError if the folder cannot be made.
-  PlayStore(std::string folder, std::string package, std::string build);
+  explicit PlayStore(Place place);
 
   /// What an answer rests on: the command, the content of the play's inputs, this version, and the
   /// same of the plays whose answers it takes. 16 digits.
@@ -44,10 +47,10 @@ class PlayStore {
   /// Forgets it, with all that was kept to go on.
   void Forget(const evaluation::Play& play);
 
-  const std::string& build() const { return build_; }
+  const std::string& build() const { return place_.build; }
 
  private:
-  std::string folder_, package_, build_;
+  const Place place_;
   std::map<std::string, std::string> keys_;
 };
 

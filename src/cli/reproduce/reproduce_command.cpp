@@ -164,7 +164,7 @@ int RunReproduceVerb(const ReproduceOptions& options, const std::string& package
   PlaysOrder order;
   order.plays = evaluation::PlaysFor(catalogue, items);
   order.program = std::filesystem::read_symlink("/proc/self/exe").string();
-  PlayStore store(ResultsFolder(options), package_folder, HashOfFile(order.program));
+  PlayStore store({ResultsFolder(options), package_folder, path, HashOfFile(order.program)});
   if (options.is_list) return List(items, order.plays, &store);
   CheckReport(options.report);
   ReportOrigin origin;
