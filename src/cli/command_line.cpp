@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "cli/achieve_command.h"
+#include "cli/experience/experiences_command.h"
 #include "cli/experiment_command.h"
 #include "cli/limits_command.h"
 #include "cli/list_command.h"
@@ -380,6 +381,7 @@ struct Verbs {
   MapOptions map;
   LocaliseOptions localise;
   RecogniseOptions recognise;
+  ExperiencesOptions experiences;
   ReproduceOptions reproduce;
   StoredReportOptions report;
   LimitsOptions limits;
@@ -414,6 +416,7 @@ void AddVerbs(CLI::App* app, Verbs* verbs, const Backends& backends) {
   AddRecogniseVerb(app, &verbs->recognise);
   AddMapVerb(app, &verbs->map);
   AddLocaliseVerb(app, &verbs->localise);
+  AddExperiencesVerb(app, &verbs->experiences);
   AddReproduceVerb(app, &verbs->reproduce);
   AddReportVerb(app, &verbs->report);
   AddDoctorVerb(app, &verbs->doctor);
@@ -475,6 +478,7 @@ int RunVerb(const Verbs& verbs, const Backends& backends) {
   if (*verbs.experiment.verb) return RunAnyExperiment(verbs.experiment, backends);
   if (*verbs.plan.verb) return RunPlanVerb(verbs.plan, IsInterrupted);
   if (*verbs.report.verb) return RunReportVerb(verbs.report);
+  if (*verbs.experiences.verb) return RunExperiencesVerb(verbs.experiences);
   if (*verbs.reproduce.verb) {
     return RunReproduceVerb(verbs.reproduce, backends.package_folder, IsInterrupted);
   }

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@
 #include "hires/evaluation/experiment/experiment.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
+#include "hires/knowledge/experience.h"
 
 namespace hires::cli {
 namespace {
@@ -62,6 +64,19 @@ ReportOrigin OriginOf(const ExperimentOptions& options,
   return origin;
 }
 
+/// A file that begins anew: experiences of two plays would be told apart by nothing.
+std::optional<knowledge::ExperienceStore> ExperiencesOf(
+    const ExperimentOptions& options, const evaluation::ExperimentConfig& config) {
+  if (options.experiences.empty()) return std::nullopt;
+  if (KindName(config) != "topple_loop") {
+    throw base::ConfigError(
+        fmt::format("--experiences: {} is of kind {}, which keeps none; wanted topple_loop",
+                    options.file, KindName(config)));
+  }
+  for (const char* end : {"", "-wal", "-shm"}) std::filesystem::remove(options.experiences + end);
+  return knowledge::ExperienceStore(options.experiences, knowledge::ExperienceStore::Mode::kWrite);
+}
+
 }  // namespace
 
 evaluation::Crew MakeCrew(int threads, bool is_quiet, const std::function<bool()>& cancelled) {
@@ -103,6 +118,9 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
   AddReportOptions(verb, &options->report);
   verb->add_option("--junit", options->junit,
                    "write what the file expects, and whether it holds, as JUnit XML to this file");
+  verb->add_option(
+      "--experiences", options->experiences,
+      "of topple_loop: keep what the load went through, 20 times a second, in this file");
   verb->add_flag("--quiet", options->quiet, "no progress bar");
   options->verb = verb;
   AddHypothesisVerb(verb, &options->hypothesis);
@@ -126,7 +144,11 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   if (!options.junit.empty()) evaluation::RequireFolderOf(options.junit);
   CheckReport(options.report);
   const ReportOrigin origin = OriginOf(options, config);
-  const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
+  evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
+  std::optional<knowledge::ExperienceStore> experiences = ExperiencesOf(options, config);
+  if (experiences) {
+    crew.on_experience = [&](const auto& batch) { experiences->Write(batch); };
+  }
   const std::optional<evaluation::ExperimentReport> report =
       evaluation::RunExperiment(config, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";

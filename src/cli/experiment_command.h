@@ -21,7 +21,7 @@ namespace hires::cli {
 
 /// What was typed behind `hires experiment`.
 struct ExperimentOptions {
-  std::string file, map, csv, junit;
+  std::string file, map, csv, junit, experiences;
   ReportOptions report;
   std::uint64_t seed{0};
   int threads{0}, runs{0};

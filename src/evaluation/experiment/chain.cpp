@@ -43,6 +43,7 @@ std::optional<Leg> Chain::Drive(const std::string& goal, const std::function<boo
   auto result = Play(goal, &leg, cancelled);
   if (!result) return std::nullopt;
   leg.result = *std::move(result);
+  time_ += leg.result.simulated;
   Measure(goal, &leg);
   GoOn(goal, &leg);
   return leg;
@@ -58,12 +59,20 @@ std::optional<imagination::RolloutResult> Chain::Play(const std::string& goal, L
         std::min(leg->clearance, clearance.Clearance(simulator.base().X_MB, leg->clearance));
     if (const simulation::SelfLocaliser* own = simulator.self_localiser())
       leg->places.push_back(MomentOf(*own, stage_->setup.skills->driving->params.lost));
+    if (options_.record) Record(simulator, leg);
     if (++samples % 2 == 0) leg->counts_10hz += imagination::SampleOf(tilt, setup_.params);
   };
   down_.clear();
   const auto end = [&](const std::vector<std::string>& down) { down_ = down; };
   return imagination::PlayRollout(setup_, DriveTo(goal, options_.motion_set), next_index_++,
                                   {cancelled, look, end});
+}
+
+void Chain::Record(const simulation::RobotSimulator& simulator, Leg* leg) const {
+  if (simulator.carried().empty()) return;
+  const Pose3 X_MO = simulator.PoseOf(simulator.carried().front());
+  leg->samples.push_back(
+      {time_ + simulator.time(), simulator.base().X_MB, X_MO, simulator.X_MB().Inverse() * X_MO});
 }
 
 void Chain::Measure(const std::string& goal, Leg* leg) const {

@@ -8,6 +8,7 @@
 
 #include "evaluation/experiment/places.h"
 #include "evaluation/experiment/stage.h"
+#include "hires/evaluation/experience/topple_monitor.h"
 
 namespace hires::evaluation {
 
@@ -22,6 +23,7 @@ struct Leg {
   double clearance{0.0};  ///< [m] the smallest to anything, at most kFarClearance; at 20 Hz
   PlaceTrail places;      ///< at 20 Hz, where the robot finds its place by itself
   imagination::OutcomeCounts counts_10hz;  ///< every other sample
+  std::vector<ToppleSample> samples;       ///< at 20 Hz, where wanted; of the chain's own time
   bool was_put_back{false};   ///< afterwards something carried was put back to its place
   bool was_restarted{false};  ///< afterwards the robot was put to the goal, as it could not go on
 };
@@ -39,6 +41,7 @@ class Chain {
     std::uint64_t seed{0};
     bool put_back{false};   ///< also during a leg
     bool one_truth{false};  ///< the same truth for all legs
+    bool record{false};     ///< samples of what the first thing on the tray goes through are kept
   };
   Chain(std::shared_ptr<const Stage> stage, const std::string& start, const Options& options);
 
@@ -48,6 +51,7 @@ class Chain {
  private:
   std::optional<imagination::RolloutResult> Play(const std::string& goal, Leg* leg,
                                                  const std::function<bool()>& cancelled);
+  void Record(const simulation::RobotSimulator& simulator, Leg* leg) const;
   void Measure(const std::string& goal, Leg* leg) const;
   void GoOn(const std::string& goal, Leg* leg);
   bool SettleLoad(const world::WorldState& final_world, const geometry::Pose2& X_MB);
@@ -59,6 +63,7 @@ class Chain {
   std::vector<std::string> down_;  // at the end of the last leg
   std::string at_;
   int next_index_{0};
+  double time_{0.0};  // [s] at the end of the last leg
 };
 
 }  // namespace hires::evaluation

@@ -194,6 +194,23 @@ std::vector<Leg> PlayOneChain(const ToppleLoopConfig& loop, Chain chain, const C
   return legs;
 }
 
+/// What the load of one chain went through, leg by leg.
+void TellExperiences(const std::string& motion_set, std::size_t number, std::vector<Leg>* legs,
+                     const imagination::RolloutParams& params, const Crew& crew) {
+  ToppleMonitor monitor(params);
+  for (Leg& leg : *legs) {
+    knowledge::ExperienceBatch batch{fmt::format("{}/{}", motion_set, number),
+                                     fmt::format("move_base_param({}, {})", leg.to, motion_set),
+                                     {}};
+    monitor.Begin();
+    for (const ToppleSample& sample : leg.samples) {
+      if (const auto part = monitor.Add(sample)) batch.parts.push_back(*part);
+    }
+    leg.samples = {};
+    crew.on_experience(batch);
+  }
+}
+
 }  // namespace
 
 std::optional<std::vector<Chains>> PlayToppleLoop(const ToppleLoopConfig& loop,
@@ -205,10 +222,17 @@ std::optional<std::vector<Chains>> PlayToppleLoop(const ToppleLoopConfig& loop,
     const int set = task % 2, number = task / 2;
     const std::uint64_t seed = base::Rng(config.seed).Fork(number).seed();
     Chain chain(stage, loop.route.front(),
-                {loop.motion_sets[set], seed, true, loop.one_truth_per_chain});
+                {loop.motion_sets[set], seed, true, loop.one_truth_per_chain,
+                 static_cast<bool>(crew.on_experience)});
     by_set[set][number] = PlayOneChain(loop, std::move(chain), crew, advance);
   };
   if (!DoInParallel(2 * loop.chains, 2.0 * loop.duration, crew, play)) return std::nullopt;
+  for (std::size_t set = 0; crew.on_experience && set < by_set.size(); ++set) {
+    for (std::size_t number = 0; number < by_set[set].size(); ++number) {
+      TellExperiences(loop.motion_sets[set], number, &by_set[set][number], stage->setup.rollout,
+                      crew);
+    }
+  }
   return by_set;
 }
 

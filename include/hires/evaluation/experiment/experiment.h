@@ -12,6 +12,7 @@
 #include "hires/evaluation/experiment/report.h"
 #include "hires/geometry/pose.h"
 #include "hires/imagination/rollout_result.h"
+#include "hires/knowledge/experience.h"
 #include "hires/simulation/self_localisation.h"
 
 namespace hires::evaluation {
@@ -135,6 +136,9 @@ struct Crew {
   /// Called a few times a second, and at the end, with the share that is done and the time since
   /// the start [s].
   std::function<void(double fraction, double elapsed)> on_progress;
+  /// Called by `topple_loop` at its end with what each load went through, run by run, leg by leg:
+  /// the same for any number of threads. May be empty.
+  std::function<void(const knowledge::ExperienceBatch&)> on_experience{};
 };
 
 /// Plays and sums up. The same bits for any number of threads.

@@ -1,0 +1,100 @@
+#include "cli/experience/experiences_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "hires/base/error.h"
+#include "hires/base/text.h"
+#include "hires/cli/command_line.h"
+#include "hires/cli/whole_number.h"
+#include "hires/evaluation/experience/experience_report.h"
+#include "hires/evaluation/report_json.h"
+#include "hires/knowledge/experience.h"
+
+namespace hires::cli {
+namespace {
+
+using knowledge::ExperienceStore;
+
+CLI::App* AddInner(CLI::App* verb, const char* name, const char* help,
+                   ExperiencesOptions* options) {
+  CLI::App* inner = verb->add_subcommand(name, help);
+  inner->add_option("store", options->store, "file of experiences")->required();
+  return inner;
+}
+
+knowledge::ExperienceQuery QueryOf(const ExperiencesOptions& options) {
+  knowledge::ExperienceQuery query;
+  if (!options.state.empty()) query.state = knowledge::ParseToppleState(options.state);
+  if (options.episode >= 0) query.episode = static_cast<std::uint32_t>(options.episode);
+  if (options.export_verb->count("--from") > 0) query.from = options.from;
+  if (options.export_verb->count("--to") > 0) query.to = options.to;
+  if (query.from > query.to) {
+    throw base::ConfigError(fmt::format("--from {} is later than --to {}; wanted a time span [s]",
+                                        query.from, query.to));
+  }
+  query.action = options.action;
+  query.run = options.run;
+  return query;
+}
+
+int Export(const ExperiencesOptions& options) {
+  const ExperienceStore store(options.store, ExperienceStore::Mode::kRead);
+  evaluation::RequireFolderOf(options.csv);
+  std::string text;
+  std::size_t lines = 0;
+  store.ForEach(QueryOf(options), [&](const ExperienceStore::Stored& stored) {
+    text += knowledge::CsvOf(stored.part);
+    text += '\n';
+    ++lines;
+  });
+  base::ReplaceTextFile(options.csv, text);
+  std::cout << fmt::format("{} parts in {}\n", lines, options.csv);
+  return kExitRecommended;
+}
+
+int Told(const ExperiencesOptions& options, const std::string& text,
+         const nlohmann::ordered_json& json) {
+  std::cout << text;
+  if (!options.json.empty()) evaluation::WriteJson(json, options.json);
+  return kExitRecommended;
+}
+
+}  // namespace
+
+void AddExperiencesVerb(CLI::App* app, ExperiencesOptions* o) {
+  o->verb = app->add_subcommand("experiences",
+                                "what loads on the tray went through: export, count, analyse");
+  o->verb->require_subcommand(1);
+  o->export_verb = AddInner(o->verb, "export", "write parts as CSV (dissertation, Listing 5.4)", o);
+  o->export_verb->add_option("--csv", o->csv, "file to write")->required();
+  o->export_verb->add_option("--state", o->state, "notopple, shaking or topple");
+  o->export_verb->add_option("--from", o->from, "[s] of the run, included");
+  o->export_verb->add_option("--to", o->to, "[s] of the run, included");
+  o->export_verb->add_option("--action", o->action, "any part of the action's text");
+  o->export_verb->add_option("--run", o->run, "such as fast/3");
+  o->export_verb->add_option("--episode", o->episode, "of each run")
+      ->check(NumberBetween(0, 1000000000));
+  o->stats_verb = AddInner(o->verb, "stats", "parts by action and state, falls, episodes, size", o);
+  o->stats_verb->add_option("--json", o->json, "write everything to this file, for machines");
+  o->analyse_verb =
+      AddInner(o->verb, "analyse", "what filters do, and which dynamics predict a fall", o);
+  o->analyse_verb->add_option("--json", o->json, "write everything to this file, for machines");
+  o->analyse_verb->add_option("--seed", o->seed, "of noise and resampling");
+}
+
+int RunExperiencesVerb(const ExperiencesOptions& options) {
+  if (*options.export_verb) return Export(options);
+  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  const ExperienceStore store(options.store, ExperienceStore::Mode::kRead);
+  std::string text;
+  const nlohmann::ordered_json json = *options.stats_verb
+                                          ? evaluation::StatsOf(store, &text)
+                                          : evaluation::AnalysisOf(store, options.seed, &text);
+  return Told(options, text, json);
+}
+
+}  // namespace hires::cli

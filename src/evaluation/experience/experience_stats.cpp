@@ -1,0 +1,97 @@
+#include <fmt/format.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "evaluation/experience/experience_runs.h"
+#include "hires/evaluation/experience/experience_report.h"
+#include "hires/evaluation/report_table.h"
+#include "hires/imagination/evidence.h"
+
+namespace hires::evaluation {
+namespace {
+
+using knowledge::ToppleState;
+using nlohmann::ordered_json;
+
+struct ActionCounts {
+  imagination::OutcomeCounts counts;
+  int falls{0};
+  double time{0.0};  // [s]
+};
+
+void Count(const Stretch& stretch, ActionCounts* into) {
+  for (const knowledge::ToppleEpisodePart& part : stretch) {
+    into->counts.notopple += part.state == ToppleState::kNoTopple;
+    into->counts.shaking += part.state == ToppleState::kShaking;
+    into->counts.topple += part.state == ToppleState::kTopple;
+  }
+  for (std::size_t at = NextOnset(stretch, 0); at < stretch.size();
+       at = NextOnset(stretch, at + 1)) {
+    ++into->falls;
+  }
+  into->time += kExperiencePeriod * static_cast<double>(stretch.size());
+}
+
+ordered_json ActionJson(const std::string& action, const ActionCounts& found) {
+  const imagination::OutcomeCounts& counts = found.counts;
+  const double rate = found.time > 0.0 ? counts.total() / found.time : 0.0;
+  return {{"action", action},
+          {"parts", counts.total()},
+          {"notopple", counts.notopple},
+          {"shaking", counts.shaking},
+          {"topple", counts.topple},
+          {"falls", found.falls},
+          {"time", found.time},
+          {"samples_per_second", rate},
+          {"confidence",
+           counts.total() > 0 ? ordered_json(imagination::Confidence(counts)) : ordered_json()}};
+}
+
+std::string TextOf(const ordered_json& stats) {
+  std::vector<std::vector<std::string>> rows{
+      {"action", "parts", "notopple", "shaking", "topple", "falls", "time [s]", "confidence"}};
+  for (const ordered_json& row : stats.at("actions")) {
+    const auto whole = [&](const char* key) { return fmt::format("{}", row.at(key).get<int>()); };
+    rows.push_back({row.at("action").get<std::string>(), whole("parts"), whole("notopple"),
+                    whole("shaking"), whole("topple"), whole("falls"),
+                    fmt::format("{:.0f}", row.at("time").get<double>()),
+                    row.at("confidence").is_null()
+                        ? ""
+                        : fmt::format("{:.3f}", row.at("confidence").get<double>())});
+  }
+  return fmt::format("{}\n{} parts of {} runs, {} episodes, {:.1f} bytes each\n", FormatTable(rows),
+                     stats.at("parts").get<std::uint64_t>(), stats.at("runs").get<std::size_t>(),
+                     stats.at("episodes").get<std::size_t>(),
+                     stats.at("bytes_per_part").get<double>());
+}
+
+}  // namespace
+
+ordered_json StatsOf(const knowledge::ExperienceStore& store, std::string* text) {
+  std::map<std::string, ActionCounts> by_action;
+  std::size_t episodes = 0;
+  const std::vector<ExperienceRun> runs = RunsOf(store);
+  for (const ExperienceRun& run : runs) {
+    for (std::size_t i = 0; i < run.stretches.size(); ++i) {
+      Count(run.stretches[i], &by_action[run.actions[i]]);
+    }
+    episodes += run.stretches.back().back().episode + 1;
+  }
+  ordered_json actions = ordered_json::array();
+  for (const auto& [action, counts] : by_action) actions.push_back(ActionJson(action, counts));
+  const std::uint64_t parts = store.num_parts();
+  const double per_part =
+      parts > 0 ? static_cast<double>(store.bytes()) / static_cast<double>(parts) : 0.0;
+  ordered_json stats{{"schema", "hires/experience_stats"},
+                     {"version", 1},
+                     {"parts", parts},
+                     {"runs", runs.size()},
+                     {"episodes", episodes},
+                     {"bytes_per_part", per_part},
+                     {"actions", actions}};
+  *text = TextOf(stats);
+  return stats;
+}
+
+}  // namespace hires::evaluation

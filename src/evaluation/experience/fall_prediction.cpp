@@ -1,0 +1,128 @@
+#include "evaluation/experience/fall_prediction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "evaluation/experience/separation.h"
+
+namespace hires::evaluation {
+namespace {
+
+using knowledge::ToppleEpisodePart;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kAhead = 10;   // [parts] before a fall at which the window ends: 0.5 s
+constexpr std::size_t kWindow = 10;  // [parts] of the window: 0.5 s
+constexpr std::size_t kStride = 40;  // [parts] between windows without a fall: 2 s
+constexpr std::size_t kCalm = 60;    // [parts] around them in which nothing falls: 3 s
+constexpr std::size_t kRocPoints = 60;
+
+struct Feature {
+  const char* name;
+  double (*of)(const ToppleEpisodePart&);
+};
+const Feature kFeatures[] = {
+    {"base |v|", [](const auto& p) { return p.base.v; }},
+    {"base |a|", [](const auto& p) { return std::abs(p.base.a); }},
+    {"base |j|", [](const auto& p) { return std::abs(p.base.j); }},
+    {"base angular |v|", [](const auto& p) { return p.base.angular_v; }},
+    {"base angular |a|", [](const auto& p) { return std::abs(p.base.angular_a); }},
+    {"base angular |j|", [](const auto& p) { return std::abs(p.base.angular_j); }},
+    {"tilt of the load", [](const auto& p) { return p.alpha; }},
+};
+
+double LargestIn(const Stretch& stretch, std::size_t end, const Feature& feature) {
+  double largest = 0.0;
+  for (std::size_t i = end - kWindow; i < end; ++i) {
+    largest = std::max(largest, feature.of(stretch[i]));
+  }
+  return largest;
+}
+
+bool IsCalm(const Stretch& stretch, std::size_t at) {
+  const std::size_t from = at < kCalm ? 0 : at - kCalm;
+  const std::size_t to = std::min(stretch.size(), at + kCalm);
+  return std::none_of(
+      stretch.begin() + static_cast<std::ptrdiff_t>(from),
+      stretch.begin() + static_cast<std::ptrdiff_t>(to),
+      [](const ToppleEpisodePart& part) { return part.state == knowledge::ToppleState::kTopple; });
+}
+
+void AddStretch(const Stretch& stretch, const Feature& feature, RunScores* scores) {
+  constexpr std::size_t kReach = kAhead + kWindow;
+  for (std::size_t at = NextOnset(stretch, 0); at < stretch.size();
+       at = NextOnset(stretch, at + 1)) {
+    if (at >= kReach) scores->positive.push_back(LargestIn(stretch, at - kAhead, feature));
+  }
+  for (std::size_t at = kReach; at < stretch.size(); at += kStride) {
+    if (IsCalm(stretch, at)) scores->negative.push_back(LargestIn(stretch, at - kAhead, feature));
+  }
+}
+
+std::vector<RunScores> ScoresOf(const std::vector<ExperienceRun>& runs, const Feature& feature) {
+  std::vector<RunScores> scores(runs.size());
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    for (const Stretch& stretch : runs[r].stretches) AddStretch(stretch, feature, &scores[r]);
+  }
+  return scores;
+}
+
+/// Every other run, beginning with the one of that number.
+std::vector<RunScores> EveryOther(const std::vector<RunScores>& runs, std::size_t first) {
+  std::vector<RunScores> half;
+  for (std::size_t r = first; r < runs.size(); r += 2) half.push_back(runs[r]);
+  return half;
+}
+
+std::size_t CountOf(const std::vector<RunScores>& runs, std::vector<double> RunScores::*kind) {
+  std::size_t count = 0;
+  for (const RunScores& run : runs) count += (run.*kind).size();
+  return count;
+}
+
+ordered_json Number(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json();
+}
+
+ordered_json FeatureJson(const Feature& feature, const std::vector<RunScores>& runs,
+                         const base::Rng& rng) {
+  const Interval area = AreaInterval(runs, rng);
+  const RocPoint judged =
+      JudgedAt(EveryOther(runs, 1), BestThreshold(EveryOther(runs, 0)).threshold);
+  ordered_json alarms = ordered_json::array(), hits = ordered_json::array();
+  for (const RocPoint& point : RocOf(runs, kRocPoints)) {
+    alarms.push_back(Number(point.false_alarms));
+    hits.push_back(Number(point.hits));
+  }
+  return {{"feature", feature.name},
+          {"area",
+           {{"estimate", Number(area.estimate)},
+            {"lower", Number(area.lower)},
+            {"upper", Number(area.upper)}}},
+          {"judged",
+           {{"threshold", Number(judged.threshold)},
+            {"hits", Number(judged.hits)},
+            {"false_alarms", Number(judged.false_alarms)}}},
+          {"roc", {{"false_alarms", alarms}, {"hits", hits}}}};
+}
+
+}  // namespace
+
+ordered_json PredictFalls(const std::vector<ExperienceRun>& runs, const base::Rng& rng) {
+  ordered_json features = ordered_json::array();
+  std::size_t falls = 0, calm = 0;
+  for (const Feature& feature : kFeatures) {
+    const std::vector<RunScores> scores = ScoresOf(runs, feature);
+    falls = CountOf(scores, &RunScores::positive);
+    calm = CountOf(scores, &RunScores::negative);
+    features.push_back(FeatureJson(feature, scores, rng));
+  }
+  return {{"ahead", kExperiencePeriod * kAhead},
+          {"window", kExperiencePeriod * kWindow},
+          {"falls", falls},
+          {"calm_windows", calm},
+          {"features", features}};
+}
+
+}  // namespace hires::evaluation

@@ -1,0 +1,161 @@
+#include "evaluation/experience/separation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace hires::evaluation {
+namespace {
+
+constexpr int kResamples = 300;
+
+struct Scored {
+  double score;
+  bool is_positive;
+};
+
+std::vector<Scored> Sorted(const std::vector<RunScores>& runs) {
+  std::vector<Scored> all;
+  for (const RunScores& run : runs) {
+    for (const double score : run.positive) all.push_back({score, true});
+    for (const double score : run.negative) all.push_back({score, false});
+  }
+  std::sort(all.begin(), all.end(),
+            [](const Scored& a, const Scored& b) { return a.score < b.score; });
+  return all;
+}
+
+/// Calls `take` for each group of equal scores, the largest first.
+template <typename Take>
+void FromTheTop(const std::vector<Scored>& sorted, const Take& take) {
+  for (std::size_t end = sorted.size(); end > 0;) {
+    std::size_t begin = end;
+    double positive = 0.0, negative = 0.0;
+    while (begin > 0 && sorted[begin - 1].score == sorted[end - 1].score) {
+      --begin;
+      (sorted[begin].is_positive ? positive : negative) += 1.0;
+    }
+    take(sorted[end - 1].score, positive, negative);
+    end = begin;
+  }
+}
+
+struct Totals {
+  double positive{0.0}, negative{0.0};
+};
+
+Totals TotalsOf(const std::vector<Scored>& all) {
+  Totals totals;
+  for (const Scored& one : all) (one.is_positive ? totals.positive : totals.negative) += 1.0;
+  return totals;
+}
+
+/// A run's scores counted in bins that hold equally many of all: resampling counts is quick, and
+/// what falls into one bin is tied, which moves an area by less than a bin's share.
+constexpr std::size_t kBins = 1024;
+struct BinnedRun {
+  std::array<double, kBins> positive{}, negative{};
+};
+
+std::vector<BinnedRun> BinnedRunsOf(const std::vector<RunScores>& runs) {
+  const std::vector<Scored> sorted = Sorted(runs);
+  std::vector<double> edges;  // between bins
+  for (std::size_t b = 1; b < kBins && !sorted.empty(); ++b) {
+    edges.push_back(sorted[b * sorted.size() / kBins].score);
+  }
+  const auto bin = [&](double score) {
+    return std::upper_bound(edges.begin(), edges.end(), score) - edges.begin();
+  };
+  std::vector<BinnedRun> binned(runs.size());
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    for (const double score : runs[r].positive) binned[r].positive[bin(score)] += 1.0;
+    for (const double score : runs[r].negative) binned[r].negative[bin(score)] += 1.0;
+  }
+  return binned;
+}
+
+double AreaOf(const BinnedRun& run) {
+  double hits = 0.0, alarms = 0.0, area = 0.0;
+  for (std::size_t b = kBins; b-- > 0;) {
+    area += run.negative[b] * (hits + 0.5 * run.positive[b]);
+    hits += run.positive[b];
+    alarms += run.negative[b];
+  }
+  return hits * alarms > 0.0 ? area / (hits * alarms) : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+double AreaUnderCurve(const std::vector<RunScores>& runs) {
+  const std::vector<Scored> sorted = Sorted(runs);
+  const Totals totals = TotalsOf(sorted);
+  double hits = 0.0, area = 0.0;
+  FromTheTop(sorted, [&](double, double positive, double negative) {
+    area += negative * (hits + 0.5 * positive);
+    hits += positive;
+  });
+  const double all = totals.positive * totals.negative;
+  return all > 0.0 ? area / all : std::numeric_limits<double>::quiet_NaN();
+}
+
+Interval AreaInterval(const std::vector<RunScores>& runs, base::Rng rng) {
+  const double estimate = AreaUnderCurve(runs);
+  const std::vector<BinnedRun> binned = BinnedRunsOf(runs);
+  std::vector<double> areas;
+  for (int i = 0; i < kResamples; ++i) {
+    BinnedRun resample;
+    for (std::size_t k = 0; k < binned.size(); ++k) {
+      const BinnedRun& chosen = binned[rng.Index(static_cast<int>(binned.size()))];
+      for (std::size_t b = 0; b < kBins; ++b) {
+        resample.positive[b] += chosen.positive[b];
+        resample.negative[b] += chosen.negative[b];
+      }
+    }
+    const double area = AreaOf(resample);
+    if (std::isfinite(area)) areas.push_back(area);
+  }
+  if (areas.empty()) return {estimate, estimate, estimate};
+  std::sort(areas.begin(), areas.end());
+  const auto at = [&](double share) {
+    return areas[static_cast<std::size_t>(share * static_cast<double>(areas.size() - 1))];
+  };
+  return {estimate, at(0.025), at(0.975)};
+}
+
+std::vector<RocPoint> RocOf(const std::vector<RunScores>& runs, std::size_t most) {
+  const std::vector<Scored> sorted = Sorted(runs);
+  const Totals totals = TotalsOf(sorted);
+  std::vector<RocPoint> points;
+  double hits = 0.0, alarms = 0.0;
+  FromTheTop(sorted, [&](double score, double positive, double negative) {
+    hits += positive;
+    alarms += negative;
+    points.push_back({score, alarms / totals.negative, hits / totals.positive});
+  });
+  if (points.size() <= most) return points;
+  std::vector<RocPoint> kept;
+  for (std::size_t i = 0; i < most; ++i)
+    kept.push_back(points[i * (points.size() - 1) / (most - 1)]);
+  return kept;
+}
+
+RocPoint BestThreshold(const std::vector<RunScores>& runs) {
+  RocPoint best{std::numeric_limits<double>::infinity(), 0.0, 0.0};
+  for (const RocPoint& point : RocOf(runs, std::numeric_limits<std::size_t>::max())) {
+    if (point.hits - point.false_alarms > best.hits - best.false_alarms) best = point;
+  }
+  return best;
+}
+
+RocPoint JudgedAt(const std::vector<RunScores>& runs, double threshold) {
+  const std::vector<Scored> all = Sorted(runs);
+  const Totals totals = TotalsOf(all);
+  double hits = 0.0, alarms = 0.0;
+  for (const Scored& one : all) {
+    if (one.score >= threshold) (one.is_positive ? hits : alarms) += 1.0;
+  }
+  return {threshold, alarms / totals.negative, hits / totals.positive};
+}
+
+}  // namespace hires::evaluation

@@ -1,0 +1,148 @@
+#include "hires/knowledge/experience.h"
+
+#include <gmock/gmock.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "hires/base/text.h"
+#include "support/messages.h"
+#include "support/temporary_folder.h"
+
+namespace hires::knowledge::experience_test {
+namespace {
+
+using test_support::ConfigErrorOf;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr int kParts = 100;  // of a batch
+
+ToppleEpisodePart PartAt(double time, ToppleState state = ToppleState::kNoTopple) {
+  ToppleEpisodePart part;
+  part.time = time;
+  part.episode = static_cast<std::uint32_t>(time);
+  part.state = state;
+  part.alpha = 0.25;
+  part.deviation = 0.5;
+  part.object = {1.0, -2.0, 3.0, 4.0, -5.0, 6.0};
+  part.base = {7.0, -8.0, 9.0, 10.0, -11.0, 12.0};
+  part.x = 13.0;
+  part.y = -14.0;
+  part.yaw = 1.5;
+  return part;
+}
+
+class ExperienceStoreTest : public ::testing::Test {
+ protected:
+  std::string Path(const std::string& name = "e.db") const {
+    return (folder_.path() / name).string();
+  }
+  ExperienceStore Writer() const { return ExperienceStore(Path(), ExperienceStore::Mode::kWrite); }
+  std::vector<double> TimesOf(const ExperienceQuery& query) const {
+    const ExperienceStore store(Path(), ExperienceStore::Mode::kRead);
+    std::vector<double> times;
+    store.ForEach(query, [&](const auto& stored) { times.push_back(stored.part.time); });
+    return times;
+  }
+
+  const test_support::TemporaryFolder folder_;
+};
+
+TEST_F(ExperienceStoreTest, WhatIsWrittenIsRead) {
+  Writer().Write({"fast/0", "move_base_param(nt1, fast)", {PartAt(1.5, ToppleState::kShaking)}});
+  const ExperienceStore store(Path(), ExperienceStore::Mode::kRead);
+  EXPECT_EQ(store.num_parts(), 1u);
+  EXPECT_GT(store.bytes(), 68u);
+  store.ForEach({}, [](const ExperienceStore::Stored& stored) {
+    EXPECT_EQ(*stored.run, "fast/0");
+    EXPECT_EQ(*stored.action, "move_base_param(nt1, fast)");
+    EXPECT_EQ(stored.part.state, ToppleState::kShaking);
+    EXPECT_EQ(CsvOf(stored.part), CsvOf(PartAt(1.5, ToppleState::kShaking)));
+  });
+}
+
+TEST_F(ExperienceStoreTest, PartsAreAskedForByStateTimeActionRunAndEpisode) {
+  {
+    ExperienceStore store = Writer();
+    store.Write(
+        {"fast/0",
+         "drive(a, fast)",
+         {PartAt(0.0), PartAt(1.0, ToppleState::kShaking), PartAt(2.0, ToppleState::kTopple)}});
+    store.Write({"slow/0", "drive(a, slow)", {PartAt(3.0), PartAt(4.0, ToppleState::kShaking)}});
+  }
+  ExperienceQuery query;
+  query.state = ToppleState::kShaking;
+  EXPECT_THAT(TimesOf(query), ElementsAre(1.0, 4.0));
+  query.run = "slow/0";
+  EXPECT_THAT(TimesOf(query), ElementsAre(4.0));
+  query = {};
+  query.state = ToppleState::kNoTopple;
+  EXPECT_THAT(TimesOf(query), ElementsAre(0.0, 3.0));
+  query = {};
+  query.from = 1.0;
+  query.to = 3.0;
+  EXPECT_THAT(TimesOf(query), ElementsAre(1.0, 2.0, 3.0));
+  query = {};
+  query.action = "slow";
+  EXPECT_THAT(TimesOf(query), ElementsAre(3.0, 4.0));
+  query = {};
+  query.episode = 2;
+  EXPECT_THAT(TimesOf(query), ElementsAre(2.0));
+  query.run = "nobody";
+  EXPECT_THAT(TimesOf(query), ElementsAre());
+}
+
+TEST_F(ExperienceStoreTest, WhatHasBegunIsWholeOrGoneAfterAKill) {
+  Writer();
+  int told[2];
+  ASSERT_EQ(pipe(told), 0);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    ExperienceStore store = Writer();
+    for (double time = 0.0;; time += kParts) {
+      ExperienceBatch batch{"r", "a", {}};
+      for (int i = 0; i < kParts; ++i) batch.parts.push_back(PartAt(time + i));
+      store.Write(batch);
+      if (write(told[1], "x", 1) != 1) _exit(1);
+    }
+  }
+  std::string written(20, ' ');
+  for (char& byte : written) ASSERT_EQ(read(told[0], &byte, 1), 1);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  const std::size_t found = TimesOf({}).size();
+  EXPECT_GE(found, 20u * kParts) << "what was acknowledged is there";
+  EXPECT_EQ(found % kParts, 0u) << "no half batch";
+}
+
+TEST_F(ExperienceStoreTest, OtherFilesAreRefusedByName) {
+  const auto open = [&](const std::string& path, ExperienceStore::Mode mode) {
+    return ConfigErrorOf([&] { ExperienceStore(path, mode); });
+  };
+  EXPECT_THAT(open(Path("none.db"), ExperienceStore::Mode::kRead),
+              AllOf(HasSubstr("none.db"), HasSubstr("no such file")));
+  EXPECT_THAT(open(Path("x/none.db"), ExperienceStore::Mode::kWrite),
+              HasSubstr("there is no folder"));
+  std::ofstream(Path("text.db")) << std::string(5000, 'x');
+  EXPECT_THAT(open(Path("text.db"), ExperienceStore::Mode::kRead), HasSubstr("text.db"));
+  std::ofstream(Path("empty.db"));
+  EXPECT_THAT(open(Path("empty.db"), ExperienceStore::Mode::kRead),
+              HasSubstr("holds no experiences"));
+}
+
+TEST(ExperienceCsvTest, ALineHasTheFieldsOfTheListing) {
+  EXPECT_EQ(CsvOf(PartAt(2.0)),
+            "2000000000,0,2000000000,,2,notopple,0,2000000000,/base_footprint,0.25,0.5,0.0,"
+            "0,1925000000,/map,1,-2,3,4,-5,6,0,0,,0.0,0.0,0.0,"
+            "0,1925000000,/map,7,-8,9,10,-11,12,0,2000000000,/map,13,-14,1.5");
+  EXPECT_THAT(ConfigErrorOf([] { ParseToppleState("toppled"); }),
+              AllOf(HasSubstr("'toppled'"), HasSubstr("wanted notopple, shaking or topple")));
+}
+
+}  // namespace
+}  // namespace hires::knowledge::experience_test
