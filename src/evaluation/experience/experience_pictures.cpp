@@ -12,7 +12,7 @@ using knowledge::ToppleEpisodePart;
 using knowledge::ToppleState;
 using nlohmann::ordered_json;
 
-constexpr std::size_t kBins = 60;
+constexpr std::size_t kHistogramBins = 60;
 constexpr std::size_t kPoints = 3000;  // of a cloud of points
 constexpr std::size_t kAround = 100;   // [parts] before and after what an example shows: 5 s
 
@@ -42,15 +42,15 @@ std::map<std::string, std::vector<const Stretch*>> ByKind(const std::vector<Expe
 
 /// What lies beyond the edges counts in the outermost bins.
 ordered_json HistogramOf(const std::vector<const Stretch*>& stretches, const Quantity& quantity) {
-  std::vector<double> edges(kBins + 1), counts(kBins, 0.0);
-  const double width = (quantity.upper - quantity.lower) / kBins;
-  for (std::size_t i = 0; i <= kBins; ++i)
+  std::vector<double> edges(kHistogramBins + 1), counts(kHistogramBins, 0.0);
+  const double width = (quantity.upper - quantity.lower) / kHistogramBins;
+  for (std::size_t i = 0; i <= kHistogramBins; ++i)
     edges[i] = quantity.lower + width * static_cast<double>(i);
   double all = 0.0;
   for (const Stretch* stretch : stretches) {
     for (const ToppleEpisodePart& part : *stretch) {
       const double place = std::floor((quantity.of(part) - quantity.lower) / width);
-      counts[static_cast<std::size_t>(std::clamp(place, 0.0, kBins - 1.0))] += 1.0;
+      counts[static_cast<std::size_t>(std::clamp(place, 0.0, kHistogramBins - 1.0))] += 1.0;
       all += 1.0;
     }
   }

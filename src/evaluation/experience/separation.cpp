@@ -53,16 +53,16 @@ Totals TotalsOf(const std::vector<Scored>& all) {
 
 /// A run's scores counted in bins that hold equally many of all: resampling counts is quick, and
 /// what falls into one bin is tied, which moves an area by less than a bin's share.
-constexpr std::size_t kBins = 1024;
+constexpr std::size_t kAreaBins = 1024;
 struct BinnedRun {
-  std::array<double, kBins> positive{}, negative{};
+  std::array<double, kAreaBins> positive{}, negative{};
 };
 
 std::vector<BinnedRun> BinnedRunsOf(const std::vector<RunScores>& runs) {
   const std::vector<Scored> sorted = Sorted(runs);
   std::vector<double> edges;  // between bins
-  for (std::size_t b = 1; b < kBins && !sorted.empty(); ++b) {
-    edges.push_back(sorted[b * sorted.size() / kBins].score);
+  for (std::size_t b = 1; b < kAreaBins && !sorted.empty(); ++b) {
+    edges.push_back(sorted[b * sorted.size() / kAreaBins].score);
   }
   const auto bin = [&](double score) {
     return std::upper_bound(edges.begin(), edges.end(), score) - edges.begin();
@@ -77,7 +77,7 @@ std::vector<BinnedRun> BinnedRunsOf(const std::vector<RunScores>& runs) {
 
 double AreaOf(const BinnedRun& run) {
   double hits = 0.0, alarms = 0.0, area = 0.0;
-  for (std::size_t b = kBins; b-- > 0;) {
+  for (std::size_t b = kAreaBins; b-- > 0;) {
     area += run.negative[b] * (hits + 0.5 * run.positive[b]);
     hits += run.positive[b];
     alarms += run.negative[b];
@@ -107,7 +107,7 @@ Interval AreaInterval(const std::vector<RunScores>& runs, base::Rng rng) {
     BinnedRun resample;
     for (std::size_t k = 0; k < binned.size(); ++k) {
       const BinnedRun& chosen = binned[rng.Index(static_cast<int>(binned.size()))];
-      for (std::size_t b = 0; b < kBins; ++b) {
+      for (std::size_t b = 0; b < kAreaBins; ++b) {
         resample.positive[b] += chosen.positive[b];
         resample.negative[b] += chosen.negative[b];
       }
