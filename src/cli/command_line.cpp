@@ -25,6 +25,7 @@
 #include "cli/reading_display.h"
 #include "cli/recognise_command.h"
 #include "cli/save_rollout.h"
+#include "cli/series/scenarios_command.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
@@ -373,6 +374,7 @@ struct Verbs {
   ImagineOptions imagine_options;
   AchieveOptions achieve;
   ExperimentOptions experiment;
+  ScenariosOptions scenarios;
   PlanOptions plan;
   BlackboardOptions blackboard;
   ListOptions list;
@@ -391,7 +393,8 @@ void SetCall(const std::vector<std::string>& arguments, const Backends& backends
   words.front() = "hires";
   for (ReportOptions* report :
        {&verbs->imagine_options.report, &verbs->achieve.report, &verbs->experiment.report,
-        &verbs->experiment.hypothesis.report, &verbs->plan.report, &verbs->doctor.robot.report}) {
+        &verbs->experiment.hypothesis.report, &verbs->scenarios.report, &verbs->plan.report,
+        &verbs->doctor.robot.report}) {
     report->command = CommandText(words);
     report->package_folder = backends.package_folder;
   }
@@ -405,6 +408,7 @@ void AddVerbs(CLI::App* app, Verbs* verbs, const Backends& backends) {
   AddLimitsVerb(app, &verbs->limits);
   AddAchieveVerb(app, &verbs->achieve);
   AddExperimentVerb(app, &verbs->experiment);
+  AddScenariosVerb(app, &verbs->scenarios);
   AddPlanVerb(app, &verbs->plan);
   AddBlackboardVerb(app, &verbs->blackboard);
   AddListVerb(app, &verbs->list);
@@ -455,6 +459,13 @@ int ListTasks(const AchieveOptions& achieve, const Backends& backends) {
   return RunListVerb(list, backends.package_folder);
 }
 
+int RunScenarios(const ScenariosOptions& options, const Backends& backends) {
+  const auto& more = backends.more_verbs;
+  const bool can_play_graph = std::any_of(
+      more.begin(), more.end(), [](const Verb& verb) { return verb.name == kScenarioRunVerb; });
+  return RunScenariosVerb(options, backends.package_folder, can_play_graph, IsInterrupted);
+}
+
 int RunVerb(const Verbs& verbs, const Backends& backends) {
   // It has nothing to finish, and ends as any program does.
   if (*verbs.doctor.verb) return RunDoctorVerb(verbs.doctor, backends);
@@ -469,6 +480,7 @@ int RunVerb(const Verbs& verbs, const Backends& backends) {
                           IsInterrupted, backends.record_loop);
   }
   if (*verbs.experiment.verb) return RunAnyExperiment(verbs.experiment, backends);
+  if (*verbs.scenarios.verb) return RunScenarios(verbs.scenarios, backends);
   if (*verbs.plan.verb) return RunPlanVerb(verbs.plan, IsInterrupted);
   if (*verbs.report.verb) return RunReportVerb(verbs.report);
   if (*verbs.list.verb) return RunListVerb(verbs.list, backends.package_folder);
