@@ -15,7 +15,8 @@ namespace hires::loop {
 class Blackboard {
  public:
   /// @param store  new file that keeps it; empty: none does.
-  Blackboard(std::shared_ptr<const knowledge::Ontology> ontology, const std::string& store);
+  explicit Blackboard(std::shared_ptr<const knowledge::Ontology> ontology,
+                      const std::string& store = "");
 
   /// Says what these knowledge files say.  @throws base::ConfigError naming file and line.
   void Load(const std::vector<std::string>& knowledge_files, std::uint64_t seed);

@@ -27,7 +27,6 @@ using hires::test_support::RunHires;
 using nlohmann::ordered_json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
 
@@ -212,6 +211,23 @@ TEST_F(ScenariosTest, BadInputIsRefusedBeforeAnythingIsPlayed) {
   folder_.Write("some.yaml", "!Scenario\nTruth: same\n");
   EXPECT_THAT(error(), AllOf(HasSubstr("some.yaml"), HasSubstr("--scenario NAME")));
   EXPECT_FALSE(fs::exists(folder_.path() / "store/calls"));
+}
+
+TEST(GraphOrderTest, ComesBackFromItsTextAndErrorsNameTheField) {
+  GraphOrder order;
+  order.run.files = {"a.yaml", "b.world", {"c.yaml", "d.yaml"}};
+  order.run.task = "serve coffee";
+  order.run.truth = "ideal";
+  order.run.folder = "/f";
+  order.run.seed = 12;
+  order.workers = 3;
+  order.pace = 2.5;
+  order.time_limit = 40.0;
+  const std::string text = GraphOrderText(order);
+  EXPECT_EQ(GraphOrderText(ParseGraphOrder(text, "t")), text);
+  EXPECT_THAT(text, AllOf(HasSubstr("d.yaml"), HasSubstr("2.5"), HasSubstr("\"seed\": 12")));
+  EXPECT_THAT(ConfigErrorOf([] { ParseGraphOrder("{}", "order.json"); }),
+              HasSubstr("order.json: field 'scenario'"));
 }
 
 TEST(ScenariosVerbTest, WordsThatMakeNoSenseAreRefused) {

@@ -1,4 +1,4 @@
-#include "cli/series/scenario_play.h"
+#include "hires/cli/scenario_play.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <type_traits>
 
+#include "hires/base/error.h"
 #include "hires/base/process.h"
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
@@ -21,6 +23,20 @@ constexpr useconds_t kTryPoll = 20000;    // [us]
 constexpr double kTryGrace = 5.0;         // [s] for a process to end that is told to
 constexpr double kGraphTryGrace = 60.0;   // [s] likewise, for a whole graph
 constexpr std::size_t kMostOfLine = 200;  // characters of a message
+
+template <typename Order, typename Visitor>
+void VisitGraphOrder(Order* order, const Visitor& visit) {
+  visit("scenario", &order->run.files.scenario);
+  visit("world", &order->run.files.world);
+  visit("knowledge", &order->run.files.knowledge);
+  visit("task", &order->run.task);
+  visit("truth", &order->run.truth);
+  visit("seed", &order->run.seed);
+  visit("folder", &order->run.folder);
+  visit("workers", &order->workers);
+  visit("pace", &order->pace);
+  visit("time_limit", &order->time_limit);
+}
 
 std::string LogOf(const ScenarioOrder& order) { return order.folder + "/run.log"; }
 
@@ -96,7 +112,8 @@ std::vector<std::string> CommandOf(const ScenarioOrder& order, const ScenarioPla
     return command;
   }
   const std::string file = order.folder + "/order.json";
-  base::ReplaceTextFile(file, GraphOrderJson(order, player).dump(2) + '\n');
+  base::ReplaceTextFile(file,
+                        GraphOrderText({order, player.workers, player.pace, player.time_limit}));
   command.insert(command.end(),
                  {kScenarioRunVerb, file, ResultOf(order), std::to_string(ports->first())});
   return command;
@@ -113,18 +130,23 @@ void RemoveOldTry(const ScenarioOrder& order) {
 std::string ResultOf(const ScenarioOrder& order) { return order.folder + "/result.json"; }
 std::string StoreOf(const ScenarioOrder& order) { return order.folder + "/blackboard.db"; }
 
-ordered_json GraphOrderJson(const ScenarioOrder& order, const ScenarioPlayer& player) {
-  return {{"scenario", order.files.scenario},
-          {"world", order.files.world},
-          {"knowledge", order.files.knowledge},
-          {"task", order.task},
-          {"truth", order.truth},
-          {"seed", order.seed},
-          {"workers", player.workers},
-          {"pace", player.pace},
-          {"time_limit", player.time_limit},
-          {"store", StoreOf(order)},
-          {"folder", order.folder}};
+std::string GraphOrderText(const GraphOrder& order) {
+  ordered_json json;
+  VisitGraphOrder(&order, [&](const char* key, const auto* value) { json[key] = *value; });
+  return json.dump(2) + '\n';
+}
+
+GraphOrder ParseGraphOrder(const std::string& text, const std::string& where) {
+  const ordered_json json = ordered_json::parse(text, nullptr, false);
+  GraphOrder order;
+  VisitGraphOrder(&order, [&](const char* key, auto* value) {
+    try {
+      *value = json.at(key).get<std::decay_t<decltype(*value)>>();
+    } catch (const ordered_json::exception& error) {
+      throw base::ConfigError(fmt::format("{}: field '{}': {}", where, key, error.what()));
+    }
+  });
+  return order;
 }
 
 std::vector<std::string> AchieveWords(const ScenarioOrder& order, int threads) {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "cli/series/scenario_play.h"
 #include "hires/cli/report_output.h"
+#include "hires/cli/scenario_play.h"
 
 namespace CLI {
 class App;

@@ -15,7 +15,7 @@ namespace {
 using nlohmann::ordered_json;
 using Table = std::vector<std::vector<std::string>>;
 
-constexpr std::size_t kMostOfCause = 90;  // characters of a table's cell
+constexpr std::size_t kBeginOfCause = 30, kEndOfCause = 60;  // characters in a table's cell
 
 double FluentsPerSecond(const SeriesRun& run) {
   return run.simulated_seconds > 0.0 ? static_cast<double>(run.fluents) / run.simulated_seconds
@@ -49,8 +49,10 @@ std::string ChoicesText(const std::vector<int>& choices) {
   return base::Join(words, " ");
 }
 
+/// What was first and what was last: the last reason is the one that counts.
 std::string Short(const std::string& text) {
-  return text.size() <= kMostOfCause ? text : text.substr(0, kMostOfCause - 3) + "...";
+  if (text.size() <= kBeginOfCause + kEndOfCause) return text;
+  return text.substr(0, kBeginOfCause) + " ... " + text.substr(text.size() - kEndOfCause);
 }
 
 std::string RestartsText(const SeriesRun& run) {
@@ -190,7 +192,7 @@ std::string SeriesSummary(const SeriesReport& report) {
   text += InfoLine(
       fmt::format("{} episodes are now in repository '{}'", report.stored, report.repository));
   text += '\n' + RunTable(report) + '\n' + OutcomeTable(report);
-  if (!report.series.groups.empty()) text += '\n' + ChoiceTable(report);
+  if (!SharesByChoice(report).empty()) text += '\n' + ChoiceTable(report);
   return text;
 }
 

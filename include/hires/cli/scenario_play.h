@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -36,8 +35,16 @@ struct ScenarioOrder {
 std::string ResultOf(const ScenarioOrder& order);
 std::string StoreOf(const ScenarioOrder& order);
 
-/// What the graph's process is told, and reads back.
-nlohmann::ordered_json GraphOrderJson(const ScenarioOrder& order, const ScenarioPlayer& player);
+/// What the process is told that plays a run through the graph of nodes.
+struct GraphOrder {
+  ScenarioOrder run;
+  int workers{1};
+  double pace{1.0};
+  double time_limit{900.0};  ///< [s] simulated
+};
+std::string GraphOrderText(const GraphOrder& order);
+/// @throws base::ConfigError naming `where` and the field.
+GraphOrder ParseGraphOrder(const std::string& text, const std::string& where);
 
 /// What of the program's words somebody types to play the run again by hand; nothing of a graph.
 std::vector<std::string> AchieveWords(const ScenarioOrder& order, int threads);
