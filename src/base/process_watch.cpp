@@ -31,13 +31,13 @@ std::vector<int> ChildrenOf(int pid) {
   return children;
 }
 
-std::string NameOf(const std::string& command_line) {
-  std::string name;
+void SetName(const std::string& command_line, Descendant* descendant) {
   for (const std::string& word : Split(command_line, '\0')) {
-    if (name.empty()) name = fs::path(word).filename().string();
-    if (word.rfind(kNodeName, 0) == 0) return word.substr(sizeof(kNodeName) - 1);
+    if (descendant->name.empty()) descendant->name = fs::path(word).filename().string();
+    if (word.rfind(kNodeName, 0) != 0) continue;
+    descendant->name = word.substr(sizeof(kNodeName) - 1);
+    descendant->is_node = true;
   }
-  return name;
 }
 
 /// The program's own name stands in brackets and may hold anything.
@@ -56,7 +56,8 @@ std::vector<Descendant> Descendants() {
     to_visit.pop_back();
     const char state = StateOf(ProcFile(pid, "stat"));
     if (state == 'Z') continue;
-    found.push_back({pid, NameOf(ProcFile(pid, "cmdline")), state});
+    found.push_back({pid, "", false, state});
+    SetName(ProcFile(pid, "cmdline"), &found.back());
     const std::vector<int> children = ChildrenOf(pid);
     to_visit.insert(to_visit.end(), children.begin(), children.end());
   }
@@ -69,7 +70,10 @@ BreakdownWatch::BreakdownWatch(double stopped_limit) : stopped_limit_(stopped_li
 
 std::optional<std::string> BreakdownWatch::Broken(double now) {
   std::map<int, char> states;
-  for (const Descendant& each : Descendants()) states[each.pid] = each.state;
+  for (const Descendant& each : Descendants()) {
+    states[each.pid] = each.state;
+    if (each.is_node) names_.emplace(each.pid, each.name);
+  }
   for (const auto& [pid, name] : names_) {
     const auto state = states.find(pid);
     if (state == states.end()) return fmt::format("{} (pid {}) died", name, pid);

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <csignal>
 #include <memory>
 
@@ -61,6 +62,26 @@ TEST_F(BreakdownWatchTest, AKilledNodeIsNamed) {
   EXPECT_TRUE(SoonTrue([&] { return watch.Broken(0.0).has_value(); }));
   EXPECT_THAT(watch.Broken(0.0), Optional(HasSubstr("planner (pid ")));
   EXPECT_THAT(watch.Broken(0.0), Optional(HasSubstr("died")));
+}
+
+TEST_F(BreakdownWatchTest, ANodeThatComesLaterIsWatchedAndAnyOtherProgramIsNot) {
+  BreakdownWatch watch(1.0);
+  const ChildProcess other(Shell("sleep 0.01"));
+  const ChildProcess node(Shell("/bin/sh -c 'read x; :' sh __name:=late < /dev/zero; :"));
+  ASSERT_TRUE(SoonTrue([&] {
+    EXPECT_EQ(watch.Broken(0.0), std::nullopt);
+    return Find(Descendants(), "late") != nullptr;
+  }));
+  EXPECT_TRUE(SoonTrue([&] {
+    const auto all = Descendants();
+    return std::none_of(all.begin(), all.end(),
+                        [&](const auto& each) { return each.pid == other.pid(); });
+  }));
+  EXPECT_EQ(watch.Broken(0.0), std::nullopt);
+  const int late = PidOf("late");
+  kill(late, SIGKILL);
+  EXPECT_TRUE(SoonTrue([&] { return watch.Broken(0.0).has_value(); }));
+  EXPECT_THAT(watch.Broken(0.0), Optional(HasSubstr("late (pid ")));
 }
 
 TEST_F(BreakdownWatchTest, AStoppedProcessIsNoticedAfterItsLimitAndOneThatGoesOnIsNot) {

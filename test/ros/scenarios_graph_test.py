@@ -51,12 +51,12 @@ class ScenariosGraphTest(unittest.TestCase):
             except ProcessLookupError:
                 pass
 
-    def scenarios(self, instruction, *arguments):
+    def scenarios(self, instruction, *arguments, pace='3'):
         series = os.path.join(self.folder, 'some.yaml')
         with open(series, 'w') as file:
             file.write(SERIES.format(instruction))
         self.json = os.path.join(self.folder, 'all.json')
-        command = [executable('hires'), 'scenarios', series, '--runs', '1', '--graph', '--pace', '3',
+        command = [executable('hires'), 'scenarios', series, '--runs', '1', '--graph', '--pace', pace,
                    '--store', os.path.join(self.folder, 'store'), '--json', self.json]
         return self.processes.start(command + list(arguments), None, **{MARK: self.mark})
 
@@ -80,7 +80,7 @@ class ScenariosGraphTest(unittest.TestCase):
         wait_until(lambda: not self.marked(), 'all processes to be gone', START)
 
     def test_a_task_is_done_in_the_changed_world_and_its_episode_is_kept(self):
-        scenarios = self.scenarios(TASK, '--pace', '0')
+        scenarios = self.scenarios(TASK, pace='0')
         self.assertEqual(scenarios.wait(600.0), 0, scenarios.output())
         run = self.run_record()
         self.assertEqual(run['outcome'], 'succeeded')
@@ -104,9 +104,9 @@ class ScenariosGraphTest(unittest.TestCase):
         scenarios = self.scenarios(TASK,
                                    '--restarts', '0')
         self.wait_for_step()
-        for pid in self.marked('sim_worker'):
-            if '__name:=sim_robot' not in self.marked()[pid]:
-                os.kill(pid, signal.SIGSTOP)
+        wait_until(lambda: self.marked('__name:=sim_worker_1'), 'the worker', START)
+        for pid in self.marked('__name:=sim_worker_1'):
+            os.kill(pid, signal.SIGSTOP)
         self.assertEqual(scenarios.wait(START), 3, scenarios.output())
         self.assertEqual(self.run_record()['outcome'], 'broken')
         self.assertRegex(self.run_record()['cause'], r'\(pid \d+\) (is stopped|died)')

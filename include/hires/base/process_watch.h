@@ -11,8 +11,8 @@ namespace hires::base {
 struct Descendant {
   int pid{0};
   std::string name;  ///< of the ROS node where it is one, else of its program
-  char state{
-      'R'};  ///< as in the files stat of /proc: R, S, D run or wait; T is stopped; Z has ended
+  bool is_node{false};
+  char state{'R'};  ///< as in stat of /proc: R, S, D run or wait; T is stopped; Z has ended
 };
 
 /// All of them, without those that end meanwhile.
@@ -22,7 +22,7 @@ std::vector<Descendant> Descendants();
 /// take its place, or stands still because somebody stopped it.
 class BreakdownWatch {
  public:
-  /// The system is what lives below this process now.
+  /// The system is what lives below this process now, and each ROS node that comes later.
   /// @param stopped_limit  [s] that a process may be stopped.
   explicit BreakdownWatch(double stopped_limit);
 
