@@ -19,6 +19,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/process.h"
+#include "hires/base/text.h"
 
 namespace hires::base {
 namespace {
@@ -85,6 +86,15 @@ bool PortClaim::Claim(int first, int size) {
   first_ = first;
   lock_ = lock;
   return true;
+}
+
+std::string LastLineOf(const std::string& path) {
+  constexpr std::size_t kLongest = 1u << 30;
+  std::error_code error;
+  if (!fs::exists(path, error)) return "";
+  std::string text = ReadTextFile(path, kLongest);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text.substr(text.rfind('\n') + 1);
 }
 
 RunFolder::RunFolder(const std::string& path) : path_(path), is_temporary_(path.empty()) {

@@ -18,6 +18,7 @@
 #include "hires/base/text.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/report_json.h"
+#include "hires/evaluation/scenario.h"
 #include "hires/evaluation/timeline.h"
 #include "hires/evaluation/truth.h"
 
@@ -33,7 +34,7 @@ int TerminalWidth() {
 
 /// Before the robot sets out.
 void RequireFolders(const AchieveOptions& options) {
-  for (const std::string& path : {options.timeline, options.record}) {
+  for (const std::string& path : {options.timeline, options.record, options.store}) {
     if (!path.empty()) evaluation::RequireFolderOf(path);
   }
   CheckReport(options.report);
@@ -50,9 +51,7 @@ void RequireRecorder(const AchieveOptions& options, const loop::RecordLoop& reco
 }
 
 std::string ScenarioPath(const std::string& scenario, const std::string& package_folder) {
-  const std::filesystem::path path(scenario);
-  if (path.has_parent_path() || path.extension() == ".yaml") return scenario;
-  return package_folder + "/config/scenarios/" + scenario + ".yaml";
+  return evaluation::ScenarioPath(scenario, package_folder + "/config/scenarios");
 }
 
 std::string LoopPath(const AchieveOptions& options, const std::string& package_folder) {
@@ -143,6 +142,7 @@ loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& p
   order.sensing = options.sensing;
   order.seed = static_cast<std::uint64_t>(options.seed);
   order.threads = options.threads;
+  order.store = options.store;
   if (recording == nullptr) return loop::PlayTask(setup, order, on_status, cancelled);
   const loop::LoopRun run =
       loop::PlayTask(setup, order, on_status, cancelled, recording->observer());
@@ -201,6 +201,10 @@ void AddLocalOptions(CLI::App* verb, CLI::Option* local, AchieveOptions* options
   verb->add_option("--truth", options->truth,
                    "with --local: file, or its name in config/truths: what robot and world are "
                    "really like; default: same, imagination's own model")
+      ->needs(local);
+  verb->add_option("--store", options->store,
+                   "with --local: new file that keeps the Blackboard with the episode; see `hires "
+                   "blackboard`")
       ->needs(local);
   verb->add_option("--sensing", options->sensing,
                    "with --local: fitted, ideal or pictures (objects are recognised in what the "

@@ -27,6 +27,7 @@
 #include "cli/recognise_command.h"
 #include "cli/reproduce/reproduce_command.h"
 #include "cli/save_rollout.h"
+#include "cli/series/scenarios_command.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
@@ -375,6 +376,7 @@ struct Verbs {
   ImagineOptions imagine_options;
   AchieveOptions achieve;
   ExperimentOptions experiment;
+  ScenariosOptions scenarios;
   PlanOptions plan;
   BlackboardOptions blackboard;
   ListOptions list;
@@ -395,8 +397,8 @@ void SetCall(const std::vector<std::string>& arguments, const Backends& backends
   words.front() = "hires";
   for (ReportOptions* report :
        {&verbs->imagine_options.report, &verbs->achieve.report, &verbs->experiment.report,
-        &verbs->experiment.hypothesis.report, &verbs->plan.report, &verbs->doctor.robot.report,
-        &verbs->reproduce.report}) {
+        &verbs->experiment.hypothesis.report, &verbs->scenarios.report, &verbs->plan.report,
+        &verbs->doctor.robot.report, &verbs->reproduce.report}) {
     report->command = CommandText(words);
     report->package_folder = backends.package_folder;
   }
@@ -410,6 +412,7 @@ void AddVerbs(CLI::App* app, Verbs* verbs, const Backends& backends) {
   AddLimitsVerb(app, &verbs->limits);
   AddAchieveVerb(app, &verbs->achieve);
   AddExperimentVerb(app, &verbs->experiment);
+  AddScenariosVerb(app, &verbs->scenarios);
   AddPlanVerb(app, &verbs->plan);
   AddBlackboardVerb(app, &verbs->blackboard);
   AddListVerb(app, &verbs->list);
@@ -462,6 +465,13 @@ int ListTasks(const AchieveOptions& achieve, const Backends& backends) {
   return RunListVerb(list, backends.package_folder);
 }
 
+int RunScenarios(const ScenariosOptions& options, const Backends& backends) {
+  const auto& more = backends.more_verbs;
+  const bool can_play_graph = std::any_of(
+      more.begin(), more.end(), [](const Verb& verb) { return verb.name == kScenarioRunVerb; });
+  return RunScenariosVerb(options, backends.package_folder, can_play_graph, IsInterrupted);
+}
+
 int RunVerb(const Verbs& verbs, const Backends& backends) {
   // It has nothing to finish, and ends as any program does.
   if (*verbs.doctor.verb) return RunDoctorVerb(verbs.doctor, backends);
@@ -476,6 +486,7 @@ int RunVerb(const Verbs& verbs, const Backends& backends) {
                           IsInterrupted, backends.record_loop);
   }
   if (*verbs.experiment.verb) return RunAnyExperiment(verbs.experiment, backends);
+  if (*verbs.scenarios.verb) return RunScenarios(verbs.scenarios, backends);
   if (*verbs.plan.verb) return RunPlanVerb(verbs.plan, IsInterrupted);
   if (*verbs.report.verb) return RunReportVerb(verbs.report);
   if (*verbs.experiences.verb) return RunExperiencesVerb(verbs.experiences);

@@ -49,19 +49,11 @@ evaluation::HypothesisRun Broken(const std::string& outcome, const std::string& 
   return run;
 }
 
-std::string LastLineOf(const std::string& path) {
-  std::error_code error;
-  if (!fs::exists(path, error)) return "";
-  std::string text = base::ReadTextFile(path);
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  return text.substr(text.rfind('\n') + 1);
-}
-
 evaluation::HypothesisRun ReadRecord(const std::string& path, const std::string& how_it_ended,
                                      const std::string& log) {
   std::error_code error;
   if (!fs::exists(path, error)) {
-    return Broken("run_died", fmt::format("{}: {}", how_it_ended, LastLineOf(log)));
+    return Broken("run_died", fmt::format("{}: {}", how_it_ended, base::LastLineOf(log)));
   }
   const ordered_json json = ordered_json::parse(base::ReadTextFile(path), nullptr, false);
   return evaluation::ParseHypothesisRun(json, path);

@@ -127,6 +127,16 @@ Interval ShareInterval(int num_hits, int num_all) {
   return {k / n, lower, upper};
 }
 
+Interval WilsonInterval(int num_hits, int num_all) {
+  HIRES_CHECK(num_hits >= 0 && num_hits <= num_all, "there are more hits than all, or fewer");
+  if (num_all == 0) return {0.0, 0.0, 1.0};
+  const double z = boost::math::quantile(boost::math::normal(), 1.0 - kTail);
+  const double n = num_all, share = num_hits / n, weight = 1.0 / (1.0 + z * z / n);
+  const double middle = weight * (share + z * z / (2.0 * n));
+  const double half = weight * z * std::sqrt(share * (1.0 - share) / n + z * z / (4.0 * n * n));
+  return {share, num_hits == 0 ? 0.0 : middle - half, num_hits == num_all ? 1.0 : middle + half};
+}
+
 Interval PairedShareDifference(const PairedCounts& counts) {
   CheckCounts(counts);
   const int discordant = counts.only_first + counts.only_second;

@@ -14,8 +14,9 @@ using knowledge::Episode;
 using knowledge::Fluent;
 using knowledge::Source;
 
-Blackboard::Blackboard(std::shared_ptr<const knowledge::Ontology> ontology)
-    : store_(":memory:", std::move(ontology)), view_(store_) {}
+Blackboard::Blackboard(std::shared_ptr<const knowledge::Ontology> ontology,
+                       const std::string& store)
+    : store_(store.empty() ? ":memory:" : store, std::move(ontology)), view_(store_) {}
 
 void Blackboard::Load(const std::vector<std::string>& knowledge_files, std::uint64_t seed) {
   const base::Rng rng(seed);

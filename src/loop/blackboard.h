@@ -14,7 +14,9 @@ namespace hires::loop {
 /// The Blackboard of a process that has no other: what is written is known at once.
 class Blackboard {
  public:
-  explicit Blackboard(std::shared_ptr<const knowledge::Ontology> ontology);
+  /// @param store  new file that keeps it; empty: none does.
+  explicit Blackboard(std::shared_ptr<const knowledge::Ontology> ontology,
+                      const std::string& store = "");
 
   /// Says what these knowledge files say.  @throws base::ConfigError naming file and line.
   void Load(const std::vector<std::string>& knowledge_files, std::uint64_t seed);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <utility>
 
 #include "hires/base/error.h"
@@ -86,7 +87,7 @@ class Play {
         truth_(WithSensing(parts.ReadTruth(order.truth), order.sensing)),
         clock_(kStart),
         lines_(parts.config.messages, base::Rng(order.seed), &clock_),
-        blackboard_(parts.ontology),
+        blackboard_(parts.ontology, order.store),
         pool_(order.threads),
         robot_(
             parts, evaluation::StartOf(parts.world, order.scenario, ""), truth_,
@@ -228,6 +229,11 @@ class Play {
 LoopRun PlayTask(const LoopSetup& setup, const LoopOrder& order,
                  const evaluation::OnAchieveStatus& on_status,
                  const std::function<bool()>& cancelled, const LoopObserver& observer) {
+  if (!order.store.empty() && std::filesystem::exists(order.store)) {
+    throw base::ConfigError(order.store +
+                            ": is there already; name a new file, for the Blackboard is to know "
+                            "what holds at first and nothing else");
+  }
   const evaluation::Scenario scenario = evaluation::ReadScenario(order.scenario);
   const std::string& task = order.task.empty() ? scenario.task : order.task;
   for (const auto& misfit : evaluation::NamesThatDoNotFit(scenario, order.scenario, task)) {

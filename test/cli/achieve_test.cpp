@@ -230,7 +230,11 @@ TEST_F(AchieveVerbTest, WhatIsOfVirtualTimeAloneIsRefusedWithoutIt) {
 }
 
 TEST_F(AchieveVerbTest, ADryRunInThisProgramPrintsThePlanAndBeginsNothing) {
-  const Ended ended = Run({"--local", "--dry-run", "--imagination", "off"});
+  const std::string store = (folder_.path() / "episode.db").string();
+  const Ended ended = Run({"--local", "--dry-run", "--imagination", "off", "--store", store});
+  const Ended again = Run({"--local", "--dry-run", "--imagination", "off", "--store", store});
+  EXPECT_EQ(again.code, kExitNotAchieved);
+  EXPECT_THAT(again.err, AllOf(HasSubstr("episode.db"), HasSubstr("name a new file")));
   EXPECT_EQ(ended.code, kExitAchieved) << ended.err;
   EXPECT_THAT(ended.out, AllOf(HasSubstr("would begin"), HasSubstr("nothing was begun"),
                                HasSubstr("move_base(premanipulationareaeastcounter1)")));

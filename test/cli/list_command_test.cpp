@@ -109,7 +109,7 @@ TEST(ListCommandTest, FilesOfThePackageAreFound) {
   EXPECT_THAT(ColumnOf(Listed({"scenarios"}), "scenario"),
               ElementsAre("coffee_spots", "hot_coffee", "serve_coffee", "topple"));
   EXPECT_THAT(ColumnOf(Listed({"truths"}), "truth"),
-              ElementsAre("filter", "foreign", "harsh", "same"));
+              ElementsAre("filter", "foreign", "harsh", "ideal", "same"));
 }
 
 TEST(ListCommandTest, WhatItListsIsTaken) {

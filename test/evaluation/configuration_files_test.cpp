@@ -12,6 +12,7 @@
 #include "hires/evaluation/experiment/experiment.h"
 #include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/evaluation/scenario.h"
+#include "hires/evaluation/series/scenario_series.h"
 #include "hires/evaluation/truth.h"
 #include "hires/execution/monitor_config.h"
 #include "hires/imagination/client_config.h"
@@ -56,6 +57,7 @@ const std::map<std::string, Reader>& Readers() {
        [](const std::string& path) { imagination::ReadClientConfig(path); }},
       {"scene.yaml", [](const std::string& path) { imagination::ReadSetupConfig(path); }},
       {"decision.yaml", [](const std::string& path) { evaluation::ReadDecisionConfig(path); }},
+      {"series", [](const std::string& path) { evaluation::ReadScenarioSeries(path); }},
       {"experiments",
        [](const std::string& path) {
          evaluation::ExperimentOverrides overrides;

@@ -64,6 +64,26 @@ TEST(MeanIntervalTest, OneDifferenceProvesNothing) {
   EXPECT_FALSE(MeanInterval({}).ExcludesZero());
 }
 
+// Brown, Cai, DasGupta 2001, Stat. Sci. 16:101: bounds p with |x/n - p| = z sqrt(p (1 - p) / n).
+TEST(WilsonIntervalTest, BoundsAreWhereTheScoreIsTheNormalQuantile) {
+  constexpr double kQuantile = 1.959963984540054;
+  for (int n = 1; n <= 40; ++n) {
+    for (int k = 0; k <= n; ++k) {
+      const Interval interval = WilsonInterval(k, n);
+      EXPECT_EQ(interval.estimate, static_cast<double>(k) / n);
+      for (const double p : {interval.lower, interval.upper}) {
+        if (p == 0.0 || p == 1.0) continue;
+        EXPECT_NEAR(std::abs(interval.estimate - p), kQuantile * std::sqrt(p * (1.0 - p) / n), 1e-9)
+            << k << " of " << n;
+      }
+    }
+  }
+  EXPECT_EQ(WilsonInterval(0, 10).lower, 0.0);
+  EXPECT_EQ(WilsonInterval(10, 10).upper, 1.0);
+  EXPECT_EQ(WilsonInterval(0, 0).upper, 1.0);
+  EXPECT_THROW(WilsonInterval(3, 2), std::logic_error);
+}
+
 TEST(ShareIntervalTest, EightOfTenGivesTheTabulatedBounds) {
   const Interval interval = ShareInterval(8, 10);
   EXPECT_DOUBLE_EQ(interval.estimate, 0.8);

@@ -550,7 +550,6 @@ ALSO_MEANS = {
     "preempted": {
         "src/evaluation/achieve.cpp", "src/execution/step_watch.cpp",
         "src/nodes/execution_monitor/execution_messages.cpp"},
-    "timed_out": {"src/nodes/hires/hypothesis_run.cpp"},  # an outcome of a played run
     "unavailable": {  # an outcome of imagination
         "src/evaluation/achieve.cpp", "src/nodes/execution_monitor/execution_messages.cpp"},
 }

@@ -12,6 +12,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/knowledge/pose_moves.h"
 #include "support/messages.h"
 
 namespace hires::knowledge::fluent_yaml_test {
@@ -680,6 +681,77 @@ TEST(ApplyModificationsTest, AChainThatMovesTooMuchIsRefused) {
     scene.push_back(PoseAt(name, 0, 0, 0, 0));
   }
   EXPECT_THAT(ApplyError(text, scene), HasSubstr("more than 1000000 poses are moved"));
+}
+
+// A table at (10, 20) is turned by a quarter and shifted; a chair 2 m east of it comes to stand 2 m
+// north of where the table is then, and a bag 1 m north of the chair 1 m west of it.
+TEST(MovePosesTest, WhatIsAttachedGoesAlongRigidly) {
+  const KnowledgeFile file =
+      ReadKnowledge(Modification("poseTable1", "1",
+                                 "[[hasX, [0.5]], [hasY, [-1]], [hasYaw, [1.5707963267948966]]]",
+                                 "[poseChair1]") +
+                        Modification("poseChair1", "1", "[[hasZ, [0.25]]]", "[poseBag1]"),
+                    "t");
+  std::vector<Fluent> scene = {PoseAt("poseTable1", 10, 20, 0, 0.5),
+                               PoseAt("poseChair1", 12, 20, 0, 1),
+                               PoseAt("poseBag1", 12, 21, 0.4, 0), PoseAt("poseFar", 1, 2, 3, 0)};
+  const PoseMoves moves = MovePoses(file.modifications, {{"g", 0}}, &scene);
+  const double expected[4][4] = {{10.5, 19.0, 0.0, 0.5 + M_PI_2},
+                                 {10.5, 21.0, 0.25, 1.0 + M_PI_2},
+                                 {9.5, 21.0, 0.65, M_PI_2},
+                                 {1.0, 2.0, 3.0, 0.0}};
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    for (std::size_t axis = 0; axis < 4; ++axis) {
+      EXPECT_NEAR(std::get<double>(scene[i].properties[axis].filler), expected[i][axis], 1e-12)
+          << scene[i].instance << " " << axis;
+    }
+  }
+  ASSERT_EQ(moves.count("posebag1"), 1u);
+  double x = 12.0, y = 21.0;
+  for (const PoseMove& move : moves.at("posebag1")) MovePoint(move, &x, &y);
+  EXPECT_NEAR(x, 9.5, 1e-12);
+  EXPECT_NEAR(y, 21.0, 1e-12);
+  EXPECT_EQ(moves.count("posefar"), 0u);
+}
+
+TEST(MovePosesTest, NothingIsTurnedAboutAPoseOfSeveralValidities) {
+  const KnowledgeFile file =
+      ReadKnowledge(Modification("poseFar", "1", "[[hasYaw, [1]]]", "[poseBag1]"), "t");
+  std::vector<Fluent> scene = {PoseAt("poseFar", 1, 0, 0, 0), PoseAt("poseFar", 2, 0, 0, 0),
+                               PoseAt("poseBag1", 0, 0, 0, 0)};
+  EXPECT_THAT(ConfigErrorOf([&] {
+                MovePoses(file.modifications, {{"g", 0}}, &scene);
+              }),
+              AllOf(HasSubstr("t: document 1, line 1"), HasSubstr("'poseFar' has 2 validities")));
+}
+
+// -------------------------------------------------------------------------------- scenarios
+
+TEST(ScenarioDocumentTest, ATextForAllRunsOrOneForEachChoice) {
+  const KnowledgeFile file = ReadKnowledge(
+      "!Scenario\nScenario: serve_coffee\nZOrigin: -0.375\n---\n"
+      "!Scenario\nGroup: sensors\nChoices: 2\nTruth: [same, ideal]\n",
+      "t");
+  ASSERT_THAT(file.scenarios, SizeIs(2));
+  EXPECT_THAT(file.scenarios[0].values.at("Scenario"), ElementsAre("serve_coffee"));
+  EXPECT_EQ(file.scenarios[0].z_origin, -0.375);
+  EXPECT_EQ(file.scenarios[1].group, "sensors");
+  EXPECT_THAT(file.scenarios[1].values.at("Truth"), ElementsAre("same", "ideal"));
+}
+
+TEST(ScenarioDocumentTest, ErrorsNameLineAndField) {
+  const auto error = [](const std::string& text) {
+    return ConfigErrorOf([&] { ReadKnowledge("!Scenario\n" + text, "t"); });
+  };
+  EXPECT_THAT(error("Group: g\nChoices: 3\nTruth: [same, ideal]\n"),
+              AllOf(HasSubstr("t: document 1, line 4, Truth"), HasSubstr("a list of 2"),
+                    HasSubstr("3 texts")));
+  EXPECT_THAT(error("Group: g\nTruth: [same]\n"), HasSubstr("key Choices is missing"));
+  EXPECT_THAT(error("Choices: 2\n"), AllOf(HasSubstr("line 2, Choices"), HasSubstr("no Group")));
+  EXPECT_THAT(error("Truth: [same]\n"),
+              AllOf(HasSubstr("line 2, Truth"), HasSubstr("wanted text")));
+  EXPECT_THAT(error("Instructions: x\n"), AllOf(HasSubstr("line 2"), HasSubstr("Instruction")));
+  EXPECT_THAT(error("ZOrigin: low\n"), AllOf(HasSubstr("line 2, ZOrigin"), HasSubstr("'low'")));
 }
 
 // ----------------------------------------------------------------------------- original files

@@ -36,6 +36,9 @@ class PortClaim {
 };
 constexpr int kPortBlock = 100;
 
+/// What a process said last: the last line of that file; "" where it is missing or empty.
+std::string LastLineOf(const std::string& path);
+
 /// A new folder; gone with its owner unless it was given by name.
 class RunFolder {
  public:

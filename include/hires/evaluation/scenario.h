@@ -30,6 +30,9 @@ struct Scenario {
   std::vector<ScenarioObject> objects;      ///< those that it is told of first, then the hidden
 };
 
+/// The file of a scenario. @param scenario  name of a file in `folder`, without .yaml; or a path.
+std::string ScenarioPath(const std::string& scenario, const std::string& folder);
+
 /// Relative paths count from the folder of the file. Postures, arms and models are names: whoever
 /// knows robot and catalogue checks them.
 /// @throws base::ConfigError naming file and key.

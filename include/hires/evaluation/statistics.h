@@ -29,6 +29,11 @@ Interval BootstrapInterval(const std::vector<double>& values, base::Rng rng);
 /// @pre 0 <= num_hits <= num_all.  @throws std::logic_error if broken. (0 of 0 gives 0 .. 1.)
 Interval ShareInterval(int num_hits, int num_all);
 
+/// Score interval of a share [Wilson 1927, J. Am. Stat. Assoc. 22:209-212]: shorter than the exact
+/// one, and right on average.
+/// @pre 0 <= num_hits <= num_all.  @throws std::logic_error if broken. (0 of 0 gives 0 .. 1.)
+Interval WilsonInterval(int num_hits, int num_all);
+
 /// What happened to the two members of each pair.
 struct PairedCounts {
   int only_first{0};   ///< it happened to the first member alone

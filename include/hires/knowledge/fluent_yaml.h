@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,7 +21,19 @@ struct PoseModification {
   std::string group;     ///< all of a group take the same choice
   int choices{1};
   std::vector<Delta> modifications;
-  std::vector<std::string> attachments;  ///< poses that get the same deltas, and so do theirs
+  std::vector<std::string> attachments;  ///< poses that move along rigidly, and so do theirs
+  std::string where{};                   ///< for messages: "kitchen.yaml: document 3, line 12"
+};
+
+/// What a series of scenario runs begins from, or varies: `!Scenario`. Texts are not looked up
+/// here.
+struct ScenarioSetting {
+  std::string group;  ///< whose choice it takes; empty: it is the same in all runs
+  int choices{1};
+  /// By key: Scenario, Instruction, Truth, World; one text per choice.
+  std::map<std::string, std::vector<std::string>> values;
+  double z_origin{0.0};  ///< [m] ZOrigin: what hasZ says of a thing that keeps its height
+  std::string where;     ///< for messages
 };
 
 /// A wish for a topic: `!DemandTopic`.
@@ -38,6 +51,8 @@ struct KnowledgeFile {
   std::vector<PoseModification> modifications;
   std::vector<DemandTopic> topics;
   std::string source{};  ///< the file, for messages; empty: none
+  std::vector<ScenarioSetting>
+      scenarios{};  ///< for a runner of scenarios; who loads passes them over
 };
 
 /// Times are finite seconds, or .inf and -.inf; [0, 0] is -infinity in StartTime, infinity in
@@ -56,16 +71,12 @@ KnowledgeFile LoadKnowledge(const std::string& path);
 /// @pre no NaN, fillers finite, text is UTF-8: what the store keeps, meets that.
 /// @throws std::logic_error if broken.
 std::string WriteFluents(const std::vector<Fluent>& fluents);
-/// Likewise for all of it: fluents, then modifications, then topics.
+/// Likewise for fluents, then modifications, then topics.
 std::string WriteKnowledge(const KnowledgeFile& file);
 
 /// Applies modifications to the poses among `fluents`, all or none. Each group draws one choice, in
-/// the order in which groups first appear. What is attached moves along, and so does what is
-/// attached to that; each once for a modification, even where two ways lead to it. A pose that has
-/// several validities is moved in all of them. Instance names compare without regard to the case of
-/// ASCII letters, as in the store.
-/// @throws ConfigError where an instance is missing or no pose, or lacks the axis; or where
-///   modifications do not fit together, as ReadKnowledge says.
+/// the order in which groups first appear; see MovePoses.
+/// @throws ConfigError as MovePoses.
 void ApplyModifications(const std::vector<PoseModification>& modifications, base::Rng rng,
                         std::vector<Fluent>* fluents);
 

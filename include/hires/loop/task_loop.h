@@ -57,6 +57,7 @@ struct LoopOrder {
   int threads{1};           ///< that play rollouts; their number changes nothing
   bool dry_run{false};      ///< planned and imagined alone (execution::MonitorParams)
   double time_limit{900.0};  ///< [s] of virtual time
+  std::string store;         ///< file, new, that keeps what the Blackboard was told; empty: none
 };
 
 /// What became of it.

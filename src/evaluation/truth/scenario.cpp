@@ -76,6 +76,12 @@ void ReadObjects(const std::string& key, bool is_told, base::ParamReader* in,
 
 }  // namespace
 
+std::string ScenarioPath(const std::string& scenario, const std::string& folder) {
+  const std::filesystem::path path(scenario);
+  if (path.has_parent_path() || path.extension() == ".yaml") return scenario;
+  return folder + "/" + scenario + ".yaml";
+}
+
 Scenario ReadScenario(const std::string& path) {
   base::ParamReader in = base::ParamReader::FromFile(path);
   in.RequireKeys({"task", "knowledge", "robot.pose"});

@@ -15,7 +15,8 @@
 namespace hires::knowledge {
 namespace {
 
-const std::vector<std::string> kTags = {"!Fluent", "!FluentPoseModification", "!DemandTopic"};
+const std::vector<std::string> kTags = {"!Fluent", "!FluentPoseModification", "!DemandTopic",
+                                        "!Scenario"};
 
 /// Puts documents into a KnowledgeFile, and remembers where what stood.
 class FileReader {
@@ -27,18 +28,19 @@ class FileReader {
     if (root.tag == kTags[0]) {
       file_.fluents.push_back(ReadFluent(Fields(root, where, kFluentKeys)));
     } else if (root.tag == kTags[1]) {
-      const Fields fields(root, where, kModificationKeys);
-      file_.modifications.push_back(ReadModification(fields));
-      modified_at_.push_back(fields.At());
+      file_.modifications.push_back(ReadModification(Fields(root, where, kModificationKeys)));
     } else if (root.tag == kTags[2]) {
       AddTopic(Fields(root, where, kTopicKeys));
+    } else if (root.tag == kTags[3]) {
+      file_.scenarios.push_back(ReadScenarioSetting(Fields(root, where, kScenarioKeys)));
     } else {
       FailTag(where, root);
     }
   }
 
   KnowledgeFile Finish() {
-    CheckModifications(file_.modifications, [&](std::size_t i) { return modified_at_[i]; });
+    CheckModifications(file_.modifications,
+                       [&](std::size_t i) { return file_.modifications[i].where; });
     file_.source = source_;
     return std::move(file_);
   }
@@ -67,7 +69,6 @@ class FileReader {
 
   const std::string& source_;
   KnowledgeFile file_;
-  std::vector<std::string> modified_at_;         // by index of the modification
   std::map<std::string, std::string> topic_at_;  // by name
 };
 

@@ -19,4 +19,7 @@ PoseModification ReadModification(const Fields& in);
 extern const std::vector<std::string> kTopicKeys;
 DemandTopic ReadTopic(const Fields& in);
 
+extern const std::vector<std::string> kScenarioKeys;
+ScenarioSetting ReadScenarioSetting(const Fields& in);
+
 }  // namespace hires::knowledge

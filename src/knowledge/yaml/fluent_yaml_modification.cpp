@@ -111,6 +111,8 @@ PoseModification::Delta ReadDelta(const Field& field, const PoseModification& mo
   return delta;
 }
 
+}  // namespace
+
 int ReadChoices(const Field& field) {
   const std::int64_t choices = field.Integer();
   if (choices < 1 || choices > kMaxChoices) {
@@ -118,8 +120,6 @@ int ReadChoices(const Field& field) {
   }
   return static_cast<int>(choices);
 }
-
-}  // namespace
 
 const std::vector<std::string> kModificationKeys = {"Instance", "Group", "Choices", "Modifications",
                                                     "Attachments"};
@@ -136,6 +136,7 @@ PoseModification ReadModification(const Fields& in) {
   if (const auto attachments = in.Find("Attachments")) {
     modification.attachments = attachments->Names();
   }
+  modification.where = in.At();
   return modification;
 }
 

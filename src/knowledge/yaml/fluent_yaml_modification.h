@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hires/knowledge/fluent_yaml.h"
+#include "knowledge/yaml/fluent_yaml_field.h"
 
 namespace hires::knowledge {
 
@@ -14,5 +15,8 @@ namespace hires::knowledge {
 /// @throws ConfigError naming instance, axis, group or circle.
 void CheckModifications(const std::vector<PoseModification>& modifications,
                         const std::function<std::string(std::size_t)>& where);
+
+/// How many choices a group has.  @throws ConfigError for none, or more than a million.
+int ReadChoices(const Field& field);
 
 }  // namespace hires::knowledge

@@ -50,8 +50,9 @@ LoadSummary Load(const KnowledgeFile& file, base::Rng rng, const Assertion& by, 
     if (changes != nullptr) *changes = std::move(made);
     return summary;
   } catch (const base::ConfigError& error) {
-    if (file.source.empty()) throw;
-    throw base::ConfigError(file.source + ": " + error.what());
+    const std::string what = error.what();
+    if (what.rfind(file.source, 0) == 0) throw;  // it says itself where, or there is no file
+    throw base::ConfigError(file.source + ": " + what);
   }
 }
 

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "hires/base/error.h"
-#include "hires/knowledge/fluent_yaml.h"
+#include "hires/base/text.h"
+#include "hires/knowledge/pose_moves.h"
 #include "knowledge/yaml/fluent_yaml_modification.h"
 #include "knowledge/yaml/pose_attachments.h"
 
@@ -48,6 +49,27 @@ class Poses {
     }
   }
 
+  /// As MovePoint, where the pose is not the axis itself.
+  void Turn(const std::string& instance, const PoseMove& move, const std::string& where) {
+    PoseMove turn;
+    turn.pivot_x = move.pivot_x;
+    turn.pivot_y = move.pivot_y;
+    turn.yaw = move.yaw;
+    for (Fluent* fluent : Find(instance, where)) {
+      MovePoint(turn, &Axis(fluent, "hasX", where), &Axis(fluent, "hasY", where));
+    }
+  }
+
+  /// Value of the one validity that a pivot has.
+  double Only(const std::string& instance, const std::string& axis, const std::string& where) {
+    const std::vector<Fluent*>& validities = Find(instance, where);
+    if (validities.size() == 1) return Axis(validities[0], axis, where);
+    FailModification(where,
+                     fmt::format("'{}' has {} validities, so nothing that is attached can be "
+                                 "turned about it; keep one",
+                                 instance, validities.size()));
+  }
+
   const std::vector<Fluent*>& Find(const std::string& instance, const std::string& where) const {
     const auto found = by_instance_.find(instance);
     if (found == by_instance_.end()) {
@@ -79,33 +101,76 @@ class Poses {
 };
 
 std::string WhereOf(const PoseModification& modification) {
-  return fmt::format("modification of '{}'", modification.instance);
+  const std::string what = fmt::format("modification of '{}'", modification.instance);
+  return modification.where.empty() ? what : modification.where + ": " + what;
 }
 
-void Apply(const PoseModification& modification, int choice, const PoseAttachments& attachments,
-           Poses* poses) {
+double DeltaOf(const PoseModification& modification, const std::string& axis, std::size_t choice) {
+  for (const PoseModification::Delta& delta : modification.modifications) {
+    if (delta.property == axis) return delta.choices[choice];
+  }
+  return 0.0;
+}
+
+PoseMove MoveOf(const PoseModification& modification, std::size_t choice, Poses* poses) {
+  PoseMove move;
+  move.x = DeltaOf(modification, "hasX", choice);
+  move.y = DeltaOf(modification, "hasY", choice);
+  move.z = DeltaOf(modification, "hasZ", choice);
+  move.yaw = DeltaOf(modification, "hasYaw", choice);
+  if (move.yaw == 0.0 || modification.attachments.empty()) return move;
+  move.pivot_x = poses->Only(modification.instance, "hasX", WhereOf(modification));
+  move.pivot_y = poses->Only(modification.instance, "hasY", WhereOf(modification));
+  return move;
+}
+
+void Apply(const PoseModification& modification, std::size_t choice,
+           const PoseAttachments& attachments, Poses* poses, PoseMoves* moves) {
   const std::string where = WhereOf(modification);
-  for (const std::string& instance : attachments.MovedWith(modification.instance)) {
+  poses->Find(modification.instance, where);
+  PoseMove move = MoveOf(modification, choice, poses);
+  const std::vector<std::string> moved = attachments.MovedWith(modification.instance);
+  for (const std::string& instance : moved) {
     poses->Find(instance, where);  // also where nothing is to be added
+    const bool is_pivot = &instance == &moved.front();
+    if (move.yaw != 0.0 && !is_pivot) poses->Turn(instance, move, where);
+    move.is_own_axis = is_pivot;
     for (const PoseModification::Delta& delta : modification.modifications) {
-      poses->Move(instance, delta.property, delta.choices[static_cast<std::size_t>(choice)], where);
+      poses->Move(instance, delta.property, delta.choices[choice], where);
     }
+    (*moves)[base::ToLower(instance)].push_back(move);
   }
 }
 
 }  // namespace
 
-void ApplyModifications(const std::vector<PoseModification>& modifications, base::Rng rng,
-                        std::vector<Fluent>* fluents) {
+void MovePoint(const PoseMove& move, double* x, double* y) {
+  const double dx = *x - move.pivot_x, dy = *y - move.pivot_y;
+  const double c = std::cos(move.yaw), s = std::sin(move.yaw);
+  const bool is_turned = move.yaw != 0.0 && !move.is_own_axis;  // else not a bit changes
+  *x = (is_turned ? move.pivot_x + c * dx - s * dy : *x) + move.x;
+  *y = (is_turned ? move.pivot_y + s * dx + c * dy : *y) + move.y;
+}
+
+PoseMoves MovePoses(const std::vector<PoseModification>& modifications,
+                    const std::map<std::string, int>& choices, std::vector<Fluent>* fluents) {
   CheckModifications(modifications, [&](std::size_t i) { return WhereOf(modifications[i]); });
-  const std::map<std::string, int> choices = DrawChoices(modifications, rng);
   const PoseAttachments attachments(modifications);
   std::vector<Fluent> moved = *fluents;  // all modifications or none
   Poses poses(&moved);
+  PoseMoves moves;
   for (const PoseModification& modification : modifications) {
-    Apply(modification, choices.at(modification.group), attachments, &poses);
+    const auto choice = static_cast<std::size_t>(choices.at(modification.group));
+    Apply(modification, choice, attachments, &poses, &moves);
   }
   *fluents = std::move(moved);
+  return moves;
+}
+
+void ApplyModifications(const std::vector<PoseModification>& modifications, base::Rng rng,
+                        std::vector<Fluent>* fluents) {
+  CheckModifications(modifications, [&](std::size_t i) { return WhereOf(modifications[i]); });
+  MovePoses(modifications, DrawChoices(modifications, rng), fluents);
 }
 
 }  // namespace hires::knowledge

@@ -8,6 +8,7 @@
 #include "hires/cli/command_line.h"
 #include "hires/cli/hypothesis_play.h"
 #include "hires/cli/robot_doctor.h"
+#include "hires/cli/scenario_play.h"
 #include "hires/ros/node/launch_guard.h"
 #include "hires/ros/rollout_bag.h"
 #include "nodes/hires/drive_bag.h"
@@ -20,6 +21,7 @@
 #include "nodes/hires/replay.h"
 #include "nodes/hires/robot_doctor_look.h"
 #include "nodes/hires/ros_doctor.h"
+#include "nodes/hires/scenario_run.h"
 #include "nodes/hires/watch.h"
 
 /// For launch files: what went well ends the launch that started it. A `required` node would end
@@ -49,6 +51,11 @@ int main(int argc, char** argv) {
       {hires::cli::kHypothesisRunVerb, "one run of `hires experiment hypothesis`, which starts it",
        [&](const std::vector<std::string>& words) {
          return hires_ros::RunHypothesisProcess(words, backends.package_folder);
+       }});
+  backends.more_verbs.push_back(
+      {hires::cli::kScenarioRunVerb, "one run of `hires scenarios --graph`, which starts it",
+       [&](const std::vector<std::string>& words) {
+         return hires_ros::RunScenarioProcess(words, backends.package_folder);
        }});
   backends.more_verbs.push_back({"replay",
                                  "imagine the steps of a recorded robot episode, or recorded "

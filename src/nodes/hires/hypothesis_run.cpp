@@ -1,14 +1,9 @@
 #include "nodes/hires/hypothesis_run.h"
 
 #include <fmt/format.h>
-#include <hires/GroundTruth.h>
 #include <ros/ros.h>
-#include <signal.h>
 
 #include <cstdlib>
-#include <fstream>
-#include <iostream>
-#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
@@ -20,7 +15,7 @@
 #include "hires/evaluation/scenario.h"
 #include "hires/evaluation/timeline.h"
 #include "hires/imagination/imagination_setup.h"
-#include "hires/ros/conversions.h"
+#include "nodes/hires/graph_run.h"
 #include "nodes/hires/remote_achieve.h"
 
 namespace hires_ros {
@@ -31,157 +26,30 @@ using evaluation::HypothesisOrder;
 using evaluation::HypothesisRun;
 using hires::base::ConfigError;
 
-constexpr double kSettle = 1.0;  // [s] simulated, after the task, in which things may yet fall
-constexpr double kSettleLimit = 60.0;  // [s] of the wall's clock for that
-constexpr double kStopGrace = 25.0;    // [s] for roslaunch to end its nodes
-constexpr double kPoll = 0.05;         // [s]
-
-/// Everything below the master that this run is given.
-void EnterSystem(const HypothesisOrder& order, int port) {
-  const auto set = [](const char* name, const std::string& value) {
-    setenv(name, value.c_str(), 1);
-  };
-  set("ROS_MASTER_URI", fmt::format("http://127.0.0.1:{}/", port));
-  set("ROS_IP", "127.0.0.1");
-  unsetenv("ROS_HOSTNAME");
-  set("ROS_HOME", order.folder + "/ros");
-  set("ROS_LOG_DIR", order.folder + "/ros/log");
+GraphLimits LimitsOf(const evaluation::HypothesisGoal& goal) {
+  return {goal.start_limit, goal.wall_limit, goal.time_limit};
 }
 
-hires::base::ProcessOptions LaunchOptions(const HypothesisOrder& order,
-                                          const evaluation::Scenario& scenario, int port,
-                                          const std::string& package_folder) {
-  const auto argument = [](const std::string& name, const std::string& value) {
-    return name + ":=" + value;
-  };
-  hires::base::ProcessOptions options;
-  options.command = {"roslaunch",
-                     "-p",
-                     std::to_string(port),
-                     package_folder + "/launch/hypothesis_run.launch",
-                     argument("scenario", order.scenario),
-                     argument("knowledge", hires::base::Join(scenario.knowledge, " ")),
-                     argument("imagination", order.imagines ? "true" : "false"),
-                     argument("workers", std::to_string(order.workers)),
-                     argument("base_port", std::to_string(port)),
-                     argument("pace", fmt::format("{}", order.pace)),
-                     argument("seed", std::to_string(order.seed)),
-                     argument("store", order.folder + "/blackboard.db")};
-  options.output = order.folder + "/system.log";
-  return options;
-}
-
-/// The last truth that came, from whichever thread spins.
-class Witness {
- public:
-  explicit Witness(ros::NodeHandle* nh)
-      : subscriber_(nh->subscribe("ground_truth/summary", 10, &Witness::OnSummary, this)) {}
-
-  bool HasSeen() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return has_seen_;
-  }
-  evaluation::RunTruth Truth() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return truth_;
-  }
-
- private:
-  void OnSummary(const hires::GroundTruthConstPtr& summary) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    truth_.contact = summary->contact;
-    for (const hires::ObjectTruth& object : summary->objects) {
-      truth_.objects[hires::base::ToLower(object.name)] = FromMsg(object);
-    }
-    has_seen_ = true;
-  }
-
-  mutable std::mutex mutex_;
-  evaluation::RunTruth truth_;
-  bool has_seen_{false};
-  ros::Subscriber subscriber_;
-};
-
-/// Why a run must end before its task does: what was first.
-class Limits {
- public:
-  Limits(const HypothesisOrder& order, hires::base::ChildProcess* system,
-         hires::base::StopSignals* stop)
-      : goal_(order.goal), system_(system), stop_(stop), begin_(hires::base::SteadyNow()) {}
-
-  /// @param wall_limit  [s] from the run's start.
-  bool Broken(double wall_limit) {
-    if (!outcome_.empty()) return true;
-    if (stop_->Wait(0.0)) Break("cancelled", "it was told to end");
-    const auto ended = system_->Ended();
-    if (ended) Break("system_died", "roslaunch ended with " + *ended);
-    if (hires::base::SteadyNow() - begin_ > wall_limit) {
-      Break("timed_out", fmt::format("{:g} s of the wall's clock are over", wall_limit));
-    }
-    const double simulated = ros::isInitialized() && ros::Time::isValid() && ros::Time::isSimTime()
-                                 ? ros::Time::now().toSec()
-                                 : 0.0;
-    if (simulated > goal_.time_limit) {
-      Break("timed_out", fmt::format("{:g} s simulated are over", goal_.time_limit));
-    }
-    return !outcome_.empty();
-  }
-  bool Broken() { return Broken(goal_.wall_limit); }
-  double start_limit() const { return goal_.start_limit; }
-  void Pass(double seconds) { stop_->Wait(seconds); }
-
-  const std::string& outcome() const { return outcome_; }  ///< empty while nothing is broken
-  const std::string& reason() const { return reason_; }
-
- private:
-  void Break(const std::string& outcome, const std::string& reason) {
-    if (!outcome_.empty()) return;
-    outcome_ = outcome;
-    reason_ = reason;
-  }
-
-  const evaluation::HypothesisGoal& goal_;
-  hires::base::ChildProcess* system_;
-  hires::base::StopSignals* stop_;
-  double begin_;
-  std::string outcome_, reason_;
-};
-
-void AwaitStart(const std::function<bool()>& is_there, const std::string& what, Limits* limits) {
-  while (!is_there()) {
-    if (limits->Broken(limits->start_limit())) {
-      throw ConfigError("waiting for " + what);
-    }
-    limits->Pass(kPoll);
-  }
-}
-
-/// The master answers and says whose clock counts; a node that starts before does not know.
-void AwaitMaster(Limits* limits) {
-  int no_arguments = 0;
-  ros::init(no_arguments, nullptr, "hypothesis_run",
-            ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
-  AwaitStart([] { return ros::master::check(); }, "the master", limits);
-  AwaitStart([] { return ros::param::has("/use_sim_time"); }, "the parameters", limits);
-}
-
-/// What is put down or falls needs a moment to come to rest.
-void AwaitRest(Limits* limits) {
-  const ros::Time end = ros::Time::now() + ros::Duration(kSettle);
-  const double give_up = hires::base::SteadyNow() + kSettleLimit;
-  while (ros::Time::now() < end && hires::base::SteadyNow() < give_up && !limits->Broken()) {
-    limits->Pass(kPoll);
-  }
+std::vector<std::string> LaunchArguments(const HypothesisOrder& order,
+                                         const evaluation::Scenario& scenario) {
+  return {"scenario:=" + order.scenario,
+          "knowledge:=" + hires::base::Join(scenario.knowledge, " "),
+          fmt::format("imagination:={}", order.imagines),
+          fmt::format("workers:={}", order.workers),
+          fmt::format("pace:={}", order.pace),
+          fmt::format("seed:={}", order.seed),
+          "store:=" + order.folder + "/blackboard.db"};
 }
 
 void Watch(const HypothesisOrder& order, const evaluation::Scenario& scenario,
-           const std::vector<evaluation::WantedPlace>& places, Limits* limits, HypothesisRun* run) {
+           const std::vector<evaluation::WantedPlace>& places, RunLimits* limits,
+           HypothesisRun* run) {
   AwaitMaster(limits);
   ros::NodeHandle nh;
   Witness witness(&nh);
   ros::AsyncSpinner spinner(1);
   spinner.start();
-  AwaitStart([&] { return witness.HasSeen(); }, "the robot's world", limits);
+  AwaitTruth(witness, limits);
   const auto report = AchieveRemotely({scenario.task, "", order.goal.start_limit}, {},
                                       [&] { return limits->Broken(); });
   evaluation::WriteJson(ToJson(report), order.folder + "/result.json");
@@ -191,19 +59,9 @@ void Watch(const HypothesisOrder& order, const evaluation::Scenario& scenario,
   run->is_complete = limits->outcome().empty();
 }
 
-/// What roslaunch said last about a process that died; "" for nothing.
-std::string LastDeath(const std::string& log) {
-  std::ifstream file(log);
-  std::string death;
-  for (std::string line; std::getline(file, line);) {
-    if (line.find("has died") != std::string::npos) death = line;
-  }
-  return death;
-}
-
 /// Never throws for what a run may run into.
 HypothesisRun Play(const HypothesisOrder& order, const evaluation::Scenario& scenario,
-                   const std::vector<evaluation::WantedPlace>& places, Limits* limits) {
+                   const std::vector<evaluation::WantedPlace>& places, RunLimits* limits) {
   HypothesisRun run;
   try {
     Watch(order, scenario, places, limits, &run);
@@ -216,20 +74,10 @@ HypothesisRun Play(const HypothesisOrder& order, const evaluation::Scenario& sce
     run.outcome = limits->outcome();
     run.reason = limits->reason() + (run.reason.empty() ? "" : "; ") + run.reason;
   }
-  const std::string death = run.is_complete ? "" : LastDeath(order.folder + "/system.log");
+  const std::string death = run.is_complete ? "" : LastDeath(order.folder);
   if (!death.empty()) run.reason += "; " + death;
   run.success = run.success && run.is_complete;
   return run;
-}
-
-/// roslaunch ends its nodes in order when it is interrupted.
-void StopSystem(hires::base::ChildProcess* system, hires::base::StopSignals* stop) {
-  system->Signal(SIGINT);
-  const double end = hires::base::SteadyNow() + kStopGrace;
-  while (!system->Ended() && hires::base::SteadyNow() < end) {
-    stop->Wait(0.0);
-    usleep(20000);
-  }
 }
 
 HypothesisRun PlayInSystem(const HypothesisOrder& order, int port,
@@ -239,20 +87,14 @@ HypothesisRun PlayInSystem(const HypothesisOrder& order, int port,
   const auto scene = hires::imagination::ReadSetupConfig(package_folder + "/config/scene.yaml");
   const auto places = evaluation::PlacesOf(order.goal, hires::world::LoadWorld(scene.world),
                                            scene.manipulation.place.area_edge);
-  EnterSystem(order, port);
-  hires::base::ChildProcess system(LaunchOptions(order, scenario, port, package_folder));
-  Limits limits(order, &system, stop);
+  EnterGraph(order.folder, port);
+  hires::base::ChildProcess system(
+      GraphLaunch(package_folder, order.folder, port, LaunchArguments(order, scenario)));
+  RunLimits limits(LimitsOf(order.goal), &system, stop);
   const HypothesisRun run = Play(order, scenario, places, &limits);
   if (ros::isStarted()) ros::shutdown();
-  StopSystem(&system, stop);
+  StopGraph(&system, stop);
   return run;
-}
-
-int PortOf(const std::string& word) {
-  char* end = nullptr;
-  const long port = std::strtol(word.c_str(), &end, 10);
-  if (*end == '\0' && port >= 1024 && port < 65000) return static_cast<int>(port);
-  throw ConfigError(fmt::format("port '{}': wanted a number from 1024 to 64999", word));
 }
 
 }  // namespace

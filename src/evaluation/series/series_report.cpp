@@ -1,0 +1,238 @@
+#include "hires/evaluation/series/series_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "hires/base/text.h"
+#include "hires/evaluation/report_table.h"
+
+namespace hires::evaluation {
+namespace {
+
+using nlohmann::ordered_json;
+using Table = std::vector<std::vector<std::string>>;
+
+constexpr std::size_t kBeginOfCause = 30, kEndOfCause = 60;  // characters in a table's cell
+
+double FluentsPerSecond(const SeriesRun& run) {
+  return run.simulated_seconds > 0.0 ? static_cast<double>(run.fluents) / run.simulated_seconds
+                                     : 0.0;
+}
+
+std::string InfoLine(const std::string& text) { return "=[ INFO]: " + text + '\n'; }
+
+bool Is(const SeriesRun& run, SeriesOutcome outcome) { return run.outcome == ToString(outcome); }
+
+std::vector<std::string> Episodes(const SeriesReport& report) {
+  std::vector<std::string> names;
+  for (const SeriesRun& run : report.runs) {
+    if (!run.episode.empty()) names.push_back(run.episode);
+  }
+  return names;
+}
+
+double MeanFluents(const SeriesReport& report) {
+  std::vector<double> fluents;
+  for (const SeriesRun& run : report.runs) {
+    if (!run.episode.empty()) fluents.push_back(static_cast<double>(run.fluents));
+  }
+  return Mean(fluents);
+}
+
+/// "0 2"
+std::string ChoicesText(const std::vector<int>& choices) {
+  std::vector<std::string> words;
+  for (const int choice : choices) words.push_back(std::to_string(choice));
+  return base::Join(words, " ");
+}
+
+/// What was first and what was last: the last reason is the one that counts.
+std::string Short(const std::string& text) {
+  if (text.size() <= kBeginOfCause + kEndOfCause) return text;
+  return text.substr(0, kBeginOfCause) + " ... " + text.substr(text.size() - kEndOfCause);
+}
+
+std::string RestartsText(const SeriesRun& run) {
+  const std::size_t restarts = run.broken_tries.size() - (Is(run, SeriesOutcome::kBroken) ? 1 : 0);
+  return restarts == 0 ? "" : std::to_string(restarts);
+}
+
+std::string RunTable(const SeriesReport& report) {
+  Table table{{"run", "choices", "seed", "outcome", "simulated", "fluents", "restarts", "cause"}};
+  for (const SeriesRun& run : report.runs) {
+    table.push_back({std::to_string(run.run), ChoicesText(run.choices), std::to_string(run.seed),
+                     run.outcome, fmt::format("{:.1f} s", run.simulated_seconds),
+                     std::to_string(run.fluents), RestartsText(run), Short(run.cause)});
+  }
+  return FormatTable(table);
+}
+
+int CountOf(const SeriesReport& report, SeriesOutcome outcome) {
+  return static_cast<int>(std::count_if(report.runs.begin(), report.runs.end(),
+                                        [&](const SeriesRun& run) { return Is(run, outcome); }));
+}
+
+const std::vector<SeriesOutcome>& AllOutcomes() {
+  static const std::vector<SeriesOutcome> all{SeriesOutcome::kSucceeded, SeriesOutcome::kFailed,
+                                              SeriesOutcome::kImpossible, SeriesOutcome::kBroken};
+  return all;
+}
+
+std::string OutcomeTable(const SeriesReport& report) {
+  Table table{{"outcome", "runs", "share", "95 % interval (Wilson)"}};
+  const int all = static_cast<int>(report.runs.size());
+  for (const SeriesOutcome outcome : AllOutcomes()) {
+    const int count = CountOf(report, outcome);
+    const Interval share = WilsonInterval(count, all);
+    table.push_back({ToString(outcome), std::to_string(count),
+                     fmt::format("{:.0f} %", 100.0 * share.estimate),
+                     fmt::format("{:.0f} .. {:.0f} %", 100.0 * share.lower, 100.0 * share.upper)});
+  }
+  return FormatTable(table);
+}
+
+std::string ChoiceTable(const SeriesReport& report) {
+  Table table{
+      {"group", "choice", "succeeded", "of", "share", "95 % interval (Wilson)", "which is"}};
+  for (const ChoiceShare& each : SharesByChoice(report)) {
+    table.push_back(
+        {each.group, std::to_string(each.choice), std::to_string(each.succeeded),
+         std::to_string(each.played), fmt::format("{:.0f} %", 100.0 * each.share.estimate),
+         fmt::format("{:.0f} .. {:.0f} %", 100.0 * each.share.lower, 100.0 * each.share.upper),
+         base::Join(each.members, "; ")});
+  }
+  return FormatTable(table);
+}
+
+/// "poseTable1 hasX 1 hasY -2"; zeros are left out.
+std::string MemberText(const knowledge::PoseModification& modification, std::size_t choice) {
+  std::string text = modification.instance;
+  for (const auto& delta : modification.modifications) {
+    if (delta.choices[choice] != 0.0) {
+      text += fmt::format(" {} {:g}", delta.property, delta.choices[choice]);
+    }
+  }
+  return text == modification.instance ? text + " as it is" : text;
+}
+
+std::vector<std::string> MembersOf(const ScenarioSeries& series, const SeriesGroup& group,
+                                   std::size_t choice) {
+  std::vector<std::string> members;
+  for (const auto& modification : series.modifications) {
+    if (modification.group == group.name) members.push_back(MemberText(modification, choice));
+  }
+  for (const auto& setting : series.settings) {
+    if (setting.group != group.name) continue;
+    for (const auto& [key, texts] : setting.values) members.push_back(key + " " + texts[choice]);
+  }
+  return members;
+}
+
+ordered_json ToJson(const ChoiceShare& each) {
+  return {{"group", each.group},         {"choice", each.choice},    {"members", each.members},
+          {"succeeded", each.succeeded}, {"played", each.played},    {"share", each.share.estimate},
+          {"lower", each.share.lower},   {"upper", each.share.upper}};
+}
+
+std::string CsvCell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string cell = "\"";
+  for (const char c : text) cell += c == '"' ? "\"\"" : std::string(1, c);
+  return cell + '"';
+}
+
+}  // namespace
+
+std::vector<ChoiceShare> SharesByChoice(const SeriesReport& report) {
+  std::vector<ChoiceShare> shares;
+  for (std::size_t g = 0; g < report.series.groups.size(); ++g) {
+    const SeriesGroup& group = report.series.groups[g];
+    std::map<int, ChoiceShare> by_choice;  // those that were played: there may be a million
+    for (const SeriesRun& run : report.runs) {
+      if (Is(run, SeriesOutcome::kBroken)) continue;
+      ChoiceShare& share = by_choice[run.choices.at(g)];
+      share.played += 1;
+      share.succeeded += Is(run, SeriesOutcome::kSucceeded) ? 1 : 0;
+    }
+    for (auto& [choice, share] : by_choice) {
+      share.group = group.name;
+      share.choice = choice;
+      share.members = MembersOf(report.series, group, static_cast<std::size_t>(choice));
+      share.share = WilsonInterval(share.succeeded, share.played);
+      shares.push_back(share);
+    }
+  }
+  return shares;
+}
+
+std::string RunSummary(const SeriesRun& run) {
+  std::string text = fmt::format("= RUN {} SUMMARY =\n", run.run);
+  text += InfoLine(run.episode.empty() ? "Scenario episode is: none was kept"
+                                       : fmt::format("Scenario episode is: '{}'", run.episode));
+  text += InfoLine(fmt::format("Scenario instruction: '{}'", run.instruction));
+  text += InfoLine(fmt::format("Total (sim) time used: {:.2f} seconds", run.simulated_seconds));
+  text += InfoLine(fmt::format("Total number of Fluents used: {}", run.fluents));
+  text += InfoLine(fmt::format("Average ratio of (Fluents/sec): {:.2f}", FluentsPerSecond(run)));
+  text += InfoLine(
+      fmt::format("Outcome: {}{}", run.outcome, run.cause.empty() ? "" : ": " + run.cause));
+  for (const std::string& broken : run.broken_tries)
+    text += InfoLine("A try broke down: " + broken);
+  return text;
+}
+
+std::string SeriesSummary(const SeriesReport& report) {
+  const std::vector<std::string> episodes = Episodes(report);
+  std::string text = "= TEST SUMMARY =\n=[ INFO]: ";
+  text += fmt::format("{} episodes created during test with names:", episodes.size());
+  for (const std::string& episode : episodes) text += " '" + episode + "'";
+  text += '\n' + InfoLine(fmt::format("Average Fluents per episode: {:.2f}", MeanFluents(report)));
+  text += InfoLine(
+      fmt::format("{} episodes are now in repository '{}'", report.stored, report.repository));
+  text += '\n' + RunTable(report) + '\n' + OutcomeTable(report);
+  if (!SharesByChoice(report).empty()) text += '\n' + ChoiceTable(report);
+  return text;
+}
+
+std::string SeriesCsv(const SeriesReport& report) {
+  std::string text = "run";
+  for (const SeriesGroup& group : report.series.groups) text += "," + CsvCell(group.name);
+  text +=
+      ",seed,instruction,scenario,truth,outcome,failure,cause,restarts,episode,simulated_seconds,"
+      "fluents,fallen,touched\n";
+  for (const SeriesRun& run : report.runs) {
+    text += std::to_string(run.run);
+    for (const int choice : run.choices) text += fmt::format(",{}", choice);
+    text += fmt::format(
+        ",{},{},{},{},{},{},{},{},{},{},{},{},{}\n", run.seed, CsvCell(run.instruction),
+        CsvCell(run.scenario), CsvCell(run.truth), run.outcome, run.failure, CsvCell(run.cause),
+        RestartsText(run).empty() ? "0" : RestartsText(run), CsvCell(run.episode),
+        run.simulated_seconds, run.fluents, base::Join(run.fallen, " "), CsvCell(run.touched));
+  }
+  return text;
+}
+
+ordered_json ToJson(const SeriesReport& report) {
+  ordered_json groups = ordered_json::array(), runs = ordered_json::array(),
+               shares = ordered_json::array(), outcomes = ordered_json::object();
+  for (const SeriesGroup& group : report.series.groups) {
+    groups.push_back(
+        {{"name", group.name}, {"choices", group.choices}, {"members", group.members}});
+  }
+  for (const SeriesRun& run : report.runs) runs.push_back(ToJson(run));
+  for (const ChoiceShare& share : SharesByChoice(report)) shares.push_back(ToJson(share));
+  for (const SeriesOutcome outcome : AllOutcomes()) {
+    outcomes[ToString(outcome)] = CountOf(report, outcome);
+  }
+  return {{"series", report.series.name},
+          {"groups", groups},
+          {"outcomes", outcomes},
+          {"mean_fluents", MeanFluents(report)},
+          {"stored", report.stored},
+          {"shares", shares},
+          {"runs", runs}};
+}
+
+}  // namespace hires::evaluation

@@ -1,0 +1,169 @@
+#include "hires/evaluation/series/series_report.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "hires/base/text.h"
+#include "support/messages.h"
+#include "support/temporary_folder.h"
+
+namespace hires::evaluation::series_report_test {
+namespace {
+
+using hires::test_support::ConfigErrorOf;
+using nlohmann::ordered_json;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+ordered_json Achieved(const std::string& outcome, bool has_begun) {
+  ordered_json step{{"action", "move_base"}, {"started", nullptr}};
+  if (has_begun) step["started"] = 2.0;
+  return {{"outcome", outcome},
+          {"reason", "no path"},
+          {"failure", {{"failure", "no_path"}}},
+          {"duration", 100.0},
+          {"steps", {{{"action", "imagine"}, {"started", 1.0}}, step}},
+          {"in_truth",
+           {{"virtual_seconds", 103.5},
+            {"touched", "chair1"},
+            {"objects", {{"mug1", {{"falls", 0}}}, {"mug2", {{"falls", 2}}}}}}}};
+}
+
+SeriesRun Taken(const std::string& outcome, bool has_begun = true) {
+  SeriesRun run;
+  TakeAchieveReport(Achieved(outcome, has_begun), "result.json", &run);
+  return run;
+}
+
+TEST(TakeAchieveReportTest, TellsOutcomesApart) {
+  EXPECT_EQ(Taken("succeeded").outcome, "succeeded");
+  EXPECT_EQ(Taken("succeeded").cause, "");
+  EXPECT_EQ(Taken("failed").outcome, "failed");
+  EXPECT_EQ(Taken("failed").cause, "no path");
+  EXPECT_EQ(Taken("failed").failure, "no_path");
+  EXPECT_EQ(Taken("no_plan", false).outcome, "impossible");
+  EXPECT_EQ(Taken("no_plan", true).outcome, "failed") << "it was begun";
+  EXPECT_EQ(Taken("preempted").outcome, "broken") << "nobody asked for that";
+  EXPECT_EQ(Taken("preempted").cause, "preempted: no path");
+}
+
+TEST(TakeAchieveReportTest, TakesTimeAndWhatHappenedInTruth) {
+  const SeriesRun run = Taken("failed");
+  EXPECT_EQ(run.simulated_seconds, 103.5);
+  EXPECT_EQ(run.touched, "chair1");
+  EXPECT_THAT(run.fallen, ElementsAre("mug2"));
+  SeriesRun other;
+  EXPECT_THAT(ConfigErrorOf([&] {
+                TakeAchieveReport({{"outcome", 3}}, "r.json", &other);
+              }),
+              HasSubstr("r.json: field 'outcome'"));
+}
+
+SeriesRun RunOf(int number, std::vector<int> choices, const std::string& outcome) {
+  SeriesRun run;
+  run.run = number;
+  run.choices = std::move(choices);
+  run.instruction = "achieve serve_coffee_to_guest_Task guest1";
+  run.outcome = outcome;
+  run.simulated_seconds = 300.21;
+  run.fluents = 381;
+  if (outcome != "broken") run.episode = "replace_" + std::to_string(number);
+  if (outcome == "failed") run.cause = "no path, \"none\"";
+  return run;
+}
+
+SeriesReport Report() {
+  SeriesReport report;
+  report.series.name = "replace";
+  report.series.groups = {{"g", 2, {"poseA"}}};
+  knowledge::PoseModification modification;
+  modification.instance = "poseA";
+  modification.group = "g";
+  modification.choices = 2;
+  modification.modifications = {{"hasX", {0.0, 1.5}}};
+  report.series.modifications = {modification};
+  report.runs = {RunOf(1, {0}, "succeeded"), RunOf(2, {1}, "failed"), RunOf(3, {0}, "broken"),
+                 RunOf(4, {1}, "impossible")};
+  report.runs[2].broken_tries = {"signal 9 (Killed)", "exit code 1"};
+  report.stored = 37;
+  report.repository = "sim_run1";
+  return report;
+}
+
+TEST(RunSummaryTest, IsLaidOutAsListing52) {
+  EXPECT_EQ(RunSummary(Report().runs[0]),
+            "= RUN 1 SUMMARY =\n"
+            "=[ INFO]: Scenario episode is: 'replace_1'\n"
+            "=[ INFO]: Scenario instruction: 'achieve serve_coffee_to_guest_Task guest1'\n"
+            "=[ INFO]: Total (sim) time used: 300.21 seconds\n"
+            "=[ INFO]: Total number of Fluents used: 381\n"
+            "=[ INFO]: Average ratio of (Fluents/sec): 1.27\n"
+            "=[ INFO]: Outcome: succeeded\n");
+  EXPECT_THAT(RunSummary(Report().runs[2]),
+              AllOf(HasSubstr("none was kept"), HasSubstr("broke down: signal 9 (Killed)")));
+}
+
+TEST(SeriesSummaryTest, CountsEpisodesOutcomesAndShares) {
+  const std::string text = SeriesSummary(Report());
+  EXPECT_THAT(text, HasSubstr("= TEST SUMMARY =\n=[ INFO]: 3 episodes created during test with "
+                              "names: 'replace_1' 'replace_2' 'replace_4'\n"
+                              "=[ INFO]: Average Fluents per episode: 381.00\n"
+                              "=[ INFO]: 37 episodes are now in repository 'sim_run1'\n"));
+  EXPECT_THAT(text, AllOf(HasSubstr("poseA hasX 1.5"), HasSubstr("poseA as it is")));
+}
+
+TEST(SharesByChoiceTest, BrokenRunsSayNothingOfAChoice) {
+  const std::vector<ChoiceShare> shares = SharesByChoice(Report());
+  ASSERT_THAT(shares, SizeIs(2));
+  EXPECT_EQ(shares[0].succeeded, 1);
+  EXPECT_EQ(shares[0].played, 1);
+  EXPECT_EQ(shares[1].succeeded, 0);
+  EXPECT_EQ(shares[1].played, 2);
+  EXPECT_EQ(shares[1].share.upper, WilsonInterval(0, 2).upper);
+}
+
+TEST(SeriesCsvTest, HasAColumnForEachGroupAndQuotesWhatNeedsIt) {
+  const std::vector<std::string> lines = base::Split(SeriesCsv(Report()), '\n');
+  ASSERT_THAT(lines, SizeIs(6));
+  EXPECT_THAT(lines[0], HasSubstr("run,g,seed,"));
+  EXPECT_THAT(lines[2], AllOf(HasSubstr("2,1,"), HasSubstr("\"no path, \"\"none\"\"\"")));
+  EXPECT_THAT(lines[3], HasSubstr(",1,,300.21"));  // of two tries that broke one was a restart
+}
+
+TEST(SeriesJsonTest, SaysAllOfEachRun) {
+  const ordered_json json = ToJson(Report());
+  EXPECT_EQ(json["outcomes"]["failed"], 1);
+  EXPECT_EQ(json["shares"][1]["members"][0], "poseA hasX 1.5");
+  const SeriesRun back = ParseSeriesRun(json["runs"][2], "x");
+  EXPECT_EQ(ToJson(back), json["runs"][2]);
+}
+
+TEST(SeriesJournalTest, KeepsRunsAndRefusesGaps) {
+  const test_support::TemporaryFolder folder;
+  const std::string path = (folder.path() / "a.journal").string();
+  const ordered_json setting{{"seed", 1}};
+  {
+    SeriesJournal journal(path, setting);
+    journal.Append(RunOf(1, {0}, "succeeded"));
+    journal.Append(RunOf(2, {1}, "failed"));
+  }
+  {
+    const SeriesJournal again(path, setting);
+    ASSERT_THAT(again.runs(), SizeIs(2));
+    EXPECT_EQ(ToJson(again.runs()[1]), ToJson(RunOf(2, {1}, "failed")));
+  }
+  const std::string other = (folder.path() / "b.journal").string();
+  {
+    SeriesJournal journal(other, setting);
+    journal.Append(RunOf(2, {1}, "failed"));
+  }
+  EXPECT_THAT(ConfigErrorOf([&] { SeriesJournal(other, setting); }),
+              AllOf(HasSubstr("line 2"), HasSubstr("is run 2, wanted run 1")));
+  EXPECT_THAT(ConfigErrorOf([&] { SeriesJournal(path, {{"seed", 2}}); }), HasSubstr("seed"));
+}
+
+}  // namespace
+}  // namespace hires::evaluation::series_report_test
