@@ -156,6 +156,7 @@ class Climber {
 
 std::optional<LadderReport> ClimbLadder(const LadderOrder& order, const Crew& crew) {
   CheckOrder(order);
+  if (crew.cancelled && crew.cancelled()) return std::nullopt;
   return Climber(order, crew).Climb();
 }
 
