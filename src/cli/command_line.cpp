@@ -441,6 +441,9 @@ int RunAnyExperiment(const ExperimentOptions& options, const Backends& backends)
   if (*options.detector.verb) {
     return RunDetectorFitVerb(options.detector, backends.package_folder, cancelled);
   }
+  if (*options.ladder.verb) {
+    return RunLadderVerb(options.ladder, backends.package_folder, cancelled);
+  }
   if (*options.recognition.verb) {
     return RunRecognitionVerb(options.recognition, backends.package_folder, cancelled);
   }

@@ -127,6 +127,7 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
   AddDecisionVerb(verb, &options->decision);
   AddRecognitionVerb(verb, &options->recognition);
   AddDetectorFitVerb(verb, &options->detector);
+  AddLadderVerb(verb, &options->ladder);
   AddPoseErrorVerb(verb, &options->pose_error);
   AddTorsoPosesVerb(verb, &options->torso_poses);
 }
@@ -135,7 +136,8 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   if (options.file.empty()) {
     throw base::ConfigError(
         "experiment: wanted a YAML file, such as config/experiments/paired.yaml, or `hypothesis`, "
-        "`decision`, `recognition`, `detector`, `localisation` or `torso_poses` (see hires "
+        "`decision`, `recognition`, `detector`, `ladder`, `localisation` or `torso_poses` (see "
+        "hires "
         "experiment hypothesis --help)");
   }
   const evaluation::ExperimentConfig config =

@@ -7,6 +7,7 @@
 #include "cli/experiment/experiment_decision_command.h"
 #include "cli/experiment/experiment_detector_command.h"
 #include "cli/experiment/experiment_hypothesis_command.h"
+#include "cli/experiment/experiment_ladder_command.h"
 #include "cli/experiment/experiment_localisation_command.h"
 #include "cli/experiment/experiment_recognition_command.h"
 #include "cli/experiment/experiment_torso_poses_command.h"
@@ -32,6 +33,7 @@ struct ExperimentOptions {
   RecognitionOptions recognition;  ///< of `hires experiment recognition`
   DetectorFitOptions detector;     ///< of `hires experiment detector`
   PoseErrorOptions pose_error;     ///< of `hires experiment localisation`
+  LadderOptions ladder;            ///< of `hires experiment ladder`
   TorsoPosesOptions torso_poses;   ///< of `hires experiment torso_poses`
 };
 

@@ -80,7 +80,7 @@ class DecisionJournalTest : public ::testing::Test {
   }
 
   std::vector<std::string> plays;
-  test_support::TemporaryFolder folder_;
+  hires::test_support::TemporaryFolder folder_;
 };
 
 TEST_F(DecisionJournalTest, ArmsShareRolloutsAndTasksOfACellThePlaysOfTheOracle) {
