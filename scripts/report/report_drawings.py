@@ -66,7 +66,7 @@ def label_row(axes, y, text, most=68):
 
 
 @styled
-def intervals(name, label, rows, percent=True, wanted=None):
+def intervals(name, label, rows, percent=True, wanted=None, logarithmic=False):
     """A line for each interval, a dot at its estimate.
     @param rows  (text, estimate, lower, upper, whether it stands out).
     @param wanted  (value, text) of a line across all."""
@@ -84,6 +84,9 @@ def intervals(name, label, rows, percent=True, wanted=None):
         axes.axvline(factor * wanted[0], color=FAILED, linewidth=1.0, linestyle=(0, (4, 3)))
         axes.annotate(wanted[1], (factor * wanted[0], -0.62), fontsize=8, va='bottom', xytext=(4, 0),
                       textcoords='offset points')
+    if logarithmic:
+        axes.set_xscale('log')
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: '%g' % value))
     if percent and all(row[2] >= 0.0 for row in rows):
         axes.set_xlim(0, 100)
     axes.set_ylim(-0.65, len(rows) - 0.2)

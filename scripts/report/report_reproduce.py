@@ -55,8 +55,7 @@ def _durations_of(answer, key):
 def _normality(item, play, argument):
     values = _durations_of(item.play(play), argument)
     picture = plots.normality(item.id(argument), 'duration [s]', values)
-    return picture, '%s: %s.' % (argument.replace(' ', ', ', 1).replace(' ', ' to '),
-                                 plots.normality_text(plots.normality_of(values)))
+    return picture, '%s, %s to %s: %s.' % (*argument.split(), plots.normality_text(plots.normality_of(values)))
 
 
 def _numbers(item, _, argument):
@@ -108,9 +107,142 @@ def _arms(item, play, _):
     return drawings.spreads(item.id('arms'), 'duration of runs that came to an end [s]', rows), ''
 
 
-DRAWINGS = {'normality': _normality, 'numbers': _numbers, 'shares': _shares, 'torso_poses': _torso_poses,
+def _numbers_at(answer, place):
+    return [answer.at(item, float) for item in answer.items(place)]
+
+
+def _series(answer, place, *names):
+    """Columns of a stretch of experiences, time first."""
+    return [_numbers_at(answer, '%s/%s' % (place, name)) for name in ('time', *names)]
+
+
+def _where(answer, place):
+    return '%s, %s' % (answer.at(place + '/run', str), answer.at(place + '/action', str))
+
+
+def _tilt(item, play, argument):
+    answer, place = item.play(play), '/pictures/' + argument
+    if not answer.has(place):
+        return None, ''
+    time, alpha, v, a, j = _series(answer, place, 'alpha', 'v', 'a', 'j')
+    rows = [('tilt [rad]', [('tilt', time, alpha)]), ('v [m/s]', [('v', time, v)]),
+            ('a [m/s²]', [('a', time, a)]), ('j [m/s³]', [('j', time, j)])]
+    marks = [(0, 0.01, 'shaking'), (0, 0.5, 'topple')] if max(alpha) > 0.4 else [(0, 0.01, 'shaking')]
+    return (plots.lines(item.id('tilt' + argument), 'time [s]', rows, marks),
+            'Tilt of the load with the thresholds of Eq. 5.1, and motion of the base: %s.' % _where(answer, place))
+
+
+def _object(item, play, argument):
+    answer, place = item.play(play), '/pictures/' + argument
+    if not answer.has(place):
+        return None, ''
+    time, alpha, deviation, ov, oa, v, a, w = _series(answer, place, 'alpha', 'deviation', 'object_v', 'object_a',
+                                                      'v', 'a', 'angular_v')
+    rows = [('load v [m/s]', [('load', time, ov), ('base', time, v)]),
+            ('a [m/s²]', [('load', time, oa), ('base', time, a)]), ('turning [rad/s]', [('base', time, w)]),
+            ('tilt [rad]', [('tilt', time, alpha)]), ('deviation [m]', [('deviation', time, deviation)])]
+    return (plots.lines(item.id('object' + argument), 'time [s]', rows),
+            'Dynamics of load and base, and how far the load leaned and slid: %s.' % _where(answer, place))
+
+
+def _trace(item, play, argument):
+    answer, place = item.play(play), '/pictures/drives/' + argument
+    x, y, v, a = (_numbers_at(answer, '%s/%s' % (place, name)) for name in ('x', 'y', 'v', 'a'))
+    return (plots.trace(item.id('trace' + argument), 'x, y in the map [m]', x, y, v, a),
+            'Width: speed. Green: it speeds up; red: it slows down. %s.' % _where(answer, place))
+
+
+def _speed(item, play, _):
+    answer, rows = item.play(play), []
+    for place in answer.keys('/pictures/drives'):
+        time, v = _series(answer, place, 'v')
+        rows.append((place.split('/')[-1] + ' v [m/s]', [('v', time, v)]))
+    return plots.lines(item.id('speed'), 'time [s]', rows), 'The longest drive of each motion set.'
+
+
+def _density(item, play, argument):
+    answer = item.play(play)
+    curves = [(place.split('/')[-1], _numbers_at(answer, place + '/edges'), _numbers_at(answer, place + '/density'))
+              for place in answer.keys('/pictures/distributions/' + argument)]
+    return (plots.densities(item.id(argument), argument.replace('_', ' '), curves),
+            'Density over all parts, logarithmic; the outermost bins hold what lies beyond them.')
+
+
+LABELS = {'v': 'v [m/s]', 'a': 'a [m/s²]', 'j': 'j [m/s³]', 'angular_v': 'turning [rad/s]',
+          'angular_a': 'turning acceleration [rad/s²]', 'alpha': 'tilt [rad]', 'deviation': 'deviation [m]'}
+
+
+def _cloud(item, play, argument):
+    """Points of one quantity over another: 'a' (tilt over it), 'a v'."""
+    answer = item.play(play)
+    over, what = (argument.split(' ') + ['alpha'])[:2]
+    points = list(zip(_numbers_at(answer, '/pictures/points/' + over),
+                      _numbers_at(answer, '/pictures/points/' + what)))
+    if what == 'alpha':
+        points = [point for point in points if point[1] < 0.5]  # what lies is no deviation any more
+    return (plots.scatter(item.id('cloud' + argument), (LABELS[over], LABELS[what]), points),
+            '%d of all parts, evenly chosen%s.' %
+            (len(points), '; those that lie are left out' if what == 'alpha' else ''))
+
+
+def _roc(item, play, _):
+    answer = item.play(play)
+    rows = []
+    for place in answer.items('/prediction/features'):
+        field = place + '/area/'
+        rows.append((answer.at(place + '/feature', str), answer.at(field + 'estimate', float),
+                     answer.at(field + 'lower', float), answer.at(field + 'upper', float),
+                     answer.at(field + 'lower', float) > 0.5))
+    return (drawings.intervals(item.id('roc'), 'area under the ROC curve, 0.5 s ahead', rows, percent=False,
+                               wanted=(0.5, 'chance')),
+            '%d falls; 95 %% intervals over runs. Dark: better than chance.' % answer.at('/prediction/falls', int))
+
+
+def _filters(item, play, _):
+    answer = item.play(play)
+    rows = []
+    for place in answer.items('/filter_trial/filters'):
+        field = place + '/separation/'
+        name = '%s, %s; error of a %.3f m/s², delay %.3f s' % (
+            answer.at(place + '/filter', str), 'causal' if answer.at(place + '/causal', bool) else 'zero phase',
+            answer.at(place + '/rms_error/a', float), answer.at(place + '/delay', float))
+        rows.append((name, answer.at(field + 'estimate', float), answer.at(field + 'lower', float),
+                     answer.at(field + 'upper', float), not answer.at(place + '/causal', bool)))
+    return (drawings.intervals(item.id('filters'), 'shaking told from not toppling by |a|: area under the curve', rows,
+                               percent=False, wanted=(0.5, 'chance')),
+            'The base measured with %g m of white noise; window %d samples, from the autocorrelation.' %
+            (answer.at('/filter_trial/noise', float), answer.at('/filter_trial/window', int)))
+
+
+def _ladder(item, play, _):
+    answer = item.play(play)
+    rows = []
+    for place in answer.items('/rungs'):
+        field = place + '/ratio/'
+        if not all(answer.has(field + end) for end in ('estimate', 'lower', 'upper')):
+            continue
+        rows.append((answer.at(place + '/title', str), answer.at(field + 'estimate', float),
+                     max(answer.at(field + 'lower', float), 1e-3), answer.at(field + 'upper', float),
+                     answer.at(field + 'lower', float) > 1.0))
+    return (drawings.intervals(item.id('ladder'), 'speed after the step / before, logarithmic', rows, percent=False,
+                               wanted=(1.0, 'no gain'), logarithmic=True),
+            'Dot: estimate. Bar: its 95 % interval. Dark: it makes faster.')
+
+
+def _choices(item, play, _):
+    answer = item.play(play)
+    rows = [('%s, choice %d: %s' % (answer.at(place + '/group', str), answer.at(place + '/choice', int),
+                                    '; '.join(answer.at(member, str) for member in answer.items(place + '/members'))),
+             answer.at(place + '/share', float), answer.at(place + '/lower', float),
+             answer.at(place + '/upper', float), True) for place in answer.items('/shares')]
+    return (drawings.intervals(item.id('choices'), 'runs that succeed [%], 95 % intervals', rows),
+            'By arrangement. Bar: Wilson\'s interval.')
+
+
+DRAWINGS = {'tilt': _tilt, 'object': _object, 'trace': _trace, 'speed': _speed, 'density': _density, 'cloud': _cloud,
+            'roc': _roc, 'filters': _filters, 'ladder': _ladder, 'choices': _choices, 'normality': _normality, 'numbers': _numbers, 'shares': _shares, 'torso_poses': _torso_poses,
             'timeline': _timeline, 'arms': _arms}
-BROAD = {'normality', 'timeline'}
+BROAD = {'normality', 'timeline', 'tilt', 'object', 'speed'}
 
 
 def pictures_of(answer, place):

@@ -60,7 +60,8 @@ TEST(ToppleMonitorTest, AnEpisodeEndsWithEachFall) {
   ToppleMonitor monitor({});
   std::vector<std::uint32_t> episodes;
   std::vector<ToppleState> states;
-  const std::vector<double> tilts{0.0, 0.0, 0.0, 0.0, 0.02, 0.6, 1.5, 0.0, 0.02, 0.7, 0.0};
+  const std::vector<double> tilts{0.0, 0.0, 0.0, 0.0, 0.02, 0.6, 1.5,
+                                  0.0, 0.0, 0.0, 0.0, 0.02, 0.7};
   for (std::size_t i = 0; i < tilts.size(); ++i) {
     const auto part = monitor.Add(SampleAt(0.05 * static_cast<double>(i), {}, tilts[i]));
     if (!part) continue;

@@ -186,15 +186,12 @@ TEST(ReproducedJudgeTest, NumbersMayBeDividedAndTruthsCount) {
             Verdict::kReproduced);
 }
 
-TEST(ReproducedJudgeTest, AFieldThatIsNotThereIsAnError) {
+TEST(ReproducedJudgeTest, AFieldThatIsNotThereIsTold) {
   const ComparedValue near = Value(Acceptance::Kind::kWithin, 0.5, 2.0);
-  EXPECT_THAT(test_support::ConfigErrorOf([&] {
-                VerdictOn({near}, {{"z", 1.0}});
-              }),
-              AllOf(HasSubstr("loop:/x"), HasSubstr("nothing there")));
-  EXPECT_THAT(test_support::ConfigErrorOf([&] {
-                VerdictOn({near}, {{"x", "two"}});
-              }),
+  const JudgedItem nothing = Judge(ItemOf({near}), {{"loop", {{"z", 1.0}}}}, {});
+  EXPECT_EQ(nothing.verdict, Verdict::kNotPlayed);
+  EXPECT_THAT(nothing.reason, AllOf(HasSubstr("loop:/x"), HasSubstr("nothing there")));
+  EXPECT_THAT(Judge(ItemOf({near}), {{"loop", {{"x", "two"}}}}, {}).reason,
               HasSubstr("wanted a number"));
 }
 

@@ -43,9 +43,9 @@ std::string LastWords(const std::string& log) {
   return text.substr(0, kShownOfLog);
 }
 
-class Runner {
+class PlayRunner {
  public:
-  Runner(const PlaysOrder& order, PlayStore* store) : order_(order), store_(*store) {}
+  PlayRunner(const PlaysOrder& order, PlayStore* store) : order_(order), store_(*store) {}
 
   PlaysDone Run() {
     for (const Play& play : order_.plays) {
@@ -169,6 +169,8 @@ class Runner {
 
 }  // namespace
 
-PlaysDone PlayAll(const PlaysOrder& order, PlayStore* store) { return Runner(order, store).Run(); }
+PlaysDone PlayAll(const PlaysOrder& order, PlayStore* store) {
+  return PlayRunner(order, store).Run();
+}
 
 }  // namespace hires::cli

@@ -48,11 +48,11 @@ ToppleState StateOf(double tilt, const imagination::RolloutParams& params) {
 void ToppleMonitor::Begin() { num_samples_ = 0; }
 
 std::optional<knowledge::ToppleEpisodePart> ToppleMonitor::Add(const ToppleSample& sample) {
+  const ToppleState state = StateOf(TiltOf(sample), params_);
+  if (IsPutBack(state)) Begin();
   if (num_samples_ == 0) X_BO_start_ = sample.X_BO;
   std::rotate(last_.begin(), last_.begin() + 1, last_.end());
   last_.back() = sample;
-  const ToppleState state = StateOf(TiltOf(sample), params_);
-  CountEpisode(state);
   if (++num_samples_ < kSamples) return std::nullopt;
   knowledge::ToppleEpisodePart part;
   part.time = sample.time;
@@ -76,13 +76,13 @@ std::optional<knowledge::ToppleEpisodePart> ToppleMonitor::Add(const ToppleSampl
   return part;
 }
 
-void ToppleMonitor::CountEpisode(ToppleState state) {
-  if (state == ToppleState::kTopple) {
-    has_fallen_ = true;
-  } else if (has_fallen_) {
-    has_fallen_ = false;
-    ++episode_;
-  }
+/// It stands again after it lay: an episode is over, and its way back is no motion.
+bool ToppleMonitor::IsPutBack(ToppleState state) {
+  const bool is_down = state == ToppleState::kTopple;
+  const bool is_put_back = has_fallen_ && !is_down;
+  if (is_put_back) ++episode_;
+  has_fallen_ = is_down;
+  return is_put_back;
 }
 
 }  // namespace hires::evaluation

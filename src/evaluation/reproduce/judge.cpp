@@ -156,8 +156,13 @@ JudgedItem Judge(const CatalogueItem& item, const std::map<std::string, ordered_
         fmt::format("{}: {}", play, why == missing.end() ? "not asked for" : why->second);
     return judged;
   }
-  for (const ComparedValue& value : item.values) {
-    judged.values.push_back(JudgeValue(value, answers));
+  try {
+    for (const ComparedValue& value : item.values) {
+      judged.values.push_back(JudgeValue(value, answers));
+    }
+  } catch (const base::ConfigError& error) {  // the others shall not be lost with it
+    judged.reason = error.what();
+    return judged;
   }
   judged.verdict = VerdictOf(judged.values);
   judged.reason = judged.verdict == Verdict::kNotReproduced ? item.fails : item.holds;
