@@ -27,6 +27,60 @@ void CheckCounts(const PairedCounts& counts) {
               "there are more discordant pairs than pairs, or fewer than none");
 }
 
+/// Counts need not be whole.  @pre 0 <= hits <= all, all > 0.
+Interval ExactShare(double hits, double all) {
+  using Binomial = boost::math::binomial;
+  return {hits / all, hits <= 0.0 ? 0.0 : Binomial::find_lower_bound_on_p(all, hits, kTail),
+          hits >= all ? 1.0 : Binomial::find_upper_bound_on_p(all, hits, kTail)};
+}
+
+double StudentsT(double freedom) {
+  return boost::math::quantile(boost::math::students_t(freedom), 1.0 - kTail);
+}
+
+/// Sums over clusters.
+struct ClusterSums {
+  double clusters{0.0}, cases{0.0}, hits{0.0};
+  double with_hit{0.0}, with_miss{0.0};  ///< clusters
+  double squared_sizes{0.0};
+  double share() const { return hits / cases; }
+};
+
+/// @return of clusters that are not empty.
+ClusterSums SumsOf(const std::vector<ClusterCounts>& clusters) {
+  ClusterSums sums;
+  for (const auto& [num_hits, num_all] : clusters) {
+    HIRES_CHECK(num_hits >= 0 && num_hits <= num_all,
+                "a cluster has more hits than cases, or fewer than none");
+    sums.clusters += num_all > 0 ? 1.0 : 0.0;
+    sums.with_hit += num_hits > 0 ? 1.0 : 0.0;
+    sums.with_miss += num_hits < num_all ? 1.0 : 0.0;
+    sums.cases += num_all;
+    sums.hits += num_hits;
+    sums.squared_sizes += static_cast<double>(num_all) * num_all;
+  }
+  return sums;
+}
+
+/// By how much the share varies more than that of as many independent cases, in variance.
+double DesignEffect(const std::vector<ClusterCounts>& clusters, const ClusterSums& sums) {
+  const double k = sums.clusters, n = sums.cases, share = sums.share();
+  double squares = 0.0;
+  for (const ClusterCounts& one : clusters)
+    squares += std::pow(one.num_hits - share * one.num_all, 2);
+  return k / (k - 1.0) * squares / (n * n) / (share * (1.0 - share) / (n - 1.0));
+}
+
+/// How many independent cases say as much about the share.
+double IndependentCases(const std::vector<ClusterCounts>& clusters, const ClusterSums& sums) {
+  const double n = sums.cases, rarer = std::min(sums.with_hit, sums.with_miss);
+  const double if_all_alike = sums.squared_sizes / n;
+  if (rarer == 0.0 || sums.clusters < 2.0) return n / if_all_alike;
+  const double effect = (rarer * DesignEffect(clusters, sums) + if_all_alike) / (rarer + 1.0);
+  const double ratio = StudentsT(n - 1.0) / StudentsT(sums.clusters - 1.0);
+  return std::clamp(n / effect * ratio * ratio, 1.0, n);
+}
+
 /// Tango's score statistic of a difference, its numerator positive where the difference is too
 /// small. The standard error holds the second cell's share at its restricted maximum of likelihood.
 double PairedScore(const PairedCounts& counts, double difference) {
@@ -113,18 +167,23 @@ Interval MeanInterval(const std::vector<double>& differences) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (differences.size() == 1) return {mean, -kInfinity, kInfinity};
   const double error = std::sqrt(SquaredDeviations(differences) / (n - 1.0) / n);
-  const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 1.0 - kTail);
+  const double t = StudentsT(n - 1.0);
   return {mean, mean - t * error, mean + t * error};
 }
 
 Interval ShareInterval(int num_hits, int num_all) {
   HIRES_CHECK(num_hits >= 0 && num_hits <= num_all, "there are more hits than all, or fewer");
   if (num_all == 0) return {0.0, 0.0, 1.0};
-  using Binomial = boost::math::binomial;
-  const double n = num_all, k = num_hits;
-  const double lower = num_hits == 0 ? 0.0 : Binomial::find_lower_bound_on_p(n, k, kTail);
-  const double upper = num_hits == num_all ? 1.0 : Binomial::find_upper_bound_on_p(n, k, kTail);
-  return {k / n, lower, upper};
+  return ExactShare(num_hits, num_all);
+}
+
+Interval ClusteredShareInterval(const std::vector<ClusterCounts>& clusters) {
+  const ClusterSums sums = SumsOf(clusters);
+  if (sums.cases == 0.0) return {0.0, 0.0, 1.0};
+  const double cases = IndependentCases(clusters, sums);
+  Interval interval = ExactShare(std::min(1.0, sums.share()) * cases, cases);
+  interval.estimate = sums.share();
+  return interval;
 }
 
 Interval WilsonInterval(int num_hits, int num_all) {

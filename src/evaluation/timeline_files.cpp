@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "evaluation/known_number.h"
 #include "hires/base/error.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
@@ -13,14 +13,6 @@ namespace hires::evaluation {
 namespace {
 
 using nlohmann::ordered_json;
-
-/// What is not there is null, and so is what JSON does not know: infinity, "not a number".
-ordered_json NumberOrNull(double value) {
-  return std::isfinite(value) ? ordered_json(value) : nullptr;
-}
-ordered_json NumberOrNull(const std::optional<double>& value) {
-  return value ? NumberOrNull(*value) : ordered_json(nullptr);
-}
 
 ordered_json StepToJson(const execution::StepStatus& step) {
   return {{"plan", step.plan},

@@ -55,7 +55,7 @@ class ReproduceTest : public ::testing::Test {
   }
   std::string Counted() const { return base::ReadTextFile(Path("count")); }
 
-  const test_support::TemporaryFolder folder_;
+  const hires::test_support::TemporaryFolder folder_;
 };
 
 TEST_F(ReproduceTest, WhatHasAnAnswerIsNotPlayedAgain) {
@@ -121,18 +121,18 @@ TEST_F(ReproduceTest, ABrokenNoteIsNamed) {
   PlayThem({play});
   PlayStore store = Store();
   folder_.Write("results/one-" + store.KeyOf(play) + "/played.json", "{");
-  EXPECT_THAT(test_support::ConfigErrorOf([&] { store.Find(play); }),
+  EXPECT_THAT(hires::test_support::ConfigErrorOf([&] { store.Find(play); }),
               AllOf(HasSubstr("played.json"), HasSubstr("delete its folder")));
 }
 
 TEST_F(ReproduceTest, TheVerbListsPlaysAndJudges) {
   const auto run = [&](const std::vector<std::string>& words) {
-    return test_support::RunHires({"reproduce"}, words);
+    return hires::test_support::RunHires({"reproduce"}, words);
   };
   const std::string results = Path("r");
   EXPECT_THAT(run({"5.1", "--list", "--results", results}).out, HasSubstr("Fig. 5.1"));
   EXPECT_THAT(run({"9.9", "--results", results}).err, HasSubstr("'9.9' is unknown"));
-  const test_support::Ended shown =
+  const hires::test_support::Ended shown =
       run({"5.1", "--results", results, "--json", Path("r.json"), "--quiet"});
   EXPECT_EQ(shown.code, 0);
   EXPECT_THAT(shown.out, HasSubstr("5 shown"));

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "evaluation/recognition/regression.h"
@@ -138,6 +139,21 @@ TEST(DetectorFitTest, NothingRecognisedFitsNothing) {
   } catch (const base::ConfigError& error) {
     EXPECT_THAT(error.what(), HasSubstr("nothing was recognised rightly, of 3 things"));
   }
+}
+
+TEST(DetectorFitTest, WhatNoLookTellsIsNotGivenAsANumber) {
+  DetectorFitReport report;
+  report.held_out = 1;
+  constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+  FitCheck far;
+  far.part = "far";
+  far.num_looks = 3;
+  far.median_error = far.expected = far.beyond = kNothing;
+  report.checks.push_back(far);
+  EXPECT_THAT(ToYaml(report),
+              HasSubstr("far: 3 looks, found 0.0 % (fit 0.0), named - % (fit -), median - mm (fit "
+                        "-)"));
+  EXPECT_TRUE(ToJson(report).at("checks").at(0).at("median_error").is_null());
 }
 
 DetectorFitOrder SmallOrder() {

@@ -191,7 +191,7 @@ class ExperienceReportTest : public ::testing::Test {
     return batch;
   }
 
-  const test_support::TemporaryFolder folder_;
+  const hires::test_support::TemporaryFolder folder_;
 };
 
 TEST_F(ExperienceReportTest, StatsCountWhatIsThere) {
@@ -226,7 +226,7 @@ TEST_F(ExperienceReportTest, TooLittleIsSaid) {
   knowledge::ExperienceStore store = Store(0);
   store.Write(LegOf(0, 0));
   std::string text;
-  EXPECT_THAT(test_support::ConfigErrorOf([&] { AnalysisOf(store, 1, &text); }),
+  EXPECT_THAT(hires::test_support::ConfigErrorOf([&] { AnalysisOf(store, 1, &text); }),
               HasSubstr("has 400 parts; wanted at least 1000"));
 }
 

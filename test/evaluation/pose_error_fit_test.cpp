@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/text.h"
+#include "hires/imagination/imagination_setup.h"
 #include "hires/robot/load_robot.h"
 #include "hires/world/object_catalogue.h"
 #include "support/messages.h"
@@ -122,7 +123,7 @@ TEST(PoseErrorExperimentTest, AnyNumberOfThreadsWritesTheSameAndProgressEnds) {
   EXPECT_EQ(ToJson(*a)["schema"], "hires/pose_error_fit");
   one.cancelled = [] { return true; };
   EXPECT_FALSE(FitPoseError(order, one));
-  test_support::TemporaryFolder folder;
+  hires::test_support::TemporaryFolder folder;
   const auto read = simulation::ReadPoseError(folder.Write("error.yaml", ToYaml(*a)));
   EXPECT_EQ(read.hash, a->fit.hash);
 }

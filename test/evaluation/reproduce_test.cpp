@@ -34,10 +34,10 @@ class CatalogueTest : public ::testing::Test {
     return ReadCatalogue(folder_.Write("catalogue.yaml", text));
   }
   std::string ErrorOf(const std::string& text) {
-    return test_support::ConfigErrorOf([&] { Read(text); });
+    return hires::test_support::ConfigErrorOf([&] { Read(text); });
   }
 
-  const test_support::TemporaryFolder folder_;
+  const hires::test_support::TemporaryFolder folder_;
 };
 
 TEST_F(CatalogueTest, PlaysComeAfterThoseWhoseAnswersTheyTake) {
@@ -71,7 +71,7 @@ items:
   EXPECT_THAT(names({"6.3"}), ElementsAre("Table 6.5", "Fig. 6.13"));
   EXPECT_THAT(names({"a", "table 6.5"}), ElementsAre("Table 6.5", "Fig. A.2"));
   EXPECT_EQ(names({"all"}).size(), 4u);
-  EXPECT_THAT(test_support::ConfigErrorOf([&] { names({"6.4"}); }),
+  EXPECT_THAT(hires::test_support::ConfigErrorOf([&] { names({"6.4"}); }),
               AllOf(HasSubstr("'6.4' is unknown"), HasSubstr("6.1")));
 }
 

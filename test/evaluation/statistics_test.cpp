@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/math/distributions/beta.hpp>
 #include <cmath>
 #include <stdexcept>
 
@@ -122,6 +123,105 @@ TEST(ShareIntervalTest, BoundsAreWhereTheTailsHoldFortiethParts) {
 TEST(ShareIntervalTest, MoreHitsThanAllAreRefused) {
   EXPECT_THROW(ShareInterval(3, 2), std::logic_error);
   EXPECT_THROW(ShareInterval(-1, 2), std::logic_error);
+}
+
+TEST(ClusteredShareIntervalTest, ClustersOfOneCaseAreIndependentCases) {
+  for (const int hits : {1, 8, 19}) {
+    std::vector<ClusterCounts> clusters(20, ClusterCounts{0, 1});
+    for (int i = 0; i < hits; ++i) clusters[i].num_hits = 1;
+    clusters.push_back({0, 0});
+    const Interval clustered = ClusteredShareInterval(clusters), exact = ShareInterval(hits, 20);
+    EXPECT_DOUBLE_EQ(clustered.estimate, exact.estimate);
+    EXPECT_NEAR(clustered.lower, exact.lower, 1e-9);
+    EXPECT_NEAR(clustered.upper, exact.upper, 1e-9);
+  }
+}
+
+// Clusters of 1 and 3 of 4 around a half: the sum of squared deviations is 20 * 1, so the variance
+// is 20 / 19 * 20 / 80^2, that of 80 independent cases 1 / (4 * 79): a design effect of 1.03947.
+// All 20 have hits and misses; with one more cluster of effect 4 it is 1.18045. With t's quantiles
+// 1.990450 and 2.093024 that is as much as 61.29 cases.
+TEST(ClusteredShareIntervalTest, OfTwentyEqualClustersItIsTheIntervalWorkedByHand) {
+  std::vector<ClusterCounts> clusters(20, ClusterCounts{1, 4});
+  for (int i = 0; i < 10; ++i) clusters[i].num_hits = 3;
+  const double effect = 20.0 / 19.0 * 20.0 / 6400.0 * 4.0 * 79.0;
+  EXPECT_NEAR(effect, 1.03947, 1e-5);
+  const double cases = 80.0 / ((20.0 * effect + 4.0) / 21.0) * std::pow(1.990450 / 2.093024, 2);
+  EXPECT_NEAR(cases, 61.29, 0.01);
+  const boost::math::beta_distribution<> low(0.5 * cases, 0.5 * cases + 1.0);
+  const Interval interval = ClusteredShareInterval(clusters);
+  EXPECT_DOUBLE_EQ(interval.estimate, 0.5);
+  EXPECT_NEAR(interval.lower, boost::math::quantile(low, 0.025), 1e-6);
+  EXPECT_NEAR(interval.upper, 1.0 - interval.lower, 1e-9);
+}
+
+TEST(ClusteredShareIntervalTest, WhereAllAreHitsEachOfEqualClustersIsOneCase) {
+  const Interval sure = ClusteredShareInterval({{4, 4}, {4, 4}, {4, 4}});
+  EXPECT_EQ(sure.upper, 1.0);
+  EXPECT_NEAR(sure.lower, ShareInterval(3, 3).lower, 1e-12);
+  EXPECT_NEAR(ClusteredShareInterval({{0, 4}, {0, 4}}).upper, ShareInterval(0, 2).upper, 1e-12);
+  // Of 4, 2 and 7 cases: 13^2 / (16 + 4 + 49).
+  EXPECT_NEAR(ClusteredShareInterval({{4, 4}, {2, 2}, {7, 7}}).lower, std::pow(0.025, 69.0 / 169.0),
+              1e-12);
+}
+
+TEST(ClusteredShareIntervalTest, OneClusterAndNothingSayLittle) {
+  const Interval one = ClusteredShareInterval({{3, 4}});
+  EXPECT_DOUBLE_EQ(one.estimate, 0.75);
+  EXPECT_LT(one.lower, 0.05);
+  EXPECT_GT(one.upper, 0.95);
+  EXPECT_EQ(ClusteredShareInterval({{0, 0}}).lower, 0.0);
+  EXPECT_EQ(ClusteredShareInterval({}).upper, 1.0);
+  EXPECT_THROW(ClusteredShareInterval({{3, 2}}), std::logic_error);
+}
+
+/// @param alike  how often a case goes as its cluster does instead of by itself.
+std::vector<ClusterCounts> DrawClusters(double share, double alike, base::Rng* rng) {
+  std::vector<ClusterCounts> clusters(100);
+  for (ClusterCounts& one : clusters) {
+    one.num_all = 1 + rng->Index(7);
+    const bool all_hit = rng->Bernoulli(share);
+    for (int i = 0; i < one.num_all; ++i) {
+      const bool hit = rng->Bernoulli(alike) ? all_hit : rng->Bernoulli(share);
+      one.num_hits += hit ? 1 : 0;
+    }
+  }
+  return clusters;
+}
+
+bool Covers(const Interval& interval, double share) {
+  return interval.lower <= share && share <= interval.upper;
+}
+
+ClusterCounts SumOf(const std::vector<ClusterCounts>& clusters) {
+  ClusterCounts sum;
+  for (const ClusterCounts& one : clusters) {
+    sum.num_hits += one.num_hits;
+    sum.num_all += one.num_all;
+  }
+  return sum;
+}
+
+// 2000 draws know a coverage of 0.95 to three deviations of 0.005.
+TEST(ClusteredShareIntervalTest, CoversTheTruthAsOftenAsItSaysHoweverAlikeCasesOfAClusterAre) {
+  constexpr int kDraws = 2000;
+  base::Rng rng(1);
+  for (const double share : {0.5, 0.9, 0.98}) {
+    for (const double alike : {0.0, 0.7, 1.0}) {
+      int clustered = 0, as_if_independent = 0;
+      for (int draw = 0; draw < kDraws; ++draw) {
+        const auto clusters = DrawClusters(share, alike, &rng);
+        const ClusterCounts sum = SumOf(clusters);
+        clustered += Covers(ClusteredShareInterval(clusters), share) ? 1 : 0;
+        as_if_independent += Covers(ShareInterval(sum.num_hits, sum.num_all), share) ? 1 : 0;
+      }
+      SCOPED_TRACE(testing::Message() << share << " alike " << alike);
+      EXPECT_GE(clustered, 0.935 * kDraws);
+      if (alike == 1.0) {
+        EXPECT_LT(as_if_independent, 0.8 * kDraws) << "what the clusters are for";
+      }
+    }
+  }
 }
 
 TEST(McNemarTest, TailsAreCountedByHand) {

@@ -14,7 +14,7 @@
 namespace hires::knowledge::experience_test {
 namespace {
 
-using test_support::ConfigErrorOf;
+using hires::test_support::ConfigErrorOf;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -49,7 +49,7 @@ class ExperienceStoreTest : public ::testing::Test {
     return times;
   }
 
-  const test_support::TemporaryFolder folder_;
+  const hires::test_support::TemporaryFolder folder_;
 };
 
 TEST_F(ExperienceStoreTest, WhatIsWrittenIsRead) {

@@ -34,6 +34,22 @@ Interval ShareInterval(int num_hits, int num_all);
 /// @pre 0 <= num_hits <= num_all.  @throws std::logic_error if broken. (0 of 0 gives 0 .. 1.)
 Interval WilsonInterval(int num_hits, int num_all);
 
+/// What was counted together, for example the things on one table.
+struct ClusterCounts {
+  int num_hits{0};
+  int num_all{0};
+};
+
+/// Share of hits among all that is in the clusters, where what is in one cluster may go alike: as
+/// ShareInterval for as many independent cases as say the same, found by the variance of the ratio
+/// between clusters and Student's t of their number [Korn, Graubard 1998, Surv. Methodol.
+/// 24:193-201]. That variance is too small more often than not where few clusters have a miss (or a
+/// hit, where these are rarer); so it counts as if one more of these had gone alike altogether, and
+/// where there are none, all are taken to go alike. Clusters of one case each give ShareInterval;
+/// empty ones do not count. Without cases: 0 (0 .. 1).
+/// @pre 0 <= num_hits <= num_all in each.  @throws std::logic_error if broken.
+Interval ClusteredShareInterval(const std::vector<ClusterCounts>& clusters);
+
 /// What happened to the two members of each pair.
 struct PairedCounts {
   int only_first{0};   ///< it happened to the first member alone

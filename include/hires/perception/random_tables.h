@@ -16,10 +16,11 @@ namespace hires::perception {
 
 /// A thing on a random table, as it really is.
 struct TableThing {
-  std::string name, model;                        ///< instance; kind
-  bool is_known{true};                            ///< in the catalogue
-  geometry::Pose3 X_CO{};                         ///< in the cloud's frame
-  Eigen::Vector3d size{Eigen::Vector3d::Zero()};  ///< [m] of its box, along its own axes
+  std::string name, model;                          ///< instance; kind
+  bool is_known{true};                              ///< in the catalogue
+  geometry::Pose3 X_CO{};                           ///< in the cloud's frame
+  Eigen::Vector3d size{Eigen::Vector3d::Zero()};    ///< [m] of its box, along its own axes
+  Eigen::Vector3d middle{Eigen::Vector3d::Zero()};  ///< [m] of that box, from its own origin
   int num_points{0};   ///< pixels of the picture without noise that it covers, within range
   ThingInView view{};  ///< by the quick detector's means, which know no pixels
 };

@@ -29,6 +29,7 @@ const Feature kFeatures[] = {
     {"base angular |v|", [](const auto& p) { return p.base.angular_v; }},
     {"base angular |a|", [](const auto& p) { return std::abs(p.base.angular_a); }},
     {"base angular |j|", [](const auto& p) { return std::abs(p.base.angular_j); }},
+    {"base v times angular v", [](const auto& p) { return p.base.v * p.base.angular_v; }},
     {"tilt of the load", [](const auto& p) { return p.alpha; }},
 };
 

@@ -70,6 +70,9 @@ std::optional<imagination::RolloutResult> Chain::Play(const std::string& goal, L
 
 void Chain::Record(const simulation::RobotSimulator& simulator, Leg* leg) const {
   if (simulator.carried().empty()) return;
+  const bool begins_anew =
+      !leg->samples.empty() && time_ + simulator.time() <= leg->samples.back().time;
+  if (begins_anew) leg->samples.clear();  // the engine could not go on, and all is played again
   const Pose3 X_MO = simulator.PoseOf(simulator.carried().front());
   leg->samples.push_back(
       {time_ + simulator.time(), simulator.base().X_MB, X_MO, simulator.X_MB().Inverse() * X_MO});

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "evaluation/known_number.h"
 #include "hires/evaluation/recognition/detector_fit.h"
 #include "hires/evaluation/report_table.h"
 
@@ -12,7 +13,7 @@ using nlohmann::ordered_json;
 using perception::DetectorErrors;
 using perception::Regression;
 
-double Percent(double number, int of) { return of > 0 ? 100.0 * number / of : 0.0; }
+std::string Percent(double number, int of) { return NumberText(100.0 * number / of, 1); }
 
 std::string WeightsText(const DetectorErrors& errors) {
   const std::pair<const char*, const Regression*> all[]{{"found (log odds)", &errors.found},
@@ -36,14 +37,10 @@ std::string ChecksText(const std::vector<FitCheck>& checks) {
                                               "by the fit", "named rightly [%]", "by the fit",
                                               "median [mm]", "by the fit", "beyond its 95 % [%]"}};
   for (const FitCheck& one : checks) {
-    rows.push_back({one.part, std::to_string(one.num_looks),
-                    fmt::format("{:.1f}", Percent(one.num_found, one.num_looks)),
-                    fmt::format("{:.1f}", Percent(one.found, one.num_looks)),
-                    fmt::format("{:.1f}", Percent(one.num_named, one.num_found)),
-                    fmt::format("{:.1f}", Percent(one.named, one.num_found)),
-                    fmt::format("{:.2f}", 1e3 * one.median_error),
-                    fmt::format("{:.2f}", 1e3 * one.expected),
-                    fmt::format("{:.1f}", 100.0 * one.beyond)});
+    rows.push_back({one.part, std::to_string(one.num_looks), Percent(one.num_found, one.num_looks),
+                    Percent(one.found, one.num_looks), Percent(one.num_named, one.num_found),
+                    Percent(one.named, one.num_found), NumberText(1e3 * one.median_error, 2),
+                    NumberText(1e3 * one.expected, 2), NumberText(100.0 * one.beyond, 1)});
   }
   return FormatTable(rows);
 }
@@ -88,9 +85,9 @@ ordered_json ToJson(const DetectorFitReport& report) {
                       {"found_by_fit", one.found},
                       {"named", one.num_named},
                       {"named_by_fit", one.named},
-                      {"median_error", one.median_error},
-                      {"median_error_by_fit", one.expected},
-                      {"beyond_95", one.beyond}});
+                      {"median_error", NumberOrNull(one.median_error)},
+                      {"median_error_by_fit", NumberOrNull(one.expected)},
+                      {"beyond_95", NumberOrNull(one.beyond)}});
   }
   return {{"schema", "hires/detector_fit"},
           {"version", 1},
@@ -111,11 +108,11 @@ std::string ToYaml(const DetectorFitReport& report) {
   std::string checks;
   for (const FitCheck& one : report.checks) {
     checks += fmt::format(
-        "#   {}: {} looks, found {:.1f} % (fit {:.1f}), named {:.1f} % (fit {:.1f}), median {:.2f} "
-        "mm (fit {:.2f})\n",
+        "#   {}: {} looks, found {} % (fit {}), named {} % (fit {}), median {} mm (fit {})\n",
         one.part, one.num_looks, Percent(one.num_found, one.num_looks),
         Percent(one.found, one.num_looks), Percent(one.num_named, one.num_found),
-        Percent(one.named, one.num_found), 1e3 * one.median_error, 1e3 * one.expected);
+        Percent(one.named, one.num_found), NumberText(1e3 * one.median_error, 2),
+        NumberText(1e3 * one.expected, 2));
   }
   return fmt::format(
              "# How the head camera's recogniser errs. Written by `hires experiment detector`, not "

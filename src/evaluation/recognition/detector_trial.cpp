@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "evaluation/recognition/fit_cases.h"
 #include "evaluation/recognition/regression.h"
@@ -23,8 +24,9 @@ std::optional<std::vector<std::vector<TwoLooks>>> LookTwice(const DetectorFitOrd
   std::vector<std::vector<TwoLooks>> seen(num_tables);
   const auto work = [&](int task, const Advance& advance) {
     const std::uint64_t own = order.seed + static_cast<std::uint64_t>(task);
-    RecognitionScore scores[2]{RecognitionScore(order.recogniser.catalogue, 1),
-                               RecognitionScore(order.recogniser.catalogue, 1)};
+    // A rollout is told of a thing where a robot would be, so by any detection that is of it.
+    const RecognitionScore none(order.recogniser.catalogue, 1, perception::kToldOf);
+    RecognitionScore scores[2]{none, none};
     for (int look = 0; look < 2; ++look) {
       const perception::RandomTable table = tables.Make(own, look);
       const base::Rng rng = base::Rng(own).Fork(static_cast<std::uint64_t>(look));
@@ -38,8 +40,9 @@ std::optional<std::vector<std::vector<TwoLooks>>> LookTwice(const DetectorFitOrd
   return seen;
 }
 
+/// Not a number of no values.
 double Median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto middle = values.begin() + static_cast<long>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -70,7 +73,7 @@ FitCheck CheckOf(const std::string& part, const std::vector<TwoLooks>& things,
   }
   check.median_error = Median(lengths);
   check.expected = Median(expected);
-  if (!lengths.empty()) check.beyond = num_beyond / static_cast<double>(lengths.size());
+  check.beyond = num_beyond / static_cast<double>(lengths.size());  // 0 / 0 is not a number
   return check;
 }
 

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "hires/base/resource_use.h"
 #include "hires/evaluation/experiment/parallel.h"
@@ -107,7 +108,10 @@ std::optional<RecognitionReport> TryRecogniser(const RecognitionOrder& order, co
   RecognitionReport report{order.tables, order.seed, RecognitionScore(order.recogniser.catalogue)};
   for (int i = 0; i < order.tables; ++i) {
     report.score.Append(scores[i]);
-    report.left_out.insert(report.left_out.end(), left_out[i].begin(), left_out[i].end());
+    for (ThingVerdict& thing : left_out[i]) {
+      thing.table = i;
+      report.left_out.push_back(std::move(thing));
+    }
     report.seconds += seconds[i] / order.tables;
   }
   return report;

@@ -1,15 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "hires/evaluation/recognition/recognition_experiment.h"
+#include "evaluation/known_number.h"
+#include "evaluation/recognition/recognition_boxes.h"
+#include "evaluation/recognition/recognition_goals.h"
 #include "hires/evaluation/report_table.h"
-#include "hires/evaluation/statistics.h"
 #include "hires/geometry/angles.h"
 
 namespace hires::evaluation {
@@ -19,8 +18,6 @@ using nlohmann::ordered_json;
 using perception::RecognitionSums;
 using perception::ThingVerdict;
 
-constexpr double kFoundGoal = 0.98, kNamedGoal = 0.95, kUnknownGoal = 0.95;
-constexpr double kErrorGoal = 0.005;                         // [m] median
 constexpr double kBands[] = {0.0, 1.1, 1.3, 1.5, 1.7, 9.9};  // [m] from the camera
 const char* const kTorso[] = {"down", "half way", "up"};
 
@@ -63,35 +60,52 @@ std::vector<Part> PartsOf(const std::vector<ThingVerdict>& things) {
   return parts;
 }
 
-std::string ShareText(int hits, int all) {
-  if (all == 0) return "-";
-  const Interval share = ShareInterval(hits, all);
-  return fmt::format("{:.1f} ({:.1f} .. {:.1f})", 100 * share.estimate, 100 * share.lower,
-                     100 * share.upper);
+ClusterCounts SumOf(const std::vector<ClusterCounts>& tables) {
+  ClusterCounts sum;
+  for (const ClusterCounts& one : tables) {
+    sum.num_hits += one.num_hits;
+    sum.num_all += one.num_all;
+  }
+  return sum;
 }
 
-std::string BareShare(int hits, int all) {
-  return all == 0 ? "-" : fmt::format("{:.1f}", 100.0 * hits / all);
+std::string BareShare(const std::vector<ThingVerdict>& things, const ThingShare& share) {
+  const ClusterCounts sum = SumOf(CountsOf(things, share));
+  return NumberText(100.0 * sum.num_hits / sum.num_all, 1);
 }
 
-ordered_json ShareToJson(int hits, int all) {
-  const Interval share = ShareInterval(hits, all);
-  return {{"hits", hits}, {"all", all}, {"lower", share.lower}, {"upper", share.upper}};
+std::string ShareText(const std::vector<ThingVerdict>& things, const ThingShare& share) {
+  const std::vector<ClusterCounts> tables = CountsOf(things, share);
+  if (SumOf(tables).num_all == 0) return "-";
+  const Interval interval = ClusteredShareInterval(tables);
+  return fmt::format("{:.1f} ({:.1f} .. {:.1f})", 100 * interval.estimate, 100 * interval.lower,
+                     100 * interval.upper);
+}
+
+ordered_json ShareToJson(const std::vector<ThingVerdict>& things, const ThingShare& share) {
+  const std::vector<ClusterCounts> tables = CountsOf(things, share);
+  const ClusterCounts sum = SumOf(tables);
+  if (sum.num_all == 0) return {{"hits", 0}, {"all", 0}, {"lower", nullptr}, {"upper", nullptr}};
+  const Interval interval = ClusteredShareInterval(tables);
+  return {{"hits", sum.num_hits},
+          {"all", sum.num_all},
+          {"lower", interval.lower},
+          {"upper", interval.upper}};
 }
 
 std::vector<std::string> RowOf(const Part& part) {
   const RecognitionSums sums = perception::SumsOf(part.things);
   return {part.name,
           std::to_string(sums.num_things),
-          ShareText(sums.num_found, sums.num_things),
-          ShareText(sums.num_named, sums.num_known),
-          BareShare(sums.num_named, sums.num_known_found),
-          BareShare(sums.num_own_label, sums.num_known),
-          ShareText(sums.num_unknown_so_called, sums.num_unknown),
-          BareShare(sums.num_unknown_so_called, sums.num_unknown_found),
-          fmt::format("{:.1f} / {:.1f}", 1e3 * sums.median_error, 1e3 * sums.error_95),
-          fmt::format("{:.1f} / {:.1f}", 1e3 * sums.median_error_B, 1e3 * sums.error_B_95),
-          fmt::format("{:.1f}", sums.median_turn * 180.0 / geometry::kPi)};
+          ShareText(part.things, kFound),
+          ShareText(part.things, kNamed),
+          BareShare(part.things, kNamedOfFound),
+          BareShare(part.things, kOwnLabel),
+          ShareText(part.things, kUnknown),
+          BareShare(part.things, kUnknownOfFound),
+          MillimetresText(sums.median_error, sums.error_95),
+          MillimetresText(sums.median_error_B, sums.error_B_95),
+          NumberText(sums.median_turn * 180.0 / geometry::kPi, 1)};
 }
 
 using Confusions = std::map<std::pair<std::string, std::string>, int>;
@@ -106,13 +120,11 @@ Confusions ConfusionsOf(const std::vector<ThingVerdict>& things) {
 
 /// What stands there is of the catalogue, but the recogniser does not know its form.
 std::string LeftOutText(const std::vector<ThingVerdict>& things) {
-  const RecognitionSums sums = perception::SumsOf(things);
   std::string text = fmt::format(
       "kinds left out of the catalogue: {} things, found {} %, called unknown {} %, {} % of "
       "found\n",
-      sums.num_things, ShareText(sums.num_found, sums.num_things),
-      ShareText(sums.num_unknown_so_called, sums.num_things),
-      BareShare(sums.num_unknown_so_called, sums.num_found));
+      things.size(), ShareText(things, kFound), ShareText(things, kUnknown),
+      BareShare(things, kUnknownOfFound));
   std::map<std::pair<std::string, std::string>, int> wrong;
   for (const ThingVerdict& thing : things)
     if (thing.is_found() && !thing.is_right()) ++wrong[{thing.model, thing.called}];
@@ -121,26 +133,26 @@ std::string LeftOutText(const std::vector<ThingVerdict>& things) {
   return text;
 }
 
-std::string GoalsText(const RecognitionSums& sums) {
-  const auto verdict = [](bool is_met) { return is_met ? "met" : "missed"; };
-  return fmt::format(
-      "goals: found {:.0f} % {}, named {:.0f} % {}, unknown {:.0f} % {}, median error {:.0f} mm "
-      "{}\n",
-      100 * kFoundGoal, verdict(sums.num_found >= kFoundGoal * sums.num_things), 100 * kNamedGoal,
-      verdict(sums.num_named >= kNamedGoal * sums.num_known), 100 * kUnknownGoal,
-      verdict(sums.num_unknown_so_called >= kUnknownGoal * sums.num_unknown), 1e3 * kErrorGoal,
-      verdict(sums.median_error < kErrorGoal));
+std::string GoalText(const RecognitionGoal& goal) {
+  const double scale = goal.is_length ? 1e3 : 100.0;
+  const char* unit = goal.is_length ? "mm" : "%";
+  return fmt::format("goal: {} {} {:.0f} {}: {}, {}\n", goal.name,
+                     goal.is_length ? "at most" : "at least", scale * goal.bound, unit,
+                     NumberText(scale * goal.value, 1), ToString(goal.verdict()));
+}
+
+ordered_json GoalsToJson(const RecognitionReport& report) {
+  ordered_json goals = ordered_json::array();
+  for (const RecognitionGoal& goal : GoalsOf(report)) {
+    goals.push_back({{"goal", goal.name},
+                     {goal.is_length ? "at_most" : "at_least", goal.bound},
+                     {"value", NumberOrNull(goal.value)},
+                     {"verdict", ToString(goal.verdict())}});
+  }
+  return goals;
 }
 
 }  // namespace
-
-bool MeetsGoals(const RecognitionReport& report) {
-  const RecognitionSums sums = perception::SumsOf(report.score.things());
-  return sums.num_found >= kFoundGoal * sums.num_things &&
-         sums.num_named >= kNamedGoal * sums.num_known &&
-         sums.num_unknown_so_called >= kUnknownGoal * sums.num_unknown &&
-         sums.median_error < kErrorGoal;
-}
 
 std::string ReportText(const RecognitionReport& report) {
   const std::vector<ThingVerdict>& things = report.score.things();
@@ -151,10 +163,12 @@ std::string ReportText(const RecognitionReport& report) {
        "... with the camera's mount", "turned [deg]"}};
   for (const Part& part : PartsOf(things)) rows.push_back(RowOf(part));
   std::string text = fmt::format(
-      "{} random tables from seed {} on, simulated; 95 % intervals in brackets [Clopper, Pearson "
-      "1934]; shares are of all things but where they say of found ones\n\n{}\n",
+      "{} random tables from seed {} on, simulated; 95 % intervals in brackets, by table [Korn, "
+      "Graubard 1998]; shares are of all things but where they say of found ones; found: by what "
+      "has at least half of its points, and of whose points at least half are its own\n\n{}\n",
       report.tables, report.seed, FormatTable(rows));
-  text += GoalsText(perception::SumsOf(things));
+  text += BoxesText(report) + "\n";
+  for (const RecognitionGoal& goal : GoalsOf(report)) text += GoalText(goal);
   text += LeftOutText(report.left_out);
   text += fmt::format("surplus: {} of {} detections\n", report.score.num_surplus(),
                       report.score.num_detections());
@@ -170,31 +184,29 @@ ordered_json ToJson(const RecognitionReport& report) {
   ordered_json parts = ordered_json::array(), confusions = ordered_json::array();
   for (const Part& part : PartsOf(things)) {
     const RecognitionSums sums = perception::SumsOf(part.things);
-    parts.push_back(
-        {{"part", part.name},
-         {"found", ShareToJson(sums.num_found, sums.num_things)},
-         {"named", ShareToJson(sums.num_named, sums.num_known)},
-         {"named_of_found", ShareToJson(sums.num_named, sums.num_known_found)},
-         {"own_label", ShareToJson(sums.num_own_label, sums.num_known)},
-         {"unknown", ShareToJson(sums.num_unknown_so_called, sums.num_unknown)},
-         {"unknown_of_found", ShareToJson(sums.num_unknown_so_called, sums.num_unknown_found)},
-         {"median_error", sums.median_error},
-         {"error_95", sums.error_95},
-         {"median_error_base", sums.median_error_B},
-         {"error_95_base", sums.error_B_95},
-         {"median_turn", sums.median_turn}});
+    ordered_json one{{"part", part.name}};
+    for (const ThingShare* share :
+         {&kFound, &kNamed, &kNamedOfFound, &kOwnLabel, &kUnknown, &kUnknownOfFound})
+      one[share->name] = ShareToJson(part.things, *share);
+    one["median_error"] = NumberOrNull(sums.median_error);
+    one["error_95"] = NumberOrNull(sums.error_95);
+    one["median_error_base"] = NumberOrNull(sums.median_error_B);
+    one["error_95_base"] = NumberOrNull(sums.error_B_95);
+    one["median_turn"] = NumberOrNull(sums.median_turn);
+    parts.push_back(one);
   }
   for (const auto& [names, count] : ConfusionsOf(things))
     confusions.push_back({{"kind", names.first}, {"called", names.second}, {"count", count}});
-  const RecognitionSums left_out = perception::SumsOf(report.left_out);
   return {{"schema", "hires/recognition_experiment"},
-          {"version", 2},
+          {"version", 3},
           {"tables", report.tables},
           {"seed", report.seed},
           {"parts", parts},
           {"left_out",
-           {{"found", ShareToJson(left_out.num_found, left_out.num_things)},
-            {"unknown", ShareToJson(left_out.num_unknown_so_called, left_out.num_things)}}},
+           {{"found", ShareToJson(report.left_out, kFound)},
+            {"unknown", ShareToJson(report.left_out, kUnknown)}}},
+          {"boxes", BoxesToJson(report)},
+          {"goals", GoalsToJson(report)},
           {"surplus", report.score.num_surplus()},
           {"detections", report.score.num_detections()},
           {"confusions", confusions},

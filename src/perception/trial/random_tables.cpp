@@ -137,6 +137,7 @@ void RandomTables::Impl::Furnish(Rng* rng, world::World* world, RandomTable* tab
     if (!thing.is_known) model.name = thing.name + "_model";
     thing.model = model.name;
     thing.size = BoundsOf(model).upper - BoundsOf(model).lower;
+    thing.middle = 0.5 * (BoundsOf(model).upper + BoundsOf(model).lower);
     for (int attempt = 0; attempt < 30; ++attempt) {
       const geometry::Pose2 X_MO{rng->Uniform(-0.5, 0.5) * (variety.table.x() - 0.3),
                                  rng->Uniform(-0.5, 0.5) * (variety.table.y() - 0.3),

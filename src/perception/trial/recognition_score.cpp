@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "hires/geometry/angles.h"
@@ -22,45 +23,95 @@ Votes VotesOf(const RandomTable& table, const TabletopView& seen) {
   return votes;
 }
 
-/// Whether half of a thing's points are those of one detection.
-bool IsTaken(const Votes& votes, int thing, int num_points) {
+/// Whether at least half of the points measured of a thing are those of one detection.
+bool IsTaken(const Votes& votes, int thing, int num_measured) {
   return std::any_of(votes.begin(), votes.end(), [&](const std::map<int, int>& one) {
     const auto found = one.find(thing);
-    return found != one.end() && 2 * found->second > num_points;
+    return found != one.end() && 2 * found->second >= num_measured;
   });
 }
 
-/// For each thing the detection with the most of its points, where the thing has most of that one's
-/// points; -1: none.
-std::vector<int> DetectionOfThing(const RandomTable& table, const Votes& votes, int* surplus) {
-  std::vector<int> of_thing(table.things.size(), -1);
+/// Of each thing, points that the camera measured.
+std::vector<int> PointsMeasured(const RandomTable& table) {
+  std::vector<int> points(table.things.size(), 0);
+  for (std::size_t i = 0; i < table.owner.size(); ++i)
+    if (table.owner[i] >= 0 && IsMeasured(table.cloud.points[i])) ++points[table.owner[i]];
+  return points;
+}
+
+/// Whose points a detection mostly has, and how many; -1: nothing's.
+struct Owner {
+  int thing{-1};
+  int num_points{0};
+};
+
+Owner OwnerOf(const std::map<int, int>& votes, double least_share) {
+  Owner owner;
+  int all = 0;
+  for (const auto& [thing, num] : votes) {
+    all += num;
+    if (num > owner.num_points || (owner.thing < 0 && num == owner.num_points))
+      owner = {thing, num};
+  }
+  return owner.num_points >= least_share * all ? owner : Owner{};
+}
+
+/// For each thing the detection by which it is found, of two the one with more of it; -1: none.
+/// @param measured  PointsMeasured.
+std::vector<int> DetectionOfThing(const std::vector<int>& measured, const Votes& votes,
+                                  const FoundBy& found_by) {
+  std::vector<int> of_thing(measured.size(), -1), most(measured.size(), 0);
   for (std::size_t d = 0; d < votes.size(); ++d) {
-    if (votes[d].empty()) continue;
-    const auto most = std::max_element(votes[d].begin(), votes[d].end(),
-                                       [](auto& a, auto& b) { return a.second < b.second; });
-    if (most->first < 0) {
-      ++*surplus;
-      continue;
-    }
-    int& known = of_thing[most->first];
-    if (known >= 0) ++*surplus;
-    if (known < 0 || votes[known].at(most->first) < most->second) known = static_cast<int>(d);
+    const Owner owner = OwnerOf(votes[d], found_by.of_detection);
+    if (owner.thing < 0) continue;
+    if (owner.num_points < found_by.of_thing * measured[owner.thing]) continue;
+    if (owner.num_points <= most[owner.thing]) continue;
+    most[owner.thing] = owner.num_points;
+    of_thing[owner.thing] = static_cast<int>(d);
   }
   return of_thing;
 }
 
-/// 0 of no values.
+BoxError BoxErrorOf(const TableThing& thing, const Detection& seen) {
+  const Eigen::Vector3d to_middle(0.0, 0.0, 0.5 * seen.size.z());
+  const Eigen::Vector2d sides = thing.size.head<2>();
+  BoxError error;
+  error.middle = (seen.X_CO * to_middle - thing.X_CO * thing.middle).norm();
+  error.longer = seen.size.head<2>().maxCoeff() - sides.maxCoeff();
+  error.shorter = seen.size.head<2>().minCoeff() - sides.minCoeff();
+  error.height = seen.size.z() - thing.size.z();
+  return error;
+}
+
+/// Not a number of no values.
 double Quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto at = values.begin() + static_cast<long>(share * (values.size() - 1) + 0.5);
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
 
+BoxSums BoxSumsOf(const std::vector<ThingVerdict>& things) {
+  BoxSums sums;
+  const auto quantiles = [&](double BoxError::*part) {
+    std::vector<double> errors;
+    for (const ThingVerdict& thing : things)
+      if (thing.box) errors.push_back(std::abs((*thing.box).*part));
+    sums.num_boxes = static_cast<int>(errors.size());
+    return ErrorQuantiles{Quantile(errors, 0.5), Quantile(errors, 0.95)};
+  };
+  sums.middle = quantiles(&BoxError::middle);
+  sums.longer = quantiles(&BoxError::longer);
+  sums.shorter = quantiles(&BoxError::shorter);
+  sums.height = quantiles(&BoxError::height);
+  return sums;
+}
+
 }  // namespace
 
-RecognitionScore::RecognitionScore(const std::vector<KnownModel>& catalogue, int min_points)
-    : min_points_(min_points) {
+RecognitionScore::RecognitionScore(const std::vector<KnownModel>& catalogue, int min_points,
+                                   const FoundBy& found_by)
+    : min_points_(min_points), found_by_(found_by) {
   for (const ModelShape& shape : ShapesOfCatalogue(catalogue)) {
     kinds_.push_back({{}, geometry::TurnSymmetry(shape.models.front().model->collisions)});
     for (const KnownModel& known : shape.models) kinds_.back().labels.push_back(known.label);
@@ -111,11 +162,16 @@ void RecognitionScore::JudgePose(const RandomTable& table, const TableThing& thi
 void RecognitionScore::Add(const RandomTable& table, const TabletopView& seen) {
   num_detections_ += static_cast<int>(seen.sighting.detections.size());
   const Votes votes = VotesOf(table, seen);
-  const std::vector<int> of_thing = DetectionOfThing(table, votes, &num_surplus_);
+  const std::vector<int> measured = PointsMeasured(table);
+  const std::vector<int> of_thing = DetectionOfThing(measured, votes, found_by_);
+  num_surplus_ += static_cast<int>(votes.size()) -
+                  static_cast<int>(std::count_if(of_thing.begin(), of_thing.end(),
+                                                 [](int detection) { return detection >= 0; }));
   for (std::size_t k = 0; k < table.things.size(); ++k) {
     const TableThing& thing = table.things[k];
     if (thing.num_points < min_points_) continue;
     ThingVerdict verdict;
+    verdict.table = num_tables_;
     verdict.model = thing.model;
     verdict.kind = thing.is_known ? KindOf(thing.model) : kUnknownLabel;
     verdict.distance = thing.X_CO.translation.norm();
@@ -126,15 +182,21 @@ void RecognitionScore::Add(const RandomTable& table, const TabletopView& seen) {
       const Detection& detection = seen.sighting.detections[of_thing[k]];
       JudgeName(detection, &verdict);
       if (verdict.is_right() && thing.is_known) JudgePose(table, thing, detection, &verdict);
+      if (verdict.is_right() && !thing.is_known) verdict.box = BoxErrorOf(thing, detection);
     } else {
-      verdict.is_merged = IsTaken(votes, static_cast<int>(k), thing.num_points);
+      verdict.is_merged = IsTaken(votes, static_cast<int>(k), measured[k]);
     }
     things_.push_back(verdict);
   }
+  ++num_tables_;
 }
 
 void RecognitionScore::Append(const RecognitionScore& other) {
-  things_.insert(things_.end(), other.things_.begin(), other.things_.end());
+  for (ThingVerdict verdict : other.things_) {
+    verdict.table += num_tables_;
+    things_.push_back(verdict);
+  }
+  num_tables_ += other.num_tables_;
   num_detections_ += other.num_detections_;
   num_surplus_ += other.num_surplus_;
 }
@@ -162,6 +224,7 @@ RecognitionSums SumsOf(const std::vector<ThingVerdict>& things) {
   sums.median_error_B = Quantile(errors_B, 0.5);
   sums.error_B_95 = Quantile(errors_B, 0.95);
   sums.median_turn = Quantile(turns, 0.5);
+  sums.boxes = BoxSumsOf(things);
   return sums;
 }
 

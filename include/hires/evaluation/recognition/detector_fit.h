@@ -33,10 +33,11 @@ struct TwoLooks {
 struct FitCheck {
   std::string part;  ///< of the things
   int num_looks{0};
-  int num_found{0}, num_named{0};           ///< as it happened
-  double found{0.0}, named{0.0};            ///< as many were expected by the fit
-  double median_error{0.0}, expected{0.0};  ///< [m] medians, of those named rightly
-  double beyond{0.0};                       ///< share of these beyond the fit's 95 % quantile
+  int num_found{0}, num_named{0};  ///< as it happened
+  double found{0.0}, named{0.0};   ///< as many were expected by the fit
+  /// [m] medians, of known ones named rightly; these three are not a number where there are none.
+  double median_error{0.0}, expected{0.0};
+  double beyond{0.0};  ///< share of these beyond the fit's 95 % quantile
 };
 
 struct DetectorFitReport {

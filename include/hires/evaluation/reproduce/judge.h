@@ -15,7 +15,7 @@ enum class Verdict {
   kBetter,         ///< likewise, and those that may be better than published are
   kNotReproduced,  ///< a number is not as accepted, or is none
   kShown,     ///< nothing to compare: a picture or a description stands beside the published one
-  kNotPlayed  ///< an answer that it needs is missing
+  kNotPlayed  ///< an answer, or a field of one, that it needs is missing
 };
 const char* ToString(Verdict verdict);  ///< "not reproduced"
 
@@ -39,8 +39,6 @@ std::string ToString(const Acceptance& acceptance);  ///< "within 3", "by a fact
 
 /// @param answers  of the plays that were played, by name.
 /// @param missing  why the others were not, by name.
-/// @throws base::ConfigError if an answer has no such field, or something else than a number or
-/// null there.
 JudgedItem Judge(const CatalogueItem& item,
                  const std::map<std::string, nlohmann::ordered_json>& answers,
                  const std::map<std::string, std::string>& missing);

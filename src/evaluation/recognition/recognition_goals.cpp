@@ -1,0 +1,102 @@
+#include "evaluation/recognition/recognition_goals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace hires::evaluation {
+namespace {
+
+using perception::ErrorQuantiles;
+using perception::ThingVerdict;
+
+constexpr double kFoundGoal = 0.98, kNamedGoal = 0.95, kUnknownGoal = 0.95;
+constexpr double kErrorGoal = 0.005;  // [m] median
+// Of boxes, which are what an arm keeps away from and what things are put beside: half within the
+// distance that arms keep (0.01 m), 95 % within half of the room that is left for fingers (0.05 m).
+constexpr double kBoxGoal = 0.01, kBoxGoal95 = 0.025;  // [m]
+
+RecognitionGoal ShareGoal(const char* name, const std::vector<ThingVerdict>& things,
+                          const ThingShare& share, double bound) {
+  double hits = 0.0, all = 0.0;
+  for (const ClusterCounts& table : CountsOf(things, share)) {
+    hits += table.num_hits;
+    all += table.num_all;
+  }
+  return {name, all > 0.0 ? hits / all : std::numeric_limits<double>::quiet_NaN(), bound, false};
+}
+
+void AddBoxGoals(const perception::BoxSums& boxes, std::vector<RecognitionGoal>* goals) {
+  const std::pair<const char*, ErrorQuantiles> parts[]{{"middle", boxes.middle},
+                                                       {"longer side", boxes.longer},
+                                                       {"shorter side", boxes.shorter},
+                                                       {"height", boxes.height}};
+  for (const auto& [name, error] : parts) {
+    const std::string box = std::string("box of unknown, ") + name;
+    goals->push_back({box + ", median", error.median, kBoxGoal, true});
+    goals->push_back({box + ", 95 %", error.share_95, kBoxGoal95, true});
+  }
+}
+
+bool IsKnown(const ThingVerdict& thing) { return thing.is_known(); }
+bool IsKnownAndFound(const ThingVerdict& thing) { return thing.is_known() && thing.is_found(); }
+bool IsUnknown(const ThingVerdict& thing) { return !thing.is_known(); }
+bool IsUnknownAndFound(const ThingVerdict& thing) { return !thing.is_known() && thing.is_found(); }
+bool WasFound(const ThingVerdict& thing) { return thing.is_found(); }
+bool IsRight(const ThingVerdict& thing) { return thing.is_right(); }
+bool IsAny(const ThingVerdict&) { return true; }
+bool HasOwnLabel(const ThingVerdict& thing) {
+  return thing.is_right() && thing.label == thing.model;
+}
+
+}  // namespace
+
+const ThingShare kFound{"found", IsAny, WasFound};
+const ThingShare kNamed{"named", IsKnown, IsRight};
+const ThingShare kNamedOfFound{"named_of_found", IsKnownAndFound, IsRight};
+const ThingShare kOwnLabel{"own_label", IsKnown, HasOwnLabel};
+const ThingShare kUnknown{"unknown", IsUnknown, IsRight};
+const ThingShare kUnknownOfFound{"unknown_of_found", IsUnknownAndFound, IsRight};
+
+std::vector<ClusterCounts> CountsOf(const std::vector<ThingVerdict>& things,
+                                    const ThingShare& share) {
+  std::vector<ClusterCounts> tables;
+  for (const ThingVerdict& thing : things) {
+    if (!share.is_in(thing)) continue;
+    if (thing.table >= static_cast<int>(tables.size())) tables.resize(thing.table + 1);
+    ++tables[thing.table].num_all;
+    tables[thing.table].num_hits += share.is_hit(thing) ? 1 : 0;
+  }
+  return tables;
+}
+
+std::string ToString(GoalVerdict verdict) {
+  if (verdict == GoalVerdict::kNoValue) return "no value";
+  return verdict == GoalVerdict::kMet ? "met" : "missed";
+}
+
+GoalVerdict RecognitionGoal::verdict() const {
+  if (std::isnan(value)) return GoalVerdict::kNoValue;
+  const bool is_met = is_length ? value <= bound : value >= bound;
+  return is_met ? GoalVerdict::kMet : GoalVerdict::kMissed;
+}
+
+std::vector<RecognitionGoal> GoalsOf(const RecognitionReport& report) {
+  const std::vector<ThingVerdict>& things = report.score.things();
+  const perception::RecognitionSums sums = perception::SumsOf(things);
+  std::vector<RecognitionGoal> goals{ShareGoal("found", things, kFound, kFoundGoal),
+                                     ShareGoal("named", things, kNamed, kNamedGoal),
+                                     ShareGoal("unknown", things, kUnknown, kUnknownGoal),
+                                     {"median error", sums.median_error, kErrorGoal, true}};
+  AddBoxGoals(sums.boxes, &goals);
+  return goals;
+}
+
+bool MeetsGoals(const RecognitionReport& report) {
+  const std::vector<RecognitionGoal> goals = GoalsOf(report);
+  return std::all_of(goals.begin(), goals.end(), [](const RecognitionGoal& goal) {
+    return goal.verdict() == GoalVerdict::kMet;
+  });
+}
+
+}  // namespace hires::evaluation
