@@ -252,7 +252,7 @@ TEST(CommandLineTest, RemoteQueriesCarryWhatWasAsked) {
   backends.imagine_remotely = [&](const ImagineQuery& query, const imagination::OnInterim&,
                                   const std::function<bool()>&) {
     seen = query;
-    return evaluation::test_support::TwoAlternatives();
+    return hires::test_support::TwoAlternatives();
   };
   const Ended ended = RunHires({"imagine",
                                 "--action",

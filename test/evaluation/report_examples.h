@@ -2,7 +2,7 @@
 
 #include "hires/imagination/report.h"
 
-namespace hires::evaluation::test_support {
+namespace hires::test_support {
 
 /// A report with invented numbers that are exact in binary: slow is recommended, fast fell once.
 inline imagination::Report TwoAlternatives() {
@@ -49,4 +49,4 @@ inline imagination::Report TwoAlternatives() {
   return report;
 }
 
-}  // namespace hires::evaluation::test_support
+}  // namespace hires::test_support

@@ -19,7 +19,7 @@ namespace {
 using hires::test_support::ConfigErrorOf;
 using hires::test_support::TemporaryFolder;
 using imagination::ImaginationOutcome;
-using test_support::TwoAlternatives;
+using hires::test_support::TwoAlternatives;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 

@@ -131,7 +131,7 @@ std::vector<std::string> MembersOf(const ScenarioSeries& series, const SeriesGro
   return members;
 }
 
-ordered_json ToJson(const ChoiceShare& each) {
+ordered_json ShareJson(const ChoiceShare& each) {
   return {{"group", each.group},         {"choice", each.choice},    {"members", each.members},
           {"succeeded", each.succeeded}, {"played", each.played},    {"share", each.share.estimate},
           {"lower", each.share.lower},   {"upper", each.share.upper}};
@@ -222,7 +222,7 @@ ordered_json ToJson(const SeriesReport& report) {
         {{"name", group.name}, {"choices", group.choices}, {"members", group.members}});
   }
   for (const SeriesRun& run : report.runs) runs.push_back(ToJson(run));
-  for (const ChoiceShare& share : SharesByChoice(report)) shares.push_back(ToJson(share));
+  for (const ChoiceShare& share : SharesByChoice(report)) shares.push_back(ShareJson(share));
   for (const SeriesOutcome outcome : AllOutcomes()) {
     outcomes[ToString(outcome)] = CountOf(report, outcome);
   }

@@ -22,8 +22,8 @@ struct ToppleSample {
 /// deviation and dynamics. Derivatives are differences over the last four samples, centred in
 /// their middle, so that v, a and j belong to one moment:
 ///   v = (s2 - s1) / dt,  a = (v3 - v1) / (2 dt),  j = (v3 - 2 v2 + v1) / dt^2.
-/// An episode lasts until the load topples (Eq. 5.1); the next begins with the first sample in which
-/// it stands again, from which on differences are taken anew.
+/// An episode lasts until the load topples (Eq. 5.1); the next begins with the first sample in
+/// which it stands again, from which on differences are taken anew.
 class ToppleMonitor {
  public:
   /// @param params  whose thresholds of Eq. 5.1 sort the samples.
@@ -33,8 +33,8 @@ class ToppleMonitor {
   /// anew.
   void Begin();
 
-  /// @pre times grow.  @return nothing for the first three samples after Begin(), and after the load
-  /// was put back.
+  /// @pre times grow.  @return nothing for the first three samples after Begin(), and after the
+  /// load was put back.
   std::optional<knowledge::ToppleEpisodePart> Add(const ToppleSample& sample);
 
  private:
