@@ -121,6 +121,8 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
   verb->add_option(
       "--experiences", options->experiences,
       "of topple_loop: keep what the load went through, 20 times a second, in this file");
+  verb->add_flag("--hashes", options->only_hashes,
+                 "print the report's first line alone, and play nothing");
   verb->add_flag("--quiet", options->quiet, "no progress bar");
   options->verb = verb;
   AddHypothesisVerb(verb, &options->hypothesis);
@@ -142,6 +144,10 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   }
   const evaluation::ExperimentConfig config =
       evaluation::ReadExperiment(options.file, OverridesOf(options));
+  if (options.only_hashes) {
+    std::cout << HeadText(evaluation::UnplayedReport(config));
+    return kExitRecommended;
+  }
   CheckWritable(options.csv);
   if (!options.junit.empty()) evaluation::RequireFolderOf(options.junit);
   CheckReport(options.report);

@@ -26,7 +26,7 @@ struct ExperimentOptions {
   ReportOptions report;
   std::uint64_t seed{0};
   int threads{0}, runs{0};
-  bool quiet{false};
+  bool quiet{false}, only_hashes{false};
   CLI::App* verb{nullptr};         ///< tells what was given
   HypothesisOptions hypothesis;    ///< of `hires experiment hypothesis`
   DecisionOptions decision;        ///< of `hires experiment decision`

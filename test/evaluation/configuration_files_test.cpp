@@ -11,6 +11,7 @@
 #include "hires/evaluation/episode_topics.h"
 #include "hires/evaluation/experiment/experiment.h"
 #include "hires/evaluation/experiment/hypothesis.h"
+#include "hires/evaluation/reproduce/catalogue.h"
 #include "hires/evaluation/scenario.h"
 #include "hires/evaluation/series/scenario_series.h"
 #include "hires/evaluation/truth.h"
@@ -57,6 +58,7 @@ const std::map<std::string, Reader>& Readers() {
        [](const std::string& path) { imagination::ReadClientConfig(path); }},
       {"scene.yaml", [](const std::string& path) { imagination::ReadSetupConfig(path); }},
       {"decision.yaml", [](const std::string& path) { evaluation::ReadDecisionConfig(path); }},
+      {"reproduce.yaml", [](const std::string& path) { evaluation::ReadCatalogue(path); }},
       {"series", [](const std::string& path) { evaluation::ReadScenarioSeries(path); }},
       {"experiments",
        [](const std::string& path) {

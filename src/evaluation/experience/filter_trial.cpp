@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluation/experience/separation.h"
-#include "hires/evaluation/experience/filters.h"
+#include "evaluation/experience/filters.h"
 
 namespace hires::evaluation {
 namespace {

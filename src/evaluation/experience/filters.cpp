@@ -1,4 +1,4 @@
-#include "hires/evaluation/experience/filters.h"
+#include "evaluation/experience/filters.h"
 
 #include <algorithm>
 #include <cmath>

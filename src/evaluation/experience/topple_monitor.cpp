@@ -1,4 +1,4 @@
-#include "hires/evaluation/experience/topple_monitor.h"
+#include "evaluation/experience/topple_monitor.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/experience/topple_monitor.h"
 #include "evaluation/experiment/places.h"
 #include "evaluation/experiment/stage.h"
-#include "hires/evaluation/experience/topple_monitor.h"
 
 namespace hires::evaluation {
 

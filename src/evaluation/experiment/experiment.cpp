@@ -183,18 +183,23 @@ void CheckBeforePlaying(const ExperimentConfig& config, const Stage& stage, cons
   }
 }
 
+ExperimentReport Unplayed(const ExperimentConfig& config, const Stage& stage) {
+  ExperimentReport report;
+  report.name = config.name;
+  report.kind = KindName(config);
+  report.seed = config.seed;
+  report.experiment_hash = config.hash;
+  report.params_hash = stage.params_hash;
+  return report;
+}
+
 std::optional<ExperimentReport> Run(const ExperimentConfig& config, const Crew& crew) {
   const auto begin = std::chrono::steady_clock::now();
   const auto stage = std::make_shared<const Stage>(MakeStage(config));
   const std::unique_ptr<Kind> kind = MakeKind(config, stage);
   CheckBeforePlaying(config, *stage, *kind);
   if (!kind->Play(crew)) return std::nullopt;
-  ExperimentReport report;
-  report.name = config.name;
-  report.kind = KindName(config);
-  report.seed = config.seed;
-  report.experiment_hash = config.hash;
-  report.params_hash = stage->params_hash;
+  ExperimentReport report = Unplayed(config, *stage);
   report.findings = kind->SumUp();
   report.checks = CheckExpectations(config.expect, report.findings.measures);
   report.wall_seconds =
@@ -210,6 +215,10 @@ std::optional<ExperimentReport> RunExperiment(const ExperimentConfig& config, co
   } catch (const base::ConfigError& error) {
     throw base::ConfigError(fmt::format("experiment '{}': {}", config.name, error.what()));
   }
+}
+
+ExperimentReport UnplayedReport(const ExperimentConfig& config) {
+  return Unplayed(config, MakeStage(config));
 }
 
 }  // namespace hires::evaluation

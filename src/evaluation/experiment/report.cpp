@@ -179,10 +179,14 @@ std::vector<CheckedExpectation> CheckExpectations(const std::vector<Expectation>
   return checks;
 }
 
+std::string HeadText(const ExperimentReport& report) {
+  return fmt::format("{} ({}), seed {}, parameters {}, experiment {}\n", report.name, report.kind,
+                     report.seed, base::HexOf(report.params_hash),
+                     base::HexOf(report.experiment_hash));
+}
+
 std::string ReportText(const ExperimentReport& report) {
-  std::string text = fmt::format("{} ({}), seed {}, parameters {}, experiment {}\n", report.name,
-                                 report.kind, report.seed, base::HexOf(report.params_hash),
-                                 base::HexOf(report.experiment_hash));
+  std::string text = HeadText(report);
   for (const TextTable& table : report.findings.tables) {
     if (table.rows.size() < 2) continue;
     text += '\n' + table.title + '\n' + FormatTable(table.rows);

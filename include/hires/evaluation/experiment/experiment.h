@@ -145,4 +145,8 @@ struct Crew {
 /// @return nothing when it was cancelled.  @throws base::ConfigError for what cannot be played.
 std::optional<ExperimentReport> RunExperiment(const ExperimentConfig& config, const Crew& crew);
 
+/// The report as it is before anything is played: name, kind, seed and hashes.
+/// @throws base::ConfigError for what cannot be loaded.
+ExperimentReport UnplayedReport(const ExperimentConfig& config);
+
 }  // namespace hires::evaluation

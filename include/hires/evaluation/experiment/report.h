@@ -70,7 +70,10 @@ struct ExperimentReport {
 std::vector<CheckedExpectation> CheckExpectations(const std::vector<Expectation>& expectations,
                                                   const std::vector<Measure>& measures);
 
-std::string ReportText(const ExperimentReport& report);  ///< for people
+/// "durations (durations), seed 1, parameters ..., experiment ...": by which a printed report is
+/// told from one of other parameters.
+std::string HeadText(const ExperimentReport& report);
+std::string ReportText(const ExperimentReport& report);  ///< for people; HeadText comes first
 std::string ReportCsv(const ExperimentReport& report);   ///< the rows, with heads
 /// The expectations as JUnit XML, as build servers read it: a suite of the experiment's name, a
 /// test case for each expectation, a `failure` in those that do not hold. Seed and hashes are the
