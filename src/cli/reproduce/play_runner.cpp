@@ -107,6 +107,7 @@ class PlayRunner {
     options.command = {order_.program};
     for (const std::string& word : play.command) options.command.push_back(Filled(word, play));
     options.output = store_.LogOf(play);
+    store_.MakeRoom(play);
     std::filesystem::remove(store_.AnswerOf(play));
     base::ChildProcess child(options);
     while (true) {

@@ -68,10 +68,10 @@ std::string PlayStore::KeyOf(const evaluation::Play& play) {
 }
 
 std::string PlayStore::FolderOf(const evaluation::Play& play) {
-  const std::string folder = place_.folder + "/" + play.name + "-" + KeyOf(play);
-  MakeFolder(folder);
-  return folder;
+  return place_.folder + "/" + play.name + "-" + KeyOf(play);
 }
+
+void PlayStore::MakeRoom(const evaluation::Play& play) { MakeFolder(FolderOf(play)); }
 
 std::optional<PlayStore::Stored> PlayStore::Find(const evaluation::Play& play) {
   const std::string note = NoteOf(FolderOf(play));
@@ -93,7 +93,7 @@ void PlayStore::Keep(const evaluation::Play& play, double seconds) {
 
 void PlayStore::Forget(const evaluation::Play& play) {
   std::error_code ignored;  // what remains is found by MakeFolder or the next play
-  fs::remove_all(place_.folder + "/" + play.name + "-" + KeyOf(play), ignored);
+  fs::remove_all(FolderOf(play), ignored);
 }
 
 }  // namespace hires::cli

@@ -39,6 +39,8 @@ class PlayStore {
 
   /// Where the play of this key writes its answer, keeps what it needs to go on, and what it says.
   std::string FolderOf(const evaluation::Play& play);
+  /// Makes that folder where it is missing.  @throws base::ConfigError if it cannot be made.
+  void MakeRoom(const evaluation::Play& play);
   std::string AnswerOf(const evaluation::Play& play) { return FolderOf(play) + "/answer.json"; }
   std::string LogOf(const evaluation::Play& play) { return FolderOf(play) + "/log.txt"; }
 
