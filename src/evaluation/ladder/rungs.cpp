@@ -195,8 +195,9 @@ RungPlan OwnMap(const Places& places) {
   RungPlan plan = Step("own_map", "a map made in the simulated world itself", {}, {},
                        "about +0.10 by a very accurate localisation map");
   plan.rung.note =
-      "a scan costs the filter as much whatever its map shows; a map could only cost more where it "
-      "fits so badly that the filter spreads over more particles";
+      "with another map the filter believes, and the robot drives, otherwise: the ratio is of "
+      "whole "
+      "drives, not of a scan";
   constexpr double kRoomHigh = 1.5;  // [m]
   const ImaginationSetup setup = places.Told("filter", false);
   plan.before = MappedWay(places, setup, WithHighStaticsOnly(places.world(), kRoomHigh),
