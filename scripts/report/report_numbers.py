@@ -73,3 +73,21 @@ def action_name(answer, pointer):
     """As Numbers.action, for pictures."""
     arguments = [answer.at(item, str) for item in answer.items(pointer + '/arguments')]
     return '%s(%s)' % (answer.at(pointer + '/action', str), ', '.join(arguments))
+
+
+def values(answer, pointer):
+    """A list of numbers; none where there is no such field."""
+    return [answer.at(item, float) for item in answer.items(pointer)] if answer.has(pointer) else []
+
+
+def bars_of(answer):
+    """What was done when, for drawings.timeline."""
+    kinds = {'kind': str, 'plan': int, 'index': int, 'action': str, 'outcome': str, 'begin': float,
+             'end': float}
+    bars = []
+    for place in answer.items('/timeline'):
+        bar = {field: answer.at('%s/%s' % (place, field), kind) for field, kind in kinds.items()}
+        dispatch = place + '/dispatch'
+        bar['dispatch'] = answer.at(dispatch, float) if answer.has(dispatch) else None
+        bars.append(bar)
+    return bars

@@ -8,7 +8,7 @@ import jinja2
 
 import report_drawings as drawings
 from report_input import ReportError, folder_of
-from report_numbers import Numbers, action_name
+from report_numbers import Numbers, action_name, bars_of, values
 from report_reproduce import reproduce
 
 GOOD, OPEN, BAD = 'good', 'open', 'bad'
@@ -45,11 +45,6 @@ def said(answer, pointer, sentences):
         return sentences[word]
     raise ReportError('%s: field %s: %r is unknown; wanted one of %s' %
                       (answer.name, pointer, word, ', '.join(sorted(sentences))))
-
-
-def values(answer, pointer):
-    """A list of numbers; none where there is no such field."""
-    return [answer.at(item, float) for item in answer.items(pointer)] if answer.has(pointer) else []
 
 
 def recommended(answer, pointer, places):
@@ -193,19 +188,6 @@ def hypothesis(answer):
         'durations': drawings.spreads('durations', 'duration of runs that came to an end [s]',
                                       [(arm, durations[arm], [], i == 0) for i, (arm, _) in enumerate(arms)]),
     }
-
-
-def bars_of(answer):
-    """What was done when, for drawings.timeline."""
-    kinds = {'kind': str, 'plan': int, 'index': int, 'action': str, 'outcome': str, 'begin': float,
-             'end': float}
-    bars = []
-    for place in answer.items('/timeline'):
-        bar = {field: answer.at('%s/%s' % (place, field), kind) for field, kind in kinds.items()}
-        dispatch = place + '/dispatch'
-        bar['dispatch'] = answer.at(dispatch, float) if answer.has(dispatch) else None
-        bars.append(bar)
-    return bars
 
 
 def achieve(answer):

@@ -6,6 +6,7 @@ import os
 import report_drawings as drawings
 import report_plots as plots
 from report_input import Answer, ReportError
+from report_numbers import bars_of, values
 
 GOOD, OPEN = 'good', 'open'
 MARKS = {'reproduced': 'ok', 'better': 'ok', 'not reproduced': 'failed', 'shown': 'nothing', 'not played': 'warning'}
@@ -87,13 +88,7 @@ def _torso_poses(item, play, argument):
 
 def _timeline(item, play, _):
     answer = item.play(play)
-    kinds = {'kind': str, 'plan': int, 'index': int, 'action': str, 'outcome': str, 'begin': float, 'end': float}
-    bars = []
-    for place in answer.items('/timeline'):
-        bar = {field: answer.at('%s/%s' % (place, field), kind) for field, kind in kinds.items()}
-        bar['dispatch'] = answer.at(place + '/dispatch', float) if answer.has(place + '/dispatch') else None
-        bars.append(bar)
-    return (drawings.timeline(item.id('timeline'), 'what was done when', bars, answer.at('/duration', float)),
+    return (drawings.timeline(item.id('timeline'), 'what was done when', bars_of(answer), answer.at('/duration', float)),
             'Imaginations above, steps below. Dotted line: when an imagined step began.')
 
 
@@ -107,13 +102,9 @@ def _arms(item, play, _):
     return drawings.spreads(item.id('arms'), 'duration of runs that came to an end [s]', rows), ''
 
 
-def _numbers_at(answer, place):
-    return [answer.at(item, float) for item in answer.items(place)]
-
-
 def _series(answer, place, *names):
     """Columns of a stretch of experiences, time first."""
-    return [_numbers_at(answer, '%s/%s' % (place, name)) for name in ('time', *names)]
+    return [values(answer, '%s/%s' % (place, name)) for name in ('time', *names)]
 
 
 def _where(answer, place):
@@ -147,7 +138,7 @@ def _object(item, play, argument):
 
 def _trace(item, play, argument):
     answer, place = item.play(play), '/pictures/drives/' + argument
-    x, y, v, a = (_numbers_at(answer, '%s/%s' % (place, name)) for name in ('x', 'y', 'v', 'a'))
+    x, y, v, a = (values(answer, '%s/%s' % (place, name)) for name in ('x', 'y', 'v', 'a'))
     return (plots.trace(item.id('trace' + argument), 'x, y in the map [m]', x, y, v, a),
             'Width: speed. Green: it speeds up; red: it slows down. %s.' % _where(answer, place))
 
@@ -162,7 +153,7 @@ def _speed(item, play, _):
 
 def _density(item, play, argument):
     answer = item.play(play)
-    curves = [(place.split('/')[-1], _numbers_at(answer, place + '/edges'), _numbers_at(answer, place + '/density'))
+    curves = [(place.split('/')[-1], values(answer, place + '/edges'), values(answer, place + '/density'))
               for place in answer.keys('/pictures/distributions/' + argument)]
     return (plots.densities(item.id(argument), argument.replace('_', ' '), curves),
             'Density over all parts, logarithmic; the outermost bins hold what lies beyond them.')
@@ -176,8 +167,8 @@ def _cloud(item, play, argument):
     """Points of one quantity over another: 'a' (tilt over it), 'a v'."""
     answer = item.play(play)
     over, what = (argument.split(' ') + ['alpha'])[:2]
-    points = list(zip(_numbers_at(answer, '/pictures/points/' + over),
-                      _numbers_at(answer, '/pictures/points/' + what)))
+    points = list(zip(values(answer, '/pictures/points/' + over),
+                      values(answer, '/pictures/points/' + what)))
     if what == 'alpha':
         points = [point for point in points if point[1] < 0.5]  # what lies is no deviation any more
     return (plots.scatter(item.id('cloud' + argument), (LABELS[over], LABELS[what]), points),

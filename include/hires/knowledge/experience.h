@@ -18,6 +18,8 @@ const char* ToString(ToppleState state);  ///< "notopple", "shaking", "topple"
 /// @throws base::ConfigError for another word.
 ToppleState ParseToppleState(const std::string& text);
 
+constexpr double kExperiencePeriod = 0.05;  ///< [s] between two parts: 20 Hz, as the dissertation
+
 /// Motion of a body in the map, from positions (dissertation, Eq. 5.6). Speeds are not negative;
 /// accelerations and jerks are their derivatives: negative where it slows down.
 struct Dynamics {

@@ -11,6 +11,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/process.h"
+#include "hires/base/run_processes.h"
 #include "hires/base/text.h"
 #include "hires/cli/report_output.h"
 
@@ -24,7 +25,6 @@ constexpr double kGrace = 10.0;        // [s] for a play to end when it is asked
 constexpr double kAlmost = 0.95;       // of what is foretold; a play that lasts longer stays there
 constexpr double kLongLasting = 1e-6;  // [s] against division by 0
 constexpr std::chrono::milliseconds kLook{100};
-constexpr std::size_t kShownOfLog = 300;  // characters
 
 std::string Replaced(std::string word, const std::string& what, const std::string& by) {
   for (std::size_t at = word.find(what); at != std::string::npos; at = word.find(what, at)) {
@@ -32,15 +32,6 @@ std::string Replaced(std::string word, const std::string& what, const std::strin
     at += by.size();
   }
   return word;
-}
-
-/// The end of what a play said.
-std::string LastWords(const std::string& log) {
-  std::string text = base::ReadTextFile(log, std::size_t{1} << 30);
-  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
-  const std::size_t line = text.find_last_of("\r\n");
-  if (line != std::string::npos) text = text.substr(line + 1);
-  return text.substr(0, kShownOfLog);
 }
 
 class PlayRunner {
@@ -93,8 +84,9 @@ class PlayRunner {
     const double seconds = base::SteadyNow() - begin;
     progress_.done += seconds;
     if (!IsWhole(play, *ended)) {
-      done_.missing[play.name] = fmt::format("{}: {} (all it said: {})", *ended,
-                                             LastWords(store_.LogOf(play)), store_.LogOf(play));
+      done_.missing[play.name] =
+          fmt::format("{}: {} (all it said: {})", *ended, base::LastLineOf(store_.LogOf(play)),
+                      store_.LogOf(play));
       return;
     }
     store_.Keep(play, seconds);

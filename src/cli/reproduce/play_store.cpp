@@ -56,15 +56,21 @@ std::string PlayStore::KeyOf(const evaluation::Play& play) {
   base::Hasher hasher;
   hasher.Add(HIRES_VERSION);
   for (const std::string& word : play.command) hasher.Add(word);
-  for (const std::string& input : play.inputs) {
-    for (const std::string& file : FilesOf(place_.package + "/" + input)) {
-      if (fs::equivalent(file, place_.catalogue)) continue;
-      hasher.Add(fs::path(file).lexically_relative(place_.package).string());
-      hasher.Add(base::ReadTextFile(file, std::size_t{1} << 30));
-    }
-  }
+  for (const std::string& input : play.inputs) hasher.Add(HashOfInput(input));
   for (const std::string& other : evaluation::NeededBy(play)) hasher.Add(keys_.at(other));
   return keys_[play.name] = base::HexOf(hasher.value());
+}
+
+std::string PlayStore::HashOfInput(const std::string& input) {
+  const auto known = inputs_.find(input);
+  if (known != inputs_.end()) return known->second;
+  base::Hasher hasher;
+  for (const std::string& file : FilesOf(place_.package + "/" + input)) {
+    if (fs::equivalent(file, place_.catalogue)) continue;
+    hasher.Add(fs::path(file).lexically_relative(place_.package).string());
+    hasher.Add(base::ReadTextFile(file, std::size_t{1} << 30));
+  }
+  return inputs_[input] = base::HexOf(hasher.value());
 }
 
 std::string PlayStore::FolderOf(const evaluation::Play& play) {

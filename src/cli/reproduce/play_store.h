@@ -53,7 +53,9 @@ class PlayStore {
 
  private:
   const Place place_;
-  std::map<std::string, std::string> keys_;
+  std::string HashOfInput(const std::string& input);
+
+  std::map<std::string, std::string> keys_, inputs_;  // by play; by input: many plays share them
 };
 
 }  // namespace hires::cli

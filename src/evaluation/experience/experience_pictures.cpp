@@ -125,8 +125,8 @@ ordered_json Around(const ExperienceRun& run, std::size_t s, std::size_t at) {
 ordered_json FirstFall(const std::vector<ExperienceRun>& runs) {
   for (const ExperienceRun& run : runs) {
     for (std::size_t s = 0; s < run.stretches.size(); ++s) {
-      const std::size_t at = NextOnset(run.stretches[s], 0);
-      if (at < run.stretches[s].size()) return Around(run, s, at);
+      const std::vector<std::size_t> onsets = OnsetsOf(run.stretches[s]);
+      if (!onsets.empty()) return Around(run, s, onsets.front());
     }
   }
   return nullptr;
@@ -139,7 +139,7 @@ ordered_json LargestShaking(const std::vector<ExperienceRun>& runs) {
   for (const ExperienceRun& run : runs) {
     for (std::size_t s = 0; s < run.stretches.size(); ++s) {
       const Stretch& stretch = run.stretches[s];
-      if (NextOnset(stretch, 0) < stretch.size()) continue;
+      if (!OnsetsOf(stretch).empty()) continue;
       const auto most =
           std::max_element(stretch.begin(), stretch.end(),
                            [](const auto& a, const auto& b) { return a.alpha < b.alpha; });
@@ -178,8 +178,7 @@ ordered_json PlacesOfFalls(const std::vector<ExperienceRun>& runs) {
   ordered_json places{{"x", ordered_json::array()}, {"y", ordered_json::array()}};
   for (const ExperienceRun& run : runs) {
     for (const Stretch& stretch : run.stretches) {
-      for (std::size_t at = NextOnset(stretch, 0); at < stretch.size();
-           at = NextOnset(stretch, at + 1)) {
+      for (const std::size_t at : OnsetsOf(stretch)) {
         places["x"].push_back(stretch[at].x);
         places["y"].push_back(stretch[at].y);
       }

@@ -6,7 +6,7 @@ namespace hires::evaluation {
 namespace {
 
 /// Parts that are farther apart do not belong to one stretch.
-constexpr double kGap = 1.5 * kExperiencePeriod;  // [s]
+constexpr double kGap = 1.5 * knowledge::kExperiencePeriod;  // [s]
 
 bool IsDown(const knowledge::ToppleEpisodePart& part) {
   return part.state == knowledge::ToppleState::kTopple;
@@ -34,11 +34,12 @@ std::vector<ExperienceRun> RunsOf(const knowledge::ExperienceStore& store,
   return runs;
 }
 
-std::size_t NextOnset(const Stretch& stretch, std::size_t from) {
-  for (std::size_t i = std::max<std::size_t>(from, 1); i < stretch.size(); ++i) {
-    if (IsDown(stretch[i]) && !IsDown(stretch[i - 1])) return i;
+std::vector<std::size_t> OnsetsOf(const Stretch& stretch) {
+  std::vector<std::size_t> onsets;
+  for (std::size_t i = 1; i < stretch.size(); ++i) {
+    if (IsDown(stretch[i]) && !IsDown(stretch[i - 1])) onsets.push_back(i);
   }
-  return stretch.size();
+  return onsets;
 }
 
 }  // namespace hires::evaluation

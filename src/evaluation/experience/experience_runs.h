@@ -7,8 +7,6 @@
 
 namespace hires::evaluation {
 
-constexpr double kExperiencePeriod = 0.05;  // [s] between two parts of one stretch
-
 /// What one run went through while one action lasted: parts without a gap.
 using Stretch = std::vector<knowledge::ToppleEpisodePart>;
 
@@ -22,8 +20,7 @@ struct ExperienceRun {
 std::vector<ExperienceRun> RunsOf(const knowledge::ExperienceStore& store,
                                   const knowledge::ExperienceQuery& query = {});
 
-/// The first part of the stretch from `from` on in which the load topples: the onset of a fall. The
-/// stretch's size if there is none.
-std::size_t NextOnset(const Stretch& stretch, std::size_t from);
+/// The parts in which a fall begins: the load topples, and did not in the part before.
+std::vector<std::size_t> OnsetsOf(const Stretch& stretch);
 
 }  // namespace hires::evaluation

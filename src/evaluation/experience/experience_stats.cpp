@@ -26,11 +26,8 @@ void Count(const Stretch& stretch, ActionCounts* into) {
     into->counts.shaking += part.state == ToppleState::kShaking;
     into->counts.topple += part.state == ToppleState::kTopple;
   }
-  for (std::size_t at = NextOnset(stretch, 0); at < stretch.size();
-       at = NextOnset(stretch, at + 1)) {
-    ++into->falls;
-  }
-  into->time += kExperiencePeriod * static_cast<double>(stretch.size());
+  into->falls += static_cast<int>(OnsetsOf(stretch).size());
+  into->time += knowledge::kExperiencePeriod * static_cast<double>(stretch.size());
 }
 
 ordered_json ActionJson(const std::string& action, const ActionCounts& found) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluation/experience/separation.h"
+#include "evaluation/known_number.h"
 
 namespace hires::evaluation {
 namespace {
@@ -52,8 +53,7 @@ bool IsCalm(const Stretch& stretch, std::size_t at) {
 
 void AddStretch(const Stretch& stretch, const Feature& feature, RunScores* scores) {
   constexpr std::size_t kReach = kAhead + kWindow;
-  for (std::size_t at = NextOnset(stretch, 0); at < stretch.size();
-       at = NextOnset(stretch, at + 1)) {
+  for (const std::size_t at : OnsetsOf(stretch)) {
     if (at >= kReach) scores->positive.push_back(LargestIn(stretch, at - kAhead, feature));
   }
   for (std::size_t at = kReach; at < stretch.size(); at += kStride) {
@@ -82,10 +82,6 @@ std::size_t CountOf(const std::vector<RunScores>& runs, std::vector<double> RunS
   return count;
 }
 
-ordered_json Number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json();
-}
-
 ordered_json FeatureJson(const Feature& feature, const std::vector<RunScores>& runs,
                          const base::Rng& rng) {
   const Interval area = AreaInterval(runs, rng);
@@ -93,18 +89,18 @@ ordered_json FeatureJson(const Feature& feature, const std::vector<RunScores>& r
       JudgedAt(EveryOther(runs, 1), BestThreshold(EveryOther(runs, 0)).threshold);
   ordered_json alarms = ordered_json::array(), hits = ordered_json::array();
   for (const RocPoint& point : RocOf(runs, kRocPoints)) {
-    alarms.push_back(Number(point.false_alarms));
-    hits.push_back(Number(point.hits));
+    alarms.push_back(NumberOrNull(point.false_alarms));
+    hits.push_back(NumberOrNull(point.hits));
   }
   return {{"feature", feature.name},
           {"area",
-           {{"estimate", Number(area.estimate)},
-            {"lower", Number(area.lower)},
-            {"upper", Number(area.upper)}}},
+           {{"estimate", NumberOrNull(area.estimate)},
+            {"lower", NumberOrNull(area.lower)},
+            {"upper", NumberOrNull(area.upper)}}},
           {"judged",
-           {{"threshold", Number(judged.threshold)},
-            {"hits", Number(judged.hits)},
-            {"false_alarms", Number(judged.false_alarms)}}},
+           {{"threshold", NumberOrNull(judged.threshold)},
+            {"hits", NumberOrNull(judged.hits)},
+            {"false_alarms", NumberOrNull(judged.false_alarms)}}},
           {"roc", {{"false_alarms", alarms}, {"hits", hits}}}};
 }
 
@@ -119,8 +115,8 @@ ordered_json PredictFalls(const std::vector<ExperienceRun>& runs, const base::Rn
     calm = CountOf(scores, &RunScores::negative);
     features.push_back(FeatureJson(feature, scores, rng));
   }
-  return {{"ahead", kExperiencePeriod * kAhead},
-          {"window", kExperiencePeriod * kWindow},
+  return {{"ahead", knowledge::kExperiencePeriod * kAhead},
+          {"window", knowledge::kExperiencePeriod * kWindow},
           {"falls", falls},
           {"calm_windows", calm},
           {"features", features}};

@@ -4,15 +4,16 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "evaluation/experience/separation.h"
 #include "evaluation/experience/filters.h"
+#include "evaluation/experience/separation.h"
+#include "evaluation/known_number.h"
 
 namespace hires::evaluation {
 namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kRate = 1.0 / kExperiencePeriod;  // [Hz]
+constexpr double kRate = 1.0 / knowledge::kExperiencePeriod;  // [Hz]
 // [m] of each measured position, white: what the filter of wheels and laser leaves from one sample
 // to the next, an assumption; the dissertation does not say how noisy its data were.
 constexpr double kNoise = 0.001;
@@ -35,7 +36,7 @@ struct Measured {
 Signal SpeedOf(const Signal& x, const Signal& y) {
   Signal speed(x.size(), 0.0);
   for (std::size_t i = 1; i < x.size(); ++i) {
-    speed[i] = std::hypot(x[i] - x[i - 1], y[i] - y[i - 1]) / kExperiencePeriod;
+    speed[i] = std::hypot(x[i] - x[i - 1], y[i] - y[i - 1]) / knowledge::kExperiencePeriod;
   }
   if (speed.size() > 1) speed[0] = speed[1];
   return speed;
@@ -53,8 +54,8 @@ Measured MeasureStretch(const Stretch& stretch, base::Rng rng) {
   }
   measured.speed = SpeedOf(x, y);
   measured.true_v = SpeedOf(true_x, true_y);
-  measured.true_a = CentralDifferences(measured.true_v, kExperiencePeriod);
-  measured.true_j = CentralDifferences(measured.true_a, kExperiencePeriod);
+  measured.true_a = CentralDifferences(measured.true_v, knowledge::kExperiencePeriod);
+  measured.true_j = CentralDifferences(measured.true_a, knowledge::kExperiencePeriod);
   return measured;
 }
 
@@ -100,8 +101,8 @@ struct Errors {
 };
 
 void AddErrors(const Measured& stretch, const Signal& v, Errors* errors) {
-  const Signal a = CentralDifferences(v, kExperiencePeriod);
-  const Signal j = CentralDifferences(a, kExperiencePeriod);
+  const Signal a = CentralDifferences(v, knowledge::kExperiencePeriod);
+  const Signal j = CentralDifferences(a, knowledge::kExperiencePeriod);
   for (std::size_t i = 0; i < v.size(); ++i) {
     errors->v += std::pow(v[i] - stretch.true_v[i], 2);
     errors->a += std::pow(a[i] - stretch.true_a[i], 2);
@@ -114,7 +115,7 @@ void AddErrors(const Measured& stretch, const Signal& v, Errors* errors) {
 
 /// Shaking against not toppling by |a|.
 void AddScores(const Measured& stretch, const Signal& v, RunScores* scores) {
-  const Signal a = CentralDifferences(v, kExperiencePeriod);
+  const Signal a = CentralDifferences(v, knowledge::kExperiencePeriod);
   for (std::size_t i = 0; i < v.size(); ++i) {
     if (stretch.states[i] == knowledge::ToppleState::kShaking) {
       scores->positive.push_back(std::abs(a[i]));
@@ -137,17 +138,14 @@ ordered_json TryOne(const std::string& name, bool is_causal, const Filter& filte
   }
   const auto root = [&](double squares) { return std::sqrt(squares / errors.count); };
   const Interval area = AreaInterval(scores, rng);
-  const auto number = [](double value) {
-    return std::isfinite(value) ? ordered_json(value) : ordered_json();
-  };
   return {{"filter", name},
           {"causal", is_causal},
           {"rms_error", {{"v", root(errors.v)}, {"a", root(errors.a)}, {"j", root(errors.j)}}},
-          {"delay", kExperiencePeriod * errors.delay / errors.stretches},
+          {"delay", knowledge::kExperiencePeriod * errors.delay / errors.stretches},
           {"separation",
-           {{"estimate", number(area.estimate)},
-            {"lower", number(area.lower)},
-            {"upper", number(area.upper)}}}};
+           {{"estimate", NumberOrNull(area.estimate)},
+            {"lower", NumberOrNull(area.lower)},
+            {"upper", NumberOrNull(area.upper)}}}};
 }
 
 }  // namespace

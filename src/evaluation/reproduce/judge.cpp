@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "evaluation/known_number.h"
 #include "hires/base/error.h"
 #include "hires/evaluation/report_table.h"
 
@@ -69,15 +70,12 @@ int NumHolding(const std::vector<JudgedValue>& values) {
 }
 
 ordered_json ValueJson(const JudgedValue& judged) {
-  const auto number = [](const std::optional<double>& value) {
-    return value ? ordered_json(*value) : ordered_json();
-  };
   return {{"name", judged.value.name},
           {"unit", judged.value.unit},
           {"at", ToString(judged.value.at)},
           {"over", judged.value.over ? ordered_json(ToString(*judged.value.over)) : ordered_json()},
-          {"published", number(judged.value.published)},
-          {"found", number(judged.found)},
+          {"published", NumberOrNull(judged.value.published)},
+          {"found", NumberOrNull(judged.found)},
           {"accepted", ToString(judged.value.acceptance)},
           {"holds", judged.holds},
           {"better", judged.is_better}};

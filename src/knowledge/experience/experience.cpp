@@ -9,8 +9,7 @@
 namespace hires::knowledge {
 namespace {
 
-constexpr double kSamplePeriod = 0.05;  // [s]
-constexpr double kDelay = 1.5;          // [periods] of dynamics behind their sample
+constexpr double kDelay = 1.5;  // [periods] of dynamics behind their sample
 
 std::int64_t Nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 
@@ -44,7 +43,7 @@ ToppleState ParseToppleState(const std::string& text) {
 
 std::string CsvOf(const ToppleEpisodePart& part) {
   const std::int64_t now = Nanoseconds(part.time);
-  const double middle = part.time - kDelay * kSamplePeriod;
+  const double middle = part.time - kDelay * kExperiencePeriod;
   return fmt::format(
       "{},0,{},,{},{},0,{},/base_footprint,{},{},0.0,{},0,0,,0.0,0.0,0.0,{},0,{},/map,{},{},{}",
       now, now, part.episode, ToString(part.state), now, part.alpha, part.deviation,
