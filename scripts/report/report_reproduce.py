@@ -9,7 +9,8 @@ from report_input import Answer, ReportError
 from report_numbers import bars_of, values
 
 GOOD, OPEN = 'good', 'open'
-MARKS = {'reproduced': 'ok', 'better': 'ok', 'not reproduced': 'failed', 'shown': 'nothing', 'not played': 'warning'}
+MARKS = {'reproduced': 'ok', 'better': 'ok', 'not reproduced': 'failed', 'check holds': 'ok', 'check fails': 'failed',
+         'shown': 'nothing', 'not played': 'warning'}
 PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 
@@ -30,14 +31,15 @@ class Item:
         return Answer(content, '%s: play %s' % (self.answer.name, name))
 
     def values(self):
-        """(name, published or None, found or None, whether accepted) of its numbers."""
+        """(name, published or None, found or None, whether accepted, or not judged) of its numbers."""
         rows = []
         for value in self.answer.items(self.place + '/values'):
             number = {field: self.answer.at('%s/%s' % (value, field), float)
                       if self.answer.has('%s/%s' % (value, field)) else None for field in ('published', 'found')}
             unit = self.answer.at(value + '/unit', str)
             rows.append((self.answer.at(value + '/name', str) + (' [%s]' % unit if unit else ''),
-                         number['published'], number['found'], self.answer.at(value + '/holds', bool)))
+                         number['published'], number['found'],
+                         self.answer.at(value + '/holds', bool) or not self.answer.at(value + '/judged', bool)))
         return rows
 
 
@@ -68,9 +70,11 @@ def _numbers(item, _, argument):
 
 def _shares(item, _, argument):
     rows = [row for row in item.values() if row[0].startswith(argument)]
-    return (plots.compared(item.id('shares' + argument), 'published (ring) and ours (dot), logarithmic', rows,
+    drawn = [row for row in rows if (row[1] or 0) > 0 and (row[2] or 0) > 0]
+    left_out = ' Not drawn, as it has no logarithm: %s.' % ', '.join(row[0] for row in rows if row not in drawn)
+    return (plots.compared(item.id('shares' + argument), 'published (ring) and ours (dot), logarithmic', drawn,
                            logarithmic=True),
-            'Ring: published. Dot: ours; red where it is not as accepted.')
+            'Ring: published. Dot: ours; red where it is not as accepted.' + (left_out if drawn != rows else ''))
 
 
 def _torso_poses(item, play, argument):
@@ -272,14 +276,18 @@ def reproduce(answer):
     """What the template needs."""
     items = answer.items('/items')
     verdicts = [answer.at(item + '/verdict', str) for item in items]
-    judged = [verdict for verdict in verdicts if verdict not in ('shown', 'not played')]
+    judged = [verdict for verdict in verdicts if verdict in ('reproduced', 'better', 'not reproduced')]
     good = [verdict for verdict in judged if verdict in ('reproduced', 'better')]
+    checks = [verdict for verdict in verdicts if verdict.startswith('check')]
+    not_played = verdicts.count('not played')
     chapters = {}
     for item in items:
         chapters.setdefault(answer.at(item + '/section', str).split('.')[0], []).append(item)
     return {
-        'headline': '%d of %d results with numbers are reproduced or better' % (len(good), len(judged)),
-        'state': GOOD if len(good) == len(judged) and 'not played' not in verdicts else OPEN,
+        'headline': '%d of %d published results with numbers are reproduced or better%s' %
+                    (len(good), len(judged), '; %d were not played' % not_played if not_played else ''),
+        'checks': '%d of %d checks by bounds of our own hold' % (checks.count('check holds'), len(checks)),
+        'state': GOOD if len(good) == len(judged) and not not_played else OPEN,
         'chapters': [('Appendix ' + name if name.isalpha() else 'Chapter ' + name, chapters[name])
                      for name in sorted(chapters)],
         'mark': lambda item: MARKS.get(answer.at(item + '/verdict', str), 'nothing'),

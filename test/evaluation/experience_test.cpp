@@ -7,8 +7,8 @@
 #include "evaluation/experience/experience_runs.h"
 #include "evaluation/experience/filters.h"
 #include "evaluation/experience/separation.h"
-#include "evaluation/experience/topple_monitor.h"
 #include "hires/evaluation/experience/experience_report.h"
+#include "hires/evaluation/experience/topple_monitor.h"
 #include "hires/geometry/angles.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
@@ -161,6 +161,31 @@ TEST(SeparationTest, NormalDistributionsHaveTheAreaOfTheBinormalModel) {
   EXPECT_NEAR(judged.false_alarms, 0.3085, 0.02);
 }
 
+TEST(SeparationTest, WhatKnowsTheStratumAloneTellsNothingWithin) {
+  // Nearly all positives are of the stratum with the larger numbers, which know nothing else.
+  base::Rng rng(5);
+  std::vector<std::vector<RunScores>> strata(2, std::vector<RunScores>(10));
+  std::vector<RunScores> all;
+  for (int stratum = 0; stratum < 2; ++stratum) {
+    for (RunScores& run : strata[stratum]) {
+      for (int i = 0; i < 400; ++i) {
+        if (i < (stratum == 1 ? 95 : 5)) run.positive.push_back(rng.Normal(3.0 * stratum, 1.0));
+        run.negative.push_back(rng.Normal(3.0 * stratum, 1.0));
+      }
+      all.push_back(run);
+    }
+  }
+  EXPECT_GT(AreaInterval(all, base::Rng(4)).lower, 0.6);
+  const Interval within = AreaIntervalWithin(strata, base::Rng(4));
+  EXPECT_NEAR(within.estimate, 0.5, 0.03);
+  EXPECT_LT(within.lower, 0.5);
+  EXPECT_GT(within.upper, 0.5);
+  // A stratum without positives says nothing; with one stratum it is the area itself.
+  for (RunScores& run : strata[0]) run.positive.clear();
+  EXPECT_DOUBLE_EQ(AreaIntervalWithin(strata, base::Rng(4)).estimate, AreaUnderCurve(strata[1]));
+  EXPECT_TRUE(std::isnan(AreaIntervalWithin({strata[0]}, base::Rng(4)).estimate));
+}
+
 class ExperienceReportTest : public ::testing::Test {
  protected:
   knowledge::ExperienceStore Store(int legs) {
@@ -203,7 +228,7 @@ TEST_F(ExperienceReportTest, StatsCountWhatIsThere) {
   EXPECT_EQ(action.at("falls"), 4);
   EXPECT_EQ(action.at("topple"), 40);
   EXPECT_NEAR(action.at("time").get<double>(), 240.0, 1e-9);
-  EXPECT_NEAR(action.at("samples_per_second").get<double>(), 20.0, 1e-9);
+  EXPECT_NEAR(stats.at("samples_per_second").get<double>(), 20.0, 1e-9);
   EXPECT_THAT(text, HasSubstr("drive(a, fast)"));
 }
 

@@ -25,7 +25,7 @@ plays:
 
 std::string Item(const std::string& value, const std::string& plays = "[loop]") {
   return "items:\n  - {item: Table 1, section: \"6.3.1\", title: t, plays: " + plays +
-         ", holds: yes, fails: \"no, slower\", values: [" + value + "]}\n";
+         ", holds: yes, fails: \"no, slower\", bounds: ours, values: [" + value + "]}\n";
 }
 
 class CatalogueTest : public ::testing::Test {
@@ -89,6 +89,14 @@ TEST_F(CatalogueTest, WhatIsWrongIsNamed) {
               AllOf(HasSubstr("accepted by 0 rules"), HasSubstr("catalogue.yaml")));
   EXPECT_THAT(ErrorOf(kPlays + Item("{name: v, at: /x, published: 1, within: 1, factor: 2}")),
               HasSubstr("accepted by 2 rules"));
+  EXPECT_THAT(ErrorOf(kPlays + Item("{name: v, at: /x, published: 1, within: 1, shown: true}")),
+              HasSubstr("accepted by 2 rules"));
+  EXPECT_THAT(ErrorOf(kPlays + "items:\n  - {item: T, section: s, title: t, holds: x, fails: y, "
+                               "plays: [loop], values: [{name: v, at: /x, at_least: 1}]}\n"),
+              HasSubstr("bounds"));
+  EXPECT_THAT(
+      ErrorOf(kPlays + "items:\n  - {item: T, section: s, title: t, holds: x, own: true}\n"),
+      HasSubstr("nothing is judged"));
   EXPECT_THAT(ErrorOf(kPlays + Item("{name: v, at: /x, within: 1}")),
               HasSubstr("nothing published to be near to"));
   EXPECT_THAT(ErrorOf(kPlays + Item("{name: v, at: /x, published: 1, factor: 0.5}")),
@@ -168,6 +176,46 @@ TEST(ReproducedJudgeTest, AVerdictIsThatOfItsWorstNumber) {
   EXPECT_EQ(VerdictOn({}, {{"x", 5.0}}), Verdict::kShown);
 }
 
+TEST(ReproducedJudgeTest, WhatIsShownIsNotJudged) {
+  const ComparedValue near = Value(Acceptance::Kind::kWithin, 0.5, 2.0);
+  ComparedValue shown = Value(Acceptance::Kind::kShown, 0.0, 100.0);
+  EXPECT_EQ(VerdictOn({shown}, {{"x", 2.1}}), Verdict::kShown);
+  EXPECT_EQ(VerdictOn({near, shown}, {{"x", 2.1}}), Verdict::kReproduced);
+  EXPECT_EQ(VerdictOn({near, shown}, {{"x", 9.0}}), Verdict::kNotReproduced);
+  EXPECT_EQ(VerdictOn({shown}, {{"y", 2.1}}), Verdict::kNotPlayed) << "it has to be there";
+  const JudgedItem judged = Judge(ItemOf({near, shown}), {{"loop", {{"x", 2.1}}}}, {});
+  EXPECT_EQ(judged.values[1].found, 2.1);
+  EXPECT_EQ(ToJson({judged})[0]["values"][1]["judged"], false);
+  EXPECT_THAT(VerdictTable({judged}), HasSubstr("1 of 1"));
+}
+
+TEST(ReproducedJudgeTest, OurOwnBoundsReproduceNothing) {
+  CatalogueItem item = ItemOf({Value(Acceptance::Kind::kAtLeast, 1.0, {})});
+  item.is_own = true;
+  EXPECT_EQ(Judge(item, {{"loop", {{"x", 2.0}}}}, {}).verdict, Verdict::kCheckHolds);
+  const JudgedItem fails = Judge(item, {{"loop", {{"x", 0.0}}}}, {});
+  EXPECT_EQ(fails.verdict, Verdict::kCheckFails);
+  EXPECT_EQ(fails.reason, "slower");
+  EXPECT_THAT(VerdictTable({fails}), HasSubstr("Table 1: slower"));
+}
+
+TEST(ReproducedJudgeTest, EntriesOfListsAreFoundByWhatTheySay) {
+  const ordered_json answer{
+      {"list", {{{"name", "a, b"}, {"x", 1.0}}, 7, {{"name", "c/d"}, {"n", 3}, {"x", 2.0}}}}};
+  const auto found = [&](const std::string& pointer) {
+    ComparedValue value = Value(Acceptance::Kind::kShown, 0.0, {});
+    value.at.pointer = pointer;
+    const JudgedItem judged = Judge(ItemOf({value}), {{"loop", answer}}, {});
+    return judged.values.empty() ? std::nullopt : judged.values[0].found;
+  };
+  EXPECT_EQ(found("/list/name=a, b/x"), 1.0);
+  EXPECT_EQ(found("/list/name=c~1d/x"), 2.0);
+  EXPECT_EQ(found("/list/n=3/x"), 2.0);
+  EXPECT_EQ(found("/list/2/x"), 2.0);
+  EXPECT_EQ(found("/list/name=e/x"), std::nullopt);
+  EXPECT_EQ(found("/list/n/x"), std::nullopt);
+}
+
 TEST(ReproducedJudgeTest, AReasonStandsBesideEachVerdict) {
   const ComparedValue near = Value(Acceptance::Kind::kWithin, 0.5, 2.0);
   EXPECT_EQ(Judge(ItemOf({near}), {{"loop", {{"x", 2.0}}}}, {}).reason, "as there");
@@ -211,6 +259,11 @@ TEST(ShippedCatalogueTest, NoTableOrFigureOfTheChaptersIsMissing) {
   for (int i = 1; i <= 4; ++i) require("List. 5." + std::to_string(i));
   for (const char* name : {"List. 6.1", "List. 6.2", "List. A.1", "List. A.2"}) require(name);
   EXPECT_THAT(missing, ElementsAre());
+}
+
+TEST(ShippedCatalogueTest, NoPlayIsPlayedForNothing) {
+  const Catalogue catalogue = ReadCatalogue(HIRES_SOURCE_DIR "/config/reproduce.yaml");
+  EXPECT_EQ(PlaysFor(catalogue, catalogue.items).size(), catalogue.plays.size());
 }
 
 }  // namespace

@@ -106,6 +106,23 @@ TEST(RunSummaryTest, IsLaidOutAsListing52) {
               AllOf(HasSubstr("none was kept"), HasSubstr("broke down: signal 9 (Killed)")));
 }
 
+TEST(SeriesSummaryTest, WhatReallyHappenedCountsBesideWhatTheRobotBelieves) {
+  SeriesReport report = Report();
+  report.runs.push_back(RunOf(5, {0}, "succeeded"));
+  report.runs.push_back(RunOf(6, {0}, "succeeded"));
+  report.runs[4].touched = "base_link/body touches table1";
+  report.runs[5].fallen = {"mug1"};
+  const nlohmann::ordered_json json = ToJson(report);
+  EXPECT_EQ(json["outcomes"]["succeeded"], 3);
+  EXPECT_EQ(json["outcomes"]["succeeded_in_truth"], 1);
+  EXPECT_EQ(json["shares"][0]["succeeded"], 1);
+  EXPECT_EQ(json["shares"][0]["played"], 3);
+  EXPECT_THAT(SeriesSummary(report), AllOf(HasSubstr("base_link/body touches table1"),
+                                           HasSubstr("mug1 fell"), HasSubstr("in truth")));
+  EXPECT_DOUBLE_EQ(json["mean_simulated_seconds"], 300.21);
+  EXPECT_NEAR(json["mean_fluents_per_second"].get<double>(), 381.0 / 300.21, 1e-9);
+}
+
 TEST(SeriesSummaryTest, CountsEpisodesOutcomesAndShares) {
   const std::string text = SeriesSummary(Report());
   EXPECT_THAT(text, HasSubstr("= TEST SUMMARY =\n=[ INFO]: 3 episodes created during test with "

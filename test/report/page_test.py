@@ -17,6 +17,7 @@ sys.path.insert(0, PROGRAM)
 
 import report_input  # noqa: E402
 import report_pages  # noqa: E402
+import report_reproduce  # noqa: E402
 from page_parser import Page  # noqa: E402
 
 VERBS = {verb: verb.replace(' ', '_') + '.json' for verb in report_pages.PAGES}
@@ -192,6 +193,16 @@ class PageTest(unittest.TestCase):
                 page_of(content)
             self.assertIn(said, str(caught.exception))
             self.assertIn('answer.json', str(caught.exception))
+
+
+class CatalogueTest(unittest.TestCase):
+    def test_each_drawing_of_the_shipped_catalogue_is_known(self):
+        import yaml
+        with open(os.path.join(ROOT, 'config', 'reproduce.yaml'), encoding='utf-8') as file:
+            items = yaml.safe_load(file)['items']
+        drawings = {drawing.split(':')[1] for item in items for drawing in item.get('drawings', [])}
+        self.assertEqual(drawings - set(report_reproduce.DRAWINGS), set())
+        self.assertGreater(len(drawings), 10)
 
 
 class ProgramTest(unittest.TestCase):

@@ -19,6 +19,9 @@ const char* ToString(ToppleState state);  ///< "notopple", "shaking", "topple"
 ToppleState ParseToppleState(const std::string& text);
 
 constexpr double kExperiencePeriod = 0.05;  ///< [s] between two parts: 20 Hz, as the dissertation
+/// [s] by which dynamics are older than their part: to the middle of the four samples that they are
+/// made of.
+constexpr double kDynamicsDelay = 1.5 * kExperiencePeriod;
 
 /// Motion of a body in the map, from positions (dissertation, Eq. 5.6). Speeds are not negative;
 /// accelerations and jerks are their derivatives: negative where it slows down.
@@ -34,8 +37,8 @@ struct ToppleEpisodePart {
   ToppleState state{ToppleState::kNoTopple};
   double alpha{0.0};      ///< [rad] tilt from the vertical
   double deviation{0.0};  ///< [m] across, from where it was put on the tray
-  /// Of object and base, at `time` less 1.5 sample periods: that is the middle of the four samples
-  /// that they are made of. The object's angular part is that of its tilt.
+  /// Of object and base, at `time` less kDynamicsDelay. The object's angular part is that of its
+  /// tilt.
   Dynamics object, base;
   double x{0.0}, y{0.0}, yaw{0.0};  ///< [m, m, rad] of the base in the map
 };

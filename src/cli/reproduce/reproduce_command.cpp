@@ -188,7 +188,10 @@ int RunReproduceVerb(const ReproduceOptions& options, const std::string& package
   Print(judged, done, store.build());
   if (done.is_cancelled) return kExitCancelled;
   WriteReport(options.report, origin, AnswerJson(judged, done, store.build()));
-  return done.missing.empty() ? kExitRecommended : kExitNoWorker;
+  const bool is_whole = std::none_of(judged.begin(), judged.end(), [](const JudgedItem& item) {
+    return item.verdict == Verdict::kNotPlayed;
+  });
+  return is_whole && done.missing.empty() ? kExitRecommended : kExitNoWorker;
 }
 
 }  // namespace hires::cli

@@ -47,20 +47,22 @@ std::string FilterTable(const ordered_json& trial) {
 }
 
 std::string PredictionTable(const ordered_json& prediction) {
-  std::vector<std::vector<std::string>> rows{
-      {"feature", "area under the curve (95 %)", "threshold", "hits", "false alarms"}};
+  std::vector<std::vector<std::string>> rows{{"feature", "area under the curve (95 %)",
+                                              "within a motion set", "threshold", "hits",
+                                              "false alarms"}};
   for (const ordered_json& row : prediction.at("features")) {
     const ordered_json& judged = row.at("judged");
     rows.push_back({row.at("feature").get<std::string>(), IntervalText(row.at("area")),
-                    Text(judged.at("threshold"), 4), Text(judged.at("hits")),
-                    Text(judged.at("false_alarms"))});
+                    IntervalText(row.at("area_within")), Text(judged.at("threshold"), 4),
+                    Text(judged.at("hits")), Text(judged.at("false_alarms"))});
   }
   return fmt::format(
-      "{} falls and {} windows without, {:g} s ahead; thresholds chosen on every other run, judged "
-      "on "
-      "the rest\n{}",
-      prediction.at("falls").get<std::size_t>(), prediction.at("calm_windows").get<std::size_t>(),
-      prediction.at("ahead").get<double>(), FormatTable(rows));
+      "{} falls ({} others came in the first second of a drive) and {} windows without, {:g} s "
+      "ahead; thresholds chosen on every other run, judged on the rest\n{}",
+      prediction.at("falls").get<std::size_t>(),
+      prediction.at("falls_too_early").get<std::size_t>(),
+      prediction.at("calm_windows").get<std::size_t>(), prediction.at("ahead").get<double>(),
+      FormatTable(rows));
 }
 
 }  // namespace

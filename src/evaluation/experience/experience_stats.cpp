@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -30,9 +31,28 @@ void Count(const Stretch& stretch, ActionCounts* into) {
   into->time += knowledge::kExperiencePeriod * static_cast<double>(stretch.size());
 }
 
+/// [1/s] of parts by their time stamps; null where none follows another. What lasts longer than a
+/// second is a pause, and no time in which parts are missing.
+ordered_json RateOf(const std::vector<ExperienceRun>& runs) {
+  constexpr double kPause = 1.0;  // [s]
+  double span = 0.0, steps = 0.0;
+  for (const ExperienceRun& run : runs) {
+    double last = std::numeric_limits<double>::infinity();
+    for (const Stretch& stretch : run.stretches) {
+      for (const knowledge::ToppleEpisodePart& part : stretch) {
+        const double step = part.time - last;
+        last = part.time;
+        if (!(step > 0.0 && step <= kPause)) continue;
+        span += step;
+        steps += 1.0;
+      }
+    }
+  }
+  return span > 0.0 ? ordered_json(steps / span) : ordered_json();
+}
+
 ordered_json ActionJson(const std::string& action, const ActionCounts& found) {
   const imagination::OutcomeCounts& counts = found.counts;
-  const double rate = found.time > 0.0 ? counts.total() / found.time : 0.0;
   return {{"action", action},
           {"parts", counts.total()},
           {"notopple", counts.notopple},
@@ -40,7 +60,6 @@ ordered_json ActionJson(const std::string& action, const ActionCounts& found) {
           {"topple", counts.topple},
           {"falls", found.falls},
           {"time", found.time},
-          {"samples_per_second", rate},
           {"confidence",
            counts.total() > 0 ? ordered_json(imagination::Confidence(counts)) : ordered_json()}};
 }
@@ -86,6 +105,7 @@ ordered_json StatsOf(const knowledge::ExperienceStore& store, std::string* text)
                      {"runs", runs.size()},
                      {"episodes", episodes},
                      {"bytes_per_part", per_part},
+                     {"samples_per_second", RateOf(runs)},
                      {"actions", actions}};
   *text = TextOf(stats);
   return stats;

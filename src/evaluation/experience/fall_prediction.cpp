@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "evaluation/experience/separation.h"
@@ -76,15 +77,32 @@ std::vector<RunScores> EveryOther(const std::vector<RunScores>& runs, std::size_
   return half;
 }
 
+/// Runs of one motion set: "fast/3" is of "fast".
+std::vector<std::vector<RunScores>> ByMotionSet(const std::vector<ExperienceRun>& runs,
+                                                const std::vector<RunScores>& scores) {
+  std::map<std::string, std::vector<RunScores>> by_set;
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    by_set[runs[r].name.substr(0, runs[r].name.find('/'))].push_back(scores[r]);
+  }
+  std::vector<std::vector<RunScores>> strata;
+  for (const auto& [set, of_set] : by_set) strata.push_back(of_set);
+  return strata;
+}
+
+ordered_json IntervalJson(const Interval& interval) {
+  return {{"estimate", NumberOrNull(interval.estimate)},
+          {"lower", NumberOrNull(interval.lower)},
+          {"upper", NumberOrNull(interval.upper)}};
+}
+
 std::size_t CountOf(const std::vector<RunScores>& runs, std::vector<double> RunScores::*kind) {
   std::size_t count = 0;
   for (const RunScores& run : runs) count += (run.*kind).size();
   return count;
 }
 
-ordered_json FeatureJson(const Feature& feature, const std::vector<RunScores>& runs,
-                         const base::Rng& rng) {
-  const Interval area = AreaInterval(runs, rng);
+ordered_json FeatureJson(const Feature& feature, const std::vector<ExperienceRun>& experiences,
+                         const std::vector<RunScores>& runs, const base::Rng& rng) {
   const RocPoint judged =
       JudgedAt(EveryOther(runs, 1), BestThreshold(EveryOther(runs, 0)).threshold);
   ordered_json alarms = ordered_json::array(), hits = ordered_json::array();
@@ -93,10 +111,8 @@ ordered_json FeatureJson(const Feature& feature, const std::vector<RunScores>& r
     hits.push_back(NumberOrNull(point.hits));
   }
   return {{"feature", feature.name},
-          {"area",
-           {{"estimate", NumberOrNull(area.estimate)},
-            {"lower", NumberOrNull(area.lower)},
-            {"upper", NumberOrNull(area.upper)}}},
+          {"area", IntervalJson(AreaInterval(runs, rng))},
+          {"area_within", IntervalJson(AreaIntervalWithin(ByMotionSet(experiences, runs), rng))},
           {"judged",
            {{"threshold", NumberOrNull(judged.threshold)},
             {"hits", NumberOrNull(judged.hits)},
@@ -108,16 +124,20 @@ ordered_json FeatureJson(const Feature& feature, const std::vector<RunScores>& r
 
 ordered_json PredictFalls(const std::vector<ExperienceRun>& runs, const base::Rng& rng) {
   ordered_json features = ordered_json::array();
-  std::size_t falls = 0, calm = 0;
+  std::size_t falls = 0, calm = 0, all_falls = 0;
   for (const Feature& feature : kFeatures) {
     const std::vector<RunScores> scores = ScoresOf(runs, feature);
     falls = CountOf(scores, &RunScores::positive);
     calm = CountOf(scores, &RunScores::negative);
-    features.push_back(FeatureJson(feature, scores, rng));
+    features.push_back(FeatureJson(feature, runs, scores, rng));
+  }
+  for (const ExperienceRun& run : runs) {
+    for (const Stretch& stretch : run.stretches) all_falls += OnsetsOf(stretch).size();
   }
   return {{"ahead", knowledge::kExperiencePeriod * kAhead},
           {"window", knowledge::kExperiencePeriod * kWindow},
           {"falls", falls},
+          {"falls_too_early", all_falls - falls},
           {"calm_windows", calm},
           {"features", features}};
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace hires::evaluation {
 namespace {
@@ -75,6 +76,34 @@ std::vector<BinnedRun> BinnedRunsOf(const std::vector<RunScores>& runs) {
   return binned;
 }
 
+BinnedRun Resampled(const std::vector<BinnedRun>& runs, base::Rng* rng) {
+  BinnedRun resample;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const BinnedRun& chosen = runs[rng->Index(static_cast<int>(runs.size()))];
+    for (std::size_t b = 0; b < kAreaBins; ++b) {
+      resample.positive[b] += chosen.positive[b];
+      resample.negative[b] += chosen.negative[b];
+    }
+  }
+  return resample;
+}
+
+/// A mean of areas by their positives.
+class WeightedArea {
+ public:
+  void Add(double area, double positives) {
+    if (!std::isfinite(area)) return;
+    sum_ += positives * area;
+    positives_ += positives;
+  }
+  double mean() const {
+    return positives_ > 0.0 ? sum_ / positives_ : std::numeric_limits<double>::quiet_NaN();
+  }
+
+ private:
+  double sum_{0.0}, positives_{0.0};
+};
+
 double AreaOf(const BinnedRun& run) {
   double hits = 0.0, alarms = 0.0, area = 0.0;
   for (std::size_t b = kAreaBins; b-- > 0;) {
@@ -100,21 +129,27 @@ double AreaUnderCurve(const std::vector<RunScores>& runs) {
 }
 
 Interval AreaInterval(const std::vector<RunScores>& runs, base::Rng rng) {
-  const double estimate = AreaUnderCurve(runs);
-  const std::vector<BinnedRun> binned = BinnedRunsOf(runs);
+  return AreaIntervalWithin({runs}, rng);
+}
+
+Interval AreaIntervalWithin(const std::vector<std::vector<RunScores>>& strata, base::Rng rng) {
+  WeightedArea whole;
+  std::vector<std::vector<BinnedRun>> binned;
+  for (const std::vector<RunScores>& runs : strata) {
+    whole.Add(AreaUnderCurve(runs), TotalsOf(Sorted(runs)).positive);
+    binned.push_back(BinnedRunsOf(runs));
+  }
   std::vector<double> areas;
   for (int i = 0; i < kResamples; ++i) {
-    BinnedRun resample;
-    for (std::size_t k = 0; k < binned.size(); ++k) {
-      const BinnedRun& chosen = binned[rng.Index(static_cast<int>(binned.size()))];
-      for (std::size_t b = 0; b < kAreaBins; ++b) {
-        resample.positive[b] += chosen.positive[b];
-        resample.negative[b] += chosen.negative[b];
-      }
+    WeightedArea resampled;
+    for (const std::vector<BinnedRun>& runs : binned) {
+      const BinnedRun resample = Resampled(runs, &rng);
+      resampled.Add(AreaOf(resample),
+                    std::accumulate(resample.positive.begin(), resample.positive.end(), 0.0));
     }
-    const double area = AreaOf(resample);
-    if (std::isfinite(area)) areas.push_back(area);
+    if (std::isfinite(resampled.mean())) areas.push_back(resampled.mean());
   }
+  const double estimate = whole.mean();
   if (areas.empty()) return {estimate, estimate, estimate};
   std::sort(areas.begin(), areas.end());
   const auto at = [&](double share) {

@@ -21,6 +21,11 @@ double AreaUnderCurve(const std::vector<RunScores>& runs);
 /// With the 2.5 % and 97.5 % percentiles over resamples of whole runs.
 Interval AreaInterval(const std::vector<RunScores>& runs, base::Rng rng);
 
+/// How often a positive has the larger number than a negative of its own stratum: areas of the
+/// strata, weighted by their positives; strata that lack one kind are left out. Runs are resampled
+/// within their stratum.
+Interval AreaIntervalWithin(const std::vector<std::vector<RunScores>>& strata, base::Rng rng);
+
 struct RocPoint {
   double threshold{0.0}, false_alarms{0.0}, hits{0.0};  ///< shares
 };

@@ -1,4 +1,4 @@
-#include "evaluation/experience/topple_monitor.h"
+#include "hires/evaluation/experience/topple_monitor.h"
 
 #include <algorithm>
 #include <cmath>

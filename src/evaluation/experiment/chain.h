@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/experience/topple_monitor.h"
+#include "hires/evaluation/experience/topple_monitor.h"
 #include "evaluation/experiment/places.h"
 #include "evaluation/experiment/stage.h"
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "evaluation/known_number.h"
 #include "hires/base/check.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/experiment/report.h"
@@ -34,6 +35,31 @@ PairedCounts PairsOf(const std::vector<HypothesisRun>& runs, int num_pairs) {
     pairs.only_second += pair.first < pair.second ? 1 : 0;
   }
   return pairs;
+}
+
+/// [s] with - without, of the pairs whose runs both came to an end.
+std::vector<double> DurationDifferences(const std::vector<HypothesisRun>& runs) {
+  std::map<int, std::pair<const HypothesisRun*, const HypothesisRun*>> pairs;
+  for (const HypothesisRun& run : runs) {
+    auto& [with, without] = pairs[run.run];
+    if (run.is_complete) (run.imagines ? with : without) = &run;
+  }
+  std::vector<double> differences;
+  for (const auto& [number, pair] : pairs) {
+    if (pair.first == nullptr || pair.second == nullptr) continue;
+    differences.push_back(pair.first->duration - pair.second->duration);
+  }
+  return differences;
+}
+
+ordered_json PairedDurationJson(const std::vector<HypothesisRun>& runs) {
+  const std::vector<double> differences = DurationDifferences(runs);
+  const Interval mean = MeanInterval(differences);
+  return {{"pairs", differences.size()},
+          {"mean", NumberOrNull(mean.estimate)},
+          {"lower", NumberOrNull(mean.lower)},
+          {"upper", NumberOrNull(mean.upper)},
+          {"method", "Student's t, 95 %"}};
 }
 
 ordered_json ArmToJson(const HypothesisArm& arm) {
@@ -210,6 +236,7 @@ ordered_json ToJson(const HypothesisReport& report, const std::string& command) 
             {"only_without", report.pairs.only_second},
             {"p_value", McNemarPValue(report.pairs)},
             {"method", kMethod}}},
+          {"paired_duration", PairedDurationJson(report.runs)},
           {"list", RowsOf(report.runs)}};
 }
 

@@ -18,12 +18,12 @@ class Team {
     crew_.cancelled = cancelled;
   }
 
-  /// @return nothing when cancelled.
-  std::optional<Stretch> Play(int rounds, const LadderClocks& clocks) const {
+  /// Rounds `first`, `first` + 1, ...  @return nothing when cancelled.
+  std::optional<Stretch> Play(int first, int rounds, const LadderClocks& clocks) const {
     std::vector<double> amounts(players_.size(), 0.0);
     const double processor = clocks.processor(), wall = clocks.wall();
-    const bool is_whole =
-        players_.size() == 1 ? PlayOne(0, rounds, &amounts[0]) : PlayAll(rounds, &amounts);
+    const bool is_whole = players_.size() == 1 ? PlayOne(0, first, rounds, &amounts[0])
+                                               : PlayAll(first, rounds, &amounts);
     Stretch stretch{0.0, clocks.wall() - wall, clocks.processor() - processor, rounds};
     if (!is_whole) return std::nullopt;
     for (const double amount : amounts) stretch.amount += amount;
@@ -35,18 +35,18 @@ class Team {
   }
 
  private:
-  bool PlayOne(std::size_t player, int rounds, double* amount) const {
-    for (int round = 0; round < rounds; ++round) {
+  bool PlayOne(std::size_t player, int first, int rounds, double* amount) const {
+    for (int round = first; round < first + rounds; ++round) {
       if (crew_.cancelled && crew_.cancelled()) return false;
       *amount += players_[player].play(round);
     }
     return !(crew_.cancelled && crew_.cancelled());
   }
-  bool PlayAll(int rounds, std::vector<double>* amounts) const {
-    return DoInParallel(static_cast<int>(players_.size()), 1.0, crew_,
-                        [&](int player, const Advance&) {
-                          PlayOne(static_cast<std::size_t>(player), rounds, &(*amounts)[player]);
-                        });
+  bool PlayAll(int first, int rounds, std::vector<double>* amounts) const {
+    return DoInParallel(
+        static_cast<int>(players_.size()), 1.0, crew_, [&](int player, const Advance&) {
+          PlayOne(static_cast<std::size_t>(player), first, rounds, &(*amounts)[player]);
+        });
   }
 
   std::vector<Player> players_;
@@ -99,7 +99,7 @@ std::optional<std::vector<Measured>> MeasureByTurns(const std::vector<const Way*
   double once = 0.0;
   for (std::size_t i = 0; i < ways.size(); ++i) {
     const Team& team = teams.emplace_back(*ways[i], threads[i], cancelled);
-    const std::optional<Stretch> warm = team.Play(1, clocks);
+    const std::optional<Stretch> warm = team.Play(0, 1, clocks);
     if (!warm) return std::nullopt;
     once += warm->wall;
     measured[i].stretches.push_back(*warm);
@@ -111,7 +111,8 @@ std::optional<std::vector<Measured>> MeasureByTurns(const std::vector<const Way*
   for (int repeat = is_first_counted ? 1 : 0; repeat < plan.repeats; ++repeat) {
     for (std::size_t turn = 0; turn < teams.size(); ++turn) {
       const std::size_t i = repeat % 2 == 0 ? turn : teams.size() - 1 - turn;
-      const std::optional<Stretch> stretch = teams[i].Play(plan.rounds, clocks);
+      const std::optional<Stretch> stretch =
+          teams[i].Play(repeat * plan.rounds, plan.rounds, clocks);
       if (!stretch) return std::nullopt;
       measured[i].stretches.push_back(*stretch);
     }

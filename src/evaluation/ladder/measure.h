@@ -53,8 +53,8 @@ struct Effort {
 
 /// Plays each way on as many threads as its place in `threads` says: a round that counts nowhere
 /// (but where there is time for two rounds at most: then it is the first repeat), then stretches of
-/// equally many equal rounds by turns, every other time in the opposite order, so that what else
-/// the computer does meets all ways alike.
+/// equally many rounds by turns, every other time in the opposite order, so that what else the
+/// computer does meets all ways alike. Each repeat has rounds of its own, the same for all ways.
 /// @return one for each way; nothing when cancelled.  @pre ways and threads are equally many.
 std::optional<std::vector<Measured>> MeasureByTurns(const std::vector<const Way*>& ways,
                                                     const std::vector<int>& threads,

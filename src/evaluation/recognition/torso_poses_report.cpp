@@ -3,6 +3,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "evaluation/known_number.h"
 #include "hires/evaluation/recognition/torso_poses.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/evaluation/statistics.h"
@@ -70,18 +71,22 @@ int NumGrasps(const TorsoPosesReport& report, const std::vector<Pose>& poses) {
 struct Finding {
   std::string what;
   Interval difference;
+  double from;  ///< mean of what is subtracted
 };
 
 std::vector<Finding> FindingsOf(const TorsoPosesReport& report) {
   const int up = static_cast<int>(report.torsos.size()) - 1;
   const auto torso = [&](int t) { return PosesOf(report, t, -1); };
   std::vector<Finding> findings{
-      {"recognition, torso down less up", DifferenceOf(report, torso(0), torso(up), Recognised)},
-      {"grasp quality, torso up less down", DifferenceOf(report, torso(up), torso(0), Quality)}};
+      {"recognition, torso down less up", DifferenceOf(report, torso(0), torso(up), Recognised),
+       Mean(ByKind(report, torso(up), Recognised))},
+      {"grasp quality, torso up less down", DifferenceOf(report, torso(up), torso(0), Quality),
+       Mean(ByKind(report, torso(0), Quality))}};
   for (int base = 1; base < static_cast<int>(report.bases.size()); ++base) {
     findings.push_back(
         {fmt::format("recognition, base {} less default", report.bases[base]),
-         DifferenceOf(report, PosesOf(report, -1, base), PosesOf(report, -1, 0), Recognised)});
+         DifferenceOf(report, PosesOf(report, -1, base), PosesOf(report, -1, 0), Recognised),
+         Mean(ByKind(report, PosesOf(report, -1, 0), Recognised))});
   }
   return findings;
 }
@@ -142,7 +147,9 @@ ordered_json ToJson(const TorsoPosesReport& report) {
                      {"kinds", kinds}});
   }
   for (const Finding& finding : FindingsOf(report))
-    findings.push_back({{"finding", finding.what}, {"difference", to_json(finding.difference)}});
+    findings.push_back({{"finding", finding.what},
+                        {"difference", to_json(finding.difference)},
+                        {"relative", NumberOrNull(finding.difference.estimate / finding.from)}});
   return {{"schema", "hires/torso_poses"},
           {"version", 1},
           {"looks", report.looks},

@@ -80,12 +80,13 @@ Acceptance ReadAcceptance(base::ParamReader* in, bool is_published) {
                                           {"at_least", Kind::kAtLeast},
                                           {"at_most", Kind::kAtMost}};
   std::vector<Acceptance> found;
+  if (in->Has("shown") && in->GetBool("shown")) found.push_back({Kind::kShown, 0.0});
   for (const auto& [key, kind] : kinds) {
     if (in->Has(key)) found.push_back({kind, in->Get(key, base::Between(-kLargest, kLargest))});
   }
   if (found.size() != 1) {
     in->Fail("name", "which is accepted by " + std::to_string(found.size()) +
-                         " rules; wanted one of within, factor, at_least, at_most");
+                         " rules; wanted one of within, factor, at_least, at_most, shown");
   }
   const Acceptance& acceptance = found.front();
   if (!is_published && (acceptance.kind == Kind::kWithin || acceptance.kind == Kind::kFactor)) {
@@ -153,7 +154,16 @@ CatalogueItem ReadItem(base::ParamReader in) {
       item.values.push_back(ReadValue(value, item.plays));
     }
   }
-  if (!item.values.empty()) item.fails = in.GetString("fails");
+  const bool is_judged = std::any_of(
+      item.values.begin(), item.values.end(),
+      [](const ComparedValue& value) { return value.acceptance.kind != Acceptance::Kind::kShown; });
+  if (is_judged) {
+    in.RequireKeys({"bounds", "fails"});
+    item.bounds = in.GetString("bounds");
+    item.fails = in.GetString("fails");
+  }
+  if (in.Has("own")) item.is_own = in.GetBool("own");
+  if (item.is_own && !is_judged) in.Fail("own", "true, but nothing is judged; leave it out");
   for (const std::string& drawing : item.drawings) {
     const std::string play = drawing.substr(0, drawing.find(':'));
     if (play == drawing || std::count(item.plays.begin(), item.plays.end(), play) == 0) {

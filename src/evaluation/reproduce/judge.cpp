@@ -17,19 +17,53 @@ using nlohmann::ordered_json;
 
 using Answers = std::map<std::string, ordered_json>;
 
-std::optional<double> NumberAt(const AnswerField& field, const Answers& answers) {
-  const ordered_json& answer = answers.at(field.play);
-  const ordered_json::json_pointer pointer(field.pointer);
-  const bool is_there = answer.contains(pointer);
-  if (is_there && answer.at(pointer).is_null()) return std::nullopt;
-  if (is_there && answer.at(pointer).is_boolean()) {
-    return answer.at(pointer).get<bool>() ? 1.0 : 0.0;
+/// The first entry whose key has that value, or null.
+const ordered_json* EntryOf(const ordered_json& list, const std::string& key,
+                            const std::string& value) {
+  for (const ordered_json& entry : list) {
+    if (!entry.is_object() || !entry.contains(key)) continue;
+    const ordered_json& found = entry.at(key);
+    if ((found.is_string() ? found.get<std::string>() : found.dump()) == value) return &entry;
   }
-  if (is_there && answer.at(pointer).is_number()) return answer.at(pointer).get<double>();
+  return nullptr;
+}
+
+/// One step of a pointer down from `at`; null where there is nothing.
+const ordered_json* Step(const ordered_json& at, const std::string& step) {
+  const std::size_t equals = step.find('=');
+  if (at.is_array() && equals != std::string::npos) {
+    return EntryOf(at, step.substr(0, equals), step.substr(equals + 1));
+  }
+  ordered_json::json_pointer pointer;
+  pointer.push_back(step);
+  return at.contains(pointer) ? &at.at(pointer) : nullptr;
+}
+
+/// What a field points at, or null.
+const ordered_json* Find(const ordered_json& answer, ordered_json::json_pointer pointer) {
+  std::vector<std::string> steps;
+  for (; !pointer.empty(); pointer.pop_back()) steps.push_back(pointer.back());
+  const ordered_json* at = &answer;
+  for (auto step = steps.rbegin(); at != nullptr && step != steps.rend(); ++step) {
+    at = Step(*at, *step);
+  }
+  return at;
+}
+
+std::optional<double> NumberAt(const AnswerField& field, const Answers& answers) {
+  const ordered_json* found =
+      Find(answers.at(field.play), ordered_json::json_pointer(field.pointer));
+  if (found != nullptr && found->is_null()) return std::nullopt;
+  if (found != nullptr && found->is_boolean()) return found->get<bool>() ? 1.0 : 0.0;
+  if (found != nullptr && found->is_number()) return found->get<double>();
   throw base::ConfigError(
       fmt::format("{}: the answer has {} there; wanted a number: the catalogue asks for another "
                   "field than this version writes",
-                  ToString(field), is_there ? answer.at(pointer).dump().substr(0, 40) : "nothing"));
+                  ToString(field), found ? found->dump().substr(0, 40) : "nothing"));
+}
+
+bool IsJudged(const JudgedValue& judged) {
+  return judged.value.acceptance.kind != Acceptance::Kind::kShown;
 }
 
 /// Nothing where it is divided by 0.
@@ -53,14 +87,16 @@ JudgedValue JudgeValue(const ComparedValue& value, const Answers& answers) {
   return judged;
 }
 
-Verdict VerdictOf(const std::vector<JudgedValue>& values) {
-  if (values.empty()) return Verdict::kShown;
+Verdict VerdictOf(const CatalogueItem& item, const std::vector<JudgedValue>& values) {
+  if (std::none_of(values.begin(), values.end(), IsJudged)) return Verdict::kShown;
   bool may_be_better = false, are_better = true;
   for (const JudgedValue& judged : values) {
-    if (!judged.holds) return Verdict::kNotReproduced;
+    if (!IsJudged(judged)) continue;
+    if (!judged.holds) return item.is_own ? Verdict::kCheckFails : Verdict::kNotReproduced;
     may_be_better = may_be_better || judged.value.may_be_better;
     are_better = are_better && (!judged.value.may_be_better || judged.is_better);
   }
+  if (item.is_own) return Verdict::kCheckHolds;
   return may_be_better && are_better ? Verdict::kBetter : Verdict::kReproduced;
 }
 
@@ -77,6 +113,7 @@ ordered_json ValueJson(const JudgedValue& judged) {
           {"published", NumberOrNull(judged.value.published)},
           {"found", NumberOrNull(judged.found)},
           {"accepted", ToString(judged.value.acceptance)},
+          {"judged", IsJudged(judged)},
           {"holds", judged.holds},
           {"better", judged.is_better}};
 }
@@ -84,15 +121,11 @@ ordered_json ValueJson(const JudgedValue& judged) {
 ordered_json ItemJson(const JudgedItem& judged) {
   ordered_json values = ordered_json::array();
   for (const JudgedValue& value : judged.values) values.push_back(ValueJson(value));
-  return {{"item", judged.item.name},
-          {"section", judged.item.section},
-          {"title", judged.item.title},
-          {"verdict", ToString(judged.verdict)},
-          {"reason", judged.reason},
-          {"plays", judged.item.plays},
-          {"drawings", judged.item.drawings},
-          {"picture", judged.item.picture},
-          {"values", values}};
+  return {{"item", judged.item.name},         {"section", judged.item.section},
+          {"title", judged.item.title},       {"verdict", ToString(judged.verdict)},
+          {"reason", judged.reason},          {"plays", judged.item.plays},
+          {"drawings", judged.item.drawings}, {"picture", judged.item.picture},
+          {"bounds", judged.item.bounds},     {"values", values}};
 }
 
 }  // namespace
@@ -105,6 +138,10 @@ const char* ToString(Verdict verdict) {
       return "better";
     case Verdict::kNotReproduced:
       return "not reproduced";
+    case Verdict::kCheckHolds:
+      return "check holds";
+    case Verdict::kCheckFails:
+      return "check fails";
     case Verdict::kShown:
       return "shown";
     case Verdict::kNotPlayed:
@@ -125,6 +162,8 @@ bool IsAccepted(const ComparedValue& value, double found) {
       return found >= bound;
     case Acceptance::Kind::kAtMost:
       return found <= bound;
+    case Acceptance::Kind::kShown:
+      return false;
   }
   return false;
 }
@@ -139,6 +178,8 @@ std::string ToString(const Acceptance& acceptance) {
       return fmt::format("at least {:.6g}", acceptance.bound);
     case Acceptance::Kind::kAtMost:
       return fmt::format("at most {:.6g}", acceptance.bound);
+    case Acceptance::Kind::kShown:
+      return "not judged";
   }
   return "";
 }
@@ -162,8 +203,10 @@ JudgedItem Judge(const CatalogueItem& item, const std::map<std::string, ordered_
     judged.reason = error.what();
     return judged;
   }
-  judged.verdict = VerdictOf(judged.values);
-  judged.reason = judged.verdict == Verdict::kNotReproduced ? item.fails : item.holds;
+  judged.verdict = VerdictOf(item, judged.values);
+  const bool fails =
+      judged.verdict == Verdict::kNotReproduced || judged.verdict == Verdict::kCheckFails;
+  judged.reason = fails ? item.fails : item.holds;
   return judged;
 }
 
@@ -172,12 +215,13 @@ std::string VerdictTable(const std::vector<JudgedItem>& items) {
       {"section", "what", "verdict", "as accepted", "title"}};
   std::string reasons;
   for (const JudgedItem& judged : items) {
-    const std::size_t all = judged.values.size();
+    const auto all = std::count_if(judged.values.begin(), judged.values.end(), IsJudged);
     rows.push_back({judged.item.section, judged.item.name, ToString(judged.verdict),
                     all == 0 ? "" : fmt::format("{} of {}", NumHolding(judged.values), all),
                     judged.item.title});
-    const bool is_open =
-        judged.verdict == Verdict::kNotReproduced || judged.verdict == Verdict::kNotPlayed;
+    const bool is_open = judged.verdict == Verdict::kNotReproduced ||
+                         judged.verdict == Verdict::kCheckFails ||
+                         judged.verdict == Verdict::kNotPlayed;
     if (is_open) reasons += fmt::format("\n{}: {}\n", judged.item.name, judged.reason);
   }
   return FormatTable(rows) + reasons;

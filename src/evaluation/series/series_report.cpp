@@ -26,6 +26,18 @@ std::string InfoLine(const std::string& text) { return "=[ INFO]: " + text + '\n
 
 bool Is(const SeriesRun& run, SeriesOutcome outcome) { return run.outcome == ToString(outcome); }
 
+/// The execution monitor says so, and what really happened agrees.
+bool IsDone(const SeriesRun& run) {
+  return Is(run, SeriesOutcome::kSucceeded) && run.fallen.empty() && run.touched.empty();
+}
+
+/// What the execution monitor does not know.
+std::string TruthText(const SeriesRun& run) {
+  std::string text = run.touched;
+  for (const std::string& thing : run.fallen) text += (text.empty() ? "" : "; ") + thing + " fell";
+  return text;
+}
+
 std::vector<std::string> Episodes(const SeriesReport& report) {
   std::vector<std::string> names;
   for (const SeriesRun& run : report.runs) {
@@ -34,12 +46,16 @@ std::vector<std::string> Episodes(const SeriesReport& report) {
   return names;
 }
 
-double MeanFluents(const SeriesReport& report) {
-  std::vector<double> fluents;
+double MeanOf(const SeriesReport& report, double (*number)(const SeriesRun&)) {
+  std::vector<double> numbers;
   for (const SeriesRun& run : report.runs) {
-    if (!run.episode.empty()) fluents.push_back(static_cast<double>(run.fluents));
+    if (!run.episode.empty()) numbers.push_back(number(run));
   }
-  return Mean(fluents);
+  return Mean(numbers);
+}
+
+double MeanFluents(const SeriesReport& report) {
+  return MeanOf(report, [](const SeriesRun& run) { return static_cast<double>(run.fluents); });
 }
 
 /// "0 2"
@@ -61,11 +77,13 @@ std::string RestartsText(const SeriesRun& run) {
 }
 
 std::string RunTable(const SeriesReport& report) {
-  Table table{{"run", "choices", "seed", "outcome", "simulated", "fluents", "restarts", "cause"}};
+  Table table{{"run", "choices", "seed", "outcome", "simulated", "fluents", "restarts", "cause",
+               "in truth"}};
   for (const SeriesRun& run : report.runs) {
     table.push_back({std::to_string(run.run), ChoicesText(run.choices), std::to_string(run.seed),
                      run.outcome, fmt::format("{:.1f} s", run.simulated_seconds),
-                     std::to_string(run.fluents), RestartsText(run), Short(run.cause)});
+                     std::to_string(run.fluents), RestartsText(run), Short(run.cause),
+                     Short(TruthText(run))});
   }
   return FormatTable(table);
 }
@@ -91,12 +109,17 @@ std::string OutcomeTable(const SeriesReport& report) {
                      fmt::format("{:.0f} %", 100.0 * share.estimate),
                      fmt::format("{:.0f} .. {:.0f} %", 100.0 * share.lower, 100.0 * share.upper)});
   }
+  const int done = static_cast<int>(std::count_if(report.runs.begin(), report.runs.end(), IsDone));
+  const Interval share = WilsonInterval(done, all);
+  table.push_back({"succeeded, and in truth nothing fell or was touched", std::to_string(done),
+                   fmt::format("{:.0f} %", 100.0 * share.estimate),
+                   fmt::format("{:.0f} .. {:.0f} %", 100.0 * share.lower, 100.0 * share.upper)});
   return FormatTable(table);
 }
 
 std::string ChoiceTable(const SeriesReport& report) {
-  Table table{
-      {"group", "choice", "succeeded", "of", "share", "95 % interval (Wilson)", "which is"}};
+  Table table{{"group", "choice", "succeeded in truth", "of", "share", "95 % interval (Wilson)",
+               "which is"}};
   for (const ChoiceShare& each : SharesByChoice(report)) {
     table.push_back(
         {each.group, std::to_string(each.choice), std::to_string(each.succeeded),
@@ -155,7 +178,7 @@ std::vector<ChoiceShare> SharesByChoice(const SeriesReport& report) {
       if (Is(run, SeriesOutcome::kBroken)) continue;
       ChoiceShare& share = by_choice[run.choices.at(g)];
       share.played += 1;
-      share.succeeded += Is(run, SeriesOutcome::kSucceeded) ? 1 : 0;
+      share.succeeded += IsDone(run) ? 1 : 0;
     }
     for (auto& [choice, share] : by_choice) {
       share.group = group.name;
@@ -226,10 +249,14 @@ ordered_json ToJson(const SeriesReport& report) {
   for (const SeriesOutcome outcome : AllOutcomes()) {
     outcomes[ToString(outcome)] = CountOf(report, outcome);
   }
+  outcomes["succeeded_in_truth"] = std::count_if(report.runs.begin(), report.runs.end(), IsDone);
   return {{"series", report.series.name},
           {"groups", groups},
           {"outcomes", outcomes},
           {"mean_fluents", MeanFluents(report)},
+          {"mean_fluents_per_second", MeanOf(report, FluentsPerSecond)},
+          {"mean_simulated_seconds",
+           MeanOf(report, [](const SeriesRun& run) { return run.simulated_seconds; })},
           {"stored", report.stored},
           {"shares", shares},
           {"runs", runs}};

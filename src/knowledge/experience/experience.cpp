@@ -9,8 +9,6 @@
 namespace hires::knowledge {
 namespace {
 
-constexpr double kDelay = 1.5;  // [periods] of dynamics behind their sample
-
 std::int64_t Nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
 
 std::string CsvOf(const Dynamics& motion, double time) {
@@ -43,7 +41,7 @@ ToppleState ParseToppleState(const std::string& text) {
 
 std::string CsvOf(const ToppleEpisodePart& part) {
   const std::int64_t now = Nanoseconds(part.time);
-  const double middle = part.time - kDelay * kExperiencePeriod;
+  const double middle = part.time - kDynamicsDelay;
   return fmt::format(
       "{},0,{},,{},{},0,{},/base_footprint,{},{},0.0,{},0,0,,0.0,0.0,0.0,{},0,{},/map,{},{},{}",
       now, now, part.episode, ToString(part.state), now, part.alpha, part.deviation,

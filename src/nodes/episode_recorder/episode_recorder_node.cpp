@@ -6,11 +6,11 @@
 
 #include <boost/function.hpp>
 #include <boost/make_shared.hpp>
-#include <ctime>
 #include <filesystem>
 #include <system_error>
 
 #include "hires/base/error.h"
+#include "hires/base/local_time.h"
 #include "hires/base/log.h"
 #include "hires/ros/node/private_params.h"
 
@@ -22,15 +22,6 @@ using hires::base::ConfigError;
 using hires::base::LogLevel;
 
 constexpr std::uint32_t kQueue = 6000;  // a minute of what comes at 100 Hz
-
-std::string LocalTime() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  localtime_r(&now, &parts);
-  char text[32];
-  std::strftime(text, sizeof(text), "%Y-%m-%d-%H-%M-%S", &parts);
-  return text;
-}
 
 bool IsLatched(const ros::M_string& header) {
   const auto latching = header.find("latching");
@@ -60,7 +51,7 @@ EpisodeRecorderParams LoadEpisodeRecorderParams() {
 }
 
 EpisodeRecorderNode::EpisodeRecorderNode(const EpisodeRecorderParams& params, ros::NodeHandle* nh)
-    : rotation_(params.folder, LocalTime(), params.episode.bags),
+    : rotation_(params.folder, hires::base::LocalTime(), params.episode.bags),
       chunk_(static_cast<std::uint32_t>(params.episode.bags.chunk)) {
   for (const hires::evaluation::EpisodeTopic& topic : params.episode.topics) {
     const boost::function<void(const Event&)> take =

@@ -7,30 +7,12 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/robot/tray.h"
 #include "sensing/memory/memory_parts.h"
 
 namespace hires::sensing {
-namespace {
 
 using geometry::Pose3;
-
-/// The largest of the tray's shapes from above: rims are smaller than the plate.
-std::optional<geometry::Aabb> PlateOf(const robot::Robot& robot) {
-  const auto link = robot.model.FindLink(robot.profile.tray_link);
-  if (!link) return std::nullopt;
-  std::optional<geometry::Aabb> plate;
-  double largest = 0.0;
-  for (const geometry::Collision& collision : robot.model.links[*link].collisions) {
-    const geometry::Aabb bounds = geometry::BoundsOf(collision.shape, collision.X_BS);
-    const Eigen::Vector3d size = bounds.upper - bounds.lower;
-    if (size.x() * size.y() <= largest) continue;
-    largest = size.x() * size.y();
-    plate = bounds;
-  }
-  return plate;
-}
-
-}  // namespace
 
 geometry::Aabb BoundsOf(const std::vector<geometry::Collision>& collisions) {
   geometry::Aabb bounds;
@@ -76,7 +58,7 @@ ObjectMemory::ObjectMemory(std::shared_ptr<const perception::Surroundings> surro
     : surroundings_(std::move(surroundings)),
       robot_(std::move(robot)),
       params_(params),
-      tray_T_(PlateOf(*robot_)) {
+      tray_T_(robot::TrayPlateOf(*robot_)) {
   if (!robot_->profile.upper_body) return;
   for (const auto& [arm, unused] : robot_->profile.upper_body->arms) hands_[arm] = {};
 }
@@ -147,11 +129,8 @@ Eigen::Vector3d ObjectMemory::PlaceOf(const Links& links, const RememberedObject
 
 bool ObjectMemory::IsOverTray(const Links& links, const Pose3& X_MO) const {
   if (!tray_T_) return false;
-  constexpr double kBeside = 0.02, kBelow = 0.05, kAbove = 0.10;  // [m]
-  const Eigen::Vector3d p_T = links.X_ML(robot_->profile.tray_link).Inverse() * X_MO.translation;
-  return p_T.x() >= tray_T_->lower.x() - kBeside && p_T.x() <= tray_T_->upper.x() + kBeside &&
-         p_T.y() >= tray_T_->lower.y() - kBeside && p_T.y() <= tray_T_->upper.y() + kBeside &&
-         p_T.z() >= tray_T_->upper.z() - kBelow && p_T.z() <= tray_T_->upper.z() + kAbove;
+  return robot::IsOverPlate(*tray_T_,
+                            links.X_ML(robot_->profile.tray_link).Inverse() * X_MO.translation);
 }
 
 void ObjectMemory::PlaceAt(const Links& links, const Pose3& X_MO, RememberedObject* object) const {

@@ -24,7 +24,8 @@ struct Acceptance {
     kWithin,   ///< |ours - published| <= bound
     kFactor,   ///< published / bound <= ours <= published * bound; both above 0
     kAtLeast,  ///< ours >= bound; what is published is a saying, such as "more than twice"
-    kAtMost
+    kAtMost,
+    kShown  ///< it stands there, and is not judged
   };
   Kind kind{Kind::kWithin};
   double bound{0.0};
@@ -33,7 +34,9 @@ struct Acceptance {
 /// Where a number stands.
 struct AnswerField {
   std::string play;
-  std::string pointer;  ///< JSON pointer into the play's answer; true and false are 1 and 0 there
+  /// JSON pointer into the play's answer; true and false are 1 and 0 there. A step `key=value` is
+  /// the first entry of a list whose `key` says so.
+  std::string pointer;
 };
 std::string ToString(const AnswerField& field);  ///< "durations:/measures/failed"
 
@@ -58,6 +61,9 @@ struct CatalogueItem {
   std::vector<std::string> plays;     ///< whose answers it shows
   std::vector<std::string> drawings;  ///< by their names in scripts/report, PLAY:DRAWING
   std::vector<ComparedValue> values;
+  std::string bounds;  ///< where the bounds of its values come from; empty: none is judged
+  /// The dissertation has no number to compare with: what is judged is our own bound.
+  bool is_own{false};
   /// A picture of the package that stands beside a published one without numbers; or empty.
   std::string picture;
   std::string holds;  ///< what it says where all values are as accepted, or there are none

@@ -14,6 +14,8 @@ enum class Verdict {
   kReproduced,     ///< all numbers are as accepted
   kBetter,         ///< likewise, and those that may be better than published are
   kNotReproduced,  ///< a number is not as accepted, or is none
+  kCheckHolds,     ///< as kReproduced, where the dissertation has no number (CatalogueItem::is_own)
+  kCheckFails,     ///< as kNotReproduced, likewise
   kShown,     ///< nothing to compare: a picture or a description stands beside the published one
   kNotPlayed  ///< an answer, or a field of one, that it needs is missing
 };
@@ -22,7 +24,7 @@ const char* ToString(Verdict verdict);  ///< "not reproduced"
 struct JudgedValue {
   ComparedValue value;
   std::optional<double> found;  ///< nothing: the answer has null there
-  bool holds{false};
+  bool holds{false};            ///< false for what is only shown
   bool is_better{false};
 };
 

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "hires/evaluation/experience/load_follower.h"
+#include "hires/imagination/rollout.h"
+#include "hires/robot/robot_profile.h"
+
+namespace hires_ros {
+
+struct ToppleMonitorParams {
+  std::string world_topic, robot_topic;
+  hires::evaluation::LoadFollower::Params follower;
+  hires::imagination::RolloutParams rollout;  ///< with the thresholds of Eq. 5.1
+  hires::robot::Robot robot;
+  std::string store;  ///< file of experiences
+  std::string run;    ///< what the parts belong to
+};
+
+/// From ~config, ~robot, ~store and ~run.
+/// @throws hires::base::ConfigError naming parameter, file and key.
+ToppleMonitorParams LoadToppleMonitorParams();
+
+}  // namespace hires_ros
