@@ -7,6 +7,7 @@
 #include "cli/reproduce/play_runner.h"
 #include "cli/reproduce/play_store.h"
 #include "hires/base/text.h"
+#include "hires/base/writer_lock.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
@@ -123,6 +124,19 @@ TEST_F(ReproduceTest, ABrokenNoteIsNamed) {
   folder_.Write("results/one-" + store.KeyOf(play) + "/played.json", "{");
   EXPECT_THAT(hires::test_support::ConfigErrorOf([&] { store.Find(play); }),
               AllOf(HasSubstr("played.json"), HasSubstr("delete its folder")));
+}
+
+TEST_F(ReproduceTest, OneAtATimeWritesAFolder) {
+  const std::string results = folder_.path().string();
+  const base::WriterLock lock(results + "/results", "wait");
+  const auto run = [&](const std::vector<std::string>& words) {
+    return hires::test_support::RunHires({"reproduce"}, words);
+  };
+  const auto refused = run({"5.1", "--results", results, "--quiet"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("is being written by process"),
+                                 HasSubstr("name another folder with --results")));
+  EXPECT_EQ(run({"5.1", "--list", "--results", results}).code, 0);
 }
 
 TEST_F(ReproduceTest, TheVerbListsPlaysAndJudges) {

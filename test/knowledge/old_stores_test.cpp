@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "knowledge/store/store_lock.h"
+#include "hires/base/writer_lock.h"
 #include "support/temporary_folder.h"
 
 namespace hires::knowledge::old_stores_test {
@@ -77,7 +77,7 @@ TEST_F(OldStoresTest, WhatOnlyBearsSuchANameStays) {
 
 TEST_F(OldStoresTest, AStoreThatIsBeingWrittenStays) {
   const std::string old = Write("topple_run_a.db", 1000);
-  const WriterLock lock(old);
+  const base::WriterLock lock(old, "wait");
   EXPECT_THAT(Prune({1.0, 1}), IsEmpty());
   EXPECT_TRUE(fs::exists(old));
 }

@@ -16,6 +16,7 @@
 #include "cli/reproduce/play_store.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/base/writer_lock.h"
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/evaluation/reproduce/catalogue.h"
@@ -164,8 +165,10 @@ int RunReproduceVerb(const ReproduceOptions& options, const std::string& package
   PlaysOrder order;
   order.plays = evaluation::PlaysFor(catalogue, items);
   order.program = std::filesystem::read_symlink("/proc/self/exe").string();
-  PlayStore store({ResultsFolder(options), package_folder, path, HashOfFile(order.program)});
+  const std::string results = ResultsFolder(options);
+  PlayStore store({results, package_folder, path, HashOfFile(order.program)});
   if (options.is_list) return List(items, order.plays, &store);
+  const base::WriterLock lock(results + "/results", "name another folder with --results");
   CheckReport(options.report);
   ReportOrigin origin;
   origin.verb = "reproduce";

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "hires/base/error.h"
-#include "knowledge/store/store_lock.h"
+#include "hires/base/writer_lock.h"
 #include "knowledge/store/store_schema.h"
 
 namespace hires::knowledge {
@@ -71,7 +71,7 @@ std::vector<OldStore> StoresBeside(const fs::path& store) {
 /// False where another process writes it, or it cannot be removed.
 bool Remove(const fs::path& path) {
   try {
-    const WriterLock lock(path.string());
+    const base::WriterLock lock(path.string(), "open the store read-only");
     std::error_code error;
     for (const char* part : kParts) fs::remove(path.string() + part, error);
     std::error_code ignored;

@@ -18,6 +18,7 @@ constexpr int kLogPages = 8000;              // [4 KiB] of the log before it goe
 constexpr int kLogBytes = kLogPages * 4096;  // to which a longer log is cut back
 
 const std::string kInMemory = ":memory:";
+const std::string kReadOnly = "open the store read-only";
 
 std::filesystem::path FolderOf(const std::string& path) {
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
@@ -81,7 +82,7 @@ StoreFile::StoreFile(const std::string& path, const StoreOptions& options)
     throw base::ConfigError(":memory: holds nothing to read; name a file, or open it for writing");
   }
   if (path != kInMemory) CheckPath(path, read_only_);
-  if (path != kInMemory && !read_only_) lock_ = std::make_unique<WriterLock>(path);
+  if (path != kInMemory && !read_only_) lock_ = std::make_unique<base::WriterLock>(path, kReadOnly);
   Guarded(path, [&] {
     database_ = Open(path, read_only_);
     Configure(options);

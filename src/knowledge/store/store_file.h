@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "hires/base/writer_lock.h"
 #include "hires/knowledge/store.h"
-#include "knowledge/store/store_lock.h"
 
 namespace hires::knowledge {
 
@@ -32,7 +32,7 @@ class StoreFile {
 
   std::string path_;
   bool read_only_;
-  std::unique_ptr<WriterLock> lock_;  // before the database: given back after it is closed
+  std::unique_ptr<base::WriterLock> lock_;  // before the database: given back after it is closed
   std::unique_ptr<SQLite::Database> database_;
 };
 

@@ -1,4 +1,4 @@
-#include "knowledge/store/store_lock.h"
+#include "hires/base/writer_lock.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::knowledge {
+namespace hires::base {
 namespace {
 
 /// One file has one lock, by whatever way its folder is named.
@@ -38,20 +38,20 @@ std::string HolderName(int descriptor) {
 
 }  // namespace
 
-WriterLock::WriterLock(const std::string& path) {
+WriterLock::WriterLock(const std::string& path, const std::string& otherwise) {
   const std::string lock = LockPath(path);
   descriptor_ = open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (descriptor_ < 0) {
-    throw base::ConfigError(fmt::format(
+    throw ConfigError(fmt::format(
         "{}: cannot be written, for {} cannot be made ({}); check the folder and its permissions, "
-        "or open the store read-only",
-        path, lock, std::strerror(errno)));
+        "or {}",
+        path, lock, std::strerror(errno), otherwise));
   }
   if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     const std::string holder = HolderName(descriptor_);
     close(descriptor_);
-    throw base::ConfigError(fmt::format(
-        "{}: is being written by {}; end that one, or open the store read-only", path, holder));
+    throw ConfigError(
+        fmt::format("{}: is being written by {}; end that one, or {}", path, holder, otherwise));
   }
   // The name is for the message of the second process: on a full disk it may be missing.
   const std::string name = OwnName();
@@ -62,4 +62,4 @@ WriterLock::WriterLock(const std::string& path) {
 
 WriterLock::~WriterLock() { close(descriptor_); }
 
-}  // namespace hires::knowledge
+}  // namespace hires::base
