@@ -205,7 +205,8 @@ TEST_F(AchieveVerbTest, ATaskIsPlayedInThisProgramWithoutAnyNode) {
 TEST_F(AchieveVerbTest, WhatCannotBePlayedIsNamed) {
   Ended ended = Run({"--local", "--scenario", "tipple"});
   EXPECT_EQ(ended.code, kExitNotAchieved);
-  EXPECT_THAT(ended.err, HasSubstr("config/scenarios/tipple.yaml: no such file"));
+  EXPECT_THAT(ended.err, HasSubstr("config/scenarios: scenario 'tipple' is unknown; did you mean "
+                                   "'topple'?; or give a path"));
   EXPECT_THAT(Run({"--local", "--truth", "foregin"}).err, HasSubstr("'foreign'"));
   EXPECT_THAT(Run({"--local", "--config", "lop.yaml"}).err, HasSubstr("lop.yaml"));
   ended = Run({"--local", "sreve_coffee_to_guest", "guest1"});
