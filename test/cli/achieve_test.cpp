@@ -215,6 +215,24 @@ TEST_F(AchieveVerbTest, WhatCannotBePlayedIsNamed) {
   EXPECT_THAT(Run({}).err, HasSubstr("wanted a task"));
 }
 
+TEST_F(AchieveVerbTest, AnAreaThatNothingKnowsIsRefusedBeforeAnythingBegins) {
+  const std::string own = std::string(HIRES_SOURCE_DIR) + "/examples/own_robot/";
+  const auto deliver = [&](const std::string& object, const std::string& area) {
+    return Run({"--local", "--scenario", own + "scenario.yaml", "--world", own + "hall.world",
+                "--robot", own + "courier.yaml", "--objects", own + "objects.yaml", "--domain",
+                own + "delivery.lisp", "--dry-run", "--imagination", "off", "deliver", object,
+                area});
+  };
+  const Ended ended = deliver("soup1", "atRundTable");
+  EXPECT_EQ(ended.code, kExitNotAchieved);
+  EXPECT_EQ(ended.out, "");
+  EXPECT_THAT(ended.err, HasSubstr("task argument 'atRundTable' is unknown; did you mean "
+                                   "'atRoundTable'?"));
+  EXPECT_THAT(deliver("sup1", "atRoundTable").err, HasSubstr("did you mean 'soup1'?"));
+  EXPECT_EQ(deliver("soup1", "ATROUNDTABLE").code, 0) << "lookups ignore case";
+  EXPECT_EQ(deliver("soup1", "atLongTable").code, 0);
+}
+
 double VirtualSecondsIn(const std::string& text) {
   std::smatch found;
   if (!std::regex_search(text, found, std::regex("([0-9.]+) s of virtual time"))) return -1.0;
