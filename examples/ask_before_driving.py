@@ -36,7 +36,8 @@ def drive(planner, x, y, yaw, motion_set):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n', maxsplit=1)[0])
     parser.add_argument('area')
-    parser.add_argument('pose', type=float, nargs=3, metavar=('X', 'Y', 'YAW'))
+    for name in ('x', 'y', 'yaw'):
+        parser.add_argument(name, type=float)
     parser.add_argument('--from', dest='begin', required=True)
     parser.add_argument('--object', action='append', default=[])
     parser.add_argument('--planner', default='move_base/DWAPlannerROS')
@@ -48,7 +49,8 @@ def main():
     if answer.recommended is None:
         return 2
     motion_set = answer.recommended.arguments[1]
-    return 0 if drive(arguments.planner, *arguments.pose, motion_set) else 1
+    is_there = drive(arguments.planner, arguments.x, arguments.y, arguments.yaw, motion_set)
+    return 0 if is_there else 1
 
 
 if __name__ == '__main__':

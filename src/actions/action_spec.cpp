@@ -92,7 +92,8 @@ std::string Signature(const ActionSpec& spec) {
 void CheckArguments(const ActionSpec& spec, const base::ActionCall& call) {
   if (call.arguments.size() == spec.parameters.size()) return;
   throw base::ConfigError(
-      fmt::format("has {} arguments, wanted {} ({})", call.arguments.size(), spec.parameters.size(),
+      fmt::format("has {} argument{}, wanted {} ({})", call.arguments.size(),
+                  call.arguments.size() == 1 ? "" : "s", spec.parameters.size(),
                   spec.parameters.empty() ? "none" : base::Join(NamesOf(spec.parameters), ", ")));
 }
 

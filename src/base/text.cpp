@@ -6,7 +6,9 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
+#include <tuple>
 
 #include "hires/base/error.h"
 #include "hires/base/spelling.h"
@@ -14,11 +16,65 @@
 namespace hires::base {
 namespace {
 
-/// Whether one may have been mistyped for the other: at most half of it differs, or one holds the
-/// other.
-bool IsAlike(const std::string& a, const std::string& b) {
-  if (EditDistance(a, b) <= std::max(a.size(), b.size()) / 2) return true;
-  return a.find(b) != std::string::npos || b.find(a) != std::string::npos;
+constexpr std::size_t kMostGuesses = 3;
+constexpr char kUnfinished[] = ".unfinished";  // behind the name of a file that is being written
+
+[[noreturn]] void FailToWrite(const std::string& path) {
+  throw ConfigError(fmt::format("{}: cannot be written; check folder, rights and space", path));
+}
+
+/// How many letters the two have in common at their beginnings and at their ends.
+std::size_t CommonEnds(const std::string& a, const std::string& b) {
+  const std::size_t shorter = std::min(a.size(), b.size());
+  std::size_t begin = 0, end = 0;
+  while (begin < shorter && a[begin] == b[begin]) ++begin;
+  while (begin + end < shorter && a[a.size() - 1 - end] == b[b.size() - 1 - end]) ++end;
+  return begin + end;
+}
+
+/// Whether one was mistyped for the other: a third of it may differ, or two letters be swapped.
+bool IsSlipOf(const std::string& a, const std::string& b) {
+  const std::size_t distance = EditDistance(a, b);
+  if (distance <= std::max<std::size_t>(1, std::max(a.size(), b.size()) / 3)) return true;
+  return distance == 2 && a.size() == b.size() &&
+         std::is_permutation(a.begin(), a.end(), b.begin());
+}
+
+/// Whether all letters of `part` come in `whole`, in that order.
+bool HasInOrder(const std::string& whole, const std::string& part) {
+  std::size_t found = 0;
+  for (const char letter : whole) {
+    if (found < part.size() && part[found] == letter) ++found;
+  }
+  return found == part.size();
+}
+
+/// Whether one stands in the other, or one is short for the other, as peper1 for peppermill1.
+bool IsPart(const std::string& a, const std::string& b) {
+  const auto& [part, whole] = std::minmax(
+      a, b, [](const auto& one, const auto& other) { return one.size() < other.size(); });
+  if (part.size() < 3) return false;
+  if (whole.find(part) != std::string::npos) return true;
+  return part.size() > 3 && 2 * part.size() >= whole.size() && part[0] == whole[0] &&
+         HasInOrder(whole, part);
+}
+
+/// What was meant, best first; empty where nothing comes near enough for a guess.
+std::vector<std::string> Guesses(const std::string& name, const std::vector<std::string>& known) {
+  const std::string lower = ToLower(name);
+  std::vector<std::string> mistyped, parts;
+  std::size_t best = 0;
+  for (const std::string& candidate : NearestNames(name, known, known.size())) {
+    const std::string other = ToLower(candidate);
+    const std::size_t distance = EditDistance(lower, other);
+    if (mistyped.empty()) best = distance;
+    // Beside a clear slip others are no guess.
+    if (distance <= best + 1 && IsSlipOf(lower, other)) mistyped.push_back(candidate);
+    if (IsPart(lower, other)) parts.push_back(candidate);
+  }
+  std::vector<std::string>& guesses = mistyped.empty() ? parts : mistyped;
+  guesses.resize(std::min(guesses.size(), kMostGuesses));
+  return guesses;
 }
 
 }  // namespace
@@ -48,40 +104,41 @@ std::string Join(const std::vector<std::string>& parts, std::string_view separat
 
 std::vector<std::string> NearestNames(const std::string& name,
                                       const std::vector<std::string>& known, std::size_t at_most) {
-  std::vector<std::pair<std::size_t, std::string>> ranked;
-  ranked.reserve(known.size());
   const std::string lower = ToLower(name);
+  // Of two as near, the one that begins and ends alike: peppermil1 is peppermill1.
+  std::set<std::tuple<std::size_t, std::ptrdiff_t, std::string>> ranked;
   for (const std::string& candidate : known) {
-    ranked.emplace_back(EditDistance(lower, ToLower(candidate)), candidate);
+    const std::string other = ToLower(candidate);
+    ranked.emplace(EditDistance(lower, other),
+                   -static_cast<std::ptrdiff_t>(CommonEnds(lower, other)), candidate);
   }
-  std::sort(ranked.begin(), ranked.end());
   std::vector<std::string> nearest;
-  for (std::size_t i = 0; i < std::min(at_most, ranked.size()); ++i) {
-    nearest.push_back(ranked[i].second);
+  for (const auto& entry : ranked) {
+    if (nearest.size() == at_most) break;
+    nearest.push_back(std::get<std::string>(entry));
   }
   return nearest;
 }
 
 std::string UnknownName(std::string_view kind, const std::string& name,
-                        const std::vector<std::string>& known) {
+                        const std::vector<std::string>& known, std::string_view lister) {
   if (known.empty()) return fmt::format("{} '{}' is unknown; none is defined", kind, name);
-  std::vector<std::string> alike;
-  for (const std::string& candidate : NearestNames(name, known)) {
-    if (IsAlike(ToLower(name), ToLower(candidate))) alike.push_back(candidate);
-  }
-  const bool is_guess = !alike.empty() || known.size() == 1;
-  if (is_guess) {
+  const std::vector<std::string> guesses = known.size() == 1 ? known : Guesses(name, known);
+  if (!guesses.empty()) {
     return fmt::format("{} '{}' is unknown; did you mean '{}'?", kind, name,
-                       Join(alike.empty() ? known : alike, "' or '"));
+                       Join(guesses, "' or '"));
   }
-  constexpr std::size_t kMost = 12;
-  if (known.size() <= kMost) {
+  constexpr std::size_t kMostListed = 12;
+  if (known.size() <= kMostListed) {
     return fmt::format("{} '{}' is unknown; did you mean one of '{}'?", kind, name,
                        Join(known, "', '"));
   }
+  if (!lister.empty()) {
+    return fmt::format("{} '{}' is unknown; `{}` lists what there is", kind, name, lister);
+  }
   // Of many the first ones of the alphabet would tell nothing.
   return fmt::format("{} '{}' is unknown; did you mean one of '{}', ...?", kind, name,
-                     Join(NearestNames(name, known, kMost), "', '"));
+                     Join(NearestNames(name, known, kMostGuesses), "', '"));
 }
 
 std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
@@ -106,7 +163,7 @@ std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
 }
 
 void ReplaceTextFile(const std::string& path, const std::string& text) {
-  const std::string unfinished = path + ".unfinished";
+  const std::string unfinished = path + kUnfinished;
   std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
   file << text;
   file.close();
@@ -114,7 +171,21 @@ void ReplaceTextFile(const std::string& path, const std::string& text) {
   if (file) std::filesystem::rename(unfinished, path, error);
   if (file && !error) return;
   std::filesystem::remove(unfinished, error);
-  throw ConfigError(fmt::format("{}: cannot be written; check folder, rights and space", path));
+  FailToWrite(path);
+}
+
+void RequireReplaceable(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw ConfigError(fmt::format("{}: cannot be written: it is a folder; name a file", path));
+  }
+  // Devices and pipes stay as they are; only opening them would tell, and would be noticed.
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    return;
+  const std::string unfinished = path + kUnfinished;
+  const bool is_made = std::ofstream(unfinished, std::ios::app).is_open();
+  std::filesystem::remove(unfinished, error);
+  if (!is_made) FailToWrite(path);
 }
 
 }  // namespace hires::base

@@ -31,9 +31,11 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
+#include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "hires/cli/blackboard_command.h"
 #include "hires/cli/doctor.h"
+#include "hires/cli/hypothesis_play.h"
 #include "hires/cli/report_output.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/report_json.h"
@@ -323,13 +325,38 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
   return code;
 }
 
-/// CLI11 itself would only say that a verb is missing.
-void RefuseUnknownVerb(const CLI::App& app, const std::vector<std::string>& arguments) {
-  if (arguments.size() < 2 || arguments[1].empty() || arguments[1].front() == '-') return;
-  std::vector<std::string> verbs;
-  for (const CLI::App* verb : app.get_subcommands({})) verbs.push_back(verb->get_name());
-  if (std::count(verbs.begin(), verbs.end(), arguments[1]) > 0) return;
-  throw base::ConfigError(base::UnknownName("verb", arguments[1], verbs));
+/// The first argument from `place` on that is neither an option of the verb nor an option's value;
+/// the number of arguments where there is none.
+std::size_t NextWord(const CLI::App& verb, const std::vector<std::string>& arguments,
+                     std::size_t place) {
+  for (; place < arguments.size() && arguments[place] != "--"; ++place) {
+    const std::string& word = arguments[place];
+    if (word.empty() || word.front() != '-') return place;
+    const CLI::Option* option = verb.get_option_no_throw(word);
+    if (option != nullptr && option->get_items_expected_min() > 0) ++place;
+  }
+  return arguments.size();
+}
+
+/// CLI11 itself would only say that a verb is missing, or take a misspelt one for a file.
+/// @param begin  of the arguments behind the verb `app`.
+void RefuseUnknownVerb(const CLI::App& app, const std::vector<std::string>& arguments,
+                       std::size_t begin = 1) {
+  const std::vector<const CLI::App*> inner = app.get_subcommands({});
+  const std::size_t place = NextWord(app, arguments, begin);
+  if (inner.empty() || place >= arguments.size() || arguments[place].empty()) return;
+  const std::string& word = arguments[place];
+  std::vector<std::string> shown;
+  bool is_misspelt = false;
+  for (const CLI::App* verb : inner) {
+    if (verb->get_name() == word) return RefuseUnknownVerb(*verb, arguments, place + 1);
+    if (verb->get_group().empty()) continue;  // programs call it
+    shown.push_back(verb->get_name());
+    is_misspelt = is_misspelt || base::AreSpeltAlike(word, verb->get_name());
+  }
+  const bool may_be_a_file = app.get_require_subcommand_min() == 0;  // as that of `experiment`
+  if (may_be_a_file && (!is_misspelt || std::filesystem::exists(word))) return;
+  throw base::ConfigError(base::UnknownName("verb", word, shown));
 }
 
 /// CLI11 itself would say first what else is missing, and never what comes near.
@@ -426,6 +453,7 @@ void AddVerbs(CLI::App* app, Verbs* verbs, const Backends& backends) {
   for (const Verb& verb : backends.more_verbs) {
     CLI::App* other = app->add_subcommand(verb.name, verb.help)->prefix_command();
     other->set_help_flag();  // its own parser explains it
+    if (verb.name == kHypothesisRunVerb || verb.name == kScenarioRunVerb) other->group("");
     verbs->others.push_back(other);
   }
 }
@@ -552,6 +580,7 @@ int RunCommandLine(const std::vector<std::string>& arguments, const Backends& ba
   HIRES_CHECK(!arguments.empty(), "the program's name is missing");
   CLI::App app("HIRES: imagine an action in physics before doing it", "hires");
   app.require_subcommand(1);
+  app.set_version_flag("--version", "hires " HIRES_VERSION, "print the version and end");
   Verbs verbs;
   AddVerbs(&app, &verbs, backends);
   SetCall(arguments, backends, &verbs);

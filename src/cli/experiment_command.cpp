@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "cli/named_file.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
@@ -49,7 +50,16 @@ void Print(const evaluation::ExperimentReport& report) {
   }
 }
 
-ReportOrigin OriginOf(const ExperimentOptions& options,
+/// A path, or a name in config/experiments.
+std::string ExperimentPath(const ExperimentOptions& options) {
+  std::vector<std::string> verbs;
+  for (const CLI::App* inner : options.verb->get_subcommands({}))
+    verbs.push_back(inner->get_name());
+  return NamedFile("experiment", options.file,
+                   options.report.package_folder + "/config/experiments", verbs);
+}
+
+ReportOrigin OriginOf(const ExperimentOptions& options, const std::string& path,
                       const evaluation::ExperimentConfig& config) {
   const auto file = [](const std::string& path) {
     return path == "scene" || path == "none" || path == "given" ? "" : path;
@@ -57,7 +67,7 @@ ReportOrigin OriginOf(const ExperimentOptions& options,
   ReportOrigin origin;
   origin.verb = "experiment";
   if (!IsWanted(options.report)) return origin;
-  origin.inputs = {{"experiment", options.file},
+  origin.inputs = {{"experiment", path},
                    {"scene", config.scene},
                    {"uncertainty", file(config.uncertainty)},
                    {"map", options.map.empty() ? file(config.map) : options.map}};
@@ -106,7 +116,8 @@ std::string ProgressText(double fraction, double elapsed) {
 void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
   CLI::App* verb = app->add_subcommand(
       "experiment", "play an experiment of config/experiments and check what it expects");
-  verb->add_option("file", options->file, "YAML file of the experiment");
+  verb->add_option("file", options->file,
+                   "YAML file of the experiment, or its name in config/experiments");
   verb->add_option("--threads", options->threads, "default: one per core; changes no number")
       ->check(NumberBetween(1, 256));
   verb->add_option("--seed", options->seed, "instead of the file's");
@@ -137,13 +148,15 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
 int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool()>& cancelled) {
   if (options.file.empty()) {
     throw base::ConfigError(
-        "experiment: wanted a YAML file, such as config/experiments/paired.yaml, or `hypothesis`, "
+        "experiment: wanted a YAML file or its name in config/experiments, such as paired, or "
+        "`hypothesis`, "
         "`decision`, `recognition`, `detector`, `ladder`, `localisation` or `torso_poses` (see "
         "hires "
         "experiment hypothesis --help)");
   }
+  const std::string file = ExperimentPath(options);
   const evaluation::ExperimentConfig config =
-      evaluation::ReadExperiment(options.file, OverridesOf(options));
+      evaluation::ReadExperiment(file, OverridesOf(options));
   if (options.only_hashes) {
     std::cout << HeadText(evaluation::UnplayedReport(config));
     return kExitRecommended;
@@ -151,7 +164,7 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   CheckWritable(options.csv);
   if (!options.junit.empty()) evaluation::RequireFolderOf(options.junit);
   CheckReport(options.report);
-  const ReportOrigin origin = OriginOf(options, config);
+  const ReportOrigin origin = OriginOf(options, file, config);
   evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   std::optional<knowledge::ExperienceStore> experiences = ExperiencesOf(options, config);
   if (experiences) {

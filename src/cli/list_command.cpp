@@ -347,7 +347,7 @@ Sources SourcesOf(const ListOptions& o, const std::string& package_folder) {
 void AddListVerb(CLI::App* app, ListOptions* o) {
   CLI::App* verb =
       app->add_subcommand("list", "names that other verbs take: " + base::Join(Kinds(), ", "));
-  verb->add_option("what", o->what, base::Join(Kinds(), ", "))->required();
+  verb->add_option("what", o->what, base::Join(Kinds(), ", "));
   verb->add_option("--world", o->world, "another SDF world: its areas and objects");
   verb->add_option("--robot", o->robot,
                    "another robot, profile (.yaml) or URDF: its tray, motion sets and postures");
@@ -362,6 +362,10 @@ void AddListVerb(CLI::App* app, ListOptions* o) {
 }
 
 int RunListVerb(const ListOptions& options, const std::string& package_folder) {
+  if (options.what.empty()) {
+    throw base::ConfigError(
+        fmt::format("list: nothing came, wanted one of '{}'", base::Join(Kinds(), "', '")));
+  }
   const auto lister = Listers().find(options.what);
   if (lister == Listers().end()) {
     throw base::ConfigError(base::UnknownName("list", options.what, Kinds()));

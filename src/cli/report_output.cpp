@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
@@ -110,6 +111,13 @@ ordered_json HeadJson(const ReportOptions& options, const ReportOrigin& origin) 
           {"hashes", origin.hashes}};
 }
 
+/// Hours of work must not end at a file that cannot be written.
+void RequireWritable(const std::string& path) {
+  if (path.empty()) return;
+  evaluation::RequireFolderOf(path);
+  base::RequireReplaceable(fs::weakly_canonical(path).string());
+}
+
 /// What is wanted of the JSON file, of standard input where it is "-".
 void MakePictures(const std::string& file, const std::string& html, const std::string& png,
                   const std::string& package_folder, const std::string& input = "") {
@@ -117,6 +125,13 @@ void MakePictures(const std::string& file, const std::string& html, const std::s
   if (!html.empty()) arguments.insert(arguments.end(), {"--html", html});
   if (!png.empty()) arguments.insert(arguments.end(), {"--png", png});
   if (arguments.size() > 1) RunReportProgram(package_folder, arguments, input);
+}
+
+/// What went to a device, standard output say, needs no word.
+void SaySaved(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) {
+    if (fs::is_regular_file(path)) std::cout << "saved to " << path << '\n';
+  }
 }
 
 }  // namespace
@@ -141,7 +156,7 @@ void AddReportOptions(CLI::App* verb, ReportOptions* options) {
 
 void CheckReport(const ReportOptions& options) {
   for (const std::string& path : {options.json, options.html, options.png}) {
-    if (!path.empty()) evaluation::RequireFolderOf(path);
+    RequireWritable(path);
   }
   if (!(options.html + options.png).empty()) {
     RunReportProgram(options.package_folder, {"--check"});
@@ -160,6 +175,7 @@ void WriteReport(const ReportOptions& options, const ReportOrigin& origin,
       is_stored ? "" : report.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   MakePictures(is_stored ? options.json : "-", options.html, options.png, options.package_folder,
                text);
+  SaySaved({options.json, options.html, options.png});
 }
 
 void RunReportProgram(const std::string& package_folder, const std::vector<std::string>& arguments,
@@ -191,10 +207,9 @@ int RunReportVerb(const StoredReportOptions& options) {
   if ((options.html + options.png).empty()) {
     throw base::ConfigError("report: nothing to make; add --html FILE or --png FILE");
   }
-  for (const std::string& path : {options.html, options.png}) {
-    if (!path.empty()) evaluation::RequireFolderOf(path);
-  }
+  for (const std::string& path : {options.html, options.png}) RequireWritable(path);
   MakePictures(options.file, options.html, options.png, options.package_folder);
+  SaySaved({options.html, options.png});
   return 0;
 }
 

@@ -321,6 +321,7 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   ImaginationSetup setup;
   std::optional<world::OccupancyGrid> map;
   if (!config.map.empty()) map = world::LoadMap(config.map);
+  setup.catalogue = config.objects;
   world::World world = LoadWorldWithObjects(config, map, &setup.object_models);
   robot::Robot robot = robot::LoadAnyRobot(config.robot);
   setup.robot_hash = PutGuardBefore(config.has_base_guard, &robot);
@@ -369,7 +370,9 @@ std::string ImaginationSetup::ModelOf(const std::string& instance_or_model) cons
     if (base::ToLower(name) == base::ToLower(instance_or_model)) return name;
     known.push_back(name);
   }
-  throw base::ConfigError(base::UnknownName("object", instance_or_model, known));
+  throw base::ConfigError(
+      fmt::format("{}{}{}", catalogue, catalogue.empty() ? "" : ": ",
+                  base::UnknownName("object", instance_or_model, known, "hires list objects")));
 }
 
 RolloutSetup MakeRolloutSetup(const ImaginationSetup& setup, const StartState& start,

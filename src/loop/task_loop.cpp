@@ -14,6 +14,7 @@
 #include "loop/middle_layer.h"
 #include "loop/monitor_shell.h"
 #include "loop/robot_side.h"
+#include "loop/task_names.h"
 
 namespace hires::loop {
 namespace {
@@ -56,6 +57,7 @@ LoopOrder Completed(const LoopOrder& order, const evaluation::Scenario& scenario
     throw base::ConfigError(
         fmt::format("{} (domain {})", error.what(), parts.config.execution.domain));
   }
+  RequireKnownArguments(parts, scenario, complete.task, problem);
   return complete;
 }
 

@@ -9,6 +9,7 @@
 #include "hires/base/hash.h"
 #include "hires/base/log.h"
 #include "hires/base/param_reader.h"
+#include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "robot/drive_guess.h"
 #include "robot/extra_sensors_reader.h"
@@ -177,6 +178,20 @@ RobotProfile ReadProfile(ParamReader* in) {
   if (in->Has("sensors")) profile.sensors = ReadExtraSensors(in->Sub("sensors"));
   in->RejectUnknownKeys();
   return profile;
+}
+
+/// Of a file of another kind it would not help to hear which of a profile's keys it lacks first.
+void RequireSomeProfile(const ParamReader& in, const std::string& path) {
+  for (const std::string& key : in.Keys()) {
+    for (const char* known : {"base_link", "tray_link", "motion_sets", "upper_body", "footprint"}) {
+      if (key == known) return;
+    }
+    if (base::EditDistance(base::ToLower(key), "urdf") <= 2) return;  // mistyped at most
+  }
+  throw base::ConfigError(
+      fmt::format("{}: is no robot's profile, which begins with the name of its URDF (urdf: "
+                  "my_robot.urdf); config/robots/cart.yaml is one",
+                  path));
 }
 
 void CheckProfile(ParamReader in, const RobotProfile& profile, const RobotModel& model) {
@@ -351,6 +366,7 @@ std::uint64_t Robot::hash() const {
 
 Robot LoadRobot(const std::string& profile_path) {
   ParamReader in = ParamReader::FromFile(profile_path);
+  RequireSomeProfile(in, profile_path);
   Robot robot;
   robot.profile = ReadProfile(&in);
   const std::filesystem::path folder = std::filesystem::path(profile_path).parent_path();

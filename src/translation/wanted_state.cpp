@@ -44,8 +44,8 @@ class Reader {
     if (reader == kReaders.end()) return RequirePassedOver(atom);
     const auto& [num_arguments, read] = reader->second;
     if (atom.arguments.size() != num_arguments) {
-      Refuse(atom,
-             fmt::format("has {} arguments, wanted {}", atom.arguments.size(), num_arguments));
+      Refuse(atom, fmt::format("has {} argument{}, wanted {}", atom.arguments.size(),
+                               atom.arguments.size() == 1 ? "" : "s", num_arguments));
     }
     (this->*read)(atom);
   }

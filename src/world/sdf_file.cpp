@@ -271,6 +271,10 @@ void ReadSdfWorld(const std::string& path, const ResourceFinder& finder,
   const ConsoleBridgeCapture urdf_console;
   const XmlLimits limits;
   const XmlInventory inventory = CheckXmlFile(path, finder, limits);
+  if (inventory.at(path).root == "robot") {
+    throw base::ConfigError(fmt::format(
+        "{}: this is a robot (URDF), wanted a world (SDF); give it with --robot", path));
+  }
   const auto parts = CutWorld(base::ReadTextFile(path, limits.max_file_bytes), models_per_part);
   if (!parts.empty() && ReadInParts(parts, path, finder, inventory, console, use)) return;
   console.Forget();

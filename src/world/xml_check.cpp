@@ -27,7 +27,10 @@ class XmlWalk {
 
   void VisitText(const std::string& text, const std::string& path) {
     tinyxml2::XMLDocument document;
-    if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
+    if (document.Parse(text.data(), text.size()) == tinyxml2::XML_ERROR_EMPTY_DOCUMENT) {
+      throw base::ConfigError(fmt::format("{}: is empty, wanted XML; name another file", path));
+    }
+    if (document.Error()) {
       throw base::ConfigError(fmt::format("{}:{}: not well-formed XML ({}); correct it there", path,
                                           document.ErrorLineNum(), document.ErrorName()));
     }

@@ -111,7 +111,7 @@ TEST(ActionSpecTest, TheNumberOfArgumentsMustFit) {
   EXPECT_THAT(ConfigErrorOf([] {
                 CheckArguments(PutBeside(), {"put_beside", {"mug1"}});
               }),
-              HasSubstr("has 1 arguments, wanted 2 (object, arm)"));
+              HasSubstr("has 1 argument, wanted 2 (object, arm)"));
   EXPECT_EQ(Signature(PutBeside()), "put_beside(object, arm)");
 }
 

@@ -52,6 +52,15 @@ TEST(NearestNamesTest, RanksByEditDistanceThenByName) {
   EXPECT_THAT(NearestNames("TABLE2", known, 1), ElementsAre("table2"));
 }
 
+TEST(NearestNamesTest, OfTwoAsNearTheOneThatEndsAlikeComesFirst) {
+  EXPECT_THAT(NearestNames("peppermil1", {"peppermill", "peppermill1"}),
+              ElementsAre("peppermill1", "peppermill"));
+}
+
+TEST(NearestNamesTest, NamesEachOnce) {
+  EXPECT_THAT(NearestNames("9.9", {"A.9", "5.9", "A.9"}), ElementsAre("5.9", "A.9"));
+}
+
 TEST(NearestNamesTest, CountsInsertionDeletionAndReplacementAsOne) {
   EXPECT_THAT(NearestNames("kitten", {"sitting", "kit", "kittens"}),
               ElementsAre("kittens", "kit", "sitting"));  // distances 1, 3, 3
@@ -76,13 +85,40 @@ TEST(UnknownNameTest, WhatLooksLikeNothingKnownGetsTheListAndNoGuess) {
   std::vector<std::string> many;
   for (int i = 10; i < 30; ++i) many.push_back("table" + std::to_string(i));
   const std::string text = UnknownName("area", "moon", many);
-  EXPECT_NE(text.find("'table21', ...?"), std::string::npos) << text;
-  EXPECT_EQ(text.find("table22"), std::string::npos) << text;
+  EXPECT_NE(text.find("'table12', ...?"), std::string::npos) << text;
+  EXPECT_EQ(text.find("table13"), std::string::npos) << text;
   many.insert(many.begin(), "a_place_that_is_far_away");
   many.push_back("spoon_");
   const std::string nearest = UnknownName("area", "fork", many);
-  EXPECT_NE(nearest.find("one of 'spoon_', 'table10'"), std::string::npos) << nearest;
-  EXPECT_EQ(nearest.find("a_place"), std::string::npos) << nearest;
+  EXPECT_NE(nearest.find("one of 'spoon_', 'table10', 'table11', ...?"), std::string::npos)
+      << nearest;
+  EXPECT_EQ(UnknownName("area", "fork", many, "hires list areas"),
+            "area 'fork' is unknown; `hires list areas` lists what there is");
+  EXPECT_EQ(UnknownName("area", "tabel12", many, "hires list areas"),
+            "area 'tabel12' is unknown; did you mean 'table12'?");
+}
+
+TEST(UnknownNameTest, OnlyAThirdOfANameIsASlip) {
+  EXPECT_EQ(UnknownName("ranking", "best", {"risk", "cost", "thesis"}),
+            "ranking 'best' is unknown; did you mean one of 'risk', 'cost', 'thesis'?");
+  EXPECT_EQ(UnknownName("motion set", "fats", {"slow", "fast"}),
+            "motion set 'fats' is unknown; did you mean 'fast'?");
+  EXPECT_EQ(UnknownName("option", "--wrld", {"--help", "--map", "--world"}),
+            "option '--wrld' is unknown; did you mean '--world'?");
+}
+
+TEST(UnknownNameTest, BesideAClearSlipOthersAreNoGuess) {
+  EXPECT_EQ(UnknownName("option", "--rolouts", {"--robot", "--rollouts"}),
+            "option '--rolouts' is unknown; did you mean '--rollouts'?");
+}
+
+TEST(UnknownNameTest, WhatWasShortenedIsGuessedWhereNothingWasMistyped) {
+  EXPECT_EQ(UnknownName("object", "peper1", {"cup1", "fork1", "peppermill1"}),
+            "object 'peper1' is unknown; did you mean 'peppermill1'?");
+  EXPECT_EQ(UnknownName("area", "counter1", {"placingAreaCounter1", "table1"}),
+            "area 'counter1' is unknown; did you mean 'placingAreaCounter1'?");
+  EXPECT_EQ(UnknownName("area", "counter1", {"placingAreaCounter1", "counter2"}),
+            "area 'counter1' is unknown; did you mean 'counter2'?");
 }
 
 /// A folder of its own that goes away with the test.
@@ -139,6 +175,23 @@ TEST_F(ReadTextFileTest, AFileIsReplacedWholeOrNotAtAll) {
       << "nothing unfinished is left";
   EXPECT_THAT([] { ReplaceTextFile("/no/such/folder/x.csv", "x"); },
               ThrowsMessage<ConfigError>(HasSubstr("/no/such/folder/x.csv: cannot be written")));
+}
+
+TEST_F(ReadTextFileTest, WhetherAFileMayBeReplacedIsKnownBefore) {
+  const std::string path = Write("a.txt", "before");
+  RequireReplaceable(path);
+  RequireReplaceable((folder_ / "new.txt").string());
+  RequireReplaceable("/dev/null");
+  EXPECT_EQ(ReadTextFile(path), "before");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1)
+      << "nothing was made";
+  EXPECT_THAT([&] { RequireReplaceable(folder_.string()); },
+              ThrowsMessage<ConfigError>(
+                  AllOf(HasSubstr(folder_.string()), HasSubstr("it is a folder; name a file"))));
+  for (const char* nowhere : {"/no/such/folder/x.csv", "/proc/x.csv"}) {
+    EXPECT_THAT([&] { RequireReplaceable(nowhere); },
+                ThrowsMessage<ConfigError>(HasSubstr(nowhere)));
+  }
 }
 
 TEST_F(ReadTextFileTest, AForbiddenFileIsNamed) {

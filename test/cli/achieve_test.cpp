@@ -205,13 +205,32 @@ TEST_F(AchieveVerbTest, ATaskIsPlayedInThisProgramWithoutAnyNode) {
 TEST_F(AchieveVerbTest, WhatCannotBePlayedIsNamed) {
   Ended ended = Run({"--local", "--scenario", "tipple"});
   EXPECT_EQ(ended.code, kExitNotAchieved);
-  EXPECT_THAT(ended.err, HasSubstr("config/scenarios/tipple.yaml: no such file"));
+  EXPECT_THAT(ended.err, HasSubstr("config/scenarios: scenario 'tipple' is unknown; did you mean "
+                                   "'topple'?; or give a path"));
   EXPECT_THAT(Run({"--local", "--truth", "foregin"}).err, HasSubstr("'foreign'"));
   EXPECT_THAT(Run({"--local", "--config", "lop.yaml"}).err, HasSubstr("lop.yaml"));
   ended = Run({"--local", "sreve_coffee_to_guest", "guest1"});
   EXPECT_EQ(ended.code, kExitNotAchieved);
   EXPECT_THAT(ended.err, HasSubstr("serve_coffee_to_guest"));
   EXPECT_THAT(Run({}).err, HasSubstr("wanted a task"));
+}
+
+TEST_F(AchieveVerbTest, AnAreaThatNothingKnowsIsRefusedBeforeAnythingBegins) {
+  const std::string own = std::string(HIRES_SOURCE_DIR) + "/examples/own_robot/";
+  const auto deliver = [&](const std::string& object, const std::string& area) {
+    return Run({"--local", "--scenario", own + "scenario.yaml", "--world", own + "hall.world",
+                "--robot", own + "courier.yaml", "--objects", own + "objects.yaml", "--domain",
+                own + "delivery.lisp", "--dry-run", "--imagination", "off", "deliver", object,
+                area});
+  };
+  const Ended ended = deliver("soup1", "atRundTable");
+  EXPECT_EQ(ended.code, kExitNotAchieved);
+  EXPECT_EQ(ended.out, "");
+  EXPECT_THAT(ended.err, HasSubstr("task argument 'atRundTable' is unknown; did you mean "
+                                   "'atRoundTable'?"));
+  EXPECT_THAT(deliver("sup1", "atRoundTable").err, HasSubstr("did you mean 'soup1'?"));
+  EXPECT_EQ(deliver("soup1", "ATROUNDTABLE").code, 0) << "lookups ignore case";
+  EXPECT_EQ(deliver("soup1", "atLongTable").code, 0);
 }
 
 double VirtualSecondsIn(const std::string& text) {

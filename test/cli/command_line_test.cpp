@@ -224,6 +224,28 @@ TEST(CommandLineTest, HelpIsNoError) {
   EXPECT_THAT(RunHires({"imagine", "--help"}).out, HasSubstr("--rollouts"));
 }
 
+TEST(CommandLineTest, TheVersionIsThatOfThePackage) {
+  const Ended ended = RunHires({"--version"});
+  EXPECT_EQ(ended.code, 0);
+  const std::string package = base::ReadTextFile(std::string(HIRES_SOURCE_DIR) + "/package.xml");
+  ASSERT_THAT(ended.out, AllOf(StartsWith("hires "), EndsWith("\n")));
+  EXPECT_THAT(package,
+              HasSubstr("<version>" + ended.out.substr(6, ended.out.size() - 7) + "</version>"));
+}
+
+TEST(CommandLineTest, VerbsThatProgramsCallAreNotShown) {
+  Backends backends;
+  bool is_run = false;
+  backends.more_verbs.push_back({"scenario_run", "one run", [&](const std::vector<std::string>&) {
+                                   is_run = true;
+                                   return 0;
+                                 }});
+  EXPECT_THAT(RunHires({"--help"}, {}, backends).out, Not(HasSubstr("scenario_run")));
+  EXPECT_THAT(RunHires({"scenario_rn"}, {}, backends).err, Not(HasSubstr("scenario_run")));
+  RunHires({"scenario_run", "x"}, {}, backends);
+  EXPECT_TRUE(is_run);
+}
+
 TEST(CommandLineTest, ADoctorForRobotsIsAskedWithItsOptions) {
   std::optional<RobotDoctorOptions> seen;
   Backends backends;
@@ -345,9 +367,26 @@ TEST(CommandLineTest, RefusesUnknownVerbsAndOptions) {
   ExpectRefused(RunHires({"imagine", "--actoin", "move_base"}),
                 {"option '--actoin' is unknown; did you mean '--action'"});
   ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{"--rolouts=3"}),
-                {"option '--rolouts' is unknown; did you mean '--rollouts'"});
+                {"option '--rolouts' is unknown; did you mean '--rollouts'?"});
+  ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{"--wrld", "a.world"}),
+                {"option '--wrld' is unknown; did you mean '--world'?"});
   ExpectRefused(RunHires({"experiment", "decision", "--truht", "same"}), {"'--truth'"});
   ExpectRefused(RunHires({"imagine", "--action", "move_base"}), {"--from", "required"});
+}
+
+TEST(CommandLineTest, RefusesUnknownVerbsBelowVerbs) {
+  ExpectRefused(RunHires({"experiences", "analyze", "x.db"}),
+                {"verb 'analyze' is unknown; did you mean 'analyse'?"});
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"qery", "--store", "s"},
+                                                {"--store", "s", "qery"},
+                                                {"--store=s", "qery"}}) {
+    ExpectRefused(RunHires({"blackboard"}, words),
+                  {"verb 'qery' is unknown; did you mean 'query'?"});
+  }
+  ExpectRefused(RunHires({"experiment", "hypothsis", "--scenario", "topple"}),
+                {"verb 'hypothsis' is unknown; did you mean 'hypothesis'?"});
+  ExpectRefused(RunHires({"experiment", "--quiet", "--seed", "3", "lader"}),
+                {"verb 'lader' is unknown; did you mean 'ladder'?"});
 }
 
 TEST(CommandLineTest, RefusesNumbersOutOfRange) {
@@ -370,6 +409,7 @@ TEST(CommandLineTest, RefusesNumbersOutOfRange) {
                   {"hires: --seed", "no whole number", "hires imagine --help"});
   }
   ExpectRefused(with("--ranking", "luck"), {"luck", "risk", "thesis"});
+  ExpectRefused(with("--ranking", "best"), {"did you mean one of 'risk', 'cost', 'thesis'?"});
 }
 
 TEST(CommandLineTest, RefusesWhatTheWorldDoesNotKnow) {
@@ -384,6 +424,15 @@ TEST(CommandLineTest, RefusesWhatTheWorldDoesNotKnow) {
   ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Door", "--arg", "Window",
                                  "--object", "pepermill1"}),
                 {"object 'pepermill1' is unknown", "'peppermill1'"});
+  const auto with_object = [](const std::string& object) {
+    return Small().Imagine(
+        {"--action", "move_base", "--from", "Door", "--arg", "Window", "--object", object});
+  };
+  ExpectRefused(with_object("peppermil1"), {"did you mean 'peppermill1'?"});
+  ExpectRefused(with_object("peper1"), {"did you mean 'peppermill1'?"});
+  ExpectRefused(with_object("zebra"),
+                {"worlds/objects.yaml: object 'zebra' is unknown; `hires list "
+                 "objects` lists what there is"});
   ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Inside", "--arg", "Window"}),
                 {"robot starts in collision", "'pillar'"});
 }
@@ -445,6 +494,23 @@ TEST(CommandLineTest, NamesMissingFiles) {
   ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Door", "--arg", "Window",
                                  "--object", "/nowhere/mill.sdf"}),
                 {"/nowhere/mill.sdf"});
+}
+
+TEST(CommandLineTest, FilesOfAnotherKindAreToldWhatIsWanted) {
+  const TemporaryFolder folder;
+  const std::string root = HIRES_SOURCE_DIR;
+  const auto with = [](const std::string& option, const std::string& file) {
+    return Small().Imagine(kDrive + std::vector<std::string>{option, file});
+  };
+  const std::string objects = folder.Write("none.yaml", ""), world = folder.Write("none.world", "");
+  ExpectRefused(with("--objects", objects),
+                {objects + ": object 'peppermill1' is unknown; none is defined"});
+  ExpectRefused(with("--world", world), {world + ": is empty"});
+  ExpectRefused(with("--world", root + "/urdf/cart.urdf"),
+                {"cart.urdf: this is a robot (URDF)", "give it with --robot"});
+  ExpectRefused(with("--robot", root + "/worlds/workshop.world"),
+                {"wanted a profile (.yaml) or a URDF"});
+  ExpectRefused(with("--robot", root + "/worlds/objects.yaml"), {"is no robot's profile"});
 }
 
 TEST(CommandLineTest, AMissingFolderForTheAnswerIsSaidBeforeAnythingIsPlayed) {

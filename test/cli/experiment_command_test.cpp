@@ -56,5 +56,20 @@ TEST(ExperimentCommandTest, WritesWhatIsExpectedForBuildServers) {
   EXPECT_EQ(ExitCode("", {"--junit", "/no/such/folder/x.xml"}), 1);
 }
 
+TEST(ExperimentCommandTest, AFileOfThePackageIsFoundByItsName) {
+  const auto ended = RunHires({"experiment", "legs_world", "--hashes"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(
+      ended.out,
+      RunHires({"experiment", kRoot + "/config/experiments/legs_world.yaml", "--hashes"}).out);
+  EXPECT_THAT(RunHires({"experiment", "paird"}).err,
+              testing::HasSubstr("config/experiments: experiment 'paird' is unknown; did you mean "
+                                 "'paired'?; or give a path"));
+  EXPECT_THAT(RunHires({"experiment", "none.yaml"}).err,
+              testing::HasSubstr("none.yaml: no such file"));
+  EXPECT_THAT(RunHires({"experiment"}).err,
+              testing::HasSubstr("config/experiments, such as paired"));
+}
+
 }  // namespace
 }  // namespace hires::cli::experiment_command_test

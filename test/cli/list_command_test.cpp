@@ -156,7 +156,7 @@ TEST(ListCommandTest, WhatItCannotListIsRefused) {
     EXPECT_THAT(ended.err, HasSubstr(text));
   };
   expect({"area"}, "list 'area' is unknown; did you mean 'areas'");
-  expect({}, "what is required");
+  expect({}, "list: nothing came, wanted one of 'actions', 'areas', 'motion_sets', ");
   expect({"areas", "--world", "/nowhere.world"}, "/nowhere.world");
   expect({"tasks", "--domain", "/nowhere.lisp"}, "/nowhere.lisp: no such file");
   expect({"areas", "--json", "/nowhere/areas.json"}, "/nowhere");

@@ -115,6 +115,26 @@ TEST_F(ReportOutputTest, FoldersArePutRightBeforeTheWork) {
   }
 }
 
+TEST_F(ReportOutputTest, AFileThatCannotBeWrittenIsSaidBeforeTheWork) {
+  for (std::string ReportOptions::*file :
+       {&ReportOptions::json, &ReportOptions::html, &ReportOptions::png}) {
+    ReportOptions options = Options();
+    options.*file = folder_.path().string();
+    EXPECT_THAT(
+        ConfigErrorOf([&] { CheckReport(options); }),
+        AllOf(HasSubstr(folder_.path().string()), HasSubstr("it is a folder; name a file")));
+    options.*file = "/proc/answer";
+    EXPECT_THAT(ConfigErrorOf([&] { CheckReport(options); }),
+                HasSubstr("/proc/answer: cannot be written"));
+  }
+  ReportOptions options = Options();
+  options.html = folder_.Write("page.html", "before");
+  options.json = "/dev/null";
+  CheckReport(options);
+  EXPECT_EQ(Read("page.html"), "before");
+  EXPECT_EQ(NumFiles(), 1u) << "the check leaves nothing behind";
+}
+
 TEST_F(ReportOutputTest, AProgramThatIsMissingIsAnErrorBeforeTheWork) {
   ReportOptions options = Options();
   options.package_folder = Path("");
@@ -127,9 +147,12 @@ TEST_F(ReportOutputTest, AStoredAnswerGivesThePageThatItCameWith) {
                                 "--problem", kRoot + "/config/domains/problems/serve_coffee.lisp"},
                                {"--json", Path("plan.json"), "--html", Path("plan.html")});
   EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("saved to " + Path("plan.json") + "\nsaved to " +
+                                   Path("plan.html") + "\n"));
   EXPECT_THAT(Read("plan.html"), AllOf(StartsWith("<!DOCTYPE html>"), HasSubstr("(hires plan)")));
   const Ended again = RunHires({"report", Path("plan.json"), "--html", Path("again.html")});
   EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_EQ(again.out, "saved to " + Path("again.html") + "\n");
   EXPECT_EQ(Read("again.html"), Read("plan.html"));
   EXPECT_EQ(NumFiles(), 3u) << "nothing half written stays";
 }

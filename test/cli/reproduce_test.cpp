@@ -144,8 +144,12 @@ TEST_F(ReproduceTest, TheVerbListsPlaysAndJudges) {
     return hires::test_support::RunHires({"reproduce"}, words);
   };
   const std::string results = Path("r");
-  EXPECT_THAT(run({"5.1", "--list", "--results", results}).out, HasSubstr("Fig. 5.1"));
-  EXPECT_THAT(run({"9.9", "--results", results}).err, HasSubstr("'9.9' is unknown"));
+  EXPECT_THAT(run({"5.1", "--list", "--results", results}).out,
+              AllOf(HasSubstr("Fig. 5.1"),
+                    ::testing::ContainsRegex("\n[0-9]+ plays, [0-9]+ s in all; [0-9]+ s "
+                                             "are still to be played\n$")));
+  EXPECT_THAT(run({"9.9", "--results", results}).err,
+              HasSubstr("'9.9' is unknown; did you mean '5.9' or 'A.9'?"));
   const hires::test_support::Ended shown =
       run({"5.1", "--results", results, "--json", Path("r.json"), "--quiet"});
   EXPECT_EQ(shown.code, 0);

@@ -146,6 +146,21 @@ class ScriptsTest(unittest.TestCase):
         self.assertEqual(run("scripts/run").returncode, 2)
 
 
+class LaunchFilesTest(unittest.TestCase):
+    def test_what_many_nodes_print_comes_in_order_also_in_a_file(self):
+        # In a file the C library would keep back what is no warning.
+        for name in ("closed_loop", "imagination", "pr2"):
+            with self.subTest(name):
+                launch = ElementTree.parse(os.path.join(ROOT, "launch", f"{name}.launch")).getroot()
+                before_nodes = {}
+                for tag in launch:
+                    if tag.tag in ("group", "include", "node"):
+                        break
+                    if tag.tag == "env":
+                        before_nodes[tag.get("name")] = tag.get("value")
+                self.assertEqual(before_nodes.get("ROSCONSOLE_STDOUT_LINE_BUFFERED"), "1")
+
+
 class RunCtestTest(unittest.TestCase):
     def results_of(self, tests, *arguments):
         """The suite that test/run_ctest.py writes of a build folder with these tests {name: command}."""

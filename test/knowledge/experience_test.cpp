@@ -125,11 +125,14 @@ TEST_F(ExperienceStoreTest, OtherFilesAreRefusedByName) {
     return ConfigErrorOf([&] { ExperienceStore(path, mode); });
   };
   EXPECT_THAT(open(Path("none.db"), ExperienceStore::Mode::kRead),
-              AllOf(HasSubstr("none.db"), HasSubstr("no such file")));
+              AllOf(HasSubstr("none.db: no such file; wanted experiences: `hires experiment "),
+                    HasSubstr("topple_loop.yaml --experiences FILE` makes them")));
   EXPECT_THAT(open(Path("x/none.db"), ExperienceStore::Mode::kWrite),
               HasSubstr("there is no folder"));
   std::ofstream(Path("text.db")) << std::string(5000, 'x');
-  EXPECT_THAT(open(Path("text.db"), ExperienceStore::Mode::kRead), HasSubstr("text.db"));
+  for (const auto mode : {ExperienceStore::Mode::kRead, ExperienceStore::Mode::kWrite}) {
+    EXPECT_THAT(open(Path("text.db"), mode), HasSubstr("text.db: holds no experiences; name"));
+  }
   std::ofstream(Path("empty.db"));
   EXPECT_THAT(open(Path("empty.db"), ExperienceStore::Mode::kRead),
               HasSubstr("holds no experiences"));

@@ -7,6 +7,7 @@
 
 #include "hires/planning/planner.h"
 #include "hires/planning/planning_files.h"
+#include "hires/planning/request.h"
 #include "hires/planning/shop2_reader.h"
 #include "hires/planning/task_text.h"
 #include "hires/planning/validator.h"
@@ -19,9 +20,11 @@ namespace {
 
 using hires::test_support::ConfigErrorOf;
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 constexpr char kDomain[] = R"((defdomain d (
 (:operator (!wave ?who) () () ())
@@ -38,6 +41,20 @@ PlanResult PlanFor(const std::string& tasks, bool strict = false) {
   PlanRequest request;
   request.strict = strict;
   return FindPlans(domain, problem, request);
+}
+
+TEST(SymbolsTest, ArgumentsOfTasksAreNamedEachOnceWithoutHeads) {
+  EXPECT_THAT(ArgumentSymbols(ReadTasks("(:unordered (greet anna 3) (tell (eve anna) bert))", "t")),
+              ElementsAre("anna", "eve", "bert"));
+}
+
+TEST(SymbolsTest, WhatFactsAndDomainWriteIsKnown) {
+  const Domain domain = ReadShop2Domain(kDomain, "d.lisp");
+  const Problem problem =
+      ReadShop2Problems("(defproblem p d ((near anna)) ((greet eve)))", "p.lisp").front();
+  EXPECT_THAT(SymbolsOf(domain, problem),
+              AllOf(Contains("anna"), Contains("!wave"), Contains("near"), Not(Contains("eve")),
+                    Not(Contains("?who"))));
 }
 
 TEST(UnknownNamesTest, WhereNothingReachesThemThereIsAPlanAndAWarning) {

@@ -3,6 +3,8 @@
 
 import os
 import socket
+import subprocess
+import sys
 import unittest
 
 import hires
@@ -16,6 +18,19 @@ class NoMasterTest(unittest.TestCase):
             with self.assertRaisesRegex(hires.ImaginationError,
                                         'no master answers at %s .*; start one' % uri):
                 hires.init_node('nobody')
+
+    def test_the_example_that_drives_says_how_it_is_called(self):
+        example = os.path.join(os.path.dirname(__file__), '..', '..', 'examples', 'ask_before_driving.py')
+
+        def called(*arguments):
+            return subprocess.run([sys.executable, '-B', example, *arguments], stdout=subprocess.PIPE,
+                                  stderr=subprocess.PIPE, text=True, check=False)
+        told = called('kitchen', '7.0', '12.2')
+        self.assertEqual(told.returncode, 2, told.stderr)
+        self.assertRegex(told.stderr, '(?s)^usage: .* area x y yaw.*required: yaw, --from')
+        told = called('--help')
+        self.assertEqual(told.returncode, 0, told.stderr)
+        self.assertIn('as fast as imagination recommends', told.stdout)
 
 
 if __name__ == '__main__':

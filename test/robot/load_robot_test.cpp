@@ -53,5 +53,20 @@ TEST(LoadAnyRobotTest, AFileThatIsMissingIsAnErrorOfItsKind) {
   EXPECT_THROW(LoadAnyRobot(kRoot + "/config/robots/nothing.yaml"), base::ConfigError);
 }
 
+TEST(LoadAnyRobotTest, AFileOfAnotherKindIsToldWhatIsWanted) {
+  const auto error_of = [](const std::string& path) {
+    return hires::test_support::ConfigErrorOf([&] { LoadAnyRobot(path); });
+  };
+  EXPECT_THAT(error_of(kRoot + "/worlds/workshop.world"),
+              testing::HasSubstr("workshop.world: is no robot by its ending '.world'; wanted a "
+                                 "profile (.yaml) or a URDF (.urdf)"));
+  EXPECT_THAT(error_of(kRoot + "/worlds/objects.yaml"),
+              testing::HasSubstr("objects.yaml: is no robot's profile, which begins with the name "
+                                 "of its URDF"));
+  const hires::test_support::TemporaryFolder folder;
+  EXPECT_THAT(error_of(folder.Write("mistyped.yaml", "urfd: cart.urdf\n")),
+              testing::HasSubstr("key 'urfd' is unknown; did you mean 'urdf'?"));
+}
+
 }  // namespace
 }  // namespace hires::robot::load_robot_test

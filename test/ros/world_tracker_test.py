@@ -533,6 +533,23 @@ class WorldTrackerTest(unittest.TestCase):
                          'what was seen meanwhile, without another look')
         self.assertEqual(self.value('poseBook1', 'hasFrame'), None)
 
+    def test_what_is_seen_after_the_end_of_an_episode_is_no_fault(self):
+        def call(service, kind, **fields):
+            answer = self.rospy.ServiceProxy('blackboard/' + service, kind)(**fields)
+            self.assertEqual(answer.error.code, 0, answer.error.message)
+            return answer
+        self.expect('robotAtPR21', 'hasArea', 'nearstartarea1')
+        episode = call('start_episode', self.srv.StartEpisode, task='serve').episode.id
+        self.add_task(episode)
+        self.at_table()
+        self.expect('robotAtPR21', 'hasArea', 'premanipulationareasouthtable1')
+        written = {fluent.instance for fluent in self.query(in_episode=True, episode=episode)}
+        self.assertEqual(written & {'task1', 'robotAtPR21'}, {'task1', 'robotAtPR21'})
+        call('finish_episode', self.srv.FinishEpisode, id=episode, outcome='succeeded')
+        self.look({'book1': ('book', translation(7.48, 11.28, 0.73))})
+        self.expect('onBook1', 'hasArea', 'placingareawestrighttable1')
+        self.assertNotIn('unwritten', self.tracker.output())
+
     def test_bad_input_is_warned_of_and_changes_nothing(self):
         self.at_table()
         self.look({})
@@ -578,10 +595,10 @@ class WorldTrackerTest(unittest.TestCase):
 
     # The head.
 
-    def add_task(self):
+    def add_task(self, episode=0):
         task = self.msg.Fluent(concept_name='ServeCoffeeToGuestTask', instance='task1', properties=[
             self.msg.FluentProperty(role='hasArgument', type='xsd:string', text='guest1')])
-        by = self.msg.Assertion(source=self.msg.Assertion.MONITOR)
+        by = self.msg.Assertion(source=self.msg.Assertion.MONITOR, episode=episode)
         answer = self.rospy.ServiceProxy('blackboard/add', self.srv.WriteFluents)(
             fluents=[task], by=by)
         self.assertEqual(answer.error.code, 0, answer.error.message)

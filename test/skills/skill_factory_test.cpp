@@ -71,7 +71,7 @@ TEST(SkillFactoryTest, RefusesTheWrongNumberOfArguments) {
               AllOf(HasSubstr("has 0 arguments"), HasSubstr("wanted 1 (area)")));
   EXPECT_THAT(WhyNot("move_base", {"east", "fast"}), HasSubstr("has 2 arguments, wanted 1 (area)"));
   EXPECT_THAT(WhyNot("move_base_param", {"east"}),
-              HasSubstr("has 1 arguments, wanted 2 (area, motion_set)"));
+              HasSubstr("has 1 argument, wanted 2 (area, motion_set)"));
 }
 
 TEST(SkillFactoryTest, KnowsTheAreasOfTheWorldFlat) {
@@ -144,7 +144,7 @@ TEST(SkillFactoryUpperBodyTest, RefusesUnknownArmsPosturesAndAreas) {
 
 TEST(SkillFactoryUpperBodyTest, RefusesTheWrongNumberOfArguments) {
   EXPECT_THAT(WhyNotInRestaurant({"move_arms_to_carryposture", {"rightarm1"}}),
-              HasSubstr("has 1 arguments, wanted 0 (none)"));
+              HasSubstr("has 1 argument, wanted 0 (none)"));
   EXPECT_THAT(WhyNotInRestaurant({"place_object", {"mug1", "rightarm1"}}),
               HasSubstr("has 2 arguments, wanted 3 (object, arm, area)"));
   EXPECT_THAT(WhyNotInRestaurant({"place_on_tray", {"mug1"}}), HasSubstr("wanted 2 (arm, object)"));

@@ -297,8 +297,10 @@ TEST_F(LoadWorldTest, RefusesFilesThatAreNoWorld) {
   };
   EXPECT_THAT(error_of("<sdf version='1.7'>\n<world name='a'>\n</sdf>\n"),
               AllOf(HasSubstr("a.world:"), HasSubstr("XML")));
-  EXPECT_THAT(error_of(""), HasSubstr("a.world"));
-  EXPECT_THAT(error_of("<robot name='r'/>"), HasSubstr("a.world"));
+  EXPECT_THAT(error_of(""), HasSubstr("a.world: is empty, wanted XML"));
+  EXPECT_THAT(error_of("<robot name='r'><link name='l'/></robot>"),
+              HasSubstr("a.world: this is a robot (URDF), wanted a world (SDF); give it with "
+                        "--robot"));
   EXPECT_THAT(error_of("<sdf version='1.7'>" + LooseCube("a") + "</sdf>"),
               HasSubstr("0 <world> elements, wanted 1"));
   EXPECT_THAT(error_of("<sdf version='99.0'><world name='a'/></sdf>"), HasSubstr("a.world"));

@@ -11,14 +11,17 @@ std::string ToLower(std::string_view text);
 std::vector<std::string> Split(std::string_view text, char separator);  ///< "" gives {""}
 std::string Join(const std::vector<std::string>& parts, std::string_view separator);
 
-/// The `known` names most like `name` by edit distance (case ignored), best first, for messages.
+/// The `known` names most like `name` by edit distance (case ignored), best first, each once; of
+/// two as near the one that begins and ends alike. For messages.
 std::vector<std::string> NearestNames(const std::string& name,
                                       const std::vector<std::string>& known,
                                       std::size_t at_most = 3);
 
-/// "area 'x' is unknown; did you mean 'y' or 'z'?"; where nothing is like it, all that are known.
+/// "area 'x' is unknown; did you mean 'y' or 'z'?"; where nothing is like it, all that are known;
+/// of more than 12 the nearest three, or `lister`.
+/// @param lister  command that lists them: "hires list areas"; empty: there is none.
 std::string UnknownName(std::string_view kind, const std::string& name,
-                        const std::vector<std::string>& known);
+                        const std::vector<std::string>& known, std::string_view lister = "");
 
 /// A whole file as text.  @throws ConfigError naming the path when it is missing, no regular file,
 /// unreadable or larger than `max_bytes`.
@@ -27,5 +30,9 @@ std::string ReadTextFile(const std::string& path, std::size_t max_bytes = 64u <<
 /// All or nothing: a file of that name is replaced only when the new one is whole.
 /// @throws ConfigError naming the path if it cannot be written.
 void ReplaceTextFile(const std::string& path, const std::string& text);
+
+/// Whether ReplaceTextFile may be expected to do it, before hours of work end at it. Leaves what is
+/// there as it is.  @throws ConfigError naming the path: it is a folder, or cannot be written.
+void RequireReplaceable(const std::string& path);
 
 }  // namespace hires::base

@@ -80,6 +80,7 @@ struct ImaginationSetup {
   physics::PhysicsParams physics;
   sensing::SensingParams sensing;
   world::StandingCriterion standing;
+  std::string catalogue;                             ///< file of objects, for messages
   std::map<std::string, std::string> object_models;  ///< instance (lower case) -> model
   translation::TranslatorContext translator;  ///< knows names of objects and areas; no fluents
   std::uint64_t world_hash{0};                ///< world, object models and all parameters of skills

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,11 @@ void SetTasks(const std::string& tasks, const Domain& domain, Problem* problem);
 /// @param field  stands for the atoms in messages: "state[3].arguments[0]: ...".
 /// @throws base::ConfigError naming the atom that is not ground, or no atom.
 void AppendFacts(const std::vector<base::Atom>& atoms, const std::string& field, Problem* problem);
+
+/// Every symbol that facts and domain write.
+std::set<std::string> SymbolsOf(const Domain& domain, const Problem& problem);
+
+/// Symbols among the arguments of the tasks, each once, in the order of the text.
+std::vector<std::string> ArgumentSymbols(const TaskNetwork& tasks);
 
 }  // namespace hires::planning

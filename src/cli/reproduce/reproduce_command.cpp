@@ -79,9 +79,12 @@ int List(const std::vector<CatalogueItem>& items, const std::vector<Play>& plays
   }
   std::cout << evaluation::FormatTable(rows) << '\n';
   rows = {{"play", "answer", "time [s]", "command"}};
+  double seconds = 0.0, missing = 0.0;
   for (const Play& play : plays) {
     store->KeyOf(play);
     const auto stored = store->Find(play);
+    seconds += stored ? stored->seconds : play.seconds;
+    if (!stored) missing += play.seconds;
     std::vector<std::string> words{"hires"};
     words.insert(words.end(), play.command.begin(), play.command.end());
     rows.push_back({play.name,
@@ -91,7 +94,9 @@ int List(const std::vector<CatalogueItem>& items, const std::vector<Play>& plays
                     fmt::format("{:.0f}", stored ? stored->seconds : play.seconds),
                     CommandText(words)});
   }
-  std::cout << evaluation::FormatTable(rows);
+  std::cout << evaluation::FormatTable(rows)
+            << fmt::format("{} plays, {:.0f} s in all; {:.0f} s are still to be played\n",
+                           plays.size(), seconds, missing);
   return kExitRecommended;
 }
 

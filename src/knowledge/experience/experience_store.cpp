@@ -1,5 +1,6 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
+#include <sqlite3.h>
 
 #include <cstring>
 #include <filesystem>
@@ -70,11 +71,17 @@ void Bind(const ExperienceQuery& query, SQLite::Statement* statement) {
   if (!query.action.empty()) statement->bind(++place, query.action);
 }
 
+constexpr char kMakers[] =
+    "`hires experiment config/experiments/topple_loop.yaml --experiences FILE` makes them";
+
+[[noreturn]] void FailWithoutExperiences(const std::string& path) {
+  throw base::ConfigError(fmt::format(
+      "{}: holds no experiences; name a new file, or one that holds them: {}", path, kMakers));
+}
+
 void CheckPath(const std::string& path, ExperienceStore::Mode mode) {
   if (mode == ExperienceStore::Mode::kRead && !fs::is_regular_file(path)) {
-    throw base::ConfigError(fmt::format(
-        "{}: no such file; wanted experiences, as --experiences or topple_monitor write them",
-        path));
+    throw base::ConfigError(fmt::format("{}: no such file; wanted experiences: {}", path, kMakers));
   }
   const fs::path folder = fs::path(path).parent_path();
   if (!folder.empty() && !fs::is_directory(folder)) {
@@ -101,8 +108,7 @@ struct ExperienceStore::Implementation {
     const bool is_new = mode == Mode::kWrite &&
                         database.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
     if (!is_new && database.execAndGet("PRAGMA application_id").getInt() != kApplication) {
-      throw base::ConfigError(
-          fmt::format("{}: holds no experiences; name a new file, or one that holds them", path));
+      FailWithoutExperiences(path);
     }
     if (mode == Mode::kRead) return;
     // As the Blackboard's store: a dead process loses nothing that was committed.
@@ -156,7 +162,15 @@ struct ExperienceStore::Implementation {
 
 ExperienceStore::ExperienceStore(const std::string& path, Mode mode) {
   CheckPath(path, mode);
-  Guarded(path, [&] { implementation_ = std::make_unique<Implementation>(path, mode); });
+  Guarded(path, [&] {
+    try {
+      implementation_ = std::make_unique<Implementation>(path, mode);
+    } catch (const SQLite::Exception& error) {
+      // Of other files the store's remedy would speak of the Blackboard.
+      if ((error.getErrorCode() & 0xff) == SQLITE_NOTADB) FailWithoutExperiences(path);
+      throw;
+    }
+  });
 }
 ExperienceStore::ExperienceStore(ExperienceStore&&) noexcept = default;
 ExperienceStore::~ExperienceStore() = default;

@@ -143,8 +143,14 @@ bool ObservationWriter::Call(const char* service, Service* call) {
     return false;
   }
   if (call->response.error.code == hires::BlackboardError::NONE) return true;
-  // An episode that has ended takes nothing more; the next words of the monitor name another.
-  if (call->response.error.code == hires::BlackboardError::REFUSED) episode_ = 0;
+  // An episode that has ended takes nothing more, and what is seen just after its end is no fault.
+  // It is told again without an episode; only what is wrong then, too, is worth a warning.
+  std::int64_t episode = call->request.by.episode;
+  const bool is_refused = call->response.error.code == hires::BlackboardError::REFUSED;
+  if (is_refused && episode != 0) {
+    episode_.compare_exchange_strong(episode, 0);  // the monitor may have named another meanwhile
+    return false;
+  }
   Fail(fmt::format("{}/{}: {}", kBlackboard, service, call->response.error.message));
   return false;
 }

@@ -7,6 +7,7 @@
 #include "hires/base/error.h"
 #include "hires/base/spelling.h"
 #include "hires/planning/reference_prover.h"
+#include "hires/planning/request.h"
 
 namespace hires::planning {
 namespace {
@@ -67,7 +68,6 @@ class Conditions {
   std::vector<Asked> asked_;
 };
 
-/// Every symbol that facts and domain write.
 class Symbols {
  public:
   Symbols(const Domain& domain, const Problem& problem) {
@@ -128,7 +128,30 @@ void CollectSymbols(const Datum& datum, std::vector<std::string>* names) {
   for (const Datum& item : datum.items) CollectSymbols(item, names);
 }
 
+void CollectArguments(const TaskNetwork& network, std::vector<std::string>* names) {
+  for (const TaskItem& item : network.items) {
+    for (std::size_t i = 1; i < item.task.items.size(); ++i) {
+      CollectSymbols(item.task.items[i], names);
+    }
+    for (const TaskNetwork& inner : item.network) CollectArguments(inner, names);
+  }
+}
+
 }  // namespace
+
+std::set<std::string> SymbolsOf(const Domain& domain, const Problem& problem) {
+  return Symbols(domain, problem).names();
+}
+
+std::vector<std::string> ArgumentSymbols(const TaskNetwork& tasks) {
+  std::vector<std::string> all, once;
+  CollectArguments(tasks, &all);
+  std::set<std::string> seen;
+  for (const std::string& name : all) {
+    if (seen.insert(name).second) once.push_back(name);
+  }
+  return once;
+}
 
 std::vector<std::string> UnknownSymbols(const std::vector<Datum>& tasks, const Domain& domain,
                                         const Problem& problem) {
