@@ -5,7 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <sstream>
 
 #include "hires/base/text.h"
 
@@ -16,16 +16,21 @@ namespace fs = std::filesystem;
 
 constexpr char kNodeName[] = "__name:=";
 
+/// Empty, or cut off, where the process has gone meanwhile: then reading fails, which streams keep
+/// to themselves and iterators over their buffers would throw.
 std::string ProcFile(int pid, const char* name) {
   std::ifstream file(fmt::format("/proc/{}/{}", pid, name));
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
 }
 
 std::vector<int> ChildrenOf(int pid) {
   std::vector<int> children;
-  std::error_code error;
-  for (const auto& task : fs::directory_iterator(fmt::format("/proc/{}/task", pid), error)) {
-    std::ifstream file(task.path() / "children");
+  std::error_code error;  // the process may go at any time
+  fs::directory_iterator task(fmt::format("/proc/{}/task", pid), error);
+  for (; !error && task != fs::directory_iterator(); task.increment(error)) {
+    std::ifstream file(task->path() / "children");
     for (int child = 0; file >> child;) children.push_back(child);
   }
   return children;

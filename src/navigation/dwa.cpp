@@ -21,6 +21,7 @@ constexpr double kKeptBehind = 1.0;     // [m] of the path already driven
 constexpr double kRoomSpacing = 0.025;  // [m] between places tried for turning
 constexpr double kRoomReached = 0.01;   // [m]
 constexpr double kRoomShare = 0.9;      // of the goal's tolerance, so that stopping keeps within
+constexpr double kReturnShare = 0.6;    // of it, so that turning keeps within, too
 
 // [m] Kept free around the footprint where possible: poses between two checked ones may lie a
 // quarter of a cell nearer to things, and a base does not follow to the millimetre.
@@ -97,6 +98,7 @@ struct DwaPlanner::Impl {
 
   // On the way.
   DwaResult Drive(const Costmap& costmap, const geometry::Pose2& X_MB, const geometry::Twist2& V_B);
+  std::vector<geometry::Twist2> NextVelocities(const geometry::Twist2& V_B) const;
   bool PrepareGrids(const Costmap& costmap, const geometry::Pose2& X_MB);
   void DropDrivenPath(const Eigen::Vector2d& p_MB);
   std::vector<Candidate> ScoreDistances(const std::vector<geometry::Twist2>& velocities,
@@ -120,6 +122,10 @@ struct DwaPlanner::Impl {
   std::optional<Eigen::Vector2d> FindRoom(const Costmap& costmap, const geometry::Pose2& X_MB);
   bool IsWayFree(const Costmap& costmap, const geometry::Pose2& X_MB, const Eigen::Vector2d& p_MTo);
   bool CanMoveSideways() const { return params_.max_lateral_velocity > 0.0; }
+  /// Turning to the goal's heading may move the believed place by some cm: if the robot stopped at
+  /// the edge again, it would miss the goal again. A base that moves sideways returns to the edge,
+  /// for it need not turn away and back.
+  bool IsReturning() const { return has_missed_ && !CanMoveSideways(); }
   double YawError(const geometry::Pose2& X_MB) const {
     return geometry::WrapToPi(X_MGoal_.yaw - X_MB.yaw);
   }
@@ -147,6 +153,7 @@ struct DwaPlanner::Impl {
   bool align_{false};  // does the forward point have to follow the path?
 
   bool position_reached_{false};
+  bool has_missed_{false};  // came to rest out of tolerance on this path
   bool turning_{false};
   int turn_sign_{0};
   std::optional<Eigen::Vector2d> room_;  // where to turn, if not here
@@ -157,6 +164,7 @@ void DwaPlanner::Impl::SetPath(const std::vector<geometry::Pose2>& path) {
   first_ = 0;
   X_MGoal_ = path.back();
   guard_.Reset();
+  has_missed_ = false;
   LeaveGoal();
 }
 
@@ -169,7 +177,8 @@ void DwaPlanner::Impl::LeaveGoal() {
 DwaResult DwaPlanner::Impl::Update(const Costmap& costmap, const geometry::Pose2& X_MB,
                                    const geometry::Twist2& V_B) {
   DropDrivenPath(X_MB.position());
-  if (GoalDistance(X_MB) <= params_.xy_goal_tolerance) position_reached_ = true;
+  const double share = IsReturning() ? kReturnShare : 1.0;
+  if (GoalDistance(X_MB) <= share * params_.xy_goal_tolerance) position_reached_ = true;
   return position_reached_ ? AtGoal(costmap, X_MB, V_B) : Drive(costmap, X_MB, V_B);
 }
 
@@ -186,7 +195,7 @@ DwaResult DwaPlanner::Impl::Drive(const Costmap& costmap, const geometry::Pose2&
                                   const geometry::Twist2& V_B) {
   DwaResult result;
   if (!sweep_.IsFree(costmap, X_MB, {}, 0.0) || !PrepareGrids(costmap, X_MB)) return result;
-  const auto velocities = ReachableVelocities(params_, limits_, V_B);
+  const auto velocities = NextVelocities(V_B);
   result.num_samples = static_cast<int>(velocities.size());
   const auto candidates = ScoreDistances(velocities, X_MB, costmap.resolution());
   auto best = BestWithObstacles(candidates, costmap, X_MB, &wide_sweep_);
@@ -198,6 +207,17 @@ DwaResult DwaPlanner::Impl::Drive(const Costmap& costmap, const geometry::Pose2&
   result.status = DwaStatus::kDriving;
   result.velocity = best->V_B;
   return result;
+}
+
+/// On the way back to a goal that it missed the base may turn as slowly as it takes to change the
+/// sense of a turn; else one with a low acceleration turns on as it began, the long way round.
+std::vector<geometry::Twist2> DwaPlanner::Impl::NextVelocities(const geometry::Twist2& V_B) const {
+  DwaParams params = params_;
+  if (IsReturning()) {
+    const double change = limits_.max_angular_acceleration * params.control_period;
+    params.min_angular_velocity = std::min(params.min_angular_velocity, 0.5 * change);
+  }
+  return ReachableVelocities(params, limits_, V_B);
 }
 
 bool DwaPlanner::Impl::PrepareGrids(const Costmap& costmap, const geometry::Pose2& X_MB) {
@@ -303,6 +323,7 @@ DwaResult DwaPlanner::Impl::AtGoal(const Costmap& costmap, const geometry::Pose2
   turning_ = false;
   if (!IsStopped(V_B)) return Brake(costmap, X_MB, V_B);
   if (GoalDistance(X_MB) <= params_.xy_goal_tolerance) return {DwaStatus::kGoalReached, {}, 0};
+  has_missed_ = true;
   LeaveGoal();  // it came to rest too far off after all
   return Drive(costmap, X_MB, V_B);
 }

@@ -50,6 +50,14 @@ class BreakdownWatchTest : public ::testing::Test {
   ChildProcess system_;
 };
 
+TEST(DescendantsTest, ProcessesMayComeAndGoMeanwhile) {
+  const ChildProcess busy(Shell("while :; do /bin/true & /bin/true & wait; done"));
+  const double end = SteadyNow() + 0.5;
+  std::size_t most = 0;
+  while (SteadyNow() < end) most = std::max(most, Descendants().size());
+  EXPECT_GT(most, 1u) << "none of them was ever seen";
+}
+
 TEST_F(BreakdownWatchTest, AllIsWellWhileAllLive) {
   BreakdownWatch watch(1.0);
   EXPECT_EQ(watch.Broken(0.0), std::nullopt);

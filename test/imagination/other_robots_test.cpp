@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <thread>
 
 #include "hires/imagination/evidence.h"
@@ -38,6 +40,30 @@ TEST(DifferentialRobotTest, ItNeverMovesSideways) {
   EXPECT_GT(num_samples, 50 * HIRES_NUM_ROLLOUTS);
   EXPECT_GT(num_turning, HIRES_NUM_ROLLOUTS / 2) << "it has to steer by turning";
   EXPECT_GT(num_arrived, HIRES_NUM_ROLLOUTS * 95 / 100);
+}
+
+// The tutorial's robot, to whose goal it has to turn: as it turns, its believed place moves.
+TEST(DifferentialRobotTest, NoDriveOfTheOwnRobotDithersAtItsGoal) {
+  ASSERT_EQ(setenv("ROS_PACKAGE_PATH", HIRES_SOURCE_DIR, 1), 0);  // of model://sun
+  const std::string own = std::string(HIRES_SOURCE_DIR) + "/examples/own_robot/";
+  SetupConfig config = ReadSetupConfig(std::string(HIRES_SOURCE_DIR) + "/config/scene.yaml");
+  config.world = own + "hall.world";
+  config.robot = own + "courier.yaml";
+  config.objects = own + "objects.yaml";
+  const ImaginationSetup hall = LoadImaginationSetup(config);
+  const StartState start = MakeStartState(hall, {{"RobotAt", {"kitchenDoor"}}});
+  const RolloutSetup setup = MakeRolloutSetup(hall, start, 1);
+  for (const char* motion_set : {"slow", "fast"}) {
+    std::vector<double> durations;
+    for (int index = 0; index < 64; ++index) {
+      const auto result =
+          PlayRollout(setup, {"move_base_param", {"atRoundTable", motion_set}}, index);
+      EXPECT_FALSE(FailureOf(*result)) << motion_set << " " << index;
+      durations.push_back(result->duration);
+    }
+    std::sort(durations.begin(), durations.end());
+    EXPECT_LT(durations.back(), 2.0 * durations[32]) << motion_set;
+  }
 }
 
 // ------------------------------------------------------------------------- steered like a car

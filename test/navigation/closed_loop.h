@@ -68,13 +68,15 @@ struct Drive {
 inline geometry::Polygon PaddedFootprint() { return geometry::Padded(Pr2Footprint(), 0.015); }
 
 /// Closed loop of planner and ideal base until the planner arrives or gives up, or time is out.
+/// @param X_BBelieved  where the base takes itself to be, in the true base.
 inline Drive DriveWith(DwaPlanner* planner, const Costmap& costmap, IdealBase base,
-                       const std::vector<geometry::Polygon>& obstacles, double longest = 60.0) {
+                       const std::vector<geometry::Polygon>& obstacles, double longest = 60.0,
+                       const geometry::Pose2& X_BBelieved = {}) {
   const double period = DwaParams{}.control_period;
   const int substeps = 10;
   Drive drive;
   while (drive.status == DwaStatus::kDriving && drive.duration < longest) {
-    const DwaResult result = planner->Update(costmap, base.X_MB, base.V_B);
+    const DwaResult result = planner->Update(costmap, base.X_MB * X_BBelieved, base.V_B);
     drive.cycles.push_back({base.X_MB, base.V_B, result});
     drive.status = result.status;
     if (drive.status != DwaStatus::kDriving) break;

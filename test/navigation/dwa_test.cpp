@@ -354,6 +354,76 @@ TEST(DwaTest, ARobotThatCameToRestOutsideTheToleranceDrivesOn) {
   EXPECT_GT(std::hypot(result.velocity.vx, result.velocity.vy) + std::abs(result.velocity.wz), 0.0);
 }
 
+const robot::MotionSet kGentle{0.30, 0.6, 0.5, 1.0};  // 0.05 m/s and 0.1 rad/s within one period
+
+/// Stands 0.205 m from its goal (2, 2, 0), headed `yaw`, which it thought to have reached.
+DwaPlanner MissedItsGoal(const Costmap& costmap, double max_lateral_velocity, double yaw) {
+  DwaParams params;
+  params.max_lateral_velocity = max_lateral_velocity;
+  DwaPlanner planner(params, PaddedFootprint());
+  planner.SetMotionSet(kGentle);
+  planner.SetPath({{2.0, 2.0, yaw}});
+  planner.Update(costmap, {1.81, 2.0, yaw}, {0.1, 0.0, 0.0});
+  planner.Update(costmap, {1.795, 2.0, yaw}, {});
+  return planner;
+}
+
+TEST(DwaTest, TwoDrivenWheelsThatMissedTheGoalStopWellInsideTheTolerance) {
+  const Costmap costmap = EmptyScene(4, 4).MakeCostmap();
+  DwaPlanner planner = MissedItsGoal(costmap, 0.0, 0.0);
+  const geometry::Twist2 V_B{0.12, 0.0, 0.0};
+  const double braked = 0.07;
+  EXPECT_GT(planner.Update(costmap, {1.81, 2.0, 0.0}, V_B).velocity.vx, braked + 0.01);
+  EXPECT_GT(planner.Update(costmap, {1.85, 2.0, 0.0}, V_B).velocity.vx, braked + 0.01);
+  EXPECT_NEAR(planner.Update(costmap, {1.89, 2.0, 0.0}, V_B).velocity.vx, braked, 1e-9);
+  EXPECT_EQ(planner.Update(costmap, {1.805, 2.0, 0.0}, {}).status, DwaStatus::kGoalReached);
+  planner.SetPath({{2.0, 2.0, 0.0}});
+  EXPECT_NEAR(planner.Update(costmap, {1.81, 2.0, 0.0}, V_B).velocity.vx, braked, 1e-9)
+      << "a new path is a new goal";
+}
+
+TEST(DwaTest, ABaseThatMovesSidewaysStopsAtTheToleranceAgain) {
+  const Costmap costmap = EmptyScene(4, 4).MakeCostmap();
+  DwaPlanner planner = MissedItsGoal(costmap, 0.1, 0.0);
+  EXPECT_NEAR(planner.Update(costmap, {1.81, 2.0, 0.0}, {0.12, 0.0, 0.0}).velocity.vx, 0.07, 1e-9);
+}
+
+TEST(DwaTest, TwoDrivenWheelsTurnBackToAMissedGoalTheShorterWay) {
+  const Costmap costmap = EmptyScene(4, 4).MakeCostmap();
+  for (const double side : {1.0, -1.0}) {
+    for (const double measured : {-0.009, -0.001, 0.0, 0.001, 0.009}) {
+      DwaPlanner planner = MissedItsGoal(costmap, 0.0, side * 1.45);
+      const DwaResult result =
+          planner.Update(costmap, {1.795, 2.0, side * 1.45}, {0.0, 0.0, measured});
+      EXPECT_LT(side * result.velocity.wz, 0.0) << side << " " << measured;
+    }
+  }
+}
+
+// As the base turns to the goal's heading, the place at which it takes itself to be moves by up to
+// 0.06 m, from within the tolerance to beyond it.
+TEST(DwaTest, TwoDrivenWheelsWhosePlaceMovesAsTheyTurnArriveAllTheSame) {
+  const Costmap costmap = EmptyScene(6, 5).MakeCostmap();
+  DwaParams params;
+  params.max_lateral_velocity = 0.0;
+  const geometry::Pose2 X_MGoal{4.5, 2.0, kPi / 2};
+  const auto path = PlanPath(costmap, {1.5, 2.0, 0.0}, X_MGoal).path;
+  for (const robot::MotionSet& limits : {kGentle, kSlow, kFast}) {
+    for (const double ahead : {-0.03, -0.015, 0.0, 0.015, 0.03}) {
+      for (const double left : {-0.03, -0.015, 0.0, 0.015, 0.03}) {
+        DwaPlanner planner(params, PaddedFootprint());
+        planner.SetMotionSet(limits);
+        planner.SetPath(path);
+        IdealBase base;
+        base.X_MB = {1.5, 2.0, 0.0};
+        const Drive drive = DriveWith(&planner, costmap, base, {}, 30.0, {ahead, left, 0.0});
+        EXPECT_EQ(drive.status, DwaStatus::kGoalReached)
+            << limits.max_linear_velocity << " m/s, " << ahead << " " << left;
+      }
+    }
+  }
+}
+
 // Where the square of 0.7 m cannot turn, the robot first moves to where it can.
 TEST(DwaTest, ATurnThatWouldTouchIsMadeWhereThereIsRoom) {
   Scene scene = EmptyScene(6, 6);

@@ -54,8 +54,10 @@ struct DwaResult {
 /// the critics of dwa_local_planner: obstacles under the footprint, distance to the path and to the
 /// local goal of base and forward point, oscillation. At the goal's position it stops and turns; if
 /// the turn would touch something, it first creeps to a place within the goal's tolerance where it
-/// does not. No velocity is ever given whose footprint touches an obstacle, its interior included.
-/// The same calls give the same velocities. A copy goes on from the same state on its own.
+/// does not. Where it came to rest out of tolerance after all, for its believed place moved, it
+/// drives on; a base that cannot move sideways then stops well inside. No velocity is ever given
+/// whose footprint touches an obstacle, its interior included. The same calls give the same
+/// velocities. A copy goes on from the same state on its own.
 class DwaPlanner {
  public:
   /// @param footprint  Convex, padded, in the base frame [m].
