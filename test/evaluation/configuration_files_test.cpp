@@ -9,6 +9,7 @@
 
 #include "hires/evaluation/decision/decision.h"
 #include "hires/evaluation/episode_topics.h"
+#include "hires/evaluation/experience/load_follower.h"
 #include "hires/evaluation/experiment/experiment.h"
 #include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/evaluation/reproduce/catalogue.h"
@@ -99,6 +100,10 @@ const std::map<std::string, Reader>& Readers() {
       {"heat_reader.yaml",
        [](const std::string& path) {
          perception::ReadWarmParams(base::ParamReader::FromFile(path));
+       }},
+      {"topple_monitor.yaml",
+       [](const std::string& path) {
+         evaluation::ReadToppleMonitorConfig(base::ParamReader::FromFile(path));
        }},
       {"localisation.yaml",
        [](const std::string& path) {

@@ -143,6 +143,18 @@ TEST_F(LoadFollowerTest, ARobotWithoutTrayIsRefused) {
               HasSubstr("has no tray"));
 }
 
+TEST(ToppleMonitorConfigTest, WhatIsWrongIsNamed) {
+  const auto error = [](const std::string& world, const std::string& rest) {
+    return test_support::ConfigErrorOf([&] {
+      ReadToppleMonitorConfig(base::ParamReader::FromString(
+          "world_state: " + world + "\nrobot_state: b\nobject: \"\"\n" + rest, "m.yaml"));
+    });
+  };
+  EXPECT_THAT(error("\"\"", "after_fall: 1.5"), HasSubstr("wanted a topic"));
+  EXPECT_THAT(error("a", "after_fall: -1"), HasSubstr("after_fall"));
+  EXPECT_THAT(error("a", "after_fall: 1.5\nperiod: 1"), HasSubstr("period"));
+}
+
 class ExperienceWriterTest : public ::testing::Test {
  protected:
   ToppleEpisodePart PartAt(double time, ToppleState state = ToppleState::kNoTopple) {

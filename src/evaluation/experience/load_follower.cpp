@@ -39,6 +39,12 @@ void RequireNumbers(const world::WorldState& world, const robot::RobotState& rob
   }
 }
 
+std::string TopicOf(base::ParamReader* in, const std::string& key) {
+  const std::string topic = in->GetString(key);
+  if (topic.empty()) in->Fail(key, "is empty, wanted a topic");
+  return topic;
+}
+
 }  // namespace
 
 LoadFollower::LoadFollower(const Params& params, const robot::Robot& robot,
@@ -102,6 +108,16 @@ void LoadFollower::Drop() {
   load_.clear();
   down_.reset();
   monitor_.Begin();
+}
+
+ToppleMonitorConfig ReadToppleMonitorConfig(base::ParamReader in) {
+  ToppleMonitorConfig config;
+  config.world_topic = TopicOf(&in, "world_state");
+  config.robot_topic = TopicOf(&in, "robot_state");
+  config.follower.object = in.GetString("object");
+  config.follower.after_fall = in.Get("after_fall", base::Between(0.0, 3600.0));
+  in.RejectUnknownKeys();
+  return config;
 }
 
 }  // namespace hires::evaluation

@@ -25,11 +25,11 @@ constexpr std::size_t kMostMoments = 40;  // that wait for their other half: two
 ToppleMonitorNode::ToppleMonitorNode(const ToppleMonitorParams& params, ros::NodeHandle* nh)
     : params_(params),
       store_(params.store, hires::knowledge::ExperienceStore::Mode::kWrite),
-      follower_(params.follower, params.robot, params.rollout),
+      follower_(params.config.follower, params.robot, params.rollout),
       writer_(&store_, params.run),
       parts_(nh->advertise<hires::ToppleEpisodePart>("topple_episode_part", kQueue)),
-      worlds_(nh->subscribe(params.world_topic, kQueue, &ToppleMonitorNode::OnWorld, this)),
-      robots_(nh->subscribe(params.robot_topic, kQueue, &ToppleMonitorNode::OnRobot, this)),
+      worlds_(nh->subscribe(params.config.world_topic, kQueue, &ToppleMonitorNode::OnWorld, this)),
+      robots_(nh->subscribe(params.config.robot_topic, kQueue, &ToppleMonitorNode::OnRobot, this)),
       goals_(nh->subscribe(std::string(kExecuteAction) + "/goal", kQueue,
                            &ToppleMonitorNode::OnGoal, this)),
       results_(nh->subscribe(std::string(kExecuteAction) + "/result", kQueue,
@@ -85,7 +85,7 @@ void ToppleMonitorNode::Use(const Moment& moment) {
   } catch (const hires::base::ConfigError& error) {
     ++num_refused_;
     refused_ = error.what();
-    warnings_.Tell(params_.world_topic, "dropped", refused_);
+    warnings_.Tell(params_.config.world_topic, "dropped", refused_);
   }
 }
 
@@ -137,9 +137,9 @@ void ToppleMonitorNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& st
     status.summary(DiagnosticStatus::WARN, "waits for " + from);
   } else if (follower_.load().empty()) {
     status.summary(DiagnosticStatus::OK,
-                   params_.follower.object.empty()
+                   params_.config.follower.object.empty()
                        ? "waits for something that stands on the tray"
-                       : "waits for " + params_.follower.object + " to stand on the tray");
+                       : "waits for " + params_.config.follower.object + " to stand on the tray");
   } else {
     status.summary(DiagnosticStatus::OK, "looks at " + follower_.load());
   }

@@ -10,17 +10,6 @@
 #include "hires/ros/node/private_params.h"
 
 namespace hires_ros {
-namespace {
-
-using hires::base::ParamReader;
-
-std::string NonEmpty(ParamReader* in, const std::string& key) {
-  const std::string topic = in->GetString(key);
-  if (topic.empty()) in->Fail(key, "is empty, wanted a topic");
-  return topic;
-}
-
-}  // namespace
 
 ToppleMonitorParams LoadToppleMonitorParams() {
   RejectUnknownPrivate({"config", "robot", "store", "run"});
@@ -35,13 +24,8 @@ ToppleMonitorParams LoadToppleMonitorParams() {
   params.run = PrivateText("run").value_or("");
   if (params.run.empty()) params.run = hires::base::LocalTime();
 
-  ParamReader in =
-      ParamReader::FromFile(PrivateText("config").value_or(folder + "topple_monitor.yaml"));
-  params.world_topic = NonEmpty(&in, "world_state");
-  params.robot_topic = NonEmpty(&in, "robot_state");
-  params.follower.object = in.GetString("object");
-  params.follower.after_fall = in.Get("after_fall", hires::base::Between(0.0, 3600.0));
-  in.RejectUnknownKeys();
+  params.config = hires::evaluation::ReadToppleMonitorConfig(hires::base::ParamReader::FromFile(
+      PrivateText("config").value_or(folder + "topple_monitor.yaml")));
 
   auto scene = hires::imagination::ReadSetupConfig(folder + "scene.yaml");
   hires::imagination::OverridePaths({}, PrivateText("robot"), {}, {}, &scene);

@@ -9,8 +9,7 @@
 namespace hires_ros {
 
 struct ToppleMonitorParams {
-  std::string world_topic, robot_topic;
-  hires::evaluation::LoadFollower::Params follower;
+  hires::evaluation::ToppleMonitorConfig config;
   hires::imagination::RolloutParams rollout;  ///< with the thresholds of Eq. 5.1
   hires::robot::Robot robot;
   std::string store;  ///< file of experiences

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "hires/base/param_reader.h"
 #include "hires/evaluation/experience/topple_monitor.h"
 #include "hires/geometry/shape.h"
 #include "hires/imagination/rollout.h"
@@ -52,5 +53,13 @@ class LoadFollower {
   std::optional<double> time_;  // [s] of the last moment that was used
   std::optional<double> down_;  // [s] since when the load lies
 };
+
+/// What the node topple_monitor listens to and follows.
+struct ToppleMonitorConfig {
+  std::string world_topic, robot_topic;
+  LoadFollower::Params follower;
+};
+/// @throws base::ConfigError naming file and key.
+ToppleMonitorConfig ReadToppleMonitorConfig(base::ParamReader in);
 
 }  // namespace hires::evaluation
