@@ -287,7 +287,7 @@ def reproduce(answer):
         'headline': '%d of %d published results with numbers are reproduced or better%s' %
                     (len(good), len(judged), '; %d were not played' % not_played if not_played else ''),
         'checks': '%d of %d checks by bounds of our own hold' % (checks.count('check holds'), len(checks)),
-        'state': GOOD if len(good) == len(judged) and not not_played else OPEN,
+        'state': GOOD if len(good) == len(judged) and not not_played and 'check fails' not in checks else OPEN,
         'chapters': [('Appendix ' + name if name.isalpha() else 'Chapter ' + name, chapters[name])
                      for name in sorted(chapters)],
         'mark': lambda item: MARKS.get(answer.at(item + '/verdict', str), 'nothing'),

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 
 #include "hires/base/error.h"
@@ -16,25 +17,43 @@
 namespace hires::loop {
 namespace {
 
+std::string WithoutNumber(const std::string& name) {
+  return name.substr(0, name.find_last_not_of("0123456789") + 1);
+}
+
+/// Long names are misspelt; short ones, and those that a number tells apart (guest1, guest2), may
+/// as well be others that a domain of somebody else takes.
+bool IsSlip(const std::string& name, const std::string& known) {
+  constexpr std::size_t kLong = 8;
+  return name.size() >= kLong && WithoutNumber(name) != WithoutNumber(known) &&
+         base::AreSpeltAlike(name, known);
+}
+
 /// Names as files spell them, by the names in lower case; the first spelling stays.
 class KnownNames {
  public:
   void Add(const std::string& name) { names_.emplace(base::ToLower(name), name); }
+  /// A word of domain or ontology: it may stand in a task, but nobody misspells a thing for it.
+  void AddWord(const std::string& word) { words_.insert(base::ToLower(word)); }
   template <typename Map>
   void AddKeys(const Map& map) {
     for (const auto& entry : map) Add(entry.first);
   }
-  bool Has(const std::string& name) const { return names_.count(base::ToLower(name)) > 0; }
+  bool Has(const std::string& name) const {
+    const std::string lower = base::ToLower(name);
+    return names_.count(lower) > 0 || words_.count(lower) > 0;
+  }
   std::vector<std::string> Like(const std::string& name) const {
     std::vector<std::string> alike;
     for (const auto& [lower, spelt] : names_) {
-      if (base::AreSpeltAlike(name, lower)) alike.push_back(spelt);
+      if (IsSlip(base::ToLower(name), lower)) alike.push_back(spelt);
     }
     return alike;
   }
 
  private:
   std::map<std::string, std::string> names_;
+  std::set<std::string> words_;
 };
 
 void AddWorld(const imagination::ImaginationSetup& setup, KnownNames* known) {
@@ -68,7 +87,7 @@ void AddKnowledge(const std::string& path, KnownNames* known) {
 }
 
 void AddPlanning(const planning::PlanningKnowledge& planning, KnownNames* known) {
-  for (const std::string& name : planning::SymbolsOf(planning.domain, {})) known->Add(name);
+  for (const std::string& name : planning::SymbolsOf(planning.domain, {})) known->AddWord(name);
   for (const planning::Problem& problem : planning.problems) {
     for (const std::string& name : planning::SymbolsOf({}, problem)) known->Add(name);
   }
@@ -85,7 +104,7 @@ KnownNames NamesOf(const LoopSetup::Parts& parts, const evaluation::Scenario& sc
   for (const std::string& file : scenario.knowledge) AddKnowledge(file, &known);
   AddWorld(parts.world, &known);
   AddRobot(parts.world.scene->robot.profile, &known);
-  for (const std::string& name : parts.ontology->ConceptNames()) known.Add(name);
+  for (const std::string& name : parts.ontology->ConceptNames()) known.AddWord(name);
   for (const evaluation::ScenarioObject& object : scenario.objects) known.Add(object.name);
   AddPlanning(parts.planning, &known);
   return known;

@@ -162,9 +162,10 @@ struct DwaPlanner::Impl {
 void DwaPlanner::Impl::SetPath(const std::vector<geometry::Pose2>& path) {
   path_ = PointsAlong(path, params_.sim_granularity);
   first_ = 0;
+  const geometry::Pose2 X_GoalNew = X_MGoal_.Inverse() * path.back();
+  if (X_GoalNew.position().norm() > kRoomReached) has_missed_ = false;  // another goal
   X_MGoal_ = path.back();
   guard_.Reset();
-  has_missed_ = false;
   LeaveGoal();
 }
 

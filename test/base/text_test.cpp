@@ -75,7 +75,7 @@ TEST(NearestNamesTest, GivesNoMoreThanThereIs) {
 TEST(UnknownNameTest, ProposesWhatWasMeant) {
   EXPECT_EQ(UnknownName("area", "x1", {"y1"}), "area 'x1' is unknown; did you mean 'y1'?");
   EXPECT_EQ(UnknownName("area", "ab", {"ac", "b"}),
-            "area 'ab' is unknown; did you mean 'ac' or 'b'?");
+            "area 'ab' is unknown; did you mean one of 'ac', 'b'?");
   EXPECT_EQ(UnknownName("area", "x", {}), "area 'x' is unknown; none is defined");
 }
 

@@ -1,6 +1,7 @@
 #include "hires/cli/report_output.h"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -133,6 +134,19 @@ TEST_F(ReportOutputTest, AFileThatCannotBeWrittenIsSaidBeforeTheWork) {
   CheckReport(options);
   EXPECT_EQ(Read("page.html"), "before");
   EXPECT_EQ(NumFiles(), 1u) << "the check leaves nothing behind";
+}
+
+TEST_F(ReportOutputTest, StandardOutputMayBeAPipe) {
+  const int before = dup(STDOUT_FILENO);
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  ASSERT_GE(dup2(ends[1], STDOUT_FILENO), 0);
+  ReportOptions options = Options();
+  options.html = "";
+  options.json = "/dev/stdout";
+  EXPECT_NO_THROW(CheckReport(options));
+  dup2(before, STDOUT_FILENO);
+  for (const int descriptor : {before, ends[0], ends[1]}) close(descriptor);
 }
 
 TEST_F(ReportOutputTest, AProgramThatIsMissingIsAnErrorBeforeTheWork) {

@@ -137,6 +137,14 @@ TEST_F(LoadFollowerTest, WhatIsNoNumberIsRefusedAndForgotten) {
   EXPECT_EQ(Steps(10), 7) << "a sample is missing: differences are taken anew";
 }
 
+TEST_F(LoadFollowerTest, AMomentThatCannotBeReadIsAGap) {
+  EXPECT_EQ(Steps(10), 7);
+  state_.joints["no_such_joint"] = 1.0;
+  EXPECT_THAT(test_support::ConfigErrorOf([&] { Step(); }), HasSubstr("no_such_joint"));
+  state_.joints.clear();
+  EXPECT_EQ(Steps(10), 7);
+}
+
 TEST_F(LoadFollowerTest, ARobotWithoutTrayIsRefused) {
   robot_.profile.tray_link.clear();
   EXPECT_THAT(test_support::ConfigErrorOf([&] { LoadFollower({}, robot_, {}); }),

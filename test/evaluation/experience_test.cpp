@@ -81,7 +81,9 @@ TEST(ToppleMonitorTest, NothingIsDifferencedAcrossTwoLegs) {
   for (int i = 4; i < 8; ++i) {
     const auto part = monitor.Add(SampleAt(0.05 * i, {100.0, 0.0, 0.0}));
     EXPECT_EQ(part.has_value(), i == 7);
-    if (part) EXPECT_EQ(part->base.v, 0.0);
+    if (part) {
+      EXPECT_EQ(part->base.v, 0.0);
+    }
   }
 }
 
@@ -239,8 +241,12 @@ TEST_F(ExperienceReportTest, TheFeatureThatForetellsFallsIsFound) {
   EXPECT_EQ(prediction.at("falls"), 8);
   for (const nlohmann::ordered_json& feature : prediction.at("features")) {
     const double area = feature.at("area").at("estimate");
-    if (feature.at("feature") == "base |j|") EXPECT_DOUBLE_EQ(area, 1.0);
-    if (feature.at("feature") == "base |v|") EXPECT_DOUBLE_EQ(area, 0.5) << "it is always the same";
+    if (feature.at("feature") == "base |j|") {
+      EXPECT_DOUBLE_EQ(area, 1.0);
+    }
+    if (feature.at("feature") == "base |v|") {
+      EXPECT_DOUBLE_EQ(area, 0.5) << "it is always the same";
+    }
   }
   EXPECT_EQ(analysis.at("pictures").at("falls").at("x").size(), 8u);
   std::string again;

@@ -136,7 +136,9 @@ TEST(PictureTextTest, TextStaysLeftOfItsEnd) {
     for (int column = 0; column < paper.width; ++column) {
       const bool is_ink = paper.At(column, row)[0] < 128;
       has_ink = has_ink || is_ink;
-      if (column > 101 || column < 9) EXPECT_FALSE(is_ink) << column;
+      if (column > 101 || column < 9) {
+        EXPECT_FALSE(is_ink) << column;
+      }
     }
   }
   EXPECT_TRUE(has_ink);

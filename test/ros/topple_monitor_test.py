@@ -41,7 +41,8 @@ Line = collections.namedtuple('Line', 'time episode state tilt deviation')
 class ToppleMonitorTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.system = RobotSystem(uncertainty='none', lockstep=True, pace=0.0)
+        # Nothing waits for the node, so the robot is not quicker than a loaded computer writes.
+        cls.system = RobotSystem(uncertainty='none', lockstep=True, pace=4.0)
         cls.addClassCleanup(cls.system.stop)
         cls.system.connect('topple_monitor_test')
         cls.main = cls.system.main
@@ -179,7 +180,8 @@ class ToppleMonitorTest(unittest.TestCase):
         node.kill()
         before = self.stored('--run', 'second')
         self.assertGreaterEqual(len(before), 40)
-        self.require_same(before, self.parts[:len(before)])
+        both = min(len(before), len(self.parts))  # the last may be written and not sent, or the reverse
+        self.require_same(before[:both], self.parts[:both])
         node = self.begin(run='third')
         self.assertEqual(goal.result().code, self.system.codes.SUCCEEDED, self.system.output())
         diagnostics(self.system.rospy, 'topple_monitor', lambda v: int(v['written']) > 0)

@@ -31,7 +31,8 @@ void ExperienceWriter::Add(const knowledge::ToppleEpisodePart& part) {
   batch_.parts.push_back(part);
   const bool has_toppled = part.state == ToppleState::kTopple && last_ != ToppleState::kTopple;
   last_ = part.state;
-  if (has_toppled || batch_.parts.size() >= kBatch) Flush();
+  const bool is_due = has_toppled || batch_.parts.size() >= kBatch;
+  if (is_due && problem_.empty()) Flush();  // else only who asks waits for a file that is locked
 }
 
 void ExperienceWriter::Flush() {

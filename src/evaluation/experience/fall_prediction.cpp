@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "evaluation/experience/separation.h"
 #include "evaluation/known_number.h"
@@ -62,6 +63,33 @@ void AddStretch(const Stretch& stretch, const Feature& feature, RunScores* score
   }
 }
 
+/// The motion set is the last argument: "move_base_param(NT1, fast)".
+std::string MotionSetOf(const std::string& action) {
+  const std::size_t begin = action.find_last_of(",(");
+  if (begin == std::string::npos) return action;
+  const std::size_t first = action.find_first_not_of(' ', begin + 1);
+  return first == std::string::npos ? "" : action.substr(first, action.find(')', first) - first);
+}
+
+/// By motion set what each run has of it; sets that only one run has are left out, as one run says
+/// nothing of others.
+std::vector<std::vector<RunScores>> ByMotionSet(const std::vector<ExperienceRun>& runs,
+                                                const Feature& feature) {
+  std::map<std::string, std::vector<RunScores>> by_set;
+  for (const ExperienceRun& run : runs) {
+    std::map<std::string, RunScores> of_run;
+    for (std::size_t i = 0; i < run.stretches.size(); ++i) {
+      AddStretch(run.stretches[i], feature, &of_run[MotionSetOf(run.actions[i])]);
+    }
+    for (auto& [set, scores] : of_run) by_set[set].push_back(std::move(scores));
+  }
+  std::vector<std::vector<RunScores>> strata;
+  for (auto& [set, of_set] : by_set) {
+    if (of_set.size() > 1) strata.push_back(std::move(of_set));
+  }
+  return strata;
+}
+
 std::vector<RunScores> ScoresOf(const std::vector<ExperienceRun>& runs, const Feature& feature) {
   std::vector<RunScores> scores(runs.size());
   for (std::size_t r = 0; r < runs.size(); ++r) {
@@ -75,18 +103,6 @@ std::vector<RunScores> EveryOther(const std::vector<RunScores>& runs, std::size_
   std::vector<RunScores> half;
   for (std::size_t r = first; r < runs.size(); r += 2) half.push_back(runs[r]);
   return half;
-}
-
-/// Runs of one motion set: "fast/3" is of "fast".
-std::vector<std::vector<RunScores>> ByMotionSet(const std::vector<ExperienceRun>& runs,
-                                                const std::vector<RunScores>& scores) {
-  std::map<std::string, std::vector<RunScores>> by_set;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    by_set[runs[r].name.substr(0, runs[r].name.find('/'))].push_back(scores[r]);
-  }
-  std::vector<std::vector<RunScores>> strata;
-  for (const auto& [set, of_set] : by_set) strata.push_back(of_set);
-  return strata;
 }
 
 ordered_json IntervalJson(const Interval& interval) {
@@ -112,7 +128,7 @@ ordered_json FeatureJson(const Feature& feature, const std::vector<ExperienceRun
   }
   return {{"feature", feature.name},
           {"area", IntervalJson(AreaInterval(runs, rng))},
-          {"area_within", IntervalJson(AreaIntervalWithin(ByMotionSet(experiences, runs), rng))},
+          {"area_within", IntervalJson(AreaIntervalWithin(ByMotionSet(experiences, feature), rng))},
           {"judged",
            {{"threshold", NumberOrNull(judged.threshold)},
             {"hits", NumberOrNull(judged.hits)},

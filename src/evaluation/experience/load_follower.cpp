@@ -61,12 +61,11 @@ std::optional<knowledge::ToppleEpisodePart> LoadFollower::Add(
   const bool goes_on = time_ && time > *time_;
   if (goes_on && time < *time_ + kShortestGap) return std::nullopt;
   if (!goes_on || time > *time_ + kLongestGap) Drop();
-  time_ = time;
-
   const std::size_t tray = *robot_.model.FindLink(robot_.profile.tray_link);
   const Pose3 X_MB = geometry::Lift(robot_state.X_MB);
   const Pose3 X_MT = X_MB * robot::ForwardKinematics(
                                 robot_.model, robot::PostureOf(robot_, robot_state.joints))[tray];
+  time_ = time;
   const ObjectState* object = load_.empty() ? Find(world, X_MT) : world.Find(load_);
   if (IsLost(time, object, X_MT)) {
     Drop();

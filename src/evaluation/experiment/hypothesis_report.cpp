@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>
@@ -54,7 +55,9 @@ std::vector<double> DurationDifferences(const std::vector<HypothesisRun>& runs) 
 
 ordered_json PairedDurationJson(const std::vector<HypothesisRun>& runs) {
   const std::vector<double> differences = DurationDifferences(runs);
-  const Interval mean = MeanInterval(differences);
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const Interval mean =
+      differences.empty() ? Interval{kNone, kNone, kNone} : MeanInterval(differences);
   return {{"pairs", differences.size()},
           {"mean", NumberOrNull(mean.estimate)},
           {"lower", NumberOrNull(mean.lower)},

@@ -38,8 +38,17 @@ ToppleMonitorNode::ToppleMonitorNode(const ToppleMonitorParams& params, ros::Nod
   updater_.add("load", this, &ToppleMonitorNode::Diagnose);
   timer_ = nh->createSteadyTimer(ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) {
     writer_.Flush();
+    TellProblem();
     updater_.force_update();  // also while the simulated time stands
   });
+}
+
+ToppleMonitorNode::~ToppleMonitorNode() {
+  writer_.Flush();
+  if (writer_.problem().empty()) return;
+  hires::base::Log(hires::base::LogLevel::kError,
+                   fmt::format("experiences lost parts={} why={}",
+                               num_parts_ - writer_.num_written(), writer_.problem()));
 }
 
 void ToppleMonitorNode::OnWorld(const hires::WorldStateConstPtr& msg) {
@@ -74,7 +83,11 @@ void ToppleMonitorNode::TakeWhole() {
 }
 
 void ToppleMonitorNode::Use(const Moment& moment) {
-  if (moment.stamp < last_) writer_.SetRun(fmt::format("{}/{}", params_.run, ++num_runs_));
+  if (moment.stamp < last_) {  // whoever did something then is gone with the clock
+    writer_.SetRun(fmt::format("{}/{}", params_.run, ++num_runs_));
+    actions_.clear();
+    TellActions();
+  }
   last_ = moment.stamp;
   ++num_moments_;
   try {
@@ -92,7 +105,6 @@ void ToppleMonitorNode::Use(const Moment& moment) {
 void ToppleMonitorNode::Note(const hires::knowledge::ToppleEpisodePart& part,
                              const std_msgs::Header& header) {
   parts_.publish(ToMsg(part, header, params_.robot.profile.base_link));
-  const bool has_problem = !writer_.problem().empty();
   writer_.Add(part);
   ++num_parts_;
   if (part.state == ToppleState::kTopple && state_ != ToppleState::kTopple) {
@@ -102,10 +114,15 @@ void ToppleMonitorNode::Note(const hires::knowledge::ToppleEpisodePart& part,
                                  part.episode, part.time));
   }
   state_ = part.state;
-  if (!has_problem && !writer_.problem().empty()) {
+  TellProblem();
+}
+
+void ToppleMonitorNode::TellProblem() {
+  if (writer_.problem() != problem_ && !writer_.problem().empty()) {
     hires::base::Log(hires::base::LogLevel::kError,
                      fmt::format("experiences wait why={}", writer_.problem()));
   }
+  problem_ = writer_.problem();
 }
 
 void ToppleMonitorNode::OnGoal(const hires::ExecuteActionActionGoalConstPtr& msg) {

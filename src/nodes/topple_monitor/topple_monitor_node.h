@@ -24,6 +24,7 @@ namespace hires_ros {
 class ToppleMonitorNode {
  public:
   ToppleMonitorNode(const ToppleMonitorParams& params, ros::NodeHandle* nh);
+  ~ToppleMonitorNode();  ///< writes what is there, or says what is lost
 
  private:
   struct Moment {
@@ -41,6 +42,7 @@ class ToppleMonitorNode {
   void Use(const Moment& moment);
   void Note(const hires::knowledge::ToppleEpisodePart& part, const std_msgs::Header& header);
   void TellActions();
+  void TellProblem();
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const ToppleMonitorParams params_;
@@ -53,7 +55,7 @@ class ToppleMonitorNode {
   int num_runs_{1};                             // each time that the clock begins anew is one
   long num_moments_{0}, num_parts_{0}, num_falls_{0}, num_refused_{0};
   hires::knowledge::ToppleState state_{hires::knowledge::ToppleState::kNoTopple};
-  std::string refused_;
+  std::string refused_, problem_;  // the last that was told of moments, of the file
   hires::base::TopicWarnings warnings_;
 
   ros::Publisher parts_;

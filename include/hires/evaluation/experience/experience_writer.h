@@ -10,7 +10,7 @@ namespace hires::evaluation {
 
 /// Puts parts that come one by one into a store, in batches: a second's at a time, when another
 /// action begins, and at once when the load topples. What cannot be written is kept and tried again
-/// with the next batch.
+/// by Flush() alone, as a file that is locked takes its time to say so.
 class ExperienceWriter {
  public:
   static constexpr std::size_t kBatch = 20;       ///< parts
