@@ -83,8 +83,8 @@ std::optional<knowledge::ExperienceStore> ExperiencesOf(
         fmt::format("--experiences: {} is of kind {}, which keeps none; wanted topple_loop",
                     options.file, KindName(config)));
   }
-  for (const char* end : {"", "-wal", "-shm"}) std::filesystem::remove(options.experiences + end);
-  return knowledge::ExperienceStore(options.experiences, knowledge::ExperienceStore::Mode::kWrite);
+  return knowledge::ExperienceStore(options.experiences,
+                                    knowledge::ExperienceStore::Mode::kReplace);
 }
 
 }  // namespace

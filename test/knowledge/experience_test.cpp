@@ -120,6 +120,25 @@ TEST_F(ExperienceStoreTest, WhatHasBegunIsWholeOrGoneAfterAKill) {
   EXPECT_EQ(found % kParts, 0u) << "no half batch";
 }
 
+TEST_F(ExperienceStoreTest, OneWritesAtATime) {
+  const ExperienceStore writer = Writer();
+  for (const auto mode : {ExperienceStore::Mode::kWrite, ExperienceStore::Mode::kReplace}) {
+    EXPECT_THAT(
+        ConfigErrorOf([&] { ExperienceStore(Path(), mode); }),
+        AllOf(HasSubstr("e.db: is being written by process"), HasSubstr("name another file")));
+  }
+  EXPECT_EQ(TimesOf({}).size(), 0u) << "others may read";
+}
+
+TEST_F(ExperienceStoreTest, WhatIsReplacedIsForgotten) {
+  Writer().Write({"old", "a", {PartAt(1.0), PartAt(2.0)}});
+  ExperienceStore(Path(), ExperienceStore::Mode::kReplace).Write({"new", "b", {PartAt(3.0)}});
+  EXPECT_THAT(TimesOf({}), testing::ElementsAre(3.0));
+  ExperienceQuery of_old;
+  of_old.run = "old";
+  EXPECT_EQ(TimesOf(of_old).size(), 0u);
+}
+
 TEST_F(ExperienceStoreTest, OtherFilesAreRefusedByName) {
   const auto open = [&](const std::string& path, ExperienceStore::Mode mode) {
     return ConfigErrorOf([&] { ExperienceStore(path, mode); });
@@ -130,7 +149,8 @@ TEST_F(ExperienceStoreTest, OtherFilesAreRefusedByName) {
   EXPECT_THAT(open(Path("x/none.db"), ExperienceStore::Mode::kWrite),
               HasSubstr("there is no folder"));
   std::ofstream(Path("text.db")) << std::string(5000, 'x');
-  for (const auto mode : {ExperienceStore::Mode::kRead, ExperienceStore::Mode::kWrite}) {
+  for (const auto mode : {ExperienceStore::Mode::kRead, ExperienceStore::Mode::kWrite,
+                          ExperienceStore::Mode::kReplace}) {
     EXPECT_THAT(open(Path("text.db"), mode), HasSubstr("text.db: holds no experiences; name"));
   }
   std::ofstream(Path("empty.db"));

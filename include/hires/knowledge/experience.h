@@ -64,9 +64,14 @@ struct ExperienceQuery {
 /// writes; others may read meanwhile. An object belongs to one thread at a time.
 class ExperienceStore {
  public:
-  enum class Mode { kRead, kWrite };
-  /// Opens, or makes, the file.
-  /// @throws base::ConfigError naming the path: no such file, no folder, another kind of file.
+  enum class Mode {
+    kRead,
+    kWrite,   ///< adds to what is there
+    kReplace  ///< what is there is forgotten
+  };
+  /// Opens, or makes, the file; one object on this computer writes it at a time.
+  /// @throws base::ConfigError naming the path: no such file, no folder, another kind of file, or
+  /// who writes it.
   ExperienceStore(const std::string& path, Mode mode);
   ExperienceStore(ExperienceStore&&) noexcept;
   ~ExperienceStore();

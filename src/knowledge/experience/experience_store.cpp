@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "hires/base/error.h"
+#include "hires/base/writer_lock.h"
 #include "hires/knowledge/experience.h"
 #include "knowledge/store/store_error.h"
 
@@ -72,7 +73,8 @@ void Bind(const ExperienceQuery& query, SQLite::Statement* statement) {
 }
 
 constexpr char kMakers[] =
-    "`hires experiment config/experiments/topple_loop.yaml --experiences FILE` makes them";
+    "`hires experiment config/experiments/topple_loop.yaml --experiences FILE` makes them, or "
+    "`roslaunch hires topple.launch experiences:=FILE`";
 
 [[noreturn]] void FailWithoutExperiences(const std::string& path) {
   throw base::ConfigError(fmt::format(
@@ -101,11 +103,13 @@ std::uint64_t BytesOf(const std::string& path) {
 struct ExperienceStore::Implementation {
   Implementation(std::string file, Mode mode)
       : path(std::move(file)),
+        lock(mode == Mode::kRead ? nullptr
+                                 : std::make_unique<base::WriterLock>(path, "name another file")),
         database(path,
                  mode == Mode::kRead ? SQLite::OPEN_READONLY
                                      : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
                  kBusyTimeout) {
-    const bool is_new = mode == Mode::kWrite &&
+    const bool is_new = mode != Mode::kRead &&
                         database.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
     if (!is_new && database.execAndGet("PRAGMA application_id").getInt() != kApplication) {
       FailWithoutExperiences(path);
@@ -116,6 +120,15 @@ struct ExperienceStore::Implementation {
     database.exec("PRAGMA synchronous = NORMAL");
     database.exec(fmt::format("PRAGMA application_id = {}", kApplication));
     database.exec(kSchema);
+    if (mode == Mode::kReplace) Forget();
+  }
+
+  void Forget() {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    database.exec("DELETE FROM parts");
+    database.exec("DELETE FROM words");
+    transaction.commit();
+    database.exec("VACUUM");
   }
 
   std::int64_t IdOf(const std::string& word) {
@@ -156,6 +169,7 @@ struct ExperienceStore::Implementation {
   }
 
   std::string path;
+  std::unique_ptr<base::WriterLock> lock;  // given back after the database is closed
   SQLite::Database database;
   std::map<std::string, std::int64_t> ids;
 };
