@@ -35,7 +35,7 @@ std::size_t CommonEnds(const std::string& a, const std::string& b) {
 /// Whether one was mistyped for the other: a third of it may differ, or two letters be swapped.
 bool IsSlipOf(const std::string& a, const std::string& b) {
   constexpr std::size_t kLeast = 3;  // of shorter names nearly all are alike
-  if (std::min(a.size(), b.size()) < kLeast) return false;
+  if (std::max(a.size(), b.size()) < kLeast) return false;
   const std::size_t distance = EditDistance(a, b);
   if (distance <= std::max<std::size_t>(1, std::max(a.size(), b.size()) / 3)) return true;
   return distance == 2 && a.size() == b.size() &&
