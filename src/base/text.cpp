@@ -184,7 +184,9 @@ void RequireReplaceable(const std::string& path) {
   // Devices and pipes stay as they are; only opening them would tell, and would be noticed.
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
     return;
-  const std::string unfinished = path + kUnfinished;
+  // Of a link it is written where that leads to. /dev/stdout that is a pipe leads nowhere.
+  const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
+  const std::string unfinished = (error ? path : target.string()) + kUnfinished;
   const bool is_made = std::ofstream(unfinished, std::ios::app).is_open();
   std::filesystem::remove(unfinished, error);
   if (!is_made) FailToWrite(path);

@@ -13,8 +13,8 @@
 
 #include "cli/achieve_display.h"
 #include "cli/experiment/experiment_hypothesis_command.h"
-#include "cli/named_file.h"
 #include "hires/base/error.h"
+#include "hires/base/files/named_file.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/cli/whole_number.h"
@@ -52,7 +52,7 @@ void RequireRecorder(const AchieveOptions& options, const loop::RecordLoop& reco
 }
 
 std::string ScenarioPath(const std::string& scenario, const std::string& package_folder) {
-  return NamedFile("scenario", scenario, package_folder + "/config/scenarios");
+  return base::NamedFile("scenario", scenario, package_folder + "/config/scenarios");
 }
 
 std::string LoopPath(const AchieveOptions& options, const std::string& package_folder) {

@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "cli/named_file.h"
 #include "hires/base/error.h"
+#include "hires/base/files/named_file.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
@@ -55,8 +55,8 @@ std::string ExperimentPath(const ExperimentOptions& options) {
   std::vector<std::string> verbs;
   for (const CLI::App* inner : options.verb->get_subcommands({}))
     verbs.push_back(inner->get_name());
-  return NamedFile("experiment", options.file,
-                   options.report.package_folder + "/config/experiments", verbs);
+  return base::NamedFile("experiment", options.file,
+                         options.report.package_folder + "/config/experiments", verbs);
 }
 
 ReportOrigin OriginOf(const ExperimentOptions& options, const std::string& path,

@@ -115,11 +115,7 @@ ordered_json HeadJson(const ReportOptions& options, const ReportOrigin& origin) 
 void RequireWritable(const std::string& path) {
   if (path.empty()) return;
   evaluation::RequireFolderOf(path);
-  std::error_code error;
-  const bool is_device = fs::exists(path, error) && !fs::is_regular_file(path, error) &&
-                         !fs::is_directory(path, error);
-  // /dev/stdout that is a pipe has no canonical path.
-  base::RequireReplaceable(is_device ? path : fs::weakly_canonical(path).string());
+  base::RequireReplaceable(path);
 }
 
 /// What is wanted of the JSON file, of standard input where it is "-".

@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "hires/evaluation/statistics.h"
+
 namespace hires::evaluation {
 
 /// What is not a finite number is not known: null.
@@ -15,6 +17,12 @@ inline nlohmann::ordered_json NumberOrNull(double value) {
 }
 inline nlohmann::ordered_json NumberOrNull(const std::optional<double>& value) {
   return value ? NumberOrNull(*value) : nlohmann::ordered_json(nullptr);
+}
+
+inline nlohmann::ordered_json IntervalJson(const Interval& interval) {
+  return {{"estimate", NumberOrNull(interval.estimate)},
+          {"lower", NumberOrNull(interval.lower)},
+          {"upper", NumberOrNull(interval.upper)}};
 }
 
 /// Likewise for people: "-".

@@ -6,8 +6,8 @@
 #include "cli/command_run.h"
 #include "cli/reproduce/play_runner.h"
 #include "cli/reproduce/play_store.h"
+#include "hires/base/files/writer_lock.h"
 #include "hires/base/text.h"
-#include "hires/base/writer_lock.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 

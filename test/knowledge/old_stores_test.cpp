@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "hires/base/writer_lock.h"
+#include "hires/base/files/writer_lock.h"
 #include "support/temporary_folder.h"
 
 namespace hires::knowledge::old_stores_test {

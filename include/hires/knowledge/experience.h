@@ -19,6 +19,8 @@ const char* ToString(ToppleState state);  ///< "notopple", "shaking", "topple"
 ToppleState ParseToppleState(const std::string& text);
 
 constexpr double kExperiencePeriod = 0.05;  ///< [s] between two parts: 20 Hz, as the dissertation
+/// [s] Moments that are farther apart do not follow each other: something is missing between them.
+constexpr double kExperienceGap = 1.5 * kExperiencePeriod;
 /// [s] by which dynamics are older than their part: to the middle of the four samples that they are
 /// made of.
 constexpr double kDynamicsDelay = 1.5 * kExperiencePeriod;

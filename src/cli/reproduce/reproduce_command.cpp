@@ -15,8 +15,8 @@
 #include "cli/reproduce/play_runner.h"
 #include "cli/reproduce/play_store.h"
 #include "hires/base/error.h"
+#include "hires/base/files/writer_lock.h"
 #include "hires/base/text.h"
-#include "hires/base/writer_lock.h"
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/evaluation/reproduce/catalogue.h"
@@ -199,7 +199,7 @@ int RunReproduceVerb(const ReproduceOptions& options, const std::string& package
   const bool is_whole = std::none_of(judged.begin(), judged.end(), [](const JudgedItem& item) {
     return item.verdict == Verdict::kNotPlayed;
   });
-  return is_whole && done.missing.empty() ? kExitRecommended : kExitNoWorker;
+  return is_whole ? kExitRecommended : kExitNoWorker;
 }
 
 }  // namespace hires::cli

@@ -5,9 +5,6 @@
 namespace hires::evaluation {
 namespace {
 
-/// Parts that are farther apart do not belong to one stretch.
-constexpr double kGap = 1.5 * knowledge::kExperiencePeriod;  // [s]
-
 bool IsDown(const knowledge::ToppleEpisodePart& part) {
   return part.state == knowledge::ToppleState::kTopple;
 }
@@ -22,9 +19,10 @@ std::vector<ExperienceRun> RunsOf(const knowledge::ExperienceStore& store,
     const auto [found, is_new] = index.emplace(*stored.run, runs.size());
     if (is_new) runs.push_back({*stored.run, {}, {}});
     ExperienceRun& run = runs[found->second];
-    const bool goes_on = !run.stretches.empty() && run.actions.back() == *stored.action &&
-                         stored.part.time - run.stretches.back().back().time < kGap &&
-                         stored.part.time > run.stretches.back().back().time;
+    const bool goes_on =
+        !run.stretches.empty() && run.actions.back() == *stored.action &&
+        stored.part.time - run.stretches.back().back().time < knowledge::kExperienceGap &&
+        stored.part.time > run.stretches.back().back().time;
     if (!goes_on) {
       run.actions.push_back(*stored.action);
       run.stretches.emplace_back();

@@ -105,12 +105,6 @@ std::vector<RunScores> EveryOther(const std::vector<RunScores>& runs, std::size_
   return half;
 }
 
-ordered_json IntervalJson(const Interval& interval) {
-  return {{"estimate", NumberOrNull(interval.estimate)},
-          {"lower", NumberOrNull(interval.lower)},
-          {"upper", NumberOrNull(interval.upper)}};
-}
-
 std::size_t CountOf(const std::vector<RunScores>& runs, std::vector<double> RunScores::*kind) {
   std::size_t count = 0;
   for (const RunScores& run : runs) count += (run.*kind).size();

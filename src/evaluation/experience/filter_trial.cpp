@@ -142,10 +142,7 @@ ordered_json TryOne(const std::string& name, bool is_causal, const Filter& filte
           {"causal", is_causal},
           {"rms_error", {{"v", root(errors.v)}, {"a", root(errors.a)}, {"j", root(errors.j)}}},
           {"delay", knowledge::kExperiencePeriod * errors.delay / errors.stretches},
-          {"separation",
-           {{"estimate", NumberOrNull(area.estimate)},
-            {"lower", NumberOrNull(area.lower)},
-            {"upper", NumberOrNull(area.upper)}}}};
+          {"separation", IntervalJson(area)}};
 }
 
 }  // namespace

@@ -16,7 +16,6 @@ using geometry::Pose3;
 using world::ObjectState;
 
 constexpr double kShortestGap = 0.9 * knowledge::kExperiencePeriod;  // [s]
-constexpr double kLongestGap = 1.5 * knowledge::kExperiencePeriod;   // [s]
 
 geometry::Aabb RequirePlate(const robot::Robot& robot) {
   if (const auto plate = robot::TrayPlateOf(robot)) return *plate;
@@ -60,7 +59,7 @@ std::optional<knowledge::ToppleEpisodePart> LoadFollower::Add(
   RequireNumbers(world, robot_state);
   const bool goes_on = time_ && time > *time_;
   if (goes_on && time < *time_ + kShortestGap) return std::nullopt;
-  if (!goes_on || time > *time_ + kLongestGap) Drop();
+  if (!goes_on || time > *time_ + knowledge::kExperienceGap) Drop();
   const std::size_t tray = *robot_.model.FindLink(robot_.profile.tray_link);
   const Pose3 X_MB = geometry::Lift(robot_state.X_MB);
   const Pose3 X_MT = X_MB * robot::ForwardKinematics(

@@ -88,6 +88,12 @@ BinnedRun Resampled(const std::vector<BinnedRun>& runs, base::Rng* rng) {
   return resample;
 }
 
+double PositivesOf(const std::vector<RunScores>& runs) {
+  double positives = 0.0;
+  for (const RunScores& run : runs) positives += static_cast<double>(run.positive.size());
+  return positives;
+}
+
 /// A mean of areas by their positives.
 class WeightedArea {
  public:
@@ -136,7 +142,7 @@ Interval AreaIntervalWithin(const std::vector<std::vector<RunScores>>& strata, b
   WeightedArea whole;
   std::vector<std::vector<BinnedRun>> binned;
   for (const std::vector<RunScores>& runs : strata) {
-    whole.Add(AreaUnderCurve(runs), TotalsOf(Sorted(runs)).positive);
+    whole.Add(AreaUnderCurve(runs), PositivesOf(runs));
     binned.push_back(BinnedRunsOf(runs));
   }
   std::vector<double> areas;

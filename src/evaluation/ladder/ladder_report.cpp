@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "evaluation/known_number.h"
 #include "hires/evaluation/ladder/ladder.h"
 #include "hires/evaluation/report_table.h"
 
@@ -11,14 +12,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json Finite(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
-ordered_json Optional(const std::optional<double>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
 ordered_json SideJson(const LadderSide& side) {
   return {{"what", side.what},
           {"facts", side.facts},
@@ -26,17 +19,12 @@ ordered_json SideJson(const LadderSide& side) {
           {"mean", Mean(side.values)}};
 }
 
-ordered_json RatioJson(const Interval& ratio) {
-  return {
-      {"estimate", ratio.estimate}, {"lower", Finite(ratio.lower)}, {"upper", Finite(ratio.upper)}};
-}
-
 ordered_json PairJson(const LadderPair& pair) {
   return {{"threads", pair.threads},
           {"rounds", pair.rounds},
           {"before", SideJson(pair.before)},
           {"after", SideJson(pair.after)},
-          {"ratio", RatioJson(pair.ratio)}};
+          {"ratio", IntervalJson(pair.ratio)}};
 }
 
 ordered_json RungJson(const LadderRung& rung) {
@@ -44,12 +32,12 @@ ordered_json RungJson(const LadderRung& rung) {
                     {"title", rung.title},
                     {"unit", "real-time factor"},
                     {"published",
-                     {{"before", Optional(rung.published_before)},
-                      {"after", Optional(rung.published_after)},
+                     {{"before", NumberOrNull(rung.published_before)},
+                      {"after", NumberOrNull(rung.published_after)},
                       {"text", rung.published}}}};
   json.update(PairJson(rung.one_core));
   json["all_cores"] = rung.all_cores ? PairJson(*rung.all_cores) : ordered_json(nullptr);
-  json["apart"] = Optional(rung.apart);
+  json["apart"] = NumberOrNull(rung.apart);
   json["note"] = rung.note;
   return json;
 }
@@ -60,8 +48,8 @@ ordered_json OwnJson(const LadderOwn& own) {
           {"unit", own.unit},
           {"values", own.values},
           {"mean", own.mean.estimate},
-          {"lower", Finite(own.mean.lower)},
-          {"upper", Finite(own.mean.upper)}};
+          {"lower", NumberOrNull(own.mean.lower)},
+          {"upper", NumberOrNull(own.mean.upper)}};
 }
 
 /// Three digits that count, whatever the size.

@@ -125,10 +125,6 @@ std::string ReportText(const TorsoPosesReport& report) {
 }
 
 ordered_json ToJson(const TorsoPosesReport& report) {
-  const auto to_json = [](const Interval& value) {
-    return ordered_json{
-        {"estimate", value.estimate}, {"lower", value.lower}, {"upper", value.upper}};
-  };
   ordered_json poses = ordered_json::array(), findings = ordered_json::array();
   for (const auto& [torso, base] : PosesOf(report, -1, -1)) {
     ordered_json kinds = ordered_json::array();
@@ -141,14 +137,14 @@ ordered_json ToJson(const TorsoPosesReport& report) {
     }
     poses.push_back({{"torso", report.torsos[torso]},
                      {"base", report.bases[base]},
-                     {"recognition", to_json(IntervalOf(report, torso, base, Recognised))},
-                     {"grasp_quality", to_json(IntervalOf(report, torso, base, Quality))},
+                     {"recognition", IntervalJson(IntervalOf(report, torso, base, Recognised))},
+                     {"grasp_quality", IntervalJson(IntervalOf(report, torso, base, Quality))},
                      {"grasps", NumGrasps(report, {{torso, base}})},
                      {"kinds", kinds}});
   }
   for (const Finding& finding : FindingsOf(report))
     findings.push_back({{"finding", finding.what},
-                        {"difference", to_json(finding.difference)},
+                        {"difference", IntervalJson(finding.difference)},
                         {"relative", NumberOrNull(finding.difference.estimate / finding.from)}});
   return {{"schema", "hires/torso_poses"},
           {"version", 1},

@@ -100,6 +100,10 @@ Verdict VerdictOf(const CatalogueItem& item, const std::vector<JudgedValue>& val
   return may_be_better && are_better ? Verdict::kBetter : Verdict::kReproduced;
 }
 
+bool IsFailure(Verdict verdict) {
+  return verdict == Verdict::kNotReproduced || verdict == Verdict::kCheckFails;
+}
+
 int NumHolding(const std::vector<JudgedValue>& values) {
   return static_cast<int>(std::count_if(values.begin(), values.end(),
                                         [](const JudgedValue& judged) { return judged.holds; }));
@@ -204,9 +208,7 @@ JudgedItem Judge(const CatalogueItem& item, const std::map<std::string, ordered_
     return judged;
   }
   judged.verdict = VerdictOf(item, judged.values);
-  const bool fails =
-      judged.verdict == Verdict::kNotReproduced || judged.verdict == Verdict::kCheckFails;
-  judged.reason = fails ? item.fails : item.holds;
+  judged.reason = IsFailure(judged.verdict) ? item.fails : item.holds;
   return judged;
 }
 
@@ -219,9 +221,7 @@ std::string VerdictTable(const std::vector<JudgedItem>& items) {
     rows.push_back({judged.item.section, judged.item.name, ToString(judged.verdict),
                     all == 0 ? "" : fmt::format("{} of {}", NumHolding(judged.values), all),
                     judged.item.title});
-    const bool is_open = judged.verdict == Verdict::kNotReproduced ||
-                         judged.verdict == Verdict::kCheckFails ||
-                         judged.verdict == Verdict::kNotPlayed;
+    const bool is_open = IsFailure(judged.verdict) || judged.verdict == Verdict::kNotPlayed;
     if (is_open) reasons += fmt::format("\n{}: {}\n", judged.item.name, judged.reason);
   }
   return FormatTable(rows) + reasons;

@@ -99,21 +99,21 @@ const std::vector<SeriesOutcome>& AllOutcomes() {
   return all;
 }
 
+int CountDone(const SeriesReport& report) {
+  return static_cast<int>(std::count_if(report.runs.begin(), report.runs.end(), IsDone));
+}
+
 std::string OutcomeTable(const SeriesReport& report) {
   Table table{{"outcome", "runs", "share", "95 % interval (Wilson)"}};
   const int all = static_cast<int>(report.runs.size());
-  for (const SeriesOutcome outcome : AllOutcomes()) {
-    const int count = CountOf(report, outcome);
+  const auto add = [&](const std::string& what, int count) {
     const Interval share = WilsonInterval(count, all);
-    table.push_back({ToString(outcome), std::to_string(count),
-                     fmt::format("{:.0f} %", 100.0 * share.estimate),
+    table.push_back({what, std::to_string(count), fmt::format("{:.0f} %", 100.0 * share.estimate),
                      fmt::format("{:.0f} .. {:.0f} %", 100.0 * share.lower, 100.0 * share.upper)});
-  }
-  const int done = static_cast<int>(std::count_if(report.runs.begin(), report.runs.end(), IsDone));
-  const Interval share = WilsonInterval(done, all);
-  table.push_back({"succeeded, and in truth nothing fell or was touched", std::to_string(done),
-                   fmt::format("{:.0f} %", 100.0 * share.estimate),
-                   fmt::format("{:.0f} .. {:.0f} %", 100.0 * share.lower, 100.0 * share.upper)});
+  };
+  for (const SeriesOutcome outcome : AllOutcomes())
+    add(ToString(outcome), CountOf(report, outcome));
+  add("succeeded, and in truth nothing fell or was touched", CountDone(report));
   return FormatTable(table);
 }
 
@@ -249,7 +249,7 @@ ordered_json ToJson(const SeriesReport& report) {
   for (const SeriesOutcome outcome : AllOutcomes()) {
     outcomes[ToString(outcome)] = CountOf(report, outcome);
   }
-  outcomes["succeeded_in_truth"] = std::count_if(report.runs.begin(), report.runs.end(), IsDone);
+  outcomes["succeeded_in_truth"] = CountDone(report);
   return {{"series", report.series.name},
           {"groups", groups},
           {"outcomes", outcomes},

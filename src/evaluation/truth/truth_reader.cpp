@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -8,6 +7,7 @@
 
 #include "evaluation/truth/controller_changes.h"
 #include "hires/base/error.h"
+#include "hires/base/files/named_file.h"
 #include "hires/base/hash.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
@@ -22,16 +22,6 @@ using base::ParamReader;
 using imagination::Uncertainty;
 
 constexpr double kFarthest = 1000.0;  // [m] worlds are not larger
-
-std::vector<std::string> NamesIn(const std::string& folder) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 // What is drawn
 // -----------------------------------------------------------------------------------
@@ -183,13 +173,7 @@ void ReadEvents(ParamReader in, Truth* truth) {
 std::string TruthPath(const std::string& name, const std::string& folder) {
   const fs::path path(name);
   if (path.has_parent_path() || path.extension() == ".yaml") return name;
-  const std::string wanted = name.empty() ? Truth{}.name : name;
-  const std::vector<std::string> names = NamesIn(folder);
-  if (std::find(names.begin(), names.end(), wanted) == names.end()) {
-    throw base::ConfigError(folder + ": " + base::UnknownName("truth", wanted, names) +
-                            "; or give a path");
-  }
-  return folder + "/" + wanted + ".yaml";
+  return base::FileNamed("truth", name.empty() ? Truth{}.name : name, folder);
 }
 
 Truth WithSensing(Truth truth, const std::string& sensing) {

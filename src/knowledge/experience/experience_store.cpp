@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "hires/base/error.h"
-#include "hires/base/writer_lock.h"
+#include "hires/base/files/writer_lock.h"
 #include "hires/knowledge/experience.h"
 #include "knowledge/store/store_error.h"
 

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "hires/base/error.h"
-#include "hires/base/writer_lock.h"
+#include "hires/base/files/writer_lock.h"
 #include "knowledge/store/store_schema.h"
 
 namespace hires::knowledge {

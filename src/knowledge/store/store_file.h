@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "hires/base/writer_lock.h"
+#include "hires/base/files/writer_lock.h"
 #include "hires/knowledge/store.h"
 
 namespace hires::knowledge {

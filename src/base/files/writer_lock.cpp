@@ -1,4 +1,4 @@
-#include "hires/base/writer_lock.h"
+#include "hires/base/files/writer_lock.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

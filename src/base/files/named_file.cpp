@@ -1,4 +1,4 @@
-#include "cli/named_file.h"
+#include "hires/base/files/named_file.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -6,7 +6,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 
-namespace hires::cli {
+namespace hires::base {
 namespace {
 
 namespace fs = std::filesystem;
@@ -23,19 +23,23 @@ std::vector<std::string> NamesIn(const std::string& folder) {
 
 }  // namespace
 
-std::string NamedFile(const std::string& kind, const std::string& name, const std::string& folder,
+std::string FileNamed(const std::string& kind, const std::string& name, const std::string& folder,
                       const std::vector<std::string>& others) {
-  const fs::path path(name);
-  std::error_code error;
-  if (path.has_parent_path() || path.has_extension() || fs::is_regular_file(path, error))
-    return name;
   std::vector<std::string> known = NamesIn(folder);
   if (std::find(known.begin(), known.end(), name) != known.end()) {
     return folder + "/" + name + ".yaml";
   }
   known.insert(known.end(), others.begin(), others.end());
-  throw base::ConfigError(folder + ": " + base::UnknownName(kind, name, known) +
-                          "; or give a path");
+  throw ConfigError(folder + ": " + UnknownName(kind, name, known) + "; or give a path");
 }
 
-}  // namespace hires::cli
+std::string NamedFile(const std::string& kind, const std::string& name, const std::string& folder,
+                      const std::vector<std::string>& others) {
+  const fs::path path(name);
+  std::error_code error;
+  const bool is_path =
+      path.has_parent_path() || path.has_extension() || fs::is_regular_file(path, error);
+  return is_path ? name : FileNamed(kind, name, folder, others);
+}
+
+}  // namespace hires::base
