@@ -216,6 +216,7 @@ TEST_F(AchieveVerbTest, WhatCannotBePlayedIsNamed) {
 }
 
 TEST_F(AchieveVerbTest, AnAreaThatNothingKnowsIsRefusedBeforeAnythingBegins) {
+  ASSERT_EQ(setenv("ROS_PACKAGE_PATH", HIRES_SOURCE_DIR, 1), 0);  // of model://sun
   const std::string own = std::string(HIRES_SOURCE_DIR) + "/examples/own_robot/";
   const auto deliver = [&](const std::string& object, const std::string& area) {
     return Run({"--local", "--scenario", own + "scenario.yaml", "--world", own + "hall.world",
