@@ -5,7 +5,9 @@ alone, or by `rostest hires localisation.test`."""
 
 import math
 import os
+import signal
 import sys
+import threading
 import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
@@ -397,6 +399,24 @@ class LocalisationTest(unittest.TestCase):
         node.process.wait_for('pose=set')
         self.step(node)
         self.assertLess(self.drive(5, node)[-1][0], 0.15)
+
+    def test_a_map_server_that_never_answers_holds_up_nothing(self):
+        from nav_msgs.srv import GetMap, GetMapResponse
+        answer = threading.Event()
+        self.addCleanup(answer.set)
+
+        def hang(_):
+            answer.wait()
+            return GetMapResponse(map_message())
+        server = self.rospy.Service('/static_map', GetMap, hang)
+        self.addCleanup(server.shutdown)
+        node = Node(self)
+        self.say(node, lambda v: v['message'] == 'waits for a map on /map; /static_map is there and does not '
+                                                 'answer, restart the map server')
+        self.begin(node)  # a map that comes otherwise is used all the same
+        self.assertLess(self.drive(5, node)[-1][0], 0.15)
+        node.process.signal(signal.SIGINT)  # while the call is open
+        self.assertEqual(node.process.wait(), 0, node.process.output())
 
     def test_parameters_that_nobody_knows_end_it(self):
         node = self.processes.start([executable('localisation'), '__name:=mistaken', '_sed:=3'], self.main)

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 #include <geometry_msgs/PoseArray.h>
-#include <nav_msgs/GetMap.h>
-#include <ros/service.h>
 #include <tf2_msgs/TFMessage.h>
 
 #include <cmath>
@@ -28,7 +26,7 @@ using localisation::ScanOutcome;
 
 constexpr char kInitialPose[] = "initialpose";
 constexpr char kAmclPose[] = "amcl_pose";
-constexpr double kPatience = 5.0;  // [s] for a latched map, before static_map is asked
+constexpr double kPatience = 5.0;  // [s] for a latched map, before static_map is asked; and for it
 
 geometry_msgs::PoseArray ToMsg(const std::vector<hires::geometry::Pose2>& poses,
                                const std_msgs::Header& header) {
@@ -50,6 +48,7 @@ LocalisationNode::LocalisationNode(const LocalisationNodeParams& params, ros::No
           transforms_.tree(), params.names, params.config.node,
           [this](const PlacedScan& scan) { Use(scan); },
           [this](const std::string& why) { Refuse(params_.names.base_scan, why); }),
+      map_server_(nh->resolveName(params.names.static_map)),
       begun_(hires::base::SteadyNow()) {
   const std::string& told = params.names.localisation;
   pose_ = nh->advertise<geometry_msgs::PoseWithCovarianceStamped>(told.empty() ? kAmclPose : told,
@@ -123,11 +122,8 @@ void LocalisationNode::BeginWith(const hires::world::OccupancyGrid& map) {
 
 void LocalisationNode::AskForMap() {
   if (params_.names.static_map.empty()) return;
-  nav_msgs::GetMap call;
-  const std::string service = nh_.resolveName(params_.names.static_map);
-  // First a probe: see ServiceLinks.
-  if (ros::service::exists(service, false) && ros::service::call(service, call))
-    OnMap(call.response.map);
+  if (const auto map = map_server_.Take()) return OnMap(*map);
+  map_server_.Ask();
 }
 
 void LocalisationNode::OnInitialPose(const geometry_msgs::PoseWithCovarianceStamped& msg) {
@@ -242,8 +238,7 @@ void LocalisationNode::Refuse(const std::string& topic, const std::string& why) 
 void LocalisationNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
   using diagnostic_msgs::DiagnosticStatus;
   if (!filter_) {
-    status.summary(DiagnosticStatus::WARN,
-                   "waits for a map on " + nh_.resolveName(params_.names.map));
+    status.summary(DiagnosticStatus::WARN, WhatMapItWaitsFor());
   } else if (!scans_.waits_for().empty()) {
     status.summary(DiagnosticStatus::WARN, "waits for " + scans_.waits_for());
   } else if (!is_updated_) {
@@ -255,6 +250,13 @@ void LocalisationNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& sta
   for (const auto& [outcome, count] : num_outcomes_) status.add("scans, " + outcome, count);
   for (const auto& [topic, count] : num_dropped_) status.add("dropped, " + topic, count);
   status.add("dropped last", last_drop_);
+}
+
+std::string LocalisationNode::WhatMapItWaitsFor() const {
+  const std::string waits = "waits for a map on " + nh_.resolveName(params_.names.map);
+  if (map_server_.Waiting() < kPatience) return waits;
+  return waits + "; " + nh_.resolveName(params_.names.static_map) +
+         " is there and does not answer, restart the map server";
 }
 
 void LocalisationNode::DiagnoseBelief(diagnostic_updater::DiagnosticStatusWrapper& status) {

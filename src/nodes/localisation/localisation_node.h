@@ -13,6 +13,7 @@
 
 #include "hires/base/topic_warnings.h"
 #include "hires/localisation/monte_carlo.h"
+#include "hires/ros/place/map_request.h"
 #include "hires/ros/place/placed_scans.h"
 #include "hires/ros/place/pose_messages.h"
 #include "hires/ros/place/transform_listener.h"
@@ -48,12 +49,14 @@ class LocalisationNode {
 
   void Refuse(const std::string& topic, const std::string& why);
   void Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status);
+  std::string WhatMapItWaitsFor() const;
   void DiagnoseBelief(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   const LocalisationNodeParams params_;
   ros::NodeHandle nh_;
   TransformListener transforms_;
   PlacedScans scans_;
+  MapRequest map_server_;
   std::optional<nav_msgs::OccupancyGrid> map_;                         // that is used
   std::optional<hires::localisation::MonteCarloLocalisation> filter_;  // once there is a map
   std::optional<UncertainPose> told_;  // the pose, before there was a map

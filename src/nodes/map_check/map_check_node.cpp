@@ -1,10 +1,8 @@
 #include "nodes/map_check/map_check_node.h"
 
 #include <fmt/format.h>
-#include <nav_msgs/GetMap.h>
 #include <ros/callback_queue.h>
 #include <ros/package.h>
-#include <ros/service.h>
 
 #include <utility>
 
@@ -87,34 +85,35 @@ MapCheckNode::MapCheckNode(const MapCheckParams& params, ros::NodeHandle* nh)
       slice_(hires::world::SliceWorld(hires::world::LoadWorld(params.world),
                                       LaserHeight(params.robot), LaserHeight(params.robot))),
       nh_(*nh),
-      subscriber_(nh->subscribe(params.names.map, 1, &MapCheckNode::OnMap, this)) {
+      subscriber_(nh->subscribe(params.names.map, 1, &MapCheckNode::OnMap, this)),
+      map_server_(nh->resolveName(params.names.static_map)),
+      asks_(!params.names.static_map.empty()) {
   updater_.setHardwareID("map_check");
   updater_.add("map", this, &MapCheckNode::Diagnose);
 }
 
 std::string MapCheckNode::Run() {
   const ros::WallTime begin = ros::WallTime::now();
-  bool has_asked = params_.names.static_map.empty();
   while (ros::ok() && misfit_.empty()) {
     ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(0.1));
-    if (!has_asked && !fit_ && (ros::WallTime::now() - begin).toSec() > kPatience) {
-      has_asked = true;
-      AskForMap();
-    }
+    if (asks_ && !fit_ && (ros::WallTime::now() - begin).toSec() > kPatience) AskForMap();
     if (new_map_) Compare();
     updater_.update();
   }
   return misfit_;
 }
 
+/// Once; then until it came, or too much time went by without it.
 void MapCheckNode::AskForMap() {
-  nav_msgs::GetMap call;
-  const std::string service = nh_.resolveName(params_.names.static_map);
-  // First a probe: see ServiceLinks.
-  if (ros::service::exists(service, false) && ros::service::call(service, call)) {
-    OnMap(call.response.map);
-    return;
+  if (!asked_) {
+    asked_ = ros::WallTime::now();
+    return map_server_.Ask();
   }
+  const bool waits = map_server_.Waiting() > 0.0;  // before it is looked for: it may come now
+  const std::optional<nav_msgs::OccupancyGrid> map = map_server_.Take();
+  if (map) OnMap(*map);
+  asks_ = !map && waits && (ros::WallTime::now() - *asked_).toSec() < kPatience;
+  if (map || asks_) return;
   hires::base::Log(hires::base::LogLevel::kWarn,
                    fmt::format("nothing comes on {} and {} does not answer: start the robot's "
                                "map_server",

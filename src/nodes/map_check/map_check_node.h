@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hires/control/robot_names.h"
+#include "hires/ros/place/map_request.h"
 #include "hires/ros/transform_buffer.h"
 #include "hires/world/map_to_world.h"
 
@@ -62,6 +63,9 @@ class MapCheckNode {
   const hires::world::OccupancyGrid slice_;
   ros::NodeHandle nh_;
   ros::Subscriber subscriber_;
+  MapRequest map_server_;
+  bool asks_;                           // the map server, where no map comes by itself
+  std::optional<ros::WallTime> asked_;  // when
   TransformBuffer tree_;
   std::vector<ros::Subscriber> transforms_;  // where a map is in another frame than the robot's
   std::optional<nav_msgs::OccupancyGrid> new_map_;  // not compared yet
