@@ -7,6 +7,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/report_json.h"
@@ -141,7 +142,9 @@ int RunRecogniseVerb(const RecogniseOptions& options, const std::string& package
       options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config,
       options.objects);
   if (options.is_segmenting) config.catalogue.clear();
-  const perception::PointCloud cloud = perception::ReadPcd(options.cloud);
+  perception::PointCloud cloud = perception::ReadPcd(options.cloud);
+  const std::string why = perception::TakeOnlyAhead(&cloud);
+  if (!why.empty()) throw base::ConfigError(options.cloud + ": " + why);
   const perception::Recogniser recogniser(config.catalogue, config.params);
   const Recognition seen = recogniser.Recognise(cloud, std::nullopt, base::Rng(kSeed));
   const bool is_measured =

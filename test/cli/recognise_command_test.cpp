@@ -67,6 +67,15 @@ class RecogniseCommandTest : public testing::Test {
   const hires::test_support::TemporaryFolder folder_;
 };
 
+TEST_F(RecogniseCommandTest, ACloudOfAnotherFrameIsRefused) {
+  perception::PointCloud cloud = Breakfast();
+  for (Eigen::Vector3f& p : cloud.points) p.z() = -p.z();
+  const Ended ended = Recognise({Write(cloud)});
+  EXPECT_EQ(ended.code, kExitBadInput);
+  EXPECT_THAT(ended.err, HasSubstr("cloud.pcd: "));
+  EXPECT_THAT(ended.err, HasSubstr("points lie behind the camera; wanted an optical frame"));
+}
+
 TEST_F(RecogniseCommandTest, WhatStandsOnTheTableIsNamed) {
   const Ended ended = Recognise({Write(Breakfast()), "--json", Path("seen.json")});
   EXPECT_EQ(ended.code, kExitRecommended) << ended.err;

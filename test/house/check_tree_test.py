@@ -384,8 +384,9 @@ class CheckTreeTest(unittest.TestCase):
 
     def test_only_the_simulated_robot_and_the_command_line_name_the_truth(self):
         listening = {"planner.cpp": 'nh.subscribe("ground_truth/world_state", 1, &Note);\n'}
-        for folder in ("src/nodes/sim_worker", "src/nodes/hires"):
-            self.assertEqual(self.truths_in(folder, listening), [])
+        self.assertEqual(self.truths_in("src/nodes/sim_worker", listening), [])
+        self.assertEqual(self.truths_in("src/nodes/hires", {"graph_run.h": listening["planner.cpp"]}), [])
+        self.assertEqual(len(self.truths_in("src/nodes/hires", listening)), 1)
         found = self.truths_in("src/nodes/planner", listening)
         self.assertEqual(len(found), 1)
         self.assertIn("src/nodes/planner/planner.cpp:1: names the topic of the truth", found[0])

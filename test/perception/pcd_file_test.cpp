@@ -112,6 +112,13 @@ TEST_F(PcdFileTest, DamageIsSaidWithItsPlace) {
       {with("F F F U", "I F F U") + "DATA ascii\n", "field x is of TYPE I, SIZE 4"},
       {with("WIDTH 2", "WIDTH 3") + "DATA ascii\n", "WIDTH 3 times HEIGHT 1 are not the 2 POINTS"},
       {with("WIDTH 2", "WIDTH -2") + "DATA ascii\n", "line 7: '-2' is no whole number"},
+      {with("WIDTH 2", "WIDTH 10000")
+               .replace(with("WIDTH 2", "WIDTH 10000").find("POINTS 2"), 8, "") +
+           "HEIGHT 10000\nDATA binary_compressed\n",
+       "WIDTH 10000 times HEIGHT 10000 are 100000000 points; at most 50000000 are read"},
+      {with("COUNT 1 1 1 1", "COUNT 1 1 1 100000") +
+           "SIZE 4 4 4 8\nCOUNT 1 1 100000 100000\nDATA binary_compressed\n",
+       "a point has more than 1000000 bytes; check COUNT"},
       {with("POINTS 2", "POINTS 99999999999999999999") + "DATA ascii\n", "is no whole number"},
       {head + "DATA binary_compressed\n" + std::string("\x05\x00\x00\x00\x20\x00\x00\x00", 8) +
            "ab",

@@ -2,7 +2,7 @@
 """Tasks drawn at random are done by pictures alone, each in a process of its own that needs no master:
 two beside each other. Usage: random_tasks_local_test.py HIRES plain|surprised|off FIRST LAST
 `surprised`: beside things that nobody told the robot of (support/surprises.py). `off`: the same, and the
-camera sits otherwise than the robot believes, by 5 mm and 5 mrad. The two scenarios of config/scenarios
+camera sits otherwise than the robot believes, by 5 mm and 5 mrad (test/data/loop). The two scenarios of config/scenarios
 are played, too. Prints a table."""
 
 import json
@@ -134,7 +134,7 @@ class RandomTasksLocalTest(unittest.TestCase):
         if VARIANT == 'plain':
             self.skipTest('only where there are surprises')
         with_table = [task for task in TASKS if COUNTER not in task.goal_areas]
-        on_table = 0  # there is not always room
+        on_table = 0  # where a table has room for one
         for task in TASKS:
             names = [thing['name'] for thing in surprises(task)]
             with self.subTest(seed=task.seed, task=task.task):
@@ -143,7 +143,7 @@ class RandomTasksLocalTest(unittest.TestCase):
             on_table += AT_GOAL[0] in names
         print('surprises: all on the counter in %d tasks; on tables in %d of %d' %
               (len(TASKS), on_table, len(with_table)), flush=True)
-        self.assertGreaterEqual(on_table, len(with_table) - max(1, len(with_table) // 10))
+        self.assertGreaterEqual(2 * on_table, len(with_table))
 
 
 if __name__ == '__main__':

@@ -116,6 +116,40 @@ TEST_F(GroundWatchTest, WhatHangsWhereTheRobotWasDuringTheSweepIsItsOwn) {
   ExpectTheBoxAndNothingElse(Obstacles(3.0));
 }
 
+TEST_F(GroundWatchTest, WhatAHandHoldsIsNoObstacle) {
+  const Pose2 X_MB{3.0, 2.0, 0.0};
+  perception::PointCloud cloud = Sweep(X_MB);
+  for (int i = 0; i < 20; ++i) {  // a tall thing in the hand, far before the base
+    const Eigen::Vector3d p_B(0.82, -0.18, 0.7 + 0.01 * i);
+    cloud.points.push_back((kLaser.Inverse() * p_B).cast<float>());
+  }
+  cloud.width = static_cast<int>(cloud.points.size());
+  cloud.height = 1;
+  Stand(1.0, X_MB);
+  watch_.OnCloud(1.0, "laser", cloud);
+  const auto squares = Obstacles(1.0);
+  EXPECT_TRUE(std::any_of(squares.begin(), squares.end(), [](const auto& square) {
+    return geometry::Contains(square, {3.82, 1.82});
+  })) << "no hand is there";
+
+  robot::Robot robot = *robot_;
+  robot.profile.upper_body.emplace();
+  robot::Link hand;
+  hand.name = robot.profile.upper_body->arms["rightarm1"].tool_link = "hand";
+  hand.joint = robot::Joint();
+  hand.joint->name = "wrist";
+  hand.joint->parent = 0;
+  hand.joint->X_PJ.translation = {0.8, -0.2, 0.8};
+  robot.model.links.push_back(hand);
+  GroundWatch with_hand(
+      &state_, std::make_shared<const robot::Robot>(robot),
+      std::make_shared<const navigation::Costmap>(world::SliceWorld(test_support::Room(), 0.1, 0.9),
+                                                  0.25, navigation::CostmapParams{}),
+      Seen(""));
+  with_hand.OnCloud(1.0, "laser", cloud);
+  ExpectTheBoxAndNothingElse(with_hand.Obstacles(*state_.At(1.0)));
+}
+
 class GroundWatchByEyeTest : public GroundWatchTest {
  protected:
   GroundWatchByEyeTest() : GroundWatchTest("laser") {}

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace hires::perception {
@@ -15,5 +16,11 @@ struct PointCloud {
 };
 
 inline bool IsMeasured(const Eigen::Vector3f& p_C) { return p_C.allFinite(); }
+
+/// Takes for not measured what no camera measures: points in itself (how some drivers write that
+/// nothing was measured) and behind it.
+/// @return why the cloud can be of no optical frame: too many of its points lie behind; empty: it
+///         may be.
+std::string TakeOnlyAhead(PointCloud* cloud);
 
 }  // namespace hires::perception

@@ -14,11 +14,11 @@ struct SelfFilterParams {
   double jump{0.05};     ///< [m] step of range between neighbours that counts as an edge
 };
 
-/// Cuts the robot itself, and what it carries, out of what its sensors measure. Two kinds of points
-/// go: those within `padding` of a shape, and those that veil an edge: behind the padded shape, as
-/// the sensor sees it, and next to a point that is nearer by more than `jump`. There the beam was
-/// split between the robot and what is behind it. What stands steadily behind the robot stays.
-/// A shape that has the sensor within its padding hides nothing.
+/// Cuts the robot itself out of what its sensors measure. Two kinds of points go: those within
+/// `padding` of a shape, and those that veil an edge: behind the padded shape, as the sensor sees
+/// it, and next to a point that is nearer by more than `jump`. There the beam was split between the
+/// robot and what is behind it. What stands steadily behind the robot stays. A shape that has the
+/// sensor within its padding hides nothing.
 ///
 /// Boxes, cylinders and spheres count exactly; a mesh by its triangles, closed ones as filled.
 class SelfFilter {
@@ -30,7 +30,8 @@ class SelfFilter {
 
   /// Points that are cut become NaN. Neighbours are those of row and column; in a cloud that is not
   /// organised, the ones before and after.
-  /// @param shapes_S  of links, tray and load, in the sensor's frame S, as the cloud is.
+  /// @param shapes_S  of links (and of a load, where it is known), in the sensor's frame S, as the
+  /// cloud is.
   /// @return how many points were cut.
   /// @pre the cloud has width * height points.
   int Cut(const std::vector<geometry::Collision>& shapes_S, PointCloud* cloud);

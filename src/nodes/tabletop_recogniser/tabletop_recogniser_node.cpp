@@ -21,7 +21,6 @@ namespace perception = hires::perception;
 namespace sensing = hires::sensing;
 
 constexpr std::uint64_t kSeed = 1;  // of the planes that are tried; any will do
-constexpr double kMaxBehind = 0.1;  // of the points; a camera measures none behind itself
 constexpr std::array<const char*, 4> kFaultNames{"malformed", "too old", "ahead of time",
                                                  "without transform"};  // as Fault
 
@@ -142,17 +141,13 @@ void TabletopRecogniserNode::Recognise(const hires::geometry::Pose3& X_BC) {
   } catch (const hires::base::ConfigError& error) {
     return Refuse(Fault::kMalformed, error.what());
   }
+  const std::string why = perception::TakeOnlyAhead(&cloud);
+  if (!why.empty()) {
+    return Refuse(Fault::kMalformed, fmt::format("{}, '{}' is none", why, msg->header.frame_id));
+  }
   num_points_ = static_cast<int>(cloud.points.size());
   num_measured_ = static_cast<int>(
       std::count_if(cloud.points.begin(), cloud.points.end(), perception::IsMeasured));
-  const auto num_behind = std::count_if(cloud.points.begin(), cloud.points.end(),
-                                        [](const Eigen::Vector3f& p) { return p.z() <= 0.0F; });
-  if (num_behind > kMaxBehind * num_measured_) {
-    return Refuse(Fault::kMalformed,
-                  fmt::format("{} of {} points lie behind the camera; wanted an optical frame "
-                              "(x right, y down, z forward), '{}' is none",
-                              num_behind, num_measured_, msg->header.frame_id));
-  }
   const auto seen = recogniser_.Look(std::move(cloud), X_BC, RobotShapes(msg->header.stamp.toSec()),
                                      params_.robot->profile.tray_link,
                                      hires::base::Rng(kSeed).Fork(msg->header.stamp.toNSec()));

@@ -19,6 +19,7 @@ namespace hires::perception {
 namespace {
 
 constexpr std::uint64_t kMostPoints = 50'000'000;
+constexpr std::size_t kMostPointBytes = 1'000'000;
 constexpr std::size_t kMostBytes = std::size_t{4} << 30;
 constexpr int kMostHeaderLines = 100;
 
@@ -79,7 +80,6 @@ PointCloud PcdReader::Read() {
     Fail(fmt::format("ends {} bytes after its header, too early for {} points; is it copied whole?",
                      in_.rdbuf()->in_avail(), header_.points));
   }
-  cloud.points.resize(header_.points);
   if (header_.data == "ascii") {
     ReadText(&cloud);
   } else if (header_.data == "binary") {
@@ -158,9 +158,15 @@ void PcdReader::CheckHeader() {
     Fail(fmt::format("WIDTH {} times HEIGHT {} are not the {} POINTS", header_.width,
                      header_.height, header_.points));
   }
+  if (header_.points > kMostPoints) {
+    Fail(fmt::format("WIDTH {} times HEIGHT {} are {} points; at most {} are read", header_.width,
+                     header_.height, header_.points, kMostPoints));
+  }
   for (Field& field : header_.fields) {
     field.offset = header_.point_size;
     header_.point_size += field.count * (header_.data == "ascii" ? 1 : field.size);
+    if (header_.point_size > kMostPointBytes)
+      Fail(fmt::format("a point has more than {} bytes; check COUNT", kMostPointBytes));
   }
   for (const Field* field : Xyz()) {
     if (field->type != 'F' || (field->size != 4 && field->size != 8) || field->count != 1) {
@@ -189,6 +195,7 @@ std::array<const Field*, 3> PcdReader::Xyz() const {
 void PcdReader::ReadText(PointCloud* cloud) {
   const auto xyz = Xyz();
   std::string text;
+  cloud->points.resize(header_.points);
   for (std::size_t i = 0; i < cloud->points.size(); ++i) {
     ++line_;
     if (!std::getline(in_, text))
@@ -232,6 +239,7 @@ float PcdReader::NumberAt(const char* bytes, const Field& field) const {
 void PcdReader::ReadBinary(PointCloud* cloud) {
   const auto xyz = Xyz();
   const std::vector<char> bytes = ReadBytes(header_.points * header_.point_size);
+  cloud->points.resize(header_.points);
   for (std::size_t i = 0; i < cloud->points.size(); ++i)
     for (int axis = 0; axis < 3; ++axis)
       cloud->points[i][axis] =
@@ -251,6 +259,7 @@ void PcdReader::ReadCompressed(PointCloud* cloud) {
   std::vector<char> bytes(wanted);
   if (lzf_decompress(packed.data(), sizes[0], bytes.data(), sizes[1]) != sizes[1])
     Fail("its packed points are damaged");
+  cloud->points.resize(header_.points);
   for (int axis = 0; axis < 3; ++axis) {  // field by field, each of all points
     const Field& field = *Xyz()[axis];
     const char* first = &bytes[field.offset * header_.points];

@@ -7,6 +7,8 @@
 namespace hires::perception {
 namespace {
 
+constexpr long kTrayPoints = 200;  // of tray and things on it, for it to be seen
+
 /// A tray's plate is larger than its rims.
 std::optional<geometry::Collision> PlateOf(const std::string& tray_link,
                                            const std::vector<geometry::Collision>& robot_F) {
@@ -44,7 +46,7 @@ TabletopRecogniser::TabletopRecogniser(std::shared_ptr<const Recogniser> recogni
     : recogniser_(std::move(recogniser)), self_(params) {}
 
 /// The robot's own tray cannot be found by its points alone: they are the robot's. Its plate says
-/// about where it is, the cloud where it is seen.
+/// about where it is, the cloud whether and where it is seen.
 Recognition TabletopRecogniser::OnTray(const geometry::Collision& tray_F,
                                        const geometry::Pose3& X_FC,
                                        const std::vector<geometry::Collision>& others_C,
@@ -62,7 +64,11 @@ Recognition TabletopRecogniser::OnTray(const geometry::Collision& tray_F,
                              std::pair(high.x(), high.y()), std::pair(low.x(), high.y())}) {
     table.outline.push_back(table.FromAbove(X_CF * Eigen::Vector3d(x, y, high.z())));
   }
-  return recogniser_->RecogniseOn(table, cloud, rng);
+  Recognition found = recogniser_->RecogniseOn(table, cloud, rng);
+  const std::vector<int>& labels = found.segmentation.labels;
+  const auto num_nothing = std::count(labels.begin(), labels.end(), kLabelNone);
+  if (static_cast<long>(labels.size()) - num_nothing < kTrayPoints) return {};
+  return found;
 }
 
 std::optional<TabletopView> TabletopRecogniser::Look(

@@ -18,6 +18,24 @@ namespace {
 constexpr std::uint64_t kSeed = 1;  // of the search for the floor; any will do
 constexpr double kSweep = 2.0;      // [s] that a cloud may have been put together from
 constexpr double kStep = 0.1;       // [s] in which arms move less than the padding
+constexpr double kInHand = 0.15;    // [m] from where a hand grasps, to which what it holds reaches
+
+/// A ball about what each hand may hold: nothing there stands on the floor.
+void AddLoads(const robot::Robot& robot, const geometry::Pose2& X_FB,
+              const robot::JointPositions& posture, std::vector<geometry::Collision>* shapes_F) {
+  if (!robot.profile.upper_body) return;
+  const auto X_RL = robot::ForwardKinematics(robot.model, posture);
+  const geometry::Pose3 X_FR =
+      geometry::Lift(X_FB) * X_RL[*robot.model.FindLink(robot.profile.base_link)].Inverse();
+  for (const auto& [name, arm] : robot.profile.upper_body->arms) {
+    const auto tool = robot.model.FindLink(arm.tool_link);
+    if (!tool) continue;
+    geometry::Collision& load = shapes_F->emplace_back();
+    load.name = "load of " + name;
+    load.shape = geometry::Sphere{kInHand};
+    load.X_BS = X_FR * X_RL[*tool];
+  }
+}
 
 }  // namespace
 
@@ -106,10 +124,10 @@ bool GroundWatch::Look(double stamp, const std::string& frame, perception::Point
   for (Eigen::Vector3f& point : cloud.points) point += p_SC;
   std::vector<geometry::Collision> shapes = perception::ShapesOf(*robot_, {}, then->posture);
   double height = 0.0;
-  for (geometry::Collision& shape : shapes) {
+  for (const geometry::Collision& shape : shapes)
     height = std::max(height, geometry::BoundsOf(shape.shape, shape.X_BS).upper.z());
-    shape.X_BS = X_BS.Inverse() * shape.X_BS;
-  }
+  AddLoads(*robot_, {}, then->posture, &shapes);
+  for (geometry::Collision& shape : shapes) shape.X_BS = X_BS.Inverse() * shape.X_BS;
   self_.Cut(shapes, &cloud);
   reading_ = find_->Find(cloud, X_BS, then->X_WB, height, &rng_);
   DropOwn(stamp);
@@ -125,8 +143,10 @@ void GroundWatch::DropOwn(double stamp) {
   for (double time = stamp - kSweep; time <= stamp && !spots.empty(); time += kStep) {
     const auto then = state_->At(time);
     if (!then) continue;
-    for (const geometry::Collision& shape_M :
-         perception::ShapesOf(*robot_, then->X_WB, then->posture)) {
+    std::vector<geometry::Collision> shapes_M =
+        perception::ShapesOf(*robot_, then->X_WB, then->posture);
+    AddLoads(*robot_, then->X_WB, then->posture, &shapes_M);
+    for (const geometry::Collision& shape_M : shapes_M) {
       const geometry::Aabb box = geometry::BoundsOf(shape_M.shape, shape_M.X_BS);
       const auto is_own = [&](const GroundSpot& spot) {
         const Eigen::Vector3d low(spot.p_M.x(), spot.p_M.y(), spot.lowest);
