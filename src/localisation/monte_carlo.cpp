@@ -157,9 +157,12 @@ class MonteCarloLocalisation::Belief {
     if (followed != ScanOutcome::kUpdated) return followed;
     Beams beams;
     const ScanOutcome outcome = SelectBeams(scan, X_BL, beam_params_, &beams);
-    if (outcome != ScanOutcome::kUpdated) return outcome;
-    last_scan_ = time;
     const Pose2 moved = used_->X_OB.Inverse() * X_OB;
+    if (outcome != ScanOutcome::kUpdated) {
+      if (HasMoved(moved)) GoOnBlind(moved);
+      return outcome;
+    }
+    last_scan_ = time;
     const bool is_due = IsDue(moved);
     if (is_due) Use(beams, moved, RangeMax(scan, beam_params_, kAnyRange));
     JudgeExplained(beams);
@@ -262,9 +265,19 @@ class MonteCarloLocalisation::Belief {
                           : ScanOutcome::kUpdated;
   }
 
-  bool IsDue(const Pose2& moved) const {
-    return is_forced_ || std::hypot(moved.x, moved.y) >= params_.update_min_d ||
+  bool IsDue(const Pose2& moved) const { return is_forced_ || HasMoved(moved); }
+
+  bool HasMoved(const Pose2& moved) const {
+    return std::hypot(moved.x, moved.y) >= params_.update_min_d ||
            std::abs(geometry::WrapToPi(moved.yaw)) >= params_.update_min_a;
+  }
+
+  /// By odometry alone, in steps as short as with scans, for which the model of its errors is made.
+  void GoOnBlind(const Pose2& moved) {
+    Move(moved);
+    used_ = seen_;
+    is_forced_ = true;  // the first scan that can be used is
+    summary_ = IsGlobal() ? SummariseAsOne(particles_) : Summarise(particles_);
   }
 
   void Use(const Beams& beams, const Pose2& moved, double range_max) {

@@ -192,10 +192,10 @@ class BadScanTest : public ::testing::Test {
   }
   /// Heard after a drive of 1 m, so that a good one would be used.
   void ExpectRefused(ScanOutcome outcome) {
-    const Eigen::Matrix3d before = filter_.Estimate(2.0).covariance;
+    const PoseEstimate before = filter_.Estimate(2.0);
     EXPECT_EQ(Update(2.0, {1.0, 0.0, 0.0}), outcome) << ToString(outcome);
     EXPECT_TRUE(IsBad(outcome));
-    EXPECT_EQ(filter_.Estimate(2.0).covariance, before);
+    EXPECT_EQ(filter_.Estimate(2.0).effective_size, before.effective_size) << "it was weighed";
   }
 
   SimulatedDrive drive_;
@@ -267,6 +267,74 @@ TEST_F(BadScanTest, RobotThatStandsUsesAScanThatIsAskedFor) {
 TEST_F(BadScanTest, SilenceOfTheLaserIsToldAfterTheTimeout) {
   EXPECT_NE(filter_.Estimate(5.9).status, LocalisationStatus::kNoScan);
   EXPECT_EQ(filter_.Estimate(6.1).status, LocalisationStatus::kNoScan);
+}
+
+TEST_F(BadScanTest, RobotThatStandsBlindIsAsSureAsItWas) {
+  const Eigen::Matrix3d before = filter_.Estimate(1.0).covariance;
+  scan_.ranges.assign(361, kNan);
+  for (int i = 1; i <= 100; ++i) Update(1.0 + 0.1 * i, {0.001 * i, 0.0, 0.0});
+  EXPECT_EQ(filter_.Estimate(11.0).status, LocalisationStatus::kNoScan);
+  EXPECT_EQ(filter_.Estimate(11.0).covariance, before);
+}
+
+/// The model [Thrun, Burgard, Fox 2005, 5.4], as AMCL takes it: of a step of d its deviation is
+/// alpha3 d^2 along, and steps of update_min_d add up like a random walk.
+TEST_F(BadScanTest, BlindDriveIsAsUncertainAsTheModelOfTheOdometrySays) {
+  const Eigen::Matrix3d before = filter_.Estimate(1.0).covariance;
+  const MonteCarloParams params;
+  for (const float useless : {kNan, 0.0f}) {
+    MonteCarloLocalisation filter = filter_;
+    scan_.ranges.assign(361, useless);
+    constexpr int kSteps = 20;
+    for (int i = 1; i <= 4 * kSteps; ++i)  // 1 m/s; a bit more than 0.2 m in four
+      filter.Update(1.0 + 0.05 * i, {0.0501 * i, 0.0, 0.0}, scan_, X_BL_);
+    const PoseEstimate estimate = filter.Estimate(20.0);
+    EXPECT_EQ(estimate.status, LocalisationStatus::kNoScan);
+    const double step = 4 * 0.0501, along = params.odometry.alpha3 * step * step,
+                 turned = params.odometry.alpha2 * step * step;
+    const double heading = filter_.Estimate(1.0).X_MB.yaw;
+    const Eigen::Vector2d ahead(std::cos(heading), std::sin(heading));
+    const auto growth = [&](const Eigen::Vector2d& direction) {
+      const Eigen::Matrix2d grown = (estimate.covariance - before).topLeftCorner<2, 2>();
+      return direction.dot(grown * direction);
+    };
+    EXPECT_NEAR(estimate.covariance(2, 2) - before(2, 2), kSteps * turned * turned,
+                0.2 * kSteps * turned * turned);
+    EXPECT_GT(growth(ahead), 0.7 * kSteps * along * along);
+    EXPECT_LT(growth(ahead), 2.0 * kSteps * along * along);
+    // Across: by the heading's error at first, and by that of each step, over the way that is left.
+    const Eigen::Vector2d across(-ahead.y(), ahead.x());
+    const double way = kSteps * step;
+    double sideways = way * way * before(2, 2) + 2.0 * way * across.dot(before.block<2, 1>(0, 2));
+    for (int i = 1; i < kSteps; ++i) sideways += std::pow(i * step * turned, 2);
+    EXPECT_NEAR(growth(across), sideways, 0.2 * sideways);
+  }
+}
+
+TEST_F(BadScanTest, FirstScanAfterABlindDriveIsUsed) {
+  const robot::ScanReading good = scan_;
+  scan_.ranges.assign(361, kNan);
+  Update(1.5, {0.25, 0.0, 0.0});
+  scan_ = good;
+  EXPECT_EQ(Update(1.6, {0.25, 0.0, 0.0}), ScanOutcome::kUpdated);
+  EXPECT_EQ(Update(1.7, {0.25, 0.0, 0.0}), ScanOutcome::kNotMoved);
+}
+
+TEST(MonteCarloTest, LaserThatWasBlindForAWhileFindsItsPlaceAgain) {
+  const SimulatedDrive drive = Drive(1, RoomsWithShelf());
+  MonteCarloLocalisation filter(RoomsWithShelf(), ParamsAt(drive.truth.front().X_MB), base::Rng(1));
+  double most = 0.0;
+  for (const Step& step : StepsOf(drive.log)) {
+    robot::ScanReading scan = step.scan->reading;
+    const bool is_blind = step.time > 10.0 && step.time < 25.0;
+    if (is_blind) scan.ranges.assign(scan.ranges.size(), 0.0f);
+    filter.Update(step.time, step.X_OB, scan, step.scan->X_BL);
+    if (is_blind) most = std::max(most, filter.Estimate(step.time).covariance(0, 0));
+  }
+  const PoseEstimate last = filter.Estimate(drive.truth.back().time);
+  EXPECT_GT(most, 0.03);
+  EXPECT_EQ(last.status, LocalisationStatus::kGood);
+  EXPECT_LT((last.X_MB.position() - drive.truth.back().X_MB.position()).norm(), 0.15);
 }
 
 TEST(MonteCarloTest, RobotInAnotherPlaceThanItBelievesIsCalledLost) {

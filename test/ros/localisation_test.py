@@ -222,6 +222,36 @@ class LocalisationTest(unittest.TestCase):
         self.assertLess(errors[-1][0], 0.15)
         self.assertLess(node.poses[-1].pose.covariance[0], 0.1)
 
+    def test_a_robot_whose_laser_goes_blind_is_less_and_less_sure_and_lost_and_finds_itself(self):
+        node = self.begun()
+        self.drive(10, node)
+        sees = self.scan
+
+        def blind():
+            scan = sees()
+            scan.ranges = [useless] * len(ANGLES)
+            return scan
+
+        def spread():
+            pose = node.poses[-1]
+            return (pose.header.stamp.to_sec(), sum(pose.pose.covariance[i] for i in (0, 7)))
+        for useless in (NAN, 0.0):
+            known, before = len(node.process.lines), spread()
+            self.scan = blind
+            self.drive(20, node)
+            during = spread()
+            self.assertGreater(during[1], before[1] + 0.003)
+            self.drive(20, node)
+            node.process.wait_for('place=lost', first=known)
+            self.assertGreater(spread()[1], during[1] + 0.003)
+            self.assertGreater(spread()[0], self.now - 1.0, 'nobody is told any more')
+            self.assertEqual(self.say(node, lambda v: v['message'].startswith('no scan'))['level'], 2)
+            self.scan = sees
+            errors = self.drive(20, node)
+            node.process.wait_for('place=found', first=known)
+            self.assertLess(errors[-1][0], 0.15)
+            self.assertLess(spread()[1], 0.02)
+
     def test_a_laser_that_hangs_upside_down_is_turned_over(self):
         from geometry_msgs.msg import Quaternion
         from tf2_msgs.msg import TFMessage

@@ -31,7 +31,8 @@ std::string WhyUseless(const world::OccupancyGrid& map);
 struct PoseEstimate {
   geometry::Pose2 X_MB;  ///< mean of the heaviest cluster, moved on with the odometry since
   /// Symmetric, [m^2, m rad, rad^2] of x, y, yaw around that mean, of all particles in clusters
-  /// that count: so it is large where two places fit. As of the last scan that was used; while the
+  /// that count: so it is large where two places fit. As of the last scan that was used; where
+  /// scans come that cannot be used, it grows with the way as the odometry's model says. While the
   /// status is kUnexplained at least what lost_spread says, for then they know nothing.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
   int num_particles{0};
@@ -93,7 +94,8 @@ class MonteCarloLocalisation {
   bool WouldUse(const geometry::Pose2& X_OB) const;
 
   /// A scan, with where odometry and laser were at its time. Times [s] rise; one that goes back, or
-  /// odometry that jumps, leaves the belief alone and is where odometry goes on from.
+  /// odometry that jumps, leaves the belief alone and is where odometry goes on from. One that
+  /// cannot be used moves the belief on by the odometry alone.
   ScanOutcome Update(double time, const geometry::Pose2& X_OB, const robot::ScanReading& scan,
                      const geometry::Pose2& X_BL);
 

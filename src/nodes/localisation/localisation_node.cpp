@@ -191,16 +191,24 @@ void LocalisationNode::Use(const PlacedScan& scan) {
     Refuse(params_.names.base_scan, WhyBad(outcome, scan.reading));
   }
   is_updated_ = is_updated_ || outcome == ScanOutcome::kUpdated;
-  const bool is_new = NoteLost(scan.header.stamp.toSec()) || outcome == ScanOutcome::kUpdated;
+  const bool is_new = NoteLost(scan.header.stamp.toSec()) || outcome == ScanOutcome::kUpdated ||
+                      (localisation::IsBad(outcome) && IsLessSure(scan.header.stamp.toSec()));
   // The odometry goes on below the map, also where the laser sees nothing.
   if (is_updated_ && outcome != ScanOutcome::kNotFinite) Publish(scan.header.stamp, is_new);
+}
+
+/// Whether the place has become less certain than was told, as where scans cannot be used.
+bool LocalisationNode::IsLessSure(double stamp) const {
+  const Eigen::Matrix3d now = filter_->Estimate(stamp).covariance;
+  return ((now - told_covariance_).diagonal().array() > 0.0).any();
 }
 
 /// Whether it is lost since this scan, or not any more: that is told also where the robot stands.
 bool LocalisationNode::NoteLost(double stamp) {
   const auto estimate = filter_->Estimate(stamp);
   const bool is_lost = estimate.status == LocalisationStatus::kUnexplained ||
-                       estimate.status == LocalisationStatus::kSpread;
+                       estimate.status == LocalisationStatus::kSpread ||
+                       estimate.status == LocalisationStatus::kNoScan;
   if (is_lost == is_lost_) return false;
   is_lost_ = is_lost;
   hires::base::Log(is_lost ? LogLevel::kWarn : LogLevel::kInfo,
@@ -224,6 +232,7 @@ void LocalisationNode::Publish(const ros::Time& stamp, bool is_new) {
   header.stamp = stamp;
   header.frame_id = names.map_frame;
   const auto estimate = filter_->Estimate(stamp.toSec());
+  told_covariance_ = estimate.covariance;
   pose_.publish(hires_ros::ToMsg(UncertainPose{estimate.X_MB, estimate.covariance}, header));
   if (particles_.getNumSubscribers() > 0)
     particles_.publish(ToMsg(filter_->ParticlePoses(), header));

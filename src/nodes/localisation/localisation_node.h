@@ -44,6 +44,7 @@ class LocalisationNode {
   void OnTransforms(const TransformBuffer::News& news);
   void OnScan(const sensor_msgs::LaserScanConstPtr& msg);
   void Use(const PlacedScan& scan);
+  bool IsLessSure(double stamp) const;
   bool NoteLost(double stamp);
   void Publish(const ros::Time& stamp, bool is_new);
 
@@ -62,7 +63,8 @@ class LocalisationNode {
   std::optional<UncertainPose> told_;  // the pose, before there was a map
   bool is_updated_{false};             // by a scan since it began
   bool is_lost_{false};                // as was told last
-  double begun_;                       // [s] steady
+  Eigen::Matrix3d told_covariance_{Eigen::Matrix3d::Zero()};
+  double begun_;  // [s] steady
 
   std::string last_drop_;                     // the last message that was dropped, and why
   std::map<std::string, long> num_outcomes_;  // of scans that the filter heard
