@@ -51,6 +51,8 @@ std::string ToString(ScanOutcome outcome) {
       return "nothing met within range";
     case ScanOutcome::kNotFinite:
       return "not finite";
+    case ScanOutcome::kLate:
+      return "late";
     case ScanOutcome::kTimeWentBack:
       return "time went back";
     case ScanOutcome::kOdometryJumped:

@@ -8,10 +8,10 @@
 
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
+#include "hires/robot/odometry_jump.h"
 #include "localisation/beams.h"
 #include "localisation/belief_summary.h"
 #include "localisation/likelihood_field.h"
-#include "localisation/odometry_jump.h"
 #include "localisation/particles.h"
 
 namespace hires::localisation {
@@ -253,11 +253,13 @@ class MonteCarloLocalisation::Belief {
     }
     const Pose2 step = seen_->X_OB.Inverse() * X_OB;
     const double duration = time - seen_->time;
+    if (duration < 0.0 && duration > -robot::kClockReset) return ScanOutcome::kLate;
     const bool is_jump =
-        IsOdometryJump(step, duration, params_.max_linear_speed, params_.max_angular_speed);
+        robot::IsOdometryJump(step, duration, params_.max_linear_speed, params_.max_angular_speed);
     if (duration < 0.0 || is_jump) {
       used_ = OdometryAnchor{time, X_OB * (seen_->X_OB.Inverse() * used_->X_OB)};
       if (last_scan_) last_scan_ = std::min(*last_scan_, time);
+      if (duration < 0.0) unexplained_since_.reset();
     }
     seen_ = now;
     return duration < 0.0 ? ScanOutcome::kTimeWentBack

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "hires/geometry/angles.h"
-#include "localisation/odometry_jump.h"
+#include "hires/robot/odometry_jump.h"
 
 namespace hires::localisation {
 namespace {
@@ -109,12 +109,14 @@ FilterOutcome OdometryFilter::OnOdometry(double time, const robot::OdometryReadi
   if (!std::isfinite(time) || !X_OB.IsFinite() || !IsFinite(reading.V_B)) {
     return FilterOutcome::kNotFinite;
   }
-  V_B_ = reading.V_B;
   if (!odometry_) {
+    V_B_ = reading.V_B;
     Begin(time, X_OB);
     return FilterOutcome::kTaken;
   }
   const double duration = time - time_;
+  if (duration < 0.0 && duration > -robot::kClockReset) return FilterOutcome::kLate;
+  V_B_ = reading.V_B;
   Pose2 moved = odometry_->X_OB.Inverse() * X_OB;
   moved.yaw = WrapToPi(moved.yaw);
   if (duration < 0.0) {
@@ -124,7 +126,7 @@ FilterOutcome OdometryFilter::OnOdometry(double time, const robot::OdometryReadi
     GoOnFrom(time, X_OB);
     return FilterOutcome::kTimeWentBack;
   }
-  if (IsOdometryJump(moved, duration, params_.max_linear_speed, params_.max_angular_speed)) {
+  if (robot::IsOdometryJump(moved, duration, params_.max_linear_speed, params_.max_angular_speed)) {
     AddUnseenMotion();
     P_(3, 3) += params_.imu_drift * duration;
     DropWaitingBefore(time);
@@ -153,6 +155,7 @@ FilterOutcome OdometryFilter::OnInertia(double time, const robot::ImuReading& re
   const std::optional<double> before =
       waiting_.empty() ? inertia_time_ : std::optional<double>(waiting_.back().time);
   const bool is_gap = before && time - *before > params_.imu_timeout;
+  if (is_gap) BeginNewZero();  // it may have restarted meanwhile, which a small turn does not show
   waiting_.push_back({time, reading.yaw, newest_zero_});
   if (waiting_.size() > kMostWaiting) {
     waiting_.pop_front();

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "hires/geometry/angles.h"
+#include "hires/localisation/heading_feed.h"
 #include "support/simulated_drive.h"
 
 namespace hires::localisation::filtered_log_test {
@@ -108,8 +109,45 @@ TEST(FilterOdometryTest, TurnWithinAGapOfTheRatesIsThatOfTheWheels) {
 TEST(FilterOdometryTest, TurnWithinAGapOfAUnitThatTellsYawIsTheUnits) {
   RobotLog log = TurnOnTheSpot(6.0, 0.01);
   for (RobotLog::Inertia& inertia : log.inertia) inertia.yaw = 0.1 * inertia.time - 1.0;
-  ForgetBetween(1.995, 4.0, &log.inertia);
+  ForgetBetween(1.995, 2.9, &log.inertia);
   EXPECT_NEAR(LastYaw(log), 0.6, 2e-3);
+}
+
+TEST(FilterOdometryTest, TurnWithinALongGapOfAUnitThatTellsYawIsThatOfTheWheels) {
+  RobotLog log = TurnOnTheSpot(6.0, 0.01);
+  for (RobotLog::Inertia& inertia : log.inertia) inertia.yaw = 0.1 * inertia.time - 1.0;
+  ForgetBetween(1.995, 4.0, &log.inertia);
+  EXPECT_NEAR(LastYaw(log), 0.6 + 0.02, 2e-3) << "it may have restarted in 2 s";
+}
+
+TEST(HeadingFeedTest, RatesThatAreALittleLateAreLeftOut) {
+  OdometryFilter alone({}), mixed({});
+  HeadingFeed steady(&alone), interleaved(&mixed);
+  for (int i = 0; i < 300; ++i) {
+    const RobotLog::Inertia now{0.01 * i, {}, 0.5}, late{0.01 * i - 0.05, {}, -3.0};
+    steady.Take(now);
+    interleaved.Take(now);
+    if (i > 0) EXPECT_EQ(interleaved.Take(late), FilterOutcome::kLate);
+    for (OdometryFilter* filter : {&alone, &mixed})
+      filter->OnOdometry(now.time, {Pose2{0.0, 0.0, 0.4 * now.time}, {}});
+  }
+  EXPECT_NEAR(alone.X_FB().yaw, 0.5 * 2.99, 0.01);
+  EXPECT_EQ(mixed.X_FB().yaw, alone.X_FB().yaw);
+}
+
+TEST(HeadingFeedTest, AClockThatBeginsAgainIsAnotherZero) {
+  OdometryFilter filter({});
+  HeadingFeed feed(&filter);
+  for (const double start : {100.0, 0.0}) {
+    for (int i = 0; i <= 100; ++i) {
+      const double time = start + 0.01 * i;
+      const double yaw = 0.15 * (time - start + (start == 0.0 ? 1.0 : 0.0));
+      EXPECT_EQ(filter.OnOdometry(time, {Pose2{0.0, 0.0, yaw}, {}}),
+                start == 0.0 && i == 0 ? FilterOutcome::kTimeWentBack : FilterOutcome::kTaken);
+      EXPECT_EQ(feed.Take({time, {}, 0.2}), FilterOutcome::kTaken) << time;
+    }
+  }
+  EXPECT_NEAR(filter.X_FB().yaw, 0.4, 0.01);
 }
 
 TEST(FilterOdometryTest, UnitMayTellYawAtTimesOnly) {

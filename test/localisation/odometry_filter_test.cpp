@@ -202,6 +202,37 @@ TEST(OdometryFilterTest, TimeThatGoesBackKeepsTheEstimateAndAddsVariance) {
   ExpectPose(filter.X_FB(), before * kStep, 1e-12);
 }
 
+/// Wheels and a second source whose readings come when newer ones have been heard already.
+TEST(OdometryFilterTest, OdometryThatIsALittleLateIsLeftOutAndChangesNothing) {
+  const std::vector<Event> wheels = Wheels(200);
+  OdometryFilter alone({}), mixed({});
+  for (std::size_t i = 1; i < wheels.size(); ++i) {
+    alone.OnInertia(wheels[i].time, {wheels[i].X_OB.yaw, 0.0});
+    mixed.OnInertia(wheels[i].time, {wheels[i].X_OB.yaw, 0.0});
+    Hear(wheels[i], &alone);
+    Hear(wheels[i], &mixed);
+    EXPECT_EQ(Hear(wheels[i - 1], &mixed), FilterOutcome::kLate);
+  }
+  EXPECT_EQ(mixed.time(), wheels.back().time);
+  EXPECT_EQ(mixed.Covariance(), alone.Covariance());
+  ExpectPose(mixed.X_FB(), alone.X_FB(), 0.0);
+}
+
+TEST(OdometryFilterTest, UnitThatRestartsInAGapTurnsNothing) {
+  const std::vector<Event> wheels = Wheels(200);
+  const OdometryFilterParams params;
+  for (const double restarted : {0.0, 0.1, 0.25, 1.0}) {
+    OdometryFilter filter(params);
+    for (const Event& wheel : wheels) {
+      const bool is_before = wheel.time<3.0, is_after = wheel.time> 3.2 + params.imu_timeout;
+      if (is_before || is_after)
+        filter.OnInertia(wheel.time, {wheel.X_OB.yaw + (is_after ? restarted : 0.0), 0.0});
+      Hear(wheel, &filter);
+    }
+    ExpectPose(filter.X_FB(), wheels.back().X_OB, 1e-9);
+  }
+}
+
 TEST(OdometryFilterTest, BadReadingsAreNamedAndChangeNothing) {
   OdometryFilter filter = After(Wheels(10));
   const Pose2 before = filter.X_FB();

@@ -93,8 +93,9 @@ class MonteCarloLocalisation {
   /// since the last one, or a scan is wanted anyway.
   bool WouldUse(const geometry::Pose2& X_OB) const;
 
-  /// A scan, with where odometry and laser were at its time. Times [s] rise; one that goes back, or
-  /// odometry that jumps, leaves the belief alone and is where odometry goes on from. One that
+  /// A scan, with where odometry and laser were at its time. Times [s] rise; one that goes back by
+  /// robot::kClockReset or more, or odometry that jumps, leaves the belief alone and is where
+  /// odometry goes on from; one that goes back by less is left out. One that
   /// cannot be used moves the belief on by the odometry alone.
   ScanOutcome Update(double time, const geometry::Pose2& X_OB, const robot::ScanReading& scan,
                      const geometry::Pose2& X_BL);

@@ -6,6 +6,7 @@
 #include "hires/geometry/pose.h"
 #include "hires/localisation/live_scan_params.h"
 #include "hires/localisation/odometry_model.h"
+#include "hires/robot/odometry_jump.h"
 
 namespace hires::localisation {
 
@@ -36,9 +37,9 @@ struct MonteCarloParams {
   /// is wrong where they all end, the pose is that of one moment), and as many independent
   /// measurements they would make the filter far too sure of itself.
   double independent_beams{10.0};
-  int global_particles{50000};     ///< that begin a global localisation; the first scan sifts them
-  double max_linear_speed{2.0};    ///< [m/s] odometry that is faster was reset
-  double max_angular_speed{6.0};   ///< [rad/s]
+  int global_particles{50000};  ///< that begin a global localisation; the first scan sifts them
+  double max_linear_speed{robot::kFastestDrive};  ///< [m/s] odometry that is faster was reset
+  double max_angular_speed{robot::kFastestTurn};  ///< [rad/s]
   double explained_distance{0.2};  ///< [m] beams that end so near to an obstacle are explained
   double lost_explained{0.5};      ///< share of explained beams below which it is lost
   double lost_spread{1.0};  ///< [m] standard deviation of the position above which it is lost

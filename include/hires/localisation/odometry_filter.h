@@ -7,6 +7,7 @@
 
 #include "hires/base/param_reader.h"
 #include "hires/geometry/pose.h"
+#include "hires/robot/odometry_jump.h"
 #include "hires/robot/readings.h"
 
 namespace hires::localisation {
@@ -14,18 +15,18 @@ namespace hires::localisation {
 /// How wheels and inertial unit err. Variances of the wheels grow with what was driven, so that it
 /// does not matter in how many readings it was reported.
 struct OdometryFilterParams {
-  double position_per_metre{4e-4};   ///< [m^2 / m] along and across, by driving
-  double position_per_radian{1e-4};  ///< [m^2 / rad] by turning
-  double yaw_per_metre{4e-4};        ///< [rad^2 / m] by driving
-  double yaw_per_radian{4e-3};       ///< [rad^2 / rad] by turning
-  double imu_yaw_sd{1e-3};           ///< [rad] of one reading of the unit's heading
-  double imu_drift{1e-7};            ///< [rad^2 / s] by which its zero wanders
-  double imu_timeout{1.0};           ///< [s] readings farther apart are a gap
-  double odometry_timeout{1.0};      ///< [s] the same of the wheels
-  double max_linear_speed{2.0};      ///< [m/s] odometry that is faster was reset
-  double max_angular_speed{6.0};     ///< [rad/s]
-  double jump_position_sd{0.1};      ///< [m] by which the estimate may be off after each jump of
-  double jump_yaw_sd{0.1};           ///< [rad] odometry or time, beside what it was off before
+  double position_per_metre{4e-4};                ///< [m^2 / m] along and across, by driving
+  double position_per_radian{1e-4};               ///< [m^2 / rad] by turning
+  double yaw_per_metre{4e-4};                     ///< [rad^2 / m] by driving
+  double yaw_per_radian{4e-3};                    ///< [rad^2 / rad] by turning
+  double imu_yaw_sd{1e-3};                        ///< [rad] of one reading of the unit's heading
+  double imu_drift{1e-7};                         ///< [rad^2 / s] by which its zero wanders
+  double imu_timeout{1.0};                        ///< [s] readings farther apart are a gap
+  double odometry_timeout{1.0};                   ///< [s] the same of the wheels
+  double max_linear_speed{robot::kFastestDrive};  ///< [m/s] odometry that is faster was reset
+  double max_angular_speed{robot::kFastestTurn};  ///< [rad/s]
+  double jump_position_sd{0.1};  ///< [m] by which the estimate may be off after each jump of
+  double jump_yaw_sd{0.1};       ///< [rad] odometry or time, beside what it was off before
 };
 
 /// What the node `odometry_filter` alone needs.
@@ -48,11 +49,12 @@ OdometryFilterConfig ReadOdometryFilterConfig(base::ParamReader in);
 /// What became of a reading.
 enum class FilterOutcome {
   kTaken,
-  kAfterGap,      ///< taken, but none came for too long
+  kAfterGap,      ///< taken, but none came for too long; after it a unit's zero is found again
   kNotFinite,     ///< time or reading is no number
-  kLate,          ///< older than what has been used already
-  kTimeWentBack,  ///< the clock began again: goes on from this reading, as after kJumped; the
-                  ///< unit's zero is found again
+  kLate,          ///< older than what has been used already; odometry: by less than
+                  ///< robot::kClockReset
+  kTimeWentBack,  ///< odometry whose clock began again: goes on from this reading, as after
+                  ///< kJumped; the unit's zero is found again
   kJumped,        ///< the odometry was reset: goes on from this reading; the estimate stays, its
                   ///< variances grow by the squares of jump_position_sd and jump_yaw_sd
   kTooMany        ///< inertial readings without odometry; the oldest one was left out

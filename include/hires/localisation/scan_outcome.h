@@ -15,6 +15,7 @@ enum class ScanOutcome {
   kNothingMeasured,  ///< no range is a number between the shortest and the longest
   kNothingMet,       ///< all ranges are as long as can be: free space, or a laser that sees nothing
   kNotFinite,        ///< time, odometry or the laser's place is no number
+  kLate,             ///< older than the one before by less than robot::kClockReset: left out
   kTimeWentBack,     ///< a clock began again: goes on from this odometry, the belief stays
   kOdometryJumped    ///< faster than a robot drives: goes on from this odometry, the belief stays
 };
