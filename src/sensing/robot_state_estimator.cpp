@@ -103,6 +103,12 @@ std::string ToString(const Receipt& receipt) {
           "the transforms above frame '{}' lead in a circle; end the node that publishes one of "
           "them",
           receipt.subject);
+    case Reception::kTilted:
+      return fmt::format(
+          "the laser '{}' is tilted by more than {:g} rad in the base's frame, wanted a level one, "
+          "or one upside down; mend the transform that says how it is mounted, or name another "
+          "laser",
+          receipt.subject, receipt.limit);
   }
   return "";
 }

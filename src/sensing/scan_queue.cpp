@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "hires/localisation/laser_mount.h"
+
 namespace hires::sensing {
 namespace {
 
@@ -23,14 +25,19 @@ Receipt ScanQueue::OnScan(double stamp, const std::string& frame, robot::ScanRea
 std::optional<ScanQueue::Placed> ScanQueue::Take(double time) {
   const auto* newest = scans_.Before(time);
   if (newest == nullptr) return std::nullopt;
-  const auto [stamp, scan] = *newest;
+  auto [stamp, scan] = *newest;
   scans_.KeepBetween(std::nextafter(time, kInfinity), kInfinity);
   const auto then = state_->At(stamp);
   if (!then) return std::nullopt;
   const FramePose X_BL = state_->InBase(scan.frame, *then);
   receipt_ = ReceiptOf(X_BL.status, scan.frame);
   if (!X_BL.is_found()) return std::nullopt;
-  return Placed{stamp, scan.reading, then->X_WB, then->X_OB, geometry::Flatten(X_BL.X_PC)};
+  const auto level = localisation::LevelLaser(X_BL.X_PC, &scan.reading);
+  if (!level) {
+    receipt_ = {Reception::kTilted, scan.frame, localisation::kMostLaserTilt};
+    return std::nullopt;
+  }
+  return Placed{stamp, std::move(scan.reading), then->X_WB, then->X_OB, *level};
 }
 
 }  // namespace hires::sensing

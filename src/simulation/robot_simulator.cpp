@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hires/base/check.h"
+#include "hires/localisation/laser_mount.h"
 #include "hires/simulation/laser_scanner.h"
 #include "simulation/frozen_robot.h"
 #include "simulation/head_camera.h"
@@ -24,6 +25,12 @@ constexpr int kSlowSteps = 10;  // slip, contacts, senses: every tenth step
 template <typename Part>
 auto SaveOf(const std::unique_ptr<Part>& part) {
   return part ? std::make_optional(part->Save()) : std::nullopt;
+}
+
+/// Where a laser scans in the plane of the base; one that hangs upside down is turned over. A level
+/// one whose base sways by more than a laser may be tilted is taken as level, as tf takes it.
+geometry::Pose2 LevelOrSwaying(const Pose3& X_BL, robot::ScanReading* reading) {
+  return localisation::LevelLaser(X_BL, reading).value_or(geometry::Flatten(X_BL));
 }
 
 }  // namespace
@@ -102,7 +109,9 @@ void RobotSimulator::Scan(base::Rng* noise, robot::Observation* observation) {
   laser.link = scene_->robot.profile.laser_link;
   const std::vector<double> ranges = ScanLaser(*this, laser, noise);
   const Pose3 X_BL = geometry::Lift(base().X_MB).Inverse() * X_MLink(laser.link);
-  sensors_->ReadScan(ReadingOf(ranges, laser), geometry::Flatten(X_BL), observation);
+  robot::ScanReading reading = ReadingOf(ranges, laser);
+  const geometry::Pose2 level = LevelOrSwaying(X_BL, &reading);
+  sensors_->ReadScan(std::move(reading), level, observation);
 }
 
 /// Wheels and inertial unit tell of all ways, the laser where a scan is of use.
@@ -115,7 +124,9 @@ void RobotSimulator::FindPlace() {
   laser.link = scene_->robot.profile.laser_link;
   const std::vector<double> ranges = ScanLaser(*this, laser, localiser->scan_rng());
   const Pose3 X_BL = geometry::Lift(base().X_MB).Inverse() * X_MLink(laser.link);
-  localiser->Hear(ReadingOf(ranges, laser), geometry::Flatten(X_BL));
+  robot::ScanReading reading = ReadingOf(ranges, laser);
+  const geometry::Pose2 level = LevelOrSwaying(X_BL, &reading);
+  localiser->Hear(reading, level);
 }
 
 const SelfLocaliser* RobotSimulator::self_localiser() const { return sensors_->localiser(); }

@@ -7,6 +7,7 @@
 #include "hires/robot/posture.h"
 #include "simulation/joint_drives.h"
 #include "simulation/link_bodies.h"
+#include "simulation/start_checks.h"
 
 namespace hires::simulation {
 namespace {
@@ -42,6 +43,7 @@ std::vector<geometry::Collision> FrozenShapes(const robot::Robot& robot,
 
 std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot,
                                        const sensing::MemoryParams& memory, const Sight& sight) {
+  if (sight.scans) RefuseTiltedLaser(robot);
   const robot::RobotProfile& profile = robot.profile;
   const auto X_RL = robot::ForwardKinematics(robot.model, profile.joints);
   const geometry::Pose3 X_BR = PoseOfLink(robot.model, X_RL, profile.base_link).Inverse();

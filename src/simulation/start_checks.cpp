@@ -7,6 +7,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/localisation/laser_mount.h"
 
 namespace hires::simulation {
 namespace {
@@ -159,6 +160,23 @@ void RefuseUnknownJoints(const robot::JointPositions& joints, const robot::Robot
 void RefuseStiff(const robot::BaseControllerParams& params, double time_step) {
   RefuseStiff("loop", params.loop_frequency, params.loop_damping, time_step);
   RefuseStiff("sway", params.sway_frequency, params.sway_damping, time_step);
+}
+
+void RefuseTiltedLaser(const robot::Robot& robot) {
+  const robot::RobotProfile& profile = robot.profile;
+  const auto laser = robot.model.FindLink(profile.laser_link);
+  const auto base = robot.model.FindLink(profile.base_link);
+  if (!laser || !base) return;  // of which others tell
+  const auto X_RL = robot::ForwardKinematics(robot.model, profile.joints);
+  const Pose3 X_BL = X_RL[*base].Inverse() * X_RL[*laser];
+  robot::ScanReading none;
+  if (localisation::LevelLaser(X_BL, &none)) return;
+  throw base::ConfigError(fmt::format(
+      "robot '{}': its base laser '{}' is tilted by {:.2f} rad, wanted a level one, or one upside "
+      "down, within {:g} rad; mend its joint in the URDF, or name another laser_link in the "
+      "profile",
+      robot.model.name, profile.laser_link, geometry::TiltOf(X_BL.rotation),
+      localisation::kMostLaserTilt));
 }
 
 void RefuseTogether(const world::ObjectState& object, const world::ObjectState& earlier,

@@ -45,6 +45,8 @@ void RefuseUnknownHolder(const world::ObjectState& object, const robot::RobotMod
 void RefuseUnknownJoints(const robot::JointPositions& joints, const robot::RobotModel& robot);
 /// A base whose loop or leaning would diverge at this time step.
 void RefuseStiff(const robot::BaseControllerParams& params, double time_step);
+/// A base laser that does not scan in the plane of the base, nor upside down in it.
+void RefuseTiltedLaser(const robot::Robot& robot);
 /// Two objects of one name, or in each other.
 void RefuseTogether(const world::ObjectState& object, const world::ObjectState& earlier,
                     const world::World& world);

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
+#include "hires/geometry/angles.h"
 #include "support/fake_frame_tree.h"
 #include "support/scenes.h"
 
@@ -88,6 +91,35 @@ TEST_F(ObservationMakerTest, ALaserThatHangsOnTheTreeIsFoundThere) {
   const auto seen = Observe(1.0);
   ASSERT_THAT(seen.obstacles_M, SizeIs(1));
   EXPECT_TRUE(geometry::Contains(seen.obstacles_M[0], {4.02, 2.0}));
+}
+
+TEST_F(ObservationMakerTest, AScanOfALaserThatHangsUpsideDownIsTurnedOver) {
+  tree_->TellFixed("base", "hanging",
+                   {{0.5, 0.0, 0.25}, geometry::RotationFromRpy(geometry::kPi, 0.0, 0.0)});
+  Sense(1.0, {3.0, 2.0, 0.0});
+  // To its left, which is the robot's right.
+  maker_.OnScan(1.0, "hanging", {geometry::kPi / 2.0, 0.01, 0.08, {1.02f}});
+  const auto seen = Observe(1.0);
+  ASSERT_THAT(seen.obstacles_M, SizeIs(1));
+  EXPECT_TRUE(geometry::Contains(seen.obstacles_M[0], {3.5, 0.98}));
+  const double angle = seen.scan->reading.angle_min;
+  const Eigen::Vector2d echo_B =
+      seen.scan->X_BL * Eigen::Vector2d(1.02 * std::cos(angle), 1.02 * std::sin(angle));
+  EXPECT_NEAR(echo_B.x(), 0.5, 1e-9);
+  EXPECT_NEAR(echo_B.y(), -1.02, 1e-9);
+}
+
+TEST_F(ObservationMakerTest, AScanOfATiltedLaserIsDroppedByName) {
+  tree_->TellFixed("base", "nodding", {{0.5, 0.0, 0.25}, geometry::RotationFromRpy(0.0, 0.3, 0.0)});
+  Sense(1.0, {3.0, 2.0, 0.0});
+  maker_.OnScan(1.0, "nodding", Beam(1.02));
+  const auto seen = Observe(1.0);
+  EXPECT_THAT(seen.obstacles_M, IsEmpty());
+  EXPECT_FALSE(seen.scan);
+  EXPECT_EQ(maker_.scan_receipt().what, Reception::kTilted);
+  EXPECT_TRUE(maker_.scan_receipt().is_bad());
+  EXPECT_THAT(ToString(maker_.scan_receipt()),
+              testing::HasSubstr("'nodding' is tilted by more than 0.1 rad"));
 }
 
 TEST_F(ObservationMakerTest, AScanOfAFrameNobodyKnowsIsDroppedByName) {

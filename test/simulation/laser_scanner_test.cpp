@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "arm_scene.h"
+#include "hires/base/error.h"
+#include "hires/geometry/angles.h"
 
 namespace hires::simulation::laser_scanner_test {
 namespace {
@@ -104,6 +106,43 @@ TEST_F(SkillsScanTest, ScansComeAtTheirPeriod) {
   EXPECT_EQ(ScanAfter(simulator.get(), 100), first) << "0.1 s later it is still the last";
   EXPECT_NE(ScanAfter(simulator.get(), 100), first);
   EXPECT_FALSE(InTheRoom({})->Observe(0.0).scan) << "a scene without scans has none";
+}
+
+/// The PR2 with its base laser mounted otherwise.
+robot::Robot Pr2WithLaserAt(double roll, double pitch) {
+  robot::Robot robot = Pr2();
+  const auto laser = robot.model.FindLink(robot.profile.laser_link);
+  robot.model.links[*laser].joint->X_PJ.rotation = geometry::RotationFromRpy(roll, pitch, 0.0);
+  return robot;
+}
+
+TEST_F(SkillsScanTest, ALaserThatHangsUpsideDownIsTurnedOver) {
+  Sight sight = scene_->sight;
+  const auto scene = MakeScene(test_support::Room(), Pr2WithLaserAt(geometry::kPi, 0.0), {}, sight);
+  RobotSimulator hanging(scene, Variation(), {}, test_support::StandingAt({3.0, 2.0, 0.5}),
+                         base::Rng(1));
+  const auto scan = ScanAfter(&hanging, 0);
+  const geometry::Pose2 X_ML = geometry::Pose2{3.0, 2.0, 0.5} * scan->X_BL;
+  const robot::ScanReading& reading = scan->reading;
+  for (std::size_t i = 0; i < reading.ranges.size(); ++i) {
+    const double angle = X_ML.yaw + reading.angle_min + i * reading.angle_increment;
+    EXPECT_NEAR(reading.ranges[i], ToWall(X_ML.position(), angle), 0.05) << i;
+  }
+}
+
+TEST_F(SkillsScanTest, ALaserThatIsTiltedIsRefused) {
+  const auto message = [](const robot::Robot& robot, const Sight& sight) -> std::string {
+    try {
+      MakeScene(test_support::Room(), robot, {}, sight);
+    } catch (const base::ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message(Pr2WithLaserAt(0.0, 0.3), scene_->sight)
+                .find("its base laser 'base_laser_link' is tilted by 0.30 rad"),
+            std::string::npos);
+  EXPECT_EQ(message(Pr2WithLaserAt(0.0, 0.3), {}), "") << "nothing goes by its scans";
 }
 
 TEST_F(SkillsScanTest, ARestoredSimulatorScansTheSame) {

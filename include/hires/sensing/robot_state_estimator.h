@@ -37,13 +37,14 @@ enum class Reception {
   kUnknownFrame,  ///< the frame `subject` was never received
   kNotConnected,  ///< nothing leads from the frame `subject` to the robot's
   kNotThen,       ///< where the frame `subject` was at that time is unknown
-  kInLoop         ///< the links above the frame `subject` lead in a circle
+  kInLoop,        ///< the links above the frame `subject` lead in a circle
+  kTilted         ///< the laser `subject` does not scan in the plane of the base
 };
 
 struct Receipt {
   Reception what{Reception::kTaken};
   std::string subject;
-  double limit{0.0};  ///< [s] by which it may be late or ahead
+  double limit{0.0};  ///< [s] by which it may be late or ahead, or [rad] tilted
   bool is_taken() const { return what == Reception::kTaken; }
   /// A person must mend something; messages that come late or twice are normal.
   bool is_bad() const;

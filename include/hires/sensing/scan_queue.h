@@ -12,7 +12,8 @@ namespace hires::sensing {
 /// Scans that wait until the robot's state at their time is known.
 class ScanQueue {
  public:
-  /// A scan, and where the robot and its laser were when it was taken.
+  /// A scan in the plane of the base, and where the robot and its laser were when it was taken. One
+  /// of a laser that hangs upside down is turned over.
   struct Placed {
     double stamp{0.0};  ///< [s]
     robot::ScanReading reading;
@@ -25,7 +26,7 @@ class ScanQueue {
   /// @param frame  of the laser.
   Receipt OnScan(double stamp, const std::string& frame, robot::ScanReading reading);
   /// The newest scan up to a time [s], once; older ones are dropped with it. Nothing where nobody
-  /// knows where it was taken.
+  /// knows where it was taken, or where its laser is tilted.
   std::optional<Placed> Take(double time);
   /// What became of the last scan that was taken.
   const Receipt& receipt() const { return receipt_; }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "hires/base/error.h"
+#include "simulation/start_checks.h"
 
 namespace hires::simulation {
 namespace {
@@ -57,6 +58,7 @@ std::shared_ptr<const Scene> FindingItsPlace(Scene scene, const SelfLocalisation
         "a robot that finds its place by itself needs a base laser (laser_link of its profile) and "
         "an upper body; let it be told (localisation: fitted)");
   }
+  RefuseTiltedLaser(scene.robot);
   scene.self_localisation =
       std::make_shared<const SelfLocalisation>(params, mapped, *scene.laser_height);
   return std::make_shared<const Scene>(std::move(scene));
