@@ -48,6 +48,13 @@ TEST_F(ObstacleLayerTest, ABeamClearsItsWayAndItsEchoMarks) {
   EXPECT_EQ(layer_.At({0.5, 0.2}, 0.0), State::kUnseen) << "beside it";
 }
 
+TEST_F(ObstacleLayerTest, WhatIsForgottenIsUnseen) {
+  Insert(0.0, 1.01f, {0.0, 0.01, 0.0});
+  layer_.Forget();
+  EXPECT_EQ(At(0.5), State::kUnseen);
+  EXPECT_THAT(layer_.Marks({}, 0.0), testing::IsEmpty());
+}
+
 TEST_F(ObstacleLayerTest, WhatMeetsNothingClearsAndMarksNothing) {
   Insert(0.0, kNothing);
   EXPECT_EQ(At(2.9), State::kFree);

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
 #include "hires/geometry/polygon.h"
+#include "hires/skills/local_costmap.h"
 #include "hires/skills/move_base.h"
 #include "skills/point_robot.h"
 #include "support/scenes.h"
@@ -173,6 +175,34 @@ TEST(ObstacleLayerDriveTest, WhereNothingIsSeenTheMapIsTrusted) {
   world::World room = hires::test_support::Room();
   room.statics.push_back(hires::test_support::Block("crate", {0.4, 0.4, 0.5}, {2.4, 2.5, 0.25}));
   EXPECT_EQ(CostAt(LookedAt(room, room, false), {2.21, 2.5}), navigation::kLethalCost);
+}
+
+TEST(ObstacleLayerDriveTest, WhatWasSeenIsForgottenWhereTheOdometryOrItsClockIsReset) {
+  world::World room = hires::test_support::Room();
+  room.statics.push_back(hires::test_support::Block("crate", {0.4, 0.4, 0.5}, {2.4, 1.2, 0.25}));
+  const auto look = [&](double time, const Pose2& X_OB, LocalCostmap* local) {
+    robot::Observation seen;
+    seen.time = time;
+    seen.X_MB = kWest;
+    seen.X_OB = X_OB;
+    seen.scan = ScanIn(room, kWest, X_OB);
+    local->Look(seen);
+    return local->Marks(seen).size();
+  };
+  const auto context = ContextOf(room, true);
+  const LocalCostmap fresh(&*context->by_plane, *context->params.obstacle_layer, context->footprint,
+                           0.5);
+  for (const auto& [time, X_OB] : {std::pair{100.1, Pose2{7.0, 2.0, 0.0}},
+                                   std::pair{100.1, Pose2{1.0, 2.0, 1.0}}, std::pair{3.0, kWest}}) {
+    LocalCostmap local = fresh;
+    const std::size_t before = look(100.0, kWest, &local);
+    ASSERT_GT(before, 0u);
+    EXPECT_EQ(look(100.05, Pose2{1.02, 2.0, 0.0}, &local),
+              look(100.05, Pose2{1.02, 2.0, 0.0}, &local))
+        << "it drove";
+    EXPECT_EQ(look(time, X_OB, &local), 0u) << "at " << time << ", x " << X_OB.x;
+    EXPECT_GT(look(time + 0.1, X_OB, &local), 0u) << "it sees again";
+  }
 }
 
 TEST(ObstacleLayerDriveTest, ARobotWithoutALaserIsRefused) {

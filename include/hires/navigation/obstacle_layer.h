@@ -37,6 +37,9 @@ class ObstacleLayer {
   void Insert(double time, const robot::ScanReading& scan, const geometry::Pose2& X_OB,
               const geometry::Pose2& X_BL, const geometry::Polygon& footprint);
 
+  /// All is unseen.
+  void Forget() { cells_.assign(cells_.size(), {}); }
+
   State At(const Eigen::Vector2d& point_O, double time) const;
   /// Centres of all marked cells within the range that is cleared, in the frame of the odometry.
   std::vector<Eigen::Vector2d> Marks(const geometry::Pose2& X_OB, double time) const;

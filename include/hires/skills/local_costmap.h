@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "hires/geometry/polygon.h"
@@ -22,7 +23,9 @@ struct MapByPlane {
 /// What local control goes by: round the robot what the laser sees in its plane replaces what the
 /// map has there. For that lies where the robot's place in the map puts it, and that errs; what was
 /// seen lies where it is against the robot. Of what the laser cannot see, and where it has not
-/// looked, the map alone tells. A value: a copy goes on like the original.
+/// looked, the map alone tells. Where the odometry was reset, or its clock, nobody knows any more
+/// where the robot saw what: all that was seen is forgotten. A value: a copy goes on like the
+/// original.
 class LocalCostmap {
  public:
   /// @param map        shared.
@@ -39,6 +42,7 @@ class LocalCostmap {
   std::vector<Eigen::Vector2d> Marks(const robot::Observation& observation) const;
 
  private:
+  bool IsReset(const robot::Observation& observation) const;
   std::vector<Eigen::Vector2d> Obstacles(const robot::Observation& observation) const;
 
   const MapByPlane* map_;
@@ -49,6 +53,11 @@ class LocalCostmap {
   std::shared_ptr<const robot::PlacedScan> scan_;      // the last that the layer has
   std::shared_ptr<const navigation::Costmap> now_;
   geometry::Pose2 X_OM_;  // of that
+  struct Odometry {
+    double time;  // [s]
+    geometry::Pose2 X_OB;
+  };
+  std::optional<Odometry> before_;  // of the last look
 };
 
 }  // namespace hires::skills
