@@ -315,7 +315,8 @@ bool MoveBase::IsAtGoal(const robot::Observation& observation) const {
          std::abs(observation.V_B.vx) <= params.stopped_linear_velocity;
 }
 
-/// The laser alone tells whether there is room: where the map has things is not known now.
+/// The laser alone tells what is in the way: where the map has things is not known now. Behind it
+/// most lasers see nothing, so what is unseen counts as room, or a robot that stands never turns.
 geometry::Twist2 MoveBase::LookAround(const robot::Observation& observation) {
   if (!sensed_ || car_) return {};
   sensed_->Look(observation);

@@ -134,6 +134,20 @@ TEST(LostTest, ItLooksAroundOnlyWhereTheLaserShowsRoom) {
   EXPECT_EQ(command.base_velocity->wz, 0.0) << "it does not know what is round it";
 }
 
+TEST(LostTest, WhatIsBehindALaserThatSees260DegreesCountsAsRoom) {
+  robot::Observation seen = Seen(0.0, kUnsure, 2.0);
+  auto scan = std::make_shared<robot::PlacedScan>(*seen.scan);
+  for (std::size_t i = 0; i < scan->reading.ranges.size(); ++i) {
+    const double angle = scan->reading.angle_min + i * scan->reading.angle_increment;
+    if (std::abs(angle) > 2.27) scan->reading.ranges[i] = std::numeric_limits<float>::quiet_NaN();
+  }
+  seen.scan = scan;
+  MoveBase skill(WithObstacleLayer(), kEast, kFast);
+  robot::Command command;
+  skill.Update(seen, &command);
+  EXPECT_EQ(command.base_velocity.value().wz, LostParams().turning);
+}
+
 TEST(LostTest, SomethingOnTheFloorBesideItKeepsItFromTurning) {
   MoveBase skill(WithObstacleLayer(), kEast, kFast);
   robot::Observation seen = Seen(0.0, kUnsure, 2.0);

@@ -61,7 +61,8 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
 /// begins. A base that steers like a car: hybrid A*, and a follower of arcs; where it came
 /// to rest out of tolerance it is given a new way, some times, and oscillates after these. While
 /// the robot is lost it stops and turns to look around, if the base can turn on the spot and an
-/// obstacle layer shows room for that; found again, it plans anew. Fails with start_blocked,
+/// obstacle layer has no mark within its circle (what the laser does not see counts as room); found
+/// again, it plans anew. Fails with start_blocked,
 /// goal_blocked, no_path, no_valid_trajectory, oscillating or localisation_lost.
 class MoveBase : public Skill {
  public:
