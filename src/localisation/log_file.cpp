@@ -34,6 +34,14 @@ constexpr double kCarmenMinRange = 0.01;   // [m] its accuracy there; 0 is no me
 constexpr double kSameMounting = 0.05;     // [m], [rad] between two lines
 constexpr double kFarthestMounting = 3.0;  // [m] from the base
 constexpr int kWordsOfTime = 3;            // ipc_timestamp hostname logger_timestamp
+constexpr double kMostOddShare = 0.01;     // of the lines that can be read
+constexpr int kHopeless = 1000;            // odd lines, and none that can be read
+
+/// Why a line cannot be read.
+struct OddLine {
+  std::string what;
+  bool is_short{false};  // its words end too early
+};
 
 class CarmenReader {
  public:
@@ -42,8 +50,12 @@ class CarmenReader {
   RobotLog Read();
 
  private:
-  [[noreturn]] void Fail(const std::string& what) const {
-    throw base::ConfigError(fmt::format("{}: line {}: {}", path_, line_, what));
+  [[noreturn]] void Fail(const std::string& what) const { throw base::ConfigError(Where(what)); }
+  std::string Where(const std::string& what) const {
+    return fmt::format("{}: line {}: {}", path_, line_, what);
+  }
+  [[noreturn]] static void Odd(const std::string& what, bool is_short = false) {
+    throw OddLine{what, is_short};
   }
   void Warn(const std::string& what) const {
     base::Log(base::LogLevel::kWarn, fmt::format("{}: {}", path_, what));
@@ -51,6 +63,7 @@ class CarmenReader {
 
   void SplitLine(std::string_view line);
   void TakeLine();
+  void PassOverOdd(const OddLine& odd, std::size_t end);
   void TakeParam();
   void TakeOdometry();
   void TakeFrontLaser();
@@ -69,7 +82,11 @@ class CarmenReader {
   std::vector<float> Ranges(std::size_t first, std::size_t count, double range_min) const;
 
   void Finish();
+  void RefuseWhatIsTooOdd() const;
   void SayWhatWasPassedOver() const;
+  std::string NamesPassedOver() const {
+    return base::Join(std::vector<std::string>(passed_over_.begin(), passed_over_.end()), ", ");
+  }
   void MountCorrectedLaser();
   void TakeOdometryOfScans();
 
@@ -84,7 +101,10 @@ class CarmenReader {
   bool is_corrected_{false};           // the laser's place on the robot changes
   double last_odometry_{-kMostTime}, last_scan_{-kMostTime};  // latest times so far
   int late_lines_{0};
-  double latest_{0.0};  // [s] the worst of them
+  double latest_{0.0};           // [s] the worst of them
+  int num_readable_{0};          // lines of the kinds that are read, less the odd ones
+  int num_odd_{0};               // lines, without the last one where it is cut off
+  std::string first_odd_, cut_;  // messages with file and line; empty: there is none
 };
 
 RobotLog CarmenReader::Read() {
@@ -94,7 +114,11 @@ RobotLog CarmenReader::Read() {
       Fail(fmt::format("is one line more than the {} that are read", kMostLogLines));
     const std::size_t end = std::min(text_.find('\n', begin), text_.size());
     SplitLine(std::string_view(text_).substr(begin, end - begin));
-    if (!words_.empty()) TakeLine();
+    try {
+      if (!words_.empty()) TakeLine();
+    } catch (const OddLine& odd) {
+      PassOverOdd(odd, end);
+    }
     begin = end + 1;
     if (line_ % 1000 == 0) base::ReportProgress(task, static_cast<double>(end) / text_.size());
   }
@@ -122,35 +146,53 @@ void CarmenReader::TakeLine() {
   } else if (words_[0] == "ROBOTLASER1") {
     if (IsOfTheFirstKind()) TakeRobotLaser();
   } else if (words_[0] == "PARAM") {
-    TakeParam();
-  } else if (words_[0] != "SYNC" && words_[0] != "RLASER") {
-    PassOver();
+    return TakeParam();
+  } else {
+    return PassOver();
   }
+  ++num_readable_;
+}
+
+/// @param end  of the line in the text.
+void CarmenReader::PassOverOdd(const OddLine& odd, std::size_t end) {
+  const bool is_last = text_.find_first_not_of(" \t\r\n", end) == std::string::npos;
+  if (is_last && (end == text_.size() || odd.is_short)) {
+    cut_ = Where(odd.what);
+    return;
+  }
+  if (num_odd_++ == 0) first_odd_ = Where(odd.what);
+  if (num_odd_ == kHopeless && num_readable_ == 0) throw base::ConfigError(first_odd_);
 }
 
 void CarmenReader::PassOver() {
   const std::string name(words_[0]);
   if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' '; }))
-    Fail("is no text; wanted a CARMEN log: is the file still packed?");
-  const bool is_name = std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+    Odd("is no text; wanted a CARMEN log: is the file still packed?");
+  const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+  const bool is_name = std::all_of(name.begin(), name.end(), [&](char c) {
+    return is_letter(c) || (c >= '0' && c <= '9') || c == '_';
   });
-  if (!is_name || name.size() > 40 || name[0] < 'A') {
-    Fail(
+  if (!is_name || name.size() > 40 || !is_letter(name[0])) {
+    Odd(
         fmt::format("'{}' begins no line of a CARMEN log; wanted ODOM, FLASER, ROBOTLASER1, PARAM "
-                    "or another message in capitals",
+                    "or the name of another message",
                     base::Shortened(name, 40)));
   }
+  if (name == "SYNC" || name == "RLASER") return;
   if (passed_over_.size() < 100) passed_over_.insert(name);
 }
 
-/// Only these two matter; a log has dozens of parameters, of any form.
+/// Only these two matter; a log has dozens of parameters, of any form. All scans rest on them.
 void CarmenReader::TakeParam() {
   if (words_.size() < 3) return;
-  if (words_[1] == "robot_frontlaser_offset") {
-    laser_offset_ = Number(2, "robot_frontlaser_offset", -kFarthestMounting, kFarthestMounting);
-  } else if (words_[1] == "robot_front_laser_max") {
-    range_max_ = Number(2, "robot_front_laser_max", kCarmenMinRange, 1e4);
+  try {
+    if (words_[1] == "robot_frontlaser_offset") {
+      laser_offset_ = Number(2, "robot_frontlaser_offset", -kFarthestMounting, kFarthestMounting);
+    } else if (words_[1] == "robot_front_laser_max") {
+      range_max_ = Number(2, "robot_front_laser_max", kCarmenMinRange, 1e4);
+    }
+  } catch (const OddLine& odd) {
+    Fail(odd.what);
   }
 }
 
@@ -165,8 +207,7 @@ void CarmenReader::TakeOdometry() {
 }
 
 bool CarmenReader::IsOfTheFirstKind() {
-  if (laser_kind_.empty()) laser_kind_ = words_[0];
-  if (laser_kind_ == words_[0]) return true;
+  if (laser_kind_.empty() || laser_kind_ == words_[0]) return true;
   passed_over_.insert(std::string(words_[0]));
   return false;
 }
@@ -194,7 +235,7 @@ void CarmenReader::TakeRobotLaser() {
   scan.reading.angle_min = Number(2, "start_angle", -2.0 * geometry::kPi, 2.0 * geometry::kPi);
   scan.reading.angle_increment = Number(4, "angular resolution", -geometry::kPi, geometry::kPi);
   if (scan.reading.angle_increment == 0.0 && n > 1)
-    Fail("angular resolution is 0; wanted the angle between two beams [rad]");
+    Odd("angular resolution is 0; wanted the angle between two beams [rad]");
   scan.reading.range_min = kCarmenMinRange;
   scan.reading.range_max = Number(5, "max_range", 0.0, 1e6);
   scan.reading.ranges = Ranges(9, n, kCarmenMinRange);
@@ -211,6 +252,7 @@ void CarmenReader::TakePoses(std::size_t first, RobotLog::Scan* scan) {
 
 void CarmenReader::AddScan(RobotLog::Scan scan) {
   scan.time = InOrder(Time(), &last_scan_);
+  laser_kind_ = words_[0];
   const Pose2& first = log_.scans.empty() ? scan.X_BL : log_.scans.front().X_BL;
   const bool is_same = (scan.X_BL.position() - first.position()).norm() <= kSameMounting &&
                        std::abs(geometry::WrapToPi(scan.X_BL.yaw - first.yaw)) <= kSameMounting;
@@ -221,8 +263,9 @@ void CarmenReader::AddScan(RobotLog::Scan scan) {
 /// @param count  of the words before those of the time.
 void CarmenReader::WantWords(std::size_t count, const std::string& form) const {
   if (words_.size() == count + kWordsOfTime) return;
-  Fail(fmt::format("{} has {} words; wanted {}: {}, ipc_timestamp hostname logger_timestamp",
-                   words_[0], words_.size(), count + kWordsOfTime, form));
+  Odd(fmt::format("{} has {} words; wanted {}: {}, ipc_timestamp hostname logger_timestamp",
+                  words_[0], words_.size(), count + kWordsOfTime, form),
+      words_.size() < count + kWordsOfTime);
 }
 
 double CarmenReader::Number(std::size_t index, const char* what, double least, double most) const {
@@ -231,20 +274,20 @@ double CarmenReader::Number(std::size_t index, const char* what, double least, d
   const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   const bool is_number = error == std::errc() && rest == word.data() + word.size();
   if (!is_number || !(number >= least && number <= most)) {
-    Fail(fmt::format("{} is '{}'; wanted a number from {} to {}", what,
-                     base::Shortened(std::string(word), 40), least, most));
+    Odd(fmt::format("{} is '{}'; wanted a number from {} to {}", what,
+                    base::Shortened(std::string(word), 40), least, most));
   }
   return number;
 }
 
 std::size_t CarmenReader::Count(std::size_t index, const char* what) const {
-  if (index >= words_.size()) Fail(fmt::format("{} ends before its {}", words_[0], what));
+  if (index >= words_.size()) Odd(fmt::format("{} ends before its {}", words_[0], what), true);
   const std::string_view word = words_[index];
   std::size_t number = 0;
   const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   if (error != std::errc() || rest != word.data() + word.size() || number > kMostRanges) {
-    Fail(fmt::format("{} is '{}'; wanted a whole number from 0 to {}", what,
-                     base::Shortened(std::string(word), 40), kMostRanges));
+    Odd(fmt::format("{} is '{}'; wanted a whole number from 0 to {}", what,
+                    base::Shortened(std::string(word), 40), kMostRanges));
   }
   return number;
 }
@@ -267,7 +310,7 @@ double CarmenReader::Time() const {
 double CarmenReader::InOrder(double time, double* last) {
   const double late = *last - time;
   if (late > kLatest) {
-    Fail(
+    Odd(
         fmt::format("ipc_timestamp {:.6f} is {:.3f} s before that of an earlier {}; wanted times "
                     "that grow: if the log is of several drives, cut it here",
                     time, late, words_[0]));
@@ -290,8 +333,8 @@ std::vector<float> CarmenReader::Ranges(std::size_t first, std::size_t count,
     if (error == std::errc::result_out_of_range) {
       ranges[i] = kInvalid;  // 1e-60, 1e60
     } else if (error != std::errc() || rest != word.data() + word.size()) {
-      Fail(fmt::format("range {} is '{}'; wanted a number [m]", i + 1,
-                       base::Shortened(std::string(word), 40)));
+      Odd(fmt::format("range {} is '{}'; wanted a number [m]", i + 1,
+                      base::Shortened(std::string(word), 40)));
     }
     if (!(ranges[i] >= range_min)) ranges[i] = kInvalid;
   }
@@ -299,10 +342,7 @@ std::vector<float> CarmenReader::Ranges(std::size_t first, std::size_t count,
 }
 
 void CarmenReader::Finish() {
-  if (log_.scans.empty() && log_.odometry.empty()) {
-    throw base::ConfigError(
-        fmt::format("{}: has no line FLASER, ROBOTLASER1 or ODOM; wanted a CARMEN log", path_));
-  }
+  RefuseWhatIsTooOdd();
   if (late_lines_ > 0) {
     Warn(fmt::format("{} lines are older than one before them, by up to {:.3f} s; put in order",
                      late_lines_, latest_));
@@ -313,6 +353,21 @@ void CarmenReader::Finish() {
   if (is_corrected_) MountCorrectedLaser();
   if (log_.odometry.empty()) TakeOdometryOfScans();
   SayWhatWasPassedOver();
+}
+
+void CarmenReader::RefuseWhatIsTooOdd() const {
+  if (num_odd_ > kMostOddShare * (num_readable_ + num_odd_)) {
+    if (num_odd_ == 1) throw base::ConfigError(first_odd_);
+    throw base::ConfigError(
+        fmt::format("{}; {} more lines cannot be read, beside {} that can: passed over are {:g} % "
+                    "at most",
+                    first_odd_, num_odd_ - 1, num_readable_, 100.0 * kMostOddShare));
+  }
+  if (!log_.scans.empty() || !log_.odometry.empty()) return;
+  if (!cut_.empty()) throw base::ConfigError(cut_);
+  throw base::ConfigError(
+      fmt::format("{}: has no line FLASER, ROBOTLASER1 or ODOM{}; wanted a CARMEN log", path_,
+                  passed_over_.empty() ? "" : fmt::format(", but {}", NamesPassedOver())));
 }
 
 void CarmenReader::MountCorrectedLaser() {
@@ -340,10 +395,15 @@ void CarmenReader::TakeOdometryOfScans() {
 }
 
 void CarmenReader::SayWhatWasPassedOver() const {
+  if (num_odd_ > 0) {
+    base::Log(base::LogLevel::kWarn,
+              fmt::format("{}; passed over, like {} more lines", first_odd_, num_odd_ - 1));
+  }
+  if (!cut_.empty())
+    base::Log(base::LogLevel::kWarn, cut_ + "; the log's last line, which is cut off: passed over");
   if (passed_over_.empty()) return;
-  const std::vector<std::string> names(passed_over_.begin(), passed_over_.end());
   base::Log(base::LogLevel::kInfo,
-            fmt::format("{}: passed over lines of {}", path_, base::Join(names, ", ")));
+            fmt::format("{}: passed over lines of {}", path_, NamesPassedOver()));
 }
 
 }  // namespace

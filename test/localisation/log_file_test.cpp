@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 
@@ -162,6 +163,79 @@ TEST_F(LogFileTest, OneKindOfScansIsTaken) {
   EXPECT_EQ(log.scans.size(), 1u);
 }
 
+TEST_F(LogFileTest, MessagesOfOtherNamesArePassedOverWhateverTheirCase) {
+  const RobotLog log = Read("raw_laser_3 1 2\nTruePos 1 2 3" + At(1.0) + "odom 9 9 9\n" +
+                            OdomAt(1.0) + "NMEA_GGA $GPGGA,1\n" + OdomAt(2.0));
+  EXPECT_EQ(log.odometry.size(), 2u);
+  EXPECT_EQ(warnings_, "");
+}
+
+TEST_F(LogFileTest, LastLineThatIsCutOffIsPassedOverAndToldOf) {
+  const std::string whole = FrontLaser(2, At(1.0)) + OdomAt(1.0);
+  const std::string last = "FLASER 2 2.5 2.5 1 2 0.5 1 2 0.5 1.2 nohost 0.3";
+  EXPECT_EQ(Read(whole + last).scans.size(), 2u) << "an end of line alone may be missing";
+  EXPECT_EQ(warnings_, "");
+  for (std::size_t length = std::strlen("FLASER"); length < last.size() - std::strlen(" 0.3");
+       ++length) {
+    for (const char* end : {"", "\n", "\r\n \n"}) {
+      warnings_.clear();
+      const RobotLog log = Read(whole + last.substr(0, length) + end);
+      EXPECT_EQ(log.scans.size(), 1u) << length;
+      EXPECT_EQ(log.odometry.size(), 1u);
+      EXPECT_THAT(warnings_, HasSubstr("drive.log: line 3: ")) << length;
+      EXPECT_THAT(warnings_, HasSubstr("cut off: passed over")) << length;
+    }
+  }
+  EXPECT_THAT(ErrorOf(last.substr(0, 30)), HasSubstr("drive.log: line 1: FLASER has"))
+      << "nothing is left";
+}
+
+/// Lines of odometry, the given one after the third.
+std::string ManyLines(int count, const std::string& odd) {
+  std::string text;
+  for (int i = 0; i < count; ++i) text += OdomAt(1.0 + 0.1 * i) + (i == 2 ? odd : "");
+  return text;
+}
+
+TEST_F(LogFileTest, OddLinesArePassedOverUpToAHundredth) {
+  const std::string many = "ODOM 1 2 0 0 0 0 7 1.0 nohost 1\n";
+  for (const std::string& odd :
+       {many, std::string("ODOM 1 2") + At(1.0), std::string("FLASER 2 1 x 0 0 0 0 0 0") + At(1.0),
+        std::string("ROBOTLASER1 4 0 3\n"), std::string("<html>\n"), std::string("\x01\x02\n"),
+        OdomAt(0.1)}) {
+    warnings_.clear();
+    EXPECT_EQ(Read(ManyLines(99, odd)).odometry.size(), 99u) << odd;
+    EXPECT_THAT(warnings_, HasSubstr("drive.log: line 4: ")) << odd;
+    EXPECT_THAT(warnings_, HasSubstr("passed over, like 0 more lines")) << odd;
+    EXPECT_THAT(ErrorOf(ManyLines(98, odd)), HasSubstr("drive.log: line 4: ")) << odd;
+  }
+  warnings_.clear();
+  EXPECT_EQ(Read(ManyLines(198, many + "<html>\n")).odometry.size(), 198u);
+  EXPECT_THAT(warnings_, HasSubstr("line 4: ODOM has 11 words; wanted 10"));
+  EXPECT_THAT(warnings_, HasSubstr("passed over, like 1 more lines"));
+  EXPECT_THAT(ErrorOf(ManyLines(197, many + "<html>\n")),
+              HasSubstr("line 4: ODOM has 11 words; wanted 10: ODOM x y theta tv rv accel, "
+                        "ipc_timestamp hostname logger_timestamp; 1 more lines cannot be read, "
+                        "beside 197 that can: passed over are 1 % at most"));
+}
+
+TEST_F(LogFileTest, KindOfScansIsThatOfTheFirstWholeLine) {
+  EXPECT_EQ(Read("FLASER 2 1\n" + ManyLines(99,
+                                            "ROBOTLASER1 0 0 0 0.1 9 0 0 1 5 0 0 0 0 0 0 0 0 0 "
+                                            "0 0 0" +
+                                                At(1.0)))
+                .scans.size(),
+            1u);
+}
+
+TEST_F(LogFileTest, WhatIsNoLogAtAllIsRefusedEarly) {
+  std::string text = "<html>\n";
+  for (int i = 0; i < 2000; ++i) text += "<p>\n";
+  const std::string line = OdomAt(1.0);
+  for (int i = 0; i < 300000; ++i) text += line;
+  EXPECT_THAT(ErrorOf(text), HasSubstr("line 1: '<html>' begins no line"));
+}
+
 TEST_F(LogFileTest, BadInputIsRefusedWithItsLine) {
   const auto refused = [&](const std::string& text, const std::string& said) {
     EXPECT_THAT(ErrorOf(text), HasSubstr(said)) << text.substr(0, 100);
@@ -170,7 +244,7 @@ TEST_F(LogFileTest, BadInputIsRefusedWithItsLine) {
   refused("", "has no line FLASER, ROBOTLASER1 or ODOM");
   refused("# HIRES\n", "has no line FLASER");
   refused("PARAM robot_length 0.7 nohost 0\n", "has no line FLASER");
-  refused("HIRES lets a robot imagine\n\nmore\n", "line 3: 'more' begins no line of a CARMEN log");
+  refused("HIRES lets a robot imagine\n\nmore\n", "ROBOTLASER1 or ODOM, but HIRES, more; wanted");
   refused("{\"a\": 1}\n", "'{\"a\":' begins no line");
   refused(std::string("\x1f\x8b\0\n", 4), "line 1: is no text; wanted a CARMEN log: is the file");
   refused("ODOM 1 2 0 0 0 0 10.0 nohost\n", "ODOM has 9 words; wanted 10");

@@ -12,11 +12,18 @@ namespace hires::localisation {
 ///   ROBOTLASER1 type start_angle fov resolution max_range accuracy mode
 ///     n r_1 .. r_n  m remissions  x y theta (laser)  x y theta (robot)
 ///     tv rv forward side turn_axis                                          ipc host logger
-/// `#` begins a comment; lines of other kinds (RLASER, SYNC, TRUEPOS, ...) are passed over.
+/// `#` begins a comment; lines of other kinds (RLASER, SYNC, truepos, ...) are passed over,
+/// whatever the case of their letters.
+///
+/// Lines that cannot be read (words missing or too many, no number, a time more than 1 s before an
+/// earlier one of its kind, no name of a message) are passed over, with a warning that counts them
+/// and tells of the first where, what came and what was wanted, as long as they are at most 1 % of
+/// those and the lines ODOM, FLASER and ROBOTLASER1 that can be read. A last line that is cut off
+/// (without an end of line, or with words missing) is passed over with a warning of its own.
 ///
 /// Times are those of `ipc` [s], when a reading was made, on one clock for all kinds; `logger`
-/// tells when the line was written. Readings that come up to 1 s too late are put in order, with a
-/// warning.
+/// tells when the line was written. Readings whose time steps back by up to 1 s are kept and put in
+/// the order of their times, with a warning.
 ///
 /// FLASER does not tell its angles. As CARMEN's own reader (readlog.c) takes it, the first beam
 /// points to -90 degrees, and the others follow in whole shares of the half circle; where n is
@@ -33,8 +40,8 @@ namespace hires::localisation {
 /// What is no number, negative or below range_min is kept in a scan as NaN.
 ///
 /// @throws base::ConfigError naming file and line, what came and what was wanted: no such file,
-/// words missing or too many, no number, a time that jumps back by more than 1 s, absurd sizes, no
-/// scan and no odometry at all.
+/// more lines that cannot be read than 1 %, one of those two parameters that is no number, absurd
+/// sizes, no scan and no odometry at all.
 RobotLog ReadCarmenLog(const std::string& path);
 
 /// Writes lines `t x y z qx qy qz qw` (TUM format); a file of that name is replaced only when the
