@@ -11,6 +11,7 @@
 #include "hires/base/error.h"
 #include "hires/base/progress.h"
 #include "hires/geometry/angles.h"
+#include "hires/robot/odometry_jump.h"
 #include "mapping/draw_grid.h"
 #include "mapping/keyframe_map.h"
 #include "mapping/odometry_track.h"
@@ -22,9 +23,7 @@ using geometry::Pose2;
 using localisation::RobotLog;
 
 constexpr double kMatchSpacing = 0.05;  // [m] between points that are matched
-constexpr double kFastestRobot = 5.0;   // [m/s]
-constexpr double kAnyStep = 0.5;        // [m] more, as clocks are not exact
-constexpr double kJumpSd = 0.3;         // [m], [rad] after a jump of the odometry
+constexpr double kJumpSd = 0.3;         // [m], [rad] after a reset of the odometry
 constexpr double kUntoldSd = 0.1;       // [m], [rad] between scans without odometry
 constexpr double kDrawnStep = 0.05;     // [m], [rad] between scans that are drawn
 
@@ -46,7 +45,10 @@ ScanMatch ByOdometry(const PosePrior& prior) {
 
 class Mapper::Impl {
  public:
-  explicit Impl(const MapperParams& params) : params_(params), keyframes_(params) {}
+  explicit Impl(const MapperParams& params)
+      : params_(params),
+        track_(params.max_linear_speed, params.max_angular_speed),
+        keyframes_(params) {}
 
   void AddOdometry(const RobotLog::Odometry& odometry) {
     track_.Add(odometry.time, odometry.reading.X_OB);
@@ -83,6 +85,7 @@ class Mapper::Impl {
   void TakeThoseThatNeedNotWait();
   void TakeFirstWaiting();
   void TakeScan(const RobotLog::Scan& scan);
+  void TakeReset();
   PosePrior Predict(const RobotLog::Scan& scan);
   void Keep(const RobotLog::Scan& scan);
   Pose2 PoseAt(std::size_t record) const;
@@ -102,6 +105,7 @@ class Mapper::Impl {
   std::vector<std::shared_ptr<const RobotLog::Scan>> drawn_;  // those that show something new
   std::vector<std::size_t> drawn_records_;                    // which they are
   int num_lost_{0}, odometry_jumps_{0};
+  int resets_of_track_{0};  // that were taken
 };
 
 void Mapper::Impl::TakeThoseThatNeedNotWait() {
@@ -112,8 +116,18 @@ void Mapper::Impl::TakeThoseThatNeedNotWait() {
 void Mapper::Impl::TakeFirstWaiting() {
   RobotLog::Scan scan = std::move(waiting_.front());
   waiting_.pop_front();
-  if (!scan.X_OB) scan.X_OB = track_.At(scan.time);
+  if (!scan.X_OB) {
+    scan.X_OB = track_.At(scan.time);
+    if (track_.num_resets() > resets_of_track_) TakeReset();
+  }
   TakeScan(scan);
+}
+
+/// The track goes on without it; how the robot moved meanwhile is not known.
+void Mapper::Impl::TakeReset() {
+  odometry_jumps_ += track_.num_resets() - resets_of_track_;
+  resets_of_track_ = track_.num_resets();
+  anchor_.sd = kJumpSd;
 }
 
 void Mapper::Impl::TakeScan(const RobotLog::Scan& scan) {
@@ -136,11 +150,12 @@ void Mapper::Impl::TakeScan(const RobotLog::Scan& scan) {
 /// noise of many matches would add up to more than the odometry's error.
 PosePrior Mapper::Impl::Predict(const RobotLog::Scan& scan) {
   const bool is_told = X_OB_ && scan.X_OB;
-  const double step = is_told ? (X_OB_->Inverse() * *scan.X_OB).position().norm() : 0.0;
-  const bool is_jump = step > kFastestRobot * (scan.time - time_) + kAnyStep;
+  const Pose2 moved = is_told ? X_OB_->Inverse() * *scan.X_OB : Pose2{};
+  const bool is_jump = robot::IsOdometryJump(moved, scan.time - time_, params_.max_linear_speed,
+                                             params_.max_angular_speed);
   if (is_jump) ++odometry_jumps_;
   if (is_jump || !is_told) anchor_ = {X_MB_, scan.X_OB, is_jump ? kJumpSd : kUntoldSd};
-  if (!is_jump) way_ += step;
+  if (!is_jump) way_ += moved.position().norm();
   X_OB_ = scan.X_OB;
   time_ = scan.time;
   const Pose2 since = is_told ? anchor_.X_OB->Inverse() * *scan.X_OB : Pose2{};

@@ -16,6 +16,8 @@ MapperParams ReadMapperParams(base::ParamReader* in) {
   params.loop_radius = in->Get("loop_radius", Between(0.1, 100.0));
   params.loop_length = in->Get("loop_length", Between(1.0, 1000.0));
   params.min_fit = in->Get("min_fit", Between(0.1, 1.0));
+  params.max_linear_speed = in->Get("max_linear_speed", Between(0.01, 100.0));
+  params.max_angular_speed = in->Get("max_angular_speed", Between(0.01, 100.0));
   return params;
 }
 

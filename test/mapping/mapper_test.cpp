@@ -97,20 +97,65 @@ TEST(MapperTest, LaserMayLookBackward) {
   ExpectTrue(MakeMap(drive.log), drive, TwoRooms());
 }
 
-TEST(MapperTest, OdometryThatIsResetIsNoMotion) {
-  SimulatedDrive drive = TwoRoomsDrive();
-  const geometry::Pose2 X_NO{10.0, -5.0, 1.0};  // of the new frame
-  auto& odometry = drive.log.odometry;
-  for (std::size_t i = odometry.size() / 2; i < odometry.size(); ++i)
-    odometry[i].reading.X_OB = X_NO * odometry[i].reading.X_OB;
-  // Between two readings across the reset nothing is known.
-  for (RobotLog::Scan& scan : drive.log.scans) {
-    for (const auto& reading : odometry)
+/// Half way through the drive odometry moves the base by `jump`.
+void Reset(const geometry::Pose2& jump, std::size_t more, RobotLog* log) {
+  auto& odometry = log->odometry;
+  const std::size_t begin = odometry.size() / 2 + more;
+  const geometry::Pose2 X_OB = odometry[begin].reading.X_OB;
+  for (std::size_t i = begin; i < odometry.size(); ++i)
+    odometry[i].reading.X_OB = X_OB * jump * X_OB.Inverse() * odometry[i].reading.X_OB;
+}
+
+/// As a log of lines FLASER.
+void LetScansTellOdometry(RobotLog* log) {
+  for (RobotLog::Scan& scan : log->scans) {
+    for (const auto& reading : log->odometry)
       if (reading.time == scan.time) scan.X_OB = reading.reading.X_OB;
   }
-  const MapResult result = MakeMap(drive.log);
-  EXPECT_EQ(result.odometry_jumps, 1);
-  ExpectTrue(result, drive, TwoRooms());
+}
+
+TEST(MapperTest, OdometryThatIsResetIsNoMotion) {
+  for (const geometry::Pose2& jump :
+       {geometry::Pose2{10.0, -5.0, 1.0}, geometry::Pose2{0.3, 0.0, geometry::kPi},
+        geometry::Pose2{0.0, 0.0, -2.0}}) {
+    for (const bool scans_tell : {false, true}) {
+      SCOPED_TRACE(testing::Message() << jump.x << " " << jump.yaw << " " << scans_tell);
+      SimulatedDrive drive = TwoRoomsDrive();
+      Reset(jump, 0, &drive.log);
+      if (scans_tell) LetScansTellOdometry(&drive.log);
+      const MapResult result = MakeMap(drive.log);
+      EXPECT_EQ(result.odometry_jumps, 1);
+      ExpectTrue(result, drive, TwoRooms());
+    }
+  }
+}
+
+/// Between two readings of which one is of the new frame nothing is interpolated.
+TEST(MapperTest, OdometryMayBeResetBetweenScans) {
+  for (std::size_t more = 0; more < 4; ++more) {
+    SimulatedDrive drive = TwoRoomsDrive();
+    Reset({0.3, 0.0, geometry::kPi}, more, &drive.log);
+    for (RobotLog::Scan& scan : drive.log.scans) scan.time += 0.02;
+    for (localisation::TimedPose& pose : drive.truth) pose.time += 0.02;
+    const MapResult result = MakeMap(drive.log);
+    EXPECT_EQ(result.odometry_jumps, 1);
+    ExpectTrue(result, drive, TwoRooms());
+  }
+}
+
+TEST(MapperTest, LimitsOfSpeedChangeNoDriveWithoutAReset) {
+  MapperParams none;
+  none.max_linear_speed = none.max_angular_speed = 100.0;
+  SimulatedDrive drive = TwoRoomsDrive();
+  for (const bool scans_tell : {false, true}) {
+    if (scans_tell) LetScansTellOdometry(&drive.log);
+    const MapResult one = MakeMap(drive.log), other = MakeMap(drive.log, none);
+    EXPECT_EQ(one.grid.cells, other.grid.cells);
+    for (std::size_t i = 0; i < one.trajectory.size(); ++i) {
+      EXPECT_EQ(one.trajectory[i].X_MB.position(), other.trajectory[i].X_MB.position());
+      EXPECT_EQ(one.trajectory[i].X_MB.yaw, other.trajectory[i].X_MB.yaw);
+    }
+  }
 }
 
 /// Where odometry turns too far by a tenth, and the laser does not see how far.

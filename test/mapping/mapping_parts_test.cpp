@@ -108,7 +108,7 @@ TEST(PoseGraphTest, WrongLoopIsOverruled) {
 }
 
 TEST(OdometryTrackTest, PosesBetweenReadingsAreInterpolated) {
-  OdometryTrack track;
+  OdometryTrack track(2.0, 6.0);
   EXPECT_FALSE(track.At(1.0).has_value());
   track.Add(1.0, {0.0, 0.0, 3.0});
   track.Add(2.0, {1.0, 0.0, -3.0});
@@ -117,6 +117,23 @@ TEST(OdometryTrackTest, PosesBetweenReadingsAreInterpolated) {
   EXPECT_NEAR(std::abs(track.At(1.5)->yaw), kPi, 1e-9) << "the short way round";
   EXPECT_EQ(track.At(5.0)->x, 1.0);
   EXPECT_THROW(track.Add(1.5, {}), std::logic_error);
+}
+
+TEST(OdometryTrackTest, PosesGoOnWhereAResetCameBetween) {
+  OdometryTrack track(2.0, 6.0);
+  EXPECT_EQ(track.num_resets(), 0);
+  track.Add(1.0, {1.0, 0.0, 0.0});
+  track.Add(1.1, {1.1, 0.0, 0.0});
+  track.Add(1.2, {0.0, 0.0, kPi});  // reset, and turned
+  track.Add(1.3, {-0.1, 0.0, kPi});
+  EXPECT_NEAR(track.At(1.15)->x, 1.1, 1e-12);
+  EXPECT_NEAR(track.At(1.15)->yaw, 0.0, 1e-12);
+  EXPECT_EQ(track.num_resets(), 0);
+  EXPECT_NEAR(track.At(1.2)->x, 1.1, 1e-12);
+  EXPECT_EQ(track.num_resets(), 1);
+  EXPECT_NEAR(track.At(1.3)->x, 1.2, 1e-12) << "ahead, as before";
+  EXPECT_NEAR(track.At(1.3)->y, 0.0, 1e-12);
+  EXPECT_EQ(track.num_resets(), 1);
 }
 
 TEST(DrawGridTest, BeamsClearTheirWayAndEndInWalls) {

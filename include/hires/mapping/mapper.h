@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hires/localisation/robot_log.h"
+#include "hires/robot/odometry_jump.h"
 #include "hires/world/occupancy_grid.h"
 
 namespace hires::mapping {
@@ -20,13 +21,15 @@ struct MapperParams {
   double loop_radius{4.0};    ///< [m] around the robot in which places seen before are tried
   double loop_length{10.0};   ///< [m] driven in between that makes a place one seen before
   double min_fit{0.6};        ///< share of a scan's points that a loop must explain
+  double max_linear_speed{robot::kFastestDrive};  ///< [m/s] odometry that is faster was reset
+  double max_angular_speed{robot::kFastestTurn};  ///< [rad/s]
 };
 
 struct MapCounts {
   int num_keyframes{0};
   int num_loops{0};       ///< places seen again that tie the map together
   int num_lost{0};        ///< scans that fitted nothing and stand where odometry says
-  int odometry_jumps{0};  ///< steps faster than any robot, taken as none
+  int odometry_jumps{0};  ///< resets, taken as no motion
 };
 
 struct MapResult : MapCounts {
@@ -55,7 +58,8 @@ class Mapper {
   ~Mapper();
   Mapper(Mapper&&) noexcept;
 
-  /// @pre times do not go back.  A pose that jumps (a reset) counts as no motion.
+  /// @pre times do not go back.  A reset, in position or heading (robot::IsOdometryJump),
+  /// counts as no motion.
   void AddOdometry(const localisation::RobotLog::Odometry& odometry);
 
   /// A scan without X_OB waits for the odometry after it. One that measured nothing gets the pose
