@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "hires/mapping/map_judge.h"
 #include "hires/mapping/mapper.h"
 #include "support/simulated_drive.h"
 
@@ -42,11 +43,16 @@ void BM_Map(benchmark::State& state) {
       world, course.places, ParamsOf(static_cast<int>(state.range(1))), base::Rng(state.range(2)));
   MapResult result;
   for (auto _ : state) result = MakeMap(drive.log);
-  geometry::Pose2 X_WM;
   const double scans = static_cast<double>(drive.log.scans.size());
-  state.counters["rms_mm"] =
-      1000.0 * test_support::TrajectoryRms(result.trajectory, drive.truth, &X_WM);
-  state.counters["wall_mm"] = 1000.0 * test_support::MedianWallError(result.grid, world, X_WM);
+  const localisation::PathError path = localisation::ErrorOf(result.trajectory, drive.truth);
+  const WallErrors walls =
+      JudgeWalls(result.grid, world, path.X_TP,
+                 FacesThatWereSeen(world, drive.log.scans, drive.truth, MapperParams{}.max_range));
+  state.counters["rms_mm"] = 1000.0 * path.rms;
+  state.counters["wall_mm"] = 1000.0 * walls.to_world.median;
+  state.counters["wall_most_mm"] = 1000.0 * walls.to_world.most;
+  state.counters["seen_mm"] = 1000.0 * walls.to_map.median;
+  state.counters["seen_most_mm"] = 1000.0 * walls.to_map.most;
   state.counters["loops"] = result.num_loops;
   state.SetItemsProcessed(static_cast<std::int64_t>(scans * state.iterations()));
 }

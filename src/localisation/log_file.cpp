@@ -406,9 +406,45 @@ void CarmenReader::SayWhatWasPassedOver() const {
             fmt::format("{}: passed over lines of {}", path_, NamesPassedOver()));
 }
 
+std::string Words(const Pose2& pose) {
+  return fmt::format(" {:.6f} {:.6f} {:.6f}", pose.x, pose.y, pose.yaw);
+}
+
 }  // namespace
 
 RobotLog ReadCarmenLog(const std::string& path) { return CarmenReader(path).Read(); }
+
+void WriteCarmenLog(const RobotLog& log, const std::string& file) {
+  std::string text = "# CARMEN log\n";
+  const auto end_line = [&](double time) {
+    text += fmt::format(" {:.6f} nohost {:.6f}\n", time, time);
+  };
+  auto odometry = log.odometry.begin();
+  const auto write_odometry_until = [&](double time) {
+    for (; odometry != log.odometry.end() && odometry->time <= time; ++odometry) {
+      text += "ODOM" + Words(odometry->reading.X_OB);
+      text += fmt::format(" {:.6f} {:.6f} 0", odometry->reading.V_B.vx, odometry->reading.V_B.wz);
+      end_line(odometry->time);
+    }
+  };
+  for (const RobotLog::Scan& scan : log.scans) {
+    HIRES_CHECK(scan.X_OB && scan.reading.range_max > 0.0, "scans have odometry and a range_max");
+    write_odometry_until(scan.time);
+    const robot::ScanReading& reading = scan.reading;
+    const std::size_t n = reading.ranges.size();
+    text += fmt::format("ROBOTLASER1 0 {:.9f} {:.9f} {:.9f} {} {} 0 {}", reading.angle_min,
+                        reading.angle_increment * static_cast<double>(n > 0 ? n - 1 : 0),
+                        reading.angle_increment, reading.range_max, kCarmenMinRange, n);
+    for (const float range : reading.ranges) {
+      const bool is_number = range >= reading.range_min;
+      text += is_number ? fmt::format(" {:.4f}", std::min<double>(range, reading.range_max)) : " 0";
+    }
+    text += " 0" + Words(*scan.X_OB * scan.X_BL) + Words(*scan.X_OB) + " 0 0 0 0 0";
+    end_line(scan.time);
+  }
+  write_odometry_until(std::numeric_limits<double>::infinity());
+  base::ReplaceTextFile(file, text);
+}
 
 void WriteTumTrajectory(const TimedPath& path, const std::string& file) {
   std::string text;

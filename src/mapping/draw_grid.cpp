@@ -89,7 +89,9 @@ class BeamCounts {
 world::OccupancyGrid DrawGrid(const std::vector<const localisation::RobotLog::Scan*>& scans,
                               const std::vector<geometry::Pose2>& X_MBs, double resolution,
                               double max_range) {
-  Eigen::Array2d lower = Eigen::Array2d::Zero(), upper = lower;
+  Eigen::Array2d lower = Eigen::Array2d::Zero();
+  if (!X_MBs.empty()) lower = X_MBs.front().position();
+  Eigen::Array2d upper = lower;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     ForEachBeam(*scans[i], X_MBs[i], max_range, [&](const Beam& beam) {
       lower = lower.min(beam.from.array()).min(beam.to.array());

@@ -48,7 +48,8 @@ class Mapper::Impl {
   explicit Impl(const MapperParams& params)
       : params_(params),
         track_(params.max_linear_speed, params.max_angular_speed),
-        keyframes_(params) {}
+        keyframes_(params),
+        X_MB_(params.X_MBegin) {}
 
   void AddOdometry(const RobotLog::Odometry& odometry) {
     track_.Add(odometry.time, odometry.reading.X_OB);

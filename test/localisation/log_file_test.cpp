@@ -299,6 +299,43 @@ TEST_F(LogFileTest, MissingFilesAreNamed) {
   }
 }
 
+TEST_F(LogFileTest, LogsAreReadAsTheyWereWritten) {
+  RobotLog log;
+  for (int i = 0; i < 3; ++i) {
+    const Pose2 X_OB{1.0 + 0.1 * i, -2.0, 0.5};
+    log.odometry.push_back({10.0 + i, {X_OB, {0.3, 0.0, -0.2}}});
+    if (i == 1) continue;
+    RobotLog::Scan scan{10.0 + i, {0.3, 0.1, 0.2}, {}, X_OB};
+    scan.reading = {-1.5, 0.75, 0.05, {1.0F, std::nanf(""), INFINITY, 0.01F, 2.5F}, 8.0};
+    log.scans.push_back(scan);
+  }
+  const std::string file = (folder_.path() / "drive.log").string();
+  WriteCarmenLog(log, file);
+  const RobotLog again = ReadCarmenLog(file);
+  EXPECT_EQ(warnings_, "");
+  ASSERT_EQ(again.odometry.size(), 3u);
+  EXPECT_EQ(again.odometry[2].time, 12.0);
+  EXPECT_NEAR(again.odometry[2].reading.X_OB.x, 1.2, 1e-9);
+  EXPECT_EQ(again.odometry[2].reading.V_B.wz, -0.2);
+  ASSERT_EQ(again.scans.size(), 2u);
+  const RobotLog::Scan& scan = again.scans[1];
+  EXPECT_EQ(scan.time, 12.0);
+  EXPECT_NEAR(scan.X_BL.x, 0.3, 1e-6);
+  EXPECT_NEAR(scan.X_BL.yaw, 0.2, 1e-6);
+  EXPECT_NEAR(scan.X_OB->x, 1.2, 1e-9);
+  EXPECT_EQ(scan.reading.angle_min, -1.5);
+  EXPECT_EQ(scan.reading.angle_increment, 0.75);
+  EXPECT_EQ(scan.reading.range_max, 8.0);
+  ASSERT_EQ(scan.reading.ranges.size(), 5u);
+  EXPECT_EQ(scan.reading.ranges[0], 1.0F);
+  EXPECT_TRUE(std::isnan(scan.reading.ranges[1]));
+  EXPECT_EQ(scan.reading.ranges[2], 8.0F) << "met nothing";
+  EXPECT_TRUE(std::isnan(scan.reading.ranges[3])) << "below its range_min";
+  EXPECT_EQ(scan.reading.ranges[4], 2.5F);
+  log.scans[0].X_OB.reset();
+  EXPECT_THROW(WriteCarmenLog(log, file), std::logic_error);
+}
+
 TEST_F(LogFileTest, TrajectoriesAreWrittenAsOthersReadThem) {
   const std::string file = (folder_.path() / "path.tum").string();
   WriteTumTrajectory({{976052857.33753, {1.0, -2.0, 0.0}}, {976052858.0, {1.5, 0.0, kPi / 2}}},

@@ -7,6 +7,7 @@
 
 #include "hires/base/error.h"
 #include "hires/localisation/filtered_log.h"
+#include "hires/mapping/map_judge.h"
 #include "support/simulated_drive.h"
 
 namespace hires::mapping::mapper_test {
@@ -14,7 +15,6 @@ namespace {
 
 using localisation::RobotLog;
 using test_support::DriveThrough;
-using test_support::MedianWallError;
 using test_support::SimulatedDrive;
 using test_support::SimulatedDriveParams;
 using test_support::TrajectoryRms;
@@ -42,12 +42,29 @@ SimulatedDrive TwoRoomsDrive(const SimulatedDriveParams& params = {}, int seed =
   return DriveThrough(TwoRooms(), kThroughBothRooms, params, base::Rng(seed));
 }
 
+struct Errors {
+  double rms;  // [m] of the trajectory
+  WallErrors walls;
+};
+
+Errors ErrorsOf(const MapResult& result, const SimulatedDrive& drive,
+                const world::OccupancyGrid& world) {
+  const localisation::PathError path = localisation::ErrorOf(result.trajectory, drive.truth);
+  const auto seen =
+      FacesThatWereSeen(world, drive.log.scans, drive.truth, MapperParams{}.max_range);
+  return {path.rms, JudgeWalls(result.grid, world, path.X_TP, seen)};
+}
+
 /// Holds a map against the world that was driven through.
 void ExpectTrue(const MapResult& result, const SimulatedDrive& drive,
                 const world::OccupancyGrid& world) {
-  geometry::Pose2 X_WM;
-  EXPECT_LE(TrajectoryRms(result.trajectory, drive.truth, &X_WM), 0.05);
-  EXPECT_LE(MedianWallError(result.grid, world, X_WM), 0.03);
+  const Errors errors = ErrorsOf(result, drive, world);
+  EXPECT_LE(errors.rms, 0.05);
+  EXPECT_LE(errors.walls.to_world.median, 0.03);
+  EXPECT_LE(errors.walls.to_world.most, 0.06);
+  EXPECT_LE(errors.walls.to_map.median, 0.03);
+  EXPECT_LE(errors.walls.to_map.most, 0.06);
+  EXPECT_GT(errors.walls.to_map.count, 500u);
 }
 
 TEST(MapperTest, RoomsAreMappedWhereTheyAre) {
@@ -77,6 +94,19 @@ TEST(MapperTest, OriginalMapsAreMappedAgain) {
       ExpectTrue(MakeMap(drive.log), drive, world);
     }
   }
+}
+
+TEST(MapperTest, MapMayLieInTheFrameOfTheWorld) {
+  const SimulatedDrive drive = TwoRoomsDrive();
+  MapperParams params;
+  params.X_MBegin = drive.truth.front().X_MB;
+  const MapResult result = MakeMap(drive.log, params);
+  EXPECT_EQ(result.trajectory.front().X_MB.position(), params.X_MBegin.position());
+  EXPECT_EQ(result.trajectory.front().X_MB.yaw, params.X_MBegin.yaw);
+  const auto seen = FacesThatWereSeen(TwoRooms(), drive.log.scans, drive.truth, params.max_range);
+  const WallErrors walls = JudgeWalls(result.grid, TwoRooms(), {}, seen);
+  EXPECT_LE(walls.to_world.median, 0.05) << "without a motion that fits it";
+  EXPECT_LE(walls.to_map.median, 0.05);
 }
 
 TEST(MapperTest, SameLogGivesTheSameMap) {
@@ -171,12 +201,14 @@ TEST(MapperTest, RatesOfAnInertialUnitMakeTheMapTruer) {
     test_support::ScaleTurns(1.1, &drive.log);
     with.odometry = drive.log.odometry;
     localisation::FilterOdometry({}, &with);
-    geometry::Pose2 X_WM;
-    const MapResult wheels = MakeMap(drive.log), joined = MakeMap(with);
-    EXPECT_GT(TrajectoryRms(wheels.trajectory, drive.truth, &X_WM), 0.4);
-    EXPECT_GT(MedianWallError(wheels.grid, hall, X_WM), 0.1);
-    EXPECT_LT(TrajectoryRms(joined.trajectory, drive.truth, &X_WM), 0.15);
-    EXPECT_LT(MedianWallError(joined.grid, hall, X_WM), 0.05);
+    const Errors wheels = ErrorsOf(MakeMap(drive.log), drive, hall);
+    const Errors joined = ErrorsOf(MakeMap(with), drive, hall);
+    EXPECT_GT(wheels.rms, 0.4);
+    EXPECT_GT(wheels.walls.to_world.median, 0.1);
+    EXPECT_GT(wheels.walls.to_map.median, 0.1);
+    EXPECT_LT(joined.rms, 0.15);
+    EXPECT_LT(joined.walls.to_world.median, 0.05);
+    EXPECT_LT(joined.walls.to_map.median, 0.05);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
+#include "hires/mapping/map_judge.h"
 #include "mapping/draw_grid.h"
 #include "mapping/odometry_track.h"
 #include "mapping/pose_graph.h"
@@ -134,6 +135,65 @@ TEST(OdometryTrackTest, PosesGoOnWhereAResetCameBetween) {
   EXPECT_NEAR(track.At(1.3)->x, 1.2, 1e-12) << "ahead, as before";
   EXPECT_NEAR(track.At(1.3)->y, 0.0, 1e-12);
   EXPECT_EQ(track.num_resets(), 1);
+}
+
+/// A room of 2 m x 2 m, its walls one cell of 0.1 m thick.
+world::OccupancyGrid SmallRoom() {
+  world::OccupancyGrid grid{0.1, 22, 22, {-1.1, -1.1}, {}};
+  for (int row = 0; row < 22; ++row)
+    for (int column = 0; column < 22; ++column)
+      grid.cells.push_back(row % 21 == 0 || column % 21 == 0 ? world::Cell::kOccupied
+                                                             : world::Cell::kFree);
+  return grid;
+}
+
+TEST(MapJudgeTest, FacesThatLookToTheLaserAreSeen) {
+  // The end is behind a wall of one cell, nearer to its back.
+  const auto seen = FacesThatWereSeen(SmallRoom(), {ScanOf({1.07F, 50.0F}, 0.0, kPi / 2.0)},
+                                      {{0.0, {0.0, 0.02, 0.0}}}, 30.0);
+  ASSERT_EQ(seen.size(), 1u);
+  EXPECT_NEAR(seen[0].x(), 1.0, 1e-9);
+  EXPECT_NEAR(seen[0].y(), 0.05, 1e-9);
+  EXPECT_TRUE(FacesThatWereSeen(SmallRoom(), {ScanOf({1.0F}, 0.0, 0.1)}, {{}}, 0.9).empty());
+  EXPECT_TRUE(FacesThatWereSeen(SmallRoom(), {ScanOf({0.8F}, 0.0, 0.1)}, {{}}, 9.0).empty());
+  EXPECT_THROW(FacesThatWereSeen(SmallRoom(), {}, {{}}, 9.0), std::logic_error);
+}
+
+TEST(MapJudgeTest, WallsAreHeldAgainstEachOtherBothWays) {
+  const world::OccupancyGrid room = SmallRoom();
+  std::vector<float> ranges;
+  for (int i = 0; i < 720; ++i) {
+    const double angle = i * kPi / 360.0;
+    ranges.push_back(
+        static_cast<float>(1.0 / std::max(std::abs(std::cos(angle)), std::abs(std::sin(angle)))));
+  }
+  const auto seen = FacesThatWereSeen(room, {ScanOf(ranges, 0.0, kPi / 360.0)}, {{}}, 30.0);
+  EXPECT_EQ(seen.size(), 80u) << "what is within, once each";
+
+  const WallErrors same = JudgeWalls(room, room, {}, seen);
+  EXPECT_EQ(same.to_world.count, 84u);
+  EXPECT_NEAR(same.to_world.median, 0.05, 1e-9) << "half a cell";
+  EXPECT_NEAR(same.to_map.median, 0.05, 1e-9);
+  EXPECT_NEAR(same.to_map.most, 0.05, 1e-9);
+
+  world::OccupancyGrid lacks = room;  // half of a wall
+  for (int row = 1; row < 11; ++row) lacks.cells[row * 22] = world::Cell::kFree;
+  EXPECT_NEAR(JudgeWalls(lacks, room, {}, seen).to_world.most, 0.05, 1e-9) << "not seen this way";
+  EXPECT_GT(JudgeWalls(lacks, room, {}, seen).to_map.most, 0.25);
+
+  world::OccupancyGrid more = room;  // something in the middle
+  for (int row = 9; row < 12; ++row)
+    for (int column = 9; column < 12; ++column)
+      more.cells[row * 22 + column] = world::Cell::kOccupied;
+  EXPECT_NEAR(JudgeWalls(more, room, {}, seen).to_map.most, 0.05, 1e-9) << "not seen this way";
+  EXPECT_EQ(JudgeWalls(more, room, {}, seen).to_world.most, kFarthestWall);
+
+  EXPECT_NEAR(JudgeWalls(room, room, {0.0, 0.2, 0.0}, seen).to_map.most, 0.25, 0.051);
+  world::OccupancyGrid empty = room;
+  empty.cells.assign(empty.cells.size(), world::Cell::kFree);
+  EXPECT_EQ(JudgeWalls(empty, room, {}, seen).to_world.count, 0u);
+  EXPECT_EQ(JudgeWalls(empty, room, {}, seen).to_world.median, kFarthestWall);
+  EXPECT_EQ(JudgeWalls(empty, room, {}, seen).to_map.median, kFarthestWall);
 }
 
 TEST(DrawGridTest, BeamsClearTheirWayAndEndInWalls) {

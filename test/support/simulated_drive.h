@@ -9,6 +9,7 @@
 #include "hires/base/check.h"
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
+#include "hires/localisation/path_error.h"
 #include "hires/localisation/robot_log.h"
 #include "hires/world/occupancy_grid.h"
 
@@ -203,74 +204,10 @@ inline localisation::TimedPath OdometryAt(const localisation::TimedPath& truth,
   return path;
 }
 
-/// Root mean square [m] of the distances between a trajectory and the truth, after the rigid motion
-/// that fits them best.
+/// [m] after the rigid motion that fits them best.
 inline double TrajectoryRms(const localisation::TimedPath& path,
-                            const localisation::TimedPath& truth, geometry::Pose2* X_TP = nullptr) {
-  HIRES_CHECK(path.size() == truth.size() && !path.empty(), "one pose for each scan");
-  Eigen::Vector2d mean_p = Eigen::Vector2d::Zero(), mean_t = mean_p;
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    mean_p += path[i].X_MB.position() / static_cast<double>(path.size());
-    mean_t += truth[i].X_MB.position() / static_cast<double>(path.size());
-  }
-  double sine = 0.0, cosine = 0.0;
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    const Eigen::Vector2d p = path[i].X_MB.position() - mean_p;
-    const Eigen::Vector2d t = truth[i].X_MB.position() - mean_t;
-    cosine += p.dot(t);
-    sine += p.x() * t.y() - p.y() * t.x();
-  }
-  geometry::Pose2 X{0.0, 0.0, std::atan2(sine, cosine)};
-  const Eigen::Vector2d shift = mean_t - X * mean_p;
-  X.x = shift.x();
-  X.y = shift.y();
-  double squares = 0.0;
-  for (std::size_t i = 0; i < path.size(); ++i)
-    squares += (X * path[i].X_MB.position() - truth[i].X_MB.position()).squaredNorm();
-  if (X_TP != nullptr) *X_TP = X;
-  return std::sqrt(squares / static_cast<double>(path.size()));
-}
-
-/// [m] from a point to the nearest face between an occupied cell and one that is not, as far as
-/// 0.5 m away.
-inline double DistanceToWall(const world::OccupancyGrid& grid, const Eigen::Vector2d& p) {
-  const double r = grid.resolution;
-  const Eigen::Vector2d at = (p - grid.origin) / r;
-  const int reach = static_cast<int>(std::ceil(0.5 / r));
-  const auto is_occupied = [&](int c, int row) {
-    return c >= 0 && row >= 0 && c < grid.width && row < grid.height &&
-           grid.at(c, row) == world::Cell::kOccupied;
-  };
-  double nearest = 0.5;
-  const int column = static_cast<int>(std::floor(at.x())),
-            row = static_cast<int>(std::floor(at.y()));
-  for (int y = row - reach; y <= row + reach; ++y) {
-    for (int x = column - reach; x <= column + reach; ++x) {
-      const double beside_x = std::max({x - at.x(), 0.0, at.x() - x - 1});
-      const double beside_y = std::max({y - at.y(), 0.0, at.y() - y - 1});
-      for (const int face : {0, 1}) {  // left and lower ones
-        if (is_occupied(x, y) == (face == 0 ? is_occupied(x - 1, y) : is_occupied(x, y - 1)))
-          continue;
-        const double distance =
-            face == 0 ? std::hypot(at.x() - x, beside_y) : std::hypot(beside_x, at.y() - y);
-        nearest = std::min(nearest, distance * r);
-      }
-    }
-  }
-  return nearest;
-}
-
-/// Median [m] of the distances of a map's occupied cells (centres) from the world's walls.
-inline double MedianWallError(const world::OccupancyGrid& map, const world::OccupancyGrid& world,
-                              const geometry::Pose2& X_WM) {
-  std::vector<double> errors;
-  for (int row = 0; row < map.height; ++row)
-    for (int column = 0; column < map.width; ++column)
-      if (map.at(column, row) == world::Cell::kOccupied)
-        errors.push_back(DistanceToWall(world, X_WM * map.CentreOf(column, row)));
-  HIRES_CHECK(!errors.empty(), "the map has walls");
-  std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
-  return errors[errors.size() / 2];
+                            const localisation::TimedPath& truth) {
+  return localisation::ErrorOf(path, truth).rms;
 }
 
 /// 12 m x 8 m, with a wall from below that leaves a door of 3 m, and a pillar: like no turn of

@@ -44,6 +44,13 @@ namespace hires::localisation {
 /// sizes, no scan and no odometry at all.
 RobotLog ReadCarmenLog(const std::string& path);
 
+/// Writes lines ODOM and ROBOTLASER1, which ReadCarmenLog reads again, up to the digits that are
+/// written: 1 us, 1 um and 1 urad of poses, 0.1 mm of ranges. What is no number is 0, and what met
+/// nothing `range_max`. A file of that name is replaced only when the new one is whole.
+/// @pre scans have odometry (X_OB) and a range_max.  @throws base::ConfigError if the file cannot
+/// be written.
+void WriteCarmenLog(const RobotLog& log, const std::string& file);
+
 /// Writes lines `t x y z qx qy qz qw` (TUM format); a file of that name is replaced only when the
 /// new one is whole.
 /// @throws base::ConfigError if the file cannot be written.

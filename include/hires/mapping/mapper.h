@@ -23,6 +23,7 @@ struct MapperParams {
   double min_fit{0.6};        ///< share of a scan's points that a loop must explain
   double max_linear_speed{robot::kFastestDrive};  ///< [m/s] odometry that is faster was reset
   double max_angular_speed{robot::kFastestTurn};  ///< [rad/s]
+  geometry::Pose2 X_MBegin;  ///< base at the first scan, in the map that is made
 };
 
 struct MapCounts {
@@ -50,8 +51,9 @@ world::OccupancyGrid Draw(const MapSketch& sketch);
 
 /// Makes a map of what a laser saw on a drive: scans are matched with the latest keyframes
 /// (points to walls, odometry as prior), places seen before are recognised by their scans, and a
-/// graph of poses is made to agree with all of it. Map M is the odometry's frame at the first scan,
-/// with the robot in its origin. Nothing is drawn by chance: the same log gives the same map.
+/// graph of poses is made to agree with all of it. The base is at MapperParams::X_MBegin of the map
+/// at the first scan: in its origin, if not told otherwise. Nothing is drawn by chance: the same
+/// log gives the same map.
 class Mapper {
  public:
   explicit Mapper(const MapperParams& params = {});
