@@ -527,7 +527,7 @@ int RunVerb(const Verbs& verbs, const Backends& backends) {
   if (*verbs.list.verb) return RunListVerb(verbs.list, backends.package_folder);
   if (*verbs.recognise.verb) return RunRecogniseVerb(verbs.recognise, backends.package_folder);
   if (*verbs.map.verb)
-    return RunMapVerb(verbs.map, backends.package_folder, backends.read_drive_bag);
+    return RunMapVerb(verbs.map, backends.package_folder, backends.read_drive_bag, IsInterrupted);
   if (*verbs.localise.verb) {
     return RunLocaliseVerb(verbs.localise, backends.package_folder, backends.read_drive_bag);
   }
