@@ -157,6 +157,41 @@ class OdometryFilterTest(unittest.TestCase):
         self.step(node, frame=UPSIDE_DOWN)
         self.assertLess(self.errors(self.drive(200, node, frame=UPSIDE_DOWN)[0])[1], 0.01)
 
+    def test_a_unit_that_tells_rates_alone_corrects_as_well(self):
+        plain, before = self.inertia, [0.0]
+
+        def rates(frame):
+            message = plain(frame)
+            yaw = self.robot.pose[2]
+            rate, before[0] = wrapped(yaw - before[0]) / PERIOD, yaw
+            w, w_I = message.angular_velocity, MOUNTED[frame][:3, :3].T @ (0.0, 0.0, rate)
+            w.x, w.y, w.z = w_I
+            message.orientation = type(message.orientation)()
+            message.orientation_covariance[0] = -1.0
+            return message
+        self.inertia = rates
+        for frame in UNIT, UPSIDE_DOWN:
+            node = Node(self)
+            self.step(node, frame=frame)
+            begun, turned = self.said(node), self.robot.pose[2]
+            self.drive(200, node, frame=frame)
+            self.assertGreater(wrapped(self.robot.pose[2] - turned), 0.9)
+            error = wrapped(self.said(node)[2] - begun[2]) - wrapped(self.robot.pose[2] - turned)
+            self.assertLess(abs(error), 0.01)
+            self.say(node, lambda v: v['message'] == 'wheels and inertial unit')
+
+    def test_wheels_that_are_a_little_late_are_left_out(self):
+        node = Node(self)
+        self.step(node)
+        for _ in range(50):
+            late = self.odometry()
+            self.drive(2, node)
+            self.wheels.publish(late)
+        self.drive(1, node)
+        self.say(node, lambda v: v.get('odom, late') == '50')
+        self.assertLess(self.errors(self.said(node))[0], 0.05)
+        self.assertNotIn('time went back', node.process.output())
+
     def test_without_a_unit_the_wheels_are_followed(self):
         """Odometry waits for the unit until newer ones are there."""
         node = Node(self)
@@ -215,8 +250,10 @@ class OdometryFilterTest(unittest.TestCase):
                lambda m: setattr(m.header, 'stamp', zero))
         refuse("imu_data: header.frame_id is 'attic'", self.units, self.inertia(),
                lambda m: setattr(m.header, 'frame_id', 'attic'))
-        refuse('tells no orientation', self.units, self.inertia(),
-               lambda m: setattr(m, 'orientation_covariance', [-1.0] + [0.0] * 8))
+        nothing = [-1.0] + [0.0] * 8
+        refuse('the unit tells neither', self.units, self.inertia(),
+               lambda m: (setattr(m, 'orientation_covariance', nothing),
+                          setattr(m, 'angular_velocity_covariance', nothing)))
         refuse('imu_data: orientation has length nan', self.units, self.inertia(),
                lambda m: setattr(m.orientation, 'x', NAN))
         nowhere = self.odometry()

@@ -18,6 +18,7 @@
 #include "hires/base/progress.h"
 #include "hires/base/text.h"
 #include "hires/ros/conversions.h"
+#include "hires/ros/place/scan_messages.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/transform_buffer.h"
 #include "nodes/hires/bag_file.h"
@@ -137,13 +138,6 @@ ScanReading ReadingOf(const sensor_msgs::LaserScan& msg) {
   return {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges, msg.range_max};
 }
 
-ScanReading ReadingOf(const sensor_msgs::MultiEchoLaserScan& msg) {
-  ScanReading reading{msg.angle_min, msg.angle_increment, msg.range_min, {}, msg.range_max};
-  for (const sensor_msgs::LaserEcho& beam : msg.ranges)
-    reading.ranges.push_back(hires::sensing::NearestEcho(beam.echoes, msg.range_min));
-  return reading;
-}
-
 bool IsRotation(const geometry_msgs::Quaternion& q) {
   return std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w) > kLeastTurn;
 }
@@ -169,7 +163,8 @@ class DriveReader {
       return builder_.OnScan(scan->header.stamp.toSec(), scan->header.frame_id, ReadingOf(*scan));
     }
     if (const auto scan = message.instantiate<sensor_msgs::MultiEchoLaserScan>()) {
-      return builder_.OnScan(scan->header.stamp.toSec(), scan->header.frame_id, ReadingOf(*scan));
+      return builder_.OnScan(scan->header.stamp.toSec(), scan->header.frame_id,
+                             ReadingOf(NearestEchoesOf(*scan)));
     }
     builder_.LeaveOut("scans of another type, or of another version of it");
   }

@@ -12,6 +12,7 @@
 #include "hires/base/process.h"
 #include "hires/ros/conversions.h"
 #include "hires/ros/place/map_messages.h"
+#include "hires/ros/place/scan_messages.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 
@@ -174,9 +175,13 @@ void LocalisationNode::OnTransforms(const TransformBuffer::News& news) {
   scans_.Try(false);
 }
 
-void LocalisationNode::OnScan(const sensor_msgs::LaserScanConstPtr& msg) {
+void LocalisationNode::OnScan(const topic_tools::ShapeShifter& msg) {
   ++num_scans_;
-  scans_.Add(msg);
+  try {
+    scans_.Add(LaserScanOf(msg));
+  } catch (const ConfigError& error) {
+    Refuse(params_.names.base_scan, error.what());
+  }
 }
 
 void LocalisationNode::Use(const PlacedScan& scan) {
@@ -187,14 +192,20 @@ void LocalisationNode::Use(const PlacedScan& scan) {
     Refuse(params_.names.base_scan, localisation::ToString(outcome) +
                                         ": it goes on from this odometry, and keeps what it "
                                         "believes");
+  } else if (outcome == ScanOutcome::kLate) {
+    Refuse(
+        params_.names.base_scan,
+        "late: its stamp is a little older than that of the scan before, wanted rising ones; two "
+        "lasers on one topic do so");
   } else if (localisation::IsBad(outcome)) {
     Refuse(params_.names.base_scan, WhyBad(outcome, scan.reading));
   }
+  const bool is_followed = outcome != ScanOutcome::kNotFinite && outcome != ScanOutcome::kLate;
   is_updated_ = is_updated_ || outcome == ScanOutcome::kUpdated;
   const bool is_new = NoteLost(scan.header.stamp.toSec()) || outcome == ScanOutcome::kUpdated ||
                       (localisation::IsBad(outcome) && IsLessSure(scan.header.stamp.toSec()));
   // The odometry goes on below the map, also where the laser sees nothing.
-  if (is_updated_ && outcome != ScanOutcome::kNotFinite) Publish(scan.header.stamp, is_new);
+  if (is_updated_ && is_followed) Publish(scan.header.stamp, is_new);
 }
 
 /// Whether the place has become less certain than was told, as where scans cannot be used.

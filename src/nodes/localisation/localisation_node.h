@@ -4,8 +4,8 @@
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <nav_msgs/OccupancyGrid.h>
 #include <ros/node_handle.h>
-#include <sensor_msgs/LaserScan.h>
 #include <std_srvs/Empty.h>
+#include <topic_tools/shape_shifter.h>
 
 #include <map>
 #include <optional>
@@ -42,7 +42,7 @@ class LocalisationNode {
   bool OnNoMotionUpdate(Empty::Request& request, Empty::Response& response);
 
   void OnTransforms(const TransformBuffer::News& news);
-  void OnScan(const sensor_msgs::LaserScanConstPtr& msg);
+  void OnScan(const topic_tools::ShapeShifter& msg);
   void Use(const PlacedScan& scan);
   bool IsLessSure(double stamp) const;
   bool NoteLost(double stamp);

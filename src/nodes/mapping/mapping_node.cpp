@@ -12,6 +12,7 @@
 #include "hires/base/log.h"
 #include "hires/base/process.h"
 #include "hires/ros/place/map_messages.h"
+#include "hires/ros/place/scan_messages.h"
 #include "hires/ros/robot_messages.h"
 #include "hires/ros/robot_topics.h"
 
@@ -64,10 +65,14 @@ void MappingNode::OnTransforms(const TransformBuffer::News& news) {
   scans_.Try(false);
 }
 
-void MappingNode::OnScan(const sensor_msgs::LaserScanConstPtr& msg) {
+void MappingNode::OnScan(const topic_tools::ShapeShifter& msg) {
   ++num_scans_;
   WatchClock();
-  scans_.Add(msg);
+  try {
+    scans_.Add(LaserScanOf(msg));
+  } catch (const ConfigError& error) {
+    Refuse(params_.names.base_scan, error.what());
+  }
 }
 
 void MappingNode::OnTimer() {

@@ -4,8 +4,8 @@
 #include <nav_msgs/GetMap.h>
 #include <nav_msgs/OccupancyGrid.h>
 #include <ros/node_handle.h>
-#include <sensor_msgs/LaserScan.h>
 #include <std_srvs/Trigger.h>
+#include <topic_tools/shape_shifter.h>
 
 #include <future>
 #include <map>
@@ -40,7 +40,7 @@ class MappingNode {
 
   void Listen(ros::NodeHandle* nh);
   void OnTransforms(const TransformBuffer::News& news);
-  void OnScan(const sensor_msgs::LaserScanConstPtr& msg);
+  void OnScan(const topic_tools::ShapeShifter& msg);
   void OnTimer();
   bool OnMapRequest(nav_msgs::GetMap::Request& request, nav_msgs::GetMap::Response& response);
   bool OnSave(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);

@@ -31,6 +31,25 @@ bool IsUsed(FilterOutcome outcome) {
          outcome != FilterOutcome::kTooMany;
 }
 
+/// What a unit does not measure has a covariance that begins with -1 (REP-145).
+bool TellsOrientation(const sensor_msgs::Imu& msg) {
+  return !(msg.orientation_covariance[0] < 0.0);
+}
+
+/// @param X_BI  unit in the base
+hires::localisation::RobotLog::Inertia ReadingOf(const sensor_msgs::Imu& msg,
+                                                 const hires::geometry::Pose3& X_BI) {
+  const geometry_msgs::Vector3& w = msg.angular_velocity;
+  hires::localisation::RobotLog::Inertia reading;
+  reading.time = msg.header.stamp.toSec();
+  reading.yaw_rate = (X_BI.rotation * Eigen::Vector3d(w.x, w.y, w.z)).z();
+  if (!TellsOrientation(msg)) return reading;
+  geometry_msgs::Pose pose;
+  pose.orientation = msg.orientation;
+  reading.yaw = hires::geometry::YawOf((FromMsg(pose) * X_BI.Inverse()).rotation);
+  return reading;
+}
+
 void RequireStamp(const std_msgs::Header& header) {
   if (header.stamp.isZero()) throw ConfigError("header.stamp is 0, wanted the reading's time");
 }
@@ -47,7 +66,8 @@ OdometryFilterNode::OdometryFilterNode(const OdometryFilterNodeParams& params, r
                       warnings_.Tell(kTransforms, "doubtful", doubt);
                     if (!unplaced_.empty()) Advance();
                   }),
-      filter_(params.config.filter) {
+      filter_(params.config.filter),
+      heading_(&filter_) {
   pose_ =
       nh->advertise<geometry_msgs::PoseWithCovarianceStamped>("robot_pose_ekf/odom_combined", 10);
   if (params.config.node.tf_broadcast)
@@ -79,8 +99,9 @@ void OdometryFilterNode::OnOdometry(const nav_msgs::Odometry& msg) {
   }
   if ((msg.header.stamp - newest_odometry_).toSec() < -kJumpBack) {
     for (const Waiting& odometry : std::exchange(waiting_, {})) Filter(odometry);
+    newest_odometry_ = msg.header.stamp;
   }
-  newest_odometry_ = msg.header.stamp;
+  newest_odometry_ = std::max(newest_odometry_, msg.header.stamp);
   waiting_.push_back({msg.header.stamp, FromMsg(msg)});
   Advance();
 }
@@ -89,12 +110,13 @@ void OdometryFilterNode::OnInertia(const sensor_msgs::Imu& msg) {
   inertia_came_ = hires::base::SteadyNow();
   try {
     RequireStamp(msg.header);
-    if (msg.orientation_covariance[0] < 0.0) {
+    if (TellsOrientation(msg)) {
+      RequireRotation(msg.orientation, "orientation");
+    } else if (msg.angular_velocity_covariance[0] < 0.0) {
       throw ConfigError(
-          "orientation_covariance begins with -1: the unit tells no orientation, "
-          "wanted one that integrates its heading");
+          "orientation_covariance and angular_velocity_covariance begin with -1: the unit tells "
+          "neither, wanted one of them");
     }
-    RequireRotation(msg.orientation, "orientation");
   } catch (const ConfigError& error) {
     return Drop(kInertia, error.what());
   }
@@ -128,13 +150,8 @@ void OdometryFilterNode::UseInertia() {
     for (; i > 0; --i) DropUnplaced();
     const sensor_msgs::Imu msg = unplaced_.front();
     unplaced_.pop_front();
-    geometry_msgs::Pose pose;
-    pose.orientation = msg.orientation;
-    const hires::geometry::Pose3 R_WB = FromMsg(pose) * X_BI.X_PC.Inverse();
     newest_inertia_ = msg.header.stamp;
-    Note(kInertia,
-         filter_.OnInertia(msg.header.stamp.toSec(),
-                           {hires::geometry::YawOf(R_WB.rotation), msg.angular_velocity.z}));
+    Note(kInertia, heading_.Take(ReadingOf(msg, X_BI.X_PC)));
   }
 }
 
@@ -158,7 +175,7 @@ bool OdometryFilterNode::MustWait(const Waiting& first) const {
 void OdometryFilterNode::Filter(const Waiting& odometry) {
   const auto outcome = filter_.OnOdometry(odometry.stamp.toSec(), odometry.reading);
   Note(kOdometry, outcome);
-  if (outcome == FilterOutcome::kNotFinite) return;
+  if (outcome == FilterOutcome::kNotFinite || outcome == FilterOutcome::kLate) return;
   std_msgs::Header header;
   header.stamp = odometry.stamp;
   header.frame_id = params_.odometry_frame;

@@ -11,13 +11,15 @@
 #include <vector>
 
 #include "hires/base/topic_warnings.h"
+#include "hires/localisation/heading_feed.h"
 #include "hires/localisation/odometry_filter.h"
 #include "hires/ros/place/transform_listener.h"
 #include "nodes/odometry_filter/odometry_filter_params.h"
 
 namespace hires_ros {
 
-/// Joins wheel odometry and an inertial unit's heading: the interface of robot_pose_ekf. Odometry
+/// Joins wheel odometry and an inertial unit's heading, or the integral of its rate where it tells
+/// no orientation: the interface of robot_pose_ekf. Odometry
 /// waits for the inertial readings of its time and for how tf says they are mounted, imu_wait of
 /// its own time at most; so the same messages give the same poses, bit for bit, as long as the unit
 /// is not later than that.
@@ -45,6 +47,7 @@ class OdometryFilterNode {
   ros::NodeHandle nh_;
   TransformListener transforms_;
   hires::localisation::OdometryFilter filter_;
+  hires::localisation::HeadingFeed heading_;
   std::deque<Waiting> waiting_;
   std::deque<sensor_msgs::Imu> unplaced_;       // tf does not say yet how their unit is mounted
   ros::Time newest_odometry_, newest_inertia_;  // stamps that came last

@@ -6,7 +6,7 @@ import numpy
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped, Quaternion, TransformStamped
 from nav_msgs.msg import OccupancyGrid, Odometry
-from sensor_msgs.msg import LaserScan
+from sensor_msgs.msg import LaserEcho, LaserScan, MultiEchoLaserScan
 
 MAP, BASE, LASER = 'map', 'base_footprint', 'base_laser_link'
 RESOLUTION, WIDTH, HEIGHT = 0.05, 200, 140  # [m], cells: 10 m x 7 m
@@ -112,6 +112,15 @@ def pose_message(pose, time, variance=0.04):
 def scan_message(laser, pose, time):
     return _fill(LaserScan(angle_min=ANGLES[0], angle_increment=ANGLES[1] - ANGLES[0], angle_max=ANGLES[-1],
                            range_min=0.02, range_max=RANGE_MAX, ranges=laser.ranges(pose)), LASER, time)
+
+
+def echoes_of(scan):
+    """As a laser tells it that hears several echoes of a beam, the nearest one not first."""
+    echoes = MultiEchoLaserScan(header=scan.header)
+    for name in ('angle_min', 'angle_max', 'angle_increment', 'range_min', 'range_max'):
+        setattr(echoes, name, getattr(scan, name))
+    echoes.ranges = [LaserEcho([distance + 1.5, distance]) for distance in scan.ranges]
+    return echoes
 
 
 def odometry_message(pose, time):
