@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -18,6 +20,14 @@ namespace {
 using simulation::Variation;
 
 constexpr double kLargestScore = 3.0;  // what lies beyond is drawn again
+constexpr char kCorrelation[] = "start_correlation";
+
+/// Each quantity has its own.
+base::Rng StreamOf(const std::string& quantity, const base::Rng& rng) {
+  base::Hasher stream;
+  stream.Add(quantity);
+  return rng.Fork(stream.value());
+}
 
 struct Quantity {
   std::string name;
@@ -117,10 +127,54 @@ Distribution ReadDistribution(base::ParamReader in, const Quantity& quantity) {
   return {Distribution::Kind::kUniform, lower, upper};
 }
 
-std::uint64_t HashOf(const std::map<std::string, Distribution>& quantities) {
+std::uint64_t HashOf(const std::map<std::string, Distribution>& quantities,
+                     const std::optional<PoseCorrelation>& correlation = {}) {
   base::Hasher hasher;
   AddTo(&hasher, quantities);
+  if (correlation) {
+    hasher.Add(std::string(kCorrelation));
+    for (const double value : {correlation->x_y, correlation->x_yaw, correlation->y_yaw})
+      hasher.Add(value);
+  }
   return hasher.value();
+}
+
+Eigen::Matrix3d MatrixOf(const PoseCorrelation& c) {
+  Eigen::Matrix3d matrix;
+  matrix << 1.0, c.x_y, c.x_yaw, c.x_y, 1.0, c.y_yaw, c.x_yaw, c.y_yaw, 1.0;
+  return matrix;
+}
+
+PoseCorrelation ReadCorrelation(base::ParamReader in) {
+  constexpr double kRounding = 1e-9;
+  const auto bound = base::Between(-1.0, 1.0);
+  const PoseCorrelation correlation{in.Get("x_y", bound), in.Get("x_yaw", bound),
+                                    in.Get("y_yaw", bound)};
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(MatrixOf(correlation));
+  if (solver.eigenvalues().minCoeff() < -kRounding)
+    in.Fail("y_yaw", "no three numbers go together like that; wanted correlations of a covariance");
+  return correlation;
+}
+
+/// Standard normal scores of a pose where arriving so, by quantity, that go together.
+std::map<std::string, double> CorrelatedScores(const PoseCorrelation& correlation,
+                                               const std::map<std::string, Distribution>& known,
+                                               const base::Rng& rng, const std::string& arrival) {
+  const std::array<std::string, 3> names{arrival + "_x", arrival + "_y", arrival + "_yaw"};
+  Eigen::Vector3d own;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto found = known.find(names[axis]);
+    if (found == known.end() || found->second.kind != Distribution::Kind::kNormal) return {};
+    base::Rng stream = StreamOf(names[axis], rng);
+    own[axis] = Distribution{Distribution::Kind::kNormal, 0.0, 1.0}.Sample(&stream);
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(MatrixOf(correlation));
+  const Eigen::Vector3d roots = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const Eigen::Vector3d scores =
+      solver.eigenvectors() * roots.asDiagonal() * (solver.eigenvectors().transpose() * own);
+  std::map<std::string, double> together;
+  for (int axis = 0; axis < 3; ++axis) together[names[axis]] = scores[axis];
+  return together;
 }
 
 }  // namespace
@@ -174,6 +228,7 @@ double Distribution::Largest() const {
 std::map<std::string, Distribution> ReadQuantities(base::ParamReader* in) {
   std::map<std::string, Distribution> quantities;
   for (const std::string& name : in->Keys()) {
+    if (name == kCorrelation) continue;  // left to who has the reader
     const Quantity& quantity = FindQuantity(*in, name);
     quantities[name] = ReadDistribution(in->Sub(name), quantity);
   }
@@ -184,9 +239,10 @@ Uncertainty ParseUncertainty(const std::string& yaml, const std::string& where) 
   base::ParamReader in = base::ParamReader::FromString(yaml, where);
   Uncertainty uncertainty;
   uncertainty.quantities = ReadQuantities(&in);
+  if (in.Has(kCorrelation)) uncertainty.start_correlation = ReadCorrelation(in.Sub(kCorrelation));
   in.RejectUnknownKeys();
   uncertainty.yaml = yaml;
-  uncertainty.hash = HashOf(uncertainty.quantities);
+  uncertainty.hash = HashOf(uncertainty.quantities, uncertainty.start_correlation);
   return uncertainty;
 }
 
@@ -194,7 +250,7 @@ Uncertainty LoadUncertainty(const std::string& path) {
   return ParseUncertainty(base::ReadTextFile(path, 1u << 20), path);
 }
 
-Uncertainty NoUncertainty() { return {{}, "none", HashOf({})}; }
+Uncertainty NoUncertainty() { return {{}, {}, "none", HashOf({})}; }
 
 Uncertainty UncertaintyFromText(const std::string& text, const std::string& where) {
   return text == "none" ? NoUncertainty() : ParseUncertainty(text, where);
@@ -204,18 +260,22 @@ simulation::Variation SampleVariation(const Uncertainty& uncertainty, const base
                                       Arrival arrival,
                                       const std::map<std::string, double>& scores) {
   Variation variation;
+  std::map<std::string, double> known_scores;
+  if (uncertainty.start_correlation) {
+    known_scores = CorrelatedScores(*uncertainty.start_correlation, uncertainty.quantities, rng,
+                                    arrival == Arrival::kDriven ? "start" : "docked");
+  }
+  for (const auto& [name, score] : scores) known_scores[name] = score;
   for (const Quantity& quantity : Quantities()) {
     const auto found = uncertainty.quantities.find(quantity.name);
     if (found == uncertainty.quantities.end()) continue;
     if (quantity.only_after && *quantity.only_after != arrival) continue;
-    base::Hasher stream;
-    stream.Add(quantity.name);
-    base::Rng own = rng.Fork(stream.value());
+    base::Rng own = StreamOf(quantity.name, rng);
     double& slot = quantity.slot(variation);
     // A normal distribution may reach beyond what makes sense at all (a negative noise, say).
-    const auto score = scores.find(quantity.name);
-    const double value =
-        score == scores.end() ? found->second.Sample(&own) : found->second.AtScore(score->second);
+    const auto score = known_scores.find(quantity.name);
+    const double value = score == known_scores.end() ? found->second.Sample(&own)
+                                                     : found->second.AtScore(score->second);
     slot = std::min(quantity.upper, std::max(quantity.lower, value));
   }
   return variation;

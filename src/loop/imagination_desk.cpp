@@ -156,9 +156,11 @@ void ImaginationDesk::Begin(const SessionPtr& session) {
     const auto state = translation::StateOf(context, &blackboard_.view(), session->command.state);
     session->things = NamesIn(state.world);
     session->actions = base::Combinations(session->command.action);
-    session->setup =
-        std::make_shared<const imagination::RolloutSetup>(imagination::MakeRolloutSetup(
-            setup_, {state.world, state.robot}, session->command.SeedFrom(imagining_.seed)));
+    imagination::RolloutSetup setup = imagination::MakeRolloutSetup(
+        setup_, {state.world, state.robot}, session->command.SeedFrom(imagining_.seed));
+    setup.uncertainty = imagination::UncertaintyFrom(setup.uncertainty, state.robot.X_MB, believed_,
+                                                     "the robot's localisation");
+    session->setup = std::make_shared<const imagination::RolloutSetup>(std::move(setup));
     imagination::CheckSetupForAll(*session->setup, session->actions);
     imagination::SchedulerParams params = scheduler_;
     params.rollouts = imagining_.rollouts;

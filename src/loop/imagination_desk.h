@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "hires/imagination/kept_rollouts.h"
 #include "hires/imagination/report.h"
 #include "hires/imagination/scheduler.h"
+#include "hires/imagination/start_spread.h"
 #include "loop/blackboard.h"
 #include "loop/rollout_pool.h"
 #include "loop/virtual_clock.h"
@@ -45,6 +47,9 @@ class ImaginationDesk {
                   const execution::ImaginingParams& imagining, const ImaginationPace& pace,
                   VirtualClock* clock, Blackboard* blackboard, RolloutPool* pool,
                   OnAnswer on_answer);
+
+  /// Where the robot says now that it stands; what begins there is imagined as uncertain as that.
+  void OnLocalised(const imagination::BelievedPose& believed) { believed_ = believed; }
   ~ImaginationDesk();
 
   void Start(const execution::StartImagination& command);
@@ -86,6 +91,7 @@ class ImaginationDesk {
   const OnAnswer on_answer_;
   std::map<int, SessionPtr> sessions_;  // by request
   imagination::KeptRollouts kept_;
+  std::optional<imagination::BelievedPose> believed_;
   std::vector<double> free_from_;  // [s] each worker, after all that it was assigned
   std::vector<evaluation::ImaginedStep> steps_;
 };

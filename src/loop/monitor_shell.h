@@ -28,6 +28,9 @@ class MonitorShell {
   void Begin();
   void OnView();  ///< the Blackboard says something else
   void OnObservedUntil(double time);
+  void OnLocalised(const imagination::BelievedPose& believed) {
+    imagination_.OnLocalised(believed);
+  }
   void OnStepEnded(const execution::StepFinished& finished) { Feed(finished); }
   void Preempt() { Feed(execution::PreemptRequested{}); }
 

@@ -177,6 +177,7 @@ class Play {
   void Hear(const SensorNews& news) {
     Tell(observer_.sensed, news);
     middle_layer_.Hear(news, robot_.laser());
+    if (news.is_tick) monitor_.OnLocalised({news.readings.X_MB, news.readings.covariance});
     SensorNews rest = news;
     if (const auto seen = std::exchange(rest.seen, std::nullopt)) {
       lines_.looks.Send([this, stamp = news.stamp, seen = *seen] { tracker_.See(stamp, seen); });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -9,16 +10,18 @@
 
 namespace hires::imagination {
 
-/// How uncertain it is where the robot stands: standard deviations along its own axes.
+/// How uncertain it is where the robot stands: standard deviations along its own axes, and how they
+/// go together.
 struct StartSpread {
   double x{0.0}, y{0.0};  ///< [m]
   double yaw{0.0};        ///< [rad]
+  PoseCorrelation correlation;
 };
 
 /// Where the robot's localisation believes it to be, and how sure it is.
 struct BelievedPose {
   geometry::Pose2 X_MB;
-  /// x, y, yaw in the map's axes [m^2, m rad, rad^2]; what goes with what is not drawn together.
+  /// x, y, yaw in the map's axes [m^2, m rad, rad^2]; 0: nobody says how sure it is.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
 };
 
@@ -35,5 +38,13 @@ bool BeginsHere(const geometry::Pose2& X_MStart, const BelievedPose& believed);
 /// The uncertainty with another spread of start poses: normal, around where the robot is believed
 /// to stand. Of an uncertainty that names no start pose (none, say) nothing is changed.
 Uncertainty WithStartSpread(const Uncertainty& uncertainty, const StartSpread& spread);
+
+/// The uncertainty of what begins at a pose: with the spread of where the robot stands, if it
+/// begins there and its localisation says how sure it is; else the one given.
+/// @param where  for messages: who says it.  @throws base::ConfigError as SpreadOf.
+std::shared_ptr<const Uncertainty> UncertaintyFrom(std::shared_ptr<const Uncertainty> uncertainty,
+                                                   const geometry::Pose2& X_MStart,
+                                                   const std::optional<BelievedPose>& believed,
+                                                   const std::string& where);
 
 }  // namespace hires::imagination

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "hires/base/hash.h"
@@ -24,19 +25,28 @@ struct Distribution {
   double Largest() const;               ///< no value that is drawn is larger
 };
 
+/// How x, y and yaw of a pose go together: correlations in [-1, 1].
+struct PoseCorrelation {
+  double x_y{0.0}, x_yaw{0.0}, y_yaw{0.0};
+  bool is_none() const { return x_y == 0.0 && x_yaw == 0.0 && y_yaw == 0.0; }
+};
+
 /// What is uncertain about world, robot and control. A quantity for each number of
 /// simulation::Variation (two for where the robot starts: see Arrival); a quantity that is not
 /// named keeps its nominal value.
 struct Uncertainty {
   std::map<std::string, Distribution> quantities;
+  /// Of start_x, start_y, start_yaw, and of docked_x, ... likewise, where these are normal.
+  std::optional<PoseCorrelation> start_correlation;
   std::string yaml;       ///< the text it was read from; "none" if nothing is uncertain
-  std::uint64_t hash{0};  ///< of names and distributions
+  std::uint64_t hash{0};  ///< of names, distributions and correlations
 };
 
 /// Reads `config/uncertainty.yaml` or a file like it. Each quantity is a map with `distribution`
 /// (fixed, uniform, normal, lognormal, laplace), its numbers (`value`; `lower`, `upper`; `mean`,
 /// `sd`; `median`, `log_sd`; `mean`, `distance`), `unit` (must be the quantity's own) and `source`
-/// (why these numbers).
+/// (why these numbers). Beside them may stand `start_correlation`, a map with `x_y`, `x_yaw`,
+/// `y_yaw`.
 /// @throws base::ConfigError naming file, key and line.
 Uncertainty LoadUncertainty(const std::string& path);
 Uncertainty ParseUncertainty(const std::string& yaml, const std::string& where);

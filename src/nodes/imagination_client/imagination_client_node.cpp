@@ -176,14 +176,9 @@ void ImaginationClientNode::OnLocalisation(const geometry_msgs::PoseWithCovarian
 
 /// What begins where the robot stands begins as surely as it knows where that is.
 void ImaginationClientNode::SpreadStart(ImagineRequest* request) const {
-  const auto& X_MStart = request->setup.robot_state.X_MB;
-  if (!believed_ || !imagination::BeginsHere(X_MStart, *believed_)) return;
-  const auto spread = imagination::SpreadOf(*believed_, params_.localisation);
-  request->setup.uncertainty = std::make_shared<const imagination::Uncertainty>(
-      imagination::WithStartSpread(*request->setup.uncertainty, spread));
-  hires::base::Log(hires::base::LogLevel::kInfo,
-                   fmt::format("start=here spread_x={:.3f} spread_y={:.3f} spread_yaw={:.3f}",
-                               spread.x, spread.y, spread.yaw));
+  request->setup.uncertainty =
+      imagination::UncertaintyFrom(request->setup.uncertainty, request->setup.robot_state.X_MB,
+                                   believed_, params_.localisation);
 }
 
 void ImaginationClientNode::OnCancel(GoalHandle goal) {
