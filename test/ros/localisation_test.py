@@ -10,11 +10,13 @@ import sys
 import threading
 import unittest
 
+import numpy
+
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from diagnostics import diagnostics  # noqa: E402
 from ros_processes import Processes, executable, wait_until  # noqa: E402
-from scanned_room import (ANGLES, BASE, Laser, Robot, after, echoes_of, laser_transform,  # noqa: E402
+from scanned_room import (ANGLES, BASE, RESOLUTION, Laser, Robot, after, echoes_of, laser_transform,  # noqa: E402
                           map_message, pose_message, room, scan_message, transform_message, wrapped, yaw_of)
 from test_run import run_test  # noqa: E402
 
@@ -28,9 +30,10 @@ class Node:
     """One process with what it says; names of its own, and common inputs."""
     count = 0
 
-    def __init__(self, test, *arguments):
+    def __init__(self, test, *arguments, space=None):
+        """@param space  its namespace: that of one that runs no more, or of its own."""
         Node.count += 1
-        self.space = '/n%d' % Node.count
+        self.space = space or '/n%d' % Node.count
         self.name = self.space + '/localisation'
         self.poses, self.transforms = [], {}
         rospy = test.rospy
@@ -45,7 +48,10 @@ class Node:
         test.addCleanup(self.process.kill)
         for listener in listeners:
             test.addCleanup(listener.unregister)
+        has_map = any(argument.startswith('_map_file:=') for argument in arguments)
         for publisher in test.publishers:
+            if publisher is test.maps and has_map:
+                continue
             wait_until(lambda: any(c.endpoint_id == self.name for c in publisher.impl.connections),
                        lambda: '%s to listen to %s\n%s' % (self.name, publisher.name, self.process.output()))
         wait_until(lambda: all(any(c.callerid_pub == self.name for c in listener.impl.connections)
@@ -462,10 +468,84 @@ class LocalisationTest(unittest.TestCase):
         node.process.signal(signal.SIGINT)  # while the call is open
         self.assertEqual(node.process.wait(), 0, node.process.output())
 
-    def test_parameters_that_nobody_knows_end_it(self):
-        node = self.processes.start([executable('localisation'), '__name:=mistaken', '_sed:=3'], self.main)
+    # What outlives it.
+
+    def test_one_that_was_killed_goes_on_where_the_robot_is_meanwhile(self):
+        first = self.begun()
+        self.drive(15, first)
+        wait_until(lambda: self.rospy.has_param(first.name + '/initial_odometry_time'), 'a place to be kept')
+        first.process.kill()
+        self.main.forget_the_gone()
+        for _ in range(5):
+            self.robot.drive()
+            self.tick()
+        second = Node(self, space=first.space)
+        self.maps.publish(map_message())
+        second.process.wait_for('map=used')
+        errors = self.drive(3, second)
+        print('off by %.3f m, %.3f rad' % errors[0])
+        self.assertLess(errors[0][0], 0.15)
+        self.assertLess(errors[0][1], 0.06)
+        self.assertLess(self.rospy.get_param(first.name + '/initial_cov_xx'), 0.1)
+
+    def test_one_that_is_told_where_it_is_forgets_where_it_was(self):
+        first = self.begun()
+        self.drive(3, first)
+        wait_until(lambda: self.rospy.has_param(first.name + '/initial_odometry_time'), 'a place to be kept')
+        first.process.kill()
+        self.main.forget_the_gone()
+        self.robot.pose = (3.0, 5.0, 1.0)  # carried; odometry knows nothing of it
+        second = Node(self, space=first.space)
+        self.told.publish(self.pose(self.robot.pose))
+        self.maps.publish(map_message())
+        second.process.wait_for('pose=set x=3')
+        self.assertLess(self.drive(3, second)[-1][0], 0.15)
+
+    # Maps of files.
+
+    def map_file(self, occupied, name='room'):
+        """As map_saver writes it."""
+        pixels = numpy.where(occupied[::-1], 0, 254).astype(numpy.uint8)
+        with open(os.path.join(self.processes.folder.name, name + '.pgm'), 'wb') as file:
+            file.write(b'P5\n%d %d\n255\n' % pixels.shape[::-1] + pixels.tobytes())
+        return self.processes.write(name + '.yaml', 'image: %s.pgm\nresolution: %g\norigin: [0.0, 0.0, 0.0]\n'
+                                    'negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n' % (name, RESOLUTION))
+
+    def test_a_map_of_a_file_is_used_and_served(self):
+        from nav_msgs.msg import OccupancyGrid
+        from nav_msgs.srv import GetMap
+        node = Node(self, '_map_file:=' + self.map_file(room()))
+        node.process.wait_for('map=used')
+        self.tick()
+        self.told.publish(self.pose(Robot.START))
+        node.process.wait_for('pose=set')
+        self.assertLess(max(self.drive(10, node))[0], 0.15)
+        heard = []
+        listener = self.rospy.Subscriber('/map', OccupancyGrid, heard.append)
+        self.addCleanup(listener.unregister)
+        wait_until(lambda: heard, 'the map')
+        self.rospy.wait_for_service('/static_map', 20.0)
+        for served in (heard[0], self.rospy.ServiceProxy('/static_map', GetMap)().map):
+            self.assertEqual(served.header.frame_id, 'map')
+            self.assertAlmostEqual(served.info.resolution, RESOLUTION, places=6)
+            self.assertEqual((served.info.width, served.info.height), room().shape[::-1])
+            self.assertEqual(list(served.data), list(map_message().data))
+
+    def refuse_at_start(self, argument, *words):
+        node = self.processes.start([executable('localisation'), '__name:=mistaken', argument], self.main)
         self.assertNotEqual(node.wait(), 0)
-        self.assertIn("'sed'", node.output())
+        for word in words:
+            self.assertIn(word, node.output())
+        self.rospy.delete_param('/mistaken')
+
+    def test_maps_of_files_that_are_none_end_it(self):
+        self.refuse_at_start('_map_file:=/nowhere/room.yaml', '/nowhere/room.yaml')
+        path = self.map_file(room() & False, 'empty')
+        self.refuse_at_start('_map_file:=' + path, '~map_file', path, 'has no occupied cell')
+
+    def test_parameters_that_nobody_knows_end_it(self):
+        self.refuse_at_start('_sed:=3', "'sed'")
+        self.refuse_at_start('_initial_cov_xx:=-1.0', '~initial_cov_xx is -1')
 
 
 if __name__ == '__main__':

@@ -9,6 +9,9 @@ constexpr char kSimulatedBase[] = "base_controller/command";
 constexpr char kTransforms[] = "/tf";
 constexpr char kStaticTransforms[] = "/tf_static";
 
+/// geometry_msgs/PoseWithCovarianceStamped: a person says where the robot is.
+constexpr char kInitialPose[] = "initialpose";
+
 constexpr char kDetections[] = "detections";  ///< what the head's camera recognises
 constexpr char kObjectTemperatures[] = "object_temperatures";  ///< what a thermal camera says
 constexpr char kKnownObjects[] = "known_objects";              ///< what is remembered of it

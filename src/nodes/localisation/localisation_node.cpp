@@ -25,8 +25,8 @@ using hires::base::LogLevel;
 using localisation::LocalisationStatus;
 using localisation::ScanOutcome;
 
-constexpr char kInitialPose[] = "initialpose";
 constexpr char kAmclPose[] = "amcl_pose";
+constexpr char kStaticMap[] = "static_map";
 constexpr double kPatience = 5.0;  // [s] for a latched map, before static_map is asked; and for it
 
 geometry_msgs::PoseArray ToMsg(const std::vector<hires::geometry::Pose2>& poses,
@@ -50,6 +50,8 @@ LocalisationNode::LocalisationNode(const LocalisationNodeParams& params, ros::No
           [this](const PlacedScan& scan) { Use(scan); },
           [this](const std::string& why) { Refuse(params_.names.base_scan, why); }),
       map_server_(nh->resolveName(params.names.static_map)),
+      kept_(params.kept),
+      keeper_(ros::NodeHandle("~")),
       begun_(hires::base::SteadyNow()) {
   const std::string& told = params.names.localisation;
   pose_ = nh->advertise<geometry_msgs::PoseWithCovarianceStamped>(told.empty() ? kAmclPose : told,
@@ -57,12 +59,16 @@ LocalisationNode::LocalisationNode(const LocalisationNodeParams& params, ros::No
   particles_ = nh->advertise<geometry_msgs::PoseArray>("particlecloud", 2);
   if (params.config.node.tf_broadcast)
     transform_ = nh->advertise<tf2_msgs::TFMessage>(kTransforms, 100);
-  scans_.Need("a map on " + nh->resolveName(params.names.map));
+  if (params.map) {
+    ServeMap(nh);
+  } else {
+    scans_.Need("a map on " + nh->resolveName(params.names.map));
+  }
   Listen(nh);
   updater_.setHardwareID("localisation");
   updater_.add("localisation", this, &LocalisationNode::Diagnose);
   timer_ = nh->createSteadyTimer(ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) {
-    if (!map_ && hires::base::SteadyNow() - begun_ > kPatience) AskForMap();
+    if (!filter_ && hires::base::SteadyNow() - begun_ > kPatience) AskForMap();
     scans_.DropUseless();     // what waits grows old, also where nothing comes
     scans_.Try(true);         // the clock may have come after all else
     updater_.force_update();  // also while simulated time stands still
@@ -71,7 +77,8 @@ LocalisationNode::LocalisationNode(const LocalisationNodeParams& params, ros::No
 
 void LocalisationNode::Listen(ros::NodeHandle* nh) {
   const ros::TransportHints hints = ros::TransportHints().tcpNoDelay();
-  inputs_.push_back(nh->subscribe(params_.names.map, 1, &LocalisationNode::OnMap, this, hints));
+  if (!params_.map)
+    inputs_.push_back(nh->subscribe(params_.names.map, 1, &LocalisationNode::OnMap, this, hints));
   inputs_.push_back(nh->subscribe(kInitialPose, 10, &LocalisationNode::OnInitialPose, this, hints));
   inputs_.push_back(nh->subscribe(params_.names.base_scan, PlacedScans::kMostWaiting,
                                   &LocalisationNode::OnScan, this, hints));
@@ -79,6 +86,23 @@ void LocalisationNode::Listen(ros::NodeHandle* nh) {
       nh->advertiseService("global_localization", &LocalisationNode::OnGlobalLocalisation, this));
   services_.push_back(
       nh->advertiseService("request_nomotion_update", &LocalisationNode::OnNoMotionUpdate, this));
+}
+
+void LocalisationNode::ServeMap(ros::NodeHandle* nh) {
+  BeginWith(*params_.map);
+  std_msgs::Header header;
+  header.frame_id = params_.names.map_frame;
+  const nav_msgs::OccupancyGrid map = hires_ros::ToMsg(*params_.map, header);
+  map_publisher_ = nh->advertise<nav_msgs::OccupancyGrid>(params_.names.map, 1, true);
+  map_publisher_.publish(map);
+  const std::string& service = params_.names.static_map;
+  services_.push_back(nh->advertiseService(
+      service.empty() ? kStaticMap : service,
+      boost::function<bool(nav_msgs::GetMapRequest&, nav_msgs::GetMapResponse&)>(
+          [map](nav_msgs::GetMapRequest&, nav_msgs::GetMapResponse& response) {
+            response.map = map;
+            return true;
+          })));
 }
 
 void LocalisationNode::OnMap(const nav_msgs::OccupancyGrid& msg) {
@@ -135,6 +159,7 @@ void LocalisationNode::OnInitialPose(const geometry_msgs::PoseWithCovarianceStam
   }
   try {
     const UncertainPose pose = hires_ros::FromMsg(msg.pose);
+    kept_.reset();
     if (filter_) {
       SetPose(pose);
     } else {
@@ -156,6 +181,7 @@ bool LocalisationNode::OnGlobalLocalisation(Empty::Request&, Empty::Response&) {
     Refuse("global_localization", "there is no map yet, wanted one on " + params_.names.map);
     return false;
   }
+  kept_.reset();
   filter_->GlobalLocalisation();
   return true;
 }
@@ -184,7 +210,25 @@ void LocalisationNode::OnScan(const topic_tools::ShapeShifter& msg) {
   }
 }
 
+/// Where the robot drove on while nobody localised it, its odometry tells.
+void LocalisationNode::GoOnFromKept(const PlacedScan& scan) {
+  const auto kept = std::exchange(kept_, std::nullopt);
+  if (!kept) return;
+  const auto X_MB =
+      PlaceNow(*kept, scan.X_OB, scan.header.stamp.toSec(), params_.config.filter.max_linear_speed);
+  if (X_MB) SetPose({*X_MB, kept->variance.asDiagonal()});
+}
+
+/// A place that is none is not worth keeping.
+void LocalisationNode::Keep(const PlacedScan& scan) {
+  if (is_lost_) return;
+  const double time = scan.header.stamp.toSec();
+  keeper_.Note({filter_->CorrectedOdometry() * scan.X_OB,
+                filter_->Estimate(time).covariance.diagonal().cwiseMax(0.0), scan.X_OB, time});
+}
+
 void LocalisationNode::Use(const PlacedScan& scan) {
+  GoOnFromKept(scan);
   const ScanOutcome outcome =
       filter_->Update(scan.header.stamp.toSec(), scan.X_OB, scan.reading, scan.X_BL);
   ++num_outcomes_[localisation::ToString(outcome)];
@@ -205,7 +249,9 @@ void LocalisationNode::Use(const PlacedScan& scan) {
   const bool is_new = NoteLost(scan.header.stamp.toSec()) || outcome == ScanOutcome::kUpdated ||
                       (localisation::IsBad(outcome) && IsLessSure(scan.header.stamp.toSec()));
   // The odometry goes on below the map, also where the laser sees nothing.
-  if (is_updated_ && is_followed) Publish(scan.header.stamp, is_new);
+  if (!is_updated_ || !is_followed) return;
+  Publish(scan.header.stamp, is_new);
+  Keep(scan);
 }
 
 /// Whether the place has become less certain than was told, as where scans cannot be used.

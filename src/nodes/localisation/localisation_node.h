@@ -2,6 +2,7 @@
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
+#include <nav_msgs/GetMap.h>
 #include <nav_msgs/OccupancyGrid.h>
 #include <ros/node_handle.h>
 #include <std_srvs/Empty.h>
@@ -10,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hires/base/topic_warnings.h"
 #include "hires/localisation/monte_carlo.h"
@@ -18,13 +20,15 @@
 #include "hires/ros/place/pose_messages.h"
 #include "hires/ros/place/transform_listener.h"
 #include "nodes/localisation/localisation_params.h"
+#include "nodes/localisation/pose_keeper.h"
 
 namespace hires_ros {
 
 /// Tells where the robot is in a map, by its base laser and what tf says of its odometry: the
-/// interface of AMCL. Scans are used in the order of their stamps, each once tf says where odometry
-/// and laser were then, so the same messages give the same poses, bit for bit. What cannot be used
-/// is dropped with the reason, and the poses go on without it.
+/// interface of AMCL. With a map of a file it is the map server, too. Scans are used in the order
+/// of their stamps, each once tf says where odometry and laser were then, so the same messages give
+/// the same poses, bit for bit. What cannot be used is dropped with the reason, and the poses go on
+/// without it.
 class LocalisationNode {
  public:
   LocalisationNode(const LocalisationNodeParams& params, ros::NodeHandle* nh);
@@ -33,6 +37,7 @@ class LocalisationNode {
   using Empty = std_srvs::Empty;
 
   void Listen(ros::NodeHandle* nh);
+  void ServeMap(ros::NodeHandle* nh);  ///< that of a file
   void OnMap(const nav_msgs::OccupancyGrid& msg);
   void BeginWith(const hires::world::OccupancyGrid& map);
   void AskForMap();  ///< where none was latched
@@ -45,6 +50,8 @@ class LocalisationNode {
   void OnScan(const topic_tools::ShapeShifter& msg);
   void Use(const PlacedScan& scan);
   bool IsLessSure(double stamp) const;
+  void GoOnFromKept(const PlacedScan& scan);
+  void Keep(const PlacedScan& scan);
   bool NoteLost(double stamp);
   void Publish(const ros::Time& stamp, bool is_new);
 
@@ -61,8 +68,10 @@ class LocalisationNode {
   std::optional<nav_msgs::OccupancyGrid> map_;                         // that is used
   std::optional<hires::localisation::MonteCarloLocalisation> filter_;  // once there is a map
   std::optional<UncertainPose> told_;  // the pose, before there was a map
-  bool is_updated_{false};             // by a scan since it began
-  bool is_lost_{false};                // as was told last
+  std::optional<KeptPlace> kept_;      // of a process before, until something is used
+  PoseKeeper keeper_;
+  bool is_updated_{false};  // by a scan since it began
+  bool is_lost_{false};     // as was told last
   Eigen::Matrix3d told_covariance_{Eigen::Matrix3d::Zero()};
   double begun_;  // [s] steady
 
@@ -72,7 +81,7 @@ class LocalisationNode {
   hires::base::TopicWarnings warnings_;
   long num_scans_{0};
 
-  ros::Publisher pose_, particles_, transform_;
+  ros::Publisher pose_, particles_, transform_, map_publisher_;
   std::vector<ros::Subscriber> inputs_;
   std::vector<ros::ServiceServer> services_;
   diagnostic_updater::Updater updater_;
