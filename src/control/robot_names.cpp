@@ -177,7 +177,8 @@ SensorNames ReadSensors(ParamReader in) {
                                   {"thermal_info", &names.thermal_info},
                                   {"tilt_scan", &names.tilt_scan},
                                   {"tilt_cloud", &names.tilt_cloud},
-                                  {"tray_scan", &names.tray_scan}}) {
+                                  {"tray_scan", &names.tray_scan},
+                                  {"inertia", &names.inertia}}) {
     if (!in.Has(key)) continue;
     *name = ReadName(key, Emptiness::kAllowed, &in);
     if (!name->empty() && !taken.insert(*name).second) {

@@ -47,6 +47,7 @@ ExtraSensors ReadExtraSensors(ParamReader in) {
   if (in.Has("thermal_camera")) sensors.thermal_camera_link = in.GetString("thermal_camera");
   if (in.Has("tray_laser")) sensors.tray_laser_link = in.GetString("tray_laser");
   if (in.Has("tilting_laser")) sensors.tilting_laser = ReadTiltingLaser(in.Sub("tilting_laser"));
+  if (in.Has("inertial_unit")) sensors.inertial_unit_link = in.GetString("inertial_unit");
   return sensors;
 }
 
@@ -56,6 +57,9 @@ void CheckExtraSensors(ParamReader in, const ExtraSensors& sensors, const RobotM
   }
   if (!sensors.tray_laser_link.empty()) {
     CheckLink(in, "tray_laser", model, sensors.tray_laser_link);
+  }
+  if (!sensors.inertial_unit_link.empty()) {
+    CheckLink(in, "inertial_unit", model, sensors.inertial_unit_link);
   }
   if (sensors.tilting_laser) {
     CheckTiltingLaser(in.Sub("tilting_laser"), *sensors.tilting_laser, model);

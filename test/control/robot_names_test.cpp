@@ -44,6 +44,7 @@ TEST(RobotNamesTest, SensorsMayBeLeftOutOneByOneOrAll) {
   EXPECT_EQ(ReadRobotNames(Pr2File()).sensors.depth_cloud,
             "head_mount_kinect/depth_registered/points");
   EXPECT_EQ(ReadRobotNames(Pr2File()).sensors.tray_scan, "tray_laser_scan");
+  EXPECT_EQ(ReadRobotNames(Pr2File()).sensors.inertia, "torso_lift_imu/data");
   const RobotNames names = ParseRobotNames(Changed("  tilt_scan: tilt_scan\n", ""), "n.yaml");
   EXPECT_EQ(names.sensors.tilt_scan, "");
   EXPECT_EQ(names.sensors.tilt_cloud, "tilt_scan_cloud");

@@ -199,6 +199,70 @@ TEST(SelfLocalisationTest, ARobotWithoutALaserCannotFindItsPlace) {
               AllOf(HasSubstr("localisation: fitted"), HasSubstr("laser_link")));
 }
 
+// One that hands on what it measures
+// ---------------------------------------------------------------
+
+Truth TruthWithoutPlace() {
+  Truth truth;
+  truth.localisation = Localisation::kFilter;
+  truth.self_localisation = std::make_shared<const SelfLocalisationParams>(ShippedParams());
+  return WithoutPlace(truth, "");
+}
+
+TEST(WithoutPlaceTest, ItTakesTheFileWhereTheTruthSaysNothing) {
+  const Truth truth = WithoutPlace({}, kConfig + "/self_localisation.yaml");
+  EXPECT_EQ(truth.localisation, Localisation::kNothing);
+  EXPECT_EQ(truth.self_localisation->casters.casters_B.size(), 4U);
+  EXPECT_THAT(ConfigErrorOf([] { WithoutPlace({}, "none.yaml"); }), HasSubstr("none.yaml"));
+}
+
+TEST(WithoutPlaceTest, WheelsAndUnitMeasureTheWayWithTheirErrors) {
+  SimRobotWorld world(SetupOfRoom(), Start(), 7, TruthWithoutPlace());
+  const Pose2 X_MBstart = world.simulator().base().X_MB;
+  const SensorReadings told = DriveInCircles(5.0, &world).told.back();
+  const Pose2 driven = X_MBstart.Inverse() * world.simulator().base().X_MB;
+  const double turned = geometry::WrapToPi(told.inertia->yaw - driven.yaw);
+  EXPECT_GT(std::abs(turned), 1e-6);
+  EXPECT_LT(std::abs(turned), 0.02);
+  EXPECT_NEAR(told.inertia->yaw_rate, 0.4, 0.1);
+  EXPECT_GT(Apart(told.odometry.X_OB, driven), 1e-4);
+  EXPECT_LT(Apart(told.odometry.X_OB, driven), 0.1);
+}
+
+TEST(WithoutPlaceTest, TheSameSeedMeasuresTheSameBitForBitAndTwiceAtOneMoment) {
+  SimRobotWorld a(SetupOfRoom(), Start(), 7, TruthWithoutPlace());
+  SimRobotWorld b(SetupOfRoom(), Start(), 7, TruthWithoutPlace());
+  SimRobotWorld c(SetupOfRoom(), Start(), 8, TruthWithoutPlace());
+  const SensorReadings of_a = DriveInCircles(2.0, &a).told.back();
+  const SensorReadings of_b = DriveInCircles(2.0, &b).told.back();
+  EXPECT_EQ(of_a.inertia->yaw, of_b.inertia->yaw);
+  EXPECT_EQ(of_a.odometry.X_OB.x, of_b.odometry.X_OB.x);
+  EXPECT_NE(of_a.inertia->yaw, DriveInCircles(2.0, &c).told.back().inertia->yaw);
+  EXPECT_EQ(a.Sense().inertia->yaw, of_a.inertia->yaw);
+}
+
+TEST(WithoutPlaceTest, OneThatIsCarriedMeasuresNothingOfIt) {
+  SimRobotWorld world(SetupOfRoom(), Start(), 3, TruthWithoutPlace());
+  const SensorReadings before = DriveInCircles(2.0, &world).told.back();
+  ASSERT_EQ(world.Push({0.3, 0.0, 1.0}), "");
+  world.Advance(kJointTick);
+  const SensorReadings after = world.Sense();
+  EXPECT_LT(Apart(after.odometry.X_OB, before.odometry.X_OB), 0.01);
+  EXPECT_NEAR(after.inertia->yaw, before.inertia->yaw, 0.01);
+}
+
+TEST(WithoutPlaceTest, ItIsToldItsStartRoughlyUntilItMoves) {
+  SimRobotWorld world(SetupOfRoom(), Start(), 3, TruthWithoutPlace());
+  const auto told = world.ToldStart();
+  ASSERT_TRUE(told);
+  EXPECT_GT(Apart(told->X_MB, Start().robot.X_MB), 1e-4);
+  EXPECT_LT(Apart(told->X_MB, Start().robot.X_MB), 0.15);
+  EXPECT_DOUBLE_EQ(told->covariance(0, 0), 0.03 * 0.03);
+  DriveInCircles(1.0, &world);
+  EXPECT_FALSE(world.ToldStart());
+  EXPECT_FALSE(SimRobotWorld(SetupOfRoom(), Start(), 3).ToldStart());
+}
+
 std::map<std::string, double> MeasuresOf(const std::string& experiment, int legs) {
   ExperimentOverrides overrides;
   overrides.runs = legs;

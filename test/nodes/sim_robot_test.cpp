@@ -10,6 +10,7 @@
 #include "hires/simulation/command_inbox.h"
 #include "hires/simulation/scan_ghosts.h"
 #include "hires/simulation/truth_record.h"
+#include "nodes/sim_worker/sensor_messages.h"
 #include "nodes/sim_worker/sim_robot_params.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
@@ -152,6 +153,18 @@ TEST(ObjectTruthTest, SurvivesBothWays) {
   EXPECT_TRUE(back.stands);
 }
 
+/// As the node odometry_filter reads it.
+TEST(ImuMessageTest, AUnitThatHangsUpsideDownTellsTheBasesHeading) {
+  const Eigen::Quaterniond R_BI(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY()));
+  const sensor_msgs::Imu msg = ToMsg(hires::robot::ImuReading{0.7, 0.2}, R_BI);
+  geometry_msgs::Pose pose;
+  pose.orientation = msg.orientation;
+  EXPECT_NEAR(hires::geometry::YawOf(FromMsg(pose).rotation * R_BI.inverse()), 0.7, 1e-12);
+  EXPECT_NEAR(msg.angular_velocity.z, -0.2, 1e-12);
+  EXPECT_GE(msg.orientation_covariance[0], 0.0);
+  EXPECT_EQ(msg.linear_acceleration_covariance[0], -1.0);
+}
+
 // Parameters
 // -----------------------------------------------------------------------------------------
 
@@ -185,6 +198,7 @@ TEST_F(SimRobotParamsTest, TheFileOfThePackageIsComplete) {
   EXPECT_EQ(params.sensors.laser.num_beams, 640);
   EXPECT_TRUE(params.scenario.empty());
   EXPECT_EQ(params.truth.name, "same");
+  EXPECT_TRUE(params.tells_place);
 }
 
 TEST_F(SimRobotParamsTest, WhatMakesNoSenseIsNamed) {

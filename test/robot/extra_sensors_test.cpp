@@ -84,6 +84,8 @@ TEST(ExtraSensorsFile, WhatTheRobotDoesNotHaveIsNamed) {
               AllOf(HasSubstr("sensors.thermal_camera"), HasSubstr("thermal_cam_frame")));
   EXPECT_THAT(ErrorAfter("tray_laser: base_tray_laser_link", "tray_laser: tray_laser"),
               HasSubstr("sensors.tray_laser"));
+  EXPECT_THAT(ErrorAfter("inertial_unit: imu_link", "inertial_unit: imu"),
+              HasSubstr("sensors.inertial_unit"));
   EXPECT_THAT(ErrorAfter("joint: laser_tilt_mount_joint", "joint: laser_tilt_joint"),
               AllOf(HasSubstr("sensors.tilting_laser.joint"), HasSubstr("turns")));
   EXPECT_THAT(ErrorAfter("joint: laser_tilt_mount_joint", "joint: head_tilt_joint"),
@@ -102,6 +104,7 @@ TEST(ExtraSensorsFile, DoNotChangeWhatRolloutsRestOn) {
   const Robot without = LoadAfter("tray_laser: base_tray_laser_link", "tray_laser: \"\"");
   EXPECT_EQ(without.profile.sensors.tray_laser_link, "");
   EXPECT_EQ(Pr2().profile.sensors.tray_laser_link, "base_tray_laser_link");
+  EXPECT_EQ(Pr2().profile.sensors.inertial_unit_link, "imu_link");
   EXPECT_EQ(without.hash(), Pr2().hash());
 }
 

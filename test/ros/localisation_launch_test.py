@@ -9,6 +9,8 @@ import os
 import sys
 import unittest
 
+import roslaunch.config
+import roslaunch.xmlloader
 import rospy
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import OccupancyGrid, Odometry
@@ -23,9 +25,17 @@ from scanned_room import (BASE, Laser, Robot, after, laser_transform, map_messag
                           pose_message, quaternion_of, scan_message, transform_message, wrapped, yaw_of)
 from test_run import run_test  # noqa: E402
 
+NODES = {'localisation', 'odometry_filter'}
 LAUNCH = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'launch')
 PERIOD = 0.2  # [s]
 UNIT = 'imu_link'
+
+
+def loaded(file, *arguments):
+    """What roslaunch reads there."""
+    config = roslaunch.config.ROSLaunchConfig()
+    roslaunch.xmlloader.XmlLoader().load(os.path.join(LAUNCH, file), config, argv=list(arguments), verbose=False)
+    return config
 
 
 class LocalisationLaunchTest(unittest.TestCase):
@@ -87,16 +97,26 @@ class LocalisationLaunchTest(unittest.TestCase):
         self.assertLess(last[1], 0.06)
         self.assertGreater(len(poses), 20)
 
-    def test_no_other_launch_file_starts_them(self):
-        """A PR2 runs its own, and the simulated robot tells where it is."""
+    def test_no_other_launch_file_starts_them_but_the_closed_loop_when_told(self):
+        """A PR2 runs its own, and the simulated robot tells where it is, unless it is told not to."""
         for path in glob.glob(os.path.join(LAUNCH, '*.launch')):
-            for node in ('localisation', 'odometry_filter'):
-                if os.path.basename(path) == node + '.launch':
-                    continue
+            for node in NODES:
                 with open(path) as file:
                     text = file.read()
-                self.assertNotIn('%s.launch' % node, text, path)
-                self.assertNotIn('type="%s"' % node, text, path)
+                if os.path.basename(path) != node + '.launch':
+                    self.assertNotIn('type="%s"' % node, text, path)
+                    if os.path.basename(path) != 'closed_loop.launch':
+                        self.assertNotIn('%s.launch' % node, text, path)
+
+    def test_the_closed_loop_starts_them_for_a_robot_that_does_not_tell_its_place(self):
+        for localisation, started in (('robot', set()), ('nodes', NODES)):
+            for file, arguments in (('topple.launch', []),
+                                    ('closed_loop.launch', ['scenario:=topple', 'task:=none', 'knowledge:=none'])):
+                config = loaded(file, 'localisation:=' + localisation, *arguments)
+                nodes = {node.type: node for node in config.nodes}
+                self.assertEqual(NODES & set(nodes), started, (file, localisation))
+                self.assertTrue(all(nodes[name].respawn for name in started))
+                self.assertEqual(config.params['/sim_robot/tells_place'].value, localisation == 'robot')
 
 
 if __name__ == '__main__':

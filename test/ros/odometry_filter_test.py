@@ -178,7 +178,7 @@ class OdometryFilterTest(unittest.TestCase):
             self.assertGreater(wrapped(self.robot.pose[2] - turned), 0.9)
             error = wrapped(self.said(node)[2] - begun[2]) - wrapped(self.robot.pose[2] - turned)
             self.assertLess(abs(error), 0.01)
-            self.say(node, lambda v: v['message'] == 'wheels and inertial unit')
+            self.say(node, lambda v: v['imu_data, taken'] == '201' and not v['dropped last'])
 
     def test_wheels_that_are_a_little_late_are_left_out(self):
         node = Node(self)

@@ -35,6 +35,7 @@ struct SensorNames {
   std::string tilt_scan;        ///< sensor_msgs/LaserScan
   std::string tilt_cloud;       ///< sensor_msgs/PointCloud2: one for each sweep
   std::string tray_scan;        ///< sensor_msgs/LaserScan
+  std::string inertia;          ///< sensor_msgs/Imu of the base's inertial unit
 };
 
 /// What a robot calls its topics, frames, joints' groups and servers: one YAML file per kind of

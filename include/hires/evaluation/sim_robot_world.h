@@ -42,7 +42,16 @@ struct SensorReadings {
   geometry::Pose2 X_MO;  ///< where its odometry began, by the same
   /// [m^2, m rad, rad^2] of x, y, yaw, as localisation has it; one that is told says 0.
   Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
+  /// Of a robot that hands on what it measures (Localisation::kNothing); its odometry is then that
+  /// of the wheels alone, and X_MB, X_MO are the truth.
+  std::optional<robot::ImuReading> inertia;
   std::vector<geometry::Polygon> ghosts_M;  ///< seen by the laser, though not there
+};
+
+/// A pose with how sure it is: [m^2, m rad, rad^2] of x, y, yaw.
+struct ToldPlace {
+  geometry::Pose2 X_MB;
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
 };
 
 /// The robot and its world as they really are: a simulator with a truth that was drawn once and is
@@ -65,6 +74,9 @@ class SimRobotWorld {
   const simulation::RobotSimulator& simulator() const { return *simulator_; }
   const std::shared_ptr<const simulation::Scene>& scene() const { return setup_->scene; }
   const geometry::Pose2& X_OB() const { return X_OB_; }  ///< by odometry, as Sense says it
+  /// What somebody who sets the robot down tells it of its place, roughly; nothing of one that
+  /// tells its place itself, or that has moved since.
+  std::optional<ToldPlace> ToldStart() const;
   /// How the camera's recogniser errs.
   double detection_noise() const { return variation_.detection_noise; }          ///< [m]
   double detection_noise_yaw() const { return variation_.detection_noise_yaw; }  ///< [rad]
@@ -84,6 +96,9 @@ class SimRobotWorld {
   void Deliver(const geometry::Twist2& velocity);
   void DeliverLate();
   void MoveOdometry(double dt);
+  void BeginToMeasure(std::shared_ptr<const simulation::SelfLocalisationParams> params,
+                      const base::Rng& rng);
+  void Measure();
   void NoteSent(const robot::Command& command);
   robot::Command RestOfMotions(const world::WorldState& world) const;
   std::string Rebuild(world::WorldState world, const robot::RobotState& robot);
@@ -98,6 +113,12 @@ class SimRobotWorld {
   std::unique_ptr<simulation::RobotSimulator> simulator_;
   long milliseconds_{0};
   geometry::Pose2 X_OB_;
+
+  // Of a robot that hands on what it measures.
+  std::optional<simulation::MotionSensors> motion_;
+  double moved_{0.0};  // [s] up to which they measured
+  geometry::Pose2 X_MBstart_;
+  ToldPlace told_start_;
 
   /// What a group of joints was told last.
   struct SentTrajectory {

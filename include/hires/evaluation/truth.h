@@ -52,7 +52,8 @@ enum class Sensing {
 enum class Localisation {
   kFitted,  ///< the truth, off as imagination has it (`localisation` of the scene)
   kIdeal,   ///< the truth
-  kFilter   ///< itself, by its wheels, inertial unit and laser
+  kFilter,  ///< itself, by its wheels, inertial unit and laser
+  kNothing  ///< nothing: it hands on what these measure, and others find its place
 };
 
 /// What a recogniser does wrong beside its noise. With `pictures` the recogniser is real and misses
@@ -80,7 +81,7 @@ struct Truth {
   std::vector<Correlation> correlations;
   Sensing sensing{Sensing::kFitted};
   Localisation localisation{Localisation::kFitted};
-  /// With `filter`: how; null with the others.
+  /// With kFilter and kNothing: how these err; null with the others.
   std::shared_ptr<const simulation::SelfLocalisationParams> self_localisation;
 
   // What imagination does not model at all.
@@ -107,6 +108,12 @@ Truth FindTruth(const std::string& name, const std::string& folder);
 /// Another way of sensing than the truth's own; its name says so. Empty: as it is.
 /// @throws base::ConfigError for none of fitted, ideal, pictures.
 Truth WithSensing(Truth truth, const std::string& sensing);
+
+/// The same truth of a robot that does not find its place, but hands on what its wheels and its
+/// inertial unit measure.
+/// @param path  of a file like config/self_localisation.yaml: how they err, unless the truth says.
+/// @throws base::ConfigError as simulation::LoadSelfLocalisation.
+Truth WithoutPlace(Truth truth, const std::string& path);
 
 /// `same: imagination's own model`, or the name: to stand beside whatever was measured with it.
 std::string TruthNote(const std::string& name);

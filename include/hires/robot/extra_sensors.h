@@ -25,6 +25,7 @@ struct ExtraSensors {
   std::string thermal_camera_link;  ///< looks along its x axis; empty: the robot has none
   std::string tray_laser_link;      ///< planar laser just above the tray; empty: none
   std::optional<TiltingLaser> tilting_laser;
+  std::string inertial_unit_link;  ///< that integrates its turning to a heading; empty: none
 };
 
 /// The joint's angle [rad] and where in the sweep it is.

@@ -11,6 +11,7 @@
 #include "hires/geometry/pose.h"
 #include "hires/localisation/monte_carlo.h"
 #include "hires/localisation/odometry_filter.h"
+#include "hires/robot/readings.h"
 #include "hires/simulation/laser_params.h"
 #include "hires/simulation/scene.h"
 #include "hires/world/occupancy_grid.h"
@@ -127,7 +128,47 @@ class SelfLocalisation {
 std::shared_ptr<const Scene> FindingItsPlace(Scene scene, const SelfLocalisationParams& params,
                                              const world::World& mapped);
 
-/// Where a robot believes that it is, by wheels, inertial unit and laser: WheelOdometry,
+/// What wheels and inertial unit of a base tell of its motion. A value: a copy goes on like the
+/// original.
+class MotionSensors {
+ public:
+  /// The base stands at X_MB.
+  MotionSensors(std::shared_ptr<const SelfLocalisationParams> params, const geometry::Pose2& X_MB,
+                const base::Rng& rng);
+
+  /// The base came to X_MB in `dt` [s], which is more than 0.
+  void Drive(double dt, const geometry::Pose2& X_MB);
+  /// The base was lifted to X_MB: wheels and unit were not turned by it.
+  void PutAt(const geometry::Pose2& X_MB) { X_MBtrue_ = X_MB; }
+
+  /// Base in the frame in which the wheels began to count, and its velocity in the last Drive.
+  const robot::OdometryReading& odometry() const { return odometry_; }
+  const robot::ImuReading& inertia() const { return inertia_; }
+  const geometry::Pose2& X_MBtrue() const { return X_MBtrue_; }  ///< of the last Drive or PutAt
+
+ private:
+  geometry::Pose2 Spun(const geometry::Pose2& X_AB);
+
+  std::shared_ptr<const SelfLocalisationParams> params_;
+  base::Rng gyro_rng_;
+  WheelOdometry wheels_;
+  geometry::Pose2 X_MBtrue_;
+  double bias_;  // [rad/s] of the unit
+  robot::OdometryReading odometry_;
+  robot::ImuReading inertia_;
+  base::Rng floor_rng_;
+  double spin_{0.0};  // of the wet patch that it is on
+  bool is_on_wet_{false};
+};
+
+/// Where a robot that stands at X_MB is told that it starts: off as start_sd says, or, where it was
+/// carried, at another place.
+geometry::Pose2 BelievedStart(const SelfLocalisationParams& params, const geometry::Pose2& X_MB,
+                              const base::Rng& rng);
+/// How sure of that it is told to be: [m^2, m^2, rad^2] of x, y, yaw.
+Eigen::Matrix3d StartCovariance(const SelfLocalisationParams& params);
+
+/// Where a robot believes that it is, by wheels, inertial unit and laser: MotionSensors,
 /// OdometryFilter and MonteCarloLocalisation, one after the other. A value: a copy goes on like the
 /// original.
 class SelfLocaliser {
@@ -150,25 +191,20 @@ class SelfLocaliser {
   const geometry::Pose2& X_OB() const { return X_OB_; }  ///< odometry, with the unit's heading
   geometry::Pose2 X_MB() const;                          ///< believed
   localisation::PoseEstimate Estimate() const;           ///< now
-  const geometry::Pose2& X_MBtrue() const { return X_MBtrue_; }  ///< of the last Drive or PutAt
+  /// Of the last Drive or PutAt.
+  const geometry::Pose2& X_MBtrue() const { return motion_.X_MBtrue(); }
   const SelfLocalisationParams& params() const { return common_->params(); }
 
  private:
   double now() const { return time_ + offset_; }
-  geometry::Pose2 Spun(const geometry::Pose2& X_AB);
 
   std::shared_ptr<const SelfLocalisation> common_;
-  base::Rng gyro_rng_, scan_rng_;
-  WheelOdometry wheels_;
+  base::Rng scan_rng_;
+  MotionSensors motion_;
   localisation::OdometryFilter odometry_;
   localisation::MonteCarloLocalisation filter_;
   double time_{0.0}, offset_{0.0};  // [s] of the simulator's clock, and what came before it
-  geometry::Pose2 X_MBtrue_;
   geometry::Pose2 X_OB_;
-  double heading_{0.0}, bias_;  // [rad], [rad/s] of the unit
-  base::Rng floor_rng_;
-  double spin_{0.0};  // of the wet patch that it is on
-  bool is_on_wet_{false};
   std::optional<double> scanned_;  // [s] now()
 };
 

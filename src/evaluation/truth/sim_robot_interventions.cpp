@@ -76,6 +76,7 @@ std::string SimRobotWorld::Rebuild(WorldState world, const robot::RobotState& ro
     simulator->Send(RestOfMotions(world));
     simulator->BelieveAs(*simulator_);
     simulator_ = std::move(simulator);
+    if (motion_) motion_->PutAt(simulator_->base().X_MB);
   } catch (const base::ConfigError& error) {
     return error.what();
   }

@@ -25,6 +25,7 @@ using simulation::RobotSimulator;
 
 constexpr long kSettling = 500;  // [ms]
 constexpr long kWalkStep = 50;   // [ms]
+constexpr double kStood = 0.02;  // [m], [rad] by which one that stands moves at most
 enum Streams : std::uint64_t {
   kVariation,
   kSimulator,
@@ -32,7 +33,8 @@ enum Streams : std::uint64_t {
   kOdometer,
   kFurniture,
   kBumps,
-  kWalk
+  kWalk,
+  kMotion
 };
 
 template <typename T>
@@ -115,6 +117,23 @@ SimRobotWorld::SimRobotWorld(const ImaginationSetup& imagined, const StartState&
   if (truth.bumps.mean_interval > 0.0) {
     bumps_ = std::make_unique<BumpSchedule>(truth.bumps, rng.Fork(kBumps));
   }
+  if (truth.localisation == Localisation::kNothing)
+    BeginToMeasure(truth.self_localisation, rng.Fork(kMotion));
+}
+
+void SimRobotWorld::BeginToMeasure(std::shared_ptr<const simulation::SelfLocalisationParams> params,
+                                   const base::Rng& rng) {
+  X_MBstart_ = simulator_->base().X_MB;
+  told_start_ = {simulation::BelievedStart(*params, X_MBstart_, rng),
+                 simulation::StartCovariance(*params)};
+  motion_.emplace(std::move(params), X_MBstart_, rng);
+}
+
+std::optional<ToldPlace> SimRobotWorld::ToldStart() const {
+  if (!motion_) return std::nullopt;
+  const Pose2 moved = X_MBstart_.Inverse() * simulator_->base().X_MB;
+  if (moved.position().norm() > kStood || std::abs(moved.yaw) > kStood) return std::nullopt;
+  return told_start_;
 }
 
 SimRobotWorld::~SimRobotWorld() = default;
@@ -195,12 +214,23 @@ void SimRobotWorld::DeliverLate() {
   Deliver(velocity);
 }
 
+/// Asked twice at one moment, they say the same twice.
+void SimRobotWorld::Measure() {
+  if (time() > moved_) motion_->Drive(time() - moved_, simulator_->base().X_MB);
+  moved_ = time();
+  X_OB_ = motion_->odometry().X_OB;
+}
+
 SensorReadings SimRobotWorld::Sense() {
   const robot::Observation seen = simulator_->Observe(0.0);
   SensorReadings readings;
   if (const simulation::SelfLocaliser* own = simulator_->self_localiser()) {
     X_OB_ = own->X_OB();
     readings.covariance = own->Estimate().covariance;
+  }
+  if (motion_) {
+    Measure();
+    readings.inertia = motion_->inertia();
   }
   readings.X_MB = walk_.sd > 0.0 || walk_.sd_yaw > 0.0 ? seen.X_MB * walk_error_ : seen.X_MB;
   readings.X_MO = readings.X_MB * X_OB_.Inverse();

@@ -83,7 +83,7 @@ std::shared_ptr<const Scene> SceneOf(const Truth& truth, const Scene& imagined, 
     scene->self_localisation = imagined.self_localisation;
     scene->pose_error = imagined.pose_error;
   }
-  if (!truth.self_localisation) return scene;
+  if (truth.localisation != Localisation::kFilter) return scene;
   return simulation::FindingItsPlace(*scene, *truth.self_localisation, imagined.world);
 }
 
@@ -95,6 +95,15 @@ double BoundedScore(base::Rng* rng) {
 }
 
 }  // namespace
+
+Truth WithoutPlace(Truth truth, const std::string& path) {
+  if (!truth.self_localisation) {
+    truth.self_localisation = std::make_shared<const simulation::SelfLocalisationParams>(
+        simulation::LoadSelfLocalisation(path));
+  }
+  truth.localisation = Localisation::kNothing;
+  return truth;
+}
 
 std::string TruthNote(const std::string& name) {
   return name == Truth{}.name ? name + ": imagination's own model" : name;

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "hires/base/check.h"
+#include "hires/ros/conversions.h"
 
 namespace hires_ros {
 namespace {
@@ -142,6 +143,18 @@ sensor_msgs::LaserScan ToMsg(const hires::simulation::LaserParams& laser,
   msg.range_min = static_cast<float>(laser.range_min);
   msg.range_max = static_cast<float>(laser.range_max);
   msg.ranges.assign(ranges.begin(), ranges.end());
+  return msg;
+}
+
+sensor_msgs::Imu ToMsg(const hires::robot::ImuReading& reading, const Eigen::Quaterniond& R_BI) {
+  const Eigen::Quaterniond R_WB(Eigen::AngleAxisd(reading.yaw, Eigen::Vector3d::UnitZ()));
+  const Eigen::Vector3d turning_I = R_BI.inverse() * Eigen::Vector3d(0.0, 0.0, reading.yaw_rate);
+  sensor_msgs::Imu msg;
+  msg.orientation = ToMsg(hires::geometry::Pose3{Eigen::Vector3d::Zero(), R_WB * R_BI}).orientation;
+  msg.angular_velocity.x = turning_I.x();
+  msg.angular_velocity.y = turning_I.y();
+  msg.angular_velocity.z = turning_I.z();
+  msg.linear_acceleration_covariance[0] = -1.0;  // not measured
   return msg;
 }
 

@@ -2,6 +2,7 @@
 
 #include <sensor_msgs/CameraInfo.h>
 #include <sensor_msgs/Image.h>
+#include <sensor_msgs/Imu.h>
 #include <sensor_msgs/LaserScan.h>
 #include <sensor_msgs/PointCloud2.h>
 
@@ -11,10 +12,11 @@
 #include "hires/perception/picture.h"
 #include "hires/perception/pinhole_camera.h"
 #include "hires/perception/point_cloud.h"
+#include "hires/robot/readings.h"
 #include "hires/simulation/laser_scanner.h"
 
-/// Clouds, pictures and scans as messages. Headers are left to those who send them: pictures and
-/// clouds of a camera are in its optical frame.
+/// Clouds, pictures, scans and inertial readings as messages. Headers are left to those who send
+/// them: pictures and clouds of a camera are in its optical frame.
 namespace hires_ros {
 
 /// x, y, z [m] as float32; NaN, not measured, stays NaN.
@@ -36,5 +38,8 @@ sensor_msgs::CameraInfo ToMsg(const hires::perception::PinholeCamera& camera);
 /// @param ranges  [m] of each beam.  @param period  [s] from one scan to the next.
 sensor_msgs::LaserScan ToMsg(const hires::simulation::LaserParams& laser,
                              const std::vector<double>& ranges, double period);
+
+/// Of a unit mounted so in the base; it tells no accelerations.
+sensor_msgs::Imu ToMsg(const hires::robot::ImuReading& reading, const Eigen::Quaterniond& R_BI);
 
 }  // namespace hires_ros

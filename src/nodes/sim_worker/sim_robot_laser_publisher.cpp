@@ -21,7 +21,7 @@ constexpr std::uint32_t kCloudQueue = 2;
 }  // namespace
 
 SimRobotLaserPublisher::SimRobotLaserPublisher(const hires::control::RobotNames& names,
-                                               const hires::robot::Robot& robot,
+                                               const hires::robot::Robot& robot, bool tells_place,
                                                const hires::evaluation::SimRobotLasers* lasers,
                                                ros::NodeHandle* nh)
     : lasers_(*lasers),
@@ -38,7 +38,7 @@ SimRobotLaserPublisher::SimRobotLaserPublisher(const hires::control::RobotNames&
   if (!topics.tilt_scan.empty()) {
     tilt_scan_ = nh->advertise<sensor_msgs::LaserScan>(topics.tilt_scan, kScanQueue);
   }
-  if (!topics.tilt_cloud.empty()) {
+  if (tells_place && !topics.tilt_cloud.empty()) {
     tilt_cloud_ = nh->advertise<sensor_msgs::PointCloud2>(topics.tilt_cloud, kCloudQueue);
   }
 }

@@ -16,9 +16,12 @@ namespace hires_ros {
 /// listens. The nodding joint is in tf alone: no skill and no rollout knows it.
 class SimRobotLaserPublisher {
  public:
+  /// @param tells_place  else no clouds are put together, for nobody here knows where the
+  ///                     odometry's frame is.
   /// @param lasers  outlives this.
   SimRobotLaserPublisher(const hires::control::RobotNames& names, const hires::robot::Robot& robot,
-                         const hires::evaluation::SimRobotLasers* lasers, ros::NodeHandle* nh);
+                         bool tells_place, const hires::evaluation::SimRobotLasers* lasers,
+                         ros::NodeHandle* nh);
 
   /// The tray's scan, and the cloud of a sweep that is over: for each tick.
   /// @return the topics on which that was sent.

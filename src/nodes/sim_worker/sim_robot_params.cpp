@@ -44,6 +44,7 @@ void OverridePrivate(const std::string& path, SimRobotParams* params) {
   Override("pace", PrivateNumber("pace"), Between(0.0, 1000.0), &params->pace);
   params->lockstep = PrivateBool("lockstep").value_or(params->lockstep);
   params->hold = PrivateBool("hold").value_or(params->hold);
+  params->tells_place = PrivateBool("tells_place").value_or(params->tells_place);
   params->sensors.cameras.temperatures = hires::evaluation::TemperaturesOf(params->scenario);
 }
 
@@ -62,6 +63,7 @@ SimRobotParams ReadSimRobotParams(const std::string& path) {
   params.pace = in.Get("pace", Between(0.0, 1000.0));
   params.lockstep = in.GetBool("lockstep");
   params.hold = in.GetBool("hold");
+  params.tells_place = in.GetBool("tells_place");
   params.sensors = hires::evaluation::ReadSimSensorParams(in);
   in.RejectUnknownKeys();
   DropNoiseIfCertain(&params);
@@ -71,12 +73,15 @@ SimRobotParams ReadSimRobotParams(const std::string& path) {
 SimRobotParams LoadSimRobotParams() {
   RejectUnknownPrivate({"role", "config", "world", "robot", "objects", "uncertainty", "truth",
                         "sensing", "scenario", "area", "seed", "pace", "lockstep", "hold",
-                        "names"});
+                        "tells_place", "names"});
   const std::string path =
       PrivateText("config").value_or(ros::package::getPath("hires") + "/config/sim_robot.yaml");
   SimRobotParams params = ReadSimRobotParams(path);
   params.names = LoadRobotNames();
   OverridePrivate(path, &params);
+  if (!params.tells_place) {
+    params.truth = hires::evaluation::WithoutPlace(params.truth, params.setup.self_localisation);
+  }
   DropNoiseIfCertain(&params);
   return params;
 }

@@ -19,16 +19,19 @@ struct SimRobotParams {
   double pace{1.0};       ///< simulated seconds per second; 0: as fast as it can
   bool lockstep{false};   ///< wait for the middle layer at every tick
   bool hold{false};       ///< stand still until `sim_robot/hold` lets go
+  /// Say where it is, as a robot with a localisation of its own; else wheels and inertial unit say
+  /// what they measure, and `truth` is one WithoutPlace.
+  bool tells_place{true};
   hires::evaluation::SimSensorParams sensors;
 };
 
-/// Reads a file like config/sim_robot.yaml; it does not say the names.  @throws
-/// hires::base::ConfigError.
+/// Reads a file like config/sim_robot.yaml; it does not say the names.
+/// @throws hires::base::ConfigError.
 SimRobotParams ReadSimRobotParams(const std::string& path);
 
 /// The file in ~config (config/sim_robot.yaml where there is none); ~world, ~robot, ~objects,
-/// ~uncertainty, ~truth, ~scenario, ~area, ~seed, ~pace, ~lockstep and ~hold win over it. Names as
-/// LoadRobotNames.
+/// ~uncertainty, ~truth, ~scenario, ~area, ~seed, ~pace, ~lockstep, ~hold and ~tells_place win over
+/// it. Names as LoadRobotNames.
 /// @throws hires::base::ConfigError.
 SimRobotParams LoadSimRobotParams();
 

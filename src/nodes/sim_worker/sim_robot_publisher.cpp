@@ -3,7 +3,6 @@
 #include <geometry_msgs/PoseWithCovarianceStamped.h>
 #include <hires/Detections.h>
 #include <nav_msgs/OccupancyGrid.h>
-#include <nav_msgs/Odometry.h>
 #include <rosgraph_msgs/Clock.h>
 #include <sensor_msgs/JointState.h>
 #include <tf2_msgs/TFMessage.h>
@@ -44,11 +43,10 @@ SimRobotPublisher::SimRobotPublisher(const SimRobotParams& params,
       sensors_(hires::evaluation::SensorsOf(params.truth, params.sensors), params.seed,
                world.scene()),
       cameras_(params.names.sensors, scene_->robot, &sensors_.cameras(), nh),
-      lasers_(params.names, scene_->robot, &sensors_.lasers(), nh),
+      lasers_(params.names, scene_->robot, params.tells_place, &sensors_.lasers(), nh),
+      motion_(params.names, scene_->robot, params.tells_place, nh),
       clock_(nh->advertise<rosgraph_msgs::Clock>("/clock", kQueue)),
-      odometry_(nh->advertise<nav_msgs::Odometry>(params.names.odometry, kQueue)),
       joints_(nh->advertise<sensor_msgs::JointState>(params.names.joint_states, kQueue)),
-      amcl_(nh->advertise<geometry_msgs::PoseWithCovarianceStamped>(params.names.localisation, 10)),
       scan_(nh->advertise<sensor_msgs::LaserScan>(params.names.base_scan, 10)),
       map_(nh->advertise<nav_msgs::OccupancyGrid>(params.names.map, 1, true)),
       world_markers_(nh->advertise<visualization_msgs::MarkerArray>(kWorldMarkers, 1, true)),
@@ -58,6 +56,8 @@ SimRobotPublisher::SimRobotPublisher(const SimRobotParams& params,
       truth_(nh->advertise<hires::GroundTruth>("ground_truth/summary", 10, true)),
       tf_(nh->advertise<tf2_msgs::TFMessage>(kTransforms, kQueue)),
       trace_(kShownIndex, setup.standing) {
+  if (params.tells_place)
+    amcl_ = nh->advertise<geometry_msgs::PoseWithCovarianceStamped>(params.names.localisation, 10);
   if (sensors_.sees_pictures()) {
     recogniser_ = nh->subscribe<hires::Detections>(
         kDetections, 1,
@@ -86,13 +86,7 @@ void SimRobotPublisher::PublishFast(const hires::evaluation::SimRobotWorld& worl
                                     const hires::evaluation::SensorReadings& readings) {
   const ros::Time stamp = StampOf(world);
   joints_.publish(ToMsg(readings.joints, stamp));
-  nav_msgs::Odometry odometry;
-  odometry.header.stamp = stamp;
-  odometry.header.frame_id = params_.names.odometry_frame;
-  odometry.child_frame_id = scene_->robot.profile.base_link;
-  odometry.pose.pose = ToMsg(hires::geometry::Lift(readings.odometry.X_OB));
-  odometry.twist.twist = ToMsg(readings.odometry.V_B);
-  odometry_.publish(odometry);
+  motion_.Publish(readings, stamp);
   PublishClock(world);
 }
 
@@ -103,7 +97,8 @@ std::vector<std::string> SimRobotPublisher::PublishTick(
   const ros::Time stamp = StampOf(world);
   std::vector<std::string> sensors{kTransforms, params_.names.joint_states, params_.names.odometry};
   PublishTransforms(world, readings, stamp);
-  PublishLocalisation(readings, stamp);
+  if (params_.tells_place) PublishLocalisation(readings, stamp);
+  motion_.TellStart(world, stamp);
   if (sensors_.has_laser()) {
     PublishScan(world, readings, stamp);
     sensors.push_back(params_.names.base_scan);
@@ -125,12 +120,14 @@ void SimRobotPublisher::PublishTransforms(const hires::evaluation::SimRobotWorld
                                           const ros::Time& stamp) {
   const hires::robot::Robot& robot = scene_->robot;
   tf2_msgs::TFMessage correction, links;
-  correction.transforms.push_back(MakeTransform(params_.names.map_frame,
-                                                params_.names.odometry_frame,
-                                                hires::geometry::Lift(readings.X_MO), stamp));
-  tf_.publish(correction);
-  links.transforms.push_back(MakeTransform(params_.names.odometry_frame, robot.profile.base_link,
-                                           hires::geometry::Lift(readings.odometry.X_OB), stamp));
+  if (params_.tells_place) {
+    correction.transforms.push_back(MakeTransform(params_.names.map_frame,
+                                                  params_.names.odometry_frame,
+                                                  hires::geometry::Lift(readings.X_MO), stamp));
+    tf_.publish(correction);
+    links.transforms.push_back(MakeTransform(params_.names.odometry_frame, robot.profile.base_link,
+                                             hires::geometry::Lift(readings.odometry.X_OB), stamp));
+  }
   hires::robot::JointPositions joints = readings.joints.positions;
   lasers_.AddTilt(world, &joints);
   const auto X_RL = hires::robot::ForwardKinematics(robot.model, PostureOf(robot, joints));

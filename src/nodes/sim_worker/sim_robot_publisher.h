@@ -17,6 +17,7 @@
 #include "hires/simulation/truth_record.h"
 #include "nodes/sim_worker/sim_robot_camera_publisher.h"
 #include "nodes/sim_worker/sim_robot_laser_publisher.h"
+#include "nodes/sim_worker/sim_robot_motion_publisher.h"
 #include "nodes/sim_worker/sim_robot_params.h"
 
 namespace hires_ros {
@@ -29,14 +30,14 @@ class SimRobotPublisher {
   SimRobotPublisher(const SimRobotParams& params, const hires::imagination::ImaginationSetup& setup,
                     const hires::evaluation::SimRobotWorld& world, ros::NodeHandle* nh);
 
-  /// What comes at 100 Hz: joints and odometry, then the clock, so that no node knows a time whose
-  /// sensors are not on their way.
+  /// What comes at 100 Hz: joints, odometry and inertial unit, then the clock, so that no node
+  /// knows a time whose sensors are not on their way.
   void PublishFast(const hires::evaluation::SimRobotWorld& world,
                    const hires::evaluation::SensorReadings& readings);
 
   /// What comes with every tick of 0.05 s, before the fast ones of the same moment: transforms,
-  /// localisation, laser, and detector and cameras when they are due. Called again, it publishes
-  /// the same again.
+  /// localisation (of a robot that tells its place), laser, and detector and cameras when they are
+  /// due. Called again, it publishes the same again.
   /// @return topics that have a message of this stamp, fast ones included.
   std::vector<std::string> PublishTick(const hires::evaluation::SimRobotWorld& world,
                                        const hires::evaluation::SensorReadings& readings,
@@ -73,8 +74,9 @@ class SimRobotPublisher {
   hires::evaluation::SimRobotSensors sensors_;
   SimRobotCameraPublisher cameras_;
   SimRobotLaserPublisher lasers_;
-  ros::Publisher clock_, odometry_, joints_, amcl_, scan_, detections_, map_, world_markers_,
-      markers_, true_world_, true_robot_, truth_, tf_;
+  SimRobotMotionPublisher motion_;
+  ros::Publisher clock_, joints_, amcl_, scan_, detections_, map_, world_markers_, markers_,
+      true_world_, true_robot_, truth_, tf_;
   ros::Subscriber recogniser_;  // its answers, where pictures are seen
   std::atomic<long> num_recognised_{0};
   TraceMarkers trace_;

@@ -1,10 +1,10 @@
 #include "hires/simulation/self_localisation.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "hires/base/error.h"
+#include "simulation/self_localisation/streams.h"
 #include "simulation/start_checks.h"
 
 namespace hires::simulation {
@@ -13,7 +13,6 @@ namespace {
 using geometry::Pose2;
 
 constexpr double kSlice = 0.02;  // [m] above and below the laser's plane
-enum Streams : std::uint64_t { kWheels, kGyro, kScans, kFilter, kStart, kCarried, kFloor };
 
 localisation::MonteCarloLocalisation FilterIn(const SelfLocalisationParams& params,
                                               const world::World& world, double laser_height) {
@@ -38,6 +37,17 @@ Pose2 StartError(const SelfLocalisationParams& params, base::Rng rng) {
 }
 
 }  // namespace
+
+Pose2 BelievedStart(const SelfLocalisationParams& params, const Pose2& X_MB, const base::Rng& rng) {
+  return MistakenFor(params, X_MB, rng.Fork(place_stream::kCarried)) *
+         StartError(params, rng.Fork(place_stream::kStart));
+}
+
+Eigen::Matrix3d StartCovariance(const SelfLocalisationParams& params) {
+  const double variance = params.start_sd * params.start_sd;
+  const double variance_yaw = params.start_sd_yaw * params.start_sd_yaw;
+  return Eigen::Vector3d(variance, variance, variance_yaw).asDiagonal();
+}
 
 world::OccupancyGrid MapIn(const SelfLocalisationParams& params, const world::World& world,
                            double laser_height) {
@@ -67,55 +77,30 @@ std::shared_ptr<const Scene> FindingItsPlace(Scene scene, const SelfLocalisation
 SelfLocaliser::SelfLocaliser(std::shared_ptr<const SelfLocalisation> common, const Pose2& X_MB,
                              const base::Rng& rng)
     : common_(std::move(common)),
-      gyro_rng_(rng.Fork(kGyro)),
-      scan_rng_(rng.Fork(kScans)),
-      wheels_(params().casters, rng.Fork(kWheels)),
+      scan_rng_(rng.Fork(place_stream::kScans)),
+      motion_({common_, &common_->params()}, X_MB, rng),
       odometry_(params().odometry),
-      filter_(common_->filter()),
-      X_MBtrue_(X_MB),
-      bias_(gyro_rng_.Normal(0.0, params().gyro.bias)),
-      floor_rng_(rng.Fork(kFloor)) {
-  const double variance = params().start_sd * params().start_sd;
-  const double variance_yaw = params().start_sd_yaw * params().start_sd_yaw;
-  filter_.Reseed(rng.Fork(kFilter));
-  filter_.SetPose(
-      MistakenFor(params(), X_MB, rng.Fork(kCarried)) * StartError(params(), rng.Fork(kStart)),
-      Eigen::Vector3d(variance, variance, variance_yaw).asDiagonal());
+      filter_(common_->filter()) {
+  filter_.Reseed(rng.Fork(place_stream::kFilter));
+  filter_.SetPose(BelievedStart(params(), X_MB, rng), StartCovariance(params()));
   odometry_.OnInertia(now(), {});
   odometry_.OnOdometry(now(), {});
-}
-
-/// A motion as the wheels make it: on a wet patch they spin.
-Pose2 SelfLocaliser::Spun(const Pose2& X_AB) {
-  const WetPatch* under = nullptr;
-  for (const WetPatch& patch : params().wet)
-    if ((X_MBtrue_.position() - patch.at_M).norm() <= patch.radius) under = &patch;
-  if (under != nullptr && !is_on_wet_) spin_ = floor_rng_.Normal(0.0, under->spin);
-  is_on_wet_ = under != nullptr;
-  if (!is_on_wet_) return X_AB;
-  return {(1.0 + spin_) * X_AB.x, (1.0 + spin_) * X_AB.y, (1.0 + spin_) * X_AB.yaw};
 }
 
 void SelfLocaliser::Drive(double time, const Pose2& X_MB) {
   const double dt = time - time_;
   if (dt <= 0.0) return;
   time_ = time;
-  const Pose2 X_AB = X_MBtrue_.Inverse() * X_MB;
-  X_MBtrue_ = X_MB;
-  wheels_.Roll(Spun(X_AB));
-  const double root = std::sqrt(dt);
-  const double turned = X_AB.yaw + bias_ * dt + gyro_rng_.Normal(0.0, params().gyro.walk * root);
-  bias_ += gyro_rng_.Normal(0.0, params().gyro.bias_walk * root);
-  heading_ += turned;
-  odometry_.OnInertia(now(), {heading_, turned / dt});
-  odometry_.OnOdometry(now(), {wheels_.X_OB(), {X_AB.x / dt, X_AB.y / dt, turned / dt}});
+  motion_.Drive(dt, X_MB);
+  odometry_.OnInertia(now(), motion_.inertia());
+  odometry_.OnOdometry(now(), motion_.odometry());
   X_OB_ = odometry_.X_FB();
 }
 
 void SelfLocaliser::PutAt(double time, const Pose2& X_MB) {
   offset_ += time_ - time;
   time_ = time;
-  X_MBtrue_ = X_MB;
+  motion_.PutAt(X_MB);
 }
 
 bool SelfLocaliser::wants_scan() const {
