@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hires/base/check.h"
+#include "hires/localisation/laser_mount.h"
 
 namespace hires::simulation {
 namespace {
@@ -70,6 +71,15 @@ std::vector<geometry::Collision> ShapesOf(const RobotSimulator& simulator) {
 robot::ScanReading ReadingOf(const std::vector<double>& ranges, const LaserParams& params) {
   const double increment = (params.angle_max - params.angle_min) / (params.num_beams - 1);
   return {params.angle_min, increment, params.range_min, {ranges.begin(), ranges.end()}};
+}
+
+LevelScan ScanLevel(const RobotSimulator& simulator, const LaserParams& params, base::Rng* rng) {
+  LevelScan scan;
+  scan.reading = ReadingOf(ScanLaser(simulator, params, rng), params);
+  const geometry::Pose3 X_BL =
+      geometry::Lift(simulator.base().X_MB).Inverse() * simulator.X_MLink(params.link);
+  scan.X_BL = localisation::LevelLaser(X_BL, &scan.reading).value_or(geometry::Flatten(X_BL));
+  return scan;
 }
 
 double AngleOf(const LaserParams& params, int beam) {

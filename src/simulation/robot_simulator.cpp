@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "hires/base/check.h"
-#include "hires/localisation/laser_mount.h"
 #include "hires/simulation/laser_scanner.h"
 #include "simulation/frozen_robot.h"
 #include "simulation/head_camera.h"
@@ -25,12 +24,6 @@ constexpr int kSlowSteps = 10;  // slip, contacts, senses: every tenth step
 template <typename Part>
 auto SaveOf(const std::unique_ptr<Part>& part) {
   return part ? std::make_optional(part->Save()) : std::nullopt;
-}
-
-/// Where a laser scans in the plane of the base; one that hangs upside down is turned over. A level
-/// one whose base sways by more than a laser may be tilted is taken as level, as tf takes it.
-geometry::Pose2 LevelOrSwaying(const Pose3& X_BL, robot::ScanReading* reading) {
-  return localisation::LevelLaser(X_BL, reading).value_or(geometry::Flatten(X_BL));
 }
 
 }  // namespace
@@ -107,11 +100,8 @@ robot::Observation RobotSimulator::Observe(double action_start) {
 void RobotSimulator::Scan(base::Rng* noise, robot::Observation* observation) {
   LaserParams laser = scene_->sight.scans->laser;
   laser.link = scene_->robot.profile.laser_link;
-  const std::vector<double> ranges = ScanLaser(*this, laser, noise);
-  const Pose3 X_BL = geometry::Lift(base().X_MB).Inverse() * X_MLink(laser.link);
-  robot::ScanReading reading = ReadingOf(ranges, laser);
-  const geometry::Pose2 level = LevelOrSwaying(X_BL, &reading);
-  sensors_->ReadScan(std::move(reading), level, observation);
+  LevelScan scan = ScanLevel(*this, laser, noise);
+  sensors_->ReadScan(std::move(scan.reading), scan.X_BL, observation);
 }
 
 /// Wheels and inertial unit tell of all ways, the laser where a scan is of use.
@@ -122,11 +112,8 @@ void RobotSimulator::FindPlace() {
   if (!localiser->wants_scan()) return;
   LaserParams laser = localiser->params().laser;
   laser.link = scene_->robot.profile.laser_link;
-  const std::vector<double> ranges = ScanLaser(*this, laser, localiser->scan_rng());
-  const Pose3 X_BL = geometry::Lift(base().X_MB).Inverse() * X_MLink(laser.link);
-  robot::ScanReading reading = ReadingOf(ranges, laser);
-  const geometry::Pose2 level = LevelOrSwaying(X_BL, &reading);
-  localiser->Hear(reading, level);
+  const LevelScan scan = ScanLevel(*this, laser, localiser->scan_rng());
+  localiser->Hear(scan.reading, scan.X_BL);
 }
 
 const SelfLocaliser* RobotSimulator::self_localiser() const { return sensors_->localiser(); }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "hires/base/rng.h"
+#include "hires/geometry/pose.h"
 #include "hires/robot/readings.h"
 #include "hires/simulation/laser_params.h"
 #include "hires/simulation/robot_simulator.h"
@@ -31,6 +32,17 @@ std::vector<double> ScanLaserFrom(const geometry::Pose3& X_ML, const RobotSimula
 
 /// What was measured, as its driver tells it.  @param ranges  [m] of the laser's beams.
 robot::ScanReading ReadingOf(const std::vector<double>& ranges, const LaserParams& params);
+
+/// A scan in the plane of the base.
+struct LevelScan {
+  robot::ScanReading reading;
+  geometry::Pose2 X_BL;  ///< the laser in the base
+};
+
+/// What the base's laser measures, as its driver tells it; one that hangs upside down is turned
+/// over. A level one whose base sways by more than a laser may be tilted is taken as level, as tf
+/// takes it.  @pre, @throws  as ScanLaser.
+LevelScan ScanLevel(const RobotSimulator& simulator, const LaserParams& params, base::Rng* rng);
 
 /// [rad] of a beam, by its number.
 double AngleOf(const LaserParams& params, int beam);

@@ -160,10 +160,10 @@ Moment MapDriver::Look(const simulation::RobotSimulator& simulator, std::size_t 
   Moment moment{simulator.time(), simulator.base().X_MB, std::nullopt, {}};
   if (number % kSamplesPerScan != 0) return moment;
   base::Rng rng = rng_.Fork(kScanNoise).Fork(num_legs_).Fork(number);
-  moment.scan = simulation::ReadingOf(simulation::ScanLaser(simulator, laser_, &rng), laser_);
+  simulation::LevelScan scan = simulation::ScanLevel(simulator, laser_, &rng);
+  moment.scan = std::move(scan.reading);
   moment.scan->range_max = laser_.range_max;
-  moment.X_BL =
-      geometry::Flatten(geometry::Lift(moment.X_MB).Inverse() * simulator.X_MLink(laser_.link));
+  moment.X_BL = scan.X_BL;
   return moment;
 }
 
