@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 
 from diagnostics import diagnostics  # noqa: E402
 from ros_processes import Processes, executable, wait_until  # noqa: E402
-from scanned_room import (ANGLES, BASE, RESOLUTION, Laser, Robot, after, echoes_of, laser_transform,  # noqa: E402
+from scanned_room import (ANGLES, BASE, RESOLUTION, HearsEchoes, Laser, Robot, after, laser_transform,  # noqa: E402
                           map_message, pose_message, room, scan_message, transform_message, wrapped, yaw_of)
 from test_run import run_test  # noqa: E402
 
@@ -65,7 +65,9 @@ class Node:
             self.transforms[transform.header.stamp.to_nsec()] = transform
 
 
-class LocalisationTest(unittest.TestCase):
+class LocalisationTest(HearsEchoes, unittest.TestCase):
+    node_type = Node
+
     @classmethod
     def setUpClass(cls):
         cls.processes = Processes()
@@ -257,20 +259,6 @@ class LocalisationTest(unittest.TestCase):
             node.process.wait_for('place=found', first=known)
             self.assertLess(errors[-1][0], 0.15)
             self.assertLess(spread()[1], 0.02)
-
-    def test_a_laser_that_hears_several_echoes_is_used_by_the_nearest(self):
-        from sensor_msgs.msg import MultiEchoLaserScan, Range
-        plain = self.scan
-        self.scans = self.rospy.Publisher('/echoes', MultiEchoLaserScan, queue_size=1000)
-        self.publishers = self.publishers[:-1] + [self.scans]
-        self.scan = lambda: echoes_of(plain())
-        node = self.begun('base_scan:=/echoes')
-        self.assertLess(max(self.drive(30, node))[0], 0.15)
-        sonar = self.rospy.Publisher('/sonar', Range, queue_size=10)
-        self.publishers = self.publishers[:-1] + [sonar]
-        node = Node(self, 'base_scan:=/sonar')
-        sonar.publish(Range())
-        self.dropped(node, 'its type is sensor_msgs/Range, wanted sensor_msgs/LaserScan or MultiEchoLaserScan')
 
     def test_a_laser_that_hangs_upside_down_is_turned_over(self):
         from geometry_msgs.msg import Quaternion

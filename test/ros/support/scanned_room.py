@@ -139,3 +139,22 @@ def transform_message(parent, child, pose, time):
 
 def laser_transform():
     return transform_message(BASE, LASER, (LASER_X, 0.0, 0.0), 0.0)
+
+
+class HearsEchoes:
+    """For the test of a node that hears scans on `base_scan`."""
+    node_type = None  # what starts it
+
+    def test_a_laser_that_hears_several_echoes_is_used_by_the_nearest(self):
+        from sensor_msgs.msg import MultiEchoLaserScan, Range
+        plain = self.scan
+        self.scans = self.rospy.Publisher('/echoes', MultiEchoLaserScan, queue_size=1000)
+        self.publishers = self.publishers[:-1] + [self.scans]
+        self.scan = lambda: echoes_of(plain())
+        node = self.begun('base_scan:=/echoes')
+        self.assertLess(max(self.drive(30, node))[0], 0.15)
+        sonar = self.rospy.Publisher('/sonar', Range, queue_size=10)
+        self.publishers = self.publishers[:-1] + [sonar]
+        node = self.node_type(self, 'base_scan:=/sonar')
+        sonar.publish(Range())
+        self.dropped(node, 'its type is sensor_msgs/Range, wanted sensor_msgs/LaserScan or MultiEchoLaserScan')
