@@ -74,7 +74,8 @@ ReportOrigin OriginOf(const ExperimentOptions& options, const std::string& path,
   return origin;
 }
 
-/// A file that begins anew: experiences of two plays would be told apart by nothing.
+/// A file that begins anew when all is played: experiences of two plays would be told apart by
+/// nothing.
 std::optional<knowledge::ExperienceStore> ExperiencesOf(
     const ExperimentOptions& options, const evaluation::ExperimentConfig& config) {
   if (options.experiences.empty()) return std::nullopt;
@@ -120,7 +121,7 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
                    "YAML file of the experiment, or its name in config/experiments");
   verb->add_option("--threads", options->threads, "default: one per core; changes no number")
       ->check(NumberBetween(1, 256));
-  verb->add_option("--seed", options->seed, "instead of the file's");
+  verb->add_option("--seed", options->seed, "instead of the file's")->check(WholeNumber());
   verb->add_option("--runs", options->runs,
                    "instead of the file's number of legs, pairs, chains or runs")
       ->check(NumberBetween(1, 1000000));
@@ -131,7 +132,8 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
                    "write what the file expects, and whether it holds, as JUnit XML to this file");
   verb->add_option(
       "--experiences", options->experiences,
-      "of topple_loop: keep what the load went through, 20 times a second, in this file");
+      "of topple_loop: keep what the load went through, 20 times a second, in this file, which is "
+      "replaced when all is played");
   verb->add_flag("--hashes", options->only_hashes,
                  "print the report's first line alone, and play nothing");
   verb->add_flag("--quiet", options->quiet, "no progress bar");
@@ -175,6 +177,7 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
   Print(*report);
+  if (experiences) experiences->Finish();
   if (!options.csv.empty()) base::ReplaceTextFile(options.csv, evaluation::ReportCsv(*report));
   if (!options.junit.empty()) base::ReplaceTextFile(options.junit, JunitXml(*report));
   WriteReport(options.report, origin, ToJson(*report));

@@ -3,17 +3,23 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <CLI/CLI.hpp>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "cli/command_run.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/knowledge/experience.h"
+#include "support/temporary_folder.h"
 
 namespace hires::cli::experiment_command_test {
 namespace {
 
 using hires::test_support::RunHires;
+using knowledge::ExperienceStore;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
 
@@ -54,6 +60,56 @@ TEST(ExperimentCommandTest, WritesWhatIsExpectedForBuildServers) {
               testing::AllOf(testing::HasSubstr("<testsuite name=\"exit_code\" tests=\"1\""),
                              testing::HasSubstr("found 1\"")));
   EXPECT_EQ(ExitCode("", {"--junit", "/no/such/folder/x.xml"}), 1);
+}
+
+/// A loop of some drives, and experiences of a play before it.
+class ExperiencesOfALoopTest : public ::testing::Test {
+ protected:
+  ExperiencesOfALoopTest() {
+    std::string yaml = base::ReadTextFile(kRoot + "/config/experiments/topple_loop.yaml");
+    yaml = yaml.substr(0, yaml.find("expect:")) + "expect: []\n";
+    const auto replace = [&](const std::string& what, const std::string& by) {
+      yaml.replace(yaml.find(what), what.size(), by);
+    };
+    replace("../scene.yaml", kRoot + "/config/scene.yaml");
+    replace("duration: 18000.0", "duration: 10.0");
+    words_ = {
+        "experiment", folder_.Write("loop.yaml", yaml), "--runs", "2", "--quiet", "--experiences",
+        store_};
+    ExperienceStore(store_, ExperienceStore::Mode::kWrite).Write({"old", "a", {{}}});
+  }
+
+  std::set<std::string> Runs() const {
+    std::set<std::string> runs;
+    ExperienceStore(store_, ExperienceStore::Mode::kRead).ForEach({}, [&](const auto& stored) {
+      runs.insert(*stored.run);
+    });
+    return runs;
+  }
+
+  const hires::test_support::TemporaryFolder folder_;
+  const std::string store_{(folder_.path() / "e.db").string()};
+  std::vector<std::string> words_;
+};
+
+TEST_F(ExperiencesOfALoopTest, ReplaceTheFileWhenAllIsPlayed) {
+  const auto ended = RunHires(words_);
+  EXPECT_EQ(ended.code, kExitRecommended) << ended.err;
+  EXPECT_THAT(Runs(), testing::ElementsAre("fast/0", "fast/1", "slow/0", "slow/1"));
+  EXPECT_FALSE(std::filesystem::exists(store_ + ".unfinished"));
+}
+
+TEST_F(ExperiencesOfALoopTest, LeaveTheFileWhenThePlayIsInterrupted) {
+  CLI::App app;
+  ExperimentOptions options;
+  AddExperimentVerb(&app, &options);
+  std::vector<std::string> last_first(words_.rbegin(), words_.rend());  // as CLI11 wants them
+  app.parse(last_first);
+  const auto ended =
+      hires::test_support::Capture([&] { return RunExperimentVerb(options, [] { return true; }); });
+  EXPECT_EQ(ended.code, kExitCancelled) << ended.err;
+  EXPECT_THAT(Runs(), testing::ElementsAre("old"));
+  EXPECT_FALSE(std::filesystem::exists(store_ + ".unfinished"));
 }
 
 TEST(ExperimentCommandTest, AFileOfThePackageIsFoundByItsName) {

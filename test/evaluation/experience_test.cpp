@@ -152,7 +152,7 @@ TEST(SeparationTest, NormalDistributionsHaveTheAreaOfTheBinormalModel) {
       run.negative.push_back(rng.Normal(0.0, 1.0));
     }
   }
-  const Interval area = AreaInterval(runs, base::Rng(4));
+  const Interval area = AreaInterval({runs}, base::Rng(4));
   EXPECT_NEAR(area.estimate, 0.7602, 0.01);
   EXPECT_LT(area.lower, area.estimate);
   EXPECT_GT(area.upper, area.estimate);
@@ -177,7 +177,7 @@ TEST(SeparationTest, WhatKnowsTheStratumAloneTellsNothingWithin) {
       all.push_back(run);
     }
   }
-  EXPECT_GT(AreaInterval(all, base::Rng(4)).lower, 0.6);
+  EXPECT_GT(AreaInterval({all}, base::Rng(4)).lower, 0.6);
   const Interval within = AreaIntervalWithin(strata, base::Rng(4));
   EXPECT_NEAR(within.estimate, 0.5, 0.03);
   EXPECT_LT(within.lower, 0.5);
@@ -186,6 +186,47 @@ TEST(SeparationTest, WhatKnowsTheStratumAloneTellsNothingWithin) {
   for (RunScores& run : strata[0]) run.positive.clear();
   EXPECT_DOUBLE_EQ(AreaIntervalWithin(strata, base::Rng(4)).estimate, AreaUnderCurve(strata[1]));
   EXPECT_TRUE(std::isnan(AreaIntervalWithin({strata[0]}, base::Rng(4)).estimate));
+}
+
+TEST(SeparationTest, ResamplingKeepsHowManyRunsOfEachKindThereAre) {
+  // Runs of one kind are all alike: only the mixture of kinds could move the area.
+  const RunScores fast{{2.0, 3.0, 3.0, 3.0}, {1.0, 2.0}}, slow{{1.0}, {0.0, 1.0, 1.0, 3.0}};
+  std::vector<RunScores> runs;
+  std::vector<std::string> kinds;
+  for (int i = 0; i < 10; ++i) {
+    runs.push_back(fast);
+    kinds.push_back("fast");
+    runs.push_back(slow);
+    kinds.push_back("slow");
+  }
+  const Interval mixed = AreaInterval({runs}, base::Rng(4));
+  EXPECT_GT(mixed.upper - mixed.lower, 0.02);
+  const Interval area = AreaInterval(StrataOf(runs, kinds), base::Rng(4));
+  EXPECT_DOUBLE_EQ(area.estimate, mixed.estimate);
+  EXPECT_DOUBLE_EQ(area.lower, area.estimate);
+  EXPECT_DOUBLE_EQ(area.upper, area.estimate);
+}
+
+TEST(SeparationTest, RunsAloneOfTheirKindAreResampledTogether) {
+  const std::vector<RunScores> runs{{{1.0}, {}}, {{2.0}, {}}, {{3.0}, {}}, {{4.0}, {}}};
+  const auto sizes = [&](const std::vector<std::string>& kinds) {
+    std::vector<std::size_t> sizes;
+    for (const auto& stratum : StrataOf(runs, kinds)) sizes.push_back(stratum.size());
+    return sizes;
+  };
+  EXPECT_THAT(sizes({"a", "a", "a", "a"}), ElementsAre(4));
+  EXPECT_THAT(sizes({"a", "b", "a", "b"}), ElementsAre(2, 2));
+  EXPECT_THAT(sizes({"a", "b", "c", "b"}), ElementsAre(2, 2)) << "b, and the others";
+  EXPECT_THROW(StrataOf(runs, {"a"}), std::logic_error);
+}
+
+TEST(ExperienceRunsTest, ARunIsOfTheKindOfItsMotionSets) {
+  EXPECT_EQ(MotionSetOf("move_base_param(NT1, fast)"), "fast");
+  EXPECT_EQ(MotionSetOf("move_base(home)"), "home");
+  EXPECT_EQ(MotionSetOf("wait"), "wait");
+  EXPECT_THAT(MotionSetsOf({{"0", {"drive(a, slow)", "drive(b, slow)"}, {}},
+                            {"1", {"drive(a, slow)", "drive(a, fast)"}, {}}}),
+              ElementsAre("slow", "fast, slow"));
 }
 
 class ExperienceReportTest : public ::testing::Test {
@@ -200,8 +241,8 @@ class ExperienceReportTest : public ::testing::Test {
   }
 
   /// A drive of 20 s; every third load falls after a jerk half a second before.
-  static knowledge::ExperienceBatch LegOf(int run, int leg) {
-    knowledge::ExperienceBatch batch{"fast/" + std::to_string(run), "drive(a, fast)", {}};
+  static knowledge::ExperienceBatch LegOf(int run, int leg, const std::string& set = "fast") {
+    knowledge::ExperienceBatch batch{set + "/" + std::to_string(run), "drive(a, " + set + ")", {}};
     const bool falls = leg % 3 == 0;
     for (int i = 0; i < 400; ++i) {
       ToppleEpisodePart part;
@@ -251,6 +292,36 @@ TEST_F(ExperienceReportTest, TheFeatureThatForetellsFallsIsFound) {
   EXPECT_EQ(analysis.at("pictures").at("falls").at("x").size(), 8u);
   std::string again;
   EXPECT_EQ(AnalysisOf(Store(0), 1, &again), analysis) << "equal seeds, equal bits";
+}
+
+TEST_F(ExperienceReportTest, FallsAndWindowsAreCountedByMotionSet) {
+  knowledge::ExperienceStore store = Store(6);
+  for (int run = 0; run < 2; ++run) {
+    for (int leg = 0; leg < 3; ++leg) store.Write(LegOf(run, leg, "slow"));
+  }
+  std::string text;
+  const nlohmann::ordered_json prediction = AnalysisOf(store, 1, &text).at("prediction");
+  // Ten windows in a drive, three of which are too near to a fall.
+  EXPECT_EQ(prediction.at("motion_sets"),
+            nlohmann::ordered_json::parse(
+                R"([{"motion_set": "fast", "runs": 4, "falls": 8, "calm_windows": 216},
+                    {"motion_set": "slow", "runs": 2, "falls": 2, "calm_windows": 54}])"));
+  EXPECT_EQ(prediction.at("falls"), 10);
+  EXPECT_EQ(prediction.at("calm_windows"), 270);
+  EXPECT_EQ(prediction.at("resamples"), 2000);
+  EXPECT_THAT(text, HasSubstr("motion set  runs  falls  windows without"));
+}
+
+TEST_F(ExperienceReportTest, RunsAreResampledWithinTheirMotionSet) {
+  // Each run is like the others of its motion set, and only fast ones have falls.
+  knowledge::ExperienceStore store = Store(3);
+  for (int run = 0; run < 4; ++run) store.Write(LegOf(run, 1, "slow"));
+  std::string text;
+  const nlohmann::ordered_json analysis = AnalysisOf(store, 1, &text);
+  for (const nlohmann::ordered_json& feature : analysis.at("prediction").at("features")) {
+    const nlohmann::ordered_json& area = feature.at("area");
+    EXPECT_EQ(area.at("lower"), area.at("upper")) << feature.at("feature");
+  }
 }
 
 TEST_F(ExperienceReportTest, TooLittleIsSaid) {

@@ -5,7 +5,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 #include "hires/base/text.h"
 #include "support/messages.h"
@@ -16,6 +19,7 @@ namespace {
 
 using hires::test_support::ConfigErrorOf;
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -47,6 +51,28 @@ class ExperienceStoreTest : public ::testing::Test {
     std::vector<double> times;
     store.ForEach(query, [&](const auto& stored) { times.push_back(stored.part.time); });
     return times;
+  }
+  std::vector<std::string> Files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+      names.push_back(entry.path().filename().string());
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+  }
+  /// A process that writes and is killed before it closes what it wrote.
+  /// @param write  gives the store.
+  template <typename Write>
+  static void KillAfter(const Write& write) {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      const ExperienceStore store = write();
+      kill(getpid(), SIGKILL);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    ASSERT_TRUE(WIFSIGNALED(status));
   }
 
   const hires::test_support::TemporaryFolder folder_;
@@ -130,13 +156,94 @@ TEST_F(ExperienceStoreTest, OneWritesAtATime) {
   EXPECT_EQ(TimesOf({}).size(), 0u) << "others may read";
 }
 
-TEST_F(ExperienceStoreTest, WhatIsReplacedIsForgotten) {
+TEST_F(ExperienceStoreTest, WhatIsReplacedIsThereUntilTheEnd) {
   Writer().Write({"old", "a", {PartAt(1.0), PartAt(2.0)}});
-  ExperienceStore(Path(), ExperienceStore::Mode::kReplace).Write({"new", "b", {PartAt(3.0)}});
-  EXPECT_THAT(TimesOf({}), testing::ElementsAre(3.0));
-  ExperienceQuery of_old;
-  of_old.run = "old";
-  EXPECT_EQ(TimesOf(of_old).size(), 0u);
+  {
+    ExperienceStore given_up(Path(), ExperienceStore::Mode::kReplace);
+    given_up.Write({"never", "b", {PartAt(3.0)}});
+  }
+  EXPECT_THAT(TimesOf({}), ElementsAre(1.0, 2.0));
+  ExperienceStore store(Path(), ExperienceStore::Mode::kReplace);
+  store.Write({"new", "b", {PartAt(4.0)}});
+  EXPECT_THAT(TimesOf({}), ElementsAre(1.0, 2.0)) << "others read what was there";
+  EXPECT_EQ(store.num_parts(), 1u) << "what was given up is gone";
+  EXPECT_GT(store.bytes(), 68u);
+  store.Finish();
+  EXPECT_EQ(store.num_parts(), 1u);
+  EXPECT_THAT(TimesOf({}), ElementsAre(4.0));
+  EXPECT_THAT(Files(), ElementsAre("e.db", "e.db.lock"));
+  EXPECT_THROW(store.Finish(), std::logic_error);
+  Writer().Write({"more", "b", {PartAt(5.0)}});
+  EXPECT_THAT(TimesOf({}), ElementsAre(4.0, 5.0)) << "it is written as any other";
+  EXPECT_THROW(Writer().Finish(), std::logic_error);
+}
+
+TEST_F(ExperienceStoreTest, AKillLeavesWhatWasToBeReplaced) {
+  Writer().Write({"old", "a", {PartAt(1.0)}});
+  KillAfter([&] {
+    ExperienceStore store(Path(), ExperienceStore::Mode::kReplace);
+    store.Write({"killed", "b", {PartAt(2.0)}});
+    return store;
+  });
+  EXPECT_THAT(TimesOf({}), ElementsAre(1.0));
+  EXPECT_THAT(Files(), Contains("e.db.unfinished"));
+  ExperienceStore store(Path(), ExperienceStore::Mode::kReplace);
+  store.Write({"new", "b", {PartAt(3.0)}});
+  store.Finish();
+  EXPECT_THAT(TimesOf({}), ElementsAre(3.0)) << "nothing of the one that was killed";
+  EXPECT_THAT(Files(), ElementsAre("e.db", "e.db.lock"));
+}
+
+TEST_F(ExperienceStoreTest, ALogThatAKillLeftGoesToNoOtherFile) {
+  const auto leave_a_log = [&] {
+    KillAfter([&] {
+      ExperienceStore store = Writer();
+      store.Write({"old", "a", {PartAt(1.0)}});
+      return store;
+    });
+    ASSERT_GT(std::filesystem::file_size(Path("e.db-wal")), 0u);
+  };
+  leave_a_log();
+  {
+    const ExperienceStore given_up(Path(), ExperienceStore::Mode::kReplace);
+    EXPECT_THAT(TimesOf({}), ElementsAre(1.0)) << "what is in the log is kept";
+  }
+  EXPECT_THAT(TimesOf({}), ElementsAre(1.0));
+  std::filesystem::remove(Path());
+  leave_a_log();
+  std::filesystem::remove(Path());  // its log stays
+  ExperienceStore store(Path(), ExperienceStore::Mode::kReplace);
+  store.Write({"new", "b", {PartAt(2.0)}});
+  store.Finish();
+  EXPECT_THAT(TimesOf({}), ElementsAre(2.0));
+}
+
+TEST_F(ExperienceStoreTest, WhatOthersHoldIsRefusedBeforeItIsReplaced) {
+  Writer().Write({"old", "a", {PartAt(1.0)}});
+  const ExperienceStore reader(Path(), ExperienceStore::Mode::kRead);
+  EXPECT_EQ(reader.num_parts(), 1u);
+  EXPECT_THAT(ConfigErrorOf([&] { ExperienceStore(Path(), ExperienceStore::Mode::kReplace); }),
+              AllOf(HasSubstr("e.db: another program holds it"), HasSubstr("end that one")));
+}
+
+TEST_F(ExperienceStoreTest, WhatCannotBeReplacedIsKeptBesideIt) {
+  ExperienceStore store(Path(), ExperienceStore::Mode::kReplace);
+  store.Write({"new", "a", {PartAt(1.0)}});
+  std::filesystem::create_directory(Path());
+  EXPECT_THAT(ConfigErrorOf([&] { store.Finish(); }),
+              AllOf(HasSubstr("e.db: cannot be replaced ("), HasSubstr("what was written is in "),
+                    HasSubstr("e.db.unfinished")));
+  EXPECT_EQ(ExperienceStore(Path("e.db.unfinished"), ExperienceStore::Mode::kRead).num_parts(), 1u);
+}
+
+TEST_F(ExperienceStoreTest, ALinkGoesOnLeadingToTheFile) {
+  Writer().Write({"old", "a", {PartAt(1.0)}});
+  std::filesystem::create_symlink(Path(), Path("link.db"));
+  ExperienceStore store(Path("link.db"), ExperienceStore::Mode::kReplace);
+  store.Write({"new", "a", {PartAt(2.0)}});
+  store.Finish();
+  EXPECT_TRUE(std::filesystem::is_symlink(Path("link.db")));
+  EXPECT_THAT(TimesOf({}), ElementsAre(2.0));
 }
 
 TEST_F(ExperienceStoreTest, OtherFilesAreRefusedByName) {
@@ -148,6 +255,10 @@ TEST_F(ExperienceStoreTest, OtherFilesAreRefusedByName) {
                     HasSubstr("topple_loop.yaml --experiences FILE` makes them")));
   EXPECT_THAT(open(Path("x/none.db"), ExperienceStore::Mode::kWrite),
               HasSubstr("there is no folder"));
+  std::filesystem::create_directory(Path("folder.db"));
+  for (const auto mode : {ExperienceStore::Mode::kWrite, ExperienceStore::Mode::kReplace}) {
+    EXPECT_THAT(open(Path("folder.db"), mode), HasSubstr("folder.db: is no regular file; name"));
+  }
   std::ofstream(Path("text.db")) << std::string(5000, 'x');
   for (const auto mode : {ExperienceStore::Mode::kRead, ExperienceStore::Mode::kWrite,
                           ExperienceStore::Mode::kReplace}) {

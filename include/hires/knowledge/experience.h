@@ -69,11 +69,11 @@ class ExperienceStore {
   enum class Mode {
     kRead,
     kWrite,   ///< adds to what is there
-    kReplace  ///< what is there is forgotten
+    kReplace  ///< writes beside the file, which Finish() replaces
   };
   /// Opens, or makes, the file; one object on this computer writes it at a time.
-  /// @throws base::ConfigError naming the path: no such file, no folder, another kind of file, or
-  /// who writes it.
+  /// @throws base::ConfigError naming the path: no such file, no folder, another kind of file, who
+  /// writes it, or that another program holds what shall be replaced.
   ExperienceStore(const std::string& path, Mode mode);
   ExperienceStore(ExperienceStore&&) noexcept;
   ~ExperienceStore();
@@ -81,6 +81,12 @@ class ExperienceStore {
   /// All of the batch or nothing; it survives the death of the process.
   /// @throws base::ConfigError if it cannot be written.
   void Write(const ExperienceBatch& batch);
+
+  /// What was written takes the place of the file, all at once. Where the object or its process
+  /// ends before, the file is as it was. Afterwards the object reads the file.
+  /// @pre opened by kReplace, not yet finished.  @throws base::ConfigError if the file cannot be
+  /// replaced; the object is of no use then.
+  void Finish();
 
   /// A part and what it belongs to.
   struct Stored {
@@ -92,7 +98,7 @@ class ExperienceStore {
   void ForEach(const ExperienceQuery& query, const std::function<void(const Stored&)>& take) const;
 
   std::uint64_t num_parts() const;
-  std::uint64_t bytes() const;  ///< of the file and its log
+  std::uint64_t bytes() const;  ///< of the file that is written or read, and its log
 
  private:
   struct Implementation;

@@ -46,6 +46,18 @@ std::string FilterTable(const ordered_json& trial) {
       trial.at("cutoff").get<double>(), FormatTable(rows));
 }
 
+std::string MotionSetTable(const ordered_json& sets) {
+  std::vector<std::vector<std::string>> rows{{"motion set", "runs", "falls", "windows without"}};
+  for (const ordered_json& set : sets) {
+    const auto whole = [&](const char* key) {
+      return fmt::format("{}", set.at(key).get<std::size_t>());
+    };
+    rows.push_back({set.at("motion_set").get<std::string>(), whole("runs"), whole("falls"),
+                    whole("calm_windows")});
+  }
+  return FormatTable(rows);
+}
+
 std::string PredictionTable(const ordered_json& prediction) {
   std::vector<std::vector<std::string>> rows{{"feature", "area under the curve (95 %)",
                                               "within a motion set", "threshold", "hits",
@@ -58,11 +70,11 @@ std::string PredictionTable(const ordered_json& prediction) {
   }
   return fmt::format(
       "{} falls ({} others came in the first second of a drive) and {} windows without, {:g} s "
-      "ahead; thresholds chosen on every other run, judged on the rest\n{}",
+      "ahead; thresholds chosen on every other run, judged on the rest\n{}\n{}",
       prediction.at("falls").get<std::size_t>(),
       prediction.at("falls_too_early").get<std::size_t>(),
       prediction.at("calm_windows").get<std::size_t>(), prediction.at("ahead").get<double>(),
-      FormatTable(rows));
+      MotionSetTable(prediction.at("motion_sets")), FormatTable(rows));
 }
 
 }  // namespace

@@ -1,6 +1,9 @@
 #include "evaluation/experience/experience_runs.h"
 
 #include <map>
+#include <set>
+
+#include "hires/base/text.h"
 
 namespace hires::evaluation {
 namespace {
@@ -30,6 +33,23 @@ std::vector<ExperienceRun> RunsOf(const knowledge::ExperienceStore& store,
     run.stretches.back().push_back(stored.part);
   });
   return runs;
+}
+
+std::string MotionSetOf(const std::string& action) {
+  const std::size_t begin = action.find_last_of(",(");
+  if (begin == std::string::npos) return action;
+  const std::size_t first = action.find_first_not_of(' ', begin + 1);
+  return first == std::string::npos ? "" : action.substr(first, action.find(')', first) - first);
+}
+
+std::vector<std::string> MotionSetsOf(const std::vector<ExperienceRun>& runs) {
+  std::vector<std::string> texts;
+  for (const ExperienceRun& run : runs) {
+    std::set<std::string> sets;
+    for (const std::string& action : run.actions) sets.insert(MotionSetOf(action));
+    texts.push_back(base::Join({sets.begin(), sets.end()}, ", "));
+  }
+  return texts;
 }
 
 std::vector<std::size_t> OnsetsOf(const Stretch& stretch) {

@@ -20,6 +20,13 @@ struct ExperienceRun {
 std::vector<ExperienceRun> RunsOf(const knowledge::ExperienceStore& store,
                                   const knowledge::ExperienceQuery& query = {});
 
+/// The last argument of an action: "fast" of "move_base_param(NT1, fast)"; one without arguments as
+/// it is.
+std::string MotionSetOf(const std::string& action);
+
+/// By run the motion sets that it has, as one text: what kind of run it is, for resampling.
+std::vector<std::string> MotionSetsOf(const std::vector<ExperienceRun>& runs);
+
 /// The parts in which a fall begins: the load topples, and did not in the part before.
 std::vector<std::size_t> OnsetsOf(const Stretch& stretch);
 

@@ -63,18 +63,9 @@ void AddStretch(const Stretch& stretch, const Feature& feature, RunScores* score
   }
 }
 
-/// The motion set is the last argument: "move_base_param(NT1, fast)".
-std::string MotionSetOf(const std::string& action) {
-  const std::size_t begin = action.find_last_of(",(");
-  if (begin == std::string::npos) return action;
-  const std::size_t first = action.find_first_not_of(' ', begin + 1);
-  return first == std::string::npos ? "" : action.substr(first, action.find(')', first) - first);
-}
-
-/// By motion set what each run has of it; sets that only one run has are left out, as one run says
-/// nothing of others.
-std::vector<std::vector<RunScores>> ByMotionSet(const std::vector<ExperienceRun>& runs,
-                                                const Feature& feature) {
+/// By motion set what each run has of it.
+std::map<std::string, std::vector<RunScores>> ByMotionSet(const std::vector<ExperienceRun>& runs,
+                                                          const Feature& feature) {
   std::map<std::string, std::vector<RunScores>> by_set;
   for (const ExperienceRun& run : runs) {
     std::map<std::string, RunScores> of_run;
@@ -83,8 +74,13 @@ std::vector<std::vector<RunScores>> ByMotionSet(const std::vector<ExperienceRun>
     }
     for (auto& [set, scores] : of_run) by_set[set].push_back(std::move(scores));
   }
-  std::vector<std::vector<RunScores>> strata;
-  for (auto& [set, of_set] : by_set) {
+  return by_set;
+}
+
+/// Motion sets that only one run has are left out, as one run says nothing of others.
+Strata MotionSetsToCompare(const std::vector<ExperienceRun>& runs, const Feature& feature) {
+  Strata strata;
+  for (auto& [set, of_set] : ByMotionSet(runs, feature)) {
     if (of_set.size() > 1) strata.push_back(std::move(of_set));
   }
   return strata;
@@ -111,6 +107,18 @@ std::size_t CountOf(const std::vector<RunScores>& runs, std::vector<double> RunS
   return count;
 }
 
+/// How rare falls are among the windows, which are the same for each feature.
+ordered_json MotionSetsJson(const std::vector<ExperienceRun>& runs) {
+  ordered_json sets = ordered_json::array();
+  for (const auto& [set, of_set] : ByMotionSet(runs, kFeatures[0])) {
+    sets.push_back({{"motion_set", set},
+                    {"runs", of_set.size()},
+                    {"falls", CountOf(of_set, &RunScores::positive)},
+                    {"calm_windows", CountOf(of_set, &RunScores::negative)}});
+  }
+  return sets;
+}
+
 ordered_json FeatureJson(const Feature& feature, const std::vector<ExperienceRun>& experiences,
                          const std::vector<RunScores>& runs, const base::Rng& rng) {
   const RocPoint judged =
@@ -121,8 +129,9 @@ ordered_json FeatureJson(const Feature& feature, const std::vector<ExperienceRun
     hits.push_back(NumberOrNull(point.hits));
   }
   return {{"feature", feature.name},
-          {"area", IntervalJson(AreaInterval(runs, rng))},
-          {"area_within", IntervalJson(AreaIntervalWithin(ByMotionSet(experiences, feature), rng))},
+          {"area", IntervalJson(AreaInterval(StrataOf(runs, MotionSetsOf(experiences)), rng))},
+          {"area_within",
+           IntervalJson(AreaIntervalWithin(MotionSetsToCompare(experiences, feature), rng))},
           {"judged",
            {{"threshold", NumberOrNull(judged.threshold)},
             {"hits", NumberOrNull(judged.hits)},
@@ -149,6 +158,8 @@ ordered_json PredictFalls(const std::vector<ExperienceRun>& runs, const base::Rn
           {"falls", falls},
           {"falls_too_early", all_falls - falls},
           {"calm_windows", calm},
+          {"motion_sets", MotionSetsJson(runs)},
+          {"resamples", kAreaResamples},
           {"features", features}};
 }
 

@@ -125,8 +125,10 @@ void AddScores(const Measured& stretch, const Signal& v, RunScores* scores) {
   }
 }
 
+/// @param kinds  of the runs, for resampling.
 ordered_json TryOne(const std::string& name, bool is_causal, const Filter& filter,
-                    const std::vector<std::vector<Measured>>& all, const base::Rng& rng) {
+                    const std::vector<std::vector<Measured>>& all,
+                    const std::vector<std::string>& kinds, const base::Rng& rng) {
   Errors errors;
   std::vector<RunScores> scores(all.size());
   for (std::size_t r = 0; r < all.size(); ++r) {
@@ -137,7 +139,7 @@ ordered_json TryOne(const std::string& name, bool is_causal, const Filter& filte
     }
   }
   const auto root = [&](double squares) { return std::sqrt(squares / errors.count); };
-  const Interval area = AreaInterval(scores, rng);
+  const Interval area = AreaInterval(StrataOf(scores, kinds), rng);
   return {{"filter", name},
           {"causal", is_causal},
           {"rms_error", {{"v", root(errors.v)}, {"a", root(errors.a)}, {"j", root(errors.j)}}},
@@ -150,6 +152,7 @@ ordered_json TryOne(const std::string& name, bool is_causal, const Filter& filte
 ordered_json TryFilters(const std::vector<ExperienceRun>& runs, const base::Rng& rng) {
   enum Streams : std::uint64_t { kNoiseStream, kResampleStream };
   const auto all = MeasureAll(runs, rng.Fork(kNoiseStream));
+  const std::vector<std::string> kinds = MotionSetsOf(runs);
   const Signal autocorrelation = MeanAutocorrelation(all);
   const std::size_t window = WindowFrom(autocorrelation);
   const double cutoff = kCutoffOfAverage * kRate / static_cast<double>(window);
@@ -157,17 +160,18 @@ ordered_json TryFilters(const std::vector<ExperienceRun>& runs, const base::Rng&
   ordered_json filters = ordered_json::array();
   const base::Rng resampling = rng.Fork(kResampleStream);
   filters.push_back(TryOne(
-      "none", false, [](const Signal& v) { return v; }, all, resampling));
+      "none", false, [](const Signal& v) { return v; }, all, kinds, resampling));
   for (const bool is_causal : {false, true}) {
     filters.push_back(TryOne(
         "moving average", is_causal,
-        [&](const Signal& v) { return MovingAverage(v, window, is_causal); }, all, resampling));
+        [&](const Signal& v) { return MovingAverage(v, window, is_causal); }, all, kinds,
+        resampling));
     filters.push_back(TryOne(
         "median", is_causal, [&](const Signal& v) { return MovingMedian(v, window, is_causal); },
-        all, resampling));
+        all, kinds, resampling));
     filters.push_back(TryOne(
         "Butterworth", is_causal, [&](const Signal& v) { return Filtered(v, section, is_causal); },
-        all, resampling));
+        all, kinds, resampling));
   }
   return {{"noise", kNoise},
           {"autocorrelation", autocorrelation},

@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <utility>
+
+#include "hires/base/check.h"
 
 namespace hires::evaluation {
 namespace {
-
-constexpr int kResamples = 300;
 
 struct Scored {
   double score;
@@ -59,12 +61,17 @@ struct BinnedRun {
   std::array<double, kAreaBins> positive{}, negative{};
 };
 
-std::vector<BinnedRun> BinnedRunsOf(const std::vector<RunScores>& runs) {
+std::vector<double> EdgesOfBins(const std::vector<RunScores>& runs) {
   const std::vector<Scored> sorted = Sorted(runs);
-  std::vector<double> edges;  // between bins
+  std::vector<double> edges;
   for (std::size_t b = 1; b < kAreaBins && !sorted.empty(); ++b) {
     edges.push_back(sorted[b * sorted.size() / kAreaBins].score);
   }
+  return edges;
+}
+
+std::vector<BinnedRun> BinnedRunsOf(const std::vector<RunScores>& runs,
+                                    const std::vector<double>& edges) {
   const auto bin = [&](double score) {
     return std::upper_bound(edges.begin(), edges.end(), score) - edges.begin();
   };
@@ -76,14 +83,18 @@ std::vector<BinnedRun> BinnedRunsOf(const std::vector<RunScores>& runs) {
   return binned;
 }
 
+void Add(const BinnedRun& run, BinnedRun* sum) {
+  for (std::size_t b = 0; b < kAreaBins; ++b) {
+    sum->positive[b] += run.positive[b];
+    sum->negative[b] += run.negative[b];
+  }
+}
+
+/// As many of the runs as there are, added up.
 BinnedRun Resampled(const std::vector<BinnedRun>& runs, base::Rng* rng) {
   BinnedRun resample;
   for (std::size_t k = 0; k < runs.size(); ++k) {
-    const BinnedRun& chosen = runs[rng->Index(static_cast<int>(runs.size()))];
-    for (std::size_t b = 0; b < kAreaBins; ++b) {
-      resample.positive[b] += chosen.positive[b];
-      resample.negative[b] += chosen.negative[b];
-    }
+    Add(runs[rng->Index(static_cast<int>(runs.size()))], &resample);
   }
   return resample;
 }
@@ -120,7 +131,43 @@ double AreaOf(const BinnedRun& run) {
   return hits * alarms > 0.0 ? area / (hits * alarms) : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// @param area_of  the area of one resample, which comes as a sum of runs for each stratum.
+template <typename Area>
+Interval ResampledInterval(double estimate, const std::vector<std::vector<BinnedRun>>& strata,
+                           base::Rng rng, const Area& area_of) {
+  std::vector<double> areas;
+  std::vector<BinnedRun> resample(strata.size());
+  for (int i = 0; i < kAreaResamples; ++i) {
+    for (std::size_t s = 0; s < strata.size(); ++s) resample[s] = Resampled(strata[s], &rng);
+    const double area = area_of(resample);
+    if (std::isfinite(area)) areas.push_back(area);
+  }
+  if (areas.empty()) return {estimate, estimate, estimate};
+  std::sort(areas.begin(), areas.end());
+  const auto at = [&](double share) {
+    return areas[static_cast<std::size_t>(share * static_cast<double>(areas.size() - 1))];
+  };
+  return {estimate, at(0.025), at(0.975)};
+}
+
 }  // namespace
+
+Strata StrataOf(const std::vector<RunScores>& runs, const std::vector<std::string>& kinds) {
+  HIRES_CHECK(runs.size() == kinds.size(), "each run has a kind");
+  std::map<std::string, std::vector<RunScores>> by_kind;
+  for (std::size_t r = 0; r < runs.size(); ++r) by_kind[kinds[r]].push_back(runs[r]);
+  Strata strata;
+  std::vector<RunScores> alone;
+  for (auto& [kind, of_kind] : by_kind) {
+    if (of_kind.size() > 1) {
+      strata.push_back(std::move(of_kind));
+    } else {
+      alone.push_back(std::move(of_kind.front()));
+    }
+  }
+  if (!alone.empty()) strata.push_back(std::move(alone));
+  return strata;
+}
 
 double AreaUnderCurve(const std::vector<RunScores>& runs) {
   const std::vector<Scored> sorted = Sorted(runs);
@@ -134,34 +181,35 @@ double AreaUnderCurve(const std::vector<RunScores>& runs) {
   return all > 0.0 ? area / all : std::numeric_limits<double>::quiet_NaN();
 }
 
-Interval AreaInterval(const std::vector<RunScores>& runs, base::Rng rng) {
-  return AreaIntervalWithin({runs}, rng);
+Interval AreaInterval(const Strata& strata, base::Rng rng) {
+  std::vector<RunScores> all;
+  for (const std::vector<RunScores>& runs : strata) all.insert(all.end(), runs.begin(), runs.end());
+  const std::vector<double> edges = EdgesOfBins(all);
+  std::vector<std::vector<BinnedRun>> binned;
+  for (const std::vector<RunScores>& runs : strata) binned.push_back(BinnedRunsOf(runs, edges));
+  return ResampledInterval(AreaUnderCurve(all), binned, rng,
+                           [](const std::vector<BinnedRun>& resample) {
+                             BinnedRun sum;
+                             for (const BinnedRun& stratum : resample) Add(stratum, &sum);
+                             return AreaOf(sum);
+                           });
 }
 
-Interval AreaIntervalWithin(const std::vector<std::vector<RunScores>>& strata, base::Rng rng) {
+Interval AreaIntervalWithin(const Strata& strata, base::Rng rng) {
   WeightedArea whole;
   std::vector<std::vector<BinnedRun>> binned;
   for (const std::vector<RunScores>& runs : strata) {
     whole.Add(AreaUnderCurve(runs), PositivesOf(runs));
-    binned.push_back(BinnedRunsOf(runs));
+    binned.push_back(BinnedRunsOf(runs, EdgesOfBins(runs)));
   }
-  std::vector<double> areas;
-  for (int i = 0; i < kResamples; ++i) {
-    WeightedArea resampled;
-    for (const std::vector<BinnedRun>& runs : binned) {
-      const BinnedRun resample = Resampled(runs, &rng);
-      resampled.Add(AreaOf(resample),
-                    std::accumulate(resample.positive.begin(), resample.positive.end(), 0.0));
+  return ResampledInterval(whole.mean(), binned, rng, [](const std::vector<BinnedRun>& resample) {
+    WeightedArea mean;
+    for (const BinnedRun& stratum : resample) {
+      mean.Add(AreaOf(stratum),
+               std::accumulate(stratum.positive.begin(), stratum.positive.end(), 0.0));
     }
-    if (std::isfinite(resampled.mean())) areas.push_back(resampled.mean());
-  }
-  const double estimate = whole.mean();
-  if (areas.empty()) return {estimate, estimate, estimate};
-  std::sort(areas.begin(), areas.end());
-  const auto at = [&](double share) {
-    return areas[static_cast<std::size_t>(share * static_cast<double>(areas.size() - 1))];
-  };
-  return {estimate, at(0.025), at(0.975)};
+    return mean.mean();
+  });
 }
 
 std::vector<RocPoint> RocOf(const std::vector<RunScores>& runs, std::size_t most) {

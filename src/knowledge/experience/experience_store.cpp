@@ -4,7 +4,9 @@
 
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
+#include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/files/writer_lock.h"
 #include "hires/knowledge/experience.h"
@@ -85,6 +87,11 @@ void CheckPath(const std::string& path, ExperienceStore::Mode mode) {
   if (mode == ExperienceStore::Mode::kRead && !fs::is_regular_file(path)) {
     throw base::ConfigError(fmt::format("{}: no such file; wanted experiences: {}", path, kMakers));
   }
+  std::error_code error;
+  if (mode != ExperienceStore::Mode::kRead && fs::exists(path, error) &&
+      !fs::is_regular_file(path, error)) {
+    throw base::ConfigError(fmt::format("{}: is no regular file; name a file", path));
+  }
   const fs::path folder = fs::path(path).parent_path();
   if (!folder.empty() && !fs::is_directory(folder)) {
     throw base::ConfigError(
@@ -98,6 +105,71 @@ std::uint64_t BytesOf(const std::string& path) {
   return error ? 0 : bytes;
 }
 
+bool IsEmpty(SQLite::Database* database) {
+  return database->execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
+}
+
+void RequireExperiences(SQLite::Database* database, const std::string& path) {
+  if (database->execAndGet("PRAGMA application_id").getInt() != kApplication) {
+    FailWithoutExperiences(path);
+  }
+}
+
+/// Of a database that is open: all that was committed lies in its one file, with no log beside it.
+/// SQLite refuses it while another program has the file open with its log.
+void TakeInLog(SQLite::Database* database) { database->exec("PRAGMA journal_mode = DELETE"); }
+
+/// A database that is written beside the one that it shall replace; gone with its owner.
+/// @pre the owner alone may write both.
+class Replacement {
+ public:
+  explicit Replacement(const std::string& path) {
+    std::error_code error;
+    const fs::path canonical = fs::weakly_canonical(path, error);  // a link goes on leading there
+    target_ = error ? path : canonical.string();
+    path_ = target_ + ".unfinished";
+    if (fs::exists(target_, error)) {
+      SQLite::Database old(target_, SQLite::OPEN_READWRITE, kBusyTimeout);
+      if (!IsEmpty(&old)) RequireExperiences(&old, path);
+      TakeInLog(&old);  // now: in the end, after hours of work, another program might hold it
+    }
+    Remove();  // what a process that was killed left
+  }
+  ~Replacement() {
+    if (!path_.empty()) Remove();
+  }
+  Replacement(const Replacement&) = delete;
+  Replacement& operator=(const Replacement&) = delete;
+
+  const std::string& path() const { return path_; }
+
+  /// @pre the database is closed, and its log taken in.
+  void Finish() {
+    RemoveLogs(target_);  // SQLite would take one that lies there for the new file's
+    std::error_code error;
+    fs::rename(path_, target_, error);
+    const std::string written = std::exchange(path_, "");
+    if (!error) return;
+    throw base::ConfigError(fmt::format("{}: cannot be replaced ({}); what was written is in {}",
+                                        target_, error.message(), written));
+  }
+
+ private:
+  static void RemoveLogs(const std::string& path) {
+    std::error_code ignored;
+    for (const char* ending : {"-wal", "-shm", "-journal"}) fs::remove(path + ending, ignored);
+  }
+
+  void Remove() const {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+    RemoveLogs(path_);
+  }
+
+  std::string target_;
+  std::string path_;  // empty: nothing is to be removed
+};
+
 }  // namespace
 
 struct ExperienceStore::Implementation {
@@ -105,30 +177,18 @@ struct ExperienceStore::Implementation {
       : path(std::move(file)),
         lock(mode == Mode::kRead ? nullptr
                                  : std::make_unique<base::WriterLock>(path, "name another file")),
-        database(path,
+        replacement(mode == Mode::kReplace ? std::make_unique<Replacement>(path) : nullptr),
+        database(replacement ? replacement->path() : path,
                  mode == Mode::kRead ? SQLite::OPEN_READONLY
                                      : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE,
                  kBusyTimeout) {
-    const bool is_new = mode != Mode::kRead &&
-                        database.execAndGet("SELECT count(*) FROM sqlite_master").getInt() == 0;
-    if (!is_new && database.execAndGet("PRAGMA application_id").getInt() != kApplication) {
-      FailWithoutExperiences(path);
-    }
+    if (mode == Mode::kRead || !IsEmpty(&database)) RequireExperiences(&database, path);
     if (mode == Mode::kRead) return;
     // As the Blackboard's store: a dead process loses nothing that was committed.
     database.exec("PRAGMA journal_mode = WAL");
     database.exec("PRAGMA synchronous = NORMAL");
     database.exec(fmt::format("PRAGMA application_id = {}", kApplication));
     database.exec(kSchema);
-    if (mode == Mode::kReplace) Forget();
-  }
-
-  void Forget() {
-    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
-    database.exec("DELETE FROM parts");
-    database.exec("DELETE FROM words");
-    transaction.commit();
-    database.exec("VACUUM");
   }
 
   std::int64_t IdOf(const std::string& word) {
@@ -169,7 +229,8 @@ struct ExperienceStore::Implementation {
   }
 
   std::string path;
-  std::unique_ptr<base::WriterLock> lock;  // given back after the database is closed
+  std::unique_ptr<base::WriterLock> lock;    // given back after the database is closed
+  std::unique_ptr<Replacement> replacement;  // of kReplace alone; removed before that
   SQLite::Database database;
   std::map<std::string, std::int64_t> ids;
 };
@@ -196,6 +257,20 @@ void ExperienceStore::Write(const ExperienceBatch& batch) {
     implementation_->ids.clear();  // what was undone has no number
     throw;
   }
+}
+
+void ExperienceStore::Finish() {
+  HIRES_CHECK(implementation_->replacement, "only what is opened to be replaced is finished");
+  const std::string path = implementation_->path;
+  Guarded(path, [&] {
+    TakeInLog(&implementation_->database);
+    // Kept while the database is closed and renamed.
+    const std::unique_ptr<base::WriterLock> lock = std::move(implementation_->lock);
+    const std::unique_ptr<Replacement> replacement = std::move(implementation_->replacement);
+    implementation_.reset();
+    replacement->Finish();
+    implementation_ = std::make_unique<Implementation>(path, Mode::kRead);
+  });
 }
 
 void ExperienceStore::ForEach(const ExperienceQuery& query,
@@ -234,7 +309,8 @@ std::uint64_t ExperienceStore::num_parts() const {
 }
 
 std::uint64_t ExperienceStore::bytes() const {
-  return BytesOf(implementation_->path) + BytesOf(implementation_->path + "-wal");
+  const std::string& file = implementation_->database.getFilename();
+  return BytesOf(file) + BytesOf(file + "-wal");
 }
 
 }  // namespace hires::knowledge
