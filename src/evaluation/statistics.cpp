@@ -6,6 +6,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "hires/base/check.h"
 
@@ -141,11 +142,21 @@ Interval BootstrapInterval(const std::vector<double>& values, base::Rng rng) {
     for (int i = 0; i < num; ++i) mean += values[rng.Index(num)];
     mean /= num;
   }
-  std::sort(means.begin(), means.end());
+  return PercentileInterval(Mean(values), std::move(means));
+}
+
+Interval PercentileInterval(double estimate, std::vector<double> resampled) {
+  const auto is_no_number = [](double value) { return std::isnan(value); };
+  resampled.erase(std::remove_if(resampled.begin(), resampled.end(), is_no_number),
+                  resampled.end());
+  constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+  if (resampled.empty()) return {estimate, kNoNumber, kNoNumber};
+  std::sort(resampled.begin(), resampled.end());
+  const double last = static_cast<double>(resampled.size() - 1);
   const auto at = [&](double share) {
-    return means[static_cast<std::size_t>(std::lround(share * (kResamples - 1)))];
+    return resampled[static_cast<std::size_t>(std::lround(share * last))];
   };
-  return {Mean(values), at(kTail), at(1.0 - kTail)};
+  return {estimate, at(kTail), at(1.0 - kTail)};
 }
 
 double Mean(const std::vector<double>& values) {

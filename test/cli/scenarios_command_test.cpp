@@ -8,11 +8,14 @@
 
 #include <csignal>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "cli/command_run.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
+#include "hires/knowledge/blackboard_config.h"
+#include "hires/knowledge/store.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
@@ -81,6 +84,28 @@ class ScenariosTest : public ::testing::Test {
 TEST_F(ScenariosTest, ATaskThatIsDoneSucceeds) {
   EXPECT_EQ(Play(Options("Report succeeded '' 2\n")).code, kExitAllSucceeded);
   EXPECT_EQ(FirstRun()["outcome"], "succeeded");
+}
+
+TEST_F(ScenariosTest, TellsFluentsOfTheEpisodeAndHowManyOfThemWereKnownBefore) {
+  const std::string prepared = (folder_.path() / "prepared.db").string();
+  {
+    const auto ontology =
+        std::make_shared<const knowledge::Ontology>(knowledge::Ontology::FromFiles(
+            knowledge::ReadBlackboardConfig(kRoot + "/config/blackboard.yaml").ontology));
+    knowledge::Store store(prepared, ontology);
+    const auto mug = [](const char* name) {
+      knowledge::Fluent fluent;
+      fluent.concept_name = "Mug";
+      fluent.instance = name;
+      return fluent;
+    };
+    store.Add({mug("mug1"), mug("mug2")}, {knowledge::Source::kKnowledge, 0, 0.0});
+    store.Add({mug("mug3")}, {knowledge::Source::kObservation, 0, 1.0});
+  }
+  Play(Options("cp " + prepared + " \"$folder/blackboard.db\"; Report succeeded '' 2\n"));
+  EXPECT_EQ(FirstRun()["fluents"], 3);
+  EXPECT_EQ(FirstRun()["known_fluents"], 2);
+  EXPECT_EQ(Json()["averages"]["succeeded"]["mean_new_fluents"], 1.0);
 }
 
 TEST_F(ScenariosTest, ATaskThatIsNotDoneFailsWithItsCause) {

@@ -36,6 +36,7 @@ ExperimentReport SomeReport() {
   report.seed = 7;
   report.findings.tables = {{"Legs", {{"to", "n"}, {"NT1", "3"}}}, {"Problems", {{"leg"}}}};
   report.findings.measures = {{"reached", 3.0}, {"ratio", std::numeric_limits<double>::infinity()}};
+  report.findings.intervals = {{"ratio", {2.0, 1.5, std::numeric_limits<double>::infinity()}}};
   report.findings.rows.push_back({{"to", "NT1"}, {"reason", "a, \"b\""}, {"duration", 0.1}});
   report.findings.rows.push_back({{"to", "ST1"}, {"reason", ""}, {"duration", 12.0}});
   report.checks =
@@ -117,6 +118,9 @@ TEST(ReportTest, JsonHasNullForWhatIsNoNumber) {
   const auto json = ToJson(SomeReport());
   EXPECT_EQ(json["measures"]["reached"], 3.0);
   EXPECT_TRUE(json["measures"]["ratio"].is_null());
+  EXPECT_EQ(json["intervals"]["ratio"]["estimate"], 2.0);
+  EXPECT_EQ(json["intervals"]["ratio"]["lower"], 1.5);
+  EXPECT_TRUE(json["intervals"]["ratio"]["upper"].is_null());
   EXPECT_EQ(json["expectations"][0]["expected"], "reached at least 3");
   EXPECT_EQ(json["passed"], true);
   EXPECT_EQ(json["rows"].size(), 2u);

@@ -2,9 +2,14 @@
 
 #include <gmock/gmock.h>
 
+#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "hires/base/text.h"
+#include "hires/temporal/interval.h"
+#include "knowledge/support/store_world.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
@@ -123,6 +128,89 @@ TEST(SeriesSummaryTest, WhatReallyHappenedCountsBesideWhatTheRobotBelieves) {
   EXPECT_NEAR(json["mean_fluents_per_second"].get<double>(), 381.0 / 300.21, 1e-9);
 }
 
+/// A long run that succeeded, a short one that failed, one that broke; 150 fluents known before.
+SeriesReport LongAndShort() {
+  SeriesReport report = Report();
+  report.runs.resize(3);
+  report.runs[0].simulated_seconds = 100.0;
+  report.runs[0].fluents = 400;
+  report.runs[1].simulated_seconds = 10.0;
+  report.runs[1].fluents = 200;
+  report.runs[0].known_fluents = report.runs[1].known_fluents = 150;
+  return report;
+}
+
+TEST(SeriesAveragesTest, ARateIsAllFluentsPerAllSecondsNotTheMeanOfRates) {
+  const SeriesReport report = LongAndShort();
+  const SeriesAverages all = AveragesOf(report.runs);
+  EXPECT_EQ(all.runs, 2) << "of the broken one no episode was kept";
+  EXPECT_DOUBLE_EQ(all.simulated_seconds, 55.0);
+  EXPECT_DOUBLE_EQ(all.fluents, 300.0);
+  EXPECT_DOUBLE_EQ(all.fluents_per_second, 600.0 / 110.0) << "the mean of 4 and 20 would be 12";
+  EXPECT_DOUBLE_EQ(all.new_fluents.value(), 150.0);
+  EXPECT_DOUBLE_EQ(all.new_fluents_per_second.value(), 300.0 / 110.0);
+  const ordered_json json = ToJson(report);
+  EXPECT_EQ(json["mean_simulated_seconds"], 55.0);
+  EXPECT_EQ(json["mean_fluents"], 300.0);
+  EXPECT_EQ(json["mean_fluents_per_second"], json["averages"]["all"]["fluents_per_second"]);
+  EXPECT_EQ(json["averages"]["all"]["runs"], 2);
+}
+
+TEST(SeriesAveragesTest, ThoseThatSucceededStandBesideAll) {
+  const SeriesReport report = LongAndShort();
+  EXPECT_EQ(ToJson(report)["averages"]["succeeded"],
+            ordered_json({{"runs", 1},
+                          {"mean_simulated_seconds", 100.0},
+                          {"mean_fluents", 400.0},
+                          {"fluents_per_second", 4.0},
+                          {"mean_new_fluents", 250.0},
+                          {"new_fluents_per_second", 2.5}}));
+  const std::string text = SeriesSummary(report);
+  for (const auto& [which, numbers] : std::map<std::string, std::vector<std::string>>{
+           {"all runs", {"2", "55.0", "s", "300.0", "5.45", "150.0", "2.73"}},
+           {"those that succeeded", {"1", "100.0", "s", "400.0", "4.00", "250.0", "2.50"}}}) {
+    const std::size_t begin = text.find(which);
+    ASSERT_NE(begin, std::string::npos) << text;
+    std::istringstream rest(
+        text.substr(begin + which.size(), text.find('\n', begin) - begin - which.size()));
+    EXPECT_EQ(std::vector<std::string>(std::istream_iterator<std::string>(rest), {}), numbers);
+  }
+}
+
+TEST(SeriesAveragesTest, OfNoRunsTheyAreNull) {
+  SeriesReport report = LongAndShort();
+  report.runs[0].outcome = "failed";
+  const ordered_json none = ToJson(report)["averages"]["succeeded"];
+  EXPECT_EQ(none["runs"], 0);
+  EXPECT_TRUE(none["mean_simulated_seconds"].is_null());
+  EXPECT_TRUE(none["new_fluents_per_second"].is_null());
+}
+
+TEST(SeriesAveragesTest, OneRunThatDoesNotTellWhatWasKnownLeavesNewFluentsUnknown) {
+  SeriesReport report = LongAndShort();
+  report.runs[1].known_fluents.reset();
+  const ordered_json json = ToJson(report)["averages"];
+  EXPECT_TRUE(json["all"]["mean_new_fluents"].is_null());
+  EXPECT_EQ(json["all"]["mean_fluents"], 300.0);
+  EXPECT_EQ(json["succeeded"]["mean_new_fluents"], 250.0) << "that run tells";
+  EXPECT_THAT(SeriesSummary(report), HasSubstr("unknown"));
+}
+
+TEST(TakeBlackboardTest, FluentsLoadedAsKnowledgeAreToldApart) {
+  using test_support::At;
+  using test_support::MakeFluent;
+  using test_support::PoseAt;
+  knowledge::Store store(":memory:", test_support::SmallOntology());
+  store.Add({MakeFluent("Mug", "mug1"), PoseAt("poseMug1", 1.0)},
+            At(-temporal::kForever, 0, knowledge::Source::kKnowledge));
+  store.Add({PoseAt("poseMug1", 2.0), PoseAt("poseVase1", 3.0)}, At(4.0));
+  store.Remove({"mug1"}, At(5.0));
+  SeriesRun run;
+  TakeBlackboard(store, &run);
+  EXPECT_EQ(run.fluents, 4u) << "ended ones included";
+  EXPECT_EQ(run.known_fluents, 2u);
+}
+
 TEST(SeriesSummaryTest, CountsEpisodesOutcomesAndShares) {
   const std::string text = SeriesSummary(Report());
   EXPECT_THAT(text, HasSubstr("= TEST SUMMARY =\n=[ INFO]: 3 episodes created during test with "
@@ -145,7 +233,7 @@ TEST(SharesByChoiceTest, BrokenRunsSayNothingOfAChoice) {
 TEST(SeriesCsvTest, HasAColumnForEachGroupAndQuotesWhatNeedsIt) {
   const std::vector<std::string> lines = base::Split(SeriesCsv(Report()), '\n');
   ASSERT_THAT(lines, SizeIs(6));
-  EXPECT_THAT(lines[0], HasSubstr("run,g,seed,"));
+  EXPECT_THAT(lines[0], AllOf(HasSubstr("run,g,seed,"), HasSubstr(",fluents,known_fluents,")));
   EXPECT_THAT(lines[2], AllOf(HasSubstr("2,1,"), HasSubstr("\"no path, \"\"none\"\"\"")));
   EXPECT_THAT(lines[3], HasSubstr(",1,,300.21"));  // of two tries that broke one was a restart
 }
@@ -156,6 +244,28 @@ TEST(SeriesJsonTest, SaysAllOfEachRun) {
   EXPECT_EQ(json["shares"][1]["members"][0], "poseA hasX 1.5");
   const SeriesRun back = ParseSeriesRun(json["runs"][2], "x");
   EXPECT_EQ(ToJson(back), json["runs"][2]);
+  SeriesRun known = RunOf(1, {0}, "succeeded");
+  known.known_fluents = 182;
+  EXPECT_EQ(ParseSeriesRun(ToJson(known), "x").known_fluents, 182u);
+}
+
+TEST(SeriesJournalTest, GoesOnWithOneThatDoesNotTellWhatWasKnown) {
+  const test_support::TemporaryFolder folder;
+  const std::string path = (folder.path() / "old.journal").string();
+  ordered_json old = ToJson(RunOf(1, {0}, "succeeded"));
+  ASSERT_EQ(old.erase("known_fluents"), 1u);
+  RunJournal(path, {{"journal", "hires scenarios 1"}, {"seed", 1}},
+             [](const ordered_json&, const std::string&) {})
+      .Append(old);
+  SeriesRun next = RunOf(2, {1}, "succeeded");
+  next.known_fluents = 182;
+  const ordered_json setting{{"seed", 1}};
+  SeriesJournal(path, setting).Append(next);
+  const SeriesJournal journal(path, setting);
+  ASSERT_THAT(journal.runs(), SizeIs(2));
+  EXPECT_EQ(journal.runs()[0].fluents, 381u);
+  EXPECT_FALSE(journal.runs()[0].known_fluents.has_value());
+  EXPECT_EQ(journal.runs()[1].known_fluents, 182u);
 }
 
 TEST(SeriesJournalTest, KeepsRunsAndRefusesGaps) {

@@ -4,6 +4,7 @@
 
 #include <boost/math/distributions/beta.hpp>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace hires::evaluation::statistics_test {
@@ -29,6 +30,25 @@ TEST(BootstrapIntervalTest, OfManyNormalValuesItIsTheNormalOne) {
   const Interval boot = BootstrapInterval(values, base::Rng(1)), mean = MeanInterval(values);
   EXPECT_NEAR(boot.lower, mean.lower, 0.01);
   EXPECT_NEAR(boot.upper, mean.upper, 0.01);
+}
+
+TEST(PercentileIntervalTest, TakesTwoAndAHalfPercentFromEitherEndWhateverTheOrder) {
+  std::vector<double> values;
+  for (int i = 0; i <= 1000; ++i) values.push_back((i * 8) % 1001);  // 0 .. 1000, shuffled
+  const Interval interval = PercentileInterval(444.0, values);
+  EXPECT_EQ(interval.estimate, 444.0);
+  EXPECT_EQ(interval.lower, 25.0);
+  EXPECT_EQ(interval.upper, 975.0);
+}
+
+TEST(PercentileIntervalTest, LeavesOutWhatIsNoNumberAndKeepsWhatIsInfinite) {
+  const double no_number = std::nan(""), infinite = std::numeric_limits<double>::infinity();
+  const Interval some = PercentileInterval(2.0, {no_number, 2.0, infinite, no_number, 2.0});
+  EXPECT_EQ(some.lower, 2.0);
+  EXPECT_EQ(some.upper, infinite);
+  const Interval none = PercentileInterval(no_number, {no_number, no_number});
+  EXPECT_TRUE(std::isnan(none.lower));
+  EXPECT_TRUE(std::isnan(none.upper));
 }
 
 TEST(MeanTest, OfNothingIsZero) {

@@ -25,6 +25,10 @@ Interval MeanInterval(const std::vector<double>& differences);
 /// Stat. 7:1-26]: never beyond the values. Without values everything is 0.
 Interval BootstrapInterval(const std::vector<double>& values, base::Rng rng);
 
+/// An estimate with the 2.5 % and 97.5 % percentiles of what it is in each resample. Resamples in
+/// which it is no number (0 / 0) are left out; where that leaves none, both ends are no numbers.
+Interval PercentileInterval(double estimate, std::vector<double> resampled);
+
 /// Exact interval of a share [Clopper, Pearson 1934, Biometrika 26:404-413].
 /// @pre 0 <= num_hits <= num_all.  @throws std::logic_error if broken. (0 of 0 gives 0 .. 1.)
 Interval ShareInterval(int num_hits, int num_all);

@@ -294,7 +294,7 @@ class Runner {
     {
       // Not only to be read: what is in its log yet becomes part of the file.
       const knowledge::Store store(StoreOf(order), ontology_);
-      run->fluents = store.Stats().fluents;
+      evaluation::TakeBlackboard(store, run);
     }
     fs::rename(StoreOf(order), store_ + "/" + name + ".db");
     run->episode = name;

@@ -97,7 +97,7 @@ class ToppleLoop : public Kind {
     if (chains) by_set_ = *std::move(chains);
     return chains.has_value();
   }
-  Findings SumUp() const override { return SumUpToppleLoop(loop_, by_set_); }
+  Findings SumUp() const override { return SumUpToppleLoop(loop_, config_.seed, by_set_); }
 
  private:
   const ToppleLoopConfig& loop_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,7 +40,9 @@ std::optional<std::vector<Chains>> PlayToppleLoop(const ToppleLoopConfig& loop,
                                                   const ExperimentConfig& config,
                                                   const std::shared_ptr<const Stage>& stage,
                                                   const Crew& crew);
-Findings SumUpToppleLoop(const ToppleLoopConfig& loop, const std::vector<Chains>& by_set);
+/// @param seed  the experiment's; of the resamples behind the intervals.
+Findings SumUpToppleLoop(const ToppleLoopConfig& loop, std::uint64_t seed,
+                         const std::vector<Chains>& by_set);
 
 /// By planner of the configuration, then by row, both in order. Torso and arms are played with the
 /// first planner only.

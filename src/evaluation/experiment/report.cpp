@@ -58,6 +58,16 @@ ordered_json Number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json();
 }
 
+ordered_json IntervalsToJson(const std::vector<NamedInterval>& intervals) {
+  ordered_json json = ordered_json::object();
+  for (const auto& [name, interval] : intervals) {
+    json[name] = {{"estimate", Number(interval.estimate)},
+                  {"lower", Number(interval.lower)},
+                  {"upper", Number(interval.upper)}};
+  }
+  return json;
+}
+
 /// Those that the report shows; what stands in them is for people.
 ordered_json TablesToJson(const std::vector<TextTable>& tables) {
   ordered_json list = ordered_json::array();
@@ -231,6 +241,7 @@ ordered_json ToJson(const ExperimentReport& report) {
           {"parameters", base::HexOf(report.params_hash)},
           {"passed", report.passed()},
           {"measures", measures},
+          {"intervals", IntervalsToJson(report.findings.intervals)},
           {"expectations", checks},
           {"tables", TablesToJson(report.findings.tables)},
           {"rows", report.findings.rows},

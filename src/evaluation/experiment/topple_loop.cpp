@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "evaluation/experiment/kinds.h"
+#include "evaluation/experiment/topple_shares.h"
+#include "hires/base/check.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/experiment/parallel.h"
 #include "hires/imagination/evidence.h"
@@ -12,11 +15,11 @@ namespace {
 
 using imagination::OutcomeCounts;
 
+constexpr std::uint64_t kResamplingStream = 1ULL << 32;  // chains take those from 0 on
+
 /// One motion set, over all its chains.
 struct LoopTotals {
-  OutcomeCounts counts;       // at 20 Hz
-  OutcomeCounts counts_10hz;  // every other sample
-  double duration{0.0};       // [s]
+  double duration{0.0};  // [s]
   int legs{0}, failed{0}, falls{0}, put_back{0}, restarted{0};
 };
 
@@ -24,8 +27,6 @@ LoopTotals TotalsOf(const Chains& chains) {
   LoopTotals totals;
   for (const std::vector<Leg>& chain : chains) {
     for (const Leg& leg : chain) {
-      totals.counts += leg.result.counts;
-      totals.counts_10hz += leg.counts_10hz;
       totals.duration += leg.result.duration;
       totals.falls += leg.result.falls;
       totals.failed += !leg.result.action_finished;
@@ -37,23 +38,6 @@ LoopTotals TotalsOf(const Chains& chains) {
   return totals;
 }
 
-/// The three kinds of samples, by name.
-struct CountedEvent {
-  const char* name;
-  int OutcomeCounts::*count;
-};
-constexpr CountedEvent kEvents[] = {{"notopple", &OutcomeCounts::notopple},
-                                    {"shaking", &OutcomeCounts::shaking},
-                                    {"topple", &OutcomeCounts::topple}};
-
-double Likelihood(const OutcomeCounts& counts, const CountedEvent& event) {
-  return static_cast<double>(counts.*event.count) / counts.total();
-}
-
-double Ratio(const OutcomeCounts& first, const OutcomeCounts& second, const CountedEvent& event) {
-  return Likelihood(first, event) / Likelihood(second, event);
-}
-
 /// What is compared: the same two sets, counted in one way.
 struct Pair {
   std::string title;
@@ -62,14 +46,14 @@ struct Pair {
 
 TextTable CountsTable(const ToppleLoopConfig& loop, const std::vector<Pair>& pairs) {
   TextTable table{"Samples, as Table 6.5", {{"", "samples"}}};
-  for (const CountedEvent& event : kEvents) table.rows[0].push_back(event.name);
+  for (const CountedEvent& event : kCountedEvents) table.rows[0].push_back(event.name);
   table.rows[0].push_back("confidence");
   for (const Pair& pair : pairs) {
     for (int s = 0; s < 2; ++s) {
       const OutcomeCounts& counts = s == 0 ? pair.first : pair.second;
       std::vector<std::string> row{pair.title + ", " + loop.motion_sets[s],
                                    fmt::format("{}", counts.total())};
-      for (const CountedEvent& event : kEvents)
+      for (const CountedEvent& event : kCountedEvents)
         row.push_back(fmt::format("{}", counts.*event.count));
       row.push_back(fmt::format("{:.3f}", imagination::Confidence(counts)));
       table.rows.push_back(std::move(row));
@@ -78,16 +62,49 @@ TextTable CountsTable(const ToppleLoopConfig& loop, const std::vector<Pair>& pai
   return table;
 }
 
-TextTable LikelihoodTable(const ToppleLoopConfig& loop, const std::vector<Pair>& pairs) {
-  TextTable table{"Likelihood L per event, as Table 6.6",
-                  {{"", "event", "L " + loop.motion_sets[0], "L " + loop.motion_sets[1], "ratio"}}};
-  for (const Pair& pair : pairs) {
-    for (const CountedEvent& event : kEvents) {
-      table.rows.push_back({pair.title, event.name,
-                            fmt::format("{:.4f}", Likelihood(pair.first, event)),
-                            fmt::format("{:.4f}", Likelihood(pair.second, event)),
-                            fmt::format("{:.2f}", Ratio(pair.first, pair.second, event))});
+/// "0.02931 (0.02609 .. 0.03284)"
+std::string EstimateText(const Interval& interval, int decimals) {
+  return fmt::format("{0:.{3}f} ({1:.{3}f} .. {2:.{3}f})", interval.estimate, interval.lower,
+                     interval.upper, decimals);
+}
+
+const Interval& IntervalNamed(const std::string& name,
+                              const std::vector<NamedInterval>& intervals) {
+  const auto found =
+      std::find_if(intervals.begin(), intervals.end(),
+                   [&](const NamedInterval& interval) { return interval.name == name; });
+  HIRES_CHECK(found != intervals.end(), "no interval of this name: " + name);
+  return found->interval;
+}
+
+constexpr int kShareDecimals = 5, kRatioDecimals = 2;
+
+TextTable LikelihoodTable(const ToppleLoopConfig& loop, const std::vector<ResampledCounts>& counted,
+                          const std::vector<NamedInterval>& intervals) {
+  TextTable table{
+      fmt::format("Likelihood L per event, as Table 6.6, with 95 % intervals by resampling {} and "
+                  "{} {}",
+                  counted[0].num_parts, counted[1].num_parts,
+                  loop.one_truth_per_chain ? "chains" : "rounds of the route"),
+      {{"", "event", "L " + loop.motion_sets[0], "L " + loop.motion_sets[1], "ratio"}}};
+  for (const CountRate& rate : kCountRates) {
+    for (const CountedEvent& event : kCountedEvents) {
+      std::vector<std::string> row{rate.title, event.name};
+      for (const std::string& set : loop.motion_sets) {
+        row.push_back(
+            EstimateText(IntervalNamed(ShareName(event, set, rate), intervals), kShareDecimals));
+      }
+      row.push_back(EstimateText(IntervalNamed(RatioName(event, rate), intervals), kRatioDecimals));
+      table.rows.push_back(std::move(row));
     }
+  }
+  const OutcomeCounts& first = loop.references.at(loop.motion_sets[0]).counts;
+  const OutcomeCounts& second = loop.references.at(loop.motion_sets[1]).counts;
+  for (const CountedEvent& event : kCountedEvents) {
+    table.rows.push_back({"reference", event.name,
+                          fmt::format("{:.{}f}", ShareOf(first, event), kShareDecimals),
+                          fmt::format("{:.{}f}", ShareOf(second, event), kShareDecimals),
+                          fmt::format("{:.{}f}", RatioOf(first, second, event), kRatioDecimals)});
   }
   return table;
 }
@@ -97,18 +114,20 @@ std::string Every(double duration, double count) {
   return count > 0.0 ? fmt::format("{:.2f} s", duration / count) : "never";
 }
 
-TextTable RunTable(const ToppleLoopConfig& loop, const std::vector<LoopTotals>& totals) {
+TextTable RunTable(const ToppleLoopConfig& loop, const std::vector<LoopTotals>& totals,
+                   const std::vector<ResampledCounts>& counted) {
   TextTable table{
       "Runs",
       {{"", "duration", "legs", "failed", "falls", "a fall every", "a topple sample every",
         "a shaking sample every", "put back between legs", "robot put to goal"}}};
   for (int s = 0; s < 2; ++s) {
     const LoopTotals& t = totals[s];
-    table.rows.push_back(
-        {loop.motion_sets[s], fmt::format("{:.0f} s", t.duration), fmt::format("{}", t.legs),
-         fmt::format("{}", t.failed), fmt::format("{}", t.falls), Every(t.duration, t.falls),
-         Every(t.duration, t.counts_10hz.topple), Every(t.duration, t.counts_10hz.shaking),
-         fmt::format("{}", t.put_back), fmt::format("{}", t.restarted)});
+    table.rows.push_back({loop.motion_sets[s], fmt::format("{:.0f} s", t.duration),
+                          fmt::format("{}", t.legs), fmt::format("{}", t.failed),
+                          fmt::format("{}", t.falls), Every(t.duration, t.falls),
+                          Every(t.duration, counted[s].all.at_10hz.topple),
+                          Every(t.duration, counted[s].all.at_10hz.shaking),
+                          fmt::format("{}", t.put_back), fmt::format("{}", t.restarted)});
   }
   for (const std::string& set : loop.motion_sets) {
     const ToppleReference& reference = loop.references.at(set);
@@ -119,26 +138,41 @@ TextTable RunTable(const ToppleLoopConfig& loop, const std::vector<LoopTotals>& 
   return table;
 }
 
-std::vector<Measure> MeasuresOf(const ToppleLoopConfig& loop,
-                                const std::vector<LoopTotals>& totals) {
+/// Samples of each kind and of all, as Table 6.5.
+void AddCounts(const std::string& motion_set, const CountRate& rate, const LoopCounts& counted,
+               std::vector<Measure>* measures) {
+  const OutcomeCounts& counts = counted.*rate.counts;
+  const auto add = [&](const std::string& what, int count) {
+    measures->push_back({what + "_count_" + motion_set + rate.suffix, static_cast<double>(count)});
+  };
+  for (const CountedEvent& event : kCountedEvents) add(event.name, counts.*event.count);
+  add("all", counts.total());
+}
+
+std::vector<Measure> MeasuresOf(const ToppleLoopConfig& loop, const std::vector<LoopTotals>& totals,
+                                const std::vector<ResampledCounts>& counted) {
   std::vector<Measure> measures;
-  for (const CountedEvent& event : kEvents) {
-    const std::string name = std::string(event.name) + "_ratio";
-    measures.push_back({name, Ratio(totals[0].counts, totals[1].counts, event)});
-    measures.push_back(
-        {name + "_10hz", Ratio(totals[0].counts_10hz, totals[1].counts_10hz, event)});
+  for (const CountedEvent& event : kCountedEvents) {
+    for (const CountRate& rate : kCountRates) {
+      measures.push_back({RatioName(event, rate), RatioOf(counted[0].all.*rate.counts,
+                                                          counted[1].all.*rate.counts, event)});
+    }
   }
   for (int s = 0; s < 2; ++s) {
     const std::string& set = loop.motion_sets[s];
-    measures.push_back({"confidence_" + set, imagination::Confidence(totals[s].counts)});
+    measures.push_back({"confidence_" + set, imagination::Confidence(counted[s].all.at_20hz)});
     measures.push_back({"falls_" + set, static_cast<double>(totals[s].falls)});
     measures.push_back(
         {"failed_share_" + set, static_cast<double>(totals[s].failed) / totals[s].legs});
     measures.push_back({"duration_" + set, totals[s].duration});
-    for (const CountedEvent& event : kEvents) {
-      measures.push_back(
-          {std::string(event.name) + "_share_" + set, Likelihood(totals[s].counts, event)});
+    for (const CountRate& rate : kCountRates) {
+      for (const CountedEvent& event : kCountedEvents) {
+        measures.push_back(
+            {ShareName(event, set, rate), ShareOf(counted[s].all.*rate.counts, event)});
+      }
+      AddCounts(set, rate, counted[s].all, &measures);
     }
+    measures.push_back({"independent_parts_" + set, static_cast<double>(counted[s].num_parts)});
   }
   return measures;
 }
@@ -236,17 +270,27 @@ std::optional<std::vector<Chains>> PlayToppleLoop(const ToppleLoopConfig& loop,
   return by_set;
 }
 
-Findings SumUpToppleLoop(const ToppleLoopConfig& loop, const std::vector<Chains>& by_set) {
+Findings SumUpToppleLoop(const ToppleLoopConfig& loop, std::uint64_t seed,
+                         const std::vector<Chains>& by_set) {
   Findings findings;
-  const std::vector<LoopTotals> totals{TotalsOf(by_set[0]), TotalsOf(by_set[1])};
-  const std::vector<Pair> pairs{{"20 Hz", totals[0].counts, totals[1].counts},
-                                {"10 Hz", totals[0].counts_10hz, totals[1].counts_10hz},
-                                {"reference", loop.references.at(loop.motion_sets[0]).counts,
-                                 loop.references.at(loop.motion_sets[1]).counts}};
-  findings.tables = {CountsTable(loop, pairs), LikelihoodTable(loop, pairs),
-                     RunTable(loop, totals)};
-  findings.measures = MeasuresOf(loop, totals);
-  for (int s = 0; s < 2; ++s) AddRows(loop.motion_sets[s], by_set[s], &findings);
+  const base::Rng rng = base::Rng(seed).Fork(kResamplingStream);
+  std::vector<LoopTotals> totals;
+  std::vector<ResampledCounts> counted;
+  for (int s = 0; s < 2; ++s) {
+    totals.push_back(TotalsOf(by_set[s]));
+    counted.push_back(Resample(IndependentParts(loop, by_set[s]), rng.Fork(s)));
+    AddRows(loop.motion_sets[s], by_set[s], &findings);
+  }
+  std::vector<Pair> pairs;
+  for (const CountRate& rate : kCountRates) {
+    pairs.push_back({rate.title, counted[0].all.*rate.counts, counted[1].all.*rate.counts});
+  }
+  pairs.push_back({"reference", loop.references.at(loop.motion_sets[0]).counts,
+                   loop.references.at(loop.motion_sets[1]).counts});
+  findings.intervals = LoopIntervals(loop, counted);
+  findings.tables = {CountsTable(loop, pairs), LikelihoodTable(loop, counted, findings.intervals),
+                     RunTable(loop, totals, counted)};
+  findings.measures = MeasuresOf(loop, totals, counted);
   return findings;
 }
 

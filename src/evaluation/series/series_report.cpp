@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -17,10 +18,7 @@ using Table = std::vector<std::vector<std::string>>;
 
 constexpr std::size_t kBeginOfCause = 30, kEndOfCause = 60;  // characters in a table's cell
 
-double FluentsPerSecond(const SeriesRun& run) {
-  return run.simulated_seconds > 0.0 ? static_cast<double>(run.fluents) / run.simulated_seconds
-                                     : 0.0;
-}
+double PerSecond(double count, double seconds) { return seconds > 0.0 ? count / seconds : 0.0; }
 
 std::string InfoLine(const std::string& text) { return "=[ INFO]: " + text + '\n'; }
 
@@ -46,16 +44,33 @@ std::vector<std::string> Episodes(const SeriesReport& report) {
   return names;
 }
 
-double MeanOf(const SeriesReport& report, double (*number)(const SeriesRun&)) {
-  std::vector<double> numbers;
-  for (const SeriesRun& run : report.runs) {
-    if (!run.episode.empty()) numbers.push_back(number(run));
-  }
-  return Mean(numbers);
+std::vector<SeriesRun> Succeeded(const SeriesReport& report) {
+  std::vector<SeriesRun> succeeded;
+  std::copy_if(report.runs.begin(), report.runs.end(), std::back_inserter(succeeded),
+               [](const SeriesRun& run) { return Is(run, SeriesOutcome::kSucceeded); });
+  return succeeded;
 }
 
-double MeanFluents(const SeriesReport& report) {
-  return MeanOf(report, [](const SeriesRun& run) { return static_cast<double>(run.fluents); });
+std::string NumberOrUnknown(const std::optional<double>& number, int decimals) {
+  return number ? fmt::format("{:.{}f}", *number, decimals) : "unknown";
+}
+
+std::string AveragesTable(const SeriesReport& report) {
+  Table table{
+      {"averages over", "runs", "simulated", "fluents", "a second", "new fluents", "a second"}};
+  const auto add = [&](const std::string& which, const SeriesAverages& averages) {
+    table.push_back({which, std::to_string(averages.runs),
+                     fmt::format("{:.1f} s", averages.simulated_seconds),
+                     fmt::format("{:.1f}", averages.fluents),
+                     fmt::format("{:.2f}", averages.fluents_per_second),
+                     NumberOrUnknown(averages.new_fluents, 1),
+                     NumberOrUnknown(averages.new_fluents_per_second, 2)});
+  };
+  add("all runs", AveragesOf(report.runs));
+  add("those that succeeded", AveragesOf(Succeeded(report)));
+  return FormatTable(table) +
+         "(a second: fluents of all these runs / their simulated time; new: without those that "
+         "were known before the run)\n";
 }
 
 /// "0 2"
@@ -154,6 +169,18 @@ std::vector<std::string> MembersOf(const ScenarioSeries& series, const SeriesGro
   return members;
 }
 
+ordered_json AveragesJson(const SeriesAverages& averages) {
+  const auto number = [&](const std::optional<double>& value) {
+    return value && averages.runs > 0 ? ordered_json(*value) : ordered_json();
+  };
+  return {{"runs", averages.runs},
+          {"mean_simulated_seconds", number(averages.simulated_seconds)},
+          {"mean_fluents", number(averages.fluents)},
+          {"fluents_per_second", number(averages.fluents_per_second)},
+          {"mean_new_fluents", number(averages.new_fluents)},
+          {"new_fluents_per_second", number(averages.new_fluents_per_second)}};
+}
+
 ordered_json ShareJson(const ChoiceShare& each) {
   return {{"group", each.group},         {"choice", each.choice},    {"members", each.members},
           {"succeeded", each.succeeded}, {"played", each.played},    {"share", each.share.estimate},
@@ -168,6 +195,29 @@ std::string CsvCell(const std::string& text) {
 }
 
 }  // namespace
+
+SeriesAverages AveragesOf(const std::vector<SeriesRun>& runs) {
+  SeriesAverages averages;
+  double seconds = 0.0, fluents = 0.0, known = 0.0;
+  bool tell_all = true;
+  for (const SeriesRun& run : runs) {
+    if (run.episode.empty()) continue;
+    ++averages.runs;
+    seconds += run.simulated_seconds;
+    fluents += static_cast<double>(run.fluents);
+    known += static_cast<double>(run.known_fluents.value_or(0));
+    tell_all = tell_all && run.known_fluents.has_value();
+  }
+  const double num = std::max(1, averages.runs);
+  averages.simulated_seconds = seconds / num;
+  averages.fluents = fluents / num;
+  averages.fluents_per_second = PerSecond(fluents, seconds);
+  if (tell_all) {
+    averages.new_fluents = (fluents - known) / num;
+    averages.new_fluents_per_second = PerSecond(fluents - known, seconds);
+  }
+  return averages;
+}
 
 std::vector<ChoiceShare> SharesByChoice(const SeriesReport& report) {
   std::vector<ChoiceShare> shares;
@@ -198,7 +248,8 @@ std::string RunSummary(const SeriesRun& run) {
   text += InfoLine(fmt::format("Scenario instruction: '{}'", run.instruction));
   text += InfoLine(fmt::format("Total (sim) time used: {:.2f} seconds", run.simulated_seconds));
   text += InfoLine(fmt::format("Total number of Fluents used: {}", run.fluents));
-  text += InfoLine(fmt::format("Average ratio of (Fluents/sec): {:.2f}", FluentsPerSecond(run)));
+  text += InfoLine(fmt::format("Average ratio of (Fluents/sec): {:.2f}",
+                               PerSecond(static_cast<double>(run.fluents), run.simulated_seconds)));
   text += InfoLine(
       fmt::format("Outcome: {}{}", run.outcome, run.cause.empty() ? "" : ": " + run.cause));
   for (const std::string& broken : run.broken_tries)
@@ -211,10 +262,11 @@ std::string SeriesSummary(const SeriesReport& report) {
   std::string text = "= TEST SUMMARY =\n=[ INFO]: ";
   text += fmt::format("{} episodes created during test with names:", episodes.size());
   for (const std::string& episode : episodes) text += " '" + episode + "'";
-  text += '\n' + InfoLine(fmt::format("Average Fluents per episode: {:.2f}", MeanFluents(report)));
+  text += '\n' + InfoLine(fmt::format("Average Fluents per episode: {:.2f}",
+                                      AveragesOf(report.runs).fluents));
   text += InfoLine(
       fmt::format("{} episodes are now in repository '{}'", report.stored, report.repository));
-  text += '\n' + RunTable(report) + '\n' + OutcomeTable(report);
+  text += '\n' + AveragesTable(report) + '\n' + RunTable(report) + '\n' + OutcomeTable(report);
   if (!SharesByChoice(report).empty()) text += '\n' + ChoiceTable(report);
   return text;
 }
@@ -224,15 +276,17 @@ std::string SeriesCsv(const SeriesReport& report) {
   for (const SeriesGroup& group : report.series.groups) text += "," + CsvCell(group.name);
   text +=
       ",seed,instruction,scenario,truth,outcome,failure,cause,restarts,episode,simulated_seconds,"
-      "fluents,fallen,touched\n";
+      "fluents,known_fluents,fallen,touched\n";
   for (const SeriesRun& run : report.runs) {
     text += std::to_string(run.run);
     for (const int choice : run.choices) text += fmt::format(",{}", choice);
-    text += fmt::format(
-        ",{},{},{},{},{},{},{},{},{},{},{},{},{}\n", run.seed, CsvCell(run.instruction),
-        CsvCell(run.scenario), CsvCell(run.truth), run.outcome, run.failure, CsvCell(run.cause),
-        RestartsText(run).empty() ? "0" : RestartsText(run), CsvCell(run.episode),
-        run.simulated_seconds, run.fluents, base::Join(run.fallen, " "), CsvCell(run.touched));
+    text += fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", run.seed,
+                        CsvCell(run.instruction), CsvCell(run.scenario), CsvCell(run.truth),
+                        run.outcome, run.failure, CsvCell(run.cause),
+                        RestartsText(run).empty() ? "0" : RestartsText(run), CsvCell(run.episode),
+                        run.simulated_seconds, run.fluents,
+                        run.known_fluents ? std::to_string(*run.known_fluents) : "",
+                        base::Join(run.fallen, " "), CsvCell(run.touched));
   }
   return text;
 }
@@ -250,16 +304,19 @@ ordered_json ToJson(const SeriesReport& report) {
     outcomes[ToString(outcome)] = CountOf(report, outcome);
   }
   outcomes["succeeded_in_truth"] = CountDone(report);
-  return {{"series", report.series.name},
-          {"groups", groups},
-          {"outcomes", outcomes},
-          {"mean_fluents", MeanFluents(report)},
-          {"mean_fluents_per_second", MeanOf(report, FluentsPerSecond)},
-          {"mean_simulated_seconds",
-           MeanOf(report, [](const SeriesRun& run) { return run.simulated_seconds; })},
-          {"stored", report.stored},
-          {"shares", shares},
-          {"runs", runs}};
+  const SeriesAverages all = AveragesOf(report.runs);
+  return {
+      {"series", report.series.name},
+      {"groups", groups},
+      {"outcomes", outcomes},
+      {"mean_fluents", all.fluents},
+      {"mean_fluents_per_second", all.fluents_per_second},
+      {"mean_simulated_seconds", all.simulated_seconds},
+      {"averages",
+       {{"all", AveragesJson(all)}, {"succeeded", AveragesJson(AveragesOf(Succeeded(report)))}}},
+      {"stored", report.stored},
+      {"shares", shares},
+      {"runs", runs}};
 }
 
 }  // namespace hires::evaluation

@@ -14,6 +14,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr char kKind[] = "hires scenarios 1";
+constexpr char kKnownFluents[] = "known_fluents";
 
 /// The same for writing and reading.
 template <typename Run, typename Visitor>
@@ -68,6 +69,21 @@ void TakeTruth(const ordered_json& json, const std::string& where, SeriesRun* ru
   }
 }
 
+/// Fluents that were loaded as knowledge, which happens before a run begins.
+std::uint64_t NumKnown(const knowledge::Store& store) {
+  constexpr std::size_t kPage = 1000;
+  std::uint64_t known = 0, sequence = 0;
+  while (true) {
+    const std::vector<knowledge::Change> changes = store.ChangesSince(sequence, kPage);
+    if (changes.empty()) return known;
+    for (const knowledge::Change& change : changes) {
+      const bool has_opened = change.kind != knowledge::Change::Kind::kRemoved;
+      known += has_opened && change.source == knowledge::Source::kKnowledge ? 1 : 0;
+    }
+    sequence = changes.back().sequence;
+  }
+}
+
 }  // namespace
 
 std::string ToString(SeriesOutcome outcome) {
@@ -88,12 +104,16 @@ std::string ToString(SeriesOutcome outcome) {
 ordered_json ToJson(const SeriesRun& run) {
   ordered_json json;
   VisitFields(&run, [&](const char* key, const auto* value) { json[key] = *value; });
+  json[kKnownFluents] = run.known_fluents ? ordered_json(*run.known_fluents) : ordered_json();
   return json;
 }
 
 SeriesRun ParseSeriesRun(const ordered_json& json, const std::string& where) {
   SeriesRun run;
   VisitFields(&run, [&](const char* key, auto* value) { Take(json, key, where, value); });
+  if (json.contains(kKnownFluents) && !json[kKnownFluents].is_null()) {
+    Take(json, kKnownFluents, where, &run.known_fluents.emplace());
+  }
   return run;
 }
 
@@ -111,6 +131,11 @@ void TakeAchieveReport(const ordered_json& json, const std::string& where, Serie
   const ordered_json failure = json.value("failure", ordered_json());
   if (failure.is_object()) run->failure = failure.value("failure", "");
   if (json.contains("in_truth")) TakeTruth(json["in_truth"], where + ": in_truth", run);
+}
+
+void TakeBlackboard(const knowledge::Store& store, SeriesRun* run) {
+  run->fluents = store.Stats().fluents;
+  run->known_fluents = NumKnown(store);
 }
 
 SeriesJournal::SeriesJournal(const std::string& path, const ordered_json& setting)

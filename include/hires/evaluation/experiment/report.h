@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hires/base/param_reader.h"
+#include "hires/evaluation/statistics.h"
 
 namespace hires::evaluation {
 
@@ -13,6 +14,12 @@ namespace hires::evaluation {
 struct Measure {
   std::string name;
   double value{0.0};
+};
+
+/// A number with its 95 % interval, by name. Where it is a measure, too, both have one name.
+struct NamedInterval {
+  std::string name;
+  Interval interval;
 };
 
 /// What must hold about a measure for the experiment to count as passed. A measure that is no
@@ -40,7 +47,8 @@ struct TextTable {
 /// What the kind of an experiment makes of what was played.
 struct Findings {
   std::vector<TextTable> tables;
-  std::vector<Measure> measures;  ///< names and order do not depend on what was played
+  std::vector<Measure> measures;         ///< names and order do not depend on what was played
+  std::vector<NamedInterval> intervals;  ///< likewise; of kinds that have none, empty
   /// One flat object per leg, rollout or run, all with the same keys. Who makes or copies Findings
   /// includes nlohmann/json.hpp.
   std::vector<nlohmann::ordered_json> rows;

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "hires/evaluation/run_journal.h"
+#include "hires/knowledge/store.h"
 
 namespace hires::evaluation {
 
@@ -30,9 +32,12 @@ struct SeriesRun {
   std::string failure;  ///< name of the failure that ended it, where a single one did
   /// How each try broke that was played again, and the last one where none was left.
   std::vector<std::string> broken_tries;
-  std::string episode;              ///< name in the store's folder; empty: none was kept
-  double simulated_seconds{0.0};    ///< [s]
-  std::uint64_t fluents{0};         ///< on the Blackboard at the end, ended ones included
+  std::string episode;            ///< name in the store's folder; empty: none was kept
+  double simulated_seconds{0.0};  ///< [s]
+  std::uint64_t fluents{0};       ///< on the Blackboard at the end, ended ones included
+  /// Of them, those that it was given as knowledge before the run; nothing where no episode was
+  /// kept, or an older journal does not tell.
+  std::optional<std::uint64_t> known_fluents;
   std::vector<std::string> fallen;  ///< things that fell in truth
   std::string touched;              ///< the robot's first collision in truth, or empty
 };
@@ -44,6 +49,9 @@ SeriesRun ParseSeriesRun(const nlohmann::ordered_json& json, const std::string& 
 /// @throws base::ConfigError naming `where` and the field.
 void TakeAchieveReport(const nlohmann::ordered_json& json, const std::string& where,
                        SeriesRun* run);
+
+/// Takes over how many fluents the run's Blackboard holds.
+void TakeBlackboard(const knowledge::Store& store, SeriesRun* run);
 
 /// The finished runs of a series, one behind the other (RunJournal).
 class SeriesJournal {
