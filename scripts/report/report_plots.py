@@ -180,6 +180,40 @@ def trace(name, label, x, y, speed, acceleration, discs=()):
 
 
 @drawings.styled
+def places(name, label, points, ways):
+    """Points on a map, beside ways (xs, ys)."""
+    if not points:
+        return None
+    figure = Figure(figsize=(WIDTH, WIDTH))
+    axes = figure.add_axes([0.11, 0.11, 0.86, 0.86])
+    axes.set_aspect('equal', adjustable='datalim')
+    axes.grid(True, color=GRID, linewidth=0.6)
+    for xs, ys in ways:
+        axes.plot(xs, ys, color=QUIET, linewidth=0.9)
+    axes.plot([p[0] for p in points], [p[1] for p in points], 'x', color=IMAGINED, markersize=5)
+    axes.set_xlabel(label)
+    return drawings.svg(figure, name, label)
+
+
+@drawings.styled
+def curves(name, labels, rows):
+    """Curves in the unit square with its diagonal.  @param rows  (text, xs, ys)."""
+    if not rows:
+        return None
+    figure = Figure(figsize=(WIDTH, WIDTH))
+    axes = figure.add_axes([0.12, 0.11, 0.85, 0.86])
+    axes.grid(True, color=GRID, linewidth=0.6)
+    axes.plot([0, 1], [0, 1], color=QUIET, linewidth=0.9, linestyle='--')
+    for i, (text, xs, ys) in enumerate(rows):
+        axes.plot(xs, ys, color=[BEST, IMAGINED, OTHER, INK][i % 4], linestyle='-' if i < 4 else ':',
+                  linewidth=1.2, label=text)
+    axes.legend(fontsize=6.5, frameon=False, loc='lower right')
+    axes.set_xlabel(labels[0])
+    axes.set_ylabel(labels[1])
+    return drawings.svg(figure, name, labels[0])
+
+
+@drawings.styled
 def scatter(name, labels, points, limit=None):
     """Points in the plane.  @param labels  of both axes.  @param limit  (value of y, text)."""
     if not points:

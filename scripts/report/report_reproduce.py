@@ -1,7 +1,6 @@
 """The page of `hires reproduce`: what each table and figure of the dissertation came to, with pictures."""
 
-import base64
-import os
+import math
 
 import report_drawings as drawings
 import report_plots as plots
@@ -9,9 +8,9 @@ from report_input import Answer, ReportError
 from report_numbers import bars_of, values
 
 GOOD, OPEN = 'good', 'open'
-MARKS = {'reproduced': 'ok', 'better': 'ok', 'not reproduced': 'failed', 'check holds': 'ok', 'check fails': 'failed',
-         'shown': 'nothing', 'not played': 'warning'}
-PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+MARKS = {'reproduced': 'ok', 'better': 'ok', 'not reproduced': 'failed', 'undecided': 'warning', 'check holds': 'ok',
+         'check fails': 'failed', 'shown': 'nothing', 'described': 'nothing', 'not played': 'warning'}
+SHARPEST = 0.1  # [m/s] slower than that no turn is looked at
 
 
 class Item:
@@ -29,6 +28,13 @@ class Item:
         """The answer of a play."""
         content = self.answer.at('/plays/%s/answer' % name, None)
         return Answer(content, '%s: play %s' % (self.answer.name, name))
+
+    def published(self, pointer):
+        """The published number beside the one at that place of the first play's answer, or None."""
+        for value in self.answer.items(self.place + '/values'):
+            if self.answer.at(value + '/at', str).split(':', 1)[1] == pointer and self.answer.has(value + '/published'):
+                return self.answer.at(value + '/published', float)
+        return None
 
     def values(self):
         """(name, published or None, found or None, whether accepted, or not judged) of its numbers."""
@@ -52,18 +58,22 @@ def _durations_of(answer, key):
         is_row = (who, answer.at(row + '/from', str), answer.at(row + '/to', str)) == (name, start, goal)
         if is_row and answer.at(row + '/planner', str) == 'scene' and answer.at(row + '/action_finished', bool):
             values.append(answer.at(row + '/duration', float))
+    if not values:
+        raise ReportError('%s: no run of %r came to an end, or there is no such row' % (answer.name, key))
     return values
 
 
 def _normality(item, play, argument):
     values = _durations_of(item.play(play), argument)
-    picture = plots.normality(item.id(argument), 'duration [s]', values)
+    centre, sigma = (item.published('/measures/%s_%s' % (what, argument.replace(' ', '_'))) for what in ('mean', 'sigma'))
+    reference = None if centre is None or sigma is None else (centre, sigma)
+    picture = plots.normality(item.id(argument), 'duration [s]', values, reference)
     return picture, '%s, %s to %s: %s.' % (*argument.split(), plots.normality_text(plots.normality_of(values)))
 
 
 def _numbers(item, _, argument):
     """All numbers of the item beside the published ones; only those whose name begins with the argument."""
-    rows = [row for row in item.values() if row[0].startswith(argument)]
+    rows = [row for row in item.values() if row[0].startswith(argument) and row[1] is not None]
     return (plots.compared(item.id('numbers' + argument), 'published (ring) and ours (dot)', rows),
             'Ring: published. Dot: ours; red where it is not as accepted.')
 
@@ -140,11 +150,39 @@ def _object(item, play, argument):
             'Dynamics of load and base, and how far the load leaned and slid: %s.' % _where(answer, place))
 
 
+def _sharpest_turn(x, y, v, w):
+    """(x, y, radius, text) about which the base turned when it turned fastest on its way; or None.
+    @param v, w  [m/s], [rad/s] magnitudes."""
+    moving = [i for i in range(1, len(x) - 1) if v[i] > SHARPEST and w[i] > 0.0]
+    if not moving:
+        return None
+    i = max(moving, key=lambda k: w[k])
+    ahead, before = (x[i + 1] - x[i], y[i + 1] - y[i]), (x[i] - x[i - 1], y[i] - y[i - 1])
+    length = math.hypot(ahead[0] + before[0], ahead[1] + before[1])
+    if length == 0.0:
+        return None
+    side = 1.0 if before[0] * ahead[1] - before[1] * ahead[0] >= 0.0 else -1.0
+    radius = v[i] / w[i]
+    return (x[i] - side * radius * (ahead[1] + before[1]) / length,
+            y[i] + side * radius * (ahead[0] + before[0]) / length, radius, 'r = %.2f m' % radius)
+
+
 def _trace(item, play, argument):
     answer, place = item.play(play), '/pictures/drives/' + argument
-    x, y, v, a = (values(answer, '%s/%s' % (place, name)) for name in ('x', 'y', 'v', 'a'))
-    return (plots.trace(item.id('trace' + argument), 'x, y in the map [m]', x, y, v, a),
-            'Width: speed. Green: it speeds up; red: it slows down. %s.' % _where(answer, place))
+    x, y, v, a, w = (values(answer, '%s/%s' % (place, name)) for name in ('x', 'y', 'v', 'a', 'angular_v'))
+    turn = _sharpest_turn(x, y, v, w)
+    return (plots.trace(item.id('trace' + argument), 'x, y in the map [m]', x, y, v, a, [turn] if turn else []),
+            'Width: speed. Green: it speeds up; red: it slows down. Circle: centre and radius (v over angular velocity) '
+            'of the base\'s turning when it turned fastest. %s.' % _where(answer, place))
+
+
+def _falls(item, play, _):
+    """Where on the map loads fell, on the ways that were driven."""
+    answer = item.play(play)
+    ways = [(values(answer, place + '/x'), values(answer, place + '/y')) for place in answer.keys('/pictures/drives')]
+    x, y = (values(answer, '/pictures/falls/' + name) for name in ('x', 'y'))
+    return (plots.places(item.id('falls'), 'x, y in the map [m]', list(zip(x, y)), ways),
+            'Where the base was when a load fell: %d falls. Lines: the longest drive of each motion set.' % len(x))
 
 
 def _speed(item, play, _):
@@ -193,6 +231,16 @@ def _roc(item, play, _):
             '%d falls; 95 %% intervals over runs. Dark: better than chance.' % answer.at('/prediction/falls', int))
 
 
+def _roc_curves(item, play, _):
+    answer, curves = item.play(play), []
+    for place in answer.items('/prediction/features'):
+        curves.append((answer.at(place + '/feature', str), values(answer, place + '/roc/false_alarms'),
+                       values(answer, place + '/roc/hits')))
+    return (plots.curves(item.id('curves'), ('calm windows that it calls falls', 'falls that it foretells'), curves),
+            '%d falls, %d calm windows, both motion sets together. Dashed: chance.' %
+            (answer.at('/prediction/falls', int), answer.at('/prediction/calm_windows', int)))
+
+
 def _filters(item, play, _):
     answer = item.play(play)
     rows = []
@@ -235,13 +283,15 @@ def _choices(item, play, _):
 
 
 DRAWINGS = {'tilt': _tilt, 'object': _object, 'trace': _trace, 'speed': _speed, 'density': _density, 'cloud': _cloud,
-            'roc': _roc, 'filters': _filters, 'ladder': _ladder, 'choices': _choices, 'normality': _normality, 'numbers': _numbers, 'shares': _shares, 'torso_poses': _torso_poses,
-            'timeline': _timeline, 'arms': _arms}
+            'falls': _falls, 'roc': _roc, 'roc_curves': _roc_curves, 'filters': _filters, 'ladder': _ladder,
+            'choices': _choices, 'normality': _normality, 'numbers': _numbers, 'shares': _shares,
+            'torso_poses': _torso_poses, 'timeline': _timeline, 'arms': _arms}
 BROAD = {'normality', 'timeline', 'tilt', 'object', 'speed'}
 
 
 def pictures_of(answer, place):
-    """(picture, caption, whether it is broad) of an item's drawings; none where a play is missing.
+    """(picture, caption, whether it is broad) of an item's drawings; none where a play is missing. Where the
+    answer has too little to draw, picture is None and the caption says which drawing it is.
     @raise ReportError for a drawing that is unknown."""
     item = Item(answer, place)
     found = []
@@ -252,47 +302,37 @@ def pictures_of(answer, place):
         if name not in DRAWINGS:
             raise ReportError('%s: field %s: there is no drawing %r; there are %s' %
                               (answer.name, drawing, name, ', '.join(sorted(DRAWINGS))))
-        found.append((*DRAWINGS[name](item, play, argument), name in BROAD))
-    return [picture for picture in found if picture[0]]
-
-
-def photograph(answer, place):
-    """The package's own PNG picture of an item as text, or None."""
-    name = answer.at(place + '/picture', str)
-    if not name:
-        return None
-    path = os.path.join(PACKAGE, name)
-    try:
-        with open(path, 'rb') as file:
-            data = file.read()
-    except OSError as error:
-        raise ReportError('%s: field %s/picture: %s: %s' % (answer.name, place, path, error.strerror)) from error
-    if not data.startswith(b'\x89PNG'):
-        raise ReportError('%s: field %s/picture: %s is no PNG picture' % (answer.name, place, path))
-    return base64.b64encode(data).decode('ascii')
+        picture, caption = DRAWINGS[name](item, play, argument)
+        if not picture:
+            caption = 'Not drawn, for the answer has too little for it: %s. %s' % (answer.at(drawing, str), caption)
+        found.append((picture, caption, name in BROAD))
+    return found
 
 
 def reproduce(answer):
     """What the template needs."""
     items = answer.items('/items')
     verdicts = [answer.at(item + '/verdict', str) for item in items]
-    judged = [verdict for verdict in verdicts if verdict in ('reproduced', 'better', 'not reproduced')]
+    judged = [verdict for verdict in verdicts if verdict in ('reproduced', 'better', 'not reproduced', 'undecided')]
     good = [verdict for verdict in judged if verdict in ('reproduced', 'better')]
     checks = [verdict for verdict in verdicts if verdict.startswith('check')]
     not_played = verdicts.count('not played')
+    plays = answer.keys('/plays')
+    foreign = [play for play in plays if not answer.at(play + '/this_build', bool)]
     chapters = {}
     for item in items:
         chapters.setdefault(answer.at(item + '/section', str).split('.')[0], []).append(item)
     return {
         'headline': '%d of %d published results with numbers are reproduced or better%s' %
                     (len(good), len(judged), '; %d were not played' % not_played if not_played else ''),
+        'build': 'played with this version' if not foreign else
+                 '%d of %d answers by another build of this version (--again plays them anew)' % (len(foreign), len(plays)),
         'checks': '%d of %d checks by bounds of our own hold' % (checks.count('check holds'), len(checks)),
         'state': GOOD if len(good) == len(judged) and not not_played and 'check fails' not in checks else OPEN,
         'chapters': [('Appendix ' + name if name.isalpha() else 'Chapter ' + name, chapters[name])
                      for name in sorted(chapters)],
         'mark': lambda item: MARKS.get(answer.at(item + '/verdict', str), 'nothing'),
         'drawn': lambda item: pictures_of(answer, item),
-        'photograph': lambda item: photograph(answer, item),
         'counted': [(verdict, verdicts.count(verdict)) for verdict in MARKS if verdict in verdicts],
         'anchor': lambda item: 'item-' + item.split('/')[-1],
     }

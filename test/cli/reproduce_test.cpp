@@ -117,6 +117,25 @@ TEST_F(ReproduceTest, InterruptedItKeepsWhatIsDone) {
   EXPECT_THAT(done.missing, Contains(Key("endless")));
 }
 
+TEST_F(ReproduceTest, InterruptedWhilePlayingAnewItKeepsTheAnswersOfTheOthers) {
+  const std::string begun = Path("begun");
+  const Play first = Shell("first", "echo 1 > {answer}");
+  const Play slow = Shell("slow", "if test -e " + begun + "; then while :; do :; done; fi; touch " +
+                                      begun + "; echo 1 > {answer}");
+  const Play last = Shell("last", "printf x >> " + Path("count") + "; echo 1 > {answer}");
+  PlayThem({first, slow, last});
+  int looks = 0;
+  const PlaysDone done = PlayThem({first, slow, last}, true, [&] { return ++looks > 3; });
+  EXPECT_TRUE(done.is_cancelled);
+  std::string why;
+  for (const auto& [play, reason] : done.missing) why += reason;
+  EXPECT_THAT(why, HasSubstr("the same command without --again goes on"));
+  PlayStore store = Store();
+  for (const Play& play : {first, slow, last}) store.KeyOf(play);
+  EXPECT_TRUE(store.Find(last)) << "its turn had not come";
+  EXPECT_EQ(Counted(), "x");
+}
+
 TEST_F(ReproduceTest, ABrokenNoteIsNamed) {
   const Play play = Shell("one", "echo 1 > {answer}");
   PlayThem({play});
@@ -153,10 +172,10 @@ TEST_F(ReproduceTest, TheVerbListsPlaysAndJudges) {
   const hires::test_support::Ended shown =
       run({"5.1", "--results", results, "--json", Path("r.json"), "--quiet"});
   EXPECT_EQ(shown.code, 0);
-  EXPECT_THAT(shown.out, HasSubstr("5 shown"));
+  EXPECT_THAT(shown.out, HasSubstr("5 described"));
   const auto answer = nlohmann::json::parse(base::ReadTextFile(Path("r.json")));
   EXPECT_EQ(answer.at("/report/verb"_json_pointer), "reproduce");
-  EXPECT_EQ(answer.at("/verdicts/shown"_json_pointer), 5);
+  EXPECT_EQ(answer.at("/verdicts/described"_json_pointer), 5);
 }
 
 }  // namespace

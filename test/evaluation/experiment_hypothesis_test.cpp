@@ -307,6 +307,21 @@ TEST(SumUpHypothesisTest, ARunThatBrokeDownCountsAsFailedButNotForMeans) {
   EXPECT_THAT(HypothesisText(report), HasSubstr("1 x without imagination: system_died"));
 }
 
+// Pair 1 succeeds twice, 4 s apart; pair 2 in one arm alone, 6 s apart; pair 3 twice, 2 s apart.
+TEST(HypothesisReportTest, DurationsOfRunsThatFailedStandApart) {
+  std::vector<HypothesisRun> runs;
+  for (int run = 1; run <= 3; ++run) {
+    runs.push_back(RecordOf(run, true, true));
+    runs.push_back(RecordOf(run, false, run != 2));
+    runs.back().duration += run == 1 ? 4.0 : run == 2 ? -6.0 : 2.0;
+  }
+  const auto json = ToJson(SumUpHypothesis(Setting(3), runs), "hires experiment hypothesis");
+  EXPECT_EQ(json["paired_duration"]["pairs"], 3);
+  EXPECT_DOUBLE_EQ(json["paired_duration"]["mean"], 0.0);
+  EXPECT_EQ(json["paired_duration_of_successes"]["pairs"], 2);
+  EXPECT_DOUBLE_EQ(json["paired_duration_of_successes"]["mean"], -3.0);
+}
+
 TEST(SumUpHypothesisTest, AMissingRunIsNoReport) {
   EXPECT_THROW(SumUpHypothesis(Setting(2), {RecordOf(1, true, true), RecordOf(1, false, true)}),
                std::logic_error);

@@ -132,20 +132,28 @@ ComparedValue Value(Acceptance::Kind kind, double bound, std::optional<double> p
 
 TEST(AcceptanceTest, BoundsBelongToIt) {
   const ComparedValue within = Value(Acceptance::Kind::kWithin, 0.5, 2.0);
-  EXPECT_TRUE(IsAccepted(within, 2.5));
-  EXPECT_TRUE(IsAccepted(within, 1.5));
-  EXPECT_FALSE(IsAccepted(within, 2.51));
+  const auto is_accepted = [](const ComparedValue& value, double number) {
+    return IsAccepted(value, FoundNumber{number});
+  };
+  EXPECT_TRUE(is_accepted(within, 2.5));
+  EXPECT_TRUE(is_accepted(within, 1.5));
+  EXPECT_FALSE(is_accepted(within, 2.51));
   const ComparedValue factor = Value(Acceptance::Kind::kFactor, 2.0, 3.0);
-  EXPECT_TRUE(IsAccepted(factor, 6.0));
-  EXPECT_TRUE(IsAccepted(factor, 1.5));
-  EXPECT_FALSE(IsAccepted(factor, 1.4));
-  EXPECT_FALSE(IsAccepted(factor, 6.1));
-  EXPECT_FALSE(IsAccepted(factor, 0.0));
-  EXPECT_TRUE(IsAccepted(Value(Acceptance::Kind::kAtLeast, 1.0, {}), 1.0));
-  EXPECT_FALSE(IsAccepted(Value(Acceptance::Kind::kAtMost, 1.0, {}), 1.1));
+  EXPECT_TRUE(is_accepted(factor, 6.0));
+  EXPECT_TRUE(is_accepted(factor, 1.5));
+  EXPECT_FALSE(is_accepted(factor, 1.4));
+  EXPECT_FALSE(is_accepted(factor, 6.1));
+  EXPECT_FALSE(is_accepted(factor, 0.0));
+  EXPECT_TRUE(is_accepted(Value(Acceptance::Kind::kAtLeast, 1.0, {}), 1.0));
+  EXPECT_FALSE(is_accepted(Value(Acceptance::Kind::kAtMost, 1.0, {}), 1.1));
   for (const ComparedValue& value : {within, factor, Value(Acceptance::Kind::kAtMost, 1.0, {})}) {
-    EXPECT_FALSE(IsAccepted(value, std::numeric_limits<double>::quiet_NaN()));
+    EXPECT_FALSE(is_accepted(value, std::numeric_limits<double>::quiet_NaN()));
   }
+  const ComparedValue above = Value(Acceptance::Kind::kAbove, 1.0, {});
+  EXPECT_TRUE(IsAccepted(above, {1.2, 1.01, 1.4}));
+  EXPECT_FALSE(IsAccepted(above, {1.2, 1.0, 1.4}));
+  EXPECT_FALSE(is_accepted(above, 1.2)) << "without an interval nothing is shown";
+  EXPECT_TRUE(IsAccepted(Value(Acceptance::Kind::kBelow, 0.0, {}), {-0.2, -0.3, -0.1}));
 }
 
 CatalogueItem ItemOf(std::vector<ComparedValue> values) {
@@ -174,6 +182,39 @@ TEST(ReproducedJudgeTest, AVerdictIsThatOfItsWorstNumber) {
   EXPECT_EQ(VerdictOn({fast}, {{"x", 1.0}}), Verdict::kReproduced) << "no better than published";
   EXPECT_EQ(VerdictOn({near, fast}, {{"x", 5.0}}), Verdict::kNotReproduced);
   EXPECT_EQ(VerdictOn({}, {{"x", 5.0}}), Verdict::kShown);
+  CatalogueItem words = ItemOf({});
+  words.plays.clear();
+  EXPECT_EQ(Judge(words, {}, {}).verdict, Verdict::kDescribed);
+}
+
+TEST(ReproducedJudgeTest, AnIntervalThatHoldsTheBoundDecidesNothing) {
+  const ComparedValue above = Value(Acceptance::Kind::kAbove, 1.0, {});
+  const ComparedValue near = Value(Acceptance::Kind::kShown, 0.0, 1.1);
+  const auto interval = [](double estimate, double lower, double upper) {
+    return ordered_json{{"x", {{"estimate", estimate}, {"lower", lower}, {"upper", upper}}}};
+  };
+  EXPECT_EQ(VerdictOn({above}, interval(1.2, 1.1, 1.3)), Verdict::kReproduced);
+  EXPECT_EQ(VerdictOn({above}, interval(1.2, 0.9, 1.5)), Verdict::kUndecided);
+  EXPECT_EQ(VerdictOn({above}, interval(0.8, 0.7, 0.9)), Verdict::kNotReproduced);
+  EXPECT_EQ(VerdictOn({above}, {{"x", 1.2}}), Verdict::kNotReproduced) << "no interval";
+  ComparedValue below = Value(Acceptance::Kind::kBelow, 1.0, {});
+  EXPECT_EQ(VerdictOn({above, below}, interval(1.2, 1.1, 1.3)), Verdict::kNotReproduced)
+      << "what is against it outweighs";
+  const JudgedItem judged = Judge(ItemOf({above, near}), {{"loop", interval(1.2, 0.9, 1.5)}}, {});
+  EXPECT_EQ(judged.reason, "Not decided: v: 1.2 (0.9 .. 1.5) (interval above 1). slower");
+  const ordered_json json = ToJson({judged});
+  EXPECT_EQ(json[0]["values"][0]["lower"], 0.9);
+  EXPECT_EQ(json[0]["values"][0]["undecided"], true);
+  EXPECT_EQ(json[0]["values"][1]["upper"], 1.5) << "what is shown has its interval, too";
+}
+
+TEST(ReproducedJudgeTest, AMeanOrAShareMayHaveTheInterval) {
+  const ComparedValue above = Value(Acceptance::Kind::kAbove, 0.5, {});
+  for (const char* key : {"mean", "share"}) {
+    const ordered_json answer{{"x", {{key, 0.8}, {"lower", 0.6}, {"upper", 0.9}}}};
+    EXPECT_EQ(VerdictOn({above}, answer), Verdict::kReproduced) << key;
+  }
+  EXPECT_EQ(VerdictOn({above}, {{"x", {{"mean", 0.8}, {"lower", 0.6}}}}), Verdict::kNotPlayed);
 }
 
 TEST(ReproducedJudgeTest, WhatIsShownIsNotJudged) {
@@ -184,7 +225,7 @@ TEST(ReproducedJudgeTest, WhatIsShownIsNotJudged) {
   EXPECT_EQ(VerdictOn({near, shown}, {{"x", 9.0}}), Verdict::kNotReproduced);
   EXPECT_EQ(VerdictOn({shown}, {{"y", 2.1}}), Verdict::kNotPlayed) << "it has to be there";
   const JudgedItem judged = Judge(ItemOf({near, shown}), {{"loop", {{"x", 2.1}}}}, {});
-  EXPECT_EQ(judged.values[1].found, 2.1);
+  EXPECT_EQ(judged.values[1].found->number, 2.1);
   EXPECT_EQ(ToJson({judged})[0]["values"][1]["judged"], false);
   EXPECT_THAT(VerdictTable({judged}), HasSubstr("1 of 1"));
 }
@@ -195,8 +236,9 @@ TEST(ReproducedJudgeTest, OurOwnBoundsReproduceNothing) {
   EXPECT_EQ(Judge(item, {{"loop", {{"x", 2.0}}}}, {}).verdict, Verdict::kCheckHolds);
   const JudgedItem fails = Judge(item, {{"loop", {{"x", 0.0}}}}, {});
   EXPECT_EQ(fails.verdict, Verdict::kCheckFails);
-  EXPECT_EQ(fails.reason, "slower");
-  EXPECT_THAT(VerdictTable({fails}), HasSubstr("Table 1: slower"));
+  EXPECT_EQ(fails.reason, "Not as accepted: v: 0 (at least 1). slower");
+  EXPECT_THAT(VerdictTable({fails}),
+              HasSubstr("Table 1: Not as accepted: v: 0 (at least 1). slower"));
 }
 
 TEST(ReproducedJudgeTest, EntriesOfListsAreFoundByWhatTheySay) {
@@ -206,7 +248,8 @@ TEST(ReproducedJudgeTest, EntriesOfListsAreFoundByWhatTheySay) {
     ComparedValue value = Value(Acceptance::Kind::kShown, 0.0, {});
     value.at.pointer = pointer;
     const JudgedItem judged = Judge(ItemOf({value}), {{"loop", answer}}, {});
-    return judged.values.empty() ? std::nullopt : judged.values[0].found;
+    using Number = std::optional<double>;
+    return judged.values.empty() ? Number() : Number(judged.values[0].found->number);
   };
   EXPECT_EQ(found("/list/name=a, b/x"), 1.0);
   EXPECT_EQ(found("/list/name=c~1d/x"), 2.0);
@@ -219,7 +262,8 @@ TEST(ReproducedJudgeTest, EntriesOfListsAreFoundByWhatTheySay) {
 TEST(ReproducedJudgeTest, AReasonStandsBesideEachVerdict) {
   const ComparedValue near = Value(Acceptance::Kind::kWithin, 0.5, 2.0);
   EXPECT_EQ(Judge(ItemOf({near}), {{"loop", {{"x", 2.0}}}}, {}).reason, "as there");
-  EXPECT_EQ(Judge(ItemOf({near}), {{"loop", {{"x", 9.0}}}}, {}).reason, "slower");
+  EXPECT_EQ(Judge(ItemOf({near}), {{"loop", {{"x", 9.0}}}}, {}).reason,
+            "Not as accepted: v: 9 (published 2, within 0.5). slower");
   const JudgedItem missing = Judge(ItemOf({near}), {}, {{"loop", "signal 9 (Killed)"}});
   EXPECT_EQ(missing.verdict, Verdict::kNotPlayed);
   EXPECT_EQ(missing.reason, "loop: signal 9 (Killed)");

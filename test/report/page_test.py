@@ -3,12 +3,15 @@ answer of `hires` is refused with a word. The answers in test/data/report were w
 
 import copy
 import json
+import math
 import os
 import re
 import subprocess
 import sys
 import tempfile
 import unittest
+
+from scipy import stats
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..'))
 PROGRAM = os.path.join(ROOT, 'scripts', 'report')
@@ -17,6 +20,7 @@ sys.path.insert(0, PROGRAM)
 
 import report_input  # noqa: E402
 import report_pages  # noqa: E402
+import report_plots  # noqa: E402
 import report_reproduce  # noqa: E402
 from page_parser import Page  # noqa: E402
 
@@ -201,8 +205,78 @@ class CatalogueTest(unittest.TestCase):
         with open(os.path.join(ROOT, 'config', 'reproduce.yaml'), encoding='utf-8') as file:
             items = yaml.safe_load(file)['items']
         drawings = {drawing.split(':')[1] for item in items for drawing in item.get('drawings', [])}
-        self.assertEqual(drawings - set(report_reproduce.DRAWINGS), set())
-        self.assertGreater(len(drawings), 10)
+        self.assertEqual(drawings, set(report_reproduce.DRAWINGS))
+
+    def test_published_durations_are_those_that_the_experiment_is_compared_with(self):
+        import yaml
+        files = []
+        for name in ('reproduce.yaml', os.path.join('experiments', 'durations.yaml')):
+            with open(os.path.join(ROOT, 'config', name), encoding='utf-8') as file:
+                files.append(yaml.safe_load(file))
+        wanted = {}
+        for action in files[1]['durations']['actions']:
+            row = '_'.join((action.get('motion_set', action['action']), action['from'], action['to']))
+            for whose in ('simulated', 'real'):
+                for what in ('mean', 'sigma'):
+                    wanted[whose, '/measures/%s_%s' % (what, row)] = action[whose][what]
+        whose = {'Table 6.1': 'simulated', 'Table 6.2': 'real',
+                 **{'Fig. A.%d' % i: 'simulated' if i < 25 else 'real' for i in range(19, 31)}}
+        found = set()
+        for item in files[0]['items']:
+            for value in item.get('values', []) if item['item'] in whose else []:
+                key = whose[item['item']], value['at']
+                if 'published' in value:
+                    found.add((item['item'], *key))
+                    self.assertEqual(value['published'], wanted[key], (item['item'], value['name']))
+        self.assertEqual(len(found), 2 * len(wanted), 'a table and a figure have each of them')
+
+    def test_a_row_that_nobody_played_is_named(self):
+        content = copy.deepcopy(example('reproduce'))
+        item = next(item for item in content['items'] if item['item'] == 'Fig. 6.3')
+        item['drawings'] = ['durations:normality:fast EC1 NT2']
+        with self.assertRaisesRegex(report_input.ReportError, "play durations: no run of 'fast EC1 NT2'"):
+            page_of(content)
+
+    def test_what_cannot_be_drawn_is_said(self):
+        content = copy.deepcopy(example('reproduce'))
+        item = next(item for item in content['items'] if item['item'] == 'Fig. 6.3')
+        for row in content['plays']['durations']['answer']['rows']:
+            row['duration'] = 5.0
+        self.assertIn('Not drawn, for the answer has too little for it: ' + item['drawings'][0], page_of(content))
+
+    def test_the_published_normal_is_drawn_beside_ours(self):
+        content = copy.deepcopy(example('reproduce'))
+        item = next(item for item in content['items'] if item['item'] == 'Fig. 6.3')
+        self.assertNotIn('published', report_reproduce.pictures_of(
+            report_input.Answer(content, 'a'), '/items/%d' % content['items'].index(item))[0][0])
+        number = {'unit': 's', 'over': None, 'found': 1.0, 'lower': None, 'upper': None, 'accepted': 'not judged',
+                  'judged': False, 'holds': False, 'undecided': False, 'better': False}
+        item['values'] = [{'name': what, 'at': 'durations:/measures/%s_fast_EC1_NT1' % what, 'published': published,
+                           **number} for what, published in (('mean', 15.99), ('sigma', 0.72))]
+        self.assertIn('published', report_reproduce.pictures_of(
+            report_input.Answer(content, 'a'), '/items/%d' % content['items'].index(item))[0][0])
+
+    def test_the_sharpest_turn_is_that_of_the_circle_driven(self):
+        angles = [0.1 * i for i in range(20)]
+        x, y = [5.0 + 2.0 * math.cos(a) for a in angles], [1.0 + 2.0 * math.sin(a) for a in angles]
+        for xs, ys in ((x, y), (x[::-1], y[::-1])):  # left and right about
+            cx, cy, radius, text = report_reproduce._sharpest_turn(xs, ys, [0.4] * 20, [0.2] * 20)
+            self.assertAlmostEqual(math.hypot(cx - 5.0, cy - 1.0), 0.0, places=6)
+            self.assertAlmostEqual(radius, 2.0)
+            self.assertEqual(text, 'r = 2.00 m')
+        self.assertIsNone(report_reproduce._sharpest_turn(x, y, [0.0] * 20, [0.2] * 20), 'it stands')
+
+    def test_what_is_said_of_a_sample(self):
+        told = report_plots.normality_of([1.0, 2.0, 4.0, 5.0])
+        self.assertEqual((told['n'], told['mean']), (4, 3.0))
+        self.assertAlmostEqual(told['sigma'], math.sqrt(10.0 / 4.0))  # 1/N, as the dissertation's
+        even = [stats.norm.ppf((i + 0.5) / 50) for i in range(50)]
+        self.assertGreater(report_plots.normality_of(even)['p'], 0.99)
+        self.assertIn('does not reject', report_plots.normality_text(report_plots.normality_of(even)))
+        skewed = [math.exp(value) for value in even]
+        self.assertLess(report_plots.normality_of(skewed)['p'], 0.01)
+        self.assertNotIn('does not', report_plots.normality_text(report_plots.normality_of(skewed)))
+        self.assertNotIn('w', report_plots.normality_of([5.2, 5.2, 5.2]))
 
 
 class ProgramTest(unittest.TestCase):

@@ -41,9 +41,7 @@ class PlayRunner {
   PlaysDone Run() {
     for (const Play& play : order_.plays) {
       store_.KeyOf(play);
-      if (order_.again) store_.Forget(play);
-      const auto stored = store_.Find(play);
-      if (!stored) Plan(play);
+      if (order_.again || !store_.Find(play)) Plan(play);
     }
     for (const Play& play : order_.plays) {
       if (done_.is_cancelled) break;
@@ -60,13 +58,14 @@ class PlayRunner {
 
   void Take(const Play& play) {
     const auto stored = store_.Find(play);
-    if (stored) return Read(play, *stored, false);
+    if (stored && !order_.again) return Read(play, *stored, false);
     for (const std::string& needed : evaluation::NeededBy(play)) {
       if (done_.answers.count(needed) > 0) continue;
       done_.missing[play.name] = fmt::format("needs the answer of '{}', which is missing", needed);
       progress_.left -= play.seconds;
       return;
     }
+    if (order_.again) store_.Forget(play);  // at its turn: interrupted, the others keep theirs
     RunPlay(play);
   }
 
@@ -78,7 +77,10 @@ class PlayRunner {
     progress_.left -= play.seconds;
     if (!ended) {
       done_.is_cancelled = true;
-      done_.missing[play.name] = "interrupted; the same command goes on";
+      done_.missing[play.name] =
+          order_.again ? "interrupted; the same command without --again goes on with it, and takes "
+                         "the old answers of those after it"
+                       : "interrupted; the same command goes on";
       return;
     }
     const double seconds = base::SteadyNow() - begin;

@@ -38,12 +38,16 @@ PairedCounts PairsOf(const std::vector<HypothesisRun>& runs, int num_pairs) {
   return pairs;
 }
 
-/// [s] with - without, of the pairs whose runs both came to an end.
-std::vector<double> DurationDifferences(const std::vector<HypothesisRun>& runs) {
+bool IsComplete(const HypothesisRun& run) { return run.is_complete; }
+bool IsSuccess(const HypothesisRun& run) { return run.is_complete && run.success; }
+
+/// [s] with - without, of the pairs whose runs both count.
+std::vector<double> DurationDifferences(const std::vector<HypothesisRun>& runs,
+                                        bool (*counts)(const HypothesisRun&)) {
   std::map<int, std::pair<const HypothesisRun*, const HypothesisRun*>> pairs;
   for (const HypothesisRun& run : runs) {
     auto& [with, without] = pairs[run.run];
-    if (run.is_complete) (run.imagines ? with : without) = &run;
+    if (counts(run)) (run.imagines ? with : without) = &run;
   }
   std::vector<double> differences;
   for (const auto& [number, pair] : pairs) {
@@ -53,8 +57,9 @@ std::vector<double> DurationDifferences(const std::vector<HypothesisRun>& runs) 
   return differences;
 }
 
-ordered_json PairedDurationJson(const std::vector<HypothesisRun>& runs) {
-  const std::vector<double> differences = DurationDifferences(runs);
+ordered_json PairedDurationJson(const std::vector<HypothesisRun>& runs,
+                                bool (*counts)(const HypothesisRun&)) {
+  const std::vector<double> differences = DurationDifferences(runs, counts);
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const Interval mean =
       differences.empty() ? Interval{kNone, kNone, kNone} : MeanInterval(differences);
@@ -239,7 +244,8 @@ ordered_json ToJson(const HypothesisReport& report, const std::string& command) 
             {"only_without", report.pairs.only_second},
             {"p_value", McNemarPValue(report.pairs)},
             {"method", kMethod}}},
-          {"paired_duration", PairedDurationJson(report.runs)},
+          {"paired_duration", PairedDurationJson(report.runs, IsComplete)},
+          {"paired_duration_of_successes", PairedDurationJson(report.runs, IsSuccess)},
           {"list", RowsOf(report.runs)}};
 }
 

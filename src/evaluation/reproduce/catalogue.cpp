@@ -75,10 +75,9 @@ Play ReadPlay(base::ParamReader in) {
 
 Acceptance ReadAcceptance(base::ParamReader* in, bool is_published) {
   using Kind = Acceptance::Kind;
-  const std::map<std::string, Kind> kinds{{"within", Kind::kWithin},
-                                          {"factor", Kind::kFactor},
-                                          {"at_least", Kind::kAtLeast},
-                                          {"at_most", Kind::kAtMost}};
+  const std::map<std::string, Kind> kinds{{"within", Kind::kWithin},    {"factor", Kind::kFactor},
+                                          {"at_least", Kind::kAtLeast}, {"at_most", Kind::kAtMost},
+                                          {"above", Kind::kAbove},      {"below", Kind::kBelow}};
   std::vector<Acceptance> found;
   if (in->Has("shown") && in->GetBool("shown")) found.push_back({Kind::kShown, 0.0});
   for (const auto& [key, kind] : kinds) {
@@ -86,12 +85,14 @@ Acceptance ReadAcceptance(base::ParamReader* in, bool is_published) {
   }
   if (found.size() != 1) {
     in->Fail("name", "which is accepted by " + std::to_string(found.size()) +
-                         " rules; wanted one of within, factor, at_least, at_most, shown");
+                         " rules; wanted one of within, factor, at_least, at_most, above, below, "
+                         "shown");
   }
   const Acceptance& acceptance = found.front();
   if (!is_published && (acceptance.kind == Kind::kWithin || acceptance.kind == Kind::kFactor)) {
     in->Fail("name",
-             "which has nothing published to be near to; wanted `published`, or at_least, at_most");
+             "which has nothing published to be near to; wanted `published`, or at_least, at_most, "
+             "above, below");
   }
   if (acceptance.kind == Kind::kFactor && acceptance.bound < 1.0) {
     in->Fail("factor", "below 1; wanted by which factor ours may be off, such as 1.5");
@@ -147,7 +148,6 @@ CatalogueItem ReadItem(base::ParamReader in) {
   item.title = in.GetString("title");
   if (in.Has("plays")) item.plays = in.GetStrings("plays");
   if (in.Has("drawings")) item.drawings = in.GetStrings("drawings");
-  if (in.Has("picture")) item.picture = in.GetString("picture");
   item.holds = in.GetString("holds");
   if (in.Has("values")) {
     for (base::ParamReader value : in.SubList("values")) {

@@ -8,6 +8,7 @@
 
 #include "evaluation/known_number.h"
 #include "hires/base/error.h"
+#include "hires/base/text.h"
 #include "hires/evaluation/report_table.h"
 
 namespace hires::evaluation {
@@ -50,12 +51,29 @@ const ordered_json* Find(const ordered_json& answer, ordered_json::json_pointer 
   return at;
 }
 
-std::optional<double> NumberAt(const AnswerField& field, const Answers& answers) {
+std::optional<double> NumberIn(const ordered_json& entry, const char* key) {
+  if (!entry.contains(key) || !entry.at(key).is_number()) return std::nullopt;
+  return entry.at(key).get<double>();
+}
+
+/// {"estimate": 1.2, "lower": 1.0, "upper": 1.4}; nothing where it is none.
+std::optional<FoundNumber> IntervalIn(const ordered_json& entry) {
+  for (const char* key : {"estimate", "mean", "share"}) {
+    const FoundNumber found{NumberIn(entry, key).value_or(0.0), NumberIn(entry, "lower"),
+                            NumberIn(entry, "upper")};
+    if (NumberIn(entry, key) && found.lower && found.upper) return found;
+  }
+  return std::nullopt;
+}
+
+std::optional<FoundNumber> NumberAt(const AnswerField& field, const Answers& answers) {
   const ordered_json* found =
       Find(answers.at(field.play), ordered_json::json_pointer(field.pointer));
   if (found != nullptr && found->is_null()) return std::nullopt;
-  if (found != nullptr && found->is_boolean()) return found->get<bool>() ? 1.0 : 0.0;
-  if (found != nullptr && found->is_number()) return found->get<double>();
+  if (found != nullptr && found->is_boolean()) return FoundNumber{found->get<bool>() ? 1.0 : 0.0};
+  if (found != nullptr && found->is_number()) return FoundNumber{found->get<double>()};
+  const auto interval = found != nullptr && found->is_object() ? IntervalIn(*found) : std::nullopt;
+  if (interval) return interval;
   throw base::ConfigError(
       fmt::format("{}: the answer has {} there; wanted a number: the catalogue asks for another "
                   "field than this version writes",
@@ -66,42 +84,85 @@ bool IsJudged(const JudgedValue& judged) {
   return judged.value.acceptance.kind != Acceptance::Kind::kShown;
 }
 
-/// Nothing where it is divided by 0.
-std::optional<double> NumberOf(const ComparedValue& value, const Answers& answers) {
-  const std::optional<double> number = NumberAt(value.at, answers);
-  if (!value.over || !number) return number;
-  const std::optional<double> divisor = NumberAt(*value.over, answers);
-  if (!divisor || *divisor == 0.0) return std::nullopt;
-  return *number / *divisor;
+/// Nothing where it is divided by 0. A quotient has no interval.
+std::optional<FoundNumber> NumberOf(const ComparedValue& value, const Answers& answers) {
+  const std::optional<FoundNumber> found = NumberAt(value.at, answers);
+  if (!value.over || !found) return found;
+  const std::optional<FoundNumber> divisor = NumberAt(*value.over, answers);
+  if (!divisor || divisor->number == 0.0) return std::nullopt;
+  return FoundNumber{found->number / divisor->number};
+}
+
+/// Whether its interval holds the bound, so that it speaks neither for nor against it.
+bool HoldsBound(const Acceptance& acceptance, const FoundNumber& found) {
+  const bool is_side =
+      acceptance.kind == Acceptance::Kind::kAbove || acceptance.kind == Acceptance::Kind::kBelow;
+  return is_side && found.lower && found.upper && *found.lower <= acceptance.bound &&
+         acceptance.bound <= *found.upper;
 }
 
 JudgedValue JudgeValue(const ComparedValue& value, const Answers& answers) {
-  JudgedValue judged{value, NumberOf(value, answers), false, false};
+  JudgedValue judged{value, NumberOf(value, answers)};
   if (!judged.found) return judged;
   judged.holds = IsAccepted(value, *judged.found);
+  judged.is_undecided = HoldsBound(value.acceptance, *judged.found);
   if (value.may_be_better && judged.holds) {
     judged.is_better = value.acceptance.kind == Acceptance::Kind::kAtLeast
-                           ? *judged.found > *value.published
-                           : *judged.found < *value.published;
+                           ? judged.found->number > *value.published
+                           : judged.found->number < *value.published;
   }
   return judged;
 }
 
 Verdict VerdictOf(const CatalogueItem& item, const std::vector<JudgedValue>& values) {
+  if (item.plays.empty()) return Verdict::kDescribed;
   if (std::none_of(values.begin(), values.end(), IsJudged)) return Verdict::kShown;
-  bool may_be_better = false, are_better = true;
+  bool may_be_better = false, are_better = true, is_decided = true;
   for (const JudgedValue& judged : values) {
     if (!IsJudged(judged)) continue;
+    is_decided = is_decided && !judged.is_undecided;
+    if (judged.is_undecided) continue;
     if (!judged.holds) return item.is_own ? Verdict::kCheckFails : Verdict::kNotReproduced;
     may_be_better = may_be_better || judged.value.may_be_better;
     are_better = are_better && (!judged.value.may_be_better || judged.is_better);
   }
+  if (!is_decided) return Verdict::kUndecided;
   if (item.is_own) return Verdict::kCheckHolds;
   return may_be_better && are_better ? Verdict::kBetter : Verdict::kReproduced;
 }
 
-bool IsFailure(Verdict verdict) {
-  return verdict == Verdict::kNotReproduced || verdict == Verdict::kCheckFails;
+bool IsOpen(Verdict verdict) {
+  return verdict == Verdict::kNotReproduced || verdict == Verdict::kCheckFails ||
+         verdict == Verdict::kUndecided;
+}
+
+std::string Told(const FoundNumber& found) {
+  const std::string number = fmt::format("{:.4g}", found.number);
+  if (!found.lower || !found.upper) return number;
+  return fmt::format("{} ({:.3g} .. {:.3g})", number, *found.lower, *found.upper);
+}
+
+/// "slow EC1/ET2: 23.4 s (published 20.22, within 2.37)".
+std::string ShortfallText(const JudgedValue& judged) {
+  const ComparedValue& value = judged.value;
+  std::string text = value.name + ": " + (judged.found ? Told(*judged.found) : "no number");
+  if (judged.found && !value.unit.empty()) text += " " + value.unit;
+  const std::string published =
+      value.published ? fmt::format("published {:.4g}, ", *value.published) : "";
+  return text + fmt::format(" ({}{})", published, ToString(value.acceptance));
+}
+
+/// What is not as accepted, number by number, so that no prose has to say it.
+std::string ShortfallsText(const std::vector<JudgedValue>& values) {
+  std::vector<std::string> against, undecided;
+  for (const JudgedValue& judged : values) {
+    if (!IsJudged(judged) || judged.holds) continue;
+    (judged.is_undecided ? undecided : against).push_back(ShortfallText(judged));
+  }
+  std::string text;
+  if (!against.empty()) text += "Not as accepted: " + base::Join(against, "; ") + ". ";
+  if (!undecided.empty()) text += "Not decided: " + base::Join(undecided, "; ") + ". ";
+  return text;
 }
 
 int NumHolding(const std::vector<JudgedValue>& values) {
@@ -110,26 +171,34 @@ int NumHolding(const std::vector<JudgedValue>& values) {
 }
 
 ordered_json ValueJson(const JudgedValue& judged) {
+  const std::optional<FoundNumber>& found = judged.found;
   return {{"name", judged.value.name},
           {"unit", judged.value.unit},
           {"at", ToString(judged.value.at)},
           {"over", judged.value.over ? ordered_json(ToString(*judged.value.over)) : ordered_json()},
           {"published", NumberOrNull(judged.value.published)},
-          {"found", NumberOrNull(judged.found)},
+          {"found", found ? NumberOrNull(found->number) : ordered_json()},
+          {"lower", found ? NumberOrNull(found->lower) : ordered_json()},
+          {"upper", found ? NumberOrNull(found->upper) : ordered_json()},
           {"accepted", ToString(judged.value.acceptance)},
           {"judged", IsJudged(judged)},
           {"holds", judged.holds},
+          {"undecided", judged.is_undecided},
           {"better", judged.is_better}};
 }
 
 ordered_json ItemJson(const JudgedItem& judged) {
   ordered_json values = ordered_json::array();
   for (const JudgedValue& value : judged.values) values.push_back(ValueJson(value));
-  return {{"item", judged.item.name},         {"section", judged.item.section},
-          {"title", judged.item.title},       {"verdict", ToString(judged.verdict)},
-          {"reason", judged.reason},          {"plays", judged.item.plays},
-          {"drawings", judged.item.drawings}, {"picture", judged.item.picture},
-          {"bounds", judged.item.bounds},     {"values", values}};
+  return {{"item", judged.item.name},
+          {"section", judged.item.section},
+          {"title", judged.item.title},
+          {"verdict", ToString(judged.verdict)},
+          {"reason", judged.reason},
+          {"plays", judged.item.plays},
+          {"drawings", judged.item.drawings},
+          {"bounds", judged.item.bounds},
+          {"values", values}};
 }
 
 }  // namespace
@@ -142,30 +211,38 @@ const char* ToString(Verdict verdict) {
       return "better";
     case Verdict::kNotReproduced:
       return "not reproduced";
+    case Verdict::kUndecided:
+      return "undecided";
     case Verdict::kCheckHolds:
       return "check holds";
     case Verdict::kCheckFails:
       return "check fails";
     case Verdict::kShown:
       return "shown";
+    case Verdict::kDescribed:
+      return "described";
     case Verdict::kNotPlayed:
       return "not played";
   }
   return "";
 }
 
-bool IsAccepted(const ComparedValue& value, double found) {
-  const double bound = value.acceptance.bound;
+bool IsAccepted(const ComparedValue& value, const FoundNumber& found) {
+  const double bound = value.acceptance.bound, number = found.number;
   switch (value.acceptance.kind) {
     case Acceptance::Kind::kWithin:
-      return std::abs(found - value.published.value()) <= bound;
+      return std::abs(number - value.published.value()) <= bound;
     case Acceptance::Kind::kFactor:
-      return found > 0.0 && found <= bound * value.published.value() &&
-             found * bound >= value.published.value();
+      return number > 0.0 && number <= bound * value.published.value() &&
+             number * bound >= value.published.value();
     case Acceptance::Kind::kAtLeast:
-      return found >= bound;
+      return number >= bound;
     case Acceptance::Kind::kAtMost:
-      return found <= bound;
+      return number <= bound;
+    case Acceptance::Kind::kAbove:
+      return found.lower && *found.lower > bound;
+    case Acceptance::Kind::kBelow:
+      return found.upper && *found.upper < bound;
     case Acceptance::Kind::kShown:
       return false;
   }
@@ -182,6 +259,10 @@ std::string ToString(const Acceptance& acceptance) {
       return fmt::format("at least {:.6g}", acceptance.bound);
     case Acceptance::Kind::kAtMost:
       return fmt::format("at most {:.6g}", acceptance.bound);
+    case Acceptance::Kind::kAbove:
+      return fmt::format("interval above {:.6g}", acceptance.bound);
+    case Acceptance::Kind::kBelow:
+      return fmt::format("interval below {:.6g}", acceptance.bound);
     case Acceptance::Kind::kShown:
       return "not judged";
   }
@@ -208,7 +289,7 @@ JudgedItem Judge(const CatalogueItem& item, const std::map<std::string, ordered_
     return judged;
   }
   judged.verdict = VerdictOf(item, judged.values);
-  judged.reason = IsFailure(judged.verdict) ? item.fails : item.holds;
+  judged.reason = IsOpen(judged.verdict) ? ShortfallsText(judged.values) + item.fails : item.holds;
   return judged;
 }
 
@@ -221,7 +302,7 @@ std::string VerdictTable(const std::vector<JudgedItem>& items) {
     rows.push_back({judged.item.section, judged.item.name, ToString(judged.verdict),
                     all == 0 ? "" : fmt::format("{} of {}", NumHolding(judged.values), all),
                     judged.item.title});
-    const bool is_open = IsFailure(judged.verdict) || judged.verdict == Verdict::kNotPlayed;
+    const bool is_open = IsOpen(judged.verdict) || judged.verdict == Verdict::kNotPlayed;
     if (is_open) reasons += fmt::format("\n{}: {}\n", judged.item.name, judged.reason);
   }
   return FormatTable(rows) + reasons;

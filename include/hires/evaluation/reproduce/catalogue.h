@@ -25,6 +25,8 @@ struct Acceptance {
     kFactor,   ///< published / bound <= ours <= published * bound; both above 0
     kAtLeast,  ///< ours >= bound; what is published is a saying, such as "more than twice"
     kAtMost,
+    kAbove,  ///< the whole interval of ours is above the bound; decided only if it holds no bound
+    kBelow,
     kShown  ///< it stands there, and is not judged
   };
   Kind kind{Kind::kWithin};
@@ -34,8 +36,9 @@ struct Acceptance {
 /// Where a number stands.
 struct AnswerField {
   std::string play;
-  /// JSON pointer into the play's answer; true and false are 1 and 0 there. A step `key=value` is
-  /// the first entry of a list whose `key` says so.
+  /// JSON pointer into the play's answer; true and false are 1 and 0 there, and what has `lower`
+  /// and `upper` is an interval about its `estimate`, `mean` or `share`. A step `key=value` is the
+  /// first entry of a list whose `key` says so.
   std::string pointer;
 };
 std::string ToString(const AnswerField& field);  ///< "durations:/measures/failed"
@@ -64,10 +67,8 @@ struct CatalogueItem {
   std::string bounds;  ///< where the bounds of its values come from; empty: none is judged
   /// The dissertation has no number to compare with: what is judged is our own bound.
   bool is_own{false};
-  /// A picture of the package that stands beside a published one without numbers; or empty.
-  std::string picture;
   std::string holds;  ///< what it says where all values are as accepted, or there are none
-  std::string fails;  ///< why, where they are not
+  std::string fails;  ///< why, where they are not, as far as it is known
 };
 
 struct Catalogue {

@@ -14,17 +14,26 @@ enum class Verdict {
   kReproduced,     ///< all numbers are as accepted
   kBetter,         ///< likewise, and those that may be better than published are
   kNotReproduced,  ///< a number is not as accepted, or is none
+  kUndecided,      ///< none is against it, but an interval is too wide to say so
   kCheckHolds,     ///< as kReproduced, where the dissertation has no number (CatalogueItem::is_own)
   kCheckFails,     ///< as kNotReproduced, likewise
-  kShown,     ///< nothing to compare: a picture or a description stands beside the published one
-  kNotPlayed  ///< an answer, or a field of one, that it needs is missing
+  kShown,      ///< nothing to compare: a picture or numbers of ours stand beside the published one
+  kDescribed,  ///< nothing that is played: words alone
+  kNotPlayed   ///< an answer, or a field of one, that it needs is missing
 };
 const char* ToString(Verdict verdict);  ///< "not reproduced"
 
+/// A number of an answer, with the interval that it was told with.
+struct FoundNumber {
+  double number{0.0};
+  std::optional<double> lower, upper;
+};
+
 struct JudgedValue {
   ComparedValue value;
-  std::optional<double> found;  ///< nothing: the answer has null there
-  bool holds{false};            ///< false for what is only shown
+  std::optional<FoundNumber> found;  ///< nothing: the answer has null there
+  bool holds{false};                 ///< false for what is only shown
+  bool is_undecided{false};          ///< its interval holds the bound
   bool is_better{false};
 };
 
@@ -32,11 +41,12 @@ struct JudgedItem {
   CatalogueItem item;
   Verdict verdict{Verdict::kNotPlayed};
   std::vector<JudgedValue> values;
-  std::string reason;
+  std::string reason;  ///< begins with the numbers that are not as accepted
 };
 
-/// Whether ours is as accepted.  @param found  NaN never is.
-bool IsAccepted(const ComparedValue& value, double found);
+/// Whether ours is as accepted.  @param found  NaN never is, and what has no interval is neither
+/// above nor below.
+bool IsAccepted(const ComparedValue& value, const FoundNumber& found);
 std::string ToString(const Acceptance& acceptance);  ///< "within 3", "by a factor of 1.5 at most"
 
 /// @param answers  of the plays that were played, by name.
@@ -49,7 +59,7 @@ JudgedItem Judge(const CatalogueItem& item,
 /// reproduced or not played.
 std::string VerdictTable(const std::vector<JudgedItem>& items);
 
-/// [{"item", "section", "title", "verdict", "reason", "plays", "drawings", "picture", "values"}].
+/// [{"item", "section", "title", "verdict", "reason", "plays", "drawings", "bounds", "values"}].
 nlohmann::ordered_json ToJson(const std::vector<JudgedItem>& items);
 
 }  // namespace hires::evaluation
