@@ -480,6 +480,22 @@ TEST_F(NamelessTest, WhatWasToldAndNeverSeenIsTheThingNearby) {
   EXPECT_NEAR(Remembered("mug1").translation.y(), -0.75, 1e-9);
 }
 
+TEST_F(NamelessTest, WhatWasToldIsTheNearerThingThoughAnotherWasSeenForLonger) {
+  memory_.Believe("mug1", "mug", "", At(1.5, -1.15, 0.7));  // out of view, so it is not missed
+  const Pose3 nearer = At(1.5, -0.9, 0.7), farther = At(1.5, -0.7, 0.7);
+  for (int i = 0; i < 2; ++i) SeeMugs({farther});
+  for (int i = 0; i < 2; ++i) {
+    SeeMugs({farther, nearer});
+    EXPECT_FALSE(memory_.objects().at("mug1").is_observed) << "the nearer one may be it";
+    EXPECT_EQ(memory_.num_ambiguous(), 1);
+    EXPECT_THAT(Names(), ElementsAre("mug1"));
+  }
+  SeeMugs({farther, nearer});
+  EXPECT_THAT(Names(), ElementsAre("mug1", "mug2"));
+  EXPECT_NEAR(Remembered("mug1").translation.y(), -0.9, 1e-9);
+  EXPECT_NEAR(Remembered("mug2").translation.y(), -0.7, 1e-9);
+}
+
 TEST_F(NamelessTest, WhatWasToldToBeFarAwayIsNotTheThingSeenHere) {
   memory_.Believe("mug1", "mug", "", At(1.5, -1.35, 0.7));
   for (int i = 0; i < 3; ++i) SeeMugs({At(1.5, -0.75, 0.7)});

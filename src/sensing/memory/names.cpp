@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
@@ -42,6 +43,12 @@ std::vector<SeenKind> KindsOf(const Detection& detection, double least) {
 
 constexpr double kHardly = 0.0;          // whatever a recogniser finds worth saying
 constexpr double kAsLikely = 1.0 / 3.0;  // of what nothing else speaks for
+
+bool MayBeOfKind(const Detection& detection, const std::string& kind) {
+  const auto kinds = KindsOf(detection, kAsLikely);
+  return std::any_of(kinds.begin(), kinds.end(),
+                     [&](const SeenKind& one) { return one.kind == kind; });
+}
 
 }  // namespace
 
@@ -201,8 +208,35 @@ void ObjectMemory::NameNewcomers(const Links& links, const LookedAt& look,
   constexpr double kAnywhere = 100.0;  // [m]
   std::vector<const Newcomer*> ripe;
   std::vector<SeenThing> things;
+  std::set<int> ripe_detections;
+  const auto is_ripe = [&](const Newcomer& one) {
+    return one.num_looks >= params_.looks_to_appear;
+  };
   for (const Newcomer& newcomer : newcomers_) {
-    if (newcomer.num_looks < params_.looks_to_appear) continue;
+    if (is_ripe(newcomer)) ripe_detections.insert(newcomer.detection);
+  }
+  // What was told is rather what is seen nearer to its place, and not for long enough yet.
+  const auto must_wait = [&](const Newcomer& newcomer) {
+    for (const std::string& name : ToldNear(links, newcomer, *named)) {
+      const RememberedObject& object = objects_.at(name);
+      const Eigen::Vector3d told_M = PlaceOf(links, object);
+      if (!MayBeOfKind(look.detections[newcomer.detection], object.model)) continue;
+      for (std::size_t i = 0; i < named->size(); ++i) {
+        if (!(*named)[i].name.empty() || ripe_detections.count(static_cast<int>(i)) > 0) continue;
+        const bool is_nearer =
+            (look.X_MO(i).translation - told_M).norm() < (newcomer.p_M - told_M).norm();
+        if (is_nearer && MayBeOfKind(look.detections[i], object.model)) return true;
+      }
+    }
+    return false;
+  };
+  for (const Newcomer& newcomer : newcomers_) {
+    if (!is_ripe(newcomer)) continue;
+    if (must_wait(newcomer)) {
+      (*named)[newcomer.detection].is_ambiguous = true;
+      ++num_ambiguous_;
+      continue;
+    }
     ripe.push_back(&newcomer);
     things.push_back({KindsOf(look.detections[newcomer.detection], kAsLikely), newcomer.p_M});
   }
