@@ -213,7 +213,8 @@ void AddBlackboardVerb(CLI::App* app, BlackboardOptions* o) {
                       "names the ontology for --store; default: config/blackboard.yaml");
   o->load = o->verb->add_subcommand("load", "add what a YAML file says");
   o->load->add_option("file", o->file, "fluents, modifications, topics")->required();
-  o->load->add_option("--seed", o->seed, "of the choices that modifications draw");
+  o->load->add_option("--seed", o->seed, "of the choices that modifications draw")
+      ->check(WholeNumber());
   o->query = o->verb->add_subcommand("query", "list fluents");
   o->export_ = o->verb->add_subcommand("export", "fluents as YAML, in the format of load");
   for (CLI::App* verb : {o->query, o->export_}) AddFilter(verb, o);

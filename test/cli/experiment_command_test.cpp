@@ -41,6 +41,16 @@ TEST(ExperimentCommandTest, ExitsByWhatTheFileExpects) {
   EXPECT_EQ(ExitCode("", {"--json", "/no/such/folder/x.json"}), 1);
 }
 
+TEST(ExperimentCommandTest, SeedsOfAllVerbsAreWholeNumbers) {
+  for (const char* verb : {"localisation", "torso_poses", "detector", "recognition"}) {
+    const auto ended = RunHires({"experiment", verb, "--seed", "-1"});
+    EXPECT_EQ(ended.code, 1) << verb;
+    EXPECT_THAT(ended.err,
+                testing::AllOf(testing::HasSubstr("--seed"), testing::HasSubstr("no whole number")))
+        << verb;
+  }
+}
+
 TEST(ExperimentCommandTest, WritesCsvAndJson) {
   const std::string csv = testing::TempDir() + "legs.csv", json = testing::TempDir() + "legs.json";
   EXPECT_EQ(ExitCode("", {"--csv", csv, "--json", json, "--seed", "5"}), 0);

@@ -38,7 +38,8 @@ void AddDetectorFitVerb(CLI::App* experiment, DetectorFitOptions* o) {
       ->check(NumberBetween(1, 1000000));
   verb->add_option("--held-out", o->held_out, "how many more, to try the fit on")
       ->check(NumberBetween(1, 1000000));
-  verb->add_option("--seed", o->seed, "of the first table; each next one has the next");
+  verb->add_option("--seed", o->seed, "of the first table; each next one has the next")
+      ->check(WholeNumber());
   verb->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
   verb->add_option("--config", o->config, "another file instead of config/recogniser.yaml");
   verb->add_option("--output", o->output, "write a file like config/detector.yaml");

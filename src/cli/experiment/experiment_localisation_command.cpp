@@ -24,7 +24,8 @@ void AddPoseErrorVerb(CLI::App* experiment, PoseErrorOptions* o) {
       ->check(NumberBetween(1, 10000));
   verb->add_option("--held-out", o->held_out, "how many more, to try the fit on")
       ->check(NumberBetween(1, 10000));
-  verb->add_option("--seed", o->seed, "of the first series; each next one has the next");
+  verb->add_option("--seed", o->seed, "of the first series; each next one has the next")
+      ->check(WholeNumber());
   verb->add_option("--output", o->output, "write a file like config/localisation_error.yaml");
   verb->add_option("--json", o->json, "write the numbers to this file");
   verb->add_option("--threads", o->threads, "default: one per core; changes no number")

@@ -20,7 +20,8 @@ void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* o) {
       "recognition", "how well things on random tables are recognised, over distance and torso");
   verb->add_option("--tables", o->tables, "how many; each has 1 to 8 things")
       ->check(NumberBetween(1, 1000000));
-  verb->add_option("--seed", o->seed, "of the first table; each next one has the next");
+  verb->add_option("--seed", o->seed, "of the first table; each next one has the next")
+      ->check(WholeNumber());
   verb->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
   verb->add_option("--config", o->config, "another file instead of config/recogniser.yaml");
   verb->add_option("--json", o->json, "write the numbers to this file");

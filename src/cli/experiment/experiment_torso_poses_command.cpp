@@ -18,7 +18,7 @@ void AddTorsoPosesVerb(CLI::App* experiment, TorsoPosesOptions* o) {
       "from which height and place things on a table are recognised and grasped best");
   verb->add_option("--looks", o->looks, "at each thing from each pose")
       ->check(NumberBetween(1, 100000));
-  verb->add_option("--seed", o->seed, "of places, headings and noise");
+  verb->add_option("--seed", o->seed, "of places, headings and noise")->check(WholeNumber());
   verb->add_option("--stand", o->stand, "area at which the robot stands by default");
   verb->add_option("--area", o->area, "area on which the things stand");
   verb->add_option("--config", o->config, "another file instead of config/recogniser.yaml");
