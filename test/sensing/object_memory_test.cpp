@@ -496,6 +496,14 @@ TEST_F(NamelessTest, WhatWasToldIsTheNearerThingThoughAnotherWasSeenForLonger) {
   EXPECT_NEAR(Remembered("mug2").translation.y(), -0.7, 1e-9);
 }
 
+TEST_F(NamelessTest, APieceOfTheSameThingIsNoNearerThing) {
+  memory_.Believe("mug1", "mug", "", At(1.5, -1.15, 0.7));  // out of view, so it is not missed
+  for (int i = 0; i < 2; ++i) SeeMugs({At(1.5, -0.75, 0.7)});
+  SeeMugs({At(1.5, -0.75, 0.7), At(1.5, -0.76, 0.7)});
+  EXPECT_TRUE(memory_.objects().at("mug1").is_observed);
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+}
+
 TEST_F(NamelessTest, WhatWasToldToBeFarAwayIsNotTheThingSeenHere) {
   memory_.Believe("mug1", "mug", "", At(1.5, -1.35, 0.7));
   for (int i = 0; i < 3; ++i) SeeMugs({At(1.5, -0.75, 0.7)});

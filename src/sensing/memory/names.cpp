@@ -223,8 +223,10 @@ void ObjectMemory::NameNewcomers(const Links& links, const LookedAt& look,
       if (!MayBeOfKind(look.detections[newcomer.detection], object.model)) continue;
       for (std::size_t i = 0; i < named->size(); ++i) {
         if (!(*named)[i].name.empty() || ripe_detections.count(static_cast<int>(i)) > 0) continue;
-        const bool is_nearer =
-            (look.X_MO(i).translation - told_M).norm() < (newcomer.p_M - told_M).norm();
+        const Eigen::Vector3d p_M = look.X_MO(i).translation;
+        // From afar a thing may be seen in pieces.
+        if ((p_M - newcomer.p_M).norm() <= params_.instance_distance) continue;
+        const bool is_nearer = (p_M - told_M).norm() < (newcomer.p_M - told_M).norm();
         if (is_nearer && MayBeOfKind(look.detections[i], object.model)) return true;
       }
     }
