@@ -1,5 +1,5 @@
 """The pages of scripts/report: their numbers are those of the JSON, they load nothing, and what is no
-answer of `hires` is refused with a word. The answers in test/data/report were written by `hires`."""
+answer of `hires` is refused with a word. The answers in test/data/report were written by `hires`, and shortened."""
 
 import copy
 import json
