@@ -193,6 +193,8 @@ class ObjectMemory {
   void Appear(const Links& links, const LookedAt& look, std::vector<Named>* named);
   std::vector<std::string> ToldNear(const Links& links, const Newcomer& newcomer,
                                     const std::vector<Named>& named) const;
+  bool MustWait(const Links& links, const LookedAt& look, const Newcomer& newcomer,
+                const std::vector<Named>& named) const;
   void NameNewcomers(const Links& links, const LookedAt& look, std::vector<Named>* named);
   void Reveal(const Links& links, const LookedAt& look, const std::vector<Named>& named);
   std::string BoxOf(const Links& links, const std::string& name,

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
@@ -201,6 +200,33 @@ std::vector<std::string> ObjectMemory::ToldNear(const Links& links, const Newcom
   return names;
 }
 
+/// Whether it may be something told of, while another thing that may be that is seen nearer to
+/// where it was told to be, and not for long enough yet.
+bool ObjectMemory::MustWait(const Links& links, const LookedAt& look, const Newcomer& newcomer,
+                            const std::vector<Named>& named) const {
+  const auto has_no_name_yet = [&](std::size_t i) {
+    return named[i].name.empty() &&
+           std::none_of(newcomers_.begin(), newcomers_.end(), [&](const Newcomer& other) {
+             return other.detection == static_cast<int>(i) &&
+                    other.num_looks >= params_.looks_to_appear;
+           });
+  };
+  for (const std::string& name : ToldNear(links, newcomer, named)) {
+    const RememberedObject& object = objects_.at(name);
+    const Eigen::Vector3d told_M = PlaceOf(links, object);
+    if (!MayBeOfKind(look.detections[newcomer.detection], object.model)) continue;
+    for (std::size_t i = 0; i < named.size(); ++i) {
+      const Eigen::Vector3d p_M = look.X_MO(i).translation;
+      // From afar a thing may be seen in pieces.
+      if ((p_M - newcomer.p_M).norm() <= params_.instance_distance) continue;
+      const bool is_nearer = (p_M - told_M).norm() < (newcomer.p_M - told_M).norm();
+      if (is_nearer && has_no_name_yet(i) && MayBeOfKind(look.detections[i], object.model))
+        return true;
+    }
+  }
+  return false;
+}
+
 /// Things that were seen for long enough are known ones that were moved or stand elsewhere than was
 /// told, or new.
 void ObjectMemory::NameNewcomers(const Links& links, const LookedAt& look,
@@ -208,33 +234,9 @@ void ObjectMemory::NameNewcomers(const Links& links, const LookedAt& look,
   constexpr double kAnywhere = 100.0;  // [m]
   std::vector<const Newcomer*> ripe;
   std::vector<SeenThing> things;
-  std::set<int> ripe_detections;
-  const auto is_ripe = [&](const Newcomer& one) {
-    return one.num_looks >= params_.looks_to_appear;
-  };
   for (const Newcomer& newcomer : newcomers_) {
-    if (is_ripe(newcomer)) ripe_detections.insert(newcomer.detection);
-  }
-  // What was told is rather what is seen nearer to its place, and not for long enough yet.
-  const auto must_wait = [&](const Newcomer& newcomer) {
-    for (const std::string& name : ToldNear(links, newcomer, *named)) {
-      const RememberedObject& object = objects_.at(name);
-      const Eigen::Vector3d told_M = PlaceOf(links, object);
-      if (!MayBeOfKind(look.detections[newcomer.detection], object.model)) continue;
-      for (std::size_t i = 0; i < named->size(); ++i) {
-        if (!(*named)[i].name.empty() || ripe_detections.count(static_cast<int>(i)) > 0) continue;
-        const Eigen::Vector3d p_M = look.X_MO(i).translation;
-        // From afar a thing may be seen in pieces.
-        if ((p_M - newcomer.p_M).norm() <= params_.instance_distance) continue;
-        const bool is_nearer = (p_M - told_M).norm() < (newcomer.p_M - told_M).norm();
-        if (is_nearer && MayBeOfKind(look.detections[i], object.model)) return true;
-      }
-    }
-    return false;
-  };
-  for (const Newcomer& newcomer : newcomers_) {
-    if (!is_ripe(newcomer)) continue;
-    if (must_wait(newcomer)) {
+    if (newcomer.num_looks < params_.looks_to_appear) continue;
+    if (MustWait(links, look, newcomer, *named)) {
       (*named)[newcomer.detection].is_ambiguous = true;
       ++num_ambiguous_;
       continue;
