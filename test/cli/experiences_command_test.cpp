@@ -91,6 +91,20 @@ TEST_F(ExperiencesCommandTest, WhatIsThereAndNeverSoGivesAnEmptyFile) {
   }
 }
 
+TEST_F(ExperiencesCommandTest, TheStoreIsNotWrittenOver) {
+  const std::string same = (folder_.path() / "." / "e.db").string();
+  const std::string before = base::ReadTextFile(store_);
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"export", store_, "--csv", same},
+        {"stats", store_, "--json", same},
+        {"analyse", store_, "--json", store_}}) {
+    const Ended ended = RunHires({"experiences"}, words);
+    EXPECT_EQ(ended.code, kExitBadInput);
+    EXPECT_THAT(ended.err, HasSubstr("is the store itself; name another file"));
+    EXPECT_EQ(base::ReadTextFile(store_), before);
+  }
+}
+
 TEST_F(ExperiencesCommandTest, NumbersThatAreNoneAreRefused) {
   EXPECT_THAT(RefusalOf({"--from", "nan"}), AllOf(HasSubstr("--from"), HasSubstr("'nan'")));
   EXPECT_THAT(RefusalOf({"--to", "soon"}), AllOf(HasSubstr("--to"), HasSubstr("'soon'")));

@@ -115,6 +115,7 @@ TEST_F(ReproduceTest, InterruptedItKeepsWhatIsDone) {
   EXPECT_TRUE(done.is_cancelled);
   EXPECT_THAT(done.answers, ElementsAre(Key("quick")));
   EXPECT_THAT(done.missing, Contains(Key("endless")));
+  EXPECT_THAT(done.missing.at("never"), HasSubstr("not reached"));
 }
 
 TEST_F(ReproduceTest, InterruptedWhilePlayingAnewItKeepsTheAnswersOfTheOthers) {

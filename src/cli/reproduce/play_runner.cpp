@@ -44,8 +44,11 @@ class PlayRunner {
       if (order_.again || !store_.Find(play)) Plan(play);
     }
     for (const Play& play : order_.plays) {
-      if (done_.is_cancelled) break;
-      Take(play);
+      if (done_.is_cancelled) {
+        done_.missing[play.name] = "not reached; the same command goes on";
+      } else {
+        Take(play);
+      }
     }
     return std::move(done_);
   }
