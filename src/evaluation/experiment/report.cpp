@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "evaluation/known_number.h"
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
@@ -54,16 +55,10 @@ std::string CsvField(const ordered_json& value) {
   return quoted + '"';
 }
 
-ordered_json Number(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json();
-}
-
 ordered_json IntervalsToJson(const std::vector<NamedInterval>& intervals) {
   ordered_json json = ordered_json::object();
   for (const auto& [name, interval] : intervals) {
-    json[name] = {{"estimate", Number(interval.estimate)},
-                  {"lower", Number(interval.lower)},
-                  {"upper", Number(interval.upper)}};
+    json[name] = IntervalJson(interval);
   }
   return json;
 }
@@ -225,13 +220,13 @@ std::string ReportCsv(const ExperimentReport& report) {
 ordered_json ToJson(const ExperimentReport& report) {
   ordered_json measures = ordered_json::object(), checks = ordered_json::array();
   for (const Measure& measure : report.findings.measures) {
-    measures[measure.name] = Number(measure.value);
+    measures[measure.name] = NumberOrNull(measure.value);
   }
   for (const CheckedExpectation& check : report.checks) {
     checks.push_back({{"expected", ToString(check.expectation)},
                       {"measure", check.expectation.measure},
-                      {"bound", Number(check.expectation.bound)},
-                      {"found", Number(check.value)},
+                      {"bound", NumberOrNull(check.expectation.bound)},
+                      {"found", NumberOrNull(check.value)},
                       {"holds", check.holds}});
   }
   return {{"name", report.name},
