@@ -12,12 +12,12 @@
 #include <tuple>
 
 #include "cli/achieve_display.h"
-#include "cli/experiment/experiment_hypothesis_command.h"
 #include "hires/base/error.h"
 #include "hires/base/files/named_file.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/cli/whole_number.h"
+#include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/scenario.h"
 #include "hires/evaluation/timeline.h"
@@ -72,7 +72,7 @@ ReportOrigin OriginOf(const AchieveOptions& options, const std::string& package_
                    {"objects", options.files.objects},
                    {"domain", options.files.domain},
                    {"operators", options.files.operators}};
-  origin.hashes = {{"files", HashOfFiles(package_folder)}};
+  origin.hashes = {{"files", evaluation::ConfigurationHash(package_folder)}};
   return origin;
 }
 

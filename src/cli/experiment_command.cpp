@@ -16,6 +16,7 @@
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
+#include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/experiment/experiment.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
@@ -114,6 +115,10 @@ std::string ProgressText(double fraction, double elapsed) {
   return text;
 }
 
+std::string FilesLine(const std::string& hash) {
+  return fmt::format("files {} (config, worlds, urdf)\n", hash);
+}
+
 void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
   CLI::App* verb = app->add_subcommand(
       "experiment", "play an experiment of config/experiments and check what it expects");
@@ -135,7 +140,8 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
       "of topple_loop: keep what the load went through, 20 times a second, in this file, which is "
       "replaced when all is played");
   verb->add_flag("--hashes", options->only_hashes,
-                 "print the report's first line alone, and play nothing");
+                 "print the report's first line alone, and play nothing; without a file: the hash "
+                 "of all that series read");
   verb->add_flag("--quiet", options->quiet, "no progress bar");
   options->verb = verb;
   AddHypothesisVerb(verb, &options->hypothesis);
@@ -148,6 +154,10 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
 }
 
 int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool()>& cancelled) {
+  if (options.file.empty() && options.only_hashes) {
+    std::cout << FilesLine(evaluation::ConfigurationHash(options.report.package_folder));
+    return kExitRecommended;
+  }
   if (options.file.empty()) {
     throw base::ConfigError(
         "experiment: wanted a YAML file or its name in config/experiments, such as paired, or "

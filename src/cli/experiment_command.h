@@ -53,4 +53,8 @@ evaluation::Crew MakeCrew(int threads, bool is_quiet, const std::function<bool()
 /// " 52 %, 12 s left", for terminals.
 std::string ProgressText(double fraction, double elapsed);
 
+/// Below a printed result that other configuration may change: which one it is of.
+/// @param hash  by evaluation::ConfigurationHash.
+std::string FilesLine(const std::string& hash);
+
 }  // namespace hires::cli

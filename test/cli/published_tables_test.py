@@ -1,4 +1,9 @@
-"""Which results of `hires experiment FILE` that docs/ and README print are those of today's parameters."""
+"""Which results that docs/ and README print are those of today's parameters, and how the others are played again.
+
+Results of `hires experiment FILE` carry the hash of the parameters that they were played with, those of series
+(`experiment hypothesis`, `scenarios` and the like) that of all files that a series reads: `hires experiment
+--hashes`. A document may keep a stale result only where it says so: "files HASH, stale".
+"""
 
 import glob
 import os
@@ -13,18 +18,45 @@ DATA = os.path.join(ROOT, '..', 'shared', 'data')
 PATTERNS = (re.compile(r'^(?P<name>\w+) \(\w+\), seed (?P<seed>\d+), parameters (?P<hash>[0-9a-f]{16}), experiment'),
             re.compile(r'^\| `(?P<name>\w+)` \| (?P<hash>[0-9a-f]{16}) \|'),
             re.compile(r'config/experiments/(?P<name>\w+)\.yaml.*\(parameters (?P<hash>[0-9a-f]{16})\)'))
+# A command that plays a series; where a day stands in its paragraph, the paragraph prints what it said then.
+SERIES = re.compile(r'`hires (?P<command>(?:experiment (?:hypothesis|decision|recognition|detector|localisation|'
+                    r'torso_poses)|scenarios)\b[^`]*)`')
+DAY = re.compile(r'\b20\d\d-\d\d-\d\d\b')
+FILES = re.compile(r'files (?P<hash>[0-9a-f]{16})(?P<stale>, stale)?')
+
+
+def documents():
+    """(path, number, line) of all that is printed."""
+    for path in sorted(glob.glob(os.path.join(ROOT, 'docs', '*.md')) + [os.path.join(ROOT, 'README.md')]):
+        with open(path, encoding='utf-8') as file:
+            for number, line in enumerate(file, 1):
+                yield os.path.relpath(path, ROOT), number, line
 
 
 def published():
     """(place, experiment, seed, hash) of what is printed."""
-    for path in sorted(glob.glob(os.path.join(ROOT, 'docs', '*.md')) + [os.path.join(ROOT, 'README.md')]):
-        with open(path, encoding='utf-8') as file:
-            for number, line in enumerate(file, 1):
-                for pattern in PATTERNS:
-                    for found in pattern.finditer(line):
-                        named = found.groupdict()
-                        yield ('%s:%d' % (os.path.relpath(path, ROOT), number), named['name'],
-                               named.get('seed') or '1', named['hash'])
+    for path, number, line in documents():
+        for pattern in PATTERNS:
+            for found in pattern.finditer(line):
+                named = found.groupdict()
+                yield '%s:%d' % (path, number), named['name'], named.get('seed') or '1', named['hash']
+
+
+def series():
+    """(place, commands, hash or None, whether it says that it is stale) of what is printed."""
+    for path, number, line in documents():
+        commands = SERIES.findall(line)
+        is_result = commands and DAY.search(line)
+        for files in list(FILES.finditer(line)) or ([None] if is_result else []):
+            yield ('%s:%d' % (path, number), ', '.join('`hires %s`' % command for command in commands),
+                   files and files.group('hash'), bool(files and files.group('stale')))
+
+
+def hash_of_files(program):
+    """Of all that series read, today."""
+    run = subprocess.run([program, 'experiment', '--hashes'], capture_output=True, text=True, check=True,
+                         stdin=subprocess.DEVNULL)
+    return FILES.match(run.stdout).group('hash')
 
 
 def todays(program, name, seed):
@@ -55,6 +87,23 @@ class PublishedTablesTest(unittest.TestCase):
                 stale.append('%s: %s is of parameters %s, today they are %s; play `hires experiment '
                              'config/experiments/%s.yaml` again' % (place, name, printed, now, name))
         self.assertEqual(stale, [], '\n' + '\n'.join(stale))
+
+    def test_series_that_are_printed_are_of_todays_files_or_say_that_they_are_stale(self):
+        found = list(series())
+        self.assertGreaterEqual(len(found), 8, 'no printed series are found any more')
+        now, wrong = hash_of_files(self.program), []
+        for place, commands, printed, is_stale in found:
+            again = '; play again (config/reproduce.yaml, config/reproduce_docs.yaml): ' + commands
+            if printed is None:
+                wrong.append('%s: wanted "files HASH" behind the date, as the command prints it%s' % (place, again))
+            elif printed == now and is_stale:
+                wrong.append('%s: says that it is stale, and is of today: take that word out' % place)
+            elif printed != now and not is_stale:
+                wrong.append('%s: is of files %s, today they are %s%s, or write ", stale" behind the hash'
+                             % (place, printed, now, again))
+            elif is_stale:
+                print('%s: stale, and says so%s' % (place, again))
+        self.assertEqual(wrong, [], '\n' + '\n'.join(wrong))
 
 
 if __name__ == '__main__':

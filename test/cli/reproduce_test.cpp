@@ -25,13 +25,13 @@ using ::testing::Key;
 class ReproduceTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::filesystem::create_directory(Path("package"));
+    std::filesystem::create_directories(Path("package/config"));
     folder_.Write("package/input.yaml", "a: 1\n");
-    folder_.Write("package/catalogue.yaml", "plays: []\n");
+    folder_.Write("package/config/reproduce.yaml", "plays: []\n");
   }
   std::string Path(const std::string& name) const { return (folder_.path() / name).string(); }
   PlayStore Store(const std::string& build = "b1") const {
-    return PlayStore({Path("results"), Path("package"), Path("package/catalogue.yaml"), build});
+    return PlayStore({Path("results"), Path("package"), build});
   }
   static Play Shell(const std::string& name, const std::string& script) {
     Play play;
@@ -69,7 +69,8 @@ TEST_F(ReproduceTest, WhatHasAnAnswerIsNotPlayedAgain) {
   EXPECT_EQ(second.answers.at("one").content.at("x"), 1);
   PlayThem(plays, true);
   EXPECT_EQ(Counted(), "xx");
-  folder_.Write("package/catalogue.yaml", "plays: [1]\n");
+  folder_.Write("package/config/reproduce.yaml", "plays: [1]\n");
+  folder_.Write("package/config/reproduce_docs.yaml", "plays: [2]\n");
   PlayThem(plays);
   EXPECT_EQ(Counted(), "xx") << "other bounds ask for no other answer";
   folder_.Write("package/input.yaml", "a: 2\n");

@@ -60,6 +60,7 @@ const std::map<std::string, Reader>& Readers() {
       {"scene.yaml", [](const std::string& path) { imagination::ReadSetupConfig(path); }},
       {"decision.yaml", [](const std::string& path) { evaluation::ReadDecisionConfig(path); }},
       {"reproduce.yaml", [](const std::string& path) { evaluation::ReadCatalogue(path); }},
+      {"reproduce_docs.yaml", [](const std::string& path) { evaluation::ReadCatalogue(path); }},
       {"series", [](const std::string& path) { evaluation::ReadScenarioSeries(path); }},
       {"experiments",
        [](const std::string& path) {

@@ -14,6 +14,7 @@
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
+#include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/decision/decision_journal.h"
 #include "hires/evaluation/decision/decision_report.h"
 #include "hires/evaluation/experiment/parallel.h"
@@ -69,7 +70,7 @@ struct Stage {
     setting.truth = truth.name;
     setting.seed = options.seed;
     setting.arms = ArmsOf(options);
-    setting.files = HashOfFiles(package_folder);
+    setting.files = evaluation::ConfigurationHash(package_folder);
     setting.default_motion_set = DefaultMotionSet(setup.operators());
   }
 
@@ -196,7 +197,7 @@ int RunDecisionVerb(const DecisionOptions& options, const std::string& package_f
   for (const DecisionTask& task : tasks) records.push_back(journal.RecordOf(task, needs, parts));
   const evaluation::DecisionReport report = evaluation::SumUpDecisions(
       stage.setting, std::move(records), stage.setup.imagination().scheduler.criteria.prices);
-  std::cout << evaluation::DecisionText(report);
+  std::cout << evaluation::DecisionText(report) << FilesLine(report.setting.files);
   if (!options.json.empty()) {
     evaluation::WriteJson(ToJson(report, CommandOf(options)), options.json);
   }

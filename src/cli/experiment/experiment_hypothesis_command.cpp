@@ -13,10 +13,10 @@
 #include "cli/experiment_command.h"
 #include "cli/hypothesis_local.h"
 #include "hires/base/error.h"
-#include "hires/base/hash.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
+#include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/experiment/hypothesis_journal.h"
 #include "hires/evaluation/experiment/parallel.h"
 #include "hires/evaluation/report_json.h"
@@ -65,7 +65,7 @@ evaluation::HypothesisSetting SettingOf(const HypothesisOptions& options,
   setting.seed = options.seed;
   setting.pace = options.is_local ? 0.0 : options.pace;
   setting.workers = options.workers;
-  setting.files = HashOfFiles(package_folder);
+  setting.files = evaluation::ConfigurationHash(package_folder);
   setting.is_local = options.is_local;
   setting.truth = options.truth;
   return setting;
@@ -195,7 +195,7 @@ ReportOrigin OriginOf(const HypothesisOptions& options, const std::string& goal,
 
 void Write(const evaluation::HypothesisReport& report, const HypothesisOptions& options,
            ReportOrigin origin) {
-  std::cout << evaluation::HypothesisText(report);
+  std::cout << evaluation::HypothesisText(report) << FilesLine(report.setting.files);
   if (!options.csv.empty()) base::ReplaceTextFile(options.csv, evaluation::HypothesisCsv(report));
   origin.hashes = {{"files", report.setting.files}};
   WriteReport(options.report, origin, ToJson(report, CommandOf(options)));
@@ -243,22 +243,6 @@ void AddHypothesisVerb(CLI::App* experiment, HypothesisOptions* options) {
   verb->add_option("--logs", options->logs, "keep what the system of each run said in this folder");
   verb->add_flag("--quiet", options->quiet, "no progress");
   options->verb = verb;
-}
-
-std::string HashOfFiles(const std::string& package_folder) {
-  std::vector<std::string> paths;
-  for (const char* folder : {"config", "worlds", "urdf"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(package_folder) / folder)) {
-      if (entry.is_regular_file()) paths.push_back(entry.path().string());
-    }
-  }
-  std::sort(paths.begin(), paths.end());
-  base::Hasher hasher;
-  for (const std::string& path : paths) {
-    hasher.Add(fs::path(path).lexically_relative(package_folder).string());
-    hasher.Add(base::ReadTextFile(path));
-  }
-  return base::HexOf(hasher.value());
 }
 
 int RunHypothesisVerb(const HypothesisOptions& options, const std::string& package_folder,

@@ -39,7 +39,4 @@ int RunHypothesisVerb(const HypothesisOptions& options, const std::string& packa
                       const evaluation::PlayHypothesis& play,
                       const std::function<bool()>& cancelled);
 
-/// Of all files below config/, worlds/ and urdf/, by name and content.
-std::string HashOfFiles(const std::string& package_folder);
-
 }  // namespace hires::cli

@@ -8,6 +8,7 @@
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
+#include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/place/pose_error_fit.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
@@ -51,7 +52,8 @@ int RunPoseErrorVerb(const PoseErrorOptions& options, const std::string& package
   const auto report = evaluation::FitPoseError(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
-  std::cout << evaluation::ReportText(*report);
+  std::cout << evaluation::ReportText(*report)
+            << FilesLine(evaluation::ConfigurationHash(package_folder));
   if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
   if (!options.output.empty()) base::ReplaceTextFile(options.output, evaluation::ToYaml(*report));
   return kExitRecommended;

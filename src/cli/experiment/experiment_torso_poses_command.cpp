@@ -7,6 +7,7 @@
 #include "cli/experiment_command.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
+#include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/recognition/torso_poses.h"
 #include "hires/evaluation/report_json.h"
 
@@ -45,7 +46,8 @@ int RunTorsoPosesVerb(const TorsoPosesOptions& options, const std::string& packa
   const auto report = evaluation::PlayTorsoPoses(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
-  std::cout << evaluation::ReportText(*report);
+  std::cout << evaluation::ReportText(*report)
+            << FilesLine(evaluation::ConfigurationHash(package_folder));
   if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
   return kExitRecommended;
 }

@@ -16,10 +16,9 @@ std::string HashOfFile(const std::string& path);
 class PlayStore {
  public:
   struct Place {
-    std::string folder;     ///< of the answers; made where it is missing
-    std::string package;    ///< where config/, worlds/ and urdf/ lie
-    std::string catalogue;  ///< rests on answers, and no answer on it
-    std::string build;      ///< tells apart the programs that play
+    std::string folder;   ///< of the answers; made where it is missing
+    std::string package;  ///< where config/, worlds/ and urdf/ lie
+    std::string build;    ///< tells apart the programs that play
   };
   /// @throws base::ConfigError if the folder cannot be made.
   explicit PlayStore(Place place);

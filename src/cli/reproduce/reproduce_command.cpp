@@ -171,7 +171,7 @@ int RunReproduceVerb(const ReproduceOptions& options, const std::string& package
   order.plays = evaluation::PlaysFor(catalogue, items);
   order.program = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string results = ResultsFolder(options);
-  PlayStore store({results, package_folder, path, HashOfFile(order.program)});
+  PlayStore store({results, package_folder, HashOfFile(order.program)});
   if (options.is_list) return List(items, order.plays, &store);
   const base::WriterLock lock(results + "/results", "name another folder with --results");
   CheckReport(options.report);

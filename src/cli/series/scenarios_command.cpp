@@ -18,6 +18,7 @@
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
+#include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/scenario.h"
@@ -168,7 +169,7 @@ class Series {
   ordered_json MakeSetting() const {
     return {{"series", options_.file},
             {"inputs", InputsHash()},
-            {"files", HashOfFiles(package_folder_)},
+            {"files", evaluation::ConfigurationHash(package_folder_)},
             {"scenario", options_.scenario},
             {"instruction", options_.instruction},
             {"truth", options_.is_ideal ? kIdealTruth : options_.truth},
@@ -327,7 +328,7 @@ int ExitCodeOfRuns(const std::vector<SeriesRun>& runs) {
 
 void WriteAll(const evaluation::SeriesReport& report, const ScenariosOptions& options,
               const ordered_json& setting) {
-  std::cout << evaluation::SeriesSummary(report) << std::flush;
+  std::cout << evaluation::SeriesSummary(report) << FilesLine(setting.at("files")) << std::flush;
   if (!options.csv.empty()) base::ReplaceTextFile(options.csv, evaluation::SeriesCsv(report));
   ReportOrigin origin;
   origin.verb = "scenarios";
