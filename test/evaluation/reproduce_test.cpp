@@ -75,6 +75,43 @@ items:
               AllOf(HasSubstr("'6.4' is unknown"), HasSubstr("6.1")));
 }
 
+TEST_F(CatalogueTest, KindsMayBeWrittenOutOrShort) {
+  const Catalogue catalogue = Read(kPlays + R"(
+items:
+  - {item: List. 5.1, section: "5.7.2", title: t, holds: x}
+  - {item: Section 5.9, section: "5.9", title: t, holds: x}
+  - {item: Fig. 6.5, section: "6.1.4", title: t, holds: x}
+  - {item: Table 6.5, section: "6.3.2", title: t, holds: x}
+  - {item: Fig. A.2, section: "A.2", title: t, holds: x}
+)");
+  const auto names = [&](const std::vector<std::string>& wanted) {
+    std::vector<std::string> found;
+    for (const CatalogueItem& item : ItemsOf(catalogue, wanted)) found.push_back(item.name);
+    return found;
+  };
+  for (const char* figure : {"Fig 6.5", "Figure 6.5", "fig. 6.5", "Fig. 6.5", " figure  6.5 "}) {
+    EXPECT_THAT(names({figure}), ElementsAre("Fig. 6.5")) << figure;
+  }
+  for (const char* table : {"Tab. 6.5", "tab 6.5", "TABLE 6.5"}) {
+    EXPECT_THAT(names({table}), ElementsAre("Table 6.5")) << table;
+  }
+  for (const char* listing : {"Listing 5.1", "list. 5.1", "List 5.1"}) {
+    EXPECT_THAT(names({listing}), ElementsAre("List. 5.1")) << listing;
+  }
+  EXPECT_THAT(names({"chapter 5"}), ElementsAre("List. 5.1", "Section 5.9"));
+  EXPECT_THAT(names({"section 6.1"}), ElementsAre("Fig. 6.5"));
+  EXPECT_THAT(names({"Sec. 5.9"}), ElementsAre("Section 5.9"));
+  EXPECT_THAT(names({"appendix A"}), ElementsAre("Fig. A.2"));
+  EXPECT_THAT(names({"Figure", "6.5", "A"}), ElementsAre("Fig. 6.5", "Fig. A.2"))
+      << "as a shell hands over what stands in no quotes";
+  const auto error = [&](const std::vector<std::string>& wanted) {
+    return hires::test_support::ConfigErrorOf([&] { names(wanted); });
+  };
+  EXPECT_THAT(error({"Figure 6.55"}), HasSubstr("'Fig. 6.55' is unknown; did you mean 'Fig. 6.5'"));
+  EXPECT_THAT(error({"Tabel 6.5"}), HasSubstr("did you mean 'Table 6.5'"));
+  EXPECT_THAT(error({"Figure"}), HasSubstr("did you mean"));
+}
+
 TEST_F(CatalogueTest, WhatIsWrongIsNamed) {
   EXPECT_THAT(
       ErrorOf("plays: [{name: a, seconds: 1, inputs: [], command: \"list areas\"}]\nitems: []"),

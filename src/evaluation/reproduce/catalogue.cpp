@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -240,6 +241,60 @@ bool IsWanted(const CatalogueItem& item, const std::string& wanted) {
          base::ToLower(item.name) == wanted;
 }
 
+/// How the catalogue names what is called so: "Fig." for "figure"; "" for a chapter, section or
+/// appendix, which its number names; nothing where nothing is called so.
+std::optional<std::string> KindOf(std::string word) {
+  static const std::map<std::string, std::string> kKinds{
+      {"fig", "Fig."},   {"figure", "Fig."},   {"tab", "Table"}, {"table", "Table"},
+      {"list", "List."}, {"listing", "List."}, {"lst", "List."}, {"ch", ""},
+      {"chap", ""},      {"chapter", ""},      {"sec", ""},      {"sect", ""},
+      {"section", ""},   {"app", ""},          {"appendix", ""}};
+  word = base::ToLower(word);
+  if (!word.empty() && word.back() == '.') word.pop_back();
+  const auto kind = kKinds.find(word);
+  return kind == kKinds.end() ? std::nullopt : std::optional(kind->second);
+}
+
+/// As the catalogue writes it: "Fig. 6.5" for "figure 6.5", "6.1" for "section 6.1", "A" for
+/// "appendix A".
+std::string AsCatalogued(const std::string& wanted) {
+  const std::vector<std::string> words = Words(wanted);
+  const auto kind = words.size() == 2 ? KindOf(words[0]) : std::nullopt;
+  if (!kind) return wanted;
+  return kind->empty() ? words[1] : *kind + " " + words[1];
+}
+
+/// "Table" and "6.5", as a shell hands over what stands in no quotes, are one name.
+std::vector<std::string> Joined(const std::vector<std::string>& wanted) {
+  std::vector<std::string> names;
+  bool is_open = false;
+  for (const std::string& word : wanted) {
+    if (is_open) {
+      names.back() += " " + word;
+    } else {
+      names.push_back(word);
+    }
+    is_open = !is_open && KindOf(word).has_value();
+  }
+  return names;
+}
+
+/// The item that is called so, else all that lies below that section.
+std::vector<std::string> NamesOf(const Catalogue& catalogue, const std::string& wanted) {
+  std::vector<std::string> names;
+  const std::string catalogued = AsCatalogued(wanted);
+  for (const std::string& each : {wanted, catalogued}) {
+    for (const CatalogueItem& item : catalogue.items) {
+      if (IsWanted(item, base::ToLower(each))) names.push_back(item.name);
+    }
+    if (!names.empty()) return names;
+  }
+  std::set<std::string> known{"all"};
+  for (const CatalogueItem& item : catalogue.items) known.insert({item.section, item.name});
+  throw base::ConfigError(
+      base::UnknownName("table, figure or section", catalogued, {known.begin(), known.end()}));
+}
+
 }  // namespace
 
 std::string ToString(const AnswerField& field) { return field.play + ":" + field.pointer; }
@@ -268,20 +323,8 @@ Catalogue ReadCatalogue(const std::string& path) {
 std::vector<CatalogueItem> ItemsOf(const Catalogue& catalogue,
                                    const std::vector<std::string>& wanted) {
   std::set<std::string> names;
-  for (const std::string& word : wanted) {
-    const std::string lower = base::ToLower(word);
-    std::vector<std::string> known{"all"};
-    bool is_known = false;
-    for (const CatalogueItem& item : catalogue.items) {
-      known.push_back(item.section);
-      known.push_back(item.name);
-      if (!IsWanted(item, lower)) continue;
-      is_known = true;
-      names.insert(item.name);
-    }
-    if (!is_known) {
-      throw base::ConfigError(base::UnknownName("table, figure or section", word, known));
-    }
+  for (const std::string& word : Joined(wanted)) {
+    for (const std::string& name : NamesOf(catalogue, word)) names.insert(name);
   }
   std::vector<CatalogueItem> items;
   std::copy_if(catalogue.items.begin(), catalogue.items.end(), std::back_inserter(items),

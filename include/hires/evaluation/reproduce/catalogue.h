@@ -81,9 +81,10 @@ struct Catalogue {
 Catalogue ReadCatalogue(const std::string& path);
 
 /// Items that were asked for, in the catalogue's order.
-/// @param wanted  "all", a section with all below it ("6", "6.3", "A"), or an item's name
-/// ("table 6.5").
-/// @throws base::ConfigError for what nothing is called.
+/// @param wanted  "all", an item's name ("table 6.5"), or a section with all below it ("6", "6.3",
+/// "A"). What it is may be written out or short ("Figure 6.5", "fig 6.5", "Listing 5.1",
+/// "chapter 5", "appendix A"), and stand in an entry of its own before the number.
+/// @throws base::ConfigError for what nothing is called, with what is called alike.
 std::vector<CatalogueItem> ItemsOf(const Catalogue& catalogue,
                                    const std::vector<std::string>& wanted);
 
