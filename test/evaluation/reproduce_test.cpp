@@ -310,9 +310,49 @@ TEST(ReproducedJudgeTest, NumbersMayBeDividedAndTruthsCount) {
   ComparedValue ratio = Value(Acceptance::Kind::kWithin, 0.0, 2.0);
   ratio.over = AnswerField{"loop", "/y"};
   EXPECT_EQ(VerdictOn({ratio}, {{"x", 3.0}, {"y", 1.5}}), Verdict::kReproduced);
-  EXPECT_EQ(VerdictOn({ratio}, {{"x", 3.0}, {"y", 0.0}}), Verdict::kNotReproduced);
   EXPECT_EQ(VerdictOn({Value(Acceptance::Kind::kAtLeast, 1.0, {})}, {{"x", true}}),
             Verdict::kReproduced);
+}
+
+TEST(ReproducedJudgeTest, ARatioToWhatNeverCameHasNoValueAndDecidesNothing) {
+  ComparedValue ratio = Value(Acceptance::Kind::kAtLeast, 2.0, {});
+  ratio.over = AnswerField{"loop", "/y"};
+  for (const ordered_json& never : {ordered_json(0.0), ordered_json(0), ordered_json(nullptr)}) {
+    for (const double number : {3.0, 0.0}) {
+      const ordered_json answer{{"x", number}, {"y", never}};
+      if (number == 0.0 && never.is_null()) continue;
+      const JudgedItem judged = Judge(ItemOf({ratio}), {{"loop", answer}}, {});
+      EXPECT_EQ(judged.verdict, Verdict::kUndecided) << answer;
+      EXPECT_EQ(judged.reason,
+                "Not decided: v: no value, what it rests on never came (at least 2). slower");
+      EXPECT_EQ(ToJson({judged})[0]["values"][0]["found"], nullptr);
+    }
+  }
+  EXPECT_EQ(VerdictOn({ratio}, {{"x", nullptr}, {"y", 1.0}}), Verdict::kNotReproduced)
+      << "no number holds nothing";
+  EXPECT_EQ(VerdictOn({ratio, Value(Acceptance::Kind::kAtMost, 1.0, {})}, {{"x", 3.0}, {"y", 0.0}}),
+            Verdict::kNotReproduced)
+      << "what is against it outweighs";
+  ratio.acceptance.kind = Acceptance::Kind::kShown;
+  EXPECT_EQ(VerdictOn({ratio}, {{"x", 3.0}, {"y", 0.0}}), Verdict::kShown);
+}
+
+TEST(ReproducedJudgeTest, AnIntervalWithoutAnEstimateOrAnEndIsNoMissingField) {
+  const ComparedValue above = Value(Acceptance::Kind::kAbove, 2.0, {});
+  const ComparedValue below = Value(Acceptance::Kind::kBelow, 2.0, {});
+  const auto interval = [](const ordered_json& estimate, const ordered_json& lower,
+                           const ordered_json& upper) {
+    return ordered_json{{"x", {{"estimate", estimate}, {"lower", lower}, {"upper", upper}}}};
+  };
+  EXPECT_EQ(VerdictOn({above}, interval(nullptr, nullptr, nullptr)), Verdict::kUndecided);
+  EXPECT_EQ(VerdictOn({above}, interval(nullptr, 3.0, nullptr)), Verdict::kUndecided);
+  EXPECT_EQ(VerdictOn({above}, interval(4.0, 3.0, nullptr)), Verdict::kReproduced);
+  EXPECT_EQ(VerdictOn({above}, interval(4.0, 1.0, nullptr)), Verdict::kUndecided);
+  EXPECT_EQ(VerdictOn({above}, interval(1.0, nullptr, 1.5)), Verdict::kNotReproduced);
+  EXPECT_EQ(VerdictOn({below}, interval(1.0, nullptr, 1.5)), Verdict::kReproduced);
+  const JudgedItem judged = Judge(ItemOf({above}), {{"loop", interval(4.0, 1.0, nullptr)}}, {});
+  EXPECT_EQ(judged.reason, "Not decided: v: 4 (1 .. inf) (interval above 2). slower");
+  EXPECT_EQ(ToJson({judged})[0]["values"][0]["upper"], nullptr);
 }
 
 TEST(ReproducedJudgeTest, AFieldThatIsNotThereIsTold) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "evaluation/known_number.h"
@@ -51,29 +52,41 @@ const ordered_json* Find(const ordered_json& answer, ordered_json::json_pointer 
   return at;
 }
 
-std::optional<double> NumberIn(const ordered_json& entry, const char* key) {
-  if (!entry.contains(key) || !entry.at(key).is_number()) return std::nullopt;
-  return entry.at(key).get<double>();
+/// What an answer says of a value.
+struct Reading {
+  std::optional<FoundNumber> found;
+  bool has_value{true};  // false: an event that it rests on never came, so that it cannot be told
+};
+
+bool IsNumberOrNull(const ordered_json& entry, const char* key) {
+  return entry.contains(key) && (entry.at(key).is_number() || entry.at(key).is_null());
 }
 
-/// {"estimate": 1.2, "lower": 1.0, "upper": 1.4}; nothing where it is none.
-std::optional<FoundNumber> IntervalIn(const ordered_json& entry) {
+/// {"estimate": 1.2, "lower": 1.0, "upper": 1.4}; nothing where it is none. An end that is null is
+/// not finite: the interval has no end there.
+std::optional<Reading> IntervalIn(const ordered_json& entry) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (!IsNumberOrNull(entry, "lower") || !IsNumberOrNull(entry, "upper")) return std::nullopt;
+  const auto end = [&](const char* key, double none) {
+    return entry.at(key).is_null() ? none : entry.at(key).get<double>();
+  };
   for (const char* key : {"estimate", "mean", "share"}) {
-    const FoundNumber found{NumberIn(entry, key).value_or(0.0), NumberIn(entry, "lower"),
-                            NumberIn(entry, "upper")};
-    if (NumberIn(entry, key) && found.lower && found.upper) return found;
+    if (!IsNumberOrNull(entry, key)) continue;
+    if (entry.at(key).is_null()) return Reading{std::nullopt, false};
+    return Reading{FoundNumber{entry.at(key).get<double>(), end("lower", -kInfinity),
+                               end("upper", kInfinity)}};
   }
   return std::nullopt;
 }
 
-std::optional<FoundNumber> NumberAt(const AnswerField& field, const Answers& answers) {
+Reading ReadingAt(const AnswerField& field, const Answers& answers) {
   const ordered_json* found =
       Find(answers.at(field.play), ordered_json::json_pointer(field.pointer));
-  if (found != nullptr && found->is_null()) return std::nullopt;
-  if (found != nullptr && found->is_boolean()) return FoundNumber{found->get<bool>() ? 1.0 : 0.0};
-  if (found != nullptr && found->is_number()) return FoundNumber{found->get<double>()};
+  if (found != nullptr && found->is_null()) return {};
+  if (found != nullptr && found->is_boolean()) return {FoundNumber{found->get<bool>() ? 1.0 : 0.0}};
+  if (found != nullptr && found->is_number()) return {FoundNumber{found->get<double>()}};
   const auto interval = found != nullptr && found->is_object() ? IntervalIn(*found) : std::nullopt;
-  if (interval) return interval;
+  if (interval) return *interval;
   throw base::ConfigError(
       fmt::format("{}: the answer has {} there; wanted a number: the catalogue asks for another "
                   "field than this version writes",
@@ -84,13 +97,16 @@ bool IsJudged(const JudgedValue& judged) {
   return judged.value.acceptance.kind != Acceptance::Kind::kShown;
 }
 
-/// Nothing where it is divided by 0. A quotient has no interval.
-std::optional<FoundNumber> NumberOf(const ComparedValue& value, const Answers& answers) {
-  const std::optional<FoundNumber> found = NumberAt(value.at, answers);
-  if (!value.over || !found) return found;
-  const std::optional<FoundNumber> divisor = NumberAt(*value.over, answers);
-  if (!divisor || divisor->number == 0.0) return std::nullopt;
-  return FoundNumber{found->number / divisor->number};
+/// No value where it is divided by 0 or by what is not there. A quotient has no interval.
+Reading ReadingOf(const ComparedValue& value, const Answers& answers) {
+  const Reading reading = ReadingAt(value.at, answers);
+  if (!value.over) return reading;
+  const Reading divisor = ReadingAt(*value.over, answers);
+  if (!reading.found) return reading;
+  if (!divisor.found) return {std::nullopt, false};
+  const double quotient = reading.found->number / divisor.found->number;
+  if (!std::isfinite(quotient)) return {std::nullopt, false};
+  return {FoundNumber{quotient}};
 }
 
 /// Whether its interval holds the bound, so that it speaks neither for nor against it.
@@ -102,7 +118,9 @@ bool HoldsBound(const Acceptance& acceptance, const FoundNumber& found) {
 }
 
 JudgedValue JudgeValue(const ComparedValue& value, const Answers& answers) {
-  JudgedValue judged{value, NumberOf(value, answers)};
+  const Reading reading = ReadingOf(value, answers);
+  JudgedValue judged{value, reading.found};
+  judged.is_undecided = !reading.has_value && IsJudged(judged);
   if (!judged.found) return judged;
   judged.holds = IsAccepted(value, *judged.found);
   judged.is_undecided = HoldsBound(value.acceptance, *judged.found);
@@ -136,7 +154,11 @@ bool IsOpen(Verdict verdict) {
          verdict == Verdict::kUndecided;
 }
 
-std::string Told(const FoundNumber& found) {
+std::string Told(const JudgedValue& judged) {
+  if (!judged.found) {
+    return judged.is_undecided ? "no value, what it rests on never came" : "no number";
+  }
+  const FoundNumber& found = *judged.found;
   const std::string number = fmt::format("{:.4g}", found.number);
   if (!found.lower || !found.upper) return number;
   return fmt::format("{} ({:.3g} .. {:.3g})", number, *found.lower, *found.upper);
@@ -145,7 +167,7 @@ std::string Told(const FoundNumber& found) {
 /// "slow EC1/ET2: 23.4 s (published 20.22, within 2.37)".
 std::string ShortfallText(const JudgedValue& judged) {
   const ComparedValue& value = judged.value;
-  std::string text = value.name + ": " + (judged.found ? Told(*judged.found) : "no number");
+  std::string text = value.name + ": " + Told(judged);
   if (judged.found && !value.unit.empty()) text += " " + value.unit;
   const std::string published =
       value.published ? fmt::format("published {:.4g}, ", *value.published) : "";

@@ -14,26 +14,29 @@ enum class Verdict {
   kReproduced,     ///< all numbers are as accepted
   kBetter,         ///< likewise, and those that may be better than published are
   kNotReproduced,  ///< a number is not as accepted, or is none
-  kUndecided,      ///< none is against it, but an interval is too wide to say so
-  kCheckHolds,     ///< as kReproduced, where the dissertation has no number (CatalogueItem::is_own)
-  kCheckFails,     ///< as kNotReproduced, likewise
-  kShown,      ///< nothing to compare: a picture or numbers of ours stand beside the published one
-  kDescribed,  ///< nothing that is played: words alone
-  kNotPlayed   ///< an answer, or a field of one, that it needs is missing
+  /// None is against it, but an interval is too wide to say so, or a number has no value: it is a
+  /// ratio to what never came.
+  kUndecided,
+  kCheckHolds,  ///< as kReproduced, where the dissertation has no number (CatalogueItem::is_own)
+  kCheckFails,  ///< as kNotReproduced, likewise
+  kShown,       ///< nothing to compare: a picture or numbers of ours stand beside the published one
+  kDescribed,   ///< nothing that is played: words alone
+  kNotPlayed    ///< an answer, or a field of one, that it needs is missing
 };
 const char* ToString(Verdict verdict);  ///< "not reproduced"
 
 /// A number of an answer, with the interval that it was told with.
 struct FoundNumber {
   double number{0.0};
-  std::optional<double> lower, upper;
+  std::optional<double> lower{}, upper{};
 };
 
 struct JudgedValue {
   ComparedValue value;
-  std::optional<FoundNumber> found;  ///< nothing: the answer has null there
-  bool holds{false};                 ///< false for what is only shown
-  bool is_undecided{false};          ///< its interval holds the bound
+  /// Nothing: the answer has null there, or there is no value, by dividing by 0 or by null.
+  std::optional<FoundNumber> found;
+  bool holds{false};         ///< false for what is only shown
+  bool is_undecided{false};  ///< its interval holds the bound, or there is no value
   bool is_better{false};
 };
 
