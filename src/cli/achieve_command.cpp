@@ -287,6 +287,7 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   const auto show = [&](const evaluation::AchieveStatus& status) {
     std::cout << display.Show(status) << std::flush;
   };
+  RefuseInputs(options.report, origin.inputs);
   const ReportOrigin origin = OriginOf(options, package_folder);
   const double begun = base::SteadyNow();
   std::optional<loop::LoopRun> local;

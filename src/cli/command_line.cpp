@@ -312,6 +312,7 @@ int Imagine(const ImagineOptions& options, const Backends& backends) {
   }
   QueryScene scene(query);
   const ReportOrigin origin = OriginOf(options, query, &scene);
+  RefuseInputs(options.report, origin.inputs);
   if (options.local) PrintKin(query, &scene);
   const imagination::Report report =
       options.local ? ImagineInThisProcess(query, &scene, on_interim, cancelled)

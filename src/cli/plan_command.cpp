@@ -284,6 +284,7 @@ int RunPlanVerb(const PlanOptions& options, const std::function<bool()>& cancell
   origin.verb = "plan";
   if (IsWanted(options.report)) {
     origin.inputs = {{"domain", options.domain}, {"problem", options.problem}};
+    RefuseInputs(options.report, origin.inputs);
   }
   Session session = Read(options);
   session.request.stop = StopQuestionFor(options, cancelled);

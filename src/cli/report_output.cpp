@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
+#include "hires/base/files/own_input.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/report_json.h"
@@ -163,6 +164,14 @@ void CheckReport(const ReportOptions& options) {
   }
 }
 
+void RefuseInputs(const ReportOptions& options, const std::vector<ReportInput>& inputs) {
+  for (const ReportInput& input : inputs) {
+    base::RefuseOwnInput("--json", options.json, input.what, input.path);
+    base::RefuseOwnInput("--html", options.html, input.what, input.path);
+    base::RefuseOwnInput("--png", options.png, input.what, input.path);
+  }
+}
+
 void WriteReport(const ReportOptions& options, const ReportOrigin& origin,
                  const ordered_json& answer) {
   if (!IsWanted(options)) return;
@@ -207,6 +216,8 @@ int RunReportVerb(const StoredReportOptions& options) {
   if ((options.html + options.png).empty()) {
     throw base::ConfigError("report: nothing to make; add --html FILE or --png FILE");
   }
+  base::RefuseOwnInput("--html", options.html, "answer", options.file);
+  base::RefuseOwnInput("--png", options.png, "answer", options.file);
   for (const std::string& path : {options.html, options.png}) RequireWritable(path);
   MakePictures(options.file, options.html, options.png, options.package_folder);
   SaySaved({options.html, options.png});

@@ -100,7 +100,7 @@ TEST_F(ExperiencesCommandTest, TheStoreIsNotWrittenOver) {
         {"analyse", store_, "--json", store_}}) {
     const Ended ended = RunHires({"experiences"}, words);
     EXPECT_EQ(ended.code, kExitBadInput);
-    EXPECT_THAT(ended.err, HasSubstr("is the store itself; name another file"));
+    EXPECT_THAT(ended.err, HasSubstr("would write over the store; name another file"));
     EXPECT_EQ(base::ReadTextFile(store_), before);
   }
 }

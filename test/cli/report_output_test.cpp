@@ -52,6 +52,24 @@ TEST(CommandTextTest, AShellReadsTheSameWords) {
   EXPECT_EQ(CommandText({"a b", "", "it's", "$HOME"}), "'a b' '' 'it'\\''s' '$HOME'");
 }
 
+TEST_F(ReportOutputTest, NoAnswerIsWrittenOverWhatItRestsOn) {
+  const std::string own = folder_.Write("own.yaml", "a: 1\n");
+  ReportOptions options = Options();
+  EXPECT_NO_THROW(RefuseInputs(options, {{"settings", own}, {"world", ""}}));
+  options.html = Path("./own.yaml");
+  EXPECT_EQ(ConfigErrorOf([&] {
+              RefuseInputs(options, {{"settings", own}});
+            }),
+            "--html " + options.html + ": would write over the settings; name another file");
+  const std::string answer = folder_.Write("answer.json", "{}");
+  for (const char* option : {"--html", "--png"}) {
+    const Ended ended = RunHires({"report", answer, option, Path("./answer.json")});
+    EXPECT_EQ(ended.code, kExitBadInput);
+    EXPECT_THAT(ended.err, HasSubstr("would write over the answer; name another file"));
+  }
+  EXPECT_EQ(Read("answer.json"), "{}");
+}
+
 TEST_F(ReportOutputTest, TheHeadSaysFromWhatTheAnswerCame) {
   ReportOptions options = Options();
   options.json = Path("answer.json");

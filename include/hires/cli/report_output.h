@@ -42,6 +42,10 @@ struct ReportInput {
   std::string hash;  ///< 16 digits
 };
 
+/// Before the work is done: an answer is not written over what it rests on.
+/// @throws base::ConfigError naming option and file.
+void RefuseInputs(const ReportOptions& options, const std::vector<ReportInput>& inputs);
+
 /// How an answer came about, for whoever wants it again.
 struct ReportOrigin {
   std::string verb;     ///< "experiment hypothesis"

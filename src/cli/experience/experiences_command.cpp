@@ -4,14 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <system_error>
 #include <utility>
 
 #include "hires/base/error.h"
+#include "hires/base/files/own_input.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
@@ -100,14 +99,6 @@ void CheckNames(const ExperienceStore& store, const ExperiencesOptions& options)
                         *names.episodes.begin(), *names.episodes.rbegin()));
 }
 
-/// What took hours to play is not written over by what is made of it.
-void RefuseStore(const ExperiencesOptions& options, const std::string& option,
-                 const std::string& path) {
-  std::error_code none_there;
-  if (path.empty() || !std::filesystem::equivalent(path, options.store, none_there)) return;
-  FailWithout(options, option, path + " is the store itself; name another file");
-}
-
 int Export(const ExperiencesOptions& options) {
   const ExperienceStore store(options.store, ExperienceStore::Mode::kRead);
   evaluation::RequireFolderOf(options.csv);
@@ -158,8 +149,8 @@ void AddExperiencesVerb(CLI::App* app, ExperiencesOptions* o) {
 }
 
 int RunExperiencesVerb(const ExperiencesOptions& options) {
-  RefuseStore(options, "--csv", options.csv);
-  RefuseStore(options, "--json", options.json);
+  base::RefuseOwnInput("--csv", options.csv, "store", options.store);
+  base::RefuseOwnInput("--json", options.json, "store", options.store);
   if (*options.export_verb) return Export(options);
   if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
   const ExperienceStore store(options.store, ExperienceStore::Mode::kRead);

@@ -178,6 +178,7 @@ int RunReproduceVerb(const ReproduceOptions& options, const std::string& package
   ReportOrigin origin;
   origin.verb = "reproduce";
   if (IsWanted(options.report)) origin.inputs = {{"catalogue", path}};
+  RefuseInputs(options.report, origin.inputs);
   order.package = package_folder;
   order.again = options.again;
   order.cancelled = cancelled;
