@@ -1,7 +1,5 @@
 #include "hires/loop/task_loop.h"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <utility>
 
@@ -9,7 +7,6 @@
 #include "hires/base/log.h"
 #include "hires/evaluation/scenario.h"
 #include "hires/evaluation/scenario_names.h"
-#include "hires/planning/request.h"
 #include "loop/loop_parts.h"
 #include "loop/middle_layer.h"
 #include "loop/monitor_shell.h"
@@ -50,14 +47,7 @@ LoopOrder Completed(const LoopOrder& order, const evaluation::Scenario& scenario
                     const LoopSetup::Parts& parts) {
   LoopOrder complete = order;
   if (complete.task.empty()) complete.task = scenario.task;
-  planning::Problem problem;
-  try {
-    planning::SetTasks(complete.task, parts.planning.domain, &problem);
-  } catch (const base::ConfigError& error) {
-    throw base::ConfigError(
-        fmt::format("{} (domain {})", error.what(), parts.config.execution.domain));
-  }
-  RequireKnownArguments(parts, scenario, complete.task, problem);
+  RequireKnownNames(parts, scenario, complete.task, StrangeArgument::kWarnedOf);
   return complete;
 }
 
@@ -228,6 +218,11 @@ class Play {
 };
 
 }  // namespace
+
+void RequireTask(const LoopSetup& setup, const std::string& scenario, const std::string& task) {
+  RequireKnownNames(setup.parts(), evaluation::ReadScenario(scenario), task,
+                    StrangeArgument::kRefused);
+}
 
 LoopRun PlayTask(const LoopSetup& setup, const LoopOrder& order,
                  const evaluation::OnAchieveStatus& on_status,

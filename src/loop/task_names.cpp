@@ -50,6 +50,11 @@ class KnownNames {
     }
     return alike;
   }
+  std::vector<std::string> All() const {
+    std::vector<std::string> all;
+    for (const auto& [lower, spelt] : names_) all.push_back(spelt);
+    return all;
+  }
 
  private:
   std::map<std::string, std::string> names_;
@@ -110,17 +115,30 @@ KnownNames NamesOf(const LoopSetup::Parts& parts, const evaluation::Scenario& sc
   return known;
 }
 
+planning::Problem ProblemOf(const LoopSetup::Parts& parts, const std::string& task) {
+  planning::Problem problem;
+  try {
+    planning::SetTasks(task, parts.planning.domain, &problem);
+  } catch (const base::ConfigError& error) {
+    throw base::ConfigError(
+        fmt::format("{} (domain {})", error.what(), parts.config.execution.domain));
+  }
+  return problem;
+}
+
 }  // namespace
 
-void RequireKnownArguments(const LoopSetup::Parts& parts, const evaluation::Scenario& scenario,
-                           const std::string& task, const planning::Problem& problem) {
+void RequireKnownNames(const LoopSetup::Parts& parts, const evaluation::Scenario& scenario,
+                       const std::string& task, StrangeArgument strange) {
+  const planning::Problem problem = ProblemOf(parts, task);
   // HDDL declares its objects, and its reader has compared them.
   if (parts.planning.domain.language == planning::Domain::Language::kHddl) return;
   const KnownNames known = NamesOf(parts, scenario);
   for (const std::string& name : planning::ArgumentSymbols(problem.tasks)) {
     const bool is_kin = !parts.context.FindModel(name).empty();  // mug3 is what mug1 is
     if (known.Has(name) || is_kin) continue;
-    const std::vector<std::string> alike = known.Like(name);
+    std::vector<std::string> alike = known.Like(name);
+    if (alike.empty() && strange == StrangeArgument::kRefused) alike = known.All();
     if (!alike.empty()) {
       throw base::ConfigError(base::UnknownName("task argument", Typed(name, task), alike));
     }

@@ -69,6 +69,12 @@ struct LoopRun {
   bool is_timed_out{false};     ///< the time limit came first
 };
 
+/// For who plays a task often and unattended: what PlayTask() would refuse, and arguments that it
+/// would only warn of because nothing names them, before anything is played.
+/// @param scenario  file.
+/// @throws base::ConfigError naming what came and what is like it.
+void RequireTask(const LoopSetup& setup, const std::string& scenario, const std::string& task);
+
 /// Plays a whole task with robot, world, middle layer, tracker, Blackboard, planner, execution
 /// monitor and imagination in this process, in virtual time: as fast as it goes, and the same to
 /// the last bit for the same order, whatever the number of threads.
