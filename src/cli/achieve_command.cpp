@@ -13,7 +13,6 @@
 
 #include "cli/achieve_display.h"
 #include "hires/base/error.h"
-#include "hires/base/files/named_file.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/cli/whole_number.h"
@@ -51,8 +50,8 @@ void RequireRecorder(const AchieveOptions& options, const loop::RecordLoop& reco
   if (!record) throw base::ConfigError("--record: this build has no ROS to write bags with");
 }
 
-std::string ScenarioPath(const std::string& scenario, const std::string& package_folder) {
-  return base::NamedFile("scenario", scenario, package_folder + "/config/scenarios");
+std::string ScenarioPath(const AchieveOptions& options, const std::string& package_folder) {
+  return evaluation::ScenarioPath(options.scenario, package_folder + "/config/scenarios");
 }
 
 std::string LoopPath(const AchieveOptions& options, const std::string& package_folder) {
@@ -65,7 +64,7 @@ ReportOrigin OriginOf(const AchieveOptions& options, const std::string& package_
   origin.verb = "achieve";
   origin.is_local = options.is_local;
   if (!options.is_local || !IsWanted(options.report)) return origin;
-  origin.inputs = {{"scenario", ScenarioPath(options.scenario, package_folder)},
+  origin.inputs = {{"scenario", ScenarioPath(options, package_folder)},
                    {"virtual time", LoopPath(options, package_folder)},
                    {"world", options.files.world},
                    {"robot", options.files.robot},
@@ -135,7 +134,7 @@ loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& p
                              loop::LoopRecording* recording) {
   const loop::LoopSetup setup(LoopPath(options, package_folder), options.files);
   loop::LoopOrder order;
-  order.scenario = ScenarioPath(options.scenario, package_folder);
+  order.scenario = ScenarioPath(options, package_folder);
   order.task = base::Join(options.task, " ");
   order.imagination = options.imagination;
   order.dry_run = options.is_dry_run;
@@ -287,8 +286,8 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   const auto show = [&](const evaluation::AchieveStatus& status) {
     std::cout << display.Show(status) << std::flush;
   };
-  RefuseInputs(options.report, origin.inputs);
   const ReportOrigin origin = OriginOf(options, package_folder);
+  RefuseInputs(options.report, origin.inputs);
   const double begun = base::SteadyNow();
   std::optional<loop::LoopRun> local;
   const auto recording = options.record.empty() ? nullptr : record(options.record);

@@ -122,6 +122,8 @@ TEST_F(ScenarioSeriesTest, StartsAreTheSameForAllOrChosenByAGroup) {
   EXPECT_EQ(start.instruction, "achieve b");
   EXPECT_EQ(start.truth, "ideal");
   EXPECT_EQ(start.world, (folder_.path() / "halls/hall.world").string());
+  EXPECT_THAT(start.places.at("Scenario"), HasSubstr("document 1"));
+  EXPECT_THAT(start.places.at("Instruction"), HasSubstr("document 3"));
 }
 
 TEST_F(ScenarioSeriesTest, ErrorsSayWhereAndWhat) {

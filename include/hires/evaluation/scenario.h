@@ -31,6 +31,7 @@ struct Scenario {
 };
 
 /// The file of a scenario. @param scenario  name of a file in `folder`, without .yaml; or a path.
+/// @throws base::ConfigError for a name that is not there, with those that are like it.
 std::string ScenarioPath(const std::string& scenario, const std::string& folder);
 
 /// Relative paths count from the folder of the file. Postures, arms and models are names: whoever

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
@@ -151,14 +152,18 @@ std::map<std::string, int> ByGroup(const ScenarioSeries& series, const std::vect
 
 SeriesStart StartOfRun(const ScenarioSeries& series, const std::vector<int>& choices) {
   const std::map<std::string, int> by_group = ByGroup(series, choices);
-  std::map<std::string, std::string> texts;
+  std::map<std::string, std::string> texts, places;
   for (const ScenarioSetting& setting : series.settings) {
     const auto choice =
         setting.group.empty() ? 0 : static_cast<std::size_t>(by_group.at(setting.group));
-    for (const auto& [key, values] : setting.values) texts[key] = values.at(choice);
+    for (const auto& [key, values] : setting.values) {
+      texts[key] = values.at(choice);
+      places[key] = setting.where;
+    }
   }
   return {Resolved(texts["Scenario"], series.path), texts["Instruction"],
-          Resolved(texts["Truth"], series.path), Resolved(texts["World"], series.path)};
+          Resolved(texts["Truth"], series.path), Resolved(texts["World"], series.path),
+          std::move(places)};
 }
 
 std::string TaskOfInstruction(const std::string& instruction) {

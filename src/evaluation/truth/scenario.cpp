@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 
+#include "hires/base/files/named_file.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
 
@@ -77,9 +78,7 @@ void ReadObjects(const std::string& key, bool is_told, base::ParamReader* in,
 }  // namespace
 
 std::string ScenarioPath(const std::string& scenario, const std::string& folder) {
-  const std::filesystem::path path(scenario);
-  if (path.has_parent_path() || path.extension() == ".yaml") return scenario;
-  return folder + "/" + scenario + ".yaml";
+  return base::NamedFile("scenario", scenario, folder);
 }
 
 Scenario ReadScenario(const std::string& path) {

@@ -54,6 +54,8 @@ struct SeriesStart {
   std::string instruction;  ///< "achieve serve_coffee_to_guest_Task guest1"
   std::string truth;        ///< name of config/truths, or file
   std::string world;        ///< file
+  /// Where it says so: document and line by key ("Instruction").
+  std::map<std::string, std::string> places;
 };
 /// Relative files count from the folder of the series.
 SeriesStart StartOfRun(const ScenarioSeries& series, const std::vector<int>& choices);
