@@ -238,6 +238,78 @@ TEST_F(ScenariosTest, BadInputIsRefusedBeforeAnythingIsPlayed) {
   EXPECT_FALSE(fs::exists(folder_.path() / "store/calls"));
 }
 
+TEST_F(ScenariosTest, AWrongInstructionIsRefusedBeforeAnythingIsPlayed) {
+  const auto refusal = [&](const std::string& documents, const std::string& instruction = "") {
+    ScenariosOptions options = Options("Report succeeded '' 2\n");
+    folder_.Write("some.yaml", "!Scenario\nScenario: serve_coffee\n---\n" + documents);
+    options.instruction = instruction;
+    options.runs = 2;
+    const std::string error =
+        ConfigErrorOf([&] { RunScenariosVerb(options, kRoot, false, [] { return false; }); });
+    EXPECT_FALSE(fs::exists(folder_.path() / "store/calls")) << error;
+    return error;
+  };
+  const auto second = [](const std::string& instruction) {
+    return "!Scenario\nGroup: g\nChoices: 2\nInstruction: [achieve serve_coffee_to_guest guest1, " +
+           instruction + "]\n";
+  };
+  EXPECT_THAT(refusal(second("achieve serve_cofee_to_guest guest1")),
+              AllOf(HasSubstr("some.yaml: document 2, line 4: Instruction"),
+                    HasSubstr("'achieve serve_cofee_to_guest guest1'"),
+                    HasSubstr("did you mean 'serve_coffee_to_guest'")));
+  EXPECT_THAT(
+      refusal(second("achieve serve_coffee_to_guest")),
+      AllOf(HasSubstr("document 2"), HasSubstr("has 0 arguments"), HasSubstr("takes 1 argument")));
+  EXPECT_THAT(refusal(second("achieve serve_coffee_to_guest gest1")),
+              AllOf(HasSubstr("document 2"), HasSubstr("task argument 'gest1' is unknown"),
+                    HasSubstr("'guest1'")));
+  EXPECT_THAT(refusal(second("achieve")), AllOf(HasSubstr("document 2"), HasSubstr("no task")));
+  EXPECT_THAT(refusal("!Scenario\nTruth: same\n", "serve_coffee_to_guest xyzzy"),
+              AllOf(HasSubstr("--instruction 'serve_coffee_to_guest xyzzy'"),
+                    HasSubstr("task argument 'xyzzy' is unknown; did you mean")));
+}
+
+TEST_F(ScenariosTest, AScenarioThatIsNotThereIsToldWithWhereItStandsAndWhatWasMeant) {
+  ScenariosOptions options = Options("Report succeeded '' 2\n");
+  const auto error = [&] {
+    return ConfigErrorOf([&] { RunScenariosVerb(options, kRoot, false, [] { return false; }); });
+  };
+  folder_.Write("some.yaml", "!Scenario\nScenario: serve_cofee\n");
+  EXPECT_THAT(error(), AllOf(HasSubstr("some.yaml: document 1, line 1: Scenario: "),
+                             HasSubstr("did you mean 'serve_coffee'")));
+  options.scenario = "tople";
+  EXPECT_THAT(error(), AllOf(HasSubstr("--scenario: "), HasSubstr("did you mean 'topple'")));
+}
+
+TEST_F(ScenariosTest, NoInputIsWrittenOver) {
+  const ScenariosOptions options = Options("Report succeeded '' 2\n");
+  const auto error = [](const ScenariosOptions& wrong) {
+    return ConfigErrorOf([&] { RunScenariosVerb(wrong, kRoot, false, [] { return false; }); });
+  };
+  const std::string same = (folder_.path() / "." / "some.yaml").string();
+  ScenariosOptions wrong = options;
+  wrong.csv = same;
+  EXPECT_THAT(error(wrong),
+              HasSubstr("--csv " + same + ": would write over the series; name another"));
+  wrong = options;
+  wrong.report.json = same;
+  EXPECT_THAT(error(wrong), HasSubstr("--json " + same + ": would write over the series"));
+  wrong = options;
+  wrong.csv = kRoot + "/config/scenarios/serve_coffee.yaml";
+  EXPECT_THAT(error(wrong), HasSubstr("would write over the scenario"));
+  EXPECT_FALSE(fs::exists(folder_.path() / "store"));
+}
+
+TEST_F(ScenariosTest, ASeriesOfThePackageIsPlayedByItsName) {
+  ScenariosOptions options = Options("Report succeeded '' 2\n");
+  options.file = "replace";
+  EXPECT_EQ(Play(options).code, kExitAllSucceeded);
+  EXPECT_EQ(Json()["report"]["inputs"][0]["path"], "config/series/replace.yaml");
+  options.file = "replase";
+  EXPECT_THAT(ConfigErrorOf([&] { RunScenariosVerb(options, kRoot, false, [] { return false; }); }),
+              AllOf(HasSubstr("config/series"), HasSubstr("did you mean 'replace'")));
+}
+
 TEST(GraphOrderTest, ComesBackFromItsTextAndErrorsNameTheField) {
   GraphOrder order;
   order.run.files = {"a.yaml", "b.world", {"c.yaml", "d.yaml"}};

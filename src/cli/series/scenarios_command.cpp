@@ -8,23 +8,18 @@
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "cli/experiment_command.h"
+#include "cli/series/series_to_play.h"
 #include "hires/base/error.h"
-#include "hires/base/hash.h"
+#include "hires/base/files/named_file.h"
 #include "hires/base/process.h"
-#include "hires/base/run_processes.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
-#include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/evaluation/report_json.h"
-#include "hires/evaluation/scenario.h"
 #include "hires/evaluation/series/series_report.h"
-#include "hires/evaluation/truth.h"
-#include "hires/imagination/imagination_setup.h"
 #include "hires/knowledge/blackboard_config.h"
 #include "hires/knowledge/store.h"
 
@@ -32,164 +27,8 @@ namespace hires::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using evaluation::ScenarioSeries;
 using evaluation::SeriesRun;
-using evaluation::SeriesStart;
 using nlohmann::ordered_json;
-
-constexpr char kIdealTruth[] = "ideal";
-constexpr char kDefaultTruth[] = "same";
-
-std::string WholePath(const std::string& path) {
-  return path.empty() ? path : fs::absolute(path).lexically_normal().string();
-}
-
-void AddFile(base::Hasher* hasher, const std::string& path) {
-  hasher->Add(base::ReadTextFile(path));
-}
-
-void AddScenario(base::Hasher* hasher, const std::string& path) {
-  AddFile(hasher, path);
-  for (const std::string& knowledge : evaluation::ReadScenario(path).knowledge) {
-    AddFile(hasher, knowledge);
-  }
-}
-
-/// A series with what its file leaves open filled in.
-class Series {
- public:
-  Series(const ScenariosOptions& options, const std::string& package_folder)
-      : options_(options),
-        package_folder_(package_folder),
-        series_(evaluation::ReadScenarioSeries(options.file)),
-        order_(options.order == "drawn" ? evaluation::SeriesOrder::kDrawn
-                                        : evaluation::SeriesOrder::kAll),
-        setting_(MakeSetting()) {
-    base::Hasher hasher;
-    hasher.Add(setting_.dump());
-    name_ = series_.name + "_" + base::HexOf(hasher.value()).substr(0, 8);
-  }
-
-  const ScenarioSeries& series() const { return series_; }
-  const ordered_json& setting() const { return setting_; }
-  const std::string& name() const { return name_; }
-
-  /// All that is known of a run before it is played.
-  SeriesRun Expected(int number) const {
-    SeriesRun run;
-    run.run = number;
-    run.choices = evaluation::ChoicesOfRun(series_, order_, options_.seed, number);
-    run.seed = evaluation::SeedOfRun(options_.seed, number);
-    const SeriesStart start = StartOf(run.choices);
-    run.instruction = start.instruction;
-    run.scenario = fs::path(start.scenario).stem().string();
-    run.truth = start.truth;
-    return run;
-  }
-
-  ScenarioOrder Prepare(const SeriesRun& run, const std::string& folder) const {
-    const SeriesStart start = StartOf(run.choices);
-    ScenarioOrder order;
-    order.task = evaluation::TaskOfInstruction(start.instruction);
-    order.files = evaluation::WriteVariant(series_, run.choices,
-                                           {start.scenario, order.task, start.world, folder});
-    order.truth = start.truth;
-    order.folder = folder;
-    order.seed = run.seed;
-    return order;
-  }
-
-  /// Each combination of choices can be made.  @throws base::ConfigError if not.
-  void Check() const {
-    std::set<std::vector<int>> checked;
-    for (int run = 1; run <= options_.runs; ++run) {
-      const SeriesRun expected = Expected(run);
-      if (!checked.insert(expected.choices).second) continue;
-      const base::RunFolder folder("");
-      Prepare(expected, folder.path());
-      evaluation::FindTruth(expected.truth, package_folder_ + "/config/truths");
-    }
-  }
-
- private:
-  SeriesStart StartOf(const std::vector<int>& choices) const {
-    SeriesStart start = evaluation::StartOfRun(series_, choices);
-    if (!options_.scenario.empty()) start.scenario = options_.scenario;
-    if (start.scenario.empty()) {
-      throw base::ConfigError(options_.file +
-                              ": says in no !Scenario document from which Scenario it begins; add "
-                              "one, or --scenario NAME");
-    }
-    start.scenario =
-        WholePath(evaluation::ScenarioPath(start.scenario, package_folder_ + "/config/scenarios"));
-    if (!options_.instruction.empty()) start.instruction = options_.instruction;
-    if (start.instruction.empty()) {
-      start.instruction = "achieve " + evaluation::ReadScenario(start.scenario).task;
-    }
-    if (!options_.truth.empty()) start.truth = options_.truth;
-    if (options_.is_ideal) start.truth = kIdealTruth;
-    if (start.truth.empty()) start.truth = kDefaultTruth;
-    if (!options_.world.empty()) start.world = options_.world;
-    if (start.world.empty()) {
-      start.world = imagination::ReadSetupConfig(package_folder_ + "/config/scene.yaml").world;
-    }
-    start.world = WholePath(start.world);
-    return start;
-  }
-
-  /// Choices with which the starts differ: of each group that `!Scenario` documents name, all.
-  std::vector<std::vector<int>> ChoicesOfStarts() const {
-    const std::vector<int> first(series_.groups.size(), 0);
-    std::vector<std::vector<int>> all{first};
-    for (const auto& setting : series_.settings) {
-      for (std::size_t g = 0; g < first.size(); ++g) {
-        if (series_.groups[g].name != setting.group) continue;
-        for (int choice = 1; choice < setting.choices; ++choice) {
-          all.push_back(first);
-          all.back()[g] = choice;
-        }
-      }
-    }
-    return all;
-  }
-
-  /// Of all files that runs may begin from: who changes one has another series.
-  std::string InputsHash() const {
-    base::Hasher hasher;
-    AddFile(&hasher, options_.file);
-    for (const std::vector<int>& choices : ChoicesOfStarts()) {
-      const SeriesStart start = StartOf(choices);
-      AddScenario(&hasher, start.scenario);
-      AddFile(&hasher, start.world);
-      AddFile(&hasher, evaluation::TruthPath(start.truth, package_folder_ + "/config/truths"));
-    }
-    return base::HexOf(hasher.value());
-  }
-
-  ordered_json MakeSetting() const {
-    return {{"series", options_.file},
-            {"inputs", InputsHash()},
-            {"files", evaluation::ConfigurationHash(package_folder_)},
-            {"scenario", options_.scenario},
-            {"instruction", options_.instruction},
-            {"truth", options_.is_ideal ? kIdealTruth : options_.truth},
-            {"world", options_.world},
-            {"order", options_.order},
-            {"seed", options_.seed},
-            {"restarts", options_.restarts},
-            {"hang_after", options_.player.hang_after},
-            {"graph", options_.player.is_graph},
-            {"pace", options_.player.is_graph ? options_.player.pace : 0.0},
-            {"workers", options_.player.is_graph ? options_.player.workers : 0}};
-  }
-
-  const ScenariosOptions& options_;
-  const std::string& package_folder_;
-  const ScenarioSeries series_;
-  const evaluation::SeriesOrder order_;
-  const ordered_json setting_;
-  std::string name_;
-};
 
 void MakeStore(const std::string& folder) {
   std::error_code error;
@@ -208,12 +47,12 @@ std::size_t NumStored(const std::string& folder) {
 /// Plays runs one after the other, and keeps what they leave.
 class Runner {
  public:
-  Runner(const ScenariosOptions& options, const std::string& package_folder, const Series& series,
-         const std::function<bool()>& cancelled)
+  Runner(const ScenariosOptions& options, const std::string& package_folder,
+         const SeriesToPlay& series, const std::function<bool()>& cancelled)
       : options_(options),
         series_(series),
         cancelled_(cancelled),
-        store_(WholePath(options.store)),
+        store_(fs::absolute(options.store).lexically_normal().string()),
         ontology_(std::make_shared<const knowledge::Ontology>(knowledge::Ontology::FromFiles(
             knowledge::ReadBlackboardConfig(package_folder + "/config/blackboard.yaml").ontology))),
         journal_(store_ + "/" + series.name() + ".journal", series.setting()) {}
@@ -302,7 +141,7 @@ class Runner {
   }
 
   const ScenariosOptions& options_;
-  const Series& series_;
+  const SeriesToPlay& series_;
   const std::function<bool()>& cancelled_;
   const std::string store_;
   const std::shared_ptr<const knowledge::Ontology> ontology_;
@@ -363,7 +202,8 @@ void AddScenariosVerb(CLI::App* app, ScenariosOptions* options) {
       "says, unattended. Exit codes: 0 all runs succeeded, 1 bad input, 2 all came to an end and "
       "some did not succeed, 3 some broke down in each try, 130 interrupted");
   verb->add_option("file", options->file,
-                   "YAML file of !FluentPoseModification and !Scenario documents")
+                   "YAML file of !FluentPoseModification and !Scenario documents, or its name in "
+                   "config/series")
       ->required();
   verb->add_option("--runs", options->runs, "default: 20")->check(NumberBetween(1, 100000));
   verb->add_option("--seed", options->seed, "of all chance; default: 1")->check(WholeNumber());
@@ -402,13 +242,15 @@ void AddScenariosVerb(CLI::App* app, ScenariosOptions* options) {
   options->verb = verb;
 }
 
-int RunScenariosVerb(const ScenariosOptions& options, const std::string& package_folder,
+int RunScenariosVerb(const ScenariosOptions& typed, const std::string& package_folder,
                      bool can_play_graph, const std::function<bool()>& cancelled) {
+  ScenariosOptions options = typed;
   if (options.player.is_graph && !can_play_graph) {
     throw base::ConfigError(
         "--graph: this build has no ROS nodes to start; build with ROS, or leave it out");
   }
-  const Series series(options, package_folder);
+  options.file = base::NamedFile("series", typed.file, package_folder + "/config/series");
+  const SeriesToPlay series(options, package_folder);
   series.Check();
   CheckOutputs(options);
   Runner runner(options, package_folder, series, cancelled);
