@@ -505,8 +505,15 @@ int RunScenarios(const ScenariosOptions& options, const Backends& backends) {
 }
 
 int RunVerb(const Verbs& verbs, const Backends& backends) {
-  // It has nothing to finish, and ends as any program does.
+  // These have nothing to finish, and end as any program does.
   if (*verbs.doctor.verb) return RunDoctorVerb(verbs.doctor, backends);
+  if (*verbs.recognise.verb) return RunRecogniseVerb(verbs.recognise, backends.package_folder);
+  if (*verbs.localise.verb) {
+    return RunLocaliseVerb(verbs.localise, backends.package_folder, backends.read_drive_bag);
+  }
+  if (*verbs.report.verb) return RunReportVerb(verbs.report);
+  if (*verbs.experiences.verb) return RunExperiencesVerb(verbs.experiences);
+  if (*verbs.list.verb) return RunListVerb(verbs.list, backends.package_folder);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, OnInterrupt);
   if (*verbs.imagine) return Imagine(verbs.imagine_options, backends);
   if (*verbs.limits.verb) {
@@ -520,18 +527,11 @@ int RunVerb(const Verbs& verbs, const Backends& backends) {
   if (*verbs.experiment.verb) return RunAnyExperiment(verbs.experiment, backends);
   if (*verbs.scenarios.verb) return RunScenarios(verbs.scenarios, backends);
   if (*verbs.plan.verb) return RunPlanVerb(verbs.plan, IsInterrupted);
-  if (*verbs.report.verb) return RunReportVerb(verbs.report);
-  if (*verbs.experiences.verb) return RunExperiencesVerb(verbs.experiences);
   if (*verbs.reproduce.verb) {
     return RunReproduceVerb(verbs.reproduce, backends.package_folder, IsInterrupted);
   }
-  if (*verbs.list.verb) return RunListVerb(verbs.list, backends.package_folder);
-  if (*verbs.recognise.verb) return RunRecogniseVerb(verbs.recognise, backends.package_folder);
   if (*verbs.map.verb)
     return RunMapVerb(verbs.map, backends.package_folder, backends.read_drive_bag, IsInterrupted);
-  if (*verbs.localise.verb) {
-    return RunLocaliseVerb(verbs.localise, backends.package_folder, backends.read_drive_bag);
-  }
   if (*verbs.blackboard.verb) {
     return RunBlackboardVerb(verbs.blackboard, backends.package_folder,
                              backends.connect_blackboard);

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "hires/base/error.h"
+#include "hires/base/files/own_input.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/report_json.h"
@@ -58,9 +60,13 @@ ordered_json ThingToJson(const Detection& thing, int label, bool is_segmenting) 
     alternatives.push_back({{"kind", other.label}, {"confidence", other.confidence}});
   json["kind"] = thing.label;
   json["category"] = thing.category;
-  json["confidence"] = thing.confidence;
-  json["visible_share"] = thing.visible_share;
+  const bool is_unknown = thing.label == perception::kUnknownLabel;
+  json["confidence"] = is_unknown ? ordered_json() : ordered_json(thing.confidence);
+  json["visible_share"] = is_unknown ? ordered_json() : ordered_json(thing.visible_share);
   json["alternatives"] = alternatives;
+  if (!thing.nearest_label.empty()) {
+    json["nearest"] = {{"kind", thing.nearest_label}, {"quality", thing.nearest_quality}};
+  }
   return json;
 }
 
@@ -77,11 +83,15 @@ ordered_json ToJson(const Recognition& seen, const RecogniseOptions& options) {
     table = TableToJson(*seen.segmentation.table,
                         std::count(labels.begin(), labels.end(), perception::kLabelTable));
   }
-  return {{"schema", "hires/recognition"}, {"version", 1},   {"cloud", options.cloud},
+  return {{"schema", "hires/recognition"}, {"version", 2},   {"cloud", options.cloud},
           {"points", labels.size()},       {"table", table}, {"things", things}};
 }
 
 std::string KindText(const Detection& thing) {
+  if (!thing.nearest_label.empty()) {
+    return fmt::format("{} (nearest: {}, quality {:.2f})", thing.label, thing.nearest_label,
+                       thing.nearest_quality);
+  }
   if (thing.label == perception::kUnknownLabel) return thing.label;
   std::string text = fmt::format("{} {:.2f}", thing.label, thing.confidence);
   constexpr std::size_t kMost = 2;
@@ -118,6 +128,39 @@ std::string TableText(const Recognition& seen, const RecogniseOptions& options) 
   return text + evaluation::FormatTable(rows);
 }
 
+void CheckOutputs(const RecogniseOptions& options) {
+  if (options.labels == "-") {
+    throw base::ConfigError("--labels -: a cloud is not printed; wanted a file, such as out.pcd");
+  }
+  for (const auto& [option, path] :
+       {std::pair("--json", options.json), std::pair("--labels", options.labels)}) {
+    if (path.empty() || path == "-") continue;
+    evaluation::RequireFolderOf(path);
+    base::RequireReplaceable(path);
+    base::RefuseOwnInput(option, path, "cloud", options.cloud);
+  }
+  if (!options.json.empty() && options.json == options.labels) {
+    throw base::ConfigError(
+        fmt::format("--json and --labels: both {}; name two files", options.json));
+  }
+}
+
+/// No depth camera measures as far; a cloud in millimetres says so by that.
+void CheckUnit(const perception::PointCloud& cloud, const std::string& path) {
+  constexpr float kFarthest = 100.0F;  // [m]
+  std::vector<float> depths;
+  for (const Eigen::Vector3f& p_C : cloud.points) {
+    if (perception::IsMeasured(p_C)) depths.push_back(p_C.z());
+  }
+  if (depths.empty()) return;
+  const auto middle = depths.begin() + static_cast<long>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  if (*middle <= kFarthest) return;
+  throw base::ConfigError(fmt::format(
+      "{}: half of its points are farther than {:.0f} away; wanted metres: are these millimetres?",
+      path, *middle));
+}
+
 }  // namespace
 
 void AddRecogniseVerb(CLI::App* app, RecogniseOptions* o) {
@@ -137,7 +180,7 @@ void AddRecogniseVerb(CLI::App* app, RecogniseOptions* o) {
 }
 
 int RunRecogniseVerb(const RecogniseOptions& options, const std::string& package_folder) {
-  if (!options.json.empty() && options.json != "-") evaluation::RequireFolderOf(options.json);
+  CheckOutputs(options);
   perception::RecogniserConfig config = perception::ReadRecogniserConfig(
       options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config,
       options.objects);
@@ -145,6 +188,7 @@ int RunRecogniseVerb(const RecogniseOptions& options, const std::string& package
   perception::PointCloud cloud = perception::ReadPcd(options.cloud);
   const std::string why = perception::TakeOnlyAhead(&cloud);
   if (!why.empty()) throw base::ConfigError(options.cloud + ": " + why);
+  CheckUnit(cloud, options.cloud);
   const perception::Recogniser recogniser(config.catalogue, config.params);
   const Recognition seen = recogniser.Recognise(cloud, std::nullopt, base::Rng(kSeed));
   const bool is_measured =

@@ -6,8 +6,10 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "cli/command_run.h"
+#include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
@@ -117,6 +119,29 @@ TEST_F(RecogniseCommandTest, LabelsTellThingsApart) {
   EXPECT_EQ(counts[3], seen["things"][1]["points"]);
 }
 
+TEST_F(RecogniseCommandTest, WhatIsUnknownSaysWhatItIsMostLike) {
+  std::string text = base::ReadTextFile(HIRES_SOURCE_DIR "/config/recogniser.yaml");
+  text = std::regex_replace(text, std::regex("min_quality: [0-9.]+"), "min_quality: 1.0");
+  text = std::regex_replace(text, std::regex("objects: [^ \n]+"),
+                            "objects: " HIRES_SOURCE_DIR "/worlds/objects.yaml");
+  std::ofstream(Path("config.yaml")) << text;
+  const Ended ended =
+      Recognise({Write(Breakfast()), "--config", Path("config.yaml"), "--json", Path("seen.json")});
+  EXPECT_THAT(ended.out, HasSubstr("unknown (nearest: coffee_cup, quality 0.8"));
+  for (const auto& thing : json::parse(std::ifstream(Path("seen.json")))["things"]) {
+    EXPECT_EQ(thing["kind"], "unknown");
+    EXPECT_TRUE(thing["confidence"].is_null()) << "a recogniser does not know how unknown it is";
+    EXPECT_LT(thing["nearest"]["quality"], 1.0);
+  }
+}
+
+TEST_F(RecogniseCommandTest, AFewPointsAreNoTable) {
+  perception::PointCloud few;
+  few.width = 3;
+  few.points = {{0.0F, 0.0F, 1.0F}, {0.2F, 0.0F, 1.0F}, {0.0F, 0.1F, 1.0F}};
+  EXPECT_EQ(Recognise({Write(few)}).code, kExitUndecided);
+}
+
 TEST_F(RecogniseCommandTest, NothingIsInvented) {
   const Ended bare = Recognise({Write(Breakfast(false))});
   EXPECT_EQ(bare.code, kExitRecommended);
@@ -142,6 +167,15 @@ TEST_F(RecogniseCommandTest, BadInputIsRefused) {
   refused({std::string(HIRES_SOURCE_DIR) + "/README.md"}, "begins no line of a header");
   refused({cloud, "--objects", Path("none.yaml")}, "none.yaml");
   refused({cloud, "--json", Path("none/seen.json")}, "none");
+  refused({cloud, "--labels", Path("none/out.pcd")}, "none");
+  refused({cloud, "--labels", folder_.path().string()}, "it is a folder");
+  refused({cloud, "--labels", "-"}, "wanted a file");
+  refused({cloud, "--labels", cloud}, "would write over the cloud");
+  refused({cloud, "--json", cloud}, "would write over the cloud");
+  refused({cloud, "--json", Path("a"), "--labels", Path("a")}, "name two files");
+  perception::PointCloud millimetres = Breakfast();
+  for (Eigen::Vector3f& p : millimetres.points) p *= 1000.0F;
+  refused({Write(millimetres)}, "are these millimetres?");
   std::ofstream(Path("config.yaml"))
       << "objects: " << HIRES_SOURCE_DIR << "/worlds/objects.yaml\ncategories: {coffee_cup: Mug}\n";
   refused({cloud, "--config", Path("config.yaml")}, "block `concepts` of the catalogue");

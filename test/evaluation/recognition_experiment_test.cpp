@@ -87,7 +87,8 @@ TEST(RecognitionExperimentTest, OneThatRecognisesNothingMissesItsGoals) {
   EXPECT_EQ(sums.num_named, 0);
   EXPECT_EQ(sums.num_unknown_so_called, sums.num_unknown);
   EXPECT_FALSE(MeetsGoals(*report));
-  EXPECT_THAT(ReportText(*report), HasSubstr("goal: named at least 95 %: 0.0, missed"));
+  EXPECT_THAT(ReportText(*report),
+              AllOf(HasSubstr("goal: named at least 95 %: 0.0 (0.0 .. "), HasSubstr("), missed")));
   EXPECT_THAT(ReportText(*report), HasSubstr("goal: median error at most 5 mm: -, no value"));
 }
 
@@ -118,6 +119,17 @@ TEST(RecognitionGoalTest, AValueAtItsBoundMeetsItAndOneBeyondDoesNot) {
   EXPECT_EQ(verdict(0.0051, 0.005, true), "missed");
   EXPECT_EQ(verdict(kNothing, 0.98, false), "no value");
   EXPECT_EQ(verdict(kNothing, 0.005, true), "no value");
+}
+
+TEST(RecognitionGoalTest, AShareWhoseIntervalHoldsTheBoundDecidesNothing) {
+  const auto verdict = [](double value, double lower, double upper) {
+    return ToString(
+        RecognitionGoal{"", value, 0.98, false, Interval{value, lower, upper}}.verdict());
+  };
+  EXPECT_EQ(verdict(0.99, 0.98, 1.0), "met");
+  EXPECT_EQ(verdict(1.0, 0.8, 1.0), "undecided");
+  EXPECT_EQ(verdict(0.97, 0.96, 0.98), "undecided");
+  EXPECT_EQ(verdict(0.97, 0.96, 0.979), "missed");
 }
 
 TEST(RecognitionGoalTest, ThingsAreCountedByTheirTable) {

@@ -9,6 +9,7 @@
 namespace hires::perception {
 
 struct RecogniserConfig {
+  std::string objects{};                ///< file of the catalogue of objects
   std::vector<KnownModel> catalogue{};  ///< by label
   RecogniserParams params{};
   CloudAgeParams age{};  ///< of clouds that come from a running camera; files have no age

@@ -49,7 +49,7 @@ struct TableParams {
 /// Bolles 1981], then least squares); those just beside it speak against it, as a wall that crosses
 /// it has as many. Where two tables are seen, the larger one in the picture.
 /// @param stand  without it, any plane is a table, the floor too.
-/// @return nothing where no plane holds `min_share` of the points.
+/// @return nothing where no plane holds `min_share` of the points, and 200 of them.
 std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                                const TableParams& params, base::Rng rng);
 

@@ -12,6 +12,7 @@
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
+#include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/recognition/detector_fit.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
@@ -60,17 +61,17 @@ int RunDetectorFitVerb(const DetectorFitOptions& options, const std::string& pac
   order.seed = options.seed;
   const auto scene = imagination::ReadSetupConfig(package_folder + "/config/scene.yaml");
   order.robot = robot::LoadAnyRobot(scene.robot);
-  const std::string objects = options.objects.empty() ? scene.objects : options.objects;
   const std::string config =
       options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config;
-  order.recogniser = perception::ReadRecogniserConfig(config, objects);
+  order.recogniser = perception::ReadRecogniserConfig(config, options.objects);
   const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   auto report = evaluation::FitDetector(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
-  report->objects = NameAndHash(objects);
+  report->objects = NameAndHash(order.recogniser.objects);
   report->recogniser = NameAndHash(config);
-  std::cout << evaluation::ReportText(*report);
+  std::cout << evaluation::ReportText(*report)
+            << FilesLine(evaluation::ConfigurationHash(package_folder));
   if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
   if (!options.output.empty()) base::ReplaceTextFile(options.output, evaluation::ToYaml(*report));
   return kExitRecommended;

@@ -1,5 +1,7 @@
 #include "cli/experiment/experiment_recognition_command.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -7,10 +9,12 @@
 #include "cli/experiment_command.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
+#include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/recognition/recognition_experiment.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
 #include "hires/imagination/imagination_setup.h"
+#include "hires/perception/pcd_file.h"
 #include "hires/robot/load_robot.h"
 
 namespace hires::cli {
@@ -25,6 +29,9 @@ void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* o) {
   verb->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
   verb->add_option("--config", o->config, "another file instead of config/recogniser.yaml");
   verb->add_option("--json", o->json, "write the numbers to this file");
+  verb->add_option("--clouds", o->clouds,
+                   "write each table's cloud to this folder, as table_SEED.pcd: something to try "
+                   "`hires recognise` on");
   verb->add_option("--threads", o->threads, "default: one per core; changes no number but times")
       ->check(NumberBetween(1, 256));
   verb->add_flag("--quiet", o->quiet, "no progress bar");
@@ -34,6 +41,7 @@ void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* o) {
 int RunRecognitionVerb(const RecognitionOptions& options, const std::string& package_folder,
                        const std::function<bool()>& cancelled) {
   if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  if (!options.clouds.empty()) evaluation::RequireFolderOf(options.clouds + "/table.pcd");
   evaluation::RecognitionOrder order;
   order.tables = options.tables;
   order.seed = options.seed;
@@ -41,12 +49,18 @@ int RunRecognitionVerb(const RecognitionOptions& options, const std::string& pac
   order.robot = robot::LoadAnyRobot(scene.robot);
   order.recogniser = perception::ReadRecogniserConfig(
       options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config,
-      options.objects.empty() ? scene.objects : options.objects);
+      options.objects);
+  if (!options.clouds.empty()) {
+    order.on_cloud = [&](std::uint64_t seed, const perception::PointCloud& cloud) {
+      perception::WritePcd(cloud, fmt::format("{}/table_{}.pcd", options.clouds, seed));
+    };
+  }
   const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   const auto report = evaluation::TryRecogniser(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
-  std::cout << evaluation::ReportText(*report);
+  std::cout << evaluation::ReportText(*report)
+            << FilesLine(evaluation::ConfigurationHash(package_folder));
   if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
   return evaluation::MeetsGoals(*report) ? kExitRecommended : kExitAllFailed;
 }

@@ -12,7 +12,7 @@ namespace hires::cli {
 
 /// What was typed behind `hires experiment recognition`.
 struct RecognitionOptions {
-  std::string config, objects, json;
+  std::string config, objects, json, clouds;
   int tables{500}, threads{0};
   std::uint64_t seed{2000};
   bool quiet{false};

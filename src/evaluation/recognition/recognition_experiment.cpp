@@ -100,6 +100,7 @@ std::optional<RecognitionReport> TryRecogniser(const RecognitionOrder& order, co
   const auto work = [&](int task, const Advance& advance) {
     const std::uint64_t seed = order.seed + static_cast<std::uint64_t>(task);
     const RandomTable table = trial.tables.Make(seed);
+    if (order.on_cloud) order.on_cloud(seed, table.cloud);
     scores[task] = trial.Try(table, seed, &seconds[task]);
     left_out[task] = trial.TryLeftOut(table, seed);
     advance(1.0);

@@ -18,12 +18,14 @@ constexpr double kBoxGoal = 0.01, kBoxGoal95 = 0.025;  // [m]
 
 RecognitionGoal ShareGoal(const char* name, const std::vector<ThingVerdict>& things,
                           const ThingShare& share, double bound) {
+  const std::vector<ClusterCounts> tables = CountsOf(things, share);
   double hits = 0.0, all = 0.0;
-  for (const ClusterCounts& table : CountsOf(things, share)) {
+  for (const ClusterCounts& table : tables) {
     hits += table.num_hits;
     all += table.num_all;
   }
-  return {name, all > 0.0 ? hits / all : std::numeric_limits<double>::quiet_NaN(), bound, false};
+  if (all == 0.0) return {name, std::numeric_limits<double>::quiet_NaN(), bound, false};
+  return {name, hits / all, bound, false, ClusteredShareInterval(tables)};
 }
 
 void AddBoxGoals(const perception::BoxSums& boxes, std::vector<RecognitionGoal>* goals) {
@@ -71,12 +73,24 @@ std::vector<ClusterCounts> CountsOf(const std::vector<ThingVerdict>& things,
 }
 
 std::string ToString(GoalVerdict verdict) {
-  if (verdict == GoalVerdict::kNoValue) return "no value";
-  return verdict == GoalVerdict::kMet ? "met" : "missed";
+  switch (verdict) {
+    case GoalVerdict::kMet:
+      return "met";
+    case GoalVerdict::kMissed:
+      return "missed";
+    case GoalVerdict::kUndecided:
+      return "undecided";
+    case GoalVerdict::kNoValue:
+      break;
+  }
+  return "no value";
 }
 
 GoalVerdict RecognitionGoal::verdict() const {
   if (std::isnan(value)) return GoalVerdict::kNoValue;
+  if (interval && interval->lower < bound && interval->upper >= bound) {
+    return GoalVerdict::kUndecided;
+  }
   const bool is_met = is_length ? value <= bound : value >= bound;
   return is_met ? GoalVerdict::kMet : GoalVerdict::kMissed;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,10 @@ extern const ThingShare kFound, kNamed, kNamedOfFound, kOwnLabel, kUnknown, kUnk
 std::vector<ClusterCounts> CountsOf(const std::vector<perception::ThingVerdict>& things,
                                     const ThingShare& share);
 
-enum class GoalVerdict { kMet, kMissed, kNoValue };
+/// Undecided: the 95 % interval of a share holds the bound.
+enum class GoalVerdict { kMet, kMissed, kUndecided, kNoValue };
 
-/// "met", "missed", "no value".
+/// "met", "missed", "undecided", "no value".
 std::string ToString(GoalVerdict verdict);
 
 /// What was wanted of a recogniser, and what came.
@@ -31,6 +33,7 @@ struct RecognitionGoal {
   double value{0.0};      ///< share or [m]; not a number where nothing tells it
   double bound{0.0};      ///< likewise
   bool is_length{false};  ///< [m] of at most the bound; else a share of at least the bound
+  std::optional<Interval> interval{};  ///< of the value; without one it is judged as it is
   GoalVerdict verdict() const;
 };
 

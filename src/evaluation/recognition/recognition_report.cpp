@@ -136,9 +136,13 @@ std::string LeftOutText(const std::vector<ThingVerdict>& things) {
 std::string GoalText(const RecognitionGoal& goal) {
   const double scale = goal.is_length ? 1e3 : 100.0;
   const char* unit = goal.is_length ? "mm" : "%";
+  const std::string interval =
+      goal.interval ? fmt::format(" ({:.1f} .. {:.1f})", scale * goal.interval->lower,
+                                  scale * goal.interval->upper)
+                    : "";
   return fmt::format("goal: {} {} {:.0f} {}: {}, {}\n", goal.name,
                      goal.is_length ? "at most" : "at least", scale * goal.bound, unit,
-                     NumberText(scale * goal.value, 1), ToString(goal.verdict()));
+                     NumberText(scale * goal.value, 1) + interval, ToString(goal.verdict()));
 }
 
 ordered_json GoalsToJson(const RecognitionReport& report) {

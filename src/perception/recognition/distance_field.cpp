@@ -7,6 +7,7 @@
 
 #include "hires/base/check.h"
 #include "hires/base/overloaded.h"
+#include "perception/ray_scene.h"
 
 namespace hires::perception {
 namespace {
@@ -44,24 +45,47 @@ Vector3d NearestOnTriangle(const Vector3d& p, const Vector3d& a, const Vector3d&
   return nearest;
 }
 
-// By the nearest triangle; where several are, by the one that faces the point most.
-double DistanceTo(const geometry::TriangleMesh& mesh, const Vector3d& p) {
-  double nearest = std::numeric_limits<double>::infinity(), facing = 0.0;
-  for (const auto& corner : mesh.triangles) {
-    const Vector3d &a = mesh.vertices[corner[0]], &b = mesh.vertices[corner[1]],
-                   &c = mesh.vertices[corner[2]];
-    const Vector3d way = p - NearestOnTriangle(p, a, b, c);
-    const double towards = (b - a).cross(c - a).normalized().dot(way);
-    const double distance = way.norm();
-    const bool is_as_near = distance < nearest + 1e-9;
-    if (distance < nearest - 1e-9 || (is_as_near && std::abs(towards) > std::abs(facing)))
-      facing = towards;
-    nearest = std::min(nearest, distance);
+/// What is known of the triangles that were looked at.
+struct Nearest {
+  const geometry::TriangleMesh& mesh;
+  const Vector3d p;
+  double distance{std::numeric_limits<double>::infinity()};
+  double facing{0.0};  // of the normal towards p; where several are as near, of the one most so
+};
+
+/// Called by Embree for each triangle within the radius, which shrinks to the nearest one so far.
+bool Consider(RTCPointQueryFunctionArguments* arguments) {
+  constexpr double kAsNear = 1e-9, kSinglePrecision = 1e-6;  // [m]
+  Nearest& found = *static_cast<Nearest*>(arguments->userPtr);
+  const auto& corner = found.mesh.triangles[arguments->primID];
+  const Vector3d &a = found.mesh.vertices[corner[0]], &b = found.mesh.vertices[corner[1]],
+                 &c = found.mesh.vertices[corner[2]];
+  const Vector3d way = found.p - NearestOnTriangle(found.p, a, b, c);
+  const double towards = (b - a).cross(c - a).normalized().dot(way);
+  const double distance = way.norm();
+  const bool is_as_near = distance < found.distance + kAsNear;
+  if (distance < found.distance - kAsNear ||
+      (is_as_near && std::abs(towards) > std::abs(found.facing))) {
+    found.facing = towards;
   }
-  return facing < 0.0 ? -nearest : nearest;
+  if (distance >= found.distance) return false;
+  found.distance = distance;
+  arguments->query->radius = static_cast<float>(distance + kSinglePrecision);
+  return true;
 }
 
-double DistanceTo(const geometry::Shape& shape, const Vector3d& p) {
+/// By the nearest triangle; where several are, by the one that faces the point most.
+double DistanceTo(RTCScene scene, const geometry::TriangleMesh& mesh, const Vector3d& p) {
+  Nearest found{mesh, p};
+  const Eigen::Vector3f at = p.cast<float>();
+  RTCPointQuery query{at.x(), at.y(), at.z(), 0.0f, std::numeric_limits<float>::infinity()};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(scene, &query, &context, Consider, &found);
+  return found.facing < 0.0 ? -found.distance : found.distance;
+}
+
+double DistanceTo(const MeshLibrary& meshes, const geometry::Shape& shape, const Vector3d& p) {
   return std::visit(
       base::Overloaded{[&](const geometry::Box& box) {
                          return Boxlike<Vector3d>(p.cwiseAbs() - box.size / 2.0);
@@ -72,7 +96,7 @@ double DistanceTo(const geometry::Shape& shape, const Vector3d& p) {
                        },
                        [&](const geometry::Sphere& sphere) { return p.norm() - sphere.radius; },
                        [&](const std::shared_ptr<const geometry::TriangleMesh>& mesh) {
-                         return DistanceTo(*mesh, p);
+                         return DistanceTo(meshes.Find(shape), *mesh, p);
                        }},
       shape);
 }
@@ -81,8 +105,11 @@ double DistanceTo(const geometry::Shape& shape, const Vector3d& p) {
 
 DistanceField::DistanceField(const std::vector<geometry::Collision>& collisions_B) {
   HIRES_CHECK(!collisions_B.empty(), "a body without shapes has no surface");
-  for (const geometry::Collision& one : collisions_B)
+  MeshLibrary meshes;
+  for (const geometry::Collision& one : collisions_B) {
     bounds_.Include(geometry::BoundsOf(one.shape, one.X_BS));
+    meshes.Add(one.shape);
+  }
   const Vector3d extent = bounds_.upper - bounds_.lower;
   cell_ = std::clamp(extent.maxCoeff() / kCells, kFinest, kCoarsest);
   origin_ = bounds_.lower.array() - kMargin;
@@ -96,7 +123,7 @@ DistanceField::DistanceField(const std::vector<geometry::Collision>& collisions_
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < R_SB.size(); ++k) {
       const Vector3d p_S = R_SB[k] * (origin_ + cell_ * node - collisions_B[k].X_BS.translation);
-      nearest = std::min(nearest, DistanceTo(collisions_B[k].shape, p_S));
+      nearest = std::min(nearest, DistanceTo(meshes, collisions_B[k].shape, p_S));
     }
     distances_.push_back(static_cast<float>(nearest));
   }

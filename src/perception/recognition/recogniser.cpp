@@ -155,6 +155,10 @@ Detection Recogniser::Impl::Detect(const LabelledPicture& seen, const Thing& thi
   Detection detection;
   if (candidates.empty() || candidates.front().view.quality < params.min_quality) {
     detection = Unknown(thing, X_CT);
+    if (!candidates.empty() && candidates.front().view.quality > 0.0) {
+      detection.nearest_label = candidates.front().shape->models.front().label;
+      detection.nearest_quality = candidates.front().view.quality;
+    }
   } else {
     const Candidate& best = candidates.front();
     detection.label = best.shape->models.front().label;

@@ -47,9 +47,9 @@ RecogniserConfig ReadRecogniserConfig(const std::string& path, const std::string
   ParamReader in = ParamReader::FromFile(path);
   RecogniserConfig config;
   const std::string listed = BesideFile(path, in.GetString("objects"));
+  config.objects = objects.empty() ? listed : objects;
   std::map<std::string, KnownModel> known;
-  for (const auto& [instance, model] :
-       world::LoadCatalogueModels(objects.empty() ? listed : objects)) {
+  for (const auto& [instance, model] : world::LoadCatalogueModels(config.objects)) {
     known[base::ToLower(model->name)] = {model->name, model->concept_name, model};
   }
   if (in.Has("categories"))

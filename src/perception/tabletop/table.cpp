@@ -23,7 +23,7 @@ constexpr int kMinUnder = 2;  // likewise as above it: a wall goes on there, and
                               // whose cells a table can do without
 constexpr double kPlateReach = 0.03;  // [m] by which a plate's place may err upwards or downwards
 constexpr double kPlateTilt = 0.05;   // [rad] by which it may lean otherwise
-constexpr std::size_t kPlatePoints = 200;
+constexpr std::size_t kPlatePoints = 200, kTablePoints = 200;  // fewer are none
 constexpr double kBeside = 3.0;  // tolerances up to which points are beside a plane
 
 struct Plane {
@@ -307,14 +307,14 @@ std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<Came
                                const TableParams& params, base::Rng rng) {
   const Candidates candidates = CandidatesOf(cloud, stand, params);
   const std::vector<Point>& points = candidates.points;
-  if (points.size() < 3) return std::nullopt;
+  if (points.size() < kTablePoints) return std::nullopt;
   const auto best = BestSample(points, stand, params, &rng);
   if (!best) return std::nullopt;
   Plane plane = *best;
   for (int i = 0; i < kRefinements; ++i) plane = LeastSquares(points, plane);
   const TableTop top = TopOf(points, TableIn(plane));
-  if (top.border.size() < 3 || top.points.size() < params.min_share * candidates.num_measured)
-    return std::nullopt;
+  const double least = std::max<double>(kTablePoints, params.min_share * candidates.num_measured);
+  if (top.border.size() < 3 || top.points.size() < least) return std::nullopt;
   plane = LeastSquares(top.points, plane);
   if (!IsLevel(plane, stand, params)) return std::nullopt;
   Table table = TableIn(plane);
