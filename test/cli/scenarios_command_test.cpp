@@ -30,6 +30,7 @@ using hires::test_support::RunHires;
 using nlohmann::ordered_json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
 
@@ -279,6 +280,19 @@ TEST_F(ScenariosTest, AScenarioThatIsNotThereIsToldWithWhereItStandsAndWhatWasMe
                              HasSubstr("did you mean 'serve_coffee'")));
   options.scenario = "tople";
   EXPECT_THAT(error(), AllOf(HasSubstr("--scenario: "), HasSubstr("did you mean 'topple'")));
+}
+
+TEST_F(ScenariosTest, ARunThatBeginsWithATableInTheWallIsTold) {
+  ScenariosOptions options = Options("Report succeeded '' 2\n");
+  folder_.Write("some.yaml",
+                "!Scenario\nScenario: serve_coffee\n---\n"
+                "!FluentPoseModification\nInstance: poseTable1\nGroup: g\nChoices: 2\n"
+                "Modifications: [[hasX, [0, 6.1]]]\n");
+  options.runs = 2;
+  const Ended ended = Play(options);
+  EXPECT_EQ(ended.code, kExitAllSucceeded);
+  EXPECT_THAT(ended.err, HasSubstr("run 2: table1 begins in walls, or touches it"));
+  EXPECT_THAT(ended.err, Not(HasSubstr("run 1:")));
 }
 
 TEST_F(ScenariosTest, NoInputIsWrittenOver) {

@@ -13,11 +13,11 @@
 #include "cli/series/series_to_play.h"
 #include "hires/base/error.h"
 #include "hires/base/files/named_file.h"
+#include "hires/base/log.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
-#include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/series/series_report.h"
 #include "hires/knowledge/blackboard_config.h"
@@ -85,6 +85,7 @@ class Runner {
     fs::create_directories(folder);
     const ScenarioOrder order = series_.Prepare(run, folder);
     Announce(number, order);
+    WarnOfOverlaps(run);
     if (!PlayTries(order, &run)) return false;
     Keep(name, order, &run);
     journal_.Append(run);
@@ -99,6 +100,13 @@ class Runner {
     words.resize(words.size() - 4);  // without the files that are there
     words.insert(words.begin(), "hires");
     std::cerr << "  " << CommandText(words) << '\n';
+  }
+
+  void WarnOfOverlaps(const SeriesRun& run) const {
+    for (const evaluation::Overlap& overlap : series_.OverlapsOf(run)) {
+      base::Log(base::LogLevel::kWarn, fmt::format("run {}: {} begins in {}, or touches it",
+                                                   run.run, overlap.thing, overlap.other));
+    }
   }
 
   /// @return false when cancelled.
@@ -250,7 +258,7 @@ int RunScenariosVerb(const ScenariosOptions& typed, const std::string& package_f
         "--graph: this build has no ROS nodes to start; build with ROS, or leave it out");
   }
   options.file = base::NamedFile("series", typed.file, package_folder + "/config/series");
-  const SeriesToPlay series(options, package_folder);
+  SeriesToPlay series(options, package_folder);
   series.Check();
   CheckOutputs(options);
   Runner runner(options, package_folder, series, cancelled);

@@ -4,8 +4,6 @@
 
 #include <filesystem>
 #include <map>
-#include <set>
-#include <tuple>
 
 #include "hires/base/error.h"
 #include "hires/base/files/own_input.h"
@@ -13,10 +11,14 @@
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/configuration_hash.h"
+#include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/evaluation/scenario.h"
+#include "hires/evaluation/sim_robot_world.h"
 #include "hires/evaluation/truth.h"
 #include "hires/imagination/imagination_setup.h"
-#include "hires/loop/task_loop.h"
+#include "hires/robot/posture.h"
+#include "hires/simulation/scene.h"
+#include "hires/world/world.h"
 
 namespace hires::cli {
 namespace {
@@ -42,6 +44,20 @@ auto UseFrom(const std::string& place, const Use& use) {
     if (place.empty()) throw;
     throw base::ConfigError(fmt::format("{}: {}", place, error.what()));
   }
+}
+
+/// @param original  the world of the start as it is without the variation.
+std::vector<evaluation::Overlap> OverlapsIn(const imagination::ImaginationSetup& original,
+                                            const SeriesStart& start,
+                                            const evaluation::VariantFiles& files) {
+  const auto before = evaluation::StartOf(original, start.scenario, "").robot;
+  const auto after = evaluation::StartOf(original, files.scenario, "").robot;
+  const simulation::Scene& scene = *original.scene;
+  const bool is_changed = files.world != start.world;  // a map stays what it is
+  const world::World varied = is_changed ? world::LoadWorld(files.world) : scene.world;
+  return evaluation::NewOverlaps(
+      {scene.world, before.X_MB}, {varied, after.X_MB}, scene.robot.model.name,
+      simulation::FrozenShapes(scene.robot, robot::PostureOf(scene.robot, after.joints)));
 }
 
 }  // namespace
@@ -82,17 +98,23 @@ ScenarioOrder SeriesToPlay::Prepare(const SeriesRun& run, const std::string& fol
   return order;
 }
 
-void SeriesToPlay::Check() const {
+void SeriesToPlay::Check() {
   CheckOutputs();
-  CheckInstructions();
-  std::set<std::vector<int>> checked;
+  std::map<std::string, loop::LoopSetup> setups;  // by world
   for (int run = 1; run <= options_.runs; ++run) {
     const SeriesRun expected = Expected(run);
-    if (!checked.insert(expected.choices).second) continue;
+    if (overlaps_.count(expected.choices) > 0) continue;
+    const SeriesStart start = StartOf(expected.choices);
+    loop::LoopFiles files;
+    files.world = start.world;
+    const auto setup =
+        setups.try_emplace(start.world, package_folder_ + "/config/loop.yaml", files).first;
+    CheckInstruction(setup->second, start);
+    UseFrom(PlaceOf(start, "Truth", "--truth", options_.truth),
+            [&] { setup->second.ReadTruth(start.truth); });
     const base::RunFolder folder("");
-    Prepare(expected, folder.path());
-    UseFrom(PlaceOf(StartOf(expected.choices), "Truth", "--truth", options_.truth),
-            [&] { evaluation::FindTruth(expected.truth, package_folder_ + "/config/truths"); });
+    overlaps_[expected.choices] =
+        OverlapsIn(setup->second.world(), start, Prepare(expected, folder.path()).files);
   }
 }
 
@@ -103,24 +125,12 @@ void SeriesToPlay::CheckOutputs() const {
   }
 }
 
-void SeriesToPlay::CheckInstructions() const {
-  std::map<std::string, loop::LoopSetup> setups;  // by world
-  std::set<std::tuple<std::string, std::string, std::string>> checked;
-  for (int run = 1; run <= options_.runs; ++run) {
-    const SeriesStart start =
-        StartOf(evaluation::ChoicesOfRun(series_, order_, options_.seed, run));
-    if (!checked.emplace(start.scenario, start.world, start.instruction).second) continue;
-    std::string place = PlaceOf(start, "Instruction", "--instruction", options_.instruction);
-    if (place.empty()) place = start.scenario + ": task";
-    loop::LoopFiles files;
-    files.world = start.world;
-    const auto setup =
-        setups.try_emplace(start.world, package_folder_ + "/config/loop.yaml", files).first;
-    UseFrom(fmt::format("{} '{}'", place, start.instruction), [&] {
-      loop::RequireTask(setup->second, start.scenario,
-                        evaluation::TaskOfInstruction(start.instruction));
-    });
-  }
+void SeriesToPlay::CheckInstruction(const loop::LoopSetup& setup, const SeriesStart& start) const {
+  std::string place = PlaceOf(start, "Instruction", "--instruction", options_.instruction);
+  if (place.empty()) place = start.scenario + ": task";
+  UseFrom(fmt::format("{} '{}'", place, start.instruction), [&] {
+    loop::RequireTask(setup, start.scenario, evaluation::TaskOfInstruction(start.instruction));
+  });
 }
 
 std::string SeriesToPlay::PlaceOf(const SeriesStart& start, const std::string& key,

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "cli/series/scenarios_command.h"
+#include "hires/evaluation/series/overlaps.h"
 #include "hires/evaluation/series/scenario_series.h"
 #include "hires/evaluation/series/series_run.h"
+#include "hires/loop/task_loop.h"
 
 namespace hires::cli {
 
@@ -29,7 +32,12 @@ class SeriesToPlay {
   /// Each combination of choices that is played can be made, the robot can be told so, and no
   /// answer is written over an input.
   /// @throws base::ConfigError naming the place that says what cannot be.
-  void Check() const;
+  void Check();
+
+  /// What begins in each other in that run, though not where nothing is changed.  @pre Check()
+  const std::vector<evaluation::Overlap>& OverlapsOf(const evaluation::SeriesRun& run) const {
+    return overlaps_.at(run.choices);
+  }
 
  private:
   /// A file that runs may begin from.
@@ -46,7 +54,8 @@ class SeriesToPlay {
   std::string InputsHash() const;
   nlohmann::ordered_json MakeSetting() const;
   void CheckOutputs() const;
-  void CheckInstructions() const;
+  /// That the robot can be told so.
+  void CheckInstruction(const loop::LoopSetup& setup, const evaluation::SeriesStart& start) const;
 
   const ScenariosOptions& options_;
   const std::string& package_folder_;
@@ -54,6 +63,7 @@ class SeriesToPlay {
   const evaluation::SeriesOrder order_;
   const nlohmann::ordered_json setting_;
   std::string name_;
+  std::map<std::vector<int>, std::vector<evaluation::Overlap>> overlaps_;  // by choices
 };
 
 }  // namespace hires::cli
