@@ -58,9 +58,15 @@ std::string ConfigurationHash(const std::string& package_folder) {
   for (const fs::path& name : FilesRead(package_folder)) {
     const std::string path = (fs::path(package_folder) / name).string();
     hasher.Add(name.string());
-    hasher.Add(name.extension() == ".yaml" ? YamlContent(path) : base::ReadTextFile(path));
+    hasher.Add(ContentThatCounts(path));
   }
   return base::HexOf(hasher.value());
+}
+
+std::string ContentThatCounts(const std::string& path) {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+  return fs::path(path).extension() == ".yaml" ? YamlContent(path)
+                                               : base::ReadTextFile(path, kMostBytes);
 }
 
 }  // namespace hires::evaluation

@@ -73,6 +73,9 @@ TEST_F(ReproduceTest, WhatHasAnAnswerIsNotPlayedAgain) {
   folder_.Write("package/config/reproduce_docs.yaml", "plays: [2]\n");
   PlayThem(plays);
   EXPECT_EQ(Counted(), "xx") << "other bounds ask for no other answer";
+  folder_.Write("package/input.yaml", "# of today\na:  1\n");
+  PlayThem(plays);
+  EXPECT_EQ(Counted(), "xx") << "a comment changes no answer";
   folder_.Write("package/input.yaml", "a: 2\n");
   PlayThem(plays);
   EXPECT_EQ(Counted(), "xxx") << "it rests on another file now";

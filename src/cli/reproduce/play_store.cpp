@@ -11,6 +11,7 @@
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
+#include "hires/evaluation/configuration_hash.h"
 
 namespace hires::cli {
 namespace {
@@ -74,7 +75,7 @@ std::string PlayStore::HashOfInput(const std::string& input) {
   for (const std::string& file : FilesOf(place_.package + "/" + input)) {
     if (IsCatalogue(file)) continue;
     hasher.Add(fs::path(file).lexically_relative(place_.package).string());
-    hasher.Add(base::ReadTextFile(file, std::size_t{1} << 30));
+    hasher.Add(evaluation::ContentThatCounts(file));
   }
   return inputs_[input] = base::HexOf(hasher.value());
 }

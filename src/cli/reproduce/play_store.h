@@ -23,7 +23,7 @@ class PlayStore {
   /// @throws base::ConfigError if the folder cannot be made.
   explicit PlayStore(Place place);
 
-  /// What an answer rests on: the command, the content of the play's inputs, this version, and the
+  /// What an answer rests on: the command, what counts of the play's inputs, this version, and the
   /// same of the plays whose answers it takes. 16 digits.
   /// @pre asked of those before.  @throws base::ConfigError for an input that cannot be read.
   std::string KeyOf(const evaluation::Play& play);
