@@ -16,22 +16,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool IsRead(const fs::path& name) {
-  const std::string text = name.string();
-  if (text.rfind("config/experiments/", 0) == 0 || text.rfind("config/reproduce", 0) == 0) {
-    return false;
-  }
-  return name.extension() != ".rviz" && name.extension() != ".launch";
+bool StartsWith(const fs::path& name, const char* start) {
+  return name.string().rfind(start, 0) == 0;
 }
 
-/// Below the package's folder, sorted.
-std::vector<fs::path> FilesRead(const fs::path& package) {
+/// Whether a result may rest on it: not how it is shown, nor catalogues, which rest on results.
+bool Counts(const fs::path& name) {
+  return !StartsWith(name, "config/reproduce") && name.extension() != ".rviz" &&
+         name.extension() != ".launch";
+}
+
+/// Of a file or of all below a folder, those that count, from the package's folder on; sorted.
+std::vector<fs::path> FilesOf(const fs::path& package, const std::string& input) {
+  if (!fs::is_directory(package / input)) return {input};
   std::vector<fs::path> names;
-  for (const char* folder : {"config", "worlds", "urdf"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(package / folder)) {
-      const fs::path name = entry.path().lexically_relative(package);
-      if (entry.is_regular_file() && IsRead(name)) names.push_back(name);
-    }
+  for (const auto& entry : fs::recursive_directory_iterator(package / input)) {
+    const fs::path name =
+        entry.path().lexically_normal().lexically_relative(package.lexically_normal());
+    if (entry.is_regular_file() && Counts(name)) names.push_back(name);
   }
   std::sort(names.begin(), names.end());
   return names;
@@ -51,22 +53,31 @@ std::string YamlContent(const std::string& path) {
   }
 }
 
+/// Name, and what counts of the content.
+void Add(const fs::path& package, const fs::path& name, base::Hasher* hasher) {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+  const std::string path = (package / name).string();
+  hasher->Add(name.string());
+  hasher->Add(name.extension() == ".yaml" ? YamlContent(path)
+                                          : base::ReadTextFile(path, kMostBytes));
+}
+
 }  // namespace
 
 std::string ConfigurationHash(const std::string& package_folder) {
   base::Hasher hasher;
-  for (const fs::path& name : FilesRead(package_folder)) {
-    const std::string path = (fs::path(package_folder) / name).string();
-    hasher.Add(name.string());
-    hasher.Add(ContentThatCounts(path));
+  for (const char* folder : {"config", "urdf", "worlds"}) {
+    for (const fs::path& name : FilesOf(package_folder, folder)) {
+      if (!StartsWith(name, "config/experiments/")) Add(package_folder, name, &hasher);
+    }
   }
   return base::HexOf(hasher.value());
 }
 
-std::string ContentThatCounts(const std::string& path) {
-  constexpr std::size_t kMostBytes = std::size_t{1} << 30;
-  return fs::path(path).extension() == ".yaml" ? YamlContent(path)
-                                               : base::ReadTextFile(path, kMostBytes);
+std::string InputHash(const std::string& package_folder, const std::string& input) {
+  base::Hasher hasher;
+  for (const fs::path& name : FilesOf(package_folder, input)) Add(package_folder, name, &hasher);
+  return base::HexOf(hasher.value());
 }
 
 }  // namespace hires::evaluation

@@ -36,6 +36,12 @@ class CatalogueTest : public ::testing::Test {
   std::string ErrorOf(const std::string& text) {
     return hires::test_support::ConfigErrorOf([&] { Read(text); });
   }
+  static std::vector<std::string> NamesOf(const Catalogue& catalogue,
+                                          const std::vector<std::string>& wanted) {
+    std::vector<std::string> found;
+    for (const CatalogueItem& item : ItemsOf(catalogue, wanted)) found.push_back(item.name);
+    return found;
+  }
 
   const hires::test_support::TemporaryFolder folder_;
 };
@@ -64,9 +70,7 @@ items:
   - {item: Fig. A.2, section: "A.2", title: t, holds: x}
 )");
   const auto names = [&](const std::vector<std::string>& wanted) {
-    std::vector<std::string> found;
-    for (const CatalogueItem& item : ItemsOf(catalogue, wanted)) found.push_back(item.name);
-    return found;
+    return NamesOf(catalogue, wanted);
   };
   EXPECT_THAT(names({"6.3"}), ElementsAre("Table 6.5", "Fig. 6.13"));
   EXPECT_THAT(names({"a", "table 6.5"}), ElementsAre("Table 6.5", "Fig. A.2"));
@@ -85,9 +89,7 @@ items:
   - {item: Fig. A.2, section: "A.2", title: t, holds: x}
 )");
   const auto names = [&](const std::vector<std::string>& wanted) {
-    std::vector<std::string> found;
-    for (const CatalogueItem& item : ItemsOf(catalogue, wanted)) found.push_back(item.name);
-    return found;
+    return NamesOf(catalogue, wanted);
   };
   for (const char* figure : {"Fig 6.5", "Figure 6.5", "fig. 6.5", "Fig. 6.5", " figure  6.5 "}) {
     EXPECT_THAT(names({figure}), ElementsAre("Fig. 6.5")) << figure;

@@ -12,8 +12,7 @@ namespace hires::evaluation {
 /// @throws base::ConfigError naming a file that cannot be read or is no YAML.
 std::string ConfigurationHash(const std::string& package_folder);
 
-/// What of a file counts for a result that rests on it: of YAML all but comments and white space.
-/// @throws base::ConfigError naming the file, which cannot be read or is no YAML.
-std::string ContentThatCounts(const std::string& path);
+/// The same of one file or folder of the package, experiments included: "config", "worlds".
+std::string InputHash(const std::string& package_folder, const std::string& input);
 
 }  // namespace hires::evaluation

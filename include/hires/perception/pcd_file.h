@@ -14,14 +14,14 @@ namespace hires::perception {
 /// format, lacking x, y or z, shorter than it says, of an absurd size.
 PointCloud ReadPcd(const std::string& path);
 
-/// Writes the points alone, binary; likewise.
-void WritePcd(const PointCloud& cloud, const std::string& path);
-
 /// Writes the points with a field `label`, binary; a file of that name is replaced only when the
 /// new one is whole.
 /// @param labels  of each point.
 /// @throws base::ConfigError if the file cannot be written.
 void WriteLabelledPcd(const PointCloud& cloud, const std::vector<int>& labels,
                       const std::string& path);
+
+/// The same without labels.
+void WritePcd(const PointCloud& cloud, const std::string& path);
 
 }  // namespace hires::perception

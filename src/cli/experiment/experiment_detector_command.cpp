@@ -64,14 +64,14 @@ int RunDetectorFitVerb(const DetectorFitOptions& options, const std::string& pac
   const std::string config =
       options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config;
   order.recogniser = perception::ReadRecogniserConfig(config, options.objects);
+  const std::string files = evaluation::ConfigurationHash(package_folder);
   const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   auto report = evaluation::FitDetector(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
   report->objects = NameAndHash(order.recogniser.objects);
   report->recogniser = NameAndHash(config);
-  std::cout << evaluation::ReportText(*report)
-            << FilesLine(evaluation::ConfigurationHash(package_folder));
+  std::cout << evaluation::ReportText(*report) << FilesLine(files);
   if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
   if (!options.output.empty()) base::ReplaceTextFile(options.output, evaluation::ToYaml(*report));
   return kExitRecommended;

@@ -48,12 +48,12 @@ int RunPoseErrorVerb(const PoseErrorOptions& options, const std::string& package
       overrides);
   order.series = options.series;
   order.held_out = options.held_out;
+  const std::string files = evaluation::ConfigurationHash(package_folder);
   const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   const auto report = evaluation::FitPoseError(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
-  std::cout << evaluation::ReportText(*report)
-            << FilesLine(evaluation::ConfigurationHash(package_folder));
+  std::cout << evaluation::ReportText(*report) << FilesLine(files);
   if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
   if (!options.output.empty()) base::ReplaceTextFile(options.output, evaluation::ToYaml(*report));
   return kExitRecommended;

@@ -55,12 +55,12 @@ int RunRecognitionVerb(const RecognitionOptions& options, const std::string& pac
       perception::WritePcd(cloud, fmt::format("{}/table_{}.pcd", options.clouds, seed));
     };
   }
+  const std::string files = evaluation::ConfigurationHash(package_folder);
   const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   const auto report = evaluation::TryRecogniser(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
-  std::cout << evaluation::ReportText(*report)
-            << FilesLine(evaluation::ConfigurationHash(package_folder));
+  std::cout << evaluation::ReportText(*report) << FilesLine(files);
   if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
   return evaluation::MeetsGoals(*report) ? kExitRecommended : kExitAllFailed;
 }

@@ -42,12 +42,12 @@ int RunTorsoPosesVerb(const TorsoPosesOptions& options, const std::string& packa
   if (!options.area.empty()) order.area = options.area;
   order.looks = options.looks;
   order.seed = options.seed;
+  const std::string files = evaluation::ConfigurationHash(package_folder);
   const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   const auto report = evaluation::PlayTorsoPoses(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
-  std::cout << evaluation::ReportText(*report)
-            << FilesLine(evaluation::ConfigurationHash(package_folder));
+  std::cout << evaluation::ReportText(*report) << FilesLine(files);
   if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
   return kExitRecommended;
 }

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <system_error>
-#include <vector>
 
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
@@ -26,23 +24,6 @@ void MakeFolder(const std::string& path) {
     throw base::ConfigError(fmt::format(
         "{}: cannot be made: {}; name another folder with --results", path, error.message()));
   }
-}
-
-/// A file, or all files below a folder, in the order of their names.
-std::vector<std::string> FilesOf(const std::string& path) {
-  if (!fs::is_directory(path)) return {path};
-  std::vector<std::string> files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path)) {
-    if (entry.is_regular_file()) files.push_back(entry.path().string());
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-/// Catalogues rest on answers, and no answer on them.
-bool IsCatalogue(const fs::path& file) {
-  return file.parent_path().filename() == "config" &&
-         file.filename().string().rfind("reproduce", 0) == 0;
 }
 
 std::string NoteOf(const std::string& folder) { return folder + "/played.json"; }
@@ -71,13 +52,7 @@ std::string PlayStore::KeyOf(const evaluation::Play& play) {
 std::string PlayStore::HashOfInput(const std::string& input) {
   const auto known = inputs_.find(input);
   if (known != inputs_.end()) return known->second;
-  base::Hasher hasher;
-  for (const std::string& file : FilesOf(place_.package + "/" + input)) {
-    if (IsCatalogue(file)) continue;
-    hasher.Add(fs::path(file).lexically_relative(place_.package).string());
-    hasher.Add(evaluation::ContentThatCounts(file));
-  }
-  return inputs_[input] = base::HexOf(hasher.value());
+  return inputs_[input] = evaluation::InputHash(place_.package, input);
 }
 
 std::string PlayStore::FolderOf(const evaluation::Play& play) {

@@ -19,13 +19,11 @@ constexpr double kBoxGoal = 0.01, kBoxGoal95 = 0.025;  // [m]
 RecognitionGoal ShareGoal(const char* name, const std::vector<ThingVerdict>& things,
                           const ThingShare& share, double bound) {
   const std::vector<ClusterCounts> tables = CountsOf(things, share);
-  double hits = 0.0, all = 0.0;
-  for (const ClusterCounts& table : tables) {
-    hits += table.num_hits;
-    all += table.num_all;
+  if (SumOf(tables).num_all == 0) {
+    return {name, std::numeric_limits<double>::quiet_NaN(), bound, false};
   }
-  if (all == 0.0) return {name, std::numeric_limits<double>::quiet_NaN(), bound, false};
-  return {name, hits / all, bound, false, ClusteredShareInterval(tables)};
+  const Interval interval = ClusteredShareInterval(tables);
+  return {name, interval.estimate, bound, false, interval};
 }
 
 void AddBoxGoals(const perception::BoxSums& boxes, std::vector<RecognitionGoal>* goals) {
@@ -70,6 +68,15 @@ std::vector<ClusterCounts> CountsOf(const std::vector<ThingVerdict>& things,
     tables[thing.table].num_hits += share.is_hit(thing) ? 1 : 0;
   }
   return tables;
+}
+
+ClusterCounts SumOf(const std::vector<ClusterCounts>& tables) {
+  ClusterCounts sum;
+  for (const ClusterCounts& one : tables) {
+    sum.num_hits += one.num_hits;
+    sum.num_all += one.num_all;
+  }
+  return sum;
 }
 
 std::string ToString(GoalVerdict verdict) {

@@ -60,15 +60,6 @@ std::vector<Part> PartsOf(const std::vector<ThingVerdict>& things) {
   return parts;
 }
 
-ClusterCounts SumOf(const std::vector<ClusterCounts>& tables) {
-  ClusterCounts sum;
-  for (const ClusterCounts& one : tables) {
-    sum.num_hits += one.num_hits;
-    sum.num_all += one.num_all;
-  }
-  return sum;
-}
-
 std::string BareShare(const std::vector<ThingVerdict>& things, const ThingShare& share) {
   const ClusterCounts sum = SumOf(CountsOf(things, share));
   return NumberText(100.0 * sum.num_hits / sum.num_all, 1);

@@ -268,25 +268,12 @@ void PcdReader::ReadCompressed(PointCloud* cloud) {
   }
 }
 
-}  // namespace
-
-PointCloud ReadPcd(const std::string& path) { return PcdReader(path).Read(); }
-
-namespace {
-
-/// @param more_fields  of 4 bytes each, behind x, y and z; @param types  of these.
-std::string HeaderOf(const PointCloud& cloud, const std::string& more_fields,
-                     const std::string& types, int num_fields) {
-  const auto each = [num_fields](const char* what) {
-    std::string text;
-    for (int i = 0; i < num_fields; ++i) text += what;
-    return text;
-  };
+/// @param fields  lines FIELDS to COUNT.
+std::string HeaderOf(const PointCloud& cloud, const char* fields) {
   return fmt::format(
-      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z{}\nSIZE{}\n"
-      "TYPE F F F{}\nCOUNT{}\nWIDTH {}\nHEIGHT {}\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {}\n"
-      "DATA binary\n",
-      more_fields, each(" 4"), types, each(" 1"), cloud.width, cloud.height, cloud.points.size());
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n{}\nWIDTH {}\nHEIGHT {}\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {}\nDATA binary\n",
+      fields, cloud.width, cloud.height, cloud.points.size());
 }
 
 void AppendPoint(const Eigen::Vector3f& p, std::string* text) {
@@ -295,8 +282,10 @@ void AppendPoint(const Eigen::Vector3f& p, std::string* text) {
 
 }  // namespace
 
+PointCloud ReadPcd(const std::string& path) { return PcdReader(path).Read(); }
+
 void WritePcd(const PointCloud& cloud, const std::string& path) {
-  std::string text = HeaderOf(cloud, "", "", 3);
+  std::string text = HeaderOf(cloud, "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1");
   for (const Eigen::Vector3f& p : cloud.points) AppendPoint(p, &text);
   base::ReplaceTextFile(path, text);
 }
@@ -304,7 +293,8 @@ void WritePcd(const PointCloud& cloud, const std::string& path) {
 void WriteLabelledPcd(const PointCloud& cloud, const std::vector<int>& labels,
                       const std::string& path) {
   HIRES_CHECK(labels.size() == cloud.points.size(), "each point has a label");
-  std::string text = HeaderOf(cloud, " label", " U", 4);
+  std::string text =
+      HeaderOf(cloud, "FIELDS x y z label\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1");
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     AppendPoint(cloud.points[i], &text);
     const auto label = static_cast<std::uint32_t>(labels[i]);
