@@ -36,15 +36,17 @@ class Base:
     def __init__(self, rospy):
         from actionlib_msgs.msg import GoalID
         from geometry_msgs.msg import Twist
+        from hires.msg import BaseGuardState
         from move_base_msgs.msg import MoveBaseActionGoal
         from nav_msgs.msg import Odometry
         self.truth = None
-        self.commands, self.goals, self.cancels = [], [], []
+        self.commands, self.goals, self.cancels, self.guard_states = [], [], [], []
 
         def listen(topic, kind, callback):
             return rospy.Subscriber(topic, kind, callback, queue_size=1000, tcp_nodelay=True)
         listen('fake_pr2/truth', Odometry, self._note)
         listen('navigation/cmd_vel', Twist, self.commands.append)
+        listen('base_guard/state', BaseGuardState, lambda said: self.guard_states.append(said.state))
         self._asked = (listen('move_base/goal', MoveBaseActionGoal, self.goals.append),
                        listen('move_base/cancel', GoalID, self.cancels.append))
 
@@ -56,7 +58,7 @@ class Base:
 
     def forget(self):
         self.truth = None
-        for heard in (self.commands, self.goals, self.cancels):
+        for heard in (self.commands, self.goals, self.cancels, self.guard_states):
             heard.clear()
 
     def speed(self):
@@ -229,6 +231,7 @@ class MoveBaseModeTest(unittest.TestCase):
         self.system.await_values(FAST)
 
     def test_somebody_else_who_takes_move_base_moves_nothing(self):
+        from hires.msg import BaseGuardState
         from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
         goal = self.drive()
         other = self.actionlib.ActionClient('move_base', MoveBaseAction)
@@ -236,9 +239,14 @@ class MoveBaseModeTest(unittest.TestCase):
         self.assertTrue(other.wait_for_server(self.rospy.Duration(LIMIT)))
         theirs = ActionGoal(other, MoveBaseGoal())
         self.require(goal, self.codes.FAILED, '^interrupted$')
+        # Until the guard hears of that their velocities may pass; between two goals the base may stand.
+        self.wait_for(lambda: self.base.guard_states[-1] == BaseGuardState.STANDING,
+                      'the guard to let nothing pass')
         self.require_stand()
+        stood = self.base.truth.pose.pose.position
         theirs.result()  # the guard takes it back
         self.assertLess(self.base.speed(), 0.01)
+        self.assertLess(self.base.distance_to((stood.x, stood.y)), 0.01)
         self.system.await_values(FAST)
 
     def test_a_killed_middle_layer_leaves_a_robot_that_stands_and_a_planner_with_its_own_values(self):
