@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
+#include "hires/base/log.h"
 #include "hires/evaluation/timeline.h"
 #include "loop/support/task_setup.h"
 
@@ -135,6 +136,36 @@ TEST(TaskLoopTest, ADryRunsFirstDriveLastsAsLongAsThePlayedOne) {
   const double spread = 3.0 * duration.sd + 0.2;
   EXPECT_NEAR(*driven->finished - *driven->started, duration.mean, spread);
   EXPECT_LT(spread, 0.5 * duration.mean) << "or everything would fit";
+}
+
+/// What is logged while this lives.
+class Logged {
+ public:
+  Logged() {
+    base::SetLogSink([this](base::LogLevel, const std::string& line) { all_ += line + "\n"; });
+  }
+  ~Logged() { base::SetLogSink({}); }
+  Logged(const Logged&) = delete;
+  Logged& operator=(const Logged&) = delete;
+  const std::string& all() const { return all_; }
+
+ private:
+  std::string all_;
+};
+
+TEST(TaskLoopTest, WhatBeginsWhereTheRobotStandsIsImaginedAsSureAsItIsOfThat) {
+  LoopOrder order = Topple("");
+  order.dry_run = true;
+  const auto imagine = [&](const std::string& truth) {
+    order.truth = truth;
+    const Logged logged;
+    const LoopRun run = PlayTask(TheSetup(), order);
+    EXPECT_EQ(run.report.outcome, AchieveOutcome::kDryRun) << run.report.reason;
+    return logged.all();
+  };
+  EXPECT_THAT(imagine("same"), testing::Not(HasSubstr("start=here"))) << "nobody says how sure";
+  // Told its start with sd 0.03 m and 0.02 rad, it has seen one scan since.
+  EXPECT_THAT(imagine("filter"), testing::ContainsRegex("start=here spread_x=0\\.0[23]"));
 }
 
 TEST(TaskLoopTest, ATaskThatMakesNoSenseIsRefused) {
