@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "hires/base/error.h"
-#include "hires/base/log.h"
 #include "imagination/rollout_examples.h"
+#include "support/log_catcher.h"
 
 namespace hires::imagination::scheduler_test {
 namespace {
@@ -44,15 +44,6 @@ std::vector<T> Only(const std::vector<Command>& commands) {
   }
   return found;
 }
-
-/// Keeps the log quiet about the faults that a test makes on purpose.
-class QuietLog {
- public:
-  QuietLog() {
-    base::SetLogSink([](base::LogLevel, const std::string&) {});
-  }
-  ~QuietLog() { base::SetLogSink({}); }
-};
 
 /// Hands over all results of an assignment and its end; what the scheduler says to the end.
 std::vector<Command> Complete(const Assign& work, const Play& play, double now,
@@ -639,7 +630,7 @@ TEST(SchedulerTest, LateResultOfALostWorkerIsIgnored) {
 }
 
 TEST(SchedulerTest, RepeatedResultThatDiffersIsCountedAndNotTaken) {
-  const QuietLog quiet;
+  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
   Scheduler scheduler({}, 2, 0.0);
   const auto work = Only<Assign>(scheduler.Handle(WorkerJoined{1}, 0.0));
   const RolloutFinished finished{1, work[0].assignment, 0, 0, Success()};
@@ -666,7 +657,7 @@ TEST(SchedulerTest, EventsThatMakeNoSenseDoNoHarm) {
 }
 
 TEST(SchedulerTest, UnusableWorkerGetsNothingUntilItJoinsAnew) {
-  const QuietLog quiet;
+  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
   Scheduler scheduler({}, 2, 0.0);
   const auto work = Only<Assign>(scheduler.Handle(WorkerJoined{1}, 0.0));
   const auto after =
@@ -678,7 +669,7 @@ TEST(SchedulerTest, UnusableWorkerGetsNothingUntilItJoinsAnew) {
 }
 
 TEST(SchedulerTest, WorkerThatAnswersNonsenseIsSetAside) {
-  const QuietLog quiet;
+  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
   RolloutResult broken = Success();
   broken.duration = std::nan("");
   Scheduler scheduler({}, 2, 0.0);
@@ -694,7 +685,7 @@ TEST(SchedulerTest, WorkerThatAnswersNonsenseIsSetAside) {
 }
 
 TEST(SchedulerTest, WorkerThatOnlyFailsIsSetAsideAndCondemnsNoRollout) {
-  const QuietLog quiet;
+  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
   Scheduler scheduler({}, 2, 0.0);
   auto work = Only<Assign>(scheduler.Handle(WorkerJoined{1}, 0.0));
   int failures = 0;
@@ -719,7 +710,7 @@ TEST(SchedulerTest, MissingResultsAreAskedForAgain) {
 }
 
 TEST(SchedulerTest, RolloutThatKillsItsWorkersCountsAsFailedInTheEnd) {
-  const QuietLog quiet;
+  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
   SchedulerParams params;
   params.rollouts = 4;
   Scheduler scheduler(params, 1, 0.0);
@@ -888,7 +879,7 @@ SchedulerParams SomeParams(base::Rng* rng) {
 }
 
 TEST(SchedulerPropertyTest, AnyCourseGivesTheSequentialAnswerToTheBit) {
-  const QuietLog quiet;
+  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
   int num_stopped_early = 0;
   for (int seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -930,7 +921,7 @@ TEST(SchedulerPropertyTest, OneTwoAndEightWorkersAgree) {
 }
 
 TEST(SchedulerPropertyTest, AtAnyMomentTheRankingIsThatOfTheCommonPrefix) {
-  const QuietLog quiet;
+  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
   for (int seed = 0; seed < 100; ++seed) {
     base::Rng rng = base::Rng(44).Fork(seed);
     const auto behaviours = SomeBehaviours(&rng);

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
-#include "hires/base/log.h"
 #include "hires/evaluation/timeline.h"
 #include "loop/support/task_setup.h"
+#include "support/log_catcher.h"
 
 namespace hires::loop::task_loop_test {
 namespace {
@@ -18,7 +18,10 @@ using evaluation::ImaginedOutcome;
 using test_support::kConfig;
 using test_support::StandsOnTable1;
 using test_support::TheSetup;
+using testing::Contains;
+using testing::ContainsRegex;
 using testing::HasSubstr;
+using testing::Not;
 
 LoopOrder Topple(const std::string& imagination, std::uint64_t seed = 1) {
   LoopOrder order;
@@ -138,34 +141,19 @@ TEST(TaskLoopTest, ADryRunsFirstDriveLastsAsLongAsThePlayedOne) {
   EXPECT_LT(spread, 0.5 * duration.mean) << "or everything would fit";
 }
 
-/// What is logged while this lives.
-class Logged {
- public:
-  Logged() {
-    base::SetLogSink([this](base::LogLevel, const std::string& line) { all_ += line + "\n"; });
-  }
-  ~Logged() { base::SetLogSink({}); }
-  Logged(const Logged&) = delete;
-  Logged& operator=(const Logged&) = delete;
-  const std::string& all() const { return all_; }
-
- private:
-  std::string all_;
-};
-
 TEST(TaskLoopTest, WhatBeginsWhereTheRobotStandsIsImaginedAsSureAsItIsOfThat) {
   LoopOrder order = Topple("");
   order.dry_run = true;
   const auto imagine = [&](const std::string& truth) {
     order.truth = truth;
-    const Logged logged;
+    const test_support::LogCatcher log;
     const LoopRun run = PlayTask(TheSetup(), order);
     EXPECT_EQ(run.report.outcome, AchieveOutcome::kDryRun) << run.report.reason;
-    return logged.all();
+    return log.lines;
   };
-  EXPECT_THAT(imagine("same"), testing::Not(HasSubstr("start=here"))) << "nobody says how sure";
+  EXPECT_THAT(imagine("same"), Not(Contains(HasSubstr("start=here")))) << "nobody says how sure";
   // Told its start with sd 0.03 m and 0.02 rad, it has seen one scan since.
-  EXPECT_THAT(imagine("filter"), testing::ContainsRegex("start=here spread_x=0\\.0[23]"));
+  EXPECT_THAT(imagine("filter"), Contains(ContainsRegex("start=here spread_x=0\\.0[23]")));
 }
 
 TEST(TaskLoopTest, ATaskThatMakesNoSenseIsRefused) {

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 
 #include "hires/base/error.h"
-#include "hires/base/log.h"
 #include "hires/robot/robot_model.h"
+#include "support/log_catcher.h"
 
 namespace hires::robot::urdf_errors_test {
 namespace {
@@ -187,20 +187,8 @@ TEST(UrdfFile, MissingFileIsNamed) {
               ThrowsMessage<base::ConfigError>(HasSubstr("no/such.urdf: no such file")));
 }
 
-/// Collects what is logged while it lives.
-class LogCatcher {
- public:
-  LogCatcher() {
-    base::SetLogSink([this](base::LogLevel level, const std::string& line) {
-      if (level >= base::LogLevel::kWarn) lines.push_back(line);
-    });
-  }
-  ~LogCatcher() { base::SetLogSink({}); }
-  std::vector<std::string> lines;
-};
-
 TEST(UrdfWarnings, ImpossibleInertiaIsKeptAndTold) {
-  const LogCatcher log;
+  const hires::test_support::LogCatcher log(base::LogLevel::kWarn);
   const RobotModel model = ParseRobotModel(
       "<robot name=\"r\">" +
           Inertial("0.01", R"(ixx="0.001" ixy="0" ixz="0" iyy="0.001" iyz="0" izz="0.01")") +
@@ -213,7 +201,7 @@ TEST(UrdfWarnings, ImpossibleInertiaIsKeptAndTold) {
 
 TEST(UrdfWarnings, OurRobotsLoadWithoutAny) {
   for (const char* file : {"/urdf/pr2_tray.urdf", "/urdf/cart.urdf", "/urdf/car.urdf"}) {
-    const LogCatcher log;
+    const hires::test_support::LogCatcher log(base::LogLevel::kWarn);
     LoadRobotModel(std::string(HIRES_SOURCE_DIR) + file);
     EXPECT_THAT(log.lines, IsEmpty()) << file;
   }
