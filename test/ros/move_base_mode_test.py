@@ -46,7 +46,7 @@ class Base:
             return rospy.Subscriber(topic, kind, callback, queue_size=1000, tcp_nodelay=True)
         listen('fake_pr2/truth', Odometry, self._note)
         listen('navigation/cmd_vel', Twist, self.commands.append)
-        listen('base_guard/state', BaseGuardState, lambda said: self.guard_states.append(said.state))
+        listen('base_guard/state', BaseGuardState, self.guard_states.append)
         self._asked = (listen('move_base/goal', MoveBaseActionGoal, self.goals.append),
                        listen('move_base/cancel', GoalID, self.cancels.append))
 
@@ -60,6 +60,11 @@ class Base:
         self.truth = None
         for heard in (self.commands, self.goals, self.cancels, self.guard_states):
             heard.clear()
+
+    def guard_has_stopped(self):
+        """That it let velocities pass, and does not any more."""
+        has_passed = any(said.state == said.PASSING for said in self.guard_states)
+        return has_passed and self.guard_states[-1].state == self.guard_states[-1].STANDING
 
     def speed(self):
         return math.hypot(self.truth.twist.twist.linear.x, self.truth.twist.twist.linear.y)
@@ -231,7 +236,6 @@ class MoveBaseModeTest(unittest.TestCase):
         self.system.await_values(FAST)
 
     def test_somebody_else_who_takes_move_base_moves_nothing(self):
-        from hires.msg import BaseGuardState
         from move_base_msgs.msg import MoveBaseAction, MoveBaseGoal
         goal = self.drive()
         other = self.actionlib.ActionClient('move_base', MoveBaseAction)
@@ -240,8 +244,7 @@ class MoveBaseModeTest(unittest.TestCase):
         theirs = ActionGoal(other, MoveBaseGoal())
         self.require(goal, self.codes.FAILED, '^interrupted$')
         # Until the guard hears of that their velocities may pass; between two goals the base may stand.
-        self.wait_for(lambda: self.base.guard_states[-1] == BaseGuardState.STANDING,
-                      'the guard to let nothing pass')
+        self.wait_for(self.base.guard_has_stopped, 'the guard to let nothing pass')
         self.require_stand()
         stood = self.base.truth.pose.pose.position
         theirs.result()  # the guard takes it back
