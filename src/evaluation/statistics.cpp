@@ -188,6 +188,15 @@ Interval ShareInterval(int num_hits, int num_all) {
   return ExactShare(num_hits, num_all);
 }
 
+ClusterCounts SumOf(const std::vector<ClusterCounts>& clusters) {
+  ClusterCounts sum;
+  for (const ClusterCounts& one : clusters) {
+    sum.num_hits += one.num_hits;
+    sum.num_all += one.num_all;
+  }
+  return sum;
+}
+
 Interval ClusteredShareInterval(const std::vector<ClusterCounts>& clusters) {
   const ClusterSums sums = SumsOf(clusters);
   if (sums.cases == 0.0) return {0.0, 0.0, 1.0};

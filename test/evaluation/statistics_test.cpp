@@ -213,15 +213,6 @@ bool Covers(const Interval& interval, double share) {
   return interval.lower <= share && share <= interval.upper;
 }
 
-ClusterCounts SumOf(const std::vector<ClusterCounts>& clusters) {
-  ClusterCounts sum;
-  for (const ClusterCounts& one : clusters) {
-    sum.num_hits += one.num_hits;
-    sum.num_all += one.num_all;
-  }
-  return sum;
-}
-
 // 2000 draws know a coverage of 0.95 to three deviations of 0.005.
 TEST(ClusteredShareIntervalTest, CoversTheTruthAsOftenAsItSaysHoweverAlikeCasesOfAClusterAre) {
   constexpr int kDraws = 2000;

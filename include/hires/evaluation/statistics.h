@@ -44,6 +44,8 @@ struct ClusterCounts {
   int num_all{0};
 };
 
+ClusterCounts SumOf(const std::vector<ClusterCounts>& clusters);
+
 /// Share of hits among all that is in the clusters, where what is in one cluster may go alike: as
 /// ShareInterval for as many independent cases as say the same, found by the variance of the ratio
 /// between clusters and Student's t of their number [Korn, Graubard 1998, Surv. Methodol.

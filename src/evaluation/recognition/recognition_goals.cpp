@@ -70,15 +70,6 @@ std::vector<ClusterCounts> CountsOf(const std::vector<ThingVerdict>& things,
   return tables;
 }
 
-ClusterCounts SumOf(const std::vector<ClusterCounts>& tables) {
-  ClusterCounts sum;
-  for (const ClusterCounts& one : tables) {
-    sum.num_hits += one.num_hits;
-    sum.num_all += one.num_all;
-  }
-  return sum;
-}
-
 std::string ToString(GoalVerdict verdict) {
   switch (verdict) {
     case GoalVerdict::kMet:

@@ -20,7 +20,6 @@ extern const ThingShare kFound, kNamed, kNamedOfFound, kOwnLabel, kUnknown, kUnk
 /// By table.
 std::vector<ClusterCounts> CountsOf(const std::vector<perception::ThingVerdict>& things,
                                     const ThingShare& share);
-ClusterCounts SumOf(const std::vector<ClusterCounts>& tables);
 
 /// Undecided: the 95 % interval of a share holds the bound.
 enum class GoalVerdict { kMet, kMissed, kUndecided, kNoValue };
