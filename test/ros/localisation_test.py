@@ -282,7 +282,13 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
         nodes = [Node(self, '_seed:=3'), Node(self, '_seed:=3'), Node(self, '_seed:=4')]
         self.begin(*nodes)
         self.drive(40, *nodes)
-        first, second, other = ([(p.header.stamp.to_nsec(), p.pose) for p in node.poses] for node in nodes)
+
+        # The transforms were waited for; poses come by a topic of their own, and not of every scan.
+        def told():
+            poses = [[(p.header.stamp.to_nsec(), p.pose) for p in node.poses] for node in nodes]
+            return len(set(map(len, poses))) == 1 and poses
+        first, second, other = wait_until(told, lambda: 'as many poses of each: %s' %
+                                          [len(node.poses) for node in nodes])
         self.assertGreater(len(first), 10)
         self.assertEqual(first, second)
         self.assertEqual([stamp for stamp, _ in first], [stamp for stamp, _ in other])
