@@ -84,6 +84,11 @@ class Family:
         children = self.children()
         assert set(children) == {'rosmaster', 'relay_test_peer', 'relay'}, children
 
+    def wait_until_crossed(self, host, times=1):
+        """It is ready once anything of the worker has crossed, which its state need not be."""
+        self.wait_until_ready(host, times)
+        wait_until(self.mirrors, "the worker's state to cross")
+
     def wait_until_all_gone(self):
         wait_until(lambda: not processes_with(MARK, self.mark), 'all processes to end')
 
@@ -123,7 +128,7 @@ class WorkerHostTest(Family, unittest.TestCase):
             with self.subTest(killed=kind):
                 before = self.children()
                 os.kill(before[kind], signal.SIGKILL)
-                self.wait_until_ready(host, times)
+                self.wait_until_crossed(host, times)
                 after = self.children()
                 self.assertEqual(set(before.values()) & set(after.values()), set())
                 self.assertEqual(len(self.mirrors()), 1)
@@ -147,7 +152,7 @@ class WorkerHostTest(Family, unittest.TestCase):
 
     def test_what_a_killed_host_left_at_the_main_master_is_purged_by_the_next(self):
         host = self.start_host()
-        self.wait_until_ready(host)
+        self.wait_until_crossed(host)
         first = self.mirrors()
         host.kill()
         self.wait_until_all_gone()
@@ -238,7 +243,7 @@ class WorkerHostTest(Family, unittest.TestCase):
         self.wait_until_ready(host)
         self.main.kill()
         self.main.start()
-        self.wait_until_ready(host, 2)
+        self.wait_until_crossed(host, 2)
         self.assertIsNotNone(self.main.node_uri('/worker_host_1'))
         self.assertEqual(len(self.mirrors()), 1)
 
