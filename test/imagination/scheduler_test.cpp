@@ -45,6 +45,9 @@ std::vector<T> Only(const std::vector<Command>& commands) {
   return found;
 }
 
+/// Keeps the log quiet about the faults that a test makes on purpose.
+using QuietLog = hires::test_support::LogCatcher;
+
 /// Hands over all results of an assignment and its end; what the scheduler says to the end.
 std::vector<Command> Complete(const Assign& work, const Play& play, double now,
                               Scheduler* scheduler) {
@@ -630,7 +633,7 @@ TEST(SchedulerTest, LateResultOfALostWorkerIsIgnored) {
 }
 
 TEST(SchedulerTest, RepeatedResultThatDiffersIsCountedAndNotTaken) {
-  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
+  const QuietLog quiet;
   Scheduler scheduler({}, 2, 0.0);
   const auto work = Only<Assign>(scheduler.Handle(WorkerJoined{1}, 0.0));
   const RolloutFinished finished{1, work[0].assignment, 0, 0, Success()};
@@ -657,7 +660,7 @@ TEST(SchedulerTest, EventsThatMakeNoSenseDoNoHarm) {
 }
 
 TEST(SchedulerTest, UnusableWorkerGetsNothingUntilItJoinsAnew) {
-  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
+  const QuietLog quiet;
   Scheduler scheduler({}, 2, 0.0);
   const auto work = Only<Assign>(scheduler.Handle(WorkerJoined{1}, 0.0));
   const auto after =
@@ -669,7 +672,7 @@ TEST(SchedulerTest, UnusableWorkerGetsNothingUntilItJoinsAnew) {
 }
 
 TEST(SchedulerTest, WorkerThatAnswersNonsenseIsSetAside) {
-  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
+  const QuietLog quiet;
   RolloutResult broken = Success();
   broken.duration = std::nan("");
   Scheduler scheduler({}, 2, 0.0);
@@ -685,7 +688,7 @@ TEST(SchedulerTest, WorkerThatAnswersNonsenseIsSetAside) {
 }
 
 TEST(SchedulerTest, WorkerThatOnlyFailsIsSetAsideAndCondemnsNoRollout) {
-  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
+  const QuietLog quiet;
   Scheduler scheduler({}, 2, 0.0);
   auto work = Only<Assign>(scheduler.Handle(WorkerJoined{1}, 0.0));
   int failures = 0;
@@ -710,7 +713,7 @@ TEST(SchedulerTest, MissingResultsAreAskedForAgain) {
 }
 
 TEST(SchedulerTest, RolloutThatKillsItsWorkersCountsAsFailedInTheEnd) {
-  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
+  const QuietLog quiet;
   SchedulerParams params;
   params.rollouts = 4;
   Scheduler scheduler(params, 1, 0.0);
@@ -879,7 +882,7 @@ SchedulerParams SomeParams(base::Rng* rng) {
 }
 
 TEST(SchedulerPropertyTest, AnyCourseGivesTheSequentialAnswerToTheBit) {
-  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
+  const QuietLog quiet;
   int num_stopped_early = 0;
   for (int seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -921,7 +924,7 @@ TEST(SchedulerPropertyTest, OneTwoAndEightWorkersAgree) {
 }
 
 TEST(SchedulerPropertyTest, AtAnyMomentTheRankingIsThatOfTheCommonPrefix) {
-  const hires::test_support::LogCatcher quiet;  // the faults are made on purpose
+  const QuietLog quiet;
   for (int seed = 0; seed < 100; ++seed) {
     base::Rng rng = base::Rng(44).Fork(seed);
     const auto behaviours = SomeBehaviours(&rng);
