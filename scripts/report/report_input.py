@@ -68,7 +68,7 @@ class Answer:
 
 def read(path, verbs):
     """The answer in a file, in standard input for '-'.
-    @raise ReportError if it is none, newer than this program, or of none of these verbs."""
+    @raise ReportError if it is none, newer than this program, or of none of these verbs, which alone have pages."""
     name = 'standard input' if path == '-' else path
     try:
         if path == '-':
@@ -85,8 +85,8 @@ def read(path, verbs):
         raise ReportError('%s: is no JSON: %s; was it written to its end?' % (name, error)) from error
     answer = Answer(content, name)
     if not answer.has('/report'):
-        raise ReportError('%s: has no field /report, so it is no answer of `hires`, or one of a '
-                          'version before 0.2: ask again with --json' % name)
+        raise ReportError('%s: has no field /report%s; pages are made of what %s write with --json' %
+                          (name, _what_else(answer), _joined(verbs)))
     number = answer.at('/report/format', int)
     if not 1 <= number <= FORMAT:
         raise ReportError('%s: field /report/format is %d, this program reads 1 to %d; take the '
@@ -95,8 +95,20 @@ def read(path, verbs):
     verb = answer.at('/report/verb', str)
     if verb not in verbs:
         raise ReportError('%s: field /report/verb: there is no page of %r; there are those of %s' %
-                          (name, verb, ', '.join(sorted(verbs))))
+                          (name, verb, _joined(verbs)))
     return answer
+
+
+def _joined(verbs):
+    return ', '.join(sorted(verbs))
+
+
+def _what_else(answer):
+    """What a file may be that no page is made of."""
+    schema = answer.at('/schema', None) if answer.has('/schema') else None
+    if isinstance(schema, str):
+        return ': it is %s, numbers for machines that have no page' % schema
+    return ', so it is no answer of `hires` that has a page, or one of a version before 0.2'
 
 
 def folder_of(path):

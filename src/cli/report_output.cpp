@@ -203,8 +203,10 @@ void RunReportProgram(const std::string& package_folder, const std::vector<std::
 }
 
 void AddReportVerb(CLI::App* app, StoredReportOptions* options) {
-  CLI::App* verb =
-      app->add_subcommand("report", "make a page or a picture from what a verb wrote with --json");
+  CLI::App* verb = app->add_subcommand(
+      "report",
+      "make a page or a picture from what imagine, achieve, plan, experiment FILE, experiment "
+      "hypothesis, reproduce or doctor wrote with --json");
   verb->add_option("file", options->file, "that JSON file")->required();
   verb->add_option("--html", options->html,
                    "write one page to this file that shows everything and needs no network");

@@ -253,6 +253,16 @@ TEST_F(ReportOutputTest, WhatIsNoAnswerIsRefused) {
   EXPECT_THAT(RunHires({"report", path}).err, HasSubstr("nothing to make"));
 }
 
+TEST_F(ReportOutputTest, NumbersThatHaveNoPageAreCalledWhatTheyAre) {
+  const std::string path = folder_.Write("seen.json", R"({"schema": "hires/recognition"})");
+  const Ended ended = RunHires({"report", path, "--html", Path("page.html")});
+  EXPECT_EQ(ended.code, kExitBadInput);
+  EXPECT_THAT(ended.err,
+              AllOf(HasSubstr("seen.json: has no field /report: it is hires/recognition"),
+                    HasSubstr("pages are made of what achieve, doctor, ")));
+  EXPECT_FALSE(std::filesystem::exists(Path("page.html")));
+}
+
 TEST_F(ReportOutputTest, TheDoctorSaysForMachinesWhatItSaysForPeople) {
   Backends backends;
   backends.more_checks.push_back([] {

@@ -298,13 +298,21 @@ class ProgramTest(unittest.TestCase):
         for words in ('answer.json', *said):
             self.assertIn(words, str(caught.exception))
 
+    def test_numbers_without_a_page_are_called_what_they_are(self):
+        for schema in ('hires/recognition', 'hires/recognition_experiment', 'hires/detector_fit'):
+            self.require_refused(json.dumps({'schema': schema, 'version': 2, 'things': []}),
+                                 'has no field /report: it is %s, numbers for machines that have no page' % schema,
+                                 'pages are made of what achieve, doctor, experiment, experiment hypothesis, ')
+        self.require_refused('{"schema": 3}', 'is no answer of `hires` that has a page')
+
     def test_what_is_no_answer_is_refused(self):
         head = {'format': 1, 'verb': 'imagine', 'version': '0.2.0'}
         self.require_refused('', 'is no JSON')
         self.require_refused('{"report": {"format"', 'is no JSON', 'written to its end')
         self.require_refused('{"report": {"format": NaN}}', 'is no JSON', 'NaN')
         self.require_refused('[1, 2]', 'has no field /report')
-        self.require_refused('{"ranking": []}', 'has no field /report')
+        self.require_refused('{"ranking": []}', 'has no field /report', 'is no answer of `hires` that has a page',
+                             'before 0.2')
         self.require_refused(json.dumps({'report': {**head, 'format': 'one'}}),
                              'field /report/format: came "one", wanted a whole number')
         self.require_refused(json.dumps({'report': {**head, 'format': 2, 'version': '9.1'}}),
