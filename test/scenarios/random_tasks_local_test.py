@@ -3,7 +3,11 @@
 two beside each other. Usage: random_tasks_local_test.py HIRES plain|surprised|off FIRST LAST
 `surprised`: beside things that nobody told the robot of (support/surprises.py). `off`: the same, and the
 camera sits otherwise than the robot believes, by 5 mm and 5 mrad (test/data/loop). The two scenarios of config/scenarios
-are played, too. Prints a table."""
+are played, too. Prints a table.
+
+The ranges that ctest plays are seeds by which faults were found and mended, and how many may be lost was set to
+what was found on them then. So it fails where something became worse, and says nothing of how many other tasks
+are done: that is what fresh seeds are for (docs/notes_perception.md)."""
 
 import json
 import multiprocessing.pool
@@ -33,7 +37,8 @@ REACH = 0.02  # [m] beyond the edge of an area
 TOUCHES_A_TABLE = re.compile(r'base_link/\S+ touches table\d+$')
 MOST_TOUCHES = 0.1  # of all tasks
 # A hand that is 0.09 m open leaves 5 mm on either side of a mug, so where the camera is off by as much
-# some are knocked over: that is said, and allowed to few.
+# some are knocked over. A bound against getting worse, no accuracy: 2 of 12 were lost on 2026-11-26, on
+# seeds by which faults had been mended, and 4 of 7 of fresh ones.
 MOST_LOST = {'plain': 0.0, 'surprised': 0.0, 'off': 0.2}  # of all tasks
 ROW = '%-4s %-46s %-10s %8s  %-12s %-34s %s'
 
@@ -125,9 +130,11 @@ class RandomTasksLocalTest(unittest.TestCase):
                 print(played.row(), flush=True)
                 num_touches += played.has_forgiven_touch()
                 lost += [] if played.is_good() else [played.row()]
-        print('done: %d of %d; touched a table with the base: %d' %
-              (len(TASKS) - len(lost), len(TASKS), num_touches), flush=True)
-        self.assertLessEqual(len(lost), int(MOST_LOST[VARIANT] * len(TASKS)), '\n'.join(lost))
+        most = int(MOST_LOST[VARIANT] * len(TASKS))
+        print('done: %d of %d; touched a table with the base: %d; judged by at most %d lost, which is a bound against '
+              'getting worse on seeds by which faults were mended' %
+              (len(TASKS) - len(lost), len(TASKS), num_touches, most), flush=True)
+        self.assertLessEqual(len(lost), most, '\n'.join(lost))
         self.assertLessEqual(num_touches, max(1, int(MOST_TOUCHES * len(TASKS))))
 
     def test_each_task_has_its_surprises(self):
