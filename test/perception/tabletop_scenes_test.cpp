@@ -1,5 +1,3 @@
-#include "perception/support/tabletop_scenes.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -77,32 +75,6 @@ TEST(ShareOfTableNearTest, CountsMeasuredPointsOfTheTableAlone) {
   EXPECT_DOUBLE_EQ(test_support::ShareOfTableNear(level, 0.02, cloud, {0, 0, 0, 20, 30, 1}), 0.0);
 }
 
-/// Kinds of scenes, of the Object Segmentation Database.
-class TabletopScenesTest : public testing::TestWithParam<int> {};
-
-// Weighted overlap of PCL 1.13 on the same scenes (benchmark/perception/compare_with_pcl, which has
-// its parameters): Euclidean clusters 0.978, 0.511, 0.808, 0.840; LCCP 0.985, 0.962, 0.883, 0.835.
-// The bound is the better of the two. SegmentationParams were chosen on these scenes, too.
-TEST_P(TabletopScenesTest, ThingsAreToldApartBetterThanByPeers) {
-  const std::string folder = std::string(HIRES_SHARED_DATA) + "/tabletop/learn";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
-  const auto& kind = test_support::kTabletopKinds[GetParam()];
-  constexpr double kBound[] = {0.985, 0.962, 0.883, 0.840};
-  SegmentationScore all;
-  for (int index = kind.first; index <= kind.last; ++index) {
-    const auto scene = test_support::ReadTabletopScene(folder + "/learn" + std::to_string(index));
-    const Segmentation out = SegmentTabletop(scene.cloud, std::nullopt, {}, base::Rng(1));
-    ASSERT_TRUE(out.table.has_value()) << index;
-    EXPECT_GE(test_support::ShareOfTableNear(*out.table, test_support::kTableTolerance, scene.cloud,
-                                             scene.truth),
-              test_support::kMinTableShare)
-        << index;
-    all.Add(ScoreOf(scene.truth, out.labels));
-  }
-  RecordProperty("weighted_overlap", std::to_string(all.WeightedOverlap()));
-  EXPECT_GT(all.WeightedOverlap(), kBound[GetParam()]) << kind.name;
-}
-
 /// [m] how high a thing reaches above its table, and how wide it is from above.
 struct Extent {
   double height{0.0}, width{0.0};
@@ -140,8 +112,6 @@ TEST(StereoSceneTest, TheTableInAPr2sStereoCloudIsFoundWithTheMugOnIt) {
   }
   EXPECT_EQ(num_mugs, 1);
 }
-
-INSTANTIATE_TEST_SUITE_P(Kinds, TabletopScenesTest, testing::Range(0, 4));
 
 }  // namespace
 }  // namespace hires::perception::tabletop_scenes_test
