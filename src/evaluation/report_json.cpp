@@ -66,6 +66,12 @@ bool WriteOpened(const std::string& text, const fs::path& path) {
   return file.good();
 }
 
+/// @pre it is no folder.
+std::string WhyNoFolder(const fs::path& folder) {
+  return fs::exists(folder) ? fmt::format("'{}' is a file; wanted a folder", folder.string())
+                            : fmt::format("folder '{}' does not exist; make it", folder.string());
+}
+
 }  // namespace
 
 ordered_json ToJson(const base::Failure& failure) {
@@ -133,8 +139,12 @@ nlohmann::ordered_json ToJson(const imagination::Report& report,
 void RequireFolderOf(const std::string& path) {
   const fs::path folder = fs::absolute(path).parent_path();
   if (fs::is_directory(folder)) return;
-  throw base::ConfigError(fmt::format("{}: cannot be written, folder '{}' does not exist; make it",
-                                      path, folder.string()));
+  throw base::ConfigError(fmt::format("{}: cannot be written, {}", path, WhyNoFolder(folder)));
+}
+
+void RequireFolder(const std::string& option, const std::string& folder) {
+  if (fs::is_directory(folder)) return;
+  throw base::ConfigError(fmt::format("{}: {}", option, WhyNoFolder(folder)));
 }
 
 void WriteJson(const nlohmann::ordered_json& json, const std::string& path) {

@@ -51,6 +51,14 @@ TEST(ExperimentCommandTest, SeedsOfAllVerbsAreWholeNumbers) {
   }
 }
 
+TEST(ExperimentCommandTest, CloudsAreWrittenToAFolderAlone) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string file = folder.Write("clouds.txt", "");
+  const auto ended = RunHires({"experiment", "recognition", "--tables", "1", "--clouds", file});
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.err, testing::HasSubstr("--clouds: '" + file + "' is a file; wanted a folder"));
+}
+
 TEST(ExperimentCommandTest, WritesCsvAndJson) {
   const std::string csv = testing::TempDir() + "legs.csv", json = testing::TempDir() + "legs.json";
   EXPECT_EQ(ExitCode("", {"--csv", csv, "--json", json, "--seed", "5"}), 0);

@@ -18,8 +18,8 @@ namespace {
 
 using hires::test_support::ConfigErrorOf;
 using hires::test_support::TemporaryFolder;
-using imagination::ImaginationOutcome;
 using hires::test_support::TwoAlternatives;
+using imagination::ImaginationOutcome;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
@@ -101,6 +101,18 @@ TEST(ReportJsonTest, SaysWhereItCannotWrite) {
   EXPECT_THAT(ConfigErrorOf([&] { WriteJson(ToJson(TwoAlternatives()), path); }),
               AllOf(HasSubstr(path), HasSubstr("cannot be written"), HasSubstr("folder")));
   EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+TEST(ReportJsonTest, AFileWhereAFolderIsWantedIsCalledAFile) {
+  const TemporaryFolder folder;
+  const std::string file = folder.Write("file", ""), gone = (folder.path() / "gone").string();
+  EXPECT_NO_THROW(RequireFolder("--clouds", folder.path().string()));
+  EXPECT_EQ(ConfigErrorOf([&] { RequireFolder("--clouds", file); }),
+            "--clouds: '" + file + "' is a file; wanted a folder");
+  EXPECT_EQ(ConfigErrorOf([&] { RequireFolder("--clouds", gone); }),
+            "--clouds: folder '" + gone + "' does not exist; make it");
+  EXPECT_EQ(ConfigErrorOf([&] { RequireFolderOf(file + "/seen.json"); }),
+            file + "/seen.json: cannot be written, '" + file + "' is a file; wanted a folder");
 }
 
 TEST(ReportJsonTest, TheNumberOfThreadsShowsNowhereButInTheWallsTime) {

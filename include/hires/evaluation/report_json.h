@@ -30,6 +30,11 @@ nlohmann::ordered_json FailuresToJson(const std::map<base::Failure, int>& failur
 /// @throws base::ConfigError if the folder in which `path` lies does not exist.
 void RequireFolderOf(const std::string& path);
 
+/// Likewise, for those who write many files.
+/// @param option  under which the folder was named: "--clouds".
+/// @throws base::ConfigError if it does not exist, or is a file.
+void RequireFolder(const std::string& option, const std::string& folder);
+
 /// All or nothing: a file of that name is replaced only when the new one is whole.
 /// @throws base::ConfigError if the file cannot be written.
 void WriteJson(const nlohmann::ordered_json& json, const std::string& path);

@@ -41,7 +41,7 @@ void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* o) {
 int RunRecognitionVerb(const RecognitionOptions& options, const std::string& package_folder,
                        const std::function<bool()>& cancelled) {
   if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
-  if (!options.clouds.empty()) evaluation::RequireFolderOf(options.clouds + "/table.pcd");
+  if (!options.clouds.empty()) evaluation::RequireFolder("--clouds", options.clouds);
   evaluation::RecognitionOrder order;
   order.tables = options.tables;
   order.seed = options.seed;
