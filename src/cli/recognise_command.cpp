@@ -145,6 +145,15 @@ void CheckOutputs(const RecogniseOptions& options) {
   }
 }
 
+/// Other than one in which nothing was measured: there was nothing to look at.
+void CheckHasPoints(const perception::PointCloud& cloud, const std::string& path) {
+  if (!cloud.points.empty()) return;
+  throw base::ConfigError(fmt::format(
+      "{}: is an empty cloud, of no points; wanted one with points: record it again while the "
+      "camera sends clouds",
+      path));
+}
+
 /// No depth camera measures as far; a cloud in millimetres says so by that.
 void CheckUnit(const perception::PointCloud& cloud, const std::string& path) {
   constexpr float kFarthest = 100.0F;  // [m]
@@ -186,6 +195,7 @@ int RunRecogniseVerb(const RecogniseOptions& options, const std::string& package
       options.objects);
   if (options.is_segmenting) config.catalogue.clear();
   perception::PointCloud cloud = perception::ReadPcd(options.cloud);
+  CheckHasPoints(cloud, options.cloud);
   const std::string why = perception::TakeOnlyAhead(&cloud);
   if (!why.empty()) throw base::ConfigError(options.cloud + ": " + why);
   CheckUnit(cloud, options.cloud);

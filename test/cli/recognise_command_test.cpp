@@ -152,7 +152,17 @@ TEST_F(RecogniseCommandTest, NothingIsInvented) {
   const Ended nothing = Recognise({Write(blind)});
   EXPECT_EQ(nothing.code, kExitUndecided);
   EXPECT_THAT(nothing.out, HasSubstr("no point of the cloud was measured: no table is seen"));
-  EXPECT_EQ(Recognise({Write({})}).code, kExitUndecided) << "no points at all";
+}
+
+TEST_F(RecogniseCommandTest, ACloudWithoutPointsIsCalledEmpty) {
+  const Ended empty = Recognise({Write({}), "--json", Path("seen.json")});
+  EXPECT_EQ(empty.code, kExitBadInput) << "there was nothing to look at";
+  EXPECT_THAT(empty.err, HasSubstr("cloud.pcd: is an empty cloud, of no points; wanted one with "
+                                   "points: record it again while the camera sends clouds"));
+  EXPECT_FALSE(std::filesystem::exists(Path("seen.json")));
+  const Ended nothing = Recognise({folder_.Write("none.pcd", "")});
+  EXPECT_EQ(nothing.code, kExitBadInput);
+  EXPECT_THAT(nothing.err, HasSubstr("none.pcd: is an empty file; wanted a cloud"));
 }
 
 TEST_F(RecogniseCommandTest, BadInputIsRefused) {

@@ -99,7 +99,7 @@ TEST_F(PcdFileTest, DamageIsSaidWithItsPlace) {
     return text.replace(text.find(from), from.size(), to);
   };
   const std::vector<Damage> damages{
-      {"", "no line DATA"},
+      {"", "is an empty file"},
       {"solid brick\n", "line 1: 'solid' begins no line"},
       {head, "no line DATA"},
       {head + "DATA zipped\n", "line 11: DATA is 'zipped'"},

@@ -92,6 +92,8 @@ PointCloud PcdReader::Read() {
 
 void PcdReader::ReadHeader() {
   std::string text;
+  if (in_.peek() == std::istringstream::traits_type::eof())
+    Fail("is an empty file; wanted a cloud (.pcd): copy or record it again");
   while (header_.data.empty()) {
     if (++line_ > kMostHeaderLines || !std::getline(in_, text))
       Fail("has no line DATA; wanted a header of the Point Cloud Data format (.pcd)");
