@@ -12,6 +12,7 @@
 #include "hires/base/files/own_input.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/report_output.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/perception/pcd_file.h"
@@ -213,6 +214,7 @@ int RunRecogniseVerb(const RecogniseOptions& options, const std::string& package
     evaluation::WriteJson(ToJson(seen, options), options.json);
   if (!options.labels.empty())
     perception::WriteLabelledPcd(cloud, seen.segmentation.labels, options.labels);
+  if (options.json != "-") SaySaved({options.json, options.labels});  // else it would be no JSON
   return seen.segmentation.table ? kExitRecommended : kExitUndecided;
 }
 

@@ -128,13 +128,6 @@ void MakePictures(const std::string& file, const std::string& html, const std::s
   if (arguments.size() > 1) RunReportProgram(package_folder, arguments, input);
 }
 
-/// What went to a device, standard output say, needs no word.
-void SaySaved(const std::vector<std::string>& paths) {
-  for (const std::string& path : paths) {
-    if (fs::is_regular_file(path)) std::cout << "saved to " << path << '\n';
-  }
-}
-
 }  // namespace
 
 ReportInput::ReportInput(std::string what, std::string path)
@@ -185,6 +178,12 @@ void WriteReport(const ReportOptions& options, const ReportOrigin& origin,
   MakePictures(is_stored ? options.json : "-", options.html, options.png, options.package_folder,
                text);
   SaySaved({options.json, options.html, options.png});
+}
+
+void SaySaved(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) {
+    if (fs::is_regular_file(path)) std::cout << "saved to " << path << '\n';
+  }
 }
 
 void RunReportProgram(const std::string& package_folder, const std::vector<std::string>& arguments,

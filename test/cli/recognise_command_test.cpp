@@ -23,6 +23,7 @@ namespace {
 using hires::test_support::Ended;
 using hires::test_support::RunHires;
 using nlohmann::json;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -94,6 +95,22 @@ TEST_F(RecogniseCommandTest, WhatStandsOnTheTableIsNamed) {
   EXPECT_EQ(cup["category"], "Mug");
   EXPECT_EQ(cup["alternatives"][0]["kind"], "coffee_cup_hot");
   EXPECT_NEAR(cup["size"][2].get<double>(), 0.1, 1e-6);
+}
+
+TEST_F(RecogniseCommandTest, ItSaysWhereItSaved) {
+  const std::string cloud = Write(Breakfast(false));
+  const auto out = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{cloud, "--labels", Path("labels.pcd")};
+    words.insert(words.end(), more.begin(), more.end());
+    return Recognise(words).out;
+  };
+  EXPECT_THAT(
+      out({"--json", Path("seen.json")}),
+      EndsWith("saved to " + Path("seen.json") + "\nsaved to " + Path("labels.pcd") + "\n"));
+  EXPECT_THAT(out({"--json", "/dev/null"}), EndsWith("\nsaved to " + Path("labels.pcd") + "\n"))
+      << "a device needs no word";
+  EXPECT_THAT(out({"--json", "-"}), Not(HasSubstr("saved to"))) << "JSON and nothing else";
+  EXPECT_THAT(Recognise({cloud}).out, Not(HasSubstr("saved to")));
 }
 
 TEST_F(RecogniseCommandTest, LabelsTellThingsApart) {

@@ -60,6 +60,11 @@ struct ReportOrigin {
 void WriteReport(const ReportOptions& options, const ReportOrigin& origin,
                  const nlohmann::ordered_json& answer);
 
+/// "saved to FILE", a line for each, on standard output. What went to a device, standard output
+/// say, needs no word.
+/// @param paths  empty ones: nothing was wanted.
+void SaySaved(const std::vector<std::string>& paths);
+
 /// Runs scripts/report with these arguments.
 /// @param input  for its standard input.
 /// @throws base::ConfigError with what it said, unless it ended well.

@@ -11,6 +11,7 @@
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/report_output.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/recognition/detector_fit.h"
@@ -74,6 +75,7 @@ int RunDetectorFitVerb(const DetectorFitOptions& options, const std::string& pac
   std::cout << evaluation::ReportText(*report) << FilesLine(files);
   if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
   if (!options.output.empty()) base::ReplaceTextFile(options.output, evaluation::ToYaml(*report));
+  SaySaved({options.json, options.output});
   return kExitRecommended;
 }
 

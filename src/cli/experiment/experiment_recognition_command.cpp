@@ -8,6 +8,7 @@
 
 #include "cli/experiment_command.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/report_output.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/recognition/recognition_experiment.h"
@@ -62,6 +63,7 @@ int RunRecognitionVerb(const RecognitionOptions& options, const std::string& pac
   if (!report) return kExitCancelled;
   std::cout << evaluation::ReportText(*report) << FilesLine(files);
   if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
+  SaySaved({options.json});
   return evaluation::MeetsGoals(*report) ? kExitRecommended : kExitAllFailed;
 }
 
