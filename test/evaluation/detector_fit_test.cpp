@@ -19,6 +19,7 @@ using perception::DetectorErrors;
 using perception::ThingInView;
 using perception::ThingVerdict;
 using testing::HasSubstr;
+using testing::Not;
 
 const std::string kSource = HIRES_SOURCE_DIR;
 
@@ -154,6 +155,15 @@ TEST(DetectorFitTest, WhatNoLookTellsIsNotGivenAsANumber) {
               HasSubstr("far: 3 looks, found 0.0 % (fit 0.0), named - % (fit -), median - mm (fit "
                         "-)"));
   EXPECT_TRUE(ToJson(report).at("checks").at(0).at("median_error").is_null());
+}
+
+TEST(DetectorFitTest, RowsThatTheTableLacksAreNamedBelowIt) {
+  DetectorFitReport report;
+  EXPECT_THAT(ReportText(report), Not(HasSubstr("left out")));
+  report.empty_parts = {"nearer than 1.5 m", "2.5 m and farther"};
+  EXPECT_THAT(ReportText(report),
+              HasSubstr("left out, as no look was so: nearer than 1.5 m, 2.5 m and farther\n"));
+  EXPECT_THAT(ReportText(report), HasSubstr("base stands up to 2.6 m before the table's middle"));
 }
 
 DetectorFitOrder SmallOrder() {

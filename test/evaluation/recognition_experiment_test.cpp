@@ -108,6 +108,26 @@ TEST(RecognitionExperimentTest, WhereNothingStandsNoGoalHasAValueAndNoneIsMet) {
   EXPECT_THAT(ReportText(empty), HasSubstr("goal: found at least 98 %: -, no value"));
 }
 
+TEST(RecognitionExperimentTest, RowsThatTheTableLacksAreNamedBelowIt) {
+  RecognitionOrder order = SmallOrder();
+  order.tables = 1;
+  const auto report = TryRecogniser(order, CrewOf(1));
+  ASSERT_TRUE(report && !report->score.things().empty());
+  const std::string text = ReportText(*report);
+  const std::size_t at = text.find("left out, as no thing was so: ");
+  ASSERT_NE(at, std::string::npos) << "one table is seen with one posture of the torso";
+  const std::string left_out = text.substr(at, text.find('\n', at) - at);
+  std::vector<std::string> shown;
+  const auto json = ToJson(*report);
+  for (const auto& part : json.at("parts")) shown.push_back(part.at("part"));
+  for (const char* torso : {"torso down", "torso half way", "torso up"}) {
+    const bool is_shown = std::count(shown.begin(), shown.end(), torso) > 0;
+    EXPECT_NE(is_shown, left_out.find(torso) != std::string::npos) << torso << "; " << left_out;
+  }
+  EXPECT_THAT(text, HasSubstr("distances are from the camera to the thing, the robot's base stands "
+                              "up to 1.4 m before the table's middle"));
+}
+
 TEST(RecognitionGoalTest, AValueAtItsBoundMeetsItAndOneBeyondDoesNot) {
   constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
   const auto verdict = [](double value, double bound, bool is_length) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluation/known_number.h"
+#include "hires/base/text.h"
 #include "hires/evaluation/recognition/detector_fit.h"
 #include "hires/evaluation/report_table.h"
 
@@ -72,7 +73,14 @@ std::string ReportText(const DetectorFitReport& report) {
       report.errors.direction.y(), report.errors.direction.z());
   text += fmt::format("confidence in wrong names {:.2f}, in what it is {:.2f}\n\n",
                       report.errors.confidence, report.errors.doubt);
-  text += fmt::format("{} other tables:\n\n", report.held_out) + ChecksText(report.checks) + "\n";
+  text += fmt::format("{} other tables:\n\n", report.held_out) + ChecksText(report.checks);
+  if (!report.empty_parts.empty())
+    text += "left out, as no look was so: " + base::Join(report.empty_parts, ", ") + "\n";
+  text += fmt::format(
+      "distances are from the camera to the thing, the robot's base stands up to {:.1f} m before "
+      "the "
+      "table's middle\n\n",
+      FitVariety().farthest);
   return text + GainText(report) + "\n";
 }
 

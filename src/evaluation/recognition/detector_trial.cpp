@@ -77,6 +77,7 @@ FitCheck CheckOf(const std::string& part, const std::vector<TwoLooks>& things,
   return check;
 }
 
+/// Of all parts, those at which nobody looked, too.
 std::vector<FitCheck> ChecksOf(const std::vector<TwoLooks>& things, const DetectorErrors& errors) {
   std::vector<FitCheck> checks;
   const auto add = [&](const char* part, const LookTest& is_in) {
@@ -91,9 +92,6 @@ std::vector<FitCheck> ChecksOf(const std::vector<TwoLooks>& things, const Detect
   add("next thing within 0.02 m", [](Look look) { return look.view.gap < 0.02; });
   add("lower than 0.03 m", [](Look look) { return look.view.box.z() < 0.03; });
   add("fewer than 400 points", [](Look look) { return look.num_points < 400; });
-  checks.erase(std::remove_if(checks.begin(), checks.end(),
-                              [](const FitCheck& one) { return one.num_looks == 0; }),
-               checks.end());
   return checks;
 }
 
@@ -142,7 +140,12 @@ std::optional<DetectorFitReport> FitDetector(const DetectorFitOrder& order, cons
       report.num_merged += look->is_merged ? 1 : 0;
     }
   }
-  report.checks = ChecksOf(others, report.errors);
+  for (const FitCheck& check : ChecksOf(others, report.errors)) {
+    if (check.num_looks > 0)
+      report.checks.push_back(check);
+    else
+      report.empty_parts.push_back(check.part);
+  }
   report.gain_found = GainOf(FoundCases(others), FoundCases(all), report.errors.found);
   report.gain_named = GainOf(NamedCases(others), NamedCases(all), report.errors.named);
   return report;

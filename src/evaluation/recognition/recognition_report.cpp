@@ -8,8 +8,10 @@
 #include "evaluation/known_number.h"
 #include "evaluation/recognition/recognition_boxes.h"
 #include "evaluation/recognition/recognition_goals.h"
+#include "hires/base/text.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/geometry/angles.h"
+#include "hires/perception/random_tables.h"
 
 namespace hires::evaluation {
 namespace {
@@ -34,7 +36,8 @@ Part PartOf(const std::vector<ThingVerdict>& things, const std::string& name,
   return part;
 }
 
-std::vector<Part> PartsOf(const std::vector<ThingVerdict>& things) {
+/// Those without things, too.
+std::vector<Part> AllPartsOf(const std::vector<ThingVerdict>& things) {
   std::vector<Part> parts{{"all", things}};
   for (std::size_t band = 0; band + 1 < std::size(kBands); ++band) {
     const double from = kBands[band], to = kBands[band + 1];
@@ -54,10 +57,23 @@ std::vector<Part> PartsOf(const std::vector<ThingVerdict>& things) {
                          [](const ThingVerdict& thing) { return thing.view.part.share < 0.7; }));
   parts.push_back(PartOf(things, "fewer than 1000 points",
                          [](const ThingVerdict& thing) { return thing.num_points < 1000; }));
+  return parts;
+}
+
+std::vector<Part> PartsOf(const std::vector<ThingVerdict>& things) {
+  std::vector<Part> parts = AllPartsOf(things);
   parts.erase(std::remove_if(parts.begin(), parts.end(),
                              [](const Part& part) { return part.things.empty(); }),
               parts.end());
   return parts;
+}
+
+/// Which rows the table lacks, and why; empty where it lacks none.
+std::string LeftOutRowsText(const std::vector<ThingVerdict>& things) {
+  std::vector<std::string> names;
+  for (const Part& part : AllPartsOf(things))
+    if (part.things.empty()) names.push_back(part.name);
+  return names.empty() ? "" : "left out, as no thing was so: " + base::Join(names, ", ") + "\n";
 }
 
 std::string BareShare(const std::vector<ThingVerdict>& things, const ThingShare& share) {
@@ -160,8 +176,11 @@ std::string ReportText(const RecognitionReport& report) {
   std::string text = fmt::format(
       "{} random tables from seed {} on, simulated; 95 % intervals in brackets, by table [Korn, "
       "Graubard 1998]; shares are of all things but where they say of found ones; found: by what "
-      "has at least half of its points, and of whose points at least half are its own\n\n{}\n",
-      report.tables, report.seed, FormatTable(rows));
+      "has at least half of its points, and of whose points at least half are its own; distances "
+      "are from the camera to the thing, the robot's base stands up to {:.1f} m before the table's "
+      "middle\n\n{}{}\n",
+      report.tables, report.seed, perception::TableVariety().farthest, FormatTable(rows),
+      LeftOutRowsText(things));
   text += BoxesText(report) + "\n";
   for (const RecognitionGoal& goal : GoalsOf(report)) text += GoalText(goal);
   text += LeftOutText(report.left_out);

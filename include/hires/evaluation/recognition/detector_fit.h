@@ -49,6 +49,7 @@ struct DetectorFitReport {
   int num_found{0}, num_named{0}, num_merged{0};
   perception::DetectorErrors errors;
   std::vector<FitCheck> checks;
+  std::vector<std::string> empty_parts;  ///< of the things, at which no look was: without a check
   /// Per look of the held-out tables: log likelihood of the fit less that of constant shares.
   double gain_found{0.0}, gain_named{0.0};
 };
