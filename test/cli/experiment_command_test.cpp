@@ -59,6 +59,20 @@ TEST(ExperimentCommandTest, CloudsAreWrittenToAFolderAlone) {
   EXPECT_THAT(ended.err, testing::HasSubstr("--clouds: '" + file + "' is a file; wanted a folder"));
 }
 
+TEST(ExperimentCommandTest, ASingleTableDecidesNoGoalAndThatIsSaid) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string json = (folder.path() / "numbers.json").string();
+  const auto ended = RunHires({"experiment", "recognition", "--tables", "1", "--quiet", "--clouds",
+                               folder.path().string(), "--json", json});
+  EXPECT_EQ(ended.code, 2) << ended.err;
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "table_2000.pcd"));
+  EXPECT_THAT(ended.out, testing::HasSubstr("saved to " + json +
+                                            "\nexit code 2, as not all goals are met:\n"));
+  EXPECT_THAT(ended.out, testing::HasSubstr("undecided, as the 95 % interval holds the goal: "));
+  const auto help = RunHires({"experiment", "recognition", "--help"});
+  EXPECT_THAT(help.out, testing::HasSubstr("2 one is missed, undecided or without a value"));
+}
+
 TEST(ExperimentCommandTest, WritesCsvAndJson) {
   const std::string csv = testing::TempDir() + "legs.csv", json = testing::TempDir() + "legs.json";
   EXPECT_EQ(ExitCode("", {"--csv", csv, "--json", json, "--seed", "5"}), 0);

@@ -152,6 +152,37 @@ TEST(RecognitionGoalTest, AShareWhoseIntervalHoldsTheBoundDecidesNothing) {
   EXPECT_EQ(verdict(0.97, 0.96, 0.979), "missed");
 }
 
+// Without a miss each of equal tables is one case: 0.025^(1/n) >= bound for n >= log 0.025 / log
+// bound. Unequal ones are (sum of m)^2 / sum of m^2 cases: 144 / 66 of the three of 4, 1 and 7.
+TEST(RecognitionGoalTest, SoManyTablesDecideAsTheClosedFormSays) {
+  const std::vector<ClusterCounts> flawless{{4, 4}, {4, 4}, {4, 4}};
+  EXPECT_EQ(TablesToDecide(flawless, 3, 0.98), 183);
+  EXPECT_EQ(TablesToDecide(flawless, 3, 0.95), 72);
+  EXPECT_EQ(TablesToDecide(flawless, 6, 0.95), 144) << "every other one has no case";
+  EXPECT_EQ(TablesToDecide({{4, 4}, {1, 1}, {7, 7}}, 3, 0.98), 252);
+  EXPECT_EQ(TablesToDecide({{0, 5}, {0, 5}}, 2, 0.98), 2) << "a miss is certain";
+  EXPECT_EQ(TablesToDecide({{1, 2}}, 1, 0.5), std::nullopt) << "the bound itself";
+}
+
+TEST(RecognitionGoalTest, ItSaysWhyGoalsAreNotMet) {
+  RecognitionReport report{3, 1, perception::RecognitionScore({})};
+  EXPECT_THAT(WhyGoalsAreNotMet(report),
+              testing::StartsWith("without a value, as no thing on these tables tells it: found; "
+                                  "named; unknown; median error; box of unknown, middle, median;"));
+  RecognitionOrder order = SmallOrder();
+  order.tables = 3;
+  const auto few = TryRecogniser(order, CrewOf(2));
+  ASSERT_TRUE(few);
+  EXPECT_THAT(WhyGoalsAreNotMet(*few), HasSubstr("undecided, as the 95 % interval holds the goal: "
+                                                 "found; named"));
+  EXPECT_THAT(WhyGoalsAreNotMet(*few),
+              HasSubstr("about 258 tables (--tables) would decide, if all went as these 3 did\n"));
+  order.recogniser.params.min_quality = 1.0;
+  const auto none = TryRecogniser(order, CrewOf(2));
+  ASSERT_TRUE(none);
+  EXPECT_THAT(WhyGoalsAreNotMet(*none), HasSubstr("missed: named"));
+}
+
 TEST(RecognitionGoalTest, ThingsAreCountedByTheirTable) {
   const auto thing = [](int table, const char* kind, const char* called) {
     ThingVerdict verdict;

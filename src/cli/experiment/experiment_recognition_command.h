@@ -22,8 +22,9 @@ struct RecognitionOptions {
 /// Adds `recognition` below the verb `experiment`.  @pre `options` outlives `experiment`.
 void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* options);
 
-/// @return kExitRecommended when all goals are met, kExitAllFailed when one is not,
-/// kExitCancelled.  @throws base::ConfigError for bad input, before anything is played.
+/// @return kExitRecommended when all goals are met, kExitAllFailed when one is missed or is not
+/// told by so few tables, which a line below says, kExitCancelled.  @throws base::ConfigError for
+/// bad input, before anything is played.
 int RunRecognitionVerb(const RecognitionOptions& options, const std::string& package_folder,
                        const std::function<bool()>& cancelled);
 

@@ -21,6 +21,13 @@ extern const ThingShare kFound, kNamed, kNamedOfFound, kOwnLabel, kUnknown, kUnk
 std::vector<ClusterCounts> CountsOf(const std::vector<perception::ThingVerdict>& things,
                                     const ThingShare& share);
 
+/// How many tables it takes until the interval of the share does not hold the bound, if all go as
+/// these did: the counts are repeated as a whole.
+/// @param num_tables  that were looked at, also those without a case.
+/// @return nothing where no number up to 100,000 does.
+std::optional<int> TablesToDecide(const std::vector<ClusterCounts>& tables, int num_tables,
+                                  double bound);
+
 /// Undecided: the 95 % interval of a share holds the bound.
 enum class GoalVerdict { kMet, kMissed, kUndecided, kNoValue };
 
@@ -34,6 +41,9 @@ struct RecognitionGoal {
   double bound{0.0};      ///< likewise
   bool is_length{false};  ///< [m] of at most the bound; else a share of at least the bound
   std::optional<Interval> interval{};  ///< of the value; without one it is judged as it is
+  /// How many tables decide it, if others go as those that were looked at; where it is undecided,
+  /// and so many are found.
+  std::optional<int> enough_tables{};
   GoalVerdict verdict() const;
 };
 

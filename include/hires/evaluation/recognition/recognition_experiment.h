@@ -53,4 +53,8 @@ nlohmann::ordered_json ToJson(const RecognitionReport& report);
 /// is that of a share whose 95 % interval holds it.
 bool MeetsGoals(const RecognitionReport& report);
 
+/// Which goals are missed, undecided or without a value, and how many tables would decide; empty
+/// where all are met.
+std::string WhyGoalsAreNotMet(const RecognitionReport& report);
+
 }  // namespace hires::evaluation
