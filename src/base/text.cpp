@@ -16,7 +16,6 @@
 namespace hires::base {
 namespace {
 
-constexpr std::size_t kMostGuesses = 3;
 constexpr char kUnfinished[] = ".unfinished";  // behind the name of a file that is being written
 
 [[noreturn]] void FailToWrite(const std::string& path) {
@@ -30,53 +29,6 @@ std::size_t CommonEnds(const std::string& a, const std::string& b) {
   while (begin < shorter && a[begin] == b[begin]) ++begin;
   while (begin + end < shorter && a[a.size() - 1 - end] == b[b.size() - 1 - end]) ++end;
   return begin + end;
-}
-
-/// Whether one was mistyped for the other: a third of it may differ, or two letters be swapped.
-bool IsSlipOf(const std::string& a, const std::string& b) {
-  constexpr std::size_t kLeast = 3;  // of shorter names nearly all are alike
-  if (std::max(a.size(), b.size()) < kLeast) return false;
-  const std::size_t distance = EditDistance(a, b);
-  if (distance <= std::max<std::size_t>(1, std::max(a.size(), b.size()) / 3)) return true;
-  return distance == 2 && a.size() == b.size() &&
-         std::is_permutation(a.begin(), a.end(), b.begin());
-}
-
-/// Whether all letters of `part` come in `whole`, in that order.
-bool HasInOrder(const std::string& whole, const std::string& part) {
-  std::size_t found = 0;
-  for (const char letter : whole) {
-    if (found < part.size() && part[found] == letter) ++found;
-  }
-  return found == part.size();
-}
-
-/// Whether one stands in the other, or one is short for the other, as peper1 for peppermill1.
-bool IsPart(const std::string& a, const std::string& b) {
-  const auto& [part, whole] = std::minmax(
-      a, b, [](const auto& one, const auto& other) { return one.size() < other.size(); });
-  if (part.size() < 3) return false;
-  if (whole.find(part) != std::string::npos) return true;
-  return part.size() > 3 && 2 * part.size() >= whole.size() && part[0] == whole[0] &&
-         HasInOrder(whole, part);
-}
-
-/// What was meant, best first; empty where nothing comes near enough for a guess.
-std::vector<std::string> Guesses(const std::string& name, const std::vector<std::string>& known) {
-  const std::string lower = ToLower(name);
-  std::vector<std::string> mistyped, parts;
-  std::size_t best = 0;
-  for (const std::string& candidate : NearestNames(name, known, known.size())) {
-    const std::string other = ToLower(candidate);
-    const std::size_t distance = EditDistance(lower, other);
-    if (mistyped.empty()) best = distance;
-    // Beside a clear slip others are no guess.
-    if (distance <= best + 1 && IsSlipOf(lower, other)) mistyped.push_back(candidate);
-    if (IsPart(lower, other)) parts.push_back(candidate);
-  }
-  std::vector<std::string>& guesses = mistyped.empty() ? parts : mistyped;
-  guesses.resize(std::min(guesses.size(), kMostGuesses));
-  return guesses;
 }
 
 }  // namespace
@@ -125,7 +77,7 @@ std::vector<std::string> NearestNames(const std::string& name,
 std::string UnknownName(std::string_view kind, const std::string& name,
                         const std::vector<std::string>& known, std::string_view lister) {
   if (known.empty()) return fmt::format("{} '{}' is unknown; none is defined", kind, name);
-  const std::vector<std::string> guesses = known.size() == 1 ? known : Guesses(name, known);
+  const std::vector<std::string> guesses = known.size() == 1 ? known : LikelyNames(name, known);
   if (!guesses.empty()) {
     return fmt::format("{} '{}' is unknown; did you mean '{}'?", kind, name,
                        Join(guesses, "' or '"));
@@ -140,7 +92,7 @@ std::string UnknownName(std::string_view kind, const std::string& name,
   }
   // Of many the first ones of the alphabet would tell nothing.
   return fmt::format("{} '{}' is unknown; did you mean one of '{}', ...?", kind, name,
-                     Join(NearestNames(name, known, kMostGuesses), "', '"));
+                     Join(NearestNames(name, known), "', '"));
 }
 
 std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {

@@ -22,5 +22,19 @@ TEST(AreSpeltAlikeTest, OneLetterOfThreeOrTwoOfEightMayDiffer) {
   EXPECT_FALSE(AreSpeltAlike("holds", "folded"));
 }
 
+TEST(LikelyNamesTest, GuessesSlipsAndPartsAndNothingElse) {
+  const std::vector<std::string> known{"topple", "hot_coffee", "serve_coffee"};
+  EXPECT_EQ(LikelyNames("Tople", known), std::vector<std::string>{"topple"});
+  EXPECT_EQ(LikelyNames("coffee", known), (std::vector<std::string>{"hot_coffee", "serve_coffee"}));
+  EXPECT_EQ(LikelyNames("xyzzy", known), std::vector<std::string>{});
+  EXPECT_EQ(LikelyNames("xyzzy", {"mug"}), std::vector<std::string>{});
+}
+
+TEST(CountedTest, OneIsSingular) {
+  EXPECT_EQ(Counted(0, "run"), "0 runs");
+  EXPECT_EQ(Counted(1, "run"), "1 run");
+  EXPECT_EQ(Counted(20, "run"), "20 runs");
+}
+
 }  // namespace
 }  // namespace hires::base::spelling_test

@@ -11,6 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+}  // namespace
+
 std::vector<std::string> NamesIn(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -20,8 +22,6 @@ std::vector<std::string> NamesIn(const std::string& folder) {
   std::sort(names.begin(), names.end());
   return names;
 }
-
-}  // namespace
 
 std::string FileNamed(const std::string& kind, const std::string& name, const std::string& folder,
                       const std::vector<std::string>& others) {

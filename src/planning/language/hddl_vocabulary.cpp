@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "hires/base/keys.h"
+#include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
 
@@ -14,11 +15,6 @@ namespace {
 // A chain of types costs the square of its length, and each object a fact for each of its types.
 constexpr std::size_t kMaxTypes = 1000;
 constexpr std::size_t kMaxTypeFacts = 5'000'000;
-
-/// Keys among which the nearest to a wrong one is looked for: few enough to compare them all.
-std::string Plural(std::size_t count, std::string_view noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
-}
 
 int AddType(const std::string& name, HddlVocabulary* vocabulary) {
   const auto [entry, is_new] =
@@ -218,9 +214,10 @@ const HddlVocabulary::Signature& CheckTerm(const HddlSpot& spot, const Datum& te
   }
   const HddlVocabulary::Signature& signature = found->second;
   if (term.items.size() - 1 != signature.types.size()) {
-    spot.Fail(term, fmt::format("{} '{}' has {} in {}, its declaration has {}; make them agree",
-                                signature.kind, name, Plural(term.items.size() - 1, "argument"),
-                                Excerpt(term), signature.types.size()));
+    spot.Fail(term,
+              fmt::format("{} '{}' has {} in {}, its declaration has {}; make them agree",
+                          signature.kind, name, base::Counted(term.items.size() - 1, "argument"),
+                          Excerpt(term), signature.types.size()));
   }
   for (std::size_t i = 0; i < signature.types.size(); ++i) {
     const int type =

@@ -5,6 +5,9 @@
 
 namespace hires::base {
 
+/// The names that things have in a folder: of its files NAME.yaml, in order; none where it is none.
+std::vector<std::string> NamesIn(const std::string& folder);
+
 /// The path of NAME.yaml in a folder of things that have names there.
 /// @param kind    what it is, for the message: "truth".
 /// @param others  what else stands at this place of the command, for the message.
