@@ -7,9 +7,12 @@ import report_plots as plots
 from report_input import Answer, ReportError
 from report_numbers import bars_of, values
 
-GOOD, OPEN = 'good', 'open'
+GOOD, OPEN, NEUTRAL = 'good', 'open', 'neutral'
 MARKS = {'reproduced': 'ok', 'better': 'ok', 'not reproduced': 'failed', 'undecided': 'warning', 'check holds': 'ok',
-         'check fails': 'failed', 'shown': 'nothing', 'described': 'nothing', 'not played': 'warning'}
+         'check fails': 'failed', 'check undecided': 'warning', 'shown': 'nothing', 'described': 'nothing',
+         'not played': 'warning'}
+PUBLISHED = ('reproduced', 'better', 'not reproduced', 'undecided')
+CHECKS = ('check holds', 'check fails', 'check undecided')
 SHARPEST = 0.1  # [m/s] slower than that no turn is looked at
 
 
@@ -309,26 +312,47 @@ def pictures_of(answer, place):
     return found
 
 
+def _share(good, all_of, text, undecided):
+    """'8 of 9 checks hold, 1 is undecided'."""
+    more = ', %d %s undecided' % (undecided, 'is' if undecided == 1 else 'are') if undecided else ''
+    return '%d of %d %s%s' % (good, all_of, text, more)
+
+
+def _headline(verdicts):
+    """(what all verdicts come to, the state of that, what checks come to unless that is said already)."""
+    counts = {verdict: verdicts.count(verdict) for verdict in MARKS}
+    published, checks = (sum(counts[verdict] for verdict in kind) for kind in (PUBLISHED, CHECKS))
+    good = counts['reproduced'] + counts['better']
+    holding = _share(counts['check holds'], checks, 'checks by bounds of our own hold', counts['check undecided'])
+    if published:
+        text = _share(good, published, 'published results with numbers are reproduced or better', counts['undecided'])
+    elif checks:
+        text = 'No published number is judged here; ' + holding
+    else:
+        text = 'Nothing here is judged: no published number, no check of our own'
+    if counts['not played']:
+        text += '; %d %s not played' % (counts['not played'], 'was' if counts['not played'] == 1 else 'were')
+    is_open = good < published or counts['check holds'] < checks or counts['not played']
+    state = OPEN if is_open else GOOD if published or checks else NEUTRAL
+    return text, state, holding if published and checks else ''
+
+
 def reproduce(answer):
     """What the template needs."""
     items = answer.items('/items')
     verdicts = [answer.at(item + '/verdict', str) for item in items]
-    judged = [verdict for verdict in verdicts if verdict in ('reproduced', 'better', 'not reproduced', 'undecided')]
-    good = [verdict for verdict in judged if verdict in ('reproduced', 'better')]
-    checks = [verdict for verdict in verdicts if verdict.startswith('check')]
-    not_played = verdicts.count('not played')
+    headline, state, checks = _headline(verdicts)
     plays = answer.keys('/plays')
     foreign = [play for play in plays if not answer.at(play + '/this_build', bool)]
     chapters = {}
     for item in items:
         chapters.setdefault(answer.at(item + '/section', str).split('.')[0], []).append(item)
     return {
-        'headline': '%d of %d published results with numbers are reproduced or better%s' %
-                    (len(good), len(judged), '; %d were not played' % not_played if not_played else ''),
+        'headline': headline,
         'build': 'played with this version' if not foreign else
                  '%d of %d answers by another build of this version (--again plays them anew)' % (len(foreign), len(plays)),
-        'checks': '%d of %d checks by bounds of our own hold' % (checks.count('check holds'), len(checks)),
-        'state': GOOD if len(good) == len(judged) and not not_played and 'check fails' not in checks else OPEN,
+        'checks': checks,
+        'state': state,
         'chapters': [('Appendix ' + name if name.isalpha() else 'Chapter ' + name, chapters[name])
                      for name in sorted(chapters)],
         'mark': lambda item: MARKS.get(answer.at(item + '/verdict', str), 'nothing'),

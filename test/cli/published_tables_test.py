@@ -1,4 +1,5 @@
-"""Which results that docs/ and README print are those of today's parameters, and how the others are played again.
+"""Which results that docs/ and README print are those of today's parameters, how the others are played again, and
+whether the counts of reproduced results agree with the catalogue.
 
 Results of `hires experiment FILE` carry the hash of the parameters that they were played with, those of series
 (`experiment hypothesis`, `scenarios` and the like) that of all files that a series reads: `hires experiment
@@ -12,6 +13,8 @@ import subprocess
 import sys
 import unittest
 
+import yaml
+
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..'))
 DATA = os.path.join(ROOT, '..', 'shared', 'data')
 # The first line of a printed report, a row of a table of reports, and a hash in a sentence that names the file.
@@ -22,6 +25,14 @@ PATTERNS = (re.compile(r'^(?P<name>\w+) \(\w+\), seed (?P<seed>\d+), parameters 
 SERIES = re.compile(r'`hires (?P<command>(?:experiment (?:hypothesis|decision|recognition|detector|localisation|'
                     r'torso_poses)|scenarios)\b[^`]*)`')
 DAY = re.compile(r'\b20\d\d-\d\d-\d\d\b')
+# What came of `hires reproduce all`, without what stands in brackets.
+RESULTS = re.compile(r'of (?P<published>\d+) published results (?P<reproduced>\d+) (?:is|are) reproduced',
+                     re.IGNORECASE)
+ALL_RESULTS = re.compile(RESULTS.pattern + r', (?P<off>\d+) (?:is|are) not and (?P<undecided>\d+) (?:is|are) undecided'
+                         r'.*?; of (?P<checks>\d+) checks by bounds of our own (?P<hold>\d+) holds?'
+                         r'(?:, (?P<fail>\d+) fails?)? and (?P<open>\d+) (?:is|are) undecided'
+                         r'; (?P<shown>\d+) are pictures and numbers that are not judged, (?P<words>\d+) words alone',
+                         re.IGNORECASE)
 FILES = re.compile(r'files (?P<hash>[0-9a-f]{16})(?P<stale>, stale)?')
 
 
@@ -70,6 +81,41 @@ def todays(program, name, seed):
         words += ['--map', plan]
     run = subprocess.run(words, capture_output=True, text=True, check=True, stdin=subprocess.DEVNULL)
     return re.search(r'parameters ([0-9a-f]{16})', run.stdout).group(1)
+
+
+def counted(path, pattern):
+    """The numbers of the one sentence like that in a document, or None."""
+    with open(os.path.join(ROOT, path), encoding='utf-8') as file:
+        text = re.sub(r'\[([^]]*)\]\([^()]*\)', r'\1', file.read())
+    text = re.sub(r'\s*\([^()]*\)', '', ' '.join(text.split()))
+    found = list(pattern.finditer(text))
+    return {name: int(number or 0) for name, number in found[0].groupdict().items()} if len(found) == 1 else None
+
+
+def kinds_of_items():
+    """How many items of the dissertation's catalogue there are of each kind."""
+    with open(os.path.join(ROOT, 'config', 'reproduce.yaml'), encoding='utf-8') as file:
+        items = yaml.safe_load(file)['items']
+    kinds = {'published': 0, 'checks': 0, 'shown': 0, 'words': 0}
+    for item in items:
+        is_judged = any(not value.get('shown') for value in item.get('values', []))
+        kinds[('checks' if item.get('own') else 'published') if is_judged else
+              'shown' if item.get('plays') else 'words'] += 1
+    return kinds
+
+
+class CountedResultsTest(unittest.TestCase):
+    def test_the_counts_that_are_told_are_those_of_the_catalogue(self):
+        told = counted('docs/results.md', ALL_RESULTS)
+        self.assertIsNotNone(told, 'docs/results.md has not one sentence as %s' % ALL_RESULTS.pattern)
+        self.assertEqual({kind: told[kind] for kind in kinds_of_items()}, kinds_of_items(), 'docs/results.md')
+        self.assertEqual(told['reproduced'] + told['off'] + told['undecided'], told['published'], 'docs/results.md')
+        self.assertEqual(told['hold'] + told['fail'] + told['open'], told['checks'], 'docs/results.md')
+
+    def test_the_readme_tells_the_same(self):
+        told, short = counted('docs/results.md', RESULTS), counted('README.md', RESULTS)
+        self.assertIsNotNone(short, 'README.md has not one sentence as %s' % RESULTS.pattern)
+        self.assertEqual(short, told)
 
 
 class PublishedTablesTest(unittest.TestCase):

@@ -61,6 +61,28 @@ items:
   EXPECT_THAT(order, ElementsAre("loop", "looked"));
 }
 
+TEST_F(CatalogueTest, WhatIsJudgedByNothingPublishedMustSayThatItIsOurOwn) {
+  const std::string value = "{name: v, at: /x, at_least: 1}, {name: s, at: /y, ";
+  const std::string error = ErrorOf(kPlays + Item(value + "published: 1, shown: true}"));
+  EXPECT_THAT(error, AllOf(HasSubstr("catalogue.yaml: "), HasSubstr("item is 'Table 1'"),
+                           HasSubstr("write `own: true`"), HasSubstr("line 6")));
+  EXPECT_FALSE(Read(kPlays + Item(value + "published: 1, at_most: 2}")).items[0].is_own);
+  std::string own = Item(value + "shown: true}");
+  own.insert(own.find("title:"), "own: true, ");
+  EXPECT_TRUE(Read(kPlays + own).items[0].is_own);
+}
+
+TEST_F(CatalogueTest, WhoAsksForWhatIsNotThereLearnsHowToListAll) {
+  const Catalogue catalogue = ReadCatalogue(HIRES_SOURCE_DIR "/config/reproduce.yaml");
+  const auto error = [&](const std::string& wanted) {
+    return hires::test_support::ConfigErrorOf([&] { NamesOf(catalogue, {wanted}); });
+  };
+  for (const char* wanted : {"9.9.9", "foo", "Figure 6.55"}) {
+    EXPECT_THAT(error(wanted), HasSubstr("`hires reproduce --list` lists")) << wanted;
+  }
+  EXPECT_THAT(error("Figure 6.55"), HasSubstr("did you mean 'Fig. 6.5'"));
+}
+
 TEST_F(CatalogueTest, ItemsAreAskedForBySectionOrName) {
   const Catalogue catalogue = Read(kPlays + R"(
 items:
@@ -276,6 +298,13 @@ TEST(ReproducedJudgeTest, OurOwnBoundsReproduceNothing) {
   const JudgedItem fails = Judge(item, {{"loop", {{"x", 0.0}}}}, {});
   EXPECT_EQ(fails.verdict, Verdict::kCheckFails);
   EXPECT_EQ(fails.reason, "Not as accepted: v: 0 (at least 1). slower");
+  const ordered_json wide{{"x", {{"estimate", 1.2}, {"lower", 0.9}, {"upper", 1.5}}}};
+  item.values = {Value(Acceptance::Kind::kAbove, 1.0, {})};
+  const JudgedItem open = Judge(item, {{"loop", wide}}, {});
+  EXPECT_EQ(open.verdict, Verdict::kCheckUndecided) << "no published result is undecided by it";
+  EXPECT_EQ(open.reason, "Not decided: v: 1.2 (0.9 .. 1.5) (interval above 1). slower");
+  EXPECT_EQ(ToJson({open})[0]["verdict"], "check undecided");
+  EXPECT_THAT(VerdictTable({open}), HasSubstr("Table 1: Not decided: v"));
   EXPECT_THAT(VerdictTable({fails}),
               HasSubstr("Table 1: Not as accepted: v: 0 (at least 1). slower"));
 }

@@ -230,6 +230,35 @@ class CatalogueTest(unittest.TestCase):
                     self.assertEqual(value['published'], wanted[key], (item['item'], value['name']))
         self.assertEqual(len(found), 2 * len(wanted), 'a table and a figure have each of them')
 
+    def test_undecided_checks_are_counted_apart_from_undecided_results(self):
+        content = copy.deepcopy(example('reproduce'))
+        verdicts = ['reproduced', 'undecided', 'check holds', 'check undecided', 'check undecided']
+        for item, verdict in zip(content['items'], verdicts):
+            item['verdict'] = verdict
+        page = page_of(content)
+        self.assertIn('<h1>1 of 2 published results with numbers are reproduced or better, 1 is undecided</h1>', page)
+        self.assertIn('1 of 3 checks by bounds of our own hold, 2 are undecided.', page)
+        self.assertIn('1 reproduced, 1 undecided, 1 check holds, 2 check undecided.', page)
+        self.assertIn('<td class="warning">', page)
+
+    def test_where_nothing_is_judged_that_is_said_and_is_not_green(self):
+        content = copy.deepcopy(example('reproduce'))
+        for verdicts, state, said in (
+                (['shown', 'described'], 'neutral', 'Nothing here is judged'),
+                (['shown', 'not played'], 'open', 'Nothing here is judged.*; 1 was not played'),
+                (['shown', 'check holds'], 'good', 'No published number is judged here; 1 of 1 checks'),
+                (['check holds', 'check undecided'], 'open', 'No published number is judged here; 1 of 2 checks'),
+                (['better', 'check fails'], 'open', '1 of 1 published results with numbers are reproduced or better'),
+                (['reproduced', 'check holds'], 'good', '1 of 1 published')):
+            with self.subTest(verdicts):
+                content['items'] = copy.deepcopy(example('reproduce')['items'][:2])
+                for item, verdict in zip(content['items'], verdicts):
+                    item['verdict'] = verdict
+                page = page_of(content)
+                self.assertRegex(page, '<header class="%s">' % state)
+                self.assertRegex(page, '<h1>%s' % said)
+                self.assertNotIn('0 of 0', page)
+
     def test_a_row_that_nobody_played_is_named(self):
         content = copy.deepcopy(example('reproduce'))
         item = next(item for item in content['items'] if item['item'] == 'Fig. 6.3')

@@ -11,6 +11,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/param_reader.h"
+#include "hires/base/spelling.h"
 #include "hires/base/text.h"
 
 namespace hires::evaluation {
@@ -142,6 +143,27 @@ ComparedValue ReadValue(base::ParamReader in, const std::vector<std::string>& pl
   return value;
 }
 
+/// Whether a verdict rests on it.
+bool HasBound(const ComparedValue& value) {
+  return value.acceptance.kind != Acceptance::Kind::kShown;
+}
+
+/// "own" says whether an item is judged by what the dissertation says or by bounds of ours alone.
+void ReadOwn(base::ParamReader* in, CatalogueItem* item) {
+  const auto& values = item->values;
+  const bool is_judged = std::any_of(values.begin(), values.end(), HasBound);
+  if (in->Has("own")) item->is_own = in->GetBool("own");
+  if (item->is_own && !is_judged) in->Fail("own", "true, but nothing is judged; leave it out");
+  const bool is_compared = std::any_of(
+      values.begin(), values.end(),
+      [](const ComparedValue& value) { return HasBound(value) && value.published.has_value(); });
+  if (is_judged && !item->is_own && !is_compared) {
+    in->Fail("item",
+             "which judges no number beside a published one; write `own: true` if its bounds are "
+             "our own, or `published` to a value that is judged");
+  }
+}
+
 CatalogueItem ReadItem(base::ParamReader in) {
   CatalogueItem item;
   item.name = in.GetString("item");
@@ -155,16 +177,12 @@ CatalogueItem ReadItem(base::ParamReader in) {
       item.values.push_back(ReadValue(value, item.plays));
     }
   }
-  const bool is_judged = std::any_of(
-      item.values.begin(), item.values.end(),
-      [](const ComparedValue& value) { return value.acceptance.kind != Acceptance::Kind::kShown; });
-  if (is_judged) {
+  if (std::any_of(item.values.begin(), item.values.end(), HasBound)) {
     in.RequireKeys({"bounds", "fails"});
     item.bounds = in.GetString("bounds");
     item.fails = in.GetString("fails");
   }
-  if (in.Has("own")) item.is_own = in.GetBool("own");
-  if (item.is_own && !is_judged) in.Fail("own", "true, but nothing is judged; leave it out");
+  ReadOwn(&in, &item);
   for (const std::string& drawing : item.drawings) {
     const std::string play = drawing.substr(0, drawing.find(':'));
     if (play == drawing || std::count(item.plays.begin(), item.plays.end(), play) == 0) {
@@ -291,8 +309,12 @@ std::vector<std::string> NamesOf(const Catalogue& catalogue, const std::string& 
   }
   std::set<std::string> known{"all"};
   for (const CatalogueItem& item : catalogue.items) known.insert({item.section, item.name});
+  const std::vector<std::string> names_known(known.begin(), known.end());
+  constexpr char kLister[] = "hires reproduce --list";
+  const bool has_guess = !base::LikelyNames(catalogued, names_known).empty();
   throw base::ConfigError(
-      base::UnknownName("table, figure or section", catalogued, {known.begin(), known.end()}));
+      base::UnknownName("table, figure or section", catalogued, names_known, kLister) +
+      (has_guess ? fmt::format("; `{}` lists all", kLister) : ""));
 }
 
 }  // namespace

@@ -144,14 +144,14 @@ Verdict VerdictOf(const CatalogueItem& item, const std::vector<JudgedValue>& val
     may_be_better = may_be_better || judged.value.may_be_better;
     are_better = are_better && (!judged.value.may_be_better || judged.is_better);
   }
-  if (!is_decided) return Verdict::kUndecided;
+  if (!is_decided) return item.is_own ? Verdict::kCheckUndecided : Verdict::kUndecided;
   if (item.is_own) return Verdict::kCheckHolds;
   return may_be_better && are_better ? Verdict::kBetter : Verdict::kReproduced;
 }
 
 bool IsOpen(Verdict verdict) {
   return verdict == Verdict::kNotReproduced || verdict == Verdict::kCheckFails ||
-         verdict == Verdict::kUndecided;
+         verdict == Verdict::kUndecided || verdict == Verdict::kCheckUndecided;
 }
 
 std::string Told(const JudgedValue& judged) {
@@ -239,6 +239,8 @@ const char* ToString(Verdict verdict) {
       return "check holds";
     case Verdict::kCheckFails:
       return "check fails";
+    case Verdict::kCheckUndecided:
+      return "check undecided";
     case Verdict::kShown:
       return "shown";
     case Verdict::kDescribed:

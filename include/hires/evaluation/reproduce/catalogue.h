@@ -65,7 +65,8 @@ struct CatalogueItem {
   std::vector<std::string> drawings;  ///< by their names in scripts/report, PLAY:DRAWING
   std::vector<ComparedValue> values;
   std::string bounds;  ///< where the bounds of its values come from; empty: none is judged
-  /// The dissertation has no number to compare with: what is judged is our own bound.
+  /// The dissertation has no number to compare with: what is judged is our own bound. An item that
+  /// judges no value with a published number is one of these, or is refused.
   bool is_own{false};
   std::string holds;  ///< what it says where all values are as accepted, or there are none
   std::string fails;  ///< why, where they are not, as far as it is known
@@ -77,7 +78,8 @@ struct Catalogue {
 };
 
 /// @throws base::ConfigError naming file, entry and field: plays that are unknown, named twice or
-/// need each other in a circle; items named twice; values without acceptance.
+/// need each other in a circle; items named twice; values without acceptance;
+/// items that judge nothing published and are not called our own.
 Catalogue ReadCatalogue(const std::string& path);
 
 /// Items that were asked for, in the catalogue's order.

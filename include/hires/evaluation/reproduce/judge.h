@@ -19,9 +19,10 @@ enum class Verdict {
   kUndecided,
   kCheckHolds,  ///< as kReproduced, where the dissertation has no number (CatalogueItem::is_own)
   kCheckFails,  ///< as kNotReproduced, likewise
-  kShown,       ///< nothing to compare: a picture or numbers of ours stand beside the published one
-  kDescribed,   ///< nothing that is played: words alone
-  kNotPlayed    ///< an answer, or a field of one, that it needs is missing
+  kCheckUndecided,  ///< as kUndecided, likewise
+  kShown,      ///< nothing to compare: a picture or numbers of ours stand beside the published one
+  kDescribed,  ///< nothing that is played: words alone
+  kNotPlayed   ///< an answer, or a field of one, that it needs is missing
 };
 const char* ToString(Verdict verdict);  ///< "not reproduced"
 
