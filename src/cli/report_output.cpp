@@ -113,8 +113,12 @@ ordered_json HeadJson(const ReportOptions& options, const ReportOrigin& origin) 
 }
 
 /// Hours of work must not end at a file that cannot be written.
-void RequireWritable(const std::string& path) {
+void RequireWritable(const std::string& option, const std::string& path) {
   if (path.empty()) return;
+  if (path == "-") {
+    throw base::ConfigError(
+        fmt::format("{} -: is no file; name one, or /dev/stdout to print it", option));
+  }
   evaluation::RequireFolderOf(path);
   base::RequireReplaceable(path);
 }
@@ -149,9 +153,9 @@ void AddReportOptions(CLI::App* verb, ReportOptions* options) {
 }
 
 void CheckReport(const ReportOptions& options) {
-  for (const std::string& path : {options.json, options.html, options.png}) {
-    RequireWritable(path);
-  }
+  RequireWritable("--json", options.json);
+  RequireWritable("--html", options.html);
+  RequireWritable("--png", options.png);
   if (!(options.html + options.png).empty()) {
     RunReportProgram(options.package_folder, {"--check"});
   }
@@ -219,7 +223,8 @@ int RunReportVerb(const StoredReportOptions& options) {
   }
   base::RefuseOwnInput("--html", options.html, "answer", options.file);
   base::RefuseOwnInput("--png", options.png, "answer", options.file);
-  for (const std::string& path : {options.html, options.png}) RequireWritable(path);
+  RequireWritable("--html", options.html);
+  RequireWritable("--png", options.png);
   MakePictures(options.file, options.html, options.png, options.package_folder);
   SaySaved({options.html, options.png});
   return 0;

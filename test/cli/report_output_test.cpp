@@ -134,6 +134,19 @@ TEST_F(ReportOutputTest, FoldersArePutRightBeforeTheWork) {
   }
 }
 
+TEST_F(ReportOutputTest, AMinusIsRefusedAndTheWayToPrintIsNamed) {
+  ReportOptions options = Options();
+  options.html = "-";
+  EXPECT_EQ(ConfigErrorOf([&] { CheckReport(options); }),
+            "--html -: is no file; name one, or /dev/stdout to print it");
+  const std::string answer = folder_.Write("answer.json", "{}");
+  for (const char* option : {"--html", "--png"}) {
+    EXPECT_THAT(RunHires({"report", answer, option, "-"}).err,
+                HasSubstr(std::string(option) + " -: is no file"));
+  }
+  EXPECT_FALSE(std::filesystem::exists("-"));
+}
+
 TEST_F(ReportOutputTest, AFileThatCannotBeWrittenIsSaidBeforeTheWork) {
   for (std::string ReportOptions::*file :
        {&ReportOptions::json, &ReportOptions::html, &ReportOptions::png}) {

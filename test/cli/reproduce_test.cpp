@@ -172,8 +172,9 @@ TEST_F(ReproduceTest, TheVerbListsPlaysAndJudges) {
               AllOf(HasSubstr("Fig. 5.1"),
                     ::testing::ContainsRegex("\n[0-9]+ plays, [0-9]+ s in all; [0-9]+ s "
                                              "are still to be played\n$")));
-  EXPECT_THAT(run({"9.9", "--results", results}).err,
-              HasSubstr("'9.9' is unknown; did you mean '5.9' or 'A.9'?"));
+  EXPECT_THAT(
+      run({"9.9", "--results", results}).err,
+      HasSubstr("'9.9' is unknown; did you mean '5.9' or 'A.9'?; `hires reproduce --list`"));
   const hires::test_support::Ended shown =
       run({"5.1", "--results", results, "--json", Path("r.json"), "--quiet"});
   EXPECT_EQ(shown.code, 0);
@@ -181,6 +182,46 @@ TEST_F(ReproduceTest, TheVerbListsPlaysAndJudges) {
   const auto answer = nlohmann::json::parse(base::ReadTextFile(Path("r.json")));
   EXPECT_EQ(answer.at("/report/verb"_json_pointer), "reproduce");
   EXPECT_EQ(answer.at("/verdicts/described"_json_pointer), 5);
+  EXPECT_THAT(run({"Fig. 5.1", "--results", results, "--quiet"}).out,
+              HasSubstr("\n1 table, figure or section: 1 described\n"));
+}
+
+TEST_F(ReproduceTest, UndecidedChecksAreCountedApartFromUndecidedResults) {
+  const std::string item =
+      ", section: '6.1', title: t, plays: [ratio], holds: yes, fails: no, bounds: ours, values: "
+      "[{name: v, at: /x, over: /y, published: 1, at_least: 1}]}\n";
+  const std::string path = folder_.Write(
+      "catalogue.yaml",
+      "plays: [{name: ratio, seconds: 1, inputs: [], command: \"list --json {answer}\"}]\nitems:\n"
+      "  - {item: Table 1" +
+          item + "  - {own: true, item: Table 2" + item);
+  const Play play = evaluation::ReadCatalogue(path).plays.front();
+  PlayStore store({Path("results"), HIRES_SOURCE_DIR, "another build"});
+  store.MakeRoom(play);
+  base::ReplaceTextFile(store.AnswerOf(play), R"({"x": 1, "y": 0})");
+  store.Keep(play, 1.0);
+  const std::string results = Path("results");
+  const hires::test_support::Ended ended = hires::test_support::RunHires(
+      {"reproduce"},
+      {"--catalogue", path, "--results", results, "--json", Path("r.json"), "--quiet"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("2 tables, figures and sections: 1 check undecided, "
+                                   "1 undecided\n"));
+  EXPECT_THAT(ended.out, HasSubstr("another build of this version, from the same files: 1 of 1 "
+                                   "answer;"));
+  const auto answer = nlohmann::json::parse(base::ReadTextFile(Path("r.json")));
+  EXPECT_EQ(answer.at("verdicts"), (nlohmann::json{{"undecided", 1}, {"check undecided", 1}}));
+}
+
+TEST_F(ReproduceTest, AMinusIsNoFile) {
+  for (const char* option : {"--html", "--json"}) {
+    const hires::test_support::Ended ended = hires::test_support::RunHires(
+        {"reproduce"}, {"5.1", "--results", Path("r"), "--quiet", option, "-"});
+    EXPECT_EQ(ended.code, 1);
+    EXPECT_THAT(ended.err, HasSubstr(std::string(option) + " -: is no file"));
+    EXPECT_EQ(ended.out, "");
+  }
+  EXPECT_FALSE(std::filesystem::exists("-"));
 }
 
 }  // namespace

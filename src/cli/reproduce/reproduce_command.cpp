@@ -16,6 +16,7 @@
 #include "cli/reproduce/play_store.h"
 #include "hires/base/error.h"
 #include "hires/base/files/writer_lock.h"
+#include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/report_table.h"
@@ -95,8 +96,8 @@ int List(const std::vector<CatalogueItem>& items, const std::vector<Play>& plays
                     CommandText(words)});
   }
   std::cout << evaluation::FormatTable(rows)
-            << fmt::format("{} plays, {:.0f} s in all; {:.0f} s are still to be played\n",
-                           plays.size(), seconds, missing);
+            << fmt::format("{}, {:.0f} s in all; {:.0f} s are still to be played\n",
+                           base::Counted(plays.size(), "play"), seconds, missing);
   return kExitRecommended;
 }
 
@@ -130,16 +131,17 @@ void Print(const std::vector<JudgedItem>& items, const PlaysDone& done, const st
   for (const auto& [verdict, count] : CountVerdicts(items)) {
     counts.push_back(fmt::format("{} {}", count, verdict));
   }
-  std::cout << fmt::format("{} tables, figures and sections: {}\n", items.size(),
-                           base::Join(counts, ", "));
+  std::cout << fmt::format(
+      "{} {}: {}\n", items.size(),
+      items.size() == 1 ? "table, figure or section" : "tables, figures and sections",
+      base::Join(counts, ", "));
   for (const auto& [play, why] : done.missing) std::cout << fmt::format("{}: {}\n", play, why);
   const auto old = std::count_if(done.answers.begin(), done.answers.end(),
                                  [&](const auto& entry) { return entry.second.build != build; });
   if (old > 0) {
     std::cout << fmt::format(
-        "{} of {} answers were played by another build of this version from the same files; "
-        "--again plays them anew\n",
-        old, done.answers.size());
+        "by another build of this version, from the same files: {} of {}; --again plays anew\n",
+        old, base::Counted(done.answers.size(), "answer"));
   }
 }
 
@@ -149,7 +151,8 @@ void AddReproduceVerb(CLI::App* app, ReproduceOptions* options) {
   CLI::App* verb = app->add_subcommand(
       "reproduce", "play the dissertation's experiments and put each result beside the published");
   verb->add_option("what", options->wanted,
-                   "all, sections (6.1), or tables and figures ('Table 6.5'); default: all");
+                   "all, sections (6.1), or tables, figures and listings ('Table 6.5'), as --list "
+                   "names them; default: all");
   AddReportOptions(verb, &options->report);
   verb->add_option("--results", options->results,
                    "folder of the answers; default: hires/results among the user's caches");
