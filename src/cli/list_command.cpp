@@ -19,6 +19,7 @@
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/evaluation/scenario.h"
+#include "hires/evaluation/series/scenario_series.h"
 #include "hires/imagination/client_config.h"
 #include "hires/planning/planning_files.h"
 #include "hires/robot/load_robot.h"
@@ -249,6 +250,20 @@ Rows Scenarios(const Sources& sources) {
   return rows;
 }
 
+Rows SeriesOfRuns(const Sources& sources) {
+  Rows rows;
+  for (const fs::path& file : FilesIn(sources, "config/series", ".yaml")) {
+    const evaluation::ScenarioSeries series = evaluation::ReadScenarioSeries(file);
+    std::vector<std::string> groups;
+    for (const evaluation::SeriesGroup& group : series.groups) groups.push_back(group.name);
+    rows.push_back({{"series", series.name},
+                    {"varies", groups},
+                    {"combinations", evaluation::NumCombinations(series)},
+                    {"file", file.string()}});
+  }
+  return rows;
+}
+
 Rows Truths(const Sources& sources) {
   Rows rows;
   for (const fs::path& file : FilesIn(sources, "config/truths", ".yaml")) {
@@ -299,11 +314,12 @@ Rows Tasks(const Sources& sources) {
 
 const std::map<std::string, std::function<Rows(const Sources&)>>& Listers() {
   static const std::map<std::string, std::function<Rows(const Sources&)>> listers{
-      {"areas", Areas},       {"objects", Objects},
-      {"actions", Actions},   {"motion_sets", MotionSets},
-      {"postures", Postures}, {"robots", Robots},
-      {"worlds", Worlds},     {"scenarios", Scenarios},
-      {"tasks", Tasks},       {"truths", Truths}};
+      {"areas", Areas},        {"objects", Objects},
+      {"actions", Actions},    {"motion_sets", MotionSets},
+      {"postures", Postures},  {"robots", Robots},
+      {"worlds", Worlds},      {"scenarios", Scenarios},
+      {"tasks", Tasks},        {"truths", Truths},
+      {"series", SeriesOfRuns}};
   return listers;
 }
 

@@ -239,6 +239,40 @@ TEST_F(ScenariosTest, BadInputIsRefusedBeforeAnythingIsPlayed) {
   EXPECT_FALSE(fs::exists(folder_.path() / "store/calls"));
 }
 
+TEST_F(ScenariosTest, AWorldThatIsNotThereIsToldWithWhereItStands) {
+  ScenariosOptions options = Options("Report succeeded '' 2\n");
+  const auto error = [&] {
+    return ConfigErrorOf([&] { RunScenariosVerb(options, kRoot, false, [] { return false; }); });
+  };
+  options.world = "nope";
+  EXPECT_THAT(error(), AllOf(HasSubstr("--world: "), HasSubstr("nope: no such file")));
+  options.world.clear();
+  folder_.Write("some.yaml", "!Scenario\nScenario: serve_coffee\nWorld: nope.world\n");
+  EXPECT_THAT(error(), AllOf(HasSubstr("some.yaml: document 1, line 1: World: "),
+                             HasSubstr("nope.world: no such file")));
+}
+
+TEST_F(ScenariosTest, AStoreThatIsAFileIsCalledOne) {
+  ScenariosOptions options = Options("Report succeeded '' 2\n");
+  const auto error = [&] {
+    return ConfigErrorOf([&] { RunScenariosVerb(options, kRoot, false, [] { return false; }); });
+  };
+  options.store = folder_.Write("taken", "x");
+  EXPECT_EQ(error(), "--store " + options.store + ": is a file; name a folder");
+  options.store += "/below";
+  EXPECT_THAT(error(), HasSubstr("the folder cannot be made (Not a directory)"));
+}
+
+TEST_F(ScenariosTest, OneRunIsSingular) {
+  ScenariosOptions options = Options("Report succeeded '' 2\n");
+  Play(options);
+  options.quiet = false;
+  EXPECT_THAT(Play(options).err, HasSubstr("1 run was played before and is kept\n"));
+  options.runs = 2;
+  Play(options);
+  EXPECT_THAT(Play(options).err, HasSubstr("2 runs were played before and are kept\n"));
+}
+
 TEST_F(ScenariosTest, AWrongInstructionIsRefusedBeforeAnythingIsPlayed) {
   const auto refusal = [&](const std::string& documents, const std::string& instruction = "") {
     ScenariosOptions options = Options("Report succeeded '' 2\n");
@@ -348,6 +382,13 @@ TEST(ScenariosVerbTest, WordsThatMakeNoSenseAreRefused) {
   EXPECT_THAT(RunHires({"scenarios", "a.yaml", "--pace", "2"}).err, HasSubstr("--graph"));
   EXPECT_THAT(RunHires({"scenarios", "missing.yaml"}).err, HasSubstr("missing.yaml"));
   EXPECT_EQ(RunHires({"scenarios", "missing.yaml"}).code, kExitSeriesBadInput);
+}
+
+TEST(ScenariosVerbTest, AScenarioInPlaceOfASeriesIsToldHowItIsPlayed) {
+  EXPECT_THAT(RunHires({"scenarios", "topple"}).err,
+              HasSubstr("series 'topple' is unknown; did you mean 'replace --scenario topple'?"));
+  EXPECT_THAT(RunHires({"scenarios", "coffee"}).err, HasSubstr("'replace --scenario hot_coffee'"));
+  EXPECT_THAT(RunHires({"scenarios", "replce"}).err, HasSubstr("did you mean 'replace'?"));
 }
 
 }  // namespace

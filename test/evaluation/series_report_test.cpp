@@ -212,11 +212,14 @@ TEST(TakeBlackboardTest, FluentsLoadedAsKnowledgeAreToldApart) {
 }
 
 TEST(SeriesSummaryTest, CountsEpisodesOutcomesAndShares) {
-  const std::string text = SeriesSummary(Report());
+  SeriesReport report = Report();
+  const std::string text = SeriesSummary(report);
   EXPECT_THAT(text, HasSubstr("= TEST SUMMARY =\n=[ INFO]: 3 episodes created during test with "
                               "names: 'replace_1' 'replace_2' 'replace_4'\n"
                               "=[ INFO]: Average Fluents per episode: 381.00\n"
                               "=[ INFO]: 37 episodes are now in repository 'sim_run1'\n"));
+  report.stored = 1;
+  EXPECT_THAT(SeriesSummary(report), HasSubstr("=[ INFO]: 1 episode is now in repository"));
   EXPECT_THAT(text, AllOf(HasSubstr("poseA hasX 1.5"), HasSubstr("poseA as it is")));
 }
 

@@ -15,6 +15,7 @@
 #include "hires/base/files/named_file.h"
 #include "hires/base/log.h"
 #include "hires/base/process.h"
+#include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
 #include "hires/cli/whole_number.h"
@@ -34,8 +35,13 @@ void MakeStore(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (!error && fs::is_directory(folder)) return;
+  std::error_code ignored;
+  if (fs::exists(folder, ignored)) {
+    throw base::ConfigError(fmt::format("--store {}: is a file; name a folder", folder));
+  }
   throw base::ConfigError(
-      fmt::format("--store {}: the folder cannot be made; check its rights", folder));
+      fmt::format("--store {}: the folder cannot be made ({}); check its path and rights", folder,
+                  error.message()));
 }
 
 std::size_t NumStored(const std::string& folder) {
@@ -64,7 +70,9 @@ class Runner {
     const double begin = base::SteadyNow();
     const int first = static_cast<int>(runs().size());
     if (first > 0 && !options_.quiet) {
-      std::cerr << fmt::format("{} runs were played before and are kept\n", first);
+      std::cerr << fmt::format("{} {} played before and {} kept\n",
+                               base::Counted(runs().size(), "run"), first == 1 ? "was" : "were",
+                               first == 1 ? "is" : "are");
     }
     for (int run = first + 1; run <= options_.runs; ++run) {
       if (!PlayOne(run)) return false;
@@ -185,6 +193,18 @@ void WriteAll(const evaluation::SeriesReport& report, const ScenariosOptions& op
   WriteReport(options.report, origin, ToJson(report));
 }
 
+/// Who names a scenario where a series is wanted is told how a series is played with it.
+std::string SeriesFile(const std::string& typed, const std::string& package_folder) {
+  const std::string folder = package_folder + "/config/series";
+  std::vector<std::string> with_scenario;
+  for (const std::string& series : base::NamesIn(folder)) {
+    for (const std::string& scenario : base::NamesIn(package_folder + "/config/scenarios")) {
+      with_scenario.push_back(series + " --scenario " + scenario);
+    }
+  }
+  return base::NamedFile("series", typed, folder, with_scenario);
+}
+
 void AddGraphOptions(CLI::App* verb, ScenarioPlayer* player) {
   CLI::Option* graph =
       verb->add_flag("--graph", player->is_graph,
@@ -257,14 +277,16 @@ int RunScenariosVerb(const ScenariosOptions& typed, const std::string& package_f
     throw base::ConfigError(
         "--graph: this build has no ROS nodes to start; build with ROS, or leave it out");
   }
-  options.file = base::NamedFile("series", typed.file, package_folder + "/config/series");
+  options.file = SeriesFile(typed.file, package_folder);
   SeriesToPlay series(options, package_folder);
   series.Check();
   CheckOutputs(options);
   Runner runner(options, package_folder, series, cancelled);
   if (!runner.PlayAll()) {
-    std::cerr << fmt::format("{} of {} runs are kept in {}; the same command goes on with them\n",
-                             runner.runs().size(), options.runs, options.store);
+    std::cerr << fmt::format("{} of {} {} kept in {}; the same command goes on with them\n",
+                             runner.runs().size(),
+                             base::Counted(static_cast<std::size_t>(options.runs), "run"),
+                             options.runs == 1 ? "is" : "are", options.store);
     return kExitCancelled;
   }
   evaluation::SeriesReport report;

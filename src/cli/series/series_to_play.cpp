@@ -184,18 +184,23 @@ std::vector<std::vector<int>> SeriesToPlay::ChoicesOfStarts() const {
 }
 
 std::vector<SeriesToPlay::Input> SeriesToPlay::Inputs() const {
-  std::vector<Input> inputs{{"series", options_.file}};
+  std::vector<Input> inputs{{"series", options_.file, ""}};
   for (const std::vector<int>& choices : ChoicesOfStarts()) {
     const SeriesStart start = StartOf(choices);
-    inputs.push_back({"scenario", start.scenario});
+    inputs.push_back(
+        {"scenario", start.scenario, PlaceOf(start, "Scenario", "--scenario", options_.scenario)});
     for (const std::string& knowledge : evaluation::ReadScenario(start.scenario).knowledge) {
-      inputs.push_back({"knowledge", knowledge});
+      inputs.push_back({"knowledge", knowledge, start.scenario + ": knowledge"});
     }
-    inputs.push_back({"world", start.world});
-    inputs.push_back({"truth", UseFrom(PlaceOf(start, "Truth", "--truth", options_.truth), [&] {
-                        return evaluation::TruthPath(start.truth,
-                                                     package_folder_ + "/config/truths");
-                      })});
+    inputs.push_back({"world", start.world, PlaceOf(start, "World", "--world", options_.world)});
+    const std::string place = PlaceOf(start, "Truth", "--truth", options_.truth);
+    inputs.push_back({"truth",
+                      UseFrom(place,
+                              [&] {
+                                return evaluation::TruthPath(start.truth,
+                                                             package_folder_ + "/config/truths");
+                              }),
+                      place});
   }
   return inputs;
 }
@@ -203,7 +208,9 @@ std::vector<SeriesToPlay::Input> SeriesToPlay::Inputs() const {
 /// Of all files that runs may begin from: who changes one has another series.
 std::string SeriesToPlay::InputsHash() const {
   base::Hasher hasher;
-  for (const Input& input : Inputs()) hasher.Add(base::ReadTextFile(input.path));
+  for (const Input& input : Inputs()) {
+    hasher.Add(UseFrom(input.place, [&] { return base::ReadTextFile(input.path); }));
+  }
   return base::HexOf(hasher.value());
 }
 

@@ -43,6 +43,7 @@ class SeriesToPlay {
   /// A file that runs may begin from.
   struct Input {
     std::string what, path;
+    std::string place;  ///< that names it, for messages: "--world"; empty: no one asks
   };
 
   evaluation::SeriesStart StartOf(const std::vector<int>& choices) const;

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "hires/evaluation/report_table.h"
 
@@ -260,12 +261,13 @@ std::string RunSummary(const SeriesRun& run) {
 std::string SeriesSummary(const SeriesReport& report) {
   const std::vector<std::string> episodes = Episodes(report);
   std::string text = "= TEST SUMMARY =\n=[ INFO]: ";
-  text += fmt::format("{} episodes created during test with names:", episodes.size());
+  text += base::Counted(episodes.size(), "episode") + " created during test with names:";
   for (const std::string& episode : episodes) text += " '" + episode + "'";
   text += '\n' + InfoLine(fmt::format("Average Fluents per episode: {:.2f}",
                                       AveragesOf(report.runs).fluents));
-  text += InfoLine(
-      fmt::format("{} episodes are now in repository '{}'", report.stored, report.repository));
+  text +=
+      InfoLine(fmt::format("{} {} now in repository '{}'", base::Counted(report.stored, "episode"),
+                           report.stored == 1 ? "is" : "are", report.repository));
   text += '\n' + AveragesTable(report) + '\n' + RunTable(report) + '\n' + OutcomeTable(report);
   if (!SharesByChoice(report).empty()) text += '\n' + ChoiceTable(report);
   return text;
