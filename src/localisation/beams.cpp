@@ -66,8 +66,9 @@ bool IsBad(ScanOutcome outcome) {
 }
 
 double RangeMax(const robot::ScanReading& scan, const BeamParams& params, double otherwise) {
-  if (params.max_range > 0.0) return params.max_range;
-  return std::isfinite(scan.range_max) && scan.range_max > 0.0 ? scan.range_max : otherwise;
+  const bool is_said = std::isfinite(scan.range_max) && scan.range_max > 0.0;
+  if (params.max_range <= 0.0) return is_said ? scan.range_max : otherwise;
+  return is_said ? std::min(scan.range_max, params.max_range) : params.max_range;
 }
 
 ScanOutcome SelectBeams(const robot::ScanReading& scan, const geometry::Pose2& X_BL,

@@ -11,7 +11,8 @@ namespace hires::localisation {
 struct BeamParams {
   int most{60};            ///< beams of a scan that are used
   double min_range{-1.0};  ///< [m] shorter ones are left out; negative: as the scan says
-  double max_range{-1.0};  ///< [m] as long or longer ones met nothing; negative: as the scan says
+  double max_range{-1.0};  ///< [m] as long or longer ones met nothing; negative, or more than the
+                           ///< scan says: as that says
 };
 
 /// Where beams ended, in the robot's base [m].
@@ -25,7 +26,8 @@ struct Beams {
 ScanOutcome SelectBeams(const robot::ScanReading& scan, const geometry::Pose2& X_BL,
                         const BeamParams& params, Beams* beams);
 
-/// [m] from where on nothing was met; `otherwise` where neither scan nor parameters say it.
+/// [m] from where on nothing was met: the smaller one of what scan and parameters say, as AMCL
+/// takes it; `otherwise` where neither does.
 double RangeMax(const robot::ScanReading& scan, const BeamParams& params, double otherwise);
 
 }  // namespace hires::localisation

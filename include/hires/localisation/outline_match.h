@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "hires/geometry/polygon.h"
+#include "hires/geometry/pose.h"
+
+namespace hires::localisation {
+
+/// Where a robot takes itself to be, and how sure it is.
+struct PlaceBelief {
+  geometry::Pose2 X_MB;
+  /// [m^2, m rad, rad^2] of x, y along the map's axes and yaw.
+  Eigen::Matrix3d covariance{Eigen::Matrix3d::Zero()};
+};
+
+struct OutlineMatchParams {
+  double reach{3.0};         ///< [m] from the robot: echoes farther away tell little of its place
+  double gate{0.1};          ///< [m] from an outline: an echo beyond is of something else
+  double noise{0.02};        ///< [m] sd of an echo against the outline that it is of
+  double independent{0.04};  ///< [rad] so far apart two beams err each for itself
+  double least_view{0.1};    ///< [rad] of view that outlines must fill before they say anything
+};
+
+/// Corrects a belief by what a planar laser sees of outlines that are known: Gauss-Newton from
+/// points to the nearest face that looks at the laser, with the belief as prior [point to line:
+/// Censi 2008, "An ICP variant using a point-to-line metric", ICRA]. What counts is the view that
+/// outlines fill, not how many beams a laser has. Constant.
+class OutlineMatch {
+ public:
+  /// @param outlines_M  of all that stands in the laser's plane, in map; in either sense of turn.
+  OutlineMatch(const std::vector<geometry::Polygon>& outlines_M, const OutlineMatchParams& params);
+
+  /// @param echoes_B   [m] in the base, with the robot at `prior`.
+  /// @param laser_B    [m] where they were seen from.
+  /// @param increment  [rad] between two beams, > 0.
+  /// @return nothing where the outlines that were met fill too little of the view, the search does
+  /// not settle, or its result is none that the prior allows (beyond 4 sd).
+  std::optional<PlaceBelief> Correct(const PlaceBelief& prior,
+                                     const std::vector<Eigen::Vector2d>& echoes_B,
+                                     const Eigen::Vector2d& laser_B, double increment) const;
+
+ private:
+  struct Face {
+    Eigen::Vector2d from, to;  // [m] in map
+    Eigen::Vector2d normal;    // outwards
+  };
+  struct Meeting {
+    Eigen::Vector2d direction;  // from the face to the echo, of unit length
+    double distance;            // [m] along it
+  };
+  /// What of all outlines comes into question round a place.
+  std::vector<Face> FacesNear(const Eigen::Vector2d& place_M) const;
+  std::optional<Meeting> Meet(const std::vector<Face>& faces, const Eigen::Vector2d& echo_M,
+                              const Eigen::Vector2d& laser_M) const;
+
+  OutlineMatchParams params_;
+  std::vector<Face> faces_;
+};
+
+}  // namespace hires::localisation
