@@ -1,0 +1,72 @@
+#include "hires/navigation/slow_before.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hires/navigation/car_follower.h"
+
+namespace hires::navigation {
+namespace {
+
+using Eigen::Vector2d;
+using geometry::Pose2;
+using geometry::Twist2;
+
+constexpr double kStep = 0.01;    // [m] of the fastest corner between two looks along the arc
+constexpr double kNearer = 1e-6;  // [m] less is none: rounding
+
+/// How far a point lies outside of a convex outline, by its farthest edge; negative within.
+double Outside(const geometry::Polygon& outline, const Vector2d& point) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Vector2d edge = outline[(i + 1) % outline.size()] - outline[i];
+    const Vector2d normal = Vector2d(edge.y(), -edge.x()).normalized();
+    most = std::max(most, normal.dot(point - outline[i]));
+  }
+  return most;
+}
+
+/// Where the base is after a time [s] with a constant velocity.
+Pose2 AfterTime(const Twist2& velocity, double time) {
+  const double turn = velocity.wz * time;
+  if (std::abs(turn) < 1e-9) return {velocity.vx * time, velocity.vy * time, turn};
+  const double along = std::sin(turn) / velocity.wz, across = (1.0 - std::cos(turn)) / velocity.wz;
+  return {along * velocity.vx - across * velocity.vy, across * velocity.vx + along * velocity.vy,
+          turn};
+}
+
+}  // namespace
+
+Twist2 SlowedBefore(const Twist2& wanted, const std::vector<Vector2d>& things_B,
+                    const geometry::Polygon& footprint, const SlowBeforeParams& params) {
+  const double radius = geometry::CircumscribedRadius(footprint);
+  const double speed = std::hypot(wanted.vx, wanted.vy) + std::abs(wanted.wz) * radius;
+  if (speed <= 0.0) return wanted;
+  const double stop = speed * params.reaction_time + 0.5 * speed * speed / params.deceleration;
+  struct Thing {
+    Vector2d p_B;
+    double outside;  // [m] of the footprint, now
+  };
+  std::vector<Thing> near;
+  for (const Vector2d& p_B : things_B) {
+    if (p_B.norm() > radius + params.gap + stop + kStep) continue;
+    near.push_back({p_B, Outside(footprint, p_B)});
+  }
+  if (near.empty()) return wanted;
+  double way = 0.0;  // [m] of the fastest corner that is free
+  for (; way < stop; way += kStep) {
+    const Pose2 X_NextB = AfterTime(wanted, (way + kStep) / speed).Inverse();
+    const bool is_met = std::any_of(near.begin(), near.end(), [&](const Thing& thing) {
+      const double outside = Outside(footprint, X_NextB * thing.p_B);
+      return outside < params.gap && outside < thing.outside - kNearer;
+    });
+    if (is_met) break;
+  }
+  if (way >= stop) return wanted;
+  const double share =
+      std::min(1.0, ApproachSpeed(way, params.deceleration, params.reaction_time) / speed);
+  return {share * wanted.vx, share * wanted.vy, share * wanted.wz};
+}
+
+}  // namespace hires::navigation
