@@ -73,6 +73,20 @@ skills::MoveBaseParams ReadDriving(ParamReader in) {
   return p;
 }
 
+skills::SeenPlaceParams ReadSeenPlace(ParamReader in) {
+  skills::SeenPlaceParams p;
+  p.match.reach = in.Get("reach", Between(0.5, 30.0));
+  p.match.gate = in.Get("gate", Between(0.01, 1.0));
+  p.match.noise = in.Get("noise", Between(0.001, 0.5));
+  p.match.independent = in.Get("independent", Between(0.001, 1.0));
+  p.match.least_view = in.Get("least_view", Between(0.0, 6.2));
+  p.told_sd = in.Get("told_sd", Between(0.001, 1.0));
+  p.told_yaw_sd = in.Get("told_yaw_sd", Between(0.001, 1.0));
+  p.drift = in.Get("drift", Between(0.0, 1.0));
+  p.walk = in.Get("walk", Between(0.0, 0.1));
+  return p;
+}
+
 skills::LostParams ReadLost(ParamReader in) {
   skills::LostParams p;
   p.max_position_sd = in.Get("max_position_sd", Between(0.01, 100.0));
@@ -306,6 +320,7 @@ void AddObstacleLayer(const std::string& path, SetupConfig* config) {
   layer.obstacle_range = in.Get("obstacle_range", Between(0.1, 10.0));
   layer.raytrace_range = in.Get("raytrace_range", Between(0.1, 10.0));
   layer.keep = in.Get("keep", Between(0.0, 3600.0));
+  if (in.Has("seen_place")) config->driving.seen_place = ReadSeenPlace(in.Sub("seen_place"));
   ParamReader laser = in.Sub("laser");
   simulation::ScanParams& scans = config->scans.emplace();
   scans.laser = simulation::ReadLaser(&laser);

@@ -27,11 +27,15 @@ void ActionSet::Add(Action action) {
   }
   const std::string name = action.spec.name;
   catalogue_.Add(std::move(action.spec));
-  makers_[name] = std::move(action.make);
+  ways_[name] = {std::move(action.make), action.goes_by};
 }
 
 const SkillMaker& ActionSet::MakerOf(const std::string& name) const {
-  return makers_.at(catalogue_.Get(name).name);
+  return ways_.at(catalogue_.Get(name).name).make;
+}
+
+GoesBy ActionSet::PlaceOf(const std::string& name) const {
+  return ways_.at(catalogue_.Get(name).name).goes_by;
 }
 
 std::uint64_t ActionSet::hash() const {

@@ -5,6 +5,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "skills/driving/at_seen_place.h"
 #include "skills/look_skills.h"
 #include "skills/object_skills.h"
 #include "skills/observe_at.h"
@@ -55,9 +56,11 @@ DriveTo BlindDrive(const SkillSet& skills, const ActionCall& action) {
   const robot::MotionSet& motion_set =
       Lookup(skills.motion_sets, "motion set", MotionSetNameOf(skills, action));
   return [params = skills.blind, motion_set,
-          robot = skills.driving->robot](const geometry::Pose2& X_MGoal) {
-    return std::make_unique<MoveBaseBlind>(params, X_MGoal, motion_set,
-                                           robot->profile.base_controller);
+          driving = skills.driving](const geometry::Pose2& X_MGoal) {
+    const robot::RobotProfile& profile = driving->robot->profile;
+    return std::make_unique<MoveBaseBlind>(
+        params, X_MGoal, motion_set, profile.base_controller,
+        driving->by_plane ? std::optional(profile.footprint) : std::nullopt);
   };
 }
 
@@ -128,37 +131,43 @@ std::unique_ptr<Skill> MakePickUpFromTray(const SkillSet& skills, const ActionCa
                                         action.arguments[0], PickUpObject::From::kTray);
 }
 
-/// A maker for each of actions::OwnActions().
-const std::map<std::string, SkillMaker>& Makers() {
-  static const std::map<std::string, SkillMaker> makers{
-      {"move_base", MakeMoveBase},
-      {"move_base_param", MakeMoveBase},
-      {"move_base_blind", MakeMoveBaseBlind},
-      {"move_torso", MakeMoveTorso},
-      {"tuck_arms", MakeTuckArms},
-      {"move_arm_to_side", MakeMoveArmToSide},
-      {"move_arms_to_carryposture", MakeMoveArmsToCarry},
-      {"look_at", MakeLookAt},
-      {"observe_objects_on_area", MakeObserve},
-      {"observe_objects_at", MakeObserveAt},
-      {"measure_temperature", MakeMeasureTemperature},
-      {"pick_up_object", MakePickUp},
-      {"place_object", MakePlace},
-      {"place_object_at", MakePlaceAt},
-      {"place_on_tray", MakePlaceOnTray},
-      {"pick_up_from_tray", MakePickUpFromTray},
+/// How each of actions::OwnActions() is done.
+struct Way {
+  SkillMaker make;
+  GoesBy goes_by{GoesBy::kToldPlace};
+};
+
+const std::map<std::string, Way>& Ways() {
+  constexpr GoesBy kSeen = GoesBy::kSeenPlace;
+  static const std::map<std::string, Way> ways{
+      {"move_base", {MakeMoveBase}},
+      {"move_base_param", {MakeMoveBase}},
+      {"move_base_blind", {MakeMoveBaseBlind, kSeen}},
+      {"move_torso", {MakeMoveTorso}},
+      {"tuck_arms", {MakeTuckArms, kSeen}},
+      {"move_arm_to_side", {MakeMoveArmToSide, kSeen}},
+      {"move_arms_to_carryposture", {MakeMoveArmsToCarry, kSeen}},
+      {"look_at", {MakeLookAt}},
+      {"observe_objects_on_area", {MakeObserve}},
+      {"observe_objects_at", {MakeObserveAt, kSeen}},
+      {"measure_temperature", {MakeMeasureTemperature}},
+      {"pick_up_object", {MakePickUp, kSeen}},
+      {"place_object", {MakePlace, kSeen}},
+      {"place_object_at", {MakePlaceAt, kSeen}},
+      {"place_on_tray", {MakePlaceOnTray, kSeen}},
+      {"pick_up_from_tray", {MakePickUpFromTray, kSeen}},
   };
-  return makers;
+  return ways;
 }
 
 std::shared_ptr<const ActionSet> MakeOwnActionSet() {
   auto own = std::make_shared<ActionSet>();
   for (const auto& [name, spec] : actions::OwnActions().specs()) {
-    const auto maker = Makers().find(name);
-    HIRES_CHECK(maker != Makers().end(), "action '" + name + "' has no maker in skill_factory.cpp");
-    own->Add({spec, maker->second});
+    const auto way = Ways().find(name);
+    HIRES_CHECK(way != Ways().end(), "action '" + name + "' has no maker in skill_factory.cpp");
+    own->Add({spec, way->second.make, way->second.goes_by});
   }
-  HIRES_CHECK(Makers().size() == actions::OwnActions().specs().size(),
+  HIRES_CHECK(Ways().size() == actions::OwnActions().specs().size(),
               "skill_factory.cpp has a maker for an action that own_actions.cpp does not describe");
   return own;
 }
@@ -172,7 +181,11 @@ std::unique_ptr<Skill> Make(const SkillSet& skills, const ActionCall& action) {
                     "key upper_body",
                     skills.robot_name));
   }
-  return skills.actions->MakerOf(action.name)(skills, action);
+  auto skill = skills.actions->MakerOf(action.name)(skills, action);
+  const auto& seen = skills.driving->seen_place;
+  if (!seen || skills.actions->PlaceOf(action.name) == GoesBy::kToldPlace) return skill;
+  return std::make_unique<AtSeenPlace>(std::move(skill), seen,
+                                       skills.driving->robot->profile.footprint);
 }
 
 }  // namespace

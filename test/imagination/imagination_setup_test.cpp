@@ -5,8 +5,11 @@
 #include <yaml-cpp/yaml.h>
 
 #include <functional>
+#include <sstream>
+#include <string>
 #include <utility>
 
+#include "hires/base/text.h"
 #include "hires/simulation/pose_error.h"
 #include "imagination/physics_hash.h"
 #include "support/messages.h"
@@ -177,6 +180,44 @@ TEST(SetupConfigTest, AnObstacleLayerIsReadFromItsFileAndMatters) {
   layer["laser"]["period"] = 0.4;
   layer["decay"] = 1;
   EXPECT_THAT(why_refused(), HasSubstr("key 'decay' is unknown"));
+}
+
+/// The section as the file gives it in its comments, so that these are right.
+YAML::Node SeenPlaceInComments(const std::string& layer_file) {
+  std::istringstream lines(base::ReadTextFile(layer_file, 1u << 16));
+  std::string section, line;
+  while (std::getline(lines, line)) {
+    const bool is_of_it = line.rfind("#   ", 0) == 0 || line == "# seen_place:";
+    if (is_of_it) section += line.substr(2) + "\n";
+  }
+  return YAML::Load(section)["seen_place"];
+}
+
+TEST(SetupConfigTest, ASeenPlaceIsReadFromTheLayersFileAndMatters) {
+  const std::string path = Root() + "/config/obstacle_layer.yaml";
+  SceneFile file;
+  file.root["obstacle_layer"] = path;
+  const std::uint64_t without = file.Read().params_hash;
+  EXPECT_FALSE(file.Read().driving.seen_place);
+  YAML::Node layer = YAML::LoadFile(path);
+  layer["seen_place"] = SeenPlaceInComments(path);
+  const auto write = [&] {
+    file.root["obstacle_layer"] = file.folder.Write("layer.yaml", YAML::Dump(layer));
+  };
+  write();
+  EXPECT_NE(file.Read().params_hash, without);
+  const skills::SeenPlaceParams read = file.Read().driving.seen_place.value(), defaults;
+  EXPECT_EQ(read.match.gate, defaults.match.gate);
+  EXPECT_EQ(read.match.least_view, defaults.match.least_view);
+  EXPECT_EQ(read.told_yaw_sd, defaults.told_yaw_sd);
+  EXPECT_EQ(read.drift, defaults.drift);
+
+  layer["seen_place"]["gate"] = 0;
+  write();
+  EXPECT_THAT(ConfigErrorOf([&] { file.Read(); }), HasSubstr("seen_place.gate is '0'"));
+  layer["seen_place"].remove("gate");
+  write();
+  EXPECT_THAT(ConfigErrorOf([&] { file.Read(); }), HasSubstr("seen_place.gate is missing"));
 }
 
 TEST(SetupConfigTest, WhatTellsTheRobotItsPlaceIsReadAndMatters) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "hires/skills/local_costmap.h"
 #include "hires/skills/move_base.h"
 #include "skills/point_robot.h"
+#include "support/planar_rays.h"
 #include "support/scenes.h"
 
 namespace hires::skills::obstacle_layer_test {
@@ -53,22 +53,6 @@ world::World RoomWithDoor() {
   return room;
 }
 
-/// Distance [m] along a ray to an outline; infinite where it passes.
-double RangeTo(const geometry::Polygon& outline, const Eigen::Vector2d& from,
-               const Eigen::Vector2d& direction) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Eigen::Vector2d a = outline[i], edge = outline[(i + 1) % outline.size()] - a;
-    const double across = direction.x() * edge.y() - direction.y() * edge.x();
-    if (std::abs(across) < 1e-12) continue;
-    const Eigen::Vector2d to = a - from;
-    const double range = (to.x() * edge.y() - to.y() * edge.x()) / across;
-    const double share = (to.x() * direction.y() - to.y() * direction.x()) / across;
-    if (range >= 0.0 && share >= 0.0 && share <= 1.0) nearest = std::min(nearest, range);
-  }
-  return nearest;
-}
-
 std::shared_ptr<const robot::PlacedScan> ScanIn(const world::World& world, const Pose2& X_WB,
                                                 const Pose2& X_OB) {
   const auto outlines = world::OutlinesInBand(world, nullptr, kPlane, kPlane);
@@ -79,10 +63,7 @@ std::shared_ptr<const robot::PlacedScan> ScanIn(const world::World& world, const
   const Pose2 X_WL = X_WB * X_BL;
   for (int i = 0; i <= 200; ++i) {
     const double angle = X_WL.yaw + scan.reading.angle_min + i * scan.reading.angle_increment;
-    double range = std::numeric_limits<double>::infinity();
-    for (const geometry::Polygon& outline : outlines)
-      range =
-          std::min(range, RangeTo(outline, X_WL.position(), {std::cos(angle), std::sin(angle)}));
+    const double range = hires::test_support::RangeTo(outlines, X_WL.position(), angle);
     scan.reading.ranges.push_back(static_cast<float>(range));
   }
   return std::make_shared<const robot::PlacedScan>(std::move(scan));

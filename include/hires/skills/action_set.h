@@ -20,10 +20,17 @@ struct SkillSet;
 using SkillMaker =
     std::function<std::unique_ptr<Skill>(const SkillSet& skills, const base::ActionCall& call)>;
 
+/// Which of its places an action's skill goes by.
+enum class GoesBy {
+  kToldPlace,
+  kSeenPlace  ///< where the base's laser sees the robot beside furniture, in scenes that ask for it
+};
+
 /// An action: what it is, and how it is done.
 struct Action {
   actions::ActionSpec spec;
   SkillMaker make;
+  GoesBy goes_by{GoesBy::kToldPlace};
 };
 
 /// A file that actions came from.
@@ -44,6 +51,7 @@ class ActionSet {
   const actions::Catalogue& catalogue() const { return catalogue_; }
   /// @throws base::ConfigError with names like it.
   const SkillMaker& MakerOf(const std::string& name) const;
+  GoesBy PlaceOf(const std::string& name) const;  ///< likewise
   const std::vector<LibraryOfActions>& libraries() const { return libraries_; }
 
   /// Of all descriptions, and of the bytes of all libraries: who has another one may do something
@@ -52,7 +60,11 @@ class ActionSet {
 
  private:
   actions::Catalogue catalogue_;
-  std::map<std::string, SkillMaker> makers_;
+  struct Way {
+    SkillMaker make;
+    GoesBy goes_by;
+  };
+  std::map<std::string, Way> ways_;
   std::vector<LibraryOfActions> libraries_;
 };
 

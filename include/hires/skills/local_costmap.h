@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "hires/geometry/polygon.h"
@@ -10,6 +9,7 @@
 #include "hires/navigation/costmap.h"
 #include "hires/navigation/obstacle_layer.h"
 #include "hires/robot/observation.h"
+#include "hires/skills/scan_watch.h"
 
 namespace hires::skills {
 
@@ -42,7 +42,6 @@ class LocalCostmap {
   std::vector<Eigen::Vector2d> Marks(const robot::Observation& observation) const;
 
  private:
-  bool IsReset(const robot::Observation& observation) const;
   std::vector<Eigen::Vector2d> Obstacles(const robot::Observation& observation) const;
 
   const MapByPlane* map_;
@@ -50,14 +49,9 @@ class LocalCostmap {
   double reach_;  // [m] so far from the robot obstacles matter
   navigation::ObstacleLayer layer_;
   std::shared_ptr<const navigation::Costmap> beyond_;  // inflated for this robot
-  std::shared_ptr<const robot::PlacedScan> scan_;      // the last that the layer has
+  ScanWatch watch_;
   std::shared_ptr<const navigation::Costmap> now_;
   geometry::Pose2 X_OM_;  // of that
-  struct Odometry {
-    double time;  // [s]
-    geometry::Pose2 X_OB;
-  };
-  std::optional<Odometry> before_;  // of the last look
 };
 
 }  // namespace hires::skills

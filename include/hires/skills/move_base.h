@@ -12,9 +12,14 @@
 #include "hires/robot/robot_profile.h"
 #include "hires/skills/local_costmap.h"
 #include "hires/skills/lost_watch.h"
+#include "hires/skills/scan_watch.h"
+#include "hires/skills/seen_place.h"
 #include "hires/skills/skill.h"
 
 namespace hires::skills {
+
+/// So many ways a car is given that comes to rest out of tolerance each time.
+constexpr int kMostCarWays = 8;
 
 struct MoveBaseParams {
   navigation::CostmapParams costmap;
@@ -29,6 +34,8 @@ struct MoveBaseParams {
                                      ///< planning again; twice in a row: giving up
   /// Local control goes by what the base's laser sees now; none: by the map.
   std::optional<navigation::ObstacleLayerParams> obstacle_layer;
+  /// Beside furniture the robot goes by the place where that laser sees it; none: by the told one.
+  std::optional<SeenPlaceParams> seen_place;
   LostParams lost;
 };
 
@@ -39,7 +46,8 @@ struct DrivingContext {
   geometry::Polygon footprint;  ///< padded; of the posture for driving
   MoveBaseParams params;
 
-  std::optional<MapByPlane> by_plane;  ///< with an obstacle layer
+  std::optional<MapByPlane> by_plane;           ///< with an obstacle layer
+  std::shared_ptr<const SeenPlace> seen_place;  ///< of a world, where asked for; else null
 };
 
 /// The footprint of a robot that does not have its arms where they are for driving: the padded
@@ -52,7 +60,8 @@ geometry::Polygon FootprintOf(const DrivingContext& context, const robot::JointP
 /// @throws base::ConfigError for a robot without a base laser where local control asks for one.
 DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot& robot,
                                   const MoveBaseParams& params);
-/// ... from a recorded map, which has what a laser in its plane sees.
+/// ... from a recorded map, which has what a laser in its plane sees. Its cells are too coarse for
+/// a seen place.
 DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::Robot& robot,
                                   const MoveBaseParams& params);
 
@@ -121,13 +130,16 @@ struct MoveBaseBlindParams {
 };
 
 /// Drives straight to a pose, turning on the way (two driven wheels: before and after; a car: on
-/// Reeds and Shepp's shortest way, forward and backward), without looking at obstacles: for the
-/// last stretch to furniture, under whose top the base fits. While the robot is lost it stands.
-/// Fails with stuck or localisation_lost.
+/// Reeds and Shepp's shortest way, forward and backward), not round obstacles: for the last stretch
+/// to furniture, under whose top the base fits. Where local control goes by the laser it slows down
+/// and stops before what that sees. While the robot is lost it stands. Fails with stuck or
+/// localisation_lost.
 class MoveBaseBlind : public Skill {
  public:
+  /// @param body  the robot's footprint, where it shall stop before what its laser sees.
   MoveBaseBlind(const MoveBaseBlindParams& params, const geometry::Pose2& X_MGoal,
-                const robot::MotionSet& motion_set, const robot::BaseControllerParams& base);
+                const robot::MotionSet& motion_set, const robot::BaseControllerParams& base,
+                std::optional<geometry::Polygon> body = std::nullopt);
 
   Status Update(const robot::Observation& observation, robot::Command* command) override;
   double period() const override { return params_.period; }
@@ -146,12 +158,18 @@ class MoveBaseBlind : public Skill {
   Course Steer(const robot::Observation& observation);
   void PlanWay(const geometry::Pose2& X_MB);
   Course CourseTo(const robot::Observation& observation, const geometry::Pose2& X_BGoal);
+  double Deceleration() const;
+  geometry::Twist2 BeforeThings(const geometry::Twist2& wanted,
+                                const robot::Observation& observation);
 
   MoveBaseBlindParams params_;
   geometry::Pose2 X_MGoal_;
   robot::MotionSet motion_set_;
   robot::Drive drive_;
   double min_turning_radius_;
+  std::optional<geometry::Polygon> body_;  // none: it does not look
+  ScanWatch watch_;
+  std::vector<Eigen::Vector2d> echoes_O_;       // [m] of the last scan, by odometry
   std::optional<navigation::CarFollower> car_;  // where the base steers like one
   int num_ways_{0};                             // that it has been given
   LostWatch lost_;

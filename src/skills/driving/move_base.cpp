@@ -12,7 +12,6 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr int kMostWays = 8;        // of a car that comes to rest out of tolerance each time
 constexpr double kMapMargin = 2.0;  // [m] free floor around the outermost body or area
 
 /// [m] The map covers all bodies and this much more: far enough that all areas lie well inside.
@@ -48,14 +47,6 @@ std::optional<navigation::CarFollower> MakeFollower(const DrivingContext& contex
   navigation::CarFollower follower(params, footprint, base.min_turning_radius);
   follower.SetMotionSet(motion_set);
   return follower;
-}
-
-/// The motion set as far as a blind drive uses it.
-robot::MotionSet Slowed(robot::MotionSet motion_set, const MoveBaseBlindParams& params) {
-  motion_set.max_linear_velocity = std::min(motion_set.max_linear_velocity, params.max_velocity);
-  motion_set.max_angular_velocity =
-      std::min(motion_set.max_angular_velocity, params.max_angular_velocity);
-  return motion_set;
 }
 
 double RobotHeight(const robot::Robot& robot) {
@@ -144,10 +135,17 @@ DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot&
   const world::OccupancyGrid map = world::SliceWorld(
       world, params.min_obstacle_height, RobotHeight(robot), params.map_resolution, margin);
   DrivingContext context = ContextOf(map, robot, params);
-  if (!params.obstacle_layer) return context;
+  if (!params.obstacle_layer && !params.seen_place) return context;
   const double plane = LaserPlane(robot);
-  context.by_plane =
-      ByPlane(world::SliceWorld(world, plane, plane, params.map_resolution, margin), map, context);
+  if (params.obstacle_layer) {
+    context.by_plane = ByPlane(
+        world::SliceWorld(world, plane, plane, params.map_resolution, margin), map, context);
+  }
+  if (params.seen_place) {
+    context.seen_place = std::make_shared<const SeenPlace>(
+        SeenPlace{{world::OutlinesInBand(world, nullptr, plane, plane), params.seen_place->match},
+                  *params.seen_place});
+  }
   return context;
 }
 
@@ -272,7 +270,8 @@ Status MoveBase::Recover(const robot::Observation& observation) {
   if (observation.time - last_plan_ >= context_->params.replanning_period) {
     // A car with nothing in its way came to rest out of tolerance: the next way may end so, too.
     const bool has_missed = car_ && !car_->is_blocked();
-    if (has_missed && num_missed_ + 1 == kMostWays) return Failed(base::FailureCode::kOscillating);
+    if (has_missed && num_missed_ + 1 == kMostCarWays)
+      return Failed(base::FailureCode::kOscillating);
     last_plan_ = observation.time;
     // What blocks the way may go: patience decides, not one plan.
     const bool is_planned = !Plan(observation);
@@ -371,128 +370,6 @@ Status MoveBase::Update(const robot::Observation& observation, robot::Command* c
     last_moved_ = observation.time;
     if (const auto failed = Plan(observation)) return *failed;
   }
-  return {};
-}
-
-MoveBaseBlind::MoveBaseBlind(const MoveBaseBlindParams& params, const Pose2& X_MGoal,
-                             const robot::MotionSet& motion_set,
-                             const robot::BaseControllerParams& base)
-    : params_(params),
-      X_MGoal_(X_MGoal),
-      motion_set_(motion_set),
-      drive_(base.drive),
-      min_turning_radius_(base.min_turning_radius),
-      lost_(params.lost) {
-  if (drive_ != robot::Drive::kCarLike) return;
-  navigation::CarFollowerParams following;
-  following.control_period = params.period;
-  following.xy_goal_tolerance = params.xy_tolerance;
-  following.yaw_goal_tolerance = params.yaw_tolerance;
-  following.deceleration = params.deceleration;
-  following.reaction_time = params.reaction_time;
-  car_.emplace(following, geometry::Polygon{}, min_turning_radius_);
-  car_->SetMotionSet(Slowed(motion_set, params));
-}
-
-double MoveBaseBlind::LinearSpeed(double distance) const {
-  const double deceleration = std::min(params_.deceleration, motion_set_.max_linear_acceleration);
-  return std::min({navigation::ApproachSpeed(distance, deceleration, params_.reaction_time),
-                   params_.max_velocity, motion_set_.max_linear_velocity});
-}
-
-double MoveBaseBlind::TurningSpeed(double angle) const {
-  const double deceleration = std::min(params_.deceleration, motion_set_.max_linear_acceleration);
-  const double speed =
-      std::min({navigation::ApproachSpeed(std::abs(angle), deceleration, params_.reaction_time),
-                params_.max_angular_velocity, motion_set_.max_angular_velocity});
-  return std::copysign(speed, angle);
-}
-
-MoveBaseBlind::Course MoveBaseBlind::Straight(const Pose2& X_BGoal) const {
-  const double distance = std::hypot(X_BGoal.x, X_BGoal.y);
-  const double scale = distance > 0.0 ? LinearSpeed(distance) / distance : 0.0;
-  return {{scale * X_BGoal.x, scale * X_BGoal.y, TurningSpeed(X_BGoal.yaw)},
-          distance + std::abs(X_BGoal.yaw)};
-}
-
-/// Wheels that cannot drive sideways: it faces the goal or turns its back on it, whichever is
-/// nearer, drives there, and turns.
-MoveBaseBlind::Course MoveBaseBlind::TurnAndDrive(const Pose2& X_BGoal) {
-  const double distance = std::hypot(X_BGoal.x, X_BGoal.y);
-  if (distance <= params_.xy_tolerance) {
-    return {{0.0, 0.0, TurningSpeed(X_BGoal.yaw)}, std::abs(X_BGoal.yaw)};
-  }
-  const double ahead = std::atan2(X_BGoal.y, X_BGoal.x);
-  // Once chosen it is kept unless it is clearly wrong, so that noise does not change it.
-  const double most = begun_driving_ ? 0.6 * geometry::kPi : 0.5 * geometry::kPi;
-  if (std::abs(backwards_ ? geometry::WrapToPi(ahead + geometry::kPi) : ahead) > most) {
-    backwards_ = !backwards_;
-  }
-  begun_driving_ = true;
-  const double off = backwards_ ? geometry::WrapToPi(ahead + geometry::kPi) : ahead;
-  const bool is_aimed = std::abs(off) <= params_.yaw_tolerance ||
-                        std::abs(distance * std::sin(off)) <= 0.5 * params_.xy_tolerance;
-  const double speed = is_aimed ? LinearSpeed(distance) * std::cos(off) : 0.0;
-  return {{backwards_ ? -speed : speed, 0.0, TurningSpeed(off)},
-          geometry::kPi + distance + std::abs(off)};
-}
-
-void MoveBaseBlind::PlanWay(const Pose2& X_MB) {
-  car_->SetPath(navigation::ShortestCarPath(X_MB, X_MGoal_, min_turning_radius_));
-  ++num_ways_;
-  nearest_ = 1e9;
-}
-
-/// Steering like a car. Where it came to rest out of tolerance it is given a new way, some times.
-MoveBaseBlind::Course MoveBaseBlind::Steer(const robot::Observation& observation) {
-  if (num_ways_ == 0) PlanWay(observation.X_MB);
-  auto result = car_->Update(nullptr, observation.X_MB, observation.V_B);
-  if (result.status == navigation::DwaStatus::kNoValidTrajectory && num_ways_ < kMostWays) {
-    PlanWay(observation.X_MB);
-    result = car_->Update(nullptr, observation.X_MB, observation.V_B);
-  }
-  return {result.velocity, car_->remaining()};
-}
-
-MoveBaseBlind::Course MoveBaseBlind::CourseTo(const robot::Observation& observation,
-                                              const Pose2& X_BGoal) {
-  switch (drive_) {
-    case robot::Drive::kCarLike:
-      return Steer(observation);
-    case robot::Drive::kDifferential:
-      return TurnAndDrive(X_BGoal);
-    case robot::Drive::kOmnidirectional:
-      break;
-  }
-  return Straight(X_BGoal);
-}
-
-Status MoveBaseBlind::Update(const robot::Observation& observation, robot::Command* command) {
-  command->motion_set = motion_set_;
-  const LostWatch::State place = lost_.Look(observation);
-  if (place == LostWatch::State::kGivenUp) return Failed(lost_.Why(observation));
-  if (place == LostWatch::State::kLost || place == LostWatch::State::kFound) {
-    command->base_velocity = geometry::Twist2{};
-    num_ways_ = 0;
-    nearest_ = 1e9;  // from wherever it will be found
-    return {};
-  }
-  const Pose2 X_BGoal = observation.X_MB.Inverse() * X_MGoal_;
-  const double distance = std::hypot(X_BGoal.x, X_BGoal.y), turn = std::abs(X_BGoal.yaw);
-  if (distance <= params_.xy_tolerance && turn <= params_.yaw_tolerance) {
-    command->base_velocity = geometry::Twist2{};
-    const bool stopped = std::hypot(observation.V_B.vx, observation.V_B.vy) < 0.01 &&
-                         std::abs(observation.V_B.wz) < 0.01;
-    return stopped ? Succeeded() : Status{};
-  }
-  const Course course = CourseTo(observation, X_BGoal);
-  if (course.remaining < nearest_ - 0.01) {
-    nearest_ = course.remaining;
-    last_progress_ = observation.time;
-  }
-  if (observation.time - last_progress_ > params_.stuck_timeout)
-    return Failed(base::FailureCode::kStuck);
-  command->base_velocity = course.velocity;
   return {};
 }
 

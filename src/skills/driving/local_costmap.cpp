@@ -5,7 +5,6 @@
 
 #include "hires/geometry/angles.h"
 #include "hires/navigation/dwa.h"
-#include "hires/robot/odometry_jump.h"
 
 namespace hires::skills {
 namespace {
@@ -36,16 +35,13 @@ void LocalCostmap::SetInscribedRadius(double radius) {
 
 const std::shared_ptr<const navigation::Costmap>& LocalCostmap::Look(
     const robot::Observation& observation) {
-  const bool is_reset = IsReset(observation);
-  before_ = Odometry{observation.time, observation.X_OB};
-  const bool is_new = is_reset || (observation.scan && observation.scan != scan_);
-  if (is_reset) {
-    layer_.Forget();
-    scan_ = observation.scan;  // taken before, or who knows
-  } else if (is_new) {
-    scan_ = observation.scan;
-    layer_.Insert(observation.time, scan_->reading, scan_->X_OB, scan_->X_BL, footprint_);
+  const ScanWatch::News news = watch_.Look(observation);
+  if (news.is_reset) layer_.Forget();
+  if (news.scan) {
+    layer_.Insert(observation.time, news.scan->reading, news.scan->X_OB, news.scan->X_BL,
+                  footprint_);
   }
+  const bool is_new = news.is_reset || news.scan;
   const Pose2 X_OM = observation.X_OB * observation.X_MB.Inverse();
   if (now_ && !is_new && !HasMoved(X_OM_, X_OM, observation.X_MB)) return now_;
   X_OM_ = X_OM;
@@ -53,13 +49,6 @@ const std::shared_ptr<const navigation::Costmap>& LocalCostmap::Look(
   now_ =
       std::make_shared<const navigation::Costmap>(beyond_->WithObstaclesAt(Obstacles(observation)));
   return now_;
-}
-
-bool LocalCostmap::IsReset(const robot::Observation& observation) const {
-  if (!before_) return false;
-  return robot::IsOdometryJump(before_->X_OB.Inverse() * observation.X_OB,
-                               observation.time - before_->time, robot::kFastestDrive,
-                               robot::kFastestTurn);
 }
 
 std::vector<Vector2d> LocalCostmap::Marks(const robot::Observation& observation) const {
