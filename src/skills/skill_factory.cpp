@@ -182,9 +182,9 @@ std::unique_ptr<Skill> Make(const SkillSet& skills, const ActionCall& action) {
                     skills.robot_name));
   }
   auto skill = skills.actions->MakerOf(action.name)(skills, action);
-  const auto& seen = skills.driving->seen_place;
-  if (!seen || skills.actions->PlaceOf(action.name) == GoesBy::kToldPlace) return skill;
-  return std::make_unique<AtSeenPlace>(std::move(skill), seen,
+  const bool is_by_seen = skills.actions->PlaceOf(action.name) == GoesBy::kSeenPlace;
+  if (!is_by_seen || !skills.driving || !skills.driving->seen_place) return skill;
+  return std::make_unique<AtSeenPlace>(std::move(skill), skills.driving->seen_place,
                                        skills.driving->robot->profile.footprint);
 }
 
