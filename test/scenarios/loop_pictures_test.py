@@ -140,8 +140,8 @@ class LoopPicturesTest(LoopCase):
     def test_of_two_mugs_the_one_that_is_seen_to_be_hot_gets_to_the_guest(self):
         self.begin(AT_COUNTER, {**MUG, 'mug2': (5.37, 9.94, 0.75, 0.0)}, temperatures={'mug1': 335.65},
                    knowledge=(RESTAURANT, os.path.join(CONFIG, 'knowledge', 'two_coffees.yaml')))
-        self.assertEqual(self.loop.main.publishers('/object_temperatures'), ['/' + HEAT_READER])
         self.require(self.achieve('serve_hot_coffee_to_guest guest1'), self.codes.SUCCEEDED)
+        self.assertEqual(self.loop.main.publishers('/object_temperatures'), ['/' + HEAT_READER])
         self.wait_until_it_stands()
         self.assert_on_table1('mug1')
 
