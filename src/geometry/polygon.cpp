@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "hires/base/check.h"
+#include "hires/geometry/segment.h"
 
 namespace hires::geometry {
 namespace {
@@ -15,11 +16,7 @@ double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 
 double DistanceToSegment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
                          const Eigen::Vector2d& b) {
-  const Eigen::Vector2d along = b - a;
-  const double length_squared = along.squaredNorm();
-  const double t =
-      length_squared > 0.0 ? std::clamp((p - a).dot(along) / length_squared, 0.0, 1.0) : 0.0;
-  return (p - a - t * along).norm();
+  return (p - a - NearestShare(p, a, b) * (b - a)).norm();
 }
 
 /// Is there a line along an edge of `a` with all of `b` on its far side?

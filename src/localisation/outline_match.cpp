@@ -6,6 +6,7 @@
 
 #include "hires/base/check.h"
 #include "hires/geometry/angles.h"
+#include "hires/geometry/segment.h"
 
 namespace hires::localisation {
 namespace {
@@ -26,12 +27,6 @@ double TwiceArea(const geometry::Polygon& outline) {
     area += a.x() * b.y() - a.y() * b.x();
   }
   return area;
-}
-
-Vector2d NearestOn(const Vector2d& from, const Vector2d& to, const Vector2d& point) {
-  const Vector2d along = to - from;
-  const double share = (point - from).dot(along) / along.squaredNorm();
-  return from + std::clamp(share, 0.0, 1.0) * along;
 }
 
 Vector3d Difference(const Pose2& a, const Pose2& b) {
@@ -61,7 +56,8 @@ std::vector<OutlineMatch::Face> OutlineMatch::FacesNear(const Vector2d& place_M)
   std::vector<Face> near;
   const double far = params_.reach + 2.0 * params_.gate;
   for (const Face& face : faces_) {
-    if ((NearestOn(face.from, face.to, place_M) - place_M).norm() <= far) near.push_back(face);
+    if ((geometry::NearestOnSegment(place_M, face.from, face.to) - place_M).norm() <= far)
+      near.push_back(face);
   }
   return near;
 }
@@ -74,7 +70,7 @@ std::optional<OutlineMatch::Meeting> OutlineMatch::Meet(const std::vector<Face>&
   std::optional<Meeting> met;
   for (const Face& face : faces) {
     if (face.normal.dot(laser_M - face.from) <= 0.0) continue;
-    const Vector2d off = echo_M - NearestOn(face.from, face.to, echo_M);
+    const Vector2d off = echo_M - geometry::NearestOnSegment(echo_M, face.from, face.to);
     const double distance = off.norm();
     if (distance > nearest) continue;
     nearest = distance;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "hires/navigation/car_follower.h"
+#include "navigation/velocity_window.h"
 
 namespace hires::navigation {
 namespace {
@@ -27,15 +28,6 @@ double Outside(const geometry::Polygon& outline, const Vector2d& point) {
   return most;
 }
 
-/// Where the base is after a time [s] with a constant velocity.
-Pose2 AfterTime(const Twist2& velocity, double time) {
-  const double turn = velocity.wz * time;
-  if (std::abs(turn) < 1e-9) return {velocity.vx * time, velocity.vy * time, turn};
-  const double along = std::sin(turn) / velocity.wz, across = (1.0 - std::cos(turn)) / velocity.wz;
-  return {along * velocity.vx - across * velocity.vy, across * velocity.vx + along * velocity.vy,
-          turn};
-}
-
 }  // namespace
 
 Twist2 SlowedBefore(const Twist2& wanted, const std::vector<Vector2d>& things_B,
@@ -56,7 +48,7 @@ Twist2 SlowedBefore(const Twist2& wanted, const std::vector<Vector2d>& things_B,
   if (near.empty()) return wanted;
   double way = 0.0;  // [m] of the fastest corner that is free
   for (; way < stop; way += kStep) {
-    const Pose2 X_NextB = AfterTime(wanted, (way + kStep) / speed).Inverse();
+    const Pose2 X_NextB = PoseAfter({}, wanted, (way + kStep) / speed).Inverse();
     const bool is_met = std::any_of(near.begin(), near.end(), [&](const Thing& thing) {
       const double outside = Outside(footprint, X_NextB * thing.p_B);
       return outside < params.gap && outside < thing.outside - kNearer;

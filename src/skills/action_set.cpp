@@ -30,12 +30,8 @@ void ActionSet::Add(Action action) {
   ways_[name] = {std::move(action.make), action.goes_by};
 }
 
-const SkillMaker& ActionSet::MakerOf(const std::string& name) const {
-  return ways_.at(catalogue_.Get(name).name).make;
-}
-
-GoesBy ActionSet::PlaceOf(const std::string& name) const {
-  return ways_.at(catalogue_.Get(name).name).goes_by;
+const Way& ActionSet::WayOf(const std::string& name) const {
+  return ways_.at(catalogue_.Get(name).name);
 }
 
 std::uint64_t ActionSet::hash() const {

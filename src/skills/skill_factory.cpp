@@ -132,11 +132,6 @@ std::unique_ptr<Skill> MakePickUpFromTray(const SkillSet& skills, const ActionCa
 }
 
 /// How each of actions::OwnActions() is done.
-struct Way {
-  SkillMaker make;
-  GoesBy goes_by{GoesBy::kToldPlace};
-};
-
 const std::map<std::string, Way>& Ways() {
   constexpr GoesBy kSeen = GoesBy::kSeenPlace;
   static const std::map<std::string, Way> ways{
@@ -181,8 +176,9 @@ std::unique_ptr<Skill> Make(const SkillSet& skills, const ActionCall& action) {
                     "key upper_body",
                     skills.robot_name));
   }
-  auto skill = skills.actions->MakerOf(action.name)(skills, action);
-  const bool is_by_seen = skills.actions->PlaceOf(action.name) == GoesBy::kSeenPlace;
+  const Way& way = skills.actions->WayOf(action.name);
+  auto skill = way.make(skills, action);
+  const bool is_by_seen = way.goes_by == GoesBy::kSeenPlace;
   if (!is_by_seen || !skills.driving || !skills.driving->seen_place) return skill;
   return std::make_unique<AtSeenPlace>(std::move(skill), skills.driving->seen_place,
                                        skills.driving->robot->profile.footprint);

@@ -9,6 +9,7 @@
 #include "hires/base/error.h"
 #include "hires/world/unknown_box.h"
 #include "support/fake_frame_tree.h"
+#include "support/planar_rays.h"
 #include "support/scenes.h"
 #include "support/sight_scenes.h"
 #include "support/tilt_sweep.h"
@@ -41,22 +42,6 @@ std::vector<Polygon> Chair(double x, double y, double yaw = 0.0) {
   return legs;
 }
 
-/// [m] along a ray to the nearest outline; infinite without one.
-double RangeTo(const std::vector<Polygon>& standing, const Pose2& X_ML, double angle) {
-  const Pose2 X_RM = (X_ML * Pose2{0.0, 0.0, angle}).Inverse();  // the ray is R's x axis
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Polygon& outline : standing) {
-    const Polygon seen = geometry::Transformed(X_RM, outline);
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      const Eigen::Vector2d a = seen[i], b = seen[(i + 1) % seen.size()];
-      if ((a.y() > 0.0) == (b.y() > 0.0)) continue;
-      const double x = a.x() + (b - a).x() * a.y() / (a.y() - b.y());
-      if (x > 0.0) nearest = std::min(nearest, x);
-    }
-  }
-  return nearest;
-}
-
 class FloorWatchTest : public testing::Test {
  protected:
   static std::shared_ptr<const world::World> TheRoom() {
@@ -77,7 +62,8 @@ class FloorWatchTest : public testing::Test {
       state_.OnJoints(time_, {{{"a", 1.0}}, {{"a", 0.5}}});
       robot::ScanReading scan{-0.5 * M_PI, M_PI / 360.0, 0.08, {}};
       for (int k = 0; k <= 360; ++k) {
-        const double range = RangeTo(standing, X_MB_, scan.angle_min + k * scan.angle_increment);
+        const double range = hires::test_support::RangeTo(
+            standing, X_MB_.position(), X_MB_.yaw + scan.angle_min + k * scan.angle_increment);
         scan.ranges.push_back(static_cast<float>(range + rng_.Normal(0.0, 0.01)));
       }
       watch_.OnScan(time_, "base", std::move(scan));

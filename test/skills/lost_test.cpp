@@ -8,6 +8,7 @@
 
 #include "hires/skills/lost_watch.h"
 #include "hires/skills/move_base.h"
+#include "skills/laser_robot.h"
 #include "skills/point_robot.h"
 #include "support/scenes.h"
 
@@ -26,22 +27,9 @@ const robot::MotionSet kFast{0.55, 1.0, 2.5, 3.2};
 const Pose2 kWest{1.0, 2.0, 0.0}, kEast{4.5, 2.0, 0.0}, kMiddle{2.75, 2.0, 0.0};
 constexpr double kUnsure = 0.8;  // [m]
 
-robot::Robot RobotWithLaser() {
-  robot::Robot robot = TrayRobot();
-  robot::Link laser;
-  laser.name = "laser";
-  laser.joint = robot::Joint();
-  laser.joint->name = "laser_joint";
-  laser.joint->parent = 0;
-  laser.joint->X_PJ.translation = {0.0, 0.0, 0.25};
-  robot.model.links.push_back(laser);
-  robot.profile.laser_link = "laser";
-  return robot;
-}
-
 std::shared_ptr<const DrivingContext> Context(MoveBaseParams params = {}) {
   return std::make_shared<const DrivingContext>(
-      MakeDrivingContext(Room(), RobotWithLaser(), params));
+      MakeDrivingContext(Room(), test_support::RobotWithLaser({}), params));
 }
 
 std::shared_ptr<const DrivingContext> WithObstacleLayer() {

@@ -13,8 +13,8 @@
 #include "hires/geometry/polygon.h"
 #include "hires/skills/local_costmap.h"
 #include "hires/skills/move_base.h"
+#include "skills/laser_robot.h"
 #include "skills/point_robot.h"
-#include "support/planar_rays.h"
 #include "support/scenes.h"
 
 namespace hires::skills::obstacle_layer_test {
@@ -28,20 +28,8 @@ using test_support::SkillRun;
 const robot::MotionSet kSlow{0.30, 1.0, 1.4, 2.0};
 const Pose2 kWest{1.0, 2.0, 0.0}, kEast{4.5, 2.0, 0.0};
 const Pose2 X_BL{0.27, 0.0, 0.0};
-constexpr double kPlane = 0.25;  // [m] of the laser above the floor
 
-robot::Robot RobotWithLaser() {
-  robot::Robot robot = hires::test_support::TrayRobot();
-  robot::Link laser;
-  laser.name = "laser";
-  laser.joint = robot::Joint();
-  laser.joint->name = "laser_joint";
-  laser.joint->parent = 0;
-  laser.joint->X_PJ.translation = {X_BL.x, X_BL.y, kPlane};
-  robot.model.links.push_back(laser);
-  robot.profile.laser_link = "laser";
-  return robot;
-}
+robot::Robot RobotWithLaser() { return test_support::RobotWithLaser(X_BL); }
 
 /// A room with a wall across it that leaves a door 0.8 m wide; the padded robot is 0.6 m wide.
 world::World RoomWithDoor() {
@@ -55,18 +43,7 @@ world::World RoomWithDoor() {
 
 std::shared_ptr<const robot::PlacedScan> ScanIn(const world::World& world, const Pose2& X_WB,
                                                 const Pose2& X_OB) {
-  const auto outlines = world::OutlinesInBand(world, nullptr, kPlane, kPlane);
-  robot::PlacedScan scan;
-  scan.X_OB = X_OB;
-  scan.X_BL = X_BL;
-  scan.reading = {-2.0, 0.02, 0.05, {}, 10.0};
-  const Pose2 X_WL = X_WB * X_BL;
-  for (int i = 0; i <= 200; ++i) {
-    const double angle = X_WL.yaw + scan.reading.angle_min + i * scan.reading.angle_increment;
-    const double range = hires::test_support::RangeTo(outlines, X_WL.position(), angle);
-    scan.reading.ranges.push_back(static_cast<float>(range));
-  }
-  return std::make_shared<const robot::PlacedScan>(std::move(scan));
+  return test_support::ScanIn(world, X_WB, X_OB, X_BL);
 }
 
 std::shared_ptr<const DrivingContext> ContextOf(const world::World& world, bool has_layer) {

@@ -12,8 +12,8 @@
 #include "hires/skills/skill_factory.h"
 #include "hires/world/occupancy_grid.h"
 #include "skills/driving/at_seen_place.h"
+#include "skills/laser_robot.h"
 #include "skills/point_robot.h"
-#include "support/planar_rays.h"
 #include "support/scenes.h"
 
 namespace hires::skills::seen_place_test {
@@ -21,7 +21,6 @@ namespace {
 
 using geometry::Pose2;
 using hires::test_support::Block;
-using hires::test_support::TrayRobot;
 using test_support::PointRobot;
 using test_support::RunSkill;
 using test_support::SkillRun;
@@ -29,21 +28,9 @@ using test_support::SkillRun;
 const robot::MotionSet kSlow{0.30, 1.0, 1.4, 2.0};
 const Pose2 kStart{1.0, 2.0, 0.0}, kAtTable{2.2, 2.0, 0.0};
 const Pose2 X_BL{0.27, 0.0, 0.0};
-constexpr double kPlane = 0.25;      // [m] of the laser above the floor
 constexpr double kTolerance = 0.03;  // [m] of a blind drive
 
-robot::Robot RobotWithLaser() {
-  robot::Robot robot = TrayRobot();
-  robot::Link laser;
-  laser.name = "laser";
-  laser.joint = robot::Joint();
-  laser.joint->name = "laser_joint";
-  laser.joint->parent = 0;
-  laser.joint->X_PJ.translation = {X_BL.x, X_BL.y, kPlane};
-  robot.model.links.push_back(laser);
-  robot.profile.laser_link = "laser";
-  return robot;
-}
+robot::Robot RobotWithLaser() { return test_support::RobotWithLaser(X_BL); }
 
 /// A table ahead of the goal, of four legs and a top that no beam of the laser meets.
 world::World RoomWithTable() {
@@ -58,18 +45,7 @@ world::World RoomWithTable() {
 
 std::shared_ptr<const robot::PlacedScan> ScanIn(const world::World& world, const Pose2& X_WB,
                                                 const Pose2& X_OB) {
-  const auto outlines = world::OutlinesInBand(world, nullptr, kPlane, kPlane);
-  robot::PlacedScan scan;
-  scan.X_OB = X_OB;
-  scan.X_BL = X_BL;
-  scan.reading = {-2.0, 0.02, 0.05, {}, 10.0};
-  const Pose2 X_WL = X_WB * X_BL;
-  for (int i = 0; i <= 200; ++i) {
-    const double angle = X_WL.yaw + scan.reading.angle_min + i * scan.reading.angle_increment;
-    scan.reading.ranges.push_back(
-        static_cast<float>(hires::test_support::RangeTo(outlines, X_WL.position(), angle)));
-  }
-  return std::make_shared<const robot::PlacedScan>(std::move(scan));
+  return test_support::ScanIn(world, X_WB, X_OB, X_BL);
 }
 
 SkillSet SkillsIn(const world::World& world, bool by_seen_place = true) {

@@ -26,6 +26,12 @@ enum class GoesBy {
   kSeenPlace  ///< where the base's laser sees the robot beside furniture, in scenes that ask for it
 };
 
+/// How an action is done.
+struct Way {
+  SkillMaker make;
+  GoesBy goes_by{GoesBy::kToldPlace};
+};
+
 /// An action: what it is, and how it is done.
 struct Action {
   actions::ActionSpec spec;
@@ -50,8 +56,7 @@ class ActionSet {
 
   const actions::Catalogue& catalogue() const { return catalogue_; }
   /// @throws base::ConfigError with names like it.
-  const SkillMaker& MakerOf(const std::string& name) const;
-  GoesBy PlaceOf(const std::string& name) const;  ///< likewise
+  const Way& WayOf(const std::string& name) const;
   const std::vector<LibraryOfActions>& libraries() const { return libraries_; }
 
   /// Of all descriptions, and of the bytes of all libraries: who has another one may do something
@@ -60,10 +65,6 @@ class ActionSet {
 
  private:
   actions::Catalogue catalogue_;
-  struct Way {
-    SkillMaker make;
-    GoesBy goes_by;
-  };
   std::map<std::string, Way> ways_;
   std::vector<LibraryOfActions> libraries_;
 };

@@ -78,8 +78,7 @@ std::string ReportText(const DetectorFitReport& report) {
     text += "left out, as no look was so: " + base::Join(report.empty_parts, ", ") + "\n";
   text += fmt::format(
       "distances are from the camera to the thing, the robot's base stands up to {:.1f} m before "
-      "the "
-      "table's middle\n\n",
+      "the table's middle\n\n",
       FitVariety().farthest);
   return text + GainText(report) + "\n";
 }

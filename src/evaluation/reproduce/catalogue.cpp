@@ -149,13 +149,11 @@ bool HasBound(const ComparedValue& value) {
 }
 
 /// "own" says whether an item is judged by what the dissertation says or by bounds of ours alone.
-void ReadOwn(base::ParamReader* in, CatalogueItem* item) {
-  const auto& values = item->values;
-  const bool is_judged = std::any_of(values.begin(), values.end(), HasBound);
+void ReadOwn(base::ParamReader* in, bool is_judged, CatalogueItem* item) {
   if (in->Has("own")) item->is_own = in->GetBool("own");
   if (item->is_own && !is_judged) in->Fail("own", "true, but nothing is judged; leave it out");
   const bool is_compared = std::any_of(
-      values.begin(), values.end(),
+      item->values.begin(), item->values.end(),
       [](const ComparedValue& value) { return HasBound(value) && value.published.has_value(); });
   if (is_judged && !item->is_own && !is_compared) {
     in->Fail("item",
@@ -177,12 +175,13 @@ CatalogueItem ReadItem(base::ParamReader in) {
       item.values.push_back(ReadValue(value, item.plays));
     }
   }
-  if (std::any_of(item.values.begin(), item.values.end(), HasBound)) {
+  const bool is_judged = std::any_of(item.values.begin(), item.values.end(), HasBound);
+  if (is_judged) {
     in.RequireKeys({"bounds", "fails"});
     item.bounds = in.GetString("bounds");
     item.fails = in.GetString("fails");
   }
-  ReadOwn(&in, &item);
+  ReadOwn(&in, is_judged, &item);
   for (const std::string& drawing : item.drawings) {
     const std::string play = drawing.substr(0, drawing.find(':'));
     if (play == drawing || std::count(item.plays.begin(), item.plays.end(), play) == 0) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hires/geometry/segment.h"
+
 namespace hires::sensing {
 namespace {
 
@@ -29,17 +31,12 @@ Chord ChordOf(const Vector2d& from, const Vector2d& direction, const Polygon& ou
   return enter <= leave ? Chord{enter, leave} : Chord{};
 }
 
-Vector2d NearestOnEdge(const Vector2d& a, const Vector2d& b, const Vector2d& p) {
-  const double squared = (b - a).squaredNorm();
-  const double t = squared > 0.0 ? std::clamp((p - a).dot(b - a) / squared, 0.0, 1.0) : 0.0;
-  return a + t * (b - a);
-}
-
 Vector2d NearestOn(const Slice& slice, const Vector2d& p) {
   Vector2d nearest = slice.front().front();
   for (const Polygon& outline : slice) {
     for (std::size_t i = 0; i < outline.size(); ++i) {
-      const Vector2d q = NearestOnEdge(outline[i], outline[(i + 1) % outline.size()], p);
+      const Vector2d q =
+          geometry::NearestOnSegment(p, outline[i], outline[(i + 1) % outline.size()]);
       if ((q - p).squaredNorm() < (nearest - p).squaredNorm()) nearest = q;
     }
   }

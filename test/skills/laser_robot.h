@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "hires/geometry/pose.h"
+#include "hires/robot/observation.h"
+#include "hires/robot/robot_profile.h"
+#include "hires/world/occupancy_grid.h"
+#include "support/planar_rays.h"
+#include "support/scenes.h"
+
+namespace hires::skills::test_support {
+
+constexpr double kLaserPlane = 0.25;  ///< [m] of the laser above the floor
+
+/// The robot with a tray, and a laser on its base.
+inline robot::Robot RobotWithLaser(const geometry::Pose2& X_BL) {
+  robot::Robot robot = hires::test_support::TrayRobot();
+  robot::Link laser;
+  laser.name = "laser";
+  laser.joint = robot::Joint();
+  laser.joint->name = "laser_joint";
+  laser.joint->parent = 0;
+  laser.joint->X_PJ.translation = {X_BL.x, X_BL.y, kLaserPlane};
+  robot.model.links.push_back(laser);
+  robot.profile.laser_link = "laser";
+  return robot;
+}
+
+/// What that laser sees of a world, 4 rad wide, without noise.
+inline std::shared_ptr<const robot::PlacedScan> ScanIn(const world::World& world,
+                                                       const geometry::Pose2& X_WB,
+                                                       const geometry::Pose2& X_OB,
+                                                       const geometry::Pose2& X_BL) {
+  const auto outlines = world::OutlinesInBand(world, nullptr, kLaserPlane, kLaserPlane);
+  robot::PlacedScan scan;
+  scan.X_OB = X_OB;
+  scan.X_BL = X_BL;
+  scan.reading = {-2.0, 0.02, 0.05, {}, 10.0};
+  const geometry::Pose2 X_WL = X_WB * X_BL;
+  for (int i = 0; i <= 200; ++i) {
+    const double angle = X_WL.yaw + scan.reading.angle_min + i * scan.reading.angle_increment;
+    scan.reading.ranges.push_back(
+        static_cast<float>(hires::test_support::RangeTo(outlines, X_WL.position(), angle)));
+  }
+  return std::make_shared<const robot::PlacedScan>(std::move(scan));
+}
+
+}  // namespace hires::skills::test_support
