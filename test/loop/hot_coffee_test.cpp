@@ -43,7 +43,7 @@ void ExpectServed(const LoopRun& run, const std::string& served, const std::stri
 }
 
 /// The first by name is the cold one: whoever takes that without looking serves the wrong one.
-/// loop_pictures_test.py plays it the other way round, with nodes.
+/// loop_hot_mug_test.py plays it the other way round, with nodes.
 TEST(HotCoffeeTest, OfTwoMugsThatOneIsServedThatTheThermalCameraSeesToBeHot) {
   ExpectServed(ServeHotCoffee("pictures", 293.15, 335.65), "mug2", "mug1");
 }
