@@ -14,6 +14,7 @@ using robot::Observation;
 
 constexpr double kMovingSpeed = 1e-3;     // [rad/s] or [m/s] slower joints stand
 constexpr double kShortestBraking = 0.1;  // [s]
+constexpr double kHeadPatience = 1.0;     // [s] that a head may come late
 
 double ToleranceOf(const JointGoalParams& params, const std::string& group) {
   if (group == "torso") return params.torso_tolerance;
@@ -79,9 +80,20 @@ bool JointMotion::IsTorsoAlone() const {
   return trajectories_.size() == 1 && trajectories_.begin()->first == "torso";
 }
 
+void JointMotion::SendLateHead(const Observation& observation, robot::Command* command) {
+  const auto head = trajectories_.find("head");
+  const bool is_late = observation.time > head_due_ + kHeadPatience;
+  if (head == trajectories_.end() || head->second.points.empty() || !is_late) return;
+  command->trajectories["head"] =
+      TrajectoryFrom(*context_, observation, head->second.joints,
+                     {head->second.points.back().positions}, context_->params.speed);
+  head_due_ = observation.time + command->trajectories["head"].duration();
+}
+
 Status JointMotion::Update(const Observation& observation, robot::Command* command) {
   if (begin_ < 0.0) {
     begin_ = observation.time;
+    head_due_ = begin_ + duration_;
     for (const auto& [group, trajectory] : trajectories_) {
       if (!trajectory.points.empty()) command->trajectories[group] = trajectory;
     }
@@ -97,6 +109,7 @@ Status JointMotion::Update(const Observation& observation, robot::Command* comma
   // Most motions are only over when their trajectory is; the torso's goal is its tolerance, as that
   // of the PR2's own controller.
   const bool is_due = elapsed >= duration_ || end_ == MotionEnd::kPassing || IsTorsoAlone();
+  if (!is_there) SendLateHead(observation, command);
   const double settling = end_ == MotionEnd::kSettled ? params.settling_time : 0.0;
   if (is_there && is_due && observation.time - at_goal_since_ >= settling) {
     return Succeeded();

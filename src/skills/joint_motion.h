@@ -18,8 +18,10 @@ enum class MotionEnd {
   kPassing,  ///< over as soon as they come within tolerance: another motion follows
 };
 
-/// Sends trajectories once and watches the joints until they have reached their ends. Fails with
-/// timed_out when they are not there long after they should be.
+/// Sends trajectories once and watches the joints until they have reached their ends. Only the head
+/// is sent on again where it is late: what looks around while no action needs it may have turned it
+/// before it heard of this one. Fails with timed_out when they are not there long after they should
+/// be.
 class JointMotion : public Activity {
  public:
   JointMotion(std::shared_ptr<const ManipulationContext> context, GroupTrajectories trajectories,
@@ -30,6 +32,7 @@ class JointMotion : public Activity {
  private:
   bool IsAtGoal(const robot::Observation& observation) const;
   bool IsTorsoAlone() const;
+  void SendLateHead(const robot::Observation& observation, robot::Command* command);
 
   std::shared_ptr<const ManipulationContext> context_;
   GroupTrajectories trajectories_;
@@ -37,6 +40,7 @@ class JointMotion : public Activity {
   double duration_{0.0};        // [s]
   double begin_{-1.0};          // [s] negative: not begun
   double at_goal_since_{-1.0};  // [s] negative: not there
+  double head_due_{0.0};        // [s] then the head should be there
 };
 
 /// A group of joints along a path that begins where the joints are now.

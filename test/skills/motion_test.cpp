@@ -145,6 +145,29 @@ TEST(JointMotionTest, SendsItsTrajectoryOnceAndSucceedsWhenItsEndHasSettled) {
   EXPECT_LE(ended, duration + settling + 0.1);
 }
 
+/// What looks around while no action needs the head may turn it before it has heard of one.
+TEST(JointMotionTest, AHeadThatAnotherHasTurnedMeanwhileIsTurnedAgain) {
+  JointMotion motion(Context(), {{"head", HeadTo(1.0)}});
+  const std::string& pan = UpperBody().head_pan_joint;
+  double head = Standing().joints.at(pan);
+  std::vector<double> sent;  // [s]
+  Status status;
+  for (int cycle = 0; cycle < 200 && status.progress == Progress::kRunning; ++cycle) {
+    robot::Observation seen = Standing(0.05 * cycle);
+    seen.joints[pan] = head;
+    robot::Command command;
+    status = motion.Update(seen, &command);
+    if (command.trajectories.empty()) continue;
+    sent.push_back(seen.time);
+    const auto& trajectory = command.trajectories.at("head");
+    EXPECT_NEAR(trajectory.points.front().positions.at(0), head, 1e-9) << "from where it is";
+    head = sent.size() == 1 ? -0.5 : trajectory.points.back().positions.at(0);
+  }
+  EXPECT_EQ(ToString(status.failure), "");
+  ASSERT_EQ(sent.size(), 2u);
+  EXPECT_NEAR(sent[1], HeadTo(1.0).duration() + 1.0, 0.1);
+}
+
 TEST(JointMotionTest, TimesOutWhenTheJointsDoNotCome) {
   JointMotion motion(Context(), {{"head", HeadTo(1.0)}});
   Status status;
