@@ -22,6 +22,7 @@ from test_run import run_test  # noqa: E402
 TASK = 'drive_robot preManipulationAreaEastCounter1'
 DELAY = 0.01  # [s] of a message, config/loop.yaml
 RATE = 20.0   # of rosbag play
+NEEDED = ['/tf', '/base_odometry/odom', '/joint_states']
 
 
 class Recorder:
@@ -42,13 +43,14 @@ class Recorder:
         (path,) = glob.glob(os.path.join(self.folder, '*' + ending))
         return path
 
-    def has_result_of(self, goal_id):
-        """What is on disk names it twice: in the goal and in its result."""
+    def has(self, goal_id, messages):
+        """What is on disk names the goal twice, in itself and in its result, and has the messages: each
+        topic comes on a line of its own, and a short one may overtake all others."""
         content = b''
         for path in glob.glob(os.path.join(self.folder, '*')):
             with open(path, 'rb') as file:
                 content += file.read()
-        return content.count(goal_id.encode()) >= 2
+        return content.count(goal_id.encode()) >= 2 and all(data in content for data in messages)
 
 
 class ReplayEpisodeTest(unittest.TestCase):
@@ -155,15 +157,24 @@ class ReplayEpisodeTest(unittest.TestCase):
             self.assertEqual(a['imagined']['durations'], b['imagined']['durations'])
             self.assertEqual(a['percentile'], b['percentile'])
 
+    def what_must_be_on_disk(self):
+        """The id of the last goal, and of all that is needed the last that came a second before its result."""
+        with rosbag.Bag(self.path) as bag:
+            result, end = [(m.status.goal_id.id, t) for _, m, t
+                           in bag.read_messages('/execute_action/result')][-1]
+            last = {topic: raw[1] for topic, raw, t in bag.read_messages(NEEDED, raw=True)
+                    if t < end - rospy.Duration(1.0)}
+        self.assertEqual(sorted(last), sorted(NEEDED))
+        return result, last.values()
+
     def record_what_is_played(self, name, end):
         recorder = Recorder(self.system, name)
         # Kept alive, so that its end cannot overtake what it still has queued, which may be all: at
         # this rate a tenth of a second in which nobody listens is two seconds of the episode.
         player = self.system.run(['rosbag', 'play', '--quiet', '--wait-for-subscribers',
                                   '--keep-alive', '--queue=100000', '-r', str(RATE), self.path])
-        with rosbag.Bag(self.path) as bag:
-            last = [m.goal_id.id for _, m, _ in bag.read_messages('/execute_action/goal')][-1]
-        wait_until(lambda: recorder.has_result_of(last), 'the last result to be on disk')
+        last, messages = self.what_must_be_on_disk()
+        wait_until(lambda: recorder.has(last, messages), 'the last result to be on disk')
         os.kill(recorder.process.pid, end)
         recorder.process.wait()
         player.destroy()
