@@ -67,7 +67,8 @@ MoveBaseDrive::MoveBaseDrive(std::shared_ptr<MoveBaseServer> server,
       driving_(std::move(driving)),
       X_MGoal_(X_MGoal),
       motion_set_(motion_set),
-      rest_(blind, X_MGoal, motion_set, driving_->robot->profile.base_controller) {}
+      rest_(blind, X_MGoal, motion_set, driving_->robot->profile.base_controller,
+            skills::BodyThatLooks(*driving_)) {}
 
 MoveBaseDrive::~MoveBaseDrive() {
   if (stage_ == Stage::kDriving) server_->Cancel();

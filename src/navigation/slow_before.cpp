@@ -15,6 +15,7 @@ using geometry::Pose2;
 using geometry::Twist2;
 
 constexpr double kStep = 0.01;    // [m] of the fastest corner between two looks along the arc
+constexpr double kFine = 1e-4;    // [m] to which the place where it meets something is told
 constexpr double kNearer = 1e-6;  // [m] less is none: rounding
 
 /// How far a point lies outside of a convex outline, by its farthest edge; negative within.
@@ -28,6 +29,13 @@ double Outside(const geometry::Polygon& outline, const Vector2d& point) {
   return most;
 }
 
+/// [s] All components come to rest at the same time; infinite where one cannot.
+double BrakingTime(const Twist2& V, const SlowBeforeParams& params) {
+  const double linear = std::hypot(V.vx, V.vy), angular = std::abs(V.wz);
+  return std::max(linear > 0.0 ? linear / params.deceleration : 0.0,
+                  angular > 0.0 ? angular / params.angular_deceleration : 0.0);
+}
+
 }  // namespace
 
 Twist2 SlowedBefore(const Twist2& wanted, const std::vector<Vector2d>& things_B,
@@ -35,7 +43,9 @@ Twist2 SlowedBefore(const Twist2& wanted, const std::vector<Vector2d>& things_B,
   const double radius = geometry::CircumscribedRadius(footprint);
   const double speed = std::hypot(wanted.vx, wanted.vy) + std::abs(wanted.wz) * radius;
   if (speed <= 0.0) return wanted;
-  const double stop = speed * params.reaction_time + 0.5 * speed * speed / params.deceleration;
+  const double deceleration = speed / BrakingTime(wanted, params);  // [m/s^2] of that corner
+  if (!(deceleration > 0.0)) return {};
+  const double stop = speed * params.reaction_time + 0.5 * speed * speed / deceleration;
   struct Thing {
     Vector2d p_B;
     double outside;  // [m] of the footprint, now
@@ -46,18 +56,22 @@ Twist2 SlowedBefore(const Twist2& wanted, const std::vector<Vector2d>& things_B,
     near.push_back({p_B, Outside(footprint, p_B)});
   }
   if (near.empty()) return wanted;
-  double way = 0.0;  // [m] of the fastest corner that is free
-  for (; way < stop; way += kStep) {
-    const Pose2 X_NextB = PoseAfter({}, wanted, (way + kStep) / speed).Inverse();
-    const bool is_met = std::any_of(near.begin(), near.end(), [&](const Thing& thing) {
+  const auto is_met = [&](double way) {
+    const Pose2 X_NextB = PoseAfter({}, wanted, way / speed).Inverse();
+    return std::any_of(near.begin(), near.end(), [&](const Thing& thing) {
       const double outside = Outside(footprint, X_NextB * thing.p_B);
       return outside < params.gap && outside < thing.outside - kNearer;
     });
-    if (is_met) break;
-  }
+  };
+  double way = 0.0;  // [m] of the fastest corner that is free
+  while (way < stop && !is_met(way + kStep)) way += kStep;
   if (way >= stop) return wanted;
+  for (double met = way + kStep; met - way > kFine;) {
+    const double middle = 0.5 * (way + met);
+    (is_met(middle) ? met : way) = middle;
+  }
   const double share =
-      std::min(1.0, ApproachSpeed(way, params.deceleration, params.reaction_time) / speed);
+      std::min(1.0, ApproachSpeed(way, deceleration, params.reaction_time) / speed);
   return {share * wanted.vx, share * wanted.vy, share * wanted.wz};
 }
 

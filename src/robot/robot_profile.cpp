@@ -330,6 +330,36 @@ void FillFromModel(ParamReader in, Robot* robot) {
   }
 }
 
+/// Corners from above of the shapes of all links that count.
+template <typename Counts>
+std::vector<Eigen::Vector2d> CornersOf(const RobotModel& model, const std::string& base_link,
+                                       const JointPositions& joints, const Counts& counts) {
+  const std::vector<Pose3> X_R = ForwardKinematics(model, joints);
+  const Pose3 X_BR = X_R[*model.FindLink(base_link)].Inverse();
+  std::vector<Eigen::Vector2d> points;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    if (!counts(static_cast<int>(i))) continue;
+    for (const geometry::Collision& collision : model.links[i].collisions) {
+      const auto outline = geometry::OutlineInBand(
+          collision.shape, X_BR * (X_R[i] * collision.X_BS), 0.0, kFootprintTop);
+      if (outline) points.insert(points.end(), outline->begin(), outline->end());
+    }
+  }
+  return points;
+}
+
+/// Whether the torso, the neck or an arm carries it.
+bool IsOfUpperBody(const Robot& robot, int link) {
+  if (!robot.profile.upper_body) return false;
+  const UpperBodyProfile& upper = *robot.profile.upper_body;
+  std::vector<std::string> joints{upper.torso_joint, upper.head_pan_joint};
+  for (const auto& [name, arm] : upper.arms) joints.push_back(arm.joints.front());
+  return std::any_of(joints.begin(), joints.end(), [&](const std::string& joint) {
+    const std::optional<int> above = FindLinkOf(robot.model, joint);
+    return above && IsBelow(robot.model, link, *above);
+  });
+}
+
 }  // namespace
 
 std::optional<double> LaserHeight(const Robot& robot) {
@@ -342,19 +372,19 @@ std::optional<double> LaserHeight(const Robot& robot) {
 
 geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_link,
                             const JointPositions& joints) {
-  const Pose3 X_RB = ForwardKinematics(model, joints)[*model.FindLink(base_link)];
-  std::vector<Eigen::Vector2d> points;
-  for (const geometry::Collision& collision : FrozenCollisions(model, joints)) {
-    const auto outline = geometry::OutlineInBand(collision.shape, X_RB.Inverse() * collision.X_BS,
-                                                 0.0, kFootprintTop);
-    if (outline) points.insert(points.end(), outline->begin(), outline->end());
-  }
+  auto points = CornersOf(model, base_link, joints, [](int /*link*/) { return true; });
   if (points.size() >= 3) return geometry::ConvexHull(std::move(points));
   throw base::ConfigError(
       fmt::format("robot '{}': no collision shape lies 0 to {} m above link '{}', so there is no "
                   "footprint; add "
                   "<collision> shapes, or give 'footprint' in a profile",
                   model.name, kFootprintTop, base_link));
+}
+
+geometry::Polygon BaseOutlineOf(const Robot& robot) {
+  auto points = CornersOf(robot.model, robot.profile.base_link, robot.profile.joints,
+                          [&robot](int link) { return !IsOfUpperBody(robot, link); });
+  return points.size() >= 3 ? geometry::ConvexHull(std::move(points)) : robot.profile.footprint;
 }
 
 std::uint64_t Robot::hash() const {

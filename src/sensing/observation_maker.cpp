@@ -6,8 +6,9 @@
 
 namespace hires::sensing {
 
-ObservationMaker::ObservationMaker(const RobotStateEstimator* state, ScanObstacles obstacles)
-    : find_obstacles_(std::move(obstacles)), scans_(state) {}
+ObservationMaker::ObservationMaker(const RobotStateEstimator* state, ScanObstacles obstacles,
+                                   geometry::Polygon base)
+    : find_obstacles_(std::move(obstacles)), scans_(state), memory_(std::move(base)) {}
 
 Receipt ObservationMaker::OnScan(double stamp, const std::string& frame,
                                  robot::ScanReading reading) {
@@ -21,8 +22,10 @@ void ObservationMaker::OnLocalised(const Eigen::Matrix3d& covariance) {
 robot::Observation ObservationMaker::Observe(const RobotEstimate& now) {
   if (auto scan = scans_.Take(now.time)) {
     obstacles_M_ = find_obstacles_.Find(scan->reading, scan->X_MB, scan->X_BL);
-    scan_ = std::make_shared<const robot::PlacedScan>(
-        robot::PlacedScan{std::move(scan->reading), scan->X_OB, scan->X_BL});
+    robot::PlacedScan placed{std::move(scan->reading), scan->X_OB, scan->X_BL, {}};
+    memory_.Complete(scan->stamp, &placed);
+    scan_ = std::make_shared<const robot::PlacedScan>(std::move(placed));
+    scanned_ = scan->stamp;
   }
   robot::Observation seen;
   seen.time = now.time;
@@ -31,6 +34,7 @@ robot::Observation ObservationMaker::Observe(const RobotEstimate& now) {
   seen.X_OB = now.X_OB;
   seen.V_B = now.V_B;
   seen.scan = scan_;
+  seen.scan_age = now.time - scanned_;
   seen.obstacles_M = obstacles_M_;
   seen.joints = now.joints;
   seen.joint_velocities = now.joint_velocities;

@@ -24,7 +24,10 @@ RobotSensors::RobotSensors(std::shared_ptr<const Scene> scene, const Variation& 
                                                               std::nullopt,
                                                               rng.Fork(7),
                                                               0.0,
-                                                              nullptr} {
+                                                              nullptr,
+                                                              0.0,
+                                                              std::nullopt} {
+  if (scene_->sight.scans) state_.memory.emplace(robot::BaseOutlineOf(scene_->robot));
   if (scene_->self_localisation)
     state_.localiser.emplace(scene_->self_localisation, X_MB, rng.Fork(6));
   else if (scene_->pose_error)
@@ -49,6 +52,7 @@ void RobotSensors::ReadBase(double time, const BaseMotion& motion,
   }
   observation->V_B = motion.V_B;
   observation->scan = state_.scan;
+  observation->scan_age = time - state_.scanned;
   state_.ghosts.Update(motion.X_MB, variation_.ghost_rate, time);
   observation->obstacles_M = state_.ghosts.OutlinesInMap();
 }
@@ -66,11 +70,14 @@ base::Rng* RobotSensors::ScanDue(double time) {
   return &state_.scan_rng;
 }
 
-void RobotSensors::ReadScan(robot::ScanReading reading, const geometry::Pose2& X_BL,
+void RobotSensors::ReadScan(double time, robot::ScanReading reading, const geometry::Pose2& X_BL,
                             robot::Observation* observation) {
-  state_.scan = std::make_shared<const robot::PlacedScan>(
-      robot::PlacedScan{std::move(reading), observation->X_OB, X_BL});
+  robot::PlacedScan scan{std::move(reading), observation->X_OB, X_BL, {}};
+  state_.memory->Complete(time, &scan);
+  state_.scan = std::make_shared<const robot::PlacedScan>(std::move(scan));
+  state_.scanned = time;
   observation->scan = state_.scan;
+  observation->scan_age = 0.0;
 }
 
 void RobotSensors::ReadJoints(const PlanarRobot& robot, robot::Observation* observation) {

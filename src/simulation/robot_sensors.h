@@ -5,6 +5,7 @@
 
 #include "hires/base/rng.h"
 #include "hires/robot/observation.h"
+#include "hires/robot/scan_memory.h"
 #include "hires/simulation/base_drive.h"
 #include "hires/simulation/pose_error.h"
 #include "hires/simulation/scene.h"
@@ -27,6 +28,8 @@ class RobotSensors {
     base::Rng scan_rng;
     double next_scan{0.0};                          // [s]
     std::shared_ptr<const robot::PlacedScan> scan;  // the last; null: none yet
+    double scanned{0.0};                            // [s] when that was taken
+    std::optional<robot::ScanMemory> memory;        // where skills see scans
   };
 
   /// @param X_MB  of the base at first.
@@ -43,7 +46,7 @@ class RobotSensors {
   /// Whether skills are to see a new scan at `time`, and what to draw its noise from.
   base::Rng* ScanDue(double time);
   /// @param observation  of ReadBase; gets the scan, and so do later ones until the next is due.
-  void ReadScan(robot::ScanReading reading, const geometry::Pose2& X_BL,
+  void ReadScan(double time, robot::ScanReading reading, const geometry::Pose2& X_BL,
                 robot::Observation* observation);
   /// Of torso, head, arms and hands.
   void ReadJoints(const PlanarRobot& robot, robot::Observation* observation);

@@ -101,7 +101,7 @@ void RobotSimulator::Scan(base::Rng* noise, robot::Observation* observation) {
   LaserParams laser = scene_->sight.scans->laser;
   laser.link = scene_->robot.profile.laser_link;
   LevelScan scan = ScanLevel(*this, laser, noise);
-  sensors_->ReadScan(std::move(scan.reading), scan.X_BL, observation);
+  sensors_->ReadScan(state_.time, std::move(scan.reading), scan.X_BL, observation);
 }
 
 /// Wheels and inertial unit tell of all ways, the laser where a scan is of use.

@@ -57,10 +57,9 @@ DriveTo BlindDrive(const SkillSet& skills, const ActionCall& action) {
       Lookup(skills.motion_sets, "motion set", MotionSetNameOf(skills, action));
   return [params = skills.blind, motion_set,
           driving = skills.driving](const geometry::Pose2& X_MGoal) {
-    const robot::RobotProfile& profile = driving->robot->profile;
-    return std::make_unique<MoveBaseBlind>(
-        params, X_MGoal, motion_set, profile.base_controller,
-        driving->by_plane ? std::optional(profile.footprint) : std::nullopt);
+    return std::make_unique<MoveBaseBlind>(params, X_MGoal, motion_set,
+                                           driving->robot->profile.base_controller,
+                                           BodyThatLooks(*driving));
   };
 }
 
@@ -181,7 +180,7 @@ std::unique_ptr<Skill> Make(const SkillSet& skills, const ActionCall& action) {
   const bool is_by_seen = way.goes_by == GoesBy::kSeenPlace;
   if (!is_by_seen || !skills.driving || !skills.driving->seen_place) return skill;
   return std::make_unique<AtSeenPlace>(std::move(skill), skills.driving->seen_place,
-                                       skills.driving->robot->profile.footprint);
+                                       skills.driving->base);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
@@ -58,9 +59,18 @@ PlaceBelief Told(const Pose2& X_MB, double sd = 0.03, double yaw_sd = 0.02) {
   return {X_MB, Vector3d(sd * sd, sd * sd, yaw_sd * yaw_sd).asDiagonal()};
 }
 
+using Verdict = Correction::Verdict;
+
+Correction Corrected(const std::vector<Polygon>& outlines, const PlaceBelief& prior,
+                     const View& view) {
+  return OutlineMatch(outlines, {}).Correct(prior, view.echoes_B, kLaser_B, view.increment);
+}
+
 std::optional<PlaceBelief> Correct(const std::vector<Polygon>& outlines, const PlaceBelief& prior,
                                    const View& view) {
-  return OutlineMatch(outlines, {}).Correct(prior, view.echoes_B, kLaser_B, view.increment);
+  const Correction correction = Corrected(outlines, prior, view);
+  if (correction.verdict == Verdict::kCorrected) return correction.belief;
+  return std::nullopt;
 }
 
 double OffOf(const PlaceBelief& belief, const Pose2& X_MB) {
@@ -169,10 +179,37 @@ TEST(OutlineMatchTest, WhatIsNotOfTheWorldMovesNothing) {
   EXPECT_LT(OffOf(*found, truth), 0.01);
 }
 
-TEST(OutlineMatchTest, AResultThatTheBeliefDoesNotAllowIsNone) {
-  const auto found = Correct(TableAndWall(), Told({0.06, 0.06, 0.0}, 0.005, 0.005),
-                             Seen(TableAndWall(), {0.0, 0.0, 0.0}, 240));
-  EXPECT_FALSE(found && OffOf(*found, {0.06, 0.06, 0.0}) > 0.03);
+TEST(OutlineMatchTest, WhatFitsNowhereThatTheBeliefAllowsContradictsIt) {
+  const PlaceBelief belief = Told({0.03, 0.03, 0.0}, 0.004, 0.004);
+  const Correction correction =
+      Corrected(TableAndWall(), belief, Seen(TableAndWall(), {0.0, 0.0, 0.0}, 240));
+  EXPECT_EQ(correction.verdict, Verdict::kContradicts);
+  EXPECT_EQ(correction.belief.X_MB.x, belief.X_MB.x) << "which stays";
+}
+
+/// With half the gate legs are told apart, with more of it nobody would know.
+TEST(OutlineMatchTest, ABeliefThatIsTooWideIsNotCorrected) {
+  const View view = Seen(TableAndWall(), {}, 240);
+  for (const PlaceBelief& wide :
+       {Told({}, 0.041), Told({}, 0.15), Told({}, 0.02, 0.05), Told({}, std::nan("")),
+        Told({}, std::numeric_limits<double>::infinity())}) {
+    EXPECT_EQ(Corrected(TableAndWall(), wide, view).verdict, Verdict::kSilent)
+        << wide.covariance(0, 0);
+  }
+  EXPECT_EQ(Corrected(TableAndWall(), Told({}, 0.039), view).verdict, Verdict::kCorrected);
+}
+
+/// Through a gap of 0.12 m: whichever side an echo is taken for, the search ends.
+TEST(OutlineMatchTest, WhatLiesBetweenTwoOutlinesIsSettled) {
+  const std::vector<Polygon> gap{Box(1.0, 0.16, 0.1, 0.2), Box(1.0, -0.16, 0.1, 0.2),
+                                 Box(1.6, 0.0, 0.1, 2.0)};
+  int num_settled = 0;
+  for (int k = -20; k <= 20; ++k) {
+    View view = Seen(gap, {}, 240);
+    for (Vector2d& echo : view.echoes_B) echo.y() += 0.0025 * k;
+    num_settled += Corrected(gap, Told({}), view).verdict == Verdict::kCorrected ? 1 : 0;
+  }
+  EXPECT_EQ(num_settled, 41);
 }
 
 }  // namespace

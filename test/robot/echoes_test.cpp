@@ -41,5 +41,46 @@ TEST(EchoesTest, WhereNobodySaysHowFarItSeesAllIsAnEcho) {
   EXPECT_EQ(EchoesOf(scan, kBody).size(), 4u);
 }
 
+/// 201 beams of 4 rad in all; each sees 2 m far.
+PlacedScan WideScan(float range) {
+  PlacedScan scan;
+  scan.reading = {-2.0, 0.02, 0.05, std::vector<float>(201, range), 10.0};
+  scan.X_BL = {0.2, 0.0, 0.0};
+  return scan;
+}
+
+TEST(IsInViewTest, WhereTheLaserLooksAndMeasures) {
+  const PlacedScan scan = WideScan(2.0f);
+  const auto at = [](double angle, double range) {
+    return Eigen::Vector2d(0.2 + range * std::cos(angle), range * std::sin(angle));
+  };
+  for (const double angle : {-2.0, -1.0, 0.0, 1.999}) EXPECT_TRUE(IsInView(scan, at(angle, 1.0)));
+  EXPECT_TRUE(IsInView(scan, at(0.3, 5.0))) << "behind what it sees: what it shows is all it knows";
+  for (const double angle : {-2.1, 2.1, 3.1}) EXPECT_FALSE(IsInView(scan, at(angle, 1.0)));
+  EXPECT_FALSE(IsInView(scan, at(0.0, 0.04))) << "nearer than it measures";
+  EXPECT_FALSE(IsInView(scan, at(0.0, 0.07))) << "or so by its noise";
+  EXPECT_TRUE(IsInView(scan, at(0.0, 0.09)));
+}
+
+TEST(IsInViewTest, ABeamThatIsNoMeasurementShowsNothing) {
+  const Eigen::Vector2d ahead(1.0, 0.0);
+  for (const float none : {std::nanf(""), 0.0f, 0.04f, -1.0f})
+    EXPECT_FALSE(IsInView(WideScan(none), ahead)) << none;
+  for (const float nothing : {std::numeric_limits<float>::infinity(), 10.0f, 11.0f})
+    EXPECT_TRUE(IsInView(WideScan(nothing), ahead)) << nothing;
+  EXPECT_FALSE(IsInView({}, ahead));
+}
+
+TEST(IsInViewTest, ALaserMayHangUpsideDownOrSeeAllAround) {
+  PlacedScan scan = WideScan(2.0f);
+  scan.reading.angle_min = 2.0;
+  scan.reading.angle_increment = -0.02;
+  EXPECT_TRUE(IsInView(scan, {0.2, 1.0}));
+  EXPECT_FALSE(IsInView(scan, {-1.0, 0.0}));
+  scan.reading = {0.0, 2.0 * M_PI / 360.0, 0.05, std::vector<float>(360, 2.0f), 10.0};
+  for (const double angle : {-3.0, -1.0, -0.004, 0.0, 1.5, 3.1})
+    EXPECT_TRUE(IsInView(scan, {0.2 + std::cos(angle), std::sin(angle)})) << angle;
+}
+
 }  // namespace
 }  // namespace hires::robot::echoes_test

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "hires/base/error.h"
 #include "support/temporary_folder.h"
 
@@ -397,6 +399,30 @@ TEST(ConfiguredRobots, CartFromItsBareUrdfIsTheSameCart) {
   EXPECT_LT((bare.profile.X_TO.translation - cart.profile.X_TO.translation).norm(), 1e-12);
   EXPECT_EQ(bare.profile.footprint, cart.profile.footprint);
   EXPECT_EQ(bare.profile.base_controller.drive, cart.profile.base_controller.drive);
+}
+
+/// [m] of the outline along x and y.
+Eigen::Vector4d ExtentOf(const geometry::Polygon& outline) {
+  Eigen::Vector4d extent(1e9, -1e9, 1e9, -1e9);
+  for (const Eigen::Vector2d& p : outline) {
+    extent[0] = std::min(extent[0], p.x());
+    extent[1] = std::max(extent[1], p.x());
+    extent[2] = std::min(extent[2], p.y());
+    extent[3] = std::max(extent[3], p.y());
+  }
+  return extent;
+}
+
+TEST(ConfiguredRobots, TheBaseOfAPr2IsItsSquareBoxWithoutArms) {
+  const Robot pr2 = LoadRobot(std::string(HIRES_SOURCE_DIR) + "/config/robots/pr2.yaml");
+  const Eigen::Vector4d base = ExtentOf(BaseOutlineOf(pr2));
+  EXPECT_LT((base - Eigen::Vector4d(-0.334, 0.334, -0.334, 0.334)).norm(), 1e-9)
+      << base.transpose();
+}
+
+TEST(ConfiguredRobots, TheBaseOfARobotWithoutAnUpperBodyIsItsOutline) {
+  const Robot cart = LoadRobot(std::string(HIRES_SOURCE_DIR) + "/config/robots/cart.yaml");
+  EXPECT_EQ(BaseOutlineOf(cart), cart.profile.footprint);
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ class ObservationMakerTest : public testing::Test {
   std::shared_ptr<FakeFrameTree> tree_ = std::make_shared<FakeFrameTree>();
   std::shared_ptr<const robot::Robot> robot_ = std::make_shared<const robot::Robot>(TrayRobot());
   RobotStateEstimator state_{robot_, {"map", "odom", "base"}, {}, {}, tree_};
-  ObservationMaker maker_{&state_, {RoomMap(), robot_->profile.footprint, {}}};
+  ObservationMaker maker_{
+      &state_, {RoomMap(), robot_->profile.footprint, {}}, robot_->profile.footprint};
 };
 
 TEST_F(ObservationMakerTest, SkillsSeeTheStateOfTheMoment) {

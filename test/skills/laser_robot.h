@@ -1,13 +1,12 @@
 #pragma once
 
 #include <memory>
-#include <utility>
 
 #include "hires/geometry/pose.h"
 #include "hires/robot/observation.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/world/occupancy_grid.h"
-#include "support/planar_rays.h"
+#include "support/planar_scan.h"
 #include "support/scenes.h"
 
 namespace hires::skills::test_support {
@@ -28,23 +27,13 @@ inline robot::Robot RobotWithLaser(const geometry::Pose2& X_BL) {
   return robot;
 }
 
-/// What that laser sees of a world, 4 rad wide, without noise.
+/// What the robot with a laser sees of a world, 4 rad wide, without noise.
 inline std::shared_ptr<const robot::PlacedScan> ScanIn(const world::World& world,
                                                        const geometry::Pose2& X_WB,
                                                        const geometry::Pose2& X_OB,
                                                        const geometry::Pose2& X_BL) {
-  const auto outlines = world::OutlinesInBand(world, nullptr, kLaserPlane, kLaserPlane);
-  robot::PlacedScan scan;
-  scan.X_OB = X_OB;
-  scan.X_BL = X_BL;
-  scan.reading = {-2.0, 0.02, 0.05, {}, 10.0};
-  const geometry::Pose2 X_WL = X_WB * X_BL;
-  for (int i = 0; i <= 200; ++i) {
-    const double angle = X_WL.yaw + scan.reading.angle_min + i * scan.reading.angle_increment;
-    scan.reading.ranges.push_back(
-        static_cast<float>(hires::test_support::RangeTo(outlines, X_WL.position(), angle)));
-  }
-  return std::make_shared<const robot::PlacedScan>(std::move(scan));
+  return std::make_shared<const robot::PlacedScan>(hires::test_support::ScanOf(
+      world::OutlinesInBand(world, nullptr, kLaserPlane, kLaserPlane), X_WB, X_OB, X_BL));
 }
 
 }  // namespace hires::skills::test_support

@@ -13,4 +13,12 @@ namespace hires::robot {
 /// footprint: that is the robot itself.
 std::vector<Eigen::Vector2d> EchoesOf(const PlacedScan& scan, const geometry::Polygon& footprint);
 
+/// Whether a point [m, in the base of the moment when the scan was taken] is nearer to the laser
+/// than it measures, or so little farther that its noise may hide it.
+bool IsTooNear(const PlacedScan& scan, const Eigen::Vector2d& point_B);
+
+/// Whether a scan tells what is at a point, or before it: the laser looks there, the point is not
+/// too near, and the beam next to it is a measurement, if only that nothing is there.
+bool IsInView(const PlacedScan& scan, const Eigen::Vector2d& point_B);
+
 }  // namespace hires::robot

@@ -39,6 +39,7 @@ struct Observation {
   geometry::Pose2 X_OB;                        ///< odometry: drifts, but does not jump
   geometry::Twist2 V_B;                        ///< odometry, in the base frame
   std::shared_ptr<const PlacedScan> scan;      ///< of the base's laser, the last; null: none
+  double scan_age{0.0};                        ///< [s] since it was taken
   std::vector<geometry::Polygon> obstacles_M;  ///< outlines seen now that are not in the map
   JointPositions joints;  ///< measured; gripper joints are gaps [m]. Empty at level `tray`
   JointPositions joint_velocities;  ///< [rad/s] or [m/s], likewise

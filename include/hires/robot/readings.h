@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "hires/geometry/pose.h"
@@ -38,6 +39,8 @@ struct PlacedScan {
   ScanReading reading;
   geometry::Pose2 X_OB;  ///< base in the frame of the odometry
   geometry::Pose2 X_BL;  ///< laser in the base
+  /// [m] Where earlier scans showed something and this one does not look (ScanMemory); odometry.
+  std::vector<Eigen::Vector2d> out_of_view_O;
 };
 
 }  // namespace hires::robot

@@ -81,6 +81,12 @@ struct Robot {
 geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_link,
                             const JointPositions& joints);
 
+/// What drives, seen from above: the same of all links but those that torso, neck and arms carry,
+/// joints in the driving posture; the footprint where none of these has a shape. Where a footprint
+/// has room for arms as well, this is the smaller.
+/// @throws base::ConfigError as FrozenCollisions.
+geometry::Polygon BaseOutlineOf(const Robot& robot);
+
 /// [m] of the base's laser above base_link, joints in the driving posture; none: it has no laser.
 /// @throws base::ConfigError as ForwardKinematics.
 std::optional<double> LaserHeight(const Robot& robot);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hires/robot/observation.h"
+#include "hires/robot/scan_memory.h"
 #include "hires/sensing/robot_state_estimator.h"
 #include "hires/sensing/scan_obstacles.h"
 #include "hires/sensing/scan_queue.h"
@@ -17,7 +18,9 @@ namespace hires::sensing {
 class ObservationMaker {
  public:
   /// @param state  outlives this.
-  ObservationMaker(const RobotStateEstimator* state, ScanObstacles obstacles);
+  /// @param base   outline of what drives, in the base: what a scan shows within is the robot.
+  ObservationMaker(const RobotStateEstimator* state, ScanObstacles obstacles,
+                   geometry::Polygon base);
 
   /// @param frame  of the laser.
   Receipt OnScan(double stamp, const std::string& frame, robot::ScanReading reading);
@@ -36,7 +39,9 @@ class ObservationMaker {
   ScanObstacles find_obstacles_;
   ScanQueue scans_;
   std::vector<geometry::Polygon> obstacles_M_;
+  robot::ScanMemory memory_;
   std::shared_ptr<const robot::PlacedScan> scan_;
+  double scanned_{0.0};      // [s] when that was taken
   double position_sd_{0.0};  // [m]
 };
 

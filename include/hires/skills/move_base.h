@@ -44,6 +44,7 @@ struct DrivingContext {
   std::shared_ptr<const navigation::Costmap> costmap;
   std::shared_ptr<const robot::Robot> robot;
   geometry::Polygon footprint;  ///< padded; of the posture for driving
+  geometry::Polygon base;       ///< outline of what drives, without arms: robot::BaseOutlineOf
   MoveBaseParams params;
 
   std::optional<MapByPlane> by_plane;           ///< with an obstacle layer
@@ -117,6 +118,10 @@ class MoveBase : public Skill {
   int num_missed_{0};  // ways that a car was given because the one before ended out of tolerance
 };
 
+/// The body that a blind drive sees to that it touches nothing; none where local control goes by
+/// the map alone.
+std::optional<geometry::Polygon> BodyThatLooks(const DrivingContext& context);
+
 struct MoveBaseBlindParams {
   double period{0.05};               ///< [s] control cycle
   double max_velocity{0.3};          ///< [m/s]; the motion set may be slower
@@ -132,11 +137,11 @@ struct MoveBaseBlindParams {
 /// Drives straight to a pose, turning on the way (two driven wheels: before and after; a car: on
 /// Reeds and Shepp's shortest way, forward and backward), not round obstacles: for the last stretch
 /// to furniture, under whose top the base fits. Where local control goes by the laser it slows down
-/// and stops before what that sees. While the robot is lost it stands. Fails with stuck or
-/// localisation_lost.
+/// and stops before what that sees, and stands while no scans come. While the robot is lost it
+/// stands. Fails with stuck, stale_scan or localisation_lost.
 class MoveBaseBlind : public Skill {
  public:
-  /// @param body  the robot's footprint, where it shall stop before what its laser sees.
+  /// @param body  outline of what drives, where it shall stop before what its laser sees.
   MoveBaseBlind(const MoveBaseBlindParams& params, const geometry::Pose2& X_MGoal,
                 const robot::MotionSet& motion_set, const robot::BaseControllerParams& base,
                 std::optional<geometry::Polygon> body = std::nullopt);
@@ -159,8 +164,11 @@ class MoveBaseBlind : public Skill {
   void PlanWay(const geometry::Pose2& X_MB);
   Course CourseTo(const robot::Observation& observation, const geometry::Pose2& X_BGoal);
   double Deceleration() const;
+  double AngularDeceleration() const;
+  void LookAround(const robot::Observation& observation);
   geometry::Twist2 BeforeThings(const geometry::Twist2& wanted,
-                                const robot::Observation& observation);
+                                const robot::Observation& observation) const;
+  Status Stuck(const robot::Observation& observation) const;
 
   MoveBaseBlindParams params_;
   geometry::Pose2 X_MGoal_;
@@ -169,9 +177,9 @@ class MoveBaseBlind : public Skill {
   double min_turning_radius_;
   std::optional<geometry::Polygon> body_;  // none: it does not look
   ScanWatch watch_;
-  std::vector<Eigen::Vector2d> echoes_O_;       // [m] of the last scan, by odometry
-  std::optional<navigation::CarFollower> car_;  // where the base steers like one
-  int num_ways_{0};                             // that it has been given
+  std::shared_ptr<const robot::PlacedScan> scan_;  // null: none of now, and it stands
+  std::optional<navigation::CarFollower> car_;     // where the base steers like one
+  int num_ways_{0};                                // that it has been given
   LostWatch lost_;
   bool begun_driving_{false};
   bool backwards_{false};

@@ -7,13 +7,17 @@
 
 namespace hires::skills {
 
+/// [s] A scan that is older tells nothing of now.
+constexpr double kScanPatience = 1.0;
+
 /// Tells what is new between two looks of a skill at its robot. A value.
 class ScanWatch {
  public:
   struct News {
     /// The odometry was reset, or its clock: where anything was seen before, nobody knows any more.
     bool is_reset{false};
-    std::shared_ptr<const robot::PlacedScan> scan;  ///< not looked at yet; null: none
+    /// Not looked at yet, and taken within kScanPatience; null: none.
+    std::shared_ptr<const robot::PlacedScan> scan;
   };
 
   News Look(const robot::Observation& observation);

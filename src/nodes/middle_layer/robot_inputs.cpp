@@ -20,7 +20,8 @@ RobotInputs::RobotInputs(const hires::imagination::ImaginationSetup& setup,
     : names_(names),
       hooks_(std::move(hooks)),
       sensors_({setup.scene, &setup.scene->robot}, setup.scene->surroundings, names, setup.sensing),
-      observations_(&sensors_.state(), {setup.skills->driving->costmap, FootprintOf(setup), scan}) {
+      observations_(&sensors_.state(), {setup.skills->driving->costmap, FootprintOf(setup), scan},
+                    hires::robot::BaseOutlineOf(setup.scene->robot)) {
   if (setup.sensing.ground.is_enabled && !names.sensors.tilt_cloud.empty()) {
     ground_.emplace(&sensors_.state(),
                     std::shared_ptr<const hires::robot::Robot>(setup.scene, &setup.scene->robot),
@@ -78,7 +79,8 @@ void RobotInputs::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static) 
 void RobotInputs::OnScan(const sensor_msgs::LaserScan& msg) {
   const double stamp = msg.header.stamp.toSec();
   const auto receipt = observations_.OnScan(
-      stamp, msg.header.frame_id, {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges});
+      stamp, msg.header.frame_id,
+      {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges, msg.range_max});
   if (receipt.is_bad()) sensors_.Refuse(names_.base_scan, hires::sensing::ToString(receipt));
   hooks_.arrived(names_.base_scan, stamp);
 }

@@ -14,13 +14,14 @@ namespace hires::skills {
 /// A skill that goes by the place where its robot sees itself beside furniture, and not by the one
 /// that it is told, which is off by centimetres. An extended Kalman filter: begun with the told
 /// place, moved on by odometry, corrected by what each scan shows of the outlines of the world; the
-/// told place again where the odometry knows no better, was reset, or is contradicted by more than
-/// 4 sd. Things that were seen go with the robot: they stay where they are against it.
+/// told place again along every axis along which the odometry knows no better, and altogether where
+/// that was reset, or where the told place, or every scan, is more than 4 sd off for a second.
+/// Things that were seen go with the robot: they stay where they are against it.
 class AtSeenPlace : public Skill {
  public:
-  /// @param footprint  of the robot, in its base: what is seen within is the robot.
+  /// @param body  of the robot, in its base: what is seen within is the robot.
   AtSeenPlace(std::unique_ptr<Skill> skill, std::shared_ptr<const SeenPlace> seen,
-              geometry::Polygon footprint);
+              geometry::Polygon body);
 
   Status Update(const robot::Observation& observation, robot::Command* command) override;
   double period() const override { return skill_->period(); }
@@ -31,15 +32,24 @@ class AtSeenPlace : public Skill {
   const localisation::PlaceBelief& belief() const { return *belief_; }
 
  private:
+  /// Something contradicts.
+  struct Doubt {
+    bool Note(bool is_so, double time);  // whether it has been so long enough
+    std::optional<double> since;         // [s]
+  };
   void Look(const robot::Observation& observation);
-  void Correct(const robot::PlacedScan& scan);
+  void Predict(const robot::Observation& observation);
+  void Believe(const localisation::PlaceBelief& told);
+  void Correct(const robot::PlacedScan& scan, const localisation::PlaceBelief& told);
 
   std::unique_ptr<Skill> skill_;
   std::shared_ptr<const SeenPlace> seen_;
-  geometry::Polygon footprint_;
+  geometry::Polygon body_;
   ScanWatch watch_;
   std::optional<localisation::PlaceBelief> belief_;  // none: it has not looked yet
   geometry::Pose2 X_OB_;                             // of that
+  double time_{0.0};                                 // [s] likewise
+  Doubt told_contradicts_, scans_contradict_;
 };
 
 }  // namespace hires::skills

@@ -91,6 +91,7 @@ DrivingContext ContextOf(const world::OccupancyGrid& map, const robot::Robot& ro
       map, geometry::InscribedRadius(footprint), params.costmap);
   context.robot = std::make_shared<const robot::Robot>(robot);
   context.footprint = footprint;
+  if (params.obstacle_layer || params.seen_place) context.base = robot::BaseOutlineOf(robot);
   context.params = possible;
   return context;
 }

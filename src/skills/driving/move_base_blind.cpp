@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -21,7 +23,21 @@ robot::MotionSet Slowed(robot::MotionSet motion_set, const MoveBaseBlindParams& 
   return motion_set;
 }
 
+/// [m] in the base as it stands now: what the scan shows, and what earlier ones showed.
+std::vector<Eigen::Vector2d> ThingsAround(const robot::PlacedScan& scan, const Pose2& X_OB,
+                                          const geometry::Polygon& body) {
+  const Pose2 X_BO = X_OB.Inverse(), X_BScan = X_BO * scan.X_OB;
+  std::vector<Eigen::Vector2d> things_B = robot::EchoesOf(scan, body);
+  for (Eigen::Vector2d& thing : things_B) thing = X_BScan * thing;
+  for (const Eigen::Vector2d& thing_O : scan.out_of_view_O) things_B.push_back(X_BO * thing_O);
+  return things_B;
+}
+
 }  // namespace
+
+std::optional<geometry::Polygon> BodyThatLooks(const DrivingContext& context) {
+  return context.by_plane ? std::optional(context.base) : std::nullopt;
+}
 
 MoveBaseBlind::MoveBaseBlind(const MoveBaseBlindParams& params, const Pose2& X_MGoal,
                              const robot::MotionSet& motion_set,
@@ -49,15 +65,19 @@ double MoveBaseBlind::Deceleration() const {
   return std::min(params_.deceleration, motion_set_.max_linear_acceleration);
 }
 
+double MoveBaseBlind::AngularDeceleration() const {
+  return std::min(params_.deceleration, motion_set_.max_angular_acceleration);
+}
+
 double MoveBaseBlind::LinearSpeed(double distance) const {
   return std::min({navigation::ApproachSpeed(distance, Deceleration(), params_.reaction_time),
                    params_.max_velocity, motion_set_.max_linear_velocity});
 }
 
 double MoveBaseBlind::TurningSpeed(double angle) const {
-  const double speed =
-      std::min({navigation::ApproachSpeed(std::abs(angle), Deceleration(), params_.reaction_time),
-                params_.max_angular_velocity, motion_set_.max_angular_velocity});
+  const double speed = std::min(
+      {navigation::ApproachSpeed(std::abs(angle), AngularDeceleration(), params_.reaction_time),
+       params_.max_angular_velocity, motion_set_.max_angular_velocity});
   return std::copysign(speed, angle);
 }
 
@@ -120,25 +140,38 @@ MoveBaseBlind::Course MoveBaseBlind::CourseTo(const robot::Observation& observat
   return Straight(X_BGoal);
 }
 
-Twist2 MoveBaseBlind::BeforeThings(const Twist2& wanted, const robot::Observation& observation) {
-  if (!body_) return wanted;
+/// Where the odometry was reset, the scan at hand lies nobody knows where: it waits for the next.
+void MoveBaseBlind::LookAround(const robot::Observation& observation) {
   const ScanWatch::News news = watch_.Look(observation);
-  if (news.is_reset) echoes_O_.clear();
-  if (news.scan) {
-    echoes_O_ = robot::EchoesOf(*news.scan, *body_);
-    for (Eigen::Vector2d& echo : echoes_O_) echo = news.scan->X_OB * echo;
-  }
-  const Pose2 X_BO = observation.X_OB.Inverse();
-  std::vector<Eigen::Vector2d> echoes_B;
-  for (const Eigen::Vector2d& echo_O : echoes_O_) echoes_B.push_back(X_BO * echo_O);
+  if (news.is_reset) scan_.reset();
+  if (news.scan) scan_ = news.scan;
+  if (observation.scan_age > kScanPatience) scan_.reset();
+}
+
+Twist2 MoveBaseBlind::BeforeThings(const Twist2& wanted,
+                                   const robot::Observation& observation) const {
+  if (!body_) return wanted;
+  if (!scan_) return {};
   navigation::SlowBeforeParams braking;
   braking.deceleration = Deceleration();
+  braking.angular_deceleration = AngularDeceleration();
   braking.reaction_time = params_.reaction_time;
-  return navigation::SlowedBefore(wanted, echoes_B, *body_, braking);
+  return navigation::SlowedBefore(wanted, ThingsAround(*scan_, observation.X_OB, *body_), *body_,
+                                  braking);
+}
+
+Status MoveBaseBlind::Stuck(const robot::Observation& observation) const {
+  if (!body_ || scan_) return Failed(base::FailureCode::kStuck);
+  return Failed({base::FailureCode::kStaleScan,
+                 {},
+                 observation.scan
+                     ? fmt::format("the base's laser is silent for {:.1f} s", observation.scan_age)
+                     : "no scan of the base's laser has come"});
 }
 
 Status MoveBaseBlind::Update(const robot::Observation& observation, robot::Command* command) {
   command->motion_set = motion_set_;
+  if (body_) LookAround(observation);
   const LostWatch::State place = lost_.Look(observation);
   if (place == LostWatch::State::kGivenUp) return Failed(lost_.Why(observation));
   if (place == LostWatch::State::kLost || place == LostWatch::State::kFound) {
@@ -160,8 +193,7 @@ Status MoveBaseBlind::Update(const robot::Observation& observation, robot::Comma
     nearest_ = course.remaining;
     last_progress_ = observation.time;
   }
-  if (observation.time - last_progress_ > params_.stuck_timeout)
-    return Failed(base::FailureCode::kStuck);
+  if (observation.time - last_progress_ > params_.stuck_timeout) return Stuck(observation);
   command->base_velocity = BeforeThings(course.velocity, observation);
   return {};
 }

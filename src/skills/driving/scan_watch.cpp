@@ -11,7 +11,8 @@ ScanWatch::News ScanWatch::Look(const robot::Observation& observation) {
                                                    robot::kFastestDrive, robot::kFastestTurn);
   before_ = Odometry{observation.time, observation.X_OB};
   // The scan at hand was taken before a reset, or who knows.
-  if (!news.is_reset && observation.scan != scan_) news.scan = observation.scan;
+  const bool is_of_now = observation.scan_age <= kScanPatience;
+  if (!news.is_reset && is_of_now && observation.scan != scan_) news.scan = observation.scan;
   scan_ = observation.scan;
   return news;
 }
