@@ -200,7 +200,7 @@ class Lab:
         for process in self.fake:
             process.signal(signal.SIGTERM)
         try:
-            wait_for(lambda: not self._alive(), 'the end of all processes')
+            wait_for(lambda: not self._alive(), lambda: 'the end of %s' % self._alive())
         finally:
             for pid in self._alive():
                 try:
