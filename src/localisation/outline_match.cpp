@@ -9,6 +9,7 @@
 #include "hires/base/check.h"
 #include "hires/geometry/angles.h"
 #include "hires/geometry/covariance.h"
+#include "hires/geometry/pose_difference.h"
 
 namespace hires::localisation {
 namespace {
@@ -34,10 +35,6 @@ double TwiceArea(const geometry::Polygon& outline) {
     area += a.x() * b.y() - a.y() * b.x();
   }
   return area;
-}
-
-Vector3d Difference(const Pose2& a, const Pose2& b) {
-  return {a.x - b.x, a.y - b.y, geometry::WrapToPi(a.yaw - b.yaw)};
 }
 
 /// By how much belief and scan differ [sd^2]: the innovation of the filter, told from the shift

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "hires/geometry/angles.h"
+#include "hires/geometry/pose_difference.h"
 #include "hires/robot/echoes.h"
 
 namespace hires::skills {
@@ -38,10 +39,6 @@ PlaceBelief ToldPlace(const robot::Observation& observation, const SeenPlacePara
   const double sd = told <= params.told_sd ? params.told_sd : told;  // no number stays none
   const double yaw_sd = params.told_yaw_sd * sd / params.told_sd;    // nobody tells it
   return {observation.X_MB, Vector3d(sd * sd, sd * sd, yaw_sd * yaw_sd).asDiagonal()};
-}
-
-Vector3d Difference(const Pose2& a, const Pose2& b) {
-  return {a.x - b.x, a.y - b.y, geometry::WrapToPi(a.yaw - b.yaw)};
 }
 
 /// The belief, but as it is told along every axis [of both covariances] along which it is no surer:
