@@ -179,6 +179,17 @@ class ExecutionMonitorTest(unittest.TestCase):
         verb.signal(signal.SIGKILL)
         wait_until(lambda: 'preempted move_base' in self.system.log(), 'the robot to be stopped')
 
+    def test_a_client_that_is_slow_to_answer_is_waited_for(self):
+        self.system.behave('move_base', hang=True)
+        verb = self.hires(CARRY)
+        self.wait_for_step('move_base')
+        verb.signal(signal.SIGSTOP)
+        wait_until(lambda: 'slow to answer' in self.system.nodes['monitor'].output(), 'a warning')
+        verb.signal(signal.SIGCONT)
+        self.assertNotIn('preempted', self.system.log())
+        verb.signal(signal.SIGINT)
+        wait_until(lambda: 'preempted move_base' in self.system.log(), 'the robot to be stopped')
+
     def test_preempted_while_it_is_planned(self):
         self.system.nodes['planner'].signal(signal.SIGSTOP)
         self.addCleanup(self.system.nodes['planner'].signal, signal.SIGCONT)

@@ -1,5 +1,6 @@
 #include "nodes/execution_monitor/client_watch.h"
 
+#include <fmt/format.h>
 #include <ros/master.h>
 #include <ros/this_node.h>
 
@@ -7,7 +8,8 @@
 #include <optional>
 #include <utility>
 
-#include "hires/relay/uri.h"
+#include "hires/base/log.h"
+#include "hires/relay/master_api.h"
 #include "hires/ros/xmlrpc_master_api.h"
 
 namespace hires_ros {
@@ -15,12 +17,27 @@ namespace {
 
 constexpr auto kPeriod = std::chrono::seconds(1);
 constexpr double kCallTimeout = 1.0;  // [s]
-constexpr int kMostMisses = 3;        // in a row; a busy computer may miss one
+constexpr int kMostRefusals = 3;      // in a row: nothing listens where the client did
+constexpr int kMostSilences = 15;     // in a row, half a minute: a busy computer is slow to answer
+constexpr int kToldSilences = 3;      // from then on it is said
 
-std::optional<hires::relay::Endpoint> EndpointOf(const std::string& node) {
+using Reply = hires::relay::PingReply::Kind;
+
+std::string UriOf(const std::string& node) {
   XmlRpcMasterApi master(ros::master::getURI(), ros::this_node::getName(), kCallTimeout);
-  const auto uri = master.LookupNode(node);
-  return uri ? hires::relay::ParseUri(*uri) : std::nullopt;
+  return master.LookupNode(node).value_or("");
+}
+
+Reply Ping(const std::string& uri) {
+  return XmlRpcPinger(ros::this_node::getName(), kCallTimeout).Ping({uri}).front().kind;
+}
+
+void TellOfSilence(const std::string& client) {
+  hires::base::Log(
+      hires::base::LogLevel::kWarn,
+      fmt::format("{}, which asked for the task, is slow to answer or cut off; the task is "
+                  "preempted once {} calls in a row are lost",
+                  client, kMostSilences));
 }
 
 }  // namespace
@@ -77,11 +94,14 @@ bool ClientWatch::Rest(const std::string& goal_id) {
 void ClientWatch::Follow(const std::string& goal_id) {
   const std::string client = ClientOf(goal_id);
   if (client.empty() || client == ros::this_node::getName()) return;
-  const auto endpoint = EndpointOf(client);
-  if (!endpoint || !AskPid(*endpoint, ros::this_node::getName(), kCallTimeout)) return;
-  for (int misses = 0; misses < kMostMisses;) {
+  const std::string uri = UriOf(client);
+  if (uri.empty() || Ping(uri) != Reply::kAnswered) return;
+  for (int refusals = 0, silences = 0; refusals < kMostRefusals && silences < kMostSilences;) {
     if (!Rest(goal_id)) return;
-    misses = AskPid(*endpoint, ros::this_node::getName(), kCallTimeout) ? 0 : misses + 1;
+    const Reply reply = Ping(uri);
+    refusals = reply == Reply::kRefused ? refusals + 1 : 0;
+    silences = reply == Reply::kAnswered ? 0 : silences + 1;
+    if (silences == kToldSilences && refusals == 0) TellOfSilence(client);
   }
   on_gone_(goal_id);
 }

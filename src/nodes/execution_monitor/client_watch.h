@@ -13,7 +13,8 @@ namespace hires_ros {
 std::string ClientOf(const std::string& goal_id);
 
 /// Watches whether the client that asked for a task lives. A client that was killed cancels
-/// nothing, and a robot should not go on at nobody's wish.
+/// nothing, and a robot should not go on at nobody's wish. Where nothing listens any more it is
+/// gone within seconds; where it is but silent, stopped or cut off, within half a minute.
 class ClientWatch {
  public:
   /// @param on_gone  Called on the watch's thread, once for each goal whose client answered at
