@@ -43,13 +43,18 @@ class Recorder:
         (path,) = glob.glob(os.path.join(self.folder, '*' + ending))
         return path
 
-    def has(self, goal_id, messages):
-        """What is on disk names the goal twice, in itself and in its result, and has the messages: each
-        topic comes on a line of its own, and a short one may overtake all others."""
+    def content(self):
+        """What is on disk."""
         content = b''
         for path in glob.glob(os.path.join(self.folder, '*')):
             with open(path, 'rb') as file:
                 content += file.read()
+        return content
+
+    def has(self, goal_id, messages):
+        """What is on disk names the goal twice, in itself and in its result, and has the messages: each
+        topic comes on a line of its own, and a short one may overtake all others."""
+        content = self.content()
         return content.count(goal_id.encode()) >= 2 and all(data in content for data in messages)
 
 
@@ -190,6 +195,20 @@ class ReplayEpisodeTest(unittest.TestCase):
                 self.assertEqual(a[key], b[key])
             self.assertIsNotNone(a['imagined'], a)
             self.assertEqual(a['imagined']['success'], b['imagined']['success'])
+
+    def test_what_came_first_of_a_topic_is_on_disk_at_once(self):
+        """Else a kill may cut the description of the topic short, and nothing of the bag can be mended."""
+        recorder = Recorder(self.system, 'first')
+        goals = self.system.run(['rostopic', 'pub', '-r', '100', '/execute_action/goal',
+                                 'hires/ExecuteActionActionGoal', '{goal_id: {id: alone}}'])
+        wait_until(lambda: recorder.content().count(b'alone') > 1, 'the goal to be on disk, and another')
+        recorder.process.kill()
+        goals.destroy()
+        path = recorder.bag('.bag.active')
+        mend = self.system.run(['rosbag', 'reindex', path])
+        self.assertEqual(mend.wait(), 0, mend.output())
+        with rosbag.Bag(path) as bag:
+            self.assertEqual({m.goal_id.id for _, m, _ in bag.read_messages('/execute_action/goal')}, {'alone'})
 
     def test_a_recorder_that_is_killed_leaves_a_bag_that_can_be_mended(self):
         path = self.record_what_is_played('killed', signal.SIGKILL).bag('.bag.active')

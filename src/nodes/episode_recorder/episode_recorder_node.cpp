@@ -76,15 +76,23 @@ void EpisodeRecorderNode::OnMessage(const std::string& topic, const Event& event
     if (IsLatched(event.getConnectionHeader())) return;  // it stands there already
   }
   bag_.write(topic, now, *event.getMessage(), event.getConnectionHeaderPtr());
+  if (connections_.insert({topic, event.getPublisherName()}).second) EndChunk();
 }
+
+/// rosbag ends the chunk at hand where its threshold is set. So it is on disk, and no chunk that a
+/// kill may cut short describes a connection: of such a bag `rosbag reindex` finds nothing at all.
+void EpisodeRecorderNode::EndChunk() { bag_.setChunkThreshold(chunk_); }
 
 void EpisodeRecorderNode::BeginBag(const ros::Time& now) {
   const std::string path = rotation_.Next(now.toSec());
   bag_.open(path, rosbag::bagmode::Write);
   bag_.setChunkThreshold(chunk_);
+  connections_.clear();
   for (const auto& [key, event] : latched_) {
     bag_.write(key.first, now, *event.getMessage(), event.getConnectionHeaderPtr());
+    connections_.insert(key);
   }
+  EndChunk();
   hires::base::Log(LogLevel::kInfo, fmt::format("records bag={}", path));
 }
 

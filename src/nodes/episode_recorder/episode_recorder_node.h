@@ -5,6 +5,7 @@
 #include <topic_tools/shape_shifter.h>
 
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,12 +38,15 @@ class EpisodeRecorderNode {
 
   void OnMessage(const std::string& topic, const Event& event);
   void BeginBag(const ros::Time& now);
+  void EndChunk();
   void FinishBag();
 
   hires::evaluation::BagRotation rotation_;
   const std::uint32_t chunk_;  // [bytes]
   rosbag::Bag bag_;
-  std::map<std::pair<std::string, std::string>, Event> latched_;  // by topic and publisher
+  using Connection = std::pair<std::string, std::string>;  // topic and publisher
+  std::map<Connection, Event> latched_;
+  std::set<Connection> connections_;  // that the bag describes
   std::vector<ros::Subscriber> subscribers_;
 };
 
