@@ -10,6 +10,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
+#include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/perception/recogniser_config.h"
 #include "hires/robot/load_robot.h"
@@ -253,6 +254,16 @@ std::uint64_t PutGuardBefore(bool is_there, robot::Robot* robot) {
   return hasher.value();
 }
 
+/// Whoever has no base laser drives by the map alone.
+SetupConfig ForRobot(SetupConfig config, const robot::Robot& robot) {
+  if (!config.driving.obstacle_layer || !robot.profile.laser_link.empty()) return config;
+  base::Log(
+      base::LogLevel::kInfo,
+      fmt::format("{}: no base laser (laser_link), so it drives by the map alone", config.robot));
+  SetObstacleLayer("none", &config);
+  return config;
+}
+
 }  // namespace
 
 std::string ResolvePath(const std::string& path, const std::string& config_path) {
@@ -310,11 +321,16 @@ SetupConfig ReadSetupConfig(const std::string& path) {
   // Who is told its place as drawn is never lost.
   if (config.localisation != "drawn") hasher.Add(in.Sub("lost").Canonical());
   config.params_hash = hasher.value();
-  if (layer != "none") AddObstacleLayer(layer, &config);
+  SetObstacleLayer(layer, &config);
   return config;
 }
 
-void AddObstacleLayer(const std::string& path, SetupConfig* config) {
+void SetObstacleLayer(const std::string& path, SetupConfig* config) {
+  config->driving.obstacle_layer.reset();
+  config->driving.seen_place.reset();
+  config->scans.reset();
+  config->layer_hash = 0;
+  if (path == "none") return;
   ParamReader in = ParamReader::FromFile(path);
   navigation::ObstacleLayerParams& layer = config->driving.obstacle_layer.emplace();
   layer.obstacle_range = in.Get("obstacle_range", Between(0.1, 10.0));
@@ -329,16 +345,17 @@ void AddObstacleLayer(const std::string& path, SetupConfig* config) {
   base::Hasher hasher;
   hasher.Add(config->params_hash);
   hasher.Add(in.Canonical());
-  config->params_hash = hasher.value();
+  config->layer_hash = hasher.value();
 }
 
-ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
+ImaginationSetup LoadImaginationSetup(const SetupConfig& scene) {
   ImaginationSetup setup;
+  robot::Robot robot = robot::LoadAnyRobot(scene.robot);
+  const SetupConfig config = ForRobot(scene, robot);
   std::optional<world::OccupancyGrid> map;
   if (!config.map.empty()) map = world::LoadMap(config.map);
   setup.catalogue = config.objects;
   world::World world = LoadWorldWithObjects(config, map, &setup.object_models);
-  robot::Robot robot = robot::LoadAnyRobot(config.robot);
   setup.robot_hash = PutGuardBefore(config.has_base_guard, &robot);
   skills::SkillSet skills =
       skills::MakeSkillSet(world, robot, config.driving, config.blind, config.manipulation,
@@ -351,7 +368,7 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& config) {
   setup.actions_hash = setup.skills->actions->hash();
   base::Hasher hasher;
   hasher.Add(world.hash);
-  hasher.Add(config.params_hash);
+  hasher.Add(config.layer_hash != 0 ? config.layer_hash : config.params_hash);
   setup.physics_hash = PhysicsHash(config.physics, config.rollout, config.standing);
   setup.scene = simulation::MakeScene(std::move(world), std::move(robot), config.sensing.memory,
                                       LoadSight(config, &hasher));

@@ -125,7 +125,7 @@ const std::map<std::string, Reader>& Readers() {
       {"obstacle_layer.yaml",
        [](const std::string& path) {
          imagination::SetupConfig config;
-         imagination::AddObstacleLayer(path, &config);
+         imagination::SetObstacleLayer(path, &config);
        }},
       {"relay.yaml",
        [](const std::string& path) {

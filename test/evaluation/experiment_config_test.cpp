@@ -10,6 +10,7 @@
 #include "hires/evaluation/experiment/experiment.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/world/world.h"
+#include "support/temporary_folder.h"
 
 namespace hires::evaluation::experiment_config_test {
 namespace {
@@ -160,6 +161,18 @@ TEST(ExperimentConfigTest, AFileThatIsMissingIsNamed) {
   } catch (const base::ConfigError& error) {
     EXPECT_THAT(error.what(), HasSubstr("/no/such/experiment.yaml"));
   }
+}
+
+TEST(ExperimentConfigTest, TheObstacleLayerIsTheScenesNoneOrAFile) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string legs = base::ReadTextFile(kFolder + "legs_world.yaml");
+  const auto layer_of = [&](const std::string& more) {
+    return ReadExperiment(folder.Write("legs.yaml", legs + more)).obstacle_layer;
+  };
+  EXPECT_EQ(layer_of(""), "scene");
+  EXPECT_EQ(layer_of("obstacle_layer: scene\n"), "scene");
+  EXPECT_EQ(layer_of("obstacle_layer: none\n"), "none");
+  EXPECT_EQ(layer_of("obstacle_layer: mine.yaml\n"), (folder.path() / "mine.yaml").string());
 }
 
 TEST(ExperimentConfigTest, MistakesAreNamedWithTheirPlace) {

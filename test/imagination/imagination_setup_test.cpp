@@ -158,12 +158,13 @@ TEST(SetupConfigTest, EverySectionIsNeeded) {
 TEST(SetupConfigTest, AnObstacleLayerIsReadFromItsFileAndMatters) {
   const std::string path = Root() + "/config/obstacle_layer.yaml";
   SceneFile file;
+  file.root["obstacle_layer"] = "none";
   EXPECT_FALSE(file.Read().driving.obstacle_layer);
-  const std::uint64_t without = file.Read().params_hash;
+  const std::uint64_t without = file.Read().layer_hash;
   file.root["obstacle_layer"] = path;
   EXPECT_EQ(file.Read().driving.obstacle_layer->raytrace_range, 3.0);
   EXPECT_EQ(file.Read().scans->laser.num_beams, 120);
-  EXPECT_NE(file.Read().params_hash, without);
+  EXPECT_NE(file.Read().layer_hash, without);
 
   YAML::Node layer = YAML::LoadFile(path);
   const auto why_refused = [&] {
@@ -197,7 +198,7 @@ TEST(SetupConfigTest, ASeenPlaceIsReadFromTheLayersFileAndMatters) {
   const std::string path = Root() + "/config/obstacle_layer.yaml";
   SceneFile file;
   file.root["obstacle_layer"] = path;
-  const std::uint64_t without = file.Read().params_hash;
+  const std::uint64_t without = file.Read().layer_hash;
   EXPECT_FALSE(file.Read().driving.seen_place);
   YAML::Node layer = YAML::LoadFile(path);
   layer["seen_place"] = SeenPlaceInComments(path);
@@ -205,7 +206,7 @@ TEST(SetupConfigTest, ASeenPlaceIsReadFromTheLayersFileAndMatters) {
     file.root["obstacle_layer"] = file.folder.Write("layer.yaml", YAML::Dump(layer));
   };
   write();
-  EXPECT_NE(file.Read().params_hash, without);
+  EXPECT_NE(file.Read().layer_hash, without);
   const skills::SeenPlaceParams read = file.Read().driving.seen_place.value(), defaults;
   EXPECT_EQ(read.match.gate, defaults.match.gate);
   EXPECT_EQ(read.match.least_view, defaults.match.least_view);
@@ -253,13 +254,18 @@ TEST(SetupConfigTest, WhatTellsTheRobotItsPlaceIsReadAndMatters) {
   EXPECT_THAT(file.WhyRefused(), HasSubstr("localisation is 'amcl'"));
 }
 
-TEST(SetupConfigTest, ARobotWithoutALaserIsToldItsPlace) {
+TEST(SetupConfigTest, ARobotWithoutALaserIsToldItsPlaceAndDrivesByTheMap) {
   SceneFile file;
-  file.root["localisation"] = "filter";
+  file.root["obstacle_layer"] = Root() + "/config/obstacle_layer.yaml";
+  EXPECT_TRUE(file.Load().skills->driving->by_plane);
   YAML::Node robot = YAML::LoadFile(Root() + "/config/robots/cart.yaml");
   robot["urdf"] = Root() + "/urdf/cart.urdf";
   robot["laser_link"] = "";
   file.root["robot"] = file.folder.Write("blind.yaml", YAML::Dump(robot));
+  const ImaginationSetup blind = file.Load();
+  EXPECT_FALSE(blind.skills->driving->by_plane);
+  EXPECT_FALSE(blind.scene->sight.scans);
+  file.root["localisation"] = "filter";
   EXPECT_THAT(file.WhyRefused(), AllOf(HasSubstr("laser_link"), HasSubstr("drawn")));
 }
 

@@ -53,15 +53,17 @@ struct SetupConfig {
   world::StandingCriterion standing;
   translation::ClassifyParams classify;
   std::uint64_t params_hash{0};  ///< of driving, blind, manipulation, sensing
+  std::uint64_t layer_hash{0};   ///< of that and the obstacle layer's file; 0: there is none
 };
 
 /// @throws base::ConfigError naming file and key; also if the aftermath of a rollout ends before
 /// the hold time of a fall does.
 SetupConfig ReadSetupConfig(const std::string& path);
 
-/// Has drives go by what the base's laser sees, as a file like config/obstacle_layer.yaml says.
+/// Has drives go by what the base's laser sees, as a file like config/obstacle_layer.yaml says;
+/// "none": by the map alone.
 /// @throws base::ConfigError naming file and key.
-void AddObstacleLayer(const std::string& path, SetupConfig* config);
+void SetObstacleLayer(const std::string& path, SetupConfig* config);
 
 /// A path that stands in the file `config_path`: relative ones count from that file's folder.
 std::string ResolvePath(const std::string& path, const std::string& config_path);
@@ -94,8 +96,9 @@ struct ImaginationSetup {
   std::string ModelOf(const std::string& instance_or_model) const;
 };
 
+/// Whoever has no base laser drives by the map alone, whatever the obstacle layer says.
 /// @throws base::ConfigError naming file, element and remedy.
-ImaginationSetup LoadImaginationSetup(const SetupConfig& config);
+ImaginationSetup LoadImaginationSetup(const SetupConfig& scene);
 
 /// What the rollouts of a request share.
 RolloutSetup MakeRolloutSetup(const ImaginationSetup& setup, const StartState& start,

@@ -248,8 +248,9 @@ void ReadPlace(const std::string& path, ParamReader* in, const ExperimentOverrid
   if (config->self_localisation != "none")
     config->self_localisation = imagination::ResolvePath(config->self_localisation, path);
   ReadMishaps(in, config);
-  if (in->Has("obstacle_layer"))
-    config->obstacle_layer = imagination::ResolvePath(in->GetString("obstacle_layer"), path);
+  if (in->Has("obstacle_layer")) config->obstacle_layer = in->GetString("obstacle_layer");
+  if (config->obstacle_layer != "scene")
+    config->obstacle_layer = imagination::ResolvePath(config->obstacle_layer, path);
   if (!overrides.map.empty()) {
     config->map = overrides.map;
   } else if (config->map == "given") {

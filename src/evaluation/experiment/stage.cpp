@@ -86,7 +86,7 @@ Stage MakeStage(const ExperimentConfig& config) {
   if (config.world != "scene") scene.world = config.world;
   if (config.uncertainty != "scene") scene.uncertainty = config.uncertainty;
   if (config.obstacle_layer != "scene")
-    imagination::AddObstacleLayer(config.obstacle_layer, &scene);
+    imagination::SetObstacleLayer(config.obstacle_layer, &scene);
   Stage stage;
   ImaginationSetup& setup = stage.setup;
   setup = imagination::LoadImaginationSetup(scene);

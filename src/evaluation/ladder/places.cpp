@@ -38,9 +38,7 @@ Places::Places(std::string package_folder, std::uint64_t seed)
 ImaginationSetup Places::Told(const std::string& localisation, bool has_layer) const {
   imagination::SetupConfig config = config_;
   config.localisation = localisation;
-  config.driving.obstacle_layer.reset();
-  config.scans.reset();
-  if (has_layer) imagination::AddObstacleLayer(File("obstacle_layer.yaml"), &config);
+  imagination::SetObstacleLayer(has_layer ? File("obstacle_layer.yaml") : "none", &config);
   return imagination::LoadImaginationSetup(config);
 }
 

@@ -105,7 +105,8 @@ struct ExperimentConfig {
   bool is_carried{false};
   std::vector<OldPlace> moved;
   std::vector<simulation::WetPatch> wet;
-  /// "scene": as the scene has it, or path of a file like config/obstacle_layer.yaml
+  /// "scene": as the scene has it; "none": by the map alone; or path of a file like
+  /// config/obstacle_layer.yaml
   std::string obstacle_layer{"scene"};
   std::vector<Goal> goals;           ///< at least two
   std::vector<std::string> objects;  ///< on the tray
