@@ -165,6 +165,9 @@ TEST(SetupConfigTest, AnObstacleLayerIsReadFromItsFileAndMatters) {
   EXPECT_EQ(file.Read().driving.obstacle_layer->raytrace_range, 3.0);
   EXPECT_EQ(file.Read().scans->laser.num_beams, 120);
   EXPECT_NE(file.Read().layer_hash, without);
+  const std::uint64_t with_layer = file.Load().world_hash;
+  file.root["obstacle_layer"] = "none";
+  EXPECT_NE(file.Load().world_hash, with_layer);
 
   YAML::Node layer = YAML::LoadFile(path);
   const auto why_refused = [&] {
@@ -265,6 +268,8 @@ TEST(SetupConfigTest, ARobotWithoutALaserIsToldItsPlaceAndDrivesByTheMap) {
   const ImaginationSetup blind = file.Load();
   EXPECT_FALSE(blind.skills->driving->by_plane);
   EXPECT_FALSE(blind.scene->sight.scans);
+  file.root["obstacle_layer"] = "none";
+  EXPECT_EQ(file.Load().world_hash, blind.world_hash);
   file.root["localisation"] = "filter";
   EXPECT_THAT(file.WhyRefused(), AllOf(HasSubstr("laser_link"), HasSubstr("drawn")));
 }

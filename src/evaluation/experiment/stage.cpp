@@ -93,14 +93,15 @@ Stage MakeStage(const ExperimentConfig& config) {
   ChangeUncertainty(config.uncertainty_changes, config.name + ": uncertainty_changes", &setup);
   world::World world = setup.scene->world;
   skills::SkillSet skills = *setup.skills;
+  const skills::MoveBaseParams driving = skills.driving->params;  // as this robot has it
   if (config.map != "none") {
-    ReplaceByMap(config, scene.driving, &world, &skills, setup.scene->robot);
+    ReplaceByMap(config, driving, &world, &skills, setup.scene->robot);
   }
   std::optional<world::World> mapped;
   if (!config.moved.empty()) {
     mapped = AsMapped(world, config);
     skills.driving = std::make_shared<const skills::DrivingContext>(
-        skills::MakeDrivingContext(*mapped, setup.scene->robot, scene.driving));
+        skills::MakeDrivingContext(*mapped, setup.scene->robot, driving));
   }
   AddGoals(config.goals, &world, &skills);
   world.hash = world.ComputeHash();
@@ -115,7 +116,7 @@ Stage MakeStage(const ExperimentConfig& config) {
   }
   setup.skills = std::make_shared<const skills::SkillSet>(std::move(skills));
   stage.objects = config.objects;
-  stage.xy_tolerance = scene.driving.local.xy_goal_tolerance;
+  stage.xy_tolerance = driving.local.xy_goal_tolerance;
   stage.yaw_tolerance = scene.driving.local.yaw_goal_tolerance;
   stage.params_hash = HashOf(setup);
   return stage;

@@ -5,7 +5,6 @@
 #include <ros/this_node.h>
 
 #include <chrono>
-#include <optional>
 #include <utility>
 
 #include "hires/base/log.h"
