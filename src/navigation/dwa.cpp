@@ -225,10 +225,14 @@ bool DwaPlanner::Impl::PrepareGrids(const Costmap& costmap, const geometry::Pose
   window_.Centre(costmap, X_MB.position(), kLocalHalfWidth);
   std::vector<int> on_path;
   Eigen::Vector2d local_goal = X_MGoal_.position();
+  double way = 0.0;  // [m]
   for (std::size_t i = first_; i < path_.size(); ++i) {
     const int cell = window_.CellBelow(path_[i]);
     if (cell < 0 && !on_path.empty()) break;  // the path leaves the window
     if (cell < 0) continue;
+    // Behind a detour may be what is near through a gap; the path knows why it avoids that.
+    if (!on_path.empty()) way += (path_[i] - local_goal).norm();
+    if (way > kLocalHalfWidth) break;
     on_path.push_back(cell);
     local_goal = path_[i];
   }

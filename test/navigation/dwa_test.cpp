@@ -458,6 +458,28 @@ TEST(DwaTest, WithoutRoomToTurnThereIsNoValidTrajectory) {
             DwaStatus::kNoValidTrajectory);
 }
 
+/// The path leads round a wall; the costmap has a gap in it, too narrow to turn in. Behind that gap
+/// the goal is near.
+TEST(DwaTest, APathThatGoesRoundIsNotLeftForAShorterWay) {
+  for (const double gap : {0.7, 0.75}) {
+    SCOPED_TRACE("gap of " + std::to_string(gap) + " m");
+    Scene open = EmptyScene(6, 6);
+    open.Add(0.0, 2.6, 2.0 - gap / 2, 3.1);
+    open.Add(2.0 + gap / 2, 2.6, 3.6, 3.1);
+    Scene shut = open;
+    shut.Add(2.0 - gap / 2, 2.6, 2.0 + gap / 2, 3.1);
+    const geometry::Pose2 X_MStart{2.0, 1.6, kPi}, X_MGoal{2.0, 4.4, 0.0};
+    DwaPlanner planner({}, PaddedFootprint());
+    planner.SetMotionSet(kFast);
+    planner.SetPath(PlanPath(shut.MakeCostmap(), X_MStart, X_MGoal).path);
+    IdealBase base;
+    base.X_MB = X_MStart;
+    const Drive drive = DriveWith(&planner, open.MakeCostmap(), base, open.obstacles);
+    ExpectArrived(drive, X_MGoal);
+    EXPECT_LT(drive.duration, 30.0);
+  }
+}
+
 TEST(DwaTest, BrokenParametersAreRefused) {
   DwaParams params;
   params.control_period = 0.0;
