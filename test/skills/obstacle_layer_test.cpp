@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -78,7 +80,7 @@ Drive DriveOff(const world::World& world, const Pose2& X_WM, bool has_layer) {
 
 TEST(ObstacleLayerDriveTest, ALocalisationThatErrsMovesNoDoor) {
   const world::World room = RoomWithDoor();
-  for (const double off : {0.17, -0.17}) {
+  for (const double off : {0.2, -0.2}) {
     const Drive by_map = DriveOff(room, {0.0, off, 0.0}, false);
     const Drive by_laser = DriveOff(room, {0.0, off, 0.0}, true);
     EXPECT_TRUE(by_map.has_touched) << "else this shows nothing";
@@ -119,6 +121,31 @@ TEST(ObstacleLayerDriveTest, WhatIsGoneIsFreeAndWhatCameIsThere) {
   const navigation::Costmap costmap = LookedAt(before, after);
   EXPECT_LT(CostAt(costmap, {2.21, 2.5}), navigation::kInscribedCost) << "its old face";
   EXPECT_EQ(CostAt(costmap, {2.21, 1.2}), navigation::kLethalCost) << "its new one";
+}
+
+/// A crate comes onto the path when that is planned, and the robot stays where it is.
+TEST(ObstacleLayerDriveTest, WhoComesNoNearerLooksForAWayRoundWhatIsSeenByNow) {
+  const world::World room = hires::test_support::Room();
+  world::World blocked = room;
+  blocked.statics.push_back(
+      hires::test_support::Block("crate", {0.4, 0.4, 0.5}, {2.75, 2.0, 0.25}));
+  MoveBase skill(ContextOf(room, true), kEast, kSlow);
+  std::optional<double> avoided;  // [s]
+  for (int i = 0; i < 80 && !avoided; ++i) {
+    robot::Observation seen;
+    seen.time = 0.1 * i;
+    seen.X_MB = seen.X_OB = kWest;
+    seen.scan = ScanIn(i == 0 ? room : blocked, kWest, kWest);
+    robot::Command command;
+    ASSERT_EQ(skill.Update(seen, &command).progress, Progress::kRunning);
+    const auto& path = *skill.drive_view()->path;
+    const bool is_on_it = std::any_of(path.begin(), path.end(), [](const Pose2& pose) {
+      return (pose.position() - Eigen::Vector2d(2.75, 2.0)).norm() < 0.2;
+    });
+    if (!is_on_it) avoided = seen.time;
+  }
+  ASSERT_TRUE(avoided) << "it would still drive through the crate";
+  EXPECT_NEAR(*avoided, MoveBaseParams{}.progress_timeout, 0.11);
 }
 
 TEST(ObstacleLayerDriveTest, WhatIsAboveTheLasersPlaneIsAsTheMapHasIt) {

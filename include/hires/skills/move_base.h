@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -29,6 +30,8 @@ struct MoveBaseParams {
   double map_resolution{0.05};       ///< [m] cell of the costmap made from a world
   double replanning_period{1.0};     ///< [s] between two attempts when there is no valid trajectory
   double controller_patience{15.0};  ///< [s] without a valid trajectory before giving up
+  double progress_timeout{5.0};  ///< [s] without coming nearer along a path, before another one is
+                                 ///< looked for by what the laser sees
   double oscillation_timeout{10.0};  ///< [s] without ...
   double oscillation_distance{0.5};  ///< [m] ... this much motion (or its half in rad) before
                                      ///< planning again; twice in a row: giving up
@@ -90,6 +93,7 @@ class MoveBase : public Skill {
   std::optional<Status> Plan(const robot::Observation& observation);
   navigation::PathStatus FindPath(const navigation::Costmap& costmap, const geometry::Pose2& X_MB);
   bool IsAtGoal(const robot::Observation& observation) const;
+  void PlanAnewIfStuck(const robot::Observation& observation);
   bool NoteMotion(const robot::Observation& observation);
   std::shared_ptr<const navigation::Costmap> Completed(
       const std::shared_ptr<const navigation::Costmap>& map,
@@ -115,6 +119,8 @@ class MoveBase : public Skill {
   geometry::Pose2 X_MMoved_;  // where it last counted as having moved
   double last_moved_{0.0};    // [s]
   int oscillations_{0};
+  std::ptrdiff_t least_left_{0};  // so many poses of the path were left; 0: it is new
+  double last_nearer_{0.0};       // [s] when that became less
   int num_missed_{0};  // ways that a car was given because the one before ended out of tolerance
 };
 

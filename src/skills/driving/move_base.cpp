@@ -216,6 +216,7 @@ navigation::PathStatus MoveBase::FindPath(const navigation::Costmap& costmap, co
     if (found.status != navigation::PathStatus::kFound) return found.status;
     path_ = std::make_shared<const std::vector<Pose2>>(std::move(found.path));
     local_.SetPath(*path_);
+    least_left_ = 0;
     return found.status;
   }
   navigation::CarPathParams params;
@@ -250,6 +251,28 @@ std::optional<Status> MoveBase::Plan(const robot::Observation& observation) {
       break;
   }
   return std::nullopt;
+}
+
+/// What is seen may close a path, or show a shorter way that draws the local planner off it: it
+/// then turns where it stands as long as it can. Where there is no other path, this one stays.
+void MoveBase::PlanAnewIfStuck(const robot::Observation& observation) {
+  const auto apart = [&](const Pose2& pose) {
+    return (pose.position() - observation.X_MB.position()).norm();
+  };
+  // At its goal it turns and corrects.
+  const bool is_there = apart(X_MGoal_) <= 2.0 * context_->params.local.xy_goal_tolerance;
+  if (!sensed_ || car_ || is_there) return;
+  const auto nearest =
+      std::min_element(path_->begin(), path_->end(),
+                       [&](const Pose2& a, const Pose2& b) { return apart(a) < apart(b); });
+  const std::ptrdiff_t left = path_->end() - nearest;
+  if (least_left_ == 0 || left + 2 <= least_left_) {  // 2: a cell is no way
+    least_left_ = left;
+    last_nearer_ = observation.time;
+  }
+  if (observation.time - last_nearer_ < context_->params.progress_timeout) return;
+  last_nearer_ = observation.time;
+  Plan(observation);
 }
 
 /// False when the robot has been going to and fro for too long.
@@ -357,6 +380,7 @@ Status MoveBase::Update(const robot::Observation& observation, robot::Command* c
     X_MMoved_ = observation.X_MB;
     last_valid_ = last_plan_ = last_moved_ = observation.time;
   }
+  PlanAnewIfStuck(observation);
   const navigation::DwaResult result =
       car_ ? car_->Update(now_.get(), observation.X_MB, observation.V_B)
            : local_.Update(*now_, observation.X_MB, observation.V_B);
