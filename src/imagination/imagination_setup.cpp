@@ -68,6 +68,7 @@ skills::MoveBaseParams ReadDriving(ParamReader in) {
   p.min_obstacle_height = in.Get("min_obstacle_height", Between(0.0, 1.0));
   p.map_resolution = in.Get("map_resolution", Between(0.01, 0.5));
   p.replanning_period = in.Get("replanning_period", Between(0.0, 60.0));
+  p.progress_timeout = in.Get("progress_timeout", Between(0.1, 300.0));
   p.controller_patience = in.Get("controller_patience", Between(0.1, 300.0));
   p.oscillation_timeout = in.Get("oscillation_timeout", Between(0.1, 300.0));
   p.oscillation_distance = in.Get("oscillation_distance", Between(0.001, 10.0));
@@ -339,11 +340,10 @@ void SetObstacleLayer(const std::string& path, SetupConfig* config) {
   if (in.Has("seen_place")) config->driving.seen_place = ReadSeenPlace(in.Sub("seen_place"));
   ParamReader laser = in.Sub("laser");
   simulation::ScanParams& scans = config->scans.emplace();
-  scans.laser = simulation::ReadLaser(&laser);
+  scans.laser = simulation::ReadBeams(&laser);
   scans.period = laser.Get("period", Between(0.05, 10.0));
   in.RejectUnknownKeys();
   base::Hasher hasher;
-  hasher.Add(config->params_hash);
   hasher.Add(in.Canonical());
   config->layer_hash = hasher.value();
 }
@@ -368,7 +368,8 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& scene) {
   setup.actions_hash = setup.skills->actions->hash();
   base::Hasher hasher;
   hasher.Add(world.hash);
-  hasher.Add(config.layer_hash != 0 ? config.layer_hash : config.params_hash);
+  hasher.Add(config.params_hash);
+  hasher.Add(config.layer_hash);
   setup.physics_hash = PhysicsHash(config.physics, config.rollout, config.standing);
   setup.scene = simulation::MakeScene(std::move(world), std::move(robot), config.sensing.memory,
                                       LoadSight(config, &hasher));

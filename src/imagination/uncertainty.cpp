@@ -87,6 +87,7 @@ const std::vector<Quantity>& Quantities() {
       {"grasp_x", "m", -0.05, 0.05, [](Variation& v) -> double& { return v.grasp_offset.x(); }},
       {"grasp_z", "m", -0.05, 0.05, [](Variation& v) -> double& { return v.grasp_offset.y(); }},
       {"grasp_turn", "rad", -0.5, 0.5, [](Variation& v) -> double& { return v.grasp_turn; }},
+      {"scan_noise", "m", 0, 1, [](Variation& v) -> double& { return v.scan_noise; }},
       {"encoder_noise", "rad", 0, 0.1, [](Variation& v) -> double& { return v.encoder_noise; }},
   };
   return quantities;

@@ -27,7 +27,7 @@ MiddleLayer::MiddleLayer(const ImaginationSetup& setup, const sensing::FrameName
                          Hooks hooks)
     : setup_(setup),
       hooks_(std::move(hooks)),
-      senses_(setup, frames, setup.scene->surroundings),
+      senses_(setup, frames, setup.scene->in_camera()),
       observations_(&senses_.state(), ObstaclesOf(setup, scan),
                     robot::BaseOutlineOf(setup.scene->robot)),
       looked_(0.0),

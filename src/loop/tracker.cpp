@@ -11,7 +11,7 @@ using robot::SeenObject;
 using sensing::RobotEstimate;
 using translation::ObservedWorld;
 
-/// A robot without a camera has none; what others say of objects it keeps track of, too.
+/// A robot without camera and laser has none; what others say of objects it keeps track of, too.
 std::shared_ptr<const perception::Surroundings> SurroundingsOf(const simulation::Scene& scene) {
   return scene.surroundings ? scene.surroundings
                             : std::make_shared<const perception::Surroundings>(scene.world);

@@ -58,7 +58,7 @@ std::vector<double> RangesOf(const perception::LineOfSight& sight, const geometr
 
 void RequireSurroundings(const RobotSimulator& simulator) {
   HIRES_CHECK(simulator.scene().surroundings,
-              "only a robot with an upper body has surroundings to scan");
+              "only a robot with a base laser or an upper body has surroundings to scan");
 }
 
 std::vector<geometry::Collision> ShapesOf(const RobotSimulator& simulator) {

@@ -100,6 +100,7 @@ robot::Observation RobotSimulator::Observe(double action_start) {
 void RobotSimulator::Scan(base::Rng* noise, robot::Observation* observation) {
   LaserParams laser = scene_->sight.scans->laser;
   laser.link = scene_->robot.profile.laser_link;
+  laser.noise = variation_.scan_noise;
   LevelScan scan = ScanLevel(*this, laser, noise);
   sensors_->ReadScan(state_.time, std::move(scan.reading), scan.X_BL, observation);
 }

@@ -53,7 +53,7 @@ RobotSimulator::RobotSimulator(std::shared_ptr<const Scene> scene, const Variati
     frozen_->AddBody(X_MB(), objects_->RigidShapes_B(), physics_.get());
   } else {
     AddPlanarRobot();
-    if (scene_->surroundings) AddCamera(rng.Fork(5));
+    if (scene_->has_camera()) AddCamera(rng.Fork(5));
   }
   RefuseBadStart();
 }

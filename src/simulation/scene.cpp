@@ -57,7 +57,8 @@ std::shared_ptr<const Scene> MakeScene(world::World world, robot::Robot robot,
   std::vector<geometry::Collision> base_B = ShapesOfTheBase(robot, shapes_B);
   RobotClearance base_clearance(base_B, world);
   std::shared_ptr<const perception::Surroundings> surroundings;
-  if (profile.upper_body) surroundings = std::make_shared<const perception::Surroundings>(world);
+  if (profile.upper_body || laser_height)
+    surroundings = std::make_shared<const perception::Surroundings>(world);
   return std::make_shared<const Scene>(Scene{std::move(world),
                                              std::move(robot),
                                              std::move(shapes_B),

@@ -45,6 +45,7 @@ class SmallScene {
     scene["objects"] = root + "/worlds/objects.yaml";
     scene["uncertainty"] = "none";
     scene["detector"] = "none";
+    scene["obstacle_layer"] = root + "/config/obstacle_layer.yaml";
     path_ = folder_.Write("scene.yaml", YAML::Dump(scene));
   }
 

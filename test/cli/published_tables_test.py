@@ -3,7 +3,7 @@ whether the counts of reproduced results agree with the catalogue.
 
 Results of `hires experiment FILE` carry the hash of the parameters that they were played with, those of series
 (`experiment hypothesis`, `scenarios` and the like) that of all files that a series reads: `hires experiment
---hashes`. A document may keep a stale result only where it says so: "files HASH, stale".
+--hashes`. A document may keep a stale result only where it says so: "files HASH, stale", "parameters HASH, stale".
 """
 
 import glob
@@ -18,9 +18,11 @@ import yaml
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '..', '..'))
 DATA = os.path.join(ROOT, '..', 'shared', 'data')
 # The first line of a printed report, a row of a table of reports, and a hash in a sentence that names the file.
-PATTERNS = (re.compile(r'^(?P<name>\w+) \(\w+\), seed (?P<seed>\d+), parameters (?P<hash>[0-9a-f]{16}), experiment'),
-            re.compile(r'^\| `(?P<name>\w+)` \| (?P<hash>[0-9a-f]{16}) \|'),
-            re.compile(r'config/experiments/(?P<name>\w+)\.yaml.*\(parameters (?P<hash>[0-9a-f]{16})\)'))
+PATTERNS = (re.compile(r'^(?P<name>\w+) \(\w+\), seed (?P<seed>\d+), parameters (?P<hash>[0-9a-f]{16})'
+                       r'(?P<stale>, stale)?, experiment'),
+            re.compile(r'^\| `(?P<name>\w+)` \| (?P<hash>[0-9a-f]{16})(?P<stale>, stale)? \|'),
+            re.compile(r'config/experiments/(?P<name>\w+)\.yaml.*\(parameters (?P<hash>[0-9a-f]{16})'
+                       r'(?P<stale>, stale)?\)'))
 # A command that plays a series; where a day stands in its paragraph, the paragraph prints what it said then.
 SERIES = re.compile(r'`hires (?P<command>(?:experiment (?:hypothesis|decision|recognition|detector|localisation|'
                     r'torso_poses)|scenarios)\b[^`]*)`')
@@ -45,12 +47,13 @@ def documents():
 
 
 def published():
-    """(place, experiment, seed, hash) of what is printed."""
+    """(place, experiment, seed, hash, whether it says that it is stale) of what is printed."""
     for path, number, line in documents():
         for pattern in PATTERNS:
             for found in pattern.finditer(line):
                 named = found.groupdict()
-                yield '%s:%d' % (path, number), named['name'], named.get('seed') or '1', named['hash']
+                yield ('%s:%d' % (path, number), named['name'], named.get('seed') or '1', named['hash'],
+                       bool(named['stale']))
 
 
 def series():
@@ -121,18 +124,23 @@ class CountedResultsTest(unittest.TestCase):
 class PublishedTablesTest(unittest.TestCase):
     program = ''
 
-    def test_what_is_printed_is_of_todays_parameters(self):
+    def test_what_is_printed_is_of_todays_parameters_or_says_that_it_is_stale(self):
         found = list(published())
         self.assertGreaterEqual(len(found), 5, 'no printed results are found any more')
-        stale = []
-        for place, name, seed, printed in found:
+        wrong = []
+        for place, name, seed, printed, is_stale in found:
             now = todays(self.program, name, seed)
+            again = 'play `hires experiment config/experiments/%s.yaml` again' % name
             if now is None:
                 print('%s: %s: no data in ../shared to compare it with' % (place, name))
+            elif now == printed and is_stale:
+                wrong.append('%s: says that it is stale, and is of today: take that word out' % place)
+            elif now != printed and is_stale:
+                print('%s: stale, and says so; %s' % (place, again))
             elif now != printed:
-                stale.append('%s: %s is of parameters %s, today they are %s; play `hires experiment '
-                             'config/experiments/%s.yaml` again' % (place, name, printed, now, name))
-        self.assertEqual(stale, [], '\n' + '\n'.join(stale))
+                wrong.append('%s: %s is of parameters %s, today they are %s; %s, or write ", stale" behind the hash'
+                             % (place, name, printed, now, again))
+        self.assertEqual(wrong, [], '\n' + '\n'.join(wrong))
 
     def test_series_that_are_printed_are_of_todays_files_or_say_that_they_are_stale(self):
         found = list(series())

@@ -231,9 +231,11 @@ TEST(ChainTest, WithoutPuttingBackItIsPutBackBetweenTheLegs) {
 }
 
 TEST(ChainTest, AfterACollisionTheRobotIsPutToTheGoal) {
-  // The robot believes to stand 0.5 m left of where it stands.
-  const auto stage =
-      StageWithMill("localisation_y: {distribution: fixed, value: 0.5, unit: m, source: test}\n");
+  // The robot believes to stand 0.5 m left of where it stands, and sees nothing of what is there.
+  ExperimentConfig config = Config(
+      "topple_loop", "localisation_y: {distribution: fixed, value: 0.5, unit: m, source: test}\n");
+  config.obstacle_layer = "none";
+  const auto stage = std::make_shared<const Stage>(MakeStage(config));
   Chain chain(stage, "NT1", {"fast", 1, true, false});
   for (const char* goal : {"ST1", "WT2", "ET2", "EC1", "NT1", "ST1"}) {
     const Leg leg = chain.Drive(goal, {}).value();

@@ -5,11 +5,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include <functional>
-#include <sstream>
 #include <string>
 #include <utility>
 
-#include "hires/base/text.h"
 #include "hires/simulation/pose_error.h"
 #include "imagination/physics_hash.h"
 #include "support/messages.h"
@@ -56,6 +54,7 @@ struct SceneFile {
     root["objects"] = folder.Write("objects.yaml", "mill1: mill\nMill2: mill\n");
     root["uncertainty"] = "none";
     root["detector"] = "none";
+    root["obstacle_layer"] = Root() + "/config/obstacle_layer.yaml";
     folder.Write("models/mill/model.config",
                  "<?xml version=\"1.0\"?><model><name>mill</name><sdf version=\"1.7\">model.sdf"
                  "</sdf></model>");
@@ -186,42 +185,30 @@ TEST(SetupConfigTest, AnObstacleLayerIsReadFromItsFileAndMatters) {
   EXPECT_THAT(why_refused(), HasSubstr("key 'decay' is unknown"));
 }
 
-/// The section as the file gives it in its comments, so that these are right.
-YAML::Node SeenPlaceInComments(const std::string& layer_file) {
-  std::istringstream lines(base::ReadTextFile(layer_file, 1u << 16));
-  std::string section, line;
-  while (std::getline(lines, line)) {
-    const bool is_of_it = line.rfind("#   ", 0) == 0 || line == "# seen_place:";
-    if (is_of_it) section += line.substr(2) + "\n";
-  }
-  return YAML::Load(section)["seen_place"];
-}
-
 TEST(SetupConfigTest, ASeenPlaceIsReadFromTheLayersFileAndMatters) {
   const std::string path = Root() + "/config/obstacle_layer.yaml";
   SceneFile file;
-  file.root["obstacle_layer"] = path;
-  const std::uint64_t without = file.Read().layer_hash;
-  EXPECT_FALSE(file.Read().driving.seen_place);
-  YAML::Node layer = YAML::LoadFile(path);
-  layer["seen_place"] = SeenPlaceInComments(path);
-  const auto write = [&] {
-    file.root["obstacle_layer"] = file.folder.Write("layer.yaml", YAML::Dump(layer));
-  };
-  write();
-  EXPECT_NE(file.Read().layer_hash, without);
+  const std::uint64_t with = file.Read().layer_hash;
   const skills::SeenPlaceParams read = file.Read().driving.seen_place.value(), defaults;
   EXPECT_EQ(read.match.gate, defaults.match.gate);
   EXPECT_EQ(read.match.least_view, defaults.match.least_view);
   EXPECT_EQ(read.told_yaw_sd, defaults.told_yaw_sd);
   EXPECT_EQ(read.drift, defaults.drift);
 
+  YAML::Node layer = YAML::LoadFile(path);
+  const auto write = [&] {
+    file.root["obstacle_layer"] = file.folder.Write("layer.yaml", YAML::Dump(layer));
+  };
   layer["seen_place"]["gate"] = 0;
   write();
   EXPECT_THAT(ConfigErrorOf([&] { file.Read(); }), HasSubstr("seen_place.gate is '0'"));
   layer["seen_place"].remove("gate");
   write();
   EXPECT_THAT(ConfigErrorOf([&] { file.Read(); }), HasSubstr("seen_place.gate is missing"));
+  layer.remove("seen_place");
+  write();
+  EXPECT_FALSE(file.Read().driving.seen_place);
+  EXPECT_NE(file.Read().layer_hash, with);
 }
 
 TEST(SetupConfigTest, WhatTellsTheRobotItsPlaceIsReadAndMatters) {
@@ -231,7 +218,6 @@ TEST(SetupConfigTest, WhatTellsTheRobotItsPlaceIsReadAndMatters) {
   EXPECT_FALSE(drawn.scene->pose_error);
   const std::string shipped = Root() + "/config/self_localisation.yaml";
   file.root["self_localisation"] = shipped;
-  file.root["robot"] = Root() + "/config/robots/pr2.yaml";  // which has a laser
   const std::uint64_t without = file.Load().world_hash;
   file.root["localisation"] = "filter";
   const ImaginationSetup filter = file.Load();
@@ -259,7 +245,6 @@ TEST(SetupConfigTest, WhatTellsTheRobotItsPlaceIsReadAndMatters) {
 
 TEST(SetupConfigTest, ARobotWithoutALaserIsToldItsPlaceAndDrivesByTheMap) {
   SceneFile file;
-  file.root["obstacle_layer"] = Root() + "/config/obstacle_layer.yaml";
   EXPECT_TRUE(file.Load().skills->driving->by_plane);
   YAML::Node robot = YAML::LoadFile(Root() + "/config/robots/cart.yaml");
   robot["urdf"] = Root() + "/urdf/cart.urdf";
@@ -267,6 +252,7 @@ TEST(SetupConfigTest, ARobotWithoutALaserIsToldItsPlaceAndDrivesByTheMap) {
   file.root["robot"] = file.folder.Write("blind.yaml", YAML::Dump(robot));
   const ImaginationSetup blind = file.Load();
   EXPECT_FALSE(blind.skills->driving->by_plane);
+  EXPECT_FALSE(blind.skills->driving->seen_place);
   EXPECT_FALSE(blind.scene->sight.scans);
   file.root["obstacle_layer"] = "none";
   EXPECT_EQ(file.Load().world_hash, blind.world_hash);
@@ -377,7 +363,9 @@ TEST(SetupHashTest, EveryParameterMattersCommentsDoNot) {
 TEST(SetupHashTest, TheConfiguredFilesCommentsDoNotMatter) {
   const std::string path = Root() + "/config/scene.yaml";
   const TemporaryFolder folder;
-  const std::string bare = folder.Write("scene.yaml", YAML::Dump(YAML::LoadFile(path)));
+  YAML::Node root = YAML::LoadFile(path);
+  root["obstacle_layer"] = Root() + "/config/obstacle_layer.yaml";
+  const std::string bare = folder.Write("scene.yaml", YAML::Dump(root));
   EXPECT_EQ(ReadSetupConfig(bare).params_hash, ReadSetupConfig(path).params_hash);
 }
 

@@ -232,6 +232,7 @@ TEST(UncertaintyTest, EveryQuantityMovesItsNumberAlone) {
        [](const Variation& v) { return v.detection_noise_yaw; }},
       {"recognition_errors", "factor", 1.4,
        [](const Variation& v) { return v.recognition_errors; }},
+      {"scan_noise", "m", 0.024, [](const Variation& v) { return v.scan_noise; }},
       {"encoder_noise", "rad", 0.023, [](const Variation& v) { return v.encoder_noise; }},
   };
   for (const Slot& slot : slots) {

@@ -30,7 +30,7 @@ std::string WithScene(const std::string& name, const std::string& scene,
 TEST(SensingSetupTest, TrackerMiddleLayerAndRolloutsRememberByTheSameNumbers) {
   const hires::test_support::TemporaryFolder folder;
   YAML::Node root = YAML::LoadFile(kConfig + "scene.yaml");
-  for (const char* file : {"world", "robot", "objects"}) {
+  for (const char* file : {"world", "robot", "objects", "obstacle_layer"}) {
     root[file] = kConfig + root[file].Scalar();
   }
   root["uncertainty"] = "none";

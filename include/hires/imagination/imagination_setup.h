@@ -53,7 +53,7 @@ struct SetupConfig {
   world::StandingCriterion standing;
   translation::ClassifyParams classify;
   std::uint64_t params_hash{0};  ///< of driving, blind, manipulation, sensing
-  std::uint64_t layer_hash{0};   ///< of that and the obstacle layer's file; 0: there is none
+  std::uint64_t layer_hash{0};   ///< of the obstacle layer's file; 0: there is none
 };
 
 /// @throws base::ConfigError naming file and key; also if the aftermath of a rollout ends before

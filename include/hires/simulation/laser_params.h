@@ -20,8 +20,11 @@ struct LaserParams {
   bool sees_robot{false};     ///< its own links; a beam leaves the link that it begins in
 };
 
-/// Beams, angles, ranges and noise; unknown keys are left to who has the reader.
+/// Beams, angles and ranges; unknown keys are left to who has the reader.
 /// @throws base::ConfigError naming file and key.
+LaserParams ReadBeams(base::ParamReader* in);
+
+/// The same, and its noise.
 LaserParams ReadLaser(base::ParamReader* in);
 
 }  // namespace hires::simulation

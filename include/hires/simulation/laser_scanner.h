@@ -21,7 +21,7 @@ namespace hires::simulation {
 /// and Vision Computing 10(3), section on mixed pixels; that Hokuyos have them: Cooper, Raquet,
 /// Patton 2018, "Range Information Characterization of the Hokuyo UST-20LX LIDAR Sensor", Photonics
 /// 5(2):12]
-/// @pre the robot has an upper body (Scene::surroundings); num_beams >= 2
+/// @pre the robot has a base laser or an upper body (Scene::surroundings); num_beams >= 2
 /// @throws base::ConfigError for an unknown link.
 std::vector<double> ScanLaser(const RobotSimulator& simulator, const LaserParams& params,
                               base::Rng* rng);

@@ -45,7 +45,7 @@ struct Scene {
   /// The parts that move with the base whatever the joints do; all, if there is no upper body.
   std::vector<geometry::Collision> base_shapes_B;
   RobotClearance base_clearance;  ///< of those
-  /// What the robot's camera looks at; null without an upper body.
+  /// What the robot's camera and laser look at; null where it has neither.
   std::shared_ptr<const perception::Surroundings> surroundings;
   sensing::MemoryParams memory;  ///< of what that camera sees
   Sight sight;
@@ -55,6 +55,13 @@ struct Scene {
   /// How what it is told errs, where it does not find its place by itself; null: as drawn.
   std::shared_ptr<const PoseErrorParams> pose_error;
   FloorPlaces floor;  ///< what the floor has that no map tells; imagination: nothing
+
+  /// Whether the robot sees objects; if not, it knows of none by itself.
+  bool has_camera() const { return robot.profile.upper_body.has_value(); }
+  /// What that camera looks at; null without one.
+  std::shared_ptr<const perception::Surroundings> in_camera() const {
+    return has_camera() ? surroundings : nullptr;
+  }
 };
 
 /// Collision shapes in the base frame with the joints frozen in `posture`.

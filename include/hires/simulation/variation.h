@@ -38,6 +38,7 @@ struct Variation {
   double detection_noise{0.0};      ///< [m] sd of each coordinate of a seen object
   double detection_noise_yaw{0.0};  ///< [rad] sd of a seen object's turn about its own z axis
   double recognition_errors{0.0};   ///< times those that a recogniser was found to make
+  double scan_noise{0.0};           ///< [m] sd of each echo of the base's laser
   double encoder_noise{0.0};        ///< [rad] or [m] sd of each measured joint
 };
 

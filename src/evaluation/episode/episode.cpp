@@ -57,7 +57,7 @@ EpisodeBuilder::EpisodeBuilder(const imagination::ImaginationSetup& setup,
       period_(period),
       state_(RobotOf(setup), frames, setup.sensing.robot_state, map_to_world, std::move(tree)),
       episodes_(1) {
-  if (!setup.scene->surroundings) return;
+  if (!setup.scene->has_camera()) return;
   objects_ = std::make_unique<sensing::ObjectEstimator>(setup.scene->surroundings, RobotOf(setup),
                                                         setup.sensing.memory, &state_);
 }

@@ -1,10 +1,13 @@
 #include "evaluation/experiment/stage.h"
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
+#include "hires/simulation/pose_error.h"
 #include "hires/simulation/self_localisation.h"
 #include "hires/world/occupancy_grid.h"
 
@@ -69,8 +72,10 @@ simulation::SelfLocalisationParams Befallen(const ExperimentConfig& config) {
   return params;
 }
 
-std::uint64_t HashOf(const ImaginationSetup& setup) {
+/// @param place  of what finds the robot's place; "": it is told.
+std::uint64_t HashOf(const ImaginationSetup& setup, const std::string& place) {
   base::Hasher hasher;
+  hasher.Add(place);
   hasher.Add(setup.world_hash);
   hasher.Add(setup.scene->world.hash);  // differs from that of the scene file where there is a map
   hasher.Add(setup.robot_hash);
@@ -110,15 +115,18 @@ Stage MakeStage(const ExperimentConfig& config) {
   with_goals->self_localisation = setup.scene->self_localisation;
   with_goals->pose_error = setup.scene->pose_error;
   setup.scene = std::move(with_goals);
+  std::string place;
   if (config.self_localisation != "none") {
-    setup.scene = simulation::FindingItsPlace(*setup.scene, Befallen(config),
-                                              mapped ? *mapped : setup.scene->world);
+    const world::World& known = mapped ? *mapped : setup.scene->world;
+    auto finding = simulation::FindingItsPlace(*setup.scene, Befallen(config), known);
+    place = simulation::PlaceHash(config.self_localisation, known, *finding->laser_height);
+    setup.scene = std::move(finding);
   }
   setup.skills = std::make_shared<const skills::SkillSet>(std::move(skills));
   stage.objects = config.objects;
   stage.xy_tolerance = driving.local.xy_goal_tolerance;
   stage.yaw_tolerance = scene.driving.local.yaw_goal_tolerance;
-  stage.params_hash = HashOf(setup);
+  stage.params_hash = HashOf(setup, place);
   return stage;
 }
 

@@ -94,7 +94,7 @@ std::vector<double> SimRobotSensors::Scan(const SimRobotWorld& world,
 
 /// A camera that turns sees nothing sharp.
 bool SimRobotSensors::IsLookDue(const SimRobotWorld& world, const SensorReadings& readings) const {
-  if (!scene_->surroundings) return false;
+  if (!scene_->has_camera()) return false;
   const long period = std::lround(1000.0 * params_.detection_period);
   if (last_look_ && world.milliseconds() != *last_look_ &&
       world.milliseconds() < *last_look_ + period) {

@@ -18,7 +18,7 @@ using simulation::Scene;
 constexpr double kNearRobot = 1.0;  // [m]
 constexpr double kLargestScore = 3.0;
 constexpr const char* kOfSensors[] = {"detection_noise", "detection_noise_yaw",
-                                      "recognition_errors", "encoder_noise"};
+                                      "recognition_errors", "scan_noise", "encoder_noise"};
 constexpr const char* kOfLocalisation[] = {"localisation_x",         "localisation_y",
                                            "localisation_yaw",       "localisation_noise",
                                            "localisation_noise_yaw", "ghost_rate"};

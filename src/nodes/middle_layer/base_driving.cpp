@@ -112,9 +112,8 @@ std::optional<hires::control::LoadBraking> BaseDriving::WeighLoad(
   const bool is_recent = time >= weighed_ && time < weighed_ + kWeighingPeriod;
   if (!guard_.is_there || is_recent) return std::nullopt;
   weighed_ = time;
-  const auto braking =
-      hires::control::BrakingFor(setup_.scene->robot, setup_.scene->world, seen,
-                                 setup_.scene->surroundings != nullptr, guard_.braking);
+  const auto braking = hires::control::BrakingFor(setup_.scene->robot, setup_.scene->world, seen,
+                                                  setup_.scene->has_camera(), guard_.braking);
   braking_ = braking.value_or(BrakingLimits{0.0, 0.0});
   permit_.SetBraking(braking_.max_deceleration, braking_.max_jerk);
   return hires::control::LoadBraking{braking.value_or(guard_.braking.unknown_load), guard_.braking};

@@ -19,7 +19,7 @@ RobotInputs::RobotInputs(const hires::imagination::ImaginationSetup& setup,
                          const hires::sensing::ScanParams& scan, Hooks hooks, ros::NodeHandle* nh)
     : names_(names),
       hooks_(std::move(hooks)),
-      sensors_({setup.scene, &setup.scene->robot}, setup.scene->surroundings, names, setup.sensing),
+      sensors_({setup.scene, &setup.scene->robot}, setup.scene->in_camera(), names, setup.sensing),
       observations_(&sensors_.state(), {setup.skills->driving->costmap, FootprintOf(setup), scan},
                     hires::robot::BaseOutlineOf(setup.scene->robot)) {
   if (setup.sensing.ground.is_enabled && !names.sensors.tilt_cloud.empty()) {

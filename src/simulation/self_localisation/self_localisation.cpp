@@ -63,10 +63,11 @@ SelfLocalisation::SelfLocalisation(const SelfLocalisationParams& params, const w
 
 std::shared_ptr<const Scene> FindingItsPlace(Scene scene, const SelfLocalisationParams& params,
                                              const world::World& mapped) {
-  if (!scene.laser_height || !scene.surroundings) {
+  if (!scene.laser_height) {
     throw base::ConfigError(
-        "a robot that finds its place by itself needs a base laser (laser_link of its profile) and "
-        "an upper body; let it be told (localisation: fitted)");
+        "a robot that finds its place by itself needs a base laser (laser_link of its profile); "
+        "let it "
+        "be told (localisation: fitted)");
   }
   RefuseTiltedLaser(scene.robot);
   scene.self_localisation =

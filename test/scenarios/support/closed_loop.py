@@ -219,7 +219,7 @@ class ClosedLoop(BlackboardAccess):
         in the robot's time: what the tracker keeps lasts as long as on a robot."""
         with open(os.path.join(CONFIG, 'scene.yaml')) as file:
             scene = yaml.safe_load(file)
-        for key in ('world', 'robot', 'objects', 'uncertainty', 'detector'):
+        for key in ('world', 'robot', 'objects', 'uncertainty', 'detector', 'obstacle_layer'):
             scene[key] = os.path.join(CONFIG, scene[key])
         scene['sensing']['robot_state']['history'] *= self.pace
         with open(os.path.join(CONFIG, 'world_tracker.yaml')) as file:

@@ -55,7 +55,7 @@ class SimRobotCameras {
                   std::shared_ptr<const simulation::Scene> scene);
   ~SimRobotCameras();
 
-  bool has_depth_camera() const { return scene_->surroundings != nullptr; }
+  bool has_depth_camera() const { return scene_->has_camera(); }
   bool has_thermal_camera() const;
   bool IsDepthDue(const SimRobotWorld& world) const;
   bool IsHeatDue(const SimRobotWorld& world) const;
