@@ -17,6 +17,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 from failures import text_of  # noqa: E402
 from robot_system import COUNTER, MUG, RobotSystem  # noqa: E402
 from ros_processes import executable, wait_until  # noqa: E402
+from scene_file import read_scene  # noqa: E402
 from test_run import run_test  # noqa: E402
 
 CONFIG = os.path.abspath(
@@ -63,11 +64,9 @@ def scene_of_the_robots_laser(processes):
         with open(os.path.join(CONFIG, name)) as file:
             return yaml.safe_load(file)
 
-    scene, layer, laser = read('scene.yaml'), read('obstacle_layer.yaml'), read('sim_robot.yaml')['laser']
+    scene, layer, laser = read_scene(), read('obstacle_layer.yaml'), read('sim_robot.yaml')['laser']
     del laser['noise']
     layer['laser'] = {**laser, 'period': 1e-9 * TICK}
-    for key in ('world', 'robot', 'objects', 'uncertainty', 'detector'):
-        scene[key] = os.path.join(CONFIG, scene[key])
     scene['obstacle_layer'] = processes.write('obstacle_layer.yaml', yaml.safe_dump(layer))
     return processes.write('scene.yaml', yaml.safe_dump(scene))
 

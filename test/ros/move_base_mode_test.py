@@ -21,6 +21,7 @@ from action_goal import ActionGoal  # noqa: E402
 from diagnostics import wait_for_guard, wait_for_middle_layer  # noqa: E402
 from robot_system import SKILL_LIMIT  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
+from scene_file import read_scene  # noqa: E402
 from test_run import run_test  # noqa: E402
 
 # preManipulationAreaEastTable2 of worlds/restaurant.world: x, y [m], yaw [rad].
@@ -76,10 +77,7 @@ class Base:
 
 def patient_scene():
     """The configured scene, from any folder; a loaded computer may keep sensors waiting."""
-    with open(os.path.join(ROOT, 'config', 'scene.yaml')) as file:
-        scene = yaml.safe_load(file)
-    for key in ('world', 'robot', 'objects', 'uncertainty', 'detector', 'obstacle_layer'):
-        scene[key] = os.path.join(ROOT, 'config', scene[key])
+    scene = read_scene()
     scene['sensing']['robot_state']['stale_after'] = 3.0
     return yaml.safe_dump(scene)
 

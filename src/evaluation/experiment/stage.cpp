@@ -125,7 +125,7 @@ Stage MakeStage(const ExperimentConfig& config) {
   setup.skills = std::make_shared<const skills::SkillSet>(std::move(skills));
   stage.objects = config.objects;
   stage.xy_tolerance = driving.local.xy_goal_tolerance;
-  stage.yaw_tolerance = scene.driving.local.yaw_goal_tolerance;
+  stage.yaw_tolerance = driving.local.yaw_goal_tolerance;
   stage.params_hash = HashOf(setup, place);
   return stage;
 }

@@ -66,8 +66,7 @@ std::shared_ptr<const Scene> FindingItsPlace(Scene scene, const SelfLocalisation
   if (!scene.laser_height) {
     throw base::ConfigError(
         "a robot that finds its place by itself needs a base laser (laser_link of its profile); "
-        "let it "
-        "be told (localisation: fitted)");
+        "let it be told (localisation: fitted)");
   }
   RefuseTiltedLaser(scene.robot);
   scene.self_localisation =

@@ -26,6 +26,7 @@ from action_goal import Task  # noqa: E402
 from blackboard_access import BlackboardAccess  # noqa: E402
 from ros_processes import (  # noqa: E402
     Processes, executable, free_port_block, processes_with, wait_until)
+from scene_file import read_scene  # noqa: E402
 
 CONFIG = os.path.abspath(os.path.join(HERE, '..', '..', '..', 'config'))
 RESTAURANT = os.path.join(CONFIG, 'knowledge', 'restaurant.yaml')
@@ -217,10 +218,7 @@ class ClosedLoop(BlackboardAccess):
     def _write_tracker_config(self):
         """The tracker is not waited for, and a computer that is busy for a moment is so for longer
         in the robot's time: what the tracker keeps lasts as long as on a robot."""
-        with open(os.path.join(CONFIG, 'scene.yaml')) as file:
-            scene = yaml.safe_load(file)
-        for key in ('world', 'robot', 'objects', 'uncertainty', 'detector', 'obstacle_layer'):
-            scene[key] = os.path.join(CONFIG, scene[key])
+        scene = read_scene()
         scene['sensing']['robot_state']['history'] *= self.pace
         with open(os.path.join(CONFIG, 'world_tracker.yaml')) as file:
             config = yaml.safe_load(file)
