@@ -22,6 +22,19 @@ constexpr char kUnfinished[] = ".unfinished";  // behind the name of a file that
   throw ConfigError(fmt::format("{}: cannot be written; check folder, rights and space", path));
 }
 
+/// Something that is written to, and neither replaced nor made: /dev/stdout, a pipe.
+bool IsDevice(const std::string& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error);
+}
+
+/// Of a link, where it leads to.
+std::string TargetOf(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
+  return error ? path : target.string();
+}
+
 /// How many letters the two have in common at their beginnings and at their ends.
 std::size_t CommonEnds(const std::string& a, const std::string& b) {
   const std::size_t shorter = std::min(a.size(), b.size());
@@ -117,14 +130,16 @@ std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
 }
 
 void ReplaceTextFile(const std::string& path, const std::string& text) {
-  const std::string unfinished = path + kUnfinished;
-  std::ofstream file(unfinished, std::ios::binary | std::ios::trunc);
+  const bool is_device = IsDevice(path);
+  const std::string target = is_device ? path : TargetOf(path);
+  const std::string opened = is_device ? path : target + kUnfinished;
+  std::ofstream file(opened, std::ios::binary | std::ios::trunc);
   file << text;
   file.close();
   std::error_code error;
-  if (file) std::filesystem::rename(unfinished, path, error);
+  if (file && !is_device) std::filesystem::rename(opened, target, error);
   if (file && !error) return;
-  std::filesystem::remove(unfinished, error);
+  if (!is_device) std::filesystem::remove(opened, error);
   FailToWrite(path);
 }
 
@@ -133,12 +148,8 @@ void RequireReplaceable(const std::string& path) {
   if (std::filesystem::is_directory(path, error)) {
     throw ConfigError(fmt::format("{}: cannot be written: it is a folder; name a file", path));
   }
-  // Devices and pipes stay as they are; only opening them would tell, and would be noticed.
-  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-    return;
-  // Of a link it is written where that leads to. /dev/stdout that is a pipe leads nowhere.
-  const std::filesystem::path target = std::filesystem::weakly_canonical(path, error);
-  const std::string unfinished = (error ? path : target.string()) + kUnfinished;
+  if (IsDevice(path)) return;  // only opening it would tell, and would be noticed
+  const std::string unfinished = TargetOf(path) + kUnfinished;
   const bool is_made = std::ofstream(unfinished, std::ios::app).is_open();
   std::filesystem::remove(unfinished, error);
   if (!is_made) FailToWrite(path);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
@@ -58,12 +57,6 @@ ordered_json RankedToJson(const imagination::Prediction& prediction) {
           {"first_causes", CausesToJson(e.first_causes)},
           {"worst_rollout", IndexToJson(e.worst_rollout)},
           {"median_rollout", IndexToJson(e.median_rollout)}};
-}
-
-bool WriteOpened(const std::string& text, const fs::path& path) {
-  std::ofstream file(path);
-  file << text << std::flush;
-  return file.good();
 }
 
 /// @pre it is no folder.
@@ -152,12 +145,7 @@ void WriteJson(const nlohmann::ordered_json& json, const std::string& path) {
   // Names in files of others may be no UTF-8.
   const std::string text =
       json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
-  const bool is_device = fs::exists(path) && !fs::is_regular_file(path);  // /dev/stdout, say
-  if (!is_device) {
-    base::ReplaceTextFile(fs::weakly_canonical(path), text);
-  } else if (!WriteOpened(text, path)) {
-    throw base::ConfigError(fmt::format("{}: cannot be written", path));
-  }
+  base::ReplaceTextFile(path, text);
 }
 
 }  // namespace hires::evaluation

@@ -1,10 +1,12 @@
 #include "hires/base/text.h"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
@@ -175,6 +177,27 @@ TEST_F(ReadTextFileTest, AFileIsReplacedWholeOrNotAtAll) {
       << "nothing unfinished is left";
   EXPECT_THAT([] { ReplaceTextFile("/no/such/folder/x.csv", "x"); },
               ThrowsMessage<ConfigError>(HasSubstr("/no/such/folder/x.csv: cannot be written")));
+}
+
+TEST_F(ReadTextFileTest, ADeviceTakesWhatIsWrittenAndStaysOneAndALinkALink) {
+  const std::string path = Write("a.txt", "before"), link = (folder_ / "link").string(),
+                    pipe = (folder_ / "pipe").string();
+  std::filesystem::create_symlink(path, link);
+  ReplaceTextFile(link, "after");
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(ReadTextFile(path), "after");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::string heard;
+  std::thread reader([&] { std::getline(std::ifstream(pipe), heard); });
+  ReplaceTextFile(pipe, "hello");
+  reader.join();
+  EXPECT_EQ(heard, "hello");
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
+  const std::string full = (folder_ / "full").string();
+  std::filesystem::create_symlink("/dev/full", full);  // a link, for who breaks this as root
+  EXPECT_THAT([&] { ReplaceTextFile(full, "x"); },
+              ThrowsMessage<ConfigError>(HasSubstr(full + ": cannot be written")));
+  EXPECT_TRUE(std::filesystem::is_character_file(full));
 }
 
 TEST_F(ReadTextFileTest, WhetherAFileMayBeReplacedIsKnownBefore) {

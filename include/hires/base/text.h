@@ -27,7 +27,8 @@ std::string UnknownName(std::string_view kind, const std::string& name,
 /// unreadable or larger than `max_bytes`.
 std::string ReadTextFile(const std::string& path, std::size_t max_bytes = 64u << 20);
 
-/// All or nothing: a file of that name is replaced only when the new one is whole.
+/// All or nothing: a file of that name is replaced only when the new one is whole; of a link, the
+/// file that it leads to. A device or a pipe (/dev/stdout) stays what it is, and takes the text.
 /// @throws ConfigError naming the path if it cannot be written.
 void ReplaceTextFile(const std::string& path, const std::string& text);
 
