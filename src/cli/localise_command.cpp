@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -31,6 +33,7 @@ struct Answer {
   double duration{0.0};  // [s]
   std::size_t num_scans{0};
   LocalisedLog localised;
+  double in_walls{0.0};  // share of the path's poses: the base's middle in an occupied cell
 
   bool is_localised() const {
     return localised.last.status == localisation::LocalisationStatus::kGood;
@@ -54,6 +57,29 @@ void RefuseOutside(const Pose2& X_MB, const OccupancyGrid& map, const std::strin
   throw base::ConfigError(fmt::format(
       "--initial: ({:g}, {:g}) lies outside of {}, which reaches from ({:g}, {:g}) to ({:g}, {:g})",
       p.x(), p.y(), file, map.origin.x(), map.origin.y(), upper.x(), upper.y()));
+}
+
+double ShareInWalls(const localisation::TimedPath& path, const OccupancyGrid& map) {
+  const auto is_in_wall = [&](const localisation::TimedPose& pose) {
+    const Eigen::Vector2d at = (pose.X_MB.position() - map.origin) / map.resolution;
+    const int column = static_cast<int>(std::floor(at.x())),
+              row = static_cast<int>(std::floor(at.y()));
+    const bool is_inside = column >= 0 && column < map.width && row >= 0 && row < map.height;
+    return is_inside && map.at(column, row) == world::Cell::kOccupied;
+  };
+  if (path.empty()) return 0.0;
+  return static_cast<double>(std::count_if(path.begin(), path.end(), is_in_wall)) /
+         static_cast<double>(path.size());
+}
+
+/// A robot may touch what moved since the map was made; it does not drive through its walls.
+std::string WarningOfWalls(const Answer& answer, const LocaliseOptions& options) {
+  constexpr double kMost = 0.1;
+  if (answer.in_walls <= kMost) return "";
+  return fmt::format(
+      "{:.0f} % of the poses lie in occupied cells: is `negate` of {} right, and is it the map of "
+      "this drive?",
+      100.0 * answer.in_walls, options.map);
 }
 
 /// "odometry jumped 1, no ranges 2"; "" for none.
@@ -98,6 +124,7 @@ ordered_json ToJson(const Answer& answer, const LocaliseOptions& options) {
           {"pose", ToJson(localised.last.X_MB)},
           {"sd", {sd.x(), sd.y(), sd.z()}},
           {"explained", localised.explained},
+          {"in_walls", answer.in_walls},
           {"localised_after", OrNull(localised.localised_after)},
           {"relocations", localised.num_relocations},
           {"relocated_after", OrNull(localised.relocated_after)},
@@ -127,7 +154,7 @@ std::string Summary(const Answer& answer, const LocaliseOptions& options) {
   const LocalisedLog& localised = answer.localised;
   const Pose2& X_MB = localised.last.X_MB;
   const Eigen::Vector3d sd = answer.sd();
-  const std::string bad = BadScans(localised);
+  const std::string bad = BadScans(localised), walls = WarningOfWalls(answer, options);
   return Line("start", answer.initial
                            ? fmt::format("x {:.3f} m, y {:.3f} m, yaw {:.3f} rad",
                                          answer.initial->x, answer.initial->y, answer.initial->yaw)
@@ -140,6 +167,7 @@ std::string Summary(const Answer& answer, const LocaliseOptions& options) {
          Line("its sd",
               fmt::format("x {:.3f} m, y {:.3f} m, yaw {:.3f} rad", sd.x(), sd.y(), sd.z())) +
          Line("explained", fmt::format("{:.0f} % of the beams", 100.0 * localised.explained)) +
+         (walls.empty() ? "" : Line("in walls", walls)) +
          Line("status", localisation::ToString(localised.last.status)) +
          Line("seed", std::to_string(options.seed));
 }
@@ -166,6 +194,7 @@ Answer Localise(const LocaliseOptions& options, const localisation::MonteCarloPa
         fmt::format("{}: no scan could be used ({}); wanted a drive on which a laser met walls",
                     options.drive.log, BadScans(answer.localised)));
   }
+  answer.in_walls = ShareInWalls(answer.localised.path, map);
   return answer;
 }
 

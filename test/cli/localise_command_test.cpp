@@ -25,6 +25,7 @@ using hires::test_support::SimulatedDrive;
 using localisation::RobotLog;
 using localisation::TimedPath;
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -150,6 +151,29 @@ TEST_F(LocaliseCommandTest, RobotThatMayBeAnywhereIsFound) {
   EXPECT_LT(errors.rms, 0.15);
   EXPECT_LT(errors.worst, 1.0);
   EXPECT_LT(errors.last, 0.15);
+}
+
+/// Free and occupied are taken for each other, and edges stay edges.
+TEST_F(LocaliseCommandTest, APathThroughWallsIsTold) {
+  world::OccupancyGrid turned = RoomsWithShelf();
+  for (world::Cell& cell : turned.cells) {
+    if (cell == world::Cell::kUnknown) continue;
+    cell = cell == world::Cell::kFree ? world::Cell::kOccupied : world::Cell::kFree;
+  }
+  const std::string log = Log(Drive(101));
+  EXPECT_THAT(Localise(log, at_start_).out, Not(HasSubstr("in walls")));
+  world::SaveMap(turned, Path("rooms.yaml"));
+  const Ended ended = Localise(log, at_start_);
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("% of the poses lie in occupied cells"),
+                               HasSubstr("`negate` of " + Path("rooms.yaml"))));
+}
+
+TEST_F(LocaliseCommandTest, AGapWithoutScansIsTold) {
+  SimulatedDrive drive = Drive(101);
+  const auto first = drive.log.scans.begin();
+  drive.log.scans.erase(first + 100, first + 200);
+  EXPECT_THAT(Localise(Log(drive), at_start_).err,
+              HasSubstr("no scan for more than 5 s, 1 times, the longest 20.2 s, 19.8 s after"));
 }
 
 TEST_F(LocaliseCommandTest, SameSeedGivesTheSameBytesAndAnotherOneOthers) {
