@@ -36,6 +36,11 @@ std::vector<Eigen::Vector2d> EchoesOf(const PlacedScan& scan, const geometry::Po
   return echoes_B;
 }
 
+bool HasMeasured(const ScanReading& reading) {
+  return std::any_of(reading.ranges.begin(), reading.ranges.end(),
+                     [&](float range) { return IsMeasurement(reading, range); });
+}
+
 bool IsTooNear(const PlacedScan& scan, const Eigen::Vector2d& point_B) {
   return (scan.X_BL.Inverse() * point_B).norm() < scan.reading.range_min + kNearNoise;
 }

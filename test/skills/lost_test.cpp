@@ -122,6 +122,26 @@ TEST(LostTest, ItLooksAroundOnlyWhereTheLaserShowsRoom) {
   EXPECT_EQ(command.base_velocity->wz, 0.0) << "it does not know what is round it";
 }
 
+TEST(LostTest, WhoSeesNothingDoesNotTurn) {
+  constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  const auto turns = [](const robot::Observation& seen) {
+    MoveBase skill(WithObstacleLayer(), kEast, kFast);
+    robot::Command command;
+    skill.Update(seen, &command);
+    return command.base_velocity.value().wz != 0.0;
+  };
+  EXPECT_TRUE(turns(Seen(0.0, kUnsure, kInfinite))) << "nothing is within its range";
+  for (const float range : {kNoNumber, 0.0f, 0.02f})
+    EXPECT_FALSE(turns(Seen(0.0, kUnsure, range))) << "covered: " << range;
+  robot::Observation without = Seen(0.0, kUnsure, 2.0);
+  without.scan = nullptr;
+  EXPECT_FALSE(turns(without)) << "no scans";
+  robot::Observation late = Seen(0.0, kUnsure, 2.0);
+  late.scan_age = 1.5;
+  EXPECT_FALSE(turns(late)) << "scans ended";
+}
+
 TEST(LostTest, WhatIsBehindALaserThatSees260DegreesCountsAsRoom) {
   robot::Observation seen = Seen(0.0, kUnsure, 2.0);
   auto scan = std::make_shared<robot::PlacedScan>(*seen.scan);

@@ -9,8 +9,10 @@
 
 #include "hires/geometry/angles.h"
 #include "hires/skills/manipulation_context.h"
+#include "hires/world/occupancy_grid.h"
 #include "skills/point_robot.h"
 #include "skills/posture_skills.h"
+#include "support/planar_scan.h"
 #include "support/scenes.h"
 
 namespace hires::skills::move_base_test {
@@ -387,10 +389,10 @@ robot::JointPositions ArmsOf(const robot::Robot& pr2, const std::string& posture
   return joints;
 }
 
-DrivingContext Pr2In(const world::World& world) {
+DrivingContext Pr2In(const world::World& world, const MoveBaseParams& params = {}) {
   static const robot::Robot pr2 =
       robot::LoadRobot(std::string(HIRES_SOURCE_DIR) + "/config/robots/pr2.yaml");
-  return MakeDrivingContext(world, pr2, {});
+  return MakeDrivingContext(world, pr2, params);
 }
 
 TEST(FootprintOfTest, ArmsAreInItWhereTheyStickOut) {
@@ -451,16 +453,27 @@ TEST(MoveBaseTest, ArmsThatStickOutTouchNothing) {
   EXPECT_GT(ClearanceOfDrive(room, posts, "armcarryposture", true), 0.0);
 }
 
-TEST(MoveBaseTest, WhatIsSeenBelowTheArmsIsNotDrivenInto) {
-  const auto context = std::make_shared<const DrivingContext>(Pr2In(Room()));
+/// A drive with a leg below an arm that the map lacks: as an obstacle, or in the laser's scans.
+void ExpectALegIsNotDrivenInto(bool by_laser) {
+  MoveBaseParams params;
+  if (by_laser) params.obstacle_layer.emplace();
+  const auto context = std::make_shared<const DrivingContext>(Pr2In(Room(), params));
   const auto joints = ArmsOf(*context->robot, "armcarryposture", true);
   const geometry::Polygon leg{{1.18, 2.40}, {1.22, 2.40}, {1.22, 2.44}, {1.18, 2.44}};
   ASSERT_TRUE(geometry::Contains(FootprintOf(*context, joints), {0.2, 0.42}));
+  std::vector<geometry::Polygon> outlines = world::OutlinesInBand(Room(), nullptr, 0.27, 0.27);
+  outlines.push_back(leg);
   MoveBase skill(context, {1.2, 3.3, 1.57}, kFast);
   double clearance = 1e9;
   const SkillRun run = RunSkill(&skill, {kWest, {}, false}, [&](auto* seen, auto* robot) {
     seen->joints = joints;
-    seen->obstacles_M = {leg};
+    if (by_laser) {
+      seen->X_OB = robot->X_MB;
+      seen->scan = std::make_shared<const robot::PlacedScan>(
+          hires::test_support::ScanOf(outlines, robot->X_MB, robot->X_MB, {0.275, 0.0, 0.0}));
+    } else {
+      seen->obstacles_M = {leg};
+    }
     clearance = std::min(
         clearance, geometry::Distance(
                        geometry::Transformed(robot->X_MB, context->robot->profile.footprint), leg));
@@ -468,6 +481,10 @@ TEST(MoveBaseTest, WhatIsSeenBelowTheArmsIsNotDrivenInto) {
   EXPECT_GT(clearance, 0.0);
   ExpectFailed("no_valid_trajectory", run);
 }
+
+TEST(MoveBaseTest, WhatIsSeenBelowTheArmsIsNotDrivenInto) { ExpectALegIsNotDrivenInto(false); }
+
+TEST(MoveBaseTest, WhatTheLaserSeesBelowTheArmsIsNotDrivenInto) { ExpectALegIsNotDrivenInto(true); }
 
 // ------------------------------------------------------------------------------------- blind
 

@@ -368,6 +368,20 @@ TEST_F(BeliefTest, WhoStandsDoesNotBecomeSureWithoutEnd) {
   EXPECT_GT(std::sqrt(skill_.belief().covariance(0, 0)), 5e-4);
 }
 
+/// Somebody walks through the view, and later somebody else.
+TEST_F(BeliefTest, OnlyScanAfterScanForASecondTheyContradictIt) {
+  world::World elsewhere = room_, nothing = room_;
+  for (world::StaticBody& body : elsewhere.statics) body.X_MB.translation.y() += 0.08;
+  nothing.statics.clear();
+  for (int i = 0; i < 3; ++i) Look(kAtTable, kAtTable * off_);
+  LookIn(elsewhere, kAtTable, kAtTable * off_);
+  for (int i = 0; i < 40; ++i) LookIn(nothing, kAtTable, kAtTable * off_);
+  LookIn(elsewhere, kAtTable, kAtTable * off_);
+  EXPECT_LT(OffFrom(kAtTable), 0.006) << "two scans in two seconds";
+  for (int i = 0; i < 25; ++i) LookIn(elsewhere, kAtTable, kAtTable * off_);
+  EXPECT_GT(OffFrom(kAtTable), 0.02) << "all scans for a second";
+}
+
 TEST_F(BeliefTest, AResetOfTheOdometryMovesNothing) {
   Look(kAtTable, kAtTable * off_);
   X_WO_ = {5.0, 1.0, -1.0};

@@ -21,4 +21,8 @@ bool IsTooNear(const PlacedScan& scan, const Eigen::Vector2d& point_B);
 /// too near, and the beam next to it is a measurement, if only that nothing is there.
 bool IsInView(const PlacedScan& scan, const Eigen::Vector2d& point_B);
 
+/// Whether any beam of a scan measured anything, if only that nothing is there: of a laser that is
+/// covered none does.
+bool HasMeasured(const ScanReading& reading);
+
 }  // namespace hires::robot

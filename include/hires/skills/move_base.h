@@ -73,9 +73,9 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
 /// window approach for control, as move_base does, with room for the arms as they are when it
 /// begins. A base that steers like a car: hybrid A*, and a follower of arcs; where it came
 /// to rest out of tolerance it is given a new way, some times, and oscillates after these. While
-/// the robot is lost it stops and turns to look around, if the base can turn on the spot and an
-/// obstacle layer has no mark within its circle (what the laser does not see counts as room); found
-/// again, it plans anew. Fails with start_blocked,
+/// the robot is lost it stops and turns to look around, if the base can turn on the spot, scans
+/// come that measure something, and an obstacle layer has no mark within its circle (what the laser
+/// does not see counts as room); found again, it plans anew. Fails with start_blocked,
 /// goal_blocked, no_path, no_valid_trajectory, oscillating or localisation_lost.
 class MoveBase : public Skill {
  public:
@@ -96,8 +96,9 @@ class MoveBase : public Skill {
   void PlanAnewIfStuck(const robot::Observation& observation);
   bool NoteMotion(const robot::Observation& observation);
   std::shared_ptr<const navigation::Costmap> Completed(
-      const std::shared_ptr<const navigation::Costmap>& map,
-      const robot::Observation& observation) const;
+      const std::shared_ptr<const navigation::Costmap>& map, const robot::Observation& observation,
+      const LocalCostmap* seen = nullptr) const;
+  navigation::Costmap MapWithMarks(const robot::Observation& observation) const;
   void Look(const robot::Observation& observation);
   Status Recover(const robot::Observation& observation);
 

@@ -106,6 +106,7 @@ void AtSeenPlace::Correct(const robot::PlacedScan& scan, const PlaceBelief& told
                            scan.X_BL.position(), std::abs(scan.reading.angle_increment));
   switch (correction.verdict) {
     case Verdict::kSilent:
+      scans_contradict_ = {};
       break;
     case Verdict::kContradicts:
       if (scans_contradict_.Note(true, time_)) Believe(told);

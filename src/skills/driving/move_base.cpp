@@ -5,6 +5,7 @@
 
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
+#include "hires/robot/echoes.h"
 #include "skills/posture_skills.h"
 
 namespace hires::skills {
@@ -232,14 +233,18 @@ navigation::PathStatus MoveBase::FindPath(const navigation::Costmap& costmap, co
   return found.status;
 }
 
+navigation::Costmap MoveBase::MapWithMarks(const robot::Observation& observation) const {
+  return Completed(costmap_, observation)->WithObstaclesAt(sensed_->Marks(observation));
+}
+
 /// Round what the laser sees, if that leaves a way: where map and marks lie beside each other, for
 /// a localisation errs, narrow places are closed that are not.
 std::optional<Status> MoveBase::Plan(const robot::Observation& observation) {
-  const auto map = sensed_ ? Completed(costmap_, observation) : now_;
-  if (sensed_ && FindPath(map->WithObstaclesAt(sensed_->Marks(observation)), observation.X_MB) ==
-                     navigation::PathStatus::kFound) {
+  if (sensed_ &&
+      FindPath(MapWithMarks(observation), observation.X_MB) == navigation::PathStatus::kFound) {
     return std::nullopt;
   }
+  const auto map = sensed_ ? Completed(costmap_, observation) : now_;
   switch (FindPath(*map, observation.X_MB)) {
     case navigation::PathStatus::kStartBlocked:
       return Failed(base::FailureCode::kStartBlocked);
@@ -254,7 +259,7 @@ std::optional<Status> MoveBase::Plan(const robot::Observation& observation) {
 }
 
 /// What is seen may close a path, or show a shorter way that draws the local planner off it: it
-/// then turns where it stands as long as it can. Where there is no other path, this one stays.
+/// then turns where it stands as long as it can. Where what is seen leaves no path, this one stays.
 void MoveBase::PlanAnewIfStuck(const robot::Observation& observation) {
   const auto apart = [&](const Pose2& pose) {
     return (pose.position() - observation.X_MB.position()).norm();
@@ -272,7 +277,7 @@ void MoveBase::PlanAnewIfStuck(const robot::Observation& observation) {
   }
   if (observation.time - last_nearer_ < context_->params.progress_timeout) return;
   last_nearer_ = observation.time;
-  Plan(observation);
+  FindPath(MapWithMarks(observation), observation.X_MB);
 }
 
 /// False when the robot has been going to and fro for too long.
@@ -306,12 +311,17 @@ Status MoveBase::Recover(const robot::Observation& observation) {
 
 /// A map as it must be now: with what is seen, and free where the robot stands. What is seen below
 /// its arms stays: it may be driven into.
+/// @param seen  whose marks the map has; null: it has none.
 std::shared_ptr<const navigation::Costmap> MoveBase::Completed(
-    const std::shared_ptr<const navigation::Costmap>& map,
-    const robot::Observation& observation) const {
+    const std::shared_ptr<const navigation::Costmap>& map, const robot::Observation& observation,
+    const LocalCostmap* seen) const {
   std::optional<navigation::Costmap> now = WithRoom(*map, observation.X_MB, footprint_);
-  if (!observation.obstacles_M.empty()) {
+  const bool has_arms_out = footprint_ != context_->footprint;
+  const bool is_seen_below = now && seen && has_arms_out;
+  if (is_seen_below) now = now->WithObstaclesAt(seen->Marks(observation));
+  if (!observation.obstacles_M.empty())
     now = (now ? *now : *map).WithObstacles(observation.obstacles_M);
+  if (is_seen_below || !observation.obstacles_M.empty()) {
     auto roomier = WithRoom(*now, observation.X_MB, context_->footprint);
     if (roomier) now = std::move(roomier);
   }
@@ -321,7 +331,8 @@ std::shared_ptr<const navigation::Costmap> MoveBase::Completed(
 
 void MoveBase::Look(const robot::Observation& observation) {
   now_.reset();  // so that a rollout holds one copy of the map, not two
-  now_ = Completed(sensed_ ? sensed_->Look(observation) : costmap_, observation);
+  now_ = sensed_ ? Completed(sensed_->Look(observation), observation, &*sensed_)
+                 : Completed(costmap_, observation);
   X_MBNow_ = observation.X_MB;
 }
 
@@ -340,9 +351,13 @@ bool MoveBase::IsAtGoal(const robot::Observation& observation) const {
 
 /// The laser alone tells what is in the way: where the map has things is not known now. Behind it
 /// most lasers see nothing, so what is unseen counts as room, or a robot that stands never turns.
+/// Who sees nothing at all, as no scans come or none that measured anything, stands.
 geometry::Twist2 MoveBase::LookAround(const robot::Observation& observation) {
   if (!sensed_ || car_) return {};
   sensed_->Look(observation);
+  const bool sees = observation.scan && observation.scan_age <= kScanPatience &&
+                    robot::HasMeasured(observation.scan->reading);
+  if (!sees) return {};
   const LostParams& params = context_->params.lost;
   const double reach = geometry::CircumscribedRadius(footprint_) + params.room;
   const auto is_near = [&](const Eigen::Vector2d& p_M) {
