@@ -17,16 +17,15 @@ constexpr double kSlack = 1e-6;  // [s] between times that are multiples of a st
 
 RobotSensors::RobotSensors(std::shared_ptr<const Scene> scene, const Variation& variation,
                            const geometry::Pose2& X_MB, const base::Rng& rng)
-    : scene_(std::move(scene)), variation_(variation), state_{rng.Fork(2),
-                                                              GhostObstacles(rng.Fork(3)),
-                                                              rng.Fork(4),
-                                                              std::nullopt,
-                                                              std::nullopt,
-                                                              rng.Fork(7),
-                                                              0.0,
-                                                              nullptr,
-                                                              0.0,
-                                                              std::nullopt} {
+    : scene_(std::move(scene)),
+      variation_(variation),
+      odometry_scale_(1.0 + rng.Fork(8).Normal(0.0, variation.wheel_slip)),
+      state_{rng.Fork(2),  GhostObstacles(rng.Fork(3)),
+             rng.Fork(4),  std::nullopt,
+             std::nullopt, rng.Fork(7),
+             0.0,          nullptr,
+             0.0,          std::nullopt,
+             X_MB,         X_MB} {
   if (scene_->sight.scans) state_.memory.emplace(robot::BaseOutlineOf(scene_->robot));
   if (scene_->self_localisation)
     state_.localiser.emplace(scene_->self_localisation, X_MB, rng.Fork(6));
@@ -39,6 +38,7 @@ void RobotSensors::ReadBase(double time, const BaseMotion& motion,
   if (state_.localiser) {
     observation->X_MB = state_.localiser->X_MB();
     observation->X_OB = state_.localiser->X_OB();
+    observation->V_B = state_.localiser->V_B();
     const Eigen::Matrix3d covariance = state_.localiser->Estimate().covariance;
     observation->position_sd =
         geometry::LargestSd(covariance(0, 0), covariance(0, 1), covariance(1, 1));
@@ -46,15 +46,26 @@ void RobotSensors::ReadBase(double time, const BaseMotion& motion,
     state_.told->Drive(motion.X_MB);
     observation->X_MB = state_.told->X_MBelieved();
     observation->X_OB = state_.told->X_OB();
+    observation->V_B = motion.V_B;
   } else {
     observation->X_MB = BelievedPose(motion.X_MB, variation_, &state_.rng);
-    observation->X_OB = motion.X_MB;
+    ReadOdometry(motion, observation);
   }
-  observation->V_B = motion.V_B;
   observation->scan = state_.scan;
   observation->scan_age = time - state_.scanned;
   state_.ghosts.Update(motion.X_MB, variation_.ghost_rate, time);
   observation->obstacles_M = state_.ghosts.OutlinesInMap();
+}
+
+/// As far as wheels slip, all ways are counted too long, or too short.
+void RobotSensors::ReadOdometry(const BaseMotion& motion, robot::Observation* observation) {
+  const geometry::Pose2 step = state_.X_MBread.Inverse() * motion.X_MB;
+  state_.X_OB =
+      state_.X_OB * geometry::Pose2{odometry_scale_ * step.x, odometry_scale_ * step.y, step.yaw};
+  state_.X_MBread = motion.X_MB;
+  observation->X_OB = state_.X_OB;
+  observation->V_B = {odometry_scale_ * motion.V_B.vx, odometry_scale_ * motion.V_B.vy,
+                      motion.V_B.wz};
 }
 
 std::optional<geometry::Pose2> RobotSensors::place_error() const {

@@ -30,10 +30,12 @@ class RobotSensors {
     std::shared_ptr<const robot::PlacedScan> scan;  // the last; null: none yet
     double scanned{0.0};                            // [s] when that was taken
     std::optional<robot::ScanMemory> memory;        // where skills see scans
+    geometry::Pose2 X_OB;                           // by odometry of a robot that is told its place
+    geometry::Pose2 X_MBread;                       // of the last reading
   };
 
   /// @param X_MB  of the base at first.
-  /// @param rng   of the simulator; its forks 2, 3, 4, 6 and 7 are used.
+  /// @param rng   of the simulator; its forks 2, 3, 4, 6, 7 and 8 are used.
   RobotSensors(std::shared_ptr<const Scene> scene, const Variation& variation,
                const geometry::Pose2& X_MB, const base::Rng& rng);
 
@@ -55,10 +57,12 @@ class RobotSensors {
   void Restore(const State& state) { state_ = state; }
 
  private:
+  void ReadOdometry(const BaseMotion& motion, robot::Observation* observation);
   void AddEncoderNoise(robot::JointPositions* joints);
 
   std::shared_ptr<const Scene> scene_;
   Variation variation_;
+  double odometry_scale_;  // wheels slip: what odometry counts per metre
   State state_;
 };
 

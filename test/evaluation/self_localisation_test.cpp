@@ -192,6 +192,23 @@ TEST(SelfLocalisationTest, WheelsSpinOnAWetFloorAndTheLaserMakesUpForIt) {
   EXPECT_LT(worst_believed, 0.5 * worst_wet);
 }
 
+/// What wheels that spin tell of the speed is as wrong as what they tell of the way.
+TEST(SelfLocalisationTest, OnAWetFloorTheSpeedIsThatOfTheWheels) {
+  const auto told = [](double spin) {
+    auto params = std::make_shared<SelfLocalisationParams>(ShippedParams());
+    if (spin > 0.0) params->wet.push_back({{0.0, 0.0}, 5.0, spin});
+    simulation::MotionSensors sensors(params, {}, base::Rng(3));
+    sensors.Drive(0.1, {0.03, 0.0, 0.0});
+    const Pose2 X_OB = sensors.odometry().X_OB;
+    sensors.Drive(0.1, {0.06, 0.0, 0.0});
+    const double way = (X_OB.Inverse() * sensors.odometry().X_OB).x;
+    EXPECT_NEAR(sensors.odometry().V_B.vx * 0.1, way, 0.03 * std::abs(way) + 5e-4) << spin;
+    return sensors.odometry().V_B.vx;
+  };
+  EXPECT_NEAR(told(0.0), 0.3, 1e-9);
+  EXPECT_GT(std::abs(told(0.5) - 0.3), 0.05);
+}
+
 TEST(SelfLocalisationTest, ARobotWithoutALaserCannotFindItsPlace) {
   imagination::ImaginationSetup setup = SetupOfRoom();
   setup.scene = hires::test_support::RoomScene();

@@ -184,7 +184,7 @@ TEST(RolloutReachTest, WhereSomethingMovesAtTheStartAllIsInPhysics) {
 }
 
 TEST(RolloutReachTest, WhatIsInTheWayIsInPhysics) {
-  const RolloutSetup setup = Start({OnFloor("far", 2.7, 0.3), OnFloor("hit", 2.75, 2.0)});
+  const RolloutSetup setup = Start({OnFloor("far", 0.3, 3.7), OnFloor("hit", 2.75, 2.0)});
   const RolloutResult with_all = Play(Stirred(setup));
   const RolloutResult result = Play(setup);
   EXPECT_EQ(ToString(result.failure), ToString(with_all.failure));

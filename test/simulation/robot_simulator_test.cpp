@@ -434,6 +434,29 @@ TEST(RobotSimulatorTest, WithoutVariationItSeesTheTruth) {
   EXPECT_THAT(seen.obstacles_M, IsEmpty());
 }
 
+TEST(RobotSimulatorTest, AsWheelsSlipOdometryCountsAllWaysTooLongOrTooShort) {
+  const int count = 60;
+  double squares = 0.0;
+  for (int seed = 0; seed < count; ++seed) {
+    Variation variation;
+    variation.wheel_slip = 0.03;
+    RobotSimulator simulator(RoomScene(), variation, {}, StandingAt({2.0, 2.0, 0.0}),
+                             base::Rng(seed));
+    const auto odometry = [&] { return simulator.Observe(0.0).X_OB; };
+    const Pose2 X_OBstart = odometry(), X_MBstart = simulator.base().X_MB;
+    DriveFor(&simulator, Drive(0.4, 0.1, 0.0), 1.0);
+    const double half =
+        (X_OBstart.Inverse() * odometry()).x / (X_MBstart.Inverse() * simulator.base().X_MB).x;
+    DriveFor(&simulator, Drive(0.4, 0.1, 0.0), 1.0);
+    const double whole =
+        (X_OBstart.Inverse() * odometry()).x / (X_MBstart.Inverse() * simulator.base().X_MB).x;
+    EXPECT_NEAR(half, whole, 1e-3) << "the same all the way";
+    EXPECT_NEAR(simulator.Observe(0.0).V_B.vx / simulator.base().V_B.vx, whole, 1e-3);
+    squares += (whole - 1.0) * (whole - 1.0) / count;
+  }
+  EXPECT_NEAR(std::sqrt(squares), 0.03, 0.03 * 4.0 / std::sqrt(2.0 * count));
+}
+
 TEST(RobotSimulatorTest, GhostsComeAtTheirRateBeforeTheRobotAndGo) {
   Variation variation;
   variation.ghost_rate = 0.5;

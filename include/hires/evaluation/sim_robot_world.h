@@ -96,6 +96,7 @@ class SimRobotWorld {
   void Deliver(const geometry::Twist2& velocity);
   void DeliverLate();
   void MoveOdometry(double dt);
+  geometry::Twist2 VelocityByOdometry() const;
   void BeginToMeasure(std::shared_ptr<const simulation::SelfLocalisationParams> params,
                       const base::Rng& rng);
   void Measure();

@@ -189,8 +189,9 @@ class SelfLocaliser {
   void Hear(const robot::ScanReading& scan, const geometry::Pose2& X_BL);
 
   const geometry::Pose2& X_OB() const { return X_OB_; }  ///< odometry, with the unit's heading
-  geometry::Pose2 X_MB() const;                          ///< believed
-  localisation::PoseEstimate Estimate() const;           ///< now
+  const geometry::Twist2& V_B() const { return motion_.odometry().V_B; }  ///< in the last Drive
+  geometry::Pose2 X_MB() const;                                           ///< believed
+  localisation::PoseEstimate Estimate() const;                            ///< now
   /// Of the last Drive or PutAt.
   const geometry::Pose2& X_MBtrue() const { return motion_.X_MBtrue(); }
   const SelfLocalisationParams& params() const { return common_->params(); }

@@ -221,6 +221,13 @@ void SimRobotWorld::Measure() {
   X_OB_ = motion_->odometry().X_OB;
 }
 
+Twist2 SimRobotWorld::VelocityByOdometry() const {
+  if (motion_) return motion_->odometry().V_B;
+  if (const simulation::SelfLocaliser* own = simulator_->self_localiser()) return own->V_B();
+  const Twist2& V_B = simulator_->base().V_B;
+  return {odometry_scale_ * V_B.vx, odometry_scale_ * V_B.vy, V_B.wz};
+}
+
 SensorReadings SimRobotWorld::Sense() {
   const robot::Observation seen = simulator_->Observe(0.0);
   SensorReadings readings;
@@ -234,7 +241,7 @@ SensorReadings SimRobotWorld::Sense() {
   }
   readings.X_MB = walk_.sd > 0.0 || walk_.sd_yaw > 0.0 ? seen.X_MB * walk_error_ : seen.X_MB;
   readings.X_MO = readings.X_MB * X_OB_.Inverse();
-  readings.odometry = {X_OB_, seen.V_B};
+  readings.odometry = {X_OB_, VelocityByOdometry()};
   readings.joints = {seen.joints, seen.joint_velocities};
   if (readings.joints.positions.empty()) {
     readings.joints.positions = simulator_->GetRobotState().joints;

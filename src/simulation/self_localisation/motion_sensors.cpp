@@ -31,12 +31,13 @@ Pose2 MotionSensors::Spun(const Pose2& X_AB) {
 void MotionSensors::Drive(double dt, const Pose2& X_MB) {
   const Pose2 X_AB = X_MBtrue_.Inverse() * X_MB;
   X_MBtrue_ = X_MB;
-  wheels_.Roll(Spun(X_AB));
+  const Pose2 rolled = Spun(X_AB);
+  wheels_.Roll(rolled);
   const double root = std::sqrt(dt);
   const double turned = X_AB.yaw + bias_ * dt + gyro_rng_.Normal(0.0, params_->gyro.walk * root);
   bias_ += gyro_rng_.Normal(0.0, params_->gyro.bias_walk * root);
   inertia_ = {inertia_.yaw + turned, turned / dt};
-  odometry_ = {wheels_.X_OB(), {X_AB.x / dt, X_AB.y / dt, turned / dt}};
+  odometry_ = {wheels_.X_OB(), {rolled.x / dt, rolled.y / dt, turned / dt}};
 }
 
 }  // namespace hires::simulation
