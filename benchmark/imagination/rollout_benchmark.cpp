@@ -1,6 +1,9 @@
 // How many simulated seconds does one core play in a second: navigation, arm paths, physics and
-// counting? Goal: 200 for a drive with the pepper mill and for what arms do.
+// counting? Goal: 200 for a drive with the pepper mill and for what arms do. And what does it cost
+// to drive by what the laser sees? Goal: at least 0.7 of the speed by the map alone.
 #include <benchmark/benchmark.h>
+
+#include <ctime>
 
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/rollout.h"
@@ -33,6 +36,51 @@ BENCHMARK_CAPTURE(PlayDrive, NorthTable1_fast, "preManipulationAreaNorthTable1",
 BENCHMARK_CAPTURE(PlayDrive, EastTable2_slow, "preManipulationAreaEastTable2", "slow")
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(PlayDrive, EastTable2_fast, "preManipulationAreaEastTable2", "fast")
+    ->Unit(benchmark::kMillisecond);
+
+double ProcessorSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// The same rollouts by what the laser sees, as the scene says, and by the map alone, in turn.
+void LaserAgainstMap(benchmark::State& state, const char* area, const char* motion_set) {
+  struct Way {
+    explicit Way(const ImaginationSetup& setup)
+        : rollout(MakeRolloutSetup(
+              setup, MakeStartState(setup, "preManipulationAreaEastCounter1", {"peppermill1"}),
+              7)) {}
+    void Play(const base::ActionCall& action, int index) {
+      const double start = ProcessorSeconds();
+      simulated += PlayRollout(rollout, action, index)->simulated;
+      seconds += ProcessorSeconds() - start;
+    }
+    double Speed() const { return simulated / seconds; }
+    RolloutSetup rollout;
+    double simulated = 0.0, seconds = 0.0;
+  };
+  SetupConfig config = ReadSetupConfig(HIRES_SOURCE_DIR "/config/scene.yaml");
+  SetObstacleLayer("none", &config);
+  const ImaginationSetup blind = LoadImaginationSetup(config);
+  const base::ActionCall action{"move_base_param", {area, motion_set}};
+  Way laser(Setup()), map(blind);
+  PlayRollout(laser.rollout, action, 0);  // caches warm
+  PlayRollout(map.rollout, action, 0);
+  int index = 0;
+  for (auto _ : state) {
+    laser.Play(action, index);
+    map.Play(action, index);
+    index = (index + 1) % 16;
+  }
+  state.counters["by_laser"] = laser.Speed();
+  state.counters["by_map"] = map.Speed();
+  state.counters["ratio"] = laser.Speed() / map.Speed();
+}
+
+BENCHMARK_CAPTURE(LaserAgainstMap, NorthTable1_slow, "preManipulationAreaNorthTable1", "slow")
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(LaserAgainstMap, EastTable2_fast, "preManipulationAreaEastTable2", "fast")
     ->Unit(benchmark::kMillisecond);
 
 /// The robot at furniture, torso up, arms beside its body.
