@@ -190,9 +190,9 @@ std::vector<double> ParamReader::GetNumbers(const std::string& key, std::size_t 
       numbers.push_back(number);
     }
   }
-  if (!list.IsSequence() || numbers.size() != size) {
-    Fail(key, fmt::format("wanted a list of {} numbers", size));
-  }
+  if (!list.IsSequence()) Fail(key, fmt::format("wanted a list of {} numbers", size));
+  if (numbers.size() != size)
+    Fail(key, fmt::format("wanted a list of {} numbers and not {}", size, numbers.size()));
   return numbers;
 }
 

@@ -39,7 +39,9 @@ Eigen::Vector2d ReadOrigin(base::ParamReader* in) {
   }
   const std::vector<double> origin = in->GetNumbers("origin", 3);
   if (origin[2] != 0.0) {
-    in->Fail("origin", "wanted a yaw of 0; rotated maps are not read: rotate the image");
+    in->Fail("origin", fmt::format("wanted a yaw (the third) of 0 and not {}; rotated maps are not "
+                                   "read: rotate the image",
+                                   origin[2]));
   }
   if (std::max(std::abs(origin[0]), std::abs(origin[1])) > kMaxOrigin) {
     in->Fail("origin", fmt::format("wanted coordinates within {} m", kMaxOrigin));
@@ -66,7 +68,11 @@ MapParams ReadMapParams(const std::string& yaml_path) {
   if (params.free_thresh > params.occupied_thresh) {
     in.Fail("free_thresh", "wanted at most occupied_thresh");
   }
-  if (in.Has("mode")) in.Get("mode", base::OneOf({"trinary"}));
+  if (in.Has("mode") && in.GetString("mode") != "trinary") {
+    in.Fail("mode",
+            "wanted trinary: cells are free, occupied or unknown; leave the line out to have the "
+            "picture read so");
+  }
   in.RejectUnknownKeys();
   return params;
 }

@@ -154,7 +154,7 @@ TEST(ParamReaderTest, ALeadingZeroIsRefusedRatherThanReadAsOctal) {
 
 TEST(ParamReaderTest, AListOfNumbersMustHaveItsSizeAndOnlyFiniteNumbers) {
   EXPECT_EQ(ErrorOf([] { Read("p: [1, 2]").GetNumbers("p", 3); }),
-            "a.yaml: p is a list, wanted a list of 3 numbers; line 1");
+            "a.yaml: p is a list, wanted a list of 3 numbers and not 2; line 1");
   EXPECT_EQ(ErrorOf([] { Read("p: 1").GetNumbers("p", 1); }),
             "a.yaml: p is '1', wanted a list of 1 numbers; line 1");
   EXPECT_EQ(ErrorOf([] { Read("p: [1, b]").GetNumbers("p", 2); }),

@@ -23,9 +23,10 @@ PATTERNS = (re.compile(r'^(?P<name>\w+) \(\w+\), seed (?P<seed>\d+), parameters 
             re.compile(r'^\| `(?P<name>\w+)` \| (?P<hash>[0-9a-f]{16})(?P<stale>, stale)? \|'),
             re.compile(r'config/experiments/(?P<name>\w+)\.yaml.*\(parameters (?P<hash>[0-9a-f]{16})'
                        r'(?P<stale>, stale)?\)'))
+EXPERIMENT = re.compile(r'`(?:nice )?hires experiment config/experiments/(?P<name>\w+)\.yaml\b[^`]*`')
 # A command that plays a series; where a day stands in its paragraph, the paragraph prints what it said then.
 SERIES = re.compile(r'`hires (?P<command>(?:experiment (?:hypothesis|decision|recognition|detector|localisation|'
-                    r'torso_poses)|scenarios)\b[^`]*)`')
+                    r'torso_poses)|scenarios|map --drive)\b[^`]*)`')
 DAY = re.compile(r'\b20\d\d-\d\d-\d\d\b')
 # What came of `hires reproduce all`, without what stands in brackets.
 RESULTS = re.compile(r'of (?P<published>\d+) published results (?P<reproduced>\d+) (?:is|are) reproduced',
@@ -54,6 +55,17 @@ def published():
                 named = found.groupdict()
                 yield ('%s:%d' % (path, number), named['name'], named.get('seed') or '1', named['hash'],
                        bool(named['stale']))
+
+
+def experiments_without_hash():
+    """(place, experiment) of what is printed under a day and says nowhere of which parameters it is."""
+    lines = list(documents())
+    for at, (path, number, line) in enumerate(lines):
+        if not (EXPERIMENT.search(line) and DAY.search(line)):
+            continue
+        below = [text for other, _, text in lines[at:at + 5] if other == path]  # a printed report begins so
+        if not any(pattern.search(text) for pattern in PATTERNS for text in below):
+            yield '%s:%d' % (path, number), EXPERIMENT.search(line).group('name')
 
 
 def series():
@@ -140,6 +152,11 @@ class PublishedTablesTest(unittest.TestCase):
             elif now != printed:
                 wrong.append('%s: %s is of parameters %s, today they are %s; %s, or write ", stale" behind the hash'
                              % (place, name, printed, now, again))
+        self.assertEqual(wrong, [], '\n' + '\n'.join(wrong))
+
+    def test_experiments_that_are_printed_say_of_which_parameters(self):
+        wrong = ['%s: %s: wanted "(parameters HASH)" behind the command, as it prints it' % found
+                 for found in experiments_without_hash()]
         self.assertEqual(wrong, [], '\n' + '\n'.join(wrong))
 
     def test_series_that_are_printed_are_of_todays_files_or_say_that_they_are_stale(self):

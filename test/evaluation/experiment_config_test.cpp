@@ -179,6 +179,7 @@ TEST(ExperimentConfigTest, MistakesAreNamedWithTheirPlace) {
   const auto legs = [](const char* was, const char* is) {
     return ErrorAfter("legs_world.yaml", was, is);
   };
+  EXPECT_THAT(legs("kind: legs", "kind: legs"), HasSubstr("counts from this file's folder"));
   EXPECT_THAT(legs("kind: legs", "kind: lags"), HasSubstr("kind is 'lags', wanted one of 'legs'"));
   EXPECT_THAT(legs("legs: 100", "legs: 0"), HasSubstr("legs.legs is '0'"));
   EXPECT_THAT(legs("chains: 1", "chain: 1"),

@@ -88,7 +88,8 @@ TEST_F(MapFileTest, RefusesYamlThatIsWrong) {
   EXPECT_THAT(ErrorWith("origin: [1.0, 2.0, 0.0]\n", ""),
               AllOf(HasSubstr("m.yaml: origin is missing"), HasSubstr("origin: [0.0, 0.0, 0.0]")));
   EXPECT_THAT(ErrorWith("2.0, 0.0]", "2.0, 0.5]"),
-              AllOf(HasSubstr("origin"), HasSubstr("rotated"), HasSubstr("line 3")));
+              AllOf(HasSubstr("origin"), HasSubstr("of 0 and not 0.5"), HasSubstr("rotated"),
+                    HasSubstr("line 3")));
   EXPECT_THAT(ErrorWith("[1.0,", "[1e9,"), HasSubstr("origin"));
   EXPECT_THAT(ErrorWith("[1.0,", "[.nan,"), HasSubstr("origin"));
   EXPECT_THAT(ErrorWith("resolution: 0.1", "resolution: 0"), HasSubstr("resolution"));

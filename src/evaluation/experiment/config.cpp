@@ -291,6 +291,12 @@ ExperimentConfig ReadExperiment(const std::string& path, const ExperimentOverrid
   ReadKind(kind, path, &own, overrides, &config);
   config.expect = ReadExpectations(&in);
   in.RejectUnknownKeys();
+  if (!std::filesystem::exists(config.scene)) {
+    in.Fail("scene", fmt::format("which counts from this file's folder, where it is {}: there is no "
+                                 "such file; write where the scene lies from here, or all of its "
+                                 "path",
+                                 config.scene));
+  }
   config.hash = HashOf(in, overrides);
   return config;
 }

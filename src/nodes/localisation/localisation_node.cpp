@@ -345,7 +345,7 @@ void LocalisationNode::DiagnoseBelief(diagnostic_updater::DiagnosticStatusWrappe
         break;
       case LocalisationStatus::kSpread:
         status.summary(DiagnosticStatus::ERROR,
-                       "lost: it may be in too many places; drive, or tell where it is "
+                       "lost: its place is not known well enough; drive, or tell it "
                        "(initialpose)");
         break;
       case LocalisationStatus::kNoScan:
@@ -361,11 +361,11 @@ void LocalisationNode::DiagnoseBelief(diagnostic_updater::DiagnosticStatusWrappe
   status.add("standard deviation of y [m]", sd.y());
   status.add("standard deviation of yaw [rad]", sd.z());
   status.add("particles", estimate.num_particles);
-  status.add("effective particles", estimate.effective_size);
+  status.add("effective particles, when last weighed", estimate.effective_size);
   status.add("places", estimate.num_clusters);
   status.add("share of the best place", estimate.best_share);
   status.add("beams explained", estimate.explained);
-  status.add("looked everywhere", estimate.num_searches);
+  status.add("looked everywhere by itself", estimate.num_searches);
 }
 
 }  // namespace hires_ros
