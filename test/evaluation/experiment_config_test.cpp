@@ -165,7 +165,9 @@ TEST(ExperimentConfigTest, AFileThatIsMissingIsNamed) {
 
 TEST(ExperimentConfigTest, TheObstacleLayerIsTheScenesNoneOrAFile) {
   const hires::test_support::TemporaryFolder folder;
-  const std::string legs = base::ReadTextFile(kFolder + "legs_world.yaml");
+  std::string legs = base::ReadTextFile(kFolder + "legs_world.yaml");
+  const std::string scene = "../scene.yaml";
+  legs.replace(legs.find(scene), scene.size(), fs::path(kFolder + scene).lexically_normal());
   const auto layer_of = [&](const std::string& more) {
     return ReadExperiment(folder.Write("legs.yaml", legs + more)).obstacle_layer;
   };
