@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -169,6 +170,18 @@ void RobotStateEstimator::ForgetOld() {
   joints_.KeepBetween(oldest, latest);
 }
 
+/// What is known of a time far ahead is of another clock, of a robot that has ended, say: tf holds it
+/// for the newest, and refuses all that comes as too old.
+void RobotStateEstimator::ForgetAhead() {
+  const std::pair<const std::string&, const std::string&> links[] = {
+      {frames_.map, frames_.odometry}, {frames_.map, frames_.base},
+      {frames_.odometry, frames_.base}};
+  for (const auto& [parent, child] : links) {
+    const auto newest = tree_->NewestOf(parent, child);
+    if (newest && std::isfinite(*newest) && IsAhead(*newest)) return tree_->ForgetMoving();
+  }
+}
+
 // ---- What comes in.
 
 Receipt RobotStateEstimator::OnOdometry(double stamp, const std::string& frame,
@@ -190,6 +203,7 @@ Receipt RobotStateEstimator::OnOdometry(double stamp, const std::string& frame,
       stamp,
       is_base ? reading : robot::OdometryReading{reading.X_OB * X_CB, MovedTo(X_CB, reading.V_B)});
   ForgetOld();
+  ForgetAhead();
   return is_new ? CheckFrame(frame) : Receipt{Reception::kRepeated, {}};
 }
 

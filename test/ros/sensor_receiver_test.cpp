@@ -54,6 +54,13 @@ class SensorReceiverTest : public ::testing::Test {
       {}};
 };
 
+/// The last word of a robot that has ended, and a new one whose clock begins.
+TEST_F(SensorReceiverTest, ATransformOfAnotherClockHoldsUpNobody) {
+  Transform("map", "odom_combined", 30.0);
+  for (int i = 1; i <= 20; ++i) All(0.05 * i);
+  EXPECT_EQ(sensors_.NameOf(sensors_.state().MissingNow()), "");
+}
+
 TEST_F(SensorReceiverTest, WhatIsMissingIsNamedAsTheRobotNamesIt) {
   const auto missing = [&] { return sensors_.NameOf(sensors_.state().MissingNow()); };
   EXPECT_EQ(missing(), "base_odometry/odom");

@@ -150,6 +150,7 @@ class RobotStateEstimator {
   bool HasClockRestarted(double stamp);
   void Restart();
   void ForgetOld();
+  void ForgetAhead();
   bool IsLate(double stamp) const;
   Receipt Late() const;
   FramePose ChildToBase(const std::string& child, double stamp) const;
