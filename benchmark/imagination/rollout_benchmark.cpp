@@ -3,8 +3,7 @@
 // to drive by what the laser sees? Goal: at least 0.7 of the speed by the map alone.
 #include <benchmark/benchmark.h>
 
-#include <ctime>
-
+#include "hires/base/resource_use.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/rollout.h"
 
@@ -38,12 +37,6 @@ BENCHMARK_CAPTURE(PlayDrive, EastTable2_slow, "preManipulationAreaEastTable2", "
 BENCHMARK_CAPTURE(PlayDrive, EastTable2_fast, "preManipulationAreaEastTable2", "fast")
     ->Unit(benchmark::kMillisecond);
 
-double ProcessorSeconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// The same rollouts by what the laser sees, as the scene says, and by the map alone, in turn.
 void LaserAgainstMap(benchmark::State& state, const char* area, const char* motion_set) {
   struct Way {
@@ -52,9 +45,9 @@ void LaserAgainstMap(benchmark::State& state, const char* area, const char* moti
               setup, MakeStartState(setup, "preManipulationAreaEastCounter1", {"peppermill1"}),
               7)) {}
     void Play(const base::ActionCall& action, int index) {
-      const double start = ProcessorSeconds();
+      const double start = base::ThreadCpuSeconds();
       simulated += PlayRollout(rollout, action, index)->simulated;
-      seconds += ProcessorSeconds() - start;
+      seconds += base::ThreadCpuSeconds() - start;
     }
     double Speed() const { return simulated / seconds; }
     RolloutSetup rollout;

@@ -1,9 +1,9 @@
 // What does one control cycle cost, over all cycles of a whole drive?
 #include <benchmark/benchmark.h>
-#include <time.h>
 
 #include <algorithm>
 
+#include "hires/base/resource_use.h"
 #include "hires/navigation/dwa.h"
 #include "navigation/closed_loop.h"
 
@@ -13,11 +13,7 @@ namespace {
 using namespace test_support;
 
 /// [ms] of processor time that this thread has used; other programs on the machine do not count.
-double ThreadMilliseconds() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return now.tv_sec * 1e3 + now.tv_nsec * 1e-6;
-}
+double ThreadMilliseconds() { return 1e3 * base::ThreadCpuSeconds(); }
 
 /// [ms] that each cycle takes when the planner sees the same drive again.
 std::vector<double> TimeCycles(DwaPlanner* planner, const Costmap& costmap, const Drive& drive) {

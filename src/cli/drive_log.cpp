@@ -75,6 +75,26 @@ localisation::RobotLog WithInertia(localisation::RobotLog drive, const std::stri
   return drive;
 }
 
+/// A recording that stood still, or two in one file.
+void WarnOfGaps(const localisation::RobotLog& drive, const std::string& log) {
+  constexpr double kLongest = 5.0;  // [s]
+  int count = 0;
+  double longest = 0.0, at = 0.0;
+  for (std::size_t i = 1; i < drive.scans.size(); ++i) {
+    const double gap = drive.scans[i].time - drive.scans[i - 1].time;
+    if (gap > kLongest) ++count;
+    if (gap <= longest) continue;
+    longest = gap;
+    at = drive.scans[i - 1].time - drive.scans.front().time;
+  }
+  if (count == 0) return;
+  base::Log(
+      base::LogLevel::kWarn,
+      fmt::format("{}: no scan for more than {:g} s, {} times, the longest {:.1f} s, {:.1f} s "
+                  "after the first: the odometry alone tells how the robot moved meanwhile",
+                  log, kLongest, count, longest, at));
+}
+
 }  // namespace
 
 void AddDriveOptions(CLI::App* verb, DriveOptions* o) {
@@ -128,30 +148,6 @@ geometry::Pose2 PoseIn(const std::string& text, const std::string& option,
   }
   return {numbers[0], numbers[1], numbers[2]};
 }
-
-namespace {
-
-/// A recording that stood still, or two in one file.
-void WarnOfGaps(const localisation::RobotLog& drive, const std::string& log) {
-  constexpr double kLongest = 5.0;  // [s]
-  int count = 0;
-  double longest = 0.0, at = 0.0;
-  for (std::size_t i = 1; i < drive.scans.size(); ++i) {
-    const double gap = drive.scans[i].time - drive.scans[i - 1].time;
-    if (gap > kLongest) ++count;
-    if (gap <= longest) continue;
-    longest = gap;
-    at = drive.scans[i - 1].time - drive.scans.front().time;
-  }
-  if (count == 0) return;
-  base::Log(
-      base::LogLevel::kWarn,
-      fmt::format("{}: no scan for more than {:g} s, {} times, the longest {:.1f} s, {:.1f} s "
-                  "after the first: the odometry alone tells how the robot moved meanwhile",
-                  log, kLongest, count, longest, at));
-}
-
-}  // namespace
 
 localisation::RobotLog ReadDrive(const DriveOptions& options, const std::string& package_folder,
                                  const ReadDriveBag& read_bag) {
