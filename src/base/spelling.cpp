@@ -69,7 +69,7 @@ bool AreSpeltAlike(const std::string& a, const std::string& b) {
 
 std::vector<std::string> LikelyNames(const std::string& name,
                                      const std::vector<std::string>& known) {
-  const std::string lower = ToLower(name);
+  const std::string lower = ToLower(name.substr(0, kMostCompared));
   std::vector<std::string> mistyped, parts;
   std::size_t best = 0;
   for (const std::string& candidate : NearestNames(name, known, known.size())) {

@@ -71,7 +71,7 @@ std::string Join(const std::vector<std::string>& parts, std::string_view separat
 
 std::vector<std::string> NearestNames(const std::string& name,
                                       const std::vector<std::string>& known, std::size_t at_most) {
-  const std::string lower = ToLower(name);
+  const std::string lower = ToLower(name.substr(0, kMostCompared));
   // Of two as near, the one that begins and ends alike: peppermil1 is peppermill1.
   std::set<std::tuple<std::size_t, std::ptrdiff_t, std::string>> ranked;
   for (const std::string& candidate : known) {

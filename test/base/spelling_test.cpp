@@ -30,6 +30,14 @@ TEST(LikelyNamesTest, GuessesSlipsAndPartsAndNothingElse) {
   EXPECT_EQ(LikelyNames("xyzzy", {"mug"}), std::vector<std::string>{});
 }
 
+// To compare all of it with each of the known names would take minutes.
+TEST(LikelyNamesTest, ANameOfAnyLengthIsAnsweredAtOnce) {
+  const std::vector<std::string> known(1000, "serve_coffee");
+  EXPECT_EQ(LikelyNames(std::string(1'000'000, 'x'), known), std::vector<std::string>{});
+  EXPECT_EQ(LikelyNames("serve_coffee" + std::string(1'000'000, 'x'), {"serve_coffee"}),
+            std::vector<std::string>{"serve_coffee"});
+}
+
 TEST(CountedTest, OneIsSingular) {
   EXPECT_EQ(Counted(0, "run"), "0 runs");
   EXPECT_EQ(Counted(1, "run"), "1 run");

@@ -9,15 +9,13 @@ namespace hires_ros {
 
 WorkerLink::WorkerLink(int index, double timeout, ros::NodeHandle* nh, Handler handler)
     : name_(WorkerName(index, kRollout)),
-      timeout_(timeout),
       handler_(std::move(handler)),
       client_(*nh, name_),
       status_(nh->subscribe<actionlib_msgs::GoalStatusArray>(
           name_ + "/status", 10,
           boost::function<void(const actionlib_msgs::GoalStatusArrayConstPtr&)>(
-              [this](const actionlib_msgs::GoalStatusArrayConstPtr&) {
-                last_status_ = hires::base::SteadyNow();
-              }))) {}
+              [this](const actionlib_msgs::GoalStatusArrayConstPtr&) { silence_.Hear(); }))),
+      silence_(timeout) {}
 
 WorkerLink::~WorkerLink() { Drop(); }
 
@@ -90,8 +88,8 @@ void WorkerLink::OnTransition(Client::GoalHandle handle) {
 }
 
 void WorkerLink::Look() {
-  const bool alive =
-      client_.isServerConnected() && hires::base::SteadyNow() - last_status_ < timeout_;
+  const bool is_heard = silence_.Look(hires::base::SteadyNow());
+  const bool alive = is_heard && client_.isServerConnected();
   if (alive == is_alive_) return;
   is_alive_ = alive;
   if (alive) {

@@ -10,6 +10,8 @@
 #include <string>
 #include <variant>
 
+#include "hires/base/silence.h"
+
 namespace hires_ros {
 
 /// The imagination client's end of one worker: knows whether it lives, plays one goal after the
@@ -65,11 +67,10 @@ class WorkerLink {
   void Drop();
 
   std::string name_;
-  double timeout_;
   Handler handler_;
   Client client_;
   ros::Subscriber status_;
-  double last_status_{-1e9};  // [s] steady
+  hires::base::Silence silence_;  // of its status
   bool is_alive_{false};
   int last_session_{0};
   std::deque<Job> jobs_;
