@@ -118,6 +118,7 @@ class WorldTrackerTest(unittest.TestCase):
             publisher.unregister()
         for node in self.nodes:
             node.destroy()
+        self.main.forget_the_gone()
         self.assertTrue(running, output)
 
     def note(self, where):
@@ -223,7 +224,9 @@ class WorldTrackerTest(unittest.TestCase):
             if isinstance(wanted, float) and value is not None:
                 return abs(value - wanted) < 0.02
             return value == wanted
-        wait_until(says, what or '%s %s %s' % (instance, role, wanted))
+        wait_until(says, lambda: '%s; the tracker said:\n%s\nthe Blackboard:\n%s' % (
+            what or '%s %s %s' % (instance, role, wanted), self.tracker.output(),
+            self.blackboard.output()))
 
     def names(self):
         return {thing.name: thing for thing in self.known[-1].objects} if self.known else {}

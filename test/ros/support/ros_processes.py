@@ -198,9 +198,15 @@ class Master:
 
     def forget_the_gone(self):
         """Takes killed nodes off its lists. A port that was theirs is given to somebody else one day,
-        and a subscriber that still tries the dead one does not notice the new one there."""
-        state = self._call('getSystemState') or [[], [], []]
-        for topics, unregister in zip(state, ('unregisterPublisher', 'unregisterSubscriber')):
+        and a subscriber that still tries the dead one does not notice the new one there; who waits
+        until a service is registered takes that of the dead for the next one's."""
+        publishers, subscribers, services = self._call('getSystemState') or [[], [], []]
+        for service, nodes in services:
+            uri = self._call('lookupService', service)
+            if uri and is_port_free(int(uri.rsplit(':', 1)[1])):
+                self._call('unregisterService', service, uri, caller=nodes[0])
+        for topics, unregister in ((publishers, 'unregisterPublisher'),
+                                   (subscribers, 'unregisterSubscriber')):
             for topic, node in ((topic, node) for topic, nodes in topics for node in nodes):
                 uri = self.node_uri(node)
                 if uri and is_port_free(int(uri.rstrip('/').rsplit(':', 1)[1])):

@@ -24,7 +24,7 @@ class ScriptedMoveBase:
     def __init__(self):
         self.ignored = rospy.get_param('~ignored', [])
         self.refuses = rospy.get_param('~refuses', False)
-        self.before = None
+        self.before = self.now = None
         config = PlannerConfig(rospy.get_param('~old_names', False))
         config.min.update(rospy.get_param('~lower', {}))
         self.planner = Server(config, self.on_parameters, 'DWAPlannerROS')
@@ -34,14 +34,15 @@ class ScriptedMoveBase:
 
     def on_parameters(self, config, _):
         if self.before is None:
-            self.before = dict(config)
+            self.before = self.now = dict(config)
             return config
         changed = {name for name in self.before
-                   if name != 'groups' and config[name] != self.planner.config[name]}
+                   if name != 'groups' and config[name] != self.now[name]}
         if self.refuses and changed:
             raise RuntimeError('this planner is not to be changed')
         for name in changed & set(self.ignored):
             config[name] = self.before[name]
+        self.now = dict(config)
         return config
 
     def execute(self, _):
