@@ -248,7 +248,7 @@ class HeatReaderTest(unittest.TestCase):
         """By a node that has only just begun to listen."""
         from sensor_msgs.msg import Image
         node = self.processes.start([executable('heat_reader'), '__name:=second_reader'], self.main)
-        self.addCleanup(node.kill)
+        self.addCleanup(node.destroy)
         other = self.rospy.Publisher(IMAGE, Image, queue_size=1)
         wait_until(lambda: '/second_reader' in self.main.subscribers('/' + IMAGE),
                    lambda: 'the node\n' + node.output())

@@ -45,7 +45,7 @@ class Node:
         self.process = test.processes.start(
             [executable('localisation'), '__ns:=' + self.space, 'base_scan:=/base_scan', 'map:=/map',
              'initialpose:=/initialpose', 'static_map:=/static_map'] + list(arguments), test.main)
-        test.addCleanup(self.process.kill)
+        test.addCleanup(self.process.destroy)
         for listener in listeners:
             test.addCleanup(listener.unregister)
         has_map = any(argument.startswith('_map_file:=') for argument in arguments)

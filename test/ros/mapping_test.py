@@ -62,7 +62,7 @@ class Node:
                      rospy.Subscriber('/tf', TFMessage, self._take, queue_size=100)]
         self.process = test.processes.start(
             [executable('mapping'), '__ns:=' + self.space, 'base_scan:=/base_scan'] + list(arguments), test.main)
-        test.addCleanup(self.process.kill)
+        test.addCleanup(self.process.destroy)
         for listener in listeners:
             test.addCleanup(listener.unregister)
         for publisher in test.publishers:

@@ -116,7 +116,6 @@ class MoveBaseModeTest(unittest.TestCase):
         for process in reversed(self.started):
             process.signal(signal.SIGCONT)
             process.destroy()
-        self.main.forget_the_gone()  # services of the dead would be taken for the next one's
 
     # What is started.
 

@@ -40,7 +40,7 @@ class Node:
         self.process = test.processes.start(
             [executable('odometry_filter'), '__ns:=' + self.space, 'odom:=/odom', 'imu_data:=/imu_data'] +
             list(arguments), test.main)
-        test.addCleanup(self.process.kill)
+        test.addCleanup(self.process.destroy)
         for listener in listeners:
             test.addCleanup(listener.unregister)
         for publisher in (test.wheels, test.units, test.fixed):

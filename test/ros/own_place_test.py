@@ -96,7 +96,7 @@ class OwnPlaceTest(unittest.TestCase):
     def start(self, name, *arguments):
         self.nodes[name] = self.system.processes.start(
             [executable(name), '__name:=' + name, *arguments], self.system.main)
-        self.addCleanup(self.nodes[name].kill)
+        self.addCleanup(self.nodes[name].destroy)
         return self.nodes[name]
 
     def output(self):

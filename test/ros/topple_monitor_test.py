@@ -66,7 +66,6 @@ class ToppleMonitorTest(unittest.TestCase):
         from rospy import has_param, delete_param
         if has_param('/topple_monitor'):
             delete_param('/topple_monitor')
-        self.main.forget_the_gone()
         parameters.setdefault('store', self.store)
         node = self.system.processes.start(
             [executable('topple_monitor'), *arguments] +

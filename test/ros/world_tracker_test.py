@@ -118,7 +118,6 @@ class WorldTrackerTest(unittest.TestCase):
             publisher.unregister()
         for node in self.nodes:
             node.destroy()
-        self.main.forget_the_gone()
         self.assertTrue(running, output)
 
     def note(self, where):

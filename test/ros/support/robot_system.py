@@ -193,7 +193,6 @@ class RobotSystem:
         for process in (self.middle_layer, self.robot):
             if process is not None:
                 process.destroy()
-        self.main.forget_the_gone()
 
     def stop(self):
         self.processes.stop_all()

@@ -95,10 +95,12 @@ class _BoundedTransport(xmlrpc.client.Transport):
 
 
 class Process:
-    """A running program whose output is read line by line."""
+    """A running program whose output is read line by line.
+    @param master  that its nodes are registered at, if any."""
 
-    def __init__(self, command, environment):
+    def __init__(self, command, environment, master=None):
         self.command = command
+        self._master = master
         self.lines = []
         self._changed = threading.Condition()
         self._popen = subprocess.Popen(
@@ -160,7 +162,13 @@ class Process:
         return code
 
     def destroy(self):
-        """Kills the program and whatever it started in its session's group."""
+        """Kills the program and whatever it started in its session's group; its master forgets it."""
+        self.end()
+        if self._master is not None:
+            self._master.forget_the_gone()
+
+    def end(self):
+        """The same, but its master goes on telling others, and telling it, of what it had."""
         try:
             os.killpg(self.pid, signal.SIGKILL)
         except ProcessLookupError:
@@ -198,19 +206,25 @@ class Master:
 
     def forget_the_gone(self):
         """Takes killed nodes off its lists. A port that was theirs is given to somebody else one day,
-        and a subscriber that still tries the dead one does not notice the new one there; who waits
-        until a service is registered takes that of the dead for the next one's."""
+        of another test maybe: who is told then who publishes the dead one's topics drops the links it
+        has, and a subscriber that still tries the dead one does not notice the new one there. Who
+        waits until a service is registered takes that of the dead for the next one's."""
         publishers, subscribers, services = self._call('getSystemState') or [[], [], []]
+        gone = {}
+        for node in {node for _, nodes in publishers + subscribers + services for node in nodes}:
+            uri = self.node_uri(node) or ''
+            port = int(uri.strip('/').split(':')[-1]) if uri.startswith('http://127.0.0.1:') else 0
+            if port and is_port_free(port):
+                gone[node] = uri
         for service, nodes in services:
-            uri = self._call('lookupService', service)
-            if uri and is_port_free(int(uri.rsplit(':', 1)[1])):
-                self._call('unregisterService', service, uri, caller=nodes[0])
+            for node in gone.keys() & set(nodes):
+                uri = self._call('lookupService', service)
+                self._call('unregisterService', service, uri, caller=node)
         for topics, unregister in ((publishers, 'unregisterPublisher'),
                                    (subscribers, 'unregisterSubscriber')):
-            for topic, node in ((topic, node) for topic, nodes in topics for node in nodes):
-                uri = self.node_uri(node)
-                if uri and is_port_free(int(uri.rstrip('/').rsplit(':', 1)[1])):
-                    self._call(unregister, topic, uri, caller=node)
+            for topic, nodes in topics:
+                for node in gone.keys() & set(nodes):
+                    self._call(unregister, topic, gone[node], caller=node)
 
     def _call(self, method, *arguments, caller='/test'):
         """The value, or None when there is no answer or a failure."""
@@ -283,7 +297,7 @@ class Processes:
         return masters
 
     def start(self, command, master, **environment):
-        process = Process(command, self.environment(master, **environment))
+        process = Process(command, self.environment(master, **environment), master)
         self._processes.append(process)
         if master is not None and master not in self._masters:
             self._foreign_masters.add(master)
@@ -298,11 +312,11 @@ class Processes:
 
     def stop_all(self):
         for process in reversed(self._processes):
-            process.destroy()
+            process.end()
         for master in self._foreign_masters:
             master.forget_the_gone()
         for master in self._masters:
-            master.process.destroy()
+            master.process.end()
         self.folder.cleanup()
 
 
