@@ -392,7 +392,7 @@ class WorldTrackerTest(unittest.TestCase):
         top = numpy.stack([x, y, numpy.full_like(x, 0.2)], -1).reshape(-1, 3)
         return numpy.concatenate([floor[~hidden], front, top])
 
-    def test_clouds_that_cannot_be_are_told_of_and_two_that_can_show_what_stands_there(self):
+    def test_clouds_that_cannot_be_are_told_of_and_those_that_can_show_what_stands_there(self):
         self.rest()
         good = self.floor_with_box()
         self.publishers['cloud'].publish(self.cloud(numpy.full_like(good, math.nan)))
@@ -418,11 +418,12 @@ class WorldTrackerTest(unittest.TestCase):
         self.look({})
         self.assertEqual([name for name in self.names() if name.startswith('obstacle')], [])
 
-        for number in range(2):
-            self.tick()
+        def is_known():
+            # A tracker that is held up keeps two clouds and lets older ones go, so two may not do.
+            self.tick({})
             self.publishers['cloud'].publish(self.cloud(good))
-            self.rest(3)
-        self.wait(lambda: 'obstacle1' in self.names() or self.tick({}), 'the obstacle')
+            return 'obstacle1' in self.names()
+        wait_until(is_known, lambda: 'the obstacle; the tracker said:\n' + self.tracker.output())
         diagnostics(self.rospy, 'world_tracker', lambda v: v['things on the floor'] == '1')
         p = self.names()['obstacle1'].pose.position
         x, y, yaw = self.base
