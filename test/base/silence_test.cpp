@@ -5,6 +5,14 @@
 namespace hires::base::silence_test {
 namespace {
 
+/// A limit of 1 s; heard at 0.
+Silence Heard() {
+  Silence silence(1.0);
+  silence.Look(0.0);
+  silence.Hear();
+  return silence;
+}
+
 TEST(SilenceTest, NobodyIsThereBeforeTheFirstWord) {
   Silence silence(1.0);
   EXPECT_FALSE(silence.Look(0.0));
@@ -14,9 +22,7 @@ TEST(SilenceTest, NobodyIsThereBeforeTheFirstWord) {
 }
 
 TEST(SilenceTest, WhoSaysNothingIsGoneAfterTheLimit) {
-  Silence silence(1.0);
-  silence.Look(0.0);
-  silence.Hear();
+  Silence silence = Heard();
   for (int i = 1; i < 10; ++i) EXPECT_TRUE(silence.Look(0.1 * i)) << i;
   EXPECT_FALSE(silence.Look(1.01));
   EXPECT_FALSE(silence.Look(1.02));
@@ -26,9 +32,7 @@ TEST(SilenceTest, WhoSaysNothingIsGoneAfterTheLimit) {
 
 // What was said meanwhile is heard after the look, as a timer that is overdue comes first.
 TEST(SilenceTest, AListenerThatWasHeldUpItselfHasMissedNothing) {
-  Silence silence(1.0);
-  silence.Look(0.0);
-  silence.Hear();
+  Silence silence = Heard();
   EXPECT_TRUE(silence.Look(60.0));
   silence.Hear();
   EXPECT_TRUE(silence.Look(60.9));
@@ -36,9 +40,7 @@ TEST(SilenceTest, AListenerThatWasHeldUpItselfHasMissedNothing) {
 }
 
 TEST(SilenceTest, OneWhoDiedMeanwhileIsGoneSoonAfter) {
-  Silence silence(1.0);
-  silence.Look(0.0);
-  silence.Hear();
+  Silence silence = Heard();
   EXPECT_TRUE(silence.Look(60.0));
   for (int i = 1; i < 7; ++i) EXPECT_TRUE(silence.Look(60.0 + 0.1 * i)) << i;
   EXPECT_FALSE(silence.Look(60.8));

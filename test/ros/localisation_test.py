@@ -468,8 +468,7 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
         first = self.begun()
         self.drive(15, first)
         wait_until(lambda: self.rospy.has_param(first.name + '/initial_odometry_time'), 'a place to be kept')
-        first.process.kill()
-        self.main.forget_the_gone()
+        first.process.destroy()
         for _ in range(5):
             self.robot.drive()
             self.tick()
@@ -486,8 +485,7 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
         first = self.begun()
         self.drive(3, first)
         wait_until(lambda: self.rospy.has_param(first.name + '/initial_odometry_time'), 'a place to be kept')
-        first.process.kill()
-        self.main.forget_the_gone()
+        first.process.destroy()
         self.robot.pose = (3.0, 5.0, 1.0)  # carried; odometry knows nothing of it
         second = Node(self, space=first.space)
         self.told.publish(self.pose(self.robot.pose))

@@ -194,8 +194,11 @@ class WorldTrackerTest(unittest.TestCase):
     def wait(self, condition, what):
         with self.changed:
             if not self.changed.wait_for(condition, LIMIT):
-                raise AssertionError('waited in vain for %s; the tracker said:\n%s' % (
-                    what, self.tracker.output()))
+                raise AssertionError('waited in vain for ' + self.with_output(what))
+
+    def with_output(self, what):
+        return '%s; the tracker said:\n%s\nthe Blackboard:\n%s' % (
+            what, self.tracker.output(), self.blackboard.output())
 
     def said_until(self):
         """[s] until when the Blackboard has what was sensed."""
@@ -223,9 +226,8 @@ class WorldTrackerTest(unittest.TestCase):
             if isinstance(wanted, float) and value is not None:
                 return abs(value - wanted) < 0.02
             return value == wanted
-        wait_until(says, lambda: '%s; the tracker said:\n%s\nthe Blackboard:\n%s' % (
-            what or '%s %s %s' % (instance, role, wanted), self.tracker.output(),
-            self.blackboard.output()))
+        wait_until(says, lambda: self.with_output(
+            what or '%s %s %s' % (instance, role, wanted)))
 
     def names(self):
         return {thing.name: thing for thing in self.known[-1].objects} if self.known else {}
@@ -419,11 +421,12 @@ class WorldTrackerTest(unittest.TestCase):
         self.assertEqual([name for name in self.names() if name.startswith('obstacle')], [])
 
         def is_known():
-            # A tracker that is held up keeps two clouds and lets older ones go, so two may not do.
+            # A tracker that is held up keeps two clouds and lets older ones go, so two may not do here
+            # (FloorByCloudsTest counts them).
             self.tick({})
             self.publishers['cloud'].publish(self.cloud(good))
             return 'obstacle1' in self.names()
-        wait_until(is_known, lambda: 'the obstacle; the tracker said:\n' + self.tracker.output())
+        wait_until(is_known, lambda: self.with_output('the obstacle'))
         diagnostics(self.rospy, 'world_tracker', lambda v: v['things on the floor'] == '1')
         p = self.names()['obstacle1'].pose.position
         x, y, yaw = self.base
