@@ -1,8 +1,9 @@
 """What README and documents show is what their commands print. Usage: readme_test.py HIRES [--long]
 
-Each console block (`$ scripts/run hires ...` and what it printed) that needs no master is run, in
-order, by the program HIRES in an empty folder that shows the package's. With --long also those that
-play, which take minutes. `$ ... the same with OPTIONS` is the command before with more options.
+Each console block (`$ scripts/run hires ...` or `$ scripts/run python3 ...`, and what it printed)
+that needs no master is run, in order, by the program HIRES or this Python, in an empty folder that
+shows the package's. With --long also those that play, which take minutes. `$ ... the same with
+OPTIONS` is the command before with more options.
 """
 
 import os
@@ -13,12 +14,14 @@ import sys
 import tempfile
 
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), "..", ".."))
-PREFIX = "scripts/run hires "
+PREFIX = "scripts/run "
+PROGRAMS = ("hires", "python3")
+LONG = ("imagine", "limits", "examples/best_speed.py")
 SAME = "... the same with "
 MEASURED = re.compile(r"[\d.]+ ms of processor time, \d+ MB|"  # and not the same twice
                       r"in [\d.]+ s, \d+ times as fast as real time")
-DOCUMENTS = ("README.md", "docs/command_line.md", "docs/tutorial.md")
-FEWEST = 7  # examples; documents whose blocks are not found any more must not pass
+DOCUMENTS = ("README.md", "docs/command_line.md", "docs/own_code.md", "docs/tutorial.md")
+FEWEST = 8  # examples; documents whose blocks are not found any more must not pass
 LARGEST = 8192  # bytes of a README that is read; the rest is for docs/
 
 
@@ -30,7 +33,7 @@ def console_blocks(text):
 
 
 def examples(text):
-    """(words after `hires`, lines shown) of each command that needs no master."""
+    """(words from the program on, lines shown) of each command that needs no master."""
     found, base = [], None
     for lines in console_blocks(text):
         lines = list(lines)
@@ -45,7 +48,7 @@ def examples(text):
                 words = base + shlex.split(command[len(SAME):])
             elif command.startswith(PREFIX):
                 words = base = shlex.split(command[len(PREFIX):])
-            else:
+            if not command.startswith((SAME, PREFIX)) or words[0] not in PROGRAMS:
                 continue
             found.append((words, shown))
     return found
@@ -58,18 +61,19 @@ def bare(text):
 
 def differences(program, path, words, shown, folder):
     """What is wrong, as lines; none if it prints what is shown."""
-    done = subprocess.run([program] + words, cwd=folder, stdout=subprocess.PIPE,
+    done = subprocess.run([program[words[0]]] + words[1:], cwd=folder, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True, check=False)
     printed, wanted = bare(done.stdout), bare("\n".join(shown))
     if printed == wanted:
         return []
-    return (["%s shows of `hires %s`:" % (path, " ".join(words))] + ["  " + w for w in wanted] +
+    return (["%s shows of `%s`:" % (path, " ".join(words))] + ["  " + w for w in wanted] +
             ["it prints (exit code %d):" % done.returncode] + ["  " + p for p in printed] +
             done.stderr.splitlines()[-5:])
 
 
 def main():
-    program, is_long = os.path.abspath(sys.argv[1]), "--long" in sys.argv
+    program = {"hires": os.path.abspath(sys.argv[1]), "python3": sys.executable}
+    is_long = "--long" in sys.argv
     found, wrong = [], []
     for path in DOCUMENTS:
         with open(os.path.join(ROOT, path), encoding="utf-8") as file:
@@ -84,7 +88,7 @@ def main():
         for name in ("config", "worlds", "urdf", "examples"):
             os.symlink(os.path.join(ROOT, name), os.path.join(folder, name))
         for path, words, shown in found:
-            if words[0] not in ("imagine", "limits") or is_long:
+            if words[1] not in LONG or is_long:
                 wrong += differences(program, path, words, shown, folder)
     print("\n".join(wrong) if wrong else "%d examples print what is shown" % len(found))
     return 1 if wrong else 0
