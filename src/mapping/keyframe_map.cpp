@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "hires/geometry/angles.h"
 
@@ -12,16 +13,17 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr double kGoodFit = 0.5;         // with less, a wider search is tried
-constexpr double kLostFit = 0.2;         // with less, a scan fits nothing
-constexpr double kBetterFit = 0.1;       // by which the wider search has to win
-constexpr int kChainHalf = 10;           // keyframes to either side of a place seen before
-constexpr int kLoopEvery = 2;            // keyframes
-constexpr double kNeedsNoWitness = 0.5;  // [m] of correction
-constexpr double kSettles = 0.3;         // [m] by which refining may move what was searched
-constexpr double kSameHeading = 1.0;     // [rad]
-constexpr double kDrift = 0.05;          // [m / m] of a map that is not tied together
-constexpr double kYawDrift = 0.004;      // [rad / m]
+constexpr double kGoodFit = 0.5;      // with less, a wider search is tried
+constexpr double kLostFit = 0.2;      // with less, a scan fits nothing
+constexpr double kBetterFit = 0.1;    // by which the wider search has to win
+constexpr int kChainHalf = 10;        // keyframes to either side of a place seen before
+constexpr int kLoopEvery = 2;         // keyframes
+constexpr double kLarge = 0.5;        // [m] of correction, which then needs a witness
+constexpr double kToldSd = 0.03;      // [m] along it
+constexpr double kSettles = 0.3;      // [m] by which refining may move what was searched
+constexpr double kSameHeading = 1.0;  // [rad]
+constexpr double kDrift = 0.05;       // [m / m] of a map that is not tied together
+constexpr double kYawDrift = 0.004;   // [rad / m]
 const Eigen::Vector3d kEdgeFloor(0.01, 0.01, 0.003);  // [m], [m], [rad] sd of the best match
 
 double AngleBetween(const Pose2& a, const Pose2& b) {
@@ -41,6 +43,13 @@ PoseGraph::Edge EdgeOf(int from, int to, const Pose2& X_MF, const ScanMatch& mat
   Eigen::Matrix3d covariance = turn * information.inverse() * turn.transpose();
   covariance.diagonal() += kEdgeFloor.cwiseAbs2();
   return {from, to, X_MF.Inverse() * match.X_MB, covariance.inverse()};
+}
+
+/// Whether walls tell of the shift that a match asks for, as those of a corridor do not along it.
+bool IsTold(const Pose2& X_before, const ScanMatch& match) {
+  const Eigen::Vector2d along = (match.X_MB.position() - X_before.position()).normalized();
+  const Eigen::Matrix3d covariance = match.information.inverse();
+  return along.dot(covariance.topLeftCorner<2, 2>() * along) <= kToldSd * kToldSd;
 }
 
 }  // namespace
@@ -99,27 +108,33 @@ void KeyframeMap::CloseLoop() {
     if (!place || place == tried) continue;
     tried = place;
     const std::optional<ScanMatch> match = MatchWithPlace(*place);
-    if (!match || !IsWitnessed(graph_.pose(k), match->X_MB)) continue;
-    PoseGraph::Edge edge = EdgeOf(*place, k, graph_.pose(*place), *match);
-    edge.may_be_wrong = true;
-    graph_.AddEdge(edge);
+    if (!match) continue;
+    const Pose2& X_before = graph_.pose(k);
+    const bool is_large = DistanceBetween(X_before, match->X_MB) >= kLarge;
+    if (is_large && !(IsTold(X_before, *match) && IsWitnessed(X_before, match->X_MB))) continue;
+    const PoseGraph::Edge edge = EdgeOf(*place, k, graph_.pose(*place), *match);
+    if (!graph_.CloseLoop(edge, is_large)) continue;
     ++num_loops_;
     way_at_loop_ = keyframes_[k].way;
-    graph_.Optimise();
     return;
   }
+}
+
+/// [m] driven from a keyframe to the last one of which nothing says how far it led.
+double KeyframeMap::UntiedWay(int i) const {
+  return keyframes_.back().way - std::max(way_at_loop_, keyframes_[i].way);
 }
 
 /// The keyframe nearest to the last one, of those far enough back on the way.
 std::optional<int> KeyframeMap::PlaceSeenBefore(bool same_heading) const {
   const int k = size() - 1;
   std::optional<int> nearest;
-  double best = params_.loop_radius + kDrift * (keyframes_[k].way - way_at_loop_);
+  double best = std::numeric_limits<double>::infinity();
   for (int j = 0; j < k; ++j) {
     if (keyframes_[k].way - keyframes_[j].way < params_.loop_length) break;
     if (same_heading && AngleBetween(graph_.pose(j), graph_.pose(k)) > kSameHeading) continue;
     const double distance = DistanceBetween(graph_.pose(j), graph_.pose(k));
-    if (distance >= best) continue;
+    if (distance >= std::min(best, params_.loop_radius + kDrift * UntiedWay(j))) continue;
     best = distance;
     nearest = j;
   }
@@ -130,7 +145,7 @@ std::optional<int> KeyframeMap::PlaceSeenBefore(bool same_heading) const {
 /// map was not tied together.
 std::optional<ScanMatch> KeyframeMap::MatchWithPlace(int place) const {
   const int k = size() - 1;
-  const double unsure = keyframes_[k].way - way_at_loop_;  // [m]
+  const double unsure = UntiedWay(place);
   const SearchWindow window{std::min(0.3 + kDrift * unsure, 4.0),
                             std::min(0.1 + kYawDrift * unsure, 0.4)};
   int last = std::min(place + kChainHalf, k - 1);
@@ -146,7 +161,6 @@ std::optional<ScanMatch> KeyframeMap::MatchWithPlace(int place) const {
 
 /// A large correction is believed once the next one agrees with it: rooms may be alike.
 bool KeyframeMap::IsWitnessed(const Pose2& X_before, const Pose2& X_after) {
-  if (DistanceBetween(X_before, X_after) < kNeedsNoWitness) return true;
   const int k = size() - 1;
   const Pose2 step = X_after * X_before.Inverse();
   const bool agrees = asked_ && k - asked_->keyframe <= 3 * kLoopEvery &&

@@ -46,6 +46,7 @@ class KeyframeMap {
   std::vector<PlacedPoints> Placed(int first, int last) const;
   void RebuildLocalMap();
   void CloseLoop();
+  double UntiedWay(int i) const;
   std::optional<int> PlaceSeenBefore(bool same_heading) const;
   std::optional<ScanMatch> MatchWithPlace(int place) const;
   bool IsWitnessed(const geometry::Pose2& X_before, const geometry::Pose2& X_after);

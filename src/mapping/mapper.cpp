@@ -162,7 +162,7 @@ PosePrior Mapper::Impl::Predict(const RobotLog::Scan& scan) {
   const Pose2 since = is_told ? anchor_.X_OB->Inverse() * *scan.X_OB : Pose2{};
   const double way = since.position().norm();
   return {anchor_.X_MB * since, 0.003 + params_.odometry_sd * way + anchor_.sd,
-          0.002 + params_.odometry_sd * (std::abs(since.yaw) + 0.2 * way) + anchor_.sd};
+          0.002 + params_.odometry_sd * (std::abs(since.yaw) + way) + anchor_.sd};
 }
 
 void Mapper::Impl::Keep(const RobotLog::Scan& scan) {

@@ -17,6 +17,7 @@ constexpr double kGraphConverged = 1e-5;  // [m], [rad]
 // Dynamic covariance scaling [Agarwal et al. 2013, ICRA, 62-69]: an edge whose error exceeds this
 // (squared, in sd) counts less.
 constexpr double kTrusted = 20.0;
+constexpr double kBelieved = 0.5;  // of the weight of an edge that cannot be wrong
 
 /// An edge about the poses it joins.
 struct Linearised {
@@ -69,6 +70,28 @@ void PoseGraph::AddEdge(const Edge& edge) {
   HIRES_CHECK(edge.from >= 0 && edge.to >= 0 && edge.from < size() && edge.to < size(),
               "an edge joins poses");
   edges_.push_back(edge);
+}
+
+bool PoseGraph::CloseLoop(Edge edge, bool is_large) {
+  const std::vector<Pose2> before = poses_;
+  const int num_before = NumBelieved();
+  edge.may_be_wrong = !is_large;
+  AddEdge(edge);
+  Optimise();
+  if (!is_large) return true;
+  edges_.back().may_be_wrong = true;
+  Optimise();
+  if (NumBelieved() > num_before) return true;
+  poses_ = before;
+  Optimise();
+  return false;
+}
+
+int PoseGraph::NumBelieved() const {
+  return std::count_if(edges_.begin(), edges_.end(), [&](const Edge& edge) {
+    const Linearised linear = Linearise(edge, poses_[edge.from], poses_[edge.to]);
+    return edge.may_be_wrong && TrustIn(edge, linear.error) >= kBelieved;
+  });
 }
 
 double PoseGraph::Optimise(int most_iterations) {

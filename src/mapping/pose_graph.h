@@ -22,6 +22,12 @@ class PoseGraph {
   /// @pre both poses are there.
   void AddEdge(const Edge& edge);
 
+  /// Adds an edge that may be wrong, and moves the poses to where all are met best.
+  /// @param is_large  it is met first, and kept to if more edges are believed then: however soft
+  ///     the rest is, it would else be overruled for its distance alone.
+  /// @return false for a large one that is not kept to.
+  bool CloseLoop(Edge edge, bool is_large);
+
   /// Moves all poses but the first to where the edges are met best, by Gauss-Newton.
   /// @return the largest shift of a pose [m].
   double Optimise(int most_iterations = 10);
@@ -31,6 +37,7 @@ class PoseGraph {
 
  private:
   double Step();
+  int NumBelieved() const;  ///< of those that may be wrong
 
   std::vector<geometry::Pose2> poses_;
   std::vector<Edge> edges_;

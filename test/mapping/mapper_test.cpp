@@ -18,28 +18,10 @@ using test_support::DriveThrough;
 using test_support::SimulatedDrive;
 using test_support::SimulatedDriveParams;
 using test_support::TrajectoryRms;
-
-/// 12 m x 8 m, with a wall from below that leaves a door of 3 m, and a pillar.
-world::OccupancyGrid TwoRooms() {
-  world::OccupancyGrid grid{0.05, 240, 160, {0.0, 0.0}, {}};
-  for (int row = 0; row < grid.height; ++row) {
-    for (int column = 0; column < grid.width; ++column) {
-      const bool is_border = row < 2 || column < 2 || row >= 158 || column >= 238;
-      const bool is_wall = column >= 120 && column < 123 && row < 100;
-      const bool is_pillar = column >= 180 && column < 188 && row >= 60 && row < 66;
-      grid.cells.push_back(is_border || is_wall || is_pillar ? world::Cell::kOccupied
-                                                             : world::Cell::kFree);
-    }
-  }
-  return grid;
-}
-
-const std::vector<Eigen::Vector2d> kThroughBothRooms{
-    {2.0, 2.0},  {2.0, 6.0}, {8.0, 6.5}, {8.0, 1.5}, {11.0, 1.5},
-    {11.0, 6.5}, {5.0, 6.5}, {2.0, 6.0}, {2.0, 2.0}, {4.5, 2.0}};
+using test_support::TwoRooms;
 
 SimulatedDrive TwoRoomsDrive(const SimulatedDriveParams& params = {}, int seed = 1) {
-  return DriveThrough(TwoRooms(), kThroughBothRooms, params, base::Rng(seed));
+  return DriveThrough(TwoRooms(), test_support::CourseThroughTwoRooms(), params, base::Rng(seed));
 }
 
 struct Errors {
@@ -94,6 +76,52 @@ TEST(MapperTest, OriginalMapsAreMappedAgain) {
       ExpectTrue(MakeMap(drive.log), drive, world);
     }
   }
+}
+
+/// Wheels that veer must not bend what the laser sees, and no door be taken for the next one.
+TEST(MapperTest, LongCorridorsAreNeitherBentNorShortened) {
+  const world::OccupancyGrid world = test_support::CorridorRoundABlock();
+  SimulatedDriveParams params;
+  params.beams = 181;
+  params.veer_error = 0.04;
+  for (int seed = 1; seed <= 2; ++seed) {
+    const SimulatedDrive drive =
+        DriveThrough(world, test_support::CourseRoundABlock(), params, base::Rng(seed));
+    const MapResult result = MakeMap(drive.log);
+    EXPECT_LE(TrajectoryRms(result.trajectory, drive.truth), 0.3) << seed;
+    EXPECT_GT(result.num_loops, 20) << seed;
+    EXPECT_GT(TrajectoryRms(test_support::OdometryAt(drive.truth, drive.log), drive.truth), 10.0)
+        << "else nothing is shown";
+  }
+}
+
+/// Odometry that errs by a tenth, along 33 m of corridor.
+TEST(MapperTest, BadOdometryDoesNotStretchTheOriginalCorridor) {
+  const test_support::Course course = test_support::OriginalCourses().at(1);
+  const std::string file = std::string(HIRES_SHARED_DATA) + "/" + course.map;
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  const world::OccupancyGrid world = world::LoadMap(file);
+  SimulatedDriveParams params;
+  params.scale_error = params.veer_error = 0.1;
+  params.step_error = 0.3;
+  for (int seed = 11; seed <= 13; ++seed) {
+    const SimulatedDrive drive = DriveThrough(world, course.places, params, base::Rng(seed));
+    ExpectTrue(MakeMap(drive.log), drive, world);
+  }
+}
+
+/// Back at the beginning the laser looks to the side, and one wall alone does not tell where along it.
+TEST(MapperTest, WhatIsNotToldIsNoLargeCorrection) {
+  const test_support::Course course = test_support::OriginalCourses().at(0);
+  const std::string file = std::string(HIRES_SHARED_DATA) + "/" + course.map;
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  const world::OccupancyGrid world = world::LoadMap(file);
+  SimulatedDriveParams params;
+  params.beams = 181;
+  params.range_noise = 0.03;
+  params.range_max = 8.0;
+  const SimulatedDrive drive = DriveThrough(world, course.places, params, base::Rng(12));
+  ExpectTrue(MakeMap(drive.log), drive, world);
 }
 
 TEST(MapperTest, MapMayLieInTheFrameOfTheWorld) {

@@ -103,9 +103,32 @@ TEST(PoseGraphTest, WrongLoopIsOverruled) {
   for (int i = 0; i < 20; ++i) graph.AddPose({1.0 * i, 0.0, 0.0});
   for (int i = 0; i < 19; ++i)
     graph.AddEdge({i, i + 1, {1.0, 0.0, 0.0}, Eigen::Matrix3d::Identity() * 1e4});
-  graph.AddEdge({0, 19, {5.0, 0.0, 0.0}, Eigen::Matrix3d::Identity() * 1e4, true});
-  graph.Optimise();
+  graph.CloseLoop({0, 19, {5.0, 0.0, 0.0}, Eigen::Matrix3d::Identity() * 1e4}, false);
   EXPECT_NEAR(graph.pose(19).x, 19.0, 0.05);
+}
+
+/// A long way whose steps are each a little wrong may be off by metres.
+TEST(PoseGraphTest, LargeLoopIsMetFirst) {
+  for (const bool is_large : {false, true}) {
+    PoseGraph graph;
+    for (int i = 0; i < 100; ++i) graph.AddPose({0.3 * i, 0.0, 0.0});
+    for (int i = 0; i < 99; ++i)
+      graph.AddEdge({i, i + 1, {0.3, 0.0, 0.0}, Eigen::Vector3d(1e3, 1e3, 1e5).asDiagonal()});
+    const Eigen::Matrix3d exact = Eigen::Vector3d(1e4, 1e4, 1e5).asDiagonal();
+    EXPECT_TRUE(graph.CloseLoop({0, 99, {29.7, 3.0, 0.1}, exact}, is_large));
+    EXPECT_NEAR(graph.pose(99).y, is_large ? 3.0 : 0.0, 0.1);
+  }
+}
+
+TEST(PoseGraphTest, LargeLoopThatIsWrongIsOverruledByOthers) {
+  PoseGraph graph;
+  for (int i = 0; i < 20; ++i) graph.AddPose({1.0 * i, 0.0, 0.0});
+  const Eigen::Matrix3d exact = Eigen::Matrix3d::Identity() * 1e4;
+  for (int i = 0; i < 19; ++i) graph.AddEdge({i, i + 1, {1.0, 0.0, 0.0}, exact});
+  graph.CloseLoop({0, 18, {18.0, 0.0, 0.0}, exact}, false);
+  graph.CloseLoop({1, 19, {18.0, 0.0, 0.0}, exact}, false);
+  EXPECT_FALSE(graph.CloseLoop({0, 19, {19.0, 3.0, 0.0}, exact}, true));
+  EXPECT_NEAR(graph.pose(19).y, 0.0, 0.1);
 }
 
 TEST(OdometryTrackTest, PosesBetweenReadingsAreInterpolated) {

@@ -248,6 +248,30 @@ inline world::OccupancyGrid LargeHall() {
   return grid;
 }
 
+/// 50 m x 34 m: a corridor of 2 m round a block, alike everywhere but for doors 0.15 m deep.
+inline world::OccupancyGrid CorridorRoundABlock() {
+  world::OccupancyGrid grid{0.05, 1000, 680, {0.0, 0.0}, {}};
+  grid.cells.assign(static_cast<std::size_t>(grid.width) * grid.height, world::Cell::kOccupied);
+  const auto clear = [&](double left, double lower, double right, double upper) {
+    for (int row = std::lround(lower / 0.05); row < std::lround(upper / 0.05); ++row)
+      for (int column = std::lround(left / 0.05); column < std::lround(right / 0.05); ++column)
+        grid.cells[row * grid.width + column] = world::Cell::kFree;
+  };
+  for (const double y : {1.0, 31.0}) clear(1.0, y, 49.0, y + 2.0);
+  for (const double x : {1.0, 47.0}) clear(x, 1.0, x + 2.0, 33.0);
+  base::Rng rng(7);
+  for (const double y : {0.85, 3.0, 30.85, 33.0})
+    for (double x = 4.0; x < 45.0; x += rng.Uniform(3.5, 8.5)) clear(x, y, x + 0.9, y + 0.15);
+  for (const double x : {0.85, 3.0, 46.85, 49.0})
+    for (double y = 4.0; y < 29.0; y += rng.Uniform(3.5, 8.5)) clear(x, y, x + 0.15, y + 0.9);
+  return grid;
+}
+
+/// Once round, and 18 m more: 170 m.
+inline std::vector<Eigen::Vector2d> CourseRoundABlock() {
+  return {{2.0, 2.0}, {48.0, 2.0}, {48.0, 32.0}, {2.0, 32.0}, {2.0, 2.0}, {20.0, 2.0}};
+}
+
 /// Turns in the middle, where odometry alone tells how far.
 inline std::vector<Eigen::Vector2d> CourseThroughLargeHall() {
   return {{2.0, 2.0}, {12.0, 8.0}, {2.0, 14.0}, {22.0, 14.0}};

@@ -16,7 +16,7 @@ struct MapperParams {
   double max_range{30.0};     ///< [m] what is farther away is not used
   double keyframe_step{0.3};  ///< [m], [rad] by which keyframes are apart
   int local_keyframes{20};    ///< latest ones that a scan is matched with
-  double odometry_sd{0.05};   ///< [m / m], [rad / rad] of a step
+  double odometry_sd{0.05};   ///< [m / m], [rad / rad], [rad / m] of a step
   double surface_sd{0.03};    ///< [m] of a measured point about its wall
   double loop_radius{4.0};    ///< [m] around the robot in which places seen before are tried
   double loop_length{10.0};   ///< [m] driven in between that makes a place one seen before
