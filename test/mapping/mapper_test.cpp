@@ -110,7 +110,7 @@ TEST(MapperTest, BadOdometryDoesNotStretchTheOriginalCorridor) {
   }
 }
 
-/// Back at the beginning the laser looks to the side, and one wall alone does not tell where along it.
+/// Back at the beginning the laser looks to the side: one wall does not tell where along it.
 TEST(MapperTest, WhatIsNotToldIsNoLargeCorrection) {
   const test_support::Course course = test_support::OriginalCourses().at(0);
   const std::string file = std::string(HIRES_SHARED_DATA) + "/" + course.map;
