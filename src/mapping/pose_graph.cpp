@@ -73,12 +73,16 @@ void PoseGraph::AddEdge(const Edge& edge) {
 }
 
 bool PoseGraph::CloseLoop(Edge edge, bool is_large) {
+  edge.may_be_wrong = !is_large;
+  if (!is_large) {
+    AddEdge(edge);
+    Optimise();
+    return true;
+  }
   const std::vector<Pose2> before = poses_;
   const int num_before = NumBelieved();
-  edge.may_be_wrong = !is_large;
   AddEdge(edge);
   Optimise();
-  if (!is_large) return true;
   edges_.back().may_be_wrong = true;
   Optimise();
   if (NumBelieved() > num_before) return true;
