@@ -595,6 +595,38 @@ TEST_F(NamelessTest, WhatLooksLikeSomethingElseForAWhileIsStillWhatItWas) {
   EXPECT_THAT(Names(), ElementsAre("jug1")) << "when there is no doubt, it is another thing";
 }
 
+/// Looks in which it is in doubt what stands there.
+class DoubtfulTest : public NamelessTest {
+ protected:
+  /// @param share  how likely it is a mug, against a jug.
+  void LookOften(const Pose3& X_MO, double share) {
+    Detection seen;
+    seen.label = "jug";
+    seen.X_CO = ViewOf(Pr2(), body_.X_MB, body_.joints).X_MC.Inverse() * X_MO;
+    seen.confidence = 0.5;
+    seen.alternatives = {{"mug", share * seen.confidence}};
+    for (int i = 0; i < 6; ++i) {
+      body_.time += 0.5;
+      memory_.Look(body_, {seen});
+    }
+  }
+};
+
+TEST_F(DoubtfulTest, WhatIsSeenInsteadOfWhatWasToldIsThatOrAnother) {
+  memory_.Believe("mug1", "mug", "", At(1.5, 0.1, 0.7));
+  LookOften(At(1.5, 0.19, 0.7), 0.5);
+  EXPECT_THAT(Names(), ElementsAre("mug1"));
+  EXPECT_TRUE(memory_.objects().at("mug1").is_observed);
+  EXPECT_NEAR(Remembered("mug1").translation.y(), 0.19, 1e-9);
+}
+
+TEST_F(DoubtfulTest, WhatIsHardlyWhatWasToldTakesItsPlace) {
+  memory_.Believe("mug1", "mug", "", At(1.5, 0.1, 0.7));
+  LookOften(At(1.5, 0.19, 0.7), 0.1);
+  EXPECT_THAT(Names(), ElementsAre("jug1"));
+  EXPECT_THAT(memory_.Vanished(), ElementsAre("mug1"));
+}
+
 TEST_F(NamelessTest, ATurnThatNobodyCanSeeIsNone) {
   Look({Thing("mug1", "mug", At(1.5, 0.1, 0.7))});
   Pose3 turned = At(1.5, 0.1, 0.7);
