@@ -76,7 +76,7 @@ class PackageTest(unittest.TestCase):
             words, shown = examples(file.read())[0]
         words[words.index('--world') + 1] = '/usr/share/hires/worlds/workshop.world'
         begin = time.monotonic()
-        answer = self.inside('hires', *words, '--quiet')
+        answer = self.inside(*words, '--quiet')
         print('package: installed in %.0f s, first table after %.0f s more' %
               (self.installed_in, time.monotonic() - begin), flush=True)
         self.assertEqual(bare(answer), bare('\n'.join(shown)))
