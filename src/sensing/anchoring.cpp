@@ -98,20 +98,21 @@ double CostOfOthers(const Costs& costs, std::size_t thing, int own, int num_anch
 
 }  // namespace
 
+std::optional<double> CostOf(const SeenThing& thing, const Anchor& anchor, double reach) {
+  const auto kind = std::find_if(thing.kinds.begin(), thing.kinds.end(),
+                                 [&](const SeenKind& one) { return one.kind == anchor.kind; });
+  if (kind == thing.kinds.end()) return std::nullopt;
+  const double cost = (thing.p_M - anchor.p_M).norm() + kind->doubt;
+  return cost <= reach ? std::optional(cost) : std::nullopt;
+}
+
 Anchoring AnchorThings(const std::vector<SeenThing>& things, const std::vector<Anchor>& anchors,
                        double reach, double margin) {
   const int num_anchors = static_cast<int>(anchors.size());
   Costs costs(things.size(), std::vector<double>(anchors.size() + things.size(), reach));
   for (std::size_t i = 0; i < things.size(); ++i) {
-    const auto& kinds = things[i].kinds;
-    for (std::size_t k = 0; k < anchors.size(); ++k) {
-      const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const SeenKind& one) {
-        return one.kind == anchors[k].kind;
-      });
-      const bool may_be = kind != kinds.end();
-      const double cost = (things[i].p_M - anchors[k].p_M).norm() + (may_be ? kind->doubt : 0.0);
-      costs[i][k] = may_be && cost <= reach ? cost : kImpossible;
-    }
+    for (std::size_t k = 0; k < anchors.size(); ++k)
+      costs[i][k] = CostOf(things[i], anchors[k], reach).value_or(kImpossible);
   }
   const Assignment best = Assigner(costs).Run();
   Anchoring out;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,13 @@ struct Anchoring {
   std::vector<bool> is_ambiguous{};  ///< of each thing: another assignment is nearly as good
 };
 
+/// How badly a thing fits an instance [m]: the distance to where it is expected, and the doubt of
+/// its kind. None if the thing is of other kinds, or if the sum is more than `reach` [m].
+std::optional<double> CostOf(const SeenThing& thing, const Anchor& anchor, double reach);
+
 /// Which thing is which instance: the assignment with the least sum of distances and doubts (global
-/// nearest neighbour), in which a thing that is farther than `reach` from all instances of its
-/// kinds stays alone. A pair without which the best sum is hardly worse is not certain.
+/// nearest neighbour), in which a thing that has no CostOf any instance stays alone. A pair without
+/// which the best sum is hardly worse is not certain.
 /// @param reach   [m]
 /// @param margin  [m] by which the best sum must be better.
 Anchoring AnchorThings(const std::vector<SeenThing>& things, const std::vector<Anchor>& anchors,

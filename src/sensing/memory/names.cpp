@@ -51,23 +51,20 @@ bool MayBeOfKind(const Detection& detection, const std::string& kind) {
 
 }  // namespace
 
-/// Whether a thing that has no name, seen at X_MO, may be the object: by the same sum of way and
-/// doubt as NamesOf, so that nothing is too doubtful to be an object and yet keeps it from being
-/// missed. One that no model explains may be whatever is expected there, unless looks that showed
-/// less of it said what that is; and where looks that showed more of it found no model, a look that
-/// does is mistaken.
+/// Whether a thing that has no name, seen at X_MO, may be the object: as NamesOf anchors it, so
+/// that nothing is too doubtful to be an object and yet keeps it from being missed. One that no
+/// model explains may be whatever is expected there, unless looks that showed less of it said what
+/// that is; and where looks that showed more of it found no model, a look that does is mistaken.
 bool ObjectMemory::MayBe(const Links& links, const RememberedObject& object,
                          const Detection& detection, const Pose3& X_MO) const {
-  const double way = (PlaceOf(links, object) - X_MO.translation).norm();
-  if (way > params_.instance_distance) return false;
+  const Eigen::Vector3d p_M = PlaceOf(links, object);
+  if ((p_M - X_MO.translation).norm() > params_.instance_distance) return false;
   if (detection.label == perception::kUnknownLabel)
     return object.num_points == 0 || detection.num_points <= object.num_points;
   if (world::SaysUnknownBox(object.model))
     return detection.num_points > 0 && detection.num_points < object.num_points;
-  const auto kinds = KindsOf(detection, kHardly);
-  return std::any_of(kinds.begin(), kinds.end(), [&](const SeenKind& one) {
-    return one.kind == object.model && way + one.doubt <= params_.instance_distance;
-  });
+  const SeenThing thing{KindsOf(detection, kHardly), X_MO.translation};
+  return CostOf(thing, {object.model, p_M}, params_.instance_distance).has_value();
 }
 
 std::vector<ObjectMemory::Named> ObjectMemory::NamesOf(const Links& links,
