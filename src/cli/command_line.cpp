@@ -1,492 +1,27 @@
 #include "hires/cli/command_line.h"
 
-#include <fmt/format.h>
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <csignal>
-#include <filesystem>
-#include <iostream>
-#include <nlohmann/json.hpp>
-#include <set>
-#include <thread>
+#include <map>
 
 #include "cli/achieve_command.h"
-#include "cli/experience/experiences_command.h"
-#include "cli/experiment_command.h"
+#include "cli/imagine_command.h"
 #include "cli/limits_command.h"
 #include "cli/list_command.h"
 #include "cli/localise_command.h"
 #include "cli/map_command.h"
 #include "cli/plan_command.h"
-#include "cli/query_scene.h"
-#include "cli/reading_display.h"
 #include "cli/recognise_command.h"
-#include "cli/reproduce/reproduce_command.h"
-#include "cli/save_rollout.h"
-#include "cli/series/scenarios_command.h"
-#include "hires/base/check.h"
-#include "hires/base/error.h"
-#include "hires/base/hash.h"
-#include "hires/base/spelling.h"
-#include "hires/base/text.h"
 #include "hires/cli/blackboard_command.h"
 #include "hires/cli/doctor.h"
-#include "hires/cli/hypothesis_play.h"
+#include "hires/cli/program.h"
 #include "hires/cli/report_output.h"
-#include "hires/cli/whole_number.h"
-#include "hires/evaluation/report_json.h"
-#include "hires/evaluation/report_table.h"
-#include "hires/imagination/client_config.h"
-#include "hires/skills/action_loader.h"
+#include "hires/cli/verb_table.h"
 
 namespace hires::cli {
 namespace {
 
-std::atomic<bool> interrupted{false};
+constexpr char kProgram[] = "hires";
 
-void OnInterrupt(int) { interrupted = true; }
-bool IsInterrupted() { return interrupted; }
-
-/// What was typed, before it is checked against files.
-struct ImagineOptions {
-  StartOptions start;
-  SaveRolloutOptions save;
-  ReportOptions report;
-  std::string action, config, scene, world, map, robot, objects, uncertainty, ranking, sensing;
-  std::vector<std::string> arguments, action_libraries, areas;
-  int rollouts{0}, threads{0};
-  std::uint64_t seed{1};
-  double deadline{-1.0}, min_success{0.0};
-  bool play_all{false}, local{false}, quiet{false};
-};
-
-void AddImagineOptions(CLI::App* app, ImagineOptions* o) {
-  app->add_option("--action", o->action,
-                  "what the robot would do: move_base_param, place_object, ...")
-      ->required();
-  app->add_option("--actions", o->action_libraries,
-                  "library with more actions (.so), for --local; nodes have ~action_libraries")
-      ->allow_extra_args(false);
-  AddStartOptions(app, &o->start);
-  app->add_option("--arg", o->arguments,
-                  "alternatives of one argument, separated by commas; once per argument, in order")
-      ->allow_extra_args(false);
-  app->add_option("--rollouts", o->rollouts, "at most so many per combination")
-      ->check(NumberBetween(1, 100000));
-  app->add_option("--seed", o->seed, "of all chance; equal seeds give equal answers")
-      ->check(WholeNumber());
-  app->add_option("--deadline", o->deadline, "[s] after which the best answer so far is taken")
-      ->check(NumberBetween(0.0, 1e6));
-  app->add_option("--ranking", o->ranking, "risk, cost or thesis");
-  app->add_option("--min-success", o->min_success,
-                  "share of successes that the lower end of the interval must reach")
-      ->check(NumberBetween(0.001, 0.999));
-  app->add_option("--uncertainty", o->uncertainty, "YAML file, or none");
-  app->add_option("--sensing", o->sensing,
-                  "with --local, by what rollouts see: fitted (a quick detector that errs as the "
-                  "recogniser was found to), pictures (the recogniser itself; slow)")
-      ->check(CLI::IsMember({"fitted", "pictures"}));
-  app->add_flag("--no-early-stop", o->play_all, "play all rollouts even if the answer is decided");
-  app->add_flag("--local", o->local, "in this process, without any ROS master");
-  app->add_option("--threads", o->threads, "workers of --local; default: one per core")
-      ->check(NumberBetween(1, 256));
-  CLI::Option* world = app->add_option("--world", o->world, "another SDF world");
-  app->add_option("--map", o->map,
-                  "a map_server map (YAML with PGM or PNG) whose walls are the world")
-      ->excludes(world);
-  app->add_option("--area", o->areas, "one more area, NAME:x,y,yaw [m, m, rad]; may be repeated")
-      ->allow_extra_args(false);
-  app->add_option("--robot", o->robot, "another robot: profile (.yaml) or URDF (.urdf)");
-  app->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
-  app->add_option("--scene", o->scene, "another scene file instead of config/scene.yaml");
-  app->add_option("--config", o->config, "another file instead of config/imagination_client.yaml");
-  AddReportOptions(app, &o->report);
-  AddSaveRolloutOptions(app, &o->save);
-  app->add_flag("--quiet", o->quiet, "no progress bar");
-}
-
-std::vector<std::string> AlternativesOf(const std::string& list) {
-  std::vector<std::string> alternatives = base::Split(list, ',');
-  if (std::count(alternatives.begin(), alternatives.end(), "") > 0) {
-    throw base::ConfigError(fmt::format(
-        "--arg '{}': an alternative is empty; wanted names with one comma between two", list));
-  }
-  return alternatives;
-}
-
-void SetStart(const ImagineOptions& o, ImagineQuery* query) {
-  query->setup.action_libraries = o.action_libraries;
-  query->start =
-      ReadStart(o.start, o.action, skills::LoadActionSet(o.action_libraries)->catalogue());
-  for (std::string& object : query->start.on_tray) object = NameOf(object, &query->setup);
-}
-
-void SetSensing(const ImagineOptions& o, imagination::SetupConfig* setup) {
-  if (o.sensing.empty()) return;
-  if (!o.local) {
-    throw base::ConfigError(
-        "--sensing is for --local; running nodes see as `recogniser` of their scene file says");
-  }
-  setup->recogniser =
-      o.sensing == "pictures" ? o.report.package_folder + "/config/recogniser.yaml" : "none";
-}
-
-std::string ConfigPath(const ImagineOptions& o) {
-  return o.config.empty() ? o.report.package_folder + "/config/imagination_client.yaml" : o.config;
-}
-
-ImagineQuery MakeQuery(const ImagineOptions& o) {
-  if (!o.local && !o.action_libraries.empty()) {
-    throw base::ConfigError(
-        "--actions is for --local; running nodes load theirs by the parameter ~action_libraries "
-        "(imagination.launch actions:=FILE)");
-  }
-  const imagination::ClientConfig config = imagination::ReadClientConfig(ConfigPath(o));
-  ImagineQuery query;
-  query.setup = imagination::ReadSetupConfig(o.scene.empty() ? config.scene : o.scene);
-  imagination::OverridePaths(o.world, o.robot, o.objects, o.uncertainty, &query.setup);
-  query.setup.map = o.map;
-  SetSensing(o, &query.setup);
-  for (const std::string& area : o.areas) query.setup.areas.push_back(ReadArea(area));
-  SetStart(o, &query);
-  query.own_scene = !(o.world + o.map + o.robot + o.objects + o.scene).empty() ||
-                    !o.areas.empty() || !query.setup.extra_objects.empty();
-  query.own_uncertainty = !o.uncertainty.empty();
-  query.action.name = o.action;
-  for (const std::string& list : o.arguments) {
-    query.action.alternatives.push_back(AlternativesOf(list));
-  }
-  query.seed = o.seed;
-  query.scheduler = config.scheduler;
-  if (o.rollouts > 0) query.scheduler.rollouts = o.rollouts;
-  if (o.deadline >= 0.0) query.scheduler.deadline = o.deadline;
-  if (!o.ranking.empty()) query.scheduler.criteria.rule = imagination::ParseRankingRule(o.ranking);
-  if (o.min_success > 0.0) query.scheduler.criteria.min_success = o.min_success;
-  query.validated = config.validated;
-  if (o.play_all) query.scheduler.early_stop = false;
-  query.threads = o.threads > 0 ? o.threads : std::max(1u, std::thread::hardware_concurrency());
-  return query;
-}
-
-/// A bar that is drawn over itself on a terminal, a line now and then in a log.
-class ProgressDisplay {
- public:
-  ProgressDisplay() : is_terminal_(isatty(STDERR_FILENO) != 0) {}
-
-  void Show(const imagination::Interim& interim) {
-    const auto now = std::chrono::steady_clock::now();
-    if (is_terminal_) {
-      std::cerr << '\r' << evaluation::ProgressLine(interim.progress) << "\033[K" << std::flush;
-    } else if (now >= next_line_) {
-      next_line_ = now + std::chrono::seconds(5);
-      std::cerr << evaluation::ProgressLine(interim.progress) << std::endl;
-    }
-  }
-  void Clear() const {
-    if (is_terminal_) std::cerr << "\r\033[K";
-  }
-
- private:
-  bool is_terminal_;
-  std::chrono::steady_clock::time_point next_line_{};
-};
-
-/// A goal that is never free is no question of chance: most likely the area lies in furniture.
-void PrintBlockedGoals(const std::vector<imagination::Prediction>& ranking) {
-  for (const imagination::Prediction& prediction : ranking) {
-    const imagination::Evidence& evidence = prediction.evidence;
-    const base::Failure blocked = base::FailureCode::kGoalBlocked;
-    const auto found = evidence.failures.find(blocked);
-    if (found == evidence.failures.end() || found->second < evidence.num_rollouts) continue;
-    std::cout << fmt::format(
-        "{}: {}: in every rollout something stands where the robot should come to, or it is too "
-        "narrow for its base; correct the area or choose another one\n",
-        ToString(blocked), ToString(prediction.action));
-  }
-}
-
-void PrintReport(const imagination::Report& report, imagination::RankingRule rule) {
-  if (!report.ranking.empty()) {
-    const bool with_cost = rule == imagination::RankingRule::kCost;
-    std::cout << evaluation::RankingTable(report.ranking, report.recommended, with_cost) << '\n';
-  }
-  std::cout << fmt::format("{}: {}\n", evaluation::OutcomeName(report), report.why);
-  PrintBlockedGoals(report.ranking);
-  for (const std::string& caveat : report.caveats) std::cout << "caveat: " << caveat << '\n';
-  if (report.kept.rollouts > 0) {
-    std::cout << fmt::format("{} rollouts, {:.0f} s, are those of an earlier request\n",
-                             report.kept.rollouts, report.kept.simulated_seconds);
-  }
-  if (report.wall_seconds > 0.0 && report.played_seconds() > 0.0) {
-    std::cout << fmt::format("{:.0f} s imagined in {:.1f} s, {:.0f} times as fast as real time\n",
-                             report.played_seconds(), report.wall_seconds,
-                             report.played_seconds() / report.wall_seconds);
-  }
-}
-
-/// A name that nothing has, but whose kin the catalogue knows, is played as a model of that kind.
-void PrintKin(const ImagineQuery& query, QueryScene* scene) {
-  const imagination::ImaginationSetup& setup = scene->setup();
-  std::set<std::string> objects(query.start.on_tray.begin(), query.start.on_tray.end());
-  for (const imagination::PutObject& put : query.start.put) objects.insert(put.object);
-  for (const base::Atom& atom : query.start.atoms) {
-    if (atom.predicate == "On") objects.insert(atom.arguments[0]);
-    if (atom.predicate == "Holding") objects.insert(atom.arguments[1]);
-  }
-  for (const std::string& object : objects) {
-    const std::string model = setup.ModelOf(object);
-    const bool is_named = setup.object_models.count(base::ToLower(object)) > 0 ||
-                          base::ToLower(model) == base::ToLower(object);
-    if (is_named) continue;
-    std::cout << fmt::format(
-        "object '{}' is not in the catalogue; as its like there, it is a '{}'\n", object, model);
-  }
-}
-
-/// Running nodes have files of their own, which they and their workers compare among themselves.
-ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query, QueryScene* scene) {
-  ReportOrigin origin;
-  origin.verb = "imagine";
-  origin.is_local = options.local;
-  if (!options.local || !IsWanted(options.report)) return origin;
-  const imagination::SetupConfig& files = query.setup;
-  const bool has_uncertainty = files.uncertainty != "none";
-  const std::string config = ConfigPath(options);
-  origin.inputs = {{"settings", config},
-                   {"scene", options.scene.empty() ? imagination::ReadClientConfig(config).scene
-                                                   : options.scene},
-                   {"world", files.map.empty() ? files.world : ""},
-                   {"map", files.map},
-                   {"robot", files.robot},
-                   {"objects", files.objects},
-                   {"uncertainty", has_uncertainty ? files.uncertainty : ""}};
-  for (const std::string& object : files.extra_objects) origin.inputs.push_back({"object", object});
-  const imagination::ImaginationSetup& setup = scene->setup();
-  origin.hashes = {{"world", base::HexOf(setup.world_hash)},
-                   {"robot", base::HexOf(setup.robot_hash)},
-                   {"physics", base::HexOf(setup.physics_hash)},
-                   {"actions", base::HexOf(setup.actions_hash)}};
-  return origin;
-}
-
-/// The answer for machines; where a page is made of it, with pictures.
-nlohmann::ordered_json AnswerOf(const ImagineOptions& options, const ImagineQuery& query,
-                                QueryScene* scene, const imagination::Report& report,
-                                const std::function<bool()>& cancelled) {
-  nlohmann::ordered_json answer = evaluation::ToJson(report, query.scheduler.criteria);
-  const std::string& html = options.report.html;
-  if (html.empty() || report.ranking.empty()) return answer;
-  const std::string& json = options.report.json;
-  const auto shown = [&](const std::string& file) {  // from the JSON, or as it is
-    return json.empty()
-               ? file
-               : std::filesystem::proximate(file, std::filesystem::absolute(json).parent_path())
-                     .string();
-  };
-  try {
-    for (const Strip& strip : WriteStrips(html, query.threads, scene, report, cancelled)) {
-      answer["pictures"].push_back({{"caption", strip.caption}, {"file", shown(strip.file)}});
-    }
-  } catch (const base::ConfigError& error) {
-    if (options.local) throw;
-    // The answer is theirs who have other files; the page can do without pictures.
-    std::cerr << "hires: no pictures on the page: " << error.what() << '\n';
-  }
-  return answer;
-}
-
-int Imagine(const ImagineOptions& options, const Backends& backends) {
-  const ImagineQuery query = MakeQuery(options);
-  CheckReport(options.report);
-  CheckSaveRollout(options.save, query, backends.make_rollout_bag);
-  ProgressDisplay display;
-  imagination::OnInterim on_interim;
-  if (!options.quiet) on_interim = [&](const auto& interim) { display.Show(interim); };
-  const auto cancelled = [] { return interrupted.load(); };
-  if (!options.local && !backends.imagine_remotely) {
-    throw base::ConfigError("this build has no ROS nodes to ask; add --local");
-  }
-  QueryScene scene(query);
-  const ReportOrigin origin = OriginOf(options, query, &scene);
-  RefuseInputs(options.report, origin.inputs);
-  if (options.local) PrintKin(query, &scene);
-  const imagination::Report report =
-      options.local ? ImagineInThisProcess(query, &scene, on_interim, cancelled)
-                    : backends.imagine_remotely(query, on_interim, cancelled);
-  if (!options.quiet) display.Clear();
-  PrintReport(report, query.scheduler.criteria.rule);
-  WriteReport(options.report, origin, AnswerOf(options, query, &scene, report, cancelled));
-  const int code = ExitCodeOf(report);
-  if (report.ranking.empty()) return code;  // nothing was played that could be saved
-  SaveRollout(options.save, query.threads, &scene, report, backends.make_rollout_bag, cancelled);
-  return code;
-}
-
-/// The first argument from `place` on that is neither an option of the verb nor an option's value;
-/// the number of arguments where there is none.
-std::size_t NextWord(const CLI::App& verb, const std::vector<std::string>& arguments,
-                     std::size_t place) {
-  for (; place < arguments.size() && arguments[place] != "--"; ++place) {
-    const std::string& word = arguments[place];
-    if (word.empty() || word.front() != '-') return place;
-    const CLI::Option* option = verb.get_option_no_throw(word);
-    if (option != nullptr && option->get_items_expected_min() > 0) ++place;
-  }
-  return arguments.size();
-}
-
-/// CLI11 itself would only say that a verb is missing, or take a misspelt one for a file.
-/// @param begin  of the arguments behind the verb `app`.
-void RefuseUnknownVerb(const CLI::App& app, const std::vector<std::string>& arguments,
-                       std::size_t begin = 1) {
-  const std::vector<const CLI::App*> inner = app.get_subcommands({});
-  const std::size_t place = NextWord(app, arguments, begin);
-  if (inner.empty() || place >= arguments.size() || arguments[place].empty()) return;
-  const std::string& word = arguments[place];
-  std::vector<std::string> shown;
-  bool is_misspelt = false;
-  for (const CLI::App* verb : inner) {
-    if (verb->get_name() == word) return RefuseUnknownVerb(*verb, arguments, place + 1);
-    if (verb->get_group().empty()) continue;  // programs call it
-    shown.push_back(verb->get_name());
-    is_misspelt = is_misspelt || base::AreSpeltAlike(word, verb->get_name());
-  }
-  const bool may_be_a_file = app.get_require_subcommand_min() == 0;  // as that of `experiment`
-  if (may_be_a_file && (!is_misspelt || std::filesystem::exists(word))) return;
-  throw base::ConfigError(base::UnknownName("verb", word, shown));
-}
-
-/// CLI11 itself would say first what else is missing, and never what comes near.
-void RefuseUnknownOption(const CLI::App& app, const std::vector<std::string>& arguments) {
-  std::vector<const CLI::App*> path{&app};  // options of a verb may stand behind its inner verbs
-  for (std::size_t i = 1; i < arguments.size() && arguments[i] != "--"; ++i) {
-    if (path.back()->get_prefix_command()) return;  // its own parser looks at what follows
-    const std::string name = arguments[i].substr(0, arguments[i].find('='));
-    if (name.compare(0, 2, "--") != 0) {
-      const auto inner = path.back()->get_subcommands(
-          [&](const CLI::App* verb) { return verb->get_name() == name; });
-      path.insert(path.end(), inner.begin(), inner.end());
-      continue;
-    }
-    std::set<std::string> known;
-    bool is_known = false;
-    for (const CLI::App* verb : path) {
-      is_known = is_known || verb->get_option_no_throw(name) != nullptr;
-      for (const CLI::Option* option : verb->get_options()) known.insert(option->get_name());
-    }
-    if (is_known) continue;
-    throw base::ConfigError(base::UnknownName("option", name, {known.begin(), known.end()}));
-  }
-}
-
-/// For somebody who typed the program's name alone.
-int ShowVerbs(const CLI::App& app) {
-  std::cerr << app.help();
-  return kExitBadInput;
-}
-
-/// Help where it was asked for, else what is wrong with the options. @return exit code.
-int Explain(const CLI::ParseError& error, const CLI::App& app) {
-  if (error.get_exit_code() == 0) return app.exit(error);
-  std::string verb;
-  for (const CLI::App* parsed : app.get_subcommands()) verb += parsed->get_name() + ' ';
-  std::cerr << fmt::format("hires: {}; 'hires {}--help' says what is wanted\n", error.what(), verb);
-  return kExitBadInput;
-}
-
-/// What was typed, whatever the verb.
-struct Verbs {
-  CLI::App* imagine{nullptr};
-  ImagineOptions imagine_options;
-  AchieveOptions achieve;
-  ExperimentOptions experiment;
-  ScenariosOptions scenarios;
-  PlanOptions plan;
-  BlackboardOptions blackboard;
-  ListOptions list;
-  MapOptions map;
-  LocaliseOptions localise;
-  RecogniseOptions recognise;
-  ExperiencesOptions experiences;
-  ReproduceOptions reproduce;
-  StoredReportOptions report;
-  LimitsOptions limits;
-  DoctorOptions doctor;
-  std::vector<CLI::App*> others;  // as Backends::more_verbs
-};
-
-/// What the reports of all verbs say of the program and its call.
-void SetCall(const std::vector<std::string>& arguments, const Backends& backends, Verbs* verbs) {
-  std::vector<std::string> words = arguments;
-  words.front() = "hires";
-  for (ReportOptions* report :
-       {&verbs->imagine_options.report, &verbs->achieve.report, &verbs->experiment.report,
-        &verbs->experiment.hypothesis.report, &verbs->scenarios.report, &verbs->plan.report,
-        &verbs->doctor.robot.report, &verbs->reproduce.report}) {
-    report->command = CommandText(words);
-    report->package_folder = backends.package_folder;
-  }
-  verbs->report.package_folder = backends.package_folder;
-}
-
-void AddVerbs(CLI::App* app, Verbs* verbs, const Backends& backends) {
-  verbs->imagine =
-      app->add_subcommand("imagine", "play alternatives of an action many times and rank them");
-  AddImagineOptions(verbs->imagine, &verbs->imagine_options);
-  AddLimitsVerb(app, &verbs->limits);
-  AddAchieveVerb(app, &verbs->achieve);
-  AddExperimentVerb(app, &verbs->experiment);
-  AddScenariosVerb(app, &verbs->scenarios);
-  AddPlanVerb(app, &verbs->plan);
-  AddBlackboardVerb(app, &verbs->blackboard);
-  AddListVerb(app, &verbs->list);
-  AddRecogniseVerb(app, &verbs->recognise);
-  AddMapVerb(app, &verbs->map);
-  AddLocaliseVerb(app, &verbs->localise);
-  AddExperiencesVerb(app, &verbs->experiences);
-  AddReproduceVerb(app, &verbs->reproduce);
-  AddReportVerb(app, &verbs->report);
-  AddDoctorVerb(app, &verbs->doctor);
-  for (const Verb& verb : backends.more_verbs) {
-    CLI::App* other = app->add_subcommand(verb.name, verb.help)->prefix_command();
-    other->set_help_flag();  // its own parser explains it
-    if (verb.name == kHypothesisRunVerb || verb.name == kScenarioRunVerb) other->group("");
-    verbs->others.push_back(other);
-  }
-}
-
-int RunAnyExperiment(const ExperimentOptions& options, const Backends& backends) {
-  const auto cancelled = [] { return interrupted.load(); };
-  if (*options.decision.verb) {
-    return RunDecisionVerb(options.decision, backends.package_folder, cancelled);
-  }
-  if (*options.pose_error.verb) {
-    return RunPoseErrorVerb(options.pose_error, backends.package_folder, cancelled);
-  }
-  if (*options.detector.verb) {
-    return RunDetectorFitVerb(options.detector, backends.package_folder, cancelled);
-  }
-  if (*options.ladder.verb) {
-    return RunLadderVerb(options.ladder, backends.package_folder, cancelled);
-  }
-  if (*options.recognition.verb) {
-    return RunRecognitionVerb(options.recognition, backends.package_folder, cancelled);
-  }
-  if (*options.torso_poses.verb) {
-    return RunTorsoPosesVerb(options.torso_poses, backends.package_folder, cancelled);
-  }
-  if (*options.hypothesis.verb) {
-    return RunHypothesisVerb(options.hypothesis, backends.package_folder, backends.play_hypothesis,
-                             cancelled);
-  }
-  return RunExperimentVerb(options, cancelled);
-}
-
-/// @return exit code.  @throws std::exception for bad input.
 /// `hires achieve --list`: the tasks of the domain that is, or would be, planned with.
 int ListTasks(const AchieveOptions& achieve, const Backends& backends) {
   ListOptions list;
@@ -497,77 +32,72 @@ int ListTasks(const AchieveOptions& achieve, const Backends& backends) {
   return RunListVerb(list, backends.package_folder);
 }
 
-int RunScenarios(const ScenariosOptions& options, const Backends& backends) {
-  const auto& more = backends.more_verbs;
-  const bool can_play_graph = std::any_of(
-      more.begin(), more.end(), [](const Verb& verb) { return verb.name == kScenarioRunVerb; });
-  return RunScenariosVerb(options, backends.package_folder, can_play_graph, IsInterrupted);
+int Achieve(const AchieveOptions& achieve, const Backends& backends) {
+  if (achieve.is_list) return ListTasks(achieve, backends);
+  return RunAchieveVerb(achieve, backends.package_folder, backends.achieve_remotely, IsInterrupted,
+                        backends.record_loop);
 }
 
-int RunVerb(const Verbs& verbs, const Backends& backends) {
-  // These have nothing to finish, and end as any program does.
-  if (*verbs.doctor.verb) return RunDoctorVerb(verbs.doctor, backends);
-  if (*verbs.recognise.verb) return RunRecogniseVerb(verbs.recognise, backends.package_folder);
-  if (*verbs.localise.verb) {
-    return RunLocaliseVerb(verbs.localise, backends.package_folder, backends.read_drive_bag);
-  }
-  if (*verbs.report.verb) return RunReportVerb(verbs.report);
-  if (*verbs.experiences.verb) return RunExperiencesVerb(verbs.experiences);
-  if (*verbs.list.verb) return RunListVerb(verbs.list, backends.package_folder);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, OnInterrupt);
-  if (*verbs.imagine) return Imagine(verbs.imagine_options, backends);
-  if (*verbs.limits.verb) {
-    return RunLimitsVerb(verbs.limits, backends.package_folder, IsInterrupted);
-  }
-  if (*verbs.achieve.verb && verbs.achieve.is_list) return ListTasks(verbs.achieve, backends);
-  if (*verbs.achieve.verb) {
-    return RunAchieveVerb(verbs.achieve, backends.package_folder, backends.achieve_remotely,
-                          IsInterrupted, backends.record_loop);
-  }
-  if (*verbs.experiment.verb) return RunAnyExperiment(verbs.experiment, backends);
-  if (*verbs.scenarios.verb) return RunScenarios(verbs.scenarios, backends);
-  if (*verbs.plan.verb) return RunPlanVerb(verbs.plan, IsInterrupted);
-  if (*verbs.reproduce.verb) {
-    return RunReproduceVerb(verbs.reproduce, backends.package_folder, IsInterrupted);
-  }
-  if (*verbs.map.verb)
-    return RunMapVerb(verbs.map, backends.package_folder, backends.read_drive_bag, IsInterrupted);
-  if (*verbs.blackboard.verb) {
-    return RunBlackboardVerb(verbs.blackboard, backends.package_folder,
-                             backends.connect_blackboard);
-  }
-  for (std::size_t i = 0; i < verbs.others.size(); ++i) {
-    if (*verbs.others[i]) return backends.more_verbs[i].run(verbs.others[i]->remaining());
-  }
-  return kExitBadInput;
+ReportOptions* ReportOfDoctor(DoctorOptions* options) { return &options->robot.report; }
+
+std::vector<ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& arguments,
+                                 const Backends& backends) {
+  const std::string& folder = backends.package_folder;
+  VerbTable table(app, {CommandOf(kProgram, arguments), folder});
+  table.Add<ImagineOptions>(AddImagineVerb, ReportOf<ImagineOptions>,
+                            [&](const ImagineOptions& options) {
+                              return RunImagineVerb(options, backends, IsInterrupted);
+                            });
+  table.Add<LimitsOptions>(AddLimitsVerb, nullptr, [&](const LimitsOptions& options) {
+    return RunLimitsVerb(options, folder, IsInterrupted);
+  });
+  table.Add<AchieveOptions>(
+      AddAchieveVerb, ReportOf<AchieveOptions>,
+      [&](const AchieveOptions& options) { return Achieve(options, backends); });
+  table.Add<PlanOptions>(AddPlanVerb, ReportOf<PlanOptions>, [](const PlanOptions& options) {
+    return RunPlanVerb(options, IsInterrupted);
+  });
+  table.Add<BlackboardOptions>(AddBlackboardVerb, nullptr, [&](const BlackboardOptions& options) {
+    return RunBlackboardVerb(options, folder, backends.connect_blackboard);
+  });
+  table.Add<ListOptions>(
+      AddListVerb, nullptr,
+      [&](const ListOptions& options) { return RunListVerb(options, folder); }, OnSignal::kEnd);
+  table.Add<RecogniseOptions>(
+      AddRecogniseVerb, nullptr,
+      [&](const RecogniseOptions& options) { return RunRecogniseVerb(options, folder); },
+      OnSignal::kEnd);
+  table.Add<MapOptions>(AddMapVerb, nullptr, [&](const MapOptions& options) {
+    return RunMapVerb(options, folder, backends.read_drive_bag, IsInterrupted);
+  });
+  table.Add<LocaliseOptions>(
+      AddLocaliseVerb, nullptr,
+      [&](const LocaliseOptions& options) {
+        return RunLocaliseVerb(options, folder, backends.read_drive_bag);
+      },
+      OnSignal::kEnd);
+  table.Add<StoredReportOptions>(
+      AddReportVerb, nullptr,
+      [&](const StoredReportOptions& options) { return RunReportVerb(options, folder); },
+      OnSignal::kEnd);
+  table.Add<DoctorOptions>(
+      AddDoctorVerb, ReportOfDoctor,
+      [&](const DoctorOptions& options) { return RunDoctorVerb(options, backends); },
+      OnSignal::kEnd);
+  for (const Verb& verb : backends.more_verbs) table.AddForeign(verb.name, verb.help, verb.run);
+  return table.Take();
 }
 
-bool IsQuiet(const CLI::App& app) {
-  const CLI::Option* quiet = app.get_option_no_throw("--quiet");
-  const std::vector<const CLI::App*> verbs = app.get_subcommands({});
-  return (quiet != nullptr && quiet->count() > 0) ||
-         std::any_of(verbs.begin(), verbs.end(), [](const auto* verb) { return IsQuiet(*verb); });
+/// What of this program became `hires_lab`.
+std::map<std::string, std::string> MovedToTheLab() {
+  std::map<std::string, std::string> moved;
+  for (const char* verb : {"experiment", "experiences", "reproduce", "scenarios"}) {
+    moved[verb] = std::string("hires_lab ") + verb;
+  }
+  return moved;
 }
 
 }  // namespace
-
-int ExitCodeOf(const imagination::Report& report) {
-  switch (report.outcome) {
-    case imagination::ImaginationOutcome::kRanked:
-      return kExitRecommended;
-    case imagination::ImaginationOutcome::kAllFailed:
-      return kExitAllFailed;
-    case imagination::ImaginationOutcome::kUndecided:
-      return kExitUndecided;
-    case imagination::ImaginationOutcome::kNoWorker:
-      return kExitNoWorker;
-    case imagination::ImaginationOutcome::kNothingFinished:
-      return kExitDeadline;
-    case imagination::ImaginationOutcome::kCancelled:
-      return kExitCancelled;
-  }
-  return kExitBadInput;
-}
 
 std::string NameOf(const std::string& object, imagination::SetupConfig* setup) {
   const bool is_file =
@@ -578,27 +108,10 @@ std::string NameOf(const std::string& object, imagination::SetupConfig* setup) {
 }
 
 int RunCommandLine(const std::vector<std::string>& arguments, const Backends& backends) {
-  HIRES_CHECK(!arguments.empty(), "the program's name is missing");
-  CLI::App app("HIRES: imagine an action in physics before doing it", "hires");
-  app.require_subcommand(1);
-  app.set_version_flag("--version", "hires " HIRES_VERSION, "print the version and end");
-  Verbs verbs;
-  AddVerbs(&app, &verbs, backends);
-  SetCall(arguments, backends, &verbs);
-  try {
-    if (arguments.size() == 1) return ShowVerbs(app);
-    RefuseUnknownVerb(app, arguments);
-    RefuseUnknownOption(app, arguments);
-    // CLI11 takes its arguments from the back.
-    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
-    const ReadingDisplay display(IsQuiet(app));
-    return RunVerb(verbs, backends);
-  } catch (const CLI::ParseError& error) {
-    return Explain(error, app);
-  } catch (const std::exception& error) {
-    std::cerr << "hires: " << error.what() << '\n';
-    return kExitBadInput;
-  }
+  const auto add_verbs = [&](CLI::App* app) { return VerbsOf(app, arguments, backends); };
+  return RunProgram(
+      {kProgram, "HIRES: imagine an action in physics before doing it", add_verbs, MovedToTheLab()},
+      arguments);
 }
 
 }  // namespace hires::cli

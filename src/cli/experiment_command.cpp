@@ -15,6 +15,7 @@
 #include "hires/base/files/named_file.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/crew_display.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/experiment/experiment.h"
@@ -91,30 +92,6 @@ std::optional<knowledge::ExperienceStore> ExperiencesOf(
 
 }  // namespace
 
-evaluation::Crew MakeCrew(int threads, bool is_quiet, const std::function<bool()>& cancelled) {
-  evaluation::Crew crew;
-  crew.threads =
-      threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  crew.cancelled = cancelled;
-  if (!is_quiet && isatty(STDERR_FILENO) != 0) {
-    crew.on_progress = [](double fraction, double elapsed) {
-      std::cerr << '\r' << ProgressText(fraction, elapsed) << "\033[K" << std::flush;
-    };
-  }
-  return crew;
-}
-
-std::string ProgressText(double fraction, double elapsed) {
-  constexpr int kBar = 24;
-  const int filled = std::clamp(static_cast<int>(fraction * kBar + 0.5), 0, kBar);
-  std::string text = fmt::format("[{}{}] {:3.0f} %", std::string(filled, '#'),
-                                 std::string(kBar - filled, '.'), 100.0 * fraction);
-  if (fraction > 0.0) {
-    text += fmt::format(", {:.0f} s left", elapsed * (1.0 - fraction) / fraction);
-  }
-  return text;
-}
-
 std::string FilesLine(const std::string& hash) {
   return fmt::format("files {} (config, worlds, urdf)\n", hash);
 }
@@ -177,13 +154,12 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
   if (!options.junit.empty()) evaluation::RequireFolderOf(options.junit);
   CheckReport(options.report);
   const ReportOrigin origin = OriginOf(options, file, config);
-  evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
+  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   std::optional<knowledge::ExperienceStore> experiences = ExperiencesOf(options, config);
-  if (experiences) {
-    crew.on_experience = [&](const auto& batch) { experiences->Write(batch); };
-  }
+  evaluation::OnExperience on_experience;
+  if (experiences) on_experience = [&](const auto& batch) { experiences->Write(batch); };
   const std::optional<evaluation::ExperimentReport> report =
-      evaluation::RunExperiment(config, crew);
+      evaluation::RunExperiment(config, crew, on_experience);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;
   Print(*report);

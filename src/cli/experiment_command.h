@@ -11,6 +11,7 @@
 #include "cli/experiment/experiment_localisation_command.h"
 #include "cli/experiment/experiment_recognition_command.h"
 #include "cli/experiment/experiment_torso_poses_command.h"
+#include "hires/base/parallel.h"
 #include "hires/cli/report_output.h"
 #include "hires/evaluation/experiment/experiment.h"
 
@@ -45,13 +46,6 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options);
 /// @return kExitRecommended when all that the file expects holds, kExitAllFailed when not,
 /// kExitCancelled.  @throws base::ConfigError for bad input, before anything is played.
 int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool()>& cancelled);
-
-/// @param threads  0: one for each core.
-/// @param is_quiet  no bar of progress; there is none either where standard error is no terminal.
-evaluation::Crew MakeCrew(int threads, bool is_quiet, const std::function<bool()>& cancelled);
-
-/// " 52 %, 12 s left", for terminals.
-std::string ProgressText(double fraction, double elapsed);
 
 /// Below a printed result that other configuration may change: which one it is of.
 /// @param hash  by evaluation::ConfigurationHash.

@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "cli/experiment_command.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/crew_display.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/motion_limits.h"
 #include "hires/evaluation/report_json.h"
@@ -34,8 +34,8 @@ imagination::SetupConfig SetupOf(const LimitsOptions& o, const std::string& pack
   return setup;
 }
 
-evaluation::Crew CrewOf(const LimitsOptions& o, const std::function<bool()>& cancelled) {
-  evaluation::Crew crew;
+base::Crew CrewOf(const LimitsOptions& o, const std::function<bool()>& cancelled) {
+  base::Crew crew;
   crew.threads = o.threads > 0
                      ? o.threads
                      : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));

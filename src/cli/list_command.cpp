@@ -7,7 +7,6 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -15,11 +14,10 @@
 #include "hires/base/error.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
-#include "hires/cli/command_line.h"
+#include "hires/cli/exit_code.h"
+#include "hires/cli/list_rows.h"
 #include "hires/evaluation/report_json.h"
-#include "hires/evaluation/report_table.h"
 #include "hires/evaluation/scenario.h"
-#include "hires/evaluation/series/scenario_series.h"
 #include "hires/imagination/client_config.h"
 #include "hires/planning/planning_files.h"
 #include "hires/robot/load_robot.h"
@@ -33,8 +31,7 @@ namespace {
 using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-/// One line: column -> value; all lines of a list have the same columns.
-using Rows = std::vector<ordered_json>;
+using Rows = ListRows;
 
 /// The files that are listed.
 struct Sources {
@@ -250,20 +247,6 @@ Rows Scenarios(const Sources& sources) {
   return rows;
 }
 
-Rows SeriesOfRuns(const Sources& sources) {
-  Rows rows;
-  for (const fs::path& file : FilesIn(sources, "config/series", ".yaml")) {
-    const evaluation::ScenarioSeries series = evaluation::ReadScenarioSeries(file);
-    std::vector<std::string> groups;
-    for (const evaluation::SeriesGroup& group : series.groups) groups.push_back(group.name);
-    rows.push_back({{"series", series.name},
-                    {"varies", groups},
-                    {"combinations", evaluation::NumCombinations(series)},
-                    {"file", file.string()}});
-  }
-  return rows;
-}
-
 Rows Truths(const Sources& sources) {
   Rows rows;
   for (const fs::path& file : FilesIn(sources, "config/truths", ".yaml")) {
@@ -314,12 +297,11 @@ Rows Tasks(const Sources& sources) {
 
 const std::map<std::string, std::function<Rows(const Sources&)>>& Listers() {
   static const std::map<std::string, std::function<Rows(const Sources&)>> listers{
-      {"areas", Areas},        {"objects", Objects},
-      {"actions", Actions},    {"motion_sets", MotionSets},
-      {"postures", Postures},  {"robots", Robots},
-      {"worlds", Worlds},      {"scenarios", Scenarios},
-      {"tasks", Tasks},        {"truths", Truths},
-      {"series", SeriesOfRuns}};
+      {"areas", Areas},       {"objects", Objects},
+      {"actions", Actions},   {"motion_sets", MotionSets},
+      {"postures", Postures}, {"robots", Robots},
+      {"worlds", Worlds},     {"scenarios", Scenarios},
+      {"tasks", Tasks},       {"truths", Truths}};
   return listers;
 }
 
@@ -327,23 +309,6 @@ std::vector<std::string> Kinds() {
   std::vector<std::string> kinds;
   for (const auto& [kind, lister] : Listers()) kinds.push_back(kind);
   return kinds;
-}
-
-std::string CellOf(const ordered_json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (value.is_boolean()) return value.get<bool>() ? "yes" : "";
-  if (value.is_array()) return base::Join(value.get<std::vector<std::string>>(), ", ");
-  return value.dump();
-}
-
-std::string TableOf(const Rows& rows) {
-  std::vector<std::vector<std::string>> table(1);
-  for (const auto& [column, value] : rows.front().items()) table[0].push_back(column);
-  for (const ordered_json& row : rows) {
-    table.emplace_back();
-    for (const auto& [column, value] : row.items()) table.back().push_back(CellOf(value));
-  }
-  return evaluation::FormatTable(table);
 }
 
 Sources SourcesOf(const ListOptions& o, const std::string& package_folder) {
@@ -387,13 +352,7 @@ int RunListVerb(const ListOptions& options, const std::string& package_folder) {
     throw base::ConfigError(base::UnknownName("list", options.what, Kinds()));
   }
   if (!options.json.empty() && options.json != "-") evaluation::RequireFolderOf(options.json);
-  const Rows rows = lister->second(SourcesOf(options, package_folder));
-  if (options.json == "-") {
-    std::cout << ordered_json(rows).dump(2) << '\n';
-    return kExitRecommended;
-  }
-  std::cout << (rows.empty() ? fmt::format("no {}\n", options.what) : TableOf(rows));
-  if (!options.json.empty()) evaluation::WriteJson(ordered_json(rows), options.json);
+  PrintList(options.what, lister->second(SourcesOf(options, package_folder)), options.json);
   return kExitRecommended;
 }
 

@@ -217,7 +217,7 @@ void AddReportVerb(CLI::App* app, StoredReportOptions* options) {
   options->verb = verb;
 }
 
-int RunReportVerb(const StoredReportOptions& options) {
+int RunReportVerb(const StoredReportOptions& options, const std::string& package_folder) {
   if ((options.html + options.png).empty()) {
     throw base::ConfigError("report: nothing to make; add --html FILE or --png FILE");
   }
@@ -225,7 +225,7 @@ int RunReportVerb(const StoredReportOptions& options) {
   base::RefuseOwnInput("--png", options.png, "answer", options.file);
   RequireWritable("--html", options.html);
   RequireWritable("--png", options.png);
-  MakePictures(options.file, options.html, options.png, options.package_folder);
+  MakePictures(options.file, options.html, options.png, package_folder);
   SaySaved({options.html, options.png});
   return 0;
 }

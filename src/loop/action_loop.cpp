@@ -2,8 +2,6 @@
 
 #include <limits>
 
-#include "hires/base/process.h"
-#include "hires/base/resource_use.h"
 #include "loop/loop_parts.h"
 #include "loop/middle_layer.h"
 #include "loop/robot_side.h"
@@ -71,25 +69,6 @@ class Play {
 std::optional<ActionRun> PlayAction(const LoopSetup& setup, const ActionOrder& order,
                                     const std::function<bool()>& cancelled) {
   return Play(setup.parts(), order).Run(cancelled);
-}
-
-std::optional<evaluation::TruthPlay> PlayDrive(const LoopSetup& setup,
-                                               const evaluation::Truth& truth,
-                                               const evaluation::DecisionTask& task,
-                                               const std::string& motion_set, std::uint64_t seed,
-                                               const std::function<bool()>& cancelled) {
-  const double begin = base::SteadyNow(), used = base::ThreadCpuSeconds();
-  const imagination::ImaginationSetup& world = setup.world();
-  const ActionOrder order{evaluation::StartOf(world, task), evaluation::ActionOf(task, motion_set),
-                          truth, seed, world.rollout.time_limit};
-  const auto run = PlayAction(setup, order, cancelled);
-  if (!run) return std::nullopt;
-  evaluation::TruthPlay play =
-      evaluation::JudgeDrive(run->failure, run->duration, run->truth, task.load);
-  play.virtual_seconds = run->virtual_seconds;
-  play.wall_seconds = base::SteadyNow() - begin;
-  play.processor_seconds = base::ThreadCpuSeconds() - used;
-  return play;
 }
 
 }  // namespace hires::loop

@@ -34,7 +34,7 @@ simulation::ObjectFate Fate(Fall first, int falls = 1) {
   return fate;
 }
 
-TruthPlay Judged(const base::Failure& failure, const RunTruth& truth) {
+TruthPlay Judged(const base::Failure& failure, const simulation::RunTruth& truth) {
   return JudgeDrive(failure, 12.0, truth, "Mill");
 }
 

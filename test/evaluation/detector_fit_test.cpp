@@ -176,8 +176,8 @@ DetectorFitOrder SmallOrder() {
 }
 
 TEST(DetectorFitTest, AnyNumberOfThreadsFitsTheSameAndItsFileIsRead) {
-  const auto one = FitDetector(SmallOrder(), Crew{1, {}, {}});
-  const auto two = FitDetector(SmallOrder(), Crew{2, {}, {}});
+  const auto one = FitDetector(SmallOrder(), base::Crew{1, {}, {}});
+  const auto two = FitDetector(SmallOrder(), base::Crew{2, {}, {}});
   ASSERT_TRUE(one && two);
   EXPECT_EQ(ToYaml(*one), ToYaml(*two));
   EXPECT_EQ(ToJson(*one), ToJson(*two));
@@ -217,7 +217,7 @@ TEST(DetectorFitTest, AnyChangeOfWhatAFitDependsOnIsSeenInItsHash) {
 }
 
 TEST(DetectorFitTest, ItIsCancelled) {
-  EXPECT_FALSE(FitDetector(SmallOrder(), Crew{1, [] { return true; }, {}}));
+  EXPECT_FALSE(FitDetector(SmallOrder(), base::Crew{1, [] { return true; }, {}}));
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ TEST(BrakingExperimentTest, AnyNumberOfThreadsGivesTheSameBits) {
   ExperimentConfig config = Short();
   config.uncertainty = "scene";
   const auto played = [&](int threads) {
-    Crew crew;
+    base::Crew crew;
     crew.threads = threads;
     nlohmann::ordered_json json = ToJson(RunExperiment(config, crew).value());
     json.erase("wall_seconds");
@@ -168,7 +168,7 @@ TEST(BrakingExperimentTest, AnyNumberOfThreadsGivesTheSameBits) {
 }
 
 TEST(BrakingExperimentTest, CancellingGivesNothing) {
-  Crew crew;
+  base::Crew crew;
   crew.cancelled = [] { return true; };
   EXPECT_FALSE(RunExperiment(Short(), crew).has_value());
 }

@@ -73,7 +73,7 @@ struct JudgeTest : ::testing::Test {
     return run;
   }
   HypothesisGoal goal;
-  RunTruth truth;
+  simulation::RunTruth truth;
 };
 
 TEST_F(JudgeTest, OneOfTheObjectsAtThePlaceIsSuccess) {
@@ -163,7 +163,7 @@ TEST(HypothesisScenariosTest, NoScenarioBeginsWithSuccess) {
       world::LoadWorld(imagination::ReadSetupConfig(kRoot + "/config/scene.yaml").world);
   for (const std::string scenario : {"topple", "serve_coffee"}) {
     const HypothesisGoal goal = ReadHypothesisGoal(kFile, scenario);
-    RunTruth truth;
+    simulation::RunTruth truth;
     for (const auto& object :
          ReadScenario(kRoot + "/config/scenarios/" + scenario + ".yaml").objects) {
       simulation::ObjectFate& fate = truth.objects[base::ToLower(object.name)];

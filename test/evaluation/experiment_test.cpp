@@ -37,8 +37,8 @@ const char* const kSlippery =
     "object_y: {distribution: uniform, lower: -0.01, upper: 0.01, unit: m, source: test}\n"
     "start_x: {distribution: uniform, lower: -0.1, upper: 0.1, unit: m, source: test}\n";
 
-Crew CrewOf(int threads) {
-  Crew crew;
+base::Crew CrewOf(int threads) {
+  base::Crew crew;
   crew.threads = threads;
   return crew;
 }
@@ -116,7 +116,7 @@ TEST(LegsExperimentTest, AnUnknownMotionSetIsRefused) {
 TEST(ExperimentTest, AMeasureThatTheKindDoesNotHaveIsRefusedBeforeAnythingIsPlayed) {
   ExperimentConfig config = Config("legs_world");
   config.expect = {{"shaking_ratio", Expectation::Relation::kAbove, 1.0}};
-  Crew crew = CrewOf(1);
+  base::Crew crew = CrewOf(1);
   crew.on_progress = [](double, double) { FAIL() << "played"; };
   EXPECT_THROW(RunExperiment(config, crew), base::ConfigError);
 }
@@ -138,7 +138,7 @@ TEST(ExperimentTest, AnotherSeedGivesOtherRuns) {
 }
 
 TEST(ExperimentTest, ACancelledOneGivesNothing) {
-  Crew crew = CrewOf(2);
+  base::Crew crew = CrewOf(2);
   crew.cancelled = [] { return true; };
   EXPECT_FALSE(RunExperiment(Config("legs_world"), crew).has_value());
 }
@@ -166,7 +166,7 @@ TEST(DurationsExperimentTest, AnUnknownPostureIsRefusedBeforeAnythingIsPlayed) {
   ExperimentConfig config = Config("durations", "{}", {{}, 1, ""});
   auto& rows = std::get<DurationsConfig>(config.kind).rows;
   rows[8].from = rows[9].to = "TorsoLowPosture";
-  Crew crew = CrewOf(1);
+  base::Crew crew = CrewOf(1);
   crew.on_progress = [](double, double) { FAIL() << "played"; };
   try {
     RunExperiment(config, crew);

@@ -18,7 +18,7 @@ TEST(LadderWholeTest, WholeLadderHasItsFixedOrder) {
   order.answer_rollouts = 1;
   order.clocks = {[&] { return now += 1.0; }, [&] { return now; }};
   order.play_task = [](std::uint64_t) { return 4.0; };
-  Crew crew;
+  base::Crew crew;
   crew.threads = 2;
   const auto report = ClimbLadder(order, crew);
   ASSERT_TRUE(report);

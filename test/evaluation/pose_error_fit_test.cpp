@@ -107,7 +107,7 @@ TEST(PoseErrorExperimentTest, AnyNumberOfThreadsWritesTheSameAndProgressEnds) {
   PoseErrorOrder order;
   order.drives = Drives("legs_world_filter.yaml", 8);
   order.series = order.held_out = 1;
-  Crew one, three;
+  base::Crew one, three;
   three.threads = 3;
   double last = 0.0;
   one.on_progress = [&](double fraction, double) {

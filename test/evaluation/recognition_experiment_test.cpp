@@ -21,8 +21,8 @@ using testing::Not;
 
 const std::string kSource = HIRES_SOURCE_DIR;
 
-Crew CrewOf(int threads) {
-  Crew crew;
+base::Crew CrewOf(int threads) {
+  base::Crew crew;
   crew.threads = threads;
   return crew;
 }
@@ -220,7 +220,7 @@ TEST(RecognitionGoalTest, ThingsOfOneTableSayLessThanThoseOfMany) {
 }
 
 TEST(RecognitionExperimentTest, ItIsCancelled) {
-  Crew crew = CrewOf(1);
+  base::Crew crew = CrewOf(1);
   crew.cancelled = [] { return true; };
   EXPECT_FALSE(TryRecogniser(SmallOrder(), crew));
 }

@@ -8,10 +8,10 @@
 #include "hires/base/action.h"
 #include "hires/cli/blackboard_command.h"
 #include "hires/cli/doctor.h"
+#include "hires/cli/exit_code.h"
 #include "hires/cli/finding.h"
 #include "hires/cli/imagine_start.h"
 #include "hires/evaluation/achieve.h"
-#include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/report.h"
 #include "hires/imagination/rollout_recording.h"
@@ -66,7 +66,6 @@ struct Backends {
   evaluation::AchieveRemotely achieve_remotely;
   /// File of the domain that the running execution monitor was given; "": none runs, or none was.
   std::function<std::string()> domain_of_monitor;
-  evaluation::PlayHypothesis play_hypothesis;
   loop::RecordLoop record_loop;  ///< empty: this program writes no bags
   MakeRolloutBag make_rollout_bag;
   ExamineRobot examine_robot;
@@ -75,16 +74,6 @@ struct Backends {
   std::vector<Check> more_checks;
 };
 
-/// Exit codes of `hires`.
-enum ExitCode {
-  kExitRecommended = 0,  ///< done; for imagine: there is a recommendation
-  kExitBadInput = 1,     ///< the message says what is wrong
-  kExitAllFailed = 2,    ///< every alternative fails
-  kExitNoWorker = 3,     ///< there was no worker to ask
-  kExitDeadline = 4,     ///< nothing finished by the deadline
-  kExitUndecided = 5,    ///< too few rollouts to tell whether an alternative is good enough
-  kExitCancelled = 130   ///< interrupted
-};
 int ExitCodeOf(const imagination::Report& report);
 
 /// The program `hires`: parses, runs one verb, prints. Never throws.

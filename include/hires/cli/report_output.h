@@ -73,13 +73,13 @@ void RunReportProgram(const std::string& package_folder, const std::vector<std::
 
 /// `hires report FILE.json`: makes page or picture from a stored answer.
 struct StoredReportOptions {
-  std::string file, html, png, package_folder;
+  std::string file, html, png;
   CLI::App* verb{nullptr};
 };
 /// @pre `options` outlives `app`.
 void AddReportVerb(CLI::App* app, StoredReportOptions* options);
 /// @return 0.  @throws base::ConfigError for bad input.
-int RunReportVerb(const StoredReportOptions& options);
+int RunReportVerb(const StoredReportOptions& options, const std::string& package_folder);
 
 /// A word of a command as a shell takes it.
 std::string Quoted(const std::string& word);

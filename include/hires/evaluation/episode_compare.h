@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "hires/base/parallel.h"
 #include "hires/evaluation/episode_steps.h"
-#include "hires/evaluation/experiment/experiment.h"
 #include "hires/imagination/evidence.h"
 
 namespace hires::evaluation {
@@ -56,7 +56,7 @@ struct ReplayParams {
 /// @return nothing when it was cancelled.
 std::optional<ImaginedAction> ImagineStep(const imagination::ImaginationSetup& setup,
                                           const EpisodeStep& step, const ReplayParams& params,
-                                          std::uint64_t place, const Crew& crew);
+                                          std::uint64_t place, const base::Crew& crew);
 
 /// One line for each step: what was imagined, what happened, verdict.
 std::string EpisodeTable(const std::vector<ComparedStep>& steps);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/evaluation/experiment/experiment.h"
+#include "hires/base/parallel.h"
 #include "hires/imagination/imagination_setup.h"
 
 // How fast, how suddenly and how sharply a robot may drive so that what stands on its tray stays
@@ -83,7 +83,7 @@ std::vector<MotionBounds> ClosedFormLimits(const std::string& object,
 /// stands still or drives at a 30th of what its controller allows.
 std::optional<LimitsReport> FindLimits(const LimitsRequest& request,
                                        const imagination::ImaginationSetup& setup,
-                                       const Crew& crew);
+                                       const base::Crew& crew);
 
 /// For people: the closed forms beside what the base's controller allows.
 std::string ClosedFormText(const std::vector<MotionBounds>& bounds);

@@ -6,11 +6,10 @@
 #include <string>
 
 #include "hires/base/action.h"
-#include "hires/evaluation/decision/decision.h"
-#include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/evaluation/truth.h"
 #include "hires/imagination/start_state.h"
 #include "hires/loop/task_loop.h"
+#include "hires/simulation/truth_record.h"
 
 namespace hires::loop {
 
@@ -27,7 +26,7 @@ struct ActionOrder {
 struct ActionRun {
   base::Failure failure;       ///< of the action itself; nothing: it reached its goal
   double duration{0.0};        ///< [s] of the action
-  evaluation::RunTruth truth;  ///< how things really stand, once what still shakes has come to rest
+  simulation::RunTruth truth;  ///< how things really stand, once what still shakes has come to rest
   double virtual_seconds{0.0};  ///< [s] from the robot's start to the end
 };
 
@@ -38,13 +37,5 @@ struct ActionRun {
 /// @return nothing when cancelled. An action that makes no sense ends at once, as kInvalidAction.
 std::optional<ActionRun> PlayAction(const LoopSetup& setup, const ActionOrder& order,
                                     const std::function<bool()>& cancelled = {});
-
-/// Plays one drive of `hires experiment decision`, as it is judged there.
-/// @return nothing when cancelled.
-std::optional<evaluation::TruthPlay> PlayDrive(const LoopSetup& setup,
-                                               const evaluation::Truth& truth,
-                                               const evaluation::DecisionTask& task,
-                                               const std::string& motion_set, std::uint64_t seed,
-                                               const std::function<bool()>& cancelled = {});
 
 }  // namespace hires::loop

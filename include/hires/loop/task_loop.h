@@ -6,12 +6,12 @@
 #include <string>
 
 #include "hires/evaluation/achieve.h"
-#include "hires/evaluation/experiment/hypothesis.h"
 #include "hires/evaluation/truth.h"
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/loop/loop_observer.h"
 #include "hires/planning/operator_data.h"
+#include "hires/simulation/truth_record.h"
 
 namespace hires::loop {
 
@@ -63,7 +63,7 @@ struct LoopOrder {
 /// What became of it.
 struct LoopRun {
   evaluation::AchieveReport report;
-  evaluation::RunTruth truth;   ///< how things really stand in the end
+  simulation::RunTruth truth;   ///< how things really stand in the end
   std::string truth_name;       ///< of what robot and world were really like: same, foreign, ...
   double virtual_seconds{0.0};  ///< [s] from the robot's start to the end
   bool is_timed_out{false};     ///< the time limit came first

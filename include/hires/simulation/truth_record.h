@@ -20,6 +20,12 @@ struct ObjectFate {
   bool stands{false};  ///< now: it is there, nothing holds it, it is not down
 };
 
+/// How loose objects really fared when a run ends, by name in lower case.
+struct RunTruth {
+  std::map<std::string, ObjectFate> objects;
+  std::string contact;  ///< the robot's first collision, or empty
+};
+
 /// Keeps the record of what really happens, for evaluation. Falls are judged by the same detector
 /// as in imagination.
 class TruthRecord {

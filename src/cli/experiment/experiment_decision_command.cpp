@@ -8,18 +8,19 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "cli/experiment/decision_drive.h"
 #include "cli/experiment_command.h"
 #include "hires/base/error.h"
+#include "hires/base/parallel.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/crew_display.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/decision/decision_journal.h"
 #include "hires/evaluation/decision/decision_report.h"
-#include "hires/evaluation/experiment/parallel.h"
 #include "hires/evaluation/report_json.h"
-#include "hires/loop/action_loop.h"
 
 namespace hires::cli {
 namespace {
@@ -86,7 +87,7 @@ evaluation::DecisionParts PartsOf(const Stage& stage, const std::function<bool()
   parts.cancelled = cancelled;
   parts.play = [&stage, cancelled](const DecisionTask& task, const std::string& set,
                                    std::uint64_t seed) {
-    return loop::PlayDrive(stage.setup, stage.truth, task, set, seed, cancelled);
+    return PlayDrive(stage.setup, stage.truth, task, set, seed, cancelled);
   };
   return parts;
 }
@@ -131,14 +132,14 @@ bool PlayAll(const std::vector<DecisionPiece>& pieces, const Stage& stage,
              const evaluation::DecisionParts& parts, const DecisionOptions& options,
              evaluation::DecisionJournal* journal) {
   Shown shown(options.quiet, pieces.size());
-  evaluation::Crew crew;
+  base::Crew crew;
   crew.threads = options.threads;
   crew.cancelled = parts.cancelled;
-  const auto play = [&](int index, const evaluation::Advance&) {
+  const auto play = [&](int index, const base::Advance&) {
     const DecisionPiece& piece = pieces[static_cast<std::size_t>(index)];
     if (journal->Play(piece, stage.setting.truth, parts)) shown.OneMore();
   };
-  const bool is_whole = evaluation::DoInParallel(static_cast<int>(pieces.size()), 0.0, crew, play);
+  const bool is_whole = base::DoInParallel(static_cast<int>(pieces.size()), 0.0, crew, play);
   if (!options.quiet) std::cerr << "\r\033[K";
   return is_whole;
 }

@@ -11,6 +11,7 @@
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/crew_display.h"
 #include "hires/cli/report_output.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/configuration_hash.h"
@@ -66,7 +67,7 @@ int RunDetectorFitVerb(const DetectorFitOptions& options, const std::string& pac
       options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config;
   order.recogniser = perception::ReadRecogniserConfig(config, options.objects);
   const std::string files = evaluation::ConfigurationHash(package_folder);
-  const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
+  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   auto report = evaluation::FitDetector(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;

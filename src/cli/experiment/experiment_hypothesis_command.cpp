@@ -13,12 +13,13 @@
 #include "cli/experiment_command.h"
 #include "cli/hypothesis_local.h"
 #include "hires/base/error.h"
+#include "hires/base/parallel.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/crew_display.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/experiment/hypothesis_journal.h"
-#include "hires/evaluation/experiment/parallel.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
 
@@ -173,11 +174,11 @@ bool PlayAll(const std::vector<evaluation::HypothesisOrder>& orders,
     return std::all_of(orders.begin(), orders.end(),
                        [&](const auto& order) { return PlayOne(order, play, cancelled, &keeper); });
   }
-  evaluation::Crew crew;
+  base::Crew crew;
   crew.threads = options.threads;
   crew.cancelled = cancelled;
-  return evaluation::DoInParallel(
-      static_cast<int>(orders.size()), 0.0, crew, [&](int task, const evaluation::Advance&) {
+  return base::DoInParallel(
+      static_cast<int>(orders.size()), 0.0, crew, [&](int task, const base::Advance&) {
         PlayOne(orders[static_cast<std::size_t>(task)], play, cancelled, &keeper);
       });
 }

@@ -8,6 +8,7 @@
 
 #include "cli/experiment_command.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/crew_display.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/ladder/ladder.h"
 #include "hires/evaluation/report_json.h"
@@ -64,7 +65,7 @@ int RunLadderVerb(const LadderOptions& options, const std::string& package_folde
   order.play_task = [&](std::uint64_t seed) {
     return PlayTopple(loop, package_folder, seed, cancelled);
   };
-  const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
+  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   const auto report = evaluation::ClimbLadder(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;

@@ -7,6 +7,7 @@
 #include "cli/experiment_command.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/crew_display.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/place/pose_error_fit.h"
@@ -49,7 +50,7 @@ int RunPoseErrorVerb(const PoseErrorOptions& options, const std::string& package
   order.series = options.series;
   order.held_out = options.held_out;
   const std::string files = evaluation::ConfigurationHash(package_folder);
-  const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
+  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   const auto report = evaluation::FitPoseError(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;

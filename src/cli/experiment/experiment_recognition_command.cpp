@@ -8,6 +8,7 @@
 
 #include "cli/experiment_command.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/crew_display.h"
 #include "hires/cli/report_output.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/configuration_hash.h"
@@ -60,7 +61,7 @@ int RunRecognitionVerb(const RecognitionOptions& options, const std::string& pac
     };
   }
   const std::string files = evaluation::ConfigurationHash(package_folder);
-  const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
+  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   const auto report = evaluation::TryRecogniser(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;

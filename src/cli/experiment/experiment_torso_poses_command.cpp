@@ -6,6 +6,7 @@
 
 #include "cli/experiment_command.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/crew_display.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/configuration_hash.h"
 #include "hires/evaluation/recognition/torso_poses.h"
@@ -43,7 +44,7 @@ int RunTorsoPosesVerb(const TorsoPosesOptions& options, const std::string& packa
   order.looks = options.looks;
   order.seed = options.seed;
   const std::string files = evaluation::ConfigurationHash(package_folder);
-  const evaluation::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
+  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
   const auto report = evaluation::PlayTorsoPoses(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) return kExitCancelled;

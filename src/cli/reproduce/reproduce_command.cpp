@@ -19,6 +19,7 @@
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/crew_display.h"
 #include "hires/evaluation/report_table.h"
 #include "hires/evaluation/reproduce/catalogue.h"
 #include "hires/evaluation/reproduce/judge.h"

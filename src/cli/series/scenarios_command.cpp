@@ -18,6 +18,7 @@
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "hires/cli/command_line.h"
+#include "hires/cli/crew_display.h"
 #include "hires/cli/whole_number.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/series/series_report.h"

@@ -113,8 +113,8 @@ bool TruthPlay::fell() const {
   return std::count(failures.begin(), failures.end(), FailureCode::kObjectFell) > 0;
 }
 
-TruthPlay JudgeDrive(const base::Failure& failure, double duration, const RunTruth& truth,
-                     const std::string& load) {
+TruthPlay JudgeDrive(const base::Failure& failure, double duration,
+                     const simulation::RunTruth& truth, const std::string& load) {
   TruthPlay play;
   play.duration = duration;
   if (failure) play.failures.push_back(failure.code);

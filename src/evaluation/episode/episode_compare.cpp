@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "hires/base/error.h"
-#include "hires/evaluation/experiment/parallel.h"
+#include "hires/base/parallel.h"
 
 namespace hires::evaluation {
 namespace {
@@ -86,7 +86,7 @@ ComparedStep CompareStep(const EpisodeStep& step, const ImaginedAction& imagined
 
 std::optional<ImaginedAction> ImagineStep(const imagination::ImaginationSetup& setup,
                                           const EpisodeStep& step, const ReplayParams& params,
-                                          std::uint64_t place, const Crew& crew) {
+                                          std::uint64_t place, const base::Crew& crew) {
   const auto rollouts = imagination::MakeRolloutSetup(setup, step.start, params.seed + place);
   try {
     imagination::CheckSetup(rollouts, step.action);
@@ -96,8 +96,8 @@ std::optional<ImaginedAction> ImagineStep(const imagination::ImaginationSetup& s
     return refused;
   }
   std::vector<std::optional<RolloutResult>> played(static_cast<std::size_t>(params.rollouts));
-  const bool is_whole =
-      DoInParallel(params.rollouts, params.rollouts, crew, [&](int index, const Advance& advance) {
+  const bool is_whole = base::DoInParallel(
+      params.rollouts, params.rollouts, crew, [&](int index, const base::Advance& advance) {
         played[static_cast<std::size_t>(index)] =
             imagination::PlayRollout(rollouts, step.action, index, {crew.cancelled, {}});
         advance(1.0);

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "evaluation/experiment/stage.h"
+#include "hires/base/parallel.h"
 #include "hires/base/rng.h"
 #include "hires/evaluation/experiment/experiment.h"
-#include "hires/evaluation/experiment/parallel.h"
 #include "hires/imagination/uncertainty.h"
 #include "hires/simulation/fall_watch.h"
 #include "hires/simulation/robot_simulator.h"
@@ -233,7 +233,7 @@ BrakingStop PlayIdeal(const BrakingConfig& braking, const BrakingCell& cell, con
 
 std::optional<std::vector<BrakingPlay>> PlayBraking(const BrakingConfig& braking,
                                                     const ExperimentConfig& config,
-                                                    const Stage& stage, const Crew& crew) {
+                                                    const Stage& stage, const base::Crew& crew) {
   std::vector<BrakingPlay> plays = BrakingCells(braking, stage);
   std::vector<CellSetup> setups;
   for (BrakingPlay& play : plays) {
@@ -241,7 +241,7 @@ std::optional<std::vector<BrakingPlay>> PlayBraking(const BrakingConfig& braking
     play.stops.resize(braking.rollouts);
   }
   const int num_cells = static_cast<int>(plays.size());
-  const auto work = [&](int task, const Advance& advance) {
+  const auto work = [&](int task, const base::Advance& advance) {
     BrakingPlay& play = plays[task % num_cells];
     const CellSetup& setup = setups[task % num_cells];
     const int index = task / num_cells;
@@ -252,7 +252,7 @@ std::optional<std::vector<BrakingPlay>> PlayBraking(const BrakingConfig& braking
     advance(1.0);
   };
   const int num_tasks = num_cells * braking.rollouts;
-  if (!DoInParallel(num_tasks, num_tasks, crew, work)) return std::nullopt;
+  if (!base::DoInParallel(num_tasks, num_tasks, crew, work)) return std::nullopt;
   return plays;
 }
 

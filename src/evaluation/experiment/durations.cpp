@@ -4,8 +4,8 @@
 
 #include "evaluation/experiment/kinds.h"
 #include "hires/base/error.h"
+#include "hires/base/parallel.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/experiment/parallel.h"
 
 namespace hires::evaluation {
 namespace {
@@ -93,12 +93,12 @@ std::string StartOf(const DurationsConfig& durations, const DurationsConfig::Row
 
 std::optional<DurationPlays> PlayDurations(const DurationsConfig& durations,
                                            const ExperimentConfig& config, const Stage& stage,
-                                           const Crew& crew) {
+                                           const base::Crew& crew) {
   const std::vector<Cell> cells = CellsOf(durations, stage, config.seed);
   const int num_cells = static_cast<int>(cells.size());
   DurationPlays plays = NothingPlayed(durations);
   for (const Cell& cell : cells) plays[cell.planner][cell.row].resize(durations.runs);
-  const auto play = [&](int task, const Advance& advance) {
+  const auto play = [&](int task, const base::Advance& advance) {
     const Cell& cell = cells[task % num_cells];
     const int run = task / num_cells;
     auto result = imagination::PlayRollout(cell.setup, ActionOf(durations.rows[cell.row]), run,
@@ -107,7 +107,7 @@ std::optional<DurationPlays> PlayDurations(const DurationsConfig& durations,
     advance(1.0);
   };
   const int num_tasks = num_cells * durations.runs;
-  if (!DoInParallel(num_tasks, num_tasks, crew, play)) return std::nullopt;
+  if (!base::DoInParallel(num_tasks, num_tasks, crew, play)) return std::nullopt;
   return plays;
 }
 

@@ -23,7 +23,7 @@ class Kind {
  public:
   virtual ~Kind() = default;
   virtual std::vector<Drive> Drives() const = 0;
-  virtual bool Play(const Crew& crew) = 0;  ///< false when cancelled
+  virtual bool Play(const base::Crew& crew) = 0;  ///< false when cancelled
   virtual Findings SumUp() const = 0;
 };
 
@@ -38,7 +38,7 @@ class Legs : public Kind {
     }
     return drives;
   }
-  bool Play(const Crew& crew) override {
+  bool Play(const base::Crew& crew) override {
     auto chains = PlayLegs(legs_, config_, stage_, crew);
     if (chains) chains_ = *std::move(chains);
     return chains.has_value();
@@ -64,7 +64,7 @@ class Paired : public Kind {
     }
     return drives;
   }
-  bool Play(const Crew& crew) override {
+  bool Play(const base::Crew& crew) override {
     auto rollouts = PlayPaired(paired_, config_, *stage_, crew);
     if (rollouts) rollouts_ = *std::move(rollouts);
     return rollouts.has_value();
@@ -81,8 +81,11 @@ class Paired : public Kind {
 class ToppleLoop : public Kind {
  public:
   ToppleLoop(const ToppleLoopConfig& loop, const ExperimentConfig& config,
-             std::shared_ptr<const Stage> stage)
-      : loop_(loop), config_(config), stage_(std::move(stage)) {}
+             std::shared_ptr<const Stage> stage, OnExperience on_experience)
+      : loop_(loop),
+        config_(config),
+        stage_(std::move(stage)),
+        on_experience_(std::move(on_experience)) {}
   std::vector<Drive> Drives() const override {
     std::vector<Drive> drives;
     for (const std::string& set : loop_.motion_sets) {
@@ -92,8 +95,8 @@ class ToppleLoop : public Kind {
     }
     return drives;
   }
-  bool Play(const Crew& crew) override {
-    auto chains = PlayToppleLoop(loop_, config_, stage_, crew);
+  bool Play(const base::Crew& crew) override {
+    auto chains = PlayToppleLoop(loop_, config_, stage_, crew, on_experience_);
     if (chains) by_set_ = *std::move(chains);
     return chains.has_value();
   }
@@ -103,6 +106,7 @@ class ToppleLoop : public Kind {
   const ToppleLoopConfig& loop_;
   const ExperimentConfig& config_;
   std::shared_ptr<const Stage> stage_;
+  OnExperience on_experience_;
   std::vector<Chains> by_set_{2};
 };
 
@@ -121,7 +125,7 @@ class Durations : public Kind {
     }
     return drives;
   }
-  bool Play(const Crew& crew) override {
+  bool Play(const base::Crew& crew) override {
     auto plays = PlayDurations(durations_, config_, *stage_, crew);
     if (plays) plays_ = *std::move(plays);
     return plays.has_value();
@@ -144,7 +148,7 @@ class Braking : public Kind {
         stage_(std::move(stage)),
         plays_(BrakingCells(braking, *stage_)) {}
   std::vector<Drive> Drives() const override { return {}; }
-  bool Play(const Crew& crew) override {
+  bool Play(const base::Crew& crew) override {
     auto plays = PlayBraking(braking_, config_, *stage_, crew);
     if (plays) plays_ = *std::move(plays);
     return plays.has_value();
@@ -158,7 +162,8 @@ class Braking : public Kind {
   std::vector<BrakingPlay> plays_;
 };
 
-std::unique_ptr<Kind> MakeKind(const ExperimentConfig& config, std::shared_ptr<const Stage> stage) {
+std::unique_ptr<Kind> MakeKind(const ExperimentConfig& config, std::shared_ptr<const Stage> stage,
+                               const OnExperience& on_experience) {
   if (const auto* legs = std::get_if<LegsConfig>(&config.kind)) {
     return std::make_unique<Legs>(*legs, config, std::move(stage));
   }
@@ -166,7 +171,7 @@ std::unique_ptr<Kind> MakeKind(const ExperimentConfig& config, std::shared_ptr<c
     return std::make_unique<Paired>(*paired, config, std::move(stage));
   }
   if (const auto* loop = std::get_if<ToppleLoopConfig>(&config.kind)) {
-    return std::make_unique<ToppleLoop>(*loop, config, std::move(stage));
+    return std::make_unique<ToppleLoop>(*loop, config, std::move(stage), on_experience);
   }
   if (const auto* braking = std::get_if<BrakingConfig>(&config.kind)) {
     return std::make_unique<Braking>(*braking, config, std::move(stage));
@@ -193,10 +198,11 @@ ExperimentReport Unplayed(const ExperimentConfig& config, const Stage& stage) {
   return report;
 }
 
-std::optional<ExperimentReport> Run(const ExperimentConfig& config, const Crew& crew) {
+std::optional<ExperimentReport> Run(const ExperimentConfig& config, const base::Crew& crew,
+                                    const OnExperience& on_experience) {
   const auto begin = std::chrono::steady_clock::now();
   const auto stage = std::make_shared<const Stage>(MakeStage(config));
-  const std::unique_ptr<Kind> kind = MakeKind(config, stage);
+  const std::unique_ptr<Kind> kind = MakeKind(config, stage, on_experience);
   CheckBeforePlaying(config, *stage, *kind);
   if (!kind->Play(crew)) return std::nullopt;
   ExperimentReport report = Unplayed(config, *stage);
@@ -209,9 +215,11 @@ std::optional<ExperimentReport> Run(const ExperimentConfig& config, const Crew& 
 
 }  // namespace
 
-std::optional<ExperimentReport> RunExperiment(const ExperimentConfig& config, const Crew& crew) {
+std::optional<ExperimentReport> RunExperiment(const ExperimentConfig& config,
+                                              const base::Crew& crew,
+                                              const OnExperience& on_experience) {
   try {
-    return Run(config, crew);
+    return Run(config, crew, on_experience);
   } catch (const base::ConfigError& error) {
     throw base::ConfigError(fmt::format("experiment '{}': {}", config.name, error.what()));
   }

@@ -75,7 +75,8 @@ struct Breach {
   std::string text;
 };
 
-void AddFalls(const HypothesisGoal& goal, const RunTruth& truth, std::vector<Breach>* breaches) {
+void AddFalls(const HypothesisGoal& goal, const simulation::RunTruth& truth,
+              std::vector<Breach>* breaches) {
   std::vector<std::string> fell, knocked_over;
   for (const auto& [name, object] : truth.objects) {
     if (object.falls > 0) (IsWanted(goal, name) ? fell : knocked_over).push_back(name);
@@ -91,7 +92,7 @@ void AddFalls(const HypothesisGoal& goal, const RunTruth& truth, std::vector<Bre
 
 /// "mug1 stands on placingareawestrighttable1", or "" where no wanted object stands at a place.
 std::string StandingOf(const HypothesisGoal& goal, const std::vector<WantedPlace>& places,
-                       const RunTruth& truth) {
+                       const simulation::RunTruth& truth) {
   for (const std::string& name : goal.objects) {
     const auto object = truth.objects.find(name);
     if (object == truth.objects.end()) continue;
@@ -103,7 +104,7 @@ std::string StandingOf(const HypothesisGoal& goal, const std::vector<WantedPlace
 }
 
 /// Of a run in which nothing stands where it should.
-Breach NotThere(const HypothesisGoal& goal, const RunTruth& truth) {
+Breach NotThere(const HypothesisGoal& goal, const simulation::RunTruth& truth) {
   for (const std::string& name : goal.objects) {
     const auto object = truth.objects.find(name);
     if (object != truth.objects.end() && !object->second.attached_to.empty()) {
@@ -209,7 +210,7 @@ bool StandsAt(const WantedPlace& place, const simulation::ObjectFate& object) {
 }
 
 void Judge(const HypothesisGoal& goal, const std::vector<WantedPlace>& places,
-           const RunTruth& truth, HypothesisRun* run) {
+           const simulation::RunTruth& truth, HypothesisRun* run) {
   std::vector<Breach> breaches;
   const std::string standing = StandingOf(goal, places, truth);
   if (standing.empty()) breaches.push_back(NotThere(goal, truth));

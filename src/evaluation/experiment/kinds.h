@@ -9,6 +9,7 @@
 #include "evaluation/experiment/chain.h"
 #include "evaluation/experiment/stage.h"
 #include "hires/base/action.h"
+#include "hires/base/parallel.h"
 #include "hires/base/rng.h"
 #include "hires/evaluation/experiment/experiment.h"
 #include "hires/imagination/rollout_result.h"
@@ -26,20 +27,21 @@ std::vector<std::string> ShuffledGoals(const std::vector<Goal>& goals, int num_l
 
 /// @return nothing when cancelled, here and below.
 std::optional<Chains> PlayLegs(const LegsConfig& legs, const ExperimentConfig& config,
-                               const std::shared_ptr<const Stage>& stage, const Crew& crew);
+                               const std::shared_ptr<const Stage>& stage, const base::Crew& crew);
 Findings SumUpLegs(const ExperimentConfig& config, const Stage& stage, const Chains& chains);
 
 /// Per motion set, equally many; rollouts of one index make a pair.
 std::optional<std::vector<Rollouts>> PlayPaired(const PairedConfig& paired,
                                                 const ExperimentConfig& config, const Stage& stage,
-                                                const Crew& crew);
+                                                const base::Crew& crew);
 Findings SumUpPaired(const PairedConfig& paired, const std::vector<Rollouts>& rollouts);
 
 /// Per motion set, in order.
 std::optional<std::vector<Chains>> PlayToppleLoop(const ToppleLoopConfig& loop,
                                                   const ExperimentConfig& config,
                                                   const std::shared_ptr<const Stage>& stage,
-                                                  const Crew& crew);
+                                                  const base::Crew& crew,
+                                                  const OnExperience& on_experience);
 /// @param seed  the experiment's; of the resamples behind the intervals.
 Findings SumUpToppleLoop(const ToppleLoopConfig& loop, std::uint64_t seed,
                          const std::vector<Chains>& by_set);
@@ -53,7 +55,7 @@ base::ActionCall ActionOf(const DurationsConfig::Row& row);
 std::string StartOf(const DurationsConfig& durations, const DurationsConfig::Row& row);
 std::optional<DurationPlays> PlayDurations(const DurationsConfig& durations,
                                            const ExperimentConfig& config, const Stage& stage,
-                                           const Crew& crew);
+                                           const base::Crew& crew);
 Findings SumUpDurations(const DurationsConfig& durations, const DurationPlays& plays);
 
 }  // namespace hires::evaluation

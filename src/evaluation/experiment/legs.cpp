@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluation/experiment/kinds.h"
+#include "hires/base/parallel.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/experiment/parallel.h"
 #include "hires/evaluation/statistics.h"
 
 namespace hires::evaluation {
@@ -141,9 +141,9 @@ std::vector<std::string> ShuffledGoals(const std::vector<Goal>& goals, int num_l
 }
 
 std::optional<Chains> PlayLegs(const LegsConfig& legs, const ExperimentConfig& config,
-                               const std::shared_ptr<const Stage>& stage, const Crew& crew) {
+                               const std::shared_ptr<const Stage>& stage, const base::Crew& crew) {
   Chains chains(legs.chains);
-  const auto play = [&](int number, const Advance& advance) {
+  const auto play = [&](int number, const base::Advance& advance) {
     const base::Rng rng = base::Rng(config.seed).Fork(number);
     Chain chain(stage, config.goals.front().name,
                 {legs.motion_set, rng.Fork(kChainStream).seed(), false, false});
@@ -155,7 +155,7 @@ std::optional<Chains> PlayLegs(const LegsConfig& legs, const ExperimentConfig& c
       advance(1.0);
     }
   };
-  if (!DoInParallel(legs.chains, legs.legs, crew, play)) return std::nullopt;
+  if (!base::DoInParallel(legs.chains, legs.legs, crew, play)) return std::nullopt;
   return chains;
 }
 

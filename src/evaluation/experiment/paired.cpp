@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "evaluation/experiment/kinds.h"
+#include "hires/base/parallel.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/experiment/parallel.h"
 #include "hires/evaluation/statistics.h"
 #include "hires/imagination/evidence.h"
 
@@ -123,17 +123,17 @@ nlohmann::ordered_json RowOf(const std::string& motion_set, int index,
 
 std::optional<std::vector<Rollouts>> PlayPaired(const PairedConfig& paired,
                                                 const ExperimentConfig& config, const Stage& stage,
-                                                const Crew& crew) {
+                                                const base::Crew& crew) {
   const imagination::RolloutSetup setup = SetupAt(stage, paired.from, config.seed);
   std::vector<Rollouts> rollouts(2, Rollouts(paired.pairs));
-  const auto play = [&](int task, const Advance& advance) {
+  const auto play = [&](int task, const base::Advance& advance) {
     const int set = task % 2, index = task / 2;
     auto result = imagination::PlayRollout(setup, DriveTo(paired.to, paired.motion_sets[set]),
                                            index, {crew.cancelled, {}});
     if (result) rollouts[set][index] = *std::move(result);
     advance(1.0);
   };
-  if (!DoInParallel(2 * paired.pairs, 2.0 * paired.pairs, crew, play)) return std::nullopt;
+  if (!base::DoInParallel(2 * paired.pairs, 2.0 * paired.pairs, crew, play)) return std::nullopt;
   return rollouts;
 }
 

@@ -6,8 +6,8 @@
 #include "evaluation/experiment/kinds.h"
 #include "evaluation/experiment/topple_shares.h"
 #include "hires/base/check.h"
+#include "hires/base/parallel.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/experiment/parallel.h"
 #include "hires/imagination/evidence.h"
 
 namespace hires::evaluation {
@@ -209,8 +209,8 @@ void AddRows(const std::string& motion_set, const Chains& chains, Findings* find
 }
 
 /// Round and round, from the first goal of the route, until the time is over.
-std::vector<Leg> PlayOneChain(const ToppleLoopConfig& loop, Chain chain, const Crew& crew,
-                              const Advance& advance) {
+std::vector<Leg> PlayOneChain(const ToppleLoopConfig& loop, Chain chain, const base::Crew& crew,
+                              const base::Advance& advance) {
   // A leg that cannot even start takes no time: so many in a row end the chain.
   const std::size_t most_without_time = 2 * loop.route.size();
   std::size_t without_time = 0;
@@ -230,7 +230,7 @@ std::vector<Leg> PlayOneChain(const ToppleLoopConfig& loop, Chain chain, const C
 
 /// What the load of one chain went through, leg by leg.
 void TellExperiences(const std::string& motion_set, std::size_t number, std::vector<Leg>* legs,
-                     const imagination::RolloutParams& params, const Crew& crew) {
+                     const imagination::RolloutParams& params, const OnExperience& on_experience) {
   ToppleMonitor monitor(params);
   for (Leg& leg : *legs) {
     knowledge::ExperienceBatch batch{fmt::format("{}/{}", motion_set, number),
@@ -241,7 +241,7 @@ void TellExperiences(const std::string& motion_set, std::size_t number, std::vec
       if (const auto part = monitor.Add(sample)) batch.parts.push_back(*part);
     }
     leg.samples = {};
-    crew.on_experience(batch);
+    on_experience(batch);
   }
 }
 
@@ -250,21 +250,22 @@ void TellExperiences(const std::string& motion_set, std::size_t number, std::vec
 std::optional<std::vector<Chains>> PlayToppleLoop(const ToppleLoopConfig& loop,
                                                   const ExperimentConfig& config,
                                                   const std::shared_ptr<const Stage>& stage,
-                                                  const Crew& crew) {
+                                                  const base::Crew& crew,
+                                                  const OnExperience& on_experience) {
   std::vector<Chains> by_set(2, Chains(loop.chains));
-  const auto play = [&](int task, const Advance& advance) {
+  const auto play = [&](int task, const base::Advance& advance) {
     const int set = task % 2, number = task / 2;
     const std::uint64_t seed = base::Rng(config.seed).Fork(number).seed();
     Chain chain(stage, loop.route.front(),
                 {loop.motion_sets[set], seed, true, loop.one_truth_per_chain,
-                 static_cast<bool>(crew.on_experience)});
+                 static_cast<bool>(on_experience)});
     by_set[set][number] = PlayOneChain(loop, std::move(chain), crew, advance);
   };
-  if (!DoInParallel(2 * loop.chains, 2.0 * loop.duration, crew, play)) return std::nullopt;
-  for (std::size_t set = 0; crew.on_experience && set < by_set.size(); ++set) {
+  if (!base::DoInParallel(2 * loop.chains, 2.0 * loop.duration, crew, play)) return std::nullopt;
+  for (std::size_t set = 0; on_experience && set < by_set.size(); ++set) {
     for (std::size_t number = 0; number < by_set[set].size(); ++number) {
       TellExperiences(loop.motion_sets[set], number, &by_set[set][number], stage->setup.rollout,
-                      crew);
+                      on_experience);
     }
   }
   return by_set;

@@ -54,7 +54,7 @@ LadderOwn OwnOf(std::string id, std::string title, std::string unit, std::vector
 /// Measures one plan after the other and tells how far it is.
 class Climber {
  public:
-  Climber(const LadderOrder& order, const Crew& crew)
+  Climber(const LadderOrder& order, const base::Crew& crew)
       : order_(order),
         crew_(crew),
         places_(order.package_folder, order.seed),
@@ -144,7 +144,7 @@ class Climber {
   }
 
   const LadderOrder& order_;
-  const Crew& crew_;
+  const base::Crew& crew_;
   const ladder::Places places_;
   const double begin_;  // [s]
   double shares_{0.0}, done_{0.0};
@@ -154,7 +154,7 @@ class Climber {
 
 }  // namespace
 
-std::optional<LadderReport> ClimbLadder(const LadderOrder& order, const Crew& crew) {
+std::optional<LadderReport> ClimbLadder(const LadderOrder& order, const base::Crew& crew) {
   CheckOrder(order);
   if (crew.cancelled && crew.cancelled()) return std::nullopt;
   return Climber(order, crew).Climb();

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "hires/base/check.h"
-#include "hires/evaluation/experiment/parallel.h"
+#include "hires/base/parallel.h"
 
 namespace hires::evaluation::ladder {
 namespace {
@@ -43,14 +43,14 @@ class Team {
     return !(crew_.cancelled && crew_.cancelled());
   }
   bool PlayAll(int first, int rounds, std::vector<double>* amounts) const {
-    return DoInParallel(
-        static_cast<int>(players_.size()), 1.0, crew_, [&](int player, const Advance&) {
+    return base::DoInParallel(
+        static_cast<int>(players_.size()), 1.0, crew_, [&](int player, const base::Advance&) {
           PlayOne(static_cast<std::size_t>(player), first, rounds, &(*amounts)[player]);
         });
   }
 
   std::vector<Player> players_;
-  Crew crew_;
+  base::Crew crew_;
 };
 
 struct Plan {

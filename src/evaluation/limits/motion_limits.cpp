@@ -13,8 +13,8 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
+#include "hires/base/parallel.h"
 #include "hires/base/rng.h"
-#include "hires/evaluation/experiment/parallel.h"
 #include "hires/geometry/angles.h"
 
 namespace hires::evaluation {
@@ -105,7 +105,7 @@ Twist2 Along(double direction, double speed, double turning = 0.0) {
 class LimitFinder {
  public:
   LimitFinder(const LimitsRequest& request, const imagination::ImaginationSetup& setup,
-              const Crew& crew)
+              const base::Crew& crew)
       : request_(request),
         setup_(setup),
         crew_(crew),
@@ -186,7 +186,7 @@ class LimitFinder {
                                               const std::vector<int>& truths) {
     std::vector<DriveOutcome> outcomes(truths.size());
     const int num_tasks = static_cast<int>(truths.size());
-    const auto work = [&](int task, const Advance& advance) {
+    const auto work = [&](int task, const base::Advance& advance) {
       const int truth = truths[task];
       const double direction =
           2.0 * geometry::kPi * (truth % report_.num_directions) / report_.num_directions;
@@ -196,9 +196,9 @@ class LimitFinder {
                                    .Fork(static_cast<std::uint64_t>(truth)));
       advance(1.0);
     };
-    Crew crew = crew_;
+    base::Crew crew = crew_;
     crew.on_progress = nullptr;
-    if (!DoInParallel(num_tasks, num_tasks, crew, work)) return std::nullopt;
+    if (!base::DoInParallel(num_tasks, num_tasks, crew, work)) return std::nullopt;
     std::vector<int> fallen;
     for (int i = 0; i < num_tasks; ++i) {
       report_.simulated_seconds += outcomes[i].simulated;
@@ -269,7 +269,7 @@ class LimitFinder {
 
   const LimitsRequest& request_;
   const imagination::ImaginationSetup& setup_;
-  const Crew& crew_;
+  const base::Crew& crew_;
   const robot::BaseControllerParams& controller_;
   const std::vector<MotionBounds> bounds_;
   const DriveStage stage_;
@@ -292,7 +292,7 @@ int NumTruths(double max_fall) {
 
 std::optional<LimitsReport> FindLimits(const LimitsRequest& request,
                                        const imagination::ImaginationSetup& setup,
-                                       const Crew& crew) {
+                                       const base::Crew& crew) {
   return LimitFinder(request, setup, crew).Find();
 }
 

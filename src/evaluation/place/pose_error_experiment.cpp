@@ -12,14 +12,14 @@ constexpr std::uint64_t kPlayed = 77;  // stream of the held-out seeds
 /// Experiments one after the other, whose progress is told as that of one.
 class Parts {
  public:
-  Parts(const Crew& crew, int count) : crew_(crew), count_(count) {}
+  Parts(const base::Crew& crew, int count) : crew_(crew), count_(count) {}
 
   /// Of the next one; lives no longer than this.
-  Crew Next() {
+  base::Crew Next() {
     const int index = num_begun_++;
     before_ += last_;
     last_ = 0.0;
-    Crew part = crew_;
+    base::Crew part = crew_;
     if (!crew_.on_progress) return part;
     part.on_progress = [this, index](double fraction, double elapsed) {
       last_ = elapsed;
@@ -29,7 +29,7 @@ class Parts {
   }
 
  private:
-  const Crew& crew_;
+  const base::Crew& crew_;
   const int count_;
   int num_begun_{0};
   double before_{0.0}, last_{0.0};  // [s]
@@ -66,7 +66,7 @@ std::optional<std::vector<PlaceTrail>> Trails(const PoseErrorOrder& order, int f
 
 }  // namespace
 
-std::optional<PoseErrorReport> FitPoseError(const PoseErrorOrder& order, const Crew& crew) {
+std::optional<PoseErrorReport> FitPoseError(const PoseErrorOrder& order, const base::Crew& crew) {
   RequireFilter(order.drives);
   const auto stage = std::make_shared<const Stage>(MakeStage(order.drives));
   const simulation::SelfLocalisationParams params =

@@ -4,7 +4,7 @@
 
 #include "evaluation/recognition/fit_cases.h"
 #include "evaluation/recognition/regression.h"
-#include "hires/evaluation/experiment/parallel.h"
+#include "hires/base/parallel.h"
 
 namespace hires::evaluation {
 namespace {
@@ -16,13 +16,13 @@ using Look = const ThingVerdict&;
 
 /// @return by table.
 std::optional<std::vector<std::vector<TwoLooks>>> LookTwice(const DetectorFitOrder& order,
-                                                            const Crew& crew) {
+                                                            const base::Crew& crew) {
   const int num_tables = order.tables + order.held_out;
   const perception::RandomTables tables(order.robot, order.recogniser, FitVariety());
   const auto recogniser = std::make_shared<const perception::Recogniser>(order.recogniser.catalogue,
                                                                          order.recogniser.params);
   std::vector<std::vector<TwoLooks>> seen(num_tables);
-  const auto work = [&](int task, const Advance& advance) {
+  const auto work = [&](int task, const base::Advance& advance) {
     const std::uint64_t own = order.seed + static_cast<std::uint64_t>(task);
     // A rollout is told of a thing where a robot would be, so by any detection that is of it.
     const RecognitionScore none(order.recogniser.catalogue, 1, perception::kToldOf);
@@ -36,7 +36,7 @@ std::optional<std::vector<std::vector<TwoLooks>>> LookTwice(const DetectorFitOrd
       seen[task].push_back({scores[0].things()[i], scores[1].things()[i]});
     advance(1.0);
   };
-  if (!DoInParallel(num_tables, num_tables, crew, work)) return std::nullopt;
+  if (!base::DoInParallel(num_tables, num_tables, crew, work)) return std::nullopt;
   return seen;
 }
 
@@ -117,7 +117,8 @@ perception::TableVariety FitVariety() {
   return variety;
 }
 
-std::optional<DetectorFitReport> FitDetector(const DetectorFitOrder& order, const Crew& crew) {
+std::optional<DetectorFitReport> FitDetector(const DetectorFitOrder& order,
+                                             const base::Crew& crew) {
   const auto seen = LookTwice(order, crew);
   if (!seen) return std::nullopt;
   std::vector<TwoLooks> all, others;

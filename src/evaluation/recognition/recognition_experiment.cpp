@@ -6,8 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "hires/base/parallel.h"
 #include "hires/base/resource_use.h"
-#include "hires/evaluation/experiment/parallel.h"
 
 namespace hires::evaluation {
 namespace {
@@ -92,12 +92,13 @@ std::vector<ThingVerdict> TableTrial::TryLeftOut(const RandomTable& table,
 
 }  // namespace
 
-std::optional<RecognitionReport> TryRecogniser(const RecognitionOrder& order, const Crew& crew) {
+std::optional<RecognitionReport> TryRecogniser(const RecognitionOrder& order,
+                                               const base::Crew& crew) {
   const TableTrial trial(order);
   std::vector<RecognitionScore> scores(order.tables, RecognitionScore(order.recogniser.catalogue));
   std::vector<std::vector<ThingVerdict>> left_out(order.tables);
   std::vector<double> seconds(order.tables, 0.0);
-  const auto work = [&](int task, const Advance& advance) {
+  const auto work = [&](int task, const base::Advance& advance) {
     const std::uint64_t seed = order.seed + static_cast<std::uint64_t>(task);
     const RandomTable table = trial.tables.Make(seed);
     if (order.on_cloud) order.on_cloud(seed, table.cloud);
@@ -105,7 +106,7 @@ std::optional<RecognitionReport> TryRecogniser(const RecognitionOrder& order, co
     left_out[task] = trial.TryLeftOut(table, seed);
     advance(1.0);
   };
-  if (!DoInParallel(order.tables, order.tables, crew, work)) return std::nullopt;
+  if (!base::DoInParallel(order.tables, order.tables, crew, work)) return std::nullopt;
   RecognitionReport report{order.tables, order.seed, RecognitionScore(order.recogniser.catalogue)};
   for (int i = 0; i < order.tables; ++i) {
     report.score.Append(scores[i]);

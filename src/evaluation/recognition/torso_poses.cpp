@@ -4,8 +4,8 @@
 #include <set>
 
 #include "hires/base/error.h"
+#include "hires/base/parallel.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/experiment/parallel.h"
 #include "hires/geometry/angles.h"
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
@@ -165,7 +165,8 @@ const PoseTrial& TorsoPosesReport::at(int torso, int base, int kind, int look) c
   return trials[((torso * num_bases + base) * num_kinds + kind) * looks + look];
 }
 
-std::optional<TorsoPosesReport> PlayTorsoPoses(const TorsoPosesOrder& order, const Crew& crew) {
+std::optional<TorsoPosesReport> PlayTorsoPoses(const TorsoPosesOrder& order,
+                                               const base::Crew& crew) {
   const PoseStage stage(order);
   TorsoPosesReport report;
   for (const char* torso : kTorsos) report.torsos.emplace_back(torso);
@@ -175,13 +176,13 @@ std::optional<TorsoPosesReport> PlayTorsoPoses(const TorsoPosesOrder& order, con
   const int per_base = stage.num_kinds() * order.looks;
   const int per_torso = per_base * static_cast<int>(report.bases.size());
   report.trials.resize(static_cast<std::size_t>(per_torso) * std::size(kTorsos));
-  const auto work = [&](int task, const Advance& advance) {
+  const auto work = [&](int task, const base::Advance& advance) {
     report.trials[task] = stage.Try(task / per_torso, task % per_torso / per_base,
                                     task % per_base / order.looks, task % order.looks);
     advance(1.0);
   };
   const int num_tasks = static_cast<int>(report.trials.size());
-  if (!DoInParallel(num_tasks, num_tasks, crew, work)) return std::nullopt;
+  if (!base::DoInParallel(num_tasks, num_tasks, crew, work)) return std::nullopt;
   return report;
 }
 

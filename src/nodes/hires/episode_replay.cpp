@@ -85,7 +85,7 @@ std::optional<ImaginedAction> AskFor(const EpisodeStep& step, const hires::Imagi
 Imagine WayOf(const EpisodeReplay& replay, const ImaginationSetup& setup,
               const std::vector<EpisodeStep>& steps, const std::function<bool()>& cancelled) {
   if (replay.is_local) {
-    const evaluation::Crew crew{replay.threads, cancelled, {}};
+    const hires::base::Crew crew{replay.threads, cancelled, {}};
     return [=, with_goals = evaluation::WithGoals(setup, steps)](const EpisodeStep& step,
                                                                  std::uint64_t place) {
       return evaluation::ImagineStep(with_goals, step, replay.params, place, crew);

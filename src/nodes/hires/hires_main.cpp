@@ -6,14 +6,11 @@
 #include <vector>
 
 #include "hires/cli/command_line.h"
-#include "hires/cli/hypothesis_play.h"
 #include "hires/cli/robot_doctor.h"
-#include "hires/cli/scenario_play.h"
 #include "hires/ros/node/launch_guard.h"
 #include "hires/ros/rollout_bag.h"
 #include "nodes/hires/drive_bag.h"
 #include "nodes/hires/episode_writer.h"
-#include "nodes/hires/hypothesis_run.h"
 #include "nodes/hires/message_types.h"
 #include "nodes/hires/remote_achieve.h"
 #include "nodes/hires/remote_blackboard.h"
@@ -21,7 +18,6 @@
 #include "nodes/hires/replay.h"
 #include "nodes/hires/robot_doctor_look.h"
 #include "nodes/hires/ros_doctor.h"
-#include "nodes/hires/scenario_run.h"
 #include "nodes/hires/watch.h"
 
 /// For launch files: what went well ends the launch that started it. A `required` node would end
@@ -41,22 +37,11 @@ int main(int argc, char** argv) {
     return hires_ros::MakeEpisodeWriter(path, backends.package_folder);
   };
   backends.make_rollout_bag = hires_ros::MakeRolloutBag;
-  backends.play_hypothesis = hires::cli::PlayHypothesisRun;
   backends.read_drive_bag = hires_ros::ReadDriveBag;
   backends.examine_robot = [&](const hires::cli::RobotDoctorOptions& options) {
     return hires::cli::RunRobotDoctor(options, backends.package_folder,
                                       hires_ros::MessageTypesOfRobot(), hires_ros::LookAtRobot);
   };
-  backends.more_verbs.push_back(
-      {hires::cli::kHypothesisRunVerb, "one run of `hires experiment hypothesis`, which starts it",
-       [&](const std::vector<std::string>& words) {
-         return hires_ros::RunHypothesisProcess(words, backends.package_folder);
-       }});
-  backends.more_verbs.push_back(
-      {hires::cli::kScenarioRunVerb, "one run of `hires scenarios --graph`, which starts it",
-       [&](const std::vector<std::string>& words) {
-         return hires_ros::RunScenarioProcess(words, backends.package_folder);
-       }});
   backends.more_verbs.push_back({"replay",
                                  "imagine the steps of a recorded robot episode, or recorded "
                                  "requests again, and compare: BAG [--local [--threads N]] "

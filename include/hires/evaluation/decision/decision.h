@@ -70,8 +70,8 @@ struct TruthPlay {
 };
 /// What a drive and its truth say, in the codes with which a rollout ends: the drive's own failure,
 /// the load's first fall as world::CodeOf calls it, other things that fell, a touch.
-TruthPlay JudgeDrive(const base::Failure& failure, double duration, const RunTruth& truth,
-                     const std::string& load);
+TruthPlay JudgeDrive(const base::Failure& failure, double duration,
+                     const simulation::RunTruth& truth, const std::string& load);
 
 /// What things, lateness and all else cost in a task, failures and lateness `scale` times as much.
 imagination::Prices PricesOf(const DecisionTask& task, const imagination::Prices& prices,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/base/parallel.h"
 #include "hires/base/param_reader.h"
 #include "hires/evaluation/experiment/report.h"
 #include "hires/navigation/base_guard.h"
@@ -16,7 +17,6 @@ namespace hires::evaluation {
 /// [m/s], [rad/s] of a base that stands.
 inline constexpr double kStandingSpeed = 0.01;
 
-struct Crew;
 struct ExperimentConfig;
 struct ExperimentOverrides;
 struct Stage;
@@ -98,7 +98,7 @@ std::vector<BrakingPlay> BrakingCells(const BrakingConfig& braking, const Stage&
 /// @return nothing when cancelled.
 std::optional<std::vector<BrakingPlay>> PlayBraking(const BrakingConfig& braking,
                                                     const ExperimentConfig& config,
-                                                    const Stage& stage, const Crew& crew);
+                                                    const Stage& stage, const base::Crew& crew);
 Findings SumUpBraking(const BrakingConfig& braking, const std::vector<BrakingPlay>& plays);
 
 }  // namespace hires::evaluation

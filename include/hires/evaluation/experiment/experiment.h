@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "hires/base/parallel.h"
 #include "hires/evaluation/experiment/braking.h"
 #include "hires/evaluation/experiment/report.h"
 #include "hires/geometry/pose.h"
@@ -130,21 +131,15 @@ ExperimentConfig ReadExperiment(const std::string& path, const ExperimentOverrid
 /// "legs", "paired", "topple_loop", "durations", "braking".
 std::string KindName(const ExperimentConfig& config);
 
-/// Who does the work of an experiment, and who is told.
-struct Crew {
-  int threads{1};
-  std::function<bool()> cancelled;  ///< asked a few times per simulated second; may be empty
-  /// Called a few times a second, and at the end, with the share that is done and the time since
-  /// the start [s].
-  std::function<void(double fraction, double elapsed)> on_progress;
-  /// Called by `topple_loop` at its end with what each load went through, run by run, leg by leg:
-  /// the same for any number of threads. May be empty.
-  std::function<void(const knowledge::ExperienceBatch&)> on_experience{};
-};
+/// Told by `topple_loop` at its end what each load went through, run by run, leg by leg: the same
+/// for any number of threads. May be empty.
+using OnExperience = std::function<void(const knowledge::ExperienceBatch&)>;
 
 /// Plays and sums up. The same bits for any number of threads.
 /// @return nothing when it was cancelled.  @throws base::ConfigError for what cannot be played.
-std::optional<ExperimentReport> RunExperiment(const ExperimentConfig& config, const Crew& crew);
+std::optional<ExperimentReport> RunExperiment(const ExperimentConfig& config,
+                                              const base::Crew& crew,
+                                              const OnExperience& on_experience = {});
 
 /// The report as it is before anything is played: name, kind, seed and hashes.
 /// @throws base::ConfigError for what cannot be loaded.

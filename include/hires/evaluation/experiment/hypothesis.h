@@ -73,12 +73,6 @@ nlohmann::ordered_json ToJson(const HypothesisRun& run);
 /// @throws base::ConfigError naming `where` and the field.
 HypothesisRun ParseHypothesisRun(const nlohmann::ordered_json& json, const std::string& where);
 
-/// How loose objects really fared when a run ends, by name in lower case.
-struct RunTruth {
-  std::map<std::string, simulation::ObjectFate> objects;
-  std::string contact;  ///< the robot's first collision, or empty
-};
-
 /// What a run must not break to be a success. At least as strict as a rollout is judged.
 enum class JudgeRule {
   kFell,         ///< a thing that the task is about fell, be it that it was put up again
@@ -108,7 +102,7 @@ bool StandsAt(const WantedPlace& place, const simulation::ObjectFate& object);
 
 /// Success, verdict, broken rules, falls and contact of the run.
 void Judge(const HypothesisGoal& goal, const std::vector<WantedPlace>& places,
-           const RunTruth& truth, HypothesisRun* run);
+           const simulation::RunTruth& truth, HypothesisRun* run);
 
 /// What the execution monitor reports, counted.
 void CountReport(const AchieveReport& report, HypothesisRun* run);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/base/parallel.h"
 #include "hires/evaluation/experiment/experiment.h"
 #include "hires/evaluation/statistics.h"
 
@@ -80,7 +81,7 @@ struct LadderReport {
 
 /// @param crew  its threads are "all cores".  @return nothing when it was cancelled.
 /// @throws base::ConfigError for bad numbers or files, before anything is measured.
-std::optional<LadderReport> ClimbLadder(const LadderOrder& order, const Crew& crew);
+std::optional<LadderReport> ClimbLadder(const LadderOrder& order, const base::Crew& crew);
 
 std::string ReportText(const LadderReport& report);
 /// {"schema": "hires/ladder", "version": 1, ...}; the order of `rungs` and `own` is fixed.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/base/parallel.h"
 #include "hires/base/rng.h"
 #include "hires/evaluation/experiment/experiment.h"
 #include "hires/evaluation/place/place_moment.h"
@@ -57,7 +58,7 @@ PoseErrorFigures FiguresOf(const std::vector<PlaceTrail>& trails);
 /// The same bits for any number of threads.
 /// @return nothing when it was cancelled.  @throws base::ConfigError for an experiment of another
 /// kind or whose robot is told its place, and as FitPoseError.
-std::optional<PoseErrorReport> FitPoseError(const PoseErrorOrder& order, const Crew& crew);
+std::optional<PoseErrorReport> FitPoseError(const PoseErrorOrder& order, const base::Crew& crew);
 
 std::string ReportText(const PoseErrorReport& report);
 nlohmann::ordered_json ToJson(const PoseErrorReport& report);

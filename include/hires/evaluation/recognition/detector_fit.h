@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/base/parallel.h"
 #include "hires/evaluation/experiment/experiment.h"
 #include "hires/perception/detector_errors.h"
 #include "hires/perception/recogniser_config.h"
@@ -68,7 +69,7 @@ perception::DetectorErrors FitDetector(const std::vector<TwoLooks>& things,
 /// The same bits for any number of threads.
 /// @return nothing when it was cancelled.  @throws base::ConfigError for a robot without a camera,
 /// and as FitDetector.
-std::optional<DetectorFitReport> FitDetector(const DetectorFitOrder& order, const Crew& crew);
+std::optional<DetectorFitReport> FitDetector(const DetectorFitOrder& order, const base::Crew& crew);
 
 std::string ReportText(const DetectorFitReport& report);
 nlohmann::ordered_json ToJson(const DetectorFitReport& report);

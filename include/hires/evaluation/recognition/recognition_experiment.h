@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/base/parallel.h"
 #include "hires/evaluation/experiment/experiment.h"
 #include "hires/perception/recogniser_config.h"
 #include "hires/perception/recognition_score.h"
@@ -39,7 +40,8 @@ struct RecognitionReport {
 
 /// The same bits for any number of threads.
 /// @return nothing when it was cancelled.  @throws base::ConfigError for a robot without a camera.
-std::optional<RecognitionReport> TryRecogniser(const RecognitionOrder& order, const Crew& crew);
+std::optional<RecognitionReport> TryRecogniser(const RecognitionOrder& order,
+                                               const base::Crew& crew);
 
 /// Over distance and torso posture, with 95 % intervals (ClusteredShareInterval, by table); what
 /// was confused; the goals beside. What nothing tells is "-", in JSON null.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/base/parallel.h"
 #include "hires/evaluation/experiment/experiment.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/perception/recogniser_config.h"
@@ -41,7 +42,8 @@ struct TorsoPosesReport {
 /// The same bits for any number of threads.
 /// @return nothing when it was cancelled.
 /// @throws base::ConfigError for a robot without arms, or places that the world does not have.
-std::optional<TorsoPosesReport> PlayTorsoPoses(const TorsoPosesOrder& order, const Crew& crew);
+std::optional<TorsoPosesReport> PlayTorsoPoses(const TorsoPosesOrder& order,
+                                               const base::Crew& crew);
 
 /// A table over poses, one over things, and the findings of Figure 6.6 with 95 % intervals.
 std::string ReportText(const TorsoPosesReport& report);

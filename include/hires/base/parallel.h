@@ -2,9 +2,16 @@
 
 #include <functional>
 
-#include "hires/evaluation/experiment/experiment.h"
+namespace hires::base {
 
-namespace hires::evaluation {
+/// Who does a long work that falls into tasks, and who is told.
+struct Crew {
+  int threads{1};
+  std::function<bool()> cancelled{};  ///< asked between tasks, and by tasks; may be empty
+  /// Called a few times a second, and at the end, with the share that is done and the time since
+  /// the start [s]. May be empty.
+  std::function<void(double fraction, double elapsed)> on_progress{};
+};
 
 /// How a task says that it got on, in units of its own choice.
 using Advance = std::function<void(double units)>;
@@ -16,4 +23,4 @@ using Advance = std::function<void(double units)>;
 bool DoInParallel(int num_tasks, double total_units, const Crew& crew,
                   const std::function<void(int task, const Advance& advance)>& work);
 
-}  // namespace hires::evaluation
+}  // namespace hires::base

@@ -1,12 +1,12 @@
+#include "hires/base/parallel.h"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <stdexcept>
 #include <vector>
 
-#include "hires/evaluation/experiment/parallel.h"
-
-namespace hires::evaluation::experiment_parallel_test {
+namespace hires::base::parallel_test {
 namespace {
 
 Crew CrewOf(int threads) {
@@ -72,4 +72,4 @@ TEST(DoInParallelTest, ReportsShares) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::experiment_parallel_test
+}  // namespace hires::base::parallel_test

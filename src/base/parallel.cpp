@@ -1,4 +1,4 @@
-#include "hires/evaluation/experiment/parallel.h"
+#include "hires/base/parallel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -12,7 +12,7 @@
 
 #include "hires/base/mailbox.h"
 
-namespace hires::evaluation {
+namespace hires::base {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -40,7 +40,7 @@ class Team {
   }
 
   int size() const { return static_cast<int>(threads_.size()); }
-  base::Mailbox<Event>& events() { return events_; }
+  Mailbox<Event>& events() { return events_; }
 
  private:
   void Run() {
@@ -63,7 +63,7 @@ class Team {
   const int num_tasks_;
   const Crew& crew_;
   const std::function<void(int, const Advance&)>& work_;
-  base::Mailbox<Event> events_;
+  Mailbox<Event> events_;
   std::atomic<int> next_{0};
   std::atomic<bool> has_failed_{false};
   std::vector<std::thread> threads_;  // last: starts when all else is ready
@@ -126,4 +126,4 @@ bool DoInParallel(int num_tasks, double total_units, const Crew& crew,
   return true;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::base

@@ -1,4 +1,4 @@
-#include "nodes/hires/scenario_run.h"
+#include "lab/src/graph/scenario_run.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "hires/cli/scenario_play.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/evaluation/timeline.h"
-#include "nodes/hires/graph_run.h"
+#include "lab/src/graph/graph_run.h"
 #include "nodes/hires/remote_achieve.h"
 
 namespace hires_ros {
@@ -33,7 +33,7 @@ std::vector<std::string> ArgumentsOf(const hires::cli::GraphOrder& order) {
           "store:=" + StoreOf(order.run)};
 }
 
-ordered_json TruthJson(const evaluation::RunTruth& truth, double seconds) {
+ordered_json TruthJson(const hires::simulation::RunTruth& truth, double seconds) {
   ordered_json objects = ordered_json::object();
   for (const auto& [name, fate] : truth.objects) objects[name] = {{"falls", fate.falls}};
   return {{"virtual_seconds", seconds}, {"touched", truth.contact}, {"objects", objects}};
@@ -117,7 +117,7 @@ ordered_json PlayInGraph(const hires::cli::GraphOrder& order, int port,
 int RunScenarioProcess(const std::vector<std::string>& words, const std::string& package_folder) {
   if (words.size() != 3) {
     throw ConfigError(fmt::format(
-        "{}: wanted ORDER.json RESULT.json FIRST_PORT; `hires scenarios --graph` starts it",
+        "{}: wanted ORDER.json RESULT.json FIRST_PORT; `hires_lab scenarios --graph` starts it",
         hires::cli::kScenarioRunVerb));
   }
   hires::base::StopWithParent();

@@ -68,13 +68,13 @@ class Witness {
       : subscriber_(nh->subscribe("ground_truth/summary", 10, &Witness::OnSummary, this)) {}
 
   bool HasSeen() const;
-  hires::evaluation::RunTruth Truth() const;
+  hires::simulation::RunTruth Truth() const;
 
  private:
   void OnSummary(const hires::GroundTruthConstPtr& summary);
 
   mutable std::mutex mutex_;
-  hires::evaluation::RunTruth truth_;
+  hires::simulation::RunTruth truth_;
   bool has_seen_{false};
   ros::Subscriber subscriber_;
 };

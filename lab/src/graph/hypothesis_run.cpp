@@ -1,4 +1,4 @@
-#include "nodes/hires/hypothesis_run.h"
+#include "lab/src/graph/hypothesis_run.h"
 
 #include <fmt/format.h>
 #include <ros/ros.h>
@@ -15,7 +15,7 @@
 #include "hires/evaluation/scenario.h"
 #include "hires/evaluation/timeline.h"
 #include "hires/imagination/imagination_setup.h"
-#include "nodes/hires/graph_run.h"
+#include "lab/src/graph/graph_run.h"
 #include "nodes/hires/remote_achieve.h"
 
 namespace hires_ros {
@@ -102,7 +102,7 @@ HypothesisRun PlayInSystem(const HypothesisOrder& order, int port,
 int RunHypothesisProcess(const std::vector<std::string>& words, const std::string& package_folder) {
   if (words.size() != 3) {
     throw ConfigError(
-        fmt::format("{}: wanted ORDER.json RECORD.json FIRST_PORT; `hires experiment "
+        fmt::format("{}: wanted ORDER.json RECORD.json FIRST_PORT; `hires_lab experiment "
                     "hypothesis` starts it",
                     hires::cli::kHypothesisRunVerb));
   }

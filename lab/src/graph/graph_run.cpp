@@ -1,4 +1,4 @@
-#include "nodes/hires/graph_run.h"
+#include "lab/src/graph/graph_run.h"
 
 #include <fmt/format.h>
 #include <signal.h>
@@ -95,7 +95,7 @@ bool Witness::HasSeen() const {
   return has_seen_;
 }
 
-hires::evaluation::RunTruth Witness::Truth() const {
+hires::simulation::RunTruth Witness::Truth() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return truth_;
 }

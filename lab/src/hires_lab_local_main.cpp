@@ -1,0 +1,9 @@
+// `hires_lab` of the build without ROS: plays in its own process.
+#include "cli/lab_command_line.h"
+#include "hires/cli/package_folder.h"
+
+int main(int argc, char** argv) {
+  hires::cli::LabBackends backends;
+  backends.package_folder = hires::cli::LocalPackageFolder(HIRES_SOURCE_DIR);
+  return hires::cli::RunLabCommandLine({argv, argv + argc}, backends);
+}

@@ -1,0 +1,17 @@
+#include "hires/cli/package_folder.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace hires::cli {
+
+std::string LocalPackageFolder(const std::string& source_folder) {
+  if (const char* folder = std::getenv("HIRES_PACKAGE_FOLDER")) return folder;
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const auto installed = program.parent_path().parent_path() / "share" / "hires";
+  if (std::filesystem::exists(installed / "config" / "scene.yaml", error)) return installed;
+  return source_folder;
+}
+
+}  // namespace hires::cli
