@@ -1,10 +1,13 @@
 #include "hires/base/param_reader.h"
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "hires/base/error.h"
 #include "hires/base/spelling.h"
@@ -94,25 +97,82 @@ Bound<std::string> OneOf(std::vector<std::string> choices) {
           wanted};
 }
 
-ParamReader::ParamReader(const YAML::Node& node, std::string where, std::string prefix)
-    : node_(node),
-      where_(std::move(where)),
-      prefix_(std::move(prefix)),
-      read_(std::make_shared<Read>()) {
-  if (!node_.IsMap() && !node_.IsNull()) {
+struct ParamReader::Map {
+  Map(const YAML::Node& map, std::string file, std::string path);
+
+  bool Has(const std::string& key) const;
+  YAML::Node Require(const std::string& key);
+  template <typename T>
+  T Parse(const std::string& key, const char* type_name);
+  template <typename T>
+  T GetBounded(const std::string& key, const Bound<T>& bound, const char* type_name);
+  [[noreturn]] void Fail(const std::string& key, const std::string& what) const;
+
+  const YAML::Node node;     // const, as looking up a key would add it otherwise
+  const std::string where;   // file
+  const std::string prefix;  // "" or "path.to."
+  std::set<std::string> read;
+  std::vector<ParamReader> subs;
+};
+
+ParamReader::Map::Map(const YAML::Node& map, std::string file, std::string path)
+    : node(map), where(std::move(file)), prefix(std::move(path)) {
+  if (!node.IsMap() && !node.IsNull()) {
     throw ConfigError(
-        fmt::format("{}: {} is {}, wanted a map of keys{}", where_,
-                    prefix_.empty() ? "the document" : prefix_.substr(0, prefix_.size() - 1),
-                    Written(node_), LineOf(node_)));
+        fmt::format("{}: {} is {}, wanted a map of keys{}", where,
+                    prefix.empty() ? "the document" : prefix.substr(0, prefix.size() - 1),
+                    Written(node), LineOf(node)));
   }
   std::set<std::string> seen;
-  for (const auto& entry : node_) {
+  for (const auto& entry : node) {
     if (!seen.insert(entry.first.Scalar()).second) {
-      throw ConfigError(fmt::format("{}: {}{} stands twice{}; keep one", where_, prefix_,
+      throw ConfigError(fmt::format("{}: {}{} stands twice{}; keep one", where, prefix,
                                     entry.first.Scalar(), LineOf(entry.first)));
     }
   }
 }
+
+bool ParamReader::Map::Has(const std::string& key) const {
+  return node.IsMap() && node[key].IsDefined();
+}
+
+YAML::Node ParamReader::Map::Require(const std::string& key) {
+  read.insert(key);
+  if (!Has(key)) {
+    RefuseMistyped(node, read, key, where, prefix);
+    throw ConfigError(
+        fmt::format("{}: {}{} is missing{}; add it", where, prefix, key, LineOf(node)));
+  }
+  return node[key];
+}
+
+template <typename T>
+T ParamReader::Map::Parse(const std::string& key, const char* type_name) {
+  const YAML::Node value = Require(key);
+  try {
+    if (value.IsScalar()) return value.as<T>();
+  } catch (const YAML::Exception&) {
+  }
+  throw ConfigError(fmt::format("{}: {}{} is {}, wanted {}{}", where, prefix, key, Written(value),
+                                type_name, LineOf(value)));
+}
+
+template <typename T>
+T ParamReader::Map::GetBounded(const std::string& key, const Bound<T>& bound,
+                               const char* type_name) {
+  T value = Parse<T>(key, type_name);
+  if (!bound.holds(value)) Fail(key, "wanted " + bound.wanted);
+  return value;
+}
+
+void ParamReader::Map::Fail(const std::string& key, const std::string& what) const {
+  const YAML::Node value = node.IsMap() ? node[key] : YAML::Node();
+  throw ConfigError(fmt::format("{}: {}{} is {}, {}{}", where, prefix, key,
+                                value.IsDefined() ? Written(value) : "missing", what,
+                                value.IsDefined() ? LineOf(value) : ""));
+}
+
+ParamReader::ParamReader(std::shared_ptr<Map> map) : map_(std::move(map)) {}
 
 ParamReader ParamReader::FromFile(const std::string& path) {
   return FromString(ReadTextFile(path, 1u << 20), path);
@@ -125,60 +185,34 @@ ParamReader ParamReader::FromString(const std::string& yaml, const std::string& 
       throw ConfigError(fmt::format("{}: holds {} YAML documents, wanted one; remove the '---'{}",
                                     where, documents.size(), LineOf(documents[1])));
     }
-    return ParamReader(documents.empty() ? YAML::Node() : documents[0], where, "");
+    return ParamReader(
+        std::make_shared<Map>(documents.empty() ? YAML::Node() : documents[0], where, ""));
   } catch (const YAML::Exception& error) {
     throw ConfigError(
         fmt::format("{}: no valid YAML: {}; line {}", where, error.msg, error.mark.line + 1));
   }
 }
 
-YAML::Node ParamReader::Require(const std::string& key) {
-  read_->keys.insert(key);
-  const YAML::Node& map = node_;
-  if (!Has(key)) {
-    RefuseMistyped(map, read_->keys, key, where_, prefix_);
-    throw ConfigError(
-        fmt::format("{}: {}{} is missing{}; add it", where_, prefix_, key, LineOf(map)));
-  }
-  return map[key];
-}
-
-template <typename T>
-T ParamReader::Parse(const std::string& key, const char* type_name) {
-  const YAML::Node value = Require(key);
-  try {
-    if (value.IsScalar()) return value.as<T>();
-  } catch (const YAML::Exception&) {
-  }
-  throw ConfigError(fmt::format("{}: {}{} is {}, wanted {}{}", where_, prefix_, key, Written(value),
-                                type_name, LineOf(value)));
-}
-
-template <typename T>
-T ParamReader::GetBounded(const std::string& key, const Bound<T>& bound, const char* type_name) {
-  T value = Parse<T>(key, type_name);
-  if (!bound.holds(value)) Fail(key, "wanted " + bound.wanted);
-  return value;
-}
-
 double ParamReader::Get(const std::string& key, const Bound<double>& bound) {
-  return GetBounded<double>(key, bound, "a number");
+  return map_->GetBounded<double>(key, bound, "a number");
 }
 int ParamReader::Get(const std::string& key, const Bound<int>& bound) {
   // The YAML library would take 010 for the octal 8.
-  if (HasLeadingZero(Require(key))) Fail(key, "wanted a whole number without a leading 0");
-  return GetBounded<int>(key, bound, "a whole number");
+  if (HasLeadingZero(map_->Require(key))) Fail(key, "wanted a whole number without a leading 0");
+  return map_->GetBounded<int>(key, bound, "a whole number");
 }
 std::string ParamReader::Get(const std::string& key, const Bound<std::string>& bound) {
-  return GetBounded<std::string>(key, bound, "text");
+  return map_->GetBounded<std::string>(key, bound, "text");
 }
-bool ParamReader::GetBool(const std::string& key) { return Parse<bool>(key, "true or false"); }
+bool ParamReader::GetBool(const std::string& key) {
+  return map_->Parse<bool>(key, "true or false");
+}
 std::string ParamReader::GetString(const std::string& key) {
-  return Parse<std::string>(key, "text");
+  return map_->Parse<std::string>(key, "text");
 }
 
 std::vector<double> ParamReader::GetNumbers(const std::string& key, std::size_t size) {
-  const YAML::Node list = Require(key);
+  const YAML::Node list = map_->Require(key);
   std::vector<double> numbers;
   if (list.IsSequence()) {
     for (const YAML::Node& item : list) {
@@ -197,7 +231,7 @@ std::vector<double> ParamReader::GetNumbers(const std::string& key, std::size_t 
 }
 
 std::vector<std::string> ParamReader::GetStrings(const std::string& key) {
-  const YAML::Node list = Require(key);
+  const YAML::Node list = map_->Require(key);
   if (!list.IsSequence()) Fail(key, "wanted a list of text");
   std::vector<std::string> strings;
   for (const YAML::Node& item : list) {
@@ -207,69 +241,65 @@ std::vector<std::string> ParamReader::GetStrings(const std::string& key) {
   return strings;
 }
 
-bool ParamReader::Has(const std::string& key) const {
-  const YAML::Node& map = node_;
-  return map.IsMap() && map[key].IsDefined();
-}
+bool ParamReader::Has(const std::string& key) const { return map_->Has(key); }
 
 void ParamReader::RequireKeys(const std::vector<std::string>& keys) const {
   std::vector<std::string> missing;
-  std::set<std::string> read = read_->keys;
+  std::set<std::string> read = map_->read;
   read.insert(keys.begin(), keys.end());
   for (const std::string& path : keys) {
-    if (HasPath(node_, Split(path, '.'))) continue;
-    RefuseMistyped(node_, read, path, where_, prefix_);
-    missing.push_back(prefix_ + path);
+    if (HasPath(map_->node, Split(path, '.'))) continue;
+    RefuseMistyped(map_->node, read, path, map_->where, map_->prefix);
+    missing.push_back(map_->prefix + path);
   }
   if (missing.empty()) return;
-  throw ConfigError(fmt::format("{}: {} {} missing; add {}", where_, Join(missing, ", "),
+  throw ConfigError(fmt::format("{}: {} {} missing; add {}", map_->where, Join(missing, ", "),
                                 missing.size() == 1 ? "is" : "are",
                                 missing.size() == 1 ? "it" : "them"));
 }
 
 ParamReader ParamReader::Sub(const std::string& key) {
-  read_->subs.push_back(ParamReader(Require(key), where_, prefix_ + key + "."));
-  return read_->subs.back();
+  map_->subs.push_back(ParamReader(
+      std::make_shared<Map>(map_->Require(key), map_->where, map_->prefix + key + ".")));
+  return map_->subs.back();
 }
 
 std::vector<ParamReader> ParamReader::SubList(const std::string& key) {
-  const YAML::Node list = Require(key);
+  const YAML::Node list = map_->Require(key);
   if (!list.IsSequence()) Fail(key, "wanted a list of maps");
   std::vector<ParamReader> readers;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    readers.push_back(ParamReader(list[i], where_, fmt::format("{}{}[{}].", prefix_, key, i)));
+    readers.push_back(ParamReader(std::make_shared<Map>(
+        list[i], map_->where, fmt::format("{}{}[{}].", map_->prefix, key, i))));
   }
-  read_->subs.insert(read_->subs.end(), readers.begin(), readers.end());
+  map_->subs.insert(map_->subs.end(), readers.begin(), readers.end());
   return readers;
 }
 
 std::vector<std::string> ParamReader::Keys() const {
   std::vector<std::string> keys;
-  for (const auto& entry : node_) keys.push_back(entry.first.Scalar());
+  for (const auto& entry : map_->node) keys.push_back(entry.first.Scalar());
   return keys;
 }
 
-std::string ParamReader::Canonical() const { return YAML::Dump(node_); }
+std::string ParamReader::Canonical() const { return YAML::Dump(map_->node); }
 
 void ParamReader::RejectUnknownKeys() const {
   std::vector<std::string> wanted;
-  for (const std::string& key : read_->keys) wanted.push_back(prefix_ + key);
-  for (const auto& entry : node_) {
+  for (const std::string& key : map_->read) wanted.push_back(map_->prefix + key);
+  for (const auto& entry : map_->node) {
     const std::string key = entry.first.Scalar();
-    if (read_->keys.count(key) == 0) {
-      throw ConfigError(fmt::format("{}: {}{}", where_, UnknownName("key", prefix_ + key, wanted),
+    if (map_->read.count(key) == 0) {
+      throw ConfigError(fmt::format("{}: {}{}", map_->where,
+                                    UnknownName("key", map_->prefix + key, wanted),
                                     LineOf(entry.first)));
     }
   }
-  for (const ParamReader& sub : read_->subs) sub.RejectUnknownKeys();
+  for (const ParamReader& sub : map_->subs) sub.RejectUnknownKeys();
 }
 
 void ParamReader::Fail(const std::string& key, const std::string& what) const {
-  const YAML::Node& map = node_;
-  const YAML::Node value = map.IsMap() ? map[key] : YAML::Node();
-  throw ConfigError(fmt::format("{}: {}{} is {}, {}{}", where_, prefix_, key,
-                                value.IsDefined() ? Written(value) : "missing", what,
-                                value.IsDefined() ? LineOf(value) : ""));
+  map_->Fail(key, what);
 }
 
 }  // namespace hires::base

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "hires/base/check.h"
 #include "hires/base/log.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "execution/alternatives.h"
 #include "execution/imagined_step.h"

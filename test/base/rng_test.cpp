@@ -68,6 +68,20 @@ TEST(RngTest, ForkingLeavesTheStreamAlone) {
   EXPECT_EQ(forked.Uniform(0.0, 1.0), untouched.Uniform(0.0, 1.0));
 }
 
+// 500 draws: the generator makes 312 numbers at a time.
+TEST(RngTest, ACopyGoesOnWithTheSameNumbersByItself) {
+  for (const int drawn : {0, 1, 311, 312, 500}) {
+    Rng rng(11), assigned(12);
+    for (int i = 0; i < drawn; ++i) rng.Uniform(0.0, 1.0);
+    Rng copy(rng);
+    assigned = rng;
+    const auto wanted = Draws(500, [&] { return rng.Uniform(0.0, 1.0); });
+    EXPECT_EQ(Draws(500, [&] { return copy.Uniform(0.0, 1.0); }), wanted) << drawn;
+    EXPECT_EQ(Draws(500, [&] { return assigned.Uniform(0.0, 1.0); }), wanted) << drawn;
+    EXPECT_EQ(copy.seed(), 11u);
+  }
+}
+
 TEST(RngTest, ForksOfForksAndOfNeighboursAreAllDifferent) {
   std::set<std::uint64_t> seeds;
   for (std::uint64_t seed = 0; seed < 10; ++seed) {

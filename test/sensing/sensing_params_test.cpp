@@ -1,6 +1,7 @@
 #include "hires/sensing/sensing_params.h"
 
 #include <gmock/gmock.h>
+#include <yaml-cpp/yaml.h>
 
 #include "hires/base/param_reader.h"
 #include "support/messages.h"

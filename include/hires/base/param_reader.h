@@ -1,11 +1,8 @@
 #pragma once
 
-#include <yaml-cpp/yaml.h>
-
+#include <cstddef>
 #include <functional>
-#include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -56,21 +53,10 @@ class ParamReader {
   [[noreturn]] void Fail(const std::string& key, const std::string& what) const;
 
  private:
-  ParamReader(const YAML::Node& node, std::string where, std::string prefix);
-  YAML::Node Require(const std::string& key);
-  template <typename T>
-  T Parse(const std::string& key, const char* type_name);
-  template <typename T>
-  T GetBounded(const std::string& key, const Bound<T>& bound, const char* type_name);
+  struct Map;  // the map and what was asked of it; the YAML library is slow to compile
+  explicit ParamReader(std::shared_ptr<Map> map);
 
-  struct Read {
-    std::set<std::string> keys;
-    std::vector<ParamReader> subs;
-  };
-  YAML::Node node_;
-  std::string where_;   // file
-  std::string prefix_;  // "" or "path.to."
-  std::shared_ptr<Read> read_;
+  std::shared_ptr<Map> map_;  // copies share it
 };
 
 }  // namespace hires::base

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <boost/random/mersenne_twister.hpp>
+#include <cstddef>
 #include <cstdint>
 
 namespace hires::base {
@@ -26,7 +26,8 @@ class Rng {
 
  private:
   std::uint64_t seed_;
-  boost::random::mt19937_64 engine_;
+  /// Room for Boost's mt19937_64, which is slow to compile. A copy of its bytes is a copy of it.
+  alignas(std::uint64_t) std::byte engine_[313 * sizeof(std::uint64_t)];
 };
 
 }  // namespace hires::base

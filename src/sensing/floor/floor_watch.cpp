@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "hires/geometry/angles.h"
 #include "hires/world/unknown_box.h"
