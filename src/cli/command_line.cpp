@@ -20,7 +20,7 @@
 namespace hires::cli {
 namespace {
 
-constexpr char kProgram[] = "hires";
+constexpr char kProgramName[] = "hires";
 
 /// `hires achieve --list`: the tasks of the domain that is, or would be, planned with.
 int ListTasks(const AchieveOptions& achieve, const Backends& backends) {
@@ -43,7 +43,7 @@ ReportOptions* ReportOfDoctor(DoctorOptions* options) { return &options->robot.r
 std::vector<ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& arguments,
                                  const Backends& backends) {
   const std::string& folder = backends.package_folder;
-  VerbTable table(app, {CommandOf(kProgram, arguments), folder});
+  VerbTable table(app, {CommandOf(kProgramName, arguments), folder});
   table.Add<ImagineOptions>(AddImagineVerb, ReportOf<ImagineOptions>,
                             [&](const ImagineOptions& options) {
                               return RunImagineVerb(options, backends, IsInterrupted);
@@ -110,7 +110,7 @@ std::string NameOf(const std::string& object, imagination::SetupConfig* setup) {
 int RunCommandLine(const std::vector<std::string>& arguments, const Backends& backends) {
   const auto add_verbs = [&](CLI::App* app) { return VerbsOf(app, arguments, backends); };
   return RunProgram(
-      {kProgram, "HIRES: imagine an action in physics before doing it", add_verbs, MovedToTheLab()},
+      {kProgramName, "HIRES: imagine an action in physics before doing it", add_verbs, MovedToTheLab()},
       arguments);
 }
 

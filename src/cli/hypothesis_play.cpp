@@ -60,7 +60,7 @@ evaluation::HypothesisRun ReadRecord(const std::string& path, const std::string&
 }
 
 template <typename T>
-void Take(const ordered_json& json, const char* key, const std::string& where, T* value) {
+void TakeField(const ordered_json& json, const char* key, const std::string& where, T* value) {
   try {
     *value = json.at(key).get<T>();
   } catch (const ordered_json::exception& error) {
@@ -69,7 +69,7 @@ void Take(const ordered_json& json, const char* key, const std::string& where, T
 }
 
 template <typename Order, typename Visitor>
-void VisitFields(Order* order, const Visitor& visit) {
+void VisitOrder(Order* order, const Visitor& visit) {
   visit("scenario", &order->scenario);
   visit("run", &order->run);
   visit("imagination", &order->imagines);
@@ -88,7 +88,7 @@ void VisitFields(Order* order, const Visitor& visit) {
 
 std::string HypothesisOrderText(const evaluation::HypothesisOrder& order) {
   ordered_json json;
-  VisitFields(&order, [&](const char* key, const auto* value) { json[key] = *value; });
+  VisitOrder(&order, [&](const char* key, const auto* value) { json[key] = *value; });
   return json.dump(2) + '\n';
 }
 
@@ -96,7 +96,7 @@ evaluation::HypothesisOrder ParseHypothesisOrder(const std::string& text,
                                                  const std::string& where) {
   const ordered_json json = ordered_json::parse(text, nullptr, false);
   evaluation::HypothesisOrder order;
-  VisitFields(&order, [&](const char* key, auto* value) { Take(json, key, where, value); });
+  VisitOrder(&order, [&](const char* key, auto* value) { TakeField(json, key, where, value); });
   return order;
 }
 

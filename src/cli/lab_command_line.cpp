@@ -1,5 +1,7 @@
 #include "cli/lab_command_line.h"
 
+#include <CLI/CLI.hpp>
+
 #include "cli/experience/experiences_command.h"
 #include "cli/experiment_command.h"
 #include "cli/lab_list_command.h"
@@ -12,7 +14,7 @@
 namespace hires::cli {
 namespace {
 
-constexpr char kProgram[] = "hires_lab";
+constexpr char kProgramName[] = "hires_lab";
 
 int RunAnyExperiment(const ExperimentOptions& options, const LabBackends& backends) {
   const std::string& folder = backends.package_folder;
@@ -35,7 +37,7 @@ int RunAnyExperiment(const ExperimentOptions& options, const LabBackends& backen
 std::vector<ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& arguments,
                                  const LabBackends& backends) {
   const std::string& folder = backends.package_folder;
-  VerbTable table(app, {CommandOf(kProgram, arguments), folder});
+  VerbTable table(app, {CommandOf(kProgramName, arguments), folder});
   const auto report_of_experiment = [&table](ExperimentOptions* options) {
     table.SetCall(&options->hypothesis.report);
     return &options->report;
@@ -76,7 +78,7 @@ std::vector<ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& 
 int RunLabCommandLine(const std::vector<std::string>& arguments, const LabBackends& backends) {
   const auto add_verbs = [&](CLI::App* app) { return VerbsOf(app, arguments, backends); };
   return RunProgram(
-      {kProgram, "What judges HIRES: experiments, series, fits, and the dissertation's results",
+      {kProgramName, "What judges HIRES: experiments, series, fits, and the dissertation's results",
        add_verbs},
       arguments);
 }
