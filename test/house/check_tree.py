@@ -249,9 +249,9 @@ def own_headers(root, path):
 
 
 # Nothing but names; STYLE of the project keeps those of topics where topics are.
-NAMES_OF_TOPICS = {"ros/robot_topics", "ros/topic_names"}
+NAMES_OF_TOPICS = {"ros/names/robot_topics", "ros/names/topic_names"}
 # What these do is to ask ROS, though no type of it stands in their headers: who calls them needs it.
-ASKS_ROS = {"ros/load_robot_names", "ros/node/private_params"}
+ASKS_ROS = {"ros/robot/load_robot_names", "ros/node/private_params"}
 
 
 def unit_of(path):

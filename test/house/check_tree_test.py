@@ -127,9 +127,9 @@ class CheckTreeTest(unittest.TestCase):
 
     def test_names_of_topics_may_stand_where_topics_are(self):
         self.assertEqual(self.complaints(
-            {"include/hires/ros/topic_names.h": "#pragma once\n",
+            {"include/hires/ros/names/topic_names.h": "#pragma once\n",
              "src/nodes/planner/said.cpp":
-                 '#include <ros/time.h>\n#include "hires/ros/topic_names.h"\n'}), [])
+                 '#include <ros/time.h>\n#include "hires/ros/names/topic_names.h"\n'}), [])
 
     def test_a_node_that_includes_another_one_is_found(self):
         pool = {"src/nodes/planner/pool.h": "#pragma once\n#include <ros/time.h>\n"}

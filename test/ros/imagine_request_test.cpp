@@ -1,4 +1,4 @@
-#include "hires/ros/imagine_request.h"
+#include "hires/ros/imagination/imagine_request.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

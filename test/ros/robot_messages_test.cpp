@@ -1,4 +1,4 @@
-#include "hires/ros/robot_messages.h"
+#include "hires/ros/robot/robot_messages.h"
 
 #include <gmock/gmock.h>
 

@@ -3,10 +3,10 @@
 #include <cstdlib>
 
 #include "hires/base/error.h"
+#include "hires/ros/master/xmlrpc_master_api.h"
 #include "hires/ros/node/launch_guard.h"
 #include "hires/ros/node/log_sink.h"
 #include "hires/ros/node/master_watch.h"
-#include "hires/ros/xmlrpc_master_api.h"
 #include "nodes/episode_recorder/episode_recorder_node.h"
 
 int main(int argc, char** argv) {

@@ -19,9 +19,9 @@
 #include "hires/loop/record_fluent.h"
 #include "hires/planning/request.h"
 #include "hires/ros/conversions.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/names/topic_names.h"
 #include "hires/ros/node/private_params.h"
-#include "hires/ros/robot_topics.h"
-#include "hires/ros/topic_names.h"
 #include "nodes/execution_monitor/execution_messages.h"
 
 namespace hires_ros {

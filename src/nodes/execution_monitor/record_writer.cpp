@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "hires/base/log.h"
-#include "hires/ros/blackboard_messages.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/knowledge/blackboard_messages.h"
+#include "hires/ros/names/topic_names.h"
 
 namespace hires_ros {
 namespace {

@@ -15,7 +15,7 @@
 #include "hires/knowledge/fluent.h"
 #include "hires/knowledge/ontology.h"
 #include "hires/loop/record_fluent.h"
-#include "hires/ros/service_links.h"
+#include "hires/ros/node/service_links.h"
 
 namespace hires_ros {
 

@@ -8,8 +8,8 @@
 #include "hires/base/text.h"
 #include "hires/perception/camera_view.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/robot_topics.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/names/topic_names.h"
 #include "nodes/heat_reader/heat_messages.h"
 
 namespace hires_ros {

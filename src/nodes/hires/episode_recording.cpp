@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "hires/ros/conversions.h"
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/transform_buffer.h"
+#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/transforms/transform_buffer.h"
 #include "nodes/hires/bag_file.h"
 
 namespace hires_ros {

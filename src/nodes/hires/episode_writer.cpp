@@ -19,9 +19,9 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/robot/load_robot.h"
 #include "hires/ros/achieve_messages.h"
-#include "hires/ros/controller_messages.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/robot_messages.h"
+#include "hires/ros/robot/controller_messages.h"
+#include "hires/ros/robot/robot_messages.h"
 
 namespace hires_ros {
 namespace {

@@ -13,7 +13,7 @@
 #include "hires/base/process.h"
 #include "hires/ros/achieve_messages.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/names/topic_names.h"
 #include "nodes/hires/remote_server.h"
 
 namespace hires_ros {

@@ -24,7 +24,7 @@
 #include "hires/imagination/local_imagination.h"
 #include "hires/imagination/local_setup.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/imagine_request.h"
+#include "hires/ros/imagination/imagine_request.h"
 #include "nodes/hires/episode_replay.h"
 #include "nodes/hires/remote_imagination.h"
 

@@ -15,9 +15,9 @@
 #include "hires/imagination/report.h"
 #include "hires/imagination/rollout.h"
 #include "hires/ros/conversions.h"
+#include "hires/ros/imagination/trace_markers.h"
+#include "hires/ros/names/topic_names.h"
 #include "hires/ros/node/private_params.h"
-#include "hires/ros/topic_names.h"
-#include "hires/ros/trace_markers.h"
 
 namespace hires_ros {
 namespace {
@@ -176,9 +176,8 @@ void ImaginationClientNode::OnLocalisation(const geometry_msgs::PoseWithCovarian
 
 /// What begins where the robot stands begins as surely as it knows where that is.
 void ImaginationClientNode::SpreadStart(ImagineRequest* request) const {
-  request->setup.uncertainty =
-      imagination::UncertaintyFrom(request->setup.uncertainty, request->setup.robot_state.X_MB,
-                                   believed_, params_.localisation);
+  request->setup.uncertainty = imagination::UncertaintyFrom(
+      request->setup.uncertainty, request->setup.robot_state.X_MB, believed_, params_.localisation);
 }
 
 void ImaginationClientNode::OnCancel(GoalHandle goal) {

@@ -20,7 +20,7 @@
 #include "hires/imagination/kept_rollouts.h"
 #include "hires/imagination/scheduler.h"
 #include "hires/imagination/start_spread.h"
-#include "hires/ros/imagine_request.h"
+#include "hires/ros/imagination/imagine_request.h"
 #include "hires/world/map_to_world.h"
 #include "nodes/imagination_client/asker_watch.h"
 #include "nodes/imagination_client/rollout_replayer.h"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "hires/control/robot_names.h"
-#include "hires/ros/place/map_request.h"
-#include "hires/ros/transform_buffer.h"
+#include "hires/ros/transforms/transform_buffer.h"
+#include "hires/ros/world/map_request.h"
 #include "hires/world/map_to_world.h"
 
 namespace hires_ros {

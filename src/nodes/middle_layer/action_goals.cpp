@@ -6,7 +6,7 @@
 #include "hires/base/log.h"
 #include "hires/base/short_text.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
 
 namespace hires_ros {
 namespace {

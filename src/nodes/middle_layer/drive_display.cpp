@@ -3,7 +3,7 @@
 #include "hires/navigation/costmap_window.h"
 #include "hires/navigation/dwa.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/names/topic_names.h"
 
 namespace hires_ros {
 namespace {

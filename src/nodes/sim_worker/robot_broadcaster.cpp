@@ -7,8 +7,8 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include "hires/ros/conversions.h"
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/names/topic_names.h"
+#include "hires/ros/robot/robot_messages.h"
 
 namespace hires_ros {
 namespace {

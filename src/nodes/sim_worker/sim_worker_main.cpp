@@ -5,11 +5,11 @@
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/evaluation/scenario_names.h"
+#include "hires/ros/master/xmlrpc_master_api.h"
 #include "hires/ros/node/launch_guard.h"
 #include "hires/ros/node/log_sink.h"
 #include "hires/ros/node/master_watch.h"
 #include "hires/ros/node/private_params.h"
-#include "hires/ros/xmlrpc_master_api.h"
 #include "nodes/sim_worker/sim_robot_node.h"
 #include "nodes/sim_worker/sim_worker_node.h"
 

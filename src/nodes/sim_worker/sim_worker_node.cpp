@@ -10,8 +10,8 @@
 #include "hires/imagination/rollout.h"
 #include "hires/robot/load_robot.h"
 #include "hires/ros/conversions.h"
+#include "hires/ros/names/topic_names.h"
 #include "hires/ros/node/private_params.h"
-#include "hires/ros/topic_names.h"
 #include "hires/skills/action_loader.h"
 
 namespace hires_ros {

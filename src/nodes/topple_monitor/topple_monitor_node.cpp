@@ -9,7 +9,7 @@
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/ros/conversions.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
 #include "nodes/topple_monitor/topple_messages.h"
 
 namespace hires_ros {

@@ -1,7 +1,7 @@
 #include <ros/ros.h>
 
 #include "hires/ros/node/run_node.h"
-#include "hires/ros/translator_params.h"
+#include "hires/ros/translation/translator_params.h"
 #include "nodes/translator/translator_node.h"
 
 int main(int argc, char** argv) {
