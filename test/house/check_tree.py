@@ -542,7 +542,7 @@ ALSO_MEANS = {
         "src/planning/search/operator_applier.cpp", "src/planning/check/step_replay.cpp",
         "src/translation/wanted_state.cpp"},
     "motors_halted": {  # a key of a robot's names, a finding of the doctor
-        "src/cli/robot/robot_doctor_judge.cpp", "src/control/robot_names.cpp"},
+        "src/cli/robot/robot_doctor_judge.cpp", "src/control/names/robot_names.cpp"},
     "busy": {"src/evaluation/achieve.cpp"},  # outcomes of a task, from here on
     "dry_run": {
         "src/evaluation/achieve.cpp", "src/nodes/execution_monitor/execution_messages.cpp",

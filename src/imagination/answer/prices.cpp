@@ -7,7 +7,7 @@
 #include "hires/base/check.h"
 #include "hires/base/text.h"
 #include "hires/imagination/success_interval.h"
-#include "imagination/confidence_sequence.h"
+#include "imagination/answer/confidence_sequence.h"
 
 namespace hires::imagination {
 namespace {

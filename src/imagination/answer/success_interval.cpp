@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "hires/base/check.h"
-#include "imagination/confidence_sequence.h"
+#include "imagination/answer/confidence_sequence.h"
 
 namespace hires::imagination {
 namespace {

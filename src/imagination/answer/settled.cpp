@@ -1,6 +1,6 @@
 #include "hires/base/check.h"
 #include "hires/imagination/ranking.h"
-#include "imagination/confidence_sequence.h"
+#include "imagination/answer/confidence_sequence.h"
 
 // Whether more rollouts may still change an order, and an answer: see ranking.h.
 

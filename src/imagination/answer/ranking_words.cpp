@@ -5,7 +5,7 @@
 
 #include "hires/base/check.h"
 #include "hires/base/text.h"
-#include "imagination/ranking_key.h"
+#include "imagination/answer/ranking_key.h"
 
 namespace hires::imagination {
 namespace {
