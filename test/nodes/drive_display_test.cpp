@@ -14,8 +14,8 @@ namespace {
 
 using hires::geometry::Flatten;
 using hires::geometry::kPi;
+using hires::geometry::MapToWorld;
 using hires::geometry::Pose2;
-using hires::world::MapToWorld;
 
 const MapToWorld kTurned{{1.0, 2.0, kPi / 2}, 2.0};
 

@@ -6,7 +6,7 @@
 
 #include "hires/base/check.h"
 #include "hires/base/error.h"
-#include "hires/loop/imagine_answer.h"
+#include "hires/imagination/imagine_answer.h"
 #include "hires/ros/conversions.h"
 
 namespace hires_ros {
@@ -120,8 +120,8 @@ execution::ImagineAnswered AnswerOf(int request, const hires::ImagineResult& res
   invalid.why = result.why;
   if (IsUnknown(result)) return invalid;
   try {
-    return hires::loop::AnswerOf(request, FromMsg(result), is_late,
-                                 NamesIn(state, result.depends_on));
+    return hires::imagination::AnswerOf(request, FromMsg(result), is_late,
+                                        NamesIn(state, result.depends_on));
   } catch (const hires::base::ConfigError& error) {
     invalid.why = error.what();
     return invalid;

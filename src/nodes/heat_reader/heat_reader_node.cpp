@@ -102,7 +102,7 @@ std::string HeatReaderNode::WhyUnknown(const std_msgs::Header& header) const {
 
 /// What the map says, where the world has it.
 Pose3 HeatReaderNode::InWorld(const Pose3& X_MF) const {
-  const hires::world::MapToWorld& map_to_world = params_.names.map_to_world;
+  const hires::geometry::MapToWorld& map_to_world = params_.names.map_to_world;
   Pose3 X_WF = hires::geometry::Lift(map_to_world.X_WM) * X_MF;
   X_WF.translation.head<2>() = map_to_world.ToWorld(Eigen::Vector2d(X_MF.translation.head<2>()));
   return X_WF;

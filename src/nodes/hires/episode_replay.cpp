@@ -38,7 +38,8 @@ using Imagine =
 
 EpisodeConfig ConfigOf(const EpisodeReplay& replay) {
   EpisodeConfig config = evaluation::ReadEpisodeConfig(replay.config, replay.names);
-  config.names.map_to_world = hires::world::ParseMapToWorld(replay.map_to_world, "--map-to-world");
+  config.names.map_to_world =
+      hires::geometry::ParseMapToWorld(replay.map_to_world, "--map-to-world");
   return config;
 }
 

@@ -68,7 +68,7 @@ ImaginationClientParams LoadImaginationClientParams() {
   params.setup.action_libraries = PrivateActionLibraries();
   params.localisation = PrivateText("localisation").value_or("");
   params.map_to_world =
-      hires::world::ParseMapToWorld(PrivateText("map_to_world").value_or(""), "~map_to_world");
+      hires::geometry::ParseMapToWorld(PrivateText("map_to_world").value_or(""), "~map_to_world");
   params.rollout_folder = PrivateText("rollout_folder").value_or(DefaultRolloutFolder());
   return params;
 }

@@ -63,7 +63,8 @@ MapPlace PlaceOf(const std::string& frame, const hires::control::RobotNames& nam
                                 tilt)};
   }
   const auto X_MF = hires::geometry::Flatten(found.X_PC);
-  return {hires::world::MapToWorld{names.map_to_world.ToWorld(X_MF), names.map_to_world.scale}, ""};
+  return {hires::geometry::MapToWorld{names.map_to_world.ToWorld(X_MF), names.map_to_world.scale},
+          ""};
 }
 
 double LaserHeight(const std::string& robot_path) {

@@ -8,8 +8,8 @@
 namespace hires_ros {
 namespace {
 
+using hires::geometry::MapToWorld;
 using hires::geometry::Pose2;
-using hires::world::MapToWorld;
 
 constexpr double kCostmapPeriod = 0.5;  // [s] of the robot's time between two costmaps
 

@@ -2,8 +2,8 @@
 
 #include <ros/package.h>
 
+#include "hires/geometry/map_to_world.h"
 #include "hires/ros/node/private_params.h"
-#include "hires/world/map_to_world.h"
 
 namespace hires_ros {
 
@@ -16,7 +16,7 @@ RobotNames LoadRobotNames() {
                                                            : ros::package::getPath("hires") +
                                                                  "/config/robots/pr2_names.yaml");
   names.map_to_world =
-      hires::world::ParseMapToWorld(PrivateText("map_to_world").value_or(""), "~map_to_world");
+      hires::geometry::ParseMapToWorld(PrivateText("map_to_world").value_or(""), "~map_to_world");
   return names;
 }
 

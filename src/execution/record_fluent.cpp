@@ -1,4 +1,4 @@
-#include "hires/loop/record_fluent.h"
+#include "hires/execution/record_fluent.h"
 
 #include <cmath>
 #include <utility>
@@ -6,10 +6,8 @@
 #include "hires/base/text.h"
 #include "hires/knowledge/name.h"
 
-namespace hires::loop {
+namespace hires::execution {
 namespace {
-
-using execution::Record;
 
 std::string RangeOf(const std::string& role, const std::string& otherwise,
                     const knowledge::Ontology& ontology) {
@@ -27,7 +25,7 @@ knowledge::Property NumberProperty(const std::string& role, double value,
 
 }  // namespace
 
-knowledge::Fluent FluentOf(const execution::Record& record, double start,
+knowledge::Fluent FluentOf(const Record& record, double start,
                            const knowledge::Ontology& ontology) {
   knowledge::Fluent fluent;
   const bool is_known = record.general_concept.empty() ||
@@ -76,4 +74,4 @@ RecordWrites EpisodeRecords::WritesOf(const Record& record, double time,
 
 void EpisodeRecords::Forget(const std::string& instance) { begun_.erase(base::ToLower(instance)); }
 
-}  // namespace hires::loop
+}  // namespace hires::execution

@@ -1,30 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <string>
-
-#include "hires/geometry/pose.h"
+#include "hires/geometry/map_to_world.h"
 #include "hires/world/occupancy_grid.h"
 
 namespace hires::world {
-
-/// How a robot's map lies in the world that is imagined: "the applied affine transformation"
-/// between AMCL's map and the simulated world (dissertation, section 5.6). Calculated once for a
-/// laboratory; the identity where the world was drawn in the map's frame.
-struct MapToWorld {
-  geometry::Pose2 X_WM;  ///< the map's origin and axes in the world
-  double scale{1.0};     ///< metres of the world per metre of the map
-
-  bool is_identity() const;
-  Eigen::Vector2d ToWorld(const Eigen::Vector2d& p_M) const;
-  geometry::Pose2 ToWorld(const geometry::Pose2& X_MB) const;  ///< X_WB
-  geometry::Pose2 ToMap(const geometry::Pose2& X_WB) const;    ///< X_MB
-};
-
-/// Reads "x y yaw" or "x y yaw scale" [m, m, rad, -]; an empty text is the identity.
-/// @param where  of the text, for messages.
-/// @throws base::ConfigError: other than 3 or 4 numbers, not finite, scale outside 0.5 .. 2.
-MapToWorld ParseMapToWorld(const std::string& text, const std::string& where);
 
 /// How well a map and a slice of the world agree. All shares lie in [0, 1].
 struct MapFit {
@@ -44,8 +23,8 @@ struct MapFitParams {
 
 /// @param map    what the robot has driven and saved.
 /// @param slice  of the world at the height of the robot's laser.
-MapFit FitMap(const OccupancyGrid& map, const OccupancyGrid& slice, const MapToWorld& map_to_world,
-              double tolerance);
+MapFit FitMap(const OccupancyGrid& map, const OccupancyGrid& slice,
+              const geometry::MapToWorld& map_to_world, double tolerance);
 
 /// Accepts the transformation if it is good enough and as good as what lies around it (walls along
 /// which a map is shifted agree with themselves), or says how far off it is: "... fits with 0.21,
@@ -53,6 +32,6 @@ MapFit FitMap(const OccupancyGrid& map, const OccupancyGrid& slice, const MapToW
 /// shifts and turns.
 /// @throws base::ConfigError.
 MapFit RequireMapFits(const OccupancyGrid& map, const OccupancyGrid& slice,
-                      const MapToWorld& map_to_world, const MapFitParams& params);
+                      const geometry::MapToWorld& map_to_world, const MapFitParams& params);
 
 }  // namespace hires::world

@@ -1,14 +1,11 @@
-#include "hires/loop/imagine_answer.h"
+#include "hires/imagination/imagine_answer.h"
 
 #include <gmock/gmock.h>
 
-namespace hires::loop::imagine_answer_test {
+namespace hires::imagination::imagine_answer_test {
 namespace {
 
 using execution::StepStatus;
-using imagination::ImaginationOutcome;
-using imagination::Prediction;
-using imagination::Report;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using Outcome = execution::ImagineAnswered::Outcome;
@@ -95,4 +92,4 @@ TEST(DispatchTest, AStepThatARepairTookOverBeganInTheLaterPlan) {
 }
 
 }  // namespace
-}  // namespace hires::loop::imagine_answer_test
+}  // namespace hires::imagination::imagine_answer_test

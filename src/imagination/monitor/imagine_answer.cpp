@@ -1,36 +1,33 @@
-#include "hires/loop/imagine_answer.h"
+#include "hires/imagination/imagine_answer.h"
 
 #include <algorithm>
 #include <set>
 
 #include "hires/base/text.h"
 
-namespace hires::loop {
+namespace hires::imagination {
 namespace {
 
 using execution::ImagineAnswered;
-using imagination::ImaginationOutcome;
-using imagination::Prediction;
-using imagination::Report;
-using Outcome = ImagineAnswered::Outcome;
+using Told = ImagineAnswered::Outcome;
 
-Outcome OutcomeOf(const Report& report, bool is_late) {
+Told OutcomeOf(const Report& report, bool is_late) {
   const bool is_cancelled = report.outcome == ImaginationOutcome::kCancelled;
   switch (is_cancelled && is_late ? report.found : report.outcome) {
     case ImaginationOutcome::kRanked:
-      return Outcome::kRanked;
+      return Told::kRanked;
     case ImaginationOutcome::kAllFailed:
-      return Outcome::kAllFailed;
+      return Told::kAllFailed;
     case ImaginationOutcome::kUndecided:
-      return Outcome::kUndecided;
+      return Told::kUndecided;
     case ImaginationOutcome::kNoWorker:
-      return Outcome::kNoWorker;
+      return Told::kNoWorker;
     case ImaginationOutcome::kNothingFinished:
-      return Outcome::kNothingFinished;
+      return Told::kNothingFinished;
     case ImaginationOutcome::kCancelled:
-      return is_late ? Outcome::kNothingFinished : Outcome::kUnavailable;
+      return is_late ? Told::kNothingFinished : Told::kUnavailable;
   }
-  return Outcome::kInvalid;
+  return Told::kInvalid;
 }
 
 /// What made most rollouts fail; nothing where none did.
@@ -44,7 +41,7 @@ base::Failure MainFailure(const Prediction& prediction) {
 
 void SetRecommended(const Report& report, ImagineAnswered* answer) {
   if (report.recommended < 0 || report.recommended >= static_cast<int>(report.ranking.size())) {
-    answer->outcome = Outcome::kInvalid;
+    answer->outcome = Told::kInvalid;
     answer->why = "the ranking recommends nothing: " + report.why;
     return;
   }
@@ -53,7 +50,7 @@ void SetRecommended(const Report& report, ImagineAnswered* answer) {
   const std::vector<double>& durations = best.evidence.durations;
   answer->recommended = best.action;
   answer->duration = duration.mean;
-  answer->duration_low = durations.empty() ? 0.0 : imagination::Quantile(durations, 5);
+  answer->duration_low = durations.empty() ? 0.0 : Quantile(durations, 5);
   answer->duration_high = std::max(duration.p95, duration.mean);
 }
 
@@ -68,8 +65,8 @@ ImagineAnswered AnswerOf(int request, const Report& report, bool is_late,
   std::set<std::string> instances;
   for (const std::string& thing : things) instances.insert(base::ToLower(thing));
   answer.depends_on.assign(instances.begin(), instances.end());
-  if (answer.outcome == Outcome::kRanked) SetRecommended(report, &answer);
-  if (answer.outcome == Outcome::kAllFailed) {
+  if (answer.outcome == Told::kRanked) SetRecommended(report, &answer);
+  if (answer.outcome == Told::kAllFailed) {
     for (const Prediction& prediction : report.ranking) {
       answer.failed.push_back(prediction.action);
       answer.failures.push_back(MainFailure(prediction));
@@ -89,4 +86,4 @@ std::optional<double> DispatchOf(const std::vector<execution::StepStatus>& steps
   return found == steps.end() ? std::nullopt : found->started;
 }
 
-}  // namespace hires::loop
+}  // namespace hires::imagination

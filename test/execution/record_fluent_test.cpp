@@ -1,10 +1,10 @@
-#include "hires/loop/record_fluent.h"
+#include "hires/execution/record_fluent.h"
 
 #include <gmock/gmock.h>
 
 #include "hires/knowledge/store.h"
 
-namespace hires::loop::record_fluent_test {
+namespace hires::execution::record_fluent_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -17,7 +17,7 @@ const knowledge::Ontology& TheOntology() {
 }
 
 TEST(FluentOfTest, FillersHaveTheTypesOfTheOntology) {
-  execution::Record record;
+  Record record;
   record.concept_name = "MoveBaseTask";
   record.instance = "task3";
   record.texts = {{"hasAction", "move_base"}};
@@ -46,7 +46,7 @@ TEST(EpisodeOutcomeTest, TheStoreKeepsItHoweverLongTheReason) {
 }
 
 TEST(FluentOfTest, TruthIsANumberThatIsNotZero) {
-  execution::Record record;
+  Record record;
   record.concept_name = "Prediction";
   record.numbers = {{"hasRecommendation", 1.0}};
   EXPECT_THAT(FluentOf(record, 0.0, TheOntology()).properties,
@@ -54,7 +54,7 @@ TEST(FluentOfTest, TruthIsANumberThatIsNotZero) {
 }
 
 TEST(FluentOfTest, AConceptThatTheOntologyLacksGivesWayToTheGeneralOne) {
-  execution::Record record;
+  Record record;
   record.concept_name = "JuggleTask";
   record.general_concept = "PrimitiveTask";
   EXPECT_EQ(FluentOf(record, 0.0, TheOntology()).concept_name, "PrimitiveTask");
@@ -62,8 +62,8 @@ TEST(FluentOfTest, AConceptThatTheOntologyLacksGivesWayToTheGeneralOne) {
   EXPECT_EQ(FluentOf(record, 0.0, TheOntology()).concept_name, "JuggleTask");
 }
 
-execution::Record RecordOf(execution::Record::Kind kind) {
-  execution::Record record;
+Record RecordOf(Record::Kind kind) {
+  Record record;
   record.kind = kind;
   record.concept_name = "MoveBaseTask";
   record.instance = "Task3";
@@ -71,7 +71,7 @@ execution::Record RecordOf(execution::Record::Kind kind) {
 }
 
 TEST(EpisodeRecordsTest, WhatBeganSaysInWhichEpisodeAndWhenAndEndsOnce) {
-  using Kind = execution::Record::Kind;
+  using Kind = Record::Kind;
   EpisodeRecords records;
   records.Begin("episode7");
   const RecordWrites begun = records.WritesOf(RecordOf(Kind::kBegin), 2.0, TheOntology());
@@ -79,7 +79,7 @@ TEST(EpisodeRecordsTest, WhatBeganSaysInWhichEpisodeAndWhenAndEndsOnce) {
   EXPECT_THAT(begun.added->properties, ElementsAre(knowledge::Property{"hasEpisode", "xsd:string",
                                                                        std::string("episode7")}));
   EXPECT_FALSE(begun.updated || begun.ended);
-  execution::Record last = RecordOf(Kind::kEnd);
+  Record last = RecordOf(Kind::kEnd);
   last.texts = {{"hasAction", "move_base"}};
   for (int i = 0; i < 2; ++i) {  // the Blackboard was away the first time
     const RecordWrites ended = records.WritesOf(last, 5.0, TheOntology());
@@ -94,4 +94,4 @@ TEST(EpisodeRecordsTest, WhatBeganSaysInWhichEpisodeAndWhenAndEndsOnce) {
 }
 
 }  // namespace
-}  // namespace hires::loop::record_fluent_test
+}  // namespace hires::execution::record_fluent_test

@@ -8,12 +8,12 @@
 #include "hires/imagination/report.h"
 
 /// What the execution monitor is told of an imagination, wherever that ran.
-namespace hires::loop {
+namespace hires::imagination {
 
 /// @param is_late  the request was cancelled because its time was over: what was found until then
 ///                 counts. A request that was cancelled otherwise has no answer.
 /// @param things   names of what it rests on.
-execution::ImagineAnswered AnswerOf(int request, const imagination::Report& report, bool is_late,
+execution::ImagineAnswered AnswerOf(int request, const Report& report, bool is_late,
                                     const std::vector<std::string>& things);
 
 /// When the step that was imagined began [s]. A step that a repair took over into a later plan,
@@ -22,4 +22,4 @@ execution::ImagineAnswered AnswerOf(int request, const imagination::Report& repo
 std::optional<double> DispatchOf(const std::vector<execution::StepStatus>& steps, int plan,
                                  int step, const base::ActionTemplate& action);
 
-}  // namespace hires::loop
+}  // namespace hires::imagination

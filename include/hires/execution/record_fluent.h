@@ -8,13 +8,12 @@
 #include "hires/knowledge/fluent.h"
 #include "hires/knowledge/ontology.h"
 
-namespace hires::loop {
+namespace hires::execution {
 
 /// The fluent that a record stands for, since `start` [s] main ROS time. An ontology that does not
 /// know its concept has the general one. Types of the fillers are those of the ontology; what it
 /// does not know is left for the Blackboard to refuse.
-knowledge::Fluent FluentOf(const execution::Record& record, double start,
-                           const knowledge::Ontology& ontology);
+knowledge::Fluent FluentOf(const Record& record, double start, const knowledge::Ontology& ontology);
 
 /// What an episode's outcome says: "no_plan: there is no plan ...", on one line, as long as the
 /// Blackboard keeps it. Reasons quote files of any path and names of any number.
@@ -35,8 +34,7 @@ class EpisodeRecords {
 
   /// Asked again for a record that could not be written, it says the same.
   /// @param time  [s] of the record.
-  RecordWrites WritesOf(const execution::Record& record, double time,
-                        const knowledge::Ontology& ontology);
+  RecordWrites WritesOf(const Record& record, double time, const knowledge::Ontology& ontology);
   /// It has been told that this instance ended.
   void Forget(const std::string& instance);
 
@@ -45,4 +43,4 @@ class EpisodeRecords {
   std::map<std::string, double> begun_;  // [s] by instance in lower case
 };
 
-}  // namespace hires::loop
+}  // namespace hires::execution
