@@ -7,7 +7,7 @@
 
 #include "hires/geometry/angles.h"
 #include "hires/navigation/costmap.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros::drive_display_test {
 namespace {

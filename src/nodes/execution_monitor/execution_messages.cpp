@@ -7,7 +7,9 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/imagination/imagine_answer.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/answer/report_messages.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/values/failure_messages.h"
 
 namespace hires_ros {
 namespace {

@@ -16,7 +16,7 @@
 
 #include "hires/execution/monitor_config.h"
 #include "hires/planning/planner_config.h"
-#include "hires/ros/achieve_messages.h"
+#include "hires/ros/execution/step_messages.h"
 #include "hires/ros/values/atom_messages.h"
 
 /// What the execution monitor sends and receives, as messages.

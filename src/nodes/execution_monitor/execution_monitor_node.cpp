@@ -18,10 +18,12 @@
 #include "hires/imagination/imagine_answer.h"
 #include "hires/knowledge/state_view.h"
 #include "hires/planning/request.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/execution/step_messages.h"
 #include "hires/ros/names/robot_topics.h"
 #include "hires/ros/names/topic_names.h"
 #include "hires/ros/node/private_params.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/values/failure_messages.h"
 #include "nodes/execution_monitor/execution_messages.h"
 
 namespace hires_ros {

@@ -7,9 +7,9 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/perception/camera_view.h"
-#include "hires/ros/conversions.h"
 #include "hires/ros/names/robot_topics.h"
 #include "hires/ros/names/topic_names.h"
+#include "hires/ros/world/world_messages.h"
 #include "nodes/heat_reader/heat_messages.h"
 
 namespace hires_ros {

@@ -14,10 +14,14 @@
 #include "hires/base/short_text.h"
 #include "hires/imagination/report.h"
 #include "hires/imagination/rollout.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/answer/report_messages.h"
 #include "hires/ros/imagination/trace_markers.h"
 #include "hires/ros/names/topic_names.h"
 #include "hires/ros/node/private_params.h"
+#include "hires/ros/robot/robot_state_messages.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/values/geometry_messages.h"
+#include "hires/ros/world/world_messages.h"
 
 namespace hires_ros {
 namespace {

@@ -2,8 +2,8 @@
 
 #include "hires/navigation/costmap_window.h"
 #include "hires/navigation/dwa.h"
-#include "hires/ros/conversions.h"
 #include "hires/ros/names/topic_names.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros {
 namespace {

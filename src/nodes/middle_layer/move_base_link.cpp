@@ -2,7 +2,7 @@
 
 #include <ros/ros.h>
 
-#include "hires/ros/conversions.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros {
 namespace {

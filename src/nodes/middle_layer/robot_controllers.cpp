@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "hires/ros/conversions.h"
 #include "hires/ros/robot/robot_messages.h"
 
 namespace hires_ros {

@@ -2,7 +2,7 @@
 
 #include "hires/base/error.h"
 #include "hires/ros/names/robot_topics.h"
-#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/perception/cloud_messages.h"
 
 namespace hires_ros {
 namespace {

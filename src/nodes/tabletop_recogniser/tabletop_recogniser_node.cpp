@@ -11,7 +11,8 @@
 #include "hires/base/text.h"
 #include "hires/perception/camera_view.h"
 #include "hires/ros/names/robot_topics.h"
-#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/perception/cloud_messages.h"
+#include "hires/ros/perception/detection_messages.h"
 #include "nodes/tabletop_recogniser/recognition_markers.h"
 
 namespace hires_ros {

@@ -9,8 +9,11 @@
 #include "hires/base/hash.h"
 #include "hires/base/short_text.h"
 #include "hires/imagination/uncertainty.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/answer/report_messages.h"
+#include "hires/ros/robot/robot_state_messages.h"
+#include "hires/ros/values/action_messages.h"
 #include "hires/ros/values/atom_messages.h"
+#include "hires/ros/world/world_messages.h"
 
 namespace hires_ros {
 namespace {

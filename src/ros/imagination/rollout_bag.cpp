@@ -16,9 +16,9 @@
 
 #include "hires/base/error.h"
 #include "hires/robot/posture.h"
-#include "hires/ros/conversions.h"
 #include "hires/ros/imagination/trace_markers.h"
 #include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "hires/geometry/angles.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros {
 namespace {

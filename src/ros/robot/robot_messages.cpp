@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <set>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros {
 namespace {
@@ -53,22 +51,6 @@ TrajectoryPoint PointFrom(const trajectory_msgs::JointTrajectoryPoint& msg, std:
     throw ConfigError(where + " has a number that is not finite");
   }
   return {msg.time_from_start.toSec(), msg.positions, msg.velocities};
-}
-
-/// [bytes] from the begin of a point.
-std::uint32_t OffsetOf(const sensor_msgs::PointCloud2& msg, const std::string& name) {
-  for (const sensor_msgs::PointField& field : msg.fields) {
-    if (field.name != name) continue;
-    if (field.datatype == sensor_msgs::PointField::FLOAT32 &&
-        field.offset + sizeof(float) <= msg.point_step) {
-      return field.offset;
-    }
-    throw hires::base::ConfigError(
-        fmt::format("field '{}' has datatype {} at {} of {} bytes, wanted FLOAT32 ({}) within them",
-                    name, field.datatype, field.offset, msg.point_step,
-                    static_cast<int>(sensor_msgs::PointField::FLOAT32)));
-  }
-  throw hires::base::ConfigError(fmt::format("field '{}' is missing", name));
 }
 
 }  // namespace
@@ -143,94 +125,6 @@ hires::robot::OdometryReading FromMsg(const nav_msgs::Odometry& msg) {
   const geometry_msgs::Twist& twist = msg.twist.twist;
   return {hires::geometry::Flatten(FromMsg(msg.pose.pose)),
           {twist.linear.x, twist.linear.y, twist.angular.z}};
-}
-
-hires::perception::PointCloud FromMsg(const sensor_msgs::PointCloud2& msg) {
-  const std::array<std::uint32_t, 3> offsets{OffsetOf(msg, "x"), OffsetOf(msg, "y"),
-                                             OffsetOf(msg, "z")};
-  const std::uint64_t row = std::uint64_t{msg.width} * msg.point_step;
-  if (msg.is_bigendian || msg.row_step < row ||
-      msg.data.size() < std::uint64_t{msg.row_step} * msg.height) {
-    throw hires::base::ConfigError(
-        fmt::format("{} bytes of {} x {} points, point_step {}, row_step {}{}: wanted row_step to "
-                    "hold width * point_step, data to hold height * row_step, little-endian",
-                    msg.data.size(), msg.width, msg.height, msg.point_step, msg.row_step,
-                    msg.is_bigendian ? ", big-endian" : ""));
-  }
-  hires::perception::PointCloud cloud{
-      static_cast<int>(msg.width), static_cast<int>(msg.height), {}};
-  cloud.points.resize(std::size_t{msg.width} * msg.height);
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    const std::uint8_t* point =
-        msg.data.data() + i / msg.width * msg.row_step + i % msg.width * msg.point_step;
-    for (int axis = 0; axis < 3; ++axis) {
-      std::memcpy(&cloud.points[i][axis], point + offsets[axis], sizeof(float));
-    }
-  }
-  return cloud;
-}
-
-hires::perception::Detection FromMsg(const hires::Detection& msg) {
-  hires::perception::Detection out;
-  if (!msg.instance.empty()) out.instance = msg.instance;
-  out.label = msg.label;
-  out.X_CO = FromMsg(msg.pose);
-  out.visible_share = msg.visible_share;
-  out.category = msg.category;
-  out.confidence = msg.confidence == 0.0f ? 1.0 : msg.confidence;
-  for (const hires::LabelConfidence& other : msg.alternatives) {
-    out.alternatives.push_back({other.label, other.confidence});
-  }
-  out.size = {msg.size.x, msg.size.y, msg.size.z};
-  out.num_points = static_cast<int>(msg.num_points);
-  return out;
-}
-
-hires::Detection ToMsg(const hires::perception::Detection& detection) {
-  hires::Detection out;
-  out.instance = detection.instance.value_or("");
-  out.label = detection.label;
-  out.pose = ToMsg(detection.X_CO);
-  out.visible_share = static_cast<float>(detection.visible_share);
-  out.category = detection.category;
-  out.confidence = static_cast<float>(detection.confidence);
-  for (const hires::perception::LabelConfidence& other : detection.alternatives) {
-    out.alternatives.emplace_back();
-    out.alternatives.back().label = other.label;
-    out.alternatives.back().confidence = static_cast<float>(other.confidence);
-  }
-  out.size.x = detection.size.x();
-  out.size.y = detection.size.y();
-  out.size.z = detection.size.z();
-  out.num_points = static_cast<std::uint32_t>(detection.num_points);
-  return out;
-}
-
-std::optional<hires::perception::Sighting> FromMsg(const hires::Detections& msg) {
-  if (msg.is_blind) return std::nullopt;
-  hires::perception::Sighting seen;
-  for (const hires::Detection& detection : msg.detections)
-    seen.detections.push_back(FromMsg(detection));
-  for (const geometry_msgs::Point& corner : msg.table)
-    seen.table.emplace_back(corner.x, corner.y, corner.z);
-  return seen;
-}
-
-hires::Detections ToMsg(const std::optional<hires::perception::Sighting>& seen,
-                        const std_msgs::Header& header) {
-  hires::Detections out;
-  out.header = header;
-  out.is_blind = !seen;
-  if (!seen) return out;
-  for (const hires::perception::Detection& detection : seen->detections)
-    out.detections.push_back(ToMsg(detection));
-  for (const Eigen::Vector3d& corner : seen->table) {
-    out.table.emplace_back();
-    out.table.back().x = corner.x();
-    out.table.back().y = corner.y();
-    out.table.back().z = corner.z();
-  }
-  return out;
 }
 
 std::vector<geometry_msgs::TransformStamped> LinkTransforms(

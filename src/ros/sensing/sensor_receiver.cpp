@@ -4,9 +4,10 @@
 
 #include <cmath>
 
-#include "hires/ros/conversions.h"
 #include "hires/ros/names/robot_topics.h"
+#include "hires/ros/perception/detection_messages.h"
 #include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/world/world_messages.h"
 
 namespace hires_ros {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "hires/ros/conversions.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros {
 namespace {

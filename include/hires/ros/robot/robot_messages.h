@@ -2,19 +2,14 @@
 
 #include <geometry_msgs/TransformStamped.h>
 #include <geometry_msgs/Twist.h>
-#include <hires/Detections.h>
 #include <nav_msgs/Odometry.h>
 #include <sensor_msgs/JointState.h>
-#include <sensor_msgs/PointCloud2.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "hires/geometry/pose.h"
-#include "hires/perception/detector.h"
-#include "hires/perception/point_cloud.h"
 #include "hires/robot/observation.h"
 #include "hires/robot/readings.h"
 #include "hires/robot/robot_profile.h"
@@ -39,22 +34,6 @@ hires::robot::JointReading FromMsg(const sensor_msgs::JointState& msg);
 sensor_msgs::JointState ToMsg(const hires::robot::JointReading& joints, const ros::Time& stamp);
 
 hires::robot::OdometryReading FromMsg(const nav_msgs::Odometry& msg);
-
-/// Its fields x, y and z, of any layout in little-endian single precision; others are passed over.
-/// @throws hires::base::ConfigError naming the field that is missing or of another type, or sizes
-/// that do not fit.
-hires::perception::PointCloud FromMsg(const sensor_msgs::PointCloud2& msg);
-
-/// A confidence of 0, which the recogniser did not tell, counts as 1; an empty instance as not
-/// known.
-hires::perception::Detection FromMsg(const hires::Detection& msg);
-hires::Detection ToMsg(const hires::perception::Detection& detection);
-
-/// @return nothing of one who could not look.
-std::optional<hires::perception::Sighting> FromMsg(const hires::Detections& msg);
-/// @param seen  nothing: it could not look.
-hires::Detections ToMsg(const std::optional<hires::perception::Sighting>& seen,
-                        const std_msgs::Header& header);
 
 /// Where each link hangs, joints as they are said; the base's own pose in the map left out.
 std::vector<geometry_msgs::TransformStamped> LinkTransforms(

@@ -1,4 +1,4 @@
-#include "hires/ros/conversions.h"
+#include "hires/ros/answer/report_messages.h"
 
 #include <fmt/format.h>
 
@@ -6,30 +6,16 @@
 #include <limits>
 
 #include "hires/base/error.h"
-#include "hires/geometry/angles.h"
+#include "hires/ros/robot/robot_state_messages.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/values/failure_messages.h"
+#include "hires/ros/world/world_messages.h"
 
 namespace hires_ros {
 namespace {
 
-using hires::geometry::Pose3;
 using hires::imagination::ImaginationOutcome;
 using hires::imagination::IntervalKind;
-
-geometry_msgs::Twist TwistMsg(const hires::geometry::Twist3& twist) {
-  geometry_msgs::Twist out;
-  out.linear.x = twist.linear.x();
-  out.linear.y = twist.linear.y();
-  out.linear.z = twist.linear.z();
-  out.angular.x = twist.angular.x();
-  out.angular.y = twist.angular.y();
-  out.angular.z = twist.angular.z();
-  return out;
-}
-
-hires::geometry::Twist3 FromTwistMsg(const geometry_msgs::Twist& twist) {
-  return {{twist.linear.x, twist.linear.y, twist.linear.z},
-          {twist.angular.x, twist.angular.y, twist.angular.z}};
-}
 
 std::uint8_t OutcomeCode(const hires::imagination::Report& report) {
   switch (report.outcome == ImaginationOutcome::kCancelled ? report.found : report.outcome) {
@@ -65,31 +51,6 @@ ImaginationOutcome OutcomeOf(std::uint8_t code) {
     default:
       return ImaginationOutcome::kCancelled;
   }
-}
-
-std::uint8_t CodeOf(hires::world::Fall fall) {
-  switch (fall) {
-    case hires::world::Fall::kNone:
-      return msg::ObjectTruth::NOT_FALLEN;
-    case hires::world::Fall::kLost:
-      return msg::ObjectTruth::LOST;
-    case hires::world::Fall::kToppled:
-      return msg::ObjectTruth::TOPPLED;
-    case hires::world::Fall::kDropped:
-      return msg::ObjectTruth::DROPPED;
-    case hires::world::Fall::kSlid:
-      return msg::ObjectTruth::SLID;
-  }
-  return msg::ObjectTruth::NOT_FALLEN;
-}
-
-hires::world::Fall FallOf(std::uint8_t code) {
-  for (const auto fall :
-       {hires::world::Fall::kNone, hires::world::Fall::kLost, hires::world::Fall::kToppled,
-        hires::world::Fall::kDropped, hires::world::Fall::kSlid}) {
-    if (CodeOf(fall) == code) return fall;
-  }
-  throw hires::base::ConfigError(fmt::format("first_fall of a thing is {}, wanted 0 .. 4", code));
 }
 
 hires::imagination::Outcome OutcomeOfRollout(std::uint8_t code) {
@@ -147,174 +108,6 @@ IntervalKind KindOf(std::uint8_t code) {
 }
 
 }  // namespace
-
-geometry_msgs::Pose ToMsg(const Pose3& pose) {
-  geometry_msgs::Pose out;
-  out.position.x = pose.translation.x();
-  out.position.y = pose.translation.y();
-  out.position.z = pose.translation.z();
-  out.orientation.x = pose.rotation.x();
-  out.orientation.y = pose.rotation.y();
-  out.orientation.z = pose.rotation.z();
-  out.orientation.w = pose.rotation.w();
-  return out;
-}
-
-Pose3 FromMsg(const geometry_msgs::Pose& pose) {
-  const auto& q = pose.orientation;
-  Pose3 out{{pose.position.x, pose.position.y, pose.position.z}, {q.w, q.x, q.y, q.z}};
-  const double norm = out.rotation.norm();
-  if (norm == 0.0) out.rotation.setIdentity();
-  // A unit quaternion passes untouched: dividing by a norm of almost 1 would change its bits.
-  if (norm > 0.0 && std::abs(norm - 1.0) > 1e-9) out.rotation.normalize();
-  return out;
-}
-
-msg::ActionCall ToMsg(const hires::base::ActionCall& call) {
-  msg::ActionCall out;
-  out.name = call.name;
-  out.arguments = call.arguments;
-  return out;
-}
-
-hires::base::ActionCall FromMsg(const msg::ActionCall& call) { return {call.name, call.arguments}; }
-
-msg::ActionTemplate ToMsg(const hires::base::ActionTemplate& action) {
-  msg::ActionTemplate out;
-  out.name = action.name;
-  for (const auto& list : action.alternatives) {
-    out.alternatives.emplace_back();
-    out.alternatives.back().values = list;
-  }
-  return out;
-}
-
-hires::base::ActionTemplate FromMsg(const msg::ActionTemplate& action) {
-  hires::base::ActionTemplate out{action.name, {}};
-  for (const auto& list : action.alternatives) out.alternatives.push_back(list.values);
-  return out;
-}
-
-msg::Failure ToMsg(const hires::base::Failure& failure) {
-  msg::Failure out;
-  out.code = static_cast<std::uint16_t>(failure.code);
-  out.subjects = failure.subjects;
-  out.detail = failure.detail;
-  return out;
-}
-
-hires::base::Failure FromMsg(const msg::Failure& failure) {
-  const auto code = hires::base::FailureCodeOf(failure.code);
-  if (code) return {*code, failure.subjects, failure.detail};
-  return {hires::base::FailureCode::kOther, failure.subjects,
-          fmt::format("code {}, unknown to this version{}{}", failure.code,
-                      failure.detail.empty() ? "" : ": ", failure.detail)};
-}
-
-msg::WorldState ToMsg(const hires::world::WorldState& state) {
-  msg::WorldState out;
-  out.header.frame_id = "map";
-  for (const hires::world::ObjectState& object : state.objects) {
-    msg::ObjectState entry;
-    entry.name = object.name;
-    entry.model = object.model;
-    entry.pose = ToMsg(object.X_MO);
-    entry.twist = TwistMsg(object.V_MO);
-    entry.attached_to = object.attached_to;
-    out.objects.push_back(entry);
-  }
-  return out;
-}
-
-hires::world::WorldState FromMsg(const msg::WorldState& state) {
-  hires::world::WorldState out;
-  for (const msg::ObjectState& entry : state.objects) {
-    out.objects.push_back({entry.name, entry.model, FromMsg(entry.pose), FromTwistMsg(entry.twist),
-                           entry.attached_to});
-  }
-  return out;
-}
-
-msg::RobotState ToMsg(const hires::robot::RobotState& state) {
-  msg::RobotState out;
-  out.pose.position.x = state.X_MB.x;
-  out.pose.position.y = state.X_MB.y;
-  out.pose.orientation.z = std::sin(state.X_MB.yaw / 2.0);
-  out.pose.orientation.w = std::cos(state.X_MB.yaw / 2.0);
-  out.yaw = state.X_MB.yaw;
-  out.twist.linear.x = state.V_B.vx;
-  out.twist.linear.y = state.V_B.vy;
-  out.twist.angular.z = state.V_B.wz;
-  for (const auto& [name, position] : state.joints) {
-    out.joints.name.push_back(name);
-    out.joints.position.push_back(position);
-  }
-  return out;
-}
-
-hires::robot::RobotState FromMsg(const msg::RobotState& state) {
-  hires::robot::RobotState out;
-  // Who fills in the pose alone leaves yaw at 0: it counts only where it says what the pose says.
-  const double posed = hires::geometry::YawOf(FromMsg(state.pose).rotation);
-  const bool fits = std::abs(hires::geometry::WrapToPi(posed - state.yaw)) < 1e-9;
-  const double yaw = fits ? state.yaw : posed;
-  out.X_MB = {state.pose.position.x, state.pose.position.y, yaw};
-  out.V_B = {state.twist.linear.x, state.twist.linear.y, state.twist.angular.z};
-  if (state.joints.name.size() != state.joints.position.size()) {
-    throw hires::base::ConfigError("robot_state.joints: names and positions differ in number");
-  }
-  for (std::size_t i = 0; i < state.joints.name.size(); ++i) {
-    out.joints[state.joints.name[i]] = state.joints.position[i];
-  }
-  return out;
-}
-
-msg::ObjectTruth ToMsg(const std::string& name, const hires::simulation::ObjectFate& fate) {
-  msg::ObjectTruth out;
-  out.name = name;
-  out.pose = ToMsg(fate.X_MO);
-  out.attached_to = fate.attached_to;
-  out.stands = fate.stands;
-  out.tilt = fate.tilt;
-  out.max_tilt = fate.max_tilt;
-  out.falls = static_cast<std::uint32_t>(fate.falls);
-  out.first_fall = CodeOf(fate.first_fall);
-  return out;
-}
-
-hires::simulation::ObjectFate FromMsg(const msg::ObjectTruth& truth) {
-  hires::simulation::ObjectFate fate;
-  fate.X_MO = FromMsg(truth.pose);
-  fate.attached_to = truth.attached_to;
-  fate.stands = truth.stands;
-  fate.tilt = truth.tilt;
-  fate.max_tilt = truth.max_tilt;
-  fate.falls = static_cast<int>(truth.falls);
-  fate.first_fall = FallOf(truth.first_fall);
-  return fate;
-}
-
-void RequireSoundState(const msg::WorldState& world, const msg::RobotState& robot) {
-  if (world.header.frame_id != "map") {
-    throw hires::base::ConfigError(
-        fmt::format("world_state.header.frame_id is '{}', wanted 'map'; give poses in map, or name "
-                    "updated_fluents instead of a state",
-                    world.header.frame_id));
-  }
-  const hires::geometry::Twist3 twist = FromTwistMsg(robot.twist);
-  if (!twist.linear.allFinite() || !twist.angular.allFinite()) {
-    throw hires::base::ConfigError("robot_state.twist is not finite; give numbers, 0 at rest");
-  }
-  if (!std::isfinite(robot.yaw)) {
-    throw hires::base::ConfigError(
-        "robot_state.yaw is not finite; leave it at 0 to let the pose say the heading");
-  }
-  for (std::size_t i = 0; i < robot.joints.position.size(); ++i) {
-    if (std::isfinite(robot.joints.position[i])) continue;
-    throw hires::base::ConfigError(
-        fmt::format("robot_state.joints: position {} is not finite; give numbers", i));
-  }
-}
 
 msg::RolloutRecord ToMsg(const hires::imagination::RolloutResult& result, int index) {
   msg::RolloutRecord out;

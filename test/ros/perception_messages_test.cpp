@@ -1,5 +1,3 @@
-#include "hires/ros/robot/robot_messages.h"
-
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -7,8 +5,10 @@
 #include <limits>
 
 #include "hires/base/error.h"
+#include "hires/ros/perception/cloud_messages.h"
+#include "hires/ros/perception/detection_messages.h"
 
-namespace hires_ros::robot_messages_test {
+namespace hires_ros::perception_messages_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -112,4 +112,4 @@ TEST(DetectionsMessageTest, WhatIsSeenComesBackAndBlindnessIsNoSight) {
 }
 
 }  // namespace
-}  // namespace hires_ros::robot_messages_test
+}  // namespace hires_ros::perception_messages_test
