@@ -194,11 +194,12 @@ def check_public_headers(root):
                    f"source in src/{layer_of(path)}")
 
 
-LIBRARY = re.compile(r"\bhires_(layer|room)\(([^()]*)\)")
+LIBRARY = re.compile(r"\bhires_(layer|room|node)\(([^()]*)\)")
 
 
 def declared_dependencies(root):
-    """{library: layers and rooms that its DEPENDS names}. A library is a layer, "layer/room"."""
+    """{library: layers and rooms that its DEPENDS names}. A library is a layer, "layer/room" or
+    "nodes/node"."""
     declared = {}
     for layer in RANK:
         path = f"src/{layer}/CMakeLists.txt"
@@ -206,7 +207,7 @@ def declared_dependencies(root):
             continue
         for kind, arguments in LIBRARY.findall(re.sub(r"#.*", "", read(root, path))):
             words = arguments.split()
-            name = {"layer": words[0], "room": "/".join(words[:2])}[kind]
+            name = {"layer": words[0], "room": "/".join(words[:2]), "node": f"nodes/{words[0]}"}[kind]
             after = words[words.index("DEPENDS") + 1:] if "DEPENDS" in words else []
             ends = [i for i, word in enumerate(after) if re.fullmatch("[A-Z]{3,}", word)]
             declared[name] = after[:ends[0]] if ends else after
@@ -382,7 +383,8 @@ def check_units_with_ros(root):
     """What knows no ROS is of use below, and is tested there without ROS."""
     units = units_of(root)
     for unit, paths in sorted(units.items()):
-        if unit.split("/")[0] not in LAYERS_WITH_ROS or unit in NAMES_OF_TOPICS | ASKS_ROS:
+        is_main = unit.startswith("nodes/") and unit.endswith("_main")  # which only calls what does
+        if unit.split("/")[0] not in LAYERS_WITH_ROS or unit in NAMES_OF_TOPICS | ASKS_ROS or is_main:
             continue
         if not sees_ros(root, paths):
             yield (f"{paths[0]}:1: sees no ROS, not even through headers; move it down to the layer that "

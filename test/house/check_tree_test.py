@@ -203,6 +203,17 @@ class CheckTreeTest(unittest.TestCase):
         self.assertEqual(len(complaints), 2, complaints)
         self.assertIn("'robot/names' DEPENDS on itself through others", complaints[0])
 
+    def test_a_node_depends_on_what_it_includes_itself(self):
+        node = {"src/nodes/planner/said.cpp": '#include <ros/time.h>\n#include "hires/base/rng.h"\n',
+                "src/nodes/planner/planner_main.cpp": "int main() {}\n"}
+        self.assertEqual(self.complaints(
+            {**node, "src/nodes/CMakeLists.txt": "hires_node(planner SOURCES said.cpp DEPENDS base)\n"}), [])
+        self.expect_one({**node, "src/nodes/CMakeLists.txt": "hires_node(planner SOURCES said.cpp)\n"},
+                        "src/nodes/planner/said.cpp:2", "'nodes/planner'", "'base'")
+        self.expect_one({**node, "src/nodes/CMakeLists.txt":
+                             "hires_node(planner SOURCES said.cpp DEPENDS robot base)\n"},
+                        "src/nodes/CMakeLists.txt", "'nodes/planner'", "'robot'", "take it out")
+
     def test_a_header_that_hides_one_of_ros_is_found(self):
         use = {"src/nodes/planner/pool.cpp": '#include <ros/time.h>\n#include "ros/names.h"\n'}
         self.assertIn("would be taken for the header <ros/names.h>",
