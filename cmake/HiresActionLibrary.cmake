@@ -3,7 +3,7 @@
 
 # What such a library takes with it of hires, each before what it needs itself. Its bytes are then all that
 # an action is, and those who imagine can compare them.
-set(HIRES_ACTION_LAYERS skills manipulation perception navigation world robot actions geometry base)
+set(HIRES_ACTION_LAYERS skills manipulation perception navigation navigation_guard world robot actions geometry base)
 
 # hires_action_library(<target> a.cpp ...): actions that programs load when they are told to, see
 # hires/skills/action_library.h. What else they need is linked by target_link_libraries. In the tree of

@@ -1,12 +1,25 @@
-# One library per layer (hires_<name>), one benchmark program per benchmark file; tests are in
-# HiresTests.cmake. A layer's folders are include/hires/<name>, src/<name>, test/<name>. Headers that
+# One library per layer (hires_<name>), or more where rooms have their own, one benchmark program per
+# benchmark file; tests are in HiresTests.cmake. A layer's folders are include/hires/<name>, src/<name>, test/<name>. Headers that
 # other layers and packages include are in the first, those of the layer alone beside its sources.
 
-# hires_layer(<name> [SOURCES a.cpp ...] [DEPENDS lower layers ...] [LINK libraries ...])
-# Call it in src/<name>/CMakeLists.txt.
+# hires_layer(<name> [SOURCES a.cpp ...] [DEPENDS lower layers and rooms ...] [LINK libraries ...])
+# Call it in src/<name>/CMakeLists.txt. A room with a library of its own is <layer>/<room> in DEPENDS; a
+# layer that names its own rooms there is linked with them, so that who takes the layer has them all.
 function(hires_layer name)
+  hires_library(hires_${name} ${ARGN})
+endfunction()
+
+# hires_room(<layer> <room> [SOURCES a.cpp ...] [DEPENDS layers and rooms ...] [LINK libraries ...]): what
+# stands in src/<layer>/<room>/ as the library hires_<layer>_<room>, for those who need no more of the layer.
+function(hires_room layer room)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS;LINK" ${ARGN})
+  list(TRANSFORM ROOM_SOURCES PREPEND ${room}/)
+  hires_library(hires_${layer}_${room} SOURCES ${ROOM_SOURCES} DEPENDS ${ROOM_DEPENDS} LINK ${ROOM_LINK})
+  set_property(GLOBAL APPEND PROPERTY HIRES_ROOMS_${layer} hires_${layer}_${room})
+endfunction()
+
+function(hires_library target)
   cmake_parse_arguments(LAYER "" "" "SOURCES;DEPENDS;LINK" ${ARGN})
-  set(target hires_${name})
   set(scope PUBLIC)
   if(LAYER_SOURCES)
     add_library(${target} STATIC ${LAYER_SOURCES})
@@ -20,8 +33,16 @@ function(hires_layer name)
     set(scope INTERFACE)
   endif()
   target_include_directories(${target} ${scope} ${PROJECT_SOURCE_DIR}/include)
-  list(TRANSFORM LAYER_DEPENDS PREPEND hires_)
-  target_link_libraries(${target} ${scope} ${LAYER_DEPENDS} ${LAYER_LINK})
+  hires_library_names(depends ${LAYER_DEPENDS})
+  target_link_libraries(${target} ${scope} ${depends} ${LAYER_LINK})
+endfunction()
+
+# hires_library_names(<variable> <layers and rooms ...>): "navigation/guard" is hires_navigation_guard.
+function(hires_library_names variable)
+  set(names ${ARGN})
+  list(TRANSFORM names REPLACE "/" "_")
+  list(TRANSFORM names PREPEND hires_)
+  set(${variable} ${names} PARENT_SCOPE)
 endfunction()
 
 # hires_compile_together(<target>): its sources are compiled several at a time, in the order in which

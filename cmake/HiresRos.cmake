@@ -25,20 +25,29 @@ catkin_package(
 # Code that sees ROS converts and waits; what is to be fast lies below. -O1 builds it a quarter faster.
 set(HIRES_ROS_OPTIONS ${HIRES_WARNINGS} $<$<CONFIG:Release>:-O1>)
 
-# hires_node(<name> SOURCES a.cpp ... [LINK libraries ...]): an executable that rosrun and roslaunch find
-# as <name>, from <name>/<name>_main.cpp. The sources, in the same folder, are the static library
-# hires_nodes_<name>, so that tests can link what the node is made of; it is added to
-# HIRES_NODE_LIBRARIES of the caller. The target is hires_<name>_node, so that it cannot clash with a
-# layer's.
+# hires_sees_ros(<target>): a library that includes ROS and messages, which are made before it.
+function(hires_sees_ros target)
+  target_compile_options(${target} PRIVATE ${HIRES_ROS_OPTIONS})
+  target_include_directories(${target} SYSTEM PUBLIC ${catkin_INCLUDE_DIRS})
+  target_link_libraries(${target} PUBLIC ${catkin_LIBRARIES})
+  add_dependencies(${target} ${${PROJECT_NAME}_EXPORTED_TARGETS} ${catkin_EXPORTED_TARGETS})
+endfunction()
+
+# hires_node(<name> SOURCES a.cpp ... DEPENDS layers and rooms ... [LINK libraries ...]): an executable that
+# rosrun and roslaunch find as <name>, from <name>/<name>_main.cpp. The sources, in the same folder, are the
+# static library hires_nodes_<name>, so that tests can link what the node is made of; it is added to
+# HIRES_NODE_LIBRARIES of the caller. DEPENDS as in hires_layer: what the node includes, and nothing else. The
+# target is hires_<name>_node, so that it cannot clash with a layer's.
 function(hires_node name)
-  cmake_parse_arguments(NODE "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(NODE "" "" "SOURCES;DEPENDS;LINK" ${ARGN})
   set(library hires_nodes_${name})
   list(TRANSFORM NODE_SOURCES PREPEND ${name}/)
   add_library(${library} STATIC ${NODE_SOURCES})
-  target_compile_options(${library} PRIVATE ${HIRES_ROS_OPTIONS})
+  hires_sees_ros(${library})
   hires_compile_together(${library})
   target_include_directories(${library} PUBLIC ${PROJECT_SOURCE_DIR}/src)
-  target_link_libraries(${library} PUBLIC hires_ros ${NODE_LINK})
+  hires_library_names(depends ${NODE_DEPENDS})
+  target_link_libraries(${library} PUBLIC ${depends} ${NODE_LINK})
   set(HIRES_NODE_LIBRARIES ${HIRES_NODE_LIBRARIES} ${library} PARENT_SCOPE)
   set(target hires_${name}_node)
   add_executable(${target} ${name}/${name}_main.cpp)
@@ -49,6 +58,34 @@ function(hires_node name)
   target_link_libraries(${target} PRIVATE ${library})
   install(TARGETS ${target} RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
   add_dependencies(hires_run ${target})
+  set_property(GLOBAL APPEND PROPERTY HIRES_NODES ${name})
+endfunction()
+
+# hires_write_node_links(<file>): one line for each node, its name and the libraries of this package that it is
+# linked with, for a test that looks whether these are too many. Call it after all layers.
+function(hires_write_node_links file)
+  get_property(nodes GLOBAL PROPERTY HIRES_NODES)
+  set(lines)
+  foreach(node IN LISTS nodes)
+    set(linked hires_nodes_${node})
+    set(todo ${linked})
+    while(todo)
+      list(GET todo 0 next)
+      list(REMOVE_AT todo 0)
+      get_target_property(libraries ${next} INTERFACE_LINK_LIBRARIES)
+      foreach(library IN LISTS libraries)
+        if(library MATCHES "hires_[a-z_]+" AND NOT CMAKE_MATCH_0 IN_LIST linked)  # also in $<LINK_ONLY:...>
+          list(APPEND linked ${CMAKE_MATCH_0})
+          list(APPEND todo ${CMAKE_MATCH_0})
+        endif()
+      endforeach()
+    endwhile()
+    list(REMOVE_AT linked 0)  # the node's own
+    list(SORT linked)
+    list(JOIN linked " " libraries)
+    string(APPEND lines "${node}: ${libraries}\n")
+  endforeach()
+  file(WRITE ${file} "${lines}")
 endfunction()
 
 # What running needs: all nodes, and the messages for those who look at topics.

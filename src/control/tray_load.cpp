@@ -2,6 +2,7 @@
 
 #include "hires/base/error.h"
 #include "hires/geometry/shape.h"
+#include "hires/navigation/standing_load.h"
 #include "hires/robot/posture.h"
 #include "hires/skills/manipulation_context.h"
 

@@ -12,8 +12,8 @@
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/overloaded.h"
+#include "hires/imagination/imagine_answer.h"
 #include "hires/imagination/report.h"
-#include "hires/loop/imagine_answer.h"
 
 namespace hires::loop {
 namespace {

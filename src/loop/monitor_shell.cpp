@@ -5,9 +5,9 @@
 #include <variant>
 
 #include "hires/base/atoms.h"
+#include "hires/execution/record_fluent.h"
+#include "hires/imagination/imagine_answer.h"
 #include "hires/knowledge/state_view.h"
-#include "hires/loop/imagine_answer.h"
-#include "hires/loop/record_fluent.h"
 
 namespace hires::loop {
 namespace {
@@ -100,7 +100,7 @@ void MonitorShell::Feed(const execution::Event& event) {
   planning_.CancelAll();
   imagination_.CancelAll();
   const std::string outcome = ToString(OutcomeOf(finish_->outcome));
-  records_.EndEpisode(EpisodeOutcome(outcome, finish_->reason), clock_.now());
+  records_.EndEpisode(execution::EpisodeOutcome(outcome, finish_->reason), clock_.now());
 }
 
 void MonitorShell::AskForWake() {
@@ -121,7 +121,8 @@ AchieveStatus MonitorShell::Status() const {
   }
   status.imaginations = imagination_.steps();
   for (evaluation::ImaginedStep& imagined : status.imaginations) {
-    imagined.dispatch = DispatchOf(status.steps, imagined.plan, imagined.step, imagined.action);
+    imagined.dispatch =
+        imagination::DispatchOf(status.steps, imagined.plan, imagined.step, imagined.action);
   }
   status.warnings = warnings_;
   return status;

@@ -17,7 +17,7 @@ void RecordKeeper::EndEpisode(const std::string& outcome, double time) {
 
 void RecordKeeper::Write(const Record& record, double time) {
   const Assertion by{Source::kMonitor, episode_.id, time};
-  const RecordWrites writes = records_.WritesOf(record, time, blackboard_.ontology());
+  const execution::RecordWrites writes = records_.WritesOf(record, time, blackboard_.ontology());
   if (writes.added) blackboard_.Write({*writes.added}, {}, {}, by);
   if (writes.updated) blackboard_.Write({}, {*writes.updated}, {}, by);
   if (!writes.ended) return;

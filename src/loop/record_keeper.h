@@ -4,8 +4,8 @@
 #include <string>
 
 #include "hires/execution/monitor.h"
+#include "hires/execution/record_fluent.h"
 #include "hires/knowledge/fluent.h"
-#include "hires/loop/record_fluent.h"
 #include "loop/blackboard.h"
 
 namespace hires::loop {
@@ -24,7 +24,7 @@ class RecordKeeper {
  private:
   Blackboard& blackboard_;
   knowledge::Episode episode_;
-  EpisodeRecords records_;
+  execution::EpisodeRecords records_;
 };
 
 }  // namespace hires::loop

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "hires/geometry/angles.h"
 
@@ -59,6 +60,14 @@ bool IsInView(const PlacedScan& scan, const Eigen::Vector2d& point_B) {
   if (beam < -0.5 || beam > 2.0 * half + 0.5) return false;
   const auto nearest = static_cast<std::size_t>(std::clamp(std::round(beam), 0.0, 2.0 * half));
   return IsMeasurement(reading, reading.ranges[nearest]);
+}
+
+float NearestEcho(const std::vector<float>& echoes, float range_min) {
+  float nearest = std::numeric_limits<float>::quiet_NaN();
+  for (const float echo : echoes) {
+    if (echo >= range_min && !(nearest <= echo)) nearest = echo;
+  }
+  return nearest;
 }
 
 }  // namespace hires::robot

@@ -316,12 +316,4 @@ RobotLog DriveBuilder::Take() {
   return std::move(log_);
 }
 
-float NearestEcho(const std::vector<float>& echoes, float range_min) {
-  float nearest = std::numeric_limits<float>::quiet_NaN();
-  for (const float echo : echoes) {
-    if (echo >= range_min && !(nearest <= echo)) nearest = echo;
-  }
-  return nearest;
-}
-
 }  // namespace hires::sensing

@@ -116,7 +116,7 @@ std::string ToString(const Receipt& receipt) {
 
 RobotStateEstimator::RobotStateEstimator(std::shared_ptr<const robot::Robot> robot,
                                          FrameNames frames, const StateParams& params,
-                                         const world::MapToWorld& map_to_world,
+                                         const geometry::MapToWorld& map_to_world,
                                          std::shared_ptr<FrameTree> tree)
     : robot_(std::move(robot)),
       frames_(std::move(frames)),
@@ -170,11 +170,12 @@ void RobotStateEstimator::ForgetOld() {
   joints_.KeepBetween(oldest, latest);
 }
 
-/// What is known of a time far ahead is of another clock, of a robot that has ended, say: tf holds it
-/// for the newest, and refuses all that comes as too old.
+/// What is known of a time far ahead is of another clock, of a robot that has ended, say: tf holds
+/// it for the newest, and refuses all that comes as too old.
 void RobotStateEstimator::ForgetAhead() {
   const std::pair<const std::string&, const std::string&> links[] = {
-      {frames_.map, frames_.odometry}, {frames_.map, frames_.base},
+      {frames_.map, frames_.odometry},
+      {frames_.map, frames_.base},
       {frames_.odometry, frames_.base}};
   for (const auto& [parent, child] : links) {
     const auto newest = tree_->NewestOf(parent, child);

@@ -194,47 +194,129 @@ def check_public_headers(root):
                    f"source in src/{layer_of(path)}")
 
 
+LIBRARY = re.compile(r"\bhires_(layer|room|node)\(([^()]*)\)")
+
+
 def declared_dependencies(root):
-    """{layer: layers that its hires_layer(... DEPENDS ...) names}"""
+    """{library: layers and rooms that its DEPENDS names}. A library is a layer, "layer/room" or
+    "nodes/node"."""
     declared = {}
     for layer in RANK:
         path = f"src/{layer}/CMakeLists.txt"
         if not os.path.exists(os.path.join(root, path)):
             continue
-        text = re.sub(r"#.*", "", read(root, path))
-        call = re.search(r"hires_layer\(\s*" + layer + r"\b([^)]*)\)", text)
-        if call:
-            match = re.search(r"\bDEPENDS\s+(.*?)(?=\b[A-Z]{3,}\b|$)", call.group(1), re.DOTALL)
-            declared[layer] = match.group(1).split() if match else []
+        for kind, arguments in LIBRARY.findall(re.sub(r"#.*", "", read(root, path))):
+            words = arguments.split()
+            name = {"layer": words[0], "room": "/".join(words[:2]), "node": f"nodes/{words[0]}"}[kind]
+            after = words[words.index("DEPENDS") + 1:] if "DEPENDS" in words else []
+            ends = [i for i, word in enumerate(after) if re.fullmatch("[A-Z]{3,}", word)]
+            declared[name] = after[:ends[0]] if ends else after
     return declared
 
 
+class Libraries:
+    """Which library each file of include and src is part of. A room is part of its layer if that depends on it."""
+
+    def __init__(self, root):
+        self.depends = declared_dependencies(root)
+        self.of_source = {}  # (layer, name of a source without its end): its library
+        for path in files_below(root, "src"):
+            if path.endswith(".cpp") and layer_of(path):
+                stem = os.path.basename(path)[:-len(".cpp")]
+                self.of_source[layer_of(path), stem] = self.by_folder(path)
+
+    def by_folder(self, path):
+        layer, parts = layer_of(path), path.split("/")
+        below = parts[3:] if parts[0] == "include" else parts[2:]
+        room = f"{layer}/{below[0]}" if len(below) > 1 else None
+        return room if room in self.depends else layer
+
+    def of(self, path):
+        """Of a header that stands with others of its layer, where its source is."""
+        library = self.by_folder(path)
+        if "/" in library or not path.startswith("include/"):
+            return library
+        return self.of_source.get((library, os.path.splitext(os.path.basename(path))[0]), library)
+
+    def has_source(self, path):
+        return (layer_of(path), os.path.splitext(os.path.basename(path))[0]) in self.of_source
+
+    def bringing(self, path, library):
+        """Those among the dependencies of `library` that bring what this header declares."""
+        owner, layer = self.of(path), layer_of(path)
+        declared = self.depends[library]
+        if owner in declared:
+            return [owner]
+        is_part = owner == layer or owner in self.depends.get(layer, [])
+        if layer in declared and (is_part or not self.has_source(path)):
+            return [layer]
+        # A header without a source needs no library, only one that knows the layer.
+        return [] if self.has_source(path) else [d for d in declared if d.startswith(layer + "/")]
+
+
+def place_of(library):
+    return f"src/{library.split('/')[0]}/CMakeLists.txt"
+
+
+def check_dependency(library, lower):
+    layer, other = library.split("/")[0], lower.split("/")[0]
+    is_own_room = other == layer and "/" in lower and lower != library and layer != "nodes"
+    if other not in RANK or (RANK[other] >= RANK[layer] and not is_own_room):
+        kind = "layer" if library == layer else "room" if layer != "nodes" else "node"
+        yield (f"{place_of(library)}: {kind} '{library}' DEPENDS on '{lower}', which is "
+               "no lower layer; move what both need down")
+
+
 def check_dependencies(root):
-    """CMake says what the includes say: no layer more, none less, none that points up."""
-    declared = declared_dependencies(root)
-    included = {layer: set() for layer in declared}
-    for layer, lower_layers in declared.items():
-        for lower in lower_layers:
-            if lower not in RANK or RANK[lower] >= RANK[layer]:
-                yield (f"src/{layer}/CMakeLists.txt: layer '{layer}' DEPENDS on '{lower}', which is "
-                       "no lower layer; move what both need down")
+    """CMake says what the includes say: no layer or room more, none less, none that points up."""
+    libraries = Libraries(root)
+    used = {library: set() for library in libraries.depends}
+    for library, lower_ones in libraries.depends.items():
+        for lower in lower_ones:
+            yield from check_dependency(library, lower)
     for path in code_files(root):
-        layer = layer_of(path)
-        if layer not in declared or path.startswith(("test/", "benchmark/")):
+        if layer_of(path) is None or path.startswith(("test/", "benchmark/")):
             continue
-        for number, header in includes_of(root, path):
-            other = included_layer(header)
-            if other not in RANK or RANK[other] >= RANK[layer]:
-                continue
-            if other not in included[layer] and other not in declared[layer]:
-                yield (f"{path}:{number}: layer '{layer}' includes {header} without depending on "
-                       f"'{other}'; add it to DEPENDS in src/{layer}/CMakeLists.txt")
-            included[layer].add(other)
-    for layer, lower_layers in declared.items():
-        for lower in lower_layers:
-            if RANK.get(lower, RANK[layer]) < RANK[layer] and lower not in included[layer]:
-                yield (f"src/{layer}/CMakeLists.txt: layer '{layer}' DEPENDS on '{lower}', of which it "
+        library = libraries.of(path)
+        if library in used:
+            yield from check_use(root, path, library, libraries, used[library])
+    for library, lower_ones in libraries.depends.items():
+        for lower in lower_ones:
+            is_lower = RANK.get(lower.split("/")[0], RANK["nodes"]) < RANK[library.split("/")[0]]
+            if is_lower and lower not in used[library]:
+                yield (f"{place_of(library)}: '{library}' DEPENDS on '{lower}', of which it "
                        "includes nothing; take it out")
+
+
+def check_use(root, path, library, libraries, used):
+    layer = layer_of(path)
+    for number, header in includes_of(root, path):
+        found = own_file(root, path, header)
+        other = layer_of(found) if found else included_layer(header)
+        if other not in RANK or RANK[other] > RANK[layer] or (RANK[other] == RANK[layer] and other != layer):
+            continue
+        target = found or f"include/{header}"
+        if libraries.of(target) == library or other == layer and not libraries.has_source(target):
+            continue
+        bringing = libraries.bringing(target, library)
+        if not bringing:
+            owner = libraries.of(target)
+            yield (f"{path}:{number}: '{library}' includes {header} without depending on "
+                   f"'{owner}'; add it to DEPENDS in {place_of(library)}")
+        used.update(bringing)
+
+
+def check_circles(root):
+    """Rooms of one layer may use each other, one way."""
+    depends = declared_dependencies(root)
+    for first in sorted(depends):
+        layer, seen, todo = first.split("/")[0], set(), [first]
+        while todo:
+            rooms = [lower for lower in depends.get(todo.pop(), []) if lower.startswith(layer + "/")]
+            todo += [room for room in rooms if room not in seen]
+            seen.update(rooms)
+        if first in seen:
+            yield f"{place_of(first)}: '{first}' DEPENDS on itself through others; move what they share down"
 
 
 def own_headers(root, path):
@@ -242,20 +324,21 @@ def own_headers(root, path):
     beside = path[len("src/"):-len(".cpp")] + ".h"
     stem = os.path.basename(beside)
     names = [beside, stem] if os.path.exists(os.path.join(root, "src", beside)) else []
-    for_others = f"hires/{layer_of(path)}/{stem}"  # rooms are a layer's own affair
-    if os.path.exists(os.path.join(root, "include", for_others)):
-        names.append(for_others)
+    # Rooms are a layer's own affair, but where headers stand in rooms, too.
+    for for_others in (f"hires/{beside}", f"hires/{layer_of(path)}/{stem}"):
+        if os.path.exists(os.path.join(root, "include", for_others)):
+            names.append(for_others)
     return names
 
 
 # Nothing but names; STYLE of the project keeps those of topics where topics are.
-NAMES_OF_TOPICS = {"ros/robot_topics", "ros/topic_names"}
+NAMES_OF_TOPICS = {"ros/names/robot_topics", "ros/names/topic_names"}
 # What these do is to ask ROS, though no type of it stands in their headers: who calls them needs it.
-ASKS_ROS = {"ros/load_robot_names", "ros/node/private_params"}
+ASKS_ROS = {"ros/robot/load_robot_names", "ros/node/private_params"}
 
 
 def unit_of(path):
-    """What header and source of one name have in common: "ros/conversions"."""
+    """What header and source of one name have in common: "ros/node/run_node"."""
     below = path[len("include/hires/"):] if path.startswith("include/hires/") else path[len("src/"):]
     return os.path.splitext(below)[0]
 
@@ -300,7 +383,8 @@ def check_units_with_ros(root):
     """What knows no ROS is of use below, and is tested there without ROS."""
     units = units_of(root)
     for unit, paths in sorted(units.items()):
-        if unit.split("/")[0] not in LAYERS_WITH_ROS or unit in NAMES_OF_TOPICS | ASKS_ROS:
+        is_main = unit.startswith("nodes/") and unit.endswith("_main")  # which only calls what does
+        if unit.split("/")[0] not in LAYERS_WITH_ROS or unit in NAMES_OF_TOPICS | ASKS_ROS or is_main:
             continue
         if not sees_ros(root, paths):
             yield (f"{paths[0]}:1: sees no ROS, not even through headers; move it down to the layer that "
@@ -542,7 +626,7 @@ ALSO_MEANS = {
         "src/planning/search/operator_applier.cpp", "src/planning/check/step_replay.cpp",
         "src/translation/wanted_state.cpp"},
     "motors_halted": {  # a key of a robot's names, a finding of the doctor
-        "src/cli/robot/robot_doctor_judge.cpp", "src/control/robot_names.cpp"},
+        "src/cli/robot/robot_doctor_judge.cpp", "src/control/names/robot_names.cpp"},
     "busy": {"src/evaluation/achieve.cpp"},  # outcomes of a task, from here on
     "dry_run": {
         "src/evaluation/achieve.cpp", "src/nodes/execution_monitor/execution_messages.cpp",
@@ -701,7 +785,7 @@ def check_ground_truth(root):
 
 
 CHECKS = [check_includes, check_private_headers, check_public_headers, check_hidden_headers,
-          check_light_headers, check_dependencies, check_units_with_ros, check_nodes_apart, check_rooms,
+          check_light_headers, check_dependencies, check_circles, check_units_with_ros, check_nodes_apart, check_rooms,
           check_functions, check_headers, check_whitespace, check_packages, check_libraries,
           check_catkin_components,
           check_version, check_scripts, check_failure_codes, check_failure_texts, check_python_texts,

@@ -21,10 +21,10 @@ GOOD_TREE = {
     "src/robot/CMakeLists.txt": "hires_layer(robot\n  DEPENDS geometry)  # and what it needs\n",
     "include/hires/simulation/simulator.h": '#pragma once\n#include "hires/robot/model.h"\n',
     "include/hires/skills/skill.h": '#pragma once\n#include "hires/robot/model.h"\n',
-    "include/hires/ros/conversions.h":
+    "include/hires/ros/messages.h":
         '#pragma once\n#include <ros/time.h>\n#include "hires/Fluent.h"\n'
         '#include "hires/skills/skill.h"\n',
-    "src/nodes/planner/planner_main.cpp": '#include "hires/ros/conversions.h"\n',
+    "src/nodes/planner/planner_main.cpp": '#include "hires/ros/messages.h"\n',
     "test/skills/skill_test.cpp":
         '#include "hires/simulation/simulator.h"\n#include "support/fakes.h"\n'
         "namespace hires::skills::skill_test {\n}\n",
@@ -127,9 +127,9 @@ class CheckTreeTest(unittest.TestCase):
 
     def test_names_of_topics_may_stand_where_topics_are(self):
         self.assertEqual(self.complaints(
-            {"include/hires/ros/topic_names.h": "#pragma once\n",
+            {"include/hires/ros/names/topic_names.h": "#pragma once\n",
              "src/nodes/planner/said.cpp":
-                 '#include <ros/time.h>\n#include "hires/ros/topic_names.h"\n'}), [])
+                 '#include <ros/time.h>\n#include "hires/ros/names/topic_names.h"\n'}), [])
 
     def test_a_node_that_includes_another_one_is_found(self):
         pool = {"src/nodes/planner/pool.h": "#pragma once\n#include <ros/time.h>\n"}
@@ -164,6 +164,55 @@ class CheckTreeTest(unittest.TestCase):
         self.expect_one({"include/hires/robot/model.h":
                              '#pragma once\n#include "hires/geometry/pose.h"\n#include "hires/base/rng.h"\n'},
                         "include/hires/robot/model.h:3", "'base'", "add it to DEPENDS")
+
+    ROOMS = {"src/robot/CMakeLists.txt": "hires_room(robot names\n  SOURCES names.cpp\n  DEPENDS base)\n"
+                                         "hires_layer(robot DEPENDS robot/names geometry)\n",
+             "include/hires/robot/names.h": '#pragma once\n#include "hires/base/rng.h"\n',
+             "src/robot/names/names.cpp": '#include "hires/robot/names.h"\n',
+             "src/skills/skill.cpp": '#include "hires/skills/skill.h"\n#include "hires/robot/names.h"\n'}
+
+    def test_a_room_depends_on_what_it_includes_itself(self):
+        self.assertEqual(self.complaints(self.ROOMS), [])
+        self.expect_one({**self.ROOMS, "include/hires/robot/names.h":
+                             '#pragma once\n#include "hires/base/rng.h"\n#include "hires/geometry/pose.h"\n'},
+                        "include/hires/robot/names.h:3", "'robot/names'", "'geometry'", "add it to DEPENDS")
+
+    def test_a_room_that_needs_the_rest_of_its_layer_is_found(self):
+        self.expect_one({**self.ROOMS, "src/robot/model.cpp": '#include "hires/robot/model.h"\n',
+                         "src/robot/names/names.cpp":
+                             '#include "hires/robot/names.h"\n#include "hires/robot/model.h"\n'},
+                        "src/robot/names/names.cpp:2", "'robot/names'", "'robot'")
+
+    def test_who_needs_a_room_may_name_it_or_the_layer(self):
+        for depends in ("robot", "robot/names robot"):
+            self.assertEqual(self.complaints(
+                {**self.ROOMS, "src/skills/CMakeLists.txt": f"hires_layer(skills DEPENDS {depends})\n"}), [])
+        self.expect_one({**self.ROOMS, "src/robot/model.cpp": '#include "hires/robot/model.h"\n',
+                         "src/skills/CMakeLists.txt": "hires_layer(skills DEPENDS robot/names)\n"},
+                        "include/hires/skills/skill.h:2", "'robot'", "add it to DEPENDS")
+
+    def test_rooms_that_need_each_other_are_found(self):
+        complaints = self.complaints(
+            {**self.ROOMS, "src/robot/CMakeLists.txt":
+                 "hires_room(robot names DEPENDS robot/words base)\nhires_room(robot words DEPENDS robot/names)\n"
+                 "hires_layer(robot DEPENDS geometry robot/names robot/words)\n",
+             "src/robot/words/words.h": '#pragma once\n#include "hires/robot/names.h"\n',
+             "src/robot/words/words.cpp": '#include "robot/words/words.h"\n',
+             "src/robot/names/names.cpp":
+                 '#include "hires/robot/names.h"\n#include "robot/words/words.h"\n'})
+        self.assertEqual(len(complaints), 2, complaints)
+        self.assertIn("'robot/names' DEPENDS on itself through others", complaints[0])
+
+    def test_a_node_depends_on_what_it_includes_itself(self):
+        node = {"src/nodes/planner/said.cpp": '#include <ros/time.h>\n#include "hires/base/rng.h"\n',
+                "src/nodes/planner/planner_main.cpp": "int main() {}\n"}
+        self.assertEqual(self.complaints(
+            {**node, "src/nodes/CMakeLists.txt": "hires_node(planner SOURCES said.cpp DEPENDS base)\n"}), [])
+        self.expect_one({**node, "src/nodes/CMakeLists.txt": "hires_node(planner SOURCES said.cpp)\n"},
+                        "src/nodes/planner/said.cpp:2", "'nodes/planner'", "'base'")
+        self.expect_one({**node, "src/nodes/CMakeLists.txt":
+                             "hires_node(planner SOURCES said.cpp DEPENDS robot base)\n"},
+                        "src/nodes/CMakeLists.txt", "'nodes/planner'", "'robot'", "take it out")
 
     def test_a_header_that_hides_one_of_ros_is_found(self):
         use = {"src/nodes/planner/pool.cpp": '#include <ros/time.h>\n#include "ros/names.h"\n'}

@@ -1,4 +1,4 @@
-#include "imagination/confidence_sequence.h"
+#include "imagination/answer/confidence_sequence.h"
 
 #include <gmock/gmock.h>
 

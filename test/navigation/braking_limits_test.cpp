@@ -9,6 +9,7 @@
 #include "hires/base/error.h"
 #include "hires/navigation/base_guard.h"
 #include "hires/navigation/braking.h"
+#include "hires/navigation/standing_load.h"
 #include "hires/world/object_catalogue.h"
 
 namespace hires::navigation::braking_limits_test {

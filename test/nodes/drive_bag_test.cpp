@@ -368,15 +368,6 @@ TEST_F(DriveBagTest, LaserSaidByHandGoesBeforeTheTransforms) {
   EXPECT_EQ(Read(source).scans[0].X_BL.y, 0.2);
 }
 
-TEST(NearestEchoTest, IsTheShortestThatCounts) {
-  constexpr float kInf = std::numeric_limits<float>::infinity();
-  EXPECT_EQ(hires::sensing::NearestEcho({4.0F, 2.0F, 3.0F}, 0.1F), 2.0F);
-  EXPECT_EQ(hires::sensing::NearestEcho({kNan, 0.0F, -1.0F, 3.0F}, 0.1F), 3.0F);
-  EXPECT_EQ(hires::sensing::NearestEcho({kInf}, 0.1F), kInf);
-  EXPECT_TRUE(std::isnan(hires::sensing::NearestEcho({}, 0.1F)));
-  EXPECT_TRUE(std::isnan(hires::sensing::NearestEcho({kNan, 0.05F}, 0.1F)));
-}
-
 // ---------------------------------------------------------------- inertial units
 
 TEST_F(DriveBagTest, InertialUnitIsReadWhereItIsNamed) {

@@ -7,15 +7,15 @@
 
 #include "hires/geometry/angles.h"
 #include "hires/navigation/costmap.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros::drive_display_test {
 namespace {
 
 using hires::geometry::Flatten;
 using hires::geometry::kPi;
+using hires::geometry::MapToWorld;
 using hires::geometry::Pose2;
-using hires::world::MapToWorld;
 
 const MapToWorld kTurned{{1.0, 2.0, kPi / 2}, 2.0};
 

@@ -9,7 +9,7 @@
 #include "hires/planning/plan_order.h"
 #include "hires/planning/planner.h"
 #include "hires/planning/reasons.h"
-#include "hires/ros/plan_request.h"
+#include "hires/ros/planning/plan_request.h"
 
 namespace hires_ros::execution_messages_test {
 namespace {

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 
 #include "hires/base/error.h"
-#include "hires/ros/robot_messages.h"
+#include "hires/ros/robot/robot_messages.h"
 #include "nodes/map_check/map_check_node.h"
 
 namespace hires_ros::map_check_test {

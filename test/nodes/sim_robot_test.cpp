@@ -5,8 +5,9 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_messages.h"
+#include "hires/ros/imagination/truth_messages.h"
+#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/values/geometry_messages.h"
 #include "hires/simulation/command_inbox.h"
 #include "hires/simulation/scan_ghosts.h"
 #include "hires/simulation/truth_record.h"

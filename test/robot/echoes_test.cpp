@@ -82,5 +82,15 @@ TEST(IsInViewTest, ALaserMayHangUpsideDownOrSeeAllAround) {
     EXPECT_TRUE(IsInView(scan, {0.2 + std::cos(angle), std::sin(angle)})) << angle;
 }
 
+TEST(NearestEchoTest, IsTheShortestThatCounts) {
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(NearestEcho({4.0F, 2.0F, 3.0F}, 0.1F), 2.0F);
+  EXPECT_EQ(NearestEcho({kNan, 0.0F, -1.0F, 3.0F}, 0.1F), 3.0F);
+  EXPECT_EQ(NearestEcho({kInf}, 0.1F), kInf);
+  EXPECT_TRUE(std::isnan(NearestEcho({}, 0.1F)));
+  EXPECT_TRUE(std::isnan(NearestEcho({kNan, 0.05F}, 0.1F)));
+}
+
 }  // namespace
 }  // namespace hires::robot::echoes_test

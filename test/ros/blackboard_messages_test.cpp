@@ -1,4 +1,4 @@
-#include "hires/ros/blackboard_messages.h"
+#include "hires/ros/knowledge/blackboard_messages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

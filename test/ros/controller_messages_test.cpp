@@ -1,4 +1,4 @@
-#include "hires/ros/controller_messages.h"
+#include "hires/ros/robot/controller_messages.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

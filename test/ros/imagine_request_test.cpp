@@ -1,4 +1,4 @@
-#include "hires/ros/imagine_request.h"
+#include "hires/ros/imagination/imagine_request.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "hires/ros/conversions.h"
+#include "hires/ros/answer/report_messages.h"
+#include "hires/ros/robot/robot_state_messages.h"
+#include "hires/ros/values/failure_messages.h"
+#include "hires/ros/world/world_messages.h"
 #include "support/messages.h"
 
 namespace hires_ros::imagine_request_test {

@@ -1,4 +1,4 @@
-#include "hires/ros/place/map_messages.h"
+#include "hires/ros/world/map_messages.h"
 
 #include <gmock/gmock.h>
 

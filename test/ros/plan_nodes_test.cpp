@@ -1,4 +1,4 @@
-#include "hires/ros/plan_nodes.h"
+#include "hires/ros/planning/plan_nodes.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "hires/ros/plan_request.h"
+#include "hires/ros/planning/plan_request.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "hires/ros/place/pose_messages.h"
+#include "hires/ros/values/pose_messages.h"
 
 #include <gmock/gmock.h>
 

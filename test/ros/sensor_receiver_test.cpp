@@ -1,11 +1,13 @@
-#include "hires/ros/sensor_receiver.h"
+#include "hires/ros/sensing/sensor_receiver.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_messages.h"
+#include "hires/ros/perception/detection_messages.h"
+#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/values/geometry_messages.h"
+#include "hires/ros/world/world_messages.h"
 #include "support/sight_scenes.h"
 
 namespace hires_ros::sensor_receiver_test {

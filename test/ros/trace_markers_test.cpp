@@ -1,4 +1,4 @@
-#include "hires/ros/trace_markers.h"
+#include "hires/ros/imagination/trace_markers.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "hires/ros/transform_buffer.h"
+#include "hires/ros/transforms/transform_buffer.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 
-#include "hires/ros/robot_messages.h"
+#include "hires/ros/robot/robot_messages.h"
 #include "hires/sensing/robot_state_estimator.h"
 #include "support/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "hires/ros/place/transform_listener.h"
+#include "hires/ros/transforms/transform_listener.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 #include <tuple>
 #include <vector>
 
-#include "hires/ros/robot_messages.h"
+#include "hires/ros/robot/robot_messages.h"
 
 namespace hires_ros::transform_listener_test {
 namespace {

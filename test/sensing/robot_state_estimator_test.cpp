@@ -215,7 +215,7 @@ TEST_F(EstimatorTest, APostureIsKnownNearJointStates) {
 }
 
 TEST_F(EstimatorTest, TheWorldIsWhereTheMapLiesInIt) {
-  world::MapToWorld map_to_world;
+  geometry::MapToWorld map_to_world;
   map_to_world.X_WM = {10.0, 0.0, M_PI / 2};
   RobotStateEstimator state(robot_, {"map", "odom_combined", "base"}, {}, map_to_world, tree_);
   tree_->Tell("map", "odom_combined", 1.0, {});

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/world/map_to_world.h"
+#include "hires/geometry/map_to_world.h"
 
 namespace hires::control {
 
@@ -63,7 +63,7 @@ struct RobotNames {
   SensorNames sensors;
 
   /// How the robot's map lies in the world; not in the file, for it is the laboratory's.
-  world::MapToWorld map_to_world;
+  geometry::MapToWorld map_to_world;
 
   struct MoveBase {
     std::string action;   ///< move_base_msgs/MoveBaseAction; empty: the robot has none

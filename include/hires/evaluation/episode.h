@@ -56,7 +56,7 @@ class EpisodeBuilder {
   /// @param tree    of frames; whoever fills it tells OnTransforms.
   /// @param period  [s] from sample to sample.  @pre `setup` outlives this.
   EpisodeBuilder(const imagination::ImaginationSetup& setup, const sensing::FrameNames& frames,
-                 const world::MapToWorld& map_to_world, std::shared_ptr<sensing::FrameTree> tree,
+                 const geometry::MapToWorld& map_to_world, std::shared_ptr<sensing::FrameTree> tree,
                  double period);
 
   void OnOdometry(double stamp, const std::string& frame, const std::string& child,

@@ -7,7 +7,6 @@
 #include "hires/base/param_reader.h"
 #include "hires/geometry/pose.h"
 #include "hires/robot/robot_profile.h"
-#include "hires/world/world.h"
 
 // How a base stops so that what stands on it goes on standing. docs/notes_braking.md derives the
 // formulas and compares them with the simulator.
@@ -62,11 +61,6 @@ struct StandingLoad {
   double com_height{0.0};  ///< [m] of its centre of mass over its base
   double friction{1.0};    ///< Coulomb coefficient of its base, as the model says
 };
-
-/// A model of the catalogue, standing as it is modelled. Its base is what lies within 1 mm of its
-/// lowest point.  @throws base::ConfigError if its centre of mass is not over its base: it cannot
-/// stand.
-StandingLoad LoadOf(const world::ObjectModel& model);
 
 /// Horizontal acceleration of what it stands on from which it tips: g support / height [m/s^2].
 double TippingAcceleration(const StandingLoad& load, double gravity);

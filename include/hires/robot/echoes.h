@@ -25,4 +25,8 @@ bool IsInView(const PlacedScan& scan, const Eigen::Vector2d& point_B);
 /// covered none does.
 bool HasMeasured(const ScanReading& reading);
 
+/// Of a beam that came back several times, [m]: the nearest echo that is no shorter than
+/// `range_min`; infinity if none came back, NaN if none counts.
+float NearestEcho(const std::vector<float>& echoes, float range_min);
+
 }  // namespace hires::robot

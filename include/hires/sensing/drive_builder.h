@@ -115,8 +115,4 @@ class DriveBuilder {
   std::map<std::string, int> left_out_;
 };
 
-/// Of a beam that came back several times, [m]: the nearest echo that is no shorter than
-/// `range_min`; infinity if none came back, NaN if none counts.
-float NearestEcho(const std::vector<float>& echoes, float range_min);
-
 }  // namespace hires::sensing

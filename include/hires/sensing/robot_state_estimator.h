@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "hires/geometry/map_to_world.h"
 #include "hires/sensing/body_reading.h"
 #include "hires/sensing/frame_tree.h"
 #include "hires/sensing/joint_history.h"
-#include "hires/world/map_to_world.h"
 
 namespace hires::sensing {
 
@@ -97,7 +97,7 @@ class RobotStateEstimator {
  public:
   /// @param tree  may know nothing yet.
   RobotStateEstimator(std::shared_ptr<const robot::Robot> robot, FrameNames frames,
-                      const StateParams& params, const world::MapToWorld& map_to_world,
+                      const StateParams& params, const geometry::MapToWorld& map_to_world,
                       std::shared_ptr<FrameTree> tree);
 
   /// @param frame  in which the pose is; `child`, whose it is, and in which the velocity is. No
@@ -167,7 +167,7 @@ class RobotStateEstimator {
   std::shared_ptr<const robot::Robot> robot_;
   FrameNames frames_;
   StateParams params_;
-  world::MapToWorld map_to_world_;
+  geometry::MapToWorld map_to_world_;
   std::shared_ptr<FrameTree> tree_;
   std::string raw_frame_;                      // of the odometry
   History<robot::OdometryReading> raw_;        // base in that frame

@@ -9,7 +9,7 @@
 #include "hires/base/error.h"
 #include "hires/base/failure.h"
 #include "hires/base/text.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/imagination/truth_messages.h"
 
 namespace hires_ros {
 namespace {

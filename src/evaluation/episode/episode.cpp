@@ -51,7 +51,7 @@ double Episode::LongestGap(double from, double to) const {
 
 EpisodeBuilder::EpisodeBuilder(const imagination::ImaginationSetup& setup,
                                const sensing::FrameNames& frames,
-                               const world::MapToWorld& map_to_world,
+                               const geometry::MapToWorld& map_to_world,
                                std::shared_ptr<sensing::FrameTree> tree, double period)
     : frames_(frames),
       period_(period),

@@ -10,6 +10,7 @@
 #include "hires/evaluation/experiment/braking.h"
 #include "hires/evaluation/experiment/experiment.h"
 #include "hires/imagination/imagination_setup.h"
+#include "hires/navigation/standing_load.h"
 #include "hires/physics/closed_forms.h"
 
 // What is played, and what closed forms say about it.

@@ -8,7 +8,7 @@
 #include "hires/base/error.h"
 #include "hires/evaluation/motion_limits.h"
 #include "hires/imagination/start_state.h"
-#include "hires/navigation/braking.h"
+#include "hires/navigation/standing_load.h"
 #include "hires/physics/closed_forms.h"
 
 namespace hires::evaluation {

@@ -11,9 +11,9 @@
 
 #include "hires/base/log.h"
 #include "hires/geometry/covariance.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/values/failure_messages.h"
 #include "nodes/base_guard/move_base_service.h"
 
 namespace hires_ros {

@@ -23,7 +23,7 @@
 
 #include "hires/control/move_base_tuner.h"
 #include "hires/navigation/base_guard.h"
-#include "hires/ros/transform_buffer.h"
+#include "hires/ros/transforms/transform_buffer.h"
 #include "nodes/base_guard/base_guard_params.h"
 
 namespace hires_ros {

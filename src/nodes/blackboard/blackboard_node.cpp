@@ -14,9 +14,9 @@
 #include "hires/base/text.h"
 #include "hires/knowledge/fluent_yaml.h"
 #include "hires/knowledge/loading.h"
-#include "hires/ros/blackboard_messages.h"
+#include "hires/ros/knowledge/blackboard_messages.h"
+#include "hires/ros/names/topic_names.h"
 #include "hires/ros/node/private_params.h"
-#include "hires/ros/topic_names.h"
 
 namespace hires_ros {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "hires/base/log.h"
 #include "hires/relay/master_api.h"
-#include "hires/ros/xmlrpc_master_api.h"
+#include "hires/ros/master/xmlrpc_master_api.h"
 
 namespace hires_ros {
 namespace {

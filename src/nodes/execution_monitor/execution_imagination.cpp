@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "hires/ros/conversions.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/names/topic_names.h"
+#include "hires/ros/values/action_messages.h"
 #include "nodes/execution_monitor/execution_messages.h"
 
 namespace hires_ros {

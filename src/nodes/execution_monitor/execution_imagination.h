@@ -13,7 +13,7 @@
 
 #include "hires/base/work_thread.h"
 #include "hires/execution/monitor_config.h"
-#include "hires/ros/service_links.h"
+#include "hires/ros/node/service_links.h"
 #include "nodes/execution_monitor/action_link.h"
 
 namespace hires_ros {

@@ -6,8 +6,10 @@
 
 #include "hires/base/check.h"
 #include "hires/base/error.h"
-#include "hires/loop/imagine_answer.h"
-#include "hires/ros/conversions.h"
+#include "hires/imagination/imagine_answer.h"
+#include "hires/ros/answer/report_messages.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/values/failure_messages.h"
 
 namespace hires_ros {
 namespace {
@@ -120,8 +122,8 @@ execution::ImagineAnswered AnswerOf(int request, const hires::ImagineResult& res
   invalid.why = result.why;
   if (IsUnknown(result)) return invalid;
   try {
-    return hires::loop::AnswerOf(request, FromMsg(result), is_late,
-                                 NamesIn(state, result.depends_on));
+    return hires::imagination::AnswerOf(request, FromMsg(result), is_late,
+                                        NamesIn(state, result.depends_on));
   } catch (const hires::base::ConfigError& error) {
     invalid.why = error.what();
     return invalid;

@@ -16,8 +16,8 @@
 
 #include "hires/execution/monitor_config.h"
 #include "hires/planning/planner_config.h"
-#include "hires/ros/achieve_messages.h"
-#include "hires/ros/atom_messages.h"
+#include "hires/ros/execution/step_messages.h"
+#include "hires/ros/values/atom_messages.h"
 
 /// What the execution monitor sends and receives, as messages.
 namespace hires_ros {

@@ -14,14 +14,16 @@
 #include "hires/base/process.h"
 #include "hires/base/short_text.h"
 #include "hires/base/text.h"
+#include "hires/execution/record_fluent.h"
+#include "hires/imagination/imagine_answer.h"
 #include "hires/knowledge/state_view.h"
-#include "hires/loop/imagine_answer.h"
-#include "hires/loop/record_fluent.h"
 #include "hires/planning/request.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/execution/step_messages.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/names/topic_names.h"
 #include "hires/ros/node/private_params.h"
-#include "hires/ros/robot_topics.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/values/failure_messages.h"
 #include "nodes/execution_monitor/execution_messages.h"
 
 namespace hires_ros {
@@ -417,8 +419,8 @@ void ExecutionMonitorNode::EndAll() {
 void ExecutionMonitorNode::FinishTask(const execution::Finish& finish) {
   EndAll();
   if (task_->monitor) {
-    records_.EndEpisode(hires::loop::EpisodeOutcome(OutcomeName(finish.outcome), finish.reason),
-                        RosNow());
+    records_.EndEpisode(
+        hires::execution::EpisodeOutcome(OutcomeName(finish.outcome), finish.reason), RosNow());
   }
   PublishFeedback();
   Conclude(finish);
@@ -463,8 +465,8 @@ hires::AchieveFeedback ExecutionMonitorNode::Status() const {
   status.imaginations = imagination_.Statuses();
   for (hires::ImaginationStatus& imagined : status.imaginations) {
     const auto dispatch =
-        hires::loop::DispatchOf(steps, static_cast<int>(imagined.plan),
-                                static_cast<int>(imagined.step), FromMsg(imagined.action));
+        hires::imagination::DispatchOf(steps, static_cast<int>(imagined.plan),
+                                       static_cast<int>(imagined.step), FromMsg(imagined.action));
     imagined.dispatch = dispatch.value_or(kNever);
   }
   return status;

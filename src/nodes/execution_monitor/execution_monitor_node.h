@@ -26,7 +26,7 @@
 #include "hires/knowledge/pose_watch.h"
 #include "hires/planning/operator_data.h"
 #include "hires/planning/planner_config.h"
-#include "hires/ros/remote_view.h"
+#include "hires/ros/knowledge/remote_view.h"
 #include "nodes/execution_monitor/action_link.h"
 #include "nodes/execution_monitor/client_watch.h"
 #include "nodes/execution_monitor/execution_imagination.h"

@@ -7,8 +7,8 @@
 #include "hires/planning/reasons.h"
 #include "hires/planning/step_replay.h"
 #include "hires/planning/task_text.h"
-#include "hires/ros/plan_nodes.h"
-#include "hires/ros/plan_request.h"
+#include "hires/ros/planning/plan_nodes.h"
+#include "hires/ros/planning/plan_request.h"
 #include "nodes/execution_monitor/execution_messages.h"
 
 namespace hires_ros {

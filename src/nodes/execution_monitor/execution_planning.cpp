@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "hires/base/error.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/names/topic_names.h"
 #include "nodes/execution_monitor/execution_messages.h"
 
 namespace hires_ros {

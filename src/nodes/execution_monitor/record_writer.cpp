@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "hires/base/log.h"
-#include "hires/ros/blackboard_messages.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/knowledge/blackboard_messages.h"
+#include "hires/ros/names/topic_names.h"
 
 namespace hires_ros {
 namespace {
@@ -132,7 +132,7 @@ RecordWriter::Answer RecordWriter::Carry(const End& end, double time) {
 }
 
 RecordWriter::Answer RecordWriter::Carry(const execution::Record& record, double time) {
-  const hires::loop::RecordWrites writes = records_.WritesOf(record, time, *ontology_);
+  const hires::execution::RecordWrites writes = records_.WritesOf(record, time, *ontology_);
   if (writes.added) return WriteFluent("add", *writes.added, time);
   if (!is_updated_ && writes.updated) {
     const Answer answer = WriteFluent("update", *writes.updated, time);

@@ -12,10 +12,10 @@
 #include <variant>
 
 #include "hires/execution/monitor.h"
+#include "hires/execution/record_fluent.h"
 #include "hires/knowledge/fluent.h"
 #include "hires/knowledge/ontology.h"
-#include "hires/loop/record_fluent.h"
-#include "hires/ros/service_links.h"
+#include "hires/ros/node/service_links.h"
 
 namespace hires_ros {
 
@@ -72,7 +72,7 @@ class RecordWriter {
   // Of the writer's thread.
   ServiceLinks blackboard_;
   std::int64_t current_{0};  // episode that is written; 0: it was refused
-  hires::loop::EpisodeRecords records_;
+  hires::execution::EpisodeRecords records_;
   bool is_updated_{
       false};  // of the item under way: its last properties are in, only its end is not
   bool is_repeated_{false};  // a call of the item under way had no answer, and may have been heard

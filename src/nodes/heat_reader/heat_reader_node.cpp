@@ -7,9 +7,9 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/perception/camera_view.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_topics.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/names/topic_names.h"
+#include "hires/ros/world/world_messages.h"
 #include "nodes/heat_reader/heat_messages.h"
 
 namespace hires_ros {
@@ -102,7 +102,7 @@ std::string HeatReaderNode::WhyUnknown(const std_msgs::Header& header) const {
 
 /// What the map says, where the world has it.
 Pose3 HeatReaderNode::InWorld(const Pose3& X_MF) const {
-  const hires::world::MapToWorld& map_to_world = params_.names.map_to_world;
+  const hires::geometry::MapToWorld& map_to_world = params_.names.map_to_world;
   Pose3 X_WF = hires::geometry::Lift(map_to_world.X_WM) * X_MF;
   X_WF.translation.head<2>() = map_to_world.ToWorld(Eigen::Vector2d(X_MF.translation.head<2>()));
   return X_WF;

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "hires/base/topic_warnings.h"
-#include "hires/ros/place/transform_listener.h"
+#include "hires/ros/transforms/transform_listener.h"
 #include "nodes/heat_reader/heat_reader_params.h"
 
 namespace hires_ros {

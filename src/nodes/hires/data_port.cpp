@@ -2,7 +2,7 @@
 
 #include <xmlrpcpp/XmlRpcException.h>
 
-#include "hires/ros/xmlrpc_master_api.h"
+#include "hires/ros/master/xmlrpc_master_api.h"
 
 namespace hires_ros {
 

@@ -17,10 +17,10 @@
 #include "hires/base/log.h"
 #include "hires/base/progress.h"
 #include "hires/base/text.h"
-#include "hires/ros/conversions.h"
 #include "hires/ros/place/scan_messages.h"
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/transform_buffer.h"
+#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/transforms/transform_buffer.h"
+#include "hires/ros/values/geometry_messages.h"
 #include "nodes/hires/bag_file.h"
 
 namespace hires_ros {

@@ -10,9 +10,12 @@
 #include <memory>
 #include <utility>
 
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/transform_buffer.h"
+#include "hires/ros/perception/detection_messages.h"
+#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/transforms/transform_buffer.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/values/failure_messages.h"
+#include "hires/ros/world/world_messages.h"
 #include "nodes/hires/bag_file.h"
 
 namespace hires_ros {

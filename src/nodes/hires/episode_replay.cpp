@@ -11,7 +11,10 @@
 #include "hires/cli/command_line.h"
 #include "hires/evaluation/report_json.h"
 #include "hires/imagination/local_setup.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/answer/report_messages.h"
+#include "hires/ros/robot/robot_state_messages.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/world/world_messages.h"
 #include "nodes/hires/bag_file.h"
 #include "nodes/hires/episode_recording.h"
 #include "nodes/hires/imagine_recording.h"
@@ -38,7 +41,8 @@ using Imagine =
 
 EpisodeConfig ConfigOf(const EpisodeReplay& replay) {
   EpisodeConfig config = evaluation::ReadEpisodeConfig(replay.config, replay.names);
-  config.names.map_to_world = hires::world::ParseMapToWorld(replay.map_to_world, "--map-to-world");
+  config.names.map_to_world =
+      hires::geometry::ParseMapToWorld(replay.map_to_world, "--map-to-world");
   return config;
 }
 

@@ -18,10 +18,15 @@
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/robot/load_robot.h"
-#include "hires/ros/achieve_messages.h"
-#include "hires/ros/controller_messages.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_messages.h"
+#include "hires/ros/execution/step_messages.h"
+#include "hires/ros/perception/detection_messages.h"
+#include "hires/ros/robot/controller_messages.h"
+#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/values/failure_messages.h"
+#include "hires/ros/values/geometry_messages.h"
+#include "hires/ros/world/world_messages.h"
+#include "nodes/hires/achieve_messages.h"
 
 namespace hires_ros {
 namespace {

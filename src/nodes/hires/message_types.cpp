@@ -9,7 +9,7 @@
 #include <std_msgs/Bool.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
-#include "hires/ros/controller_messages.h"
+#include "hires/ros/robot/controller_messages.h"
 
 namespace hires_ros {
 namespace {

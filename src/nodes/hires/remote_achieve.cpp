@@ -11,9 +11,10 @@
 
 #include "hires/base/error.h"
 #include "hires/base/process.h"
-#include "hires/ros/achieve_messages.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/execution/step_messages.h"
+#include "hires/ros/names/topic_names.h"
+#include "hires/ros/values/failure_messages.h"
+#include "nodes/hires/achieve_messages.h"
 #include "nodes/hires/remote_server.h"
 
 namespace hires_ros {

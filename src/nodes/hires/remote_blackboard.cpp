@@ -9,8 +9,8 @@
 #include <ros/ros.h>
 
 #include "hires/base/error.h"
-#include "hires/ros/blackboard_messages.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/knowledge/blackboard_messages.h"
+#include "hires/ros/names/topic_names.h"
 #include "nodes/hires/remote_server.h"
 
 namespace hires_ros {

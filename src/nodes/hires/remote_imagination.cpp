@@ -10,8 +10,11 @@
 #include "hires/base/error.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/answer/report_messages.h"
+#include "hires/ros/names/topic_names.h"
+#include "hires/ros/robot/robot_state_messages.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/world/world_messages.h"
 #include "nodes/hires/remote_server.h"
 
 namespace hires_ros {

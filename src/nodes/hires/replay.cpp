@@ -23,8 +23,9 @@
 #include "hires/evaluation/report_table.h"
 #include "hires/imagination/local_imagination.h"
 #include "hires/imagination/local_setup.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/imagine_request.h"
+#include "hires/ros/answer/report_messages.h"
+#include "hires/ros/imagination/imagine_request.h"
+#include "hires/ros/values/action_messages.h"
 #include "nodes/hires/episode_replay.h"
 #include "nodes/hires/remote_imagination.h"
 

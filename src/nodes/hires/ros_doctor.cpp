@@ -19,7 +19,7 @@
 #include "hires/base/text.h"
 #include "hires/cli/network_probe.h"
 #include "hires/relay/worker_host_params.h"
-#include "hires/ros/xmlrpc_master_api.h"
+#include "hires/ros/master/xmlrpc_master_api.h"
 
 namespace hires_ros {
 namespace {

@@ -14,10 +14,14 @@
 #include "hires/base/short_text.h"
 #include "hires/imagination/report.h"
 #include "hires/imagination/rollout.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/answer/report_messages.h"
+#include "hires/ros/imagination/trace_markers.h"
+#include "hires/ros/names/topic_names.h"
 #include "hires/ros/node/private_params.h"
-#include "hires/ros/topic_names.h"
-#include "hires/ros/trace_markers.h"
+#include "hires/ros/robot/robot_state_messages.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/values/geometry_messages.h"
+#include "hires/ros/world/world_messages.h"
 
 namespace hires_ros {
 namespace {
@@ -68,7 +72,7 @@ ImaginationClientParams LoadImaginationClientParams() {
   params.setup.action_libraries = PrivateActionLibraries();
   params.localisation = PrivateText("localisation").value_or("");
   params.map_to_world =
-      hires::world::ParseMapToWorld(PrivateText("map_to_world").value_or(""), "~map_to_world");
+      hires::geometry::ParseMapToWorld(PrivateText("map_to_world").value_or(""), "~map_to_world");
   params.rollout_folder = PrivateText("rollout_folder").value_or(DefaultRolloutFolder());
   return params;
 }
@@ -176,9 +180,8 @@ void ImaginationClientNode::OnLocalisation(const geometry_msgs::PoseWithCovarian
 
 /// What begins where the robot stands begins as surely as it knows where that is.
 void ImaginationClientNode::SpreadStart(ImagineRequest* request) const {
-  request->setup.uncertainty =
-      imagination::UncertaintyFrom(request->setup.uncertainty, request->setup.robot_state.X_MB,
-                                   believed_, params_.localisation);
+  request->setup.uncertainty = imagination::UncertaintyFrom(
+      request->setup.uncertainty, request->setup.robot_state.X_MB, believed_, params_.localisation);
 }
 
 void ImaginationClientNode::OnCancel(GoalHandle goal) {

@@ -15,13 +15,13 @@
 #include <utility>
 #include <vector>
 
+#include "hires/geometry/map_to_world.h"
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/kept_rollouts.h"
 #include "hires/imagination/scheduler.h"
 #include "hires/imagination/start_spread.h"
-#include "hires/ros/imagine_request.h"
-#include "hires/world/map_to_world.h"
+#include "hires/ros/imagination/imagine_request.h"
 #include "nodes/imagination_client/asker_watch.h"
 #include "nodes/imagination_client/rollout_replayer.h"
 #include "nodes/imagination_client/worker_link.h"
@@ -35,8 +35,8 @@ struct ImaginationClientParams {
   /// Topic (geometry_msgs/PoseWithCovarianceStamped) that tells where the robot stands and how sure
   /// that is: the spread of start poses of what begins there. Empty: as the uncertainty says.
   std::string localisation;
-  hires::world::MapToWorld map_to_world;  ///< of the localisation's map
-  std::string rollout_folder;             ///< where rollouts are saved that somebody asks for
+  hires::geometry::MapToWorld map_to_world;  ///< of the localisation's map
+  std::string rollout_folder;                ///< where rollouts are saved that somebody asks for
 };
 
 /// The file in ~config (config/imagination_client.yaml where there is none); ~workers, ~world,

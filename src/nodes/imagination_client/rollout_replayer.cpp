@@ -9,8 +9,8 @@
 #include "hires/base/text.h"
 #include "hires/imagination/rollout_choice.h"
 #include "hires/imagination/rollout_recording.h"
-#include "hires/ros/rollout_bag.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/imagination/rollout_bag.h"
+#include "hires/ros/names/topic_names.h"
 
 namespace hires_ros {
 namespace {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "hires/imagination/report.h"
-#include "hires/ros/imagine_request.h"
+#include "hires/ros/imagination/imagine_request.h"
 
 namespace hires_ros {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "hires/base/process.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/names/topic_names.h"
 
 namespace hires_ros {
 

@@ -15,10 +15,10 @@
 
 #include "hires/base/topic_warnings.h"
 #include "hires/localisation/monte_carlo.h"
-#include "hires/ros/place/map_request.h"
 #include "hires/ros/place/placed_scans.h"
-#include "hires/ros/place/pose_messages.h"
-#include "hires/ros/place/transform_listener.h"
+#include "hires/ros/transforms/transform_listener.h"
+#include "hires/ros/values/pose_messages.h"
+#include "hires/ros/world/map_request.h"
 #include "nodes/localisation/localisation_params.h"
 #include "nodes/localisation/pose_keeper.h"
 

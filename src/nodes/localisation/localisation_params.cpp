@@ -9,8 +9,8 @@
 #include "hires/base/error.h"
 #include "hires/base/param_reader.h"
 #include "hires/localisation/monte_carlo.h"
-#include "hires/ros/load_robot_names.h"
 #include "hires/ros/node/private_params.h"
+#include "hires/ros/robot/load_robot_names.h"
 
 namespace hires_ros {
 namespace {

@@ -10,10 +10,10 @@
 #include "hires/base/log.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/robot/load_robot.h"
-#include "hires/ros/load_robot_names.h"
+#include "hires/ros/names/robot_topics.h"
 #include "hires/ros/node/private_params.h"
-#include "hires/ros/place/map_messages.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/robot/load_robot_names.h"
+#include "hires/ros/world/map_messages.h"
 #include "hires/world/world.h"
 
 namespace hires_ros {
@@ -63,7 +63,8 @@ MapPlace PlaceOf(const std::string& frame, const hires::control::RobotNames& nam
                                 tilt)};
   }
   const auto X_MF = hires::geometry::Flatten(found.X_PC);
-  return {hires::world::MapToWorld{names.map_to_world.ToWorld(X_MF), names.map_to_world.scale}, ""};
+  return {hires::geometry::MapToWorld{names.map_to_world.ToWorld(X_MF), names.map_to_world.scale},
+          ""};
 }
 
 double LaserHeight(const std::string& robot_path) {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "hires/control/robot_names.h"
-#include "hires/ros/place/map_request.h"
-#include "hires/ros/transform_buffer.h"
-#include "hires/world/map_to_world.h"
+#include "hires/ros/transforms/transform_buffer.h"
+#include "hires/ros/world/map_request.h"
+#include "hires/world/map_fit.h"
 
 namespace hires_ros {
 
@@ -28,7 +28,7 @@ MapCheckParams LoadMapCheckParams();
 
 /// How the frame of a map lies in the world, or why that is not known.
 struct MapPlace {
-  std::optional<hires::world::MapToWorld> map_to_world;
+  std::optional<hires::geometry::MapToWorld> map_to_world;
   std::string why_not;  ///< for people
 };
 

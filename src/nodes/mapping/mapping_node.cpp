@@ -11,10 +11,10 @@
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/process.h"
-#include "hires/ros/place/map_messages.h"
+#include "hires/ros/names/robot_topics.h"
 #include "hires/ros/place/scan_messages.h"
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/world/map_messages.h"
 
 namespace hires_ros {
 namespace {

@@ -16,7 +16,7 @@
 #include "hires/base/topic_warnings.h"
 #include "hires/mapping/mapper.h"
 #include "hires/ros/place/placed_scans.h"
-#include "hires/ros/place/transform_listener.h"
+#include "hires/ros/transforms/transform_listener.h"
 #include "nodes/mapping/mapping_params.h"
 
 namespace hires_ros {

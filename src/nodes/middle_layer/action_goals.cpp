@@ -5,8 +5,9 @@
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/short_text.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/values/failure_messages.h"
 
 namespace hires_ros {
 namespace {

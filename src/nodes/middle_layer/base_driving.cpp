@@ -8,8 +8,8 @@
 
 #include "hires/base/log.h"
 #include "hires/control/tray_load.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/values/failure_messages.h"
 
 namespace hires_ros {
 namespace {

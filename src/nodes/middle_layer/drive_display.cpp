@@ -2,14 +2,14 @@
 
 #include "hires/navigation/costmap_window.h"
 #include "hires/navigation/dwa.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/names/topic_names.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros {
 namespace {
 
+using hires::geometry::MapToWorld;
 using hires::geometry::Pose2;
-using hires::world::MapToWorld;
 
 constexpr double kCostmapPeriod = 0.5;  // [s] of the robot's time between two costmaps
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
 
 namespace hires_ros {
 LockstepClient::LockstepClient(ros::NodeHandle* nh, std::function<void()> due)

@@ -9,7 +9,7 @@
 
 #include "hires/base/log.h"
 #include "hires/base/text.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
 
 namespace hires_ros {
 namespace {

@@ -3,8 +3,8 @@
 #include <ros/package.h>
 
 #include "hires/navigation/base_guard.h"
-#include "hires/ros/load_robot_names.h"
 #include "hires/ros/node/private_params.h"
+#include "hires/ros/robot/load_robot_names.h"
 
 namespace hires_ros {
 namespace {

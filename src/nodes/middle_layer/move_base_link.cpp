@@ -2,7 +2,7 @@
 
 #include <ros/ros.h>
 
-#include "hires/ros/conversions.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros {
 namespace {
@@ -31,7 +31,7 @@ State StateOf(const TerminalState& end) {
 }  // namespace
 
 MoveBaseLink::MoveBaseLink(const std::string& action, const std::string& map_frame,
-                           const hires::world::MapToWorld& map_to_world)
+                           const hires::geometry::MapToWorld& map_to_world)
     : map_frame_(map_frame), map_to_world_(map_to_world) {
   ros::NodeHandle nh;
   nh.setCallbackQueue(&queue_);

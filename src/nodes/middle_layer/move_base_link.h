@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "hires/control/move_base_drive.h"
+#include "hires/geometry/map_to_world.h"
 #include "hires/geometry/pose.h"
-#include "hires/world/map_to_world.h"
 
 namespace hires_ros {
 
@@ -28,7 +28,7 @@ class MoveBaseLink : public hires::control::MoveBaseServer {
   /// @param map_frame  of the goals
   /// @param map_to_world  how that map lies in the world that goals are given in
   MoveBaseLink(const std::string& action, const std::string& map_frame,
-               const hires::world::MapToWorld& map_to_world = {});
+               const hires::geometry::MapToWorld& map_to_world = {});
   ~MoveBaseLink() override;  ///< takes the goal back
   MoveBaseLink(const MoveBaseLink&) = delete;
   MoveBaseLink& operator=(const MoveBaseLink&) = delete;
@@ -48,7 +48,7 @@ class MoveBaseLink : public hires::control::MoveBaseServer {
   void SetNews(std::uint64_t goal, const hires::control::MoveBaseNews& news);
 
   const std::string map_frame_;
-  const hires::world::MapToWorld map_to_world_;
+  const hires::geometry::MapToWorld map_to_world_;
   ros::CallbackQueue queue_;
   std::unique_ptr<Client> client_;
 

@@ -2,8 +2,7 @@
 
 #include <utility>
 
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_messages.h"
+#include "hires/ros/robot/robot_messages.h"
 
 namespace hires_ros {
 

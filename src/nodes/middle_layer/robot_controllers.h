@@ -10,7 +10,7 @@
 
 #include "hires/control/robot_names.h"
 #include "hires/robot/observation.h"
-#include "hires/ros/controller_topics.h"
+#include "hires/ros/robot/controller_topics.h"
 
 namespace hires_ros {
 

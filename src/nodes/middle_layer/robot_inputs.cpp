@@ -1,8 +1,8 @@
 #include "nodes/middle_layer/robot_inputs.h"
 
 #include "hires/base/error.h"
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/perception/cloud_messages.h"
 
 namespace hires_ros {
 namespace {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "hires/imagination/imagination_setup.h"
-#include "hires/ros/sensor_receiver.h"
+#include "hires/ros/sensing/sensor_receiver.h"
 #include "hires/sensing/ground_watch.h"
 #include "hires/sensing/observation_maker.h"
 #include "hires/sensing/scan_obstacles.h"

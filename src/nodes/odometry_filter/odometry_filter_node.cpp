@@ -9,10 +9,10 @@
 
 #include "hires/base/error.h"
 #include "hires/base/process.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/place/pose_messages.h"
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/values/geometry_messages.h"
+#include "hires/ros/values/pose_messages.h"
 
 namespace hires_ros {
 namespace {

@@ -13,7 +13,7 @@
 #include "hires/base/topic_warnings.h"
 #include "hires/localisation/heading_feed.h"
 #include "hires/localisation/odometry_filter.h"
-#include "hires/ros/place/transform_listener.h"
+#include "hires/ros/transforms/transform_listener.h"
 #include "nodes/odometry_filter/odometry_filter_params.h"
 
 namespace hires_ros {

@@ -10,9 +10,9 @@
 #include "hires/base/process.h"
 #include "hires/base/short_text.h"
 #include "hires/planning/planner.h"
+#include "hires/ros/names/topic_names.h"
 #include "hires/ros/node/private_params.h"
-#include "hires/ros/plan_request.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/planning/plan_request.h"
 
 namespace hires_ros {
 namespace {

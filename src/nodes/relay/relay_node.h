@@ -4,8 +4,8 @@
 #include <ros/publisher.h>
 
 #include "hires/relay/relay.h"
+#include "hires/ros/master/xmlrpc_master_api.h"
 #include "hires/ros/node/master_watch.h"
-#include "hires/ros/xmlrpc_master_api.h"
 
 namespace hires_ros {
 

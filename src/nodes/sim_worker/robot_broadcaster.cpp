@@ -6,9 +6,9 @@
 #include <sensor_msgs/JointState.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/names/topic_names.h"
+#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros {
 namespace {

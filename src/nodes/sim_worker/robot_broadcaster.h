@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-#include "hires/ros/trace_markers.h"
+#include "hires/ros/imagination/trace_markers.h"
 #include "hires/simulation/robot_simulator.h"
 #include "hires/simulation/scene.h"
 

@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "hires/base/check.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros {
 namespace {

@@ -1,7 +1,7 @@
 #include "nodes/sim_worker/sim_robot_camera_publisher.h"
 
 #include "hires/perception/camera_view.h"
-#include "hires/ros/robot_messages.h"
+#include "hires/ros/robot/robot_messages.h"
 #include "nodes/sim_worker/is_heard.h"
 #include "nodes/sim_worker/sensor_messages.h"
 

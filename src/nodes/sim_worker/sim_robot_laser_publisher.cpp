@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/robot/robot_messages.h"
 #include "nodes/sim_worker/is_heard.h"
 #include "nodes/sim_worker/sensor_messages.h"
 

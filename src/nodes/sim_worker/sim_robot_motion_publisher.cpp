@@ -4,10 +4,10 @@
 #include <nav_msgs/Odometry.h>
 
 #include "hires/robot/posture.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/place/pose_messages.h"
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/values/geometry_messages.h"
+#include "hires/ros/values/pose_messages.h"
 #include "nodes/sim_worker/sensor_messages.h"
 
 namespace hires_ros {

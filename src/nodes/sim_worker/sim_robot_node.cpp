@@ -11,10 +11,10 @@
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/robot/load_robot.h"
-#include "hires/ros/controller_messages.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/robot/controller_messages.h"
+#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "hires/evaluation/scenario.h"
-#include "hires/ros/load_robot_names.h"
 #include "hires/ros/node/private_params.h"
+#include "hires/ros/robot/load_robot_names.h"
 
 namespace hires_ros {
 namespace {

@@ -13,7 +13,7 @@
 #include "hires/evaluation/sim_robot_sensors.h"
 #include "hires/evaluation/sim_robot_world.h"
 #include "hires/imagination/imagination_setup.h"
-#include "hires/ros/trace_markers.h"
+#include "hires/ros/imagination/trace_markers.h"
 #include "hires/simulation/truth_record.h"
 #include "nodes/sim_worker/sim_robot_camera_publisher.h"
 #include "nodes/sim_worker/sim_robot_laser_publisher.h"

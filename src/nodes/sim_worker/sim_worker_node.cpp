@@ -9,9 +9,12 @@
 #include "hires/base/text.h"
 #include "hires/imagination/rollout.h"
 #include "hires/robot/load_robot.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/answer/report_messages.h"
+#include "hires/ros/names/topic_names.h"
 #include "hires/ros/node/private_params.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/robot/robot_state_messages.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/world/world_messages.h"
 #include "hires/skills/action_loader.h"
 
 namespace hires_ros {

@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "hires/perception/detector.h"
-#include "hires/ros/conversions.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros {
 namespace {

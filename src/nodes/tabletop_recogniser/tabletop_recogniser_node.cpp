@@ -10,8 +10,9 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/perception/camera_view.h"
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/perception/cloud_messages.h"
+#include "hires/ros/perception/detection_messages.h"
 #include "nodes/tabletop_recogniser/recognition_markers.h"
 
 namespace hires_ros {

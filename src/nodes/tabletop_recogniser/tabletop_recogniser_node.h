@@ -13,7 +13,7 @@
 
 #include "hires/base/topic_warnings.h"
 #include "hires/perception/tabletop_recogniser.h"
-#include "hires/ros/place/transform_listener.h"
+#include "hires/ros/transforms/transform_listener.h"
 #include "nodes/tabletop_recogniser/tabletop_recogniser_params.h"
 
 namespace hires_ros {

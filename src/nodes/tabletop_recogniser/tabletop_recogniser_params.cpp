@@ -5,8 +5,8 @@
 #include "hires/base/error.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/robot/load_robot.h"
-#include "hires/ros/load_robot_names.h"
 #include "hires/ros/node/private_params.h"
+#include "hires/ros/robot/load_robot_names.h"
 
 namespace hires_ros {
 

@@ -8,8 +8,10 @@
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/robot/robot_state_messages.h"
+#include "hires/ros/values/action_messages.h"
+#include "hires/ros/world/world_messages.h"
 #include "nodes/topple_monitor/topple_messages.h"
 
 namespace hires_ros {

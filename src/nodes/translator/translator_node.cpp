@@ -9,9 +9,10 @@
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/knowledge/state_view.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_topics.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/names/topic_names.h"
+#include "hires/ros/robot/robot_state_messages.h"
+#include "hires/ros/world/world_messages.h"
 #include "hires/translation/classification.h"
 
 namespace hires_ros {

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "hires/ros/remote_view.h"
+#include "hires/ros/knowledge/remote_view.h"
 #include "hires/translation/translator.h"
 
 namespace hires_ros {

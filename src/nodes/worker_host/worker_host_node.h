@@ -11,8 +11,8 @@
 #include "hires/relay/relay_params.h"
 #include "hires/relay/restart_policy.h"
 #include "hires/relay/worker_host_params.h"
+#include "hires/ros/master/xmlrpc_master_api.h"
 #include "hires/ros/node/master_watch.h"
-#include "hires/ros/xmlrpc_master_api.h"
 
 namespace hires_ros {
 

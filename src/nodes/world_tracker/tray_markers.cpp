@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "hires/ros/conversions.h"
+#include "hires/ros/values/geometry_messages.h"
 
 namespace hires_ros {
 namespace {

@@ -1,10 +1,11 @@
 #include "nodes/world_tracker/world_tracker_node.h"
 
 #include "hires/base/error.h"
-#include "hires/ros/conversions.h"
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/robot_topics.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/names/topic_names.h"
+#include "hires/ros/perception/cloud_messages.h"
+#include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/world/world_messages.h"
 #include "hires/skills/action_loader.h"
 #include "nodes/world_tracker/tray_markers.h"
 

@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "hires/control/world_tracker.h"
-#include "hires/ros/controller_topics.h"
-#include "hires/ros/sensor_receiver.h"
+#include "hires/ros/robot/controller_topics.h"
+#include "hires/ros/sensing/sensor_receiver.h"
 #include "hires/skills/action_set.h"
 #include "nodes/world_tracker/world_tracker_params.h"
 #include "nodes/world_tracker/world_tracker_writer.h"

@@ -1,8 +1,8 @@
 #include "nodes/world_tracker/world_tracker_params.h"
 
 #include "hires/imagination/imagination_setup.h"
-#include "hires/ros/load_robot_names.h"
 #include "hires/ros/node/private_params.h"
+#include "hires/ros/robot/load_robot_names.h"
 
 namespace hires_ros {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "hires/control/head_sweep.h"
-#include "hires/ros/translator_params.h"
+#include "hires/ros/translation/translator_params.h"
 #include "hires/sensing/floor_watch.h"
 #include "hires/sensing/sensing_params.h"
 #include "hires/translation/observed_fluents.h"

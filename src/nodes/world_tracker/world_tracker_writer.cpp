@@ -11,8 +11,8 @@
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/process.h"
-#include "hires/ros/blackboard_messages.h"
-#include "hires/ros/topic_names.h"
+#include "hires/ros/knowledge/blackboard_messages.h"
+#include "hires/ros/names/topic_names.h"
 
 namespace hires_ros {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <thread>
 
-#include "hires/ros/remote_view.h"
-#include "hires/ros/service_links.h"
+#include "hires/ros/knowledge/remote_view.h"
+#include "hires/ros/node/service_links.h"
 #include "nodes/world_tracker/world_tracker_params.h"
 
 namespace hires_ros {

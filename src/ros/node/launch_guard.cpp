@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "hires/relay/uri.h"
-#include "hires/ros/xmlrpc_master_api.h"
+#include "hires/ros/master/xmlrpc_master_api.h"
 
 namespace hires_ros {
 namespace {

@@ -19,7 +19,7 @@
 
 #include "hires/base/check.h"
 #include "hires/base/log.h"
-#include "hires/ros/xmlrpc_master_api.h"
+#include "hires/ros/master/xmlrpc_master_api.h"
 
 namespace hires_ros {
 namespace {

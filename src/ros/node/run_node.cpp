@@ -5,10 +5,10 @@
 #include <cstdlib>
 
 #include "hires/base/error.h"
+#include "hires/ros/master/xmlrpc_master_api.h"
 #include "hires/ros/node/launch_guard.h"
 #include "hires/ros/node/log_sink.h"
 #include "hires/ros/node/master_watch.h"
-#include "hires/ros/xmlrpc_master_api.h"
 
 namespace hires_ros {
 

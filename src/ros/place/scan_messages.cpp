@@ -5,7 +5,7 @@
 #include <boost/make_shared.hpp>
 
 #include "hires/base/error.h"
-#include "hires/sensing/drive_builder.h"
+#include "hires/robot/echoes.h"
 
 namespace hires_ros {
 
@@ -21,7 +21,7 @@ sensor_msgs::LaserScan NearestEchoesOf(const sensor_msgs::MultiEchoLaserScan& ms
   scan.range_max = msg.range_max;
   scan.ranges.reserve(msg.ranges.size());
   for (const sensor_msgs::LaserEcho& beam : msg.ranges)
-    scan.ranges.push_back(hires::sensing::NearestEcho(beam.echoes, msg.range_min));
+    scan.ranges.push_back(hires::robot::NearestEcho(beam.echoes, msg.range_min));
   return scan;
 }
 

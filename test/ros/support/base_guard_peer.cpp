@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "hires/ros/robot_messages.h"
-#include "hires/ros/robot_topics.h"
+#include "hires/ros/names/robot_topics.h"
+#include "hires/ros/robot/robot_messages.h"
 #include "hires/simulation/base_drive.h"
 
 namespace {

@@ -9,7 +9,7 @@
 #include "hires/control/robot_names.h"
 #include "hires/localisation/live_scan_params.h"
 #include "hires/localisation/scan_outcome.h"
-#include "hires/ros/place/transform_listener.h"
+#include "hires/ros/transforms/transform_listener.h"
 
 namespace hires_ros {
 

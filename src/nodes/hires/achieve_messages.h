@@ -1,0 +1,14 @@
+#pragma once
+
+#include <hires/ImaginationStatus.h>
+
+#include "hires/evaluation/achieve.h"
+
+/// Imaginations of a task as messages, and back.
+namespace hires_ros {
+
+hires::ImaginationStatus ToMsg(const hires::evaluation::ImaginedStep& step);
+/// @throws hires::base::ConfigError for an outcome that there is not.
+hires::evaluation::ImaginedStep FromMsg(const hires::ImaginationStatus& message);
+
+}  // namespace hires_ros
